@@ -1,0 +1,20 @@
+// Moments by the shaders' own text on the CPU, on all its cores.
+#pragma once
+
+#include "evaluate/moments.hpp"
+
+namespace dolp {
+
+/// Evaluator "cpu": kernel and rules of the Vulkan evaluator, compiled by the C++ compiler. Precision::kAuto is float.
+class CpuEvaluator final : public MomentsEvaluator {
+ public:
+  explicit CpuEvaluator(Precision precision) : precision_(precision) {}
+  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
+  EvaluationReport report() const override { return report_; }
+
+ private:
+  Precision precision_;
+  EvaluationReport report_;
+};
+
+}  // namespace dolp

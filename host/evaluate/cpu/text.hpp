@@ -1,0 +1,24 @@
+// The shaders' own text compiled as C++, in float and in double: a translation unit for each precision.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "plan/kernel_data.hpp"
+
+namespace dolp {
+
+/// The two kernels of shaders/*.comp over one set of kernel data, which must outlive the object.
+class KernelText {
+ public:
+  virtual ~KernelText() = default;
+
+  /// Fills the masking table of one shape; needed before `moments` of its entries when the data needs tables.
+  virtual void build_masking_table(std::size_t shape) = 0;
+  virtual kernel::MomentsNode moments(const MomentsEntry& entry) = 0;
+};
+
+std::unique_ptr<KernelText> make_kernel_text_float(const KernelData& data);
+std::unique_ptr<KernelText> make_kernel_text_double(const KernelData& data);
+
+}  // namespace dolp

@@ -1,0 +1,122 @@
+// A validated scene: what the TOML file says, in SI units and radians (the grid's theta stays in degrees, because the
+// degrees are what the user typed and what the table's coordinate must repeat).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dolp {
+
+enum class Distribution : std::uint32_t { kCauchy = 0, kGaussian = 1 };
+enum class Masking : std::uint32_t { kNone = 0, kVCavity = 1, kIntegral = 2, kSmith = 3 };
+enum class EmissionModel { kMoments, kFresnel };
+enum class Mode { kHemispherical, kBistatic };
+enum class Precision { kAuto, kFloat, kDouble };
+
+/// Complex refractive index n + ik; time factor e^(-i omega t), so k >= 0.
+struct OpticalConstants {
+  double n = 1.0;
+  double k = 0.0;
+  friend bool operator==(const OpticalConstants&, const OpticalConstants&) = default;
+};
+
+/// A quantity tabulated over wavelength (strictly ascending), with the interpolation that suits it.
+/// Outside the table the scene reader refuses the scene, so `at` is only asked inside.
+struct SpectralTable {
+  enum class Interpolation { kLinear, kLogLog };
+  std::vector<double> wavelength_um;
+  std::vector<double> value;
+  Interpolation interpolation = Interpolation::kLinear;
+  double at(double wavelength_um) const;
+};
+
+/// n + ik over wavelength. A constant index has `n.wavelength_um` empty and is `constant` everywhere.
+struct Material {
+  std::string name;    ///< empty for n, k given in the scene
+  std::string source;  ///< where the values come from; empty for n, k given in the scene
+  OpticalConstants constant;
+  SpectralTable n, k;
+  bool is_constant() const { return n.wavelength_um.empty(); }
+  OpticalConstants at(double wavelength_um) const;
+};
+
+struct Surface {
+  Material material;
+  Distribution distribution = Distribution::kCauchy;
+  Masking masking = Masking::kIntegral;
+  double sigma = 0.0;
+  double q = 2.0;
+  double specular = 1.0;           ///< k_s in [0, 1]
+  double diffuse = 0.0;            ///< k_d in [0, 1]
+  double diffuse_exponent = -0.5;  ///< c in (-1, 0]
+};
+
+struct Emission {
+  double temperature_K = 0.0;
+  EmissionModel model = EmissionModel::kMoments;
+};
+
+/// Irradiance at normal incidence; exactly one of the three kinds.
+struct Source {
+  enum class Kind { kFlat, kRelative, kTabulated };
+  Kind kind = Kind::kFlat;
+  double irradiance = 0.0;           ///< W m-2 um-1, flat over a band (kFlat)
+  double relative_irradiance = 0.0;  ///< E0 / (pi B(T)) at each wavelength, T of the emission (kRelative)
+  SpectralTable table;               ///< W m-2 um-1 (kTabulated)
+  double scale = 1.0;                ///< multiplies all three
+};
+
+struct Surroundings {
+  double temperature_K = 0.0;
+};
+
+/// Path to the sensor: I -> tau I + L (times pi in hemispherical mode); Q, U, V -> tau Q, U, V.
+struct Path {
+  double transmittance = 1.0;
+  std::optional<double> temperature_K;  ///< path radiance (1 - tau) B(T)
+  std::optional<double> radiance;       ///< W m-2 sr-1 um-1, instead of a temperature
+};
+
+struct Spectrum {
+  double min_um = 0.0;
+  double max_um = 0.0;  ///< equal to min_um for a single wavelength
+  bool is_band() const { return max_um > min_um; }
+};
+
+struct Geometry {
+  Mode mode = Mode::kHemispherical;
+  double view_zenith_deg = 60.0;       ///< bistatic only
+  double relative_azimuth_deg = 180.0;  ///< bistatic only; 180 is the specular side
+};
+
+/// Axis values in the order the user gave; any order, at least one value each. sigma and q fall back to [surface].
+struct Grid {
+  std::vector<double> theta_deg;
+  std::vector<double> sigma;
+  std::vector<double> q;
+};
+
+struct Accuracy {
+  double tolerance = 1e-4;
+  Precision precision = Precision::kAuto;
+};
+
+struct Scene {
+  std::string title;
+  Surface surface;
+  std::optional<Emission> emission;
+  std::optional<Source> source;
+  std::optional<Surroundings> surroundings;
+  std::optional<Path> path;
+  Spectrum spectrum;
+  Geometry geometry;
+  Grid grid;
+  Accuracy accuracy;
+  std::string path_name;  ///< as given on the command line, for messages
+  std::string text;       ///< the file, verbatim
+  std::vector<std::string> overrides;  ///< the --set KEY=VALUE arguments that were applied, verbatim
+};
+
+}  // namespace dolp

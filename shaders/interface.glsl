@@ -1,0 +1,81 @@
+// What host and shaders agree on: bindings, specialization constants, push constants, structures. Read by both: the
+// structures hold nothing but `real` (float or double), so that std430 packs them tightly and the host may treat an
+// array of them as an array of numbers. Counts stored as `real` are small integers.
+
+// ---- Bindings of descriptor set 0 (all storage buffers) -------------------------------------------------------------
+#define DOLP_BINDING_THETAS 0         // ThetaNode[]
+#define DOLP_BINDING_SHAPES 1         // ShapeNode[]
+#define DOLP_BINDING_INDICES 2        // IndexNode[]
+#define DOLP_BINDING_ENTRIES 3        // uvec4[]: theta, shape (relative to the first shape bound), index, unused
+#define DOLP_BINDING_RULE_NODES 4     // real2[]: abscissa and weight, see physics/quadrature.glsl
+#define DOLP_BINDING_MASKING_TABLE 5  // real4[]: DOLP_MASKING_NODES for each shape bound, see physics/masking.glsl
+#define DOLP_BINDING_MOMENTS 6        // MomentsNode[]: one for each entry of the dispatch
+
+// ---- Specialization constants --------------------------------------------------------------------------------------
+#define DOLP_SPEC_LOCAL_SIZE 0
+#define DOLP_SPEC_DISTRIBUTION 1  // DOLP_CAUCHY | DOLP_GAUSSIAN
+#define DOLP_SPEC_MASKING 2       // DOLP_MASKING_*
+
+#define DOLP_CAUCHY 0u
+#define DOLP_GAUSSIAN 1u
+#define DOLP_MASKING_NONE 0u
+#define DOLP_MASKING_V_CAVITY 1u
+#define DOLP_MASKING_INTEGRAL 2u
+#define DOLP_MASKING_SMITH 3u
+
+// ---- Push constants: four uints, used by both entry points ----------------------------------------------------------
+// count: entries of this dispatch (moments.comp) or shapes bound (masking_table.comp); first: the first of them, as a
+// position in the bound buffers. Output i of a dispatch belongs to entry first + i.
+#define DOLP_PUSH_CONSTANTS uint first; uint count; uint unused_0; uint unused_1;
+
+// ---- Sizes ---------------------------------------------------------------------------------------------------------
+#define DOLP_MAX_PIECES 8        // pieces of the slope axis for one direction
+#define DOLP_MAX_ORDER 32        // largest Gauss order of the rule nodes
+#define DOLP_MASKING_OCTAVES 29  // of v = 1 + tau/scale
+#define DOLP_MASKING_CELLS 16    // per octave
+#define DOLP_MASKING_NODES (DOLP_MASKING_OCTAVES * DOLP_MASKING_CELLS + 1)
+
+// ---- Structures ----------------------------------------------------------------------------------------------------
+
+// One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth.
+struct ThetaNode {
+  real c;                          // cos(theta)
+  real s;                          // sin(theta)
+  real piece_count;                // <= DOLP_MAX_PIECES
+  real order_t;                    // slope-axis nodes of a piece that carries the whole weight
+  real order_per_e;                // fewer nodes for each factor e that a piece carries less
+  real order_phi;                  // azimuth nodes of a piece
+  real end[DOLP_MAX_PIECES + 1];   // ascending slopes; the last may exceed any cut
+  real kind[DOLP_MAX_PIECES + 1];  // bit 0: square-root end just above, bit 1: just below
+};
+
+// One slope distribution.
+struct ShapeNode {
+  real m;              // sqrt(2) sigma
+  real q;              // exponent; unused by the gaussian
+  real norm;           // P(0) of the slope density: (q-1)/(pi m^2), gaussian 1/(pi m^2)
+  real marginal_norm;  // p(0) of the in-plane marginal
+  real scale;          // w of the map t = w sinh(X)
+  real cut;            // slopes beyond it are left out
+  real table_scale;    // of the masking table: v = 1 + tau/table_scale
+};
+
+// One complex refractive index N = n + ik.
+struct IndexNode {
+  real n2m1_re;  // Re(N^2 - 1)
+  real n2m1_im;  // Im(N^2 - 1)
+};
+
+// Moments times cos(theta) (MODEL.md section 3), and |fine - coarse| summed over the pieces for each.
+struct MomentsNode {
+  real r_i;
+  real r_q;
+  real albedo;
+  real deficit;
+  real r_i_difference;
+  real r_q_difference;
+  real albedo_difference;
+  real deficit_difference;
+  real deficit_scale;  // sum of the absolute values of the deficit's terms, for its rounding error
+  real evaluations;
+};

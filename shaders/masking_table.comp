@@ -1,0 +1,13 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Masking table of one shape per invocation.
+
+#include "physics/prelude.glsl"
+#include "interface.glsl"
+#include "physics/buffers.glsl"
+#include "physics/all.glsl"
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i < push.count) build_masking_table(shapes[push.first + i], (push.first + i) * DOLP_MASKING_NODES);
+}

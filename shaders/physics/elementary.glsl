@@ -1,0 +1,120 @@
+// Elementary functions from +, *, / and sqrt. The builtins of GLSL are too coarse (a driver may return sinh with an error
+// of several percent near 0) and do not exist in double.
+// Accuracy: tests/physics_test.cpp, a few units in the last place for the ranges stated here.
+
+CONST real kPi = real(3.14159265358979323846);
+CONST real kLn2High = real(0.693145751953125);             // exact in a float; times an exponent it stays exact
+CONST real kLn2Low = real(1.42860682030941723212e-6);      // ln 2 - kLn2High
+CONST real kInverseLn2 = real(1.44269504088896340736);
+CONST real kSqrtHalf = real(0.70710678118654752440);
+
+// sum of r^j / (j+2)!, so that e^r = 1 + r + r^2 * this, for |r| <= ln(2)/2.
+real exp_series(real r) {
+#ifdef DOLP_DOUBLE
+  real p = real(1.0) / real(6227020800.0);
+  p = p * r + real(1.0) / real(479001600.0);
+  p = p * r + real(1.0) / real(39916800.0);
+  p = p * r + real(1.0) / real(3628800.0);
+  p = p * r + real(1.0) / real(362880.0);
+  p = p * r + real(1.0) / real(40320.0);
+  p = p * r + real(1.0) / real(5040.0);
+#else
+  real p = real(1.0) / real(5040.0);
+#endif
+  p = p * r + real(1.0) / real(720.0);
+  p = p * r + real(1.0) / real(120.0);
+  p = p * r + real(1.0) / real(24.0);
+  p = p * r + real(1.0) / real(6.0);
+  return p * r + real(0.5);
+}
+
+// e^x - 1 without cancellation near 0. Domain: x <= 80; below -80 the result is -1.
+real expm1_real(real x) {
+  real bounded = max(x, real(-80.0));
+  real k = floor(bounded * kInverseLn2 + real(0.5));
+  real r = (bounded - k * kLn2High) - k * kLn2Low;
+  real fraction = r + r * r * exp_series(r);
+  real power = ldexp(real(1.0), int(k));
+  return power * fraction + (power - real(1.0));
+}
+
+// e^x for x <= 80; below -80 it is a number under 2e-35, which every sum here ignores.
+real exp_real(real x) {
+  real bounded = max(x, real(-80.0));
+  real k = floor(bounded * kInverseLn2 + real(0.5));
+  real r = (bounded - k * kLn2High) - k * kLn2Low;
+  return ldexp(real(1.0) + (r + r * r * exp_series(r)), int(k));
+}
+
+// atanh(z)/z - 1 over z^2, for z^2 <= 0.03.
+real atanh_series(real z2) {
+#ifdef DOLP_DOUBLE
+  real p = real(1.0) / real(23.0);
+  p = p * z2 + real(1.0) / real(21.0);
+  p = p * z2 + real(1.0) / real(19.0);
+  p = p * z2 + real(1.0) / real(17.0);
+  p = p * z2 + real(1.0) / real(15.0);
+  p = p * z2 + real(1.0) / real(13.0);
+  p = p * z2 + real(1.0) / real(11.0);
+#else
+  real p = real(1.0) / real(11.0);
+#endif
+  p = p * z2 + real(1.0) / real(9.0);
+  p = p * z2 + real(1.0) / real(7.0);
+  p = p * z2 + real(1.0) / real(5.0);
+  return p * z2 + real(1.0) / real(3.0);
+}
+
+// ln(1 + u) for u >= 0, relative accuracy kept near 0.
+real log1p_real(real u) {
+  precise real v = real(1.0) + u;
+  precise real above_one = v - real(1.0);
+  precise real lost = (u < real(1.0)) ? u - above_one : real(1.0) - (v - u);
+  int exponent;
+  real mantissa = frexp(v, exponent);
+  if (mantissa < kSqrtHalf) {
+    mantissa = mantissa + mantissa;
+    exponent = exponent - 1;
+  }
+  real z = (mantissa - real(1.0)) / (mantissa + real(1.0));
+  real z2 = z * z;
+  real series = real(2.0) * (z + z * z2 * atanh_series(z2));
+  real k = real(exponent);
+  return k * kLn2High + (series + (k * kLn2Low + lost / v));
+}
+
+// asinh(y) for y >= 0.
+real asinh_real(real y) {
+  real y2 = y * y;
+  return log1p_real(y + y2 / (real(1.0) + sqrt(real(1.0) + y2)));
+}
+
+// sinh(x) for 0 <= x <= 80.
+real sinh_real(real x) {
+  real e = expm1_real(x);
+  return real(0.5) * (e + e / (real(1.0) + e));
+}
+
+// atan(y) for 0 <= y <= 1: the argument is halved twice, then the Taylor series.
+real atan_unit(real y) {
+  real y1 = y / (real(1.0) + sqrt(real(1.0) + y * y));
+  real y2 = y1 / (real(1.0) + sqrt(real(1.0) + y1 * y1));
+  real z = -y2 * y2;
+#ifdef DOLP_DOUBLE
+  real p = real(1.0) / real(25.0);
+  p = p * z + real(1.0) / real(23.0);
+  p = p * z + real(1.0) / real(21.0);
+  p = p * z + real(1.0) / real(19.0);
+  p = p * z + real(1.0) / real(17.0);
+  p = p * z + real(1.0) / real(15.0);
+  p = p * z + real(1.0) / real(13.0);
+  p = p * z + real(1.0) / real(11.0);
+#else
+  real p = real(1.0) / real(11.0);
+#endif
+  p = p * z + real(1.0) / real(9.0);
+  p = p * z + real(1.0) / real(7.0);
+  p = p * z + real(1.0) / real(5.0);
+  p = p * z + real(1.0) / real(3.0);
+  return real(4.0) * y2 * (real(1.0) + z * p);
+}

@@ -1,0 +1,36 @@
+// Fresnel reflection for N = n + ik, in the combinations that the moments need, none of which cancels.
+//
+// With c = cos(beta), w = sqrt(N^2 - sin^2 beta) = sqrt((N^2 - 1) + c^2), B = |c + w|^2, a = |N^2 - 1|^2 / B:
+//   R_s = |c - w|^2 / B = a / B                      because (c - w)(c + w) = 1 - N^2
+//   (R_s - R_p) / sin^2(beta) = 4 c Re(w) a / |N^2 c + w|^2
+//   1 - R_s = 4 c Re(w) / B
+// The quotient by sin^2(beta) is what normal incidence needs: the rotation terms carry the factor sin^2(beta).
+
+struct Fresnel {
+  real r_s;                // R_s
+  real absorbed_s;         // 1 - R_s
+  real split_over_sin2;    // (R_s - R_p) / sin^2(beta)
+};
+
+// sqrt(re + i im) for im >= 0, as (Re, Im), both >= 0 and each without cancellation.
+real2 sqrt_upper(real re, real im) {
+  real modulus = sqrt(re * re + im * im);
+  real larger = sqrt(real(0.5) * (modulus + abs(re)));
+  real smaller = (larger > real(0.0)) ? real(0.5) * im / larger : real(0.0);
+  return (re >= real(0.0)) ? real2(larger, smaller) : real2(smaller, larger);
+}
+
+// Domain: 0 < cos_beta <= 1.
+Fresnel fresnel(IndexNode index, real cos_beta) {
+  real2 w = sqrt_upper(index.n2m1_re + cos_beta * cos_beta, index.n2m1_im);
+  real2 s_sum = real2(cos_beta + w.x, w.y);
+  real2 p_sum = real2((index.n2m1_re + real(1.0)) * cos_beta + w.x, index.n2m1_im * cos_beta + w.y);
+  real inverse_b = real(1.0) / (s_sum.x * s_sum.x + s_sum.y * s_sum.y);
+  real a = (index.n2m1_re * index.n2m1_re + index.n2m1_im * index.n2m1_im) * inverse_b;
+  real transmitted = real(4.0) * cos_beta * w.x;
+  Fresnel f;
+  f.r_s = a * inverse_b;
+  f.absorbed_s = transmitted * inverse_b;
+  f.split_over_sin2 = transmitted * a / (p_sum.x * p_sum.x + p_sum.y * p_sum.y);
+  return f;
+}

@@ -1,0 +1,46 @@
+// Builds the masking table of one shape, from its far end inwards. All terms are positive, so that the relative accuracy
+// is kept down to the smallest tails.
+
+CONST int kTableOrder = 6;  // Gauss order on one cell, in which v grows by less than 1/16
+
+// Adds one cell [tau0, tau1] to the tails at tau1: (l, C, Pt, p) at tau0.
+real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
+  real h = tau1 - tau0;
+  real height = real(0.0);
+  real cosines = real(0.0);
+  real probability = real(0.0);
+  for (int i = 0; i < kTableOrder; ++i) {
+    real2 node = rule_node(gauss_offset(kTableOrder) + i);
+    real rise = h * node.x;
+    real tau = tau0 + rise;
+    real weight = h * node.y * marginal_density(shape, tau);
+    real weighted_cosine = weight / sqrt(real(1.0) + tau * tau);
+    probability += weight;
+    cosines += weighted_cosine;
+    height += weighted_cosine * rise;
+  }
+  return real4(beyond.x + h * beyond.y + height, beyond.y + cosines, beyond.z + probability,
+               marginal_density(shape, tau0));
+}
+
+// The tails at the table's end, where p is a power law tau^(1-2q) for the cauchy and nothing is left of the gaussian.
+real4 masking_table_end(ShapeNode shape, real tau) {
+  real p = marginal_density(shape, tau);
+  if (kDistribution == DOLP_GAUSSIAN) return real4(real(0.0), real(0.0), real(0.0), p);
+  real a = real(2.0) * shape.q - real(2.0);
+  real b = a + real(1.0);
+  return real4(p * tau / (a * b), p / b, p * tau / a, p);
+}
+
+// Fills the table that starts at node `table`.
+void build_masking_table(ShapeNode shape, uint table) {
+  real tau1 = masking_node_tau(shape, uint(DOLP_MASKING_NODES - 1));
+  real4 tails = masking_table_end(shape, tau1);
+  store_masking_node(table + uint(DOLP_MASKING_NODES - 1), tails);
+  for (int node = DOLP_MASKING_NODES - 2; node >= 0; --node) {
+    real tau0 = masking_node_tau(shape, uint(node));
+    tails = masking_cell(shape, tau0, tau1, tails);
+    store_masking_node(table + uint(node), tails);
+    tau1 = tau0;
+  }
+}

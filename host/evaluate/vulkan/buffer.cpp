@@ -1,0 +1,89 @@
+#include "evaluate/vulkan/buffer.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+
+#include "evaluate/vulkan/command_stream.hpp"
+#include "evaluate/vulkan/result.hpp"
+
+namespace dolp::vulkan {
+namespace {
+
+// Vulkan has no empty buffers, and no structure of the kernels is larger than this.
+constexpr VkDeviceSize kSmallestBuffer = 256;
+
+bool must_stage(const Device& device) {
+  constexpr std::uint32_t kAnyType = UINT32_MAX;
+  return !(device.memory_type(kAnyType, MemoryUse::kUpload).flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+}
+
+}  // namespace
+
+Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use)
+    : device_(device.get()), size_(std::max(bytes, kSmallestBuffer)) {
+  const VkBufferCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+      .size = size_,
+      .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+      .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
+  VkBuffer buffer = VK_NULL_HANDLE;
+  check(vkCreateBuffer(device_, &info, nullptr, &buffer), "creating a buffer");
+  buffer_ = UniqueBuffer(device_, buffer);
+
+  VkMemoryRequirements requirements{};
+  vkGetBufferMemoryRequirements(device_, buffer, &requirements);
+  const MemoryType type = device.memory_type(requirements.memoryTypeBits, use);
+  memory_flags_ = type.flags;
+  const VkMemoryAllocateInfo allocation{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                        .allocationSize = requirements.size,
+                                        .memoryTypeIndex = type.index};
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  check(vkAllocateMemory(device_, &allocation, nullptr, &memory), "allocating memory");
+  memory_ = UniqueMemory(device_, memory);
+  check(vkBindBufferMemory(device_, buffer, memory, 0), "binding memory");
+  if (use == MemoryUse::kDeviceOnly) return;
+  void* address = nullptr;
+  check(vkMapMemory(device_, memory, 0, VK_WHOLE_SIZE, 0, &address), "mapping memory");
+  mapped_ = static_cast<std::byte*>(address);
+}
+
+VkMappedMemoryRange Buffer::range() const {
+  return {.sType = VK_STRUCTURE_TYPE_MAPPED_MEMORY_RANGE, .memory = memory_.get(), .offset = 0, .size = VK_WHOLE_SIZE};
+}
+
+void Buffer::write(std::span<const std::byte> bytes) {
+  assert(mapped_ && bytes.size() <= size_);
+  if (bytes.empty()) return;
+  std::memcpy(mapped_, bytes.data(), bytes.size());
+  if (coherent()) return;
+  const VkMappedMemoryRange whole = range();
+  check(vkFlushMappedMemoryRanges(device_, 1, &whole), "flushing memory");
+}
+
+void Buffer::read(std::span<std::byte> bytes) const {
+  assert(mapped_ && bytes.size() <= size_);
+  if (bytes.empty()) return;
+  if (!coherent()) {
+    const VkMappedMemoryRange whole = range();
+    check(vkInvalidateMappedMemoryRanges(device_, 1, &whole), "invalidating memory");
+  }
+  std::memcpy(bytes.data(), mapped_, bytes.size());
+}
+
+InputBuffer::InputBuffer(const Device& device, VkDeviceSize bytes, bool force_staging)
+    : staging_(force_staging || must_stage(device)
+                   ? std::optional<Buffer>(std::in_place, device, bytes, MemoryUse::kUpload)
+                   : std::nullopt),
+      buffer_(device, bytes, staging_ ? MemoryUse::kDeviceOnly : MemoryUse::kUpload) {}
+
+void InputBuffer::write(std::span<const std::byte> bytes, CommandStream& stream) {
+  if (!staging_) {
+    buffer_.write(bytes);
+  } else if (!bytes.empty()) {
+    staging_->write(bytes);
+    stream.copy(*staging_, buffer_.get(), bytes.size());
+  }
+}
+
+}  // namespace dolp::vulkan

@@ -1,0 +1,132 @@
+#include "evaluate/vulkan/command_stream.hpp"
+
+#include <array>
+#include <chrono>
+#include <cmath>
+
+#include "evaluate/vulkan/buffer.hpp"
+#include "evaluate/vulkan/kernels.hpp"
+#include "evaluate/vulkan/result.hpp"
+
+namespace dolp::vulkan {
+namespace {
+
+constexpr double kNanosecondsPerSecond = 1e9;
+
+struct BarrierScopes {
+  VkPipelineStageFlags from_stage, to_stage;
+  VkAccessFlags from_access, to_access;
+};
+
+BarrierScopes scopes_of(Barrier barrier) {
+  constexpr VkPipelineStageFlags kCompute = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
+  switch (barrier) {
+    case Barrier::kUploadToKernel:
+      return {VK_PIPELINE_STAGE_TRANSFER_BIT, kCompute, VK_ACCESS_TRANSFER_WRITE_BIT, VK_ACCESS_SHADER_READ_BIT};
+    case Barrier::kKernelToKernel:
+      return {kCompute, kCompute, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_SHADER_READ_BIT};
+    case Barrier::kKernelToHost:
+      break;
+  }
+  return {kCompute, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_HOST_READ_BIT};
+}
+
+}  // namespace
+
+CommandStream::CommandStream(const Device& device) : device_(device) {
+  const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                          .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
+                                          .queueFamilyIndex = device.queue_family()};
+  VkCommandPool pool = VK_NULL_HANDLE;
+  check(vkCreateCommandPool(device.get(), &pool_info, nullptr, &pool), "creating a command pool");
+  pool_ = UniqueCommandPool(device.get(), pool);
+
+  const VkCommandBufferAllocateInfo commands_info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                                  .commandPool = pool,
+                                                  .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                                  .commandBufferCount = 1};
+  check(vkAllocateCommandBuffers(device.get(), &commands_info, &commands_), "allocating a command buffer");
+
+  const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+  VkFence fence = VK_NULL_HANDLE;
+  check(vkCreateFence(device.get(), &fence_info, nullptr, &fence), "creating a fence");
+  fence_ = UniqueFence(device.get(), fence);
+  if (device.timestamp_bits() > 0) create_timestamps();
+}
+
+void CommandStream::create_timestamps() {
+  const VkQueryPoolCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO, .queryType = VK_QUERY_TYPE_TIMESTAMP, .queryCount = 2};
+  VkQueryPool timestamps = VK_NULL_HANDLE;
+  check(vkCreateQueryPool(device_.get(), &info, nullptr, &timestamps), "creating a query pool");
+  timestamps_ = UniqueQueryPool(device_.get(), timestamps);
+}
+
+void CommandStream::begin() {
+  // An error may have left a recording behind.
+  check(vkResetCommandBuffer(commands_, 0), "resetting commands");
+  const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                      .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+  check(vkBeginCommandBuffer(commands_, &info), "recording commands");
+  if (timestamps_.get() == VK_NULL_HANDLE) return;
+  vkCmdResetQueryPool(commands_, timestamps_.get(), 0, 2);
+  vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, timestamps_.get(), 0);
+}
+
+void CommandStream::copy(const Buffer& from, VkBuffer to, VkDeviceSize bytes) {
+  const VkBufferCopy region{.srcOffset = 0, .dstOffset = 0, .size = bytes};
+  vkCmdCopyBuffer(commands_, from.get(), to, 1, &region);
+}
+
+void CommandStream::barrier(Barrier barrier) {
+  const BarrierScopes scopes = scopes_of(barrier);
+  const VkMemoryBarrier memory{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                               .srcAccessMask = scopes.from_access,
+                               .dstAccessMask = scopes.to_access};
+  vkCmdPipelineBarrier(commands_, scopes.from_stage, scopes.to_stage, 0, 1, &memory, 0, nullptr, 0, nullptr);
+}
+
+void CommandStream::dispatch(const Kernels& kernels, VkPipeline pipeline, std::uint32_t first, std::uint32_t count) {
+  if (count == 0) return;
+  const std::array<std::uint32_t, kPushConstantCount> constants{first, count};
+  const VkDescriptorSet set = kernels.descriptor_set();
+  vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+  vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernels.layout(), 0, 1, &set, 0, nullptr);
+  vkCmdPushConstants(commands_, kernels.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof constants, constants.data());
+  vkCmdDispatch(commands_, (count + kLocalSize - 1) / kLocalSize, 1, 1);
+}
+
+double CommandStream::submit_and_wait(double timeout_s) {
+  if (timestamps_.get() != VK_NULL_HANDLE) {
+    vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps_.get(), 1);
+  }
+  check(vkEndCommandBuffer(commands_), "recording commands");
+  const VkSubmitInfo info{
+      .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands_};
+  const VkFence fence = fence_.get();
+  const auto start = std::chrono::steady_clock::now();
+  check(vkQueueSubmit(device_.queue(), 1, &info, fence), "submitting work");
+  const auto timeout_ns = static_cast<std::uint64_t>(timeout_s * kNanosecondsPerSecond);
+  const VkResult result = vkWaitForFences(device_.get(), 1, &fence, VK_TRUE, timeout_ns);
+  if (result == VK_TIMEOUT) {
+    throw DeviceTimeout("the Vulkan device did not finish a tile within " + std::to_string(timeout_s) + " s");
+  }
+  check(result, "waiting for the device");
+  const std::chrono::duration<double> host_s = std::chrono::steady_clock::now() - start;
+  check(vkResetFences(device_.get(), 1, &fence), "resetting a fence");
+  return timestamps_.get() == VK_NULL_HANDLE ? host_s.count() : elapsed_s();
+}
+
+double CommandStream::elapsed_s() const {
+  std::array<std::uint64_t, 2> ticks{};
+  check(vkGetQueryPoolResults(device_.get(), timestamps_.get(), 0, 2, sizeof ticks, ticks.data(), sizeof ticks[0],
+                              VK_QUERY_RESULT_64_BIT),
+        "reading timestamps");
+  const std::uint32_t unused_bits = 64 - device_.timestamp_bits();
+  // Shifting the unused bits out lets the difference wrap as the device's counter does.
+  const std::uint64_t difference = ((ticks[1] << unused_bits) - (ticks[0] << unused_bits)) >> unused_bits;
+  return static_cast<double>(difference) * static_cast<double>(device_.limits().timestampPeriod) /
+         kNanosecondsPerSecond;
+}
+
+}  // namespace dolp::vulkan

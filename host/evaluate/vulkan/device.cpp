@@ -1,0 +1,152 @@
+#include "evaluate/vulkan/device.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "evaluate/vulkan/kernels.hpp"
+#include "evaluate/vulkan/result.hpp"
+
+namespace dolp::vulkan {
+namespace {
+
+struct QueueFamily {
+  std::uint32_t index = 0;
+  std::uint32_t timestamp_bits = 0;
+};
+
+std::optional<QueueFamily> compute_family(VkPhysicalDevice physical) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) return QueueFamily{i, families[i].timestampValidBits};
+  }
+  return std::nullopt;
+}
+
+VkDeviceSize largest_device_heap(const VkPhysicalDeviceMemoryProperties& memory) {
+  VkDeviceSize largest = 0;
+  for (const VkMemoryHeap& heap : std::span(memory.memoryHeaps, memory.memoryHeapCount)) {
+    if (heap.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) largest = std::max(largest, heap.size);
+  }
+  return largest;
+}
+
+DeviceDescription::Type type_of(VkPhysicalDeviceType type) {
+  using enum DeviceDescription::Type;
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return kDiscrete;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return kIntegrated;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return kVirtual;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return kCpu;
+    default:
+      return kOther;
+  }
+}
+
+std::string version_text(std::uint32_t version) {
+  return std::to_string(VK_API_VERSION_MAJOR(version)) + '.' + std::to_string(VK_API_VERSION_MINOR(version)) + '.' +
+         std::to_string(VK_API_VERSION_PATCH(version));
+}
+
+std::string why_not_usable(const VkPhysicalDeviceProperties& properties, bool has_compute_queue) {
+  if (properties.apiVersion < VK_API_VERSION_1_2) return "Vulkan " + version_text(properties.apiVersion) + " < 1.2";
+  if (!has_compute_queue) return "no compute queue";
+  if (properties.limits.maxPerStageDescriptorStorageBuffers < kBindingCount) {
+    return "only " + std::to_string(properties.limits.maxPerStageDescriptorStorageBuffers) + " storage buffers, " +
+           std::to_string(kBindingCount) + " needed";
+  }
+  return {};
+}
+
+// What Vulkan 1.2 tells beyond VkPhysicalDeviceProperties.
+void add_properties_1_2(VkPhysicalDevice physical, DeviceDescription& description) {
+  VkPhysicalDeviceDriverProperties driver{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+  VkPhysicalDeviceSubgroupProperties subgroup{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES,
+                                              .pNext = &driver};
+  VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &subgroup};
+  vkGetPhysicalDeviceProperties2(physical, &properties);
+  description.driver = std::string(driver.driverName) + ' ' + driver.driverInfo;
+  description.subgroup_size = subgroup.subgroupSize;
+}
+
+}  // namespace
+
+DeviceDescription describe(VkPhysicalDevice physical) {
+  VkPhysicalDeviceProperties properties{};
+  vkGetPhysicalDeviceProperties(physical, &properties);
+  VkPhysicalDeviceFeatures features{};
+  vkGetPhysicalDeviceFeatures(physical, &features);
+  VkPhysicalDeviceMemoryProperties memory{};
+  vkGetPhysicalDeviceMemoryProperties(physical, &memory);
+  const std::optional<QueueFamily> family = compute_family(physical);
+
+  DeviceDescription description;
+  description.name = properties.deviceName;
+  description.type = type_of(properties.deviceType);
+  description.driver = version_text(properties.driverVersion);
+  description.api_version = version_text(properties.apiVersion);
+  description.why_not = why_not_usable(properties, family.has_value());
+  description.usable = description.why_not.empty();
+  description.float64 = features.shaderFloat64 == VK_TRUE;
+  description.max_storage_buffer_bytes = properties.limits.maxStorageBufferRange;
+  description.max_workgroups = properties.limits.maxComputeWorkGroupCount[0];
+  description.heap_bytes = largest_device_heap(memory);
+  description.timestamps = family && family->timestamp_bits > 0;
+  if (properties.apiVersion >= VK_API_VERSION_1_2) add_properties_1_2(physical, description);
+  return description;
+}
+
+Device::Device(VkPhysicalDevice physical, bool float64) {
+  const std::optional<QueueFamily> family = compute_family(physical);
+  if (!family) throw DeviceError("the Vulkan device has no compute queue");
+  queue_family_ = family->index;
+  timestamp_bits_ = family->timestamp_bits;
+  VkPhysicalDeviceProperties properties{};
+  vkGetPhysicalDeviceProperties(physical, &properties);
+  limits_ = properties.limits;
+  vkGetPhysicalDeviceMemoryProperties(physical, &memory_);
+  heap_bytes_ = largest_device_heap(memory_);
+
+  const float priority = 1.0F;
+  const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                      .queueFamilyIndex = queue_family_,
+                                      .queueCount = 1,
+                                      .pQueuePriorities = &priority};
+  const VkPhysicalDeviceFeatures features{.shaderFloat64 = float64 ? VK_TRUE : VK_FALSE};
+  const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                .queueCreateInfoCount = 1,
+                                .pQueueCreateInfos = &queue,
+                                .pEnabledFeatures = &features};
+  check(vkCreateDevice(physical, &info, nullptr, &device_), "creating the device");
+  vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+}
+
+Device::~Device() { vkDestroyDevice(device_, nullptr); }
+
+MemoryType Device::memory_type(std::uint32_t allowed, MemoryUse use) const {
+  VkMemoryPropertyFlags required = 0;
+  VkMemoryPropertyFlags preferred = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+  if (use != MemoryUse::kDeviceOnly) required = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
+  // The host reads uncached memory a hundred times slower, which outweighs where the device writes to.
+  if (use == MemoryUse::kReadback) preferred = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+
+  std::optional<MemoryType> best;
+  for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i) {
+    const VkMemoryPropertyFlags flags = memory_.memoryTypes[i].propertyFlags;
+    if (!(allowed & (1U << i)) || (flags & required) != required) continue;
+    if (!best || (!(best->flags & preferred) && (flags & preferred))) best = MemoryType{i, flags};
+  }
+  if (!best) throw DeviceError("the Vulkan device has no memory for a storage buffer that the host can map");
+  return *best;
+}
+
+}  // namespace dolp::vulkan

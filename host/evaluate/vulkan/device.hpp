@@ -1,0 +1,60 @@
+// The logical device: one compute queue, its limits and its memory.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <optional>
+
+#include "evaluate/vulkan/devices.hpp"
+
+namespace dolp::vulkan {
+
+/// What the device offers, and whether dolp can run on it.
+DeviceDescription describe(VkPhysicalDevice physical);
+
+/// How the host shares a buffer with the device.
+enum class MemoryUse {
+  kDeviceOnly,  ///< not mapped
+  kUpload,      ///< mapped; written by the host
+  kReadback,    ///< mapped; read by the host
+};
+
+/// A kind of memory to allocate from.
+struct MemoryType {
+  std::uint32_t index = 0;
+  VkMemoryPropertyFlags flags = 0;
+};
+
+/// A logical device with one compute queue.
+class Device {
+ public:
+  /// `float64` asks for double precision in shaders, which the device must have.
+  Device(VkPhysicalDevice physical, bool float64);
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  ~Device();
+
+  VkDevice get() const { return device_; }
+  VkQueue queue() const { return queue_; }
+  std::uint32_t queue_family() const { return queue_family_; }
+  const VkPhysicalDeviceLimits& limits() const { return limits_; }
+  /// Bytes of the largest heap of the device's own memory.
+  VkDeviceSize heap_bytes() const { return heap_bytes_; }
+  /// Valid bits of the queue's timestamps; 0 when it has none.
+  std::uint32_t timestamp_bits() const { return timestamp_bits_; }
+
+  /// The best of the memory types in `allowed` (a bit mask) for a use. Errors: DeviceError when none will do.
+  MemoryType memory_type(std::uint32_t allowed, MemoryUse use) const;
+
+ private:
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+  std::uint32_t queue_family_ = 0;
+  std::uint32_t timestamp_bits_ = 0;
+  VkPhysicalDeviceLimits limits_{};
+  VkPhysicalDeviceMemoryProperties memory_{};
+  VkDeviceSize heap_bytes_ = 0;
+};
+
+}  // namespace dolp::vulkan

@@ -1,0 +1,87 @@
+#include "evaluate/vulkan/devices.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <optional>
+
+#include "evaluate/vulkan/device.hpp"
+#include "evaluate/vulkan/instance.hpp"
+#include "evaluate/vulkan/result.hpp"
+
+namespace dolp {
+namespace {
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char character) { return static_cast<char>(std::tolower(character)); });
+  return text;
+}
+
+std::optional<std::size_t> position(const std::string& choice, std::size_t count) {
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(choice.data(), choice.data() + choice.size(), index);
+  if (error != std::errc{} || end != choice.data() + choice.size() || index >= count) return std::nullopt;
+  return index;
+}
+
+std::string listing(const std::vector<DeviceDescription>& devices) {
+  if (devices.empty()) return "there is no device";
+  std::string text = "devices:";
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    text += (i > 0 ? ", " : " ") + std::to_string(i) + " = " + devices[i].name;
+    if (!devices[i].usable) text += " (not usable: " + devices[i].why_not + ')';
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string type_name(DeviceDescription::Type type) {
+  using enum DeviceDescription::Type;
+  switch (type) {
+    case kDiscrete:
+      return "discrete GPU";
+    case kIntegrated:
+      return "integrated GPU";
+    case kVirtual:
+      return "virtual GPU";
+    case kCpu:
+      return "CPU";
+    case kOther:
+      break;
+  }
+  return "other";
+}
+
+DeviceList list_devices() {
+  DeviceList list;
+  try {
+    const vulkan::Instance instance(nullptr);
+    for (VkPhysicalDevice physical : instance.physical_devices()) list.devices.push_back(vulkan::describe(physical));
+  } catch (const DeviceError& error) {
+    list.why_empty = error.what();
+  }
+  return list;
+}
+
+std::size_t choose_device(const std::vector<DeviceDescription>& devices, const std::string& choice, bool float64) {
+  std::vector<std::size_t> candidates;
+  if (const auto index = position(choice, devices.size())) {
+    candidates.push_back(*index);
+  } else {
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+      if (lower(devices[i].name).find(lower(choice)) != std::string::npos) candidates.push_back(i);
+    }
+  }
+  if (candidates.empty()) throw DeviceError("no Vulkan device matches '" + choice + "'; " + listing(devices));
+  std::erase_if(candidates, [&](std::size_t i) { return !devices[i].usable; });
+  if (candidates.empty()) throw DeviceError("the Vulkan device is not usable; " + listing(devices));
+  std::erase_if(candidates, [&](std::size_t i) { return float64 && !devices[i].float64; });
+  if (candidates.empty()) {
+    throw DeviceError("the Vulkan device has no double precision (shaderFloat64), use float; " + listing(devices));
+  }
+  return *std::ranges::min_element(candidates, {}, [&](std::size_t i) { return devices[i].type; });
+}
+
+}  // namespace dolp

@@ -1,0 +1,112 @@
+#include "evaluate/vulkan/instance.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "evaluate/vulkan/result.hpp"
+
+namespace dolp::vulkan {
+namespace {
+
+constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+constexpr std::array kValidationExtensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
+                                              VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+constexpr const char* kNoDriver =
+    "no Vulkan driver was found (on Debian, mesa-vulkan-drivers has one that needs no GPU; VK_DRIVER_FILES and "
+    "VK_ICD_FILENAMES override the search)";
+
+bool has_validation_layer() {
+  std::uint32_t count = 0;
+  check(vkEnumerateInstanceLayerProperties(&count, nullptr), "listing the layers");
+  std::vector<VkLayerProperties> layers(count);
+  check(vkEnumerateInstanceLayerProperties(&count, layers.data()), "listing the layers");
+  return std::ranges::any_of(
+      layers, [](const VkLayerProperties& layer) { return std::string_view(layer.layerName) == kValidationLayer; });
+}
+
+VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* log) {
+  static_cast<ValidationLog*>(log)->add(data->pMessage);
+  return VK_FALSE;
+}
+
+VkDebugUtilsMessengerCreateInfoEXT messenger_info(ValidationLog* log) {
+  // Messages of the type "general" come from the loader and may concern drivers that are never used.
+  return {
+      .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+      .messageSeverity =
+          VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+      .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
+      .pfnUserCallback = on_message,
+      .pUserData = log};
+}
+
+}  // namespace
+
+void ValidationLog::add(std::string message) {
+  const std::scoped_lock lock(mutex_);
+  messages_.push_back(std::move(message));
+}
+
+std::vector<std::string> ValidationLog::messages() const {
+  const std::scoped_lock lock(mutex_);
+  return messages_;
+}
+
+Instance::Instance(ValidationLog* log) {
+  if (log && !has_validation_layer()) {
+    throw DeviceError(std::string("validation is wanted, but the layer ") + kValidationLayer +
+                      " is not installed (on Debian, vulkan-validationlayers)");
+  }
+  const VkApplicationInfo application{
+      .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .pApplicationName = "dolp", .apiVersion = VK_API_VERSION_1_2};
+  const VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(log);
+  const VkValidationFeatureEnableEXT synchronization = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+  const VkValidationFeaturesEXT features{.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+                                         .pNext = &messenger,
+                                         .enabledValidationFeatureCount = 1,
+                                         .pEnabledValidationFeatures = &synchronization};
+  VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, .pApplicationInfo = &application};
+  if (log) {
+    info.pNext = &features;
+    info.enabledLayerCount = 1;
+    info.ppEnabledLayerNames = &kValidationLayer;
+    info.enabledExtensionCount = static_cast<std::uint32_t>(kValidationExtensions.size());
+    info.ppEnabledExtensionNames = kValidationExtensions.data();
+  }
+  const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
+  if (result == VK_ERROR_INCOMPATIBLE_DRIVER) throw DeviceError(kNoDriver);
+  check(result, "creating the instance");
+  if (log) attach(messenger);
+}
+
+void Instance::attach(const VkDebugUtilsMessengerCreateInfoEXT& info) {
+  const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+      vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
+  const VkResult result = create ? create(instance_, &info, nullptr, &messenger_) : VK_ERROR_EXTENSION_NOT_PRESENT;
+  if (result != VK_SUCCESS) vkDestroyInstance(instance_, nullptr);
+  check(result, "attaching the validation messenger");
+}
+
+Instance::~Instance() {
+  if (messenger_ != VK_NULL_HANDLE) {
+    const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+    destroy(instance_, messenger_, nullptr);
+  }
+  vkDestroyInstance(instance_, nullptr);
+}
+
+std::vector<VkPhysicalDevice> Instance::physical_devices() const {
+  std::uint32_t count = 0;
+  const VkResult result = vkEnumeratePhysicalDevices(instance_, &count, nullptr);
+  // The loader reports drivers that found no hardware either way.
+  if (result == VK_ERROR_INITIALIZATION_FAILED || (result == VK_SUCCESS && count == 0)) throw DeviceError(kNoDriver);
+  check(result, "listing the devices");
+  std::vector<VkPhysicalDevice> devices(count);
+  check(vkEnumeratePhysicalDevices(instance_, &count, devices.data()), "listing the devices");
+  return devices;
+}
+
+}  // namespace dolp::vulkan

@@ -1,0 +1,52 @@
+// The compute pipelines of shaders/*.comp and the descriptor set they share.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+
+#include "evaluate/vulkan/device.hpp"
+#include "evaluate/vulkan/handle.hpp"
+#include "plan/kernel_data.hpp"
+
+namespace dolp::vulkan {
+
+constexpr std::uint32_t kBindingCount = DOLP_BINDING_MOMENTS + 1;
+constexpr std::uint32_t kPushConstantCount = 4;
+/// Invocations of a workgroup; every device allows 128.
+constexpr std::uint32_t kLocalSize = 64;
+
+/// Creates pipelines on demand, one for each combination of the specialization constants.
+class Kernels {
+ public:
+  Kernels(const Device& device, bool float64);
+
+  /// Binds one storage buffer to each binding of interface.glsl, whole.
+  void bind(const std::array<VkBuffer, kBindingCount>& buffers);
+
+  VkPipeline moments(Distribution distribution, Masking masking);
+  VkPipeline masking_table(Distribution distribution, Masking masking);
+  VkPipelineLayout layout() const { return layout_.get(); }
+  VkDescriptorSet descriptor_set() const { return set_; }
+
+  /// A pipeline of any module that keeps to interface.glsl.
+  UniquePipeline create(std::span<const std::uint32_t> spirv, Distribution distribution, Masking masking) const;
+
+ private:
+  using Cache = std::map<std::pair<Distribution, Masking>, UniquePipeline>;
+  VkPipeline cached(Cache& cache, std::span<const std::uint32_t> spirv, Distribution distribution, Masking masking);
+  void create_layouts();
+  void create_descriptor_set();
+
+  const Device& device_;
+  bool float64_;
+  UniqueDescriptorSetLayout set_layout_;
+  UniquePipelineLayout layout_;
+  UniqueDescriptorPool pool_;
+  VkDescriptorSet set_ = VK_NULL_HANDLE;
+  Cache moments_, masking_tables_;
+};
+
+}  // namespace dolp::vulkan

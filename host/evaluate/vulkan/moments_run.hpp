@@ -1,0 +1,65 @@
+// One request on the device, tile by tile.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "evaluate/vulkan/buffer.hpp"
+#include "evaluate/vulkan/command_stream.hpp"
+#include "evaluate/vulkan/kernels.hpp"
+#include "evaluate/vulkan/packing.hpp"
+#include "evaluate/vulkan/tiles.hpp"
+
+namespace dolp::vulkan {
+
+/// What a run works with; it outlives the run.
+struct RunContext {
+  const Device& device;
+  Kernels& kernels;
+  CommandStream& stream;
+  Packing packing;
+  bool staged_uploads = false;
+  double tile_timeout_s = 0.0;
+};
+
+/// What a run cost so far.
+struct RunCost {
+  std::uint64_t dispatches = 0;
+  double evaluations = 0.0;
+  double kernel_s = 0.0;
+};
+
+/// Owns the buffers of one request and computes it.
+class MomentsRun {
+ public:
+  /// `tile_entries` and `block_shapes` bound the sizes of TileSizes from above.
+  MomentsRun(const RunContext& context, const MomentsRequest& request, std::uint32_t tile_entries,
+             std::uint32_t block_shapes);
+
+  /// All moments in the order of the request; nothing when `progress` returned false. Errors: DeviceError.
+  std::optional<std::vector<Moments>> compute(const Progress& progress);
+  const RunCost& cost() const { return cost_; }
+
+ private:
+  TileSizes sizes(std::uint32_t tile_entries, std::uint32_t block_shapes) const;
+  void create_buffers();
+  void start_block(const Block& block);
+  void upload_tile(const Block& block, std::span<const std::size_t> entries);
+  void run_tile(const Block& block, std::span<const std::size_t> entries, std::span<Moments> moments);
+  template <class Node>
+  void upload(const std::vector<Node>& list, std::span<const std::uint32_t> members, InputBuffer& buffer);
+
+  RunContext context_;
+  const MomentsRequest& request_;
+  KernelData data_;
+  TileSizes sizes_;
+  Renumbering thetas_, indices_;
+  std::vector<std::byte> scratch_;
+  RunCost cost_;
+  std::optional<InputBuffer> theta_buffer_, shape_buffer_, index_buffer_, entry_buffer_, rule_buffer_;
+  std::optional<Buffer> masking_buffer_, moments_buffer_;
+};
+
+}  // namespace dolp::vulkan

@@ -1,0 +1,71 @@
+// Structures of interface.glsl (real = double on the host) to and from the bytes of the kernels' precision.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "plan/convert_reals.hpp"
+
+namespace dolp::vulkan {
+
+/// Number of `real` in a structure that holds nothing else.
+template <class Node>
+constexpr std::size_t real_count() {
+  static_assert(std::is_standard_layout_v<Node> && alignof(Node) == alignof(double));
+  return sizeof(Node) / sizeof(double);
+}
+
+/// The precision in which the kernels store `real`.
+class Packing {
+ public:
+  explicit Packing(bool float64) : float64_(float64) {}
+
+  std::size_t real_bytes() const { return float64_ ? sizeof(double) : sizeof(float); }
+  /// Bytes of one structure in a buffer.
+  template <class Node>
+  std::size_t node_bytes() const {
+    return real_count<Node>() * real_bytes();
+  }
+  /// Relative spacing of the numbers, halved.
+  double unit_roundoff() const { return float64_ ? 0x1p-53 : 0x1p-24; }
+
+  /// Appends one structure; numbers beyond the range of float become infinite.
+  template <class Node>
+  void append(const Node& node, std::vector<std::byte>& bytes) const {
+    if (float64_) {
+      append_as<double>(node, bytes);
+    } else {
+      append_as<float>(node, bytes);
+    }
+  }
+
+  /// Reads the structure at `position` of an array of them.
+  template <class Node>
+  Node read(std::span<const std::byte> bytes, std::size_t position) const {
+    const std::span<const std::byte> source = bytes.subspan(position * node_bytes<Node>(), node_bytes<Node>());
+    return float64_ ? read_as<double, Node>(source) : read_as<float, Node>(source);
+  }
+
+ private:
+  template <class Real, class Node>
+  static void append_as(const Node& node, std::vector<std::byte>& bytes) {
+    const auto numbers = convert_reals<Real, std::array<Real, real_count<Node>()>, double>(node);
+    const auto raw = std::as_bytes(std::span(numbers));
+    bytes.insert(bytes.end(), raw.begin(), raw.end());
+  }
+
+  template <class Real, class Node>
+  static Node read_as(std::span<const std::byte> source) {
+    std::array<Real, real_count<Node>()> numbers{};
+    std::memcpy(numbers.data(), source.data(), source.size());
+    return convert_reals<double, Node, Real>(numbers);
+  }
+
+  bool float64_;
+};
+
+}  // namespace dolp::vulkan

@@ -1,0 +1,146 @@
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+
+#include <chrono>
+#include <cstdlib>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "evaluate/vulkan/devices.hpp"
+#include "evaluate/vulkan/instance.hpp"
+#include "evaluate/vulkan/moments_run.hpp"
+#include "evaluate/vulkan/result.hpp"
+
+namespace dolp {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+bool wants_validation(ValidationMode mode) {
+  if (mode != ValidationMode::kFromEnvironment) return mode == ValidationMode::kOn;
+  const char* value = std::getenv("DOLP_VALIDATION");
+  return value && std::string_view(value) == "1";
+}
+
+void check_entries(const MomentsRequest& request) {
+  for (std::size_t i = 0; i < request.entries.size(); ++i) {
+    const MomentsEntry& entry = request.entries[i];
+    if (entry.theta >= request.theta_deg.size() || entry.shape >= request.shapes.size() ||
+        entry.index >= request.indices.size()) {
+      throw InputError("entry " + std::to_string(i) + " of the request is outside its lists of " +
+                       std::to_string(request.theta_deg.size()) + " directions, " +
+                       std::to_string(request.shapes.size()) + " shapes and " + std::to_string(request.indices.size()) +
+                       " indices");
+    }
+  }
+}
+
+struct Choice {
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  DeviceDescription description;
+};
+
+Choice choose(const vulkan::Instance& instance, const VulkanOptions& options) {
+  const std::vector<VkPhysicalDevice> physical = instance.physical_devices();
+  std::vector<DeviceDescription> descriptions;
+  for (VkPhysicalDevice device : physical) descriptions.push_back(vulkan::describe(device));
+  const std::size_t index = choose_device(descriptions, options.device, options.precision == Precision::kDouble);
+  return {physical[index], descriptions[index]};
+}
+
+}  // namespace
+
+class VulkanEvaluator::Impl {
+ public:
+  explicit Impl(const VulkanOptions& options)
+      : options_(options),
+        instance_(wants_validation(options.validation) ? &log_ : nullptr),
+        choice_(choose(instance_, options)),
+        device_(choice_.physical, float64()),
+        kernels_(device_, float64()),
+        stream_(device_) {}
+
+  bool float64() const { return options_.precision == Precision::kDouble; }
+  const DeviceDescription& description() const { return choice_.description; }
+  std::vector<std::string> validation_messages() const { return log_.messages(); }
+
+  /// Creates the pipelines of a request, so that their time is known apart.
+  void prepare(const MomentsRequest& request) {
+    kernels_.moments(request.distribution, request.masking);
+    if (needs_masking_table(request)) kernels_.masking_table(request.distribution, request.masking);
+  }
+
+  /// Computes a request and adds what it cost to `report`. After a DeviceTimeout this object must not be destroyed.
+  std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
+    run_.emplace(vulkan::RunContext{.device = device_,
+                                    .kernels = kernels_,
+                                    .stream = stream_,
+                                    .packing = vulkan::Packing(float64()),
+                                    .staged_uploads = options_.staged_uploads,
+                                    .tile_timeout_s = options_.tile_timeout_s},
+                 request, options_.max_tile_entries, options_.max_block_shapes);
+    std::optional<std::vector<Moments>> moments = run_->compute(progress);
+    report.dispatches += run_->cost().dispatches;
+    report.evaluations += run_->cost().evaluations;
+    report.kernel_s += run_->cost().kernel_s;
+    run_.reset();
+    if (!moments) throw Cancelled{};
+    const std::vector<std::string> messages = log_.messages();
+    if (!messages.empty()) throw DeviceError("Vulkan validation: " + messages.front());
+    return std::move(*moments);
+  }
+
+ private:
+  static bool needs_masking_table(const MomentsRequest& request) {
+    return KernelData{.masking = request.masking}.needs_masking_table();
+  }
+
+  VulkanOptions options_;
+  vulkan::ValidationLog log_;
+  vulkan::Instance instance_;
+  Choice choice_;
+  vulkan::Device device_;
+  vulkan::Kernels kernels_;
+  vulkan::CommandStream stream_;
+  // A member, so that its buffers outlive a submission that never ends.
+  std::optional<vulkan::MomentsRun> run_;
+};
+
+VulkanEvaluator::VulkanEvaluator(const VulkanOptions& options) {
+  const Clock::time_point start = Clock::now();
+  impl_ = std::make_unique<Impl>(options);
+  report_.evaluator = "vulkan";
+  report_.device = impl_->description().name;
+  report_.driver = impl_->description().driver;
+  report_.precision = impl_->float64() ? "double" : "float";
+  report_.setup_s = seconds_since(start);
+}
+
+VulkanEvaluator::~VulkanEvaluator() = default;
+
+std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
+  if (!impl_) throw DeviceError("the Vulkan device was given up after a tile that did not finish in time");
+  check_entries(request);
+  if (request.entries.empty()) return {};
+  const Clock::time_point start = Clock::now();
+  impl_->prepare(request);
+  report_.setup_s += seconds_since(start);
+
+  try {
+    return impl_->compute(request, progress, report_);
+  } catch (const vulkan::DeviceTimeout&) {
+    // Vulkan forbids destroying what a submission still uses, so all of it is left to the end of the process.
+    static_cast<void>(impl_.release());
+    throw;
+  }
+}
+
+EvaluationReport VulkanEvaluator::report() const { return report_; }
+
+std::vector<std::string> VulkanEvaluator::validation_messages() const {
+  return impl_ ? impl_->validation_messages() : std::vector<std::string>{};
+}
+
+}  // namespace dolp

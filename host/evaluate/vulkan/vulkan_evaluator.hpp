@@ -1,0 +1,56 @@
+// Moments on a Vulkan device.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "evaluate/moments.hpp"
+
+namespace dolp {
+
+/// The Khronos validation layer, for tests: any message of it makes `evaluate` throw DeviceError.
+enum class ValidationMode {
+  kFromEnvironment,  ///< on when the environment variable DOLP_VALIDATION is 1
+  kOff,
+  kOn,
+};
+
+struct VulkanOptions {
+  std::string device;                      ///< name or position, see choose_device
+  Precision precision = Precision::kAuto;  ///< kAuto is float
+  ValidationMode validation = ValidationMode::kFromEnvironment;
+  // The results depend on none of these.
+  std::uint32_t max_tile_entries = 65'536;  ///< entries of a dispatch: progress and cancelling wait for one at most
+  std::uint32_t max_block_shapes = 4'096;   ///< shapes whose masking tables are on the device at a time
+  bool staged_uploads = false;              ///< copy inputs through staging buffers even where it is not necessary
+  double tile_timeout_s = 600.0;
+};
+
+/// Computes moments with the kernels of shaders/. The device and its pipelines live as long as the object.
+class VulkanEvaluator : public MomentsEvaluator {
+ public:
+  /// Errors: DeviceError when there is no usable device, `device` matches none, it has no double precision and that
+  /// is wanted, or the validation layer is wanted and missing.
+  explicit VulkanEvaluator(const VulkanOptions& options);
+  ~VulkanEvaluator() override;
+
+  /// Errors: InputError for an entry outside the request's lists; DeviceError when the device fails, is lost or
+  /// exceeds the time allowed for a tile (the object is useless then), or the validation layer complains; Cancelled
+  /// when `progress`, called after each tile, returns false.
+  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
+
+  /// Totals over all calls of evaluate.
+  EvaluationReport report() const override;
+
+  /// Warnings and errors of the validation layer so far; none after a tile that did not finish in time.
+  std::vector<std::string> validation_messages() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+  EvaluationReport report_;
+};
+
+}  // namespace dolp

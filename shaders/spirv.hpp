@@ -1,0 +1,14 @@
+// The compiled entry points, embedded at build time (see CMakeLists.txt and embed.cmake).
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace dolp::spirv {
+
+extern const std::span<const std::uint32_t> moments_float;
+extern const std::span<const std::uint32_t> moments_double;
+extern const std::span<const std::uint32_t> masking_table_float;
+extern const std::span<const std::uint32_t> masking_table_double;
+
+}  // namespace dolp::spirv

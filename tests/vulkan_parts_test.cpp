@@ -1,0 +1,131 @@
+// The parts of the Vulkan evaluator that need no device.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "error.hpp"
+#include "evaluate/vulkan/devices.hpp"
+#include "evaluate/vulkan/packing.hpp"
+#include "evaluate/vulkan/tiles.hpp"
+
+namespace dolp {
+namespace {
+
+DeviceDescription described(std::string name, DeviceDescription::Type type, bool usable, bool float64) {
+  DeviceDescription device;
+  device.name = std::move(name);
+  device.type = type;
+  device.usable = usable;
+  device.why_not = usable ? "" : "Vulkan 1.1.0 < 1.2";
+  device.float64 = float64;
+  return device;
+}
+
+std::vector<DeviceDescription> five_devices() {
+  using enum DeviceDescription::Type;
+  return {described("llvmpipe (LLVM 15)", kCpu, true, true), described("Iris Xe", kIntegrated, true, false),
+          described("Old Radeon", kDiscrete, false, true), described("GeForce RTX 4090", kDiscrete, true, true),
+          described("Radeon RX 7900", kDiscrete, true, true)};
+}
+
+TEST(ChooseDevice, Default_IsTheFirstUsableDiscreteGpu) {
+  EXPECT_EQ(choose_device(five_devices(), "", false), 3U);
+  std::vector<DeviceDescription> devices = five_devices();
+  devices.resize(3);
+  EXPECT_EQ(choose_device(devices, "", false), 1U);
+  EXPECT_EQ(choose_device(devices, "", true), 0U);
+}
+
+TEST(ChooseDevice, PositionOrPartOfTheName_IsThatDevice) {
+  EXPECT_EQ(choose_device(five_devices(), "0", false), 0U);
+  EXPECT_EQ(choose_device(five_devices(), "LLVMpipe", false), 0U);
+  EXPECT_EQ(choose_device(five_devices(), "radeon", false), 4U);
+  EXPECT_EQ(choose_device(five_devices(), "4090", false), 3U);
+}
+
+TEST(ChooseDevice, NoMatchOrUnfit_ThrowsWithTheReason) {
+  const auto message = [](const std::string& choice, bool float64) -> std::string {
+    try {
+      choose_device(five_devices(), choice, float64);
+    } catch (const DeviceError& error) {
+      return error.what();
+    }
+    return "no DeviceError";
+  };
+  EXPECT_NE(message("voodoo", false).find("'voodoo'; devices: 0 = llvmpipe (LLVM 15), 1 = Iris Xe"), std::string::npos);
+  EXPECT_NE(message("6", false).find("no Vulkan device matches '6'"), std::string::npos);
+  EXPECT_NE(message("2", false).find("Vulkan 1.1.0 < 1.2"), std::string::npos);
+  EXPECT_NE(message("iris", true).find("shaderFloat64"), std::string::npos);
+}
+
+}  // namespace
+
+namespace vulkan {
+namespace {
+
+TEST(Packing, RealsOfAStructure_ComeBackInTheKernelsPrecision) {
+  const std::array<double, 3> values{1.0 / 3.0, -2.5, 1e300};
+  for (const bool float64 : {false, true}) {
+    const Packing packing(float64);
+    std::vector<std::byte> bytes;
+    packing.append(std::array<double, 3>{}, bytes);
+    packing.append(values, bytes);
+    ASSERT_EQ(bytes.size(), 6 * packing.real_bytes());
+    const auto read = packing.read<std::array<double, 3>>(bytes, 1);
+    EXPECT_EQ(read[0], float64 ? values[0] : static_cast<double>(1.0F / 3.0F));
+    EXPECT_EQ(read[1], -2.5);
+    EXPECT_EQ(read[2], float64 ? 1e300 : HUGE_VAL);
+  }
+}
+
+TEST(TileSizes, EachLimit_Binds) {
+  const TileLimits limits{.buffer_bytes = 1'000'000,
+                          .heap_bytes = 80'000'000,
+                          .dispatch_count = 9'000,
+                          .tile_entries = 8'000,
+                          .block_shapes = 50};
+  const TileCosts costs{.entry_bytes = 100, .shape_bytes = 10'000};
+  EXPECT_EQ(tile_sizes(limits, costs).entries, 8'000U);
+  EXPECT_EQ(tile_sizes(limits, costs).shapes, 50U);
+  TileLimits small_buffers = limits;
+  small_buffers.buffer_bytes = 400'000;
+  EXPECT_EQ(tile_sizes(small_buffers, costs).entries, 4'000U);
+  EXPECT_EQ(tile_sizes(small_buffers, costs).shapes, 40U);
+  TileLimits small_heap = limits;
+  small_heap.heap_bytes = 800'000;
+  EXPECT_EQ(tile_sizes(small_heap, costs).entries, 1'000U);
+  EXPECT_EQ(tile_sizes(small_heap, costs).shapes, 10U);
+  TileLimits few_workgroups = limits;
+  few_workgroups.dispatch_count = 30;
+  EXPECT_EQ(tile_sizes(few_workgroups, costs).entries, 30U);
+  EXPECT_EQ(tile_sizes(few_workgroups, costs).shapes, 30U);
+  EXPECT_EQ(tile_sizes({}, costs).entries, 1U);
+}
+
+TEST(BlocksOf, ShuffledEntries_KeepTheirOrderWithinTheirBlock) {
+  const std::vector<MomentsEntry> entries = {{0, 6, 0}, {0, 1, 0}, {0, 0, 0}, {0, 6, 1}, {1, 1, 0}};
+  const std::vector<Block> blocks = blocks_of(entries, 7, 2);
+  ASSERT_EQ(blocks.size(), 2U);
+  EXPECT_EQ(blocks[0].first_shape, 0U);
+  EXPECT_EQ(blocks[0].shape_count, 2U);
+  EXPECT_EQ(blocks[0].entries, (std::vector<std::size_t>{1, 2, 4}));
+  EXPECT_EQ(blocks[1].first_shape, 6U);
+  EXPECT_EQ(blocks[1].shape_count, 1U);
+  EXPECT_EQ(blocks[1].entries, (std::vector<std::size_t>{0, 3}));
+}
+
+TEST(Renumbering, Members_AreNumberedByFirstUseUntilCleared) {
+  Renumbering numbers(10);
+  EXPECT_EQ(numbers(7), 0U);
+  EXPECT_EQ(numbers(2), 1U);
+  EXPECT_EQ(numbers(7), 0U);
+  EXPECT_TRUE(std::ranges::equal(numbers.used(), std::vector<std::uint32_t>{7, 2}));
+  numbers.clear();
+  EXPECT_EQ(numbers(2), 0U);
+}
+
+}  // namespace
+}  // namespace vulkan
+}  // namespace dolp

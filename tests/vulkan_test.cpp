@@ -1,0 +1,409 @@
+// The Vulkan evaluator on a real device (lavapipe where there is no GPU), under the validation layer: a machine without
+// a device or without the layer fails these tests.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+
+#include "error.hpp"
+#include "evaluate/vulkan/devices.hpp"
+#include "evaluate/vulkan/instance.hpp"
+#include "evaluate/vulkan/moments_run.hpp"
+#include "evaluate/vulkan/result.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr unsigned kSeed = 20240817;
+
+// Every distinct exit of a child process, so that a crash is not taken for success.
+constexpr int kChildPassed = 42;
+constexpr int kChildFailed = 43;
+
+VulkanOptions validated(Precision precision = Precision::kFloat) {
+  VulkanOptions options;
+  options.precision = precision;
+  options.validation = ValidationMode::kOn;
+  return options;
+}
+
+// All combinations of a few directions, shapes and indices, in random order.
+MomentsRequest small_request(Distribution distribution, Masking masking) {
+  MomentsRequest request;
+  request.distribution = distribution;
+  request.masking = masking;
+  request.theta_deg = {0.0, 17.0, 45.0, 60.0, 75.5, 89.0, 90.0};
+  request.shapes = {{0.05, 2.0}, {0.2, 1.5}, {0.445, 2.0}, {0.7, 3.0}, {1.1, 5.0}};
+  request.indices = {{1.508, 0.0}, {2.5, 3.0}, {10.0, 40.0}};
+  for (std::uint32_t theta = 0; theta < request.theta_deg.size(); ++theta) {
+    for (std::uint32_t shape = 0; shape < request.shapes.size(); ++shape) {
+      for (std::uint32_t index = 0; index < request.indices.size(); ++index) {
+        request.entries.push_back({theta, shape, index});
+      }
+    }
+  }
+  std::printf("seed %u\n", kSeed);
+  std::shuffle(request.entries.begin(), request.entries.end(), std::mt19937(kSeed));
+  return request;
+}
+
+bool same(const Moments& a, const Moments& b) {
+  return a.r_i == b.r_i && a.r_q == b.r_q && a.albedo == b.albedo && a.deficit == b.deficit &&
+         a.r_i_error == b.r_i_error && a.r_q_error == b.r_q_error && a.albedo_error == b.albedo_error &&
+         a.deficit_error == b.deficit_error && a.evaluations == b.evaluations;
+}
+
+std::string message_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const DeviceError& error) {
+    return error.what();
+  }
+  return "no DeviceError";
+}
+
+TEST(ListDevices, ThisMachine_HasAUsableDeviceWithItsLimits) {
+  const DeviceList list = list_devices();
+  ASSERT_FALSE(list.devices.empty()) << list.why_empty;
+  EXPECT_TRUE(list.why_empty.empty());
+  const DeviceDescription& device = list.devices[choose_device(list.devices, "", false)];
+  std::printf("%s, %s, Vulkan %s\n", device.name.c_str(), device.driver.c_str(), device.api_version.c_str());
+  EXPECT_FALSE(device.driver.empty());
+  // What the Vulkan specification guarantees at least.
+  EXPECT_GE(device.max_storage_buffer_bytes, std::uint64_t{1} << 27U);
+  EXPECT_GE(device.max_workgroups, 65'535U);
+  EXPECT_GT(device.heap_bytes, 0U);
+  EXPECT_GE(device.subgroup_size, 1U);
+}
+
+TEST(VulkanDeathTest, NoDriver_IsADeviceErrorAndAnEmptyListWithAReason) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        setenv("VK_DRIVER_FILES", "/nonexistent/driver.json", 1);
+        setenv("VK_ICD_FILENAMES", "/nonexistent/driver.json", 1);
+        const DeviceList list = list_devices();
+        const std::string message = message_of([] { VulkanEvaluator evaluator(VulkanOptions{}); });
+        const bool passed =
+            list.devices.empty() && list.why_empty == message && message.starts_with("no Vulkan driver");
+        std::_Exit(passed ? kChildPassed : kChildFailed);
+      },
+      testing::ExitedWithCode(kChildPassed), "");
+}
+
+TEST(VulkanDeathTest, ValidationWantedByTheEnvironmentButMissing_IsADeviceError) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        setenv("DOLP_VALIDATION", "1", 1);
+        setenv("VK_LAYER_PATH", "/nonexistent", 1);
+        const std::string message = message_of([] { VulkanEvaluator evaluator(VulkanOptions{}); });
+        const bool passed = message.find("VK_LAYER_KHRONOS_validation is not installed") != std::string::npos;
+        std::_Exit(passed ? kChildPassed : kChildFailed);
+      },
+      testing::ExitedWithCode(kChildPassed), "");
+}
+
+TEST(VulkanDeathTest, TileThatExceedsItsTime_IsADeviceErrorAndNoCrash) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        VulkanOptions options;
+        options.tile_timeout_s = 1e-9;
+        VulkanEvaluator evaluator(options);
+        const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
+        const std::string late = message_of([&] { evaluator.evaluate(request, {}); });
+        const std::string after = message_of([&] { evaluator.evaluate(request, {}); });
+        const bool passed =
+            late.find("did not finish") != std::string::npos && after.find("given up") != std::string::npos;
+        std::_Exit(passed ? kChildPassed : kChildFailed);
+      },
+      testing::ExitedWithCode(kChildPassed), "");
+}
+
+TEST(VulkanEvaluator, UnknownDevice_ThrowsTheListOfDevices) {
+  VulkanOptions options = validated();
+  options.device = "no such device";
+  const std::string message = message_of([&] { VulkanEvaluator evaluator(options); });
+  EXPECT_NE(message.find(list_devices().devices.at(0).name), std::string::npos) << message;
+}
+
+TEST(VulkanEvaluator, EmptyRequest_ReturnsNothing) {
+  VulkanEvaluator evaluator(validated());
+  EXPECT_TRUE(evaluator.evaluate(MomentsRequest{}, {}).empty());
+  EXPECT_EQ(evaluator.report().dispatches, 0U);
+}
+
+TEST(VulkanEvaluator, EntryOutsideItsLists_ThrowsInputError) {
+  VulkanEvaluator evaluator(validated());
+  MomentsRequest request = small_request(Distribution::kCauchy, Masking::kNone);
+  request.entries[4].shape = static_cast<std::uint32_t>(request.shapes.size());
+  EXPECT_THROW(evaluator.evaluate(request, {}), InputError);
+}
+
+// A surface of slope sigma differs from the mirror by terms of order sigma^2 = 1e-6 at normal incidence, with a
+// curvature of the Fresnel terms below 10.
+constexpr double kNearMirror = 1e-5;
+
+TEST(VulkanEvaluator, AlmostFlatSurface_ReflectsLikeTheMirror) {
+  for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
+    VulkanEvaluator evaluator(validated(precision));
+    MomentsRequest request;
+    request.distribution = Distribution::kGaussian;
+    request.masking = Masking::kIntegral;
+    request.theta_deg = {0.0};
+    request.shapes = {{1e-3, 2.0}};
+    request.indices = {{1.5, 0.0}, {1.0, 2.0}};
+    request.entries = {{0, 0, 0}, {0, 0, 1}};
+    const std::vector<Moments> moments = evaluator.evaluate(request, {});
+    EXPECT_NEAR(moments[0].r_i, 0.04, kNearMirror);  // (n-1)^2 / (n+1)^2
+    EXPECT_NEAR(moments[1].r_i, 0.5, kNearMirror);   // k^2 / (k^2 + 4) at n = 1
+    EXPECT_NEAR(moments[0].r_q, 0.0, kNearMirror);
+    EXPECT_NEAR(moments[0].albedo, 1.0, kNearMirror);
+    EXPECT_EQ(evaluator.report().precision, precision == Precision::kDouble ? "double" : "float");
+  }
+}
+
+struct Variant {
+  Distribution distribution;
+  Masking masking;
+  Precision precision;
+};
+
+class EveryKernel : public testing::TestWithParam<Variant> {};
+
+TEST_P(EveryKernel, TilesBlocksAndStaging_ChangeNoBit) {
+  const MomentsRequest request = small_request(GetParam().distribution, GetParam().masking);
+  VulkanEvaluator whole(validated(GetParam().precision));
+  VulkanOptions options = validated(GetParam().precision);
+  options.max_tile_entries = 7;
+  options.max_block_shapes = 2;
+  options.staged_uploads = true;
+  VulkanEvaluator tiled(options);
+
+  const std::vector<Moments> expected = whole.evaluate(request, {});
+  const std::vector<Moments> actual = tiled.evaluate(request, {});
+  ASSERT_EQ(expected.size(), request.entries.size());
+  ASSERT_EQ(actual.size(), request.entries.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_TRUE(same(expected[i], actual[i])) << "entry " << i;
+    EXPECT_TRUE(std::isfinite(expected[i].r_i) && expected[i].r_i >= 0.0) << "entry " << i;
+  }
+  EXPECT_TRUE(whole.validation_messages().empty());
+  EXPECT_TRUE(tiled.validation_messages().empty());
+}
+
+// An invocation of lavapipe stops without notice after this many loop iterations.
+constexpr double kIterationLimit = 65'535.0;
+// Fine and coarse rule (3/4 of the nodes in both variables) on every piece; no masking function has more arcs a slope.
+constexpr double kFineOrder = DOLP_MAX_ORDER;
+constexpr double kCoarseOrder = 0.75 * DOLP_MAX_ORDER;
+constexpr double kArcs = 4.0;
+constexpr double kMostEvaluations = DOLP_MAX_PIECES * kArcs * (kFineOrder * kFineOrder + kCoarseOrder * kCoarseOrder);
+// The pieces, and for each slope its own iteration and one for each arc.
+constexpr double kOuterIterations = DOLP_MAX_PIECES * (1.0 + (1.0 + kArcs) * (kFineOrder + kCoarseOrder));
+static_assert(kMostEvaluations + kOuterIterations < kIterationLimit);
+
+TEST_P(EveryKernel, TightestTolerance_StaysBelowTheIterationLimit) {
+  MomentsRequest request = small_request(GetParam().distribution, GetParam().masking);
+  request.tolerance = 1e-10;
+  VulkanEvaluator evaluator(validated(GetParam().precision));
+  double most = 0.0;
+  for (const Moments& moments : evaluator.evaluate(request, {})) most = std::max(most, moments.evaluations);
+  std::printf("most evaluations of an invocation: %.0f\n", most);
+  EXPECT_GT(most, 0.0);
+  // An invocation that was cut short would report the limit less the outer iterations at least.
+  EXPECT_LE(most, kMostEvaluations);
+}
+
+INSTANTIATE_TEST_SUITE_P(Vulkan, EveryKernel,
+                         testing::Values(Variant{Distribution::kCauchy, Masking::kNone, Precision::kFloat},
+                                         Variant{Distribution::kCauchy, Masking::kIntegral, Precision::kFloat},
+                                         Variant{Distribution::kGaussian, Masking::kIntegral, Precision::kFloat},
+                                         Variant{Distribution::kCauchy, Masking::kNone, Precision::kDouble},
+                                         Variant{Distribution::kCauchy, Masking::kIntegral, Precision::kDouble},
+                                         Variant{Distribution::kGaussian, Masking::kIntegral, Precision::kDouble}),
+                         [](const auto& test) {
+                           const Variant& variant = test.param;
+                           return std::string(variant.distribution == Distribution::kCauchy ? "Cauchy" : "Gaussian") +
+                                  (variant.masking == Masking::kNone ? "None" : "Integral") +
+                                  (variant.precision == Precision::kFloat ? "Float" : "Double");
+                         });
+
+TEST(VulkanEvaluator, Progress_CountsEveryTileAndTheReportEveryDispatch) {
+  VulkanOptions options = validated();
+  options.max_tile_entries = 10;
+  options.max_block_shapes = 2;
+  VulkanEvaluator evaluator(options);
+  const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
+  std::vector<std::size_t> done;
+  evaluator.evaluate(request, [&](std::size_t count, std::size_t total) {
+    EXPECT_EQ(total, request.entries.size());
+    done.push_back(count);
+    return true;
+  });
+  // Blocks of 2, 2 and 1 shapes with 42, 42 and 21 entries.
+  const std::vector<std::size_t> expected = {10, 20, 30, 40, 42, 52, 62, 72, 82, 84, 94, 104, 105};
+  EXPECT_EQ(done, expected);
+  const EvaluationReport report = evaluator.report();
+  EXPECT_EQ(report.dispatches, expected.size() + 3);
+  EXPECT_GT(report.evaluations, static_cast<double>(request.entries.size()));
+  EXPECT_GT(report.kernel_s, 0.0);
+  EXPECT_GT(report.setup_s, 0.0);
+}
+
+TEST(VulkanEvaluator, CancelledRequest_LeavesTheEvaluatorUsable) {
+  VulkanOptions options = validated();
+  options.max_tile_entries = 20;
+  VulkanEvaluator evaluator(options);
+  const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
+  const std::vector<Moments> expected = evaluator.evaluate(request, {});
+  int tiles = 0;
+  const auto stop_at_second = [&](std::size_t, std::size_t) { return ++tiles < 2; };
+  EXPECT_THROW(evaluator.evaluate(request, stop_at_second), Cancelled);
+  EXPECT_EQ(tiles, 2);
+  const std::vector<Moments> actual = evaluator.evaluate(request, {});
+  EXPECT_TRUE(std::ranges::equal(expected, actual, same));
+}
+
+}  // namespace
+
+namespace vulkan {
+namespace {
+
+// An instance, a device and what runs on it, under validation until the test looks at the log.
+struct Session {
+  explicit Session(ValidationLog& log)
+      : instance(&log), device(instance.physical_devices().at(0), false), kernels(device, false), stream(device) {}
+  Instance instance;
+  Device device;
+  Kernels kernels;
+  CommandStream stream;
+};
+
+constexpr double kTimeout_s = 100.0;
+
+TEST(Validation, CopyBeyondABuffer_IsReported) {
+  ValidationLog log;
+  {
+    Session session(log);
+    const Buffer from(session.device, 1'000, MemoryUse::kUpload);
+    const Buffer to(session.device, 1'000, MemoryUse::kDeviceOnly);
+    session.stream.begin();
+    session.stream.copy(from, to.get(), 2'000);
+  }
+  EXPECT_FALSE(log.messages().empty());
+}
+
+TEST(Buffer, WrittenBytes_ComeBack) {
+  ValidationLog log;
+  {
+    Session session(log);
+    std::vector<std::byte> sent(1'003), received(1'003);
+    for (std::size_t i = 0; i < sent.size(); ++i) sent[i] = static_cast<std::byte>(i * 37 % 251);
+    Buffer buffer(session.device, sent.size(), MemoryUse::kReadback);
+    buffer.write(sent);
+    buffer.read(received);
+    EXPECT_EQ(sent, received);
+  }
+  EXPECT_EQ(log.messages(), std::vector<std::string>{});
+}
+
+constexpr double kSentinel = -12'345.0;
+constexpr std::uint32_t kFirst = 3;   // entries left out at the start
+constexpr std::uint32_t kCount = 70;  // more than one workgroup, and not a multiple of its size
+
+// The buffers of a request, with room for one more workgroup of sentinels after each output.
+class SentinelRun {
+ public:
+  SentinelRun(Session& session, const MomentsRequest& request)
+      : session_(session), request_(request), data_(kernel_data(request)) {
+    add(data_.thetas, 0);
+    add(data_.shapes, 0);
+    add(data_.indices, 0);
+    buffers_.emplace_back(session.device, request.entries.size() * sizeof(Words), MemoryUse::kUpload);
+    std::vector<Words> words;
+    for (const MomentsEntry& entry : request.entries) words.push_back({entry.theta, entry.shape, entry.index, 0U});
+    buffers_.back().write(std::as_bytes(std::span(words)));
+    add(data_.rule_nodes, 0);
+    using MaskingTable = std::array<double, 4 * DOLP_MASKING_NODES>;
+    add(std::vector<MaskingTable>{}, data_.shapes.size() + 1);
+    add(std::vector<kernel::MomentsNode>{}, kCount + kLocalSize);
+    std::array<VkBuffer, kBindingCount> handles{};
+    for (std::uint32_t i = 0; i < kBindingCount; ++i) handles[i] = buffers_[i].get();
+    session.kernels.bind(handles);
+  }
+
+  void run() {
+    CommandStream& stream = session_.stream;
+    stream.begin();
+    stream.dispatch(session_.kernels, session_.kernels.masking_table(data_.distribution, data_.masking), 0,
+                    static_cast<std::uint32_t>(data_.shapes.size()));
+    stream.barrier(Barrier::kKernelToKernel);
+    stream.dispatch(session_.kernels, session_.kernels.moments(data_.distribution, data_.masking), kFirst, kCount);
+    stream.barrier(Barrier::kKernelToHost);
+    stream.submit_and_wait(kTimeout_s);
+  }
+
+  /// The numbers of an output buffer.
+  std::vector<float> numbers(std::uint32_t binding, std::size_t count) const {
+    std::vector<float> values(count);
+    buffers_[binding].read(std::as_writable_bytes(std::span(values)));
+    return values;
+  }
+
+ private:
+  using Words = std::array<std::uint32_t, 4>;
+
+  template <class Node>
+  void add(const std::vector<Node>& list, std::size_t sentinels) {
+    std::vector<std::byte> bytes;
+    for (const Node& node : list) packing_.append(node, bytes);
+    for (std::size_t i = 0; i < sentinels * real_count<Node>(); ++i) packing_.append(kSentinel, bytes);
+    buffers_.emplace_back(session_.device, bytes.size(), MemoryUse::kReadback);
+    buffers_.back().write(bytes);
+  }
+
+  Session& session_;
+  const MomentsRequest& request_;
+  KernelData data_;
+  Packing packing_{false};
+  std::vector<Buffer> buffers_;
+};
+
+TEST(Kernels, LastWorkgroup_WritesNothingBeyondItsCount) {
+  constexpr auto kIsSentinel = [](float value) { return value == static_cast<float>(kSentinel); };
+  constexpr std::size_t kNode = real_count<kernel::MomentsNode>();
+  constexpr std::size_t kTable = 4 * DOLP_MASKING_NODES;
+  ValidationLog log;
+  {
+    Session session(log);
+    const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
+    SentinelRun run(session, request);
+    run.run();
+    const std::vector<float> moments = run.numbers(DOLP_BINDING_MOMENTS, kNode * (kCount + kLocalSize));
+    EXPECT_EQ(std::count_if(moments.begin(), moments.begin() + kNode * kCount, kIsSentinel), 0);
+    EXPECT_TRUE(std::all_of(moments.begin() + kNode * kCount, moments.end(), kIsSentinel));
+    const std::size_t shapes = request.shapes.size();
+    const std::vector<float> tables = run.numbers(DOLP_BINDING_MASKING_TABLE, kTable * (shapes + 1));
+    const auto end = tables.begin() + static_cast<std::ptrdiff_t>(kTable * shapes);
+    EXPECT_EQ(std::count_if(tables.begin(), end, kIsSentinel), 0);
+    EXPECT_TRUE(std::all_of(end, tables.end(), kIsSentinel));
+
+    // Output i belongs to entry kFirst + i.
+    VulkanEvaluator evaluator(validated());
+    const std::vector<Moments> expected = evaluator.evaluate(request, {});
+    for (std::size_t i = 0; i < kCount; ++i) {
+      EXPECT_EQ(static_cast<double>(moments[i * kNode + kNode - 1]), expected[kFirst + i].evaluations) << i;
+    }
+  }
+  EXPECT_EQ(log.messages(), std::vector<std::string>{});
+}
+
+}  // namespace
+}  // namespace vulkan
+}  // namespace dolp

@@ -1,0 +1,14 @@
+// The data files that are part of the program, as built: nothing is looked for at run time.
+#pragma once
+
+#include <string_view>
+
+namespace dolp {
+
+/// host/materials.csv.
+std::string_view embedded_materials_csv();
+
+/// host/sun.csv.
+std::string_view embedded_sun_csv();
+
+}  // namespace dolp

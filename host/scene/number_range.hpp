@@ -1,0 +1,40 @@
+// Allowed ranges of the numbers a user can give, shared by scene keys and point columns.
+#pragma once
+
+#include <limits>
+#include <string>
+
+namespace dolp {
+
+/// An interval of finite numbers; each end open or closed.
+struct NumberRange {
+  enum class Ends { kClosed, kOpenBelow, kOpenAbove };
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  Ends ends = Ends::kClosed;
+
+  /// False for NaN and infinities.
+  bool contains(double value) const;
+  /// For messages, e.g. "(0, 1e6]"; an infinite end is written "inf)".
+  std::string text() const;
+};
+
+inline constexpr NumberRange kZenithDegRange{0.0, 90.0};
+inline constexpr NumberRange kAzimuthDegRange{-360.0, 360.0};
+inline constexpr NumberRange kSigmaRange{0.0, 10.0};
+inline constexpr NumberRange kQRange{1.0, 1e4, NumberRange::Ends::kOpenBelow};
+inline constexpr NumberRange kNRange{0.0, 1e6, NumberRange::Ends::kOpenBelow};
+inline constexpr NumberRange kKRange{0.0, 1e6};
+inline constexpr NumberRange kFractionRange{0.0, 1.0};
+inline constexpr NumberRange kDiffuseExponentRange{-1.0, 0.0, NumberRange::Ends::kOpenBelow};
+inline constexpr NumberRange kEmissionTemperatureRange{0.0, 1e4, NumberRange::Ends::kOpenBelow};
+inline constexpr NumberRange kBackgroundTemperatureRange{0.0, 1e4};
+inline constexpr NumberRange kNonNegativeRange{0.0, std::numeric_limits<double>::infinity()};
+inline constexpr NumberRange kWavelengthUmRange{0.1, 1e4};
+inline constexpr NumberRange kToleranceRange{1e-10, 1e-2};
+inline constexpr NumberRange kAxisCountRange{1.0, 1e6};
+
+/// The smith masking of the cauchy distribution needs a finite mean slope (MODEL section 2).
+inline constexpr NumberRange kSmithCauchyQRange{1.5, 1e4, NumberRange::Ends::kOpenBelow};
+
+}  // namespace dolp

@@ -1,0 +1,167 @@
+#include "scene/scene_document.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <sstream>
+
+#include "error.hpp"
+#include "scene/scene_keys.hpp"
+#include "scene/text.hpp"
+
+namespace dolp {
+namespace {
+
+/// A value as one would write it in TOML.
+std::string toml_text(const toml::node& node) {
+  if (const auto* number = node.as_floating_point()) return format_number(number->get());
+  if (const auto* text = node.as_string()) return '"' + text->get() + '"';
+  if (const toml::array* array = node.as_array()) {
+    std::vector<std::string> elements;
+    for (const toml::node& element : *array) elements.push_back(toml_text(element));
+    return '[' + join(elements) + ']';
+  }
+  std::ostringstream stream;
+  node.visit([&](const auto& value) { stream << toml::toml_formatter{value}; });
+  return stream.str();
+}
+
+std::string last_part(std::string_view key) { return std::string(key.substr(key.find_last_of('.') + 1)); }
+
+/// The table of a dotted key; empty at the top.
+std::string_view table_part(std::string_view key) {
+  const std::size_t dot = key.find_last_of('.');
+  return dot == std::string_view::npos ? std::string_view{} : key.substr(0, dot);
+}
+
+/// Calls `insert` with the value of an override: TOML, else a number in another notation, else a text.
+template <class Insert>
+void with_override_value(const std::string& text, bool is_text_key, const Insert& insert) {
+  try {
+    const toml::table parsed = toml::parse("v = " + text);
+    const toml::node* node = parsed.get("v");
+    if (parsed.size() == 1 && (!is_text_key || node->is_string())) {
+      node->visit([&](const auto& value) { insert(value); });
+      return;
+    }
+  } catch (const toml::parse_error&) {
+    const std::optional<double> number = parse_number(text);
+    if (number && !is_text_key) {
+      insert(*number);
+      return;
+    }
+  }
+  insert(text);
+}
+
+}  // namespace
+
+SceneDocument::SceneDocument(const std::string& text, const std::string& path_name) : name_(input_name(path_name)) {
+  try {
+    root_ = toml::parse(std::string_view(text));
+  } catch (const toml::parse_error& error) {
+    throw InputError(
+        fmt::format("{}:{}: not valid TOML: {}", name_, error.source().begin.line, one_line(error.description())));
+  }
+}
+
+void SceneDocument::apply_override(const std::string& argument) {
+  const std::size_t equals = argument.find('=');
+  const std::string key = equals == std::string::npos ? argument : std::string(trim(argument.substr(0, equals)));
+  std::vector<std::string_view> path = split(key, '.');
+  bool is_malformed = equals == std::string::npos;
+  for (const std::string_view part : path) is_malformed = is_malformed || part.empty();
+  if (is_malformed) {
+    throw InputError(fmt::format("--set {}: must be KEY=VALUE with a scene key, for example surface.masking=smith",
+                                 one_line(argument)));
+  }
+  const std::string value(trim(argument.substr(equals + 1)));
+  if (is_effect_table(key) && value == "none") {
+    erase(key);
+    return;
+  }
+  const std::string_view leaf = path.back();
+  path.pop_back();
+  toml::table& table = create_table(path, argument);
+  drop_other_alternatives(key);
+  const SceneKey* known = find_scene_key(key);
+  const bool is_text_key = known && known->description.type == KeyDescription::Type::kText;
+  with_override_value(value, is_text_key, [&](const auto& v) { table.insert_or_assign(leaf, v); });
+  overrides_[key] = argument;
+}
+
+toml::table& SceneDocument::create_table(const std::vector<std::string_view>& path, const std::string& argument) {
+  toml::table* table = &root_;
+  std::string key;
+  for (const std::string_view part : path) {
+    key += (key.empty() ? "" : ".") + std::string(part);
+    if (!table->contains(part)) {
+      table->insert(part, toml::table{});
+      overrides_[key] = argument;
+    }
+    table = table->get_as<toml::table>(part);
+    if (!table) throw InputError(fmt::format("--set {}: {} is not a table in this scene", one_line(argument), key));
+  }
+  return *table;
+}
+
+void SceneDocument::drop_other_alternatives(const std::string& key) {
+  for (const KeyChoice& choice : key_choices()) {
+    bool chooses = false;
+    for (const auto& alternative : choice.alternatives) chooses = chooses || alternative.front() == key;
+    if (!chooses) continue;
+    for (const auto& alternative : choice.alternatives) {
+      for (const std::string& other : alternative) {
+        if (alternative.front() != key && !is_overridden(other)) erase(other);
+      }
+    }
+  }
+}
+
+void SceneDocument::erase(const std::string& key) {
+  const std::string_view table_name = table_part(key);
+  toml::table* table = table_name.empty() ? &root_ : root_.get_as<toml::table>(table_name);
+  if (table) table->erase(last_part(key));
+  std::erase_if(overrides_,
+                [&](const auto& entry) { return entry.first == key || entry.first.starts_with(key + '.'); });
+}
+
+const toml::node* SceneDocument::find(std::string_view key) const {
+  const toml::node* node = &root_;
+  for (const std::string_view part : split(key, '.')) {
+    const toml::table* table = node->as_table();
+    node = table ? table->get(part) : nullptr;
+    if (!node) return nullptr;
+  }
+  return node;
+}
+
+const std::string* SceneDocument::override_of(std::string_view key) const {
+  for (;;) {
+    if (const auto found = overrides_.find(key); found != overrides_.end()) return &found->second;
+    if (table_part(key).empty()) return nullptr;
+    key = table_part(key);
+  }
+}
+
+unsigned SceneDocument::line_of(std::string_view key) const {
+  for (; !key.empty(); key = table_part(key)) {
+    const toml::node* node = find(key);
+    if (node && node->source().begin.line > 0) return node->source().begin.line;
+  }
+  return 1;
+}
+
+std::string SceneDocument::prefix(std::string_view key) const {
+  const toml::node* node = find(key);
+  // A table that an override merely created is not where a missing key should be put right.
+  if (const std::string* argument = node ? override_of(key) : nullptr; argument) {
+    return fmt::format("--set {}: ", one_line(*argument));
+  }
+  const std::string value = node && !node->is_table() ? " = " + one_line(toml_text(*node)) : "";
+  return fmt::format("{}:{}: {}{}: ", name_, line_of(key), key, value);
+}
+
+void SceneDocument::fail(std::string_view key, const std::string& what) const { throw InputError(prefix(key) + what); }
+
+}  // namespace dolp

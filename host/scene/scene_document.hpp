@@ -1,0 +1,45 @@
+// The TOML of a scene with the overrides applied, which knows where each value came from.
+#pragma once
+
+#include <toml++/toml.h>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dolp {
+
+class SceneDocument {
+ public:
+  /// Errors: InputError for a TOML syntax error, with its line.
+  SceneDocument(const std::string& text, const std::string& path_name);
+
+  /// Applies one KEY=VALUE argument. Errors: InputError.
+  void apply_override(const std::string& argument);
+
+  const toml::table& root() const { return root_; }
+  const toml::node* find(std::string_view key) const;
+  bool is_overridden(std::string_view key) const { return override_of(key) != nullptr; }
+
+  /// Throws InputError: where the key's value is, the key and its value, and what is wrong. Of an absent key it names
+  /// the line of its table.
+  [[noreturn]] void fail(std::string_view key, const std::string& what) const;
+
+  /// The beginning of such a message.
+  std::string prefix(std::string_view key) const;
+
+  /// The line of a key's value or, failing that, of the nearest table around it; 1 for none.
+  unsigned line_of(std::string_view key) const;
+
+ private:
+  const std::string* override_of(std::string_view key) const;
+  toml::table& create_table(const std::vector<std::string_view>& path, const std::string& argument);
+  void drop_other_alternatives(const std::string& key);
+  void erase(const std::string& key);
+
+  std::string name_;
+  toml::table root_;
+  std::map<std::string, std::string, std::less<>> overrides_;  // dotted key -> the argument that set it
+};
+
+}  // namespace dolp

@@ -1,0 +1,196 @@
+#include "scene/scene_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+
+#include "error.hpp"
+#include "scene/material_data.hpp"
+#include "scene/scene_document.hpp"
+#include "scene/scene_keys.hpp"
+#include "scene/scene_values.hpp"
+#include "scene/spectral_data.hpp"
+#include "scene/text.hpp"
+
+namespace dolp {
+namespace {
+
+/// The nearest known key or table. A known name in another table, or a name without its table, counts as near.
+std::string key_hint(const std::string& key) {
+  std::vector<std::string> known = scene_tables();
+  for (const KeyDescription& description : scene_keys()) known.push_back(description.key);
+  const auto last_part = [](const std::string& name) { return name.substr(name.find_last_of('.') + 1); };
+  const auto distance = [&](const std::string& name) {
+    return std::min(edit_distance(key, name), edit_distance(last_part(key), last_part(name)) + 1);
+  };
+  return *std::min_element(known.begin(), known.end(),
+                           [&](const std::string& a, const std::string& b) { return distance(a) < distance(b); });
+}
+
+/// Every key of the document that should be in the list of keys, in the order of the lines.
+std::vector<std::string> document_keys(const SceneDocument& document) {
+  std::vector<std::string> keys;
+  const std::vector<std::string> tables = scene_tables();
+  for (const auto& [name, node] : document.root()) {
+    const std::string key(name.str());
+    const bool is_table = std::find(tables.begin(), tables.end(), key) != tables.end();
+    if (!is_table) {
+      keys.push_back(key);
+      continue;
+    }
+    if (!node.is_table()) document.fail(key, fmt::format("must be a table, [{}]", key));
+    for (const auto& [inner, inner_node] : *node.as_table()) keys.push_back(key + '.' + std::string(inner.str()));
+  }
+  std::stable_sort(keys.begin(), keys.end(), [&](const std::string& a, const std::string& b) {
+    return document.line_of(a) < document.line_of(b);
+  });
+  return keys;
+}
+
+/// The alternative that the document chooses; nullptr for none. Two are an error, and so is a companion without its
+/// key.
+const std::string* chosen_key(const SceneDocument& document, const KeyChoice& choice) {
+  const std::string* chosen = nullptr;
+  for (const auto& alternative : choice.alternatives) {
+    const std::string& head = alternative.front();
+    for (const std::string& key : alternative) {
+      if (document.find(key) && !document.find(head)) document.fail(key, "needs " + head + " beside it");
+    }
+    if (!document.find(head)) continue;
+    if (chosen) document.fail(head, "cannot be combined with " + *chosen);
+    chosen = &head;
+  }
+  return chosen;
+}
+
+void check_choices(const SceneDocument& document) {
+  for (const KeyChoice& choice : key_choices()) {
+    const bool is_present = document.find(choice.table) != nullptr;
+    if (chosen_key(document, choice) || !choice.is_required) continue;
+    if (!is_present && is_effect_table(choice.table)) continue;
+    std::vector<std::string> heads;
+    for (const auto& alternative : choice.alternatives) heads.push_back(alternative.front());
+    document.fail(heads.front(), fmt::format("missing; must be {}, or give one of {}",
+                                             find_scene_key(heads.front())->description.allowed(), join(heads)));
+  }
+}
+
+void check_required(const SceneDocument& document) {
+  for (const KeyDescription& description : scene_keys()) {
+    if (description.fallback != "required" || document.find(description.key)) continue;
+    const std::string table = description.key.substr(0, description.key.find('.'));
+    const bool is_wanted = document.find(table) || !is_effect_table(table);
+    const bool has_substitute = description.key == "surface.sigma" && document.find("grid.sigma");
+    if (is_wanted && !has_substitute) document.fail(description.key, "missing; must be " + description.allowed());
+  }
+}
+
+SceneDraft draft_scene(const SceneDocument& document) {
+  SceneDraft draft;
+  const std::vector<std::string> keys = document_keys(document);
+  for (const std::string& key : keys) {
+    if (!find_scene_key(key)) document.fail(key, "unknown key; the nearest known key is " + key_hint(key));
+  }
+  for (const std::string& table : scene_tables()) {
+    if (document.find(table)) add_effect(draft, table);
+  }
+  for (const std::string& key : keys) {
+    const SceneKey& known = *find_scene_key(key);
+    known.set(draft, read_value(document, known.description));
+  }
+  check_choices(document);
+  check_required(document);
+  return draft;
+}
+
+/// A file named in a scene, as the process finds it.
+std::string resolve_path(const std::string& file, const std::string& scene_path) {
+  const std::size_t slash = scene_path.find_last_of('/');
+  const bool is_as_given = file.starts_with('/') || slash == std::string::npos;
+  return is_as_given ? file : scene_path.substr(0, slash + 1) + file;
+}
+
+void load_material(SceneDraft& draft, const SceneDocument& document, const std::string& scene_path) {
+  Surface& surface = draft.scene.surface;
+  if (document.find("surface.material")) {
+    surface.material = find_material(draft.material, draft.scene.spectrum, document.prefix("surface.material"));
+  }
+  if (document.find("surface.material_file")) {
+    surface.material = read_material_file(resolve_path(draft.material_file, scene_path), draft.scene.spectrum,
+                                          document.prefix("surface.material_file"));
+  }
+}
+
+void load_source(SceneDraft& draft, const SceneDocument& document, const std::string& scene_path) {
+  const bool is_preset = document.find("source.preset") != nullptr;
+  if (!is_preset && !document.find("source.file")) return;
+  const std::string prefix = document.prefix(is_preset ? "source.preset" : "source.file");
+  Source& source = *draft.scene.source;
+  source.kind = Source::Kind::kTabulated;
+  source.table =
+      is_preset ? sun_irradiance() : read_irradiance_file(resolve_path(draft.source_file, scene_path), prefix);
+  const Spectrum& spectrum = draft.scene.spectrum;
+  if (covers(source.table, spectrum)) return;
+  const std::vector<double>& known_um = source.table.wavelength_um;
+  throw InputError(fmt::format("{}known at {}, and the spectrum is {}", prefix,
+                               wavelength_text(known_um.front(), known_um.back()),
+                               wavelength_text(spectrum.min_um, spectrum.max_um)));
+}
+
+void fill_grid(Scene& scene, const SceneDocument& document) {
+  constexpr std::size_t kDefaultThetaCount = 91;
+  Grid& grid = scene.grid;
+  if (grid.theta_deg.empty()) {
+    grid.theta_deg.resize(kDefaultThetaCount);
+    std::iota(grid.theta_deg.begin(), grid.theta_deg.end(), 0.0);
+  }
+  if (!document.find("surface.sigma")) scene.surface.sigma = grid.sigma.front();
+  if (grid.sigma.empty()) grid.sigma = {scene.surface.sigma};
+  if (grid.q.empty()) grid.q = {scene.surface.q};
+}
+
+/// Where the masking has no finite mean slope to work with, the scene is refused.
+void check_smith(const Scene& scene, const SceneDocument& document) {
+  const bool is_smith_cauchy =
+      scene.surface.masking == Masking::kSmith && scene.surface.distribution == Distribution::kCauchy;
+  if (!is_smith_cauchy) return;
+  const std::string what = "masking = \"smith\" with distribution = \"cauchy\" needs q in " + kSmithCauchyQRange.text();
+  if (!kSmithCauchyQRange.contains(scene.surface.q)) document.fail("surface.q", what);
+  for (const double q : scene.grid.q) {
+    if (!kSmithCauchyQRange.contains(q)) document.fail("grid.q", fmt::format("{} is out of range; {}", q, what));
+  }
+}
+
+void check_radiation(const Scene& scene, const SceneDocument& document) {
+  if (!scene.emission && !scene.source && !scene.surroundings) {
+    document.fail("emission", "missing; nothing radiates without one of the tables emission, source, surroundings");
+  }
+  if (scene.source && scene.source->kind == Source::Kind::kRelative && !scene.emission) {
+    document.fail("source.relative_irradiance", "needs the table [emission], whose temperature it is relative to");
+  }
+}
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::string& path_name, const std::vector<std::string>& overrides) {
+  SceneDocument document(text, path_name);
+  for (const std::string& argument : overrides) document.apply_override(argument);
+  SceneDraft draft = draft_scene(document);
+  load_material(draft, document, path_name);
+  load_source(draft, document, path_name);
+  fill_grid(draft.scene, document);
+  check_smith(draft.scene, document);
+  check_radiation(draft.scene, document);
+  draft.scene.path_name = path_name;
+  draft.scene.text = text;
+  draft.scene.overrides = overrides;
+  return std::move(draft.scene);
+}
+
+Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
+  return parse_scene(read_text(path, input_name(path) + ": "), path, overrides);
+}
+
+}  // namespace dolp

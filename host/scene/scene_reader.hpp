@@ -1,0 +1,45 @@
+// Reads a scene file (TOML) into a validated Scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/number_range.hpp"
+#include "scene/scene.hpp"
+
+namespace dolp {
+
+/// Reads the scene at `path` ("-" is stdin), applies the `--set` overrides in order and validates the result.
+///
+/// Overrides: KEY=VALUE with KEY any scene key, dotted (surface.masking, grid.theta_deg.count). VALUE is a TOML value;
+/// what is not one is a string, so words need no quotes. A missing table is created. Between alternatives (surface.n,
+/// .material, .material_file; source.irradiance, .relative_irradiance, .preset, .file; path.temperature_K, .radiance;
+/// spectrum.wavelength_um, .band_um) an override replaces what the file chose. `emission=none` removes that table; so
+/// do source, surroundings and path. Files named in a scene are relative to the folder of the scene (of the process for
+/// "-"). Errors: InputError, one line: `file:line: key = value: what is wrong and what is allowed`, or
+/// `--set KEY=VALUE: …`; a file that cannot be opened is an InputError too.
+Scene read_scene(const std::string& path, const std::vector<std::string>& overrides);
+
+/// The same for a text that is already in memory (the scene that a table file carries); `path_name` is for messages and
+/// gives the folder of the files the scene names.
+Scene parse_scene(const std::string& text, const std::string& path_name, const std::vector<std::string>& overrides);
+
+/// One scene key, for help texts, documentation and widgets.
+struct KeyDescription {
+  enum class Type { kNumber, kWord, kText, kPair, kAxis };
+  std::string key;  ///< dotted, e.g. "surface.n"
+  Type type = Type::kNumber;
+  std::string unit;                ///< "1" for numbers without one, empty for words and texts
+  NumberRange range;               ///< of a number and of each value of a pair or an axis
+  std::vector<std::string> words;  ///< allowed words of kWord
+  std::string fallback;            ///< default as one would write it; "required"; empty when the key is simply absent
+  std::string meaning;             ///< one line, with the symbol
+
+  /// What is allowed, for messages and help: "a number in [0, 90]", "one of cauchy, gaussian", …
+  std::string allowed() const;
+};
+
+/// Every key a scene can have, in the order of INTERFACE: the reader accepts exactly these.
+const std::vector<KeyDescription>& scene_keys();
+
+}  // namespace dolp

@@ -1,0 +1,153 @@
+#include "scene/scene_values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include "scene/text.hpp"
+
+namespace dolp {
+namespace {
+
+using Type = KeyDescription::Type;
+
+/// An axis as from, to, count and spacing.
+struct AxisRule {
+  double from = 0.0;
+  double to = 0.0;
+  std::size_t count = 1;
+  bool is_log = false;
+};
+
+double read_number(const SceneDocument& document, std::string_view key, const toml::node& node,
+                   const NumberRange& range, const std::string& allowed) {
+  const bool is_number = node.is_integer() || node.is_floating_point();
+  if (!is_number) document.fail(key, "must be " + allowed);
+  const double number = *node.value<double>();
+  if (!range.contains(number)) document.fail(key, fmt::format("{} is out of range; must be {}", number, allowed));
+  return number;
+}
+
+std::vector<double> read_list(const SceneDocument& document, const KeyDescription& description,
+                              const toml::array& array) {
+  std::vector<double> numbers;
+  for (const toml::node& element : array) {
+    numbers.push_back(read_number(document, description.key, element, description.range, description.allowed()));
+  }
+  return numbers;
+}
+
+double read_axis_number(const SceneDocument& document, const std::string& key, const NumberRange& range) {
+  const toml::node* node = document.find(key);
+  const std::string allowed = "a number in " + range.text();
+  if (!node) document.fail(key, "missing; must be " + allowed);
+  return read_number(document, key, *node, range, allowed);
+}
+
+AxisRule read_axis_rule(const SceneDocument& document, const KeyDescription& description, const toml::table& table) {
+  const std::string begin = description.key + '.';
+  const std::vector<std::string> known = {"from", "to", "count", "spacing"};
+  for (const auto& [name, node] : table) {
+    if (std::find(known.begin(), known.end(), name.str()) != known.end()) continue;
+    document.fail(begin + std::string(name.str()),
+                  fmt::format("unknown key; the nearest known key is {}{}", begin, nearest_name(name.str(), known)));
+  }
+  AxisRule rule;
+  rule.from = read_axis_number(document, begin + "from", description.range);
+  rule.to = read_axis_number(document, begin + "to", description.range);
+  const double count = read_axis_number(document, begin + "count", kAxisCountRange);
+  if (count != std::floor(count)) document.fail(begin + "count", "must be a whole number in " + kAxisCountRange.text());
+  rule.count = static_cast<std::size_t>(count);
+  if (const toml::node* spacing = document.find(begin + "spacing")) {
+    const std::string word = spacing->value_or(std::string());
+    if (word != "linear" && word != "log") document.fail(begin + "spacing", "must be one of linear, log");
+    rule.is_log = word == "log";
+  }
+  if (rule.count == 1 && rule.from != rule.to) document.fail(begin + "count", "one value needs from = to");
+  for (const char* end : {"from", "to"}) {
+    const double value = std::string_view(end) == "from" ? rule.from : rule.to;
+    if (rule.is_log && value <= 0.0) document.fail(begin + end, "spacing = \"log\" needs from > 0 and to > 0");
+  }
+  return rule;
+}
+
+/// Both forms give the same values, in reverse, when from and to change places, and the ends exactly.
+std::vector<double> axis_values(const AxisRule& rule) {
+  std::vector<double> values(rule.count, rule.from);
+  const auto last = static_cast<double>(rule.count - 1);
+  for (std::size_t i = 1; i < rule.count; ++i) {
+    const auto done = static_cast<double>(i);
+    const double left = last - done;
+    values[i] = rule.is_log ? std::pow(rule.from, left / last) * std::pow(rule.to, done / last)
+                            : (left * rule.from + done * rule.to) / last;
+  }
+  values.back() = rule.to;
+  return values;
+}
+
+std::vector<double> read_axis(const SceneDocument& document, const KeyDescription& description,
+                              const toml::node& node) {
+  std::vector<double> values;
+  if (const toml::array* array = node.as_array()) {
+    values = read_list(document, description, *array);
+  } else if (const toml::table* table = node.as_table()) {
+    values = axis_values(read_axis_rule(document, description, *table));
+  } else {
+    values.push_back(read_number(document, description.key, node, description.range, description.allowed()));
+  }
+  if (values.empty()) document.fail(description.key, "the list is empty; must be " + description.allowed());
+  std::vector<double> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice != sorted.end()) document.fail(description.key, fmt::format("{} appears twice", *twice));
+  return values;
+}
+
+std::vector<double> read_pair(const SceneDocument& document, const KeyDescription& description,
+                              const toml::node& node) {
+  const toml::array* array = node.as_array();
+  const std::string what = "must be " + description.allowed();
+  if (!array || array->size() != 2) document.fail(description.key, what);
+  const std::vector<double> pair = read_list(document, description, *array);
+  if (!(pair[0] < pair[1])) document.fail(description.key, what);
+  return pair;
+}
+
+KeyValue read_word(const SceneDocument& document, const KeyDescription& description, const toml::node& node) {
+  KeyValue value;
+  value.text = node.value_or(std::string());
+  const auto found = std::find(description.words.begin(), description.words.end(), value.text);
+  if (found == description.words.end()) document.fail(description.key, "must be " + description.allowed());
+  value.word = static_cast<std::size_t>(found - description.words.begin());
+  return value;
+}
+
+}  // namespace
+
+KeyValue read_value(const SceneDocument& document, const KeyDescription& description) {
+  const toml::node& node = *document.find(description.key);
+  KeyValue value;
+  switch (description.type) {
+    case Type::kNumber:
+      value.number = read_number(document, description.key, node, description.range, description.allowed());
+      break;
+    case Type::kWord:
+      return read_word(document, description, node);
+    case Type::kText:
+      if (!node.is_string()) document.fail(description.key, "must be a text");
+      value.text = node.value_or(std::string());
+      break;
+    case Type::kPair:
+      value.numbers = read_pair(document, description, node);
+      break;
+    case Type::kAxis:
+      value.numbers = read_axis(document, description, node);
+      break;
+  }
+  return value;
+}
+
+}  // namespace dolp

@@ -1,0 +1,35 @@
+// Quantities tabulated over wavelength: the sun and the user's own irradiance files.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "scene/scene.hpp"
+
+namespace dolp {
+
+/// Solar irradiance at the top of the atmosphere at normal incidence.
+/// Source: host/sun.csv (Gueymard 2003). Units: W m-2 um-1. Accuracy: interpolated log-log in wavelength.
+SpectralTable sun_irradiance();
+
+/// A user's file of two columns, wavelength in um and irradiance in W m-2 um-1, interpolated linearly.
+///
+/// Blank lines and lines that begin with # are skipped; one line of column names before the numbers is allowed.
+/// Domain: wavelengths strictly ascending, irradiance >= 0, at least one row.
+/// Errors: InputError; `prefix` begins the message when the file cannot be opened.
+SpectralTable read_irradiance_file(const std::string& path, const std::string& prefix);
+
+/// Appends a row and checks that the wavelength is in range and ascends; `where` begins the message.
+void append_row(SpectralTable& table, double wavelength_um, double value, const std::string& where);
+
+/// Whether the table has values over the whole spectrum.
+bool covers(const SpectralTable& table, const Spectrum& spectrum);
+
+/// "10.6 um" or "8 to 14 um".
+std::string wavelength_text(double min_um, double max_um);
+
+/// A number of a data file.
+/// Errors: InputError, "`where`column = cell: …".
+double parse_cell(std::string_view cell, const std::string& column, const std::string& where);
+
+}  // namespace dolp

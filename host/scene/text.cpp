@@ -1,0 +1,159 @@
+#include "scene/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <numeric>
+#include <system_error>
+
+#include "error.hpp"
+#include "scene/number_range.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr std::string_view kBlanks = " \t";
+constexpr std::size_t kMessageBytes = 80;
+
+std::string range_end_text(double value) {
+  const std::string text = fmt::format("{:g}", value);
+  const double exponent = std::log10(value);
+  const bool is_large_power_of_ten = value >= 1e4 && exponent == std::round(exponent);
+  return is_large_power_of_ten && std::isfinite(value) ? fmt::format("1e{}", static_cast<int>(exponent)) : text;
+}
+
+}  // namespace
+
+bool NumberRange::contains(double value) const {
+  if (!std::isfinite(value)) return false;
+  const bool above = ends == Ends::kOpenBelow ? value > min : value >= min;
+  const bool below = ends == Ends::kOpenAbove ? value < max : value <= max;
+  return above && below;
+}
+
+std::string NumberRange::text() const {
+  const bool open_below = ends == Ends::kOpenBelow || std::isinf(min);
+  const bool open_above = ends == Ends::kOpenAbove || std::isinf(max);
+  return fmt::format("{}{}, {}{}", open_below ? '(' : '[', range_end_text(min), range_end_text(max),
+                     open_above ? ')' : ']');
+}
+
+std::string_view trim(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> pieces;
+  for (;;) {
+    const std::size_t end = text.find(separator);
+    pieces.push_back(text.substr(0, end));
+    if (end == std::string_view::npos) return pieces;
+    text.remove_prefix(end + 1);
+  }
+}
+
+std::vector<std::string_view> split_lines(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) text.remove_prefix(kByteOrderMark.size());
+  std::vector<std::string_view> lines = split(text, '\n');
+  for (std::string_view& line : lines) {
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  }
+  while (!lines.empty() && trim(lines.back()).empty()) lines.pop_back();
+  return lines;
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return lower;
+}
+
+std::optional<double> parse_number(std::string_view text) {
+  text = trim(text);
+  // from_chars knows no leading plus sign.
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::string format_number(double value) { return fmt::format("{}", value); }
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  const std::string from = lower_case(a);
+  const std::string to = lower_case(b);
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < to.size(); ++j) {
+      const std::size_t replaced = diagonal + (from[i] == to[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
+  const std::string* nearest = &candidates.front();
+  for (const std::string& candidate : candidates) {
+    if (edit_distance(name, candidate) < edit_distance(name, *nearest)) nearest = &candidate;
+  }
+  return *nearest;
+}
+
+std::string one_line(std::string_view text) {
+  std::string line;
+  for (const char c : text) {
+    const bool is_space = c == ' ' || (static_cast<unsigned char>(c) < 0x20);
+    if (!is_space) line += c;
+    if (is_space && !line.empty() && line.back() != ' ') line += ' ';
+    if (line.size() > kMessageBytes) {
+      // A cut inside a UTF-8 sequence would leave an invalid byte.
+      while (!line.empty() && (static_cast<unsigned char>(line.back()) & 0xC0U) == 0x80U) line.pop_back();
+      line.pop_back();
+      return line + "...";
+    }
+  }
+  return line;
+}
+
+std::string join(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
+
+std::string read_text(const std::string& path, const std::string& prefix) {
+  const auto fail = [&](int code) {
+    throw InputError(prefix + "cannot be read: " + std::generic_category().message(code));
+  };
+  struct Close {
+    void operator()(std::FILE* file) const {
+      if (file != stdin) std::fclose(file);
+    }
+  };
+  const std::unique_ptr<std::FILE, Close> file(path == "-" ? stdin : std::fopen(path.c_str(), "rb"));
+  if (!file) fail(errno);
+  std::string text;
+  std::vector<char> block(1U << 16U);
+  for (;;) {
+    const std::size_t got = std::fread(block.data(), 1, block.size(), file.get());
+    text.append(block.data(), got);
+    if (std::ferror(file.get())) fail(errno);
+    if (got < block.size()) return text;
+  }
+}
+
+std::string input_name(const std::string& path) { return path == "-" ? "stdin" : path; }
+
+}  // namespace dolp

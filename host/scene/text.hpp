@@ -1,0 +1,49 @@
+// Reading text that people wrote: numbers, lines, names that are nearly right.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dolp {
+
+/// Without blanks (space, tab) at both ends.
+std::string_view trim(std::string_view text);
+
+/// The pieces between separators; always at least one.
+std::vector<std::string_view> split(std::string_view text, char separator);
+
+/// The lines without their ends (LF or CRLF), a leading UTF-8 byte order mark and the blank lines at the end removed.
+std::vector<std::string_view> split_lines(std::string_view text);
+
+/// ASCII lower case.
+std::string lower_case(std::string_view text);
+
+/// A finite decimal number that fills `text` but for blanks around it; independent of the locale.
+/// Errors: nullopt for anything else, also for nan, inf, 1e999 and 1e-999.
+std::optional<double> parse_number(std::string_view text);
+
+/// The shortest text that reads back as the same number.
+std::string format_number(double value);
+
+/// Number of single-character insertions, deletions and replacements between two words, ignoring case.
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The candidate with the least edit distance, the first of equals; `candidates` is not empty.
+std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
+
+/// `text` on one line and short enough for a message.
+std::string one_line(std::string_view text);
+
+/// "a, b, c".
+std::string join(const std::vector<std::string>& words);
+
+/// A file's bytes, or stdin's for "-".
+/// Errors: InputError, "`prefix`cannot be read: reason".
+std::string read_text(const std::string& path, const std::string& prefix);
+
+/// The name of an input for messages: "stdin" for "-".
+std::string input_name(const std::string& path);
+
+}  // namespace dolp

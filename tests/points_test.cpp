@@ -1,0 +1,140 @@
+// The points reader: accepted spellings, every error, and numbers that come back as they were.
+#include "scene/points.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <random>
+
+#include "error.hpp"
+#include "scene/text.hpp"
+
+namespace dolp {
+namespace {
+
+Points directions(const std::string& text) { return parse_points(text, "p.csv", PointsKind::kDirections); }
+
+std::string error_of(const std::string& text, PointsKind kind = PointsKind::kDirections) {
+  try {
+    parse_points(text, "p.csv", kind);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Points_Directions, HaveTheColumnsOfTheHeader) {
+  const Points points = directions("q,theta_deg\n2,0\n1.5,90\n");
+  EXPECT_EQ(points.size(), 2U);
+  EXPECT_EQ(*points.theta_deg, (std::vector<double>{0.0, 90.0}));
+  EXPECT_EQ(*points.q, (std::vector<double>{2.0, 1.5}));
+  EXPECT_FALSE(points.sigma || points.n || points.k);
+  EXPECT_FALSE(points.theta_i_deg || points.theta_r_deg || points.delta_phi_deg);
+}
+
+TEST(Points_Geometries, HaveThreeAnglesAndAnyOfTheRest) {
+  const Points points = parse_points("theta_i_deg,theta_r_deg,delta_phi_deg,sigma,n,k\n1,2,-180,0,1.5,0\n", "p.csv",
+                                     PointsKind::kGeometries);
+  EXPECT_EQ(*points.theta_i_deg, std::vector<double>{1.0});
+  EXPECT_EQ(*points.theta_r_deg, std::vector<double>{2.0});
+  EXPECT_EQ(*points.delta_phi_deg, std::vector<double>{-180.0});
+  EXPECT_EQ(*points.sigma, std::vector<double>{0.0});
+  EXPECT_EQ(*points.n, std::vector<double>{1.5});
+  EXPECT_EQ(*points.k, std::vector<double>{0.0});
+  EXPECT_FALSE(points.q || points.theta_deg);
+}
+
+TEST(Points_Cells, KeepTheirSpelling) {
+  const Points points = directions("\xEF\xBB\xBF theta_deg , sigma\r\n 3.00e1 ,\t+0.10\r\n030,1E-1\r\n\r\n");
+  EXPECT_EQ(points.header, "theta_deg,sigma");
+  EXPECT_EQ(points.rows, (std::vector<std::string>{"3.00e1,+0.10", "030,1E-1"}));
+  EXPECT_EQ(*points.theta_deg, (std::vector<double>{30.0, 30.0}));
+  EXPECT_EQ(*points.sigma, (std::vector<double>{0.1, 0.1}));
+}
+
+TEST(Points_HeaderAlone, IsAnEmptyList) {
+  for (const char* text : {"theta_deg", "theta_deg\n", "theta_deg\r\n\r\n"}) {
+    const Points points = directions(text);
+    EXPECT_EQ(points.size(), 0U);
+    ASSERT_TRUE(points.theta_deg);
+    EXPECT_TRUE(points.theta_deg->empty());
+  }
+}
+
+TEST(Points_EndsOfTheRanges, AreAcceptedWhereClosed) {
+  EXPECT_EQ(directions("theta_deg,sigma,q,n,k\n0,0,1.0001,1e-300,0\n90,10,1e4,1e6,1e6\n").size(), 2U);
+}
+
+TEST(PointsError_EveryOne, NamesFileLineColumnValueAndRange) {
+  struct Case {
+    const char* text;
+    const char* expected;
+  };
+  const std::vector<Case> cases = {
+      {"", "p.csv:1: the file is empty"},
+      {"\n\n", "p.csv:1: the file is empty"},
+      {"teta_deg\n1\n", "p.csv:1: column \"teta_deg\" is unknown; the nearest known is theta_deg"},
+      {"theta\n1\n", "p.csv:1: column \"theta\" is unknown; the nearest known is theta_deg"},
+      {"theta_deg,\n1\n", "p.csv:1: column \"\" is unknown"},
+      {"theta_i_deg\n1\n", "p.csv:1: column \"theta_i_deg\" is unknown; the nearest known is theta_deg"},
+      {"1,2\n", "p.csv:1: column \"1\" is unknown"},
+      {"q,q\n2,2\n", "p.csv:1: column \"q\" appears twice"},
+      {"theta_deg,sigma\n1,0.1\n2\n", "p.csv:3: sigma: the value is missing, a number in [0, 10]"},
+      {"theta_deg,sigma\n1,\n", "p.csv:2: sigma: the value is missing"},
+      {"theta_deg,sigma\n ,1\n", "p.csv:2: theta_deg: the value is missing, a number in [0, 90]"},
+      {"theta_deg\n1\n\n2\n", "p.csv:3: theta_deg: the value is missing"},
+      {"theta_deg\n1,2\n", "p.csv:2: 2: one value too many after column theta_deg"},
+      {"theta_deg\n1,\n", "p.csv:2: : one value too many after column theta_deg"},
+      {"theta_deg\n91\n", "p.csv:2: theta_deg = 91: out of range, a number in [0, 90]"},
+      {"theta_deg\n-1e-9\n", "p.csv:2: theta_deg = -1e-9: out of range, a number in [0, 90]"},
+      {"sigma\n10.1\n", "p.csv:2: sigma = 10.1: out of range, a number in [0, 10]"},
+      {"q\n1\n", "p.csv:2: q = 1: out of range, a number in (1, 1e4]"},
+      {"n\n0\n", "p.csv:2: n = 0: out of range, a number in (0, 1e6]"},
+      {"k\n-0.1\n", "p.csv:2: k = -0.1: out of range, a number in [0, 1e6]"},
+      {"# comment\ntheta_deg\n", "p.csv:1: column \"# comment\" is unknown"},
+  };
+  for (const Case& row : cases) EXPECT_TRUE(error_of(row.text).starts_with(row.expected)) << error_of(row.text);
+}
+
+TEST(PointsError_NotANumber, IsRefusedWhateverItsForm) {
+  for (const char* cell : {"1e", "nan", "NaN", "inf", "-inf", "1.5x", "x", "0x10", "1 2", "--1", "+-1", "+", "1e999",
+                           "1d3", "1;5", "\"1\"", "1_0"}) {
+    const std::string expected = std::string("p.csv:2: k = ") + cell + ": not a number, a number in [0, 1e6]";
+    EXPECT_EQ(error_of(std::string("k\n") + cell + "\n"), expected);
+  }
+}
+
+TEST(PointsError_MissingAngle, IsNamed) {
+  EXPECT_TRUE(error_of("theta_i_deg,theta_r_deg\n1,1\n", PointsKind::kGeometries)
+                  .starts_with("p.csv:1: column \"delta_phi_deg\" is missing, a number in [-360, 360]"));
+  EXPECT_TRUE(
+      error_of("theta_deg\n1\n", PointsKind::kGeometries).starts_with("p.csv:1: column \"theta_deg\" is unknown"));
+}
+
+TEST(PointsError_FileThatCannotBeRead, IsAnInputError) {
+  try {
+    read_points("absent.csv", PointsKind::kDirections);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "absent.csv: cannot be read: No such file or directory");
+  }
+}
+
+TEST(Points_RandomNumbers, ArriveBitForBit) {
+  constexpr std::uint64_t kSeed = 46;
+  constexpr std::size_t kRows = 10000;
+  std::cout << "seed " << kSeed << '\n';
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> exponent(-300.0, 6.0);
+  std::vector<double> values;
+  std::string text = "k\n";
+  for (std::size_t i = 0; i < kRows; ++i) {
+    values.push_back(std::pow(10.0, exponent(random)));
+    text += format_number(values.back()) + '\n';
+  }
+  EXPECT_EQ(*directions(text).k, values);
+}
+
+}  // namespace
+}  // namespace dolp

@@ -1,0 +1,499 @@
+// The scene reader: every key, every way to get one wrong, defaults, overrides, the shipped scenes.
+#include "scene/scene_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <random>
+
+#include "error.hpp"
+#include "scene/text.hpp"
+#include "tests/temporary_file.hpp"
+
+namespace dolp {
+namespace {
+
+const std::string kHostDir = DOLP_HOST_DIR;
+
+/// A scene that is valid and leaves every default alone. [surface] is line 1, [emission] 4, [spectrum] 6.
+const std::string kMinimal =
+    "[surface]\n"
+    "n = 1.5\n"
+    "sigma = 0.3\n"
+    "[emission]\n"
+    "temperature_K = 300\n"
+    "[spectrum]\n"
+    "wavelength_um = 10.6\n";
+
+Scene parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return parse_scene(text, "s.toml", overrides);
+}
+
+std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    parse(text, overrides);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+// ---- Values --------------------------------------------------------------------------------------------------------
+
+void expect_defaults(const Scene& scene) {
+  EXPECT_TRUE(scene.surface.material.is_constant());
+  EXPECT_EQ(scene.surface.material.at(10.6), (OpticalConstants{1.5, 0.0}));
+  EXPECT_EQ(scene.surface.distribution, Distribution::kCauchy);
+  EXPECT_EQ(scene.surface.masking, Masking::kIntegral);
+  EXPECT_EQ(scene.surface.sigma, 0.3);
+  EXPECT_EQ(scene.surface.q, 2.0);
+  EXPECT_EQ(scene.surface.specular, 1.0);
+  EXPECT_EQ(scene.surface.diffuse, 0.0);
+  EXPECT_EQ(scene.surface.diffuse_exponent, -0.5);
+  ASSERT_TRUE(scene.emission);
+  EXPECT_EQ(scene.emission->temperature_K, 300.0);
+  EXPECT_EQ(scene.emission->model, EmissionModel::kMoments);
+  EXPECT_EQ(scene.source.value_or(Source{}).scale, 1.0);
+  EXPECT_EQ(scene.path.value_or(Path{}).transmittance, 1.0);
+  EXPECT_EQ(scene.geometry.mode, Mode::kHemispherical);
+  EXPECT_EQ(scene.geometry.view_zenith_deg, 60.0);
+  EXPECT_EQ(scene.geometry.relative_azimuth_deg, 180.0);
+  ASSERT_EQ(scene.grid.theta_deg.size(), 91U);
+  for (std::size_t i = 0; i < 91; ++i) EXPECT_EQ(scene.grid.theta_deg[i], static_cast<double>(i));
+  EXPECT_EQ(scene.grid.sigma, std::vector<double>{0.3});
+  EXPECT_EQ(scene.grid.q, std::vector<double>{2.0});
+  EXPECT_EQ(scene.accuracy.tolerance, 1e-4);
+  EXPECT_EQ(scene.accuracy.precision, Precision::kAuto);
+}
+
+TEST(Scene_Minimal, GetsEveryDefault) {
+  const Scene scene = parse(kMinimal);
+  expect_defaults(scene);
+  EXPECT_EQ(scene.title, "");
+  EXPECT_FALSE(scene.source || scene.surroundings || scene.path);
+  EXPECT_FALSE(scene.spectrum.is_band());
+  EXPECT_EQ(scene.spectrum.min_um, 10.6);
+  EXPECT_EQ(scene.text, kMinimal);
+  EXPECT_EQ(scene.path_name, "s.toml");
+  EXPECT_TRUE(scene.overrides.empty());
+}
+
+TEST(Scene_Described, DefaultsAreTheRealOnes) {
+  const std::vector<std::string> base = {"source.irradiance=1", "path.radiance=1"};
+  expect_defaults(parse(kMinimal, base));
+  for (const KeyDescription& key : scene_keys()) {
+    const bool is_value = !key.fallback.empty() && key.fallback != "required" && !key.fallback.starts_with("surface.");
+    if (!is_value) continue;
+    SCOPED_TRACE(key.key);
+    std::vector<std::string> overrides = base;
+    overrides.push_back(key.key + "=" + key.fallback);
+    expect_defaults(parse(kMinimal, overrides));
+  }
+}
+
+/// One row for each key: a value that is not the default, and a test of where it went.
+struct KeyCase {
+  const char* key;
+  const char* value;
+  bool (*arrived)(const Scene&);
+};
+
+const std::vector<KeyCase>& key_cases() {
+  static const std::vector<KeyCase> cases = {
+      {"title", "\"Name\"", [](const Scene& s) { return s.title == "Name"; }},
+      {"surface.n", "1.25", [](const Scene& s) { return s.surface.material.constant.n == 1.25; }},
+      {"surface.k", "0.25", [](const Scene& s) { return s.surface.material.constant.k == 0.25; }},
+      {"surface.material", "\"iron\"", [](const Scene& s) { return s.surface.material.name == "iron"; }},
+      {"surface.material_file", "\"index.csv\"", [](const Scene& s) { return s.surface.material.at(10.0).n == 2.0; }},
+      {"surface.distribution", "\"gaussian\"",
+       [](const Scene& s) { return s.surface.distribution == Distribution::kGaussian; }},
+      {"surface.sigma", "0.5", [](const Scene& s) { return s.surface.sigma == 0.5 && s.grid.sigma[0] == 0.5; }},
+      {"surface.q", "3", [](const Scene& s) { return s.surface.q == 3.0 && s.grid.q[0] == 3.0; }},
+      {"surface.masking", "\"v-cavity\"", [](const Scene& s) { return s.surface.masking == Masking::kVCavity; }},
+      {"surface.specular", "0.5", [](const Scene& s) { return s.surface.specular == 0.5; }},
+      {"surface.diffuse", "0.25", [](const Scene& s) { return s.surface.diffuse == 0.25; }},
+      {"surface.diffuse_exponent", "-0.25", [](const Scene& s) { return s.surface.diffuse_exponent == -0.25; }},
+      {"emission.temperature_K", "290", [](const Scene& s) { return s.emission->temperature_K == 290.0; }},
+      {"emission.model", "\"fresnel\"", [](const Scene& s) { return s.emission->model == EmissionModel::kFresnel; }},
+      {"source.irradiance", "0.5",
+       [](const Scene& s) { return s.source->kind == Source::Kind::kFlat && s.source->irradiance == 0.5; }},
+      {"source.relative_irradiance", "0.5",
+       [](const Scene& s) {
+         return s.source->kind == Source::Kind::kRelative && s.source->relative_irradiance == 0.5;
+       }},
+      {"source.preset", "\"sun\"", [](const Scene& s) { return s.source->kind == Source::Kind::kTabulated; }},
+      {"source.file", "\"light.csv\"", [](const Scene& s) { return s.source->table.at(10.5) == 1.5; }},
+      {"source.scale", "0.75", [](const Scene& s) { return s.source->scale == 0.75; }},
+      {"surroundings.temperature_K", "0", [](const Scene& s) { return s.surroundings->temperature_K == 0.0; }},
+      {"path.transmittance", "0.5", [](const Scene& s) { return s.path->transmittance == 0.5; }},
+      {"path.temperature_K", "280", [](const Scene& s) { return *s.path->temperature_K == 280.0; }},
+      {"path.radiance", "2.5", [](const Scene& s) { return *s.path->radiance == 2.5; }},
+      {"spectrum.wavelength_um", "10.61", [](const Scene& s) { return s.spectrum.max_um == 10.61; }},
+      {"spectrum.band_um", "[8, 14]", [](const Scene& s) { return s.spectrum.min_um == 8 && s.spectrum.max_um == 14; }},
+      {"geometry.mode", "\"bistatic\"", [](const Scene& s) { return s.geometry.mode == Mode::kBistatic; }},
+      {"geometry.view_zenith_deg", "45", [](const Scene& s) { return s.geometry.view_zenith_deg == 45.0; }},
+      {"geometry.relative_azimuth_deg", "-90", [](const Scene& s) { return s.geometry.relative_azimuth_deg == -90.0; }},
+      {"grid.theta_deg", "[90, 0]",
+       [](const Scene& s) {
+         return s.grid.theta_deg == std::vector<double>{90.0, 0.0};
+       }},
+      {"grid.sigma", "0.7", [](const Scene& s) { return s.grid.sigma == std::vector<double>{0.7}; }},
+      {"grid.q", "[1.5, 2]",
+       [](const Scene& s) {
+         return s.grid.q == std::vector<double>{1.5, 2.0};
+       }},
+      {"accuracy.tolerance", "1e-6", [](const Scene& s) { return s.accuracy.tolerance == 1e-6; }},
+      {"accuracy.precision", "\"double\"", [](const Scene& s) { return s.accuracy.precision == Precision::kDouble; }},
+  };
+  return cases;
+}
+
+TEST(Scene_EveryKey, HasACaseBelow) {
+  ASSERT_EQ(key_cases().size(), scene_keys().size());
+  for (std::size_t i = 0; i < scene_keys().size(); ++i) EXPECT_EQ(scene_keys()[i].key, key_cases()[i].key);
+}
+
+TEST(Scene_EveryKey, IsDescribed) {
+  for (const KeyDescription& key : scene_keys()) {
+    EXPECT_FALSE(key.meaning.empty()) << key.key;
+    EXPECT_FALSE(key.allowed().empty()) << key.key;
+    EXPECT_EQ(key.type == KeyDescription::Type::kWord, !key.words.empty()) << key.key;
+  }
+}
+
+TEST(Scene_EveryKey, CanBeSetByAnOverride) {
+  const TemporaryFile index("index.csv", "wavelength_um,n,k\n10,2,0\n11,2,0\n");
+  const TemporaryFile light("light.csv", "10,1\n11,2\n");
+  for (const KeyCase& row : key_cases()) {
+    const std::string key = row.key;
+    std::vector<std::string> overrides;
+    if (key == "source.scale") overrides.emplace_back("source.irradiance=1");
+    if (key == "surface.material_file") {
+      overrides.push_back(key + "=" + index.path());
+    } else if (key == "source.file") {
+      overrides.push_back(key + "=" + light.path());
+    } else {
+      overrides.push_back(key + "=" + row.value);
+    }
+    const Scene scene = parse(kMinimal, overrides);
+    EXPECT_TRUE(row.arrived(scene)) << key;
+    EXPECT_EQ(scene.overrides, overrides) << key;
+  }
+}
+
+TEST(Scene_EveryKey, CanBeWrittenInTheFile) {
+  const TemporaryFile index("index.csv", "wavelength_um,n,k\n10,2,0\n11,2,0\n");
+  const TemporaryFile light("light.csv", "10,1\n11,2\n");
+  for (const KeyCase& row : key_cases()) {
+    const std::string key = row.key;
+    // Dotted keys at the top make a scene whose parts can be left out one by one.
+    std::string text = "accuracy.tolerance = 1e-5\n";
+    if (key == "accuracy.tolerance") text.clear();
+    if (!key.starts_with("surface.n") && !key.starts_with("surface.material")) text += "surface.n = 1.5\n";
+    if (key != "surface.sigma") text += "surface.sigma = 0.3\n";
+    if (key != "emission.temperature_K") text += "emission.temperature_K = 300\n";
+    if (!key.starts_with("spectrum")) text += "spectrum.wavelength_um = 10.6\n";
+    if (key == "source.scale") text += "source.irradiance = 1\n";
+    text += key + " = " + row.value + "\n";
+    const std::string folder = std::filesystem::path(key == "source.file" ? light.path() : index.path()).parent_path();
+    EXPECT_TRUE(row.arrived(parse_scene(text, folder + "/s.toml", {}))) << text;
+  }
+}
+
+TEST(Scene_EveryNumber, AcceptsItsClosedEndsAndRefusesItsOpenOnes) {
+  for (const KeyDescription& key : scene_keys()) {
+    if (key.type != KeyDescription::Type::kNumber) continue;
+    std::vector<std::string> base;
+    if (key.key == "source.scale") base.emplace_back("source.irradiance=1");
+    for (const double end : {key.range.min, key.range.max}) {
+      if (std::isinf(end)) continue;
+      std::vector<std::string> overrides = base;
+      overrides.push_back(key.key + "=" + format_number(end));
+      const std::string error = error_of(kMinimal, overrides);
+      EXPECT_EQ(error == "no error", key.range.contains(end)) << overrides.back() << ": " << error;
+    }
+  }
+}
+
+TEST(Scene_EveryNumber, RefusesWhatIsOutOfRangeNotFiniteOrNoNumber) {
+  for (const KeyDescription& key : scene_keys()) {
+    if (key.type != KeyDescription::Type::kNumber && key.type != KeyDescription::Type::kAxis) continue;
+    std::vector<std::string> values = {"nan", "inf", "-inf", "true", "many", "2020-01-01", ""};
+    if (std::isfinite(key.range.min)) values.push_back(format_number(key.range.min - 1.0));
+    if (std::isfinite(key.range.max)) values.push_back(format_number(key.range.max * 2.0 + 1.0));
+    for (const std::string& value : values) {
+      const std::string argument = key.key + "=" + value;
+      const std::string error = error_of(kMinimal, {argument});
+      EXPECT_TRUE(error.starts_with("--set " + argument + ": ")) << error;
+      EXPECT_TRUE(contains(error, key.range.text())) << error;
+    }
+  }
+}
+
+TEST(Scene_EveryWord, NamesTheAllowedWords) {
+  for (const KeyDescription& key : scene_keys()) {
+    if (key.type != KeyDescription::Type::kWord) continue;
+    const std::string error = error_of(kMinimal, {key.key + "=nonsense"});
+    for (const std::string& word : key.words) EXPECT_TRUE(contains(error, word)) << error;
+    for (const std::string& word : key.words) EXPECT_EQ(error_of(kMinimal, {key.key + "=" + word}), "no error");
+  }
+}
+
+// ---- Axes ----------------------------------------------------------------------------------------------------------
+
+TEST(SceneAxis_Linear, IsExactForWholeDegreesAndDescends) {
+  const Scene scene = parse(kMinimal + "[grid]\ntheta_deg = { from = 80, to = 10, count = 8 }\n");
+  EXPECT_EQ(scene.grid.theta_deg, (std::vector<double>{80, 70, 60, 50, 40, 30, 20, 10}));
+}
+
+TEST(SceneAxis_Log, HasExactEndsAndEqualRatios) {
+  const Scene scene = parse(kMinimal + "[grid]\nsigma = { from = 0.01, to = 1, count = 3, spacing = \"log\" }\n");
+  // pow is correct to 1 ulp, and two of them are multiplied.
+  constexpr double kTwoPowers = 3.0 * 2.3e-16;
+  ASSERT_EQ(scene.grid.sigma.size(), 3U);
+  EXPECT_EQ(scene.grid.sigma[0], 0.01);
+  EXPECT_NEAR(scene.grid.sigma[1], 0.1, 0.1 * kTwoPowers);
+  EXPECT_EQ(scene.grid.sigma[2], 1.0);
+}
+
+TEST(SceneAxis_OnePoint, IsANumberAListOrARule) {
+  for (const char* axis : {"30", "[30]", "{ from = 30, to = 30, count = 1 }"}) {
+    const Scene scene = parse(kMinimal + "[grid]\ntheta_deg = " + axis + "\n");
+    EXPECT_EQ(scene.grid.theta_deg, std::vector<double>{30.0}) << axis;
+  }
+}
+
+TEST(SceneAxis_OfItsOwnTable, IsRead) {
+  const Scene scene = parse(kMinimal + "[grid.q]\nfrom = 2\nto = 4\ncount = 3\n", {"grid.q.count=2"});
+  EXPECT_EQ(scene.grid.q, (std::vector<double>{2.0, 4.0}));
+}
+
+TEST(SceneGrid_SigmaWithoutSurfaceSigma, GivesTheSurfaceItsFirstValue) {
+  const Scene scene =
+      parse("surface.n = 1.5\nemission.temperature_K = 1\nspectrum.wavelength_um = 5\ngrid.sigma = [0.2, 0.1]");
+  EXPECT_EQ(scene.surface.sigma, 0.2);
+}
+
+// ---- Errors --------------------------------------------------------------------------------------------------------
+
+/// A scene that is wrong: what is appended to the minimal one (whose last line is 7), and what the message must hold.
+struct ErrorCase {
+  const char* appended;
+  std::vector<std::string> expected;
+};
+
+TEST(SceneError_InTheFile, NamesFileLineKeyValueAndWhatIsAllowed) {
+  const std::vector<ErrorCase> cases = {
+      {"[surfaces]\n", {"s.toml:8: surfaces: unknown key", "surface"}},
+      {"wavelenght_um = 3\n", {"s.toml:8: spectrum.wavelenght_um = 3: unknown key", "spectrum.wavelength_um"}},
+      {"[grid]\nwavelength_um = 3\n", {"s.toml:9: grid.wavelength_um = 3: unknown key", "spectrum.wavelength_um"}},
+      {"[path]\ntemperature_k = 3\n", {"s.toml:9: path.temperature_k", "nearest known key is path.temperature_K"}},
+      {"[geometry]\nmode = \"bistatical\"\n",
+       {"s.toml:9: geometry.mode = \"bistatical\": ", "hemispherical, bistatic"}},
+      {"[geometry]\nmode = 1\n", {"s.toml:9: geometry.mode = 1: ", "hemispherical, bistatic"}},
+      {"[grid]\ntheta_deg = [0, 91]\n", {"s.toml:9: grid.theta_deg = [", "91 is out of range", "[0, 90]"}},
+      {"[grid]\ntheta_deg = []\n", {"s.toml:9: grid.theta_deg = []: the list is empty"}},
+      {"[grid]\nq = [2, \"3\"]\n", {"s.toml:9: grid.q = [", "(1, 1e4]"}},
+      {"[grid]\nq = [2, 3, 2.0]\n", {"s.toml:9: grid.q = [", "2 appears twice"}},
+      {"[grid]\nq = { from = 2, to = 3 }\n", {"s.toml:9: grid.q.count: missing", "[1, 1e6]"}},
+      {"[grid]\nq = { from = 2, to = 3, count = 0 }\n", {"s.toml:9: grid.q.count = 0: ", "[1, 1e6]"}},
+      {"[grid]\nq = { from = 2, to = 3, count = 2.5 }\n", {"s.toml:9: grid.q.count = 2.5: ", "whole number"}},
+      {"[grid]\nq = { from = 2, to = 3, count = 1 }\n", {"s.toml:9: grid.q.count = 1: ", "from = to"}},
+      {"[grid]\nq = { from = 1, to = 3, count = 5 }\n", {"s.toml:9: grid.q.from = 1: ", "(1, 1e4]"}},
+      {"[grid]\nq = { from = 2, to = 3, counts = 5 }\n", {"s.toml:9: grid.q.counts = 5: unknown key", "grid.q.count"}},
+      {"[grid]\nq = { from = 2, to = 3, count = 5, spacing = \"lin\" }\n", {"s.toml:9: grid.q.spacing", "linear, log"}},
+      {"[grid]\nsigma = { from = 0, to = 1, count = 5, spacing = \"log\" }\n",
+       {"s.toml:9: grid.sigma.from", "from > 0"}},
+      {"[grid]\nsigma = { from = 1, to = 0, count = 5, spacing = \"log\" }\n", {"s.toml:9: grid.sigma.to", "to > 0"}},
+      {"[source]\n", {"s.toml:8: source.irradiance: missing", "[0, inf)", "source.preset, source.file"}},
+      {"[source]\nscale = 2\n", {"s.toml:8: source.irradiance: missing"}},
+      {"[source]\nirradiance = 1\npreset = \"sun\"\n", {"s.toml:10: source.preset", "combined with source.irradiance"}},
+      {"[source]\nirradiance = -1\n", {"s.toml:9: source.irradiance = -1: ", "out of range", "[0, inf)"}},
+      {"[source]\nfile = \"absent.csv\"\n", {"s.toml:9: source.file = \"absent.csv\": cannot be read: No such file"}},
+      {"[source]\nfile = 3\n", {"s.toml:9: source.file = 3: must be a text"}},
+      {"[surroundings]\n", {"s.toml:8: surroundings.temperature_K: missing", "[0, 1e4]"}},
+      {"[path]\ntemperature_K = 3\nradiance = 1\n",
+       {"s.toml:10: path.radiance = 1", "combined with path.temperature_K"}},
+      {"[accuracy]\ntolerance = 0.1\n", {"s.toml:9: accuracy.tolerance = 0.1: ", "[1e-10, 0.01]"}},
+      {"[accuracy]\ntolerance = nan\n", {"s.toml:9: accuracy.tolerance = ", "[1e-10, 0.01]"}},
+      {"band_um = [8, 14]\n", {"s.toml:8: spectrum.band_um = [8, 14]: cannot be combined with spectrum.wavelength_um"}},
+      {"[[grid]]\n", {"s.toml:8: grid", "must be a table"}},
+      {"[surface]\n", {"s.toml:8: not valid TOML"}},
+      {"title = \n", {"s.toml:8: not valid TOML"}},
+      {"wavelength_um = 4\n", {"s.toml:8: not valid TOML"}},
+      {"\n\n]\n", {"s.toml:10: not valid TOML"}},
+      {"[grid]\nsigma = \"line\\nbreak\"\n", {"s.toml:9: grid.sigma = \"line break\": "}},
+  };
+  for (const ErrorCase& row : cases) {
+    const std::string error = error_of(kMinimal + row.appended);
+    for (const std::string& part : row.expected) {
+      EXPECT_TRUE(contains(error, part)) << row.appended << "\nsays:    " << error << "\nwithout: " << part;
+    }
+    EXPECT_FALSE(contains(error, "\n")) << error;
+  }
+}
+
+TEST(SceneError_SomethingMissing, NamesTheLineOfItsTable) {
+  const std::string rest = "[emission]\ntemperature_K = 300\n[spectrum]\nwavelength_um = 5\n";
+  const std::string surface = "[surface]\nn = 1.5\nsigma = 0.3\n";
+  EXPECT_TRUE(contains(error_of(""), "s.toml:1: surface.n: missing; must be a number in (0, 1e6]"));
+  EXPECT_TRUE(contains(error_of(rest + "[surface]\nsigma = 1\n"), "s.toml:5: surface.n: missing"));
+  EXPECT_TRUE(contains(error_of(rest + "[surface]\nn = 1.5\n"), "s.toml:5: surface.sigma: missing"));
+  EXPECT_TRUE(contains(error_of(rest + "[surface]\nsigma = 1\nk = 1\n"), "s.toml:7: surface.k = 1: needs surface.n"));
+  EXPECT_TRUE(contains(error_of(surface + "[emission]\n" + "[spectrum]\nwavelength_um = 5\n"),
+                       "s.toml:4: emission.temperature_K: missing; must be a number in (0, 1e4]"));
+  EXPECT_TRUE(
+      contains(error_of(surface + "[emission]\ntemperature_K = 300\n"), "s.toml:1: spectrum.wavelength_um: missing"));
+  EXPECT_TRUE(
+      contains(error_of(surface + "[spectrum]\nwavelength_um = 5\n"), "s.toml:1: emission: missing; nothing radiates"));
+  EXPECT_TRUE(contains(error_of("surface = 3\n"), "s.toml:1: surface = 3: must be a table, [surface]"));
+  EXPECT_TRUE(contains(error_of("title = 3\n" + kMinimal), "s.toml:1: title = 3: must be a text"));
+}
+
+TEST(SceneError_KeysThatDoNotGoTogether, AreNamed) {
+  const std::string no_emission = "surface.n = 1.5\nsurface.sigma = 0.3\nspectrum.wavelength_um = 5\n";
+  EXPECT_TRUE(contains(error_of(no_emission + "source.relative_irradiance = 1\n"),
+                       "s.toml:4: source.relative_irradiance = 1: needs the table [emission]"));
+  EXPECT_EQ(error_of(no_emission + "source.irradiance = 1\n"), "no error");
+  EXPECT_EQ(error_of(no_emission + "surroundings.temperature_K = 1\n"), "no error");
+  EXPECT_TRUE(contains(error_of(kMinimal + "[surface.unused]\n"), "s.toml:8: surface.unused: unknown key"));
+  const std::string grid = kMinimal + "[grid]\nq = [1.5, 2]\n";
+  EXPECT_TRUE(contains(error_of(grid, {"surface.masking=smith"}), "s.toml:9: grid.q = [1.5, 2]: 1.5 is out of range"));
+  EXPECT_TRUE(contains(error_of(grid, {"surface.masking=smith"}), "q in (1.5, 1e4]"));
+  EXPECT_EQ(error_of(grid, {"surface.masking=smith", "surface.distribution=gaussian"}), "no error");
+  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.masking=smith", "surface.q=1.5"}), "--set surface.q=1.5: "));
+}
+
+TEST(SceneError_BandThatDoesNotAscend, IsRefused) {
+  for (const char* band : {"[14, 8]", "[8, 8]", "[8]", "[8, 9, 10]", "8", "[8, nan]", "[0.01, 8]"}) {
+    const std::string error = error_of(kMinimal, {std::string("spectrum.band_um=") + band});
+    EXPECT_TRUE(contains(error, std::string("--set spectrum.band_um=") + band + ": ")) << error;
+    EXPECT_TRUE(contains(error, "two ascending numbers in [0.1, 1e4]")) << error;
+  }
+}
+
+TEST(SceneError_FileThatCannotBeRead, IsAnInputError) {
+  const auto error_of_path = [](const std::string& path) -> std::string {
+    try {
+      read_scene(path, {});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(error_of_path("absent.toml"), "absent.toml: cannot be read: No such file or directory");
+  EXPECT_EQ(error_of_path(kHostDir), kHostDir + ": cannot be read: Is a directory");
+  const TemporaryFile empty("empty.toml", "");
+  EXPECT_TRUE(contains(error_of_path(empty.path()), "empty.toml:1: surface.n: missing"));
+}
+
+TEST(SceneError_RandomBytes, IsAlwaysOneLineAndAlwaysAnInputError) {
+  constexpr std::uint64_t kSeed = 20250804;
+  constexpr int kTrials = 2000;
+  std::cout << "seed " << kSeed << '\n';
+  std::mt19937_64 random(kSeed);
+  int refused = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::string text = kMinimal;
+    for (int i = 0; i < 3; ++i) text[random() % text.size()] = static_cast<char>(random() % 256);
+    const std::string error = error_of(text);
+    EXPECT_FALSE(contains(error, "\n")) << error;
+    if (error != "no error") ++refused;
+  }
+  // Three random bytes in a scene of 92 leave it valid only where they fall on digits and the like.
+  EXPECT_GT(refused, kTrials / 2);
+}
+
+// ---- Overrides -----------------------------------------------------------------------------------------------------
+
+TEST(SceneOverride_Malformed, IsRefused) {
+  for (const char* argument : {"surface.n", "=1", "surface..n=1", ".n=1", "surface.=1", ""}) {
+    EXPECT_TRUE(error_of(kMinimal, {argument}).starts_with(std::string("--set ") + argument + ": must be KEY=VALUE"))
+        << error_of(kMinimal, {argument});
+  }
+  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.nn=1"}),
+                       "--set surface.nn=1: unknown key; the nearest known key is surface.n"));
+  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.n.x=1"}), "--set surface.n.x=1: surface.n is not a table"));
+  EXPECT_TRUE(contains(error_of(kMinimal, {"surface=3"}), "--set surface=3: must be a table, [surface]"));
+  // A value may not bring further keys with it.
+  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.n=1\nsurface.k=2"}), "must be a number"));
+}
+
+TEST(SceneOverride_OfAnAlternative, ReplacesTheFilesChoice) {
+  const Scene iron = parse(kMinimal, {"surface.material=iron"});
+  EXPECT_EQ(iron.surface.material.name, "iron");
+  const std::string with_iron =
+      "surface.material = \"iron\"\nsurface.sigma = 0.3\nemission.temperature_K = 1\n"
+      "spectrum.wavelength_um = 10.6\n";
+  EXPECT_EQ(parse(with_iron, {"surface.n=1.4"}).surface.material.constant, (OpticalConstants{1.4, 0.0}));
+  EXPECT_TRUE(contains(error_of(with_iron, {"surface.k=1"}), "--set surface.k=1: needs surface.n"));
+  EXPECT_TRUE(contains(error_of(with_iron, {"surface.n=1.4", "surface.material=gold"}),
+                       "--set surface.material=gold: cannot be combined with surface.n"));
+  EXPECT_TRUE(parse(kMinimal, {"spectrum.band_um=[8, 14]"}).spectrum.is_band());
+}
+
+TEST(SceneOverride_None, RemovesAnEffect) {
+  const std::string text = kMinimal + "[surroundings]\ntemperature_K = 290\n";
+  EXPECT_FALSE(parse(text, {"emission=none"}).emission);
+  EXPECT_EQ(parse(text, {"emission=none", "emission.temperature_K=5"}).emission->temperature_K, 5.0);
+  EXPECT_TRUE(contains(error_of(text, {"surface=none"}), "--set surface=none: must be a table"));
+}
+
+TEST(SceneOverride_Values, NeedNoQuotesAndKeepTheirSpelling) {
+  EXPECT_EQ(parse(kMinimal, {"title=My scene # 1"}).title, "My scene # 1");
+  EXPECT_EQ(parse(kMinimal, {"title=2.50"}).title, "2.50");
+  EXPECT_EQ(parse(kMinimal, {"title=\"2.50\""}).title, "2.50");
+  EXPECT_EQ(parse(kMinimal, {"surface.sigma=.5"}).surface.sigma, 0.5);
+  EXPECT_EQ(parse(kMinimal, {" surface.sigma = 0.5 "}).surface.sigma, 0.5);
+  EXPECT_EQ(parse(kMinimal, {"surface.sigma=0.5", "surface.sigma=0.6"}).surface.sigma, 0.6);
+  EXPECT_EQ(parse(kMinimal, {"surroundings={ temperature_K = 7 }"}).surroundings->temperature_K, 7.0);
+}
+
+TEST(SceneOverride_RandomNumbers, ArriveBitForBit) {
+  constexpr std::uint64_t kSeed = 8004;
+  constexpr int kTrials = 1000;
+  std::cout << "seed " << kSeed << '\n';
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> exponent(-300.0, 6.0);
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const double value = std::pow(10.0, exponent(random));
+    const Scene scene = parse(kMinimal, {"surface.n=" + format_number(value), "surface.k=" + format_number(value)});
+    EXPECT_EQ(scene.surface.material.constant.n, value);
+    EXPECT_EQ(scene.surface.material.constant.k, value);
+  }
+}
+
+// ---- The shipped scenes --------------------------------------------------------------------------------------------
+
+TEST(ShippedScenes, AllParse) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kHostDir + "/scenes")) {
+    const Scene scene = read_scene(entry.path().string(), {});
+    EXPECT_FALSE(scene.title.empty()) << entry.path();
+    const auto& theta = scene.grid.theta_deg;
+    EXPECT_NE(std::find(theta.begin(), theta.end(), 60.0), theta.end()) << entry.path();
+    EXPECT_NO_THROW(read_scene(entry.path().string(), {"surface.masking=smith"})) << entry.path();
+    ++count;
+  }
+  EXPECT_EQ(count, 10U);
+}
+
+TEST(ShippedScenes_OfThePaper, HaveItsSamples) {
+  const Scene steel = read_scene(kHostDir + "/scenes/stainless_steel.toml", {});
+  EXPECT_EQ(steel.surface.material.constant, (OpticalConstants{1.508, 0.0}));
+  EXPECT_EQ(steel.surface.sigma, 0.445);
+  EXPECT_EQ(steel.emission->temperature_K, 298.15);
+  const Scene aluminium = read_scene(kHostDir + "/scenes/aviation_aluminium.toml", {});
+  EXPECT_EQ(aluminium.surface.material.constant, (OpticalConstants{1.373, 0.0}));
+  EXPECT_EQ(aluminium.surface.sigma, 0.905);
+  EXPECT_EQ(aluminium.emission->temperature_K, 299.15);
+}
+
+}  // namespace
+}  // namespace dolp

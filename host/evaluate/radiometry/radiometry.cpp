@@ -1,0 +1,350 @@
+#include "evaluate/radiometry/radiometry.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "evaluate/radiometry/smooth_surface.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kRightAngle_deg = 90.0;
+// Rounding of the reflectances: fewer than 8 operations on positive terms.
+constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();
+// Rounding of the Stokes sums, each relative to its terms: Planck's exponent, at most 745, times an ulp or two.
+constexpr double kRadianceRounding = 1e-12;
+
+/// Reflectance at one index, with bounds of the errors.
+struct Reflectance {
+  double rho_i = 0.0;
+  double rho_q = 0.0;
+  double absorbed = 0.0;  ///< 1 - rho_i without cancellation
+  double rho_i_error = 0.0;
+  double rho_q_error = 0.0;
+  double absorbed_error = 0.0;
+  double mismatch = 0.0;  ///< |rho_i + absorbed - 1|, which two independently summed moments need not make 0
+};
+
+/// Polarised emissivity of the fresnel model at one index: that of s is i + q, that of p is i - q.
+struct Emissivity {
+  double i = 0.0;
+  double q = 0.0;
+  double terms = 0.0;  ///< sum of the magnitudes that make up either
+};
+
+/// Sums over the spectral samples, with bounds of their errors.
+struct Stokes {
+  double i = 0.0;
+  double q = 0.0;
+  double i_error = 0.0;
+  double q_error = 0.0;
+};
+
+/// Adds a specular term `net` * r, with cos(theta) in r.
+void add_specular(Stokes& sum, double net, const Moments& moments) {
+  sum.i += net * moments.r_i;
+  sum.q += net * moments.r_q;
+  sum.i_error += std::abs(net) * (moments.r_i_error + kRadianceRounding * std::abs(moments.r_i));
+  sum.q_error += std::abs(net) * (moments.r_q_error + kRadianceRounding * std::abs(moments.r_q));
+}
+
+/// rho over the spectral samples.
+struct MeanReflectance {
+  double rho_i = 0.0;
+  double rho_q = 0.0;
+  double error = 0.0;  ///< of the worse of the two
+};
+
+EmissionModel emission_model(const Scene& scene) {
+  return scene.emission ? scene.emission->model : EmissionModel::kMoments;
+}
+
+double diffuse_reflectance(const Surface& surface, double cos_theta) {
+  if (surface.diffuse == 0.0) return 0.0;
+  const double c = surface.diffuse_exponent;
+  return 2.0 * surface.diffuse * std::pow(cos_theta, c) / (c + 2.0);
+}
+
+// 1 - rho comes from the deficit, never from 1 - rho, which would lose the digits of a metal's emission.
+Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta) {
+  const double scale = surface.specular / cos_theta;
+  const double diffuse = diffuse_reflectance(surface, cos_theta);
+  const double absorbed_terms = (1.0 - surface.specular) + scale * std::abs(moments.deficit) + diffuse;
+  Reflectance r;
+  r.rho_i = scale * moments.r_i + diffuse;
+  r.rho_q = scale * moments.r_q;
+  r.absorbed = (1.0 - surface.specular) + scale * moments.deficit - diffuse;
+  r.rho_i_error = scale * moments.r_i_error + kReflectanceRounding * std::abs(r.rho_i);
+  r.rho_q_error = scale * moments.r_q_error + kReflectanceRounding * std::abs(r.rho_q);
+  r.absorbed_error = scale * moments.deficit_error + kReflectanceRounding * absorbed_terms;
+  r.mismatch = scale * std::abs((moments.r_i - cos_theta) + moments.deficit);
+  return r;
+}
+
+Emissivity fresnel_emissivity(const Surface& surface, const OpticalConstants& index, double cos_theta) {
+  const SmoothAbsorptance absorptance = smooth_absorptance(index, cos_theta);
+  const double specular = 0.5 * surface.specular * (absorptance.s + absorptance.p);
+  const double diffuse = diffuse_reflectance(surface, cos_theta);
+  return {(1.0 - surface.specular) + specular - diffuse, 0.5 * surface.specular * (absorptance.s - absorptance.p),
+          (1.0 - surface.specular) + specular + diffuse};
+}
+
+/// What one sample adds to I under the moments' own emission.
+struct Intensity {
+  double value = 0.0;
+  double terms = 0.0;  ///< sum of the magnitudes that were added, to which rounding is relative
+  double error = 0.0;  ///< from the errors of the moments
+};
+
+/// Equation: I = pi B (1 - rho_I) + X rho_I = pi B + (X - pi B) rho_I, whichever adds the smaller terms: the first
+/// keeps the digits of a metal, the second those of a reflectance far above 1 and of equal temperatures. The moments
+/// r_i and deficit err together if they err at all, so either may stand for the other at the price of their mismatch.
+Intensity moments_intensity(double emitted, double incident, double net, double net_terms, const Reflectance& r) {
+  const double split_terms = std::abs(emitted * r.absorbed) + std::abs(incident * r.rho_i);
+  const double whole_terms = std::abs(emitted) + net_terms * std::abs(r.rho_i);
+  const double difference = std::abs(net);
+  if (whole_terms <= split_terms) {
+    return {emitted + net * r.rho_i, whole_terms, difference * std::min(r.rho_i_error, r.absorbed_error + r.mismatch)};
+  }
+  const double apart = std::abs(emitted) * r.absorbed_error + std::abs(incident) * r.rho_i_error;
+  const double by_reflected = difference * r.rho_i_error + std::abs(emitted) * r.mismatch;
+  const double by_absorbed = difference * r.absorbed_error + std::abs(incident) * r.mismatch;
+  return {emitted * r.absorbed + incident * r.rho_i, split_terms, std::min({apart, by_reflected, by_absorbed})};
+}
+
+/// One sample's part of the Stokes sums with Kirchhoff's emission; `rounding` is relative to each term.
+void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, double cos_theta,
+                        double rounding) {
+  const double direct = sample.irradiance * cos_theta;
+  const double net = direct + sample.excess;
+  // Equal temperatures cancel exactly: then the excess has no rounding either.
+  const double thermal = sample.excess == 0.0 ? 0.0 : std::abs(sample.emitted) + std::abs(sample.surroundings);
+  const double net_terms = std::abs(direct) + thermal;
+  const Intensity intensity = moments_intensity(sample.emitted, direct + sample.surroundings, net, net_terms, r);
+  sum.i += intensity.value;
+  sum.q += net * r.rho_q;
+  sum.i_error += intensity.error + rounding * intensity.terms;
+  sum.q_error += std::abs(net) * r.rho_q_error + rounding * net_terms * std::abs(r.rho_q);
+}
+
+/// The same with the emission of the smooth surface, whose absorptances have no error but rounding.
+void add_fresnel_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, const Emissivity& e,
+                        double cos_theta, double rounding) {
+  const double incident = sample.irradiance * cos_theta + sample.surroundings;
+  sum.i += sample.emitted * e.i + incident * r.rho_i;
+  sum.q += sample.emitted * e.q + incident * r.rho_q;
+  const double emitted_terms = std::abs(sample.emitted) * e.terms;
+  sum.i_error += std::abs(incident) * r.rho_i_error + rounding * (emitted_terms + std::abs(incident * r.rho_i));
+  sum.q_error += std::abs(incident) * r.rho_q_error + rounding * (emitted_terms + std::abs(incident * r.rho_q));
+}
+
+void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance) {
+  if (!path) return;
+  sum.i = path->transmittance * sum.i + path_exitance;
+  sum.q *= path->transmittance;
+  sum.i_error = path->transmittance * sum.i_error + kRadianceRounding * path_exitance;
+  sum.q_error *= path->transmittance;
+}
+
+Stokes stokes_sum(const Scene& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
+                  std::span<const OpticalConstants> indices, double cos_theta) {
+  const bool fresnel = emission_model(scene) == EmissionModel::kFresnel;
+  const double rounding = kRadianceRounding + rule.relative_error;
+  Stokes sum;
+  for (std::size_t j = 0; j < reflectances.size(); ++j) {
+    if (fresnel) {
+      const Emissivity emissivity = fresnel_emissivity(scene.surface, indices[j], cos_theta);
+      add_fresnel_sample(sum, rule.samples[j], reflectances[j], emissivity, cos_theta, rounding);
+    } else {
+      add_moments_sample(sum, rule.samples[j], reflectances[j], cos_theta, rounding);
+    }
+  }
+  add_path(sum, scene.path, rule.path_exitance);
+  return sum;
+}
+
+void set_dolp(PointResult& result, const Stokes& sum) {
+  result.dolp = std::abs(sum.q) / sum.i;
+  const double i = std::abs(sum.i);
+  const double margin = i - sum.i_error;
+  if (std::isnan(result.dolp)) {
+    result.error_estimate = kNan;
+  } else if (margin > 0.0) {
+    result.error_estimate = (sum.q_error + std::abs(result.dolp) * sum.i_error) / margin;
+  } else {
+    result.error_estimate = kInfinity;
+  }
+}
+
+double relative_bound(double error, double value) {
+  if (error == 0.0) return 0.0;
+  return value > error ? error / (value - error) : kInfinity;
+}
+
+/// Whether rho_s or rho_p is outside [0, 1] beyond doubt.
+bool is_unphysical(const Reflectance& r) {
+  const double q = std::abs(r.rho_q);
+  const double above = std::max(q - r.absorbed - r.absorbed_error, r.rho_i + q - 1.0 - r.rho_i_error);
+  const double below = q - r.rho_i - r.rho_i_error;
+  return std::max(above, below) > r.rho_q_error + kReflectanceRounding;
+}
+
+std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
+  constexpr std::uint32_t kNoDolpPromised =
+      kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
+  const bool dolp_missed = (result.status & kNoDolpPromised) == 0 && result.error_estimate > tolerance;
+  return dolp_missed || result.rho_error_estimate > tolerance ? kStatusToleranceMissed : 0;
+}
+
+PointResult outside_domain() {
+  PointResult result;
+  result.dolp = result.stokes_i = result.stokes_q = result.stokes_u = result.stokes_v = kNan;
+  result.rho_i = result.rho_q = result.albedo = result.error_estimate = result.rho_error_estimate = kNan;
+  result.status = kStatusOutsideDomain;
+  return result;
+}
+
+bool is_known(const Moments& moments) {
+  return !std::isnan(moments.r_i) && !std::isnan(moments.r_q) && !std::isnan(moments.deficit);
+}
+
+bool specular_diverges(const Surface& surface) {
+  return surface.masking == Masking::kNone || surface.masking == Masking::kIntegral;
+}
+
+bool diffuse_diverges(const Surface& surface) { return surface.diffuse > 0.0 && surface.diffuse_exponent < 0.0; }
+
+// A specular part that stays below 2 next to a vanishing cosine is that of a mirror or of n = 1: it has a limit.
+bool reflectance_diverges(const Surface& surface, const Direction& direction, std::span<const Moments> moments) {
+  if (direction.theta_deg != kRightAngle_deg) return false;
+  if (direction.cos_theta == 0.0 || diffuse_diverges(surface)) return true;
+  return specular_diverges(surface) && std::ranges::any_of(moments, [&](const Moments& m) {
+           return surface.specular * m.r_i > 2.0 * direction.cos_theta;
+         });
+}
+
+/// The weight of a sample in the mean reflectance, from the kind of radiation the scene has.
+double mean_weight(const SpectralSample& sample, double total_emitted, double total_incident, double cos_theta) {
+  if (total_emitted != 0.0) return sample.emitted;
+  if (total_incident != 0.0) return sample.irradiance * cos_theta + sample.surroundings;
+  return sample.width;
+}
+
+MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances,
+                                 double cos_theta) {
+  double emitted = 0.0;
+  double incident = 0.0;
+  for (const SpectralSample& sample : rule.samples) {
+    emitted += sample.emitted;
+    incident += sample.irradiance * cos_theta + sample.surroundings;
+  }
+  MeanReflectance mean;
+  double total = 0.0;
+  double rho_i_error = 0.0;
+  double rho_q_error = 0.0;
+  for (std::size_t j = 0; j < reflectances.size(); ++j) {
+    const Reflectance& r = reflectances[j];
+    const double weight = mean_weight(rule.samples[j], emitted, incident, cos_theta);
+    total += weight;
+    mean.rho_i += weight * r.rho_i;
+    mean.rho_q += weight * r.rho_q;
+    rho_i_error += std::abs(weight) * (r.rho_i_error + rule.relative_error * std::abs(r.rho_i));
+    rho_q_error += std::abs(weight) * (r.rho_q_error + rule.relative_error * std::abs(r.rho_q));
+  }
+  mean.rho_i /= total;
+  mean.rho_q /= total;
+  mean.error = std::max(rho_i_error, rho_q_error) / total;
+  return mean;
+}
+
+/// Equation: the terms of I and Q that grow fastest as cos(theta) -> 0, times whatever makes them finite: D r with D
+/// the surroundings without what the moments take off the emission; with D = 0 pi B + E0 r_i and E0 r_q, and the path.
+/// The fresnel emission is pi B (1 - k_s - rho_d) there, of which a diverging rho_d leaves no polarisation.
+Stokes grazing_stokes(const Scene& scene, const SpectralRule& rule, std::span<const Moments> moments) {
+  const Surface& surface = scene.surface;
+  const bool fresnel = emission_model(scene) == EmissionModel::kFresnel;
+  const double emissivity = fresnel ? 1.0 - surface.specular - surface.diffuse : 1.0;
+  Stokes leading;
+  Stokes finite;
+  for (std::size_t j = 0; j < moments.size(); ++j) {
+    const SpectralSample& sample = rule.samples[j];
+    add_specular(leading, surface.specular * (fresnel ? sample.surroundings : sample.excess), moments[j]);
+    add_specular(finite, surface.specular * sample.irradiance, moments[j]);
+    finite.i += sample.emitted * emissivity;
+  }
+  if (leading.i != 0.0 || leading.q != 0.0) return leading;
+  if (fresnel && diffuse_diverges(surface)) return {1.0, 0.0, 0.0, 0.0};
+  add_path(finite, scene.path, rule.path_exitance);
+  return finite;
+}
+
+bool is_isothermal(const SpectralRule& rule) {
+  return std::ranges::all_of(rule.samples, [](const SpectralSample& sample) { return sample.excess == 0.0; });
+}
+
+/// Result at 90 degrees where rho diverges.
+PointResult grazing_limit(const Scene& scene, const SpectralRule& rule, const Direction& direction,
+                          std::span<const Moments> moments) {
+  const Surface& surface = scene.surface;
+  PointResult result = outside_domain();
+  result.status = kStatusUnphysicalReflectance | kStatusOutsideDomain;
+  result.rho_error_estimate = 0.0;
+  if (!specular_diverges(surface)) {
+    if (direction.cos_theta > 0.0) result.albedo = moments.front().albedo / direction.cos_theta;
+    // A diverging diffuse part is unpolarised. Only next to a fresnel emission of the same temperature does it cancel,
+    // and what would be left then is not worth a formula of its own.
+    const bool cancels = emission_model(scene) == EmissionModel::kFresnel && is_isothermal(rule);
+    if (diffuse_diverges(surface) && !cancels) result.dolp = result.error_estimate = 0.0;
+    return result;
+  }
+  for (const Moments& m : moments) {
+    const double bound = surface.specular == 0.0 ? 0.0 : relative_bound(std::max(m.r_i_error, m.r_q_error), m.r_i);
+    result.rho_error_estimate = std::max(result.rho_error_estimate, bound);
+  }
+  set_dolp(result, grazing_stokes(scene, rule, moments));
+  result.dolp = std::abs(result.dolp);
+  result.status |= tolerance_status(result, scene.accuracy.tolerance);
+  return result;
+}
+
+}  // namespace
+
+Radiometry::Radiometry(const Scene& scene) : scene_(scene), rule_(spectral_rule(scene)), indices_(rule_.indices()) {}
+
+PointResult Radiometry::point(const Direction& direction, std::span<const Moments> moments) const {
+  return point(direction, moments, indices_);
+}
+
+PointResult Radiometry::point(const Direction& direction, std::span<const Moments> moments,
+                              std::span<const OpticalConstants> indices) const {
+  assert(moments.size() == rule_.samples.size() && indices.size() == moments.size());
+  if (!std::ranges::all_of(moments, is_known)) return outside_domain();
+  if (reflectance_diverges(scene_.surface, direction, moments)) return grazing_limit(scene_, rule_, direction, moments);
+
+  const double cos_theta = direction.cos_theta;
+  PointResult result;
+  std::vector<Reflectance> reflectances;
+  for (const Moments& m : moments) {
+    reflectances.push_back(reflectance(scene_.surface, m, cos_theta));
+    if (is_unphysical(reflectances.back())) result.status |= kStatusUnphysicalReflectance;
+  }
+  const Stokes sum = stokes_sum(scene_, rule_, reflectances, indices, cos_theta);
+  const MeanReflectance mean = mean_reflectance(rule_, reflectances, cos_theta);
+  result.stokes_i = sum.i;
+  result.stokes_q = sum.q + 0.0;  // without the sign of a zero
+  result.rho_i = mean.rho_i;
+  result.rho_q = mean.rho_q;
+  result.albedo = moments.front().albedo / cos_theta;
+  result.rho_error_estimate = relative_bound(mean.error, mean.rho_i);
+  set_dolp(result, sum);
+  if (!(sum.i > 0.0)) result.status |= kStatusNonPositiveIntensity;
+  if (std::isnan(result.dolp)) result.status |= kStatusOutsideDomain;
+  result.status |= tolerance_status(result, scene_.accuracy.tolerance);
+  return result;
+}
+
+}  // namespace dolp

@@ -1,0 +1,180 @@
+#!/usr/bin/env python3
+"""Draws a lookup table: DOLP against theta for several sigma, and over theta and sigma, at one q.
+
+Usage: plot_table.py TABLE.nc OUT.png [--q Q]
+The q of the table nearest to --q is drawn, by default the middle one. Entries with a status other than 0 are drawn
+faint in the curves and hatched grey in the map. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
+Exit status: 0 done, 2 usage or a file that is not such a table, 4 the picture could not be written.
+"""
+import argparse
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend has to be chosen first)
+import netCDF4  # noqa: E402
+import numpy as np  # noqa: E402
+from matplotlib.lines import Line2D  # noqa: E402
+from matplotlib.patches import Patch  # noqa: E402
+from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter  # noqa: E402
+
+COLOURS = "viridis"
+MOST_CURVES = 6
+CONTOURS = 6
+FEW_ANGLES = 25  # up to which each entry gets a dot
+SMALLEST_SPAN_PERCENT = 0.01  # of the DOLP axes: rounding noise must not look like a signal
+STATUS_MEANINGS = {
+    1: r"$\rho_s$ or $\rho_p$ outside [0, 1]",
+    2: "tolerance not met",
+    4: "outside the domain",
+    8: r"$I \leq 0$",
+}
+
+
+class NotATable(Exception):
+    """The file is no table of dolp."""
+
+
+class Slice:
+    """One q of a table, theta and sigma ascending, DOLP in percent."""
+
+    def __init__(self, dataset, wanted_q):
+        for name in ("theta", "sigma", "q", "dolp"):
+            if name not in dataset.variables:
+                raise NotATable(f"has no variable {name}; a table with DOLP is expected")
+        q_values = np.asarray(dataset["q"][:])
+        wanted = q_values[len(q_values) // 2] if wanted_q is None else wanted_q
+        q_index = int(np.argmin(np.abs(q_values - wanted)))
+        theta, sigma = np.asarray(dataset["theta"][:]), np.asarray(dataset["sigma"][:])
+        rows, columns = np.argsort(theta), np.argsort(sigma)
+        self.theta, self.sigma, self.q = theta[rows], sigma[columns], q_values[q_index]
+
+        def values(name, fill):
+            data = np.ma.filled(dataset[name][:, :, q_index], fill)
+            return data[np.ix_(rows, columns)]
+
+        self.dolp = 100.0 * values("dolp", np.nan)
+        self.status = values("status", 0) if "status" in dataset.variables else np.zeros(self.dolp.shape, int)
+        errors = values("error_estimate", np.nan) if "error_estimate" in dataset.variables else None
+        self.worst_error = self._worst(errors) if errors is not None else None
+        self.title = getattr(dataset, "title", "")
+
+    def _worst(self, errors):
+        promised = errors[((self.status & (1 | 4 | 8)) == 0) & np.isfinite(errors)]
+        return promised.max() if promised.size else None
+
+    def caption(self):
+        parts = [f"{self.theta.size} × {self.sigma.size} entries at q = {self.q:g}"]
+        if self.worst_error is not None:
+            parts.append(f"worst error estimate of DOLP {100.0 * self.worst_error:.2g} points")
+        flagged = int(np.count_nonzero(self.status))
+        if flagged:
+            bits = [text for bit, text in STATUS_MEANINGS.items() if np.any(self.status & bit)]
+            parts.append(f"{flagged} with a status: " + ", ".join(bits))
+        return "; ".join(parts)
+
+
+def cell_edges(centres):
+    """Edges halfway between the centres; a single centre gets a cell of its own."""
+    if centres.size == 1:
+        half = max(0.05 * abs(centres[0]), 1e-6)
+        return np.array([centres[0] - half, centres[0] + half])
+    middle = 0.5 * (centres[1:] + centres[:-1])
+    return np.concatenate([[centres[0]], middle, [centres[-1]]])
+
+
+def draw_curves(axes, table):
+    chosen = np.unique(np.linspace(0, table.sigma.size - 1, min(MOST_CURVES, table.sigma.size)).round().astype(int))
+    colours = matplotlib.colormaps[COLOURS](np.linspace(0.0, 0.88, chosen.size))
+    for colour, j in zip(colours, chosen):
+        good = np.where(table.status[:, j] == 0, table.dolp[:, j], np.nan)
+        style = {"color": colour, "marker": "o" if table.theta.size <= FEW_ANGLES else None, "markersize": 3.5}
+        axes.plot(table.theta, table.dolp[:, j], alpha=0.35, linewidth=1.2, linestyle="--", **style)
+        axes.plot(table.theta, good, linewidth=1.8, label=f"$\\sigma$ = {table.sigma[j]:.3g}", **style)
+    trusted = table.dolp[(table.status == 0) & np.isfinite(table.dolp)]
+    shown = trusted if trusted.size else table.dolp[np.isfinite(table.dolp)]
+    if shown.size:
+        axes.set_ylim(0.0, 1.08 * max(shown.max(), SMALLEST_SPAN_PERCENT))
+    axes.set_ylabel("DOLP (%)")
+    axes.grid(alpha=0.25, linewidth=0.6)
+    handles, _ = axes.get_legend_handles_labels()
+    if np.any(table.status[:, chosen]):
+        handles.append(Line2D([], [], color="0.4", alpha=0.6, linestyle="--", linewidth=1.2, label="status $\\neq$ 0"))
+    axes.legend(handles=handles, frameon=False, fontsize=9, loc="upper left")
+
+
+def draw_flags(axes, table):
+    flagged = np.ma.masked_equal((table.status != 0).astype(float), 0.0)
+    if flagged.count() == 0:
+        return
+    grid = np.meshgrid(cell_edges(table.theta), cell_edges(table.sigma), indexing="ij")
+    grey = matplotlib.colors.ListedColormap(["0.72"])
+    axes.pcolor(*grid, flagged, cmap=grey, hatch="////", edgecolor="0.55", linewidth=0)
+    patch = Patch(facecolor="0.72", edgecolor="0.55", hatch="////", label="status $\\neq$ 0")
+    axes.legend(handles=[patch], fontsize=9, loc="upper left", framealpha=0.9)
+
+
+def draw_contours(axes, table):
+    """Lines of equal DOLP, where there is a map and not a single row or column."""
+    shown = np.ma.masked_where((table.status != 0) | ~np.isfinite(table.dolp), table.dolp)
+    if min(shown.shape) < 2 or shown.count() == 0 or shown.max() - shown.min() < SMALLEST_SPAN_PERCENT:
+        return
+    lines = axes.contour(table.theta, table.sigma, shown.T, levels=CONTOURS, colors="white", linewidths=0.8)
+    axes.clabel(lines, fontsize=8, fmt=lambda level: f"{level:g}%")
+
+
+def draw_map(figure, axes, table):
+    shown = np.ma.masked_where((table.status != 0) | ~np.isfinite(table.dolp), table.dolp)
+    edges = cell_edges(table.theta), cell_edges(table.sigma)
+    largest = max(shown.max(), SMALLEST_SPAN_PERCENT) if shown.count() else SMALLEST_SPAN_PERCENT
+    mesh = axes.pcolormesh(*edges, shown.T, cmap=COLOURS, vmin=0.0, vmax=largest, rasterized=True)
+    figure.colorbar(mesh, ax=axes, pad=0.02).set_label("DOLP (%)")
+    draw_contours(axes, table)
+    draw_flags(axes, table)
+    ratio = table.sigma[-1] / table.sigma[0] if table.sigma[0] > 0.0 else 1.0
+    if ratio > 8.0:
+        axes.set_yscale("log")
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.yaxis.set_major_formatter(FormatStrFormatter("%g"))
+        axes.yaxis.set_minor_formatter(NullFormatter())
+    axes.set_ylabel(r"roughness $\sigma$")
+
+
+def draw(table, path):
+    plt.rcParams.update({"font.size": 10.5, "hatch.linewidth": 0.6})
+    plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False})
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 4.8), dpi=150, layout="constrained")
+    draw_curves(left, table)
+    draw_map(figure, right, table)
+    for axes in (left, right):
+        axes.set_xlabel(r"zenith angle $\theta$ (degree)")
+        if table.theta.size > 1:
+            axes.set_xlim(table.theta[0], table.theta[-1])
+    figure.suptitle(table.title, fontsize=13)
+    figure.supxlabel(table.caption(), fontsize=9, color="0.3")
+    figure.savefig(path)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("table")
+    parser.add_argument("picture")
+    parser.add_argument("--q", type=float, default=None)
+    arguments = parser.parse_args()
+    try:
+        with netCDF4.Dataset(arguments.table) as dataset:
+            table = Slice(dataset, arguments.q)
+    except (OSError, NotATable) as error:
+        print(f"{arguments.table}: {error}", file=sys.stderr)
+        return 2
+    try:
+        draw(table, arguments.picture)
+    except OSError as error:
+        print(f"{arguments.picture}: {error}", file=sys.stderr)
+        return 4
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

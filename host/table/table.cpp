@@ -1,0 +1,32 @@
+#include "table/table.hpp"
+
+#include <array>
+
+namespace dolp {
+namespace {
+
+constexpr const char* kDolpQualifiers = "error_estimate status";
+constexpr const char* kRhoQualifiers = "rho_error_estimate status";
+constexpr const char* kStatus = "status";
+
+constexpr std::array<TableVariable, 10> kVariables = {{
+    {"dolp", "degree of linear polarisation", false, kDolpQualifiers, &Table::dolp},
+    {"stokes_i", "Stokes parameter I of the radiation that leaves the surface and reaches the sensor", true, kStatus,
+     &Table::stokes_i},
+    {"stokes_q", "Stokes parameter Q = I_s - I_p", true, kStatus, &Table::stokes_q},
+    {"stokes_u", "Stokes parameter U", true, kStatus, &Table::stokes_u},
+    {"stokes_v", "Stokes parameter V", true, kStatus, &Table::stokes_v},
+    {"rho_i", "hemispherical-directional reflectance, mean of s and p", false, kRhoQualifiers, &Table::rho_i},
+    {"rho_q", "hemispherical-directional reflectance, half the difference of s and p", false, kRhoQualifiers,
+     &Table::rho_q},
+    {"albedo", "albedo of the surface model with perfectly reflecting facets", false, kStatus, &Table::albedo},
+    {"error_estimate", "bound of the absolute error of dolp", false, "", &Table::error_estimate},
+    {"rho_error_estimate", "bound of the errors of rho_i and rho_q relative to rho_i", false, "",
+     &Table::rho_error_estimate},
+}};
+
+}  // namespace
+
+std::span<const TableVariable> table_variables() { return kVariables; }
+
+}  // namespace dolp

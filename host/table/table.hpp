@@ -1,0 +1,58 @@
+// A lookup table in memory: plain data, no physics.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace dolp {
+
+/// A global attribute of a table: text or a number.
+struct Attribute {
+  std::string name;
+  std::variant<std::string, double> value;
+  friend bool operator==(const Attribute&, const Attribute&) = default;
+};
+
+/// A lookup table over theta, sigma and q.
+///
+/// Shape: axes in the user's order, one value or more each; variables in C order (theta, sigma, q), q fastest. A
+/// variable that was not computed is empty.
+struct Table {
+  std::vector<double> theta_deg;
+  std::vector<double> sigma;
+  std::vector<double> q;
+  std::vector<double> dolp;
+  std::vector<double> stokes_i;
+  std::vector<double> stokes_q;
+  std::vector<double> stokes_u;
+  std::vector<double> stokes_v;
+  std::vector<double> rho_i;
+  std::vector<double> rho_q;
+  std::vector<double> albedo;
+  std::vector<double> error_estimate;
+  std::vector<double> rho_error_estimate;
+  std::vector<std::uint32_t> status;
+  std::string stokes_units = "W m-2 um-1";  ///< "W m-2" over a band
+  std::vector<Attribute> attributes;  ///< in the order they are written; without Conventions, which is the writer's
+
+  std::size_t size() const { return theta_deg.size() * sigma.size() * q.size(); }
+  std::size_t position(std::size_t theta, std::size_t sigma_index, std::size_t q_index) const {
+    return (theta * sigma.size() + sigma_index) * q.size() + q_index;
+  }
+};
+
+/// One real-valued variable of a table, in the order in which files list them; status comes after the last.
+struct TableVariable {
+  const char* name;
+  const char* long_name;
+  bool has_stokes_units;  ///< otherwise the unit is 1
+  const char* ancillary;  ///< names of the variables that qualify this one, or ""
+  std::vector<double> Table::*values;
+};
+std::span<const TableVariable> table_variables();
+
+}  // namespace dolp

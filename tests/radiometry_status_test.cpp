@@ -1,0 +1,241 @@
+// Error estimates and status bits of radiometry, and its limits at 90 degrees.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <vector>
+
+#include "radiometry_support.hpp"
+
+namespace {
+
+using namespace radiometry_support;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// ---- Error estimates and status -------------------------------------------------------------------------------------
+
+TEST(Radiometry, MomentsOffByTheirErrors_StayWithinTheEstimates) {
+  RandomScenes random;
+  std::cout << "seed " << kSeed << "\n";
+  for (int i = 0; i < kRandomScenes; ++i) {
+    const Scene scene = random.next();
+    const Direction direction = direction_of(random.uniform(0.0, 89.0));
+    const Moments exact = moments_of(random.reflectance(), direction.cos_theta);
+    const double level = std::pow(10.0, random.uniform(-12.0, -1.0)) * direction.cos_theta;
+    Moments off = exact;
+    off.r_i_error = level * random.uniform(0.0, 1.0);
+    off.r_q_error = level * random.uniform(0.0, 1.0);
+    off.deficit_error = level * random.uniform(0.0, 1.0);
+    off.r_i += off.r_i_error * random.uniform(-1.0, 1.0);
+    off.r_q += off.r_q_error * random.uniform(-1.0, 1.0);
+    off.deficit += random.coin() ? exact.r_i - off.r_i : off.deficit_error * random.uniform(-1.0, 1.0);
+    off.deficit_error = std::max(off.deficit_error, std::abs(off.deficit - exact.deficit));
+    const PointResult truth = evaluate(scene, direction, exact);
+    const PointResult result = evaluate(scene, direction, off);
+    ASSERT_LE(std::abs(result.dolp - truth.dolp), result.error_estimate) << "scene " << i;
+    const double rho_error = std::max(std::abs(result.rho_i - truth.rho_i), std::abs(result.rho_q - truth.rho_q));
+    ASSERT_LE(rho_error, result.rho_error_estimate * truth.rho_i) << "scene " << i;
+  }
+}
+
+TEST(Radiometry, ErrorOfTheDeficit_CancelsInIsothermalIntensityWhereItCannotMatter) {
+  Scene scene = night_scene();
+  scene.surface.diffuse = 0.0;
+  const Direction direction = direction_of(60.0);
+  Moments moments = moments_of({0.3, 0.1}, direction.cos_theta);
+  moments.r_q_error = 0.0;
+  moments.r_i_error = moments.deficit_error = 1e-4;
+  const PointResult cold = evaluate(scene, direction, moments);
+  scene.surroundings->temperature_K = 289.0;
+  const PointResult warm = evaluate(scene, direction, moments);
+  // I = pi B + (X - pi B) rho: 1 K apart instead of 50 K makes the error of rho matter 30 times less, and Q too.
+  EXPECT_LT(warm.error_estimate, 1e-3 * cold.error_estimate);
+}
+
+TEST(Radiometry, MomentsWithinTolerance_CarryNoStatusAndBeyondItBitTwo) {
+  const Scene scene = night_scene();
+  const Direction direction = direction_of(60.0);
+  Moments moments = moments_of({0.3, 0.1}, direction.cos_theta);
+  moments.r_q_error = 0.5 * scene.accuracy.tolerance * moments.r_i;
+  EXPECT_EQ(evaluate(scene, direction, moments).status, 0u);
+  moments.r_q_error = 2.0 * scene.accuracy.tolerance * moments.r_i;
+  EXPECT_EQ(evaluate(scene, direction, moments).status, kStatusToleranceMissed);
+}
+
+TEST(Radiometry, ReflectanceAboveOneOrBelowZero_CarriesBitOneUnlessWithinItsError) {
+  const Scene scene = night_scene();
+  const Direction direction = direction_of(80.0);
+  for (const PrintedReflectance& specular : {PrintedReflectance{1.2L, 0.3L}, {0.3L, 1.2L}, {0.3L, -0.1L}}) {
+    Moments moments = moments_of(specular, direction.cos_theta);
+    EXPECT_EQ(evaluate(scene, direction, moments).status, kStatusUnphysicalReflectance);
+    moments.r_i_error = moments.r_q_error = moments.deficit_error = 0.3 * direction.cos_theta;
+    EXPECT_EQ(evaluate(scene, direction, moments).status, kStatusToleranceMissed);
+  }
+}
+
+TEST(Radiometry, NegativeIntensity_CarriesBitEightAndKeepsItsNumbers) {
+  Scene scene = night_scene();
+  scene.surroundings.reset();
+  const Direction direction = direction_of(89.0);
+  const PointResult result = evaluate(scene, direction, moments_of({2.0, 1.5}, direction.cos_theta));
+  EXPECT_LT(result.stokes_i, 0.0);
+  EXPECT_DOUBLE_EQ(result.dolp, std::abs(result.stokes_q) / result.stokes_i);
+  EXPECT_EQ(result.status, kStatusUnphysicalReflectance | kStatusNonPositiveIntensity);
+}
+
+TEST(Radiometry, NoRadiation_HasNoDolpAndSaysSo) {
+  Scene scene = night_scene();
+  scene.emission.reset();
+  scene.surroundings->temperature_K = 0.0;
+  const Direction direction = direction_of(30.0);
+  const PointResult result = evaluate(scene, direction, moments_of({0.3, 0.1}, direction.cos_theta));
+  EXPECT_TRUE(std::isnan(result.dolp));
+  EXPECT_EQ(result.status, kStatusOutsideDomain | kStatusNonPositiveIntensity);
+  EXPECT_GT(result.rho_i, 0.0);
+}
+
+TEST(Radiometry, MomentsThatAreNotNumbers_AreOutsideTheDomainEverywhere) {
+  Moments moments;
+  moments.r_i = std::numeric_limits<double>::quiet_NaN();
+  const PointResult result = evaluate(night_scene(), direction_of(30.0), moments);
+  for (const double value :
+       {result.dolp, result.stokes_i, result.stokes_q, result.stokes_u, result.stokes_v, result.rho_i, result.rho_q,
+        result.albedo, result.error_estimate, result.rho_error_estimate}) {
+    EXPECT_TRUE(std::isnan(value));
+  }
+  EXPECT_EQ(result.status, kStatusOutsideDomain);
+}
+
+TEST(Radiometry, MatchedIndex_ReflectsNothingWithNoError) {
+  Scene scene = night_scene();
+  scene.surface.diffuse = 0.0;
+  const Direction direction = direction_of(60.0);
+  const PointResult result = evaluate(scene, direction, moments_of({0.0L, 0.0L}, direction.cos_theta));
+  EXPECT_EQ(result.rho_i, 0.0);
+  EXPECT_EQ(result.rho_error_estimate, 0.0);
+  EXPECT_EQ(result.dolp, 0.0);
+  EXPECT_EQ(result.status, 0u);
+}
+
+TEST(Radiometry, UnboundedReflectanceError_IsInfiniteNotNanInBothEstimates) {
+  Moments moments = moments_of({0.3, 0.1}, 0.5);
+  moments.r_i_error = moments.deficit_error = moments.r_q_error = 10.0;
+  Scene scene = night_scene();
+  const PointResult result = evaluate(scene, direction_of(60.0), moments);
+  EXPECT_EQ(result.error_estimate, kInfinity);
+  EXPECT_EQ(result.rho_error_estimate, kInfinity);
+  EXPECT_EQ(result.status, kStatusToleranceMissed);
+}
+
+// ---- 90 degrees -----------------------------------------------------------------------------------------------------
+
+constexpr std::uint32_t kDivergent = kStatusUnphysicalReflectance | kStatusOutsideDomain;
+
+Moments grazing_moments() {
+  Moments moments;
+  moments.r_i = 0.08;
+  moments.r_q = -0.02;
+  moments.albedo = 0.1;
+  moments.deficit = -0.08;
+  return moments;
+}
+
+TEST(Radiometry, GrazingWithDivergingReflectance_GivesTheLimitOfDolp) {
+  Scene scene = night_scene();
+  scene.surface.masking = Masking::kIntegral;
+  const PointResult limit = evaluate(scene, {90.0, 0.0}, grazing_moments());
+  EXPECT_EQ(limit.status, kDivergent);
+  EXPECT_DOUBLE_EQ(limit.dolp, 0.25);
+  EXPECT_TRUE(std::isnan(limit.rho_i) && std::isnan(limit.stokes_i) && std::isnan(limit.stokes_u));
+  const PointResult near_limit = evaluate(scene, {89.9999, 1e-14}, grazing_moments());
+  // The diffuse part, cos^-0.3 against 1/cos, is what is left.
+  EXPECT_NEAR(std::abs(near_limit.dolp), limit.dolp, 1e-8);
+}
+
+TEST(Radiometry, GrazingWithSourceOnly_HasAFiniteLimitOfTheFluxes) {
+  Scene scene = night_scene();
+  scene.surface.masking = Masking::kNone;
+  scene.surroundings->temperature_K = scene.emission->temperature_K;
+  EXPECT_EQ(evaluate(scene, {90.0, 0.0}, grazing_moments()).dolp, 0.0);
+  scene.source = Source{};
+  scene.source->irradiance = 100.0;
+  scene.path = Path{0.5, std::nullopt, 1.0};
+  const PointResult limit = evaluate(scene, {90.0, 0.0}, grazing_moments());
+  const PointResult near_limit = evaluate(scene, {89.9999, 1e-30}, grazing_moments());
+  EXPECT_GT(limit.dolp, 0.0);
+  EXPECT_NEAR(near_limit.dolp, limit.dolp, kAgreement);
+}
+
+TEST(Radiometry, GrazingFresnelEmission_LosesPolarisationToADivergingDiffusePartOnly) {
+  Scene scene = night_scene();
+  scene.surface.masking = Masking::kNone;
+  scene.surroundings.reset();
+  scene.emission->model = EmissionModel::kFresnel;
+  scene.source = Source{};
+  scene.source->irradiance = 100.0;
+  EXPECT_EQ(evaluate(scene, {90.0, 0.0}, grazing_moments()).dolp, 0.0);
+  scene.surface.diffuse = 0.0;
+  const PointResult limit = evaluate(scene, {90.0, 0.0}, grazing_moments());
+  const PointResult near_limit = evaluate(scene, {89.9999, 1e-14}, grazing_moments());
+  EXPECT_GT(limit.dolp, 0.0);
+  EXPECT_NEAR(near_limit.dolp, limit.dolp, kAgreement);
+}
+
+TEST(Radiometry, GrazingSmithWithDiffusePart_IsUnpolarisedInTheLimit) {
+  const Scene scene = night_scene();
+  const double cos_theta = 1e-18;
+  const PointResult limit = evaluate(scene, {90.0, cos_theta}, moments_of({0.5, 0.2}, cos_theta));
+  EXPECT_EQ(limit.status, kDivergent);
+  EXPECT_EQ(limit.dolp, 0.0);
+  EXPECT_DOUBLE_EQ(limit.albedo, 0.9);
+}
+
+TEST(Radiometry, GrazingSmithWithIsothermalFresnelEmission_ClaimsNoLimit) {
+  Scene scene = night_scene();
+  scene.emission->model = EmissionModel::kFresnel;
+  scene.surroundings->temperature_K = scene.emission->temperature_K;
+  const double cos_theta = 1e-18;
+  const PointResult limit = evaluate(scene, {90.0, cos_theta}, moments_of({0.5, 0.2}, cos_theta));
+  EXPECT_EQ(limit.status, kDivergent);
+  EXPECT_TRUE(std::isnan(limit.dolp));
+}
+
+TEST(Radiometry, GrazingSmithAtACosineOfZero_ClaimsNoLimit) {
+  Scene scene = night_scene();
+  scene.surface.diffuse = 0.0;
+  const PointResult limit = evaluate(scene, {90.0, 0.0}, moments_of({0.5, 0.2}, 0.0));
+  EXPECT_EQ(limit.status, kDivergent);
+  EXPECT_TRUE(std::isnan(limit.dolp));
+}
+
+TEST(Radiometry, GrazingWithFiniteReflectance_UsesTheFormulasAtATinyCosine) {
+  Scene scene = night_scene();
+  const double cos_theta = 1e-18;
+  const Moments moments = moments_of({0.5, 0.2}, cos_theta);
+  scene.surface.diffuse = 0.0;
+  scene.surface.specular = 1.0;
+  const PointResult smith = evaluate(scene, {90.0, cos_theta}, moments);
+  EXPECT_DOUBLE_EQ(smith.rho_i, 0.35);
+  EXPECT_DOUBLE_EQ(smith.rho_q, 0.15);
+  EXPECT_EQ(smith.status, 0u);
+  scene.surface.masking = Masking::kIntegral;  // a mirror: sigma = 0 has no masking
+  EXPECT_EQ(evaluate(scene, {90.0, cos_theta}, moments_of({1.0, 1.0}, cos_theta)).status, 0u);
+  scene.surface.diffuse = 0.1;
+  scene.surface.diffuse_exponent = 0.0;  // Lambertian: finite at grazing
+  EXPECT_DOUBLE_EQ(evaluate(scene, {90.0, cos_theta}, moments).rho_i, 0.45);
+}
+
+TEST(Radiometry, GrazingExponentNearMinusOne_StaysFiniteBelowNinetyDegrees) {
+  Scene scene = night_scene();
+  scene.surface.diffuse = 1.0;
+  scene.surface.diffuse_exponent = -1.0 + 1e-9;
+  const Direction direction = direction_of(89.999999);
+  const PointResult result = evaluate(scene, direction, moments_of({0.9, 0.8}, direction.cos_theta));
+  EXPECT_TRUE(std::isfinite(result.stokes_i) && std::isfinite(result.dolp) && std::isfinite(result.rho_i));
+  EXPECT_EQ(result.status & kStatusUnphysicalReflectance, kStatusUnphysicalReflectance);
+}
+
+}  // namespace

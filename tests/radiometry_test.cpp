@@ -1,0 +1,198 @@
+// Stokes parameters, rho and DOLP against the printed formulas, and their exact properties.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "evaluate/radiometry/planck.hpp"
+#include "radiometry_support.hpp"
+
+namespace {
+
+using namespace radiometry_support;
+
+// ---- Radiometry against the printed formulas ------------------------------------------------------------------------
+
+TEST(Radiometry, RandomScenes_AgreeWithPrintedFormulas) {
+  std::cout << "seed " << kSeed << "\n";
+  RandomScenes random;
+  for (int i = 0; i < kRandomScenes; ++i) {
+    const Scene scene = random.next();
+    const Direction direction = direction_of(random.uniform(0.0, 89.5));
+    const PrintedReflectance specular = random.reflectance();
+    const PointResult actual = evaluate(scene, direction, moments_of(specular, direction.cos_theta));
+    PrintedStokes expected = printed_stokes(scene, scene.spectrum.min_um, direction.cos_theta, specular);
+    if (scene.spectrum.is_band()) {
+      const std::vector<double> ends = {scene.spectrum.min_um, scene.spectrum.max_um};
+      const auto at = [&](Real um) { return printed_stokes(scene, um, direction.cos_theta, specular); };
+      expected.i = integral(ends, [&](Real um) { return at(um).i; });
+      expected.q = integral(ends, [&](Real um) { return at(um).q; });
+    }
+    // Terms of either sign: the scale is their sum without signs, which |rho| <= 3 next to a positive I bounds.
+    const double scale = std::abs(static_cast<double>(expected.i)) + std::abs(static_cast<double>(expected.q));
+    const double cancelled = 10.0 * kAgreement * Radiometry(scene).rule().samples[0].emitted;
+    ASSERT_NEAR(actual.stokes_i, static_cast<double>(expected.i), kAgreement * scale + cancelled) << "scene " << i;
+    ASSERT_NEAR(actual.stokes_q, static_cast<double>(expected.q), kAgreement * scale + cancelled) << "scene " << i;
+    ASSERT_EQ(actual.stokes_u, 0.0);
+    ASSERT_EQ(actual.stokes_v, 0.0);
+    const auto expected_dolp = static_cast<double>(std::abs(expected.q) / expected.i);
+    ASSERT_LE(std::abs(actual.dolp - expected_dolp), actual.error_estimate + kEpsilon * std::abs(actual.dolp));
+    ASSERT_EQ(actual.albedo, 0.9 * direction.cos_theta / direction.cos_theta);
+  }
+}
+
+TEST(Radiometry, TabulatedMaterialBand_AgreesWithPrintedFormulas) {
+  Scene scene = night_scene();
+  scene.surface.material = tabulated_material();
+  scene.spectrum = {7.5, 14.5};
+  scene.path = Path{0.6, 290.0, std::nullopt};
+  for (const EmissionModel model : {EmissionModel::kMoments, EmissionModel::kFresnel}) {
+    scene.emission->model = model;
+    const Radiometry radiometry(scene);
+    for (const double theta_deg : {0.0, 33.0, 60.0, 85.0}) {
+      const Direction direction = direction_of(theta_deg);
+      const auto specular = [&](const OpticalConstants& index) { return printed_fresnel(index, direction.cos_theta); };
+      std::vector<Moments> moments;
+      for (const OpticalConstants& index : radiometry.rule().indices()) {
+        moments.push_back(moments_of(specular(index), direction.cos_theta));
+      }
+      const PointResult actual = radiometry.point(direction, moments);
+      const auto at = [&](Real um) {
+        const OpticalConstants index = scene.surface.material.at(static_cast<double>(um));
+        return printed_stokes(scene, um, direction.cos_theta, specular(index));
+      };
+      const Real i = integral(corners(scene), [&](Real um) { return at(um).i; });
+      const Real q = integral(corners(scene), [&](Real um) { return at(um).q; });
+      EXPECT_NEAR(actual.stokes_i, static_cast<double>(i), kBandAgreement * static_cast<double>(i));
+      EXPECT_NEAR(actual.stokes_q, static_cast<double>(q), kBandAgreement * static_cast<double>(i));
+      EXPECT_LE(std::abs(actual.dolp - static_cast<double>(std::abs(q) / i)), actual.error_estimate + kBandAgreement);
+    }
+  }
+}
+
+TEST(Radiometry, IndicesOfThePoint_ReplaceThoseOfTheRule) {
+  Scene scene = night_scene();
+  scene.emission->model = EmissionModel::kFresnel;
+  const Direction direction = direction_of(60.0);
+  const Moments moments = moments_of({0.3, 0.1}, direction.cos_theta);
+  const std::vector<OpticalConstants> indices = {{3.0, 0.5}};
+  const PointResult replaced = Radiometry(scene).point(direction, std::vector<Moments>{moments}, indices);
+  const PointResult own = evaluate(scene, direction, moments);
+  scene.surface.material.constant = indices[0];
+  const PointResult other = evaluate(scene, direction, moments);
+  EXPECT_EQ(replaced.stokes_q, other.stokes_q);
+  EXPECT_NE(replaced.stokes_q, own.stokes_q);
+}
+
+// ---- What must hold exactly -----------------------------------------------------------------------------------------
+
+TEST(Radiometry, IsothermalSurroundingsWithoutSource_HaveNoPolarisation) {
+  RandomScenes random;
+  for (int i = 0; i < kRandomScenes; ++i) {
+    Scene scene = random.next();
+    scene.source.reset();
+    scene.emission = Emission{random.uniform(1.0, 6000.0), EmissionModel::kMoments};
+    scene.surroundings = Surroundings{scene.emission->temperature_K};
+    const Direction direction = direction_of(random.uniform(0.0, 89.9));
+    const PointResult result = evaluate(scene, direction, moments_of(random.reflectance(), direction.cos_theta));
+    if (result.stokes_i == 0.0) continue;  // radiances below the range of double
+    ASSERT_EQ(result.stokes_q, 0.0);
+    ASSERT_FALSE(std::signbit(result.stokes_q));
+    ASSERT_EQ(result.dolp, 0.0);
+  }
+}
+
+TEST(Radiometry, SpecularWeight_EntersLinearlyInRhoAndStokes) {
+  Scene scene = night_scene();
+  const Direction direction = direction_of(70.0);
+  const Moments moments = moments_of({0.4, 0.05}, direction.cos_theta);
+  const auto at = [&](double specular) {
+    scene.surface.specular = specular;
+    return evaluate(scene, direction, moments);
+  };
+  const PointResult none = at(0.0);
+  const PointResult half = at(0.5);
+  const PointResult full = at(1.0);
+  constexpr double kTolerance = 10.0 * kEpsilon;  // a few roundings
+  EXPECT_NEAR(half.rho_i, 0.5 * (none.rho_i + full.rho_i), kTolerance);
+  EXPECT_NEAR(half.rho_q, 0.5 * full.rho_q, kTolerance);
+  EXPECT_NEAR(half.stokes_i, 0.5 * (none.stokes_i + full.stokes_i), kTolerance * full.stokes_i);
+  EXPECT_NEAR(half.stokes_q, 0.5 * full.stokes_q, kTolerance * full.stokes_i);
+  EXPECT_EQ(none.rho_q, 0.0);
+}
+
+TEST(Radiometry, Path_ScalesQAndAddsItsExitanceToI) {
+  Scene scene = night_scene();
+  const Direction direction = direction_of(60.0);
+  const Moments moments = moments_of({0.3, 0.1}, direction.cos_theta);
+  const PointResult clear = evaluate(scene, direction, moments);
+  scene.path = Path{0.5, std::nullopt, 2.0};
+  const PointResult seen = evaluate(scene, direction, moments);
+  EXPECT_EQ(seen.stokes_q, 0.5 * clear.stokes_q);
+  EXPECT_DOUBLE_EQ(seen.stokes_i, 0.5 * clear.stokes_i + 2.0 * std::numbers::pi);
+}
+
+TEST(Radiometry, GreyBand_IsTheSumOfItsPartsInStokes) {
+  Scene scene = night_scene();
+  scene.source = Source{};
+  scene.source->irradiance = 0.2;
+  scene.path = Path{0.7, 280.0, std::nullopt};
+  const Direction direction = direction_of(50.0);
+  const Moments moments = moments_of({0.3, 0.1}, direction.cos_theta);
+  scene.spectrum = {8.0, 14.0};
+  const PointResult whole = evaluate(scene, direction, moments);
+  double i = 0.0;
+  double q = 0.0;
+  for (int part = 0; part < 12; ++part) {
+    scene.spectrum = {8.0 + 0.5 * part, 8.5 + 0.5 * part};
+    const PointResult result = evaluate(scene, direction, moments);
+    i += result.stokes_i;
+    q += result.stokes_q;
+  }
+  EXPECT_NEAR(whole.stokes_i, i, kAgreement * i);
+  EXPECT_NEAR(whole.stokes_q, q, kAgreement * i);
+}
+
+TEST(Radiometry, SourceThatCancelsEmission_LeavesNoQ) {
+  Scene scene = night_scene();
+  scene.surroundings.reset();
+  const Direction direction = direction_of(60.0);
+  scene.source = Source{};
+  scene.source->irradiance = std::numbers::pi * planck_radiance(10.6, 290.0) / direction.cos_theta;
+  const PointResult result = evaluate(scene, direction, moments_of({0.3, 0.1}, direction.cos_theta));
+  EXPECT_LE(result.dolp, 2.0 * kEpsilon);
+  EXPECT_LE(result.dolp, result.error_estimate);
+}
+
+TEST(Radiometry, TemperaturesFromOneTo6000K_GiveFiniteStokes) {
+  for (const double temperature_K : {1.0, 3.0, 77.0, 6000.0}) {
+    for (const double wavelength_um : {0.3, 10.6, 1000.0}) {
+      Scene scene = night_scene();
+      scene.emission->temperature_K = temperature_K;
+      scene.spectrum = {wavelength_um, wavelength_um};
+      const Direction direction = direction_of(60.0);
+      const PointResult result = evaluate(scene, direction, moments_of({0.3, 0.1}, direction.cos_theta));
+      EXPECT_TRUE(std::isfinite(result.stokes_i) && std::isfinite(result.stokes_q)) << temperature_K << wavelength_um;
+      EXPECT_EQ(std::isfinite(result.dolp), result.stokes_i > 0.0) << temperature_K << " " << wavelength_um;
+    }
+  }
+}
+
+TEST(Radiometry, MetalWithoutSurroundings_KeepsTheDigitsOfItsEmission) {
+  Scene scene = night_scene();
+  scene.surface.specular = 1.0;
+  scene.surface.diffuse = 0.0;
+  scene.surroundings.reset();
+  const Direction direction = direction_of(0.0);
+  Moments moments;
+  moments.deficit = 3e-12;  // 1 - r_i would keep four digits of it
+  moments.r_i = 1.0 - moments.deficit;
+  moments.r_q = 1e-12;
+  const PointResult result = evaluate(scene, direction, moments);
+  EXPECT_NEAR(result.dolp, 1.0 / 3.0, kAgreement);
+}
+
+}  // namespace

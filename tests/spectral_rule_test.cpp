@@ -1,0 +1,148 @@
+// Planck's function, the smooth surface and the spectral rule against outside values.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "error.hpp"
+#include "evaluate/radiometry/planck.hpp"
+#include "evaluate/radiometry/smooth_surface.hpp"
+#include "evaluate/radiometry/spectral_rule.hpp"
+#include "radiometry_support.hpp"
+#include "radiometry_values.hpp"
+
+namespace {
+
+using namespace radiometry_support;
+
+// ---- Planck's function and the smooth surface -----------------------------------------------------------------------
+
+TEST(Planck, FiftyDigitValues_Agree) {
+  for (const PlanckValue& expected : kPlanckValues) {
+    const double actual = planck_radiance(expected.wavelength_um, expected.temperature_K);
+    // The exponent, hc/(lambda k T), carries about one rounding of its own into the exponential.
+    const double tolerance = (6.0 + 2.0 * 14388.0 / (expected.wavelength_um * expected.temperature_K)) * kEpsilon;
+    EXPECT_NEAR(actual, expected.radiance, tolerance * expected.radiance)
+        << expected.wavelength_um << " um, " << expected.temperature_K << " K";
+  }
+}
+
+TEST(Planck, WholeDomain_IsFiniteAndGrowsWithTemperature) {
+  for (double wavelength_um = 0.3; wavelength_um <= 1000.0; wavelength_um *= 1.1) {
+    double previous = planck_radiance(wavelength_um, 0.0);
+    EXPECT_EQ(previous, 0.0);
+    for (double temperature_K = 1.0; temperature_K <= 6000.0; temperature_K *= 1.2) {
+      const double radiance = planck_radiance(wavelength_um, temperature_K);
+      ASSERT_TRUE(std::isfinite(radiance)) << wavelength_um << " um, " << temperature_K << " K";
+      ASSERT_GE(radiance, previous) << wavelength_um << " um, " << temperature_K << " K";
+      previous = radiance;
+    }
+  }
+}
+
+TEST(SmoothAbsorptance, FiftyDigitValues_Agree) {
+  // A complex product, square root and quotient of positive parts: some ten roundings.
+  constexpr double kTolerance = 20.0 * kEpsilon;
+  for (const AbsorptanceValue& expected : kAbsorptanceValues) {
+    const SmoothAbsorptance actual = smooth_absorptance({expected.n, expected.k}, expected.cosine);
+    EXPECT_NEAR(actual.s, expected.s, kTolerance * expected.s)
+        << expected.n << " " << expected.k << " " << expected.cosine;
+    EXPECT_NEAR(actual.p, expected.p, kTolerance * expected.p)
+        << expected.n << " " << expected.k << " " << expected.cosine;
+  }
+}
+
+// ---- Spectral rule --------------------------------------------------------------------------------------------------
+
+TEST(SpectralRule, BistaticScene_IsRefused) {
+  Scene scene = night_scene();
+  scene.geometry.mode = Mode::kBistatic;
+  try {
+    spectral_rule(scene);
+    FAIL() << "no exception";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()), "night.toml: geometry.mode = \"bistatic\" is not supported by this version");
+  }
+}
+
+TEST(SpectralRule, SingleWavelength_IsOneSampleOfPlanckFactors) {
+  const SpectralRule rule = spectral_rule(night_scene());
+  ASSERT_EQ(rule.samples.size(), 1u);
+  EXPECT_EQ(rule.samples[0].emitted, std::numbers::pi * planck_radiance(10.6, 290.0));
+  EXPECT_EQ(rule.samples[0].surroundings, std::numbers::pi * planck_radiance(10.6, 240.0));
+  EXPECT_EQ(rule.samples[0].width, 1.0);
+  EXPECT_EQ(rule.relative_error, 0.0);
+}
+
+TEST(SpectralRule, ConstantIndexBands_IntegratePlanckToRounding) {
+  // 1 K over the widest band is where Planck's exponent changes most; its sum is dominated by the far end.
+  for (const double temperature_K : {1.0, 20.0, 77.0, 300.0, 6000.0}) {
+    for (const auto& [from_um, to_um] : {std::pair{0.3, 1000.0}, {8.0, 14.0}, {3.0, 5.0}}) {
+      Scene scene = night_scene();
+      scene.emission->temperature_K = temperature_K;
+      scene.spectrum = {from_um, to_um};
+      const SpectralRule rule = spectral_rule(scene);
+      ASSERT_EQ(rule.samples.size(), 1u);
+      // In ln(lambda) the integrand is smooth on the scale of the whole band.
+      const std::vector<double> ends = {std::log(from_um), std::log(to_um)};
+      const Real expected = integral(ends, [&](Real x) {
+        return std::numbers::pi_v<Real> * std::exp(x) * printed_planck(std::exp(x), temperature_K);
+      });
+      EXPECT_NEAR(rule.samples[0].emitted, static_cast<double>(expected), 1e-12 * static_cast<double>(expected))
+          << temperature_K << " K, " << from_um << " um";
+      EXPECT_NEAR(rule.samples[0].width, to_um - from_um, 1e-13 * to_um);
+    }
+  }
+}
+
+TEST(SpectralRule, EqualTemperatures_HaveNoExcessAtAnySample) {
+  Scene scene = night_scene();
+  scene.surface.material = tabulated_material();
+  scene.surroundings->temperature_K = scene.emission->temperature_K;
+  scene.spectrum = {8.0, 14.0};
+  for (const SpectralSample& sample : spectral_rule(scene).samples) EXPECT_EQ(sample.excess, 0.0);
+}
+
+TEST(SpectralRule, FlatMaterialSegments_ShareOneSample) {
+  Scene scene = night_scene();
+  scene.surface.material.n = {{7.0, 10.0, 15.0}, {1.5, 1.5, 1.5}, SpectralTable::Interpolation::kLinear};
+  scene.surface.material.k = {{7.0, 9.0, 15.0}, {0.1, 0.1, 0.1}, SpectralTable::Interpolation::kLinear};
+  scene.spectrum = {8.0, 14.0};
+  EXPECT_EQ(spectral_rule(scene).samples.size(), 1u);
+}
+
+TEST(SpectralRule, TabulatedMaterialBand_IntegratesReflectancesToItsPromise) {
+  Scene scene = night_scene();
+  scene.surface.material = tabulated_material();
+  scene.spectrum = {7.5, 14.5};
+  scene.source = Source{};
+  scene.source->kind = Source::Kind::kTabulated;
+  scene.source->table = {{5.0, 8.1, 9.3, 10.0, 20.0}, {9.0, 4.0, 6.0, 0.5, 0.1}, SpectralTable::Interpolation::kLogLog};
+  const SpectralRule rule = spectral_rule(scene);
+  EXPECT_LE(rule.relative_error, kBandAgreement);
+  for (const Real cosine : {0.97L, 0.7L, 0.3L, 0.15L}) {  // not those that choose the rule
+    Real actual_emitted = 0.0L;
+    Real actual_direct = 0.0L;
+    for (const SpectralSample& sample : rule.samples) {
+      const PrintedReflectance r = printed_fresnel(sample.index, cosine);
+      actual_emitted += sample.emitted * r.s;
+      actual_direct += sample.irradiance * r.p;
+    }
+    const auto reflectance = [&](Real at) {
+      return printed_fresnel(scene.surface.material.at(static_cast<double>(at)), cosine);
+    };
+    const Real emitted = integral(corners(scene), [&](Real at) {
+      return std::numbers::pi_v<Real> * printed_planck(at, 290.0L) * reflectance(at).s;
+    });
+    const Real direct = integral(corners(scene), [&](Real at) {
+      return static_cast<Real>(scene.source->table.at(static_cast<double>(at))) * reflectance(at).p;
+    });
+    EXPECT_NEAR(static_cast<double>(actual_emitted / emitted), 1.0, kBandAgreement) << cosine;
+    EXPECT_NEAR(static_cast<double>(actual_direct / direct), 1.0, kBandAgreement) << cosine;
+  }
+}
+
+}  // namespace

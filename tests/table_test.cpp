@@ -1,0 +1,374 @@
+// Tables as files: what is written is what is read, and a file is whole or not there.
+#include "table/table.hpp"
+
+#include <gtest/gtest.h>
+#include <netcdf.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "error.hpp"
+#include "table/atomic_file.hpp"
+#include "table/table_file.hpp"
+
+namespace {
+
+using namespace dolp;
+namespace fs = std::filesystem;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// A folder of its own for each test, removed with what is in it.
+class TableFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "dolp-table-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  fs::path at(const std::string& name) const { return folder_ / name; }
+  std::vector<std::string> names() const {
+    std::vector<std::string> result;
+    for (const auto& entry : fs::directory_iterator(folder_)) result.push_back(entry.path().filename().string());
+    std::ranges::sort(result);
+    return result;
+  }
+
+ private:
+  fs::path folder_;
+};
+
+std::string content(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void put(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+/// A table of numbers that have no short text, NaN and infinity among them.
+Table sample_table(std::size_t thetas, std::size_t sigmas, std::size_t qs) {
+  Table table;
+  for (std::size_t i = 0; i < thetas; ++i)
+    table.theta_deg.push_back(90.0 - static_cast<double>(i) / 3.0);  // descending
+  for (std::size_t i = 0; i < sigmas; ++i) table.sigma.push_back(0.05 * static_cast<double>(i + 1));
+  for (std::size_t i = 0; i < qs; ++i) table.q.push_back(1.5 + static_cast<double>(i) / 7.0);
+  double seed = 0.0;
+  for (const TableVariable& variable : table_variables()) {
+    std::vector<double>& values = table.*variable.values;
+    for (std::size_t i = 0; i < table.size(); ++i) values.push_back(std::sin(seed += 1.0) * 1e-3);
+    values.back() = kNan;
+  }
+  table.error_estimate.front() = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < table.size(); ++i) table.status.push_back(static_cast<std::uint32_t>(i % 16));
+  table.attributes = {
+      {"title", "Stainless steel, 10.6 µm"}, {"tolerance", 1e-4}, {"scene", "a = 1\nb = 2\n"}, {"driver", ""}};
+  return table;
+}
+
+void expect_same(const std::vector<double>& actual, const std::vector<double>& expected, const char* name) {
+  ASSERT_EQ(actual.size(), expected.size()) << name;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_TRUE(actual[i] == expected[i] || (std::isnan(actual[i]) && std::isnan(expected[i])))
+        << name << "[" << i << "]: " << actual[i] << " instead of " << expected[i];
+  }
+}
+
+void expect_same(const Table& actual, const Table& expected) {
+  EXPECT_EQ(actual.theta_deg, expected.theta_deg);
+  EXPECT_EQ(actual.sigma, expected.sigma);
+  EXPECT_EQ(actual.q, expected.q);
+  for (const TableVariable& variable : table_variables()) {
+    expect_same(actual.*variable.values, expected.*variable.values, variable.name);
+  }
+  EXPECT_EQ(actual.status, expected.status);
+  EXPECT_EQ(actual.stokes_units, expected.stokes_units);
+  EXPECT_EQ(actual.attributes, expected.attributes);
+}
+
+/// Limits the size of files the process writes, as a full disk would.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+// ---- NetCDF ---------------------------------------------------------------------------------------------------------
+
+TEST_F(TableFiles, NetcdfRoundTrip_AnyShape_GivesTheSameTable) {
+  // The last is large enough to be compressed.
+  for (const auto& shape : {std::array<std::size_t, 3>{1, 1, 1}, {5, 3, 2}, {1, 4, 1}, {20, 16, 16}}) {
+    const Table table = sample_table(shape[0], shape[1], shape[2]);
+    write_table(table, at("t.nc"));
+    expect_same(read_table(at("t.nc")), table);
+  }
+  EXPECT_EQ(names(), std::vector<std::string>{"t.nc"});
+}
+
+TEST_F(TableFiles, NetcdfRoundTrip_AbsentVariables_StayAbsent) {
+  Table table = sample_table(3, 2, 2);
+  table.stokes_v.clear();
+  table.albedo.clear();
+  table.status.clear();
+  table.stokes_units = "W m-2";
+  write_table(table, at("t.nc"));
+  expect_same(read_table(at("t.nc")), table);
+}
+
+std::string text_attribute(int file, int variable, const char* name) {
+  std::size_t length = 0;
+  if (nc_inq_attlen(file, variable, name, &length) != NC_NOERR) return "(absent)";
+  std::string text(length, '\0');
+  nc_get_att_text(file, variable, name, text.data());
+  return text;
+}
+
+TEST_F(TableFiles, Netcdf_Metadata_FollowsCf) {
+  write_table(sample_table(3, 2, 2), at("t.nc"));
+  int file = 0;
+  ASSERT_EQ(nc_open(at("t.nc").c_str(), NC_NOWRITE, &file), NC_NOERR);
+  int format = 0;
+  EXPECT_EQ(nc_inq_format(file, &format), NC_NOERR);
+  EXPECT_EQ(format, NC_FORMAT_NETCDF4);
+  EXPECT_EQ(text_attribute(file, NC_GLOBAL, "Conventions"), "CF-1.8");
+  const auto variable = [&](const char* name) {
+    int id = -1;
+    EXPECT_EQ(nc_inq_varid(file, name, &id), NC_NOERR) << name;
+    return id;
+  };
+  EXPECT_EQ(text_attribute(file, variable("theta"), "units"), "degree");
+  EXPECT_EQ(text_attribute(file, variable("sigma"), "units"), "1");
+  EXPECT_EQ(text_attribute(file, variable("q"), "units"), "1");
+  EXPECT_EQ(text_attribute(file, variable("stokes_i"), "units"), "W m-2 um-1");
+  for (const TableVariable& described : table_variables()) {
+    EXPECT_EQ(text_attribute(file, variable(described.name), "long_name"), described.long_name);
+    double fill = 0.0;
+    EXPECT_EQ(nc_get_att_double(file, variable(described.name), "_FillValue", &fill), NC_NOERR);
+    EXPECT_TRUE(std::isnan(fill));
+  }
+  const std::string meanings = text_attribute(file, variable("status"), "flag_meanings");
+  EXPECT_EQ(std::count(meanings.begin(), meanings.end(), ' '), 3);
+  std::array<int, 4> masks{};
+  EXPECT_EQ(nc_get_att_int(file, variable("status"), "flag_masks", masks.data()), NC_NOERR);
+  EXPECT_EQ(masks, (std::array<int, 4>{1, 2, 4, 8}));
+  EXPECT_EQ(nc_close(file), NC_NOERR);
+}
+
+TEST_F(TableFiles, ReadTable_WhatIsNoTable_IsRefusedByName) {
+  EXPECT_THROW(read_table(at("missing.nc")), IoError);
+  put(at("text.nc"), "theta,sigma,q\n");
+  EXPECT_THROW(read_table(at("text.nc")), InputError);
+  int file = 0;
+  ASSERT_EQ(nc_create(at("other.nc").c_str(), NC_NETCDF4, &file), NC_NOERR);
+  ASSERT_EQ(nc_close(file), NC_NOERR);
+  try {
+    read_table(at("other.nc"));
+    FAIL() << "no exception";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find(at("other.nc").string()), 0u) << error.what();
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(TableFiles, ReadTable_VariableOverOtherAxes_IsRefused) {
+  write_table(sample_table(3, 2, 2), at("t.nc"));
+  int file = 0;
+  ASSERT_EQ(nc_create(at("flat.nc").c_str(), NC_NETCDF4, &file), NC_NOERR);
+  std::array<int, 3> dimensions{};
+  const std::array<const char*, 3> axes = {"theta", "sigma", "q"};
+  int variable = 0;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    ASSERT_EQ(nc_def_dim(file, axes[i], 2, &dimensions[i]), NC_NOERR);
+    ASSERT_EQ(nc_def_var(file, axes[i], NC_DOUBLE, 1, &dimensions[i], &variable), NC_NOERR);
+  }
+  ASSERT_EQ(nc_def_var(file, "dolp", NC_DOUBLE, 2, dimensions.data(), &variable), NC_NOERR);
+  ASSERT_EQ(nc_close(file), NC_NOERR);
+  EXPECT_THROW(read_table(at("flat.nc")), InputError);
+}
+
+// ---- CSV and NPY ----------------------------------------------------------------------------------------------------
+
+TEST_F(TableFiles, Csv_Rows_ReadBackAsTheSameDoubles) {
+  const Table table = sample_table(3, 2, 2);
+  write_table(table, at("t.csv"));
+  std::istringstream lines(content(at("t.csv")));
+  std::string line;
+  std::string comments;
+  while (std::getline(lines, line) && line[0] == '#') comments += line + "\n";
+  EXPECT_NE(comments.find("# scene: a = 1\n#   b = 2\n# driver: \n"), std::string::npos) << comments;
+  EXPECT_NE(comments.find("# tolerance: 1e-04\n"), std::string::npos) << comments;
+  EXPECT_EQ(line,
+            "theta_deg,sigma,q,dolp,stokes_i,stokes_q,stokes_u,stokes_v,rho_i,rho_q,albedo,error_estimate,"
+            "rho_error_estimate,status");
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    ASSERT_TRUE(std::getline(lines, line));
+    std::istringstream cells(line);
+    const auto number = [&] {
+      std::string cell;
+      std::getline(cells, cell, ',');
+      return std::stod(cell);
+    };
+    EXPECT_EQ(number(), table.theta_deg[i / 4]);
+    EXPECT_EQ(number(), table.sigma[i / 2 % 2]);
+    EXPECT_EQ(number(), table.q[i % 2]);
+    for (const TableVariable& variable : table_variables()) {
+      expect_same({number()}, {(table.*variable.values)[i]}, variable.name);
+    }
+    EXPECT_EQ(number(), table.status[i]);
+  }
+  EXPECT_FALSE(std::getline(lines, line));
+}
+
+TEST_F(TableFiles, Npy_Bytes_AreAStructuredArray) {
+  Table table = sample_table(3, 1, 2);
+  table.stokes_u.clear();
+  write_table(table, at("t.npy"));
+  const std::string bytes = content(at("t.npy"));
+  ASSERT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
+  const std::size_t start = 10 + static_cast<unsigned char>(bytes[8]) + 256 * static_cast<unsigned char>(bytes[9]);
+  EXPECT_EQ(start % 64, 0u);
+  const std::string header = bytes.substr(10, start - 10);
+  EXPECT_NE(header.find("'shape': (3, 1, 2)"), std::string::npos) << header;
+  EXPECT_NE(header.find("('q', '<f8'), ('dolp', '<f8')"), std::string::npos) << header;
+  EXPECT_NE(header.find("('status', '<u4')"), std::string::npos) << header;
+  EXPECT_EQ(header.find("stokes_u"), std::string::npos) << header;
+  constexpr std::size_t kReals = 3 + 9;
+  constexpr std::size_t kRecord = kReals * sizeof(double) + sizeof(std::uint32_t);
+  ASSERT_EQ(bytes.size() - start, table.size() * kRecord);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    std::array<double, kReals> record{};
+    std::memcpy(record.data(), bytes.data() + start + i * kRecord, sizeof record);
+    expect_same({record[0], record[1], record[2], record[3], record[4]},
+                {table.theta_deg[i / 2], table.sigma[0], table.q[i % 2], table.dolp[i], table.stokes_i[i]}, "record");
+  }
+}
+
+TEST(NumberText, Doubles_ReadBack) {
+  for (const double value : {0.1, 1.0 / 3.0, -2.5e-308, 5e-324, 1.7976931348623157e308, 90.0, 1e-4}) {
+    EXPECT_EQ(std::strtod(number_text(value).c_str(), nullptr), value) << number_text(value);
+  }
+  EXPECT_EQ(number_text(90.0), "90");
+  EXPECT_EQ(number_text(-kNan), "nan");
+  EXPECT_EQ(number_text(-std::numeric_limits<double>::infinity()), "-inf");
+}
+
+// ---- Paths that cannot be written -----------------------------------------------------------------------------------
+
+TEST_F(TableFiles, CheckOutputPath_WrongPaths_AreRefusedBeforeAnyWork) {
+  EXPECT_THROW(check_output_path(at("t.txt")), InputError);
+  EXPECT_THROW(check_output_path(at("t")), InputError);
+  EXPECT_THROW(check_output_path(at("no/folder/t.nc")), IoError);
+  fs::create_directory(at("folder.nc"));
+  EXPECT_THROW(check_output_path(at("folder.nc")), IoError);
+  EXPECT_NO_THROW(check_output_path(at("t.nc")));
+  EXPECT_NO_THROW(check_output_path("-"));
+  try {
+    check_output_path("t.h5");
+    FAIL() << "no exception";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()), "t.h5: the name of a table must end in .nc, .csv or .npy");
+  }
+  EXPECT_EQ(names(), std::vector<std::string>{"folder.nc"});
+}
+
+TEST_F(TableFiles, CheckWritable_ReadOnlyFolder_IsRefused) {
+  fs::create_directory(at("locked"));
+  fs::permissions(at("locked"), fs::perms::owner_read | fs::perms::owner_exec);
+  // Root may write anywhere but here.
+  const fs::path folder = ::geteuid() == 0 ? fs::path("/proc/self") : at("locked");
+  for (const char* name : {"t.nc", "t.csv", "t.npy"}) {
+    EXPECT_THROW(write_table(sample_table(1, 1, 1), folder / name), IoError) << name;
+    EXPECT_FALSE(fs::exists(folder / name));
+  }
+  fs::permissions(at("locked"), fs::perms::owner_all);
+}
+
+TEST_F(TableFiles, WriteText_FullDevice_IsAnErrorAndLeavesTheDevice) {
+  EXPECT_THROW(write_text_atomically("/dev/full", "text"), IoError);
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+  fs::create_symlink("/dev/full", at("full.nc"));
+  EXPECT_THROW(write_table(sample_table(1, 1, 1), at("full.nc")), IoError);
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+// ---- Whole or not there ---------------------------------------------------------------------------------------------
+
+TEST_F(TableFiles, WriteTable_DiskFull_LeavesNothingOrWhatWasThere) {
+  const Table table = sample_table(20, 16, 16);
+  for (const char* name : {"t.nc", "t.csv", "t.npy"}) {
+    for (const rlim_t bytes : {rlim_t{0}, rlim_t{4096}, rlim_t{100000}}) {
+      {
+        const FullDisk full(bytes);
+        EXPECT_THROW(write_table(table, at(name)), IoError) << name << " " << bytes;
+      }
+      EXPECT_EQ(names(), std::vector<std::string>{}) << name << " " << bytes;
+      put(at(name), "what was there");
+      {
+        const FullDisk full(bytes);
+        EXPECT_THROW(write_table(table, at(name)), IoError) << name << " " << bytes;
+      }
+      EXPECT_EQ(names(), std::vector<std::string>{name});
+      EXPECT_EQ(content(at(name)), "what was there");
+      fs::remove(at(name));
+    }
+  }
+  // The libraries below still work.
+  write_table(table, at("t.nc"));
+  expect_same(read_table(at("t.nc")), table);
+}
+
+TEST_F(TableFiles, WriteText_ExistingFile_IsReplacedWithItsPermissions) {
+  put(at("t.csv"), "a longer text than the new one");
+  fs::permissions(at("t.csv"), fs::perms::owner_read | fs::perms::owner_write);
+  write_text_atomically(at("t.csv"), "new");
+  EXPECT_EQ(content(at("t.csv")), "new");
+  EXPECT_EQ(fs::status(at("t.csv")).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(TableFiles, WriteText_SymbolicLink_ReplacesWhatItPointsTo) {
+  fs::create_directory(at("elsewhere"));
+  fs::create_symlink("elsewhere/t.csv", at("link.csv"));
+  for (const char* text : {"dangling before", "replaced"}) {
+    write_text_atomically(at("link.csv"), text);
+    EXPECT_TRUE(fs::is_symlink(at("link.csv")));
+    EXPECT_EQ(content(at("elsewhere/t.csv")), text);
+  }
+  fs::create_symlink("loop.csv", at("loop.csv"));
+  EXPECT_THROW(write_text_atomically(at("loop.csv"), "text"), IoError);
+}
+
+TEST_F(TableFiles, WriteText_RelativeName_GoesToTheCurrentFolder) {
+  const fs::path before = fs::current_path();
+  fs::current_path(at("."));
+  write_text_atomically("here.csv", "text");
+  fs::current_path(before);
+  EXPECT_EQ(content(at("here.csv")), "text");
+}
+
+}  // namespace

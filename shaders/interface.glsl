@@ -52,8 +52,7 @@ struct ThetaNode {
 // One slope distribution.
 struct ShapeNode {
   real m;              // sqrt(2) sigma
-  real q;              // exponent; unused by the gaussian
-  real norm;           // P(0) of the slope density: (q-1)/(pi m^2), gaussian 1/(pi m^2)
+  real q_minus_1;      // of the exponent q, which a float near 1 would blur; unused by the gaussian
   real marginal_norm;  // p(0) of the in-plane marginal
   real scale;          // w of the map t = w sinh(X)
   real cut;            // slopes beyond it are left out

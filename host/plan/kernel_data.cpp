@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "error.hpp"
 #include "plan/rule_nodes.hpp"
 
 namespace dolp {
@@ -26,6 +25,10 @@ constexpr double kExtraDigits = 2.0;
 
 // Largest slope that is ever integrated: beyond it the squares of a float overflow.
 constexpr double kLargestCut = 1e8;
+
+// Scale of the masking table: its end, 5e8 scales away, must lie far beyond slope 1, where p is a power law.
+constexpr double kSmallestTableScale = 1e-4;
+constexpr double kLargestTableScale = 0.5;
 
 // Bound of the interpolation error of G (cubic Hermite, 16 cells an octave), relative to the albedo.
 constexpr double kMaskingTableError = 1e-6;
@@ -59,18 +62,29 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking m
     }
     points.push_back({a.cos > 0.0 ? tan_deg(30.0 + theta_deg * 2.0 / 3.0) : kNoEnd, kEndBelow});
   }
+  if (masking == Masking::kSmith) points.push_back({tan_deg(0.5 * theta_deg), kEndAbove + kEndBelow});
+  if (masking == Masking::kVCavity) {
+    points.push_back({tan_deg(30.0 - theta_deg / 3.0), kEndAbove});
+    if (theta_deg < 45.0) {
+      points.push_back({tan_deg(30.0 + theta_deg / 3.0), kEndBelow});
+    } else {
+      points.push_back({a.cos / a.sin, kEndAbove});
+      points.push_back({1.0, 0.0});
+      points.push_back({a.cos > 0.0 ? a.sin / a.cos : kNoEnd, kEndBelow});
+    }
+  }
   std::sort(points.begin(), points.end(), [](const auto& x, const auto& y) { return x.slope < y.slope; });
   return points;
 }
 
-kernel::ThetaNode theta_node(double theta_deg, Masking masking, double digits) {
+kernel::ThetaNode theta_node(const MomentsRequest& request, double theta_deg, double digits) {
   const CosSin a = cos_sin_deg(theta_deg);
   kernel::ThetaNode node{};
   node.c = a.cos;
   node.s = a.sin;
   const double horizon = a.cos > 0.0 ? (1.0 + a.sin) / a.cos : kNoEnd;
   int pieces = 0;
-  for (const Breakpoint& point : breakpoints(theta_deg, a, masking)) {
+  for (const Breakpoint& point : breakpoints(theta_deg, a, request.masking)) {
     if (point.slope <= 0.0 || point.slope > horizon) continue;
     ++pieces;
     node.end[pieces] = point.slope;
@@ -80,7 +94,9 @@ kernel::ThetaNode theta_node(double theta_deg, Masking masking, double digits) {
   const double grazing = std::clamp((theta_deg - 80.0) / 9.0, 0.0, 1.0);
   node.order_t = digits * (2.4 + 0.9 * grazing) + 2.5;
   node.order_per_e = node.order_t / (digits * std::log(10.0));
-  node.order_phi = std::ceil(0.2 + digits * (0.97 + 0.6 * grazing * grazing + 0.3 * std::max(0.0, theta_deg - 88.0)));
+  const double smooth = 0.2 + digits * (0.97 + 0.6 * grazing * grazing + 0.3 * std::max(0.0, theta_deg - 88.0));
+  const double cusp = request.distribution == Distribution::kCauchy ? 2.0 * digits : 1.6 * digits;
+  node.order_phi = std::ceil(request.masking == Masking::kSmith ? std::max(smooth, cusp) : smooth);
   return node;
 }
 
@@ -96,30 +112,35 @@ double slope_cut(const MomentsRequest& request, const SlopeShape& shape, double 
 kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& shape) {
   kernel::ShapeNode node{};
   node.m = std::sqrt(2.0) * shape.sigma;
-  node.q = shape.q;
+  node.q_minus_1 = shape.q - 1.0;
   const bool cauchy = request.distribution == Distribution::kCauchy;
-  node.norm = (cauchy ? shape.q - 1.0 : 1.0) / (pi<double>() * node.m * node.m);
   node.marginal_norm =
       (cauchy ? boost::math::tgamma_ratio(shape.q - 0.5, shape.q - 1.0) : 1.0) / (root_pi<double>() * node.m);
   node.scale = std::min(cauchy ? node.m / std::sqrt(std::max(1.0, 0.25 * shape.q)) : node.m, 1.0);
   node.cut = slope_cut(request, shape, 1e-3 * request.tolerance);
-  node.table_scale = std::min(0.5, cauchy ? node.m / std::sqrt(std::max(1.0, shape.q / 1.5)) : node.m);
+  const double width = cauchy ? node.m / std::sqrt(std::max(1.0, shape.q / 1.5)) : node.m;
+  node.table_scale = std::clamp(width, kSmallestTableScale, kLargestTableScale);
   return node;
 }
 
 // Upper bound of the albedo integral (times cos theta) over the slopes T beyond the cut, which the kernel leaves out:
 // e <= c + s t, so that it is at most c * tail(T) + 2 s * integral of P t^2 over t > T.
-double cut_bound(Distribution distribution, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape) {
+double cut_bound(Distribution distribution, Masking masking, const kernel::ThetaNode& theta,
+                 const kernel::ShapeNode& shape) {
   if (shape.cut >= theta.end[static_cast<std::size_t>(theta.piece_count)]) return 0.0;
   const double u = shape.cut / shape.m;
+  if (masking == Masking::kVCavity) {  // e G <= 2 c
+    const double exponent = distribution == Distribution::kCauchy ? shape.q_minus_1 * std::log1p(u * u) : u * u;
+    return 2.0 * theta.c * std::exp(-exponent);
+  }
   if (distribution == Distribution::kGaussian) {
     const double tail = std::exp(-u * u);
     return tail * (theta.c + theta.s * shape.m / pi<double>() * (u + 0.5 / u));
   }
-  if (shape.q <= 1.5) return std::numeric_limits<double>::infinity();
+  if (shape.q_minus_1 <= 0.5) return std::numeric_limits<double>::infinity();
   const double log_square = std::log1p(u * u);
-  const double slope_tail = (shape.q - 1.0) * shape.m / pi<double>() * std::exp((1.5 - shape.q) * log_square);
-  return theta.c * std::exp((1.0 - shape.q) * log_square) + 2.0 * theta.s * slope_tail / (2.0 * shape.q - 3.0);
+  const double slope_tail = shape.q_minus_1 * shape.m / pi<double>() * std::exp((0.5 - shape.q_minus_1) * log_square);
+  return theta.c * std::exp(-shape.q_minus_1 * log_square) + 2.0 * theta.s * slope_tail / (2.0 * shape.q_minus_1 - 1.0);
 }
 
 kernel::IndexNode index_node(const OpticalConstants& index) {
@@ -133,15 +154,12 @@ CosSin cos_sin_deg(double angle_deg) {
 }
 
 KernelData kernel_data(const MomentsRequest& request) {
-  if (request.masking == Masking::kVCavity || request.masking == Masking::kSmith) {
-    throw InputError("surface.masking: v-cavity and smith are not supported by this version; use none or integral");
-  }
   const double digits = kExtraDigits - std::log10(request.tolerance);
   KernelData data;
   data.distribution = request.distribution;
   data.masking = request.masking;
   data.rule_nodes = rule_nodes();
-  for (const double theta_deg : request.theta_deg) data.thetas.push_back(theta_node(theta_deg, request.masking, digits));
+  for (const double theta_deg : request.theta_deg) data.thetas.push_back(theta_node(request, theta_deg, digits));
   for (const SlopeShape& shape : request.shapes) data.shapes.push_back(shape_node(request, shape));
   for (const OpticalConstants& index : request.indices) data.indices.push_back(index_node(index));
   return data;
@@ -150,9 +168,9 @@ KernelData kernel_data(const MomentsRequest& request) {
 Moments moments_from_kernel(const kernel::MomentsNode& node, const MomentsRequest& request, const KernelData& data,
                             const MomentsEntry& entry, double unit_roundoff) {
   const kernel::ShapeNode& shape = data.shapes[entry.shape];
-  const double cut = cut_bound(request.distribution, data.thetas[entry.theta], shape);
-  const double masking = request.masking == Masking::kIntegral ? kMaskingTableError : 0.0;
-  const bool heavy_tail = request.distribution == Distribution::kCauchy && shape.q < kHeavyTailQ;
+  const double cut = cut_bound(request.distribution, request.masking, data.thetas[entry.theta], shape);
+  const double masking = data.needs_masking_table() ? kMaskingTableError : 0.0;
+  const bool heavy_tail = request.distribution == Distribution::kCauchy && shape.q_minus_1 < kHeavyTailQ - 1.0;
   const double rounding = unit_roundoff * (masking > 0.0 && heavy_tail ? kHeavyTailRoundings : kRoundings);
   Moments moments;
   moments.r_i = node.r_i;

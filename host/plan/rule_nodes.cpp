@@ -35,6 +35,13 @@ void append_circle(Nodes& nodes, int order) {
   }
 }
 
+void append_cluster(Nodes& nodes, int order) {
+  for (const auto& [x, weight] : gauss_legendre(order)) {
+    const double v = 0.5 * (1.0 + x);
+    nodes.push_back({v * v, v * weight});
+  }
+}
+
 }  // namespace
 
 Nodes gauss_legendre(int order) {
@@ -51,7 +58,7 @@ Nodes gauss_legendre(int order) {
 
 Nodes rule_nodes() {
   Nodes nodes;
-  for (const auto append : {append_gauss, append_centre, append_half, append_circle}) {
+  for (const auto append : {append_gauss, append_centre, append_half, append_circle, append_cluster}) {
     for (int order = 1; order <= DOLP_MAX_ORDER; ++order) append(nodes, order);
   }
   return nodes;

@@ -10,7 +10,7 @@ namespace dolp {
 /// Accuracy: 1e-15 (tests/plan_test.cpp integrates polynomials of degree 2 * order - 1).
 std::vector<std::array<double, 2>> gauss_legendre(int order);
 
-/// The four sections of shaders/physics/quadrature.glsl, orders 1 to DOLP_MAX_ORDER each, as (abscissa, weight) pairs.
+/// The sections of shaders/physics/quadrature.glsl, orders 1 to DOLP_MAX_ORDER each, as (abscissa, weight) pairs.
 std::vector<std::array<double, 2>> rule_nodes();
 
 }  // namespace dolp

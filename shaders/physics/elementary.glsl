@@ -83,16 +83,24 @@ real log1p_real(real u) {
   return k * kLn2High + (series + (k * kLn2Low + lost / v));
 }
 
+// ln(1 + u^2) for u >= 0, also where u^2 overflows.
+real log1p_square(real u) {
+  bool large = u > real(1e9);
+  real logarithm = log1p_real(large ? u : u * u);
+  return large ? real(2.0) * logarithm : logarithm;
+}
+
 // asinh(y) for y >= 0.
 real asinh_real(real y) {
   real y2 = y * y;
-  return log1p_real(y + y2 / (real(1.0) + sqrt(real(1.0) + y2)));
+  return log1p_real((y > real(1e9)) ? real(2.0) * y : y + y2 / (real(1.0) + sqrt(real(1.0) + y2)));
 }
 
-// sinh(x) for 0 <= x <= 80.
-real sinh_real(real x) {
+// (sinh(x), cosh(x)) for 0 <= x <= 80.
+real2 sinh_cosh(real x) {
   real e = expm1_real(x);
-  return real(0.5) * (e + e / (real(1.0) + e));
+  real inverse = real(1.0) / (real(1.0) + e);
+  return real2(real(0.5) * (e + e * inverse), real(0.5) * (real(1.0) + e + inverse));
 }
 
 // atan(y) for 0 <= y <= 1: the argument is halved twice, then the Taylor series.

@@ -29,19 +29,19 @@ FacetSums add_weighted(FacetSums sum, FacetSums term, real weight) {
   return sum;
 }
 
-// Integrand at azimuth (x, sin phi) per unit of azimuth, `shadow` being 1 - G.
-FacetSums facet(ThetaNode theta, IndexNode index, real t, real r2, real x, real sin_phi, real e, real shadow) {
+// Integrand at azimuth (x, sin phi) per unit of azimuth, `hidden` being e (1 - G).
+FacetSums facet(ThetaNode theta, IndexNode index, real t, real r2, real x, real sin_phi, real e, real hidden) {
   real along = theta.c * t * x - theta.s;
   real across = t * sin_phi;
   Fresnel f = fresnel(index, sqrt(r2) * e);
   real half_split = real(0.5) * f.split_over_sin2 * r2;
   real split = half_split * (along * along + across * across);
-  real seen = e * (real(1.0) - shadow);
+  real seen = e - hidden;
   FacetSums sum;
   sum.r_i = seen * (f.r_s - split);
   sum.r_q = seen * half_split * (along * along - across * across);
   sum.albedo = seen;
-  sum.deficit = e * shadow + seen * (f.absorbed_s + split);
+  sum.deficit = hidden + seen * (f.absorbed_s + split);
   sum.deficit_scale = sum.deficit;
   sum.evaluations = real(1.0);
   return sum;
@@ -62,8 +62,14 @@ real2 half_angle(real one_plus_x, real one_minus_x) {
                sqrt(clamp(real(0.5) * one_minus_x, real(0.0), real(1.0))));
 }
 
-// The arc between two azimuths given by their half angles; empty when they coincide or are out of order.
-Arc make_arc(real2 from, real2 to, int order) {
+// Smith's L has a cusp at theta_r = 0, |theta_r|^(2q-2), that a small q makes matter: facets near (tan(theta/2), phi = 0).
+bool has_cusp(ShapeNode shape) {
+  return kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_CAUCHY && shape.q_minus_1 < real(1.2);
+}
+
+// The arc between two azimuths given by their half angles; empty when they coincide or are out of order. `cusp`: the
+// arc begins at phi = 0 with one.
+Arc make_arc(real2 from, real2 to, int order, bool cusp) {
   real sin_half = to.y * from.x - to.x * from.y;
   real cos_half = to.x * from.x + to.y * from.y;
   bool starts_at_0 = from.y <= real(0.0);
@@ -84,14 +90,27 @@ Arc make_arc(real2 from, real2 to, int order) {
     arc.extent = real(1.0);
     arc.first_node = circle_offset(order);
   }
+  if (cusp) arc.first_node = cluster_offset(order);
   arc.order = (sin_half > real(0.0)) ? order : 0;
   return arc;
 }
 
-// Integral over one arc. `beyond` says that theta_r > theta there, where the shadow of `integral` masking is that of
-// theta_r and changes along the arc; elsewhere it is `shadow`.
-FacetSums arc_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint table, real t, Arc arc, bool beyond,
-                   real shadow) {
+// e (1 - G) for a facet whose reflected ray leaves at cos_r. `zone` numbers the arcs from phi = 0; `by_slope` is what the
+// slope alone decides: the shadow of theta (`integral`, valid in zone 0, where theta_r < theta) or L(theta) (smith).
+real hidden_part(ThetaNode theta, ShapeNode shape, uint table, real t, real e, real cos_r, int zone, real by_slope) {
+  if (kMasking == DOLP_MASKING_V_CAVITY) {
+    return max(real(0.0), e - real(2.0) * min(theta.c, cos_r));
+  }
+  if (kMasking == DOLP_MASKING_NONE) return real(0.0);
+  if (kMasking == DOLP_MASKING_INTEGRAL && zone == 0) return e * by_slope;
+  real sin_r = sqrt((real(1.0) - cos_r) * (real(1.0) + cos_r));
+  if (kMasking == DOLP_MASKING_INTEGRAL) return e * shadowed_integral(shape, table, cos_r, sin_r, t);
+  real lambdas = by_slope + smith_lambda(shape, table, cos_r, sin_r);
+  return e - e / (real(1.0) + lambdas);
+}
+
+FacetSums arc_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint table, real t, Arc arc, int zone,
+                   real by_slope) {
   real r2 = real(1.0) / (real(1.0) + t * t);
   FacetSums sum = no_facets();
   for (int i = 0; i < arc.order; ++i) {
@@ -104,41 +123,47 @@ FacetSums arc_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint table
     real x = arc.centre_cos * cos_psi - arc.centre_sin * sin_psi;
     real sin_phi = arc.centre_sin * cos_psi + arc.centre_cos * sin_psi;
     real e = theta.c + theta.s * t * x;
-    if (beyond) {
-      real cos_r = clamp(real(2.0) * r2 * e - theta.c, real(0.0), real(1.0));
-      real sin_r = sqrt((real(1.0) - cos_r) * (real(1.0) + cos_r));
-      shadow = shadowed_integral(shape, table, cos_r, sin_r, t);
-    }
-    FacetSums term = facet(theta, index, t, r2, x, sin_phi, e, shadow);
+    real cos_r = clamp(real(2.0) * r2 * e - theta.c, real(0.0), real(1.0));
+    real hidden = hidden_part(theta, shape, table, t, e, cos_r, zone, by_slope);
+    FacetSums term = facet(theta, index, t, r2, x, sin_phi, e, hidden);
     sum = add_weighted(sum, term, real(4.0) * arc.extent * inverse * node.y);
   }
   return sum;
 }
 
-// Azimuths of the lines where the integrand is not smooth, as half angles, in ascending order.
+// The azimuths, as half angles in ascending order, that split [0, pi] into arcs on which the integrand is smooth.
 struct SplitLines {
-  real2 same_zenith;  // theta_r = theta, where the minimum of `integral` masking switches
-  real2 flat_limit;   // the limit b of eq. (11) reaches pi/2 for theta_r
-  real2 horizon;      // theta_r = 90 degrees
+  real2 first;
+  real2 second;
+  real2 horizon;  // theta_r = 90 degrees: beyond it the reflected ray does not leave
 };
+
+// cos(phi) = level / (s t), as a half angle.
+real2 line_at(real level, real st) { return half_angle((st + level) / st, (st - level) / st); }
 
 SplitLines split_lines(ThetaNode theta, real t) {
   real c = theta.c;
   real s = theta.s;
   real st = max(s * t, real(1e-30));
+  real sec2 = real(1.0) + t * t;
   SplitLines lines;
   lines.horizon = half_angle((t - c / (real(1.0) + s)) * (c * t + real(1.0) + s) / (real(2.0) * st),
                              (real(1.0) + s - c * t) * (t + c / (real(1.0) + s)) / (real(2.0) * st));
-  lines.same_zenith = real2(real(1.0), real(0.0));
-  lines.flat_limit = lines.same_zenith;
+  lines.first = lines.horizon;
+  lines.second = lines.horizon;
+  real2 same_zenith = line_at(c * t * t, st);  // theta_r = theta
   if (kMasking == DOLP_MASKING_INTEGRAL) {
-    real tiny_s = max(s, real(1e-30));
-    lines.same_zenith = half_angle((s + c * t) / tiny_s, (s - c * t) / tiny_s);
-    // theta_r = pi/4 + alpha/2; 1 - sin(alpha) = cos^2(alpha) / (1 + sin(alpha)).
-    real sec = sqrt(real(1.0) + t * t);
+    // The limit b of eq. (11) reaches pi/2 at theta_r = pi/4 + alpha/2; 1 - sin(alpha) = cos^2(alpha) / (1 + sin(alpha)).
+    real sec = sqrt(sec2);
     real cos_limit = sqrt(real(0.5) / (sec * (sec + t)));
-    real level = real(0.5) * (cos_limit + c) * (real(1.0) + t * t) - c;
-    lines.flat_limit = (cos_limit < c) ? half_angle((st + level) / st, (st - level) / st) : lines.same_zenith;
+    lines.first = same_zenith;
+    lines.second = (cos_limit < c) ? line_at(real(0.5) * (cos_limit + c) * sec2 - c, st) : same_zenith;
+  }
+  if (kMasking == DOLP_MASKING_V_CAVITY) {
+    // G = 1 between 2 cos(alpha) cos(theta) = cos(beta) and the same with theta_r; the two lines meet at t = 1.
+    bool open = t < real(1.0);
+    lines.first = open ? line_at(c, st) : same_zenith;
+    lines.second = open ? line_at(c * (real(3.0) * t * t - real(1.0)) / (real(3.0) - t * t), st) : same_zenith;
   }
   return lines;
 }
@@ -146,19 +171,19 @@ SplitLines split_lines(ThetaNode theta, real t) {
 // Integral over the azimuth from 0 to pi at slope t, the facets below the horizon counted in the deficit.
 FacetSums azimuth_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint table, real t, int order) {
   SplitLines lines = split_lines(theta, t);
-  FacetSums sum = no_facets();
-  if (kMasking == DOLP_MASKING_INTEGRAL) {
-    real shadow = shadowed_integral(shape, table, theta.c, theta.s, t);
-    Arc arc = make_arc(real2(real(1.0), real(0.0)), lines.same_zenith, order);
-    sum = arc_sums(theta, shape, index, table, t, arc, false, shadow);
-    for (int side = 0; side < 2; ++side) {
-      arc = (side == 0) ? make_arc(lines.same_zenith, lines.flat_limit, order)
-                        : make_arc(lines.flat_limit, lines.horizon, order);
-      sum = add_weighted(sum, arc_sums(theta, shape, index, table, t, arc, true, real(0.0)), real(1.0));
+  real by_slope = real(0.0);
+  if (kMasking == DOLP_MASKING_INTEGRAL) by_slope = shadowed_integral(shape, table, theta.c, theta.s, t);
+  if (kMasking == DOLP_MASKING_SMITH) by_slope = smith_lambda(shape, table, theta.c, theta.s);
+  real2 forward = real2(real(1.0), real(0.0));
+  Arc first = make_arc(forward, lines.first, order, has_cusp(shape));
+  FacetSums sum = arc_sums(theta, shape, index, table, t, first, 0, by_slope);
+  if (kMasking == DOLP_MASKING_INTEGRAL || kMasking == DOLP_MASKING_V_CAVITY) {
+    for (int zone = 1; zone < 3; ++zone) {
+      Arc arc = (zone == 1) ? make_arc(lines.first, lines.second, order, false)
+                            : make_arc(lines.second, lines.horizon, order, false);
+      FacetSums part = arc_sums(theta, shape, index, table, t, arc, zone, by_slope);
+      sum = add_weighted(sum, part, real(1.0));
     }
-  } else {
-    Arc arc = make_arc(real2(real(1.0), real(0.0)), lines.horizon, order);
-    sum = arc_sums(theta, shape, index, table, t, arc, false, real(0.0));
   }
   real below = theta.c * real(4.0) * atan_unit(lines.horizon.x / (real(1.0) + lines.horizon.y));
   real behind = real(2.0) * theta.s * t * lines.horizon.x * lines.horizon.y;

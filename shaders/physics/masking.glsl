@@ -1,11 +1,13 @@
-// Geometric attenuation G of `integral` masking (MODEL.md section 2, eqs. 9-13) in two table look-ups.
+// Geometric attenuation G (MODEL.md section 2): v-cavity in closed form, `integral` and smith from a table of
+// one-dimensional integrals of the in-plane slope density p, one table for each shape.
 //
-// With the in-plane slope density p, its tail Pt(x) = int_x^inf p, C(x) = int_x^inf p / sqrt(1 + tau^2) dtau and
-//   l(x) = int_x^inf p(tau) (tau - x) / sqrt(1 + tau^2) dtau,     l' = -C,  C' = -p / sqrt(1 + x^2),  Pt' = -p,
-// eqs. (9)-(12) become, for mu = cot(theta), kappa = sqrt(1 + t^2) / (mu + t) and d = (1 - mu^2) - 2 mu t:
-//   d <= 0:  1 - G1 = kappa l(mu)                                 (the limit b of the second integral is pi/2)
-//   d > 0:   1 - G1 = kappa [l(mu) - l(tb) - (tb - mu) C(tb)] + Pt(tb),   tb = (t (1 - mu^2) + 2 mu) / d.
-// The table of a shape holds (l, C, Pt, p) at v = 1 + tau / table_scale = 2^octave (1 + cell / 16).
+// With Pt(x) = int_x^inf p, C(x) = int_x^inf g p and l(x) = int_x^inf g(tau) p(tau) (tau - x) dtau, where g = 1 for
+// smith and 1 / sqrt(1 + tau^2) for `integral`:   l' = -C,  C' = -g p,  Pt' = -p.
+//   smith, height-correlated:  G = 1 / (1 + L(theta) + L(theta_r)),  L = l(mu) / mu,  mu = cot(theta).
+//   `integral`, eqs. (9)-(12), for kappa = sqrt(1 + t^2) / (mu + t) and d = (1 - mu^2) - 2 mu t:
+//     d <= 0:  1 - G1 = kappa l(mu)                                 (the limit b of the second integral is pi/2)
+//     d > 0:   1 - G1 = kappa [l(mu) - l(tb) - (tb - mu) C(tb)] + Pt(tb),   tb = (t (1 - mu^2) + 2 mu) / d.
+// A table holds (l, C, Pt, p) at v = 1 + tau / table_scale = 2^octave (1 + cell / 16).
 
 CONST uint kFirstNodeBits = 0x3f800000u >> 19;  // exponent and four mantissa bits of v = 1.0f
 
@@ -13,6 +15,11 @@ CONST uint kFirstNodeBits = 0x3f800000u >> 19;  // exponent and four mantissa bi
 real masking_node_v(uint node) { return real(uintBitsToFloat((node + kFirstNodeBits) << 19)); }
 
 real masking_node_tau(ShapeNode shape, uint node) { return (masking_node_v(node) - real(1.0)) * shape.table_scale; }
+
+// The weight g of the tables' integrals.
+real masking_weight(real tau) {
+  return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) : real(1.0) / sqrt(real(1.0) + tau * tau);
+}
 
 // (l, C, Pt) at tau >= 0 by cubic Hermite interpolation with the exact derivatives. Beyond the table's end the value at
 // the end is used: only facets within 1e-5 of the line d = 0 look there.
@@ -27,8 +34,8 @@ real4 masking_tails(ShapeNode shape, uint table, real tau) {
   real tau0 = masking_node_tau(shape, cell);
   real tau1 = masking_node_tau(shape, cell + 1u);
   real y = (v - v0) / (v1 - v0);
-  real4 d0 = -h * real4(f0.y, f0.w / sqrt(real(1.0) + tau0 * tau0), f0.w, real(0.0));
-  real4 d1 = -h * real4(f1.y, f1.w / sqrt(real(1.0) + tau1 * tau1), f1.w, real(0.0));
+  real4 d0 = -h * real4(f0.y, f0.w * masking_weight(tau0), f0.w, real(0.0));
+  real4 d1 = -h * real4(f1.y, f1.w * masking_weight(tau1), f1.w, real(0.0));
   real4 rise = f1 - f0;
   real4 curve = (d0 - rise) * (real(1.0) - y) + (rise - d1) * y;
   return f0 + y * (rise + (real(1.0) - y) * curve);
@@ -47,4 +54,10 @@ real shadowed_integral(ShapeNode shape, uint table, real cos_theta, real sin_the
   real tau = (difference * t + twice_product) / d;
   real4 tails = masking_tails(shape, table, tau);
   return kappa * (height - tails.x - (tau - mu) * tails.y) + tails.z;
+}
+
+// Smith's L of a direction; at 90 degrees a number so large that G is 0.
+real smith_lambda(ShapeNode shape, uint table, real cos_theta, real sin_theta) {
+  real mu = cos_theta / max(sin_theta, real(1e-10));
+  return masking_tails(shape, table, mu).x / max(mu, real(1e-30));
 }

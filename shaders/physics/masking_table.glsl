@@ -7,19 +7,19 @@ CONST int kTableOrder = 6;  // Gauss order on one cell, in which v grows by less
 real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   real h = tau1 - tau0;
   real height = real(0.0);
-  real cosines = real(0.0);
+  real first = real(0.0);
   real probability = real(0.0);
   for (int i = 0; i < kTableOrder; ++i) {
     real2 node = rule_node(gauss_offset(kTableOrder) + i);
     real rise = h * node.x;
     real tau = tau0 + rise;
     real weight = h * node.y * marginal_density(shape, tau);
-    real weighted_cosine = weight / sqrt(real(1.0) + tau * tau);
+    real weighted = weight * masking_weight(tau);
     probability += weight;
-    cosines += weighted_cosine;
-    height += weighted_cosine * rise;
+    first += weighted;
+    height += weighted * rise;
   }
-  return real4(beyond.x + h * beyond.y + height, beyond.y + cosines, beyond.z + probability,
+  return real4(beyond.x + h * beyond.y + height, beyond.y + first, beyond.z + probability,
                marginal_density(shape, tau0));
 }
 
@@ -27,9 +27,11 @@ real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
 real4 masking_table_end(ShapeNode shape, real tau) {
   real p = marginal_density(shape, tau);
   if (kDistribution == DOLP_GAUSSIAN) return real4(real(0.0), real(0.0), real(0.0), p);
-  real a = real(2.0) * shape.q - real(2.0);
-  real b = a + real(1.0);
-  return real4(p * tau / (a * b), p / b, p * tau / a, p);
+  real a = real(2.0) * shape.q_minus_1;
+  if (kMasking == DOLP_MASKING_SMITH) {
+    return real4(p * tau * tau / (a * (a - real(1.0))), p * tau / a, p * tau / a, p);
+  }
+  return real4(p * tau / (a * (a + real(1.0))), p / (a + real(1.0)), p * tau / a, p);
 }
 
 // Fills the table that starts at node `table`.

@@ -2,11 +2,8 @@
 
 // Nodes for a piece that starts at slope a: the fewer, the smaller the share of the moments beyond a.
 int piece_order(ThetaNode theta, ShapeNode shape, real a) {
-  real u = a / shape.m;
-  real exponent = u * u;
-  if (kDistribution == DOLP_CAUCHY) exponent = (shape.q - real(1.0)) * log1p_real(exponent);
   real lever = theta.s * max(a - shape.m, real(0.0)) / (theta.c + theta.s * shape.m);
-  real log_share = min(log1p_real(lever) - exponent, real(0.0));
+  real log_share = min(log1p_real(lever) - slope_tail_exponent(shape, a), real(0.0));
   real order = theta.order_t + theta.order_per_e * log_share;
   return int(clamp(order, real(3.0), real(DOLP_MAX_ORDER)));
 }
@@ -30,11 +27,11 @@ FacetSums piece_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint tab
       y = v * (real(2.0) - v);
       dy = real(2.0) * (real(1.0) - v);
     }
-    real u = sinh_real(x_a + length * y);
-    real t = shape.scale * u;
-    real dt = shape.scale * sqrt(real(1.0) + u * u) * length * dy * node.y;
+    real2 hyperbolic = sinh_cosh(x_a + length * y);
+    real t = shape.scale * hyperbolic.x;
+    real du = shape.scale / shape.m * hyperbolic.y * length * dy * node.y;
     FacetSums term = azimuth_sums(theta, shape, index, table, t, order_phi);
-    sum = add_weighted(sum, term, real(2.0) * slope_density(shape, t) * t * dt);
+    sum = add_weighted(sum, term, real(2.0) * slope_density(shape, t) * du);
   }
   return sum;
 }

@@ -1,10 +1,11 @@
-// The nodes of the rules, one buffer of (abscissa, weight) pairs in four sections; within a section the rule of order n
+// The nodes of the rules, one buffer of (abscissa, weight) pairs in five sections; within a section the rule of order n
 // starts at n (n - 1) / 2. host/plan/rule_nodes.cpp fills it.
 //   gauss   Gauss-Legendre on [0, 1]
 //   centre  Gauss-Legendre on [-1, 1]                              an arc between two split lines
 //   half    the positive nodes of the rule of order 2n on [-1, 1]  an arc that touches phi = 0 or pi: even about its end
 //   circle  tan(psi/4) of the midpoints of n equal parts of [0, pi]: the whole half circle, spectral for periodic f
-// The last three are abscissae of tau / T, where tau = tan(psi/4), dpsi = 4 T / (1 + tau^2) d(tau/T).
+//   cluster Gauss-Legendre on [0, 1] in sqrt(tau / T): an arc from phi = 0 with a cusp near there
+// The last four are abscissae of tau / T, where tau = tan(psi/4), dpsi = 4 T / (1 + tau^2) d(tau/T).
 
 CONST int kSectionSize = DOLP_MAX_ORDER * (DOLP_MAX_ORDER + 1) / 2;
 
@@ -13,6 +14,7 @@ int gauss_offset(int order) { return rule_offset(order); }
 int centre_offset(int order) { return kSectionSize + rule_offset(order); }
 int half_offset(int order) { return 2 * kSectionSize + rule_offset(order); }
 int circle_offset(int order) { return 3 * kSectionSize + rule_offset(order); }
+int cluster_offset(int order) { return 4 * kSectionSize + rule_offset(order); }
 
 // Orders of the second, coarser rule that the error estimate compares with.
 int coarse_order_t(int order) { return (order * 3 + 1) / 4; }

@@ -1,25 +1,27 @@
-// The slope distribution (MODEL.md section 2, eqs. 1 and 8). Slope t = tan(alpha), m = sqrt(2) sigma.
+// The slope distribution (MODEL.md section 2, eqs. 1 and 8). Slope t = tan(alpha), m = sqrt(2) sigma, u = t / m.
+// P(t) = (q - 1) / (pi m^2) (1 + u^2)^-q (cauchy) or exp(-u^2) / (pi m^2) (gaussian): the integral of P t dt dphi over
+// the slope plane is 1, and P = D cos^4(alpha).
 
-// P(t), the density over the slope plane: integral of P(t) t dt dphi over the plane is 1. Equals D cos^4(alpha).
-real slope_density(ShapeNode shape, real t) {
+// -ln of the share of the facets that are steeper than t.
+real slope_tail_exponent(ShapeNode shape, real t) {
   real u = t / shape.m;
-  real exponent = u * u;
-  if (kDistribution == DOLP_CAUCHY) exponent = shape.q * log1p_real(exponent);
-  return shape.norm * exp_real(-exponent);
+  if (kDistribution == DOLP_CAUCHY) return shape.q_minus_1 * log1p_square(u);
+  return u * u;
 }
 
-// 2 pi times the integral of P(t') t' over t' > t: the share of the facets that are steeper than t.
-real slope_tail(ShapeNode shape, real t) {
+real slope_tail(ShapeNode shape, real t) { return exp_real(-slope_tail_exponent(shape, t)); }
+
+// P(t) t m: the facets of an interval dt at slope t, per unit of azimuth, are this times dt / m. Neither m^2 nor t^2
+// appears, so that no roughness overflows.
+real slope_density(ShapeNode shape, real t) {
   real u = t / shape.m;
-  real exponent = u * u;
-  if (kDistribution == DOLP_CAUCHY) exponent = (shape.q - real(1.0)) * log1p_real(exponent);
-  return exp_real(-exponent);
+  real profile = (kDistribution == DOLP_CAUCHY) ? shape.q_minus_1 / (u + real(1.0) / u) : u;
+  return profile * slope_tail(shape, t) / kPi;
 }
 
 // p(tau), the density of the slope in one plane: the marginal of P.
 real marginal_density(ShapeNode shape, real tau) {
   real u = tau / shape.m;
-  real exponent = u * u;
-  if (kDistribution == DOLP_CAUCHY) exponent = (shape.q - real(0.5)) * log1p_real(exponent);
+  real exponent = (kDistribution == DOLP_CAUCHY) ? (shape.q_minus_1 + real(0.5)) * log1p_square(u) : u * u;
   return shape.marginal_norm * exp_real(-exponent);
 }

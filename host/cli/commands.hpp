@@ -1,0 +1,25 @@
+// The commands of the program; each returns the exit status of a run without an error (see error.hpp for the others).
+#pragma once
+
+#include "cli/options.hpp"
+
+namespace dolp::cli {
+
+inline constexpr int kExitDone = 0;
+inline constexpr int kExitAccuracy = 1;
+inline constexpr int kExitInput = 2;
+inline constexpr int kExitDevice = 3;
+inline constexpr int kExitIo = 4;
+inline constexpr int kExitInternal = 5;
+inline constexpr int kExitInterrupted = 130;
+
+/// `dolp table SCENE -o FILE`: a lookup table over the scene's grid.
+int run_table(const Options& options);
+
+/// `dolp eval SCENE --points IN -o OUT`: the same quantities at scattered points.
+int run_eval(const Options& options);
+
+/// `dolp devices`: the Vulkan devices, and why each one is or is not usable.
+int run_devices(const Options& options);
+
+}  // namespace dolp::cli

@@ -1,0 +1,107 @@
+// The command line: parsing, and the only place where errors become exit statuses.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "error.hpp"
+
+namespace dolp::cli {
+namespace {
+
+void add_scene(CLI::App& command, Options& options) {
+  command.add_option("SCENE", options.scene_path, "scene file (TOML); - is stdin")->required();
+  command.add_option("--set", options.overrides, "KEY=VALUE: any scene key, e.g. surface.masking=none")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  command.add_option("--tolerance", options.tolerance, "the scene's accuracy.tolerance, 1e-10 .. 1e-2");
+  command.add_option("--precision", options.precision, "the scene's accuracy.precision: auto, float or double");
+}
+
+void add_run(CLI::App& command, Options& options) {
+  add_scene(command, options);
+  command.add_option("-o,--output", options.output_path, "file to write; - is stdout")->required();
+  command.add_option("--device", options.device, "Vulkan device: its position or a part of its name");
+  command
+      .add_option("--evaluator", options.evaluator,
+                  "vulkan; cpu: the same text on the CPU; reference: independent adaptive quadrature")
+      ->check(CLI::IsMember({"vulkan", "cpu", "reference"}))
+      ->capture_default_str();
+  command.add_flag("--json", options.json, "machine-readable report");
+  command.add_flag("--quiet", options.quiet, "no summary and no progress bar");
+  command.add_flag("--strict", options.strict, "exit 1 if any entry misses its tolerance");
+}
+
+/// Runs the command that the arguments name.
+int run(CLI::App& app, Options& options) {
+  const auto given = [&app](const char* name) { return app.got_subcommand(name); };
+  if (given("table")) return run_table(options);
+  if (given("eval")) return run_eval(options);
+  return run_devices(options);
+}
+
+/// fmt::print would throw where stderr cannot be written to.
+int fail(int status, const std::string& message) {
+  std::fputs(("dolp: " + message + "\n").c_str(), stderr);
+  return status;
+}
+
+std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> unknown = app.remaining();
+  if (!app.get_subcommands().empty() || unknown.empty()) return fmt::format("{} (see dolp --help)", error.what());
+  return fmt::format("{}: unknown command or option (see dolp --help)", unknown.front());
+}
+
+int parse_and_run(int argc, char** argv) {
+  CLI::App app("dolp: infrared degree of linear polarisation of rough surfaces, on any Vulkan device", "dolp");
+  app.set_version_flag("--version", "dolp " DOLP_VERSION);
+  app.require_subcommand(1);
+  Options options;
+  for (int i = 0; i < argc; ++i) options.command_line += (i > 0 ? " " : "") + std::string(argv[i]);
+
+  CLI::App* table = app.add_subcommand("table", "lookup table over the scene's grid (.nc, .csv, .npy)");
+  add_run(*table, options);
+  CLI::App* eval = app.add_subcommand("eval", "the same quantities at scattered points");
+  add_run(*eval, options);
+  eval->add_option("--points", options.points_path, "CSV with any of theta_deg, sigma, q, n, k; - is stdin")->required();
+  CLI::App* devices = app.add_subcommand("devices", "Vulkan devices, and why each one is or is not usable");
+  devices->add_flag("--json", options.json, "machine-readable list");
+  devices->add_option("--device", options.device, "check this one: its position or a part of its name");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    return fail(kExitInput, usage_message(app, error));
+  }
+  const int status = run(app, options);
+  if (std::fflush(stdout) != 0) throw dolp::IoError("standard output: cannot write the report");
+  return status;
+}
+
+}  // namespace
+}  // namespace dolp::cli
+
+int main(int argc, char** argv) {
+  using namespace dolp::cli;
+  try {
+    return parse_and_run(argc, argv);
+  } catch (const dolp::Cancelled&) {
+    return fail(kExitInterrupted, "interrupted; nothing was written");
+  } catch (const dolp::InputError& error) {
+    return fail(kExitInput, error.what());
+  } catch (const dolp::DeviceError& error) {
+    return fail(kExitDevice, error.what());
+  } catch (const dolp::IoError& error) {
+    return fail(kExitIo, error.what());
+  } catch (const std::system_error& error) {
+    return fail(kExitIo, error.what());
+  } catch (const std::exception& error) {
+    return fail(kExitInternal, fmt::format("internal error: {}", error.what()));
+  }
+}

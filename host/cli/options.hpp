@@ -1,0 +1,35 @@
+// What the command line says, after parsing.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "evaluate/moments.hpp"
+#include "scene/scene.hpp"
+
+namespace dolp::cli {
+
+struct Options {
+  std::string scene_path;
+  std::string points_path;
+  std::string output_path;
+  std::vector<std::string> overrides;  ///< --set KEY=VALUE
+  std::string tolerance;               ///< as typed; empty when not given
+  std::string precision;               ///< likewise
+  std::string device;
+  std::string evaluator = "vulkan";  ///< vulkan | cpu | reference
+  bool json = false;
+  bool quiet = false;
+  bool strict = false;
+  std::string command_line;  ///< for the table's history
+};
+
+/// The scene with all overrides of the command line: --set first, then --tolerance and --precision.
+Scene load_scene(const Options& options);
+
+/// The evaluator that --evaluator, --device and the scene's precision ask for.
+/// Errors: DeviceError when vulkan is asked for and there is no usable device.
+std::unique_ptr<MomentsEvaluator> make_evaluator(const Options& options, const Scene& scene);
+
+}  // namespace dolp::cli

@@ -1,0 +1,53 @@
+// What a command reports on stdout: a summary for people, or JSON for programs.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "evaluate/radiometry/radiometry.hpp"
+#include "evaluate/run/scene_run.hpp"
+#include "scene/scene.hpp"
+
+namespace dolp::cli {
+
+/// Everything there is to say about one run of a scene.
+struct RunReport {
+  std::string title;
+  std::string output;
+  std::string shape;  ///< "91 x 32 x 5 (theta x sigma x q)" or "200 points"
+  std::size_t entries = 0;
+  double tolerance = 0.0;
+  double wall_s = 0.0;
+  EvaluationReport evaluation;
+  double worst_error = 0.0;      ///< largest stated error of DOLP where status has none of the bits 1, 4, 8
+  double worst_rho_error = 0.0;  ///< largest stated relative error of rho where status has no bit 4
+  struct StatusCount {
+    std::string meaning;
+    std::uint32_t bit = 0;
+    std::size_t count = 0;
+  };
+  std::vector<StatusCount> status;    ///< entries that carry each bit
+  std::size_t missed_tolerance = 0;   ///< entries with the bit of a missed tolerance
+  std::size_t energy_off = 0;         ///< entries whose albedo leaves [kAlbedoMin, kAlbedoMax]
+  double albedo_min = 0.0;
+  double albedo_max = 0.0;
+};
+
+inline constexpr double kAlbedoMin = 0.95;
+inline constexpr double kAlbedoMax = 1.05;
+
+RunReport make_report(const Scene& scene, const std::vector<PointResult>& results, const EvaluationReport& evaluation,
+                      double wall_s);
+
+/// The same for people (several lines) and for programs.
+std::string summary_text(const RunReport& report);
+nlohmann::ordered_json summary_json(const RunReport& report);
+
+/// Prints what `json` and `quiet` ask for: to stdout, or to stderr when the results themselves go to stdout.
+void print_report(const RunReport& report, bool json, bool quiet);
+
+/// The rule in words, for reports and table attributes.
+std::string rule_text(double tolerance);
+
+}  // namespace dolp::cli

@@ -1,0 +1,98 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <ctime>
+
+#include "cli/commands.hpp"
+#include "cli/progress_bar.hpp"
+#include "cli/report.hpp"
+#include "table/table_file.hpp"
+
+namespace dolp::cli {
+namespace {
+
+/// FNV-1a, 64 bits: says whether two tables come from the same scene, nothing more.
+std::string scene_hash(const Scene& scene) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  const auto add = [&hash](const std::string& text) {
+    for (const char byte : text) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
+  };
+  add(scene.text);
+  for (const std::string& change : scene.overrides) add("\n" + change);
+  return fmt::format("fnv1a64:{:016x}", hash);
+}
+
+void fill_variables(Table& table, const std::vector<PointResult>& results) {
+  const auto column = [&](double PointResult::*member) {
+    std::vector<double> values;
+    values.reserve(results.size());
+    for (const PointResult& result : results) values.push_back(result.*member);
+    return values;
+  };
+  table.dolp = column(&PointResult::dolp);
+  table.stokes_i = column(&PointResult::stokes_i);
+  table.stokes_q = column(&PointResult::stokes_q);
+  table.stokes_u = column(&PointResult::stokes_u);
+  table.stokes_v = column(&PointResult::stokes_v);
+  table.rho_i = column(&PointResult::rho_i);
+  table.rho_q = column(&PointResult::rho_q);
+  table.albedo = column(&PointResult::albedo);
+  table.error_estimate = column(&PointResult::error_estimate);
+  table.rho_error_estimate = column(&PointResult::rho_error_estimate);
+  for (const PointResult& result : results) table.status.push_back(result.status);
+}
+
+std::vector<Attribute> attributes(const Scene& scene, const Options& options, const RunReport& report) {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::string overrides;
+  for (const std::string& change : scene.overrides) overrides += (overrides.empty() ? "" : "\n") + change;
+  return {{"title", scene.title},
+          {"source", "dolp " DOLP_VERSION},
+          {"history", fmt::format("{:%Y-%m-%dT%H:%M:%SZ} {}", fmt::gmtime(now), options.command_line)},
+          {"references",
+           "W. Wang, Y. Li, L. Wang, Infrared Polarization Radiation Optimization Model Based on the Cauchy "
+           "Distribution, Infrared 46(8), 2025, doi:10.3969/j.issn.1672-8785.2025.08.004"},
+          {"scene", scene.text},
+          {"scene_overrides", overrides},
+          {"scene_hash", scene_hash(scene)},
+          {"device", report.evaluation.device},
+          {"driver", report.evaluation.driver},
+          {"evaluator", report.evaluation.evaluator},
+          {"precision", report.evaluation.precision},
+          {"tolerance", report.tolerance},
+          {"rule", rule_text(report.tolerance)},
+          {"wall_time_s", report.wall_s}};
+}
+
+}  // namespace
+
+int run_table(const Options& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const Scene scene = load_scene(options);
+  check_output_path(options.output_path);
+  const std::unique_ptr<MomentsEvaluator> evaluator = make_evaluator(options, scene);
+  const std::vector<SceneEntry> entries = grid_entries(scene);
+  std::vector<PointResult> results;
+  {
+    ProgressBar bar(options.quiet);
+    results = evaluate_scene(scene, entries, *evaluator, bar.callback());
+  }
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  RunReport report = make_report(scene, results, evaluator->report(), wall.count());
+  report.output = options.output_path;
+  report.shape = fmt::format("{} x {} x {} (theta x sigma x q)", scene.grid.theta_deg.size(), scene.grid.sigma.size(),
+                             scene.grid.q.size());
+  Table table;
+  table.theta_deg = scene.grid.theta_deg;
+  table.sigma = scene.grid.sigma;
+  table.q = scene.grid.q;
+  if (scene.spectrum.is_band()) table.stokes_units = "W m-2";
+  fill_variables(table, results);
+  table.attributes = attributes(scene, options, report);
+  write_table(table, options.output_path);
+  print_report(report, options.json, options.quiet);
+  return options.strict && report.missed_tolerance > 0 ? kExitAccuracy : kExitDone;
+}
+
+}  // namespace dolp::cli

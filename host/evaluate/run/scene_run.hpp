@@ -1,0 +1,34 @@
+// A scene at many entries: which moments are wanted, their evaluation, and the radiometry of each entry.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "evaluate/moments.hpp"
+#include "evaluate/radiometry/radiometry.hpp"
+#include "scene/points.hpp"
+#include "scene/scene.hpp"
+
+namespace dolp {
+
+/// One point of a table or of a list of points. Without an `index` of its own it has the scene's material.
+struct SceneEntry {
+  double theta_deg = 0.0;
+  SlopeShape shape;
+  std::optional<OpticalConstants> index;
+};
+
+/// The product of the scene's grid axes in C order (theta, sigma, q), q fastest.
+std::vector<SceneEntry> grid_entries(const Scene& scene);
+
+/// Scattered points; what they do not say comes from the scene.
+/// Errors: InputError when theta is neither in the points nor a single value in the grid, or sigma or q cannot be used
+/// with the scene's masking.
+std::vector<SceneEntry> point_entries(const Scene& scene, const Points& points);
+
+/// Results in the order of `entries`. Progress counts entries.
+/// Errors: those of the evaluator and of Radiometry.
+std::vector<PointResult> evaluate_scene(const Scene& scene, const std::vector<SceneEntry>& entries,
+                                        MomentsEvaluator& evaluator, const Progress& progress);
+
+}  // namespace dolp

@@ -29,7 +29,7 @@
 #define DOLP_PUSH_CONSTANTS uint first; uint count; uint unused_0; uint unused_1;
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
-#define DOLP_MAX_PIECES 8        // pieces of the slope axis for one direction
+#define DOLP_MAX_PIECES 12       // pieces of the slope axis for one direction
 #define DOLP_MAX_ORDER 32        // largest Gauss order of the rule nodes
 #define DOLP_MASKING_OCTAVES 29  // of v = 1 + tau/scale
 #define DOLP_MASKING_CELLS 16    // per octave
@@ -37,7 +37,8 @@
 
 // ---- Structures ----------------------------------------------------------------------------------------------------
 
-// One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth.
+// One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. Under total
+// reflection the pieces depend on the index too, so that a direction has a node for each such index.
 struct ThetaNode {
   real c;                          // cos(theta)
   real s;                          // sin(theta)
@@ -61,8 +62,9 @@ struct ShapeNode {
 
 // One complex refractive index N = n + ik.
 struct IndexNode {
-  real n2m1_re;  // Re(N^2 - 1)
-  real n2m1_im;  // Im(N^2 - 1)
+  real n2m1_re;       // Re(N^2 - 1)
+  real n2m1_im;       // Im(N^2 - 1)
+  real critical_cos;  // sqrt(1 - n^2) where n < 1 and k = 0: total reflection for a smaller cos(beta); otherwise 0
 };
 
 // Moments times cos(theta) (MODEL.md section 3), and |fine - coarse| summed over the pieces for each.

@@ -68,7 +68,8 @@ int parse_and_run(int argc, char** argv) {
   add_run(*table, options);
   CLI::App* eval = app.add_subcommand("eval", "the same quantities at scattered points");
   add_run(*eval, options);
-  eval->add_option("--points", options.points_path, "CSV with any of theta_deg, sigma, q, n, k; - is stdin")->required();
+  eval->add_option("--points", options.points_path, "CSV with any of theta_deg, sigma, q, n, k; - is stdin")
+      ->required();
   CLI::App* devices = app.add_subcommand("devices", "Vulkan devices, and why each one is or is not usable");
   devices->add_flag("--json", options.json, "machine-readable list");
   devices->add_option("--device", options.device, "check this one: its position or a part of its name");

@@ -7,6 +7,8 @@
 #include <boost/math/special_functions/sin_pi.hpp>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "plan/rule_nodes.hpp"
 
@@ -23,6 +25,13 @@ constexpr double kNoEnd = 1e30;    // a slope beyond every cut, in place of infi
 // The rule aims this many digits beyond the tolerance, so that the coarser rule it is compared with meets the tolerance.
 constexpr double kExtraDigits = 2.0;
 
+// The square root of total reflection wants more nodes.
+constexpr double kTotalReflectionOrderT = 1.4;
+constexpr double kTotalReflectionOrderPhi = 2.0;
+
+// Bound of the loop iterations of one invocation, below the 65,535 at which lavapipe stops without notice.
+constexpr double kMostIterations = 60'000.0;
+
 // Largest slope that is ever integrated: beyond it the squares of a float overflow.
 constexpr double kLargestCut = 1e8;
 
@@ -35,8 +44,8 @@ constexpr double kMaskingTableError = 1e-6;
 
 // Rounding error in units of the precision's roundoff, relative to the integral of absolute values. The masking table
 // of a tail that falls like tau^(2-2q) is a sum of hundreds of equal terms when q is near 1.
-constexpr double kRoundings = 40.0;
-constexpr double kHeavyTailRoundings = 160.0;
+constexpr double kRoundings = 20.0;
+constexpr double kHeavyTailRoundings = 80.0;
 constexpr double kHeavyTailQ = 1.1;
 
 struct Breakpoint {
@@ -49,8 +58,24 @@ double tan_deg(double angle_deg) {
   return a.sin / a.cos;
 }
 
+// cos(beta) below which everything is reflected; 0 when nothing is.
+double critical_cos(const OpticalConstants& index) {
+  return index.k == 0.0 && index.n < 1.0 ? std::sqrt((1.0 - index.n) * (1.0 + index.n)) : 0.0;
+}
+
+// Slopes at which the critical line cos(beta) = critical_cos meets phi = 0 or pi, the horizon or theta_r = theta.
+void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, double critical) {
+  const double critical_deg = std::acos(critical) * 180.0 / pi<double>();
+  points.push_back({tan_deg(std::abs(theta_deg - critical_deg)), kEndAbove + kEndBelow});
+  if (theta_deg + critical_deg < 90.0) points.push_back({tan_deg(theta_deg + critical_deg), kEndAbove + kEndBelow});
+  for (const double facet_cos : {a.cos / (2.0 * critical), a.cos / critical}) {
+    if (facet_cos <= 0.0 || facet_cos >= 1.0) continue;
+    points.push_back({std::sqrt((1.0 - facet_cos) * (1.0 + facet_cos)) / facet_cos, kEndAbove + kEndBelow});
+  }
+}
+
 // Slopes at which the set of smooth arcs changes (MODEL.md section 3; NUMERICS: exact split lines).
-std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking masking) {
+std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking masking, double critical) {
   std::vector<Breakpoint> points = {{a.cos / (1.0 + a.sin), kEndAbove},
                                     {a.cos > 0.0 ? (1.0 + a.sin) / a.cos : kNoEnd, kEndBelow}};
   if (masking == Masking::kIntegral) {
@@ -73,30 +98,64 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking m
       points.push_back({a.cos > 0.0 ? a.sin / a.cos : kNoEnd, kEndBelow});
     }
   }
+  if (critical > 0.0) add_critical_breakpoints(points, theta_deg, a, critical);
   std::sort(points.begin(), points.end(), [](const auto& x, const auto& y) { return x.slope < y.slope; });
   return points;
 }
 
-kernel::ThetaNode theta_node(const MomentsRequest& request, double theta_deg, double digits) {
+// Loop iterations of one invocation for a direction whose slopes have `arcs` arcs each: pieces, slopes, arcs, azimuths,
+// for the fine and the coarse rule.
+double iterations(const kernel::ThetaNode& node, double arcs) {
+  const double fine_t = std::min<double>(node.order_t, DOLP_MAX_ORDER);
+  const double fine_phi = std::min<double>(node.order_phi, DOLP_MAX_ORDER);
+  const double coarse_t = 0.25 * (3.0 * fine_t + 1.0);
+  const double coarse_phi = 0.75 * fine_phi;
+  return node.piece_count *
+         (1.0 + (1.0 + arcs) * (fine_t + coarse_t) + arcs * (fine_t * fine_phi + coarse_t * coarse_phi));
+}
+
+double arcs_per_slope(Masking masking, double critical) {
+  const double zones = masking == Masking::kIntegral || masking == Masking::kVCavity ? 3.0 : 1.0;
+  return critical > 0.0 ? 2.0 * zones : zones;
+}
+
+// Lowers the orders until the kernel is sure to finish; the error estimate then shows what that costs.
+void limit_iterations(kernel::ThetaNode& node, double arcs) {
+  node.order_t = std::min<double>(node.order_t, DOLP_MAX_ORDER);
+  node.order_phi = std::min<double>(node.order_phi, DOLP_MAX_ORDER);
+  while (iterations(node, arcs) > kMostIterations) {
+    node.order_t -= 1.0;
+    node.order_phi -= 1.0;
+  }
+}
+
+kernel::ThetaNode theta_node(const MomentsRequest& request, double theta_deg, double digits, double critical) {
   const CosSin a = cos_sin_deg(theta_deg);
   kernel::ThetaNode node{};
   node.c = a.cos;
   node.s = a.sin;
   const double horizon = a.cos > 0.0 ? (1.0 + a.sin) / a.cos : kNoEnd;
   int pieces = 0;
-  for (const Breakpoint& point : breakpoints(theta_deg, a, request.masking)) {
+  for (const Breakpoint& point : breakpoints(theta_deg, a, request.masking, critical)) {
     if (point.slope <= 0.0 || point.slope > horizon) continue;
     ++pieces;
     node.end[pieces] = point.slope;
     node.kind[pieces] = point.kind;
   }
   node.piece_count = pieces;
-  const double grazing = std::clamp((theta_deg - 80.0) / 9.0, 0.0, 1.0);
-  node.order_t = digits * (2.4 + 0.9 * grazing) + 2.5;
+  // Toward grazing incidence the pseudo-Brewster structure asks for slopes, the horizon for azimuths.
+  const double oblique = std::clamp((theta_deg - 65.0) / 15.0, 0.0, 1.0);
+  node.order_t = digits * (2.4 + 0.9 * oblique) + 2.5;
   node.order_per_e = node.order_t / (digits * std::log(10.0));
+  const double grazing = std::clamp((theta_deg - 80.0) / 9.0, 0.0, 1.0);
   const double smooth = 0.2 + digits * (0.97 + 0.6 * grazing * grazing + 0.3 * std::max(0.0, theta_deg - 88.0));
   const double cusp = request.distribution == Distribution::kCauchy ? 2.0 * digits : 1.6 * digits;
   node.order_phi = std::ceil(request.masking == Masking::kSmith ? std::max(smooth, cusp) : smooth);
+  if (critical > 0.0) {
+    node.order_t *= kTotalReflectionOrderT;
+    node.order_phi = std::ceil(kTotalReflectionOrderPhi * node.order_phi);
+  }
+  limit_iterations(node, arcs_per_slope(request.masking, critical));
   return node;
 }
 
@@ -123,28 +182,52 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
   return node;
 }
 
+// Mean of |t_x|, the slope in one plane. Domain: q > 1.5 for the cauchy.
+double mean_slope(Distribution distribution, const kernel::ShapeNode& shape) {
+  if (distribution == Distribution::kGaussian) return shape.m / root_pi<double>();
+  return shape.m / root_pi<double>() * boost::math::tgamma_delta_ratio(shape.q_minus_1 - 0.5, 0.5);
+}
+
+// Upper bound of G over all facets. v-cavity: e G <= 2 c is used instead. smith: the facets that theta sees add up to c,
+// so that G <= G1(theta) = c / integral of e over e > 0, and that integral is at least (c + s mean |t_x|) / 2.
+double masking_bound(Distribution distribution, Masking masking, const kernel::ThetaNode& theta,
+                     const kernel::ShapeNode& shape) {
+  if (masking != Masking::kSmith) return 1.0;
+  return std::min(1.0, 2.0 * theta.c / (theta.c + theta.s * mean_slope(distribution, shape)));
+}
+
 // Upper bound of the albedo integral (times cos theta) over the slopes T beyond the cut, which the kernel leaves out:
-// e <= c + s t, so that it is at most c * tail(T) + 2 s * integral of P t^2 over t > T.
-double cut_bound(Distribution distribution, Masking masking, const kernel::ThetaNode& theta,
-                 const kernel::ShapeNode& shape) {
+// e <= c + s t, so that without masking it is at most c * tail(T) + 2 s * integral of P t^2 over t > T.
+double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape) {
   if (shape.cut >= theta.end[static_cast<std::size_t>(theta.piece_count)]) return 0.0;
   const double u = shape.cut / shape.m;
-  if (masking == Masking::kVCavity) {  // e G <= 2 c
-    const double exponent = distribution == Distribution::kCauchy ? shape.q_minus_1 * std::log1p(u * u) : u * u;
-    return 2.0 * theta.c * std::exp(-exponent);
-  }
-  if (distribution == Distribution::kGaussian) {
-    const double tail = std::exp(-u * u);
-    return tail * (theta.c + theta.s * shape.m / pi<double>() * (u + 0.5 / u));
-  }
-  if (shape.q_minus_1 <= 0.5) return std::numeric_limits<double>::infinity();
+  const bool gaussian = data.distribution == Distribution::kGaussian;
   const double log_square = std::log1p(u * u);
-  const double slope_tail = shape.q_minus_1 * shape.m / pi<double>() * std::exp((0.5 - shape.q_minus_1) * log_square);
-  return theta.c * std::exp(-shape.q_minus_1 * log_square) + 2.0 * theta.s * slope_tail / (2.0 * shape.q_minus_1 - 1.0);
+  const double tail = std::exp(gaussian ? -u * u : -shape.q_minus_1 * log_square);
+  if (data.masking == Masking::kVCavity) return 2.0 * theta.c * tail;
+  if (!gaussian && shape.q_minus_1 <= 0.5) return std::numeric_limits<double>::infinity();
+  const double slopes =
+      gaussian ? shape.m / pi<double>() * (u + 0.5 / u) * tail
+               : 2.0 * shape.q_minus_1 * shape.m / pi<double>() * std::exp((0.5 - shape.q_minus_1) * log_square) /
+                     (2.0 * shape.q_minus_1 - 1.0);
+  return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
 }
 
 kernel::IndexNode index_node(const OpticalConstants& index) {
-  return {(index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k};
+  return {(index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k, critical_cos(index)};
+}
+
+// Gives the entries under total reflection directions with their own pieces.
+void add_total_reflection(KernelData& data, const MomentsRequest& request, double digits) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> nodes;
+  for (MomentsEntry& entry : data.entries) {
+    const double critical = data.indices[entry.index].critical_cos;
+    if (critical <= 0.0) continue;
+    const auto [found, is_new] =
+        nodes.try_emplace({entry.theta, entry.index}, static_cast<std::uint32_t>(data.thetas.size()));
+    if (is_new) data.thetas.push_back(theta_node(request, request.theta_deg[entry.theta], digits, critical));
+    entry.theta = found->second;
+  }
 }
 
 }  // namespace
@@ -159,18 +242,20 @@ KernelData kernel_data(const MomentsRequest& request) {
   data.distribution = request.distribution;
   data.masking = request.masking;
   data.rule_nodes = rule_nodes();
-  for (const double theta_deg : request.theta_deg) data.thetas.push_back(theta_node(request, theta_deg, digits));
+  for (const double theta_deg : request.theta_deg) data.thetas.push_back(theta_node(request, theta_deg, digits, 0.0));
   for (const SlopeShape& shape : request.shapes) data.shapes.push_back(shape_node(request, shape));
   for (const OpticalConstants& index : request.indices) data.indices.push_back(index_node(index));
+  data.entries = request.entries;
+  add_total_reflection(data, request, digits);
   return data;
 }
 
-Moments moments_from_kernel(const kernel::MomentsNode& node, const MomentsRequest& request, const KernelData& data,
-                            const MomentsEntry& entry, double unit_roundoff) {
+Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
+                            double unit_roundoff) {
   const kernel::ShapeNode& shape = data.shapes[entry.shape];
-  const double cut = cut_bound(request.distribution, request.masking, data.thetas[entry.theta], shape);
+  const double cut = cut_bound(data, data.thetas[entry.theta], shape);
   const double masking = data.needs_masking_table() ? kMaskingTableError : 0.0;
-  const bool heavy_tail = request.distribution == Distribution::kCauchy && shape.q_minus_1 < kHeavyTailQ - 1.0;
+  const bool heavy_tail = data.distribution == Distribution::kCauchy && shape.q_minus_1 < kHeavyTailQ - 1.0;
   const double rounding = unit_roundoff * (masking > 0.0 && heavy_tail ? kHeavyTailRoundings : kRoundings);
   Moments moments;
   moments.r_i = node.r_i;
@@ -183,7 +268,25 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const MomentsReques
   moments.deficit_error =
       2.0 * node.deficit_difference + rounding * node.deficit_scale + masking * node.albedo + cut;
   moments.evaluations = node.evaluations;
+  // r_i + deficit = cos(theta): the better known of the two gives the other.
+  const double cosine = data.thetas[entry.theta].c;
+  if (moments.deficit_error > moments.r_i_error) {
+    moments.deficit = cosine - moments.r_i;
+    moments.deficit_error = moments.r_i_error;
+  } else {
+    moments.r_i = cosine - moments.deficit;
+    moments.r_i_error = moments.deficit_error;
+  }
   return moments;
+}
+
+double worst_iterations(const KernelData& data) {
+  double worst = 0.0;
+  for (const MomentsEntry& entry : data.entries) {
+    const double arcs = arcs_per_slope(data.masking, data.indices[entry.index].critical_cos);
+    worst = std::max(worst, iterations(data.thetas[entry.theta], arcs));
+  }
+  return worst;
 }
 
 }  // namespace dolp

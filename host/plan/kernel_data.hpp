@@ -15,13 +15,15 @@ using real = double;
 #include "shaders/interface.glsl"  // NOLINT: one text for host and shaders
 }  // namespace kernel
 
-/// Inputs of one run of the kernel. The lists match those of the request, position by position.
+/// Inputs of one run of the kernel. `shapes` and `indices` match the lists of the request, `entries` its entries,
+/// position by position; `thetas` has the request's directions first and more after them for total reflection.
 struct KernelData {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
   std::vector<kernel::ThetaNode> thetas;
   std::vector<kernel::ShapeNode> shapes;
   std::vector<kernel::IndexNode> indices;
+  std::vector<MomentsEntry> entries;
   std::vector<std::array<double, 2>> rule_nodes;
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
 };
@@ -31,7 +33,11 @@ KernelData kernel_data(const MomentsRequest& request);
 
 /// Turns what the kernel returned for one entry into moments with error bounds, `unit_roundoff` being that of the
 /// kernel's precision.
-Moments moments_from_kernel(const kernel::MomentsNode& node, const MomentsRequest& request, const KernelData& data,
-                            const MomentsEntry& entry, double unit_roundoff);
+Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
+                            double unit_roundoff);
+
+/// Upper bound of the loop iterations of one invocation for any entry of `data`: all its nested loops together.
+/// Drivers may stop an invocation after 65,535 of them, without an error and with wrong sums.
+double worst_iterations(const KernelData& data);
 
 }  // namespace dolp

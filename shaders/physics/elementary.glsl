@@ -38,12 +38,13 @@ real expm1_real(real x) {
   return power * fraction + (power - real(1.0));
 }
 
-// e^x for x <= 80; below -80 it is a number under 2e-35, which every sum here ignores.
+// e^x for x <= 80; 0 below -80, where it is under 2e-35 of anything it is added to here.
 real exp_real(real x) {
   real bounded = max(x, real(-80.0));
   real k = floor(bounded * kInverseLn2 + real(0.5));
   real r = (bounded - k * kLn2High) - k * kLn2Low;
-  return ldexp(real(1.0) + (r + r * r * exp_series(r)), int(k));
+  real power = ldexp(real(1.0) + (r + r * r * exp_series(r)), int(k));
+  return (x < real(-80.0)) ? real(0.0) : power;
 }
 
 // atanh(z)/z - 1 over z^2, for z^2 <= 0.03.

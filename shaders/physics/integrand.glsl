@@ -29,25 +29,32 @@ FacetSums add_weighted(FacetSums sum, FacetSums term, real weight) {
   return sum;
 }
 
-// Integrand at azimuth (x, sin phi) per unit of azimuth, `hidden` being e (1 - G).
-FacetSums facet(ThetaNode theta, IndexNode index, real t, real r2, real x, real sin_phi, real e, real hidden) {
+// A facet's projection e as the part that masking leaves, e G, and the part that it hides, e (1 - G): each is computed
+// on its own, because either may be the difference of two nearly equal numbers.
+struct Projection {
+  real seen;
+  real hidden;
+};
+
+// Integrand at azimuth (x, sin phi) per unit of azimuth.
+FacetSums facet(ThetaNode theta, IndexNode index, real t, real r2, real x, real sin_phi, real e, Projection part) {
   real along = theta.c * t * x - theta.s;
   real across = t * sin_phi;
   Fresnel f = fresnel(index, sqrt(r2) * e);
   real half_split = real(0.5) * f.split_over_sin2 * r2;
   real split = half_split * (along * along + across * across);
-  real seen = e - hidden;
   FacetSums sum;
-  sum.r_i = seen * (f.r_s - split);
-  sum.r_q = seen * half_split * (along * along - across * across);
-  sum.albedo = seen;
-  sum.deficit = hidden + seen * (f.absorbed_s + split);
+  sum.r_i = part.seen * (f.r_s - split);
+  sum.r_q = part.seen * half_split * (along * along - across * across);
+  sum.albedo = part.seen;
+  sum.deficit = part.hidden + part.seen * (f.absorbed_s + split);
   sum.deficit_scale = sum.deficit;
   sum.evaluations = real(1.0);
   return sum;
 }
 
-// An arc of azimuths phi = centre + psi, psi = 4 atan(extent * abscissa), on which the integrand is smooth.
+// An arc of azimuths phi = centre + psi, psi = 4 atan(extent * abscissa), on which the integrand is smooth. Its extent is
+// negative when the centre is its end.
 struct Arc {
   real centre_cos;
   real centre_sin;
@@ -95,18 +102,40 @@ Arc make_arc(real2 from, real2 to, int order, bool cusp) {
   return arc;
 }
 
-// e (1 - G) for a facet whose reflected ray leaves at cos_r. `zone` numbers the arcs from phi = 0; `by_slope` is what the
-// slope alone decides: the shadow of theta (`integral`, valid in zone 0, where theta_r < theta) or L(theta) (smith).
-real hidden_part(ThetaNode theta, ShapeNode shape, uint table, real t, real e, real cos_r, int zone, real by_slope) {
+// The arc between two azimuths at whose end the integrand has a square root.
+Arc make_root_arc(real2 from, real2 to, int order) {
+  Arc arc = make_arc(from, to, order, false);
+  real sin_half = to.y * from.x - to.x * from.y;
+  arc.centre_cos = (to.x - to.y) * (to.x + to.y);
+  arc.centre_sin = real(2.0) * to.x * to.y;
+  arc.extent = -sin_half / (real(1.0) + to.x * from.x + to.y * from.y);
+  arc.first_node = cluster_offset(order);
+  return arc;
+}
+
+// The azimuth in [from, to] nearest to `phi`, all as half angles.
+real2 clamp_half_angle(real2 phi, real2 from, real2 to) {
+  real2 above = (from.x * phi.y - from.y * phi.x > real(0.0)) ? phi : from;
+  return (above.x * to.y - above.y * to.x > real(0.0)) ? above : to;
+}
+
+// The projection of a facet whose reflected ray leaves at cos_r. `zone` numbers the arcs from phi = 0; `by_slope` is
+// what the slope alone decides: the shadow of theta (`integral`, valid in zone 0, where theta_r < theta) or L(theta).
+Projection project(ThetaNode theta, ShapeNode shape, uint table, real t, real e, real cos_r, int zone, real by_slope) {
+  if (kMasking == DOLP_MASKING_NONE) return Projection(e, real(0.0));
   if (kMasking == DOLP_MASKING_V_CAVITY) {
-    return max(real(0.0), e - real(2.0) * min(theta.c, cos_r));
+    real seen = min(e, real(2.0) * min(theta.c, cos_r));
+    return Projection(seen, e - seen);
   }
-  if (kMasking == DOLP_MASKING_NONE) return real(0.0);
-  if (kMasking == DOLP_MASKING_INTEGRAL && zone == 0) return e * by_slope;
   real sin_r = sqrt((real(1.0) - cos_r) * (real(1.0) + cos_r));
-  if (kMasking == DOLP_MASKING_INTEGRAL) return e * shadowed_integral(shape, table, cos_r, sin_r, t);
-  real lambdas = by_slope + smith_lambda(shape, table, cos_r, sin_r);
-  return e - e / (real(1.0) + lambdas);
+  if (kMasking == DOLP_MASKING_SMITH) {
+    real lambdas = by_slope + smith_lambda(shape, table, cos_r, sin_r);
+    real g = real(1.0) / (real(1.0) + lambdas);
+    return Projection(e * g, e * (lambdas * g));
+  }
+  real shadow = by_slope;
+  if (zone > 0) shadow = shadowed_integral(shape, table, cos_r, sin_r, t);
+  return Projection(e * (real(1.0) - shadow), e * shadow);
 }
 
 FacetSums arc_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint table, real t, Arc arc, int zone,
@@ -124,24 +153,26 @@ FacetSums arc_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint table
     real sin_phi = arc.centre_sin * cos_psi + arc.centre_cos * sin_psi;
     real e = theta.c + theta.s * t * x;
     real cos_r = clamp(real(2.0) * r2 * e - theta.c, real(0.0), real(1.0));
-    real hidden = hidden_part(theta, shape, table, t, e, cos_r, zone, by_slope);
-    FacetSums term = facet(theta, index, t, r2, x, sin_phi, e, hidden);
-    sum = add_weighted(sum, term, real(4.0) * arc.extent * inverse * node.y);
+    Projection part = project(theta, shape, table, t, e, cos_r, zone, by_slope);
+    FacetSums term = facet(theta, index, t, r2, x, sin_phi, e, part);
+    sum = add_weighted(sum, term, real(4.0) * abs(arc.extent) * inverse * node.y);
   }
   return sum;
 }
 
-// The azimuths, as half angles in ascending order, that split [0, pi] into arcs on which the integrand is smooth.
+// The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth: three in ascending order
+// and the critical one, anywhere among them.
 struct SplitLines {
   real2 first;
   real2 second;
-  real2 horizon;  // theta_r = 90 degrees: beyond it the reflected ray does not leave
+  real2 horizon;   // theta_r = 90 degrees: beyond it the reflected ray does not leave
+  real2 critical;  // cos(beta) = critical_cos: total reflection beyond it, a square root before it
 };
 
 // cos(phi) = level / (s t), as a half angle.
 real2 line_at(real level, real st) { return half_angle((st + level) / st, (st - level) / st); }
 
-SplitLines split_lines(ThetaNode theta, real t) {
+SplitLines split_lines(ThetaNode theta, IndexNode index, real t) {
   real c = theta.c;
   real s = theta.s;
   real st = max(s * t, real(1e-30));
@@ -151,6 +182,7 @@ SplitLines split_lines(ThetaNode theta, real t) {
                              (real(1.0) + s - c * t) * (t + c / (real(1.0) + s)) / (real(2.0) * st));
   lines.first = lines.horizon;
   lines.second = lines.horizon;
+  lines.critical = line_at(index.critical_cos * sqrt(sec2) - c, st);
   real2 same_zenith = line_at(c * t * t, st);  // theta_r = theta
   if (kMasking == DOLP_MASKING_INTEGRAL) {
     // The limit b of eq. (11) reaches pi/2 at theta_r = pi/4 + alpha/2; 1 - sin(alpha) = cos^2(alpha) / (1 + sin(alpha)).
@@ -168,20 +200,35 @@ SplitLines split_lines(ThetaNode theta, real t) {
   return lines;
 }
 
+// Integral over the azimuths of one zone, split where total reflection begins.
+FacetSums zone_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint table, real t, real2 from, real2 to,
+                    real2 critical, int order, int zone, real by_slope) {
+  bool cusp = zone == 0 && has_cusp(shape);
+  if (index.critical_cos <= real(0.0)) {
+    return arc_sums(theta, shape, index, table, t, make_arc(from, to, order, cusp), zone, by_slope);
+  }
+  real2 middle = clamp_half_angle(critical, from, to);
+  FacetSums sum = no_facets();
+  for (int side = 0; side < 2; ++side) {
+    Arc arc = (side == 0) ? make_root_arc(from, middle, order) : make_arc(middle, to, order, false);
+    sum = add_weighted(sum, arc_sums(theta, shape, index, table, t, arc, zone, by_slope), real(1.0));
+  }
+  return sum;
+}
+
 // Integral over the azimuth from 0 to pi at slope t, the facets below the horizon counted in the deficit.
 FacetSums azimuth_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint table, real t, int order) {
-  SplitLines lines = split_lines(theta, t);
+  SplitLines lines = split_lines(theta, index, t);
   real by_slope = real(0.0);
   if (kMasking == DOLP_MASKING_INTEGRAL) by_slope = shadowed_integral(shape, table, theta.c, theta.s, t);
   if (kMasking == DOLP_MASKING_SMITH) by_slope = smith_lambda(shape, table, theta.c, theta.s);
   real2 forward = real2(real(1.0), real(0.0));
-  Arc first = make_arc(forward, lines.first, order, has_cusp(shape));
-  FacetSums sum = arc_sums(theta, shape, index, table, t, first, 0, by_slope);
+  FacetSums sum = zone_sums(theta, shape, index, table, t, forward, lines.first, lines.critical, order, 0, by_slope);
   if (kMasking == DOLP_MASKING_INTEGRAL || kMasking == DOLP_MASKING_V_CAVITY) {
     for (int zone = 1; zone < 3; ++zone) {
-      Arc arc = (zone == 1) ? make_arc(lines.first, lines.second, order, false)
-                            : make_arc(lines.second, lines.horizon, order, false);
-      FacetSums part = arc_sums(theta, shape, index, table, t, arc, zone, by_slope);
+      real2 from = (zone == 1) ? lines.first : lines.second;
+      real2 to = (zone == 1) ? lines.second : lines.horizon;
+      FacetSums part = zone_sums(theta, shape, index, table, t, from, to, lines.critical, order, zone, by_slope);
       sum = add_weighted(sum, part, real(1.0));
     }
   }

@@ -20,10 +20,10 @@ std::vector<Moments> CpuEvaluator::evaluate(const MomentsRequest& request, const
   if (data.needs_masking_table()) {
     parallel_for(data.shapes.size(), [&](std::size_t i) { text->build_masking_table(i); }, nullptr);
   }
-  std::vector<Moments> moments(request.entries.size());
+  std::vector<Moments> moments(data.entries.size());
   const auto one = [&](std::size_t i) {
-    const MomentsEntry& entry = request.entries[i];
-    moments[i] = moments_from_kernel(text->moments(entry), request, data, entry, unit_roundoff);
+    const MomentsEntry& entry = data.entries[i];
+    moments[i] = moments_from_kernel(text->moments(entry), data, entry, unit_roundoff);
   };
   parallel_for(moments.size(), one, progress);
 

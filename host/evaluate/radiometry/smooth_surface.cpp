@@ -1,6 +1,7 @@
 #include "evaluate/radiometry/smooth_surface.hpp"
 
 #include <complex>
+#include <limits>
 
 namespace dolp {
 
@@ -12,6 +13,21 @@ SmoothAbsorptance smooth_absorptance(const OpticalConstants& index, double cosin
   const Complex w = std::sqrt(square_minus_one + cosine * cosine);
   return {4.0 * cosine * w.real() / std::norm(cosine + w),
           4.0 * cosine * (std::conj(square) * w).real() / std::norm(square * cosine + w)};
+}
+
+Moments mirror_moments(const OpticalConstants& index, double cosine) {
+  const SmoothAbsorptance absorbed = smooth_absorptance(index, cosine);
+  const double rounding = 16.0 * std::numeric_limits<double>::epsilon() * cosine;
+  Moments moments;
+  moments.albedo = cosine;
+  moments.deficit = 0.5 * (absorbed.s + absorbed.p) * cosine;
+  moments.r_i = cosine - moments.deficit;
+  moments.r_q = 0.5 * (absorbed.p - absorbed.s) * cosine;
+  moments.r_i_error = rounding;
+  moments.r_q_error = rounding;
+  moments.albedo_error = rounding;
+  moments.deficit_error = rounding * 0.5 * (absorbed.s + absorbed.p);
+  return moments;
 }
 
 }  // namespace dolp

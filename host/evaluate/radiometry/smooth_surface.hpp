@@ -1,5 +1,6 @@
 #pragma once
 
+#include "evaluate/moments.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {
@@ -16,5 +17,11 @@ struct SmoothAbsorptance {
 /// Domain: cosine c in (0, 1], n > 0, k >= 0; total reflection (n < 1, k = 0) gives exactly 0.
 /// Accuracy: no cancellation, however good the reflector.
 SmoothAbsorptance smooth_absorptance(const OpticalConstants& index, double cosine);
+
+/// Moments of the mirror, the limit sigma -> 0 of every surface: R_s and R_p at the direction itself, no masking.
+///
+/// Domain: cosine in (0, 1].
+/// Accuracy: as smooth_absorptance.
+Moments mirror_moments(const OpticalConstants& index, double cosine);
 
 }  // namespace dolp

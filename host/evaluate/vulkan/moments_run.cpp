@@ -19,7 +19,7 @@ MomentsRun::MomentsRun(const RunContext& context, const MomentsRequest& request,
       request_(request),
       data_(kernel_data(request)),
       sizes_(sizes(tile_entries, block_shapes)),
-      thetas_(request.theta_deg.size()),
+      thetas_(data_.thetas.size()),
       indices_(request.indices.size()) {
   create_buffers();
 }
@@ -34,7 +34,7 @@ TileSizes MomentsRun::sizes(std::uint32_t tile_entries, std::uint32_t block_shap
   return tile_sizes({.buffer_bytes = limits.maxStorageBufferRange,
                      .heap_bytes = context_.device.heap_bytes(),
                      .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
-                     .tile_entries = std::min<std::uint64_t>(tile_entries, request_.entries.size()),
+                     .tile_entries = std::min<std::uint64_t>(tile_entries, data_.entries.size()),
                      .block_shapes = std::min<std::uint64_t>(block_shapes, data_.shapes.size())},
                     costs);
 }
@@ -67,9 +67,9 @@ void MomentsRun::create_buffers() {
 }
 
 std::optional<std::vector<Moments>> MomentsRun::compute(const Progress& progress) {
-  std::vector<Moments> moments(request_.entries.size());
+  std::vector<Moments> moments(data_.entries.size());
   std::size_t done = 0;
-  for (const Block& block : blocks_of(request_.entries, data_.shapes.size(), sizes_.shapes)) {
+  for (const Block& block : blocks_of(data_.entries, data_.shapes.size(), sizes_.shapes)) {
     start_block(block);
     const std::span<const std::size_t> entries(block.entries);
     for (std::size_t first = 0; first < entries.size(); first += sizes_.entries) {
@@ -113,7 +113,7 @@ void MomentsRun::upload_tile(const Block& block, std::span<const std::size_t> en
   std::vector<EntryWords> words;
   words.reserve(entries.size());
   for (const std::size_t position : entries) {
-    const MomentsEntry& entry = request_.entries[position];
+    const MomentsEntry& entry = data_.entries[position];
     words.push_back({thetas_(entry.theta), entry.shape - block.first_shape, indices_(entry.index), 0U});
   }
   entry_buffer_->write(std::as_bytes(std::span(words)), context_.stream);
@@ -137,7 +137,7 @@ void MomentsRun::run_tile(const Block& block, std::span<const std::size_t> entri
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const auto node = context_.packing.read<kernel::MomentsNode>(scratch_, i);
     moments[entries[i]] =
-        moments_from_kernel(node, request_, data_, request_.entries[entries[i]], context_.packing.unit_roundoff());
+        moments_from_kernel(node, data_, data_.entries[entries[i]], context_.packing.unit_roundoff());
     cost_.evaluations += node.evaluations;
   }
 }

@@ -1,0 +1,167 @@
+// Globally adaptive Gauss-Kronrod quadrature of several integrands at once.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <boost/math/quadrature/gauss.hpp>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace dolp::reference {
+
+template <std::size_t N>
+using Values = std::array<double, N>;
+
+/// Integrals of N functions with bounds of their absolute errors.
+template <std::size_t N>
+struct Integral {
+  Values<N> value{};
+  Values<N> error{};
+};
+
+/// Where a quadrature stops.
+struct Goal {
+  double relative = 1e-9;        ///< of the scale of each integral
+  std::size_t max_panels = 400;  ///< beyond it the error reached so far is returned as it is
+  int subdivisions = 1;          ///< equal parts of each first panel: more of them is a different, finer rule
+};
+
+/// First panels of a quadrature: the end points and every break point between them.
+class Breaks {
+ public:
+  Breaks(double low, double high) : points_{low, high} {}
+  void add(double point) {
+    if (point > points_[0] && point < points_[1]) points_.push_back(point);
+  }
+  std::vector<double> sorted() const {
+    std::vector<double> points = points_;
+    std::sort(points.begin(), points.end());
+    return points;
+  }
+
+ private:
+  std::vector<double> points_;
+};
+
+/// One panel by the 21-point Kronrod rule, the error being its distance to the 10-point Gauss rule inside it. Where the
+/// integrand is smooth that is very pessimistic; the usual sharpening of it fails where the integrand is not.
+/// Source: nodes and weights of Boost.Math.
+template <std::size_t N, class Integrand>
+Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
+  using Kronrod = boost::math::quadrature::gauss_kronrod<double, 21>;
+  static const auto nodes = Kronrod::abscissa();
+  static const auto kronrod_weights = Kronrod::weights();
+  static const auto gauss_weights = boost::math::quadrature::gauss<double, 10>::weights();
+  const double centre = 0.5 * (low + high);
+  const double half = 0.5 * (high - low);
+  std::array<Values<N>, 21> samples;
+  samples[0] = integrand(centre);
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    samples[2 * i - 1] = integrand(centre - half * nodes[i]);
+    samples[2 * i] = integrand(centre + half * nodes[i]);
+  }
+  Integral<N> result;
+  for (std::size_t k = 0; k < N; ++k) {
+    double kronrod = kronrod_weights[0] * samples[0][k];
+    double gauss = 0.0;
+    double magnitude = kronrod_weights[0] * std::abs(samples[0][k]);
+    for (std::size_t i = 1; i < nodes.size(); ++i) {
+      const double pair = samples[2 * i - 1][k] + samples[2 * i][k];
+      kronrod += kronrod_weights[i] * pair;
+      if (i % 2 == 1) gauss += gauss_weights[i / 2] * pair;
+      magnitude += kronrod_weights[i] * (std::abs(samples[2 * i - 1][k]) + std::abs(samples[2 * i][k]));
+    }
+    result.value[k] = half * kronrod;
+    result.error[k] = half * (std::abs(kronrod - gauss) + 4.0 * std::numeric_limits<double>::epsilon() * magnitude);
+  }
+  return result;
+}
+
+/// The stretch between two break points as the image of [0, 1] under s -> s^2 (3 - 2 s), which turns square roots and
+/// 3/2 powers of the distance to a break point into smooth functions of s.
+struct Stretch {
+  double low;
+  double high;
+  double at(double s) const {
+    const double r = 1.0 - s;
+    return s < 0.5 ? low + (high - low) * s * s * (3.0 - 2.0 * s) : high - (high - low) * r * r * (1.0 + 2.0 * s);
+  }
+  double derivative(double s) const { return 6.0 * (high - low) * s * (1.0 - s); }
+};
+
+/// A part of a stretch, in s.
+template <std::size_t N>
+struct Panel {
+  Stretch stretch;
+  double low;
+  double high;
+  Integral<N> integral;
+};
+
+template <std::size_t N, class Integrand>
+Panel<N> panel_of(const Integrand& integrand, const Stretch& stretch, double low, double high) {
+  const auto in_s = [&](double s) {
+    Values<N> values = integrand(stretch.at(s));
+    for (double& value : values) value *= stretch.derivative(s);
+    return values;
+  };
+  return {stretch, low, high, kronrod_panel<N>(in_s, low, high)};
+}
+
+template <std::size_t N>
+Integral<N> sum_of(const std::vector<Panel<N>>& panels) {
+  Integral<N> total;
+  for (const Panel<N>& panel : panels) {
+    for (std::size_t k = 0; k < N; ++k) {
+      total.value[k] += panel.integral.value[k];
+      total.error[k] += panel.integral.error[k];
+    }
+  }
+  return total;
+}
+
+/// Largest of the N errors, each over its scale. A component of infinite scale is carried along and never refined for.
+template <std::size_t N>
+double scaled_error(const Values<N>& error, const Values<N>& scale) {
+  double worst = 0.0;
+  for (std::size_t k = 0; k < N; ++k) {
+    if (error[k] > 0.0) worst = std::max(worst, error[k] / scale[k]);
+  }
+  return worst;
+}
+
+/// Integrates N functions over the panels between `breaks`, halving the worst panel until every error is within
+/// `goal.relative` times `scale(values)`.
+template <std::size_t N, class Integrand, class Scale>
+Integral<N> integrate(const Integrand& integrand, const Breaks& breaks, const Goal& goal, const Scale& scale) {
+  const std::vector<double> points = breaks.sorted();
+  std::vector<Panel<N>> panels;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const Stretch stretch{points[i], points[i + 1]};
+    for (int j = 0; j < goal.subdivisions; ++j) {
+      const double low = static_cast<double>(j) / goal.subdivisions;
+      const double high = static_cast<double>(j + 1) / goal.subdivisions;
+      panels.push_back(panel_of<N>(integrand, stretch, low, high));
+    }
+  }
+  while (panels.size() < goal.max_panels) {
+    const Integral<N> total = sum_of(panels);
+    const Values<N> scales = scale(total.value);
+    if (scaled_error(total.error, scales) <= goal.relative) break;
+    const auto worst = std::max_element(panels.begin(), panels.end(), [&](const Panel<N>& a, const Panel<N>& b) {
+      return scaled_error(a.integral.error, scales) < scaled_error(b.integral.error, scales);
+    });
+    const Panel<N> whole = *worst;
+    const double middle = 0.5 * (whole.low + whole.high);
+    if (middle <= whole.low || middle >= whole.high) break;
+    *worst = panel_of<N>(integrand, whole.stretch, whole.low, middle);
+    panels.push_back(panel_of<N>(integrand, whole.stretch, middle, whole.high));
+  }
+  return sum_of(panels);
+}
+
+}  // namespace dolp::reference

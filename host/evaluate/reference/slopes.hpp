@@ -1,0 +1,39 @@
+// The two slope distributions of the reference.
+#pragma once
+
+#include "scene/scene.hpp"
+
+namespace dolp::reference {
+
+/// Density of facet slopes, in the forms that the moments and the masking need.
+class Slopes {
+ public:
+  /// Domain: sigma > 0; cauchy q > 1.
+  Slopes(Distribution distribution, double sigma, double q);
+
+  /// D(alpha), the facet distribution.
+  /// Equation: (8) for the cauchy, (1) for the gaussian. Units: sr^-1.
+  double facet_density(double tan2_alpha) const;
+
+  /// p(t), t = tan(gamma): the density of the slope in one vertical plane.
+  double in_plane_density(double slope) const;
+
+  /// Share of in-plane slopes above `slope`, for slopes so large that p is its leading power.
+  /// Domain: slope >= 1e8 m.
+  double in_plane_tail(double slope) const;
+
+  /// Slope over which the densities fall off: the natural unit of t.
+  double width() const { return width_; }
+  double m() const { return m_; }
+  double q() const { return q_; }
+  bool is_gaussian() const { return distribution_ == Distribution::kGaussian; }
+
+ private:
+  Distribution distribution_;
+  double m_;
+  double q_;
+  double width_;
+  double in_plane_norm_;  ///< p(0)
+};
+
+}  // namespace dolp::reference

@@ -1,0 +1,258 @@
+// The reference's masking and Mueller matrix against the model's definitions, integrated or written out in another
+// form.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/math/quadrature/exp_sinh.hpp>
+#include <boost/math/quadrature/tanh_sinh.hpp>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+
+#include "evaluate/reference/attenuation.hpp"
+#include "evaluate/reference/hemisphere.hpp"
+#include "evaluate/reference/mueller.hpp"
+#include "evaluate/reference/slopes.hpp"
+
+namespace dolp {
+namespace {
+
+using reference::Attenuation;
+using reference::IntegralMasking;
+using reference::Slopes;
+using reference::Zenith;
+using reference::zenith_from_deg;
+using std::numbers::pi;
+
+constexpr double kRadPerDeg = pi / 180.0;
+constexpr double kMaskingTolerance = 1e-13;
+constexpr OpticalConstants kSteel{1.508, 0.0};
+
+// The density of the in-plane slope as the model document writes it, normalised by the textbook Gamma functions.
+double in_plane_density(Distribution distribution, double sigma, double q, double t) {
+  if (distribution == Distribution::kGaussian) {
+    return std::exp(-t * t / (2.0 * sigma * sigma)) / (std::sqrt(2.0 * pi) * sigma);
+  }
+  const double m2 = 2.0 * sigma * sigma;
+  return std::tgamma(q - 0.5) / (std::sqrt(pi) * std::tgamma(q - 1.0) * std::sqrt(m2)) *
+         std::pow(std::hypot(1.0, t / std::sqrt(m2)), 1.0 - 2.0 * q);
+}
+
+// G_1 integrated over gamma itself; q well above 3/2 keeps the density finite at the ends.
+double plain_g1(Distribution distribution, double sigma, double q, double theta, double alpha) {
+  boost::math::quadrature::tanh_sinh<double> rule;
+  const auto density = [&](double gamma) {
+    const double c = std::cos(gamma);
+    return in_plane_density(distribution, sigma, q, std::tan(gamma)) / (c * c);
+  };
+  const double a = 0.5 * pi - theta;
+  const double b = std::min(0.5 * pi, pi - 2.0 * theta + alpha);
+  const auto weighted = [&](double gamma) {
+    return density(gamma) * (1.0 + std::cos(theta + gamma) / std::cos(theta - alpha));
+  };
+  // Split at 0, where the density peaks.
+  const double left = rule.integrate(density, -0.5 * pi, 0.0) + rule.integrate(density, 0.0, a);
+  return left + rule.integrate(weighted, a, b);
+}
+
+TEST(ReferenceMasking, G1_MatchesIntegrationOverTheTilt) {
+  constexpr double kTolerance = 1e-11;  // of the tanh-sinh rule with its peak at an end point
+  for (const double theta_deg : {20.0, 50.0, 75.0, 88.0}) {
+    for (const double alpha_deg : {0.5, 20.0, 60.0}) {
+      const double alpha = alpha_deg * kRadPerDeg;
+      const Slopes cauchy(Distribution::kCauchy, 0.3, 2.5);
+      EXPECT_NEAR(IntegralMasking(cauchy, zenith_from_deg(theta_deg), kMaskingTolerance)(alpha),
+                  plain_g1(Distribution::kCauchy, 0.3, 2.5, theta_deg * kRadPerDeg, alpha), kTolerance);
+      const Slopes gaussian(Distribution::kGaussian, 0.3, 2.0);
+      EXPECT_NEAR(IntegralMasking(gaussian, zenith_from_deg(theta_deg), kMaskingTolerance)(alpha),
+                  plain_g1(Distribution::kGaussian, 0.3, 2.0, theta_deg * kRadPerDeg, alpha), kTolerance);
+    }
+  }
+}
+
+TEST(ReferenceMasking, G1_HeavyTails_KeepTheWholeDensity) {
+  // At theta = 0 the weight is 1 everywhere, so that G_1 is the integral of p, whatever part of it lies beyond 1e16.
+  constexpr double kTolerance = 1e-11;
+  for (const double q : {1.001, 1.01, 1.07, 1.3, 1.5, 2.0, 50.0, 1000.0}) {
+    for (const double sigma : {1e-4, 0.3, 10.0}) {
+      const Slopes slopes(Distribution::kCauchy, sigma, q);
+      EXPECT_NEAR(IntegralMasking(slopes, zenith_from_deg(0.0), kMaskingTolerance)(0.3), 1.0, kTolerance) << q;
+    }
+  }
+}
+
+TEST(ReferenceMasking, G1_SingularDensity_MatchesIntegrationOverTheSlope) {
+  constexpr double kTolerance = 1e-10;                        // of the exp-sinh rule on t^(1 - 2q)
+  constexpr double kSigma = 0.3, kTheta = 0.9, kAlpha = 0.4;  // b = pi/2
+  const double sin_theta = std::sin(kTheta), cos_theta = std::cos(kTheta);
+  boost::math::quadrature::exp_sinh<double> to_infinity;
+  boost::math::quadrature::tanh_sinh<double> finite;
+  for (const double q : {1.05, 1.07, 1.3, 1.5, 2.0}) {
+    const auto density = [&](double t) { return in_plane_density(Distribution::kCauchy, kSigma, q, t); };
+    const auto weighted = [&](double t) {
+      const double weight = 1.0 + (cos_theta - t * sin_theta) / (std::hypot(1.0, t) * std::cos(kTheta - kAlpha));
+      return density(t) * weight;
+    };
+    const double slope_a = cos_theta / sin_theta;
+    const double expected = 0.5 + finite.integrate(density, 0.0, slope_a) +
+                            to_infinity.integrate(weighted, slope_a, std::numeric_limits<double>::infinity());
+    const Zenith zenith{0.5 * pi - kTheta, cos_theta, sin_theta};
+    const Slopes slopes(Distribution::kCauchy, kSigma, q);
+    EXPECT_NEAR(IntegralMasking(slopes, zenith, kMaskingTolerance)(kAlpha), expected, kTolerance) << q;
+  }
+}
+
+TEST(ReferenceMasking, G1_IsWithinHalfAndOneAndFallsWithTheZenithAngle) {
+  for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
+    for (const double q : {1.1, 2.0, 7.0}) {
+      const Slopes slopes(distribution, 0.4, q);
+      for (const double alpha_deg : {0.0, 1.0, 30.0, 80.0}) {
+        double previous = 1.0;
+        for (int theta_deg = 0; theta_deg <= 90; ++theta_deg) {
+          const IntegralMasking g1(slopes, zenith_from_deg(theta_deg), kMaskingTolerance);
+          const double value = g1(alpha_deg * kRadPerDeg);
+          EXPECT_LE(value, previous + 10.0 * kMaskingTolerance) << theta_deg << " " << alpha_deg;
+          EXPECT_GE(value, 0.5 - 10.0 * kMaskingTolerance) << theta_deg << " " << alpha_deg;
+          previous = value;
+        }
+        if (alpha_deg == 0.0) {
+          EXPECT_NEAR(previous, 0.5, 10.0 * kMaskingTolerance);
+        }
+      }
+    }
+  }
+}
+
+TEST(ReferenceMasking, SmithLambda_MatchesItsDefinition) {
+  // Lambda = int_mu^inf (t - mu) p(t) dt / mu; it grows without bound towards grazing, hence a mixed tolerance.
+  constexpr double kTolerance = 1e-9;
+  boost::math::quadrature::exp_sinh<double> rule;
+  for (const double sigma : {0.05, 0.4, 2.0}) {
+    for (const double q : {1.7, 2.0, 2.5, 6.0}) {
+      for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
+        const Slopes slopes(distribution, sigma, q);
+        for (const double theta_deg : {30.0, 70.0, 89.0}) {
+          const double mu = 1.0 / std::tan(theta_deg * kRadPerDeg);
+          const double lambda =
+              rule.integrate([&](double x) { return x * in_plane_density(distribution, sigma, q, mu + x); }) / mu;
+          EXPECT_NEAR(reference::smith_lambda(slopes, zenith_from_deg(theta_deg)), lambda, kTolerance * (1.0 + lambda))
+              << sigma << " " << q << " " << theta_deg;
+        }
+      }
+    }
+  }
+}
+
+double g_in_the_plane(Distribution distribution, Masking masking, double theta_i_deg, double theta_r_deg) {
+  const Slopes slopes(distribution, 0.3, 2.0);
+  const Attenuation g(slopes, masking, zenith_from_deg(theta_i_deg), zenith_from_deg(theta_r_deg), kMaskingTolerance);
+  // Delta_phi = 180 degrees: alpha and beta are half the difference and half the sum.
+  const double tan_alpha = std::tan(0.5 * (theta_r_deg - theta_i_deg) * kRadPerDeg);
+  const double cos_beta = std::cos(0.5 * (theta_r_deg + theta_i_deg) * kRadPerDeg);
+  return g(tan_alpha * tan_alpha, cos_beta * cos_beta);
+}
+
+TEST(ReferenceMasking, GeometryOfFigure4_HasTheValuesOfTheModelDocument) {
+  constexpr double kThreeDigits = 5.1e-4;
+  constexpr std::array kThetaR_deg{30.0, 60.0, 75.0, 90.0};
+  constexpr std::array kCauchy{0.997, 0.965, 0.902, 0.739};
+  constexpr std::array kGaussian{1.0, 0.997, 0.958, 0.782};
+  constexpr std::array kVCavity{1.0, 1.0, 0.786, 0.0};
+  for (std::size_t i = 0; i < kThetaR_deg.size(); ++i) {
+    EXPECT_NEAR(g_in_the_plane(Distribution::kCauchy, Masking::kIntegral, 30.0, kThetaR_deg[i]), kCauchy[i],
+                kThreeDigits);
+    EXPECT_NEAR(g_in_the_plane(Distribution::kGaussian, Masking::kIntegral, 30.0, kThetaR_deg[i]), kGaussian[i],
+                kThreeDigits);
+    EXPECT_NEAR(g_in_the_plane(Distribution::kCauchy, Masking::kVCavity, 30.0, kThetaR_deg[i]), kVCavity[i],
+                kThreeDigits);
+    EXPECT_EQ(g_in_the_plane(Distribution::kCauchy, Masking::kNone, 30.0, kThetaR_deg[i]), 1.0);
+  }
+}
+
+TEST(ReferenceMasking, EveryMasking_IsSymmetricAndNeverAboveOne) {
+  for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
+    for (const double theta_r_deg : {0.0, 29.0, 31.0, 89.0}) {
+      const double g = g_in_the_plane(Distribution::kCauchy, masking, 30.0, theta_r_deg);
+      EXPECT_DOUBLE_EQ(g, g_in_the_plane(Distribution::kCauchy, masking, theta_r_deg, 30.0));
+      EXPECT_LE(g, 1.0);
+      EXPECT_GT(g, 0.0);
+    }
+  }
+}
+
+Surface surface_of(Masking masking) {
+  Surface surface;
+  surface.masking = masking;
+  surface.sigma = 0.4;
+  surface.q = 2.2;
+  return surface;
+}
+
+TEST(ReferenceMueller, Reciprocity_HoldsInBothForms) {
+  constexpr double kRounding = 1e-12;
+  constexpr std::array kSignsOpposite{1.0, 1.0, -1.0, 1.0};
+  constexpr std::array kSignsSame{1.0, 1.0, 1.0, -1.0};
+  const OpticalConstants index{1.6, 0.8};
+  for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
+    for (const double delta_phi_deg : {20.0, 110.0, 179.0}) {
+      const MuellerMatrix f = reference_pbrdf(surface_of(masking), index, 35.0, 72.0, delta_phi_deg);
+      const MuellerMatrix opposite = reference_pbrdf(surface_of(masking), index, 72.0, 35.0, -delta_phi_deg);
+      const MuellerMatrix same = reference_pbrdf(surface_of(masking), index, 72.0, 35.0, delta_phi_deg);
+      for (std::size_t a = 0; a < 4; ++a) {
+        for (std::size_t b = 0; b < 4; ++b) {
+          EXPECT_NEAR(f[a][b], kSignsOpposite[a] * opposite[b][a] * kSignsOpposite[b], kRounding * f[0][0]);
+          EXPECT_NEAR(f[a][b], kSignsSame[a] * same[b][a] * kSignsSame[b], kRounding * f[0][0]);
+        }
+      }
+    }
+  }
+}
+
+TEST(ReferenceMueller, FirstRowAndColumn_MatchEquation7) {
+  constexpr double kRounding = 1e-11;
+  constexpr double kThetaI_deg = 40.0, kThetaR_deg = 65.0;
+  const double ci = std::cos(kThetaI_deg * kRadPerDeg), si = std::sin(kThetaI_deg * kRadPerDeg);
+  const double cr = std::cos(kThetaR_deg * kRadPerDeg), sr = std::sin(kThetaR_deg * kRadPerDeg);
+  for (const double delta_phi_deg : {15.0, 90.0, 150.0, 180.0}) {
+    const MuellerMatrix f =
+        reference_pbrdf(surface_of(Masking::kNone), kSteel, kThetaI_deg, kThetaR_deg, delta_phi_deg);
+    const double beta = 0.5 * std::acos(ci * cr + si * sr * std::cos(delta_phi_deg * kRadPerDeg));
+    const double cos_alpha = (ci + cr) / (2.0 * std::cos(beta));
+    const double cos_eta_i = (cos_alpha - ci * std::cos(beta)) / (si * std::sin(beta));
+    const double cos_eta_r = (cos_alpha - cr * std::cos(beta)) / (sr * std::sin(beta));
+    const double inside = std::asin(std::sin(beta) / kSteel.n);
+    const double r_s = std::pow(std::sin(beta - inside) / std::sin(beta + inside), 2);
+    const double r_p = std::pow(std::tan(beta - inside) / std::tan(beta + inside), 2);
+    EXPECT_NEAR(f[0][1] / f[0][0], (2.0 * cos_eta_i * cos_eta_i - 1.0) * (r_s - r_p) / (r_s + r_p), kRounding);
+    EXPECT_NEAR(f[1][0] / f[0][0], (2.0 * cos_eta_r * cos_eta_r - 1.0) * (r_s - r_p) / (r_s + r_p), kRounding);
+    const double tan2 = 1.0 / (cos_alpha * cos_alpha) - 1.0;
+    const double m2 = 2.0 * 0.4 * 0.4;
+    const double d = 1.2 / (pi * m2 * std::pow(cos_alpha, 4)) * std::pow(1.0 + tan2 / m2, -2.2);
+    EXPECT_NEAR(f[0][0], d * 0.5 * (r_s + r_p) / (4.0 * ci * cr), kRounding * f[0][0]);
+  }
+}
+
+TEST(ReferenceMueller, Specular_IsTheMatrixOfSmoothReflection) {
+  // eta = 0 there: M22 and M33 are Re(r_s* r_p), M23 and M32 its imaginary part with opposite signs.
+  constexpr double kRounding = 1e-13;
+  constexpr double kTheta_deg = 50.0;
+  const OpticalConstants index{1.6, 0.8};
+  const std::complex<double> n{index.n, index.k};
+  const double c = std::cos(kTheta_deg * kRadPerDeg);
+  const std::complex<double> w = std::sqrt(n * n - (1.0 - c * c));
+  const std::complex<double> product = std::conj((c - w) / (c + w)) * (n * n * c - w) / (n * n * c + w);
+  const double sum = std::norm((c - w) / (c + w)) + std::norm((n * n * c - w) / (n * n * c + w));
+  const MuellerMatrix f = reference_pbrdf(surface_of(Masking::kNone), index, kTheta_deg, kTheta_deg, 180.0);
+  const double scale = 0.5 * sum / f[0][0];
+  EXPECT_NEAR(f[2][2] * scale, product.real(), kRounding);
+  EXPECT_NEAR(f[3][3] * scale, product.real(), kRounding);
+  EXPECT_NEAR(f[3][2] * scale, product.imag(), kRounding);
+  EXPECT_NEAR(f[2][3] * scale, -product.imag(), kRounding);
+  EXPECT_NEAR(f[0][2] * scale, 0.0, kRounding);
+}
+
+}  // namespace
+}  // namespace dolp

@@ -54,6 +54,7 @@ struct ThetaNode {
 struct ShapeNode {
   real m;              // sqrt(2) sigma
   real q_minus_1;      // of the exponent q, which a float near 1 would blur; unused by the gaussian
+  real two_q_minus_3;  // likewise near 3/2, where smith masking ends
   real marginal_norm;  // p(0) of the in-plane marginal
   real scale;          // w of the map t = w sinh(X)
   real cut;            // slopes beyond it are left out
@@ -64,7 +65,7 @@ struct ShapeNode {
 struct IndexNode {
   real n2m1_re;       // Re(N^2 - 1)
   real n2m1_im;       // Im(N^2 - 1)
-  real critical_cos;  // sqrt(1 - n^2) where n < 1 and k = 0: total reflection for a smaller cos(beta); otherwise 0
+  real critical_cos;  // sqrt(1 - Re N^2), where total reflection begins, sharply (k = 0) or nearly so; otherwise 0
 };
 
 // Moments times cos(theta) (MODEL.md section 3), and |fine - coarse| summed over the pieces for each.

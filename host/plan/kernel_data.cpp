@@ -25,12 +25,24 @@ constexpr double kNoEnd = 1e30;    // a slope beyond every cut, in place of infi
 // The rule aims this many digits beyond the tolerance, so that the coarser rule it is compared with meets the tolerance.
 constexpr double kExtraDigits = 2.0;
 
+// Im N^2 above which absorption has smoothed the critical line of total reflection.
+constexpr double kSoftCriticalLine = 0.3;
+
 // The square root of total reflection wants more nodes.
 constexpr double kTotalReflectionOrderT = 1.4;
 constexpr double kTotalReflectionOrderPhi = 2.0;
 
+// Azimuths for a digit with smith masking, which is not smooth at theta_r = 0.
+constexpr double kSmithOrderPhi = 2.0;
+
 // Bound of the loop iterations of one invocation, below the 65,535 at which lavapipe stops without notice.
 constexpr double kMostIterations = 60'000.0;
+
+// The error is taken for this many times the difference between the fine and the coarse rule.
+constexpr double kEstimateFactor = 2.0;
+// A difference below this share of the tolerance is an accident: rules of these orders are not that good.
+constexpr double kLeastDifference = 0.01;
+constexpr double kCosineRounding = 2.0 * std::numeric_limits<double>::epsilon();
 
 // Largest slope that is ever integrated: beyond it the squares of a float overflow.
 constexpr double kLargestCut = 1e8;
@@ -58,9 +70,11 @@ double tan_deg(double angle_deg) {
   return a.sin / a.cos;
 }
 
-// cos(beta) below which everything is reflected; 0 when nothing is.
+// cos(beta) at which w vanishes, sqrt(1 - Re N^2), where that is a kink (k = 0) or nearly one; 0 elsewhere.
 double critical_cos(const OpticalConstants& index) {
-  return index.k == 0.0 && index.n < 1.0 ? std::sqrt((1.0 - index.n) * (1.0 + index.n)) : 0.0;
+  const double squared = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
+  const bool is_sharp = 2.0 * index.n * index.k < kSoftCriticalLine;
+  return is_sharp && squared > 0.0 && squared < 1.0 ? std::sqrt(squared) : 0.0;
 }
 
 // Slopes at which the critical line cos(beta) = critical_cos meets phi = 0 or pi, the horizon or theta_r = theta.
@@ -149,8 +163,7 @@ kernel::ThetaNode theta_node(const MomentsRequest& request, double theta_deg, do
   node.order_per_e = node.order_t / (digits * std::log(10.0));
   const double grazing = std::clamp((theta_deg - 80.0) / 9.0, 0.0, 1.0);
   const double smooth = 0.2 + digits * (0.97 + 0.6 * grazing * grazing + 0.3 * std::max(0.0, theta_deg - 88.0));
-  const double cusp = request.distribution == Distribution::kCauchy ? 2.0 * digits : 1.6 * digits;
-  node.order_phi = std::ceil(request.masking == Masking::kSmith ? std::max(smooth, cusp) : smooth);
+  node.order_phi = std::ceil(request.masking == Masking::kSmith ? std::max(smooth, kSmithOrderPhi * digits) : smooth);
   if (critical > 0.0) {
     node.order_t *= kTotalReflectionOrderT;
     node.order_phi = std::ceil(kTotalReflectionOrderPhi * node.order_phi);
@@ -175,6 +188,7 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
   const bool cauchy = request.distribution == Distribution::kCauchy;
   node.marginal_norm =
       (cauchy ? boost::math::tgamma_ratio(shape.q - 0.5, shape.q - 1.0) : 1.0) / (root_pi<double>() * node.m);
+  node.two_q_minus_3 = 2.0 * shape.q - 3.0;
   node.scale = std::min(cauchy ? node.m / std::sqrt(std::max(1.0, 0.25 * shape.q)) : node.m, 1.0);
   node.cut = slope_cut(request, shape, 1e-3 * request.tolerance);
   const double width = cauchy ? node.m / std::sqrt(std::max(1.0, shape.q / 1.5)) : node.m;
@@ -213,6 +227,8 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
   return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
 }
 
+double share(double part, double whole) { return part == 0.0 ? 0.0 : part / whole; }
+
 kernel::IndexNode index_node(const OpticalConstants& index) {
   return {(index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k, critical_cos(index)};
 }
@@ -241,6 +257,7 @@ KernelData kernel_data(const MomentsRequest& request) {
   KernelData data;
   data.distribution = request.distribution;
   data.masking = request.masking;
+  data.tolerance = request.tolerance;
   data.rule_nodes = rule_nodes();
   for (const double theta_deg : request.theta_deg) data.thetas.push_back(theta_node(request, theta_deg, digits, 0.0));
   for (const SlopeShape& shape : request.shapes) data.shapes.push_back(shape_node(request, shape));
@@ -262,17 +279,23 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   moments.r_q = node.r_q;
   moments.albedo = node.albedo;
   moments.deficit = node.deficit;
-  moments.r_i_error = 2.0 * node.r_i_difference + (rounding + masking) * node.r_i + cut;
-  moments.r_q_error = 2.0 * node.r_q_difference + (rounding + masking) * node.r_i + cut;
-  moments.albedo_error = 2.0 * node.albedo_difference + (rounding + masking) * node.albedo + cut;
+  // The four share their nodes: the largest relative difference speaks for all, should one be small by accident.
+  const double difference = std::max({share(node.r_i_difference, node.r_i), share(node.r_q_difference, node.r_i),
+                                      share(node.albedo_difference, node.albedo), kLeastDifference * data.tolerance});
+  const double quadrature = kEstimateFactor * difference + rounding + masking;
+  moments.r_i_error = quadrature * node.r_i + cut;
+  moments.r_q_error = kEstimateFactor * std::max(node.r_q_difference, difference * std::abs(node.r_q)) +
+                      (rounding + masking) * node.r_i + cut;
+  moments.albedo_error = quadrature * node.albedo + cut;
   moments.deficit_error =
-      2.0 * node.deficit_difference + rounding * node.deficit_scale + masking * node.albedo + cut;
+      kEstimateFactor * std::max(node.deficit_difference, difference * std::abs(node.deficit)) +
+      rounding * node.deficit_scale + masking * node.albedo + cut;
   moments.evaluations = node.evaluations;
   // r_i + deficit = cos(theta): the better known of the two gives the other.
   const double cosine = data.thetas[entry.theta].c;
   if (moments.deficit_error > moments.r_i_error) {
     moments.deficit = cosine - moments.r_i;
-    moments.deficit_error = moments.r_i_error;
+    moments.deficit_error = moments.r_i_error + kCosineRounding * cosine;
   } else {
     moments.r_i = cosine - moments.deficit;
     moments.r_i_error = moments.deficit_error;

@@ -20,6 +20,7 @@ using real = double;
 struct KernelData {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
+  double tolerance = 1e-4;
   std::vector<kernel::ThetaNode> thetas;
   std::vector<kernel::ShapeNode> shapes;
   std::vector<kernel::IndexNode> indices;

@@ -84,17 +84,17 @@ real log1p_real(real u) {
   return k * kLn2High + (series + (k * kLn2Low + lost / v));
 }
 
-// ln(1 + u^2) for u >= 0, also where u^2 overflows.
+// ln(1 + u^2) for u >= 0, also where u^2 overflows: there it is 2 ln(u).
 real log1p_square(real u) {
   bool large = u > real(1e9);
-  real logarithm = log1p_real(large ? u : u * u);
+  real logarithm = log1p_real(large ? u - real(1.0) : u * u);
   return large ? real(2.0) * logarithm : logarithm;
 }
 
-// asinh(y) for y >= 0.
+// asinh(y) for y >= 0; ln(2 y) where y^2 might overflow.
 real asinh_real(real y) {
   real y2 = y * y;
-  return log1p_real((y > real(1e9)) ? real(2.0) * y : y + y2 / (real(1.0) + sqrt(real(1.0) + y2)));
+  return log1p_real((y > real(1e9)) ? real(2.0) * y - real(1.0) : y + y2 / (real(1.0) + sqrt(real(1.0) + y2)));
 }
 
 // (sinh(x), cosh(x)) for 0 <= x <= 80.

@@ -69,9 +69,11 @@ real2 half_angle(real one_plus_x, real one_minus_x) {
                sqrt(clamp(real(0.5) * one_minus_x, real(0.0), real(1.0))));
 }
 
-// Smith's L has a cusp at theta_r = 0, |theta_r|^(2q-2), that a small q makes matter: facets near (tan(theta/2), phi = 0).
+// Smith's L is not smooth at theta_r = 0, that is near the facets (tan(theta/2), phi = 0): it goes as |theta_r|^(2q-2)
+// for the cauchy, which a small q makes matter, and on very rough surfaces it bends within theta_r < 1/m.
 bool has_cusp(ShapeNode shape) {
-  return kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_CAUCHY && shape.q_minus_1 < real(1.2);
+  bool small_q = kDistribution == DOLP_CAUCHY && shape.q_minus_1 < real(1.2);
+  return kMasking == DOLP_MASKING_SMITH && (small_q || shape.m > real(5.0));
 }
 
 // The arc between two azimuths given by their half angles; empty when they coincide or are out of order. `cusp`: the
@@ -102,13 +104,15 @@ Arc make_arc(real2 from, real2 to, int order, bool cusp) {
   return arc;
 }
 
-// The arc between two azimuths at whose end the integrand has a square root.
-Arc make_root_arc(real2 from, real2 to, int order) {
+// The arc between two azimuths with a square root at one of them: at its end, otherwise at its beginning.
+Arc make_root_arc(real2 from, real2 to, int order, bool at_end) {
   Arc arc = make_arc(from, to, order, false);
+  real2 root = at_end ? to : from;
   real sin_half = to.y * from.x - to.x * from.y;
-  arc.centre_cos = (to.x - to.y) * (to.x + to.y);
-  arc.centre_sin = real(2.0) * to.x * to.y;
-  arc.extent = -sin_half / (real(1.0) + to.x * from.x + to.y * from.y);
+  real quarter = sin_half / (real(1.0) + to.x * from.x + to.y * from.y);
+  arc.centre_cos = (root.x - root.y) * (root.x + root.y);
+  arc.centre_sin = real(2.0) * root.x * root.y;
+  arc.extent = at_end ? -quarter : quarter;
   arc.first_node = cluster_offset(order);
   return arc;
 }
@@ -166,7 +170,7 @@ struct SplitLines {
   real2 first;
   real2 second;
   real2 horizon;   // theta_r = 90 degrees: beyond it the reflected ray does not leave
-  real2 critical;  // cos(beta) = critical_cos: total reflection beyond it, a square root before it
+  real2 critical;  // cos(beta) = critical_cos: a square root on either side
 };
 
 // cos(phi) = level / (s t), as a half angle.
@@ -210,7 +214,7 @@ FacetSums zone_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint tabl
   real2 middle = clamp_half_angle(critical, from, to);
   FacetSums sum = no_facets();
   for (int side = 0; side < 2; ++side) {
-    Arc arc = (side == 0) ? make_root_arc(from, middle, order) : make_arc(middle, to, order, false);
+    Arc arc = (side == 0) ? make_root_arc(from, middle, order, true) : make_root_arc(middle, to, order, false);
     sum = add_weighted(sum, arc_sums(theta, shape, index, table, t, arc, zone, by_slope), real(1.0));
   }
   return sum;

@@ -29,7 +29,7 @@ real4 masking_table_end(ShapeNode shape, real tau) {
   if (kDistribution == DOLP_GAUSSIAN) return real4(real(0.0), real(0.0), real(0.0), p);
   real a = real(2.0) * shape.q_minus_1;
   if (kMasking == DOLP_MASKING_SMITH) {
-    return real4(p * tau * tau / (a * (a - real(1.0))), p * tau / a, p * tau / a, p);
+    return real4(p * tau * tau / (a * shape.two_q_minus_3), p * tau / a, p * tau / a, p);
   }
   return real4(p * tau / (a * (a + real(1.0))), p / (a + real(1.0)), p * tau / a, p);
 }

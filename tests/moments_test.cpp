@@ -1,0 +1,208 @@
+// The kernel on every evaluator against the stored values of the independent reference (tests/data): random points and
+// the hard cases of the model, both distributions, all maskings.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr double kTolerance = 1e-4;
+
+// Share of the entries that may miss their tolerance by their own estimate. Domain A is sigma 0.01-1.2, q 1.06-13,
+// theta to 89.5 degrees; domain B sigma 0.001-5, q 1.01-45, theta to 89.9 degrees.
+constexpr double kMissedShareA = 0.01;
+constexpr double kMissedShareB = 0.02;
+
+struct ReferenceRow {
+  Distribution distribution;
+  Masking masking;
+  double theta_deg;
+  SlopeShape shape;
+  OpticalConstants index;
+  Moments moments;
+  std::string name;
+};
+
+Masking masking_of(const std::string& word) {
+  if (word == "none") return Masking::kNone;
+  if (word == "v-cavity") return Masking::kVCavity;
+  if (word == "integral") return Masking::kIntegral;
+  return Masking::kSmith;
+}
+
+ReferenceRow parse_row(const std::string& line) {
+  std::istringstream cells(line);
+  std::array<std::string, 14> cell;
+  for (std::string& text : cell) std::getline(cells, text, ',');
+  const auto number = [&](std::size_t i) { return std::stod(cell[i]); };
+  ReferenceRow row;
+  row.distribution = cell[0] == "cauchy" ? Distribution::kCauchy : Distribution::kGaussian;
+  row.masking = masking_of(cell[1]);
+  row.theta_deg = number(2);
+  row.shape = {number(3), number(4)};
+  row.index = {number(5), number(6)};
+  row.moments.r_i = number(7);
+  row.moments.r_q = number(8);
+  row.moments.albedo = number(9);
+  row.moments.deficit = number(10);
+  row.moments.r_i_error = number(11);
+  row.moments.r_q_error = number(12);
+  row.name = cell[13];
+  return row;
+}
+
+/// The stored rows that the kernel is asked for: sigma = 0 has a closed form, and v-cavity and smith moments, which
+/// vanish at 90 degrees, are asked for just before.
+std::vector<ReferenceRow> read_rows(Distribution distribution, Masking masking) {
+  std::ifstream file(DOLP_TEST_DATA_DIR "/reference_values.csv");
+  std::vector<ReferenceRow> rows;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("#") || line.starts_with("distribution")) continue;
+    const ReferenceRow row = parse_row(line);
+    const bool vanishes = row.theta_deg == 90.0 && (masking == Masking::kVCavity || masking == Masking::kSmith);
+    if (row.distribution != distribution || row.masking != masking || row.shape.sigma == 0.0 || vanishes) continue;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+MomentsRequest request_of(const std::vector<ReferenceRow>& rows) {
+  MomentsRequest request;
+  request.distribution = rows.front().distribution;
+  request.masking = rows.front().masking;
+  request.tolerance = kTolerance;
+  for (const ReferenceRow& row : rows) {
+    const auto position = static_cast<std::uint32_t>(request.entries.size());
+    request.theta_deg.push_back(row.theta_deg);
+    request.shapes.push_back(row.shape);
+    request.indices.push_back(row.index);
+    request.entries.push_back({position, position, position});
+  }
+  return request;
+}
+
+enum class Evaluator { kCpuFloat, kCpuDouble, kVulkanFloat, kVulkanDouble };
+
+std::unique_ptr<MomentsEvaluator> make(Evaluator evaluator) {
+  const bool in_double = evaluator == Evaluator::kCpuDouble || evaluator == Evaluator::kVulkanDouble;
+  const Precision precision = in_double ? Precision::kDouble : Precision::kFloat;
+  if (evaluator == Evaluator::kCpuFloat || evaluator == Evaluator::kCpuDouble) {
+    return std::make_unique<CpuEvaluator>(precision);
+  }
+  VulkanOptions options;
+  options.precision = precision;
+  options.validation = ValidationMode::kOn;
+  return std::make_unique<VulkanEvaluator>(options);
+}
+
+using Case = std::tuple<Evaluator, Distribution, Masking>;
+
+class StoredValues : public testing::TestWithParam<Case> {
+ protected:
+  void SetUp() override {
+    rows_ = read_rows(std::get<1>(GetParam()), std::get<2>(GetParam()));
+    ASSERT_GT(rows_.size(), 80U);
+    moments_ = make(std::get<0>(GetParam()))->evaluate(request_of(rows_), {});
+    ASSERT_EQ(moments_.size(), rows_.size());
+  }
+
+  // max(|d r_i|, |d r_q|) over r_i: what the tolerance bounds.
+  double error(std::size_t i) const {
+    const Moments& reference = rows_[i].moments;
+    const double difference = std::max(std::abs(moments_[i].r_i - reference.r_i), std::abs(moments_[i].r_q - reference.r_q));
+    return difference == 0.0 ? 0.0 : difference / reference.r_i;
+  }
+
+  double estimate(std::size_t i) const {
+    const double bound = std::max(moments_[i].r_i_error, moments_[i].r_q_error);
+    return bound == 0.0 ? 0.0 : bound / std::abs(rows_[i].moments.r_i);
+  }
+
+  std::vector<ReferenceRow> rows_;
+  std::vector<Moments> moments_;
+};
+
+void expect_within(double value, double reference, double bound, const ReferenceRow& row, const char* quantity) {
+  EXPECT_LE(std::abs(value - reference), bound)
+      << quantity << " of " << row.name << ": theta " << row.theta_deg << " sigma " << row.shape.sigma << " q "
+      << row.shape.q << " N " << row.index.n << " + " << row.index.k << "i; " << value << " instead of " << reference;
+}
+
+TEST_P(StoredValues, EveryEntry_ErrorIsBelowItsEstimate) {
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const Moments& m = moments_[i];
+    const Moments& reference = rows_[i].moments;
+    // The reference's own bounds: r_i's stands for the two quantities for which none is stored.
+    expect_within(m.r_i, reference.r_i, m.r_i_error + reference.r_i_error, rows_[i], "r_i");
+    expect_within(m.r_q, reference.r_q, m.r_q_error + reference.r_q_error, rows_[i], "r_q");
+    expect_within(m.deficit, reference.deficit, m.deficit_error + reference.r_i_error, rows_[i], "deficit");
+    const double albedo_bound = 1e-8 * reference.albedo;  // the reference's accuracy
+    expect_within(m.albedo, reference.albedo, m.albedo_error + albedo_bound, rows_[i], "albedo");
+  }
+}
+
+TEST_P(StoredValues, RandomPoints_MeetTheToleranceOrSaySo) {
+  std::size_t missed_a = 0;
+  std::size_t missed_b = 0;
+  std::size_t count_a = 0;
+  std::size_t count_b = 0;
+  double worst = 0.0;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (!rows_[i].name.starts_with("random")) continue;
+    const bool is_a = rows_[i].name == "random-a";
+    const bool missed = !(estimate(i) <= kTolerance);
+    (is_a ? count_a : count_b) += 1;
+    (is_a ? missed_a : missed_b) += missed ? 1 : 0;
+    if (!missed) worst = std::max(worst, error(i));
+    if (is_a) {
+      EXPECT_LE(error(i), kTolerance) << rows_[i].theta_deg << " " << rows_[i].shape.sigma;
+    }
+  }
+  std::printf("worst error %.1e of %zu + %zu entries, missed %zu + %zu\n", worst, count_a, count_b, missed_a, missed_b);
+  EXPECT_GE(count_a, 50U);
+  EXPECT_GE(count_b, 15U);
+  EXPECT_LE(static_cast<double>(missed_a), std::ceil(kMissedShareA * static_cast<double>(count_a)));
+  EXPECT_LE(static_cast<double>(missed_b), std::ceil(kMissedShareB * static_cast<double>(count_b)));
+}
+
+TEST_P(StoredValues, HardCases_AreFinite) {
+  std::printf("%-28s %10s %10s\n", "case", "error", "estimate");
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (rows_[i].name.starts_with("random")) continue;
+    std::printf("%-28s %10.1e %10.1e\n", rows_[i].name.c_str(), error(i), estimate(i));
+    EXPECT_TRUE(std::isfinite(moments_[i].r_i) && std::isfinite(moments_[i].r_q)) << rows_[i].name;
+    EXPECT_TRUE(std::isfinite(moments_[i].albedo) && std::isfinite(moments_[i].deficit)) << rows_[i].name;
+  }
+}
+
+std::string name_of(const testing::TestParamInfo<Case>& test) {
+  const auto [evaluator, distribution, masking] = test.param;
+  constexpr std::array kEvaluators = {"CpuFloat", "CpuDouble", "VulkanFloat", "VulkanDouble"};
+  constexpr std::array kMaskings = {"None", "VCavity", "Integral", "Smith"};
+  return std::string(kEvaluators[static_cast<std::size_t>(evaluator)]) +
+         (distribution == Distribution::kCauchy ? "Cauchy" : "Gaussian") +
+         kMaskings[static_cast<std::size_t>(masking)];
+}
+
+INSTANTIATE_TEST_SUITE_P(Evaluators, StoredValues,
+                         testing::Combine(testing::Values(Evaluator::kCpuFloat, Evaluator::kCpuDouble,
+                                                          Evaluator::kVulkanFloat, Evaluator::kVulkanDouble),
+                                          testing::Values(Distribution::kCauchy, Distribution::kGaussian),
+                                          testing::Values(Masking::kNone, Masking::kVCavity, Masking::kIntegral,
+                                                          Masking::kSmith)),
+                         name_of);
+
+}  // namespace
+}  // namespace dolp

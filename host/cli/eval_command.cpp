@@ -5,6 +5,7 @@
 #include "cli/commands.hpp"
 #include "cli/progress_bar.hpp"
 #include "cli/report.hpp"
+#include "error.hpp"
 #include "scene/points.hpp"
 #include "table/atomic_file.hpp"
 
@@ -24,6 +25,9 @@ std::string result_line(const std::string& input, const PointResult& r) {
 
 int run_eval(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
+  if (options.scene_path == "-" && options.points_path == "-") {
+    throw InputError("--points -: SCENE is - too, and stdin can be read only once; name a file for one of them");
+  }
   const Scene scene = load_scene(options);
   const Points points = read_points(options.points_path, PointsKind::kDirections);
   const std::vector<SceneEntry> entries = point_entries(scene, points);

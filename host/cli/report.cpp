@@ -42,9 +42,10 @@ void add_ranges(RunReport& report, const std::vector<PointResult>& results) {
 
 std::string energy_text(const RunReport& report) {
   if (report.energy_off == 0) return fmt::format("within {}..{} everywhere", kAlbedoMin, kAlbedoMax);
-  return fmt::format("outside {}..{} in {} of {} entries (range {:.3g}..{:.3g}): there the surface model itself gains or "
-                     "loses energy",
-                     kAlbedoMin, kAlbedoMax, report.energy_off, report.entries, report.albedo_min, report.albedo_max);
+  return fmt::format(
+      "outside {}..{} in {} of {} entries (range {:.3g}..{:.3g}): there the surface model itself gains or "
+      "loses energy",
+      kAlbedoMin, kAlbedoMax, report.energy_off, report.entries, report.albedo_min, report.albedo_max);
 }
 
 }  // namespace
@@ -66,9 +67,10 @@ RunReport make_report(const Scene& scene, const std::vector<PointResult>& result
 }
 
 std::string rule_text(double tolerance) {
-  return fmt::format("product Gauss rules on the smooth pieces of slope and azimuth, orders for tolerance {:g}, compared "
-                     "with three quarters of the nodes",
-                     tolerance);
+  return fmt::format(
+      "product Gauss rules on the smooth pieces of slope and azimuth, orders for tolerance {:g}, compared "
+      "with three quarters of the nodes",
+      tolerance);
 }
 
 std::string summary_text(const RunReport& report) {
@@ -77,14 +79,16 @@ std::string summary_text(const RunReport& report) {
   std::string text;
   text += fmt::format("{}\n", report.title);
   text += fmt::format("  entries    {}\n", report.shape);
-  text += fmt::format("  device     {}{}{}, {} precision\n", e.device, e.driver.empty() ? "" : ", ", e.driver, e.precision);
+  text +=
+      fmt::format("  device     {}{}{}, {} precision\n", e.device, e.driver.empty() ? "" : ", ", e.driver, e.precision);
   text += fmt::format("  time       {:.3f} s in all, {:.3f} s in kernels, {} dispatches\n", report.wall_s, e.kernel_s,
                       e.dispatches);
   text += fmt::format("  work       {:.4g} integrand evaluations, {:.0f} an entry\n", e.evaluations, per_entry);
   text += fmt::format("  error      DOLP <= {:.2g} (absolute), rho <= {:.2g} (of rho_I); tolerance {:g}\n",
                       report.worst_error, report.worst_rho_error, report.tolerance);
   for (const RunReport::StatusCount& status : report.status) {
-    text += fmt::format("  status {}   {} of {} entries: {}\n", status.bit, status.count, report.entries, status.meaning);
+    text +=
+        fmt::format("  status {}   {} of {} entries: {}\n", status.bit, status.count, report.entries, status.meaning);
   }
   text += fmt::format("  albedo     {}\n", energy_text(report));
   text += fmt::format("  written    {}\n", report.output);

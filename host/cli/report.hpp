@@ -27,9 +27,9 @@ struct RunReport {
     std::uint32_t bit = 0;
     std::size_t count = 0;
   };
-  std::vector<StatusCount> status;    ///< entries that carry each bit
-  std::size_t missed_tolerance = 0;   ///< entries with the bit of a missed tolerance
-  std::size_t energy_off = 0;         ///< entries whose albedo leaves [kAlbedoMin, kAlbedoMax]
+  std::vector<StatusCount> status;   ///< entries that carry each bit
+  std::size_t missed_tolerance = 0;  ///< entries with the bit of a missed tolerance
+  std::size_t energy_off = 0;        ///< entries whose albedo leaves [kAlbedoMin, kAlbedoMax]
   double albedo_min = 0.0;
   double albedo_max = 0.0;
 };

@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# From a fresh Debian 12 machine to a lookup table: quickstart.sh [SCENE] [OUT]
+#
+# Installs the packages that are missing, builds into build/release, writes the table of SCENE (default: the
+# stainless-steel scene) to OUT (default: dolp.nc in the current folder), prints the summary and draws OUT with the
+# suffix .png. Any other suffix than .nc gives the table alone.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+scene=${1:-$root/host/scenes/stainless_steel.toml}
+table=${2:-dolp.nc}
+build=$root/build/release
+
+bash "$root/host/install_packages.sh" build picture
+cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF
+cmake --build "$build" --target dolp
+
+echo
+"$build/dolp" table "$scene" -o "$table"
+echo
+echo "table:   $(realpath -- "$table")"
+if [[ $table != *.nc ]]; then
+  echo "picture: none; it is drawn from a table whose name ends in .nc"
+  exit 0
+fi
+picture=${table%.nc}.png
+# Debian's own Python: the packages above belong to it, and another one may come first on PATH.
+/usr/bin/python3 "$root/host/plot_table.py" "$table" "$picture"
+echo "picture: $(realpath -- "$picture")"

@@ -1,0 +1,262 @@
+// The program from outside: exit statuses, messages, and what a run that fails leaves behind.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <fstream>
+#include <ostream>
+
+#include "cli_support.hpp"
+
+namespace {
+
+using namespace dolp;
+namespace fs = std::filesystem;
+
+enum Status { kDone = 0, kAccuracy = 1, kInput = 2, kDevice = 3, kIo = 4, kInterrupted = 130 };
+
+const std::vector<std::string> kInputFiles = {"points.csv", "scene.toml"};
+/// Half a million entries at a tight tolerance: minutes of work, so that an interrupt always comes in time.
+const std::vector<std::string> kLongRun = {"--evaluator", "cpu",
+                                           "--tolerance", "1e-9",
+                                           "--precision", "double",
+                                           "--set",       "grid.theta_deg={from=0, to=89, count=5000}",
+                                           "--set",       "grid.sigma={from=0.05, to=1, count=100}"};
+
+void expect_one_line(const std::string& err) {
+  EXPECT_EQ(std::ranges::count(err, '\n'), 1) << err;
+  EXPECT_TRUE(err.starts_with("dolp: ") && err.ends_with('\n')) << err;
+}
+
+/// Neither variable may name a driver, so that the loader finds none.
+const std::vector<std::pair<std::string, std::string>> kNoDriver = {{"VK_DRIVER_FILES", "/nonexistent.json"},
+                                                                    {"VK_ICD_FILENAMES", "/nonexistent.json"}};
+
+std::vector<std::string> operator+(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+struct Mistake {
+  const char* name;
+  std::vector<std::string> arguments;
+  Status status;
+  std::vector<std::string> message;  ///< parts of the line
+  std::string scene = kScene;
+  std::string points = kPoints;
+};
+
+void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
+
+std::string name_of(const testing::TestParamInfo<Mistake>& info) { return info.param.name; }
+
+class CommandLineMistake : public CommandLine, public testing::WithParamInterface<Mistake> {};
+
+TEST_P(CommandLineMistake, Run_OneLineAndNothingWritten) {
+  const Mistake& mistake = GetParam();
+  put("scene.toml", mistake.scene);
+  put("points.csv", mistake.points);
+  const Outcome outcome = dolp(mistake.arguments);
+  EXPECT_EQ(outcome.status, mistake.status);
+  EXPECT_EQ(outcome.out, "");
+  expect_one_line(outcome.err);
+  for (const std::string& part : mistake.message) EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+  EXPECT_EQ(names(), kInputFiles);
+}
+
+const std::vector<std::string> kTable = {"table", "scene.toml", "-o", "out.nc"};
+const std::vector<std::string> kEval = {"eval", "scene.toml", "--points", "points.csv", "-o", "out.csv"};
+
+std::string scene_with(const std::string& text, const std::string& replacement) {
+  std::string scene = kScene;
+  return scene.replace(scene.find(text), text.size(), replacement);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Usage, CommandLineMistake,
+    testing::Values(
+        Mistake{"NoCommand", {}, kInput, {"subcommand"}},
+        Mistake{"UnknownCommand", {"tabel", "scene.toml"}, kInput, {"tabel"}},
+        Mistake{"UnknownOption", kTable + std::vector<std::string>{"--fast"}, kInput, {"--fast"}},
+        Mistake{"NoScene", {"table", "-o", "out.nc"}, kInput, {"SCENE"}},
+        Mistake{"NoOutput", {"table", "scene.toml"}, kInput, {"--output"}},
+        Mistake{"NoPoints", {"eval", "scene.toml", "-o", "out.csv"}, kInput, {"--points"}},
+        Mistake{"NoValue", kTable + std::vector<std::string>{"--tolerance"}, kInput, {"--tolerance"}},
+        Mistake{"UnknownEvaluator",
+                kTable + std::vector<std::string>{"--evaluator", "gpu"},
+                kInput,
+                {"--evaluator", "gpu", "vulkan", "cpu", "reference"}},
+        Mistake{"UnknownSuffix", {"table", "scene.toml", "-o", "out.txt"}, kInput, {"out.txt", ".nc", ".csv", ".npy"}},
+        Mistake{"ToleranceOutOfRange",
+                kTable + std::vector<std::string>{"--tolerance", "1e-11"},
+                kInput,
+                {"accuracy.tolerance", "1e-11", "1e-10", "0.01"}},
+        Mistake{"UnknownPrecision",
+                kTable + std::vector<std::string>{"--precision", "half"},
+                kInput,
+                {"accuracy.precision", "half", "auto", "float", "double"}},
+        Mistake{"SetUnknownKey",
+                kTable + std::vector<std::string>{"--set", "surface.sigm=1"},
+                kInput,
+                {"surface.sigm=1", "surface.sigma"}},
+        Mistake{"SetWithoutValue",
+                kTable + std::vector<std::string>{"--set", "surface.sigma"},
+                kInput,
+                {"--set", "surface.sigma"}}),
+    name_of);
+
+INSTANTIATE_TEST_SUITE_P(
+    Scene, CommandLineMistake,
+    testing::Values(
+        Mistake{"MissingFile", {"table", "none.toml", "-o", "out.nc"}, kInput, {"none.toml"}},
+        Mistake{"NotToml", kTable, kInput, {"scene.toml:2"}, scene_with("[surface]", "[surface")},
+        Mistake{
+            "UnknownKey", kTable, kInput, {"scene.toml:3", "surface.m", "surface.n"}, scene_with("n = 1.5", "m = 1.5")},
+        Mistake{"OutOfRange",
+                kTable,
+                kInput,
+                {"scene.toml:5", "surface.sigma", "-0.3", "10"},
+                scene_with("sigma = 0.3", "sigma = -0.3")},
+        Mistake{
+            "WrongType", kTable, kInput, {"scene.toml:6", "surface.q", "two"}, scene_with("q = 3.0", "q = \"two\"")},
+        Mistake{"UnknownChoice",
+                kTable,
+                kInput,
+                {"scene.toml:7", "surface.masking", "smith"},
+                scene_with("\"integral\"", "\"some\"")}),
+    name_of);
+
+INSTANTIATE_TEST_SUITE_P(
+    Points, CommandLineMistake,
+    testing::Values(
+        Mistake{"MissingFile", {"eval", "scene.toml", "--points", "none.csv", "-o", "o.csv"}, kInput, {"none.csv"}},
+        Mistake{"Empty", kEval, kInput, {"points.csv:1"}, kScene, ""},
+        Mistake{"UnknownColumn", kEval, kInput, {"points.csv:1", "angle", "theta_deg"}, kScene, "angle\n10\n"},
+        Mistake{"MissingValue",
+                kEval,
+                kInput,
+                {"points.csv:3", "sigma", "[0, 10]"},
+                kScene,
+                "theta_deg,sigma\n10,0.1\n20,\n"},
+        Mistake{"NotANumber",
+                kEval,
+                kInput,
+                {"points.csv:2", "sigma", "rough", "[0, 10]"},
+                kScene,
+                "theta_deg,sigma\n10,rough\n"},
+        Mistake{"OutOfRange",
+                kEval,
+                kInput,
+                {"points.csv:4", "theta_deg", "90.1", "[0, 90]"},
+                kScene,
+                "theta_deg\n0\n90\n90.1\n"},
+        Mistake{"NoAngleAnywhere", kEval, kInput, {"theta_deg"}, kScene, "sigma\n0.1\n"}),
+    name_of);
+
+INSTANTIATE_TEST_SUITE_P(
+    Output, CommandLineMistake,
+    testing::Values(Mistake{"MissingFolder", {"table", "scene.toml", "-o", "none/out.nc"}, kIo, {"none/out.nc"}},
+                    // Even root can make no file there.
+                    Mistake{"UnwritableFolder", {"table", "scene.toml", "-o", "/proc/out.nc"}, kIo, {"/proc/out.nc"}},
+                    Mistake{"Folder", {"eval", "scene.toml", "--points", "points.csv", "-o", "."}, kIo, {"folder"}},
+                    Mistake{"FullDevice",
+                            {"eval", "scene.toml", "--points", "points.csv", "-o", "/dev/full"},
+                            kIo,
+                            {"/dev/full", "No space left"}}),
+    name_of);
+
+INSTANTIATE_TEST_SUITE_P(Device, CommandLineMistake,
+                         testing::Values(Mistake{"UnknownDevice",
+                                                 kTable + std::vector<std::string>{"--device", "no such device"},
+                                                 kDevice,
+                                                 {"no such device", "0 = "}}),
+                         name_of);
+
+TEST_F(CommandLine, StandardOutput_Full_Exit4) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"devices"}, kTable, {"eval", "scene.toml", "--points", "points.csv", "-o", "-"}}) {
+    Command wanted = command(arguments);
+    wanted.out_path = "/dev/full";
+    const Outcome outcome = run(wanted);
+    EXPECT_EQ(outcome.status, kIo) << arguments.front();
+    EXPECT_NE(outcome.err.find("standard output: cannot write"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(CommandLine, Devices_NoDriver_Exit3) {
+  Command wanted = command({"devices"});
+  wanted.environment = kNoDriver;
+  const Outcome outcome = run(wanted);
+  EXPECT_EQ(outcome.status, kDevice);
+  EXPECT_EQ(outcome.out, "");
+  expect_one_line(outcome.err);
+  EXPECT_NE(outcome.err.find("no Vulkan driver"), std::string::npos) << outcome.err;
+}
+
+TEST_F(CommandLine, Vulkan_NoDriver_Exit3WithoutUsingTheCpu) {
+  put("out.csv", "kept\n");
+  Command wanted = command(kEval);
+  wanted.environment = kNoDriver;
+  const Outcome outcome = run(wanted);
+  EXPECT_EQ(outcome.status, kDevice);
+  expect_one_line(outcome.err);
+  EXPECT_EQ(content("out.csv"), "kept\n");
+}
+
+TEST_F(CommandLine, CpuAndReference_NoDriver_Work) {
+  for (const char* evaluator : {"cpu", "reference"}) {
+    Command wanted = command(kEval + std::vector<std::string>{"--evaluator", evaluator});
+    wanted.environment = kNoDriver;
+    const Outcome outcome = run(wanted);
+    EXPECT_EQ(outcome.status, kDone) << outcome.err;
+    EXPECT_EQ(parse_csv(content("out.csv")).at("dolp").size(), 3U);
+  }
+}
+
+TEST_F(CommandLine, Strict_FloatAtTightTolerance_Exit1WithTheResults) {
+  // Float rounding alone, 6e-8 of each term, is far above this tolerance.
+  const std::vector<std::string> hard =
+      kEval + std::vector<std::string>{"--tolerance", "1e-10", "--precision", "float"};
+  EXPECT_EQ(dolp(hard).status, kDone);
+  const Outcome outcome = dolp(hard + std::vector<std::string>{"--strict"});
+  EXPECT_EQ(outcome.status, kAccuracy);
+  const Columns columns = parse_csv(content("out.csv"));
+  ASSERT_EQ(columns.at("status").size(), 3U);
+  EXPECT_TRUE(std::ranges::any_of(columns.at("status"), [](double s) { return (static_cast<int>(s) & 2) != 0; }));
+}
+
+TEST_F(CommandLine, Strict_ToleranceMet_Exit0) {
+  EXPECT_EQ(dolp(kEval + std::vector<std::string>{"--strict"}).status, kDone);
+}
+
+TEST_F(CommandLine, BadScene_ExistingOutput_Kept) {
+  put("out.nc", "kept\n");
+  EXPECT_EQ(dolp(kTable + std::vector<std::string>{"--set", "surface.q=0"}).status, kInput);
+  EXPECT_EQ(content("out.nc"), "kept\n");
+}
+
+TEST_F(CommandLine, Interrupt_LongRun_Exit130AndNothingLeft) {
+  put("out.nc", "kept\n");
+  for (const int signal : {SIGINT, SIGTERM}) {
+    TerminalProcess process(command(kTable + kLongRun));
+    ASSERT_TRUE(process.wait_for_output());  // the progress bar: the work has begun
+    process.send_signal(signal);
+    const Outcome outcome = process.finish();
+    EXPECT_EQ(outcome.status, kInterrupted);
+    EXPECT_NE(outcome.err.find("dolp: interrupted"), std::string::npos) << outcome.err;
+    EXPECT_EQ(content("out.nc"), "kept\n");
+    EXPECT_EQ(names(), (std::vector<std::string>{"out.nc", "points.csv", "scene.toml"}));
+  }
+}
+
+TEST_F(CommandLine, Interrupt_WaitingForInput_Ends) {
+  ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
+  TerminalProcess process(command({"eval", "scene.toml", "--points", "pipe", "-o", "out.csv"}));
+  const Descriptor writer(::open(at("pipe").c_str(), O_WRONLY | O_CLOEXEC));  // waits until the program reads
+  process.send_signal(SIGINT);
+  EXPECT_EQ(process.finish().status, -SIGINT);  // which a shell shows as 130
+  EXPECT_FALSE(fs::exists(at("out.csv")));
+}
+
+}  // namespace

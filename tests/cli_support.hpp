@@ -1,0 +1,121 @@
+// A scene, points and a folder for the tests that run the program itself.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace dolp {
+
+inline const std::string kScene = R"(title = "Sixteen entries"
+[surface]
+n = 1.5
+k = 0.1
+sigma = 0.3
+q = 3.0
+masking = "integral"
+[emission]
+temperature_K = 300.0
+[surroundings]
+temperature_K = 250.0
+[spectrum]
+wavelength_um = 10.0
+[grid]
+theta_deg = [80.5, 60, 30, 0]
+sigma = [0.1, 0.4]
+q = [2, 3.5]
+)";
+
+inline const std::string kPoints = "theta_deg,sigma,q\n0,0.1,2\n60.0,0.4,3.5\n 80.5,0.1 ,2\n";
+
+inline const std::vector<std::string> kResultColumns = {
+    "rho_i",    "rho_q", "albedo",         "stokes_i",           "stokes_q", "stokes_u",
+    "stokes_v", "dolp",  "error_estimate", "rho_error_estimate", "status"};
+
+/// Columns of a CSV file by name; lines that begin with # are left out.
+using Columns = std::map<std::string, std::vector<double>>;
+
+inline std::vector<std::string> split_at(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+/// The lines that hold data: a table's attributes, with its time and command line, are left out.
+inline std::vector<std::string> data_lines(const std::string& csv) {
+  std::vector<std::string> lines = split_at(csv, '\n');
+  std::erase_if(lines, [](const std::string& line) { return line.starts_with('#'); });
+  return lines;
+}
+
+inline Columns parse_csv(const std::string& csv) {
+  const std::vector<std::string> lines = data_lines(csv);
+  Columns columns;
+  if (lines.empty()) return columns;
+  const std::vector<std::string> names = split_at(lines.front(), ',');
+  for (const std::string& name : names) columns[name] = {};
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const std::vector<std::string> cells = split_at(lines[i], ',');
+    if (cells.size() != names.size())
+      ADD_FAILURE() << "line " << i << " has " << cells.size() << " cells: " << lines[i];
+    for (std::size_t j = 0; j < std::min(cells.size(), names.size()); ++j) {
+      columns[names[j]].push_back(std::strtod(cells[j].c_str(), nullptr));
+    }
+  }
+  return columns;
+}
+
+/// Each test has a folder with scene.toml and points.csv, in which the program runs.
+class CommandLine : public testing::Test {
+ protected:
+  void SetUp() override {
+    put("scene.toml", kScene);
+    put("points.csv", kPoints);
+  }
+
+  std::filesystem::path at(const std::string& name) const { return folder_.path() / name; }
+  void put(const std::string& name, const std::string& text) const {
+    std::ofstream(at(name), std::ios::binary) << text;
+  }
+  std::string content(const std::string& name) const { return read_file(at(name)); }
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::ranges::sort(names);
+    return names;
+  }
+
+  Command command(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), DOLP_PROGRAM);
+    return {.arguments = std::move(arguments), .folder = folder_.path()};
+  }
+  Outcome dolp(const std::vector<std::string>& arguments, const std::string& input = "") const {
+    Command wanted = command(arguments);
+    wanted.input = input;
+    return run(wanted);
+  }
+  /// What `dolp eval` finds at points.csv.
+  Columns eval(const std::vector<std::string>& options) const {
+    std::vector<std::string> arguments = {"eval", "scene.toml", "--points", "points.csv", "-o", "-", "--quiet"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Outcome outcome = dolp(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return parse_csv(outcome.out);
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+}  // namespace dolp

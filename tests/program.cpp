@@ -1,0 +1,132 @@
+#include "program.hpp"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+namespace dolp {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kCannotStart = 127;
+constexpr unsigned kLongestRun_s = 60;
+
+void require(bool good, const char* what) {
+  if (!good) throw std::runtime_error(what);
+}
+
+int open_file(const fs::path& path, int flags) {
+  constexpr mode_t kMode = 0600;
+  return ::open(path.c_str(), flags | O_CLOEXEC | O_NOCTTY, kMode);
+}
+
+/// The other end of a pseudo-terminal.
+int open_partner(const Descriptor& terminal) {
+  require(::grantpt(terminal.number()) == 0 && ::unlockpt(terminal.number()) == 0, "cannot open a terminal");
+  return open_file(::ptsname(terminal.number()), O_RDWR);
+}
+
+[[noreturn]] void become(const Command& command, const Descriptor& in, const Descriptor& out, const Descriptor& err) {
+  ::alarm(kLongestRun_s);
+  const bool redirected = ::dup2(in.number(), STDIN_FILENO) >= 0 && ::dup2(out.number(), STDOUT_FILENO) >= 0 &&
+                          ::dup2(err.number(), STDERR_FILENO) >= 0;
+  if (!redirected || ::chdir(command.folder.c_str()) != 0) ::_exit(kCannotStart);
+  for (const auto& [name, value] : command.environment) ::setenv(name.c_str(), value.c_str(), 1);
+  std::vector<std::string> texts = command.arguments;
+  std::vector<char*> arguments;
+  for (std::string& text : texts) arguments.push_back(text.data());
+  arguments.push_back(nullptr);
+  ::execvp(arguments.front(), arguments.data());
+  ::_exit(kCannotStart);
+}
+
+pid_t start(const Command& command, const Descriptor& in, const Descriptor& out, const Descriptor& err) {
+  const pid_t process = ::fork();
+  require(process >= 0, "cannot fork");
+  if (process == 0) become(command, in, out, err);
+  return process;
+}
+
+pid_t start_on_terminal(const Command& command, const Descriptor& terminal) {
+  const Descriptor nowhere(open_file("/dev/null", O_RDWR));
+  const Descriptor partner(open_partner(terminal));
+  return start(command, nowhere, nowhere, partner);
+}
+
+int wait_for(pid_t process) {
+  int status = 0;
+  require(::waitpid(process, &status, 0) == process, "cannot wait for the program");
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+}  // namespace
+
+Descriptor::Descriptor(int number) : number_(number) { require(number_ >= 0, "cannot open a file"); }
+
+Descriptor::~Descriptor() { ::close(number_); }
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (fs::temp_directory_path() / "dolp-test-XXXXXX").string();
+  require(::mkdtemp(name.data()) != nullptr, "cannot make a temporary folder");
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() { fs::remove_all(path_); }
+
+std::string read_file(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+Outcome run(const Command& command) {
+  // Files, because nobody has to empty them while the program runs.
+  const TemporaryFolder folder;
+  const fs::path in_path = folder.path() / "in";
+  const fs::path out_path = command.out_path.empty() ? folder.path() / "out" : command.out_path;
+  const fs::path err_path = folder.path() / "err";
+  std::ofstream(in_path, std::ios::binary) << command.input;
+  const Descriptor in(open_file(in_path, O_RDONLY));
+  const Descriptor out(open_file(out_path, O_WRONLY | O_CREAT));
+  const Descriptor err(open_file(err_path, O_WRONLY | O_CREAT));
+  const int status = wait_for(start(command, in, out, err));
+  return {status, command.out_path.empty() ? read_file(out_path) : std::string(), read_file(err_path)};
+}
+
+TerminalProcess::TerminalProcess(const Command& command)
+    : terminal_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)), process_(start_on_terminal(command, terminal_)) {}
+
+TerminalProcess::~TerminalProcess() {
+  if (process_ < 0) return;
+  ::kill(process_, SIGKILL);
+  ::waitpid(process_, nullptr, 0);
+}
+
+bool TerminalProcess::read_some() {
+  std::array<char, 4096> buffer{};
+  const ssize_t count = ::read(terminal_.number(), buffer.data(), buffer.size());
+  if (count <= 0) return false;
+  shown_.append(buffer.data(), static_cast<std::size_t>(count));
+  return true;
+}
+
+bool TerminalProcess::wait_for_output() { return !shown_.empty() || read_some(); }
+
+void TerminalProcess::send_signal(int number) const { ::kill(process_, number); }
+
+Outcome TerminalProcess::finish() {
+  while (read_some()) {
+  }
+  const int status = wait_for(process_);
+  process_ = -1;
+  return {status, "", shown_};
+}
+
+}  // namespace dolp

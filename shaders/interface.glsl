@@ -68,6 +68,26 @@ struct IndexNode {
   real critical_cos;  // sqrt(1 - Re N^2), where total reflection begins, sharply (k = 0) or nearly so; otherwise 0
 };
 
+// One geometry of the pBRDF: incident and reflected beam, and the facet between them.
+struct GeometryNode {
+  real c_i;  // cos(theta_i)
+  real s_i;
+  real c_r;  // cos(theta_r)
+  real s_r;
+  real slope;  // tan(alpha)
+  real cos_beta;
+  real sin2_beta;
+  real cos_2eta_i;
+  real sin_2eta_i;
+  real cos_2eta_r;
+  real sin_2eta_r;
+};
+
+// A Mueller matrix, row by row.
+struct MuellerNode {
+  real m[16];
+};
+
 // Moments times cos(theta) (MODEL.md section 3), and |fine - coarse| summed over the pieces for each.
 struct MomentsNode {
   real r_i;

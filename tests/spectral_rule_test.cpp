@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "error.hpp"
 #include "evaluate/radiometry/planck.hpp"
 #include "evaluate/radiometry/smooth_surface.hpp"
 #include "evaluate/radiometry/spectral_rule.hpp"
@@ -56,17 +55,6 @@ TEST(SmoothAbsorptance, FiftyDigitValues_Agree) {
 }
 
 // ---- Spectral rule --------------------------------------------------------------------------------------------------
-
-TEST(SpectralRule, BistaticScene_IsRefused) {
-  Scene scene = night_scene();
-  scene.geometry.mode = Mode::kBistatic;
-  try {
-    spectral_rule(scene);
-    FAIL() << "no exception";
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()), "night.toml: geometry.mode = \"bistatic\" is not supported by this version");
-  }
-}
 
 TEST(SpectralRule, SingleWavelength_IsOneSampleOfPlanckFactors) {
   const SpectralRule rule = spectral_rule(night_scene());

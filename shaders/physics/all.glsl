@@ -7,3 +7,4 @@
 #include "physics/masking_table.glsl"
 #include "physics/integrand.glsl"
 #include "physics/moments.glsl"
+#include "physics/mueller.glsl"

@@ -38,13 +38,20 @@ real expm1_real(real x) {
   return power * fraction + (power - real(1.0));
 }
 
-// e^x for x <= 80; 0 below -80, where it is under 2e-35 of anything it is added to here.
+// Where exp_real gives way to 0: e^x and its products must stay above the smallest normal number.
+#ifdef DOLP_DOUBLE
+CONST real kLowestExponent = real(-690.0);
+#else
+CONST real kLowestExponent = real(-80.0);
+#endif
+
+// e^x for x <= 80; 0 below kLowestExponent.
 real exp_real(real x) {
-  real bounded = max(x, real(-80.0));
+  real bounded = max(x, kLowestExponent);
   real k = floor(bounded * kInverseLn2 + real(0.5));
   real r = (bounded - k * kLn2High) - k * kLn2Low;
   real power = ldexp(real(1.0) + (r + r * r * exp_series(r)), int(k));
-  return (x < real(-80.0)) ? real(0.0) : power;
+  return (x < kLowestExponent) ? real(0.0) : power;
 }
 
 // atanh(z)/z - 1 over z^2, for z^2 <= 0.03.

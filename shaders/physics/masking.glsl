@@ -51,7 +51,7 @@ real shadowed_integral(ShapeNode shape, uint table, real cos_theta, real sin_the
   real twice_product = real(2.0) * s * cos_theta;
   real d = difference - twice_product * t;
   if (d <= real(0.0)) return kappa * height;
-  real tau = (difference * t + twice_product) / d;
+  real tau = min((difference * t + twice_product) / d, masking_node_tau(shape, uint(DOLP_MASKING_NODES - 1)));
   real4 tails = masking_tails(shape, table, tau);
   return kappa * (height - tails.x - (tau - mu) * tails.y) + tails.z;
 }

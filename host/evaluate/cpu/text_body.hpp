@@ -62,6 +62,13 @@ class TextKernel final : public KernelText {
     return convert_reals<double, kernel::MomentsNode, real>(node);
   }
 
+  kernel::MuellerNode mueller(const kernel::GeometryNode& geometry, std::size_t shape, std::size_t index) override {
+    const auto node = text_.mueller(convert_reals<real, Text::GeometryNode, double>(geometry), shape_node(shape),
+                                    convert_reals<real, Text::IndexNode, double>(data_.indices[index]),
+                                    static_cast<uint>(shape * DOLP_MASKING_NODES));
+    return convert_reals<double, kernel::MuellerNode, real>(node);
+  }
+
  private:
   Text::ShapeNode shape_node(std::size_t shape) const {
     return convert_reals<real, Text::ShapeNode, double>(data_.shapes[shape]);

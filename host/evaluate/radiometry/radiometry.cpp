@@ -1,6 +1,7 @@
 #include "evaluate/radiometry/radiometry.hpp"
 
 #include <algorithm>
+#include <boost/math/constants/constants.hpp>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -9,6 +10,8 @@
 
 namespace dolp {
 namespace {
+
+using boost::math::constants::pi;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -42,6 +45,9 @@ struct Stokes {
   double q = 0.0;
   double i_error = 0.0;
   double q_error = 0.0;
+  double u = 0.0;
+  double v = 0.0;
+  double u_error = 0.0;
 };
 
 /// Adds a specular term `net` * r, with cos(theta) in r.
@@ -117,9 +123,8 @@ Intensity moments_intensity(double emitted, double incident, double net, double 
 }
 
 /// One sample's part of the Stokes sums with Kirchhoff's emission; `rounding` is relative to each term.
-void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, double cos_theta,
+void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, double direct,
                         double rounding) {
-  const double direct = sample.irradiance * cos_theta;
   const double net = direct + sample.excess;
   // Equal temperatures cancel exactly: then the excess has no rounding either.
   const double thermal = sample.excess == 0.0 ? 0.0 : std::abs(sample.emitted) + std::abs(sample.surroundings);
@@ -133,8 +138,8 @@ void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflect
 
 /// The same with the emission of the smooth surface, whose absorptances have no error but rounding.
 void add_fresnel_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, const Emissivity& e,
-                        double cos_theta, double rounding) {
-  const double incident = sample.irradiance * cos_theta + sample.surroundings;
+                        double direct, double rounding) {
+  const double incident = direct + sample.surroundings;
   sum.i += sample.emitted * e.i + incident * r.rho_i;
   sum.q += sample.emitted * e.q + incident * r.rho_q;
   const double emitted_terms = std::abs(sample.emitted) * e.terms;
@@ -144,37 +149,62 @@ void add_fresnel_sample(Stokes& sum, const SpectralSample& sample, const Reflect
 
 void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance) {
   if (!path) return;
-  sum.i = path->transmittance * sum.i + path_exitance;
-  sum.q *= path->transmittance;
-  sum.i_error = path->transmittance * sum.i_error + kRadianceRounding * path_exitance;
-  sum.q_error *= path->transmittance;
+  for (double* value : {&sum.i, &sum.q, &sum.u, &sum.v, &sum.i_error, &sum.q_error, &sum.u_error}) {
+    *value *= path->transmittance;
+  }
+  sum.i += path_exitance;
+  sum.i_error += kRadianceRounding * path_exitance;
 }
 
+/// Exitances by emission and by reflection of the surroundings and, `with_source`, of the source into the hemisphere.
 Stokes stokes_sum(const Scene& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
-                  std::span<const OpticalConstants> indices, double cos_theta) {
+                  std::span<const OpticalConstants> indices, double cos_theta, bool with_source) {
   const bool fresnel = emission_model(scene) == EmissionModel::kFresnel;
   const double rounding = kRadianceRounding + rule.relative_error;
   Stokes sum;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
+    const double direct = with_source ? rule.samples[j].irradiance * cos_theta : 0.0;
     if (fresnel) {
       const Emissivity emissivity = fresnel_emissivity(scene.surface, indices[j], cos_theta);
-      add_fresnel_sample(sum, rule.samples[j], reflectances[j], emissivity, cos_theta, rounding);
+      add_fresnel_sample(sum, rule.samples[j], reflectances[j], emissivity, direct, rounding);
     } else {
-      add_moments_sample(sum, rule.samples[j], reflectances[j], cos_theta, rounding);
+      add_moments_sample(sum, rule.samples[j], reflectances[j], direct, rounding);
     }
   }
-  add_path(sum, scene.path, rule.path_exitance);
   return sum;
 }
 
+/// Adds pi E0 cos(theta_i) f of the beam from the source, the factor pi as in the exitances of the sum.
+void add_beam(Stokes& sum, const Surface& surface, const SpectralRule& rule, std::span<const Scattered> scattered,
+              double cos_theta_i, double cos_theta_r) {
+  const double diffuse =
+      surface.diffuse == 0.0 ? 0.0
+                             : surface.diffuse * std::pow(cos_theta_i, surface.diffuse_exponent + 1.0) *
+                                   std::pow(cos_theta_r, surface.diffuse_exponent);
+  const double rounding = kRadianceRounding + rule.relative_error;
+  for (std::size_t j = 0; j < scattered.size(); ++j) {
+    const double specular = pi<double>() * surface.specular * rule.samples[j].irradiance / cos_theta_r;
+    const double unpolarised = rule.samples[j].irradiance * diffuse;
+    const double error = std::abs(specular) * (scattered[j].error + rounding * std::abs(scattered[j].i));
+    sum.i += specular * scattered[j].i + unpolarised;
+    sum.q += specular * scattered[j].q;
+    sum.u += specular * scattered[j].u;
+    sum.v += specular * scattered[j].v;
+    sum.i_error += error + rounding * std::abs(unpolarised);
+    sum.q_error += error;
+    sum.u_error += error;
+  }
+}
+
 void set_dolp(PointResult& result, const Stokes& sum) {
-  result.dolp = std::abs(sum.q) / sum.i;
+  result.dolp = std::hypot(sum.q, sum.u) / sum.i;
   const double i = std::abs(sum.i);
   const double margin = i - sum.i_error;
   if (std::isnan(result.dolp)) {
     result.error_estimate = kNan;
   } else if (margin > 0.0) {
-    result.error_estimate = (sum.q_error + std::abs(result.dolp) * sum.i_error) / margin;
+    result.error_estimate =
+        (std::hypot(sum.q_error, sum.u_error) + std::abs(result.dolp) * sum.i_error) / margin;
   } else {
     result.error_estimate = kInfinity;
   }
@@ -277,7 +307,7 @@ Stokes grazing_stokes(const Scene& scene, const SpectralRule& rule, std::span<co
     finite.i += sample.emitted * emissivity;
   }
   if (leading.i != 0.0 || leading.q != 0.0) return leading;
-  if (fresnel && diffuse_diverges(surface)) return {1.0, 0.0, 0.0, 0.0};
+  if (fresnel && diffuse_diverges(surface)) return {.i = 1.0};
   add_path(finite, scene.path, rule.path_exitance);
   return finite;
 }
@@ -325,17 +355,36 @@ PointResult Radiometry::point(const Direction& direction, std::span<const Moment
   if (!std::ranges::all_of(moments, is_known)) return outside_domain();
   if (reflectance_diverges(scene_.surface, direction, moments)) return grazing_limit(scene_, rule_, direction, moments);
 
-  const double cos_theta = direction.cos_theta;
+  return assemble(moments, direction.cos_theta, indices, direction.cos_theta, {});
+}
+
+PointResult Radiometry::bistatic_point(const Direction& view, double cos_theta_i, std::span<const Moments> moments,
+                                       std::span<const OpticalConstants> indices,
+                                       std::span<const Scattered> scattered) const {
+  assert(moments.size() == rule_.samples.size() && scattered.size() == moments.size());
+  if (view.theta_deg == kRightAngle_deg || !std::ranges::all_of(moments, is_known)) return outside_domain();
+  return assemble(moments, view.cos_theta, indices, cos_theta_i, scattered);
+}
+
+PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_theta,
+                                 std::span<const OpticalConstants> indices, double cos_theta_i,
+                                 std::span<const Scattered> scattered) const {
+  const bool bistatic = scene_.geometry.mode == Mode::kBistatic;
   PointResult result;
   std::vector<Reflectance> reflectances;
   for (const Moments& m : moments) {
     reflectances.push_back(reflectance(scene_.surface, m, cos_theta));
     if (is_unphysical(reflectances.back())) result.status |= kStatusUnphysicalReflectance;
   }
-  const Stokes sum = stokes_sum(scene_, rule_, reflectances, indices, cos_theta);
+  Stokes sum = stokes_sum(scene_, rule_, reflectances, indices, cos_theta, !bistatic);
+  if (bistatic) add_beam(sum, scene_.surface, rule_, scattered, cos_theta_i, cos_theta);
+  add_path(sum, scene_.path, rule_.path_exitance);
+  const double unit = bistatic ? 1.0 / pi<double>() : 1.0;  // an exitance, or the radiance that it is the integral of
   const MeanReflectance mean = mean_reflectance(rule_, reflectances, cos_theta);
-  result.stokes_i = sum.i;
-  result.stokes_q = sum.q + 0.0;  // without the sign of a zero
+  result.stokes_i = unit * sum.i;
+  result.stokes_q = unit * sum.q + 0.0;  // without the sign of a zero
+  result.stokes_u = unit * sum.u + 0.0;
+  result.stokes_v = unit * sum.v + 0.0;
   result.rho_i = mean.rho_i;
   result.rho_q = mean.rho_q;
   result.albedo = moments.front().albedo / cos_theta;

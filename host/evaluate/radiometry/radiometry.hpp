@@ -13,11 +13,12 @@ namespace dolp {
 
 /// Everything the program reports about one entry of a grid or one scattered point.
 ///
-/// Units: Stokes parameters are exitances, W m-2 um-1 at a single wavelength and W m-2 over a band; the others are 1.
+/// Units: Stokes parameters are exitances, W m-2 um-1 at a single wavelength and W m-2 over a band; in bistatic mode
+/// radiances, W m-2 sr-1 um-1 and W m-2 sr-1; the others are 1.
 /// Conventions: Q = I_s - I_p keeps its sign; U = V = 0 in hemispherical mode. Over a band rho is the mean weighted by
 /// the emission pi B(T), without emission by the incident radiation, without either by the wavelength.
 struct PointResult {
-  double dolp = 0.0;  ///< |Q| / I; negative with a negative I, NaN with I = 0
+  double dolp = 0.0;  ///< sqrt(Q^2 + U^2) / I; negative with a negative I, NaN with I = 0
   double stokes_i = 0.0;
   double stokes_q = 0.0;
   double stokes_u = 0.0;
@@ -37,12 +38,24 @@ struct Direction {
   double cos_theta = 1.0;
 };
 
+/// What unpolarised light of one direction becomes in another: the first column of f_s cos(theta_i) cos(theta_r) for
+/// k_s = 1.
+///
+/// Units: sr-1.
+struct Scattered {
+  double i = 0.0;
+  double q = 0.0;
+  double u = 0.0;
+  double v = 0.0;
+  double error = 0.0;  ///< bound of the absolute error of each
+};
+
 /// Radiometry of a scene: everything that does not depend on the entry is prepared once.
 ///
 /// Equation: I = pi B (1 - rho_I) + X rho_I, Q = (X - pi B) rho_Q, X = E0 cos(theta) + pi B(T_surr), then the path.
 /// With emission.model = "fresnel", 1 - rho_s is replaced in the emission by (1 - k_s) + k_s (1 - R_s) - rho_d,
-/// likewise p. Source: MODEL.md sections 3 and 4; Wang, Li, Wang 2025, eqs. (16), (18). Errors: InputError for the
-/// bistatic mode.
+/// likewise p. In bistatic mode the same without E0 over pi, plus E0 cos(theta_i) f at the view direction.
+/// Source: MODEL.md sections 3 and 4; Wang, Li, Wang 2025, eqs. (16), (18).
 class Radiometry {
  public:
   explicit Radiometry(const Scene& scene);
@@ -62,7 +75,17 @@ class Radiometry {
   PointResult point(const Direction& direction, std::span<const Moments> moments,
                     std::span<const OpticalConstants> indices) const;
 
+  /// Bistatic result: `moments` and rho at the view direction, the source at theta_i.
+  /// Shape: one Moments and one Scattered per sample of rule(), in its order.
+  /// Domain: outside it (a view at 90 degrees, where the radiance has no limit) everything is NaN with status 4.
+  PointResult bistatic_point(const Direction& view, double cos_theta_i, std::span<const Moments> moments,
+                             std::span<const OpticalConstants> indices, std::span<const Scattered> scattered) const;
+
  private:
+  PointResult assemble(std::span<const Moments> moments, double cos_theta,
+                       std::span<const OpticalConstants> indices, double cos_theta_i,
+                       std::span<const Scattered> scattered) const;
+
   Scene scene_;
   SpectralRule rule_;
   std::vector<OpticalConstants> indices_;

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <numbers>
 
-#include "error.hpp"
 #include "evaluate/radiometry/planck.hpp"
 #include "evaluate/radiometry/smooth_surface.hpp"
 
@@ -259,9 +258,6 @@ std::vector<OpticalConstants> SpectralRule::indices() const {
 }
 
 SpectralRule spectral_rule(const Scene& scene) {
-  if (scene.geometry.mode == Mode::kBistatic) {
-    throw InputError(scene.path_name + ": geometry.mode = \"bistatic\" is not supported by this version");
-  }
   if (!scene.spectrum.is_band()) return single_wavelength_rule(scene, scene.spectrum.min_um);
   SpectralRule rule;
   rule.relative_error = kPieceRelativeError;

@@ -35,7 +35,6 @@ struct SpectralRule {
 /// the material otherwise, as many as it takes for the reflectances of the smooth surface.
 ///
 /// Accuracy: band sums to 1e-9 relative (tests SpectralRule_*Band*).
-/// Errors: InputError for the bistatic mode, which this version does not have.
 SpectralRule spectral_rule(const Scene& scene);
 
 }  // namespace dolp

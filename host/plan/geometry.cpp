@@ -1,0 +1,62 @@
+#include "plan/geometry.hpp"
+
+#include <cmath>
+
+namespace dolp {
+namespace {
+
+struct DoubleAngle {
+  double cos = 1.0;
+  double sin = 0.0;
+};
+
+// (cos 2 eta, sin 2 eta) of the direction (x, y); eta = 0 where there is none.
+DoubleAngle double_angle(double x, double y) {
+  const double squared = x * x + y * y;
+  if (squared == 0.0) return {};
+  return {(x - y) * (x + y) / squared, 2.0 * x * y / squared};
+}
+
+}  // namespace
+
+kernel::GeometryNode geometry_node(double theta_i_deg, double theta_r_deg, double delta_phi_deg) {
+  const CosSin i = cos_sin_deg(theta_i_deg);
+  const CosSin r = cos_sin_deg(theta_r_deg);
+  const CosSin half = cos_sin_deg(0.5 * delta_phi_deg);
+  const CosSin mean = cos_sin_deg(0.5 * (theta_i_deg + theta_r_deg));
+  const CosSin difference = cos_sin_deg(0.5 * (theta_i_deg - theta_r_deg));
+  const double sin_difference = 2.0 * mean.cos * difference.sin;   // sin i - sin r
+  const double cos_difference = -2.0 * mean.sin * difference.sin;  // cos i - cos r
+  const double product = 4.0 * i.sin * r.sin;
+  const double flat_sum = sin_difference * sin_difference + product * half.cos * half.cos;
+  const double flat_difference = sin_difference * sin_difference + product * half.sin * half.sin;
+  const double height_sum = i.cos + r.cos;
+
+  kernel::GeometryNode node{};
+  node.c_i = i.cos;
+  node.s_i = i.sin;
+  node.c_r = r.cos;
+  node.s_r = r.sin;
+  node.slope = std::sqrt(flat_sum) / height_sum;
+  node.cos_beta = 0.5 * std::sqrt(height_sum * height_sum + flat_sum);
+  node.sin2_beta = 0.25 * (cos_difference * cos_difference + flat_difference);
+
+  // Of cos(dphi) = 1 - 2 sin^2(dphi/2) = 2 cos^2(dphi/2) - 1 the form that leaves the smaller correction.
+  const bool forward = std::abs(half.cos) < std::abs(half.sin);
+  const double sin_sum = 2.0 * mean.sin * mean.cos;
+  const double sin_of_difference = 2.0 * difference.sin * difference.cos;
+  const double toward_i = forward ? sin_sum - 2.0 * i.cos * r.sin * half.cos * half.cos
+                                  : sin_of_difference + 2.0 * i.cos * r.sin * half.sin * half.sin;
+  const double toward_r = forward ? sin_sum - 2.0 * r.cos * i.sin * half.cos * half.cos
+                                  : -sin_of_difference + 2.0 * r.cos * i.sin * half.sin * half.sin;
+  const double sin_azimuth = 2.0 * half.sin * half.cos;
+  const DoubleAngle eta_i = double_angle(toward_i, r.sin * sin_azimuth);
+  const DoubleAngle eta_r = double_angle(toward_r, i.sin * sin_azimuth);
+  node.cos_2eta_i = eta_i.cos;
+  node.sin_2eta_i = eta_i.sin;
+  node.cos_2eta_r = eta_r.cos;
+  node.sin_2eta_r = eta_r.sin;
+  return node;
+}
+
+}  // namespace dolp

@@ -21,7 +21,8 @@ from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter  # n
 
 COLOURS = "viridis"
 MOST_CURVES = 6
-CONTOURS = 6
+CONTOURS_PERCENT = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50)
+SHOWN_SHARE_PERCENT = 97  # of the entries: a few at grazing incidence would otherwise take the whole scale
 FEW_ANGLES = 25  # up to which each entry gets a dot
 SMALLEST_SPAN_PERCENT = 0.01  # of the DOLP axes: rounding noise must not look like a signal
 STATUS_MEANINGS = {
@@ -64,6 +65,12 @@ class Slice:
         promised = errors[((self.status & (1 | 4 | 8)) == 0) & np.isfinite(errors)]
         return promised.max() if promised.size else None
 
+    def largest(self):
+        """End of the DOLP scale: below it lie SHOWN_SHARE_PERCENT of the entries without a status."""
+        trusted = self.dolp[(self.status == 0) & np.isfinite(self.dolp)]
+        shown = trusted if trusted.size else self.dolp[np.isfinite(self.dolp)]
+        return max(np.percentile(shown, SHOWN_SHARE_PERCENT), SMALLEST_SPAN_PERCENT) if shown.size else 1.0
+
     def caption(self):
         parts = [f"{self.theta.size} × {self.sigma.size} entries at q = {self.q:g}"]
         if self.worst_error is not None:
@@ -92,10 +99,7 @@ def draw_curves(axes, table):
         style = {"color": colour, "marker": "o" if table.theta.size <= FEW_ANGLES else None, "markersize": 3.5}
         axes.plot(table.theta, table.dolp[:, j], alpha=0.35, linewidth=1.2, linestyle="--", **style)
         axes.plot(table.theta, good, linewidth=1.8, label=f"$\\sigma$ = {table.sigma[j]:.3g}", **style)
-    trusted = table.dolp[(table.status == 0) & np.isfinite(table.dolp)]
-    shown = trusted if trusted.size else table.dolp[np.isfinite(table.dolp)]
-    if shown.size:
-        axes.set_ylim(0.0, 1.08 * max(shown.max(), SMALLEST_SPAN_PERCENT))
+    axes.set_ylim(0.0, 1.08 * table.largest())
     axes.set_ylabel("DOLP (%)")
     axes.grid(alpha=0.25, linewidth=0.6)
     handles, _ = axes.get_legend_handles_labels()
@@ -120,16 +124,19 @@ def draw_contours(axes, table):
     shown = np.ma.masked_where((table.status != 0) | ~np.isfinite(table.dolp), table.dolp)
     if min(shown.shape) < 2 or shown.count() == 0 or shown.max() - shown.min() < SMALLEST_SPAN_PERCENT:
         return
-    lines = axes.contour(table.theta, table.sigma, shown.T, levels=CONTOURS, colors="white", linewidths=0.8)
+    levels = [level for level in CONTOURS_PERCENT if shown.min() < level < table.largest()]
+    if not levels:
+        return
+    lines = axes.contour(table.theta, table.sigma, shown.T, levels=levels, colors="white", linewidths=0.8)
     axes.clabel(lines, fontsize=8, fmt=lambda level: f"{level:g}%")
 
 
 def draw_map(figure, axes, table):
     shown = np.ma.masked_where((table.status != 0) | ~np.isfinite(table.dolp), table.dolp)
     edges = cell_edges(table.theta), cell_edges(table.sigma)
-    largest = max(shown.max(), SMALLEST_SPAN_PERCENT) if shown.count() else SMALLEST_SPAN_PERCENT
-    mesh = axes.pcolormesh(*edges, shown.T, cmap=COLOURS, vmin=0.0, vmax=largest, rasterized=True)
-    figure.colorbar(mesh, ax=axes, pad=0.02).set_label("DOLP (%)")
+    mesh = axes.pcolormesh(*edges, shown.T, cmap=COLOURS, vmin=0.0, vmax=table.largest(), rasterized=True)
+    beyond = shown.count() > 0 and shown.max() > table.largest()
+    figure.colorbar(mesh, ax=axes, pad=0.02, extend="max" if beyond else "neither").set_label("DOLP (%)")
     draw_contours(axes, table)
     draw_flags(axes, table)
     ratio = table.sigma[-1] / table.sigma[0] if table.sigma[0] > 0.0 else 1.0

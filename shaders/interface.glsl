@@ -44,6 +44,7 @@ struct ThetaNode {
   real s;                          // sin(theta)
   real piece_count;                // <= DOLP_MAX_PIECES
   real order_t;                    // slope-axis nodes of a piece that carries the whole weight
+  real order_limit;                // most slope-axis nodes of any piece, which bounds the loop iterations
   real order_per_e;                // fewer nodes for each factor e that a piece carries less
   real order_phi;                  // azimuth nodes of a piece
   real end[DOLP_MAX_PIECES + 1];   // ascending slopes; the last may exceed any cut

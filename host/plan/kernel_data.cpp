@@ -22,6 +22,8 @@ constexpr double kEndAbove = 1.0;  // square-root end just above a breakpoint
 constexpr double kEndBelow = 2.0;  // just below
 constexpr double kNoEnd = 1e30;    // a slope beyond every cut, in place of infinity
 
+// The orders follow a scan of the domain for entries whose estimate misses the tolerance: about 2.4 slopes and one
+// azimuth of an arc for each digit (tests/plan_test.cpp repeats the scan on a sample).
 // The rule aims this many digits beyond the tolerance, so that the coarser rule it is compared with meets the tolerance.
 constexpr double kExtraDigits = 2.0;
 
@@ -88,7 +90,10 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   }
 }
 
-// Slopes at which the set of smooth arcs changes (MODEL.md section 3; NUMERICS: exact split lines).
+// Slopes at which the set of smooth arcs changes: where a split line of the azimuth (integrand.glsl) meets phi = 0 or pi
+// or another line. The horizon does at t1 = c / (1 + s) and t2 = (1 + s) / c, theta_r = theta at tan(theta), the limit
+// b = pi/2 at tan(30 -+ 2/3 theta) and, on theta_r = theta, at tan(2 theta - 90); the lines of v-cavity at
+// tan(30 -+ theta/3), cot(theta), 1 and tan(theta); smith's cusp is at tan(theta/2).
 std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking masking, double critical) {
   std::vector<Breakpoint> points = {{a.cos / (1.0 + a.sin), kEndAbove},
                                     {a.cos > 0.0 ? (1.0 + a.sin) / a.cos : kNoEnd, kEndBelow}};
@@ -117,15 +122,13 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking m
   return points;
 }
 
-// Loop iterations of one invocation for a direction whose slopes have `arcs` arcs each: pieces, slopes, arcs, azimuths,
-// for the fine and the coarse rule.
+// Bound of the loop iterations of one invocation for a direction whose slopes have `arcs` arcs each: pieces, slopes,
+// arcs, azimuths, for the fine and the coarse rule, with every piece at its most nodes.
 double iterations(const kernel::ThetaNode& node, double arcs) {
-  const double fine_t = std::min<double>(node.order_t, DOLP_MAX_ORDER);
-  const double fine_phi = std::min<double>(node.order_phi, DOLP_MAX_ORDER);
-  const double coarse_t = 0.25 * (3.0 * fine_t + 1.0);
-  const double coarse_phi = 0.75 * fine_phi;
-  return node.piece_count *
-         (1.0 + (1.0 + arcs) * (fine_t + coarse_t) + arcs * (fine_t * fine_phi + coarse_t * coarse_phi));
+  const double coarse_t = 0.25 * (3.0 * node.order_limit + 1.0);
+  const double coarse_phi = 0.75 * node.order_phi;
+  return node.piece_count * (1.0 + (1.0 + arcs) * (node.order_limit + coarse_t) +
+                             arcs * (node.order_limit * node.order_phi + coarse_t * coarse_phi));
 }
 
 double arcs_per_slope(Masking masking, double critical) {
@@ -133,14 +136,11 @@ double arcs_per_slope(Masking masking, double critical) {
   return critical > 0.0 ? 2.0 * zones : zones;
 }
 
-// Lowers the orders until the kernel is sure to finish; the error estimate then shows what that costs.
+// Limits the orders so that the kernel is sure to finish; the error estimate then shows what that costs.
 void limit_iterations(kernel::ThetaNode& node, double arcs) {
-  node.order_t = std::min<double>(node.order_t, DOLP_MAX_ORDER);
   node.order_phi = std::min<double>(node.order_phi, DOLP_MAX_ORDER);
-  while (iterations(node, arcs) > kMostIterations) {
-    node.order_t -= 1.0;
-    node.order_phi -= 1.0;
-  }
+  node.order_limit = DOLP_MAX_ORDER;
+  while (iterations(node, arcs) > kMostIterations) node.order_limit -= 1.0;
 }
 
 kernel::ThetaNode theta_node(const MomentsRequest& request, double theta_deg, double digits, double critical) {

@@ -77,7 +77,7 @@ bool has_cusp(ShapeNode shape) {
 }
 
 // The arc between two azimuths given by their half angles; empty when they coincide or are out of order. `cusp`: the
-// arc begins at phi = 0 with one.
+// arc begins at phi = 0, and with one.
 Arc make_arc(real2 from, real2 to, int order, bool cusp) {
   real sin_half = to.y * from.x - to.x * from.y;
   real cos_half = to.x * from.x + to.y * from.y;
@@ -204,7 +204,8 @@ SplitLines split_lines(ThetaNode theta, IndexNode index, real t) {
   return lines;
 }
 
-// Integral over the azimuths of one zone, split where total reflection begins.
+// Integral over the azimuths of one zone, split where total reflection begins; its clusters then replace those of the
+// cusp.
 FacetSums zone_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint table, real t, real2 from, real2 to,
                     real2 critical, int order, int zone, real by_slope) {
   bool cusp = zone == 0 && has_cusp(shape);

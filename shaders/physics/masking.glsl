@@ -22,7 +22,7 @@ real masking_weight(real tau) {
 }
 
 // (l, C, Pt) at tau >= 0 by cubic Hermite interpolation with the exact derivatives. Beyond the table's end the value at
-// the end is used: only facets within 1e-5 of the line d = 0 look there.
+// the end is used: only facets within 1e-5 of the line d = 0 and directions within 2e-5 of the normal look there.
 real4 masking_tails(ShapeNode shape, uint table, real tau) {
   real v = min(real(1.0) + tau / shape.table_scale, masking_node_v(uint(DOLP_MASKING_NODES - 1)));
   uint cell = min((floatBitsToUint(float(v)) >> 19) - kFirstNodeBits, uint(DOLP_MASKING_NODES - 2));

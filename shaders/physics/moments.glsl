@@ -1,4 +1,5 @@
-// The moments of one entry: Gauss rules on the smooth pieces of the slope axis, twice, with fewer nodes the second time.
+// The moments of one entry: Gauss rules on the smooth pieces of the slope axis, twice, the second time with
+// three quarters of the nodes (quadrature.glsl).
 
 // How the order of a piece follows its length in X and its weight; found by scanning the domain for entries whose
 // estimate misses the tolerance (tests/plan_test.cpp repeats the scan on a sample).
@@ -6,7 +7,8 @@ CONST real kOrderPerLength = real(0.08);
 CONST real kUsualLength = real(3.5);
 CONST real kRootShare = real(0.6);
 
-// ln of the share of the moments that slopes beyond a carry: P t (c + s t), with m for the mean of t.
+// ln of the share of the moments that slopes beyond a carry, roughly: the tail, times (c + s a) / (c + s m) for the
+// weight P t (c + s t) of the albedo.
 real log_share(ThetaNode theta, ShapeNode shape, real a) {
   real lever = theta.s * max(a - shape.m, real(0.0)) / (theta.c + theta.s * shape.m);
   return min(log1p_real(lever) - slope_tail_exponent(shape, a), real(0.0));
@@ -31,7 +33,7 @@ Piece make_piece(ThetaNode theta, ShapeNode shape, int number) {
   // The less a piece carries, the fewer nodes it needs; the longer it is in X, the more.
   real order = theta.order_t + theta.order_per_e * log_share(theta, shape, a);
   order *= real(1.0) + kOrderPerLength * max(piece.extent - kUsualLength, real(0.0));
-  piece.order = int(clamp(order, real(3.0), real(DOLP_MAX_ORDER)));
+  piece.order = int(clamp(order, real(3.0), theta.order_limit));
   // A square root at b is worth the nodes that it draws away from a only if there is something left at b.
   real order_at_b = theta.order_t + theta.order_per_e * log_share(theta, shape, b);
   piece.root_at_a = mod(theta.kind[number], real(2.0)) > real(0.5);

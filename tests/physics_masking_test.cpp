@@ -1,0 +1,229 @@
+// The shaders' masking table, and the G1 of `integral` and the Lambda of smith that are read from it, in float and in
+// double, against direct integration.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "evaluate/reference/attenuation.hpp"
+#include "evaluate/reference/slopes.hpp"
+#include "physics_text.hpp"
+
+namespace dolp {
+namespace {
+
+using reference::IntegralMasking;
+using reference::Slopes;
+using reference::Zenith;
+using std::numbers::pi;
+
+// What the plan allows for the table's interpolation, relative to the albedo (host/plan/kernel_data.cpp).
+constexpr double kTableError = 1e-6;
+// What it allows for rounding, in units of the roundoff: of sums of positive terms, and of the long ones of q near 1.
+constexpr double kRoundings = 20.0;
+constexpr double kHeavyTailRoundings = 80.0;
+constexpr double kHeavyTailQ = 1.1;
+
+constexpr double kReferenceTolerance = 1e-10;
+
+std::vector<ShapeCase> shape_cases(Masking masking) {
+  std::vector<double> exponents = {1.53, 1.6, 2.0, 3.5, 10.0, 45.0, 100.0};
+  if (masking == Masking::kIntegral) exponents.insert(exponents.end(), {1.01, 1.06, 1.2, 1.45, 1.5});
+  std::vector<ShapeCase> cases;
+  for (const double sigma : {1e-3, 0.01, 0.1, 0.3, 0.905, 2.0, 5.0}) {
+    for (const double q : exponents) cases.push_back({Distribution::kCauchy, sigma, q});
+    cases.push_back({Distribution::kGaussian, sigma, 2.0});
+  }
+  return cases;
+}
+
+// A text with the table of one shape, for directions and slopes in double that the text's precision holds exactly.
+template <class Text>
+class Table {
+ public:
+  using Real = RealOf<Text>;
+
+  Table(const ShapeCase& shape, Masking masking) {
+    const KernelData data = data_of(shape, masking);
+    text_ = text_for<Text>(data);
+    node_ = shape_in<Text>(data.shapes[0]);
+    text_.build_masking_table(node_, 0U);
+  }
+
+  double shadowed(const CosSin& zenith, double slope) {
+    return static_cast<double>(text_.shadowed_integral(node_, 0U, static_cast<Real>(zenith.cos),
+                                                       static_cast<Real>(zenith.sin), static_cast<Real>(slope)));
+  }
+  double height_at_0() { return static_cast<double>(text_.masking_node(0U).x); }
+  double lambda(const CosSin& zenith) {
+    return static_cast<double>(
+        text_.smith_lambda(node_, 0U, static_cast<Real>(zenith.cos), static_cast<Real>(zenith.sin)));
+  }
+  Text& text() { return text_; }
+  const typename Text::ShapeNode& node() const { return node_; }
+
+ private:
+  Text text_;
+  typename Text::ShapeNode node_;
+};
+
+template <class Text>
+CosSin rounded_direction(double theta_deg) {
+  using Real = RealOf<Text>;
+  const CosSin a = cos_sin_deg(theta_deg);
+  return {static_cast<double>(static_cast<Real>(a.cos)), static_cast<double>(static_cast<Real>(a.sin))};
+}
+
+Zenith zenith_of(const CosSin& a) {
+  const double length = std::hypot(a.cos, a.sin);
+  return {std::atan2(a.cos, a.sin), a.cos / length, a.sin / length};
+}
+
+std::vector<double> directions_deg() {
+  return {0.0,  1e-6, 1e-3, 0.1,  3.0,  12.857142857, 18.0, 30.0, 44.9, 45.1,
+          55.0, 63.0, 71.0, 78.0, 83.0, 87.0,         89.0, 89.9, 89.99};
+}
+
+const std::vector<double> kSlopeAnglesDeg = {1e-4, 0.1, 2.0, 9.0, 20.0, 31.0, 45.0, 58.0, 70.0, 80.0, 88.0, 89.9};
+
+template <class Text>
+double allowed_error(const ShapeCase& shape) {
+  const bool heavy_tail = shape.distribution == Distribution::kCauchy && shape.q < kHeavyTailQ;
+  return kTableError + 0.5 * kEpsilon<Text> * (heavy_tail ? kHeavyTailRoundings : kRoundings);
+}
+
+// `integral` with both the direction and the facet within w of the horizontal and the vertical, w the width of the
+// slopes: 1 - G1 is kappa ~ 1 / (cot(theta) + t) times a difference of nearly equal heights l ~ l(0) ~ w, whose own
+// errors it amplifies. That is pointwise only: over the facets of any shape kappa l(0) has a mean near 1.
+// The height's interpolation error is h^4/384 p''(0) with cells h = w/16: at large q, where w = 1.7 standard
+// deviations, 3.5e-7 of l(0).
+constexpr double kHeightInterpolation = 4e-7;
+constexpr double kHeightRoundings = 8.0;
+template <class Text>
+double allowed_error(const ShapeCase& shape, const CosSin& zenith, double slope, double height_at_0) {
+  const double kappa = zenith.sin * std::hypot(1.0, slope) / (zenith.cos + zenith.sin * slope);
+  return allowed_error<Text>(shape) +
+         kappa * height_at_0 * (kHeightInterpolation + kHeightRoundings * 0.5 * kEpsilon<Text>);
+}
+
+template <class Text>
+class MaskingText : public ::testing::Test {};
+TYPED_TEST_SUITE(MaskingText, Texts, TextNames);
+
+TYPED_TEST(MaskingText, IntegralG1_AgreesWithDirectIntegration) {
+  using Real = RealOf<TypeParam>;
+  Worst worst;
+  Worst worst_share;
+  for (const ShapeCase& shape : shape_cases(Masking::kIntegral)) {
+    Table<TypeParam> table(shape, Masking::kIntegral);
+    const Slopes slopes(shape.distribution, shape.sigma, shape.q);
+    for (const double theta_deg : directions_deg()) {
+      const CosSin a = rounded_direction<TypeParam>(theta_deg);
+      const IntegralMasking exact(slopes, zenith_of(a), kReferenceTolerance);
+      for (const double alpha_deg : kSlopeAnglesDeg) {
+        const double slope = static_cast<double>(static_cast<Real>(std::tan(alpha_deg * pi / 180.0)));
+        const double error = std::abs((1.0 - table.shadowed(a, slope)) - exact(std::atan(slope)));
+        const std::string where =
+            name_of(shape) + " theta " + std::to_string(theta_deg) + " alpha " + std::to_string(alpha_deg);
+        const double allowed = allowed_error<TypeParam>(shape, a, slope, table.height_at_0());
+        EXPECT_LE(error, allowed) << where;
+        worst.update(error, where);
+        worst_share.update(error / allowed, where);
+      }
+    }
+  }
+  std::printf("worst share of what is allowed %.2f at %s\n", worst_share.value, worst_share.where.c_str());
+  std::printf("worst error of G1 %.2g at %s\n", worst.value, worst.where.c_str());
+}
+
+TYPED_TEST(MaskingText, SmithLambda_AgreesWithTheClosedForm) {
+  Worst worst;
+  for (const ShapeCase& shape : shape_cases(Masking::kSmith)) {
+    Table<TypeParam> table(shape, Masking::kSmith);
+    const Slopes slopes(shape.distribution, shape.sigma, shape.q);
+    for (const double theta_deg : directions_deg()) {
+      const CosSin a = rounded_direction<TypeParam>(theta_deg);
+      const double exact = reference::smith_lambda(slopes, zenith_of(a));
+      // relative error of G1 = 1 / (1 + Lambda); that of G is no larger
+      const double error = std::abs(table.lambda(a) - exact) / (1.0 + exact);
+      const std::string where = name_of(shape) + " theta " + std::to_string(theta_deg);
+      EXPECT_LE(error, allowed_error<TypeParam>(shape)) << where;
+      worst.update(error, where);
+    }
+  }
+  std::printf("worst relative error of G1 %.2g at %s\n", worst.value, worst.where.c_str());
+}
+
+TYPED_TEST(MaskingText, IntegralG1_IsBetweenAHalfAndOneAndFallsWithTheZenithAngle) {
+  using Real = RealOf<TypeParam>;
+  for (const ShapeCase& shape : shape_cases(Masking::kIntegral)) {
+    Table<TypeParam> table(shape, Masking::kIntegral);
+    for (const double alpha_deg : kSlopeAnglesDeg) {
+      const double slope = static_cast<double>(static_cast<Real>(std::tan(alpha_deg * pi / 180.0)));
+      EXPECT_LE(table.shadowed(cos_sin_deg(0.0), slope), kTableError) << name_of(shape) << " " << alpha_deg;
+      double before = 0.0;
+      for (double theta_deg = 0.0; theta_deg <= 90.0; theta_deg += 1.25) {
+        const CosSin a = cos_sin_deg(theta_deg);
+        const double shadowed = table.shadowed(a, slope);
+        const double slack = allowed_error<TypeParam>(shape, a, slope, table.height_at_0());
+        EXPECT_GE(shadowed, before - slack) << name_of(shape) << " " << theta_deg << " " << alpha_deg;
+        EXPECT_GE(shadowed, -slack) << name_of(shape) << " " << theta_deg << " " << alpha_deg;
+        EXPECT_LE(shadowed, 0.5 + slack) << name_of(shape) << " " << theta_deg << " " << alpha_deg;
+        before = shadowed;
+      }
+    }
+  }
+}
+
+TYPED_TEST(MaskingText, GrazingDirection_HidesHalfForIntegralAndAllForSmith) {
+  for (const ShapeCase& shape :
+       {ShapeCase{Distribution::kCauchy, 0.3, 2.0}, ShapeCase{Distribution::kGaussian, 0.905, 2.0}}) {
+    // At 90 degrees a = 0, b = alpha: G1 = 1/2 + p(0) alpha/2 + O(alpha^3), what is left being the facets below 0.
+    constexpr double kSlope = 1e-3;
+    Table<TypeParam> integral(shape, Masking::kIntegral);
+    const CosSin grazing = cos_sin_deg(90.0);
+    const double density = static_cast<double>(integral.node().marginal_norm);
+    EXPECT_NEAR(integral.shadowed(grazing, kSlope), 0.5 - 0.5 * density * kSlope,
+                kSlope * kSlope * kSlope / shape.sigma +
+                    allowed_error<TypeParam>(shape, grazing, kSlope, integral.height_at_0()));
+    Table<TypeParam> smith(shape, Masking::kSmith);
+    EXPECT_GT(smith.lambda(cos_sin_deg(90.0)), 1e20);
+    EXPECT_LE(smith.lambda(cos_sin_deg(0.0)), kTableError);
+  }
+}
+
+// q = 2 and smith: p = (1 + u^2)^(-3/2) / (2 m), which integrates twice to roots, without cancellation as written here.
+TYPED_TEST(MaskingText, TableNodes_KeepTheirRelativeAccuracyToTheSmallestTails) {
+  Worst worst;
+  for (const double sigma : {1e-3, 0.3, 5.0}) {
+    const ShapeCase shape{Distribution::kCauchy, sigma, 2.0};
+    Table<TypeParam> table(shape, Masking::kSmith);
+    const double m = static_cast<double>(table.node().m);
+    for (glm::uint i = 0; i < DOLP_MASKING_NODES; ++i) {
+      const double tau = static_cast<double>(table.text().masking_node_tau(table.node(), i));
+      const auto node = table.text().masking_node(i);
+      const double root = std::hypot(tau, m);
+      const double height = 0.5 * m * m / (root + tau);
+      const double tail = 0.5 * m * m / (root * (root + tau));
+      const std::string where = name_of(shape) + " tau " + std::to_string(tau);
+      // p = exp(-E) has the rounding of E, and the tails beyond it too.
+      const double exponent = 1.5 * std::log1p(tau * tau / (m * m));
+      const double allowed = 0.5 * kEpsilon<TypeParam> * (kRoundings + 4.0 * exponent);
+      worst.update(std::abs(static_cast<double>(node.x) / height - 1.0) / allowed, where + " l");
+      worst.update(std::abs(static_cast<double>(node.y) / tail - 1.0) / allowed, where + " C");
+      worst.update(std::abs(static_cast<double>(node.z) / tail - 1.0) / allowed, where + " Pt");
+      worst.update(std::abs(static_cast<double>(node.w) * 2.0 * root * root * root / (m * m) - 1.0) / allowed,
+                   where + " p");
+    }
+  }
+  std::printf("worst error of a node over what is allowed %.2f at %s\n", worst.value, worst.where.c_str());
+  EXPECT_LE(worst.value, 1.0) << worst.where;
+}
+
+}  // namespace
+}  // namespace dolp

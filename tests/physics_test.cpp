@@ -1,0 +1,430 @@
+// The shaders' elementary functions, Fresnel reflection and slope distribution, in float and in double, against
+// evaluations in higher precision. Each row prints its worst error, also when it passes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <boost/multiprecision/cpp_complex.hpp>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "physics_text.hpp"
+
+namespace dolp {
+namespace {
+
+using std::numbers::pi;
+
+constexpr unsigned kSeed = 20250801;
+constexpr int kSamples = 20000;
+
+// ---- Elementary functions ------------------------------------------------------------------------------------------
+
+// Distance of `value` from `exact` in units of the last place that `exact` has in the precision Real.
+template <class Real>
+double ulps(Real value, long double exact) {
+  using Limits = std::numeric_limits<Real>;
+  const int exponent = exact == 0.0L ? Limits::min_exponent : std::max(std::ilogb(exact) + 1, Limits::min_exponent);
+  const long double ulp = std::ldexp(1.0L, exponent - Limits::digits);
+  return static_cast<double>(std::fabs(static_cast<long double>(value) - exact) / ulp);
+}
+
+enum class Spacing { kUniform, kLogarithmic };
+
+// One function: its text, its reference, the range of its argument, and the largest error allowed, in ulps.
+template <class Text>
+struct Row {
+  using Real = RealOf<Text>;
+  const char* name;
+  std::function<Real(Text&, Real)> text;
+  std::function<long double(long double)> reference;
+  double low;
+  double high;
+  Spacing spacing;
+  double allowed_ulps;
+};
+
+template <class Text>
+double worst_ulps(const Row<Text>& row) {
+  using Real = RealOf<Text>;
+  std::mt19937 random(kSeed);
+  const bool is_log = row.spacing == Spacing::kLogarithmic;
+  std::uniform_real_distribution<double> position(is_log ? std::log(row.low) : row.low,
+                                                  is_log ? std::log(row.high) : row.high);
+  Text text;
+  Worst worst;
+  for (int i = 0; i < kSamples + 2; ++i) {
+    const double drawn = position(random);
+    double x = is_log ? std::exp(drawn) : drawn;
+    if (i >= kSamples) x = i == kSamples ? row.low : row.high;
+    const Real argument = static_cast<Real>(x);
+    const double error = ulps(row.text(text, argument), row.reference(static_cast<long double>(argument)));
+    EXPECT_TRUE(std::isfinite(error)) << row.name << " at " << x;
+    worst.update(error, std::to_string(x));
+  }
+  std::printf("seed %u: %-16s %9.3g .. %-9.3g worst %.2f ulp at %s (allowed %.1f)\n", kSeed, row.name, row.low,
+              row.high, worst.value, worst.where.c_str(), row.allowed_ulps);
+  return worst.value;
+}
+
+template <class Text>
+class Elementary : public ::testing::Test {};
+TYPED_TEST_SUITE(Elementary, Texts, TextNames);
+
+// Allowed: half an ulp for each of the last two or three roundings, and what reducing the argument adds; the text
+// promises "a few units in the last place".
+constexpr double kFewUlps = 3.0;
+constexpr double kAtanUlps = 5.0;  // two roots and quotients on the way to the series, a rounding each
+
+TYPED_TEST(Elementary, Exponentials_OverTheirDomain_AreAFewUlpsFromExact) {
+  using Real = RealOf<TypeParam>;
+  const auto expm1 = [](TypeParam& text, Real x) { return text.expm1_real(x); };
+  const auto minus_expm1 = [](TypeParam& text, Real x) { return -text.expm1_real(-x); };
+  const auto exp = [](TypeParam& text, Real x) { return text.exp_real(x); };
+  const auto sinh = [](TypeParam& text, Real x) { return text.sinh_cosh(x).x; };
+  const auto cosh = [](TypeParam& text, Real x) { return text.sinh_cosh(x).y; };
+  const auto exact_expm1 = [](long double x) { return std::expm1(x); };
+  const auto exact_minus_expm1 = [](long double x) { return -std::expm1(-x); };
+  const auto exact_exp = [](long double x) { return std::exp(x); };
+  const auto exact_sinh = [](long double x) { return std::sinh(x); };
+  const auto exact_cosh = [](long double x) { return std::cosh(x); };
+  const std::vector<Row<TypeParam>> rows = {
+      {"expm1_real", expm1, exact_expm1, 1e-30, 80.0, Spacing::kLogarithmic, kFewUlps},
+      {"expm1_real(-x)", minus_expm1, exact_minus_expm1, 1e-30, 80.0, Spacing::kLogarithmic, kFewUlps},
+      {"expm1_real", expm1, exact_expm1, -80.0, 80.0, Spacing::kUniform, kFewUlps},
+      {"exp_real", exp, exact_exp, static_cast<double>(TypeParam::kLowestExponent), 80.0, Spacing::kUniform, kFewUlps},
+      {"exp_real", exp, exact_exp, -1.0, 1.0, Spacing::kUniform, kFewUlps},
+      {"sinh_cosh.x", sinh, exact_sinh, 1e-30, 80.0, Spacing::kLogarithmic, kFewUlps},
+      {"sinh_cosh.y", cosh, exact_cosh, 1e-30, 80.0, Spacing::kLogarithmic, kFewUlps},
+  };
+  for (const auto& row : rows) EXPECT_LE(worst_ulps(row), row.allowed_ulps) << row.name;
+}
+
+TYPED_TEST(Elementary, Logarithms_OverTheirDomain_AreAFewUlpsFromExact) {
+  using Real = RealOf<TypeParam>;
+  const auto log1p = [](TypeParam& text, Real x) { return text.log1p_real(x); };
+  const auto log1p_square = [](TypeParam& text, Real x) { return text.log1p_square(x); };
+  const auto asinh = [](TypeParam& text, Real x) { return text.asinh_real(x); };
+  const auto atan = [](TypeParam& text, Real x) { return text.atan_unit(x); };
+  const auto exact_log1p = [](long double x) { return std::log1p(x); };
+  const auto exact_log1p_square = [](long double x) { return std::log1p(x * x); };
+  const auto exact_asinh = [](long double x) { return std::asinh(x); };
+  const auto exact_atan = [](long double x) { return std::atan(x); };
+  const std::vector<Row<TypeParam>> rows = {
+      {"log1p_real", log1p, exact_log1p, 1e-30, 1e30, Spacing::kLogarithmic, kFewUlps},
+      {"log1p_real", log1p, exact_log1p, 0.0, 4.0, Spacing::kUniform, kFewUlps},
+      {"log1p_square", log1p_square, exact_log1p_square, 1e-15, 1e30, Spacing::kLogarithmic, kFewUlps},
+      {"asinh_real", asinh, exact_asinh, 1e-30, 1e30, Spacing::kLogarithmic, kFewUlps},
+      {"asinh_real", asinh, exact_asinh, 0.0, 4.0, Spacing::kUniform, kFewUlps},
+      {"atan_unit", atan, exact_atan, 1e-30, 1.0, Spacing::kLogarithmic, kAtanUlps},
+      {"atan_unit", atan, exact_atan, 0.0, 1.0, Spacing::kUniform, kAtanUlps},
+  };
+  for (const auto& row : rows) EXPECT_LE(worst_ulps(row), row.allowed_ulps) << row.name;
+}
+
+TYPED_TEST(Elementary, EndsOfTheDomains_AreExact) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  EXPECT_EQ(text.expm1_real(Real(0)), Real(0));
+  EXPECT_EQ(text.expm1_real(Real(-1e4)), Real(-1));
+  EXPECT_EQ(text.exp_real(Real(0)), Real(1));
+  EXPECT_EQ(text.exp_real(TypeParam::kLowestExponent - Real(1)), Real(0));
+  EXPECT_GE(text.exp_real(TypeParam::kLowestExponent), std::numeric_limits<Real>::min());
+  EXPECT_EQ(text.exp_real(Real(-1e30)), Real(0));
+  EXPECT_EQ(text.log1p_real(Real(0)), Real(0));
+  EXPECT_EQ(text.log1p_square(Real(0)), Real(0));
+  EXPECT_EQ(text.asinh_real(Real(0)), Real(0));
+  EXPECT_EQ(text.sinh_cosh(Real(0)).x, Real(0));
+  EXPECT_EQ(text.sinh_cosh(Real(0)).y, Real(1));
+  EXPECT_EQ(text.atan_unit(Real(0)), Real(0));
+}
+
+// ---- Fresnel reflection --------------------------------------------------------------------------------------------
+
+using Wide = boost::multiprecision::cpp_bin_float_50;
+using WideComplex = boost::multiprecision::cpp_complex_50;
+
+// The textbook form in 50 digits, whose cancellations (27 digits at the worst here) leave more than a double has.
+struct ExactFresnel {
+  Wide r_s;
+  Wide r_p;
+  Wide sin2_beta;
+};
+
+ExactFresnel exact_fresnel(const kernel::IndexNode& index, double cos_beta) {
+  const Wide c = cos_beta;
+  const Wide sin2 = 1 - c * c;
+  const WideComplex n2(Wide(index.n2m1_re) + 1, Wide(index.n2m1_im));
+  const WideComplex w = sqrt(WideComplex(n2 - sin2));
+  const WideComplex r_s = (c - w) / (c + w);
+  const WideComplex r_p = (n2 * c - w) / (n2 * c + w);
+  return {norm(r_s).real(), norm(r_p).real(), sin2};
+}
+
+double relative_error(double value, const Wide& exact) {
+  return static_cast<double>(abs(Wide(value) - exact) / abs(exact));
+}
+
+// The index as the text's precision holds it: the text is not to blame for the rounding of its input.
+template <class Text>
+kernel::IndexNode rounded_index(const OpticalConstants& index) {
+  MomentsRequest request;
+  request.indices = {index};
+  return convert_reals<double, kernel::IndexNode, RealOf<Text>>(index_in<Text>(kernel_data(request).indices[0]));
+}
+
+std::vector<double> cosines_of_incidence() {
+  std::vector<double> cosines;
+  for (double beta_deg = 0.5; beta_deg < 90.0; beta_deg += 0.5) cosines.push_back(std::cos(beta_deg * pi / 180.0));
+  for (const double beta_deg : {1e-3, 0.02, 0.1, 89.9, 89.99, 89.999}) {
+    cosines.push_back(std::cos(beta_deg * pi / 180.0));
+  }
+  return cosines;
+}
+
+template <class Text>
+class FresnelText : public ::testing::Test {};
+TYPED_TEST_SUITE(FresnelText, Texts, TextNames);
+
+// About twenty roundings in a row, none of them amplified.
+constexpr double kFresnelUlps = 12.0;
+
+TYPED_TEST(FresnelText, AllIndices_AgreeWithTheTextbookFormIn50Digits) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  const std::vector<OpticalConstants> indices = {{1.01, 0.0}, {1.508, 0.0}, {4.0, 0.0},       {0.9, 0.3}, {0.2, 3.0},
+                                                 {1.5, 1e-3}, {27.0, 90.0}, {1000.0, 1000.0}, {1e6, 1e6}};
+  for (const OpticalConstants& optical : indices) {
+    const kernel::IndexNode index = rounded_index<TypeParam>(optical);
+    Worst r_s;
+    Worst absorbed;
+    Worst split;
+    Worst r_p;
+    for (const double exact_cos : cosines_of_incidence()) {
+      const Real cos_beta = static_cast<Real>(exact_cos);
+      if (cos_beta == Real(1)) continue;  // the quotient by sin^2(beta) is 0/0 in the reference
+      const auto f = text.fresnel(index_in<TypeParam>(index), cos_beta);
+      const ExactFresnel exact = exact_fresnel(index, static_cast<double>(cos_beta));
+      const std::string where = "cos(beta) = " + std::to_string(exact_cos);
+      r_s.update(relative_error(f.r_s, exact.r_s), where);
+      absorbed.update(relative_error(f.absorbed_s, 1 - exact.r_s), where);
+      split.update(relative_error(f.split_over_sin2, (exact.r_s - exact.r_p) / exact.sin2_beta), where);
+      const Wide recovered = Wide(f.r_s) - Wide(f.split_over_sin2) * exact.sin2_beta;
+      r_p.update(static_cast<double>(abs(recovered - exact.r_p) / exact.r_s), where);
+    }
+    const double unit = kEpsilon<TypeParam>;
+    std::printf("%g + %gi: worst relative errors in ulp: R_s %.1f, 1 - R_s %.1f, R_s - R_p %.1f, R_p/R_s %.1f\n",
+                optical.n, optical.k, r_s.value / unit, absorbed.value / unit, split.value / unit, r_p.value / unit);
+    EXPECT_LE(r_s.value, kFresnelUlps * unit) << r_s.where;
+    EXPECT_LE(absorbed.value, kFresnelUlps * unit) << absorbed.where;
+    EXPECT_LE(split.value, kFresnelUlps * unit) << split.where;
+    EXPECT_LE(r_p.value, kFresnelUlps * unit) << r_p.where;
+  }
+}
+
+TYPED_TEST(FresnelText, NormalIncidence_HasTheLimitOfTheQuotient) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  for (const OpticalConstants& optical : {OpticalConstants{1.508, 0.0}, OpticalConstants{27.0, 90.0}}) {
+    const kernel::IndexNode index = rounded_index<TypeParam>(optical);
+    const auto f = text.fresnel(index_in<TypeParam>(index), Real(1));
+    // 1e-20 from normal incidence the quotient differs from its limit by as little, and 50 digits leave 30 of it.
+    const Wide c = 1 - Wide(1e-20);
+    const Wide sin2 = 1 - c * c;
+    const WideComplex n2(Wide(index.n2m1_re) + 1, Wide(index.n2m1_im));
+    const WideComplex w = sqrt(WideComplex(n2 - sin2));
+    const Wide r_s = norm(WideComplex((c - w) / (c + w))).real();
+    const Wide r_p = norm(WideComplex((n2 * c - w) / (n2 * c + w))).real();
+    EXPECT_LE(relative_error(f.r_s, r_s), kFresnelUlps * kEpsilon<TypeParam>);
+    EXPECT_LE(relative_error(f.split_over_sin2, (r_s - r_p) / sin2), kFresnelUlps * kEpsilon<TypeParam>);
+  }
+}
+
+TYPED_TEST(FresnelText, BrewsterAngle_HasNoReflectedP) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  for (const double n : {1.1, 1.508, 4.0}) {
+    const kernel::IndexNode index = rounded_index<TypeParam>({n, 0.0});
+    const Real cos_beta = static_cast<Real>(1.0 / std::sqrt(index.n2m1_re + 2.0));  // tan(beta) = n
+    const double sin2 = 1.0 - static_cast<double>(cos_beta) * static_cast<double>(cos_beta);
+    const auto f = text.fresnel(index_in<TypeParam>(index), cos_beta);
+    const double r_p = static_cast<double>(f.r_s) - static_cast<double>(f.split_over_sin2) * sin2;
+    EXPECT_NEAR(r_p, 0.0, kFresnelUlps * kEpsilon<TypeParam> * static_cast<double>(f.r_s)) << n;
+    EXPECT_GT(f.r_s, Real(1e-3)) << n;
+  }
+}
+
+TYPED_TEST(FresnelText, TotalReflection_AbsorbsExactlyNothing) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  for (const double n : {0.1, 0.5, 0.9, 0.999}) {
+    const kernel::IndexNode index = rounded_index<TypeParam>({n, 0.0});
+    ASSERT_GT(index.critical_cos, 0.0);
+    const double roundoff = 8.0 * kEpsilon<TypeParam>;  // of re = n^2 - 1 + cos^2(beta), which must be below 0
+    for (int i = 0; i < 100; ++i) {
+      const Real cos_beta = static_cast<Real>(index.critical_cos * (1.0 - roundoff) * (i + 0.5) / 100.0);
+      const auto f = text.fresnel(index_in<TypeParam>(index), cos_beta);
+      EXPECT_EQ(f.absorbed_s, Real(0));
+      EXPECT_EQ(f.split_over_sin2, Real(0));
+      EXPECT_NEAR(static_cast<double>(f.r_s), 1.0, kFresnelUlps * kEpsilon<TypeParam>);
+    }
+    const Real above = static_cast<Real>(index.critical_cos + 0.5 * (1.0 - index.critical_cos));
+    const auto f = text.fresnel(index_in<TypeParam>(index), above);
+    const ExactFresnel exact = exact_fresnel(index, static_cast<double>(above));
+    // n^2 - 1 + cos^2(beta) cancels, half way to normal incidence by a factor of 2 to 3.
+    EXPECT_LE(relative_error(f.absorbed_s, 1 - exact.r_s), 3.0 * kFresnelUlps * kEpsilon<TypeParam>) << n;
+    EXPECT_GT(f.absorbed_s, Real(0));
+  }
+}
+
+TYPED_TEST(FresnelText, IndexOne_ReflectsNothing) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  const auto index = index_in<TypeParam>(rounded_index<TypeParam>({1.0, 0.0}));
+  for (const double cos_beta : cosines_of_incidence()) {
+    const auto f = text.fresnel(index, static_cast<Real>(cos_beta));
+    EXPECT_EQ(f.r_s, Real(0));
+    EXPECT_EQ(f.split_over_sin2, Real(0));
+    EXPECT_NEAR(static_cast<double>(f.absorbed_s), 1.0, kFresnelUlps * kEpsilon<TypeParam>);
+  }
+}
+
+// ---- Slope distribution --------------------------------------------------------------------------------------------
+
+std::vector<ShapeCase> shape_cases() {
+  std::vector<ShapeCase> cases;
+  for (const double sigma : {1e-28, 1e-4, 0.3, 10.0}) {
+    for (const double q : {1.001, 1.06, 1.5, 2.0, 5.0, 100.0, 1e4}) cases.push_back({Distribution::kCauchy, sigma, q});
+    cases.push_back({Distribution::kGaussian, sigma, 2.0});
+  }
+  return cases;
+}
+
+// -ln of the share of the facets steeper than u.
+double tail_exponent(const ShapeCase& shape, double u) {
+  return shape.distribution == Distribution::kCauchy ? (shape.q - 1.0) * std::log1p(u * u) : u * u;
+}
+
+template <class Text>
+class SlopeText : public ::testing::Test {};
+TYPED_TEST_SUITE(SlopeText, Texts, TextNames);
+
+// exp turns the rounding of its argument, a relative one, into as many roundings of its value.
+double slope_tolerance(double exponent, double epsilon) { return epsilon * (8.0 + 4.0 * exponent); }
+
+TYPED_TEST(SlopeText, DensityAndTail_AgreeWithTheClosedForms) {
+  using Real = RealOf<TypeParam>;
+  Worst worst;
+  for (const ShapeCase& shape : shape_cases()) {
+    const KernelData data = data_of(shape, Masking::kNone);
+    TypeParam text = text_for<TypeParam>(data);
+    const auto node = shape_in<TypeParam>(data.shapes[0]);
+    for (double decade = -8.0; decade <= 8.0; decade += 0.25) {
+      const Real t = static_cast<Real>(std::pow(10.0, decade)) * node.m;
+      const double u = static_cast<double>(t) / static_cast<double>(node.m);
+      const double exponent = tail_exponent(shape, u);
+      if (exponent > 0.99 * std::abs(static_cast<double>(TypeParam::kLowestExponent))) continue;  // the text has 0
+      const double tail = std::exp(-exponent);
+      const double steep = shape.distribution == Distribution::kCauchy ? (shape.q - 1.0) / (1.0 + u * u) : 1.0;
+      const double tolerance = slope_tolerance(exponent, kEpsilon<TypeParam>);
+      const auto update = [&](const char* name, Real value, double exact) {
+        if (exact < static_cast<double>(std::numeric_limits<Real>::min())) return;  // subnormal: 0 on many devices
+        const double error = std::abs(static_cast<double>(value) / exact - 1.0) / tolerance;
+        worst.update(error, std::string(name) + " " + name_of(shape) + " u " + std::to_string(u));
+      };
+      update("slope_density", text.slope_density(node, t), steep * u * tail / pi);
+      update("slope_profile", text.slope_profile(node, t), steep * tail / pi);
+      update("slope_tail", text.slope_tail(node, t), tail);
+    }
+    EXPECT_EQ(text.slope_tail(node, Real(0)), Real(1));
+  }
+  std::printf("worst error over tolerance %.2f at %s\n", worst.value, worst.where.c_str());
+  EXPECT_LE(worst.value, 1.0) << worst.where;
+}
+
+TYPED_TEST(SlopeText, Density_IntegratesToTheTail) {
+  using Real = RealOf<TypeParam>;
+  Worst worst;
+  for (const ShapeCase& shape : shape_cases()) {
+    const KernelData data = data_of(shape, Masking::kNone);
+    TypeParam text = text_for<TypeParam>(data);
+    const auto node = shape_in<TypeParam>(data.shapes[0]);
+    // Over u = e^y; below the first u the share of the facets is under q u^2.
+    const auto integrand = [&](double y) {
+      return std::exp(y) * static_cast<double>(text.slope_density(node, static_cast<Real>(std::exp(y)) * node.m));
+    };
+    double sum = 0.0;
+    constexpr double kFirst = -23.0;
+    constexpr double kStep = 2.0;
+    for (double y = kFirst; y < 18.0; y += kStep) {
+      sum += boost::math::quadrature::gauss_kronrod<double, 61>::integrate(integrand, y, y + kStep, 4, 1e-10);
+      const Real end = static_cast<Real>(std::exp(y + kStep)) * node.m;
+      worst.update(std::abs(2.0 * pi * sum + static_cast<double>(text.slope_tail(node, end)) - 1.0), name_of(shape));
+    }
+  }
+  // A few roundings of the exponent x, which count where the tail does: x e^-x < 0.4; and the quadrature.
+  constexpr double kAllowed = 8.0 * kEpsilon<TypeParam> + 1e-13;
+  std::printf("worst %.2g at %s (allowed %.2g)\n", worst.value, worst.where.c_str(), kAllowed);
+  EXPECT_LE(worst.value, kAllowed) << worst.where;
+}
+
+TYPED_TEST(SlopeText, Marginal_IsNormalised) {
+  using Real = RealOf<TypeParam>;
+  Worst worst;
+  for (const ShapeCase& shape : shape_cases()) {
+    const KernelData data = data_of(shape, Masking::kIntegral);
+    TypeParam text = text_for<TypeParam>(data);
+    const auto node = shape_in<TypeParam>(data.shapes[0]);
+    const auto integrand = [&](double y) {
+      const double u = std::exp(y);
+      return u * static_cast<double>(text.marginal_density(node, static_cast<Real>(u) * node.m) * node.m);
+    };
+    // Beyond u = e^14 the cauchy is the power law of the masking table's end to 1e-12, and the gaussian nothing.
+    constexpr double kFirst = -35.0;
+    constexpr double kLast = 14.0;
+    double half = 0.0;
+    for (double y = kFirst; y < kLast; y += 1.0) {
+      half += boost::math::quadrature::gauss_kronrod<double, 61>::integrate(integrand, y, y + 1.0, 4, 1e-10);
+    }
+    half += static_cast<double>(text.masking_table_end(node, static_cast<Real>(std::exp(kLast)) * node.m).z);
+    worst.update(std::abs(2.0 * half - 1.0), name_of(shape));
+  }
+  // The exponent, rounded a few times, is up to 14 where the tail still counts (q near 1); the power law's 1e-12.
+  constexpr double kAllowed = 20.0 * kEpsilon<TypeParam> + 1e-11;
+  std::printf("worst %.2g at %s (allowed %.2g)\n", worst.value, worst.where.c_str(), kAllowed);
+  EXPECT_LE(worst.value, kAllowed) << worst.where;
+}
+
+TYPED_TEST(SlopeText, QOfTwo_IsGgx) {
+  using Real = RealOf<TypeParam>;
+  Worst worst;
+  for (const double sigma : {0.01, 0.3, 5.0}) {
+    const ShapeCase shape{Distribution::kCauchy, sigma, 2.0};
+    const KernelData data = data_of(shape, Masking::kNone);
+    TypeParam text = text_for<TypeParam>(data);
+    const auto node = shape_in<TypeParam>(data.shapes[0]);
+    const double alpha_g = std::numbers::sqrt2 * sigma;
+    for (double alpha_deg = 1.0; alpha_deg < 90.0; alpha_deg += 1.0) {
+      const Real t = static_cast<Real>(std::tan(alpha_deg * pi / 180.0));
+      const double tan2 = static_cast<double>(t) * static_cast<double>(t);
+      const double cos4 = 1.0 / ((1.0 + tan2) * (1.0 + tan2));
+      const double spread = alpha_g * alpha_g + tan2;
+      const double ggx = alpha_g * alpha_g / (pi * cos4 * spread * spread);
+      const double density = static_cast<double>(text.slope_density(node, t)) /
+                             (static_cast<double>(t) * static_cast<double>(node.m) * cos4);
+      const double exponent = tail_exponent(shape, static_cast<double>(t) / alpha_g);
+      worst.update(std::abs(density / ggx - 1.0) / slope_tolerance(exponent, kEpsilon<TypeParam>), name_of(shape));
+    }
+  }
+  std::printf("worst error over tolerance %.2f at %s\n", worst.value, worst.where.c_str());
+  EXPECT_LE(worst.value, 1.0) << worst.where;
+}
+
+}  // namespace
+}  // namespace dolp

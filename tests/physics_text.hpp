@@ -1,0 +1,119 @@
+// The shaders' text as C++ classes of the tests' own, dolp::tested_float::Text and dolp::tested_double::Text, and what
+// tests of both precisions share.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+namespace dolp::tested_float {
+using real = float;
+using real2 = glm::vec2;
+using real4 = glm::vec4;
+}  // namespace dolp::tested_float
+
+#define DOLP_TEXT_NAMESPACE tested_float
+#include "evaluate/cpu/text_body.hpp"
+#undef DOLP_TEXT_NAMESPACE
+
+namespace dolp::tested_double {
+using real = double;
+using real2 = glm::dvec2;
+using real4 = glm::dvec4;
+}  // namespace dolp::tested_double
+
+#define DOLP_TEXT_NAMESPACE tested_double
+#define DOLP_DOUBLE
+#include "evaluate/cpu/text_body.hpp"
+#undef DOLP_DOUBLE
+#undef DOLP_TEXT_NAMESPACE
+
+namespace dolp {
+
+/// The number that a text computes with.
+template <class Text>
+using RealOf = std::remove_const_t<decltype(Text::kPi)>;
+
+/// Spacing of its numbers at 1.
+template <class Text>
+constexpr double kEpsilon = static_cast<double>(std::numeric_limits<RealOf<Text>>::epsilon());
+
+/// Both texts, for typed test suites.
+using Texts = ::testing::Types<tested_float::Text, tested_double::Text>;
+
+struct TextNames {
+  template <class Text>
+  static std::string GetName(int) {
+    return std::is_same_v<RealOf<Text>, float> ? "Float" : "Double";
+  }
+};
+
+/// Structures of the kernel data in the text's precision.
+template <class Text>
+typename Text::ThetaNode theta_in(const kernel::ThetaNode& node) {
+  return convert_reals<RealOf<Text>, typename Text::ThetaNode, double>(node);
+}
+template <class Text>
+typename Text::ShapeNode shape_in(const kernel::ShapeNode& node) {
+  return convert_reals<RealOf<Text>, typename Text::ShapeNode, double>(node);
+}
+template <class Text>
+typename Text::IndexNode index_in(const kernel::IndexNode& node) {
+  return convert_reals<RealOf<Text>, typename Text::IndexNode, double>(node);
+}
+
+/// A text with the distribution, the masking and the rules of `data`, and room for the masking table of one shape.
+template <class Text>
+Text text_for(const KernelData& data) {
+  Text text;
+  text.kDistribution = static_cast<glm::uint>(data.distribution);
+  text.kMasking = static_cast<glm::uint>(data.masking);
+  for (const auto& [abscissa, weight] : data.rule_nodes) {
+    text.rule_nodes.emplace_back(static_cast<RealOf<Text>>(abscissa), static_cast<RealOf<Text>>(weight));
+  }
+  text.masking_table.resize(DOLP_MASKING_NODES);
+  return text;
+}
+
+/// One slope distribution of a test.
+struct ShapeCase {
+  Distribution distribution;
+  double sigma;
+  double q;
+};
+
+inline std::string name_of(const ShapeCase& shape) {
+  std::array<char, 80> text{};
+  const char* distribution = shape.distribution == Distribution::kCauchy ? "cauchy" : "gaussian";
+  std::snprintf(text.data(), text.size(), "%s sigma %g q %g", distribution, shape.sigma, shape.q);
+  return text.data();
+}
+
+/// The plan's data for one shape and, where a test needs one, one index.
+inline KernelData data_of(const ShapeCase& shape, Masking masking, const OpticalConstants& index = {}) {
+  MomentsRequest request;
+  request.distribution = shape.distribution;
+  request.masking = masking;
+  request.shapes = {{shape.sigma, shape.q}};
+  request.indices = {index};
+  return kernel_data(request);
+}
+
+/// The largest value of what a test measures, and where.
+struct Worst {
+  double value = 0.0;
+  std::string where;
+  void update(double candidate, const std::string& here) {
+    if (candidate <= value) return;
+    value = candidate;
+    where = here;
+  }
+};
+
+}  // namespace dolp

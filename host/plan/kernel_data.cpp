@@ -24,7 +24,8 @@ constexpr double kNoEnd = 1e30;    // a slope beyond every cut, in place of infi
 
 // The orders follow a scan of the domain for entries whose estimate misses the tolerance: about 2.4 slopes and one
 // azimuth of an arc for each digit (tests/plan_test.cpp repeats the scan on a sample).
-// The rule aims this many digits beyond the tolerance, so that the coarser rule it is compared with meets the tolerance.
+// The rule aims this many digits beyond the tolerance, so that the coarser rule it is compared with meets the
+// tolerance.
 constexpr double kExtraDigits = 2.0;
 
 // Im N^2 above which absorption has smoothed the critical line of total reflection.
@@ -49,8 +50,10 @@ constexpr double kCosineRounding = 2.0 * std::numeric_limits<double>::epsilon();
 // Largest slope that is ever integrated: beyond it the squares of a float overflow.
 constexpr double kLargestCut = 1e8;
 
-// Scale of the masking table: its end, 5e8 scales away, must lie far beyond slope 1, where p is a power law.
-constexpr double kSmallestTableScale = 1e-4;
+// Scale of the masking table, the width of the slope distribution if it can be. The end of the table, 5e8 scales away,
+// must lie far beyond slope 1, where p is a power law, unless the tail there is nothing (q >= kLightTailQ).
+constexpr double kSmallestHeavyTableScale = 1e-4;
+constexpr double kLightTailQ = 1.5;
 constexpr double kLargestTableScale = 0.5;
 
 // Bound of the interpolation error of G (cubic Hermite, 16 cells an octave), relative to the albedo.
@@ -90,10 +93,10 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   }
 }
 
-// Slopes at which the set of smooth arcs changes: where a split line of the azimuth (integrand.glsl) meets phi = 0 or pi
-// or another line. The horizon does at t1 = c / (1 + s) and t2 = (1 + s) / c, theta_r = theta at tan(theta), the limit
-// b = pi/2 at tan(30 -+ 2/3 theta) and, on theta_r = theta, at tan(2 theta - 90); the lines of v-cavity at
-// tan(30 -+ theta/3), cot(theta), 1 and tan(theta); smith's cusp is at tan(theta/2).
+// Slopes at which the set of smooth arcs changes: where a split line of the azimuth (integrand.glsl) meets phi = 0 or
+// pi or another line. The horizon does at t1 = c / (1 + s) and t2 = (1 + s) / c, theta_r = theta at tan(theta), the
+// limit b = pi/2 at tan(30 -+ 2/3 theta) and, on theta_r = theta, at tan(2 theta - 90); the lines of v-cavity at tan(30
+// -+ theta/3), cot(theta), 1 and tan(theta); smith's cusp is at tan(theta/2).
 std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking masking, double critical) {
   std::vector<Breakpoint> points = {{a.cos / (1.0 + a.sin), kEndAbove},
                                     {a.cos > 0.0 ? (1.0 + a.sin) / a.cos : kNoEnd, kEndBelow}};
@@ -181,6 +184,12 @@ double slope_cut(const MomentsRequest& request, const SlopeShape& shape, double 
   return std::min(kLargestCut, m * std::sqrt(std::expm1(std::min(-std::log(share) / exponent, 500.0))));
 }
 
+// Width of the in-plane slope density, which a masking table must resolve.
+double in_plane_width(Distribution distribution, const kernel::ShapeNode& shape) {
+  if (distribution == Distribution::kGaussian) return shape.m;
+  return shape.m / std::sqrt(std::max(1.0, (shape.q_minus_1 + 1.0) / 1.5));
+}
+
 kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& shape) {
   kernel::ShapeNode node{};
   node.m = std::sqrt(2.0) * shape.sigma;
@@ -191,8 +200,9 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
   node.two_q_minus_3 = 2.0 * shape.q - 3.0;
   node.scale = std::min(cauchy ? node.m / std::sqrt(std::max(1.0, 0.25 * shape.q)) : node.m, 1.0);
   node.cut = slope_cut(request, shape, 1e-3 * request.tolerance);
-  const double width = cauchy ? node.m / std::sqrt(std::max(1.0, shape.q / 1.5)) : node.m;
-  node.table_scale = std::clamp(width, kSmallestTableScale, kLargestTableScale);
+  const double width = in_plane_width(request.distribution, node);
+  const bool heavy_tail = cauchy && shape.q < kLightTailQ;
+  node.table_scale = std::clamp(width, heavy_tail ? kSmallestHeavyTableScale : 0.0, kLargestTableScale);
   return node;
 }
 
@@ -202,8 +212,8 @@ double mean_slope(Distribution distribution, const kernel::ShapeNode& shape) {
   return shape.m / root_pi<double>() * boost::math::tgamma_delta_ratio(shape.q_minus_1 - 0.5, 0.5);
 }
 
-// Upper bound of G over all facets. v-cavity: e G <= 2 c is used instead. smith: the facets that theta sees add up to c,
-// so that G <= G1(theta) = c / integral of e over e > 0, and that integral is at least (c + s mean |t_x|) / 2.
+// Upper bound of G over all facets. v-cavity: e G <= 2 c is used instead. smith: the facets that theta sees add up to
+// c, so that G <= G1(theta) = c / integral of e over e > 0, and that integral is at least (c + s mean |t_x|) / 2.
 double masking_bound(Distribution distribution, Masking masking, const kernel::ThetaNode& theta,
                      const kernel::ShapeNode& shape) {
   if (masking != Masking::kSmith) return 1.0;
@@ -220,14 +230,24 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
   const double tail = std::exp(gaussian ? -u * u : -shape.q_minus_1 * log_square);
   if (data.masking == Masking::kVCavity) return 2.0 * theta.c * tail;
   if (!gaussian && shape.q_minus_1 <= 0.5) return std::numeric_limits<double>::infinity();
-  const double slopes =
-      gaussian ? shape.m / pi<double>() * (u + 0.5 / u) * tail
-               : 2.0 * shape.q_minus_1 * shape.m / pi<double>() * std::exp((0.5 - shape.q_minus_1) * log_square) /
-                     (2.0 * shape.q_minus_1 - 1.0);
+  const double slopes = gaussian ? shape.m / pi<double>() * (u + 0.5 / u) * tail
+                                 : 2.0 * shape.q_minus_1 * shape.m / pi<double>() *
+                                       std::exp((0.5 - shape.q_minus_1) * log_square) / (2.0 * shape.q_minus_1 - 1.0);
   return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
 }
 
-double share(double part, double whole) { return part == 0.0 ? 0.0 : part / whole; }
+// Bound of the error of G relative to the albedo. Where the table is coarser than the slope distribution, directions
+// whose cot(theta) lies within its first scale see none of its structure.
+double masking_error(const KernelData& data, const MomentsEntry& entry) {
+  if (!data.needs_masking_table()) return 0.0;
+  const kernel::ThetaNode& theta = data.thetas[entry.theta];
+  const kernel::ShapeNode& shape = data.shapes[entry.shape];
+  const bool is_unresolved =
+      in_plane_width(data.distribution, shape) < shape.table_scale && theta.c < shape.table_scale * theta.s;
+  return is_unresolved ? 1.0 : kMaskingTableError;
+}
+
+double share(double part, double whole) { return part == 0.0 ? 0.0 : std::abs(part / whole); }
 
 kernel::IndexNode index_node(const OpticalConstants& index) {
   return {(index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k, critical_cos(index)};
@@ -271,7 +291,7 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
                             double unit_roundoff) {
   const kernel::ShapeNode& shape = data.shapes[entry.shape];
   const double cut = cut_bound(data, data.thetas[entry.theta], shape);
-  const double masking = data.needs_masking_table() ? kMaskingTableError : 0.0;
+  const double masking = masking_error(data, entry);
   const bool heavy_tail = data.distribution == Distribution::kCauchy && shape.q_minus_1 < kHeavyTailQ - 1.0;
   const double rounding = unit_roundoff * (masking > 0.0 && heavy_tail ? kHeavyTailRoundings : kRoundings);
   Moments moments;
@@ -282,14 +302,14 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   // The four share their nodes: the largest relative difference speaks for all, should one be small by accident.
   const double difference = std::max({share(node.r_i_difference, node.r_i), share(node.r_q_difference, node.r_i),
                                       share(node.albedo_difference, node.albedo), kLeastDifference * data.tolerance});
+  const double r_i_scale = std::abs(node.r_i);  // a rule that fails can make it negative
   const double quadrature = kEstimateFactor * difference + rounding + masking;
-  moments.r_i_error = quadrature * node.r_i + cut;
+  moments.r_i_error = quadrature * r_i_scale + cut;
   moments.r_q_error = kEstimateFactor * std::max(node.r_q_difference, difference * std::abs(node.r_q)) +
-                      (rounding + masking) * node.r_i + cut;
-  moments.albedo_error = quadrature * node.albedo + cut;
-  moments.deficit_error =
-      kEstimateFactor * std::max(node.deficit_difference, difference * std::abs(node.deficit)) +
-      rounding * node.deficit_scale + masking * node.albedo + cut;
+                      (rounding + masking) * r_i_scale + cut;
+  moments.albedo_error = quadrature * std::abs(node.albedo) + cut;
+  moments.deficit_error = kEstimateFactor * std::max(node.deficit_difference, difference * std::abs(node.deficit)) +
+                          rounding * node.deficit_scale + masking * std::abs(node.albedo) + cut;
   moments.evaluations = node.evaluations;
   // r_i + deficit = cos(theta): the better known of the two gives the other.
   const double cosine = data.thetas[entry.theta].c;

@@ -108,10 +108,11 @@ Points parse_points(const std::string& text, const std::string& path_name, Point
         fmt::format("{}:1: the file is empty; a line of column names is expected: {}", name, join(names_of(rules))));
   }
   Points points;
+  points.name = name;
   const std::vector<ColumnRule> columns = parse_header(lines[0], rules, points, name + ":1: ");
   points.rows.reserve(lines.size() - 1);
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    parse_row(lines[i], columns, points, fmt::format("{}:{}: ", name, i + 1));
+    parse_row(lines[i], columns, points, fmt::format("{}:{}: ", name, points.line(i - 1)));
   }
   return points;
 }

@@ -15,11 +15,14 @@ enum class PointsKind {
 
 /// The points in the file's order; a column that the file does not have is nullopt.
 struct Points {
+  std::string name;               ///< of the file, for messages: its path, or stdin
   std::string header;             ///< column names as given, joined by commas, no blanks around them
   std::vector<std::string> rows;  ///< the input cells as typed, joined by commas, no blanks around them
   std::optional<std::vector<double>> theta_deg, theta_i_deg, theta_r_deg, delta_phi_deg;
   std::optional<std::vector<double>> sigma, q, n, k;
   std::size_t size() const { return rows.size(); }
+  /// The line that a row stands on: the header is line 1, and no line between the rows is empty.
+  std::size_t line(std::size_t row) const { return row + 2; }
 };
 
 /// Reads the points at `path` ("-" is stdin). A header without rows is a valid list of no points.

@@ -6,6 +6,8 @@
 //   1 - R_s = 4 c Re(w) / B
 // The quotient by sin^2(beta) is what normal incidence needs: the rotation terms carry the factor sin^2(beta).
 
+CONST real kSmallestSquare = real(1e-37);
+
 struct Fresnel {
   real r_s;                // R_s
   real absorbed_s;         // 1 - R_s
@@ -25,12 +27,13 @@ Fresnel fresnel(IndexNode index, real cos_beta) {
   real2 w = sqrt_upper(index.n2m1_re + cos_beta * cos_beta, index.n2m1_im);
   real2 s_sum = real2(cos_beta + w.x, w.y);
   real2 p_sum = real2((index.n2m1_re + real(1.0)) * cos_beta + w.x, index.n2m1_im * cos_beta + w.y);
-  real inverse_b = real(1.0) / (s_sum.x * s_sum.x + s_sum.y * s_sum.y);
+  // Without a floor N = 1 at grazing incidence would be 0/0 where the squares underflow.
+  real inverse_b = real(1.0) / max(s_sum.x * s_sum.x + s_sum.y * s_sum.y, kSmallestSquare);
   real a = (index.n2m1_re * index.n2m1_re + index.n2m1_im * index.n2m1_im) * inverse_b;
   real transmitted = real(4.0) * cos_beta * w.x;
   Fresnel f;
   f.r_s = a * inverse_b;
   f.absorbed_s = transmitted * inverse_b;
-  f.split_over_sin2 = transmitted * a / (p_sum.x * p_sum.x + p_sum.y * p_sum.y);
+  f.split_over_sin2 = transmitted * a / max(p_sum.x * p_sum.x + p_sum.y * p_sum.y, kSmallestSquare);
   return f;
 }

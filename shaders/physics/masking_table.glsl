@@ -23,15 +23,16 @@ real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
                marginal_density(shape, tau0));
 }
 
-// The tails at the table's end, where p is a power law tau^(1-2q) for the cauchy and nothing is left of the gaussian.
+// The tails at the table's end. The cauchy's p is a power law tau^(1-2q) there; where the end lies below slope 1 next to
+// nothing is left, and the factor keeps l and C of the right order. Nothing is left of the gaussian.
 real4 masking_table_end(ShapeNode shape, real tau) {
   real p = marginal_density(shape, tau);
   if (kDistribution == DOLP_GAUSSIAN) return real4(real(0.0), real(0.0), real(0.0), p);
   real a = real(2.0) * shape.q_minus_1;
-  if (kMasking == DOLP_MASKING_SMITH) {
-    return real4(p * tau * tau / (a * shape.two_q_minus_3), p * tau / a, p * tau / a, p);
-  }
-  return real4(p * tau / (a * (a + real(1.0))), p / (a + real(1.0)), p * tau / a, p);
+  real tail = p * tau / a;
+  if (kMasking == DOLP_MASKING_SMITH) return real4(tail * tau / shape.two_q_minus_3, tail, tail, p);
+  real weight = masking_weight(tau);
+  return real4(tail * tau * weight / (a + real(1.0)), tail * a * weight / (a + real(1.0)), tail, p);
 }
 
 // Fills the table that starts at node `table`.

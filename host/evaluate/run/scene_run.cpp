@@ -1,13 +1,23 @@
 #include "evaluate/run/scene_run.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <map>
+#include <span>
+#include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include "error.hpp"
 #include "evaluate/radiometry/smooth_surface.hpp"
 #include "evaluate/run/grazing_limit.hpp"
+#include "evaluate/run/scattering.hpp"
+#include "scene/number_range.hpp"
+#include "scene/text.hpp"
 
 namespace dolp {
 namespace {
@@ -19,8 +29,11 @@ constexpr std::size_t kMomentsAtOnce = 1U << 22U;  // bounds the memory of a run
 constexpr double kSmallestSigma = 1e-28;
 constexpr double kMirrorSlope = 1e-6;
 
-// Stands for 90 degrees where rho has a limit there.
-constexpr double kNearGrazingDeg = 90.0 - 1e-9;
+// Stands for 90 degrees where rho of a rough surface has a limit there, which it approaches like the cosine.
+constexpr double kNearGrazingDeg = 90.0 - 1e-12;
+
+// Stands for the cosine of 90 degrees in the closed form of a mirror: small beside the inverse square of any index.
+constexpr double kNearGrazingCosine = 1e-100;
 
 bool is_mirror(const SlopeShape& shape) { return shape.sigma < kSmallestSigma; }
 
@@ -43,49 +56,149 @@ bool needs_evaluator(const Scene& scene, const SceneEntry& entry) {
   return !is_mirror(entry.shape) && !is_divergent(scene, entry);
 }
 
-/// Where the moments of an entry are evaluated: at its own direction, and just before 90 degrees for a limit there.
+/// Where the evaluator computes an entry: at its own direction, and just before 90 degrees for a limit there.
 double moments_theta_deg(const Scene& scene, const SceneEntry& entry) {
   const Masking masking = scene.surface.masking;
-  const bool has_limit = masking == Masking::kVCavity || masking == Masking::kSmith || is_mirror(entry.shape);
+  const bool has_limit = masking == Masking::kVCavity || masking == Masking::kSmith;
   return has_limit && entry.theta_deg == 90.0 ? kNearGrazingDeg : entry.theta_deg;
 }
 
-/// Positions of values in a list of distinct ones.
-template <class Key, class Value>
+/// The cosine that the closed form of an entry is for.
+double closed_form_cosine(const SceneEntry& entry) {
+  const bool has_limit = is_mirror(entry.shape) && entry.theta_deg == 90.0;
+  return has_limit ? kNearGrazingCosine : cos_sin_deg(entry.theta_deg).cos;
+}
+
+using Pair = std::pair<double, double>;
+
+/// Positions of values in a list of distinct ones, each named by two numbers.
+template <class Value>
 class Distinct {
  public:
   explicit Distinct(std::vector<Value>& values) : values_(values) {}
 
-  std::uint32_t position(const Key& key, const Value& value) {
-    const auto [found, is_new] = positions_.try_emplace(key, static_cast<std::uint32_t>(values_.size()));
-    if (is_new) values_.push_back(value);
-    return found->second;
+  std::uint32_t position(const Pair& key, const Value& value) {
+    if (is_empty_ || key != last_key_) {
+      const auto [found, is_new] = positions_.try_emplace(key, static_cast<std::uint32_t>(values_.size()));
+      if (is_new) values_.push_back(value);
+      last_key_ = key;
+      last_position_ = found->second;
+      is_empty_ = false;
+    }
+    return last_position_;
   }
 
  private:
-  std::map<Key, std::uint32_t> positions_;
+  struct Hash {
+    std::size_t operator()(const Pair& key) const {
+      constexpr std::size_t kOddMultiplier = 0x9e3779b97f4a7c15U;  // of Fibonacci hashing
+      return std::hash<double>{}(key.first) * kOddMultiplier + std::hash<double>{}(key.second);
+    }
+  };
+  std::unordered_map<Pair, std::uint32_t, Hash> positions_;
   std::vector<Value>& values_;
+  // The axes of a grid repeat the same value many times over.
+  Pair last_key_;
+  std::uint32_t last_position_ = 0;
+  bool is_empty_ = true;
 };
 
-using Pair = std::pair<double, double>;
+/// What the evaluator is asked for, and where the moments of each entry are in its answer.
+struct Block {
+  MomentsRequest request;
+  std::vector<std::uint32_t> first_moments;  ///< meaningless for entries with closed forms
+};
 
-/// The request for entries [first, last): for each rough one the samples of the spectral rule, in order.
-MomentsRequest make_request(const Scene& scene, const std::vector<SceneEntry>& entries,
-                            const std::vector<OpticalConstants>& samples, std::size_t first, std::size_t last) {
+/// What distinguishes two slope distributions: the gaussian has no q.
+SlopeShape normalised(const Scene& scene, const SlopeShape& shape) {
+  return scene.surface.distribution == Distribution::kGaussian ? SlopeShape{.sigma = shape.sigma} : shape;
+}
+
+bool is_same(const MomentsEntry& a, const MomentsEntry& b) {
+  return a.theta == b.theta && a.shape == b.shape && a.index == b.index;
+}
+
+bool is_bistatic(const Scene& scene) { return scene.geometry.mode == Mode::kBistatic; }
+
+/// Fills a block entry by entry. An entry that repeats the one before it, as those do that differ in the q of a
+/// gaussian alone, shares its moments; in bistatic mode all entries of one surface do, whatever the source's direction.
+class BlockBuilder {
+ public:
+  BlockBuilder(const Scene& scene, const std::vector<OpticalConstants>& samples, std::size_t count) : scene_(scene) {
+    MomentsRequest& request = block_.request;
+    request.distribution = scene.surface.distribution;
+    request.masking = scene.surface.masking;
+    request.tolerance = scene.accuracy.tolerance;
+    request.entries.reserve(count * samples.size());
+    block_.first_moments.reserve(count);
+    for (const OpticalConstants& sample : samples) sample_positions_.push_back(position(sample));
+  }
+
+  void add(const SceneEntry& entry) {
+    if (needs_evaluator(scene_, entry)) {
+      const double theta_deg = moments_theta_deg(scene_, entry);
+      const SlopeShape shape = normalised(scene_, entry.shape);
+      MomentsEntry wanted;
+      wanted.theta = thetas_.position({theta_deg, 0.0}, theta_deg);
+      wanted.shape = shapes_.position({shape.sigma, shape.q}, shape);
+      if (entry.index) {
+        const std::uint32_t own = position(*entry.index);
+        append(wanted, {&own, 1});
+      } else {
+        append(wanted, sample_positions_);
+      }
+    }
+    block_.first_moments.push_back(last_first_);
+  }
+
+  Block take() { return std::move(block_); }
+
+ private:
+  std::uint32_t position(const OpticalConstants& index) { return indices_.position({index.n, index.k}, index); }
+
+  void append(MomentsEntry wanted, std::span<const std::uint32_t> indices) {
+    std::vector<MomentsEntry>& entries = block_.request.entries;
+    wanted.index = indices.front();
+    if (last_count_ == indices.size() && is_same(entries[last_first_], wanted)) return;
+    last_count_ = indices.size();
+    last_first_ = static_cast<std::uint32_t>(entries.size());
+    if (is_bistatic(scene_)) {
+      const auto key = std::make_tuple(wanted.theta, wanted.shape, wanted.index, last_count_);
+      const auto [found, is_new] = firsts_.try_emplace(key, last_first_);
+      last_first_ = found->second;
+      if (!is_new) return;
+    }
+    for (const std::uint32_t index : indices) {
+      wanted.index = index;
+      entries.push_back(wanted);
+    }
+  }
+
+  const Scene& scene_;
+  Block block_;
+  Distinct<double> thetas_{block_.request.theta_deg};
+  Distinct<SlopeShape> shapes_{block_.request.shapes};
+  Distinct<OpticalConstants> indices_{block_.request.indices};
+  std::vector<std::uint32_t> sample_positions_;
+  std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::size_t>, std::uint32_t> firsts_;
+  std::uint32_t last_first_ = 0;
+  std::size_t last_count_ = 0;
+};
+
+/// What the source sends toward the view for each entry and sample; nothing for a mirror but toward its specular
+/// direction, where the radiance is not defined.
+std::vector<Scattered> entry_beams(const Scene& scene, std::span<const SceneEntry> entries,
+                                   const std::vector<OpticalConstants>& samples) {
   MomentsRequest request;
   request.distribution = scene.surface.distribution;
   request.masking = scene.surface.masking;
-  request.tolerance = scene.accuracy.tolerance;
-  Distinct<double, double> thetas(request.theta_deg);
-  Distinct<Pair, SlopeShape> shapes(request.shapes);
-  Distinct<Pair, OpticalConstants> indices(request.indices);
-  request.entries.reserve((last - first) * samples.size());
-  for (std::size_t i = first; i < last; ++i) {
-    const SceneEntry& entry = entries[i];
-    if (!needs_evaluator(scene, entry)) continue;
+  Distinct<double> thetas(request.theta_deg);
+  Distinct<SlopeShape> shapes(request.shapes);
+  Distinct<OpticalConstants> indices(request.indices);
+  for (const SceneEntry& entry : entries) {
+    if (is_mirror(entry.shape)) continue;
     MomentsEntry wanted;
-    const double theta_deg = moments_theta_deg(scene, entry);
-    wanted.theta = thetas.position(theta_deg, theta_deg);
+    wanted.theta = thetas.position({entry.theta_deg, 0.0}, entry.theta_deg);
     wanted.shape = shapes.position({entry.shape.sigma, entry.shape.q}, entry.shape);
     for (const OpticalConstants& sample : samples) {
       const OpticalConstants index = entry.index.value_or(sample);
@@ -93,11 +206,24 @@ MomentsRequest make_request(const Scene& scene, const std::vector<SceneEntry>& e
       request.entries.push_back(wanted);
     }
   }
-  return request;
+  const Geometry& geometry = scene.geometry;
+  const std::vector<Scattered> rough =
+      scattered_beams(request, geometry.view_zenith_deg, geometry.relative_azimuth_deg);
+  std::vector<Scattered> beams;
+  auto next = rough.begin();
+  for (const SceneEntry& entry : entries) {
+    for (std::size_t j = 0; j < samples.size(); ++j) {
+      const bool is_specular =
+          std::abs(geometry.relative_azimuth_deg) == 180.0 && entry.theta_deg == geometry.view_zenith_deg;
+      const double glare = is_specular ? std::numeric_limits<double>::quiet_NaN() : 0.0;
+      beams.push_back(is_mirror(entry.shape) ? Scattered{.i = glare, .q = glare} : *next++);
+    }
+  }
+  return beams;
 }
 
 Moments mirror_with_bound(const Scene& scene, const SceneEntry& entry, const OpticalConstants& index) {
-  const double cosine = cos_sin_deg(moments_theta_deg(scene, entry)).cos;
+  const double cosine = closed_form_cosine(entry);
   const double steep = steep_share(scene, entry.shape) * cosine;
   Moments moments = mirror_moments(index, cosine);
   for (double* error : {&moments.r_i_error, &moments.r_q_error, &moments.albedo_error, &moments.deficit_error}) {
@@ -106,23 +232,93 @@ Moments mirror_with_bound(const Scene& scene, const SceneEntry& entry, const Opt
   return moments;
 }
 
-/// Moments of an entry that has closed forms, for each sample.
+/// Moments of an entry that has closed forms, for each index.
 std::vector<Moments> closed_forms(const Scene& scene, const SceneEntry& entry,
-                                  const std::vector<OpticalConstants>& samples) {
+                                  const std::vector<OpticalConstants>& indices) {
   std::vector<Moments> moments;
-  for (const OpticalConstants& sample : samples) {
-    const OpticalConstants index = entry.index.value_or(sample);
+  for (const OpticalConstants& index : indices) {
     moments.push_back(is_mirror(entry.shape) ? mirror_with_bound(scene, entry, index)
                                              : grazing_limit_moments(index, entry.shape.q));
   }
   return moments;
 }
 
-PointResult radiometry_of(const Scene& scene, const Radiometry& radiometry, const SceneEntry& entry,
-                          std::span<const Moments> moments) {
-  const Direction direction{entry.theta_deg, cos_sin_deg(moments_theta_deg(scene, entry)).cos};
-  if (!entry.index) return radiometry.point(direction, moments);
-  return radiometry.point(direction, moments, std::vector<OpticalConstants>(moments.size(), *entry.index));
+/// Result of an entry; `beams` is empty in hemispherical mode.
+PointResult entry_result(const Radiometry& radiometry, const SceneEntry& entry, const Direction& direction,
+                         std::span<const Moments> moments, std::span<const OpticalConstants> indices,
+                         std::span<const Scattered> beams) {
+  if (beams.empty()) return radiometry.point(direction, moments, indices);
+  return radiometry.bistatic_point(direction, cos_sin_deg(entry.theta_deg).cos, moments, indices, beams);
+}
+
+/// The entry as the moments see it: in bistatic mode they are those of the view direction.
+SceneEntry seen_entry(const Scene& scene, const SceneEntry& entry) {
+  SceneEntry seen = entry;
+  if (is_bistatic(scene)) seen.theta_deg = scene.geometry.view_zenith_deg;
+  return seen;
+}
+
+/// Appends the results of the entries of a block.
+void append_results(std::vector<PointResult>& results, const Scene& scene, const Radiometry& radiometry,
+                    std::span<const SceneEntry> entries, const Block& block, std::span<const Moments> moments) {
+  const std::vector<OpticalConstants> samples = radiometry.rule().indices();
+  const std::size_t count = samples.size();
+  const std::vector<Scattered> beams =
+      is_bistatic(scene) ? entry_beams(scene, entries, samples) : std::vector<Scattered>{};
+  std::vector<double> cosines;
+  for (const double theta_deg : block.request.theta_deg) cosines.push_back(cos_sin_deg(theta_deg).cos);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const SceneEntry seen = seen_entry(scene, entries[i]);
+    const std::span<const Scattered> own_beams =
+        beams.empty() ? std::span<const Scattered>{} : std::span(beams).subspan(i * count, count);
+    std::vector<OpticalConstants> own_indices;
+    if (seen.index) own_indices.assign(count, *seen.index);
+    const std::vector<OpticalConstants>& indices = seen.index ? own_indices : samples;
+    if (!needs_evaluator(scene, seen)) {
+      const Direction direction{seen.theta_deg, closed_form_cosine(seen)};
+      const std::vector<Moments> closed = closed_forms(scene, seen, indices);
+      results.push_back(entry_result(radiometry, entries[i], direction, closed, indices, own_beams));
+      continue;
+    }
+    const std::uint32_t first = block.first_moments[i];
+    const Direction direction{seen.theta_deg, cosines[block.request.entries[first].theta]};
+    std::vector<Moments> same;
+    if (seen.index) same.assign(count, moments[first]);
+    const std::span<const Moments> own = seen.index ? std::span<const Moments>(same) : moments.subspan(first, count);
+    results.push_back(entry_result(radiometry, entries[i], direction, own, indices, own_beams));
+  }
+}
+
+/// Refuses points that lack what the scene does not say.
+void check_columns(const Scene& scene, const Points& points) {
+  if (!points.theta_deg && scene.grid.theta_deg.size() != 1) {
+    throw InputError(
+        fmt::format("{}:1: column \"theta_deg\" is missing, a number in {}; only a scene with a single grid.theta_deg "
+                    "does without",
+                    points.name, kZenithDegRange.text()));
+  }
+  if (points.n.has_value() != points.k.has_value() && !scene.surface.material.is_constant()) {
+    const char* given = points.n ? "n" : "k";
+    const char* missing = points.n ? "k" : "n";
+    throw InputError(
+        fmt::format("{}:1: column \"{}\" needs column \"{}\" beside it, because the scene's material \"{}\" "
+                    "depends on the wavelength",
+                    points.name, given, missing, scene.surface.material.name));
+  }
+}
+
+/// Refuses points that the scene's masking is not made for; the scene's own q has passed the same check.
+void check_smith(const Scene& scene, const Points& points) {
+  const Surface& surface = scene.surface;
+  if (surface.masking != Masking::kSmith || surface.distribution != Distribution::kCauchy || !points.q) return;
+  for (std::size_t row = 0; row < points.size(); ++row) {
+    const double q = (*points.q)[row];
+    if (kSmithCauchyQRange.contains(q)) continue;
+    throw InputError(
+        fmt::format("{}:{}: q = {}: out of range, a number in {} with masking = \"smith\" and distribution = "
+                    "\"cauchy\"",
+                    points.name, points.line(row), format_number(q), kSmithCauchyQRange.text()));
+  }
 }
 
 double value_or(const std::optional<std::vector<double>>& column, std::size_t row, double fallback) {
@@ -143,13 +339,9 @@ std::vector<SceneEntry> grid_entries(const Scene& scene) {
 }
 
 std::vector<SceneEntry> point_entries(const Scene& scene, const Points& points) {
-  if (!points.theta_deg && scene.grid.theta_deg.size() != 1) {
-    throw InputError("points: the column theta_deg is missing and the scene's grid.theta_deg is not a single value");
-  }
+  check_columns(scene, points);
+  check_smith(scene, points);
   const bool own_index = points.n || points.k;
-  if (own_index && !(points.n && points.k) && !scene.surface.material.is_constant()) {
-    throw InputError("points: the columns n and k go together when the scene's material depends on the wavelength");
-  }
   std::vector<SceneEntry> entries;
   entries.reserve(points.size());
   for (std::size_t row = 0; row < points.size(); ++row) {
@@ -167,26 +359,20 @@ std::vector<PointResult> evaluate_scene(const Scene& scene, const std::vector<Sc
                                         MomentsEvaluator& evaluator, const Progress& progress) {
   const Radiometry radiometry(scene);
   const std::vector<OpticalConstants> samples = radiometry.rule().indices();
-  const std::size_t block = std::max<std::size_t>(1, kMomentsAtOnce / samples.size());
+  const std::size_t block_size = std::max<std::size_t>(1, kMomentsAtOnce / samples.size());
   std::vector<PointResult> results;
   results.reserve(entries.size());
-  for (std::size_t first = 0; first < entries.size(); first += block) {
-    const std::size_t last = std::min(first + block, entries.size());
-    const MomentsRequest request = make_request(scene, entries, samples, first, last);
-    const Progress of_block = [&](std::size_t done, std::size_t) {
-      return !progress || progress(first + done / samples.size(), entries.size());
+  for (std::size_t first = 0; first < entries.size(); first += block_size) {
+    const std::size_t count = std::min(block_size, entries.size() - first);
+    const std::span<const SceneEntry> of_block(entries.data() + first, count);
+    BlockBuilder builder(scene, samples, count);
+    for (const SceneEntry& entry : of_block) builder.add(seen_entry(scene, entry));
+    const Block block = builder.take();
+    const Progress block_progress = [&](std::size_t done, std::size_t total) {
+      return !progress || progress(first + count * done / total, entries.size());
     };
-    const std::vector<Moments> moments = evaluator.evaluate(request, of_block);
-    std::size_t used = 0;
-    for (std::size_t i = first; i < last; ++i) {
-      if (!needs_evaluator(scene, entries[i])) {
-        results.push_back(radiometry_of(scene, radiometry, entries[i], closed_forms(scene, entries[i], samples)));
-        continue;
-      }
-      const std::span of_entry(moments.data() + used, samples.size());
-      results.push_back(radiometry_of(scene, radiometry, entries[i], of_entry));
-      used += samples.size();
-    }
+    const std::vector<Moments> moments = evaluator.evaluate(block.request, block_progress);
+    append_results(results, scene, radiometry, of_block, block, moments);
   }
   return results;
 }

@@ -22,8 +22,9 @@ struct SceneEntry {
 std::vector<SceneEntry> grid_entries(const Scene& scene);
 
 /// Scattered points; what they do not say comes from the scene.
-/// Errors: InputError when theta is neither in the points nor a single value in the grid, or sigma or q cannot be used
-/// with the scene's masking.
+/// Errors: InputError that names the points' file and line, column, value and what is allowed: theta_deg is neither in
+/// the points nor a single value in the grid; n without k, or k without n, beside a material that depends on the
+/// wavelength; q <= 3/2 with smith masking and the cauchy distribution.
 std::vector<SceneEntry> point_entries(const Scene& scene, const Points& points);
 
 /// Results in the order of `entries`. Progress counts entries.

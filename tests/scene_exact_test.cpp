@@ -1,0 +1,282 @@
+// What must hold exactly (MODEL.md section 6), on results of whole runs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "scene/material_data.hpp"
+#include "scene_run_support.hpp"
+
+namespace dolp {
+namespace {
+
+using namespace scene_run_support;
+
+// A few roundings of numbers up to 1.
+constexpr double kRounding = 1e-15;
+// A dozen roundings, next to grazing incidence with the cosine's own on top.
+constexpr double kFresnelRounding = 4e-15;
+// The 180 x 180 Gauss points of the independent integral resolve slopes of width 0.3 and more far beyond this.
+constexpr double kGgxAccuracy = 1e-9;
+
+double radians(double angle_deg) { return angle_deg * std::numbers::pi / 180.0; }
+
+/// Sum of `f` over the panels of a composite Gauss rule.
+template <class Function>
+double composite_gauss(double to, Function&& f) {
+  constexpr int kPanels = 6;
+  double sum = 0.0;
+  for (int i = 0; i < kPanels; ++i) {
+    sum += boost::math::quadrature::gauss<double, 30>::integrate(f, to * i / kPanels, to * (i + 1) / kPanels);
+  }
+  return sum;
+}
+
+struct GgxMoments {
+  double rho_i = 0.0;
+  double rho_q = 0.0;
+  double albedo = 0.0;
+};
+
+/// Source: Walter et al. 2007, eq. (33); Heitz 2014, eqs. (72), (99). Microfacet term of GGX at one pair of directions
+/// times cos(theta_r), and its parts with the reflectances of the smooth facet.
+GgxMoments ggx_terms(double alpha_g, Masking masking, const OpticalConstants& index, double theta, double theta_r,
+                     double phi) {
+  const double a2 = alpha_g * alpha_g;
+  const double c_i = std::cos(theta);
+  const double c_r = std::cos(theta_r);
+  const double cos_2_beta = c_i * c_r + std::sin(theta) * std::sin(theta_r) * std::cos(phi);
+  const double cos_beta = std::sqrt(0.5 * (1.0 + cos_2_beta));
+  const double cos_alpha = (c_i + c_r) / (2.0 * cos_beta);
+  const double root = cos_alpha * cos_alpha * (a2 - 1.0) + 1.0;
+  const double density = a2 / (std::numbers::pi * root * root);
+  const auto lambda = [a2](double c) { return 0.5 * (std::sqrt(1.0 + a2 * (1.0 - c * c) / (c * c)) - 1.0); };
+  const double masked = masking == Masking::kSmith ? 1.0 / (1.0 + lambda(c_i) + lambda(c_r)) : 1.0;
+  const SmoothReflectance smooth = smooth_reflectance(index, cos_beta);
+  const double cos_eta = (cos_alpha - c_i * cos_beta) / (std::sin(theta) * std::sqrt(0.5 * (1.0 - cos_2_beta)));
+  const double term = density * masked / (4.0 * c_i);
+  return {term * smooth.rho_i(), term * smooth.rho_q() * (2.0 * cos_eta * cos_eta - 1.0), term};
+}
+
+GgxMoments ggx_moments(double alpha_g, Masking masking, const OpticalConstants& index, double theta_deg) {
+  const auto integral = [&](double GgxMoments::*part) {
+    return 2.0 * composite_gauss(0.5 * std::numbers::pi, [&](double theta_r) {
+             return std::sin(theta_r) * composite_gauss(std::numbers::pi, [&](double phi) {
+                      return ggx_terms(alpha_g, masking, index, radians(theta_deg), theta_r, phi).*part;
+                    });
+           });
+  };
+  return {integral(&GgxMoments::rho_i), integral(&GgxMoments::rho_q), integral(&GgxMoments::albedo)};
+}
+
+TEST(SceneExact_QOfTwo, IsGgx) {
+  constexpr double kSigma = 0.4;
+  for (const Masking masking : {Masking::kNone, Masking::kSmith}) {
+    for (const OpticalConstants& index : {kDielectric, kAbsorbing, kMetal}) {
+      for (const double theta_deg : {1.0, 45.0, 75.0}) {
+        const GgxMoments ggx = ggx_moments(std::sqrt(2.0) * kSigma, masking, index, theta_deg);
+        for (const Evaluator evaluator : {Evaluator::kFloat, Evaluator::kDouble, Evaluator::kReference}) {
+          const Scene scene = make_scene(Distribution::kCauchy, masking, index);
+          const PointResult r = run_one(scene, theta_deg, {kSigma, 2.0}, evaluator);
+          const double bound = (r.rho_error_estimate + kGgxAccuracy) * ggx.rho_i;
+          EXPECT_LE(r.rho_error_estimate, scene.accuracy.tolerance);
+          EXPECT_NEAR(r.rho_i, ggx.rho_i, bound) << name_of(masking) << " " << theta_deg;
+          EXPECT_NEAR(r.rho_q, ggx.rho_q, bound) << name_of(masking) << " " << theta_deg;
+          EXPECT_NEAR(r.albedo, ggx.albedo, scene.accuracy.tolerance * ggx.albedo);
+        }
+      }
+    }
+  }
+}
+
+TEST(SceneExact_AlbedoWithoutMasking, AtTheNormalIsTheShareOfSlopesBelowOne) {
+  for (const Evaluator evaluator : {Evaluator::kFloat, Evaluator::kDouble, Evaluator::kReference}) {
+    for (const double sigma : {0.05, 0.3, 0.905, 5.0}) {
+      const double m2 = 2.0 * sigma * sigma;
+      const Scene gaussian = make_scene(Distribution::kGaussian, Masking::kNone, kDielectric);
+      const double exact = -std::expm1(-1.0 / m2);
+      EXPECT_NEAR(run_one(gaussian, 0.0, {sigma, 2.0}, evaluator).albedo, exact, gaussian.accuracy.tolerance * exact);
+      for (const double q : {1.2, 2.0, 5.0}) {
+        const Scene cauchy = make_scene(Distribution::kCauchy, Masking::kNone, kDielectric);
+        const double share = 1.0 - std::pow(m2 / (1.0 + m2), q - 1.0);
+        EXPECT_NEAR(run_one(cauchy, 0.0, {sigma, q}, evaluator).albedo, share, cauchy.accuracy.tolerance * share);
+      }
+    }
+  }
+}
+
+TEST(SceneExact_SmithAlbedoAtTheNormal, IsOneMinusLogTwo) {
+  const Scene scene = make_scene(Distribution::kCauchy, Masking::kSmith, kMetal);
+  const double exact = 1.0 - std::numbers::ln2;
+  for (const Evaluator evaluator : {Evaluator::kFloat, Evaluator::kDouble, Evaluator::kReference}) {
+    const double albedo = run_one(scene, 0.0, {std::sqrt(0.5), 2.0}, evaluator).albedo;
+    EXPECT_NEAR(albedo, exact, scene.accuracy.tolerance * exact);
+  }
+}
+
+TEST(SceneExact_SmoothSurface, HasFresnelReflectanceForEveryMaterial) {
+  const std::vector<std::string> names = material_names();
+  ASSERT_GE(names.size(), 20U);
+  for (const std::string& name : names) {
+    const Material material = find_material(name, {10.6, 10.6}, "");
+    const OpticalConstants index = material.at(10.6);
+    const Scene scene = make_scene(Distribution::kCauchy, Masking::kIntegral, index);
+    for (const double theta_deg : {0.0, 30.0, 60.0, 85.0, 89.9}) {
+      const SmoothReflectance smooth = smooth_reflectance(
+          index, std::cos(std::numbers::pi_v<long double> * static_cast<long double>(theta_deg) / 180.0L));
+      const PointResult r = run_one(scene, theta_deg, {0.0, 2.0}, Evaluator::kFloat);
+      EXPECT_NEAR(r.rho_i, smooth.rho_i(), kFresnelRounding) << name << " " << theta_deg;
+      EXPECT_NEAR(r.rho_q, smooth.rho_q(), kFresnelRounding) << name << " " << theta_deg;
+      EXPECT_DOUBLE_EQ(r.albedo, 1.0);
+      EXPECT_EQ(r.status, 0U);
+    }
+  }
+}
+
+TEST(SceneExact_SmallSlopes, TendToFresnelForEveryMaterial) {
+  // The reflectance of a tilted facet differs in the second order of the tilt, with a factor below the square of the
+  // pseudo-Brewster structure at 60 degrees, which 1000 covers; the tail of q = 3 adds less.
+  constexpr double kSigma = 1e-4;
+  constexpr double kSecondOrder = 1000.0 * kSigma * kSigma;
+  for (const std::string& name : material_names()) {
+    const OpticalConstants index = find_material(name, {10.6, 10.6}, "").at(10.6);
+    const SmoothReflectance smooth = smooth_reflectance(index, 0.5L);
+    for_each_model([&](Distribution distribution, Masking masking) {
+      const Scene scene = make_scene(distribution, masking, index);
+      for (const Evaluator evaluator : kPrecisions) {
+        const PointResult r = run_one(scene, 60.0, {kSigma, 3.0}, evaluator);
+        const double bound = r.rho_error_estimate * smooth.rho_i() + kSecondOrder;
+        EXPECT_LE(r.rho_error_estimate, scene.accuracy.tolerance) << name;
+        EXPECT_NEAR(r.rho_i, smooth.rho_i(), bound) << name << " " << name_of(masking);
+        EXPECT_NEAR(r.rho_q, smooth.rho_q(), bound) << name << " " << name_of(masking);
+      }
+    });
+  }
+}
+
+TEST(SceneExact_Normal, HasNoPolarisation) {
+  for_each_model([](Distribution distribution, Masking masking) {
+    for (const OpticalConstants& index : kIndices) {
+      const Scene scene = make_scene(distribution, masking, index);
+      for (const Evaluator evaluator : kPrecisions) {
+        const PointResult normal = run_one(scene, 0.0, {0.3, 2.0}, evaluator);
+        EXPECT_LE(std::abs(normal.rho_q), normal.rho_error_estimate * normal.rho_i) << name_of(masking);
+        // Q grows like theta^2, with theta = 1.7e-8.
+        const PointResult near_normal = run_one(scene, 1e-6, {0.3, 2.0}, evaluator);
+        EXPECT_LE(std::abs(near_normal.rho_q), near_normal.rho_error_estimate * near_normal.rho_i);
+        EXPECT_NEAR(near_normal.rho_i, normal.rho_i, 2.0 * normal.rho_error_estimate * normal.rho_i);
+      }
+    }
+  });
+}
+
+TEST(SceneExact_IndexOfOne, ReflectsNothing) {
+  for_each_model([](Distribution distribution, Masking masking) {
+    const Scene scene = make_scene(distribution, masking, {1.0, 0.0});
+    for (const Evaluator evaluator : kPrecisions) {
+      for (const double theta_deg : {0.0, 45.0, 89.0}) {
+        for (const double sigma : {0.0, 0.3}) {
+          const PointResult r = run_one(scene, theta_deg, {sigma, 2.0}, evaluator);
+          EXPECT_NEAR(r.rho_i, 0.0, kRounding) << name_of(masking);
+          EXPECT_NEAR(r.rho_q, 0.0, kRounding);
+          EXPECT_NEAR(r.dolp, 0.0, kRounding);
+          EXPECT_EQ(r.status & kNoDolpPromised, 0U);
+        }
+      }
+    }
+  });
+}
+
+TEST(SceneExact_IsothermalSurroundings, LeaveExactlyNoPolarisation) {
+  for_each_model([](Distribution distribution, Masking masking) {
+    for (const OpticalConstants& index : kIndices) {
+      Scene scene = make_scene(distribution, masking, index);
+      scene.surroundings->temperature_K = scene.emission->temperature_K;
+      scene.surface.diffuse = 0.1;
+      scene.surface.specular = 0.9;
+      scene.path = Path{0.7, 280.0, {}};
+      for (const double max_um : {10.6, 12.0}) {
+        scene.spectrum.max_um = max_um;
+        for (const double theta_deg : {0.0, 45.0, 80.0, 89.9}) {
+          for (const double sigma : {0.0, 0.01, 0.445}) {
+            const PointResult r = run_one(scene, theta_deg, {sigma, 2.0}, Evaluator::kFloat);
+            EXPECT_EQ(r.dolp, 0.0) << name_of(masking) << " " << theta_deg << " " << sigma;
+            EXPECT_EQ(r.stokes_q, 0.0);
+            EXPECT_FALSE(std::signbit(r.dolp) || std::signbit(r.stokes_q));
+          }
+        }
+      }
+    }
+  });
+}
+
+TEST(SceneExact_Reflectance, IsLinearInTheSpecularShare) {
+  for_each_model([](Distribution distribution, Masking masking) {
+    Scene scene = make_scene(distribution, masking, kAbsorbing);
+    for (const double theta_deg : {0.0, 60.0, 89.0}) {
+      scene.surface.specular = 1.0;
+      const PointResult whole = run_one(scene, theta_deg, {0.3, 2.0}, Evaluator::kFloat);
+      for (const double specular : {0.0, 0.25, 0.7}) {
+        scene.surface.specular = specular;
+        const PointResult part = run_one(scene, theta_deg, {0.3, 2.0}, Evaluator::kFloat);
+        EXPECT_NEAR(part.rho_i, specular * whole.rho_i, kRounding * whole.rho_i);
+        EXPECT_NEAR(part.rho_q, specular * whole.rho_q, kRounding * whole.rho_i);
+        EXPECT_EQ(part.albedo, whole.albedo);
+      }
+    }
+  });
+}
+
+/// Entries over everything that changes the energy that a surface gives back.
+std::vector<SceneEntry> energy_entries() {
+  std::vector<SceneEntry> entries;
+  for (const double theta_deg : {0.0, 20.0, 45.0, 60.0, 75.0, 85.0, 89.0, 89.9, 90.0}) {
+    for (const double sigma : {1e-4, 0.05, 0.3, 0.905, 5.0}) {
+      for (const double q : {1.6, 2.0, 5.0, 50.0}) entries.push_back({theta_deg, {sigma, q}, {}});
+    }
+  }
+  return entries;
+}
+
+TEST(SceneExact_VCavityAndSmith, NeverGiveBackMoreThanTheyReceive) {
+  constexpr OpticalConstants kNearlyPerfect{1000.0, 1e6};
+  for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
+    for (const Distribution distribution : kDistributions) {
+      const Scene scene = make_scene(distribution, masking, kNearlyPerfect);
+      const std::vector<SceneEntry> entries = energy_entries();
+      for (const Evaluator evaluator : kPrecisions) {
+        const std::vector<PointResult> results = run(scene, entries, evaluator);
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+          // With R = 1 to 1e-8, albedo and rho_I share the error estimate.
+          const double most = 1.0 + results[i].rho_error_estimate;
+          EXPECT_LE(results[i].albedo, most) << name_of(scene, entries[i]);
+          EXPECT_LE(results[i].rho_i + std::abs(results[i].rho_q), most) << name_of(scene, entries[i]);
+          EXPECT_EQ(results[i].status & kStatusUnphysicalReflectance, 0U) << name_of(scene, entries[i]);
+        }
+      }
+    }
+  }
+}
+
+TEST(SceneExact_EmissionAndReflectance, AddUpToOne) {
+  for_each_model([](Distribution distribution, Masking masking) {
+    for (const OpticalConstants& index : kIndices) {
+      Scene scene = make_scene(distribution, masking, index);
+      scene.surroundings.reset();
+      const double black = Radiometry(scene).rule().samples.front().emitted;
+      for (const Evaluator evaluator : kPrecisions) {
+        for (const double theta_deg : {0.0, 60.0, 85.0}) {
+          const PointResult r = run_one(scene, theta_deg, {0.3, 2.0}, evaluator);
+          const double bound = r.rho_error_estimate * std::abs(r.rho_i) + 4.0 * kRounding;
+          EXPECT_NEAR(r.stokes_i / black + r.rho_i, 1.0, bound) << name_of(masking) << " " << theta_deg;
+          EXPECT_NEAR(r.stokes_q / black + r.rho_q, 0.0, bound) << name_of(masking) << " " << theta_deg;
+        }
+      }
+    }
+  });
+}
+
+}  // namespace
+}  // namespace dolp

@@ -1,0 +1,276 @@
+// Whole runs where the model or the arithmetic ends: 90 degrees, normal incidence, extreme slopes, metals, and the
+// status that says so.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <random>
+
+#include "scene_run_support.hpp"
+
+namespace dolp {
+namespace {
+
+using namespace scene_run_support;
+
+constexpr unsigned kSeed = 20250811;
+constexpr SlopeShape kPaperShape{0.3, 2.0};
+// The documented limits have four digits.
+constexpr double kFourDigits = 5e-5;
+
+bool has_limit(Masking masking) { return masking == Masking::kVCavity || masking == Masking::kSmith; }
+
+TEST(Limits_RightAngle, VCavityAndSmithHaveTheDocumentedReflectance) {
+  for (const Evaluator evaluator : kPrecisions) {
+    const Scene v_cavity = make_scene(Distribution::kCauchy, Masking::kVCavity, kDielectric);
+    EXPECT_NEAR(run_one(v_cavity, 90.0, kPaperShape, evaluator).rho_i, 0.3717, kFourDigits);
+    const Scene smith = make_scene(Distribution::kCauchy, Masking::kSmith, kDielectric);
+    EXPECT_NEAR(run_one(smith, 90.0, kPaperShape, evaluator).rho_i, 0.1538, kFourDigits);
+  }
+}
+
+TEST(Limits_RightAngle, FiniteReflectanceContinuesThatJustBefore) {
+  // rho of a rough surface changes like the angle: 2e-6 rad here, times up to 20 for metals.
+  constexpr double kChange = 1e-4;
+  for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
+    for (const Distribution distribution : kDistributions) {
+      for (const OpticalConstants& index : kIndices) {
+        const Scene scene = make_scene(distribution, masking, index);
+        for (const Evaluator evaluator : kPrecisions) {
+          const PointResult limit = run_one(scene, 90.0, kPaperShape, evaluator);
+          const PointResult before = run_one(scene, 89.9999, kPaperShape, evaluator);
+          EXPECT_EQ(limit.status & ~kStatusToleranceMissed, 0U);
+          EXPECT_NEAR(limit.rho_i, before.rho_i, kChange);
+          EXPECT_NEAR(limit.rho_q, before.rho_q, kChange);
+          EXPECT_NEAR(limit.albedo, before.albedo, kChange);
+          EXPECT_NEAR(limit.stokes_i, before.stokes_i, kChange * before.stokes_i);
+          EXPECT_NEAR(limit.dolp, before.dolp, kChange);
+        }
+      }
+    }
+  }
+}
+
+TEST(Limits_RightAngle, DivergingReflectanceLeavesOnlyTheDolp) {
+  for_each_model([](Distribution distribution, Masking masking) {
+    for (const double diffuse : {0.0, 0.1}) {
+      if (has_limit(masking) && diffuse == 0.0) continue;
+      for (const double q : {1.2, 1.5, 2.0}) {
+        if (masking == Masking::kSmith && q <= 1.5) continue;
+        Scene scene = make_scene(distribution, masking, kDielectric);
+        scene.surface.diffuse = diffuse;
+        for (const Evaluator evaluator : kPrecisions) {
+          const PointResult r = run_one(scene, 90.0, {0.3, q}, evaluator);
+          const std::string name = name_of(scene, {90.0, {0.3, q}, {}});
+          EXPECT_TRUE(std::isnan(r.rho_i) && std::isnan(r.rho_q) && std::isnan(r.stokes_i)) << name;
+          EXPECT_TRUE(std::isnan(r.stokes_q) && std::isnan(r.stokes_u) && std::isnan(r.stokes_v)) << name;
+          EXPECT_EQ(r.status, kStatusUnphysicalReflectance | kStatusOutsideDomain) << name;
+          EXPECT_TRUE(r.dolp >= 0.0 && r.dolp <= 1.0) << name << " " << r.dolp;
+          EXPECT_LE(r.error_estimate, scene.accuracy.tolerance) << name;
+        }
+      }
+    }
+  });
+}
+
+TEST(Limits_RightAngle, DivergingSpecularDolpIsTheQuotientJustBefore) {
+  // Short of 90 degrees the emission still counts beside the surroundings, as the cosine, 2e-8, over the moments.
+  constexpr double kChange = 1e-4;
+  for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
+    for (const Distribution distribution : kDistributions) {
+      for (const OpticalConstants& index : kIndices) {
+        const Scene scene = make_scene(distribution, masking, index);
+        const PointResult before = run_one(scene, 90.0 - 1e-6, kPaperShape, Evaluator::kDouble);
+        const double quotient = std::abs(before.rho_q / before.rho_i);
+        for (const Evaluator evaluator : kPrecisions) {
+          const PointResult limit = run_one(scene, 90.0, kPaperShape, evaluator);
+          EXPECT_NEAR(limit.dolp, quotient, kChange) << name_of(masking) << " N " << index.n << " + " << index.k << "i";
+        }
+      }
+    }
+  }
+}
+
+TEST(Limits_RightAngle, DivergingDiffusePartOfAFlatPatternDoesNotCount) {
+  Scene scene = make_scene(Distribution::kCauchy, Masking::kSmith, kDielectric);
+  scene.surface.diffuse = 0.1;
+  scene.surface.diffuse_exponent = 0.0;
+  const PointResult r = run_one(scene, 90.0, kPaperShape, Evaluator::kDouble);
+  EXPECT_EQ(r.status, 0U);
+  EXPECT_NEAR(r.rho_i, 0.1538 + 0.1, kFourDigits);
+}
+
+TEST(Limits_RightAngle, MirrorReflectsAllWithoutPolarisation) {
+  for_each_model([](Distribution distribution, Masking masking) {
+    for (const OpticalConstants& index : {kDielectric, kMetal, OpticalConstants{1e6, 1e6}}) {
+      const Scene scene = make_scene(distribution, masking, index);
+      const PointResult r = run_one(scene, 90.0, {0.0, 2.0}, Evaluator::kFloat);
+      EXPECT_EQ(r.rho_i, 1.0);
+      EXPECT_EQ(r.status, 0U);
+      EXPECT_LE(r.dolp, r.error_estimate);
+    }
+  });
+}
+
+TEST(Limits_RightAngle, MirrorsOwnEmissionHasThePolarisationOfItsLimit) {
+  // At grazing incidence 1 - R_s = 4 c Re(w) / |w|^2 and 1 - R_p = 4 c Re(N^2* w) / |w|^2, w = sqrt(N^2 - 1).
+  constexpr double kRelativeRounding = 1e-13;
+  for (const OpticalConstants& index : {kDielectric, kAbsorbing, kMetal, OpticalConstants{1e6, 1e6}}) {
+    const std::complex<double> square = std::complex(index.n, index.k) * std::complex(index.n, index.k);
+    const std::complex<double> w = std::sqrt(square - 1.0);
+    const double s = w.real();
+    const double p = (std::conj(square) * w).real();
+    Scene scene = make_scene(Distribution::kCauchy, Masking::kSmith, index);
+    scene.surroundings.reset();
+    const PointResult r = run_one(scene, 90.0, {0.0, 2.0}, Evaluator::kFloat);
+    EXPECT_NEAR(r.dolp, (p - s) / (p + s), kRelativeRounding) << index.n;
+  }
+}
+
+TEST(Limits_TinySlopes, AreThoseOfTheMirror) {
+  for_each_model([](Distribution distribution, Masking masking) {
+    for (const OpticalConstants& index : {kDielectric, kAbsorbing, kMetal}) {
+      const Scene scene = make_scene(distribution, masking, index);
+      for (const Evaluator evaluator : kPrecisions) {
+        for (const double theta_deg : {0.0, 1e-6, 45.0, 85.0}) {
+          const PointResult mirror = run_one(scene, theta_deg, {0.0, 2.0}, evaluator);
+          for (const double sigma : {1e-30, 1e-29, 1e-28, 1e-27, 1e-25, 1e-20}) {
+            const PointResult r = run_one(scene, theta_deg, {sigma, 2.0}, evaluator);
+            EXPECT_NEAR(r.rho_i, mirror.rho_i, r.rho_error_estimate * r.rho_i + 1e-15);
+            EXPECT_NEAR(r.dolp, mirror.dolp, r.error_estimate + mirror.error_estimate)
+                << name_of(scene, {theta_deg, {sigma, 2.0}, {}});
+            EXPECT_EQ(r.status, 0U) << name_of(scene, {theta_deg, {sigma, 2.0}, {}});
+          }
+        }
+      }
+    }
+  });
+}
+
+/// The hardest directions, slopes, exponents and indices.
+std::vector<SceneEntry> hard_entries(Distribution distribution, Masking masking) {
+  std::vector<SceneEntry> entries;
+  for (const OpticalConstants& index : {kDielectric, kAbsorbing, kMetal, kTotallyReflecting, OpticalConstants{0.2, 3.0},
+                                        OpticalConstants{1000.0, 1000.0}}) {
+    for (const double theta_deg : {0.0, 1e-6, 53.1, 89.99, 89.9999, 90.0}) {
+      for (const double sigma : {0.0, 1e-30, 1e-20, 1e-4, 0.3, 10.0}) {
+        for (const double q : {1.001, 1.4999, 1.5, 1.5001, 2.0, 1e4}) {
+          const bool has_mean_slope = q > 1.5 || distribution == Distribution::kGaussian;
+          if (has_mean_slope || masking != Masking::kSmith) entries.push_back({theta_deg, {sigma, q}, index});
+        }
+      }
+    }
+  }
+  return entries;
+}
+
+/// What a result may look like: numbers, or the status that takes them back.
+void expect_sound(const PointResult& r, double tolerance, const std::string& name) {
+  const bool outside = (r.status & kStatusOutsideDomain) != 0;
+  EXPECT_EQ(outside, std::isnan(r.stokes_i)) << name;
+  EXPECT_EQ(outside, std::isnan(r.rho_i)) << name;
+  EXPECT_TRUE(std::isfinite(r.dolp)) << name;
+  if (!outside) {
+    EXPECT_TRUE(std::isfinite(r.stokes_q) && std::isfinite(r.albedo)) << name;
+    EXPECT_EQ((r.status & kStatusNonPositiveIntensity) != 0, r.stokes_i <= 0.0) << name;
+  }
+  const bool is_missed =
+      r.rho_error_estimate > tolerance || ((r.status & kNoDolpPromised) == 0 && r.error_estimate > tolerance);
+  EXPECT_EQ((r.status & kStatusToleranceMissed) != 0, is_missed) << name;
+  EXPECT_TRUE(r.error_estimate >= 0.0 && r.rho_error_estimate >= 0.0) << name;
+}
+
+TEST(Limits_HardEntries, AreFiniteOrSayWhyNot) {
+  for_each_model([](Distribution distribution, Masking masking) {
+    const Scene scene = make_scene(distribution, masking, kDielectric);
+    const std::vector<SceneEntry> entries = hard_entries(distribution, masking);
+    for (const Evaluator evaluator : kPrecisions) {
+      const std::vector<PointResult> results = run(scene, entries, evaluator);
+      for (std::size_t i = 0; i < entries.size(); ++i) {
+        const bool at_right_angle = entries[i].theta_deg == 90.0;
+        expect_sound(results[i], scene.accuracy.tolerance, name_of(scene, entries[i]));
+        if (!at_right_angle) {
+          EXPECT_EQ(results[i].status & kStatusOutsideDomain, 0U) << name_of(scene, entries[i]);
+        }
+      }
+    }
+  });
+}
+
+/// Random metals on random surfaces.
+std::vector<SceneEntry> metal_entries(std::size_t count) {
+  std::mt19937_64 generator(kSeed);
+  const auto uniform = [&](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(generator);
+  };
+  std::vector<SceneEntry> entries;
+  for (std::size_t i = 0; i < count; ++i) {
+    SceneEntry entry;
+    entry.theta_deg = uniform(5.0, 89.0);
+    entry.shape = {std::exp(uniform(std::log(0.02), std::log(1.0))), uniform(1.6, 6.0)};
+    entry.index = OpticalConstants{uniform(0.5, 40.0), uniform(20.0, 100.0)};
+    entries.push_back(entry);
+  }
+  return entries;
+}
+
+TEST(Limits_Metals, DolpIsThatOfTheReferenceOrSaysThatItIsNot) {
+  std::cout << "seed " << kSeed << '\n';
+  constexpr std::size_t kEntries = 6;
+  for_each_model([](Distribution distribution, Masking masking) {
+    Scene scene = make_scene(distribution, masking, kMetal);
+    const std::vector<SceneEntry> entries = metal_entries(kEntries);
+    const std::vector<PointResult> reference = run(scene, entries, Evaluator::kReference);
+    for (const Evaluator evaluator : kPrecisions) {
+      const std::vector<PointResult> results = run(scene, entries, evaluator);
+      for (std::size_t i = 0; i < entries.size(); ++i) {
+        const PointResult& r = results[i];
+        EXPECT_EQ(r.status & kNoDolpPromised, reference[i].status & kNoDolpPromised) << name_of(scene, entries[i]);
+        EXPECT_LE(std::abs(r.dolp - reference[i].dolp), r.error_estimate + reference[i].error_estimate)
+            << name_of(scene, entries[i]);
+        if ((r.status & (kNoDolpPromised | kStatusToleranceMissed)) != 0) continue;
+        EXPECT_NEAR(r.dolp, reference[i].dolp, scene.accuracy.tolerance) << name_of(scene, entries[i]);
+      }
+    }
+  });
+}
+
+/// The first zenith angle from which the reflectance is unphysical up to 90 degrees.
+double unphysical_from_deg(Masking masking, const OpticalConstants& index, double sigma, Evaluator evaluator) {
+  Scene scene = make_scene(Distribution::kCauchy, masking, index);
+  scene.grid = {{}, {sigma}, {2.0}};
+  for (double theta_deg = 45.0; theta_deg < 90.0; theta_deg += 0.25) scene.grid.theta_deg.push_back(theta_deg);
+  const std::vector<PointResult> results = run(scene, grid_entries(scene), evaluator);
+  std::size_t first = results.size();
+  while (first > 0 && (results[first - 1].status & kStatusUnphysicalReflectance) != 0) --first;
+  return first < results.size() ? scene.grid.theta_deg[first] : 90.0;
+}
+
+TEST(Limits_IntegralMasking, LeavesPhysicsWhereDocumented) {
+  struct Case {
+    double sigma;
+    double from_deg;
+  };
+  for (const Evaluator evaluator : kPrecisions) {
+    for (const Case& row : {Case{0.1, 78.0}, Case{0.3, 69.0}, Case{0.445, 66.0}, Case{0.905, 66.0}}) {
+      const double integral = unphysical_from_deg(Masking::kIntegral, kMetal, row.sigma, evaluator);
+      EXPECT_NEAR(integral, row.from_deg, 1.0) << row.sigma;
+      const double none = unphysical_from_deg(Masking::kNone, kMetal, row.sigma, evaluator);
+      EXPECT_TRUE(none >= integral - 6.5 && none <= integral - 0.5) << none << " against " << integral;
+    }
+  }
+}
+
+TEST(Limits_IntegralMasking, LeavesPhysicsLateOnDielectrics) {
+  for (const double sigma : {0.1, 0.3, 0.445, 0.905}) {
+    for (const double n : {1.373, 1.508}) {
+      const double integral = unphysical_from_deg(Masking::kIntegral, {n, 0.0}, sigma, Evaluator::kFloat);
+      const double none = unphysical_from_deg(Masking::kNone, {n, 0.0}, sigma, Evaluator::kFloat);
+      EXPECT_TRUE(integral >= 86.0 && integral <= 90.0) << n << " " << sigma << " " << integral;
+      EXPECT_TRUE(none <= integral && none >= integral - 1.0) << none << " against " << integral;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dolp

@@ -1,0 +1,102 @@
+// Scenes and evaluators that the tests of whole runs share.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/reference/reference_evaluator.hpp"
+#include "evaluate/run/scene_run.hpp"
+
+namespace scene_run_support {
+
+using namespace dolp;
+
+enum class Evaluator { kFloat, kDouble, kReference };
+
+inline constexpr std::array kMaskings = {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith};
+inline constexpr std::array kDistributions = {Distribution::kCauchy, Distribution::kGaussian};
+inline constexpr std::array kPrecisions = {Evaluator::kFloat, Evaluator::kDouble};
+
+inline constexpr OpticalConstants kDielectric{1.508, 0.0};
+inline constexpr OpticalConstants kAbsorbing{2.0, 0.7};
+inline constexpr OpticalConstants kMetal{27.0, 90.0};
+inline constexpr OpticalConstants kTotallyReflecting{0.6, 0.0};
+inline constexpr std::array kIndices = {kDielectric, kAbsorbing, kMetal, kTotallyReflecting};
+
+/// The status bits that take back the promise on DOLP.
+inline constexpr std::uint32_t kNoDolpPromised =
+    kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
+
+/// A surface at 300 K under surroundings at 240 K, at 10.6 um, without a diffuse part.
+inline Scene make_scene(Distribution distribution, Masking masking, const OpticalConstants& index) {
+  Scene scene;
+  scene.surface.material.constant = index;
+  scene.surface.distribution = distribution;
+  scene.surface.masking = masking;
+  scene.surface.sigma = 0.3;
+  scene.emission = Emission{300.0, EmissionModel::kMoments};
+  scene.surroundings = Surroundings{240.0};
+  scene.spectrum = {10.6, 10.6};
+  scene.grid = {{60.0}, {0.3}, {2.0}};
+  return scene;
+}
+
+inline std::unique_ptr<MomentsEvaluator> make_evaluator(Evaluator evaluator) {
+  if (evaluator == Evaluator::kReference) return std::make_unique<ReferenceEvaluator>();
+  return std::make_unique<CpuEvaluator>(evaluator == Evaluator::kFloat ? Precision::kFloat : Precision::kDouble);
+}
+
+inline std::vector<PointResult> run(const Scene& scene, const std::vector<SceneEntry>& entries, Evaluator evaluator) {
+  return evaluate_scene(scene, entries, *make_evaluator(evaluator), {});
+}
+
+inline PointResult run_one(const Scene& scene, double theta_deg, const SlopeShape& shape, Evaluator evaluator) {
+  return run(scene, {{theta_deg, shape, {}}}, evaluator).front();
+}
+
+/// R_s and R_p of a smooth surface, from the reflection coefficients.
+struct SmoothReflectance {
+  long double s = 0.0L;
+  long double p = 0.0L;
+  double rho_i() const { return static_cast<double>((s + p) / 2.0L); }
+  double rho_q() const { return static_cast<double>((s - p) / 2.0L); }
+};
+
+inline SmoothReflectance smooth_reflectance(const OpticalConstants& index, long double cosine) {
+  using Complex = std::complex<long double>;
+  const Complex square = Complex(index.n, index.k) * Complex(index.n, index.k);
+  const Complex w = std::sqrt(square - (1.0L - cosine * cosine));
+  return {std::norm((cosine - w) / (cosine + w)), std::norm((square * cosine - w) / (square * cosine + w))};
+}
+
+inline std::string name_of(Distribution distribution) {
+  return distribution == Distribution::kCauchy ? "cauchy" : "gaussian";
+}
+
+inline std::string name_of(Masking masking) {
+  constexpr std::array kNames = {"none", "v-cavity", "integral", "smith"};
+  return kNames[static_cast<std::size_t>(masking)];
+}
+
+/// For messages: the scene and the entry that a check is about.
+inline std::string name_of(const Scene& scene, const SceneEntry& entry) {
+  const OpticalConstants index = entry.index.value_or(scene.surface.material.constant);
+  return name_of(scene.surface.distribution) + " " + name_of(scene.surface.masking) + " theta " +
+         std::to_string(entry.theta_deg) + " log10 sigma " + std::to_string(std::log10(entry.shape.sigma)) + " q " +
+         std::to_string(entry.shape.q) + " N " + std::to_string(index.n) + " + " + std::to_string(index.k) + "i";
+}
+
+/// Calls `check(distribution, masking)` for every pair.
+template <class Check>
+void for_each_model(Check&& check) {
+  for (const Distribution distribution : kDistributions) {
+    for (const Masking masking : kMaskings) check(distribution, masking);
+  }
+}
+
+}  // namespace scene_run_support

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "evaluate/cpu/parallel.hpp"
-#include "evaluate/cpu/processor.hpp"
+#include "evaluate/processor.hpp"
 #include "evaluate/cpu/text.hpp"
 
 namespace dolp {

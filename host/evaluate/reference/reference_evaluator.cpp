@@ -6,28 +6,18 @@
 #include <condition_variable>
 #include <cstddef>
 #include <exception>
-#include <fstream>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <utility>
 
 #include "error.hpp"
+#include "evaluate/processor.hpp"
 #include "evaluate/reference/hemisphere.hpp"
 
 namespace dolp {
 
 namespace {
-
-std::string processor_name() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    if (!line.starts_with("model name")) continue;
-    const std::size_t start = line.find_first_not_of(" \t", line.find(':') + 1);
-    if (start != std::string::npos) return line.substr(start);
-  }
-  return "unknown processor";
-}
 
 void require(bool is_met, const std::string& what, double value) {
   if (!is_met) throw InputError("reference: " + what + ", but it is " + std::to_string(value));

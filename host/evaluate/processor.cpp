@@ -1,4 +1,4 @@
-#include "evaluate/cpu/processor.hpp"
+#include "evaluate/processor.hpp"
 
 #include <fstream>
 

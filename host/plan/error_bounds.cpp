@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <boost/math/constants/constants.hpp>
+#include <boost/math/special_functions/gamma.hpp>
+#include <cmath>
+#include <limits>
+
+#include "plan/kernel_data.hpp"
+
+namespace dolp {
+namespace {
+
+using boost::math::constants::pi;
+using boost::math::constants::root_pi;
+
+// The error is taken for this many times the difference between the fine and the coarse rule.
+constexpr double kEstimateFactor = 2.0;
+// A difference below this share of the tolerance is an accident: rules of these orders are not that good.
+constexpr double kLeastDifference = 0.01;
+constexpr double kCosineRounding = 2.0 * std::numeric_limits<double>::epsilon();
+
+// Bound of the interpolation error of G (cubic Hermite, 16 cells an octave), relative to the albedo.
+constexpr double kMaskingTableError = 1e-6;
+
+// Rounding error in units of the precision's roundoff, relative to the integral of absolute values. The masking table
+// of a tail that falls like tau^(2-2q) is a sum of hundreds of equal terms when q is near 1.
+constexpr double kRoundings = 20.0;
+constexpr double kHeavyTailRoundings = 80.0;
+constexpr double kHeavyTailQ = 1.1;
+
+// Mean of |t_x|, the slope in one plane. Domain: q > 1.5 for the cauchy.
+double mean_slope(Distribution distribution, const kernel::ShapeNode& shape) {
+  if (distribution == Distribution::kGaussian) return shape.m / root_pi<double>();
+  return shape.m / root_pi<double>() * boost::math::tgamma_delta_ratio(shape.q_minus_1 - 0.5, 0.5);
+}
+
+// Upper bound of G over all facets. v-cavity: e G <= 2 c is used instead. smith: the facets that theta sees add up to
+// c, so that G <= G1(theta) = c / integral of e over e > 0, and that integral is at least (c + s mean |t_x|) / 2.
+double masking_bound(Distribution distribution, Masking masking, const kernel::ThetaNode& theta,
+                     const kernel::ShapeNode& shape) {
+  if (masking != Masking::kSmith) return 1.0;
+  return std::min(1.0, 2.0 * theta.c / (theta.c + theta.s * mean_slope(distribution, shape)));
+}
+
+// Upper bound of the albedo integral (times cos theta) over the slopes T beyond the cut, which the kernel leaves out:
+// e <= c + s t, so that without masking it is at most c * tail(T) + 2 s * integral of P t^2 over t > T.
+double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape) {
+  if (shape.cut >= theta.end[static_cast<std::size_t>(theta.piece_count)]) return 0.0;
+  const double u = shape.cut / shape.m;
+  const bool gaussian = data.distribution == Distribution::kGaussian;
+  const double log_square = std::log1p(u * u);
+  const double tail = std::exp(gaussian ? -u * u : -shape.q_minus_1 * log_square);
+  if (data.masking == Masking::kVCavity) return 2.0 * theta.c * tail;
+  if (!gaussian && shape.q_minus_1 <= 0.5) return std::numeric_limits<double>::infinity();
+  const double slopes = gaussian ? shape.m / pi<double>() * (u + 0.5 / u) * tail
+                                 : 2.0 * shape.q_minus_1 * shape.m / pi<double>() *
+                                       std::exp((0.5 - shape.q_minus_1) * log_square) / (2.0 * shape.q_minus_1 - 1.0);
+  return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
+}
+
+// Bound of the error of G relative to the albedo. Where the table is coarser than the slope distribution, directions
+// whose cot(theta) lies within its first scale see none of its structure.
+double masking_error(const KernelData& data, const MomentsEntry& entry) {
+  if (!data.needs_masking_table()) return 0.0;
+  const kernel::ThetaNode& theta = data.thetas[entry.theta];
+  const kernel::ShapeNode& shape = data.shapes[entry.shape];
+  const bool is_unresolved = shape.m < shape.table_scale && theta.c < shape.table_scale * theta.s;
+  return is_unresolved ? 1.0 : kMaskingTableError;
+}
+
+double share(double part, double whole) { return part == 0.0 ? 0.0 : std::abs(part / whole); }
+
+}  // namespace
+
+Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
+                            double unit_roundoff) {
+  const kernel::ShapeNode& shape = data.shapes[entry.shape];
+  const double cut = cut_bound(data, data.thetas[entry.theta], shape);
+  const double masking = masking_error(data, entry);
+  const bool heavy_tail = data.distribution == Distribution::kCauchy && shape.q_minus_1 < kHeavyTailQ - 1.0;
+  const double rounding = unit_roundoff * (masking > 0.0 && heavy_tail ? kHeavyTailRoundings : kRoundings);
+  Moments moments;
+  moments.r_i = node.r_i;
+  moments.r_q = node.r_q;
+  moments.albedo = node.albedo;
+  moments.deficit = node.deficit;
+  // The four share their nodes: the largest relative difference speaks for all, should one be small by accident.
+  const double difference = std::max({share(node.r_i_difference, node.r_i), share(node.r_q_difference, node.r_i),
+                                      share(node.albedo_difference, node.albedo), kLeastDifference * data.tolerance});
+  const double r_i_scale = std::abs(node.r_i);  // a rule that fails can make it negative
+  const double quadrature = kEstimateFactor * difference + rounding + masking;
+  moments.r_i_error = quadrature * r_i_scale + cut;
+  moments.r_q_error = kEstimateFactor * std::max(node.r_q_difference, difference * std::abs(node.r_q)) +
+                      (rounding + masking) * r_i_scale + cut;
+  moments.albedo_error = quadrature * std::abs(node.albedo) + cut;
+  moments.deficit_error = kEstimateFactor * std::max(node.deficit_difference, difference * std::abs(node.deficit)) +
+                          rounding * node.deficit_scale + masking * std::abs(node.albedo) + cut;
+  moments.evaluations = node.evaluations;
+  // r_i + deficit = cos(theta): the better known of the two gives the other.
+  const double cosine = data.thetas[entry.theta].c;
+  if (moments.deficit_error > moments.r_i_error) {
+    moments.deficit = cosine - moments.r_i;
+    moments.deficit_error = moments.r_i_error + kCosineRounding * cosine;
+  } else {
+    moments.r_i = cosine - moments.deficit;
+    moments.r_i_error = moments.deficit_error;
+  }
+  return moments;
+}
+
+}  // namespace dolp

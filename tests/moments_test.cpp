@@ -121,7 +121,8 @@ class StoredValues : public testing::TestWithParam<Case> {
   // max(|d r_i|, |d r_q|) over r_i: what the tolerance bounds.
   double error(std::size_t i) const {
     const Moments& reference = rows_[i].moments;
-    const double difference = std::max(std::abs(moments_[i].r_i - reference.r_i), std::abs(moments_[i].r_q - reference.r_q));
+    const double difference =
+        std::max(std::abs(moments_[i].r_i - reference.r_i), std::abs(moments_[i].r_q - reference.r_q));
     return difference == 0.0 ? 0.0 : difference / reference.r_i;
   }
 
@@ -192,8 +193,7 @@ std::string name_of(const testing::TestParamInfo<Case>& test) {
   constexpr std::array kEvaluators = {"CpuFloat", "CpuDouble", "VulkanFloat", "VulkanDouble"};
   constexpr std::array kMaskings = {"None", "VCavity", "Integral", "Smith"};
   return std::string(kEvaluators[static_cast<std::size_t>(evaluator)]) +
-         (distribution == Distribution::kCauchy ? "Cauchy" : "Gaussian") +
-         kMaskings[static_cast<std::size_t>(masking)];
+         (distribution == Distribution::kCauchy ? "Cauchy" : "Gaussian") + kMaskings[static_cast<std::size_t>(masking)];
 }
 
 INSTANTIATE_TEST_SUITE_P(Evaluators, StoredValues,

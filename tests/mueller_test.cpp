@@ -58,8 +58,8 @@ Eigen::Matrix4d text_mueller(const Model& model, const Angles& angles, bool in_d
 }
 
 Eigen::Matrix4d reference_mueller(const Model& model, const Angles& angles) {
-  const MuellerMatrix rows = reference_pbrdf(model.surface, model.index, angles.theta_i_deg, angles.theta_r_deg,
-                                             angles.delta_phi_deg);
+  const MuellerMatrix rows =
+      reference_pbrdf(model.surface, model.index, angles.theta_i_deg, angles.theta_r_deg, angles.delta_phi_deg);
   Eigen::Matrix4d matrix;
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j) matrix(i, j) = rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
@@ -152,7 +152,8 @@ TEST_P(RandomGeometries, EveryMatrix_IsRealisable) {
         const Eigen::Matrix2cd& a = pauli[static_cast<std::size_t>(row)];
         const Eigen::Matrix2cd b = pauli[static_cast<std::size_t>(column)].conjugate();
         for (int block = 0; block < 4; ++block) {
-          coherency.block<2, 2>(2 * (block / 2), 2 * (block % 2)) += 0.25 * f(row, column) * a(block / 2, block % 2) * b;
+          coherency.block<2, 2>(2 * (block / 2), 2 * (block % 2)) +=
+              0.25 * f(row, column) * a(block / 2, block % 2) * b;
         }
       }
     }
@@ -162,10 +163,18 @@ TEST_P(RandomGeometries, EveryMatrix_IsRealisable) {
   }
 }
 
+std::string name_of(const testing::TestParamInfo<Case>& test) {
+  constexpr std::array kMaskings = {"None", "VCavity", "Integral", "Smith"};
+  const auto [distribution, masking] = test.param;
+  return std::string(distribution == Distribution::kCauchy ? "Cauchy" : "Gaussian") +
+         kMaskings[static_cast<std::size_t>(masking)];
+}
+
 INSTANTIATE_TEST_SUITE_P(Models, RandomGeometries,
                          testing::Combine(testing::Values(Distribution::kCauchy, Distribution::kGaussian),
                                           testing::Values(Masking::kNone, Masking::kVCavity, Masking::kIntegral,
-                                                          Masking::kSmith)));
+                                                          Masking::kSmith)),
+                         name_of);
 
 Model plain_model() {
   Model model;
@@ -212,7 +221,8 @@ TEST(Mueller, HemisphericalSum_GivesTheMoments) {
   double r_q = 0.0;
   for (int zenith = 0; zenith < kZeniths; ++zenith) {
     for (int azimuth = 0; azimuth < kAzimuths; ++azimuth) {
-      const auto geometry = geometry_node(theta_deg, 90.0 * (zenith + 0.5) / kZeniths, 180.0 * (azimuth + 0.5) / kAzimuths);
+      const auto geometry =
+          geometry_node(theta_deg, 90.0 * (zenith + 0.5) / kZeniths, 180.0 * (azimuth + 0.5) / kAzimuths);
       const kernel::MuellerNode f = text->mueller(geometry, 0, 0);
       const double weight = 2.0 * geometry.s_r * (0.5 * std::numbers::pi / kZeniths) * (std::numbers::pi / kAzimuths);
       r_i += weight * f.m[0];

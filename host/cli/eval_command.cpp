@@ -43,7 +43,7 @@ int run_eval(const Options& options) {
                     "status\n";
   for (std::size_t i = 0; i < results.size(); ++i) csv += result_line(points.rows[i], results[i]);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  RunReport report = make_report(scene, results, evaluator->report(), wall.count());
+  RunReport report = make_report(scene, entries, results, evaluator->report(), wall.count());
   report.output = options.output_path;
   report.shape = fmt::format("{} points", results.size());
   write_text_atomically(options.output_path, csv);

@@ -25,10 +25,23 @@ std::vector<RunReport::StatusCount> count_status(const std::vector<PointResult>&
   return counts;
 }
 
-void add_ranges(RunReport& report, const std::vector<PointResult>& results) {
+void add(EnergyRange& range, double theta_deg, double sigma) {
+  const bool is_first = range.entries++ == 0;
+  const auto widen = [is_first](double& low, double& high, double value) {
+    low = is_first ? value : std::min(low, value);
+    high = is_first ? value : std::max(high, value);
+  };
+  widen(range.theta_min_deg, range.theta_max_deg, theta_deg);
+  widen(range.sigma_min, range.sigma_max, sigma);
+}
+
+void add_ranges(RunReport& report, const Scene& scene, const std::vector<SceneEntry>& entries,
+                const std::vector<PointResult>& results) {
   report.albedo_min = std::numeric_limits<double>::infinity();
   report.albedo_max = -std::numeric_limits<double>::infinity();
-  for (const PointResult& r : results) {
+  const bool bistatic = scene.geometry.mode == Mode::kBistatic;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const PointResult& r = results[i];
     if ((r.status & kNoDolpStatement) == 0) report.worst_error = std::max(report.worst_error, r.error_estimate);
     if ((r.status & kStatusOutsideDomain) == 0) {
       report.worst_rho_error = std::max(report.worst_rho_error, r.rho_error_estimate);
@@ -36,22 +49,41 @@ void add_ranges(RunReport& report, const std::vector<PointResult>& results) {
     if (std::isnan(r.albedo)) continue;
     report.albedo_min = std::min(report.albedo_min, r.albedo);
     report.albedo_max = std::max(report.albedo_max, r.albedo);
-    if (r.albedo < kAlbedoMin || r.albedo > kAlbedoMax) ++report.energy_off;
+    const double theta_deg = bistatic ? scene.geometry.view_zenith_deg : entries[i].theta_deg;
+    if (r.albedo < kAlbedoMin) add(report.loses, theta_deg, entries[i].shape.sigma);
+    if (r.albedo > kAlbedoMax) add(report.gains, theta_deg, entries[i].shape.sigma);
   }
 }
 
+std::string range_text(const EnergyRange& range) {
+  return fmt::format("{} entries, theta {:g}..{:g}, sigma {:.4g}..{:.4g}", range.entries, range.theta_min_deg,
+                     range.theta_max_deg, range.sigma_min, range.sigma_max);
+}
+
+nlohmann::ordered_json range_json(const EnergyRange& range) {
+  return {{"entries", range.entries},
+          {"theta_deg", {range.theta_min_deg, range.theta_max_deg}},
+          {"sigma", {range.sigma_min, range.sigma_max}}};
+}
+
+/// Over which part of the grid the surface model itself gains or loses energy.
 std::string energy_text(const RunReport& report) {
-  if (report.energy_off == 0) return fmt::format("within {}..{} everywhere", kAlbedoMin, kAlbedoMax);
-  return fmt::format(
-      "outside {}..{} in {} of {} entries (range {:.3g}..{:.3g}): there the surface model itself gains or "
-      "loses energy",
-      kAlbedoMin, kAlbedoMax, report.energy_off, report.entries, report.albedo_min, report.albedo_max);
+  std::string text = fmt::format("  albedo     {:.3g}..{:.3g}", report.albedo_min, report.albedo_max);
+  if (report.loses.entries + report.gains.entries == 0) return text + "\n";
+  text += ": the surface model itself does not keep the energy\n";
+  if (report.loses.entries > 0) {
+    text += fmt::format("    loses it (below {}): {}\n", kAlbedoMin, range_text(report.loses));
+  }
+  if (report.gains.entries > 0) {
+    text += fmt::format("    gains it (above {}): {}\n", kAlbedoMax, range_text(report.gains));
+  }
+  return text;
 }
 
 }  // namespace
 
-RunReport make_report(const Scene& scene, const std::vector<PointResult>& results, const EvaluationReport& evaluation,
-                      double wall_s) {
+RunReport make_report(const Scene& scene, const std::vector<SceneEntry>& entries,
+                      const std::vector<PointResult>& results, const EvaluationReport& evaluation, double wall_s) {
   RunReport report;
   report.title = scene.title;
   report.entries = results.size();
@@ -62,7 +94,7 @@ RunReport make_report(const Scene& scene, const std::vector<PointResult>& result
   for (const RunReport::StatusCount& status : report.status) {
     if (status.bit == kStatusToleranceMissed) report.missed_tolerance = status.count;
   }
-  add_ranges(report, results);
+  add_ranges(report, scene, entries, results);
   return report;
 }
 
@@ -90,7 +122,7 @@ std::string summary_text(const RunReport& report) {
     text +=
         fmt::format("  status {}   {} of {} entries: {}\n", status.bit, status.count, report.entries, status.meaning);
   }
-  text += fmt::format("  albedo     {}\n", energy_text(report));
+  text += energy_text(report);
   text += fmt::format("  written    {}\n", report.output);
   return text;
 }
@@ -118,7 +150,10 @@ nlohmann::ordered_json summary_json(const RunReport& report) {
   for (const RunReport::StatusCount& status : report.status) {
     json["status"].push_back({{"bit", status.bit}, {"meaning", status.meaning}, {"count", status.count}});
   }
-  json["albedo"] = {{"min", report.albedo_min}, {"max", report.albedo_max}, {"entries_off", report.energy_off}};
+  json["albedo"] = {{"min", report.albedo_min},
+                    {"max", report.albedo_max},
+                    {"loses_energy", range_json(report.loses)},
+                    {"gains_energy", range_json(report.gains)}};
   return json;
 }
 

@@ -11,6 +11,15 @@
 
 namespace dolp::cli {
 
+/// The part of a grid where the albedo of the surface model is off: how many entries, and the smallest box around them.
+struct EnergyRange {
+  std::size_t entries = 0;
+  double theta_min_deg = 0.0;  ///< of the view in bistatic mode
+  double theta_max_deg = 0.0;
+  double sigma_min = 0.0;
+  double sigma_max = 0.0;
+};
+
 /// Everything there is to say about one run of a scene.
 struct RunReport {
   std::string title;
@@ -29,16 +38,17 @@ struct RunReport {
   };
   std::vector<StatusCount> status;   ///< entries that carry each bit
   std::size_t missed_tolerance = 0;  ///< entries with the bit of a missed tolerance
-  std::size_t energy_off = 0;        ///< entries whose albedo leaves [kAlbedoMin, kAlbedoMax]
   double albedo_min = 0.0;
   double albedo_max = 0.0;
+  EnergyRange loses;  ///< albedo below kAlbedoMin
+  EnergyRange gains;  ///< albedo above kAlbedoMax
 };
 
 inline constexpr double kAlbedoMin = 0.95;
 inline constexpr double kAlbedoMax = 1.05;
 
-RunReport make_report(const Scene& scene, const std::vector<PointResult>& results, const EvaluationReport& evaluation,
-                      double wall_s);
+RunReport make_report(const Scene& scene, const std::vector<SceneEntry>& entries,
+                      const std::vector<PointResult>& results, const EvaluationReport& evaluation, double wall_s);
 
 /// The same for people (several lines) and for programs.
 std::string summary_text(const RunReport& report);

@@ -43,6 +43,14 @@ void fill_variables(Table& table, const std::vector<PointResult>& results) {
   for (const PointResult& result : results) table.status.push_back(result.status);
 }
 
+/// An exitance, in bistatic mode a radiance; per um at a single wavelength.
+std::string stokes_units(const Scene& scene) {
+  std::string units = "W m-2";
+  if (scene.geometry.mode == Mode::kBistatic) units += " sr-1";
+  if (!scene.spectrum.is_band()) units += " um-1";
+  return units;
+}
+
 std::vector<Attribute> attributes(const Scene& scene, const Options& options, const RunReport& report) {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   std::string overrides;
@@ -79,7 +87,7 @@ int run_table(const Options& options) {
     results = evaluate_scene(scene, entries, *evaluator, bar.callback());
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  RunReport report = make_report(scene, results, evaluator->report(), wall.count());
+  RunReport report = make_report(scene, entries, results, evaluator->report(), wall.count());
   report.output = options.output_path;
   report.shape = fmt::format("{} x {} x {} (theta x sigma x q)", scene.grid.theta_deg.size(), scene.grid.sigma.size(),
                              scene.grid.q.size());
@@ -87,7 +95,7 @@ int run_table(const Options& options) {
   table.theta_deg = scene.grid.theta_deg;
   table.sigma = scene.grid.sigma;
   table.q = scene.grid.q;
-  if (scene.spectrum.is_band()) table.stokes_units = "W m-2";
+  table.stokes_units = stokes_units(scene);
   fill_variables(table, results);
   table.attributes = attributes(scene, options, report);
   write_table(table, options.output_path);

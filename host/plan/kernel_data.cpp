@@ -1,6 +1,7 @@
 #include "plan/kernel_data.hpp"
 
 #include <algorithm>
+#include <array>
 #include <boost/math/constants/constants.hpp>
 #include <boost/math/special_functions/cos_pi.hpp>
 #include <boost/math/special_functions/gamma.hpp>
@@ -36,13 +37,18 @@ constexpr double kTotalReflectionOrderT = 1.4;
 constexpr double kTotalReflectionOrderPhi = 2.0;
 
 // Azimuths for a digit with smith masking, which is not smooth at theta_r = 0.
-constexpr double kSmithOrderPhi = 2.0;
+constexpr double kSmithOrderPhi = 2.4;
 
 // Bound of the loop iterations of one invocation, below the 65,535 at which lavapipe stops without notice.
 constexpr double kMostIterations = 60'000.0;
 
 // Largest slope that is ever integrated: beyond it the squares of a float overflow.
-constexpr double kLargestCut = 1e8;
+constexpr double kLargestCut = 1e15;
+
+// Slopes that only split the long way to the horizon of a grazing direction, where a heavy tail reaches far, into
+// pieces of ten units of X or so.
+constexpr std::array kPlainBreakpoints = {30.0, 3e5};
+constexpr double kLongWay = 300.0;  // from a plain breakpoint to a horizon that is worth one, as a factor
 
 // Scale of the masking table, the width of the slope distribution if it can be. The end of the table, 5e8 scales away,
 // must lie far beyond slope 1, where p is a power law, unless the tail there is nothing (q >= kLightTailQ).
@@ -83,8 +89,8 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
 // limit b = pi/2 at tan(30 -+ 2/3 theta) and, on theta_r = theta, at tan(2 theta - 90); the lines of v-cavity at tan(30
 // -+ theta/3), cot(theta), 1 and tan(theta); smith's cusp is at tan(theta/2).
 std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking masking, double critical) {
-  std::vector<Breakpoint> points = {{a.cos / (1.0 + a.sin), kEndAbove},
-                                    {a.cos > 0.0 ? (1.0 + a.sin) / a.cos : kNoEnd, kEndBelow}};
+  const double horizon = a.cos > 0.0 ? (1.0 + a.sin) / a.cos : kNoEnd;
+  std::vector<Breakpoint> points = {{a.cos / (1.0 + a.sin), kEndAbove}, {horizon, kEndBelow}};
   if (masking == Masking::kIntegral) {
     if (a.cos > 0.0) points.push_back({a.sin / a.cos, kEndBelow});
     if (theta_deg > 45.0) {
@@ -104,6 +110,9 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking m
       points.push_back({1.0, 0.0});
       points.push_back({a.cos > 0.0 ? a.sin / a.cos : kNoEnd, kEndBelow});
     }
+  }
+  for (const double slope : kPlainBreakpoints) {
+    if (horizon > kLongWay * slope) points.push_back({slope, 0.0});
   }
   if (critical > 0.0) add_critical_breakpoints(points, theta_deg, a, critical);
   std::sort(points.begin(), points.end(), [](const auto& x, const auto& y) { return x.slope < y.slope; });

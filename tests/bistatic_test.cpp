@@ -139,15 +139,36 @@ TEST(Bistatic, SourceAngles_ShareTheMomentsOfTheView) {
   EXPECT_EQ(results[2].status, 0U);  // a source at 90 degrees adds nothing
 }
 
-TEST(Bistatic, ViewAtNinetyDegrees_IsOutsideTheDomain) {
+PointResult seen_at(Scene scene, double view_zenith_deg) {
+  scene.geometry.view_zenith_deg = view_zenith_deg;
+  CpuEvaluator evaluator(Precision::kDouble);
+  return evaluate_scene(scene, {{60.0, {scene.surface.sigma, scene.surface.q}, {}}}, evaluator, {}).front();
+}
+
+TEST(Bistatic, ViewAtNinetyDegrees_IsTheLimitWhereThereIsOne) {
+  constexpr double kStep = 1e-5;  // the change over 1e-4 degrees
+  Random random;
+  for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
+    Scene scene = random.scene();
+    scene.surface.masking = masking;
+    scene.surface.diffuse = 0.0;
+    scene.surface.sigma = 0.3;
+    const PointResult at = seen_at(scene, 90.0);
+    const PointResult near = seen_at(scene, 90.0 - 1e-4);
+    EXPECT_EQ(at.status, 0U);
+    EXPECT_NEAR(at.stokes_i / near.stokes_i, 1.0, kStep);
+    EXPECT_NEAR(at.stokes_q / near.stokes_i, near.stokes_q / near.stokes_i, kStep);
+    EXPECT_NEAR(at.rho_i, near.rho_i, kStep);
+  }
+}
+
+TEST(Bistatic, ViewAtNinetyDegreesOfADivergingReflectance_IsOutsideTheDomain) {
   Random random;
   Scene scene = random.scene();
-  scene.geometry.view_zenith_deg = 90.0;
-  CpuEvaluator evaluator(Precision::kFloat);
-  const PointResult r =
-      evaluate_scene(scene, {{30.0, {scene.surface.sigma, scene.surface.q}, {}}}, evaluator, {}).front();
+  scene.surface.masking = Masking::kNone;
+  const PointResult r = seen_at(scene, 90.0);
   EXPECT_TRUE(std::isnan(r.dolp));
-  EXPECT_EQ(r.status, kStatusOutsideDomain);
+  EXPECT_EQ(r.status, kStatusUnphysicalReflectance | kStatusOutsideDomain);
 }
 
 }  // namespace

@@ -77,8 +77,8 @@ inline PrintedStokes printed_stokes(const Scene& scene, Real wavelength_um, Real
   PrintedStokes stokes{emitted * (1.0L - rho_i) + incident * rho_i, (incident - emitted) * rho_q};
   if (scene.emission && scene.emission->model == EmissionModel::kFresnel) {
     const PrintedReflectance smooth = printed_fresnel(surface.material.at(static_cast<double>(wavelength_um)), c);
-    const Real epsilon_s = 1.0L - surface.specular * smooth.s - diffuse;
-    const Real epsilon_p = 1.0L - surface.specular * smooth.p - diffuse;
+    const Real epsilon_s = 1.0L - smooth.s;
+    const Real epsilon_p = 1.0L - smooth.p;
     stokes = {emitted * (epsilon_s + epsilon_p) / 2.0L + incident * rho_i,
               emitted * (epsilon_s - epsilon_p) / 2.0L + incident * rho_q};
   }

@@ -28,6 +28,7 @@ int run_eval(const Options& options) {
   if (options.scene_path == "-" && options.points_path == "-") {
     throw InputError("--points -: SCENE is - too, and stdin can be read only once; name a file for one of them");
   }
+  check_output_is_no_input(options);
   const Scene scene = load_scene(options);
   const Points points = read_points(options.points_path, PointsKind::kDirections);
   const std::vector<SceneEntry> entries = point_entries(scene, points);

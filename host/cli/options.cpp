@@ -1,11 +1,24 @@
 #include "cli/options.hpp"
 
+#include <filesystem>
+#include <system_error>
+
+#include "error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "scene/scene_reader.hpp"
 
 namespace dolp::cli {
+
+void check_output_is_no_input(const Options& options) {
+  for (const std::string& input : {options.scene_path, options.points_path}) {
+    std::error_code missing;  // a file that is not there is not the same file
+    if (std::filesystem::equivalent(options.output_path, input, missing)) {
+      throw InputError(options.output_path + ": the output would overwrite an input");
+    }
+  }
+}
 
 Scene load_scene(const Options& options) {
   std::vector<std::string> overrides = options.overrides;

@@ -25,6 +25,10 @@ struct Options {
   std::string command_line;  ///< for the table's history
 };
 
+/// Refuses to write over the scene or the points.
+/// Errors: InputError.
+void check_output_is_no_input(const Options& options);
+
 /// The scene with all overrides of the command line: --set first, then --tolerance and --precision.
 Scene load_scene(const Options& options);
 

@@ -42,9 +42,10 @@ void add_ranges(RunReport& report, const Scene& scene, const std::vector<SceneEn
   const bool bistatic = scene.geometry.mode == Mode::kBistatic;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const PointResult& r = results[i];
-    if ((r.status & kNoDolpStatement) == 0) report.worst_error = std::max(report.worst_error, r.error_estimate);
+    if ((r.status & kNoDolpStatement) == 0)
+      report.worst_error = std::max(report.worst_error.value_or(0.0), r.error_estimate);
     if ((r.status & kStatusOutsideDomain) == 0) {
-      report.worst_rho_error = std::max(report.worst_rho_error, r.rho_error_estimate);
+      report.worst_rho_error = std::max(report.worst_rho_error.value_or(0.0), r.rho_error_estimate);
     }
     if (std::isnan(r.albedo)) continue;
     report.albedo_min = std::min(report.albedo_min, r.albedo);
@@ -58,6 +59,14 @@ void add_ranges(RunReport& report, const Scene& scene, const std::vector<SceneEn
 std::string range_text(const EnergyRange& range) {
   return fmt::format("{} entries, theta {:g}..{:g}, sigma {:.4g}..{:.4g}", range.entries, range.theta_min_deg,
                      range.theta_max_deg, range.sigma_min, range.sigma_max);
+}
+
+std::string bound_text(const std::optional<double>& bound) {
+  return bound ? fmt::format("<= {:.2g}", *bound) : "not promised for any entry";
+}
+
+nlohmann::ordered_json number_or_null(const std::optional<double>& number) {
+  return number ? nlohmann::ordered_json(*number) : nlohmann::ordered_json(nullptr);
 }
 
 nlohmann::ordered_json range_json(const EnergyRange& range) {
@@ -116,8 +125,8 @@ std::string summary_text(const RunReport& report) {
   text += fmt::format("  time       {:.3f} s in all, {:.3f} s in kernels, {} dispatches\n", report.wall_s, e.kernel_s,
                       e.dispatches);
   text += fmt::format("  work       {:.4g} integrand evaluations, {:.0f} an entry\n", e.evaluations, per_entry);
-  text += fmt::format("  error      DOLP <= {:.2g} (absolute), rho <= {:.2g} (of rho_I); tolerance {:g}\n",
-                      report.worst_error, report.worst_rho_error, report.tolerance);
+  text += fmt::format("  error      DOLP {} (absolute), rho {} (of rho_I); tolerance {:g}\n",
+                      bound_text(report.worst_error), bound_text(report.worst_rho_error), report.tolerance);
   for (const RunReport::StatusCount& status : report.status) {
     text +=
         fmt::format("  status {}   {} of {} entries: {}\n", status.bit, status.count, report.entries, status.meaning);
@@ -145,8 +154,8 @@ nlohmann::ordered_json summary_json(const RunReport& report) {
   json["wall_s"] = report.wall_s;
   json["kernel_s"] = e.kernel_s;
   json["setup_s"] = e.setup_s;
-  json["worst_error_estimate"] = report.worst_error;
-  json["worst_rho_error_estimate"] = report.worst_rho_error;
+  json["worst_error_estimate"] = number_or_null(report.worst_error);
+  json["worst_rho_error_estimate"] = number_or_null(report.worst_rho_error);
   for (const RunReport::StatusCount& status : report.status) {
     json["status"].push_back({{"bit", status.bit}, {"meaning", status.meaning}, {"count", status.count}});
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,9 @@ struct RunReport {
   double tolerance = 0.0;
   double wall_s = 0.0;
   EvaluationReport evaluation;
-  double worst_error = 0.0;      ///< largest stated error of DOLP where status has none of the bits 1, 4, 8
-  double worst_rho_error = 0.0;  ///< largest stated relative error of rho where status has no bit 4
+  // Empty when no entry promises anything.
+  std::optional<double> worst_error;      ///< largest stated error of DOLP where status has none of the bits 1, 4, 8
+  std::optional<double> worst_rho_error;  ///< largest stated relative error of rho where status has no bit 4
   struct StatusCount {
     std::string meaning;
     std::uint32_t bit = 0;

@@ -77,6 +77,7 @@ std::vector<Attribute> attributes(const Scene& scene, const Options& options, co
 
 int run_table(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
+  check_output_is_no_input(options);
   const Scene scene = load_scene(options);
   check_output_path(options.output_path);
   const std::unique_ptr<MomentsEvaluator> evaluator = make_evaluator(options, scene);

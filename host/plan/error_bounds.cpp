@@ -26,6 +26,18 @@ constexpr double kMaskingTableError = 1e-6;
 constexpr double kRoundings = 20.0;
 constexpr double kHeavyTailRoundings = 80.0;
 constexpr double kHeavyTailQ = 1.1;
+constexpr double kExtremeTailRoundings = 400.0;
+constexpr double kExtremeTailQ = 1.01;
+
+// Where the mean slope is about to diverge (smith, q near 3/2), G falls within 2q - 3 of the normal, which no rule
+// sees.
+constexpr double kDivergingSlope = 0.03;
+
+double roundings(const KernelData& data, const kernel::ShapeNode& shape) {
+  if (!data.needs_masking_table() || data.distribution == Distribution::kGaussian) return kRoundings;
+  if (shape.q_minus_1 < kExtremeTailQ - 1.0) return kExtremeTailRoundings;
+  return shape.q_minus_1 < kHeavyTailQ - 1.0 ? kHeavyTailRoundings : kRoundings;
+}
 
 // Mean of |t_x|, the slope in one plane. Domain: q > 1.5 for the cauchy.
 double mean_slope(Distribution distribution, const kernel::ShapeNode& shape) {
@@ -64,7 +76,9 @@ double masking_error(const KernelData& data, const MomentsEntry& entry) {
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
   const kernel::ShapeNode& shape = data.shapes[entry.shape];
   const bool is_unresolved = shape.m < shape.table_scale && theta.c < shape.table_scale * theta.s;
-  return is_unresolved ? 1.0 : kMaskingTableError;
+  if (is_unresolved) return 1.0;
+  const bool may_diverge = data.masking == Masking::kSmith && data.distribution == Distribution::kCauchy;
+  return kMaskingTableError * (may_diverge ? 1.0 + kDivergingSlope / shape.two_q_minus_3 : 1.0);
 }
 
 double share(double part, double whole) { return part == 0.0 ? 0.0 : std::abs(part / whole); }
@@ -76,8 +90,7 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   const kernel::ShapeNode& shape = data.shapes[entry.shape];
   const double cut = cut_bound(data, data.thetas[entry.theta], shape);
   const double masking = masking_error(data, entry);
-  const bool heavy_tail = data.distribution == Distribution::kCauchy && shape.q_minus_1 < kHeavyTailQ - 1.0;
-  const double rounding = unit_roundoff * (masking > 0.0 && heavy_tail ? kHeavyTailRoundings : kRoundings);
+  const double rounding = unit_roundoff * roundings(data, shape);
   Moments moments;
   moments.r_i = node.r_i;
   moments.r_q = node.r_q;

@@ -91,12 +91,10 @@ Reflectance reflectance(const Surface& surface, const Moments& moments, double c
   return r;
 }
 
-Emissivity fresnel_emissivity(const Surface& surface, const OpticalConstants& index, double cos_theta) {
+Emissivity fresnel_emissivity(const OpticalConstants& index, double cos_theta) {
   const SmoothAbsorptance absorptance = smooth_absorptance(index, cos_theta);
-  const double specular = 0.5 * surface.specular * (absorptance.s + absorptance.p);
-  const double diffuse = diffuse_reflectance(surface, cos_theta);
-  return {(1.0 - surface.specular) + specular - diffuse, 0.5 * surface.specular * (absorptance.s - absorptance.p),
-          (1.0 - surface.specular) + specular + diffuse};
+  const double mean = 0.5 * (absorptance.s + absorptance.p);
+  return {mean, 0.5 * (absorptance.s - absorptance.p), mean};
 }
 
 /// What one sample adds to I under the moments' own emission.
@@ -165,7 +163,7 @@ Stokes stokes_sum(const Scene& scene, const SpectralRule& rule, std::span<const 
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
     const double direct = with_source ? rule.samples[j].irradiance * cos_theta : 0.0;
     if (fresnel) {
-      const Emissivity emissivity = fresnel_emissivity(scene.surface, indices[j], cos_theta);
+      const Emissivity emissivity = fresnel_emissivity(indices[j], cos_theta);
       add_fresnel_sample(sum, rule.samples[j], reflectances[j], emissivity, direct, rounding);
     } else {
       add_moments_sample(sum, rule.samples[j], reflectances[j], direct, rounding);
@@ -177,8 +175,8 @@ Stokes stokes_sum(const Scene& scene, const SpectralRule& rule, std::span<const 
 /// Adds pi E0 cos(theta_i) f of the beam from the source, the factor pi as in the exitances of the sum.
 void add_beam(Stokes& sum, const Surface& surface, const SpectralRule& rule, std::span<const Scattered> scattered,
               double cos_theta_i, double cos_theta_r) {
-  const double diffuse =
-      surface.diffuse == 0.0 ? 0.0
+  const double diffuse = surface.diffuse == 0.0
+                             ? 0.0
                              : surface.diffuse * std::pow(cos_theta_i, surface.diffuse_exponent + 1.0) *
                                    std::pow(cos_theta_r, surface.diffuse_exponent);
   const double rounding = kRadianceRounding + rule.relative_error;
@@ -203,8 +201,7 @@ void set_dolp(PointResult& result, const Stokes& sum) {
   if (std::isnan(result.dolp)) {
     result.error_estimate = kNan;
   } else if (margin > 0.0) {
-    result.error_estimate =
-        (std::hypot(sum.q_error, sum.u_error) + std::abs(result.dolp) * sum.i_error) / margin;
+    result.error_estimate = (std::hypot(sum.q_error, sum.u_error) + std::abs(result.dolp) * sum.i_error) / margin;
   } else {
     result.error_estimate = kInfinity;
   }
@@ -293,11 +290,11 @@ MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Refle
 
 /// Equation: the terms of I and Q that grow fastest as cos(theta) -> 0, times whatever makes them finite: D r with D
 /// the surroundings without what the moments take off the emission; with D = 0 pi B + E0 r_i and E0 r_q, and the path.
-/// The fresnel emission is pi B (1 - k_s - rho_d) there, of which a diverging rho_d leaves no polarisation.
+/// The fresnel emission vanishes there.
 Stokes grazing_stokes(const Scene& scene, const SpectralRule& rule, std::span<const Moments> moments) {
   const Surface& surface = scene.surface;
   const bool fresnel = emission_model(scene) == EmissionModel::kFresnel;
-  const double emissivity = fresnel ? 1.0 - surface.specular - surface.diffuse : 1.0;
+  const double emissivity = fresnel ? 0.0 : 1.0;
   Stokes leading;
   Stokes finite;
   for (std::size_t j = 0; j < moments.size(); ++j) {
@@ -307,7 +304,6 @@ Stokes grazing_stokes(const Scene& scene, const SpectralRule& rule, std::span<co
     finite.i += sample.emitted * emissivity;
   }
   if (leading.i != 0.0 || leading.q != 0.0) return leading;
-  if (fresnel && diffuse_diverges(surface)) return {.i = 1.0};
   add_path(finite, scene.path, rule.path_exitance);
   return finite;
 }
@@ -362,7 +358,12 @@ PointResult Radiometry::bistatic_point(const Direction& view, double cos_theta_i
                                        std::span<const OpticalConstants> indices,
                                        std::span<const Scattered> scattered) const {
   assert(moments.size() == rule_.samples.size() && scattered.size() == moments.size());
-  if (view.theta_deg == kRightAngle_deg || !std::ranges::all_of(moments, is_known)) return outside_domain();
+  if (!std::ranges::all_of(moments, is_known)) return outside_domain();
+  if (reflectance_diverges(scene_.surface, view, moments)) {
+    PointResult result = outside_domain();
+    result.status |= kStatusUnphysicalReflectance;
+    return result;
+  }
   return assemble(moments, view.cos_theta, indices, cos_theta_i, scattered);
 }
 
@@ -390,7 +391,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   result.albedo = moments.front().albedo / cos_theta;
   result.rho_error_estimate = relative_bound(mean.error, mean.rho_i);
   set_dolp(result, sum);
-  if (!(sum.i > 0.0)) result.status |= kStatusNonPositiveIntensity;
+  if (sum.i <= 0.0) result.status |= kStatusNonPositiveIntensity;
   if (std::isnan(result.dolp)) result.status |= kStatusOutsideDomain;
   result.status |= tolerance_status(result, scene_.accuracy.tolerance);
   return result;

@@ -53,8 +53,8 @@ struct Scattered {
 /// Radiometry of a scene: everything that does not depend on the entry is prepared once.
 ///
 /// Equation: I = pi B (1 - rho_I) + X rho_I, Q = (X - pi B) rho_Q, X = E0 cos(theta) + pi B(T_surr), then the path.
-/// With emission.model = "fresnel", 1 - rho_s is replaced in the emission by (1 - k_s) + k_s (1 - R_s) - rho_d,
-/// likewise p. In bistatic mode the same without E0 over pi, plus E0 cos(theta_i) f at the view direction.
+/// With emission.model = "fresnel", 1 - rho_s is replaced in the emission by 1 - R_s(theta) of the smooth surface,
+/// likewise p, whatever k_s and the diffuse part are. In bistatic mode the same without E0 over pi, plus E0 cos(theta_i) f at the view direction.
 /// Source: MODEL.md sections 3 and 4; Wang, Li, Wang 2025, eqs. (16), (18).
 class Radiometry {
  public:
@@ -77,7 +77,7 @@ class Radiometry {
 
   /// Bistatic result: `moments` and rho at the view direction, the source at theta_i.
   /// Shape: one Moments and one Scattered per sample of rule(), in its order.
-  /// Domain: outside it (a view at 90 degrees, where the radiance has no limit) everything is NaN with status 4.
+  /// Domain: a view at 90 degrees as in `point`, but where rho diverges everything is NaN with status 1 | 4.
   PointResult bistatic_point(const Direction& view, double cos_theta_i, std::span<const Moments> moments,
                              std::span<const OpticalConstants> indices, std::span<const Scattered> scattered) const;
 

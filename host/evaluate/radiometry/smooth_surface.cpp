@@ -23,8 +23,9 @@ Moments mirror_moments(const OpticalConstants& index, double cosine) {
   moments.deficit = 0.5 * (absorbed.s + absorbed.p) * cosine;
   moments.r_i = cosine - moments.deficit;
   moments.r_q = 0.5 * (absorbed.p - absorbed.s) * cosine;
-  moments.r_i_error = rounding;
-  moments.r_q_error = rounding;
+  // Vacuum reflects nothing, exactly.
+  moments.r_i_error = moments.r_i == 0.0 ? 0.0 : rounding;
+  moments.r_q_error = moments.r_i == 0.0 ? 0.0 : rounding;
   moments.albedo_error = rounding;
   moments.deficit_error = rounding * 0.5 * (absorbed.s + absorbed.p);
   return moments;

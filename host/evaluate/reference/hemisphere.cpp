@@ -299,12 +299,14 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   const Integral<2 * kMomentCount> integral = hemisphere.integrate_zenith();
   // G_1 is at least 1/2.
   const double masking_error = 2.0 * masking_tolerance_for(refinement);
+  const double cos_theta = zenith_from_deg(theta_deg).cos;
+  // Zeniths are known to an ulp of a right angle, which counts where the moments vanish like cos(theta).
+  const double angle_error = cos_theta > 0.0 ? 4.0 * std::numeric_limits<double>::epsilon() / cos_theta : 0.0;
   const auto error_of = [&](std::size_t k) {
     const double magnitude = k == kPolarised ? integral.value[kReflected] : integral.value[k];
-    return integral.error[k] + integral.value[kMomentCount + k] + (masking_error + kRounding) * magnitude;
+    return integral.error[k] + integral.value[kMomentCount + k] + (masking_error + kRounding + angle_error) * magnitude;
   };
   const double amplitude_error = amplitude_rounding(integral.value[kReflected], integral.value[kAlbedo]);
-  const double cos_theta = zenith_from_deg(theta_deg).cos;
   Moments moments;
   moments.albedo = integral.value[kAlbedo];
   moments.r_i = integral.value[kReflected];

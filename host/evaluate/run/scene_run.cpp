@@ -22,6 +22,7 @@
 namespace dolp {
 namespace {
 
+constexpr double kMostEntries = 1U << 24U;         // of a table: about 5 GB of memory
 constexpr std::size_t kMomentsAtOnce = 1U << 22U;  // bounds the memory of a run with many wavelengths
 
 // Below this roughness the slopes' density overflows a float; the surface is a mirror but for the share of the facets
@@ -56,11 +57,13 @@ bool needs_evaluator(const Scene& scene, const SceneEntry& entry) {
   return !is_mirror(entry.shape) && !is_divergent(scene, entry);
 }
 
+bool has_grazing_limit(const Scene& scene) {
+  return scene.surface.masking == Masking::kVCavity || scene.surface.masking == Masking::kSmith;
+}
+
 /// Where the evaluator computes an entry: at its own direction, and just before 90 degrees for a limit there.
 double moments_theta_deg(const Scene& scene, const SceneEntry& entry) {
-  const Masking masking = scene.surface.masking;
-  const bool has_limit = masking == Masking::kVCavity || masking == Masking::kSmith;
-  return has_limit && entry.theta_deg == 90.0 ? kNearGrazingDeg : entry.theta_deg;
+  return has_grazing_limit(scene) && entry.theta_deg == 90.0 ? kNearGrazingDeg : entry.theta_deg;
 }
 
 /// The cosine that the closed form of an entry is for.
@@ -185,6 +188,12 @@ class BlockBuilder {
   std::size_t last_count_ = 0;
 };
 
+/// The view of the bistatic mode, just before 90 degrees for a limit there.
+double view_zenith_deg(const Scene& scene) {
+  const double zenith_deg = scene.geometry.view_zenith_deg;
+  return has_grazing_limit(scene) && zenith_deg == 90.0 ? kNearGrazingDeg : zenith_deg;
+}
+
 /// What the source sends toward the view for each entry and sample; nothing for a mirror but toward its specular
 /// direction, where the radiance is not defined.
 std::vector<Scattered> entry_beams(const Scene& scene, std::span<const SceneEntry> entries,
@@ -207,8 +216,7 @@ std::vector<Scattered> entry_beams(const Scene& scene, std::span<const SceneEntr
     }
   }
   const Geometry& geometry = scene.geometry;
-  const std::vector<Scattered> rough =
-      scattered_beams(request, geometry.view_zenith_deg, geometry.relative_azimuth_deg);
+  const std::vector<Scattered> rough = scattered_beams(request, view_zenith_deg(scene), geometry.relative_azimuth_deg);
   std::vector<Scattered> beams;
   auto next = rough.begin();
   for (const SceneEntry& entry : entries) {
@@ -328,8 +336,15 @@ double value_or(const std::optional<std::vector<double>>& column, std::size_t ro
 }  // namespace
 
 std::vector<SceneEntry> grid_entries(const Scene& scene) {
+  const Grid& grid = scene.grid;
+  const double count = static_cast<double>(grid.theta_deg.size()) * static_cast<double>(grid.sigma.size()) *
+                       static_cast<double>(grid.q.size());
+  if (count > kMostEntries) {
+    throw InputError(fmt::format("{}: grid: {} x {} x {} entries; at most {:.0f} in one table", scene.path_name,
+                                 grid.theta_deg.size(), grid.sigma.size(), grid.q.size(), kMostEntries));
+  }
   std::vector<SceneEntry> entries;
-  entries.reserve(scene.grid.theta_deg.size() * scene.grid.sigma.size() * scene.grid.q.size());
+  entries.reserve(static_cast<std::size_t>(count));
   for (const double theta_deg : scene.grid.theta_deg) {
     for (const double sigma : scene.grid.sigma) {
       for (const double q : scene.grid.q) entries.push_back({theta_deg, {sigma, q}, {}});

@@ -19,6 +19,7 @@ struct SceneEntry {
 };
 
 /// The product of the scene's grid axes in C order (theta, sigma, q), q fastest.
+/// Errors: InputError for more than 2^24 entries.
 std::vector<SceneEntry> grid_entries(const Scene& scene);
 
 /// Scattered points; what they do not say comes from the scene.

@@ -43,7 +43,11 @@ TEST(Radiometry, RandomScenes_AgreeWithPrintedFormulas) {
       continue;
     }
     const auto expected_dolp = static_cast<double>(std::abs(expected.q) / expected.i);
-    ASSERT_LE(std::abs(actual.dolp - expected_dolp), actual.error_estimate + kEpsilon * std::abs(actual.dolp));
+    // The printed 1 - R of total reflection leaves a rounding error of the emission where the program has 0.
+    const double printed_rounding = 16.0 * static_cast<double>(std::numeric_limits<Real>::epsilon()) *
+                                    Radiometry(scene).rule().samples[0].emitted / std::abs(actual.stokes_i);
+    ASSERT_LE(std::abs(actual.dolp - expected_dolp),
+              actual.error_estimate + printed_rounding + kEpsilon * std::abs(actual.dolp));
     ASSERT_EQ(actual.albedo, 0.9 * direction.cos_theta / direction.cos_theta);
   }
 }

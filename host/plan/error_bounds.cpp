@@ -21,22 +21,24 @@ constexpr double kCosineRounding = 2.0 * std::numeric_limits<double>::epsilon();
 // Bound of the interpolation error of G (cubic Hermite, 16 cells an octave), relative to the albedo.
 constexpr double kMaskingTableError = 1e-6;
 
-// Rounding error in units of the precision's roundoff, relative to the integral of absolute values. The masking table
-// of a tail that falls like tau^(2-2q) is a sum of hundreds of equal terms when q is near 1.
+// Rounding error in units of the precision's roundoff, relative to the integral of absolute values. The masking tables
+// of `integral` with q near 1 and of smith with q near 3/2 are sums of hundreds of nearly equal terms.
 constexpr double kRoundings = 20.0;
 constexpr double kHeavyTailRoundings = 80.0;
 constexpr double kHeavyTailQ = 1.1;
+constexpr double kHeavyTailSmithQ = 1.6;
 constexpr double kExtremeTailRoundings = 400.0;
 constexpr double kExtremeTailQ = 1.01;
 
 // Where the mean slope is about to diverge (smith, q near 3/2), G falls within 2q - 3 of the normal, which no rule
 // sees.
-constexpr double kDivergingSlope = 0.03;
+constexpr double kDivergingSlope = 0.06;
 
 double roundings(const KernelData& data, const kernel::ShapeNode& shape) {
   if (!data.needs_masking_table() || data.distribution == Distribution::kGaussian) return kRoundings;
   if (shape.q_minus_1 < kExtremeTailQ - 1.0) return kExtremeTailRoundings;
-  return shape.q_minus_1 < kHeavyTailQ - 1.0 ? kHeavyTailRoundings : kRoundings;
+  const double heavy_tail_q = data.masking == Masking::kSmith ? kHeavyTailSmithQ : kHeavyTailQ;
+  return shape.q_minus_1 < heavy_tail_q - 1.0 ? kHeavyTailRoundings : kRoundings;
 }
 
 // Mean of |t_x|, the slope in one plane. Domain: q > 1.5 for the cauchy.

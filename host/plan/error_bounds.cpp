@@ -93,6 +93,9 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   const double cut = cut_bound(data, data.thetas[entry.theta], shape);
   const double masking = masking_error(data, entry);
   const double rounding = unit_roundoff * roundings(data, shape);
+  const kernel::IndexNode& index = data.indices[entry.index];
+  const bool is_vacuum = index.n2m1_re == 0.0 && index.n2m1_im == 0.0;  // reflects nothing, however steep
+  const double reflected_cut = is_vacuum ? 0.0 : cut;
   Moments moments;
   moments.r_i = node.r_i;
   moments.r_q = node.r_q;
@@ -103,9 +106,9 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
                                       share(node.albedo_difference, node.albedo), kLeastDifference * data.tolerance});
   const double r_i_scale = std::abs(node.r_i);  // a rule that fails can make it negative
   const double quadrature = kEstimateFactor * difference + rounding + masking;
-  moments.r_i_error = quadrature * r_i_scale + cut;
+  moments.r_i_error = quadrature * r_i_scale + reflected_cut;
   moments.r_q_error = kEstimateFactor * std::max(node.r_q_difference, difference * std::abs(node.r_q)) +
-                      (rounding + masking) * r_i_scale + cut;
+                      (rounding + masking) * r_i_scale + reflected_cut;
   moments.albedo_error = quadrature * std::abs(node.albedo) + cut;
   moments.deficit_error = kEstimateFactor * std::max(node.deficit_difference, difference * std::abs(node.deficit)) +
                           rounding * node.deficit_scale + masking * std::abs(node.albedo) + cut;

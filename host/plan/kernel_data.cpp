@@ -6,6 +6,7 @@
 #include <boost/math/special_functions/cos_pi.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <boost/math/special_functions/sin_pi.hpp>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -150,6 +151,7 @@ kernel::ThetaNode theta_node(const MomentsRequest& request, double theta_deg, do
   for (const Breakpoint& point : breakpoints(theta_deg, a, request.masking, critical)) {
     if (point.slope <= 0.0 || point.slope > horizon) continue;
     ++pieces;
+    assert(pieces <= DOLP_MAX_PIECES);
     node.end[pieces] = point.slope;
     node.kind[pieces] = point.kind;
   }

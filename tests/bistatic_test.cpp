@@ -134,7 +134,8 @@ TEST(Bistatic, SourceAngles_ShareTheMomentsOfTheView) {
       evaluate_scene(scene, {{0.0, shape, {}}, {30.0, shape, {}}, {90.0, shape, {}}}, evaluator, {});
   const double three = evaluator.report().evaluations;
   evaluate_scene(scene, {{10.0, shape, {}}}, evaluator, {});
-  EXPECT_EQ(three, evaluator.report().evaluations);
+  EXPECT_GT(three, 0.0);
+  EXPECT_EQ(2.0 * three, evaluator.report().evaluations);  // of both calls
   EXPECT_EQ(results[0].rho_i, results[2].rho_i);
   EXPECT_EQ(results[2].status, 0U);  // a source at 90 degrees adds nothing
 }

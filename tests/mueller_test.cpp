@@ -185,6 +185,30 @@ Model plain_model() {
   return model;
 }
 
+// Next to the specular direction at grazing incidence the table's G is known least.
+TEST(MuellerAtGrazing, TableMasking_StaysWithinTheBeamsStatedError) {
+  constexpr double kStatedError = 1e-5;       // kTableError of evaluate/run/scattering.cpp
+  constexpr double kSmallestDouble = 1e-280;  // the text's exponential ends at e^-690
+  Random random;
+  double worst = 0.0;
+  for (const Masking masking : {Masking::kIntegral, Masking::kSmith}) {
+    for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
+      for (int n = 0; n < kGeometries; ++n) {
+        Model model = random.model(masking, distribution);
+        model.surface.sigma = std::exp(random.uniform(std::log(1e-3), std::log(5.0)));
+        const Angles angles = {90.0 - std::pow(10.0, random.uniform(-2.0, 1.0)),
+                               90.0 - std::pow(10.0, random.uniform(-2.0, 1.0)),
+                               180.0 - std::pow(10.0, random.uniform(-3.0, 1.0))};
+        const double reference = reference_mueller(model, angles)(0, 0);
+        if (reference < kSmallestDouble) continue;
+        worst = std::max(worst, std::abs(text_mueller(model, angles, true)(0, 0) / reference - 1.0));
+      }
+    }
+  }
+  std::printf("worst relative error of f_00: %.1e\n", worst);
+  EXPECT_LE(worst, kStatedError);
+}
+
 TEST(Mueller, NormalIncidenceRetro_IsTheLimit) {
   const Eigen::Matrix4d at = text_mueller(plain_model(), {0.0, 0.0, 0.0}, true);
   const Eigen::Matrix4d near = text_mueller(plain_model(), {1e-6, 1e-6, 0.0}, true);

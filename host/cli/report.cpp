@@ -77,6 +77,7 @@ nlohmann::ordered_json range_json(const EnergyRange& range) {
 
 /// Over which part of the grid the surface model itself gains or loses energy.
 std::string energy_text(const RunReport& report) {
+  if (report.albedo_min > report.albedo_max) return "  albedo     not given for any entry\n";
   std::string text = fmt::format("  albedo     {:.3g}..{:.3g}", report.albedo_min, report.albedo_max);
   if (report.loses.entries + report.gains.entries == 0) return text + "\n";
   text += ": the surface model itself does not keep the energy\n";

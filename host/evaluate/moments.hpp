@@ -78,6 +78,7 @@ class MomentsEvaluator {
  public:
   virtual ~MomentsEvaluator() = default;
   virtual std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) = 0;
+  /// Totals over all calls of evaluate.
   virtual EvaluationReport report() const = 0;
 };
 

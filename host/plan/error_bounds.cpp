@@ -71,14 +71,12 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
   return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
 }
 
-// Bound of the error of G relative to the albedo. Where the table is coarser than the slope distribution, directions
-// whose cot(theta) lies within its first scale see none of its structure.
+// Bound of the error of G relative to the albedo.
 double masking_error(const KernelData& data, const MomentsEntry& entry) {
   if (!data.needs_masking_table()) return 0.0;
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
   const kernel::ShapeNode& shape = data.shapes[entry.shape];
-  const bool is_unresolved = shape.m < shape.table_scale && theta.c < shape.table_scale * theta.s;
-  if (is_unresolved) return 1.0;
+  if (!table_resolves(shape, theta.c, theta.s)) return 1.0;
   const bool may_diverge = data.masking == Masking::kSmith && data.distribution == Distribution::kCauchy;
   return kMaskingTableError * (may_diverge ? 1.0 + kDivergingSlope / shape.two_q_minus_3 : 1.0);
 }
@@ -86,6 +84,10 @@ double masking_error(const KernelData& data, const MomentsEntry& entry) {
 double share(double part, double whole) { return part == 0.0 ? 0.0 : std::abs(part / whole); }
 
 }  // namespace
+
+bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta) {
+  return shape.m >= shape.table_scale || cos_theta >= shape.table_scale * sin_theta;
+}
 
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff) {

@@ -37,6 +37,10 @@ KernelData kernel_data(const MomentsRequest& request);
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff);
 
+/// Whether the masking table of a shape sees the structure of G at a direction. Where the table is coarser than the slope
+/// distribution, directions whose cot(theta) lies within its first scale see none of it.
+bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta);
+
 /// Upper bound of the loop iterations of one invocation for any entry of `data`: all its nested loops together.
 /// Drivers may stop an invocation after 65,535 of them, without an error and with wrong sums.
 double worst_iterations(const KernelData& data);

@@ -27,12 +27,11 @@ std::vector<Moments> CpuEvaluator::evaluate(const MomentsRequest& request, const
   };
   parallel_for(moments.size(), one, progress);
 
-  report_ = {};
   report_.evaluator = "cpu";
   report_.device = processor_name();
   report_.precision = in_double ? "double" : "float";
   for (const Moments& entry : moments) report_.evaluations += entry.evaluations;
-  report_.kernel_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report_.kernel_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return moments;
 }
 

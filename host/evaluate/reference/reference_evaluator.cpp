@@ -130,9 +130,11 @@ std::vector<Moments> ReferenceEvaluator::evaluate(const MomentsRequest& request,
       options_.threads > 0 ? options_.threads : std::max(1U, std::thread::hardware_concurrency());
   const auto threads = static_cast<unsigned>(std::min<std::size_t>(available, request.entries.size()));
   std::vector<Moments> results = Crew(request, refinement).run(threads, progress);
-  report_ = {.evaluator = "reference", .device = processor_name(), .driver = "", .precision = "double"};
+  report_.evaluator = "reference";
+  report_.device = processor_name();
+  report_.precision = "double";
   for (const Moments& moments : results) report_.evaluations += moments.evaluations;
-  report_.kernel_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report_.kernel_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return results;
 }
 

@@ -12,7 +12,8 @@ namespace dolp {
 /// by the shaders' text on the CPU in double, on all cores.
 ///
 /// Units: sr-1.
-/// Accuracy: 1e-11 of f_00, with `integral` and smith masking 4e-6 (test RandomGeometries.AllElements_*).
+/// Accuracy: 1e-11 of f_00, with `integral` and smith masking 1e-5 (tests RandomGeometries.AllElements_*,
+/// MuellerAtGrazing.*).
 std::vector<Scattered> scattered_beams(const MomentsRequest& request, double view_zenith_deg,
                                        double relative_azimuth_deg);
 

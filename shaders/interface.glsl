@@ -7,9 +7,10 @@
 #define DOLP_BINDING_SHAPES 1         // ShapeNode[]
 #define DOLP_BINDING_INDICES 2        // IndexNode[]
 #define DOLP_BINDING_ENTRIES 3        // uvec4[]: theta, shape (relative to the first shape bound), index, unused
-#define DOLP_BINDING_RULE_NODES 4     // real2[]: abscissa and weight, see physics/quadrature.glsl
-#define DOLP_BINDING_MASKING_TABLE 5  // real4[]: DOLP_MASKING_NODES for each shape bound, see physics/masking.glsl
+#define DOLP_BINDING_RULE_NODES 4     // real4[]: see physics/quadrature.glsl
+#define DOLP_BINDING_MASKING_TABLE 5  // real4[]: one table for each shape bound, see physics/masking.glsl
 #define DOLP_BINDING_MOMENTS 6        // MomentsNode[]: one for each entry of the dispatch
+#define DOLP_BINDING_RULE 7           // RuleNode: one for all entries
 
 // ---- Specialization constants --------------------------------------------------------------------------------------
 #define DOLP_SPEC_LOCAL_SIZE 0
@@ -30,23 +31,43 @@
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
 #define DOLP_MAX_PIECES 12       // pieces of the slope axis for one direction
-#define DOLP_MAX_ORDER 32        // largest Gauss order of the rule nodes
+#define DOLP_MAX_ORDER 64        // largest Gauss order of the rule nodes
 #define DOLP_MASKING_OCTAVES 29  // of v = 1 + tau/scale
-#define DOLP_MASKING_CELLS 16    // per octave
-#define DOLP_MASKING_NODES (DOLP_MASKING_OCTAVES * DOLP_MASKING_CELLS + 1)
+#define DOLP_MASKING_CELL_BITS_FLOAT 4   // 2^bits cells per octave
+#define DOLP_MASKING_CELL_BITS_DOUBLE 6
+#define DOLP_MASKING_NODES(CELL_BITS) ((DOLP_MASKING_OCTAVES << (CELL_BITS)) + 1)
 
 // ---- Structures ----------------------------------------------------------------------------------------------------
 
+// How the orders of the Gauss rules follow from what they are to integrate; physics/orders.glsl has the formulas.
+struct RuleNode {
+  real digits;            // decimal digits that the sums are to have
+  real t_nodes;           // slope axis: nodes of a piece whatever its digits
+  real t_growth;          // factor of the nodes for each digit
+  real t_root_nodes;      // more nodes for a square root at an end
+  real phi_half_nodes;    // azimuth: the same for an arc that touches phi = 0 or pi,
+  real phi_centre_nodes;  // for any other arc
+  real phi_circle_nodes;  // and for the whole half circle
+  real phi_growth;
+  real phi_circle_growth;
+  real phi_cluster_growth;
+  real strip[3];         // for the arcs of each zone: distance in phi to the next singularity off the real axis
+  real cluster_below_q;  // below this q an arc clusters its nodes where the limit b of `integral` meets pi/2
+  real node_stride;      // largest order of the rule nodes
+};
+
 // One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. Under total
-// reflection the pieces depend on the index too, so that a direction has a node for each such index.
+// reflection the pieces depend on the index too, so that a direction has a node for each such index; with `integral` and
+// smith masking they depend on the slope distribution, which may need a line more.
 struct ThetaNode {
   real c;                          // cos(theta)
   real s;                          // sin(theta)
   real piece_count;                // <= DOLP_MAX_PIECES
-  real order_t;                    // slope-axis nodes of a piece that carries the whole weight
-  real order_limit;                // most slope-axis nodes of any piece, which bounds the loop iterations
-  real order_per_e;                // fewer nodes for each factor e that a piece carries less
-  real order_phi;                  // azimuth nodes of a piece
+  real has_line;                   // 1: split at the line b = pi/2 of `integral`, or at the cusp of smith
+  real t_growth;                   // toward grazing incidence more nodes for each digit: factor of RuleNode::t_growth,
+  real phi_narrowing;              // divisor of RuleNode::strip
+  real order_limit_t;              // most nodes of a piece and of an arc, which bounds the loop iterations
+  real order_limit_phi;
   real end[DOLP_MAX_PIECES + 1];   // ascending slopes; the last may exceed any cut
   real kind[DOLP_MAX_PIECES + 1];  // bit 0: square-root end just above, bit 1: just below
 };
@@ -58,8 +79,10 @@ struct ShapeNode {
   real two_q_minus_3;  // likewise near 3/2, where smith masking ends
   real marginal_norm;  // p(0) of the in-plane marginal
   real scale;          // w of the map t = w sinh(X)
+  real strip;          // distance in X to the next singularity off the real axis
   real cut;            // slopes beyond it are left out
   real table_scale;    // of the masking table: v = 1 + tau/table_scale
+  real cusp_digits;    // log10 of the size of smith's cusp at theta_r = 0; below -100 without one
 };
 
 // One complex refractive index N = n + ik.
@@ -89,16 +112,14 @@ struct MuellerNode {
   real m[16];
 };
 
-// Moments times cos(theta) (MODEL.md section 3), and |fine - coarse| summed over the pieces for each.
+// Moments times cos(theta) (MODEL.md section 3), and what the rules say of themselves (physics/moments.glsl).
 struct MomentsNode {
   real r_i;
   real r_q;
   real albedo;
   real deficit;
-  real r_i_difference;
-  real r_q_difference;
-  real albedo_difference;
-  real deficit_difference;
+  real doubt;          // of r_i and r_q
+  real deficit_doubt;
   real deficit_scale;  // sum of the absolute values of the deficit's terms, for its rounding error
   real evaluations;
 };

@@ -9,5 +9,5 @@
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  if (i < push.count) build_masking_table(shapes[push.first + i], (push.first + i) * DOLP_MASKING_NODES);
+  if (i < push.count) build_masking_table(shapes[push.first + i], (push.first + i) * kMaskingNodes);
 }

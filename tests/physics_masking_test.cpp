@@ -204,7 +204,7 @@ TYPED_TEST(MaskingText, TableNodes_KeepTheirRelativeAccuracyToTheSmallestTails) 
     const ShapeCase shape{Distribution::kCauchy, sigma, 2.0};
     Table<TypeParam> table(shape, Masking::kSmith);
     const double m = static_cast<double>(table.node().m);
-    for (glm::uint i = 0; i < DOLP_MASKING_NODES; ++i) {
+    for (glm::uint i = 0; i < TypeParam::kMaskingNodes; ++i) {
       const double tau = static_cast<double>(table.text().masking_node_tau(table.node(), i));
       const auto node = table.text().masking_node(i);
       const double root = std::hypot(tau, m);

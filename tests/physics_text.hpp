@@ -68,16 +68,22 @@ typename Text::IndexNode index_in(const kernel::IndexNode& node) {
   return convert_reals<RealOf<Text>, typename Text::IndexNode, double>(node);
 }
 
+template <class Text>
+typename Text::RuleNode rule_in(const kernel::RuleNode& node) {
+  return convert_reals<RealOf<Text>, typename Text::RuleNode, double>(node);
+}
+
 /// A text with the distribution, the masking and the rules of `data`, and room for the masking table of one shape.
 template <class Text>
 Text text_for(const KernelData& data) {
   Text text;
   text.kDistribution = static_cast<glm::uint>(data.distribution);
   text.kMasking = static_cast<glm::uint>(data.masking);
-  for (const auto& [abscissa, weight] : data.rule_nodes) {
-    text.rule_nodes.emplace_back(static_cast<RealOf<Text>>(abscissa), static_cast<RealOf<Text>>(weight));
+  using Vector = typename decltype(text.rule_nodes)::value_type;
+  for (const auto& node : data.rule_nodes) {
+    text.rule_nodes.push_back(convert_reals<RealOf<Text>, Vector, double>(node));
   }
-  text.masking_table.resize(DOLP_MASKING_NODES);
+  text.masking_table.resize(Text::kMaskingNodes);
   return text;
 }
 

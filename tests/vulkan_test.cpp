@@ -320,7 +320,7 @@ class SentinelRun {
     for (const MomentsEntry& entry : request.entries) words.push_back({entry.theta, entry.shape, entry.index, 0U});
     buffers_.back().write(std::as_bytes(std::span(words)));
     add(data_.rule_nodes, 0);
-    using MaskingTable = std::array<double, 4 * DOLP_MASKING_NODES>;
+    using MaskingTable = std::array<double, 4 * DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT)>;
     add(std::vector<MaskingTable>{}, data_.shapes.size() + 1);
     add(std::vector<kernel::MomentsNode>{}, kCount + kLocalSize);
     std::array<VkBuffer, kBindingCount> handles{};
@@ -368,7 +368,7 @@ class SentinelRun {
 TEST(Kernels, LastWorkgroup_WritesNothingBeyondItsCount) {
   constexpr auto kIsSentinel = [](float value) { return value == static_cast<float>(kSentinel); };
   constexpr std::size_t kNode = real_count<kernel::MomentsNode>();
-  constexpr std::size_t kTable = 4 * DOLP_MASKING_NODES;
+  constexpr std::size_t kTable = 4 * DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT);
   ValidationLog log;
   {
     Session session(log);

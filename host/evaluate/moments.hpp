@@ -28,7 +28,8 @@ struct MomentsEntry {
 struct MomentsRequest {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
-  double tolerance = 1e-4;
+  double tolerance = 1e-4;                    ///< of the rule, relative to r_i
+  Precision precision = Precision::kAuto;     ///< kAuto: the evaluator's own
   std::vector<double> theta_deg;
   std::vector<SlopeShape> shapes;
   std::vector<OpticalConstants> indices;
@@ -62,12 +63,19 @@ struct EvaluationReport {
   std::string evaluator;  ///< vulkan | cpu | reference
   std::string device;     ///< device name, or the processor
   std::string driver;     ///< driver name and version; empty for cpu and reference
-  std::string precision;  ///< float | double
+  std::string precision;  ///< float | double | float and double, as used
   std::uint64_t dispatches = 0;
   double evaluations = 0.0;
   double kernel_s = 0.0;  ///< time on the device (timestamps), or of the loop on the CPU
   double setup_s = 0.0;   ///< device and pipeline creation
 };
+
+/// Adds a precision to EvaluationReport::precision.
+inline void note_precision(std::string& used, bool in_double) {
+  const char* name = in_double ? "double" : "float";
+  if (used.empty()) used = name;
+  if (used != name) used = "float and double";
+}
 
 /// Called with the number of finished entries; returning false cancels (the evaluator then throws Cancelled).
 using Progress = std::function<bool(std::size_t done, std::size_t total)>;
@@ -78,6 +86,8 @@ class MomentsEvaluator {
  public:
   virtual ~MomentsEvaluator() = default;
   virtual std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) = 0;
+  /// Whether requests in double are possible.
+  virtual bool has_double() const { return true; }
   /// Totals over all calls of evaluate.
   virtual EvaluationReport report() const = 0;
 };

@@ -2,9 +2,11 @@
 #include <boost/math/constants/constants.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
+#include <complex>
 #include <limits>
 
 #include "plan/kernel_data.hpp"
+#include "plan/rule.hpp"
 
 namespace dolp {
 namespace {
@@ -12,14 +14,12 @@ namespace {
 using boost::math::constants::pi;
 using boost::math::constants::root_pi;
 
-// The error is taken for this many times the difference between the fine and the coarse rule.
-constexpr double kEstimateFactor = 2.0;
-// A difference below this share of the tolerance is an accident: rules of these orders are not that good.
-constexpr double kLeastDifference = 0.01;
 constexpr double kCosineRounding = 2.0 * std::numeric_limits<double>::epsilon();
 
-// Bound of the interpolation error of G (cubic Hermite, 16 cells an octave), relative to the albedo.
-constexpr double kMaskingTableError = 1e-6;
+// Bounds of the interpolation error of G relative to the albedo (quintic Hermite, 16 and 64 cells an octave).
+constexpr double kMaskingTableErrorFloat = 3e-8;
+constexpr double kMaskingTableErrorDouble = 4e-11;
+constexpr double kDoubleRoundoff = 0x1p-53;
 
 // Rounding error in units of the precision's roundoff, relative to the integral of absolute values. The masking tables
 // of `integral` with q near 1 and of smith with q near 3/2 are sums of hundreds of nearly equal terms.
@@ -72,16 +72,25 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
 }
 
 // Bound of the error of G relative to the albedo.
-double masking_error(const KernelData& data, const MomentsEntry& entry) {
+double masking_error(const KernelData& data, const MomentsEntry& entry, double unit_roundoff) {
   if (!data.needs_masking_table()) return 0.0;
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
   const kernel::ShapeNode& shape = data.shapes[entry.shape];
   if (!table_resolves(shape, theta.c, theta.s)) return 1.0;
   const bool may_diverge = data.masking == Masking::kSmith && data.distribution == Distribution::kCauchy;
-  return kMaskingTableError * (may_diverge ? 1.0 + kDivergingSlope / shape.two_q_minus_3 : 1.0);
+  const double table = unit_roundoff > kDoubleRoundoff ? kMaskingTableErrorFloat : kMaskingTableErrorDouble;
+  return table * (may_diverge ? 1.0 + kDivergingSlope / shape.two_q_minus_3 : 1.0);
 }
 
-double share(double part, double whole) { return part == 0.0 ? 0.0 : std::abs(part / whole); }
+// Upper bound of M00 on the facets beyond the cut whose ray leaves: cos(theta_r) > 0 there means cos(beta) > c sqrt(1 +
+// t^2) / 2, and R_s, which falls with cos(beta), is no less than M00.
+double steep_reflectance(const kernel::IndexNode& index, const kernel::ThetaNode& theta,
+                         const kernel::ShapeNode& shape) {
+  const double cos_beta = std::min(1.0, 0.5 * theta.c * std::hypot(1.0, shape.cut));
+  const std::complex<double> w =
+      std::sqrt(std::complex<double>(index.n2m1_re + cos_beta * cos_beta, std::max(index.n2m1_im, 0.0)));
+  return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
+}
 
 }  // namespace
 
@@ -92,31 +101,29 @@ bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff) {
   const kernel::ShapeNode& shape = data.shapes[entry.shape];
-  const double cut = cut_bound(data, data.thetas[entry.theta], shape);
-  const double masking = masking_error(data, entry);
+  const kernel::ThetaNode& theta = data.thetas[entry.theta];
+  const double cut = cut_bound(data, theta, shape);
+  const double masking = masking_error(data, entry, unit_roundoff);
   const double rounding = unit_roundoff * roundings(data, shape);
   const kernel::IndexNode& index = data.indices[entry.index];
-  const bool is_vacuum = index.n2m1_re == 0.0 && index.n2m1_im == 0.0;  // reflects nothing, however steep
-  const double reflected_cut = is_vacuum ? 0.0 : cut;
+  const double reflected_cut = cut == 0.0 ? 0.0 : cut * steep_reflectance(index, theta, shape);
   Moments moments;
   moments.r_i = node.r_i;
   moments.r_q = node.r_q;
   moments.albedo = node.albedo;
   moments.deficit = node.deficit;
-  // The four share their nodes: the largest relative difference speaks for all, should one be small by accident.
-  const double difference = std::max({share(node.r_i_difference, node.r_i), share(node.r_q_difference, node.r_i),
-                                      share(node.albedo_difference, node.albedo), kLeastDifference * data.tolerance});
+  const RuleModel& model = rule_model(data.masking);
   const double r_i_scale = std::abs(node.r_i);  // a rule that fails can make it negative
-  const double quadrature = kEstimateFactor * difference + rounding + masking;
-  moments.r_i_error = quadrature * r_i_scale + reflected_cut;
-  moments.r_q_error = kEstimateFactor * std::max(node.r_q_difference, difference * std::abs(node.r_q)) +
-                      (rounding + masking) * r_i_scale + reflected_cut;
-  moments.albedo_error = quadrature * std::abs(node.albedo) + cut;
-  moments.deficit_error = kEstimateFactor * std::max(node.deficit_difference, difference * std::abs(node.deficit)) +
-                          rounding * node.deficit_scale + masking * std::abs(node.albedo) + cut;
+  const double reflected_rule = model.doubt_factor * node.doubt;
+  const double deficit_rule = model.doubt_factor * node.deficit_doubt;
+  moments.r_i_error = reflected_rule + (rounding + masking) * r_i_scale + reflected_cut;
+  moments.r_q_error = moments.r_i_error;
+  // The albedo shares the nodes of the two.
+  moments.albedo_error = reflected_rule + deficit_rule + (rounding + masking) * std::abs(node.albedo) + cut;
+  moments.deficit_error = deficit_rule + rounding * node.deficit_scale + masking * std::abs(node.albedo) + cut;
   moments.evaluations = node.evaluations;
   // r_i + deficit = cos(theta): the better known of the two gives the other.
-  const double cosine = data.thetas[entry.theta].c;
+  const double cosine = theta.c;
   if (moments.deficit_error > moments.r_i_error) {
     moments.deficit = cosine - moments.r_i;
     moments.deficit_error = moments.r_i_error + kCosineRounding * cosine;

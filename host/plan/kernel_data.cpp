@@ -8,10 +8,12 @@
 #include <boost/math/special_functions/sin_pi.hpp>
 #include <cassert>
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <map>
 #include <utility>
 
+#include "plan/rule.hpp"
 #include "plan/rule_nodes.hpp"
 
 namespace dolp {
@@ -24,21 +26,23 @@ constexpr double kEndAbove = 1.0;  // square-root end just above a breakpoint
 constexpr double kEndBelow = 2.0;  // just below
 constexpr double kNoEnd = 1e30;    // a slope beyond every cut, in place of infinity
 
-// The orders follow a scan of the domain for entries whose estimate misses the tolerance: about 2.4 slopes and one
-// azimuth of an arc for each digit (tests/plan_test.cpp repeats the scan on a sample).
-// The rule aims this many digits beyond the tolerance, so that the coarser rule it is compared with meets the
-// tolerance.
-constexpr double kExtraDigits = 2.0;
+// Breakpoints nearer to each other than this share of the piece beyond, in ln(slope): the square root of the one is felt
+// beyond the other.
+constexpr double kNear = 0.25;
+
+// Share of the tolerance that the slopes beyond the cut may carry.
+constexpr double kCutShare = 0.03;
 
 // Im N^2 above which absorption has smoothed the critical line of total reflection.
 constexpr double kSoftCriticalLine = 0.3;
 
 // The square root of total reflection wants more nodes.
-constexpr double kTotalReflectionOrderT = 1.4;
-constexpr double kTotalReflectionOrderPhi = 2.0;
+constexpr double kTotalReflectionGrowthT = 1.4;
+constexpr double kTotalReflectionNarrowing = 1.5;
 
-// Azimuths for a digit with smith masking, which is not smooth at theta_r = 0.
-constexpr double kSmithOrderPhi = 2.4;
+// Largest order of an arc of the azimuth, for a number of digits.
+constexpr double kPhiNodes = 10.0;
+constexpr double kPhiNodesPerDigit = 3.0;
 
 // Bound of the loop iterations of one invocation, below the 65,535 at which lavapipe stops without notice.
 constexpr double kMostIterations = 60'000.0;
@@ -57,9 +61,12 @@ constexpr double kSmallestHeavyTableScale = 1e-4;
 constexpr double kLightTailQ = 1.5;
 constexpr double kLargestTableScale = 0.5;
 
+constexpr double kGaussianQ = 8.0;  // the q beyond which the slope axis is as smooth as with a gaussian
+
 struct Breakpoint {
   double slope;
-  double kind;
+  double kind;  // sum of the ends
+  bool operator<(const Breakpoint& other) const { return slope < other.slope; }
 };
 
 double tan_deg(double angle_deg) {
@@ -85,48 +92,79 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   }
 }
 
-// Slopes at which the set of smooth arcs changes: where a split line of the azimuth (integrand.glsl) meets phi = 0 or
-// pi or another line. The horizon does at t1 = c / (1 + s) and t2 = (1 + s) / c, theta_r = theta at tan(theta), the
-// limit b = pi/2 at tan(30 -+ 2/3 theta) and, on theta_r = theta, at tan(2 theta - 90); the lines of v-cavity at tan(30
-// -+ theta/3), cot(theta), 1 and tan(theta); smith's cusp is at tan(theta/2).
-std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking masking, double critical) {
+// Slopes at which the line b = pi/2 of `integral` meets phi = 0 or pi, and theta_r = theta; or smith's cusp.
+void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking) {
+  if (masking == Masking::kSmith) {
+    points.push_back({tan_deg(0.5 * theta_deg), kEndAbove + kEndBelow});
+    return;
+  }
+  if (theta_deg > 45.0) {
+    points.push_back({a.cos > 0.0 ? tan_deg(2.0 * theta_deg - 90.0) : kNoEnd, kEndAbove + kEndBelow});
+  } else {
+    points.push_back({tan_deg(30.0 - theta_deg * 2.0 / 3.0), kEndAbove});
+  }
+  points.push_back({a.cos > 0.0 ? tan_deg(30.0 + theta_deg * 2.0 / 3.0) : kNoEnd, kEndBelow});
+}
+
+void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a) {
+  points.push_back({tan_deg(30.0 - theta_deg / 3.0), kEndAbove});
+  if (theta_deg < 45.0) {
+    points.push_back({tan_deg(30.0 + theta_deg / 3.0), kEndBelow});
+  } else {
+    points.push_back({a.cos / a.sin, kEndAbove});
+    points.push_back({1.0, 0.0});
+    points.push_back({a.cos > 0.0 ? a.sin / a.cos : kNoEnd, kEndBelow});
+  }
+}
+
+bool has_end(const Breakpoint& point, double end) {
+  return end == kEndBelow ? point.kind > 1.5 : std::fmod(point.kind, 2.0) > 0.5;
+}
+
+double log_slope(double slope) { return slope > 0.0 ? std::log(slope) : -100.0; }
+
+// A breakpoint next to one with a square root, seen from the piece beyond, gets one too.
+void spread_roots(std::vector<Breakpoint>& points) {
+  const std::vector<Breakpoint> own = points;
+  const auto distance = [&](std::size_t i, std::size_t j) {
+    return std::abs(log_slope(own[i].slope) - log_slope(own[j].slope));
+  };
+  for (std::size_t j = 1; j + 1 < own.size(); ++j) {
+    for (std::size_t i = 1; i < own.size(); ++i) {
+      const double end = i < j ? kEndAbove : kEndBelow;
+      const std::size_t beyond = i < j ? j + 1 : j - 1;
+      const bool is_near = i != j && distance(i, j) < kNear * distance(j, beyond);
+      if (is_near && has_end(own[i], end) && !has_end(points[j], end)) points[j].kind += end;
+    }
+  }
+}
+
+// What makes a direction's pieces, beside the masking.
+struct Variant {
+  double critical_cos = 0.0;
+  bool has_line = false;
+  auto operator<=>(const Variant&) const = default;
+};
+
+// Slopes from 0 on at which the set of smooth arcs changes: where a split line of the azimuth (integrand.glsl) meets
+// phi = 0 or pi or another line. The horizon does at t1 = c / (1 + s) and t2 = (1 + s) / c, theta_r = theta at
+// tan(theta), the limit b = pi/2 at tan(30 -+ 2/3 theta) and, on theta_r = theta, at tan(2 theta - 90); the lines of
+// v-cavity at tan(30 -+ theta/3), cot(theta), 1 and tan(theta); smith's cusp is at tan(theta/2).
+std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking masking, const Variant& variant) {
   const double horizon = a.cos > 0.0 ? (1.0 + a.sin) / a.cos : kNoEnd;
   std::vector<Breakpoint> points = {{a.cos / (1.0 + a.sin), kEndAbove}, {horizon, kEndBelow}};
-  if (masking == Masking::kIntegral) {
-    if (a.cos > 0.0) points.push_back({a.sin / a.cos, kEndBelow});
-    if (theta_deg > 45.0) {
-      points.push_back({a.cos > 0.0 ? tan_deg(2.0 * theta_deg - 90.0) : kNoEnd, kEndAbove + kEndBelow});
-    } else {
-      points.push_back({tan_deg(30.0 - theta_deg * 2.0 / 3.0), kEndAbove});
-    }
-    points.push_back({a.cos > 0.0 ? tan_deg(30.0 + theta_deg * 2.0 / 3.0) : kNoEnd, kEndBelow});
-  }
-  if (masking == Masking::kSmith) points.push_back({tan_deg(0.5 * theta_deg), kEndAbove + kEndBelow});
-  if (masking == Masking::kVCavity) {
-    points.push_back({tan_deg(30.0 - theta_deg / 3.0), kEndAbove});
-    if (theta_deg < 45.0) {
-      points.push_back({tan_deg(30.0 + theta_deg / 3.0), kEndBelow});
-    } else {
-      points.push_back({a.cos / a.sin, kEndAbove});
-      points.push_back({1.0, 0.0});
-      points.push_back({a.cos > 0.0 ? a.sin / a.cos : kNoEnd, kEndBelow});
-    }
-  }
+  if (masking == Masking::kIntegral && a.cos > 0.0) points.push_back({a.sin / a.cos, kEndBelow});
+  if (variant.has_line) add_line_breakpoints(points, theta_deg, a, masking);
+  if (masking == Masking::kVCavity) add_v_cavity_breakpoints(points, theta_deg, a);
   for (const double slope : kPlainBreakpoints) {
     if (horizon > kLongWay * slope) points.push_back({slope, 0.0});
   }
-  if (critical > 0.0) add_critical_breakpoints(points, theta_deg, a, critical);
-  std::sort(points.begin(), points.end(), [](const auto& x, const auto& y) { return x.slope < y.slope; });
+  if (variant.critical_cos > 0.0) add_critical_breakpoints(points, theta_deg, a, variant.critical_cos);
+  std::erase_if(points, [&](const Breakpoint& point) { return point.slope <= 0.0 || point.slope > horizon; });
+  points.push_back({0.0, 0.0});
+  std::sort(points.begin(), points.end());
+  spread_roots(points);
   return points;
-}
-
-// Bound of the loop iterations of one invocation for a direction whose slopes have `arcs` arcs each: pieces, slopes,
-// arcs, azimuths, for the fine and the coarse rule, with every piece at its most nodes.
-double iterations(const kernel::ThetaNode& node, double arcs) {
-  const double coarse_t = 0.25 * (3.0 * node.order_limit + 1.0);
-  const double coarse_phi = 0.75 * node.order_phi;
-  return node.piece_count * (1.0 + (1.0 + arcs) * (node.order_limit + coarse_t) +
-                             arcs * (node.order_limit * node.order_phi + coarse_t * coarse_phi));
 }
 
 double arcs_per_slope(Masking masking, double critical) {
@@ -134,40 +172,46 @@ double arcs_per_slope(Masking masking, double critical) {
   return critical > 0.0 ? 2.0 * zones : zones;
 }
 
-// Limits the orders so that the kernel is sure to finish; the error estimate then shows what that costs.
-void limit_iterations(kernel::ThetaNode& node, double arcs) {
-  node.order_phi = std::min<double>(node.order_phi, DOLP_MAX_ORDER);
-  node.order_limit = DOLP_MAX_ORDER;
-  while (iterations(node, arcs) > kMostIterations) node.order_limit -= 1.0;
+// Bound of the loop iterations of one invocation for a direction whose slopes have `arcs` arcs each: pieces, slopes,
+// arcs, azimuths, with everything at its most nodes.
+double iterations(const kernel::ThetaNode& node, double arcs) {
+  return node.piece_count * (1.0 + node.order_limit_t * (1.0 + arcs * (1.0 + node.order_limit_phi)));
 }
 
-kernel::ThetaNode theta_node(const MomentsRequest& request, double theta_deg, double digits, double critical) {
+// Limits the orders so that the kernel is sure to finish; the error estimate then shows what that costs.
+void limit_orders(kernel::ThetaNode& node, double arcs, double digits) {
+  node.order_limit_t = DOLP_MAX_ORDER;
+  node.order_limit_phi = std::min<double>(DOLP_MAX_ORDER, std::ceil(kPhiNodes + kPhiNodesPerDigit * digits));
+  while (iterations(node, arcs) > kMostIterations) {
+    double& larger = node.order_limit_t > 1.5 * node.order_limit_phi ? node.order_limit_t : node.order_limit_phi;
+    larger -= 1.0;
+  }
+}
+
+kernel::ThetaNode theta_node(const MomentsRequest& request, double theta_deg, double digits, const Variant& variant) {
   const CosSin a = cos_sin_deg(theta_deg);
+  const RuleModel& model = rule_model(request.masking);
   kernel::ThetaNode node{};
   node.c = a.cos;
   node.s = a.sin;
-  const double horizon = a.cos > 0.0 ? (1.0 + a.sin) / a.cos : kNoEnd;
-  int pieces = 0;
-  for (const Breakpoint& point : breakpoints(theta_deg, a, request.masking, critical)) {
-    if (point.slope <= 0.0 || point.slope > horizon) continue;
-    ++pieces;
-    assert(pieces <= DOLP_MAX_PIECES);
-    node.end[pieces] = point.slope;
-    node.kind[pieces] = point.kind;
+  const std::vector<Breakpoint> points = breakpoints(theta_deg, a, request.masking, variant);
+  assert(points.size() <= DOLP_MAX_PIECES + 1);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    node.end[i] = points[i].slope;
+    node.kind[i] = points[i].kind;
   }
-  node.piece_count = pieces;
+  node.piece_count = static_cast<double>(points.size() - 1);
+  node.has_line = variant.has_line ? 1.0 : 0.0;
   // Toward grazing incidence the pseudo-Brewster structure asks for slopes, the horizon for azimuths.
   const double oblique = std::clamp((theta_deg - 65.0) / 15.0, 0.0, 1.0);
-  node.order_t = digits * (2.4 + 0.9 * oblique) + 2.5;
-  node.order_per_e = node.order_t / (digits * std::log(10.0));
-  const double grazing = std::clamp((theta_deg - 80.0) / 9.0, 0.0, 1.0);
-  const double smooth = 0.2 + digits * (0.97 + 0.6 * grazing * grazing + 0.3 * std::max(0.0, theta_deg - 88.0));
-  node.order_phi = std::ceil(request.masking == Masking::kSmith ? std::max(smooth, kSmithOrderPhi * digits) : smooth);
-  if (critical > 0.0) {
-    node.order_t *= kTotalReflectionOrderT;
-    node.order_phi = std::ceil(kTotalReflectionOrderPhi * node.order_phi);
+  const double grazing = std::clamp((theta_deg - 80.0) / 9.0, 0.0, 1.0) + 0.3 * std::max(0.0, theta_deg - 88.0);
+  node.t_growth = 1.0 + model.t_oblique * oblique;
+  node.phi_narrowing = 1.0 + model.phi_grazing * grazing;
+  if (variant.critical_cos > 0.0) {
+    node.t_growth *= kTotalReflectionGrowthT;
+    node.phi_narrowing *= kTotalReflectionNarrowing;
   }
-  limit_iterations(node, arcs_per_slope(request.masking, critical));
+  limit_orders(node, arcs_per_slope(request.masking, variant.critical_cos), digits);
   return node;
 }
 
@@ -181,6 +225,7 @@ double slope_cut(const MomentsRequest& request, const SlopeShape& shape, double 
 }
 
 kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& shape) {
+  const RuleModel& model = rule_model(request.masking);
   kernel::ShapeNode node{};
   node.m = std::sqrt(2.0) * shape.sigma;
   node.q_minus_1 = shape.q - 1.0;
@@ -189,10 +234,12 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
       (cauchy ? boost::math::tgamma_ratio(shape.q - 0.5, shape.q - 1.0) : 1.0) / (root_pi<double>() * node.m);
   node.two_q_minus_3 = 2.0 * shape.q - 3.0;
   node.scale = std::min(cauchy ? node.m / std::sqrt(std::max(1.0, 0.25 * shape.q)) : node.m, 1.0);
-  node.cut = slope_cut(request, shape, 1e-3 * request.tolerance);
+  node.strip = model.t_strip * std::pow(cauchy ? std::min(shape.q, kGaussianQ) : kGaussianQ, -model.t_strip_power);
+  node.cut = slope_cut(request, shape, kCutShare * request.tolerance);
   const double width = cauchy ? node.m / std::sqrt(std::max(1.0, shape.q / 1.5)) : node.m;
   const bool heavy_tail = cauchy && shape.q < kLightTailQ;
   node.table_scale = std::clamp(width, heavy_tail ? kSmallestHeavyTableScale : 0.0, kLargestTableScale);
+  node.cusp_digits = cusp_digits(request.distribution, request.masking, shape);
   return node;
 }
 
@@ -200,37 +247,62 @@ kernel::IndexNode index_node(const OpticalConstants& index) {
   return {(index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k, critical_cos(index)};
 }
 
-// Gives the entries under total reflection directions with their own pieces.
-void add_total_reflection(KernelData& data, const MomentsRequest& request, double digits) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> nodes;
+// Gives each entry the variant of its direction that it needs.
+void add_directions(KernelData& data, const MomentsRequest& request) {
+  std::vector<bool> has_line;
+  for (const SlopeShape& shape : request.shapes) {
+    has_line.push_back(needs_line(request.distribution, request.masking, shape, data.rule.digits));
+  }
+  std::map<std::pair<std::uint32_t, Variant>, std::uint32_t> nodes;
+  for (const double theta_deg : request.theta_deg) {
+    nodes[{static_cast<std::uint32_t>(data.thetas.size()), Variant{}}] = static_cast<std::uint32_t>(data.thetas.size());
+    data.thetas.push_back(theta_node(request, theta_deg, data.rule.digits, {}));
+  }
   for (MomentsEntry& entry : data.entries) {
-    const double critical = data.indices[entry.index].critical_cos;
-    if (critical <= 0.0) continue;
+    const Variant variant{data.indices[entry.index].critical_cos, has_line[entry.shape]};
+    if (variant == Variant{}) continue;
     const auto [found, is_new] =
-        nodes.try_emplace({entry.theta, entry.index}, static_cast<std::uint32_t>(data.thetas.size()));
-    if (is_new) data.thetas.push_back(theta_node(request, request.theta_deg[entry.theta], digits, critical));
+        nodes.try_emplace({entry.theta, variant}, static_cast<std::uint32_t>(data.thetas.size()));
+    if (is_new) {
+      data.thetas.push_back(theta_node(request, request.theta_deg[entry.theta], data.rule.digits, variant));
+    }
     entry.theta = found->second;
   }
+}
+
+// The largest order that any rule may have.
+int largest_order(const KernelData& data) {
+  double largest = 1.0;
+  for (const kernel::ThetaNode& node : data.thetas) {
+    largest = std::max({largest, node.order_limit_t, node.order_limit_phi});
+  }
+  return static_cast<int>(largest);
 }
 
 }  // namespace
 
 CosSin cos_sin_deg(double angle_deg) {
-  return {boost::math::cos_pi(angle_deg / 180.0), boost::math::sin_pi(angle_deg / 180.0)};
+  // Near 90 degrees the cosine keeps its relative accuracy as the sine of what is left.
+  const bool is_near_90 = std::abs(angle_deg - 90.0) < 45.0;
+  const double cosine =
+      is_near_90 ? boost::math::sin_pi((90.0 - angle_deg) / 180.0) : boost::math::cos_pi(angle_deg / 180.0);
+  return {cosine, boost::math::sin_pi(angle_deg / 180.0)};
 }
 
 KernelData kernel_data(const MomentsRequest& request) {
-  const double digits = kExtraDigits - std::log10(request.tolerance);
+  const double digits = rule_digits(request.masking, request.tolerance);
   KernelData data;
   data.distribution = request.distribution;
   data.masking = request.masking;
   data.tolerance = request.tolerance;
-  data.rule_nodes = rule_nodes();
-  for (const double theta_deg : request.theta_deg) data.thetas.push_back(theta_node(request, theta_deg, digits, 0.0));
+  data.rule = rule_node(request.masking, digits);
   for (const SlopeShape& shape : request.shapes) data.shapes.push_back(shape_node(request, shape));
   for (const OpticalConstants& index : request.indices) data.indices.push_back(index_node(index));
   data.entries = request.entries;
-  add_total_reflection(data, request, digits);
+  add_directions(data, request);
+  const int order = largest_order(data);
+  data.rule.node_stride = order;
+  data.rule_nodes = rule_nodes(order);
   return data;
 }
 

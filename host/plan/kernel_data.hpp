@@ -16,16 +16,18 @@ using real = double;
 }  // namespace kernel
 
 /// Inputs of one run of the kernel. `shapes` and `indices` match the lists of the request, `entries` its entries,
-/// position by position; `thetas` has the request's directions first and more after them for total reflection.
+/// position by position. `thetas` has the request's directions first and variants of them after: for total reflection, and
+/// for slope distributions that need the line b = pi/2 of `integral` or smith's cusp.
 struct KernelData {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
   double tolerance = 1e-4;
+  kernel::RuleNode rule{};
   std::vector<kernel::ThetaNode> thetas;
   std::vector<kernel::ShapeNode> shapes;
   std::vector<kernel::IndexNode> indices;
   std::vector<MomentsEntry> entries;
-  std::vector<std::array<double, 2>> rule_nodes;
+  std::vector<std::array<double, 4>> rule_nodes;
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
 };
 

@@ -3,6 +3,7 @@
 #include "physics/slope.glsl"
 #include "physics/fresnel.glsl"
 #include "physics/quadrature.glsl"
+#include "physics/orders.glsl"
 #include "physics/masking.glsl"
 #include "physics/masking_table.glsl"
 #include "physics/integrand.glsl"

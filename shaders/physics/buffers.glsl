@@ -6,9 +6,9 @@ layout(constant_id = DOLP_SPEC_MASKING) const uint kMasking = DOLP_MASKING_NONE;
 layout(push_constant) uniform PushConstants { DOLP_PUSH_CONSTANTS } push;
 
 layout(std430, binding = DOLP_BINDING_SHAPES) readonly buffer Shapes { ShapeNode shapes[]; };
-layout(std430, binding = DOLP_BINDING_RULE_NODES) readonly buffer RuleNodes { real2 rule_nodes[]; };
+layout(std430, binding = DOLP_BINDING_RULE_NODES) readonly buffer RuleNodes { real4 rule_nodes[]; };
 layout(std430, binding = DOLP_BINDING_MASKING_TABLE) buffer MaskingTable { real4 masking_table[]; };
 
-real2 rule_node(int i) { return rule_nodes[i]; }
+real4 rule_node(int i) { return rule_nodes[i]; }
 real4 masking_node(uint i) { return masking_table[i]; }
 void store_masking_node(uint i, real4 node) { masking_table[i] = node; }

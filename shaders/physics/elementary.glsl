@@ -91,6 +91,9 @@ real log1p_real(real u) {
   return k * kLn2High + (series + (k * kLn2Low + lost / v));
 }
 
+// ln(x) for 0 < x <= 1, coarse below 1e-30.
+real log_unit(real x) { return -log1p_real((real(1.0) - x) / max(x, real(1e-30))); }
+
 // ln(1 + u^2) for u >= 0, also where u^2 overflows: there it is 2 ln(u).
 real log1p_square(real u) {
   bool large = u > real(1e9);

@@ -13,21 +13,27 @@ struct FacetSums {
   real r_q;
   real albedo;
   real deficit;
-  real deficit_scale;  // the same with every term's absolute value
-  real evaluations;
 };
 
-FacetSums no_facets() { return FacetSums(real(0.0), real(0.0), real(0.0), real(0.0), real(0.0), real(0.0)); }
+FacetSums no_facets() { return FacetSums(real(0.0), real(0.0), real(0.0), real(0.0)); }
 
 FacetSums add_weighted(FacetSums sum, FacetSums term, real weight) {
-  sum.r_i += weight * term.r_i;
-  sum.r_q += weight * term.r_q;
-  sum.albedo += weight * term.albedo;
-  sum.deficit += weight * term.deficit;
-  sum.deficit_scale += weight * term.deficit_scale;
-  sum.evaluations += term.evaluations;
-  return sum;
+  return FacetSums(sum.r_i + weight * term.r_i, sum.r_q + weight * term.r_q, sum.albedo + weight * term.albedo,
+                   sum.deficit + weight * term.deficit);
 }
+
+FacetSums add_size(FacetSums sum, FacetSums term) {
+  return FacetSums(sum.r_i + abs(term.r_i), sum.r_q + abs(term.r_q), sum.albedo + abs(term.albedo),
+                   sum.deficit + abs(term.deficit));
+}
+
+// Sums over the azimuth at one slope.
+struct AzimuthSums {
+  FacetSums sum;
+  FacetSums null;      // sizes of the null rules' sums, arc by arc
+  real deficit_scale;  // the deficit with the absolute values of its terms
+  real evaluations;
+};
 
 // A facet's projection e as the part that masking leaves, e G, and the part that it hides, e (1 - G): each is computed
 // on its own, because either may be the difference of two nearly equal numbers.
@@ -48,8 +54,6 @@ FacetSums facet(ThetaNode theta, IndexNode index, real t, real r2, real x, real 
   sum.r_q = part.seen * half_split * (along * along - across * across);
   sum.albedo = part.seen;
   sum.deficit = part.hidden + part.seen * (f.absorbed_s + split);
-  sum.deficit_scale = sum.deficit;
-  sum.evaluations = real(1.0);
   return sum;
 }
 
@@ -59,8 +63,8 @@ struct Arc {
   real centre_cos;
   real centre_sin;
   real extent;
-  int first_node;
-  int order;
+  real quarter;  // tan of a quarter of its length; not positive for an empty arc
+  int section;   // of the rule nodes
 };
 
 // Half-angle form of an azimuth: (cos(phi/2), sin(phi/2)), from 1 + cos(phi) and 1 - cos(phi), clamped to [0, pi].
@@ -69,51 +73,40 @@ real2 half_angle(real one_plus_x, real one_minus_x) {
                sqrt(clamp(real(0.5) * one_minus_x, real(0.0), real(1.0))));
 }
 
-// Smith's L is not smooth at theta_r = 0, that is near the facets (tan(theta/2), phi = 0): it goes as |theta_r|^(2q-2)
-// for the cauchy, which a small q makes matter, and on very rough surfaces it bends within theta_r < 1/m.
-bool has_cusp(ShapeNode shape) {
-  bool small_q = kDistribution == DOLP_CAUCHY && shape.q_minus_1 < real(1.2);
-  return kMasking == DOLP_MASKING_SMITH && (small_q || shape.m > real(5.0));
-}
-
-// The arc between two azimuths given by their half angles; empty when they coincide or are out of order. `cusp`: the
-// arc begins at phi = 0, and with one.
-Arc make_arc(real2 from, real2 to, int order, bool cusp) {
+// The arc between two azimuths given by their half angles; empty when they coincide or are out of order.
+Arc make_arc(real2 from, real2 to) {
   real sin_half = to.y * from.x - to.x * from.y;
   real cos_half = to.x * from.x + to.y * from.y;
   bool starts_at_0 = from.y <= real(0.0);
   bool ends_at_pi = to.x <= real(0.0);
-  real quarter = sin_half / (real(1.0) + cos_half);
   Arc arc;
+  arc.quarter = sin_half / (real(1.0) + cos_half);
   arc.centre_cos = from.x * to.x - from.y * to.y;
   arc.centre_sin = from.y * to.x + from.x * to.y;
-  arc.extent = quarter / (real(1.0) + sqrt(real(1.0) + quarter * quarter));
-  arc.first_node = centre_offset(order);
+  arc.extent = arc.quarter / (real(1.0) + sqrt(real(1.0) + arc.quarter * arc.quarter));
+  arc.section = kSectionCentre;
   if (starts_at_0 || ends_at_pi) {
     arc.centre_cos = starts_at_0 ? real(1.0) : real(-1.0);
     arc.centre_sin = real(0.0);
-    arc.extent = quarter;
-    arc.first_node = half_offset(order);
+    arc.extent = arc.quarter;
+    arc.section = kSectionHalf;
   }
   if (starts_at_0 && ends_at_pi) {
     arc.extent = real(1.0);
-    arc.first_node = circle_offset(order);
+    arc.section = kSectionCircle;
   }
-  if (cusp) arc.first_node = cluster_offset(order);
-  arc.order = (sin_half > real(0.0)) ? order : 0;
   return arc;
 }
 
-// The arc between two azimuths with a square root at one of them: at its end, otherwise at its beginning.
-Arc make_root_arc(real2 from, real2 to, int order, bool at_end) {
-  Arc arc = make_arc(from, to, order, false);
+// The arc between two azimuths with a square root, or another singularity, at one of them: at its end, otherwise at its
+// beginning.
+Arc make_root_arc(real2 from, real2 to, bool at_end) {
+  Arc arc = make_arc(from, to);
   real2 root = at_end ? to : from;
-  real sin_half = to.y * from.x - to.x * from.y;
-  real quarter = sin_half / (real(1.0) + to.x * from.x + to.y * from.y);
   arc.centre_cos = (root.x - root.y) * (root.x + root.y);
   arc.centre_sin = real(2.0) * root.x * root.y;
-  arc.extent = at_end ? -quarter : quarter;
-  arc.first_node = cluster_offset(order);
+  arc.extent = at_end ? -arc.quarter : arc.quarter;
+  arc.section = kSectionCluster;
   return arc;
 }
 
@@ -142,12 +135,43 @@ Projection project(ThetaNode theta, ShapeNode shape, uint table, real t, real e,
   return Projection(e * (real(1.0) - shadow), e * shadow);
 }
 
-FacetSums arc_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint table, real t, Arc arc, int zone,
-                   real by_slope) {
+// What the sums over the azimuths of one slope share.
+struct Slice {
+  real t;
+  real digits;    // wanted
+  real by_slope;  // see project
+  real cusp_nodes;  // nodes of a half arc that smith's cusp at theta_r = 0 asks for
+};
+
+int arc_order(RuleNode rule, ThetaNode theta, Slice slice, Arc arc, int zone) {
+  real strip = rule.strip[zone] / theta.phi_narrowing;
+  real length = arc_length(arc.quarter);
+  real nodes;
+  if (arc.section == kSectionCircle) {
+    // The next singularity is the line e = 0, cos(phi) = -cot(theta) / t.
+    real x = max(theta.c / max(theta.s * slice.t, real(1e-30)), real(1.0001));
+    nodes = rule.phi_circle_nodes + slice.digits * rule.phi_circle_growth * kHalfLn10 / asinh_real(sqrt(x * x - real(1.0)));
+  } else if (arc.section == kSectionHalf) {
+    nodes = rule.phi_half_nodes + half_arc_nodes(rule, slice.digits, strip, length);
+  } else {
+    real stretch = (arc.section == kSectionCluster) ? rule.phi_cluster_growth : real(1.0);
+    nodes = rule.phi_centre_nodes +
+            slice.digits * rule.phi_growth * nodes_per_digit(real(2.0) * strip / (stretch * length));
+  }
+  if (arc.section != kSectionCluster) nodes = max(nodes, rule.phi_half_nodes + slice.cusp_nodes);
+  return order_between(nodes, theta.order_limit_phi);
+}
+
+AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, Slice slice, Arc arc,
+                     int zone) {
+  real t = slice.t;
   real r2 = real(1.0) / (real(1.0) + t * t);
+  int order = (arc.quarter > real(0.0)) ? arc_order(rule, theta, slice, arc, zone) : 0;
+  int first_node = rule_offset(rule, arc.section, order);
   FacetSums sum = no_facets();
-  for (int i = 0; i < arc.order; ++i) {
-    real2 node = rule_node(arc.first_node + i);
+  FacetSums null = no_facets();
+  for (int i = 0; i < order; ++i) {
+    real4 node = rule_node(first_node + i);
     real tau = arc.extent * node.x;
     real inverse = real(1.0) / (real(1.0) + tau * tau);
     real cos_half = real(2.0) * inverse - real(1.0);
@@ -157,11 +181,18 @@ FacetSums arc_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint table
     real sin_phi = arc.centre_sin * cos_psi + arc.centre_cos * sin_psi;
     real e = theta.c + theta.s * t * x;
     real cos_r = clamp(real(2.0) * r2 * e - theta.c, real(0.0), real(1.0));
-    Projection part = project(theta, shape, table, t, e, cos_r, zone, by_slope);
+    Projection part = project(theta, shape, table, t, e, cos_r, zone, slice.by_slope);
     FacetSums term = facet(theta, index, t, r2, x, sin_phi, e, part);
-    sum = add_weighted(sum, term, real(4.0) * abs(arc.extent) * inverse * node.y);
+    real measure = real(4.0) * abs(arc.extent) * inverse;
+    sum = add_weighted(sum, term, measure * node.y);
+    null = add_weighted(null, term, measure * node.z);
   }
-  return sum;
+  return AzimuthSums(sum, add_size(no_facets(), null), sum.deficit, real(order));
+}
+
+AzimuthSums add_arc(AzimuthSums sums, AzimuthSums arc) {
+  return AzimuthSums(add_weighted(sums.sum, arc.sum, real(1.0)), add_size(sums.null, arc.null),
+                     sums.deficit_scale + arc.deficit_scale, sums.evaluations + arc.evaluations);
 }
 
 // The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth: three in ascending order
@@ -193,7 +224,8 @@ SplitLines split_lines(ThetaNode theta, IndexNode index, real t) {
     real sec = sqrt(sec2);
     real cos_limit = sqrt(real(0.5) / (sec * (sec + t)));
     lines.first = same_zenith;
-    lines.second = (cos_limit < c) ? line_at(real(0.5) * (cos_limit + c) * sec2 - c, st) : same_zenith;
+    bool limited = theta.has_line > real(0.5) && cos_limit < c;
+    lines.second = limited ? line_at(real(0.5) * (cos_limit + c) * sec2 - c, st) : same_zenith;
   }
   if (kMasking == DOLP_MASKING_V_CAVITY) {
     // G = 1 between 2 cos(alpha) cos(theta) = cos(beta) and the same with theta_r; the two lines meet at t = 1.
@@ -204,42 +236,67 @@ SplitLines split_lines(ThetaNode theta, IndexNode index, real t) {
   return lines;
 }
 
-// Integral over the azimuths of one zone, split where total reflection begins; its clusters then replace those of the
-// cusp.
-FacetSums zone_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint table, real t, real2 from, real2 to,
-                    real2 critical, int order, int zone, real by_slope) {
-  bool cusp = zone == 0 && has_cusp(shape);
+// Smith's L goes as |theta_r|^(2q - 2) near the facet (tan(theta/2), phi = 0), where theta_r = 0: not smooth unless q is an
+// integer, and the less so the smaller q. For the arc from phi = 0, theta_r = 0 lies at
+// cosh(i phi) = 1 + (1 + c) (t - tan(theta/2))^2 / (2 s t).
+real cusp_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, real t, real digits, real length) {
+  if (kMasking != DOLP_MASKING_SMITH || shape.cusp_digits < real(-100.0)) return real(0.0);
+  real away = t - theta.s / (real(1.0) + theta.c);
+  real rise = (real(1.0) + theta.c) * away * away / (real(2.0) * max(theta.s * t, real(1e-30)));
+  real distance = log1p_real(rise + sqrt(rise * (rise + real(2.0))));
+  return half_arc_nodes(rule, max(digits + shape.cusp_digits, real(0.0)), max(distance, real(1e-3)), length);
+}
+
+// The arc of a zone without total reflection.
+Arc zone_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, Slice slice, real2 from, real2 to, int zone) {
+  Arc arc = make_arc(from, to);
+  bool has_line = theta.has_line > real(0.5);
+  if (kMasking == DOLP_MASKING_SMITH && has_line) {
+    real cusp_digits = max(slice.digits + shape.cusp_digits, real(0.0));
+    if (slice.cusp_nodes > rule.phi_cluster_growth * cusp_digits) return make_root_arc(from, to, false);
+  }
+  // Where the limit b of `integral` meets pi/2, G goes as the distance to the power 2q - 1.
+  bool is_rough_line = kMasking == DOLP_MASKING_INTEGRAL && kDistribution == DOLP_CAUCHY && zone == 2 && has_line &&
+                       shape.q_minus_1 + real(1.0) < rule.cluster_below_q;
+  if (is_rough_line) return make_root_arc(from, to, false);
+  return arc;
+}
+
+// Integral over the azimuths of one zone, split where total reflection begins; its clusters then replace those of
+// zone_arc.
+AzimuthSums zone_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, Slice slice,
+                      real2 from, real2 to, real2 critical, int zone) {
   if (index.critical_cos <= real(0.0)) {
-    return arc_sums(theta, shape, index, table, t, make_arc(from, to, order, cusp), zone, by_slope);
+    return arc_sums(rule, theta, shape, index, table, slice, zone_arc(rule, theta, shape, slice, from, to, zone), zone);
   }
   real2 middle = clamp_half_angle(critical, from, to);
-  FacetSums sum = no_facets();
-  for (int side = 0; side < 2; ++side) {
-    Arc arc = (side == 0) ? make_root_arc(from, middle, order, true) : make_root_arc(middle, to, order, false);
-    sum = add_weighted(sum, arc_sums(theta, shape, index, table, t, arc, zone, by_slope), real(1.0));
-  }
-  return sum;
+  AzimuthSums below = arc_sums(rule, theta, shape, index, table, slice, make_root_arc(from, middle, true), zone);
+  return add_arc(below, arc_sums(rule, theta, shape, index, table, slice, make_root_arc(middle, to, false), zone));
 }
 
 // Integral over the azimuth from 0 to pi at slope t, the facets below the horizon counted in the deficit.
-FacetSums azimuth_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint table, real t, int order) {
+AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, real t,
+                         real digits) {
   SplitLines lines = split_lines(theta, index, t);
-  real by_slope = real(0.0);
-  if (kMasking == DOLP_MASKING_INTEGRAL) by_slope = shadowed_integral(shape, table, theta.c, theta.s, t);
-  if (kMasking == DOLP_MASKING_SMITH) by_slope = smith_lambda(shape, table, theta.c, theta.s);
+  Slice slice = Slice(t, digits, real(0.0), real(0.0));
+  if (kMasking == DOLP_MASKING_INTEGRAL) slice.by_slope = shadowed_integral(shape, table, theta.c, theta.s, t);
+  if (kMasking == DOLP_MASKING_SMITH) {
+    slice.by_slope = smith_lambda(shape, table, theta.c, theta.s);
+    slice.cusp_nodes = cusp_nodes(rule, theta, shape, t, digits, arc_length(lines.horizon.y / (real(1.0) + lines.horizon.x)));
+  }
   real2 forward = real2(real(1.0), real(0.0));
-  FacetSums sum = zone_sums(theta, shape, index, table, t, forward, lines.first, lines.critical, order, 0, by_slope);
+  AzimuthSums sums =
+      zone_sums(rule, theta, shape, index, table, slice, forward, lines.first, lines.critical, 0);
   if (kMasking == DOLP_MASKING_INTEGRAL || kMasking == DOLP_MASKING_V_CAVITY) {
     for (int zone = 1; zone < 3; ++zone) {
       real2 from = (zone == 1) ? lines.first : lines.second;
       real2 to = (zone == 1) ? lines.second : lines.horizon;
-      FacetSums part = zone_sums(theta, shape, index, table, t, from, to, lines.critical, order, zone, by_slope);
-      sum = add_weighted(sum, part, real(1.0));
+      sums = add_arc(sums, zone_sums(rule, theta, shape, index, table, slice, from, to, lines.critical, zone));
     }
   }
   real below = theta.c * real(4.0) * atan_unit(lines.horizon.x / (real(1.0) + lines.horizon.y));
   real behind = real(2.0) * theta.s * t * lines.horizon.x * lines.horizon.y;
-  sum.deficit += below - behind;
-  sum.deficit_scale += below + behind;
-  return sum;
+  sums.sum.deficit += below - behind;
+  sums.deficit_scale += below + behind;
+  return sums;
 }

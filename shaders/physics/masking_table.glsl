@@ -1,16 +1,16 @@
 // Builds the masking table of one shape, from its far end inwards. All terms are positive, so that the relative accuracy
 // is kept down to the smallest tails.
 
-CONST int kTableOrder = 6;  // Gauss order on one cell, in which v grows by less than 1/16
+CONST int kTableOrder = 6;  // Gauss order on one cell, in which v grows by a sixteenth or less
 
-// Adds one cell [tau0, tau1] to the tails at tau1: (l, C, Pt, p) at tau0.
+// What one cell [tau0, tau1] adds to the tails at tau1, so that (l, C, Pt, p) results at tau0; p is whole.
 real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   real h = tau1 - tau0;
   real height = real(0.0);
   real first = real(0.0);
   real probability = real(0.0);
   for (int i = 0; i < kTableOrder; ++i) {
-    real2 node = rule_node(gauss_offset(kTableOrder) + i);
+    real4 node = rule_node(gauss_offset(kTableOrder) + i);
     real rise = h * node.x;
     real tau = tau0 + rise;
     real weight = h * node.y * marginal_density(shape, tau);
@@ -19,8 +19,7 @@ real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
     first += weighted;
     height += weighted * rise;
   }
-  return real4(beyond.x + h * beyond.y + height, beyond.y + first, beyond.z + probability,
-               marginal_density(shape, tau0));
+  return real4(h * beyond.y + height, first, probability, marginal_density(shape, tau0));
 }
 
 // The tails at the table's end. The cauchy's p is a power law tau^(1-2q) there; where the end lies below slope 1 next to
@@ -35,14 +34,21 @@ real4 masking_table_end(ShapeNode shape, real tau) {
   return real4(tail * tau * weight / (a + real(1.0)), tail * a * weight / (a + real(1.0)), tail, p);
 }
 
-// Fills the table that starts at node `table`.
+// Fills the table that starts at node `table`. The sums are compensated (Kahan 1965): a heavy tail adds hundreds of nearly
+// equal terms.
 void build_masking_table(ShapeNode shape, uint table) {
-  real tau1 = masking_node_tau(shape, uint(DOLP_MASKING_NODES - 1));
+  real tau1 = masking_node_tau(shape, kMaskingNodes - 1u);
   real4 tails = masking_table_end(shape, tau1);
-  store_masking_node(table + uint(DOLP_MASKING_NODES - 1), tails);
-  for (int node = DOLP_MASKING_NODES - 2; node >= 0; --node) {
+  real4 carry = real4(real(0.0));
+  store_masking_node(table + kMaskingNodes - 1u, tails);
+  for (int node = int(kMaskingNodes) - 2; node >= 0; --node) {
     real tau0 = masking_node_tau(shape, uint(node));
-    tails = masking_cell(shape, tau0, tau1, tails);
+    real4 cell = masking_cell(shape, tau0, tau1, tails);
+    precise real4 term = cell - carry;
+    precise real4 sum = tails + term;
+    precise real4 lost = (sum - tails) - term;
+    carry = lost;
+    tails = real4(sum.x, sum.y, sum.z, cell.w);
     store_masking_node(table + uint(node), tails);
     tau1 = tau0;
   }

@@ -1,18 +1,5 @@
-// The moments of one entry: Gauss rules on the smooth pieces of the slope axis, twice, the second time with
-// three quarters of the nodes (quadrature.glsl).
-
-// How the order of a piece follows its length in X and its weight; found by scanning the domain for entries whose
-// estimate misses the tolerance (tests/plan_test.cpp repeats the scan on a sample).
-CONST real kOrderPerLength = real(0.08);
-CONST real kUsualLength = real(3.5);
-CONST real kRootShare = real(0.6);
-
-// ln of the share of the moments that slopes beyond a carry, roughly: the tail, times (c + s a) / (c + s m) for the
-// weight P t (c + s t) of the albedo.
-real log_share(ThetaNode theta, ShapeNode shape, real a) {
-  real lever = theta.s * max(a - shape.m, real(0.0)) / (theta.c + theta.s * shape.m);
-  return min(log1p_real(lever) - slope_tail_exponent(shape, a), real(0.0));
-}
+// The moments of one entry: Gauss rules on the smooth pieces of the slope axis, of orders that follow from the digits
+// wanted (orders.glsl).
 
 // A piece [a, b] of the slope axis. X = asinh(t/scale) is linear in y(v), which takes up square-root ends:
 // v, v^2 (at a), 1 - (1-v)^2 (at b), v^2 (3 - 2v) (both).
@@ -21,31 +8,43 @@ struct Piece {
   real extent;  // in X
   bool root_at_a;
   bool root_at_b;
+  real mass;    // share of the facets
+  real digits;  // wanted
   int order;
 };
 
-Piece make_piece(ThetaNode theta, ShapeNode shape, int number) {
+Piece make_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, int number) {
   real a = theta.end[number];
   real b = min(theta.end[number + 1], shape.cut);
   Piece piece;
   piece.start = asinh_real(a / shape.scale);
   piece.extent = asinh_real(b / shape.scale) - piece.start;
-  // The less a piece carries, the fewer nodes it needs; the longer it is in X, the more.
-  real order = theta.order_t + theta.order_per_e * log_share(theta, shape, a);
-  order *= real(1.0) + kOrderPerLength * max(piece.extent - kUsualLength, real(0.0));
-  piece.order = int(clamp(order, real(3.0), theta.order_limit));
-  // A square root at b is worth the nodes that it draws away from a only if there is something left at b.
-  real order_at_b = theta.order_t + theta.order_per_e * log_share(theta, shape, b);
+  real exponent_a = slope_tail_exponent(shape, a);
+  piece.mass = -exp_real(-exponent_a) * expm1_real(exponent_a - slope_tail_exponent(shape, b));
+  piece.digits = digits_of_piece(rule, theta, shape, a, b, piece.mass);
   piece.root_at_a = mod(theta.kind[number], real(2.0)) > real(0.5);
-  piece.root_at_b = b < shape.cut && theta.kind[number + 1] > real(1.5) && order_at_b > kRootShare * theta.order_t;
+  piece.root_at_b = b < shape.cut && theta.kind[number + 1] > real(1.5);
+  real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
+  piece.order = order_t(rule, theta, shape, piece.digits, piece.extent, roots);
   return piece;
 }
 
-FacetSums piece_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint table, Piece piece, int order_t,
-                     int order_phi) {
-  FacetSums sum = no_facets();
-  for (int i = 0; i < order_t; ++i) {
-    real2 node = rule_node(gauss_offset(order_t) + i);
+// Sums over the slopes of a piece, or of all pieces.
+struct SlopeSums {
+  FacetSums sum;
+  FacetSums null_phi;     // what the azimuths' null rules leave
+  FacetSums null_first;   // sums of the slopes' two null rules
+  FacetSums null_second;
+  real mass;              // the rule's value of Piece::mass
+  real deficit_scale;
+  real evaluations;
+};
+
+SlopeSums piece_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, Piece piece) {
+  SlopeSums sums = SlopeSums(no_facets(), no_facets(), no_facets(), no_facets(), real(0.0), real(0.0), real(0.0));
+  int first_node = rule_offset(rule, kSectionGauss, piece.order);
+  for (int i = 0; i < piece.order; ++i) {
+    real4 node = rule_node(first_node + i);
     real v = node.x;
     real y = v;
     real dy = real(1.0);
@@ -58,43 +57,67 @@ FacetSums piece_sums(ThetaNode theta, ShapeNode shape, IndexNode index, uint tab
     }
     real2 hyperbolic = sinh_cosh(piece.start + piece.extent * y);
     real t = shape.scale * hyperbolic.x;
-    real du = shape.scale / shape.m * hyperbolic.y * piece.extent * dy * node.y;
-    FacetSums term = azimuth_sums(theta, shape, index, table, t, order_phi);
-    sum = add_weighted(sum, term, real(2.0) * slope_density(shape, t) * du);
+    real du = shape.scale / shape.m * hyperbolic.y * piece.extent * dy;
+    real density = real(2.0) * slope_density(shape, t) * du;
+    AzimuthSums term = azimuth_sums(rule, theta, shape, index, table, t, piece.digits);
+    sums.sum = add_weighted(sums.sum, term.sum, density * node.y);
+    sums.null_phi = add_weighted(sums.null_phi, term.null, density * node.y);
+    sums.null_first = add_weighted(sums.null_first, term.sum, density * node.z);
+    sums.null_second = add_weighted(sums.null_second, term.sum, density * node.w);
+    sums.mass += kPi * density * node.y;
+    sums.deficit_scale += density * node.y * term.deficit_scale;
+    sums.evaluations += term.evaluations;
   }
-  return sum;
+  return sums;
 }
 
-MomentsNode moments_entry(ThetaNode theta, ShapeNode shape, IndexNode index, uint table) {
-  FacetSums total = no_facets();
-  FacetSums difference = no_facets();
+// How far a sum may be off by one rule, up to a factor that host/plan/error_bounds.cpp knows. Where the integrand is
+// smooth, the error of n nodes is to the null rule's value as that is to the sum; where it is not, it is what the orders
+// were made for, 10^-digits. The geometric mean of the two is the closest to the truth over the domain.
+real doubt(real sum, real null, real digits) {
+  real expected = exp_real(real(-0.75) * kLn10 * digits);
+  return expected * sqrt(abs(sum) * min(abs(null), abs(sum)));
+}
+
+real null_size(real first, real second) { return sqrt(first * first + second * second); }
+
+// A piece's sums as the moments of an entry, and its doubts. Multiplied by the ratio of its true mass to the rule's: the
+// error that the density P alone makes cancels.
+MomentsNode piece_moments(Piece piece, SlopeSums sums) {
+  real ratio = (sums.mass > real(0.0)) ? piece.mass / sums.mass : real(1.0);
+  FacetSums first = sums.null_first;
+  FacetSums second = sums.null_second;
+  real null_t = max(null_size(first.r_i, second.r_i), null_size(first.r_q, second.r_q));
+  real null_phi = max(sums.null_phi.r_i, sums.null_phi.r_q);
+  MomentsNode node;
+  node.r_i = ratio * sums.sum.r_i;
+  node.r_q = ratio * sums.sum.r_q;
+  node.albedo = ratio * sums.sum.albedo;
+  node.deficit = ratio * sums.sum.deficit;
+  node.doubt = doubt(sums.sum.r_i, null_t, piece.digits) + doubt(sums.sum.r_i, null_phi, piece.digits);
+  node.deficit_doubt = doubt(sums.deficit_scale, null_size(first.deficit, second.deficit), piece.digits) +
+                       doubt(sums.deficit_scale, sums.null_phi.deficit, piece.digits);
+  node.deficit_scale = ratio * sums.deficit_scale;
+  node.evaluations = sums.evaluations;
+  return node;
+}
+
+MomentsNode add_moments(MomentsNode a, MomentsNode b) {
+  return MomentsNode(a.r_i + b.r_i, a.r_q + b.r_q, a.albedo + b.albedo, a.deficit + b.deficit, a.doubt + b.doubt,
+                     a.deficit_doubt + b.deficit_doubt, a.deficit_scale + b.deficit_scale,
+                     a.evaluations + b.evaluations);
+}
+
+MomentsNode moments_entry(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table) {
   real reached = min(theta.end[int(theta.piece_count)], shape.cut);
+  real beyond = theta.c * slope_tail(shape, reached);
+  MomentsNode total =
+      MomentsNode(real(0.0), real(0.0), real(0.0), beyond, real(0.0), real(0.0), beyond, real(0.0));
   for (int number = 0; number < int(theta.piece_count); ++number) {
     if (theta.end[number] < shape.cut) {
-      Piece piece = make_piece(theta, shape, number);
-      int order_phi = int(theta.order_phi);
-      FacetSums fine = piece_sums(theta, shape, index, table, piece, piece.order, order_phi);
-      FacetSums coarse = piece_sums(theta, shape, index, table, piece, coarse_order_t(piece.order),
-                                    coarse_order_phi(order_phi));
-      total = add_weighted(total, fine, real(1.0));
-      difference.r_i += abs(fine.r_i - coarse.r_i);
-      difference.r_q += abs(fine.r_q - coarse.r_q);
-      difference.albedo += abs(fine.albedo - coarse.albedo);
-      difference.deficit += abs(fine.deficit - coarse.deficit);
-      difference.evaluations += coarse.evaluations;
+      Piece piece = make_piece(rule, theta, shape, number);
+      total = add_moments(total, piece_moments(piece, piece_sums(rule, theta, shape, index, table, piece)));
     }
   }
-  MomentsNode result;
-  result.r_i = total.r_i;
-  result.r_q = total.r_q;
-  result.albedo = total.albedo;
-  real beyond = theta.c * slope_tail(shape, reached);
-  result.deficit = total.deficit + beyond;
-  result.deficit_scale = total.deficit_scale + beyond;
-  result.r_i_difference = difference.r_i;
-  result.r_q_difference = difference.r_q;
-  result.albedo_difference = difference.albedo;
-  result.deficit_difference = difference.deficit;
-  result.evaluations = total.evaluations + difference.evaluations;
-  return result;
+  return total;
 }

@@ -13,7 +13,8 @@ namespace dolp {
 std::vector<Moments> CpuEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const KernelData data = kernel_data(request);
-  const bool in_double = precision_ == Precision::kDouble;
+  const Precision precision = request.precision == Precision::kAuto ? precision_ : request.precision;
+  const bool in_double = precision == Precision::kDouble;
   const std::unique_ptr<KernelText> text = in_double ? make_kernel_text_double(data) : make_kernel_text_float(data);
   const double unit_roundoff = in_double ? 0.5 * std::numeric_limits<double>::epsilon()
                                          : 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon());
@@ -29,7 +30,7 @@ std::vector<Moments> CpuEvaluator::evaluate(const MomentsRequest& request, const
 
   report_.evaluator = "cpu";
   report_.device = processor_name();
-  report_.precision = in_double ? "double" : "float";
+  note_precision(report_.precision, in_double);
   for (const Moments& entry : moments) report_.evaluations += entry.evaluations;
   report_.kernel_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return moments;

@@ -5,7 +5,8 @@
 
 namespace dolp {
 
-/// Evaluator "cpu": kernel and rules of the Vulkan evaluator, compiled by the C++ compiler. Precision::kAuto is float.
+/// Evaluator "cpu": kernel and rules of the Vulkan evaluator, compiled by the C++ compiler. A request says in which
+/// precision; if it does not, `precision` does, and kAuto is float then.
 class CpuEvaluator final : public MomentsEvaluator {
  public:
   explicit CpuEvaluator(Precision precision) : precision_(precision) {}

@@ -14,6 +14,7 @@
 
 #include "error.hpp"
 #include "evaluate/radiometry/smooth_surface.hpp"
+#include "evaluate/run/attempts.hpp"
 #include "evaluate/run/grazing_limit.hpp"
 #include "evaluate/run/scattering.hpp"
 #include "scene/number_range.hpp"
@@ -127,11 +128,14 @@ bool is_bistatic(const Scene& scene) { return scene.geometry.mode == Mode::kBist
 /// gaussian alone, shares its moments; in bistatic mode all entries of one surface do, whatever the source's direction.
 class BlockBuilder {
  public:
-  BlockBuilder(const Scene& scene, const std::vector<OpticalConstants>& samples, std::size_t count) : scene_(scene) {
+  BlockBuilder(const Scene& scene, const std::vector<OpticalConstants>& samples, std::size_t count,
+               const Attempt& attempt)
+      : scene_(scene) {
     MomentsRequest& request = block_.request;
     request.distribution = scene.surface.distribution;
     request.masking = scene.surface.masking;
-    request.tolerance = scene.accuracy.tolerance;
+    request.tolerance = attempt.tolerance;
+    request.precision = attempt.precision;
     request.entries.reserve(count * samples.size());
     block_.first_moments.reserve(count);
     for (const OpticalConstants& sample : samples) sample_positions_.push_back(position(sample));
@@ -266,9 +270,11 @@ SceneEntry seen_entry(const Scene& scene, const SceneEntry& entry) {
   return seen;
 }
 
-/// Appends the results of the entries of a block.
-void append_results(std::vector<PointResult>& results, const Scene& scene, const Radiometry& radiometry,
-                    std::span<const SceneEntry> entries, const Block& block, std::span<const Moments> moments) {
+/// Results of the entries of a block.
+std::vector<PointResult> block_results(const Scene& scene, const Radiometry& radiometry,
+                                       std::span<const SceneEntry> entries, const Block& block,
+                                       std::span<const Moments> moments) {
+  std::vector<PointResult> results;
   const std::vector<OpticalConstants> samples = radiometry.rule().indices();
   const std::size_t count = samples.size();
   const std::vector<Scattered> beams =
@@ -294,6 +300,52 @@ void append_results(std::vector<PointResult>& results, const Scene& scene, const
     if (seen.index) same.assign(count, moments[first]);
     const std::span<const Moments> own = seen.index ? std::span<const Moments>(same) : moments.subspan(first, count);
     results.push_back(entry_result(radiometry, entries[i], direction, own, indices, own_beams));
+  }
+  return results;
+}
+
+/// What the attempts at the entries of a scene share.
+struct SceneRun {
+  const Scene& scene;
+  const Radiometry& radiometry;
+  MomentsEvaluator& evaluator;
+};
+
+/// One attempt at all entries of a block.
+std::vector<PointResult> attempt_block(const SceneRun& run, std::span<const SceneEntry> entries, const Attempt& attempt,
+                                       const Progress& progress) {
+  BlockBuilder builder(run.scene, run.radiometry.rule().indices(), entries.size(), attempt);
+  for (const SceneEntry& entry : entries) builder.add(seen_entry(run.scene, entry));
+  const Block block = builder.take();
+  const std::vector<Moments> moments = run.evaluator.evaluate(block.request, progress);
+  return block_results(run.scene, run.radiometry, entries, block, moments);
+}
+
+bool is_better(const PointResult& a, const PointResult& b) {
+  return (a.status & kStatusToleranceMissed) < (b.status & kStatusToleranceMissed) ||
+         std::max(a.error_estimate, a.rho_error_estimate) < std::max(b.error_estimate, b.rho_error_estimate);
+}
+
+/// Tries the entries of a block again that miss the tolerance, those together that want the same attempt.
+void retry(const SceneRun& run, std::span<const SceneEntry> entries, const Attempt& first,
+           std::span<PointResult> results) {
+  const Accuracy& accuracy = run.scene.accuracy;
+  std::map<Attempt, std::vector<std::size_t>> waiting;
+  const auto plan = [&](std::size_t i, const Attempt& last, const PointResult& result) {
+    const auto next = next_attempt(last, result, accuracy, run.evaluator.has_double());
+    if (next && needs_evaluator(run.scene, seen_entry(run.scene, entries[i]))) waiting[*next].push_back(i);
+  };
+  for (std::size_t i = 0; i < entries.size(); ++i) plan(i, first, results[i]);
+  while (!waiting.empty()) {
+    const auto [attempt, members] = *waiting.begin();
+    waiting.erase(waiting.begin());
+    std::vector<SceneEntry> again;
+    for (const std::size_t i : members) again.push_back(entries[i]);
+    const std::vector<PointResult> better = attempt_block(run, again, attempt, {});
+    for (std::size_t j = 0; j < members.size(); ++j) {
+      if (is_better(better[j], results[members[j]])) results[members[j]] = better[j];
+      plan(members[j], attempt, better[j]);
+    }
   }
 }
 
@@ -373,21 +425,20 @@ std::vector<SceneEntry> point_entries(const Scene& scene, const Points& points) 
 std::vector<PointResult> evaluate_scene(const Scene& scene, const std::vector<SceneEntry>& entries,
                                         MomentsEvaluator& evaluator, const Progress& progress) {
   const Radiometry radiometry(scene);
-  const std::vector<OpticalConstants> samples = radiometry.rule().indices();
-  const std::size_t block_size = std::max<std::size_t>(1, kMomentsAtOnce / samples.size());
+  const SceneRun run{scene, radiometry, evaluator};
+  const Attempt first_try = first_attempt(scene.accuracy, evaluator.has_double());
+  const std::size_t block_size = std::max<std::size_t>(1, kMomentsAtOnce / radiometry.rule().indices().size());
   std::vector<PointResult> results;
   results.reserve(entries.size());
   for (std::size_t first = 0; first < entries.size(); first += block_size) {
     const std::size_t count = std::min(block_size, entries.size() - first);
     const std::span<const SceneEntry> of_block(entries.data() + first, count);
-    BlockBuilder builder(scene, samples, count);
-    for (const SceneEntry& entry : of_block) builder.add(seen_entry(scene, entry));
-    const Block block = builder.take();
     const Progress block_progress = [&](std::size_t done, std::size_t total) {
       return !progress || progress(first + count * done / total, entries.size());
     };
-    const std::vector<Moments> moments = evaluator.evaluate(block.request, block_progress);
-    append_results(results, scene, radiometry, of_block, block, moments);
+    std::vector<PointResult> of_results = attempt_block(run, of_block, first_try, block_progress);
+    retry(run, of_block, first_try, of_results);
+    results.insert(results.end(), of_results.begin(), of_results.end());
   }
   return results;
 }

@@ -13,7 +13,7 @@
 
 namespace dolp::vulkan {
 
-constexpr std::uint32_t kBindingCount = DOLP_BINDING_MOMENTS + 1;
+constexpr std::uint32_t kBindingCount = DOLP_BINDING_RULE + 1;
 constexpr std::uint32_t kPushConstantCount = 4;
 /// Invocations of a workgroup; every device allows 128.
 constexpr std::uint32_t kLocalSize = 64;

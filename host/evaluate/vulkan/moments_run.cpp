@@ -10,6 +10,7 @@ namespace {
 
 using EntryWords = std::array<std::uint32_t, 4>;
 using MaskingNode = std::array<double, 4>;
+using RulePoint = std::array<double, 4>;
 
 }  // namespace
 
@@ -30,7 +31,7 @@ TileSizes MomentsRun::sizes(std::uint32_t tile_entries, std::uint32_t block_shap
   const TileCosts costs{
       .entry_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
                      packing.node_bytes<kernel::IndexNode>() + packing.node_bytes<kernel::MomentsNode>(),
-      .shape_bytes = packing.node_bytes<kernel::ShapeNode>() + DOLP_MASKING_NODES * packing.node_bytes<MaskingNode>()};
+      .shape_bytes = packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>()};
   return tile_sizes({.buffer_bytes = limits.maxStorageBufferRange,
                      .heap_bytes = context_.device.heap_bytes(),
                      .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
@@ -50,8 +51,9 @@ void MomentsRun::create_buffers() {
   shape_buffer_.emplace(device, sizes_.shapes * packing.node_bytes<kernel::ShapeNode>(), staged);
   index_buffer_.emplace(device, indices * packing.node_bytes<kernel::IndexNode>(), staged);
   entry_buffer_.emplace(device, sizes_.entries * sizeof(EntryWords), staged);
-  rule_buffer_.emplace(device, data_.rule_nodes.size() * 2 * packing.real_bytes(), staged);
-  masking_buffer_.emplace(device, tables * DOLP_MASKING_NODES * packing.node_bytes<MaskingNode>(),
+  rule_buffer_.emplace(device, packing.node_bytes<kernel::RuleNode>(), staged);
+  rule_node_buffer_.emplace(device, data_.rule_nodes.size() * packing.node_bytes<RulePoint>(), staged);
+  masking_buffer_.emplace(device, tables * packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
                           MemoryUse::kDeviceOnly);
   moments_buffer_.emplace(device, sizes_.entries * packing.node_bytes<kernel::MomentsNode>(), MemoryUse::kReadback);
 
@@ -60,7 +62,8 @@ void MomentsRun::create_buffers() {
   buffers[DOLP_BINDING_SHAPES] = shape_buffer_->get();
   buffers[DOLP_BINDING_INDICES] = index_buffer_->get();
   buffers[DOLP_BINDING_ENTRIES] = entry_buffer_->get();
-  buffers[DOLP_BINDING_RULE_NODES] = rule_buffer_->get();
+  buffers[DOLP_BINDING_RULE] = rule_buffer_->get();
+  buffers[DOLP_BINDING_RULE_NODES] = rule_node_buffer_->get();
   buffers[DOLP_BINDING_MASKING_TABLE] = masking_buffer_->get();
   buffers[DOLP_BINDING_MOMENTS] = moments_buffer_->get();
   context_.kernels.bind(buffers);
@@ -96,7 +99,10 @@ void MomentsRun::start_block(const Block& block) {
   CommandStream& stream = context_.stream;
   stream.begin();
   upload(data_.shapes, shapes, *shape_buffer_);
-  upload(data_.rule_nodes, nodes, *rule_buffer_);
+  upload(data_.rule_nodes, nodes, *rule_node_buffer_);
+  scratch_.clear();
+  context_.packing.append(data_.rule, scratch_);
+  rule_buffer_->write(scratch_, stream);
   stream.barrier(Barrier::kUploadToKernel);
   if (data_.needs_masking_table()) {
     stream.dispatch(context_.kernels, context_.kernels.masking_table(data_.distribution, data_.masking), 0,

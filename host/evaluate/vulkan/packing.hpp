@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "plan/convert_reals.hpp"
+#include "plan/kernel_data.hpp"
 
 namespace dolp::vulkan {
 
@@ -29,6 +30,11 @@ class Packing {
   template <class Node>
   std::size_t node_bytes() const {
     return real_count<Node>() * real_bytes();
+  }
+  /// Nodes of the masking table of one shape.
+  std::size_t masking_nodes() const {
+    return float64_ ? DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE)
+                    : DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT);
   }
   /// Relative spacing of the numbers, halved.
   double unit_roundoff() const { return float64_ ? 0x1p-53 : 0x1p-24; }

@@ -58,26 +58,30 @@ class VulkanEvaluator::Impl {
       : options_(options),
         instance_(wants_validation(options.validation) ? &log_ : nullptr),
         choice_(choose(instance_, options)),
-        device_(choice_.physical, float64()),
-        kernels_(device_, float64()),
+        device_(choice_.physical, choice_.description.float64),
         stream_(device_) {}
 
-  bool float64() const { return options_.precision == Precision::kDouble; }
+  /// Whether a request is to be computed in double.
+  bool in_double(const MomentsRequest& request) const {
+    const Precision precision = request.precision == Precision::kAuto ? options_.precision : request.precision;
+    return precision == Precision::kDouble;
+  }
   const DeviceDescription& description() const { return choice_.description; }
   std::vector<std::string> validation_messages() const { return log_.messages(); }
 
   /// Creates the pipelines of a request, so that their time is known apart.
   void prepare(const MomentsRequest& request) {
-    kernels_.moments(request.distribution, request.masking);
-    if (needs_masking_table(request)) kernels_.masking_table(request.distribution, request.masking);
+    vulkan::Kernels& kernels = kernels_for(request);
+    kernels.moments(request.distribution, request.masking);
+    if (needs_masking_table(request)) kernels.masking_table(request.distribution, request.masking);
   }
 
   /// Computes a request and adds what it cost to `report`. After a DeviceTimeout this object must not be destroyed.
   std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
     run_.emplace(vulkan::RunContext{.device = device_,
-                                    .kernels = kernels_,
+                                    .kernels = kernels_for(request),
                                     .stream = stream_,
-                                    .packing = vulkan::Packing(float64()),
+                                    .packing = vulkan::Packing(in_double(request)),
                                     .staged_uploads = options_.staged_uploads,
                                     .tile_timeout_s = options_.tile_timeout_s},
                  request, options_.max_tile_entries, options_.max_block_shapes);
@@ -85,6 +89,7 @@ class VulkanEvaluator::Impl {
     report.dispatches += run_->cost().dispatches;
     report.evaluations += run_->cost().evaluations;
     report.kernel_s += run_->cost().kernel_s;
+    note_precision(report.precision, in_double(request));
     run_.reset();
     if (!moments) throw Cancelled{};
     const std::vector<std::string> messages = log_.messages();
@@ -97,12 +102,22 @@ class VulkanEvaluator::Impl {
     return KernelData{.masking = request.masking}.needs_masking_table();
   }
 
+  vulkan::Kernels& kernels_for(const MomentsRequest& request) {
+    const bool float64 = in_double(request);
+    if (float64 && !choice_.description.float64) {
+      throw DeviceError(choice_.description.name + " has no double precision (shaderFloat64): use float");
+    }
+    std::optional<vulkan::Kernels>& kernels = float64 ? double_kernels_ : float_kernels_;
+    if (!kernels) kernels.emplace(device_, float64);
+    return *kernels;
+  }
+
   VulkanOptions options_;
   vulkan::ValidationLog log_;
   vulkan::Instance instance_;
   Choice choice_;
   vulkan::Device device_;
-  vulkan::Kernels kernels_;
+  std::optional<vulkan::Kernels> float_kernels_, double_kernels_;
   vulkan::CommandStream stream_;
   // A member, so that its buffers outlive a submission that never ends.
   std::optional<vulkan::MomentsRun> run_;
@@ -114,7 +129,6 @@ VulkanEvaluator::VulkanEvaluator(const VulkanOptions& options) {
   report_.evaluator = "vulkan";
   report_.device = impl_->description().name;
   report_.driver = impl_->description().driver;
-  report_.precision = impl_->float64() ? "double" : "float";
   report_.setup_s = seconds_since(start);
 }
 
@@ -136,6 +150,8 @@ std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, co
     throw;
   }
 }
+
+bool VulkanEvaluator::has_double() const { return impl_ && impl_->description().float64; }
 
 EvaluationReport VulkanEvaluator::report() const { return report_; }
 

@@ -19,7 +19,8 @@ enum class ValidationMode {
 
 struct VulkanOptions {
   std::string device;                      ///< name or position, see choose_device
-  Precision precision = Precision::kAuto;  ///< kAuto is float
+  /// Of requests that leave it open: kAuto is float. kDouble also asks for a device that has it.
+  Precision precision = Precision::kAuto;
   ValidationMode validation = ValidationMode::kFromEnvironment;
   // The results depend on none of these.
   std::uint32_t max_tile_entries = 16'384;  ///< entries of a dispatch: progress and cancelling wait for one at most
@@ -36,10 +37,12 @@ class VulkanEvaluator : public MomentsEvaluator {
   explicit VulkanEvaluator(const VulkanOptions& options);
   ~VulkanEvaluator() override;
 
-  /// Errors: InputError for an entry outside the request's lists; DeviceError when the device fails, is lost or
+  /// Errors: DeviceError for double precision on a device without it; InputError for an entry outside the request's lists; DeviceError when the device fails, is lost or
   /// exceeds the time allowed for a tile (the object is useless then), or the validation layer complains; Cancelled
   /// when `progress`, called after each tile, returns false.
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
+
+  bool has_double() const override;
 
   /// Totals over all calls of evaluate.
   EvaluationReport report() const override;

@@ -1,0 +1,43 @@
+#include "evaluate/run/attempts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dolp {
+namespace {
+
+// Rules below these tolerances drown in rounding.
+constexpr double kFloatLimit = 2e-6;
+constexpr double kDoubleLimit = 1e-12;
+
+// A miss by a little asks for more than the little, or the next attempt may miss too.
+constexpr double kSafety = 1.5;
+constexpr double kMostDecades = 4.0;
+
+bool may_use_double(const Accuracy& accuracy, bool has_double) {
+  return has_double && accuracy.precision != Precision::kFloat;
+}
+
+}  // namespace
+
+Attempt first_attempt(const Accuracy& accuracy, bool has_double) {
+  const bool wants_double = accuracy.precision == Precision::kDouble || accuracy.tolerance < kFloatLimit;
+  return {wants_double && may_use_double(accuracy, has_double) ? Precision::kDouble : Precision::kFloat,
+          accuracy.tolerance};
+}
+
+std::optional<Attempt> next_attempt(const Attempt& last, const PointResult& result, const Accuracy& accuracy,
+                                    bool has_double) {
+  if ((result.status & kStatusToleranceMissed) == 0 || (result.status & kStatusOutsideDomain) != 0) return std::nullopt;
+  const double excess = std::max(result.error_estimate, result.rho_error_estimate) / accuracy.tolerance;
+  const double decades = std::isfinite(excess) ? std::clamp(std::ceil(std::log10(kSafety * excess)), 1.0, kMostDecades)
+                                               : kMostDecades;
+  const double wanted = last.tolerance * std::pow(10.0, -decades);
+  if (last.precision == Precision::kFloat && wanted >= kFloatLimit) return Attempt{Precision::kFloat, wanted};
+  if (!may_use_double(accuracy, has_double)) return std::nullopt;
+  const double tolerance = std::max(wanted, kDoubleLimit);
+  if (last.precision == Precision::kDouble && tolerance >= last.tolerance) return std::nullopt;
+  return Attempt{Precision::kDouble, tolerance};
+}
+
+}  // namespace dolp

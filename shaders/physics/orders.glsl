@@ -1,0 +1,38 @@
+// How many nodes a piece of the slope axis or an arc of the azimuth gets.
+//
+// A Gauss rule of n nodes on an interval of half length h, with the integrand's next singularity at a distance d beside
+// it, is wrong by rho^(-2n), rho = exp(asinh(d/h)): a decimal digit costs ln(10) / (2 asinh(d/h)) nodes. What d is worth
+// follows from a scan of the domain (host/plan/calibration.cpp). The less a piece carries, the fewer digits it needs.
+
+CONST real kHalfLn10 = real(1.15129254649702284);
+CONST real kInverseLn10 = real(0.43429448190325182765);
+CONST real kLn10 = real(2.30258509299404568402);
+
+real nodes_per_digit(real distance_over_half_length) {
+  return kHalfLn10 / asinh_real(max(distance_over_half_length, real(1e-3)));
+}
+
+// Digits that are wanted of the slopes in [a, b]: fewer by log10 of the share of the moments they carry, judged by the
+// albedo without masking, P t (c + s t).
+real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, real b, real mass) {
+  real typical = theta.c + theta.s * clamp(shape.m, a, b);
+  real whole = theta.c + real(0.6) * theta.s * shape.m;
+  real share = min(mass * typical / whole, real(1.0));
+  return max(rule.digits + kInverseLn10 * log_unit(share), real(0.0));
+}
+
+int order_between(real nodes, real limit) { return int(clamp(floor(nodes + real(0.5)), real(1.0), limit)); }
+
+// Slope axis: `extent` of the piece in X, `roots` of its ends.
+int order_t(RuleNode rule, ThetaNode theta, ShapeNode shape, real digits, real extent, real roots) {
+  real per_digit = theta.t_growth * rule.t_growth * nodes_per_digit(real(2.0) * shape.strip / extent);
+  return order_between(max(rule.t_nodes + digits * per_digit + rule.t_root_nodes * roots, real(2.0)),
+                       theta.order_limit_t);
+}
+
+// Length of an arc in phi, from tan of its quarter: 4 atan(quarter), a percent too long at most.
+real arc_length(real quarter) { return real(4.0) * quarter / (real(1.0) + real(0.28) * quarter * quarter); }
+
+real half_arc_nodes(RuleNode rule, real digits, real distance, real length) {
+  return real(0.5) * digits * rule.phi_growth * nodes_per_digit(distance / length);
+}

@@ -26,10 +26,15 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The absorbed part is only ever added to cos(theta) - albedo, so that less of it than this share of the albedo needs
 // no relative accuracy.
 constexpr double kSmallAbsorbed = 1e-2;
+// Directions are elevations above the horizon, known to a few ulps of themselves however small, and so is all that
+// grows with them (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
+constexpr double kElevationRounding = 32.0 * std::numeric_limits<double>::epsilon();
 // At theta = 90 degrees the running direction is integrated up to this distance from the horizon; the rest is a power.
 constexpr double kHorizonGap = 1e-30;
 // Errors of the nested integrals, relative to the one around them.
 constexpr double kInnerShare = 0.02;
+// Below it an azimuth integral cannot be refined: a Kronrod panel's own rounding is 1e-15 of its magnitude.
+constexpr double kInnerFloor = 4e-15;
 // Integrals below this share of the albedo are not refined for: they are zero but for rounding.
 constexpr double kNegligible = 1e-12;
 
@@ -183,7 +188,7 @@ Integral<kMomentCount> Hemisphere::integrate_azimuth(const Row& row) {
     evaluations_ += 1.0;
     return values;
   };
-  const Goal goal{.relative = kInnerShare * refinement_.relative_tolerance,
+  const Goal goal{.relative = std::max(kInnerFloor, kInnerShare * refinement_.relative_tolerance),
                   .max_panels = 200,
                   .subdivisions = refinement_.subdivisions};
   return integrate<kMomentCount>(in_v, azimuth_breaks(row, width), goal, moment_scales);
@@ -300,11 +305,9 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   // G_1 is at least 1/2.
   const double masking_error = 2.0 * masking_tolerance_for(refinement);
   const double cos_theta = zenith_from_deg(theta_deg).cos;
-  // Zeniths are known to an ulp of a right angle, which counts where the moments vanish like cos(theta).
-  const double angle_error = cos_theta > 0.0 ? 4.0 * std::numeric_limits<double>::epsilon() / cos_theta : 0.0;
   const auto error_of = [&](std::size_t k) {
     const double magnitude = k == kPolarised ? integral.value[kReflected] : integral.value[k];
-    return integral.error[k] + integral.value[kMomentCount + k] + (masking_error + kRounding + angle_error) * magnitude;
+    return integral.error[k] + integral.value[kMomentCount + k] + (masking_error + kRounding + kElevationRounding) * magnitude;
   };
   const double amplitude_error = amplitude_rounding(integral.value[kReflected], integral.value[kAlbedo]);
   Moments moments;

@@ -54,7 +54,7 @@ TEST(HardCases, EveryModel_HasTheCasesOnce) {
 }
 
 TEST(HardCases, References_AreAsGoodAsStated) {
-  constexpr double kRelative = 2.5e-13;
+  constexpr double kRelative = 1.5e-13;
   // r_i is 3e-9 there, and the amplitudes r_s and r_p carry rounding of 1e-16 beside 5e-5.
   constexpr double kAlmostVacuum = 3e-11;
   for (const StoredCase& c : hard_cases()) {
@@ -183,13 +183,14 @@ class BiasedEvaluator final : public MomentsEvaluator {
 
 TEST(Qualify, BiasedEvaluator_IsFoundOutCaseByCase) {
   std::vector<StoredCase> cases = cases_of(hard_cases(), Distribution::kCauchy, Masking::kIntegral);
-  std::erase_if(cases, [](const StoredCase& c) { return c.name.starts_with("mirror") || c.theta_deg == 90.0; });
+  // Mirrors do not ask the evaluator; next to grazing rounding of the cosine counts.
+  std::erase_if(cases, [](const StoredCase& c) { return c.shape.sigma == 0.0 || c.theta_deg > 89.9; });
   BiasedEvaluator evaluator(cases);
   for (const double bias : {0.0, 5e-7, 2e-6}) {
     evaluator.bias = bias;
     for (const CaseOutcome& outcome : qualify(cases, evaluator, 1e-4, {})) {
       const StoredCase& stored = cases[outcome.position];
-      const bool is_wrong = bias > 1e-6 && stored.moments.r_i > 0.0 && stored.name.find("brewster-mirror") != 0;
+      const bool is_wrong = bias > 1e-6 && stored.moments.r_i > 0.0;
       EXPECT_EQ(!outcome.complaint.empty(), is_wrong) << label(stored) << " " << bias << " " << outcome.complaint;
     }
   }

@@ -27,7 +27,7 @@ std::string_view embedded_hard_cases_csv();
 
 /// The model's hard cases: ends of every range, coinciding split lines, indices that reflect nothing or everything; all
 /// maskings, both distributions.
-/// Accuracy: |d r_i| and |d r_q| at most 2.5e-13 r_i, for N = 1.0001, which reflects 3e-9, 3e-11 r_i
+/// Accuracy: |d r_i| and |d r_q| at most 1.5e-13 r_i, for N = 1.0001, which reflects 3e-9, 3e-11 r_i
 ///   (test HardCases_References_AreAsGoodAsStated).
 std::vector<StoredCase> hard_cases();
 

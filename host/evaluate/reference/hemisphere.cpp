@@ -31,6 +31,10 @@ constexpr double kSmallAbsorbed = 1e-2;
 constexpr double kElevationRounding = 32.0 * std::numeric_limits<double>::epsilon();
 // At theta = 90 degrees the running direction is integrated up to this distance from the horizon; the rest is a power.
 constexpr double kHorizonGap = 1e-30;
+// Below this elevation of the fixed direction the masking changes over running elevations of its size, a layer so thin
+// beside the slopes that panels could step over it; break points then come ever closer to the horizon.
+constexpr double kNearHorizon_rad = 1e-3;
+constexpr double kLayerGrowth = 10.0;
 // Errors of the nested integrals, relative to the one around them.
 constexpr double kInnerShare = 0.02;
 // Below it an azimuth integral cannot be refined: a Kronrod panel's own rounding is 1e-15 of its magnitude.
@@ -201,6 +205,11 @@ Breaks Hemisphere::zenith_breaks() const {
   Breaks breaks(std::asinh(-std::tan(0.5 * theta_rad_) / width),
                 std::asinh(std::tan(0.5 * fixed_.elevation_rad) / width));
   for (const double u : {-4.0, -1.5, 0.0, 1.5, 4.0}) breaks.add(u);
+  if (fixed_.cos > 0.0 && fixed_.elevation_rad < kNearHorizon_rad) {
+    for (double t = std::tan(0.5 * fixed_.elevation_rad); t < width; t *= kLayerGrowth) {
+      breaks.add(std::asinh(-t / width));
+    }
+  }
   std::vector<double> angles;
   for (const double beta : special_beta_rad()) {
     for (const double angle : {2.0 * beta - theta_rad_, theta_rad_ - 2.0 * beta, theta_rad_ + 2.0 * beta}) {
@@ -307,7 +316,8 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   const double cos_theta = zenith_from_deg(theta_deg).cos;
   const auto error_of = [&](std::size_t k) {
     const double magnitude = k == kPolarised ? integral.value[kReflected] : integral.value[k];
-    return integral.error[k] + integral.value[kMomentCount + k] + (masking_error + kRounding + kElevationRounding) * magnitude;
+    return integral.error[k] + integral.value[kMomentCount + k] +
+           (masking_error + kRounding + kElevationRounding) * magnitude;
   };
   const double amplitude_error = amplitude_rounding(integral.value[kReflected], integral.value[kAlbedo]);
   Moments moments;

@@ -184,6 +184,13 @@ TEST_F(Verify, EveryKindOfScene_Passes) {
   }
 }
 
+TEST_F(Verify, RightAngle_IsTheReferencesLimit) {
+  for (const char* masking : {"smith", "v-cavity"}) {
+    make_table({"--set", std::string("surface.masking=") + masking, "--set", "grid.theta_deg=[89.99, 90]"});
+    EXPECT_EQ(verify_json(kDone)["checked"], 8) << masking;
+  }
+}
+
 TEST_F(Verify, OneCorruptedValue_Exit1AndIsNamed) {
   struct Corruption {
     const char* name;

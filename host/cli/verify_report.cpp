@@ -27,8 +27,8 @@ std::string quantity_line(const QuantityCheck& check) {
   const CheckedValue& worst = check.worst;
   const std::string unstated =
       check.unstated > 0 ? fmt::format("; nothing stated for {} of them", check.unstated) : std::string{};
-  return fmt::format("  {:<10} {} compared, worst: error {:.2e} of {:.2e} stated, at {}{}\n", check.name, check.compared,
-                     worst.error(), worst.stated, place(worst), unstated);
+  return fmt::format("  {:<10} {} compared, worst: error {:.2e} of {:.2e} stated, at {}{}\n", check.name,
+                     check.compared, worst.error(), worst.stated, place(worst), unstated);
 }
 
 std::string failure_line(const CheckedValue& value) {

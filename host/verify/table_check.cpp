@@ -75,14 +75,16 @@ std::string complaint_about(const CheckedValue& value, double allowed) {
 
 /// The estimates of an entry; a table without them states nothing.
 double estimate_at(const std::vector<double>& estimates, std::size_t position) {
-  return estimates.empty() ? kInfinity : estimates[position];
+  if (estimates.empty()) return kInfinity;
+  return estimates[position];
 }
 
 double allowed_error(const Quantity& quantity, std::uint32_t status, double tolerance, const PointResult& reference) {
   const bool is_promised = (status & kStatusToleranceMissed) == 0;
   if (is_promised && is_reflectance(quantity.bound)) return tolerance * std::abs(reference.rho_i);
   const bool is_dolp = quantity.bound == Bound::kDolp && (status & kNoDolpPromised) == 0;
-  return is_promised && is_dolp ? tolerance : kInfinity;
+  if (is_promised && is_dolp) return tolerance;
+  return kInfinity;
 }
 
 void add(QuantityCheck& check, const CheckedValue& value) {

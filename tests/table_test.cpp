@@ -214,6 +214,26 @@ TEST_F(TableFiles, ReadTable_VariableOverOtherAxes_IsRefused) {
 
 // ---- CSV and NPY ----------------------------------------------------------------------------------------------------
 
+TEST_F(TableFiles, ReadTable_AttributeOfTypeString_IsText) {
+  const std::array<const char*, 3> axes = {"theta", "sigma", "q"};
+  const char* text = "10.6 \u00b5m";
+  const double value = 0.5;
+  std::array<int, 3> dimensions{};
+  int file = 0;
+  int variable = 0;
+  ASSERT_EQ(nc_create(at("string.nc").c_str(), NC_NETCDF4, &file), NC_NOERR);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    ASSERT_EQ(nc_def_dim(file, axes[i], 1, &dimensions[i]), NC_NOERR);
+    ASSERT_EQ(nc_def_var(file, axes[i], NC_DOUBLE, 1, &dimensions[i], &variable), NC_NOERR);
+    ASSERT_EQ(nc_put_var_double(file, variable, &value), NC_NOERR);
+  }
+  ASSERT_EQ(nc_def_var(file, "dolp", NC_DOUBLE, 3, dimensions.data(), &variable), NC_NOERR);
+  ASSERT_EQ(nc_put_var_double(file, variable, &value), NC_NOERR);
+  ASSERT_EQ(nc_put_att_string(file, NC_GLOBAL, "scene", 1, &text), NC_NOERR);
+  ASSERT_EQ(nc_close(file), NC_NOERR);
+  EXPECT_EQ(read_table(at("string.nc")).attributes, (std::vector<Attribute>{{"scene", std::string(text)}}));
+}
+
 TEST_F(TableFiles, Csv_Rows_ReadBackAsTheSameDoubles) {
   const Table table = sample_table(3, 2, 2);
   write_table(table, at("t.csv"));

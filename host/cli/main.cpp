@@ -14,6 +14,9 @@
 namespace dolp::cli {
 namespace {
 
+// The most entries that a table has.
+constexpr std::size_t kMostSamples = 1U << 24U;
+
 void add_scene(CLI::App& command, Options& options) {
   command.add_option("SCENE", options.scene_path, "scene file (TOML); - is stdin")->required();
   command.add_option("--set", options.overrides, "KEY=VALUE: any scene key, e.g. surface.masking=none")
@@ -37,11 +40,36 @@ void add_run(CLI::App& command, Options& options) {
   command.add_flag("--strict", options.strict, "exit 1 if any entry misses its tolerance");
 }
 
+void add_verify(CLI::App& command, Options& options) {
+  CLI::Option* table = command.add_option("TABLE", options.table_path, "table file (.nc) that dolp table wrote");
+  const auto of_table = [&](CLI::Option* option) { option->needs(table); };
+  of_table(command.add_option("--samples", options.samples, "entries to recompute; all when the table has no more")
+               ->check(CLI::Range(std::size_t{1}, kMostSamples))
+               ->capture_default_str());
+  of_table(command.add_option("--seed", options.seed, "seed of their choice")->capture_default_str());
+  CLI::Option* hard = command.add_flag("--hard-cases", options.hard_cases,
+                                       "examine a device with the model's hard cases, in float and double");
+  hard->excludes(table);
+  const auto of_device = [&](CLI::Option* option) { option->needs(hard); };
+  of_device(command.add_option("--device", options.device, "Vulkan device: its position or a part of its name"));
+  of_device(command.add_option("--precision", options.precision, "auto is both")
+                ->check(CLI::IsMember({"auto", "float", "double"})));
+  of_device(command.add_option("--evaluator", options.evaluator, "vulkan; cpu: the same text on the CPU")
+                ->check(CLI::IsMember({"vulkan", "cpu"}))
+                ->capture_default_str());
+  of_device(
+      command.add_option("--tolerance", options.tolerance, "what to ask for, 1e-10 .. 1e-2; 1e-4 when not given"));
+  of_device(command.add_flag("--all", options.all, "report every case"));
+  command.add_flag("--json", options.json, "machine-readable report of everything compared");
+  command.add_flag("--quiet", options.quiet, "no report and no progress bar; the exit status says it");
+}
+
 /// Runs the command that the arguments name.
 int run(CLI::App& app, Options& options) {
   const auto given = [&app](const char* name) { return app.got_subcommand(name); };
   if (given("table")) return run_table(options);
   if (given("eval")) return run_eval(options);
+  if (given("verify")) return run_verify(options);
   return run_devices(options);
 }
 
@@ -70,6 +98,7 @@ int parse_and_run(int argc, char** argv) {
   add_run(*eval, options);
   eval->add_option("--points", options.points_path, "CSV with any of theta_deg, sigma, q, n, k; - is stdin")
       ->required();
+  add_verify(*app.add_subcommand("verify", "recompute entries of a table, or examine a device"), options);
   CLI::App* devices = app.add_subcommand("devices", "Vulkan devices, and why each one is or is not usable");
   devices->add_flag("--json", options.json, "machine-readable list");
   devices->add_option("--device", options.device, "check this one: its position or a part of its name");

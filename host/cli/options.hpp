@@ -1,6 +1,8 @@
 // What the command line says, after parsing.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +15,7 @@ namespace dolp::cli {
 struct Options {
   std::string scene_path;
   std::string points_path;
+  std::string table_path;  ///< of verify
   std::string output_path;
   std::vector<std::string> overrides;  ///< --set KEY=VALUE
   std::string tolerance;               ///< as typed; empty when not given
@@ -22,6 +25,10 @@ struct Options {
   bool json = false;
   bool quiet = false;
   bool strict = false;
+  std::size_t samples = 64;  ///< of verify: entries to recompute
+  std::uint64_t seed = 1;    ///< of verify: of their choice
+  bool hard_cases = false;   ///< of verify: examine a device instead of a table
+  bool all = false;          ///< of verify: report every hard case
   std::string command_line;  ///< for the table's history
 };
 

@@ -8,20 +8,10 @@
 #include "cli/progress_bar.hpp"
 #include "cli/report.hpp"
 #include "table/table_file.hpp"
+#include "verify/table_scene.hpp"
 
 namespace dolp::cli {
 namespace {
-
-/// FNV-1a, 64 bits: says whether two tables come from the same scene, nothing more.
-std::string scene_hash(const Scene& scene) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  const auto add = [&hash](const std::string& text) {
-    for (const char byte : text) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
-  };
-  add(scene.text);
-  for (const std::string& change : scene.overrides) add("\n" + change);
-  return fmt::format("fnv1a64:{:016x}", hash);
-}
 
 void fill_variables(Table& table, const std::vector<PointResult>& results) {
   const auto column = [&](double PointResult::*member) {
@@ -53,8 +43,6 @@ std::string stokes_units(const Scene& scene) {
 
 std::vector<Attribute> attributes(const Scene& scene, const Options& options, const RunReport& report) {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::string overrides;
-  for (const std::string& change : scene.overrides) overrides += (overrides.empty() ? "" : "\n") + change;
   return {{"title", scene.title},
           {"source", "dolp " DOLP_VERSION},
           {"history", fmt::format("{:%Y-%m-%dT%H:%M:%SZ} {}", fmt::gmtime(now), options.command_line)},
@@ -62,7 +50,8 @@ std::vector<Attribute> attributes(const Scene& scene, const Options& options, co
            "W. Wang, Y. Li, L. Wang, Infrared Polarization Radiation Optimization Model Based on the Cauchy "
            "Distribution, Infrared 46(8), 2025, doi:10.3969/j.issn.1672-8785.2025.08.004"},
           {"scene", scene.text},
-          {"scene_overrides", overrides},
+          {"scene_path", scene.path_name},
+          {"scene_overrides", overrides_text(scene.overrides)},
           {"scene_hash", scene_hash(scene)},
           {"device", report.evaluation.device},
           {"driver", report.evaluation.driver},

@@ -177,6 +177,15 @@ std::string read_text(const InputFile& file, int variable, const char* name) {
   return text;
 }
 
+/// Other writers store text that is not ASCII in this form.
+std::string read_string(const InputFile& file, const char* name) {
+  char* text = nullptr;
+  file.check(nc_get_att_string(file.id(), NC_GLOBAL, name, &text), "cannot read an attribute");
+  std::string copy = text ? text : "";
+  file.check(nc_free_string(1, &text), "cannot read an attribute");
+  return copy;
+}
+
 std::vector<Attribute> read_attributes(const InputFile& file) {
   int count = 0;
   file.check(nc_inq_natts(file.id(), &count), "cannot read the attributes");
@@ -190,6 +199,8 @@ std::vector<Attribute> read_attributes(const InputFile& file) {
     if (std::string_view(name.data()) == "Conventions") continue;
     if (type == NC_CHAR) {
       attributes.push_back({name.data(), read_text(file, NC_GLOBAL, name.data())});
+    } else if (type == NC_STRING && length == 1) {
+      attributes.push_back({name.data(), read_string(file, name.data())});
     } else if (type != NC_STRING && length == 1) {
       double value = 0.0;
       file.check(nc_get_att_double(file.id(), NC_GLOBAL, name.data(), &value), "cannot read an attribute");

@@ -26,10 +26,19 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The absorbed part is only ever added to cos(theta) - albedo, so that less of it than this share of the albedo needs
 // no relative accuracy.
 constexpr double kSmallAbsorbed = 1e-2;
+// Directions are elevations above the horizon, known to a few ulps of themselves however small, and so is all that
+// grows with them (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
+constexpr double kElevationRounding = 32.0 * std::numeric_limits<double>::epsilon();
 // At theta = 90 degrees the running direction is integrated up to this distance from the horizon; the rest is a power.
 constexpr double kHorizonGap = 1e-30;
+// Below this elevation of the fixed direction the masking changes over running elevations of its size, a layer so thin
+// beside the slopes that panels could step over it; break points then come ever closer to the horizon.
+constexpr double kNearHorizon_rad = 1e-3;
+constexpr double kLayerGrowth = 10.0;
 // Errors of the nested integrals, relative to the one around them.
 constexpr double kInnerShare = 0.02;
+// Below it an azimuth integral cannot be refined: a Kronrod panel's own rounding is 1e-15 of its magnitude.
+constexpr double kInnerFloor = 4e-15;
 // Integrals below this share of the albedo are not refined for: they are zero but for rounding.
 constexpr double kNegligible = 1e-12;
 
@@ -183,7 +192,7 @@ Integral<kMomentCount> Hemisphere::integrate_azimuth(const Row& row) {
     evaluations_ += 1.0;
     return values;
   };
-  const Goal goal{.relative = kInnerShare * refinement_.relative_tolerance,
+  const Goal goal{.relative = std::max(kInnerFloor, kInnerShare * refinement_.relative_tolerance),
                   .max_panels = 200,
                   .subdivisions = refinement_.subdivisions};
   return integrate<kMomentCount>(in_v, azimuth_breaks(row, width), goal, moment_scales);
@@ -196,6 +205,11 @@ Breaks Hemisphere::zenith_breaks() const {
   Breaks breaks(std::asinh(-std::tan(0.5 * theta_rad_) / width),
                 std::asinh(std::tan(0.5 * fixed_.elevation_rad) / width));
   for (const double u : {-4.0, -1.5, 0.0, 1.5, 4.0}) breaks.add(u);
+  if (fixed_.cos > 0.0 && fixed_.elevation_rad < kNearHorizon_rad) {
+    for (double t = std::tan(0.5 * fixed_.elevation_rad); t < width; t *= kLayerGrowth) {
+      breaks.add(std::asinh(-t / width));
+    }
+  }
   std::vector<double> angles;
   for (const double beta : special_beta_rad()) {
     for (const double angle : {2.0 * beta - theta_rad_, theta_rad_ - 2.0 * beta, theta_rad_ + 2.0 * beta}) {
@@ -300,11 +314,10 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   // G_1 is at least 1/2.
   const double masking_error = 2.0 * masking_tolerance_for(refinement);
   const double cos_theta = zenith_from_deg(theta_deg).cos;
-  // Zeniths are known to an ulp of a right angle, which counts where the moments vanish like cos(theta).
-  const double angle_error = cos_theta > 0.0 ? 4.0 * std::numeric_limits<double>::epsilon() / cos_theta : 0.0;
   const auto error_of = [&](std::size_t k) {
     const double magnitude = k == kPolarised ? integral.value[kReflected] : integral.value[k];
-    return integral.error[k] + integral.value[kMomentCount + k] + (masking_error + kRounding + angle_error) * magnitude;
+    return integral.error[k] + integral.value[kMomentCount + k] +
+           (masking_error + kRounding + kElevationRounding) * magnitude;
   };
   const double amplitude_error = amplitude_rounding(integral.value[kReflected], integral.value[kAlbedo]);
   Moments moments;

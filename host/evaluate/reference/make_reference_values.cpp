@@ -1,4 +1,5 @@
-// dolp-reference-values: writes the file of reference moments that the tests compare every evaluator with.
+// dolp-reference-values: writes reference moments of the hard cases and of random points, which every evaluator is
+// compared with.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -8,13 +9,15 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <limits>
 #include <numbers>
-#include <random>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "error.hpp"
+#include "evaluate/reference/hemisphere.hpp"
+#include "evaluate/reference/reference_cases.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
 
 namespace {
@@ -22,152 +25,33 @@ namespace {
 using dolp::Distribution;
 using dolp::Masking;
 using dolp::Moments;
-using dolp::OpticalConstants;
-using dolp::SlopeShape;
-
-struct Case {
-  std::string name;
-  double theta_deg = 60.0;
-  SlopeShape shape{0.3, 2.0};
-  OpticalConstants index{1.508, 0.0};
-};
-
-struct Group {
-  Distribution distribution;
-  Masking masking;
-};
-constexpr std::array<Group, 8> kGroups{{{Distribution::kCauchy, Masking::kNone},
-                                        {Distribution::kCauchy, Masking::kIntegral},
-                                        {Distribution::kGaussian, Masking::kNone},
-                                        {Distribution::kGaussian, Masking::kIntegral},
-                                        {Distribution::kCauchy, Masking::kVCavity},
-                                        {Distribution::kCauchy, Masking::kSmith},
-                                        {Distribution::kGaussian, Masking::kVCavity},
-                                        {Distribution::kGaussian, Masking::kSmith}}};
-// Below it smith masking with the cauchy distribution is left out of the random cases; it exists above 1.5 only.
-constexpr double kSmallestSmithQ = 1.53;
+using dolp::reference::Case;
+using dolp::reference::Group;
+using dolp::reference::name_of;
 
 // Reflection below this share of the albedo is rounding: N = 1.
 constexpr double kNegligible = 1e-12;
+// Rounding of a closed form: fewer than 16 operations.
+constexpr double kClosedFormRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
-const char* name_of(Distribution distribution) { return distribution == Distribution::kCauchy ? "cauchy" : "gaussian"; }
-
-const char* name_of(Masking masking) {
-  constexpr std::array<const char*, 4> kNames{"none", "v-cavity", "integral", "smith"};
-  return kNames[static_cast<std::size_t>(masking)];
-}
-
-// Random numbers that are the same with every standard library.
-class Draw {
- public:
-  explicit Draw(std::uint64_t seed) : engine_(seed) {}
-  double uniform(double low, double high) {
-    return low + (high - low) * static_cast<double>(engine_() >> 11U) * 0x1p-53;
-  }
-  double log_uniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
-
- private:
-  std::mt19937_64 engine_;
+/// Two settings of the quadrature; the finer one's values are stored.
+struct Refinements {
+  dolp::ReferenceOptions coarse;
+  dolp::ReferenceOptions fine;
 };
+// As fine as rounding in double lets the nested quadratures agree.
+constexpr Refinements kForHardCases{{.relative_tolerance = 3e-13, .subdivisions = 1},
+                                    {.relative_tolerance = 1e-13, .subdivisions = 2}};
+// A thousandth of the tightest tolerance that random points are compared at, 1e-9.
+constexpr Refinements kForRandomPoints{{.relative_tolerance = 1e-11, .subdivisions = 1},
+                                       {.relative_tolerance = 1e-12, .subdivisions = 2}};
 
-/// The ranges of one domain of random cases.
-struct Domain {
-  const char* name;
-  double sigma_min, sigma_max, q_min, q_max, theta_max_deg;
+struct Row {
+  Group group;
+  Case input;
+  Moments moments;
+  std::string origin;
 };
-constexpr Domain kDomainA{"random-a", 0.01, 1.2, 1.06, 13.0, 89.5};
-constexpr Domain kDomainB{"random-b", 0.001, 5.0, 1.01, 45.0, 89.9};
-
-OpticalConstants random_index(Draw& draw) {
-  const double kind = draw.uniform(0.0, 3.0);
-  if (kind < 1.0) return {draw.uniform(1.3, 4.0), 0.0};
-  if (kind < 2.0) return {draw.uniform(1.3, 4.0), draw.log_uniform(1e-3, 1.0)};
-  return {draw.log_uniform(0.2, 27.0), draw.log_uniform(1.0, 90.0)};
-}
-
-// One in five is near grazing.
-Case random_case(const Domain& domain, const Group& group, Draw& draw) {
-  const bool is_grazing = draw.uniform(0.0, 1.0) < 0.2;
-  Case result{domain.name};
-  result.theta_deg = draw.uniform(is_grazing ? 85.0 : 0.0, domain.theta_max_deg);
-  result.shape.sigma = draw.log_uniform(domain.sigma_min, domain.sigma_max);
-  const bool is_smith = group.masking == Masking::kSmith;
-  const double q_min = is_smith ? kSmallestSmithQ : domain.q_min;
-  const double q = 1.0 + draw.log_uniform(q_min - 1.0, domain.q_max - 1.0);
-  if (group.distribution == Distribution::kCauchy) result.shape.q = q;
-  result.index = random_index(draw);
-  return result;
-}
-
-double brewster_deg(double n) { return std::atan(n) * 180.0 / std::numbers::pi; }
-
-std::vector<Case> hard_geometry_and_roughness() {
-  return {{.name = "normal", .theta_deg = 0.0},
-          {.name = "normal-smooth", .theta_deg = 0.0, .shape = {1e-3, 2.0}},
-          {.name = "almost-normal", .theta_deg = 1e-6},
-          {.name = "almost-normal-smooth", .theta_deg = 1e-6, .shape = {1e-4, 2.0}},
-          {.name = "almost-grazing", .theta_deg = 89.99},
-          {.name = "almost-grazing-smooth", .theta_deg = 89.99, .shape = {1e-3, 2.0}},
-          {.name = "grazing", .theta_deg = 90.0},
-          {.name = "grazing-smooth", .theta_deg = 90.0, .shape = {1e-2, 2.0}},
-          {.name = "brewster", .theta_deg = brewster_deg(1.508)},
-          {.name = "brewster-smooth", .theta_deg = brewster_deg(1.508), .shape = {1e-2, 2.0}},
-          {.name = "brewster-mirror", .theta_deg = brewster_deg(1.508), .shape = {0.0, 2.0}},
-          {.name = "mirror", .shape = {0.0, 2.0}},
-          {.name = "sigma-1e-4", .shape = {1e-4, 2.0}},
-          {.name = "sigma-1e-3", .shape = {1e-3, 2.0}},
-          {.name = "sigma-1e-2", .shape = {1e-2, 2.0}},
-          {.name = "sigma-1e-2-grazing", .theta_deg = 89.0, .shape = {1e-2, 2.0}},
-          {.name = "sigma-5", .shape = {5.0, 2.0}},
-          {.name = "sigma-5-grazing", .theta_deg = 89.0, .shape = {5.0, 2.0}},
-          {.name = "sigma-10", .shape = {10.0, 2.0}}};
-}
-
-std::vector<Case> hard_exponents() {
-  return {{.name = "q-1.001", .shape = {0.3, 1.001}},
-          {.name = "q-1.001-smooth", .shape = {0.01, 1.001}},
-          {.name = "q-1.001-grazing", .theta_deg = 89.0, .shape = {0.3, 1.001}},
-          {.name = "q-1.07-grazing", .theta_deg = 89.0, .shape = {0.3, 1.07}},
-          {.name = "q-1.6-at-90", .theta_deg = 90.0, .shape = {0.3, 1.6}},
-          {.name = "q-1.5-below", .shape = {0.3, 1.5 - 1e-9}},
-          {.name = "q-1.5", .shape = {0.3, 1.5}},
-          {.name = "q-1.5-above", .shape = {0.3, 1.5 + 1e-9}},
-          {.name = "q-50", .shape = {0.3, 50.0}},
-          {.name = "q-1000", .shape = {0.3, 1000.0}},
-          {.name = "q-1000-rough", .shape = {5.0, 1000.0}},
-          {.name = "q-1000-grazing", .theta_deg = 89.0, .shape = {0.3, 1000.0}},
-          {.name = "q-10000", .shape = {0.3, 10000.0}}};
-}
-
-std::vector<Case> hard_indices() {
-  return {{.name = "vacuum", .index = {1.0, 0.0}},
-          {.name = "almost-vacuum", .index = {1.0001, 0.0}},
-          {.name = "total-reflection", .index = {0.5, 0.0}},
-          {.name = "total-reflection-normal", .theta_deg = 0.0, .index = {0.5, 0.0}},
-          {.name = "total-reflection-critical", .theta_deg = 30.0, .shape = {0.05, 2.0}, .index = {0.5, 0.0}},
-          {.name = "index-0.9", .theta_deg = 80.0, .index = {0.9, 1e-3}},
-          {.name = "index-0.2-3", .index = {0.2, 3.0}},
-          {.name = "index-4-grazing", .theta_deg = 89.0, .index = {4.0, 0.0}},
-          {.name = "index-27-90", .index = {27.0, 90.0}},
-          {.name = "index-27-90-smooth", .shape = {0.05, 3.0}, .index = {27.0, 90.0}},
-          {.name = "index-27-90-grazing", .theta_deg = 89.0, .index = {27.0, 90.0}},
-          {.name = "index-1000-1000", .index = {1000.0, 1000.0}},
-          {.name = "index-1000-1000-grazing", .theta_deg = 89.9, .index = {1000.0, 1000.0}}};
-}
-
-std::vector<Case> cases_of(const Group& group, std::uint64_t seed, std::size_t count) {
-  Draw draw(seed);
-  std::vector<Case> cases;
-  for (std::size_t i = 0; i < count; ++i) cases.push_back(random_case(kDomainA, group, draw));
-  for (std::size_t i = 0; i < count / 3; ++i) cases.push_back(random_case(kDomainB, group, draw));
-  const auto append = [&](const std::vector<Case>& more) { cases.insert(cases.end(), more.begin(), more.end()); };
-  append(hard_geometry_and_roughness());
-  append(hard_indices());
-  if (group.distribution == Distribution::kCauchy) append(hard_exponents());
-  const bool needs_mean_slope = group.distribution == Distribution::kCauchy && group.masking == Masking::kSmith;
-  std::erase_if(cases, [&](const Case& c) { return needs_mean_slope && c.shape.q <= 1.5; });
-  return cases;
-}
 
 dolp::MomentsRequest request_of(const Group& group, const std::vector<Case>& cases) {
   dolp::MomentsRequest request;
@@ -184,53 +68,102 @@ dolp::MomentsRequest request_of(const Group& group, const std::vector<Case>& cas
   return request;
 }
 
-/// The finer of two quadratures of one case, its errors no less than the distance between the two.
-struct Row {
-  Group group;
-  Case input;
-  Moments moments;
-};
+/// The finer of two quadratures, its errors no less than the distance between the two.
+Moments compared(const Moments& coarse, const Moments& fine) {
+  Moments result = fine;
+  result.r_i_error = std::max(fine.r_i_error, std::abs(coarse.r_i - fine.r_i));
+  result.r_q_error = std::max(fine.r_q_error, std::abs(coarse.r_q - fine.r_q));
+  result.albedo_error = std::max(fine.albedo_error, std::abs(coarse.albedo - fine.albedo));
+  result.deficit_error = std::max(fine.deficit_error, std::abs(coarse.deficit - fine.deficit));
+  return result;
+}
 
-std::vector<Row> rows_of(const Group& group, const std::vector<Case>& cases) {
+void replace(double& value, double& error, double exact) {
+  value = exact;
+  error = kClosedFormRounding * std::abs(exact);
+}
+
+/// Equation: at theta = 0 without masking A = 1 - (m^2/(1 + m^2))^(q - 1), gaussian 1 - exp(-1/m^2); with smith
+/// masking, q = 2 and sigma = 1/sqrt(2) A = 1 - ln 2.
+bool put_normal_albedo(const Row& row, Moments& moments) {
+  const double m2 = 2.0 * row.input.shape.sigma * row.input.shape.sigma;
+  const double q = row.input.shape.q;
+  const bool is_cauchy = row.group.distribution == Distribution::kCauchy;
+  if (row.group.masking == Masking::kNone) {
+    const double exact = is_cauchy ? -std::expm1((1.0 - q) * std::log1p(1.0 / m2)) : -std::expm1(-1.0 / m2);
+    replace(moments.albedo, moments.albedo_error, exact);
+    return true;
+  }
+  const bool is_ln2 = is_cauchy && row.group.masking == Masking::kSmith && row.input.name == "normal-albedo";
+  if (is_ln2) replace(moments.albedo, moments.albedo_error, 1.0 - std::numbers::ln2);
+  return is_ln2;
+}
+
+/// Puts closed forms in the place of quadratures where there are any, and says so.
+void put_closed_forms(Row& row) {
+  Moments& moments = row.moments;
+  if (row.input.shape.sigma == 0.0) {
+    row.origin = "closed form: Fresnel reflection of the mirror";
+    return;
+  }
+  row.origin = "adaptive quadrature in two refinements";
+  if (row.input.index.n == 1.0 && row.input.index.k == 0.0) {
+    replace(moments.r_i, moments.r_i_error, 0.0);
+    replace(moments.r_q, moments.r_q_error, 0.0);
+    replace(moments.deficit, moments.deficit_error, dolp::reference::zenith_from_deg(row.input.theta_deg).cos);
+    row.origin += "; r_i r_q deficit closed form: n = 1";
+  }
+  if (row.input.theta_deg != 0.0) return;
+  replace(moments.r_q, moments.r_q_error, 0.0);
+  row.origin +=
+      put_normal_albedo(row, moments) ? "; r_q albedo closed form: theta = 0" : "; r_q closed form: theta = 0";
+}
+
+/// Larger of the relative errors of r_i and r_q, over r_i.
+double relative_error(const Moments& moments) {
+  const double scale = std::max(moments.r_i, kNegligible * moments.albedo);
+  return scale > 0.0 ? std::max(moments.r_i_error, moments.r_q_error) / scale : 0.0;
+}
+
+std::vector<Row> rows_of(const Group& group, const std::vector<Case>& cases, const Refinements& refinements) {
   const dolp::MomentsRequest request = request_of(group, cases);
-  dolp::ReferenceEvaluator coarse({.relative_tolerance = 1e-9, .subdivisions = 1});
-  dolp::ReferenceEvaluator fine({.relative_tolerance = 1e-10, .subdivisions = 2});
+  dolp::ReferenceEvaluator coarse(refinements.coarse);
+  dolp::ReferenceEvaluator fine(refinements.fine);
   const std::vector<Moments> a = coarse.evaluate(request, {});
   const std::vector<Moments> b = fine.evaluate(request, {});
   std::vector<Row> rows;
-  double worst = 0.0;
-  std::string worst_name = "none";
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    const double distance_i = std::abs(a[i].r_i - b[i].r_i);
-    const double distance_q = std::abs(a[i].r_q - b[i].r_q);
-    Row row{group, cases[i], b[i]};
-    row.moments.r_i_error = std::max(b[i].r_i_error, distance_i);
-    row.moments.r_q_error = std::max(b[i].r_q_error, distance_q);
-    rows.push_back(row);
-    const double scale = std::max(b[i].r_i, kNegligible * b[i].albedo);
-    const double relative = scale > 0.0 ? std::max(distance_i, distance_q) / scale : 0.0;
-    if (relative > worst) {
-      worst = relative;
-      worst_name = cases[i].name;
-    }
+    rows.push_back({group, cases[i], compared(a[i], b[i]), {}});
+    put_closed_forms(rows.back());
   }
-  std::fprintf(stderr, "%s %s: %zu cases, %.1f s and %.1f s, largest distance %.1e of r_i (%s)\n",
-               name_of(group.distribution), name_of(group.masking), cases.size(), coarse.report().kernel_s,
-               fine.report().kernel_s, worst, worst_name.c_str());
+  std::vector<Row> sorted = rows;
+  std::ranges::sort(sorted, std::greater{}, [](const Row& row) { return relative_error(row.moments); });
+  std::fprintf(stderr, "%s %s: %zu cases, %.1f s and %.1f s; largest bounds over r_i:", name_of(group.distribution),
+               name_of(group.masking), cases.size(), coarse.report().kernel_s, fine.report().kernel_s);
+  for (std::size_t i = 0; i < std::min<std::size_t>(6, sorted.size()); ++i) {
+    std::fprintf(stderr, " %.1e %s,", relative_error(sorted[i].moments), sorted[i].input.name.c_str());
+  }
+  std::fprintf(stderr, " median %.1e\n", relative_error(sorted[sorted.size() / 2].moments));
   return rows;
 }
 
 std::string csv_line(const Row& row) {
   const Case& c = row.input;
+  const Moments& m = row.moments;
   std::string line = std::string(name_of(row.group.distribution)) + "," + name_of(row.group.masking);
   for (const double value :
-       {c.theta_deg, c.shape.sigma, c.shape.q, c.index.n, c.index.k, row.moments.r_i, row.moments.r_q,
-        row.moments.albedo, row.moments.deficit, row.moments.r_i_error, row.moments.r_q_error}) {
+       {c.theta_deg, c.shape.sigma, c.shape.q, c.index.n, c.index.k, m.r_i, m.r_q, m.albedo, m.deficit}) {
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), ",%.17g", value);
     line += text.data();
   }
-  return line + "," + c.name + "\n";
+  for (const double error : {m.r_i_error, m.r_q_error, m.albedo_error, m.deficit_error}) {
+    std::array<char, 32> text{};
+    // Rounded to three digits, and up.
+    std::snprintf(text.data(), text.size(), ",%.2e", 1.01 * error);
+    line += text.data();
+  }
+  return line + "," + c.name + "," + row.origin + "\n";
 }
 
 // A reader never sees half a file.
@@ -238,38 +171,70 @@ void write(const std::filesystem::path& path, const std::string& command, const 
   const std::filesystem::path part = path.string() + ".part";
   std::ofstream file(part);
   file << "# " << command << "\n"
-       << "distribution,masking,theta_deg,sigma,q,n,k,r_i,r_q,albedo,deficit,r_i_error,r_q_error,case\n";
+       << "distribution,masking,theta_deg,sigma,q,n,k,r_i,r_q,albedo,deficit,r_i_error,r_q_error,albedo_error,"
+          "deficit_error,case,origin\n";
   for (const Row& row : rows) file << csv_line(row);
   file.close();
   if (!file) throw dolp::IoError("cannot write " + part.string());
   std::filesystem::rename(part, path);
 }
 
+using CasesOf = std::function<std::vector<Case>(std::size_t group)>;
+
+void write_all(const std::string& path, const std::string& command, const Refinements& refinements,
+               const CasesOf& cases_of) {
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < dolp::reference::kGroups.size(); ++i) {
+    const std::vector<Row> more = rows_of(dolp::reference::kGroups[i], cases_of(i), refinements);
+    rows.insert(rows.end(), more.begin(), more.end());
+    write(path, command, rows);
+  }
+}
+
+struct Arguments {
+  std::string hard;
+  std::string random;
+  std::uint64_t seed = 20261121;
+  std::size_t count_a = 188;
+  std::size_t count_b = 62;
+};
+
+void run(const Arguments& arguments) {
+  const auto file_name = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
+  if (!arguments.hard.empty()) {
+    write_all(arguments.hard, "dolp-reference-values --hard " + file_name(arguments.hard), kForHardCases,
+              [](std::size_t group) { return hard_cases(dolp::reference::kGroups[group]); });
+  }
+  if (arguments.random.empty()) return;
+  const std::string command = "dolp-reference-values --random " + file_name(arguments.random) + " --seed " +
+                              std::to_string(arguments.seed) + " --count-a " + std::to_string(arguments.count_a) +
+                              " --count-b " + std::to_string(arguments.count_b);
+  write_all(arguments.random, command, kForRandomPoints, [&](std::size_t group) {
+    return random_cases(dolp::reference::kGroups[group], arguments.seed + group, arguments.count_a, arguments.count_b);
+  });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Writes reference moments for the tests, from the independent reference evaluator.");
-  std::string out;
-  std::uint64_t seed = 20250804;
-  std::size_t count = 60;
-  app.add_option("OUT", out, "CSV file, written anew after each distribution and masking")->required();
-  app.add_option("--seed", seed, "seed of the random cases")->capture_default_str();
-  app.add_option("--count", count, "random cases of domain A for each distribution and masking; a third as many of B")
+  CLI::App app(
+      "Writes reference moments of the hard cases and of random points by the independent reference evaluator.");
+  Arguments arguments;
+  app.add_option("--hard", arguments.hard,
+                 "CSV file of the hard cases, written anew after each distribution and masking");
+  app.add_option("--random", arguments.random, "likewise, of the random points");
+  app.add_option("--seed", arguments.seed, "seed of the random points")->capture_default_str();
+  app.add_option("--count-a", arguments.count_a, "points of domain A for each distribution and masking")
       ->capture_default_str();
+  app.add_option("--count-b", arguments.count_b, "points of domain B, likewise")->capture_default_str();
+  app.require_option(1, 5);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
-    const std::string command = "dolp-reference-values " + std::filesystem::path(out).filename().string() + " --seed " +
-                                std::to_string(seed) + " --count " + std::to_string(count);
-    std::vector<Row> rows;
-    for (std::size_t i = 0; i < kGroups.size(); ++i) {
-      const std::vector<Row> more = rows_of(kGroups[i], cases_of(kGroups[i], seed + i, count));
-      rows.insert(rows.end(), more.begin(), more.end());
-      write(out, command, rows);
-    }
+    run(arguments);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "dolp-reference-values: %s\n", error.what());
     return 4;

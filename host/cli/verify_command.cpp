@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+
+#include "cli/commands.hpp"
+#include "cli/progress_bar.hpp"
+#include "cli/verify_report.hpp"
+#include "error.hpp"
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/vulkan/devices.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "scene/number_range.hpp"
+#include "scene/text.hpp"
+#include "table/table_file.hpp"
+#include "verify/table_scene.hpp"
+
+namespace dolp::cli {
+namespace {
+
+constexpr double kDefaultTolerance = 1e-4;
+
+Table load_table(const std::string& path) {
+  if (!std::filesystem::exists(path)) throw InputError(path + ": there is no such file");
+  const std::string suffix = std::filesystem::path(path).extension().string();
+  if (suffix == ".csv" || suffix == ".npy") {
+    throw InputError(
+        fmt::format("{}: only a table written as .nc holds its scene, which {} files do not in full", path, suffix));
+  }
+  return read_table(path);
+}
+
+int verify_table(const Options& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const Table table = load_table(options.table_path);
+  const Scene scene = table_scene(table, options.table_path);
+  TableReport report;
+  report.path = options.table_path;
+  report.title = scene.title;
+  report.options = {options.samples, options.seed};
+  {
+    ProgressBar bar(options.quiet);
+    report.check = check_table(table, scene, options.table_path, report.options, bar.callback());
+  }
+  report.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (options.json) {
+    fmt::print("{}\n", table_json(report).dump(2));
+  } else if (!options.quiet) {
+    fmt::print("{}", table_text(report));
+  }
+  return report.check.passed() ? kExitDone : kExitAccuracy;
+}
+
+double tolerance_of(const Options& options) {
+  if (options.tolerance.empty()) return kDefaultTolerance;
+  const std::optional<double> tolerance = parse_number(options.tolerance);
+  if (!tolerance || !kToleranceRange.contains(*tolerance)) {
+    throw InputError(
+        fmt::format("--tolerance {}: must be a number in {}", one_line(options.tolerance), kToleranceRange.text()));
+  }
+  return *tolerance;
+}
+
+std::unique_ptr<MomentsEvaluator> evaluator_in(Precision precision, const Options& options) {
+  if (options.evaluator == "cpu") return std::make_unique<CpuEvaluator>(precision);
+  VulkanOptions vulkan;
+  vulkan.device = options.device;
+  vulkan.precision = precision;
+  return std::make_unique<VulkanEvaluator>(vulkan);
+}
+
+/// The precisions to examine. `left_out` says why one is missing that --precision auto would include.
+std::vector<Precision> precisions_of(const Options& options, std::string& left_out) {
+  if (options.precision == "float") return {Precision::kFloat};
+  if (options.precision == "double") return {Precision::kDouble};
+  if (options.evaluator == "cpu") return {Precision::kFloat, Precision::kDouble};
+  const DeviceList list = list_devices();
+  if (list.devices.empty()) throw DeviceError(list.why_empty);
+  const DeviceDescription& device = list.devices[choose_device(list.devices, options.device, false)];
+  if (device.float64) return {Precision::kFloat, Precision::kDouble};
+  left_out = "double is left out: " + device.name + " has no double precision (shaderFloat64)";
+  return {Precision::kFloat};
+}
+
+int verify_hard_cases(const Options& options) {
+  HardCaseReport report;
+  report.tolerance = tolerance_of(options);
+  report.cases = hard_cases();
+  for (const Precision precision : precisions_of(options, report.left_out)) {
+    const std::unique_ptr<MomentsEvaluator> evaluator = evaluator_in(precision, options);
+    ProgressBar bar(options.quiet);
+    PrecisionReport& of_precision = report.precisions.emplace_back();
+    of_precision.outcomes = qualify(report.cases, *evaluator, report.tolerance, bar.callback());
+    of_precision.evaluation = evaluator->report();
+  }
+  if (options.json) {
+    fmt::print("{}\n", hard_case_json(report).dump(2));
+  } else if (!options.quiet) {
+    fmt::print("{}", hard_case_text(report, options.all));
+  }
+  return report.failures() == 0 ? kExitDone : kExitAccuracy;
+}
+
+}  // namespace
+
+int run_verify(const Options& options) {
+  if (!options.hard_cases && options.table_path.empty()) {
+    throw InputError("verify: name a TABLE, or --hard-cases to examine a device (see dolp verify --help)");
+  }
+  return options.hard_cases ? verify_hard_cases(options) : verify_table(options);
+}
+
+}  // namespace dolp::cli

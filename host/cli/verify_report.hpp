@@ -1,0 +1,44 @@
+// What `dolp verify` reports: for people, and as JSON.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "evaluate/moments.hpp"
+#include "verify/qualification.hpp"
+#include "verify/table_check.hpp"
+
+namespace dolp::cli {
+
+/// A table that was checked.
+struct TableReport {
+  std::string path;
+  std::string title;
+  TableCheckOptions options;
+  TableCheck check;
+  double wall_s = 0.0;
+};
+std::string table_text(const TableReport& report);
+nlohmann::ordered_json table_json(const TableReport& report);
+
+/// The hard cases in one precision.
+struct PrecisionReport {
+  EvaluationReport evaluation;
+  std::vector<CaseOutcome> outcomes;
+  std::size_t failures() const;
+};
+
+/// A device that was examined.
+struct HardCaseReport {
+  double tolerance = 0.0;
+  std::vector<StoredCase> cases;
+  std::vector<PrecisionReport> precisions;
+  std::string left_out;  ///< why a precision is missing; empty when none is
+  std::size_t failures() const;
+};
+/// One line for each precision, distribution and masking, and one for each case that fails; `all`: for every case.
+std::string hard_case_text(const HardCaseReport& report, bool all);
+nlohmann::ordered_json hard_case_json(const HardCaseReport& report);
+
+}  // namespace dolp::cli

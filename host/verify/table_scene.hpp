@@ -1,0 +1,29 @@
+// The scene that a table was computed from, out of the table's own attributes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+#include "table/table.hpp"
+
+namespace dolp {
+
+/// The attribute "scene_overrides" of a table: one override a line. An override whose value has line ends itself stays
+/// whole, because only a scene key begins one.
+std::string overrides_text(const std::vector<std::string>& overrides);
+std::vector<std::string> overrides_of(const std::string& text);
+
+/// The attribute "scene_hash": FNV-1a, 64 bits, over the scene's text and overrides. Says whether two tables come from
+/// the same scene, nothing more.
+std::string scene_hash(const Scene& scene);
+
+/// The scene of a table, whose overrides are applied.
+///
+/// Files that the scene names are looked for beside the scene as the table's attribute "scene_path" has it, from the
+/// folder where the program runs.
+/// Errors: InputError that begins with `name`: no scene in the table, one that is not the one the table was made of, or
+/// one that the reader refuses.
+Scene table_scene(const Table& table, const std::string& name);
+
+}  // namespace dolp

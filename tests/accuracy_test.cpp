@@ -1,0 +1,178 @@
+// The promise of the program: 2,000 random points through the Vulkan evaluator and the radiometry, as `dolp eval` does
+// them, at each tolerance; against stored values of the independent reference.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "evaluate/radiometry/planck.hpp"
+#include "evaluate/radiometry/radiometry.hpp"
+#include "evaluate/run/scene_run.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "stored_evaluator.hpp"
+#include "verify/qualification.hpp"
+#include "verify/stored_cases.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr double kMissedShare = 0.01;
+constexpr double kMedianPessimism = 30.0;
+// Errors below this are rounding, whose bound must hold for the worst sum of signs and is far above the typical one:
+// sixteen units in the last place of a float's 24 bits. In double the reference's own bound, 1e-12, times ten.
+constexpr double kFloatRounding = 1e-6;
+constexpr double kDoubleRounding = 1e-11;
+
+constexpr std::uint32_t kNoDolpPromised =
+    kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
+
+enum class Light { kEmission, kSurroundingsAndSource };
+
+struct Setting {
+  double tolerance;
+  Precision precision;
+  Light light;
+  const char* name;
+};
+
+void PrintTo(const Setting& setting, std::ostream* out) { *out << setting.name; }
+
+Scene scene_of(Distribution distribution, Masking masking, const Setting& setting) {
+  Scene scene = emission_scene(distribution, masking, setting.tolerance);
+  scene.accuracy.precision = setting.precision;
+  if (setting.light == Light::kEmission) return scene;
+  scene.surroundings = Surroundings{250.0};
+  scene.source = Source{};
+  scene.source->irradiance = 0.6 * std::numbers::pi * planck_radiance(10.6, scene.emission->temperature_K);
+  return scene;
+}
+
+/// One point: its result, the reference's, and what both are about.
+struct Compared {
+  StoredCase point;
+  PointResult result;
+  PointResult reference;
+
+  double rho_error() const {
+    return std::max(std::abs(result.rho_i - reference.rho_i), std::abs(result.rho_q - reference.rho_q)) /
+           reference.rho_i;
+  }
+  double dolp_error() const { return std::abs(result.dolp - reference.dolp); }
+  bool is_missed() const { return (result.status & kStatusToleranceMissed) != 0; }
+  bool promises_dolp() const { return (result.status & kNoDolpPromised) == 0; }
+  std::string name() const {
+    return std::string(name_of(point.distribution)) + " " + name_of(point.masking) + " theta " +
+           std::to_string(point.theta_deg) + " sigma " + std::to_string(point.shape.sigma) + " q " +
+           std::to_string(point.shape.q) + " N " + std::to_string(point.index.n) + " + " +
+           std::to_string(point.index.k) + "i";
+  }
+};
+
+/// All points at one setting.
+struct Sweep {
+  std::vector<Compared> points;
+  double rounding = 0.0;
+};
+
+void add_group(Sweep& sweep, const std::vector<StoredCase>& cases, const Setting& setting,
+               MomentsEvaluator& evaluator) {
+  const Scene scene = scene_of(cases.front().distribution, cases.front().masking, setting);
+  std::vector<SceneEntry> entries;
+  for (const StoredCase& c : cases) entries.push_back({c.theta_deg, c.shape, c.index});
+  const std::vector<PointResult> results = evaluate_scene(scene, entries, evaluator, {});
+  StoredEvaluator stored(cases);
+  const std::vector<PointResult> references = evaluate_scene(scene, entries, stored, {});
+  for (std::size_t i = 0; i < cases.size(); ++i) sweep.points.push_back({cases[i], results[i], references[i]});
+}
+
+Sweep sweep_of(const Setting& setting) {
+  VulkanOptions options;
+  options.precision = setting.precision;
+  VulkanEvaluator evaluator(options);
+  const std::vector<StoredCase> cases = read_stored_cases(DOLP_TEST_DATA_DIR "/random_points.csv");
+  Sweep sweep;
+  for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
+    for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
+      add_group(sweep, cases_of(cases, distribution, masking), setting, evaluator);
+    }
+  }
+  sweep.rounding = evaluator.report().precision == "float" ? kFloatRounding : kDoubleRounding;
+  return sweep;
+}
+
+class RandomPoints : public testing::TestWithParam<Setting> {
+ protected:
+  /// Each setting is run once for all tests.
+  const Sweep& sweep() const {
+    static std::map<std::string, Sweep> runs;
+    const auto found = runs.find(GetParam().name);
+    return found != runs.end() ? found->second : runs.emplace(GetParam().name, sweep_of(GetParam())).first->second;
+  }
+};
+
+TEST_P(RandomPoints, StoredFile_HasTheDomainsAndModels) {
+  std::map<std::string, int> counts;
+  for (const Compared& c : sweep().points) ++counts[c.point.name];
+  EXPECT_EQ(counts, (std::map<std::string, int>{{"random-a", 1504}, {"random-b", 496}}));
+}
+
+TEST_P(RandomPoints, EveryPoint_MeetsTheToleranceOrSaysSo) {
+  const double tolerance = GetParam().tolerance;
+  double worst_rho = 0.0;
+  double worst_dolp = 0.0;
+  for (const Compared& c : sweep().points) {
+    if (c.is_missed()) continue;
+    worst_rho = std::max(worst_rho, c.rho_error());
+    EXPECT_LE(c.rho_error(), tolerance + c.reference.rho_error_estimate) << c.name();
+    if (!c.promises_dolp()) continue;
+    worst_dolp = std::max(worst_dolp, c.dolp_error());
+    EXPECT_LE(c.dolp_error(), tolerance + c.reference.error_estimate) << c.name();
+  }
+  std::printf("worst error of rho %.1e, of dolp %.1e at tolerance %.0e\n", worst_rho, worst_dolp, tolerance);
+}
+
+TEST_P(RandomPoints, EveryPoint_ErrorIsBelowItsEstimate) {
+  for (const Compared& c : sweep().points) {
+    EXPECT_LE(c.rho_error(), c.result.rho_error_estimate + c.reference.rho_error_estimate) << c.name();
+    EXPECT_LE(c.dolp_error(), c.result.error_estimate + c.reference.error_estimate) << c.name();
+  }
+}
+
+TEST_P(RandomPoints, FewPoints_MissTheTolerance) {
+  const std::vector<Compared>& points = sweep().points;
+  const auto missed = std::ranges::count_if(points, &Compared::is_missed);
+  std::printf("%td of %zu points say that they miss %.0e\n", missed, points.size(), GetParam().tolerance);
+  EXPECT_LT(static_cast<double>(missed), kMissedShare * static_cast<double>(points.size()));
+}
+
+TEST_P(RandomPoints, Estimates_AreNotFarAboveTheErrors) {
+  std::vector<double> pessimism;
+  for (const Compared& c : sweep().points) {
+    if (c.rho_error() > sweep().rounding) pessimism.push_back(c.result.rho_error_estimate / c.rho_error());
+  }
+  std::ranges::sort(pessimism);
+  const double median = pessimism.empty() ? 0.0 : pessimism[pessimism.size() / 2];
+  std::printf("median of estimate over error %.1f, of %zu points above rounding\n", median, pessimism.size());
+  EXPECT_LT(median, kMedianPessimism);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Accuracy, RandomPoints,
+    testing::Values(Setting{1e-2, Precision::kAuto, Light::kEmission, "Emission_1em2"},
+                    Setting{1e-4, Precision::kAuto, Light::kEmission, "Emission_1em4"},
+                    Setting{1e-6, Precision::kAuto, Light::kEmission, "Emission_1em6"},
+                    Setting{1e-9, Precision::kDouble, Light::kEmission, "Emission_1em9"},
+                    Setting{1e-2, Precision::kAuto, Light::kSurroundingsAndSource, "SurroundingsAndSource_1em2"},
+                    Setting{1e-4, Precision::kAuto, Light::kSurroundingsAndSource, "SurroundingsAndSource_1em4"},
+                    Setting{1e-6, Precision::kAuto, Light::kSurroundingsAndSource, "SurroundingsAndSource_1em6"},
+                    Setting{1e-9, Precision::kDouble, Light::kSurroundingsAndSource, "SurroundingsAndSource_1em9"}),
+    [](const testing::TestParamInfo<Setting>& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace dolp

@@ -1,0 +1,227 @@
+// The hard cases of the model: what is stored, and every evaluator against it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "error.hpp"
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/radiometry/radiometry.hpp"
+#include "evaluate/reference/hemisphere.hpp"
+#include "evaluate/reference/reference_evaluator.hpp"
+#include "evaluate/run/scene_run.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "stored_evaluator.hpp"
+#include "verify/qualification.hpp"
+#include "verify/stored_cases.hpp"
+
+namespace dolp {
+namespace {
+
+std::string label(const StoredCase& c) {
+  return std::string(name_of(c.distribution)) + " " + name_of(c.masking) + " " + c.name;
+}
+
+// ---- What is stored ------------------------------------------------------------------------------------------------
+
+TEST(HardCases, EveryModel_HasTheCasesOnce) {
+  std::map<std::string, std::set<std::string>> names;
+  for (const StoredCase& c : hard_cases()) {
+    const std::string model = std::string(name_of(c.distribution)) + " " + name_of(c.masking);
+    EXPECT_TRUE(names[model].insert(c.name).second) << label(c);
+    EXPECT_FALSE(c.origin.empty()) << label(c);
+  }
+  EXPECT_EQ(names.size(), 8U);
+  for (const auto& [model, cases] : names) {
+    for (const char* wanted : {"normal", "almost-normal", "brewster", "split-lines-30", "almost-grazing", "mirror",
+                               "sigma-1e-4", "sigma-5", "vacuum", "total-reflection", "index-0.2-3", "index-27-90",
+                               "index-1000-1000", "almost-total-reflection-89.999", "grazing-limit"}) {
+      EXPECT_TRUE(cases.contains(wanted)) << model << " " << wanted;
+    }
+    const bool is_heavy = model == "cauchy none" || model == "cauchy v-cavity" || model == "cauchy integral";
+    for (const char* wanted : {"q-1.001", "q-1.5-below", "q-1.5"}) EXPECT_EQ(cases.contains(wanted), is_heavy) << model;
+    const bool is_cauchy = model.starts_with("cauchy");
+    for (const char* wanted : {"q-50", "q-1000", "q-1.5-above"}) EXPECT_EQ(cases.contains(wanted), is_cauchy) << model;
+  }
+}
+
+TEST(HardCases, References_AreAsGoodAsStated) {
+  constexpr double kRelative = 1.5e-13;
+  // r_i is 3e-9 there, and the amplitudes r_s and r_p carry rounding of 1e-16 beside 5e-5.
+  constexpr double kAlmostVacuum = 3e-11;
+  for (const StoredCase& c : hard_cases()) {
+    const Moments& m = c.moments;
+    const double allowed = (c.name == "almost-vacuum" ? kAlmostVacuum : kRelative) * m.r_i;
+    EXPECT_LE(m.r_i_error, allowed) << label(c);
+    EXPECT_LE(m.r_q_error, allowed) << label(c);
+    EXPECT_LE(m.albedo_error, kRelative * m.albedo) << label(c);
+  }
+}
+
+Moments recomputed(const StoredCase& c, const ReferenceOptions& options) {
+  MomentsRequest request;
+  request.distribution = c.distribution;
+  request.masking = c.masking;
+  request.tolerance = 0.0;
+  request.theta_deg = {c.theta_deg};
+  request.shapes = {c.shape};
+  request.indices = {c.index};
+  request.entries = {{0, 0, 0}};
+  return ReferenceEvaluator(options).evaluate(request, {}).at(0);
+}
+
+// All cases but those of the slow masking, of which every tenth.
+TEST(HardCases, AnotherRefinement_StaysWithinTheErrors) {
+  std::size_t slow = 0;
+  for (const StoredCase& c : hard_cases()) {
+    if (c.masking == Masking::kIntegral && slow++ % 10 != 0) continue;
+    const Moments m = recomputed(c, {.relative_tolerance = 1e-8, .subdivisions = 3});
+    EXPECT_NEAR(m.r_i, c.moments.r_i, m.r_i_error + c.moments.r_i_error) << label(c);
+    EXPECT_NEAR(m.r_q, c.moments.r_q, m.r_q_error + c.moments.r_q_error) << label(c);
+    EXPECT_NEAR(m.albedo, c.moments.albedo, m.albedo_error + c.moments.albedo_error) << label(c);
+    EXPECT_NEAR(m.deficit, c.moments.deficit, m.deficit_error + c.moments.deficit_error) << label(c);
+  }
+}
+
+TEST(StoredCases, BadFile_NamesLineAndColumn) {
+  const std::string header =
+      std::string(embedded_hard_cases_csv()).substr(0, embedded_hard_cases_csv().find("cauchy,"));
+  const std::string good = "cauchy,none,60,0.3,2,1.5,0,1,0,1,0,0,0,0,0,name,origin\n";
+  EXPECT_EQ(parse_stored_cases(header + good, "f").size(), 1U);
+  const auto message = [&](const std::string& text) {
+    try {
+      parse_stored_cases(text, "f");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_NE(message(good).find("f:1: the columns must be"), std::string::npos);
+  EXPECT_NE(message("").find("f:1: the columns must be"), std::string::npos);
+  EXPECT_NE(message(header + "cauchy,none,60\n").find("f:3: 3 cells, 17 are expected"), std::string::npos);
+  EXPECT_NE(message(header + "cauchy,none,sixty" + good.substr(14)).find("f:3: theta_deg = sixty"), std::string::npos);
+  EXPECT_NE(message(header + "normal" + good.substr(6)).find("f:3: distribution = normal"), std::string::npos);
+}
+
+// ---- Every evaluator against it ------------------------------------------------------------------------------------
+
+enum class Evaluator { kCpuFloat, kCpuDouble, kVulkanFloat, kVulkanDouble };
+
+std::unique_ptr<MomentsEvaluator> make(Evaluator evaluator) {
+  const bool in_double = evaluator == Evaluator::kCpuDouble || evaluator == Evaluator::kVulkanDouble;
+  const Precision precision = in_double ? Precision::kDouble : Precision::kFloat;
+  if (evaluator == Evaluator::kCpuFloat || evaluator == Evaluator::kCpuDouble) {
+    return std::make_unique<CpuEvaluator>(precision);
+  }
+  VulkanOptions options;
+  options.precision = precision;
+  return std::make_unique<VulkanEvaluator>(options);
+}
+
+using Setting = std::tuple<Evaluator, double>;
+
+class HardCasesOn : public testing::TestWithParam<Setting> {};
+
+TEST_P(HardCasesOn, EveryCase_IsWithinItsEstimateAndMeetsTheToleranceOrSaysSo) {
+  const auto [evaluator, tolerance] = GetParam();
+  const std::vector<StoredCase> cases = hard_cases();
+  const std::vector<CaseOutcome> outcomes = qualify(cases, *make(evaluator), tolerance, {});
+  ASSERT_EQ(outcomes.size(), cases.size());
+  std::size_t missed = 0;
+  for (const CaseOutcome& outcome : outcomes) {
+    missed += (outcome.status & kStatusToleranceMissed) != 0 ? 1 : 0;
+    EXPECT_EQ(outcome.complaint, "") << label(cases[outcome.position]) << ": rho " << outcome.rho.error << " of "
+                                     << outcome.rho.estimate << ", dolp " << outcome.dolp.error << " of "
+                                     << outcome.dolp.estimate;
+  }
+  std::printf("%zu cases, %zu say that they miss %.0e\n", cases.size(), missed, tolerance);
+}
+
+std::string setting_name(const testing::TestParamInfo<Setting>& info) {
+  constexpr std::array kNames = {"CpuFloat", "CpuDouble", "VulkanFloat", "VulkanDouble"};
+  const double digits = -std::log10(std::get<1>(info.param));
+  return std::string(kNames[static_cast<std::size_t>(std::get<0>(info.param))]) + "_1em" +
+         std::to_string(std::lround(digits));
+}
+
+INSTANTIATE_TEST_SUITE_P(Float, HardCasesOn,
+                         testing::Combine(testing::Values(Evaluator::kCpuFloat, Evaluator::kVulkanFloat),
+                                          testing::Values(1e-2, 1e-4, 1e-6)),
+                         setting_name);
+INSTANTIATE_TEST_SUITE_P(Double, HardCasesOn,
+                         testing::Combine(testing::Values(Evaluator::kCpuDouble, Evaluator::kVulkanDouble),
+                                          testing::Values(1e-4, 1e-6, 1e-9)),
+                         setting_name);
+
+// An evaluator that is wrong must be found out.
+class BiasedEvaluator final : public MomentsEvaluator {
+ public:
+  explicit BiasedEvaluator(const std::vector<StoredCase>& cases) : stored_(cases) {}
+  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
+    std::vector<Moments> results = stored_.evaluate(request, progress);
+    for (Moments& m : results) {
+      m.r_i_error = m.r_q_error = m.deficit_error = 1e-6 * m.r_i;
+      m.r_i *= 1.0 + bias;
+      m.deficit -= bias * m.r_i;
+    }
+    return results;
+  }
+  EvaluationReport report() const override { return {}; }
+  double bias = 0.0;
+
+ private:
+  StoredEvaluator stored_;
+};
+
+TEST(Qualify, BiasedEvaluator_IsFoundOutCaseByCase) {
+  std::vector<StoredCase> cases = cases_of(hard_cases(), Distribution::kCauchy, Masking::kIntegral);
+  // Mirrors do not ask the evaluator; next to grazing rounding of the cosine counts.
+  std::erase_if(cases, [](const StoredCase& c) { return c.shape.sigma == 0.0 || c.theta_deg > 89.9; });
+  BiasedEvaluator evaluator(cases);
+  for (const double bias : {0.0, 5e-7, 2e-6}) {
+    evaluator.bias = bias;
+    for (const CaseOutcome& outcome : qualify(cases, evaluator, 1e-4, {})) {
+      const StoredCase& stored = cases[outcome.position];
+      const bool is_wrong = bias > 1e-6 && stored.moments.r_i > 0.0;
+      EXPECT_EQ(!outcome.complaint.empty(), is_wrong) << label(stored) << " " << bias << " " << outcome.complaint;
+    }
+  }
+}
+
+TEST(MeasureQuality, CpuInDouble_IsSound) {
+  CpuEvaluator evaluator(Precision::kDouble);
+  const DeviceQuality quality = measure_quality(evaluator, 1e-4);
+  EXPECT_EQ(quality.cases, 56U);
+  EXPECT_TRUE(quality.is_sound) << quality.worst_case;
+  EXPECT_GT(quality.worst_error, 0.0);
+  EXPECT_LE(quality.worst_error, 1e-4);
+  EXPECT_FALSE(quality.worst_case.empty());
+}
+
+// rho at 90 degrees under v-cavity and smith masking is the limit of the stored value 1e-9 degrees before it, which it
+// approaches like the cosine, 2e-11, times a logarithm.
+TEST(HardCases, RightAngle_IsTheLimitOfTheStoredValue) {
+  constexpr double kApproach = 1e-8;
+  for (const StoredCase& c : hard_cases()) {
+    const bool has_limit = c.masking == Masking::kVCavity || c.masking == Masking::kSmith;
+    if (!has_limit || !c.name.starts_with("grazing-limit")) continue;
+    CpuEvaluator evaluator(Precision::kDouble);
+    const Scene scene = emission_scene(c.distribution, c.masking, 1e-4);
+    const PointResult result = evaluate_scene(scene, {{90.0, c.shape, c.index}}, evaluator, {}).at(0);
+    const double cosine = reference::zenith_from_deg(c.theta_deg).cos;
+    const double rho_i = c.moments.r_i / cosine;
+    EXPECT_NEAR(result.rho_i, rho_i, (result.rho_error_estimate + kApproach) * rho_i) << label(c);
+    EXPECT_NEAR(result.rho_q, c.moments.r_q / cosine, (result.rho_error_estimate + kApproach) * rho_i) << label(c);
+  }
+}
+
+}  // namespace
+}  // namespace dolp

@@ -1,0 +1,54 @@
+// Stored reference moments behind the interface of the evaluators, so that any scene has its reference results.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "evaluate/moments.hpp"
+#include "verify/stored_cases.hpp"
+
+namespace dolp {
+
+/// Gives back the moments of stored cases of one distribution and masking; anything else is a failure of the test.
+class StoredEvaluator final : public MomentsEvaluator {
+ public:
+  explicit StoredEvaluator(const std::vector<StoredCase>& cases) {
+    for (const StoredCase& c : cases) moments_[key(c.theta_deg, c.shape, c.index)] = c.moments;
+  }
+
+  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress&) override {
+    std::vector<Moments> results;
+    for (const MomentsEntry& entry : request.entries) {
+      const auto found =
+          moments_.find(key(request.theta_deg[entry.theta], request.shapes[entry.shape], request.indices[entry.index]));
+      EXPECT_NE(found, moments_.end());
+      results.push_back(found == moments_.end() ? Moments{} : found->second);
+    }
+    return results;
+  }
+
+  EvaluationReport report() const override { return {}; }
+
+ private:
+  using Key = std::tuple<double, double, double, double, double>;
+  static Key key(double theta_deg, const SlopeShape& shape, const OpticalConstants& index) {
+    return {theta_deg, shape.sigma, shape.q, index.n, index.k};
+  }
+  std::map<Key, Moments> moments_;
+};
+
+/// The cases of one distribution and masking.
+inline std::vector<StoredCase> cases_of(const std::vector<StoredCase>& cases, Distribution distribution,
+                                        Masking masking) {
+  std::vector<StoredCase> own;
+  for (const StoredCase& c : cases) {
+    if (c.distribution == distribution && c.masking == masking) own.push_back(c);
+  }
+  return own;
+}
+
+}  // namespace dolp

@@ -44,6 +44,7 @@ struct RuleNode {
   real digits;            // decimal digits that the sums are to have
   real t_nodes;           // slope axis: nodes of a piece whatever its digits
   real t_growth;          // factor of the nodes for each digit
+  real t_strip;           // distance in X to the next singularity off the real axis
   real t_root_nodes;      // more nodes for a square root at an end
   real phi_half_nodes;    // azimuth: the same for an arc that touches phi = 0 or pi,
   real phi_centre_nodes;  // for any other arc
@@ -79,7 +80,6 @@ struct ShapeNode {
   real two_q_minus_3;  // likewise near 3/2, where smith masking ends
   real marginal_norm;  // p(0) of the in-plane marginal
   real scale;          // w of the map t = w sinh(X)
-  real strip;          // distance in X to the next singularity off the real axis
   real cut;            // slopes beyond it are left out
   real table_scale;    // of the masking table: v = 1 + tau/table_scale
   real cusp_digits;    // log10 of the size of smith's cusp at theta_r = 0; below -100 without one

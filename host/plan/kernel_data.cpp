@@ -61,8 +61,6 @@ constexpr double kSmallestHeavyTableScale = 1e-4;
 constexpr double kLightTailQ = 1.5;
 constexpr double kLargestTableScale = 0.5;
 
-constexpr double kGaussianQ = 8.0;  // the q beyond which the slope axis is as smooth as with a gaussian
-
 struct Breakpoint {
   double slope;
   double kind;  // sum of the ends
@@ -225,7 +223,6 @@ double slope_cut(const MomentsRequest& request, const SlopeShape& shape, double 
 }
 
 kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& shape) {
-  const RuleModel& model = rule_model(request.masking);
   kernel::ShapeNode node{};
   node.m = std::sqrt(2.0) * shape.sigma;
   node.q_minus_1 = shape.q - 1.0;
@@ -234,7 +231,6 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
       (cauchy ? boost::math::tgamma_ratio(shape.q - 0.5, shape.q - 1.0) : 1.0) / (root_pi<double>() * node.m);
   node.two_q_minus_3 = 2.0 * shape.q - 3.0;
   node.scale = std::min(cauchy ? node.m / std::sqrt(std::max(1.0, 0.25 * shape.q)) : node.m, 1.0);
-  node.strip = model.t_strip * std::pow(cauchy ? std::min(shape.q, kGaussianQ) : kGaussianQ, -model.t_strip_power);
   node.cut = slope_cut(request, shape, kCutShare * request.tolerance);
   const double width = cauchy ? node.m / std::sqrt(std::max(1.0, shape.q / 1.5)) : node.m;
   const bool heavy_tail = cauchy && shape.q < kLightTailQ;

@@ -9,8 +9,7 @@ namespace dolp {
 struct RuleModel {
   double margin_digits = 0.0;    ///< digits beyond the tolerance, so that few entries miss it
   double t_nodes = 0.0;          ///< RuleNode::t_nodes
-  double t_strip = 1.0;          ///< ShapeNode::strip at q = 1
-  double t_strip_power = 0.0;    ///< it falls as q to minus this
+  double t_strip = 1.0;          ///< distance in X to the next singularity off the real axis
   double t_oblique = 0.0;        ///< more nodes for each digit from 65 to 80 degrees
   double t_root_nodes = 0.0;     ///< RuleNode::t_root_nodes
   double t_curvature = 0.0;      ///< more nodes for each digit, for each digit beyond four

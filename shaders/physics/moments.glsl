@@ -25,7 +25,7 @@ Piece make_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, int number) {
   piece.root_at_a = mod(theta.kind[number], real(2.0)) > real(0.5);
   piece.root_at_b = b < shape.cut && theta.kind[number + 1] > real(1.5);
   real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
-  piece.order = order_t(rule, theta, shape, piece.digits, piece.extent, roots);
+  piece.order = order_t(rule, theta, piece.digits, piece.extent, roots);
   return piece;
 }
 

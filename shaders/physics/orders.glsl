@@ -24,8 +24,8 @@ real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, re
 int order_between(real nodes, real limit) { return int(clamp(floor(nodes + real(0.5)), real(1.0), limit)); }
 
 // Slope axis: `extent` of the piece in X, `roots` of its ends.
-int order_t(RuleNode rule, ThetaNode theta, ShapeNode shape, real digits, real extent, real roots) {
-  real per_digit = theta.t_growth * rule.t_growth * nodes_per_digit(real(2.0) * shape.strip / extent);
+int order_t(RuleNode rule, ThetaNode theta, real digits, real extent, real roots) {
+  real per_digit = theta.t_growth * rule.t_growth * nodes_per_digit(real(2.0) * rule.t_strip / extent);
   return order_between(max(rule.t_nodes + digits * per_digit + rule.t_root_nodes * roots, real(2.0)),
                        theta.order_limit_t);
 }

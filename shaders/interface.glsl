@@ -51,6 +51,8 @@ struct RuleNode {
   real phi_circle_nodes;  // and for the whole half circle
   real phi_growth;
   real phi_circle_growth;
+  real phi_horizon_growth;
+  real circle_pole;
   real phi_cluster_growth;
   real strip[3];         // for the arcs of each zone: distance in phi to the next singularity off the real axis
   real cluster_below_q;  // below this q an arc clusters its nodes where the limit b of `integral` meets pi/2
@@ -89,6 +91,7 @@ struct ShapeNode {
 struct IndexNode {
   real n2m1_re;       // Re(N^2 - 1)
   real n2m1_im;       // Im(N^2 - 1)
+  real pole_cos;      // |1 / sqrt(N^2 + 1)|: R_p has a pole at minus this cos(beta)
   real critical_cos;  // sqrt(1 - Re N^2), where total reflection begins, sharply (k = 0) or nearly so; otherwise 0
 };
 

@@ -9,6 +9,7 @@
 #include <cassert>
 #include <cmath>
 #include <compare>
+#include <complex>
 #include <limits>
 #include <map>
 #include <utility>
@@ -29,6 +30,7 @@ constexpr double kNoEnd = 1e30;    // a slope beyond every cut, in place of infi
 // Breakpoints nearer to each other than this share of the piece beyond, in ln(slope): the square root of the one is felt
 // beyond the other.
 constexpr double kNear = 0.25;
+constexpr double kFirst = 2.0;  // what the piece from 0 counts as
 
 // Share of the tolerance that the slopes beyond the cut may carry.
 constexpr double kCutShare = 0.03;
@@ -119,14 +121,11 @@ bool has_end(const Breakpoint& point, double end) {
   return end == kEndBelow ? point.kind > 1.5 : std::fmod(point.kind, 2.0) > 0.5;
 }
 
-double log_slope(double slope) { return slope > 0.0 ? std::log(slope) : -100.0; }
-
 // A breakpoint next to one with a square root, seen from the piece beyond, gets one too.
 void spread_roots(std::vector<Breakpoint>& points) {
   const std::vector<Breakpoint> own = points;
-  const auto distance = [&](std::size_t i, std::size_t j) {
-    return std::abs(log_slope(own[i].slope) - log_slope(own[j].slope));
-  };
+  const auto log_slope = [&](std::size_t i) { return i > 0 ? std::log(own[i].slope) : std::log(own[1].slope) - kFirst; };
+  const auto distance = [&](std::size_t i, std::size_t j) { return std::abs(log_slope(i) - log_slope(j)); };
   for (std::size_t j = 1; j + 1 < own.size(); ++j) {
     for (std::size_t i = 1; i < own.size(); ++i) {
       const double end = i < j ? kEndAbove : kEndBelow;
@@ -240,7 +239,9 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
 }
 
 kernel::IndexNode index_node(const OpticalConstants& index) {
-  return {(index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k, critical_cos(index)};
+  const std::complex<double> n(index.n, index.k);
+  return {(index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k,
+          1.0 / std::sqrt(std::max(std::abs(n * n + 1.0), 1e-3)), critical_cos(index)};
 }
 
 // Gives each entry the variant of its direction that it needs.

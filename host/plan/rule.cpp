@@ -114,6 +114,8 @@ kernel::RuleNode rule_node(Masking masking, double digits) {
   node.phi_circle_nodes = model.phi_circle_nodes;
   node.phi_growth = curved(model.phi_curvature, digits);
   node.phi_circle_growth = node.phi_growth * model.phi_circle_growth;
+  node.phi_horizon_growth = node.phi_growth * model.phi_horizon_growth;
+  node.circle_pole = model.circle_pole;
   node.phi_cluster_growth = model.phi_cluster_growth;
   std::copy(std::begin(model.strip), std::end(model.strip), std::begin(node.strip));
   node.cluster_below_q = digits > kClusterDigits ? kClusterBelowQ : 0.0;

@@ -20,6 +20,8 @@ struct RuleModel {
   double phi_curvature = 0.0;    ///< likewise
   double phi_circle_nodes = 0.0; ///< RuleNode::phi_circle_nodes
   double phi_circle_growth = 0.0;///< RuleNode::phi_circle_growth
+  double phi_horizon_growth = 0.5;  ///< RuleNode::phi_horizon_growth
+  double circle_pole = 0.5;         ///< RuleNode::circle_pole
   double phi_cluster_growth = 1.0; ///< RuleNode::phi_cluster_growth
   double cusp_digits = 0.0;      ///< smith: digits by which the cusp is smaller than its formula says
   double line_threshold = 0.0;   ///< multiples of 10^-digits from which a line or cusp is worth its pieces

@@ -44,6 +44,13 @@ void append_half(Nodes& nodes, int order) {
   }
 }
 
+// cos(2 psi) is in the integrand of r_q whatever the rule, so that three nodes look at cos(psi) alone.
+double circle_null(int order, double psi) {
+  if (order == 1) return 1.0;
+  if (order <= 3) return 2.0 * std::cos(psi);
+  return 2.0 * std::cos((order - 1) * psi) + 2.0 * std::cos((order - 2) * psi);
+}
+
 // Midpoints psi of [0, pi] as tau = tan(psi/4), the weight chosen so that 4 / (1 + tau^2) * weight = pi / order.
 void append_circle(Nodes& nodes, int order) {
   for (int i = 0; i < order; ++i) {
@@ -51,9 +58,7 @@ void append_circle(Nodes& nodes, int order) {
     const double psi = part * (i + 0.5);
     const double tau = std::tan(0.25 * psi);
     const double weight = 0.25 * part * (1.0 + tau * tau);
-    const double null =
-        order == 1 ? 1.0 : both(order, 2.0 * std::cos((order - 1) * psi), 2.0 * std::cos((order - 2) * psi));
-    nodes.push_back({tau, weight, weight * null, 0.0});
+    nodes.push_back({tau, weight, weight * circle_null(order, psi), 0.0});
   }
 }
 

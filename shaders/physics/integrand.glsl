@@ -65,6 +65,7 @@ struct Arc {
   real extent;
   real quarter;  // tan of a quarter of its length; not positive for an empty arc
   int section;   // of the rule nodes
+  real horizon_nodes;  // what the horizon at its end asks for
 };
 
 // Half-angle form of an azimuth: (cos(phi/2), sin(phi/2)), from 1 + cos(phi) and 1 - cos(phi), clamped to [0, pi].
@@ -72,6 +73,8 @@ real2 half_angle(real one_plus_x, real one_minus_x) {
   return real2(sqrt(clamp(real(0.5) * one_plus_x, real(0.0), real(1.0))),
                sqrt(clamp(real(0.5) * one_minus_x, real(0.0), real(1.0))));
 }
+
+real cosine(real2 half_phi) { return (half_phi.x - half_phi.y) * (half_phi.x + half_phi.y); }
 
 // The arc between two azimuths given by their half angles; empty when they coincide or are out of order.
 Arc make_arc(real2 from, real2 to) {
@@ -85,6 +88,7 @@ Arc make_arc(real2 from, real2 to) {
   arc.centre_sin = from.y * to.x + from.x * to.y;
   arc.extent = arc.quarter / (real(1.0) + sqrt(real(1.0) + arc.quarter * arc.quarter));
   arc.section = kSectionCentre;
+  arc.horizon_nodes = real(0.0);
   if (starts_at_0 || ends_at_pi) {
     arc.centre_cos = starts_at_0 ? real(1.0) : real(-1.0);
     arc.centre_sin = real(0.0);
@@ -138,19 +142,33 @@ Projection project(ThetaNode theta, ShapeNode shape, uint table, real t, real e,
 // What the sums over the azimuths of one slope share.
 struct Slice {
   real t;
-  real digits;    // wanted
-  real by_slope;  // see project
+  real digits;      // wanted
+  real by_slope;    // see project
   real cusp_nodes;  // nodes of a half arc that smith's cusp at theta_r = 0 asks for
 };
 
-int arc_order(RuleNode rule, ThetaNode theta, Slice slice, Arc arc, int zone) {
+// An arc that ends at the horizon, at x = cos(phi) = `x_horizon`, comes near the pole of R_p at cos(beta) = -pole_cos: the
+// nearer, the more grazing the direction and the better the metal. A Gauss rule on [x_horizon, x_start] would converge
+// as exp(-acosh(1 + gap / half length)) for each node.
+real horizon_nodes(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, real x_start, real x_horizon) {
+  real sec2 = real(1.0) + slice.t * slice.t;
+  real gap = (real(0.5) * theta.c * sec2 + index.pole_cos * sqrt(sec2)) / max(theta.s * slice.t, real(1e-30));
+  real relative = real(2.0) * gap / max(x_start - x_horizon, real(1e-30));
+  return slice.digits * rule.phi_horizon_growth * kHalfLn10 /
+         max(log1p_real(relative + sqrt(relative * (relative + real(2.0)))), real(1e-3));
+}
+
+int arc_order(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, Arc arc, int zone) {
   real strip = rule.strip[zone] / theta.phi_narrowing;
   real length = arc_length(arc.quarter);
   real nodes;
   if (arc.section == kSectionCircle) {
-    // The next singularity is the line e = 0, cos(phi) = -cot(theta) / t.
-    real x = max(theta.c / max(theta.s * slice.t, real(1e-30)), real(1.0001));
-    nodes = rule.phi_circle_nodes + slice.digits * rule.phi_circle_growth * kHalfLn10 / asinh_real(sqrt(x * x - real(1.0)));
+    // The next singularity is the pole of R_p, and without it the line e = 0.
+    real sec = sqrt(real(1.0) + slice.t * slice.t);
+    real x = max((theta.c + rule.circle_pole * index.pole_cos * sec) / max(theta.s * slice.t, real(1e-30)), real(1.0001));
+    real per_digit = rule.phi_circle_growth * kHalfLn10 / asinh_real(sqrt(x * x - real(1.0)));
+    // With fewer than two nodes cos(2 phi) would not average out.
+    nodes = max(rule.phi_circle_nodes + slice.digits * per_digit, real(2.0));
   } else if (arc.section == kSectionHalf) {
     nodes = rule.phi_half_nodes + half_arc_nodes(rule, slice.digits, strip, length);
   } else {
@@ -159,6 +177,7 @@ int arc_order(RuleNode rule, ThetaNode theta, Slice slice, Arc arc, int zone) {
             slice.digits * rule.phi_growth * nodes_per_digit(real(2.0) * strip / (stretch * length));
   }
   if (arc.section != kSectionCluster) nodes = max(nodes, rule.phi_half_nodes + slice.cusp_nodes);
+  if (arc.section != kSectionCircle) nodes = max(nodes, rule.phi_half_nodes + arc.horizon_nodes);
   return order_between(nodes, theta.order_limit_phi);
 }
 
@@ -166,7 +185,7 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode 
                      int zone) {
   real t = slice.t;
   real r2 = real(1.0) / (real(1.0) + t * t);
-  int order = (arc.quarter > real(0.0)) ? arc_order(rule, theta, slice, arc, zone) : 0;
+  int order = (arc.quarter > real(0.0)) ? arc_order(rule, theta, index, slice, arc, zone) : 0;
   int first_node = rule_offset(rule, arc.section, order);
   FacetSums sum = no_facets();
   FacetSums null = no_facets();
@@ -267,7 +286,10 @@ Arc zone_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, Slice slice, real2
 AzimuthSums zone_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, Slice slice,
                       real2 from, real2 to, real2 critical, int zone) {
   if (index.critical_cos <= real(0.0)) {
-    return arc_sums(rule, theta, shape, index, table, slice, zone_arc(rule, theta, shape, slice, from, to, zone), zone);
+    Arc arc = zone_arc(rule, theta, shape, slice, from, to, zone);
+    bool is_last = zone == 2 || kMasking == DOLP_MASKING_NONE || kMasking == DOLP_MASKING_SMITH;
+    if (is_last) arc.horizon_nodes = horizon_nodes(rule, theta, index, slice, cosine(from), cosine(to));
+    return arc_sums(rule, theta, shape, index, table, slice, arc, zone);
   }
   real2 middle = clamp_half_angle(critical, from, to);
   AzimuthSums below = arc_sums(rule, theta, shape, index, table, slice, make_root_arc(from, middle, true), zone);

@@ -71,12 +71,12 @@ SlopeSums piece_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode 
   return sums;
 }
 
-// How far a sum may be off by one rule, up to a factor that host/plan/error_bounds.cpp knows. Where the integrand is
-// smooth, the error of n nodes is to the null rule's value as that is to the sum; where it is not, it is what the orders
-// were made for, 10^-digits. The geometric mean of the two is the closest to the truth over the domain.
+// How far a sum may be off by one rule, up to a factor that host/plan/rule.cpp knows. Where the integrand is smooth, the
+// error of n nodes is to the null rule's value as that is to the sum; where it is not, it is what the orders were made
+// for, 10^-digits. The geometric mean of the two is the closest to the truth over the domain.
 real doubt(real sum, real null, real digits) {
-  real expected = exp_real(real(-0.75) * kLn10 * digits);
-  return expected * sqrt(abs(sum) * min(abs(null), abs(sum)));
+  real whole = abs(sum);
+  return exp_real(real(-0.75) * kLn10 * digits) * sqrt(whole * min(abs(null), whole));
 }
 
 real null_size(real first, real second) { return sqrt(first * first + second * second); }

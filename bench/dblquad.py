@@ -19,9 +19,9 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.special import betainc, gammaln
 
 STEP = 1 / 64  # of asinh(tau/width)
-FAR = 1e6  # where the tails of the slope density are powers
+FAR = 1e5  # where the tails of the slope density are powers
 MOST_REPEATS = 5
-ENOUGH_S = 1.0  # of repeats
+ENOUGH_S = 0.5  # of repeats
 
 
 class MaskingTails:
@@ -40,7 +40,7 @@ class MaskingTails:
         self.width, self.is_gaussian = width, is_gaussian
         x = np.arange(0, math.asinh(FAR * max(1, m) / width), STEP)
         tau = width * np.sinh(x)
-        nodes, weights = np.polynomial.legendre.leggauss(7)
+        nodes, weights = np.polynomial.legendre.leggauss(4)
         half = 0.5 * np.diff(tau)
         inside = tau[:-1, None] + half[:, None] * (1 + nodes)
         p = half[:, None] * weights * density(inside)

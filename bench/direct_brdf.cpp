@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/interpolators/quintic_hermite.hpp>
 #include <boost/math/quadrature/gauss.hpp>
+#include <boost/math/special_functions/beta.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <numbers>
@@ -28,7 +29,7 @@ class MaskingTails {
  private:
   using Interpolant = boost::math::interpolators::cardinal_quintic_hermite<std::vector<double>>;
   struct Node {
-    double tau = 0.0, height = 0.0, first = 0.0, probability = 0.0;
+    double tau = 0.0, density = 0.0, height = 0.0, first = 0.0, probability = 0.0;
   };
   double density(double tau) const;
   double weight(double tau) const { return is_smith_ ? 1.0 : 1.0 / std::sqrt(1.0 + tau * tau); }
@@ -54,7 +55,7 @@ namespace {
 constexpr double kStep = 1.0 / 24.0;      // of X: interpolation errors of 1e-12
 constexpr double kEndOverWidth = 1e6;     // beyond it the tails are powers to 1e-12
 constexpr double kVerticalSlope = 1e100;  // its square does not overflow
-using CellRule = boost::math::quadrature::gauss<double, 7>;
+using CellRule = boost::math::quadrature::gauss<double, 4>;
 
 /// R_s and R_p without complex numbers.
 /// Source: Born and Wolf, Principles of Optics, 14.2, u and v of N cos(beta') = u + iv.
@@ -110,9 +111,9 @@ double MaskingTails::density(double tau) const {
 
 // Where p is the power tau^(1-2q), and the gaussian nothing.
 MaskingTails::Node MaskingTails::end() const {
-  Node node{.tau = end_tau_};
-  if (is_gaussian_) return node;
   const double p = density(end_tau_);
+  Node node{.tau = end_tau_, .density = p};
+  if (is_gaussian_) return node;
   node.probability = p * end_tau_ / (2.0 * q_ - 2.0);
   node.first = is_smith_ ? node.probability : p / (2.0 * q_ - 1.0);
   node.height = is_smith_ ? node.first * end_tau_ / (2.0 * q_ - 3.0) : node.first * end_tau_ / (2.0 * q_ - 2.0);
@@ -121,6 +122,7 @@ MaskingTails::Node MaskingTails::end() const {
 
 MaskingTails::Node MaskingTails::cell(double tau, const Node& beyond) const {
   Node node{.tau = tau,
+            .density = density(tau),
             .height = beyond.height + (beyond.tau - tau) * beyond.first,
             .first = beyond.first,
             .probability = beyond.probability};
@@ -136,7 +138,7 @@ MaskingTails::Node MaskingTails::cell(double tau, const Node& beyond) const {
   };
   for (std::size_t i = 0; i < CellRule::abscissa().size(); ++i) {
     add(CellRule::abscissa()[i], CellRule::weights()[i]);
-    if (CellRule::abscissa()[i] != 0.0) add(-CellRule::abscissa()[i], CellRule::weights()[i]);
+    add(-CellRule::abscissa()[i], CellRule::weights()[i]);
   }
   return node;
 }
@@ -144,7 +146,7 @@ MaskingTails::Node MaskingTails::cell(double tau, const Node& beyond) const {
 // First and second derivative in tau.
 std::pair<double, double> MaskingTails::derivatives(const Node& node, double Node::*value) const {
   const double tau = node.tau;
-  const double p = density(tau);
+  const double p = node.density;
   const double p_rise = p * tau * (is_gaussian_ ? -2.0 / (m_ * m_) : (1.0 - 2.0 * q_) / (m_ * m_ + tau * tau));
   const double g = weight(tau);
   const double g_rise = is_smith_ ? 0.0 : -tau * g * g * g;
@@ -176,15 +178,18 @@ Entry entry_of(const MomentsRequest& request, const MomentsEntry& entry) {
           request.shapes.at(entry.shape), request.indices.at(entry.index)};
 }
 
-DirectSurface::DirectSurface(const Entry& entry)
+DirectSurface::DirectSurface(const Entry& entry, SmithBy smith_by)
     : entry_(entry),
       cos_theta_(std::cos(entry.theta_rad)),
       sin_theta_(std::sin(entry.theta_rad)),
       m_(std::numbers::sqrt2 * entry.shape.sigma) {
-  if (entry.masking != Masking::kIntegral && entry.masking != Masking::kSmith) return;
-  tails_ = std::make_unique<MaskingTails>(entry);
+  const bool is_smith = entry.masking == Masking::kSmith;
+  if (entry.masking == Masking::kIntegral || (is_smith && smith_by == SmithBy::kTable)) {
+    tails_ = std::make_unique<MaskingTails>(entry);
+  }
   const double mu = cos_theta_ / sin_theta_;
-  fixed_masking_ = entry.masking == Masking::kSmith ? tails_->height(mu) / mu : tails_->height(mu);
+  if (is_smith) fixed_masking_ = smith_lambda(mu);
+  if (entry.masking == Masking::kIntegral) fixed_masking_ = tails_->height(mu);
 }
 
 DirectSurface::~DirectSurface() = default;
@@ -201,13 +206,23 @@ double DirectSurface::sampled_slope(double probability) const {
   return std::min(kVerticalSlope, m_ * std::sqrt(std::pow(probability, -1.0 / (entry_.shape.q - 1.0)) - 1.0));
 }
 
+double DirectSurface::smith_lambda(double mu) const {
+  if (tails_) return tails_->height(mu) / mu;
+  if (entry_.distribution == Distribution::kGaussian) {
+    const double nu = mu / m_;
+    return 0.5 * inv_sqrtpi * std::exp(-nu * nu) / nu - 0.5 * std::erfc(nu);
+  }
+  const double q = entry_.shape.q;
+  const double share = m_ * m_ / (m_ * m_ + mu * mu);
+  const double norm = inv_sqrtpi * boost::math::tgamma_delta_ratio(q - 0.5, -0.5) / (2.0 * q - 3.0);
+  return norm * m_ / mu * std::pow(share, q - 1.5) - 0.5 * boost::math::ibeta(q - 1.0, 0.5, share);
+}
+
 RunningBeam DirectSurface::beam(double cos_r, double sin_r) const {
   RunningBeam beam{cos_r, sin_r, 0.0};
-  if (!tails_) return beam;
   const double mu = cos_r / std::max(sin_r, 1e-300);
-  if (entry_.masking == Masking::kSmith) {
-    beam.masking = 1.0 / (1.0 + fixed_masking_ + tails_->height(mu) / mu);
-  } else {
+  if (entry_.masking == Masking::kSmith) beam.masking = 1.0 / (1.0 + fixed_masking_ + smith_lambda(mu));
+  if (entry_.masking == Masking::kIntegral) {
     beam.masking = cos_r < cos_theta_ ? tails_->height(mu) : fixed_masking_;
   }
   return beam;
@@ -241,6 +256,18 @@ Reflected DirectSurface::reflected(const RunningBeam& beam, double cos_alpha, do
   const double sin_sin = sin_theta_ * std::sqrt(std::max(0.0, 1.0 - cos_beta * cos_beta));
   const double cos_eta = sin_sin > 0.0 ? (cos_alpha - cos_theta_ * cos_beta) / sin_sin : std::numbers::sqrt2 / 2.0;
   return {0.5 * g * (r.s + r.p), 0.5 * g * (2.0 * cos_eta * cos_eta - 1.0) * (r.s - r.p)};
+}
+
+Reflected beam_integrand(const DirectSurface& surface, const RunningBeam& beam, double cos_azimuth) {
+  const double c = surface.cos_theta();
+  const double cos_2beta = c * beam.cos + surface.sin_theta() * beam.sin * cos_azimuth;
+  const double cos_beta = std::sqrt(0.5 * (1.0 + cos_2beta));
+  const double cos_alpha = std::min(1.0, (c + beam.cos) / (2.0 * cos_beta));
+  const double cos2_alpha = cos_alpha * cos_alpha;
+  const double tan2_alpha = 1.0 / cos2_alpha - 1.0;
+  const double density = 0.5 * surface.slope_density(tan2_alpha) / (cos2_alpha * cos2_alpha) * beam.sin;
+  const Reflected facet = surface.reflected(beam, cos_alpha, std::sqrt(tan2_alpha), cos_beta);
+  return {density * facet.i, density * facet.q};
 }
 
 Reflected half_vector_integrand(const DirectSurface& surface, double tan_alpha, double cos_phi) {

@@ -49,7 +49,7 @@ struct TookTooLong : Unavailable {
 };
 
 struct SolverOptions {
-  std::string device;          ///< Vulkan device: position or part of the name, empty for the default
+  std::string device = {};     ///< Vulkan device: position or part of the name, empty for the default
   double time_limit_s = 20.0;  ///< for one call of a method that may take for ever
   std::vector<std::string> pythons = {"/usr/bin/python3", "python3"};  ///< tried in turn for one that has SciPy
 };
@@ -76,7 +76,8 @@ const std::vector<Method>& methods();
 std::unique_ptr<Solver> make_midpoint_rule();
 std::unique_ptr<Solver> make_gauss_rule();
 std::unique_ptr<Solver> make_monte_carlo();
-std::unique_ptr<Solver> make_cubature();
+std::unique_ptr<Solver> make_hcubature();
+std::unique_ptr<Solver> make_pcubature();
 /// Errors: Unavailable when no interpreter with SciPy is found.
 std::unique_ptr<Solver> make_dblquad(const SolverOptions& options);
 /// Errors: Unavailable when there is no usable device of this precision.

@@ -32,16 +32,23 @@ std::vector<Method> competitors() {
                   .quick_settings = {1e3, 1e5},
                   .is_random = true,
                   .make = [](const SolverOptions&) { return make_monte_carlo(); }});
-  list.push_back({.name = "cubature",
-                  .label = "libcubature",
-                  .what =
-                      "h-adaptive cubature of libcubature over slope and azimuth up to the exact horizon, masking from "
-                      "tables, C++ double",
+  list.push_back(
+      {.name = "hcubature",
+       .label = "hcubature",
+       .what = "libcubature, h-adaptive, in (theta_r, delta_phi), plain formulas, masking from tables, C++ double",
+       .cores = "1",
+       .setting_name = "tolerance",
+       .settings = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9},
+       .quick_settings = {1e-3, 1e-5, 1e-7},
+       .make = [](const SolverOptions&) { return make_hcubature(); }});
+  list.push_back({.name = "pcubature",
+                  .label = "pcubature",
+                  .what = "libcubature, p-adaptive (Clenshaw-Curtis), likewise",
                   .cores = "1",
                   .setting_name = "tolerance",
                   .settings = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9},
                   .quick_settings = {1e-3, 1e-5, 1e-7},
-                  .make = [](const SolverOptions&) { return make_cubature(); }});
+                  .make = [](const SolverOptions&) { return make_pcubature(); }});
   list.push_back({.name = "dblquad",
                   .label = "SciPy dblquad",
                   .what = "scipy.integrate.dblquad in (theta_r, delta_phi), plain formulas, Python",

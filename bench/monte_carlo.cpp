@@ -42,7 +42,8 @@ class MonteCarlo final : public Solver {
     const auto samples = static_cast<std::uint64_t>(setting);
     Solution solution;
     for (const MomentsEntry& entry : request.entries) {
-      solution.answers.push_back(sample_mean(DirectSurface(entry_of(request, entry)), samples, random_));
+      solution.answers.push_back(
+          sample_mean(DirectSurface(entry_of(request, entry), DirectSurface::SmithBy::kTable), samples, random_));
     }
     solution.evaluations = setting * static_cast<double>(request.entries.size());
     return solution;

@@ -13,7 +13,7 @@ struct StudyOptions {
   std::string device;                ///< Vulkan device: position or part of the name, empty for the default
   std::vector<std::string> cases;    ///< empty: all
   std::vector<std::string> methods;  ///< empty: all
-  std::size_t entries = 4096;        ///< of one call of a batched method
+  std::size_t entries = 1024;        ///< of one call of a batched method
   bool quick = false;
   bool quiet = false;                  ///< no progress bar
   std::vector<std::string> arguments;  ///< of the program, its name included

@@ -56,7 +56,7 @@ Measurement measure(Solver& solver, const MomentsRequest& request, double settin
     measurement.raw_s = first.solution.own_times_s;
     return measurement;
   }
-  if (first.time_s > policy.long_call_s && !is_random) {
+  if (first.time_s >= policy.most_s && !is_random) {
     add(first, is_random, measurement);
     return measurement;
   }
@@ -64,7 +64,12 @@ Measurement measure(Solver& solver, const MomentsRequest& request, double settin
   const std::size_t least = is_random ? policy.random_repeats : policy.min_repeats;
   const std::size_t most = is_random ? policy.random_repeats : policy.max_repeats;
   double total_s = 0.0;
-  while (measurement.raw_s.size() < least || (measurement.raw_s.size() < most && total_s < policy.enough_s)) {
+  const auto is_done = [&] {
+    const std::size_t repeats = measurement.raw_s.size();
+    if (repeats >= most) return true;
+    return repeats >= least ? total_s >= policy.enough_s : !is_random && total_s >= policy.most_s;
+  };
+  while (!is_done()) {
     const Timed next = timed(solver, request, setting, calls);
     total_s += next.time_s * static_cast<double>(calls);
     add(next, is_random, measurement);

@@ -15,7 +15,7 @@ struct TimingPolicy {
   std::size_t max_repeats = 15;
   std::size_t random_repeats = 32;  ///< of methods whose answers differ from call to call
   double enough_s = 0.5;            ///< of all repeats together, once there are `min_repeats`
-  double long_call_s = 5.0;         ///< a call that takes longer is its own warm-up and measured this once
+  double most_s = 3.0;              ///< of all repeats together, however few they are; random methods ignore it
   double raw_time_s = 1e-3;         ///< shorter calls are made several times for one raw time
 };
 
@@ -33,7 +33,8 @@ double minimum(const std::vector<double>& values);
 /// (median - minimum)/minimum: how far a usual time is from an undisturbed one.
 double spread(const std::vector<double>& values);
 
-/// Warms up, then times calls of `solver` until the policy is satisfied.
+/// Warms up, then times calls of `solver` until the policy is satisfied. A first call that takes all of `most_s` is its
+/// own warm-up and the only one.
 Measurement measure(Solver& solver, const MomentsRequest& request, double setting, bool is_random,
                     const TimingPolicy& policy);
 

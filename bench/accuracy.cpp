@@ -26,12 +26,13 @@ using nlohmann::ordered_json;
 
 constexpr double kReferenceTolerance = 1e-13;
 constexpr double kAcceptedSpread = 0.2;
+constexpr double kAcceptedLoad = 0.3;  // of each core, before the study begins
 
 const TimingPolicy kFullTiming{};
 const TimingPolicy kQuickTiming{
     .min_repeats = 3, .max_repeats = 5, .random_repeats = 16, .enough_s = 0.1, .most_s = 1.0};
-constexpr double kFullLimit_s = 20.0;
-constexpr double kQuickLimit_s = 1.5;
+constexpr double kFullLimit = 20.0;  // seconds for one call of a method that may take for ever
+constexpr double kQuickLimit = 1.5;
 constexpr std::size_t kQuickEntries = 512;
 
 /// What the reference says about a case.
@@ -192,7 +193,7 @@ void Study::run_method(const Method& method) {
   std::unique_ptr<Solver> solver;
   std::string reason;
   try {
-    solver = method.make({.device = options_.device, .time_limit_s = options_.quick ? kQuickLimit_s : kFullLimit_s});
+    solver = method.make({.device = options_.device, .time_limit_s = options_.quick ? kQuickLimit : kFullLimit});
   } catch (const Unavailable& error) {
     reason = error.what();
   }
@@ -273,6 +274,13 @@ void add_warnings(ordered_json& result) {
         fmt::format("{} slow settings were timed once, without a warm-up: read their times to one digit ({})",
                     single.size(), some_of(single)));
   }
+  const ordered_json& machine = result["context"]["machine"];
+  if (machine["load"].get<double>() > kAcceptedLoad * machine["cores"].get<double>()) {
+    warnings.push_back(
+        fmt::format("the machine was busy (load {:.1f} on {} cores): methods that use all cores lose most; end other "
+                    "programs and run again",
+                    machine["load"].get<double>(), machine["cores"].get<unsigned>()));
+  }
   if (result["context"]["compiler"]["build_type"] != "Release") {
     warnings.push_back("this is no Release build: configure with -DCMAKE_BUILD_TYPE=Release before using the times");
   }
@@ -321,6 +329,16 @@ ordered_json measured(const StudyOptions& options) {
   return Study(options, bar.callback()).run();
 }
 
+/// The JSON, one result a line.
+std::string json_text(ordered_json result) {
+  std::string rows;
+  for (const ordered_json& row : result["results"]) rows += (rows.empty() ? "\n  " : ",\n  ") + row.dump();
+  result.erase("results");
+  std::string text = result.dump(1);
+  text.resize(text.rfind('\n'));
+  return text + ",\n \"results\": [" + rows + "\n ]\n}\n";
+}
+
 void check_device(const std::string& choice) {
   if (!choice.empty()) choose_device(list_devices().devices, choice, false);
 }
@@ -337,7 +355,7 @@ void run_accuracy(const StudyOptions& options) {
   for (const ordered_json& warning : result["warnings"]) {
     fmt::print(stderr, "warning: {}\n", warning.get<std::string>());
   }
-  if (!options.json_path.empty()) write_text_atomically(options.json_path, result.dump(1) + "\n");
+  if (!options.json_path.empty()) write_text_atomically(options.json_path, json_text(std::move(result)));
 }
 
 }  // namespace dolp::bench

@@ -32,6 +32,12 @@ std::string system_name() {
   return ::uname(&kernel) == 0 ? name + kernel.sysname + " " + kernel.release : name + "unknown kernel";
 }
 
+/// Mean number of busy programs over the last minute; 0 when the system does not tell.
+double load() {
+  double mean = 0.0;
+  return ::getloadavg(&mean, 1) == 1 ? mean : 0.0;
+}
+
 ordered_json device_json(const std::string& choice) {
   try {
     const DeviceList list = list_devices();

@@ -20,8 +20,8 @@ from scipy.special import betainc, gammaln
 
 STEP = 1 / 64  # of asinh(tau/width)
 FAR = 1e5  # where the tails of the slope density are powers
-MOST_REPEATS = 5
-ENOUGH_S = 0.5  # of repeats
+MOST_REPEATS = 3
+ENOUGH_S = 1.5  # of repeats
 
 
 class MaskingTails:

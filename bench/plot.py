@@ -3,10 +3,11 @@
 
 Usage: plot.py accuracy RESULT.json -o FIGURE.png    error against time per entry, one panel a case
        plot.py accuracy RESULT.json --markdown       time per entry at given errors, as a Markdown table on stdout
-RESULT.json is what `dolp-bench accuracy --json RESULT.json` writes. Needs python3-matplotlib for figures.
+RESULT.json is what `dolp-bench accuracy --json RESULT.json` writes. Figures need python3-matplotlib (and with it Pillow).
 Exit status: 0 done, 2 usage or a file that is not such a result, 4 the figure could not be written.
 """
 import argparse
+import io
 import json
 import math
 import sys
@@ -30,6 +31,9 @@ WANTED_ERRORS = (1e-3, 1e-6, 1e-9)
 PANEL_COLUMNS = 3
 LABEL_GAP_POINTS = 9.0
 KEY_WIDTH = 62  # letters
+DOTS_PER_INCH = 110
+COLOURS = 128
+SYMBOLS = {"theta_r": "θr", "delta_phi": "Δφ", "alpha": "α"}
 
 
 class NotAResult(Exception):
@@ -143,18 +147,23 @@ def draw_curves(axes, result, case):
 
 
 def label_ends(axes, ends):
-    """Names each curve left of its finest point, moved apart where they would touch."""
-    figure = axes.figure
-    scale = 72.0 / figure.dpi
-    where = [axes.transData.transform(end) * scale for end, _, _ in ends]
-    low, high = (axes.transAxes.transform((0, y))[1] * scale for y in (0, 1))
-    heights = spread_apart([y for _, y in where], LABEL_GAP_POINTS)
-    for (end, label, colour), (_, y), height in zip(ends, where, heights):
-        height = min(max(height, low + 6), high - 6)
-        shift = height - y
-        axes.annotate(label, end, xytext=(-16, shift), textcoords="offset points", ha="right", va="center", fontsize=7.5,
-                      color=colour, zorder=6,
-                      arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.5, "shrinkA": 0, "shrinkB": 3},
+    """Names each curve left of its finest point, moved apart where they would touch; the coarsest end, right of it."""
+    if not ends:
+        return
+    to_points = 72.0 / axes.figure.dpi
+    low, high = (axes.transAxes.transform((0, y))[1] * to_points for y in (0, 1))
+    coarsest = max(ends, key=lambda end: end[0][0]) if len(ends) > 1 else None
+    left = [end for end in ends if end is not coarsest]
+    levels = [axes.transData.transform(point)[1] * to_points for point, _, _ in left]
+    heights = spread_apart(levels, LABEL_GAP_POINTS)
+    places = [(end, (-14, min(max(height, low + 6), high - 6) - level), "right")
+              for end, level, height in zip(left, levels, heights)]
+    if coarsest:
+        places.append((coarsest, (7, 0), "left"))
+    for (point, label, colour), shift, side in places:
+        line = {"arrowstyle": "-", "color": colour, "linewidth": 0.5, "shrinkA": 0, "shrinkB": 3}
+        axes.annotate(label, point, xytext=shift, textcoords="offset points", ha=side, va="center", fontsize=7.5,
+                      color=colour, zorder=6, arrowprops=line if side == "right" else None,
                       bbox={"boxstyle": "square,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.75})
 
 
@@ -176,6 +185,8 @@ def draw_key(axes, result):
         text = f"{label}: {method['what']}" + (f" (not run: {reason})" if reason else "")
         axes.plot([0.0, 0.07], [y, y], color=colour, linestyle=line, marker=marker, markersize=4.6, linewidth=1.6,
                   markerfacecolor="white" if line == "--" else colour, markevery=[0], clip_on=False)
+        for name, symbol in SYMBOLS.items():
+            text = text.replace(name, symbol)
         wrapped = textwrap.wrap(text, KEY_WIDTH)
         axes.text(0.1, y + 0.018, "\n".join(wrapped), fontsize=7.2, va="top")
         y -= step * len(wrapped) + 0.012
@@ -210,8 +221,9 @@ def limits_of(result):
     if not everything:
         raise NotAResult("holds no measured setting")
     errors, times = zip(*everything)
-    left = 10 ** (math.floor(math.log10(min(errors))) - 3.0)  # room for the labels
-    return left, min(3.0, 2 * max(errors)), min(times) / 2.0, max(times) * 2.5
+    finest, coarsest = math.log10(min(errors)), math.log10(max(errors))
+    # The room left and right is for the labels.
+    return 10 ** (finest - 4.7), 10 ** (coarsest + 1.4), min(times) / 2.0, max(times) * 2.5
 
 
 def figure(result, path):
@@ -225,7 +237,7 @@ def figure(result, path):
     limits = limits_of(result)
     for axes, case in zip(panels, result["cases"]):
         prepare(axes, result, case, limits)
-    drawing.supxlabel("error: max(|δr_I|, |δr_Q|) / r_I", fontsize=10)
+    drawing.supxlabel(r"error  $\max(|\delta r_I|, |\delta r_Q|)\,/\,r_I$", fontsize=10)
     drawing.supylabel("time per entry [s]", fontsize=10)
     for axes in panels[len(result["cases"]) + 1:]:
         axes.axis("off")
@@ -233,7 +245,16 @@ def figure(result, path):
     for axes, case in zip(panels, result["cases"]):
         label_ends(axes, draw_curves(axes, result, case))
     draw_key(panels[len(result["cases"])], result)
-    drawing.savefig(path, dpi=110)
+    save(drawing, path)
+
+
+def save(drawing, path):
+    """Few colours, so that the file stays small."""
+    from PIL import Image
+    buffer = io.BytesIO()
+    drawing.savefig(buffer, format="png", dpi=DOTS_PER_INCH)
+    picture = Image.open(buffer).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
+    picture.save(path, format="PNG", optimize=True)
 
 
 def arguments():

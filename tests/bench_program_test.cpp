@@ -51,7 +51,7 @@ TEST_F(BenchProgram, Json_Context_SaysWhereAndHowToRunAgain) {
   EXPECT_EQ(study["study"], "accuracy");
   const json& context = study["context"];
   expect_keys(context, {"program", "command", "date", "machine", "device", "compiler", "libraries", "validation"});
-  expect_keys(context["machine"], {"processor", "cores", "system"});
+  expect_keys(context["machine"], {"processor", "cores", "load", "system"});
   expect_keys(context["device"], {"name", "driver"});
   expect_keys(context["compiler"], {"name", "flags", "build_type"});
   EXPECT_EQ(context["command"], DOLP_BENCH_PROGRAM
@@ -149,6 +149,13 @@ TEST_F(BenchProgram, Plot_Results_GiveFigureAndTable) {
   const Outcome table = plot({"accuracy", "r.json", "--markdown"});
   ASSERT_EQ(table.status, 0) << table.err;
   EXPECT_NE(table.out.find("| Gauss-Legendre rule |"), std::string::npos) << table.out;
+}
+
+TEST_F(BenchProgram, Plot_FolderThatIsNotThere_IsExit4AndNamesTheFigure) {
+  ASSERT_EQ(bench({"accuracy", "--quick", "--case", "easy", "--method", "gauss", "--json", "r.json"}).status, 0);
+  const Outcome outcome = plot({"accuracy", "r.json", "-o", "none/r.png"});
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_NE(outcome.err.find("none/r.png"), std::string::npos) << outcome.err;
 }
 
 TEST_F(BenchProgram, Plot_WrongFile_IsExit2AndNamesIt) {

@@ -74,8 +74,10 @@ ordered_json context_json(const std::string& device, const std::vector<std::stri
   context["program"] = "dolp-bench " DOLP_VERSION;
   context["command"] = shell_line(arguments);
   context["date"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
-  context["machine"] = {
-      {"processor", processor_name()}, {"cores", std::thread::hardware_concurrency()}, {"system", system_name()}};
+  context["machine"] = {{"processor", processor_name()},
+                        {"cores", std::thread::hardware_concurrency()},
+                        {"load", load()},
+                        {"system", system_name()}};
   context["device"] = device_json(device);
   context["compiler"] = {{"name", DOLP_COMPILER}, {"flags", DOLP_COMPILER_FLAGS}, {"build_type", DOLP_BUILD_TYPE}};
   const char* validation = std::getenv("DOLP_VALIDATION");

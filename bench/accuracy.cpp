@@ -11,6 +11,7 @@
 #include "bench/cases.hpp"
 #include "bench/context.hpp"
 #include "bench/method.hpp"
+#include "bench/report.hpp"
 #include "bench/study.hpp"
 #include "bench/timing.hpp"
 #include "cli/progress_bar.hpp"
@@ -25,8 +26,6 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double kReferenceTolerance = 1e-13;
-constexpr double kAcceptedSpread = 0.2;
-constexpr double kAcceptedLoad = 0.3;  // of each core, before the study begins
 
 const TimingPolicy kFullTiming{};
 const TimingPolicy kQuickTiming{
@@ -177,7 +176,7 @@ void Study::describe() {
                                   {"bound", truth.bound},
                                   {"time_s", rounded(truth.time_s)}}}});
   }
-  result_["warnings"] = ordered_json::array();
+
   result_["results"] = ordered_json::array();
 }
 
@@ -242,53 +241,6 @@ void Study::finish(const ordered_json& row) {
   if (!progress_(++done_, total_)) throw Cancelled{};
 }
 
-/// The first few of them.
-std::string some_of(const std::vector<std::string>& names) {
-  constexpr std::size_t kMostNames = 4;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kMostNames); ++i) text += (i > 0 ? ", " : "") + names[i];
-  return names.size() > kMostNames ? text + fmt::format(" and {} more", names.size() - kMostNames) : text;
-}
-
-/// What is wrong with the times, and what to do about it.
-void add_warnings(ordered_json& result) {
-  std::vector<std::string> noisy;
-  std::vector<std::string> single;
-  for (const ordered_json& row : result["results"]) {
-    if (!row.contains("raw_times_s")) continue;
-    const auto raw_s = row["raw_times_s"].get<std::vector<double>>();
-    const std::string name = fmt::format("{} {} {:g}", row["method"].get<std::string>(), row["case"].get<std::string>(),
-                                         row["setting"].get<double>());
-    if (raw_s.size() == 1) single.push_back(name);
-    if (spread(raw_s) > kAcceptedSpread) noisy.push_back(name);
-  }
-  ordered_json& warnings = result["warnings"];
-  if (!noisy.empty()) {
-    warnings.push_back(fmt::format(
-        "{} of {} times lie more than {:.0f} % above their minimum: end other programs and run again, or use "
-        "time_min_s ({})",
-        noisy.size(), result["results"].size(), 100.0 * kAcceptedSpread, some_of(noisy)));
-  }
-  if (!single.empty()) {
-    warnings.push_back(
-        fmt::format("{} slow settings were timed once, without a warm-up: read their times to one digit ({})",
-                    single.size(), some_of(single)));
-  }
-  const ordered_json& machine = result["context"]["machine"];
-  if (machine["load"].get<double>() > kAcceptedLoad * machine["cores"].get<double>()) {
-    warnings.push_back(
-        fmt::format("the machine was busy (load {:.1f} on {} cores): methods that use all cores lose most; end other "
-                    "programs and run again",
-                    machine["load"].get<double>(), machine["cores"].get<unsigned>()));
-  }
-  if (result["context"]["compiler"]["build_type"] != "Release") {
-    warnings.push_back("this is no Release build: configure with -DCMAKE_BUILD_TYPE=Release before using the times");
-  }
-  if (result["context"]["validation"]) {
-    warnings.push_back("the Vulkan validation layer is on: unset DOLP_VALIDATION before using the times of vulkan-*");
-  }
-}
-
 std::string time_text(double time_s) {
   if (time_s < 1e-3) return fmt::format("{:.3g} us", 1e6 * time_s);
   return time_s < 1.0 ? fmt::format("{:.3g} ms", 1e3 * time_s) : fmt::format("{:.3g} s", time_s);
@@ -327,16 +279,6 @@ std::string table_text(const ordered_json& result) {
 ordered_json measured(const StudyOptions& options) {
   cli::ProgressBar bar(options.quiet);
   return Study(options, bar.callback()).run();
-}
-
-/// The JSON, one result a line.
-std::string json_text(ordered_json result) {
-  std::string rows;
-  for (const ordered_json& row : result["results"]) rows += (rows.empty() ? "\n  " : ",\n  ") + row.dump();
-  result.erase("results");
-  std::string text = result.dump(1);
-  text.resize(text.rfind('\n'));
-  return text + ",\n \"results\": [" + rows + "\n ]\n}\n";
 }
 
 void check_device(const std::string& choice) {

@@ -4,8 +4,7 @@
 namespace dolp::bench {
 namespace {
 
-std::vector<Method> competitors() {
-  std::vector<Method> list;
+void add_rules(std::vector<Method>& list) {
   list.push_back({.name = "midpoint",
                   .label = "midpoint rule",
                   .what = "midpoint product rule in (theta_r, delta_phi), plain formulas, C++ double",
@@ -32,6 +31,9 @@ std::vector<Method> competitors() {
                   .quick_settings = {1e3, 1e5},
                   .is_random = true,
                   .make = [](const SolverOptions&) { return make_monte_carlo(); }});
+}
+
+void add_adaptive(std::vector<Method>& list) {
   list.push_back(
       {.name = "hcubature",
        .label = "hcubature",
@@ -57,7 +59,6 @@ std::vector<Method> competitors() {
                   .settings = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8},
                   .quick_settings = {1e-2, 1e-4},
                   .make = [](const SolverOptions& options) { return make_dblquad(options); }});
-  return list;
 }
 
 Method evaluator(const std::string& name, Precision precision,
@@ -79,7 +80,9 @@ Method evaluator(const std::string& name, Precision precision,
 }
 
 std::vector<Method> all() {
-  std::vector<Method> list = competitors();
+  std::vector<Method> list;
+  add_rules(list);
+  add_adaptive(list);
   for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
     list.push_back(evaluator("vulkan", precision,
                              [precision](const SolverOptions& options) { return make_vulkan(options, precision); }));

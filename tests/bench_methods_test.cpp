@@ -11,6 +11,7 @@
 #include "bench/cases.hpp"
 #include "bench/context.hpp"
 #include "bench/method.hpp"
+#include "bench/report.hpp"
 #include "bench/timing.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
 
@@ -284,6 +285,51 @@ TEST(BenchTiming, MedianAndSpread_OddAndEven_AreThoseOfTheList) {
 
 TEST(BenchContext, ShellLine_SpecialLetters_AreQuoted) {
   EXPECT_EQ(shell_line({"dolp-bench", "--json", "a b", "it's", ""}), R"(dolp-bench --json 'a b' 'it'\''s' '')");
+}
+
+/// A study of one result, measured under the best conditions.
+nlohmann::ordered_json quiet_study() {
+  return {
+      {"study", "test"},
+      {"context",
+       {{"machine", {{"load", 0.1}, {"cores", 2}}}, {"compiler", {{"build_type", "Release"}}}, {"validation", false}}},
+      {"results", {{{"method", "gauss"}, {"case", "easy"}, {"setting", 16.0}, {"raw_times_s", {1.0, 1.1, 1.2}}}}}};
+}
+
+TEST(BenchReport, Warnings_GoodConditions_AreNone) {
+  nlohmann::ordered_json study = quiet_study();
+  add_warnings(study);
+  EXPECT_TRUE(study["warnings"].empty()) << study["warnings"];
+}
+
+TEST(BenchReport, Warnings_BadConditions_EachSayWhatToDo) {
+  nlohmann::ordered_json study = quiet_study();
+  study["results"][0]["raw_times_s"] = {1.0, 1.3, 1.4};
+  study["results"].push_back({{"method", "dblquad"}, {"case", "hard"}, {"setting", 1e-8}, {"raw_times_s", {9.0}}});
+  study["results"].push_back({{"method", "dblquad"}, {"case", "worst"}, {"setting", 1e-8}, {"not_run", "no reason"}});
+  study["context"]["machine"]["load"] = 0.7;
+  study["context"]["compiler"]["build_type"] = "Debug";
+  study["context"]["validation"] = true;
+  add_warnings(study);
+  const std::vector<std::string> expected = {
+      "1 of 3 times lie more than 20 % above their minimum: end other programs and run again, or use time_min_s (gauss "
+      "easy 16)",
+      "1 slow settings were timed once, without a warm-up: read their times to one digit (dblquad hard 1e-08)",
+      "the machine was busy (load 0.7 on 2 cores): methods that use all cores lose most; end other programs and run "
+      "again",
+      "this is no Release build: configure with -DCMAKE_BUILD_TYPE=Release before using the times",
+      "the Vulkan validation layer is on: unset DOLP_VALIDATION before using the times of vulkan-*"};
+  EXPECT_EQ(study["warnings"].get<std::vector<std::string>>(), expected);
+}
+
+TEST(BenchReport, JsonText_Study_ReadsBackWithOneResultALine) {
+  nlohmann::ordered_json study = quiet_study();
+  study["results"].push_back(study["results"][0]);
+  const std::string text = json_text(study);
+  EXPECT_EQ(nlohmann::json::parse(text), nlohmann::json(study));
+  const std::size_t first = text.find("{\"method\"");
+  const std::size_t second = text.find("{\"method\"", first + 1);
+  EXPECT_EQ(std::ranges::count(text.substr(first, second - first), '\n'), 1);
 }
 
 }  // namespace

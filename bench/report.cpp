@@ -37,8 +37,7 @@ void warn_of_times(ordered_json& result) {
   ordered_json& warnings = result["warnings"];
   if (!noisy.empty()) {
     warnings.push_back(fmt::format(
-        "{} of {} times lie more than {:.0f} % above their minimum: end other programs and run again, or use "
-        "time_min_s ({})",
+        "{} of {} times lie over {:.0f} % above their minimum: end other programs, run again or use time_min_s ({})",
         noisy.size(), result["results"].size(), 100.0 * kAcceptedSpread, some_of(noisy)));
   }
   if (!single.empty()) {
@@ -52,10 +51,9 @@ void warn_of_conditions(ordered_json& result) {
   ordered_json& warnings = result["warnings"];
   const ordered_json& machine = result["context"]["machine"];
   if (machine["load"].get<double>() > kAcceptedLoad * machine["cores"].get<double>()) {
-    warnings.push_back(
-        fmt::format("the machine was busy (load {:.1f} on {} cores): methods that use all cores lose most; end other "
-                    "programs and run again",
-                    machine["load"].get<double>(), machine["cores"].get<unsigned>()));
+    warnings.push_back(fmt::format(
+        "busy machine (load {:.1f} on {} cores), methods on all cores lose most: end other programs, run again",
+        machine["load"].get<double>(), machine["cores"].get<unsigned>()));
   }
   if (result["context"]["compiler"]["build_type"] != "Release") {
     warnings.push_back("this is no Release build: configure with -DCMAKE_BUILD_TYPE=Release before using the times");

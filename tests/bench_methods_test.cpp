@@ -312,11 +312,9 @@ TEST(BenchReport, Warnings_BadConditions_EachSayWhatToDo) {
   study["context"]["validation"] = true;
   add_warnings(study);
   const std::vector<std::string> expected = {
-      "1 of 3 times lie more than 20 % above their minimum: end other programs and run again, or use time_min_s (gauss "
-      "easy 16)",
+      "1 of 3 times lie over 20 % above their minimum: end other programs, run again or use time_min_s (gauss easy 16)",
       "1 slow settings were timed once, without a warm-up: read their times to one digit (dblquad hard 1e-08)",
-      "the machine was busy (load 0.7 on 2 cores): methods that use all cores lose most; end other programs and run "
-      "again",
+      "busy machine (load 0.7 on 2 cores), methods on all cores lose most: end other programs, run again",
       "this is no Release build: configure with -DCMAKE_BUILD_TYPE=Release before using the times",
       "the Vulkan validation layer is on: unset DOLP_VALIDATION before using the times of vulkan-*"};
   EXPECT_EQ(study["warnings"].get<std::vector<std::string>>(), expected);

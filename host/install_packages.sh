@@ -3,6 +3,7 @@
 #
 #   build    the program and its lookup tables
 #   picture  host/plot_table.py
+#   bench    dolp-bench and its figures
 #   test     the test suite
 #
 # Nothing is changed, and no root is needed, when everything is there. Otherwise apt-get runs, through sudo when needed.
@@ -12,6 +13,7 @@ declare -A packages=(
   [build]="g++ cmake ninja-build glslang-tools spirv-tools libvulkan-dev mesa-vulkan-drivers libglm-dev libboost-dev
            libcli11-dev libfmt-dev libnetcdf-dev libtomlplusplus-dev nlohmann-json3-dev"
   [picture]="python3 python3-matplotlib python3-netcdf4 python3-numpy"
+  [bench]="libcubature-dev libgsl-dev python3 python3-matplotlib python3-numpy python3-scipy"
   [test]="libeigen3-dev libgtest-dev netcdf-bin python3 python3-netcdf4 python3-numpy vulkan-validationlayers"
 )
 

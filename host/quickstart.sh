@@ -12,7 +12,7 @@ table=${2:-dolp.nc}
 build=$root/build/release
 
 bash "$root/host/install_packages.sh" build picture
-cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF
+cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF -DDOLP_BENCH=OFF
 cmake --build "$build" --target dolp
 
 echo

@@ -24,7 +24,7 @@ case $build_type in
   *) fail "DOLP_BUILD_TYPE is $build_type; it must be Release, Debug or AsanUbsan" ;;
 esac
 
-bash "$root/host/install_packages.sh" build picture test
+bash "$root/host/install_packages.sh" build picture bench test
 
 # The loader's own search would prefer a GPU where there is one.
 shopt -s nullglob
@@ -36,7 +36,7 @@ export DOLP_VALIDATION=${DOLP_VALIDATION:-1}
 # Mesa and the validation layers keep memory to the end, and are unloaded by the time a suppression would need their names.
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=0}
 
-cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE="$build_type" -DBUILD_TESTING=ON
+cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE="$build_type" -DBUILD_TESTING=ON -DDOLP_BENCH=ON
 cmake --build "$build"
 "$build/dolp" devices || fail "no usable Vulkan device through $driver_file"
 ctest --test-dir "$build" --output-on-failure -j2 "$@"

@@ -1,14 +1,14 @@
-// The command line: parsing, and the only place where errors become exit statuses.
+// The command line: parsing.
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/guarded.hpp"
 #include "error.hpp"
 
 namespace dolp::cli {
@@ -73,12 +73,6 @@ int run(CLI::App& app, Options& options) {
   return run_devices(options);
 }
 
-/// fmt::print would throw where stderr cannot be written to.
-int fail(int status, const std::string& message) {
-  std::fputs(("dolp: " + message + "\n").c_str(), stderr);
-  return status;
-}
-
 std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> unknown = app.remaining();
   if (!app.get_subcommands().empty() || unknown.empty()) return fmt::format("{} (see dolp --help)", error.what());
@@ -107,7 +101,7 @@ int parse_and_run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    return fail(kExitInput, usage_message(app, error));
+    return fail("dolp", kExitInput, usage_message(app, error));
   }
   const int status = run(app, options);
   if (std::fflush(stdout) != 0) throw dolp::IoError("standard output: cannot write the report");
@@ -118,20 +112,5 @@ int parse_and_run(int argc, char** argv) {
 }  // namespace dolp::cli
 
 int main(int argc, char** argv) {
-  using namespace dolp::cli;
-  try {
-    return parse_and_run(argc, argv);
-  } catch (const dolp::Cancelled&) {
-    return fail(kExitInterrupted, "interrupted; nothing was written");
-  } catch (const dolp::InputError& error) {
-    return fail(kExitInput, error.what());
-  } catch (const dolp::DeviceError& error) {
-    return fail(kExitDevice, error.what());
-  } catch (const dolp::IoError& error) {
-    return fail(kExitIo, error.what());
-  } catch (const std::system_error& error) {
-    return fail(kExitIo, error.what());
-  } catch (const std::exception& error) {
-    return fail(kExitInternal, fmt::format("internal error: {}", error.what()));
-  }
+  return dolp::cli::guarded("dolp", [&] { return dolp::cli::parse_and_run(argc, argv); });
 }

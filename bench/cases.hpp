@@ -1,0 +1,32 @@
+// The cases of the work-precision study, from harmless to the worst of the domain.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "evaluate/moments.hpp"
+
+namespace dolp::bench {
+
+/// One entry, with a name. All cases have the cauchy distribution.
+struct Case {
+  std::string name;
+  std::string what;
+  Masking masking = Masking::kIntegral;
+  double theta_deg = 60.0;
+  SlopeShape shape;
+  OpticalConstants index;
+};
+
+/// The cases in the order of figures.
+const std::vector<Case>& cases();
+
+/// "none", "v-cavity", "integral" or "smith", as in scenes.
+std::string masking_name(Masking masking);
+
+/// A request of `count` entries of the same cost that share nothing: the first is the case itself, each other one has a
+/// theta, sigma and q of its own within 1e-3 (relative) of it.
+MomentsRequest neighbourhood(const Case& which, std::size_t count);
+
+}  // namespace dolp::bench

@@ -1,0 +1,101 @@
+// SciPy's dblquad, run as a program of its own that also takes its times: the start of the interpreter is not counted.
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "bench/cases.hpp"
+#include "bench/direct_brdf.hpp"
+#include "bench/method.hpp"
+
+namespace dolp::bench {
+namespace {
+
+const std::string kScript = DOLP_BENCH_DIR "/dblquad.py";
+
+/// A word of a shell command, whatever it holds.
+std::string quoted(const std::string& word) {
+  std::string text = "'";
+  for (const char letter : word) text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+  return text + "'";
+}
+
+struct Outcome {
+  int status = 0;
+  std::string out;
+};
+
+Outcome run_script(const std::string& python, const std::string& argument, const std::string& redirection = "") {
+  const std::string command = quoted(python) + " " + quoted(kScript) + " " + quoted(argument) + redirection;
+  std::FILE* pipe = ::popen(command.c_str(), "r");
+  if (pipe == nullptr) throw Unavailable("no process could be started for " + kScript);
+  Outcome outcome;
+  std::array<char, 4096> part{};
+  while (const std::size_t size = std::fread(part.data(), 1, part.size(), pipe)) outcome.out.append(part.data(), size);
+  outcome.status = ::pclose(pipe);
+  return outcome;
+}
+
+class Dblquad final : public Solver {
+ public:
+  explicit Dblquad(const SolverOptions& options) : time_limit_s_(options.time_limit_s) {
+    std::string tried;
+    for (const std::string& python : options.pythons) {
+      const Outcome outcome = run_script(python, "--version", " 2>/dev/null");
+      if (outcome.status == 0 && outcome.out.starts_with("SciPy")) {
+        python_ = python;
+        version_ = outcome.out.substr(0, outcome.out.find('\n'));
+        return;
+      }
+      tried += (tried.empty() ? "" : ", ") + python;
+    }
+    throw Unavailable("no Python with SciPy (tried " + tried + "); install python3-scipy");
+  }
+
+  Solution solve(const MomentsRequest& request, double setting) override {
+    Solution solution{.evaluations = 0.0};
+    for (const MomentsEntry& position : request.entries) add(entry_of(request, position), setting, solution);
+    return solution;
+  }
+  std::string where() const override { return version_; }
+
+ private:
+  void add(const Entry& entry, double tolerance, Solution& solution) const {
+    const nlohmann::json question = {
+        {"distribution", entry.distribution == Distribution::kCauchy ? "cauchy" : "gaussian"},
+        {"masking", masking_name(entry.masking)},
+        {"theta_rad", entry.theta_rad},
+        {"sigma", entry.shape.sigma},
+        {"q", entry.shape.q},
+        {"n", entry.index.n},
+        {"k", entry.index.k},
+        {"tolerance", tolerance},
+        {"time_limit_s", time_limit_s_}};
+    const Outcome outcome = run_script(python_, question.dump());
+    const nlohmann::json reply = nlohmann::json::parse(outcome.out, nullptr, false);
+    if (outcome.status != 0 || !reply.is_object()) throw Unavailable(kScript + " failed; its message is above");
+    if (reply.contains("too_long")) throw TookTooLong(fmt::format("it takes longer than {:g} s", time_limit_s_));
+    solution.answers.push_back({reply["r_i"], reply["r_q"], reply["stated_error"].get<double>()});
+    *solution.evaluations += reply["evaluations"].get<double>();
+    add_times(reply["times_s"].get<std::vector<double>>(), solution);
+  }
+
+  // The k-th repeat of a call is the sum of the k-th repeats of its entries.
+  static void add_times(const std::vector<double>& times_s, Solution& solution) {
+    if (solution.answers.size() == 1) solution.own_times_s.assign(times_s.size(), 0.0);
+    solution.own_times_s.resize(std::min(solution.own_times_s.size(), times_s.size()));
+    for (std::size_t i = 0; i < solution.own_times_s.size(); ++i) solution.own_times_s[i] += times_s[i];
+  }
+
+  double time_limit_s_;
+  std::string python_;
+  std::string version_;
+};
+
+}  // namespace
+
+std::unique_ptr<Solver> make_dblquad(const SolverOptions& options) { return std::make_unique<Dblquad>(options); }
+
+}  // namespace dolp::bench

@@ -1,0 +1,58 @@
+// The evaluators of dolp as methods of the benchmark.
+#include <algorithm>
+#include <cmath>
+
+#include "bench/method.hpp"
+#include "error.hpp"
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+
+namespace dolp::bench {
+namespace {
+
+class EvaluatorSolver final : public Solver {
+ public:
+  explicit EvaluatorSolver(std::unique_ptr<MomentsEvaluator> evaluator) : evaluator_(std::move(evaluator)) {}
+
+  Solution solve(const MomentsRequest& request, double setting) override {
+    MomentsRequest wanted = request;
+    wanted.tolerance = setting;
+    const EvaluationReport before = evaluator_->report();
+    const std::vector<Moments> moments = evaluator_->evaluate(wanted, nullptr);
+    const EvaluationReport after = evaluator_->report();
+    Solution solution;
+    solution.kernel_s = after.kernel_s - before.kernel_s;
+    solution.evaluations = after.evaluations - before.evaluations;
+    for (const Moments& entry : moments) {
+      solution.answers.push_back({entry.r_i, entry.r_q, std::max(entry.r_i_error, entry.r_q_error) / entry.r_i});
+    }
+    return solution;
+  }
+
+  std::string where() const override {
+    const EvaluationReport report = evaluator_->report();
+    return report.driver.empty() ? report.device : report.device + ", " + report.driver;
+  }
+
+ private:
+  std::unique_ptr<MomentsEvaluator> evaluator_;
+};
+
+}  // namespace
+
+std::unique_ptr<Solver> make_vulkan(const SolverOptions& options, Precision precision) {
+  VulkanOptions vulkan;
+  vulkan.device = options.device;
+  vulkan.precision = precision;
+  try {
+    return std::make_unique<EvaluatorSolver>(std::make_unique<VulkanEvaluator>(vulkan));
+  } catch (const DeviceError& error) {
+    throw Unavailable(error.what());
+  }
+}
+
+std::unique_ptr<Solver> make_cpu(Precision precision) {
+  return std::make_unique<EvaluatorSolver>(std::make_unique<CpuEvaluator>(precision));
+}
+
+}  // namespace dolp::bench

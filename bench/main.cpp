@@ -1,0 +1,49 @@
+// The command line of the benchmark: one subcommand for each study.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string>
+
+#include "bench/study.hpp"
+#include "cli/commands.hpp"
+#include "cli/guarded.hpp"
+#include "error.hpp"
+
+namespace dolp::bench {
+namespace {
+
+void add_common(CLI::App& study, StudyOptions& options) {
+  study.add_option("--json", options.json_path, "file for the results; - is stdout, without the table");
+  study.add_flag("--quick", options.quick, "few settings and short repeats: less than a minute");
+  study.add_option("--device", options.device, "Vulkan device: its position or a part of its name");
+  study.add_option("--case", options.cases, "only this case (repeatable)")->allow_extra_args(false);
+  study.add_option("--method", options.methods, "only this method (repeatable)")->allow_extra_args(false);
+  study.add_option("--entries", options.entries, "entries of one call of dolp's evaluators; more for a GPU")
+      ->check(CLI::Range(1, 1 << 24))
+      ->capture_default_str();
+  study.add_flag("--quiet", options.quiet, "no progress bar");
+}
+
+int parse_and_run(int argc, char** argv) {
+  CLI::App app("dolp-bench: dolp against other ways to compute the same moments", "dolp-bench");
+  app.set_version_flag("--version", "dolp-bench " DOLP_VERSION);
+  app.require_subcommand(1);
+  StudyOptions options;
+  options.arguments.assign(argv, argv + argc);
+  add_common(*app.add_subcommand("accuracy", "error against time per entry, for all methods"), options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    throw InputError(std::string(error.what()) + " (see dolp-bench --help)");
+  }
+  run_accuracy(options);
+  if (std::fflush(stdout) != 0) throw IoError("standard output: cannot write the table");
+  return cli::kExitDone;
+}
+
+}  // namespace
+}  // namespace dolp::bench
+
+int main(int argc, char** argv) {
+  return dolp::cli::guarded("dolp-bench", [&] { return dolp::bench::parse_and_run(argc, argv); });
+}

@@ -1,0 +1,30 @@
+// The studies of dolp-bench; each is one function in a file of its own.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace dolp::bench {
+
+/// What the command line says, after parsing.
+struct StudyOptions {
+  std::string json_path;             ///< empty: no JSON; - is stdout, the table is then left out
+  std::string device;                ///< Vulkan device: position or part of the name, empty for the default
+  std::vector<std::string> cases;    ///< empty: all
+  std::vector<std::string> methods;  ///< empty: all
+  std::size_t entries = 1024;        ///< of one call of a batched method
+  bool quick = false;
+  bool quiet = false;                  ///< no progress bar
+  std::vector<std::string> arguments;  ///< of the program, its name included
+};
+
+/// `dolp-bench accuracy`: error against time per entry, for every method at every setting of its own.
+///
+/// The error is max(|d r_i|, |d r_q|)/r_i at the case itself, against the independent reference at its tightest
+/// setting; random methods: its rms over the repeats. The time is that of a whole call over its entries, the median of
+/// repeats. Errors: InputError for a case or method that there is not; DeviceError when `device` is given and cannot be
+/// had; IoError; Cancelled.
+void run_accuracy(const StudyOptions& options);
+
+}  // namespace dolp::bench

@@ -1,0 +1,333 @@
+// The methods that dolp is compared with are right, each converges as it should, and times are taken as promised.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "bench/cases.hpp"
+#include "bench/context.hpp"
+#include "bench/method.hpp"
+#include "bench/report.hpp"
+#include "bench/timing.hpp"
+#include "evaluate/reference/reference_evaluator.hpp"
+
+namespace {
+
+using namespace dolp;
+using namespace dolp::bench;
+
+/// Of the reference, relative to r_i: below every tolerance here, and reached with digits to spare.
+constexpr double kReferenceTolerance = 1e-9;
+
+std::unique_ptr<Solver> solver_of(const std::string& name) {
+  const auto found = std::ranges::find(methods(), name, &Method::name);
+  if (found == methods().end()) throw std::out_of_range(name);
+  return found->make({});
+}
+
+const Case& case_of(const std::string& name) {
+  const auto found = std::ranges::find(cases(), name, &Case::name);
+  if (found == cases().end()) throw std::out_of_range(name);
+  return *found;
+}
+
+std::vector<Moments> truth_of(MomentsRequest request) {
+  request.tolerance = 0.0;
+  return ReferenceEvaluator({.relative_tolerance = kReferenceTolerance}).evaluate(request, nullptr);
+}
+
+double error_of(const Answer& answer, const Moments& truth) {
+  return std::max(std::abs(answer.r_i - truth.r_i), std::abs(answer.r_q - truth.r_q)) / truth.r_i;
+}
+
+double worst_error(Solver& solver, const MomentsRequest& request, double setting) {
+  const std::vector<Moments> truth = truth_of(request);
+  const Solution solution = solver.solve(request, setting);
+  EXPECT_EQ(solution.answers.size(), truth.size());
+  double worst = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) worst = std::max(worst, error_of(solution.answers[i], truth[i]));
+  return worst;
+}
+
+/// A cheap setting, and the largest error there for each case.
+struct Expected {
+  double setting = 0.0;
+  std::map<std::string, double> tolerance;
+};
+
+// Rules: the error measured once at this setting, times 2 to 3. Second order at the corners for midpoint; spectral for
+// Gauss where nothing has a kink. Monte Carlo: four standard errors of 1e5 samples. Libcubature: ten times
+// the tolerance it was given, since it only estimates its errors. The others: the tolerance itself.
+const std::map<std::string, Expected> kExpected = {
+    {"midpoint", {256, {{"easy", 8e-6}, {"median", 6e-6}, {"rough", 6e-5}, {"hard", 2e-3}, {"worst", 2e-2}}}},
+    {"gauss", {64, {{"easy", 2e-9}, {"median", 4e-5}, {"rough", 2e-9}, {"hard", 1.5e-4}, {"worst", 2e-5}}}},
+    {"monte-carlo", {1e5, {{"easy", 1e-2}, {"median", 1e-2}, {"rough", 1.5e-2}, {"hard", 1.2e-2}, {"worst", 4e-2}}}},
+    {"hcubature", {1e-6, {{"easy", 1e-5}, {"median", 1e-5}, {"rough", 1e-5}, {"hard", 1e-5}, {"worst", 1e-5}}}},
+    {"pcubature", {1e-5, {{"easy", 1e-4}, {"median", 1e-4}, {"rough", 1e-4}, {"hard", 1e-4}, {"worst", 1e-4}}}},
+    {"dblquad", {1e-2, {{"easy", 1e-2}, {"median", 1e-2}, {"rough", 1e-2}, {"hard", 1e-2}, {"worst", 1e-2}}}},
+    {"vulkan-float", {1e-4, {{"easy", 1e-4}, {"median", 1e-4}, {"rough", 1e-4}, {"hard", 1e-4}, {"worst", 1e-4}}}},
+    {"vulkan-double", {1e-5, {{"easy", 1e-5}, {"median", 1e-5}, {"rough", 1e-5}, {"hard", 1e-5}, {"worst", 1e-5}}}},
+    {"cpu-float", {1e-4, {{"easy", 1e-4}, {"median", 1e-4}, {"rough", 1e-4}, {"hard", 1e-4}, {"worst", 1e-4}}}},
+    {"cpu-double", {1e-5, {{"easy", 1e-5}, {"median", 1e-5}, {"rough", 1e-5}, {"hard", 1e-5}, {"worst", 1e-5}}}},
+};
+
+class BenchMethod : public testing::TestWithParam<std::string> {};
+
+TEST_P(BenchMethod, EveryCase_CheapSetting_AgreesWithReference) {
+  const std::unique_ptr<Solver> solver = solver_of(GetParam());
+  const Expected& expected = kExpected.at(GetParam());
+  const std::size_t entries = GetParam() == "dblquad" ? 1 : 2;  // it takes its own times, which takes time
+  for (const Case& one : cases()) {
+    const double error = worst_error(*solver, neighbourhood(one, entries), expected.setting);
+    EXPECT_LE(error, expected.tolerance.at(one.name)) << one.name;
+  }
+  EXPECT_FALSE(solver->where().empty());
+}
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for (const Method& method : methods()) names.push_back(method.name);
+  return names;
+}
+
+std::string test_name(const testing::TestParamInfo<std::string>& tested) {
+  std::string name = tested.param;
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+INSTANTIATE_TEST_SUITE_P(Registry, BenchMethod, testing::ValuesIn(method_names()), test_name);
+
+TEST(BenchRegistry, EveryMethod_Settings_AreSortedAndQuickOnesAmongThem) {
+  EXPECT_EQ(methods().size(), kExpected.size());
+  for (const Method& method : methods()) {
+    SCOPED_TRACE(method.name);
+    const auto rises = [&](double a, double b) { return method.setting_name == "tolerance" ? a > b : a < b; };
+    EXPECT_TRUE(std::ranges::is_sorted(method.settings, rises));
+    for (const double quick : method.quick_settings) {
+      EXPECT_NE(std::ranges::find(method.settings, quick), method.settings.end()) << quick;
+    }
+  }
+}
+
+// The tables of both maskings and the horizon of the integration region hold far beyond the tolerances above.
+TEST(BenchFormulas, AdaptiveCubature_TightTolerance_AgreesWithReferenceForBothDistributions) {
+  const std::unique_ptr<Solver> hcubature = solver_of("hcubature");
+  for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
+    for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
+      SCOPED_TRACE(masking_name(masking));
+      MomentsRequest request;
+      request.distribution = distribution;
+      request.masking = masking;
+      request.theta_deg = {20.0, 55.0, 80.0};
+      request.shapes = {{0.3, 1.7}, {0.9, 4.0}};
+      request.indices = {{1.5, 0.1}, {27.0, 90.0}};
+      request.entries = {{0, 0, 0}, {1, 1, 1}, {2, 0, 0}};
+      EXPECT_LE(worst_error(*hcubature, request, 1e-7), 1e-7);
+    }
+  }
+}
+
+// Reflectances beyond the critical angle, where the integrand has a square root that adaptive rules take long to find.
+TEST(BenchFormulas, AdaptiveCubature_TotalReflection_AgreesWithReference) {
+  MomentsRequest request = neighbourhood(case_of("easy"), 1);
+  request.indices = {{0.8, 0.0}};
+  EXPECT_LE(worst_error(*solver_of("hcubature"), request, 1e-6), 1e-5);
+}
+
+// With many nodes on a smooth integrand nothing is left but the formulas, Smith's closed form and rounding.
+TEST(BenchFormulas, GaussRule_SmoothSmith_IsExactForBothDistributions) {
+  for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
+    MomentsRequest request = neighbourhood(case_of("rough"), 2);
+    request.distribution = distribution;
+    EXPECT_LE(worst_error(*solver_of("gauss"), request, 128), 2e-9);
+  }
+}
+
+TEST(BenchRules, Midpoint_TwiceTheNodes_QuartersTheError) {
+  const std::unique_ptr<Solver> midpoint = solver_of("midpoint");
+  const MomentsRequest request = neighbourhood(case_of("easy"), 1);
+  const double ratio = worst_error(*midpoint, request, 128) / worst_error(*midpoint, request, 256);
+  EXPECT_NEAR(ratio, 4.0, 0.1);  // second order; the next order is smaller by 1/128^2
+}
+
+TEST(BenchRules, MonteCarlo_Repeats_ScatterAsStatedAboutTheTruth) {
+  constexpr int kRepeats = 64;
+  constexpr double kSamples = 1e4;
+  const std::unique_ptr<Solver> monte_carlo = solver_of("monte-carlo");
+  const MomentsRequest request = neighbourhood(case_of("median"), 1);
+  const double truth = truth_of(request).front().r_i;
+  double sum = 0.0;
+  double sum_2 = 0.0;
+  double stated_2 = 0.0;
+  for (int i = 0; i < kRepeats; ++i) {
+    const Answer answer = monte_carlo->solve(request, kSamples).answers.front();
+    const double deviation = answer.r_i / truth - 1.0;
+    sum += deviation;
+    sum_2 += deviation * deviation;
+    stated_2 += *answer.stated_error * *answer.stated_error;
+  }
+  // The scatter of 64 repeats is known to 9 %, their mean to an eighth of the scatter: four standard errors each.
+  EXPECT_NEAR(std::sqrt(sum_2 / stated_2), 1.0, 0.36);
+  EXPECT_LE(std::abs(sum / kRepeats), 4.0 * std::sqrt(stated_2 / kRepeats) / std::sqrt(kRepeats));
+}
+
+TEST(BenchDblquad, NoPythonWithScipy_IsUnavailableAndSaysWhatToDo) {
+  try {
+    make_dblquad({.pythons = {"/bin/false", "/no/such/python"}});
+    FAIL() << "nothing was thrown";
+  } catch (const Unavailable& error) {
+    EXPECT_STREQ(error.what(), "no Python with SciPy (tried /bin/false, /no/such/python); install python3-scipy");
+  }
+}
+
+TEST(BenchDblquad, TimeLimit_IsKept) {
+  const std::unique_ptr<Solver> dblquad = make_dblquad({.time_limit_s = 0.05});
+  EXPECT_THROW(dblquad->solve(neighbourhood(case_of("hard"), 1), 1e-8), TookTooLong);
+}
+
+TEST(BenchCases, Neighbourhood_Entries_AreDistinctCloseAndTheFirstExact) {
+  constexpr std::size_t kCount = 500;
+  const Case& one = case_of("worst");
+  const MomentsRequest request = neighbourhood(one, kCount);
+  ASSERT_EQ(request.entries.size(), kCount);
+  EXPECT_EQ(request.theta_deg.front(), one.theta_deg);
+  EXPECT_EQ(request.shapes.front(), one.shape);
+  std::vector<double> values[3];
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const MomentsEntry& entry = request.entries[i];
+    values[0].push_back(request.theta_deg[entry.theta] / one.theta_deg);
+    values[1].push_back(request.shapes[entry.shape].sigma / one.shape.sigma);
+    values[2].push_back(request.shapes[entry.shape].q / one.shape.q);
+  }
+  for (std::vector<double>& list : values) {
+    std::ranges::sort(list);
+    EXPECT_EQ(std::ranges::adjacent_find(list), list.end());
+    EXPECT_GE(list.front(), 1.0 - 1.001e-3);
+    EXPECT_LE(list.back(), 1.0 + 1.001e-3);
+  }
+}
+
+/// Counts its calls, and answers with their number.
+class CountingSolver final : public Solver {
+ public:
+  Solution solve(const MomentsRequest&, double) override {
+    Solution solution;
+    solution.answers = {{.r_i = ++calls_, .r_q = 0.0, .stated_error = {}}};
+    solution.own_times_s = own_times_s;
+    return solution;
+  }
+  std::string where() const override { return "here"; }
+  double calls() const { return calls_; }
+  std::vector<double> own_times_s;
+
+ private:
+  double calls_ = 0.0;
+};
+
+constexpr TimingPolicy kOneCallEach{
+    .min_repeats = 4, .max_repeats = 9, .random_repeats = 6, .enough_s = 0.0, .most_s = 100.0, .raw_time_s = 0.0};
+
+TEST(BenchTiming, Measure_EnoughTime_WarmsUpThenRepeatsTheLeast) {
+  CountingSolver solver;
+  const Measurement measurement = measure(solver, {}, 1.0, false, kOneCallEach);
+  EXPECT_EQ(measurement.raw_s.size(), 4U);
+  EXPECT_EQ(solver.calls(), 5.0);
+  EXPECT_EQ(measurement.answers.size(), 1U);
+}
+
+TEST(BenchTiming, Measure_NeverEnoughTime_StopsAtTheMost) {
+  CountingSolver solver;
+  TimingPolicy policy = kOneCallEach;
+  policy.enough_s = 100.0;
+  EXPECT_EQ(measure(solver, {}, 1.0, false, policy).raw_s.size(), 9U);
+}
+
+TEST(BenchTiming, Measure_RandomMethod_KeepsTheAnswerOfEachRepeat) {
+  CountingSolver solver;
+  const Measurement measurement = measure(solver, {}, 1.0, true, kOneCallEach);
+  ASSERT_EQ(measurement.answers.size(), 6U);
+  EXPECT_EQ(measurement.answers.front().r_i, 2.0);  // the first call was the warm-up
+  EXPECT_EQ(measurement.answers.back().r_i, 7.0);
+}
+
+TEST(BenchTiming, Measure_RandomMethodPastItsTime_StillRepeats) {
+  CountingSolver solver;
+  TimingPolicy policy = kOneCallEach;
+  policy.most_s = 0.0;
+  EXPECT_EQ(measure(solver, {}, 1.0, true, policy).raw_s.size(), 6U);
+}
+
+TEST(BenchTiming, Measure_LongCall_IsMadeOnce) {
+  CountingSolver solver;
+  TimingPolicy policy = kOneCallEach;
+  policy.most_s = 0.0;
+  EXPECT_EQ(measure(solver, {}, 1.0, false, policy).raw_s.size(), 1U);
+  EXPECT_EQ(solver.calls(), 1.0);
+}
+
+TEST(BenchTiming, Measure_MethodThatTakesItsOwnTimes_IsBelieved) {
+  CountingSolver solver;
+  solver.own_times_s = {3.0, 1.0, 2.0};
+  EXPECT_EQ(measure(solver, {}, 1.0, false, kOneCallEach).raw_s, solver.own_times_s);
+  EXPECT_EQ(solver.calls(), 1.0);
+}
+
+TEST(BenchTiming, MedianAndSpread_OddAndEven_AreThoseOfTheList) {
+  EXPECT_EQ(median({5.0, 1.0, 3.0}), 3.0);
+  EXPECT_EQ(median({4.0, 1.0, 3.0, 2.0}), 2.5);
+  EXPECT_EQ(minimum({4.0, 1.0, 3.0}), 1.0);
+  EXPECT_DOUBLE_EQ(spread({1.0, 1.5, 9.0}), 0.5);
+}
+
+TEST(BenchContext, ShellLine_SpecialLetters_AreQuoted) {
+  EXPECT_EQ(shell_line({"dolp-bench", "--json", "a b", "it's", ""}), R"(dolp-bench --json 'a b' 'it'\''s' '')");
+}
+
+/// A study of one result, measured under the best conditions.
+nlohmann::ordered_json quiet_study() {
+  return {
+      {"study", "test"},
+      {"context",
+       {{"machine", {{"load", 0.1}, {"cores", 2}}}, {"compiler", {{"build_type", "Release"}}}, {"validation", false}}},
+      {"results", {{{"method", "gauss"}, {"case", "easy"}, {"setting", 16.0}, {"raw_times_s", {1.0, 1.1, 1.2}}}}}};
+}
+
+TEST(BenchReport, Warnings_GoodConditions_AreNone) {
+  nlohmann::ordered_json study = quiet_study();
+  add_warnings(study);
+  EXPECT_TRUE(study["warnings"].empty()) << study["warnings"];
+}
+
+TEST(BenchReport, Warnings_BadConditions_EachSayWhatToDo) {
+  nlohmann::ordered_json study = quiet_study();
+  study["results"][0]["raw_times_s"] = {1.0, 1.3, 1.4};
+  study["results"].push_back({{"method", "dblquad"}, {"case", "hard"}, {"setting", 1e-8}, {"raw_times_s", {9.0}}});
+  study["results"].push_back({{"method", "dblquad"}, {"case", "worst"}, {"setting", 1e-8}, {"not_run", "no reason"}});
+  study["context"]["machine"]["load"] = 0.7;
+  study["context"]["compiler"]["build_type"] = "Debug";
+  study["context"]["validation"] = true;
+  add_warnings(study);
+  const std::vector<std::string> expected = {
+      "1 of 3 times lie over 20 % above their minimum: end other programs, run again or use time_min_s (gauss easy 16)",
+      "1 slow settings were timed once, without a warm-up: read their times to one digit (dblquad hard 1e-08)",
+      "busy machine (load 0.7 on 2 cores), methods on all cores lose most: end other programs, run again",
+      "this is no Release build: configure with -DCMAKE_BUILD_TYPE=Release before using the times",
+      "the Vulkan validation layer is on: unset DOLP_VALIDATION before using the times of vulkan-*"};
+  EXPECT_EQ(study["warnings"].get<std::vector<std::string>>(), expected);
+}
+
+TEST(BenchReport, JsonText_Study_ReadsBackWithOneResultALine) {
+  nlohmann::ordered_json study = quiet_study();
+  study["results"].push_back(study["results"][0]);
+  const std::string text = json_text(study);
+  EXPECT_EQ(nlohmann::json::parse(text), nlohmann::json(study));
+  const std::size_t first = text.find("{\"method\"");
+  const std::size_t second = text.find("{\"method\"", first + 1);
+  EXPECT_EQ(std::ranges::count(text.substr(first, second - first), '\n'), 1);
+}
+
+}  // namespace

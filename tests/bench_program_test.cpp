@@ -1,0 +1,168 @@
+// dolp-bench from outside: options, JSON, table and figure.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "program.hpp"
+
+namespace {
+
+using namespace dolp;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+class BenchProgram : public testing::Test {
+ protected:
+  fs::path at(const std::string& name) const { return folder_.path() / name; }
+
+  Outcome bench(std::vector<std::string> arguments,
+                std::vector<std::pair<std::string, std::string>> environment = {}) const {
+    arguments.insert(arguments.begin(), DOLP_BENCH_PROGRAM);
+    Command command{.arguments = std::move(arguments), .folder = folder_.path()};
+    command.environment = std::move(environment);
+    return run(command);
+  }
+  Outcome plot(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), {"/usr/bin/python3", DOLP_BENCH_PLOT});
+    return run({.arguments = std::move(arguments), .folder = folder_.path()});
+  }
+  /// The results of a study that takes a second.
+  json small_study(std::vector<std::string> options) const {
+    const std::vector<std::string> fixed = {"accuracy", "--quick", "--entries", "16", "--json", "-"};
+    options.insert(options.begin(), fixed.begin(), fixed.end());
+    const Outcome outcome = bench(options);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out);
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+void expect_keys(const json& object, const std::set<std::string>& keys) {
+  for (const std::string& key : keys) EXPECT_TRUE(object.contains(key)) << key << " is missing in " << object.dump();
+}
+
+TEST_F(BenchProgram, Json_Context_SaysWhereAndHowToRunAgain) {
+  const json study = small_study({"--case", "easy", "--method", "gauss", "--method", "vulkan-float"});
+  EXPECT_EQ(study["study"], "accuracy");
+  const json& context = study["context"];
+  expect_keys(context, {"program", "command", "date", "machine", "device", "compiler", "libraries", "validation"});
+  expect_keys(context["machine"], {"processor", "cores", "load", "system"});
+  expect_keys(context["device"], {"name", "driver"});
+  expect_keys(context["compiler"], {"name", "flags", "build_type"});
+  EXPECT_EQ(context["command"], DOLP_BENCH_PROGRAM
+            " accuracy --quick --entries 16 --json - --case easy --method gauss --method vulkan-float");
+  EXPECT_EQ(context["program"], "dolp-bench " DOLP_VERSION);
+}
+
+TEST_F(BenchProgram, Json_Results_HaveErrorAndTimesForEverySetting) {
+  const json study =
+      small_study({"--case", "easy", "--case", "median", "--method", "gauss", "--method", "vulkan-float"});
+  ASSERT_EQ(study["methods"].size(), 2U);
+  ASSERT_EQ(study["cases"].size(), 2U);
+  EXPECT_EQ(study["results"].size(), 2U * (3U + 2U));
+  for (const json& method : study["methods"])
+    expect_keys(method, {"name", "label", "what", "cores", "setting", "where"});
+  for (const json& one : study["cases"]) {
+    expect_keys(one, {"name", "what", "masking", "theta_deg", "sigma", "q", "n", "k", "reference"});
+    EXPECT_LE(one["reference"]["bound"].get<double>(), 1e-12);
+  }
+  for (const json& row : study["results"]) {
+    expect_keys(row, {"method", "case", "setting", "error", "time_s", "time_min_s", "raw_times_s", "entries",
+                      "evaluations", "r_i", "r_q"});
+    const bool on_device = row["method"] == "vulkan-float";
+    EXPECT_EQ(row["entries"], on_device ? 16 : 1);
+    EXPECT_EQ(row.contains("kernel_time_s"), on_device);
+    EXPECT_GE(row["raw_times_s"].size(), 3U);
+    EXPECT_GT(row["time_min_s"], 0.0);
+    EXPECT_LE(row["time_min_s"], row["time_s"]);
+    EXPECT_LT(row["error"], 1e-3);
+  }
+}
+
+TEST_F(BenchProgram, Json_File_IsWrittenBesideTheTable) {
+  const Outcome outcome = bench({"accuracy", "--quick", "--case", "rough", "--method", "gauss", "--json", "r.json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("rough: "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("  gauss                64  "), std::string::npos) << outcome.out;
+  EXPECT_EQ(json::parse(read_file(at("r.json")))["results"].size(), 3U);
+}
+
+TEST_F(BenchProgram, NoVulkanDevice_OtherMethodsRunAndTheReasonIsNamed) {
+  const Outcome outcome =
+      bench({"accuracy", "--quick", "--case", "easy", "--method", "gauss", "--method", "vulkan-double", "--json", "-"},
+            {{"VK_DRIVER_FILES", "/none"}, {"VK_ICD_FILENAMES", "/none"}});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json study = json::parse(outcome.out);
+  ASSERT_EQ(study["results"].size(), 3U + 3U);
+  for (const json& row : study["results"]) {
+    EXPECT_EQ(row.contains("not_run"), row["method"] == "vulkan-double") << row.dump();
+    EXPECT_EQ(row.contains("error"), row["method"] == "gauss") << row.dump();
+  }
+  EXPECT_TRUE(study["context"]["device"].contains("none"));
+}
+
+TEST_F(BenchProgram, DeviceThatIsNotThere_IsExit3BeforeAnythingRuns) {
+  const Outcome outcome = bench({"accuracy", "--device", "no such device"});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_NE(outcome.err.find("no such device"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+}
+
+struct BadUsage {
+  std::vector<std::string> arguments;
+  int status;
+  std::string message;
+};
+
+TEST_F(BenchProgram, BadUsage_OneLineThatSaysWhatIsAllowed) {
+  const std::vector<BadUsage> list = {
+      {{}, 2, "subcommand"},
+      {{"speed"}, 2, "see dolp-bench --help"},
+      {{"accuracy", "--fast"}, 2, "--fast"},
+      {{"accuracy", "--entries", "0"}, 2, "--entries"},
+      {{"accuracy", "--case", "simple"}, 2, "--case simple: there is none of this name; choose among easy, median, "},
+      {{"accuracy", "--method", "simpson"}, 2, "choose among midpoint, gauss, "},
+      {{"accuracy", "--json", "no/such/folder/r.json"}, 4, "there is no folder no/such/folder"}};
+  for (const BadUsage& bad : list) {
+    const Outcome outcome = bench(bad.arguments);
+    EXPECT_EQ(outcome.status, bad.status) << outcome.err;
+    EXPECT_TRUE(outcome.err.starts_with("dolp-bench: ")) << outcome.err;
+    EXPECT_NE(outcome.err.find(bad.message), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+  }
+}
+
+TEST_F(BenchProgram, Plot_Results_GiveFigureAndTable) {
+  ASSERT_EQ(bench({"accuracy", "--quick", "--entries", "16", "--case", "easy", "--method", "gauss", "--method",
+                   "cpu-double", "--json", "r.json"})
+                .status,
+            0);
+  const Outcome figure = plot({"accuracy", "r.json", "-o", "r.png"});
+  ASSERT_EQ(figure.status, 0) << figure.err;
+  EXPECT_TRUE(read_file(at("r.png")).starts_with("\x89PNG"));
+  const Outcome table = plot({"accuracy", "r.json", "--markdown"});
+  ASSERT_EQ(table.status, 0) << table.err;
+  EXPECT_NE(table.out.find("| Gauss-Legendre rule |"), std::string::npos) << table.out;
+}
+
+TEST_F(BenchProgram, Plot_FolderThatIsNotThere_IsExit4AndNamesTheFigure) {
+  ASSERT_EQ(bench({"accuracy", "--quick", "--case", "easy", "--method", "gauss", "--json", "r.json"}).status, 0);
+  const Outcome outcome = plot({"accuracy", "r.json", "-o", "none/r.png"});
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_NE(outcome.err.find("none/r.png"), std::string::npos) << outcome.err;
+}
+
+TEST_F(BenchProgram, Plot_WrongFile_IsExit2AndNamesIt) {
+  const Outcome missing = plot({"accuracy", "none.json", "-o", "r.png"});
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_NE(missing.err.find("none.json"), std::string::npos) << missing.err;
+  EXPECT_FALSE(fs::exists(at("r.png")));
+}
+
+}  // namespace

@@ -91,7 +91,7 @@ struct ShapeNode {
 struct IndexNode {
   real n2m1_re;       // Re(N^2 - 1)
   real n2m1_im;       // Im(N^2 - 1)
-  real pole_cos;      // |1 / sqrt(N^2 + 1)|: R_p has a pole at minus this cos(beta)
+  real pole_cos;      // smaller of |1 / sqrt(N^2 + 1)|, R_p's pole in cos(beta), and |sqrt(N^2 - 1)|, the branch point of w
   real critical_cos;  // sqrt(1 - Re N^2), where total reflection begins, sharply (k = 0) or nearly so; otherwise 0
 };
 

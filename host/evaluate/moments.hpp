@@ -28,8 +28,8 @@ struct MomentsEntry {
 struct MomentsRequest {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
-  double tolerance = 1e-4;                    ///< of the rule, relative to r_i
-  Precision precision = Precision::kAuto;     ///< kAuto: the evaluator's own
+  double tolerance = 1e-4;                 ///< of the rule, relative to r_i
+  Precision precision = Precision::kAuto;  ///< kAuto: the evaluator's own
   std::vector<double> theta_deg;
   std::vector<SlopeShape> shapes;
   std::vector<OpticalConstants> indices;

@@ -82,6 +82,20 @@ double masking_error(const KernelData& data, const MomentsEntry& entry, double u
   return table * (may_diverge ? 1.0 + kDivergingSlope / shape.two_q_minus_3 : 1.0);
 }
 
+// The core of the domain, see Difficulty.
+constexpr double kCoreCosTheta = 0.0087;
+constexpr double kCoreSmallestM = 0.007;
+constexpr double kCoreLargestM = 1.7;
+constexpr double kCorePoleCos = 0.01;
+constexpr double kCoreContrast = 0.05;  // |N^2 - 1|
+
+Difficulty difficulty(const kernel::ThetaNode& theta, const kernel::ShapeNode& shape, const kernel::IndexNode& index) {
+  if (index.critical_cos > 0.0) return Difficulty::kTotalReflection;
+  const bool is_core = theta.c >= kCoreCosTheta && shape.m >= kCoreSmallestM && shape.m <= kCoreLargestM &&
+                       index.pole_cos >= kCorePoleCos && std::hypot(index.n2m1_re, index.n2m1_im) >= kCoreContrast;
+  return is_core ? Difficulty::kCore : Difficulty::kEdge;
+}
+
 // Upper bound of M00 on the facets beyond the cut whose ray leaves: cos(theta_r) > 0 there means cos(beta) > c sqrt(1 +
 // t^2) / 2, and R_s, which falls with cos(beta), is no less than M00.
 double steep_reflectance(const kernel::IndexNode& index, const kernel::ThetaNode& theta,
@@ -112,10 +126,10 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   moments.r_q = node.r_q;
   moments.albedo = node.albedo;
   moments.deficit = node.deficit;
-  const RuleModel& model = rule_model(data.masking);
+  const double factor = doubt_factor(data.masking, data.tolerance, difficulty(theta, shape, index));
   const double r_i_scale = std::abs(node.r_i);  // a rule that fails can make it negative
-  const double reflected_rule = model.doubt_factor * node.doubt;
-  const double deficit_rule = model.doubt_factor * node.deficit_doubt;
+  const double reflected_rule = factor * node.doubt;
+  const double deficit_rule = factor * node.deficit_doubt;
   moments.r_i_error = reflected_rule + (rounding + masking) * r_i_scale + reflected_cut;
   moments.r_q_error = moments.r_i_error;
   // The albedo shares the nodes of the two.

@@ -6,8 +6,8 @@ namespace dolp {
 
 /// The facet between two beams, and the rotation angles of eq. (4), in double and without cancellation.
 ///
-/// Equation: eqs. (2)-(6) as |w_i + w_r|^2 = 4 cos^2(beta), |w_i - w_r|^2 = 4 sin^2(beta), and eta_i as the direction of
-/// (sin i cos r - cos i sin r cos(dphi), sin r sin(dphi)), eta_r likewise with i and r exchanged in the first.
+/// Equation: eqs. (2)-(6) as |w_i + w_r|^2 = 4 cos^2(beta), |w_i - w_r|^2 = 4 sin^2(beta), and eta_i as the direction
+/// of (sin i cos r - cos i sin r cos(dphi), sin r sin(dphi)), eta_r likewise with i and r exchanged in the first.
 /// Conventions: delta_phi = 180 degrees is the specular side; eta turns s toward p and has the sign of
 /// sin(delta_phi).
 /// Domain: zeniths in [0, 90] degrees. In the retro direction, where eta is undefined, the limit eta_i = eta_r = 0; at

@@ -27,8 +27,8 @@ constexpr double kEndAbove = 1.0;  // square-root end just above a breakpoint
 constexpr double kEndBelow = 2.0;  // just below
 constexpr double kNoEnd = 1e30;    // a slope beyond every cut, in place of infinity
 
-// Breakpoints nearer to each other than this share of the piece beyond, in ln(slope): the square root of the one is felt
-// beyond the other.
+// Breakpoints nearer to each other than this share of the piece beyond, in ln(slope): the square root of the one is
+// felt beyond the other.
 constexpr double kNear = 0.25;
 constexpr double kFirst = 2.0;  // what the piece from 0 counts as
 
@@ -45,6 +45,8 @@ constexpr double kTotalReflectionNarrowing = 1.5;
 // Largest order of an arc of the azimuth, for a number of digits.
 constexpr double kPhiNodes = 10.0;
 constexpr double kPhiNodesPerDigit = 3.0;
+
+constexpr double kSmallestPole = 1e-6;  // of |N^2 + 1| and |N^2 - 1|
 
 // Bound of the loop iterations of one invocation, below the 65,535 at which lavapipe stops without notice.
 constexpr double kMostIterations = 60'000.0;
@@ -124,7 +126,9 @@ bool has_end(const Breakpoint& point, double end) {
 // A breakpoint next to one with a square root, seen from the piece beyond, gets one too.
 void spread_roots(std::vector<Breakpoint>& points) {
   const std::vector<Breakpoint> own = points;
-  const auto log_slope = [&](std::size_t i) { return i > 0 ? std::log(own[i].slope) : std::log(own[1].slope) - kFirst; };
+  const auto log_slope = [&](std::size_t i) {
+    return i > 0 ? std::log(own[i].slope) : std::log(own[1].slope) - kFirst;
+  };
   const auto distance = [&](std::size_t i, std::size_t j) { return std::abs(log_slope(i) - log_slope(j)); };
   for (std::size_t j = 1; j + 1 < own.size(); ++j) {
     for (std::size_t i = 1; i < own.size(); ++i) {
@@ -234,14 +238,18 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
   const double width = cauchy ? node.m / std::sqrt(std::max(1.0, shape.q / 1.5)) : node.m;
   const bool heavy_tail = cauchy && shape.q < kLightTailQ;
   node.table_scale = std::clamp(width, heavy_tail ? kSmallestHeavyTableScale : 0.0, kLargestTableScale);
-  node.cusp_digits = cusp_digits(request.distribution, request.masking, shape);
+  node.cusp_digits =
+      cusp_digits(request.distribution, request.masking, shape, rule_digits(request.masking, request.tolerance));
   return node;
 }
 
 kernel::IndexNode index_node(const OpticalConstants& index) {
   const std::complex<double> n(index.n, index.k);
-  return {(index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k,
-          1.0 / std::sqrt(std::max(std::abs(n * n + 1.0), 1e-3)), critical_cos(index)};
+  const double n2m1_re = (index.n - 1.0) * (index.n + 1.0) - index.k * index.k;
+  const double n2m1_im = 2.0 * index.n * index.k;
+  const double pole = 1.0 / std::sqrt(std::max(std::abs(n * n + 1.0), kSmallestPole));
+  const double branch_point = std::sqrt(std::max(std::hypot(n2m1_re, n2m1_im), kSmallestPole));
+  return {n2m1_re, n2m1_im, std::min(pole, branch_point), critical_cos(index)};
 }
 
 // Gives each entry the variant of its direction that it needs.

@@ -16,8 +16,8 @@ using real = double;
 }  // namespace kernel
 
 /// Inputs of one run of the kernel. `shapes` and `indices` match the lists of the request, `entries` its entries,
-/// position by position. `thetas` has the request's directions first and variants of them after: for total reflection, and
-/// for slope distributions that need the line b = pi/2 of `integral` or smith's cusp.
+/// position by position. `thetas` has the request's directions first and variants of them after: for total reflection,
+/// and for slope distributions that need the line b = pi/2 of `integral` or smith's cusp.
 struct KernelData {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
@@ -39,8 +39,8 @@ KernelData kernel_data(const MomentsRequest& request);
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff);
 
-/// Whether the masking table of a shape sees the structure of G at a direction. Where the table is coarser than the slope
-/// distribution, directions whose cot(theta) lies within its first scale see none of it.
+/// Whether the masking table of a shape sees the structure of G at a direction. Where the table is coarser than the
+/// slope distribution, directions whose cot(theta) lies within its first scale see none of it.
 bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta);
 
 /// Upper bound of the loop iterations of one invocation for any entry of `data`: all its nested loops together.

@@ -10,88 +10,120 @@ namespace {
 
 constexpr std::array<RuleModel, 4> kModels = {{
     // none
-    {.margin_digits = 2.15,
-     .t_nodes = 2.07,
-     .t_strip = 0.913,
-     .t_oblique = -0.028,
-     .t_root_nodes = 0.205,
-     .t_curvature = 0.0847,
-     .phi_half_nodes = 0.145,
-     .phi_centre_nodes = 0.375,
-     .strip = {2.27, 1.0, 1.0},
-     .phi_grazing = 0.815,
-     .phi_curvature = 0.061,
-     .phi_circle_nodes = 1.03,
-     .phi_circle_growth = 0.631,
-     .phi_cluster_growth = 0.945,
-     .doubt_factor = 2.5},
+    {.margin_digits = 1.91,
+     .t_nodes = 1.83,
+     .t_strip = 1.1,
+     .t_oblique = 0.0338,
+     .t_root_nodes = 0.545,
+     .t_curvature = 0.128,
+     .phi_half_nodes = 0.189,
+     .phi_centre_nodes = 0.379,
+     .strip = {2.11, 1.0, 1.0},
+     .phi_grazing = 0.408,
+     .phi_curvature = 0.0506,
+     .phi_circle_nodes = 1.32,
+     .phi_circle_growth = 0.673,
+     .phi_horizon_growth = 0.609,
+     .circle_pole = 0.667,
+     .phi_cluster_growth = 1.35,
+     .doubt_factor = 2.8},
     // v-cavity
     {.margin_digits = 2.46,
-     .t_nodes = 0.981,
-     .t_strip = 0.907,
-     .t_oblique = -0.319,
-     .t_root_nodes = 0.644,
+     .t_nodes = 1.05,
+     .t_strip = 1.17,
+     .t_oblique = -0.191,
+     .t_root_nodes = 0.524,
      .t_curvature = 0.186,
-     .phi_half_nodes = 0.607,
-     .phi_centre_nodes = 0.246,
-     .strip = {2.09, 3.12, 2.7},
-     .phi_grazing = 0.125,
-     .phi_curvature = 0.0485,
-     .phi_circle_nodes = 1.3,
-     .phi_circle_growth = 0.836,
-     .doubt_factor = 2.5},
+     .phi_half_nodes = 0.544,
+     .phi_centre_nodes = 0.228,
+     .strip = {1.95, 3.32, 2.79},
+     .phi_grazing = 0.217,
+     .phi_curvature = 0.0786,
+     .phi_circle_nodes = 1.1,
+     .phi_circle_growth = 0.954,
+     .phi_horizon_growth = 0.418,
+     .circle_pole = 0.723,
+     .doubt_factor = 2.8,
+     .doubt_growth = 0.1},
     // integral
     {.margin_digits = 2.18,
-     .t_nodes = 0.919,
-     .t_strip = 0.924,
-     .t_oblique = -0.0129,
-     .t_root_nodes = 0.438,
-     .t_curvature = 0.193,
-     .phi_half_nodes = 0.54,
-     .phi_centre_nodes = 0.391,
-     .strip = {4.09, 3.03, 2.06},
-     .phi_grazing = 0.267,
-     .phi_curvature = 0.154,
-     .phi_circle_nodes = 0.691,
-     .phi_circle_growth = 1.34,
-     .phi_cluster_growth = 3.8,
-     .line_threshold = 2.7e+04,
-     .doubt_factor = 2.5},
+     .t_nodes = 1.25,
+     .t_strip = 1.07,
+     .t_oblique = 0.0228,
+     .t_root_nodes = 0.42,
+     .t_curvature = 0.204,
+     .phi_half_nodes = 0.647,
+     .phi_centre_nodes = 0.293,
+     .strip = {3.37, 4.44, 2.86},
+     .phi_grazing = 0.33,
+     .phi_curvature = 0.188,
+     .phi_circle_nodes = 0.923,
+     .phi_circle_growth = 1.02,
+     .phi_horizon_growth = 0.259,
+     .circle_pole = 0.958,
+     .phi_cluster_growth = 4.35,
+     .line_threshold = 6.48e+04,
+     .doubt_factor = 3.5,
+     .doubt_growth = 0.35},
     // smith
-    {.margin_digits = 1.86,
-     .t_nodes = 0.753,
-     .t_strip = 0.628,
-     .t_oblique = -0.212,
-     .t_root_nodes = 0.54,
-     .t_curvature = 0.226,
-     .phi_half_nodes = 0.631,
-     .phi_centre_nodes = 0.0513,
-     .strip = {1.18, 1.0, 1.0},
-     .phi_grazing = -0.339,
-     .phi_curvature = 0.201,
-     .phi_circle_nodes = 0.815,
-     .phi_circle_growth = 1.05,
-     .phi_cluster_growth = 4.09,
-     .cusp_digits = 4.09,
-     .line_threshold = 2.97e+04,
-     .doubt_factor = 2.5},
+    {.margin_digits = 1.8,
+     .t_nodes = 1.05,
+     .t_strip = 0.69,
+     .t_oblique = -0.208,
+     .t_root_nodes = 0.381,
+     .t_curvature = 0.224,
+     .phi_half_nodes = 0.647,
+     .phi_centre_nodes = -0.144,
+     .strip = {1.26, 1.0, 1.0},
+     .phi_grazing = -0.386,
+     .phi_curvature = 0.262,
+     .phi_circle_nodes = 1.25,
+     .phi_circle_growth = 1.16,
+     .phi_horizon_growth = 0.103,
+     .circle_pole = 0.332,
+     .phi_cluster_growth = 2.74,
+     .cusp_digits = 3.06,
+     .line_threshold = 1.48e+05,
+     .doubt_factor = 6.0,
+     .doubt_growth = 0.4},
 }};
 
 constexpr double kCalibratedDigits = 4.0;  // where the curvatures vanish
 
+// Decades by which the doubts' factor is larger than that of the model, from these digits of the tolerance on.
+constexpr double kPlainDoubtDigits = 5.0;
+constexpr double kHardDoubtDigits = 4.0;
+constexpr double kEdgeDecades = 0.8;
+constexpr double kEdgeGrowth = 0.35;
+constexpr double kTotalReflectionDecades = 1.3;
+constexpr double kTotalReflectionGrowth = 0.5;
+
 // The cluster of `integral` below this q, at this many digits and more.
 constexpr double kClusterBelowQ = 1.6;
 constexpr double kClusterDigits = 4.5;
+constexpr double kTightClusterBelowQ = 2.4;
+constexpr double kTightDigits = 8.0;  // from which on the singularities count that are too weak to be felt before
 
 // The line b = pi/2 of `integral` matters for tails that reach slope 1.
 constexpr double kSmoothLineQ = 4.0;
 constexpr double kSmoothLineSigma = 0.6;  // of the gaussian
+constexpr double kTightLineSigma = 0.3;
+
+// Smith's cusp of the gaussian is smooth, but all its derivatives vanish there.
+constexpr double kGaussianCuspSigma = 0.8;
+constexpr double kGaussianCuspDigits = -1.0;
+
+// Digits by which RuleModel::cusp_digits falls for each digit from here on.
+constexpr double kCuspDigits = 7.0;
+constexpr double kCuspFall = 0.7;
 
 constexpr double kNoCusp = -1000.0;
 
-double curved(double curvature, double digits) {
-  return std::max(0.5, 1.0 + curvature * (digits - kCalibratedDigits));
+double cusp_offset(double digits) {
+  return std::max(0.0, rule_model(Masking::kSmith).cusp_digits - kCuspFall * std::max(0.0, digits - kCuspDigits));
 }
+
+double curved(double curvature, double digits) { return std::max(0.5, 1.0 + curvature * (digits - kCalibratedDigits)); }
 
 }  // namespace
 
@@ -99,6 +131,16 @@ const RuleModel& rule_model(Masking masking) { return kModels[static_cast<std::s
 
 double rule_digits(Masking masking, double tolerance) {
   return rule_model(masking).margin_digits - std::log10(tolerance);
+}
+
+double doubt_factor(Masking masking, double tolerance, Difficulty difficulty) {
+  const RuleModel& model = rule_model(masking);
+  const double digits = -std::log10(tolerance);
+  const double hard = std::max(0.0, digits - kHardDoubtDigits);
+  double decades = model.doubt_growth * std::max(0.0, digits - kPlainDoubtDigits);
+  if (difficulty == Difficulty::kEdge) decades += kEdgeDecades + kEdgeGrowth * hard;
+  if (difficulty == Difficulty::kTotalReflection) decades += kTotalReflectionDecades + kTotalReflectionGrowth * hard;
+  return model.doubt_factor * std::pow(10.0, decades);
 }
 
 kernel::RuleNode rule_node(Masking masking, double digits) {
@@ -118,30 +160,34 @@ kernel::RuleNode rule_node(Masking masking, double digits) {
   node.circle_pole = model.circle_pole;
   node.phi_cluster_growth = model.phi_cluster_growth;
   std::copy(std::begin(model.strip), std::end(model.strip), std::begin(node.strip));
-  node.cluster_below_q = digits > kClusterDigits ? kClusterBelowQ : 0.0;
+  node.cluster_below_q = digits > kTightDigits ? kTightClusterBelowQ : digits > kClusterDigits ? kClusterBelowQ : 0.0;
   return node;
 }
 
 bool needs_line(Distribution distribution, Masking masking, const SlopeShape& shape, double digits) {
-  const bool cauchy = distribution == Distribution::kCauchy;
   const double threshold = rule_model(masking).line_threshold * std::pow(10.0, -digits);
   if (masking == Masking::kSmith) {
-    return cauchy && cusp_digits(distribution, masking, shape) + rule_model(masking).cusp_digits >
-                         std::log10(std::max(threshold, 1e-300));
+    return std::pow(10.0, cusp_digits(distribution, masking, shape, digits) + cusp_offset(digits)) > threshold;
   }
   if (masking != Masking::kIntegral) return false;
-  if (!cauchy) return shape.sigma > kSmoothLineSigma;
+  if (distribution == Distribution::kGaussian) {
+    return shape.sigma > (digits > kTightDigits ? kTightLineSigma : kSmoothLineSigma);
+  }
   const double tail = std::pow(1.0 + 0.5 / (shape.sigma * shape.sigma), 1.0 - shape.q);
   return shape.q < kSmoothLineQ && tail > threshold * std::exp(1.5 * (shape.q - 1.0));
 }
 
-double cusp_digits(Distribution distribution, Masking masking, const SlopeShape& shape) {
-  if (masking != Masking::kSmith || distribution != Distribution::kCauchy) return kNoCusp;
+double cusp_digits(Distribution distribution, Masking masking, const SlopeShape& shape, double digits) {
+  if (masking != Masking::kSmith) return kNoCusp;
+  if (distribution == Distribution::kGaussian) {
+    const bool is_felt = shape.sigma > kGaussianCuspSigma && digits > kTightDigits;
+    return is_felt ? kGaussianCuspDigits : kNoCusp;
+  }
   const double from_integer = std::abs(shape.q - std::round(shape.q));
   if (from_integer == 0.0) return kNoCusp;
   const double width = std::min(1.0, std::numbers::sqrt2 * shape.sigma);
   return (2.0 * shape.q - 2.0) * std::log10(width) + std::log10(std::min(1.0, 4.0 * from_integer)) -
-         rule_model(masking).cusp_digits;
+         cusp_offset(digits);
 }
 
 }  // namespace dolp

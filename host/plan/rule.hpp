@@ -7,25 +7,26 @@ namespace dolp {
 
 /// Calibrated numbers of one masking; tests/calibration_test.cpp checks them and dolp-calibrate derives the factors.
 struct RuleModel {
-  double margin_digits = 0.0;    ///< digits beyond the tolerance, so that few entries miss it
-  double t_nodes = 0.0;          ///< RuleNode::t_nodes
-  double t_strip = 1.0;          ///< distance in X to the next singularity off the real axis
-  double t_oblique = 0.0;        ///< more nodes for each digit from 65 to 80 degrees
-  double t_root_nodes = 0.0;     ///< RuleNode::t_root_nodes
-  double t_curvature = 0.0;      ///< more nodes for each digit, for each digit beyond four
-  double phi_half_nodes = 0.0;   ///< RuleNode::phi_half_nodes
-  double phi_centre_nodes = 0.0; ///< RuleNode::phi_centre_nodes
+  double margin_digits = 0.0;         ///< digits beyond the tolerance, so that few entries miss it
+  double t_nodes = 0.0;               ///< RuleNode::t_nodes
+  double t_strip = 1.0;               ///< distance in X to the next singularity off the real axis
+  double t_oblique = 0.0;             ///< more nodes for each digit from 65 to 80 degrees
+  double t_root_nodes = 0.0;          ///< RuleNode::t_root_nodes
+  double t_curvature = 0.0;           ///< more nodes for each digit, for each digit beyond four
+  double phi_half_nodes = 0.0;        ///< RuleNode::phi_half_nodes
+  double phi_centre_nodes = 0.0;      ///< RuleNode::phi_centre_nodes
   double strip[3] = {1.0, 1.0, 1.0};  ///< RuleNode::strip
-  double phi_grazing = 0.0;      ///< RuleNode::strip narrows toward grazing incidence
-  double phi_curvature = 0.0;    ///< likewise
-  double phi_circle_nodes = 0.0; ///< RuleNode::phi_circle_nodes
-  double phi_circle_growth = 0.0;///< RuleNode::phi_circle_growth
-  double phi_horizon_growth = 0.5;  ///< RuleNode::phi_horizon_growth
-  double circle_pole = 0.5;         ///< RuleNode::circle_pole
-  double phi_cluster_growth = 1.0; ///< RuleNode::phi_cluster_growth
-  double cusp_digits = 0.0;      ///< smith: digits by which the cusp is smaller than its formula says
-  double line_threshold = 0.0;   ///< multiples of 10^-digits from which a line or cusp is worth its pieces
-  double doubt_factor = 1.0;       ///< from MomentsNode::doubt to an error bound
+  double phi_grazing = 0.0;           ///< RuleNode::strip narrows toward grazing incidence
+  double phi_curvature = 0.0;         ///< likewise
+  double phi_circle_nodes = 0.0;      ///< RuleNode::phi_circle_nodes
+  double phi_circle_growth = 0.0;     ///< RuleNode::phi_circle_growth
+  double phi_horizon_growth = 0.5;    ///< RuleNode::phi_horizon_growth
+  double circle_pole = 0.5;           ///< RuleNode::circle_pole
+  double phi_cluster_growth = 1.0;    ///< RuleNode::phi_cluster_growth
+  double cusp_digits = 0.0;           ///< smith: digits by which the cusp is smaller than its formula says
+  double line_threshold = 0.0;        ///< multiples of 10^-digits from which a line or cusp is worth its pieces
+  double doubt_factor = 1.0;          ///< from MomentsNode::doubt to an error bound
+  double doubt_growth = 0.0;          ///< more digits of that factor for each digit beyond the tolerance 1e-5
 };
 
 /// The numbers for a masking.
@@ -34,13 +35,24 @@ const RuleModel& rule_model(Masking masking);
 /// Digits that a tolerance asks of the rules.
 double rule_digits(Masking masking, double tolerance);
 
+/// Where an entry lies: the factors of RuleModel are calibrated in the core of the domain.
+enum class Difficulty {
+  kCore,             ///< sigma 0.005 to 1.2, theta to 89.5 degrees, |N| to 100, |N^2 - 1| from 0.05
+  kEdge,             ///< beyond
+  kTotalReflection,  ///< with a critical angle, sharp or nearly so
+};
+
+/// What turns the doubts of a rule into error bounds.
+double doubt_factor(Masking masking, double tolerance, Difficulty difficulty);
+
 /// The kernel's rule for a number of digits.
 kernel::RuleNode rule_node(Masking masking, double digits);
 
 /// Whether a slope distribution needs the line b = pi/2 of `integral`, or smith's cusp, at this many digits.
 bool needs_line(Distribution distribution, Masking masking, const SlopeShape& shape, double digits);
 
-/// log10 of the size of smith's cusp at theta_r = 0, L ~ (m tan(theta_r))^(2q-2); below -100 where there is none.
-double cusp_digits(Distribution distribution, Masking masking, const SlopeShape& shape);
+/// log10 of the size of smith's cusp at theta_r = 0, L ~ (m tan(theta_r))^(2q-2), as far as it is felt at this many
+/// digits; below -100 where it is not.
+double cusp_digits(Distribution distribution, Masking masking, const SlopeShape& shape, double digits);
 
 }  // namespace dolp

@@ -38,8 +38,7 @@ void append_half(Nodes& nodes, int order) {
   const Rule rule = gauss_legendre(2 * order);
   for (auto node = rule.begin() + order; node != rule.end(); ++node) {
     const auto& [x, weight] = *node;
-    const double null =
-        order == 1 ? 1.0 : both(order, coefficient(2 * order - 2, x), coefficient(2 * order - 4, x));
+    const double null = order == 1 ? 1.0 : both(order, coefficient(2 * order - 2, x), coefficient(2 * order - 4, x));
     nodes.push_back({x, weight, weight * null, 0.0});
   }
 }

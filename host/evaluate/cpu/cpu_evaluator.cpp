@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "evaluate/cpu/parallel.hpp"
-#include "evaluate/processor.hpp"
 #include "evaluate/cpu/text.hpp"
+#include "evaluate/processor.hpp"
 
 namespace dolp {
 
@@ -19,7 +19,8 @@ std::vector<Moments> CpuEvaluator::evaluate(const MomentsRequest& request, const
   const double unit_roundoff = in_double ? 0.5 * std::numeric_limits<double>::epsilon()
                                          : 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon());
   if (data.needs_masking_table()) {
-    parallel_for(data.shapes.size(), [&](std::size_t i) { text->build_masking_table(i); }, nullptr);
+    parallel_for(
+        data.shapes.size(), [&](std::size_t i) { text->build_masking_table(i); }, nullptr);
   }
   std::vector<Moments> moments(data.entries.size());
   const auto one = [&](std::size_t i) {

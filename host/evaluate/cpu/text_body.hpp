@@ -49,22 +49,18 @@ class TextKernel final : public KernelText {
     if (data.needs_masking_table()) text_.masking_table.resize(data.shapes.size() * Text::kMaskingNodes);
   }
 
-  void build_masking_table(std::size_t shape) override {
-    text_.build_masking_table(shape_node(shape), table(shape));
-  }
+  void build_masking_table(std::size_t shape) override { text_.build_masking_table(shape_node(shape), table(shape)); }
 
   kernel::MomentsNode moments(const MomentsEntry& entry) override {
-    const auto node = text_.moments_entry(rule_, convert_reals<real, Text::ThetaNode, double>(data_.thetas[entry.theta]),
-                                          shape_node(entry.shape),
-                                          convert_reals<real, Text::IndexNode, double>(data_.indices[entry.index]),
-                                          table(entry.shape));
+    const auto node = text_.moments_entry(
+        rule_, convert_reals<real, Text::ThetaNode, double>(data_.thetas[entry.theta]), shape_node(entry.shape),
+        convert_reals<real, Text::IndexNode, double>(data_.indices[entry.index]), table(entry.shape));
     return convert_reals<double, kernel::MomentsNode, real>(node);
   }
 
   kernel::MuellerNode mueller(const kernel::GeometryNode& geometry, std::size_t shape, std::size_t index) override {
     const auto node = text_.mueller(convert_reals<real, Text::GeometryNode, double>(geometry), shape_node(shape),
-                                    convert_reals<real, Text::IndexNode, double>(data_.indices[index]),
-                                    table(shape));
+                                    convert_reals<real, Text::IndexNode, double>(data_.indices[index]), table(shape));
     return convert_reals<double, kernel::MuellerNode, real>(node);
   }
 

@@ -30,8 +30,8 @@ std::optional<Attempt> next_attempt(const Attempt& last, const PointResult& resu
                                     bool has_double) {
   if ((result.status & kStatusToleranceMissed) == 0 || (result.status & kStatusOutsideDomain) != 0) return std::nullopt;
   const double excess = std::max(result.error_estimate, result.rho_error_estimate) / accuracy.tolerance;
-  const double decades = std::isfinite(excess) ? std::clamp(std::ceil(std::log10(kSafety * excess)), 1.0, kMostDecades)
-                                               : kMostDecades;
+  const double decades =
+      std::isfinite(excess) ? std::clamp(std::ceil(std::log10(kSafety * excess)), 1.0, kMostDecades) : kMostDecades;
   const double wanted = last.tolerance * std::pow(10.0, -decades);
   if (last.precision == Precision::kFloat && wanted >= kFloatLimit) return Attempt{Precision::kFloat, wanted};
   if (!may_use_double(accuracy, has_double)) return std::nullopt;

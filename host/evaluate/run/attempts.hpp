@@ -18,8 +18,8 @@ struct Attempt {
   }
 };
 
-/// The first attempt at a scene's entries: float where its rounding leaves room for the tolerance, unless the scene says
-/// otherwise.
+/// The first attempt at a scene's entries: float where its rounding leaves room for the tolerance, unless the scene
+/// says otherwise.
 Attempt first_attempt(const Accuracy& accuracy, bool has_double);
 
 /// The next attempt at an entry, tighter by as many decades as the result misses the tolerance by, in double once float

@@ -31,7 +31,8 @@ TileSizes MomentsRun::sizes(std::uint32_t tile_entries, std::uint32_t block_shap
   const TileCosts costs{
       .entry_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
                      packing.node_bytes<kernel::IndexNode>() + packing.node_bytes<kernel::MomentsNode>(),
-      .shape_bytes = packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>()};
+      .shape_bytes =
+          packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>()};
   return tile_sizes({.buffer_bytes = limits.maxStorageBufferRange,
                      .heap_bytes = context_.device.heap_bytes(),
                      .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
@@ -142,8 +143,7 @@ void MomentsRun::run_tile(const Block& block, std::span<const std::size_t> entri
   moments_buffer_->read(scratch_);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const auto node = context_.packing.read<kernel::MomentsNode>(scratch_, i);
-    moments[entries[i]] =
-        moments_from_kernel(node, data_, data_.entries[entries[i]], context_.packing.unit_roundoff());
+    moments[entries[i]] = moments_from_kernel(node, data_, data_.entries[entries[i]], context_.packing.unit_roundoff());
     cost_.evaluations += node.evaluations;
   }
 }

@@ -18,7 +18,7 @@ enum class ValidationMode {
 };
 
 struct VulkanOptions {
-  std::string device;                      ///< name or position, see choose_device
+  std::string device;  ///< name or position, see choose_device
   /// Of requests that leave it open: kAuto is float. kDouble also asks for a device that has it.
   Precision precision = Precision::kAuto;
   ValidationMode validation = ValidationMode::kFromEnvironment;
@@ -37,9 +37,9 @@ class VulkanEvaluator : public MomentsEvaluator {
   explicit VulkanEvaluator(const VulkanOptions& options);
   ~VulkanEvaluator() override;
 
-  /// Errors: DeviceError for double precision on a device without it; InputError for an entry outside the request's lists; DeviceError when the device fails, is lost or
-  /// exceeds the time allowed for a tile (the object is useless then), or the validation layer complains; Cancelled
-  /// when `progress`, called after each tile, returns false.
+  /// Errors: DeviceError for double precision on a device without it; InputError for an entry outside the request's
+  /// lists; DeviceError when the device fails, is lost or exceeds the time allowed for a tile (the object is useless
+  /// then), or the validation layer complains; Cancelled when `progress`, called after each tile, returns false.
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
 
   bool has_double() const override;

@@ -225,6 +225,8 @@ class Interpolation {
     return sums;
   }
 
+  const kernel::ShapeNode& node() const { return data_.shapes[0]; }
+
   // The difference relative to the albedo.
   double error(const ShapeCase& shape, const CosSin& a) {
     double albedo = 0.0;
@@ -269,8 +271,7 @@ TEST(MaskingInterpolation, Albedo_IsWithinWhatThePlanAllows) {
       const double factor = masking == Masking::kSmith ? divergence(shape) : 1.0;
       for (const double theta_deg : directions_deg()) {
         const CosSin a = cos_sin_deg(theta_deg);
-        const kernel::ShapeNode node = data_of(shape, masking).shapes[0];
-        if (!table_resolves(node, a.cos, a.sin)) continue;
+        if (!table_resolves(tables.node(), a.cos, a.sin)) continue;
         const double error = tables.error(shape, a);
         const std::string where = name_of(shape) + " theta " + std::to_string(theta_deg);
         EXPECT_LE(error, kTableErrorFloat * factor) << where;

@@ -1,5 +1,5 @@
-// With which precision and rule an entry is tried, and tried again where it misses the tolerance; and that whole runs do
-// so for the entries that miss, and for no others.
+// With which precision and rule an entry is tried, and tried again where it misses the tolerance; and that whole runs
+// do so for the entries that miss, and for no others.
 #include "evaluate/run/attempts.hpp"
 
 #include <gtest/gtest.h>
@@ -87,15 +87,16 @@ TEST(NextAttempt, Decades_FollowTheMiss) {
     double factor;
     double decades;
   };
-  for (const auto& [factor, decades] : {Row{1.01, 1}, Row{5.0, 1}, Row{9.0, 2}, Row{50.0, 2}, Row{500.0, 3},
-                                        Row{5e3, 4}, Row{5e4, 4}, Row{1e9, 4}}) {
+  for (const auto& [factor, decades] :
+       {Row{1.01, 1}, Row{5.0, 1}, Row{9.0, 2}, Row{50.0, 2}, Row{500.0, 3}, Row{5e3, 4}, Row{5e4, 4}, Row{1e9, 4}}) {
     const double tolerance = 1e-2;
     const double wanted = tolerance * std::pow(10.0, -decades);
     for (const bool dolp_is_worse : {false, true}) {
       PointResult result = missed(tolerance, factor);
       if (dolp_is_worse) std::swap(result.error_estimate, result.rho_error_estimate);
       const Precision precision = wanted >= kInFloat ? Precision::kFloat : Precision::kDouble;
-      expect_attempt(next_attempt({Precision::kFloat, tolerance}, result, accuracy(tolerance), true), precision, wanted);
+      expect_attempt(next_attempt({Precision::kFloat, tolerance}, result, accuracy(tolerance), true), precision,
+                     wanted);
     }
   }
 }

@@ -22,8 +22,8 @@ namespace {
 constexpr double kTolerance = 1e-4;
 
 // Share of the entries that may miss their tolerance by their own estimate at the first attempt: another one costs some
-// ten times as much, so that one entry in ten doubles the cost of a run. Domain A is sigma 0.01-1.2, q 1.06-13, theta to
-// 89.5 degrees; domain B sigma 0.001-5, q 1.01-45, theta to 89.9 degrees.
+// ten times as much, so that one entry in ten doubles the cost of a run. Domain A is sigma 0.01-1.2, q 1.06-13, theta
+// to 89.5 degrees; domain B sigma 0.001-5, q 1.01-45, theta to 89.9 degrees.
 constexpr double kMissedShareA = 0.1;
 constexpr double kMissedShareB = 0.1;
 

@@ -351,8 +351,9 @@ TYPED_TEST(ArcsText, CoincidingOrReversedEnds_MakeAnEmptyArc) {
   const KernelData data = whole_data(kShape, Masking::kNone, {1.508, 0.0});
   text = text_for<TypeParam>(data);
   const auto slice = typename TypeParam::Slice{Real(0.5), Real(0), Real(0), Real(0)};
-  const auto sums = text.arc_sums(rule_of_order<TypeParam>(8), direction<TypeParam>(60.0), shape_in<TypeParam>(data.shapes[0]),
-                                  index_in<TypeParam>(data.indices[0]), 0U, slice, text.make_arc(side, forward), 0);
+  const auto sums =
+      text.arc_sums(rule_of_order<TypeParam>(8), direction<TypeParam>(60.0), shape_in<TypeParam>(data.shapes[0]),
+                    index_in<TypeParam>(data.indices[0]), 0U, slice, text.make_arc(side, forward), 0);
   EXPECT_EQ(sums.evaluations, Real(0));
   EXPECT_EQ(sums.sum.r_i, Real(0));
   EXPECT_EQ(sums.null.r_i, Real(0));
@@ -477,7 +478,8 @@ TYPED_TEST(ArcsText, OrderT_GrowsWithDigitsExtentAndRoots) {
       for (int digits = 0; digits <= 16; ++digits) {
         const int order = text.order_t(rule, theta, static_cast<Real>(digits), static_cast<Real>(extent), Real(0));
         EXPECT_GE(order, before);
-        EXPECT_GE(text.order_t(rule, theta, static_cast<Real>(digits), static_cast<Real>(2.0 * extent), Real(0)), order);
+        EXPECT_GE(text.order_t(rule, theta, static_cast<Real>(digits), static_cast<Real>(2.0 * extent), Real(0)),
+                  order);
         EXPECT_GE(text.order_t(rule, theta, static_cast<Real>(digits), static_cast<Real>(extent), Real(2)), order);
         EXPECT_LE(order, DOLP_MAX_ORDER);
         before = order;
@@ -532,7 +534,8 @@ TYPED_TEST(ArcsText, CuspNodes_GrowTowardTheCuspAndNeedOne) {
   }
 }
 
-// Where the rule has the nodes that it needs, the null rules' sums vanish beside the sums; with three nodes they do not.
+// Where the rule has the nodes that it needs, the null rules' sums vanish beside the sums; with three nodes they do
+// not.
 TYPED_TEST(ArcsText, NullSums_ShowTooFewNodes) {
   for (const Masking masking : {Masking::kNone, Masking::kVCavity}) {
     const KernelData data = whole_data(kShape, masking, {1.508, 0.0});

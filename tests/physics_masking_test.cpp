@@ -160,7 +160,8 @@ TYPED_TEST(MaskingText, IntegralG1_AgreesWithDirectIntegration) {
         const double error = std::abs((1.0 - table.shadowed(a, slope)) - exact(std::atan(slope)));
         const std::string where =
             name_of(shape) + " theta " + std::to_string(theta_deg) + " alpha " + std::to_string(alpha_deg);
-        const double allowed = allowed_error<TypeParam>(shape, a, slope, table.height_at_0()) + unused(theta_deg, alpha_deg);
+        const double allowed =
+            allowed_error<TypeParam>(shape, a, slope, table.height_at_0()) + unused(theta_deg, alpha_deg);
         EXPECT_LE(error, allowed) << where;
         worst.update(error, where);
         worst_share.update(error / allowed, where);

@@ -136,7 +136,8 @@ TYPED_TEST(Elementary, LogUnit_OverItsDomain_IsAFewRoundingsFromExact) {
   std::mt19937 random(kSeed);
   std::uniform_real_distribution<double> exponent(-29.0, 0.0);
   for (int i = 0; i < kSamples; ++i) {
-    const Real x = static_cast<Real>(i % 3 == 0 ? 1.0 + 0.03 * exponent(random) / 29.0 : std::pow(10.0, exponent(random)));
+    const Real x =
+        static_cast<Real>(i % 3 == 0 ? 1.0 + 0.03 * exponent(random) / 29.0 : std::pow(10.0, exponent(random)));
     const double exact = static_cast<double>(std::log(static_cast<long double>(x)));
     const double error = std::abs(static_cast<double>(text.log_unit(x)) - exact);
     worst.update(error / (std::abs(exact) + 1e-300), std::to_string(static_cast<double>(x)));
@@ -175,9 +176,9 @@ TYPED_TEST(Elementary, Hermite_IsExactForPolynomialsOfDegreeFive) {
   for (int degree = 0; degree <= 6; ++degree) {
     double worst = 0.0;
     for (double y = 0.0; y <= 1.0; y += 0.01) {
-      const auto value = text.hermite(Real(degree == 0), Real(1), Real(degree == 1), static_cast<Real>(degree),
-                                      Real(degree == 2 ? 2 : 0), static_cast<Real>(degree * (degree - 1)),
-                                      static_cast<Real>(y));
+      const auto value =
+          text.hermite(Real(degree == 0), Real(1), Real(degree == 1), static_cast<Real>(degree),
+                       Real(degree == 2 ? 2 : 0), static_cast<Real>(degree * (degree - 1)), static_cast<Real>(y));
       worst = std::max(worst, std::abs(static_cast<double>(value) - std::pow(y, degree)));
     }
     if (degree <= 5) {
@@ -449,14 +450,17 @@ TEST(MaskingDecays, AreThoseOfTheDensityAndTheWeight) {
   using Text = tested_double::Text;
   constexpr double kAllowed = 1e-6;  // of differences over h = 1e-4: h^2 times the curvature, and rounding over h
   for (const Masking masking : {Masking::kIntegral, Masking::kSmith}) {
-    for (const ShapeCase& shape : {ShapeCase{Distribution::kCauchy, 0.3, 2.0}, ShapeCase{Distribution::kCauchy, 0.9, 1.2},
-                                   ShapeCase{Distribution::kGaussian, 0.5, 2.0}}) {
+    for (const ShapeCase& shape :
+         {ShapeCase{Distribution::kCauchy, 0.3, 2.0}, ShapeCase{Distribution::kCauchy, 0.9, 1.2},
+          ShapeCase{Distribution::kGaussian, 0.5, 2.0}}) {
       const KernelData data = data_of(shape, masking);
       Text text = text_for<Text>(data);
       const auto node = shape_in<Text>(data.shapes[0]);
       for (double tau = 0.05; tau < 3.0; tau *= 1.3) {
         const double h = 1e-4 * tau;
-        const auto difference = [&](const auto& f) { return (std::log(f(tau - h)) - std::log(f(tau + h))) / (2.0 * h); };
+        const auto difference = [&](const auto& f) {
+          return (std::log(f(tau - h)) - std::log(f(tau + h))) / (2.0 * h);
+        };
         const double density = difference([&](double x) { return text.marginal_density(node, x); });
         const double weight = difference([&](double x) { return text.masking_weight(x); });
         EXPECT_NEAR(text.marginal_decay(node, tau), density, kAllowed * std::max(1.0, std::abs(density))) << tau;

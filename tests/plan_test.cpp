@@ -1,5 +1,5 @@
-// The plan: digits and orders for a tolerance, loop bounds, what the cut leaves out, which entries need a line more, and
-// a scan that shows how often its orders are too low.
+// The plan: digits and orders for a tolerance, loop bounds, what the cut leaves out, which entries need a line more,
+// and a scan that shows how often its orders are too low.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -214,8 +214,8 @@ TEST(KernelDataOrders, TighterTolerance_NeverCostsLess) {
             const double tolerance = std::pow(10.0, -exponent);
             const double evaluations =
                 computed(masking, tolerance, theta_deg, shape, {2.0, 0.7}, distribution).node.evaluations;
-            EXPECT_GE(evaluations, before) << kMaskingNames[static_cast<std::size_t>(masking)] << " theta "
-                                           << theta_deg << " sigma " << shape.sigma << " tolerance " << tolerance;
+            EXPECT_GE(evaluations, before) << kMaskingNames[static_cast<std::size_t>(masking)] << " theta " << theta_deg
+                                           << " sigma " << shape.sigma << " tolerance " << tolerance;
             if (first == 0.0) first = evaluations;
             before = evaluations;
           }

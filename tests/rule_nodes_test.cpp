@@ -167,8 +167,8 @@ struct NullRule {
   double measure;
 };
 
-// Applies it to the basis function of each degree from 0 to the highest that the nodes tell apart; `basis(degree, x)` is
-// what the rule integrates, `has(order, degree)` whether the coefficient of that degree is claimed.
+// Applies it to the basis function of each degree from 0 to the highest that the nodes tell apart; `basis(degree, x)`
+// is what the rule integrates, `has(order, degree)` whether the coefficient of that degree is claimed.
 template <class Basis, class Has>
 void expect_coefficients(const NullRule& rule, int step, const Basis& basis, const Has& has) {
   double worst = 0.0;
@@ -192,28 +192,33 @@ bool is_one_of_two_highest(int highest, int step, int degree) {
 }
 
 TEST(NullWeights, GaussFirst_IsTheCoefficientOfTheHighestDegree) {
-  expect_coefficients({kGauss, 2, 1.0}, 1, [](int degree, double x) { return legendre(degree, 2.0 * x - 1.0); },
-                      [](int order, int degree) { return degree == order - 1; });
+  expect_coefficients(
+      {kGauss, 2, 1.0}, 1, [](int degree, double x) { return legendre(degree, 2.0 * x - 1.0); },
+      [](int order, int degree) { return degree == order - 1; });
 }
 
 TEST(NullWeights, GaussSecond_IsTheCoefficientOfTheDegreeBelow) {
-  expect_coefficients({kGauss, 3, 1.0}, 1, [](int degree, double x) { return legendre(degree, 2.0 * x - 1.0); },
-                      [](int order, int degree) { return order > 2 && degree == order - 2; });
+  expect_coefficients(
+      {kGauss, 3, 1.0}, 1, [](int degree, double x) { return legendre(degree, 2.0 * x - 1.0); },
+      [](int order, int degree) { return order > 2 && degree == order - 2; });
 }
 
 TEST(NullWeights, Centre_IsTheSumOfTheTwoHighestCoefficients) {
-  expect_coefficients({kCentre, 2, 2.0}, 1, [](int degree, double x) { return legendre(degree, x); },
-                      [](int order, int degree) { return is_one_of_two_highest(order - 1, 1, degree); });
+  expect_coefficients(
+      {kCentre, 2, 2.0}, 1, [](int degree, double x) { return legendre(degree, x); },
+      [](int order, int degree) { return is_one_of_two_highest(order - 1, 1, degree); });
 }
 
 TEST(NullWeights, Half_IsTheSumOfTheTwoHighestEvenCoefficients) {
-  expect_coefficients({kHalf, 2, 1.0}, 2, [](int degree, double x) { return legendre(degree, x); },
-                      [](int order, int degree) { return is_one_of_two_highest(2 * order - 2, 2, degree); });
+  expect_coefficients(
+      {kHalf, 2, 1.0}, 2, [](int degree, double x) { return legendre(degree, x); },
+      [](int order, int degree) { return is_one_of_two_highest(2 * order - 2, 2, degree); });
 }
 
 TEST(NullWeights, Circle_IsTheSumOfTheTwoHighestHarmonics) {
-  expect_coefficients({kCircle, 2, pi}, 1, [](int harmonic, double tau) { return circle_cosine(tau, harmonic); },
-                      [](int order, int degree) { return is_one_of_two_highest(order - 1, 1, degree); });
+  expect_coefficients(
+      {kCircle, 2, pi}, 1, [](int harmonic, double tau) { return circle_cosine(tau, harmonic); },
+      [](int order, int degree) { return is_one_of_two_highest(order - 1, 1, degree); });
 }
 
 // Of the function of v = sqrt(x) that the rule sees, f(v^2) v: the square root in the measure belongs to the integrand.

@@ -104,7 +104,11 @@ TEST(Bistatic, RandomScenes_AgreeWithTheModelWrittenOut) {
     EXPECT_NEAR(r.stokes_v / l.i, l.v / l.i, bound) << n;
     EXPECT_NEAR(r.stokes_i / l.i, 1.0, 1e-5) << n;  // the tables' 4e-6 of f and the reference
     EXPECT_NEAR(r.dolp, std::hypot(l.q, l.u) / l.i, r.error_estimate + 1e-9) << n;
-    EXPECT_LT(r.error_estimate, 1e-4);
+    constexpr std::uint32_t kNoDolpPromised =
+        kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
+    if ((r.status & kNoDolpPromised) == 0) {
+      EXPECT_LE(r.error_estimate, scene.accuracy.tolerance) << n;
+    }
     worst = std::max(worst, std::abs(r.dolp - std::hypot(l.q, l.u) / l.i));
   }
   std::printf("worst DOLP difference %.1e\n", worst);

@@ -115,20 +115,52 @@ TEST(StoredCases, BadFile_NamesLineAndColumn) {
 
 enum class Evaluator { kCpuFloat, kCpuDouble, kVulkanFloat, kVulkanDouble };
 
+/// An evaluator in one precision alone, whatever a request says: scenes ask for float first and for double where that
+/// misses.
+class InOnePrecision final : public MomentsEvaluator {
+ public:
+  InOnePrecision(std::unique_ptr<MomentsEvaluator> evaluator, Precision precision)
+      : evaluator_(std::move(evaluator)), precision_(precision) {}
+  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
+    MomentsRequest own = request;
+    own.precision = precision_;
+    return evaluator_->evaluate(own, progress);
+  }
+  bool has_double() const override { return precision_ == Precision::kDouble; }
+  EvaluationReport report() const override { return evaluator_->report(); }
+
+ private:
+  std::unique_ptr<MomentsEvaluator> evaluator_;
+  Precision precision_;
+};
+
 std::unique_ptr<MomentsEvaluator> make(Evaluator evaluator) {
   const bool in_double = evaluator == Evaluator::kCpuDouble || evaluator == Evaluator::kVulkanDouble;
   const Precision precision = in_double ? Precision::kDouble : Precision::kFloat;
   if (evaluator == Evaluator::kCpuFloat || evaluator == Evaluator::kCpuDouble) {
-    return std::make_unique<CpuEvaluator>(precision);
+    return std::make_unique<InOnePrecision>(std::make_unique<CpuEvaluator>(precision), precision);
   }
   VulkanOptions options;
   options.precision = precision;
-  return std::make_unique<VulkanEvaluator>(options);
+  return std::make_unique<InOnePrecision>(std::make_unique<VulkanEvaluator>(options), precision);
 }
 
 using Setting = std::tuple<Evaluator, double>;
 
 class HardCasesOn : public testing::TestWithParam<Setting> {};
+
+// `dolp verify --hard-cases --precision double` and `dolp devices` say in which precision they examine a device.
+TEST(Qualify, EvaluatorInDouble_IsExaminedInDouble) {
+  CpuEvaluator evaluator(Precision::kDouble);
+  qualify(cases_of(hard_cases(), Distribution::kCauchy, Masking::kNone), evaluator, 1e-2, {});
+  EXPECT_EQ(evaluator.report().precision, "double");
+}
+
+TEST(MeasureQuality, EvaluatorInDouble_IsMeasuredInDouble) {
+  CpuEvaluator evaluator(Precision::kDouble);
+  measure_quality(evaluator, 1e-2);
+  EXPECT_EQ(evaluator.report().precision, "double");
+}
 
 TEST_P(HardCasesOn, EveryCase_IsWithinItsEstimateAndMeetsTheToleranceOrSaysSo) {
   const auto [evaluator, tolerance] = GetParam();

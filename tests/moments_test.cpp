@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/reference/reference_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "stored_evaluator.hpp"
 #include "verify/stored_cases.hpp"
@@ -20,10 +21,11 @@ namespace {
 
 constexpr double kTolerance = 1e-4;
 
-// Share of the entries that may miss their tolerance by their own estimate. Domain A is sigma 0.01-1.2, q 1.06-13,
-// theta to 89.5 degrees; domain B sigma 0.001-5, q 1.01-45, theta to 89.9 degrees.
-constexpr double kMissedShareA = 0.01;
-constexpr double kMissedShareB = 0.02;
+// Share of the entries that may miss their tolerance by their own estimate at the first attempt: another one costs some
+// ten times as much, so that one entry in ten doubles the cost of a run. Domain A is sigma 0.01-1.2, q 1.06-13, theta
+// to 89.5 degrees; domain B sigma 0.001-5, q 1.01-45, theta to 89.9 degrees.
+constexpr double kMissedShareA = 0.1;
+constexpr double kMissedShareB = 0.1;
 
 /// The stored cases that the kernel is asked for: sigma = 0 has a closed form.
 std::vector<StoredCase> read_rows(Distribution distribution, Masking masking) {
@@ -141,6 +143,38 @@ TEST_P(StoredValues, HardCases_AreFinite) {
     std::printf("%-28s %10.1e %10.1e\n", rows_[i].name.c_str(), error(i), estimate(i));
     EXPECT_TRUE(std::isfinite(moments_[i].r_i) && std::isfinite(moments_[i].r_q)) << rows_[i].name;
     EXPECT_TRUE(std::isfinite(moments_[i].albedo) && std::isfinite(moments_[i].deficit)) << rows_[i].name;
+  }
+}
+
+// Directions at which breakpoints of the slope axis nearly coincide.
+constexpr std::array kNearCoincidencesDeg = {12.9, 18.05, 30.2, 44.9, 45.1};
+
+TEST(NearCoincidences, EveryEntry_ErrorIsBelowItsEstimate) {
+  for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
+    MomentsRequest request;
+    request.masking = masking;
+    request.shapes = {{0.3, 2.2}};
+    request.indices = {{2.0, 0.7}, {0.8, 0.0}};
+    for (const double theta_deg : kNearCoincidencesDeg) {
+      const auto position = static_cast<std::uint32_t>(request.theta_deg.size());
+      request.theta_deg.push_back(theta_deg);
+      for (const std::uint32_t index : {0U, 1U}) request.entries.push_back({position, 0U, index});
+    }
+    const std::vector<Moments> references = ReferenceEvaluator().evaluate(request, {});
+    for (const double tolerance : {1e-3, 1e-5, 1e-8}) {
+      request.tolerance = tolerance;
+      const std::vector<Moments> moments = CpuEvaluator(Precision::kDouble).evaluate(request, {});
+      for (std::size_t i = 0; i < moments.size(); ++i) {
+        const Moments& m = moments[i];
+        const Moments& reference = references[i];
+        const std::string where = "masking " + std::to_string(static_cast<int>(masking)) + " theta " +
+                                  std::to_string(request.theta_deg[request.entries[i].theta]) + " index " +
+                                  std::to_string(request.entries[i].index) + " tolerance " + std::to_string(tolerance);
+        EXPECT_LE(std::abs(m.r_i - reference.r_i), m.r_i_error + reference.r_i_error) << where;
+        EXPECT_LE(std::abs(m.r_q - reference.r_q), m.r_q_error + reference.r_q_error) << where;
+        EXPECT_LE(std::abs(m.albedo - reference.albedo), m.albedo_error + reference.albedo_error) << where;
+      }
+    }
   }
 }
 

@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "physics_text.hpp"
+#include "plan/rule.hpp"
+#include "plan/rule_nodes.hpp"
 
 namespace dolp {
 namespace {
@@ -28,13 +30,45 @@ constexpr int kExactOrder = 20;
 
 constexpr ShapeCase kShape{Distribution::kCauchy, 0.3, 2.0};
 
-// A direction in the text's precision; the arcs read nothing of it but its cosine and sine.
+// A direction in the text's precision, with the line b = pi/2 of `integral`; the arcs read nothing of its pieces.
 template <class Text>
 typename Text::ThetaNode direction(double theta_deg) {
   kernel::ThetaNode node{};
   node.c = cos_sin_deg(theta_deg).cos;
   node.s = cos_sin_deg(theta_deg).sin;
+  node.has_line = 1.0;
+  node.t_growth = 1.0;
+  node.phi_narrowing = 1.0;
+  node.order_limit_t = DOLP_MAX_ORDER;
+  node.order_limit_phi = DOLP_MAX_ORDER;
   return theta_in<Text>(node);
+}
+
+// The plan's data for one shape and index, with the nodes of all orders.
+KernelData whole_data(const ShapeCase& shape, Masking masking, const OpticalConstants& index) {
+  KernelData data = data_of(shape, masking, index);
+  data.rule_nodes = rule_nodes(DOLP_MAX_ORDER);
+  data.rule.node_stride = DOLP_MAX_ORDER;
+  return data;
+}
+
+// A rule that gives every arc the same order, because no digits are wanted beyond it.
+template <class Text>
+typename Text::RuleNode rule_of_order(int order) {
+  kernel::RuleNode node = rule_node(Masking::kNone, 0.0);
+  node.phi_half_nodes = node.phi_centre_nodes = node.phi_circle_nodes = order;
+  node.cluster_below_q = 0.0;
+  node.node_stride = DOLP_MAX_ORDER;
+  return rule_in<Text>(node);
+}
+
+// The sums over the azimuths of one slope by arcs of one order.
+template <class Text, class Real>
+typename Text::AzimuthSums sums_of_order(Text& text, int order, const typename Text::ThetaNode& theta,
+                                         const typename Text::ShapeNode& shape, const typename Text::IndexNode& index,
+                                         Real slope) {
+  return text.azimuth_sums(rule_of_order<Text>(order), theta, shape, index, 0U, static_cast<RealOf<Text>>(slope),
+                           RealOf<Text>(0));
 }
 
 // A random direction and slope: steep, flat, near the normal and near grazing.
@@ -107,7 +141,7 @@ constexpr double kLineUlps = 6.0;
 TYPED_TEST(ArcsText, SplitLines_LieWhereTheModelSays) {
   Worst worst;
   for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
-    const KernelData data = data_of(kShape, masking, {0.8, 0.0});
+    const KernelData data = whole_data(kShape, masking, {0.8, 0.0});
     TypeParam text = text_for<TypeParam>(data);
     const auto index = index_in<TypeParam>(data.indices[0]);
     for (const auto& facets : random_facets<TypeParam>()) {
@@ -142,7 +176,7 @@ TYPED_TEST(ArcsText, SplitLines_LieWhereTheModelSays) {
 
 TYPED_TEST(ArcsText, SplitLines_Ascend) {
   for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
-    const KernelData data = data_of(kShape, masking, {1.5, 0.0});
+    const KernelData data = whole_data(kShape, masking, {1.5, 0.0});
     TypeParam text = text_for<TypeParam>(data);
     const auto index = index_in<TypeParam>(data.indices[0]);
     for (const auto& facets : random_facets<TypeParam>()) {
@@ -164,15 +198,15 @@ TYPED_TEST(ArcsText, ReflectedAndNotReflected_AddUpToThePlaneOfAllFacets) {
   for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
     for (const OpticalConstants& optical : {OpticalConstants{1.508, 0.0}, OpticalConstants{27.0, 90.0},
                                             OpticalConstants{0.8, 0.0}, OpticalConstants{0.2, 0.0}}) {
-      const KernelData data = data_of(kShape, masking, optical);
+      const KernelData data = whole_data(kShape, masking, optical);
       TypeParam text = text_for<TypeParam>(data);
       const auto index = index_in<TypeParam>(data.indices[0]);
       const auto shape = shape_in<TypeParam>(data.shapes[0]);
       if (data.needs_masking_table()) text.build_masking_table(shape, 0U);
       for (const auto& facets : random_facets<TypeParam>()) {
-        const auto sums = text.azimuth_sums(facets.theta, shape, index, 0U, facets.slope, kExactOrder);
+        const auto sums = sums_of_order(text, kExactOrder, facets.theta, shape, index, facets.slope);
         const Facet facet(facets);
-        const double total = static_cast<double>(sums.r_i) + static_cast<double>(sums.deficit);
+        const double total = static_cast<double>(sums.sum.r_i) + static_cast<double>(sums.sum.deficit);
         const double scale = pi * (facet.c + facet.s * facet.t);
         worst.update(std::abs(total - pi * facet.c) / scale, std::to_string(facet.c) + " t " + std::to_string(facet.t));
       }
@@ -189,7 +223,7 @@ TYPED_TEST(ArcsText, ReflectedAndNotReflected_AddUpToThePlaneOfAllFacets) {
 TYPED_TEST(ArcsText, Albedo_HasItsClosedForm) {
   for (const Masking masking : {Masking::kNone, Masking::kVCavity}) {
     Worst worst;
-    const KernelData data = data_of(kShape, masking, {1.508, 0.0});
+    const KernelData data = whole_data(kShape, masking, {1.508, 0.0});
     TypeParam text = text_for<TypeParam>(data);
     const auto index = index_in<TypeParam>(data.indices[0]);
     const auto shape = shape_in<TypeParam>(data.shapes[0]);
@@ -208,9 +242,9 @@ TYPED_TEST(ArcsText, Albedo_HasItsClosedForm) {
                 4.0 / (1.0 + facet.t * facet.t) * integral_of_e(lines.second, lines.horizon) -
                 2.0 * facet.c * (azimuth_of(lines.horizon) - azimuth_of(lines.second));
       }
-      const auto sums = text.azimuth_sums(theta, shape, index, 0U, facets.slope, kExactOrder);
+      const auto sums = sums_of_order(text, kExactOrder, theta, shape, index, facets.slope);
       const double scale = pi * (facet.c + facet.s * facet.t);
-      worst.update(std::abs(static_cast<double>(sums.albedo) - exact) / scale,
+      worst.update(std::abs(static_cast<double>(sums.sum.albedo) - exact) / scale,
                    "c " + std::to_string(facet.c) + " t " + std::to_string(facet.t));
     }
     const double allowed = 10.0 * kEpsilon<TypeParam>;  // as above
@@ -254,7 +288,7 @@ void expect_continuous(Masking masking, const ShapeCase& slopes) {
   const double step = std::sqrt(kEpsilon<Text>);
   constexpr double kSteepest = 20.0;
   constexpr double kTableError = 1e-5;  // of G: 1e-6, and up to ten times that toward grazing
-  const KernelData data = data_of(slopes, masking, {1.508, 0.0});
+  const KernelData data = whole_data(slopes, masking, {1.508, 0.0});
   Text text = text_for<Text>(data);
   const auto index = index_in<Text>(data.indices[0]);
   const auto shape = shape_in<Text>(data.shapes[0]);
@@ -286,7 +320,7 @@ TYPED_TEST(ArcsText, Masking_IsContinuousAcrossItsSplitLines) {
 
 TYPED_TEST(ArcsText, ClampHalfAngle_IsTheClampOfTheAzimuths) {
   using Real = RealOf<TypeParam>;
-  using Half = decltype(TypeParam{}.rule_node(0));
+  using Half = decltype(TypeParam{}.half_angle(RealOf<TypeParam>(1), RealOf<TypeParam>(1)));
   TypeParam text;
   std::mt19937 random(kSeed);
   std::uniform_real_distribution<double> azimuth(0.0, pi);
@@ -305,16 +339,224 @@ TYPED_TEST(ArcsText, ClampHalfAngle_IsTheClampOfTheAzimuths) {
 
 TYPED_TEST(ArcsText, CoincidingOrReversedEnds_MakeAnEmptyArc) {
   using Real = RealOf<TypeParam>;
-  using Half = decltype(TypeParam{}.rule_node(0));
+  using Half = decltype(TypeParam{}.half_angle(RealOf<TypeParam>(1), RealOf<TypeParam>(1)));
   TypeParam text;
   const Half forward(Real(1), Real(0));
   const Half side(Real(0.8), Real(0.6));
   const Half back(Real(0), Real(1));
-  for (const Half& end : {forward, side, back}) EXPECT_EQ(text.make_arc(end, end, 8, false).order, 0);
-  EXPECT_EQ(text.make_arc(side, forward, 8, false).order, 0);
-  EXPECT_EQ(text.make_arc(back, side, 8, false).order, 0);
-  EXPECT_EQ(text.make_arc(forward, side, 8, false).order, 8);
-  EXPECT_EQ(text.make_arc(side, back, 8, false).order, 8);
+  for (const Half& end : {forward, side, back}) EXPECT_LE(text.make_arc(end, end).quarter, Real(0));
+  EXPECT_LT(text.make_arc(side, forward).quarter, Real(0));
+  EXPECT_LT(text.make_arc(back, side).quarter, Real(0));
+  // and an empty arc adds nothing
+  const KernelData data = whole_data(kShape, Masking::kNone, {1.508, 0.0});
+  text = text_for<TypeParam>(data);
+  const auto slice = typename TypeParam::Slice{Real(0.5), Real(0), Real(0), Real(0)};
+  const auto sums =
+      text.arc_sums(rule_of_order<TypeParam>(8), direction<TypeParam>(60.0), shape_in<TypeParam>(data.shapes[0]),
+                    index_in<TypeParam>(data.indices[0]), 0U, slice, text.make_arc(side, forward), 0);
+  EXPECT_EQ(sums.evaluations, Real(0));
+  EXPECT_EQ(sums.sum.r_i, Real(0));
+  EXPECT_EQ(sums.null.r_i, Real(0));
+}
+
+TYPED_TEST(ArcsText, MakeArc_HasTheSectionOfItsEnds) {
+  using Real = RealOf<TypeParam>;
+  using Half = decltype(TypeParam{}.half_angle(RealOf<TypeParam>(1), RealOf<TypeParam>(1)));
+  TypeParam text;
+  const Half forward(Real(1), Real(0));
+  const Half near(Real(0.8), Real(0.6));
+  const Half far(Real(0.28), Real(0.96));
+  const Half back(Real(0), Real(1));
+  EXPECT_EQ(text.make_arc(forward, back).section, 3);
+  EXPECT_EQ(text.make_arc(forward, near).section, 2);
+  EXPECT_EQ(text.make_arc(far, back).section, 2);
+  EXPECT_EQ(text.make_arc(near, far).section, 1);
+  for (const bool at_end : {false, true}) EXPECT_EQ(text.make_root_arc(near, far, at_end).section, 4);
+}
+
+// ---- Orders --------------------------------------------------------------------------------------------------------
+
+TYPED_TEST(ArcsText, ArcLength_IsAtMostAPercentTooLong) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  for (double quarter = 1e-3; quarter <= 1.0; quarter += 1e-3) {
+    const double length = static_cast<double>(text.arc_length(static_cast<Real>(quarter)));
+    EXPECT_LE(length, 1.01 * 4.0 * std::atan(quarter)) << quarter;
+    EXPECT_GE(length, 0.99 * 4.0 * std::atan(quarter)) << quarter;
+  }
+}
+
+// A rule of as many nodes as the digits ask for integrates 1 / (x^2 + d^2) over [-1, 1], whose poles are where the
+// formula takes them to be, to that many digits and not to many more.
+TEST(NodesPerDigit, PolesAtTheDistance_AreIntegratedToTheDigits) {
+  using Text = tested_double::Text;
+  constexpr double kLostDigits = 1.0;   // a factor in front of rho^-2n
+  constexpr double kSpareDigits = 2.0;  // that, and rounding up to whole nodes
+  Text text;
+  for (const double distance : {0.3, 1.0, 3.0}) {
+    const double exact = 2.0 / distance * std::atan(1.0 / distance);
+    for (double digits = 2.0; digits <= 10.0; digits += 1.0) {
+      const int order = static_cast<int>(std::ceil(digits * text.nodes_per_digit(distance)));
+      double sum = 0.0;
+      for (const auto& [x, weight] : gauss_legendre(order)) sum += weight / (x * x + distance * distance);
+      const double reached = -std::log10(std::max(std::abs(sum / exact - 1.0), 1e-16));
+      EXPECT_GE(reached, digits - kLostDigits) << distance << " " << order;
+      const double one_node = 1.0 / text.nodes_per_digit(distance);
+      EXPECT_LE(reached, digits + kSpareDigits + one_node) << distance << " " << order;
+    }
+  }
+}
+
+TYPED_TEST(ArcsText, OrderBetween_RoundsAndKeepsToItsLimits) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  EXPECT_EQ(text.order_between(Real(7.4), Real(20)), 7);
+  EXPECT_EQ(text.order_between(Real(7.6), Real(20)), 8);
+  EXPECT_EQ(text.order_between(Real(0.1), Real(20)), 1);
+  EXPECT_EQ(text.order_between(Real(-5), Real(20)), 1);
+  EXPECT_EQ(text.order_between(Real(1e6), Real(20)), 20);
+}
+
+// Every arc of every direction gets an order between 1 and its limit, and no fewer nodes for more digits.
+TYPED_TEST(ArcsText, ArcOrder_GrowsWithTheDigitsWithinItsLimit) {
+  using Real = RealOf<TypeParam>;
+  constexpr int kLimit = 30;
+  for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
+    const KernelData data = whole_data(kShape, masking, {1.508, 0.0});
+    TypeParam text = text_for<TypeParam>(data);
+    const auto index = index_in<TypeParam>(data.indices[0]);
+    const auto rule = rule_in<TypeParam>(data.rule);
+    auto all = random_facets<TypeParam>();
+    for (const double theta_deg : {0.0, 1e-6, 90.0}) all.push_back({direction<TypeParam>(theta_deg), Real(0.3)});
+    for (auto& facets : all) {
+      facets.theta.order_limit_phi = kLimit;
+      const auto lines = text.split_lines(facets.theta, index, facets.slope);
+      const auto forward = decltype(lines.first)(Real(1), Real(0));
+      const std::array ends = {forward, lines.first, lines.second, lines.horizon};
+      for (int zone = 0; zone < 3; ++zone) {
+        const auto arc = text.make_arc(ends[static_cast<std::size_t>(zone)], ends[static_cast<std::size_t>(zone) + 1]);
+        if (!(arc.quarter > Real(0))) continue;
+        int before = 1;
+        for (int digits = 0; digits <= 16; ++digits) {
+          const auto slice = typename TypeParam::Slice{facets.slope, static_cast<Real>(digits), Real(0), Real(0)};
+          const int order = text.arc_order(rule, facets.theta, slice, arc, zone);
+          EXPECT_GE(order, before) << "c " << facets.theta.c << " t " << facets.slope << " zone " << zone;
+          EXPECT_LE(order, kLimit) << "c " << facets.theta.c << " t " << facets.slope << " zone " << zone;
+          before = order;
+        }
+      }
+    }
+  }
+}
+
+// r_q goes as cos(2 phi) about the normal, which one node cannot tell from a constant.
+TYPED_TEST(ArcsText, WholeCircle_HasTheNodesThatItsSecondHarmonicNeeds) {
+  using Real = RealOf<TypeParam>;
+  const KernelData data = whole_data(kShape, Masking::kNone, {1.508, 0.0});
+  TypeParam text = text_for<TypeParam>(data);
+  const auto rule = rule_in<TypeParam>(data.rule);
+  const auto forward = decltype(text.half_angle(Real(1), Real(1)))(Real(1), Real(0));
+  const auto back = decltype(forward)(Real(0), Real(1));
+  for (const double theta_deg : {0.0, 1e-6, 1e-3, 1.0, 10.0}) {
+    for (double digits = 0.0; digits <= 12.0; digits += 0.5) {
+      const auto slice = typename TypeParam::Slice{Real(0.1), static_cast<Real>(digits), Real(0), Real(0)};
+      const int order = text.arc_order(rule, direction<TypeParam>(theta_deg), slice, text.make_arc(forward, back), 0);
+      EXPECT_GE(order, 2) << theta_deg << " " << digits;
+    }
+  }
+}
+
+TYPED_TEST(ArcsText, OrderT_GrowsWithDigitsExtentAndRoots) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
+    kernel::RuleNode node = rule_node(masking, 6.0);
+    const auto rule = rule_in<TypeParam>(node);
+    const auto theta = direction<TypeParam>(60.0);
+    for (double extent = 0.01; extent < 20.0; extent *= 2.0) {
+      int before = 2;
+      for (int digits = 0; digits <= 16; ++digits) {
+        const int order = text.order_t(rule, theta, static_cast<Real>(digits), static_cast<Real>(extent), Real(0));
+        EXPECT_GE(order, before);
+        EXPECT_GE(text.order_t(rule, theta, static_cast<Real>(digits), static_cast<Real>(2.0 * extent), Real(0)),
+                  order);
+        EXPECT_GE(text.order_t(rule, theta, static_cast<Real>(digits), static_cast<Real>(extent), Real(2)), order);
+        EXPECT_LE(order, DOLP_MAX_ORDER);
+        before = order;
+      }
+    }
+  }
+}
+
+// A piece with all facets wants all digits, one with a thousandth three fewer, and an empty one none.
+TYPED_TEST(ArcsText, DigitsOfPiece_FallWithTheShareOfTheFacets) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  const KernelData data = whole_data(kShape, Masking::kNone, {1.508, 0.0});
+  const auto shape = shape_in<TypeParam>(data.shapes[0]);
+  const auto rule = rule_in<TypeParam>(rule_node(Masking::kNone, 8.0));
+  constexpr double kLogarithm = 1e-5;  // of a float's ln(1e-3), times its rounding
+  for (const double theta_deg : {0.0, 45.0, 89.0}) {
+    const auto theta = direction<TypeParam>(theta_deg);
+    const auto digits = [&](double mass) {
+      return static_cast<double>(
+          text.digits_of_piece(rule, theta, shape, Real(0.1), Real(0.2), static_cast<Real>(mass)));
+    };
+    EXPECT_LE(digits(1.0), 8.0);
+    EXPECT_GE(digits(1.0), 7.0);
+    EXPECT_NEAR(digits(1e-1) - digits(1e-4), 3.0, kLogarithm);
+    EXPECT_EQ(digits(0.0), 0.0);
+  }
+}
+
+// Smith's L is not smooth where theta_r = 0, the less the nearer the slope is to tan(theta/2).
+TYPED_TEST(ArcsText, CuspNodes_GrowTowardTheCuspAndNeedOne) {
+  using Real = RealOf<TypeParam>;
+  const auto theta = direction<TypeParam>(60.0);
+  const double cusp_slope = std::tan(pi / 6.0);
+  for (const double q : {2.0, 1.6}) {
+    const KernelData data = whole_data({Distribution::kCauchy, 1.0, q}, Masking::kSmith, {1.508, 0.0});
+    TypeParam text = text_for<TypeParam>(data);
+    const auto rule = rule_in<TypeParam>(data.rule);
+    const auto shape = shape_in<TypeParam>(data.shapes[0]);
+    double before = 0.0;
+    for (const double away : {10.0, 0.5, 0.1, 0.01, 0.001}) {
+      const double nodes = static_cast<double>(text.cusp_nodes(
+          rule, theta, shape, static_cast<Real>(cusp_slope * (1.0 + away)), Real(12), static_cast<Real>(pi)));
+      EXPECT_TRUE(std::isfinite(nodes));
+      if (q == 2.0) {
+        EXPECT_EQ(nodes, 0.0);
+      } else {
+        EXPECT_GT(nodes, before);
+      }
+      before = nodes;
+    }
+  }
+}
+
+// Where the rule has the nodes that it needs, the null rules' sums vanish beside the sums; with three nodes they do
+// not.
+TYPED_TEST(ArcsText, NullSums_ShowTooFewNodes) {
+  for (const Masking masking : {Masking::kNone, Masking::kVCavity}) {
+    const KernelData data = whole_data(kShape, masking, {1.508, 0.0});
+    TypeParam text = text_for<TypeParam>(data);
+    const auto index = index_in<TypeParam>(data.indices[0]);
+    const auto shape = shape_in<TypeParam>(data.shapes[0]);
+    for (const double theta_deg : {30.0, 60.0, 80.0}) {
+      for (const double slope : {0.1, 0.4, 1.0}) {
+        const auto theta = direction<TypeParam>(theta_deg);
+        const auto fine = sums_of_order(text, 40, theta, shape, index, slope);
+        const auto coarse = sums_of_order(text, 3, theta, shape, index, slope);
+        const double scale = static_cast<double>(fine.sum.r_i);
+        if (!(scale > 0.0)) continue;
+        // 81 times as large as the weights, of either sign
+        EXPECT_LE(static_cast<double>(fine.null.r_i), 300.0 * kEpsilon<TypeParam> * scale + 1e-12) << theta_deg;
+        EXPECT_GE(static_cast<double>(coarse.null.r_i), 0.1 * std::abs(static_cast<double>(coarse.sum.r_i) - scale))
+            << theta_deg << " " << slope;
+        EXPECT_GT(static_cast<double>(coarse.null.r_i), 100.0 * static_cast<double>(fine.null.r_i)) << theta_deg;
+      }
+    }
+  }
 }
 
 // Azimuth integral of r_i or r_q of a facet without masking, by a rule for singularities at the ends of an interval.
@@ -344,7 +586,7 @@ TEST(TotalReflection, AzimuthSums_AgreeWithDoubleExponentialQuadrature) {
   Worst worst;
   int with_line = 0;
   for (const double n : {0.8, 0.2}) {
-    const KernelData data = data_of(kShape, Masking::kNone, {n, 0.0});
+    const KernelData data = whole_data(kShape, Masking::kNone, {n, 0.0});
     Text text = text_for<Text>(data);
     const auto index = index_in<Text>(data.indices[0]);
     const auto shape = shape_in<Text>(data.shapes[0]);
@@ -353,10 +595,10 @@ TEST(TotalReflection, AzimuthSums_AgreeWithDoubleExponentialQuadrature) {
         const auto theta = direction<Text>(theta_deg);
         const auto lines = text.split_lines(theta, index, slope);
         if (cosine_of(lines.critical) < 1.0 && cosine_of(lines.critical) > cosine_of(lines.horizon)) ++with_line;
-        const auto sums = text.azimuth_sums(theta, shape, index, 0U, slope, DOLP_MAX_ORDER);
+        const auto sums = sums_of_order(text, DOLP_MAX_ORDER, theta, shape, index, slope);
         for (const auto member : {&Text::FacetSums::r_i, &Text::FacetSums::r_q}) {
           worst.update(
-              std::abs(sums.*member - double_exponential(text, theta, index, slope, member)),
+              std::abs(sums.sum.*member - double_exponential(text, theta, index, slope, member)),
               "n " + std::to_string(n) + " theta " + std::to_string(theta_deg) + " t " + std::to_string(slope));
         }
       }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -14,6 +15,17 @@
 #include "evaluate/reference/slopes.hpp"
 #include "physics_text.hpp"
 
+// A text in double with the cells of a float's table, filled by the test.
+namespace dolp::tested_coarse {
+using real = double;
+using real2 = glm::dvec2;
+using real4 = glm::dvec4;
+}  // namespace dolp::tested_coarse
+
+#define DOLP_TEXT_NAMESPACE tested_coarse
+#include "evaluate/cpu/text_body.hpp"
+#undef DOLP_TEXT_NAMESPACE
+
 namespace dolp {
 namespace {
 
@@ -22,14 +34,24 @@ using reference::Slopes;
 using reference::Zenith;
 using std::numbers::pi;
 
-// What the plan allows for the table's interpolation, relative to the albedo (host/plan/kernel_data.cpp).
-constexpr double kTableError = 1e-6;
+// What the plan allows for the table's interpolation, relative to the albedo (host/plan/error_bounds.cpp).
+constexpr double kTableErrorFloat = 3e-8;
+constexpr double kTableErrorDouble = 4e-11;
+template <class Text>
+constexpr double kTableError = std::is_same_v<RealOf<Text>, float> ? kTableErrorFloat : kTableErrorDouble;
+
+// Where the mean slope is about to diverge (smith, q near 3/2) it allows more.
+constexpr double kDivergingSlope = 0.06;
+double divergence(const ShapeCase& shape) {
+  return shape.distribution == Distribution::kCauchy ? 1.0 + kDivergingSlope / (2.0 * shape.q - 3.0) : 1.0;
+}
 // What it allows for rounding, in units of the roundoff: of sums of positive terms, and of the long ones of q near 1.
 constexpr double kRoundings = 20.0;
 constexpr double kHeavyTailRoundings = 80.0;
 constexpr double kHeavyTailQ = 1.1;
+constexpr double kHeavyTailSmithQ = 1.6;
 
-constexpr double kReferenceTolerance = 1e-10;
+constexpr double kReferenceTolerance = 1e-13;
 
 std::vector<ShapeCase> shape_cases(Masking masking) {
   std::vector<double> exponents = {1.53, 1.6, 2.0, 3.5, 10.0, 45.0, 100.0};
@@ -92,23 +114,31 @@ std::vector<double> directions_deg() {
 const std::vector<double> kSlopeAnglesDeg = {1e-4, 0.1, 2.0, 9.0, 20.0, 31.0, 45.0, 58.0, 70.0, 80.0, 88.0, 89.9};
 
 template <class Text>
-double allowed_error(const ShapeCase& shape) {
-  const bool heavy_tail = shape.distribution == Distribution::kCauchy && shape.q < kHeavyTailQ;
-  return kTableError + 0.5 * kEpsilon<Text> * (heavy_tail ? kHeavyTailRoundings : kRoundings);
+double rounding(Masking masking, const ShapeCase& shape) {
+  const double heavy_tail_q = masking == Masking::kSmith ? kHeavyTailSmithQ : kHeavyTailQ;
+  const bool heavy_tail = shape.distribution == Distribution::kCauchy && shape.q < heavy_tail_q;
+  return 0.5 * kEpsilon<Text> * (heavy_tail ? kHeavyTailRoundings : kRoundings);
 }
+
+template <class Text>
+double allowed_error(const ShapeCase& shape) {
+  return kTableError<Text> + rounding<Text>(Masking::kIntegral, shape);
+}
+
+// G1 counts for the lower of two directions, and a facet steeper than its zenith angle reflects it to a lower one yet:
+// there the table's end may show, where heavy tails have not ended.
+constexpr double kUnusedError = 1e-6;
+double unused(double theta_deg, double alpha_deg) { return alpha_deg > theta_deg ? kUnusedError : 0.0; }
 
 // `integral` with both the direction and the facet within w of the horizontal and the vertical, w the width of the
 // slopes: 1 - G1 is kappa ~ 1 / (cot(theta) + t) times a difference of nearly equal heights l ~ l(0) ~ w, whose own
 // errors it amplifies. That is pointwise only: over the facets of any shape kappa l(0) has a mean near 1.
-// The height's interpolation error is h^4/384 p''(0) with cells h = w/16: at large q, where w = 1.7 standard
-// deviations, 3.5e-7 of l(0).
-constexpr double kHeightInterpolation = 4e-7;
 constexpr double kHeightRoundings = 8.0;
 template <class Text>
 double allowed_error(const ShapeCase& shape, const CosSin& zenith, double slope, double height_at_0) {
   const double kappa = zenith.sin * std::hypot(1.0, slope) / (zenith.cos + zenith.sin * slope);
   return allowed_error<Text>(shape) +
-         kappa * height_at_0 * (kHeightInterpolation + kHeightRoundings * 0.5 * kEpsilon<Text>);
+         kappa * height_at_0 * (kTableError<Text> + kHeightRoundings * 0.5 * kEpsilon<Text>);
 }
 
 template <class Text>
@@ -130,7 +160,8 @@ TYPED_TEST(MaskingText, IntegralG1_AgreesWithDirectIntegration) {
         const double error = std::abs((1.0 - table.shadowed(a, slope)) - exact(std::atan(slope)));
         const std::string where =
             name_of(shape) + " theta " + std::to_string(theta_deg) + " alpha " + std::to_string(alpha_deg);
-        const double allowed = allowed_error<TypeParam>(shape, a, slope, table.height_at_0());
+        const double allowed =
+            allowed_error<TypeParam>(shape, a, slope, table.height_at_0()) + unused(theta_deg, alpha_deg);
         EXPECT_LE(error, allowed) << where;
         worst.update(error, where);
         worst_share.update(error / allowed, where);
@@ -143,6 +174,7 @@ TYPED_TEST(MaskingText, IntegralG1_AgreesWithDirectIntegration) {
 
 TYPED_TEST(MaskingText, SmithLambda_AgreesWithTheClosedForm) {
   Worst worst;
+  Worst worst_share;
   for (const ShapeCase& shape : shape_cases(Masking::kSmith)) {
     Table<TypeParam> table(shape, Masking::kSmith);
     const Slopes slopes(shape.distribution, shape.sigma, shape.q);
@@ -152,11 +184,107 @@ TYPED_TEST(MaskingText, SmithLambda_AgreesWithTheClosedForm) {
       // relative error of G1 = 1 / (1 + Lambda); that of G is no larger
       const double error = std::abs(table.lambda(a) - exact) / (1.0 + exact);
       const std::string where = name_of(shape) + " theta " + std::to_string(theta_deg);
-      EXPECT_LE(error, allowed_error<TypeParam>(shape)) << where;
+      const double allowed = kTableError<TypeParam> * divergence(shape) + rounding<TypeParam>(Masking::kSmith, shape);
+      EXPECT_LE(error, allowed) << where;
       worst.update(error, where);
+      worst_share.update(error / allowed, where);
     }
   }
+  std::printf("worst share of what is allowed %.2f at %s\n", worst_share.value, worst_share.where.c_str());
   std::printf("worst relative error of G1 %.2g at %s\n", worst.value, worst.where.c_str());
+}
+
+// ---- Interpolation alone -------------------------------------------------------------------------------------------
+
+// The cells of the float's table in double, and each cell of the double's in full: what the interpolation alone does.
+class Interpolation {
+ public:
+  Interpolation(const ShapeCase& shape, Masking masking) : data_(data_of(shape, masking)), masking_(masking) {
+    fine_ = text_for<tested_double::Text>(data_);
+    fine_.build_masking_table(shape_in<tested_double::Text>(data_.shapes[0]), 0U);
+    coarse_ = text_for<tested_coarse::Text>(data_);
+    constexpr unsigned kStride = 1U << (DOLP_MASKING_CELL_BITS_DOUBLE - DOLP_MASKING_CELL_BITS_FLOAT);
+    for (unsigned i = 0; i < tested_coarse::Text::kMaskingNodes; ++i) {
+      coarse_.store_masking_node(i, fine_.masking_node(kStride * i));
+    }
+  }
+
+  // Albedo integral over the facets of slope t whose reflected ray leaves, by the fine table, and the integral of the
+  // absolute difference that the coarse one makes. Both without the density.
+  std::array<double, 2> azimuth_integrals(const CosSin& a, double slope) {
+    constexpr int kAzimuths = 12;
+    std::array<double, 2> sums{};
+    for (int i = 0; i < kAzimuths; ++i) {
+      const double e = a.cos + a.sin * slope * std::cos(pi * (i + 0.5) / kAzimuths);
+      const double cos_r = 2.0 * e / (1.0 + slope * slope) - a.cos;
+      if (!(cos_r > 0.0)) continue;
+      const double fine = attenuation(fine_, shape_in<tested_double::Text>(data_.shapes[0]), a, cos_r, slope);
+      const double coarse = attenuation(coarse_, shape_in<tested_coarse::Text>(data_.shapes[0]), a, cos_r, slope);
+      sums[0] += e * fine;
+      sums[1] += e * std::abs(coarse - fine);
+    }
+    return sums;
+  }
+
+  const kernel::ShapeNode& node() const { return data_.shapes[0]; }
+
+  // The difference relative to the albedo.
+  double error(const ShapeCase& shape, const CosSin& a) {
+    double albedo = 0.0;
+    double difference = 0.0;
+    constexpr double kStep = 0.21;  // of ln(u): beside the cells of v, at other places in each
+    for (double log_u = -9.0; log_u < 16.0; log_u += kStep) {
+      const double u = std::exp(log_u);
+      const double power = shape.distribution == Distribution::kCauchy ? -shape.q * std::log1p(u * u) : -u * u;
+      const double weight = u * u * std::exp(power);
+      const auto sums = azimuth_integrals(a, u * data_.shapes[0].m);
+      albedo += weight * sums[0];
+      difference += weight * sums[1];
+    }
+    return difference / albedo;
+  }
+
+ private:
+  template <class Text>
+  double attenuation(Text& text, const typename Text::ShapeNode& shape, const CosSin& a, double cos_r, double slope) {
+    const double sin_r = std::sqrt((1.0 - cos_r) * (1.0 + cos_r));
+    if (masking_ == Masking::kSmith) {
+      return 1.0 / (1.0 + text.smith_lambda(shape, 0U, a.cos, a.sin) + text.smith_lambda(shape, 0U, cos_r, sin_r));
+    }
+    const bool is_lower = cos_r < a.cos;
+    return 1.0 - text.shadowed_integral(shape, 0U, is_lower ? cos_r : a.cos, is_lower ? sin_r : a.sin, slope);
+  }
+
+  KernelData data_;
+  Masking masking_;
+  tested_double::Text fine_;
+  tested_coarse::Text coarse_;
+};
+
+// Of sixth order: a cell of a quarter of the width has 4^-6 of the error.
+TEST(MaskingInterpolation, Albedo_IsWithinWhatThePlanAllows) {
+  constexpr double kFinerCells = 1.0 / 4096.0;
+  for (const Masking masking : {Masking::kIntegral, Masking::kSmith}) {
+    Worst worst;
+    Worst worst_share;
+    for (const ShapeCase& shape : shape_cases(masking)) {
+      Interpolation tables(shape, masking);
+      const double factor = masking == Masking::kSmith ? divergence(shape) : 1.0;
+      for (const double theta_deg : directions_deg()) {
+        const CosSin a = cos_sin_deg(theta_deg);
+        if (!table_resolves(tables.node(), a.cos, a.sin)) continue;
+        const double error = tables.error(shape, a);
+        const std::string where = name_of(shape) + " theta " + std::to_string(theta_deg);
+        EXPECT_LE(error, kTableErrorFloat * factor) << where;
+        EXPECT_LE(error * kFinerCells, kTableErrorDouble * factor) << where;
+        worst.update(error, where);
+        worst_share.update(error / (kTableErrorFloat * factor), where);
+      }
+    }
+    std::printf("%s: worst error %.2g of the albedo at %s, worst share %.2f at %s\n",
+                masking == Masking::kSmith ? "smith" : "integral", worst.value, worst.where.c_str(), worst_share.value,
+                worst_share.where.c_str());
+  }
 }
 
 TYPED_TEST(MaskingText, IntegralG1_IsBetweenAHalfAndOneAndFallsWithTheZenithAngle) {
@@ -165,12 +293,13 @@ TYPED_TEST(MaskingText, IntegralG1_IsBetweenAHalfAndOneAndFallsWithTheZenithAngl
     Table<TypeParam> table(shape, Masking::kIntegral);
     for (const double alpha_deg : kSlopeAnglesDeg) {
       const double slope = static_cast<double>(static_cast<Real>(std::tan(alpha_deg * pi / 180.0)));
-      EXPECT_LE(table.shadowed(cos_sin_deg(0.0), slope), kTableError) << name_of(shape) << " " << alpha_deg;
+      EXPECT_LE(table.shadowed(cos_sin_deg(0.0), slope), kUnusedError) << name_of(shape) << " " << alpha_deg;
       double before = 0.0;
       for (double theta_deg = 0.0; theta_deg <= 90.0; theta_deg += 1.25) {
         const CosSin a = cos_sin_deg(theta_deg);
         const double shadowed = table.shadowed(a, slope);
-        const double slack = allowed_error<TypeParam>(shape, a, slope, table.height_at_0());
+        const double slack =
+            allowed_error<TypeParam>(shape, a, slope, table.height_at_0()) + unused(theta_deg - 1.25, alpha_deg);
         EXPECT_GE(shadowed, before - slack) << name_of(shape) << " " << theta_deg << " " << alpha_deg;
         EXPECT_GE(shadowed, -slack) << name_of(shape) << " " << theta_deg << " " << alpha_deg;
         EXPECT_LE(shadowed, 0.5 + slack) << name_of(shape) << " " << theta_deg << " " << alpha_deg;
@@ -193,7 +322,7 @@ TYPED_TEST(MaskingText, GrazingDirection_HidesHalfForIntegralAndAllForSmith) {
                     allowed_error<TypeParam>(shape, grazing, kSlope, integral.height_at_0()));
     Table<TypeParam> smith(shape, Masking::kSmith);
     EXPECT_GT(smith.lambda(cos_sin_deg(90.0)), 1e20);
-    EXPECT_LE(smith.lambda(cos_sin_deg(0.0)), kTableError);
+    EXPECT_LE(smith.lambda(cos_sin_deg(0.0)), kTableError<TypeParam>);
   }
 }
 

@@ -128,6 +128,27 @@ TYPED_TEST(Elementary, Logarithms_OverTheirDomain_AreAFewUlpsFromExact) {
   for (const auto& row : rows) EXPECT_LE(worst_ulps(row), row.allowed_ulps) << row.name;
 }
 
+// ln(x) near 1 is a small number, whose relative accuracy the subtraction of 1 keeps: 1 - x is exact there.
+TYPED_TEST(Elementary, LogUnit_OverItsDomain_IsAFewRoundingsFromExact) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  Worst worst;
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<double> exponent(-29.0, 0.0);
+  for (int i = 0; i < kSamples; ++i) {
+    const Real x =
+        static_cast<Real>(i % 3 == 0 ? 1.0 + 0.03 * exponent(random) / 29.0 : std::pow(10.0, exponent(random)));
+    const double exact = static_cast<double>(std::log(static_cast<long double>(x)));
+    const double error = std::abs(static_cast<double>(text.log_unit(x)) - exact);
+    worst.update(error / (std::abs(exact) + 1e-300), std::to_string(static_cast<double>(x)));
+  }
+  EXPECT_EQ(text.log_unit(Real(1)), Real(0));
+  EXPECT_TRUE(std::isfinite(static_cast<double>(text.log_unit(Real(0)))));
+  EXPECT_LT(text.log_unit(Real(0)), Real(-60));  // no facets at all want no digits
+  std::printf("worst relative error %.2g at %s\n", worst.value, worst.where.c_str());
+  EXPECT_LE(worst.value, kFewUlps * kEpsilon<TypeParam>) << worst.where;
+}
+
 TYPED_TEST(Elementary, EndsOfTheDomains_AreExact) {
   using Real = RealOf<TypeParam>;
   TypeParam text;
@@ -143,6 +164,29 @@ TYPED_TEST(Elementary, EndsOfTheDomains_AreExact) {
   EXPECT_EQ(text.sinh_cosh(Real(0)).x, Real(0));
   EXPECT_EQ(text.sinh_cosh(Real(0)).y, Real(1));
   EXPECT_EQ(text.atan_unit(Real(0)), Real(0));
+}
+
+// ---- Interpolation in the masking tables ---------------------------------------------------------------------------
+
+// Two values, slopes and second derivatives determine a polynomial of degree five.
+TYPED_TEST(Elementary, Hermite_IsExactForPolynomialsOfDegreeFive) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  constexpr double kRoundings = 16.0;  // of about twenty operations with numbers up to 20
+  for (int degree = 0; degree <= 6; ++degree) {
+    double worst = 0.0;
+    for (double y = 0.0; y <= 1.0; y += 0.01) {
+      const auto value =
+          text.hermite(Real(degree == 0), Real(1), Real(degree == 1), static_cast<Real>(degree),
+                       Real(degree == 2 ? 2 : 0), static_cast<Real>(degree * (degree - 1)), static_cast<Real>(y));
+      worst = std::max(worst, std::abs(static_cast<double>(value) - std::pow(y, degree)));
+    }
+    if (degree <= 5) {
+      EXPECT_LE(worst, kRoundings * kEpsilon<TypeParam>) << degree;
+    } else {
+      EXPECT_GT(worst, 1e-3);
+    }
+  }
 }
 
 // ---- Fresnel reflection --------------------------------------------------------------------------------------------
@@ -399,6 +443,31 @@ TYPED_TEST(SlopeText, Marginal_IsNormalised) {
   constexpr double kAllowed = 20.0 * kEpsilon<TypeParam> + 1e-11;
   std::printf("worst %.2g at %s (allowed %.2g)\n", worst.value, worst.where.c_str(), kAllowed);
   EXPECT_LE(worst.value, kAllowed) << worst.where;
+}
+
+// -p'/p and -g'/g, which give the tables' second derivatives, against differences of ln(p) and ln(g).
+TEST(MaskingDecays, AreThoseOfTheDensityAndTheWeight) {
+  using Text = tested_double::Text;
+  constexpr double kAllowed = 1e-6;  // of differences over h = 1e-4: h^2 times the curvature, and rounding over h
+  for (const Masking masking : {Masking::kIntegral, Masking::kSmith}) {
+    for (const ShapeCase& shape :
+         {ShapeCase{Distribution::kCauchy, 0.3, 2.0}, ShapeCase{Distribution::kCauchy, 0.9, 1.2},
+          ShapeCase{Distribution::kGaussian, 0.5, 2.0}}) {
+      const KernelData data = data_of(shape, masking);
+      Text text = text_for<Text>(data);
+      const auto node = shape_in<Text>(data.shapes[0]);
+      for (double tau = 0.05; tau < 3.0; tau *= 1.3) {
+        const double h = 1e-4 * tau;
+        const auto difference = [&](const auto& f) {
+          return (std::log(f(tau - h)) - std::log(f(tau + h))) / (2.0 * h);
+        };
+        const double density = difference([&](double x) { return text.marginal_density(node, x); });
+        const double weight = difference([&](double x) { return text.masking_weight(x); });
+        EXPECT_NEAR(text.marginal_decay(node, tau), density, kAllowed * std::max(1.0, std::abs(density))) << tau;
+        EXPECT_NEAR(text.weight_decay(tau), weight, kAllowed) << tau;
+      }
+    }
+  }
 }
 
 TYPED_TEST(SlopeText, QOfTwo_IsGgx) {

@@ -108,6 +108,8 @@ inline KernelData data_of(const ShapeCase& shape, Masking masking, const Optical
   request.masking = masking;
   request.shapes = {{shape.sigma, shape.q}};
   request.indices = {index};
+  request.theta_deg = {60.0};  // of the rule nodes there are as many as the directions need
+  request.entries = {{0U, 0U, 0U}};
   return kernel_data(request);
 }
 

@@ -1,8 +1,10 @@
-// The plan: rules, pieces of the slope axis, loop bounds, and a scan that shows how often its orders are too low.
+// The plan: digits and orders for a tolerance, loop bounds, what the cut leaves out, which entries need a line more,
+// and a scan that shows how often its orders are too low.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -14,125 +16,23 @@
 
 #include "evaluate/cpu/text.hpp"
 #include "plan/kernel_data.hpp"
-#include "plan/rule_nodes.hpp"
+#include "plan/rule.hpp"
 
 namespace dolp {
 namespace {
 
 using std::numbers::pi;
-using Rule = std::vector<std::array<double, 2>>;
 
 constexpr std::array kMaskings = {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith};
 constexpr std::array kMaskingNames = {"none", "v-cavity", "integral", "smith"};
 constexpr std::array kDistributions = {Distribution::kCauchy, Distribution::kGaussian};
-constexpr std::array kHardDirectionsDeg = {0.0, 1e-6, 12.857142857, 18.0, 30.0, 45.0, 60.0, 89.99, 90.0};
+constexpr std::array kHardDirectionsDeg = {0.0,  1e-6, 12.857142857, 12.9, 18.0,  30.0, 30.2,
+                                           44.9, 45.0, 45.1,         60.0, 89.99, 90.0};
 constexpr OpticalConstants kDielectric{1.508, 0.0};
 constexpr OpticalConstants kTotallyReflecting{0.8, 0.0};
 
-// Abscissae and weights carry a rounding or two each; a polynomial of size 1 and degree d oscillates d times and feels
-// the abscissae's as often.
-constexpr double kRuleTolerance = 1e-15;
-double rule_tolerance(int degree) { return kRuleTolerance * (1.0 + 0.1 * degree); }
-
-// ---- Rules ---------------------------------------------------------------------------------------------------------
-
-// Chebyshev polynomial T_k: of size 1 on [-1, 1], so that no degree hides behind another.
-double chebyshev(int k, double x) {
-  return static_cast<double>(std::cos(k * std::acos(std::clamp(static_cast<long double>(x), -1.0L, 1.0L))));
-}
-
-// Integral of T_k over [-1, 1].
-double chebyshev_integral(int k) { return k % 2 == 1 ? 0.0 : 2.0 / (1.0 - static_cast<double>(k) * k); }
-
-template <class Function>
-double integrate(const Rule& rule, const Function& function) {
-  long double sum = 0.0L;
-  for (const auto& [x, weight] : rule) sum += static_cast<long double>(weight) * function(x);
-  return static_cast<double>(sum);
-}
-
-TEST(GaussLegendre, EveryOrder_IntegratesPolynomialsOfDegree2nMinus1) {
-  double worst = 0.0;
-  for (int order = 1; order <= 2 * DOLP_MAX_ORDER; ++order) {
-    const Rule rule = gauss_legendre(order);
-    ASSERT_EQ(rule.size(), static_cast<std::size_t>(order));
-    for (int degree = 0; degree < 2 * order; ++degree) {
-      const double sum = integrate(rule, [&](double x) { return chebyshev(degree, x); });
-      worst = std::max(worst, std::abs(sum - chebyshev_integral(degree)) / rule_tolerance(degree));
-    }
-    EXPECT_TRUE(std::is_sorted(rule.begin(), rule.end()));
-    for (std::size_t i = 0; i < rule.size(); ++i) {
-      EXPECT_GT(rule[i][1], 0.0);
-      EXPECT_EQ(rule[i][0], -rule[rule.size() - 1 - i][0]);
-    }
-  }
-  std::printf("worst error %.2f of what is allowed\n", worst);
-  EXPECT_LE(worst, 1.0);
-}
-
-TEST(GaussLegendre, Degree2n_IsNotIntegrated) {
-  double sum = 0.0;
-  for (const auto& [x, weight] : gauss_legendre(3)) sum += weight * std::pow(x, 6);
-  EXPECT_GT(std::abs(sum - 2.0 / 7.0), 1e-3);
-}
-
-// The rule of one order in one section of rule_nodes().
-Rule section_rule(int section, int order) {
-  static const Rule nodes = rule_nodes();
-  const int first = section * DOLP_MAX_ORDER * (DOLP_MAX_ORDER + 1) / 2 + order * (order - 1) / 2;
-  return {nodes.begin() + first, nodes.begin() + first + order};
-}
-
-TEST(RuleNodes, AllSections_AreThere) {
-  EXPECT_EQ(rule_nodes().size(), static_cast<std::size_t>(5 * DOLP_MAX_ORDER * (DOLP_MAX_ORDER + 1) / 2));
-}
-
-TEST(RuleNodes, Gauss_IntegratesPolynomialsOnTheUnitInterval) {
-  for (int order = 1; order <= DOLP_MAX_ORDER; ++order) {
-    for (int degree = 0; degree < 2 * order; ++degree) {
-      const double sum = integrate(section_rule(0, order), [&](double x) { return chebyshev(degree, 2.0 * x - 1.0); });
-      EXPECT_NEAR(sum, 0.5 * chebyshev_integral(degree), rule_tolerance(degree)) << order << " " << degree;
-    }
-  }
-}
-
-TEST(RuleNodes, Centre_IntegratesPolynomialsOnTheSymmetricInterval) {
-  for (int order = 1; order <= DOLP_MAX_ORDER; ++order) {
-    for (int degree = 0; degree < 2 * order; ++degree) {
-      const double sum = integrate(section_rule(1, order), [&](double x) { return chebyshev(degree, x); });
-      EXPECT_NEAR(sum, chebyshev_integral(degree), rule_tolerance(degree)) << order << " " << degree;
-    }
-  }
-}
-
-TEST(RuleNodes, Half_IntegratesEvenPolynomialsOfDegree4nMinus2) {
-  for (int order = 1; order <= DOLP_MAX_ORDER; ++order) {
-    for (int degree = 0; degree < 4 * order; degree += 2) {
-      const double sum = integrate(section_rule(2, order), [&](double x) { return chebyshev(degree, x); });
-      EXPECT_NEAR(sum, 0.5 * chebyshev_integral(degree), rule_tolerance(degree)) << order << " " << degree;
-    }
-  }
-}
-
-TEST(RuleNodes, Circle_IntegratesCosinesOverTheHalfCircle) {
-  for (int order = 1; order <= DOLP_MAX_ORDER; ++order) {
-    for (int harmonic = 0; harmonic < 2 * order; ++harmonic) {
-      const double sum = integrate(section_rule(3, order), [&](double tau) {
-        return 4.0 / (1.0 + tau * tau) * std::cos(harmonic * 4.0 * std::atan(tau));
-      });
-      EXPECT_NEAR(sum, harmonic == 0 ? pi : 0.0, 4.0 * rule_tolerance(harmonic)) << order << " " << harmonic;
-    }
-  }
-}
-
-TEST(RuleNodes, Cluster_IntegratesPolynomialsInTheSquareRoot) {
-  for (int order = 1; order <= DOLP_MAX_ORDER; ++order) {
-    for (int power = 0; power < 2 * order - 1; ++power) {
-      const double sum = integrate(section_rule(4, order), [&](double x) { return std::pow(x, 0.5 * power); });
-      EXPECT_NEAR(sum, 2.0 / (power + 2.0), rule_tolerance(power)) << order << " " << power;
-    }
-  }
-}
+// An algebraic expression of a few operations.
+constexpr double kRounding = 1e-15;
 
 // ---- Directions ----------------------------------------------------------------------------------------------------
 
@@ -178,69 +78,27 @@ MomentsRequest hard_request(Distribution distribution, Masking masking, double t
   return request;
 }
 
-TEST(KernelDataPieces, HardDirections_AscendFromZeroToTheHorizonWithinTheirRoom) {
-  for (const Masking masking : kMaskings) {
-    const KernelData data = kernel_data(hard_request(Distribution::kCauchy, masking, 1e-4, true));
-    double most = 0.0;
-    for (const kernel::ThetaNode& node : data.thetas) {
-      most = std::max(most, node.piece_count);
-      ASSERT_GE(node.piece_count, 1.0);
-      ASSERT_LE(node.piece_count, static_cast<double>(DOLP_MAX_PIECES));
-      const std::size_t last = static_cast<std::size_t>(node.piece_count);
-      EXPECT_EQ(node.end[0], 0.0);
-      for (std::size_t i = 0; i < last; ++i) {
-        EXPECT_LE(node.end[i], node.end[i + 1]) << "c " << node.c << " piece " << i;
-        EXPECT_TRUE(node.kind[i] >= 0.0 && node.kind[i] <= 3.0);
-      }
-      // beyond slope (1 + s) / c no reflected ray leaves
-      const double horizon = node.c > 0.0 ? (1.0 + node.s) / node.c : 1e30;
-      EXPECT_DOUBLE_EQ(node.end[last], horizon);
-    }
-    std::printf("%s: at most %g pieces of %d\n", kMaskingNames[static_cast<std::size_t>(masking)], most,
-                DOLP_MAX_PIECES);
-  }
-}
-
-TEST(KernelDataPieces, RandomDirectionsAndIndices_FitTheirRoom) {
-  constexpr unsigned kSeed = 20250803;
-  std::printf("seed %u\n", kSeed);
-  std::mt19937 random(kSeed);
-  std::uniform_real_distribution<double> angle_deg(0.0, 90.0);
-  std::uniform_real_distribution<double> n(0.01, 0.9999);
-  for (const Masking masking : kMaskings) {
-    MomentsRequest request;
-    request.masking = masking;
-    request.shapes = {{0.3, 2.0}};
-    for (std::uint32_t i = 0; i < 500; ++i) {
-      request.theta_deg.push_back(angle_deg(random));
-      request.indices.push_back({n(random), 0.0});
-      request.entries.push_back({i, 0U, i});
-    }
-    for (const kernel::ThetaNode& node : kernel_data(request).thetas) {
-      ASSERT_LE(node.piece_count, static_cast<double>(DOLP_MAX_PIECES));
-      const std::size_t last = static_cast<std::size_t>(node.piece_count);
-      EXPECT_TRUE(std::is_sorted(node.end, node.end + last + 1)) << "c " << node.c;
-    }
-  }
-}
+// All loops of an invocation count toward what a driver allows.
+constexpr double kDriverLimit = 65535.0;
 
 TEST(KernelDataOrders, EveryTolerance_StaysBelowTheDriversLoopLimit) {
-  constexpr double kDriverLimit = 65535.0;
   for (const Distribution distribution : kDistributions) {
     for (const Masking masking : kMaskings) {
       for (const bool total_reflection : {false, true}) {
         double most = 0.0;
-        for (int exponent = 2; exponent <= 10; ++exponent) {
+        for (int exponent = 2; exponent <= 12; ++exponent) {
           const double tolerance = std::pow(10.0, -exponent);
           const KernelData data = kernel_data(hard_request(distribution, masking, tolerance, total_reflection));
           const double iterations = worst_iterations(data);
           EXPECT_GT(iterations, 0.0);
           EXPECT_LT(iterations, kDriverLimit) << tolerance;
           for (const kernel::ThetaNode& node : data.thetas) {
-            EXPECT_GE(node.order_t, 3.0);
-            EXPECT_LE(node.order_limit, static_cast<double>(DOLP_MAX_ORDER));
-            EXPECT_GE(node.order_phi, 2.0);
-            EXPECT_LE(node.order_phi, static_cast<double>(DOLP_MAX_ORDER));
+            for (const double limit : {node.order_limit_t, node.order_limit_phi}) {
+              EXPECT_GE(limit, 8.0);
+              EXPECT_LE(limit, static_cast<double>(DOLP_MAX_ORDER));
+              EXPECT_LE(limit, data.rule.node_stride);
+              EXPECT_EQ(limit, std::floor(limit));
+            }
           }
           most = std::max(most, iterations);
         }
@@ -252,28 +110,57 @@ TEST(KernelDataOrders, EveryTolerance_StaysBelowTheDriversLoopLimit) {
   }
 }
 
+// One loop over the nodes, in each of which a Gauss rule of six.
+TEST(MaskingTable, ItsLoops_StayBelowTheDriversLimit) {
+  constexpr double kTableOrder = 6.0;
+  EXPECT_LT(DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE) * (1.0 + kTableOrder), kDriverLimit);
+}
+
+// The table's Gauss rule is read from the nodes of the moments' rules, even when no moments are asked for.
+TEST(MaskingTable, RequestWithoutDirections_HasTheNodesThatItNeeds) {
+  constexpr int kTableOrder = 6;
+  MomentsRequest request;
+  request.shapes = {{0.3, 2.0}};
+  request.indices = {kDielectric};
+  EXPECT_GE(kernel_data(request).rule.node_stride, kTableOrder);
+}
+
+// What the kernel in double says of one entry.
+struct Computed {
+  KernelData data;
+  kernel::MomentsNode node;
+  Moments moments() const { return moments_from_kernel(node, data, data.entries[0], 0x1p-53); }
+};
+
+Computed computed(Masking masking, double tolerance, double theta_deg, const SlopeShape& shape,
+                  const OpticalConstants& index, Distribution distribution = Distribution::kCauchy) {
+  MomentsRequest request;
+  request.distribution = distribution;
+  request.masking = masking;
+  request.tolerance = tolerance;
+  request.theta_deg = {theta_deg};
+  request.shapes = {shape};
+  request.indices = {index};
+  request.entries = {{0U, 0U, 0U}};
+  Computed result{kernel_data(request), {}};
+  const auto text = make_kernel_text_double(result.data);
+  if (result.data.needs_masking_table()) text->build_masking_table(0);
+  result.node = text->moments(result.data.entries[0]);
+  return result;
+}
+
 // Every evaluation of the integrand is an iteration of the innermost loop.
 TEST(KernelDataOrders, WorstIterations_BoundTheEvaluationsOfEveryEntry) {
   for (const Masking masking : kMaskings) {
-    for (const double tolerance : {1e-2, 1e-4, 1e-10}) {
+    for (const double tolerance : {1e-2, 1e-4, 1e-8, 1e-12}) {
       double fullest = 0.0;
       for (const SlopeShape& shape : {SlopeShape{1e-3, 1.6}, SlopeShape{0.3, 2.0}, SlopeShape{5.0, 1.6}}) {
         for (const double theta_deg : kHardDirectionsDeg) {
           for (const OpticalConstants& index : {kDielectric, kTotallyReflecting}) {
-            MomentsRequest request;
-            request.masking = masking;
-            request.tolerance = tolerance;
-            request.theta_deg = {theta_deg};
-            request.shapes = {shape};
-            request.indices = {index};
-            request.entries = {{0U, 0U, 0U}};
-            const KernelData data = kernel_data(request);
-            const auto text = make_kernel_text_double(data);
-            if (data.needs_masking_table()) text->build_masking_table(0);
-            const double evaluations = text->moments(data.entries[0]).evaluations;
-            const double bound = worst_iterations(data);
-            fullest = std::max(fullest, evaluations / bound);
-            EXPECT_LE(evaluations, bound)
+            const Computed entry = computed(masking, tolerance, theta_deg, shape, index);
+            const double bound = worst_iterations(entry.data);
+            fullest = std::max(fullest, entry.node.evaluations / bound);
+            EXPECT_LE(entry.node.evaluations, bound)
                 << kMaskingNames[static_cast<std::size_t>(masking)] << " tolerance " << tolerance << " sigma "
                 << shape.sigma << " theta " << theta_deg << " n " << index.n;
           }
@@ -285,8 +172,63 @@ TEST(KernelDataOrders, WorstIterations_BoundTheEvaluationsOfEveryEntry) {
   }
 }
 
+TEST(RuleDigits, EachDecadeOfTheTolerance_IsADigitAndNoneIsMissing) {
+  for (const Masking masking : kMaskings) {
+    for (int exponent = 2; exponent <= 12; ++exponent) {
+      const double tolerance = std::pow(10.0, -exponent);
+      const double digits = rule_digits(masking, tolerance);
+      EXPECT_GE(digits, static_cast<double>(exponent));
+      EXPECT_NEAR(rule_digits(masking, 0.1 * tolerance) - digits, 1.0, 20.0 * kRounding);
+      EXPECT_EQ(rule_node(masking, digits).digits, digits);
+    }
+  }
+}
+
+// More digits never take nodes away: every number of the rule that multiplies them grows or stays.
+TEST(RuleNode, MoreDigits_NeverAskForFewerNodes) {
+  for (const Masking masking : kMaskings) {
+    kernel::RuleNode before = rule_node(masking, 3.0);
+    for (double digits = 3.5; digits <= 16.0; digits += 0.5) {
+      const kernel::RuleNode node = rule_node(masking, digits);
+      EXPECT_GE(node.t_growth, before.t_growth) << digits;
+      EXPECT_GE(node.phi_growth, before.phi_growth) << digits;
+      EXPECT_GE(node.phi_circle_growth, before.phi_circle_growth) << digits;
+      EXPECT_GE(node.cluster_below_q, before.cluster_below_q) << digits;
+      EXPECT_GT(node.t_growth, 0.0);
+      EXPECT_GT(node.phi_growth, 0.0);
+      EXPECT_GT(node.t_strip, 0.0);
+      for (const double strip : node.strip) EXPECT_GT(strip, 0.0);
+      before = node;
+    }
+  }
+}
+
+TEST(KernelDataOrders, TighterTolerance_NeverCostsLess) {
+  for (const Distribution distribution : kDistributions) {
+    for (const Masking masking : kMaskings) {
+      for (const double theta_deg : {0.0, 30.2, 60.0, 85.0}) {
+        for (const SlopeShape& shape : {SlopeShape{0.05, 3.0}, SlopeShape{0.5, 2.0}}) {
+          double before = 0.0;
+          double first = 0.0;
+          for (int exponent = 2; exponent <= 10; ++exponent) {
+            const double tolerance = std::pow(10.0, -exponent);
+            const double evaluations =
+                computed(masking, tolerance, theta_deg, shape, {2.0, 0.7}, distribution).node.evaluations;
+            EXPECT_GE(evaluations, before) << kMaskingNames[static_cast<std::size_t>(masking)] << " theta " << theta_deg
+                                           << " sigma " << shape.sigma << " tolerance " << tolerance;
+            if (first == 0.0) first = evaluations;
+            before = evaluations;
+          }
+          EXPECT_GT(before, 2.0 * first) << theta_deg << " " << shape.sigma;
+        }
+      }
+    }
+  }
+}
+
 TEST(KernelDataTotalReflection, ItsEntries_HaveDirectionsOfTheirOwn) {
   MomentsRequest request;
+  request.masking = Masking::kVCavity;
   request.theta_deg = {20.0, 70.0};
   request.shapes = {{0.3, 2.0}, {0.6, 3.0}};
   request.indices = {kDielectric, kTotallyReflecting, {0.5, 0.0}};
@@ -307,7 +249,7 @@ TEST(KernelDataTotalReflection, ItsEntries_HaveDirectionsOfTheirOwn) {
     EXPECT_EQ(data.entries[i].index, request.entries[i].index);
   }
   EXPECT_GT(data.thetas[data.entries[1].theta].piece_count, data.thetas[0].piece_count);
-  EXPECT_NEAR(data.indices[1].critical_cos, 0.6, kRuleTolerance);
+  EXPECT_NEAR(data.indices[1].critical_cos, 0.6, kRounding);
   EXPECT_EQ(data.indices[0].critical_cos, 0.0);
 }
 
@@ -326,7 +268,190 @@ TEST(KernelDataOfARequest, Twice_IsTheSame) {
     EXPECT_TRUE(same_bytes(a.indices, b.indices));
     EXPECT_TRUE(same_bytes(a.entries, b.entries));
     EXPECT_TRUE(same_bytes(a.rule_nodes, b.rule_nodes));
-    EXPECT_FALSE(same_bytes(a.thetas, kernel_data(hard_request(Distribution::kCauchy, masking, 1e-5, true)).thetas));
+    EXPECT_EQ(std::memcmp(&a.rule, &b.rule, sizeof a.rule), 0);
+    const KernelData other = kernel_data(hard_request(Distribution::kCauchy, masking, 1e-5, true));
+    EXPECT_NE(std::memcmp(&a.rule, &other.rule, sizeof a.rule), 0);
+  }
+}
+
+// ---- Lines and cusps ------------------------------------------------------------------------------------------------
+
+TEST(NeedsLine, WhatHasNone_NeverDoes) {
+  for (double digits = 2.0; digits <= 16.0; digits += 1.0) {
+    for (const SlopeShape& shape : {SlopeShape{0.05, 1.6}, SlopeShape{1.0, 1.2}, SlopeShape{5.0, 2.5}}) {
+      for (const Distribution distribution : kDistributions) {
+        EXPECT_FALSE(needs_line(distribution, Masking::kNone, shape, digits));
+        EXPECT_FALSE(needs_line(distribution, Masking::kVCavity, shape, digits));
+      }
+      EXPECT_FALSE(needs_line(Distribution::kGaussian, Masking::kSmith, shape, digits));
+    }
+    // theta_r^(2q-2) is smooth
+    for (const double q : {2.0, 3.0, 10.0}) {
+      EXPECT_FALSE(needs_line(Distribution::kCauchy, Masking::kSmith, {1.0, q}, digits)) << q;
+    }
+  }
+}
+
+TEST(NeedsLine, HeavyTail_DoesAtManyDigitsAndANarrowOneNot) {
+  constexpr double kMany = 12.0;
+  EXPECT_TRUE(needs_line(Distribution::kCauchy, Masking::kIntegral, {1.0, 1.2}, kMany));
+  EXPECT_TRUE(needs_line(Distribution::kCauchy, Masking::kSmith, {1.0, 1.6}, kMany));
+  EXPECT_TRUE(needs_line(Distribution::kGaussian, Masking::kIntegral, {2.0, 2.0}, kMany));
+  EXPECT_FALSE(needs_line(Distribution::kCauchy, Masking::kIntegral, {1e-3, 10.0}, kMany));
+  EXPECT_FALSE(needs_line(Distribution::kCauchy, Masking::kSmith, {1e-3, 10.5}, kMany));
+  EXPECT_FALSE(needs_line(Distribution::kGaussian, Masking::kIntegral, {0.1, 2.0}, kMany));
+}
+
+// What is needed for some digits is needed for more; a rougher surface or a heavier tail does not need it less.
+TEST(NeedsLine, MoreDigitsRoughnessOrTail_NeverTakeItAway) {
+  for (const Masking masking : {Masking::kIntegral, Masking::kSmith}) {
+    for (const double q : {1.55, 1.6, 1.75, 2.4, 3.3}) {
+      for (double sigma = 0.001; sigma < 5.0; sigma *= 1.7) {
+        bool needed = false;
+        for (double digits = 2.0; digits <= 16.0; digits += 0.25) {
+          const bool now = needs_line(Distribution::kCauchy, masking, {sigma, q}, digits);
+          EXPECT_TRUE(now || !needed) << q << " " << sigma << " " << digits;
+          EXPECT_TRUE(needs_line(Distribution::kCauchy, masking, {1.7 * sigma, q}, digits) || !now)
+              << q << " " << sigma << " " << digits;
+          needed = now;
+        }
+      }
+    }
+  }
+}
+
+// log10 of (width)^(2q-2), the part of smith's L that is not smooth at theta_r = 0, up to a constant; the width of
+// slopes beyond 1 no longer counts.
+TEST(CuspDigits, Size_GoesAsTheTailAtSlopeOne) {
+  for (const double q : {1.6, 1.75, 2.4, 3.3}) {
+    const auto digits = [&](double sigma) { return cusp_digits(Distribution::kCauchy, Masking::kSmith, {sigma, q}); };
+    EXPECT_NEAR(digits(0.02) - digits(0.002), 2.0 * q - 2.0, 1e-12);
+    EXPECT_EQ(digits(1.0), digits(5.0));
+    EXPECT_GT(digits(1e-20), -1000.0);
+  }
+  // the nearer q is to an integer, the smaller
+  const auto at = [](double q) { return cusp_digits(Distribution::kCauchy, Masking::kSmith, {5.0, q}); };
+  EXPECT_NEAR(at(2.01) - at(2.0001), 2.0, 1e-9);
+  EXPECT_NEAR(at(1.99), at(2.01), 1e-9);
+}
+
+TEST(CuspDigits, NoCusp_IsBelowAnyDigits) {
+  constexpr double kKernelsLimit = -100.0;  // ShapeNode::cusp_digits
+  for (const double q : {2.0, 3.0, 7.0}) {
+    EXPECT_LT(cusp_digits(Distribution::kCauchy, Masking::kSmith, {1.0, q}), kKernelsLimit);
+  }
+  EXPECT_LT(cusp_digits(Distribution::kGaussian, Masking::kSmith, {1.0, 1.6}), kKernelsLimit);
+  EXPECT_LT(cusp_digits(Distribution::kCauchy, Masking::kIntegral, {1.0, 1.6}), kKernelsLimit);
+}
+
+TEST(KernelDataLines, OnlyTheShapesThatNeedThem_GetDirectionsOfTheirOwn) {
+  MomentsRequest request;
+  request.masking = Masking::kIntegral;
+  request.tolerance = 1e-8;
+  request.theta_deg = {20.0, 70.0};
+  request.shapes = {{1.0, 1.2}, {1e-3, 10.0}, {2.0, 1.3}};
+  request.indices = {kDielectric};
+  for (std::uint32_t theta = 0; theta < 2; ++theta) {
+    for (std::uint32_t shape = 0; shape < 3; ++shape) request.entries.push_back({theta, shape, 0});
+  }
+  const KernelData data = kernel_data(request);
+  ASSERT_EQ(data.thetas.size(), 4U);
+  for (std::size_t i = 0; i < data.entries.size(); ++i) {
+    const kernel::ThetaNode& node = data.thetas[data.entries[i].theta];
+    EXPECT_EQ(node.has_line, request.entries[i].shape == 1 ? 0.0 : 1.0) << i;
+    EXPECT_EQ(node.c, cos_sin_deg(request.theta_deg[request.entries[i].theta]).cos);
+  }
+  EXPECT_EQ(data.entries[0].theta, data.entries[2].theta);
+  EXPECT_GT(data.thetas[data.entries[0].theta].piece_count, data.thetas[data.entries[1].theta].piece_count);
+}
+
+// ---- The cut --------------------------------------------------------------------------------------------------------
+
+// Integral over the azimuths of the projection without masking of the facets of slope t whose reflected ray leaves.
+double seen_at(double c, double s, double t) {
+  const double level = s * t > 0.0 ? (0.5 * c * (1.0 + t * t) - c) / (s * t) : 2.0;
+  if (level >= 1.0) return 0.0;
+  const double horizon = std::acos(std::max(level, -1.0));
+  return 2.0 * (c * horizon + s * t * std::sin(horizon));
+}
+
+// The albedo (times cos theta) without masking of the facets steeper than the cut.
+double albedo_beyond(const KernelData& data) {
+  const kernel::ShapeNode& shape = data.shapes[0];
+  const kernel::ThetaNode& node = data.thetas[data.entries[0].theta];
+  const double horizon = node.end[static_cast<std::size_t>(node.piece_count)];
+  if (shape.cut >= horizon) return 0.0;
+  const auto integrand = [&](double log_slope) {
+    const double t = std::exp(log_slope);
+    const double u = t / shape.m;
+    const double profile = data.distribution == Distribution::kCauchy
+                               ? shape.q_minus_1 * std::exp(-(shape.q_minus_1 + 1.0) * std::log1p(u * u))
+                               : std::exp(-u * u);
+    return profile * u * u / pi * seen_at(node.c, node.s, t);
+  };
+  double sum = 0.0;
+  const double last = std::log(std::min(horizon, 1e4 * shape.cut));
+  for (double from = std::log(shape.cut); from < last; from += 0.5) {
+    sum += boost::math::quadrature::gauss_kronrod<double, 61>::integrate(integrand, from, std::min(from + 0.5, last), 5,
+                                                                         1e-12);
+  }
+  return sum;
+}
+
+// What is left out is no more than its bound, which alone is left when the kernel returns nothing; and that is a small
+// part of the tolerance. v-cavity and smith hide part of it.
+TEST(Cut, WhatItLeavesOut_IsBelowItsBoundAndAShareOfTheTolerance) {
+  constexpr double kLargestShare = 0.4;
+  int with_cut = 0;
+  double fullest = 0.0;
+  for (const Distribution distribution : kDistributions) {
+    for (const Masking masking : kMaskings) {
+      for (const double tolerance : {1e-2, 1e-4, 1e-8, 1e-10}) {
+        for (const SlopeShape& shape : {SlopeShape{0.02, 3.0}, SlopeShape{0.05, 10.0}, SlopeShape{0.3, 5.0},
+                                        SlopeShape{0.3, 50.0}, SlopeShape{1e-3, 2.0}}) {
+          for (const double theta_deg : {0.0, 30.0, 60.0, 80.0, 89.0, 90.0}) {
+            const Computed entry = computed(masking, tolerance, theta_deg, shape, {1000.0, 1000.0}, distribution);
+            const double beyond = albedo_beyond(entry.data);
+            if (beyond == 0.0) continue;
+            ++with_cut;
+            const Moments nothing = moments_from_kernel({}, entry.data, entry.data.entries[0], 0x1p-53);
+            const double bound = nothing.albedo_error;
+            const std::string where = std::string(kMaskingNames[static_cast<std::size_t>(masking)]) + " theta " +
+                                      std::to_string(theta_deg) + " sigma " + std::to_string(shape.sigma) + " q " +
+                                      std::to_string(shape.q) + " tolerance " + std::to_string(tolerance);
+            // v-cavity hides all but 2 cos(theta) of a facet, smith a share that depends on theta
+            if (masking == Masking::kNone || masking == Masking::kIntegral) {
+              EXPECT_LE(beyond, bound * (1.0 + 1e-9)) << where;
+              fullest = std::max(fullest, beyond / bound);
+            }
+            EXPECT_LE(bound, kLargestShare * tolerance * entry.node.albedo) << where;
+          }
+        }
+      }
+    }
+  }
+  std::printf("%d entries with a cut, bound used up to %.2f\n", with_cut, fullest);
+  EXPECT_GT(with_cut, 300);
+  EXPECT_GT(fullest, 0.3);
+}
+
+// Between a wide and a tight tolerance the albedo grows by what the wide one cuts, whatever the masking hides of it.
+TEST(Cut, TighterTolerance_AddsNoMoreThanTheBounds) {
+  for (const Distribution distribution : kDistributions) {
+    for (const Masking masking : kMaskings) {
+      for (const SlopeShape& shape : {SlopeShape{0.02, 3.0}, SlopeShape{0.3, 5.0}, SlopeShape{0.3, 50.0}}) {
+        for (const double theta_deg : {0.0, 60.0, 80.0, 89.0}) {
+          const Moments wide = computed(masking, 1e-2, theta_deg, shape, {2.0, 0.7}, distribution).moments();
+          const Moments tight = computed(masking, 1e-10, theta_deg, shape, {2.0, 0.7}, distribution).moments();
+          EXPECT_NEAR(wide.albedo, tight.albedo, wide.albedo_error + tight.albedo_error)
+              << kMaskingNames[static_cast<std::size_t>(masking)] << " theta " << theta_deg << " sigma " << shape.sigma;
+          EXPECT_NEAR(wide.r_i, tight.r_i, wide.r_i_error + tight.r_i_error) << theta_deg << " " << shape.sigma;
+          EXPECT_NEAR(wide.r_q, tight.r_q, wide.r_q_error + tight.r_q_error) << theta_deg << " " << shape.sigma;
+          EXPECT_NEAR(wide.deficit, tight.deficit, wide.deficit_error + tight.deficit_error)
+              << theta_deg << " " << shape.sigma;
+        }
+      }
+    }
   }
 }
 
@@ -359,7 +484,8 @@ MomentsRequest scan_request(Distribution distribution, Masking masking) {
 }
 
 TEST(PlannedOrders, ScanOfOrdinarySurfaces_MissesTheToleranceRarely) {
-  constexpr double kMostMissed = 0.03;
+  // Another attempt costs some ten times as much, so that one entry in ten doubles the cost of a run.
+  constexpr double kMostMissed = 0.1;
   std::printf("seed %u, %u entries each, tolerance %g\n", kScanSeed, kScanEntries, kScanTolerance);
   for (const Distribution distribution : kDistributions) {
     for (const Masking masking : kMaskings) {

@@ -212,8 +212,11 @@ TEST(SceneExact_IsothermalSurroundings, LeaveExactlyNoPolarisation) {
   });
 }
 
+// Exactly so where the same attempt met the tolerance for both; it is relative to rho, which depends on the share.
 TEST(SceneExact_Reflectance, IsLinearInTheSpecularShare) {
-  for_each_model([](Distribution distribution, Masking masking) {
+  int same_attempt = 0;
+  int all = 0;
+  for_each_model([&](Distribution distribution, Masking masking) {
     Scene scene = make_scene(distribution, masking, kAbsorbing);
     for (const double theta_deg : {0.0, 60.0, 89.0}) {
       scene.surface.specular = 1.0;
@@ -221,12 +224,19 @@ TEST(SceneExact_Reflectance, IsLinearInTheSpecularShare) {
       for (const double specular : {0.0, 0.25, 0.7}) {
         scene.surface.specular = specular;
         const PointResult part = run_one(scene, theta_deg, {0.3, 2.0}, Evaluator::kFloat);
-        EXPECT_NEAR(part.rho_i, specular * whole.rho_i, kRounding * whole.rho_i);
-        EXPECT_NEAR(part.rho_q, specular * whole.rho_q, kRounding * whole.rho_i);
-        EXPECT_EQ(part.albedo, whole.albedo);
+        const bool is_same = part.albedo == whole.albedo;
+        same_attempt += is_same ? 1 : 0;
+        ++all;
+        const double estimates =
+            whole.rho_error_estimate * specular * whole.rho_i + part.rho_error_estimate * part.rho_i;
+        const double bound = is_same ? kRounding * whole.rho_i : estimates;
+        EXPECT_NEAR(part.rho_i, specular * whole.rho_i, bound);
+        EXPECT_NEAR(part.rho_q, specular * whole.rho_q, bound);
+        EXPECT_NEAR(part.albedo, whole.albedo, scene.accuracy.tolerance * whole.albedo);
       }
     }
   });
+  EXPECT_GT(2 * same_attempt, all);
 }
 
 /// Entries over everything that changes the energy that a surface gives back.

@@ -51,8 +51,12 @@ inline std::unique_ptr<MomentsEvaluator> make_evaluator(Evaluator evaluator) {
   return std::make_unique<CpuEvaluator>(evaluator == Evaluator::kFloat ? Precision::kFloat : Precision::kDouble);
 }
 
+/// In the evaluator's precision alone: no entry that misses is computed again in the other.
 inline std::vector<PointResult> run(const Scene& scene, const std::vector<SceneEntry>& entries, Evaluator evaluator) {
-  return evaluate_scene(scene, entries, *make_evaluator(evaluator), {});
+  Scene own = scene;
+  if (evaluator == Evaluator::kFloat) own.accuracy.precision = Precision::kFloat;
+  if (evaluator == Evaluator::kDouble) own.accuracy.precision = Precision::kDouble;
+  return evaluate_scene(own, entries, *make_evaluator(evaluator), {});
 }
 
 inline PointResult run_one(const Scene& scene, double theta_deg, const SlopeShape& shape, Evaluator evaluator) {

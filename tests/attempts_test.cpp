@@ -1,0 +1,293 @@
+// With which precision and rule an entry is tried, and tried again where it misses the tolerance; and that whole runs
+// do so for the entries that miss, and for no others.
+#include "evaluate/run/attempts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "evaluate/run/scene_run.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kRounding = 1e-12;  // of a power of ten, relative
+
+// Where a float's rounding, some 2^-24 times 20 terms, leaves nothing for a rule.
+constexpr double kInFloat = 1e-5;
+constexpr double kInDouble = 1e-6;
+
+constexpr double kTightestRule = 1e-12;
+
+Accuracy accuracy(double tolerance, Precision precision = Precision::kAuto) {
+  Accuracy result;
+  result.tolerance = tolerance;
+  result.precision = precision;
+  return result;
+}
+
+// A result that misses a tolerance by a factor.
+PointResult missed(double tolerance, double factor) {
+  PointResult result{};
+  result.status = kStatusToleranceMissed;
+  result.error_estimate = 0.1 * factor * tolerance;
+  result.rho_error_estimate = factor * tolerance;
+  return result;
+}
+
+void expect_attempt(const std::optional<Attempt>& attempt, Precision precision, double tolerance) {
+  ASSERT_TRUE(attempt.has_value());
+  EXPECT_EQ(attempt->precision, precision);
+  EXPECT_NEAR(attempt->tolerance, tolerance, kRounding * tolerance);
+}
+
+// ---- One entry -----------------------------------------------------------------------------------------------------
+
+TEST(FirstAttempt, Auto_IsFloatWhereItsRoundingLeavesRoom) {
+  for (const double tolerance : {1e-2, 1e-4, kInFloat}) {
+    expect_attempt(first_attempt(accuracy(tolerance), true), Precision::kFloat, tolerance);
+  }
+  for (const double tolerance : {kInDouble, 1e-8, 1e-10}) {
+    expect_attempt(first_attempt(accuracy(tolerance), true), Precision::kDouble, tolerance);
+  }
+}
+
+TEST(FirstAttempt, PrecisionOfTheScene_IsKept) {
+  expect_attempt(first_attempt(accuracy(1e-2, Precision::kDouble), true), Precision::kDouble, 1e-2);
+  expect_attempt(first_attempt(accuracy(1e-9, Precision::kFloat), true), Precision::kFloat, 1e-9);
+}
+
+TEST(FirstAttempt, WithoutDouble_IsFloat) {
+  expect_attempt(first_attempt(accuracy(1e-9), false), Precision::kFloat, 1e-9);
+}
+
+TEST(NextAttempt, MetTolerance_NeedsNone) {
+  PointResult met = missed(1e-4, 0.9);
+  met.status = 0;
+  EXPECT_FALSE(next_attempt({Precision::kFloat, 1e-4}, met, accuracy(1e-4), true));
+  met.status = kStatusUnphysicalReflectance;
+  EXPECT_FALSE(next_attempt({Precision::kFloat, 1e-4}, met, accuracy(1e-4), true));
+}
+
+TEST(NextAttempt, OutsideTheDomain_NeedsNone) {
+  PointResult outside = missed(1e-4, 100.0);
+  outside.status |= kStatusOutsideDomain;
+  EXPECT_FALSE(next_attempt({Precision::kFloat, 1e-4}, outside, accuracy(1e-4), true));
+}
+
+// An entry misses by its worse estimate; a rule that is as much tighter, and a little more, is tried next.
+TEST(NextAttempt, Decades_FollowTheMiss) {
+  struct Row {
+    double factor;
+    double decades;
+  };
+  for (const auto& [factor, decades] :
+       {Row{1.01, 1}, Row{5.0, 1}, Row{9.0, 2}, Row{50.0, 2}, Row{500.0, 3}, Row{5e3, 4}, Row{5e4, 4}, Row{1e9, 4}}) {
+    const double tolerance = 1e-2;
+    const double wanted = tolerance * std::pow(10.0, -decades);
+    for (const bool dolp_is_worse : {false, true}) {
+      PointResult result = missed(tolerance, factor);
+      if (dolp_is_worse) std::swap(result.error_estimate, result.rho_error_estimate);
+      const Precision precision = wanted >= kInFloat ? Precision::kFloat : Precision::kDouble;
+      expect_attempt(next_attempt({Precision::kFloat, tolerance}, result, accuracy(tolerance), true), precision,
+                     wanted);
+    }
+  }
+}
+
+TEST(NextAttempt, NoEstimate_IsAMissByTheMost) {
+  for (const double unknown : {kNaN, kInfinity}) {
+    PointResult result = missed(1e-6, 1.0);
+    result.error_estimate = unknown;
+    expect_attempt(next_attempt({Precision::kDouble, 1e-6}, result, accuracy(1e-6), true), Precision::kDouble, 1e-10);
+  }
+}
+
+TEST(NextAttempt, NoEstimateOfRho_IsAMissByTheMost) {
+  PointResult result = missed(1e-6, 1.0);
+  result.rho_error_estimate = kNaN;
+  expect_attempt(next_attempt({Precision::kDouble, 1e-6}, result, accuracy(1e-6), true), Precision::kDouble, 1e-10);
+}
+
+// The decades are counted from the rule of the last attempt, not from the scene's tolerance.
+TEST(NextAttempt, SecondMiss_GoesOnFromTheLastRule) {
+  const Accuracy wanted = accuracy(1e-3);
+  expect_attempt(next_attempt({Precision::kFloat, 1e-4}, missed(1e-3, 2.0), wanted, true), Precision::kFloat, 1e-5);
+  expect_attempt(next_attempt({Precision::kDouble, 1e-7}, missed(1e-3, 2.0), wanted, true), Precision::kDouble, 1e-8);
+}
+
+TEST(NextAttempt, RuleTooTightForFloat_GoesOnInDouble) {
+  expect_attempt(next_attempt({Precision::kFloat, 1e-5}, missed(1e-5, 2.0), accuracy(1e-5), true), Precision::kDouble,
+                 1e-6);
+  EXPECT_FALSE(next_attempt({Precision::kFloat, 1e-5}, missed(1e-5, 2.0), accuracy(1e-5), false));
+  EXPECT_FALSE(next_attempt({Precision::kFloat, 1e-5}, missed(1e-5, 2.0), accuracy(1e-5, Precision::kFloat), true));
+}
+
+TEST(NextAttempt, DoubleNeverGoesBackToFloat) {
+  expect_attempt(next_attempt({Precision::kDouble, 1e-2}, missed(1e-2, 2.0), accuracy(1e-2, Precision::kDouble), true),
+                 Precision::kDouble, 1e-3);
+}
+
+TEST(NextAttempt, TightestRule_IsTheLast) {
+  expect_attempt(next_attempt({Precision::kDouble, 1e-11}, missed(1e-10, 1e3), accuracy(1e-10), true),
+                 Precision::kDouble, kTightestRule);
+  EXPECT_FALSE(next_attempt({Precision::kDouble, kTightestRule}, missed(1e-10, 1e3), accuracy(1e-10), true));
+}
+
+// Whatever the results, the attempts get costlier and end.
+TEST(Attempts, EntryThatAlwaysMisses_EndsSoon) {
+  constexpr int kMost = 13;  // a decade each, and the change to double
+  for (const bool has_double : {false, true}) {
+    for (const Precision precision : {Precision::kAuto, Precision::kFloat, Precision::kDouble}) {
+      for (int exponent = 2; exponent <= 10; ++exponent) {
+        for (const double factor : {1.001, 30.0, 1e8, kNaN}) {
+          const Accuracy wanted = accuracy(std::pow(10.0, -exponent), precision);
+          Attempt last = first_attempt(wanted, has_double);
+          int count = 1;
+          while (const auto next = next_attempt(last, missed(wanted.tolerance, factor), wanted, has_double)) {
+            EXPECT_TRUE(last < *next);
+            EXPECT_FALSE(*next < last);
+            EXPECT_LT(next->tolerance, last.tolerance);
+            EXPECT_GE(next->tolerance, kTightestRule);
+            EXPECT_TRUE(has_double || next->precision == Precision::kFloat);
+            last = *next;
+            ASSERT_LE(++count, kMost);
+          }
+          if (has_double && precision != Precision::kFloat) {
+            EXPECT_EQ(last.precision, Precision::kDouble);
+            EXPECT_NEAR(last.tolerance, kTightestRule, kRounding * kTightestRule);
+          } else {
+            EXPECT_EQ(last.precision, Precision::kFloat);
+          }
+        }
+      }
+    }
+  }
+}
+
+// ---- Whole runs ----------------------------------------------------------------------------------------------------
+
+constexpr double kTolerance = 1e-4;
+constexpr double kWorsensFrom_deg = 50.0;
+
+// Moments whose errors keep to the request's tolerance up to kWorsensFrom_deg and miss it by `factor` beyond; in double
+// they keep to it everywhere unless it `never_meets`.
+class Scripted final : public MomentsEvaluator {
+ public:
+  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress&) override {
+    requests.push_back(request);
+    std::vector<Moments> results;
+    for (const MomentsEntry& entry : request.entries) {
+      const double theta_deg = request.theta_deg[entry.theta];
+      const double cosine = cos_sin_deg(theta_deg).cos;
+      const bool misses = theta_deg > kWorsensFrom_deg && (never_meets || request.precision == Precision::kFloat);
+      Moments m;
+      m.r_i = 0.2 * cosine;
+      m.r_q = 0.1 * cosine * (1.0 + shift * static_cast<double>(requests.size() - 1));
+      m.albedo = cosine;
+      m.deficit = cosine - m.r_i;
+      m.r_i_error = m.r_q_error = m.deficit_error = (misses ? factor : 0.01) * kTolerance * m.r_i;
+      if (misses && worsens) m.r_i_error *= static_cast<double>(requests.size());
+      results.push_back(m);
+    }
+    return results;
+  }
+  bool has_double() const override { return double_precision; }
+  EvaluationReport report() const override { return {}; }
+
+  std::vector<MomentsRequest> requests;
+  double factor = 50.0;
+  double shift = 1e-3;
+  bool double_precision = true;
+  bool never_meets = false;
+  bool worsens = false;
+};
+
+Scene scene() {
+  Scene result;
+  result.surface.material.constant = {1.508, 0.0};
+  result.surface.masking = Masking::kNone;
+  result.emission = Emission{300.0, EmissionModel::kMoments};
+  result.spectrum = {10.6, 10.6};
+  result.accuracy.tolerance = kTolerance;
+  return result;
+}
+
+const std::vector<SceneEntry> kEntries = {
+    {20.0, {0.3, 2.0}, {}}, {60.0, {0.3, 2.0}, {}}, {40.0, {0.3, 2.0}, {}}, {70.0, {0.2, 2.0}, {}}};
+const std::vector<double> kMissingDeg = {60.0, 70.0};
+
+TEST(EvaluateScene_Attempts, OnlyTheEntriesThatMiss_AreComputedAgain) {
+  Scripted evaluator;
+  const std::vector<PointResult> results = evaluate_scene(scene(), kEntries, evaluator, {});
+  ASSERT_EQ(evaluator.requests.size(), 2U);
+  EXPECT_EQ(evaluator.requests[0].entries.size(), 4U);
+  EXPECT_EQ(evaluator.requests[0].precision, Precision::kFloat);
+  EXPECT_EQ(evaluator.requests[0].tolerance, kTolerance);
+  EXPECT_EQ(evaluator.requests[1].theta_deg, kMissingDeg);
+  EXPECT_EQ(evaluator.requests[1].precision, Precision::kDouble);
+  EXPECT_NEAR(evaluator.requests[1].tolerance, 0.01 * kTolerance, kRounding * kTolerance);
+  ASSERT_EQ(results.size(), kEntries.size());
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    EXPECT_EQ(results[i].status & kStatusToleranceMissed, 0U) << i;
+    // in its own place, from the attempt that met the tolerance
+    const double rho_q = kEntries[i].theta_deg > kWorsensFrom_deg ? 0.1 * (1.0 + evaluator.shift) : 0.1;
+    EXPECT_NEAR(results[i].rho_q, rho_q, 1e-12) << i;
+  }
+}
+
+TEST(EvaluateScene_Attempts, WithoutDouble_TheMissStandsAndSaysSo) {
+  Scripted evaluator;
+  evaluator.double_precision = false;
+  const std::vector<PointResult> results = evaluate_scene(scene(), kEntries, evaluator, {});
+  for (const MomentsRequest& request : evaluator.requests) EXPECT_EQ(request.precision, Precision::kFloat);
+  EXPECT_NE(results[1].status & kStatusToleranceMissed, 0U);
+  EXPECT_EQ(results[2].status & kStatusToleranceMissed, 0U);
+}
+
+TEST(EvaluateScene_Attempts, ThatAllMiss_KeepTheBest) {
+  Scripted evaluator;
+  evaluator.never_meets = true;
+  evaluator.worsens = true;
+  const std::vector<PointResult> results = evaluate_scene(scene(), kEntries, evaluator, {});
+  EXPECT_GT(evaluator.requests.size(), 2U);
+  EXPECT_NE(results[1].status & kStatusToleranceMissed, 0U);
+  EXPECT_NEAR(results[1].rho_q, 0.1, 1e-12);  // of the first attempt
+}
+
+// Entries that miss by more than others want a tighter rule, and are not held back by them.
+TEST(EvaluateScene_Attempts, EachRuleAndPrecision_IsAskedForOnce) {
+  Scripted evaluator;
+  evaluator.never_meets = true;
+  evaluate_scene(scene(), kEntries, evaluator, {});
+  for (std::size_t i = 1; i < evaluator.requests.size(); ++i) {
+    const Attempt before{evaluator.requests[i - 1].precision, evaluator.requests[i - 1].tolerance};
+    const Attempt now{evaluator.requests[i].precision, evaluator.requests[i].tolerance};
+    EXPECT_TRUE(before < now) << i;
+  }
+  EXPECT_EQ(evaluator.requests.back().precision, Precision::kDouble);
+}
+
+TEST(EvaluateScene_Attempts, Mirror_IsNeverTriedAgain) {
+  Scripted evaluator;
+  const std::vector<SceneEntry> mirror = {{60.0, {0.0, 2.0}, {}}};
+  evaluate_scene(scene(), mirror, evaluator, {});
+  for (const MomentsRequest& request : evaluator.requests) EXPECT_TRUE(request.entries.empty());
+}
+
+TEST(EvaluateScene_Attempts, TightTolerance_StartsInDouble) {
+  Scripted evaluator;
+  Scene tight = scene();
+  tight.accuracy.tolerance = 1e-8;
+  evaluate_scene(tight, {kEntries[0]}, evaluator, {});
+  EXPECT_EQ(evaluator.requests.front().precision, Precision::kDouble);
+}
+
+}  // namespace
+}  // namespace dolp

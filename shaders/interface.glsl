@@ -33,8 +33,8 @@
 #define DOLP_MAX_PIECES 12       // pieces of the slope axis for one direction
 #define DOLP_MAX_ORDER 64        // largest Gauss order of the rule nodes
 #define DOLP_MASKING_OCTAVES 29  // of v = 1 + tau/scale
-#define DOLP_MASKING_CELL_BITS_FLOAT 4   // 2^bits cells per octave
-#define DOLP_MASKING_CELL_BITS_DOUBLE 6
+#define DOLP_MASKING_CELL_BITS_FLOAT 3   // 2^bits cells per octave
+#define DOLP_MASKING_CELL_BITS_DOUBLE 5
 #define DOLP_MASKING_NODES(CELL_BITS) ((DOLP_MASKING_OCTAVES << (CELL_BITS)) + 1)
 
 // ---- Structures ----------------------------------------------------------------------------------------------------

@@ -16,9 +16,9 @@ using boost::math::constants::root_pi;
 
 constexpr double kCosineRounding = 2.0 * std::numeric_limits<double>::epsilon();
 
-// Bounds of the interpolation error of G relative to the albedo (quintic Hermite, 16 and 64 cells an octave).
+// Bounds of the interpolation error of G relative to the albedo (quintic Hermite, 8 and 32 cells an octave).
 constexpr double kMaskingTableErrorFloat = 3e-8;
-constexpr double kMaskingTableErrorDouble = 4e-11;
+constexpr double kMaskingTableErrorDouble = 1e-11;
 constexpr double kDoubleRoundoff = 0x1p-53;
 
 // Rounding error in units of the precision's roundoff, relative to the integral of absolute values. The masking tables

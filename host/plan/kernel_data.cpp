@@ -275,9 +275,11 @@ void add_directions(KernelData& data, const MomentsRequest& request) {
   }
 }
 
+constexpr double kTableOrder = 6.0;  // of the masking table's cells, see physics/masking_table.glsl
+
 // The largest order that any rule may have.
 int largest_order(const KernelData& data) {
-  double largest = 1.0;
+  double largest = kTableOrder;
   for (const kernel::ThetaNode& node : data.thetas) {
     largest = std::max({largest, node.order_limit_t, node.order_limit_phi});
   }

@@ -153,7 +153,7 @@ struct Slice {
 real horizon_nodes(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, real x_start, real x_horizon) {
   real sec2 = real(1.0) + slice.t * slice.t;
   real gap = (real(0.5) * theta.c * sec2 + index.pole_cos * sqrt(sec2)) / max(theta.s * slice.t, real(1e-30));
-  real relative = real(2.0) * gap / max(x_start - x_horizon, real(1e-30));
+  real relative = min(real(2.0) * gap / max(x_start - x_horizon, real(1e-30)), real(1e9));
   return slice.digits * rule.phi_horizon_growth * kHalfLn10 /
          max(log1p_real(relative + sqrt(relative * (relative + real(2.0)))), real(1e-3));
 }
@@ -165,7 +165,8 @@ int arc_order(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, Arc 
   if (arc.section == kSectionCircle) {
     // The next singularity is the pole of R_p, and without it the line e = 0.
     real sec = sqrt(real(1.0) + slice.t * slice.t);
-    real x = max((theta.c + rule.circle_pole * index.pole_cos * sec) / max(theta.s * slice.t, real(1e-30)), real(1.0001));
+    real x = (theta.c + rule.circle_pole * index.pole_cos * sec) / max(theta.s * slice.t, real(1e-30));
+    x = clamp(x, real(1.0001), real(1e9));  // whose square is no overflow
     real per_digit = rule.phi_circle_growth * kHalfLn10 / asinh_real(sqrt(x * x - real(1.0)));
     // With fewer than two nodes cos(2 phi) would not average out.
     nodes = max(rule.phi_circle_nodes + slice.digits * per_digit, real(2.0));

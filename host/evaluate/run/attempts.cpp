@@ -29,7 +29,8 @@ Attempt first_attempt(const Accuracy& accuracy, bool has_double) {
 std::optional<Attempt> next_attempt(const Attempt& last, const PointResult& result, const Accuracy& accuracy,
                                     bool has_double) {
   if ((result.status & kStatusToleranceMissed) == 0 || (result.status & kStatusOutsideDomain) != 0) return std::nullopt;
-  const double excess = std::max(result.error_estimate, result.rho_error_estimate) / accuracy.tolerance;
+  const double worse = std::max(result.error_estimate, result.rho_error_estimate);
+  const double excess = std::isnan(result.rho_error_estimate) ? result.rho_error_estimate : worse / accuracy.tolerance;
   const double decades =
       std::isfinite(excess) ? std::clamp(std::ceil(std::log10(kSafety * excess)), 1.0, kMostDecades) : kMostDecades;
   const double wanted = last.tolerance * std::pow(10.0, -decades);

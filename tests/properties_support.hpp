@@ -49,6 +49,16 @@ inline std::string text_of(const Point& p) {
                      p.index.n, p.index.k);
 }
 
+/// Directions of the two beams of a pBRDF.
+struct Beams {
+  double theta_i_deg, theta_r_deg, delta_phi_deg;
+};
+
+inline std::string text_of(const Beams& beams) {
+  return fmt::format("theta_i {:.17g} theta_r {:.17g} delta_phi {:.17g}", beams.theta_i_deg, beams.theta_r_deg,
+                     beams.delta_phi_deg);
+}
+
 /// Draws that are the same on every machine.
 class Random {
  public:
@@ -58,9 +68,11 @@ class Random {
   double log_uniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
   bool chance(double probability) { return uniform(0.0, 1.0) < probability; }
 
-  /// A direction; one in five each next to the normal and next to grazing incidence.
+  /// A direction; one in five each next to the normal and next to grazing incidence, a few exactly there.
   double theta_deg() {
     const double kind = uniform(0.0, 1.0);
+    if (kind < 0.02) return 0.0;
+    if (kind > 0.98) return 90.0;
     if (kind < 0.2) return log_uniform(1e-8, 10.0);
     if (kind < 0.4) return 90.0 - log_uniform(1e-6, 10.0);
     return uniform(0.0, 90.0);
@@ -86,13 +98,13 @@ class Random {
     return p;
   }
 
+  Beams beams() { return {uniform(0.5, 89.5), uniform(0.5, 89.5), uniform(-180.0, 180.0)}; }
+
   std::vector<Point> points(const Model& model, std::size_t count) {
     std::vector<Point> drawn;
     for (std::size_t i = 0; i < count; ++i) drawn.push_back(point(model));
     return drawn;
   }
-
-  std::mt19937_64& engine() { return engine_; }
 
  private:
   std::mt19937_64 engine_;

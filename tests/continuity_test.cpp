@@ -18,8 +18,8 @@ namespace dolp {
 namespace {
 
 constexpr std::uint64_t kSeed = 20260404;
-constexpr std::size_t kBases = 12;  // random positions in the other parameters, for each switch
-constexpr std::size_t kSteps = 40;  // order steps looked for, for each parameter
+constexpr std::size_t kBases = 6;   // random positions in the other parameters, for each switch
+constexpr std::size_t kSteps = 16;  // order steps looked for, for each parameter
 
 // Steps across a switch, relative. A kernel in float sees the switch of the data that the host computed in double, and
 // rounds what it reads of the step itself.

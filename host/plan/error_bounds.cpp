@@ -82,17 +82,31 @@ double masking_error(const KernelData& data, const MomentsEntry& entry, double u
   return table * (may_diverge ? 1.0 + kDivergingSlope / shape.two_q_minus_3 : 1.0);
 }
 
+constexpr double kDeficitFactor = 1.6;  // by which the deficit's doubt says less than that of r_i
+
 // The core of the domain, see Difficulty.
 constexpr double kCoreCosTheta = 0.0087;
+constexpr double kCoreHorizonGap = 0.045;  // cos(theta) + pole_cos: a metal at grazing incidence
 constexpr double kCoreSmallestM = 0.007;
+constexpr double kCoreSmallestTableM = 0.028;  // integral and smith
 constexpr double kCoreLargestM = 1.7;
 constexpr double kCorePoleCos = 0.01;
 constexpr double kCoreContrast = 0.05;  // |N^2 - 1|
+constexpr double kCoreSmithQ = 1.6;
+constexpr double kReflectingContrast = 1.5;  // |N^2 - 1| up to which Re N^2 < 1 reflects nearly all beyond an angle
 
-Difficulty difficulty(const kernel::ThetaNode& theta, const kernel::ShapeNode& shape, const kernel::IndexNode& index) {
-  if (index.critical_cos > 0.0) return Difficulty::kTotalReflection;
-  const bool is_core = theta.c >= kCoreCosTheta && shape.m >= kCoreSmallestM && shape.m <= kCoreLargestM &&
-                       index.pole_cos >= kCorePoleCos && std::hypot(index.n2m1_re, index.n2m1_im) >= kCoreContrast;
+Difficulty difficulty(const KernelData& data, const MomentsEntry& entry) {
+  const kernel::ThetaNode& theta = data.thetas[entry.theta];
+  const kernel::ShapeNode& shape = data.shapes[entry.shape];
+  const kernel::IndexNode& index = data.indices[entry.index];
+  const double contrast = std::hypot(index.n2m1_re, index.n2m1_im);
+  const bool nearly_reflects = index.n2m1_re < 0.0 && contrast < kReflectingContrast;
+  if (index.critical_cos > 0.0 || nearly_reflects) return Difficulty::kTotalReflection;
+  const double smallest_m = data.needs_masking_table() ? kCoreSmallestTableM : kCoreSmallestM;
+  const bool is_smith = data.masking == Masking::kSmith && data.distribution == Distribution::kCauchy;
+  const bool is_core = theta.c >= kCoreCosTheta && theta.c + index.pole_cos >= kCoreHorizonGap &&
+                       shape.m >= smallest_m && shape.m <= kCoreLargestM && index.pole_cos >= kCorePoleCos &&
+                       contrast >= kCoreContrast && !(is_smith && shape.q_minus_1 < kCoreSmithQ - 1.0);
   return is_core ? Difficulty::kCore : Difficulty::kEdge;
 }
 
@@ -126,10 +140,10 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   moments.r_q = node.r_q;
   moments.albedo = node.albedo;
   moments.deficit = node.deficit;
-  const double factor = doubt_factor(data.masking, data.tolerance, difficulty(theta, shape, index));
+  const double factor = doubt_factor(data.masking, data.tolerance, difficulty(data, entry));
   const double r_i_scale = std::abs(node.r_i);  // a rule that fails can make it negative
   const double reflected_rule = factor * node.doubt;
-  const double deficit_rule = factor * node.deficit_doubt;
+  const double deficit_rule = kDeficitFactor * factor * node.deficit_doubt;
   moments.r_i_error = reflected_rule + (rounding + masking) * r_i_scale + reflected_cut;
   moments.r_q_error = moments.r_i_error;
   // The albedo shares the nodes of the two.

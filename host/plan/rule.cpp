@@ -26,7 +26,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_horizon_growth = 0.609,
      .circle_pole = 0.667,
      .phi_cluster_growth = 1.35,
-     .doubt_factor = 2.8},
+     .doubt_decades = {0.6, 0.4, 0.33, -0.2, 0.0}},
     // v-cavity
     {.margin_digits = 2.46,
      .t_nodes = 1.05,
@@ -43,8 +43,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_circle_growth = 0.954,
      .phi_horizon_growth = 0.418,
      .circle_pole = 0.723,
-     .doubt_factor = 2.8,
-     .doubt_growth = 0.1},
+     .doubt_decades = {0.5, 0.53, 0.45, 0.0, 0.4}},
     // integral
     {.margin_digits = 2.18,
      .t_nodes = 1.25,
@@ -63,8 +62,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .circle_pole = 0.958,
      .phi_cluster_growth = 4.35,
      .line_threshold = 6.48e+04,
-     .doubt_factor = 3.5,
-     .doubt_growth = 0.35},
+     .doubt_decades = {0.65, 0.35, 0.1, 0.55, 1.85}},
     // smith
     {.margin_digits = 1.8,
      .t_nodes = 1.05,
@@ -84,19 +82,20 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_cluster_growth = 2.74,
      .cusp_digits = 3.06,
      .line_threshold = 1.48e+05,
-     .doubt_factor = 6.0,
-     .doubt_growth = 0.4},
+     .doubt_decades = {0.95, 0.6, 0.4, 1.0, 1.8}},
 }};
 
 constexpr double kCalibratedDigits = 4.0;  // where the curvatures vanish
 
-// Decades by which the doubts' factor is larger than that of the model, from these digits of the tolerance on.
-constexpr double kPlainDoubtDigits = 5.0;
+constexpr std::array kDoubtDigits = {2.0, 3.0, 4.0, 6.0, 9.0};  // of RuleModel::doubt_decades
+
+// Decades by which the doubts' factor is larger outside the core of the domain, and their growth with the digits of the
+// tolerance from kHardDoubtDigits on.
 constexpr double kHardDoubtDigits = 4.0;
-constexpr double kEdgeDecades = 0.8;
-constexpr double kEdgeGrowth = 0.35;
-constexpr double kTotalReflectionDecades = 1.3;
-constexpr double kTotalReflectionGrowth = 0.5;
+constexpr double kEdgeDecades = 1.1;
+constexpr double kEdgeGrowth = 0.4;
+constexpr double kTotalReflectionDecades = 1.6;
+constexpr double kTotalReflectionGrowth = 0.55;
 
 // The cluster of `integral` below this q, at this many digits and more.
 constexpr double kClusterBelowQ = 1.6;
@@ -136,11 +135,14 @@ double rule_digits(Masking masking, double tolerance) {
 double doubt_factor(Masking masking, double tolerance, Difficulty difficulty) {
   const RuleModel& model = rule_model(masking);
   const double digits = -std::log10(tolerance);
+  std::size_t i = 0;
+  while (i + 2 < kDoubtDigits.size() && digits > kDoubtDigits[i + 1]) ++i;
+  const double slope = (model.doubt_decades[i + 1] - model.doubt_decades[i]) / (kDoubtDigits[i + 1] - kDoubtDigits[i]);
   const double hard = std::max(0.0, digits - kHardDoubtDigits);
-  double decades = model.doubt_growth * std::max(0.0, digits - kPlainDoubtDigits);
+  double decades = model.doubt_decades[i] + slope * std::max(0.0, digits - kDoubtDigits[i]);
   if (difficulty == Difficulty::kEdge) decades += kEdgeDecades + kEdgeGrowth * hard;
   if (difficulty == Difficulty::kTotalReflection) decades += kTotalReflectionDecades + kTotalReflectionGrowth * hard;
-  return model.doubt_factor * std::pow(10.0, decades);
+  return std::pow(10.0, decades);
 }
 
 kernel::RuleNode rule_node(Masking masking, double digits) {

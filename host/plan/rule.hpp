@@ -25,8 +25,8 @@ struct RuleModel {
   double phi_cluster_growth = 1.0;    ///< RuleNode::phi_cluster_growth
   double cusp_digits = 0.0;           ///< smith: digits by which the cusp is smaller than its formula says
   double line_threshold = 0.0;        ///< multiples of 10^-digits from which a line or cusp is worth its pieces
-  double doubt_factor = 1.0;          ///< from MomentsNode::doubt to an error bound
-  double doubt_growth = 0.0;          ///< more digits of that factor for each digit beyond the tolerance 1e-5
+  /// log10 of the factor from MomentsNode::doubt to an error bound, at the tolerances 1e-2, 1e-3, 1e-4, 1e-6 and 1e-9.
+  double doubt_decades[5] = {};
 };
 
 /// The numbers for a masking.

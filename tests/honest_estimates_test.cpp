@@ -1,0 +1,63 @@
+// Estimates are honest over the whole range that scenes allow: what a coarse rule states of its error holds against a
+// rule of four digits more. DOLP_PROPERTY_DRAWS in the environment sets the number of points per kernel and model.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "properties_support.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr std::uint64_t kSeed = 20260402;
+constexpr std::size_t kDraws = 60;
+constexpr double kCoarse = 1e-2;
+constexpr double kFine = 1e-6;
+
+std::size_t draws() {
+  const char* text = std::getenv("DOLP_PROPERTY_DRAWS");
+  return text != nullptr ? std::strtoul(text, nullptr, 10) : kDraws;
+}
+
+std::uint64_t seed_of(const Model& model) {
+  return kSeed + 2 * static_cast<std::uint64_t>(model.masking) + static_cast<std::uint64_t>(model.distribution);
+}
+
+using Case = std::tuple<Kernel, Model>;
+
+class RandomPoints : public testing::TestWithParam<Case> {};
+
+TEST_P(RandomPoints, CoarseAndFineRule_DifferByNoMoreThanTheyState) {
+  const auto [kernel, model] = GetParam();
+  const std::vector<Point> points = Random(seed_of(model)).points(model, draws());
+  std::printf("seed %llu, %zu points\n", static_cast<unsigned long long>(seed_of(model)), points.size());
+  const std::vector<Moments> coarse = make_evaluator(kernel)->evaluate(request_of(model, points, kCoarse), {});
+  const std::vector<Moments> fine = make_evaluator(Kernel::kCpuDouble)->evaluate(request_of(model, points, kFine), {});
+  double worst = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (const Quantity& quantity : kQuantities) {
+      const double difference = std::abs(coarse[i].*quantity.value - fine[i].*quantity.value);
+      const double stated = coarse[i].*quantity.error + fine[i].*quantity.error;
+      EXPECT_TRUE(difference <= stated) << quantity.name << " at " << text_of(points[i]) << ": "
+                                        << coarse[i].*quantity.value << " states " << coarse[i].*quantity.error << ", "
+                                        << fine[i].*quantity.value << " states " << fine[i].*quantity.error;
+      if (difference > 0.0) worst = std::max(worst, difference / stated);
+    }
+  }
+  std::printf("largest difference over what is stated: %.2f\n", worst);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, RandomPoints,
+                         testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)),
+                         [](const testing::TestParamInfo<Case>& test) {
+                           return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
+                         });
+
+}  // namespace
+}  // namespace dolp

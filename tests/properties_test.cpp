@@ -1,0 +1,474 @@
+// What must hold whatever the inputs, on seeded random draws of the whole range that scenes allow: masking,
+// reciprocity, energy, limits, and independence of how a request is laid out.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstdio>
+#include <memory>
+#include <numbers>
+#include <numeric>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "evaluate/cpu/text.hpp"
+#include "physics_text.hpp"
+#include "plan/geometry.hpp"
+#include "properties_support.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr std::uint64_t kSeed = 20260403;
+
+std::uint64_t printed_seed(std::uint64_t offset) {
+  std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed + offset));
+  return kSeed + offset;
+}
+
+std::uint64_t number_of(const Model& model) {
+  return 2 * static_cast<std::uint64_t>(model.masking) + static_cast<std::uint64_t>(model.distribution);
+}
+
+// ---- Masking -------------------------------------------------------------------------------------------------------
+
+constexpr int kShapes = 60;
+constexpr int kDirections = 40;
+
+// Of G, relative to what it hides or lets through: interpolation of the tables (3e-8 in float, 4e-11 in double,
+// relative to the albedo; plan/error_bounds.cpp) and the roundings of their sums, 400 at most where q is near 1.
+constexpr double kTableErrorFloat = 3e-8;
+constexpr double kTableErrorDouble = 4e-11;
+constexpr double kRoundings = 400.0;
+
+template <class Text>
+constexpr double kMaskingError = (std::is_same_v<RealOf<Text>, float> ? kTableErrorFloat : kTableErrorDouble) +
+                                 0.5 * kRoundings* kEpsilon<Text>;
+
+/// The text with the masking of one random shape.
+template <class Text>
+struct MaskingOfShape {
+  using Real = RealOf<Text>;
+
+  MaskingOfShape(const Model& model, const SlopeShape& drawn) : shape(drawn) {
+    const KernelData data = kernel_data(request_of(model, {{.shape = shape}}, 1e-4));
+    text = text_for<Text>(data);
+    node = shape_in<Text>(data.shapes[0]);
+    if (data.needs_masking_table()) text.build_masking_table(node, 0U);
+  }
+
+  double g1(double theta_deg, double slope) {
+    const CosSin a = cos_sin_deg(theta_deg);
+    return 1.0 - static_cast<double>(text.shadowed_integral(node, 0U, static_cast<Real>(a.cos),
+                                                            static_cast<Real>(a.sin), static_cast<Real>(slope)));
+  }
+  // What rounding and interpolation do to G1: its terms are kappa l, with kappa = 1 / cos(theta - alpha), which next to
+  // grazing facets of grazing directions is large.
+  double error(double theta_deg, double slope) {
+    const CosSin a = cos_sin_deg(theta_deg);
+    const double mu = a.cos / std::max(a.sin, 1e-10);
+    const double height = static_cast<double>(text.masking_height(node, 0U, static_cast<Real>(mu)));
+    return kMaskingError<Text> * (1.0 + std::sqrt(1.0 + slope * slope) / (mu + slope) * height);
+  }
+  double lambda(double theta_deg) {
+    const CosSin a = cos_sin_deg(theta_deg);
+    return static_cast<double>(text.smith_lambda(node, 0U, static_cast<Real>(a.cos), static_cast<Real>(a.sin)));
+  }
+  std::string where(double theta_deg, double slope) const {
+    return fmt::format("sigma {:.17g} q {:.17g} theta {:.17g} slope {:.17g}", shape.sigma, shape.q, theta_deg, slope);
+  }
+
+  SlopeShape shape;
+  Text text;
+  typename Text::ShapeNode node;
+};
+
+template <class Text>
+class MaskingProperties : public testing::Test {};
+TYPED_TEST_SUITE(MaskingProperties, Texts, TextNames);
+
+TYPED_TEST(MaskingProperties, IntegralG1_IsBetweenAHalfAndOne_AndFallsWithTheta) {
+  Random random(printed_seed(1));
+  for (int i = 0; i < kShapes; ++i) {
+    const Model model{random.chance(0.7) ? Distribution::kCauchy : Distribution::kGaussian, Masking::kIntegral};
+    MaskingOfShape<TypeParam> masking(model, random.shape(model));
+    for (int j = 0; j < kDirections; ++j) {
+      const double slope = random.log_uniform(1e-6, 1e3);
+      const double theta = random.theta_deg();
+      const double beyond = std::min(90.0, theta + random.log_uniform(1e-9, 90.0));
+      const double g1 = masking.g1(theta, slope);
+      const double error = masking.error(theta, slope);
+      EXPECT_GE(g1, 0.5 - error) << masking.where(theta, slope);
+      EXPECT_LE(g1, 1.0 + error) << masking.where(theta, slope);
+      EXPECT_LE(masking.g1(beyond, slope), g1 + error + masking.error(beyond, slope))
+          << masking.where(theta, slope) << " and theta " << beyond;
+    }
+  }
+}
+
+// With the facet's tilt toward theta G1 rises until the facet faces it, tan(alpha) = tan(theta), and falls beyond: the
+// weight 1 + cos(theta + gamma) / cos(theta - alpha) does, and the limit b only adds where it is 0.
+TYPED_TEST(MaskingProperties, IntegralG1_RisesWithTheSlopeUpToTheFacingFacet_AndFallsBeyond) {
+  Random random(printed_seed(2));
+  for (int i = 0; i < kShapes; ++i) {
+    const Model model{random.chance(0.7) ? Distribution::kCauchy : Distribution::kGaussian, Masking::kIntegral};
+    MaskingOfShape<TypeParam> masking(model, random.shape(model));
+    for (int j = 0; j < kDirections; ++j) {
+      const double theta = random.uniform(0.5, 89.5);
+      const double facing = std::tan(theta * std::numbers::pi / 180.0);
+      const double below = facing * random.uniform(0.0, 1.0);
+      const double nearer = below + (facing - below) * random.uniform(0.0, 1.0);
+      EXPECT_LE(masking.g1(theta, below), masking.g1(theta, nearer) + 2.0 * masking.error(theta, below))
+          << masking.where(theta, below);
+      const double above = facing * random.log_uniform(1.0, 1e3);
+      const double farther = above * random.log_uniform(1.0, 1e3);
+      EXPECT_GE(masking.g1(theta, above), masking.g1(theta, farther) - 2.0 * masking.error(theta, above))
+          << masking.where(theta, above);
+    }
+  }
+}
+
+TYPED_TEST(MaskingProperties, SmithG1_IsBetweenNothingAndOne_AndFallsWithTheta) {
+  constexpr double kError = kMaskingError<TypeParam>;
+  Random random(printed_seed(3));
+  for (int i = 0; i < kShapes; ++i) {
+    const Model model{random.chance(0.7) ? Distribution::kCauchy : Distribution::kGaussian, Masking::kSmith};
+    MaskingOfShape<TypeParam> masking(model, random.shape(model));
+    for (int j = 0; j < kDirections; ++j) {
+      const double theta = random.theta_deg();
+      const double beyond = std::min(90.0, theta + random.log_uniform(1e-9, 90.0));
+      const double lambda = masking.lambda(theta);
+      EXPECT_GE(lambda, -kError) << masking.where(theta, 0.0);
+      // What a table's error does to G1 = 1 / (1 + L).
+      EXPECT_LE(1.0 / (1.0 + masking.lambda(beyond)), 1.0 / (1.0 + lambda) + 2.0 * kError)
+          << masking.where(theta, 0.0) << " and theta " << beyond;
+    }
+  }
+}
+
+/// A facet that reflects theta to a direction above the horizon, and what masking leaves of it.
+template <class Text>
+void expect_projection_within_the_facet(MaskingOfShape<Text>& masking, const Model& model, Random& random) {
+  using Real = RealOf<Text>;
+  const double theta_deg = random.theta_deg();
+  const double slope = random.log_uniform(1e-4, 100.0);
+  const CosSin a = cos_sin_deg(theta_deg);
+  const double e = a.cos + a.sin * slope * random.uniform(-1.0, 1.0);
+  const double cos_r = 2.0 * e / (1.0 + slope * slope) - a.cos;
+  if (e <= 0.0 || cos_r <= 0.0) return;
+  typename Text::ThetaNode theta{};
+  theta.c = static_cast<Real>(a.cos);
+  theta.s = static_cast<Real>(a.sin);
+  const auto slope_real = static_cast<Real>(slope);
+  Real by_slope = Real(0.0);
+  if (model.masking == Masking::kSmith) by_slope = masking.text.smith_lambda(masking.node, 0U, theta.c, theta.s);
+  if (model.masking == Masking::kIntegral) {
+    by_slope = masking.text.shadowed_integral(masking.node, 0U, theta.c, theta.s, slope_real);
+  }
+  const int zone = cos_r > a.cos ? 0 : 1;  // theta_r < theta: the shadow of theta
+  const auto part = masking.text.project(theta, masking.node, 0U, slope_real, static_cast<Real>(e),
+                                         static_cast<Real>(cos_r), zone, by_slope);
+  const double error = kMaskingError<Text> * e;
+  const double seen = static_cast<double>(part.seen);
+  const double hidden = static_cast<double>(part.hidden);
+  EXPECT_GE(seen, -error) << masking.where(theta_deg, slope) << " e " << e;
+  EXPECT_GE(hidden, -error) << masking.where(theta_deg, slope) << " e " << e;
+  EXPECT_NEAR(seen + hidden, e, 4.0 * kEpsilon<Text> * e) << masking.where(theta_deg, slope);
+}
+
+TYPED_TEST(MaskingProperties, EveryMasking_LeavesAShareBetweenNothingAndAll) {
+  Random random(printed_seed(4));
+  for (const Model& model : kModels) {
+    for (int i = 0; i < kShapes; ++i) {
+      MaskingOfShape<TypeParam> masking(model, random.shape(model));
+      for (int j = 0; j < kDirections; ++j) expect_projection_within_the_facet(masking, model, random);
+    }
+  }
+}
+
+// ---- pBRDF ---------------------------------------------------------------------------------------------------------
+
+constexpr std::size_t kGeometries = 300;
+
+/// f cos(theta_i) cos(theta_r) of the text, row by row, for points of one model.
+class PbrdfOfPoints {
+ public:
+  PbrdfOfPoints(const Model& model, const std::vector<Point>& points, bool in_double)
+      : data_(kernel_data(request_of(model, points, 1e-4))),
+        text_(in_double ? make_kernel_text_double(data_) : make_kernel_text_float(data_)) {
+    if (!data_.needs_masking_table()) return;
+    for (std::size_t i = 0; i < points.size(); ++i) text_->build_masking_table(i);
+  }
+
+  kernel::MuellerNode operator()(std::size_t point, const Beams& beams) {
+    return text_->mueller(geometry_node(beams.theta_i_deg, beams.theta_r_deg, beams.delta_phi_deg), point, point);
+  }
+
+ private:
+  KernelData data_;
+  std::unique_ptr<KernelText> text_;
+};
+
+// A float's exponential ends at e^-80 and a double's at e^-690: smaller matrices are 0 or nearly so.
+constexpr double kSmallestFloat = 1e-25;
+constexpr double kSmallestDouble = 1e-280;
+
+class EveryModel : public testing::TestWithParam<Model> {};
+
+// f(i, r, dphi) = S f(r, i, -dphi)^T S with S = diag(1, 1, -1, 1). Both sides round cos(beta) and the rotations on
+// their own, in double beforehand; near the retro direction, where beta is small, the rotation's angle is known to
+// rounding over beta, which the matrix does not feel because R_s - R_p vanishes as beta^2.
+TEST_P(EveryModel, ExchangedBeams_GiveTheTransposedMatrix) {
+  constexpr double kDoubleTolerance = 1e-10;
+  constexpr double kFloatTolerance = 5e-5;
+  constexpr std::array kSigns = {1.0, 1.0, -1.0, 1.0};
+  Random random(printed_seed(100 + number_of(GetParam())));
+  const std::vector<Point> points = random.points(GetParam(), kGeometries);
+  for (const bool in_double : {true, false}) {
+    PbrdfOfPoints pbrdf(GetParam(), points, in_double);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      const Beams beams = random.beams();
+      const kernel::MuellerNode f = pbrdf(n, beams);
+      const kernel::MuellerNode g = pbrdf(n, {beams.theta_r_deg, beams.theta_i_deg, -beams.delta_phi_deg});
+      const double scale = std::max(f.m[0], in_double ? kSmallestDouble : kSmallestFloat);
+      for (std::size_t i = 0; i < 16; ++i) {
+        const std::size_t row = i / 4;
+        const std::size_t column = i % 4;
+        EXPECT_NEAR(f.m[i], kSigns[row] * kSigns[column] * g.m[4 * column + row],
+                    (in_double ? kDoubleTolerance : kFloatTolerance) * scale)
+            << (in_double ? "double" : "float") << ", element " << row << column << " at " << text_of(points[n]) << " "
+            << text_of(beams);
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, EveryModel, testing::ValuesIn(kModels),
+                         [](const testing::TestParamInfo<Model>& test) { return name_of(test.param); });
+
+/// Equation: f_00 cos(theta_i) cos(theta_r) of a GGX surface with height-correlated Smith masking, from vectors.
+/// Source: Walter et al. 2007, eqs. (33), (34); Heitz 2014, eq. (99).
+double ggx_smith(double alpha, const std::complex<double>& index, const Beams& beams) {
+  const double degree = std::numbers::pi / 180.0;
+  const double ti = beams.theta_i_deg * degree;
+  const double tr = beams.theta_r_deg * degree;
+  const double dphi = beams.delta_phi_deg * degree;
+  const double hx = std::sin(ti) + std::sin(tr) * std::cos(dphi);
+  const double hy = std::sin(tr) * std::sin(dphi);
+  const double hz = std::cos(ti) + std::cos(tr);
+  const double length = std::sqrt(hx * hx + hy * hy + hz * hz);
+  const double cos_h = hz / length;
+  const double cos_beta = 0.5 * length;
+  const double base = cos_h * cos_h * (alpha * alpha - 1.0) + 1.0;
+  const double density = alpha * alpha / (std::numbers::pi * base * base);
+  const auto lambda = [&](double theta) {
+    return 0.5 * (std::sqrt(1.0 + alpha * alpha * std::tan(theta) * std::tan(theta)) - 1.0);
+  };
+  const std::complex<double> cos_t = std::sqrt(1.0 - (1.0 - cos_beta * cos_beta) / (index * index));
+  const double r_s = std::norm((cos_beta - index * cos_t) / (cos_beta + index * cos_t));
+  const double r_p = std::norm((index * cos_beta - cos_t) / (index * cos_beta + cos_t));
+  return 0.5 * (r_s + r_p) * density / (4.0 * (1.0 + lambda(ti) + lambda(tr)));
+}
+
+TEST(QOfTwo, IsGgxFromTextbooks) {
+  // 1 - cos^2(h) of the textbook's form and the slope of facets near the normal lose digits at the smallest alpha,
+  // 1e-3.
+  constexpr double kTolerance = 1e-8;
+  Random random(printed_seed(200));
+  std::vector<Point> points(3 * kGeometries);
+  for (Point& point : points) {
+    point.shape = {random.log_uniform(1e-3, 10.0), 2.0};
+    point.index = {random.log_uniform(0.1, 100.0), random.log_uniform(1e-3, 100.0)};
+  }
+  PbrdfOfPoints pbrdf({Distribution::kCauchy, Masking::kSmith}, points, true);
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const Beams beams = random.beams();
+    const double expected =
+        ggx_smith(std::numbers::sqrt2 * points[n].shape.sigma, {points[n].index.n, points[n].index.k}, beams);
+    EXPECT_NEAR(pbrdf(n, beams).m[0], expected, kTolerance * expected) << text_of(points[n]) << " " << text_of(beams);
+  }
+}
+
+// ---- Moments -------------------------------------------------------------------------------------------------------
+
+constexpr std::size_t kPoints = 80;
+constexpr std::array kTolerances{1e-2, 1e-4};
+
+using Case = std::tuple<Kernel, Model>;
+
+std::string case_name(const testing::TestParamInfo<Case>& test) {
+  return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
+}
+
+class EveryKernel : public testing::TestWithParam<Case> {};
+
+void expect_energy_is_kept(const Moments& m, const Point& point, Masking masking) {
+  const double cosine = cos_sin_deg(point.theta_deg).cos;
+  EXPECT_GE(m.r_i, -m.r_i_error) << text_of(point);
+  EXPECT_LE(std::abs(m.r_q), m.r_i + m.r_i_error + m.r_q_error) << text_of(point);
+  EXPECT_LE(m.r_i, m.albedo + m.r_i_error + m.albedo_error) << text_of(point);
+  EXPECT_LE(std::abs(m.r_i + m.deficit - cosine), m.r_i_error + m.deficit_error) << text_of(point);
+  if (masking != Masking::kVCavity && masking != Masking::kSmith) return;
+  EXPECT_LE(m.albedo, cosine + m.albedo_error) << text_of(point);
+  EXPECT_LE(m.r_i, cosine + m.r_i_error) << text_of(point);
+  EXPECT_GE(m.deficit, -m.deficit_error) << text_of(point);
+}
+
+TEST_P(EveryKernel, RandomPoints_KeepTheEnergy) {
+  const auto [kernel, model] = GetParam();
+  const std::vector<Point> points = Random(printed_seed(300 + number_of(model))).points(model, kPoints);
+  for (const double tolerance : kTolerances) {
+    const std::vector<Moments> moments = make_evaluator(kernel)->evaluate(request_of(model, points, tolerance), {});
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (const Quantity& quantity : kQuantities) {
+        EXPECT_TRUE(std::isfinite(moments[i].*quantity.value)) << quantity.name << " at " << text_of(points[i]);
+        EXPECT_GE(moments[i].*quantity.error, 0.0) << quantity.name << " at " << text_of(points[i]);
+      }
+      expect_energy_is_kept(moments[i], points[i], model.masking);
+    }
+  }
+}
+
+TEST_P(EveryKernel, IndexOfOne_ReflectsNothing) {
+  const auto [kernel, model] = GetParam();
+  std::vector<Point> points = Random(printed_seed(400 + number_of(model))).points(model, kPoints);
+  for (Point& point : points) point.index = {1.0, 0.0};
+  const std::vector<Moments> moments = make_evaluator(kernel)->evaluate(request_of(model, points, 1e-4), {});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    // r_i may be cos(theta) less the deficit, which knows it to its stated error.
+    EXPECT_LE(std::abs(moments[i].r_i), moments[i].r_i_error) << text_of(points[i]);
+    EXPECT_EQ(moments[i].r_q, 0.0) << text_of(points[i]);
+  }
+}
+
+/// Equation: at theta = 0 without masking A = 1 - (m^2 / (1 + m^2))^(q - 1), gaussian 1 - exp(-1 / m^2).
+double normal_albedo(Distribution distribution, const SlopeShape& shape) {
+  const double m2 = 2.0 * shape.sigma * shape.sigma;
+  if (distribution == Distribution::kGaussian) return -std::expm1(-1.0 / m2);
+  return -std::expm1((1.0 - shape.q) * std::log1p(1.0 / m2));
+}
+
+TEST_P(EveryKernel, NormalIncidence_HasNoPolarisation) {
+  const auto [kernel, model] = GetParam();
+  std::vector<Point> points = Random(printed_seed(500 + number_of(model))).points(model, kPoints);
+  for (Point& point : points) point.theta_deg = 0.0;
+  for (const double tolerance : kTolerances) {
+    const std::vector<Moments> moments = make_evaluator(kernel)->evaluate(request_of(model, points, tolerance), {});
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Moments& m = moments[i];
+      EXPECT_LE(std::abs(m.r_q), m.r_q_error) << "tolerance " << tolerance << " " << text_of(points[i]);
+      EXPECT_GT(m.evaluations, 0.0) << text_of(points[i]);
+      EXPECT_GT(m.albedo, 0.0) << text_of(points[i]);
+      if (model.masking != Masking::kNone) continue;
+      EXPECT_LE(std::abs(m.albedo - normal_albedo(model.distribution, points[i].shape)), m.albedo_error)
+          << "tolerance " << tolerance << " " << text_of(points[i]);
+    }
+  }
+}
+
+// ---- Layout of a request -------------------------------------------------------------------------------------------
+
+bool same(const Moments& a, const Moments& b) {
+  const bool same_work = a.evaluations == b.evaluations;
+  return std::ranges::all_of(kQuantities,
+                             [&](const Quantity& q) { return a.*q.value == b.*q.value && a.*q.error == b.*q.error; }) &&
+         same_work;
+}
+
+/// Combinations of random axes, a third of all.
+MomentsRequest random_grid(const Model& model, Random& random) {
+  MomentsRequest request = request_of(model, {}, 1e-3);
+  for (int i = 0; i < 6; ++i) request.theta_deg.push_back(random.theta_deg());
+  for (int i = 0; i < 5; ++i) request.shapes.push_back(random.shape(model));
+  for (int i = 0; i < 4; ++i) request.indices.push_back(random.index());
+  for (std::uint32_t theta = 0; theta < request.theta_deg.size(); ++theta) {
+    for (std::uint32_t shape = 0; shape < request.shapes.size(); ++shape) {
+      for (std::uint32_t index = 0; index < request.indices.size(); ++index) {
+        if (random.chance(1.0 / 3.0)) request.entries.push_back({theta, shape, index});
+      }
+    }
+  }
+  return request;
+}
+
+/// Numbers 0 to count - 1 in random order.
+std::vector<std::uint32_t> permutation(std::size_t count, Random& random) {
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0U);
+  for (std::size_t i = count; i > 1; --i) {
+    std::swap(order[i - 1], order[static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(i)))]);
+  }
+  return order;
+}
+
+template <class Value>
+std::vector<Value> permuted(const std::vector<Value>& values, const std::vector<std::uint32_t>& order) {
+  std::vector<Value> result(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) result[order[i]] = values[i];
+  return result;
+}
+
+TEST_P(EveryKernel, OrderOfAxesAndEntries_TilesAndBlocks_ChangeNoBit) {
+  const auto [kernel, model] = GetParam();
+  Random random(printed_seed(600 + number_of(model)));
+  const MomentsRequest request = random_grid(model, random);
+  const std::vector<Moments> expected = make_evaluator(kernel)->evaluate(request, {});
+  ASSERT_GT(expected.size(), 10U);
+  for (int round = 0; round < 3; ++round) {
+    const auto thetas = permutation(request.theta_deg.size(), random);
+    const auto shapes = permutation(request.shapes.size(), random);
+    const auto indices = permutation(request.indices.size(), random);
+    const auto entries = permutation(request.entries.size(), random);
+    MomentsRequest other = request;
+    other.theta_deg = permuted(request.theta_deg, thetas);
+    other.shapes = permuted(request.shapes, shapes);
+    other.indices = permuted(request.indices, indices);
+    for (MomentsEntry& entry : other.entries) {
+      entry = {thetas[entry.theta], shapes[entry.shape], indices[entry.index]};
+    }
+    other.entries = permuted(other.entries, entries);
+    VulkanOptions options;
+    options.max_tile_entries = static_cast<std::uint32_t>(random.uniform(1.0, 20.0));
+    options.max_block_shapes = static_cast<std::uint32_t>(random.uniform(1.0, 6.0));
+    options.staged_uploads = random.chance(0.5);
+    const std::vector<Moments> actual = make_evaluator(kernel, options)->evaluate(other, {});
+    ASSERT_EQ(actual.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_TRUE(same(expected[i], actual[entries[i]])) << "entry " << i << " in round " << round;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, EveryKernel,
+                         testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)), case_name);
+
+// What the kernel sums before the better of r_i and deficit stands in for the other.
+class BothSums : public testing::TestWithParam<Model> {};
+
+TEST_P(BothSums, ReflectedAndNotReflected_AddUpToTheCosine) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const std::vector<Point> points = Random(printed_seed(700 + number_of(GetParam()))).points(GetParam(), kPoints);
+  for (const double tolerance : kTolerances) {
+    const KernelData data = kernel_data(request_of(GetParam(), points, tolerance));
+    const auto text = make_kernel_text_double(data);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (data.needs_masking_table()) text->build_masking_table(i);
+      kernel::MomentsNode node = text->moments(data.entries[i]);
+      const double sum = node.r_i + node.deficit;
+      // The bound of r_q is that of the reflected sum; with nothing known of r_i the deficit keeps its own.
+      const double reflected_error = moments_from_kernel(node, data, data.entries[i], 0x1p-53).r_q_error;
+      node.doubt = kInfinity;
+      const double deficit_error = moments_from_kernel(node, data, data.entries[i], 0x1p-53).deficit_error;
+      EXPECT_LE(std::abs(sum - cos_sin_deg(points[i].theta_deg).cos), reflected_error + deficit_error)
+          << "tolerance " << tolerance << " " << text_of(points[i]);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, BothSums, testing::ValuesIn(kModels),
+                         [](const testing::TestParamInfo<Model>& test) { return name_of(test.param); });
+
+}  // namespace
+}  // namespace dolp

@@ -34,7 +34,7 @@
 #define DOLP_MAX_ORDER 64        // largest Gauss order of the rule nodes
 #define DOLP_MASKING_OCTAVES 29  // of v = 1 + tau/scale
 #define DOLP_MASKING_CELL_BITS_FLOAT 3   // 2^bits cells per octave
-#define DOLP_MASKING_CELL_BITS_DOUBLE 5
+#define DOLP_MASKING_CELL_BITS_DOUBLE 6
 #define DOLP_MASKING_NODES(CELL_BITS) ((DOLP_MASKING_OCTAVES << (CELL_BITS)) + 1)
 
 // ---- Structures ----------------------------------------------------------------------------------------------------
@@ -51,7 +51,7 @@ struct RuleNode {
   real phi_circle_nodes;  // and for the whole half circle
   real phi_growth;
   real phi_circle_growth;
-  real phi_horizon_growth;
+  real phi_pole_growth;
   real circle_pole;
   real phi_cluster_growth;
   real strip[3];         // for the arcs of each zone: distance in phi to the next singularity off the real axis

@@ -28,6 +28,7 @@ constexpr std::array kMaskingNames = {"none", "v-cavity", "integral", "smith"};
 constexpr std::array kDistributions = {Distribution::kCauchy, Distribution::kGaussian};
 constexpr std::array kHardDirectionsDeg = {0.0,  1e-6, 12.857142857, 12.9, 18.0,  30.0, 30.2,
                                            44.9, 45.0, 45.1,         60.0, 89.99, 90.0};
+constexpr double kFewDigits = 5.0;  // at which no singularity is felt that is weaker than its formula says
 constexpr OpticalConstants kDielectric{1.508, 0.0};
 constexpr OpticalConstants kTotallyReflecting{0.8, 0.0};
 
@@ -324,13 +325,15 @@ TEST(NeedsLine, MoreDigitsRoughnessOrTail_NeverTakeItAway) {
 // slopes beyond 1 no longer counts.
 TEST(CuspDigits, Size_GoesAsTheTailAtSlopeOne) {
   for (const double q : {1.6, 1.75, 2.4, 3.3}) {
-    const auto digits = [&](double sigma) { return cusp_digits(Distribution::kCauchy, Masking::kSmith, {sigma, q}); };
+    const auto digits = [&](double sigma) {
+      return cusp_digits(Distribution::kCauchy, Masking::kSmith, {sigma, q}, kFewDigits);
+    };
     EXPECT_NEAR(digits(0.02) - digits(0.002), 2.0 * q - 2.0, 1e-12);
     EXPECT_EQ(digits(1.0), digits(5.0));
     EXPECT_GT(digits(1e-20), -1000.0);
   }
   // the nearer q is to an integer, the smaller
-  const auto at = [](double q) { return cusp_digits(Distribution::kCauchy, Masking::kSmith, {5.0, q}); };
+  const auto at = [](double q) { return cusp_digits(Distribution::kCauchy, Masking::kSmith, {5.0, q}, kFewDigits); };
   EXPECT_NEAR(at(2.01) - at(2.0001), 2.0, 1e-9);
   EXPECT_NEAR(at(1.99), at(2.01), 1e-9);
 }
@@ -338,10 +341,10 @@ TEST(CuspDigits, Size_GoesAsTheTailAtSlopeOne) {
 TEST(CuspDigits, NoCusp_IsBelowAnyDigits) {
   constexpr double kKernelsLimit = -100.0;  // ShapeNode::cusp_digits
   for (const double q : {2.0, 3.0, 7.0}) {
-    EXPECT_LT(cusp_digits(Distribution::kCauchy, Masking::kSmith, {1.0, q}), kKernelsLimit);
+    EXPECT_LT(cusp_digits(Distribution::kCauchy, Masking::kSmith, {1.0, q}, kFewDigits), kKernelsLimit);
   }
-  EXPECT_LT(cusp_digits(Distribution::kGaussian, Masking::kSmith, {1.0, 1.6}), kKernelsLimit);
-  EXPECT_LT(cusp_digits(Distribution::kCauchy, Masking::kIntegral, {1.0, 1.6}), kKernelsLimit);
+  EXPECT_LT(cusp_digits(Distribution::kGaussian, Masking::kSmith, {1.0, 1.6}, kFewDigits), kKernelsLimit);
+  EXPECT_LT(cusp_digits(Distribution::kCauchy, Masking::kIntegral, {1.0, 1.6}, kFewDigits), kKernelsLimit);
 }
 
 TEST(KernelDataLines, OnlyTheShapesThatNeedThem_GetDirectionsOfTheirOwn) {

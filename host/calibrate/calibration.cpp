@@ -38,14 +38,25 @@ BoundsWithoutRules bounds_without_rules(kernel::MomentsNode node, const KernelDa
   return bounds;
 }
 
+/// What the bounds of r_q and of the deficit gain from the doubts as they are.
+BoundsWithoutRules rule_shares(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
+                               double unit_roundoff, const BoundsWithoutRules& rest) {
+  kernel::MomentsNode own = node;
+  BoundsWithoutRules shares;
+  shares.reflected = moments_from_kernel(own, data, entry, unit_roundoff).r_q_error - rest.reflected;
+  own.doubt = kInfinity;
+  shares.deficit = moments_from_kernel(own, data, entry, unit_roundoff).deficit_error - rest.deficit;
+  return shares;
+}
+
 /// An error less what the reference may err itself.
 double excess(double value, double reference, double reference_error) {
   return std::max(0.0, std::abs(value - reference) - reference_error);
 }
 
-double needed_factor(double error, double bound_without_rules, double doubt) {
+double needed_factor(double error, double bound_without_rules, double rule_share) {
   if (error <= bound_without_rules) return 0.0;
-  return doubt > 0.0 ? (error - bound_without_rules) / doubt : kInfinity;
+  return rule_share > 0.0 ? (error - bound_without_rules) / rule_share : kInfinity;
 }
 
 bool is_understated(const Moments& m, const Moments& reference) {
@@ -68,8 +79,9 @@ PointCalibration point_calibration(const kernel::MomentsNode& node, const Kernel
   point.evaluations = node.evaluations;
   point.error = summed / reference.r_i;
   point.estimate = estimate / reference.r_i;
-  point.factor = needed_factor(summed, bounds.reflected, node.doubt);
-  point.deficit_factor = needed_factor(deficit, bounds.deficit, node.deficit_doubt);
+  const BoundsWithoutRules shares = rule_shares(node, data, entry, unit_roundoff, bounds);
+  point.factor = needed_factor(summed, bounds.reflected, shares.reflected);
+  point.deficit_factor = needed_factor(deficit, bounds.deficit, shares.deficit);
   point.estimate_to_error = given > 0.0 ? estimate / given : kInfinity;
   point.is_understated = is_understated(stated, reference);
   return point;

@@ -13,9 +13,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kHeader =
-    "tolerance masking  slopes   points  evaluations     error / tolerance       factor for doubt  factor for deficit  "
+    "tolerance masking  slopes   points  evaluations     error / tolerance    factor of doubts  of deficit's      "
     "estimate  share   under-\n"
-    "                                    median   95 %  median   98 %  worst  set   98 %  worst     98 %  worst       "
+    "                                    median   95 %  median   98 %  worst    98 %  worst     98 %  worst       "
     "/ error  missed  stated\n";
 
 /// JSON has no infinity and no NaN.
@@ -23,12 +23,12 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 
 std::string group_line(const GroupCalibration& g) {
   return fmt::format(
-      "{:<9.0e} {:<8} {:<8} {:>6}  {:>6.0f} {:>6.0f}  {:>6.1g} {:>6.1g} {:>6.1g}  {:>3.2g} {:>6.2g} {:>6.2g}   "
+      "{:<9.0e} {:<8} {:<8} {:>6}  {:>6.0f} {:>6.0f}  {:>6.1g} {:>6.1g} {:>6.1g}  {:>6.2g} {:>6.2g}   "
       "{:>6.2g} {:>6.2g}     {:>8.2g}  {:>6.4f}  {:>6}\n",
       g.tolerance, name_of(g.masking), name_of(g.distribution), g.points.size(), g.evaluations.median,
       g.evaluations.q95, g.error_over_tolerance.median, g.error_over_tolerance.q98, g.error_over_tolerance.worst,
-      rule_model(g.masking).doubt_factor, g.factor.q98, g.factor.worst, g.deficit_factor.q98, g.deficit_factor.worst,
-      g.estimate_to_error, g.missed_share, g.understated);
+      g.factor.q98, g.factor.worst, g.deficit_factor.q98, g.deficit_factor.worst, g.estimate_to_error, g.missed_share,
+      g.understated);
 }
 
 std::string point_line(const StoredCase& stored, const PointCalibration& p, double tolerance) {
@@ -74,7 +74,6 @@ Json group_json(const CalibrationReport& report, const GroupCalibration& g) {
           {"points", g.points.size()},
           {"evaluations", spread_json(g.evaluations)},
           {"error_over_tolerance", spread_json(g.error_over_tolerance)},
-          {"doubt_factor", rule_model(g.masking).doubt_factor},
           {"needed_factor", spread_json(g.factor)},
           {"needed_deficit_factor", spread_json(g.deficit_factor)},
           {"estimate_to_error", number(g.estimate_to_error)},

@@ -86,6 +86,8 @@ class MomentsEvaluator {
  public:
   virtual ~MomentsEvaluator() = default;
   virtual std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) = 0;
+  /// The precision it was made for: that of scenes which leave theirs open. kAuto leaves it open too.
+  virtual Precision precision() const { return Precision::kAuto; }
   /// Whether requests in double are possible.
   virtual bool has_double() const { return true; }
   /// Totals over all calls of evaluate.

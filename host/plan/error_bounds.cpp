@@ -16,9 +16,9 @@ using boost::math::constants::root_pi;
 
 constexpr double kCosineRounding = 2.0 * std::numeric_limits<double>::epsilon();
 
-// Bounds of the interpolation error of G relative to the albedo (quintic Hermite, 8 and 32 cells an octave).
+// Bounds of the interpolation error of G relative to the albedo (quintic Hermite, 8 and 64 cells an octave).
 constexpr double kMaskingTableErrorFloat = 3e-8;
-constexpr double kMaskingTableErrorDouble = 1e-11;
+constexpr double kMaskingTableErrorDouble = 1e-12;
 constexpr double kDoubleRoundoff = 0x1p-53;
 
 // Rounding error in units of the precision's roundoff, relative to the integral of absolute values. The masking tables
@@ -82,17 +82,20 @@ double masking_error(const KernelData& data, const MomentsEntry& entry, double u
   return table * (may_diverge ? 1.0 + kDivergingSlope / shape.two_q_minus_3 : 1.0);
 }
 
-constexpr double kDeficitFactor = 1.6;  // by which the deficit's doubt says less than that of r_i
+constexpr double kDeficitFactor = 2.5;  // by which the deficit's doubt says less than that of r_i
 
 // The core of the domain, see Difficulty.
 constexpr double kCoreCosTheta = 0.0087;
-constexpr double kCoreHorizonGap = 0.045;  // cos(theta) + pole_cos: a metal at grazing incidence
+constexpr double kCoreSinTheta = 0.035;
+constexpr double kCoreHorizonGap = 0.055;  // cos(theta) + pole_cos: a metal at grazing incidence
 constexpr double kCoreSmallestM = 0.007;
 constexpr double kCoreSmallestTableM = 0.028;  // integral and smith
 constexpr double kCoreLargestM = 1.7;
 constexpr double kCorePoleCos = 0.01;
 constexpr double kCoreContrast = 0.05;  // |N^2 - 1|
 constexpr double kCoreSmithQ = 1.6;
+constexpr double kCoreIntegralQ = 1.45;
+constexpr double kCoreIntegralTolerance = 1e-8;
 constexpr double kReflectingContrast = 1.5;  // |N^2 - 1| up to which Re N^2 < 1 reflects nearly all beyond an angle
 
 Difficulty difficulty(const KernelData& data, const MomentsEntry& entry) {
@@ -104,9 +107,13 @@ Difficulty difficulty(const KernelData& data, const MomentsEntry& entry) {
   if (index.critical_cos > 0.0 || nearly_reflects) return Difficulty::kTotalReflection;
   const double smallest_m = data.needs_masking_table() ? kCoreSmallestTableM : kCoreSmallestM;
   const bool is_smith = data.masking == Masking::kSmith && data.distribution == Distribution::kCauchy;
-  const bool is_core = theta.c >= kCoreCosTheta && theta.c + index.pole_cos >= kCoreHorizonGap &&
-                       shape.m >= smallest_m && shape.m <= kCoreLargestM && index.pole_cos >= kCorePoleCos &&
-                       contrast >= kCoreContrast && !(is_smith && shape.q_minus_1 < kCoreSmithQ - 1.0);
+  // The kink where the limit b of `integral` meets pi/2, beside a heavy tail.
+  const bool has_kink = data.masking == Masking::kIntegral && data.distribution == Distribution::kCauchy &&
+                        shape.q_minus_1 < kCoreIntegralQ - 1.0 && data.tolerance < kCoreIntegralTolerance;
+  const bool is_core = theta.c >= kCoreCosTheta && theta.s >= kCoreSinTheta &&
+                       theta.c + index.pole_cos >= kCoreHorizonGap && shape.m >= smallest_m &&
+                       shape.m <= kCoreLargestM && index.pole_cos >= kCorePoleCos && contrast >= kCoreContrast &&
+                       !has_kink && !(is_smith && shape.q_minus_1 < kCoreSmithQ - 1.0);
   return is_core ? Difficulty::kCore : Difficulty::kEdge;
 }
 

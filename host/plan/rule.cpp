@@ -23,10 +23,10 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_curvature = 0.0506,
      .phi_circle_nodes = 1.32,
      .phi_circle_growth = 0.673,
-     .phi_horizon_growth = 0.609,
+     .phi_pole_growth = 0.609,
      .circle_pole = 0.667,
      .phi_cluster_growth = 1.35,
-     .doubt_decades = {0.6, 0.4, 0.33, -0.2, 0.0}},
+     .doubt_decades = {0.46, 0.35, 0.32, -0.2, 0.05}},
     // v-cavity
     {.margin_digits = 2.46,
      .t_nodes = 1.05,
@@ -41,9 +41,9 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_curvature = 0.0786,
      .phi_circle_nodes = 1.1,
      .phi_circle_growth = 0.954,
-     .phi_horizon_growth = 0.418,
+     .phi_pole_growth = 0.418,
      .circle_pole = 0.723,
-     .doubt_decades = {0.5, 0.53, 0.45, 0.0, 0.4}},
+     .doubt_decades = {0.42, 0.45, 0.36, 0.0, 0.4}},
     // integral
     {.margin_digits = 2.18,
      .t_nodes = 1.25,
@@ -58,11 +58,12 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_curvature = 0.188,
      .phi_circle_nodes = 0.923,
      .phi_circle_growth = 1.02,
-     .phi_horizon_growth = 0.259,
+     .phi_pole_growth = 0.259,
      .circle_pole = 0.958,
      .phi_cluster_growth = 4.35,
      .line_threshold = 6.48e+04,
-     .doubt_decades = {0.65, 0.35, 0.1, 0.55, 1.85}},
+     .doubt_decades = {0.5, 0.3, 0.14, 0.4, 1.85},
+     .doubt_tight = 0.25},
     // smith
     {.margin_digits = 1.8,
      .t_nodes = 1.05,
@@ -77,12 +78,12 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_curvature = 0.262,
      .phi_circle_nodes = 1.25,
      .phi_circle_growth = 1.16,
-     .phi_horizon_growth = 0.103,
+     .phi_pole_growth = 0.103,
      .circle_pole = 0.332,
      .phi_cluster_growth = 2.74,
      .cusp_digits = 3.06,
      .line_threshold = 1.48e+05,
-     .doubt_decades = {0.95, 0.6, 0.4, 1.0, 1.8}},
+     .doubt_decades = {0.78, 0.5, 0.35, 0.85, 1.8}},
 }};
 
 constexpr double kCalibratedDigits = 4.0;  // where the curvatures vanish
@@ -92,10 +93,11 @@ constexpr std::array kDoubtDigits = {2.0, 3.0, 4.0, 6.0, 9.0};  // of RuleModel:
 // Decades by which the doubts' factor is larger outside the core of the domain, and their growth with the digits of the
 // tolerance from kHardDoubtDigits on.
 constexpr double kHardDoubtDigits = 4.0;
+constexpr double kMostTightDigits = 3.0;
 constexpr double kEdgeDecades = 1.1;
 constexpr double kEdgeGrowth = 0.4;
 constexpr double kTotalReflectionDecades = 1.6;
-constexpr double kTotalReflectionGrowth = 0.55;
+constexpr double kTotalReflectionGrowth = 0.62;
 
 // The cluster of `integral` below this q, at this many digits and more.
 constexpr double kClusterBelowQ = 1.6;
@@ -134,12 +136,14 @@ double rule_digits(Masking masking, double tolerance) {
 
 double doubt_factor(Masking masking, double tolerance, Difficulty difficulty) {
   const RuleModel& model = rule_model(masking);
-  const double digits = -std::log10(tolerance);
+  const double tight = std::max(0.0, -std::log10(tolerance) - kDoubtDigits.back());
+  const double digits = -std::log10(tolerance) - tight;
   std::size_t i = 0;
   while (i + 2 < kDoubtDigits.size() && digits > kDoubtDigits[i + 1]) ++i;
   const double slope = (model.doubt_decades[i + 1] - model.doubt_decades[i]) / (kDoubtDigits[i + 1] - kDoubtDigits[i]);
   const double hard = std::max(0.0, digits - kHardDoubtDigits);
   double decades = model.doubt_decades[i] + slope * std::max(0.0, digits - kDoubtDigits[i]);
+  decades += model.doubt_tight * std::min(tight, kMostTightDigits);
   if (difficulty == Difficulty::kEdge) decades += kEdgeDecades + kEdgeGrowth * hard;
   if (difficulty == Difficulty::kTotalReflection) decades += kTotalReflectionDecades + kTotalReflectionGrowth * hard;
   return std::pow(10.0, decades);
@@ -158,7 +162,7 @@ kernel::RuleNode rule_node(Masking masking, double digits) {
   node.phi_circle_nodes = model.phi_circle_nodes;
   node.phi_growth = curved(model.phi_curvature, digits);
   node.phi_circle_growth = node.phi_growth * model.phi_circle_growth;
-  node.phi_horizon_growth = node.phi_growth * model.phi_horizon_growth;
+  node.phi_pole_growth = node.phi_growth * model.phi_pole_growth;
   node.circle_pole = model.circle_pole;
   node.phi_cluster_growth = model.phi_cluster_growth;
   std::copy(std::begin(model.strip), std::end(model.strip), std::begin(node.strip));

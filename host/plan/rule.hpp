@@ -20,13 +20,14 @@ struct RuleModel {
   double phi_curvature = 0.0;         ///< likewise
   double phi_circle_nodes = 0.0;      ///< RuleNode::phi_circle_nodes
   double phi_circle_growth = 0.0;     ///< RuleNode::phi_circle_growth
-  double phi_horizon_growth = 0.5;    ///< RuleNode::phi_horizon_growth
+  double phi_pole_growth = 0.5;    ///< RuleNode::phi_pole_growth
   double circle_pole = 0.5;           ///< RuleNode::circle_pole
   double phi_cluster_growth = 1.0;    ///< RuleNode::phi_cluster_growth
   double cusp_digits = 0.0;           ///< smith: digits by which the cusp is smaller than its formula says
   double line_threshold = 0.0;        ///< multiples of 10^-digits from which a line or cusp is worth its pieces
   /// log10 of the factor from MomentsNode::doubt to an error bound, at the tolerances 1e-2, 1e-3, 1e-4, 1e-6 and 1e-9.
   double doubt_decades[5] = {};
+  double doubt_tight = 0.0;  ///< more of them for each digit beyond
 };
 
 /// The numbers for a masking.
@@ -37,7 +38,7 @@ double rule_digits(Masking masking, double tolerance);
 
 /// Where an entry lies: the factors of RuleModel are calibrated in the core of the domain.
 enum class Difficulty {
-  kCore,             ///< sigma 0.005 to 1.2, theta to 89.5 degrees, |N| to 100, |N^2 - 1| from 0.05
+  kCore,             ///< sigma 0.005 to 1.2, theta 2 to 89.5 degrees, |N| to 100, |N^2 - 1| from 0.05
   kEdge,             ///< beyond
   kTotalReflection,  ///< with a critical angle, sharp or nearly so
 };

@@ -43,10 +43,11 @@ void append_half(Nodes& nodes, int order) {
   }
 }
 
-// cos(2 psi) is in the integrand of r_q whatever the rule, so that three nodes look at cos(psi) alone.
+// cos(2 psi) is in the integrand of r_q whatever the rule, so that it says nothing.
 double circle_null(int order, double psi) {
   if (order == 1) return 1.0;
   if (order <= 3) return 2.0 * std::cos(psi);
+  if (order == 4) return 2.0 * std::cos(3.0 * psi);
   return 2.0 * std::cos((order - 1) * psi) + 2.0 * std::cos((order - 2) * psi);
 }
 

@@ -32,6 +32,7 @@ struct AzimuthSums {
   FacetSums sum;
   FacetSums null;      // sizes of the null rules' sums, arc by arc
   real deficit_scale;  // the deficit with the absolute values of its terms
+  real reached;        // share of the digits wanted that the orders allow, at the worst arc
   real evaluations;
 };
 
@@ -65,7 +66,7 @@ struct Arc {
   real extent;
   real quarter;  // tan of a quarter of its length; not positive for an empty arc
   int section;   // of the rule nodes
-  real horizon_nodes;  // what the horizon at its end asks for
+  real pole_nodes;  // what the pole of R_p beyond its end asks for
 };
 
 // Half-angle form of an azimuth: (cos(phi/2), sin(phi/2)), from 1 + cos(phi) and 1 - cos(phi), clamped to [0, pi].
@@ -88,7 +89,7 @@ Arc make_arc(real2 from, real2 to) {
   arc.centre_sin = from.y * to.x + from.x * to.y;
   arc.extent = arc.quarter / (real(1.0) + sqrt(real(1.0) + arc.quarter * arc.quarter));
   arc.section = kSectionCentre;
-  arc.horizon_nodes = real(0.0);
+  arc.pole_nodes = real(0.0);
   if (starts_at_0 || ends_at_pi) {
     arc.centre_cos = starts_at_0 ? real(1.0) : real(-1.0);
     arc.centre_sin = real(0.0);
@@ -147,18 +148,18 @@ struct Slice {
   real cusp_nodes;  // nodes of a half arc that smith's cusp at theta_r = 0 asks for
 };
 
-// An arc that ends at the horizon, at x = cos(phi) = `x_horizon`, comes near the pole of R_p at cos(beta) = -pole_cos: the
-// nearer, the more grazing the direction and the better the metal. A Gauss rule on [x_horizon, x_start] would converge
-// as exp(-acosh(1 + gap / half length)) for each node.
-real horizon_nodes(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, real x_start, real x_horizon) {
-  real sec2 = real(1.0) + slice.t * slice.t;
-  real gap = (real(0.5) * theta.c * sec2 + index.pole_cos * sqrt(sec2)) / max(theta.s * slice.t, real(1e-30));
-  real relative = min(real(2.0) * gap / max(x_start - x_horizon, real(1e-30)), real(1e9));
-  return slice.digits * rule.phi_horizon_growth * kHalfLn10 /
+// An arc from x = cos(phi) = `x_start` to `x_end` comes near the pole of R_p at cos(beta) = -pole_cos: the nearer, the more
+// grazing the direction and the better the metal. A Gauss rule on [x_end, x_start] would converge as
+// exp(-acosh(1 + gap / half length)) for each node.
+real pole_nodes(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, real x_start, real x_end) {
+  real st = max(theta.s * slice.t, real(1e-30));
+  real gap = theta.c / st + x_end + index.pole_cos * sqrt(real(1.0) + slice.t * slice.t) / st;
+  real relative = clamp(real(2.0) * gap / max(x_start - x_end, real(1e-30)), real(1e-9), real(1e9));
+  return slice.digits * rule.phi_pole_growth * kHalfLn10 /
          max(log1p_real(relative + sqrt(relative * (relative + real(2.0)))), real(1e-3));
 }
 
-int arc_order(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, Arc arc, int zone) {
+real arc_nodes(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, Arc arc, int zone) {
   real strip = rule.strip[zone] / theta.phi_narrowing;
   real length = arc_length(arc.quarter);
   real nodes;
@@ -177,16 +178,18 @@ int arc_order(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, Arc 
     nodes = rule.phi_centre_nodes +
             slice.digits * rule.phi_growth * nodes_per_digit(real(2.0) * strip / (stretch * length));
   }
-  if (arc.section != kSectionCluster) nodes = max(nodes, rule.phi_half_nodes + slice.cusp_nodes);
-  if (arc.section != kSectionCircle) nodes = max(nodes, rule.phi_half_nodes + arc.horizon_nodes);
-  return order_between(nodes, theta.order_limit_phi);
+  if (arc.section != kSectionCircle) nodes = max(nodes, rule.phi_half_nodes + arc.pole_nodes);
+  return nodes;
 }
 
 AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, Slice slice, Arc arc,
                      int zone) {
   real t = slice.t;
   real r2 = real(1.0) / (real(1.0) + t * t);
-  int order = (arc.quarter > real(0.0)) ? arc_order(rule, theta, index, slice, arc, zone) : 0;
+  real nodes = arc_nodes(rule, theta, index, slice, arc, zone);
+  real with_cusp = (arc.section == kSectionCluster) ? nodes : max(nodes, rule.phi_half_nodes + slice.cusp_nodes);
+  int order = (arc.quarter > real(0.0)) ? order_between(with_cusp, theta.order_limit_phi) : 0;
+  real reached = (order > 0 && arc.section != kSectionCluster) ? reached_share(nodes, theta.order_limit_phi) : real(1.0);
   int first_node = rule_offset(rule, arc.section, order);
   FacetSums sum = no_facets();
   FacetSums null = no_facets();
@@ -207,12 +210,13 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode 
     sum = add_weighted(sum, term, measure * node.y);
     null = add_weighted(null, term, measure * node.z);
   }
-  return AzimuthSums(sum, add_size(no_facets(), null), sum.deficit, real(order));
+  return AzimuthSums(sum, add_size(no_facets(), null), sum.deficit, reached, real(order));
 }
 
 AzimuthSums add_arc(AzimuthSums sums, AzimuthSums arc) {
   return AzimuthSums(add_weighted(sums.sum, arc.sum, real(1.0)), add_size(sums.null, arc.null),
-                     sums.deficit_scale + arc.deficit_scale, sums.evaluations + arc.evaluations);
+                     sums.deficit_scale + arc.deficit_scale, min(sums.reached, arc.reached),
+                     sums.evaluations + arc.evaluations);
 }
 
 // The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth: three in ascending order
@@ -288,8 +292,7 @@ AzimuthSums zone_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode
                       real2 from, real2 to, real2 critical, int zone) {
   if (index.critical_cos <= real(0.0)) {
     Arc arc = zone_arc(rule, theta, shape, slice, from, to, zone);
-    bool is_last = zone == 2 || kMasking == DOLP_MASKING_NONE || kMasking == DOLP_MASKING_SMITH;
-    if (is_last) arc.horizon_nodes = horizon_nodes(rule, theta, index, slice, cosine(from), cosine(to));
+    arc.pole_nodes = pole_nodes(rule, theta, index, slice, cosine(from), cosine(to));
     return arc_sums(rule, theta, shape, index, table, slice, arc, zone);
   }
   real2 middle = clamp_half_angle(critical, from, to);

@@ -11,6 +11,7 @@ struct Piece {
   real mass;    // share of the facets
   real digits;  // wanted
   int order;
+  real reached;  // share of the digits that the order allows
 };
 
 Piece make_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, int number) {
@@ -25,7 +26,9 @@ Piece make_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, int number) {
   piece.root_at_a = mod(theta.kind[number], real(2.0)) > real(0.5);
   piece.root_at_b = b < shape.cut && theta.kind[number + 1] > real(1.5);
   real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
-  piece.order = order_t(rule, theta, piece.digits, piece.extent, roots);
+  real nodes = nodes_t(rule, theta, piece.digits, piece.extent, roots);
+  piece.order = order_between(nodes, theta.order_limit_t);
+  piece.reached = reached_share(nodes, theta.order_limit_t);
   return piece;
 }
 
@@ -36,12 +39,13 @@ struct SlopeSums {
   FacetSums null_first;   // sums of the slopes' two null rules
   FacetSums null_second;
   real mass;              // the rule's value of Piece::mass
+  real reached;           // share of the digits that the azimuths' orders allow
   real deficit_scale;
   real evaluations;
 };
 
 SlopeSums piece_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, Piece piece) {
-  SlopeSums sums = SlopeSums(no_facets(), no_facets(), no_facets(), no_facets(), real(0.0), real(0.0), real(0.0));
+  SlopeSums sums = SlopeSums(no_facets(), no_facets(), no_facets(), no_facets(), real(0.0), real(1.0), real(0.0), real(0.0));
   int first_node = rule_offset(rule, kSectionGauss, piece.order);
   for (int i = 0; i < piece.order; ++i) {
     real4 node = rule_node(first_node + i);
@@ -65,6 +69,7 @@ SlopeSums piece_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode 
     sums.null_first = add_weighted(sums.null_first, term.sum, density * node.z);
     sums.null_second = add_weighted(sums.null_second, term.sum, density * node.w);
     sums.mass += kPi * density * node.y;
+    sums.reached = min(sums.reached, term.reached);
     sums.deficit_scale += density * node.y * term.deficit_scale;
     sums.evaluations += term.evaluations;
   }
@@ -94,9 +99,11 @@ MomentsNode piece_moments(Piece piece, SlopeSums sums) {
   node.r_q = ratio * sums.sum.r_q;
   node.albedo = ratio * sums.sum.albedo;
   node.deficit = ratio * sums.sum.deficit;
-  node.doubt = doubt(sums.sum.r_i, null_t, piece.digits) + doubt(sums.sum.r_i, null_phi, piece.digits);
-  node.deficit_doubt = doubt(sums.deficit_scale, null_size(first.deficit, second.deficit), piece.digits) +
-                       doubt(sums.deficit_scale, sums.null_phi.deficit, piece.digits);
+  real digits_t = piece.reached * piece.digits;
+  real digits_phi = sums.reached * piece.digits;
+  node.doubt = doubt(sums.sum.r_i, null_t, digits_t) + doubt(sums.sum.r_i, null_phi, digits_phi);
+  node.deficit_doubt = doubt(sums.deficit_scale, null_size(first.deficit, second.deficit), digits_t) +
+                       doubt(sums.deficit_scale, sums.null_phi.deficit, digits_phi);
   node.deficit_scale = ratio * sums.deficit_scale;
   node.evaluations = sums.evaluations;
   return node;

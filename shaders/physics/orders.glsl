@@ -23,11 +23,13 @@ real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, re
 
 int order_between(real nodes, real limit) { return int(clamp(floor(nodes + real(0.5)), real(1.0), limit)); }
 
-// Slope axis: `extent` of the piece in X, `roots` of its ends.
-int order_t(RuleNode rule, ThetaNode theta, real digits, real extent, real roots) {
+// The share of the digits that a rule reaches whose order is cut down to a limit.
+real reached_share(real nodes, real limit) { return min(real(1.0), limit / max(nodes, real(1.0))); }
+
+// Slope axis: nodes of a piece of length `extent` in X with `roots` at its ends.
+real nodes_t(RuleNode rule, ThetaNode theta, real digits, real extent, real roots) {
   real per_digit = theta.t_growth * rule.t_growth * nodes_per_digit(real(2.0) * rule.t_strip / extent);
-  return order_between(max(rule.t_nodes + digits * per_digit + rule.t_root_nodes * roots, real(2.0)),
-                       theta.order_limit_t);
+  return max(rule.t_nodes + digits * per_digit + rule.t_root_nodes * roots, real(2.0));
 }
 
 // Length of an arc in phi, from tan of its quarter: 4 atan(quarter), a percent too long at most.

@@ -11,6 +11,7 @@ class CpuEvaluator final : public MomentsEvaluator {
  public:
   explicit CpuEvaluator(Precision precision) : precision_(precision) {}
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
+  Precision precision() const override { return precision_; }
   EvaluationReport report() const override { return report_; }
 
  private:

@@ -8,11 +8,11 @@ namespace {
 
 // Rules below these tolerances drown in rounding.
 constexpr double kFloatLimit = 2e-6;
-constexpr double kDoubleLimit = 1e-12;
+constexpr double kDoubleLimit = 1e-14;
 
 // A miss by a little asks for more than the little, or the next attempt may miss too.
 constexpr double kSafety = 1.5;
-constexpr double kMostDecades = 4.0;
+constexpr double kMostDecades = 5.0;
 
 bool may_use_double(const Accuracy& accuracy, bool has_double) {
   return has_double && accuracy.precision != Precision::kFloat;

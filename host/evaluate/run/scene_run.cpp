@@ -307,6 +307,7 @@ std::vector<PointResult> block_results(const Scene& scene, const Radiometry& rad
 /// What the attempts at the entries of a scene share.
 struct SceneRun {
   const Scene& scene;
+  Accuracy accuracy;  ///< the scene's, in the evaluator's precision where the scene leaves it open
   const Radiometry& radiometry;
   MomentsEvaluator& evaluator;
 };
@@ -329,10 +330,9 @@ bool is_better(const PointResult& a, const PointResult& b) {
 /// Tries the entries of a block again that miss the tolerance, those together that want the same attempt.
 void retry(const SceneRun& run, std::span<const SceneEntry> entries, const Attempt& first,
            std::span<PointResult> results) {
-  const Accuracy& accuracy = run.scene.accuracy;
   std::map<Attempt, std::vector<std::size_t>> waiting;
   const auto plan = [&](std::size_t i, const Attempt& last, const PointResult& result) {
-    const auto next = next_attempt(last, result, accuracy, run.evaluator.has_double());
+    const auto next = next_attempt(last, result, run.accuracy, run.evaluator.has_double());
     if (next && needs_evaluator(run.scene, seen_entry(run.scene, entries[i]))) waiting[*next].push_back(i);
   };
   for (std::size_t i = 0; i < entries.size(); ++i) plan(i, first, results[i]);
@@ -425,8 +425,9 @@ std::vector<SceneEntry> point_entries(const Scene& scene, const Points& points) 
 std::vector<PointResult> evaluate_scene(const Scene& scene, const std::vector<SceneEntry>& entries,
                                         MomentsEvaluator& evaluator, const Progress& progress) {
   const Radiometry radiometry(scene);
-  const SceneRun run{scene, radiometry, evaluator};
-  const Attempt first_try = first_attempt(scene.accuracy, evaluator.has_double());
+  SceneRun run{scene, scene.accuracy, radiometry, evaluator};
+  if (run.accuracy.precision == Precision::kAuto) run.accuracy.precision = evaluator.precision();
+  const Attempt first_try = first_attempt(run.accuracy, evaluator.has_double());
   const std::size_t block_size = std::max<std::size_t>(1, kMomentsAtOnce / radiometry.rule().indices().size());
   std::vector<PointResult> results;
   results.reserve(entries.size());

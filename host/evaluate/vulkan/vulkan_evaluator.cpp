@@ -123,7 +123,7 @@ class VulkanEvaluator::Impl {
   std::optional<vulkan::MomentsRun> run_;
 };
 
-VulkanEvaluator::VulkanEvaluator(const VulkanOptions& options) {
+VulkanEvaluator::VulkanEvaluator(const VulkanOptions& options) : precision_(options.precision) {
   const Clock::time_point start = Clock::now();
   impl_ = std::make_unique<Impl>(options);
   report_.evaluator = "vulkan";

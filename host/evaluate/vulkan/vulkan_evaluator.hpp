@@ -42,6 +42,7 @@ class VulkanEvaluator : public MomentsEvaluator {
   /// then), or the validation layer complains; Cancelled when `progress`, called after each tile, returns false.
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
 
+  Precision precision() const override { return precision_; }
   bool has_double() const override;
 
   /// Totals over all calls of evaluate.
@@ -53,6 +54,7 @@ class VulkanEvaluator : public MomentsEvaluator {
  private:
   class Impl;
   std::unique_ptr<Impl> impl_;
+  Precision precision_;
   EvaluationReport report_;
 };
 

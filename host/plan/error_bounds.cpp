@@ -30,11 +30,18 @@ constexpr double kHeavyTailSmithQ = 1.6;
 constexpr double kExtremeTailRoundings = 400.0;
 constexpr double kExtremeTailQ = 1.01;
 
+// The critical line of total reflection lies at a difference of nearly equal angles, the more so the smoother the
+// surface.
+constexpr double kCriticalRoundings = 200.0;
+constexpr double kSmoothCriticalRoundings = 3000.0;
+constexpr double kSmoothM = 0.01;
+
 // Where the mean slope is about to diverge (smith, q near 3/2), G falls within 2q - 3 of the normal, which no rule
 // sees.
 constexpr double kDivergingSlope = 0.06;
 
-double roundings(const KernelData& data, const kernel::ShapeNode& shape) {
+double roundings(const KernelData& data, const kernel::ShapeNode& shape, const kernel::IndexNode& index) {
+  if (index.critical_cos > 0.0) return shape.m < kSmoothM ? kSmoothCriticalRoundings : kCriticalRoundings;
   if (!data.needs_masking_table() || data.distribution == Distribution::kGaussian) return kRoundings;
   if (shape.q_minus_1 < kExtremeTailQ - 1.0) return kExtremeTailRoundings;
   const double heavy_tail_q = data.masking == Masking::kSmith ? kHeavyTailSmithQ : kHeavyTailQ;
@@ -95,6 +102,7 @@ constexpr double kCorePoleCos = 0.01;
 constexpr double kCoreContrast = 0.05;  // |N^2 - 1|
 constexpr double kCoreSmithQ = 1.6;
 constexpr double kCoreIntegralQ = 1.45;
+constexpr double kCoreUnsplitQ = 1.6;
 constexpr double kCoreIntegralTolerance = 1e-8;
 constexpr double kReflectingContrast = 1.5;  // |N^2 - 1| up to which Re N^2 < 1 reflects nearly all beyond an angle
 
@@ -108,9 +116,11 @@ Difficulty difficulty(const KernelData& data, const MomentsEntry& entry) {
   const double smallest_m = data.needs_masking_table() ? kCoreSmallestTableM : kCoreSmallestM;
   const bool is_smith = data.masking == Masking::kSmith && data.distribution == Distribution::kCauchy;
   // The kink where the limit b of `integral` meets pi/2, beside a heavy tail.
-  const bool has_kink = data.masking == Masking::kIntegral && data.distribution == Distribution::kCauchy &&
-                        shape.q_minus_1 < kCoreIntegralQ - 1.0 && data.tolerance < kCoreIntegralTolerance;
-  const bool is_core = theta.c >= kCoreCosTheta && theta.s >= kCoreSinTheta &&
+  const bool has_kink =
+      data.masking == Masking::kIntegral && data.distribution == Distribution::kCauchy &&
+      (data.tolerance < kCoreIntegralTolerance ? shape.q_minus_1 < kCoreIntegralQ - 1.0
+                                               : shape.q_minus_1 < kCoreUnsplitQ - 1.0 && theta.has_line < 0.5);
+  const bool is_core = theta.c >= kCoreCosTheta && (theta.s >= kCoreSinTheta || data.masking != Masking::kIntegral) &&
                        theta.c + index.pole_cos >= kCoreHorizonGap && shape.m >= smallest_m &&
                        shape.m <= kCoreLargestM && index.pole_cos >= kCorePoleCos && contrast >= kCoreContrast &&
                        !has_kink && !(is_smith && shape.q_minus_1 < kCoreSmithQ - 1.0);
@@ -137,10 +147,10 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
                             double unit_roundoff) {
   const kernel::ShapeNode& shape = data.shapes[entry.shape];
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
+  const kernel::IndexNode& index = data.indices[entry.index];
   const double cut = cut_bound(data, theta, shape);
   const double masking = masking_error(data, entry, unit_roundoff);
-  const double rounding = unit_roundoff * roundings(data, shape);
-  const kernel::IndexNode& index = data.indices[entry.index];
+  const double rounding = unit_roundoff * roundings(data, shape, index);
   const double reflected_cut = cut == 0.0 ? 0.0 : cut * steep_reflectance(index, theta, shape);
   Moments moments;
   moments.r_i = node.r_i;
@@ -153,9 +163,11 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   const double deficit_rule = kDeficitFactor * factor * node.deficit_doubt;
   moments.r_i_error = reflected_rule + (rounding + masking) * r_i_scale + reflected_cut;
   moments.r_q_error = moments.r_i_error;
+  // Beyond the critical angle the deficit ends where r_i goes on.
+  const double deficit_scale = index.critical_cos > 0.0 ? std::abs(node.albedo) : node.deficit_scale;
   // The albedo shares the nodes of the two.
   moments.albedo_error = reflected_rule + deficit_rule + (rounding + masking) * std::abs(node.albedo) + cut;
-  moments.deficit_error = deficit_rule + rounding * node.deficit_scale + masking * std::abs(node.albedo) + cut;
+  moments.deficit_error = deficit_rule + rounding * deficit_scale + masking * std::abs(node.albedo) + cut;
   moments.evaluations = node.evaluations;
   // r_i + deficit = cos(theta): the better known of the two gives the other.
   const double cosine = theta.c;

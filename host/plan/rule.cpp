@@ -83,7 +83,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_cluster_growth = 2.74,
      .cusp_digits = 3.06,
      .line_threshold = 1.48e+05,
-     .doubt_decades = {0.78, 0.5, 0.35, 0.85, 1.8}},
+     .doubt_decades = {0.78, 0.5, 0.35, 0.9, 1.8}},
 }};
 
 constexpr double kCalibratedDigits = 4.0;  // where the curvatures vanish
@@ -145,7 +145,9 @@ double doubt_factor(Masking masking, double tolerance, Difficulty difficulty) {
   double decades = model.doubt_decades[i] + slope * std::max(0.0, digits - kDoubtDigits[i]);
   decades += model.doubt_tight * std::min(tight, kMostTightDigits);
   if (difficulty == Difficulty::kEdge) decades += kEdgeDecades + kEdgeGrowth * hard;
-  if (difficulty == Difficulty::kTotalReflection) decades += kTotalReflectionDecades + kTotalReflectionGrowth * hard;
+  if (difficulty == Difficulty::kTotalReflection) {
+    decades += kTotalReflectionDecades + kTotalReflectionGrowth * (hard + tight);
+  }
   return std::pow(10.0, decades);
 }
 

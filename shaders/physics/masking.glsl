@@ -116,6 +116,6 @@ real shadowed_integral(ShapeNode shape, uint table, real cos_theta, real sin_the
 
 // Smith's L of a direction; at 90 degrees a number so large that G is 0.
 real smith_lambda(ShapeNode shape, uint table, real cos_theta, real sin_theta) {
-  real mu = cos_theta / max(sin_theta, real(1e-10));
+  real mu = cos_theta / max(sin_theta, real(1e-30));
   return masking_height(shape, table, mu) / max(mu, real(1e-30));
 }

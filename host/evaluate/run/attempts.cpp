@@ -28,9 +28,13 @@ Attempt first_attempt(const Accuracy& accuracy, bool has_double) {
 
 std::optional<Attempt> next_attempt(const Attempt& last, const PointResult& result, const Accuracy& accuracy,
                                     bool has_double) {
-  if ((result.status & kStatusToleranceMissed) == 0 || (result.status & kStatusOutsideDomain) != 0) return std::nullopt;
-  const double worse = std::max(result.error_estimate, result.rho_error_estimate);
-  const double excess = std::isnan(result.rho_error_estimate) ? result.rho_error_estimate : worse / accuracy.tolerance;
+  if ((result.status & kStatusToleranceMissed) == 0) return std::nullopt;
+  // Outside the domain the DOLP may still have a limit; where it has none, nothing can be done.
+  const bool is_outside = (result.status & kStatusOutsideDomain) != 0;
+  if (is_outside && std::isnan(result.error_estimate)) return std::nullopt;
+  const double rho_error = is_outside ? 0.0 : result.rho_error_estimate;
+  const double excess =
+      std::isnan(rho_error) ? rho_error : std::max(result.error_estimate, rho_error) / accuracy.tolerance;
   const double decades =
       std::isfinite(excess) ? std::clamp(std::ceil(std::log10(kSafety * excess)), 1.0, kMostDecades) : kMostDecades;
   const double wanted = last.tolerance * std::pow(10.0, -decades);

@@ -272,7 +272,7 @@ class Interpolation {
   tested_coarse::Text coarse_;
 };
 
-// Of sixth order: a cell of a quarter of the width has 4^-6 of the error.
+// Of sixth order: a cell of an eighth of the width has 8^-6 of the error.
 TEST(MaskingInterpolation, Albedo_IsWithinWhatThePlanAllows) {
   constexpr double kFinerCells = 1.0 / (512.0 * 512.0);  // 8^-6, from 8 to 64 cells an octave
   for (const Masking masking : {Masking::kIntegral, Masking::kSmith}) {

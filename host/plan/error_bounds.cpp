@@ -102,7 +102,6 @@ constexpr double kCorePoleCos = 0.01;
 constexpr double kCoreContrast = 0.05;  // |N^2 - 1|
 constexpr double kCoreSmithQ = 1.6;
 constexpr double kCoreIntegralQ = 1.45;
-constexpr double kCoreUnsplitQ = 1.6;
 constexpr double kCoreIntegralTolerance = 1e-8;
 constexpr double kReflectingContrast = 1.5;  // |N^2 - 1| up to which Re N^2 < 1 reflects nearly all beyond an angle
 
@@ -116,10 +115,8 @@ Difficulty difficulty(const KernelData& data, const MomentsEntry& entry) {
   const double smallest_m = data.needs_masking_table() ? kCoreSmallestTableM : kCoreSmallestM;
   const bool is_smith = data.masking == Masking::kSmith && data.distribution == Distribution::kCauchy;
   // The kink where the limit b of `integral` meets pi/2, beside a heavy tail.
-  const bool has_kink =
-      data.masking == Masking::kIntegral && data.distribution == Distribution::kCauchy &&
-      (data.tolerance < kCoreIntegralTolerance ? shape.q_minus_1 < kCoreIntegralQ - 1.0
-                                               : shape.q_minus_1 < kCoreUnsplitQ - 1.0 && theta.has_line < 0.5);
+  const bool has_kink = data.masking == Masking::kIntegral && data.distribution == Distribution::kCauchy &&
+                        shape.q_minus_1 < kCoreIntegralQ - 1.0 && data.tolerance < kCoreIntegralTolerance;
   const bool is_core = theta.c >= kCoreCosTheta && (theta.s >= kCoreSinTheta || data.masking != Masking::kIntegral) &&
                        theta.c + index.pole_cos >= kCoreHorizonGap && shape.m >= smallest_m &&
                        shape.m <= kCoreLargestM && index.pole_cos >= kCorePoleCos && contrast >= kCoreContrast &&

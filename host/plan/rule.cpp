@@ -26,7 +26,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_pole_growth = 0.609,
      .circle_pole = 0.667,
      .phi_cluster_growth = 1.35,
-     .doubt_decades = {0.46, 0.35, 0.32, -0.2, 0.05}},
+     .doubt_decades = {0.46, 0.35, 0.3, -0.2, 0.2}},
     // v-cavity
     {.margin_digits = 2.46,
      .t_nodes = 1.05,
@@ -43,7 +43,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_circle_growth = 0.954,
      .phi_pole_growth = 0.418,
      .circle_pole = 0.723,
-     .doubt_decades = {0.42, 0.45, 0.36, 0.0, 0.4}},
+     .doubt_decades = {0.42, 0.45, 0.29, -0.08, 0.4}},
     // integral
     {.margin_digits = 2.18,
      .t_nodes = 1.25,
@@ -62,7 +62,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .circle_pole = 0.958,
      .phi_cluster_growth = 4.35,
      .line_threshold = 6.48e+04,
-     .doubt_decades = {0.5, 0.3, 0.14, 0.4, 1.85},
+     .doubt_decades = {0.5, 0.3, 0.21, 0.36, 1.85},
      .doubt_tight = 0.25},
     // smith
     {.margin_digits = 1.8,
@@ -83,7 +83,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_cluster_growth = 2.74,
      .cusp_digits = 3.06,
      .line_threshold = 1.48e+05,
-     .doubt_decades = {0.78, 0.5, 0.35, 0.9, 1.8}},
+     .doubt_decades = {0.78, 0.5, 0.32, 0.9, 1.8}},
 }};
 
 constexpr double kCalibratedDigits = 4.0;  // where the curvatures vanish

@@ -94,6 +94,7 @@ constexpr double kDeficitFactor = 2.5;  // by which the deficit's doubt says les
 // The core of the domain, see Difficulty.
 constexpr double kCoreCosTheta = 0.0087;
 constexpr double kCoreSinTheta = 0.035;
+constexpr double kCoreNormalTolerance = 1e-7;
 constexpr double kCoreHorizonGap = 0.055;  // cos(theta) + pole_cos: a metal at grazing incidence
 constexpr double kCoreSmallestM = 0.007;
 constexpr double kCoreSmallestTableM = 0.028;  // integral and smith
@@ -117,10 +118,12 @@ Difficulty difficulty(const KernelData& data, const MomentsEntry& entry) {
   // The kink where the limit b of `integral` meets pi/2, beside a heavy tail.
   const bool has_kink = data.masking == Masking::kIntegral && data.distribution == Distribution::kCauchy &&
                         shape.q_minus_1 < kCoreIntegralQ - 1.0 && data.tolerance < kCoreIntegralTolerance;
-  const bool is_core = theta.c >= kCoreCosTheta && (theta.s >= kCoreSinTheta || data.masking != Masking::kIntegral) &&
-                       theta.c + index.pole_cos >= kCoreHorizonGap && shape.m >= smallest_m &&
-                       shape.m <= kCoreLargestM && index.pole_cos >= kCorePoleCos && contrast >= kCoreContrast &&
-                       !has_kink && !(is_smith && shape.q_minus_1 < kCoreSmithQ - 1.0);
+  // Near the normal the circles have few nodes, which say little of themselves.
+  const bool is_normal =
+      theta.s < kCoreSinTheta && (data.masking == Masking::kIntegral || data.tolerance < kCoreNormalTolerance);
+  const bool is_core = theta.c >= kCoreCosTheta && !is_normal && theta.c + index.pole_cos >= kCoreHorizonGap &&
+                       shape.m >= smallest_m && shape.m <= kCoreLargestM && index.pole_cos >= kCorePoleCos &&
+                       contrast >= kCoreContrast && !has_kink && !(is_smith && shape.q_minus_1 < kCoreSmithQ - 1.0);
   return is_core ? Difficulty::kCore : Difficulty::kEdge;
 }
 

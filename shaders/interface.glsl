@@ -31,7 +31,7 @@
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
 #define DOLP_MAX_PIECES 12       // pieces of the slope axis for one direction
-#define DOLP_MAX_ORDER 64        // largest Gauss order of the rule nodes
+#define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes
 #define DOLP_MASKING_OCTAVES 29  // of v = 1 + tau/scale
 #define DOLP_MASKING_CELL_BITS_FLOAT 3   // 2^bits cells per octave
 #define DOLP_MASKING_CELL_BITS_DOUBLE 6
@@ -43,20 +43,23 @@
 struct RuleNode {
   real digits;            // decimal digits that the sums are to have
   real t_nodes;           // slope axis: nodes of a piece whatever its digits
-  real t_growth;          // factor of the nodes for each digit
+  real t_growth;          // factor of the nodes for each digit,
+  real t_curvature;       // and by how much less it would be for a digit less
   real t_strip;           // distance in X to the next singularity off the real axis
   real t_root_nodes;      // more nodes for a square root at an end
   real phi_half_nodes;    // azimuth: the same for an arc that touches phi = 0 or pi,
   real phi_centre_nodes;  // for any other arc
   real phi_circle_nodes;  // and for the whole half circle
   real phi_growth;
+  real phi_curvature;
   real phi_circle_growth;
   real phi_pole_growth;
   real circle_pole;
   real phi_cluster_growth;
   real strip[3];         // for the arcs of each zone: distance in phi to the next singularity off the real axis
   real cluster_below_q;  // below this q an arc clusters its nodes where the limit b of `integral` meets pi/2
-  real node_stride;      // largest order of the rule nodes
+  real largest_order;    // of the rule nodes
+  real most_evaluations; // of one entry, beyond which every arc gets a single node: bounds the loop iterations
 };
 
 // One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. Under total
@@ -69,8 +72,6 @@ struct ThetaNode {
   real has_line;                   // 1: split at the line b = pi/2 of `integral`, or at the cusp of smith
   real t_growth;                   // toward grazing incidence more nodes for each digit: factor of RuleNode::t_growth,
   real phi_narrowing;              // divisor of RuleNode::strip
-  real order_limit_t;              // most nodes of a piece and of an arc, which bounds the loop iterations
-  real order_limit_phi;
   real end[DOLP_MAX_PIECES + 1];   // ascending slopes; the last may exceed any cut
   real kind[DOLP_MAX_PIECES + 1];  // bit 0: square-root end just above, bit 1: just below
 };

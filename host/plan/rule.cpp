@@ -118,6 +118,14 @@ constexpr double kGaussianCuspDigits = -1.0;
 constexpr double kCuspDigits = 7.0;
 constexpr double kCuspFall = 0.7;
 
+// Largest orders of the rules: what few digits can use, and what each digit beyond asks for.
+constexpr double kPlainOrder = 64.0;
+constexpr double kOrderPerDigit = 8.0;
+
+// Evaluations of one entry: below the 65,535 loop iterations at which lavapipe stops without notice, with room for the
+// loops around them.
+constexpr double kMostEvaluations = 48'000.0;
+
 constexpr double kNoCusp = -1000.0;
 
 double cusp_offset(double digits) {
@@ -157,16 +165,20 @@ kernel::RuleNode rule_node(Masking masking, double digits) {
   node.digits = digits;
   node.t_nodes = model.t_nodes;
   node.t_growth = curved(model.t_curvature, digits);
+  node.t_curvature = model.t_curvature;
   node.t_strip = model.t_strip;
   node.t_root_nodes = model.t_root_nodes;
   node.phi_half_nodes = model.phi_half_nodes;
   node.phi_centre_nodes = model.phi_centre_nodes;
   node.phi_circle_nodes = model.phi_circle_nodes;
   node.phi_growth = curved(model.phi_curvature, digits);
+  node.phi_curvature = model.phi_curvature;
   node.phi_circle_growth = node.phi_growth * model.phi_circle_growth;
   node.phi_pole_growth = node.phi_growth * model.phi_pole_growth;
   node.circle_pole = model.circle_pole;
   node.phi_cluster_growth = model.phi_cluster_growth;
+  node.largest_order = std::min<double>(DOLP_MAX_ORDER, std::max(kPlainOrder, std::ceil(kOrderPerDigit * digits)));
+  node.most_evaluations = kMostEvaluations;
   std::copy(std::begin(model.strip), std::end(model.strip), std::begin(node.strip));
   node.cluster_below_q = digits > kTightDigits ? kTightClusterBelowQ : digits > kClusterDigits ? kClusterBelowQ : 0.0;
   return node;

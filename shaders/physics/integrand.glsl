@@ -30,9 +30,8 @@ FacetSums add_size(FacetSums sum, FacetSums term) {
 // Sums over the azimuth at one slope.
 struct AzimuthSums {
   FacetSums sum;
-  FacetSums null;      // sizes of the null rules' sums, arc by arc
+  FacetSums null;      // sizes of the null rules' sums, arc by arc, see null_weight
   real deficit_scale;  // the deficit with the absolute values of its terms
-  real reached;        // share of the digits wanted that the orders allow, at the worst arc
   real evaluations;
 };
 
@@ -144,6 +143,7 @@ Projection project(ThetaNode theta, ShapeNode shape, uint table, real t, real e,
 struct Slice {
   real t;
   real digits;      // wanted
+  real order_limit; // of its arcs
   real by_slope;    // see project
   real cusp_nodes;  // nodes of a half arc that smith's cusp at theta_r = 0 asks for
 };
@@ -182,14 +182,22 @@ real arc_nodes(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, Arc
   return nodes;
 }
 
+// The weight of an arc's null sums: its doubt is 10^(-kDoubtPower digits) times the root of sum and null, of the digits
+// that the limit of the nodes leaves.
+real null_weight(RuleNode rule, real digits, real nodes, real limit) {
+  real lost = lost_digits(digits, rule.phi_growth, rule.phi_curvature, nodes, limit);
+  return (lost > real(0.0)) ? exp_real(real(2.0) * kDoubtPower * kLn10 * lost) : real(1.0);
+}
+
 AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, Slice slice, Arc arc,
                      int zone) {
   real t = slice.t;
   real r2 = real(1.0) / (real(1.0) + t * t);
   real nodes = arc_nodes(rule, theta, index, slice, arc, zone);
   real with_cusp = (arc.section == kSectionCluster) ? nodes : max(nodes, rule.phi_half_nodes + slice.cusp_nodes);
-  int order = (arc.quarter > real(0.0)) ? order_between(with_cusp, theta.order_limit_phi) : 0;
-  real reached = (order > 0 && arc.section != kSectionCluster) ? reached_share(nodes, theta.order_limit_phi) : real(1.0);
+  int order = (arc.quarter > real(0.0)) ? order_between(with_cusp, slice.order_limit) : 0;
+  real null_scale = real(1.0);
+  if (order > 0 && arc.section != kSectionCluster) null_scale = null_weight(rule, slice.digits, nodes, slice.order_limit);
   int first_node = rule_offset(rule, arc.section, order);
   FacetSums sum = no_facets();
   FacetSums null = no_facets();
@@ -210,13 +218,12 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode 
     sum = add_weighted(sum, term, measure * node.y);
     null = add_weighted(null, term, measure * node.z);
   }
-  return AzimuthSums(sum, add_size(no_facets(), null), sum.deficit, reached, real(order));
+  return AzimuthSums(sum, add_weighted(no_facets(), add_size(no_facets(), null), null_scale), sum.deficit, real(order));
 }
 
 AzimuthSums add_arc(AzimuthSums sums, AzimuthSums arc) {
   return AzimuthSums(add_weighted(sums.sum, arc.sum, real(1.0)), add_size(sums.null, arc.null),
-                     sums.deficit_scale + arc.deficit_scale, min(sums.reached, arc.reached),
-                     sums.evaluations + arc.evaluations);
+                     sums.deficit_scale + arc.deficit_scale, sums.evaluations + arc.evaluations);
 }
 
 // The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth: three in ascending order
@@ -302,9 +309,9 @@ AzimuthSums zone_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode
 
 // Integral over the azimuth from 0 to pi at slope t, the facets below the horizon counted in the deficit.
 AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, real t,
-                         real digits) {
+                         real digits, real order_limit) {
   SplitLines lines = split_lines(theta, index, t);
-  Slice slice = Slice(t, digits, real(0.0), real(0.0));
+  Slice slice = Slice(t, digits, order_limit, real(0.0), real(0.0));
   if (kMasking == DOLP_MASKING_INTEGRAL) slice.by_slope = shadowed_integral(shape, table, theta.c, theta.s, t);
   if (kMasking == DOLP_MASKING_SMITH) {
     slice.by_slope = smith_lambda(shape, table, theta.c, theta.s);

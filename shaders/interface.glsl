@@ -56,6 +56,8 @@ struct RuleNode {
   real phi_pole_growth;
   real circle_pole;
   real phi_cluster_growth;
+  real phi_cluster_digits;   // factor of its nodes for each digit
+  real cluster_pole_growth;  // factor of what the pole asks for
   real strip[3];         // for the arcs of each zone: distance in phi to the next singularity off the real axis
   real cluster_below_q;  // below this q an arc clusters its nodes where the limit b of `integral` meets pi/2
   real largest_order;    // of the rule nodes

@@ -192,6 +192,10 @@ kernel::ThetaNode theta_node(const MomentsRequest& request, double theta_deg, co
   const double grazing = std::clamp((theta_deg - 80.0) / 9.0, 0.0, 1.0) + 0.3 * std::max(0.0, theta_deg - 88.0);
   node.t_growth = 1.0 + model.t_oblique * oblique;
   node.phi_narrowing = 1.0 + model.phi_grazing * grazing;
+  if (variant.has_line) {
+    node.t_growth *= model.t_line;
+    node.phi_narrowing *= model.phi_line;
+  }
   if (variant.critical_cos > 0.0) {
     node.t_growth *= kTotalReflectionGrowthT;
     node.phi_narrowing *= kTotalReflectionNarrowing;

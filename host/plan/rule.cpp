@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/constants/constants.hpp>
+#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -60,7 +62,8 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_circle_growth = 1.02,
      .phi_pole_growth = 0.259,
      .circle_pole = 0.958,
-     .phi_cluster_growth = 4.35,
+     .phi_cluster_growth = 1.8,
+     .cluster_curvature = 0.188,
      .line_threshold = 6.48e+04,
      .doubt_decades = {0.5, 0.3, 0.21, 0.36, 1.85},
      .doubt_tight = 0.25},
@@ -81,6 +84,8 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_pole_growth = 0.103,
      .circle_pole = 0.332,
      .phi_cluster_growth = 2.74,
+     .cluster_curvature = 0.0,
+     .cluster_pole = 3.0,
      .cusp_digits = 3.06,
      .line_threshold = 1.48e+05,
      .doubt_decades = {0.78, 0.5, 0.32, 0.9, 1.8}},
@@ -176,6 +181,8 @@ kernel::RuleNode rule_node(Masking masking, double digits) {
   node.phi_circle_growth = node.phi_growth * model.phi_circle_growth;
   node.phi_pole_growth = node.phi_growth * model.phi_pole_growth;
   node.circle_pole = model.circle_pole;
+  node.phi_cluster_digits = curved(model.cluster_curvature, digits);
+  node.cluster_pole_growth = model.cluster_pole;
   node.phi_cluster_growth = model.phi_cluster_growth;
   node.largest_order = std::min<double>(DOLP_MAX_ORDER, std::max(kPlainOrder, std::ceil(kOrderPerDigit * digits)));
   node.most_evaluations = kMostEvaluations;
@@ -206,7 +213,10 @@ double cusp_digits(Distribution distribution, Masking masking, const SlopeShape&
   const double from_integer = std::abs(shape.q - std::round(shape.q));
   if (from_integer == 0.0) return kNoCusp;
   const double width = std::min(1.0, std::numbers::sqrt2 * shape.sigma);
-  return (2.0 * shape.q - 2.0) * std::log10(width) + std::log10(std::min(1.0, 4.0 * from_integer)) -
+  // L = C (m tan(theta_r))^(2q-2) and more beside theta_r = 0.
+  const double coefficient = boost::math::tgamma_ratio(shape.q - 0.5, shape.q - 1.0) /
+                             (boost::math::constants::root_pi<double>() * (2.0 * shape.q - 3.0) * (2.0 * shape.q - 2.0));
+  return (2.0 * shape.q - 2.0) * std::log10(width) + std::log10(coefficient * std::min(1.0, 4.0 * from_integer)) -
          cusp_offset(digits);
 }
 

@@ -22,15 +22,11 @@ FacetSums add_weighted(FacetSums sum, FacetSums term, real weight) {
                    sum.deficit + weight * term.deficit);
 }
 
-FacetSums add_size(FacetSums sum, FacetSums term) {
-  return FacetSums(sum.r_i + abs(term.r_i), sum.r_q + abs(term.r_q), sum.albedo + abs(term.albedo),
-                   sum.deficit + abs(term.deficit));
-}
-
 // Sums over the azimuth at one slope.
 struct AzimuthSums {
   FacetSums sum;
-  FacetSums null;      // sizes of the null rules' sums, arc by arc, see null_weight
+  real doubt;          // of r_i and r_q, see orders.glsl
+  real deficit_doubt;
   real deficit_scale;  // the deficit with the absolute values of its terms
   real evaluations;
 };
@@ -160,7 +156,8 @@ real pole_nodes(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, re
 }
 
 real arc_nodes(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, Arc arc, int zone) {
-  real strip = rule.strip[zone] / theta.phi_narrowing;
+  bool is_cluster = arc.section == kSectionCluster;
+  real strip = rule.strip[zone] / (is_cluster ? max(theta.phi_narrowing, real(1.0)) : theta.phi_narrowing);
   real length = arc_length(arc.quarter);
   real nodes;
   if (arc.section == kSectionCircle) {
@@ -174,19 +171,14 @@ real arc_nodes(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, Arc
   } else if (arc.section == kSectionHalf) {
     nodes = rule.phi_half_nodes + half_arc_nodes(rule, slice.digits, strip, length);
   } else {
-    real stretch = (arc.section == kSectionCluster) ? rule.phi_cluster_growth : real(1.0);
+    real stretch = is_cluster ? rule.phi_cluster_growth : real(1.0);
+    real growth = is_cluster ? rule.phi_cluster_digits : rule.phi_growth;
     nodes = rule.phi_centre_nodes +
-            slice.digits * rule.phi_growth * nodes_per_digit(real(2.0) * strip / (stretch * length));
+            slice.digits * growth * nodes_per_digit(real(2.0) * strip / (stretch * length));
   }
-  if (arc.section != kSectionCircle) nodes = max(nodes, rule.phi_half_nodes + arc.pole_nodes);
+  real pole_growth = is_cluster ? rule.cluster_pole_growth : real(1.0);
+  if (arc.section != kSectionCircle) nodes = max(nodes, rule.phi_half_nodes + pole_growth * arc.pole_nodes);
   return nodes;
-}
-
-// The weight of an arc's null sums: its doubt is 10^(-kDoubtPower digits) times the root of sum and null, of the digits
-// that the limit of the nodes leaves.
-real null_weight(RuleNode rule, real digits, real nodes, real limit) {
-  real lost = lost_digits(digits, rule.phi_growth, rule.phi_curvature, nodes, limit);
-  return (lost > real(0.0)) ? exp_real(real(2.0) * kDoubtPower * kLn10 * lost) : real(1.0);
 }
 
 AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, Slice slice, Arc arc,
@@ -196,8 +188,10 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode 
   real nodes = arc_nodes(rule, theta, index, slice, arc, zone);
   real with_cusp = (arc.section == kSectionCluster) ? nodes : max(nodes, rule.phi_half_nodes + slice.cusp_nodes);
   int order = (arc.quarter > real(0.0)) ? order_between(with_cusp, slice.order_limit) : 0;
-  real null_scale = real(1.0);
-  if (order > 0 && arc.section != kSectionCluster) null_scale = null_weight(rule, slice.digits, nodes, slice.order_limit);
+  real digits = slice.digits;
+  if (order > 0 && arc.section != kSectionCluster) {
+    digits -= lost_digits(digits, rule.phi_growth, rule.phi_curvature, nodes, slice.order_limit);
+  }
   int first_node = rule_offset(rule, arc.section, order);
   FacetSums sum = no_facets();
   FacetSums null = no_facets();
@@ -218,12 +212,13 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode 
     sum = add_weighted(sum, term, measure * node.y);
     null = add_weighted(null, term, measure * node.z);
   }
-  return AzimuthSums(sum, add_weighted(no_facets(), add_size(no_facets(), null), null_scale), sum.deficit, real(order));
+  return AzimuthSums(sum, doubt(sum.r_i, max(abs(null.r_i), abs(null.r_q)), digits),
+                     doubt(sum.deficit, null.deficit, digits), sum.deficit, real(order));
 }
 
 AzimuthSums add_arc(AzimuthSums sums, AzimuthSums arc) {
-  return AzimuthSums(add_weighted(sums.sum, arc.sum, real(1.0)), add_size(sums.null, arc.null),
-                     sums.deficit_scale + arc.deficit_scale, sums.evaluations + arc.evaluations);
+  return AzimuthSums(add_weighted(sums.sum, arc.sum, real(1.0)), sums.doubt + arc.doubt,
+                     sums.deficit_doubt + arc.deficit_doubt, sums.deficit_scale + arc.deficit_scale, sums.evaluations + arc.evaluations);
 }
 
 // The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth: three in ascending order

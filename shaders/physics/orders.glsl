@@ -22,6 +22,13 @@ real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, re
   return max(rule.digits + kInverseLn10 * log_unit(share), real(0.0));
 }
 
+// Digits that are wanted of the azimuths at slope t, one of `order` slopes of a piece, that stands for `mass` of the
+// facets: less than of the piece where it carries less than its part.
+real digits_of_slope(RuleNode rule, ThetaNode theta, ShapeNode shape, real digits, int order, real t, real mass) {
+  real share = real(order) * mass * (theta.c + theta.s * t) / (theta.c + real(0.6) * theta.s * shape.m);
+  return clamp(rule.digits + kInverseLn10 * log_unit(min(share, real(1.0))), real(0.0), digits);
+}
+
 int order_between(real nodes, real limit) { return int(clamp(floor(nodes + real(0.5)), real(1.0), limit)); }
 
 // Digits that a rule loses whose nodes are cut down to a limit. For d of its digits less, the nodes are
@@ -44,4 +51,12 @@ real arc_length(real quarter) { return real(4.0) * quarter / (real(1.0) + real(0
 
 real half_arc_nodes(RuleNode rule, real digits, real distance, real length) {
   return real(0.5) * digits * rule.phi_growth * nodes_per_digit(distance / length);
+}
+
+// How far a sum may be off by one rule, up to a factor that host/plan/rule.cpp knows. Where the integrand is smooth, the
+// error of n nodes is to the null rule's value as that is to the sum; where it is not, it is what the orders were made
+// for, 10^-digits. The geometric mean of the two is the closest to the truth over the domain.
+real doubt(real sum, real null, real digits) {
+  real whole = abs(sum);
+  return min(exp_real(-kDoubtPower * kLn10 * digits) * sqrt(whole * abs(null)), whole);
 }

@@ -6,10 +6,10 @@
 #define DOLP_BINDING_THETAS 0         // ThetaNode[]
 #define DOLP_BINDING_SHAPES 1         // ShapeNode[]
 #define DOLP_BINDING_INDICES 2        // IndexNode[]
-#define DOLP_BINDING_ENTRIES 3        // uvec4[]: theta, shape (relative to the first shape bound), index, unused
+#define DOLP_BINDING_ENTRIES 3        // uvec4[]: theta, first shape (of those bound), index, shapes of a group
 #define DOLP_BINDING_RULE_NODES 4     // real4[]: see physics/quadrature.glsl
 #define DOLP_BINDING_MASKING_TABLE 5  // real4[]: one table for each shape bound, see physics/masking.glsl
-#define DOLP_BINDING_MOMENTS 6        // MomentsNode[]: one for each entry of the dispatch
+#define DOLP_BINDING_MOMENTS 6        // MomentsNode[]: one for each member of each group of the dispatch
 #define DOLP_BINDING_RULE 7           // RuleNode: one for all entries
 
 // ---- Specialization constants --------------------------------------------------------------------------------------
@@ -25,11 +25,14 @@
 #define DOLP_MASKING_SMITH 3u
 
 // ---- Push constants: four uints, used by both entry points ----------------------------------------------------------
-// count: entries of this dispatch (moments.comp) or shapes bound (masking_table.comp); first: the first of them, as a
-// position in the bound buffers. Output i of a dispatch belongs to entry first + i.
+// count: groups of entries of this dispatch (moments.comp) or shapes bound (masking_table.comp); first: the first of them, as a
+// position in the bound buffers. Outputs i * DOLP_GROUP and following belong to group first + i.
 #define DOLP_PUSH_CONSTANTS uint first; uint count; uint unused_0; uint unused_1;
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
+#ifndef DOLP_GROUP
+#define DOLP_GROUP 1             // entries of one invocation, see Group of physics/integrand.glsl
+#endif
 #define DOLP_MAX_PIECES 12       // pieces of the slope axis for one direction
 #define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes
 #define DOLP_MASKING_OCTAVES 29  // of v = 1 + tau/scale
@@ -61,7 +64,7 @@ struct RuleNode {
   real strip[3];         // for the arcs of each zone: distance in phi to the next singularity off the real axis
   real cluster_below_q;  // below this q an arc clusters its nodes where the limit b of `integral` meets pi/2
   real largest_order;    // of the rule nodes
-  real most_evaluations; // of one entry, beyond which every arc gets a single node: bounds the loop iterations
+  real most_iterations;  // of the loops of one invocation, beyond which every arc gets a single node
 };
 
 // One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. Under total

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Moments of one entry per invocation.
+// Moments of one group of entries per invocation; the compiler is told its size.
 
 #include "physics/prelude.glsl"
 #include "interface.glsl"
@@ -16,6 +16,14 @@ layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer MomentsOut { Mom
 void main() {
   uint i = gl_GlobalInvocationID.x;
   uvec4 entry = entries[push.first + min(i, push.count - 1u)];
-  MomentsNode result = moments_entry(rule, thetas[entry.x], shapes[entry.y], indices[entry.z], entry.y * kMaskingNodes);
-  if (i < push.count) moments[i] = result;
+  Group group;
+  for (int g = 0; g < DOLP_GROUP; ++g) {
+    uint shape = entry.y + min(uint(g), entry.w - 1u);
+    group.shape[g] = shapes[shape];
+    group.table[g] = shape * kMaskingNodes;
+  }
+  GroupMoments result = moments_group(rule, thetas[entry.x], group, indices[entry.z]);
+  if (i < push.count) {
+    for (int g = 0; g < DOLP_GROUP; ++g) moments[i * DOLP_GROUP + g] = result.member[g];
+  }
 }

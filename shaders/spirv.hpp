@@ -8,6 +8,8 @@ namespace dolp::spirv {
 
 extern const std::span<const std::uint32_t> moments_float;
 extern const std::span<const std::uint32_t> moments_double;
+extern const std::span<const std::uint32_t> moments_group_float;  // DOLP_GROUP_SIZE entries an invocation
+extern const std::span<const std::uint32_t> moments_group_double;
 extern const std::span<const std::uint32_t> masking_table_float;
 extern const std::span<const std::uint32_t> masking_table_double;
 

@@ -430,7 +430,7 @@ TEST_P(EveryKernel, OrderOfAxesAndEntries_TilesAndBlocks_ChangeNoBit) {
     }
     other.entries = permuted(other.entries, entries);
     VulkanOptions options;
-    options.max_tile_entries = static_cast<std::uint32_t>(random.uniform(1.0, 20.0));
+    options.max_tile_groups = static_cast<std::uint32_t>(random.uniform(1.0, 20.0));
     options.max_block_shapes = static_cast<std::uint32_t>(random.uniform(1.0, 6.0));
     options.staged_uploads = random.chance(0.5);
     const std::vector<Moments> actual = make_evaluator(kernel, options)->evaluate(other, {});

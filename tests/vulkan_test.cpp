@@ -177,7 +177,7 @@ TEST_P(EveryKernel, TilesBlocksAndStaging_ChangeNoBit) {
   const MomentsRequest request = small_request(std::get<Distribution>(GetParam()), std::get<Masking>(GetParam()));
   VulkanEvaluator whole(validated(std::get<Precision>(GetParam())));
   VulkanOptions options = validated(std::get<Precision>(GetParam()));
-  options.max_tile_entries = 7;
+  options.max_tile_groups = 7;
   options.max_block_shapes = 2;
   options.staged_uploads = true;
   VulkanEvaluator tiled(options);
@@ -253,7 +253,7 @@ INSTANTIATE_TEST_SUITE_P(Vulkan, EveryKernel,
 
 TEST(VulkanEvaluator, Progress_CountsEveryTileAndTheReportEveryDispatch) {
   VulkanOptions options = validated();
-  options.max_tile_entries = 10;
+  options.max_tile_groups = 10;
   options.max_block_shapes = 2;
   VulkanEvaluator evaluator(options);
   const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
@@ -275,7 +275,7 @@ TEST(VulkanEvaluator, Progress_CountsEveryTileAndTheReportEveryDispatch) {
 
 TEST(VulkanEvaluator, CancelledRequest_LeavesTheEvaluatorUsable) {
   VulkanOptions options = validated();
-  options.max_tile_entries = 20;
+  options.max_tile_groups = 20;
   VulkanEvaluator evaluator(options);
   const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
   const std::vector<Moments> expected = evaluator.evaluate(request, {});

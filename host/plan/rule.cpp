@@ -127,9 +127,9 @@ constexpr double kCuspFall = 0.7;
 constexpr double kPlainOrder = 64.0;
 constexpr double kOrderPerDigit = 8.0;
 
-// Evaluations of one entry: below the 65,535 loop iterations at which lavapipe stops without notice, with room for the
-// loops around them.
-constexpr double kMostEvaluations = 48'000.0;
+// Loop iterations of one invocation: below the 65,535 at which lavapipe stops without notice, with room for what is left
+// to do with a node for each arc.
+constexpr double kMostIterations = 50'000.0;
 
 constexpr double kNoCusp = -1000.0;
 
@@ -185,7 +185,7 @@ kernel::RuleNode rule_node(Masking masking, double digits) {
   node.cluster_pole_growth = model.cluster_pole;
   node.phi_cluster_growth = model.phi_cluster_growth;
   node.largest_order = std::min<double>(DOLP_MAX_ORDER, std::max(kPlainOrder, std::ceil(kOrderPerDigit * digits)));
-  node.most_evaluations = kMostEvaluations;
+  node.most_iterations = kMostIterations;
   std::copy(std::begin(model.strip), std::end(model.strip), std::begin(node.strip));
   node.cluster_below_q = digits > kTightDigits ? kTightClusterBelowQ : digits > kClusterDigits ? kClusterBelowQ : 0.0;
   return node;

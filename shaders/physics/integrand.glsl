@@ -22,13 +22,26 @@ FacetSums add_weighted(FacetSums sum, FacetSums term, real weight) {
                    sum.deficit + weight * term.deficit);
 }
 
-// Sums over the azimuth at one slope.
+// Entries that differ in the exponent q alone, in ascending order, with their masking tables: they share nodes, facets
+// and reflection. Scale, cut and cusp of their shapes are the same, those that the hardest of them needs.
+struct Group {
+  ShapeNode shape[DOLP_GROUP];
+  uint table[DOLP_GROUP];
+};
+
+// Masking without q has one sum over the azimuths for all members of a group.
+int masked_members() {
+  return (kMasking == DOLP_MASKING_INTEGRAL || kMasking == DOLP_MASKING_SMITH) ? DOLP_GROUP : 1;
+}
+
+// Sums over the azimuth at one slope, for each member of a group.
 struct AzimuthSums {
-  FacetSums sum;
-  real doubt;          // of r_i and r_q, see orders.glsl
-  real deficit_doubt;
-  real deficit_scale;  // the deficit with the absolute values of its terms
+  FacetSums sum[DOLP_GROUP];
+  real doubt[DOLP_GROUP];          // of r_i and r_q, see orders.glsl
+  real deficit_doubt[DOLP_GROUP];
+  real deficit_scale[DOLP_GROUP];  // the deficit with the absolute values of its terms
   real evaluations;
+  real iterations;                 // of all loops
 };
 
 // A facet's projection e as the part that masking leaves, e G, and the part that it hides, e (1 - G): each is computed
@@ -38,19 +51,26 @@ struct Projection {
   real hidden;
 };
 
-// Integrand at azimuth (x, sin phi) per unit of azimuth.
-FacetSums facet(ThetaNode theta, IndexNode index, real t, real r2, real x, real sin_phi, real e, Projection part) {
+// What a facet at azimuth (x, sin phi) does with the light that masking leaves it.
+struct Reflection {
+  real m00;
+  real m01;
+  real absorbed;  // 1 - m00
+};
+
+Reflection reflection(ThetaNode theta, IndexNode index, real t, real r2, real x, real sin_phi, real e) {
   real along = theta.c * t * x - theta.s;
   real across = t * sin_phi;
   Fresnel f = fresnel(index, sqrt(r2) * e);
   real half_split = real(0.5) * f.split_over_sin2 * r2;
   real split = half_split * (along * along + across * across);
-  FacetSums sum;
-  sum.r_i = part.seen * (f.r_s - split);
-  sum.r_q = part.seen * half_split * (along * along - across * across);
-  sum.albedo = part.seen;
-  sum.deficit = part.hidden + part.seen * (f.absorbed_s + split);
-  return sum;
+  return Reflection(f.r_s - split, half_split * (along * along - across * across), f.absorbed_s + split);
+}
+
+// Integrand per unit of azimuth.
+FacetSums facet(Reflection reflected, Projection part) {
+  return FacetSums(part.seen * reflected.m00, part.seen * reflected.m01, part.seen,
+                   part.hidden + part.seen * reflected.absorbed);
 }
 
 // An arc of azimuths phi = centre + psi, psi = 4 atan(extent * abscissa), on which the integrand is smooth. Its extent is
@@ -116,22 +136,57 @@ real2 clamp_half_angle(real2 phi, real2 from, real2 to) {
   return (above.x * to.y - above.y * to.x > real(0.0)) ? above : to;
 }
 
-// The projection of a facet whose reflected ray leaves at cos_r. `zone` numbers the arcs from phi = 0; `by_slope` is
-// what the slope alone decides: the shadow of theta (`integral`, valid in zone 0, where theta_r < theta) or L(theta).
-Projection project(ThetaNode theta, ShapeNode shape, uint table, real t, real e, real cos_r, int zone, real by_slope) {
+// What masking says of one direction, for each member: the shadow 1 - G1 of the facets of slope t (`integral`) or Smith's
+// L.
+struct Masked {
+  real value[DOLP_GROUP];
+};
+
+Masked unmasked() {
+  Masked masked;
+  for (int g = 0; g < DOLP_GROUP; ++g) masked.value[g] = real(0.0);
+  return masked;
+}
+
+// Where few invocations need something, a branch would be computed and thrown away by devices that run them in
+// lockstep; a loop of one turn at most is skipped where none does.
+Masked masked_direction(Group group, real cos_theta, real sin_theta, real t, bool is_needed) {
+  Masked masked = unmasked();
+  if (kMasking == DOLP_MASKING_SMITH) {
+    real mu = cos_theta / max(sin_theta, real(1e-30));
+    TableCell cell = table_cell(group.shape[0], mu);
+    real inverse = real(1.0) / max(mu, real(1e-30));
+    for (int g = 0; g < DOLP_GROUP; ++g) masked.value[g] = masking_height(cell, group.table[g]) * inverse;
+  }
+  if (kMasking == DOLP_MASKING_INTEGRAL) {
+    for (int turn = is_needed ? 0 : 1; turn < 1; ++turn) {
+      ShadowPlace place = shadow_place(group.shape[0], cos_theta, sin_theta, t);
+      for (int g = 0; g < DOLP_GROUP; ++g) masked.value[g] = unlimited_shadow(place, group.table[g]);
+      for (int limit = place.is_limited ? 0 : 1; limit < 1; ++limit) {
+        TableCell cell = table_cell(group.shape[0], place.far);
+        for (int g = 0; g < DOLP_GROUP; ++g) {
+          masked.value[g] += limited_shadow(group.shape[g], place, cell, group.table[g]);
+        }
+      }
+    }
+  }
+  return masked;
+}
+
+// The projection of a facet whose reflected ray leaves at cos_r, by what masking says of theta and of that ray. `zone`
+// numbers the arcs from phi = 0; in the first, theta_r < theta, so that `integral` asks theta.
+Projection project(ThetaNode theta, real e, real cos_r, int zone, real of_theta, real of_ray) {
   if (kMasking == DOLP_MASKING_NONE) return Projection(e, real(0.0));
   if (kMasking == DOLP_MASKING_V_CAVITY) {
     real seen = min(e, real(2.0) * min(theta.c, cos_r));
     return Projection(seen, e - seen);
   }
-  real sin_r = sqrt((real(1.0) - cos_r) * (real(1.0) + cos_r));
   if (kMasking == DOLP_MASKING_SMITH) {
-    real lambdas = by_slope + smith_lambda(shape, table, cos_r, sin_r);
+    real lambdas = of_theta + of_ray;
     real g = real(1.0) / (real(1.0) + lambdas);
     return Projection(e * g, e * (lambdas * g));
   }
-  real shadow = by_slope;
-  if (zone > 0) shadow = shadowed_integral(shape, table, cos_r, sin_r, t);
+  real shadow = (zone > 0) ? of_ray : of_theta;
   return Projection(e * (real(1.0) - shadow), e * shadow);
 }
 
@@ -140,7 +195,7 @@ struct Slice {
   real t;
   real digits;      // wanted
   real order_limit; // of its arcs
-  real by_slope;    // see project
+  Masked of_theta;
   real cusp_nodes;  // nodes of a half arc that smith's cusp at theta_r = 0 asks for
 };
 
@@ -157,7 +212,8 @@ real pole_nodes(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, re
 
 real arc_nodes(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, Arc arc, int zone) {
   bool is_cluster = arc.section == kSectionCluster;
-  real strip = rule.strip[zone] / (is_cluster ? max(theta.phi_narrowing, real(1.0)) : theta.phi_narrowing);
+  real own_strip = (zone == 0) ? rule.strip[0] : ((zone == 1) ? rule.strip[1] : rule.strip[2]);
+  real strip = own_strip / (is_cluster ? max(theta.phi_narrowing, real(1.0)) : theta.phi_narrowing);
   real length = arc_length(arc.quarter);
   real nodes;
   if (arc.section == kSectionCircle) {
@@ -181,8 +237,12 @@ real arc_nodes(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, Arc
   return nodes;
 }
 
-AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, Slice slice, Arc arc,
-                     int zone) {
+// Iterations of the loops for one node of an arc, see masked_direction.
+real iterations_of_node() { return (kMasking == DOLP_MASKING_INTEGRAL) ? real(3.0) : real(1.0); }
+
+// Adds the azimuths of an arc to `sums`.
+void add_arc(RuleNode rule, ThetaNode theta, Group group, IndexNode index, Slice slice, Arc arc, int zone,
+             INOUT(AzimuthSums) sums) {
   real t = slice.t;
   real r2 = real(1.0) / (real(1.0) + t * t);
   real nodes = arc_nodes(rule, theta, index, slice, arc, zone);
@@ -193,8 +253,16 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode 
     digits -= lost_digits(digits, rule.phi_growth, rule.phi_curvature, nodes, slice.order_limit);
   }
   int first_node = rule_offset(rule, arc.section, order);
-  FacetSums sum = no_facets();
-  FacetSums null = no_facets();
+  FacetSums sum[DOLP_GROUP];
+  real null_i[DOLP_GROUP];
+  real null_q[DOLP_GROUP];
+  real null_deficit[DOLP_GROUP];
+  for (int g = 0; g < DOLP_GROUP; ++g) {
+    sum[g] = no_facets();
+    null_i[g] = real(0.0);
+    null_q[g] = real(0.0);
+    null_deficit[g] = real(0.0);
+  }
   for (int i = 0; i < order; ++i) {
     real4 node = rule_node(first_node + i);
     real tau = arc.extent * node.x;
@@ -206,19 +274,28 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode 
     real sin_phi = arc.centre_sin * cos_psi + arc.centre_cos * sin_psi;
     real e = theta.c + theta.s * t * x;
     real cos_r = clamp(real(2.0) * r2 * e - theta.c, real(0.0), real(1.0));
-    Projection part = project(theta, shape, table, t, e, cos_r, zone, slice.by_slope);
-    FacetSums term = facet(theta, index, t, r2, x, sin_phi, e, part);
     real measure = real(4.0) * abs(arc.extent) * inverse;
-    sum = add_weighted(sum, term, measure * node.y);
-    null = add_weighted(null, term, measure * node.z);
+    real weight = measure * node.y;
+    real null_weight = measure * node.z;
+    Reflection reflected = reflection(theta, index, t, r2, x, sin_phi, e);
+    real sin_r = sqrt((real(1.0) - cos_r) * (real(1.0) + cos_r));
+    Masked of_ray = masked_direction(group, cos_r, sin_r, t, zone > 0);
+    for (int g = 0; g < masked_members(); ++g) {
+      FacetSums term = facet(reflected, project(theta, e, cos_r, zone, slice.of_theta.value[g], of_ray.value[g]));
+      sum[g] = add_weighted(sum[g], term, weight);
+      null_i[g] += null_weight * term.r_i;
+      null_q[g] += null_weight * term.r_q;
+      null_deficit[g] += null_weight * term.deficit;
+    }
   }
-  return AzimuthSums(sum, doubt(sum.r_i, max(abs(null.r_i), abs(null.r_q)), digits),
-                     doubt(sum.deficit, null.deficit, digits), sum.deficit, real(order));
-}
-
-AzimuthSums add_arc(AzimuthSums sums, AzimuthSums arc) {
-  return AzimuthSums(add_weighted(sums.sum, arc.sum, real(1.0)), sums.doubt + arc.doubt,
-                     sums.deficit_doubt + arc.deficit_doubt, sums.deficit_scale + arc.deficit_scale, sums.evaluations + arc.evaluations);
+  for (int g = 0; g < masked_members(); ++g) {
+    sums.sum[g] = add_weighted(sums.sum[g], sum[g], real(1.0));
+    sums.doubt[g] += doubt(sum[g].r_i, max(abs(null_i[g]), abs(null_q[g])), digits);
+    sums.deficit_doubt[g] += doubt(sum[g].deficit, null_deficit[g], digits);
+    sums.deficit_scale[g] += sum[g].deficit;
+  }
+  sums.evaluations += real(order);
+  sums.iterations += real(1.0) + real(order) * iterations_of_node();
 }
 
 // The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth: three in ascending order
@@ -288,43 +365,53 @@ Arc zone_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, Slice slice, real2
   return arc;
 }
 
-// Integral over the azimuths of one zone, split where total reflection begins; its clusters then replace those of
-// zone_arc.
-AzimuthSums zone_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, Slice slice,
-                      real2 from, real2 to, real2 critical, int zone) {
-  if (index.critical_cos <= real(0.0)) {
-    Arc arc = zone_arc(rule, theta, shape, slice, from, to, zone);
-    arc.pole_nodes = pole_nodes(rule, theta, index, slice, cosine(from), cosine(to));
-    return arc_sums(rule, theta, shape, index, table, slice, arc, zone);
-  }
-  real2 middle = clamp_half_angle(critical, from, to);
-  AzimuthSums below = arc_sums(rule, theta, shape, index, table, slice, make_root_arc(from, middle, true), zone);
-  return add_arc(below, arc_sums(rule, theta, shape, index, table, slice, make_root_arc(middle, to, false), zone));
-}
-
-// Integral over the azimuth from 0 to pi at slope t, the facets below the horizon counted in the deficit.
-AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, real t,
-                         real digits, real order_limit) {
+// Integral over the azimuth from 0 to pi at slope t, the facets below the horizon counted in the deficit. Each zone is
+// an arc, or two where total reflection begins in between; their clusters then replace those of zone_arc.
+AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode index, real t, real digits,
+                         real order_limit) {
   SplitLines lines = split_lines(theta, index, t);
-  Slice slice = Slice(t, digits, order_limit, real(0.0), real(0.0));
-  if (kMasking == DOLP_MASKING_INTEGRAL) slice.by_slope = shadowed_integral(shape, table, theta.c, theta.s, t);
-  if (kMasking == DOLP_MASKING_SMITH) {
-    slice.by_slope = smith_lambda(shape, table, theta.c, theta.s);
-    slice.cusp_nodes = cusp_nodes(rule, theta, shape, t, digits, arc_length(lines.horizon.y / (real(1.0) + lines.horizon.x)));
+  Slice slice;
+  slice.t = t;
+  slice.digits = digits;
+  slice.order_limit = order_limit;
+  slice.of_theta = masked_direction(group, theta.c, theta.s, t, true);
+  slice.cusp_nodes = real(0.0);
+  AzimuthSums sums;
+  sums.evaluations = real(0.0);
+  sums.iterations = real(1.0);
+  for (int g = 0; g < DOLP_GROUP; ++g) {
+    sums.sum[g] = no_facets();
+    sums.doubt[g] = real(0.0);
+    sums.deficit_doubt[g] = real(0.0);
+    sums.deficit_scale[g] = real(0.0);
   }
-  real2 forward = real2(real(1.0), real(0.0));
-  AzimuthSums sums =
-      zone_sums(rule, theta, shape, index, table, slice, forward, lines.first, lines.critical, 0);
-  if (kMasking == DOLP_MASKING_INTEGRAL || kMasking == DOLP_MASKING_V_CAVITY) {
-    for (int zone = 1; zone < 3; ++zone) {
-      real2 from = (zone == 1) ? lines.first : lines.second;
-      real2 to = (zone == 1) ? lines.second : lines.horizon;
-      sums = add_arc(sums, zone_sums(rule, theta, shape, index, table, slice, from, to, lines.critical, zone));
+  if (kMasking == DOLP_MASKING_SMITH) {
+    real length = arc_length(lines.horizon.y / (real(1.0) + lines.horizon.x));
+    slice.cusp_nodes = cusp_nodes(rule, theta, group.shape[0], t, digits, length);
+  }
+  bool reflects_totally = index.critical_cos > real(0.0);
+  int halves = reflects_totally ? 2 : 1;
+  int zones = (kMasking == DOLP_MASKING_INTEGRAL || kMasking == DOLP_MASKING_V_CAVITY) ? 3 : 1;
+  for (int part = 0; part < zones * halves; ++part) {
+    int zone = reflects_totally ? part >> 1 : part;
+    bool is_second = reflects_totally && (part & 1) == 1;
+    real2 from = (zone == 0) ? real2(real(1.0), real(0.0)) : ((zone == 1) ? lines.first : lines.second);
+    real2 to = (zone == 0) ? lines.first : ((zone == 1) ? lines.second : lines.horizon);
+    Arc arc;
+    if (reflects_totally) {
+      real2 middle = clamp_half_angle(lines.critical, from, to);
+      arc = make_root_arc(is_second ? middle : from, is_second ? to : middle, !is_second);
+    } else {
+      arc = zone_arc(rule, theta, group.shape[0], slice, from, to, zone);
+      arc.pole_nodes = pole_nodes(rule, theta, index, slice, cosine(from), cosine(to));
     }
+    add_arc(rule, theta, group, index, slice, arc, zone, sums);
   }
   real below = theta.c * real(4.0) * atan_unit(lines.horizon.x / (real(1.0) + lines.horizon.y));
   real behind = real(2.0) * theta.s * t * lines.horizon.x * lines.horizon.y;
-  sums.sum.deficit += below - behind;
-  sums.deficit_scale += below + behind;
+  for (int g = 0; g < masked_members(); ++g) {
+    sums.sum[g].deficit += below - behind;
+    sums.deficit_scale[g] += below + behind;
+  }
   return sums;
 }

@@ -28,22 +28,32 @@ real masking_weight(real tau) {
   return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) : real(1.0) / sqrt(real(1.0) + tau * tau);
 }
 
-// -p'/p and -g'/g.
+// -p'/p, up to a factor that depends on the shape alone, and -g'/g.
 real marginal_decay(ShapeNode shape, real tau) {
   real u = tau / shape.m;
   if (kDistribution == DOLP_GAUSSIAN) return real(2.0) * u / shape.m;
-  return (real(2.0) * shape.q_minus_1 + real(1.0)) * u / (shape.m * (real(1.0) + u * u));
+  return u / (shape.m * (real(1.0) + u * u));
+}
+real marginal_decay_factor(ShapeNode shape) {
+  return (kDistribution == DOLP_GAUSSIAN) ? real(1.0) : real(2.0) * shape.q_minus_1 + real(1.0);
 }
 real weight_decay(real tau) {
   return (kMasking == DOLP_MASKING_SMITH) ? real(0.0) : tau / (real(1.0) + tau * tau);
 }
 
-// Where tau lies in the table. Beyond the table's end the value at the end is used: only facets within 1e-5 of the line
-// d = 0 and directions within 2e-5 of the normal look there.
+// Where tau lies in the tables of one scale, and what a quintic Hermite interpolation there multiplies values (f), first
+// (d) and second derivatives (e) at the cell's ends with. Beyond the table's end the value at the end is used: only
+// facets within 1e-5 of the line d = 0 and directions within 2e-5 of the normal look there.
 struct TableCell {
-  uint node;   // the one before tau
-  real width;  // in tau
-  real y;      // tau in the cell, 0 to 1
+  uint node;  // the one before tau
+  real f0;
+  real f1;
+  real d0;
+  real d1;
+  real e0;
+  real e1;
+  real g0;  // the weight at the ends
+  real g1;
 };
 
 TableCell table_cell(ShapeNode shape, real tau) {
@@ -52,70 +62,94 @@ TableCell table_cell(ShapeNode shape, real tau) {
   cell.node = min((floatBitsToUint(float(v)) >> kUnusedBits) - kFirstNodeBits, kMaskingNodes - 2u);
   real v0 = masking_node_v(cell.node);
   real step = masking_node_v(cell.node + 1u) - v0;
-  cell.width = step * shape.table_scale;
-  cell.y = (v - v0) / step;
+  real y = (v - v0) / step;
+  real z = real(1.0) - y;
+  real h = step * shape.table_scale;
+  real y2 = y * y;
+  real z2 = z * z;
+  real y3 = y2 * y;
+  real z3 = z2 * z;
+  cell.f0 = z3 * (real(1.0) + real(3.0) * y + real(6.0) * y2);
+  cell.f1 = y3 * (real(1.0) + real(3.0) * z + real(6.0) * z2);
+  cell.d0 = h * y * z3 * (real(1.0) + real(3.0) * y);
+  cell.d1 = -h * z * y3 * (real(1.0) + real(3.0) * z);
+  cell.e0 = real(0.5) * h * h * y2 * z3;
+  cell.e1 = real(0.5) * h * h * z2 * y3;
+  cell.g0 = masking_weight(masking_node_tau(shape, cell.node));
+  cell.g1 = masking_weight(masking_node_tau(shape, cell.node + 1u));
   return cell;
 }
 
-// Quintic Hermite interpolation of a function with values f, derivatives d and second derivatives e, by the cell's
-// width and its square, at the ends of a cell.
-real hermite(real f0, real f1, real d0, real d1, real e0, real e1, real y) {
-  real z = real(1.0) - y;
-  real rise = f1 - f0;
-  real a = d0 - rise;  // of the cubic
-  real b = rise - d1;
-  real c = real(0.5) * e0 + real(2.0) * a - b;  // of what the cubic leaves
-  real d = real(0.5) * e1 - a + real(2.0) * b;
-  return f0 + y * (rise + z * (a * z + b * y + y * z * (c * z + d * y)));
+// l in a cell: l' = -C, l'' = g p.
+real table_height(TableCell cell, real4 n0, real4 n1) {
+  return (cell.f0 * n0.x + cell.f1 * n1.x) - (cell.d0 * n0.y + cell.d1 * n1.y) +
+         (cell.e0 * cell.g0 * n0.w + cell.e1 * cell.g1 * n1.w);
 }
 
-// l at tau >= 0: l' = -C, l'' = g p.
-real masking_height(ShapeNode shape, uint table, real tau) {
-  TableCell cell = table_cell(shape, tau);
-  real4 f0 = masking_node(table + cell.node);
-  real4 f1 = masking_node(table + cell.node + 1u);
-  real h = cell.width;
-  real e0 = h * h * f0.w * masking_weight(masking_node_tau(shape, cell.node));
-  real e1 = h * h * f1.w * masking_weight(masking_node_tau(shape, cell.node + 1u));
-  return hermite(f0.x, f1.x, -h * f0.y, -h * f1.y, e0, e1, cell.y);
+real masking_height(TableCell cell, uint table) {
+  return table_height(cell, masking_node(table + cell.node), masking_node(table + cell.node + 1u));
 }
 
-// (l, C, Pt) at tau >= 0.
-real4 masking_tails(ShapeNode shape, uint table, real tau) {
-  TableCell cell = table_cell(shape, tau);
-  real4 f0 = masking_node(table + cell.node);
-  real4 f1 = masking_node(table + cell.node + 1u);
+// (l, C, Pt) in a cell: C'' = g p (-p'/p - g'/g), Pt'' = p (-p'/p).
+real4 masking_tails(ShapeNode shape, TableCell cell, uint table) {
+  real4 n0 = masking_node(table + cell.node);
+  real4 n1 = masking_node(table + cell.node + 1u);
   real tau0 = masking_node_tau(shape, cell.node);
   real tau1 = masking_node_tau(shape, cell.node + 1u);
-  real h = cell.width;
-  real gp0 = h * f0.w * masking_weight(tau0);
-  real gp1 = h * f1.w * masking_weight(tau1);
-  real p0_decay = h * marginal_decay(shape, tau0);
-  real p1_decay = h * marginal_decay(shape, tau1);
-  real height = hermite(f0.x, f1.x, -h * f0.y, -h * f1.y, h * gp0, h * gp1, cell.y);
-  real first = hermite(f0.y, f1.y, -gp0, -gp1, gp0 * (p0_decay + h * weight_decay(tau0)),
-                       gp1 * (p1_decay + h * weight_decay(tau1)), cell.y);
-  real tail = hermite(f0.z, f1.z, -h * f0.w, -h * f1.w, h * f0.w * p0_decay, h * f1.w * p1_decay, cell.y);
-  return real4(height, first, tail, real(0.0));
+  real factor = marginal_decay_factor(shape);
+  real decay0 = factor * marginal_decay(shape, tau0);
+  real decay1 = factor * marginal_decay(shape, tau1);
+  real first = (cell.f0 * n0.y + cell.f1 * n1.y) +
+               cell.g0 * n0.w * (cell.e0 * (decay0 + weight_decay(tau0)) - cell.d0) +
+               cell.g1 * n1.w * (cell.e1 * (decay1 + weight_decay(tau1)) - cell.d1);
+  real tail = (cell.f0 * n0.z + cell.f1 * n1.z) + n0.w * (cell.e0 * decay0 - cell.d0) +
+              n1.w * (cell.e1 * decay1 - cell.d1);
+  return real4(table_height(cell, n0, n1), first, tail, real(0.0));
+}
+
+// What 1 - G1(theta, alpha) of a direction and a facet slope t looks up, the same for all tables of one scale.
+struct ShadowPlace {
+  real kappa;
+  TableCell near;   // at mu
+  bool is_limited;  // d > 0, with
+  real far;         // tau_b
+  real gap;         // tau_b - mu
+};
+
+ShadowPlace shadow_place(ShapeNode shape, real cos_theta, real sin_theta, real t) {
+  real s = max(sin_theta, real(1e-10));
+  real mu = cos_theta / s;
+  real difference = s * s - cos_theta * cos_theta;
+  real twice_product = real(2.0) * s * cos_theta;
+  real d = difference - twice_product * t;
+  ShadowPlace place;
+  place.kappa = s * sqrt(real(1.0) + t * t) / (cos_theta + s * t);
+  place.near = table_cell(shape, mu);
+  place.is_limited = d > real(0.0);
+  real far = place.is_limited ? (difference * t + twice_product) / d : mu;
+  far = min(far, masking_node_tau(shape, kMaskingNodes - 1u));
+  place.far = far;
+  place.gap = far - mu;
+  return place;
+}
+
+real unlimited_shadow(ShadowPlace place, uint table) { return place.kappa * masking_height(place.near, table); }
+
+// What the limit b < pi/2 adds to it, `cell` being that of tau_b.
+real limited_shadow(ShapeNode shape, ShadowPlace place, TableCell cell, uint table) {
+  real4 tails = masking_tails(shape, cell, table);
+  return tails.z - place.kappa * (tails.x + place.gap * tails.y);
 }
 
 // 1 - G1(theta, alpha) for the direction (cos_theta, sin_theta) and the facet slope t.
 real shadowed_integral(ShapeNode shape, uint table, real cos_theta, real sin_theta, real t) {
-  real s = max(sin_theta, real(1e-10));
-  real mu = cos_theta / s;
-  real height = masking_height(shape, table, mu);
-  real kappa = s * sqrt(real(1.0) + t * t) / (cos_theta + s * t);
-  real difference = s * s - cos_theta * cos_theta;
-  real twice_product = real(2.0) * s * cos_theta;
-  real d = difference - twice_product * t;
-  if (d <= real(0.0)) return kappa * height;
-  real tau = min((difference * t + twice_product) / d, masking_node_tau(shape, kMaskingNodes - 1u));
-  real4 tails = masking_tails(shape, table, tau);
-  return kappa * (height - tails.x - (tau - mu) * tails.y) + tails.z;
+  ShadowPlace place = shadow_place(shape, cos_theta, sin_theta, t);
+  real shadow = unlimited_shadow(place, table);
+  return place.is_limited ? shadow + limited_shadow(shape, place, table_cell(shape, place.far), table) : shadow;
 }
 
 // Smith's L of a direction; at 90 degrees a number so large that G is 0.
 real smith_lambda(ShapeNode shape, uint table, real cos_theta, real sin_theta) {
   real mu = cos_theta / max(sin_theta, real(1e-30));
-  return masking_height(shape, table, mu) / max(mu, real(1e-30));
+  return masking_height(table_cell(shape, mu), table) / max(mu, real(1e-30));
 }

@@ -8,47 +8,77 @@ struct Piece {
   real extent;  // in X
   bool root_at_a;
   bool root_at_b;
-  real mass;    // share of the facets
-  real digits;  // wanted
+  real mass[DOLP_GROUP];  // share of the facets
+  real digits;            // wanted by the member that wants most
   int order;
   real lost;  // digits that the order does not allow
 };
 
-Piece make_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, int number) {
+// `order_limit` is the most nodes it may have.
+Piece make_piece(RuleNode rule, ThetaNode theta, Group group, int number, real order_limit) {
+  ShapeNode shape = group.shape[0];
   real a = theta.end[number];
   real b = min(theta.end[number + 1], shape.cut);
+  real exponent_a = common_exponent(a / shape.m);
+  real exponent_b = common_exponent(b / shape.m);
   Piece piece;
   piece.start = asinh_real(a / shape.scale);
   piece.extent = asinh_real(b / shape.scale) - piece.start;
-  real exponent_a = slope_tail_exponent(shape, a);
-  piece.mass = -exp_real(-exponent_a) * expm1_real(exponent_a - slope_tail_exponent(shape, b));
-  piece.digits = digits_of_piece(rule, theta, shape, a, b, piece.mass);
+  real largest_mass = real(0.0);
+  for (int g = 0; g < DOLP_GROUP; ++g) {
+    real factor = exponent_factor(group.shape[g]);
+    piece.mass[g] = -exp_real(-factor * exponent_a) * expm1_real(factor * (exponent_a - exponent_b));
+    largest_mass = max(largest_mass, piece.mass[g]);
+  }
+  piece.digits = digits_of_piece(rule, theta, shape, a, b, largest_mass);
   piece.root_at_a = mod(theta.kind[number], real(2.0)) > real(0.5);
   piece.root_at_b = b < shape.cut && theta.kind[number + 1] > real(1.5);
   real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
   real nodes = nodes_t(rule, theta, piece.digits, piece.extent, roots);
-  piece.order = order_between(nodes, rule.largest_order);
+  piece.order = order_between(nodes, order_limit);
   real growth = theta.t_growth * rule.t_growth;
-  piece.lost = lost_digits(piece.digits, growth, theta.t_growth * rule.t_curvature, nodes, rule.largest_order);
+  piece.lost = lost_digits(piece.digits, growth, theta.t_growth * rule.t_curvature, nodes, order_limit);
   return piece;
 }
 
-// Sums over the slopes of a piece, or of all pieces.
+// Sums over the slopes of a piece, for each member of a group.
 struct SlopeSums {
-  FacetSums sum;
-  real doubt;             // of the azimuths
-  real deficit_doubt;
-  FacetSums null_first;   // sums of the slopes' two null rules
-  FacetSums null_second;
-  real mass;              // the rule's value of Piece::mass
-  real deficit_scale;
+  FacetSums sum[DOLP_GROUP];
+  real null_i[DOLP_GROUP];        // sizes of the slopes' null rules' sums
+  real null_q[DOLP_GROUP];
+  real null_deficit[DOLP_GROUP];
+  real doubt[DOLP_GROUP];         // of the azimuths
+  real deficit_doubt[DOLP_GROUP];
+  real mass[DOLP_GROUP];          // the rule's value of Piece::mass
+  real deficit_scale[DOLP_GROUP];
   real evaluations;
+  real iterations;
 };
 
-// `spent` evaluations have gone into the pieces before.
-SlopeSums piece_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, Piece piece,
-                     real spent) {
-  SlopeSums sums = SlopeSums(no_facets(), real(0.0), real(0.0), no_facets(), no_facets(), real(0.0), real(0.0), real(0.0));
+real null_size(real first, real second) { return sqrt(first * first + second * second); }
+
+// `spent` loop iterations have gone into the pieces before.
+SlopeSums piece_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode index, Piece piece, real spent) {
+  SlopeSums sums;
+  real second_i[DOLP_GROUP];
+  real second_q[DOLP_GROUP];
+  real second_deficit[DOLP_GROUP];
+  for (int g = 0; g < DOLP_GROUP; ++g) {
+    sums.sum[g] = no_facets();
+    sums.null_i[g] = real(0.0);
+    sums.null_q[g] = real(0.0);
+    sums.null_deficit[g] = real(0.0);
+    second_i[g] = real(0.0);
+    second_q[g] = real(0.0);
+    second_deficit[g] = real(0.0);
+    sums.doubt[g] = real(0.0);
+    sums.deficit_doubt[g] = real(0.0);
+    sums.mass[g] = real(0.0);
+    sums.deficit_scale[g] = real(0.0);
+  }
+  sums.evaluations = real(0.0);
+  sums.iterations = real(1.0);
+  ShapeNode shape = group.shape[0];
   int first_node = rule_offset(rule, kSectionGauss, piece.order);
   for (int i = 0; i < piece.order; ++i) {
     real4 node = rule_node(first_node + i);
@@ -64,62 +94,86 @@ SlopeSums piece_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode 
     }
     real2 hyperbolic = sinh_cosh(piece.start + piece.extent * y);
     real t = shape.scale * hyperbolic.x;
+    real u = t / shape.m;
     real du = shape.scale / shape.m * hyperbolic.y * piece.extent * dy;
-    real density = real(2.0) * slope_density(shape, t) * du;
-    real order_limit = (spent + sums.evaluations < rule.most_evaluations) ? rule.largest_order : real(1.0);
-    real mass = kPi * density * node.y;
-    real digits = digits_of_slope(rule, theta, shape, piece.digits, piece.order, t, mass);
-    AzimuthSums term = azimuth_sums(rule, theta, shape, index, table, t, digits, order_limit);
-    sums.sum = add_weighted(sums.sum, term.sum, density * node.y);
-    sums.doubt += density * node.y * term.doubt;
-    sums.deficit_doubt += density * node.y * term.deficit_doubt;
-    sums.null_first = add_weighted(sums.null_first, term.sum, density * node.z);
-    sums.null_second = add_weighted(sums.null_second, term.sum, density * node.w);
-    sums.mass += mass;
-    sums.deficit_scale += density * node.y * term.deficit_scale;
+    real exponent = common_exponent(u);
+    real density[DOLP_GROUP];
+    real largest_density = real(0.0);
+    for (int g = 0; g < DOLP_GROUP; ++g) {
+      density[g] = real(2.0) * slope_density(group.shape[g], u, exponent) * du;
+      largest_density = max(largest_density, density[g]);
+    }
+    real order_limit = (spent + sums.iterations < rule.most_iterations) ? rule.largest_order : real(1.0);
+    real digits = digits_of_slope(rule, theta, shape, piece.digits, piece.order, t, kPi * largest_density * node.y);
+    AzimuthSums term = azimuth_sums(rule, theta, group, index, t, digits, order_limit);
+    for (int g = 0; g < DOLP_GROUP; ++g) {
+      int member = min(g, masked_members() - 1);
+      real weight = density[g] * node.y;
+      real first = density[g] * node.z;
+      real second = density[g] * node.w;
+      FacetSums facets = term.sum[member];
+      sums.sum[g] = add_weighted(sums.sum[g], facets, weight);
+      sums.null_i[g] += first * facets.r_i;
+      sums.null_q[g] += first * facets.r_q;
+      sums.null_deficit[g] += first * facets.deficit;
+      second_i[g] += second * facets.r_i;
+      second_q[g] += second * facets.r_q;
+      second_deficit[g] += second * facets.deficit;
+      sums.doubt[g] += weight * term.doubt[member];
+      sums.deficit_doubt[g] += weight * term.deficit_doubt[member];
+      sums.mass[g] += kPi * weight;
+      sums.deficit_scale[g] += weight * term.deficit_scale[member];
+    }
     sums.evaluations += term.evaluations;
+    sums.iterations += term.iterations;
+  }
+  for (int g = 0; g < DOLP_GROUP; ++g) {
+    sums.null_i[g] = null_size(sums.null_i[g], second_i[g]);
+    sums.null_q[g] = null_size(sums.null_q[g], second_q[g]);
+    sums.null_deficit[g] = null_size(sums.null_deficit[g], second_deficit[g]);
   }
   return sums;
 }
 
-real null_size(real first, real second) { return sqrt(first * first + second * second); }
+// The moments of the members of a group.
+struct GroupMoments {
+  MomentsNode member[DOLP_GROUP];
+};
 
-// A piece's sums as the moments of an entry, and its doubts. Multiplied by the ratio of its true mass to the rule's: the
-// error that the density P alone makes cancels.
-MomentsNode piece_moments(Piece piece, SlopeSums sums) {
-  real ratio = (sums.mass > real(0.0)) ? piece.mass / sums.mass : real(1.0);
-  FacetSums first = sums.null_first;
-  FacetSums second = sums.null_second;
-  real null_t = max(null_size(first.r_i, second.r_i), null_size(first.r_q, second.r_q));
-  MomentsNode node;
-  node.r_i = ratio * sums.sum.r_i;
-  node.r_q = ratio * sums.sum.r_q;
-  node.albedo = ratio * sums.sum.albedo;
-  node.deficit = ratio * sums.sum.deficit;
-  real digits_t = piece.digits - piece.lost;
-  node.doubt = doubt(sums.sum.r_i, null_t, digits_t) + sums.doubt;
-  node.deficit_doubt = doubt(sums.deficit_scale, null_size(first.deficit, second.deficit), digits_t) +
-                       sums.deficit_doubt;
-  node.deficit_scale = ratio * sums.deficit_scale;
-  node.evaluations = sums.evaluations;
-  return node;
+// Adds a piece's sums, and its doubts, to the moments of a group. Multiplied by the ratio of its true mass to the
+// rule's: the error that the density P alone makes cancels.
+void add_piece(Piece piece, SlopeSums sums, INOUT(GroupMoments) total) {
+  real digits = piece.digits - piece.lost;
+  for (int g = 0; g < DOLP_GROUP; ++g) {
+    real ratio = (sums.mass[g] > real(0.0)) ? piece.mass[g] / sums.mass[g] : real(1.0);
+    FacetSums facets = sums.sum[g];
+    total.member[g].r_i += ratio * facets.r_i;
+    total.member[g].r_q += ratio * facets.r_q;
+    total.member[g].albedo += ratio * facets.albedo;
+    total.member[g].deficit += ratio * facets.deficit;
+    total.member[g].doubt += doubt(facets.r_i, max(sums.null_i[g], sums.null_q[g]), digits) + sums.doubt[g];
+    total.member[g].deficit_doubt +=
+        doubt(sums.deficit_scale[g], sums.null_deficit[g], digits) + sums.deficit_doubt[g];
+    total.member[g].deficit_scale += ratio * sums.deficit_scale[g];
+    total.member[g].evaluations += sums.evaluations;
+  }
 }
 
-MomentsNode add_moments(MomentsNode a, MomentsNode b) {
-  return MomentsNode(a.r_i + b.r_i, a.r_q + b.r_q, a.albedo + b.albedo, a.deficit + b.deficit, a.doubt + b.doubt,
-                     a.deficit_doubt + b.deficit_doubt, a.deficit_scale + b.deficit_scale,
-                     a.evaluations + b.evaluations);
-}
-
-MomentsNode moments_entry(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table) {
-  real reached = min(theta.end[int(theta.piece_count)], shape.cut);
-  real beyond = theta.c * slope_tail(shape, reached);
-  MomentsNode total =
-      MomentsNode(real(0.0), real(0.0), real(0.0), beyond, real(0.0), real(0.0), beyond, real(0.0));
+GroupMoments moments_group(RuleNode rule, ThetaNode theta, Group group, IndexNode index) {
+  real cut = group.shape[0].cut;
+  real reached = min(theta.end[int(theta.piece_count)], cut);
+  GroupMoments total;
+  for (int g = 0; g < DOLP_GROUP; ++g) {
+    real beyond = theta.c * slope_tail(group.shape[g], reached);
+    total.member[g] = MomentsNode(real(0.0), real(0.0), real(0.0), beyond, real(0.0), real(0.0), beyond, real(0.0));
+  }
+  real spent = real(0.0);
   for (int number = 0; number < int(theta.piece_count); ++number) {
-    if (theta.end[number] < shape.cut) {
-      Piece piece = make_piece(rule, theta, shape, number);
-      total = add_moments(total, piece_moments(piece, piece_sums(rule, theta, shape, index, table, piece, total.evaluations)));
+    if (theta.end[number] < cut) {
+      Piece piece = make_piece(rule, theta, group, number, (spent < rule.most_iterations) ? rule.largest_order : real(2.0));
+      SlopeSums sums = piece_sums(rule, theta, group, index, piece, spent);
+      add_piece(piece, sums, total);
+      spent += sums.iterations;
     }
   }
   return total;

@@ -2,21 +2,18 @@
 // P(t) = (q - 1) / (pi m^2) (1 + u^2)^-q (cauchy) or exp(-u^2) / (pi m^2) (gaussian): the integral of P t dt dphi over
 // the slope plane is 1, and P = D cos^4(alpha).
 
-// -ln of the share of the facets that are steeper than t.
-real slope_tail_exponent(ShapeNode shape, real t) {
-  real u = t / shape.m;
-  if (kDistribution == DOLP_CAUCHY) return shape.q_minus_1 * log1p_square(u);
-  return u * u;
-}
+// -ln of the share of the facets that are steeper than t is a factor of the shape's times what depends on u alone.
+real common_exponent(real u) { return (kDistribution == DOLP_CAUCHY) ? log1p_square(u) : u * u; }
+real exponent_factor(ShapeNode shape) { return (kDistribution == DOLP_CAUCHY) ? shape.q_minus_1 : real(1.0); }
+real slope_tail_exponent(ShapeNode shape, real t) { return exponent_factor(shape) * common_exponent(t / shape.m); }
 
 real slope_tail(ShapeNode shape, real t) { return exp_real(-slope_tail_exponent(shape, t)); }
 
 // P(t) t m: the facets of an interval dt at slope t, per unit of azimuth, are this times dt / m. Neither m^2 nor t^2
-// appears, so that no roughness overflows.
-real slope_density(ShapeNode shape, real t) {
-  real u = t / shape.m;
+// appears, so that no roughness overflows. `exponent` is common_exponent(u).
+real slope_density(ShapeNode shape, real u, real exponent) {
   real profile = (kDistribution == DOLP_CAUCHY) ? shape.q_minus_1 / (u + real(1.0) / u) : u;
-  return profile * slope_tail(shape, t) / kPi;
+  return profile * exp_real(-exponent_factor(shape) * exponent) / kPi;
 }
 
 // P(t) m^2.

@@ -52,10 +52,11 @@ class TextKernel final : public KernelText {
   void build_masking_table(std::size_t shape) override { text_.build_masking_table(shape_node(shape), table(shape)); }
 
   kernel::MomentsNode moments(const MomentsEntry& entry) override {
-    const auto node = text_.moments_entry(
-        rule_, convert_reals<real, Text::ThetaNode, double>(data_.thetas[entry.theta]), shape_node(entry.shape),
-        convert_reals<real, Text::IndexNode, double>(data_.indices[entry.index]), table(entry.shape));
-    return convert_reals<double, kernel::MomentsNode, real>(node);
+    const Text::Group group{{shape_node(entry.shape)}, {table(entry.shape)}};
+    const auto moments =
+        text_.moments_group(rule_, convert_reals<real, Text::ThetaNode, double>(data_.thetas[entry.theta]), group,
+                            convert_reals<real, Text::IndexNode, double>(data_.indices[entry.index]));
+    return convert_reals<double, kernel::MomentsNode, real>(moments.member[0]);
   }
 
   kernel::MuellerNode mueller(const kernel::GeometryNode& geometry, std::size_t shape, std::size_t index) override {

@@ -68,7 +68,11 @@ void Kernels::bind(const std::array<VkBuffer, kBindingCount>& buffers) {
   vkUpdateDescriptorSets(device_.get(), kBindingCount, writes.data(), 0, nullptr);
 }
 
-VkPipeline Kernels::moments(Distribution distribution, Masking masking) {
+VkPipeline Kernels::moments(Distribution distribution, Masking masking, std::uint32_t group_size) {
+  if (group_size > 1) {
+    return cached(group_moments_, float64_ ? spirv::moments_group_double : spirv::moments_group_float, distribution,
+                  masking);
+  }
   return cached(moments_, float64_ ? spirv::moments_double : spirv::moments_float, distribution, masking);
 }
 

@@ -17,6 +17,8 @@ constexpr std::uint32_t kBindingCount = DOLP_BINDING_RULE + 1;
 constexpr std::uint32_t kPushConstantCount = 4;
 /// Invocations of a workgroup; every device allows 128.
 constexpr std::uint32_t kLocalSize = 64;
+/// Entries of a group, see plan/groups.hpp.
+constexpr std::uint32_t kGroupSize = DOLP_GROUP_SIZE;
 
 /// Creates pipelines on demand, one for each combination of the specialization constants.
 class Kernels {
@@ -26,7 +28,8 @@ class Kernels {
   /// Binds one storage buffer to each binding of interface.glsl, whole.
   void bind(const std::array<VkBuffer, kBindingCount>& buffers);
 
-  VkPipeline moments(Distribution distribution, Masking masking);
+  /// `group_size`: 1 or kGroupSize entries an invocation.
+  VkPipeline moments(Distribution distribution, Masking masking, std::uint32_t group_size);
   VkPipeline masking_table(Distribution distribution, Masking masking);
   VkPipelineLayout layout() const { return layout_.get(); }
   VkDescriptorSet descriptor_set() const { return set_; }
@@ -46,7 +49,7 @@ class Kernels {
   UniquePipelineLayout layout_;
   UniqueDescriptorPool pool_;
   VkDescriptorSet set_ = VK_NULL_HANDLE;
-  Cache moments_, masking_tables_;
+  Cache moments_, group_moments_, masking_tables_;
 };
 
 }  // namespace dolp::vulkan

@@ -14,29 +14,31 @@ using RulePoint = std::array<double, 4>;
 
 }  // namespace
 
-MomentsRun::MomentsRun(const RunContext& context, const MomentsRequest& request, std::uint32_t tile_entries,
+MomentsRun::MomentsRun(const RunContext& context, const MomentsRequest& request, std::uint32_t tile_groups,
                        std::uint32_t block_shapes)
     : context_(context),
       request_(request),
       data_(kernel_data(request)),
-      sizes_(sizes(tile_entries, block_shapes)),
+      grouping_(grouped(data_, kGroupSize)),
+      sizes_(sizes(tile_groups, block_shapes)),
       thetas_(data_.thetas.size()),
       indices_(request.indices.size()) {
   create_buffers();
 }
 
-TileSizes MomentsRun::sizes(std::uint32_t tile_entries, std::uint32_t block_shapes) const {
+TileSizes MomentsRun::sizes(std::uint32_t tile_groups, std::uint32_t block_shapes) const {
   const Packing& packing = context_.packing;
   const VkPhysicalDeviceLimits& limits = context_.device.limits();
   const TileCosts costs{
-      .entry_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
-                     packing.node_bytes<kernel::IndexNode>() + packing.node_bytes<kernel::MomentsNode>(),
+      .group_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
+                     packing.node_bytes<kernel::IndexNode>() +
+                     grouping_.size * packing.node_bytes<kernel::MomentsNode>(),
       .shape_bytes =
           packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>()};
   return tile_sizes({.buffer_bytes = limits.maxStorageBufferRange,
                      .heap_bytes = context_.device.heap_bytes(),
                      .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
-                     .tile_entries = std::min<std::uint64_t>(tile_entries, data_.entries.size()),
+                     .tile_groups = std::min<std::uint64_t>(tile_groups, grouping_.groups.size()),
                      .block_shapes = std::min<std::uint64_t>(block_shapes, data_.shapes.size())},
                     costs);
 }
@@ -45,18 +47,19 @@ void MomentsRun::create_buffers() {
   const Packing& packing = context_.packing;
   const Device& device = context_.device;
   const bool staged = context_.staged_uploads;
-  const std::size_t thetas = std::min<std::size_t>(sizes_.entries, data_.thetas.size());
-  const std::size_t indices = std::min<std::size_t>(sizes_.entries, data_.indices.size());
+  const std::size_t thetas = std::min<std::size_t>(sizes_.groups, data_.thetas.size());
+  const std::size_t indices = std::min<std::size_t>(sizes_.groups, data_.indices.size());
   const std::size_t tables = data_.needs_masking_table() ? sizes_.shapes : 0;
   theta_buffer_.emplace(device, thetas * packing.node_bytes<kernel::ThetaNode>(), staged);
   shape_buffer_.emplace(device, sizes_.shapes * packing.node_bytes<kernel::ShapeNode>(), staged);
   index_buffer_.emplace(device, indices * packing.node_bytes<kernel::IndexNode>(), staged);
-  entry_buffer_.emplace(device, sizes_.entries * sizeof(EntryWords), staged);
+  entry_buffer_.emplace(device, sizes_.groups * sizeof(EntryWords), staged);
   rule_buffer_.emplace(device, packing.node_bytes<kernel::RuleNode>(), staged);
   rule_node_buffer_.emplace(device, data_.rule_nodes.size() * packing.node_bytes<RulePoint>(), staged);
   masking_buffer_.emplace(device, tables * packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
                           MemoryUse::kDeviceOnly);
-  moments_buffer_.emplace(device, sizes_.entries * packing.node_bytes<kernel::MomentsNode>(), MemoryUse::kReadback);
+  moments_buffer_.emplace(device, sizes_.groups * grouping_.size * packing.node_bytes<kernel::MomentsNode>(),
+                          MemoryUse::kReadback);
 
   std::array<VkBuffer, kBindingCount> buffers{};
   buffers[DOLP_BINDING_THETAS] = theta_buffer_->get();
@@ -70,20 +73,25 @@ void MomentsRun::create_buffers() {
   context_.kernels.bind(buffers);
 }
 
+void MomentsRun::create_pipelines() {
+  context_.kernels.moments(data_.distribution, data_.masking, grouping_.size);
+  if (data_.needs_masking_table()) context_.kernels.masking_table(data_.distribution, data_.masking);
+}
+
 std::optional<std::vector<Moments>> MomentsRun::compute(const Progress& progress) {
-  std::vector<Moments> moments(data_.entries.size());
-  std::size_t done = 0;
-  for (const Block& block : blocks_of(data_.entries, data_.shapes.size(), sizes_.shapes)) {
+  const std::span<const EntryGroup> all(grouping_.groups);
+  std::vector<kernel::MomentsNode> results(all.size() * grouping_.size);
+  for (const Block& block : blocks_of(grouping_, sizes_.shapes)) {
     start_block(block);
-    const std::span<const std::size_t> entries(block.entries);
-    for (std::size_t first = 0; first < entries.size(); first += sizes_.entries) {
-      const auto tile = entries.subspan(first, std::min<std::size_t>(sizes_.entries, entries.size() - first));
-      run_tile(block, tile, moments);
-      done += tile.size();
-      if (progress && !progress(done, moments.size())) return std::nullopt;
+    const std::size_t end = block.first_group + block.group_count;
+    for (std::size_t first = block.first_group; first < end; first += sizes_.groups) {
+      const std::size_t count = std::min<std::size_t>(sizes_.groups, end - first);
+      run_tile(block, all.subspan(first, count), std::span(results).subspan(first * grouping_.size));
+      const std::size_t done = data_.entries.size() * (first + count) / all.size();
+      if (progress && !progress(done, data_.entries.size())) return std::nullopt;
     }
   }
-  return moments;
+  return moments_of_entries(results);
 }
 
 template <class Node>
@@ -99,7 +107,7 @@ void MomentsRun::start_block(const Block& block) {
   std::iota(nodes.begin(), nodes.end(), 0U);
   CommandStream& stream = context_.stream;
   stream.begin();
-  upload(data_.shapes, shapes, *shape_buffer_);
+  upload(grouping_.shapes, shapes, *shape_buffer_);
   upload(data_.rule_nodes, nodes, *rule_node_buffer_);
   scratch_.clear();
   context_.packing.append(data_.rule, scratch_);
@@ -114,38 +122,52 @@ void MomentsRun::start_block(const Block& block) {
   cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
 }
 
-void MomentsRun::upload_tile(const Block& block, std::span<const std::size_t> entries) {
+void MomentsRun::upload_tile(const Block& block, std::span<const EntryGroup> groups) {
   thetas_.clear();
   indices_.clear();
   std::vector<EntryWords> words;
-  words.reserve(entries.size());
-  for (const std::size_t position : entries) {
-    const MomentsEntry& entry = data_.entries[position];
-    words.push_back({thetas_(entry.theta), entry.shape - block.first_shape, indices_(entry.index), 0U});
+  words.reserve(groups.size());
+  for (const EntryGroup& group : groups) {
+    const ShapeFamily& family = grouping_.families[group.family];
+    words.push_back({thetas_(group.theta), family.first - block.first_shape, indices_(group.index), family.count});
   }
   entry_buffer_->write(std::as_bytes(std::span(words)), context_.stream);
   upload(data_.thetas, thetas_.used(), *theta_buffer_);
   upload(data_.indices, indices_.used(), *index_buffer_);
 }
 
-void MomentsRun::run_tile(const Block& block, std::span<const std::size_t> entries, std::span<Moments> moments) {
+void MomentsRun::run_tile(const Block& block, std::span<const EntryGroup> groups,
+                          std::span<kernel::MomentsNode> results) {
   CommandStream& stream = context_.stream;
   stream.begin();
-  upload_tile(block, entries);
+  upload_tile(block, groups);
   stream.barrier(Barrier::kUploadToKernel);
-  stream.dispatch(context_.kernels, context_.kernels.moments(data_.distribution, data_.masking), 0,
-                  static_cast<std::uint32_t>(entries.size()));
+  stream.dispatch(context_.kernels, context_.kernels.moments(data_.distribution, data_.masking, grouping_.size), 0,
+                  static_cast<std::uint32_t>(groups.size()));
   stream.barrier(Barrier::kKernelToHost);
   cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
   ++cost_.dispatches;
 
-  scratch_.resize(entries.size() * context_.packing.node_bytes<kernel::MomentsNode>());
+  scratch_.resize(groups.size() * grouping_.size * context_.packing.node_bytes<kernel::MomentsNode>());
   moments_buffer_->read(scratch_);
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const auto node = context_.packing.read<kernel::MomentsNode>(scratch_, i);
-    moments[entries[i]] = moments_from_kernel(node, data_, data_.entries[entries[i]], context_.packing.unit_roundoff());
-    cost_.evaluations += node.evaluations;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    for (std::uint32_t g = 0; g < grouping_.size; ++g) {
+      kernel::MomentsNode& node = results[i * grouping_.size + g];
+      node = context_.packing.read<kernel::MomentsNode>(scratch_, i * grouping_.size + g);
+      node.evaluations /= groups[i].used;
+    }
+    cost_.evaluations += results[i * grouping_.size].evaluations * groups[i].used;
   }
+}
+
+std::vector<Moments> MomentsRun::moments_of_entries(std::span<const kernel::MomentsNode> results) const {
+  std::vector<Moments> moments(data_.entries.size());
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    const EntryPlace& place = grouping_.places[i];
+    moments[i] = moments_from_kernel(results[place.group * std::size_t{grouping_.size} + place.member], data_,
+                                     data_.entries[i], context_.packing.unit_roundoff());
+  }
+  return moments;
 }
 
 }  // namespace dolp::vulkan

@@ -34,26 +34,31 @@ struct RunCost {
 /// Owns the buffers of one request and computes it.
 class MomentsRun {
  public:
-  /// `tile_entries` and `block_shapes` bound the sizes of TileSizes from above.
-  MomentsRun(const RunContext& context, const MomentsRequest& request, std::uint32_t tile_entries,
+  /// `tile_groups` and `block_shapes` bound the sizes of TileSizes from above.
+  MomentsRun(const RunContext& context, const MomentsRequest& request, std::uint32_t tile_groups,
              std::uint32_t block_shapes);
+
+  /// Before the computation, so that its time is known apart.
+  void create_pipelines();
 
   /// All moments in the order of the request; nothing when `progress` returned false. Errors: DeviceError.
   std::optional<std::vector<Moments>> compute(const Progress& progress);
   const RunCost& cost() const { return cost_; }
 
  private:
-  TileSizes sizes(std::uint32_t tile_entries, std::uint32_t block_shapes) const;
+  TileSizes sizes(std::uint32_t tile_groups, std::uint32_t block_shapes) const;
   void create_buffers();
   void start_block(const Block& block);
-  void upload_tile(const Block& block, std::span<const std::size_t> entries);
-  void run_tile(const Block& block, std::span<const std::size_t> entries, std::span<Moments> moments);
+  void upload_tile(const Block& block, std::span<const EntryGroup> groups);
+  void run_tile(const Block& block, std::span<const EntryGroup> groups, std::span<kernel::MomentsNode> results);
+  std::vector<Moments> moments_of_entries(std::span<const kernel::MomentsNode> results) const;
   template <class Node>
   void upload(const std::vector<Node>& list, std::span<const std::uint32_t> members, InputBuffer& buffer);
 
   RunContext context_;
   const MomentsRequest& request_;
   KernelData data_;
+  Grouping grouping_;
   TileSizes sizes_;
   Renumbering thetas_, indices_;
   std::vector<std::byte> scratch_;

@@ -17,21 +17,26 @@ std::uint32_t at_least_one(std::uint64_t count) {
 TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs) {
   // Both costs are sums over buffers, so they bound each of the buffers.
   const std::uint64_t bytes = std::min(limits.buffer_bytes, limits.heap_bytes / kHeapFraction);
-  return {.entries = at_least_one(std::min({bytes / costs.entry_bytes, limits.dispatch_count, limits.tile_entries})),
+  return {.groups = at_least_one(std::min({bytes / costs.group_bytes, limits.dispatch_count, limits.tile_groups})),
           .shapes = at_least_one(std::min({bytes / costs.shape_bytes, limits.dispatch_count, limits.block_shapes}))};
 }
 
-std::vector<Block> blocks_of(std::span<const MomentsEntry> entries, std::size_t shape_count,
-                             std::uint32_t block_shapes) {
-  assert(block_shapes > 0);
-  std::vector<Block> blocks((shape_count + block_shapes - 1) / block_shapes);
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const std::size_t first = i * block_shapes;
-    blocks[i].first_shape = static_cast<std::uint32_t>(first);
-    blocks[i].shape_count = static_cast<std::uint32_t>(std::min<std::size_t>(block_shapes, shape_count - first));
+std::vector<Block> blocks_of(const Grouping& grouping, std::uint32_t block_shapes) {
+  std::vector<Block> blocks;
+  std::uint32_t family = 0, group = 0;
+  while (group < grouping.groups.size()) {
+    family = grouping.groups[group].family;
+    Block block{.first_shape = grouping.families[family].first, .first_group = group};
+    while (family < grouping.families.size()) {
+      const std::uint32_t with_it = block.shape_count + grouping.families[family].count;
+      if (block.shape_count > 0 && with_it > block_shapes) break;
+      block.shape_count = with_it;
+      ++family;
+    }
+    while (group < grouping.groups.size() && grouping.groups[group].family < family) ++group;
+    block.group_count = group - block.first_group;
+    blocks.push_back(block);
   }
-  for (std::size_t i = 0; i < entries.size(); ++i) blocks[entries[i].shape / block_shapes].entries.push_back(i);
-  std::erase_if(blocks, [](const Block& block) { return block.entries.empty(); });
   return blocks;
 }
 

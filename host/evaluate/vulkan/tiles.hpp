@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "evaluate/moments.hpp"
+#include "plan/groups.hpp"
 
 namespace dolp::vulkan {
 
@@ -15,36 +15,36 @@ struct TileLimits {
   std::uint64_t buffer_bytes = 0;    ///< of one storage buffer
   std::uint64_t heap_bytes = 0;      ///< of the device's memory
   std::uint64_t dispatch_count = 0;  ///< invocations of one dispatch
-  std::uint64_t tile_entries = 0;    ///< wanted at most
+  std::uint64_t tile_groups = 0;     ///< wanted at most
   std::uint64_t block_shapes = 0;    ///< wanted at most
 };
 
-/// Bytes that an entry and a shape take in the buffers.
+/// Bytes that a group of entries and a shape take in the buffers.
 struct TileCosts {
-  std::uint64_t entry_bytes = 0;  ///< all buffers that grow with the entries of a tile
+  std::uint64_t group_bytes = 0;  ///< all buffers that grow with the groups of a tile
   std::uint64_t shape_bytes = 0;  ///< the masking table and the node of a shape
 };
 
-/// Entries of a dispatch and shapes bound at a time, at least one each.
+/// Groups of entries of a dispatch and shapes bound at a time, at least one each.
 struct TileSizes {
-  std::uint32_t entries = 1;
+  std::uint32_t groups = 1;
   std::uint32_t shapes = 1;
 };
 
 /// The largest sizes within the limits; tiles and masking tables take at most an eighth of the heap each.
 TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs);
 
-/// Shapes whose masking tables are bound together, and the entries that need them, by their positions in the request.
+/// Families of shapes whose masking tables are bound together, and the groups of entries that need them.
 struct Block {
   std::uint32_t first_shape = 0;
   std::uint32_t shape_count = 0;
-  std::vector<std::size_t> entries;
+  std::uint32_t first_group = 0;
+  std::uint32_t group_count = 0;
 };
 
-/// Cuts the list of shapes into blocks of `block_shapes` and sorts the entries into them, in the order of the request.
-/// Blocks without entries are left out.
-std::vector<Block> blocks_of(std::span<const MomentsEntry> entries, std::size_t shape_count,
-                             std::uint32_t block_shapes);
+/// Cuts the shapes between families into blocks of at most `block_shapes`, or of one family that has more. Blocks without
+/// groups are left out.
+std::vector<Block> blocks_of(const Grouping& grouping, std::uint32_t block_shapes);
 
 /// Numbers the members of a list in the order of their first use: a tile binds only what its entries use.
 class Renumbering {

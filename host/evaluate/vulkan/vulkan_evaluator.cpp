@@ -69,13 +69,6 @@ class VulkanEvaluator::Impl {
   const DeviceDescription& description() const { return choice_.description; }
   std::vector<std::string> validation_messages() const { return log_.messages(); }
 
-  /// Creates the pipelines of a request, so that their time is known apart.
-  void prepare(const MomentsRequest& request) {
-    vulkan::Kernels& kernels = kernels_for(request);
-    kernels.moments(request.distribution, request.masking);
-    if (needs_masking_table(request)) kernels.masking_table(request.distribution, request.masking);
-  }
-
   /// Computes a request and adds what it cost to `report`. After a DeviceTimeout this object must not be destroyed.
   std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
     run_.emplace(vulkan::RunContext{.device = device_,
@@ -84,7 +77,10 @@ class VulkanEvaluator::Impl {
                                     .packing = vulkan::Packing(in_double(request)),
                                     .staged_uploads = options_.staged_uploads,
                                     .tile_timeout_s = options_.tile_timeout_s},
-                 request, options_.max_tile_entries, options_.max_block_shapes);
+                 request, options_.max_tile_groups, options_.max_block_shapes);
+    const Clock::time_point start = Clock::now();
+    run_->create_pipelines();
+    report.setup_s += seconds_since(start);
     std::optional<std::vector<Moments>> moments = run_->compute(progress);
     report.dispatches += run_->cost().dispatches;
     report.evaluations += run_->cost().evaluations;
@@ -98,10 +94,6 @@ class VulkanEvaluator::Impl {
   }
 
  private:
-  static bool needs_masking_table(const MomentsRequest& request) {
-    return KernelData{.masking = request.masking}.needs_masking_table();
-  }
-
   vulkan::Kernels& kernels_for(const MomentsRequest& request) {
     const bool float64 = in_double(request);
     if (float64 && !choice_.description.float64) {
@@ -138,10 +130,6 @@ std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, co
   if (!impl_) throw DeviceError("the Vulkan device was given up after a tile that did not finish in time");
   check_entries(request);
   if (request.entries.empty()) return {};
-  const Clock::time_point start = Clock::now();
-  impl_->prepare(request);
-  report_.setup_s += seconds_since(start);
-
   try {
     return impl_->compute(request, progress, report_);
   } catch (const vulkan::DeviceTimeout&) {

@@ -1,0 +1,44 @@
+// Which entries one invocation of the kernel computes together: those that differ in the exponent q alone share the
+// nodes, the facets and their reflection (Group of shaders/physics/integrand.glsl).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "plan/kernel_data.hpp"
+
+namespace dolp {
+
+/// Consecutive shapes of one sigma, in ascending order of q.
+struct ShapeFamily {
+  std::uint32_t first = 0;  ///< position in Grouping::shapes
+  std::uint32_t count = 1;  ///< at most the size of a group
+};
+
+/// The entries of one direction, one index and one family of shapes.
+struct EntryGroup {
+  std::uint32_t theta = 0;
+  std::uint32_t family = 0;
+  std::uint32_t index = 0;
+  std::uint32_t used = 0;  ///< members that entries ask for
+};
+
+/// Where the result of an entry is.
+struct EntryPlace {
+  std::uint32_t group = 0;
+  std::uint32_t member = 0;
+};
+
+/// Entries sorted into groups. All of it follows from the sets of directions, shapes and indices, not from their order.
+struct Grouping {
+  std::uint32_t size = 1;                   ///< members of a group
+  std::vector<kernel::ShapeNode> shapes;    ///< ordered by family; scale, cut and cusp are those of the family
+  std::vector<ShapeFamily> families;
+  std::vector<EntryGroup> groups;           ///< ordered by family, index and direction
+  std::vector<EntryPlace> places;           ///< of each entry of the data
+};
+
+/// Groups of up to `size` entries; of one entry each where the families of the data would leave most members unused.
+Grouping grouped(const KernelData& data, std::uint32_t size);
+
+}  // namespace dolp

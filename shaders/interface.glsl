@@ -64,7 +64,7 @@ struct RuleNode {
   real strip[3];         // for the arcs of each zone: distance in phi to the next singularity off the real axis
   real cluster_below_q;  // below this q an arc clusters its nodes where the limit b of `integral` meets pi/2
   real largest_order;    // of the rule nodes
-  real most_iterations;  // of the loops of one invocation, beyond which every arc gets a single node
+  real most_iterations;  // of the loops of one invocation, beyond which every arc gets two nodes
 };
 
 // One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. Under total

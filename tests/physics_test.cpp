@@ -168,23 +168,39 @@ TYPED_TEST(Elementary, EndsOfTheDomains_AreExact) {
 
 // ---- Interpolation in the masking tables ---------------------------------------------------------------------------
 
-// Two values, slopes and second derivatives determine a polynomial of degree five.
-TYPED_TEST(Elementary, Hermite_IsExactForPolynomialsOfDegreeFive) {
+// Two values, slopes and second derivatives determine a polynomial of degree five, in whatever cell of the tables.
+TYPED_TEST(Elementary, TableCell_InterpolatesPolynomialsOfDegreeFive) {
   using Real = RealOf<TypeParam>;
   TypeParam text;
+  text.kMasking = DOLP_MASKING_INTEGRAL;
+  typename TypeParam::ShapeNode shape{};
+  shape.table_scale = Real(0.3);
   constexpr double kRoundings = 16.0;  // of about twenty operations with numbers up to 20
-  for (int degree = 0; degree <= 6; ++degree) {
-    double worst = 0.0;
-    for (double y = 0.0; y <= 1.0; y += 0.01) {
-      const auto value =
-          text.hermite(Real(degree == 0), Real(1), Real(degree == 1), static_cast<Real>(degree),
-                       Real(degree == 2 ? 2 : 0), static_cast<Real>(degree * (degree - 1)), static_cast<Real>(y));
-      worst = std::max(worst, std::abs(static_cast<double>(value) - std::pow(y, degree)));
-    }
-    if (degree <= 5) {
-      EXPECT_LE(worst, kRoundings * kEpsilon<TypeParam>) << degree;
-    } else {
-      EXPECT_GT(worst, 1e-3);
+  for (const double first : {0.0, 0.01, 1.0, 1000.0}) {
+    const auto beginning = text.table_cell(shape, static_cast<Real>(first));
+    const double tau0 = static_cast<double>(text.masking_node_tau(shape, beginning.node));
+    const double h = static_cast<double>(text.masking_node_tau(shape, beginning.node + 1U)) - tau0;
+    for (int degree = 0; degree <= 6; ++degree) {
+      double worst = 0.0;
+      for (double y = 0.005; y < 1.0; y += 0.01) {
+        const Real tau = static_cast<Real>(tau0 + y * h);
+        const double exact = std::pow((static_cast<double>(tau) - tau0) / h, degree);
+        const auto cell = text.table_cell(shape, tau);
+        ASSERT_EQ(cell.node, beginning.node);
+        const double value = static_cast<double>(cell.f0) * (degree == 0) + static_cast<double>(cell.f1) +
+                             static_cast<double>(cell.d0) * (degree == 1) / h +
+                             static_cast<double>(cell.d1) * degree / h +
+                             static_cast<double>(cell.e0) * (degree == 2 ? 2 : 0) / (h * h) +
+                             static_cast<double>(cell.e1) * degree * (degree - 1) / (h * h);
+        worst = std::max(worst, std::abs(value - exact));
+      }
+      // tau in its cell is known to a rounding of v
+      const double place = kEpsilon<TypeParam> * (tau0 + static_cast<double>(shape.table_scale)) / h;
+      if (degree <= 5) {
+        EXPECT_LE(worst, kRoundings * kEpsilon<TypeParam> + 5.0 * place) << first << " " << degree;
+      } else {
+        EXPECT_GT(worst, 1e-3) << first;
+      }
     }
   }
 }
@@ -359,6 +375,13 @@ template <class Text>
 class SlopeText : public ::testing::Test {};
 TYPED_TEST_SUITE(SlopeText, Texts, TextNames);
 
+// P(t) t m.
+template <class Text>
+auto density_at(Text& text, const typename Text::ShapeNode& shape, RealOf<Text> t) {
+  const RealOf<Text> u = t / shape.m;
+  return text.slope_density(shape, u, text.common_exponent(u));
+}
+
 // exp turns the rounding of its argument, a relative one, into as many roundings of its value.
 double slope_tolerance(double exponent, double epsilon) { return epsilon * (8.0 + 4.0 * exponent); }
 
@@ -382,7 +405,7 @@ TYPED_TEST(SlopeText, DensityAndTail_AgreeWithTheClosedForms) {
         const double error = std::abs(static_cast<double>(value) / exact - 1.0) / tolerance;
         worst.update(error, std::string(name) + " " + name_of(shape) + " u " + std::to_string(u));
       };
-      update("slope_density", text.slope_density(node, t), steep * u * tail / pi);
+      update("slope_density", density_at(text, node, t), steep * u * tail / pi);
       update("slope_profile", text.slope_profile(node, t), steep * tail / pi);
       update("slope_tail", text.slope_tail(node, t), tail);
     }
@@ -401,7 +424,7 @@ TYPED_TEST(SlopeText, Density_IntegratesToTheTail) {
     const auto node = shape_in<TypeParam>(data.shapes[0]);
     // Over u = e^y; below the first u the share of the facets is under q u^2.
     const auto integrand = [&](double y) {
-      return std::exp(y) * static_cast<double>(text.slope_density(node, static_cast<Real>(std::exp(y)) * node.m));
+      return std::exp(y) * static_cast<double>(density_at(text, node, static_cast<Real>(std::exp(y)) * node.m));
     };
     double sum = 0.0;
     constexpr double kFirst = -23.0;
@@ -463,7 +486,7 @@ TEST(MaskingDecays, AreThoseOfTheDensityAndTheWeight) {
         };
         const double density = difference([&](double x) { return text.marginal_density(node, x); });
         const double weight = difference([&](double x) { return text.masking_weight(x); });
-        EXPECT_NEAR(text.marginal_decay(node, tau), density, kAllowed * std::max(1.0, std::abs(density))) << tau;
+        EXPECT_NEAR(text.marginal_decay_factor(node) * text.marginal_decay(node, tau), density, kAllowed * std::max(1.0, std::abs(density))) << tau;
         EXPECT_NEAR(text.weight_decay(tau), weight, kAllowed) << tau;
       }
     }
@@ -485,7 +508,7 @@ TYPED_TEST(SlopeText, QOfTwo_IsGgx) {
       const double cos4 = 1.0 / ((1.0 + tan2) * (1.0 + tan2));
       const double spread = alpha_g * alpha_g + tan2;
       const double ggx = alpha_g * alpha_g / (pi * cos4 * spread * spread);
-      const double density = static_cast<double>(text.slope_density(node, t)) /
+      const double density = static_cast<double>(density_at(text, node, t)) /
                              (static_cast<double>(t) * static_cast<double>(node.m) * cos4);
       const double exponent = tail_exponent(shape, static_cast<double>(t) / alpha_g);
       worst.update(std::abs(density / ggx - 1.0) / slope_tolerance(exponent, kEpsilon<TypeParam>), name_of(shape));

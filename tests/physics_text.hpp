@@ -87,6 +87,12 @@ Text text_for(const KernelData& data) {
   return text;
 }
 
+/// A shape with its table at `table` as a group of one.
+template <class Text>
+typename Text::Group group_of(const typename Text::ShapeNode& shape, glm::uint table = 0U) {
+  return {{shape}, {table}};
+}
+
 /// One slope distribution of a test.
 struct ShapeCase {
   Distribution distribution;

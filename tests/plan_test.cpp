@@ -178,7 +178,7 @@ TEST(KernelDataOrders, EntryThatRunsOutOfEvaluations_SaysSo) {
     const Computed whole = computed(masking, 1e-9, 60.0, {0.3, 2.0}, kDielectric);
     KernelData data = whole.data;
     for (const double most : {0.0, 50.0, 100.0}) {
-      data.rule.most_evaluations = most;
+      data.rule.most_iterations = most;
       const auto text = make_kernel_text_double(data);
       if (data.needs_masking_table()) text->build_masking_table(0);
       const kernel::MomentsNode node = text->moments(data.entries[0]);

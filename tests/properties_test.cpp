@@ -69,7 +69,7 @@ struct MaskingOfShape {
   double error(double theta_deg, double slope) {
     const CosSin a = cos_sin_deg(theta_deg);
     const double mu = a.cos / std::max(a.sin, 1e-10);
-    const double height = static_cast<double>(text.masking_height(node, 0U, static_cast<Real>(mu)));
+    const double height = static_cast<double>(text.masking_height(text.table_cell(node, static_cast<Real>(mu)), 0U));
     return kMaskingError<Text> * (1.0 + std::sqrt(1.0 + slope * slope) / (mu + slope) * height);
   }
   double lambda(double theta_deg) {
@@ -150,7 +150,7 @@ TYPED_TEST(MaskingProperties, SmithG1_IsBetweenNothingAndOne_AndFallsWithTheta) 
 
 /// A facet that reflects theta to a direction above the horizon, and what masking leaves of it.
 template <class Text>
-void expect_projection_within_the_facet(MaskingOfShape<Text>& masking, const Model& model, Random& random) {
+void expect_projection_within_the_facet(MaskingOfShape<Text>& masking, Random& random) {
   using Real = RealOf<Text>;
   const double theta_deg = random.theta_deg();
   const double slope = random.log_uniform(1e-4, 100.0);
@@ -162,14 +162,14 @@ void expect_projection_within_the_facet(MaskingOfShape<Text>& masking, const Mod
   theta.c = static_cast<Real>(a.cos);
   theta.s = static_cast<Real>(a.sin);
   const auto slope_real = static_cast<Real>(slope);
-  Real by_slope = Real(0.0);
-  if (model.masking == Masking::kSmith) by_slope = masking.text.smith_lambda(masking.node, 0U, theta.c, theta.s);
-  if (model.masking == Masking::kIntegral) {
-    by_slope = masking.text.shadowed_integral(masking.node, 0U, theta.c, theta.s, slope_real);
-  }
   const int zone = cos_r > a.cos ? 0 : 1;  // theta_r < theta: the shadow of theta
-  const auto part = masking.text.project(theta, masking.node, 0U, slope_real, static_cast<Real>(e),
-                                         static_cast<Real>(cos_r), zone, by_slope);
+  const auto group = group_of<Text>(masking.node);
+  const auto of_theta = masking.text.masked_direction(group, theta.c, theta.s, slope_real, true);
+  const auto of_ray =
+      masking.text.masked_direction(group, static_cast<Real>(cos_r),
+                                    static_cast<Real>(std::sqrt((1.0 - cos_r) * (1.0 + cos_r))), slope_real, zone > 0);
+  const auto part = masking.text.project(theta, static_cast<Real>(e), static_cast<Real>(cos_r), zone,
+                                         of_theta.value[0], of_ray.value[0]);
   const double error = kMaskingError<Text> * e;
   const double seen = static_cast<double>(part.seen);
   const double hidden = static_cast<double>(part.hidden);
@@ -183,7 +183,7 @@ TYPED_TEST(MaskingProperties, EveryMasking_LeavesAShareBetweenNothingAndAll) {
   for (const Model& model : kModels) {
     for (int i = 0; i < kShapes; ++i) {
       MaskingOfShape<TypeParam> masking(model, random.shape(model));
-      for (int j = 0; j < kDirections; ++j) expect_projection_within_the_facet(masking, model, random);
+      for (int j = 0; j < kDirections; ++j) expect_projection_within_the_facet(masking, random);
     }
   }
 }

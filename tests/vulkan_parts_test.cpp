@@ -84,36 +84,41 @@ TEST(TileSizes, EachLimit_Binds) {
   const TileLimits limits{.buffer_bytes = 1'000'000,
                           .heap_bytes = 80'000'000,
                           .dispatch_count = 9'000,
-                          .tile_entries = 8'000,
+                          .tile_groups = 8'000,
                           .block_shapes = 50};
-  const TileCosts costs{.entry_bytes = 100, .shape_bytes = 10'000};
-  EXPECT_EQ(tile_sizes(limits, costs).entries, 8'000U);
+  const TileCosts costs{.group_bytes = 100, .shape_bytes = 10'000};
+  EXPECT_EQ(tile_sizes(limits, costs).groups, 8'000U);
   EXPECT_EQ(tile_sizes(limits, costs).shapes, 50U);
   TileLimits small_buffers = limits;
   small_buffers.buffer_bytes = 400'000;
-  EXPECT_EQ(tile_sizes(small_buffers, costs).entries, 4'000U);
+  EXPECT_EQ(tile_sizes(small_buffers, costs).groups, 4'000U);
   EXPECT_EQ(tile_sizes(small_buffers, costs).shapes, 40U);
   TileLimits small_heap = limits;
   small_heap.heap_bytes = 800'000;
-  EXPECT_EQ(tile_sizes(small_heap, costs).entries, 1'000U);
+  EXPECT_EQ(tile_sizes(small_heap, costs).groups, 1'000U);
   EXPECT_EQ(tile_sizes(small_heap, costs).shapes, 10U);
   TileLimits few_workgroups = limits;
   few_workgroups.dispatch_count = 30;
-  EXPECT_EQ(tile_sizes(few_workgroups, costs).entries, 30U);
+  EXPECT_EQ(tile_sizes(few_workgroups, costs).groups, 30U);
   EXPECT_EQ(tile_sizes(few_workgroups, costs).shapes, 30U);
-  EXPECT_EQ(tile_sizes({}, costs).entries, 1U);
+  EXPECT_EQ(tile_sizes({}, costs).groups, 1U);
 }
 
-TEST(BlocksOf, ShuffledEntries_KeepTheirOrderWithinTheirBlock) {
-  const std::vector<MomentsEntry> entries = {{0, 6, 0}, {0, 1, 0}, {0, 0, 0}, {0, 6, 1}, {1, 1, 0}};
-  const std::vector<Block> blocks = blocks_of(entries, 7, 2);
-  ASSERT_EQ(blocks.size(), 2U);
-  EXPECT_EQ(blocks[0].first_shape, 0U);
-  EXPECT_EQ(blocks[0].shape_count, 2U);
-  EXPECT_EQ(blocks[0].entries, (std::vector<std::size_t>{1, 2, 4}));
-  EXPECT_EQ(blocks[1].first_shape, 6U);
-  EXPECT_EQ(blocks[1].shape_count, 1U);
-  EXPECT_EQ(blocks[1].entries, (std::vector<std::size_t>{0, 3}));
+TEST(BlocksOf, Families_AreNeverCutAndOnlyThoseWithGroupsAreBound) {
+  Grouping grouping;
+  grouping.families = {{0, 2}, {2, 1}, {3, 4}, {7, 1}, {8, 1}};
+  for (const std::uint32_t family : {0U, 0U, 1U, 2U, 4U}) grouping.groups.push_back({.family = family});
+  const auto summary = [&](std::uint32_t block_shapes) {
+    std::vector<std::array<std::uint32_t, 4>> all;
+    for (const Block& block : blocks_of(grouping, block_shapes)) {
+      all.push_back({block.first_shape, block.shape_count, block.first_group, block.group_count});
+    }
+    return all;
+  };
+  using Blocks = std::vector<std::array<std::uint32_t, 4>>;
+  EXPECT_EQ(summary(3), (Blocks{{0, 3, 0, 3}, {3, 4, 3, 1}, {8, 1, 4, 1}}));
+  EXPECT_EQ(summary(1), (Blocks{{0, 2, 0, 2}, {2, 1, 2, 1}, {3, 4, 3, 1}, {8, 1, 4, 1}}));
+  EXPECT_EQ(summary(100), (Blocks{{0, 9, 0, 5}}));
 }
 
 TEST(Renumbering, Members_AreNumberedByFirstUseUntilCleared) {

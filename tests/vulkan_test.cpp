@@ -345,7 +345,7 @@ class SentinelRun {
     buffers_.emplace_back(session.device, request.entries.size() * sizeof(Words), MemoryUse::kUpload);
     std::vector<Words> words;
     // the plan's entries: their directions may be variants of the request's
-    for (const MomentsEntry& entry : data_.entries) words.push_back({entry.theta, entry.shape, entry.index, 0U});
+    for (const MomentsEntry& entry : data_.entries) words.push_back({entry.theta, entry.shape, entry.index, 1U});
     buffers_.back().write(std::as_bytes(std::span(words)));
     add(data_.rule_nodes, 0);
     using MaskingTable = std::array<double, 4 * DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT)>;
@@ -363,7 +363,7 @@ class SentinelRun {
     stream.dispatch(session_.kernels, session_.kernels.masking_table(data_.distribution, data_.masking), 0,
                     static_cast<std::uint32_t>(data_.shapes.size()));
     stream.barrier(Barrier::kKernelToKernel);
-    stream.dispatch(session_.kernels, session_.kernels.moments(data_.distribution, data_.masking), kFirst, kCount);
+    stream.dispatch(session_.kernels, session_.kernels.moments(data_.distribution, data_.masking, 1), kFirst, kCount);
     stream.barrier(Barrier::kKernelToHost);
     stream.submit_and_wait(kTimeout_s);
   }

@@ -168,10 +168,10 @@ double arcs_per_slope(Masking masking, double critical) {
 
 // Bound of the loop iterations of one invocation for a direction whose slopes have `arcs` arcs each, every node of which
 // takes up to three (masked_direction): when they run out, the slope at hand may have all its nodes, the rest of its piece
-// has a node for each arc, and the pieces beyond have two slopes each.
+// has two nodes for each arc, and the pieces beyond have two slopes each.
 double iterations(const kernel::RuleNode& rule, const kernel::ThetaNode& node, double arcs) {
   constexpr double kOfNode = 3.0;
-  const double short_slope = 1.0 + arcs * (1.0 + kOfNode);
+  const double short_slope = 1.0 + arcs * (1.0 + 2.0 * kOfNode);
   const double full_slope = 1.0 + arcs * (1.0 + kOfNode * rule.largest_order);
   return rule.most_iterations + full_slope + rule.largest_order * short_slope +
          node.piece_count * (1.0 + 2.0 * short_slope);

@@ -1,6 +1,9 @@
 // The moments of one entry: Gauss rules on the smooth pieces of the slope axis, of orders that follow from the digits
 // wanted (orders.glsl).
 
+// Nodes of pieces and arcs once the iterations of an invocation are spent. Then their sums are their doubts.
+CONST real kSpentOrder = real(2.0);
+
 // A piece [a, b] of the slope axis. X = asinh(t/scale) is linear in y(v), which takes up square-root ends:
 // v, v^2 (at a), 1 - (1-v)^2 (at b), v^2 (3 - 2v) (both).
 struct Piece {
@@ -103,7 +106,8 @@ SlopeSums piece_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode inde
       density[g] = real(2.0) * slope_density(group.shape[g], u, exponent) * du;
       largest_density = max(largest_density, density[g]);
     }
-    real order_limit = (spent + sums.iterations < rule.most_iterations) ? rule.largest_order : real(1.0);
+    bool is_spent = spent + sums.iterations >= rule.most_iterations;
+    real order_limit = is_spent ? kSpentOrder : rule.largest_order;
     real digits = digits_of_slope(rule, theta, shape, piece.digits, piece.order, t, kPi * largest_density * node.y);
     AzimuthSums term = azimuth_sums(rule, theta, group, index, t, digits, order_limit);
     for (int g = 0; g < DOLP_GROUP; ++g) {
@@ -119,8 +123,8 @@ SlopeSums piece_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode inde
       second_i[g] += second * facets.r_i;
       second_q[g] += second * facets.r_q;
       second_deficit[g] += second * facets.deficit;
-      sums.doubt[g] += weight * term.doubt[member];
-      sums.deficit_doubt[g] += weight * term.deficit_doubt[member];
+      sums.doubt[g] += weight * (is_spent ? facets.r_i : term.doubt[member]);
+      sums.deficit_doubt[g] += weight * (is_spent ? term.deficit_scale[member] : term.deficit_doubt[member]);
       sums.mass[g] += kPi * weight;
       sums.deficit_scale[g] += weight * term.deficit_scale[member];
     }
@@ -170,7 +174,7 @@ GroupMoments moments_group(RuleNode rule, ThetaNode theta, Group group, IndexNod
   real spent = real(0.0);
   for (int number = 0; number < int(theta.piece_count); ++number) {
     if (theta.end[number] < cut) {
-      Piece piece = make_piece(rule, theta, group, number, (spent < rule.most_iterations) ? rule.largest_order : real(2.0));
+      Piece piece = make_piece(rule, theta, group, number, (spent < rule.most_iterations) ? rule.largest_order : kSpentOrder);
       SlopeSums sums = piece_sums(rule, theta, group, index, piece, spent);
       add_piece(piece, sums, total);
       spent += sums.iterations;

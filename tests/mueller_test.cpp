@@ -174,5 +174,155 @@ INSTANTIATE_TEST_SUITE_P(Mueller, EveryKernel,
                                                           Masking::kSmith)),
                          name_of);
 
+// ---- Limits and extremes ---------------------------------------------------------------------------------------------
+
+Matrix plain_mueller(const BeamAngles& angles, const OpticalConstants& index = {1.5, 0.2}) {
+  CpuEvaluator evaluator(Precision::kDouble);
+  const ScatteringPoint point{angles, {0.3, 2.0}, index};
+  const ScatteringMatrix f = evaluator.scatter(request_of(Distribution::kCauchy, Masking::kNone, {point}), {}).front();
+  return Matrix(Eigen::Map<const Matrix>(f.m.data()));
+}
+
+TEST(MuellerLimits, NormalIncidence_TurnsWithTheAzimuthOfTheView) {
+  for (const double azimuth_deg : {0.0, 37.0, 90.0, -120.0, 180.0, 360.0}) {
+    const Matrix at = plain_mueller({0.0, 0.0, azimuth_deg});
+    for (const BeamAngles& near : {BeamAngles{1e-6, 1e-6, azimuth_deg}, BeamAngles{0.0, 1e-6, azimuth_deg},
+                                   BeamAngles{1e-200, 0.0, azimuth_deg}}) {
+      EXPECT_LE((plain_mueller(near) - at).cwiseAbs().maxCoeff(), 1e-9 * at(0, 0)) << azimuth_deg;  // 2e-8 rad
+    }
+    const double cosine = std::cos(2.0 * azimuth_deg * std::numbers::pi / 180.0);
+    EXPECT_NEAR(at(1, 1) / at(0, 0), cosine, kScatteringErrorDouble);
+    EXPECT_NEAR(at(2, 2) / at(0, 0), -cosine, kScatteringErrorDouble);
+    EXPECT_NEAR(at(3, 3) / at(0, 0), -1.0, kScatteringErrorDouble);  // r_p = -r_s
+  }
+}
+
+TEST(MuellerLimits, Retro_IsTheSameFromEverySide) {
+  const Matrix at = plain_mueller({40.0, 40.0, 0.0});
+  for (const BeamAngles& angles : {BeamAngles{40.0 + 1e-6, 40.0, 0.0}, BeamAngles{40.0, 40.0 + 1e-6, 0.0},
+                                   BeamAngles{40.0, 40.0, 1e-6}, BeamAngles{40.0, 40.0, -1e-6}}) {
+    EXPECT_LE((plain_mueller(angles) - at).cwiseAbs().maxCoeff(), 1e-6 * at(0, 0));
+  }
+  EXPECT_EQ(plain_mueller({40.0, 40.0, 360.0}), at);
+}
+
+// w = 0, whose root would amplify rounding; sin(30 degrees) = 1/2 is exact.
+TEST(MuellerLimits, CriticalAngle_ReflectsEverything) {
+  const double all = plain_mueller({30.0, 30.0, 180.0}, {1e-3, 0.0})(0, 0);  // far beyond the critical angle
+  EXPECT_NEAR(plain_mueller({30.0, 30.0, 180.0}, {0.5, 0.0})(0, 0) / all, 1.0, kScatteringErrorDouble);
+}
+
+// The corners of what scenes and points may say: float and double are two computations of one number.
+TEST(MuellerLimits, CornersOfTheDomain_AreFiniteAndTheSameInBothPrecisions) {
+  std::vector<ScatteringPoint> points;
+  for (const double sigma : {1e-20, 1e-9, 1e-3, 0.3, 10.0}) {
+    for (const double q : {1.000001, 1.6, 30.0, 1e4}) {
+      for (const OpticalConstants& index :
+           {OpticalConstants{1e6, 1e6}, {1e-6, 0.0}, {1e-3, 1e6}, {1.0, 0.0}, {1e-6, 1e-6}, {1.0 + 1e-12, 0.0}}) {
+        for (const BeamAngles& angles : {BeamAngles{0.0, 0.0, 0.0}, {40.0, 40.0, 180.0}, {40.0, 40.0, 1e-9},
+                                         {89.999999, 90.0, 180.0}, {89.9999, 89.9999, 1.0}, {1e-9, 60.0, 77.0}}) {
+          points.push_back({angles, {sigma, q}, index});
+        }
+      }
+    }
+  }
+  CpuEvaluator in_float(Precision::kFloat), in_double(Precision::kDouble);
+  for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
+    for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
+      std::vector<ScatteringPoint> own = points;
+      const bool needs_mean = masking == Masking::kSmith && distribution == Distribution::kCauchy;
+      if (needs_mean) std::erase_if(own, [](const ScatteringPoint& p) { return p.shape.q <= 1.5; });
+      const std::vector<ScatteringMatrix> f = in_float.scatter(request_of(distribution, masking, own), {});
+      const std::vector<ScatteringMatrix> g = in_double.scatter(request_of(distribution, masking, own), {});
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        for (std::size_t j = 0; j < 16; ++j) {
+          EXPECT_TRUE(std::isfinite(g[i].m[j])) << text_of(own[i]);
+          EXPECT_NEAR(f[i].m[j], g[i].m[j], f[i].error + g[i].error) << static_cast<int>(masking) << text_of(own[i]);
+        }
+      }
+    }
+  }
+}
+
+// The moments are the integrals of the first row of f: the check that kernel and pBRDF are one model.
+TEST(Mueller, HemisphericalSum_GivesTheMoments) {
+  constexpr int kZeniths = 400;
+  constexpr int kAzimuths = 400;
+  constexpr double kMidpointError = 2e-4;  // of the midpoint rule, with the kink of the horizon; halves with the step
+  const ScatteringPoint surface{{50.0, 0.0, 0.0}, {0.3, 2.0}, {1.5, 0.2}};
+  std::vector<ScatteringPoint> points;
+  for (int zenith = 0; zenith < kZeniths; ++zenith) {
+    for (int azimuth = 0; azimuth < kAzimuths; ++azimuth) {
+      points.push_back(surface);
+      points.back().angles = {50.0, 90.0 * (zenith + 0.5) / kZeniths, 180.0 * (azimuth + 0.5) / kAzimuths};
+    }
+  }
+  CpuEvaluator evaluator(Precision::kDouble);
+  const auto f = evaluator.scatter(request_of(Distribution::kCauchy, Masking::kNone, points), {});
+  MomentsRequest request;
+  request.masking = Masking::kNone;
+  request.theta_deg = {50.0};
+  request.shapes = {surface.shape};
+  request.indices = {surface.index};
+  request.entries = {{0, 0, 0}};
+  const Moments moments = evaluator.evaluate(request, {}).front();
+  double r_i = 0.0;
+  double r_q = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double sine = cos_sin_deg(points[i].angles.theta_r_deg).sin;
+    const double weight = 2.0 * sine * (0.5 * std::numbers::pi / kZeniths) * (std::numbers::pi / kAzimuths);
+    r_i += weight * f[i].m[0];
+    r_q += weight * f[i].m[1];
+  }
+  EXPECT_NEAR(r_i, moments.r_i, kMidpointError * moments.r_i);
+  EXPECT_NEAR(r_q, moments.r_q, kMidpointError * moments.r_i);
+}
+
+// ---- The device's tiles ----------------------------------------------------------------------------------------------
+
+TEST(MuellerOnTheDevice, TilesAndStaging_ChangeNoBit) {
+  const std::vector<ScatteringPoint> points = RandomPoints(kSeed, Masking::kIntegral).draw(300);
+  const ScatteringRequest request = request_of(Distribution::kCauchy, Masking::kIntegral, points);
+  VulkanOptions options;
+  options.validation = ValidationMode::kOn;
+  VulkanEvaluator whole(options);
+  options.max_tile_entries = 7;
+  options.staged_uploads = true;
+  VulkanEvaluator tiled(options);
+  const auto a = whole.scatter(request, {});
+  const auto b = tiled.scatter(request, {});
+  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(a[i].m, b[i].m) << text_of(points[i]);
+  EXPECT_EQ(whole.report().dispatches, 1U);
+  EXPECT_EQ(tiled.report().dispatches, 43U);
+  EXPECT_EQ(tiled.report().precision, "float");
+}
+
+// Moments and pBRDFs share the descriptor set.
+TEST(MuellerOnTheDevice, MomentsBetween_ChangeNothing) {
+  const std::vector<ScatteringPoint> points = RandomPoints(kSeed, Masking::kIntegral).draw(100);
+  const ScatteringRequest request = request_of(Distribution::kCauchy, Masking::kIntegral, points);
+  MomentsRequest moments;
+  moments.theta_deg = {30.0};
+  moments.shapes = {{0.3, 2.0}};
+  moments.indices = {{1.5, 0.0}};
+  moments.entries = {{0, 0, 0}};
+  VulkanOptions options;
+  options.validation = ValidationMode::kOn;
+  VulkanEvaluator evaluator(options);
+  const auto before = evaluator.scatter(request, {});
+  evaluator.evaluate(moments, {});
+  const auto after = evaluator.scatter(request, {});
+  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(before[i].m, after[i].m);
+}
+
+TEST(MuellerOnTheDevice, ProgressThatSaysNo_Cancels) {
+  const std::vector<ScatteringPoint> points = RandomPoints(kSeed, Masking::kNone).draw(10);
+  VulkanEvaluator evaluator({});
+  EXPECT_THROW(evaluator.scatter(request_of(Distribution::kCauchy, Masking::kNone, points),
+                                 [](std::size_t, std::size_t) { return false; }),
+               Cancelled);
+  EXPECT_TRUE(evaluator.scatter({}, {}).empty());
+}
+
 }  // namespace
 }  // namespace dolp

@@ -20,6 +20,13 @@ DoubleAngle double_angle(double x, double y) {
   return {(u - v) * (u + v) / (u * u + v * v), 2.0 * u * v / (u * u + v * v)};
 }
 
+// Of the mean of two zeniths; near 90 degrees their sum would lose the digits that the elevations have.
+CosSin mean_zenith(double theta_i_deg, double theta_r_deg) {
+  if (theta_i_deg + theta_r_deg <= 90.0) return cos_sin_deg(0.5 * (theta_i_deg + theta_r_deg));
+  const CosSin elevation = cos_sin_deg(0.5 * ((90.0 - theta_i_deg) + (90.0 - theta_r_deg)));
+  return {elevation.sin, elevation.cos};
+}
+
 }  // namespace
 
 kernel::GeometryNode geometry_node(double theta_i_deg, double theta_r_deg, double delta_phi_deg) {
@@ -28,7 +35,7 @@ kernel::GeometryNode geometry_node(double theta_i_deg, double theta_r_deg, doubl
   // In [-180, 180], without rounding: near the specular and the retro direction the half angle keeps all digits.
   const double azimuth_deg = std::remainder(delta_phi_deg, 360.0);
   const CosSin half = cos_sin_deg(0.5 * std::abs(azimuth_deg));
-  const CosSin mean = cos_sin_deg(0.5 * (theta_i_deg + theta_r_deg));
+  const CosSin mean = mean_zenith(theta_i_deg, theta_r_deg);
   const CosSin difference = cos_sin_deg(0.5 * (theta_i_deg - theta_r_deg));
   const double sin_difference = 2.0 * mean.cos * difference.sin;   // sin i - sin r
   const double cos_difference = -2.0 * mean.sin * difference.sin;  // cos i - cos r

@@ -108,7 +108,8 @@ class BistaticByEvaluator : public testing::TestWithParam<Choice> {};
 INSTANTIATE_TEST_SUITE_P(Bistatic, BistaticByEvaluator,
                          testing::Values(Choice{"VulkanFloat", Precision::kFloat},
                                          Choice{"VulkanDouble", Precision::kDouble},
-                                         Choice{"CpuDouble", Precision::kDouble}, Choice{"Reference", Precision::kAuto}),
+                                         Choice{"CpuDouble", Precision::kDouble},
+                                         Choice{"Reference", Precision::kAuto}),
                          [](const testing::TestParamInfo<Choice>& test) { return test.param.name; });
 
 TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {

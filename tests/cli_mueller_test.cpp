@@ -149,7 +149,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"UnknownColumn", kHeader + ",theta\n", {}, 2, {"points.csv:1", "theta", "theta_i_deg"}},
         Mistake{"MissingColumn", "theta_i_deg,theta_r_deg\n1,2\n", {}, 2, {"points.csv:1", "delta_phi_deg"}},
         Mistake{"MissingValue", kHeader + "\n1,2,3\n1,,3\n", {}, 2, {"points.csv:3", "theta_r_deg", "[0, 90]"}},
-        Mistake{"NotANumber", kHeader + "\n1,2,west\n", {}, 2, {"points.csv:2", "delta_phi_deg", "west", "[-360, 360]"}},
+        Mistake{
+            "NotANumber", kHeader + "\n1,2,west\n", {}, 2, {"points.csv:2", "delta_phi_deg", "west", "[-360, 360]"}},
         Mistake{"OutOfRange", kHeader + ",q\n1,2,3,1\n", {}, 2, {"points.csv:2", "q = 1", "(1, 1e4]"}},
         Mistake{"ZenithOutOfRange", kHeader + "\n1,90.5,3\n", {}, 2, {"points.csv:2", "theta_r_deg = 90.5", "[0, 90]"}},
         Mistake{"SmithBelowItsExponent",

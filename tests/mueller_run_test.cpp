@@ -33,8 +33,12 @@ MuellerElements elements(const Scene& scene, const BeamAngles& angles, double si
   return evaluate_mueller(scene, {{angles, {sigma, 3.0}, kPaint}}, evaluator, {}).front();
 }
 
-bool is_all_nan(const MuellerElements& f) { return std::ranges::all_of(f, [](double m) { return std::isnan(m); }); }
-bool is_finite(const MuellerElements& f) { return std::ranges::all_of(f, [](double m) { return std::isfinite(m); }); }
+bool is_all_nan(const MuellerElements& f) {
+  return std::ranges::all_of(f, [](double m) { return std::isnan(m); });
+}
+bool is_finite(const MuellerElements& f) {
+  return std::ranges::all_of(f, [](double m) { return std::isfinite(m); });
+}
 
 TEST(MuellerRun, SpecularAndDiffuse_AreAddedAsInEquation15) {
   Scene scene = scene_with(Masking::kIntegral);
@@ -139,8 +143,8 @@ TEST(MuellerPoints, MaterialOfAWavelength_IsThatOfTheScene) {
 }
 
 TEST(MuellerPoints, SmithBelowItsExponent_NamesTheLine) {
-  const std::string message = message_of(scene_with(Masking::kSmith),
-                                         "theta_i_deg,theta_r_deg,delta_phi_deg,q\n10,20,30,2\n10,20,30,1.5\n");
+  const std::string message =
+      message_of(scene_with(Masking::kSmith), "theta_i_deg,theta_r_deg,delta_phi_deg,q\n10,20,30,2\n10,20,30,1.5\n");
   for (const char* part : {"p.csv:3", "q = 1.5", "(1.5, 1e4]"}) {
     EXPECT_NE(message.find(part), std::string::npos) << message;
   }

@@ -104,9 +104,7 @@ class RandomPoints {
     }
   }
 
-  double zenith() {
-    return uniform(0.0, 1.0) < 0.3 ? 90.0 - std::pow(10.0, uniform(-2.0, 1.0)) : uniform(0.0, 89.0);
-  }
+  double zenith() { return uniform(0.0, 1.0) < 0.3 ? 90.0 - std::pow(10.0, uniform(-2.0, 1.0)) : uniform(0.0, 89.0); }
   double nearly_zero() { return uniform(0.0, 1.0) < 0.2 ? 0.0 : std::pow(10.0, uniform(-9.0, 0.0)); }
   static double clamped(double zenith_deg) { return std::clamp(zenith_deg, 0.0, 89.99); }
 

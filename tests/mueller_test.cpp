@@ -1,5 +1,6 @@
-// The Mueller pBRDF of every evaluator, on the device and on the CPU, in float and in double: against explicit vectors in
-// quadruple precision, and the symmetries that hold without a reference.
+// The Mueller pBRDF of every evaluator, on the device and on the CPU, in float and in double: against explicit vectors
+// in quadruple precision, and the symmetries that hold without a reference. DOLP_PROPERTY_DRAWS in the environment sets
+// the number of points per model.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -7,6 +8,7 @@
 #include <cmath>
 #include <complex>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <numbers>
 #include <vector>
@@ -22,7 +24,12 @@ namespace {
 using Matrix = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 
 constexpr std::uint64_t kSeed = 20260110;
-constexpr std::size_t kPoints = 400;
+
+std::size_t points_per_model() {
+  const char* text = std::getenv("DOLP_PROPERTY_DRAWS");
+  return text != nullptr ? std::strtoul(text, nullptr, 10) : 400;
+}
+const std::size_t kPoints = points_per_model();
 
 // Below the normal numbers of a double nothing has a relative accuracy.
 constexpr double kSmallest = 1e-300;
@@ -31,9 +38,7 @@ struct Kernel {
   const char* name;
   bool on_device;
   Precision precision;
-  double tolerance() const {
-    return precision == Precision::kDouble ? kScatteringErrorDouble : kScatteringErrorFloat;
-  }
+  double tolerance() const { return precision == Precision::kDouble ? kScatteringErrorDouble : kScatteringErrorFloat; }
 };
 constexpr std::array kKernels = {
     Kernel{"VulkanFloat", true, Precision::kFloat}, Kernel{"VulkanDouble", true, Precision::kDouble},
@@ -126,7 +131,8 @@ TEST_P(EveryKernel, OppositeAzimuth_TurnsTheSignsOfUAndV) {
   for (std::size_t i = 0; i < kPoints; ++i) EXPECT_EQ(f[i], mirror * opposite[i] * mirror) << text_of(points[i]);
 }
 
-/// Cloude's coherency matrix of a Mueller matrix. Source: Cloude 1986; its eigenvalues add up to m00 (here, halved twice).
+/// Cloude's coherency matrix of a Mueller matrix. Source: Cloude 1986; its eigenvalues add up to m00 (here, halved
+/// twice).
 Eigen::Matrix4cd coherency(const Matrix& f) {
   using Complex = std::complex<double>;
   const Complex i(0.0, 1.0);
@@ -146,7 +152,8 @@ Eigen::Matrix4cd coherency(const Matrix& f) {
   return result;
 }
 
-// A pure (Mueller-Jones) matrix: one eigenvalue above rounding, none below, so that no Stokes vector becomes unphysical.
+// A pure (Mueller-Jones) matrix: one eigenvalue above rounding, none below, so that no Stokes vector becomes
+// unphysical.
 TEST_P(EveryKernel, EveryMatrix_IsRealisable) {
   const std::vector<ScatteringPoint> points = random().draw(kPoints);
   const std::vector<Matrix> matrices = scatter(points);
@@ -167,14 +174,14 @@ std::string name_of(const testing::TestParamInfo<Case>& test) {
          kMaskings[static_cast<std::size_t>(masking)];
 }
 
-INSTANTIATE_TEST_SUITE_P(Mueller, EveryKernel,
-                         testing::Combine(testing::ValuesIn(kKernels),
-                                          testing::Values(Distribution::kCauchy, Distribution::kGaussian),
-                                          testing::Values(Masking::kNone, Masking::kVCavity, Masking::kIntegral,
-                                                          Masking::kSmith)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(
+    Mueller, EveryKernel,
+    testing::Combine(testing::ValuesIn(kKernels), testing::Values(Distribution::kCauchy, Distribution::kGaussian),
+                     testing::Values(Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith)),
+    name_of);
 
-// ---- Limits and extremes ---------------------------------------------------------------------------------------------
+// ---- Limits and extremes
+// ---------------------------------------------------------------------------------------------
 
 Matrix plain_mueller(const BeamAngles& angles, const OpticalConstants& index = {1.5, 0.2}) {
   CpuEvaluator evaluator(Precision::kDouble);
@@ -219,8 +226,12 @@ TEST(MuellerLimits, CornersOfTheDomain_AreFiniteAndTheSameInBothPrecisions) {
     for (const double q : {1.000001, 1.6, 30.0, 1e4}) {
       for (const OpticalConstants& index :
            {OpticalConstants{1e6, 1e6}, {1e-6, 0.0}, {1e-3, 1e6}, {1.0, 0.0}, {1e-6, 1e-6}, {1.0 + 1e-12, 0.0}}) {
-        for (const BeamAngles& angles : {BeamAngles{0.0, 0.0, 0.0}, {40.0, 40.0, 180.0}, {40.0, 40.0, 1e-9},
-                                         {89.999999, 90.0, 180.0}, {89.9999, 89.9999, 1.0}, {1e-9, 60.0, 77.0}}) {
+        for (const BeamAngles& angles : {BeamAngles{0.0, 0.0, 0.0},
+                                         {40.0, 40.0, 180.0},
+                                         {40.0, 40.0, 1e-9},
+                                         {89.999999, 90.0, 180.0},
+                                         {89.9999, 89.9999, 1.0},
+                                         {1e-9, 60.0, 77.0}}) {
           points.push_back({angles, {sigma, q}, index});
         }
       }
@@ -278,7 +289,8 @@ TEST(Mueller, HemisphericalSum_GivesTheMoments) {
   EXPECT_NEAR(r_q, moments.r_q, kMidpointError * moments.r_i);
 }
 
-// ---- The device's tiles ----------------------------------------------------------------------------------------------
+// ---- The device's tiles
+// ----------------------------------------------------------------------------------------------
 
 TEST(MuellerOnTheDevice, TilesAndStaging_ChangeNoBit) {
   const std::vector<ScatteringPoint> points = RandomPoints(kSeed, Masking::kIntegral).draw(300);

@@ -24,8 +24,8 @@ constexpr int kLargestOrder = 16;  // kInPlaneOrder of physics/in_plane.glsl
 // -ln of the share of the in-plane slopes that G may leave out: far below the rounding of a double.
 constexpr double kCutExponent = 45.0;
 
-// Smoother surfaces have the G of this one: the squares of their slopes overflow a float, and but for q < 1.1 the shadows
-// they cast are the same.
+// Smoother surfaces have the G of this one: the squares of their slopes overflow a float, and but for q < 1.1 the
+// shadows they cast are the same.
 constexpr double kSmallestMaskingSigma = 1e-15;
 
 // Share of N^2 and sin^2(beta) below which their difference has lost digits that the root of it needs.

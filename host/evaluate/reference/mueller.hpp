@@ -13,7 +13,8 @@ using MuellerMatrix = std::array<std::array<double, 4>, 4>;
 /// facet in quadruple precision: no angle eta, no care for cancellation.
 /// Equation: (4), (7), (15).
 /// Units: sr^-1.
-/// Conventions: Delta_phi = 180 degrees is the specular side; s = k x z, p = k x s for both beams, at zenith 0 the limit
+/// Conventions: Delta_phi = 180 degrees is the specular side; s = k x z, p = k x s for both beams, at zenith 0 the
+/// limit
 ///   at the beam's azimuth; Q = I_s - I_p, U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p).
 /// Domain: zeniths in [0, 90] degrees, not 90 both; sigma > 0.
 /// Accuracy: 1e-12 of m00.

@@ -1,4 +1,5 @@
-// Moments and pBRDFs by adaptive quadrature over the other direction: slow, independent of the shaders, and with honest errors.
+// Moments and pBRDFs by adaptive quadrature over the other direction: slow, independent of the shaders, and with honest
+// errors.
 #pragma once
 
 #include <vector>

@@ -28,8 +28,7 @@ bool is_undefined(const Surface& surface, const MuellerPoint& point) {
   const bool has_limit = surface.masking == Masking::kVCavity || surface.masking == Masking::kSmith;
   const bool diffuse_diverges = surface.diffuse > 0.0 && surface.diffuse_exponent < 0.0;
   if (has_specular && point.shape.sigma == 0.0 && is_specular(point.angles)) return true;
-  const bool specular_diverges =
-      has_specular && point.shape.sigma > 0.0 && (!has_limit || !has_facet(point.angles));
+  const bool specular_diverges = has_specular && point.shape.sigma > 0.0 && (!has_limit || !has_facet(point.angles));
   return is_grazing(point.angles) && (specular_diverges || diffuse_diverges);
 }
 
@@ -92,10 +91,10 @@ std::vector<MuellerPoint> mueller_points(const Scene& scene, const Points& point
   const Surface& surface = scene.surface;
   const bool has_own_index = points.n && points.k;
   if (scene.spectrum.is_band() && !surface.material.is_constant() && !has_own_index) {
-    throw InputError(
-        fmt::format("{}: spectrum.band_um: the Mueller matrix is that of one wavelength and the material \"{}\" depends on "
-                    "it; give spectrum.wavelength_um, or columns n and k",
-                    scene.path_name, surface.material.name));
+    throw InputError(fmt::format(
+        "{}: spectrum.band_um: the Mueller matrix is that of one wavelength and the material \"{}\" depends on "
+        "it; give spectrum.wavelength_um, or columns n and k",
+        scene.path_name, surface.material.name));
   }
   const OpticalConstants index = surface.material.at(scene.spectrum.min_um);
   std::vector<MuellerPoint> result;

@@ -23,8 +23,8 @@ class Kernels {
  public:
   Kernels(const Device& device, bool float64);
 
-  /// Binds one storage buffer to each binding of interface.glsl, whole; a null handle leaves a binding that the pipelines
-  /// to run do not use.
+  /// Binds one storage buffer to each binding of interface.glsl, whole; a null handle leaves a binding that the
+  /// pipelines to run do not use.
   void bind(const std::array<VkBuffer, kBindingCount>& buffers);
 
   VkPipeline moments(Distribution distribution, Masking masking);

@@ -45,8 +45,8 @@ void check_entries(const ScatteringRequest& request) {
         entry.index >= request.indices.size()) {
       throw InputError("entry " + std::to_string(i) + " of the request is outside its lists of " +
                        std::to_string(request.angles.size()) + " pairs of beams, " +
-                       std::to_string(request.shapes.size()) + " shapes and " +
-                       std::to_string(request.indices.size()) + " indices");
+                       std::to_string(request.shapes.size()) + " shapes and " + std::to_string(request.indices.size()) +
+                       " indices");
     }
   }
 }

@@ -31,8 +31,8 @@ std::size_t points_per_model() {
 }
 const std::size_t kPoints = points_per_model();
 
-// The reference multiplies its density by powers of up to 1e16 and 1e6, and below the normal numbers of a double nothing
-// has a relative accuracy.
+// The reference multiplies its density by powers of up to 1e16 and 1e6, and below the normal numbers of a double
+// nothing has a relative accuracy.
 constexpr double kSmallest = 1e-280;
 
 struct Kernel {
@@ -214,10 +214,23 @@ TEST(MuellerLimits, Retro_IsTheSameFromEverySide) {
   EXPECT_EQ(plain_mueller({40.0, 40.0, 360.0}), at);
 }
 
-// w = 0, whose root would amplify rounding; sin(30 degrees) = 1/2 is exact.
-TEST(MuellerLimits, CriticalAngle_ReflectsEverything) {
-  const double all = plain_mueller({30.0, 30.0, 180.0}, {1e-3, 0.0})(0, 0);  // far beyond the critical angle
-  EXPECT_NEAR(plain_mueller({30.0, 30.0, 180.0}, {0.5, 0.0})(0, 0) / all, 1.0, kScatteringErrorDouble);
+// There w, a root of nearly 0, amplifies every rounding of the angles.
+TEST(MuellerLimits, CriticalAngle_AgreesWithExplicitVectors) {
+  std::vector<ScatteringPoint> points;
+  for (double n = 0.1; n < 0.96; n += 0.05) {
+    for (const double offset_deg : {-1e-9, -1e-12, 0.0, 1e-12, 1e-9}) {
+      const double theta_deg = std::asin(n) * 180.0 / std::numbers::pi + offset_deg;
+      points.push_back({{theta_deg, theta_deg, 180.0}, {0.3, 2.0}, {n, 0.0}});
+    }
+  }
+  const ScatteringRequest request = request_of(Distribution::kCauchy, Masking::kNone, points);
+  const auto references = ReferenceEvaluator().scatter(request, {});
+  for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
+    const auto f = CpuEvaluator(precision).scatter(request, {});
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (std::size_t j = 0; j < 16; ++j) EXPECT_NEAR(f[i].m[j], references[i].m[j], f[i].error) << text_of(points[i]);
+    }
+  }
 }
 
 // The corners of what scenes and points may say: float and double are two computations of one number.

@@ -11,6 +11,9 @@
 #define DOLP_BINDING_MASKING_TABLE 5  // real4[]: one table for each shape bound, see physics/masking.glsl
 #define DOLP_BINDING_MOMENTS 6        // MomentsNode[]: one for each entry of the dispatch
 #define DOLP_BINDING_RULE 7           // RuleNode: one for all entries
+// mueller.comp reads the rule nodes, and in place of the first and the results of the moments:
+#define DOLP_BINDING_BEAMS DOLP_BINDING_THETAS      // BeamNode[]: one for each entry of the dispatch
+#define DOLP_BINDING_MUELLERS DOLP_BINDING_MOMENTS  // MuellerNode[]: likewise
 
 // ---- Specialization constants --------------------------------------------------------------------------------------
 #define DOLP_SPEC_LOCAL_SIZE 0
@@ -24,9 +27,9 @@
 #define DOLP_MASKING_INTEGRAL 2u
 #define DOLP_MASKING_SMITH 3u
 
-// ---- Push constants: four uints, used by both entry points ----------------------------------------------------------
-// count: entries of this dispatch (moments.comp) or shapes bound (masking_table.comp); first: the first of them, as a
-// position in the bound buffers. Output i of a dispatch belongs to entry first + i.
+// ---- Push constants: four uints, used by all entry points -----------------------------------------------------------
+// count: entries of this dispatch (moments.comp, mueller.comp) or shapes bound (masking_table.comp); first: the first of
+// them, as a position in the bound buffers. Output i of a dispatch belongs to entry first + i.
 #define DOLP_PUSH_CONSTANTS uint first; uint count; uint unused_0; uint unused_1;
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
@@ -108,6 +111,17 @@ struct GeometryNode {
   real sin_2eta_i;
   real cos_2eta_r;
   real sin_2eta_r;
+};
+
+// One pBRDF to evaluate. What cancels or overflows in a float comes from the host: the geometry, w^2 and the density.
+struct BeamNode {
+  GeometryNode g;
+  ShapeNode shape;  // its scale and cut are those of physics/in_plane.glsl
+  real density;     // D(alpha) / 4 [1/sr] over a power of two that the host keeps: in [1/2, 1), or 0
+  real n2_re;       // Re(N^2)
+  real n2m1_re;     // Re(N^2 - 1)
+  real n2m1_im;     // Im(N^2)
+  real w2_re;       // Re(N^2 - sin^2(beta))
 };
 
 // A Mueller matrix, row by row.

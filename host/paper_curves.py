@@ -57,7 +57,7 @@ class Program:
         """Columns that `dolp COMMAND` writes for `points`, a dict of columns; errors: CannotRun."""
         rows = [",".join(points), *(",".join(map(repr, row)) for row in zip(*(map(float, c) for c in points.values())))]
         line = [str(self.path), command, str(ROOT / "host" / "scenes" / f"{scene}.toml"), "--points", "-", "-o", "-",
-                "--quiet", *options]
+                "--quiet", *options, *(("--evaluator", self.evaluator) if self.evaluator else ())]
         for key, value in settings.items():
             line += ["--set", f"{key}={value}"]
         try:
@@ -71,10 +71,6 @@ class Program:
         if len(found) != len(rows) - 1:
             raise CannotRun(5, f"{self.path}: wrote {len(found)} rows for {len(rows) - 1} points")
         return {name: np.array([float(row[name]) for row in found]) for name in table.fieldnames}
-
-    def evaluate(self, scene, settings):
-        options = ("--evaluator", self.evaluator) if self.evaluator else ()
-        return self.columns("eval", scene, settings, {"theta_deg": ANGLES_DEG}, options)
 
 
 @dataclasses.dataclass
@@ -128,7 +124,7 @@ def curve(program, sample, reading, mode, distribution, roughness_of=None):
     sigma = width(scene_value(roughness_of or sample, settings, "surface.sigma"), q, distribution)
     settings |= {"surface.distribution": distribution, "surface.sigma": sigma, "geometry.mode": mode,
                  "geometry.view_zenith_deg": VIEW_DEG}
-    found = program.evaluate(SAMPLES[sample], settings)
+    found = program.columns("eval", SAMPLES[sample], settings, {"theta_deg": ANGLES_DEG})
     name = f"{sample} with sigma of {roughness_of}" if roughness_of else sample
     return Curve(name, reading, mode, distribution, sigma, 100.0 * found["dolp"], 100.0 * found["error_estimate"],
                  found["status"].astype(int))

@@ -46,7 +46,7 @@ def arguments():
     printed.add_argument("--table", action="store_true", help="print the numbers as Markdown")
     printed.add_argument("--json", action="store_true", help="print the numbers as JSON")
     parser.add_argument("--program", type=pathlib.Path, default=model.ROOT / "build" / "release" / "dolp")
-    parser.add_argument("--evaluator", choices=("vulkan", "cpu", "reference"), help="of dolp, figures 5-7")
+    parser.add_argument("--evaluator", choices=("vulkan", "cpu", "reference"), help="of dolp")
     parser.add_argument("--set", metavar="KEY=VALUE", type=unprinted, action="append", default=[],
                         help="replaces a value that the paper does not print, figures 5-7")
     options = parser.parse_args()

@@ -166,8 +166,16 @@ TEST_F(PaperFigure, Figures5And6_OneSampleEach_HaveTheCurvesOfFigure7) {
   }
 }
 
-TEST_F(PaperFigure, Table_DefaultEvaluator_PrintsPeaksAndThePapersAngles) {
-  const Outcome outcome = figure({"5", "--table"});
+TEST_F(PaperFigure, Table_DefaultEvaluator_PrintsAttenuation) {
+  const Outcome outcome = figure({"4", "--table"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("| v-cavity | cauchy | 30° | 1.000 | 1.000 | 1.000 | 1.000 | 0.786 | 0.000 | −2.33/rad"),
+            std::string::npos)
+      << outcome.out;
+}
+
+TEST_F(PaperFigure, Table_Sample_PrintsPeaksAndThePapersAngles) {
+  const Outcome outcome = figure({"5", "--table", "--evaluator", "cpu"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("| integral | bistatic | steel | cauchy | 14.00 at 70."), std::string::npos)
       << outcome.out;

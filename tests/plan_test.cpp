@@ -90,7 +90,7 @@ TEST(KernelDataOrders, EveryTolerance_StaysBelowTheDriversLoopLimit) {
     for (const Masking masking : kMaskings) {
       for (const bool total_reflection : {false, true}) {
         double most = 0.0;
-        for (int exponent = 2; exponent <= 12; ++exponent) {
+        for (int exponent = 2; exponent <= 15; ++exponent) {
           const double tolerance = std::pow(10.0, -exponent);
           const KernelData data = kernel_data(hard_request(distribution, masking, tolerance, total_reflection));
           const double iterations = worst_iterations(data);

@@ -79,7 +79,7 @@ KernelData model_data(const ScatteringRequest& request) {
   KernelData data;
   data.distribution = request.distribution;
   data.masking = request.masking;
-  data.rule.node_stride = kLargestOrder;
+  data.rule.largest_order = kLargestOrder;
   static const auto nodes = rule_nodes(kLargestOrder);
   data.rule_nodes = nodes;
   return data;

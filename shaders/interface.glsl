@@ -6,11 +6,14 @@
 #define DOLP_BINDING_THETAS 0         // ThetaNode[]
 #define DOLP_BINDING_SHAPES 1         // ShapeNode[]
 #define DOLP_BINDING_INDICES 2        // IndexNode[]
-#define DOLP_BINDING_ENTRIES 3        // uvec4[]: theta, first shape (of those bound), index, shapes of a group
+#define DOLP_BINDING_ENTRIES 3        // uvec4[]: theta, first shape (of those bound), index, shapes + 256 * piece
 #define DOLP_BINDING_RULE_NODES 4     // real4[]: see physics/quadrature.glsl
 #define DOLP_BINDING_MASKING_TABLE 5  // real4[]: one table for each shape bound, see physics/masking.glsl
-#define DOLP_BINDING_MOMENTS 6        // MomentsNode[]: one for each member of each group of the dispatch
+#define DOLP_BINDING_MOMENTS 6        // MomentsNode[]: one for each member of each group and piece of the dispatch
 #define DOLP_BINDING_RULE 7           // RuleNode: one for all entries
+// mueller.comp reads the rule nodes, and in place of the first and the results of the moments:
+#define DOLP_BINDING_BEAMS DOLP_BINDING_THETAS      // BeamNode[]: one for each entry of the dispatch
+#define DOLP_BINDING_MUELLERS DOLP_BINDING_MOMENTS  // MuellerNode[]: likewise
 
 // ---- Specialization constants --------------------------------------------------------------------------------------
 #define DOLP_SPEC_LOCAL_SIZE 0
@@ -24,9 +27,10 @@
 #define DOLP_MASKING_INTEGRAL 2u
 #define DOLP_MASKING_SMITH 3u
 
-// ---- Push constants: four uints, used by both entry points ----------------------------------------------------------
-// count: groups of entries of this dispatch (moments.comp) or shapes bound (masking_table.comp); first: the first of them, as a
-// position in the bound buffers. Outputs i * DOLP_GROUP and following belong to group first + i.
+// ---- Push constants: four uints, used by all entry points -----------------------------------------------------------
+// count: groups of this dispatch (moments.comp), entries (mueller.comp) or shapes bound (masking_table.comp); first: the
+// first of them, as a position in the bound buffers. Output i of a dispatch belongs to entry first + i, outputs
+// i * DOLP_GROUP and following to group first + i.
 #define DOLP_PUSH_CONSTANTS uint first; uint count; uint unused_0; uint unused_1;
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
@@ -64,7 +68,6 @@ struct RuleNode {
   real strip[3];         // for the arcs of each zone: distance in phi to the next singularity off the real axis
   real cluster_below_q;  // below this q an arc clusters its nodes where the limit b of `integral` meets pi/2
   real largest_order;    // of the rule nodes
-  real most_iterations;  // of the loops of one invocation, beyond which every arc gets two nodes
 };
 
 // One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. Under total
@@ -77,6 +80,7 @@ struct ThetaNode {
   real has_line;                   // 1: split at the line b = pi/2 of `integral`, or at the cusp of smith
   real t_growth;                   // toward grazing incidence more nodes for each digit: factor of RuleNode::t_growth,
   real phi_narrowing;              // divisor of RuleNode::strip
+  real phi_order;                  // most nodes of an arc, which bounds the loop iterations
   real end[DOLP_MAX_PIECES + 1];   // ascending slopes; the last may exceed any cut
   real kind[DOLP_MAX_PIECES + 1];  // bit 0: square-root end just above, bit 1: just below
 };
@@ -114,6 +118,17 @@ struct GeometryNode {
   real sin_2eta_i;
   real cos_2eta_r;
   real sin_2eta_r;
+};
+
+// One pBRDF to evaluate. What cancels or overflows in a float comes from the host: the geometry, w^2 and the density.
+struct BeamNode {
+  GeometryNode g;
+  ShapeNode shape;  // its scale and cut are those of physics/in_plane.glsl
+  real density;     // D(alpha) / 4 [1/sr] over a power of two that the host keeps: in [1/2, 1), or 0
+  real n2_re;       // Re(N^2)
+  real n2m1_re;     // Re(N^2 - 1)
+  real n2m1_im;     // Im(N^2)
+  real w2_re;       // Re(N^2 - sin^2(beta))
 };
 
 // A Mueller matrix, row by row.

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Moments of one group of entries per invocation; the compiler is told its size.
+// What one piece of the slope axis adds to the moments of a group of entries, per invocation; the compiler is told the
+// size of a group.
 
 #include "physics/prelude.glsl"
 #include "interface.glsl"
@@ -18,11 +19,11 @@ void main() {
   uvec4 entry = entries[push.first + min(i, push.count - 1u)];
   Group group;
   for (int g = 0; g < DOLP_GROUP; ++g) {
-    uint shape = entry.y + min(uint(g), entry.w - 1u);
+    uint shape = entry.y + min(uint(g), (entry.w & 255u) - 1u);
     group.shape[g] = shapes[shape];
     group.table[g] = shape * kMaskingNodes;
   }
-  GroupMoments result = moments_group(rule, thetas[entry.x], group, indices[entry.z]);
+  GroupMoments result = piece_moments(rule, thetas[entry.x], group, indices[entry.z], int(entry.w >> 8));
   if (i < push.count) {
     for (int g = 0; g < DOLP_GROUP; ++g) moments[i * DOLP_GROUP + g] = result.member[g];
   }

@@ -12,5 +12,7 @@ extern const std::span<const std::uint32_t> moments_group_float;  // DOLP_GROUP_
 extern const std::span<const std::uint32_t> moments_group_double;
 extern const std::span<const std::uint32_t> masking_table_float;
 extern const std::span<const std::uint32_t> masking_table_double;
+extern const std::span<const std::uint32_t> mueller_float;
+extern const std::span<const std::uint32_t> mueller_double;
 
 }  // namespace dolp::spirv

@@ -39,6 +39,7 @@ typename Text::ThetaNode direction(double theta_deg) {
   node.has_line = 1.0;
   node.t_growth = 1.0;
   node.phi_narrowing = 1.0;
+  node.phi_order = DOLP_MAX_ORDER;
   return theta_in<Text>(node);
 }
 
@@ -66,7 +67,7 @@ typename Text::AzimuthSums sums_of_order(Text& text, int order, const typename T
                                          const typename Text::ShapeNode& shape, const typename Text::IndexNode& index,
                                          Real slope) {
   return text.azimuth_sums(rule_of_order<Text>(order), theta, group_of<Text>(shape), index, static_cast<RealOf<Text>>(slope),
-                           RealOf<Text>(0), RealOf<Text>(DOLP_MAX_ORDER));
+                           RealOf<Text>(0));
 }
 
 // A random direction and slope: steep, flat, near the normal and near grazing.
@@ -351,7 +352,7 @@ TYPED_TEST(ArcsText, CoincidingOrReversedEnds_MakeAnEmptyArc) {
   // and an empty arc adds nothing
   const KernelData data = whole_data(kShape, Masking::kNone, {1.508, 0.0});
   text = text_for<TypeParam>(data);
-  const auto slice = typename TypeParam::Slice{Real(0.5), Real(0), Real(DOLP_MAX_ORDER), {}, Real(0)};
+  const auto slice = typename TypeParam::Slice{Real(0.5), Real(0), {}, Real(0)};
   typename TypeParam::AzimuthSums sums{};
   text.add_arc(rule_of_order<TypeParam>(8), direction<TypeParam>(60.0),
                group_of<TypeParam>(shape_in<TypeParam>(data.shapes[0])), index_in<TypeParam>(data.indices[0]), slice,
@@ -464,7 +465,7 @@ TYPED_TEST(ArcsText, ArcOrder_GrowsWithTheDigitsWithinItsLimit) {
         if (!(arc.quarter > Real(0))) continue;
         int before = 1;
         for (int digits = 0; digits <= 16; ++digits) {
-          const auto slice = typename TypeParam::Slice{facets.slope, static_cast<Real>(digits), Real(kLimit), {}, Real(0)};
+          const auto slice = typename TypeParam::Slice{facets.slope, static_cast<Real>(digits), {}, Real(0)};
           const int order =
               text.order_between(text.arc_nodes(rule, facets.theta, index, slice, arc, zone), Real(kLimit));
           EXPECT_GE(order, before) << "c " << facets.theta.c << " t " << facets.slope << " zone " << zone;
@@ -487,7 +488,7 @@ TYPED_TEST(ArcsText, WholeCircle_HasTheNodesThatItsSecondHarmonicNeeds) {
   const auto back = decltype(forward)(Real(0), Real(1));
   for (const double theta_deg : {0.0, 1e-6, 1e-3, 1.0, 10.0}) {
     for (double digits = 0.0; digits <= 12.0; digits += 0.5) {
-      const auto slice = typename TypeParam::Slice{Real(0.1), static_cast<Real>(digits), Real(DOLP_MAX_ORDER), {}, Real(0)};
+      const auto slice = typename TypeParam::Slice{Real(0.1), static_cast<Real>(digits), {}, Real(0)};
       const int order = text.order_between(
           text.arc_nodes(rule, direction<TypeParam>(theta_deg), index, slice, text.make_arc(forward, back), 0),
           Real(64));

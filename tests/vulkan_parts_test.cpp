@@ -84,24 +84,24 @@ TEST(TileSizes, EachLimit_Binds) {
   const TileLimits limits{.buffer_bytes = 1'000'000,
                           .heap_bytes = 80'000'000,
                           .dispatch_count = 9'000,
-                          .tile_groups = 8'000,
+                          .tile_invocations = 8'000,
                           .block_shapes = 50};
-  const TileCosts costs{.group_bytes = 100, .shape_bytes = 10'000};
-  EXPECT_EQ(tile_sizes(limits, costs).groups, 8'000U);
+  const TileCosts costs{.invocation_bytes = 100, .shape_bytes = 10'000};
+  EXPECT_EQ(tile_sizes(limits, costs).invocations, 8'000U);
   EXPECT_EQ(tile_sizes(limits, costs).shapes, 50U);
   TileLimits small_buffers = limits;
   small_buffers.buffer_bytes = 400'000;
-  EXPECT_EQ(tile_sizes(small_buffers, costs).groups, 4'000U);
+  EXPECT_EQ(tile_sizes(small_buffers, costs).invocations, 4'000U);
   EXPECT_EQ(tile_sizes(small_buffers, costs).shapes, 40U);
   TileLimits small_heap = limits;
   small_heap.heap_bytes = 800'000;
-  EXPECT_EQ(tile_sizes(small_heap, costs).groups, 1'000U);
+  EXPECT_EQ(tile_sizes(small_heap, costs).invocations, 1'000U);
   EXPECT_EQ(tile_sizes(small_heap, costs).shapes, 10U);
   TileLimits few_workgroups = limits;
   few_workgroups.dispatch_count = 30;
-  EXPECT_EQ(tile_sizes(few_workgroups, costs).groups, 30U);
+  EXPECT_EQ(tile_sizes(few_workgroups, costs).invocations, 30U);
   EXPECT_EQ(tile_sizes(few_workgroups, costs).shapes, 30U);
-  EXPECT_EQ(tile_sizes({}, costs).groups, 1U);
+  EXPECT_EQ(tile_sizes({}, costs).invocations, 1U);
 }
 
 TEST(BlocksOf, Families_AreNeverCutAndOnlyThoseWithGroupsAreBound) {

@@ -177,7 +177,7 @@ TEST_P(EveryKernel, TilesBlocksAndStaging_ChangeNoBit) {
   const MomentsRequest request = small_request(std::get<Distribution>(GetParam()), std::get<Masking>(GetParam()));
   VulkanEvaluator whole(validated(std::get<Precision>(GetParam())));
   VulkanOptions options = validated(std::get<Precision>(GetParam()));
-  options.max_tile_groups = 7;
+  options.max_tile_invocations = 7;
   options.max_block_shapes = 2;
   options.staged_uploads = true;
   VulkanEvaluator tiled(options);
@@ -226,7 +226,7 @@ constexpr double kIterationLimit = 65'535.0;
 
 TEST_P(EveryKernel, TightestTolerance_StaysBelowTheIterationLimit) {
   MomentsRequest request = small_request(std::get<Distribution>(GetParam()), std::get<Masking>(GetParam()));
-  request.tolerance = 1e-12;  // of the last attempt at an entry
+  request.tolerance = 1e-15;  // of the last attempt at an entry
   const double bound = worst_iterations(kernel_data(request));
   EXPECT_LT(bound, kIterationLimit);
   VulkanEvaluator evaluator(validated(std::get<Precision>(GetParam())));
@@ -253,7 +253,7 @@ INSTANTIATE_TEST_SUITE_P(Vulkan, EveryKernel,
 
 TEST(VulkanEvaluator, Progress_CountsEveryTileAndTheReportEveryDispatch) {
   VulkanOptions options = validated();
-  options.max_tile_groups = 10;
+  options.max_tile_invocations = 10;
   options.max_block_shapes = 2;
   VulkanEvaluator evaluator(options);
   const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
@@ -275,7 +275,7 @@ TEST(VulkanEvaluator, Progress_CountsEveryTileAndTheReportEveryDispatch) {
 
 TEST(VulkanEvaluator, CancelledRequest_LeavesTheEvaluatorUsable) {
   VulkanOptions options = validated();
-  options.max_tile_groups = 20;
+  options.max_tile_invocations = 20;
   VulkanEvaluator evaluator(options);
   const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
   const std::vector<Moments> expected = evaluator.evaluate(request, {});

@@ -69,6 +69,7 @@ int run(CLI::App& app, Options& options) {
   const auto given = [&app](const char* name) { return app.got_subcommand(name); };
   if (given("table")) return run_table(options);
   if (given("eval")) return run_eval(options);
+  if (given("mueller")) return run_mueller(options);
   if (given("verify")) return run_verify(options);
   return run_devices(options);
 }
@@ -91,6 +92,12 @@ int parse_and_run(int argc, char** argv) {
   CLI::App* eval = app.add_subcommand("eval", "the same quantities at scattered points");
   add_run(*eval, options);
   eval->add_option("--points", options.points_path, "CSV with any of theta_deg, sigma, q, n, k; - is stdin")
+      ->required();
+  CLI::App* mueller = app.add_subcommand("mueller", "4 x 4 Mueller pBRDF [1/sr] at scattered geometries");
+  add_run(*mueller, options);
+  mueller
+      ->add_option("--points", options.points_path,
+                   "CSV with theta_i_deg, theta_r_deg, delta_phi_deg and any of sigma, q, n, k; - is stdin")
       ->required();
   add_verify(*app.add_subcommand("verify", "recompute entries of a table, or examine a device"), options);
   CLI::App* devices = app.add_subcommand("devices", "Vulkan devices, and why each one is or is not usable");

@@ -114,13 +114,34 @@ Grouping grouped_exactly(const KernelData& data, std::uint32_t size) {
 }  // namespace
 
 Grouping grouped(const KernelData& data, std::uint32_t size) {
-  if (size > 1) {
+  if (size > 1 && may_group(data.rule)) {
     Grouping grouping = grouped_exactly(data, size);
     double used = 0.0;
     for (const EntryGroup& group : grouping.groups) used += group.used;
     if (used >= kLeastUse * size * static_cast<double>(grouping.groups.size())) return grouping;
   }
   return grouped_exactly(data, 1);
+}
+
+std::vector<GroupPiece> pieces_of(const Grouping& grouping, const KernelData& data, std::uint32_t first,
+                                  std::uint32_t count) {
+  const auto same_work = [&](std::uint32_t a, std::uint32_t b) {
+    return grouping.groups[a].family == grouping.groups[b].family && grouping.groups[a].index == grouping.groups[b].index;
+  };
+  std::vector<GroupPiece> pieces;
+  const std::uint32_t end = first + count;
+  for (std::uint32_t begin = first; begin < end;) {
+    std::uint32_t next = begin + 1;
+    while (next < end && same_work(begin, next)) ++next;
+    const kernel::ShapeNode& shape = grouping.shapes[grouping.families[grouping.groups[begin].family].first];
+    for (std::uint32_t piece = 0; piece < DOLP_MAX_PIECES; ++piece) {
+      for (std::uint32_t g = begin; g < next; ++g) {
+        if (piece < piece_count(data.thetas[grouping.groups[g].theta], shape)) pieces.push_back({g, piece});
+      }
+    }
+    begin = next;
+  }
+  return pieces;
 }
 
 }  // namespace dolp

@@ -23,6 +23,12 @@ struct EntryGroup {
   std::uint32_t used = 0;  ///< members that entries ask for
 };
 
+/// One invocation of the kernel.
+struct GroupPiece {
+  std::uint32_t group = 0;
+  std::uint32_t piece = 0;  ///< of the slope axis
+};
+
 /// Where the result of an entry is.
 struct EntryPlace {
   std::uint32_t group = 0;
@@ -37,6 +43,10 @@ struct Grouping {
   std::vector<EntryGroup> groups;           ///< ordered by family, index and direction
   std::vector<EntryPlace> places;           ///< of each entry of the data
 };
+
+/// The invocations of groups first, first + 1, ...: neighbours differ in the direction, so that they do the same work.
+std::vector<GroupPiece> pieces_of(const Grouping& grouping, const KernelData& data, std::uint32_t first,
+                                  std::uint32_t count);
 
 /// Groups of up to `size` entries; of one entry each where the families of the data would leave most members unused.
 Grouping grouped(const KernelData& data, std::uint32_t size);

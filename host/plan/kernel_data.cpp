@@ -166,18 +166,31 @@ double arcs_per_slope(Masking masking, double critical) {
   return critical > 0.0 ? 2.0 * zones : zones;
 }
 
-// Bound of the loop iterations of one invocation for a direction whose slopes have `arcs` arcs each, every node of which
-// takes up to three (masked_direction): when they run out, the slope at hand may have all its nodes, the rest of its piece
-// has two nodes for each arc, and the pieces beyond have two slopes each.
-double iterations(const kernel::RuleNode& rule, const kernel::ThetaNode& node, double arcs) {
-  constexpr double kOfNode = 3.0;
-  const double short_slope = 1.0 + arcs * (1.0 + 2.0 * kOfNode);
-  const double full_slope = 1.0 + arcs * (1.0 + kOfNode * rule.largest_order);
-  return rule.most_iterations + full_slope + rule.largest_order * short_slope +
-         node.piece_count * (1.0 + 2.0 * short_slope);
+// Loops of one invocation: below the 65,535 iterations at which lavapipe stops without notice.
+constexpr double kMostIterations = 64'000.0;
+
+// Rules of higher orders are not for groups, whose nodes take more iterations.
+constexpr double kMostGroupedOrder = 84.0;
+
+// Iterations for a node of an arc, the most that masked_direction (integrand.glsl) needs.
+double iterations_of_node(const kernel::RuleNode& rule, Masking masking) {
+  return masking == Masking::kIntegral && may_group(rule) ? 3.0 : 1.0;
 }
 
-kernel::ThetaNode theta_node(const MomentsRequest& request, double theta_deg, const Variant& variant) {
+// Bound of the loop iterations of one invocation, that is of one piece: slopes, arcs, azimuths, with everything at its
+// most nodes. No bound on what an entry does is enough, because invocations that run in lockstep wait for each other.
+double iterations(const kernel::RuleNode& rule, double phi_order, Masking masking, double arcs) {
+  return rule.largest_order * (1.0 + arcs * (1.0 + iterations_of_node(rule, masking) * phi_order));
+}
+
+// The most nodes of an arc; the error estimate shows what that costs.
+double phi_order(const kernel::RuleNode& rule, Masking masking, double arcs) {
+  const double of_slope = kMostIterations / rule.largest_order - 1.0;
+  return std::min(rule.largest_order, std::floor((of_slope / arcs - 1.0) / iterations_of_node(rule, masking)));
+}
+
+kernel::ThetaNode theta_node(const MomentsRequest& request, const kernel::RuleNode& rule, double theta_deg,
+                             const Variant& variant) {
   const CosSin a = cos_sin_deg(theta_deg);
   const RuleModel& model = rule_model(request.masking);
   kernel::ThetaNode node{};
@@ -204,6 +217,7 @@ kernel::ThetaNode theta_node(const MomentsRequest& request, double theta_deg, co
     node.t_growth *= kTotalReflectionGrowthT;
     node.phi_narrowing *= kTotalReflectionNarrowing;
   }
+  node.phi_order = phi_order(rule, request.masking, arcs_per_slope(request.masking, variant.critical_cos));
   return node;
 }
 
@@ -252,7 +266,7 @@ void add_directions(KernelData& data, const MomentsRequest& request) {
   std::map<std::pair<std::uint32_t, Variant>, std::uint32_t> nodes;
   for (const double theta_deg : request.theta_deg) {
     nodes[{static_cast<std::uint32_t>(data.thetas.size()), Variant{}}] = static_cast<std::uint32_t>(data.thetas.size());
-    data.thetas.push_back(theta_node(request, theta_deg, {}));
+    data.thetas.push_back(theta_node(request, data.rule, theta_deg, {}));
   }
   for (MomentsEntry& entry : data.entries) {
     const Variant variant{data.indices[entry.index].critical_cos, has_line[entry.shape]};
@@ -260,7 +274,7 @@ void add_directions(KernelData& data, const MomentsRequest& request) {
     const auto [found, is_new] =
         nodes.try_emplace({entry.theta, variant}, static_cast<std::uint32_t>(data.thetas.size()));
     if (is_new) {
-      data.thetas.push_back(theta_node(request, request.theta_deg[entry.theta], variant));
+      data.thetas.push_back(theta_node(request, data.rule, request.theta_deg[entry.theta], variant));
     }
     entry.theta = found->second;
   }
@@ -275,6 +289,26 @@ CosSin cos_sin_deg(double angle_deg) {
       is_near_90 ? boost::math::sin_pi((90.0 - angle_deg) / 180.0) : boost::math::cos_pi(angle_deg / 180.0);
   return {cosine, boost::math::sin_pi(angle_deg / 180.0)};
 }
+
+std::uint32_t piece_count(const kernel::ThetaNode& theta, const kernel::ShapeNode& shape) {
+  const auto all = static_cast<std::uint32_t>(theta.piece_count);
+  std::uint32_t count = 1;
+  while (count < all && theta.end[count] < shape.cut) ++count;
+  return count;
+}
+
+void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece) {
+  sum.r_i += piece.r_i;
+  sum.r_q += piece.r_q;
+  sum.albedo += piece.albedo;
+  sum.deficit += piece.deficit;
+  sum.doubt += piece.doubt;
+  sum.deficit_doubt += piece.deficit_doubt;
+  sum.deficit_scale += piece.deficit_scale;
+  sum.evaluations += piece.evaluations;
+}
+
+bool may_group(const kernel::RuleNode& rule) { return rule.largest_order <= kMostGroupedOrder; }
 
 KernelData kernel_data(const MomentsRequest& request) {
   const double digits = rule_digits(request.masking, request.tolerance);
@@ -295,7 +329,7 @@ double worst_iterations(const KernelData& data) {
   double worst = 0.0;
   for (const MomentsEntry& entry : data.entries) {
     const double arcs = arcs_per_slope(data.masking, data.indices[entry.index].critical_cos);
-    worst = std::max(worst, iterations(data.rule, data.thetas[entry.theta], arcs));
+    worst = std::max(worst, iterations(data.rule, data.thetas[entry.theta].phi_order, data.masking, arcs));
   }
   return worst;
 }

@@ -34,16 +34,25 @@ struct KernelData {
 /// Splits, orders, nodes and constants for a request at its tolerance. Pure.
 KernelData kernel_data(const MomentsRequest& request);
 
+/// Pieces of the slope axis up to the cut: those that the kernel has to compute, the first always.
+std::uint32_t piece_count(const kernel::ThetaNode& theta, const kernel::ShapeNode& shape);
+
+/// Adds what the kernel returned for a piece to what it returned for others.
+void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece);
+
 /// Turns what the kernel returned for one entry into moments with error bounds, `unit_roundoff` being that of the
 /// kernel's precision.
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff);
 
+/// Whether entries may be computed in groups (plan/groups.hpp) by this rule.
+bool may_group(const kernel::RuleNode& rule);
+
 /// Whether the masking table of a shape sees the structure of G at a direction. Where the table is coarser than the
 /// slope distribution, directions whose cot(theta) lies within its first scale see none of it.
 bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta);
 
-/// Upper bound of the loop iterations of one invocation for any entry of `data`: all its nested loops together.
+/// Upper bound of the loop iterations of one invocation, a piece of any entry of `data`: all its nested loops together.
 /// Drivers may stop an invocation after 65,535 of them, without an error and with wrong sums.
 double worst_iterations(const KernelData& data);
 

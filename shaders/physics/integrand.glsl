@@ -41,7 +41,6 @@ struct AzimuthSums {
   real deficit_doubt[DOLP_GROUP];
   real deficit_scale[DOLP_GROUP];  // the deficit with the absolute values of its terms
   real evaluations;
-  real iterations;                 // of all loops
 };
 
 // A facet's projection e as the part that masking leaves, e G, and the part that it hides, e (1 - G): each is computed
@@ -148,8 +147,13 @@ Masked unmasked() {
   return masked;
 }
 
-// Where few invocations need something, a branch would be computed and thrown away by devices that run them in
-// lockstep; a loop of one turn at most is skipped where none does.
+// A branch is computed and thrown away by devices that run invocations in lockstep; a loop of one turn at most is skipped
+// where none of them needs it, which pays for groups. It counts as an iteration, see host/plan/kernel_data.cpp.
+#if DOLP_GROUP > 1
+#define DOLP_WHERE(condition) for (bool is_due = (condition); is_due; is_due = false)
+#else
+#define DOLP_WHERE(condition) if (condition)
+#endif
 Masked masked_direction(Group group, real cos_theta, real sin_theta, real t, bool is_needed) {
   Masked masked = unmasked();
   if (kMasking == DOLP_MASKING_SMITH) {
@@ -159,10 +163,10 @@ Masked masked_direction(Group group, real cos_theta, real sin_theta, real t, boo
     for (int g = 0; g < DOLP_GROUP; ++g) masked.value[g] = masking_height(cell, group.table[g]) * inverse;
   }
   if (kMasking == DOLP_MASKING_INTEGRAL) {
-    for (int turn = is_needed ? 0 : 1; turn < 1; ++turn) {
+    DOLP_WHERE(is_needed) {
       ShadowPlace place = shadow_place(group.shape[0], cos_theta, sin_theta, t);
       for (int g = 0; g < DOLP_GROUP; ++g) masked.value[g] = unlimited_shadow(place, group.table[g]);
-      for (int limit = place.is_limited ? 0 : 1; limit < 1; ++limit) {
+      DOLP_WHERE(place.is_limited) {
         TableCell cell = table_cell(group.shape[0], place.far);
         for (int g = 0; g < DOLP_GROUP; ++g) {
           masked.value[g] += limited_shadow(group.shape[g], place, cell, group.table[g]);
@@ -194,7 +198,6 @@ Projection project(ThetaNode theta, real e, real cos_r, int zone, real of_theta,
 struct Slice {
   real t;
   real digits;      // wanted
-  real order_limit; // of its arcs
   Masked of_theta;
   real cusp_nodes;  // nodes of a half arc that smith's cusp at theta_r = 0 asks for
 };
@@ -237,9 +240,6 @@ real arc_nodes(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, Arc
   return nodes;
 }
 
-// Iterations of the loops for one node of an arc, see masked_direction.
-real iterations_of_node() { return (kMasking == DOLP_MASKING_INTEGRAL) ? real(3.0) : real(1.0); }
-
 // Adds the azimuths of an arc to `sums`.
 void add_arc(RuleNode rule, ThetaNode theta, Group group, IndexNode index, Slice slice, Arc arc, int zone,
              INOUT(AzimuthSums) sums) {
@@ -247,10 +247,10 @@ void add_arc(RuleNode rule, ThetaNode theta, Group group, IndexNode index, Slice
   real r2 = real(1.0) / (real(1.0) + t * t);
   real nodes = arc_nodes(rule, theta, index, slice, arc, zone);
   real with_cusp = (arc.section == kSectionCluster) ? nodes : max(nodes, rule.phi_half_nodes + slice.cusp_nodes);
-  int order = (arc.quarter > real(0.0)) ? order_between(with_cusp, slice.order_limit) : 0;
+  int order = (arc.quarter > real(0.0)) ? order_between(with_cusp, theta.phi_order) : 0;
   real digits = slice.digits;
   if (order > 0 && arc.section != kSectionCluster) {
-    digits -= lost_digits(digits, rule.phi_growth, rule.phi_curvature, nodes, slice.order_limit);
+    digits -= lost_digits(digits, rule.phi_growth, rule.phi_curvature, nodes, theta.phi_order);
   }
   int first_node = rule_offset(rule, arc.section, order);
   FacetSums sum[DOLP_GROUP];
@@ -295,7 +295,6 @@ void add_arc(RuleNode rule, ThetaNode theta, Group group, IndexNode index, Slice
     sums.deficit_scale[g] += sum[g].deficit;
   }
   sums.evaluations += real(order);
-  sums.iterations += real(1.0) + real(order) * iterations_of_node();
 }
 
 // The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth: three in ascending order
@@ -367,18 +366,16 @@ Arc zone_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, Slice slice, real2
 
 // Integral over the azimuth from 0 to pi at slope t, the facets below the horizon counted in the deficit. Each zone is
 // an arc, or two where total reflection begins in between; their clusters then replace those of zone_arc.
-AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode index, real t, real digits,
-                         real order_limit) {
+AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode index, real t,
+                         real digits) {
   SplitLines lines = split_lines(theta, index, t);
   Slice slice;
   slice.t = t;
   slice.digits = digits;
-  slice.order_limit = order_limit;
   slice.of_theta = masked_direction(group, theta.c, theta.s, t, true);
   slice.cusp_nodes = real(0.0);
   AzimuthSums sums;
   sums.evaluations = real(0.0);
-  sums.iterations = real(1.0);
   for (int g = 0; g < DOLP_GROUP; ++g) {
     sums.sum[g] = no_facets();
     sums.doubt[g] = real(0.0);

@@ -1,8 +1,5 @@
-// The moments of one entry: Gauss rules on the smooth pieces of the slope axis, of orders that follow from the digits
+// The moments of a group of entries, piece by piece: Gauss rules on the smooth pieces of the slope axis, of orders that follow from the digits
 // wanted (orders.glsl).
-
-// Nodes of pieces and arcs once the iterations of an invocation are spent. Then their sums are their doubts.
-CONST real kSpentOrder = real(2.0);
 
 // A piece [a, b] of the slope axis. X = asinh(t/scale) is linear in y(v), which takes up square-root ends:
 // v, v^2 (at a), 1 - (1-v)^2 (at b), v^2 (3 - 2v) (both).
@@ -17,8 +14,7 @@ struct Piece {
   real lost;  // digits that the order does not allow
 };
 
-// `order_limit` is the most nodes it may have.
-Piece make_piece(RuleNode rule, ThetaNode theta, Group group, int number, real order_limit) {
+Piece make_piece(RuleNode rule, ThetaNode theta, Group group, int number) {
   ShapeNode shape = group.shape[0];
   real a = theta.end[number];
   real b = min(theta.end[number + 1], shape.cut);
@@ -38,9 +34,9 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Group group, int number, real o
   piece.root_at_b = b < shape.cut && theta.kind[number + 1] > real(1.5);
   real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
   real nodes = nodes_t(rule, theta, piece.digits, piece.extent, roots);
-  piece.order = order_between(nodes, order_limit);
+  piece.order = order_between(nodes, rule.largest_order);
   real growth = theta.t_growth * rule.t_growth;
-  piece.lost = lost_digits(piece.digits, growth, theta.t_growth * rule.t_curvature, nodes, order_limit);
+  piece.lost = lost_digits(piece.digits, growth, theta.t_growth * rule.t_curvature, nodes, rule.largest_order);
   return piece;
 }
 
@@ -55,13 +51,11 @@ struct SlopeSums {
   real mass[DOLP_GROUP];          // the rule's value of Piece::mass
   real deficit_scale[DOLP_GROUP];
   real evaluations;
-  real iterations;
 };
 
 real null_size(real first, real second) { return sqrt(first * first + second * second); }
 
-// `spent` loop iterations have gone into the pieces before.
-SlopeSums piece_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode index, Piece piece, real spent) {
+SlopeSums piece_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode index, Piece piece) {
   SlopeSums sums;
   real second_i[DOLP_GROUP];
   real second_q[DOLP_GROUP];
@@ -80,7 +74,6 @@ SlopeSums piece_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode inde
     sums.deficit_scale[g] = real(0.0);
   }
   sums.evaluations = real(0.0);
-  sums.iterations = real(1.0);
   ShapeNode shape = group.shape[0];
   int first_node = rule_offset(rule, kSectionGauss, piece.order);
   for (int i = 0; i < piece.order; ++i) {
@@ -106,10 +99,8 @@ SlopeSums piece_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode inde
       density[g] = real(2.0) * slope_density(group.shape[g], u, exponent) * du;
       largest_density = max(largest_density, density[g]);
     }
-    bool is_spent = spent + sums.iterations >= rule.most_iterations;
-    real order_limit = is_spent ? kSpentOrder : rule.largest_order;
     real digits = digits_of_slope(rule, theta, shape, piece.digits, piece.order, t, kPi * largest_density * node.y);
-    AzimuthSums term = azimuth_sums(rule, theta, group, index, t, digits, order_limit);
+    AzimuthSums term = azimuth_sums(rule, theta, group, index, t, digits);
     for (int g = 0; g < DOLP_GROUP; ++g) {
       int member = min(g, masked_members() - 1);
       real weight = density[g] * node.y;
@@ -123,13 +114,12 @@ SlopeSums piece_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode inde
       second_i[g] += second * facets.r_i;
       second_q[g] += second * facets.r_q;
       second_deficit[g] += second * facets.deficit;
-      sums.doubt[g] += weight * (is_spent ? facets.r_i : term.doubt[member]);
-      sums.deficit_doubt[g] += weight * (is_spent ? term.deficit_scale[member] : term.deficit_doubt[member]);
+      sums.doubt[g] += weight * term.doubt[member];
+      sums.deficit_doubt[g] += weight * term.deficit_doubt[member];
       sums.mass[g] += kPi * weight;
       sums.deficit_scale[g] += weight * term.deficit_scale[member];
     }
     sums.evaluations += term.evaluations;
-    sums.iterations += term.iterations;
   }
   for (int g = 0; g < DOLP_GROUP; ++g) {
     sums.null_i[g] = null_size(sums.null_i[g], second_i[g]);
@@ -163,22 +153,18 @@ void add_piece(Piece piece, SlopeSums sums, INOUT(GroupMoments) total) {
   }
 }
 
-GroupMoments moments_group(RuleNode rule, ThetaNode theta, Group group, IndexNode index) {
+// What one piece adds to the moments of a group; the first also what lies beyond the last.
+GroupMoments piece_moments(RuleNode rule, ThetaNode theta, Group group, IndexNode index, int number) {
   real cut = group.shape[0].cut;
   real reached = min(theta.end[int(theta.piece_count)], cut);
   GroupMoments total;
   for (int g = 0; g < DOLP_GROUP; ++g) {
-    real beyond = theta.c * slope_tail(group.shape[g], reached);
+    real beyond = (number == 0) ? theta.c * slope_tail(group.shape[g], reached) : real(0.0);
     total.member[g] = MomentsNode(real(0.0), real(0.0), real(0.0), beyond, real(0.0), real(0.0), beyond, real(0.0));
   }
-  real spent = real(0.0);
-  for (int number = 0; number < int(theta.piece_count); ++number) {
-    if (theta.end[number] < cut) {
-      Piece piece = make_piece(rule, theta, group, number, (spent < rule.most_iterations) ? rule.largest_order : kSpentOrder);
-      SlopeSums sums = piece_sums(rule, theta, group, index, piece, spent);
-      add_piece(piece, sums, total);
-      spent += sums.iterations;
-    }
+  if (theta.end[number] < cut) {
+    Piece piece = make_piece(rule, theta, group, number);
+    add_piece(piece, piece_sums(rule, theta, group, index, piece), total);
   }
   return total;
 }

@@ -16,13 +16,6 @@ real slope_density(ShapeNode shape, real u, real exponent) {
   return profile * exp_real(-exponent_factor(shape) * exponent) / kPi;
 }
 
-// P(t) m^2.
-real slope_profile(ShapeNode shape, real t) {
-  real u = t / shape.m;
-  real profile = (kDistribution == DOLP_CAUCHY) ? shape.q_minus_1 / (real(1.0) + u * u) : real(1.0);
-  return profile * slope_tail(shape, t) / kPi;
-}
-
 // p(tau), the density of the slope in one plane: the marginal of P.
 real marginal_density(ShapeNode shape, real tau) {
   real u = tau / shape.m;

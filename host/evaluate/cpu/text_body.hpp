@@ -53,15 +53,18 @@ class TextKernel final : public KernelText {
 
   kernel::MomentsNode moments(const MomentsEntry& entry) override {
     const Text::Group group{{shape_node(entry.shape)}, {table(entry.shape)}};
-    const auto moments =
-        text_.moments_group(rule_, convert_reals<real, Text::ThetaNode, double>(data_.thetas[entry.theta]), group,
-                            convert_reals<real, Text::IndexNode, double>(data_.indices[entry.index]));
-    return convert_reals<double, kernel::MomentsNode, real>(moments.member[0]);
+    const auto theta = convert_reals<real, Text::ThetaNode, double>(data_.thetas[entry.theta]);
+    const auto index = convert_reals<real, Text::IndexNode, double>(data_.indices[entry.index]);
+    kernel::MomentsNode moments{};
+    for (std::uint32_t piece = 0; piece < piece_count(data_.thetas[entry.theta], data_.shapes[entry.shape]); ++piece) {
+      const auto part = text_.piece_moments(rule_, theta, group, index, static_cast<int>(piece));
+      add_piece(moments, convert_reals<double, kernel::MomentsNode, real>(part.member[0]));
+    }
+    return moments;
   }
 
-  kernel::MuellerNode mueller(const kernel::GeometryNode& geometry, std::size_t shape, std::size_t index) override {
-    const auto node = text_.mueller(convert_reals<real, Text::GeometryNode, double>(geometry), shape_node(shape),
-                                    convert_reals<real, Text::IndexNode, double>(data_.indices[index]), table(shape));
+  kernel::MuellerNode mueller(const kernel::BeamNode& beam) override {
+    const auto node = text_.mueller(convert_reals<real, Text::BeamNode, double>(beam));
     return convert_reals<double, kernel::MuellerNode, real>(node);
   }
 

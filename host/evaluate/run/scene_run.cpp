@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <span>
+#include <stdexcept>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -16,7 +17,7 @@
 #include "evaluate/radiometry/smooth_surface.hpp"
 #include "evaluate/run/attempts.hpp"
 #include "evaluate/run/grazing_limit.hpp"
-#include "evaluate/run/scattering.hpp"
+#include "evaluate/scattering.hpp"
 #include "scene/number_range.hpp"
 #include "scene/text.hpp"
 
@@ -198,20 +199,33 @@ double view_zenith_deg(const Scene& scene) {
   return has_grazing_limit(scene) && zenith_deg == 90.0 ? kNearGrazingDeg : zenith_deg;
 }
 
-/// What the source sends toward the view for each entry and sample; nothing for a mirror but toward its specular
-/// direction, where the radiance is not defined.
+/// The first column of a pBRDF.
+Scattered scattered(const ScatteringMatrix& f) { return {f.m[0], f.m[4], f.m[8], f.m[12], f.error}; }
+
+/// What the source sends toward the view for each entry and sample, by the evaluator of the moments; nothing for a mirror
+/// but toward its specular direction, where the radiance is not defined, as it is not between beams at 90 degrees both.
 std::vector<Scattered> entry_beams(const Scene& scene, std::span<const SceneEntry> entries,
-                                   const std::vector<OpticalConstants>& samples) {
-  MomentsRequest request;
+                                   const std::vector<OpticalConstants>& samples, MomentsEvaluator& evaluator,
+                                   Precision precision) {
+  if (evaluator.scattering() == nullptr) throw std::logic_error("the bistatic mode needs an evaluator of pBRDFs");
+  const Geometry& geometry = scene.geometry;
+  const auto angles_of = [&](const SceneEntry& entry) {
+    return BeamAngles{entry.theta_deg, view_zenith_deg(scene), geometry.relative_azimuth_deg};
+  };
+  const auto is_evaluated = [&](const SceneEntry& entry) {
+    return !is_mirror(entry.shape) && has_facet(angles_of(entry));
+  };
+  ScatteringRequest request;
   request.distribution = scene.surface.distribution;
   request.masking = scene.surface.masking;
-  Distinct<double> thetas(request.theta_deg);
+  request.precision = precision;
+  Distinct<BeamAngles> angles(request.angles);
   Distinct<SlopeShape> shapes(request.shapes);
   Distinct<OpticalConstants> indices(request.indices);
   for (const SceneEntry& entry : entries) {
-    if (is_mirror(entry.shape)) continue;
-    MomentsEntry wanted;
-    wanted.theta = thetas.position({entry.theta_deg, 0.0}, entry.theta_deg);
+    if (!is_evaluated(entry)) continue;
+    ScatteringEntry wanted;
+    wanted.angles = angles.position({entry.theta_deg, 0.0}, angles_of(entry));
     wanted.shape = shapes.position({entry.shape.sigma, entry.shape.q}, entry.shape);
     for (const OpticalConstants& sample : samples) {
       const OpticalConstants index = entry.index.value_or(sample);
@@ -219,16 +233,14 @@ std::vector<Scattered> entry_beams(const Scene& scene, std::span<const SceneEntr
       request.entries.push_back(wanted);
     }
   }
-  const Geometry& geometry = scene.geometry;
-  const std::vector<Scattered> rough = scattered_beams(request, view_zenith_deg(scene), geometry.relative_azimuth_deg);
+  const std::vector<ScatteringMatrix> rough = evaluator.scattering()->scatter(request, {});
   std::vector<Scattered> beams;
   auto next = rough.begin();
   for (const SceneEntry& entry : entries) {
     for (std::size_t j = 0; j < samples.size(); ++j) {
-      const bool is_specular =
-          std::abs(geometry.relative_azimuth_deg) == 180.0 && entry.theta_deg == geometry.view_zenith_deg;
-      const double glare = is_specular ? std::numeric_limits<double>::quiet_NaN() : 0.0;
-      beams.push_back(is_mirror(entry.shape) ? Scattered{.i = glare, .q = glare} : *next++);
+      const bool is_undefined = !has_facet(angles_of(entry)) || is_specular(angles_of(entry));
+      const double glare = is_undefined ? std::numeric_limits<double>::quiet_NaN() : 0.0;
+      beams.push_back(is_evaluated(entry) ? scattered(*next++) : Scattered{.i = glare, .q = glare});
     }
   }
   return beams;
@@ -273,12 +285,13 @@ SceneEntry seen_entry(const Scene& scene, const SceneEntry& entry) {
 /// Results of the entries of a block.
 std::vector<PointResult> block_results(const Scene& scene, const Radiometry& radiometry,
                                        std::span<const SceneEntry> entries, const Block& block,
-                                       std::span<const Moments> moments) {
+                                       std::span<const Moments> moments, MomentsEvaluator& evaluator) {
   std::vector<PointResult> results;
   const std::vector<OpticalConstants> samples = radiometry.rule().indices();
   const std::size_t count = samples.size();
   const std::vector<Scattered> beams =
-      is_bistatic(scene) ? entry_beams(scene, entries, samples) : std::vector<Scattered>{};
+      is_bistatic(scene) ? entry_beams(scene, entries, samples, evaluator, block.request.precision)
+                         : std::vector<Scattered>{};
   std::vector<double> cosines;
   for (const double theta_deg : block.request.theta_deg) cosines.push_back(cos_sin_deg(theta_deg).cos);
   for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -319,7 +332,7 @@ std::vector<PointResult> attempt_block(const SceneRun& run, std::span<const Scen
   for (const SceneEntry& entry : entries) builder.add(seen_entry(run.scene, entry));
   const Block block = builder.take();
   const std::vector<Moments> moments = run.evaluator.evaluate(block.request, progress);
-  return block_results(run.scene, run.radiometry, entries, block, moments);
+  return block_results(run.scene, run.radiometry, entries, block, moments, run.evaluator);
 }
 
 bool is_better(const PointResult& a, const PointResult& b) {
@@ -367,7 +380,12 @@ void check_columns(const Scene& scene, const Points& points) {
   }
 }
 
-/// Refuses points that the scene's masking is not made for; the scene's own q has passed the same check.
+double value_or(const std::optional<std::vector<double>>& column, std::size_t row, double fallback) {
+  return column ? (*column)[row] : fallback;
+}
+
+}  // namespace
+
 void check_smith(const Scene& scene, const Points& points) {
   const Surface& surface = scene.surface;
   if (surface.masking != Masking::kSmith || surface.distribution != Distribution::kCauchy || !points.q) return;
@@ -380,12 +398,6 @@ void check_smith(const Scene& scene, const Points& points) {
                     points.name, points.line(row), format_number(q), kSmithCauchyQRange.text()));
   }
 }
-
-double value_or(const std::optional<std::vector<double>>& column, std::size_t row, double fallback) {
-  return column ? (*column)[row] : fallback;
-}
-
-}  // namespace
 
 std::vector<SceneEntry> grid_entries(const Scene& scene) {
   const Grid& grid = scene.grid;

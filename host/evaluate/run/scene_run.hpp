@@ -28,6 +28,11 @@ std::vector<SceneEntry> grid_entries(const Scene& scene);
 /// wavelength; q <= 3/2 with smith masking and the cauchy distribution.
 std::vector<SceneEntry> point_entries(const Scene& scene, const Points& points);
 
+/// Refuses a q of the points that the scene's masking is not made for: q <= 3/2 with smith and the cauchy distribution;
+/// the scene's own q has passed the same check.
+/// Errors: InputError that names the points' file and line, column, value and what is allowed.
+void check_smith(const Scene& scene, const Points& points);
+
 /// Results in the order of `entries`. Progress counts entries.
 /// Errors: those of the evaluator and of Radiometry.
 std::vector<PointResult> evaluate_scene(const Scene& scene, const std::vector<SceneEntry>& entries,

@@ -25,12 +25,14 @@ class Kernels {
  public:
   Kernels(const Device& device, bool float64);
 
-  /// Binds one storage buffer to each binding of interface.glsl, whole.
+  /// Binds one storage buffer to each binding of interface.glsl, whole; a null handle leaves a binding that the
+  /// pipelines to run do not use.
   void bind(const std::array<VkBuffer, kBindingCount>& buffers);
 
   /// `group_size`: 1 or kGroupSize entries an invocation.
   VkPipeline moments(Distribution distribution, Masking masking, std::uint32_t group_size);
   VkPipeline masking_table(Distribution distribution, Masking masking);
+  VkPipeline mueller(Distribution distribution, Masking masking);
   VkPipelineLayout layout() const { return layout_.get(); }
   VkDescriptorSet descriptor_set() const { return set_; }
 
@@ -49,7 +51,7 @@ class Kernels {
   UniquePipelineLayout layout_;
   UniqueDescriptorPool pool_;
   VkDescriptorSet set_ = VK_NULL_HANDLE;
-  Cache moments_, group_moments_, masking_tables_;
+  Cache moments_, group_moments_, masking_tables_, muellers_;
 };
 
 }  // namespace dolp::vulkan

@@ -14,23 +14,23 @@ using RulePoint = std::array<double, 4>;
 
 }  // namespace
 
-MomentsRun::MomentsRun(const RunContext& context, const MomentsRequest& request, std::uint32_t tile_groups,
+MomentsRun::MomentsRun(const RunContext& context, const MomentsRequest& request, std::uint32_t tile_invocations,
                        std::uint32_t block_shapes)
     : context_(context),
       request_(request),
       data_(kernel_data(request)),
       grouping_(grouped(data_, kGroupSize)),
-      sizes_(sizes(tile_groups, block_shapes)),
+      sizes_(sizes(tile_invocations, block_shapes)),
       thetas_(data_.thetas.size()),
       indices_(request.indices.size()) {
   create_buffers();
 }
 
-TileSizes MomentsRun::sizes(std::uint32_t tile_groups, std::uint32_t block_shapes) const {
+TileSizes MomentsRun::sizes(std::uint32_t tile_invocations, std::uint32_t block_shapes) const {
   const Packing& packing = context_.packing;
   const VkPhysicalDeviceLimits& limits = context_.device.limits();
   const TileCosts costs{
-      .group_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
+      .invocation_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
                      packing.node_bytes<kernel::IndexNode>() +
                      grouping_.size * packing.node_bytes<kernel::MomentsNode>(),
       .shape_bytes =
@@ -38,7 +38,7 @@ TileSizes MomentsRun::sizes(std::uint32_t tile_groups, std::uint32_t block_shape
   return tile_sizes({.buffer_bytes = limits.maxStorageBufferRange,
                      .heap_bytes = context_.device.heap_bytes(),
                      .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
-                     .tile_groups = std::min<std::uint64_t>(tile_groups, grouping_.groups.size()),
+                     .tile_invocations = std::min<std::uint64_t>(tile_invocations, grouping_.groups.size() * DOLP_MAX_PIECES),
                      .block_shapes = std::min<std::uint64_t>(block_shapes, data_.shapes.size())},
                     costs);
 }
@@ -47,18 +47,18 @@ void MomentsRun::create_buffers() {
   const Packing& packing = context_.packing;
   const Device& device = context_.device;
   const bool staged = context_.staged_uploads;
-  const std::size_t thetas = std::min<std::size_t>(sizes_.groups, data_.thetas.size());
-  const std::size_t indices = std::min<std::size_t>(sizes_.groups, data_.indices.size());
+  const std::size_t thetas = std::min<std::size_t>(sizes_.invocations, data_.thetas.size());
+  const std::size_t indices = std::min<std::size_t>(sizes_.invocations, data_.indices.size());
   const std::size_t tables = data_.needs_masking_table() ? sizes_.shapes : 0;
   theta_buffer_.emplace(device, thetas * packing.node_bytes<kernel::ThetaNode>(), staged);
   shape_buffer_.emplace(device, sizes_.shapes * packing.node_bytes<kernel::ShapeNode>(), staged);
   index_buffer_.emplace(device, indices * packing.node_bytes<kernel::IndexNode>(), staged);
-  entry_buffer_.emplace(device, sizes_.groups * sizeof(EntryWords), staged);
+  entry_buffer_.emplace(device, sizes_.invocations * sizeof(EntryWords), staged);
   rule_buffer_.emplace(device, packing.node_bytes<kernel::RuleNode>(), staged);
   rule_node_buffer_.emplace(device, data_.rule_nodes.size() * packing.node_bytes<RulePoint>(), staged);
   masking_buffer_.emplace(device, tables * packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
                           MemoryUse::kDeviceOnly);
-  moments_buffer_.emplace(device, sizes_.groups * grouping_.size * packing.node_bytes<kernel::MomentsNode>(),
+  moments_buffer_.emplace(device, sizes_.invocations * grouping_.size * packing.node_bytes<kernel::MomentsNode>(),
                           MemoryUse::kReadback);
 
   std::array<VkBuffer, kBindingCount> buffers{};
@@ -79,15 +79,17 @@ void MomentsRun::create_pipelines() {
 }
 
 std::optional<std::vector<Moments>> MomentsRun::compute(const Progress& progress) {
-  const std::span<const EntryGroup> all(grouping_.groups);
-  std::vector<kernel::MomentsNode> results(all.size() * grouping_.size);
+  std::vector<kernel::MomentsNode> results(grouping_.groups.size() * grouping_.size);
   for (const Block& block : blocks_of(grouping_, sizes_.shapes)) {
     start_block(block);
-    const std::size_t end = block.first_group + block.group_count;
-    for (std::size_t first = block.first_group; first < end; first += sizes_.groups) {
-      const std::size_t count = std::min<std::size_t>(sizes_.groups, end - first);
-      run_tile(block, all.subspan(first, count), std::span(results).subspan(first * grouping_.size));
-      const std::size_t done = data_.entries.size() * (first + count) / all.size();
+    const std::vector<GroupPiece> pieces = pieces_of(grouping_, data_, block.first_group, block.group_count);
+    for (std::size_t first = 0; first < pieces.size(); first += sizes_.invocations) {
+      const std::size_t count = std::min<std::size_t>(sizes_.invocations, pieces.size() - first);
+      run_tile(block, std::span(pieces).subspan(first, count), results);
+      const double share = (block.first_group + block.group_count * static_cast<double>(first + count) /
+                                                    static_cast<double>(pieces.size())) /
+                           static_cast<double>(grouping_.groups.size());
+      const auto done = static_cast<std::size_t>(share * static_cast<double>(data_.entries.size()));
       if (progress && !progress(done, data_.entries.size())) return std::nullopt;
     }
   }
@@ -122,41 +124,45 @@ void MomentsRun::start_block(const Block& block) {
   cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
 }
 
-void MomentsRun::upload_tile(const Block& block, std::span<const EntryGroup> groups) {
+void MomentsRun::upload_tile(const Block& block, std::span<const GroupPiece> pieces) {
+  constexpr std::uint32_t kPieceUnit = 256;  // see DOLP_BINDING_ENTRIES
   thetas_.clear();
   indices_.clear();
   std::vector<EntryWords> words;
-  words.reserve(groups.size());
-  for (const EntryGroup& group : groups) {
+  words.reserve(pieces.size());
+  for (const GroupPiece& own : pieces) {
+    const EntryGroup& group = grouping_.groups[own.group];
     const ShapeFamily& family = grouping_.families[group.family];
-    words.push_back({thetas_(group.theta), family.first - block.first_shape, indices_(group.index), family.count});
+    words.push_back({thetas_(group.theta), family.first - block.first_shape, indices_(group.index),
+                     family.count + kPieceUnit * own.piece});
   }
   entry_buffer_->write(std::as_bytes(std::span(words)), context_.stream);
   upload(data_.thetas, thetas_.used(), *theta_buffer_);
   upload(data_.indices, indices_.used(), *index_buffer_);
 }
 
-void MomentsRun::run_tile(const Block& block, std::span<const EntryGroup> groups,
+void MomentsRun::run_tile(const Block& block, std::span<const GroupPiece> pieces,
                           std::span<kernel::MomentsNode> results) {
   CommandStream& stream = context_.stream;
   stream.begin();
-  upload_tile(block, groups);
+  upload_tile(block, pieces);
   stream.barrier(Barrier::kUploadToKernel);
   stream.dispatch(context_.kernels, context_.kernels.moments(data_.distribution, data_.masking, grouping_.size), 0,
-                  static_cast<std::uint32_t>(groups.size()));
+                  static_cast<std::uint32_t>(pieces.size()));
   stream.barrier(Barrier::kKernelToHost);
   cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
   ++cost_.dispatches;
 
-  scratch_.resize(groups.size() * grouping_.size * context_.packing.node_bytes<kernel::MomentsNode>());
+  scratch_.resize(pieces.size() * grouping_.size * context_.packing.node_bytes<kernel::MomentsNode>());
   moments_buffer_->read(scratch_);
-  for (std::size_t i = 0; i < groups.size(); ++i) {
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const std::uint32_t used = grouping_.groups[pieces[i].group].used;
     for (std::uint32_t g = 0; g < grouping_.size; ++g) {
-      kernel::MomentsNode& node = results[i * grouping_.size + g];
-      node = context_.packing.read<kernel::MomentsNode>(scratch_, i * grouping_.size + g);
-      node.evaluations /= groups[i].used;
+      auto node = context_.packing.read<kernel::MomentsNode>(scratch_, i * grouping_.size + g);
+      if (g == 0) cost_.evaluations += node.evaluations;
+      node.evaluations /= used;
+      add_piece(results[pieces[i].group * std::size_t{grouping_.size} + g], node);
     }
-    cost_.evaluations += results[i * grouping_.size].evaluations * groups[i].used;
   }
 }
 

@@ -34,8 +34,8 @@ struct RunCost {
 /// Owns the buffers of one request and computes it.
 class MomentsRun {
  public:
-  /// `tile_groups` and `block_shapes` bound the sizes of TileSizes from above.
-  MomentsRun(const RunContext& context, const MomentsRequest& request, std::uint32_t tile_groups,
+  /// `tile_invocations` and `block_shapes` bound the sizes of TileSizes from above.
+  MomentsRun(const RunContext& context, const MomentsRequest& request, std::uint32_t tile_invocations,
              std::uint32_t block_shapes);
 
   /// Before the computation, so that its time is known apart.
@@ -46,11 +46,11 @@ class MomentsRun {
   const RunCost& cost() const { return cost_; }
 
  private:
-  TileSizes sizes(std::uint32_t tile_groups, std::uint32_t block_shapes) const;
+  TileSizes sizes(std::uint32_t tile_invocations, std::uint32_t block_shapes) const;
   void create_buffers();
   void start_block(const Block& block);
-  void upload_tile(const Block& block, std::span<const EntryGroup> groups);
-  void run_tile(const Block& block, std::span<const EntryGroup> groups, std::span<kernel::MomentsNode> results);
+  void upload_tile(const Block& block, std::span<const GroupPiece> pieces);
+  void run_tile(const Block& block, std::span<const GroupPiece> pieces, std::span<kernel::MomentsNode> results);
   std::vector<Moments> moments_of_entries(std::span<const kernel::MomentsNode> results) const;
   template <class Node>
   void upload(const std::vector<Node>& list, std::span<const std::uint32_t> members, InputBuffer& buffer);

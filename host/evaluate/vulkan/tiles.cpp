@@ -17,7 +17,7 @@ std::uint32_t at_least_one(std::uint64_t count) {
 TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs) {
   // Both costs are sums over buffers, so they bound each of the buffers.
   const std::uint64_t bytes = std::min(limits.buffer_bytes, limits.heap_bytes / kHeapFraction);
-  return {.groups = at_least_one(std::min({bytes / costs.group_bytes, limits.dispatch_count, limits.tile_groups})),
+  return {.invocations = at_least_one(std::min({bytes / costs.invocation_bytes, limits.dispatch_count, limits.tile_invocations})),
           .shapes = at_least_one(std::min({bytes / costs.shape_bytes, limits.dispatch_count, limits.block_shapes}))};
 }
 

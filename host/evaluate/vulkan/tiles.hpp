@@ -15,19 +15,19 @@ struct TileLimits {
   std::uint64_t buffer_bytes = 0;    ///< of one storage buffer
   std::uint64_t heap_bytes = 0;      ///< of the device's memory
   std::uint64_t dispatch_count = 0;  ///< invocations of one dispatch
-  std::uint64_t tile_groups = 0;     ///< wanted at most
+  std::uint64_t tile_invocations = 0;     ///< wanted at most
   std::uint64_t block_shapes = 0;    ///< wanted at most
 };
 
-/// Bytes that a group of entries and a shape take in the buffers.
+/// Bytes that an invocation (a piece of a group of entries, or a beam) and a shape take in the buffers.
 struct TileCosts {
-  std::uint64_t group_bytes = 0;  ///< all buffers that grow with the groups of a tile
+  std::uint64_t invocation_bytes = 0;  ///< all buffers that grow with the invocations of a tile
   std::uint64_t shape_bytes = 0;  ///< the masking table and the node of a shape
 };
 
-/// Groups of entries of a dispatch and shapes bound at a time, at least one each.
+/// Invocations of a dispatch and shapes bound at a time, at least one each.
 struct TileSizes {
-  std::uint32_t groups = 1;
+  std::uint32_t invocations = 1;
   std::uint32_t shapes = 1;
 };
 

@@ -182,7 +182,7 @@ TEST(KernelDataOrders, EntryWithTooFewNodesAllowed_SaysSo) {
   for (const Masking masking : kMaskings) {
     const Computed whole = computed(masking, 1e-9, 60.0, {0.3, 2.0}, kDielectric);
     KernelData data = whole.data;
-    for (const double most : {7.0, 8.0}) {
+    for (const double most : {9.0, 11.0}) {
       data.thetas[data.entries[0].theta].phi_order = most;
       const auto text = make_kernel_text_double(data);
       if (data.needs_masking_table()) text->build_masking_table(0);

@@ -66,7 +66,9 @@ template <class Text, class Real>
 typename Text::AzimuthSums sums_of_order(Text& text, int order, const typename Text::ThetaNode& theta,
                                          const typename Text::ShapeNode& shape, const typename Text::IndexNode& index,
                                          Real slope) {
-  return text.azimuth_sums(rule_of_order<Text>(order), theta, group_of<Text>(shape), index, static_cast<RealOf<Text>>(slope),
+  const auto group = group_of<Text>(shape);
+  return text.azimuth_sums(rule_of_order<Text>(order), theta, group, index, text.looked_up(group, theta.c, theta.s),
+                           static_cast<RealOf<Text>>(slope),
                            RealOf<Text>(0));
 }
 

@@ -180,13 +180,13 @@ double iterations_of_node(const kernel::RuleNode& rule, Masking masking) {
 // Bound of the loop iterations of one invocation, that is of one piece: slopes, arcs, azimuths, with everything at its
 // most nodes. No bound on what an entry does is enough, because invocations that run in lockstep wait for each other.
 double iterations(const kernel::RuleNode& rule, double phi_order, Masking masking, double arcs) {
-  return rule.largest_order * (1.0 + arcs * (1.0 + iterations_of_node(rule, masking) * phi_order));
+  return rule.largest_order * (1.0 + arcs * (2.0 + iterations_of_node(rule, masking) * phi_order));
 }
 
 // The most nodes of an arc; the error estimate shows what that costs.
 double phi_order(const kernel::RuleNode& rule, Masking masking, double arcs) {
   const double of_slope = kMostIterations / rule.largest_order - 1.0;
-  return std::min(rule.largest_order, std::floor((of_slope / arcs - 1.0) / iterations_of_node(rule, masking)));
+  return std::min(rule.largest_order, std::floor((of_slope / arcs - 2.0) / iterations_of_node(rule, masking)));
 }
 
 kernel::ThetaNode theta_node(const MomentsRequest& request, const kernel::RuleNode& rule, double theta_deg,

@@ -147,6 +147,22 @@ Masked unmasked() {
   return masked;
 }
 
+// The part that no slope changes: Smith's L, and l of `integral`.
+Masked looked_up(Group group, real cos_theta, real sin_theta) {
+  Masked heights = unmasked();
+  if (kMasking == DOLP_MASKING_SMITH) {
+    real mu = cos_theta / max(sin_theta, real(1e-30));
+    TableCell cell = table_cell(group.shape[0], mu);
+    real inverse = real(1.0) / max(mu, real(1e-30));
+    for (int g = 0; g < DOLP_GROUP; ++g) heights.value[g] = masking_height(cell, group.table[g]) * inverse;
+  }
+  if (kMasking == DOLP_MASKING_INTEGRAL) {
+    TableCell cell = table_cell(group.shape[0], shadow_cot(cos_theta, sin_theta));
+    for (int g = 0; g < DOLP_GROUP; ++g) heights.value[g] = masking_height(cell, group.table[g]);
+  }
+  return heights;
+}
+
 // A branch is computed and thrown away by devices that run invocations in lockstep; a loop of one turn at most is skipped
 // where none of them needs it, which pays for groups. It counts as an iteration, see host/plan/kernel_data.cpp.
 #if DOLP_GROUP > 1
@@ -154,25 +170,25 @@ Masked unmasked() {
 #else
 #define DOLP_WHERE(condition) if (condition)
 #endif
+// The shadows of a direction on facets of slope t, from what was looked up for it.
+Masked shadows(Group group, Masked heights, real cos_theta, real sin_theta, real t) {
+  ShadowPlace place = shadow_place(group.shape[0], cos_theta, sin_theta, t);
+  Masked masked;
+  for (int g = 0; g < DOLP_GROUP; ++g) masked.value[g] = place.kappa * heights.value[g];
+  DOLP_WHERE(place.is_limited) {
+    TableCell cell = table_cell(group.shape[0], place.far);
+    for (int g = 0; g < DOLP_GROUP; ++g) {
+      masked.value[g] += limited_shadow(group.shape[g], place, cell, group.table[g]);
+    }
+  }
+  return masked;
+}
+
 Masked masked_direction(Group group, real cos_theta, real sin_theta, real t, bool is_needed) {
   Masked masked = unmasked();
-  if (kMasking == DOLP_MASKING_SMITH) {
-    real mu = cos_theta / max(sin_theta, real(1e-30));
-    TableCell cell = table_cell(group.shape[0], mu);
-    real inverse = real(1.0) / max(mu, real(1e-30));
-    for (int g = 0; g < DOLP_GROUP; ++g) masked.value[g] = masking_height(cell, group.table[g]) * inverse;
-  }
+  if (kMasking == DOLP_MASKING_SMITH) masked = looked_up(group, cos_theta, sin_theta);
   if (kMasking == DOLP_MASKING_INTEGRAL) {
-    DOLP_WHERE(is_needed) {
-      ShadowPlace place = shadow_place(group.shape[0], cos_theta, sin_theta, t);
-      for (int g = 0; g < DOLP_GROUP; ++g) masked.value[g] = unlimited_shadow(place, group.table[g]);
-      DOLP_WHERE(place.is_limited) {
-        TableCell cell = table_cell(group.shape[0], place.far);
-        for (int g = 0; g < DOLP_GROUP; ++g) {
-          masked.value[g] += limited_shadow(group.shape[g], place, cell, group.table[g]);
-        }
-      }
-    }
+    DOLP_WHERE(is_needed) masked = shadows(group, looked_up(group, cos_theta, sin_theta), cos_theta, sin_theta, t);
   }
   return masked;
 }
@@ -364,15 +380,16 @@ Arc zone_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, Slice slice, real2
   return arc;
 }
 
-// Integral over the azimuth from 0 to pi at slope t, the facets below the horizon counted in the deficit. Each zone is
+// Integral over the azimuth from 0 to pi at slope t, `at_theta` being looked_up of theta, the facets below the horizon counted in the deficit. Each zone is
 // an arc, or two where total reflection begins in between; their clusters then replace those of zone_arc.
-AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode index, real t,
+AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode index, Masked at_theta, real t,
                          real digits) {
   SplitLines lines = split_lines(theta, index, t);
   Slice slice;
   slice.t = t;
   slice.digits = digits;
-  slice.of_theta = masked_direction(group, theta.c, theta.s, t, true);
+  slice.of_theta = at_theta;
+  if (kMasking == DOLP_MASKING_INTEGRAL) slice.of_theta = shadows(group, at_theta, theta.c, theta.s, t);
   slice.cusp_nodes = real(0.0);
   AzimuthSums sums;
   sums.evaluations = real(0.0);
@@ -394,15 +411,21 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode 
     bool is_second = reflects_totally && (part & 1) == 1;
     real2 from = (zone == 0) ? real2(real(1.0), real(0.0)) : ((zone == 1) ? lines.first : lines.second);
     real2 to = (zone == 0) ? lines.first : ((zone == 1) ? lines.second : lines.horizon);
-    Arc arc;
     if (reflects_totally) {
       real2 middle = clamp_half_angle(lines.critical, from, to);
-      arc = make_root_arc(is_second ? middle : from, is_second ? to : middle, !is_second);
-    } else {
-      arc = zone_arc(rule, theta, group.shape[0], slice, from, to, zone);
-      arc.pole_nodes = pole_nodes(rule, theta, index, slice, cosine(from), cosine(to));
+      from = is_second ? middle : from;
+      to = is_second ? to : middle;
     }
-    add_arc(rule, theta, group, index, slice, arc, zone, sums);
+    DOLP_WHERE(to.y * from.x > to.x * from.y) {  // not empty
+      Arc arc;
+      if (reflects_totally) {
+        arc = make_root_arc(from, to, !is_second);
+      } else {
+        arc = zone_arc(rule, theta, group.shape[0], slice, from, to, zone);
+        arc.pole_nodes = pole_nodes(rule, theta, index, slice, cosine(from), cosine(to));
+      }
+      add_arc(rule, theta, group, index, slice, arc, zone, sums);
+    }
   }
   real below = theta.c * real(4.0) * atan_unit(lines.horizon.x / (real(1.0) + lines.horizon.y));
   real behind = real(2.0) * theta.s * t * lines.horizon.x * lines.horizon.y;

@@ -110,11 +110,13 @@ real4 masking_tails(ShapeNode shape, TableCell cell, uint table) {
 // What 1 - G1(theta, alpha) of a direction and a facet slope t looks up, the same for all tables of one scale.
 struct ShadowPlace {
   real kappa;
-  TableCell near;   // at mu
   bool is_limited;  // d > 0, with
   real far;         // tau_b
   real gap;         // tau_b - mu
 };
+
+// cot(theta), where l is looked up.
+real shadow_cot(real cos_theta, real sin_theta) { return cos_theta / max(sin_theta, real(1e-10)); }
 
 ShadowPlace shadow_place(ShapeNode shape, real cos_theta, real sin_theta, real t) {
   real s = max(sin_theta, real(1e-10));
@@ -124,7 +126,6 @@ ShadowPlace shadow_place(ShapeNode shape, real cos_theta, real sin_theta, real t
   real d = difference - twice_product * t;
   ShadowPlace place;
   place.kappa = s * sqrt(real(1.0) + t * t) / (cos_theta + s * t);
-  place.near = table_cell(shape, mu);
   place.is_limited = d > real(0.0);
   real far = place.is_limited ? (difference * t + twice_product) / d : mu;
   far = min(far, masking_node_tau(shape, kMaskingNodes - 1u));
@@ -133,9 +134,7 @@ ShadowPlace shadow_place(ShapeNode shape, real cos_theta, real sin_theta, real t
   return place;
 }
 
-real unlimited_shadow(ShadowPlace place, uint table) { return place.kappa * masking_height(place.near, table); }
-
-// What the limit b < pi/2 adds to it, `cell` being that of tau_b.
+// What the limit b < pi/2 adds to kappa l(mu), `cell` being that of tau_b.
 real limited_shadow(ShapeNode shape, ShadowPlace place, TableCell cell, uint table) {
   real4 tails = masking_tails(shape, cell, table);
   return tails.z - place.kappa * (tails.x + place.gap * tails.y);
@@ -144,7 +143,7 @@ real limited_shadow(ShapeNode shape, ShadowPlace place, TableCell cell, uint tab
 // 1 - G1(theta, alpha) for the direction (cos_theta, sin_theta) and the facet slope t.
 real shadowed_integral(ShapeNode shape, uint table, real cos_theta, real sin_theta, real t) {
   ShadowPlace place = shadow_place(shape, cos_theta, sin_theta, t);
-  real shadow = unlimited_shadow(place, table);
+  real shadow = place.kappa * masking_height(table_cell(shape, shadow_cot(cos_theta, sin_theta)), table);
   return place.is_limited ? shadow + limited_shadow(shape, place, table_cell(shape, place.far), table) : shadow;
 }
 

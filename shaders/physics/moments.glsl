@@ -75,6 +75,7 @@ SlopeSums piece_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode inde
   }
   sums.evaluations = real(0.0);
   ShapeNode shape = group.shape[0];
+  Masked at_theta = looked_up(group, theta.c, theta.s);
   int first_node = rule_offset(rule, kSectionGauss, piece.order);
   for (int i = 0; i < piece.order; ++i) {
     real4 node = rule_node(first_node + i);
@@ -100,7 +101,7 @@ SlopeSums piece_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode inde
       largest_density = max(largest_density, density[g]);
     }
     real digits = digits_of_slope(rule, theta, shape, piece.digits, piece.order, t, kPi * largest_density * node.y);
-    AzimuthSums term = azimuth_sums(rule, theta, group, index, t, digits);
+    AzimuthSums term = azimuth_sums(rule, theta, group, index, at_theta, t, digits);
     for (int g = 0; g < DOLP_GROUP; ++g) {
       int member = min(g, masked_members() - 1);
       real weight = density[g] * node.y;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "evaluate/moments.hpp"
+#include "evaluate/radiometry/kept_effects.hpp"
 #include "evaluate/radiometry/spectral_rule.hpp"
 #include "evaluate/radiometry/status.hpp"
 #include "scene/scene.hpp"
@@ -58,7 +59,9 @@ struct Scattered {
 /// Source: MODEL.md sections 3 and 4; Wang, Li, Wang 2025, eqs. (16), (18).
 class Radiometry {
  public:
-  explicit Radiometry(const Scene& scene);
+  /// Of what is not kept nothing is added; without the moments the specular part of rho counts as 0, `point` looks at
+  /// none of the numbers in its Moments, and what would need them is NaN. `dropped` widens the error estimates.
+  explicit Radiometry(const Scene& scene, const KeptEffects& kept = {}, const DropBound& dropped = {});
 
   /// The indices at which `point` wants moments, in its order, and their weights.
   const SpectralRule& rule() const { return rule_; }
@@ -86,8 +89,15 @@ class Radiometry {
                        std::span<const OpticalConstants> indices, double cos_theta_i,
                        std::span<const Scattered> scattered) const;
 
-  Scene scene_;
+  PointResult finished(PointResult result) const;
+
+  Scene scene_;  ///< with the surface that the moments' terms see
+  double beam_specular_;
+  KeptEffects kept_;
+  DropBound dropped_;
+  bool knows_rho_;
   SpectralRule rule_;
+  SpectralRule kept_rule_;  ///< without the factors that are not kept
   std::vector<OpticalConstants> indices_;
 };
 

@@ -1,22 +1,16 @@
 // A scene at many entries: which moments are wanted, their evaluation, and the radiometry of each entry.
 #pragma once
 
-#include <optional>
 #include <vector>
 
+#include "effects/effects.hpp"
 #include "evaluate/moments.hpp"
 #include "evaluate/radiometry/radiometry.hpp"
+#include "evaluate/scene_entry.hpp"
 #include "scene/points.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {
-
-/// One point of a table or of a list of points. Without an `index` of its own it has the scene's material.
-struct SceneEntry {
-  double theta_deg = 0.0;
-  SlopeShape shape;
-  std::optional<OpticalConstants> index;
-};
 
 /// The product of the scene's grid axes in C order (theta, sigma, q), q fastest.
 /// Errors: InputError for more than 2^24 entries.
@@ -28,8 +22,13 @@ std::vector<SceneEntry> grid_entries(const Scene& scene);
 /// wavelength; q <= 3/2 with smith masking and the cauchy distribution.
 std::vector<SceneEntry> point_entries(const Scene& scene, const Points& points);
 
-/// Results in the order of `entries`. Progress counts entries.
+/// Results in the order of `entries`, of what the plan keeps; what that does not give is NaN. Progress counts entries.
+/// The evaluator may be null where the plan needs no moments.
 /// Errors: those of the evaluator and of Radiometry.
+std::vector<PointResult> evaluate_scene(const Scene& scene, const std::vector<SceneEntry>& entries,
+                                        const EffectPlan& plan, MomentsEvaluator* evaluator, const Progress& progress);
+
+/// The same with everything kept.
 std::vector<PointResult> evaluate_scene(const Scene& scene, const std::vector<SceneEntry>& entries,
                                         MomentsEvaluator& evaluator, const Progress& progress);
 

@@ -37,6 +37,7 @@ void add_run(CLI::App& command, Options& options) {
       ->capture_default_str();
   command.add_flag("--json", options.json, "machine-readable report");
   command.add_flag("--quiet", options.quiet, "no summary and no progress bar");
+  command.add_flag("--keep-all", options.keep_all, "compute every effect that the scene has, however little it counts");
   command.add_flag("--strict", options.strict, "exit 1 if any entry misses its tolerance");
 }
 
@@ -69,6 +70,7 @@ int run(CLI::App& app, Options& options) {
   const auto given = [&app](const char* name) { return app.got_subcommand(name); };
   if (given("table")) return run_table(options);
   if (given("eval")) return run_eval(options);
+  if (given("plan")) return run_plan(options);
   if (given("verify")) return run_verify(options);
   return run_devices(options);
 }
@@ -92,6 +94,11 @@ int parse_and_run(int argc, char** argv) {
   add_run(*eval, options);
   eval->add_option("--points", options.points_path, "CSV with any of theta_deg, sigma, q, n, k; - is stdin")
       ->required();
+  CLI::App* plan = app.add_subcommand("plan", "what a table would compute and leave out, why, and what it would cost");
+  add_scene(*plan, options);
+  plan->add_option("--device", options.device, "Vulkan device: its position or a part of its name");
+  plan->add_flag("--keep-all", options.keep_all, "as in dolp table: drop nothing");
+  plan->add_flag("--json", options.json, "machine-readable plan");
   add_verify(*app.add_subcommand("verify", "recompute entries of a table, or examine a device"), options);
   CLI::App* devices = app.add_subcommand("devices", "Vulkan devices, and why each one is or is not usable");
   devices->add_flag("--json", options.json, "machine-readable list");

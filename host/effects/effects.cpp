@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <ranges>
 
 #include "evaluate/radiometry/spectral_rule.hpp"
@@ -27,6 +26,8 @@ DropBound worst_bound(const InfluenceBounds& bounds, Part part, const KeptEffect
   DropBound worst;
   for (const SceneEntry& entry : entries | std::views::reverse) {
     worst = worst_of(worst, bounds.bound(part, kept, entry));
+    // What counts in the whole scene is not dropped for want of what it acts on.
+    if (part != Part::kMoments) worst = worst_of(worst, bounds.bound(part, {}, entry));
     if (!is_within(worst, limit)) return worst;
   }
   return worst;
@@ -54,6 +55,10 @@ bool is_bistatic(const Scene& scene) { return scene.geometry.mode == Mode::kBist
 
 bool is_fresnel(const Scene& scene) { return scene.emission && scene.emission->model == EmissionModel::kFresnel; }
 
+bool needs_beams(const Scene& scene, const InfluenceBounds& bounds, const KeptEffects& kept) {
+  return is_bistatic(scene) && kept.source && !bounds.adds_nothing(Part::kSource, kept) && scene.surface.specular > 0.0;
+}
+
 const DroppedPart* find_dropped(const EffectPlan& plan, Part part) {
   const auto found = std::ranges::find(plan.dropped, part, &DroppedPart::part);
   return found == plan.dropped.end() ? nullptr : &*found;
@@ -74,7 +79,7 @@ std::string why_no_moments(const Scene& scene, const KeptEffects& kept) {
   return "no emission and no surroundings: f in the one direction is enough";
 }
 
-EffectRow absent(const char* name, std::string why) { return {name, EffectState::kAbsent, std::move(why), {}, {}, {}}; }
+EffectRow absent(const char* name, std::string why) { return {name, EffectState::kAbsent, std::move(why)}; }
 
 /// A part as it stands in the plan; `kept` says why and what for.
 EffectRow part_row(const Scene& scene, const EffectPlan& plan, const char* name, Part part, EffectRow row) {
@@ -124,11 +129,10 @@ EffectRow model_row(const Scene& scene, const EffectPlan& plan, const char* name
   });
   if (all_mirrors) return absent(name, "sigma is 0 everywhere: a mirror");
   if (scene.surface.specular == 0.0) return absent(name, "surface.specular is 0");
-  EffectRow row{name, EffectState::kKept, choice + ", a choice of the model: never swapped", {}, {}, {}};
+  EffectRow row{name, EffectState::kKept, choice + ", a choice of the model: never swapped"};
   if (plan.needs_moments || plan.needs_beams) return row;
-  row.state = EffectState::kDropped;
-  row.bound = 0.0;
-  row.reason = choice + ": not needed without the specular part";
+  row.state = EffectState::kNotNeeded;
+  row.reason = choice + ": nothing depends on it without the specular part";
   return row;
 }
 
@@ -138,11 +142,10 @@ EffectRow complex_index_row(const Scene& scene, const EffectPlan& plan, std::spa
   const auto is_complex = [](const OpticalConstants& index) { return index.k > 0.0; };
   const bool own = std::ranges::any_of(entries, [&](const SceneEntry& e) { return e.index && is_complex(*e.index); });
   if (!own && std::ranges::none_of(indices, is_complex)) return absent(kName, "k is 0");
-  EffectRow row{kName, EffectState::kKept, "costs nothing: the kernel treats real indices alike", {}, {}, {}};
+  EffectRow row{kName, EffectState::kKept, "costs nothing: the kernel treats real indices alike"};
   const bool is_used = plan.needs_moments || plan.needs_beams || (is_fresnel(scene) && plan.kept.emission);
   if (is_used) return row;
-  row.state = EffectState::kDropped;
-  row.bound = 0.0;
+  row.state = EffectState::kNotNeeded;
   row.reason = "nothing depends on the index";
   return row;
 }
@@ -150,7 +153,7 @@ EffectRow complex_index_row(const Scene& scene, const EffectPlan& plan, std::spa
 EffectRow emission_row(const Scene& scene, const EffectPlan& plan) {
   constexpr const char* kName = "emission";
   if (!scene.emission) return absent(kName, "no [emission]");
-  EffectRow row{kName, EffectState::kKept, {}, {}, {}, {}};
+  EffectRow row{kName, EffectState::kKept};
   row.reason = fmt::format("{:g} K, {}", scene.emission->temperature_K,
                            is_fresnel(scene) ? "of the smooth surface" : "1 - rho of the surface (Kirchhoff)");
   row.needs = is_fresnel(scene) || !plan.needs_moments ? "closed form" : moments_needs(scene);
@@ -160,7 +163,7 @@ EffectRow emission_row(const Scene& scene, const EffectPlan& plan) {
 EffectRow source_row(const Scene& scene, const EffectPlan& plan) {
   constexpr const char* kName = "source";
   if (!scene.source) return absent(kName, "no [source]");
-  EffectRow row{kName, EffectState::kKept, {}, {}, {}, {}};
+  EffectRow row{kName, EffectState::kKept};
   row.reason = is_bistatic(scene) ? "one beam, one direction of view" : "a beam, reflected into the view";
   row.needs = is_bistatic(scene) ? (plan.needs_beams ? "f at each theta" : "closed form") : moments_needs(scene);
   if (!is_bistatic(scene) && !plan.needs_moments) row.needs = "closed form";
@@ -170,7 +173,7 @@ EffectRow source_row(const Scene& scene, const EffectPlan& plan) {
 EffectRow surroundings_row(const Scene& scene, const EffectPlan& plan) {
   constexpr const char* kName = "surroundings";
   if (!scene.surroundings) return absent(kName, "no [surroundings]");
-  EffectRow row{kName, EffectState::kKept, {}, {}, {}, {}};
+  EffectRow row{kName, EffectState::kKept};
   row.reason = fmt::format("{:g} K, reflected into the view", scene.surroundings->temperature_K);
   row.needs = plan.needs_moments ? moments_needs(scene) : "closed form";
   return part_row(scene, plan, kName, Part::kSurroundings, row);
@@ -179,7 +182,7 @@ EffectRow surroundings_row(const Scene& scene, const EffectPlan& plan) {
 EffectRow path_row(const Scene& scene, const EffectPlan& plan) {
   constexpr const char* kName = "path";
   if (!scene.path) return absent(kName, "no [path]");
-  EffectRow row{kName, EffectState::kKept, {}, "closed form", {}, {}};
+  EffectRow row{kName, EffectState::kKept, {}, "closed form"};
   if (!is_asked_for(scene, Part::kPathRadiance)) {
     row.reason = "its transmittance alone, which DOLP does not see";
     row.bound = 0.0;
@@ -194,7 +197,7 @@ EffectRow path_row(const Scene& scene, const EffectPlan& plan) {
 EffectRow diffuse_row(const Scene& scene, const EffectPlan& plan) {
   constexpr const char* kName = "diffuse";
   if (scene.surface.diffuse == 0.0) return absent(kName, "surface.diffuse is 0");
-  EffectRow row{kName, EffectState::kKept, "adds to rho_I", "closed form", {}, {}};
+  EffectRow row{kName, EffectState::kKept, "adds to rho_I", "closed form"};
   return part_row(scene, plan, kName, Part::kDiffuse, row);
 }
 
@@ -202,7 +205,7 @@ EffectRow band_row(const Scene& scene) {
   constexpr const char* kName = "band";
   if (!scene.spectrum.is_band()) return absent(kName, "a single wavelength");
   const std::size_t count = spectral_rule(scene).samples.size();
-  EffectRow row{kName, EffectState::kKept, {}, {}, {}, {}};
+  EffectRow row{kName, EffectState::kKept};
   row.reason = fmt::format("{:g}..{:g} um", scene.spectrum.min_um, scene.spectrum.max_um);
   row.needs = count == 1 ? "one index for the whole band" : fmt::format("{} spectral samples", count);
   return row;
@@ -241,12 +244,17 @@ EffectPlan plan_effects(const Scene& scene, std::span<const SceneEntry> entries,
       if (is_asked_for(scene, part)) plan.dropped.push_back({part, bound});
     }
   }
-  const bool has_source =
-      plan.kept.source && std::ranges::any_of(rule.samples, [](const SpectralSample& s) { return s.irradiance != 0.0; });
   plan.needs_moments = plan.kept.moments;
-  plan.needs_beams = is_bistatic(scene) && has_source && scene.surface.specular > 0.0;
+  plan.needs_beams = needs_beams(scene, bounds, plan.kept);
   plan.gives_rho = plan.needs_moments || scene.surface.specular == 0.0;
   return plan;
+}
+
+Needs needs_without(const Scene& scene, const EffectPlan& plan, Part part) {
+  const InfluenceBounds bounds(scene, spectral_rule(scene));
+  const KeptEffects kept = without(plan.kept, part);
+  return {kept.moments && !bounds.adds_nothing(Part::kMoments, kept),
+          part != Part::kMoments && needs_beams(scene, bounds, kept)};
 }
 
 std::vector<EffectRow> effect_rows(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan) {
@@ -265,15 +273,19 @@ std::vector<EffectRow> effect_rows(const Scene& scene, std::span<const SceneEntr
 void add_influences(std::vector<EffectRow>& rows, const Scene& scene, std::span<const SceneEntry> entries) {
   const SpectralRule rule = spectral_rule(scene);
   const InfluenceBounds bounds(scene, rule);
-  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
   for (EffectRow& row : rows) {
     if (row.state != EffectState::kKept || !row.part || row.bound) continue;
-    row.bound = worst_bound(bounds, *row.part, {}, entries, kNoLimit).dolp;
+    row.bound = 0.0;
+    for (const SceneEntry& entry : entries) {
+      const double bound = bounds.bound(*row.part, {}, entry).dolp;
+      if (std::isinf(bound)) ++row.unbounded;
+      if (!std::isinf(bound)) row.bound = std::max(*row.bound, bound);
+    }
   }
 }
 
 const char* name_of(EffectState state) {
-  constexpr std::array kNames = {"absent", "kept", "dropped"};
+  constexpr std::array kNames = {"absent", "kept", "dropped", "not_needed"};
   return kNames[static_cast<std::size_t>(state)];
 }
 

@@ -38,7 +38,8 @@ struct EffectPlan {
 ///
 /// A part goes, in the order of Part and the moments once more at the end, if the bound of InfluenceBounds, worst entry,
 /// leaves the sum of all that is dropped at kDroppedShare of the tolerance or below; each bound is that of the scene
-/// without what was dropped before, so that the sum bounds the whole change. A part that adds exactly nothing goes at
+/// without what was dropped before, so that the sum bounds the whole change; but for the moments a part's bound in the whole
+/// scene counts too. A part that adds exactly nothing goes at
 /// no cost: the moments where emission and surroundings have one temperature, for instance. Model choices (distribution,
 /// masking, k) never go. `keep_all` keeps everything that the scene has. Host only: some microseconds an entry and part, none
 /// where the last entries tell that a part counts.
@@ -47,22 +48,37 @@ EffectPlan plan_effects(const Scene& scene, std::span<const SceneEntry> entries,
 /// Nothing left out: what `plan_effects` says with `keep_all`.
 inline EffectPlan keep_everything(const Scene& scene) { return plan_effects(scene, {}, true); }
 
-enum class EffectState { kAbsent, kKept, kDropped };
+/// What a run has to compute.
+struct Needs {
+  bool moments = false;
+  bool beams = false;
+};
+
+/// What the run would have to compute if one more part were not there.
+Needs needs_without(const Scene& scene, const EffectPlan& plan, Part part);
+
+enum class EffectState {
+  kAbsent,     ///< the scene does not ask for it
+  kKept,       ///< computed
+  kDropped,    ///< left out: a bound says that it cannot be seen
+  kNotNeeded,  ///< a choice of the model that nothing kept depends on
+};
 
 /// One effect for a reader.
 struct EffectRow {
-  const char* name;
+  const char* name = "";
   EffectState state = EffectState::kKept;
-  std::string reason;
-  std::string needs;             ///< what computing it takes; empty when it is not kept
-  std::optional<double> bound;   ///< of its influence on (Q/I, U/I); of a dropped one, what dropping it changes
-  std::optional<Part> part;      ///< what the sums lose with it; none for model choices
+  std::string reason = {};
+  std::string needs = {};        ///< what computing it takes; empty when it is not kept
+  std::optional<double> bound = {};  ///< of its influence on (Q/I, U/I); of a dropped one, what dropping it changes
+  std::optional<Part> part = {};     ///< what the sums lose with it; none for model choices
+  std::size_t unbounded = 0;     ///< entries without a bound, which `bound` leaves out
 };
 
 /// All effects that there are, in the order of the scene file.
 std::vector<EffectRow> effect_rows(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan);
 
-/// Bounds of what each kept part changes in the scene with everything kept, worst entry. Infinite where none is known.
+/// Bounds of what each kept part changes in the scene with everything kept, worst entry of those that have one.
 void add_influences(std::vector<EffectRow>& rows, const Scene& scene, std::span<const SceneEntry> entries);
 
 const char* name_of(EffectState state);

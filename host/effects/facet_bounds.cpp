@@ -154,7 +154,7 @@ ReflectanceBounds reflectance_bounds(const Surface& surface, double theta_deg, c
   const bool conserves = keeps_energy(surface.masking);
   if (a.cos == 0.0) {
     const double most = conserves ? 1.0 : kInfinity;
-    return {most, 0.5 * most, most, 0.0};
+    return {most, 0.5 * most, 0.0};
   }
   std::array<Shell, kShells> shells = shells_of(surface, a, shape, indices);
   std::ranges::sort(shells, std::ranges::greater{}, &Shell::r_s);
@@ -164,10 +164,10 @@ ReflectanceBounds reflectance_bounds(const Surface& surface, double theta_deg, c
   for (const Shell& shell : shells) {
     const double albedo = std::min(shell.albedo, room);
     room -= albedo;
-    bounds.most_albedo += albedo / a.cos;
     reflected += albedo * shell.r_s / a.cos;
   }
   bounds.most_i = reflected * (1.0 + kRounding);
+  if (conserves) bounds.most_i = std::min(bounds.most_i, 1.0);
   bounds.most_q = 0.5 * bounds.most_i;
   bounds.least_i = 0.5 * least_normal_reflectance(indices) * least_albedo(surface, a, shape) / a.cos;
   return bounds;

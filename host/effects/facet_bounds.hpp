@@ -10,10 +10,9 @@ namespace dolp {
 
 /// Bounds of the specular reflectance in one direction, k_s = 1; infinite where there is none.
 struct ReflectanceBounds {
-  double most_i = 0.0;       ///< of rho_I
-  double most_q = 0.0;       ///< of |rho_Q|
-  double most_albedo = 0.0;  ///< of A, which bounds rho_s and rho_p too
-  double least_i = 0.0;      ///< of rho_I, from below
+  double most_i = 0.0;   ///< of rho_s, hence of rho_I and rho_p
+  double most_q = 0.0;   ///< of |rho_Q|
+  double least_i = 0.0;  ///< of rho_I, from below
 };
 
 /// Bounds that hold for each of the indices, so for every mean over them.
@@ -22,7 +21,7 @@ struct ReflectanceBounds {
 /// 2 * integral of e G M over the azimuths whose ray leaves, G <= 1, and e <= max(c + s t cos(phi), 0), whose azimuthal
 /// mean g(t) is c up to s t = c and (c acos(-z) + s t sqrt(1 - z^2)) / pi, z = c / (s t), beyond, and grows with t. On a
 /// shell of slopes [t0, t1] the integral with M = 1 is so at most (its share of the facets) * g(t1). No ray leaves beyond
-/// the horizon t = (1 + s) / c. There M00 <= R_s and |M01| <= R_s / 2, because 0 <= R_p <= R_s, and R_s falls with
+/// the horizon t = (1 + s) / c. There M00 + M01 <= R_s and |M01| <= R_s / 2, because 0 <= R_p <= R_s, and R_s falls with
 /// cos(beta), which is at least cos(theta + alpha1), and more than c sqrt(1 + t0^2) / 2 for a ray that leaves (0 <
 /// cos(theta_r) = 2 cos(alpha) cos(beta) - c). v-cavity and smith keep A <= 1: the shells are then filled from the
 /// best reflecting one down to a sum of 1, and e G <= 2 c with v-cavity. none and `integral` have no such end.

@@ -90,7 +90,7 @@ InfluenceBounds::AtEntry InfluenceBounds::at_entry(const KeptEffects& kept, cons
   const std::vector<OpticalConstants> own = entry.index ? std::vector{*entry.index} : indices_;
   AtEntry at;
   at.specular = reflectance_bounds(surface, theta_deg, entry.shape, own);
-  for (double* value : {&at.specular.most_i, &at.specular.most_q, &at.specular.most_albedo, &at.specular.least_i}) {
+  for (double* value : {&at.specular.most_i, &at.specular.most_q, &at.specular.least_i}) {
     *value = surface.specular == 0.0 ? 0.0 : *value * surface.specular;
   }
   if (!kept.moments) at.specular = {};
@@ -145,7 +145,7 @@ InfluenceBounds::Sums InfluenceBounds::sums(const KeptEffects& kept, const AtEnt
     const bool is_colder = surroundings < total_.emitted;
     sum.least_i += total_.emitted + (gap == 0.0 ? 0.0 : is_colder ? -gap * most : gap * least);
     sum.most_qu += gap == 0.0 ? 0.0 : gap * at.specular.most_q;
-    sum.is_physical &= gap == 0.0 || at.specular.most_albedo + at.diffuse <= 1.0;
+    sum.is_physical &= gap == 0.0 || most <= 1.0;
   } else {
     sum.least_i += surroundings * least;
     sum.most_qu += surroundings * at.specular.most_q;

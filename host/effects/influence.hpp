@@ -29,7 +29,7 @@ KeptEffects without(KeptEffects kept, Part part);
 /// surroundings have one temperature and no source shines into the hemisphere. With the fresnel emission they weigh
 /// S + X, and E times the smooth surface's emissivity stands in place of E - E rho. In bistatic mode the beam and its
 /// diffuse part add to I, and the beam's length to (Q, U). A path multiplies all by its transmittance and adds to I.
-/// |q| <= 1 where k_s A + d <= 1, as then every part has a degree of polarisation of at most 1. All Stokes parameters
+/// |q| <= 1 where most <= 1, which bounds rho_s and rho_p: then every part has a degree of polarisation of at most 1. All Stokes parameters
 /// are in the units of the exitances, bistatic ones times pi. Sums over a band are those of the spectral rule's samples.
 class InfluenceBounds {
  public:
@@ -39,6 +39,9 @@ class InfluenceBounds {
   /// where the part adds nothing.
   DropBound bound(Part part, const KeptEffects& kept, const SceneEntry& entry) const;
 
+  /// Whether a part adds exactly nothing, at any entry.
+  bool adds_nothing(Part part, const KeptEffects& kept) const;
+
  private:
   struct Sums;
   struct AtEntry;
@@ -46,8 +49,6 @@ class InfluenceBounds {
   double weight(const KeptEffects& kept) const;
   Sums sums(const KeptEffects& kept, const AtEntry& at) const;
   Sums added_by(Part part, const KeptEffects& kept, const AtEntry& at) const;
-  bool adds_nothing(Part part, const KeptEffects& kept) const;
-
   const Scene& scene_;
   std::vector<OpticalConstants> indices_;
   SpectralSample total_;  ///< sums of the samples' factors, of their sizes but for what is emitted

@@ -174,20 +174,26 @@ std::vector<PointResult> evaluated_block(const SceneRun& run, std::span<const Sc
 
 }  // namespace
 
+std::vector<std::span<const SceneEntry>> run_blocks(std::span<const SceneEntry> entries, std::size_t spectral_samples) {
+  const std::size_t block_size = std::max<std::size_t>(1, kMomentsAtOnce / spectral_samples);
+  std::vector<std::span<const SceneEntry>> blocks;
+  for (std::size_t first = 0; first < entries.size(); first += block_size) {
+    blocks.push_back(entries.subspan(first, std::min(block_size, entries.size() - first)));
+  }
+  return blocks;
+}
+
 std::vector<PointResult> evaluate_scene(const Scene& scene, const std::vector<SceneEntry>& entries,
                                         const EffectPlan& plan, MomentsEvaluator* evaluator, const Progress& progress) {
   const Radiometry radiometry(scene, plan.kept, plan.bound);
   const SceneRun run{scene, plan, radiometry};
-  const std::size_t block_size = std::max<std::size_t>(1, kMomentsAtOnce / radiometry.rule().indices().size());
   std::vector<PointResult> results;
   results.reserve(entries.size());
-  for (std::size_t first = 0; first < entries.size(); first += block_size) {
-    const std::size_t count = std::min(block_size, entries.size() - first);
-    const std::span<const SceneEntry> of_block(entries.data() + first, count);
+  for (const std::span<const SceneEntry> block : run_blocks(entries, radiometry.rule().samples.size())) {
     const Progress block_progress = [&](std::size_t done, std::size_t total) {
-      return !progress || progress(first + count * done / total, entries.size());
+      return !progress || progress(results.size() + block.size() * done / total, entries.size());
     };
-    std::vector<PointResult> of_results = evaluated_block(run, of_block, evaluator, block_progress);
+    std::vector<PointResult> of_results = evaluated_block(run, block, evaluator, block_progress);
     results.insert(results.end(), of_results.begin(), of_results.end());
   }
   return results;

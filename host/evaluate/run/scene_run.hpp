@@ -1,6 +1,7 @@
 // A scene at many entries: which moments are wanted, their evaluation, and the radiometry of each entry.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "effects/effects.hpp"
@@ -21,6 +22,9 @@ std::vector<SceneEntry> grid_entries(const Scene& scene);
 /// the points nor a single value in the grid; n without k, or k without n, beside a material that depends on the
 /// wavelength; q <= 3/2 with smith masking and the cauchy distribution.
 std::vector<SceneEntry> point_entries(const Scene& scene, const Points& points);
+
+/// How a run cuts its entries, which bounds its memory: consecutive blocks, each with requests of its own.
+std::vector<std::span<const SceneEntry>> run_blocks(std::span<const SceneEntry> entries, std::size_t spectral_samples);
 
 /// Results in the order of `entries`, of what the plan keeps; what that does not give is NaN. Progress counts entries.
 /// The evaluator may be null where the plan needs no moments.

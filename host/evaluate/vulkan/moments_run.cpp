@@ -26,19 +26,13 @@ MomentsRun::MomentsRun(const RunContext& context, const MomentsRequest& request,
 }
 
 TileSizes MomentsRun::sizes(std::uint32_t tile_entries, std::uint32_t block_shapes) const {
-  const Packing& packing = context_.packing;
   const VkPhysicalDeviceLimits& limits = context_.device.limits();
-  const TileCosts costs{
-      .entry_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
-                     packing.node_bytes<kernel::IndexNode>() + packing.node_bytes<kernel::MomentsNode>(),
-      .shape_bytes =
-          packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>()};
   return tile_sizes({.buffer_bytes = limits.maxStorageBufferRange,
                      .heap_bytes = context_.device.heap_bytes(),
                      .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
                      .tile_entries = std::min<std::uint64_t>(tile_entries, data_.entries.size()),
                      .block_shapes = std::min<std::uint64_t>(block_shapes, data_.shapes.size())},
-                    costs);
+                    tile_costs(context_.packing));
 }
 
 void MomentsRun::create_buffers() {

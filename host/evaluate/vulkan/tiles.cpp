@@ -1,6 +1,7 @@
 #include "evaluate/vulkan/tiles.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 
 namespace dolp::vulkan {
@@ -19,6 +20,15 @@ TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs) {
   const std::uint64_t bytes = std::min(limits.buffer_bytes, limits.heap_bytes / kHeapFraction);
   return {.entries = at_least_one(std::min({bytes / costs.entry_bytes, limits.dispatch_count, limits.tile_entries})),
           .shapes = at_least_one(std::min({bytes / costs.shape_bytes, limits.dispatch_count, limits.block_shapes}))};
+}
+
+TileCosts tile_costs(const Packing& packing) {
+  using EntryWords = std::array<std::uint32_t, 4>;
+  using MaskingNode = std::array<double, 4>;
+  return {.entry_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
+                         packing.node_bytes<kernel::IndexNode>() + packing.node_bytes<kernel::MomentsNode>(),
+          .shape_bytes =
+              packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>()};
 }
 
 std::vector<Block> blocks_of(std::span<const MomentsEntry> entries, std::size_t shape_count,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "evaluate/moments.hpp"
+#include "evaluate/vulkan/packing.hpp"
 
 namespace dolp::vulkan {
 
@@ -33,6 +34,9 @@ struct TileSizes {
 
 /// The largest sizes within the limits; tiles and masking tables take at most an eighth of the heap each.
 TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs);
+
+/// Bytes of an entry and a shape in a precision.
+TileCosts tile_costs(const Packing& packing);
 
 /// Shapes whose masking tables are bound together, and the entries that need them, by their positions in the request.
 struct Block {

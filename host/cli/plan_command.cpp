@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/commands.hpp"
+#include "cli/plan_report.hpp"
+#include "error.hpp"
+#include "evaluate/run/scene_run.hpp"
+#include "plan/kernel_data.hpp"
+#include "verify/stored_cases.hpp"
+
+namespace dolp::cli {
+namespace {
+
+/// The device that a run would take; without one, limits that every device keeps.
+DeviceDescription device_of(const Options& options, const Scene& scene, PlanReport& report) {
+  const bool in_double = scene.accuracy.precision == Precision::kDouble;
+  const DeviceList list = list_devices();
+  try {
+    if (list.devices.empty()) throw DeviceError(list.why_empty);
+    const DeviceDescription& device = list.devices[choose_device(list.devices, options.device, in_double)];
+    report.device = device.name;
+    return device;
+  } catch (const DeviceError& error) {
+    if (!options.device.empty()) throw;
+    report.why_no_device = error.what();
+    DeviceDescription least = least_device();
+    least.float64 = true;
+    return least;
+  }
+}
+
+void add_request(PlanReport& report, const MomentsRequest& request, const DeviceDescription& device) {
+  if (request.entries.empty()) return;
+  const DispatchPlan of_request = dispatch_plan(request, device);
+  report.dispatches.dispatches += of_request.dispatches;
+  report.dispatches.tile_entries = std::max(report.dispatches.tile_entries, of_request.tile_entries);
+  report.dispatches.block_shapes = std::max(report.dispatches.block_shapes, of_request.block_shapes);
+  report.dispatches.device_bytes = std::max(report.dispatches.device_bytes, of_request.device_bytes);
+  const KernelData data = kernel_data(request);
+  KernelPlan& kernel = report.kernel ? *report.kernel : report.kernel.emplace();
+  kernel.digits = data.rule.digits;
+  for (const kernel::ThetaNode& node : data.thetas) {
+    kernel.most_slope_nodes = std::max(kernel.most_slope_nodes, static_cast<int>(node.order_limit_t));
+    kernel.most_azimuth_nodes = std::max(kernel.most_azimuth_nodes, static_cast<int>(node.order_limit_phi));
+  }
+  const char* precision = request.precision == Precision::kDouble ? "double" : "float";
+  const std::string constants =
+      fmt::format("{}: distribution {}, masking {}", precision, name_of(request.distribution), name_of(request.masking));
+  kernel.pipelines = {"moments, " + constants};
+  if (data.needs_masking_table()) kernel.pipelines.push_back("masking_table, " + constants);
+}
+
+/// For each effect the share of the evaluations that would not be made without it.
+std::vector<double> work_shares(const PlanReport& report) {
+  const double moments = report.run.first_evaluations + report.run.again_evaluations;
+  const double beams = static_cast<double>(report.run.beams);
+  std::vector<double> shares;
+  for (const EffectRow& row : report.effects) {
+    double saved = 0.0;
+    if (row.part && row.state == EffectState::kKept) {
+      const Needs left = needs_without(report.scene, report.plan, *row.part);
+      saved = (left.moments ? 0.0 : moments) + (left.beams ? 0.0 : beams);
+    }
+    shares.push_back(saved > 0.0 ? saved / (moments + beams) : 0.0);
+  }
+  return shares;
+}
+
+}  // namespace
+
+int run_plan(const Options& options) {
+  PlanReport report;
+  report.scene = load_scene(options);
+  const std::vector<SceneEntry> entries = grid_entries(report.scene);
+  report.plan = plan_effects(report.scene, entries, options.keep_all);
+  report.effects = effect_rows(report.scene, entries, report.plan);
+  add_influences(report.effects, report.scene, entries);
+  const DeviceDescription device = device_of(options, report.scene, report);
+  report.run = predict_run(report.scene, entries, report.plan, device.float64,
+                           [&](const MomentsRequest& request) { add_request(report, request, device); });
+  report.work_shares = work_shares(report);
+  if (options.json) {
+    fmt::print("{}\n", plan_json(report).dump(2));
+  } else {
+    fmt::print("{}", plan_text(report));
+  }
+  return kExitDone;
+}
+
+}  // namespace dolp::cli

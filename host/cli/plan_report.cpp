@@ -1,0 +1,188 @@
+#include "cli/plan_report.hpp"
+
+#include <fmt/format.h>
+
+#include "cli/report.hpp"
+
+namespace dolp::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kMebibyte = 1048576.0;
+constexpr double kPoints = 100.0;  // of DOLP
+constexpr double kMostPoints = 200.0;  // from all s to all p; what a bound beyond says is nothing
+
+std::string state_text(EffectState state) {
+  return state == EffectState::kNotNeeded ? "not needed" : name_of(state);
+}
+
+std::string influence_text(const EffectRow& row) {
+  if (!row.bound) return "-";
+  const char* mark = row.unbounded > 0 ? " *" : "";
+  const double points = kPoints * *row.bound;
+  if (points == 0.0 && row.unbounded == 0) return "0";
+  if (points >= kMostPoints) return fmt::format("> {:g}{}", kMostPoints, mark);
+  return points >= 10.0 ? fmt::format("<= {:.0f}{}", points, mark) : fmt::format("<= {:.2g}{}", points, mark);
+}
+
+std::string work_text(const EffectRow& row, double share) {
+  if (!row.part || row.state != EffectState::kKept) return "-";
+  return share == 0.0 ? "0 %" : fmt::format("{:.3g} %", kPoints * share);
+}
+
+std::string effect_line(const EffectRow& row, double share) {
+  const std::string needs = row.needs.empty() ? "" : fmt::format(" [{}]", row.needs);
+  return fmt::format("  {:<14} {:<11} {:>11} {:>7}  {}{}\n", row.name, state_text(row.state), influence_text(row),
+                     work_text(row, share), row.reason, needs);
+}
+
+std::string effects_table(const PlanReport& report) {
+  std::string text =
+      fmt::format("  {:<14} {:<11} {:>11} {:>7}  {}\n", "effect", "plan", "influence", "work", "why [what it takes]");
+  for (std::size_t i = 0; i < report.effects.size(); ++i) {
+    text += effect_line(report.effects[i], report.work_shares[i]);
+  }
+  text += "  influence: bound of the change of (Q/I, U/I) without the effect, in points of DOLP (0.01), worst entry\n";
+  for (const EffectRow& row : report.effects) {
+    if (row.unbounded == 0) continue;
+    text += fmt::format("  *: none is known for {} of {} entries, so that nothing marked can be dropped\n", row.unbounded,
+                        report.run.entries);
+    break;
+  }
+  text += "  work: share of the evaluations that would go with the effect; those that share theirs have none alone\n";
+  return text;
+}
+
+std::string dropped_text(const PlanReport& report) {
+  const double tolerance = report.scene.accuracy.tolerance;
+  if (report.plan.keep_all) return "  dropped     nothing (--keep-all)\n";
+  if (report.plan.dropped.empty() && report.plan.needs_moments) {
+    return fmt::format("  dropped     nothing: every bound exceeds {:g}, {:g} of the tolerance {:g}\n",
+                       kDroppedShare * tolerance, kDroppedShare, tolerance);
+  }
+  return fmt::format("  dropped     changes DOLP by {:.2g} at most in all; {:g}, {:g} of the tolerance {:g}, is allowed\n",
+                     report.plan.bound.dolp, kDroppedShare * tolerance, kDroppedShare, tolerance);
+}
+
+std::string output_text(const PlanReport& report) {
+  if (!report.plan.gives_rho) return "  output      Stokes parameters, DOLP; without rho_i, rho_q and albedo\n";
+  if (!report.plan.needs_moments) return "  output      Stokes parameters, DOLP, rho; without albedo\n";
+  return "  output      Stokes parameters, DOLP, rho, albedo\n";
+}
+
+std::string precision_name(Precision precision) { return precision == Precision::kDouble ? "double" : "float"; }
+
+std::string work_lines(const PlanReport& report) {
+  const RunPrediction& run = report.run;
+  std::string text;
+  const std::string how = run.is_exact ? "counted" : fmt::format("estimated from {} entries", kCountedEntries);
+  text += fmt::format("  attempts    first: {} at tolerance {:g}, {} moments; {:.3g} % of them again, tighter\n",
+                      precision_name(run.first.precision), run.first.tolerance, run.moments, kPoints * run.again_share);
+  text += fmt::format("  work        {:.4g} integrand evaluations in the first attempt ({}), {:.2g} in others\n",
+                      run.first_evaluations, how, run.again_evaluations);
+  return text;
+}
+
+std::string kernel_lines(const PlanReport& report) {
+  const KernelPlan& kernel = *report.kernel;
+  std::string text;
+  for (const std::string& pipeline : kernel.pipelines) text += fmt::format("  pipeline    {}\n", pipeline);
+  text += fmt::format(
+      "  rule        Gauss rules on smooth pieces, {:.3g} digits; at most {} nodes a piece of slopes, {} an arc of "
+      "azimuth\n",
+      kernel.digits, kernel.most_slope_nodes, kernel.most_azimuth_nodes);
+  text += work_lines(report);
+  const std::string device =
+      report.device.empty() ? "limits of any Vulkan device; none here: " + report.why_no_device : report.device;
+  text += fmt::format("  dispatches  {} in the first attempt, at most {} entries and {} shapes at a time ({})\n",
+                      report.dispatches.dispatches, report.dispatches.tile_entries, report.dispatches.block_shapes,
+                      device);
+  return text;
+}
+
+std::optional<double> estimated_s(const RunPrediction& run) {
+  if (run.counted_evaluations == 0.0) return std::nullopt;
+  return run.counted_s / run.counted_evaluations * (run.first_evaluations + run.again_evaluations);
+}
+
+std::string cost_lines(const PlanReport& report) {
+  std::string text = report.kernel ? kernel_lines(report) : "  work        no integrand evaluations: no device is used\n";
+  if (report.run.beams > 0) text += fmt::format("  beams       {} values of f, on the CPU\n", report.run.beams);
+  text += fmt::format("  memory      {:.3g} MiB of the host, {:.3g} MiB of the device\n",
+                      report.run.host_bytes / kMebibyte, static_cast<double>(report.dispatches.device_bytes) / kMebibyte);
+  if (const std::optional<double> seconds = estimated_s(report.run)) {
+    text += fmt::format(
+        "  time        estimate: {:.2g} s of integration with --evaluator cpu, from counting here; no device is timed\n",
+        *seconds);
+  }
+  return text;
+}
+
+Json rows_json(const PlanReport& report) {
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < report.effects.size(); ++i) {
+    const EffectRow& row = report.effects[i];
+    rows.push_back({{"name", row.name},
+                    {"asked_for", row.state != EffectState::kAbsent},
+                    {"state", name_of(row.state)},
+                    {"reason", row.reason},
+                    {"needs", row.needs},
+                    {"bound", row.bound ? Json(*row.bound) : Json(nullptr)},
+                    {"entries_without_bound", row.unbounded},
+                    {"work_share", report.work_shares[i]}});
+  }
+  return rows;
+}
+
+Json kernel_json(const KernelPlan& kernel) {
+  return {{"digits", kernel.digits},
+          {"most_slope_nodes", kernel.most_slope_nodes},
+          {"most_azimuth_nodes", kernel.most_azimuth_nodes},
+          {"pipelines", kernel.pipelines}};
+}
+
+}  // namespace
+
+std::string plan_text(const PlanReport& report) {
+  const Scene& scene = report.scene;
+  const char* mode = scene.geometry.mode == Mode::kBistatic ? "bistatic" : "hemispherical";
+  std::string text = fmt::format("{}\n", scene.title);
+  text += fmt::format("  scene       {}, {} x {} x {} (theta x sigma x q) = {} entries, spectral samples: {}\n", mode,
+                      scene.grid.theta_deg.size(), scene.grid.sigma.size(), scene.grid.q.size(), report.run.entries,
+                      report.run.spectral_samples);
+  return text + "\n" + effects_table(report) + "\n" + dropped_text(report) + output_text(report) + cost_lines(report);
+}
+
+Json plan_json(const PlanReport& report) {
+  const RunPrediction& run = report.run;
+  Json json = {{"title", report.scene.title},
+               {"entries", run.entries},
+               {"tolerance", report.scene.accuracy.tolerance},
+               {"effects", effects_json(report.effects, report.plan)},
+               {"rows", rows_json(report)},
+               {"gives_rho", report.plan.gives_rho},
+               {"gives_albedo", report.plan.needs_moments}};
+  json["kernel"] = report.kernel ? kernel_json(*report.kernel) : Json(nullptr);
+  json["device"] = report.device.empty() ? Json(nullptr) : Json(report.device);
+  json["why_no_device"] = report.why_no_device;
+  json["spectral_samples"] = run.spectral_samples;
+  json["moments"] = run.moments;
+  json["beams"] = run.beams;
+  json["first_attempt"] = {{"precision", precision_name(run.first.precision)},
+                           {"tolerance", run.first.tolerance},
+                           {"evaluations", run.first_evaluations},
+                           {"is_exact", run.is_exact},
+                           {"dispatches", report.dispatches.dispatches}};
+  json["further_attempts"] = {{"share", run.again_share}, {"evaluations", run.again_evaluations}};
+  json["evaluations"] = run.first_evaluations + run.again_evaluations;
+  json["tile_entries"] = report.dispatches.tile_entries;
+  json["block_shapes"] = report.dispatches.block_shapes;
+  json["host_bytes"] = run.host_bytes;
+  json["device_bytes"] = report.dispatches.device_bytes;
+  const std::optional<double> seconds = estimated_s(run);
+  json["estimated_cpu_s"] = seconds ? Json(*seconds) : Json(nullptr);
+  return json;
+}
+
+}  // namespace dolp::cli

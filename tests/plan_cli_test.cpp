@@ -15,8 +15,8 @@ using nlohmann::json;
 const std::vector<std::pair<std::string, std::string>> kNoDriver = {{"VK_DRIVER_FILES", "/nonexistent.json"},
                                                                     {"VK_ICD_FILENAMES", "/nonexistent.json"}};
 const std::vector<std::string> kIsothermal = {"--set", "surroundings.temperature_K=300"};
-// A float on the device may round an order the other way than on the CPU, at a node in some hundreds.
-constexpr double kOrderRounding = 0.02;
+// A float on the device may round an order the other way than on the CPU, which changes a circle of nodes or two.
+constexpr double kOrderRounding = 0.05;
 // Of what 256 of many entries say about all.
 constexpr double kSampling = 0.1;
 

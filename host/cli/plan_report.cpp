@@ -14,7 +14,7 @@ constexpr double kPoints = 100.0;  // of DOLP
 constexpr double kMostPoints = 200.0;  // from all s to all p; what a bound beyond says is nothing
 
 std::string state_text(EffectState state) {
-  return state == EffectState::kNotNeeded ? "not needed" : name_of(state);
+  return state == EffectState::kNotNeeded ? "not needed" : state_name(state);
 }
 
 std::string influence_text(const EffectRow& row) {
@@ -125,7 +125,7 @@ Json rows_json(const PlanReport& report) {
     const EffectRow& row = report.effects[i];
     rows.push_back({{"name", row.name},
                     {"asked_for", row.state != EffectState::kAbsent},
-                    {"state", name_of(row.state)},
+                    {"state", state_name(row.state)},
                     {"reason", row.reason},
                     {"needs", row.needs},
                     {"bound", row.bound ? Json(*row.bound) : Json(nullptr)},

@@ -170,7 +170,7 @@ nlohmann::ordered_json effects_json(const std::vector<EffectRow>& effects, const
   for (const EffectRow& row : effects) {
     nlohmann::ordered_json of_row = {{"name", row.name}, {"reason", row.reason}};
     if (row.state == EffectState::kDropped) of_row["bound"] = row.bound.value_or(0.0);
-    json[name_of(row.state)].push_back(of_row);
+    json[state_name(row.state)].push_back(of_row);
   }
   json["keep_all"] = plan.keep_all;
   json["allowed_share_of_tolerance"] = kDroppedShare;

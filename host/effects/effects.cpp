@@ -284,7 +284,7 @@ void add_influences(std::vector<EffectRow>& rows, const Scene& scene, std::span<
   }
 }
 
-const char* name_of(EffectState state) {
+const char* state_name(EffectState state) {
   constexpr std::array kNames = {"absent", "kept", "dropped", "not_needed"};
   return kNames[static_cast<std::size_t>(state)];
 }

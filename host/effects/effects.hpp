@@ -81,7 +81,7 @@ std::vector<EffectRow> effect_rows(const Scene& scene, std::span<const SceneEntr
 /// Bounds of what each kept part changes in the scene with everything kept, worst entry of those that have one.
 void add_influences(std::vector<EffectRow>& rows, const Scene& scene, std::span<const SceneEntry> entries);
 
-const char* name_of(EffectState state);
+const char* state_name(EffectState state);
 
 /// One line for reports and table attributes: what is kept, what is dropped and why.
 std::string effects_text(const std::vector<EffectRow>& rows, const EffectPlan& plan);

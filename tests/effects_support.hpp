@@ -27,8 +27,7 @@ class RandomScenes {
     const Model& model = kModels[static_cast<std::size_t>(random_.uniform(0.0, 8.0))];
     scene.surface.distribution = model.distribution;
     scene.surface.masking = model.masking;
-    scene.surface.material.constant = {random_.log_uniform(0.3, 30.0),
-                                       coin() ? 0.0 : random_.log_uniform(1e-4, 90.0)};
+    scene.surface.material.constant = {random_.log_uniform(0.3, 30.0), coin() ? 0.0 : random_.log_uniform(1e-4, 90.0)};
     if (random_.chance(0.1)) scene.surface.material.constant = {1.0 + random_.log_uniform(1e-6, 1e-2), 0.0};
     scene.surface.specular = random_.chance(0.2) ? random_.log_uniform(1e-9, 1.0) : random_.uniform(0.3, 1.0);
     if (random_.chance(0.05)) scene.surface.specular = 0.0;
@@ -107,11 +106,13 @@ inline std::string describe(const Scene& s) {
       s.surface.material.constant.k, s.surface.specular, s.surface.diffuse, s.surface.diffuse_exponent,
       s.spectrum.min_um, s.spectrum.max_um, s.geometry.mode == Mode::kBistatic ? "bistatic" : "hemispherical",
       s.geometry.view_zenith_deg, s.geometry.relative_azimuth_deg, s.accuracy.tolerance);
-  if (s.emission) text += fmt::format(", emission {:.9g} K{}", s.emission->temperature_K,
-                                      s.emission->model == EmissionModel::kFresnel ? " fresnel" : "");
+  if (s.emission)
+    text += fmt::format(", emission {:.9g} K{}", s.emission->temperature_K,
+                        s.emission->model == EmissionModel::kFresnel ? " fresnel" : "");
   if (s.surroundings) text += fmt::format(", surroundings {:.9g} K", s.surroundings->temperature_K);
   if (s.source) text += fmt::format(", source {:.4g} or {:.4g}", s.source->irradiance, s.source->relative_irradiance);
-  if (s.path) text += fmt::format(", path {:.3g} radiance {:.4g}", s.path->transmittance, s.path->radiance.value_or(0.0));
+  if (s.path)
+    text += fmt::format(", path {:.3g} radiance {:.4g}", s.path->transmittance, s.path->radiance.value_or(0.0));
   return text;
 }
 
@@ -137,7 +138,8 @@ inline EffectPlan plan_without(const Scene& scene, Part part) {
 
 /// Length of the difference of (Q, U) / I.
 inline double polarisation_change(const PointResult& a, const PointResult& b) {
-  return std::hypot(a.stokes_q / a.stokes_i - b.stokes_q / b.stokes_i, a.stokes_u / a.stokes_i - b.stokes_u / b.stokes_i);
+  return std::hypot(a.stokes_q / a.stokes_i - b.stokes_q / b.stokes_i,
+                    a.stokes_u / a.stokes_i - b.stokes_u / b.stokes_i);
 }
 
 inline constexpr std::uint32_t kNoPromise =

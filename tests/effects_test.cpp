@@ -45,8 +45,8 @@ TEST(Dropping, RandomScenes_TheAnswerWithEverythingIsWithinTheEstimates) {
     for (std::size_t j = 0; j < entries.size(); ++j) {
       const PointResult& a = whole[j];
       const PointResult& b = left[j];
-      const std::string name = describe(scene, entries[j]) + "; " +
-                               effects_text(effect_rows(scene, entries, plan), plan);
+      const std::string name =
+          describe(scene, entries[j]) + "; " + effects_text(effect_rows(scene, entries, plan), plan);
       if ((a.status & kStatusOutsideDomain) != 0) {
         EXPECT_EQ(std::isnan(a.stokes_i), std::isnan(b.stokes_i)) << name;
         continue;
@@ -122,6 +122,8 @@ TEST(FacetBounds, RandomSurfaces_HoldTheMoments) {
       EXPECT_GE(bounds.most_q * c, std::abs(m.r_q) - m.r_q_error) << name_of(model) << " " << text_of(p);
       EXPECT_GE(bounds.most_i * c, m.r_i + std::abs(m.r_q) - 2.0 * m.r_i_error) << name_of(model) << " " << text_of(p);
       EXPECT_LE(bounds.least_i * c, m.r_i + m.r_i_error) << name_of(model) << " " << text_of(p);
+      const ReflectanceBounds coarse = coarse_reflectance_bounds(surface, p.theta_deg, p.shape);
+      EXPECT_GE(coarse.most_i * c, m.r_i + std::abs(m.r_q) - 2.0 * m.r_i_error) << name_of(model) << " " << text_of(p);
       tightest = std::max(tightest, m.r_i / (bounds.most_i * c));
     }
     EXPECT_GE(tightest, 0.5) << "bounds that say nothing";

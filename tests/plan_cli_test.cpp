@@ -43,7 +43,9 @@ class Plan : public CommandLine {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return json::parse(outcome.out);
   }
-  json plan(const std::vector<std::string>& options = {}) const { return report(joined({"plan", "scene.toml"}, options)); }
+  json plan(const std::vector<std::string>& options = {}) const {
+    return report(joined({"plan", "scene.toml"}, options));
+  }
   json table(const std::vector<std::string>& options = {}) const {
     return report(joined({"table", "scene.toml", "-o", "t.nc"}, options));
   }
@@ -94,7 +96,8 @@ TEST_F(Plan, EffectsAttribute_SaysWhatWasDroppedAndWhy) {
     }
     return std::string();
   };
-  EXPECT_TRUE(text_in("effects").starts_with("kept: emission, surroundings; dropped: specular (")) << text_in("effects");
+  EXPECT_TRUE(text_in("effects").starts_with("kept: emission, surroundings; dropped: specular ("))
+      << text_in("effects");
   table();
   EXPECT_TRUE(text_in("effects").ends_with("dropped: nothing")) << text_in("effects");
 }
@@ -126,8 +129,8 @@ TEST_F(Plan, NoSpecularPart_OnlyClosedForms) {
 }
 
 TEST_F(Plan, SunInTheVisible_ThermalRadiationIsDropped) {
-  const std::vector<std::string> visible = {
-      "--set", "geometry.mode=bistatic", "--set", "spectrum.wavelength_um=0.55", "--set", "source.irradiance=1800"};
+  const std::vector<std::string> visible = {"--set", "geometry.mode=bistatic", "--set", "spectrum.wavelength_um=0.55",
+                                            "--set", "source.irradiance=1800"};
   const json report = table(visible);
   EXPECT_EQ(report["evaluations"], 0.0);
   EXPECT_TRUE(has(report["effects"]["dropped"], "emission"));
@@ -162,7 +165,8 @@ TEST_F(Plan, FewEntries_PredictsTheCpuRunExactly) {
 TEST_F(Plan, Device_PredictsEvaluationsAndDispatches) {
   // Cases that need no second attempt.
   for (const auto& [tolerance, masking] : {std::pair{"1e-5", "none"}, std::pair{"1e-2", "v-cavity"}}) {
-    const std::vector<std::string> easy = {"--tolerance", tolerance, "--set", "surface.masking=" + std::string(masking)};
+    const std::vector<std::string> easy = {"--tolerance", tolerance, "--set",
+                                           "surface.masking=" + std::string(masking)};
     const json predicted = plan(easy);
     const json spent = table(easy);
     const double evaluations = spent["evaluations"];
@@ -173,8 +177,9 @@ TEST_F(Plan, Device_PredictsEvaluationsAndDispatches) {
 }
 
 TEST_F(Plan, ManyEntries_PredictionFromSomeIsNearly) {
-  const std::vector<std::string> grid = {"--set", "grid.theta_deg={from=0,to=85,count=30}", "--set",
-                                         "grid.sigma={from=0.05,to=1,count=16}", "--set", "surface.masking=none"};
+  const std::vector<std::string> grid = {"--set", "grid.theta_deg={from=0,to=85,count=30}",
+                                         "--set", "grid.sigma={from=0.05,to=1,count=16}",
+                                         "--set", "surface.masking=none"};
   const json predicted = plan(grid);
   const json spent = table(joined(grid, {"--evaluator", "cpu"}));
   EXPECT_FALSE(predicted["first_attempt"]["is_exact"]);

@@ -45,8 +45,8 @@ void add_request(PlanReport& report, const MomentsRequest& request, const Device
     kernel.most_azimuth_nodes = std::max(kernel.most_azimuth_nodes, static_cast<int>(node.order_limit_phi));
   }
   const char* precision = request.precision == Precision::kDouble ? "double" : "float";
-  const std::string constants =
-      fmt::format("{}: distribution {}, masking {}", precision, name_of(request.distribution), name_of(request.masking));
+  const std::string constants = fmt::format("{}: distribution {}, masking {}", precision, name_of(request.distribution),
+                                            name_of(request.masking));
   kernel.pipelines = {"moments, " + constants};
   if (data.needs_masking_table()) kernel.pipelines.push_back("masking_table, " + constants);
 }

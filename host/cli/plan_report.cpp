@@ -10,7 +10,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kMebibyte = 1048576.0;
-constexpr double kPoints = 100.0;  // of DOLP
+constexpr double kPoints = 100.0;      // of DOLP
 constexpr double kMostPoints = 200.0;  // from all s to all p; what a bound beyond says is nothing
 
 std::string state_text(EffectState state) {
@@ -46,8 +46,8 @@ std::string effects_table(const PlanReport& report) {
   text += "  influence: bound of the change of (Q/I, U/I) without the effect, in points of DOLP (0.01), worst entry\n";
   for (const EffectRow& row : report.effects) {
     if (row.unbounded == 0) continue;
-    text += fmt::format("  *: none is known for {} of {} entries, so that nothing marked can be dropped\n", row.unbounded,
-                        report.run.entries);
+    text += fmt::format("  *: none is known for {} of {} entries, so that nothing marked can be dropped\n",
+                        row.unbounded, report.run.entries);
     break;
   }
   text += "  work: share of the evaluations that would go with the effect; those that share theirs have none alone\n";
@@ -61,8 +61,9 @@ std::string dropped_text(const PlanReport& report) {
     return fmt::format("  dropped     nothing: every bound exceeds {:g}, {:g} of the tolerance {:g}\n",
                        kDroppedShare * tolerance, kDroppedShare, tolerance);
   }
-  return fmt::format("  dropped     changes DOLP by {:.2g} at most in all; {:g}, {:g} of the tolerance {:g}, is allowed\n",
-                     report.plan.bound.dolp, kDroppedShare * tolerance, kDroppedShare, tolerance);
+  return fmt::format(
+      "  dropped     changes DOLP by {:.2g} at most in all; {:g}, {:g} of the tolerance {:g}, is allowed\n",
+      report.plan.bound.dolp, kDroppedShare * tolerance, kDroppedShare, tolerance);
 }
 
 std::string output_text(const PlanReport& report) {
@@ -95,9 +96,9 @@ std::string kernel_lines(const PlanReport& report) {
   text += work_lines(report);
   const std::string device =
       report.device.empty() ? "limits of any Vulkan device; none here: " + report.why_no_device : report.device;
-  text += fmt::format("  dispatches  {} in the first attempt, at most {} entries and {} shapes at a time ({})\n",
-                      report.dispatches.dispatches, report.dispatches.tile_entries, report.dispatches.block_shapes,
-                      device);
+  text +=
+      fmt::format("  dispatches  {} in the first attempt, at most {} entries and {} shapes at a time ({})\n",
+                  report.dispatches.dispatches, report.dispatches.tile_entries, report.dispatches.block_shapes, device);
   return text;
 }
 
@@ -107,13 +108,16 @@ std::optional<double> estimated_s(const RunPrediction& run) {
 }
 
 std::string cost_lines(const PlanReport& report) {
-  std::string text = report.kernel ? kernel_lines(report) : "  work        no integrand evaluations: no device is used\n";
+  std::string text =
+      report.kernel ? kernel_lines(report) : "  work        no integrand evaluations: no device is used\n";
   if (report.run.beams > 0) text += fmt::format("  beams       {} values of f, on the CPU\n", report.run.beams);
-  text += fmt::format("  memory      {:.3g} MiB of the host, {:.3g} MiB of the device\n",
-                      report.run.host_bytes / kMebibyte, static_cast<double>(report.dispatches.device_bytes) / kMebibyte);
+  text +=
+      fmt::format("  memory      {:.3g} MiB of the host, {:.3g} MiB of the device\n", report.run.host_bytes / kMebibyte,
+                  static_cast<double>(report.dispatches.device_bytes) / kMebibyte);
   if (const std::optional<double> seconds = estimated_s(report.run)) {
     text += fmt::format(
-        "  time        estimate: {:.2g} s of integration with --evaluator cpu, from counting here; no device is timed\n",
+        "  time        estimate: {:.2g} s of integration with --evaluator cpu, from counting here; no device is "
+        "timed\n",
         *seconds);
   }
   return text;

@@ -11,13 +11,23 @@
 namespace dolp {
 namespace {
 
-constexpr std::array kDroppingOrder = {Part::kMoments,  Part::kSource,       Part::kSurroundings,
-                                       Part::kEmission, Part::kPathRadiance, Part::kDiffuse,
-                                       Part::kMoments};
+constexpr std::array kDroppingOrder = {Part::kMoments,      Part::kSource,  Part::kSurroundings, Part::kEmission,
+                                       Part::kPathRadiance, Part::kDiffuse, Part::kMoments};
 
-DropBound worst_of(const DropBound& a, const DropBound& b) { return {std::max(a.dolp, b.dolp), std::max(a.rho, b.rho)}; }
+constexpr double kFarBelow = 0.1;
+
+DropBound worst_of(const DropBound& a, const DropBound& b) {
+  return {std::max(a.dolp, b.dolp), std::max(a.rho, b.rho)};
+}
 
 bool is_within(const DropBound& bound, double limit) { return bound.dolp <= limit && bound.rho <= limit; }
+
+/// The bound at one entry: a coarse one where that is far below the limit.
+DropBound entry_bound(const InfluenceBounds& bounds, Part part, const KeptEffects& kept, const SceneEntry& entry,
+                      double limit) {
+  const DropBound coarse = bounds.bound(part, kept, entry, Detail::kCoarse);
+  return is_within(coarse, kFarBelow * limit) ? coarse : bounds.bound(part, kept, entry, Detail::kFine);
+}
 
 /// The worst entry's bound; stops, above `limit`, as soon as it is there. The grazing entries of a grid come last and
 /// are the worst.
@@ -25,9 +35,9 @@ DropBound worst_bound(const InfluenceBounds& bounds, Part part, const KeptEffect
                       std::span<const SceneEntry> entries, double limit) {
   DropBound worst;
   for (const SceneEntry& entry : entries | std::views::reverse) {
-    worst = worst_of(worst, bounds.bound(part, kept, entry));
+    worst = worst_of(worst, entry_bound(bounds, part, kept, entry, limit));
     // What counts in the whole scene is not dropped for want of what it acts on.
-    if (part != Part::kMoments) worst = worst_of(worst, bounds.bound(part, {}, entry));
+    if (part != Part::kMoments) worst = worst_of(worst, entry_bound(bounds, part, {}, entry, limit));
     if (!is_within(worst, limit)) return worst;
   }
   return worst;
@@ -96,7 +106,8 @@ EffectRow part_row(const Scene& scene, const EffectPlan& plan, const char* name,
 }
 
 std::string moments_needs(const Scene& scene) {
-  return is_bistatic(scene) ? fmt::format("moments at {:g} deg", scene.geometry.view_zenith_deg) : "moments at each theta";
+  return is_bistatic(scene) ? fmt::format("moments at {:g} deg", scene.geometry.view_zenith_deg)
+                            : "moments at each theta";
 }
 
 EffectRow specular_row(const Scene& scene, const EffectPlan& plan) {

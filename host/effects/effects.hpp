@@ -29,20 +29,20 @@ struct EffectPlan {
   KeptEffects kept;
   std::vector<DroppedPart> dropped;  ///< in the order of dropping; parts that the scene lacks are not among them
   DropBound bound;                   ///< of all dropped parts together
-  bool needs_moments = true;  ///< the specular moments, at theta or in bistatic mode at the view
-  bool needs_beams = false;   ///< f of the source's and the view's direction
-  bool gives_rho = true;      ///< rho_i, rho_q and rho_error_estimate are known; the albedo with the moments alone
+  bool needs_moments = true;         ///< the specular moments, at theta or in bistatic mode at the view
+  bool needs_beams = false;          ///< f of the source's and the view's direction
+  bool gives_rho = true;  ///< rho_i, rho_q and rho_error_estimate are known; the albedo with the moments alone
 };
 
 /// The effects that the scene's output needs at these entries.
 ///
-/// A part goes, in the order of Part and the moments once more at the end, if the bound of InfluenceBounds, worst entry,
-/// leaves the sum of all that is dropped at kDroppedShare of the tolerance or below; each bound is that of the scene
-/// without what was dropped before, so that the sum bounds the whole change; but for the moments a part's bound in the whole
-/// scene counts too. A part that adds exactly nothing goes at
-/// no cost: the moments where emission and surroundings have one temperature, for instance. Model choices (distribution,
-/// masking, k) never go. `keep_all` keeps everything that the scene has. Host only: some microseconds an entry and part, none
-/// where the last entries tell that a part counts.
+/// A part goes, in the order of Part and the moments once more at the end, if the bound of InfluenceBounds, worst
+/// entry, leaves the sum of all that is dropped at kDroppedShare of the tolerance or below; each bound is that of the
+/// scene without what was dropped before, so that the sum bounds the whole change; but for the moments a part's bound
+/// in the whole scene counts too. A part that adds exactly nothing goes at no cost: the moments where emission and
+/// surroundings have one temperature, for instance. Model choices (distribution, masking, k) never go. `keep_all` keeps
+/// everything that the scene has. Host only: some microseconds an entry and part, none where the last entries tell that
+/// a part counts.
 EffectPlan plan_effects(const Scene& scene, std::span<const SceneEntry> entries, bool keep_all);
 
 /// Nothing left out: what `plan_effects` says with `keep_all`.
@@ -69,10 +69,10 @@ struct EffectRow {
   const char* name = "";
   EffectState state = EffectState::kKept;
   std::string reason = {};
-  std::string needs = {};        ///< what computing it takes; empty when it is not kept
+  std::string needs = {};            ///< what computing it takes; empty when it is not kept
   std::optional<double> bound = {};  ///< of its influence on (Q/I, U/I); of a dropped one, what dropping it changes
   std::optional<Part> part = {};     ///< what the sums lose with it; none for model choices
-  std::size_t unbounded = 0;     ///< entries without a bound, which `bound` leaves out
+  std::size_t unbounded = 0;         ///< entries without a bound, which `bound` leaves out
 };
 
 /// All effects that there are, in the order of the scene file.

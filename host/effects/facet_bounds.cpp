@@ -127,8 +127,8 @@ double least_projection(const Surface& surface, const CosSin& a, const SlopeShap
     case Masking::kSmith: {
       if (cos_r <= 0.0) return 0.0;
       const CosSin reflected{cos_r, std::sqrt(std::max(0.0, (1.0 - cos_r) * (1.0 + cos_r)))};
-      const double lambdas = most_lambda(surface.distribution, shape, a) +
-                             most_lambda(surface.distribution, shape, reflected);
+      const double lambdas =
+          most_lambda(surface.distribution, shape, a) + most_lambda(surface.distribution, shape, reflected);
       return a.cos / (1.0 + lambdas);
     }
   }
@@ -171,6 +171,12 @@ ReflectanceBounds reflectance_bounds(const Surface& surface, double theta_deg, c
   bounds.most_q = 0.5 * bounds.most_i;
   bounds.least_i = 0.5 * least_normal_reflectance(indices) * least_albedo(surface, a, shape) / a.cos;
   return bounds;
+}
+
+ReflectanceBounds coarse_reflectance_bounds(const Surface& surface, double theta_deg, const SlopeShape& shape) {
+  const double excess =
+      keeps_energy(surface.masking) ? 0.0 : most_lambda(surface.distribution, shape, cos_sin_deg(theta_deg));
+  return {(1.0 + excess) * (1.0 + kRounding), 0.5 * (1.0 + excess) * (1.0 + kRounding), 0.0};
 }
 
 BeamBounds beam_bounds(const Surface& surface, double theta_i_deg, double theta_r_deg, double delta_phi_deg,

@@ -19,12 +19,12 @@ struct ReflectanceBounds {
 ///
 /// Derivation, with the notation of shaders/physics/integrand.glsl: rho c = integral of P t dt over the slopes of
 /// 2 * integral of e G M over the azimuths whose ray leaves, G <= 1, and e <= max(c + s t cos(phi), 0), whose azimuthal
-/// mean g(t) is c up to s t = c and (c acos(-z) + s t sqrt(1 - z^2)) / pi, z = c / (s t), beyond, and grows with t. On a
-/// shell of slopes [t0, t1] the integral with M = 1 is so at most (its share of the facets) * g(t1). No ray leaves beyond
-/// the horizon t = (1 + s) / c. There M00 + M01 <= R_s and |M01| <= R_s / 2, because 0 <= R_p <= R_s, and R_s falls with
-/// cos(beta), which is at least cos(theta + alpha1), and more than c sqrt(1 + t0^2) / 2 for a ray that leaves (0 <
-/// cos(theta_r) = 2 cos(alpha) cos(beta) - c). v-cavity and smith keep A <= 1: the shells are then filled from the
-/// best reflecting one down to a sum of 1, and e G <= 2 c with v-cavity. none and `integral` have no such end.
+/// mean g(t) is c up to s t = c and (c acos(-z) + s t sqrt(1 - z^2)) / pi, z = c / (s t), beyond, and grows with t. On
+/// a shell of slopes [t0, t1] the integral with M = 1 is so at most (its share of the facets) * g(t1). No ray leaves
+/// beyond the horizon t = (1 + s) / c. There M00 + M01 <= R_s and |M01| <= R_s / 2, because 0 <= R_p <= R_s, and R_s
+/// falls with cos(beta), which is at least cos(theta + alpha1), and more than c sqrt(1 + t0^2) / 2 for a ray that
+/// leaves (0 < cos(theta_r) = 2 cos(alpha) cos(beta) - c). v-cavity and smith keep A <= 1: the shells are then filled
+/// from the best reflecting one down to a sum of 1, and e G <= 2 c with v-cavity. none and `integral` have no such end.
 ///
 /// From below: facets up to a slope T below c / (1 + s) send every ray up, e averages to c over their azimuths, and M00
 /// >= R_s / 2 >= R(normal) / 2. G is 1 (none), at least 1/2 (`integral`), e G >= min(c - s T, 2 c, 2 cos(theta_r))
@@ -33,6 +33,10 @@ struct ReflectanceBounds {
 ReflectanceBounds reflectance_bounds(const Surface& surface, double theta_deg, const SlopeShape& shape,
                                      std::span<const OpticalConstants> indices);
 
+/// The same in a few operations, as if every facet reflected all: 1 where A <= 1, else 1 + tan(theta) E|t_x| / 2,
+/// because g(t) <= c + s t / pi and the mean of t is pi/2 E|t_x|. Nothing from below.
+ReflectanceBounds coarse_reflectance_bounds(const Surface& surface, double theta_deg, const SlopeShape& shape);
+
 /// Bounds of f cos(theta_i) cos(theta_r) for k_s = 1, in 1/sr.
 struct BeamBounds {
   double most_i = 0.0;   ///< of f_00
@@ -40,8 +44,8 @@ struct BeamBounds {
   double most_qu = 0.0;  ///< of the length of (f_10, f_20)
 };
 
-/// The closed form D G M / 4 but for G: exact for none and v-cavity, in [1/2, 1] for `integral`, in [1 / (1 + L + L_r), 1]
-/// for smith with L as above. For each of the indices.
+/// The closed form D G M / 4 but for G: exact for none and v-cavity, in [1/2, 1] for `integral`, in [1 / (1 + L + L_r),
+/// 1] for smith with L as above. For each of the indices.
 BeamBounds beam_bounds(const Surface& surface, double theta_i_deg, double theta_r_deg, double delta_phi_deg,
                        const SlopeShape& shape, std::span<const OpticalConstants> indices);
 

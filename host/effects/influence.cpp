@@ -82,18 +82,19 @@ InfluenceBounds::InfluenceBounds(const Scene& scene, const SpectralRule& rule)
   }
 }
 
-InfluenceBounds::AtEntry InfluenceBounds::at_entry(const KeptEffects& kept, const SceneEntry& entry) const {
+InfluenceBounds::AtEntry InfluenceBounds::at_entry(const KeptEffects& kept, const SceneEntry& entry,
+                                                   Detail detail) const {
   const Surface& surface = scene_.surface;
-  const double theta_deg = zenith_before_limit_deg(
-      surface.masking, bistatic_ ? scene_.geometry.view_zenith_deg : entry.theta_deg);
+  const double theta_deg =
+      zenith_before_limit_deg(surface.masking, bistatic_ ? scene_.geometry.view_zenith_deg : entry.theta_deg);
   const double cosine = std::max(cos_sin_deg(theta_deg).cos, kSmallestCosine);
   const std::vector<OpticalConstants> own = entry.index ? std::vector{*entry.index} : indices_;
   AtEntry at;
-  at.specular = reflectance_bounds(surface, theta_deg, entry.shape, own);
-  for (double* value : {&at.specular.most_i, &at.specular.most_q, &at.specular.least_i}) {
-    *value = surface.specular == 0.0 ? 0.0 : *value * surface.specular;
+  if (kept.moments && surface.specular > 0.0) {
+    at.specular = detail == Detail::kFine ? reflectance_bounds(surface, theta_deg, entry.shape, own)
+                                          : coarse_reflectance_bounds(surface, theta_deg, entry.shape);
+    for (double* value : {&at.specular.most_i, &at.specular.most_q, &at.specular.least_i}) *value *= surface.specular;
   }
-  if (!kept.moments) at.specular = {};
   const double c = surface.diffuse_exponent;
   const bool has_diffuse = kept.diffuse && surface.diffuse > 0.0;
   const bool diverges = c < 0.0 && (bistatic_ ? scene_.geometry.view_zenith_deg : entry.theta_deg) == 90.0;
@@ -215,12 +216,12 @@ bool InfluenceBounds::adds_nothing(Part part, const KeptEffects& kept) const {
   return false;
 }
 
-DropBound InfluenceBounds::bound(Part part, const KeptEffects& kept, const SceneEntry& entry) const {
+DropBound InfluenceBounds::bound(Part part, const KeptEffects& kept, const SceneEntry& entry, Detail detail) const {
   if (!is_kept(kept, part) || adds_nothing(part, kept)) return {};
-  const AtEntry at = at_entry(kept, entry);
+  const AtEntry at = at_entry(kept, entry, detail);
   const KeptEffects rest = without(kept, part);
   const Sums whole = sums(kept, at);
-  const Sums left = sums(rest, part == Part::kMoments || part == Part::kDiffuse ? at_entry(rest, entry) : at);
+  const Sums left = sums(rest, part == Part::kMoments || part == Part::kDiffuse ? at_entry(rest, entry, detail) : at);
   const Sums added = added_by(part, kept, at);
   const auto polarisation = [](const Sums& sum) {
     const double most = sum.least_i > 0.0 ? finite_or_infinite(sum.most_qu / sum.least_i) : kInfinity;

@@ -17,6 +17,9 @@ enum class Part { kMoments, kSource, kSurroundings, kEmission, kPathRadiance, kD
 bool is_kept(const KeptEffects& kept, Part part);
 KeptEffects without(KeptEffects kept, Part part);
 
+/// Which bounds of the reflectance: the coarse ones are ten times faster.
+enum class Detail { kCoarse, kFine };
+
 /// Bounds of what the parts of a scene change at its entries.
 ///
 /// Derivation: a part adds (dI, dQ, dU) to the Stokes sums, so that with q = (Q, U) / I and ' for the sums without it
@@ -29,15 +32,16 @@ KeptEffects without(KeptEffects kept, Part part);
 /// surroundings have one temperature and no source shines into the hemisphere. With the fresnel emission they weigh
 /// S + X, and E times the smooth surface's emissivity stands in place of E - E rho. In bistatic mode the beam and its
 /// diffuse part add to I, and the beam's length to (Q, U). A path multiplies all by its transmittance and adds to I.
-/// |q| <= 1 where most <= 1, which bounds rho_s and rho_p: then every part has a degree of polarisation of at most 1. All Stokes parameters
-/// are in the units of the exitances, bistatic ones times pi. Sums over a band are those of the spectral rule's samples.
+/// |q| <= 1 where most <= 1, which bounds rho_s and rho_p: then every part has a degree of polarisation of at most 1.
+/// All Stokes parameters are in the units of the exitances, bistatic ones times pi. Sums over a band are those of the
+/// spectral rule's samples.
 class InfluenceBounds {
  public:
   InfluenceBounds(const Scene& scene, const SpectralRule& rule);
 
   /// Bound of what dropping `part` changes where `kept` is kept, at one entry; infinite where none is known. Exactly 0
   /// where the part adds nothing.
-  DropBound bound(Part part, const KeptEffects& kept, const SceneEntry& entry) const;
+  DropBound bound(Part part, const KeptEffects& kept, const SceneEntry& entry, Detail detail = Detail::kFine) const;
 
   /// Whether a part adds exactly nothing, at any entry.
   bool adds_nothing(Part part, const KeptEffects& kept) const;
@@ -45,7 +49,7 @@ class InfluenceBounds {
  private:
   struct Sums;
   struct AtEntry;
-  AtEntry at_entry(const KeptEffects& kept, const SceneEntry& entry) const;
+  AtEntry at_entry(const KeptEffects& kept, const SceneEntry& entry, Detail detail) const;
   double weight(const KeptEffects& kept) const;
   Sums sums(const KeptEffects& kept, const AtEntry& at) const;
   Sums added_by(Part part, const KeptEffects& kept, const AtEntry& at) const;

@@ -23,8 +23,8 @@ struct RunPrediction {
   double first_evaluations = 0.0;  ///< integrand evaluations of it
   double again_share = 0.0;        ///< of its moments, those that need another attempt
   double again_evaluations = 0.0;
-  bool is_exact = true;     ///< all moments were counted, none estimated from others
-  double counted_s = 0.0;      ///< what counting took: the counted moments on this machine's processor
+  bool is_exact = true;    ///< all moments were counted, none estimated from others
+  double counted_s = 0.0;  ///< what counting took: the counted moments on this machine's processor
   double counted_evaluations = 0.0;
   double host_bytes = 0.0;  ///< entries, requests and results of the largest block, and all results
 };
@@ -32,11 +32,11 @@ struct RunPrediction {
 /// Calls with each request of the first attempt.
 using RequestVisitor = std::function<void(const MomentsRequest&)>;
 
-/// Counts the work by running up to kCountedEntries entries, drawn evenly by a fixed sequence, through the code of the run
-/// itself on the CPU. `has_double`: whether the device that will run has it; `precision`: the evaluator's own.
+/// Counts the work by running up to kCountedEntries entries, drawn evenly by a fixed sequence, through the code of the
+/// run itself on the CPU. `has_double`: whether the device that will run has it; `precision`: the evaluator's own.
 ///
-/// Accuracy: exact for the first attempt of scenes with up to kCountedEntries moments, but for orders that a float rounds
-/// differently; a few percent beyond (tests Prediction_*).
+/// Accuracy: exact for the first attempt of scenes with up to kCountedEntries moments, but for orders that a float
+/// rounds differently; a few percent beyond (tests Prediction_*).
 RunPrediction predict_run(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan,
                           bool has_double, const RequestVisitor& visit);
 

@@ -13,13 +13,13 @@ DispatchPlan dispatch_plan(const MomentsRequest& request, const DeviceDescriptio
   const vulkan::Packing packing(request.precision == Precision::kDouble);
   const KernelData data = kernel_data(request);
   const vulkan::TileCosts costs = vulkan::tile_costs(packing);
-  const vulkan::TileSizes sizes = vulkan::tile_sizes(
-      {.buffer_bytes = device.max_storage_buffer_bytes,
-       .heap_bytes = device.heap_bytes,
-       .dispatch_count = std::uint64_t{device.max_workgroups} * vulkan::kLocalSize,
-       .tile_entries = std::min<std::uint64_t>(options.max_tile_entries, data.entries.size()),
-       .block_shapes = std::min<std::uint64_t>(options.max_block_shapes, data.shapes.size())},
-      costs);
+  const vulkan::TileSizes sizes =
+      vulkan::tile_sizes({.buffer_bytes = device.max_storage_buffer_bytes,
+                          .heap_bytes = device.heap_bytes,
+                          .dispatch_count = std::uint64_t{device.max_workgroups} * vulkan::kLocalSize,
+                          .tile_entries = std::min<std::uint64_t>(options.max_tile_entries, data.entries.size()),
+                          .block_shapes = std::min<std::uint64_t>(options.max_block_shapes, data.shapes.size())},
+                         costs);
   DispatchPlan plan{.tile_entries = sizes.entries, .block_shapes = sizes.shapes};
   for (const vulkan::Block& block : vulkan::blocks_of(data.entries, data.shapes.size(), sizes.shapes)) {
     plan.dispatches += (block.entries.size() + sizes.entries - 1) / sizes.entries;

@@ -145,6 +145,30 @@ TEST_F(Plan, SunInTheVisible_ThermalRadiationIsDropped) {
   }
 }
 
+TEST_F(Plan, BeamOnAnIsothermalSurface_NeedsTheBeamAlone) {
+  const std::vector<std::string> beam =
+      joined(kIsothermal, {"--set", "geometry.mode=bistatic", "--set", "source.relative_irradiance=0.5"});
+  const json report = table(beam);
+  EXPECT_EQ(report["evaluations"], 0.0);
+  EXPECT_EQ(report["device"], "none");
+  const Table few = read_table(at("t.nc"));
+  table(joined(beam, {"--keep-all"}));
+  const Table all = read_table(at("t.nc"));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_NEAR(few.dolp[i], all.dolp[i], few.error_estimate[i] + all.error_estimate[i]);
+  }
+  EXPECT_GT(*std::ranges::max_element(few.dolp), 1e-3);
+}
+
+TEST_F(Plan, Mirrors_NeedNoDevice) {
+  Command wanted = command({"table", "scene.toml", "-o", "t.nc", "--set", "grid.sigma=0", "--json"});
+  wanted.environment = kNoDriver;
+  const Outcome outcome = run(wanted);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(json::parse(outcome.out)["device"], "none");
+  EXPECT_EQ(read_table(at("t.nc")).rho_i.size(), 8U);
+}
+
 TEST_F(Plan, FresnelEmissionAlone_NeedsNoMoments) {
   const std::vector<std::string> alone = {"--set", "emission.model=fresnel", "--set", "surroundings=none"};
   EXPECT_EQ(table(alone)["evaluations"], 0.0);

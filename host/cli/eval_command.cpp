@@ -34,7 +34,8 @@ int run_eval(const Options& options) {
   const std::vector<SceneEntry> entries = point_entries(scene, points);
   check_writable(options.output_path);
   const EffectPlan plan = plan_run(options, scene, entries);
-  const std::unique_ptr<MomentsEvaluator> evaluator = plan.needs_moments ? make_evaluator(options, scene) : nullptr;
+  const bool integrates = wants_evaluator(scene, entries, plan);
+  const std::unique_ptr<MomentsEvaluator> evaluator = integrates ? make_evaluator(options, scene) : nullptr;
   std::vector<PointResult> results;
   {
     ProgressBar bar(options.quiet);

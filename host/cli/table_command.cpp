@@ -74,7 +74,8 @@ int run_table(const Options& options) {
   check_output_path(options.output_path);
   const std::vector<SceneEntry> entries = grid_entries(scene);
   const EffectPlan plan = plan_run(options, scene, entries);
-  const std::unique_ptr<MomentsEvaluator> evaluator = plan.needs_moments ? make_evaluator(options, scene) : nullptr;
+  const bool integrates = wants_evaluator(scene, entries, plan);
+  const std::unique_ptr<MomentsEvaluator> evaluator = integrates ? make_evaluator(options, scene) : nullptr;
   std::vector<PointResult> results;
   {
     ProgressBar bar(options.quiet);

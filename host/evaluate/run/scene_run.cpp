@@ -159,7 +159,7 @@ void retry(const Attempts& all, std::span<const SceneEntry> entries, const Attem
 /// Results of a block: all attempts, or what needs none.
 std::vector<PointResult> evaluated_block(const SceneRun& run, std::span<const SceneEntry> entries,
                                          MomentsEvaluator* evaluator, const Progress& progress) {
-  if (!run.plan.needs_moments) {
+  if (!wants_evaluator(run.scene, entries, run.plan)) {
     std::vector<PointResult> results = block_results(run, entries, {}, {});
     if (!progress(1, 1)) throw Cancelled{};
     return results;
@@ -173,6 +173,12 @@ std::vector<PointResult> evaluated_block(const SceneRun& run, std::span<const Sc
 }
 
 }  // namespace
+
+bool wants_evaluator(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan) {
+  return plan.needs_moments && std::ranges::any_of(entries, [&](const SceneEntry& entry) {
+           return needs_evaluator(scene, seen_entry(scene, entry));
+         });
+}
 
 std::vector<std::span<const SceneEntry>> run_blocks(std::span<const SceneEntry> entries, std::size_t spectral_samples) {
   const std::size_t block_size = std::max<std::size_t>(1, kMomentsAtOnce / spectral_samples);

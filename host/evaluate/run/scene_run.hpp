@@ -26,8 +26,11 @@ std::vector<SceneEntry> point_entries(const Scene& scene, const Points& points);
 /// How a run cuts its entries, which bounds its memory: consecutive blocks, each with requests of its own.
 std::vector<std::span<const SceneEntry>> run_blocks(std::span<const SceneEntry> entries, std::size_t spectral_samples);
 
+/// Whether anything is left to integrate: the plan needs moments, and not all entries have closed forms.
+bool wants_evaluator(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan);
+
 /// Results in the order of `entries`, of what the plan keeps; what that does not give is NaN. Progress counts entries.
-/// The evaluator may be null where the plan needs no moments.
+/// The evaluator may be null where wants_evaluator says so.
 /// Errors: those of the evaluator and of Radiometry.
 std::vector<PointResult> evaluate_scene(const Scene& scene, const std::vector<SceneEntry>& entries,
                                         const EffectPlan& plan, MomentsEvaluator* evaluator, const Progress& progress);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include "evaluate/radiometry/spectral_rule.hpp"
 
@@ -34,7 +33,8 @@ DropBound entry_bound(const InfluenceBounds& bounds, Part part, const KeptEffect
 DropBound worst_bound(const InfluenceBounds& bounds, Part part, const KeptEffects& kept,
                       std::span<const SceneEntry> entries, double limit) {
   DropBound worst;
-  for (const SceneEntry& entry : entries | std::views::reverse) {
+  for (std::size_t i = entries.size(); i > 0; --i) {
+    const SceneEntry& entry = entries[i - 1];
     worst = worst_of(worst, entry_bound(bounds, part, kept, entry, limit));
     // What counts in the whole scene is not dropped for want of what it acts on.
     if (part != Part::kMoments) worst = worst_of(worst, entry_bound(bounds, part, {}, entry, limit));

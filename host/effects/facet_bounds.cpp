@@ -153,12 +153,14 @@ ReflectanceBounds reflectance_bounds(const Surface& surface, double theta_deg, c
   const CosSin a = cos_sin_deg(theta_deg);
   const bool conserves = keeps_energy(surface.masking);
   if (a.cos == 0.0) {
-    const double most = conserves ? 1.0 : kInfinity;
+    double most = kInfinity;
+    if (conserves) most = 1.0;
     return {most, 0.5 * most, 0.0};
   }
   std::array<Shell, kShells> shells = shells_of(surface, a, shape, indices);
   std::ranges::sort(shells, std::ranges::greater{}, &Shell::r_s);
-  double room = conserves ? a.cos : kInfinity;
+  double room = kInfinity;
+  if (conserves) room = a.cos;
   double reflected = 0.0;
   ReflectanceBounds bounds;
   for (const Shell& shell : shells) {

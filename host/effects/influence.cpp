@@ -19,7 +19,10 @@ constexpr double kRounding = 1e-8;
 // A cosine that may be divided by.
 constexpr double kSmallestCosine = 1e-300;
 
-double finite_or_infinite(double bound) { return std::isnan(bound) ? kInfinity : bound; }
+double finite_or_infinite(double bound) {
+  if (std::isnan(bound)) return kInfinity;
+  return bound;
+}
 
 bool KeptEffects::*flag(Part part) {
   switch (part) {

@@ -337,19 +337,6 @@ PointResult grazing_limit(const Scene& scene, const SpectralRule& rule, const Di
   return result;
 }
 
-/// The rule with 0 for every factor that is not kept.
-SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept) {
-  for (SpectralSample& sample : rule.samples) {
-    if (!kept.surroundings) sample.excess = -sample.emitted;
-    if (!kept.emission) sample.excess = kept.surroundings ? sample.surroundings : 0.0;
-    if (!kept.surroundings) sample.surroundings = 0.0;
-    if (!kept.emission) sample.emitted = 0.0;
-    if (!kept.source) sample.irradiance = 0.0;
-  }
-  if (!kept.path_radiance) rule.path_exitance = 0.0;
-  return rule;
-}
-
 }  // namespace
 
 Radiometry::Radiometry(const Scene& scene, const KeptEffects& kept, const DropBound& dropped)

@@ -31,7 +31,7 @@ TEST(Dropping, RandomScenes_TheAnswerWithEverythingIsWithinTheEstimates) {
   RandomScenes scenes(kSeed);
   std::map<Part, int> dropped;
   int without_moments = 0;
-  for (int i = 0; i < scene_count(600); ++i) {
+  for (int i = 0; i < scene_count(400); ++i) {
     const Scene scene = scenes.next();
     const std::vector<SceneEntry> entries = scenes.entries(scene);
     const EffectPlan plan = plan_effects(scene, entries, false);
@@ -74,7 +74,7 @@ TEST(Influence, RandomScenes_BoundsWhatEachPartChanges) {
   std::cout << "seed " << kSeed + 1 << '\n';
   RandomScenes scenes(kSeed + 1);
   std::map<Part, int> compared;
-  for (int i = 0; i < scene_count(150); ++i) {
+  for (int i = 0; i < scene_count(100); ++i) {
     Scene scene = scenes.next();
     scene.accuracy.tolerance = 1e-3;
     const std::vector<SceneEntry> entries = scenes.entries(scene);

@@ -32,11 +32,11 @@ struct RunPrediction {
 /// Calls with each request of the first attempt.
 using RequestVisitor = std::function<void(const MomentsRequest&)>;
 
-/// Counts the work by running up to kCountedEntries entries, drawn evenly by a fixed sequence, through the code of the
-/// run itself on the CPU. `has_double`: whether the device that will run has it; `precision`: the evaluator's own.
+/// Counts the work by running up to kCountedEntries entries, drawn evenly by a fixed sequence, through the code of the run
+/// itself on the CPU. `has_double`: whether the device that will run has it.
 ///
-/// Accuracy: exact for the first attempt of scenes with up to kCountedEntries moments, but for orders that a float
-/// rounds differently; a few percent beyond (tests Prediction_*).
+/// Accuracy: exact for scenes with up to kCountedEntries moments, but for orders that a device's float rounds otherwise;
+/// a few percent beyond (tests Plan.FewEntries_*, Plan.ManyEntries_*, Plan.Device_*).
 RunPrediction predict_run(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan,
                           bool has_double, const RequestVisitor& visit);
 

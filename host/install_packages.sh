@@ -2,7 +2,7 @@
 # Installs the Debian 12 packages that are missing: install_packages.sh SET...
 #
 #   build    the program and its lookup tables
-#   picture  host/plot_table.py
+#   picture  host/plot_table.py and host/paper_figure.py
 #   bench    dolp-bench and its figures
 #   test     the test suite
 #

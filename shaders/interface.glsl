@@ -11,6 +11,9 @@
 #define DOLP_BINDING_MASKING_TABLE 5  // real4[]: one table for each shape bound, see physics/masking.glsl
 #define DOLP_BINDING_MOMENTS 6        // MomentsNode[]: one for each entry of the dispatch
 #define DOLP_BINDING_RULE 7           // RuleNode: one for all entries
+// mueller.comp reads the rule nodes, and in place of the first and the results of the moments:
+#define DOLP_BINDING_BEAMS DOLP_BINDING_THETAS      // BeamNode[]: one for each entry of the dispatch
+#define DOLP_BINDING_MUELLERS DOLP_BINDING_MOMENTS  // MuellerNode[]: likewise
 
 // ---- Specialization constants --------------------------------------------------------------------------------------
 #define DOLP_SPEC_LOCAL_SIZE 0
@@ -24,14 +27,14 @@
 #define DOLP_MASKING_INTEGRAL 2u
 #define DOLP_MASKING_SMITH 3u
 
-// ---- Push constants: four uints, used by both entry points ----------------------------------------------------------
-// count: entries of this dispatch (moments.comp) or shapes bound (masking_table.comp); first: the first of them, as a
-// position in the bound buffers. Output i of a dispatch belongs to entry first + i.
+// ---- Push constants: four uints, used by all entry points -----------------------------------------------------------
+// count: entries of this dispatch (moments.comp, mueller.comp) or shapes bound (masking_table.comp); first: the first of
+// them, as a position in the bound buffers. Output i of a dispatch belongs to entry first + i.
 #define DOLP_PUSH_CONSTANTS uint first; uint count; uint unused_0; uint unused_1;
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
 #define DOLP_MAX_PIECES 12       // pieces of the slope axis for one direction
-#define DOLP_MAX_ORDER 64        // largest Gauss order of the rule nodes
+#define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes
 #define DOLP_MASKING_OCTAVES 29  // of v = 1 + tau/scale
 #define DOLP_MASKING_CELL_BITS_FLOAT 3   // 2^bits cells per octave
 #define DOLP_MASKING_CELL_BITS_DOUBLE 6
@@ -43,20 +46,25 @@
 struct RuleNode {
   real digits;            // decimal digits that the sums are to have
   real t_nodes;           // slope axis: nodes of a piece whatever its digits
-  real t_growth;          // factor of the nodes for each digit
+  real t_growth;          // factor of the nodes for each digit,
+  real t_curvature;       // and by how much less it would be for a digit less
   real t_strip;           // distance in X to the next singularity off the real axis
   real t_root_nodes;      // more nodes for a square root at an end
   real phi_half_nodes;    // azimuth: the same for an arc that touches phi = 0 or pi,
   real phi_centre_nodes;  // for any other arc
   real phi_circle_nodes;  // and for the whole half circle
   real phi_growth;
+  real phi_curvature;
   real phi_circle_growth;
   real phi_pole_growth;
   real circle_pole;
   real phi_cluster_growth;
+  real phi_cluster_digits;   // factor of its nodes for each digit
+  real cluster_pole_growth;  // factor of what the pole asks for
   real strip[3];         // for the arcs of each zone: distance in phi to the next singularity off the real axis
   real cluster_below_q;  // below this q an arc clusters its nodes where the limit b of `integral` meets pi/2
-  real node_stride;      // largest order of the rule nodes
+  real largest_order;    // of the rule nodes
+  real most_evaluations; // of one entry, beyond which every arc gets a single node: bounds the loop iterations
 };
 
 // One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. Under total
@@ -69,8 +77,6 @@ struct ThetaNode {
   real has_line;                   // 1: split at the line b = pi/2 of `integral`, or at the cusp of smith
   real t_growth;                   // toward grazing incidence more nodes for each digit: factor of RuleNode::t_growth,
   real phi_narrowing;              // divisor of RuleNode::strip
-  real order_limit_t;              // most nodes of a piece and of an arc, which bounds the loop iterations
-  real order_limit_phi;
   real end[DOLP_MAX_PIECES + 1];   // ascending slopes; the last may exceed any cut
   real kind[DOLP_MAX_PIECES + 1];  // bit 0: square-root end just above, bit 1: just below
 };
@@ -108,6 +114,17 @@ struct GeometryNode {
   real sin_2eta_i;
   real cos_2eta_r;
   real sin_2eta_r;
+};
+
+// One pBRDF to evaluate. What cancels or overflows in a float comes from the host: the geometry, w^2 and the density.
+struct BeamNode {
+  GeometryNode g;
+  ShapeNode shape;  // its scale and cut are those of physics/in_plane.glsl
+  real density;     // D(alpha) / 4 [1/sr] over a power of two that the host keeps: in [1/2, 1), or 0
+  real n2_re;       // Re(N^2)
+  real n2m1_re;     // Re(N^2 - 1)
+  real n2m1_im;     // Im(N^2)
+  real w2_re;       // Re(N^2 - sin^2(beta))
 };
 
 // A Mueller matrix, row by row.

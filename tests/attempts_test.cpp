@@ -23,7 +23,7 @@ constexpr double kRounding = 1e-12;  // of a power of ten, relative
 constexpr double kInFloat = 1e-5;
 constexpr double kInDouble = 1e-6;
 
-constexpr double kTightestRule = 1e-14;
+constexpr double kTightestRule = 1e-15;
 
 Accuracy accuracy(double tolerance, Precision precision = Precision::kAuto) {
   Accuracy result;

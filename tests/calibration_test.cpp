@@ -87,7 +87,7 @@ const PointCalibration& only_point(const std::vector<GroupCalibration>& groups) 
 
 // An error planted in r_q beside which that of the rules, 1e-3 of it, is nothing.
 TEST(Calibration, PlantedError_NeedsTheFactorThatMakesTheEstimate) {
-  constexpr double kTolerance = 1e-6;
+  constexpr double kTolerance = 1e-5;
   constexpr double kRulesShare = 0.3;  // the estimate is pessimistic by more than three at this point
   for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
     StoredCase stored = ordinary_case(masking);

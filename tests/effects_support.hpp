@@ -124,7 +124,7 @@ inline std::string describe(const Scene& scene, const SceneEntry& entry) {
 inline std::vector<PointResult> run(const Scene& scene, const std::vector<SceneEntry>& entries,
                                     const EffectPlan& plan) {
   CpuEvaluator evaluator(Precision::kDouble);
-  return evaluate_scene(scene, entries, plan, plan.needs_moments ? &evaluator : nullptr, {});
+  return evaluate_scene(scene, entries, plan, &evaluator, {});
 }
 
 /// The plan that keeps everything but one part.

@@ -39,8 +39,6 @@ typename Text::ThetaNode direction(double theta_deg) {
   node.has_line = 1.0;
   node.t_growth = 1.0;
   node.phi_narrowing = 1.0;
-  node.order_limit_t = DOLP_MAX_ORDER;
-  node.order_limit_phi = DOLP_MAX_ORDER;
   return theta_in<Text>(node);
 }
 
@@ -48,7 +46,7 @@ typename Text::ThetaNode direction(double theta_deg) {
 KernelData whole_data(const ShapeCase& shape, Masking masking, const OpticalConstants& index) {
   KernelData data = data_of(shape, masking, index);
   data.rule_nodes = rule_nodes(DOLP_MAX_ORDER);
-  data.rule.node_stride = DOLP_MAX_ORDER;
+  data.rule.largest_order = DOLP_MAX_ORDER;
   return data;
 }
 
@@ -58,7 +56,7 @@ typename Text::RuleNode rule_of_order(int order) {
   kernel::RuleNode node = rule_node(Masking::kNone, 0.0);
   node.phi_half_nodes = node.phi_centre_nodes = node.phi_circle_nodes = order;
   node.cluster_below_q = 0.0;
-  node.node_stride = DOLP_MAX_ORDER;
+  node.largest_order = DOLP_MAX_ORDER;
   return rule_in<Text>(node);
 }
 
@@ -68,7 +66,7 @@ typename Text::AzimuthSums sums_of_order(Text& text, int order, const typename T
                                          const typename Text::ShapeNode& shape, const typename Text::IndexNode& index,
                                          Real slope) {
   return text.azimuth_sums(rule_of_order<Text>(order), theta, shape, index, 0U, static_cast<RealOf<Text>>(slope),
-                           RealOf<Text>(0));
+                           RealOf<Text>(0), RealOf<Text>(DOLP_MAX_ORDER));
 }
 
 // A random direction and slope: steep, flat, near the normal and near grazing.
@@ -350,13 +348,13 @@ TYPED_TEST(ArcsText, CoincidingOrReversedEnds_MakeAnEmptyArc) {
   // and an empty arc adds nothing
   const KernelData data = whole_data(kShape, Masking::kNone, {1.508, 0.0});
   text = text_for<TypeParam>(data);
-  const auto slice = typename TypeParam::Slice{Real(0.5), Real(0), Real(0), Real(0)};
+  const auto slice = typename TypeParam::Slice{Real(0.5), Real(0), Real(DOLP_MAX_ORDER), Real(0), Real(0)};
   const auto sums =
       text.arc_sums(rule_of_order<TypeParam>(8), direction<TypeParam>(60.0), shape_in<TypeParam>(data.shapes[0]),
                     index_in<TypeParam>(data.indices[0]), 0U, slice, text.make_arc(side, forward), 0);
   EXPECT_EQ(sums.evaluations, Real(0));
   EXPECT_EQ(sums.sum.r_i, Real(0));
-  EXPECT_EQ(sums.null.r_i, Real(0));
+  EXPECT_EQ(sums.doubt, Real(0));
 }
 
 TYPED_TEST(ArcsText, MakeArc_HasTheSectionOfItsEnds) {
@@ -417,6 +415,31 @@ TYPED_TEST(ArcsText, OrderBetween_RoundsAndKeepsToItsLimits) {
   EXPECT_EQ(text.order_between(Real(1e6), Real(20)), 20);
 }
 
+// Nodes are digits * growth, growth falling with each digit given up: the digits lost explain the nodes lost.
+TYPED_TEST(ArcsText, LostDigits_AreThoseThatTheLimitDoesNotPayFor) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  for (const double digits : {1.0, 4.0, 9.0, 16.0}) {
+    for (const double growth : {1.0, 2.5, 4.0}) {
+      for (const double curvature : {0.0, 0.05, 0.2}) {
+        const double nodes = 40.0;
+        EXPECT_EQ(text.lost_digits(Real(digits), Real(growth), Real(curvature), Real(nodes), Real(nodes)), Real(0));
+        double before = 0.0;
+        for (const double limit : {39.0, 30.0, 15.0, 4.0}) {
+          const double lost = static_cast<double>(
+              text.lost_digits(Real(digits), Real(growth), Real(curvature), Real(nodes), Real(limit)));
+          EXPECT_GT(lost, before);
+          before = lost;
+          const bool is_all = growth < curvature * digits;  // the parabola's top comes before its zero
+          if (is_all) continue;
+          const double left = (digits - lost) * (growth - curvature * lost) / (digits * growth);
+          EXPECT_NEAR(left, limit / nodes, 40.0 * kEpsilon<TypeParam> * digits) << digits << " " << growth << " " << limit;
+        }
+      }
+    }
+  }
+}
+
 // Every arc of every direction gets an order between 1 and its limit, and no fewer nodes for more digits.
 TYPED_TEST(ArcsText, ArcOrder_GrowsWithTheDigitsWithinItsLimit) {
   using Real = RealOf<TypeParam>;
@@ -428,8 +451,7 @@ TYPED_TEST(ArcsText, ArcOrder_GrowsWithTheDigitsWithinItsLimit) {
     const auto rule = rule_in<TypeParam>(data.rule);
     auto all = random_facets<TypeParam>();
     for (const double theta_deg : {0.0, 1e-6, 90.0}) all.push_back({direction<TypeParam>(theta_deg), Real(0.3)});
-    for (auto& facets : all) {
-      facets.theta.order_limit_phi = kLimit;
+    for (const auto& facets : all) {
       const auto lines = text.split_lines(facets.theta, index, facets.slope);
       const auto forward = decltype(lines.first)(Real(1), Real(0));
       const std::array ends = {forward, lines.first, lines.second, lines.horizon};
@@ -438,7 +460,7 @@ TYPED_TEST(ArcsText, ArcOrder_GrowsWithTheDigitsWithinItsLimit) {
         if (!(arc.quarter > Real(0))) continue;
         int before = 1;
         for (int digits = 0; digits <= 16; ++digits) {
-          const auto slice = typename TypeParam::Slice{facets.slope, static_cast<Real>(digits), Real(0), Real(0)};
+          const auto slice = typename TypeParam::Slice{facets.slope, static_cast<Real>(digits), Real(kLimit), Real(0), Real(0)};
           const int order =
               text.order_between(text.arc_nodes(rule, facets.theta, index, slice, arc, zone), Real(kLimit));
           EXPECT_GE(order, before) << "c " << facets.theta.c << " t " << facets.slope << " zone " << zone;
@@ -461,7 +483,7 @@ TYPED_TEST(ArcsText, WholeCircle_HasTheNodesThatItsSecondHarmonicNeeds) {
   const auto back = decltype(forward)(Real(0), Real(1));
   for (const double theta_deg : {0.0, 1e-6, 1e-3, 1.0, 10.0}) {
     for (double digits = 0.0; digits <= 12.0; digits += 0.5) {
-      const auto slice = typename TypeParam::Slice{Real(0.1), static_cast<Real>(digits), Real(0), Real(0)};
+      const auto slice = typename TypeParam::Slice{Real(0.1), static_cast<Real>(digits), Real(DOLP_MAX_ORDER), Real(0), Real(0)};
       const int order = text.order_between(
           text.arc_nodes(rule, direction<TypeParam>(theta_deg), index, slice, text.make_arc(forward, back), 0),
           Real(64));
@@ -552,11 +574,14 @@ TYPED_TEST(ArcsText, NullSums_ShowTooFewNodes) {
         const auto coarse = sums_of_order(text, 3, theta, shape, index, slope);
         const double scale = static_cast<double>(fine.sum.r_i);
         if (!(scale > 0.0)) continue;
-        // 81 times as large as the weights, of either sign
-        EXPECT_LE(static_cast<double>(fine.null.r_i), 300.0 * kEpsilon<TypeParam> * scale + 1e-12) << theta_deg;
-        EXPECT_GE(static_cast<double>(coarse.null.r_i), 0.1 * std::abs(static_cast<double>(coarse.sum.r_i) - scale))
-            << theta_deg << " " << slope;
-        EXPECT_GT(static_cast<double>(coarse.null.r_i), 100.0 * static_cast<double>(fine.null.r_i)) << theta_deg;
+        // Without digits the doubt of an arc is the geometric mean of sum and null sum, the null weights up to 81 times
+        // as large as the weights, of either sign.
+        const auto null = [](const auto& sums) {
+          return static_cast<double>(sums.doubt) * static_cast<double>(sums.doubt) / static_cast<double>(sums.sum.r_i);
+        };
+        EXPECT_LE(null(fine), 600.0 * kEpsilon<TypeParam> * scale + 1e-12) << theta_deg;
+        EXPECT_GE(null(coarse), 0.1 * std::abs(static_cast<double>(coarse.sum.r_i) - scale)) << theta_deg << " " << slope;
+        EXPECT_GT(null(coarse), 100.0 * null(fine)) << theta_deg;
       }
     }
   }

@@ -15,6 +15,12 @@ using nlohmann::json;
 const std::vector<std::pair<std::string, std::string>> kNoDriver = {{"VK_DRIVER_FILES", "/nonexistent.json"},
                                                                     {"VK_ICD_FILENAMES", "/nonexistent.json"}};
 const std::vector<std::string> kIsothermal = {"--set", "surroundings.temperature_K=300"};
+const std::vector<std::string> kBistatic = {"--set", "geometry.mode=bistatic", "--set",
+                                            "source.relative_irradiance=0.5"};
+// Emission and surroundings of one temperature are unpolarised whatever the moments are.
+const std::vector<std::string> kBeamAlone = {"--set", "surroundings.temperature_K=300",
+                                             "--set", "geometry.mode=bistatic",
+                                             "--set", "source.relative_irradiance=0.5"};
 // A float on the device may round an order the other way than on the CPU, which changes a circle of nodes or two.
 constexpr double kOrderRounding = 0.05;
 // Of what 256 of many entries say about all.
@@ -146,13 +152,11 @@ TEST_F(Plan, SunInTheVisible_ThermalRadiationIsDropped) {
 }
 
 TEST_F(Plan, BeamOnAnIsothermalSurface_NeedsTheBeamAlone) {
-  const std::vector<std::string> beam =
-      joined(kIsothermal, {"--set", "geometry.mode=bistatic", "--set", "source.relative_irradiance=0.5"});
-  const json report = table(beam);
+  const json report = table(kBeamAlone);
   EXPECT_EQ(report["evaluations"], 0.0);
-  EXPECT_EQ(report["device"], "none");
+  EXPECT_EQ(report["dispatches"], 1);
   const Table few = read_table(at("t.nc"));
-  table(joined(beam, {"--keep-all"}));
+  table(joined(kBeamAlone, {"--keep-all"}));
   const Table all = read_table(at("t.nc"));
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_NEAR(few.dolp[i], all.dolp[i], few.error_estimate[i] + all.error_estimate[i]);
@@ -160,13 +164,31 @@ TEST_F(Plan, BeamOnAnIsothermalSurface_NeedsTheBeamAlone) {
   EXPECT_GT(*std::ranges::max_element(few.dolp), 1e-3);
 }
 
+TEST_F(Plan, BeamAlone_IsComputedInThePrecisionThatTheToleranceAsksFor) {
+  for (const auto& [tolerance, precision] :
+       {std::pair{"1e-3", "float"}, std::pair{"1e-5", "float and double"}, std::pair{"1e-8", "double"}}) {
+    const json report = this->table(joined(kBeamAlone, {"--tolerance", tolerance}));
+    EXPECT_EQ(report["precision"], precision) << tolerance;
+    EXPECT_LE(report["worst_error_estimate"], std::strtod(tolerance, nullptr));
+  }
+}
+
 TEST_F(Plan, Mirrors_NeedNoDevice) {
-  Command wanted = command({"table", "scene.toml", "-o", "t.nc", "--set", "grid.sigma=0", "--json"});
+  for (const char* mode : {"hemispherical", "bistatic"}) {
+    Command wanted = command({"table", "scene.toml", "-o", "t.nc", "--set", "grid.sigma=0", "--json", "--set",
+                              "source.relative_irradiance=0.5", "--set", "geometry.mode=" + std::string(mode)});
+    wanted.environment = kNoDriver;
+    const Outcome outcome = run(wanted);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(json::parse(outcome.out)["device"], "none");
+    EXPECT_EQ(read_table(at("t.nc")).rho_i.size(), 8U);
+  }
+}
+
+TEST_F(Plan, BeamWithoutADevice_IsNoSilentSwitchToTheCpu) {
+  Command wanted = command(joined({"table", "scene.toml", "-o", "t.nc"}, kBeamAlone));
   wanted.environment = kNoDriver;
-  const Outcome outcome = run(wanted);
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(json::parse(outcome.out)["device"], "none");
-  EXPECT_EQ(read_table(at("t.nc")).rho_i.size(), 8U);
+  EXPECT_EQ(run(wanted).status, 3);
 }
 
 TEST_F(Plan, FresnelEmissionAlone_NeedsNoMoments) {
@@ -186,11 +208,32 @@ TEST_F(Plan, FewEntries_PredictsTheCpuRunExactly) {
   }
 }
 
+TEST_F(Plan, Bistatic_PredictsMomentsAndBeams) {
+  const json predicted = plan(kBistatic);
+  EXPECT_EQ(predicted["moments"], 4);  // of one view and four surfaces
+  EXPECT_EQ(predicted["beams"], 16);
+  EXPECT_TRUE(predicted["first_attempt"]["is_exact"]);
+  EXPECT_EQ(predicted["evaluations"], table(joined(kBistatic, {"--evaluator", "cpu"}))["evaluations"]);
+  EXPECT_EQ(predicted["pipelines"].size(), 3U);
+  ASSERT_EQ(predicted["further_attempts"]["share"], 0.0);
+  EXPECT_EQ(predicted["first_attempt"]["dispatches"], table(kBistatic)["dispatches"]);
+  const json alone = plan(joined(kBeamAlone, {"--tolerance", "1e-5"}));
+  EXPECT_EQ(alone["moments"], 0);
+  EXPECT_EQ(alone["beams"], 16);
+  EXPECT_TRUE(alone["rule"].is_null());
+  EXPECT_GT(alone["further_attempts"]["beams"], 0.0);
+  EXPECT_GT(alone["device_bytes"], 0);
+  EXPECT_GT(alone["estimated_cpu_s"], 0.0);
+}
+
 TEST_F(Plan, Device_PredictsEvaluationsAndDispatches) {
   // Cases that need no second attempt.
-  for (const auto& [tolerance, masking] : {std::pair{"1e-5", "none"}, std::pair{"1e-2", "v-cavity"}}) {
-    const std::vector<std::string> easy = {"--tolerance", tolerance, "--set",
-                                           "surface.masking=" + std::string(masking)};
+  for (const auto& [tolerance, masking] :
+       {std::pair{"1e-5", "none"}, std::pair{"1e-4", "v-cavity"}, std::pair{"1e-4", "smith"}}) {
+    const std::vector<std::string> easy = {"--tolerance", tolerance,
+                                           "--set",       "surface.masking=" + std::string(masking),
+                                           "--set",       "grid.theta_deg=[60,30,0]",
+                                           "--set",       "grid.sigma=0.4"};
     const json predicted = plan(easy);
     const json spent = table(easy);
     const double evaluations = spent["evaluations"];

@@ -196,24 +196,27 @@ constexpr std::size_t kGeometries = 300;
 class PbrdfOfPoints {
  public:
   PbrdfOfPoints(const Model& model, const std::vector<Point>& points, bool in_double)
-      : data_(kernel_data(request_of(model, points, 1e-4))),
-        text_(in_double ? make_kernel_text_double(data_) : make_kernel_text_float(data_)) {
-    if (!data_.needs_masking_table()) return;
-    for (std::size_t i = 0; i < points.size(); ++i) text_->build_masking_table(i);
-  }
+      : model_(model), points_(points), evaluator_(in_double ? Precision::kDouble : Precision::kFloat) {}
 
-  kernel::MuellerNode operator()(std::size_t point, const Beams& beams) {
-    return text_->mueller(geometry_node(beams.theta_i_deg, beams.theta_r_deg, beams.delta_phi_deg), point, point);
+  ScatteringMatrix operator()(std::size_t point, const Beams& beams) {
+    ScatteringRequest request;
+    request.distribution = model_.distribution;
+    request.masking = model_.masking;
+    request.angles = {{beams.theta_i_deg, beams.theta_r_deg, beams.delta_phi_deg}};
+    request.shapes = {points_[point].shape};
+    request.indices = {points_[point].index};
+    request.entries = {{0, 0, 0}};
+    return evaluator_.scatter(request, {}).front();
   }
 
  private:
-  KernelData data_;
-  std::unique_ptr<KernelText> text_;
+  Model model_;
+  const std::vector<Point>& points_;
+  CpuEvaluator evaluator_;
 };
 
-// A float's exponential ends at e^-80 and a double's at e^-690: smaller matrices are 0 or nearly so.
-constexpr double kSmallestFloat = 1e-25;
-constexpr double kSmallestDouble = 1e-280;
+// Smaller matrices lose digits as subnormal numbers do.
+constexpr double kSmallest = 1e-300;
 
 class EveryModel : public testing::TestWithParam<Model> {};
 
@@ -230,9 +233,9 @@ TEST_P(EveryModel, ExchangedBeams_GiveTheTransposedMatrix) {
     PbrdfOfPoints pbrdf(GetParam(), points, in_double);
     for (std::size_t n = 0; n < points.size(); ++n) {
       const Beams beams = random.beams();
-      const kernel::MuellerNode f = pbrdf(n, beams);
-      const kernel::MuellerNode g = pbrdf(n, {beams.theta_r_deg, beams.theta_i_deg, -beams.delta_phi_deg});
-      const double scale = std::max(f.m[0], in_double ? kSmallestDouble : kSmallestFloat);
+      const ScatteringMatrix f = pbrdf(n, beams);
+      const ScatteringMatrix g = pbrdf(n, {beams.theta_r_deg, beams.theta_i_deg, -beams.delta_phi_deg});
+      const double scale = std::max(f.m[0], kSmallest);
       for (std::size_t i = 0; i < 16; ++i) {
         const std::size_t row = i / 4;
         const std::size_t column = i % 4;

@@ -19,6 +19,9 @@ int run_table(const Options& options);
 /// `dolp eval SCENE --points IN -o OUT`: the same quantities at scattered points.
 int run_eval(const Options& options);
 
+/// `dolp mueller SCENE --points IN -o OUT`: the Mueller pBRDF at scattered geometries.
+int run_mueller(const Options& options);
+
 /// `dolp plan SCENE`: what a table of the scene would compute and leave out, and what it would cost.
 int run_plan(const Options& options);
 

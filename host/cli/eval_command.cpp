@@ -25,9 +25,7 @@ std::string result_line(const std::string& input, const PointResult& r) {
 
 int run_eval(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
-  if (options.scene_path == "-" && options.points_path == "-") {
-    throw InputError("--points -: SCENE is - too, and stdin can be read only once; name a file for one of them");
-  }
+  check_one_stdin(options);
   check_output_is_no_input(options);
   const Scene scene = load_scene(options);
   const Points points = read_points(options.points_path, PointsKind::kDirections);

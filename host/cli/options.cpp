@@ -20,6 +20,12 @@ void check_output_is_no_input(const Options& options) {
   }
 }
 
+void check_one_stdin(const Options& options) {
+  if (options.scene_path == "-" && options.points_path == "-") {
+    throw InputError("--points -: SCENE is - too, and stdin can be read only once; name a file for one of them");
+  }
+}
+
 Scene load_scene(const Options& options) {
   std::vector<std::string> overrides = options.overrides;
   if (!options.tolerance.empty()) overrides.push_back("accuracy.tolerance=" + options.tolerance);

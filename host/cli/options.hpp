@@ -38,6 +38,10 @@ struct Options {
 /// Errors: InputError.
 void check_output_is_no_input(const Options& options);
 
+/// Refuses to read scene and points from stdin both.
+/// Errors: InputError.
+void check_one_stdin(const Options& options);
+
 /// The scene with all overrides of the command line: --set first, then --tolerance and --precision.
 Scene load_scene(const Options& options);
 

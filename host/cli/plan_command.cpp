@@ -30,31 +30,40 @@ DeviceDescription device_of(const Options& options, const Scene& scene, PlanRepo
   }
 }
 
-void add_request(PlanReport& report, const MomentsRequest& request, const DeviceDescription& device) {
-  if (request.entries.empty()) return;
-  const DispatchPlan of_request = dispatch_plan(request, device);
+void add_dispatches(PlanReport& report, const DispatchPlan& of_request) {
   report.dispatches.dispatches += of_request.dispatches;
   report.dispatches.tile_entries = std::max(report.dispatches.tile_entries, of_request.tile_entries);
   report.dispatches.block_shapes = std::max(report.dispatches.block_shapes, of_request.block_shapes);
   report.dispatches.device_bytes = std::max(report.dispatches.device_bytes, of_request.device_bytes);
+}
+
+void add_pipeline(PlanReport& report, const char* kernel, Precision precision) {
+  const Surface& surface = report.scene.surface;
+  const std::string text =
+      fmt::format("{}, {}: distribution {}, masking {}", kernel, precision == Precision::kDouble ? "double" : "float",
+                  name_of(surface.distribution), name_of(surface.masking));
+  if (std::ranges::find(report.pipelines, text) == report.pipelines.end()) report.pipelines.push_back(text);
+}
+
+void add_request(PlanReport& report, const MomentsRequest& request, const DeviceDescription& device) {
+  if (request.entries.empty()) return;
+  add_dispatches(report, dispatch_plan(request, device));
   const KernelData data = kernel_data(request);
-  KernelPlan& kernel = report.kernel ? *report.kernel : report.kernel.emplace();
-  kernel.digits = data.rule.digits;
-  for (const kernel::ThetaNode& node : data.thetas) {
-    kernel.most_slope_nodes = std::max(kernel.most_slope_nodes, static_cast<int>(node.order_limit_t));
-    kernel.most_azimuth_nodes = std::max(kernel.most_azimuth_nodes, static_cast<int>(node.order_limit_phi));
-  }
-  const char* precision = request.precision == Precision::kDouble ? "double" : "float";
-  const std::string constants = fmt::format("{}: distribution {}, masking {}", precision, name_of(request.distribution),
-                                            name_of(request.masking));
-  kernel.pipelines = {"moments, " + constants};
-  if (data.needs_masking_table()) kernel.pipelines.push_back("masking_table, " + constants);
+  report.rule = {data.rule.digits, static_cast<int>(data.rule.largest_order), data.rule.most_evaluations};
+  add_pipeline(report, "moments", request.precision);
+  if (data.needs_masking_table()) add_pipeline(report, "masking_table", request.precision);
+}
+
+void add_request(PlanReport& report, const ScatteringRequest& request, const DeviceDescription& device) {
+  if (request.entries.empty()) return;
+  add_dispatches(report, dispatch_plan(request, device));
+  add_pipeline(report, "mueller", request.precision);
 }
 
 /// For each effect the share of the evaluations that would not be made without it.
 std::vector<double> work_shares(const PlanReport& report) {
   const double moments = report.run.first_evaluations + report.run.again_evaluations;
-  const double beams = static_cast<double>(report.run.beams);
+  const double beams = static_cast<double>(report.run.beams) + report.run.again_beams;
   std::vector<double> shares;
   for (const EffectRow& row : report.effects) {
     double saved = 0.0;
@@ -78,7 +87,8 @@ int run_plan(const Options& options) {
   add_influences(report.effects, report.scene, entries);
   const DeviceDescription device = device_of(options, report.scene, report);
   report.run = predict_run(report.scene, entries, report.plan, device.float64,
-                           [&](const MomentsRequest& request) { add_request(report, request, device); });
+                           {[&](const MomentsRequest& request) { add_request(report, request, device); },
+                            [&](const ScatteringRequest& request) { add_request(report, request, device); }});
   report.work_shares = work_shares(report);
   if (options.json) {
     fmt::print("{}\n", plan_json(report).dump(2));

@@ -50,7 +50,9 @@ std::string effects_table(const PlanReport& report) {
                         row.unbounded, report.run.entries);
     break;
   }
-  text += "  work: share of the evaluations that would go with the effect; those that share theirs have none alone\n";
+  text +=
+      "  work: share of the evaluations, f among them, that would go with the effect; those that share theirs have "
+      "none alone\n";
   return text;
 }
 
@@ -78,21 +80,24 @@ std::string work_lines(const PlanReport& report) {
   const RunPrediction& run = report.run;
   std::string text;
   const std::string how = run.is_exact ? "counted" : fmt::format("estimated from {} entries", kCountedEntries);
-  text += fmt::format("  attempts    first: {} at tolerance {:g}, {} moments; {:.3g} % of them again, tighter\n",
-                      precision_name(run.first.precision), run.first.tolerance, run.moments, kPoints * run.again_share);
+  text += fmt::format(
+      "  attempts    first: {} at tolerance {:g}, {} moments, {} values of f; {:.3g} % again, tighter\n",
+      precision_name(run.first.precision), run.first.tolerance, run.moments, run.beams, kPoints * run.again_share);
+  if (run.moments == 0) return text;
   text += fmt::format("  work        {:.4g} integrand evaluations in the first attempt ({}), {:.2g} in others\n",
                       run.first_evaluations, how, run.again_evaluations);
   return text;
 }
 
 std::string kernel_lines(const PlanReport& report) {
-  const KernelPlan& kernel = *report.kernel;
   std::string text;
-  for (const std::string& pipeline : kernel.pipelines) text += fmt::format("  pipeline    {}\n", pipeline);
-  text += fmt::format(
-      "  rule        Gauss rules on smooth pieces, {:.3g} digits; at most {} nodes a piece of slopes, {} an arc of "
-      "azimuth\n",
-      kernel.digits, kernel.most_slope_nodes, kernel.most_azimuth_nodes);
+  for (const std::string& pipeline : report.pipelines) text += fmt::format("  pipeline    {}\n", pipeline);
+  if (report.rule) {
+    text += fmt::format(
+        "  rule        Gauss rules on smooth pieces, {:.3g} digits; at most {} nodes a piece, {:g} evaluations an "
+        "entry\n",
+        report.rule->digits, report.rule->most_nodes, report.rule->most_evaluations);
+  }
   text += work_lines(report);
   const std::string device =
       report.device.empty() ? "limits of any Vulkan device; none here: " + report.why_no_device : report.device;
@@ -103,20 +108,19 @@ std::string kernel_lines(const PlanReport& report) {
 }
 
 std::optional<double> estimated_s(const RunPrediction& run) {
-  if (run.counted_evaluations == 0.0) return std::nullopt;
-  return run.counted_s / run.counted_evaluations * (run.first_evaluations + run.again_evaluations);
+  if (run.moments + run.beams == 0) return std::nullopt;
+  return run.moments_s + run.beams_s;
 }
 
 std::string cost_lines(const PlanReport& report) {
-  std::string text =
-      report.kernel ? kernel_lines(report) : "  work        no integrand evaluations: no device is used\n";
-  if (report.run.beams > 0) text += fmt::format("  beams       {} values of f, on the CPU\n", report.run.beams);
+  const bool is_idle = report.pipelines.empty();
+  std::string text = is_idle ? "  work        no integrand evaluations: no device is used\n" : kernel_lines(report);
   text +=
       fmt::format("  memory      {:.3g} MiB of the host, {:.3g} MiB of the device\n", report.run.host_bytes / kMebibyte,
                   static_cast<double>(report.dispatches.device_bytes) / kMebibyte);
   if (const std::optional<double> seconds = estimated_s(report.run)) {
     text += fmt::format(
-        "  time        estimate: {:.2g} s of integration with --evaluator cpu, from counting here; no device is "
+        "  time        estimate: {:.2g} s of evaluation with --evaluator cpu, from counting here; no device is "
         "timed\n",
         *seconds);
   }
@@ -139,11 +143,8 @@ Json rows_json(const PlanReport& report) {
   return rows;
 }
 
-Json kernel_json(const KernelPlan& kernel) {
-  return {{"digits", kernel.digits},
-          {"most_slope_nodes", kernel.most_slope_nodes},
-          {"most_azimuth_nodes", kernel.most_azimuth_nodes},
-          {"pipelines", kernel.pipelines}};
+Json rule_json(const RulePlan& rule) {
+  return {{"digits", rule.digits}, {"most_nodes", rule.most_nodes}, {"most_evaluations", rule.most_evaluations}};
 }
 
 }  // namespace
@@ -167,7 +168,8 @@ Json plan_json(const PlanReport& report) {
                {"rows", rows_json(report)},
                {"gives_rho", report.plan.gives_rho},
                {"gives_albedo", report.plan.needs_moments}};
-  json["kernel"] = report.kernel ? kernel_json(*report.kernel) : Json(nullptr);
+  json["rule"] = report.rule ? rule_json(*report.rule) : Json(nullptr);
+  json["pipelines"] = report.pipelines;
   json["device"] = report.device.empty() ? Json(nullptr) : Json(report.device);
   json["why_no_device"] = report.why_no_device;
   json["spectral_samples"] = run.spectral_samples;
@@ -178,7 +180,8 @@ Json plan_json(const PlanReport& report) {
                            {"evaluations", run.first_evaluations},
                            {"is_exact", run.is_exact},
                            {"dispatches", report.dispatches.dispatches}};
-  json["further_attempts"] = {{"share", run.again_share}, {"evaluations", run.again_evaluations}};
+  json["further_attempts"] = {
+      {"share", run.again_share}, {"evaluations", run.again_evaluations}, {"beams", run.again_beams}};
   json["evaluations"] = run.first_evaluations + run.again_evaluations;
   json["tile_entries"] = report.dispatches.tile_entries;
   json["block_shapes"] = report.dispatches.block_shapes;

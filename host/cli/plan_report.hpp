@@ -13,12 +13,11 @@
 
 namespace dolp::cli {
 
-/// The kernel's rule and pipelines of the first attempt.
-struct KernelPlan {
+/// The rule of the moments in the first attempt.
+struct RulePlan {
   double digits = 0.0;
-  int most_slope_nodes = 0;    ///< of a piece of the slope axis
-  int most_azimuth_nodes = 0;  ///< of an arc
-  std::vector<std::string> pipelines;
+  int most_nodes = 0;             ///< of a piece of the slope axis or an arc of azimuth
+  double most_evaluations = 0.0;  ///< of one entry
 };
 
 /// Everything that there is to say about a run that has not happened.
@@ -26,11 +25,12 @@ struct PlanReport {
   Scene scene;
   EffectPlan plan;
   std::vector<EffectRow> effects;
-  std::vector<double> work_shares;  ///< of each effect: evaluations that would go with it, 0 to 1
+  std::vector<double> work_shares;  ///< of each effect: evaluations and f that would go with it, 0 to 1
   RunPrediction run;
-  std::optional<KernelPlan> kernel;  ///< none when nothing is integrated
-  DispatchPlan dispatches;           ///< of the first attempt
-  std::string device;                ///< its name; empty without one
+  std::optional<RulePlan> rule;        ///< none without moments
+  std::vector<std::string> pipelines;  ///< of the first attempt; none when nothing is left for the evaluator
+  DispatchPlan dispatches;             ///< likewise
+  std::string device;                  ///< its name; empty without one
   std::string why_no_device;
 };
 

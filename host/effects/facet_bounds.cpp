@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "evaluate/radiometry/smooth_surface.hpp"
+#include "evaluate/scattering.hpp"
 #include "plan/geometry.hpp"
 
 namespace dolp {
@@ -183,10 +184,10 @@ ReflectanceBounds coarse_reflectance_bounds(const Surface& surface, double theta
 
 BeamBounds beam_bounds(const Surface& surface, double theta_i_deg, double theta_r_deg, double delta_phi_deg,
                        const SlopeShape& shape, std::span<const OpticalConstants> indices) {
-  if (shape.sigma == 0.0) {
-    const bool is_specular = std::abs(delta_phi_deg) == 180.0 && theta_i_deg == theta_r_deg;
-    return is_specular ? BeamBounds{kInfinity, 0.0, kInfinity} : BeamBounds{};
-  }
+  const BeamAngles angles{theta_i_deg, theta_r_deg, delta_phi_deg};
+  const bool is_mirror = shape.sigma == 0.0;
+  if (!has_facet(angles) || (is_mirror && is_specular(angles))) return {kInfinity, 0.0, kInfinity};
+  if (is_mirror) return {};
   const kernel::GeometryNode g = geometry_node(theta_i_deg, theta_r_deg, delta_phi_deg);
   const double w = width(shape);
   const double sec2 = 1.0 + g.slope * g.slope;

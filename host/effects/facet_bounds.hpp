@@ -45,7 +45,8 @@ struct BeamBounds {
 };
 
 /// The closed form D G M / 4 but for G: exact for none and v-cavity, in [1/2, 1] for `integral`, in [1 / (1 + L + L_r),
-/// 1] for smith with L as above. For each of the indices.
+/// 1] for smith with L as above. For each of the indices. Infinite where f is not defined: of a mirror toward its
+/// specular direction, and between beams at 90 degrees both.
 BeamBounds beam_bounds(const Surface& surface, double theta_i_deg, double theta_r_deg, double delta_phi_deg,
                        const SlopeShape& shape, std::span<const OpticalConstants> indices);
 

@@ -1,14 +1,14 @@
-// What stands for 90 degrees where rho has a limit there.
+// What stands for 90 degrees where rho or f has a limit there.
 #pragma once
 
 #include "scene/scene.hpp"
 
 namespace dolp {
 
-/// rho of a rough surface approaches its limit like the cosine.
+/// rho and f of a rough surface approach their limits like the cosine.
 inline constexpr double kNearGrazingDeg = 90.0 - 1e-12;
 
-/// Whether rho of the specular part has a limit at 90 degrees.
+/// Whether rho and f of the specular part have a limit at 90 degrees.
 inline bool has_grazing_limit(Masking masking) { return masking == Masking::kVCavity || masking == Masking::kSmith; }
 
 /// The zenith itself, or just before 90 degrees for a limit there.

@@ -81,6 +81,8 @@ inline void note_precision(std::string& used, bool in_double) {
 using Progress = std::function<bool(std::size_t done, std::size_t total)>;
 struct Cancelled {};
 
+class ScatteringEvaluator;
+
 /// Computes moments. Results are in the order of `request.entries`.
 class MomentsEvaluator {
  public:
@@ -90,7 +92,9 @@ class MomentsEvaluator {
   virtual Precision precision() const { return Precision::kAuto; }
   /// Whether requests in double are possible.
   virtual bool has_double() const { return true; }
-  /// Totals over all calls of evaluate.
+  /// The same evaluator's pBRDFs (evaluate/scattering.hpp), which the bistatic mode needs; null when it has none.
+  virtual ScatteringEvaluator* scattering() { return nullptr; }
+  /// Totals over all calls, pBRDFs included.
   virtual EvaluationReport report() const = 0;
 };
 

@@ -89,7 +89,10 @@ double masking_error(const KernelData& data, const MomentsEntry& entry, double u
   return table * (may_diverge ? 1.0 + kDivergingSlope / shape.two_q_minus_3 : 1.0);
 }
 
-constexpr double kDeficitFactor = 2.5;  // by which the deficit's doubt says less than that of r_i
+// By which the deficit's doubt says less than that of r_i, also of a metal, whose deficit is small.
+constexpr double kDeficitFactor = 2.5;
+constexpr double kMetalDeficitFactor = 7.0;
+constexpr double kMetalContrast = 30.0;  // |N^2 - 1|
 
 // The core of the domain, see Difficulty.
 constexpr double kCoreCosTheta = 0.0087;
@@ -98,13 +101,33 @@ constexpr double kCoreNormalTolerance = 1e-7;
 constexpr double kCoreHorizonGap = 0.055;  // cos(theta) + pole_cos: a metal at grazing incidence
 constexpr double kCoreSmallestM = 0.007;
 constexpr double kCoreSmallestTableM = 0.028;  // integral and smith
-constexpr double kCoreLargestM = 1.7;
+constexpr double kCoreLargestM = 1.6;
 constexpr double kCorePoleCos = 0.01;
 constexpr double kCoreContrast = 0.05;  // |N^2 - 1|
-constexpr double kCoreSmithQ = 1.6;
+constexpr double kCoreSmithQ = 1.72;
 constexpr double kCoreIntegralQ = 1.45;
-constexpr double kCoreIntegralTolerance = 1e-8;
-constexpr double kReflectingContrast = 1.5;  // |N^2 - 1| up to which Re N^2 < 1 reflects nearly all beyond an angle
+constexpr double kCoreIntegralTolerance = 1e-7;
+constexpr double kKinkM = 0.4;
+constexpr double kGaussianKinkTolerance = 2e-10;
+constexpr double kGaussianKinkFactor = 5.0;
+constexpr double kKinkTolerance = 2e-14;
+constexpr double kKinkFactor = 18.0;
+constexpr double kReflectingContrast = 2.1;  // |N^2 - 1| up to which Re N^2 < 1 reflects nearly all beyond an angle
+
+// The kink where the limit b of `integral` meets pi/2, beside a heavy tail.
+bool has_kink(const KernelData& data, const kernel::ShapeNode& shape) {
+  return data.masking == Masking::kIntegral && data.distribution == Distribution::kCauchy &&
+         shape.q_minus_1 < kCoreIntegralQ - 1.0;
+}
+
+// By how much the doubts of the last attempts say less: many digits find every kink, also those of the gaussian, of which
+// all derivatives vanish.
+double tight_factor(const KernelData& data, const kernel::ShapeNode& shape) {
+  const bool gaussian_kink =
+      data.needs_masking_table() && data.distribution == Distribution::kGaussian && shape.m > kKinkM;
+  if (gaussian_kink && data.tolerance < kGaussianKinkTolerance) return kGaussianKinkFactor;
+  return has_kink(data, shape) && data.tolerance < kKinkTolerance ? kKinkFactor : 1.0;
+}
 
 Difficulty difficulty(const KernelData& data, const MomentsEntry& entry) {
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
@@ -115,15 +138,13 @@ Difficulty difficulty(const KernelData& data, const MomentsEntry& entry) {
   if (index.critical_cos > 0.0 || nearly_reflects) return Difficulty::kTotalReflection;
   const double smallest_m = data.needs_masking_table() ? kCoreSmallestTableM : kCoreSmallestM;
   const bool is_smith = data.masking == Masking::kSmith && data.distribution == Distribution::kCauchy;
-  // The kink where the limit b of `integral` meets pi/2, beside a heavy tail.
-  const bool has_kink = data.masking == Masking::kIntegral && data.distribution == Distribution::kCauchy &&
-                        shape.q_minus_1 < kCoreIntegralQ - 1.0 && data.tolerance < kCoreIntegralTolerance;
+  const bool is_kinked = has_kink(data, shape) && data.tolerance < kCoreIntegralTolerance;
   // Near the normal the circles have few nodes, which say little of themselves.
   const bool is_normal =
-      theta.s < kCoreSinTheta && (data.masking == Masking::kIntegral || data.tolerance < kCoreNormalTolerance);
+      theta.s < kCoreSinTheta && (data.masking != Masking::kNone || data.tolerance < kCoreNormalTolerance);
   const bool is_core = theta.c >= kCoreCosTheta && !is_normal && theta.c + index.pole_cos >= kCoreHorizonGap &&
                        shape.m >= smallest_m && shape.m <= kCoreLargestM && index.pole_cos >= kCorePoleCos &&
-                       contrast >= kCoreContrast && !has_kink && !(is_smith && shape.q_minus_1 < kCoreSmithQ - 1.0);
+                       contrast >= kCoreContrast && !is_kinked && !(is_smith && shape.q_minus_1 < kCoreSmithQ - 1.0);
   return is_core ? Difficulty::kCore : Difficulty::kEdge;
 }
 
@@ -157,10 +178,12 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   moments.r_q = node.r_q;
   moments.albedo = node.albedo;
   moments.deficit = node.deficit;
-  const double factor = doubt_factor(data.masking, data.tolerance, difficulty(data, entry));
+  const double factor =
+      doubt_factor(data.masking, data.tolerance, difficulty(data, entry)) * tight_factor(data, shape);
   const double r_i_scale = std::abs(node.r_i);  // a rule that fails can make it negative
   const double reflected_rule = factor * node.doubt;
-  const double deficit_rule = kDeficitFactor * factor * node.deficit_doubt;
+  const bool is_metal = std::hypot(index.n2m1_re, index.n2m1_im) > kMetalContrast;
+  const double deficit_rule = (is_metal ? kMetalDeficitFactor : kDeficitFactor) * factor * node.deficit_doubt;
   moments.r_i_error = reflected_rule + (rounding + masking) * r_i_scale + reflected_cut;
   moments.r_q_error = moments.r_i_error;
   // Beyond the critical angle the deficit ends where r_i goes on.

@@ -1,5 +1,6 @@
 #include "plan/geometry.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dolp {
@@ -12,9 +13,18 @@ struct DoubleAngle {
 
 // (cos 2 eta, sin 2 eta) of the direction (x, y); eta = 0 where there is none.
 DoubleAngle double_angle(double x, double y) {
-  const double squared = x * x + y * y;
-  if (squared == 0.0) return {};
-  return {(x - y) * (x + y) / squared, 2.0 * x * y / squared};
+  const double length = std::max(std::abs(x), std::abs(y));
+  if (length == 0.0) return {};
+  const double u = x / length;  // squares of tiny angles would vanish
+  const double v = y / length;
+  return {(u - v) * (u + v) / (u * u + v * v), 2.0 * u * v / (u * u + v * v)};
+}
+
+// Of the mean of two zeniths; near 90 degrees their sum would lose the digits that the elevations have.
+CosSin mean_zenith(double theta_i_deg, double theta_r_deg) {
+  if (theta_i_deg + theta_r_deg <= 90.0) return cos_sin_deg(0.5 * (theta_i_deg + theta_r_deg));
+  const CosSin elevation = cos_sin_deg(0.5 * ((90.0 - theta_i_deg) + (90.0 - theta_r_deg)));
+  return {elevation.sin, elevation.cos};
 }
 
 }  // namespace
@@ -22,8 +32,10 @@ DoubleAngle double_angle(double x, double y) {
 kernel::GeometryNode geometry_node(double theta_i_deg, double theta_r_deg, double delta_phi_deg) {
   const CosSin i = cos_sin_deg(theta_i_deg);
   const CosSin r = cos_sin_deg(theta_r_deg);
-  const CosSin half = cos_sin_deg(0.5 * delta_phi_deg);
-  const CosSin mean = cos_sin_deg(0.5 * (theta_i_deg + theta_r_deg));
+  // In [-180, 180], without rounding: near the specular and the retro direction the half angle keeps all digits.
+  const double azimuth_deg = std::remainder(delta_phi_deg, 360.0);
+  const CosSin half = cos_sin_deg(0.5 * std::abs(azimuth_deg));
+  const CosSin mean = mean_zenith(theta_i_deg, theta_r_deg);
   const CosSin difference = cos_sin_deg(0.5 * (theta_i_deg - theta_r_deg));
   const double sin_difference = 2.0 * mean.cos * difference.sin;   // sin i - sin r
   const double cos_difference = -2.0 * mean.sin * difference.sin;  // cos i - cos r
@@ -49,8 +61,12 @@ kernel::GeometryNode geometry_node(double theta_i_deg, double theta_r_deg, doubl
                                   : sin_of_difference + 2.0 * i.cos * r.sin * half.sin * half.sin;
   const double toward_r = forward ? sin_sum - 2.0 * r.cos * i.sin * half.cos * half.cos
                                   : -sin_of_difference + 2.0 * r.cos * i.sin * half.sin * half.sin;
-  const double sin_azimuth = 2.0 * half.sin * half.cos;
-  const DoubleAngle eta_i = double_angle(toward_i, r.sin * sin_azimuth);
+  const double sin_azimuth = std::copysign(2.0, azimuth_deg) * half.sin * half.cos;
+  const bool along_normal = i.sin == 0.0 && r.sin == 0.0;
+  const double cos_azimuth = (half.cos - half.sin) * (half.cos + half.sin);
+  // Both along the normal: eta_i is the angle between the planes of azimuth 0 and delta_phi, the limit from all sides.
+  const DoubleAngle eta_i =
+      along_normal ? double_angle(-cos_azimuth, sin_azimuth) : double_angle(toward_i, r.sin * sin_azimuth);
   const DoubleAngle eta_r = double_angle(toward_r, i.sin * sin_azimuth);
   node.cos_2eta_i = eta_i.cos;
   node.sin_2eta_i = eta_i.sin;

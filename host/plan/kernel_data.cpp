@@ -42,14 +42,7 @@ constexpr double kSoftCriticalLine = 0.3;
 constexpr double kTotalReflectionGrowthT = 1.4;
 constexpr double kTotalReflectionNarrowing = 1.5;
 
-// Largest order of an arc of the azimuth, for a number of digits.
-constexpr double kPhiNodes = 10.0;
-constexpr double kPhiNodesPerDigit = 3.0;
-
 constexpr double kSmallestPole = 1e-6;  // of |N^2 + 1| and |N^2 - 1|
-
-// Bound of the loop iterations of one invocation, below the 65,535 at which lavapipe stops without notice.
-constexpr double kMostIterations = 60'000.0;
 
 // Largest slope that is ever integrated: beyond it the squares of a float overflow.
 constexpr double kLargestCut = 1e15;
@@ -174,22 +167,13 @@ double arcs_per_slope(Masking masking, double critical) {
 }
 
 // Bound of the loop iterations of one invocation for a direction whose slopes have `arcs` arcs each: pieces, slopes,
-// arcs, azimuths, with everything at its most nodes.
-double iterations(const kernel::ThetaNode& node, double arcs) {
-  return node.piece_count * (1.0 + node.order_limit_t * (1.0 + arcs * (1.0 + node.order_limit_phi)));
+// arcs, azimuths. The slope at which the evaluations run out may have all its arcs, those after it have a node each.
+double iterations(const kernel::RuleNode& rule, const kernel::ThetaNode& node, double arcs) {
+  const double slopes = node.piece_count * rule.largest_order;
+  return node.piece_count + slopes * (1.0 + 2.0 * arcs) + rule.most_evaluations + arcs * rule.largest_order;
 }
 
-// Limits the orders so that the kernel is sure to finish; the error estimate then shows what that costs.
-void limit_orders(kernel::ThetaNode& node, double arcs, double digits) {
-  node.order_limit_t = DOLP_MAX_ORDER;
-  node.order_limit_phi = std::min<double>(DOLP_MAX_ORDER, std::ceil(kPhiNodes + kPhiNodesPerDigit * digits));
-  while (iterations(node, arcs) > kMostIterations) {
-    double& larger = node.order_limit_t > 1.5 * node.order_limit_phi ? node.order_limit_t : node.order_limit_phi;
-    larger -= 1.0;
-  }
-}
-
-kernel::ThetaNode theta_node(const MomentsRequest& request, double theta_deg, double digits, const Variant& variant) {
+kernel::ThetaNode theta_node(const MomentsRequest& request, double theta_deg, const Variant& variant) {
   const CosSin a = cos_sin_deg(theta_deg);
   const RuleModel& model = rule_model(request.masking);
   kernel::ThetaNode node{};
@@ -208,11 +192,14 @@ kernel::ThetaNode theta_node(const MomentsRequest& request, double theta_deg, do
   const double grazing = std::clamp((theta_deg - 80.0) / 9.0, 0.0, 1.0) + 0.3 * std::max(0.0, theta_deg - 88.0);
   node.t_growth = 1.0 + model.t_oblique * oblique;
   node.phi_narrowing = 1.0 + model.phi_grazing * grazing;
+  if (variant.has_line) {
+    node.t_growth *= model.t_line;
+    node.phi_narrowing *= model.phi_line;
+  }
   if (variant.critical_cos > 0.0) {
     node.t_growth *= kTotalReflectionGrowthT;
     node.phi_narrowing *= kTotalReflectionNarrowing;
   }
-  limit_orders(node, arcs_per_slope(request.masking, variant.critical_cos), digits);
   return node;
 }
 
@@ -261,7 +248,7 @@ void add_directions(KernelData& data, const MomentsRequest& request) {
   std::map<std::pair<std::uint32_t, Variant>, std::uint32_t> nodes;
   for (const double theta_deg : request.theta_deg) {
     nodes[{static_cast<std::uint32_t>(data.thetas.size()), Variant{}}] = static_cast<std::uint32_t>(data.thetas.size());
-    data.thetas.push_back(theta_node(request, theta_deg, data.rule.digits, {}));
+    data.thetas.push_back(theta_node(request, theta_deg, {}));
   }
   for (MomentsEntry& entry : data.entries) {
     const Variant variant{data.indices[entry.index].critical_cos, has_line[entry.shape]};
@@ -269,21 +256,10 @@ void add_directions(KernelData& data, const MomentsRequest& request) {
     const auto [found, is_new] =
         nodes.try_emplace({entry.theta, variant}, static_cast<std::uint32_t>(data.thetas.size()));
     if (is_new) {
-      data.thetas.push_back(theta_node(request, request.theta_deg[entry.theta], data.rule.digits, variant));
+      data.thetas.push_back(theta_node(request, request.theta_deg[entry.theta], variant));
     }
     entry.theta = found->second;
   }
-}
-
-constexpr double kTableOrder = 6.0;  // of the masking table's cells, see physics/masking_table.glsl
-
-// The largest order that any rule may have.
-int largest_order(const KernelData& data) {
-  double largest = kTableOrder;
-  for (const kernel::ThetaNode& node : data.thetas) {
-    largest = std::max({largest, node.order_limit_t, node.order_limit_phi});
-  }
-  return static_cast<int>(largest);
 }
 
 }  // namespace
@@ -307,9 +283,7 @@ KernelData kernel_data(const MomentsRequest& request) {
   for (const OpticalConstants& index : request.indices) data.indices.push_back(index_node(index));
   data.entries = request.entries;
   add_directions(data, request);
-  const int order = largest_order(data);
-  data.rule.node_stride = order;
-  data.rule_nodes = rule_nodes(order);
+  data.rule_nodes = rule_nodes(static_cast<int>(data.rule.largest_order));
   return data;
 }
 
@@ -317,7 +291,7 @@ double worst_iterations(const KernelData& data) {
   double worst = 0.0;
   for (const MomentsEntry& entry : data.entries) {
     const double arcs = arcs_per_slope(data.masking, data.indices[entry.index].critical_cos);
-    worst = std::max(worst, iterations(data.thetas[entry.theta], arcs));
+    worst = std::max(worst, iterations(data.rule, data.thetas[entry.theta], arcs));
   }
   return worst;
 }

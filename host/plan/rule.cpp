@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/constants/constants.hpp>
+#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -10,80 +12,91 @@ namespace {
 
 constexpr std::array<RuleModel, 4> kModels = {{
     // none
-    {.margin_digits = 1.91,
-     .t_nodes = 1.83,
-     .t_strip = 1.1,
-     .t_oblique = 0.0338,
-     .t_root_nodes = 0.545,
-     .t_curvature = 0.128,
-     .phi_half_nodes = 0.189,
-     .phi_centre_nodes = 0.379,
+    {.margin_digits = 1.83,
+     .t_nodes = 1.67,
+     .t_strip = 1.12,
+     .t_oblique = 0.0203,
+     .t_root_nodes = 0.561,
+     .t_curvature = 0.149,
+     .phi_half_nodes = 0.349,
+     .phi_centre_nodes = 0.439,
      .strip = {2.11, 1.0, 1.0},
-     .phi_grazing = 0.408,
-     .phi_curvature = 0.0506,
-     .phi_circle_nodes = 1.32,
+     .phi_grazing = 0.336,
+     .phi_curvature = 0.0861,
+     .phi_circle_nodes = 1.26,
      .phi_circle_growth = 0.673,
-     .phi_pole_growth = 0.609,
-     .circle_pole = 0.667,
+     .phi_pole_growth = 0.452,
+     .circle_pole = 1.17,
      .phi_cluster_growth = 1.35,
-     .doubt_decades = {0.46, 0.35, 0.3, -0.2, 0.2}},
+     .doubt_decades = {0.25, 0.3, 0.08, -0.03, 0.25}},
     // v-cavity
-    {.margin_digits = 2.46,
-     .t_nodes = 1.05,
-     .t_strip = 1.17,
-     .t_oblique = -0.191,
-     .t_root_nodes = 0.524,
-     .t_curvature = 0.186,
-     .phi_half_nodes = 0.544,
-     .phi_centre_nodes = 0.228,
-     .strip = {1.95, 3.32, 2.79},
-     .phi_grazing = 0.217,
+    {.margin_digits = 2.57,
+     .t_nodes = 0.919,
+     .t_strip = 1.18,
+     .t_oblique = -0.202,
+     .t_root_nodes = 0.581,
+     .t_curvature = 0.165,
+     .phi_half_nodes = 0.811,
+     .phi_centre_nodes = 0.101,
+     .strip = {5.34, 3.96, 2.97},
+     .phi_grazing = 0.215,
      .phi_curvature = 0.0786,
-     .phi_circle_nodes = 1.1,
-     .phi_circle_growth = 0.954,
-     .phi_pole_growth = 0.418,
-     .circle_pole = 0.723,
-     .doubt_decades = {0.42, 0.45, 0.29, -0.08, 0.4}},
+     .phi_circle_nodes = 1.03,
+     .phi_circle_growth = 0.883,
+     .phi_pole_growth = 0.465,
+     .circle_pole = 1.28,
+     .doubt_decades = {0.3, 0.38, 0.22, -0.03, 0.62},
+     .doubt_tight = 0.15},
     // integral
     {.margin_digits = 2.18,
-     .t_nodes = 1.25,
-     .t_strip = 1.07,
-     .t_oblique = 0.0228,
-     .t_root_nodes = 0.42,
-     .t_curvature = 0.204,
-     .phi_half_nodes = 0.647,
-     .phi_centre_nodes = 0.293,
-     .strip = {3.37, 4.44, 2.86},
-     .phi_grazing = 0.33,
+     .t_nodes = 0.895,
+     .t_strip = 1.08,
+     .t_oblique = 0.0295,
+     .t_root_nodes = 0.817,
+     .t_curvature = 0.167,
+     .phi_half_nodes = 0.604,
+     .phi_centre_nodes = 0.267,
+     .strip = {3.8, 4.41, 2.91},
+     .phi_grazing = 0.59,
      .phi_curvature = 0.188,
-     .phi_circle_nodes = 0.923,
-     .phi_circle_growth = 1.02,
-     .phi_pole_growth = 0.259,
-     .circle_pole = 0.958,
-     .phi_cluster_growth = 4.35,
-     .line_threshold = 6.48e+04,
-     .doubt_decades = {0.5, 0.3, 0.21, 0.36, 1.85},
-     .doubt_tight = 0.25},
+     .phi_circle_nodes = 0.75,
+     .phi_circle_growth = 0.981,
+     .phi_pole_growth = 0.283,
+     .circle_pole = 0.815,
+     .phi_cluster_growth = 1.52,
+     .cluster_curvature = 0.265,
+     .cluster_pole = 0.735,
+     .t_line = 1,
+     .phi_line = 0.944,
+     .line_threshold = 5.47e+05,
+     .doubt_decades = {0.42, 0.5, 0.2, 0.35, 1.82},
+     .doubt_tight = 0.15},
     // smith
-    {.margin_digits = 1.8,
-     .t_nodes = 1.05,
-     .t_strip = 0.69,
-     .t_oblique = -0.208,
-     .t_root_nodes = 0.381,
-     .t_curvature = 0.224,
-     .phi_half_nodes = 0.647,
-     .phi_centre_nodes = -0.144,
-     .strip = {1.26, 1.0, 1.0},
-     .phi_grazing = -0.386,
-     .phi_curvature = 0.262,
-     .phi_circle_nodes = 1.25,
-     .phi_circle_growth = 1.16,
-     .phi_pole_growth = 0.103,
-     .circle_pole = 0.332,
-     .phi_cluster_growth = 2.74,
-     .cusp_digits = 3.06,
-     .line_threshold = 1.48e+05,
-     .doubt_decades = {0.78, 0.5, 0.32, 0.9, 1.8}},
+    {.margin_digits = 1.84,
+     .t_nodes = 1.13,
+     .t_strip = 0.694,
+     .t_oblique = -0.266,
+     .t_root_nodes = 0.639,
+     .t_curvature = 0.221,
+     .phi_half_nodes = 0.526,
+     .phi_centre_nodes = -0.308,
+     .strip = {1.41, 1.0, 1.0},
+     .phi_grazing = -0.234,
+     .phi_curvature = 0.235,
+     .phi_circle_nodes = 0.867,
+     .phi_circle_growth = 1.09,
+     .phi_pole_growth = 0.213,
+     .circle_pole = 0.0564,
+     .phi_cluster_growth = 3.57,
+     .cluster_curvature = -0.00769,
+     .cluster_pole = 0.446,
+     .t_line = 0.522,
+     .phi_line = 0.226,
+     .cusp_digits = 4.04,
+     .line_threshold = 4.5e+06,
+     .tight_growth = 0.08,
+     .doubt_decades = {0.68, 0.43, 0.35, 0.68, 2.05},
+     .doubt_tight = 0.37},
 }};
 
 constexpr double kCalibratedDigits = 4.0;  // where the curvatures vanish
@@ -94,8 +107,8 @@ constexpr std::array kDoubtDigits = {2.0, 3.0, 4.0, 6.0, 9.0};  // of RuleModel:
 // tolerance from kHardDoubtDigits on.
 constexpr double kHardDoubtDigits = 4.0;
 constexpr double kMostTightDigits = 3.0;
-constexpr double kEdgeDecades = 1.1;
-constexpr double kEdgeGrowth = 0.4;
+constexpr double kEdgeDecades = 0.92;
+constexpr double kEdgeGrowth = 0.36;
 constexpr double kTotalReflectionDecades = 1.6;
 constexpr double kTotalReflectionGrowth = 0.62;
 
@@ -112,11 +125,23 @@ constexpr double kTightLineSigma = 0.3;
 
 // Smith's cusp of the gaussian is smooth, but all its derivatives vanish there.
 constexpr double kGaussianCuspSigma = 0.8;
-constexpr double kGaussianCuspDigits = -1.0;
+constexpr double kGaussianCuspDigits = 0.0;
+
+// Nodes of a piece that smith's cusp is in, and the digits from which on their number bounds what they reach.
+constexpr double kUnsplitNodes = 40.0;
+constexpr double kUnsplitDigits = 10.0;
 
 // Digits by which RuleModel::cusp_digits falls for each digit from here on.
 constexpr double kCuspDigits = 7.0;
-constexpr double kCuspFall = 0.7;
+constexpr double kCuspFall = 1.0;
+
+// Largest orders of the rules: what few digits can use, and what each digit beyond asks for.
+constexpr double kPlainOrder = 64.0;
+constexpr double kOrderPerDigit = 8.0;
+
+// Evaluations of one entry: below the 65,535 loop iterations at which lavapipe stops without notice, with room for the
+// loops around them.
+constexpr double kMostEvaluations = 40'000.0;
 
 constexpr double kNoCusp = -1000.0;
 
@@ -157,16 +182,24 @@ kernel::RuleNode rule_node(Masking masking, double digits) {
   node.digits = digits;
   node.t_nodes = model.t_nodes;
   node.t_growth = curved(model.t_curvature, digits);
+  node.t_curvature = model.t_curvature;
   node.t_strip = model.t_strip;
   node.t_root_nodes = model.t_root_nodes;
   node.phi_half_nodes = model.phi_half_nodes;
   node.phi_centre_nodes = model.phi_centre_nodes;
   node.phi_circle_nodes = model.phi_circle_nodes;
   node.phi_growth = curved(model.phi_curvature, digits);
+  node.phi_curvature = model.phi_curvature;
   node.phi_circle_growth = node.phi_growth * model.phi_circle_growth;
   node.phi_pole_growth = node.phi_growth * model.phi_pole_growth;
   node.circle_pole = model.circle_pole;
+  const double tight = 1.0 + model.tight_growth * std::max(0.0, digits - kTightDigits);
+  node.t_growth *= tight;
+  node.phi_cluster_digits = curved(model.cluster_curvature, digits) * tight;
+  node.cluster_pole_growth = model.cluster_pole;
   node.phi_cluster_growth = model.phi_cluster_growth;
+  node.largest_order = std::min<double>(DOLP_MAX_ORDER, std::max(kPlainOrder, std::ceil(kOrderPerDigit * digits)));
+  node.most_evaluations = kMostEvaluations;
   std::copy(std::begin(model.strip), std::end(model.strip), std::begin(node.strip));
   node.cluster_below_q = digits > kTightDigits ? kTightClusterBelowQ : digits > kClusterDigits ? kClusterBelowQ : 0.0;
   return node;
@@ -175,7 +208,10 @@ kernel::RuleNode rule_node(Masking masking, double digits) {
 bool needs_line(Distribution distribution, Masking masking, const SlopeShape& shape, double digits) {
   const double threshold = rule_model(masking).line_threshold * std::pow(10.0, -digits);
   if (masking == Masking::kSmith) {
-    return std::pow(10.0, cusp_digits(distribution, masking, shape, digits) + cusp_offset(digits)) > threshold;
+    // A rule that does not split at |x|^(2q-2) gains with its nodes to the power 2q, and no more however many digits.
+    const double gain = std::pow(kUnsplitNodes, 2.0 * shape.q) * std::pow(10.0, -digits);
+    return std::pow(10.0, cusp_digits(distribution, masking, shape, digits) + cusp_offset(digits)) >
+           (digits > kUnsplitDigits ? std::min(threshold, gain) : threshold);
   }
   if (masking != Masking::kIntegral) return false;
   if (distribution == Distribution::kGaussian) {
@@ -194,7 +230,10 @@ double cusp_digits(Distribution distribution, Masking masking, const SlopeShape&
   const double from_integer = std::abs(shape.q - std::round(shape.q));
   if (from_integer == 0.0) return kNoCusp;
   const double width = std::min(1.0, std::numbers::sqrt2 * shape.sigma);
-  return (2.0 * shape.q - 2.0) * std::log10(width) + std::log10(std::min(1.0, 4.0 * from_integer)) -
+  // L = C (m tan(theta_r))^(2q-2) and more beside theta_r = 0.
+  const double coefficient = boost::math::tgamma_ratio(shape.q - 0.5, shape.q - 1.0) /
+                             (boost::math::constants::root_pi<double>() * (2.0 * shape.q - 3.0) * (2.0 * shape.q - 2.0));
+  return (2.0 * shape.q - 2.0) * std::log10(width) + std::log10(coefficient * std::min(1.0, 4.0 * from_integer)) -
          cusp_offset(digits);
 }
 

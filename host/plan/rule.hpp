@@ -23,8 +23,13 @@ struct RuleModel {
   double phi_pole_growth = 0.5;    ///< RuleNode::phi_pole_growth
   double circle_pole = 0.5;           ///< RuleNode::circle_pole
   double phi_cluster_growth = 1.0;    ///< RuleNode::phi_cluster_growth
+  double cluster_curvature = 0.0;     ///< like phi_curvature, for arcs with a cluster
+  double cluster_pole = 1.0;          ///< RuleNode::cluster_pole_growth
+  double t_line = 1.0;                ///< factor of the nodes for each digit where a line or cusp is split off
+  double phi_line = 1.0;              ///< likewise
   double cusp_digits = 0.0;           ///< smith: digits by which the cusp is smaller than its formula says
   double line_threshold = 0.0;        ///< multiples of 10^-digits from which a line or cusp is worth its pieces
+  double tight_growth = 0.0;          ///< more nodes of t and of clusters for each digit beyond eight
   /// log10 of the factor from MomentsNode::doubt to an error bound, at the tolerances 1e-2, 1e-3, 1e-4, 1e-6 and 1e-9.
   double doubt_decades[5] = {};
   double doubt_tight = 0.0;  ///< more of them for each digit beyond

@@ -4,6 +4,8 @@
 #include <boost/math/constants/constants.hpp>
 #include <boost/math/special_functions/legendre.hpp>
 #include <cmath>
+#include <map>
+#include <mutex>
 
 namespace dolp {
 namespace {
@@ -70,6 +72,14 @@ void append_cluster(Nodes& nodes, int order) {
   }
 }
 
+Nodes make_rule_nodes(int largest_order) {
+  Nodes nodes;
+  for (const auto append : {append_gauss, append_centre, append_half, append_circle, append_cluster}) {
+    for (int order = 1; order <= largest_order; ++order) append(nodes, order);
+  }
+  return nodes;
+}
+
 }  // namespace
 
 Rule gauss_legendre(int order) {
@@ -84,12 +94,13 @@ Rule gauss_legendre(int order) {
   return nodes;
 }
 
-Nodes rule_nodes(int largest_order) {
-  Nodes nodes;
-  for (const auto append : {append_gauss, append_centre, append_half, append_circle, append_cluster}) {
-    for (int order = 1; order <= largest_order; ++order) append(nodes, order);
-  }
-  return nodes;
+const Nodes& rule_nodes(int largest_order) {
+  static std::mutex mutex;
+  static std::map<int, Nodes> known;
+  const std::lock_guard lock(mutex);
+  const auto [found, is_new] = known.try_emplace(largest_order);
+  if (is_new) found->second = make_rule_nodes(largest_order);
+  return found->second;
 }
 
 }  // namespace dolp

@@ -11,7 +11,7 @@ namespace dolp {
 std::vector<std::array<double, 2>> gauss_legendre(int order);
 
 /// The sections of shaders/physics/quadrature.glsl, orders 1 to `largest_order` each, as (abscissa, weight, null
-/// weight, second null weight).
-std::vector<std::array<double, 4>> rule_nodes(int largest_order);
+/// weight, second null weight). Computed once; the reference stays valid.
+const std::vector<std::array<double, 4>>& rule_nodes(int largest_order);
 
 }  // namespace dolp

@@ -61,8 +61,7 @@ std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckO
 /// the other is, or if rho or DOLP misses the tolerance where status does not say so. The bounds: rho_error_estimate
 /// rho_I for rho, error_estimate for DOLP. What the latter implies for the Stokes parameters is error_estimate |I| for
 /// Q, U and V and error_estimate |I| / DOLP for I, which states nothing where DOLP vanishes.
-/// Not independent: closed forms of mirrors and limits, and the beam of the bistatic mode, which come from the same
-/// code in every evaluator.
+/// Not independent: closed forms of mirrors and limits, which come from the same code in every evaluator.
 /// Errors: InputError that begins with `name` for a table without anything to compare or with axes out of range;
 /// Cancelled when `progress` returns false.
 TableCheck check_table(const Table& table, const Scene& scene, const std::string& name,

@@ -8,4 +8,5 @@
 #include "physics/masking_table.glsl"
 #include "physics/integrand.glsl"
 #include "physics/moments.glsl"
+#include "physics/in_plane.glsl"
 #include "physics/mueller.glsl"

@@ -22,18 +22,23 @@ real2 sqrt_upper(real re, real im) {
   return (re >= real(0.0)) ? real2(larger, smaller) : real2(smaller, larger);
 }
 
-// Domain: 0 < cos_beta <= 1.
-Fresnel fresnel(IndexNode index, real cos_beta) {
-  real2 w = sqrt_upper(index.n2m1_re + cos_beta * cos_beta, index.n2m1_im);
-  real2 s_sum = real2(cos_beta + w.x, w.y);
-  real2 p_sum = real2((index.n2m1_re + real(1.0)) * cos_beta + w.x, index.n2m1_im * cos_beta + w.y);
+// From N^2 - 1, c, w, c + w and N^2 c + w.
+Fresnel fresnel_of_sums(real2 n2m1, real cos_beta, real2 w, real2 s_sum, real2 p_sum) {
   // Without a floor N = 1 at grazing incidence would be 0/0 where the squares underflow.
   real inverse_b = real(1.0) / max(s_sum.x * s_sum.x + s_sum.y * s_sum.y, kSmallestSquare);
-  real a = (index.n2m1_re * index.n2m1_re + index.n2m1_im * index.n2m1_im) * inverse_b;
+  real a = (n2m1.x * n2m1.x + n2m1.y * n2m1.y) * inverse_b;
   real transmitted = real(4.0) * cos_beta * w.x;
   Fresnel f;
   f.r_s = a * inverse_b;
   f.absorbed_s = transmitted * inverse_b;
   f.split_over_sin2 = transmitted * a / max(p_sum.x * p_sum.x + p_sum.y * p_sum.y, kSmallestSquare);
   return f;
+}
+
+// Domain: 0 < cos_beta <= 1.
+Fresnel fresnel(IndexNode index, real cos_beta) {
+  real2 w = sqrt_upper(index.n2m1_re + cos_beta * cos_beta, index.n2m1_im);
+  real2 s_sum = real2(cos_beta + w.x, w.y);
+  real2 p_sum = real2((index.n2m1_re + real(1.0)) * cos_beta + w.x, index.n2m1_im * cos_beta + w.y);
+  return fresnel_of_sums(real2(index.n2m1_re, index.n2m1_im), cos_beta, w, s_sum, p_sum);
 }

@@ -22,17 +22,12 @@ FacetSums add_weighted(FacetSums sum, FacetSums term, real weight) {
                    sum.deficit + weight * term.deficit);
 }
 
-FacetSums add_size(FacetSums sum, FacetSums term) {
-  return FacetSums(sum.r_i + abs(term.r_i), sum.r_q + abs(term.r_q), sum.albedo + abs(term.albedo),
-                   sum.deficit + abs(term.deficit));
-}
-
 // Sums over the azimuth at one slope.
 struct AzimuthSums {
   FacetSums sum;
-  FacetSums null;      // sizes of the null rules' sums, arc by arc
+  real doubt;          // of r_i and r_q, see orders.glsl
+  real deficit_doubt;
   real deficit_scale;  // the deficit with the absolute values of its terms
-  real reached;        // share of the digits wanted that the orders allow, at the worst arc
   real evaluations;
 };
 
@@ -144,6 +139,7 @@ Projection project(ThetaNode theta, ShapeNode shape, uint table, real t, real e,
 struct Slice {
   real t;
   real digits;      // wanted
+  real order_limit; // of its arcs
   real by_slope;    // see project
   real cusp_nodes;  // nodes of a half arc that smith's cusp at theta_r = 0 asks for
 };
@@ -160,7 +156,8 @@ real pole_nodes(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, re
 }
 
 real arc_nodes(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, Arc arc, int zone) {
-  real strip = rule.strip[zone] / theta.phi_narrowing;
+  bool is_cluster = arc.section == kSectionCluster;
+  real strip = rule.strip[zone] / (is_cluster ? max(theta.phi_narrowing, real(1.0)) : theta.phi_narrowing);
   real length = arc_length(arc.quarter);
   real nodes;
   if (arc.section == kSectionCircle) {
@@ -174,11 +171,13 @@ real arc_nodes(RuleNode rule, ThetaNode theta, IndexNode index, Slice slice, Arc
   } else if (arc.section == kSectionHalf) {
     nodes = rule.phi_half_nodes + half_arc_nodes(rule, slice.digits, strip, length);
   } else {
-    real stretch = (arc.section == kSectionCluster) ? rule.phi_cluster_growth : real(1.0);
+    real stretch = is_cluster ? rule.phi_cluster_growth : real(1.0);
+    real growth = is_cluster ? rule.phi_cluster_digits : rule.phi_growth;
     nodes = rule.phi_centre_nodes +
-            slice.digits * rule.phi_growth * nodes_per_digit(real(2.0) * strip / (stretch * length));
+            slice.digits * growth * nodes_per_digit(real(2.0) * strip / (stretch * length));
   }
-  if (arc.section != kSectionCircle) nodes = max(nodes, rule.phi_half_nodes + arc.pole_nodes);
+  real pole_growth = is_cluster ? rule.cluster_pole_growth : real(1.0);
+  if (arc.section != kSectionCircle) nodes = max(nodes, rule.phi_half_nodes + pole_growth * arc.pole_nodes);
   return nodes;
 }
 
@@ -188,8 +187,11 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode 
   real r2 = real(1.0) / (real(1.0) + t * t);
   real nodes = arc_nodes(rule, theta, index, slice, arc, zone);
   real with_cusp = (arc.section == kSectionCluster) ? nodes : max(nodes, rule.phi_half_nodes + slice.cusp_nodes);
-  int order = (arc.quarter > real(0.0)) ? order_between(with_cusp, theta.order_limit_phi) : 0;
-  real reached = (order > 0 && arc.section != kSectionCluster) ? reached_share(nodes, theta.order_limit_phi) : real(1.0);
+  int order = (arc.quarter > real(0.0)) ? order_between(with_cusp, slice.order_limit) : 0;
+  real digits = slice.digits;
+  if (order > 0 && arc.section != kSectionCluster) {
+    digits -= lost_digits(digits, rule.phi_growth, rule.phi_curvature, nodes, slice.order_limit);
+  }
   int first_node = rule_offset(rule, arc.section, order);
   FacetSums sum = no_facets();
   FacetSums null = no_facets();
@@ -210,13 +212,13 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode 
     sum = add_weighted(sum, term, measure * node.y);
     null = add_weighted(null, term, measure * node.z);
   }
-  return AzimuthSums(sum, add_size(no_facets(), null), sum.deficit, reached, real(order));
+  return AzimuthSums(sum, doubt(sum.r_i, max(abs(null.r_i), abs(null.r_q)), digits),
+                     doubt(sum.deficit, null.deficit, digits), sum.deficit, real(order));
 }
 
 AzimuthSums add_arc(AzimuthSums sums, AzimuthSums arc) {
-  return AzimuthSums(add_weighted(sums.sum, arc.sum, real(1.0)), add_size(sums.null, arc.null),
-                     sums.deficit_scale + arc.deficit_scale, min(sums.reached, arc.reached),
-                     sums.evaluations + arc.evaluations);
+  return AzimuthSums(add_weighted(sums.sum, arc.sum, real(1.0)), sums.doubt + arc.doubt,
+                     sums.deficit_doubt + arc.deficit_doubt, sums.deficit_scale + arc.deficit_scale, sums.evaluations + arc.evaluations);
 }
 
 // The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth: three in ascending order
@@ -302,9 +304,9 @@ AzimuthSums zone_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode
 
 // Integral over the azimuth from 0 to pi at slope t, the facets below the horizon counted in the deficit.
 AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, real t,
-                         real digits) {
+                         real digits, real order_limit) {
   SplitLines lines = split_lines(theta, index, t);
-  Slice slice = Slice(t, digits, real(0.0), real(0.0));
+  Slice slice = Slice(t, digits, order_limit, real(0.0), real(0.0));
   if (kMasking == DOLP_MASKING_INTEGRAL) slice.by_slope = shadowed_integral(shape, table, theta.c, theta.s, t);
   if (kMasking == DOLP_MASKING_SMITH) {
     slice.by_slope = smith_lambda(shape, table, theta.c, theta.s);

@@ -11,7 +11,7 @@ struct Piece {
   real mass;    // share of the facets
   real digits;  // wanted
   int order;
-  real reached;  // share of the digits that the order allows
+  real lost;  // digits that the order does not allow
 };
 
 Piece make_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, int number) {
@@ -27,25 +27,28 @@ Piece make_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, int number) {
   piece.root_at_b = b < shape.cut && theta.kind[number + 1] > real(1.5);
   real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
   real nodes = nodes_t(rule, theta, piece.digits, piece.extent, roots);
-  piece.order = order_between(nodes, theta.order_limit_t);
-  piece.reached = reached_share(nodes, theta.order_limit_t);
+  piece.order = order_between(nodes, rule.largest_order);
+  real growth = theta.t_growth * rule.t_growth;
+  piece.lost = lost_digits(piece.digits, growth, theta.t_growth * rule.t_curvature, nodes, rule.largest_order);
   return piece;
 }
 
 // Sums over the slopes of a piece, or of all pieces.
 struct SlopeSums {
   FacetSums sum;
-  FacetSums null_phi;     // what the azimuths' null rules leave
+  real doubt;             // of the azimuths
+  real deficit_doubt;
   FacetSums null_first;   // sums of the slopes' two null rules
   FacetSums null_second;
   real mass;              // the rule's value of Piece::mass
-  real reached;           // share of the digits that the azimuths' orders allow
   real deficit_scale;
   real evaluations;
 };
 
-SlopeSums piece_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, Piece piece) {
-  SlopeSums sums = SlopeSums(no_facets(), no_facets(), no_facets(), no_facets(), real(0.0), real(1.0), real(0.0), real(0.0));
+// `spent` evaluations have gone into the pieces before.
+SlopeSums piece_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, uint table, Piece piece,
+                     real spent) {
+  SlopeSums sums = SlopeSums(no_facets(), real(0.0), real(0.0), no_facets(), no_facets(), real(0.0), real(0.0), real(0.0));
   int first_node = rule_offset(rule, kSectionGauss, piece.order);
   for (int i = 0; i < piece.order; ++i) {
     real4 node = rule_node(first_node + i);
@@ -63,25 +66,20 @@ SlopeSums piece_sums(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode 
     real t = shape.scale * hyperbolic.x;
     real du = shape.scale / shape.m * hyperbolic.y * piece.extent * dy;
     real density = real(2.0) * slope_density(shape, t) * du;
-    AzimuthSums term = azimuth_sums(rule, theta, shape, index, table, t, piece.digits);
+    real order_limit = (spent + sums.evaluations < rule.most_evaluations) ? rule.largest_order : real(1.0);
+    real mass = kPi * density * node.y;
+    real digits = digits_of_slope(rule, theta, shape, piece.digits, piece.order, t, mass);
+    AzimuthSums term = azimuth_sums(rule, theta, shape, index, table, t, digits, order_limit);
     sums.sum = add_weighted(sums.sum, term.sum, density * node.y);
-    sums.null_phi = add_weighted(sums.null_phi, term.null, density * node.y);
+    sums.doubt += density * node.y * term.doubt;
+    sums.deficit_doubt += density * node.y * term.deficit_doubt;
     sums.null_first = add_weighted(sums.null_first, term.sum, density * node.z);
     sums.null_second = add_weighted(sums.null_second, term.sum, density * node.w);
-    sums.mass += kPi * density * node.y;
-    sums.reached = min(sums.reached, term.reached);
+    sums.mass += mass;
     sums.deficit_scale += density * node.y * term.deficit_scale;
     sums.evaluations += term.evaluations;
   }
   return sums;
-}
-
-// How far a sum may be off by one rule, up to a factor that host/plan/rule.cpp knows. Where the integrand is smooth, the
-// error of n nodes is to the null rule's value as that is to the sum; where it is not, it is what the orders were made
-// for, 10^-digits. The geometric mean of the two is the closest to the truth over the domain.
-real doubt(real sum, real null, real digits) {
-  real whole = abs(sum);
-  return exp_real(real(-0.75) * kLn10 * digits) * sqrt(whole * min(abs(null), whole));
 }
 
 real null_size(real first, real second) { return sqrt(first * first + second * second); }
@@ -93,17 +91,15 @@ MomentsNode piece_moments(Piece piece, SlopeSums sums) {
   FacetSums first = sums.null_first;
   FacetSums second = sums.null_second;
   real null_t = max(null_size(first.r_i, second.r_i), null_size(first.r_q, second.r_q));
-  real null_phi = max(sums.null_phi.r_i, sums.null_phi.r_q);
   MomentsNode node;
   node.r_i = ratio * sums.sum.r_i;
   node.r_q = ratio * sums.sum.r_q;
   node.albedo = ratio * sums.sum.albedo;
   node.deficit = ratio * sums.sum.deficit;
-  real digits_t = piece.reached * piece.digits;
-  real digits_phi = sums.reached * piece.digits;
-  node.doubt = doubt(sums.sum.r_i, null_t, digits_t) + doubt(sums.sum.r_i, null_phi, digits_phi);
+  real digits_t = piece.digits - piece.lost;
+  node.doubt = doubt(sums.sum.r_i, null_t, digits_t) + sums.doubt;
   node.deficit_doubt = doubt(sums.deficit_scale, null_size(first.deficit, second.deficit), digits_t) +
-                       doubt(sums.deficit_scale, sums.null_phi.deficit, digits_phi);
+                       sums.deficit_doubt;
   node.deficit_scale = ratio * sums.deficit_scale;
   node.evaluations = sums.evaluations;
   return node;
@@ -123,7 +119,7 @@ MomentsNode moments_entry(RuleNode rule, ThetaNode theta, ShapeNode shape, Index
   for (int number = 0; number < int(theta.piece_count); ++number) {
     if (theta.end[number] < shape.cut) {
       Piece piece = make_piece(rule, theta, shape, number);
-      total = add_moments(total, piece_moments(piece, piece_sums(rule, theta, shape, index, table, piece)));
+      total = add_moments(total, piece_moments(piece, piece_sums(rule, theta, shape, index, table, piece, total.evaluations)));
     }
   }
   return total;

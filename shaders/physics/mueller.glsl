@@ -6,49 +6,46 @@
 // U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p) that is
 //   Q' = cos(2 eta_i) Q + sin(2 eta_i) U,   U' = -sin(2 eta_i) Q + cos(2 eta_i) U,   the facet's matrix
 //   [A B 0 0; B A 0 0; 0 0 C -S; 0 0 S C],   A, B = (R_s +- R_p)/2,   C + i S = r_s* r_p,   and the reverse by eta_r.
-// Without cancellation: r_s* r_p = -a (c w - sin^2 beta) / (conj(c + w) (N^2 c + w)), a as in fresnel.glsl.
+// Without cancellation: r_s* r_p = a (sin^2 beta - c w) / (conj(c + w) (N^2 c + w)), a as in fresnel.glsl.
 
 real2 multiply(real2 a, real2 b) { return real2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
 
-// r_s* r_p, as (Re, Im).
-real2 cross_amplitude(IndexNode index, real cos_beta, real sin2_beta) {
-  real2 w = sqrt_upper(index.n2m1_re + cos_beta * cos_beta, index.n2m1_im);
-  real2 s_sum = real2(cos_beta + w.x, w.y);
-  real2 p_sum = real2((index.n2m1_re + real(1.0)) * cos_beta + w.x, index.n2m1_im * cos_beta + w.y);
-  real a = (index.n2m1_re * index.n2m1_re + index.n2m1_im * index.n2m1_im) / (s_sum.x * s_sum.x + s_sum.y * s_sum.y);
-  real2 denominator = multiply(real2(s_sum.x, -s_sum.y), p_sum);
-  real norm = denominator.x * denominator.x + denominator.y * denominator.y;
-  real2 numerator = real2(sin2_beta - cos_beta * w.x, -cos_beta * w.y);
-  real2 quotient = multiply(numerator, real2(denominator.x, -denominator.y));
-  return real2(a * quotient.x / norm, a * quotient.y / norm);
+// r_s* r_p, as (Re, Im), from R_s, w, c + w and N^2 c + w: R_s (sin^2 beta - c w) (c + w) / (N^2 c + w), since a = R_s B.
+real2 cross_amplitude(real r_s, GeometryNode g, real2 w, real2 s_sum, real2 p_sum) {
+  real2 numerator = multiply(real2(g.sin2_beta - g.cos_beta * w.x, -g.cos_beta * w.y), s_sum);
+  real norm = max(p_sum.x * p_sum.x + p_sum.y * p_sum.y, kSmallestSquare);
+  real2 quotient = multiply(numerator, real2(p_sum.x / norm, -p_sum.y / norm));
+  return real2(r_s * quotient.x, r_s * quotient.y);
 }
 
 // G of one geometry.
-real attenuation(GeometryNode g, ShapeNode shape, uint table) {
+real attenuation(GeometryNode g, ShapeNode shape) {
   if (kMasking == DOLP_MASKING_NONE) return real(1.0);
-  bool incident_is_lower = g.c_i < g.c_r;
+  if (kMasking == DOLP_MASKING_SMITH) {
+    return real(1.0) / (real(1.0) + in_plane_lambda(shape, g.c_i, g.s_i) + in_plane_lambda(shape, g.c_r, g.s_r));
+  }
+  bool incident_is_lower = g.c_i * g.s_r < g.c_r * g.s_i;  // near the normal the cosines of a float are all 1
   real lower_cos = incident_is_lower ? g.c_i : g.c_r;
   real lower_sin = incident_is_lower ? g.s_i : g.s_r;
   if (kMasking == DOLP_MASKING_V_CAVITY) {
     return min(real(1.0), real(2.0) * lower_cos / (sqrt(real(1.0) + g.slope * g.slope) * g.cos_beta));
   }
-  if (kMasking == DOLP_MASKING_INTEGRAL) {
-    return real(1.0) - shadowed_integral(shape, table, lower_cos, lower_sin, g.slope);
-  }
-  real lambdas = smith_lambda(shape, table, g.c_i, g.s_i) + smith_lambda(shape, table, g.c_r, g.s_r);
-  return real(1.0) / (real(1.0) + lambdas);
+  return real(1.0) - in_plane_shadowed(shape, lower_cos, lower_sin, g.slope);
 }
 
-// f cos(theta_i) cos(theta_r) for k_s = 1 [1/sr], row by row: finite at grazing incidence.
-MuellerNode mueller(GeometryNode g, ShapeNode shape, IndexNode index, uint table) {
-  real sec2 = real(1.0) + g.slope * g.slope;
-  real density = slope_profile(shape, g.slope) / (shape.m * shape.m) * sec2 * sec2;
-  real scale = real(0.25) * density * attenuation(g, shape, table);
-  Fresnel f = fresnel(index, g.cos_beta);
+// f cos(theta_i) cos(theta_r) for k_s = 1 [1/sr], row by row, over the power of two of the density: finite at grazing
+// incidence.
+MuellerNode mueller(BeamNode beam) {
+  GeometryNode g = beam.g;
+  real2 w = sqrt_upper(beam.w2_re, beam.n2m1_im);
+  real2 s_sum = real2(g.cos_beta + w.x, w.y);
+  real2 p_sum = real2(beam.n2_re * g.cos_beta + w.x, beam.n2m1_im * g.cos_beta + w.y);
+  Fresnel f = fresnel_of_sums(real2(beam.n2m1_re, beam.n2m1_im), g.cos_beta, w, s_sum, p_sum);
+  real scale = beam.density * attenuation(g, beam.shape);
   real half_split = real(0.5) * f.split_over_sin2 * g.sin2_beta;
   real a = scale * (f.r_s - half_split);
   real b = scale * half_split;
-  real2 cross = cross_amplitude(index, g.cos_beta, g.sin2_beta);
+  real2 cross = cross_amplitude(f.r_s, g, w, s_sum, p_sum);
   real c = scale * cross.x;
   real s = scale * cross.y;
   MuellerNode result;

@@ -7,6 +7,7 @@
 CONST real kHalfLn10 = real(1.15129254649702284);
 CONST real kInverseLn10 = real(0.43429448190325182765);
 CONST real kLn10 = real(2.30258509299404568402);
+CONST real kDoubtPower = real(0.75);
 
 real nodes_per_digit(real distance_over_half_length) {
   return kHalfLn10 / asinh_real(max(distance_over_half_length, real(1e-3)));
@@ -21,14 +22,27 @@ real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, re
   return max(rule.digits + kInverseLn10 * log_unit(share), real(0.0));
 }
 
+// Digits that are wanted of the azimuths at slope t, one of `order` slopes of a piece, that stands for `mass` of the
+// facets: less than of the piece where it carries less than its part.
+real digits_of_slope(RuleNode rule, ThetaNode theta, ShapeNode shape, real digits, int order, real t, real mass) {
+  real share = real(order) * mass * (theta.c + theta.s * t) / (theta.c + real(0.6) * theta.s * shape.m);
+  return clamp(rule.digits + kInverseLn10 * log_unit(min(share, real(1.0))), real(0.0), digits);
+}
+
 int order_between(real nodes, real limit) { return int(clamp(floor(nodes + real(0.5)), real(1.0), limit)); }
 
-// The share of the digits that a rule reaches whose order is cut down to a limit.
-real reached_share(real nodes, real limit) { return min(real(1.0), limit / max(nodes, real(1.0))); }
+// Digits that a rule loses whose nodes are cut down to a limit. For d of its digits less, the nodes are
+// (digits - d) (growth - curvature d), up to a factor.
+real lost_digits(real digits, real growth, real curvature, real nodes, real limit) {
+  if (nodes <= limit) return real(0.0);
+  real cut = (real(1.0) - limit / nodes) * digits * growth;
+  real slope = growth + curvature * digits;
+  return real(2.0) * cut / (slope + sqrt(max(slope * slope - real(4.0) * curvature * cut, real(0.0))));
+}
 
 // Slope axis: nodes of a piece of length `extent` in X with `roots` at its ends.
 real nodes_t(RuleNode rule, ThetaNode theta, real digits, real extent, real roots) {
-  real per_digit = theta.t_growth * rule.t_growth * nodes_per_digit(real(2.0) * rule.t_strip / extent);
+  real per_digit = theta.t_growth * rule.t_growth * nodes_per_digit(real(2.0) * rule.t_strip / max(extent, real(1e-9)));
   return max(rule.t_nodes + digits * per_digit + rule.t_root_nodes * roots, real(2.0));
 }
 
@@ -37,4 +51,12 @@ real arc_length(real quarter) { return real(4.0) * quarter / (real(1.0) + real(0
 
 real half_arc_nodes(RuleNode rule, real digits, real distance, real length) {
   return real(0.5) * digits * rule.phi_growth * nodes_per_digit(distance / length);
+}
+
+// How far a sum may be off by one rule, up to a factor that host/plan/rule.cpp knows. Where the integrand is smooth, the
+// error of n nodes is to the null rule's value as that is to the sum; where it is not, it is what the orders were made
+// for, 10^-digits. The geometric mean of the two is the closest to the truth over the domain.
+real doubt(real sum, real null, real digits) {
+  real whole = abs(sum);
+  return min(exp_real(-kDoubtPower * kLn10 * digits) * sqrt(whole * abs(null)), whole);
 }

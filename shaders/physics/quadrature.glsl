@@ -20,6 +20,6 @@ CONST int kSectionCluster = 4;
 int gauss_offset(int order) { return order * (order - 1) / 2; }
 
 int rule_offset(RuleNode rule, int section, int order) {
-  int stride = int(rule.node_stride);
+  int stride = int(rule.largest_order);
   return section * (stride * (stride + 1) / 2) + gauss_offset(order);
 }

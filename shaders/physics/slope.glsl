@@ -19,13 +19,6 @@ real slope_density(ShapeNode shape, real t) {
   return profile * slope_tail(shape, t) / kPi;
 }
 
-// P(t) m^2.
-real slope_profile(ShapeNode shape, real t) {
-  real u = t / shape.m;
-  real profile = (kDistribution == DOLP_CAUCHY) ? shape.q_minus_1 / (real(1.0) + u * u) : real(1.0);
-  return profile * slope_tail(shape, t) / kPi;
-}
-
 // p(tau), the density of the slope in one plane: the marginal of P.
 real marginal_density(ShapeNode shape, real tau) {
   real u = tau / shape.m;

@@ -7,17 +7,43 @@
 #include "evaluate/cpu/parallel.hpp"
 #include "evaluate/cpu/text.hpp"
 #include "evaluate/processor.hpp"
+#include "plan/beam.hpp"
 
 namespace dolp {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+std::unique_ptr<KernelText> make_text(const KernelData& data, bool in_double) {
+  return in_double ? make_kernel_text_double(data) : make_kernel_text_float(data);
+}
+
+double unit_roundoff_of(bool in_double) {
+  return in_double ? 0.5 * std::numeric_limits<double>::epsilon()
+                   : 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon());
+}
+
+}  // namespace
+
+bool CpuEvaluator::in_double(Precision requested) const {
+  return (requested == Precision::kAuto ? precision_ : requested) == Precision::kDouble;
+}
+
+void CpuEvaluator::note(bool in_double, double seconds) {
+  report_.evaluator = "cpu";
+  report_.device = processor_name();
+  note_precision(report_.precision, in_double);
+  report_.kernel_s += seconds;
+}
 
 std::vector<Moments> CpuEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
+  const Clock::time_point start = Clock::now();
   const KernelData data = kernel_data(request);
-  const Precision precision = request.precision == Precision::kAuto ? precision_ : request.precision;
-  const bool in_double = precision == Precision::kDouble;
-  const std::unique_ptr<KernelText> text = in_double ? make_kernel_text_double(data) : make_kernel_text_float(data);
-  const double unit_roundoff = in_double ? 0.5 * std::numeric_limits<double>::epsilon()
-                                         : 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon());
+  const bool is_double = in_double(request.precision);
+  const std::unique_ptr<KernelText> text = make_text(data, is_double);
+  const double unit_roundoff = unit_roundoff_of(is_double);
   if (data.needs_masking_table()) {
     parallel_for(
         data.shapes.size(), [&](std::size_t i) { text->build_masking_table(i); }, nullptr);
@@ -29,12 +55,24 @@ std::vector<Moments> CpuEvaluator::evaluate(const MomentsRequest& request, const
   };
   parallel_for(moments.size(), one, progress);
 
-  report_.evaluator = "cpu";
-  report_.device = processor_name();
-  note_precision(report_.precision, in_double);
   for (const Moments& entry : moments) report_.evaluations += entry.evaluations;
-  report_.kernel_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  note(is_double, seconds_since(start));
   return moments;
+}
+
+std::vector<ScatteringMatrix> CpuEvaluator::scatter(const ScatteringRequest& request, const Progress& progress) {
+  const Clock::time_point start = Clock::now();
+  const BeamPlan plan(request);
+  const bool is_double = in_double(request.precision);
+  const std::unique_ptr<KernelText> text = make_text(plan.data(), is_double);
+  std::vector<ScatteringMatrix> matrices(request.entries.size());
+  const auto one = [&](std::size_t i) {
+    const Beam beam = plan(request.entries[i]);
+    matrices[i] = matrix_from_kernel(text->mueller(beam.node), beam, unit_roundoff_of(is_double));
+  };
+  parallel_for(matrices.size(), one, progress);
+  note(is_double, seconds_since(start));
+  return matrices;
 }
 
 }  // namespace dolp

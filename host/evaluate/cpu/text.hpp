@@ -8,7 +8,7 @@
 
 namespace dolp {
 
-/// The two kernels of shaders/*.comp over one set of kernel data, which must outlive the object.
+/// The kernels of shaders/*.comp over one set of kernel data, which must outlive the object.
 class KernelText {
  public:
   virtual ~KernelText() = default;
@@ -17,8 +17,9 @@ class KernelText {
   virtual void build_masking_table(std::size_t shape) = 0;
   virtual kernel::MomentsNode moments(const MomentsEntry& entry) = 0;
 
-  /// f cos(theta_i) cos(theta_r) of one geometry for k_s = 1, in 1/sr; `shape` and `index` are positions in the data.
-  virtual kernel::MuellerNode mueller(const kernel::GeometryNode& geometry, std::size_t shape, std::size_t index) = 0;
+  /// f cos(theta_i) cos(theta_r) for k_s = 1 over the beam's power of two, in 1/sr; of the data it needs the model and
+  /// the rule nodes.
+  virtual kernel::MuellerNode mueller(const kernel::BeamNode& beam) = 0;
 };
 
 std::unique_ptr<KernelText> make_kernel_text_float(const KernelData& data);

@@ -58,9 +58,8 @@ class TextKernel final : public KernelText {
     return convert_reals<double, kernel::MomentsNode, real>(node);
   }
 
-  kernel::MuellerNode mueller(const kernel::GeometryNode& geometry, std::size_t shape, std::size_t index) override {
-    const auto node = text_.mueller(convert_reals<real, Text::GeometryNode, double>(geometry), shape_node(shape),
-                                    convert_reals<real, Text::IndexNode, double>(data_.indices[index]), table(shape));
+  kernel::MuellerNode mueller(const kernel::BeamNode& beam) override {
+    const auto node = text_.mueller(convert_reals<real, Text::BeamNode, double>(beam));
     return convert_reals<double, kernel::MuellerNode, real>(node);
   }
 

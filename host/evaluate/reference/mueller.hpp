@@ -9,12 +9,19 @@ namespace dolp {
 
 using MuellerMatrix = std::array<std::array<double, 4>, 4>;
 
-/// f_s with k_s = 1, its Jones matrix built from the s and p vectors of the beams and of the facet: no angle eta.
+/// f_s cos(theta_i) cos(theta_r) with k_s = 1, its Jones matrix built from the s and p vectors of the beams and of the
+/// facet in quadruple precision: no angle eta, no care for cancellation.
 /// Equation: (4), (7), (15).
 /// Units: sr^-1.
-/// Conventions: Delta_phi = 180 degrees is the specular side; s = k x z, p = k x s for both beams;
-///   Q = I_s - I_p, U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p).
-/// Domain: 0 < theta < 90 degrees for both; sigma > 0; not the retro direction.
+/// Conventions: Delta_phi = 180 degrees is the specular side; s = k x z, p = k x s for both beams, at zenith 0 the
+/// limit
+///   at the beam's azimuth; Q = I_s - I_p, U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p).
+/// Domain: zeniths in [0, 90] degrees, not 90 both; sigma > 0.
+/// Accuracy: 1e-12 of m00.
+MuellerMatrix reference_scattering(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+                                   double theta_r_deg, double delta_phi_deg);
+
+/// The same without the cosines: f_s. Domain: zeniths below 90 degrees.
 MuellerMatrix reference_pbrdf(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
                               double theta_r_deg, double delta_phi_deg);
 

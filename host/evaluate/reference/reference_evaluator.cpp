@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -14,6 +16,7 @@
 #include "error.hpp"
 #include "evaluate/processor.hpp"
 #include "evaluate/reference/hemisphere.hpp"
+#include "evaluate/reference/mueller.hpp"
 
 namespace dolp {
 
@@ -24,10 +27,12 @@ void require(bool is_met, const std::string& what, double value) {
 }
 
 // Written so that NaN fails.
-void check(const MomentsRequest& request) {
-  for (const double theta_deg : request.theta_deg) {
-    require(theta_deg >= 0.0 && theta_deg <= 90.0, "theta must be in [0, 90] degrees", theta_deg);
-  }
+void check_zenith(double theta_deg) {
+  require(theta_deg >= 0.0 && theta_deg <= 90.0, "theta must be in [0, 90] degrees", theta_deg);
+}
+
+template <class Request>
+void check_surfaces(const Request& request) {
   const bool is_cauchy = request.distribution == Distribution::kCauchy;
   const bool is_smith = request.masking == Masking::kSmith;
   for (const SlopeShape& shape : request.shapes) {
@@ -41,6 +46,20 @@ void check(const MomentsRequest& request) {
   }
 }
 
+void check(const MomentsRequest& request) {
+  for (const double theta_deg : request.theta_deg) check_zenith(theta_deg);
+  check_surfaces(request);
+}
+
+void check(const ScatteringRequest& request) {
+  for (const BeamAngles& angles : request.angles) {
+    check_zenith(angles.theta_i_deg);
+    check_zenith(angles.theta_r_deg);
+  }
+  check_surfaces(request);
+  for (const SlopeShape& shape : request.shapes) require(shape.sigma > 0.0, "sigma must be above 0", shape.sigma);
+}
+
 Moments moments_of(const MomentsRequest& request, const MomentsEntry& entry, const reference::Refinement& refinement) {
   const double theta_deg = request.theta_deg.at(entry.theta);
   const SlopeShape& shape = request.shapes.at(entry.shape);
@@ -50,6 +69,22 @@ Moments moments_of(const MomentsRequest& request, const MomentsEntry& entry, con
   return reference::hemisphere_moments(slopes, request.masking, theta_deg, constants, refinement);
 }
 
+ScatteringMatrix matrix_of(const ScatteringRequest& request, const ScatteringEntry& entry) {
+  const BeamAngles& angles = request.angles.at(entry.angles);
+  const SlopeShape& shape = request.shapes.at(entry.shape);
+  Surface surface;
+  surface.distribution = request.distribution;
+  surface.masking = request.masking;
+  surface.sigma = shape.sigma;
+  surface.q = shape.q;
+  const MuellerMatrix f = reference_scattering(surface, request.indices.at(entry.index), angles.theta_i_deg,
+                                               angles.theta_r_deg, angles.delta_phi_deg);
+  ScatteringMatrix matrix;
+  for (std::size_t i = 0; i < matrix.m.size(); ++i) matrix.m[i] = f[i / 4][i % 4];
+  matrix.error = kScatteringErrorDouble * std::abs(matrix.m[0]);
+  return matrix;
+}
+
 // What ReferenceEvaluator promises under "Accuracy".
 double relative_tolerance(const ReferenceOptions& options, double requested) {
   if (requested <= 0.0) return options.relative_tolerance;
@@ -57,12 +92,13 @@ double relative_tolerance(const ReferenceOptions& options, double requested) {
 }
 
 // Shares the entries between threads; the calling thread alone talks to `progress`.
+template <class Result>
 class Crew {
  public:
-  Crew(const MomentsRequest& request, const reference::Refinement& refinement)
-      : request_(request), refinement_(refinement), results_(request.entries.size()) {}
+  Crew(std::size_t entries, std::function<Result(std::size_t)> work_on)
+      : work_on_(std::move(work_on)), results_(entries) {}
 
-  std::vector<Moments> run(unsigned threads, const Progress& progress) {
+  std::vector<Result> run(unsigned threads, const Progress& progress) {
     std::vector<std::jthread> workers;
     for (unsigned i = 0; i < threads; ++i) workers.emplace_back([this] { work(); });
     report_until_done(progress, threads);
@@ -75,7 +111,7 @@ class Crew {
   void work() {
     try {
       for (std::size_t i = next_++; i < results_.size() && !is_stopping_; i = next_++) {
-        results_[i] = moments_of(request_, request_.entries[i], refinement_);
+        results_[i] = work_on_(i);
         const std::lock_guard lock(mutex_);
         ++done_;
         changed_.notify_one();
@@ -108,9 +144,8 @@ class Crew {
     }
   }
 
-  const MomentsRequest& request_;
-  reference::Refinement refinement_;
-  std::vector<Moments> results_;
+  std::function<Result(std::size_t)> work_on_;
+  std::vector<Result> results_;
   std::atomic<std::size_t> next_{0};
   std::atomic<bool> is_stopping_{false};
   std::mutex mutex_;
@@ -120,21 +155,39 @@ class Crew {
   std::exception_ptr failure_;
 };
 
+unsigned thread_count(const ReferenceOptions& options, std::size_t entries) {
+  const unsigned available = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  return static_cast<unsigned>(std::min<std::size_t>(available, entries));
+}
+
 }  // namespace
+
+void ReferenceEvaluator::note(double seconds) {
+  report_.evaluator = "reference";
+  report_.device = processor_name();
+  report_.precision = "double";
+  report_.kernel_s += seconds;
+}
 
 std::vector<Moments> ReferenceEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
   check(request);
   const auto start = std::chrono::steady_clock::now();
   const reference::Refinement refinement{relative_tolerance(options_, request.tolerance), options_.subdivisions};
-  const unsigned available =
-      options_.threads > 0 ? options_.threads : std::max(1U, std::thread::hardware_concurrency());
-  const auto threads = static_cast<unsigned>(std::min<std::size_t>(available, request.entries.size()));
-  std::vector<Moments> results = Crew(request, refinement).run(threads, progress);
-  report_.evaluator = "reference";
-  report_.device = processor_name();
-  report_.precision = "double";
+  Crew<Moments> crew(request.entries.size(),
+                     [&](std::size_t i) { return moments_of(request, request.entries[i], refinement); });
+  std::vector<Moments> results = crew.run(thread_count(options_, request.entries.size()), progress);
   for (const Moments& moments : results) report_.evaluations += moments.evaluations;
-  report_.kernel_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  note(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  return results;
+}
+
+std::vector<ScatteringMatrix> ReferenceEvaluator::scatter(const ScatteringRequest& request, const Progress& progress) {
+  check(request);
+  const auto start = std::chrono::steady_clock::now();
+  Crew<ScatteringMatrix> crew(request.entries.size(),
+                              [&](std::size_t i) { return matrix_of(request, request.entries[i]); });
+  std::vector<ScatteringMatrix> results = crew.run(thread_count(options_, request.entries.size()), progress);
+  note(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return results;
 }
 

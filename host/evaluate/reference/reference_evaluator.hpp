@@ -1,9 +1,10 @@
-// Moments by adaptive quadrature over the other direction: slow, independent of the shaders, and with honest errors.
+// Moments and pBRDFs by adaptive quadrature over the other direction: slow, independent of the shaders, and with honest
+// errors.
 #pragma once
 
 #include <vector>
 
-#include "evaluate/moments.hpp"
+#include "evaluate/scattering.hpp"
 
 namespace dolp {
 
@@ -26,13 +27,18 @@ struct ReferenceOptions {
 ///   all four moments are the limits: 0 for v-cavity and smith, finite for the others but infinite (with infinite
 ///   errors; r_q and deficit negative) for cauchy with q <= 3/2.
 /// Errors: InputError outside the domain; Cancelled when `progress` returns false.
-class ReferenceEvaluator final : public MomentsEvaluator {
+class ReferenceEvaluator final : public MomentsEvaluator, public ScatteringEvaluator {
  public:
   explicit ReferenceEvaluator(ReferenceOptions options = {}) : options_(options) {}
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
+  /// pBRDFs from explicit vectors (reference/mueller.hpp), to kScatteringErrorDouble.
+  std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override;
+  ScatteringEvaluator* scattering() override { return this; }
   EvaluationReport report() const override { return report_; }
 
  private:
+  void note(double seconds);
+
   ReferenceOptions options_;
   EvaluationReport report_;
 };

@@ -8,7 +8,7 @@ namespace {
 
 // Rules below these tolerances drown in rounding.
 constexpr double kFloatLimit = 2e-6;
-constexpr double kDoubleLimit = 1e-14;
+constexpr double kDoubleLimit = 1e-15;
 
 // A miss by a little asks for more than the little, or the next attempt may miss too.
 constexpr double kSafety = 1.5;

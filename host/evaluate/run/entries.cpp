@@ -29,7 +29,12 @@ void check_columns(const Scene& scene, const Points& points) {
   }
 }
 
-/// Refuses points that the scene's masking is not made for; the scene's own q has passed the same check.
+double value_or(const std::optional<std::vector<double>>& column, std::size_t row, double fallback) {
+  return column ? (*column)[row] : fallback;
+}
+
+}  // namespace
+
 void check_smith(const Scene& scene, const Points& points) {
   const Surface& surface = scene.surface;
   if (surface.masking != Masking::kSmith || surface.distribution != Distribution::kCauchy || !points.q) return;
@@ -42,12 +47,6 @@ void check_smith(const Scene& scene, const Points& points) {
                     points.name, points.line(row), format_number(q), kSmithCauchyQRange.text()));
   }
 }
-
-double value_or(const std::optional<std::vector<double>>& column, std::size_t row, double fallback) {
-  return column ? (*column)[row] : fallback;
-}
-
-}  // namespace
 
 std::vector<SceneEntry> grid_entries(const Scene& scene) {
   const Grid& grid = scene.grid;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/run/beams.hpp"
 #include "evaluate/run/moments_block.hpp"
 #include "evaluate/run/scene_run.hpp"
 
@@ -27,51 +28,76 @@ std::vector<SceneEntry> drawn_entries(std::span<const SceneEntry> entries) {
   return drawn;
 }
 
+/// Sums of one kind of request, of the first attempt and of all others.
+struct Count {
+  std::size_t first = 0;  ///< moments or beams
+  std::size_t again = 0;
+  double first_evaluations = 0.0;
+  double again_evaluations = 0.0;
+  double spent_s = 0.0;
+
+  void add(std::size_t entries, const EvaluationReport& before, const EvaluationReport& after) {
+    const double evaluations = after.evaluations - before.evaluations;
+    const bool is_first = first == 0;
+    (is_first ? first : again) += entries;
+    (is_first ? first_evaluations : again_evaluations) += evaluations;
+    spent_s += after.kernel_s - before.kernel_s;
+  }
+};
+
 /// Notes what the attempts of a run ask for.
-class CountingEvaluator final : public MomentsEvaluator {
+class CountingEvaluator final : public MomentsEvaluator, public ScatteringEvaluator {
  public:
   CountingEvaluator(Precision precision, bool has_double) : cpu_(precision), has_double_(has_double) {}
 
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
-    const double before = cpu_.report().evaluations;
+    const EvaluationReport before = cpu_.report();
     std::vector<Moments> moments = cpu_.evaluate(request, progress);
-    const double spent = cpu_.report().evaluations - before;
-    const bool is_first = first_moments_ == 0;
-    (is_first ? first_moments_ : again_moments_) += request.entries.size();
-    (is_first ? first_evaluations_ : again_evaluations_) += spent;
+    moments_.add(request.entries.size(), before, cpu_.report());
     return moments;
   }
+  std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override {
+    const EvaluationReport before = cpu_.report();
+    std::vector<ScatteringMatrix> matrices = cpu_.scatter(request, progress);
+    beams_.add(request.entries.size(), before, cpu_.report());
+    return matrices;
+  }
+  ScatteringEvaluator* scattering() override { return this; }
   Precision precision() const override { return cpu_.precision(); }
   bool has_double() const override { return has_double_; }
   EvaluationReport report() const override { return cpu_.report(); }
 
-  std::size_t first_moments() const { return first_moments_; }
-  std::size_t again_moments() const { return again_moments_; }
-  double first_evaluations() const { return first_evaluations_; }
-  double again_evaluations() const { return again_evaluations_; }
+  const Count& moments() const { return moments_; }
+  const Count& beams() const { return beams_; }
 
  private:
   CpuEvaluator cpu_;
   bool has_double_;
-  std::size_t first_moments_ = 0;
-  std::size_t again_moments_ = 0;
-  double first_evaluations_ = 0.0;
-  double again_evaluations_ = 0.0;
+  Count moments_;
+  Count beams_;
 };
 
-void count_moments(RunPrediction& run, const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan,
-                   bool has_double) {
+/// How many of all there are for each that was counted.
+double scale_of(std::size_t all, const Count& counted) {
+  return counted.first == 0 ? 0.0 : static_cast<double>(all) / static_cast<double>(counted.first);
+}
+
+void count_work(RunPrediction& run, const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan,
+                bool has_double) {
   CountingEvaluator counting(scene.accuracy.precision, has_double);
   evaluate_scene(scene, drawn_entries(entries), plan, &counting, {});
-  if (counting.first_moments() == 0) return;
-  const double counted = static_cast<double>(counting.first_moments());
-  const double scale = static_cast<double>(run.moments) / counted;
-  run.first_evaluations = scale * counting.first_evaluations();
-  run.again_share = static_cast<double>(counting.again_moments()) / counted;
-  run.again_evaluations = scale * counting.again_evaluations();
-  run.is_exact = counting.first_moments() == run.moments;
-  run.counted_s = counting.report().kernel_s;
-  run.counted_evaluations = counting.report().evaluations;
+  const Count& moments = counting.moments();
+  const Count& beams = counting.beams();
+  const double moments_scale = scale_of(run.moments, moments);
+  const double beams_scale = scale_of(run.beams, beams);
+  run.first_evaluations = moments_scale * moments.first_evaluations;
+  run.again_evaluations = moments_scale * moments.again_evaluations;
+  run.again_beams = beams_scale * static_cast<double>(beams.again);
+  const double again = moments_scale * static_cast<double>(moments.again) + run.again_beams;
+  if (run.moments + run.beams > 0) run.again_share = again / static_cast<double>(run.moments + run.beams);
+  run.is_exact = moments.first == run.moments && beams.first == run.beams;
+  run.moments_s = moments_scale * moments.spent_s;
+  run.beams_s = beams_scale * beams.spent_s;
 }
 
 }  // namespace
@@ -83,18 +109,26 @@ RunPrediction predict_run(const Scene& scene, std::span<const SceneEntry> entrie
   run.entries = entries.size();
   run.spectral_samples = samples.size();
   run.first = first_attempt(scene.accuracy, has_double);
-  run.beams = plan.needs_beams ? entries.size() * samples.size() : 0;
   run.host_bytes = static_cast<double>(entries.size() * (sizeof(SceneEntry) + sizeof(PointResult)));
-  if (!plan.needs_moments) return run;
   std::size_t largest = 0;
   for (const std::span<const SceneEntry> part : run_blocks(entries, samples.size())) {
-    const Block block = moments_block(scene, samples, part, run.first);
-    run.moments += block.request.entries.size();
-    largest = std::max(largest, block.request.entries.size());
-    if (visit) visit(block.request);
+    std::size_t bytes = 0;
+    if (plan.needs_moments) {
+      const MomentsRequest request = moments_block(scene, samples, part, run.first).request;
+      run.moments += request.entries.size();
+      bytes += request.entries.size() * (2 * sizeof(MomentsEntry) + sizeof(Moments));
+      visit.moments(request);
+    }
+    if (plan.needs_beams) {
+      const ScatteringRequest request = beams_request(scene, samples, part, run.first.precision);
+      run.beams += request.entries.size();
+      bytes += request.entries.size() * (sizeof(ScatteringEntry) + sizeof(ScatteringMatrix) + sizeof(Scattered));
+      visit.beams(request);
+    }
+    largest = std::max(largest, bytes);
   }
-  run.host_bytes += static_cast<double>(largest * (2 * sizeof(MomentsEntry) + sizeof(Moments)));
-  count_moments(run, scene, entries, plan, has_double);
+  run.host_bytes += static_cast<double>(largest);
+  if (run.moments + run.beams > 0) count_work(run, scene, entries, plan, has_double);
   return run;
 }
 

@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <span>
+#include <stdexcept>
 
 #include "evaluate/grazing.hpp"
 #include "evaluate/run/attempts.hpp"
+#include "evaluate/run/beams.hpp"
 #include "evaluate/run/closed_forms.hpp"
-#include "evaluate/run/distinct.hpp"
 #include "evaluate/run/moments_block.hpp"
-#include "evaluate/run/scattering.hpp"
 
 namespace dolp {
 namespace {
@@ -20,41 +19,12 @@ constexpr std::size_t kMomentsAtOnce = 1U << 22U;  // bounds the memory of a run
 
 bool is_bistatic(const Scene& scene) { return scene.geometry.mode == Mode::kBistatic; }
 
-/// What the source sends toward the view for each entry and sample; nothing for a mirror but toward its specular
-/// direction, where the radiance is not defined.
-std::vector<Scattered> entry_beams(const Scene& scene, std::span<const SceneEntry> entries,
-                                   const std::vector<OpticalConstants>& samples) {
-  MomentsRequest request;
-  request.distribution = scene.surface.distribution;
-  request.masking = scene.surface.masking;
-  Distinct<double> thetas(request.theta_deg);
-  Distinct<SlopeShape> shapes(request.shapes);
-  Distinct<OpticalConstants> indices(request.indices);
-  for (const SceneEntry& entry : entries) {
-    if (is_mirror(entry.shape)) continue;
-    MomentsEntry wanted;
-    wanted.theta = thetas.position({entry.theta_deg, 0.0}, entry.theta_deg);
-    wanted.shape = shapes.position({entry.shape.sigma, entry.shape.q}, entry.shape);
-    for (const OpticalConstants& sample : samples) {
-      const OpticalConstants index = entry.index.value_or(sample);
-      wanted.index = indices.position({index.n, index.k}, index);
-      request.entries.push_back(wanted);
-    }
-  }
-  const Geometry& geometry = scene.geometry;
-  const std::vector<Scattered> rough = scattered_beams(
-      request, zenith_before_limit_deg(scene.surface.masking, geometry.view_zenith_deg), geometry.relative_azimuth_deg);
-  std::vector<Scattered> beams;
-  auto next = rough.begin();
-  for (const SceneEntry& entry : entries) {
-    for (std::size_t j = 0; j < samples.size(); ++j) {
-      const bool is_specular =
-          std::abs(geometry.relative_azimuth_deg) == 180.0 && entry.theta_deg == geometry.view_zenith_deg;
-      const double glare = is_specular ? std::numeric_limits<double>::quiet_NaN() : 0.0;
-      beams.push_back(is_mirror(entry.shape) ? Scattered{.i = glare, .q = glare} : *next++);
-    }
-  }
-  return beams;
+bool wants_moments(const Scene& scene, const SceneEntry& entry, const EffectPlan& plan) {
+  return plan.needs_moments && needs_evaluator(scene, seen_entry(scene, entry));
+}
+
+bool wants_beam(const Scene& scene, const SceneEntry& entry, const EffectPlan& plan) {
+  return plan.needs_beams && needs_scattering(scene, entry);
 }
 
 /// What the entries of a scene share.
@@ -87,15 +57,20 @@ EntryMoments entry_moments(const SceneRun& run, const SceneEntry& seen, const st
   return {direction, {own.begin(), own.end()}};
 }
 
+std::vector<Scattered> block_beams(const SceneRun& run, std::span<const SceneEntry> entries,
+                                   std::span<const ScatteringMatrix> matrices) {
+  if (!run.plan.needs_beams) return {};
+  return entry_beams(run.scene, run.radiometry.rule().samples.size(), entries, matrices);
+}
+
 /// Results of the entries of a block.
+/// Shape: `beams` has the samples of each entry in turn, or nothing where the plan needs none.
 std::vector<PointResult> block_results(const SceneRun& run, std::span<const SceneEntry> entries, const Block& block,
-                                       std::span<const Moments> moments) {
+                                       std::span<const Moments> moments, std::span<const Scattered> beams) {
   std::vector<PointResult> results;
   results.reserve(entries.size());
   const std::vector<OpticalConstants> samples = run.radiometry.rule().indices();
   const std::size_t count = samples.size();
-  const std::vector<Scattered> beams =
-      run.plan.needs_beams ? entry_beams(run.scene, entries, samples) : std::vector<Scattered>{};
   const std::vector<Scattered> no_beams(count);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const SceneEntry seen = seen_entry(run.scene, entries[i]);
@@ -106,8 +81,7 @@ std::vector<PointResult> block_results(const SceneRun& run, std::span<const Scen
       results.push_back(run.radiometry.point(own.direction, own.moments, indices));
       continue;
     }
-    const std::span<const Scattered> own_beams =
-        beams.empty() ? std::span(no_beams) : std::span(beams).subspan(i * count, count);
+    const std::span<const Scattered> own_beams = beams.empty() ? std::span(no_beams) : beams.subspan(i * count, count);
     results.push_back(run.radiometry.bistatic_point(own.direction, cos_sin_deg(entries[i].theta_deg).cos, own.moments,
                                                     indices, own_beams));
   }
@@ -121,17 +95,42 @@ struct Attempts {
   MomentsEvaluator& evaluator;
 };
 
-/// One attempt at all entries of a block.
+/// A part of the progress of a whole: `before` of `total` are done when it starts.
+Progress part_of(const Progress& progress, std::size_t before, std::size_t total) {
+  if (!progress) return {};
+  return [&progress, before, total](std::size_t done, std::size_t) { return progress(before + done, total); };
+}
+
+/// One attempt at all entries of a block: moments and beams in the same precision.
 std::vector<PointResult> attempt_block(const Attempts& all, std::span<const SceneEntry> entries, const Attempt& attempt,
                                        const Progress& progress) {
-  const Block block = moments_block(all.run.scene, all.run.radiometry.rule().indices(), entries, attempt);
-  const std::vector<Moments> moments = all.evaluator.evaluate(block.request, progress);
-  return block_results(all.run, entries, block, moments);
+  const Scene& scene = all.run.scene;
+  const std::vector<OpticalConstants> samples = all.run.radiometry.rule().indices();
+  Block block;
+  ScatteringRequest beams;
+  if (all.run.plan.needs_moments) block = moments_block(scene, samples, entries, attempt);
+  if (all.run.plan.needs_beams) beams = beams_request(scene, samples, entries, attempt.precision);
+  const std::size_t before = block.request.entries.size();
+  const std::size_t total = before + beams.entries.size();
+  std::vector<Moments> moments;
+  std::vector<ScatteringMatrix> matrices;
+  if (before > 0) moments = all.evaluator.evaluate(block.request, part_of(progress, 0, total));
+  if (total > before) {
+    if (all.evaluator.scattering() == nullptr) throw std::logic_error("the bistatic mode needs an evaluator of pBRDFs");
+    matrices = all.evaluator.scattering()->scatter(beams, part_of(progress, before, total));
+  }
+  return block_results(all.run, entries, block, moments, block_beams(all.run, entries, matrices));
 }
 
 bool is_better(const PointResult& a, const PointResult& b) {
   return (a.status & kStatusToleranceMissed) < (b.status & kStatusToleranceMissed) ||
          std::max(a.error_estimate, a.rho_error_estimate) < std::max(b.error_estimate, b.rho_error_estimate);
+}
+
+/// Whether an attempt at an entry finds more than the last one: f has no rule that a tolerance would make finer.
+bool finds_more(const Attempt& attempt, const Attempt& last, const SceneRun& run, const SceneEntry& entry) {
+  return wants_moments(run.scene, entry, run.plan) ||
+         (wants_beam(run.scene, entry, run.plan) && attempt.precision != last.precision);
 }
 
 /// Tries the entries of a block again that miss the tolerance, those together that want the same attempt.
@@ -140,7 +139,7 @@ void retry(const Attempts& all, std::span<const SceneEntry> entries, const Attem
   std::map<Attempt, std::vector<std::size_t>> waiting;
   const auto plan = [&](std::size_t i, const Attempt& last, const PointResult& result) {
     const auto next = next_attempt(last, result, all.accuracy, all.evaluator.has_double());
-    if (next && needs_evaluator(all.run.scene, seen_entry(all.run.scene, entries[i]))) waiting[*next].push_back(i);
+    if (next && finds_more(*next, last, all.run, entries[i])) waiting[*next].push_back(i);
   };
   for (std::size_t i = 0; i < entries.size(); ++i) plan(i, first, results[i]);
   while (!waiting.empty()) {
@@ -160,7 +159,7 @@ void retry(const Attempts& all, std::span<const SceneEntry> entries, const Attem
 std::vector<PointResult> evaluated_block(const SceneRun& run, std::span<const SceneEntry> entries,
                                          MomentsEvaluator* evaluator, const Progress& progress) {
   if (!wants_evaluator(run.scene, entries, run.plan)) {
-    std::vector<PointResult> results = block_results(run, entries, {}, {});
+    std::vector<PointResult> results = block_results(run, entries, {}, {}, block_beams(run, entries, {}));
     if (!progress(1, 1)) throw Cancelled{};
     return results;
   }
@@ -175,9 +174,9 @@ std::vector<PointResult> evaluated_block(const SceneRun& run, std::span<const Sc
 }  // namespace
 
 bool wants_evaluator(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan) {
-  return plan.needs_moments && std::ranges::any_of(entries, [&](const SceneEntry& entry) {
-           return needs_evaluator(scene, seen_entry(scene, entry));
-         });
+  return std::ranges::any_of(entries, [&](const SceneEntry& entry) {
+    return wants_moments(scene, entry, plan) || wants_beam(scene, entry, plan);
+  });
 }
 
 std::vector<std::span<const SceneEntry>> run_blocks(std::span<const SceneEntry> entries, std::size_t spectral_samples) {

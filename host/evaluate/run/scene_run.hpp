@@ -23,10 +23,15 @@ std::vector<SceneEntry> grid_entries(const Scene& scene);
 /// wavelength; q <= 3/2 with smith masking and the cauchy distribution.
 std::vector<SceneEntry> point_entries(const Scene& scene, const Points& points);
 
+/// Refuses a q of the points that the scene's masking is not made for: q <= 3/2 with smith and the cauchy distribution;
+/// the scene's own q has passed the same check.
+/// Errors: InputError that names the points' file and line, column, value and what is allowed.
+void check_smith(const Scene& scene, const Points& points);
+
 /// How a run cuts its entries, which bounds its memory: consecutive blocks, each with requests of its own.
 std::vector<std::span<const SceneEntry>> run_blocks(std::span<const SceneEntry> entries, std::size_t spectral_samples);
 
-/// Whether anything is left to integrate: the plan needs moments, and not all entries have closed forms.
+/// Whether anything is left for an evaluator: the plan needs moments or beams, and not all entries have closed forms.
 bool wants_evaluator(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan);
 
 /// Results in the order of `entries`, of what the plan keeps; what that does not give is NaN. Progress counts entries.

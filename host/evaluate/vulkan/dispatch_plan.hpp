@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "evaluate/moments.hpp"
+#include "evaluate/scattering.hpp"
 #include "evaluate/vulkan/devices.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 
@@ -18,6 +18,8 @@ struct DispatchPlan {
 
 /// What VulkanEvaluator does with a request on a device, by the code that it uses itself.
 DispatchPlan dispatch_plan(const MomentsRequest& request, const DeviceDescription& device,
+                           const VulkanOptions& options = {});
+DispatchPlan dispatch_plan(const ScatteringRequest& request, const DeviceDescription& device,
                            const VulkanOptions& options = {});
 
 /// The limits that every Vulkan device keeps, for plans without one. The heap is a guess.

@@ -56,16 +56,18 @@ void Kernels::create_descriptor_set() {
 void Kernels::bind(const std::array<VkBuffer, kBindingCount>& buffers) {
   std::array<VkDescriptorBufferInfo, kBindingCount> infos{};
   std::array<VkWriteDescriptorSet, kBindingCount> writes{};
+  std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < kBindingCount; ++i) {
+    if (buffers[i] == VK_NULL_HANDLE) continue;
     infos[i] = {.buffer = buffers[i], .offset = 0, .range = VK_WHOLE_SIZE};
-    writes[i] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                 .dstSet = set_,
-                 .dstBinding = i,
-                 .descriptorCount = 1,
-                 .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                 .pBufferInfo = &infos[i]};
+    writes[count++] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                       .dstSet = set_,
+                       .dstBinding = i,
+                       .descriptorCount = 1,
+                       .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                       .pBufferInfo = &infos[i]};
   }
-  vkUpdateDescriptorSets(device_.get(), kBindingCount, writes.data(), 0, nullptr);
+  vkUpdateDescriptorSets(device_.get(), count, writes.data(), 0, nullptr);
 }
 
 VkPipeline Kernels::moments(Distribution distribution, Masking masking) {
@@ -75,6 +77,10 @@ VkPipeline Kernels::moments(Distribution distribution, Masking masking) {
 VkPipeline Kernels::masking_table(Distribution distribution, Masking masking) {
   return cached(masking_tables_, float64_ ? spirv::masking_table_double : spirv::masking_table_float, distribution,
                 masking);
+}
+
+VkPipeline Kernels::mueller(Distribution distribution, Masking masking) {
+  return cached(muellers_, float64_ ? spirv::mueller_double : spirv::mueller_float, distribution, masking);
 }
 
 VkPipeline Kernels::cached(Cache& cache, std::span<const std::uint32_t> spirv, Distribution distribution,

@@ -23,11 +23,13 @@ class Kernels {
  public:
   Kernels(const Device& device, bool float64);
 
-  /// Binds one storage buffer to each binding of interface.glsl, whole.
+  /// Binds one storage buffer to each binding of interface.glsl, whole; a null handle leaves a binding that the
+  /// pipelines to run do not use.
   void bind(const std::array<VkBuffer, kBindingCount>& buffers);
 
   VkPipeline moments(Distribution distribution, Masking masking);
   VkPipeline masking_table(Distribution distribution, Masking masking);
+  VkPipeline mueller(Distribution distribution, Masking masking);
   VkPipelineLayout layout() const { return layout_.get(); }
   VkDescriptorSet descriptor_set() const { return set_; }
 
@@ -46,7 +48,7 @@ class Kernels {
   UniquePipelineLayout layout_;
   UniqueDescriptorPool pool_;
   VkDescriptorSet set_ = VK_NULL_HANDLE;
-  Cache moments_, masking_tables_;
+  Cache moments_, masking_tables_, muellers_;
 };
 
 }  // namespace dolp::vulkan

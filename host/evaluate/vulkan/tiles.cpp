@@ -31,6 +31,11 @@ TileCosts tile_costs(const Packing& packing) {
               packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>()};
 }
 
+TileCosts scattering_tile_costs(const Packing& packing) {
+  return {.entry_bytes = packing.node_bytes<kernel::BeamNode>() + packing.node_bytes<kernel::MuellerNode>(),
+          .shape_bytes = 1};
+}
+
 std::vector<Block> blocks_of(std::span<const MomentsEntry> entries, std::size_t shape_count,
                              std::uint32_t block_shapes) {
   assert(block_shapes > 0);

@@ -35,8 +35,11 @@ struct TileSizes {
 /// The largest sizes within the limits; tiles and masking tables take at most an eighth of the heap each.
 TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs);
 
-/// Bytes of an entry and a shape in a precision.
+/// Bytes of an entry and a shape of the moments in a precision.
 TileCosts tile_costs(const Packing& packing);
+
+/// The same of the pBRDFs, whose entries bring their own shapes.
+TileCosts scattering_tile_costs(const Packing& packing);
 
 /// Shapes whose masking tables are bound together, and the entries that need them, by their positions in the request.
 struct Block {

@@ -10,6 +10,7 @@
 #include "evaluate/vulkan/instance.hpp"
 #include "evaluate/vulkan/moments_run.hpp"
 #include "evaluate/vulkan/result.hpp"
+#include "evaluate/vulkan/scattering_run.hpp"
 
 namespace dolp {
 namespace {
@@ -31,6 +32,19 @@ void check_entries(const MomentsRequest& request) {
         entry.index >= request.indices.size()) {
       throw InputError("entry " + std::to_string(i) + " of the request is outside its lists of " +
                        std::to_string(request.theta_deg.size()) + " directions, " +
+                       std::to_string(request.shapes.size()) + " shapes and " + std::to_string(request.indices.size()) +
+                       " indices");
+    }
+  }
+}
+
+void check_entries(const ScatteringRequest& request) {
+  for (std::size_t i = 0; i < request.entries.size(); ++i) {
+    const ScatteringEntry& entry = request.entries[i];
+    if (entry.angles >= request.angles.size() || entry.shape >= request.shapes.size() ||
+        entry.index >= request.indices.size()) {
+      throw InputError("entry " + std::to_string(i) + " of the request is outside its lists of " +
+                       std::to_string(request.angles.size()) + " pairs of beams, " +
                        std::to_string(request.shapes.size()) + " shapes and " + std::to_string(request.indices.size()) +
                        " indices");
     }
@@ -62,39 +76,32 @@ class VulkanEvaluator::Impl {
         stream_(device_) {}
 
   /// Whether a request is to be computed in double.
-  bool in_double(const MomentsRequest& request) const {
-    const Precision precision = request.precision == Precision::kAuto ? options_.precision : request.precision;
-    return precision == Precision::kDouble;
+  bool in_double(Precision requested) const {
+    return (requested == Precision::kAuto ? options_.precision : requested) == Precision::kDouble;
   }
   const DeviceDescription& description() const { return choice_.description; }
   std::vector<std::string> validation_messages() const { return log_.messages(); }
 
   /// Creates the pipelines of a request, so that their time is known apart.
   void prepare(const MomentsRequest& request) {
-    vulkan::Kernels& kernels = kernels_for(request);
+    vulkan::Kernels& kernels = kernels_for(request.precision);
     kernels.moments(request.distribution, request.masking);
     if (needs_masking_table(request)) kernels.masking_table(request.distribution, request.masking);
   }
 
+  void prepare(const ScatteringRequest& request) {
+    kernels_for(request.precision).mueller(request.distribution, request.masking);
+  }
+
   /// Computes a request and adds what it cost to `report`. After a DeviceTimeout this object must not be destroyed.
   std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
-    run_.emplace(vulkan::RunContext{.device = device_,
-                                    .kernels = kernels_for(request),
-                                    .stream = stream_,
-                                    .packing = vulkan::Packing(in_double(request)),
-                                    .staged_uploads = options_.staged_uploads,
-                                    .tile_timeout_s = options_.tile_timeout_s},
-                 request, options_.max_tile_entries, options_.max_block_shapes);
-    std::optional<std::vector<Moments>> moments = run_->compute(progress);
-    report.dispatches += run_->cost().dispatches;
-    report.evaluations += run_->cost().evaluations;
-    report.kernel_s += run_->cost().kernel_s;
-    note_precision(report.precision, in_double(request));
-    run_.reset();
-    if (!moments) throw Cancelled{};
-    const std::vector<std::string> messages = log_.messages();
-    if (!messages.empty()) throw DeviceError("Vulkan validation: " + messages.front());
-    return std::move(*moments);
+    run_.emplace(context_for(request.precision), request, options_.max_tile_entries, options_.max_block_shapes);
+    return finish(run_, run_->compute(progress), request.precision, report);
+  }
+  std::vector<ScatteringMatrix> compute(const ScatteringRequest& request, const Progress& progress,
+                                        EvaluationReport& report) {
+    scattering_run_.emplace(context_for(request.precision), request, options_.max_tile_entries);
+    return finish(scattering_run_, scattering_run_->compute(progress), request.precision, report);
   }
 
  private:
@@ -102,8 +109,32 @@ class VulkanEvaluator::Impl {
     return KernelData{.masking = request.masking}.needs_masking_table();
   }
 
-  vulkan::Kernels& kernels_for(const MomentsRequest& request) {
-    const bool float64 = in_double(request);
+  vulkan::RunContext context_for(Precision requested) {
+    return {.device = device_,
+            .kernels = kernels_for(requested),
+            .stream = stream_,
+            .packing = vulkan::Packing(in_double(requested)),
+            .staged_uploads = options_.staged_uploads,
+            .tile_timeout_s = options_.tile_timeout_s};
+  }
+
+  /// Ends a run: its cost, its buffers, and what the validation layer had to say.
+  template <class Run, class Result>
+  std::vector<Result> finish(std::optional<Run>& run, std::optional<std::vector<Result>> results, Precision requested,
+                             EvaluationReport& report) {
+    report.dispatches += run->cost().dispatches;
+    report.evaluations += run->cost().evaluations;
+    report.kernel_s += run->cost().kernel_s;
+    note_precision(report.precision, in_double(requested));
+    run.reset();
+    if (!results) throw Cancelled{};
+    const std::vector<std::string> messages = log_.messages();
+    if (!messages.empty()) throw DeviceError("Vulkan validation: " + messages.front());
+    return std::move(*results);
+  }
+
+  vulkan::Kernels& kernels_for(Precision requested) {
+    const bool float64 = in_double(requested);
     if (float64 && !choice_.description.float64) {
       throw DeviceError(choice_.description.name + " has no double precision (shaderFloat64): use float");
     }
@@ -119,8 +150,9 @@ class VulkanEvaluator::Impl {
   vulkan::Device device_;
   std::optional<vulkan::Kernels> float_kernels_, double_kernels_;
   vulkan::CommandStream stream_;
-  // A member, so that its buffers outlive a submission that never ends.
+  // Members, so that their buffers outlive a submission that never ends.
   std::optional<vulkan::MomentsRun> run_;
+  std::optional<vulkan::ScatteringRun> scattering_run_;
 };
 
 VulkanEvaluator::VulkanEvaluator(const VulkanOptions& options) : precision_(options.precision) {
@@ -134,14 +166,14 @@ VulkanEvaluator::VulkanEvaluator(const VulkanOptions& options) : precision_(opti
 
 VulkanEvaluator::~VulkanEvaluator() = default;
 
-std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
+template <class Result, class Request>
+std::vector<Result> VulkanEvaluator::compute(const Request& request, const Progress& progress) {
   if (!impl_) throw DeviceError("the Vulkan device was given up after a tile that did not finish in time");
   check_entries(request);
   if (request.entries.empty()) return {};
   const Clock::time_point start = Clock::now();
   impl_->prepare(request);
   report_.setup_s += seconds_since(start);
-
   try {
     return impl_->compute(request, progress, report_);
   } catch (const vulkan::DeviceTimeout&) {
@@ -149,6 +181,14 @@ std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, co
     static_cast<void>(impl_.release());
     throw;
   }
+}
+
+std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
+  return compute<Moments>(request, progress);
+}
+
+std::vector<ScatteringMatrix> VulkanEvaluator::scatter(const ScatteringRequest& request, const Progress& progress) {
+  return compute<ScatteringMatrix>(request, progress);
 }
 
 bool VulkanEvaluator::has_double() const { return impl_ && impl_->description().float64; }

@@ -1,4 +1,4 @@
-// Moments on a Vulkan device.
+// Moments and pBRDFs on a Vulkan device.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/moments.hpp"
+#include "evaluate/scattering.hpp"
 
 namespace dolp {
 
@@ -29,8 +29,8 @@ struct VulkanOptions {
   double tile_timeout_s = 600.0;
 };
 
-/// Computes moments with the kernels of shaders/. The device and its pipelines live as long as the object.
-class VulkanEvaluator : public MomentsEvaluator {
+/// Computes moments and pBRDFs with the kernels of shaders/. The device and its pipelines live as long as the object.
+class VulkanEvaluator : public MomentsEvaluator, public ScatteringEvaluator {
  public:
   /// Errors: DeviceError when there is no usable device, `device` matches none, it has no double precision and that
   /// is wanted, or the validation layer is wanted and missing.
@@ -42,10 +42,14 @@ class VulkanEvaluator : public MomentsEvaluator {
   /// then), or the validation layer complains; Cancelled when `progress`, called after each tile, returns false.
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
 
+  /// Errors: those of evaluate.
+  std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override;
+
+  ScatteringEvaluator* scattering() override { return this; }
   Precision precision() const override { return precision_; }
   bool has_double() const override;
 
-  /// Totals over all calls of evaluate.
+  /// Totals over all calls.
   EvaluationReport report() const override;
 
   /// Warnings and errors of the validation layer so far; none after a tile that did not finish in time.
@@ -53,6 +57,9 @@ class VulkanEvaluator : public MomentsEvaluator {
 
  private:
   class Impl;
+  template <class Result, class Request>
+  std::vector<Result> compute(const Request& request, const Progress& progress);
+
   std::unique_ptr<Impl> impl_;
   Precision precision_;
   EvaluationReport report_;

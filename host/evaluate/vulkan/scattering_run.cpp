@@ -1,0 +1,86 @@
+#include "evaluate/vulkan/scattering_run.hpp"
+
+#include <algorithm>
+
+namespace dolp::vulkan {
+
+ScatteringRun::ScatteringRun(const RunContext& context, const ScatteringRequest& request, std::uint32_t tile_entries)
+    : context_(context), request_(request), plan_(request), tile_size_(tile_size(tile_entries)) {
+  create_buffers();
+}
+
+std::uint32_t ScatteringRun::tile_size(std::uint32_t tile_entries) const {
+  const VkPhysicalDeviceLimits& limits = context_.device.limits();
+  return tile_sizes({.buffer_bytes = limits.maxStorageBufferRange,
+                     .heap_bytes = context_.device.heap_bytes(),
+                     .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
+                     .tile_entries = std::min<std::uint64_t>(tile_entries, request_.entries.size()),
+                     .block_shapes = 1},
+                    scattering_tile_costs(context_.packing))
+      .entries;
+}
+
+void ScatteringRun::create_buffers() {
+  const Packing& packing = context_.packing;
+  const bool staged = context_.staged_uploads;
+  const std::size_t rule_bytes = plan_.data().rule_nodes.size() * packing.node_bytes<std::array<double, 4>>();
+  beam_buffer_.emplace(context_.device, tile_size_ * packing.node_bytes<kernel::BeamNode>(), staged);
+  rule_node_buffer_.emplace(context_.device, rule_bytes, staged);
+  mueller_buffer_.emplace(context_.device, tile_size_ * packing.node_bytes<kernel::MuellerNode>(),
+                          MemoryUse::kReadback);
+  std::array<VkBuffer, kBindingCount> buffers{};
+  buffers[DOLP_BINDING_BEAMS] = beam_buffer_->get();
+  buffers[DOLP_BINDING_RULE_NODES] = rule_node_buffer_->get();
+  buffers[DOLP_BINDING_MUELLERS] = mueller_buffer_->get();
+  context_.kernels.bind(buffers);
+}
+
+std::optional<std::vector<ScatteringMatrix>> ScatteringRun::compute(const Progress& progress) {
+  std::vector<ScatteringMatrix> matrices(request_.entries.size());
+  const std::span<const ScatteringEntry> entries(request_.entries);
+  upload_rule_nodes();
+  for (std::size_t first = 0; first < entries.size(); first += tile_size_) {
+    const std::size_t count = std::min<std::size_t>(tile_size_, entries.size() - first);
+    run_tile(entries.subspan(first, count), std::span(matrices).subspan(first, count));
+    if (progress && !progress(first + count, matrices.size())) return std::nullopt;
+  }
+  return matrices;
+}
+
+void ScatteringRun::upload_rule_nodes() {
+  CommandStream& stream = context_.stream;
+  scratch_.clear();
+  for (const auto& node : plan_.data().rule_nodes) context_.packing.append(node, scratch_);
+  stream.begin();
+  rule_node_buffer_->write(scratch_, stream);
+  stream.barrier(Barrier::kUploadToKernel);
+  cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
+}
+
+void ScatteringRun::run_tile(std::span<const ScatteringEntry> entries, std::span<ScatteringMatrix> matrices) {
+  const Packing& packing = context_.packing;
+  CommandStream& stream = context_.stream;
+  beams_.clear();
+  scratch_.clear();
+  for (const ScatteringEntry& entry : entries) {
+    beams_.push_back(plan_(entry));
+    packing.append(beams_.back().node, scratch_);
+  }
+  stream.begin();
+  beam_buffer_->write(scratch_, stream);
+  stream.barrier(Barrier::kUploadToKernel);
+  stream.dispatch(context_.kernels, context_.kernels.mueller(request_.distribution, request_.masking), 0,
+                  static_cast<std::uint32_t>(entries.size()));
+  stream.barrier(Barrier::kKernelToHost);
+  cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
+  ++cost_.dispatches;
+
+  scratch_.resize(entries.size() * packing.node_bytes<kernel::MuellerNode>());
+  mueller_buffer_->read(scratch_);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const auto node = packing.read<kernel::MuellerNode>(scratch_, i);
+    matrices[i] = matrix_from_kernel(node, beams_[i], packing.unit_roundoff());
+  }
+}
+
+}  // namespace dolp::vulkan

@@ -1,0 +1,132 @@
+#include "plan/beam.hpp"
+
+#include <algorithm>
+#include <boost/math/constants/constants.hpp>
+#include <boost/math/special_functions/cos_pi.hpp>
+#include <boost/math/special_functions/gamma.hpp>
+#include <boost/math/special_functions/sin_pi.hpp>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <cmath>
+#include <limits>
+
+#include "plan/geometry.hpp"
+#include "plan/rule_nodes.hpp"
+
+namespace dolp {
+namespace {
+
+using boost::math::constants::ln_two;
+using boost::math::constants::pi;
+using boost::math::constants::root_pi;
+
+constexpr int kLargestOrder = 16;  // kInPlaneOrder of physics/in_plane.glsl
+
+// -ln of the share of the in-plane slopes that G may leave out: far below the rounding of a double.
+constexpr double kCutExponent = 45.0;
+
+// Smoother surfaces have the G of this one: the squares of their slopes overflow a float, and but for q < 1.1 the
+// shadows they cast are the same.
+constexpr double kSmallestMaskingSigma = 1e-15;
+
+// Share of N^2 and sin^2(beta) below which their difference has lost digits that the root of it needs.
+constexpr double kCritical = 1e-6;
+
+constexpr double kDoubleRoundoff = 0x1p-53;
+
+// ln(1 + x^2), where x^2 may overflow.
+double log1p_square(double x) { return x > 1e8 ? 2.0 * std::log(x) : std::log1p(x * x); }
+
+// ln(D / 4).
+double log_density(Distribution distribution, const SlopeShape& shape, double slope) {
+  const double m = std::sqrt(2.0) * shape.sigma;
+  const double front = 2.0 * log1p_square(slope) - std::log(4.0 * pi<double>()) - 2.0 * std::log(m);
+  const double u = slope / m;
+  if (distribution == Distribution::kGaussian) return front - u * u;
+  return front + std::log(shape.q - 1.0) - shape.q * log1p_square(u);
+}
+
+// Gamma(q - 1/2) / Gamma(q - 1), accurate near q = 1 as well as for q where both overflow.
+double gamma_ratio(double q) {
+  if (q < 2.0) return boost::math::tgamma_ratio(q - 0.5, q - 1.0);
+  return boost::math::tgamma_delta_ratio(q - 0.5, -0.5);
+}
+
+kernel::ShapeNode masking_shape(Distribution distribution, const SlopeShape& shape) {
+  kernel::ShapeNode node{};
+  const bool is_cauchy = distribution == Distribution::kCauchy;
+  node.m = std::sqrt(2.0) * std::max(shape.sigma, kSmallestMaskingSigma);
+  node.q_minus_1 = shape.q - 1.0;
+  node.two_q_minus_3 = 2.0 * shape.q - 3.0;
+  node.marginal_norm = (is_cauchy ? gamma_ratio(shape.q) : 1.0) / (root_pi<double>() * node.m);
+  node.scale = std::min(is_cauchy ? node.m / std::sqrt(shape.q) : node.m, 1.0);
+  node.cut = node.m * std::sqrt(is_cauchy ? std::expm1(kCutExponent / (shape.q - 0.5)) : kCutExponent);
+  return node;
+}
+
+// Re(N^2 - sin^2 beta) from the angles as given, to all digits.
+double exact_w_squared(const BeamAngles& angles, const OpticalConstants& index) {
+  using Real = boost::multiprecision::cpp_bin_float_quad;
+  const auto cosine = [](double angle_deg) { return boost::math::cos_pi(Real(angle_deg) / 180); };
+  const auto sine = [](double angle_deg) { return boost::math::sin_pi(Real(angle_deg) / 180); };
+  const Real cos_2beta = sine(angles.theta_i_deg) * sine(angles.theta_r_deg) * cosine(angles.delta_phi_deg) +
+                         cosine(angles.theta_i_deg) * cosine(angles.theta_r_deg);
+  const Real n = index.n;
+  const Real k = index.k;
+  return static_cast<double>((n - k) * (n + k) - (1 - cos_2beta) / 2);
+}
+
+KernelData model_data(const ScatteringRequest& request) {
+  KernelData data;
+  data.distribution = request.distribution;
+  data.masking = request.masking;
+  data.rule.largest_order = kLargestOrder;
+  static const auto nodes = rule_nodes(kLargestOrder);
+  data.rule_nodes = nodes;
+  return data;
+}
+
+}  // namespace
+
+BeamPlan::BeamPlan(const ScatteringRequest& request) : request_(request), data_(model_data(request)) {
+  geometries_.reserve(request.angles.size());
+  for (const BeamAngles& angles : request.angles) {
+    geometries_.push_back(geometry_node(angles.theta_i_deg, angles.theta_r_deg, angles.delta_phi_deg));
+  }
+  for (const SlopeShape& shape : request.shapes) data_.shapes.push_back(masking_shape(request.distribution, shape));
+}
+
+double BeamPlan::w_squared(const ScatteringEntry& entry, const kernel::BeamNode& node) const {
+  // Of the two ways the one whose terms are smaller.
+  const double w2 =
+      node.g.sin2_beta < 0.5 ? node.n2_re - node.g.sin2_beta : node.n2m1_re + node.g.cos_beta * node.g.cos_beta;
+  if (std::hypot(w2, node.n2m1_im) > kCritical * std::max(std::abs(node.n2_re), node.g.sin2_beta)) return w2;
+  return exact_w_squared(request_.angles[entry.angles], request_.indices[entry.index]);
+}
+
+Beam BeamPlan::operator()(const ScatteringEntry& entry) const {
+  const OpticalConstants& index = request_.indices[entry.index];
+  Beam beam;
+  kernel::BeamNode& node = beam.node;
+  node.g = geometries_[entry.angles];
+  node.shape = data_.shapes[entry.shape];
+  node.n2_re = (index.n - index.k) * (index.n + index.k);
+  node.n2m1_re = (index.n - 1.0) * (index.n + 1.0) - index.k * index.k;
+  node.n2m1_im = 2.0 * index.n * index.k;
+  node.w2_re = w_squared(entry, node);
+  const double exponent = log_density(request_.distribution, request_.shapes[entry.shape], node.g.slope);
+  if (!(exponent > std::log(std::numeric_limits<double>::denorm_min()))) return beam;
+  const double power = std::floor(exponent / ln_two<double>()) + 1.0;
+  node.density = std::exp(exponent - power * ln_two<double>());
+  beam.power = static_cast<int>(power);
+  return beam;
+}
+
+ScatteringMatrix matrix_from_kernel(const kernel::MuellerNode& node, const Beam& beam, double unit_roundoff) {
+  ScatteringMatrix matrix;
+  for (std::size_t i = 0; i < matrix.m.size(); ++i) matrix.m[i] = std::ldexp(node.m[i], beam.power);
+  const double relative = unit_roundoff > kDoubleRoundoff ? kScatteringErrorFloat : kScatteringErrorDouble;
+  matrix.error = relative * std::abs(matrix.m[0]);
+  return matrix;
+}
+
+}  // namespace dolp

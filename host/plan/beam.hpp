@@ -1,0 +1,41 @@
+// What the pBRDF kernel reads of one entry, computed in double.
+#pragma once
+
+#include <vector>
+
+#include "evaluate/scattering.hpp"
+#include "plan/kernel_data.hpp"
+
+namespace dolp {
+
+/// Inputs of the kernel for one entry; the pBRDF is what the kernel returns times 2^power.
+struct Beam {
+  kernel::BeamNode node{};
+  int power = 0;
+};
+
+/// Makes the beams of a request, which must outlive the object. Pure.
+///
+/// The geometry, D and w^2 = N^2 - sin^2(beta) are computed here and not by the kernel: near the normal and the retro
+/// direction, far down the slope distribution and near the critical angle their rounding in a float would be amplified
+/// beyond 1e-5 of m00. D is handed over without its power of two, so that no float over- or underflows.
+class BeamPlan {
+ public:
+  explicit BeamPlan(const ScatteringRequest& request);
+  Beam operator()(const ScatteringEntry& entry) const;
+
+  /// The kernel data that the text needs beside its beams: the model and the rule nodes.
+  const KernelData& data() const { return data_; }
+
+ private:
+  double w_squared(const ScatteringEntry& entry, const kernel::BeamNode& node) const;
+
+  const ScatteringRequest& request_;
+  KernelData data_;
+  std::vector<kernel::GeometryNode> geometries_;
+};
+
+/// The kernel's result with its power of two put back and its error bound, `unit_roundoff` being that of its precision.
+ScatteringMatrix matrix_from_kernel(const kernel::MuellerNode& node, const Beam& beam, double unit_roundoff);
+
+}  // namespace dolp

@@ -1,0 +1,154 @@
+// The rules of `dolp mueller` about a scene: diffuse part, k_s, mirrors, 90 degrees, precision and wavelength.
+#include "evaluate/run/mueller_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "error.hpp"
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/reference/mueller.hpp"
+#include "evaluate/run/scene_run.hpp"
+
+namespace dolp {
+namespace {
+
+const OpticalConstants kPaint{1.5, 0.1};
+
+Scene scene_with(Masking masking) {
+  Scene scene;
+  scene.surface.masking = masking;
+  scene.surface.sigma = 0.3;
+  scene.surface.q = 3.0;
+  scene.surface.material.constant = kPaint;
+  scene.spectrum = {10.0, 10.0};
+  scene.accuracy.precision = Precision::kDouble;
+  return scene;
+}
+
+MuellerElements elements(const Scene& scene, const BeamAngles& angles, double sigma = 0.3) {
+  CpuEvaluator evaluator(Precision::kAuto);
+  return evaluate_mueller(scene, {{angles, {sigma, 3.0}, kPaint}}, evaluator, {}).front();
+}
+
+bool is_all_nan(const MuellerElements& f) {
+  return std::ranges::all_of(f, [](double m) { return std::isnan(m); });
+}
+bool is_finite(const MuellerElements& f) {
+  return std::ranges::all_of(f, [](double m) { return std::isfinite(m); });
+}
+
+TEST(MuellerRun, SpecularAndDiffuse_AreAddedAsInEquation15) {
+  Scene scene = scene_with(Masking::kIntegral);
+  scene.surface.specular = 0.7;
+  scene.surface.diffuse = 0.2;
+  scene.surface.diffuse_exponent = -0.4;
+  const BeamAngles angles{30.0, 55.0, 140.0};
+  const MuellerElements f = elements(scene, angles);
+  const MuellerMatrix specular = reference_pbrdf(scene.surface, kPaint, 30.0, 55.0, 140.0);
+  const double cosines = std::cos(std::numbers::pi / 6.0) * std::cos(55.0 * std::numbers::pi / 180.0);
+  const double diffuse = 0.2 / std::numbers::pi * std::pow(cosines, -0.4);
+  for (std::size_t i = 0; i < 16; ++i) {
+    const double expected = 0.7 * specular[i / 4][i % 4] + (i == 0 ? diffuse : 0.0);
+    EXPECT_NEAR(f[i], expected, kScatteringErrorDouble * specular[0][0] + 1e-15) << i;
+  }
+}
+
+TEST(MuellerRun, NinetyDegrees_IsTheLimitWhereThereIsOneAndNanElsewhere) {
+  for (const BeamAngles& at : {BeamAngles{90.0, 40.0, 160.0}, BeamAngles{40.0, 90.0, 160.0}}) {
+    for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
+      const MuellerElements f = elements(scene_with(masking), at);
+      BeamAngles near = at;
+      (at.theta_i_deg == 90.0 ? near.theta_i_deg : near.theta_r_deg) = 90.0 - 1e-6;
+      const MuellerElements g = elements(scene_with(masking), near);
+      EXPECT_GT(f[0], 0.0);
+      for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(f[i], g[i], 1e-6 * f[0]);  // the step is 2e-8 rad
+      Scene diffuse = scene_with(masking);
+      diffuse.surface.diffuse = 0.1;
+      EXPECT_TRUE(is_all_nan(elements(diffuse, at)));
+      diffuse.surface.diffuse_exponent = 0.0;
+      EXPECT_TRUE(is_finite(elements(diffuse, at)));
+    }
+    EXPECT_TRUE(is_all_nan(elements(scene_with(Masking::kNone), at)));
+    EXPECT_TRUE(is_all_nan(elements(scene_with(Masking::kIntegral), at)));
+  }
+  for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
+    EXPECT_TRUE(is_all_nan(elements(scene_with(masking), {90.0, 90.0, 160.0})));
+  }
+}
+
+TEST(MuellerRun, Mirror_HasTheDiffusePartButInItsSpecularDirection) {
+  Scene scene = scene_with(Masking::kIntegral);
+  scene.surface.diffuse = 0.3;
+  scene.surface.diffuse_exponent = 0.0;
+  EXPECT_TRUE(is_all_nan(elements(scene, {40.0, 40.0, 180.0}, 0.0)));
+  EXPECT_TRUE(is_all_nan(elements(scene, {40.0, 40.0, -180.0}, 0.0)));
+  EXPECT_TRUE(is_all_nan(elements(scene, {0.0, 0.0, 33.0}, 0.0)));
+  MuellerElements expected{};
+  expected[0] = 0.3 / std::numbers::pi;
+  EXPECT_EQ(elements(scene, {40.0, 41.0, 180.0}, 0.0), expected);
+  EXPECT_EQ(elements(scene, {90.0, 40.0, 180.0}, 0.0), expected);
+}
+
+TEST(MuellerRun, WithoutASpecularPart_OnlyTheDiffuseIsLeft) {
+  Scene scene = scene_with(Masking::kNone);
+  scene.surface.specular = 0.0;
+  scene.surface.diffuse = 0.3;
+  scene.surface.diffuse_exponent = 0.0;
+  MuellerElements expected{};
+  expected[0] = 0.3 / std::numbers::pi;
+  EXPECT_EQ(elements(scene, {40.0, 90.0, 0.0}), expected);
+  EXPECT_EQ(elements(scene, {40.0, 40.0, 180.0}, 0.0), expected);
+}
+
+TEST(MuellerRun, AutoPrecision_IsFloatWhereItMeetsTheTolerance) {
+  EXPECT_EQ(mueller_precision({1e-4, Precision::kAuto}, true), Precision::kFloat);
+  EXPECT_EQ(mueller_precision({1e-5, Precision::kAuto}, true), Precision::kFloat);
+  EXPECT_EQ(mueller_precision({9e-6, Precision::kAuto}, true), Precision::kDouble);
+  EXPECT_EQ(mueller_precision({9e-6, Precision::kAuto}, false), Precision::kFloat);
+  EXPECT_EQ(mueller_precision({1e-9, Precision::kFloat}, true), Precision::kFloat);
+  EXPECT_EQ(mueller_precision({1e-4, Precision::kDouble}, true), Precision::kDouble);
+}
+
+std::string message_of(const Scene& scene, const std::string& csv) {
+  try {
+    mueller_points(scene, parse_points(csv, "p.csv", PointsKind::kGeometries));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(MuellerPoints, MaterialOfAWavelength_IsThatOfTheScene) {
+  Scene scene = scene_with(Masking::kNone);
+  scene.path_name = "s.toml";
+  scene.surface.material.name = "measured";
+  scene.surface.material.n = {{8.0, 12.0}, {1.0, 3.0}, SpectralTable::Interpolation::kLinear};
+  scene.surface.material.k = {{8.0, 12.0}, {0.2, 0.4}, SpectralTable::Interpolation::kLinear};
+  const std::string csv = "theta_i_deg,theta_r_deg,delta_phi_deg,sigma\n10,20,30,0.5\n";
+  const MuellerPoint point = mueller_points(scene, parse_points(csv, "p.csv", PointsKind::kGeometries)).front();
+  EXPECT_DOUBLE_EQ(point.index.n, 2.0);
+  EXPECT_DOUBLE_EQ(point.index.k, 0.3);
+  EXPECT_EQ(point.shape.sigma, 0.5);
+  EXPECT_EQ(point.shape.q, 3.0);
+  EXPECT_EQ(point.angles.delta_phi_deg, 30.0);
+  scene.spectrum = {8.0, 12.0};
+  const std::string message = message_of(scene, csv);
+  for (const char* part : {"s.toml", "band_um", "measured", "wavelength_um"}) {
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  }
+  EXPECT_EQ(message_of(scene, "theta_i_deg,theta_r_deg,delta_phi_deg,n,k\n10,20,30,2,1\n"), "");
+}
+
+TEST(MuellerPoints, SmithBelowItsExponent_NamesTheLine) {
+  const std::string message =
+      message_of(scene_with(Masking::kSmith), "theta_i_deg,theta_r_deg,delta_phi_deg,q\n10,20,30,2\n10,20,30,1.5\n");
+  for (const char* part : {"p.csv:3", "q = 1.5", "(1.5, 1e4]"}) {
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  }
+}
+
+}  // namespace
+}  // namespace dolp

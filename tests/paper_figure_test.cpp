@@ -1,0 +1,271 @@
+// The commands that draw the paper's figures, and what README says of their curves.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "program.hpp"
+
+namespace {
+
+using namespace dolp;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+// README gives DOLP and its differences to 0.01 points, angles to 0.1 degrees and G to 0.001; the curves themselves are
+// good to 1e-4 (0.01 points), the scenes' tolerance, and are sampled each 0.1 degrees.
+constexpr double kPointTolerance = 0.02;
+constexpr double kAngleToleranceDeg = 0.2;
+constexpr double kAttenuationTolerance = 6e-4;
+constexpr double kSlopeTolerancePerRad = 6e-3;
+constexpr std::size_t kLargestPictureBytes = 120'000;
+
+class PaperFigure : public testing::Test {
+ protected:
+  Outcome figure(std::vector<std::string> arguments, const std::string& program = DOLP_PROGRAM) const {
+    arguments.insert(arguments.begin(), {"/usr/bin/python3", DOLP_PAPER_FIGURE});
+    if (!program.empty()) arguments.insert(arguments.end(), {"--program", program});
+    return run({.arguments = std::move(arguments), .folder = folder_.path()});
+  }
+  json numbers(const std::string& number, const std::vector<std::string>& options = {}) const {
+    std::vector<std::string> arguments = {number, "--json", "--evaluator", "cpu"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Outcome outcome = figure(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out);
+  }
+  json numbers_and_picture(const std::string& number) const {
+    const json report = numbers(number, {"-o", "f.png"});
+    const std::string picture = read_file(folder_.path() / "f.png");
+    EXPECT_TRUE(picture.starts_with("\x89PNG"));
+    EXPECT_LT(picture.size(), kLargestPictureBytes);
+    return report;
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+/// The only element of `list` whose members are those of `wanted`.
+const json& one_of(const json& list, const json& wanted) {
+  const auto matches = [&](const json& entry) {
+    return std::ranges::all_of(wanted.items(), [&](const auto& item) { return entry.at(item.key()) == item.value(); });
+  };
+  EXPECT_EQ(std::ranges::count_if(list, matches), 1) << wanted.dump();
+  return *std::ranges::find_if(list, matches);
+}
+
+json curve_of(const json& report, const std::string& sample, const std::string& reading, const std::string& mode,
+              const std::string& distribution) {
+  return one_of(report["curves"],
+                {{"sample", sample}, {"reading", reading}, {"mode", mode}, {"distribution", distribution}});
+}
+
+double at(const json& curve, double theta_deg) {
+  const json& angles = curve["theta_deg"];
+  const auto place = std::ranges::find(angles, json(theta_deg));
+  return curve["dolp_percent"].at(static_cast<std::size_t>(place - angles.begin())).get<double>();
+}
+
+struct Peak {
+  std::string sample, reading, distribution;
+  double theta_deg, dolp_percent;
+};
+
+const std::vector<Peak> kPeaks = {{"steel", "integral", "cauchy", 70.5, 14.00},
+                                  {"steel", "integral", "gaussian", 72.4, 14.31},
+                                  {"aluminium", "integral", "cauchy", 79.1, 2.47},
+                                  {"aluminium", "integral", "gaussian", 79.7, 2.45},
+                                  {"steel", "smith", "cauchy", 73.8, 15.24},
+                                  {"steel", "smith", "gaussian", 76.2, 17.23},
+                                  {"aluminium", "smith", "cauchy", 74.6, 2.23},
+                                  {"aluminium", "smith", "gaussian", 75.7, 2.69},
+                                  {"steel with sigma of aluminium", "integral", "cauchy", 77.5, 3.27},
+                                  {"steel with sigma of aluminium", "smith", "cauchy", 73.9, 3.03}};
+
+TEST_F(PaperFigure, Figure7_Bistatic_PeaksBetween70And80AndFallsAsReadmeSays) {
+  const json report = numbers("7");
+  for (const Peak& peak : kPeaks) {
+    SCOPED_TRACE(peak.sample + ", " + peak.reading + ", " + peak.distribution);
+    const json curve = curve_of(report, peak.sample, peak.reading, "bistatic", peak.distribution);
+    ASSERT_FALSE(curve["peak"].is_null());
+    EXPECT_NEAR(curve["peak"]["theta_deg"], peak.theta_deg, kAngleToleranceDeg);
+    EXPECT_NEAR(curve["peak"]["dolp_percent"], peak.dolp_percent, kPointTolerance);
+    EXPECT_TRUE(curve["model_fails_from_deg"].is_null());
+    EXPECT_LT(at(curve, 90.0), 0.9 * peak.dolp_percent);
+    EXPECT_LT(at(curve, 0.0), peak.dolp_percent);
+  }
+}
+
+TEST_F(PaperFigure, Figure7_RougherSample_HasLowerDolpExceptWhereReadmeSays) {
+  const json report = numbers("7");
+  const auto above = [&](const std::string& reading, const std::string& mode, const std::string& distribution) {
+    return one_of(report["rougher"],
+                  {{"reading", reading}, {"mode", mode}, {"distribution", distribution}})["aluminium_above_steel_deg"];
+  };
+  for (const std::string distribution : {"cauchy", "gaussian"}) {
+    SCOPED_TRACE(distribution);
+    const json near_zero = above("integral", "bistatic", distribution);
+    ASSERT_EQ(near_zero.size(), 1U);
+    EXPECT_GT(near_zero[0][0], 27.0);
+    EXPECT_LT(near_zero[0][1], 29.5);
+    for (const json& range : above("smith", "bistatic", distribution))
+      EXPECT_TRUE(range[1] < 6.0 || range[0] > 89.0) << range.dump();
+    for (const std::string reading : {"integral", "smith"})
+      EXPECT_EQ(above(reading, "hemispherical", distribution).size(), 0U) << reading;
+  }
+}
+
+TEST_F(PaperFigure, Figure7_Hemispherical_RisesUntilTheModelFails) {
+  const json report = numbers("7");
+  int seen = 0;
+  for (const json& curve : report["curves"]) {
+    if (curve["mode"] != "hemispherical") continue;
+    ++seen;
+    EXPECT_TRUE(curve["peak"].is_null()) << curve.dump();
+    EXPECT_GT(curve["model_fails_from_deg"], 87.5);
+    EXPECT_LT(curve["model_fails_from_deg"], 89.0);
+    EXPECT_LT(at(curve, 75.0), at(curve, 87.0));
+  }
+  EXPECT_EQ(seen, 10);
+}
+
+struct Difference {
+  std::string sample, reading;
+  double below_60, from_70_to_80, at_peak;
+};
+
+TEST_F(PaperFigure, Figure7_CauchyAgainstGaussian_ApartNearThePeakWithSmithOnly) {
+  const json report = numbers("7");
+  const std::vector<Difference> list = {{"steel", "integral", -0.31, -0.90, -0.25},
+                                        {"aluminium", "integral", 0.09, 0.06, 0.02},
+                                        {"steel", "smith", -0.56, -2.59, -1.83},
+                                        {"aluminium", "smith", -0.27, -0.48, -0.45}};
+  for (const Difference& expected : list) {
+    SCOPED_TRACE(expected.sample + ", " + expected.reading);
+    const json& found = one_of(report["cauchy_minus_gaussian"],
+                               {{"sample", expected.sample}, {"reading", expected.reading}, {"mode", "bistatic"}});
+    EXPECT_NEAR(found["below_60"]["points"], expected.below_60, kPointTolerance);
+    EXPECT_NEAR(found["from_70_to_80"]["points"], expected.from_70_to_80, kPointTolerance);
+    EXPECT_NEAR(found["at_cauchy_peak"], expected.at_peak, kPointTolerance);
+  }
+}
+
+TEST_F(PaperFigure, Figures5And6_OneSampleEach_HaveTheCurvesOfFigure7) {
+  const json both = numbers_and_picture("7");
+  for (const auto& [number, sample] : {std::pair("5", "steel"), std::pair("6", "aluminium")}) {
+    const json report = numbers_and_picture(number);
+    ASSERT_EQ(report["curves"].size(), 8U);
+    for (const json& curve : report["curves"]) {
+      EXPECT_EQ(curve["sample"], sample);
+      EXPECT_EQ(curve["theta_deg"].size(), 21U);
+      EXPECT_EQ(curve, curve_of(both, sample, curve["reading"], curve["mode"], curve["distribution"]));
+    }
+  }
+}
+
+TEST_F(PaperFigure, Table_DefaultEvaluator_PrintsAttenuation) {
+  const Outcome outcome = figure({"4", "--table"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("| v-cavity | cauchy | 30° | 1.000 | 1.000 | 1.000 | 1.000 | 0.786 | 0.000 | −2.33/rad"),
+            std::string::npos)
+      << outcome.out;
+}
+
+TEST_F(PaperFigure, Table_Sample_PrintsPeaksAndThePapersAngles) {
+  const Outcome outcome = figure({"5", "--table", "--evaluator", "cpu"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("| integral | bistatic | steel | cauchy | 14.00 at 70."), std::string::npos)
+      << outcome.out;
+  for (const std::string angle : {"\n| 0° |", "\n| 54° |", "\n| 63° |", "\n| 90° |"})
+    EXPECT_NE(outcome.out.find(angle), std::string::npos) << angle;
+}
+
+TEST_F(PaperFigure, Set_UnprintedValue_ChangesBothReadings) {
+  const json report = numbers("5", {"--set", "surface.diffuse=0", "--set", "surface.specular=0"});
+  // Nothing is reflected, and black emission has no polarisation.
+  for (const json& curve : report["curves"])
+    for (const json& value : curve["dolp_percent"]) EXPECT_LT(value.get<double>(), 1e-9) << curve.dump();
+}
+
+TEST_F(PaperFigure, Set_Sunlight_LeavesNoPeakAtAll) {
+  const json report = numbers("5", {"--set", "source.relative_irradiance=0.006"});
+  const json curve = curve_of(report, "steel", "integral", "bistatic", "cauchy");
+  EXPECT_TRUE(curve["peak"].is_null());
+  for (const json& value : curve["dolp_percent"]) {
+    EXPECT_GT(value, 4.4 - kPointTolerance);
+    EXPECT_LT(value, 4.7);
+  }
+}
+
+struct Bad {
+  std::vector<std::string> arguments;
+  int status;
+  std::string message;
+};
+
+TEST_F(PaperFigure, BadUsage_OneLineThatSaysWhatIsWrong) {
+  const std::vector<Bad> list = {
+      {{}, 2, "figure"},
+      {{"8", "--table"}, 2, "choose from 4, 5, 6, 7"},
+      {{"5"}, 2, "-o FIGURE.png, --table or --json"},
+      {{"5", "-o", "f.jpg"}, 2, "f.jpg: the name of the picture must end in .png"},
+      {{"5", "-o", "none/f.png"}, 4, "none/f.png: there is no folder none"},
+      {{"5", "--table", "--set", "surface.sigma=1"}, 2, "surface.sigma=1: the key must be one of surface.q, "},
+      {{"5", "--table", "--set", "surface.q=wide"}, 2, "surface.q=wide: the value must be a number"},
+      {{"5", "--table", "--evaluator", "cpu", "--set", "surface.q=0.5"}, 2, "0.5 is out of range"},
+      {{"4", "--table", "--set", "surface.q=3"}, 2, "--set is for figures 5, 6 and 7"}};
+  for (const Bad& bad : list) {
+    const Outcome outcome = figure(bad.arguments);
+    EXPECT_EQ(outcome.status, bad.status) << outcome.err;
+    EXPECT_TRUE(outcome.err.starts_with("paper_figure.py: ")) << outcome.err;
+    EXPECT_NE(outcome.err.find(bad.message), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+  }
+}
+
+TEST_F(PaperFigure, ProgramThatFails_OneLineAndNotZero) {
+  for (const auto& [program, status, message] :
+       {std::tuple("/no/such/dolp", 2, "/no/such/dolp: No such file"), std::tuple("/bin/false", 1, "has failed"),
+        std::tuple("/bin/true", 5, "/bin/true: wrote 0 rows for 901 points")}) {
+    const Outcome outcome = figure({"6", "--json"}, program);
+    EXPECT_EQ(outcome.status, status) << outcome.err;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+  }
+}
+
+struct Values {
+  std::string masking, distribution;
+  double theta_i_deg;
+  std::vector<double> g;  ///< at 30, 60, 75 and 90 degrees
+  double corner_deg, jump_per_rad;
+};
+
+TEST_F(PaperFigure, Figure4_Attenuation_IntegralHasNoKinkAsVCavityHas) {
+  const json report = numbers_and_picture("4");
+  ASSERT_EQ(report["curves"].size(), 4U);
+  const std::vector<Values> list = {{"integral", "cauchy", 30.0, {0.997, 0.965, 0.902, 0.739}, 30.0, -0.016},
+                                    {"v-cavity", "cauchy", 30.0, {1.0, 1.0, 0.786, 0.0}, 70.0, -2.33},
+                                    {"integral", "gaussian", 30.0, {1.0, 0.997, 0.958, 0.782}, NAN, 0.0},
+                                    {"integral", "cauchy", 85.0, {}, 85.0, -1.04}};
+  for (const Values& expected : list) {
+    SCOPED_TRACE(expected.masking + ", " + expected.distribution);
+    const json& curve = one_of(report["curves"], {{"masking", expected.masking},
+                                                  {"distribution", expected.distribution},
+                                                  {"theta_i_deg", expected.theta_i_deg}});
+    ASSERT_EQ(curve["theta_r_deg"], json({0, 30, 60, 70, 75, 90}));
+    constexpr std::size_t kPlaces[] = {1, 2, 4, 5};
+    for (std::size_t i = 0; i < expected.g.size(); ++i)
+      EXPECT_NEAR(curve["g"][kPlaces[i]], expected.g[i], kAttenuationTolerance);
+    EXPECT_NEAR(curve["corner"]["slope_jump_per_rad"], expected.jump_per_rad, kSlopeTolerancePerRad);
+    if (std::isfinite(expected.corner_deg)) {
+      EXPECT_NEAR(curve["corner"]["theta_deg"], expected.corner_deg, kAngleToleranceDeg);
+    }
+  }
+}
+
+}  // namespace

@@ -158,6 +158,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"--set", "surface.masking=smith"},
                 2,
                 {"points.csv:2", "q = 1.4", "smith"}},
+        Mistake{"KeepAll", kHeader + "\n1,2,3\n", {"--keep-all"}, 2, {"--keep-all"}},
         Mistake{"UnknownDevice", kHeader + "\n1,2,3\n", {"--device", "no such device"}, 3, {"no such device"}}),
     [](const testing::TestParamInfo<Mistake>& test) { return std::string(test.param.name); });
 

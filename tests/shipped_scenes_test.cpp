@@ -4,10 +4,12 @@
 
 #include <fstream>
 #include <map>
+#include <optional>
 #include <regex>
 #include <string>
 #include <vector>
 
+#include "effects/effects.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene_run_support.hpp"
 
@@ -90,6 +92,35 @@ TEST_P(ShippedScene, Comment_StatesTheDolpToItsDigits) {
       const double dropped = result_at(name, statement.theta_deg, overrides).dolp;
       EXPECT_EQ(fmt::format("{:+.{}f}", 100.0 * (dropped - whole.dolp), decimals(change)), change) << effect;
     }
+  }
+}
+
+/// The part of the sums that a comment names; none for the roughness, which is no effect.
+std::optional<Part> part_of(const std::string& effect) {
+  static const std::map<std::string, Part> kParts = {{"source", Part::kSource},
+                                                     {"surroundings", Part::kSurroundings},
+                                                     {"path", Part::kPathRadiance},
+                                                     {"diffuse", Part::kDiffuse}};
+  const auto found = kParts.find(effect);
+  return found == kParts.end() ? std::nullopt : std::optional(found->second);
+}
+
+TEST_P(ShippedScene, Plan_BoundsTheChangesThatTheCommentStates) {
+  const auto [name, statement_count] = GetParam();
+  for (const Statement& statement : statements_of(name)) {
+    const Scene scene = read_scene(scene_path(name), statement.overrides);
+    const SpectralRule rule = spectral_rule(scene);
+    const InfluenceBounds bounds(scene, rule);
+    const SceneEntry entry{statement.theta_deg, {scene.surface.sigma, scene.surface.q}, {}};
+    std::size_t compared = 0;
+    for (const auto& [effect, change] : statement.changes) {
+      if (!part_of(effect)) continue;
+      ++compared;
+      const double bound = 100.0 * bounds.bound(*part_of(effect), {}, entry).dolp;
+      EXPECT_GE(bound, std::abs(std::stod(change))) << effect;
+      EXPECT_LE(bound, 200.0) << effect;
+    }
+    EXPECT_GE(compared, 1U) << statement_count;
   }
 }
 

@@ -22,6 +22,9 @@ int run_eval(const Options& options);
 /// `dolp mueller SCENE --points IN -o OUT`: the Mueller pBRDF at scattered geometries.
 int run_mueller(const Options& options);
 
+/// `dolp plan SCENE`: what a table of the scene would compute and leave out, and what it would cost.
+int run_plan(const Options& options);
+
 /// `dolp verify TABLE`: recomputes entries of a table with the independent reference; `dolp verify --hard-cases`:
 /// examines a device with the model's hard cases. kExitAccuracy if a stated error is too small or a tolerance missed
 /// silently.

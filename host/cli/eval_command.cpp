@@ -31,18 +31,20 @@ int run_eval(const Options& options) {
   const Points points = read_points(options.points_path, PointsKind::kDirections);
   const std::vector<SceneEntry> entries = point_entries(scene, points);
   check_writable(options.output_path);
-  const std::unique_ptr<MomentsEvaluator> evaluator = make_evaluator(options, scene);
+  const EffectPlan plan = plan_run(options, scene, entries);
+  const bool integrates = wants_evaluator(scene, entries, plan);
+  const std::unique_ptr<MomentsEvaluator> evaluator = integrates ? make_evaluator(options, scene) : nullptr;
   std::vector<PointResult> results;
   {
     ProgressBar bar(options.quiet);
-    results = evaluate_scene(scene, entries, *evaluator, bar.callback());
+    results = evaluate_scene(scene, entries, plan, evaluator.get(), bar.callback());
   }
   std::string csv = points.header +
                     ",rho_i,rho_q,albedo,stokes_i,stokes_q,stokes_u,stokes_v,dolp,error_estimate,rho_error_estimate,"
                     "status\n";
   for (std::size_t i = 0; i < results.size(); ++i) csv += result_line(points.rows[i], results[i]);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  RunReport report = make_report(scene, entries, results, evaluator->report(), wall.count());
+  RunReport report = make_report(scene, entries, results, plan, report_of(evaluator.get(), options), wall.count());
   report.output = options.output_path;
   report.shape = fmt::format("{} points", results.size());
   write_text_atomically(options.output_path, csv);

@@ -40,6 +40,10 @@ void add_run(CLI::App& command, Options& options) {
   command.add_flag("--strict", options.strict, "exit 1 if any entry misses its tolerance");
 }
 
+void add_keep_all(CLI::App& command, Options& options) {
+  command.add_flag("--keep-all", options.keep_all, "compute every effect that the scene has, however little it counts");
+}
+
 void add_verify(CLI::App& command, Options& options) {
   CLI::Option* table = command.add_option("TABLE", options.table_path, "table file (.nc) that dolp table wrote");
   const auto of_table = [&](CLI::Option* option) { option->needs(table); };
@@ -70,6 +74,7 @@ int run(CLI::App& app, Options& options) {
   if (given("table")) return run_table(options);
   if (given("eval")) return run_eval(options);
   if (given("mueller")) return run_mueller(options);
+  if (given("plan")) return run_plan(options);
   if (given("verify")) return run_verify(options);
   return run_devices(options);
 }
@@ -89,8 +94,10 @@ int parse_and_run(int argc, char** argv) {
 
   CLI::App* table = app.add_subcommand("table", "lookup table over the scene's grid (.nc, .csv, .npy)");
   add_run(*table, options);
+  add_keep_all(*table, options);
   CLI::App* eval = app.add_subcommand("eval", "the same quantities at scattered points");
   add_run(*eval, options);
+  add_keep_all(*eval, options);
   eval->add_option("--points", options.points_path, "CSV with any of theta_deg, sigma, q, n, k; - is stdin")
       ->required();
   CLI::App* mueller = app.add_subcommand("mueller", "4 x 4 Mueller pBRDF [1/sr] at scattered geometries");
@@ -99,6 +106,11 @@ int parse_and_run(int argc, char** argv) {
       ->add_option("--points", options.points_path,
                    "CSV with theta_i_deg, theta_r_deg, delta_phi_deg and any of sigma, q, n, k; - is stdin")
       ->required();
+  CLI::App* plan = app.add_subcommand("plan", "what a table would compute and leave out, why, and what it would cost");
+  add_scene(*plan, options);
+  plan->add_option("--device", options.device, "Vulkan device: its position or a part of its name");
+  add_keep_all(*plan, options);
+  plan->add_flag("--json", options.json, "machine-readable plan");
   add_verify(*app.add_subcommand("verify", "recompute entries of a table, or examine a device"), options);
   CLI::App* devices = app.add_subcommand("devices", "Vulkan devices, and why each one is or is not usable");
   devices->add_flag("--json", options.json, "machine-readable list");

@@ -33,6 +33,19 @@ Scene load_scene(const Options& options) {
   return read_scene(options.scene_path, overrides);
 }
 
+EffectPlan plan_run(const Options& options, const Scene& scene, const std::vector<SceneEntry>& entries) {
+  return plan_effects(scene, entries, options.keep_all);
+}
+
+EvaluationReport report_of(const MomentsEvaluator* evaluator, const Options& options) {
+  if (evaluator) return evaluator->report();
+  EvaluationReport nothing;
+  nothing.evaluator = options.evaluator;
+  nothing.device = "none";
+  nothing.precision = "none";
+  return nothing;
+}
+
 std::unique_ptr<MomentsEvaluator> make_evaluator(const Options& options, const Scene& scene) {
   if (options.evaluator == "cpu") return std::make_unique<CpuEvaluator>(scene.accuracy.precision);
   if (options.evaluator == "reference") return std::make_unique<ReferenceEvaluator>();

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "effects/effects.hpp"
 #include "evaluate/moments.hpp"
 #include "scene/scene.hpp"
 
@@ -25,6 +26,7 @@ struct Options {
   bool json = false;
   bool quiet = false;
   bool strict = false;
+  bool keep_all = false;     ///< drop no effect
   std::size_t samples = 64;  ///< of verify: entries to recompute
   std::uint64_t seed = 1;    ///< of verify: of their choice
   bool hard_cases = false;   ///< of verify: examine a device instead of a table
@@ -42,6 +44,12 @@ void check_one_stdin(const Options& options);
 
 /// The scene with all overrides of the command line: --set first, then --tolerance and --precision.
 Scene load_scene(const Options& options);
+
+/// What a run of these entries keeps, as --keep-all and the scene's effects have it.
+EffectPlan plan_run(const Options& options, const Scene& scene, const std::vector<SceneEntry>& entries);
+
+/// What ran: nothing, where no evaluator was needed.
+EvaluationReport report_of(const MomentsEvaluator* evaluator, const Options& options);
 
 /// The evaluator that --evaluator, --device and the scene's precision ask for.
 /// Errors: DeviceError when vulkan is asked for and there is no usable device.

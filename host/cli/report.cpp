@@ -44,7 +44,7 @@ void add_ranges(RunReport& report, const Scene& scene, const std::vector<SceneEn
     const PointResult& r = results[i];
     if ((r.status & kNoDolpStatement) == 0)
       report.worst_error = std::max(report.worst_error.value_or(0.0), r.error_estimate);
-    if ((r.status & kStatusOutsideDomain) == 0) {
+    if ((r.status & kStatusOutsideDomain) == 0 && report.plan.gives_rho) {
       report.worst_rho_error = std::max(report.worst_rho_error.value_or(0.0), r.rho_error_estimate);
     }
     if (std::isnan(r.albedo)) continue;
@@ -77,6 +77,7 @@ nlohmann::ordered_json range_json(const EnergyRange& range) {
 
 /// Over which part of the grid the surface model itself gains or loses energy.
 std::string energy_text(const RunReport& report) {
+  if (!report.plan.needs_moments) return "  albedo     not computed: nothing kept depends on it\n";
   if (report.albedo_min > report.albedo_max) return "  albedo     not given for any entry\n";
   std::string text = fmt::format("  albedo     {:.3g}..{:.3g}", report.albedo_min, report.albedo_max);
   if (report.loses.entries + report.gains.entries == 0) return text + "\n";
@@ -90,15 +91,37 @@ std::string energy_text(const RunReport& report) {
   return text;
 }
 
+/// What is kept, and a line for each effect that is dropped.
+std::string effects_lines(const RunReport& report) {
+  std::string kept;
+  std::string dropped;
+  for (const EffectRow& row : report.effects) {
+    if (row.state == EffectState::kKept) kept += (kept.empty() ? "" : ", ") + std::string(row.name);
+    if (row.state == EffectState::kDropped) dropped += fmt::format("  dropped    {}: {}\n", row.name, row.reason);
+  }
+  return fmt::format("  kept       {}{}\n", kept.empty() ? "nothing" : kept,
+                     report.plan.keep_all ? " (--keep-all)" : "") +
+         dropped;
+}
+
+std::string device_line(const EvaluationReport& e) {
+  if (e.device == "none") return "  device     none: nothing is integrated\n";
+  return fmt::format("  device     {}{}{}, {} precision\n", e.device, e.driver.empty() ? "" : ", ", e.driver,
+                     e.precision);
+}
+
 }  // namespace
 
 RunReport make_report(const Scene& scene, const std::vector<SceneEntry>& entries,
-                      const std::vector<PointResult>& results, const EvaluationReport& evaluation, double wall_s) {
+                      const std::vector<PointResult>& results, const EffectPlan& plan,
+                      const EvaluationReport& evaluation, double wall_s) {
   RunReport report;
   report.title = scene.title;
   report.entries = results.size();
   report.tolerance = scene.accuracy.tolerance;
   report.wall_s = wall_s;
+  report.plan = plan;
+  report.effects = effect_rows(scene, entries, plan);
   report.evaluation = evaluation;
   report.status = count_status(results);
   for (const RunReport::StatusCount& status : report.status) {
@@ -121,13 +144,15 @@ std::string summary_text(const RunReport& report) {
   std::string text;
   text += fmt::format("{}\n", report.title);
   text += fmt::format("  entries    {}\n", report.shape);
-  text +=
-      fmt::format("  device     {}{}{}, {} precision\n", e.device, e.driver.empty() ? "" : ", ", e.driver, e.precision);
+  text += effects_lines(report);
+  text += device_line(e);
   text += fmt::format("  time       {:.3f} s in all, {:.3f} s in kernels, {} dispatches\n", report.wall_s, e.kernel_s,
                       e.dispatches);
   text += fmt::format("  work       {:.4g} integrand evaluations, {:.0f} an entry\n", e.evaluations, per_entry);
-  text += fmt::format("  error      DOLP {} (absolute), rho {} (of rho_I); tolerance {:g}\n",
-                      bound_text(report.worst_error), bound_text(report.worst_rho_error), report.tolerance);
+  const std::string rho =
+      report.plan.gives_rho ? fmt::format("rho {} (of rho_I)", bound_text(report.worst_rho_error)) : "rho not computed";
+  text += fmt::format("  error      DOLP {} (absolute), {}; tolerance {:g}\n", bound_text(report.worst_error), rho,
+                      report.tolerance);
   for (const RunReport::StatusCount& status : report.status) {
     text +=
         fmt::format("  status {}   {} of {} entries: {}\n", status.bit, status.count, report.entries, status.meaning);
@@ -135,6 +160,23 @@ std::string summary_text(const RunReport& report) {
   text += energy_text(report);
   text += fmt::format("  written    {}\n", report.output);
   return text;
+}
+
+nlohmann::ordered_json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan) {
+  nlohmann::ordered_json json = {{"kept", nlohmann::ordered_json::array()},
+                                 {"dropped", nlohmann::ordered_json::array()},
+                                 {"not_needed", nlohmann::ordered_json::array()},
+                                 {"absent", nlohmann::ordered_json::array()}};
+  for (const EffectRow& row : effects) {
+    nlohmann::ordered_json of_row = {{"name", row.name}, {"reason", row.reason}};
+    if (row.state == EffectState::kDropped) of_row["bound"] = row.bound.value_or(0.0);
+    json[state_name(row.state)].push_back(of_row);
+  }
+  json["keep_all"] = plan.keep_all;
+  json["allowed_share_of_tolerance"] = kDroppedShare;
+  json["dolp_bound"] = plan.bound.dolp;
+  json["rho_bound"] = plan.bound.rho;
+  return json;
 }
 
 nlohmann::ordered_json summary_json(const RunReport& report) {
@@ -148,6 +190,7 @@ nlohmann::ordered_json summary_json(const RunReport& report) {
   json["device"] = e.device;
   json["driver"] = e.driver;
   json["precision"] = e.precision;
+  json["effects"] = effects_json(report.effects, report.plan);
   json["rule"] = rule_text(report.tolerance);
   json["tolerance"] = report.tolerance;
   json["dispatches"] = e.dispatches;
@@ -160,6 +203,8 @@ nlohmann::ordered_json summary_json(const RunReport& report) {
   for (const RunReport::StatusCount& status : report.status) {
     json["status"].push_back({{"bit", status.bit}, {"meaning", status.meaning}, {"count", status.count}});
   }
+  json["albedo"] = nullptr;
+  if (report.albedo_min > report.albedo_max) return json;
   json["albedo"] = {{"min", report.albedo_min},
                     {"max", report.albedo_max},
                     {"loses_energy", range_json(report.loses)},

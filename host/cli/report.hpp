@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "effects/effects.hpp"
 #include "evaluate/radiometry/radiometry.hpp"
 #include "evaluate/run/scene_run.hpp"
 #include "scene/scene.hpp"
@@ -29,6 +30,8 @@ struct RunReport {
   std::size_t entries = 0;
   double tolerance = 0.0;
   double wall_s = 0.0;
+  EffectPlan plan;
+  std::vector<EffectRow> effects;
   EvaluationReport evaluation;
   // Empty when no entry promises anything.
   std::optional<double> worst_error;      ///< largest stated error of DOLP where status has none of the bits 1, 4, 8
@@ -50,7 +53,11 @@ inline constexpr double kAlbedoMin = 0.95;
 inline constexpr double kAlbedoMax = 1.05;
 
 RunReport make_report(const Scene& scene, const std::vector<SceneEntry>& entries,
-                      const std::vector<PointResult>& results, const EvaluationReport& evaluation, double wall_s);
+                      const std::vector<PointResult>& results, const EffectPlan& plan,
+                      const EvaluationReport& evaluation, double wall_s);
+
+/// Names and reasons of what is kept, dropped and absent.
+nlohmann::ordered_json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan);
 
 /// The same for people (several lines) and for programs.
 std::string summary_text(const RunReport& report);

@@ -13,7 +13,7 @@
 namespace dolp::cli {
 namespace {
 
-void fill_variables(Table& table, const std::vector<PointResult>& results) {
+void fill_variables(Table& table, const std::vector<PointResult>& results, const EffectPlan& plan) {
   const auto column = [&](double PointResult::*member) {
     std::vector<double> values;
     values.reserve(results.size());
@@ -25,11 +25,13 @@ void fill_variables(Table& table, const std::vector<PointResult>& results) {
   table.stokes_q = column(&PointResult::stokes_q);
   table.stokes_u = column(&PointResult::stokes_u);
   table.stokes_v = column(&PointResult::stokes_v);
-  table.rho_i = column(&PointResult::rho_i);
-  table.rho_q = column(&PointResult::rho_q);
-  table.albedo = column(&PointResult::albedo);
   table.error_estimate = column(&PointResult::error_estimate);
-  table.rho_error_estimate = column(&PointResult::rho_error_estimate);
+  if (plan.needs_moments) table.albedo = column(&PointResult::albedo);
+  if (plan.gives_rho) {
+    table.rho_i = column(&PointResult::rho_i);
+    table.rho_q = column(&PointResult::rho_q);
+    table.rho_error_estimate = column(&PointResult::rho_error_estimate);
+  }
   for (const PointResult& result : results) table.status.push_back(result.status);
 }
 
@@ -58,6 +60,7 @@ std::vector<Attribute> attributes(const Scene& scene, const Options& options, co
           {"evaluator", report.evaluation.evaluator},
           {"precision", report.evaluation.precision},
           {"tolerance", report.tolerance},
+          {"effects", effects_text(report.effects, report.plan)},
           {"rule", rule_text(report.tolerance)},
           {"wall_time_s", report.wall_s}};
 }
@@ -69,15 +72,17 @@ int run_table(const Options& options) {
   check_output_is_no_input(options);
   const Scene scene = load_scene(options);
   check_output_path(options.output_path);
-  const std::unique_ptr<MomentsEvaluator> evaluator = make_evaluator(options, scene);
   const std::vector<SceneEntry> entries = grid_entries(scene);
+  const EffectPlan plan = plan_run(options, scene, entries);
+  const bool integrates = wants_evaluator(scene, entries, plan);
+  const std::unique_ptr<MomentsEvaluator> evaluator = integrates ? make_evaluator(options, scene) : nullptr;
   std::vector<PointResult> results;
   {
     ProgressBar bar(options.quiet);
-    results = evaluate_scene(scene, entries, *evaluator, bar.callback());
+    results = evaluate_scene(scene, entries, plan, evaluator.get(), bar.callback());
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  RunReport report = make_report(scene, entries, results, evaluator->report(), wall.count());
+  RunReport report = make_report(scene, entries, results, plan, report_of(evaluator.get(), options), wall.count());
   report.output = options.output_path;
   report.shape = fmt::format("{} x {} x {} (theta x sigma x q)", scene.grid.theta_deg.size(), scene.grid.sigma.size(),
                              scene.grid.q.size());
@@ -86,7 +91,7 @@ int run_table(const Options& options) {
   table.sigma = scene.grid.sigma;
   table.q = scene.grid.q;
   table.stokes_units = stokes_units(scene);
-  fill_variables(table, results);
+  fill_variables(table, results, plan);
   table.attributes = attributes(scene, options, report);
   write_table(table, options.output_path);
   print_report(report, options.json, options.quiet);

@@ -112,6 +112,8 @@ constexpr double kGaussianKinkTolerance = 2e-10;
 constexpr double kGaussianKinkFactor = 5.0;
 constexpr double kKinkTolerance = 2e-14;
 constexpr double kKinkFactor = 18.0;
+constexpr double kCoincidence = 1.05;
+constexpr double kCoincidenceFactor = 4.0;
 constexpr double kReflectingContrast = 2.1;  // |N^2 - 1| up to which Re N^2 < 1 reflects nearly all beyond an angle
 
 // The kink where the limit b of `integral` meets pi/2, beside a heavy tail.
@@ -127,6 +129,14 @@ double tight_factor(const KernelData& data, const kernel::ShapeNode& shape) {
       data.needs_masking_table() && data.distribution == Distribution::kGaussian && shape.m > kKinkM;
   if (gaussian_kink && data.tolerance < kGaussianKinkTolerance) return kGaussianKinkFactor;
   return has_kink(data, shape) && data.tolerance < kKinkTolerance ? kKinkFactor : 1.0;
+}
+
+// Breakpoints that nearly coincide (30, 18, 12.86 degrees): their singularities act together.
+double coincidence_factor(const kernel::ThetaNode& theta) {
+  for (std::size_t i = 1; i < static_cast<std::size_t>(theta.piece_count); ++i) {
+    if (theta.end[i + 1] < kCoincidence * theta.end[i]) return kCoincidenceFactor;
+  }
+  return 1.0;
 }
 
 Difficulty difficulty(const KernelData& data, const MomentsEntry& entry) {
@@ -179,7 +189,8 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   moments.albedo = node.albedo;
   moments.deficit = node.deficit;
   const double factor =
-      doubt_factor(data.masking, data.tolerance, difficulty(data, entry)) * tight_factor(data, shape);
+      doubt_factor(data.masking, data.tolerance, difficulty(data, entry)) * tight_factor(data, shape) *
+      coincidence_factor(theta);
   const double r_i_scale = std::abs(node.r_i);  // a rule that fails can make it negative
   const double reflected_rule = factor * node.doubt;
   const bool is_metal = std::hypot(index.n2m1_re, index.n2m1_im) > kMetalContrast;

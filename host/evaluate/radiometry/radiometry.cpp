@@ -173,15 +173,16 @@ Stokes stokes_sum(const Scene& scene, const SpectralRule& rule, std::span<const 
 }
 
 /// Adds pi E0 cos(theta_i) f of the beam from the source, the factor pi as in the exitances of the sum.
-void add_beam(Stokes& sum, const Surface& surface, const SpectralRule& rule, std::span<const Scattered> scattered,
-              double cos_theta_i, double cos_theta_r) {
+void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRule& rule,
+              std::span<const Scattered> scattered, double cos_theta_i, double cos_theta_r) {
   const double diffuse = surface.diffuse == 0.0
                              ? 0.0
                              : surface.diffuse * std::pow(cos_theta_i, surface.diffuse_exponent + 1.0) *
                                    std::pow(cos_theta_r, surface.diffuse_exponent);
   const double rounding = kRadianceRounding + rule.relative_error;
   for (std::size_t j = 0; j < scattered.size(); ++j) {
-    const double specular = pi<double>() * surface.specular * rule.samples[j].irradiance / cos_theta_r;
+    if (rule.samples[j].irradiance == 0.0) continue;
+    const double specular = pi<double>() * k_s * rule.samples[j].irradiance / cos_theta_r;
     const double unpolarised = rule.samples[j].irradiance * diffuse;
     const double error = std::abs(specular) * (scattered[j].error + rounding * std::abs(scattered[j].i));
     sum.i += specular * scattered[j].i + unpolarised;
@@ -333,13 +334,32 @@ PointResult grazing_limit(const Scene& scene, const SpectralRule& rule, const Di
   }
   set_dolp(result, grazing_stokes(scene, rule, moments));
   result.dolp = std::abs(result.dolp);
-  result.status |= tolerance_status(result, scene.accuracy.tolerance);
   return result;
 }
 
 }  // namespace
 
-Radiometry::Radiometry(const Scene& scene) : scene_(scene), rule_(spectral_rule(scene)), indices_(rule_.indices()) {}
+Radiometry::Radiometry(const Scene& scene, const KeptEffects& kept, const DropBound& dropped)
+    : scene_(scene),
+      beam_specular_(scene.surface.specular),
+      kept_(kept),
+      dropped_(dropped),
+      knows_rho_(kept.moments || scene.surface.specular == 0.0),
+      rule_(spectral_rule(scene)),
+      kept_rule_(kept_rule(rule_, kept)),
+      indices_(rule_.indices()) {
+  if (!kept.moments) scene_.surface.specular = 0.0;
+  if (!kept.diffuse) scene_.surface.diffuse = 0.0;
+}
+
+PointResult Radiometry::finished(PointResult result) const {
+  if (!kept_.moments) result.albedo = kNan;
+  if (!knows_rho_) result.rho_i = result.rho_q = result.rho_error_estimate = kNan;
+  result.error_estimate += dropped_.dolp;
+  result.rho_error_estimate += dropped_.rho;
+  result.status |= tolerance_status(result, scene_.accuracy.tolerance);
+  return result;
+}
 
 PointResult Radiometry::point(const Direction& direction, std::span<const Moments> moments) const {
   return point(direction, moments, indices_);
@@ -349,9 +369,10 @@ PointResult Radiometry::point(const Direction& direction, std::span<const Moment
                               std::span<const OpticalConstants> indices) const {
   assert(moments.size() == rule_.samples.size() && indices.size() == moments.size());
   if (!std::ranges::all_of(moments, is_known)) return outside_domain();
-  if (reflectance_diverges(scene_.surface, direction, moments)) return grazing_limit(scene_, rule_, direction, moments);
-
-  return assemble(moments, direction.cos_theta, indices, direction.cos_theta, {});
+  if (reflectance_diverges(scene_.surface, direction, moments)) {
+    return finished(grazing_limit(scene_, kept_rule_, direction, moments));
+  }
+  return finished(assemble(moments, direction.cos_theta, indices, direction.cos_theta, {}));
 }
 
 PointResult Radiometry::bistatic_point(const Direction& view, double cos_theta_i, std::span<const Moments> moments,
@@ -364,7 +385,7 @@ PointResult Radiometry::bistatic_point(const Direction& view, double cos_theta_i
     result.status |= kStatusUnphysicalReflectance;
     return result;
   }
-  return assemble(moments, view.cos_theta, indices, cos_theta_i, scattered);
+  return finished(assemble(moments, view.cos_theta, indices, cos_theta_i, scattered));
 }
 
 PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_theta,
@@ -377,9 +398,9 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
     reflectances.push_back(reflectance(scene_.surface, m, cos_theta));
     if (is_unphysical(reflectances.back())) result.status |= kStatusUnphysicalReflectance;
   }
-  Stokes sum = stokes_sum(scene_, rule_, reflectances, indices, cos_theta, !bistatic);
-  if (bistatic) add_beam(sum, scene_.surface, rule_, scattered, cos_theta_i, cos_theta);
-  add_path(sum, scene_.path, rule_.path_exitance);
+  Stokes sum = stokes_sum(scene_, kept_rule_, reflectances, indices, cos_theta, !bistatic);
+  if (bistatic) add_beam(sum, scene_.surface, beam_specular_, kept_rule_, scattered, cos_theta_i, cos_theta);
+  add_path(sum, scene_.path, kept_rule_.path_exitance);
   const double unit = bistatic ? 1.0 / pi<double>() : 1.0;  // an exitance, or the radiance that it is the integral of
   const MeanReflectance mean = mean_reflectance(rule_, reflectances, cos_theta);
   result.stokes_i = unit * sum.i;
@@ -393,7 +414,6 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   set_dolp(result, sum);
   if (sum.i <= 0.0) result.status |= kStatusNonPositiveIntensity;
   if (std::isnan(result.dolp)) result.status |= kStatusOutsideDomain;
-  result.status |= tolerance_status(result, scene_.accuracy.tolerance);
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "evaluate/moments.hpp"
+#include "evaluate/radiometry/kept_effects.hpp"
 #include "evaluate/radiometry/spectral_rule.hpp"
 #include "evaluate/radiometry/status.hpp"
 #include "scene/scene.hpp"
@@ -54,11 +55,13 @@ struct Scattered {
 ///
 /// Equation: I = pi B (1 - rho_I) + X rho_I, Q = (X - pi B) rho_Q, X = E0 cos(theta) + pi B(T_surr), then the path.
 /// With emission.model = "fresnel", 1 - rho_s is replaced in the emission by 1 - R_s(theta) of the smooth surface,
-/// likewise p, whatever k_s and the diffuse part are. In bistatic mode the same without E0 over pi, plus E0 cos(theta_i) f at the view direction.
-/// Source: MODEL.md sections 3 and 4; Wang, Li, Wang 2025, eqs. (16), (18).
+/// likewise p, whatever k_s and the diffuse part are. In bistatic mode the same without E0 over pi, plus E0
+/// cos(theta_i) f at the view direction. Source: MODEL.md sections 3 and 4; Wang, Li, Wang 2025, eqs. (16), (18).
 class Radiometry {
  public:
-  explicit Radiometry(const Scene& scene);
+  /// Of what is not kept nothing is added; without the moments the specular part of rho counts as 0, `point` looks at
+  /// none of the numbers in its Moments, and what would need them is NaN. `dropped` widens the error estimates.
+  explicit Radiometry(const Scene& scene, const KeptEffects& kept = {}, const DropBound& dropped = {});
 
   /// The indices at which `point` wants moments, in its order, and their weights.
   const SpectralRule& rule() const { return rule_; }
@@ -82,12 +85,18 @@ class Radiometry {
                              std::span<const OpticalConstants> indices, std::span<const Scattered> scattered) const;
 
  private:
-  PointResult assemble(std::span<const Moments> moments, double cos_theta,
-                       std::span<const OpticalConstants> indices, double cos_theta_i,
-                       std::span<const Scattered> scattered) const;
+  PointResult assemble(std::span<const Moments> moments, double cos_theta, std::span<const OpticalConstants> indices,
+                       double cos_theta_i, std::span<const Scattered> scattered) const;
 
-  Scene scene_;
+  PointResult finished(PointResult result) const;
+
+  Scene scene_;  ///< with the surface that the moments' terms see
+  double beam_specular_;
+  KeptEffects kept_;
+  DropBound dropped_;
+  bool knows_rho_;
   SpectralRule rule_;
+  SpectralRule kept_rule_;  ///< without the factors that are not kept
   std::vector<OpticalConstants> indices_;
 };
 

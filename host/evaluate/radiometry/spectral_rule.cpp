@@ -268,4 +268,16 @@ SpectralRule spectral_rule(const Scene& scene) {
   return rule;
 }
 
+SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept) {
+  for (SpectralSample& sample : rule.samples) {
+    if (!kept.surroundings) sample.excess = -sample.emitted;
+    if (!kept.emission) sample.excess = kept.surroundings ? sample.surroundings : 0.0;
+    if (!kept.surroundings) sample.surroundings = 0.0;
+    if (!kept.emission) sample.emitted = 0.0;
+    if (!kept.source) sample.irradiance = 0.0;
+  }
+  if (!kept.path_radiance) rule.path_exitance = 0.0;
+  return rule;
+}
+
 }  // namespace dolp

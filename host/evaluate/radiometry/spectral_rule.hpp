@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "evaluate/radiometry/kept_effects.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {
@@ -36,5 +37,8 @@ struct SpectralRule {
 ///
 /// Accuracy: band sums to 1e-9 relative (tests SpectralRule_*Band*).
 SpectralRule spectral_rule(const Scene& scene);
+
+/// The rule with 0 for every factor that is not kept.
+SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept);
 
 }  // namespace dolp

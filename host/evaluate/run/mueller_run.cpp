@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "error.hpp"
+#include "evaluate/grazing.hpp"
 #include "evaluate/run/scene_run.hpp"
 
 namespace dolp {
@@ -17,15 +18,12 @@ namespace {
 
 constexpr std::size_t kPointsAtOnce = 1U << 20U;  // bounds the memory of the requests
 
-// Stands for 90 degrees where f has a limit there, which it approaches like the cosine.
-constexpr double kNearGrazingDeg = 90.0 - 1e-12;
-
 bool is_grazing(const BeamAngles& angles) { return angles.theta_i_deg == 90.0 || angles.theta_r_deg == 90.0; }
 
 /// Whether f has no finite value.
 bool is_undefined(const Surface& surface, const MuellerPoint& point) {
   const bool has_specular = surface.specular > 0.0;
-  const bool has_limit = surface.masking == Masking::kVCavity || surface.masking == Masking::kSmith;
+  const bool has_limit = has_grazing_limit(surface.masking);
   const bool diffuse_diverges = surface.diffuse > 0.0 && surface.diffuse_exponent < 0.0;
   if (has_specular && point.shape.sigma == 0.0 && is_specular(point.angles)) return true;
   const bool specular_diverges = has_specular && point.shape.sigma > 0.0 && (!has_limit || !has_facet(point.angles));

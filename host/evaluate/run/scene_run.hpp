@@ -1,22 +1,17 @@
 // A scene at many entries: which moments are wanted, their evaluation, and the radiometry of each entry.
 #pragma once
 
-#include <optional>
+#include <span>
 #include <vector>
 
+#include "effects/effects.hpp"
 #include "evaluate/moments.hpp"
 #include "evaluate/radiometry/radiometry.hpp"
+#include "evaluate/scene_entry.hpp"
 #include "scene/points.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {
-
-/// One point of a table or of a list of points. Without an `index` of its own it has the scene's material.
-struct SceneEntry {
-  double theta_deg = 0.0;
-  SlopeShape shape;
-  std::optional<OpticalConstants> index;
-};
 
 /// The product of the scene's grid axes in C order (theta, sigma, q), q fastest.
 /// Errors: InputError for more than 2^24 entries.
@@ -33,8 +28,19 @@ std::vector<SceneEntry> point_entries(const Scene& scene, const Points& points);
 /// Errors: InputError that names the points' file and line, column, value and what is allowed.
 void check_smith(const Scene& scene, const Points& points);
 
-/// Results in the order of `entries`. Progress counts entries.
+/// How a run cuts its entries, which bounds its memory: consecutive blocks, each with requests of its own.
+std::vector<std::span<const SceneEntry>> run_blocks(std::span<const SceneEntry> entries, std::size_t spectral_samples);
+
+/// Whether anything is left for an evaluator: the plan needs moments or beams, and not all entries have closed forms.
+bool wants_evaluator(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan);
+
+/// Results in the order of `entries`, of what the plan keeps; what that does not give is NaN. Progress counts entries.
+/// The evaluator may be null where wants_evaluator says so.
 /// Errors: those of the evaluator and of Radiometry.
+std::vector<PointResult> evaluate_scene(const Scene& scene, const std::vector<SceneEntry>& entries,
+                                        const EffectPlan& plan, MomentsEvaluator* evaluator, const Progress& progress);
+
+/// The same with everything kept.
 std::vector<PointResult> evaluate_scene(const Scene& scene, const std::vector<SceneEntry>& entries,
                                         MomentsEvaluator& evaluator, const Progress& progress);
 

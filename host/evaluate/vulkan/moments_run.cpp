@@ -27,20 +27,13 @@ MomentsRun::MomentsRun(const RunContext& context, const MomentsRequest& request,
 }
 
 TileSizes MomentsRun::sizes(std::uint32_t tile_invocations, std::uint32_t block_shapes) const {
-  const Packing& packing = context_.packing;
   const VkPhysicalDeviceLimits& limits = context_.device.limits();
-  const TileCosts costs{
-      .invocation_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
-                     packing.node_bytes<kernel::IndexNode>() +
-                     grouping_.size * packing.node_bytes<kernel::MomentsNode>(),
-      .shape_bytes =
-          packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>()};
   return tile_sizes({.buffer_bytes = limits.maxStorageBufferRange,
                      .heap_bytes = context_.device.heap_bytes(),
                      .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
                      .tile_invocations = std::min<std::uint64_t>(tile_invocations, grouping_.groups.size() * DOLP_MAX_PIECES),
                      .block_shapes = std::min<std::uint64_t>(block_shapes, data_.shapes.size())},
-                    costs);
+                    tile_costs(context_.packing, grouping_.size));
 }
 
 void MomentsRun::create_buffers() {

@@ -10,17 +10,13 @@ ScatteringRun::ScatteringRun(const RunContext& context, const ScatteringRequest&
 }
 
 std::uint32_t ScatteringRun::tile_size(std::uint32_t tile_entries) const {
-  const Packing& packing = context_.packing;
   const VkPhysicalDeviceLimits& limits = context_.device.limits();
-  const TileCosts costs{
-      .invocation_bytes = packing.node_bytes<kernel::BeamNode>() + packing.node_bytes<kernel::MuellerNode>(),
-      .shape_bytes = 1};
   return tile_sizes({.buffer_bytes = limits.maxStorageBufferRange,
                      .heap_bytes = context_.device.heap_bytes(),
                      .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
                      .tile_invocations = std::min<std::uint64_t>(tile_entries, request_.entries.size()),
                      .block_shapes = 1},
-                    costs)
+                    scattering_tile_costs(context_.packing))
       .invocations;
 }
 

@@ -1,6 +1,7 @@
 #include "evaluate/vulkan/tiles.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 
 namespace dolp::vulkan {
@@ -19,6 +20,21 @@ TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs) {
   const std::uint64_t bytes = std::min(limits.buffer_bytes, limits.heap_bytes / kHeapFraction);
   return {.invocations = at_least_one(std::min({bytes / costs.invocation_bytes, limits.dispatch_count, limits.tile_invocations})),
           .shapes = at_least_one(std::min({bytes / costs.shape_bytes, limits.dispatch_count, limits.block_shapes}))};
+}
+
+TileCosts tile_costs(const Packing& packing, std::uint32_t group_size) {
+  using EntryWords = std::array<std::uint32_t, 4>;
+  using MaskingNode = std::array<double, 4>;
+  return {.invocation_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
+                         packing.node_bytes<kernel::IndexNode>() +
+                               group_size * packing.node_bytes<kernel::MomentsNode>(),
+          .shape_bytes =
+              packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>()};
+}
+
+TileCosts scattering_tile_costs(const Packing& packing) {
+  return {.invocation_bytes = packing.node_bytes<kernel::BeamNode>() + packing.node_bytes<kernel::MuellerNode>(),
+          .shape_bytes = 1};
 }
 
 std::vector<Block> blocks_of(const Grouping& grouping, std::uint32_t block_shapes) {

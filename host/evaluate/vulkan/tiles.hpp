@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "evaluate/vulkan/packing.hpp"
 #include "plan/groups.hpp"
 
 namespace dolp::vulkan {
@@ -33,6 +34,12 @@ struct TileSizes {
 
 /// The largest sizes within the limits; tiles and masking tables take at most an eighth of the heap each.
 TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs);
+
+/// Bytes of a piece of a group of entries, and of a shape, of the moments in a precision.
+TileCosts tile_costs(const Packing& packing, std::uint32_t group_size);
+
+/// The same of the pBRDFs, whose entries bring their own shapes.
+TileCosts scattering_tile_costs(const Packing& packing);
 
 /// Families of shapes whose masking tables are bound together, and the groups of entries that need them.
 struct Block {

@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/commands.hpp"
+#include "cli/plan_report.hpp"
+#include "error.hpp"
+#include "evaluate/run/scene_run.hpp"
+#include "plan/kernel_data.hpp"
+#include "verify/stored_cases.hpp"
+
+namespace dolp::cli {
+namespace {
+
+/// The device that a run would take; without one, limits that every device keeps.
+DeviceDescription device_of(const Options& options, const Scene& scene, PlanReport& report) {
+  const bool in_double = scene.accuracy.precision == Precision::kDouble;
+  const DeviceList list = list_devices();
+  try {
+    if (list.devices.empty()) throw DeviceError(list.why_empty);
+    const DeviceDescription& device = list.devices[choose_device(list.devices, options.device, in_double)];
+    report.device = device.name;
+    return device;
+  } catch (const DeviceError& error) {
+    if (!options.device.empty()) throw;
+    report.why_no_device = error.what();
+    DeviceDescription least = least_device();
+    least.float64 = true;
+    return least;
+  }
+}
+
+void add_dispatches(PlanReport& report, const DispatchPlan& of_request) {
+  report.dispatches.dispatches += of_request.dispatches;
+  report.dispatches.tile_invocations = std::max(report.dispatches.tile_invocations, of_request.tile_invocations);
+  report.dispatches.group_size = std::max(report.dispatches.group_size, of_request.group_size);
+  report.dispatches.groups += of_request.groups;
+  report.dispatches.block_shapes = std::max(report.dispatches.block_shapes, of_request.block_shapes);
+  report.dispatches.device_bytes = std::max(report.dispatches.device_bytes, of_request.device_bytes);
+}
+
+void add_pipeline(PlanReport& report, const char* kernel, Precision precision) {
+  const Surface& surface = report.scene.surface;
+  const std::string text =
+      fmt::format("{}, {}: distribution {}, masking {}", kernel, precision == Precision::kDouble ? "double" : "float",
+                  name_of(surface.distribution), name_of(surface.masking));
+  if (std::ranges::find(report.pipelines, text) == report.pipelines.end()) report.pipelines.push_back(text);
+}
+
+void add_request(PlanReport& report, const MomentsRequest& request, const DeviceDescription& device) {
+  if (request.entries.empty()) return;
+  add_dispatches(report, dispatch_plan(request, device));
+  const KernelData data = kernel_data(request);
+  report.rule = {data.rule.digits, static_cast<int>(data.rule.largest_order)};
+  add_pipeline(report, "moments", request.precision);
+  if (data.needs_masking_table()) add_pipeline(report, "masking_table", request.precision);
+}
+
+void add_request(PlanReport& report, const ScatteringRequest& request, const DeviceDescription& device) {
+  if (request.entries.empty()) return;
+  add_dispatches(report, dispatch_plan(request, device));
+  add_pipeline(report, "mueller", request.precision);
+}
+
+/// The evaluations were counted entry by entry; on the device those of a group are made once. Its nodes are those that
+/// its hardest member needs, hence estimated.
+void share_evaluations(PlanReport& report) {
+  if (report.dispatches.group_size == 1) return;
+  report.run.first_evaluations *=
+      static_cast<double>(report.dispatches.groups) / static_cast<double>(report.run.moments);
+  report.run.is_exact = false;
+}
+
+/// For each effect the share of the evaluations that would not be made without it.
+std::vector<double> work_shares(const PlanReport& report) {
+  const double moments = report.run.first_evaluations + report.run.again_evaluations;
+  const double beams = static_cast<double>(report.run.beams) + report.run.again_beams;
+  std::vector<double> shares;
+  for (const EffectRow& row : report.effects) {
+    double saved = 0.0;
+    if (row.part && row.state == EffectState::kKept) {
+      const Needs left = needs_without(report.scene, report.plan, *row.part);
+      saved = (left.moments ? 0.0 : moments) + (left.beams ? 0.0 : beams);
+    }
+    shares.push_back(saved > 0.0 ? saved / (moments + beams) : 0.0);
+  }
+  return shares;
+}
+
+}  // namespace
+
+int run_plan(const Options& options) {
+  PlanReport report;
+  report.scene = load_scene(options);
+  const std::vector<SceneEntry> entries = grid_entries(report.scene);
+  report.plan = plan_effects(report.scene, entries, options.keep_all);
+  report.effects = effect_rows(report.scene, entries, report.plan);
+  add_influences(report.effects, report.scene, entries);
+  const DeviceDescription device = device_of(options, report.scene, report);
+  report.run = predict_run(report.scene, entries, report.plan, device.float64,
+                           {[&](const MomentsRequest& request) { add_request(report, request, device); },
+                            [&](const ScatteringRequest& request) { add_request(report, request, device); }});
+  share_evaluations(report);
+  report.work_shares = work_shares(report);
+  if (options.json) {
+    fmt::print("{}\n", plan_json(report).dump(2));
+  } else {
+    fmt::print("{}", plan_text(report));
+  }
+  return kExitDone;
+}
+
+}  // namespace dolp::cli

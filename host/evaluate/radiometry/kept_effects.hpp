@@ -1,0 +1,22 @@
+#pragma once
+
+namespace dolp {
+
+/// Which parts of a scene the radiometry adds up; a part that the scene lacks does not count either way.
+struct KeptEffects {
+  bool emission = true;
+  bool source = true;
+  bool surroundings = true;
+  bool path_radiance = true;  ///< the transmittance, which cancels in DOLP, always stays
+  bool diffuse = true;
+  bool moments = true;  ///< the specular part of rho, which the evaluators integrate
+  friend bool operator==(const KeptEffects&, const KeptEffects&) = default;
+};
+
+/// What dropping effects changes at most, at any entry.
+struct DropBound {
+  double dolp = 0.0;  ///< |change of (Q/I, U/I)|, hence of DOLP
+  double rho = 0.0;   ///< |change of rho_I| over rho_I, where rho is given
+};
+
+}  // namespace dolp

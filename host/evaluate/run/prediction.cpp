@@ -1,0 +1,135 @@
+#include "evaluate/run/prediction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/run/beams.hpp"
+#include "evaluate/run/moments_block.hpp"
+#include "evaluate/run/scene_run.hpp"
+
+namespace dolp {
+namespace {
+
+// Its multiples modulo 1 fill the interval evenly and keep no step with the axes of a grid.
+constexpr double kGoldenRatio = 0.6180339887498949;
+
+std::vector<SceneEntry> drawn_entries(std::span<const SceneEntry> entries) {
+  if (entries.size() <= kCountedEntries) return {entries.begin(), entries.end()};
+  std::set<std::size_t> positions;
+  for (std::size_t i = 0; i < kCountedEntries; ++i) {
+    const double part = std::fmod(static_cast<double>(i) * kGoldenRatio, 1.0);
+    positions.insert(static_cast<std::size_t>(part * static_cast<double>(entries.size())));
+  }
+  std::vector<SceneEntry> drawn;
+  for (const std::size_t position : positions) drawn.push_back(entries[position]);
+  return drawn;
+}
+
+/// Sums of one kind of request, of the first attempt and of all others.
+struct Count {
+  std::size_t first = 0;  ///< moments or beams
+  std::size_t again = 0;
+  double first_evaluations = 0.0;
+  double again_evaluations = 0.0;
+  double spent_s = 0.0;
+
+  void add(std::size_t entries, const EvaluationReport& before, const EvaluationReport& after) {
+    const double evaluations = after.evaluations - before.evaluations;
+    const bool is_first = first == 0;
+    (is_first ? first : again) += entries;
+    (is_first ? first_evaluations : again_evaluations) += evaluations;
+    spent_s += after.kernel_s - before.kernel_s;
+  }
+};
+
+/// Notes what the attempts of a run ask for.
+class CountingEvaluator final : public MomentsEvaluator, public ScatteringEvaluator {
+ public:
+  CountingEvaluator(Precision precision, bool has_double) : cpu_(precision), has_double_(has_double) {}
+
+  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
+    const EvaluationReport before = cpu_.report();
+    std::vector<Moments> moments = cpu_.evaluate(request, progress);
+    moments_.add(request.entries.size(), before, cpu_.report());
+    return moments;
+  }
+  std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override {
+    const EvaluationReport before = cpu_.report();
+    std::vector<ScatteringMatrix> matrices = cpu_.scatter(request, progress);
+    beams_.add(request.entries.size(), before, cpu_.report());
+    return matrices;
+  }
+  ScatteringEvaluator* scattering() override { return this; }
+  Precision precision() const override { return cpu_.precision(); }
+  bool has_double() const override { return has_double_; }
+  EvaluationReport report() const override { return cpu_.report(); }
+
+  const Count& moments() const { return moments_; }
+  const Count& beams() const { return beams_; }
+
+ private:
+  CpuEvaluator cpu_;
+  bool has_double_;
+  Count moments_;
+  Count beams_;
+};
+
+/// How many of all there are for each that was counted.
+double scale_of(std::size_t all, const Count& counted) {
+  return counted.first == 0 ? 0.0 : static_cast<double>(all) / static_cast<double>(counted.first);
+}
+
+void count_work(RunPrediction& run, const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan,
+                bool has_double) {
+  CountingEvaluator counting(scene.accuracy.precision, has_double);
+  evaluate_scene(scene, drawn_entries(entries), plan, &counting, {});
+  const Count& moments = counting.moments();
+  const Count& beams = counting.beams();
+  const double moments_scale = scale_of(run.moments, moments);
+  const double beams_scale = scale_of(run.beams, beams);
+  run.first_evaluations = moments_scale * moments.first_evaluations;
+  run.again_evaluations = moments_scale * moments.again_evaluations;
+  run.again_beams = beams_scale * static_cast<double>(beams.again);
+  const double again = moments_scale * static_cast<double>(moments.again) + run.again_beams;
+  if (run.moments + run.beams > 0) run.again_share = again / static_cast<double>(run.moments + run.beams);
+  run.is_exact = moments.first == run.moments && beams.first == run.beams;
+  run.moments_s = moments_scale * moments.spent_s;
+  run.beams_s = beams_scale * beams.spent_s;
+}
+
+}  // namespace
+
+RunPrediction predict_run(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan,
+                          bool has_double, const RequestVisitor& visit) {
+  const std::vector<OpticalConstants> samples = spectral_rule(scene).indices();
+  RunPrediction run;
+  run.entries = entries.size();
+  run.spectral_samples = samples.size();
+  run.first = first_attempt(scene.accuracy, has_double);
+  run.host_bytes = static_cast<double>(entries.size() * (sizeof(SceneEntry) + sizeof(PointResult)));
+  std::size_t largest = 0;
+  for (const std::span<const SceneEntry> part : run_blocks(entries, samples.size())) {
+    std::size_t bytes = 0;
+    if (plan.needs_moments) {
+      const MomentsRequest request = moments_block(scene, samples, part, run.first).request;
+      run.moments += request.entries.size();
+      bytes += request.entries.size() * (2 * sizeof(MomentsEntry) + sizeof(Moments));
+      visit.moments(request);
+    }
+    if (plan.needs_beams) {
+      const ScatteringRequest request = beams_request(scene, samples, part, run.first.precision);
+      run.beams += request.entries.size();
+      bytes += request.entries.size() * (sizeof(ScatteringEntry) + sizeof(ScatteringMatrix) + sizeof(Scattered));
+      visit.beams(request);
+    }
+    largest = std::max(largest, bytes);
+  }
+  run.host_bytes += static_cast<double>(largest);
+  if (run.moments + run.beams > 0) count_work(run, scene, entries, plan, has_double);
+  return run;
+}
+
+}  // namespace dolp

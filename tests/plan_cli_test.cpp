@@ -1,0 +1,300 @@
+// Dropped effects and `dolp plan`, from outside.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli_support.hpp"
+#include "table/table_file.hpp"
+
+namespace {
+
+using namespace dolp;
+using nlohmann::json;
+
+const std::vector<std::pair<std::string, std::string>> kNoDriver = {{"VK_DRIVER_FILES", "/nonexistent.json"},
+                                                                    {"VK_ICD_FILENAMES", "/nonexistent.json"}};
+const std::vector<std::string> kIsothermal = {"--set", "surroundings.temperature_K=300"};
+const std::vector<std::string> kBistatic = {"--set", "geometry.mode=bistatic", "--set",
+                                            "source.relative_irradiance=0.5"};
+// Emission and surroundings of one temperature are unpolarised whatever the moments are.
+const std::vector<std::string> kBeamAlone = {"--set", "surroundings.temperature_K=300",
+                                             "--set", "geometry.mode=bistatic",
+                                             "--set", "source.relative_irradiance=0.5"};
+// A float on the device may round an order the other way than on the CPU, which changes a circle of nodes or two.
+constexpr double kOrderRounding = 0.05;
+// Of what 256 of many entries say about all.
+constexpr double kSampling = 0.1;
+
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+std::vector<std::string> names_in(const json& rows) {
+  std::vector<std::string> names;
+  for (const json& row : rows) names.push_back(row["name"]);
+  return names;
+}
+
+bool has(const json& rows, const std::string& name) {
+  const std::vector<std::string> names = names_in(rows);
+  return std::ranges::find(names, name) != names.end();
+}
+
+class Plan : public CommandLine {
+ protected:
+  json report(const std::vector<std::string>& arguments) const {
+    const Outcome outcome = dolp(joined(arguments, {"--json"}));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out);
+  }
+  json plan(const std::vector<std::string>& options = {}) const {
+    return report(joined({"plan", "scene.toml"}, options));
+  }
+  json table(const std::vector<std::string>& options = {}) const {
+    return report(joined({"table", "scene.toml", "-o", "t.nc"}, options));
+  }
+};
+
+TEST_F(Plan, IsothermalSurroundings_NothingRunsAndDolpIsZero) {
+  Command wanted = command(joined({"table", "scene.toml", "-o", "t.nc", "--json"}, kIsothermal));
+  wanted.environment = kNoDriver;
+  const Outcome outcome = run(wanted);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json report = json::parse(outcome.out);
+  EXPECT_EQ(report["dispatches"], 0);
+  EXPECT_EQ(report["evaluations"], 0.0);
+  EXPECT_EQ(report["device"], "none");
+  EXPECT_TRUE(has(report["effects"]["dropped"], "specular"));
+  EXPECT_TRUE(has(report["effects"]["not_needed"], "masking"));
+  const Table made = read_table(at("t.nc"));
+  EXPECT_TRUE(made.rho_i.empty() && made.rho_q.empty() && made.albedo.empty() && made.rho_error_estimate.empty());
+  ASSERT_EQ(made.dolp.size(), made.size());
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    EXPECT_EQ(made.dolp[i], 0.0);
+    EXPECT_EQ(made.status[i], 0U);
+    EXPECT_EQ(made.stokes_i[i], made.stokes_i[0]);
+  }
+  EXPECT_EQ(dolp({"verify", "t.nc"}).status, 0);
+}
+
+TEST_F(Plan, KeepAll_EverythingIsComputedAndTheAnswerIsTheSame) {
+  const json kept = table(joined(kIsothermal, {"--keep-all"}));
+  EXPECT_GT(kept["evaluations"], 0.0);
+  EXPECT_TRUE(kept["effects"]["keep_all"]);
+  EXPECT_TRUE(kept["effects"]["dropped"].empty());
+  const Table all = read_table(at("t.nc"));
+  for (const TableVariable& variable : table_variables()) {
+    EXPECT_EQ((all.*variable.values).size(), all.size()) << variable.name;
+  }
+  table(kIsothermal);
+  const Table few = read_table(at("t.nc"));
+  EXPECT_EQ(all.dolp, few.dolp);
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_NEAR(few.stokes_i[i], all.stokes_i[i], 1e-12 * all.stokes_i[i]);
+}
+
+TEST_F(Plan, EffectsAttribute_SaysWhatWasDroppedAndWhy) {
+  table(kIsothermal);
+  const auto text_in = [&](const char* name) {
+    for (const Attribute& attribute : read_table(at("t.nc")).attributes) {
+      if (attribute.name == name) return std::get<std::string>(attribute.value);
+    }
+    return std::string();
+  };
+  EXPECT_TRUE(text_in("effects").starts_with("kept: emission, surroundings; dropped: specular ("))
+      << text_in("effects");
+  table();
+  EXPECT_TRUE(text_in("effects").ends_with("dropped: nothing")) << text_in("effects");
+}
+
+TEST_F(Plan, Eval_QuantitiesNotNeeded_AreNan) {
+  const Columns columns = eval(kIsothermal);
+  ASSERT_EQ(columns.at("dolp").size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (const char* name : {"rho_i", "rho_q", "albedo", "rho_error_estimate"}) {
+      EXPECT_TRUE(std::isnan(columns.at(name)[i])) << name;
+    }
+    EXPECT_EQ(columns.at("dolp")[i], 0.0);
+    EXPECT_EQ(columns.at("status")[i], 0.0);
+  }
+  for (const double rho : eval(joined(kIsothermal, {"--keep-all"})).at("rho_i")) EXPECT_GT(rho, 0.0);
+}
+
+TEST_F(Plan, NoSpecularPart_OnlyClosedForms) {
+  const std::vector<std::string> matt = {"--set", "surface.specular=0", "--set", "surface.diffuse=0.2"};
+  const json report = table(matt);
+  EXPECT_EQ(report["evaluations"], 0.0);
+  const Table made = read_table(at("t.nc"));
+  EXPECT_EQ(made.rho_i.size(), made.size());
+  EXPECT_TRUE(made.albedo.empty());
+  table(joined(matt, {"--keep-all"}));
+  const Table all = read_table(at("t.nc"));
+  EXPECT_EQ(made.rho_i, all.rho_i);
+  EXPECT_EQ(made.dolp, all.dolp);
+}
+
+TEST_F(Plan, SunInTheVisible_ThermalRadiationIsDropped) {
+  const std::vector<std::string> visible = {"--set", "geometry.mode=bistatic", "--set", "spectrum.wavelength_um=0.55",
+                                            "--set", "source.irradiance=1800"};
+  const json report = table(visible);
+  EXPECT_EQ(report["evaluations"], 0.0);
+  EXPECT_TRUE(has(report["effects"]["dropped"], "emission"));
+  EXPECT_TRUE(has(report["effects"]["dropped"], "surroundings"));
+  EXPECT_TRUE(has(report["effects"]["kept"], "specular"));
+  const Table few = read_table(at("t.nc"));
+  table(joined(visible, {"--keep-all"}));
+  const Table all = read_table(at("t.nc"));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_NEAR(few.dolp[i], all.dolp[i], few.error_estimate[i] + all.error_estimate[i]);
+    EXPECT_GT(few.dolp[i], 0.0);
+  }
+}
+
+TEST_F(Plan, BeamOnAnIsothermalSurface_NeedsTheBeamAlone) {
+  const json report = table(kBeamAlone);
+  EXPECT_EQ(report["evaluations"], 0.0);
+  EXPECT_EQ(report["dispatches"], 1);
+  const Table few = read_table(at("t.nc"));
+  table(joined(kBeamAlone, {"--keep-all"}));
+  const Table all = read_table(at("t.nc"));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_NEAR(few.dolp[i], all.dolp[i], few.error_estimate[i] + all.error_estimate[i]);
+  }
+  EXPECT_GT(*std::ranges::max_element(few.dolp), 1e-3);
+}
+
+TEST_F(Plan, BeamAlone_IsComputedInThePrecisionThatTheToleranceAsksFor) {
+  for (const auto& [tolerance, precision] :
+       {std::pair{"1e-3", "float"}, std::pair{"1e-5", "float and double"}, std::pair{"1e-8", "double"}}) {
+    const json report = this->table(joined(kBeamAlone, {"--tolerance", tolerance}));
+    EXPECT_EQ(report["precision"], precision) << tolerance;
+    EXPECT_LE(report["worst_error_estimate"], std::strtod(tolerance, nullptr));
+  }
+}
+
+TEST_F(Plan, Mirrors_NeedNoDevice) {
+  for (const char* mode : {"hemispherical", "bistatic"}) {
+    Command wanted = command({"table", "scene.toml", "-o", "t.nc", "--set", "grid.sigma=0", "--json", "--set",
+                              "source.relative_irradiance=0.5", "--set", "geometry.mode=" + std::string(mode)});
+    wanted.environment = kNoDriver;
+    const Outcome outcome = run(wanted);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(json::parse(outcome.out)["device"], "none");
+    EXPECT_EQ(read_table(at("t.nc")).rho_i.size(), 8U);
+  }
+}
+
+TEST_F(Plan, BeamWithoutADevice_IsNoSilentSwitchToTheCpu) {
+  Command wanted = command(joined({"table", "scene.toml", "-o", "t.nc"}, kBeamAlone));
+  wanted.environment = kNoDriver;
+  EXPECT_EQ(run(wanted).status, 3);
+}
+
+TEST_F(Plan, FresnelEmissionAlone_NeedsNoMoments) {
+  const std::vector<std::string> alone = {"--set", "emission.model=fresnel", "--set", "surroundings=none"};
+  EXPECT_EQ(table(alone)["evaluations"], 0.0);
+  const std::vector<double> few = read_table(at("t.nc")).dolp;
+  table(joined(alone, {"--keep-all"}));
+  EXPECT_EQ(few, read_table(at("t.nc")).dolp);
+}
+
+TEST_F(Plan, FewEntries_PredictsTheCpuRunExactly) {
+  for (const char* tolerance : {"1e-2", "1e-4", "1e-7"}) {
+    const json predicted = plan({"--tolerance", tolerance});
+    const json spent = table({"--tolerance", tolerance, "--evaluator", "cpu"});
+    EXPECT_TRUE(predicted["first_attempt"]["is_exact"]);
+    EXPECT_EQ(predicted["evaluations"], spent["evaluations"]) << tolerance;
+  }
+}
+
+TEST_F(Plan, Bistatic_PredictsMomentsAndBeams) {
+  const json predicted = plan(kBistatic);
+  EXPECT_EQ(predicted["moments"], 4);  // of one view and four surfaces
+  EXPECT_EQ(predicted["beams"], 16);
+  EXPECT_TRUE(predicted["first_attempt"]["is_exact"]);
+  EXPECT_EQ(predicted["evaluations"], table(joined(kBistatic, {"--evaluator", "cpu"}))["evaluations"]);
+  EXPECT_EQ(predicted["pipelines"].size(), 3U);
+  ASSERT_EQ(predicted["further_attempts"]["share"], 0.0);
+  EXPECT_EQ(predicted["first_attempt"]["dispatches"], table(kBistatic)["dispatches"]);
+  const json alone = plan(joined(kBeamAlone, {"--tolerance", "1e-5"}));
+  EXPECT_EQ(alone["moments"], 0);
+  EXPECT_EQ(alone["beams"], 16);
+  EXPECT_TRUE(alone["rule"].is_null());
+  EXPECT_GT(alone["further_attempts"]["beams"], 0.0);
+  EXPECT_GT(alone["device_bytes"], 0);
+  EXPECT_GT(alone["estimated_cpu_s"], 0.0);
+}
+
+TEST_F(Plan, Device_PredictsEvaluationsAndDispatches) {
+  // Cases that need no second attempt.
+  for (const auto& [tolerance, masking] :
+       {std::pair{"1e-5", "none"}, std::pair{"1e-4", "v-cavity"}, std::pair{"1e-4", "smith"}}) {
+    const std::vector<std::string> easy = {"--tolerance", tolerance,
+                                           "--set",       "surface.masking=" + std::string(masking),
+                                           "--set",       "grid.theta_deg=[60,30,0]",
+                                           "--set",       "grid.sigma=0.4"};
+    const json predicted = plan(easy);
+    const json spent = table(easy);
+    const double evaluations = spent["evaluations"];
+    ASSERT_EQ(predicted["further_attempts"]["evaluations"], 0.0) << masking;
+    EXPECT_NEAR(predicted["evaluations"], evaluations, kOrderRounding * evaluations);
+    EXPECT_EQ(predicted["first_attempt"]["dispatches"], spent["dispatches"]);
+  }
+}
+
+TEST_F(Plan, ManyEntries_PredictionFromSomeIsNearly) {
+  const std::vector<std::string> grid = {"--set", "grid.theta_deg={from=0,to=85,count=30}",
+                                         "--set", "grid.sigma={from=0.05,to=1,count=16}",
+                                         "--set", "surface.masking=none"};
+  const json predicted = plan(grid);
+  const json spent = table(joined(grid, {"--evaluator", "cpu"}));
+  EXPECT_FALSE(predicted["first_attempt"]["is_exact"]);
+  const double evaluations = spent["evaluations"];
+  EXPECT_NEAR(predicted["evaluations"], evaluations, kSampling * evaluations);
+}
+
+TEST_F(Plan, NoDevice_PlansAllTheSame) {
+  Command wanted = command({"plan", "scene.toml", "--json"});
+  wanted.environment = kNoDriver;
+  const Outcome outcome = run(wanted);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json report = json::parse(outcome.out);
+  EXPECT_TRUE(report["device"].is_null());
+  EXPECT_NE(report["why_no_device"], "");
+  EXPECT_GT(report["first_attempt"]["dispatches"], 0);
+  EXPECT_EQ(report["evaluations"], plan()["evaluations"]);
+  wanted.arguments.insert(wanted.arguments.end(), {"--device", "nosuch"});
+  EXPECT_EQ(run(wanted).status, 3);
+}
+
+TEST_F(Plan, ShippedScenes_NameEachEffectOnceAndReadWell) {
+  for (const char* name : {"aviation_aluminium", "bare_aluminium", "day", "far", "glint", "mwir_glint", "night_paint",
+                           "overcast", "stainless_steel", "water"}) {
+    const std::string scene = std::string(DOLP_HOST_DIR "/scenes/") + name + ".toml";
+    const json json_plan = report({"plan", scene});
+    EXPECT_EQ(names_in(json_plan["rows"]),
+              (std::vector<std::string>{"specular", "diffuse", "distribution", "masking", "complex index", "emission",
+                                        "source", "surroundings", "path", "band"}));
+    const Outcome outcome = dolp({"plan", scene});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    for (const json& row : json_plan["rows"]) {
+      EXPECT_NE(row["reason"], "") << name << " " << row["name"];
+      EXPECT_NE(outcome.out.find(row["reason"].get<std::string>()), std::string::npos) << name;
+    }
+    for (const char* text : {"dropped", "attempts", "dispatches", "memory", "estimate"}) {
+      EXPECT_NE(outcome.out.find(text), std::string::npos) << name << " " << text;
+    }
+  }
+}
+
+TEST_F(Plan, DaySceneAtOnePercent_DropsTheSun) {
+  const std::string scene = DOLP_HOST_DIR "/scenes/day.toml";
+  const json rows = report({"plan", scene, "--tolerance", "1e-2"})["effects"];
+  ASSERT_TRUE(has(rows["dropped"], "source"));
+  EXPECT_LE(rows["dolp_bound"], 1e-3);
+  EXPECT_FALSE(has(report({"plan", scene, "--tolerance", "1e-2", "--keep-all"})["effects"]["dropped"], "source"));
+  EXPECT_FALSE(has(report({"plan", scene})["effects"]["dropped"], "source"));
+}
+
+}  // namespace

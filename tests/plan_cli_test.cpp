@@ -232,7 +232,7 @@ TEST_F(Plan, Device_PredictsEvaluationsAndDispatches) {
        {std::pair{"1e-5", "none"}, std::pair{"1e-4", "v-cavity"}, std::pair{"1e-4", "smith"}}) {
     const std::vector<std::string> easy = {"--tolerance", tolerance,
                                            "--set",       "surface.masking=" + std::string(masking),
-                                           "--set",       "grid.theta_deg=[60,30,0]",
+                                           "--set",       "grid.theta_deg=[60,35,3]",
                                            "--set",       "grid.sigma=0.4"};
     const json predicted = plan(easy);
     const json spent = table(easy);

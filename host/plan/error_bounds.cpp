@@ -100,11 +100,15 @@ constexpr double kCoreSinTheta = 0.035;
 constexpr double kCoreNormalTolerance = 1e-7;
 constexpr double kCoreHorizonGap = 0.055;  // cos(theta) + pole_cos: a metal at grazing incidence
 constexpr double kCoreSmallestM = 0.007;
-constexpr double kCoreSmallestTableM = 0.028;  // integral and smith
+constexpr double kCoreSmallestTableM = 0.028;  // integral and smith,
+constexpr double kTightSmallestTableM = 0.05;  // and below this tolerance
+constexpr double kTightTolerance = 2e-5;
 constexpr double kCoreLargestM = 1.6;
 constexpr double kCorePoleCos = 0.01;
 constexpr double kCoreContrast = 0.05;  // |N^2 - 1|
 constexpr double kCoreSmithQ = 1.72;
+constexpr double kTightSmithQ = 1.9;
+constexpr double kCoreLargestSmithM = 1.0;
 constexpr double kCoreIntegralQ = 1.45;
 constexpr double kCoreIntegralTolerance = 1e-7;
 constexpr double kKinkM = 0.4;
@@ -146,15 +150,19 @@ Difficulty difficulty(const KernelData& data, const MomentsEntry& entry) {
   const double contrast = std::hypot(index.n2m1_re, index.n2m1_im);
   const bool nearly_reflects = index.n2m1_re < 0.0 && contrast < kReflectingContrast;
   if (index.critical_cos > 0.0 || nearly_reflects) return Difficulty::kTotalReflection;
-  const double smallest_m = data.needs_masking_table() ? kCoreSmallestTableM : kCoreSmallestM;
+  const bool is_tight = data.tolerance < kTightTolerance;
+  const double smallest_table_m = is_tight ? kTightSmallestTableM : kCoreSmallestTableM;
+  const double smallest_m = data.needs_masking_table() ? smallest_table_m : kCoreSmallestM;
+  const double largest_m = data.masking == Masking::kSmith ? kCoreLargestSmithM : kCoreLargestM;
+  const double smith_q = is_tight ? kTightSmithQ : kCoreSmithQ;
   const bool is_smith = data.masking == Masking::kSmith && data.distribution == Distribution::kCauchy;
   const bool is_kinked = has_kink(data, shape) && data.tolerance < kCoreIntegralTolerance;
   // Near the normal the circles have few nodes, which say little of themselves.
   const bool is_normal =
       theta.s < kCoreSinTheta && (data.masking != Masking::kNone || data.tolerance < kCoreNormalTolerance);
   const bool is_core = theta.c >= kCoreCosTheta && !is_normal && theta.c + index.pole_cos >= kCoreHorizonGap &&
-                       shape.m >= smallest_m && shape.m <= kCoreLargestM && index.pole_cos >= kCorePoleCos &&
-                       contrast >= kCoreContrast && !is_kinked && !(is_smith && shape.q_minus_1 < kCoreSmithQ - 1.0);
+                       shape.m >= smallest_m && shape.m <= largest_m && index.pole_cos >= kCorePoleCos &&
+                       contrast >= kCoreContrast && !is_kinked && !(is_smith && shape.q_minus_1 < smith_q - 1.0);
   return is_core ? Difficulty::kCore : Difficulty::kEdge;
 }
 

@@ -28,7 +28,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_pole_growth = 0.452,
      .circle_pole = 1.17,
      .phi_cluster_growth = 1.35,
-     .doubt_decades = {0.25, 0.3, 0.08, -0.03, 0.25}},
+     .doubt_decades = {0.52, 0.42, 0.25, 0.22, 0.28}},
     // v-cavity
     {.margin_digits = 2.57,
      .t_nodes = 0.919,
@@ -45,7 +45,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_circle_growth = 0.883,
      .phi_pole_growth = 0.465,
      .circle_pole = 1.28,
-     .doubt_decades = {0.3, 0.38, 0.22, -0.03, 0.62},
+     .doubt_decades = {0.38, 0.66, 0.43, 0.18, 0.62},
      .doubt_tight = 0.15},
     // integral
     {.margin_digits = 2.18,
@@ -69,7 +69,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .t_line = 1,
      .phi_line = 0.944,
      .line_threshold = 5.47e+05,
-     .doubt_decades = {0.42, 0.5, 0.2, 0.35, 1.82},
+     .doubt_decades = {0.75, 0.52, 0.33, 0.52, 1.9},
      .doubt_tight = 0.15},
     // smith
     {.margin_digits = 1.84,
@@ -95,7 +95,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .cusp_digits = 4.04,
      .line_threshold = 4.5e+06,
      .tight_growth = 0.08,
-     .doubt_decades = {0.68, 0.43, 0.35, 0.68, 2.05},
+     .doubt_decades = {0.92, 0.56, 0.52, 0.86, 2.1},
      .doubt_tight = 0.37},
 }};
 

@@ -26,8 +26,8 @@ constexpr double kMissedShare = 0.01;
 // At 1e-9 the estimates of `integral` and smith, whose kinks and cusps converge algebraically, are far above the
 // errors.
 constexpr double kTightTolerance = 1e-8;
-constexpr double kTightMissedShare = 0.025;
-constexpr double kMedianPessimism = 30.0;
+constexpr double kTightMissedShare = 0.035;
+constexpr double kMedianPessimism = 60.0;
 // Errors below this are rounding, whose bound must hold for the worst sum of signs and is far above the typical one:
 // sixteen units in the last place of a float's 24 bits. In double the reference's own bound, 1e-12, times ten.
 constexpr double kFloatRounding = 1e-6;

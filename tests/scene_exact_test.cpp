@@ -75,7 +75,7 @@ TEST(SceneExact_QOfTwo, IsGgx) {
   constexpr double kSigma = 0.4;
   for (const Masking masking : {Masking::kNone, Masking::kSmith}) {
     for (const OpticalConstants& index : {kDielectric, kAbsorbing, kMetal}) {
-      for (const double theta_deg : {1.0, 45.0, 75.0}) {
+      for (const double theta_deg : {3.0, 45.0, 75.0}) {
         const GgxMoments ggx = ggx_moments(std::sqrt(2.0) * kSigma, masking, index, theta_deg);
         for (const Evaluator evaluator : {Evaluator::kFloat, Evaluator::kDouble, Evaluator::kReference}) {
           const Scene scene = make_scene(Distribution::kCauchy, masking, index);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -14,7 +15,9 @@ class TemporaryFile {
  public:
   TemporaryFile(const std::string& name, const std::string& content) {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(::testing::TempDir()) / (std::string("dolp_") + test->name() + "_" + name);
+    std::string owner = std::string(test->test_suite_name()) + "_" + test->name() + "_" + name;
+    std::replace(owner.begin(), owner.end(), '/', '_');  // of parametrised suites
+    folder_ = std::filesystem::path(::testing::TempDir()) / ("dolp_" + owner);
     std::filesystem::create_directories(folder_);
     path_ = (folder_ / name).string();
     std::ofstream(path_, std::ios::binary) << content;

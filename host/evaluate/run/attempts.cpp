@@ -39,7 +39,10 @@ std::optional<Attempt> next_attempt(const Attempt& last, const PointResult& resu
       std::isfinite(excess) ? std::clamp(std::ceil(std::log10(kSafety * excess)), 1.0, kMostDecades) : kMostDecades;
   const double wanted = last.tolerance * std::pow(10.0, -decades);
   if (last.precision == Precision::kFloat && wanted >= kFloatLimit) return Attempt{Precision::kFloat, wanted};
-  if (!may_use_double(accuracy, has_double)) return std::nullopt;
+  if (!may_use_double(accuracy, has_double)) {
+    const bool can_tighten = last.precision == Precision::kFloat && last.tolerance > kFloatLimit;
+    return can_tighten ? std::optional(Attempt{Precision::kFloat, kFloatLimit}) : std::nullopt;
+  }
   const double tolerance = std::max(wanted, kDoubleLimit);
   if (last.precision == Precision::kDouble && tolerance >= last.tolerance) return std::nullopt;
   return Attempt{Precision::kDouble, tolerance};

@@ -51,14 +51,12 @@ class TimedScene {
  public:
   TimedScene(Scene scene, bool keep_all, VulkanEvaluator& evaluator)
       : scene_(std::move(scene)), entries_(grid_entries(scene_)), keep_all_(keep_all), evaluator_(evaluator) {
-    run();  // creates the pipelines
-    const Clock::time_point start = Clock::now();
-    results_ = run();
-    calls_ = static_cast<std::size_t>(std::ceil(std::max(1.0, kRawTime / seconds_since(start))));
+    results_ = run();  // creates the pipelines
   }
 
   /// Adds a raw time of a call.
   void repeat() {
+    if (calls_ == 0) calls_ = calls_of_a_raw_time();
     const double kernel_s = evaluator_.report().kernel_s;
     const Clock::time_point start = Clock::now();
     for (std::size_t i = 0; i < calls_; ++i) run();
@@ -75,6 +73,12 @@ class TimedScene {
   std::vector<double> kernel_times_s() const { return per_entry(raw_kernel_s_, entries_.size()); }
 
  private:
+  std::size_t calls_of_a_raw_time() {
+    const Clock::time_point start = Clock::now();
+    run();
+    return static_cast<std::size_t>(std::ceil(std::max(1.0, kRawTime / seconds_since(start))));
+  }
+
   std::vector<PointResult> run() {
     plan_ = plan_effects(scene_, entries_, keep_all_);
     const bool integrates = wants_evaluator(scene_, entries_, plan_);
@@ -87,7 +91,7 @@ class TimedScene {
   VulkanEvaluator& evaluator_;
   EffectPlan plan_;
   std::vector<PointResult> results_;
-  std::size_t calls_ = 1;
+  std::size_t calls_ = 0;
   std::vector<double> raw_s_, raw_kernel_s_;
 };
 
@@ -126,7 +130,7 @@ struct Pair {
   bool saves() const {
     const EffectPlan& own = planned.plan();
     const EffectPlan& whole = all.plan();
-    return own.kept != whole.kept || own.needs_moments != whole.needs_moments || own.needs_beams != whole.needs_beams;
+    return !own.dropped.empty() || own.needs_moments != whole.needs_moments || own.needs_beams != whole.needs_beams;
   }
 };
 

@@ -145,7 +145,10 @@ ordered_json effect_row(const EffectGroup& group, const Pair& pair, const Pair& 
   row["time_s"] = time_s;
   row["kernel_time_s"] = median(pair.planned.kernel_times_s());
   row["ratio"] = time_s / median(base.planned.times_s());
-  if (pair.saves()) row["keep_all_time_s"] = median(pair.all.times_s());
+  if (pair.saves()) {
+    row["keep_all_time_s"] = median(pair.all.times_s());
+    row["keep_all_kernel_time_s"] = median(pair.all.kernel_times_s());
+  }
   row["left_out"] = left_out(pair.planned);
   row["entries"] = pair.planned.entries().size();
   row["time_min_s"] = minimum(pair.planned.times_s());

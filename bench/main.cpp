@@ -34,7 +34,7 @@ CLI::App* add_effects(CLI::App& app, StudyOptions& options) {
   CLI::App* study = app.add_subcommand("effects", "time per entry with each effect alone on and off");
   add_common(*study, options);
   study->add_option("--case", options.cases, "only this effect (repeatable)")->allow_extra_args(false);
-  options.entries = 16384;
+  options.entries = 10000;
   add_entries(*study, options, "entries of the grid, about; more for a GPU");
   return study;
 }

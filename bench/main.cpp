@@ -15,28 +15,50 @@ void add_common(CLI::App& study, StudyOptions& options) {
   study.add_option("--json", options.json_path, "file for the results; - is stdout, without the table");
   study.add_flag("--quick", options.quick, "few settings and short repeats: less than a minute");
   study.add_option("--device", options.device, "Vulkan device: its position or a part of its name");
-  study.add_option("--case", options.cases, "only this case (repeatable)")->allow_extra_args(false);
-  study.add_option("--method", options.methods, "only this method (repeatable)")->allow_extra_args(false);
-  study.add_option("--entries", options.entries, "entries of one call of dolp's evaluators; more for a GPU")
-      ->check(CLI::Range(1, 1 << 24))
-      ->capture_default_str();
   study.add_flag("--quiet", options.quiet, "no progress bar");
 }
 
+void add_entries(CLI::App& study, StudyOptions& options, const char* what) {
+  study.add_option("--entries", options.entries, what)->check(CLI::Range(1, 1 << 24))->capture_default_str();
+}
+
+void add_accuracy(CLI::App& app, StudyOptions& options) {
+  CLI::App* study = app.add_subcommand("accuracy", "error against time per entry, for all methods");
+  add_common(*study, options);
+  study->add_option("--case", options.cases, "only this case (repeatable)")->allow_extra_args(false);
+  study->add_option("--method", options.methods, "only this method (repeatable)")->allow_extra_args(false);
+  add_entries(*study, options, "entries of one call of dolp's evaluators; more for a GPU");
+}
+
+CLI::App* add_effects(CLI::App& app, StudyOptions& options) {
+  CLI::App* study = app.add_subcommand("effects", "time per entry with each effect alone on and off");
+  add_common(*study, options);
+  study->add_option("--case", options.cases, "only this effect (repeatable)")->allow_extra_args(false);
+  options.entries = 10000;
+  add_entries(*study, options, "entries of the grid, about; more for a GPU");
+  return study;
+}
+
 int parse_and_run(int argc, char** argv) {
-  CLI::App app("dolp-bench: dolp against other ways to compute the same moments", "dolp-bench");
+  CLI::App app("dolp-bench: dolp against other ways to compute the same moments, and against itself", "dolp-bench");
   app.set_version_flag("--version", "dolp-bench " DOLP_VERSION);
   app.require_subcommand(1);
-  StudyOptions options;
-  options.arguments.assign(argv, argv + argc);
-  add_common(*app.add_subcommand("accuracy", "error against time per entry, for all methods"), options);
+  StudyOptions accuracy;
+  accuracy.arguments.assign(argv, argv + argc);
+  StudyOptions effects = accuracy;
+  add_accuracy(app, accuracy);
+  const CLI::App* effects_study = add_effects(app, effects);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     throw InputError(std::string(error.what()) + " (see dolp-bench --help)");
   }
-  run_accuracy(options);
+  if (effects_study->parsed()) {
+    run_effects(effects);
+  } else {
+    run_accuracy(accuracy);
+  }
   if (std::fflush(stdout) != 0) throw IoError("standard output: cannot write the table");
   return cli::kExitDone;
 }

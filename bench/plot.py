@@ -3,7 +3,9 @@
 
 Usage: plot.py accuracy RESULT.json -o FIGURE.png    error against time per entry, one panel a case
        plot.py accuracy RESULT.json --markdown       time per entry at given errors, as a Markdown table on stdout
-RESULT.json is what `dolp-bench accuracy --json RESULT.json` writes. Figures need python3-matplotlib (and with it Pillow).
+       plot.py effects RESULT.json -o FIGURE.png     time per entry of each effect, and of specialised kernels
+       plot.py effects RESULT.json --markdown        the same as Markdown tables on stdout
+RESULT.json is what `dolp-bench accuracy|effects --json RESULT.json` writes. Figures need python3-matplotlib (and with it Pillow).
 Exit status: 0 done, 2 usage or a file that is not such a result, 4 the figure could not be written.
 """
 import argparse
@@ -12,6 +14,10 @@ import json
 import math
 import sys
 import textwrap
+
+sys.dont_write_bytecode = True  # leaves no folder among the sources
+
+import plot_effects  # noqa: E402
 
 # Colours of Okabe and Ito, which colour-blind readers tell apart; a method and its other precision share one.
 STYLES = {
@@ -27,6 +33,7 @@ STYLES = {
     "cpu-double": ("CPU double", "#D55E00", "p", "--"),
 }
 OTHER_STYLE = ("#000000", "*", ":")
+NEEDED = {"accuracy": {"context", "methods", "cases", "results"}, "effects": {"context", "grid", "results"}}
 WANTED_ERRORS = (1e-3, 1e-6, 1e-9)
 PANEL_COLUMNS = 3
 LABEL_GAP_POINTS = 9.0
@@ -45,7 +52,7 @@ def read_result(path, study):
         result = json.load(file)
     if not isinstance(result, dict) or result.get("study") != study:
         raise NotAResult(f"is no result of dolp-bench {study}")
-    missing = {"context", "methods", "cases", "results"} - result.keys()
+    missing = NEEDED[study] - result.keys()
     if missing:
         raise NotAResult(f"lacks {', '.join(sorted(missing))}")
     return result
@@ -260,11 +267,12 @@ def save(drawing, path):
 def arguments():
     parser = argparse.ArgumentParser(prog="plot.py", description=__doc__.splitlines()[0])
     studies = parser.add_subparsers(dest="study", required=True)
-    accuracy = studies.add_parser("accuracy", help="error against time per entry")
-    accuracy.add_argument("result", metavar="RESULT.json")
-    output = accuracy.add_mutually_exclusive_group(required=True)
-    output.add_argument("-o", "--output", metavar="FIGURE.png")
-    output.add_argument("--markdown", action="store_true")
+    for name, what in (("accuracy", "error against time per entry"), ("effects", "time per entry of each effect")):
+        study = studies.add_parser(name, help=what)
+        study.add_argument("result", metavar="RESULT.json")
+        output = study.add_mutually_exclusive_group(required=True)
+        output.add_argument("-o", "--output", metavar="FIGURE.png")
+        output.add_argument("--markdown", action="store_true")
     return parser.parse_args()
 
 
@@ -272,10 +280,13 @@ def main():
     options = arguments()
     try:
         result = read_result(options.result, options.study)
+        is_effects = options.study == "effects"
         if options.markdown:
-            print(markdown(result))
-            return 0
-        figure(result, options.output)
+            print(plot_effects.markdown(result) if is_effects else markdown(result))
+        elif is_effects:
+            plot_effects.figure(result, options.output, save)
+        else:
+            figure(result, options.output)
     except (OSError, ValueError, KeyError, NotAResult) as error:
         is_output = isinstance(error, OSError) and error.filename == options.output
         name = options.output if is_output else options.result

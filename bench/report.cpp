@@ -23,14 +23,21 @@ std::string some_of(const std::vector<std::string>& names) {
   return names.size() > kMostNames ? text + fmt::format(" and {} more", names.size() - kMostNames) : text;
 }
 
+/// "gauss easy 64", "masking hemispherical smith".
+std::string row_name(const ordered_json& row) {
+  const ordered_json& setting = row["setting"];
+  const ordered_json& first = row.contains("method") ? row["method"] : row["effect"];
+  return fmt::format("{} {} {}", first.get<std::string>(), row["case"].get<std::string>(),
+                     setting.is_number() ? fmt::format("{:g}", setting.get<double>()) : setting.get<std::string>());
+}
+
 void warn_of_times(ordered_json& result) {
   std::vector<std::string> noisy;
   std::vector<std::string> single;
   for (const ordered_json& row : result["results"]) {
     if (!row.contains("raw_times_s")) continue;
     const auto raw_s = row["raw_times_s"].get<std::vector<double>>();
-    const std::string name = fmt::format("{} {} {:g}", row["method"].get<std::string>(), row["case"].get<std::string>(),
-                                         row["setting"].get<double>());
+    const std::string name = row_name(row);
     if (raw_s.size() == 1) single.push_back(name);
     if (spread(raw_s) > kAcceptedSpread) noisy.push_back(name);
   }

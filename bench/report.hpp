@@ -7,7 +7,7 @@
 namespace dolp::bench {
 
 /// Fills `warnings` of a study: what is wrong with its times, and what to do about it. Reads `context`, and of
-/// `results` what names a row (method, case, setting) and raw_times_s where there are any.
+/// `results` what names a row (method or effect, case, setting) and raw_times_s where there are any.
 void add_warnings(nlohmann::ordered_json& result);
 
 /// A study as a file: indented, but for `results`, which come last and one a line.

@@ -14,5 +14,6 @@ extern const std::span<const std::uint32_t> masking_table_float;
 extern const std::span<const std::uint32_t> masking_table_double;
 extern const std::span<const std::uint32_t> mueller_float;
 extern const std::span<const std::uint32_t> mueller_double;
+extern const std::span<const std::uint32_t> moments_uniform_float;  // of the benchmark, in bench/
 
 }  // namespace dolp::spirv

@@ -134,8 +134,13 @@ TEST(NextAttempt, SecondMiss_GoesOnFromTheLastRule) {
 TEST(NextAttempt, RuleTooTightForFloat_GoesOnInDouble) {
   expect_attempt(next_attempt({Precision::kFloat, 1e-5}, missed(1e-5, 2.0), accuracy(1e-5), true), Precision::kDouble,
                  1e-6);
-  EXPECT_FALSE(next_attempt({Precision::kFloat, 1e-5}, missed(1e-5, 2.0), accuracy(1e-5), false));
-  EXPECT_FALSE(next_attempt({Precision::kFloat, 1e-5}, missed(1e-5, 2.0), accuracy(1e-5, Precision::kFloat), true));
+  // without double, up to where float can go
+  for (const auto& [wanted, has_double] :
+       {std::pair{accuracy(1e-5), false}, std::pair{accuracy(1e-5, Precision::kFloat), true}}) {
+    expect_attempt(next_attempt({Precision::kFloat, 1e-5}, missed(1e-5, 2.0), wanted, has_double), Precision::kFloat,
+                   2e-6);
+    EXPECT_FALSE(next_attempt({Precision::kFloat, 2e-6}, missed(1e-5, 2.0), wanted, has_double));
+  }
 }
 
 TEST(NextAttempt, DoubleNeverGoesBackToFloat) {

@@ -113,6 +113,82 @@ TEST_F(BenchProgram, DeviceThatIsNotThere_IsExit3BeforeAnythingRuns) {
   EXPECT_EQ(outcome.out, "");
 }
 
+class BenchEffects : public BenchProgram {
+ protected:
+  /// The study on a tiny grid.
+  json study(std::vector<std::string> options) const {
+    const std::vector<std::string> fixed = {"effects", "--quick", "--entries", "9", "--json", "-"};
+    options.insert(options.begin(), fixed.begin(), fixed.end());
+    const Outcome outcome = bench(options);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out);
+  }
+};
+
+TEST_F(BenchEffects, Json_EveryEffect_HasTimesAndRatio_UniformBranchesGiveTheSameMoments) {
+  constexpr double kRounding = 1e-5;  // of float; a compiler may order the operations of the two kernels otherwise
+  const json result = study({});
+  EXPECT_EQ(result["study"], "effects");
+  expect_keys(result, {"context", "error", "time_s", "tolerance", "grid", "results", "warnings"});
+  EXPECT_NE(result["context"]["command"].get<std::string>().find(" effects --quick "), std::string::npos);
+  std::set<std::string> effects;
+  for (const json& row : result["results"]) {
+    expect_keys(row, {"part", "effect", "case", "setting", "error", "time_s", "ratio", "entries", "raw_times_s"});
+    EXPECT_GT(row["time_s"].get<double>(), 0.0) << row.dump();
+    EXPECT_GT(row["ratio"].get<double>(), 0.0) << row.dump();
+    EXPECT_EQ(row["entries"], 9);
+    EXPECT_EQ(row["raw_times_s"].size(), 3U);
+    effects.insert(row["effect"].get<std::string>());
+    if (row["part"] == "branches") {
+      EXPECT_GT(row["specialised_time_s"].get<double>(), 0.0) << row.dump();
+      EXPECT_LE(row["error"], kRounding) << row.dump();
+      continue;
+    }
+    expect_keys(row, {"base", "kernel_time_s", "left_out", "bound", "compared"});
+    EXPECT_GT(row["compared"], 0) << row.dump();
+    EXPECT_LE(row["error"], result["tolerance"]) << row.dump();
+    if (row["setting"] == row["base"]) {
+      EXPECT_EQ(row["ratio"], 1.0) << row.dump();
+    }
+  }
+  EXPECT_EQ(effects, (std::set<std::string>{"specular", "diffuse", "distribution", "masking", "complex index",
+                                            "emission", "source", "surroundings", "path", "band", "branches"}));
+}
+
+TEST_F(BenchEffects, Json_WhatThePlanDrops_TakesNoKernelAndSaysWhatEverythingTakes) {
+  const json result = study({"--case", "surroundings"});
+  ASSERT_EQ(result["results"].size(), 3U);
+  const json& cool = result["results"][1];
+  const json& isothermal = result["results"][2];
+  EXPECT_GT(cool["kernel_time_s"].get<double>(), 0.0);
+  EXPECT_FALSE(cool.contains("keep_all_time_s")) << cool.dump();
+  EXPECT_EQ(isothermal["kernel_time_s"], 0.0);
+  EXPECT_GT(isothermal["keep_all_kernel_time_s"].get<double>(), 0.0) << isothermal.dump();
+  EXPECT_GT(isothermal["keep_all_time_s"].get<double>(), 0.0) << isothermal.dump();
+  EXPECT_EQ(isothermal["left_out"], json({"specular", "distribution", "masking"}));
+}
+
+TEST_F(BenchEffects, NoVulkanDevice_IsExit3) {
+  const Outcome outcome = bench({"effects", "--quick"}, {{"VK_DRIVER_FILES", "/none"}, {"VK_ICD_FILENAMES", "/none"}});
+  EXPECT_EQ(outcome.status, 3) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+}
+
+TEST_F(BenchEffects, Plot_Results_GiveFigureAndTables) {
+  ASSERT_EQ(bench({"effects", "--quick", "--entries", "9", "--case", "surroundings", "--case", "branches", "--json",
+                   "r.json"})
+                .status,
+            0);
+  const Outcome figure = plot({"effects", "r.json", "-o", "r.png"});
+  ASSERT_EQ(figure.status, 0) << figure.err;
+  EXPECT_TRUE(read_file(at("r.png")).starts_with("\x89PNG"));
+  const Outcome table = plot({"effects", "r.json", "--markdown"});
+  ASSERT_EQ(table.status, 0) << table.err;
+  EXPECT_NE(table.out.find("| surroundings | hemispherical | 250 K |"), std::string::npos) << table.out;
+  EXPECT_NE(table.out.find("| smith | gaussian |"), std::string::npos) << table.out;
+  EXPECT_EQ(plot({"accuracy", "r.json", "--markdown"}).status, 2);
+}
+
 struct BadUsage {
   std::vector<std::string> arguments;
   int status;
@@ -126,6 +202,11 @@ TEST_F(BenchProgram, BadUsage_OneLineThatSaysWhatIsAllowed) {
       {{"accuracy", "--fast"}, 2, "--fast"},
       {{"accuracy", "--entries", "0"}, 2, "--entries"},
       {{"accuracy", "--case", "simple"}, 2, "--case simple: there is none of this name; choose among easy, median, "},
+      {{"effects", "--case", "smell"},
+       2,
+       "--case smell: there is none of this name; choose among branches, specular, "},
+      {{"effects", "--method", "gauss"}, 2, "--method"},
+      {{"effects", "--json", "no/such/folder/r.json"}, 4, "there is no folder no/such/folder"},
       {{"accuracy", "--method", "simpson"}, 2, "choose among midpoint, gauss, "},
       {{"accuracy", "--json", "no/such/folder/r.json"}, 4, "there is no folder no/such/folder"}};
   for (const BadUsage& bad : list) {

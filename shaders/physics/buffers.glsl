@@ -4,6 +4,10 @@ layout(constant_id = DOLP_SPEC_DISTRIBUTION) const uint kDistribution = DOLP_CAU
 layout(constant_id = DOLP_SPEC_MASKING) const uint kMasking = DOLP_MASKING_NONE;
 
 layout(push_constant) uniform PushConstants { DOLP_PUSH_CONSTANTS } push;
+#ifdef DOLP_UNIFORM_BRANCHES  // for the benchmark: the same values, which no compiler knows, because unused_0 is 0
+#define kDistribution (kDistribution ^ push.unused_0)
+#define kMasking (kMasking ^ push.unused_0)
+#endif
 
 layout(std430, binding = DOLP_BINDING_SHAPES) readonly buffer Shapes { ShapeNode shapes[]; };
 layout(std430, binding = DOLP_BINDING_RULE_NODES) readonly buffer RuleNodes { real4 rule_nodes[]; };

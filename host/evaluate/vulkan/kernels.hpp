@@ -33,6 +33,10 @@ class Kernels {
   VkPipeline moments(Distribution distribution, Masking masking, std::uint32_t group_size);
   VkPipeline masking_table(Distribution distribution, Masking masking);
   VkPipeline mueller(Distribution distribution, Masking masking);
+  /// Runs `pipeline` of `create` in place of that of `moments`, for studies of other modules.
+  void replace_moments(Distribution distribution, Masking masking, UniquePipeline pipeline) {
+    moments_.insert_or_assign({distribution, masking}, std::move(pipeline));
+  }
   VkPipelineLayout layout() const { return layout_.get(); }
   VkDescriptorSet descriptor_set() const { return set_; }
 

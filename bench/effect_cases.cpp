@@ -1,0 +1,140 @@
+#include "bench/effect_cases.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace dolp::bench {
+namespace {
+
+constexpr double kTemperature = 298.15;  // K, of the surface
+constexpr double kLastTheta = 85.0;
+constexpr double kFirstSigma = 0.05;
+constexpr double kLastSigma = 1.0;
+constexpr double kIrradiance = 20.0;  // W m-2 um-1, somewhat below what the surface emits
+constexpr double kFaint = 1e-9;       // of it
+
+Grid grid_of(std::size_t entries) {
+  const auto side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(entries))));
+  const std::size_t thetas = std::max<std::size_t>(2, side);
+  const std::size_t sigmas = std::max<std::size_t>(2, entries / thetas);
+  Grid grid;
+  for (std::size_t i = 0; i < thetas; ++i) {
+    grid.theta_deg.push_back(kLastTheta * static_cast<double>(i) / static_cast<double>(thetas - 1));
+  }
+  for (std::size_t i = 0; i < sigmas; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(sigmas - 1);
+    grid.sigma.push_back(kFirstSigma * std::pow(kLastSigma / kFirstSigma, share));
+  }
+  grid.q = {3.0};
+  return grid;
+}
+
+/// The stainless steel of the paper, that emits and nothing else.
+Scene emitting(const Grid& grid) {
+  Scene scene;
+  scene.surface.material.constant = {1.508, 0.0};
+  scene.emission = Emission{kTemperature, EmissionModel::kMoments};
+  scene.spectrum.min_um = scene.spectrum.max_um = 10.6;
+  scene.grid = grid;
+  return scene;
+}
+
+/// The same, seen from one direction beside the plane of the source.
+Scene seen_from_one_side(const Grid& grid) {
+  Scene scene = emitting(grid);
+  scene.geometry = {Mode::kBistatic, 60.0, 90.0};
+  return scene;
+}
+
+Source flat_source(double irradiance) {
+  Source source;
+  source.irradiance = irradiance;
+  return source;
+}
+
+/// n and k that follow the wavelength, linear in between.
+Material dispersive() {
+  Material material;
+  material.name = "dispersive";
+  material.n = {{8.0, 10.0, 12.0, 14.0}, {1.4, 1.6, 1.5, 1.45}, SpectralTable::Interpolation::kLinear};
+  material.k = {{8.0, 10.0, 12.0, 14.0}, {0.05, 0.3, 0.15, 0.1}, SpectralTable::Interpolation::kLinear};
+  return material;
+}
+
+/// A name and what it makes of the base.
+struct Change {
+  std::string name;
+  std::function<void(Scene&)> apply = [](Scene&) {};
+};
+
+EffectGroup group(const std::string& effect, const Scene& base, const std::vector<Change>& changes) {
+  EffectGroup made{effect, base.geometry.mode == Mode::kBistatic ? "bistatic" : "hemispherical", {}};
+  for (const Change& change : changes) {
+    made.settings.push_back({change.name, base});
+    change.apply(made.settings.back().scene);
+  }
+  return made;
+}
+
+Change masking(const std::string& name, Masking masking) {
+  return {name, [masking](Scene& scene) { scene.surface.masking = masking; }};
+}
+
+Change source(const std::string& name, double irradiance) {
+  return {name, [irradiance](Scene& scene) { scene.source = flat_source(irradiance); }};
+}
+
+Change surroundings(const std::string& name, double temperature_K) {
+  return {name, [temperature_K](Scene& scene) { scene.surroundings = Surroundings{temperature_K}; }};
+}
+
+void set_band(Scene& scene) { scene.spectrum = {8.0, 14.0}; }
+
+std::vector<EffectGroup> surface_groups(const Scene& base) {
+  return {group("specular", base, {{"k_s = 1"}, {"k_s = 0", [](Scene& scene) { scene.surface.specular = 0.0; }}}),
+          group("diffuse", base, {{"off"}, {"k_d = 0.3", [](Scene& scene) { scene.surface.diffuse = 0.3; }}}),
+          group("distribution", base,
+                {{"cauchy"}, {"gaussian", [](Scene& scene) { scene.surface.distribution = Distribution::kGaussian; }}}),
+          group("masking", base,
+                {masking("none", Masking::kNone), masking("v-cavity", Masking::kVCavity),
+                 masking("integral", Masking::kIntegral), masking("smith", Masking::kSmith)}),
+          group("complex index", base,
+                {{"k = 0"}, {"k = 0.5", [](Scene& scene) { scene.surface.material.constant.k = 0.5; }}})};
+}
+
+std::vector<EffectGroup> radiation_groups(const Scene& base, const Scene& bistatic) {
+  Scene lit = bistatic;
+  lit.source = flat_source(kIrradiance);
+  return {group("emission", base,
+                {{"moments"}, {"fresnel", [](Scene& scene) { scene.emission->model = EmissionModel::kFresnel; }}}),
+          group("emission", lit, {{"on"}, {"off", [](Scene& scene) { scene.emission.reset(); }}}),
+          group("source", base, {{"off"}, source("on", kIrradiance)}),
+          group("source", bistatic, {{"off"}, source("on", kIrradiance), source("faint", kFaint * kIrradiance)}),
+          group("surroundings", base,
+                {{"off"}, surroundings("250 K", 250.0), surroundings("as warm as the surface", kTemperature)}),
+          group("path", base,
+                {{"off"},
+                 {"on",
+                  [](Scene& scene) {
+                    scene.path = Path{0.8, 280.0, std::nullopt};
+                  }}}),
+          group("band", base,
+                {{"one wavelength"}, {"8-14 um, constant n", set_band}, {"8-14 um, n(lambda)", [](Scene& scene) {
+                                                                           set_band(scene);
+                                                                           scene.surface.material = dispersive();
+                                                                         }}})};
+}
+
+}  // namespace
+
+std::vector<EffectGroup> effect_groups(std::size_t entries) {
+  const Grid grid = grid_of(entries);
+  const Scene base = emitting(grid);
+  std::vector<EffectGroup> groups = surface_groups(base);
+  for (EffectGroup& radiation : radiation_groups(base, seen_from_one_side(grid)))
+    groups.push_back(std::move(radiation));
+  return groups;
+}
+
+}  // namespace dolp::bench

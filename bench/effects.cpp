@@ -1,0 +1,383 @@
+// The study of effects: what each costs alone, what the plan saves, and what specialised kernels save.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "bench/branches.hpp"
+#include "bench/cases.hpp"
+#include "bench/context.hpp"
+#include "bench/effect_cases.hpp"
+#include "bench/report.hpp"
+#include "bench/study.hpp"
+#include "bench/timing.hpp"
+#include "cli/progress_bar.hpp"
+#include "effects/effects.hpp"
+#include "error.hpp"
+#include "evaluate/run/scene_run.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "table/atomic_file.hpp"
+
+namespace dolp::bench {
+namespace {
+
+using nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kFullRepeats = 5;
+constexpr std::size_t kQuickRepeats = 3;
+constexpr std::size_t kQuickEntries = 4096;
+constexpr double kRawTime = 5e-3;  // seconds: shorter calls are made several times for one raw time
+constexpr std::uint32_t kNoPromise = kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Seconds an entry, to four digits: raw times have no more.
+double per_entry(double time_s, std::size_t entries) {
+  return std::stod(fmt::format("{:.3e}", time_s / static_cast<double>(entries)));
+}
+
+std::vector<double> per_entry(std::vector<double> times_s, std::size_t entries) {
+  for (double& time_s : times_s) time_s = per_entry(time_s, entries);
+  return times_s;
+}
+
+/// A scene as a user runs it, timed again and again.
+class TimedScene {
+ public:
+  TimedScene(Scene scene, bool keep_all, VulkanEvaluator& evaluator)
+      : scene_(std::move(scene)), entries_(grid_entries(scene_)), keep_all_(keep_all), evaluator_(evaluator) {
+    results_ = run();  // creates the pipelines
+  }
+
+  /// Adds a raw time of a call.
+  void repeat() {
+    if (calls_ == 0) calls_ = calls_of_a_raw_time();
+    const double kernel_s = evaluator_.report().kernel_s;
+    const Clock::time_point start = Clock::now();
+    for (std::size_t i = 0; i < calls_; ++i) run();
+    const auto calls = static_cast<double>(calls_);
+    raw_s_.push_back(seconds_since(start) / calls);
+    raw_kernel_s_.push_back((evaluator_.report().kernel_s - kernel_s) / calls);
+  }
+
+  const Scene& scene() const { return scene_; }
+  const std::vector<SceneEntry>& entries() const { return entries_; }
+  const EffectPlan& plan() const { return plan_; }
+  const std::vector<PointResult>& results() const { return results_; }
+  std::vector<double> times_s() const { return per_entry(raw_s_, entries_.size()); }
+  std::vector<double> kernel_times_s() const { return per_entry(raw_kernel_s_, entries_.size()); }
+
+ private:
+  std::size_t calls_of_a_raw_time() {
+    const Clock::time_point start = Clock::now();
+    run();
+    return static_cast<std::size_t>(std::ceil(std::max(1.0, kRawTime / seconds_since(start))));
+  }
+
+  std::vector<PointResult> run() {
+    plan_ = plan_effects(scene_, entries_, keep_all_);
+    const bool integrates = wants_evaluator(scene_, entries_, plan_);
+    return evaluate_scene(scene_, entries_, plan_, integrates ? &evaluator_ : nullptr, nullptr);
+  }
+
+  Scene scene_;
+  std::vector<SceneEntry> entries_;
+  bool keep_all_;
+  VulkanEvaluator& evaluator_;
+  EffectPlan plan_;
+  std::vector<PointResult> results_;
+  std::size_t calls_ = 0;
+  std::vector<double> raw_s_, raw_kernel_s_;
+};
+
+/// The largest |change of DOLP| of the entries for which both promise one, and how many those are.
+struct Change {
+  double dolp = 0.0;
+  std::size_t compared = 0;
+};
+
+Change change_of(const std::vector<PointResult>& planned, const std::vector<PointResult>& all) {
+  Change change;
+  for (std::size_t i = 0; i < planned.size(); ++i) {
+    if (((planned[i].status | all[i].status) & kNoPromise) != 0) continue;
+    change.dolp = std::max(change.dolp, std::abs(planned[i].dolp - all[i].dolp));
+    ++change.compared;
+  }
+  return change;
+}
+
+/// Names of the effects that the plan drops or does not need.
+std::vector<std::string> left_out(const TimedScene& timed) {
+  std::vector<std::string> names;
+  for (const EffectRow& row : effect_rows(timed.scene(), timed.entries(), timed.plan())) {
+    if (row.state == EffectState::kDropped || row.state == EffectState::kNotNeeded) names.emplace_back(row.name);
+  }
+  return names;
+}
+
+/// One scene of a group, as planned and with everything kept.
+struct Pair {
+  std::string name;
+  TimedScene planned;
+  TimedScene all;
+
+  /// Whether the plan saves anything; otherwise both are the same run.
+  bool saves() const {
+    const EffectPlan& own = planned.plan();
+    const EffectPlan& whole = all.plan();
+    return !own.dropped.empty() || own.needs_moments != whole.needs_moments || own.needs_beams != whole.needs_beams;
+  }
+};
+
+ordered_json effect_row(const EffectGroup& group, const Pair& pair, const Pair& base) {
+  const Change change = change_of(pair.planned.results(), pair.all.results());
+  const double time_s = median(pair.planned.times_s());
+  ordered_json row = {{"part", "effects"}, {"effect", group.effect}, {"case", group.mode}, {"setting", pair.name}};
+  row["base"] = base.name;
+  row["error"] = change.dolp;
+  row["compared"] = change.compared;
+  row["bound"] = pair.planned.plan().bound.dolp;
+  row["time_s"] = time_s;
+  row["kernel_time_s"] = median(pair.planned.kernel_times_s());
+  row["ratio"] = time_s / median(base.planned.times_s());
+  if (pair.saves()) {
+    row["keep_all_time_s"] = median(pair.all.times_s());
+    row["keep_all_kernel_time_s"] = median(pair.all.kernel_times_s());
+  }
+  row["left_out"] = left_out(pair.planned);
+  row["entries"] = pair.planned.entries().size();
+  row["time_min_s"] = minimum(pair.planned.times_s());
+  row["raw_times_s"] = pair.planned.times_s();
+  return row;
+}
+
+/// All slopes and directions of the grid with one index.
+MomentsRequest request_of(const Scene& scene, Distribution distribution, Masking masking) {
+  MomentsRequest request;
+  request.distribution = distribution;
+  request.masking = masking;
+  request.tolerance = scene.accuracy.tolerance;
+  request.theta_deg = scene.grid.theta_deg;
+  request.indices = {scene.surface.material.constant};
+  for (const double sigma : scene.grid.sigma) request.shapes.push_back({sigma, scene.grid.q.front()});
+  for (std::uint32_t theta = 0; theta < request.theta_deg.size(); ++theta) {
+    for (std::uint32_t shape = 0; shape < request.shapes.size(); ++shape) request.entries.push_back({theta, shape, 0});
+  }
+  return request;
+}
+
+ordered_json branches_row(const MomentsRequest& request, const BranchTimes& times) {
+  const std::size_t entries = request.entries.size();
+  const std::vector<double> uniform_s = per_entry(times.uniform_s, entries);
+  const double specialised_s = median(per_entry(times.specialised_s, entries));
+  ordered_json row = {{"part", "branches"}, {"effect", "branches"}};
+  row["case"] = request.distribution == Distribution::kCauchy ? "cauchy" : "gaussian";
+  row["setting"] = masking_name(request.masking);
+  row["error"] = times.error;
+  row["time_s"] = median(uniform_s);
+  row["specialised_time_s"] = specialised_s;
+  row["ratio"] = median(uniform_s) / specialised_s;
+  row["entries"] = entries;
+  row["raw_times_s"] = uniform_s;
+  return row;
+}
+
+/// Everything that is asked for, and what has been found so far.
+class Study {
+ public:
+  Study(const StudyOptions& options, Progress progress);
+  ordered_json run();
+
+ private:
+  void describe();
+  void run_group(const EffectGroup& group);
+  void run_branches(const Scene& scene);
+  void finish(const ordered_json& row);
+  bool is_wanted(const std::string& effect) const {
+    return options_.cases.empty() || std::ranges::find(options_.cases, effect) != options_.cases.end();
+  }
+
+  const StudyOptions& options_;
+  Progress progress_;
+  std::size_t repeats_;
+  std::vector<EffectGroup> groups_;
+  VulkanEvaluator evaluator_;
+  ordered_json result_;
+  std::size_t done_ = 0;
+  std::size_t total_ = 0;
+};
+
+constexpr std::array kDistributions = {Distribution::kCauchy, Distribution::kGaussian};
+constexpr std::array kMaskings = {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith};
+
+void check_names(const std::vector<std::string>& names, const std::vector<EffectGroup>& groups) {
+  std::string known = "branches";
+  for (const EffectGroup& group : groups) {
+    if (known.find(group.effect) == std::string::npos) known += ", " + group.effect;
+  }
+  for (const std::string& name : names) {
+    if (name == "branches" || std::ranges::find(groups, name, &EffectGroup::effect) != groups.end()) continue;
+    throw InputError(fmt::format("--case {}: there is none of this name; choose among {}", name, known));
+  }
+}
+
+std::vector<EffectGroup> checked_groups(const StudyOptions& options) {
+  std::vector<EffectGroup> groups =
+      effect_groups(options.quick ? std::min(options.entries, kQuickEntries) : options.entries);
+  check_names(options.cases, groups);
+  return groups;
+}
+
+Study::Study(const StudyOptions& options, Progress progress)
+    : options_(options),
+      progress_(std::move(progress)),
+      repeats_(options.quick ? kQuickRepeats : kFullRepeats),
+      groups_(checked_groups(options)),
+      evaluator_({.device = options.device}) {
+  for (const EffectGroup& group : groups_) {
+    if (is_wanted(group.effect)) total_ += group.settings.size();
+  }
+  if (is_wanted("branches")) total_ += kDistributions.size() * kMaskings.size();
+}
+
+void Study::describe() {
+  const Scene& base = groups_.front().settings.front().scene;
+  result_["study"] = "effects";
+  result_["context"] = context_json(options_.device, options_.arguments);
+  result_["error"] =
+      "effects: largest |change of DOLP| by what the plan drops, entries with status 1, 4 or 8 left out; branches: "
+      "largest max(|d r_i|, |d r_q|)/r_i between both kernels";
+  result_["time_s"] =
+      "seconds an entry, median; effects: plan and evaluation on the Vulkan device, whose creation is not counted; "
+      "branches: in kernels, masking tables included, with uniform branches";
+  result_["tolerance"] = base.accuracy.tolerance;
+  result_["grid"] = {{"theta_deg", base.grid.theta_deg}, {"sigma", base.grid.sigma}, {"q", base.grid.q}};
+  result_["results"] = ordered_json::array();
+}
+
+ordered_json Study::run() {
+  const Clock::time_point start = Clock::now();
+  describe();
+  for (const EffectGroup& group : groups_) {
+    if (is_wanted(group.effect)) run_group(group);
+  }
+  if (is_wanted("branches")) run_branches(groups_.front().settings.front().scene);
+  result_["wall_s"] = std::round(10.0 * seconds_since(start)) / 10.0;
+  return std::move(result_);
+}
+
+void Study::run_group(const EffectGroup& group) {
+  std::vector<Pair> pairs;
+  for (const EffectSetting& setting : group.settings) {
+    pairs.push_back({setting.name, {setting.scene, false, evaluator_}, {setting.scene, true, evaluator_}});
+  }
+  // In turns, so that what else the machine does is spread over all.
+  for (std::size_t i = 0; i < repeats_; ++i) {
+    for (Pair& pair : pairs) {
+      pair.planned.repeat();
+      if (pair.saves()) pair.all.repeat();
+    }
+  }
+  for (const Pair& pair : pairs) finish(effect_row(group, pair, pairs.front()));
+}
+
+void Study::run_branches(const Scene& scene) {
+  BranchComparison comparison(options_.device);
+  for (const Distribution distribution : kDistributions) {
+    for (const Masking masking : kMaskings) {
+      const MomentsRequest request = request_of(scene, distribution, masking);
+      finish(branches_row(request, comparison.compare(request, repeats_)));
+    }
+  }
+}
+
+void Study::finish(const ordered_json& row) {
+  result_["results"].push_back(row);
+  if (!progress_(++done_, total_)) throw Cancelled{};
+}
+
+std::string joined(const ordered_json& names) {
+  std::string text;
+  for (const ordered_json& name : names) text += (text.empty() ? "" : ", ") + name.get<std::string>();
+  return text.empty() ? "nothing" : text;
+}
+
+constexpr double kMicro = 1e6;
+
+std::string effect_text(const ordered_json& row) {
+  const std::string all =
+      row.contains("keep_all_time_s") ? fmt::format("{:.3g}", kMicro * row["keep_all_time_s"].get<double>()) : "same";
+  return fmt::format("  {:<14} {:<13} {:<22} {:>9.3g} {:>9.3g} {:>7.3g} {:>9} {:>8.1e}  {}\n",
+                     row["effect"].get<std::string>(), row["case"].get<std::string>(),
+                     row["setting"].get<std::string>(), kMicro * row["time_s"].get<double>(),
+                     kMicro * row["kernel_time_s"].get<double>(), row["ratio"].get<double>(), all,
+                     row["error"].get<double>(), joined(row["left_out"]));
+}
+
+std::string branches_text(const ordered_json& row) {
+  return fmt::format("  {:<14} {:<13} {:>14.3g} {:>14.3g} {:>7.3g} {:>8.1e}\n", row["setting"].get<std::string>(),
+                     row["case"].get<std::string>(), kMicro * row["specialised_time_s"].get<double>(),
+                     kMicro * row["time_s"].get<double>(), row["ratio"].get<double>(), row["error"].get<double>());
+}
+
+/// The table for people.
+std::string table_text(const ordered_json& result) {
+  std::string effects;
+  std::string branches;
+  for (const ordered_json& row : result["results"]) {
+    if (row["part"] == "effects") effects += effect_text(row);
+    if (row["part"] == "branches") branches += branches_text(row);
+  }
+  std::string text;
+  if (!effects.empty()) {
+    text += fmt::format(
+        "Times in us an entry; ratio to the first line of an effect\n  {:<14} {:<13} {:<22} {:>9} {:>9} "
+        "{:>7} {:>9} {:>8}  {}\n{}",
+        "effect", "mode", "setting", "time", "kernel", "ratio", "keep all", "error", "left out", effects);
+  }
+  if (!branches.empty()) {
+    text += fmt::format("Kernels, us an entry\n  {:<14} {:<13} {:>14} {:>14} {:>7} {:>8}\n{}", "masking",
+                        "distribution", "specialised", "uniform", "ratio", "error", branches);
+  }
+  return text;
+}
+
+/// Says where dropping changed more than the tolerance.
+void add_tolerance_warnings(ordered_json& result) {
+  const double tolerance = result["tolerance"].get<double>();
+  for (const ordered_json& row : result["results"]) {
+    if (row["error"].get<double>() <= tolerance) continue;
+    result["warnings"].push_back(fmt::format("{} {} {}: error {:.2g} exceeds the tolerance {:g}",
+                                             row["effect"].get<std::string>(), row["case"].get<std::string>(),
+                                             row["setting"].get<std::string>(), row["error"].get<double>(), tolerance));
+  }
+}
+
+/// The study under a progress bar, which is gone before anything is printed.
+ordered_json measured(const StudyOptions& options) {
+  cli::ProgressBar bar(options.quiet);
+  return Study(options, bar.callback()).run();
+}
+
+}  // namespace
+
+void run_effects(const StudyOptions& options) {
+  if (!options.json_path.empty()) check_writable(options.json_path);
+  ordered_json result = measured(options);
+  add_warnings(result);
+  add_tolerance_warnings(result);
+  if (options.json_path != "-") fmt::print("{}", table_text(result));
+  std::fflush(stdout);
+  for (const ordered_json& warning : result["warnings"]) {
+    fmt::print(stderr, "warning: {}\n", warning.get<std::string>());
+  }
+  if (!options.json_path.empty()) write_text_atomically(options.json_path, json_text(std::move(result)));
+}
+
+}  // namespace dolp::bench

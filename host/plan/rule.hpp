@@ -43,7 +43,7 @@ double rule_digits(Masking masking, double tolerance);
 
 /// Where an entry lies: the factors of RuleModel are calibrated in the core of the domain.
 enum class Difficulty {
-  kCore,             ///< sigma 0.005 to 1.2, theta 2 to 89.5 degrees, |N| to 100, |N^2 - 1| from 0.05
+  kCore,             ///< sigma 0.005 to 1.2, theta 2 to 89.5 degrees, |N| to 100, |N^2 - 1| from 0.15
   kEdge,             ///< beyond
   kTotalReflection,  ///< with a critical angle, sharp or nearly so
 };

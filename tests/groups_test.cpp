@@ -113,8 +113,8 @@ class GroupedKernel : public testing::TestWithParam<std::tuple<Masking, Precisio
 TEST_P(GroupedKernel, Members_AgreeWithEachAloneWithinTheBounds) {
   const auto [masking, precision] = GetParam();
   const double tolerance = precision == Precision::kDouble ? 1e-7 : 1e-4;
-  MomentsRequest request =
-      grid(masking, {0.0, 20.0, 45.0, 70.0, 88.0, 89.9}, {0.02, 0.3, 1.0}, kManyQ, {{1.508, 0.0}, {27.0, 90.0}, {0.8, 0.0}});
+  MomentsRequest request = grid(masking, {0.0, 20.0, 45.0, 70.0, 88.0, 89.9}, {0.02, 0.3, 1.0}, kManyQ,
+                                {{1.508, 0.0}, {27.0, 90.0}, {0.8, 0.0}});
   request.tolerance = tolerance;
   request.precision = precision;
   VulkanOptions options;

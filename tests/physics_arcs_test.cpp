@@ -68,8 +68,7 @@ typename Text::AzimuthSums sums_of_order(Text& text, int order, const typename T
                                          Real slope) {
   const auto group = group_of<Text>(shape);
   return text.azimuth_sums(rule_of_order<Text>(order), theta, group, index, text.looked_up(group, theta.c, theta.s),
-                           static_cast<RealOf<Text>>(slope),
-                           RealOf<Text>(0));
+                           static_cast<RealOf<Text>>(slope), RealOf<Text>(0));
 }
 
 // A random direction and slope: steep, flat, near the normal and near grazing.
@@ -261,7 +260,7 @@ class SeenProjection {
   SeenProjection(Text& text, const typename Text::ShapeNode& shape, const Facets<Text>& facets)
       : text_(text), shape_(shape), facets_(facets), facet_(facets) {
     if (text.kMasking == DOLP_MASKING_INTEGRAL) {
-      shadow_ = text.shadowed_integral(shape, 0U, facets.theta.c, facets.theta.s, facets.slope);
+      shadow_ = masked(text, shape, facets.theta.c, facets.theta.s, facets.slope);
     }
   }
 
@@ -440,7 +439,8 @@ TYPED_TEST(ArcsText, LostDigits_AreThoseThatTheLimitDoesNotPayFor) {
           const bool is_all = growth < curvature * digits;  // the parabola's top comes before its zero
           if (is_all) continue;
           const double left = (digits - lost) * (growth - curvature * lost) / (digits * growth);
-          EXPECT_NEAR(left, limit / nodes, 40.0 * kEpsilon<TypeParam> * digits) << digits << " " << growth << " " << limit;
+          EXPECT_NEAR(left, limit / nodes, 40.0 * kEpsilon<TypeParam> * digits)
+              << digits << " " << growth << " " << limit;
         }
       }
     }
@@ -584,10 +584,12 @@ TYPED_TEST(ArcsText, NullSums_ShowTooFewNodes) {
         // Without digits the doubt of an arc is the geometric mean of sum and null sum, the null weights up to 81 times
         // as large as the weights, of either sign.
         const auto null = [](const auto& sums) {
-          return static_cast<double>(sums.doubt[0]) * static_cast<double>(sums.doubt[0]) / static_cast<double>(sums.sum[0].r_i);
+          return static_cast<double>(sums.doubt[0]) * static_cast<double>(sums.doubt[0]) /
+                 static_cast<double>(sums.sum[0].r_i);
         };
         EXPECT_LE(null(fine), 600.0 * kEpsilon<TypeParam> * scale + 1e-12) << theta_deg;
-        EXPECT_GE(null(coarse), 0.1 * std::abs(static_cast<double>(coarse.sum[0].r_i) - scale)) << theta_deg << " " << slope;
+        EXPECT_GE(null(coarse), 0.1 * std::abs(static_cast<double>(coarse.sum[0].r_i) - scale))
+            << theta_deg << " " << slope;
         EXPECT_GT(null(coarse), 100.0 * null(fine)) << theta_deg;
       }
     }

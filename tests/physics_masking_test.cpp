@@ -78,13 +78,13 @@ class Table {
   }
 
   double shadowed(const CosSin& zenith, double slope) {
-    return static_cast<double>(text_.shadowed_integral(node_, 0U, static_cast<Real>(zenith.cos),
-                                                       static_cast<Real>(zenith.sin), static_cast<Real>(slope)));
+    return static_cast<double>(
+        masked(text_, node_, static_cast<Real>(zenith.cos), static_cast<Real>(zenith.sin), static_cast<Real>(slope)));
   }
   double height_at_0() { return static_cast<double>(text_.masking_node(0U).x); }
   double lambda(const CosSin& zenith) {
     return static_cast<double>(
-        text_.smith_lambda(node_, 0U, static_cast<Real>(zenith.cos), static_cast<Real>(zenith.sin)));
+        masked(text_, node_, static_cast<Real>(zenith.cos), static_cast<Real>(zenith.sin), Real(0)));
   }
   Text& text() { return text_; }
   const typename Text::ShapeNode& node() const { return node_; }
@@ -260,10 +260,10 @@ class Interpolation {
   double attenuation(Text& text, const typename Text::ShapeNode& shape, const CosSin& a, double cos_r, double slope) {
     const double sin_r = std::sqrt((1.0 - cos_r) * (1.0 + cos_r));
     if (masking_ == Masking::kSmith) {
-      return 1.0 / (1.0 + text.smith_lambda(shape, 0U, a.cos, a.sin) + text.smith_lambda(shape, 0U, cos_r, sin_r));
+      return 1.0 / (1.0 + masked(text, shape, a.cos, a.sin, slope) + masked(text, shape, cos_r, sin_r, slope));
     }
     const bool is_lower = cos_r < a.cos;
-    return 1.0 - text.shadowed_integral(shape, 0U, is_lower ? cos_r : a.cos, is_lower ? sin_r : a.sin, slope);
+    return 1.0 - masked(text, shape, is_lower ? cos_r : a.cos, is_lower ? sin_r : a.sin, slope);
   }
 
   KernelData data_;

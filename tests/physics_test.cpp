@@ -485,7 +485,9 @@ TEST(MaskingDecays, AreThoseOfTheDensityAndTheWeight) {
         };
         const double density = difference([&](double x) { return text.marginal_density(node, x); });
         const double weight = difference([&](double x) { return text.masking_weight(x); });
-        EXPECT_NEAR(text.marginal_decay_factor(node) * text.marginal_decay(node, tau), density, kAllowed * std::max(1.0, std::abs(density))) << tau;
+        EXPECT_NEAR(text.marginal_decay_factor(node) * text.marginal_decay(node, tau), density,
+                    kAllowed * std::max(1.0, std::abs(density)))
+            << tau;
         EXPECT_NEAR(text.weight_decay(tau), weight, kAllowed) << tau;
       }
     }

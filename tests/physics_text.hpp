@@ -93,6 +93,13 @@ typename Text::Group group_of(const typename Text::ShapeNode& shape, glm::uint t
   return {{shape}, {table}};
 }
 
+/// What the masking of a text says of a direction and facets of slope t: 1 - G1 of `integral` or L of smith.
+template <class Text>
+RealOf<Text> masked(Text& text, const typename Text::ShapeNode& shape, RealOf<Text> cos_theta, RealOf<Text> sin_theta,
+                    RealOf<Text> t) {
+  return text.masked_direction(group_of<Text>(shape), cos_theta, sin_theta, t, true).value[0];
+}
+
 /// One slope distribution of a test.
 struct ShapeCase {
   Distribution distribution;

@@ -61,8 +61,8 @@ struct MaskingOfShape {
 
   double g1(double theta_deg, double slope) {
     const CosSin a = cos_sin_deg(theta_deg);
-    return 1.0 - static_cast<double>(text.shadowed_integral(node, 0U, static_cast<Real>(a.cos),
-                                                            static_cast<Real>(a.sin), static_cast<Real>(slope)));
+    return 1.0 - static_cast<double>(
+                     masked(text, node, static_cast<Real>(a.cos), static_cast<Real>(a.sin), static_cast<Real>(slope)));
   }
   // What rounding and interpolation do to G1: its terms are kappa l, with kappa = 1 / cos(theta - alpha), which next to
   // grazing facets of grazing directions is large.
@@ -74,7 +74,7 @@ struct MaskingOfShape {
   }
   double lambda(double theta_deg) {
     const CosSin a = cos_sin_deg(theta_deg);
-    return static_cast<double>(text.smith_lambda(node, 0U, static_cast<Real>(a.cos), static_cast<Real>(a.sin)));
+    return static_cast<double>(masked(text, node, static_cast<Real>(a.cos), static_cast<Real>(a.sin), Real(0)));
   }
   std::string where(double theta_deg, double slope) const {
     return fmt::format("sigma {:.17g} q {:.17g} theta {:.17g} slope {:.17g}", shape.sigma, shape.q, theta_deg, slope);
@@ -168,8 +168,8 @@ void expect_projection_within_the_facet(MaskingOfShape<Text>& masking, Random& r
   const auto of_ray =
       masking.text.masked_direction(group, static_cast<Real>(cos_r),
                                     static_cast<Real>(std::sqrt((1.0 - cos_r) * (1.0 + cos_r))), slope_real, zone > 0);
-  const auto part = masking.text.project(theta, static_cast<Real>(e), static_cast<Real>(cos_r), zone,
-                                         of_theta.value[0], of_ray.value[0]);
+  const auto part = masking.text.project(theta, static_cast<Real>(e), static_cast<Real>(cos_r), zone, of_theta.value[0],
+                                         of_ray.value[0]);
   const double error = kMaskingError<Text> * e;
   const double seen = static_cast<double>(part.seen);
   const double hidden = static_cast<double>(part.hidden);

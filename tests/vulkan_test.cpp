@@ -13,10 +13,10 @@
 #include "evaluate/vulkan/devices.hpp"
 #include "evaluate/vulkan/instance.hpp"
 #include "evaluate/vulkan/moments_run.hpp"
-#include "evaluate/vulkan/tiles.hpp"
-#include "plan/groups.hpp"
 #include "evaluate/vulkan/result.hpp"
+#include "evaluate/vulkan/tiles.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "plan/groups.hpp"
 
 namespace dolp {
 namespace {

@@ -97,16 +97,15 @@ std::string kernel_lines(const PlanReport& report) {
   std::string text;
   for (const std::string& pipeline : report.pipelines) text += fmt::format("  pipeline    {}\n", pipeline);
   if (report.rule) {
-    text += fmt::format(
-        "  rule        Gauss rules on smooth pieces, {:.3g} digits; at most {} nodes a piece\n", report.rule->digits,
-        report.rule->most_nodes);
+    text += fmt::format("  rule        Gauss rules on smooth pieces, {:.3g} digits; at most {} nodes a piece\n",
+                        report.rule->digits, report.rule->most_nodes);
   }
   text += work_lines(report);
   const std::string device =
       report.device.empty() ? "limits of any Vulkan device; none here: " + report.why_no_device : report.device;
-  text +=
-      fmt::format("  dispatches  {} in the first attempt, at most {} invocations and {} shapes at a time ({})\n",
-                  report.dispatches.dispatches, report.dispatches.tile_invocations, report.dispatches.block_shapes, device);
+  text += fmt::format("  dispatches  {} in the first attempt, at most {} invocations and {} shapes at a time ({})\n",
+                      report.dispatches.dispatches, report.dispatches.tile_invocations, report.dispatches.block_shapes,
+                      device);
   return text;
 }
 
@@ -146,9 +145,7 @@ Json rows_json(const PlanReport& report) {
   return rows;
 }
 
-Json rule_json(const RulePlan& rule) {
-  return {{"digits", rule.digits}, {"most_nodes", rule.most_nodes}};
-}
+Json rule_json(const RulePlan& rule) { return {{"digits", rule.digits}, {"most_nodes", rule.most_nodes}}; }
 
 }  // namespace
 

@@ -16,7 +16,7 @@ namespace dolp::cli {
 /// The rule of the moments in the first attempt.
 struct RulePlan {
   double digits = 0.0;
-  int most_nodes = 0;             ///< of a piece of the slope axis or an arc of azimuth
+  int most_nodes = 0;  ///< of a piece of the slope axis or an arc of azimuth
 };
 
 /// Everything that there is to say about a run that has not happened.

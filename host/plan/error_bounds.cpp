@@ -126,8 +126,8 @@ bool has_kink(const KernelData& data, const kernel::ShapeNode& shape) {
          shape.q_minus_1 < kCoreIntegralQ - 1.0;
 }
 
-// By how much the doubts of the last attempts say less: many digits find every kink, also those of the gaussian, of which
-// all derivatives vanish.
+// By how much the doubts of the last attempts say less: many digits find every kink, also those of the gaussian, of
+// which all derivatives vanish.
 double tight_factor(const KernelData& data, const kernel::ShapeNode& shape) {
   const bool gaussian_kink =
       data.needs_masking_table() && data.distribution == Distribution::kGaussian && shape.m > kKinkM;
@@ -196,9 +196,8 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   moments.r_q = node.r_q;
   moments.albedo = node.albedo;
   moments.deficit = node.deficit;
-  const double factor =
-      doubt_factor(data.masking, data.tolerance, difficulty(data, entry)) * tight_factor(data, shape) *
-      coincidence_factor(theta);
+  const double factor = doubt_factor(data.masking, data.tolerance, difficulty(data, entry)) *
+                        tight_factor(data, shape) * coincidence_factor(theta);
   const double r_i_scale = std::abs(node.r_i);  // a rule that fails can make it negative
   const double reflected_rule = factor * node.doubt;
   const bool is_metal = std::hypot(index.n2m1_re, index.n2m1_im) > kMetalContrast;

@@ -126,7 +126,8 @@ Grouping grouped(const KernelData& data, std::uint32_t size) {
 std::vector<GroupPiece> pieces_of(const Grouping& grouping, const KernelData& data, std::uint32_t first,
                                   std::uint32_t count) {
   const auto same_work = [&](std::uint32_t a, std::uint32_t b) {
-    return grouping.groups[a].family == grouping.groups[b].family && grouping.groups[a].index == grouping.groups[b].index;
+    return grouping.groups[a].family == grouping.groups[b].family &&
+           grouping.groups[a].index == grouping.groups[b].index;
   };
   std::vector<GroupPiece> pieces;
   const std::uint32_t end = first + count;

@@ -37,11 +37,11 @@ struct EntryPlace {
 
 /// Entries sorted into groups. All of it follows from the sets of directions, shapes and indices, not from their order.
 struct Grouping {
-  std::uint32_t size = 1;                   ///< members of a group
-  std::vector<kernel::ShapeNode> shapes;    ///< ordered by family; scale, cut and cusp are those of the family
+  std::uint32_t size = 1;                 ///< members of a group
+  std::vector<kernel::ShapeNode> shapes;  ///< ordered by family; scale, cut and cusp are those of the family
   std::vector<ShapeFamily> families;
-  std::vector<EntryGroup> groups;           ///< ordered by family, index and direction
-  std::vector<EntryPlace> places;           ///< of each entry of the data
+  std::vector<EntryGroup> groups;  ///< ordered by family, index and direction
+  std::vector<EntryPlace> places;  ///< of each entry of the data
 };
 
 /// The invocations of groups first, first + 1, ...: neighbours differ in the direction, so that they do the same work.

@@ -226,8 +226,9 @@ double cusp_digits(Distribution distribution, Masking masking, const SlopeShape&
   if (from_integer == 0.0) return kNoCusp;
   const double width = std::min(1.0, std::numbers::sqrt2 * shape.sigma);
   // L = C (m tan(theta_r))^(2q-2) and more beside theta_r = 0.
-  const double coefficient = boost::math::tgamma_ratio(shape.q - 0.5, shape.q - 1.0) /
-                             (boost::math::constants::root_pi<double>() * (2.0 * shape.q - 3.0) * (2.0 * shape.q - 2.0));
+  const double coefficient =
+      boost::math::tgamma_ratio(shape.q - 0.5, shape.q - 1.0) /
+      (boost::math::constants::root_pi<double>() * (2.0 * shape.q - 3.0) * (2.0 * shape.q - 2.0));
   return (2.0 * shape.q - 2.0) * std::log10(width) + std::log10(coefficient * std::min(1.0, 4.0 * from_integer)) -
          cusp_offset(digits);
 }

@@ -20,7 +20,7 @@ struct RuleModel {
   double phi_curvature = 0.0;         ///< likewise
   double phi_circle_nodes = 0.0;      ///< RuleNode::phi_circle_nodes
   double phi_circle_growth = 0.0;     ///< RuleNode::phi_circle_growth
-  double phi_pole_growth = 0.5;    ///< RuleNode::phi_pole_growth
+  double phi_pole_growth = 0.5;       ///< RuleNode::phi_pole_growth
   double circle_pole = 0.5;           ///< RuleNode::circle_pole
   double phi_cluster_growth = 1.0;    ///< RuleNode::phi_cluster_growth
   double cluster_curvature = 0.0;     ///< like phi_curvature, for arcs with a cluster
@@ -43,7 +43,7 @@ double rule_digits(Masking masking, double tolerance);
 
 /// Where an entry lies: the factors of RuleModel are calibrated in the core of the domain.
 enum class Difficulty {
-  kCore,             ///< sigma 0.005 to 1.2, theta 2 to 89.5 degrees, |N| to 100, |N^2 - 1| from 0.15
+  kCore,             ///< the conditions of `difficulty` in error_bounds.cpp: neither very smooth nor rough, no grazing
   kEdge,             ///< beyond
   kTotalReflection,  ///< with a critical angle, sharp or nearly so
 };

@@ -147,7 +147,7 @@ Masked unmasked() {
   return masked;
 }
 
-// The part that no slope changes: Smith's L, and l of `integral`.
+// The part that no slope changes: Smith's L, at 90 degrees a number so large that G is 0, and l of `integral`.
 Masked looked_up(Group group, real cos_theta, real sin_theta) {
   Masked heights = unmasked();
   if (kMasking == DOLP_MASKING_SMITH) {

@@ -139,16 +139,3 @@ real limited_shadow(ShapeNode shape, ShadowPlace place, TableCell cell, uint tab
   real4 tails = masking_tails(shape, cell, table);
   return tails.z - place.kappa * (tails.x + place.gap * tails.y);
 }
-
-// 1 - G1(theta, alpha) for the direction (cos_theta, sin_theta) and the facet slope t.
-real shadowed_integral(ShapeNode shape, uint table, real cos_theta, real sin_theta, real t) {
-  ShadowPlace place = shadow_place(shape, cos_theta, sin_theta, t);
-  real shadow = place.kappa * masking_height(table_cell(shape, shadow_cot(cos_theta, sin_theta)), table);
-  return place.is_limited ? shadow + limited_shadow(shape, place, table_cell(shape, place.far), table) : shadow;
-}
-
-// Smith's L of a direction; at 90 degrees a number so large that G is 0.
-real smith_lambda(ShapeNode shape, uint table, real cos_theta, real sin_theta) {
-  real mu = cos_theta / max(sin_theta, real(1e-30));
-  return masking_height(table_cell(shape, mu), table) / max(mu, real(1e-30));
-}

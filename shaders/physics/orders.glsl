@@ -2,7 +2,7 @@
 //
 // A Gauss rule of n nodes on an interval of half length h, with the integrand's next singularity at a distance d beside
 // it, is wrong by rho^(-2n), rho = exp(asinh(d/h)): a decimal digit costs ln(10) / (2 asinh(d/h)) nodes. What d is worth
-// follows from a scan of the domain (host/plan/calibration.cpp). The less a piece carries, the fewer digits it needs.
+// follows from a scan of the domain (host/plan/rule.cpp). The less a piece carries, the fewer digits it needs.
 
 CONST real kHalfLn10 = real(1.15129254649702284);
 CONST real kInverseLn10 = real(0.43429448190325182765);

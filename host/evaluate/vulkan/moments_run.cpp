@@ -28,12 +28,13 @@ MomentsRun::MomentsRun(const RunContext& context, const MomentsRequest& request,
 
 TileSizes MomentsRun::sizes(std::uint32_t tile_invocations, std::uint32_t block_shapes) const {
   const VkPhysicalDeviceLimits& limits = context_.device.limits();
-  return tile_sizes({.buffer_bytes = limits.maxStorageBufferRange,
-                     .heap_bytes = context_.device.heap_bytes(),
-                     .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
-                     .tile_invocations = std::min<std::uint64_t>(tile_invocations, grouping_.groups.size() * DOLP_MAX_PIECES),
-                     .block_shapes = std::min<std::uint64_t>(block_shapes, data_.shapes.size())},
-                    tile_costs(context_.packing, grouping_.size));
+  return tile_sizes(
+      {.buffer_bytes = limits.maxStorageBufferRange,
+       .heap_bytes = context_.device.heap_bytes(),
+       .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
+       .tile_invocations = std::min<std::uint64_t>(tile_invocations, grouping_.groups.size() * DOLP_MAX_PIECES),
+       .block_shapes = std::min<std::uint64_t>(block_shapes, data_.shapes.size())},
+      tile_costs(context_.packing, grouping_.size));
 }
 
 void MomentsRun::create_buffers() {

@@ -18,7 +18,8 @@ std::uint32_t at_least_one(std::uint64_t count) {
 TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs) {
   // Both costs are sums over buffers, so they bound each of the buffers.
   const std::uint64_t bytes = std::min(limits.buffer_bytes, limits.heap_bytes / kHeapFraction);
-  return {.invocations = at_least_one(std::min({bytes / costs.invocation_bytes, limits.dispatch_count, limits.tile_invocations})),
+  return {.invocations =
+              at_least_one(std::min({bytes / costs.invocation_bytes, limits.dispatch_count, limits.tile_invocations})),
           .shapes = at_least_one(std::min({bytes / costs.shape_bytes, limits.dispatch_count, limits.block_shapes}))};
 }
 
@@ -26,8 +27,8 @@ TileCosts tile_costs(const Packing& packing, std::uint32_t group_size) {
   using EntryWords = std::array<std::uint32_t, 4>;
   using MaskingNode = std::array<double, 4>;
   return {.invocation_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
-                         packing.node_bytes<kernel::IndexNode>() +
-                               group_size * packing.node_bytes<kernel::MomentsNode>(),
+                              packing.node_bytes<kernel::IndexNode>() +
+                              group_size * packing.node_bytes<kernel::MomentsNode>(),
           .shape_bytes =
               packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>()};
 }

@@ -13,17 +13,17 @@ namespace dolp::vulkan {
 
 /// What the device and the options allow.
 struct TileLimits {
-  std::uint64_t buffer_bytes = 0;    ///< of one storage buffer
-  std::uint64_t heap_bytes = 0;      ///< of the device's memory
-  std::uint64_t dispatch_count = 0;  ///< invocations of one dispatch
-  std::uint64_t tile_invocations = 0;     ///< wanted at most
-  std::uint64_t block_shapes = 0;    ///< wanted at most
+  std::uint64_t buffer_bytes = 0;      ///< of one storage buffer
+  std::uint64_t heap_bytes = 0;        ///< of the device's memory
+  std::uint64_t dispatch_count = 0;    ///< invocations of one dispatch
+  std::uint64_t tile_invocations = 0;  ///< wanted at most
+  std::uint64_t block_shapes = 0;      ///< wanted at most
 };
 
 /// Bytes that an invocation (a piece of a group of entries, or a beam) and a shape take in the buffers.
 struct TileCosts {
   std::uint64_t invocation_bytes = 0;  ///< all buffers that grow with the invocations of a tile
-  std::uint64_t shape_bytes = 0;  ///< the masking table and the node of a shape
+  std::uint64_t shape_bytes = 0;       ///< the masking table and the node of a shape
 };
 
 /// Invocations of a dispatch and shapes bound at a time, at least one each.
@@ -49,8 +49,8 @@ struct Block {
   std::uint32_t group_count = 0;
 };
 
-/// Cuts the shapes between families into blocks of at most `block_shapes`, or of one family that has more. Blocks without
-/// groups are left out.
+/// Cuts the shapes between families into blocks of at most `block_shapes`, or of one family that has more. Blocks
+/// without groups are left out.
 std::vector<Block> blocks_of(const Grouping& grouping, std::uint32_t block_shapes);
 
 /// Numbers the members of a list in the order of their first use: a tile binds only what its entries use.

@@ -24,8 +24,8 @@ struct VulkanOptions {
   ValidationMode validation = ValidationMode::kFromEnvironment;
   // The results depend on none of these.
   std::uint32_t max_tile_invocations = 65'536;  ///< of a dispatch: progress and cancelling wait for one at most
-  std::uint32_t max_block_shapes = 4'096;   ///< shapes whose masking tables are on the device at a time
-  bool staged_uploads = false;              ///< copy inputs through staging buffers even where it is not necessary
+  std::uint32_t max_block_shapes = 4'096;       ///< shapes whose masking tables are on the device at a time
+  bool staged_uploads = false;                  ///< copy inputs through staging buffers even where it is not necessary
   double tile_timeout_s = 600.0;
 };
 

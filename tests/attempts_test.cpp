@@ -84,7 +84,7 @@ TEST(NextAttempt, OutsideTheDomain_NeedsNone) {
 
 // At 90 degrees rho may diverge while the DOLP has a limit.
 TEST(NextAttempt, OutsideTheDomainWithALimitOfTheDolp_LooksAtThatAlone) {
-  PointResult outside = missed(1e-4, 3.0);
+  PointResult outside = missed(1e-4, 50.0);
   outside.status |= kStatusOutsideDomain;
   outside.rho_error_estimate = kNaN;
   expect_attempt(next_attempt({Precision::kFloat, 1e-4}, outside, accuracy(1e-4), true), Precision::kFloat, 1e-5);
@@ -96,8 +96,8 @@ TEST(NextAttempt, Decades_FollowTheMiss) {
     double factor;
     double decades;
   };
-  for (const auto& [factor, decades] :
-       {Row{1.01, 1}, Row{5.0, 1}, Row{9.0, 2}, Row{50.0, 2}, Row{500.0, 3}, Row{5e3, 4}, Row{5e4, 5}, Row{1e9, 5}}) {
+  for (const auto& [factor, decades] : {Row{1.01, 0.5}, Row{2.0, 0.5}, Row{5.0, 1}, Row{9.0, 1.5}, Row{50.0, 2},
+                                        Row{200.0, 2.5}, Row{500.0, 3}, Row{5e3, 4}, Row{5e4, 5}, Row{1e9, 5}}) {
     const double tolerance = 1e-2;
     const double wanted = tolerance * std::pow(10.0, -decades);
     for (const bool dolp_is_worse : {false, true}) {
@@ -127,24 +127,25 @@ TEST(NextAttempt, NoEstimateOfRho_IsAMissByTheMost) {
 // The decades are counted from the rule of the last attempt, not from the scene's tolerance.
 TEST(NextAttempt, SecondMiss_GoesOnFromTheLastRule) {
   const Accuracy wanted = accuracy(1e-3);
-  expect_attempt(next_attempt({Precision::kFloat, 1e-4}, missed(1e-3, 2.0), wanted, true), Precision::kFloat, 1e-5);
-  expect_attempt(next_attempt({Precision::kDouble, 1e-7}, missed(1e-3, 2.0), wanted, true), Precision::kDouble, 1e-8);
+  expect_attempt(next_attempt({Precision::kFloat, 1e-4}, missed(1e-3, 5.0), wanted, true), Precision::kFloat, 1e-5);
+  // after four decades the next step is two at least
+  expect_attempt(next_attempt({Precision::kDouble, 1e-7}, missed(1e-3, 5.0), wanted, true), Precision::kDouble, 1e-9);
 }
 
 TEST(NextAttempt, RuleTooTightForFloat_GoesOnInDouble) {
-  expect_attempt(next_attempt({Precision::kFloat, 1e-5}, missed(1e-5, 2.0), accuracy(1e-5), true), Precision::kDouble,
+  expect_attempt(next_attempt({Precision::kFloat, 1e-5}, missed(1e-5, 5.0), accuracy(1e-5), true), Precision::kDouble,
                  1e-6);
   // without double, up to where float can go
   for (const auto& [wanted, has_double] :
        {std::pair{accuracy(1e-5), false}, std::pair{accuracy(1e-5, Precision::kFloat), true}}) {
-    expect_attempt(next_attempt({Precision::kFloat, 1e-5}, missed(1e-5, 2.0), wanted, has_double), Precision::kFloat,
+    expect_attempt(next_attempt({Precision::kFloat, 1e-5}, missed(1e-5, 5.0), wanted, has_double), Precision::kFloat,
                    2e-6);
-    EXPECT_FALSE(next_attempt({Precision::kFloat, 2e-6}, missed(1e-5, 2.0), wanted, has_double));
+    EXPECT_FALSE(next_attempt({Precision::kFloat, 2e-6}, missed(1e-5, 5.0), wanted, has_double));
   }
 }
 
 TEST(NextAttempt, DoubleNeverGoesBackToFloat) {
-  expect_attempt(next_attempt({Precision::kDouble, 1e-2}, missed(1e-2, 2.0), accuracy(1e-2, Precision::kDouble), true),
+  expect_attempt(next_attempt({Precision::kDouble, 1e-2}, missed(1e-2, 5.0), accuracy(1e-2, Precision::kDouble), true),
                  Precision::kDouble, 1e-3);
 }
 
@@ -156,7 +157,7 @@ TEST(NextAttempt, TightestRule_IsTheLast) {
 
 // Whatever the results, the attempts get costlier and end.
 TEST(Attempts, EntryThatAlwaysMisses_EndsSoon) {
-  constexpr int kMost = 15;  // a decade each, and the change to double
+  constexpr int kMost = 12;  // steps that grow by half, and the change to double
   for (const bool has_double : {false, true}) {
     for (const Precision precision : {Precision::kAuto, Precision::kFloat, Precision::kDouble}) {
       for (int exponent = 2; exponent <= 10; ++exponent) {

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "plan/kernel_data.hpp"
-#include "plan/rule.hpp"
 
 namespace dolp {
 namespace {
@@ -89,83 +88,6 @@ double masking_error(const KernelData& data, const MomentsEntry& entry, double u
   return table * (may_diverge ? 1.0 + kDivergingSlope / shape.two_q_minus_3 : 1.0);
 }
 
-// By which the deficit's doubt says less than that of r_i, also of a metal, whose deficit is small.
-constexpr double kDeficitFactor = 2.5;
-constexpr double kMetalDeficitFactor = 7.0;
-constexpr double kMetalContrast = 30.0;  // |N^2 - 1|
-
-// The core of the domain, see Difficulty.
-constexpr double kCoreCosTheta = 0.0087;
-constexpr double kCoreSinTheta = 0.035;
-constexpr double kCoreNormalTolerance = 1e-7;
-constexpr double kCoreHorizonGap = 0.055;  // cos(theta) + pole_cos: a metal at grazing incidence
-constexpr double kCoreSmallestM = 0.007;
-constexpr double kCoreSmallestTableM = 0.028;  // integral and smith,
-constexpr double kTightSmallestTableM = 0.05;  // and below this tolerance
-constexpr double kTightTolerance = 2e-5;
-constexpr double kCoreLargestM = 1.6;
-constexpr double kCorePoleCos = 0.01;
-constexpr double kCoreContrast = 0.15;  // |N^2 - 1|
-constexpr double kCoreSmithQ = 1.72;
-constexpr double kTightSmithQ = 1.9;
-constexpr double kCoreLargestSmithM = 1.0;
-constexpr double kCoreIntegralQ = 1.45;
-constexpr double kCoreIntegralTolerance = 1e-7;
-constexpr double kKinkM = 0.4;
-constexpr double kGaussianKinkTolerance = 2e-10;
-constexpr double kGaussianKinkFactor = 5.0;
-constexpr double kKinkTolerance = 2e-14;
-constexpr double kKinkFactor = 18.0;
-constexpr double kCoincidence = 1.05;
-constexpr double kCoincidenceFactor = 4.0;
-constexpr double kReflectingContrast = 2.1;  // |N^2 - 1| up to which Re N^2 < 1 reflects nearly all beyond an angle
-
-// The kink where the limit b of `integral` meets pi/2, beside a heavy tail.
-bool has_kink(const KernelData& data, const kernel::ShapeNode& shape) {
-  return data.masking == Masking::kIntegral && data.distribution == Distribution::kCauchy &&
-         shape.q_minus_1 < kCoreIntegralQ - 1.0;
-}
-
-// By how much the doubts of the last attempts say less: many digits find every kink, also those of the gaussian, of
-// which all derivatives vanish.
-double tight_factor(const KernelData& data, const kernel::ShapeNode& shape) {
-  const bool gaussian_kink =
-      data.needs_masking_table() && data.distribution == Distribution::kGaussian && shape.m > kKinkM;
-  if (gaussian_kink && data.tolerance < kGaussianKinkTolerance) return kGaussianKinkFactor;
-  return has_kink(data, shape) && data.tolerance < kKinkTolerance ? kKinkFactor : 1.0;
-}
-
-// Breakpoints that nearly coincide (30, 18, 12.86 degrees): their singularities act together.
-double coincidence_factor(const kernel::ThetaNode& theta) {
-  for (std::size_t i = 1; i < static_cast<std::size_t>(theta.piece_count); ++i) {
-    if (theta.end[i + 1] < kCoincidence * theta.end[i]) return kCoincidenceFactor;
-  }
-  return 1.0;
-}
-
-Difficulty difficulty(const KernelData& data, const MomentsEntry& entry) {
-  const kernel::ThetaNode& theta = data.thetas[entry.theta];
-  const kernel::ShapeNode& shape = data.shapes[entry.shape];
-  const kernel::IndexNode& index = data.indices[entry.index];
-  const double contrast = std::hypot(index.n2m1_re, index.n2m1_im);
-  const bool nearly_reflects = index.n2m1_re < 0.0 && contrast < kReflectingContrast;
-  if (index.critical_cos > 0.0 || nearly_reflects) return Difficulty::kTotalReflection;
-  const bool is_tight = data.tolerance < kTightTolerance;
-  const double smallest_table_m = is_tight ? kTightSmallestTableM : kCoreSmallestTableM;
-  const double smallest_m = data.needs_masking_table() ? smallest_table_m : kCoreSmallestM;
-  const double largest_m = data.masking == Masking::kSmith ? kCoreLargestSmithM : kCoreLargestM;
-  const double smith_q = is_tight ? kTightSmithQ : kCoreSmithQ;
-  const bool is_smith = data.masking == Masking::kSmith && data.distribution == Distribution::kCauchy;
-  const bool is_kinked = has_kink(data, shape) && data.tolerance < kCoreIntegralTolerance;
-  // Near the normal the circles have few nodes, which say little of themselves.
-  const bool is_normal =
-      theta.s < kCoreSinTheta && (data.masking != Masking::kNone || data.tolerance < kCoreNormalTolerance);
-  const bool is_core = theta.c >= kCoreCosTheta && !is_normal && theta.c + index.pole_cos >= kCoreHorizonGap &&
-                       shape.m >= smallest_m && shape.m <= largest_m && index.pole_cos >= kCorePoleCos &&
-                       contrast >= kCoreContrast && !is_kinked && !(is_smith && shape.q_minus_1 < smith_q - 1.0);
-  return is_core ? Difficulty::kCore : Difficulty::kEdge;
-}
-
 // Upper bound of M00 on the facets beyond the cut whose ray leaves: cos(theta_r) > 0 there means cos(beta) > c sqrt(1 +
 // t^2) / 2, and R_s, which falls with cos(beta), is no less than M00.
 double steep_reflectance(const kernel::IndexNode& index, const kernel::ThetaNode& theta,
@@ -174,6 +96,11 @@ double steep_reflectance(const kernel::IndexNode& index, const kernel::ThetaNode
   const std::complex<double> w =
       std::sqrt(std::complex<double>(index.n2m1_re + cos_beta * cos_beta, std::max(index.n2m1_im, 0.0)));
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
+}
+
+// What the rules may have missed of a sum, from their doubts.
+double bound_of(const KernelData& data, Doubted doubted, const MomentsEntry& entry, double doubt, double scale) {
+  return doubt > 0.0 ? doubt * data.doubts.factor(doubted, entry, doubt / scale) : doubt;
 }
 
 }  // namespace
@@ -196,12 +123,9 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   moments.r_q = node.r_q;
   moments.albedo = node.albedo;
   moments.deficit = node.deficit;
-  const double factor = doubt_factor(data.masking, data.tolerance, difficulty(data, entry)) *
-                        tight_factor(data, shape) * coincidence_factor(theta);
   const double r_i_scale = std::abs(node.r_i);  // a rule that fails can make it negative
-  const double reflected_rule = factor * node.doubt;
-  const bool is_metal = std::hypot(index.n2m1_re, index.n2m1_im) > kMetalContrast;
-  const double deficit_rule = (is_metal ? kMetalDeficitFactor : kDeficitFactor) * factor * node.deficit_doubt;
+  const double reflected_rule = bound_of(data, Doubted::kReflected, entry, node.doubt, r_i_scale);
+  const double deficit_rule = bound_of(data, Doubted::kDeficit, entry, node.deficit_doubt, node.deficit_scale);
   moments.r_i_error = reflected_rule + (rounding + masking) * r_i_scale + reflected_cut;
   moments.r_q_error = moments.r_i_error;
   // Beyond the critical angle the deficit ends where r_i goes on.

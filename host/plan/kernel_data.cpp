@@ -322,6 +322,7 @@ KernelData kernel_data(const MomentsRequest& request) {
   data.entries = request.entries;
   add_directions(data, request);
   data.rule_nodes = rule_nodes(static_cast<int>(data.rule.largest_order));
+  data.doubts = DoubtModel(data.distribution, data.masking, digits, data.thetas, data.shapes, data.indices);
   return data;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "evaluate/moments.hpp"
+#include "plan/doubt_model.hpp"
 
 namespace dolp {
 
@@ -28,6 +29,7 @@ struct KernelData {
   std::vector<kernel::IndexNode> indices;
   std::vector<MomentsEntry> entries;
   std::vector<std::array<double, 4>> rule_nodes;
+  DoubtModel doubts;
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
 };
 

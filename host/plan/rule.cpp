@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<RuleModel, 4> kModels = {{
     // none
-    {.margin_digits = 1.83,
+    {.margin_digits = 2.05,
      .t_nodes = 1.67,
      .t_strip = 1.12,
      .t_oblique = 0.0203,
@@ -27,10 +27,9 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_circle_growth = 0.673,
      .phi_pole_growth = 0.452,
      .circle_pole = 1.17,
-     .phi_cluster_growth = 1.35,
-     .doubt_decades = {0.52, 0.42, 0.25, 0.22, 0.28}},
+     .phi_cluster_growth = 1.35},
     // v-cavity
-    {.margin_digits = 2.57,
+    {.margin_digits = 2.7,
      .t_nodes = 0.919,
      .t_strip = 1.18,
      .t_oblique = -0.202,
@@ -44,9 +43,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_circle_nodes = 1.03,
      .phi_circle_growth = 0.883,
      .phi_pole_growth = 0.465,
-     .circle_pole = 1.28,
-     .doubt_decades = {0.38, 0.66, 0.43, 0.18, 0.62},
-     .doubt_tight = 0.15},
+     .circle_pole = 1.28},
     // integral
     {.margin_digits = 2.18,
      .t_nodes = 0.895,
@@ -68,9 +65,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .cluster_pole = 0.735,
      .t_line = 1,
      .phi_line = 0.944,
-     .line_threshold = 5.47e+05,
-     .doubt_decades = {0.75, 0.52, 0.33, 0.52, 1.9},
-     .doubt_tight = 0.15},
+     .line_threshold = 5.47e+05},
     // smith
     {.margin_digits = 1.84,
      .t_nodes = 1.13,
@@ -94,23 +89,10 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_line = 0.226,
      .cusp_digits = 4.04,
      .line_threshold = 4.5e+06,
-     .tight_growth = 0.08,
-     .doubt_decades = {0.92, 0.56, 0.52, 0.86, 2.1},
-     .doubt_tight = 0.37},
+     .tight_growth = 0.08},
 }};
 
 constexpr double kCalibratedDigits = 4.0;  // where the curvatures vanish
-
-constexpr std::array kDoubtDigits = {2.0, 3.0, 4.0, 6.0, 9.0};  // of RuleModel::doubt_decades
-
-// Decades by which the doubts' factor is larger outside the core of the domain, and their growth with the digits of the
-// tolerance from kHardDoubtDigits on.
-constexpr double kHardDoubtDigits = 4.0;
-constexpr double kMostTightDigits = 3.0;
-constexpr double kEdgeDecades = 0.92;
-constexpr double kEdgeGrowth = 0.36;
-constexpr double kTotalReflectionDecades = 1.6;
-constexpr double kTotalReflectionGrowth = 0.62;
 
 // The cluster of `integral` below this q, at this many digits and more.
 constexpr double kClusterBelowQ = 1.6;
@@ -153,23 +135,6 @@ const RuleModel& rule_model(Masking masking) { return kModels[static_cast<std::s
 
 double rule_digits(Masking masking, double tolerance) {
   return rule_model(masking).margin_digits - std::log10(tolerance);
-}
-
-double doubt_factor(Masking masking, double tolerance, Difficulty difficulty) {
-  const RuleModel& model = rule_model(masking);
-  const double tight = std::max(0.0, -std::log10(tolerance) - kDoubtDigits.back());
-  const double digits = -std::log10(tolerance) - tight;
-  std::size_t i = 0;
-  while (i + 2 < kDoubtDigits.size() && digits > kDoubtDigits[i + 1]) ++i;
-  const double slope = (model.doubt_decades[i + 1] - model.doubt_decades[i]) / (kDoubtDigits[i + 1] - kDoubtDigits[i]);
-  const double hard = std::max(0.0, digits - kHardDoubtDigits);
-  double decades = model.doubt_decades[i] + slope * std::max(0.0, digits - kDoubtDigits[i]);
-  decades += model.doubt_tight * std::min(tight, kMostTightDigits);
-  if (difficulty == Difficulty::kEdge) decades += kEdgeDecades + kEdgeGrowth * hard;
-  if (difficulty == Difficulty::kTotalReflection) {
-    decades += kTotalReflectionDecades + kTotalReflectionGrowth * (hard + tight);
-  }
-  return std::pow(10.0, decades);
 }
 
 kernel::RuleNode rule_node(Masking masking, double digits) {

@@ -1,4 +1,4 @@
-// How many nodes the rules of the kernel get for a tolerance, and how their doubts become error bounds.
+// How many nodes the rules of the kernel get for a tolerance.
 #pragma once
 
 #include "plan/kernel_data.hpp"
@@ -30,9 +30,6 @@ struct RuleModel {
   double cusp_digits = 0.0;           ///< smith: digits by which the cusp is smaller than its formula says
   double line_threshold = 0.0;        ///< multiples of 10^-digits from which a line or cusp is worth its pieces
   double tight_growth = 0.0;          ///< more nodes of t and of clusters for each digit beyond eight
-  /// log10 of the factor from MomentsNode::doubt to an error bound, at the tolerances 1e-2, 1e-3, 1e-4, 1e-6 and 1e-9.
-  double doubt_decades[5] = {};
-  double doubt_tight = 0.0;  ///< more of them for each digit beyond
 };
 
 /// The numbers for a masking.
@@ -40,16 +37,6 @@ const RuleModel& rule_model(Masking masking);
 
 /// Digits that a tolerance asks of the rules.
 double rule_digits(Masking masking, double tolerance);
-
-/// Where an entry lies: the factors of RuleModel are calibrated in the core of the domain.
-enum class Difficulty {
-  kCore,             ///< the conditions of `difficulty` in error_bounds.cpp: neither very smooth nor rough, no grazing
-  kEdge,             ///< beyond
-  kTotalReflection,  ///< with a critical angle, sharp or nearly so
-};
-
-/// What turns the doubts of a rule into error bounds.
-double doubt_factor(Masking masking, double tolerance, Difficulty difficulty);
 
 /// The kernel's rule for a number of digits.
 kernel::RuleNode rule_node(Masking masking, double digits);

@@ -12,11 +12,15 @@ constexpr double kDoubleLimit = 1e-15;
 
 // A miss by a little asks for more than the little, or the next attempt may miss too.
 constexpr double kSafety = 1.5;
+constexpr double kLeastDecades = 0.5;
 constexpr double kMostDecades = 5.0;
 
 bool may_use_double(const Accuracy& accuracy, bool has_double) {
   return has_double && accuracy.precision != Precision::kFloat;
 }
+
+// Steps of half a decade, so that many entries share an attempt.
+double half_decades(double decades) { return 0.5 * std::ceil(2.0 * decades); }
 
 }  // namespace
 
@@ -35,8 +39,11 @@ std::optional<Attempt> next_attempt(const Attempt& last, const PointResult& resu
   const double rho_error = is_outside ? 0.0 : result.rho_error_estimate;
   const double excess =
       std::isnan(rho_error) ? rho_error : std::max(result.error_estimate, rho_error) / accuracy.tolerance;
-  const double decades =
-      std::isfinite(excess) ? std::clamp(std::ceil(std::log10(kSafety * excess)), 1.0, kMostDecades) : kMostDecades;
+  // The tighter the last attempt was already, the larger the step, or an entry that never meets it takes for ever.
+  const double so_far = std::log10(accuracy.tolerance / last.tolerance);
+  const double least = std::max(kLeastDecades, half_decades(0.5 * so_far));
+  const double missed_by = std::isfinite(excess) ? half_decades(std::log10(kSafety * excess)) : kMostDecades;
+  const double decades = std::min(std::max(missed_by, least), kMostDecades);
   const double wanted = last.tolerance * std::pow(10.0, -decades);
   if (last.precision == Precision::kFloat && wanted >= kFloatLimit) return Attempt{Precision::kFloat, wanted};
   if (!may_use_double(accuracy, has_double)) {

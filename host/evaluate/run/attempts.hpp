@@ -22,8 +22,9 @@ struct Attempt {
 /// says otherwise.
 Attempt first_attempt(const Accuracy& accuracy, bool has_double);
 
-/// The next attempt at an entry, tighter by as many decades as the result misses the tolerance by, in double once float
-/// cannot do that; none when it meets the tolerance, or nothing better is left. Depends on nothing but its arguments.
+/// The next attempt at an entry, tighter by as many half decades as the result misses the tolerance by, in double once
+/// float cannot do that; none when it meets the tolerance, or nothing better is left. Depends on nothing but its
+/// arguments.
 std::optional<Attempt> next_attempt(const Attempt& last, const PointResult& result, const Accuracy& accuracy,
                                     bool has_double);
 

@@ -163,11 +163,11 @@ std::vector<PointResult> attempt_block(const Attempts& all, std::span<const Scen
   const std::size_t total = before + beams.entries.size();
   std::vector<Moments> moments;
   std::vector<ScatteringMatrix> matrices;
+  ScatteringEvaluator* const scattering = all.evaluator.scattering();
+  if (total > before && scattering == nullptr) throw std::logic_error("the bistatic mode needs an evaluator of pBRDFs");
+  if (total > before && before > 0) scattering->prepare(beams);
   if (before > 0) moments = all.evaluator.evaluate(block.request, part_of(progress, 0, total));
-  if (total > before) {
-    if (all.evaluator.scattering() == nullptr) throw std::logic_error("the bistatic mode needs an evaluator of pBRDFs");
-    matrices = all.evaluator.scattering()->scatter(beams, part_of(progress, before, total));
-  }
+  if (total > before) matrices = scattering->scatter(beams, part_of(progress, before, total));
   return block_results(all.run, entries, {block, moments, block_beams(all.run, entries, matrices)});
 }
 

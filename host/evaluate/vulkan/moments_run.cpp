@@ -1,6 +1,7 @@
 #include "evaluate/vulkan/moments_run.hpp"
 
 #include <algorithm>
+#include <future>
 #include <numeric>
 
 #include "evaluate/vulkan/result.hpp"
@@ -73,8 +74,12 @@ void MomentsRun::create_buffers() {
 }
 
 void MomentsRun::create_pipelines() {
+  std::future<void> tables;
+  if (data_.needs_masking_table()) {
+    tables = std::async(std::launch::async, [&] { context_.kernels.masking_table(data_.distribution, data_.masking); });
+  }
   context_.kernels.moments(data_.distribution, data_.masking, grouping_.size);
-  if (data_.needs_masking_table()) context_.kernels.masking_table(data_.distribution, data_.masking);
+  if (tables.valid()) tables.get();
 }
 
 std::optional<std::vector<Moments>> MomentsRun::compute(const Progress& progress) {

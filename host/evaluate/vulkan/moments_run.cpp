@@ -15,7 +15,7 @@ using MaskingNode = std::array<double, 4>;
 using RulePoint = std::array<double, 4>;
 
 // What a thread takes at a time.
-constexpr std::size_t kGroupsAtOnce = 8192;
+constexpr std::size_t kGroupsAtOnce = 1024;
 constexpr std::size_t kEntriesAtOnce = 4096;
 
 }  // namespace

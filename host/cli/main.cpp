@@ -132,8 +132,7 @@ int parse_and_run(int argc, char** argv) {
 /// Lets freed memory serve again: lists as long as a table, and what a driver needs for a pipeline, would otherwise go
 /// back to the system and come back page by page.
 void keep_freed_memory() {
-  constexpr int kLargestReused = 32 << 20;  // the most that malloc takes
-  mallopt(M_MMAP_THRESHOLD, kLargestReused);
+  mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
 }
 

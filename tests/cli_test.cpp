@@ -1,5 +1,6 @@
 // The program from outside: what its commands write and report.
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <cmath>
 #include <cstring>
@@ -114,6 +115,37 @@ TEST_F(CommandLine, Table_SameSceneTwice_SameBytes) {
   ASSERT_EQ(first.status, 0) << first.err;
   EXPECT_EQ(data_lines(first.out).size(), 1 + kSceneEntries);
   EXPECT_EQ(data_lines(first.out), data_lines(second.out));
+}
+
+/// The first core that this process may run on.
+int an_allowed_core() {
+  cpu_set_t allowed;
+  EXPECT_EQ(sched_getaffinity(0, sizeof allowed, &allowed), 0);
+  for (int core = 0; core < CPU_SETSIZE; ++core) {
+    if (CPU_ISSET(core, &allowed)) return core;
+  }
+  return 0;
+}
+
+TEST_F(CommandLine, Table_OneCoreOrAll_SameNumbers) {
+  // Enough entries and groups for several threads in every loop over them.
+  const std::vector<std::string> arguments = {"table",   "scene.toml",
+                                              "-o",      "-",
+                                              "--quiet", "--tolerance=1e-2",
+                                              "--set",   "grid.theta_deg={ from = 0, to = 90, count = 24 }",
+                                              "--set",   "grid.sigma={ from = 0.05, to = 1.0, count = 16 }",
+                                              "--set",   "grid.q={ from = 1.6, to = 8, count = 24 }"};
+  const Command on_all = command(arguments);
+  Command on_one = on_all;
+  const std::vector<std::string> pinned = {"taskset", "--cpu-list", std::to_string(an_allowed_core())};
+  on_one.arguments.insert(on_one.arguments.begin(), pinned.begin(), pinned.end());
+  const Outcome all = run(on_all);
+  const Outcome one = run(on_one);
+  ASSERT_EQ(all.status, 0) << all.err;
+  ASSERT_EQ(one.status, 0) << one.err;
+  const std::vector<std::string> lines = data_lines(all.out);
+  EXPECT_EQ(lines.size(), 24U * 16U * 24U + 1U);
+  EXPECT_EQ(data_lines(one.out), lines);
 }
 
 TEST_F(CommandLine, Table_OneEntryGrid_EqualsEval) {

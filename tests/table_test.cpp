@@ -122,7 +122,6 @@ class FullDisk {
 // ---- NetCDF ---------------------------------------------------------------------------------------------------------
 
 TEST_F(TableFiles, NetcdfRoundTrip_AnyShape_GivesTheSameTable) {
-  // The last is large enough to be compressed.
   for (const auto& shape : {std::array<std::size_t, 3>{1, 1, 1}, {5, 3, 2}, {1, 4, 1}, {20, 16, 16}}) {
     const Table table = sample_table(shape[0], shape[1], shape[2]);
     write_table(table, at("t.nc"));

@@ -1,9 +1,11 @@
 // The command line: parsing.
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -127,9 +129,17 @@ int parse_and_run(int argc, char** argv) {
   return status;
 }
 
+/// Lets freed memory serve again: lists as long as a table, and what a driver needs for a pipeline, would otherwise go
+/// back to the system and come back page by page.
+void keep_freed_memory() {
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+}
+
 }  // namespace
 }  // namespace dolp::cli
 
 int main(int argc, char** argv) {
+  dolp::cli::keep_freed_memory();
   return dolp::cli::guarded("dolp", [&] { return dolp::cli::parse_and_run(argc, argv); });
 }

@@ -7,32 +7,38 @@
 #include "cli/commands.hpp"
 #include "cli/progress_bar.hpp"
 #include "cli/report.hpp"
+#include "parallel_ranges.hpp"
 #include "table/table_file.hpp"
 #include "verify/table_scene.hpp"
 
 namespace dolp::cli {
 namespace {
 
+struct Column {
+  std::vector<double> Table::*values;
+  double PointResult::*member;
+};
+
 void fill_variables(Table& table, const std::vector<PointResult>& results, const EffectPlan& plan) {
-  const auto column = [&](double PointResult::*member) {
-    std::vector<double> values;
-    values.reserve(results.size());
-    for (const PointResult& result : results) values.push_back(result.*member);
-    return values;
-  };
-  table.dolp = column(&PointResult::dolp);
-  table.stokes_i = column(&PointResult::stokes_i);
-  table.stokes_q = column(&PointResult::stokes_q);
-  table.stokes_u = column(&PointResult::stokes_u);
-  table.stokes_v = column(&PointResult::stokes_v);
-  table.error_estimate = column(&PointResult::error_estimate);
-  if (plan.needs_moments) table.albedo = column(&PointResult::albedo);
+  std::vector<Column> columns = {
+      {&Table::dolp, &PointResult::dolp},         {&Table::stokes_i, &PointResult::stokes_i},
+      {&Table::stokes_q, &PointResult::stokes_q}, {&Table::stokes_u, &PointResult::stokes_u},
+      {&Table::stokes_v, &PointResult::stokes_v}, {&Table::error_estimate, &PointResult::error_estimate}};
+  if (plan.needs_moments) columns.push_back({&Table::albedo, &PointResult::albedo});
   if (plan.gives_rho) {
-    table.rho_i = column(&PointResult::rho_i);
-    table.rho_q = column(&PointResult::rho_q);
-    table.rho_error_estimate = column(&PointResult::rho_error_estimate);
+    columns.push_back({&Table::rho_i, &PointResult::rho_i});
+    columns.push_back({&Table::rho_q, &PointResult::rho_q});
+    columns.push_back({&Table::rho_error_estimate, &PointResult::rho_error_estimate});
   }
-  for (const PointResult& result : results) table.status.push_back(result.status);
+  for (const Column& column : columns) (table.*column.values).resize(results.size());
+  table.status.resize(results.size());
+  constexpr std::size_t kEntriesAtOnce = 16384;
+  parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      for (const Column& column : columns) (table.*column.values)[i] = results[i].*column.member;
+      table.status[i] = results[i].status;
+    }
+  });
 }
 
 /// An exitance, in bistatic mode a radiance; per um at a single wavelength.
@@ -93,6 +99,7 @@ int run_table(const Options& options) {
   table.stokes_units = stokes_units(scene);
   fill_variables(table, results, plan);
   table.attributes = attributes(scene, options, report);
+  results = {};  // room for the file
   write_table(table, options.output_path);
   print_report(report, options.json, options.quiet);
   return options.strict && report.missed_tolerance > 0 ? kExitAccuracy : kExitDone;

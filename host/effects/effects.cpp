@@ -3,9 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <mutex>
+#include <numeric>
+#include <tuple>
 
 #include "evaluate/radiometry/spectral_rule.hpp"
+#include "parallel_ranges.hpp"
 
 namespace dolp {
 namespace {
@@ -15,31 +20,90 @@ constexpr std::array kDroppingOrder = {Part::kMoments,      Part::kSource,  Part
 
 constexpr double kFarBelow = 0.1;
 
+constexpr std::size_t kEntriesAtOnce = 256;  // of a thread; some microseconds each
+
 DropBound worst_of(const DropBound& a, const DropBound& b) {
   return {std::max(a.dolp, b.dolp), std::max(a.rho, b.rho)};
 }
 
 bool is_within(const DropBound& bound, double limit) { return bound.dolp <= limit && bound.rho <= limit; }
 
+/// Which part may go, and what it may change.
+struct Candidate {
+  Part part;
+  KeptEffects kept;
+  double limit = 0.0;
+};
+
 /// The bound at one entry: a coarse one where that is far below the limit.
-DropBound entry_bound(const InfluenceBounds& bounds, Part part, const KeptEffects& kept, const SceneEntry& entry,
-                      double limit) {
-  const DropBound coarse = bounds.bound(part, kept, entry, Detail::kCoarse);
-  return is_within(coarse, kFarBelow * limit) ? coarse : bounds.bound(part, kept, entry, Detail::kFine);
+DropBound entry_bound(const InfluenceBounds& bounds, const Candidate& candidate, const KeptEffects& kept,
+                      const SceneEntry& entry, ReflectanceMemory& memory) {
+  const DropBound coarse = bounds.bound(candidate.part, kept, entry, Detail::kCoarse, memory);
+  if (is_within(coarse, kFarBelow * candidate.limit)) return coarse;
+  return bounds.bound(candidate.part, kept, entry, Detail::kFine, memory);
 }
 
-/// The worst entry's bound; stops, above `limit`, as soon as it is there. The grazing entries of a grid come last and
-/// are the worst.
-DropBound worst_bound(const InfluenceBounds& bounds, Part part, const KeptEffects& kept,
-                      std::span<const SceneEntry> entries, double limit) {
+/// The worst bound of some entries; stops, above the limit, as soon as it is there.
+DropBound worst_of_entries(const InfluenceBounds& bounds, const Candidate& candidate,
+                           std::span<const SceneEntry> entries, std::span<const std::uint32_t> positions) {
+  ReflectanceMemory memory;
   DropBound worst;
-  for (std::size_t i = entries.size(); i > 0; --i) {
-    const SceneEntry& entry = entries[i - 1];
-    worst = worst_of(worst, entry_bound(bounds, part, kept, entry, limit));
+  for (const std::uint32_t i : positions) {
+    worst = worst_of(worst, entry_bound(bounds, candidate, candidate.kept, entries[i], memory));
     // What counts in the whole scene is not dropped for want of what it acts on.
-    if (part != Part::kMoments) worst = worst_of(worst, entry_bound(bounds, part, {}, entry, limit));
-    if (!is_within(worst, limit)) return worst;
+    if (candidate.part != Part::kMoments)
+      worst = worst_of(worst, entry_bound(bounds, candidate, {}, entries[i], memory));
+    if (!is_within(worst, candidate.limit)) break;
   }
+  return worst;
+}
+
+/// Entries in the order in which their bounds are looked at: in bistatic mode, where those of one shape share the
+/// reflectance, one shape after the other.
+class OrderedEntries {
+ public:
+  OrderedEntries(const Scene& scene, std::span<const SceneEntry> entries)
+      : entries_(entries), is_by_shape_(scene.geometry.mode == Mode::kBistatic) {}
+
+  std::span<const SceneEntry> entries() const { return entries_; }
+
+  /// Made when first asked for; most plans never ask.
+  std::span<const std::uint32_t> positions() {
+    if (positions_.empty()) {
+      positions_.resize(entries_.size());
+      std::iota(positions_.begin(), positions_.end(), 0U);
+      const auto key = [&](std::uint32_t i) { return std::tie(entries_[i].shape.sigma, entries_[i].shape.q); };
+      if (is_by_shape_) std::ranges::stable_sort(positions_, {}, key);
+    }
+    return positions_;
+  }
+
+ private:
+  std::span<const SceneEntry> entries_;
+  bool is_by_shape_;
+  std::vector<std::uint32_t> positions_;
+};
+
+/// The worst entry's bound, or one above the limit where there is such an entry.
+DropBound worst_bound(const InfluenceBounds& bounds, const Candidate& candidate, OrderedEntries& ordered) {
+  const std::span<const SceneEntry> entries = ordered.entries();
+  const bool adds_now = is_kept(candidate.kept, candidate.part) && !bounds.adds_nothing(candidate.part, candidate.kept);
+  const bool adds_in_all = candidate.part != Part::kMoments && !bounds.adds_nothing(candidate.part, {});
+  if (entries.empty() || (!adds_now && !adds_in_all)) return {};
+  // The grazing entries of a grid come last and are the worst: the last one tells most often.
+  const std::uint32_t last = static_cast<std::uint32_t>(entries.size() - 1);
+  DropBound worst = worst_of_entries(bounds, candidate, entries, {&last, 1});
+  if (!is_within(worst, candidate.limit)) return worst;
+  const std::span<const std::uint32_t> positions = ordered.positions();
+  std::mutex mutex;
+  std::atomic<bool> is_over = false;
+  parallel_ranges(positions.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t end) {
+    if (is_over) return;
+    const DropBound of_range = worst_of_entries(bounds, candidate, entries, positions.subspan(first, end - first));
+    const std::lock_guard lock(mutex);
+    worst = worst_of(worst, of_range);
+    is_over = !is_within(worst, candidate.limit);
+  });
   return worst;
 }
 
@@ -242,13 +306,14 @@ EffectPlan plan_effects(const Scene& scene, std::span<const SceneEntry> entries,
   const SpectralRule rule = spectral_rule(scene);
   const InfluenceBounds bounds(scene, rule);
   const double allowed = kDroppedShare * scene.accuracy.tolerance;
+  OrderedEntries ordered(scene, entries);
   EffectPlan plan;
   plan.keep_all = keep_all;
   if (!keep_all) {
     for (const Part part : kDroppingOrder) {
       if (!is_kept(plan.kept, part)) continue;
       const double left = allowed - std::max(plan.bound.dolp, plan.bound.rho);
-      const DropBound bound = worst_bound(bounds, part, plan.kept, entries, left);
+      const DropBound bound = worst_bound(bounds, {part, plan.kept, left}, ordered);
       if (!is_within(bound, left)) continue;
       plan.kept = without(plan.kept, part);
       plan.bound = {plan.bound.dolp + bound.dolp, plan.bound.rho + bound.rho};
@@ -284,15 +349,32 @@ std::vector<EffectRow> effect_rows(const Scene& scene, std::span<const SceneEntr
 void add_influences(std::vector<EffectRow>& rows, const Scene& scene, std::span<const SceneEntry> entries) {
   const SpectralRule rule = spectral_rule(scene);
   const InfluenceBounds bounds(scene, rule);
+  std::vector<EffectRow*> open;
   for (EffectRow& row : rows) {
-    if (row.state != EffectState::kKept || !row.part || row.bound) continue;
-    row.bound = 0.0;
-    for (const SceneEntry& entry : entries) {
-      const double bound = bounds.bound(*row.part, {}, entry).dolp;
-      if (std::isinf(bound)) ++row.unbounded;
-      if (!std::isinf(bound)) row.bound = std::max(*row.bound, bound);
-    }
+    if (row.state == EffectState::kKept && row.part && !row.bound) open.push_back(&row);
   }
+  for (EffectRow* row : open) row->bound = 0.0;
+  OrderedEntries ordered(scene, entries);
+  const std::span<const std::uint32_t> positions = ordered.positions();
+  std::mutex mutex;
+  parallel_ranges(positions.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
+    ReflectanceMemory memory;
+    std::vector<double> most(open.size(), 0.0);
+    std::vector<std::size_t> unbounded(open.size(), 0);
+    for (std::size_t i = first; i < last; ++i) {
+      for (std::size_t r = 0; r < open.size(); ++r) {
+        const SceneEntry& entry = entries[positions[i]];
+        const double bound = bounds.bound(*open[r]->part, {}, entry, Detail::kFine, memory).dolp;
+        if (std::isinf(bound)) ++unbounded[r];
+        if (!std::isinf(bound)) most[r] = std::max(most[r], bound);
+      }
+    }
+    const std::lock_guard lock(mutex);
+    for (std::size_t r = 0; r < open.size(); ++r) {
+      open[r]->bound = std::max(*open[r]->bound, most[r]);
+      open[r]->unbounded += unbounded[r];
+    }
+  });
 }
 
 const char* state_name(EffectState state) {

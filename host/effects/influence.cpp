@@ -51,6 +51,19 @@ KeptEffects without(KeptEffects kept, Part part) {
   return kept;
 }
 
+const ReflectanceBounds& ReflectanceMemory::bounds(const Surface& surface, double theta_deg, const SceneEntry& entry,
+                                                   std::span<const OpticalConstants> indices, Detail detail) {
+  Slot& slot = detail == Detail::kFine ? fine_ : coarse_;
+  const bool is_same =
+      slot.is_filled && slot.theta_deg == theta_deg && slot.shape == entry.shape && slot.index == entry.index;
+  if (!is_same) {
+    slot = {true, theta_deg, entry.shape, entry.index,
+            detail == Detail::kFine ? reflectance_bounds(surface, theta_deg, entry.shape, indices)
+                                    : coarse_reflectance_bounds(surface, theta_deg, entry.shape)};
+  }
+  return slot.bounds;
+}
+
 /// Bounds of Stokes sums.
 struct InfluenceBounds::Sums {
   double least_i = 0.0;
@@ -85,8 +98,8 @@ InfluenceBounds::InfluenceBounds(const Scene& scene, const SpectralRule& rule)
   }
 }
 
-InfluenceBounds::AtEntry InfluenceBounds::at_entry(const KeptEffects& kept, const SceneEntry& entry,
-                                                   Detail detail) const {
+InfluenceBounds::AtEntry InfluenceBounds::at_entry(const KeptEffects& kept, const SceneEntry& entry, Detail detail,
+                                                   ReflectanceMemory& memory) const {
   const Surface& surface = scene_.surface;
   const double theta_deg =
       zenith_before_limit_deg(surface.masking, bistatic_ ? scene_.geometry.view_zenith_deg : entry.theta_deg);
@@ -94,8 +107,7 @@ InfluenceBounds::AtEntry InfluenceBounds::at_entry(const KeptEffects& kept, cons
   const std::vector<OpticalConstants> own = entry.index ? std::vector{*entry.index} : indices_;
   AtEntry at;
   if (kept.moments && surface.specular > 0.0) {
-    at.specular = detail == Detail::kFine ? reflectance_bounds(surface, theta_deg, entry.shape, own)
-                                          : coarse_reflectance_bounds(surface, theta_deg, entry.shape);
+    at.specular = memory.bounds(surface, theta_deg, entry, own, detail);
     for (double* value : {&at.specular.most_i, &at.specular.most_q, &at.specular.least_i}) *value *= surface.specular;
   }
   const double c = surface.diffuse_exponent;
@@ -220,11 +232,18 @@ bool InfluenceBounds::adds_nothing(Part part, const KeptEffects& kept) const {
 }
 
 DropBound InfluenceBounds::bound(Part part, const KeptEffects& kept, const SceneEntry& entry, Detail detail) const {
+  ReflectanceMemory memory;
+  return bound(part, kept, entry, detail, memory);
+}
+
+DropBound InfluenceBounds::bound(Part part, const KeptEffects& kept, const SceneEntry& entry, Detail detail,
+                                 ReflectanceMemory& memory) const {
   if (!is_kept(kept, part) || adds_nothing(part, kept)) return {};
-  const AtEntry at = at_entry(kept, entry, detail);
+  const AtEntry at = at_entry(kept, entry, detail, memory);
   const KeptEffects rest = without(kept, part);
   const Sums whole = sums(kept, at);
-  const Sums left = sums(rest, part == Part::kMoments || part == Part::kDiffuse ? at_entry(rest, entry, detail) : at);
+  const Sums left =
+      sums(rest, part == Part::kMoments || part == Part::kDiffuse ? at_entry(rest, entry, detail, memory) : at);
   const Sums added = added_by(part, kept, at);
   const auto polarisation = [](const Sums& sum) {
     const double most = sum.least_i > 0.0 ? finite_or_infinite(sum.most_qu / sum.least_i) : kInfinity;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "effects/facet_bounds.hpp"
@@ -19,6 +20,23 @@ KeptEffects without(KeptEffects kept, Part part);
 
 /// Which bounds of the reflectance: the coarse ones are ten times faster.
 enum class Detail { kCoarse, kFine };
+
+/// The last bounds of the reflectance, which several parts, and in bistatic mode all entries of a shape, ask for.
+class ReflectanceMemory {
+ public:
+  const ReflectanceBounds& bounds(const Surface& surface, double theta_deg, const SceneEntry& entry,
+                                  std::span<const OpticalConstants> indices, Detail detail);
+
+ private:
+  struct Slot {
+    bool is_filled = false;
+    double theta_deg = 0.0;
+    SlopeShape shape;
+    std::optional<OpticalConstants> index;
+    ReflectanceBounds bounds;
+  };
+  Slot coarse_, fine_;
+};
 
 /// Bounds of what the parts of a scene change at its entries.
 ///
@@ -42,6 +60,9 @@ class InfluenceBounds {
   /// Bound of what dropping `part` changes where `kept` is kept, at one entry; infinite where none is known. Exactly 0
   /// where the part adds nothing.
   DropBound bound(Part part, const KeptEffects& kept, const SceneEntry& entry, Detail detail = Detail::kFine) const;
+  /// The same with a memory that is used for one scene alone, and by one thread.
+  DropBound bound(Part part, const KeptEffects& kept, const SceneEntry& entry, Detail detail,
+                  ReflectanceMemory& memory) const;
 
   /// Whether a part adds exactly nothing, at any entry.
   bool adds_nothing(Part part, const KeptEffects& kept) const;
@@ -49,7 +70,7 @@ class InfluenceBounds {
  private:
   struct Sums;
   struct AtEntry;
-  AtEntry at_entry(const KeptEffects& kept, const SceneEntry& entry, Detail detail) const;
+  AtEntry at_entry(const KeptEffects& kept, const SceneEntry& entry, Detail detail, ReflectanceMemory& memory) const;
   double weight(const KeptEffects& kept) const;
   Sums sums(const KeptEffects& kept, const AtEntry& at) const;
   Sums added_by(Part part, const KeptEffects& kept, const AtEntry& at) const;

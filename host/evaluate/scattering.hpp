@@ -60,6 +60,8 @@ constexpr double kScatteringErrorDouble = 1e-11;
 class ScatteringEvaluator {
  public:
   virtual ~ScatteringEvaluator() = default;
+  /// Says that `scatter` is to be called with this request, after another that may take its time meanwhile.
+  virtual void prepare(const ScatteringRequest& /*request*/) {}
   virtual std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) = 0;
 };
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <span>
-#include <tuple>
+#include <utility>
 
 #include "plan/rule.hpp"
 
@@ -77,36 +77,64 @@ std::vector<std::uint32_t> make_families(const KernelData& data, Grouping& group
   return positions;
 }
 
+bool is_of(const EntryGroup& group, std::uint32_t family, std::uint32_t index, std::uint32_t theta) {
+  return group.family == family && group.index == index && group.theta == theta;
+}
+
+// Sorts positions by the number below `count` that `key` gives each, keeping the order of those that share one.
+template <class Key>
+void sort_by(std::vector<std::uint32_t>& positions, std::size_t count, const Key& key) {
+  if (count < 2) return;
+  std::vector<std::uint32_t> ends(count, 0);
+  for (const std::uint32_t i : positions) ++ends[key(i)];
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<std::uint32_t> sorted(positions.size());
+  for (auto i = positions.rbegin(); i != positions.rend(); ++i) sorted[--ends[key(*i)]] = *i;
+  positions.swap(sorted);
+}
+
+// A shape's family, and which of its members it is.
+struct Member {
+  std::uint32_t family = 0;
+  std::uint32_t number = 0;
+};
+
+// Of each shape of the data.
+std::vector<Member> members_of(const Grouping& grouping, const std::vector<std::uint32_t>& positions) {
+  std::vector<Member> by_position(positions.size());
+  for (std::uint32_t f = 0; f < grouping.families.size(); ++f) {
+    const ShapeFamily& family = grouping.families[f];
+    for (std::uint32_t g = 0; g < family.count; ++g) by_position[family.first + g] = {f, g};
+  }
+  std::vector<Member> members;
+  members.reserve(positions.size());
+  for (const std::uint32_t position : positions) members.push_back(by_position[position]);
+  return members;
+}
+
 Grouping grouped_exactly(const KernelData& data, std::uint32_t size) {
   Grouping grouping;
   grouping.size = size;
   const std::vector<std::uint32_t> positions = make_families(data, grouping);
-  std::vector<std::uint32_t> family_of(grouping.shapes.size());
-  for (std::uint32_t f = 0; f < grouping.families.size(); ++f) {
-    const ShapeFamily& family = grouping.families[f];
-    std::fill_n(family_of.begin() + family.first, family.count, f);
-  }
-  // (family, index, direction), ascending, then the member
-  using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
-  std::vector<std::pair<Key, std::uint32_t>> keys;
-  keys.reserve(data.entries.size());
-  for (std::uint32_t i = 0; i < data.entries.size(); ++i) {
-    const MomentsEntry& entry = data.entries[i];
-    const std::uint32_t position = positions[entry.shape];
-    const std::uint32_t family = family_of[position];
-    keys.push_back({{family, entry.index, entry.theta, position - grouping.families[family].first}, i});
-  }
-  std::sort(keys.begin(), keys.end());
-  grouping.places.resize(data.entries.size());
-  for (std::size_t k = 0; k < keys.size(); ++k) {
-    const auto& [family, index, theta, member] = keys[k].first;
-    const bool is_new_group = k == 0 || std::tie(family, index, theta) != std::tie(std::get<0>(keys[k - 1].first),
-                                                                                   std::get<1>(keys[k - 1].first),
-                                                                                   std::get<2>(keys[k - 1].first));
-    if (is_new_group) grouping.groups.push_back({theta, family, index, 0});
-    const bool is_new_member = is_new_group || member != std::get<3>(keys[k - 1].first);
-    grouping.groups.back().used += is_new_member ? 1 : 0;
-    grouping.places[keys[k].second] = {static_cast<std::uint32_t>(grouping.groups.size() - 1), member};
+  const std::vector<Member> members = members_of(grouping, positions);
+  const std::vector<MomentsEntry>& entries = data.entries;
+  // By family, index, direction and member: the last is sorted by first.
+  std::vector<std::uint32_t> order(entries.size());
+  std::iota(order.begin(), order.end(), 0U);
+  sort_by(order, size, [&](std::uint32_t i) { return members[entries[i].shape].number; });
+  sort_by(order, data.thetas.size(), [&](std::uint32_t i) { return entries[i].theta; });
+  sort_by(order, data.indices.size(), [&](std::uint32_t i) { return entries[i].index; });
+  sort_by(order, grouping.families.size(), [&](std::uint32_t i) { return members[entries[i].shape].family; });
+  grouping.places.resize(entries.size());
+  std::uint32_t last_member = 0;
+  for (const std::uint32_t i : order) {
+    const auto [family, member] = members[entries[i].shape];
+    const bool is_new_group =
+        grouping.groups.empty() || !is_of(grouping.groups.back(), family, entries[i].index, entries[i].theta);
+    if (is_new_group) grouping.groups.push_back({entries[i].theta, family, entries[i].index, 0});
+    if (is_new_group || member != last_member) ++grouping.groups.back().used;
+    grouping.places[i] = {static_cast<std::uint32_t>(grouping.groups.size() - 1), member};
+    last_member = member;
   }
   return grouping;
 }

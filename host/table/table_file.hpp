@@ -15,8 +15,8 @@ void check_output_path(const std::filesystem::path& path);
 
 /// Writes a table.
 ///
-/// .nc: NetCDF-4, CF-1.8, coordinates theta, sigma, q; status is an int (CF-1.8 has no unsigned int). Variables of many
-/// entries are compressed without loss.
+/// .nc: NetCDF-4, CF-1.8, coordinates theta, sigma, q; status is an int (CF-1.8 has no unsigned int). Nothing is
+/// compressed.
 /// .csv and "-": one row per entry, `theta_deg,sigma,q` and the variables; attributes as `# name: value` lines before
 /// the header, a newline inside a value going on with `#   `. Numbers are the shortest text that reads back as the same
 /// double. .npy: a structured array of shape (theta, sigma, q) with the named fields of the .csv, so that `t["dolp"][i,

@@ -4,9 +4,7 @@
 #include <netcdf_mem.h>
 
 #include <array>
-#include <cstdlib>
 #include <limits>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,9 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kConventions = "CF-1.8";
-// Below this compression saves less than the chunk index costs.
-constexpr std::size_t kCompressedEntries = 4096;
-constexpr int kDeflateLevel = 1;
 constexpr std::size_t kExpectedOverhead = 65536;
 
 struct Axis {
@@ -57,11 +52,10 @@ class NetcdfFile {
   void check(int code, const char* what) const {
     if (code != NC_NOERR) throw Error(shown_.string() + ": " + what + ": " + nc_strerror(code));
   }
-  std::string close_to_bytes() {
+  NetcdfBytes close_to_bytes() {
     NC_memio memory{};
     check(nc_close_memio(std::exchange(id_, -1), &memory), "cannot finish");
-    const std::unique_ptr<void, decltype(&std::free)> owner(memory.memory, &std::free);
-    return {static_cast<const char*>(memory.memory), memory.size};
+    return {memory.memory, memory.size};
   }
 
  private:
@@ -100,15 +94,11 @@ std::array<int, kAxes.size()> define_axes(const OutputFile& file, const Table& t
   return variables;
 }
 
-int define_variable(const OutputFile& file, const char* name, nc_type type, const Table& table,
-                    const Dimensions& dimensions) {
+// Uncompressed: zlib saves half of the file and takes longer than all the rest of a table.
+int define_variable(const OutputFile& file, const char* name, nc_type type, const Dimensions& dimensions) {
   int variable = 0;
   file.check(nc_def_var(file.id(), name, type, static_cast<int>(dimensions.size()), dimensions.data(), &variable),
              "cannot define a variable");
-  if (table.size() >= kCompressedEntries) {
-    constexpr int kOn = 1;
-    file.check(nc_def_var_deflate(file.id(), variable, kOn, kOn, kDeflateLevel), "cannot define a variable");
-  }
   return variable;
 }
 
@@ -118,7 +108,7 @@ std::vector<std::pair<int, const TableVariable*>> define_variables(const OutputF
   std::vector<std::pair<int, const TableVariable*>> defined;
   for (const TableVariable& variable : table_variables()) {
     if ((table.*variable.values).empty()) continue;
-    const int id = define_variable(file, variable.name, NC_DOUBLE, table, dimensions);
+    const int id = define_variable(file, variable.name, NC_DOUBLE, dimensions);
     file.check(nc_put_att_double(file.id(), id, "_FillValue", NC_DOUBLE, 1, &kFill), "cannot write an attribute");
     put_text(file, id, "long_name", variable.long_name);
     put_text(file, id, "units", variable.has_stokes_units ? table.stokes_units : "1");
@@ -128,8 +118,8 @@ std::vector<std::pair<int, const TableVariable*>> define_variables(const OutputF
   return defined;
 }
 
-int define_status(const OutputFile& file, const Table& table, const Dimensions& dimensions) {
-  const int id = define_variable(file, "status", NC_INT, table, dimensions);
+int define_status(const OutputFile& file, const Dimensions& dimensions) {
+  const int id = define_variable(file, "status", NC_INT, dimensions);
   put_text(file, id, "long_name", "status bits of the entry; 0 where nothing is wrong");
   put_text(file, id, "units", "1");
   file.check(nc_put_att_int(file.id(), id, "flag_masks", NC_INT, kFlagMasks.size(), kFlagMasks.data()),
@@ -212,19 +202,22 @@ std::vector<Attribute> read_attributes(const InputFile& file) {
 
 }  // namespace
 
-std::string netcdf_bytes(const Table& table, const fs::path& path) {
+NetcdfBytes netcdf_bytes(const Table& table, const fs::path& path) {
   int id = -1;
-  // Room for the table without compression, so that the image does not grow piece by piece.
+  // Room for the whole table, so that the image does not grow piece by piece.
   const std::size_t expected_bytes = kExpectedOverhead + table.size() * (table_variables().size() + 1) * sizeof(double);
   if (const int code = nc_create_mem(path.c_str(), NC_NETCDF4, expected_bytes, &id); code != NC_NOERR) {
     throw IoError(path.string() + ": cannot create: " + nc_strerror(code));
   }
   OutputFile file(path, id);
+  int fill_mode = 0;
+  // Every variable is written whole; to fill it first would write it twice.
+  file.check(nc_set_fill(file.id(), NC_NOFILL, &fill_mode), "cannot create");
   put_attributes(file, table.attributes);
   Dimensions dimensions{};
   const auto axes = define_axes(file, table, dimensions);
   const auto variables = define_variables(file, table, dimensions);
-  const int status = table.status.empty() ? -1 : define_status(file, table, dimensions);
+  const int status = table.status.empty() ? -1 : define_status(file, dimensions);
   file.check(nc_enddef(file.id()), "cannot write");
   for (std::size_t i = 0; i < kAxes.size(); ++i) {
     file.check(nc_put_var_double(file.id(), axes[i], (table.*kAxes[i].values).data()), "cannot write an axis");

@@ -1,6 +1,7 @@
 #include "evaluate/radiometry/radiometry.hpp"
 
 #include <algorithm>
+#include <boost/container/small_vector.hpp>
 #include <boost/math/constants/constants.hpp>
 #include <cassert>
 #include <cmath>
@@ -393,11 +394,12 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
                                  std::span<const Scattered> scattered) const {
   const bool bistatic = scene_.geometry.mode == Mode::kBistatic;
   PointResult result;
-  std::vector<Reflectance> reflectances;
+  boost::container::small_vector<Reflectance, 1> own;  // most scenes have one sample, and many entries
   for (const Moments& m : moments) {
-    reflectances.push_back(reflectance(scene_.surface, m, cos_theta));
-    if (is_unphysical(reflectances.back())) result.status |= kStatusUnphysicalReflectance;
+    own.push_back(reflectance(scene_.surface, m, cos_theta));
+    if (is_unphysical(own.back())) result.status |= kStatusUnphysicalReflectance;
   }
+  const std::span<const Reflectance> reflectances(own.data(), own.size());
   Stokes sum = stokes_sum(scene_, kept_rule_, reflectances, indices, cos_theta, !bistatic);
   if (bistatic) add_beam(sum, scene_.surface, beam_specular_, kept_rule_, scattered, cos_theta_i, cos_theta);
   add_path(sum, scene_.path, kept_rule_.path_exitance);

@@ -16,13 +16,10 @@ class Distinct {
   explicit Distinct(std::vector<Value>& values) : values_(values) {}
 
   std::uint32_t position(const Pair& key, const Value& value) {
-    if (is_empty_ || key != last_key_) {
-      const auto [found, is_new] = positions_.try_emplace(key, static_cast<std::uint32_t>(values_.size()));
-      if (is_new) values_.push_back(value);
-      last_key_ = key;
-      last_position_ = found->second;
-      is_empty_ = false;
-    }
+    // A grid repeats the value of one axis many times over, and goes through those of another again and again.
+    if (is_at(last_position_, key)) return last_position_;
+    const std::uint32_t next = last_position_ + 1 < keys_.size() ? last_position_ + 1 : 0;
+    last_position_ = is_at(next, key) ? next : looked_up(key, value);
     return last_position_;
   }
 
@@ -33,12 +30,24 @@ class Distinct {
       return std::hash<double>{}(key.first) * kOddMultiplier + std::hash<double>{}(key.second);
     }
   };
+
+  bool is_at(std::uint32_t position, const Pair& key) const {
+    return position < keys_.size() && keys_[position] == key;
+  }
+
+  std::uint32_t looked_up(const Pair& key, const Value& value) {
+    const auto [found, is_new] = positions_.try_emplace(key, static_cast<std::uint32_t>(values_.size()));
+    if (is_new) {
+      values_.push_back(value);
+      keys_.push_back(key);
+    }
+    return found->second;
+  }
+
   std::unordered_map<Pair, std::uint32_t, Hash> positions_;
+  std::vector<Pair> keys_;  ///< of the values
   std::vector<Value>& values_;
-  // The axes of a grid repeat the same value many times over.
-  Pair last_key_;
   std::uint32_t last_position_ = 0;
-  bool is_empty_ = true;
 };
 
 }  // namespace dolp

@@ -5,17 +5,20 @@
 #include <map>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "evaluate/grazing.hpp"
 #include "evaluate/run/attempts.hpp"
 #include "evaluate/run/beams.hpp"
 #include "evaluate/run/closed_forms.hpp"
 #include "evaluate/run/moments_block.hpp"
+#include "parallel_ranges.hpp"
 
 namespace dolp {
 namespace {
 
 constexpr std::size_t kMomentsAtOnce = 1U << 22U;  // bounds the memory of a run with many wavelengths
+constexpr std::size_t kEntriesAtOnce = 4096;       // of a thread: their radiometry takes longer than to start one
 
 bool is_bistatic(const Scene& scene) { return scene.geometry.mode == Mode::kBistatic; }
 
@@ -34,28 +37,89 @@ struct SceneRun {
   const Radiometry& radiometry;
 };
 
-/// Moments of one entry, and the direction that they are for.
-struct EntryMoments {
-  Direction direction;
-  std::vector<Moments> moments;  ///< one for each spectral sample
+/// What the evaluator said of the entries of a block.
+struct BlockAnswer {
+  const Block& block;
+  std::span<const Moments> moments;
+  std::span<const Scattered> beams;  ///< the samples of each entry in turn, or nothing where the plan needs none
 };
 
-/// The moments of the entry at `position` of a block, or their closed forms, or zeros where the plan needs none.
-EntryMoments entry_moments(const SceneRun& run, const SceneEntry& seen, const std::vector<OpticalConstants>& indices,
-                           const Block& block, std::size_t position, std::span<const Moments> moments) {
-  if (!needs_evaluator(run.scene, seen)) {
-    const Direction direction{seen.theta_deg, closed_form_cosine(seen)};
-    if (!run.plan.needs_moments) return {direction, std::vector<Moments>(indices.size())};
-    return {direction, closed_forms(run.scene, seen, indices)};
+/// The cosine of the direction of one entry after the other; those of a grid have long runs of one direction.
+class Cosine {
+ public:
+  double operator()(double theta_deg) {
+    if (theta_deg != theta_deg_) {
+      theta_deg_ = theta_deg;
+      cosine_ = cos_sin_deg(theta_deg).cos;
+    }
+    return cosine_;
   }
-  const double theta_deg = zenith_before_limit_deg(run.scene.surface.masking, seen.theta_deg);
-  const Direction direction{seen.theta_deg, cos_sin_deg(theta_deg).cos};
-  if (!run.plan.needs_moments) return {direction, std::vector<Moments>(indices.size())};
-  const std::uint32_t first = block.first_moments[position];
-  if (seen.index) return {direction, std::vector<Moments>(indices.size(), moments[first])};
-  const std::span<const Moments> own = moments.subspan(first, indices.size());
-  return {direction, {own.begin(), own.end()}};
-}
+
+ private:
+  double theta_deg_ = 0.0;
+  double cosine_ = 1.0;
+};
+
+/// Results of the entries of a block, one by one; the object keeps its memory between them.
+class EntryResults {
+ public:
+  EntryResults(const SceneRun& run, const BlockAnswer& answer)
+      : run_(run),
+        answer_(answer),
+        samples_(run.radiometry.rule().indices()),
+        indices_(samples_.size()),
+        moments_(samples_.size()),
+        no_beams_(samples_.size()) {}
+
+  PointResult operator()(const SceneEntry& entry, std::size_t position) {
+    const SceneEntry seen = seen_entry(run_.scene, entry);
+    const std::span<const Moments> moments = moments_of(seen, position);
+    const Direction direction{seen.theta_deg, cosine_of(seen)};
+    const std::span<const OpticalConstants> indices = indices_of(seen);
+    if (!is_bistatic(run_.scene)) return run_.radiometry.point(direction, moments, indices);
+    return run_.radiometry.bistatic_point(direction, source_cosine_(entry.theta_deg), moments, indices,
+                                          beams_of(position));
+  }
+
+ private:
+  std::span<const OpticalConstants> indices_of(const SceneEntry& seen) {
+    if (!seen.index) return samples_;
+    std::ranges::fill(indices_, *seen.index);
+    return indices_;
+  }
+
+  double cosine_of(const SceneEntry& seen) {
+    if (!needs_evaluator(run_.scene, seen)) return closed_form_cosine(seen);
+    return cosine_(zenith_before_limit_deg(run_.scene.surface.masking, seen.theta_deg));
+  }
+
+  /// The moments of the entry at `position` of the block, or their closed forms, or zeros where the plan needs none.
+  std::span<const Moments> moments_of(const SceneEntry& seen, std::size_t position) {
+    if (!run_.plan.needs_moments) return moments_;  // never written to
+    if (!needs_evaluator(run_.scene, seen)) {
+      const std::span<const OpticalConstants> indices = indices_of(seen);
+      moments_ = closed_forms(run_.scene, seen, {indices.begin(), indices.end()});
+      return moments_;
+    }
+    const std::uint32_t first = answer_.block.first_moments[position];
+    if (!seen.index) return answer_.moments.subspan(first, samples_.size());
+    std::ranges::fill(moments_, answer_.moments[first]);
+    return moments_;
+  }
+
+  std::span<const Scattered> beams_of(std::size_t position) const {
+    if (answer_.beams.empty()) return no_beams_;
+    return answer_.beams.subspan(position * samples_.size(), samples_.size());
+  }
+
+  const SceneRun& run_;
+  const BlockAnswer& answer_;
+  std::vector<OpticalConstants> samples_;
+  std::vector<OpticalConstants> indices_;
+  std::vector<Moments> moments_;
+  std::vector<Scattered> no_beams_;
+  Cosine cosine_, source_cosine_;
+};
 
 std::vector<Scattered> block_beams(const SceneRun& run, std::span<const SceneEntry> entries,
                                    std::span<const ScatteringMatrix> matrices) {
@@ -63,28 +127,13 @@ std::vector<Scattered> block_beams(const SceneRun& run, std::span<const SceneEnt
   return entry_beams(run.scene, run.radiometry.rule().samples.size(), entries, matrices);
 }
 
-/// Results of the entries of a block.
-/// Shape: `beams` has the samples of each entry in turn, or nothing where the plan needs none.
-std::vector<PointResult> block_results(const SceneRun& run, std::span<const SceneEntry> entries, const Block& block,
-                                       std::span<const Moments> moments, std::span<const Scattered> beams) {
-  std::vector<PointResult> results;
-  results.reserve(entries.size());
-  const std::vector<OpticalConstants> samples = run.radiometry.rule().indices();
-  const std::size_t count = samples.size();
-  const std::vector<Scattered> no_beams(count);
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const SceneEntry seen = seen_entry(run.scene, entries[i]);
-    const std::vector<OpticalConstants> indices =
-        seen.index ? std::vector<OpticalConstants>(count, *seen.index) : samples;
-    const EntryMoments own = entry_moments(run, seen, indices, block, i, moments);
-    if (!is_bistatic(run.scene)) {
-      results.push_back(run.radiometry.point(own.direction, own.moments, indices));
-      continue;
-    }
-    const std::span<const Scattered> own_beams = beams.empty() ? std::span(no_beams) : beams.subspan(i * count, count);
-    results.push_back(run.radiometry.bistatic_point(own.direction, cos_sin_deg(entries[i].theta_deg).cos, own.moments,
-                                                    indices, own_beams));
-  }
+std::vector<PointResult> block_results(const SceneRun& run, std::span<const SceneEntry> entries,
+                                       const BlockAnswer& answer) {
+  std::vector<PointResult> results(entries.size());
+  parallel_ranges(entries.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
+    EntryResults result_of(run, answer);
+    for (std::size_t i = first; i < last; ++i) results[i] = result_of(entries[i], i);
+  });
   return results;
 }
 
@@ -114,12 +163,12 @@ std::vector<PointResult> attempt_block(const Attempts& all, std::span<const Scen
   const std::size_t total = before + beams.entries.size();
   std::vector<Moments> moments;
   std::vector<ScatteringMatrix> matrices;
+  ScatteringEvaluator* const scattering = all.evaluator.scattering();
+  if (total > before && scattering == nullptr) throw std::logic_error("the bistatic mode needs an evaluator of pBRDFs");
+  if (total > before && before > 0) scattering->prepare(beams);
   if (before > 0) moments = all.evaluator.evaluate(block.request, part_of(progress, 0, total));
-  if (total > before) {
-    if (all.evaluator.scattering() == nullptr) throw std::logic_error("the bistatic mode needs an evaluator of pBRDFs");
-    matrices = all.evaluator.scattering()->scatter(beams, part_of(progress, before, total));
-  }
-  return block_results(all.run, entries, block, moments, block_beams(all.run, entries, matrices));
+  if (total > before) matrices = scattering->scatter(beams, part_of(progress, before, total));
+  return block_results(all.run, entries, {block, moments, block_beams(all.run, entries, matrices)});
 }
 
 bool is_better(const PointResult& a, const PointResult& b) {
@@ -159,7 +208,7 @@ void retry(const Attempts& all, std::span<const SceneEntry> entries, const Attem
 std::vector<PointResult> evaluated_block(const SceneRun& run, std::span<const SceneEntry> entries,
                                          MomentsEvaluator* evaluator, const Progress& progress) {
   if (!wants_evaluator(run.scene, entries, run.plan)) {
-    std::vector<PointResult> results = block_results(run, entries, {}, {}, block_beams(run, entries, {}));
+    std::vector<PointResult> results = block_results(run, entries, {{}, {}, block_beams(run, entries, {})});
     if (!progress(1, 1)) throw Cancelled{};
     return results;
   }
@@ -193,13 +242,16 @@ std::vector<PointResult> evaluate_scene(const Scene& scene, const std::vector<Sc
   const Radiometry radiometry(scene, plan.kept, plan.bound);
   const SceneRun run{scene, plan, radiometry};
   std::vector<PointResult> results;
-  results.reserve(entries.size());
   for (const std::span<const SceneEntry> block : run_blocks(entries, radiometry.rule().samples.size())) {
     const Progress block_progress = [&](std::size_t done, std::size_t total) {
       return !progress || progress(results.size() + block.size() * done / total, entries.size());
     };
     std::vector<PointResult> of_results = evaluated_block(run, block, evaluator, block_progress);
-    results.insert(results.end(), of_results.begin(), of_results.end());
+    if (results.empty()) {
+      results = std::move(of_results);
+    } else {
+      results.insert(results.end(), of_results.begin(), of_results.end());
+    }
   }
   return results;
 }

@@ -89,9 +89,14 @@ VkPipeline Kernels::mueller(Distribution distribution, Masking masking) {
 
 VkPipeline Kernels::cached(Cache& cache, std::span<const std::uint32_t> spirv, Distribution distribution,
                            Masking masking) {
-  const auto found = cache.find({distribution, masking});
-  if (found != cache.end()) return found->second.get();
+  const auto known = [&]() -> VkPipeline {
+    const std::scoped_lock lock(mutex_);
+    const auto found = cache.find({distribution, masking});
+    return found == cache.end() ? VK_NULL_HANDLE : found->second.get();
+  };
+  if (VkPipeline pipeline = known()) return pipeline;
   UniquePipeline pipeline = create(spirv, distribution, masking);
+  const std::scoped_lock lock(mutex_);
   return cache.emplace(std::pair(distribution, masking), std::move(pipeline)).first->second.get();
 }
 

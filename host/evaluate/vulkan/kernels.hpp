@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <span>
 #include <utility>
 
@@ -20,7 +21,7 @@ constexpr std::uint32_t kLocalSize = 64;
 /// Entries of a group, see plan/groups.hpp.
 constexpr std::uint32_t kGroupSize = DOLP_GROUP_SIZE;
 
-/// Creates pipelines on demand, one for each combination of the specialization constants.
+/// Creates pipelines on demand, one for each combination of the specialization constants; any thread may ask for one.
 class Kernels {
  public:
   Kernels(const Device& device, bool float64);
@@ -55,6 +56,7 @@ class Kernels {
   UniquePipelineLayout layout_;
   UniqueDescriptorPool pool_;
   VkDescriptorSet set_ = VK_NULL_HANDLE;
+  std::mutex mutex_;  ///< of the caches
   Cache moments_, group_moments_, masking_tables_, muellers_;
 };
 

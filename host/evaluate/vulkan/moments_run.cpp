@@ -1,9 +1,11 @@
 #include "evaluate/vulkan/moments_run.hpp"
 
 #include <algorithm>
+#include <future>
 #include <numeric>
 
 #include "evaluate/vulkan/result.hpp"
+#include "parallel_ranges.hpp"
 
 namespace dolp::vulkan {
 namespace {
@@ -11,6 +13,10 @@ namespace {
 using EntryWords = std::array<std::uint32_t, 4>;
 using MaskingNode = std::array<double, 4>;
 using RulePoint = std::array<double, 4>;
+
+// What a thread takes at a time.
+constexpr std::size_t kGroupsAtOnce = 1024;
+constexpr std::size_t kEntriesAtOnce = 4096;
 
 }  // namespace
 
@@ -68,8 +74,12 @@ void MomentsRun::create_buffers() {
 }
 
 void MomentsRun::create_pipelines() {
+  std::future<void> tables;
+  if (data_.needs_masking_table()) {
+    tables = std::async(std::launch::async, [&] { context_.kernels.masking_table(data_.distribution, data_.masking); });
+  }
   context_.kernels.moments(data_.distribution, data_.masking, grouping_.size);
-  if (data_.needs_masking_table()) context_.kernels.masking_table(data_.distribution, data_.masking);
+  if (tables.valid()) tables.get();
 }
 
 std::optional<std::vector<Moments>> MomentsRun::compute(const Progress& progress) {
@@ -147,26 +157,41 @@ void MomentsRun::run_tile(const Block& block, std::span<const GroupPiece> pieces
   cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
   ++cost_.dispatches;
 
+  add_pieces(pieces, results);
+}
+
+void MomentsRun::add_pieces(std::span<const GroupPiece> pieces, std::span<kernel::MomentsNode> results) {
   scratch_.resize(pieces.size() * grouping_.size * context_.packing.node_bytes<kernel::MomentsNode>());
   moments_buffer_->read(scratch_);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const std::uint32_t used = grouping_.groups[pieces[i].group].used;
-    for (std::uint32_t g = 0; g < grouping_.size; ++g) {
-      auto node = context_.packing.read<kernel::MomentsNode>(scratch_, i * grouping_.size + g);
-      if (g == 0) cost_.evaluations += node.evaluations;
-      node.evaluations /= used;
-      add_piece(results[pieces[i].group * std::size_t{grouping_.size} + g], node);
-    }
+    cost_.evaluations += context_.packing.read<kernel::MomentsNode>(scratch_, i * grouping_.size).evaluations;
   }
+  // The pieces of a group are summed in their order, whoever does it: each range has its groups.
+  const auto [least, most] = std::ranges::minmax(pieces, {}, &GroupPiece::group);
+  const std::uint32_t first_group = least.group;
+  parallel_ranges(most.group - least.group + std::size_t{1}, kGroupsAtOnce, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const std::size_t group = pieces[i].group - first_group;
+      if (group < first || group >= last) continue;
+      const std::uint32_t used = grouping_.groups[pieces[i].group].used;
+      for (std::uint32_t g = 0; g < grouping_.size; ++g) {
+        auto node = context_.packing.read<kernel::MomentsNode>(scratch_, i * grouping_.size + g);
+        node.evaluations /= used;
+        add_piece(results[pieces[i].group * std::size_t{grouping_.size} + g], node);
+      }
+    }
+  });
 }
 
 std::vector<Moments> MomentsRun::moments_of_entries(std::span<const kernel::MomentsNode> results) const {
   std::vector<Moments> moments(data_.entries.size());
-  for (std::size_t i = 0; i < moments.size(); ++i) {
-    const EntryPlace& place = grouping_.places[i];
-    moments[i] = moments_from_kernel(results[place.group * std::size_t{grouping_.size} + place.member], data_,
-                                     data_.entries[i], context_.packing.unit_roundoff());
-  }
+  parallel_ranges(moments.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const EntryPlace& place = grouping_.places[i];
+      moments[i] = moments_from_kernel(results[place.group * std::size_t{grouping_.size} + place.member], data_,
+                                       data_.entries[i], context_.packing.unit_roundoff());
+    }
+  });
   return moments;
 }
 

@@ -51,6 +51,7 @@ class MomentsRun {
   void start_block(const Block& block);
   void upload_tile(const Block& block, std::span<const GroupPiece> pieces);
   void run_tile(const Block& block, std::span<const GroupPiece> pieces, std::span<kernel::MomentsNode> results);
+  void add_pieces(std::span<const GroupPiece> pieces, std::span<kernel::MomentsNode> results);
   std::vector<Moments> moments_of_entries(std::span<const kernel::MomentsNode> results) const;
   template <class Node>
   void upload(const std::vector<Node>& list, std::span<const std::uint32_t> members, InputBuffer& buffer);

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <future>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -93,10 +94,16 @@ class VulkanEvaluator::Impl {
   std::vector<ScatteringMatrix> compute(const ScatteringRequest& request, const Progress& progress,
                                         EvaluationReport& report) {
     const Clock::time_point start = Clock::now();
+    if (prepared_.valid()) prepared_.wait();
     kernels_for(request.precision).mueller(request.distribution, request.masking);
     report.setup_s += seconds_since(start);
     scattering_run_.emplace(context_for(request.precision), request, options_.max_tile_invocations);
     return finish(scattering_run_, scattering_run_->compute(progress), request.precision, report);
+  }
+  void prepare(const ScatteringRequest& request) {
+    vulkan::Kernels& kernels = kernels_for(request.precision);
+    prepared_ = std::async(std::launch::async, [&kernels, distribution = request.distribution,
+                                                masking = request.masking] { kernels.mueller(distribution, masking); });
   }
 
  private:
@@ -140,6 +147,7 @@ class VulkanEvaluator::Impl {
   Choice choice_;
   vulkan::Device device_;
   std::optional<vulkan::Kernels> float_kernels_, double_kernels_;
+  std::future<void> prepared_;  ///< waits when it is destroyed
   vulkan::CommandStream stream_;
   // Members, so that their buffers outlive a submission that never ends.
   std::optional<vulkan::MomentsRun> run_;
@@ -173,6 +181,10 @@ std::vector<Result> VulkanEvaluator::compute(const Request& request, const Progr
 
 std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
   return compute<Moments>(request, progress);
+}
+
+void VulkanEvaluator::prepare(const ScatteringRequest& request) {
+  if (impl_ && !request.entries.empty()) impl_->prepare(request);
 }
 
 std::vector<ScatteringMatrix> VulkanEvaluator::scatter(const ScatteringRequest& request, const Progress& progress) {

@@ -42,6 +42,9 @@ class VulkanEvaluator : public MomentsEvaluator, public ScatteringEvaluator {
   /// then), or the validation layer complains; Cancelled when `progress`, called after each tile, returns false.
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
 
+  /// Creates the pipeline in the background; what fails there fails again in `scatter`.
+  void prepare(const ScatteringRequest& request) override;
+
   /// Errors: those of evaluate.
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override;
 

@@ -1,0 +1,55 @@
+// The loop over ranges on all cores: each item once, the same ranges whatever the machine, and errors that arrive.
+#include "parallel_ranges.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace dolp {
+namespace {
+
+constexpr std::size_t kGrain = 16;
+
+TEST(ParallelRanges, AnyCount_EachItemOnce) {
+  for (const std::size_t count : {std::size_t{0}, std::size_t{1}, kGrain - 1, kGrain, kGrain + 1, 100 * kGrain + 3}) {
+    std::vector<std::atomic<int>> visits(count);
+    parallel_ranges(count, kGrain, [&](std::size_t first, std::size_t last) {
+      ASSERT_LE(last, count);
+      for (std::size_t i = first; i < last; ++i) ++visits[i];
+    });
+    for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(visits[i], 1) << i << " of " << count;
+  }
+}
+
+TEST(ParallelRanges, Ranges_FollowFromTheCountAlone) {
+  constexpr std::size_t kCount = 10 * kGrain + 5;
+  std::set<std::pair<std::size_t, std::size_t>> expected;
+  for (std::size_t first = 0; first < kCount; first += kGrain)
+    expected.emplace(first, std::min(first + kGrain, kCount));
+  std::mutex mutex;
+  std::set<std::pair<std::size_t, std::size_t>> ranges;
+  parallel_ranges(kCount, kGrain, [&](std::size_t first, std::size_t last) {
+    const std::lock_guard lock(mutex);
+    ranges.emplace(first, last);
+  });
+  EXPECT_EQ(ranges, expected);
+}
+
+TEST(ParallelRanges, AnErrorInOneRange_StopsTheLoopAndIsThrown) {
+  std::atomic<std::size_t> ranges = 0;
+  constexpr std::size_t kMany = 1'000'000;
+  const auto fail_first = [&](std::size_t first, std::size_t) {
+    ++ranges;
+    if (first == 0) throw std::runtime_error("the first range");
+  };
+  EXPECT_THROW(parallel_ranges(kMany, 1, fail_first), std::runtime_error);
+  EXPECT_LT(ranges, kMany);
+}
+
+}  // namespace
+}  // namespace dolp

@@ -8,8 +8,12 @@ namespace dolp::spirv {
 
 extern const std::span<const std::uint32_t> moments_float;
 extern const std::span<const std::uint32_t> moments_double;
-extern const std::span<const std::uint32_t> moments_group_float;  // DOLP_GROUP_SIZE entries an invocation
-extern const std::span<const std::uint32_t> moments_group_double;
+extern const std::span<const std::uint32_t> moments_group4_float;  // 4, 8 and 16 entries an invocation
+extern const std::span<const std::uint32_t> moments_group4_double;
+extern const std::span<const std::uint32_t> moments_group8_float;
+extern const std::span<const std::uint32_t> moments_group8_double;
+extern const std::span<const std::uint32_t> moments_group16_float;
+extern const std::span<const std::uint32_t> moments_group16_double;
 extern const std::span<const std::uint32_t> masking_table_float;
 extern const std::span<const std::uint32_t> masking_table_double;
 extern const std::span<const std::uint32_t> mueller_float;

@@ -23,11 +23,7 @@ namespace dolp {
 namespace {
 
 constexpr double kMissedShare = 0.01;
-// At 1e-9 the estimates of `integral` and smith, whose kinks and cusps converge algebraically, are far above the
-// errors.
-constexpr double kTightTolerance = 1e-8;
-constexpr double kTightMissedShare = 0.035;
-constexpr double kMedianPessimism = 60.0;
+constexpr double kMedianPessimism = 30.0;
 // Errors below this are rounding, whose bound must hold for the worst sum of signs and is far above the typical one:
 // sixteen units in the last place of a float's 24 bits. In double the reference's own bound, 1e-12, times ten.
 constexpr double kFloatRounding = 1e-6;
@@ -152,8 +148,7 @@ TEST_P(RandomPoints, FewPoints_MissTheTolerance) {
   const std::vector<Compared>& points = sweep().points;
   const auto missed = std::ranges::count_if(points, &Compared::is_missed);
   std::printf("%td of %zu points say that they miss %.0e\n", missed, points.size(), GetParam().tolerance);
-  const double share = GetParam().tolerance < kTightTolerance ? kTightMissedShare : kMissedShare;
-  EXPECT_LT(static_cast<double>(missed), share * static_cast<double>(points.size()));
+  EXPECT_LT(static_cast<double>(missed), kMissedShare * static_cast<double>(points.size()));
 }
 
 TEST_P(RandomPoints, Estimates_AreNotFarAboveTheErrors) {

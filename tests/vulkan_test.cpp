@@ -269,7 +269,7 @@ TEST(VulkanEvaluator, Progress_CountsEveryTileAndTheReportEveryDispatch) {
   EXPECT_EQ(done.back(), request.entries.size());
   // Tiles of 10 pieces of entries, in blocks of 2, 2 and 1 shapes.
   const KernelData data = kernel_data(request);
-  const Grouping grouping = grouped(data, 1);
+  const Grouping grouping = grouped(data, std::array{1U});
   std::size_t tiles = 0;
   for (const vulkan::Block& block : vulkan::blocks_of(grouping, 2)) {
     tiles += (pieces_of(grouping, data, block.first_group, block.group_count).size() + 9) / 10;

@@ -98,6 +98,8 @@ double steep_reflectance(const kernel::IndexNode& index, const kernel::ThetaNode
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
 }
 
+constexpr double kAlbedoFactor = 3.0;
+
 // What the rules may have missed of a sum, from their doubts.
 double bound_of(const KernelData& data, Doubted doubted, const MomentsEntry& entry, double doubt, double scale) {
   return doubt > 0.0 ? doubt * data.doubts.factor(doubted, entry, doubt / scale) : doubt;
@@ -130,8 +132,9 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   moments.r_q_error = moments.r_i_error;
   // Beyond the critical angle the deficit ends where r_i goes on.
   const double deficit_scale = index.critical_cos > 0.0 ? std::abs(node.albedo) : node.deficit_scale;
-  // The albedo shares the nodes of the two.
-  moments.albedo_error = reflected_rule + deficit_rule + (rounding + masking) * std::abs(node.albedo) + cut;
+  // The albedo shares the nodes of the two, whose errors may cancel what the albedo keeps.
+  moments.albedo_error =
+      kAlbedoFactor * (reflected_rule + deficit_rule) + (rounding + masking) * std::abs(node.albedo) + cut;
   moments.deficit_error = deficit_rule + rounding * deficit_scale + masking * std::abs(node.albedo) + cut;
   moments.evaluations = node.evaluations;
   // r_i + deficit = cos(theta): the better known of the two gives the other.

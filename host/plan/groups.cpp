@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -17,8 +18,9 @@ constexpr double kSmallestGroupedM = 1e-3;
 // Between the exponents of a family, as a factor of q - 1: shapes further apart would want nodes in different places.
 constexpr double kMostSpread = 6.0;
 
-// The share of members in use from which on groups are worth while.
-constexpr double kLeastUse = 0.5;
+// What the members of a group share, in units of what each takes. Look-ups in masking tables are each member's own.
+constexpr double kWorkOfAGroup = 16.0;
+constexpr double kWorkBesideTables = 5.0;
 
 bool has_line(const KernelData& data, const kernel::ShapeNode& shape) {
   return needs_line(data.distribution, data.masking, {shape.m / std::sqrt(2.0), 1.0 + shape.q_minus_1},
@@ -141,14 +143,19 @@ Grouping grouped_exactly(const KernelData& data, std::uint32_t size) {
 
 }  // namespace
 
-Grouping grouped(const KernelData& data, std::uint32_t size) {
-  if (size > 1 && may_group(data.rule)) {
+Grouping grouped(const KernelData& data, std::span<const std::uint32_t> sizes) {
+  Grouping best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t size : sizes) {
     Grouping grouping = grouped_exactly(data, size);
-    double used = 0.0;
-    for (const EntryGroup& group : grouping.groups) used += group.used;
-    if (used >= kLeastUse * size * static_cast<double>(grouping.groups.size())) return grouping;
+    const double shared = data.masking == Masking::kIntegral ? kWorkBesideTables : kWorkOfAGroup;
+    const double work = (shared + size) * static_cast<double>(grouping.groups.size());
+    if (work < least) {
+      least = work;
+      best = std::move(grouping);
+    }
   }
-  return grouped_exactly(data, 1);
+  return best;
 }
 
 std::vector<GroupPiece> pieces_of(const Grouping& grouping, const KernelData& data, std::uint32_t first,

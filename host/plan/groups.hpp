@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "plan/kernel_data.hpp"
@@ -48,7 +49,7 @@ struct Grouping {
 std::vector<GroupPiece> pieces_of(const Grouping& grouping, const KernelData& data, std::uint32_t first,
                                   std::uint32_t count);
 
-/// Groups of up to `size` entries; of one entry each where the families of the data would leave most members unused.
-Grouping grouped(const KernelData& data, std::uint32_t size);
+/// Groups of the size that takes the least work; `sizes` must contain 1.
+Grouping grouped(const KernelData& data, std::span<const std::uint32_t> sizes);
 
 }  // namespace dolp

@@ -169,24 +169,16 @@ double arcs_per_slope(Masking masking, double critical) {
 // Loops of one invocation: below the 65,535 iterations at which lavapipe stops without notice.
 constexpr double kMostIterations = 64'000.0;
 
-// Rules of higher orders are not for groups, whose nodes take more iterations.
-constexpr double kMostGroupedOrder = 84.0;
-
-// Iterations for a node of an arc, the most that masked_direction (integrand.glsl) needs.
-double iterations_of_node(const kernel::RuleNode& rule, Masking masking) {
-  return masking == Masking::kIntegral && may_group(rule) ? 3.0 : 1.0;
-}
-
 // Bound of the loop iterations of one invocation, that is of one piece: slopes, arcs, azimuths, with everything at its
 // most nodes. No bound on what an entry does is enough, because invocations that run in lockstep wait for each other.
-double iterations(const kernel::RuleNode& rule, double phi_order, Masking masking, double arcs) {
-  return rule.largest_order * (1.0 + arcs * (2.0 + iterations_of_node(rule, masking) * phi_order));
+double iterations(const kernel::RuleNode& rule, double phi_order, double arcs) {
+  return rule.largest_order * (1.0 + arcs * (2.0 + phi_order));
 }
 
 // The most nodes of an arc; the error estimate shows what that costs.
-double phi_order(const kernel::RuleNode& rule, Masking masking, double arcs) {
+double phi_order(const kernel::RuleNode& rule, double arcs) {
   const double of_slope = kMostIterations / rule.largest_order - 1.0;
-  return std::min(rule.largest_order, std::floor((of_slope / arcs - 2.0) / iterations_of_node(rule, masking)));
+  return std::min(rule.largest_order, std::floor(of_slope / arcs - 2.0));
 }
 
 kernel::ThetaNode theta_node(const MomentsRequest& request, const kernel::RuleNode& rule, double theta_deg,
@@ -217,7 +209,7 @@ kernel::ThetaNode theta_node(const MomentsRequest& request, const kernel::RuleNo
     node.t_growth *= kTotalReflectionGrowthT;
     node.phi_narrowing *= kTotalReflectionNarrowing;
   }
-  node.phi_order = phi_order(rule, request.masking, arcs_per_slope(request.masking, variant.critical_cos));
+  node.phi_order = phi_order(rule, arcs_per_slope(request.masking, variant.critical_cos));
   return node;
 }
 
@@ -308,8 +300,6 @@ void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece) {
   sum.evaluations += piece.evaluations;
 }
 
-bool may_group(const kernel::RuleNode& rule) { return rule.largest_order <= kMostGroupedOrder; }
-
 KernelData kernel_data(const MomentsRequest& request) {
   const double digits = rule_digits(request.masking, request.tolerance);
   KernelData data;
@@ -330,7 +320,7 @@ double worst_iterations(const KernelData& data) {
   double worst = 0.0;
   for (const MomentsEntry& entry : data.entries) {
     const double arcs = arcs_per_slope(data.masking, data.indices[entry.index].critical_cos);
-    worst = std::max(worst, iterations(data.rule, data.thetas[entry.theta].phi_order, data.masking, arcs));
+    worst = std::max(worst, iterations(data.rule, data.thetas[entry.theta].phi_order, arcs));
   }
   return worst;
 }

@@ -47,9 +47,6 @@ void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece);
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff);
 
-/// Whether entries may be computed in groups (plan/groups.hpp) by this rule.
-bool may_group(const kernel::RuleNode& rule);
-
 /// Whether the masking table of a shape sees the structure of G at a direction. Where the table is coarser than the
 /// slope distribution, directions whose cot(theta) lies within its first scale see none of it.
 bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta);

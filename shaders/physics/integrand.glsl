@@ -163,23 +163,16 @@ Masked looked_up(Group group, real cos_theta, real sin_theta) {
   return heights;
 }
 
-// A branch is computed and thrown away by devices that run invocations in lockstep; a loop of one turn at most is skipped
-// where none of them needs it, which pays for groups. It counts as an iteration, see host/plan/kernel_data.cpp.
-#if DOLP_GROUP > 1
-#define DOLP_WHERE(condition) for (bool is_due = (condition); is_due; is_due = false)
-#else
-#define DOLP_WHERE(condition) if (condition)
-#endif
-// The shadows of a direction on facets of slope t, from what was looked up for it.
+// The shadows of a direction on facets of slope t, from what was looked up for it. Look-ups are done for every invocation:
+// those that need none wait for their neighbours anyway.
 Masked shadows(Group group, Masked heights, real cos_theta, real sin_theta, real t) {
   ShadowPlace place = shadow_place(group.shape[0], cos_theta, sin_theta, t);
+  TableCell cell = table_cell(group.shape[0], place.far);
+  LimitTerms terms = limit_terms(group.shape[0], place, cell);
   Masked masked;
-  for (int g = 0; g < DOLP_GROUP; ++g) masked.value[g] = place.kappa * heights.value[g];
-  DOLP_WHERE(place.is_limited) {
-    TableCell cell = table_cell(group.shape[0], place.far);
-    for (int g = 0; g < DOLP_GROUP; ++g) {
-      masked.value[g] += limited_shadow(group.shape[g], place, cell, group.table[g]);
-    }
+  for (int g = 0; g < DOLP_GROUP; ++g) {
+    real limited = limited_shadow(group.shape[g], terms, cell, group.table[g]);
+    masked.value[g] = place.kappa * heights.value[g] + (place.is_limited ? limited : real(0.0));
   }
   return masked;
 }
@@ -187,8 +180,8 @@ Masked shadows(Group group, Masked heights, real cos_theta, real sin_theta, real
 Masked masked_direction(Group group, real cos_theta, real sin_theta, real t, bool is_needed) {
   Masked masked = unmasked();
   if (kMasking == DOLP_MASKING_SMITH) masked = looked_up(group, cos_theta, sin_theta);
-  if (kMasking == DOLP_MASKING_INTEGRAL) {
-    DOLP_WHERE(is_needed) masked = shadows(group, looked_up(group, cos_theta, sin_theta), cos_theta, sin_theta, t);
+  if (kMasking == DOLP_MASKING_INTEGRAL && is_needed) {
+    masked = shadows(group, looked_up(group, cos_theta, sin_theta), cos_theta, sin_theta, t);
   }
   return masked;
 }
@@ -379,6 +372,14 @@ Arc zone_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, Slice slice, real2
   if (is_rough_line) return make_root_arc(from, to, false);
   return arc;
 }
+
+// A branch is computed and thrown away by devices that run invocations in lockstep; a loop of one turn at most is skipped
+// where none of them needs it, which pays for groups. It counts as an iteration, see host/plan/kernel_data.cpp.
+#if DOLP_GROUP > 1
+#define DOLP_WHERE(condition) for (bool is_due = (condition); is_due; is_due = false)
+#else
+#define DOLP_WHERE(condition) if (condition)
+#endif
 
 // Integral over the azimuth from 0 to pi at slope t, `at_theta` being looked_up of theta, the facets below the horizon counted in the deficit. Each zone is
 // an arc, or two where total reflection begins in between; their clusters then replace those of zone_arc.

@@ -81,30 +81,11 @@ TableCell table_cell(ShapeNode shape, real tau) {
 }
 
 // l in a cell: l' = -C, l'' = g p.
-real table_height(TableCell cell, real4 n0, real4 n1) {
-  return (cell.f0 * n0.x + cell.f1 * n1.x) - (cell.d0 * n0.y + cell.d1 * n1.y) +
-         (cell.e0 * cell.g0 * n0.w + cell.e1 * cell.g1 * n1.w);
-}
-
 real masking_height(TableCell cell, uint table) {
-  return table_height(cell, masking_node(table + cell.node), masking_node(table + cell.node + 1u));
-}
-
-// (l, C, Pt) in a cell: C'' = g p (-p'/p - g'/g), Pt'' = p (-p'/p).
-real4 masking_tails(ShapeNode shape, TableCell cell, uint table) {
   real4 n0 = masking_node(table + cell.node);
   real4 n1 = masking_node(table + cell.node + 1u);
-  real tau0 = masking_node_tau(shape, cell.node);
-  real tau1 = masking_node_tau(shape, cell.node + 1u);
-  real factor = marginal_decay_factor(shape);
-  real decay0 = factor * marginal_decay(shape, tau0);
-  real decay1 = factor * marginal_decay(shape, tau1);
-  real first = (cell.f0 * n0.y + cell.f1 * n1.y) +
-               cell.g0 * n0.w * (cell.e0 * (decay0 + weight_decay(tau0)) - cell.d0) +
-               cell.g1 * n1.w * (cell.e1 * (decay1 + weight_decay(tau1)) - cell.d1);
-  real tail = (cell.f0 * n0.z + cell.f1 * n1.z) + n0.w * (cell.e0 * decay0 - cell.d0) +
-              n1.w * (cell.e1 * decay1 - cell.d1);
-  return real4(table_height(cell, n0, n1), first, tail, real(0.0));
+  return (cell.f0 * n0.x + cell.f1 * n1.x) - (cell.d0 * n0.y + cell.d1 * n1.y) +
+         (cell.e0 * cell.g0 * n0.w + cell.e1 * cell.g1 * n1.w);
 }
 
 // What 1 - G1(theta, alpha) of a direction and a facet slope t looks up, the same for all tables of one scale.
@@ -134,8 +115,45 @@ ShadowPlace shadow_place(ShapeNode shape, real cos_theta, real sin_theta, real t
   return place;
 }
 
-// What the limit b < pi/2 adds to kappa l(mu), `cell` being that of tau_b.
-real limited_shadow(ShapeNode shape, ShadowPlace place, TableCell cell, uint table) {
-  real4 tails = masking_tails(shape, cell, table);
-  return tails.z - place.kappa * (tails.x + place.gap * tails.y);
+// What the limit b < pi/2 adds to kappa l(mu), Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)], as a sum over the values at the
+// ends of the cell that tau_b lies in, with C'' = g p (-p'/p - g'/g) and Pt'' = p (-p'/p): only -p'/p knows the shape,
+// and the values.
+struct LimitTerms {
+  real l0;
+  real l1;
+  real c0;
+  real c1;
+  real p0;  // of p, and of p times marginal_decay_factor
+  real p1;
+  real decay0;
+  real decay1;
+  real tail0;
+  real tail1;
+};
+
+LimitTerms limit_terms(ShapeNode shape, ShadowPlace place, TableCell cell) {
+  real tau0 = masking_node_tau(shape, cell.node);
+  real tau1 = masking_node_tau(shape, cell.node + 1u);
+  real lever = place.kappa * place.gap;
+  LimitTerms terms;
+  terms.l0 = -place.kappa * cell.f0;
+  terms.l1 = -place.kappa * cell.f1;
+  terms.c0 = place.kappa * cell.d0 - lever * cell.f0;
+  terms.c1 = place.kappa * cell.d1 - lever * cell.f1;
+  terms.p0 = -cell.g0 * (place.kappa * cell.e0 + lever * (cell.e0 * weight_decay(tau0) - cell.d0)) - cell.d0;
+  terms.p1 = -cell.g1 * (place.kappa * cell.e1 + lever * (cell.e1 * weight_decay(tau1) - cell.d1)) - cell.d1;
+  terms.decay0 = cell.e0 * marginal_decay(shape, tau0) * (real(1.0) - lever * cell.g0);
+  terms.decay1 = cell.e1 * marginal_decay(shape, tau1) * (real(1.0) - lever * cell.g1);
+  terms.tail0 = cell.f0;
+  terms.tail1 = cell.f1;
+  return terms;
+}
+
+real limited_shadow(ShapeNode shape, LimitTerms terms, TableCell cell, uint table) {
+  real4 n0 = masking_node(table + cell.node);
+  real4 n1 = masking_node(table + cell.node + 1u);
+  real factor = marginal_decay_factor(shape);
+  return (terms.tail0 * n0.z + terms.tail1 * n1.z) + (terms.l0 * n0.x + terms.l1 * n1.x) +
+         (terms.c0 * n0.y + terms.c1 * n1.y) + (terms.p0 + factor * terms.decay0) * n0.w +
+         (terms.p1 + factor * terms.decay1) * n1.w;
 }

@@ -4,6 +4,22 @@
 #include "shaders/spirv.hpp"
 
 namespace dolp::vulkan {
+namespace {
+
+std::span<const std::uint32_t> moments_module(std::uint32_t group_size, bool float64) {
+  switch (group_size) {
+    case 4:
+      return float64 ? spirv::moments_group4_double : spirv::moments_group4_float;
+    case 8:
+      return float64 ? spirv::moments_group8_double : spirv::moments_group8_float;
+    case 16:
+      return float64 ? spirv::moments_group16_double : spirv::moments_group16_float;
+    default:
+      return float64 ? spirv::moments_double : spirv::moments_float;
+  }
+}
+
+}  // namespace
 
 Kernels::Kernels(const Device& device, bool float64) : device_(device), float64_(float64) {
   create_layouts();
@@ -71,11 +87,12 @@ void Kernels::bind(const std::array<VkBuffer, kBindingCount>& buffers) {
 }
 
 VkPipeline Kernels::moments(Distribution distribution, Masking masking, std::uint32_t group_size) {
-  if (group_size > 1) {
-    return cached(group_moments_, float64_ ? spirv::moments_group_double : spirv::moments_group_float, distribution,
-                  masking);
-  }
-  return cached(moments_, float64_ ? spirv::moments_double : spirv::moments_float, distribution, masking);
+  return cached(moments_cache(group_size), moments_module(group_size, float64_), distribution, masking);
+}
+
+Kernels::Cache& Kernels::moments_cache(std::uint32_t group_size) {
+  const std::scoped_lock lock(mutex_);
+  return moments_[group_size];
 }
 
 VkPipeline Kernels::masking_table(Distribution distribution, Masking masking) {

@@ -18,8 +18,8 @@ constexpr std::uint32_t kBindingCount = DOLP_BINDING_RULE + 1;
 constexpr std::uint32_t kPushConstantCount = 4;
 /// Invocations of a workgroup; every device allows 128.
 constexpr std::uint32_t kLocalSize = 64;
-/// Entries of a group, see plan/groups.hpp.
-constexpr std::uint32_t kGroupSize = DOLP_GROUP_SIZE;
+/// Entries of a group that there are modules for, see plan/groups.hpp.
+constexpr std::array<std::uint32_t, 4> kGroupSizes = {1, 4, 8, 16};
 
 /// Creates pipelines on demand, one for each combination of the specialization constants; any thread may ask for one.
 class Kernels {
@@ -30,13 +30,13 @@ class Kernels {
   /// pipelines to run do not use.
   void bind(const std::array<VkBuffer, kBindingCount>& buffers);
 
-  /// `group_size`: 1 or kGroupSize entries an invocation.
+  /// `group_size`: one of kGroupSizes.
   VkPipeline moments(Distribution distribution, Masking masking, std::uint32_t group_size);
   VkPipeline masking_table(Distribution distribution, Masking masking);
   VkPipeline mueller(Distribution distribution, Masking masking);
   /// Runs `pipeline` of `create` in place of that of `moments`, for studies of other modules.
   void replace_moments(Distribution distribution, Masking masking, UniquePipeline pipeline) {
-    moments_.insert_or_assign({distribution, masking}, std::move(pipeline));
+    moments_[1].insert_or_assign({distribution, masking}, std::move(pipeline));
   }
   VkPipelineLayout layout() const { return layout_.get(); }
   VkDescriptorSet descriptor_set() const { return set_; }
@@ -46,6 +46,7 @@ class Kernels {
 
  private:
   using Cache = std::map<std::pair<Distribution, Masking>, UniquePipeline>;
+  Cache& moments_cache(std::uint32_t group_size);
   VkPipeline cached(Cache& cache, std::span<const std::uint32_t> spirv, Distribution distribution, Masking masking);
   void create_layouts();
   void create_descriptor_set();
@@ -56,8 +57,9 @@ class Kernels {
   UniquePipelineLayout layout_;
   UniqueDescriptorPool pool_;
   VkDescriptorSet set_ = VK_NULL_HANDLE;
-  std::mutex mutex_;  ///< of the caches
-  Cache moments_, group_moments_, masking_tables_, muellers_;
+  std::mutex mutex_;                        ///< of the caches
+  std::map<std::uint32_t, Cache> moments_;  ///< by the size of a group
+  Cache masking_tables_, muellers_;
 };
 
 }  // namespace dolp::vulkan

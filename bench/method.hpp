@@ -83,5 +83,6 @@ std::unique_ptr<Solver> make_dblquad(const SolverOptions& options);
 /// Errors: Unavailable when there is no usable device of this precision.
 std::unique_ptr<Solver> make_vulkan(const SolverOptions& options, Precision precision);
 std::unique_ptr<Solver> make_cpu(Precision precision);
+std::unique_ptr<Solver> make_native();
 
 }  // namespace dolp::bench

@@ -90,6 +90,15 @@ std::vector<Method> all() {
   for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
     list.push_back(evaluator("cpu", precision, [precision](const SolverOptions&) { return make_cpu(precision); }));
   }
+  list.push_back({.name = "native-float",
+                  .label = "native C++ float",
+                  .what = "the same text in the same groups and pieces, compiled for this processor, OpenMP, float",
+                  .cores = "all",
+                  .setting_name = "tolerance",
+                  .settings = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6},
+                  .quick_settings = {1e-3, 1e-5},
+                  .is_batched = true,
+                  .make = [](const SolverOptions&) { return make_native(); }});
   return list;
 }
 

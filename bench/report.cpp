@@ -78,6 +78,20 @@ void add_warnings(ordered_json& result) {
   warn_of_conditions(result);
 }
 
+ordered_json method_json(const Method& method) {
+  return {{"name", method.name},
+          {"label", method.label},
+          {"what", method.what},
+          {"cores", method.cores},
+          {"setting", method.setting_name}};
+}
+
+void note_where(ordered_json& result, const Method& method, const Solver& solver) {
+  for (ordered_json& described : result["methods"]) {
+    if (described["name"] == method.name) described["where"] = solver.where();
+  }
+}
+
 std::string json_text(ordered_json result) {
   std::string rows;
   for (const ordered_json& row : result["results"]) rows += (rows.empty() ? "\n  " : ",\n  ") + row.dump();

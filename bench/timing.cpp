@@ -1,5 +1,7 @@
 #include "bench/timing.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -44,6 +46,13 @@ double median(std::vector<double> values) {
 }
 
 double minimum(const std::vector<double>& values) { return *std::ranges::min_element(values); }
+
+double rounded_time(double time_s) { return std::stod(fmt::format("{:.3e}", time_s)); }
+
+std::vector<double> per_entry(std::vector<double> times_s, std::size_t entries) {
+  for (double& time_s : times_s) time_s = rounded_time(time_s / static_cast<double>(entries));
+  return times_s;
+}
 
 double spread(const std::vector<double>& values) { return median(values) / minimum(values) - 1.0; }
 

@@ -30,6 +30,12 @@ struct Measurement {
 double median(std::vector<double> values);
 double minimum(const std::vector<double>& values);
 
+/// To four digits: raw times have no more.
+double rounded_time(double time_s);
+
+/// Of one entry each, rounded, from times of calls over `entries`.
+std::vector<double> per_entry(std::vector<double> times_s, std::size_t entries);
+
 /// (median - minimum)/minimum: how far a usual time is from an undisturbed one.
 double spread(const std::vector<double>& values);
 

@@ -1,0 +1,61 @@
+// The shaders' own text, compiled for this very processor: the same algorithm, groups and pieces as on the device.
+#include <omp.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "bench/method.hpp"
+#include "bench/text/grouped_text.hpp"
+#include "evaluate/processor.hpp"
+
+namespace dolp::bench {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+class NativeText final : public Solver {
+ public:
+  Solution solve(const MomentsRequest& request, double setting) override {
+    if (request.distribution != Distribution::kCauchy) throw Unavailable("it is compiled for the cauchy alone");
+    MomentsRequest wanted = request;
+    wanted.tolerance = setting;
+    const GroupedWork work(wanted);
+    const std::unique_ptr<GroupedText> text = make_native_text(work);
+    std::vector<kernel::MomentsNode> nodes(work.pieces.size() * work.grouping.size);
+    Solution solution;
+    solution.kernel_s = run(work, *text, nodes);
+    solution.evaluations = 0.0;
+    for (std::size_t i = 0; i < nodes.size(); i += work.grouping.size) *solution.evaluations += nodes[i].evaluations;
+    for (const Moments& entry : moments_of(work, nodes)) {
+      solution.answers.push_back({entry.r_i, entry.r_q, std::max(entry.r_i_error, entry.r_q_error) / entry.r_i});
+    }
+    return solution;
+  }
+  std::string where() const override { return processor_name() + ", OpenMP, " DOLP_NATIVE_FLAGS; }
+
+ private:
+  static double run(const GroupedWork& work, GroupedText& text, std::vector<kernel::MomentsNode>& nodes) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto shapes = work.data.needs_masking_table() ? static_cast<std::int64_t>(work.grouping.shapes.size()) : 0;
+    const auto pieces = static_cast<std::int64_t>(work.pieces.size());
+#pragma omp parallel
+    {
+#pragma omp for schedule(dynamic, 1)
+      for (std::int64_t i = 0; i < shapes; ++i) text.build_masking_table(static_cast<std::size_t>(i));
+#pragma omp for schedule(dynamic, 64)
+      for (std::int64_t i = 0; i < pieces; ++i) {
+        const auto piece = static_cast<std::size_t>(i);
+        text.run_piece(piece, std::span(nodes).subspan(piece * work.grouping.size, work.grouping.size));
+      }
+    }
+    return seconds_since(start);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Solver> make_native() { return std::make_unique<NativeText>(); }
+
+}  // namespace dolp::bench

@@ -33,6 +33,27 @@ void add_rules(std::vector<Method>& list) {
                   .make = [](const SolverOptions&) { return make_monte_carlo(); }});
 }
 
+void add_device_rules(std::vector<Method>& list) {
+  list.push_back({.name = "vulkan-midpoint",
+                  .label = "midpoint rule, Vulkan",
+                  .what = "the midpoint rule on the Vulkan device, with dolp's Fresnel and masking tables, float",
+                  .cores = "all",
+                  .setting_name = "nodes per axis",
+                  .settings = {8, 16, 32, 64, 128, 256, 512, 1024},
+                  .quick_settings = {32, 128},
+                  .is_batched = true,
+                  .make = make_vulkan_midpoint});
+  list.push_back({.name = "vulkan-gauss",
+                  .label = "Gauss-Legendre rule, Vulkan",
+                  .what = "the Gauss-Legendre rule on the Vulkan device, likewise",
+                  .cores = "all",
+                  .setting_name = "nodes per axis",
+                  .settings = {4, 8, 12, 16, 20, 32, 64, 96, 128, 256, 512, 1024},
+                  .quick_settings = {16, 64},
+                  .is_batched = true,
+                  .make = make_vulkan_gauss});
+}
+
 void add_adaptive(std::vector<Method>& list) {
   list.push_back(
       {.name = "hcubature",
@@ -82,6 +103,7 @@ Method evaluator(const std::string& name, Precision precision,
 std::vector<Method> all() {
   std::vector<Method> list;
   add_rules(list);
+  add_device_rules(list);
   add_adaptive(list);
   for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
     list.push_back(evaluator("vulkan", precision,

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "bench/effect_cases.hpp"
 #include "bench/study.hpp"
 #include "bench/study_run.hpp"
+#include "bench/timed_scene.hpp"
 #include "bench/timing.hpp"
 #include "effects/effects.hpp"
 #include "error.hpp"
@@ -23,64 +23,11 @@ namespace dolp::bench {
 namespace {
 
 using nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kFullRepeats = 5;
 constexpr std::size_t kQuickRepeats = 3;
 constexpr std::size_t kQuickEntries = 4096;
-constexpr double kRawTime = 5e-3;  // seconds: shorter calls are made several times for one raw time
 constexpr std::uint32_t kNoPromise = kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-/// A scene as a user runs it, timed again and again.
-class TimedScene {
- public:
-  TimedScene(Scene scene, bool keep_all, VulkanEvaluator& evaluator)
-      : scene_(std::move(scene)), entries_(grid_entries(scene_)), keep_all_(keep_all), evaluator_(evaluator) {
-    results_ = run();  // creates the pipelines
-  }
-
-  /// Adds a raw time of a call.
-  void repeat() {
-    if (calls_ == 0) calls_ = calls_of_a_raw_time();
-    const double kernel_s = evaluator_.report().kernel_s;
-    const Clock::time_point start = Clock::now();
-    for (std::size_t i = 0; i < calls_; ++i) run();
-    const auto calls = static_cast<double>(calls_);
-    raw_s_.push_back(seconds_since(start) / calls);
-    raw_kernel_s_.push_back((evaluator_.report().kernel_s - kernel_s) / calls);
-  }
-
-  const Scene& scene() const { return scene_; }
-  const std::vector<SceneEntry>& entries() const { return entries_; }
-  const EffectPlan& plan() const { return plan_; }
-  const std::vector<PointResult>& results() const { return results_; }
-  std::vector<double> times_s() const { return per_entry(raw_s_, entries_.size()); }
-  std::vector<double> kernel_times_s() const { return per_entry(raw_kernel_s_, entries_.size()); }
-
- private:
-  std::size_t calls_of_a_raw_time() {
-    const Clock::time_point start = Clock::now();
-    run();
-    return static_cast<std::size_t>(std::ceil(std::max(1.0, kRawTime / seconds_since(start))));
-  }
-
-  std::vector<PointResult> run() {
-    plan_ = plan_effects(scene_, entries_, keep_all_);
-    const bool integrates = wants_evaluator(scene_, entries_, plan_);
-    return evaluate_scene(scene_, entries_, plan_, integrates ? &evaluator_ : nullptr, nullptr);
-  }
-
-  Scene scene_;
-  std::vector<SceneEntry> entries_;
-  bool keep_all_;
-  VulkanEvaluator& evaluator_;
-  EffectPlan plan_;
-  std::vector<PointResult> results_;
-  std::size_t calls_ = 0;
-  std::vector<double> raw_s_, raw_kernel_s_;
-};
 
 /// The largest |change of DOLP| of the entries for which both promise one, and how many those are.
 struct Change {

@@ -26,7 +26,8 @@ std::string some_of(const std::vector<std::string>& names) {
 /// "gauss easy 64", "masking hemispherical smith".
 std::string row_name(const ordered_json& row) {
   const ordered_json& setting = row["setting"];
-  const ordered_json& first = row.contains("method") ? row["method"] : row["effect"];
+  const char* key = row.contains("method") ? "method" : row.contains("effect") ? "effect" : "part";
+  const ordered_json& first = row[key];
   return fmt::format("{} {} {}", first.get<std::string>(), row["case"].get<std::string>(),
                      setting.is_number() ? fmt::format("{:g}", setting.get<double>()) : setting.get<std::string>());
 }

@@ -36,4 +36,12 @@ void run_accuracy(const StudyOptions& options);
 /// Cancelled.
 void run_effects(const StudyOptions& options);
 
+/// `dolp-bench throughput`: entries and integrand evaluations a second on the grid of the stainless-steel scene, its
+/// time with twice the entries, the share of the device's arithmetic peak, and the scaling with cores and vector width.
+///
+/// `cases` are parts of it, `entries` those of the largest grid. Cores and vector width are lavapipe's, which reads
+/// them from its environment once: they are measured in processes of their own. Errors: InputError for a part that
+/// there is not; DeviceError without a usable device; IoError; Cancelled.
+void run_throughput(const StudyOptions& options);
+
 }  // namespace dolp::bench

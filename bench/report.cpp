@@ -25,11 +25,12 @@ std::string some_of(const std::vector<std::string>& names) {
 
 /// "gauss easy 64", "masking hemispherical smith".
 std::string row_name(const ordered_json& row) {
-  const ordered_json& setting = row["setting"];
-  const char* key = row.contains("method") ? "method" : row.contains("effect") ? "effect" : "part";
-  const ordered_json& first = row[key];
-  return fmt::format("{} {} {}", first.get<std::string>(), row["case"].get<std::string>(),
-                     setting.is_number() ? fmt::format("{:g}", setting.get<double>()) : setting.get<std::string>());
+  const auto text = [&](const char* key) {
+    const ordered_json& value = row[key];
+    return value.is_number() ? fmt::format("{:g}", value.get<double>()) : value.get<std::string>();
+  };
+  const char* first = row.contains("method") ? "method" : row.contains("effect") ? "effect" : "part";
+  return fmt::format("{} {} {}", text(first), text("case"), text(row.contains("tolerance") ? "tolerance" : "setting"));
 }
 
 void warn_of_times(ordered_json& result) {

@@ -44,4 +44,11 @@ void run_effects(const StudyOptions& options);
 /// there is not; DeviceError without a usable device; IoError; Cancelled.
 void run_throughput(const StudyOptions& options);
 
+/// `dolp-bench peers`: for every method the cheapest setting whose measured error on a sample of a grid's entries meets
+/// a tolerance, its time per entry, and the ratio to the kernels of dolp in float.
+///
+/// `cases` are maskings. Errors: InputError for a case or method that there is not; DeviceError when `device` is given
+/// and cannot be had; IoError; Cancelled.
+void run_peers(const StudyOptions& options);
+
 }  // namespace dolp::bench

@@ -34,14 +34,15 @@ constexpr std::array kTolerances = {1e-3, 1e-4, 1e-6};
 constexpr std::array<GridSize, 6> kGrids = {
     {{32, 32, 32}, {64, 64, 64}, {128, 64, 64}, {256, 64, 64}, {256, 128, 64}, {256, 128, 128}}};
 constexpr std::size_t kMainGrid = 1;  // of kGrids: what all but the grids themselves are measured on
-constexpr std::size_t kQuickEntries = 32 * 32 * 32;
+constexpr std::size_t kQuickEntries = 24 * 24 * 24;
 constexpr std::size_t kFullRepeats = 5;
 constexpr std::size_t kQuickRepeats = 2;
 constexpr double kLongTime = 1.0;  // seconds of a call that is repeated as in a quick study
 constexpr std::size_t kFullWorkgroups = 48;
 constexpr std::size_t kQuickWorkgroups = 6;
 constexpr std::size_t kPeakRepeats = 9;
-const TimingPolicy kKernelTiming{.min_repeats = 5, .max_repeats = 15, .enough_s = 1.0, .most_s = 4.0};
+const TimingPolicy kFullTiming{.min_repeats = 5, .max_repeats = 15, .enough_s = 1.0, .most_s = 4.0};
+const TimingPolicy kQuickTiming{.min_repeats = 3, .max_repeats = 5, .enough_s = 0.1, .most_s = 0.5};
 
 /// A part of the study, as --case names it.
 struct Part {
@@ -122,6 +123,9 @@ class Study {
   bool quick() const { return run_.options().quick; }
   GridSize main_grid() const { return grids_[std::min(kMainGrid, grids_.size() - 1)]; }
   MomentsRequest main_request(Masking masking) const { return steel_request(masking, steel_grid(main_grid())); }
+  std::vector<double> arithmetic_tolerances() const {
+    return quick() ? std::vector<double>{kTolerance} : std::vector<double>(kTolerances.begin(), kTolerances.end());
+  }
   Measurement kernel_times(Masking masking, double tolerance);
 
   void describe();
@@ -145,7 +149,7 @@ Study::Study(StudyRun& run)
       grids_(grids_up_to(quick() ? std::min(run.options().entries, kQuickEntries) : run.options().entries)) {
   if (run.options().cases.empty()) parts_.pop_back();  // what the others run
   if (runs("grids")) run_.expect(kMaskings.size() * (grids_.size() + kTolerances.size() - 1));
-  if (runs("arithmetic")) run_.expect(kMaskings.size() * kTolerances.size());
+  if (runs("arithmetic")) run_.expect(kMaskings.size() * arithmetic_tolerances().size());
   if (runs("kernels")) run_.expect(kMaskings.size());
 }
 
@@ -205,7 +209,7 @@ void Study::run_grids(Masking masking) {
 
 Measurement Study::kernel_times(Masking masking, double tolerance) {
   if (!float_solver_) float_solver_ = make_vulkan({.device = run_.options().device}, Precision::kFloat);
-  return measure(*float_solver_, main_request(masking), tolerance, false, kKernelTiming);
+  return measure(*float_solver_, main_request(masking), tolerance, false, quick() ? kQuickTiming : kFullTiming);
 }
 
 void Study::run_arithmetic() {
@@ -217,7 +221,7 @@ void Study::run_arithmetic() {
                          {"what", "multiplications and additions in float, 12 independent chains an invocation"},
                          {"lanes", lanes}};
   for (const Masking masking : kMaskings) {
-    for (const double tolerance : kTolerances) {
+    for (const double tolerance : arithmetic_tolerances()) {
       MomentsRequest request = main_request(masking);
       request.tolerance = tolerance;
       const auto entries = static_cast<double>(request.entries.size());

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 namespace dolp::bench {
 namespace {
@@ -29,11 +29,12 @@ Timed timed(Solver& solver, const MomentsRequest& request, double setting, std::
   return result;
 }
 
-void add(const Timed& timed, bool is_random, Measurement& measurement) {
+void add(Timed timed, bool is_random, Measurement& measurement) {
   measurement.raw_s.push_back(timed.time_s);
   if (timed.solution.kernel_s) measurement.raw_kernel_s.push_back(timed.kernel_s);
   if (is_random || measurement.answers.empty()) measurement.answers.push_back(timed.solution.answers.front());
   measurement.evaluations = timed.solution.evaluations;
+  measurement.last = std::move(timed.solution.answers);
 }
 
 }  // namespace
@@ -79,9 +80,9 @@ Measurement measure(Solver& solver, const MomentsRequest& request, double settin
     return repeats >= least ? total_s >= policy.enough_s : !is_random && total_s >= policy.most_s;
   };
   while (!is_done()) {
-    const Timed next = timed(solver, request, setting, calls);
+    Timed next = timed(solver, request, setting, calls);
     total_s += next.time_s * static_cast<double>(calls);
-    add(next, is_random, measurement);
+    add(std::move(next), is_random, measurement);
   }
   return measurement;
 }

@@ -24,6 +24,7 @@ struct Measurement {
   std::vector<double> raw_s;          ///< of one call each
   std::vector<double> raw_kernel_s;   ///< likewise in kernels; empty without kernels
   std::vector<Answer> answers;        ///< of the first entry: one, or one for each repeat of a random method
+  std::vector<Answer> last;           ///< of all entries, by the last call
   std::optional<double> evaluations;  ///< of one call
 };
 

@@ -143,7 +143,9 @@ struct Tried {
 class Settings {
  public:
   Settings(const Method& method, Solver& solver, const Sample& sample, const Effort& effort)
-      : method_(method), solver_(solver), sample_(sample), effort_(effort) {}
+      : method_(method), solver_(solver), sample_(sample), effort_(effort) {
+    warm_up();
+  }
 
   /// Tries settings until one gives all entries the tolerance; nothing when none does. `why_not` says why.
   const Tried* reaching(double tolerance) {
@@ -196,6 +198,16 @@ class Settings {
     return true;
   }
 
+  /// Kernels are compiled, and tables of nodes made, at the first run.
+  void warm_up() {
+    const Batch batch = method_.is_batched ? nested(sample_, NestedGrid::kLargestStride) : one_of(sample_, 0);
+    try {
+      solver_.solve(batch.request, method_.settings.front());
+    } catch (const Unavailable&) {
+      // The first try meets it again and says so.
+    }
+  }
+
   double try_grid(Tried& tried) {
     const Batch batch = nested(sample_, NestedGrid::kLargestStride);
     const Call made = call(solver_, batch.request, tried.setting);
@@ -206,10 +218,19 @@ class Settings {
     return made.time_s;
   }
 
+  /// The faster of two calls, where that takes no time.
+  Call undisturbed_call(const MomentsRequest& request, double setting) {
+    constexpr double kShortCall = 0.01;  // seconds
+    Call first = call(solver_, request, setting);
+    if (first.time_s > kShortCall || !first.solution.own_times_s.empty()) return first;
+    Call second = call(solver_, request, setting);
+    return second.time_s < first.time_s ? second : first;
+  }
+
   double try_each(Tried& tried) {
     double total_s = 0.0;
     for (std::size_t i = 0; i < sample_.truths.size(); ++i) {
-      const Call made = call(solver_, one_of(sample_, i).request, tried.setting);
+      const Call made = undisturbed_call(one_of(sample_, i).request, tried.setting);
       tried.errors.push_back(error_of(made.solution.answers.front(), sample_.truths[i]));
       tried.times_s.push_back(made.time_s);
       total_s += made.time_s;

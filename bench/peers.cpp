@@ -2,23 +2,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <optional>
 
 #include "bench/cases.hpp"
 #include "bench/grids.hpp"
 #include "bench/method.hpp"
+#include "bench/peer_settings.hpp"
 #include "bench/report.hpp"
 #include "bench/study.hpp"
 #include "bench/study_run.hpp"
 #include "bench/timing.hpp"
-#include "bench/truth.hpp"
 
 namespace dolp::bench {
 namespace {
@@ -71,195 +67,19 @@ const std::vector<Target> kTargets = {
     {"native float build, same cores", {"native-float"}, {"none", "v-cavity", "integral", "smith"}, 0.9}};
 constexpr double kTargetTolerance = 1e-4;
 
-/// One masking with its sample.
-struct Sample {
-  PeerCase which;
-  std::vector<NestedGrid::Place> places;
-  MomentsRequest alone;  ///< the sample's entries and no others
-  std::vector<Truth> truths;
-};
-
-/// Entries to solve, and where among them the sample is.
-struct Batch {
-  MomentsRequest request;
-  std::vector<std::size_t> positions;
-};
-
-Batch whole_sample(const Sample& sample) {
-  Batch batch{sample.alone, std::vector<std::size_t>(sample.places.size())};
-  std::iota(batch.positions.begin(), batch.positions.end(), 0U);
-  return batch;
-}
-
-Batch one_of(const Sample& sample, std::size_t i) {
-  MomentsRequest request = sample.alone;
-  request.entries = {sample.alone.entries[i]};
-  request.theta_deg = {sample.alone.theta_deg[i]};
-  request.shapes = {sample.alone.shapes[i]};
-  request.entries = {{0, 0, 0}};
-  return {std::move(request), {0}};
-}
-
-Batch nested(const Sample& sample, std::size_t stride) {
-  Batch batch{steel_request(sample.which.masking, NestedGrid::with_stride(stride)), {}};
-  for (const NestedGrid::Place& place : sample.places) batch.positions.push_back(place.position(stride));
-  return batch;
-}
-
-double worst_error(const std::vector<Answer>& answers, const Batch& batch, const std::vector<Truth>& truths) {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < batch.positions.size(); ++i) {
-    const double error = error_of(answers[batch.positions[i]], truths[i]);
-    worst = std::isnan(error) ? std::numeric_limits<double>::infinity() : std::max(worst, error);
-  }
-  return worst;
-}
-
-/// A call of a solver, with its time.
-struct Call {
-  Solution solution;
-  double time_s = 0.0;
-};
-
-Call call(Solver& solver, const MomentsRequest& request, double setting) {
-  const auto start = std::chrono::steady_clock::now();
-  Call made{solver.solve(request, setting)};
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  const std::vector<double>& own_s = made.solution.own_times_s;
-  made.time_s = own_s.empty() ? elapsed.count() : median(own_s);
-  return made;
-}
-
-/// What a setting gives each entry of the sample.
-struct Tried {
-  double setting = 0.0;
-  std::vector<double> errors = {};
-  std::vector<double> times_s = {};  ///< an entry; of methods for many entries a call, that of all in it
-
-  double worst() const { return *std::ranges::max_element(errors); }
-};
-
-/// The settings of one method for one sample, from coarse to fine, as far as they are worth trying.
-class Settings {
- public:
-  Settings(const Method& method, Solver& solver, const Sample& sample, const Effort& effort)
-      : method_(method), solver_(solver), sample_(sample), effort_(effort) {
-    warm_up();
-  }
-
-  /// Tries settings until one gives all entries the tolerance; nothing when none does. `why_not` says why.
-  const Tried* reaching(double tolerance) {
-    for (const Tried& tried : tried_) {
-      if (tried.worst() <= tolerance) return &tried;
-    }
-    while (tried_.size() < method_.settings.size() && !is_over_) {
-      if (try_next() && tried_.back().worst() <= tolerance) return &tried_.back();
-    }
-    return nullptr;
-  }
-
-  /// Mean time of an entry when each has the cheapest setting that gives it the tolerance: what nobody can choose who
-  /// does not know the truth. Nothing when one entry has none.
-  std::optional<double> with_hindsight(double tolerance) const {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < sample_.truths.size(); ++i) {
-      double cheapest = std::numeric_limits<double>::infinity();
-      for (const Tried& tried : tried_) {
-        if (tried.errors[i] <= tolerance) cheapest = std::min(cheapest, tried.times_s[i]);
-      }
-      sum += cheapest;
-    }
-    if (std::isinf(sum)) return std::nullopt;
-    return sum / static_cast<double>(sample_.truths.size());
-  }
-
-  const std::string& why_not() const { return why_not_; }
-
- private:
-  bool try_next() {
-    Tried tried{.setting = method_.settings[tried_.size()]};
-    double total_s = 0.0;
-    try {
-      total_s = method_.is_batched ? try_grid(tried) : try_each(tried);
-    } catch (const Unavailable& error) {
-      is_over_ = true;
-      why_not_ = fmt::format("at {:g} {}", tried.setting, error.what());
-      return false;
-    }
-    tried_.push_back(std::move(tried));
-    if (total_s > effort_.call_s) {
-      is_over_ = true;
-      why_not_ = fmt::format("at {:g} its error is still {:.1e}; more takes too long", tried_.back().setting,
-                             tried_.back().worst());
-    } else if (tried_.size() == method_.settings.size()) {
-      why_not_ =
-          fmt::format("at {:g}, its finest setting, its error is {:.1e}", tried_.back().setting, tried_.back().worst());
-    }
-    return true;
-  }
-
-  /// Kernels are compiled, and tables of nodes made, at the first run.
-  void warm_up() {
-    const Batch batch = method_.is_batched ? nested(sample_, NestedGrid::kLargestStride) : one_of(sample_, 0);
-    try {
-      solver_.solve(batch.request, method_.settings.front());
-    } catch (const Unavailable&) {
-      // The first try meets it again and says so.
-    }
-  }
-
-  double try_grid(Tried& tried) {
-    const Batch batch = nested(sample_, NestedGrid::kLargestStride);
-    const Call made = call(solver_, batch.request, tried.setting);
-    for (std::size_t i = 0; i < batch.positions.size(); ++i) {
-      tried.errors.push_back(error_of(made.solution.answers[batch.positions[i]], sample_.truths[i]));
-      tried.times_s.push_back(made.time_s / static_cast<double>(batch.request.entries.size()));
-    }
-    return made.time_s;
-  }
-
-  /// The faster of two calls, where that takes no time.
-  Call undisturbed_call(const MomentsRequest& request, double setting) {
-    constexpr double kShortCall = 0.01;  // seconds
-    Call first = call(solver_, request, setting);
-    if (first.time_s > kShortCall || !first.solution.own_times_s.empty()) return first;
-    Call second = call(solver_, request, setting);
-    return second.time_s < first.time_s ? second : first;
-  }
-
-  double try_each(Tried& tried) {
-    double total_s = 0.0;
-    for (std::size_t i = 0; i < sample_.truths.size(); ++i) {
-      const Call made = undisturbed_call(one_of(sample_, i).request, tried.setting);
-      tried.errors.push_back(error_of(made.solution.answers.front(), sample_.truths[i]));
-      tried.times_s.push_back(made.time_s);
-      total_s += made.time_s;
-    }
-    return total_s;
-  }
-
-  const Method& method_;
-  Solver& solver_;
-  const Sample& sample_;
-  const Effort& effort_;
-  std::vector<Tried> tried_;
-  bool is_over_ = false;
-  std::string why_not_;
-};
-
 /// The entries that a method's time is taken from: the sample, or the largest grid that it does in time.
-Batch timed_batch(const Method& method, const Sample& sample, const Tried& tried, const Effort& effort) {
+PeerBatch timed_batch(const Method& method, const PeerSample& sample, const TriedSetting& tried, const Effort& effort) {
   if (!method.is_batched) return whole_sample(sample);
   std::size_t stride = NestedGrid::kLargestStride;
   const auto time_of = [&](std::size_t s) {
     return tried.times_s.front() * std::pow(static_cast<double>(NestedGrid::kSide / s), 3);
   };
   while (stride > 1 && time_of(stride / 2) <= effort.grid_s) stride /= 2;
-  return nested(sample, stride);
+  return nested_grid(sample, stride);
 }
 
-ordered_json row_start(const Method& method, const Sample& sample, double tolerance) {
-  return {{"method", method.name}, {"case", sample.which.name}, {"tolerance", tolerance}};
+ordered_json row_start(const Method& method, const PeerSample& sample, double tolerance) {
+  return {{"method", method.name}, {"case", masking_name(sample.masking)}, {"tolerance", tolerance}};
 }
 
 class Study {
@@ -280,15 +100,15 @@ class Study {
  private:
   void describe();
   void run_method(const Method& method);
-  void run_sample(const Method& method, Solver& solver, const Sample& sample);
-  ordered_json measured_row(const Method& method, Solver& solver, const Sample& sample, Settings& settings,
+  void run_sample(const Method& method, Solver& solver, const PeerSample& sample);
+  ordered_json measured_row(const Method& method, Solver& solver, const PeerSample& sample, PeerSettings& settings,
                             double tolerance);
 
   StudyRun& run_;
   const Effort& effort_;
   std::vector<Method> methods_;
   std::vector<PeerCase> cases_;
-  std::vector<Sample> samples_;
+  std::vector<PeerSample> samples_;
 };
 
 void Study::describe() {
@@ -300,8 +120,7 @@ void Study::describe() {
   for (const Method& method : methods_) json["methods"].push_back(method_json(method));
   const std::vector<NestedGrid::Place> places = NestedGrid::sample(effort_.sample);
   for (const PeerCase& which : cases_) {
-    Sample sample{which, places, sample_request(which.masking, places), {}};
-    sample.truths = truths_of(sample.alone);
+    const PeerSample& sample = samples_.emplace_back(which.masking, places);
     ordered_json& described = json["cases"].emplace_back();
     described = {{"name", which.name}, {"what", "stainless steel, cauchy"}, {"masking", which.name}};
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -311,7 +130,6 @@ void Study::describe() {
                                      {"r_i", sample.truths[i].moments.r_i},
                                      {"bound", sample.truths[i].bound}});
     }
-    samples_.push_back(std::move(sample));
   }
 }
 
@@ -323,7 +141,7 @@ void Study::run_method(const Method& method) {
   } catch (const Unavailable& error) {
     reason = error.what();
   }
-  for (const Sample& sample : samples_) {
+  for (const PeerSample& sample : samples_) {
     if (solver) {
       run_sample(method, *solver, sample);
       continue;
@@ -337,29 +155,29 @@ void Study::run_method(const Method& method) {
   if (solver) note_where(run_.json(), method, *solver);
 }
 
-void Study::run_sample(const Method& method, Solver& solver, const Sample& sample) {
-  Settings settings(method, solver, sample, effort_);
+void Study::run_sample(const Method& method, Solver& solver, const PeerSample& sample) {
+  PeerSettings settings(method, solver, sample, effort_.call_s);
   for (const double tolerance : effort_.tolerances) {
     run_.finish(measured_row(method, solver, sample, settings, tolerance));
   }
 }
 
-ordered_json Study::measured_row(const Method& method, Solver& solver, const Sample& sample, Settings& settings,
+ordered_json Study::measured_row(const Method& method, Solver& solver, const PeerSample& sample, PeerSettings& settings,
                                  double tolerance) {
   ordered_json row = row_start(method, sample, tolerance);
-  const Tried* tried = settings.reaching(tolerance);
+  const TriedSetting* tried = settings.reaching(tolerance);
   const std::optional<double> hindsight_s = settings.with_hindsight(tolerance);
   if (tried == nullptr) {
     row["not_run"] = settings.why_not();
     if (hindsight_s) row["hindsight_time_s"] = rounded_time(*hindsight_s);
     return row;
   }
-  const Batch batch = timed_batch(method, sample, *tried, effort_);
+  const PeerBatch batch = timed_batch(method, sample, *tried, effort_);
   const std::size_t entries = batch.request.entries.size();
   const Measurement measurement = measure(solver, batch.request, tried->setting, method.is_random, effort_.timing);
   const std::vector<double> raw_s = per_entry(measurement.raw_s, entries);
   row["setting"] = tried->setting;
-  row["error"] = method.is_batched ? worst_error(measurement.last, batch, sample.truths) : tried->worst();
+  row["error"] = method.is_batched ? batch.worst_error(measurement.last, sample) : tried->worst_error();
   row["time_s"] = median(raw_s);
   row["time_min_s"] = minimum(raw_s);
   if (!measurement.raw_kernel_s.empty()) {

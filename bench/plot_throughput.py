@@ -16,7 +16,7 @@ def millions(rate):
 def grid_table(rows):
     lines = head(["masking", "grid (θ × σ × q)", "tolerance", "whole run", "kernels", "per entry, whole", "kernels",
                   "million entries/s", "million evaluations/s", "evaluations an entry", "time over half the entries"])
-    for row in rows:
+    for row in sorted(rows, key=lambda row: (list(MASKINGS).index(row["case"]), -row["tolerance"], row["entries"])):
         lines.append(row_of_cells([
             row["case"], " × ".join(str(side) for side in row["grid"]), f"{row['tolerance']:g}",
             time_text(row["run_s"]), time_text(row["kernel_run_s"]), time_text(row["time_s"]),
@@ -131,7 +131,7 @@ def draw_scaling(axes, result):
                     axes.bar(place + 0.2 * (i - 1.5), own[masking], width=0.18, color=colour)
                     axes.annotate(f"{own[masking]:.2f}", (place + 0.2 * (i - 1.5), own[masking]), ha="center",
                                   va="bottom", fontsize=6.5)
-            labels.append(f"{setting:g} {title}")
+            labels.append(f"{setting:g} {title}" if setting != 1 else "1 core")
             place += 1
         place += 0.5 if rows else 0
         labels += [""] if rows else []

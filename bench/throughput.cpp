@@ -4,15 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "bench/arithmetic_peak.hpp"
 #include "bench/cases.hpp"
-#include "bench/child.hpp"
+#include "bench/driver_variables.hpp"
 #include "bench/grids.hpp"
 #include "bench/method.hpp"
 #include "bench/operations.hpp"
@@ -134,8 +132,7 @@ class Study {
   void run_grids(Masking masking);
   void run_arithmetic();
   void run_kernels();
-  void run_children(const char* part, const std::vector<unsigned>& settings, const std::string& variable);
-  ordered_json child_rows(const std::string& assignment) const;
+  void run_with(const char* part, const DriverVariable& variable);
 
   StudyRun& run_;
   DeviceDescription device_;
@@ -175,8 +172,8 @@ void Study::measure_all() {
   std::vector<unsigned> counts;
   for (unsigned count = 1; count < cores; count *= 2) counts.push_back(count);
   counts.push_back(cores);
-  if (runs("cores")) run_children("cores", counts, "LP_NUM_THREADS");
-  if (runs("vector-width")) run_children("vector-width", {256, 512}, "LP_NATIVE_VECTOR_WIDTH");
+  if (runs("cores")) run_with("cores", {"LP_NUM_THREADS", counts});
+  if (runs("vector-width")) run_with("vector-width", {"LP_NATIVE_VECTOR_WIDTH", {256, 512}, true});
 }
 
 void Study::run_grids(Masking masking) {
@@ -264,73 +261,28 @@ void Study::run_kernels() {
   }
 }
 
-/// A folder of its own, gone at the end.
-class TemporaryCache {
- public:
-  TemporaryCache() : path_((std::filesystem::temp_directory_path() / "dolp-bench-XXXXXX").string()) {
-    if (::mkdtemp(path_.data()) == nullptr) throw IoError(path_ + ": cannot create the folder");
-  }
-  TemporaryCache(const TemporaryCache&) = delete;
-  TemporaryCache& operator=(const TemporaryCache&) = delete;
-  ~TemporaryCache() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
-
-ordered_json Study::child_rows(const std::string& assignment) const {
-  // Mesa's cache does not know for which width a kernel was compiled.
-  const TemporaryCache cache;
-  std::vector<std::string> arguments = {"env", assignment, "MESA_SHADER_CACHE_DIR=" + cache.path(), own_program()};
-  const std::vector<std::string> own = {
-      "throughput", "--quiet", "--case", "kernels", "--entries", std::to_string(main_grid().entries()), "--json", "-"};
-  arguments.insert(arguments.end(), own.begin(), own.end());
-  if (quick()) arguments.emplace_back("--quick");
-  if (!run_.options().device.empty()) arguments.insert(arguments.end(), {"--device", run_.options().device});
-  const ChildOutcome outcome = run_child(arguments, ChildErrors::kHidden);
-  ordered_json result = ordered_json::parse(outcome.out, nullptr, false);
-  if (outcome.status != 0 || !result.is_object()) throw Unavailable(assignment + " failed");
-  return result["results"];
-}
-
-/// Processes of this program with another value of an environment variable that lavapipe reads once; in turns, so that
-/// what else the machine does is spread over all.
-void Study::run_children(const char* part, const std::vector<unsigned>& settings, const std::string& variable) {
-  if (!device_.name.starts_with("llvmpipe")) {
+void Study::run_with(const char* part, const DriverVariable& variable) {
+  const auto not_run = [&](const std::string& reason) {
     run_.expect(1);
-    ordered_json row = row_start(part, "all", variable);
-    row["not_run"] = "the device is not lavapipe, which alone reads " + variable;
+    ordered_json row = row_start(part, "all", variable.name);
+    row["not_run"] = reason;
     run_.finish(row);
+  };
+  if (!device_.name.starts_with("llvmpipe")) {
+    not_run("the device is not lavapipe, which alone reads " + variable.name);
     return;
   }
-  run_.expect(settings.size() * kMaskings.size());
-  std::vector<ordered_json> of_setting(settings.size());
-  for (std::size_t round = 0; round < (quick() ? kQuickRounds : kFullRounds); ++round) {
-    for (std::size_t i = 0; i < settings.size(); ++i) {
-      const ordered_json rows = child_rows(fmt::format("{}={}", variable, settings[i]));
-      if (round == 0) of_setting[i] = rows;
-      for (std::size_t j = 0; round > 0 && j < rows.size(); ++j) {
-        ordered_json& raw = of_setting[i][j]["raw_times_s"];
-        raw.insert(raw.end(), rows[j]["raw_times_s"].begin(), rows[j]["raw_times_s"].end());
-      }
+  try {
+    const std::size_t rounds = quick() ? kQuickRounds : kFullRounds;
+    const std::vector<ordered_json> rows = kernels_with(variable, run_.options(), main_grid().entries(), rounds);
+    run_.expect(rows.size());
+    for (const ordered_json& row : rows) {
+      ordered_json whole = {{"part", part}};
+      whole.update(row);
+      run_.finish(whole);
     }
-  }
-  for (std::size_t i = 0; i < settings.size(); ++i) {
-    for (std::size_t j = 0; j < of_setting[i].size(); ++j) {
-      const auto times_s = of_setting[i][j]["raw_times_s"].get<std::vector<double>>();
-      ordered_json row = row_start(part, of_setting[i][j]["case"], settings[i]);
-      row["entries"] = of_setting[i][j]["entries"];
-      row["time_s"] = median(times_s);
-      row["time_min_s"] = minimum(times_s);
-      // The minima: a disturbance may hit one process and not the other.
-      row["speedup"] = minimum(of_setting[0][j]["raw_times_s"]) / minimum(times_s);
-      row["raw_times_s"] = times_s;
-      run_.finish(row);
-    }
+  } catch (const Unavailable& error) {
+    not_run(error.what());
   }
 }
 

@@ -50,7 +50,7 @@ KernelWork count_operations(const MomentsRequest& request, std::size_t workgroup
     const std::size_t last = std::min(first + vulkan::kLocalSize, work.pieces.size());
     for (std::size_t piece = first; piece < last; ++piece) {
       const std::uint64_t flops = counted_operations().flops();
-      text->run_piece(piece, members);
+      text->run_pieces(piece, members);
       most = std::max(most, static_cast<double>(counted_operations().flops() - flops));
       evaluations += members.front().evaluations;
       ++pieces;

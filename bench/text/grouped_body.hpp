@@ -53,7 +53,12 @@ class Kernel final : public GroupedText {
 
   void build_masking_table(std::size_t shape) override { text_.build_masking_table(shapes_[shape], table(shape)); }
 
-  void run_piece(std::size_t piece, std::span<kernel::MomentsNode> members) override {
+  void run_pieces(std::size_t first, std::span<kernel::MomentsNode> members) override {
+    for (std::size_t i = 0; i < members.size() / kGroup; ++i) run_piece(first + i, members.subspan(i * kGroup, kGroup));
+  }
+
+ private:
+  void run_piece(std::size_t piece, std::span<kernel::MomentsNode> members) {
     const GroupPiece& own = work_.pieces[piece];
     const EntryGroup& group = work_.grouping.groups[own.group];
     const ShapeFamily& family = work_.grouping.families[group.family];
@@ -70,7 +75,6 @@ class Kernel final : public GroupedText {
     }
   }
 
- private:
   static uint table(std::size_t shape) { return static_cast<uint>(shape) * Own::kMaskingNodes; }
 
   const GroupedWork& work_;

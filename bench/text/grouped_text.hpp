@@ -30,15 +30,19 @@ class GroupedText {
   /// Fills the masking table of a shape of the grouping; needed before the pieces where the data needs tables.
   virtual void build_masking_table(std::size_t shape) = 0;
 
-  /// What invocation `piece` gives, one node for each member of its group.
-  virtual void run_piece(std::size_t piece, std::span<kernel::MomentsNode> members) = 0;
+  /// What invocations first, first + 1, ... give, a node for each member of each one's group, until `members` is full.
+  virtual void run_pieces(std::size_t first, std::span<kernel::MomentsNode> members) = 0;
 };
 
 /// Adds what the pieces gave, groups size by size, and turns it into moments in the order of the request.
 std::vector<Moments> moments_of(const GroupedWork& work, const std::vector<kernel::MomentsNode>& nodes);
 
-/// Compiled for this processor, as fast as the compiler can. Cauchy distribution only.
+/// Compiled for this processor, one invocation after the other, vectors where the compiler finds some. Cauchy
+/// distribution only.
 std::unique_ptr<GroupedText> make_native_text(const GroupedWork& work);
+
+/// The same with invocations side by side in vectors. Only masking without tables: none and v-cavity.
+std::unique_ptr<GroupedText> make_vector_text(const GroupedWork& work);
 
 /// Operations of arithmetic, by kind.
 struct OperationCounts {

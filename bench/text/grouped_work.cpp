@@ -18,9 +18,7 @@ std::vector<Moments> moments_of(const GroupedWork& work, const std::vector<kerne
   for (std::size_t piece = 0; piece < work.pieces.size(); ++piece) {
     const std::size_t group = work.pieces[piece].group;
     for (std::size_t g = 0; g < size; ++g) {
-      kernel::MomentsNode node = nodes[piece * size + g];
-      node.evaluations /= work.grouping.groups[group].used;
-      add_piece(groups[group * size + g], node);
+      add_piece(groups[group * size + g], nodes[piece * size + g]);
     }
   }
   std::vector<Moments> moments;

@@ -114,7 +114,7 @@ std::vector<Method> all() {
   }
   list.push_back({.name = "native-float",
                   .label = "native C++ float",
-                  .what = "the same text in the same groups and pieces, compiled for this processor, OpenMP, float",
+                  .what = "the same text in the same groups and pieces, compiled for this processor, all cores, float",
                   .cores = "all",
                   .setting_name = "tolerance",
                   .settings = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6},

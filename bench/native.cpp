@@ -1,8 +1,9 @@
 // The shaders' own text, compiled for this very processor: the same algorithm, groups and pieces as on the device.
-#include <omp.h>
-
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <functional>
+#include <thread>
 
 #include "bench/method.hpp"
 #include "bench/text/grouped_text.hpp"
@@ -15,6 +16,19 @@ constexpr std::size_t kBlock = 64;  // invocations between two choices of a core
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Calls body(i) once for each i < count. Threads of OpenMP would spin while they wait, and lose where anything else
+/// runs.
+void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& body) {
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < count; i = next++) body(i);
+  };
+  std::vector<std::jthread> threads;
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  for (std::size_t i = 1; i < std::min(cores, count); ++i) threads.emplace_back(work);
+  work();
 }
 
 class NativeText final : public Solver {
@@ -37,25 +51,20 @@ class NativeText final : public Solver {
     }
     return solution;
   }
-  std::string where() const override { return processor_name() + ", OpenMP, " DOLP_NATIVE_FLAGS; }
+  std::string where() const override { return processor_name() + ", " DOLP_NATIVE_FLAGS; }
 
  private:
   static double run(const GroupedWork& work, GroupedText& text, std::vector<kernel::MomentsNode>& nodes) {
     const auto start = std::chrono::steady_clock::now();
-    const auto shapes = work.data.needs_masking_table() ? static_cast<std::int64_t>(work.grouping.shapes.size()) : 0;
     const std::size_t size = work.grouping.size;
-    const auto blocks = static_cast<std::int64_t>((work.pieces.size() + kBlock - 1) / kBlock);
-#pragma omp parallel
-    {
-#pragma omp for schedule(dynamic, 1)
-      for (std::int64_t i = 0; i < shapes; ++i) text.build_masking_table(static_cast<std::size_t>(i));
-#pragma omp for schedule(dynamic, 1)
-      for (std::int64_t i = 0; i < blocks; ++i) {
-        const std::size_t first = static_cast<std::size_t>(i) * kBlock;
-        const std::size_t count = std::min(kBlock, work.pieces.size() - first);
-        text.run_pieces(first, std::span(nodes).subspan(first * size, count * size));
-      }
+    if (work.data.needs_masking_table()) {
+      on_all_cores(work.grouping.shapes.size(), [&](std::size_t shape) { text.build_masking_table(shape); });
     }
+    on_all_cores((work.pieces.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
+      const std::size_t first = block * kBlock;
+      const std::size_t count = std::min(kBlock, work.pieces.size() - first);
+      text.run_pieces(first, std::span(nodes).subspan(first * size, count * size));
+    });
     return seconds_since(start);
   }
 };

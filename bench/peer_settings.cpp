@@ -89,6 +89,13 @@ const TriedSetting* PeerSettings::reaching(double tolerance) {
   return nullptr;
 }
 
+void PeerSettings::reject(const TriedSetting& setting, double error) {
+  for (TriedSetting& tried : tried_) {
+    if (tried.setting == setting.setting) tried.errors.front() = std::max(tried.errors.front(), error);
+  }
+  why_not_ = fmt::format("at {:g}, the finest setting tried, its error is {:.1e}", setting.setting, error);
+}
+
 std::optional<double> PeerSettings::with_hindsight(double tolerance) const {
   double sum_s = 0.0;
   for (std::size_t i = 0; i < sample_.truths.size(); ++i) {

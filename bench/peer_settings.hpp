@@ -55,6 +55,9 @@ class PeerSettings {
   /// Tries settings until one gives all entries the tolerance; null when none does.
   const TriedSetting* reaching(double tolerance);
 
+  /// Says that a setting has an error after all, on other entries.
+  void reject(const TriedSetting& setting, double error);
+
   /// Why the last setting was the last.
   const std::string& why_not() const { return why_not_; }
 

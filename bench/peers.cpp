@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -68,14 +69,21 @@ const std::vector<Target> kTargets = {
 constexpr double kTargetTolerance = 1e-4;
 
 /// The entries that a method's time is taken from: the sample, or the largest grid that it does in time.
-PeerBatch timed_batch(const Method& method, const PeerSample& sample, const TriedSetting& tried, const Effort& effort) {
+PeerBatch timed_batch(const Method& method, Solver& solver, const PeerSample& sample, double setting,
+                      const Effort& effort) {
   if (!method.is_batched) return whole_sample(sample);
+  constexpr double kGrowth = 8.0;  // of the entries with half the stride
   std::size_t stride = NestedGrid::kLargestStride;
-  const auto time_of = [&](std::size_t s) {
-    return tried.times_s.front() * std::pow(static_cast<double>(NestedGrid::kSide / s), 3);
-  };
-  while (stride > 1 && time_of(stride / 2) <= effort.grid_s) stride /= 2;
-  return nested_grid(sample, stride);
+  PeerBatch batch = nested_grid(sample, stride);
+  while (stride > 1) {
+    const auto start = std::chrono::steady_clock::now();
+    solver.solve(batch.request, setting);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    if (kGrowth * elapsed.count() > effort.grid_s) break;
+    stride /= 2;
+    batch = nested_grid(sample, stride);
+  }
+  return batch;
 }
 
 ordered_json row_start(const Method& method, const PeerSample& sample, double tolerance) {
@@ -165,28 +173,31 @@ void Study::run_sample(const Method& method, Solver& solver, const PeerSample& s
 ordered_json Study::measured_row(const Method& method, Solver& solver, const PeerSample& sample, PeerSettings& settings,
                                  double tolerance) {
   ordered_json row = row_start(method, sample, tolerance);
-  const TriedSetting* tried = settings.reaching(tolerance);
+  while (const TriedSetting* tried = settings.reaching(tolerance)) {
+    const PeerBatch batch = timed_batch(method, solver, sample, tried->setting, effort_);
+    const std::size_t entries = batch.request.entries.size();
+    const Measurement measurement = measure(solver, batch.request, tried->setting, method.is_random, effort_.timing);
+    const double error = method.is_batched ? batch.worst_error(measurement.last, sample) : tried->worst_error();
+    if (error > tolerance) {  // a larger grid shares more
+      settings.reject(*tried, error);
+      continue;
+    }
+    const std::vector<double> raw_s = per_entry(measurement.raw_s, entries);
+    row["setting"] = tried->setting;
+    row["error"] = error;
+    row["time_s"] = median(raw_s);
+    row["time_min_s"] = minimum(raw_s);
+    if (!measurement.raw_kernel_s.empty()) {
+      row["kernel_time_s"] = median(per_entry(measurement.raw_kernel_s, entries));
+    }
+    row["entries"] = entries;
+    if (measurement.evaluations) row["evaluations"] = *measurement.evaluations / static_cast<double>(entries);
+    row["raw_times_s"] = raw_s;
+    break;
+  }
+  if (!row.contains("setting")) row["not_run"] = settings.why_not();
   const std::optional<double> hindsight_s = settings.with_hindsight(tolerance);
-  if (tried == nullptr) {
-    row["not_run"] = settings.why_not();
-    if (hindsight_s) row["hindsight_time_s"] = rounded_time(*hindsight_s);
-    return row;
-  }
-  const PeerBatch batch = timed_batch(method, sample, *tried, effort_);
-  const std::size_t entries = batch.request.entries.size();
-  const Measurement measurement = measure(solver, batch.request, tried->setting, method.is_random, effort_.timing);
-  const std::vector<double> raw_s = per_entry(measurement.raw_s, entries);
-  row["setting"] = tried->setting;
-  row["error"] = method.is_batched ? batch.worst_error(measurement.last, sample) : tried->worst_error();
-  row["time_s"] = median(raw_s);
-  row["time_min_s"] = minimum(raw_s);
-  if (!measurement.raw_kernel_s.empty()) {
-    row["kernel_time_s"] = median(per_entry(measurement.raw_kernel_s, entries));
-  }
   if (hindsight_s && !method.is_batched) row["hindsight_time_s"] = rounded_time(*hindsight_s);
-  row["entries"] = entries;
-  if (measurement.evaluations) row["evaluations"] = *measurement.evaluations / static_cast<double>(entries);
-  row["raw_times_s"] = raw_s;
   return row;
 }
 

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <string_view>
 
-#include "error.hpp"
-#include "evaluate/vulkan/instance.hpp"
+#include "bench/bench_device.hpp"
 #include "evaluate/vulkan/moments_run.hpp"
 #include "shaders/spirv.hpp"
 
@@ -17,18 +14,6 @@ namespace {
 constexpr double kTimeout = 600.0;  // seconds for one dispatch
 constexpr std::uint32_t kTile = 1U << 16U;
 constexpr std::uint32_t kBlockShapes = 1U << 12U;
-
-bool wants_validation() {
-  const char* value = std::getenv("DOLP_VALIDATION");
-  return value != nullptr && std::string_view(value) == "1";
-}
-
-VkPhysicalDevice chosen(const vulkan::Instance& instance, const std::string& choice) {
-  const std::vector<VkPhysicalDevice> all = instance.physical_devices();
-  std::vector<DeviceDescription> descriptions;
-  for (VkPhysicalDevice device : all) descriptions.push_back(vulkan::describe(device));
-  return all[choose_device(descriptions, choice, false)];
-}
 
 double largest_difference(const std::vector<Moments>& a, const std::vector<Moments>& b) {
   double largest = 0.0;
@@ -44,36 +29,28 @@ double largest_difference(const std::vector<Moments>& a, const std::vector<Momen
 
 struct BranchComparison::Impl {
   explicit Impl(const std::string& choice)
-      : instance(wants_validation() ? &log : nullptr),
-        device(chosen(instance, choice), false),
-        specialised(device, false),
-        uniform(device, false),
-        stream(device) {}
+      : bench(choice), specialised(bench.device, false), uniform(bench.device, false) {}
 
   struct Run {
     std::vector<Moments> moments;
     double kernel_s = 0.0;
   };
   Run run(vulkan::Kernels& kernels, const MomentsRequest& request) {
-    vulkan::MomentsRun moments_run({.device = device,
+    vulkan::MomentsRun moments_run({.device = bench.device,
                                     .kernels = kernels,
-                                    .stream = stream,
+                                    .stream = bench.stream,
                                     .packing = vulkan::Packing(false),
                                     .tile_timeout_s = kTimeout},
                                    request, kTile, kBlockShapes);
     Run result;
     result.moments = moments_run.compute(nullptr).value();
     result.kernel_s = moments_run.cost().kernel_s;
-    const std::vector<std::string> messages = log.messages();
-    if (!messages.empty()) throw DeviceError("Vulkan validation: " + messages.front());
+    bench.check_messages();
     return result;
   }
 
-  vulkan::ValidationLog log;
-  vulkan::Instance instance;
-  vulkan::Device device;
+  BenchDevice bench;
   vulkan::Kernels specialised, uniform;
-  vulkan::CommandStream stream;
 };
 
 BranchComparison::BranchComparison(const std::string& device) : impl_(std::make_unique<Impl>(device)) {}

@@ -1,12 +1,11 @@
 // SciPy's dblquad, run as a program of its own that also takes its times: the start of the interpreter is not counted.
 #include <fmt/format.h>
 
-#include <array>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "bench/cases.hpp"
+#include "bench/child.hpp"
 #include "bench/direct_brdf.hpp"
 #include "bench/method.hpp"
 
@@ -15,35 +14,12 @@ namespace {
 
 const std::string kScript = DOLP_BENCH_DIR "/dblquad.py";
 
-/// A word of a shell command, whatever it holds.
-std::string quoted(const std::string& word) {
-  std::string text = "'";
-  for (const char letter : word) text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
-  return text + "'";
-}
-
-struct Outcome {
-  int status = 0;
-  std::string out;
-};
-
-Outcome run_script(const std::string& python, const std::string& argument, const std::string& redirection = "") {
-  const std::string command = quoted(python) + " " + quoted(kScript) + " " + quoted(argument) + redirection;
-  std::FILE* pipe = ::popen(command.c_str(), "r");
-  if (pipe == nullptr) throw Unavailable("no process could be started for " + kScript);
-  Outcome outcome;
-  std::array<char, 4096> part{};
-  while (const std::size_t size = std::fread(part.data(), 1, part.size(), pipe)) outcome.out.append(part.data(), size);
-  outcome.status = ::pclose(pipe);
-  return outcome;
-}
-
 class Dblquad final : public Solver {
  public:
   explicit Dblquad(const SolverOptions& options) : time_limit_s_(options.time_limit_s) {
     std::string tried;
     for (const std::string& python : options.pythons) {
-      const Outcome outcome = run_script(python, "--version", " 2>/dev/null");
+      const ChildOutcome outcome = run_child({python, kScript, "--version"}, ChildErrors::kHidden);
       if (outcome.status == 0 && outcome.out.starts_with("SciPy")) {
         python_ = python;
         version_ = outcome.out.substr(0, outcome.out.find('\n'));
@@ -73,7 +49,7 @@ class Dblquad final : public Solver {
         {"k", entry.index.k},
         {"tolerance", tolerance},
         {"time_limit_s", time_limit_s_}};
-    const Outcome outcome = run_script(python_, question.dump());
+    const ChildOutcome outcome = run_child({python_, kScript, question.dump()}, ChildErrors::kShown);
     const nlohmann::json reply = nlohmann::json::parse(outcome.out, nullptr, false);
     if (outcome.status != 0 || !reply.is_object()) throw Unavailable(kScript + " failed; its message is above");
     if (reply.contains("too_long")) throw TookTooLong(fmt::format("it takes longer than {:g} s", time_limit_s_));

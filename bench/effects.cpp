@@ -3,98 +3,31 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "bench/branches.hpp"
 #include "bench/cases.hpp"
-#include "bench/context.hpp"
 #include "bench/effect_cases.hpp"
-#include "bench/report.hpp"
 #include "bench/study.hpp"
+#include "bench/study_run.hpp"
+#include "bench/timed_scene.hpp"
 #include "bench/timing.hpp"
-#include "cli/progress_bar.hpp"
 #include "effects/effects.hpp"
 #include "error.hpp"
 #include "evaluate/run/scene_run.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
-#include "table/atomic_file.hpp"
 
 namespace dolp::bench {
 namespace {
 
 using nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kFullRepeats = 5;
 constexpr std::size_t kQuickRepeats = 3;
 constexpr std::size_t kQuickEntries = 4096;
-constexpr double kRawTime = 5e-3;  // seconds: shorter calls are made several times for one raw time
 constexpr std::uint32_t kNoPromise = kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-/// Seconds an entry, to four digits: raw times have no more.
-double per_entry(double time_s, std::size_t entries) {
-  return std::stod(fmt::format("{:.3e}", time_s / static_cast<double>(entries)));
-}
-
-std::vector<double> per_entry(std::vector<double> times_s, std::size_t entries) {
-  for (double& time_s : times_s) time_s = per_entry(time_s, entries);
-  return times_s;
-}
-
-/// A scene as a user runs it, timed again and again.
-class TimedScene {
- public:
-  TimedScene(Scene scene, bool keep_all, VulkanEvaluator& evaluator)
-      : scene_(std::move(scene)), entries_(grid_entries(scene_)), keep_all_(keep_all), evaluator_(evaluator) {
-    results_ = run();  // creates the pipelines
-  }
-
-  /// Adds a raw time of a call.
-  void repeat() {
-    if (calls_ == 0) calls_ = calls_of_a_raw_time();
-    const double kernel_s = evaluator_.report().kernel_s;
-    const Clock::time_point start = Clock::now();
-    for (std::size_t i = 0; i < calls_; ++i) run();
-    const auto calls = static_cast<double>(calls_);
-    raw_s_.push_back(seconds_since(start) / calls);
-    raw_kernel_s_.push_back((evaluator_.report().kernel_s - kernel_s) / calls);
-  }
-
-  const Scene& scene() const { return scene_; }
-  const std::vector<SceneEntry>& entries() const { return entries_; }
-  const EffectPlan& plan() const { return plan_; }
-  const std::vector<PointResult>& results() const { return results_; }
-  std::vector<double> times_s() const { return per_entry(raw_s_, entries_.size()); }
-  std::vector<double> kernel_times_s() const { return per_entry(raw_kernel_s_, entries_.size()); }
-
- private:
-  std::size_t calls_of_a_raw_time() {
-    const Clock::time_point start = Clock::now();
-    run();
-    return static_cast<std::size_t>(std::ceil(std::max(1.0, kRawTime / seconds_since(start))));
-  }
-
-  std::vector<PointResult> run() {
-    plan_ = plan_effects(scene_, entries_, keep_all_);
-    const bool integrates = wants_evaluator(scene_, entries_, plan_);
-    return evaluate_scene(scene_, entries_, plan_, integrates ? &evaluator_ : nullptr, nullptr);
-  }
-
-  Scene scene_;
-  std::vector<SceneEntry> entries_;
-  bool keep_all_;
-  VulkanEvaluator& evaluator_;
-  EffectPlan plan_;
-  std::vector<PointResult> results_;
-  std::size_t calls_ = 0;
-  std::vector<double> raw_s_, raw_kernel_s_;
-};
 
 /// The largest |change of DOLP| of the entries for which both promise one, and how many those are.
 struct Change {
@@ -188,29 +121,25 @@ ordered_json branches_row(const MomentsRequest& request, const BranchTimes& time
   return row;
 }
 
-/// Everything that is asked for, and what has been found so far.
+/// Everything that is asked for.
 class Study {
  public:
-  Study(const StudyOptions& options, Progress progress);
-  ordered_json run();
+  explicit Study(StudyRun& run);
+  void measure_all();
 
  private:
   void describe();
   void run_group(const EffectGroup& group);
   void run_branches(const Scene& scene);
-  void finish(const ordered_json& row);
   bool is_wanted(const std::string& effect) const {
-    return options_.cases.empty() || std::ranges::find(options_.cases, effect) != options_.cases.end();
+    const std::vector<std::string>& cases = run_.options().cases;
+    return cases.empty() || std::ranges::find(cases, effect) != cases.end();
   }
 
-  const StudyOptions& options_;
-  Progress progress_;
+  StudyRun& run_;
   std::size_t repeats_;
   std::vector<EffectGroup> groups_;
   VulkanEvaluator evaluator_;
-  ordered_json result_;
-  std::size_t done_ = 0;
-  std::size_t total_ = 0;
 };
 
 constexpr std::array kDistributions = {Distribution::kCauchy, Distribution::kGaussian};
@@ -234,42 +163,34 @@ std::vector<EffectGroup> checked_groups(const StudyOptions& options) {
   return groups;
 }
 
-Study::Study(const StudyOptions& options, Progress progress)
-    : options_(options),
-      progress_(std::move(progress)),
-      repeats_(options.quick ? kQuickRepeats : kFullRepeats),
-      groups_(checked_groups(options)),
-      evaluator_({.device = options.device}) {
+Study::Study(StudyRun& run)
+    : run_(run),
+      repeats_(run.options().quick ? kQuickRepeats : kFullRepeats),
+      groups_(checked_groups(run.options())),
+      evaluator_({.device = run.options().device}) {
   for (const EffectGroup& group : groups_) {
-    if (is_wanted(group.effect)) total_ += group.settings.size();
+    if (is_wanted(group.effect)) run_.expect(group.settings.size());
   }
-  if (is_wanted("branches")) total_ += kDistributions.size() * kMaskings.size();
+  if (is_wanted("branches")) run_.expect(kDistributions.size() * kMaskings.size());
 }
 
 void Study::describe() {
   const Scene& base = groups_.front().settings.front().scene;
-  result_["study"] = "effects";
-  result_["context"] = context_json(options_.device, options_.arguments);
-  result_["error"] =
-      "effects: largest |change of DOLP| by what the plan drops, entries with status 1, 4 or 8 left out; branches: "
-      "largest max(|d r_i|, |d r_q|)/r_i between both kernels";
-  result_["time_s"] =
-      "seconds an entry, median; effects: plan and evaluation on the Vulkan device, whose creation is not counted; "
-      "branches: in kernels, masking tables included, with uniform branches";
-  result_["tolerance"] = base.accuracy.tolerance;
-  result_["grid"] = {{"theta_deg", base.grid.theta_deg}, {"sigma", base.grid.sigma}, {"q", base.grid.q}};
-  result_["results"] = ordered_json::array();
+  run_.describe("effects",
+                "effects: largest |change of DOLP| by what the plan drops, entries with status 1, 4 or 8 left out; "
+                "branches: largest max(|d r_i|, |d r_q|)/r_i between both kernels",
+                "seconds an entry, median; effects: plan and evaluation on the Vulkan device, whose creation is not "
+                "counted; branches: in kernels, masking tables included, with uniform branches");
+  run_.json()["tolerance"] = base.accuracy.tolerance;
+  run_.json()["grid"] = {{"theta_deg", base.grid.theta_deg}, {"sigma", base.grid.sigma}, {"q", base.grid.q}};
 }
 
-ordered_json Study::run() {
-  const Clock::time_point start = Clock::now();
+void Study::measure_all() {
   describe();
   for (const EffectGroup& group : groups_) {
     if (is_wanted(group.effect)) run_group(group);
   }
   if (is_wanted("branches")) run_branches(groups_.front().settings.front().scene);
-  result_["wall_s"] = std::round(10.0 * seconds_since(start)) / 10.0;
-  return std::move(result_);
 }
 
 void Study::run_group(const EffectGroup& group) {
@@ -284,22 +205,17 @@ void Study::run_group(const EffectGroup& group) {
       if (pair.saves()) pair.all.repeat();
     }
   }
-  for (const Pair& pair : pairs) finish(effect_row(group, pair, pairs.front()));
+  for (const Pair& pair : pairs) run_.finish(effect_row(group, pair, pairs.front()));
 }
 
 void Study::run_branches(const Scene& scene) {
-  BranchComparison comparison(options_.device);
+  BranchComparison comparison(run_.options().device);
   for (const Distribution distribution : kDistributions) {
     for (const Masking masking : kMaskings) {
       const MomentsRequest request = request_of(scene, distribution, masking);
-      finish(branches_row(request, comparison.compare(request, repeats_)));
+      run_.finish(branches_row(request, comparison.compare(request, repeats_)));
     }
   }
-}
-
-void Study::finish(const ordered_json& row) {
-  result_["results"].push_back(row);
-  if (!progress_(++done_, total_)) throw Cancelled{};
 }
 
 std::string joined(const ordered_json& names) {
@@ -359,25 +275,12 @@ void add_tolerance_warnings(ordered_json& result) {
   }
 }
 
-/// The study under a progress bar, which is gone before anything is printed.
-ordered_json measured(const StudyOptions& options) {
-  cli::ProgressBar bar(options.quiet);
-  return Study(options, bar.callback()).run();
-}
-
 }  // namespace
 
 void run_effects(const StudyOptions& options) {
-  if (!options.json_path.empty()) check_writable(options.json_path);
-  ordered_json result = measured(options);
-  add_warnings(result);
-  add_tolerance_warnings(result);
-  if (options.json_path != "-") fmt::print("{}", table_text(result));
-  std::fflush(stdout);
-  for (const ordered_json& warning : result["warnings"]) {
-    fmt::print(stderr, "warning: {}\n", warning.get<std::string>());
-  }
-  if (!options.json_path.empty()) write_text_atomically(options.json_path, json_text(std::move(result)));
+  run_study(options, {.measure = [](StudyRun& run) { Study(run).measure_all(); },
+                      .table_text = table_text,
+                      .warn = add_tolerance_warnings});
 }
 
 }  // namespace dolp::bench

@@ -39,6 +39,27 @@ CLI::App* add_effects(CLI::App& app, StudyOptions& options) {
   return study;
 }
 
+CLI::App* add_throughput(CLI::App& app, StudyOptions& options) {
+  CLI::App* study = app.add_subcommand("throughput", "entries a second, share of the device's peak, scaling");
+  add_common(*study, options);
+  study
+      ->add_option(
+          "--case", options.cases,
+          "only this part (repeatable): grids, arithmetic, cores, vector-width; kernels: what the last two run")
+      ->allow_extra_args(false);
+  options.entries = 256 * 64 * 64;
+  add_entries(*study, options, "entries of the largest grid; more for a GPU");
+  return study;
+}
+
+CLI::App* add_peers(CLI::App& app, StudyOptions& options) {
+  CLI::App* study = app.add_subcommand("peers", "time per entry of all methods at the same accuracy");
+  add_common(*study, options);
+  study->add_option("--case", options.cases, "only this masking (repeatable)")->allow_extra_args(false);
+  study->add_option("--method", options.methods, "only this method (repeatable)")->allow_extra_args(false);
+  return study;
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app("dolp-bench: dolp against other ways to compute the same moments, and against itself", "dolp-bench");
   app.set_version_flag("--version", "dolp-bench " DOLP_VERSION);
@@ -47,7 +68,11 @@ int parse_and_run(int argc, char** argv) {
   accuracy.arguments.assign(argv, argv + argc);
   StudyOptions effects = accuracy;
   add_accuracy(app, accuracy);
+  StudyOptions throughput = accuracy;
   const CLI::App* effects_study = add_effects(app, effects);
+  StudyOptions peers = accuracy;
+  const CLI::App* peers_study = add_peers(app, peers);
+  const CLI::App* throughput_study = add_throughput(app, throughput);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -56,6 +81,10 @@ int parse_and_run(int argc, char** argv) {
   }
   if (effects_study->parsed()) {
     run_effects(effects);
+  } else if (throughput_study->parsed()) {
+    run_throughput(throughput);
+  } else if (peers_study->parsed()) {
+    run_peers(peers);
   } else {
     run_accuracy(accuracy);
   }

@@ -75,6 +75,9 @@ const std::vector<Method>& methods();
 // The solvers, one family a file.
 std::unique_ptr<Solver> make_midpoint_rule();
 std::unique_ptr<Solver> make_gauss_rule();
+/// Errors: Unavailable when there is no usable device, of both.
+std::unique_ptr<Solver> make_vulkan_midpoint(const SolverOptions& options);
+std::unique_ptr<Solver> make_vulkan_gauss(const SolverOptions& options);
 std::unique_ptr<Solver> make_monte_carlo();
 std::unique_ptr<Solver> make_hcubature();
 std::unique_ptr<Solver> make_pcubature();
@@ -83,5 +86,6 @@ std::unique_ptr<Solver> make_dblquad(const SolverOptions& options);
 /// Errors: Unavailable when there is no usable device of this precision.
 std::unique_ptr<Solver> make_vulkan(const SolverOptions& options, Precision precision);
 std::unique_ptr<Solver> make_cpu(Precision precision);
+std::unique_ptr<Solver> make_native();
 
 }  // namespace dolp::bench

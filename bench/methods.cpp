@@ -33,6 +33,27 @@ void add_rules(std::vector<Method>& list) {
                   .make = [](const SolverOptions&) { return make_monte_carlo(); }});
 }
 
+void add_device_rules(std::vector<Method>& list) {
+  list.push_back({.name = "vulkan-midpoint",
+                  .label = "midpoint rule, Vulkan",
+                  .what = "the midpoint rule on the Vulkan device, with dolp's Fresnel and masking tables, float",
+                  .cores = "all",
+                  .setting_name = "nodes per axis",
+                  .settings = {8, 16, 32, 64, 128, 256, 512, 1024},
+                  .quick_settings = {32, 128},
+                  .is_batched = true,
+                  .make = make_vulkan_midpoint});
+  list.push_back({.name = "vulkan-gauss",
+                  .label = "Gauss-Legendre rule, Vulkan",
+                  .what = "the Gauss-Legendre rule on the Vulkan device, likewise",
+                  .cores = "all",
+                  .setting_name = "nodes per axis",
+                  .settings = {4, 8, 12, 16, 20, 32, 64, 96, 128, 256, 512, 1024},
+                  .quick_settings = {16, 64},
+                  .is_batched = true,
+                  .make = make_vulkan_gauss});
+}
+
 void add_adaptive(std::vector<Method>& list) {
   list.push_back(
       {.name = "hcubature",
@@ -82,6 +103,7 @@ Method evaluator(const std::string& name, Precision precision,
 std::vector<Method> all() {
   std::vector<Method> list;
   add_rules(list);
+  add_device_rules(list);
   add_adaptive(list);
   for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
     list.push_back(evaluator("vulkan", precision,
@@ -90,6 +112,15 @@ std::vector<Method> all() {
   for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
     list.push_back(evaluator("cpu", precision, [precision](const SolverOptions&) { return make_cpu(precision); }));
   }
+  list.push_back({.name = "native-float",
+                  .label = "native C++ float",
+                  .what = "the same text in the same groups and pieces, compiled for this processor, all cores, float",
+                  .cores = "all",
+                  .setting_name = "tolerance",
+                  .settings = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6},
+                  .quick_settings = {1e-3, 1e-5},
+                  .is_batched = true,
+                  .make = [](const SolverOptions&) { return make_native(); }});
   return list;
 }
 

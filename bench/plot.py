@@ -5,7 +5,8 @@ Usage: plot.py accuracy RESULT.json -o FIGURE.png    error against time per entr
        plot.py accuracy RESULT.json --markdown       time per entry at given errors, as a Markdown table on stdout
        plot.py effects RESULT.json -o FIGURE.png     time per entry of each effect, and of specialised kernels
        plot.py effects RESULT.json --markdown        the same as Markdown tables on stdout
-RESULT.json is what `dolp-bench accuracy|effects --json RESULT.json` writes. Figures need python3-matplotlib (and with it Pillow).
+       plot.py throughput|peers RESULT.json -o FIGURE.png | --markdown    likewise, of those studies
+RESULT.json is what `dolp-bench accuracy|effects|throughput|peers --json RESULT.json` writes. Figures need python3-matplotlib (and with it Pillow).
 Exit status: 0 done, 2 usage or a file that is not such a result, 4 the figure could not be written.
 """
 import argparse
@@ -18,22 +19,12 @@ import textwrap
 sys.dont_write_bytecode = True  # leaves no folder among the sources
 
 import plot_effects  # noqa: E402
+import plot_peers  # noqa: E402
+import plot_throughput  # noqa: E402
+from plot_style import style, time_text  # noqa: E402
 
-# Colours of Okabe and Ito, which colour-blind readers tell apart; a method and its other precision share one.
-STYLES = {
-    "midpoint": ("midpoint", "#E69F00", "s", "-"),
-    "gauss": ("Gauss", "#009E73", "D", "-"),
-    "monte-carlo": ("Monte Carlo", "#56B4E9", "v", "-"),
-    "hcubature": ("hcubature", "#CC79A7", "^", "-"),
-    "pcubature": ("pcubature", "#CC79A7", "^", "--"),
-    "dblquad": ("SciPy", "#555555", "X", "-"),
-    "vulkan-float": ("Vulkan float", "#0072B2", "o", "-"),
-    "vulkan-double": ("Vulkan double", "#0072B2", "o", "--"),
-    "cpu-float": ("CPU float", "#D55E00", "p", "-"),
-    "cpu-double": ("CPU double", "#D55E00", "p", "--"),
-}
-OTHER_STYLE = ("#000000", "*", ":")
-NEEDED = {"accuracy": {"context", "methods", "cases", "results"}, "effects": {"context", "grid", "results"}}
+STUDIES = {"effects": plot_effects, "throughput": plot_throughput, "peers": plot_peers}  # others than accuracy
+NEEDED = {"context", "methods", "cases", "results"}  # of accuracy
 WANTED_ERRORS = (1e-3, 1e-6, 1e-9)
 PANEL_COLUMNS = 3
 LABEL_GAP_POINTS = 9.0
@@ -52,14 +43,10 @@ def read_result(path, study):
         result = json.load(file)
     if not isinstance(result, dict) or result.get("study") != study:
         raise NotAResult(f"is no result of dolp-bench {study}")
-    missing = NEEDED[study] - result.keys()
+    missing = (STUDIES[study].NEEDED if study in STUDIES else NEEDED) - result.keys()
     if missing:
         raise NotAResult(f"lacks {', '.join(sorted(missing))}")
     return result
-
-
-def style(method):
-    return STYLES.get(method, (method, *OTHER_STYLE))
 
 
 def points(result, method, case):
@@ -76,14 +63,6 @@ def worth_it(all_points):
         if not kept or error < kept[-1][0]:
             kept.append((error, time_s))
     return kept
-
-
-def time_text(time_s):
-    for factor, unit in ((1e6, "µs"), (1e3, "ms"), (1, "s")):
-        if time_s * factor < 1000 or unit == "s":
-            value = time_s * factor
-            return f"{value:.0f} {unit}" if value >= 99.5 else f"{value:.2g} {unit}"
-    raise AssertionError
 
 
 def why_not_run(result, method):
@@ -233,7 +212,7 @@ def limits_of(result):
     return 10 ** (finest - 4.7), 10 ** (coarsest + 1.4), min(times) / 2.0, max(times) * 2.5
 
 
-def figure(result, path):
+def figure(result, path, save):
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
@@ -267,7 +246,9 @@ def save(drawing, path):
 def arguments():
     parser = argparse.ArgumentParser(prog="plot.py", description=__doc__.splitlines()[0])
     studies = parser.add_subparsers(dest="study", required=True)
-    for name, what in (("accuracy", "error against time per entry"), ("effects", "time per entry of each effect")):
+    for name, what in (("accuracy", "error against time per entry"), ("effects", "time per entry of each effect"),
+                       ("throughput", "entries a second, share of the peak, scaling"),
+                       ("peers", "time per entry of all methods at the same accuracy")):
         study = studies.add_parser(name, help=what)
         study.add_argument("result", metavar="RESULT.json")
         output = study.add_mutually_exclusive_group(required=True)
@@ -280,13 +261,11 @@ def main():
     options = arguments()
     try:
         result = read_result(options.result, options.study)
-        is_effects = options.study == "effects"
+        module = STUDIES.get(options.study, sys.modules[__name__])
         if options.markdown:
-            print(plot_effects.markdown(result) if is_effects else markdown(result))
-        elif is_effects:
-            plot_effects.figure(result, options.output, save)
+            print(module.markdown(result))
         else:
-            figure(result, options.output)
+            module.figure(result, options.output, save)
     except (OSError, ValueError, KeyError, NotAResult) as error:
         is_output = isinstance(error, OSError) and error.filename == options.output
         name = options.output if is_output else options.result

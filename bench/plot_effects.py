@@ -1,6 +1,7 @@
 """Figure and table of `dolp-bench effects`, for plot.py."""
 import textwrap
 
+NEEDED = {"context", "grid", "results"}
 PLANNED, KERNEL, KEPT = "#0072B2", "#56B4E9", "#D55E00"
 SPECIALISED, UNIFORM = "#0072B2", "#E69F00"
 NOTE_WIDTH = 150  # letters

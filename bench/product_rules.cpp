@@ -1,5 +1,7 @@
 // Product rules over the running beam: r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r)/2, the
 // azimuth being symmetric.
+#include "bench/product_rules.hpp"
+
 #include <gsl/gsl_integration.h>
 
 #include <cmath>
@@ -15,30 +17,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr auto kSmithBy = DirectSurface::SmithBy::kClosedForm;  // one running beam a row
-
-/// Nodes and weights of a rule on [0, 1].
-struct Rule {
-  std::vector<double> nodes;
-  std::vector<double> weights;
-};
-
-Rule midpoint(std::size_t count) {
-  Rule rule;
-  const double step = 1.0 / static_cast<double>(count);
-  for (std::size_t i = 0; i < count; ++i) rule.nodes.push_back((static_cast<double>(i) + 0.5) * step);
-  rule.weights.assign(count, step);
-  return rule;
-}
-
-Rule gauss_legendre(std::size_t count) {
-  const std::unique_ptr<gsl_integration_glfixed_table, void (*)(gsl_integration_glfixed_table*)> table(
-      gsl_integration_glfixed_table_alloc(count), gsl_integration_glfixed_table_free);
-  Rule rule{std::vector<double>(count), std::vector<double>(count)};
-  for (std::size_t i = 0; i < count; ++i) {
-    gsl_integration_glfixed_point(0.0, 1.0, i, &rule.nodes[i], &rule.weights[i], table.get());
-  }
-  return rule;
-}
 
 Answer product_rule(const DirectSurface& surface, const Rule& rule) {
   std::vector<double> cos_azimuths;
@@ -84,7 +62,25 @@ class ProductRule final : public Solver {
 
 }  // namespace
 
-std::unique_ptr<Solver> make_midpoint_rule() { return std::make_unique<ProductRule>(midpoint); }
-std::unique_ptr<Solver> make_gauss_rule() { return std::make_unique<ProductRule>(gauss_legendre); }
+Rule midpoint_rule(std::size_t count) {
+  Rule rule;
+  const double step = 1.0 / static_cast<double>(count);
+  for (std::size_t i = 0; i < count; ++i) rule.nodes.push_back((static_cast<double>(i) + 0.5) * step);
+  rule.weights.assign(count, step);
+  return rule;
+}
+
+Rule gauss_rule(std::size_t count) {
+  const std::unique_ptr<gsl_integration_glfixed_table, void (*)(gsl_integration_glfixed_table*)> table(
+      gsl_integration_glfixed_table_alloc(count), gsl_integration_glfixed_table_free);
+  Rule rule{std::vector<double>(count), std::vector<double>(count)};
+  for (std::size_t i = 0; i < count; ++i) {
+    gsl_integration_glfixed_point(0.0, 1.0, i, &rule.nodes[i], &rule.weights[i], table.get());
+  }
+  return rule;
+}
+
+std::unique_ptr<Solver> make_midpoint_rule() { return std::make_unique<ProductRule>(midpoint_rule); }
+std::unique_ptr<Solver> make_gauss_rule() { return std::make_unique<ProductRule>(gauss_rule); }
 
 }  // namespace dolp::bench

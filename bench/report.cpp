@@ -25,10 +25,12 @@ std::string some_of(const std::vector<std::string>& names) {
 
 /// "gauss easy 64", "masking hemispherical smith".
 std::string row_name(const ordered_json& row) {
-  const ordered_json& setting = row["setting"];
-  const ordered_json& first = row.contains("method") ? row["method"] : row["effect"];
-  return fmt::format("{} {} {}", first.get<std::string>(), row["case"].get<std::string>(),
-                     setting.is_number() ? fmt::format("{:g}", setting.get<double>()) : setting.get<std::string>());
+  const auto text = [&](const char* key) {
+    const ordered_json& value = row[key];
+    return value.is_number() ? fmt::format("{:g}", value.get<double>()) : value.get<std::string>();
+  };
+  const char* first = row.contains("method") ? "method" : row.contains("effect") ? "effect" : "part";
+  return fmt::format("{} {} {}", text(first), text("case"), text(row.contains("tolerance") ? "tolerance" : "setting"));
 }
 
 void warn_of_times(ordered_json& result) {
@@ -76,6 +78,20 @@ void add_warnings(ordered_json& result) {
   result["warnings"] = ordered_json::array();
   warn_of_times(result);
   warn_of_conditions(result);
+}
+
+ordered_json method_json(const Method& method) {
+  return {{"name", method.name},
+          {"label", method.label},
+          {"what", method.what},
+          {"cores", method.cores},
+          {"setting", method.setting_name}};
+}
+
+void note_where(ordered_json& result, const Method& method, const Solver& solver) {
+  for (ordered_json& described : result["methods"]) {
+    if (described["name"] == method.name) described["where"] = solver.where();
+  }
 }
 
 std::string json_text(ordered_json result) {

@@ -36,4 +36,19 @@ void run_accuracy(const StudyOptions& options);
 /// Cancelled.
 void run_effects(const StudyOptions& options);
 
+/// `dolp-bench throughput`: entries and integrand evaluations a second on the grid of the stainless-steel scene, its
+/// time with twice the entries, the share of the device's arithmetic peak, and the scaling with cores and vector width.
+///
+/// `cases` are parts of it, `entries` those of the largest grid. Cores and vector width are lavapipe's, which reads
+/// them from its environment once: they are measured in processes of their own. Errors: InputError for a part that
+/// there is not; DeviceError without a usable device; IoError; Cancelled.
+void run_throughput(const StudyOptions& options);
+
+/// `dolp-bench peers`: for every method the cheapest setting whose measured error on a sample of a grid's entries meets
+/// a tolerance, its time per entry, and the ratio to the kernels of dolp in float.
+///
+/// `cases` are maskings. Errors: InputError for a case or method that there is not; DeviceError when `device` is given
+/// and cannot be had; IoError; Cancelled.
+void run_peers(const StudyOptions& options);
+
 }  // namespace dolp::bench

@@ -1,9 +1,11 @@
 #include "bench/timing.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 namespace dolp::bench {
 namespace {
@@ -27,11 +29,12 @@ Timed timed(Solver& solver, const MomentsRequest& request, double setting, std::
   return result;
 }
 
-void add(const Timed& timed, bool is_random, Measurement& measurement) {
+void add(Timed timed, bool is_random, Measurement& measurement) {
   measurement.raw_s.push_back(timed.time_s);
   if (timed.solution.kernel_s) measurement.raw_kernel_s.push_back(timed.kernel_s);
   if (is_random || measurement.answers.empty()) measurement.answers.push_back(timed.solution.answers.front());
   measurement.evaluations = timed.solution.evaluations;
+  measurement.last = std::move(timed.solution.answers);
 }
 
 }  // namespace
@@ -44,6 +47,13 @@ double median(std::vector<double> values) {
 }
 
 double minimum(const std::vector<double>& values) { return *std::ranges::min_element(values); }
+
+double rounded_time(double time_s) { return std::stod(fmt::format("{:.3e}", time_s)); }
+
+std::vector<double> per_entry(std::vector<double> times_s, std::size_t entries) {
+  for (double& time_s : times_s) time_s = rounded_time(time_s / static_cast<double>(entries));
+  return times_s;
+}
 
 double spread(const std::vector<double>& values) { return median(values) / minimum(values) - 1.0; }
 
@@ -70,9 +80,9 @@ Measurement measure(Solver& solver, const MomentsRequest& request, double settin
     return repeats >= least ? total_s >= policy.enough_s : !is_random && total_s >= policy.most_s;
   };
   while (!is_done()) {
-    const Timed next = timed(solver, request, setting, calls);
+    Timed next = timed(solver, request, setting, calls);
     total_s += next.time_s * static_cast<double>(calls);
-    add(next, is_random, measurement);
+    add(std::move(next), is_random, measurement);
   }
   return measurement;
 }

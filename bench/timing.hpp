@@ -24,11 +24,18 @@ struct Measurement {
   std::vector<double> raw_s;          ///< of one call each
   std::vector<double> raw_kernel_s;   ///< likewise in kernels; empty without kernels
   std::vector<Answer> answers;        ///< of the first entry: one, or one for each repeat of a random method
+  std::vector<Answer> last;           ///< of all entries, by the last call
   std::optional<double> evaluations;  ///< of one call
 };
 
 double median(std::vector<double> values);
 double minimum(const std::vector<double>& values);
+
+/// To four digits: raw times have no more.
+double rounded_time(double time_s);
+
+/// Of one entry each, rounded, from times of calls over `entries`.
+std::vector<double> per_entry(std::vector<double> times_s, std::size_t entries);
 
 /// (median - minimum)/minimum: how far a usual time is from an undisturbed one.
 double spread(const std::vector<double>& values);

@@ -18,6 +18,9 @@ extern const std::span<const std::uint32_t> masking_table_float;
 extern const std::span<const std::uint32_t> masking_table_double;
 extern const std::span<const std::uint32_t> mueller_float;
 extern const std::span<const std::uint32_t> mueller_double;
-extern const std::span<const std::uint32_t> moments_uniform_float;  // of the benchmark, in bench/
+// Of the benchmark, in bench/:
+extern const std::span<const std::uint32_t> moments_uniform_float;
+extern const std::span<const std::uint32_t> product_rule_float;
+extern const std::span<const std::uint32_t> arithmetic_peak_float;
 
 }  // namespace dolp::spirv

@@ -65,6 +65,8 @@ struct Expected {
 const std::map<std::string, Expected> kExpected = {
     {"midpoint", {256, {{"easy", 8e-6}, {"median", 6e-6}, {"rough", 6e-5}, {"hard", 2e-3}, {"worst", 2e-2}}}},
     {"gauss", {64, {{"easy", 2e-9}, {"median", 4e-5}, {"rough", 2e-9}, {"hard", 1.5e-4}, {"worst", 2e-5}}}},
+    {"vulkan-midpoint", {256, {{"easy", 8e-6}, {"median", 6e-6}, {"rough", 6e-5}, {"hard", 2e-3}, {"worst", 2e-2}}}},
+    {"vulkan-gauss", {64, {{"easy", 1e-6}, {"median", 4e-5}, {"rough", 1e-6}, {"hard", 1.5e-4}, {"worst", 2e-5}}}},
     {"monte-carlo", {1e5, {{"easy", 1e-2}, {"median", 1e-2}, {"rough", 1.5e-2}, {"hard", 1.2e-2}, {"worst", 4e-2}}}},
     {"hcubature", {1e-6, {{"easy", 1e-5}, {"median", 1e-5}, {"rough", 1e-5}, {"hard", 1e-5}, {"worst", 1e-5}}}},
     {"pcubature", {1e-5, {{"easy", 1e-4}, {"median", 1e-4}, {"rough", 1e-4}, {"hard", 1e-4}, {"worst", 1e-4}}}},
@@ -72,6 +74,7 @@ const std::map<std::string, Expected> kExpected = {
     {"vulkan-float", {1e-4, {{"easy", 1e-4}, {"median", 1e-4}, {"rough", 1e-4}, {"hard", 1e-4}, {"worst", 1e-4}}}},
     {"vulkan-double", {1e-5, {{"easy", 1e-5}, {"median", 1e-5}, {"rough", 1e-5}, {"hard", 1e-5}, {"worst", 1e-5}}}},
     {"cpu-float", {1e-4, {{"easy", 1e-4}, {"median", 1e-4}, {"rough", 1e-4}, {"hard", 1e-4}, {"worst", 1e-4}}}},
+    {"native-float", {1e-4, {{"easy", 1e-4}, {"median", 1e-4}, {"rough", 1e-4}, {"hard", 1e-4}, {"worst", 1e-4}}}},
     {"cpu-double", {1e-5, {{"easy", 1e-5}, {"median", 1e-5}, {"rough", 1e-5}, {"hard", 1e-5}, {"worst", 1e-5}}}},
 };
 

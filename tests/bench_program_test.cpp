@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "program.hpp"
+#include "bench_program.hpp"
 
 namespace {
 
@@ -14,39 +14,15 @@ using namespace dolp;
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-class BenchProgram : public testing::Test {
+/// Results of the accuracy study that take a second.
+class BenchAccuracy : public BenchProgram {
  protected:
-  fs::path at(const std::string& name) const { return folder_.path() / name; }
-
-  Outcome bench(std::vector<std::string> arguments,
-                std::vector<std::pair<std::string, std::string>> environment = {}) const {
-    arguments.insert(arguments.begin(), DOLP_BENCH_PROGRAM);
-    Command command{.arguments = std::move(arguments), .folder = folder_.path()};
-    command.environment = std::move(environment);
-    return run(command);
-  }
-  Outcome plot(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), {"/usr/bin/python3", DOLP_BENCH_PLOT});
-    return run({.arguments = std::move(arguments), .folder = folder_.path()});
-  }
-  /// The results of a study that takes a second.
   json small_study(std::vector<std::string> options) const {
-    const std::vector<std::string> fixed = {"accuracy", "--quick", "--entries", "16", "--json", "-"};
-    options.insert(options.begin(), fixed.begin(), fixed.end());
-    const Outcome outcome = bench(options);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return json::parse(outcome.out);
+    return study_of({"accuracy", "--quick", "--entries", "16", "--json", "-"}, std::move(options));
   }
-
- private:
-  TemporaryFolder folder_;
 };
 
-void expect_keys(const json& object, const std::set<std::string>& keys) {
-  for (const std::string& key : keys) EXPECT_TRUE(object.contains(key)) << key << " is missing in " << object.dump();
-}
-
-TEST_F(BenchProgram, Json_Context_SaysWhereAndHowToRunAgain) {
+TEST_F(BenchAccuracy, Json_Context_SaysWhereAndHowToRunAgain) {
   const json study = small_study({"--case", "easy", "--method", "gauss", "--method", "vulkan-float"});
   EXPECT_EQ(study["study"], "accuracy");
   const json& context = study["context"];
@@ -59,7 +35,7 @@ TEST_F(BenchProgram, Json_Context_SaysWhereAndHowToRunAgain) {
   EXPECT_EQ(context["program"], "dolp-bench " DOLP_VERSION);
 }
 
-TEST_F(BenchProgram, Json_Results_HaveErrorAndTimesForEverySetting) {
+TEST_F(BenchAccuracy, Json_Results_HaveErrorAndTimesForEverySetting) {
   const json study =
       small_study({"--case", "easy", "--case", "median", "--method", "gauss", "--method", "vulkan-float"});
   ASSERT_EQ(study["methods"].size(), 2U);
@@ -117,11 +93,7 @@ class BenchEffects : public BenchProgram {
  protected:
   /// The study on a tiny grid.
   json study(std::vector<std::string> options) const {
-    const std::vector<std::string> fixed = {"effects", "--quick", "--entries", "9", "--json", "-"};
-    options.insert(options.begin(), fixed.begin(), fixed.end());
-    const Outcome outcome = bench(options);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return json::parse(outcome.out);
+    return study_of({"effects", "--quick", "--entries", "9", "--json", "-"}, std::move(options));
   }
 };
 
@@ -206,6 +178,14 @@ TEST_F(BenchProgram, BadUsage_OneLineThatSaysWhatIsAllowed) {
        2,
        "--case smell: there is none of this name; choose among branches, specular, "},
       {{"effects", "--method", "gauss"}, 2, "--method"},
+      {{"throughput", "--case", "smell"},
+       2,
+       "--case smell: there is none of this name; choose among grids, arithmetic, "},
+      {{"throughput", "--entries", "0"}, 2, "--entries"},
+      {{"throughput", "--json", "no/such/folder/r.json"}, 4, "there is no folder no/such/folder"},
+      {{"peers", "--case", "easy"}, 2, "--case easy: there is none of this name; choose among none, v-cavity, "},
+      {{"peers", "--method", "simpson"}, 2, "choose among midpoint, gauss, "},
+      {{"peers", "--device", "no such device"}, 3, "no such device"},
       {{"effects", "--json", "no/such/folder/r.json"}, 4, "there is no folder no/such/folder"},
       {{"accuracy", "--method", "simpson"}, 2, "choose among midpoint, gauss, "},
       {{"accuracy", "--json", "no/such/folder/r.json"}, 4, "there is no folder no/such/folder"}};

@@ -1,0 +1,14 @@
+// What a Vulkan device can do in plain arithmetic.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace dolp::bench {
+
+/// Float multiplications and additions per second, from `repeats` runs of a kernel that does nothing else; sorted, the
+/// fastest last. Errors: DeviceError.
+std::vector<double> arithmetic_peak(const std::string& device, std::size_t repeats);
+
+}  // namespace dolp::bench

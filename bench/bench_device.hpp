@@ -1,0 +1,32 @@
+// A Vulkan device for kernels of the benchmark's own.
+#pragma once
+
+#include <string>
+
+#include "evaluate/vulkan/command_stream.hpp"
+#include "evaluate/vulkan/device.hpp"
+#include "evaluate/vulkan/instance.hpp"
+
+namespace dolp::bench {
+
+/// Instance, device and stream, with the validation layer where DOLP_VALIDATION is 1.
+struct BenchDevice {
+  /// `choice`: position or part of the name, empty for the default. Errors: DeviceError.
+  explicit BenchDevice(const std::string& choice);
+  BenchDevice(const BenchDevice&) = delete;
+  BenchDevice& operator=(const BenchDevice&) = delete;
+
+  /// Name and driver.
+  std::string where() const;
+
+  /// Errors: DeviceError when the validation layer had anything to say.
+  void check_messages() const;
+
+  vulkan::ValidationLog log;
+  vulkan::Instance instance;
+  VkPhysicalDevice physical;
+  vulkan::Device device;
+  vulkan::CommandStream stream;
+};
+
+}  // namespace dolp::bench

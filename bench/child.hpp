@@ -1,0 +1,24 @@
+// Programs that the benchmark runs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace dolp::bench {
+
+/// What a program printed, and how it ended.
+struct ChildOutcome {
+  int status = 0;
+  std::string out;
+};
+
+/// What becomes of a program's stderr.
+enum class ChildErrors { kShown, kHidden };
+
+/// Runs a program to its end. Errors: Unavailable when no process can be started.
+ChildOutcome run_child(const std::vector<std::string>& arguments, ChildErrors errors);
+
+/// The file of this very program.
+std::string own_program();
+
+}  // namespace dolp::bench

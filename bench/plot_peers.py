@@ -1,0 +1,124 @@
+"""Figure and tables of `dolp-bench peers`, for plot.py."""
+from plot_style import digits, foot, head, origin, row_of_cells, style, tidy, time_text
+
+NEEDED = {"context", "methods", "cases", "targets", "results"}
+COLOURS = ("#56B4E9", "#0072B2", "#000000")
+TARGET_TOLERANCE = 1e-4
+
+
+def rows_of(result, method, case):
+    """By tolerance."""
+    return {row["tolerance"]: row for row in result["results"] if row["method"] == method and row["case"] == case}
+
+
+def compared_time(row):
+    return row.get("kernel_time_s", row.get("time_s"))
+
+
+def tolerances_of(result):
+    return sorted({row["tolerance"] for row in result["results"]}, reverse=True)
+
+
+def time_table(result):
+    tolerances = tolerances_of(result)
+    names = [case["name"] for case in result["cases"]]
+    lines = ["Time per entry (in kernels, where there are any) for an error of at most "
+             f"{' / '.join(f'{tolerance:g}' for tolerance in tolerances)} (—: at no setting tried):", ""]
+    lines += head(["method", "cores"] + names)
+    for method in result["methods"]:
+        cells = []
+        for name in names:
+            rows = rows_of(result, method["name"], name)
+            times = [compared_time(rows[tolerance]) if tolerance in rows else None for tolerance in tolerances]
+            cells.append(" / ".join("—" if time_s is None else time_text(time_s) for time_s in times))
+        lines.append(row_of_cells([method["label"], method["cores"]] + cells))
+    return lines
+
+
+def ratio_text(row):
+    if "ratio" not in row and "hindsight_ratio" not in row:
+        return "—"
+    text = digits(row["ratio"]) if "ratio" in row else "—"
+    return text + (f" ({digits(row['hindsight_ratio'])})" if "hindsight_ratio" in row else "")
+
+
+def ratio_table(result):
+    names = [case["name"] for case in result["cases"]]
+    lines = [f"Time over that of the kernels of dolp in float, both for {TARGET_TOLERANCE:g} (in brackets: with the "
+             "cheapest setting of each single entry, chosen with hindsight):", ""]
+    lines += head(["method"] + names)
+    for method in result["methods"]:
+        cells = [ratio_text(rows_of(result, method["name"], name).get(TARGET_TOLERANCE, {})) for name in names]
+        lines.append(row_of_cells([method["label"]] + cells))
+    return lines
+
+
+def target_table(result):
+    lines = head(["against", "masking", "wanted", "measured", "with hindsight", "reached"])
+    for target in result["targets"]:
+        hindsight = digits(target["hindsight_ratio"]) if "hindsight_ratio" in target else "—"
+        measured = digits(target["ratio"]) if "ratio" in target else "—"
+        reached = {True: "yes", False: "no", None: "—"}[target.get("met")]
+        lines.append(row_of_cells([target["against"], target["case"], f"{target['wanted']:,g}", measured, hindsight,
+                                   reached]))
+    return lines
+
+
+def markdown(result):
+    """Times, ratios and targets as Markdown tables."""
+    blocks = [time_table(result), ratio_table(result)]
+    if result["targets"]:
+        blocks.append(target_table(result))
+    return "\n\n".join("\n".join(block) for block in blocks)
+
+
+def draw_case(axes, result, case):
+    tolerances = tolerances_of(result)
+    for y, method in enumerate(result["methods"]):
+        rows = rows_of(result, method["name"], case["name"])
+        for i, tolerance in enumerate(tolerances):
+            row = rows.get(tolerance, {})
+            colour = COLOURS[i % len(COLOURS)]
+            place = y + 0.22 * (i - 0.5 * (len(tolerances) - 1))
+            if "time_s" in row:
+                if "kernel_time_s" in row:
+                    axes.plot([row["kernel_time_s"], row["time_s"]], [place, place], color=colour, linewidth=0.8)
+                    axes.plot(row["time_s"], place, "|", color=colour, markersize=6)
+                axes.plot(compared_time(row), place, "o", color=colour, markersize=5)
+            if "hindsight_time_s" in row:
+                axes.plot(row["hindsight_time_s"], place, "o", markerfacecolor="white", markeredgecolor=colour,
+                          markersize=4)
+        target = rows.get(TARGET_TOLERANCE, {})
+        text = f"× {digits(target['ratio'])}" if "ratio" in target else "—"
+        axes.annotate(text, (1.01, y), xycoords=("axes fraction", "data"), va="center", fontsize=7.5)
+    axes.set_yticks(range(len(result["methods"])), [style(method["name"])[0] for method in result["methods"]])
+    axes.set_ylim(len(result["methods"]) - 0.4, -0.6)
+    axes.set_xscale("log")
+    axes.set_title(f"masking {case['name']}", fontsize=10, loc="left")
+    axes.set_xlabel("time per entry [s]", fontsize=9)
+    tidy(axes)
+
+
+def figure(result, path, save):
+    """One panel a masking; `save(drawing, path)` writes it."""
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    plt.rcParams["font.family"] = "DejaVu Sans"
+    if not any("time_s" in row for row in result["results"]):
+        raise ValueError("holds no measured setting")
+    columns = min(2, len(result["cases"]))
+    rows = (len(result["cases"]) + columns - 1) // columns
+    drawing, places = plt.subplots(rows, columns, figsize=(13.5, 1.2 + 4.2 * rows), squeeze=False, sharex=True)
+    for axes, case in zip(places.flat, result["cases"]):
+        draw_case(axes, result, case)
+    first = places[0][0]
+    for i, tolerance in enumerate(tolerances_of(result)):
+        first.plot([], [], "o", color=COLOURS[i % len(COLOURS)], label=f"error ≤ {tolerance:g}")
+    first.plot([], [], "o", markerfacecolor="white", markeredgecolor="black", markersize=4, label="with hindsight")
+    first.plot([], [], "|", color="black", label="whole call")
+    drawing.legend(*first.get_legend_handles_labels(), fontsize=8, loc="upper right", ncol=5, frameon=False)
+    foot(drawing, f"Dots: kernels, where there are any. × is to the kernels of Vulkan float, both for "
+                  f"{TARGET_TOLERANCE:g}. {origin(result)}")
+    drawing.tight_layout(h_pad=1.5, w_pad=4.0, rect=(0.0, 0.03, 1.0, 0.97))
+    save(drawing, path)

@@ -1,0 +1,107 @@
+// Body of native_text.cpp and counted_text.cpp, which define DOLP_TEXT_NAMESPACE and in it real, real2, real4 and
+// as_data first. Masking and the size of groups are template parameters, as they are specialization constants and
+// modules of a device.
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "bench/text/grouped_text.hpp"
+#include "plan/convert_reals.hpp"
+
+#undef DOLP_GROUP
+#define DOLP_GROUP kGroup
+
+namespace dolp::bench::DOLP_TEXT_NAMESPACE {
+
+#include "shaders/physics/prelude.glsl"
+
+template <int kGroup, uint kMasking>
+struct Text {
+#include "shaders/interface.glsl"
+#include "shaders/physics/all.glsl"
+
+  static constexpr uint kDistribution = DOLP_CAUCHY;
+  std::vector<real4> rule_nodes;
+  std::vector<real4> masking_table;
+
+  real4 rule_node(int i) const { return rule_nodes[static_cast<std::size_t>(i)]; }
+  real4 masking_node(uint i) const { return masking_table[i]; }
+  void store_masking_node(uint i, real4 node) { masking_table[i] = node; }
+};
+
+template <class To, class From>
+To narrowed(const From& from) {
+  using Numbers = std::array<real, sizeof(To) / sizeof(real)>;
+  auto numbers = convert_reals<real, Numbers, double>(from);
+  for (real& number : numbers) number = as_data(number);
+  return std::bit_cast<To>(numbers);
+}
+
+template <int kGroup, uint kMasking>
+class Kernel final : public GroupedText {
+ public:
+  using Own = Text<kGroup, kMasking>;
+
+  explicit Kernel(const GroupedWork& work) : work_(work), rule_(narrowed<typename Own::RuleNode>(work.data.rule)) {
+    for (const auto& node : work.data.rule_nodes) text_.rule_nodes.push_back(narrowed<real4>(node));
+    for (const auto& shape : work.grouping.shapes) shapes_.push_back(narrowed<typename Own::ShapeNode>(shape));
+    for (const auto& theta : work.data.thetas) thetas_.push_back(narrowed<typename Own::ThetaNode>(theta));
+    for (const auto& index : work.data.indices) indices_.push_back(narrowed<typename Own::IndexNode>(index));
+    if (work.data.needs_masking_table()) text_.masking_table.resize(shapes_.size() * Own::kMaskingNodes);
+  }
+
+  void build_masking_table(std::size_t shape) override { text_.build_masking_table(shapes_[shape], table(shape)); }
+
+  void run_pieces(std::size_t first, std::span<kernel::MomentsNode> members) override {
+    for (std::size_t i = 0; i < members.size() / kGroup; ++i) run_piece(first + i, members.subspan(i * kGroup, kGroup));
+  }
+
+ private:
+  void run_piece(std::size_t piece, std::span<kernel::MomentsNode> members) {
+    const GroupPiece& own = work_.pieces[piece];
+    const EntryGroup& group = work_.grouping.groups[own.group];
+    const ShapeFamily& family = work_.grouping.families[group.family];
+    typename Own::Group shapes;
+    for (std::uint32_t g = 0; g < kGroup; ++g) {
+      const std::size_t shape = family.first + std::min(g, family.count - 1);
+      shapes.shape[g] = shapes_[shape];
+      shapes.table[g] = table(shape);
+    }
+    const auto moments =
+        text_.piece_moments(rule_, thetas_[group.theta], shapes, indices_[group.index], static_cast<int>(own.piece));
+    for (std::size_t g = 0; g < kGroup; ++g) {
+      members[g] = convert_reals<double, kernel::MomentsNode, real>(moments.member[g]);
+    }
+  }
+
+  static uint table(std::size_t shape) { return static_cast<uint>(shape) * Own::kMaskingNodes; }
+
+  const GroupedWork& work_;
+  typename Own::RuleNode rule_;
+  Own text_;
+  std::vector<typename Own::ShapeNode> shapes_;
+  std::vector<typename Own::ThetaNode> thetas_;
+  std::vector<typename Own::IndexNode> indices_;
+};
+
+template <int kGroup>
+std::unique_ptr<GroupedText> make_text(const GroupedWork& work) {
+  switch (work.data.masking) {
+    case Masking::kNone:
+      return std::make_unique<Kernel<kGroup, DOLP_MASKING_NONE>>(work);
+    case Masking::kVCavity:
+      return std::make_unique<Kernel<kGroup, DOLP_MASKING_V_CAVITY>>(work);
+    case Masking::kIntegral:
+      return std::make_unique<Kernel<kGroup, DOLP_MASKING_INTEGRAL>>(work);
+    case Masking::kSmith:
+      break;
+  }
+  return std::make_unique<Kernel<kGroup, DOLP_MASKING_SMITH>>(work);
+}
+
+inline std::unique_ptr<GroupedText> text_for(const GroupedWork& work) {
+  return work.grouping.size > 1 ? make_text<DOLP_GROUP_SIZE>(work) : make_text<1>(work);
+}
+
+}  // namespace dolp::bench::DOLP_TEXT_NAMESPACE

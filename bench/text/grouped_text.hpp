@@ -1,0 +1,65 @@
+// The shaders' own text as C++ in float, in the groups and pieces in which a Vulkan device gets it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "plan/groups.hpp"
+#include "plan/kernel_data.hpp"
+
+namespace dolp::bench {
+
+/// A request as the kernel gets it.
+struct GroupedWork {
+  explicit GroupedWork(const MomentsRequest& request);
+
+  KernelData data;
+  Grouping grouping;
+  std::vector<GroupPiece> pieces;  ///< the invocations, in the order of the device
+};
+
+/// The kernels of shaders/ over one piece of work, which must outlive the object. All members may be called from
+/// several threads at a time, for different shapes and pieces.
+class GroupedText {
+ public:
+  virtual ~GroupedText() = default;
+
+  /// Fills the masking table of a shape of the grouping; needed before the pieces where the data needs tables.
+  virtual void build_masking_table(std::size_t shape) = 0;
+
+  /// What invocations first, first + 1, ... give, a node for each member of each one's group, until `members` is full.
+  virtual void run_pieces(std::size_t first, std::span<kernel::MomentsNode> members) = 0;
+};
+
+/// Adds what the pieces gave, groups size by size, and turns it into moments in the order of the request.
+std::vector<Moments> moments_of(const GroupedWork& work, const std::vector<kernel::MomentsNode>& nodes);
+
+/// Compiled for this processor, one invocation after the other, vectors where the compiler finds some. Cauchy
+/// distribution only.
+std::unique_ptr<GroupedText> make_native_text(const GroupedWork& work);
+
+/// The same with invocations side by side in vectors. Only masking without tables: none and v-cavity.
+std::unique_ptr<GroupedText> make_vector_text(const GroupedWork& work);
+
+/// Operations of arithmetic, by kind.
+struct OperationCounts {
+  std::uint64_t add = 0;  ///< and subtractions
+  std::uint64_t multiply = 0;
+  std::uint64_t divide = 0;
+  std::uint64_t square_root = 0;
+  std::uint64_t other = 0;  ///< comparisons, minima, maxima, sign, floor, powers of two, conversions
+
+  /// Floating-point operations, one each; `other` are none.
+  std::uint64_t flops() const { return add + multiply + divide + square_root; }
+};
+
+/// Counts what it does. Cauchy distribution only; one thread at a time.
+std::unique_ptr<GroupedText> make_counted_text(const GroupedWork& work);
+
+/// What this thread has counted since the program began.
+OperationCounts counted_operations();
+
+}  // namespace dolp::bench

@@ -1,0 +1,167 @@
+// dolp-bench throughput and dolp-bench peers from outside: options, JSON, table, figures.
+#include <algorithm>
+
+#include "bench_program.hpp"
+
+namespace {
+
+using namespace dolp;
+using nlohmann::json;
+
+class BenchThroughput : public BenchProgram {
+ protected:
+  /// The study on a tiny grid.
+  json study(std::vector<std::string> options) const {
+    return study_of({"throughput", "--quick", "--entries", "64", "--json", "-"}, std::move(options));
+  }
+  static std::vector<json> part(const json& result, const std::string& name) {
+    std::vector<json> rows;
+    std::ranges::copy_if(result["results"], std::back_inserter(rows),
+                         [&](const json& row) { return row["part"] == name; });
+    return rows;
+  }
+};
+
+TEST_F(BenchThroughput, Json_GridsAndArithmetic_HaveTheirRows) {
+  const json result = study({"--case", "grids", "--case", "arithmetic"});
+  EXPECT_EQ(result["study"], "throughput");
+  expect_keys(result, {"context", "time_s", "grid", "scene", "peak", "results", "warnings"});
+  EXPECT_EQ(result["grid"], "4 x 4 x 4");
+  EXPECT_GT(result["peak"]["flops_per_s"].get<double>(), 0.0);
+  for (const json& row : result["results"]) expect_keys(row, {"part", "case", "setting"});
+  const std::vector<json> grids = part(result, "grids");
+  EXPECT_EQ(grids.size(), 4U * 3U);  // one grid, three tolerances
+  for (const json& row : grids) {
+    expect_keys(row, {"entries_per_s", "evaluations_per_s", "stated_error", "raw_kernel_times_s"});
+    EXPECT_EQ(row["entries"], 64);
+    EXPECT_GE(row["time_s"].get<double>(), row["kernel_time_s"].get<double>());
+    EXPECT_NEAR(row["run_s"].get<double>(), 64 * row["time_s"].get<double>(), 1e-3 * row["run_s"].get<double>());
+    EXPECT_LE(row["stated_error"], row["tolerance"]) << row.dump();
+  }
+  const std::vector<json> arithmetic = part(result, "arithmetic");
+  EXPECT_EQ(arithmetic.size(), 4U);
+  for (const json& row : arithmetic) {
+    const json& operations = row["operations"];
+    const double sum = operations["add"].get<double>() + operations["multiply"].get<double>() +
+                       operations["divide"].get<double>() + operations["square_root"].get<double>();
+    EXPECT_NEAR(row["flops"].get<double>(), sum, 2.0) << row.dump();
+    EXPECT_GT(row["share_of_peak"].get<double>(), 0.0);
+    EXPECT_LE(row["busy_lanes"].get<double>(), 1.0);
+  }
+}
+
+/// A part that runs the kernels in processes of their own, on lavapipe; on other devices it says why not.
+void expect_processes(const json& result) {
+  constexpr std::size_t kMaskings = 2;  // of a quick study
+  const json& rows = result["results"];
+  if (!result["context"]["device"]["name"].get<std::string>().starts_with("llvmpipe")) {
+    ASSERT_EQ(rows.size(), 1U);
+    EXPECT_TRUE(rows[0].contains("not_run")) << rows[0].dump();
+    return;
+  }
+  ASSERT_GE(rows.size(), kMaskings);
+  EXPECT_EQ(rows.size() % kMaskings, 0U);
+  for (std::size_t i = 0; i < kMaskings; ++i) EXPECT_EQ(rows[i]["speedup"], 1.0) << rows[i].dump();
+  for (const json& row : rows) EXPECT_GT(row["time_s"].get<double>(), 0.0) << row.dump();
+}
+
+TEST_F(BenchThroughput, Json_Cores_RunInProcessesOfTheirOwn_OrSayWhyNot) {
+  expect_processes(study({"--case", "cores"}));
+}
+
+TEST_F(BenchThroughput, Json_VectorWidths_RunInProcessesOfTheirOwn_OrSayWhyNot) {
+  expect_processes(study({"--case", "vector-width"}));
+}
+
+TEST_F(BenchThroughput, NoVulkanDevice_IsExit3) {
+  const Outcome outcome =
+      bench({"throughput", "--quick"}, {{"VK_DRIVER_FILES", "/none"}, {"VK_ICD_FILENAMES", "/none"}});
+  EXPECT_EQ(outcome.status, 3) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+}
+
+TEST_F(BenchThroughput, Plot_Results_GiveFigureAndTables) {
+  ASSERT_EQ(
+      bench({"throughput", "--quick", "--entries", "64", "--case", "grids", "--case", "arithmetic", "--json", "r.json"})
+          .status,
+      0);
+  const Outcome figure = plot({"throughput", "r.json", "-o", "r.png"});
+  ASSERT_EQ(figure.status, 0) << figure.err;
+  EXPECT_TRUE(read_file(at("r.png")).starts_with("\x89PNG"));
+  const Outcome table = plot({"throughput", "r.json", "--markdown"});
+  ASSERT_EQ(table.status, 0) << table.err;
+  EXPECT_NE(table.out.find("| v-cavity | 4 × 4 × 4 |"), std::string::npos) << table.out;
+  EXPECT_NE(table.out.find("| of the peak |"), std::string::npos) << table.out;
+  EXPECT_EQ(plot({"peers", "r.json", "--markdown"}).status, 2);
+}
+
+class BenchPeers : public BenchProgram {
+ protected:
+  std::vector<std::string> options() const {
+    return {"peers",    "--quick",      "--case",   "v-cavity",    "--method", "gauss",
+            "--method", "hcubature",    "--method", "monte-carlo", "--method", "vulkan-gauss",
+            "--method", "vulkan-float", "--method", "native-float"};
+  }
+};
+
+TEST_F(BenchPeers, Json_Rows_ReachTheToleranceAndCompareWithTheKernels) {
+  const json result = study_of(options(), {"--json", "-"});
+  EXPECT_EQ(result["study"], "peers");
+  expect_keys(result, {"context", "error", "time_s", "methods", "cases", "targets", "results", "warnings"});
+  ASSERT_EQ(result["cases"].size(), 1U);
+  EXPECT_EQ(result["cases"][0]["sample"].size(), 3U);
+  ASSERT_EQ(result["results"].size(), 6U);
+  for (const json& row : result["results"]) {
+    expect_keys(row, {"method", "case", "tolerance"});
+    EXPECT_EQ(row["case"], "v-cavity");
+    if (row["method"] == "monte-carlo") {
+      EXPECT_TRUE(row.contains("not_run")) << row.dump();  // a million samples have three digits
+      continue;
+    }
+    expect_keys(row, {"setting", "error", "time_s", "time_min_s", "raw_times_s", "entries", "ratio"});
+    EXPECT_LE(row["error"], row["tolerance"]) << row.dump();
+    EXPECT_GT(row["ratio"].get<double>(), 0.0);
+    if (row["method"] == "vulkan-float") {
+      EXPECT_EQ(row["ratio"], 1.0);
+    }
+    const bool is_single = row["method"] == "gauss" || row["method"] == "hcubature";
+    EXPECT_EQ(row.contains("hindsight_time_s"), is_single) << row.dump();
+    if (is_single) {
+      EXPECT_EQ(row["entries"], 3);
+    } else {
+      EXPECT_GE(row["entries"], 512);
+    }
+  }
+  ASSERT_EQ(result["targets"].size(), 3U);  // libcubature, product rule, native build
+  for (const json& target : result["targets"]) {
+    EXPECT_EQ(target["met"], target["ratio"].get<double>() >= target["wanted"].get<double>()) << target.dump();
+  }
+}
+
+TEST_F(BenchPeers, Plot_Results_GiveFigureAndTables) {
+  std::vector<std::string> with_file = options();
+  with_file.insert(with_file.end(), {"--json", "r.json"});
+  ASSERT_EQ(bench(with_file).status, 0);
+  const Outcome figure = plot({"peers", "r.json", "-o", "r.png"});
+  ASSERT_EQ(figure.status, 0) << figure.err;
+  EXPECT_TRUE(read_file(at("r.png")).starts_with("\x89PNG"));
+  const Outcome table = plot({"peers", "r.json", "--markdown"});
+  ASSERT_EQ(table.status, 0) << table.err;
+  EXPECT_NE(table.out.find("| Gauss-Legendre rule |"), std::string::npos) << table.out;
+  EXPECT_NE(table.out.find("| libcubature -O2, one core | v-cavity | 300 |"), std::string::npos) << table.out;
+}
+
+TEST_F(BenchPeers, NoVulkanDevice_OthersRunWithoutRatio) {
+  const Outcome outcome = bench({"peers", "--quick", "--case", "none", "--method", "gauss", "--method", "vulkan-gauss",
+                                 "--method", "vulkan-float", "--json", "-"},
+                                {{"VK_DRIVER_FILES", "/none"}, {"VK_ICD_FILENAMES", "/none"}});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json result = json::parse(outcome.out);
+  for (const json& row : result["results"]) {
+    EXPECT_EQ(row.contains("not_run"), row["method"] != "gauss") << row.dump();
+    EXPECT_FALSE(row.contains("ratio")) << row.dump();
+  }
+  EXPECT_TRUE(result["targets"].empty());
+}
+
+}  // namespace

@@ -180,7 +180,6 @@ TEST(KernelDataOrders, WorstIterations_BoundTheEvaluationsOfEveryEntry) {
 // Where the orders are cut down, the bound says what that costs.
 // The nodes of an arc are cut down only where total reflection doubles the arcs.
 TEST(KernelDataOrders, EntryWithTooFewNodesAllowed_SaysSo) {
-  constexpr OpticalConstants kTotallyReflecting{0.8, 0.0};
   for (const Masking masking : kMaskings) {
     const Computed whole = computed(masking, 1e-9, 60.0, {0.3, 2.0}, kTotallyReflecting);
     KernelData data = whole.data;

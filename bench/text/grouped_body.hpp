@@ -101,7 +101,12 @@ std::unique_ptr<GroupedText> make_text(const GroupedWork& work) {
 }
 
 inline std::unique_ptr<GroupedText> text_for(const GroupedWork& work) {
-  return work.grouping.size > 1 ? make_text<DOLP_GROUP_SIZE>(work) : make_text<1>(work);
+  switch (work.grouping.size) {
+    case 4: return make_text<4>(work);
+    case 8: return make_text<8>(work);
+    case 16: return make_text<16>(work);
+    default: return make_text<1>(work);
+  }
 }
 
 }  // namespace dolp::bench::DOLP_TEXT_NAMESPACE

@@ -144,7 +144,12 @@ std::unique_ptr<GroupedText> make_text(const GroupedWork& work) {
 namespace dolp::bench {
 
 std::unique_ptr<GroupedText> make_vector_text(const GroupedWork& work) {
-  return work.grouping.size > 1 ? vector_text::make_text<DOLP_GROUP_SIZE>(work) : vector_text::make_text<1>(work);
+  switch (work.grouping.size) {
+    case 4: return vector_text::make_text<4>(work);
+    case 8: return vector_text::make_text<8>(work);
+    case 16: return vector_text::make_text<16>(work);
+    default: return vector_text::make_text<1>(work);
+  }
 }
 
 }  // namespace dolp::bench

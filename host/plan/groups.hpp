@@ -2,6 +2,7 @@
 // nodes, the facets and their reflection (Group of shaders/physics/integrand.glsl).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,6 +10,9 @@
 #include "plan/kernel_data.hpp"
 
 namespace dolp {
+
+/// Members of a group that the kernel is compiled for.
+inline constexpr std::array<std::uint32_t, 4> kGroupSizes = {1, 4, 8, 16};
 
 /// Consecutive shapes of one sigma, in ascending order of q.
 struct ShapeFamily {

@@ -18,8 +18,6 @@ constexpr std::uint32_t kBindingCount = DOLP_BINDING_RULE + 1;
 constexpr std::uint32_t kPushConstantCount = 4;
 /// Invocations of a workgroup; every device allows 128.
 constexpr std::uint32_t kLocalSize = 64;
-/// Entries of a group that there are modules for, see plan/groups.hpp.
-constexpr std::array<std::uint32_t, 4> kGroupSizes = {1, 4, 8, 16};
 
 /// Creates pipelines on demand, one for each combination of the specialization constants; any thread may ask for one.
 class Kernels {
@@ -30,7 +28,7 @@ class Kernels {
   /// pipelines to run do not use.
   void bind(const std::array<VkBuffer, kBindingCount>& buffers);
 
-  /// `group_size`: one of kGroupSizes.
+  /// `group_size`: one of kGroupSizes of plan/groups.hpp.
   VkPipeline moments(Distribution distribution, Masking masking, std::uint32_t group_size);
   VkPipeline masking_table(Distribution distribution, Masking masking);
   VkPipeline mueller(Distribution distribution, Masking masking);

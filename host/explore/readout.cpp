@@ -1,0 +1,97 @@
+#include "explore/readout.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace dolp::explore {
+namespace {
+
+constexpr double kPercent = 100.0;
+
+/// A bound in points of DOLP.
+std::string points_text(double bound) { return std::isfinite(bound) ? fmt::format("{:.2g}", kPercent * bound) : "∞"; }
+
+const char* polarisation(double q_over_i) { return q_over_i > 0.0 ? "s" : "p"; }
+
+bool is_bistatic(const Scene& scene) { return scene.geometry.mode == Mode::kBistatic; }
+
+}  // namespace
+
+std::string peak_text(const Session& session) {
+  const std::optional<PeakAnswer>& peak = session.peak().answer();
+  if (!session.curve().is_finished() || !peak) return "Maximum: …";
+  if (peak->dolp <= peak->error) return "Maximum: the DOLP is 0 everywhere, within its bound";
+  const char* of = is_bistatic(session.scene()) ? " of the source" : "";
+  std::string text =
+      fmt::format("Maximum: DOLP {:.3f} % at θ = {:.2f}°{}, {} polarised. Numerical error ≤ {} points; the maximum is ",
+                  kPercent * peak->dolp, peak->theta_deg, of, polarisation(peak->q_over_i), points_text(peak->error));
+  text += peak->theta_low_deg == peak->theta_high_deg
+              ? fmt::format("there to {:g}°.", Peak::kStepDeg)
+              : fmt::format("surely between {:.2f}° and {:.2f}°.", peak->theta_low_deg, peak->theta_high_deg);
+  if (peak->is_at_end) text += " Beyond it the model fails or ends.";
+  return text;
+}
+
+std::string cause_text(const Session& session) {
+  const Peak& peak = session.peak();
+  if (!session.curve().is_finished() || !peak.is_complete()) return "Caused by: …";
+  // Stokes parameters add up, so what no other part explains is the emission's where it cannot be taken away alone.
+  double rest = peak.answer()->q_over_i;
+  std::string parts;
+  bool has_emission = false;
+  for (const WithoutEffect& away : peak.without()) {
+    if (!away.radiates) continue;
+    has_emission = has_emission || std::string(away.effect) == "emission";
+    rest -= peak.contribution(away);
+    parts += fmt::format("{}{} {:+.2f}", parts.empty() ? "" : ", ", away.effect, kPercent * peak.contribution(away));
+  }
+  if (!has_emission && session.scene().emission) {
+    parts = fmt::format("emission {:+.2f}{}{}", kPercent * rest, parts.empty() ? "" : ", ", parts);
+  }
+  if (parts.empty()) return fmt::format("Caused by: the only radiation that there is");
+  return fmt::format("Caused by, in points of Q/I (+ s, − p): {}; together {:+.2f}.", parts,
+                     kPercent * peak.answer()->q_over_i);
+}
+
+std::string cursor_text(const Session& session) {
+  const PointResult* r = session.at_cursor();
+  if (!r) return "Cursor: …";
+  const std::string place = fmt::format("Cursor: θ = {:.1f}°, σ = {:.4g}, q = {:.4g}: ", session.theta_deg(),
+                                        session.scene().surface.sigma, session.scene().surface.q);
+  std::string text = place + fmt::format("DOLP {:.3f} % ± {}, Q/I {:+.3f} %", kPercent * r->dolp,
+                                         points_text(r->error_estimate), kPercent * r->stokes_q / r->stokes_i);
+  if (std::isfinite(r->rho_i)) {
+    text += fmt::format(", ρ_s {:.4f}, ρ_p {:.4f}", r->rho_i + r->rho_q, r->rho_i - r->rho_q);
+  }
+  if (std::isfinite(r->albedo)) text += fmt::format(", albedo {:.3f}", r->albedo);
+  return text + "; " + status_text(r->status);
+}
+
+std::string without_text(const Session& session, const std::string& effect) {
+  const std::optional<PeakAnswer>& peak = session.peak().answer();
+  if (!peak) return {};
+  for (const WithoutEffect& away : session.peak().without()) {
+    if (effect != away.effect || !away.is_known) continue;
+    const double q_over_i = away.result.stokes_q / away.result.stokes_i;
+    if (!std::isfinite(q_over_i)) return "nothing left";
+    return fmt::format("{:+.2f} → {:+.2f} %", kPercent * (q_over_i - peak->q_over_i), kPercent * q_over_i);
+  }
+  return {};
+}
+
+std::vector<std::string> cost_lines(const Session& session) {
+  const Curve& curve = session.curve();
+  const Cost& cost = curve.cost();
+  if (cost.entries == 0) return {"time …", "work …", "error …"};
+  const double entries = static_cast<double>(cost.entries);
+  constexpr double kMilliseconds = 1e3;
+  constexpr double kMicroseconds = 1e6;
+  return {fmt::format("time    {:.1f} ms for {} directions, {:.0f} µs each", kMilliseconds * cost.wall_s, cost.entries,
+                      kMicroseconds * cost.wall_s / entries),
+          fmt::format("work    {:.0f} integrand evaluations an entry", cost.evaluations / entries),
+          fmt::format("error   estimated: DOLP ≤ {:.2g}, tolerance {:.2g}", curve.worst_error(),
+                      curve.scene().accuracy.tolerance)};
+}
+
+}  // namespace dolp::explore

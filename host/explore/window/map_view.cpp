@@ -1,0 +1,134 @@
+#include "explore/window/map_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "explore/ticks.hpp"
+#include "explore/window/plot.hpp"
+
+namespace dolp::explore {
+namespace {
+
+constexpr float kBarRoom = 5.4F;  // right of the map, in lines of text
+
+PlotAxis axis_of(const MapAxis& axis) { return {axis_label(axis.kind), axis.from, axis.to, axis.is_log}; }
+
+double scale_of(const QuantityDescription& quantity) { return quantity.in_percent ? 100.0 : 1.0; }
+
+std::string title_of(const Session& session) {
+  const HeatMap& map = session.map();
+  const QuantityDescription& of = described(session.view().quantity);
+  const std::string state = map.is_finished() ? "" : fmt::format(", refining {:.0f} %", 100.0 * map.progress());
+  return fmt::format("{}; {} × {}{}", of.in_percent ? fmt::format("{} [%]", of.name) : of.name, map.finished_count(),
+                     map.finished_count(), state);
+}
+
+void move_cursor(Session& session, const Plot& plot) {
+  if (plot.is_dragged()) session.set_map_cursor(plot.mouse_position_x(), plot.mouse_position_y());
+}
+
+void draw_cursor(const Session& session, const Plot& plot) {
+  const ImVec2 at = plot.at_position(session.map_cursor_x(), session.map_cursor_y());
+  plot.list()->AddLine({at.x, plot.min().y}, {at.x, plot.max().y}, kCursorColour);
+  plot.list()->AddLine({plot.min().x, at.y}, {plot.max().x, at.y}, kCursorColour);
+  plot.list()->AddCircle(at, 5.0F, kTextColour, 0, 2.0F);
+}
+
+}  // namespace
+
+void MapView::update(const Session& session) {
+  const Quantity quantity = session.view().quantity;
+  if (version_ == session.map().version() && quantity_ == quantity) return;
+  version_ = session.map().version();
+  quantity_ = quantity;
+  field_ = session.map().field(quantity);
+  const double range = field_.max - field_.min;
+  colours_.clear();
+  for (std::size_t i = 0; i < field_.values.size(); ++i) {
+    const double position = range > 0.0 ? (field_.values[i] - field_.min) / range : 0.0;
+    colours_.push_back(field_.is_good[i] ? viridis(position) : kBadColour);
+  }
+  lines_.clear();
+  for (const double level : contour_levels(field_)) lines_.push_back({level, contour(field_, level)});
+}
+
+void MapView::draw_cells(const Plot& plot) const {
+  const std::size_t count = field_.count;
+  if (count == 0) return;
+  const auto edge = [&](std::size_t i) {
+    // Entries are at the ends too, so that the outer cells are half as wide.
+    return std::clamp((static_cast<double>(i) - 0.5) / static_cast<double>(count - 1), 0.0, 1.0);
+  };
+  const ImVec2 white = ImGui::GetFontTexUvWhitePixel();
+  ImDrawList* list = plot.list();
+  for (std::size_t row = 0; row < count; ++row) {
+    for (std::size_t column = 0; column < count;) {
+      std::size_t end = column + 1;
+      const ImU32 colour = colours_[row * count + column];
+      while (end < count && colours_[row * count + end] == colour) ++end;
+      const ImVec2 low = plot.at_position(edge(column), edge(row));
+      const ImVec2 high = plot.at_position(edge(end), edge(row + 1));
+      list->PrimReserve(6, 4);
+      list->PrimRectUV({low.x, high.y}, {high.x, low.y}, white, white, colour);
+      column = end;
+    }
+  }
+}
+
+void MapView::draw_lines(const Plot& plot, double scale) const {
+  constexpr ImU32 kLine = IM_COL32(255, 255, 255, 170);
+  for (const Line& line : lines_) {
+    for (const Segment& s : line.segments) {
+      plot.list()->AddLine(plot.at_position(s.x0, s.y0), plot.at_position(s.x1, s.y1), kLine);
+    }
+  }
+  for (const Line& line : lines_) {
+    if (line.segments.empty()) continue;
+    const Segment& middle = line.segments[line.segments.size() / 2];
+    draw_label(plot.list(), plot.at_position(middle.x0, middle.y0), {0.5F, 0.5F}, kTextColour,
+               tick_text(scale * line.level));
+  }
+}
+
+void MapView::draw_bar(const Plot& plot, const QuantityDescription& quantity) const {
+  if (!(field_.min <= field_.max)) return;
+  constexpr int kSteps = 64;
+  const float line = ImGui::GetTextLineHeight();
+  const float left = plot.max().x + 0.9F * line;
+  const float right = left + 0.9F * line;
+  const float height = plot.max().y - plot.min().y;
+  for (int i = 0; i < kSteps; ++i) {
+    const auto y = [&](int step) { return plot.max().y - height * static_cast<float>(step) / kSteps; };
+    plot.list()->AddRectFilled({left, y(i + 1)}, {right, y(i)}, viridis((i + 0.5) / kSteps));
+  }
+  plot.list()->AddRect({left, plot.min().y}, {right, plot.max().y}, kDimColour);
+  if (!(field_.min < field_.max)) return;
+  const double scale = scale_of(quantity);
+  const auto most = static_cast<std::size_t>(std::max(2.0F, height / (2.2F * line)));
+  for (const double tick : linear_ticks(scale * field_.min, scale * field_.max, most)) {
+    const double position = (tick / scale - field_.min) / (field_.max - field_.min);
+    const float y = plot.max().y - static_cast<float>(position) * height;
+    plot.list()->AddLine({right, y}, {right + 0.25F * line, y}, kDimColour);
+    draw_text(plot.list(), {right + 0.4F * line, y}, {0.0F, 0.5F}, kDimColour, tick_text(tick));
+  }
+}
+
+void MapView::draw(Session& session, ImVec2 size) {
+  update(session);
+  const QuantityDescription& quantity = described(session.view().quantity);
+  const float line = ImGui::GetTextLineHeight();
+  const Plot plot("map", size, axis_of(session.map().x()), axis_of(session.map().y()), kBarRoom * line, false);
+  move_cursor(session, plot);
+  draw_text(plot.list(), {plot.max().x, plot.min().y - 0.15F * line}, {1.0F, 1.0F}, kTextColour, title_of(session));
+  plot.clip();
+  draw_cells(plot);
+  draw_lines(plot, scale_of(quantity));
+  draw_cursor(session, plot);
+  plot.unclip();
+  draw_bar(plot, quantity);
+}
+
+}  // namespace dolp::explore

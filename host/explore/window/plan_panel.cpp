@@ -1,0 +1,105 @@
+#include "explore/window/plan_panel.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <cmath>
+
+#include "explore/readout.hpp"
+#include "explore/window/colours.hpp"
+#include "explore/window/text.hpp"
+
+namespace dolp::explore {
+namespace {
+
+void cell(const std::string& text, ImU32 colour = kTextColour) {
+  ImGui::TableNextColumn();
+  ImGui::PushStyleColor(ImGuiCol_Text, colour);
+  ImGui::TextUnformatted(shown(text).c_str());
+  ImGui::PopStyleColor();
+}
+
+std::string bound_text(const EffectRow& row) {
+  if (!row.bound) return "";
+  const double points = 100.0 * *row.bound;
+  if (row.unbounded > 0 || points > 200.0) return "no useful bound";
+  return points == 0.0 ? "0" : fmt::format("≤ {:.2g}", points);
+}
+
+/// Which effect of the peak's list a row is about; the distribution's is how rough the surface is.
+std::string taken_away(const EffectRow& row) {
+  const std::string name = row.name;
+  return name == "distribution" ? "roughness" : name;
+}
+
+void draw_row(const Session& session, const EffectRow& row) {
+  const bool is_absent = row.state == EffectState::kAbsent;
+  const ImU32 colour = is_absent ? kDimColour : kTextColour;
+  cell(row.name, colour);
+  cell(row.state == EffectState::kNotNeeded ? "not needed" : state_name(row.state), colour);
+  cell(bound_text(row), colour);
+  cell(is_absent ? "" : without_text(session, taken_away(row)), colour);
+  cell(row.needs.empty() ? row.reason : fmt::format("{} [{}]", row.reason, row.needs), colour);
+  if (!ImGui::IsItemHovered()) return;
+  ImGui::SetTooltip("%s", shown(row.reason).c_str());
+}
+
+}  // namespace
+
+void draw_effects(const Session& session) {
+  constexpr int kColumns = 5;
+  constexpr ImGuiTableFlags kFlags =
+      ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingFixedFit;
+  if (!ImGui::BeginTable("effects", kColumns, kFlags)) return;
+  ImGui::TableSetupScrollFreeze(0, 1);
+  ImGui::TableSetupColumn("effect");
+  ImGui::TableSetupColumn("plan");
+  ImGui::TableSetupColumn("bound [points]");
+  ImGui::TableSetupColumn(shown("maximum without it, Q/I").c_str());
+  ImGui::TableSetupColumn("why [what it takes]", ImGuiTableColumnFlags_WidthStretch);
+  ImGui::TableHeadersRow();
+  for (const EffectRow& row : session.curve().rows()) {
+    ImGui::TableNextRow();
+    draw_row(session, row);
+  }
+  ImGui::EndTable();
+}
+
+bool draw_price(Session& session, ControlsPanel& controls, BackgroundTask& true_error) {
+  controls.draw_accuracy(session);
+  for (const std::string& line : cost_lines(session)) ImGui::TextUnformatted(shown(line).c_str());
+  const bool is_ready = session.curve().is_finished() && true_error.state() != BackgroundTask::State::kRunning;
+  ImGui::BeginDisabled(!is_ready);
+  const bool is_asked = ImGui::Button("True error (Ctrl+K)");
+  ImGui::EndDisabled();
+  ImGui::SameLine();
+  draw_task("reference", true_error);
+  return is_asked;
+}
+
+void draw_task(const char* name, BackgroundTask& task) {
+  ImGui::PushID(name);
+  const std::string message = shown(task.message());
+  switch (task.state()) {
+    case BackgroundTask::State::kNone:
+      ImGui::NewLine();
+      break;
+    case BackgroundTask::State::kRunning:
+      if (ImGui::Button("Cancel")) task.cancel();
+      ImGui::SameLine();
+      ImGui::ProgressBar(static_cast<float>(task.progress()), {-1.0F, 0.0F});
+      break;
+    case BackgroundTask::State::kFailed:
+      ImGui::PushStyleColor(ImGuiCol_Text, kErrorColour);
+      ImGui::TextWrapped("%s", message.c_str());
+      ImGui::PopStyleColor();
+      break;
+    case BackgroundTask::State::kDone:
+    case BackgroundTask::State::kCancelled:
+      ImGui::TextWrapped("%s", message.c_str());
+      break;
+  }
+  ImGui::PopID();
+}
+
+}  // namespace dolp::explore

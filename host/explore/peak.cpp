@@ -116,7 +116,8 @@ void Peak::answer_from(const std::vector<PointResult>& results) {
     return;
   }
   at_peak_ = results[best];
-  PeakAnswer answer{theta_deg_[best], at_peak_.dolp, at_peak_.stokes_q / at_peak_.stokes_i, at_peak_.error_estimate};
+  PeakAnswer answer{theta_deg_[best], at_peak_.dolp, at_peak_.stokes_q / at_peak_.stokes_i,
+                    at_peak_.error_estimate, at_peak_.albedo};
   const double least = at_peak_.dolp - at_peak_.error_estimate;
   const auto may_be_largest = [&](std::size_t i) {
     return is_good(results[i]) && results[i].dolp + results[i].error_estimate >= least;

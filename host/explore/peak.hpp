@@ -16,6 +16,7 @@ struct PeakAnswer {
   double dolp = 0.0;
   double q_over_i = 0.0;  ///< positive: s polarised
   double error = 0.0;     ///< bound of |d DOLP|
+  double albedo = 0.0;    ///< of the surface model there; NaN where the plan gives none
   // Zeniths at which, with all errors, DOLP could be the largest.
   double theta_low_deg = 0.0;
   double theta_high_deg = 0.0;

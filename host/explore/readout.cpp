@@ -2,17 +2,45 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace dolp::explore {
 namespace {
 
+// Beyond these the albedo of the surface model is worth a word.
+constexpr double kAlbedoMin = 0.95;
+constexpr double kAlbedoMax = 1.05;
 constexpr double kPercent = 100.0;
 
 /// A bound in points of DOLP.
 std::string points_text(double bound) { return std::isfinite(bound) ? fmt::format("{:.2g}", kPercent * bound) : "∞"; }
 
 const char* polarisation(double q_over_i) { return q_over_i > 0.0 ? "s" : "p"; }
+
+/// A radiating effect and what it adds to Q/I at the peak.
+struct Part {
+  std::string name;
+  double q_over_i;
+};
+
+/// Stokes parameters add up, so what no other part explains is the emission's where it cannot be taken away alone.
+std::vector<Part> radiating_parts(const Session& session) {
+  const Peak& peak = session.peak();
+  double rest = peak.answer()->q_over_i;
+  std::vector<Part> parts;
+  for (const WithoutEffect& away : peak.without()) {
+    if (!away.radiates) continue;
+    parts.push_back({away.effect, peak.contribution(away)});
+    rest -= parts.back().q_over_i;
+  }
+  const bool has_emission = !parts.empty() && parts.front().name == "emission";
+  if (has_emission) return parts;
+  const char* name = session.scene().emission ? "emission" : session.scene().source ? "source" : "surroundings";
+  const bool is_known = std::ranges::any_of(parts, [&](const Part& part) { return part.name == name; });
+  if (!is_known) parts.insert(parts.begin(), {name, rest});
+  return parts;
+}
 
 bool is_bistatic(const Scene& scene) { return scene.geometry.mode == Mode::kBistatic; }
 
@@ -30,28 +58,29 @@ std::string peak_text(const Session& session) {
               ? fmt::format("there to {:g}°.", Peak::kStepDeg)
               : fmt::format("surely between {:.2f}° and {:.2f}°.", peak->theta_low_deg, peak->theta_high_deg);
   if (peak->is_at_end) text += " Beyond it the model fails or ends.";
+  // The bound is of the numbers; what the surface model itself is worth there, the albedo tells.
+  if (std::isfinite(peak->albedo) && peak->albedo < kAlbedoMin) {
+    text += fmt::format(" The surface model loses energy there (albedo {:.2f}).", peak->albedo);
+  }
+  if (std::isfinite(peak->albedo) && peak->albedo > kAlbedoMax) {
+    text += fmt::format(" The surface model gains energy there (albedo {:.2f}).", peak->albedo);
+  }
   return text;
 }
 
 std::string cause_text(const Session& session) {
   const Peak& peak = session.peak();
-  if (!session.curve().is_finished() || !peak.is_complete()) return "Caused by: …";
-  // Stokes parameters add up, so what no other part explains is the emission's where it cannot be taken away alone.
-  double rest = peak.answer()->q_over_i;
-  std::string parts;
-  bool has_emission = false;
-  for (const WithoutEffect& away : peak.without()) {
-    if (!away.radiates) continue;
-    has_emission = has_emission || std::string(away.effect) == "emission";
-    rest -= peak.contribution(away);
-    parts += fmt::format("{}{} {:+.2f}", parts.empty() ? "" : ", ", away.effect, kPercent * peak.contribution(away));
+  if (!session.curve().is_finished() || !peak.is_complete()) return "Cause: …";
+  const double sum = peak.answer()->q_over_i;
+  std::string with;
+  std::string against;
+  for (const Part& part : radiating_parts(session)) {
+    std::string& side = part.q_over_i * sum >= 0.0 ? with : against;
+    side += fmt::format("{}{} {:+.2f}", side.empty() ? "" : ", ", part.name, kPercent * part.q_over_i);
   }
-  if (!has_emission && session.scene().emission) {
-    parts = fmt::format("emission {:+.2f}{}{}", kPercent * rest, parts.empty() ? "" : ", ", parts);
-  }
-  if (parts.empty()) return fmt::format("Caused by: the only radiation that there is");
-  return fmt::format("Caused by, in points of Q/I (+ s, − p): {}; together {:+.2f}.", parts,
-                     kPercent * peak.answer()->q_over_i);
+  std::string text = fmt::format("Cause, in points of Q/I (+ is s, - is p): {}", with);
+  if (!against.empty()) text += "; against it: " + against;
+  return text + fmt::format("; sum {:+.2f}.", kPercent * sum);
 }
 
 std::string cursor_text(const Session& session) {

@@ -143,7 +143,13 @@ void Session::follow() {
   residuals_.follow(content, scene());
   follow_overlay(content, keep_all);
   follow_map(keep_all);
+  bound_effects();
   is_changed_ = true;
+}
+
+void Session::bound_effects() {
+  effects_ = curve_.rows();
+  add_influences(effects_, curve_.scene(), entries_at(curve_.scene(), {theta_deg_}));
 }
 
 std::string Session::overlay_name() const {
@@ -206,7 +212,9 @@ void Session::take(const std::vector<News>& news) {
     residuals_.take(part);
     is_changed_ = true;
   }
-  if (curve_.is_finished()) peak_.follow(curve_, edits_);
+  if (!curve_.is_finished()) return;
+  peak_.follow(curve_, edits_);
+  if (!news.empty()) bound_effects();
 }
 
 }  // namespace dolp::explore

@@ -82,6 +82,8 @@ class Session {
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
   const Message& message() const { return message_; }
+  /// The effects of the finished curve; bounds of what is kept are those at the cursor's zenith.
+  const std::vector<EffectRow>& effects() const { return effects_; }
   /// The position of the scene's own values on the map.
   double map_cursor_x() const { return cursor_position(map_.x()); }
   double map_cursor_y() const { return cursor_position(map_.y()); }
@@ -94,6 +96,7 @@ class Session {
   void follow();
   void follow_overlay(const std::string& content, bool keep_all);
   void follow_map(bool keep_all);
+  void bound_effects();
   double cursor_position(const MapAxis& axis) const;
 
   SceneEdits edits_;
@@ -105,6 +108,7 @@ class Session {
   HeatMap map_;
   Peak peak_;
   Residuals residuals_;
+  std::vector<EffectRow> effects_;
   Message message_;
   bool is_changed_ = true;
 };

@@ -142,10 +142,7 @@ News Worker::advance(Task& task) {
   news.wall_s = task.wall_s;
   news.evaluations = task.evaluations;
   news.entries = job.entries.size();
-  if (job.wants_rows) {
-    news.rows = effect_rows(job.scene, job.entries, task.plan);
-    add_influences(news.rows, job.scene, job.entries);
-  }
+  if (job.wants_rows) news.rows = effect_rows(job.scene, job.entries, task.plan);
   return news;
 }
 

@@ -25,7 +25,7 @@ struct Job {
   std::vector<SceneEntry> entries;
   bool keep_all = false;
   std::size_t batch = 0;      ///< entries at a time, between which a job of higher rank may come in; 0: all
-  bool wants_rows = false;    ///< the effects of the plan and bounds of their influence
+  bool wants_rows = false;    ///< the effects of the plan
 };
 
 /// A part of a job's results.

@@ -59,6 +59,11 @@ Range range_of(const Session& session, const std::vector<Shown>& curves, bool is
       if (is_good(result)) add(scale_of(quantity) * value_of(quantity, result));
     }
   }
+  const std::optional<PeakAnswer>& peak = session.peak().answer();
+  if (peak && session.curve().is_finished() && quantity == Quantity::kDolp) add(scale_of(quantity) * peak->dolp);
+  if (peak && session.curve().is_finished() && quantity == Quantity::kSignedDolp) {
+    add(scale_of(quantity) * peak->q_over_i);
+  }
   if (quantity == Quantity::kDolp && session.residuals().points()) {
     for (const double dolp : session.residuals().points()->dolp) add(scale_of(quantity) * dolp);
   }
@@ -159,8 +164,10 @@ void draw_peak(const Plot& plot, const Session& session) {
   const float side = is_low ? 1.0F : -1.0F;
   plot.list()->AddTriangleFilled({at.x, at.y + side * 3.0F}, {at.x - 5.0F, at.y + side * 12.0F},
                                  {at.x + 5.0F, at.y + side * 12.0F}, kTextColour);
-  draw_label(plot.list(), {at.x, at.y + side * 14.0F}, {0.5F, is_low ? 0.0F : 1.0F}, kTextColour,
-             fmt::format("{:.2f} % at {:.1f}°", value, peak->theta_deg));
+  // Beside the mark towards the middle, so that it stays inside.
+  const bool is_right = at.x > 0.5F * (plot.min().x + plot.max().x);
+  draw_label(plot.list(), {at.x + (is_right ? -9.0F : 9.0F), at.y + side * 8.0F}, {is_right ? 1.0F : 0.0F, 0.5F},
+             kTextColour, fmt::format("{:.2f} % at {:.1f}°", value, peak->theta_deg));
 }
 
 void draw_measured(const Plot& plot, const MeasuredPoints& points) {

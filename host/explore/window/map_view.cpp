@@ -12,6 +12,8 @@
 namespace dolp::explore {
 namespace {
 
+// Few enough that neighbours share a colour and are drawn as one, more than the eye tells apart.
+constexpr double kColourSteps = 96.0;
 constexpr float kBarRoom = 5.4F;  // right of the map, in lines of text
 
 PlotAxis axis_of(const MapAxis& axis) { return {axis_label(axis.kind), axis.from, axis.to, axis.is_log}; }
@@ -49,32 +51,42 @@ void MapView::update(const Session& session) {
   colours_.clear();
   for (std::size_t i = 0; i < field_.values.size(); ++i) {
     const double position = range > 0.0 ? (field_.values[i] - field_.min) / range : 0.0;
-    colours_.push_back(field_.is_good[i] ? viridis(position) : kBadColour);
+    colours_.push_back(field_.is_good[i] ? viridis(std::round(position * kColourSteps) / kColourSteps) : kBadColour);
   }
+  runs_ = runs_along(true);
+  std::vector<Run> upwards = runs_along(false);
+  if (upwards.size() < runs_.size()) runs_ = std::move(upwards);
   lines_.clear();
   for (const double level : contour_levels(field_)) lines_.push_back({level, contour(field_, level)});
 }
 
-void MapView::draw_cells(const Plot& plot) const {
+std::vector<MapView::Run> MapView::runs_along(bool rows) const {
   const std::size_t count = field_.count;
-  if (count == 0) return;
+  std::vector<Run> runs;
+  for (std::size_t line = 0; line < count; ++line) {
+    const auto colour = [&](std::size_t i) { return colours_[rows ? line * count + i : i * count + line]; };
+    for (std::size_t begin = 0; begin < count;) {
+      std::size_t end = begin + 1;
+      while (end < count && colour(end) == colour(begin)) ++end;
+      const std::size_t length = end - begin;
+      runs.push_back(rows ? Run{begin, line, length, 1, colour(begin)} : Run{line, begin, 1, length, colour(begin)});
+      begin = end;
+    }
+  }
+  return runs;
+}
+
+void MapView::draw_cells(const Plot& plot) const {
   const auto edge = [&](std::size_t i) {
     // Entries are at the ends too, so that the outer cells are half as wide.
-    return std::clamp((static_cast<double>(i) - 0.5) / static_cast<double>(count - 1), 0.0, 1.0);
+    return std::clamp((static_cast<double>(i) - 0.5) / static_cast<double>(field_.count - 1), 0.0, 1.0);
   };
   const ImVec2 white = ImGui::GetFontTexUvWhitePixel();
-  ImDrawList* list = plot.list();
-  for (std::size_t row = 0; row < count; ++row) {
-    for (std::size_t column = 0; column < count;) {
-      std::size_t end = column + 1;
-      const ImU32 colour = colours_[row * count + column];
-      while (end < count && colours_[row * count + end] == colour) ++end;
-      const ImVec2 low = plot.at_position(edge(column), edge(row));
-      const ImVec2 high = plot.at_position(edge(end), edge(row + 1));
-      list->PrimReserve(6, 4);
-      list->PrimRectUV({low.x, high.y}, {high.x, low.y}, white, white, colour);
-      column = end;
-    }
+  for (const Run& run : runs_) {
+    const ImVec2 low = plot.at_position(edge(run.column), edge(run.row));
+    const ImVec2 high = plot.at_position(edge(run.column + run.columns), edge(run.row + run.rows));
+    plot.list()->PrimReserve(6, 4);
+    plot.list()->PrimRectUV({low.x, high.y}, {high.x, low.y}, white, white, run.colour);
   }
 }
 
@@ -87,8 +99,10 @@ void MapView::draw_lines(const Plot& plot, double scale) const {
   }
   for (const Line& line : lines_) {
     if (line.segments.empty()) continue;
-    const Segment& middle = line.segments[line.segments.size() / 2];
-    draw_label(plot.list(), plot.at_position(middle.x0, middle.y0), {0.5F, 0.5F}, kTextColour,
+    // Where the line is farthest from the edges.
+    const auto room = [](const Segment& s) { return std::min({s.x0, 1.0 - s.x0, s.y0, 1.0 - s.y0}); };
+    const Segment& inner = *std::ranges::max_element(line.segments, {}, room);
+    draw_label(plot.list(), plot.at_position(inner.x0, inner.y0), {0.5F, 0.5F}, kTextColour,
                tick_text(scale * line.level));
   }
 }

@@ -17,12 +17,19 @@ class MapView {
   void draw(Session& session, ImVec2 size);
 
  private:
+  /// Cells of one colour beside or above one another.
+  struct Run {
+    std::size_t column, row;
+    std::size_t columns, rows;
+    ImU32 colour;
+  };
   /// The lines of one value.
   struct Line {
     double level;
     std::vector<Segment> segments;
   };
   void update(const Session& session);
+  std::vector<Run> runs_along(bool rows) const;
   void draw_cells(const class Plot& plot) const;
   void draw_lines(const class Plot& plot, double scale) const;
   void draw_bar(const class Plot& plot, const QuantityDescription& quantity) const;
@@ -32,6 +39,7 @@ class MapView {
   Quantity quantity_ = Quantity::kDolp;
   MapField field_;
   std::vector<ImU32> colours_;
+  std::vector<Run> runs_;
   std::vector<Line> lines_;
 };
 

@@ -22,8 +22,9 @@ void cell(const std::string& text, ImU32 colour = kTextColour) {
 std::string bound_text(const EffectRow& row) {
   if (!row.bound) return "";
   const double points = 100.0 * *row.bound;
-  if (row.unbounded > 0 || points > 200.0) return "no useful bound";
-  return points == 0.0 ? "0" : fmt::format("≤ {:.2g}", points);
+  if (row.unbounded > 0) return "none is known";
+  return points == 0.0 ? "0" : points >= 10.0 ? fmt::format("≤ {:.0f} points", points)
+                                              : fmt::format("≤ {:.2g} points", points);
 }
 
 /// Which effect of the peak's list a row is about; the distribution's is how rough the surface is.
@@ -39,9 +40,10 @@ void draw_row(const Session& session, const EffectRow& row) {
   cell(row.state == EffectState::kNotNeeded ? "not needed" : state_name(row.state), colour);
   cell(bound_text(row), colour);
   cell(is_absent ? "" : without_text(session, taken_away(row)), colour);
-  cell(row.needs.empty() ? row.reason : fmt::format("{} [{}]", row.reason, row.needs), colour);
+  cell(row.reason, colour);
   if (!ImGui::IsItemHovered()) return;
-  ImGui::SetTooltip("%s", shown(row.reason).c_str());
+  const std::string needs = row.needs.empty() ? "" : "\nit takes: " + row.needs;
+  ImGui::SetTooltip("%s", shown(row.reason + needs).c_str());
 }
 
 }  // namespace
@@ -54,11 +56,11 @@ void draw_effects(const Session& session) {
   ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableSetupColumn("effect");
   ImGui::TableSetupColumn("plan");
-  ImGui::TableSetupColumn("bound [points]");
-  ImGui::TableSetupColumn(shown("maximum without it, Q/I").c_str());
-  ImGui::TableSetupColumn("why [what it takes]", ImGuiTableColumnFlags_WidthStretch);
+  ImGui::TableSetupColumn("bound at cursor");
+  ImGui::TableSetupColumn("Q/I of the maximum without it");
+  ImGui::TableSetupColumn("why", ImGuiTableColumnFlags_WidthStretch);
   ImGui::TableHeadersRow();
-  for (const EffectRow& row : session.curve().rows()) {
+  for (const EffectRow& row : session.effects()) {
     ImGui::TableNextRow();
     draw_row(session, row);
   }

@@ -19,7 +19,8 @@ namespace dolp::explore {
 namespace {
 
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
+                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                                    ImGuiWindowFlags_NoBackground;
 constexpr const char* kDialog = "###path";
 
 void coloured_text(ImU32 colour, const std::string& text) {
@@ -285,7 +286,7 @@ void Ui::draw() {
   ImGui::BeginChild("readout", {0.0F, readout});
   draw_readout();
   ImGui::EndChild();
-  const float price = 26.0F * ImGui::GetFontSize();
+  const float price = 24.0F * ImGui::GetFontSize();
   ImGui::BeginChild("effects", {ImGui::GetContentRegionAvail().x - price, 0.0F}, true);
   draw_effects(session_);
   ImGui::EndChild();

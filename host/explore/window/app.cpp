@@ -33,7 +33,7 @@ constexpr int kHeight = 900;
 constexpr float kFontPixels = 15.0F;
 constexpr double kBlink_s = 0.3;  // of a text cursor
 // Frames after an event: ImGui answers some of them one frame later.
-constexpr int kFramesAfterEvent = 3;
+constexpr std::size_t kFramesAfterEvent = 3;
 // A frame waits for one tile at most where display and evaluator share a queue.
 constexpr std::uint32_t kTileInvocations = 2'048;
 
@@ -160,7 +160,7 @@ class App::Impl {
         window_(open_window(options.is_hidden)),
         vulkan_options_(device_options(options.device, session_.scene().accuracy.precision)),
         context_(make_context(vulkan_options_)),
-        interface_(window_.get()),
+        interface_(prepared(window_.get())),
         presenter_(context_, make_surface(context_.instance(), window_.get()), size_of(window_.get())),
         evaluator_(context_, vulkan_options_),
         export_evaluator_(context_, vulkan_options_),
@@ -170,9 +170,6 @@ class App::Impl {
         command_line_(options.command_line),
         ui_(session_, table_export_, true_error_, actions(), options.file_name) {
     glfwSetWindowUserPointer(window_.get(), this);
-    glfwSetDropCallback(window_.get(), [](GLFWwindow* window, int count, const char** paths) {
-      if (count > 0) static_cast<Impl*>(glfwGetWindowUserPointer(window))->session_.load_measured(paths[0]);
-    });
   }
 
   Session& session() { return session_; }
@@ -206,6 +203,20 @@ class App::Impl {
   }
 
  private:
+  static Impl* impl_of(GLFWwindow* window) { return static_cast<Impl*>(glfwGetWindowUserPointer(window)); }
+
+  /// With callbacks of our own, which ImGui calls after its own; until the user pointer is set they do nothing.
+  static GLFWwindow* prepared(GLFWwindow* window) {
+    glfwSetKeyCallback(window, [](GLFWwindow* of, int key, int, int action, int modifiers) {
+      const bool is_command = action == GLFW_PRESS && modifiers == GLFW_MOD_CONTROL;
+      if (is_command && impl_of(of)) impl_of(of)->ui_.press(key);
+    });
+    glfwSetDropCallback(window, [](GLFWwindow* of, int count, const char** paths) {
+      if (count > 0 && impl_of(of)) impl_of(of)->session_.load_measured(paths[0]);
+    });
+    return window;
+  }
+
   /// Runs what may fail for a reason that the user can mend.
   void attempt(const std::string& done, const std::function<void()>& body) {
     try {
@@ -298,7 +309,7 @@ void App::settle() {
 }
 
 void App::run() {
-  int frames_left = kFramesAfterEvent;
+  std::size_t frames_left = kFramesAfterEvent;
   while (frame()) {
     if (--frames_left > 0) continue;
     if (ImGui::GetIO().WantTextInput) {
@@ -312,25 +323,29 @@ void App::run() {
 
 FrameTimes App::run_frames(std::size_t count, const std::string& screenshot_path) {
   FrameTimes times;
+  const bool wants_picture = !screenshot_path.empty();
   Clock::time_point start = Clock::now();
-  for (std::size_t i = 1; i < count; ++i) {
+  for (std::size_t left = count; left > 0; --left) {
+    // The last frames show what is finished, in a layout that has settled.
+    if (wants_picture && left <= kFramesAfterEvent) {
+      wait_for_results();
+      start = Clock::now();
+    }
+    if (wants_picture && left == 1) impl_->save_picture(screenshot_path);
     const bool was_computing = impl_->is_computing();
     const bool is_open = frame();
     const Clock::time_point end = Clock::now();
     times.all_s.push_back(std::chrono::duration<double>(end - start).count());
     if (was_computing) times.busy_s.push_back(times.all_s.back());
     start = end;
-    if (!is_open) return times;
+    if (!is_open) break;
   }
-  if (!screenshot_path.empty()) {
-    constexpr auto kPause = std::chrono::milliseconds(5);
-    for (impl_->exchange(); !is_idle(); impl_->exchange()) std::this_thread::sleep_for(kPause);
-    impl_->save_picture(screenshot_path);
-  }
-  start = Clock::now();
-  frame();
-  times.all_s.push_back(std::chrono::duration<double>(Clock::now() - start).count());
   return times;
+}
+
+void App::wait_for_results() {
+  constexpr auto kPause = std::chrono::milliseconds(5);
+  for (impl_->exchange(); !is_idle(); impl_->exchange()) std::this_thread::sleep_for(kPause);
 }
 
 }  // namespace dolp::explore

@@ -28,7 +28,7 @@ struct FrameTimes {
   std::vector<double> busy_s;  ///< those in which the worker had something to do
 };
 
-/// "300 frames, 60 Hz …": count, median and worst, of all frames and of those while something was computed.
+/// Two lines: count, median and worst, of all frames and of those while something was computed.
 std::string summary_of(const FrameTimes& times);
 
 class App {
@@ -48,7 +48,8 @@ class App {
   bool frame();
   /// Until the window is closed; between events nothing is drawn.
   void run();
-  /// This many frames one after the other, and then a picture of the window, once everything wanted is computed.
+  /// This many frames one after the other; the last ones wait until everything wanted is computed if there is a path
+  /// for a picture, which is of the last one.
   FrameTimes run_frames(std::size_t count, const std::string& screenshot_path);
 
   /// Nothing is left to compute, and all of it is in the session.
@@ -60,6 +61,8 @@ class App {
   void save_picture(const std::string& path);
 
  private:
+  void wait_for_results();
+
   class Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -54,8 +54,9 @@ void draw_effects(const Session& session) {
       ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingFixedFit;
   if (!ImGui::BeginTable("effects", kColumns, kFlags)) return;
   ImGui::TableSetupScrollFreeze(0, 1);
-  ImGui::TableSetupColumn("effect");
-  ImGui::TableSetupColumn("plan");
+  const float em = ImGui::GetFontSize();
+  ImGui::TableSetupColumn("effect", ImGuiTableColumnFlags_WidthFixed, 7.5F * em);
+  ImGui::TableSetupColumn("plan", ImGuiTableColumnFlags_WidthFixed, 5.2F * em);
   ImGui::TableSetupColumn("bound at cursor");
   ImGui::TableSetupColumn("Q/I of the maximum without it");
   ImGui::TableSetupColumn("why", ImGuiTableColumnFlags_WidthStretch);

@@ -22,7 +22,7 @@ void check_imgui(VkResult result) { check(result, "drawing the window"); }
 }  // namespace
 
 Presenter::Presenter(vulkan::Context& context, VkSurfaceKHR surface, VkExtent2D size)
-    : context_(context), surface_(surface) {
+    : context_(context), surface_(surface), size_(size) {
   VkBool32 is_supported = VK_FALSE;
   check(vkGetPhysicalDeviceSurfaceSupportKHR(context.physical_device(), context.device().queue_family(), surface,
                                              &is_supported),
@@ -113,6 +113,7 @@ void Presenter::wait(const Frame& frame) const {
 
 void Presenter::recreate(VkExtent2D size) {
   check(context_.device().wait_idle(), "waiting for the device");
+  size_ = size;
   auto next = std::make_unique<Swapchain>(context_, surface_, format_, pass_.get(), size, swapchain_->get());
   swapchain_ = std::move(next);
 }
@@ -120,6 +121,8 @@ void Presenter::recreate(VkExtent2D size) {
 bool Presenter::acquire(Frame& frame, VkExtent2D size, std::uint32_t& image) {
   for (;;) {
     if (size.width == 0 || size.height == 0 || !has_area(context_.physical_device(), surface_, size)) return false;
+    // Not every driver tells that its images have an old size.
+    if (size.width != size_.width || size.height != size_.height) recreate(size);
     const VkResult result = vkAcquireNextImageKHR(context_.device().get(), swapchain_->get(), UINT64_MAX,
                                                   frame.acquired.get(), VK_NULL_HANDLE, &image);
     if (result == VK_SUCCESS || result == VK_SUBOPTIMAL_KHR) return true;

@@ -58,6 +58,7 @@ class Presenter {
 
   vulkan::Context& context_;
   VkSurfaceKHR surface_;
+  VkExtent2D size_;  ///< of the window when the swapchain was made
   SurfaceFormat format_;
   UniqueRenderPass pass_;
   std::unique_ptr<Swapchain> swapchain_;

@@ -74,7 +74,7 @@ void Ui::add_view_commands() {
   add({"View", "Logarithmic axis", GLFW_KEY_L, "Ctrl+L", toggle(&View::is_log), is_on(&View::is_log)});
   add({"View", "Overlay the other slope distribution", GLFW_KEY_D, "Ctrl+D", toggle(&View::has_overlay),
        is_on(&View::has_overlay)});
-  add({"View", "Keep all effects", GLFW_KEY_A, "Ctrl+A", toggle(&View::keeps_all), is_on(&View::keeps_all)});
+  add({"View", "Keep all effects", GLFW_KEY_G, "Ctrl+G", toggle(&View::keeps_all), is_on(&View::keeps_all)});
   add({"Scene", "Pin the curve", GLFW_KEY_P, "Ctrl+P", [this] { session_.pin(); }, {}});
   add({"Scene", "True error of the curve", GLFW_KEY_K, "Ctrl+K",
        [this] {
@@ -93,9 +93,12 @@ void Ui::ask_path(const std::string& title, const std::string& path, bool must_e
 }
 
 void Ui::run_shortcuts() {
-  if (!ImGui::GetIO().KeyCtrl || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) return;
-  for (const Command& command : commands_) {
-    if (command.key != 0 && ImGui::IsKeyPressed(command.key, false)) command.run();
+  const std::vector<int> pressed = std::exchange(pressed_, {});
+  if (ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) return;
+  for (const int key : pressed) {
+    for (const Command& command : commands_) {
+      if (command.key == key) command.run();
+    }
   }
 }
 

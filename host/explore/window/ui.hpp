@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "explore/background_task.hpp"
 #include "explore/session.hpp"
@@ -29,6 +30,10 @@ class Ui {
 
   /// Draws everything, between ImGui's NewFrame and Render.
   void draw();
+
+  /// A key went down with Ctrl; its command runs with the next `draw`. Between two frames a key may come and go, which
+  /// ImGui does not see.
+  void press(int key) { pressed_.push_back(key); }
 
   const ControlsPanel& controls() const { return controls_; }
 
@@ -74,6 +79,7 @@ class Ui {
   std::vector<Command> commands_;
   ControlsPanel controls_;
   MapView map_view_;
+  std::vector<int> pressed_;
   PathDialog dialog_;
   bool shows_help_ = false;
   std::string true_error_key_;  ///< of the curve whose true error is asked for or known

@@ -184,12 +184,12 @@ TEST_F(Window, CurveCsv_ByShortcut_HasThePlottedValues) {
 }
 
 TEST_F(Window, Table_ByShortcut_EqualsThatOfTheCommand) {
+  ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc", "--quiet"}).status, 0);
+  const Table wanted = read_table(at("t.nc"));
   keys("ctrl+t");
   keys("Return");
   for (int i = 0; i < 2000 && !std::filesystem::exists(at("made_table.nc")); ++i) app_->frame();
-  ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc", "--quiet"}).status, 0);
   const Table made = read_table(at("made_table.nc"));
-  const Table wanted = read_table(at("t.nc"));
   EXPECT_EQ(made.dolp, wanted.dolp);
   EXPECT_EQ(made.theta_deg, wanted.theta_deg);
   EXPECT_EQ(dolp({"verify", "made_table.nc"}).status, 0);

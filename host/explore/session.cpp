@@ -210,7 +210,7 @@ void Session::take(const std::vector<News>& news) {
     map_.take(part);
     peak_.take(part);
     residuals_.take(part);
-    is_changed_ = true;
+    is_changed_ = is_changed_ || part.is_last;
   }
   if (!curve_.is_finished()) return;
   peak_.follow(curve_, edits_);

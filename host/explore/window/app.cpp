@@ -31,6 +31,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kWidth = 1440;
 constexpr int kHeight = 900;
 constexpr float kFontPixels = 15.0F;
+constexpr auto kFading = std::chrono::milliseconds(300);  // of a dialog that was closed
 constexpr double kBlink_s = 0.3;  // of a text cursor
 // Frames after an event: ImGui answers some of them one frame later.
 constexpr std::size_t kFramesAfterEvent = 3;
@@ -177,7 +178,11 @@ class App::Impl {
   GLFWwindow* window() const { return window_.get(); }
   bool is_idle() const { return worker_.is_idle() && is_all_taken_; }
   bool is_computing() const { return !worker_.is_idle(); }
-  void save_picture(const std::string& path) { picture_path_ = path; }
+  void save_picture(const std::string& path, Clock::duration delay = {}) {
+    picture_path_ = path;
+    picture_time_ = Clock::now() + delay;
+  }
+  bool has_picture_to_save() const { return !picture_path_.empty(); }
 
   /// News in, wishes out.
   void exchange() {
@@ -190,12 +195,12 @@ class App::Impl {
   }
 
   void draw() {
+    const bool wants_picture = has_picture_to_save() && Clock::now() >= picture_time_;
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     ui_.draw();
     ImGui::Render();
-    const bool wants_picture = !picture_path_.empty();
     Picture picture;
     presenter_.draw(ImGui::GetDrawData(), size_of(window_.get()), wants_picture ? &picture : nullptr);
     if (wants_picture && picture.width > 0) write_png(picture, std::exchange(picture_path_, {}));
@@ -245,7 +250,7 @@ class App::Impl {
     actions.save_picture = [this](const std::string& path) {
       attempt("saved " + path, [&] {
         check_writable(path);
-        save_picture(path);
+        save_picture(path, kFading);
       });
     };
     actions.load_measured = [this](const std::string& path) { session_.load_measured(path); };
@@ -278,6 +283,7 @@ class App::Impl {
   BackgroundTask true_error_;
   std::string command_line_;
   std::string picture_path_;
+  Clock::time_point picture_time_;
   bool is_all_taken_ = false;
   Ui ui_;
 };
@@ -312,12 +318,13 @@ void App::run() {
   std::size_t frames_left = kFramesAfterEvent;
   while (frame()) {
     if (--frames_left > 0) continue;
+    frames_left = kFramesAfterEvent;
+    if (impl_->has_picture_to_save()) continue;
     if (ImGui::GetIO().WantTextInput) {
       glfwWaitEventsTimeout(kBlink_s);
     } else {
       glfwWaitEvents();
     }
-    frames_left = kFramesAfterEvent;
   }
 }
 

@@ -205,9 +205,10 @@ void draw_curve_view(Session& session, ImVec2 size) {
   const std::vector<Shown> curves = shown_curves(session);
   const Quantity quantity = session.view().quantity;
   const bool has_measured = session.residuals().points().has_value() && quantity == Quantity::kDolp;
+  const float gap = ImGui::GetStyle().ItemSpacing.y;
   const float residual_height = has_measured ? 0.28F * size.y : 0.0F;
   const bool is_bistatic = session.scene().geometry.mode == Mode::kBistatic;
-  const Plot plot("curve", {size.x, size.y - residual_height},
+  const Plot plot("curve", {size.x, size.y - residual_height - (has_measured ? gap : 0.0F)},
                   {is_bistatic ? "zenith θ of the source [°]" : "zenith θ [°]", 0.0, kLargestTheta},
                   value_axis(session, curves));
   if (plot.is_dragged()) session.set_theta(plot.mouse_x());

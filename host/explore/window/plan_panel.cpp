@@ -27,10 +27,12 @@ std::string bound_text(const EffectRow& row) {
                                               : fmt::format("≤ {:.2g} points", points);
 }
 
-/// Which effect of the peak's list a row is about; the distribution's is how rough the surface is.
-std::string taken_away(const EffectRow& row) {
+/// What the maximum would be without the effect; a surface without slopes is a smooth one.
+std::string taken_away_text(const Session& session, const EffectRow& row) {
   const std::string name = row.name;
-  return name == "distribution" ? "roughness" : name;
+  if (name != "distribution") return without_text(session, name);
+  const std::string text = without_text(session, "roughness");
+  return text.empty() ? "" : "smooth: " + text;
 }
 
 void draw_row(const Session& session, const EffectRow& row) {
@@ -39,7 +41,7 @@ void draw_row(const Session& session, const EffectRow& row) {
   cell(row.name, colour);
   cell(row.state == EffectState::kNotNeeded ? "not needed" : state_name(row.state), colour);
   cell(bound_text(row), colour);
-  cell(is_absent ? "" : without_text(session, taken_away(row)), colour);
+  cell(is_absent ? "" : taken_away_text(session, row), colour);
   cell(row.reason, colour);
   if (!ImGui::IsItemHovered()) return;
   const std::string needs = row.needs.empty() ? "" : "\nit takes: " + row.needs;
@@ -58,7 +60,7 @@ void draw_effects(const Session& session) {
   ImGui::TableSetupColumn("effect", ImGuiTableColumnFlags_WidthFixed, 7.5F * em);
   ImGui::TableSetupColumn("plan", ImGuiTableColumnFlags_WidthFixed, 5.2F * em);
   ImGui::TableSetupColumn("bound at cursor");
-  ImGui::TableSetupColumn("Q/I of the maximum without it");
+  ImGui::TableSetupColumn("maximum without it");
   ImGui::TableSetupColumn("why", ImGuiTableColumnFlags_WidthStretch);
   ImGui::TableHeadersRow();
   for (const EffectRow& row : session.effects()) {
@@ -75,7 +77,6 @@ bool draw_price(Session& session, ControlsPanel& controls, BackgroundTask& true_
   ImGui::BeginDisabled(!is_ready);
   const bool is_asked = ImGui::Button("True error (Ctrl+K)");
   ImGui::EndDisabled();
-  ImGui::SameLine();
   draw_task("reference", true_error);
   return is_asked;
 }
@@ -85,7 +86,6 @@ void draw_task(const char* name, BackgroundTask& task) {
   const std::string message = shown(task.message());
   switch (task.state()) {
     case BackgroundTask::State::kNone:
-      ImGui::NewLine();
       break;
     case BackgroundTask::State::kRunning:
       if (ImGui::Button("Cancel")) task.cancel();

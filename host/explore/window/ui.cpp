@@ -258,11 +258,12 @@ void Ui::draw_price() {
 void Ui::draw_plots(ImVec2 size) {
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const float curve_width = 0.54F * size.x;
-  ImGui::BeginChild("curves", {curve_width, size.y});
+  constexpr ImGuiWindowFlags kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
+  ImGui::BeginChild("curves", {curve_width, size.y}, false, kStill);
   draw_curve_view(session_, ImGui::GetContentRegionAvail());
   ImGui::EndChild();
   ImGui::SameLine();
-  ImGui::BeginChild("maps", {size.x - curve_width - gap, size.y});
+  ImGui::BeginChild("maps", {size.x - curve_width - gap, size.y}, false, kStill);
   map_view_.draw(session_, ImGui::GetContentRegionAvail());
   ImGui::EndChild();
 }

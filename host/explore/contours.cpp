@@ -18,10 +18,10 @@ constexpr std::array<std::pair<std::size_t, std::size_t>, 4> kCorners = {{{0, 0}
 
 }  // namespace
 
-std::vector<double> contour_levels(const MapField& field) {
+std::vector<double> contour_levels(double low, double high, bool is_log) {
   constexpr std::size_t kMostLines = 7;
-  if (field.count == 0 || !(field.min < field.max)) return {};
-  return linear_ticks(field.min, field.max, kMostLines);
+  if (!(low < high)) return {};
+  return is_log ? log_ticks(low, high, kMostLines) : linear_ticks(low, high, kMostLines);
 }
 
 std::vector<Segment> contour(const MapField& field, double level) {

@@ -16,7 +16,7 @@ struct Segment {
 /// good have none.
 std::vector<Segment> contour(const MapField& field, double level);
 
-/// Where the lines of a field go: round values, about six.
-std::vector<double> contour_levels(const MapField& field);
+/// Where the lines of a field go: round values, seven at most.
+std::vector<double> contour_levels(double low, double high, bool is_log);
 
 }  // namespace dolp::explore

@@ -35,10 +35,10 @@ double MapAxis::position(double value) const {
   return is_log ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
 }
 
-MapAxis suggested_axis(AxisKind kind, const Scene& scene) {
+MapAxis suggested_axis(AxisKind kind, const Scene& scene, double theta_max_deg) {
   switch (kind) {
     case AxisKind::kTheta:
-      return {kind, 0.0, 90.0, false};
+      return {kind, 0.0, theta_max_deg, false};
     case AxisKind::kSigma:
       return axis_of(kind, scene.grid.sigma, parameter("surface.sigma").slider, true);
     case AxisKind::kQ:

@@ -28,7 +28,7 @@ struct MapAxis {
 };
 
 /// The axis as a scene suggests it: its grid where that has a range, else that of the parameter's slider.
-MapAxis suggested_axis(AxisKind kind, const Scene& scene);
+MapAxis suggested_axis(AxisKind kind, const Scene& scene, double theta_max_deg);
 
 /// "θ [°]", "σ", "q".
 const char* axis_label(AxisKind kind);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "error.hpp"
+#include "scene/text.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -42,19 +43,23 @@ std::size_t position_of_largest(const std::vector<PointResult>& results) {
 
 }  // namespace
 
-void Peak::follow(const Curve& curve, const SceneEdits& edits) {
-  if (curve.key() == key_) return;
-  key_ = curve.key();
+void Peak::follow(const Curve& curve, const SceneEdits& edits, double theta_max_deg) {
+  const std::string key = "up to " + format_number(theta_max_deg) + ' ' + curve.key();
+  if (key == key_) return;
+  key_ = key;
   scene_ = curve.scene();
   theta_deg_.clear();
   answer_.reset();
   without_.clear();
   scenes_without_.clear();
-  const std::vector<PointResult>& results = curve.results();
-  const std::size_t best = position_of_largest(results);
-  if (best == results.size()) return;
-  const double low = curve.entries()[best == 0 ? 0 : best - 1].theta_deg;
-  const double high = curve.entries()[std::min(best + 1, results.size() - 1)].theta_deg;
+  const auto is_shown = [&](const SceneEntry& entry) { return entry.theta_deg <= theta_max_deg; };
+  const auto count = std::ranges::count_if(curve.entries(), is_shown);
+  curve_entries_.assign(curve.entries().begin(), curve.entries().begin() + count);
+  curve_results_.assign(curve.results().begin(), curve.results().begin() + count);
+  const std::size_t best = position_of_largest(curve_results_);
+  if (best == curve_results_.size()) return;
+  const double low = curve_entries_[best == 0 ? 0 : best - 1].theta_deg;
+  const double high = curve_entries_[std::min(best + 1, curve_results_.size() - 1)].theta_deg;
   theta_deg_ = zeniths(low, high, static_cast<std::size_t>(std::lround((high - low) / kStepDeg)) + 1);
   take_away(edits);
 }
@@ -116,8 +121,12 @@ void Peak::answer_from(const std::vector<PointResult>& results) {
     return;
   }
   at_peak_ = results[best];
-  PeakAnswer answer{theta_deg_[best], at_peak_.dolp, at_peak_.stokes_q / at_peak_.stokes_i,
-                    at_peak_.error_estimate, at_peak_.albedo};
+  PeakAnswer answer;
+  answer.theta_deg = theta_deg_[best];
+  answer.dolp = at_peak_.dolp;
+  answer.q_over_i = at_peak_.stokes_q / at_peak_.stokes_i;
+  answer.error = at_peak_.error_estimate;
+  answer.albedo = at_peak_.albedo;
   const double least = at_peak_.dolp - at_peak_.error_estimate;
   const auto may_be_largest = [&](std::size_t i) {
     return is_good(results[i]) && results[i].dolp + results[i].error_estimate >= least;
@@ -126,10 +135,21 @@ void Peak::answer_from(const std::vector<PointResult>& results) {
   std::size_t last = best;
   while (first > 0 && may_be_largest(first - 1)) --first;
   while (last + 1 < results.size() && may_be_largest(last + 1)) ++last;
+  answer.rival_deg = rival(least);
   answer.theta_low_deg = theta_deg_[first];
   answer.theta_high_deg = theta_deg_[last];
   answer.is_at_end = best + 1 == results.size() || (best + 1 < results.size() && !is_good(results[best + 1]));
   answer_ = answer;
+}
+
+std::optional<double> Peak::rival(double least) const {
+  for (std::size_t i = 0; i < curve_results_.size(); ++i) {
+    const double theta_deg = curve_entries_[i].theta_deg;
+    const bool is_beside = theta_deg >= theta_deg_.front() && theta_deg <= theta_deg_.back();
+    const PointResult& result = curve_results_[i];
+    if (!is_beside && is_good(result) && result.dolp + result.error_estimate >= least) return theta_deg;
+  }
+  return std::nullopt;
 }
 
 bool Peak::is_complete() const {

@@ -20,6 +20,7 @@ struct PeakAnswer {
   // Zeniths at which, with all errors, DOLP could be the largest.
   double theta_low_deg = 0.0;
   double theta_high_deg = 0.0;
+  std::optional<double> rival_deg;  ///< another zenith, not beside it, at which it could be the largest
   bool is_at_end = false;  ///< the largest is beside entries that are not good, or at the end of the range
 };
 
@@ -38,8 +39,8 @@ class Peak {
   /// Zeniths are told apart to this.
   static constexpr double kStepDeg = 0.02;
 
-  /// The peak of this curve, which is finished; the scene behind it is that of `edits`.
-  void follow(const Curve& curve, const SceneEdits& edits);
+  /// The peak of this curve, which is finished, up to a zenith; the scene behind it is that of `edits`.
+  void follow(const Curve& curve, const SceneEdits& edits, double theta_max_deg);
 
   /// What is still to be computed.
   std::vector<Job> wanted() const;
@@ -55,12 +56,15 @@ class Peak {
   double contribution(const WithoutEffect& of) const;
 
  private:
+  std::optional<double> rival(double least) const;
   void answer_from(const std::vector<PointResult>& results);
   std::string key_of(const WithoutEffect& of) const;
   void take_away(const SceneEdits& edits);
 
   std::string key_;
   Scene scene_;
+  std::vector<SceneEntry> curve_entries_;
+  std::vector<PointResult> curve_results_;
   std::vector<double> theta_deg_;  ///< around the peak of the curve; empty when no entry is good
   std::optional<PeakAnswer> answer_;
   PointResult at_peak_;

@@ -57,7 +57,8 @@ std::string peak_text(const Session& session) {
   text += peak->theta_low_deg == peak->theta_high_deg
               ? fmt::format("there to {:g}°.", Peak::kStepDeg)
               : fmt::format("surely between {:.2f}° and {:.2f}°.", peak->theta_low_deg, peak->theta_high_deg);
-  if (peak->is_at_end) text += " Beyond it the model fails or ends.";
+  if (peak->rival_deg) text += fmt::format(" Elsewhere, at {:g}°, it may be as large.", *peak->rival_deg);
+  if (peak->is_at_end) text += " Beyond it the model fails, or the range ends.";
   // The bound is of the numbers; what the surface model itself is worth there, the albedo tells.
   if (std::isfinite(peak->albedo) && peak->albedo < kAlbedoMin) {
     text += fmt::format(" The surface model loses energy there (albedo {:.2f}).", peak->albedo);
@@ -103,7 +104,7 @@ std::string without_text(const Session& session, const std::string& effect) {
   for (const WithoutEffect& away : session.peak().without()) {
     if (effect != away.effect || !away.is_known) continue;
     const double q_over_i = away.result.stokes_q / away.result.stokes_i;
-    if (!std::isfinite(q_over_i)) return "nothing left";
+    if (!is_good(away.result) || !std::isfinite(q_over_i)) return "the model fails";
     return fmt::format("{:+.2f} → {:+.2f} %", kPercent * (q_over_i - peak->q_over_i), kPercent * q_over_i);
   }
   return {};

@@ -100,11 +100,12 @@ void Session::set_view(const View& view) {
   if (view_.map_x == view_.map_y) {
     view_.map_y = view_.map_x == AxisKind::kSigma ? AxisKind::kTheta : AxisKind::kSigma;
   }
-  follow();
+  view_.theta_max_deg = std::clamp(view_.theta_max_deg, kLeastThetaMaxDeg, 90.0);
+  set_theta(theta_deg_);
 }
 
 void Session::set_theta(double theta_deg) {
-  theta_deg_ = std::clamp(theta_deg, 0.0, 90.0);
+  theta_deg_ = std::clamp(theta_deg, 0.0, view_.theta_max_deg);
   follow();
 }
 
@@ -144,6 +145,7 @@ void Session::follow() {
   follow_overlay(content, keep_all);
   follow_map(keep_all);
   bound_effects();
+  follow_peak();
   is_changed_ = true;
 }
 
@@ -174,8 +176,8 @@ void Session::follow_overlay(const std::string& content, bool keep_all) {
 }
 
 void Session::follow_map(bool keep_all) {
-  const MapAxis x = suggested_axis(view_.map_x, scene());
-  const MapAxis y = suggested_axis(view_.map_y, scene());
+  const MapAxis x = suggested_axis(view_.map_x, scene(), view_.theta_max_deg);
+  const MapAxis y = suggested_axis(view_.map_y, scene(), view_.theta_max_deg);
   std::string key = content_key(edits_.overrides_without({own_key(x.kind), own_key(y.kind)}), keep_all);
   const bool has_theta = x.kind == AxisKind::kTheta || y.kind == AxisKind::kTheta;
   if (!has_theta) key += "\ntheta=" + format_number(theta_deg_);
@@ -212,9 +214,12 @@ void Session::take(const std::vector<News>& news) {
     residuals_.take(part);
     is_changed_ = is_changed_ || part.is_last;
   }
-  if (!curve_.is_finished()) return;
-  peak_.follow(curve_, edits_);
-  if (!news.empty()) bound_effects();
+  follow_peak();
+  if (curve_.is_finished() && !news.empty()) bound_effects();
+}
+
+void Session::follow_peak() {
+  if (curve_.is_finished()) peak_.follow(curve_, edits_, view_.theta_max_deg);
 }
 
 }  // namespace dolp::explore

@@ -29,6 +29,7 @@ struct View {
   bool is_log = false;
   bool has_overlay = true;  ///< the other slope distribution with the same D(0)
   bool keeps_all = false;   ///< compute what the plan would drop, too
+  double theta_max_deg = 90.0;  ///< what is shown, and where the maximum is looked for
   AxisKind map_x = AxisKind::kTheta;
   AxisKind map_y = AxisKind::kSigma;
 };
@@ -43,6 +44,7 @@ struct Message {
 class Session {
  public:
   static constexpr std::size_t kMostPins = 6;
+  static constexpr double kLeastThetaMaxDeg = 10.0;
 
   explicit Session(SceneEdits edits);
 
@@ -97,6 +99,7 @@ class Session {
   void follow_overlay(const std::string& content, bool keep_all);
   void follow_map(bool keep_all);
   void bound_effects();
+  void follow_peak();
   double cursor_position(const MapAxis& axis) const;
 
   SceneEdits edits_;

@@ -13,8 +13,6 @@ namespace dolp::explore {
 namespace {
 
 constexpr float kWidth = 2.0F;
-constexpr double kLargestTheta = 90.0;
-
 /// A curve as it is drawn.
 struct Shown {
   const Curve* curve;
@@ -55,7 +53,9 @@ Range range_of(const Session& session, const std::vector<Shown>& curves, bool is
     if (!is_log || value > 0.0) range.add(value);
   };
   for (const Shown& shown : curves) {
-    for (const PointResult& result : shown.curve->results()) {
+    for (std::size_t i = 0; i < shown.curve->results().size(); ++i) {
+      if (shown.curve->entries()[i].theta_deg > session.view().theta_max_deg) break;
+      const PointResult& result = shown.curve->results()[i];
       if (is_good(result)) add(scale_of(quantity) * value_of(quantity, result));
     }
   }
@@ -78,7 +78,8 @@ PlotAxis value_axis(const Session& session, const std::vector<Shown>& curves) {
   if (range.is_empty()) range = {is_log ? 0.01 : 0.0, 1.0};
   if (is_log) {
     constexpr double kMostDecades = 1e6;
-    axis.to = 1.5 * range.high;
+    constexpr double kRoom = 4.0;  // for the mark of the maximum
+    axis.to = kRoom * range.high;
     axis.from = std::max(range.low / 1.5, axis.to / kMostDecades);
     return axis;
   }
@@ -187,9 +188,10 @@ void draw_residuals(const Session& session, ImVec2 size) {
   const std::optional<double> rms = session.residuals().rms();
   const std::string label = rms ? fmt::format("measured − model [points]; root mean square {:.3g}", 100.0 * *rms)
                                 : "measured − model [points]";
-  const Plot plot("residuals", size, {"", 0.0, kLargestTheta}, {label, -1.2 * largest, 1.2 * largest});
+  const double theta_max = session.view().theta_max_deg;
+  const Plot plot("residuals", size, {"", 0.0, theta_max}, {label, -1.2 * largest, 1.2 * largest});
   plot.clip();
-  plot.list()->AddLine(plot.at(0.0, 0.0), plot.at(kLargestTheta, 0.0), kDimColour);
+  plot.list()->AddLine(plot.at(0.0, 0.0), plot.at(theta_max, 0.0), kDimColour);
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     if (!std::isfinite(residuals[i])) continue;
     const double theta = session.residuals().points()->theta_deg[i];
@@ -207,13 +209,14 @@ void draw_curve_view(Session& session, ImVec2 size) {
   const bool has_measured = session.residuals().points().has_value() && quantity == Quantity::kDolp;
   const float gap = ImGui::GetStyle().ItemSpacing.y;
   const float residual_height = has_measured ? 0.28F * size.y : 0.0F;
+  const double theta_max = session.view().theta_max_deg;
   const bool is_bistatic = session.scene().geometry.mode == Mode::kBistatic;
   const Plot plot("curve", {size.x, size.y - residual_height - (has_measured ? gap : 0.0F)},
-                  {is_bistatic ? "zenith θ of the source [°]" : "zenith θ [°]", 0.0, kLargestTheta},
+                  {is_bistatic ? "zenith θ of the source [°]" : "zenith θ [°]", 0.0, theta_max},
                   value_axis(session, curves));
   if (plot.is_dragged()) session.set_theta(plot.mouse_x());
   plot.clip();
-  plot.list()->AddLine(plot.at(0.0, 0.0), plot.at(kLargestTheta, 0.0), kDimColour);
+  if (!plot.y().is_log) plot.list()->AddLine(plot.at(0.0, 0.0), plot.at(theta_max, 0.0), kDimColour);
   for (const Shown& shown : curves) draw_curve(plot, shown, quantity);
   if (has_measured) draw_measured(plot, *session.residuals().points());
   draw_cursor(plot, session);

@@ -14,6 +14,7 @@ namespace {
 
 // Few enough that neighbours share a colour and are drawn as one, more than the eye tells apart.
 constexpr double kColourSteps = 96.0;
+constexpr double kMostContrast = 1e3;  // of a logarithmic colour scale
 constexpr float kBarRoom = 5.4F;  // right of the map, in lines of text
 
 PlotAxis axis_of(const MapAxis& axis) { return {axis_label(axis.kind), axis.from, axis.to, axis.is_log}; }
@@ -41,23 +42,32 @@ void draw_cursor(const Session& session, const Plot& plot) {
 
 }  // namespace
 
+double MapView::colour_position(double value) const {
+  if (!(low_ < field_.max)) return 0.0;
+  if (!uses_log()) return (value - low_) / (field_.max - low_);
+  return value > low_ ? std::log(value / low_) / std::log(field_.max / low_) : 0.0;
+}
+
 void MapView::update(const Session& session) {
   const Quantity quantity = session.view().quantity;
-  if (version_ == session.map().version() && quantity_ == quantity) return;
+  const bool is_log = session.view().is_log;
+  if (version_ == session.map().version() && quantity_ == quantity && is_log_ == is_log) return;
   version_ = session.map().version();
   quantity_ = quantity;
   field_ = session.map().field(quantity);
-  const double range = field_.max - field_.min;
+  // Only what is positive throughout, but for a few smallest values, has a logarithm.
+  is_log_ = is_log;
+  low_ = is_log && field_.max > 0.0 ? std::max(field_.min, field_.max / kMostContrast) : field_.min;
   colours_.clear();
   for (std::size_t i = 0; i < field_.values.size(); ++i) {
-    const double position = range > 0.0 ? (field_.values[i] - field_.min) / range : 0.0;
+    const double position = colour_position(field_.values[i]);
     colours_.push_back(field_.is_good[i] ? viridis(std::round(position * kColourSteps) / kColourSteps) : kBadColour);
   }
   runs_ = runs_along(true);
   std::vector<Run> upwards = runs_along(false);
   if (upwards.size() < runs_.size()) runs_ = std::move(upwards);
   lines_.clear();
-  for (const double level : contour_levels(field_)) lines_.push_back({level, contour(field_, level)});
+  for (const double level : contour_levels(low_, field_.max, uses_log())) lines_.push_back({level, contour(field_, level)});
 }
 
 std::vector<MapView::Run> MapView::runs_along(bool rows) const {
@@ -97,13 +107,18 @@ void MapView::draw_lines(const Plot& plot, double scale) const {
       plot.list()->AddLine(plot.at_position(s.x0, s.y0), plot.at_position(s.x1, s.y1), kLine);
     }
   }
+  std::vector<ImVec2> labels;
   for (const Line& line : lines_) {
     if (line.segments.empty()) continue;
     // Where the line is farthest from the edges.
     const auto room = [](const Segment& s) { return std::min({s.x0, 1.0 - s.x0, s.y0, 1.0 - s.y0}); };
     const Segment& inner = *std::ranges::max_element(line.segments, {}, room);
-    draw_label(plot.list(), plot.at_position(inner.x0, inner.y0), {0.5F, 0.5F}, kTextColour,
-               tick_text(scale * line.level));
+    const ImVec2 at = plot.at_position(inner.x0, inner.y0);
+    const float apart = 1.5F * ImGui::GetTextLineHeight();
+    const auto is_near = [&](ImVec2 other) { return std::hypot(at.x - other.x, at.y - other.y) < apart; };
+    if (std::ranges::any_of(labels, is_near)) continue;
+    labels.push_back(at);
+    draw_label(plot.list(), at, {0.5F, 0.5F}, kTextColour, tick_text(scale * line.level));
   }
 }
 
@@ -119,12 +134,13 @@ void MapView::draw_bar(const Plot& plot, const QuantityDescription& quantity) co
     plot.list()->AddRectFilled({left, y(i + 1)}, {right, y(i)}, viridis((i + 0.5) / kSteps));
   }
   plot.list()->AddRect({left, plot.min().y}, {right, plot.max().y}, kDimColour);
-  if (!(field_.min < field_.max)) return;
+  if (!(low_ < field_.max)) return;
   const double scale = scale_of(quantity);
   const auto most = static_cast<std::size_t>(std::max(2.0F, height / (2.2F * line)));
-  for (const double tick : linear_ticks(scale * field_.min, scale * field_.max, most)) {
-    const double position = (tick / scale - field_.min) / (field_.max - field_.min);
-    const float y = plot.max().y - static_cast<float>(position) * height;
+  const std::vector<double> ticks = uses_log() ? log_ticks(scale * low_, scale * field_.max, most)
+                                               : linear_ticks(scale * low_, scale * field_.max, most);
+  for (const double tick : ticks) {
+    const float y = plot.max().y - static_cast<float>(colour_position(tick / scale)) * height;
     plot.list()->AddLine({right, y}, {right + 0.25F * line, y}, kDimColour);
     draw_text(plot.list(), {right + 0.4F * line, y}, {0.0F, 0.5F}, kDimColour, tick_text(tick));
   }

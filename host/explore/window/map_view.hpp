@@ -29,6 +29,8 @@ class MapView {
     std::vector<Segment> segments;
   };
   void update(const Session& session);
+  bool uses_log() const { return is_log_ && low_ > 0.0; }
+  double colour_position(double value) const;
   std::vector<Run> runs_along(bool rows) const;
   void draw_cells(const class Plot& plot) const;
   void draw_lines(const class Plot& plot, double scale) const;
@@ -37,6 +39,8 @@ class MapView {
   // Made anew when the map or the quantity changes.
   std::size_t version_ = 0;
   Quantity quantity_ = Quantity::kDolp;
+  bool is_log_ = false;
+  double low_ = 0.0;  ///< value of the first colour
   MapField field_;
   std::vector<ImU32> colours_;
   std::vector<Run> runs_;

@@ -52,16 +52,18 @@ void draw_row(const Session& session, const EffectRow& row) {
 
 void draw_effects(const Session& session) {
   constexpr int kColumns = 5;
-  constexpr ImGuiTableFlags kFlags =
-      ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingFixedFit;
-  if (!ImGui::BeginTable("effects", kColumns, kFlags)) return;
-  ImGui::TableSetupScrollFreeze(0, 1);
   const float em = ImGui::GetFontSize();
+  const bool is_narrow = ImGui::GetContentRegionAvail().x < 36.0F * em;
+  ImGuiTableFlags flags =
+      ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingFixedFit;
+  if (is_narrow) flags |= ImGuiTableFlags_ScrollX;
+  if (!ImGui::BeginTable(is_narrow ? "narrow effects" : "effects", kColumns, flags)) return;
+  ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableSetupColumn("effect", ImGuiTableColumnFlags_WidthFixed, 7.5F * em);
   ImGui::TableSetupColumn("plan", ImGuiTableColumnFlags_WidthFixed, 5.2F * em);
   ImGui::TableSetupColumn("bound at cursor");
   ImGui::TableSetupColumn("maximum without it");
-  ImGui::TableSetupColumn("why", ImGuiTableColumnFlags_WidthStretch);
+  ImGui::TableSetupColumn("why", is_narrow ? ImGuiTableColumnFlags_WidthFixed : ImGuiTableColumnFlags_WidthStretch);
   ImGui::TableHeadersRow();
   for (const EffectRow& row : session.effects()) {
     ImGui::TableNextRow();

@@ -209,6 +209,12 @@ void Ui::draw_view_controls() {
     }
     ImGui::SameLine();
   }
+  label(shown("   θ up to").c_str());
+  ImGui::SetNextItemWidth(0.5F * width);
+  is_changed |= ImGui::InputDouble("##theta max", &view.theta_max_deg, 0.0, 0.0, "%.4g",
+                                   ImGuiInputTextFlags_EnterReturnsTrue);
+  ImGui::SameLine();
+  label(shown("°  ").c_str());
   if (ImGui::Button("pin (Ctrl+P)")) session_.pin();
   if (is_changed) session_.set_view(view);
 }

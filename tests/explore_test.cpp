@@ -379,9 +379,8 @@ TEST(ExploreSession, Map_FinishesAt128WithTheValuesOfTheScene) {
   const MapField field = map.field(Quantity::kDolp);
   ASSERT_EQ(field.count, 128U);
   const auto entry = [&](std::size_t column, std::size_t row) {
-    return SceneEntry{map.x().value(static_cast<double>(column) / 127.0),
-                      {map.y().value(static_cast<double>(row) / 127.0), 3.0},
-                      {}};
+    return SceneEntry{
+        map.x().value(static_cast<double>(column) / 127.0), {map.y().value(static_cast<double>(row) / 127.0), 3.0}, {}};
   };
   const std::vector<SceneEntry> some = {entry(0, 0), entry(80, 3), entry(5, 127), entry(100, 64)};
   const std::vector<PointResult> exact = truth(driver.session.scene(), some);
@@ -416,6 +415,25 @@ TEST(ExploreSession, Peak_IsTheLargestOfTheCurveAndItsCausesAddUp) {
   EXPECT_GE(peak.answer()->theta_high_deg, peak.answer()->theta_deg);
   EXPECT_NE(cause_text(driver.session).find("emission -"), std::string::npos) << cause_text(driver.session);
   EXPECT_NE(cause_text(driver.session).find("against it: surroundings +"), std::string::npos);
+}
+
+TEST(ExploreSession, ThetaMax_BoundsMapCursorAndPeak) {
+  Driver driver(paint());
+  View view = driver.session.view();
+  view.theta_max_deg = 50.0;
+  driver.session.set_view(view);
+  driver.settle();
+  EXPECT_EQ(driver.session.map().x().to, 50.0);
+  EXPECT_EQ(driver.session.theta_deg(), 50.0);
+  ASSERT_TRUE(driver.session.peak().answer());
+  EXPECT_EQ(driver.session.peak().answer()->theta_deg, 50.0);
+  EXPECT_TRUE(driver.session.peak().answer()->is_at_end);
+}
+
+TEST(ExploreSession, FlatCurve_HasARival) {
+  Driver driver(paint({"surroundings=none", "source.irradiance=1e-9", "geometry.mode=bistatic"}));
+  ASSERT_TRUE(driver.session.peak().answer());
+  EXPECT_TRUE(driver.session.peak().answer()->rival_deg);
 }
 
 TEST(ExploreSession, Effects_AreThoseOfThePlanWithBoundsAtTheCursor) {

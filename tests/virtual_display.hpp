@@ -24,7 +24,8 @@ class VirtualDisplay {
     process_ = ::fork();
     if (process_ == 0) {
       const std::string number = std::to_string(ends[1]);
-      ::execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1440x900x24", "-nolisten", "tcp", nullptr);
+      ::execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1440x900x24", "-nolisten", "tcp",
+               nullptr);
       ::_exit(127);
     }
     ::close(ends[1]);

@@ -26,15 +26,15 @@ struct Options {
   bool json = false;
   bool quiet = false;
   bool strict = false;
-  bool keep_all = false;     ///< drop no effect
-  std::size_t samples = 64;  ///< of verify: entries to recompute
-  std::uint64_t seed = 1;    ///< of verify: of their choice
-  bool hard_cases = false;   ///< of verify: examine a device instead of a table
-  bool all = false;          ///< of verify: report every hard case
-  std::size_t frames = 0;    ///< of explore: draw so many and end; 0: until the window is closed
+  bool keep_all = false;        ///< drop no effect
+  std::size_t samples = 64;     ///< of verify: entries to recompute
+  std::uint64_t seed = 1;       ///< of verify: of their choice
+  bool hard_cases = false;      ///< of verify: examine a device instead of a table
+  bool all = false;             ///< of verify: report every hard case
+  std::size_t frames = 0;       ///< of explore: draw so many and end; 0: until the window is closed
   std::string screenshot_path;  ///< of explore
   std::string measured_path;    ///< of explore
-  std::string command_line;  ///< for the table's history
+  std::string command_line;     ///< for the table's history
 };
 
 /// Refuses to write over the scene or the points.

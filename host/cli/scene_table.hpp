@@ -14,7 +14,7 @@ namespace dolp::cli {
 /// A run over the grid of a scene.
 struct TableContent {
   const Scene& scene;
-  const std::vector<SceneEntry>& entries;     ///< of grid_entries
+  const std::vector<SceneEntry>& entries;   ///< of grid_entries
   const std::vector<PointResult>& results;  ///< in their order
   const EffectPlan& plan;
   EvaluationReport evaluation;

@@ -12,8 +12,8 @@ struct Segment {
   double x0, y0, x1, y1;
 };
 
-/// The lines where a field has `level`, by marching squares with linear interpolation. Squares with a corner that is not
-/// good have none.
+/// The lines where a field has `level`, by marching squares with linear interpolation. Squares with a corner that is
+/// not good have none.
 std::vector<Segment> contour(const MapField& field, double level);
 
 /// Where the lines of a field go: round values, seven at most.

@@ -47,9 +47,9 @@ struct MapField {
 class HeatMap {
  public:
   struct Level {
-    std::size_t count;     ///< of rows and columns
-    double tolerance;      ///< at least; 0: the scene's own
-    std::size_t batch;     ///< rows at a time
+    std::size_t count;  ///< of rows and columns
+    double tolerance;   ///< at least; 0: the scene's own
+    std::size_t batch;  ///< rows at a time
   };
   static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 16}, {64, 1e-2, 8}, {128, 0.0, 4}}};
 

@@ -11,14 +11,10 @@ namespace dolp::explore {
 namespace {
 
 constexpr std::array kAway = {
-    WithoutEffect{"emission", "emission=none", true},
-    WithoutEffect{"source", "source=none", true},
-    WithoutEffect{"surroundings", "surroundings=none", true},
-    WithoutEffect{"path", "path=none", false},
-    WithoutEffect{"diffuse", "surface.diffuse=0", false},
-    WithoutEffect{"specular", "surface.specular=0", false},
-    WithoutEffect{"masking", "surface.masking=none", false},
-    WithoutEffect{"roughness", "surface.sigma=0", false},
+    WithoutEffect{"emission", "emission=none", true},         WithoutEffect{"source", "source=none", true},
+    WithoutEffect{"surroundings", "surroundings=none", true}, WithoutEffect{"path", "path=none", false},
+    WithoutEffect{"diffuse", "surface.diffuse=0", false},     WithoutEffect{"specular", "surface.specular=0", false},
+    WithoutEffect{"masking", "surface.masking=none", false},  WithoutEffect{"roughness", "surface.sigma=0", false},
 };
 
 bool has(const Scene& scene, const WithoutEffect& away) {

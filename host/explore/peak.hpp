@@ -21,7 +21,7 @@ struct PeakAnswer {
   double theta_low_deg = 0.0;
   double theta_high_deg = 0.0;
   std::optional<double> rival_deg;  ///< another zenith, not beside it, at which it could be the largest
-  bool is_at_end = false;  ///< the largest is beside entries that are not good, or at the end of the range
+  bool is_at_end = false;           ///< the largest is beside entries that are not good, or at the end of the range
 };
 
 /// What the peak would be without one effect.

@@ -27,8 +27,8 @@ struct Pin {
 struct View {
   Quantity quantity = Quantity::kDolp;
   bool is_log = false;
-  bool has_overlay = true;  ///< the other slope distribution with the same D(0)
-  bool keeps_all = false;   ///< compute what the plan would drop, too
+  bool has_overlay = true;      ///< the other slope distribution with the same D(0)
+  bool keeps_all = false;       ///< compute what the plan would drop, too
   double theta_max_deg = 90.0;  ///< what is shown, and where the maximum is looked for
   AxisKind map_x = AxisKind::kTheta;
   AxisKind map_y = AxisKind::kSigma;

@@ -114,8 +114,7 @@ void Worker::put_back(Task task, std::vector<News> parts) {
     return;
   }
   const auto rank = [this](const Task& of) { return std::ranges::find(wanted_, of.job.key); };
-  const auto place =
-      std::ranges::find_if(tasks_, [&](const Task& other) { return rank(other) > rank(task); });
+  const auto place = std::ranges::find_if(tasks_, [&](const Task& other) { return rank(other) > rank(task); });
   tasks_.insert(place, std::move(task));
 }
 

@@ -24,8 +24,8 @@ struct Job {
   Scene scene;
   std::vector<SceneEntry> entries;
   bool keep_all = false;
-  std::size_t batch = 0;      ///< entries at a time, between which a job of higher rank may come in; 0: all
-  bool wants_rows = false;    ///< the effects of the plan
+  std::size_t batch = 0;    ///< entries at a time, between which a job of higher rank may come in; 0: all
+  bool wants_rows = false;  ///< the effects of the plan
 };
 
 /// A part of a job's results.

@@ -32,7 +32,7 @@ constexpr int kWidth = 1440;
 constexpr int kHeight = 900;
 constexpr float kFontPixels = 15.0F;
 constexpr auto kFading = std::chrono::milliseconds(300);  // of a dialog that was closed
-constexpr double kBlink_s = 0.3;  // of a text cursor
+constexpr double kBlink_s = 0.3;                          // of a text cursor
 // Frames after an event: ImGui answers some of them one frame later.
 constexpr std::size_t kFramesAfterEvent = 3;
 // A frame waits for one tile at most where display and evaluator share a queue.

@@ -28,7 +28,7 @@ inline constexpr ImU32 kTextColour = IM_COL32(225, 228, 232, 255);
 inline constexpr ImU32 kDimColour = IM_COL32(150, 156, 163, 255);
 inline constexpr ImU32 kGridColour = IM_COL32(62, 66, 72, 255);
 inline constexpr ImU32 kPlotColour = IM_COL32(20, 21, 24, 255);
-inline constexpr ImU32 kBadColour = IM_COL32(110, 112, 116, 255);   ///< entries with a status
+inline constexpr ImU32 kBadColour = IM_COL32(110, 112, 116, 255);    ///< entries with a status
 inline constexpr ImU32 kErrorColour = IM_COL32(255, 150, 110, 255);  ///< messages
 inline constexpr ImU32 kCursorColour = IM_COL32(255, 255, 255, 200);
 

@@ -15,7 +15,7 @@ namespace {
 // Few enough that neighbours share a colour and are drawn as one, more than the eye tells apart.
 constexpr double kColourSteps = 96.0;
 constexpr double kMostContrast = 1e3;  // of a logarithmic colour scale
-constexpr float kBarRoom = 5.4F;  // right of the map, in lines of text
+constexpr float kBarRoom = 5.4F;       // right of the map, in lines of text
 
 PlotAxis axis_of(const MapAxis& axis) { return {axis_label(axis.kind), axis.from, axis.to, axis.is_log}; }
 
@@ -67,7 +67,8 @@ void MapView::update(const Session& session) {
   std::vector<Run> upwards = runs_along(false);
   if (upwards.size() < runs_.size()) runs_ = std::move(upwards);
   lines_.clear();
-  for (const double level : contour_levels(low_, field_.max, uses_log())) lines_.push_back({level, contour(field_, level)});
+  for (const double level : contour_levels(low_, field_.max, uses_log()))
+    lines_.push_back({level, contour(field_, level)});
 }
 
 std::vector<MapView::Run> MapView::runs_along(bool rows) const {

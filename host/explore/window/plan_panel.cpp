@@ -23,8 +23,9 @@ std::string bound_text(const EffectRow& row) {
   if (!row.bound) return "";
   const double points = 100.0 * *row.bound;
   if (row.unbounded > 0) return "none is known";
-  return points == 0.0 ? "0" : points >= 10.0 ? fmt::format("≤ {:.0f} points", points)
-                                              : fmt::format("≤ {:.2g} points", points);
+  return points == 0.0    ? "0"
+         : points >= 10.0 ? fmt::format("≤ {:.0f} points", points)
+                          : fmt::format("≤ {:.2g} points", points);
 }
 
 /// What the maximum would be without the effect; a surface without slopes is a smooth one.

@@ -45,17 +45,36 @@ void Ui::add_file_commands(const std::string& name) {
     return [this, title, path = std::move(path), must_exist, &accept] { ask_path(title, path, must_exist, accept); };
   };
   commands_ = {
-      {"File", "Save the scene", GLFW_KEY_S, "Ctrl+S",
-       ask("Save the scene as TOML", name + "_scene.toml", false, actions_.save_scene), {}},
-      {"File", "Export the table", GLFW_KEY_T, "Ctrl+T",
+      {"File",
+       "Save the scene",
+       GLFW_KEY_S,
+       "Ctrl+S",
+       ask("Save the scene as TOML", name + "_scene.toml", false, actions_.save_scene),
+       {}},
+      {"File",
+       "Export the table",
+       GLFW_KEY_T,
+       "Ctrl+T",
        ask("Compute the table of the scene's grid: .nc, .csv, .npy", name + "_table.nc", false, actions_.export_table),
        {}},
-      {"File", "Save the curve as CSV", GLFW_KEY_E, "Ctrl+E",
-       ask("Save the curve as CSV", name + "_curve.csv", false, actions_.save_curve), {}},
-      {"File", "Save a picture", GLFW_KEY_I, "Ctrl+I",
-       ask("Save a picture of the window as PNG", name + "_window.png", false, actions_.save_picture), {}},
-      {"File", "Load measured points", GLFW_KEY_O, "Ctrl+O",
-       ask("Load measured points: CSV with theta_deg, dolp", "measured.csv", true, actions_.load_measured), {}},
+      {"File",
+       "Save the curve as CSV",
+       GLFW_KEY_E,
+       "Ctrl+E",
+       ask("Save the curve as CSV", name + "_curve.csv", false, actions_.save_curve),
+       {}},
+      {"File",
+       "Save a picture",
+       GLFW_KEY_I,
+       "Ctrl+I",
+       ask("Save a picture of the window as PNG", name + "_window.png", false, actions_.save_picture),
+       {}},
+      {"File",
+       "Load measured points",
+       GLFW_KEY_O,
+       "Ctrl+O",
+       ask("Load measured points: CSV with theta_deg, dolp", "measured.csv", true, actions_.load_measured),
+       {}},
       {"File", "Remove measured points", 0, "", [this] { session_.clear_measured(); }, {}},
       {"File", "Quit", GLFW_KEY_Q, "Ctrl+Q", [this] { actions_.quit(); }, {}},
   };
@@ -76,7 +95,10 @@ void Ui::add_view_commands() {
        is_on(&View::has_overlay)});
   add({"View", "Keep all effects", GLFW_KEY_G, "Ctrl+G", toggle(&View::keeps_all), is_on(&View::keeps_all)});
   add({"Scene", "Pin the curve", GLFW_KEY_P, "Ctrl+P", [this] { session_.pin(); }, {}});
-  add({"Scene", "True error of the curve", GLFW_KEY_K, "Ctrl+K",
+  add({"Scene",
+       "True error of the curve",
+       GLFW_KEY_K,
+       "Ctrl+K",
        [this] {
          if (!session_.curve().is_finished()) return;
          true_error_key_ = session_.curve().key();
@@ -211,8 +233,8 @@ void Ui::draw_view_controls() {
   }
   label(shown("   θ up to").c_str());
   ImGui::SetNextItemWidth(0.5F * width);
-  is_changed |= ImGui::InputDouble("##theta max", &view.theta_max_deg, 0.0, 0.0, "%.4g",
-                                   ImGuiInputTextFlags_EnterReturnsTrue);
+  is_changed |=
+      ImGui::InputDouble("##theta max", &view.theta_max_deg, 0.0, 0.0, "%.4g", ImGuiInputTextFlags_EnterReturnsTrue);
   ImGui::SameLine();
   label(shown("°  ").c_str());
   if (ImGui::Button("pin (Ctrl+P)")) session_.pin();

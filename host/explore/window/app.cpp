@@ -70,9 +70,8 @@ struct DestroyWindow {
 };
 using UniqueWindow = std::unique_ptr<GLFWwindow, DestroyWindow>;
 
-UniqueWindow open_window(bool is_hidden) {
+UniqueWindow open_window() {
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
-  glfwWindowHint(GLFW_VISIBLE, is_hidden ? GLFW_FALSE : GLFW_TRUE);
   int x = 0;
   int y = 0;
   int width = kWidth;
@@ -158,7 +157,7 @@ class App::Impl {
  public:
   Impl(SceneEdits edits, const AppOptions& options)
       : session_(std::move(edits)),
-        window_(open_window(options.is_hidden)),
+        window_(open_window()),
         vulkan_options_(device_options(options.device, session_.scene().accuracy.precision)),
         context_(make_context(vulkan_options_)),
         interface_(prepared(window_.get())),

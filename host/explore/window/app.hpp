@@ -19,7 +19,6 @@ struct AppOptions {
   std::string device;        ///< see choose_device
   std::string file_name;     ///< what suggested file names begin with
   std::string command_line;  ///< for the history of tables
-  bool is_hidden = false;
 };
 
 /// How long frames took.

@@ -138,6 +138,7 @@ TEST(ExploreSession, FlatCurve_HasARival) {
   Driver driver(paint({"surroundings=none", "source.irradiance=1e-9", "geometry.mode=bistatic"}));
   ASSERT_TRUE(driver.session.peak().answer());
   EXPECT_TRUE(driver.session.peak().answer()->rival_deg);
+  EXPECT_NE(peak_text(driver.session).find("may as well be elsewhere"), std::string::npos) << peak_text(driver.session);
 }
 
 TEST(ExploreSession, Effects_AreThoseOfThePlanWithBoundsAtTheCursor) {

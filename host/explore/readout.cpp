@@ -52,12 +52,16 @@ std::string peak_text(const Session& session) {
   if (peak->dolp <= peak->error) return "Maximum: the DOLP is 0 everywhere, within its bound";
   const char* of = is_bistatic(session.scene()) ? " of the source" : "";
   std::string text =
-      fmt::format("Maximum: DOLP {:.3f} % at θ = {:.2f}°{}, {} polarised. Numerical error ≤ {} points; the maximum is ",
+      fmt::format("Maximum: DOLP {:.3f} % at θ = {:.2f}°{}, {} polarised. Numerical error ≤ {} points; ",
                   kPercent * peak->dolp, peak->theta_deg, of, polarisation(peak->q_over_i), points_text(peak->error));
-  text += peak->theta_low_deg == peak->theta_high_deg
-              ? fmt::format("there to {:g}°.", Peak::kStepDeg)
-              : fmt::format("surely between {:.2f}° and {:.2f}°.", peak->theta_low_deg, peak->theta_high_deg);
-  if (peak->rival_deg) text += fmt::format(" Elsewhere, at {:g}°, it may be as large.", *peak->rival_deg);
+  if (peak->rival_deg) {
+    text += fmt::format("with it the maximum may as well be elsewhere, at {:g}° for instance.", *peak->rival_deg);
+  } else if (peak->theta_low_deg == peak->theta_high_deg) {
+    text += fmt::format("the maximum is there to {:g}°.", Peak::kStepDeg);
+  } else {
+    text +=
+        fmt::format("the maximum is surely between {:.2f}° and {:.2f}°.", peak->theta_low_deg, peak->theta_high_deg);
+  }
   if (peak->is_at_end) text += " Beyond it the model fails, or the range ends.";
   // The bound is of the numbers; what the surface model itself is worth there, the albedo tells.
   if (std::isfinite(peak->albedo) && peak->albedo < kAlbedoMin) {

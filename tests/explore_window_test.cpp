@@ -6,7 +6,10 @@
 
 #include "cli_support.hpp"
 #include "explore/exports.hpp"
+#include "explore/parameters.hpp"
+#include "explore/quantity.hpp"
 #include "explore/window/app.hpp"
+#include "explore/window/text.hpp"
 #include "table/table_file.hpp"
 #include "virtual_display.hpp"
 
@@ -24,13 +27,14 @@ constexpr int kFrames = 4;
 // The handle's own width takes part of a slider's length.
 constexpr double kGrab = 0.2;
 
+// Cheap, because each test waits for its whole map.
 const std::string kEdited = R"(title = "Painted"
 [surface]
 n = 1.5
 k = 0.1
 sigma = 0.15
 q = 3.0
-masking = "smith"
+masking = "v-cavity"
 specular = 0.97
 diffuse = 0.03
 [emission]
@@ -41,6 +45,8 @@ temperature_K = 240.0
 band_um = [8.0, 14.0]
 [grid]
 theta_deg = [0, 30, 60]
+[accuracy]
+tolerance = 1e-2
 )";
 
 class Window : public CommandLine {
@@ -157,6 +163,7 @@ TEST_F(Window, Curve_Clicked_MovesTheCursor) {
 }
 
 TEST_F(Window, Map_Clicked_CurveFollowsTheCursor) {
+  // The middle of the map in the layout at its first size.
   move_to(1150.0F, 300.0F);
   press("mousedown");
   press("mouseup");
@@ -211,6 +218,26 @@ TEST_F(Window, Resized_DrawsAtTheNewSize) {
     };
     EXPECT_EQ(number(16), static_cast<std::uint32_t>(width));
     EXPECT_EQ(number(20), static_cast<std::uint32_t>(height));
+  }
+}
+
+bool is_ascii(const std::string& text) {
+  return std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 128; });
+}
+
+TEST(WindowText, WithoutAGreekFont_AllIsSaidInAscii) {
+  EXPECT_EQ(explore::ascii("θ ≤ 90°"), "theta <= 90 deg");
+  for (const explore::Parameter& parameter : explore::parameters()) {
+    for (const std::string& text :
+         {std::string(parameter.symbol), std::string(parameter.equation), unit_text(*parameter.description)}) {
+      EXPECT_TRUE(is_ascii(explore::ascii(text))) << text;
+    }
+  }
+  for (const explore::Choice& choice : explore::choices()) {
+    EXPECT_TRUE(is_ascii(explore::ascii(choice.equation))) << choice.equation;
+  }
+  for (const explore::QuantityDescription& quantity : explore::quantities()) {
+    EXPECT_TRUE(is_ascii(explore::ascii(std::string(quantity.name) + quantity.meaning))) << quantity.name;
   }
 }
 

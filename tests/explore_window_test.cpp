@@ -229,7 +229,7 @@ TEST(WindowText, WithoutAGreekFont_AllIsSaidInAscii) {
   EXPECT_EQ(explore::ascii("θ ≤ 90°"), "theta <= 90 deg");
   for (const explore::Parameter& parameter : explore::parameters()) {
     for (const std::string& text :
-         {std::string(parameter.symbol), std::string(parameter.equation), unit_text(*parameter.description)}) {
+         {std::string(parameter.symbol), std::string(parameter.equation), explore::unit_text(*parameter.description)}) {
       EXPECT_TRUE(is_ascii(explore::ascii(text))) << text;
     }
   }

@@ -28,7 +28,9 @@ void heading(const char* text) {
 void row_label(const std::string& text) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(shown(text).c_str());
-  ImGui::SameLine(6.2F * ImGui::GetTextLineHeight());
+  // As wide as the longest text that is not cut.
+  const float longest = ImGui::CalcTextSize(shown("λ1, λ2 [µm]").c_str()).x;
+  ImGui::SameLine(std::max(6.2F * ImGui::GetTextLineHeight(), longest + 2.0F * ImGui::GetStyle().ItemSpacing.x));
 }
 
 void tooltip(const std::string& text) {

@@ -75,7 +75,7 @@ void draw_effects(const Session& session) {
 
 bool draw_price(Session& session, ControlsPanel& controls, BackgroundTask& true_error) {
   controls.draw_accuracy(session);
-  for (const std::string& line : cost_lines(session)) ImGui::TextUnformatted(shown(line).c_str());
+  for (const std::string& line : cost_lines(session)) ImGui::TextWrapped("%s", shown(line).c_str());
   const bool is_ready = session.curve().is_finished() && true_error.state() != BackgroundTask::State::kRunning;
   ImGui::BeginDisabled(!is_ready);
   const bool is_asked = ImGui::Button("True error (Ctrl+K)");

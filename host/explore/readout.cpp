@@ -124,7 +124,7 @@ std::vector<std::string> cost_lines(const Session& session) {
   return {fmt::format("time    {:.1f} ms for {} directions, {:.0f} µs each", kMilliseconds * cost.wall_s, cost.entries,
                       kMicroseconds * cost.wall_s / entries),
           fmt::format("work    {:.0f} integrand evaluations an entry", cost.evaluations / entries),
-          fmt::format("error   estimated: DOLP ≤ {:.2g}, tolerance {:.2g}", curve.worst_error(),
+          fmt::format("error   DOLP ≤ {:.2g}; tolerance {:.2g}", curve.worst_error(),
                       curve.scene().accuracy.tolerance)};
 }
 

@@ -30,6 +30,9 @@ int run_plan(const Options& options);
 /// silently.
 int run_verify(const Options& options);
 
+/// `dolp explore [SCENE]`: the window.
+int run_explore(const Options& options);
+
 /// `dolp devices`: the Vulkan devices, and why each one is or is not usable.
 int run_devices(const Options& options);
 

@@ -5,23 +5,12 @@
 #include "cli/commands.hpp"
 #include "cli/progress_bar.hpp"
 #include "cli/report.hpp"
+#include "cli/result_csv.hpp"
 #include "error.hpp"
 #include "scene/points.hpp"
 #include "table/atomic_file.hpp"
 
 namespace dolp::cli {
-namespace {
-
-std::string result_line(const std::string& input, const PointResult& r) {
-  std::string line = input;
-  for (const double value : {r.rho_i, r.rho_q, r.albedo, r.stokes_i, r.stokes_q, r.stokes_u, r.stokes_v, r.dolp,
-                             r.error_estimate, r.rho_error_estimate}) {
-    line += "," + number_text(value);
-  }
-  return line + fmt::format(",{}\n", r.status);
-}
-
-}  // namespace
 
 int run_eval(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
@@ -39,10 +28,8 @@ int run_eval(const Options& options) {
     ProgressBar bar(options.quiet);
     results = evaluate_scene(scene, entries, plan, evaluator.get(), bar.callback());
   }
-  std::string csv = points.header +
-                    ",rho_i,rho_q,albedo,stokes_i,stokes_q,stokes_u,stokes_v,dolp,error_estimate,rho_error_estimate,"
-                    "status\n";
-  for (std::size_t i = 0; i < results.size(); ++i) csv += result_line(points.rows[i], results[i]);
+  std::string csv = points.header + ',' + kResultColumns + '\n';
+  for (std::size_t i = 0; i < results.size(); ++i) csv += points.rows[i] + ',' + result_cells(results[i]) + '\n';
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   RunReport report = make_report(scene, entries, results, plan, report_of(evaluator.get(), options), wall.count());
   report.output = options.output_path;

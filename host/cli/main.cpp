@@ -19,13 +19,28 @@ namespace {
 // The most entries that a table has.
 constexpr std::size_t kMostSamples = 1U << 24U;
 
-void add_scene(CLI::App& command, Options& options) {
-  command.add_option("SCENE", options.scene_path, "scene file (TOML); - is stdin")->required();
+void add_overrides(CLI::App& command, Options& options) {
   command.add_option("--set", options.overrides, "KEY=VALUE: any scene key, e.g. surface.masking=none")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
   command.add_option("--tolerance", options.tolerance, "the scene's accuracy.tolerance, 1e-10 .. 1e-2");
   command.add_option("--precision", options.precision, "the scene's accuracy.precision: auto, float or double");
+}
+
+void add_scene(CLI::App& command, Options& options) {
+  command.add_option("SCENE", options.scene_path, "scene file (TOML); - is stdin")->required();
+  add_overrides(command, options);
+}
+
+void add_explore(CLI::App& command, Options& options) {
+  command.add_option("SCENE", options.scene_path, "scene file (TOML); - is stdin; without it, stainless steel");
+  add_overrides(command, options);
+  command.add_option("--device", options.device, "Vulkan device: its position or a part of its name");
+  command.add_option("--measured", options.measured_path, "CSV of measured points with the columns theta_deg, dolp");
+  constexpr std::size_t kMostFrames = 1'000'000;
+  command.add_option("--frames", options.frames, "draw so many frames, print how long they took, and end")
+      ->check(CLI::Range(std::size_t{1}, kMostFrames));
+  command.add_option("--screenshot", options.screenshot_path, "PNG of the last frame, when all is computed");
 }
 
 void add_run(CLI::App& command, Options& options) {
@@ -77,6 +92,7 @@ int run(CLI::App& app, Options& options) {
   if (given("eval")) return run_eval(options);
   if (given("mueller")) return run_mueller(options);
   if (given("plan")) return run_plan(options);
+  if (given("explore")) return run_explore(options);
   if (given("verify")) return run_verify(options);
   return run_devices(options);
 }
@@ -114,6 +130,8 @@ int parse_and_run(int argc, char** argv) {
   add_keep_all(*plan, options);
   plan->add_flag("--json", options.json, "machine-readable plan");
   add_verify(*app.add_subcommand("verify", "recompute entries of a table, or examine a device"), options);
+  add_explore(*app.add_subcommand("explore", "the window: parameters, curves, map, effects and their price, live"),
+              options);
   CLI::App* devices = app.add_subcommand("devices", "Vulkan devices, and why each one is or is not usable");
   devices->add_flag("--json", options.json, "machine-readable list");
   devices->add_option("--device", options.device, "check this one: its position or a part of its name");

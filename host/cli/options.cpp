@@ -26,12 +26,14 @@ void check_one_stdin(const Options& options) {
   }
 }
 
-Scene load_scene(const Options& options) {
+std::vector<std::string> all_overrides(const Options& options) {
   std::vector<std::string> overrides = options.overrides;
   if (!options.tolerance.empty()) overrides.push_back("accuracy.tolerance=" + options.tolerance);
   if (!options.precision.empty()) overrides.push_back("accuracy.precision=" + options.precision);
-  return read_scene(options.scene_path, overrides);
+  return overrides;
 }
+
+Scene load_scene(const Options& options) { return read_scene(options.scene_path, all_overrides(options)); }
 
 EffectPlan plan_run(const Options& options, const Scene& scene, const std::vector<SceneEntry>& entries) {
   return plan_effects(scene, entries, options.keep_all);

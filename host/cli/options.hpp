@@ -26,12 +26,15 @@ struct Options {
   bool json = false;
   bool quiet = false;
   bool strict = false;
-  bool keep_all = false;     ///< drop no effect
-  std::size_t samples = 64;  ///< of verify: entries to recompute
-  std::uint64_t seed = 1;    ///< of verify: of their choice
-  bool hard_cases = false;   ///< of verify: examine a device instead of a table
-  bool all = false;          ///< of verify: report every hard case
-  std::string command_line;  ///< for the table's history
+  bool keep_all = false;        ///< drop no effect
+  std::size_t samples = 64;     ///< of verify: entries to recompute
+  std::uint64_t seed = 1;       ///< of verify: of their choice
+  bool hard_cases = false;      ///< of verify: examine a device instead of a table
+  bool all = false;             ///< of verify: report every hard case
+  std::size_t frames = 0;       ///< of explore: draw so many and end; 0: until the window is closed
+  std::string screenshot_path;  ///< of explore
+  std::string measured_path;    ///< of explore
+  std::string command_line;     ///< for the table's history
 };
 
 /// Refuses to write over the scene or the points.
@@ -42,7 +45,10 @@ void check_output_is_no_input(const Options& options);
 /// Errors: InputError.
 void check_one_stdin(const Options& options);
 
-/// The scene with all overrides of the command line: --set first, then --tolerance and --precision.
+/// All overrides of the command line: --set first, then --tolerance and --precision.
+std::vector<std::string> all_overrides(const Options& options);
+
+/// The scene with all_overrides.
 Scene load_scene(const Options& options);
 
 /// What a run of these entries keeps, as --keep-all and the scene's effects have it.

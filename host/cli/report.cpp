@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "cli/scene_table.hpp"
+
 namespace dolp::cli {
 namespace {
 
@@ -129,13 +131,6 @@ RunReport make_report(const Scene& scene, const std::vector<SceneEntry>& entries
   }
   add_ranges(report, scene, entries, results);
   return report;
-}
-
-std::string rule_text(double tolerance) {
-  return fmt::format(
-      "product Gauss rules on the smooth pieces of slope and azimuth, orders for tolerance {:g}, compared "
-      "with three quarters of the nodes",
-      tolerance);
 }
 
 std::string summary_text(const RunReport& report) {

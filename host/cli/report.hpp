@@ -66,7 +66,4 @@ nlohmann::ordered_json summary_json(const RunReport& report);
 /// Prints what `json` and `quiet` ask for: to stdout, or to stderr when the results themselves go to stdout.
 void print_report(const RunReport& report, bool json, bool quiet);
 
-/// The rule in words, for reports and table attributes.
-std::string rule_text(double tolerance);
-
 }  // namespace dolp::cli

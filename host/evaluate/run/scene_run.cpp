@@ -182,9 +182,11 @@ bool finds_more(const Attempt& attempt, const Attempt& last, const SceneRun& run
          (wants_beam(run.scene, entry, run.plan) && attempt.precision != last.precision);
 }
 
-/// Tries the entries of a block again that miss the tolerance, those together that want the same attempt.
+/// Tries the entries of a block again that miss the tolerance, those together that want the same attempt. To `progress`
+/// the block is done already; it may still cancel.
 void retry(const Attempts& all, std::span<const SceneEntry> entries, const Attempt& first,
-           std::span<PointResult> results) {
+           std::span<PointResult> results, const Progress& progress) {
+  const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
   std::map<Attempt, std::vector<std::size_t>> waiting;
   const auto plan = [&](std::size_t i, const Attempt& last, const PointResult& result) {
     const auto next = next_attempt(last, result, all.accuracy, all.evaluator.has_double());
@@ -196,7 +198,7 @@ void retry(const Attempts& all, std::span<const SceneEntry> entries, const Attem
     waiting.erase(waiting.begin());
     std::vector<SceneEntry> again;
     for (const std::size_t i : members) again.push_back(entries[i]);
-    const std::vector<PointResult> better = attempt_block(all, again, attempt, {});
+    const std::vector<PointResult> better = attempt_block(all, again, attempt, is_wanted);
     for (std::size_t j = 0; j < members.size(); ++j) {
       if (is_better(better[j], results[members[j]])) results[members[j]] = better[j];
       plan(members[j], attempt, better[j]);
@@ -216,7 +218,7 @@ std::vector<PointResult> evaluated_block(const SceneRun& run, std::span<const Sc
   if (all.accuracy.precision == Precision::kAuto) all.accuracy.precision = evaluator->precision();
   const Attempt first = first_attempt(all.accuracy, evaluator->has_double());
   std::vector<PointResult> results = attempt_block(all, entries, first, progress);
-  retry(all, entries, first, results);
+  retry(all, entries, first, results, progress);
   return results;
 }
 

@@ -6,23 +6,31 @@
 #include <string>
 #include <vector>
 
+#include "evaluate/vulkan/context.hpp"
 #include "evaluate/vulkan/kernels.hpp"
 #include "evaluate/vulkan/result.hpp"
 
 namespace dolp::vulkan {
 namespace {
 
+constexpr const char* kSwapchainExtension = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+
 struct QueueFamily {
   std::uint32_t index = 0;
   std::uint32_t timestamp_bits = 0;
 };
 
-std::optional<QueueFamily> compute_family(VkPhysicalDevice physical) {
+std::vector<VkQueueFamilyProperties> queue_families(VkPhysicalDevice physical) {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
-  for (std::uint32_t i = 0; i < count; ++i) {
+  return families;
+}
+
+std::optional<QueueFamily> compute_family(VkPhysicalDevice physical) {
+  const std::vector<VkQueueFamilyProperties> families = queue_families(physical);
+  for (std::uint32_t i = 0; i < families.size(); ++i) {
     if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) return QueueFamily{i, families[i].timestampValidBits};
   }
   return std::nullopt;
@@ -105,8 +113,22 @@ DeviceDescription describe(VkPhysicalDevice physical) {
   return description;
 }
 
-Device::Device(VkPhysicalDevice physical, bool float64) {
-  const std::optional<QueueFamily> family = compute_family(physical);
+std::optional<std::uint32_t> presenting_family(VkInstance instance, VkPhysicalDevice physical,
+                                               const Presentation& presentation) {
+  constexpr VkQueueFlags kWanted = VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT;
+  const std::vector<VkQueueFamilyProperties> families = queue_families(physical);
+  for (std::uint32_t i = 0; i < families.size(); ++i) {
+    const bool can_draw = (families[i].queueFlags & kWanted) == kWanted;
+    if (can_draw && presentation.can_present(instance, physical, i)) return i;
+  }
+  return std::nullopt;
+}
+
+Device::Device(VkPhysicalDevice physical, bool float64, std::optional<std::uint32_t> window_family) {
+  std::optional<QueueFamily> family = compute_family(physical);
+  if (window_family) {
+    family = QueueFamily{*window_family, queue_families(physical)[*window_family].timestampValidBits};
+  }
   if (!family) throw DeviceError("the Vulkan device has no compute queue");
   queue_family_ = family->index;
   timestamp_bits_ = family->timestamp_bits;
@@ -125,12 +147,29 @@ Device::Device(VkPhysicalDevice physical, bool float64) {
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .queueCreateInfoCount = 1,
                                 .pQueueCreateInfos = &queue,
+                                .enabledExtensionCount = window_family ? 1U : 0U,
+                                .ppEnabledExtensionNames = &kSwapchainExtension,
                                 .pEnabledFeatures = &features};
   check(vkCreateDevice(physical, &info, nullptr, &device_), "creating the device");
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
 }
 
 Device::~Device() { vkDestroyDevice(device_, nullptr); }
+
+VkResult Device::submit(const VkSubmitInfo& info, VkFence fence) const {
+  const std::scoped_lock lock(queue_mutex_);
+  return vkQueueSubmit(queue_, 1, &info, fence);
+}
+
+VkResult Device::present(const VkPresentInfoKHR& info) const {
+  const std::scoped_lock lock(queue_mutex_);
+  return vkQueuePresentKHR(queue_, &info);
+}
+
+VkResult Device::wait_idle() const {
+  const std::scoped_lock lock(queue_mutex_);
+  return vkQueueWaitIdle(queue_);
+}
 
 MemoryType Device::memory_type(std::uint32_t allowed, MemoryUse use) const {
   VkMemoryPropertyFlags required = 0;

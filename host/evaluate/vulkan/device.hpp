@@ -1,9 +1,10 @@
-// The logical device: one compute queue, its limits and its memory.
+// The logical device: one queue, its limits and its memory.
 #pragma once
 
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
+#include <mutex>
 #include <optional>
 
 #include "evaluate/vulkan/devices.hpp"
@@ -26,16 +27,24 @@ struct MemoryType {
   VkMemoryPropertyFlags flags = 0;
 };
 
-/// A logical device with one compute queue.
+struct Presentation;
+
+/// The first queue family that computes, draws and can show images on the display; none if there is none.
+std::optional<std::uint32_t> presenting_family(VkInstance instance, VkPhysicalDevice physical,
+                                               const Presentation& presentation);
+
+/// A logical device with one queue, which threads may share: they submit through this object alone.
 class Device {
  public:
-  /// `float64` asks for double precision in shaders, which the device must have.
-  Device(VkPhysicalDevice physical, bool float64);
+  /// `float64` asks for double precision in shaders, which the device must have. `window_family`: the family of a queue
+  /// that shall also draw and present; without it, one that computes is enough.
+  Device(VkPhysicalDevice physical, bool float64, std::optional<std::uint32_t> window_family = {});
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
   ~Device();
 
   VkDevice get() const { return device_; }
+  /// To be named to others, not to be submitted to.
   VkQueue queue() const { return queue_; }
   std::uint32_t queue_family() const { return queue_family_; }
   const VkPhysicalDeviceLimits& limits() const { return limits_; }
@@ -44,12 +53,18 @@ class Device {
   /// Valid bits of the queue's timestamps; 0 when it has none.
   std::uint32_t timestamp_bits() const { return timestamp_bits_; }
 
+  // Vulkan lets only one thread at a time use a queue.
+  VkResult submit(const VkSubmitInfo& info, VkFence fence) const;
+  VkResult present(const VkPresentInfoKHR& info) const;
+  VkResult wait_idle() const;
+
   /// The best of the memory types in `allowed` (a bit mask) for a use. Errors: DeviceError when none will do.
   MemoryType memory_type(std::uint32_t allowed, MemoryUse use) const;
 
  private:
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
+  mutable std::mutex queue_mutex_;
   std::uint32_t queue_family_ = 0;
   std::uint32_t timestamp_bits_ = 0;
   VkPhysicalDeviceLimits limits_{};

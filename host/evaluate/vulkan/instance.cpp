@@ -54,7 +54,7 @@ std::vector<std::string> ValidationLog::messages() const {
   return messages_;
 }
 
-Instance::Instance(ValidationLog* log) {
+Instance::Instance(ValidationLog* log, const std::vector<const char*>& extensions) {
   if (log && !has_validation_layer()) {
     throw DeviceError(std::string("validation is wanted, but the layer ") + kValidationLayer +
                       " is not installed (on Debian, vulkan-validationlayers)");
@@ -67,13 +67,15 @@ Instance::Instance(ValidationLog* log) {
                                          .pNext = &messenger,
                                          .enabledValidationFeatureCount = 1,
                                          .pEnabledValidationFeatures = &synchronization};
+  std::vector<const char*> enabled = extensions;
+  if (log) enabled.insert(enabled.end(), kValidationExtensions.begin(), kValidationExtensions.end());
   VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, .pApplicationInfo = &application};
+  info.enabledExtensionCount = static_cast<std::uint32_t>(enabled.size());
+  info.ppEnabledExtensionNames = enabled.data();
   if (log) {
     info.pNext = &features;
     info.enabledLayerCount = 1;
     info.ppEnabledLayerNames = &kValidationLayer;
-    info.enabledExtensionCount = static_cast<std::uint32_t>(kValidationExtensions.size());
-    info.ppEnabledExtensionNames = kValidationExtensions.data();
   }
   const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER) throw DeviceError(kNoDriver);

@@ -24,12 +24,14 @@ class ValidationLog {
 class Instance {
  public:
   /// Without `log` there is no validation; with it the Khronos layer reports to it, synchronization included, until
-  /// the instance is destroyed.
+  /// the instance is destroyed. `extensions` are those that a window needs.
   /// Errors: DeviceError without any Vulkan driver, or when the validation layer is wanted and not installed.
-  explicit Instance(ValidationLog* log);
+  explicit Instance(ValidationLog* log, const std::vector<const char*>& extensions = {});
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
   ~Instance();
+
+  VkInstance get() const { return instance_; }
 
   /// All devices, in the order of the loader. Errors: DeviceError when there is none.
   std::vector<VkPhysicalDevice> physical_devices() const;

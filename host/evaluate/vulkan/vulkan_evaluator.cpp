@@ -1,14 +1,11 @@
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 
 #include <chrono>
-#include <cstdlib>
 #include <future>
 #include <optional>
-#include <string_view>
 #include <utility>
 
-#include "evaluate/vulkan/devices.hpp"
-#include "evaluate/vulkan/instance.hpp"
+#include "evaluate/vulkan/context.hpp"
 #include "evaluate/vulkan/moments_run.hpp"
 #include "evaluate/vulkan/result.hpp"
 #include "evaluate/vulkan/scattering_run.hpp"
@@ -19,12 +16,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-bool wants_validation(ValidationMode mode) {
-  if (mode != ValidationMode::kFromEnvironment) return mode == ValidationMode::kOn;
-  const char* value = std::getenv("DOLP_VALIDATION");
-  return value && std::string_view(value) == "1";
-}
 
 void check_entries(const MomentsRequest& request) {
   for (std::size_t i = 0; i < request.entries.size(); ++i) {
@@ -52,36 +43,24 @@ void check_entries(const ScatteringRequest& request) {
   }
 }
 
-struct Choice {
-  VkPhysicalDevice physical = VK_NULL_HANDLE;
-  DeviceDescription description;
-};
-
-Choice choose(const vulkan::Instance& instance, const VulkanOptions& options) {
-  const std::vector<VkPhysicalDevice> physical = instance.physical_devices();
-  std::vector<DeviceDescription> descriptions;
-  for (VkPhysicalDevice device : physical) descriptions.push_back(vulkan::describe(device));
-  const std::size_t index = choose_device(descriptions, options.device, options.precision == Precision::kDouble);
-  return {physical[index], descriptions[index]};
-}
-
 }  // namespace
 
 class VulkanEvaluator::Impl {
  public:
-  explicit Impl(const VulkanOptions& options)
+  /// Without a `context` it makes its own.
+  Impl(const VulkanOptions& options, vulkan::Context* context)
       : options_(options),
-        instance_(wants_validation(options.validation) ? &log_ : nullptr),
-        choice_(choose(instance_, options)),
-        device_(choice_.physical, choice_.description.float64),
-        stream_(device_) {}
+        own_(context ? nullptr : std::make_unique<vulkan::Context>(options)),
+        context_(context ? *context : *own_),
+        stream_(context_.device()) {}
 
   /// Whether a request is to be computed in double.
   bool in_double(Precision requested) const {
     return (requested == Precision::kAuto ? options_.precision : requested) == Precision::kDouble;
   }
-  const DeviceDescription& description() const { return choice_.description; }
-  std::vector<std::string> validation_messages() const { return log_.messages(); }
+  const DeviceDescription& description() const { return context_.description(); }
+  std::vector<std::string> validation_messages() const { return context_.validation_messages(); }
+  void abandon() { context_.abandon(); }
 
   /// Computes a request and adds what it cost to `report`. After a DeviceTimeout this object must not be destroyed.
   std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
@@ -108,7 +87,7 @@ class VulkanEvaluator::Impl {
 
  private:
   vulkan::RunContext context_for(Precision requested) {
-    return {.device = device_,
+    return {.device = context_.device(),
             .kernels = kernels_for(requested),
             .stream = stream_,
             .packing = vulkan::Packing(in_double(requested)),
@@ -126,26 +105,23 @@ class VulkanEvaluator::Impl {
     note_precision(report.precision, in_double(requested));
     run.reset();
     if (!results) throw Cancelled{};
-    const std::vector<std::string> messages = log_.messages();
-    if (!messages.empty()) throw DeviceError("Vulkan validation: " + messages.front());
+    context_.check_validation();
     return std::move(*results);
   }
 
   vulkan::Kernels& kernels_for(Precision requested) {
     const bool float64 = in_double(requested);
-    if (float64 && !choice_.description.float64) {
-      throw DeviceError(choice_.description.name + " has no double precision (shaderFloat64): use float");
+    if (float64 && !description().float64) {
+      throw DeviceError(description().name + " has no double precision (shaderFloat64): use float");
     }
     std::optional<vulkan::Kernels>& kernels = float64 ? double_kernels_ : float_kernels_;
-    if (!kernels) kernels.emplace(device_, float64);
+    if (!kernels) kernels.emplace(context_.device(), float64);
     return *kernels;
   }
 
   VulkanOptions options_;
-  vulkan::ValidationLog log_;
-  vulkan::Instance instance_;
-  Choice choice_;
-  vulkan::Device device_;
+  std::unique_ptr<vulkan::Context> own_;
+  vulkan::Context& context_;
   std::optional<vulkan::Kernels> float_kernels_, double_kernels_;
   std::future<void> prepared_;  ///< waits when it is destroyed
   vulkan::CommandStream stream_;
@@ -156,11 +132,20 @@ class VulkanEvaluator::Impl {
 
 VulkanEvaluator::VulkanEvaluator(const VulkanOptions& options) : precision_(options.precision) {
   const Clock::time_point start = Clock::now();
-  impl_ = std::make_unique<Impl>(options);
+  impl_ = std::make_unique<Impl>(options, nullptr);
+  note_setup(seconds_since(start));
+}
+
+VulkanEvaluator::VulkanEvaluator(vulkan::Context& context, const VulkanOptions& options)
+    : impl_(std::make_unique<Impl>(options, &context)), precision_(options.precision) {
+  note_setup(0.0);
+}
+
+void VulkanEvaluator::note_setup(double seconds) {
   report_.evaluator = "vulkan";
   report_.device = impl_->description().name;
   report_.driver = impl_->description().driver;
-  report_.setup_s = seconds_since(start);
+  report_.setup_s = seconds;
 }
 
 VulkanEvaluator::~VulkanEvaluator() = default;
@@ -174,6 +159,7 @@ std::vector<Result> VulkanEvaluator::compute(const Request& request, const Progr
     return impl_->compute(request, progress, report_);
   } catch (const vulkan::DeviceTimeout&) {
     // Vulkan forbids destroying what a submission still uses, so all of it is left to the end of the process.
+    impl_->abandon();
     static_cast<void>(impl_.release());
     throw;
   }

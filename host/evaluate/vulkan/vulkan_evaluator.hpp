@@ -29,12 +29,19 @@ struct VulkanOptions {
   double tile_timeout_s = 600.0;
 };
 
-/// Computes moments and pBRDFs with the kernels of shaders/. The device and its pipelines live as long as the object.
+namespace vulkan {
+class Context;
+}
+
+/// Computes moments and pBRDFs with the kernels of shaders/. The pipelines live as long as the object, and so does the
+/// device where it is its own.
 class VulkanEvaluator : public MomentsEvaluator, public ScatteringEvaluator {
  public:
   /// Errors: DeviceError when there is no usable device, `device` matches none, it has no double precision and that
   /// is wanted, or the validation layer is wanted and missing.
   explicit VulkanEvaluator(const VulkanOptions& options);
+  /// On a device that others use too, from other threads; it must outlive this object.
+  VulkanEvaluator(vulkan::Context& context, const VulkanOptions& options);
   ~VulkanEvaluator() override;
 
   /// Errors: DeviceError for double precision on a device without it; InputError for an entry outside the request's
@@ -60,6 +67,7 @@ class VulkanEvaluator : public MomentsEvaluator, public ScatteringEvaluator {
 
  private:
   class Impl;
+  void note_setup(double seconds);
   template <class Result, class Request>
   std::vector<Result> compute(const Request& request, const Progress& progress);
 

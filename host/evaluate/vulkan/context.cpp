@@ -1,0 +1,56 @@
+#include "evaluate/vulkan/context.hpp"
+
+#include <cstdlib>
+#include <string_view>
+
+#include "evaluate/vulkan/result.hpp"
+
+namespace dolp::vulkan {
+namespace {
+
+bool wants_validation(ValidationMode mode) {
+  if (mode != ValidationMode::kFromEnvironment) return mode == ValidationMode::kOn;
+  const char* value = std::getenv("DOLP_VALIDATION");
+  return value && std::string_view(value) == "1";
+}
+
+}  // namespace
+
+Context::Context(const VulkanOptions& options, const Presentation* presentation) {
+  const std::vector<const char*> extensions =
+      presentation ? presentation->instance_extensions : std::vector<const char*>{};
+  instance_ = std::make_unique<Instance>(wants_validation(options.validation) ? &log_ : nullptr, extensions);
+  choose(options, presentation);
+  const std::optional<std::uint32_t> window_family =
+      presentation ? presenting_family(instance(), physical_, *presentation) : std::nullopt;
+  device_ = std::make_unique<Device>(physical_, description_.float64, window_family);
+}
+
+void Context::choose(const VulkanOptions& options, const Presentation* presentation) {
+  const std::vector<VkPhysicalDevice> physical = instance_->physical_devices();
+  std::vector<DeviceDescription> descriptions;
+  for (VkPhysicalDevice device : physical) {
+    DeviceDescription description = describe(device);
+    if (description.usable && presentation && !presenting_family(instance(), device, *presentation)) {
+      description.usable = false;
+      description.why_not = "cannot show a window on this display";
+    }
+    descriptions.push_back(description);
+  }
+  const std::size_t index = choose_device(descriptions, options.device, options.precision == Precision::kDouble);
+  physical_ = physical[index];
+  description_ = descriptions[index];
+}
+
+Context::~Context() {
+  if (!is_abandoned_) return;
+  static_cast<void>(device_.release());
+  static_cast<void>(instance_.release());
+}
+
+void Context::check_validation() const {
+  const std::vector<std::string> messages = log_.messages();
+  if (!messages.empty()) throw DeviceError("Vulkan validation: " + messages.front());
+}
+
+}  // namespace dolp::vulkan

@@ -1,0 +1,77 @@
+#include "explore/curve.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dolp::explore {
+
+std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count) {
+  std::vector<double> theta_deg(count, from_deg);
+  const double last = static_cast<double>(count - 1);
+  for (std::size_t i = 1; i < count; ++i) {
+    const double done = static_cast<double>(i);
+    theta_deg[i] = ((last - done) * from_deg + done * to_deg) / last;
+  }
+  return theta_deg;
+}
+
+std::vector<SceneEntry> entries_at(const Scene& scene, const std::vector<double>& theta_deg) {
+  std::vector<SceneEntry> entries;
+  for (const double theta : theta_deg) entries.push_back({theta, {scene.surface.sigma, scene.surface.q}, {}});
+  return entries;
+}
+
+bool is_good(const PointResult& result) {
+  constexpr std::uint32_t kBad = kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
+  return (result.status & kBad) == 0 && std::isfinite(result.dolp);
+}
+
+void Curve::follow(const std::string& key, const Scene& scene, bool keep_all) {
+  key_ = key;
+  scene_ = scene;
+  keep_all_ = keep_all;
+}
+
+std::string Curve::key_of(Stage stage) const { return (stage == Stage::kCoarse ? "coarse curve " : "curve ") + key_; }
+
+Job Curve::job(Stage stage) const {
+  const bool is_coarse = stage == Stage::kCoarse;
+  Job job;
+  job.key = key_of(stage);
+  job.scene = scene_;
+  if (is_coarse) job.scene.accuracy.tolerance = std::max(kCoarseTolerance, scene_.accuracy.tolerance);
+  job.entries = entries_at(scene_, zeniths(0.0, 90.0, is_coarse ? kCoarseCount : kFineCount));
+  job.keep_all = keep_all_;
+  job.wants_rows = !is_coarse;
+  return job;
+}
+
+std::optional<Job> Curve::wanted(Stage stage) const {
+  if (key_.empty() || is_finished() || shown_ == key_of(stage)) return std::nullopt;
+  return job(stage);
+}
+
+bool Curve::take(const News& news) {
+  const bool is_fine = news.key == key_of(Stage::kFine);
+  if (!is_fine && news.key != key_of(Stage::kCoarse)) return false;
+  if (!is_fine && is_finished()) return true;
+  shown_ = news.key;
+  entries_ = job(is_fine ? Stage::kFine : Stage::kCoarse).entries;
+  results_ = news.results;
+  if (is_fine) {
+    cost_ = {news.wall_s, news.evaluations, news.entries};
+    plan_ = news.plan;
+    rows_ = news.rows;
+  }
+  return true;
+}
+
+double Curve::worst_error() const {
+  double worst = 0.0;
+  for (const PointResult& result : results_) {
+    if (is_good(result)) worst = std::max(worst, result.error_estimate);
+  }
+  return worst;
+}
+
+}  // namespace dolp::explore

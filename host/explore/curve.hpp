@@ -1,0 +1,77 @@
+// One curve over theta, from the first coarse one to that at the scene's own tolerance.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "explore/worker.hpp"
+
+namespace dolp::explore {
+
+/// What a finished job cost.
+struct Cost {
+  double wall_s = 0.0;
+  double evaluations = 0.0;
+  std::size_t entries = 0;
+};
+
+/// Results of a scene over all zeniths.
+class Curve {
+ public:
+  enum class Stage { kCoarse, kFine };
+
+  /// Zeniths of the finished curve: 0 to 90 degrees by half a degree.
+  static constexpr std::size_t kFineCount = 181;
+  static constexpr std::size_t kCoarseCount = 46;
+  static constexpr double kCoarseTolerance = 1e-2;
+
+  /// From now on the curve of this scene. `key` stands for the scene's content. What is shown stays until there is
+  /// something newer.
+  void follow(const std::string& key, const Scene& scene, bool keep_all);
+
+  /// What is still to be computed, a stage at a time.
+  std::optional<Job> wanted(Stage stage) const;
+
+  /// Takes what is this curve's; false for the rest.
+  bool take(const News& news);
+
+  const Scene& scene() const { return scene_; }
+  const std::string& key() const { return key_; }
+  bool is_finished() const { return shown_ == key_of(Stage::kFine); }
+  // What is shown, perhaps of the scene before.
+  const std::vector<SceneEntry>& entries() const { return entries_; }
+  const std::vector<PointResult>& results() const { return results_; }
+  // Of the last finished curve.
+  const Cost& cost() const { return cost_; }
+  const EffectPlan& plan() const { return plan_; }
+  const std::vector<EffectRow>& rows() const { return rows_; }
+
+  /// The largest stated error of DOLP where status promises one.
+  double worst_error() const;
+
+ private:
+  std::string key_of(Stage stage) const;
+  Job job(Stage stage) const;
+
+  std::string key_;
+  Scene scene_;
+  bool keep_all_ = false;
+  std::string shown_;  ///< key of the job whose results are shown
+  std::vector<SceneEntry> entries_;
+  std::vector<PointResult> results_;
+  Cost cost_;
+  EffectPlan plan_;
+  std::vector<EffectRow> rows_;
+};
+
+/// The entries of a scene's surface at these zeniths.
+std::vector<SceneEntry> entries_at(const Scene& scene, const std::vector<double>& theta_deg);
+
+/// `count` zeniths from `from` to `to`, both included.
+std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count);
+
+/// Whether status has none of the bits with which DOLP means nothing or promises nothing.
+bool is_good(const PointResult& result);
+
+}  // namespace dolp::explore

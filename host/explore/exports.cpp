@@ -1,0 +1,68 @@
+#include "explore/exports.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "cli/result_csv.hpp"
+#include "cli/scene_table.hpp"
+#include "evaluate/reference/reference_evaluator.hpp"
+#include "evaluate/run/scene_run.hpp"
+#include "table/atomic_file.hpp"
+#include "table/table_file.hpp"
+
+namespace dolp::explore {
+namespace {
+
+constexpr std::size_t kStride = 10;  // of the entries that the reference recomputes: five degrees
+
+}  // namespace
+
+std::string curve_csv(const Curve& curve) {
+  std::string csv = std::string("theta_deg,sigma,q,") + cli::kResultColumns + '\n';
+  for (std::size_t i = 0; i < curve.entries().size(); ++i) {
+    const SceneEntry& entry = curve.entries()[i];
+    csv += number_text(entry.theta_deg) + ',' + number_text(entry.shape.sigma) + ',' + number_text(entry.shape.q) +
+           ',' + cli::result_cells(curve.results()[i]) + '\n';
+  }
+  return csv;
+}
+
+std::string export_table(const Scene& scene, const std::string& path, const std::string& command_line,
+                         MomentsEvaluator& evaluator, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  check_output_path(path);
+  const std::vector<SceneEntry> entries = grid_entries(scene);
+  const EffectPlan plan = plan_effects(scene, entries, false);
+  const std::vector<PointResult> results = evaluate_scene(scene, entries, plan, &evaluator, progress);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  const std::vector<EffectRow> effects = effect_rows(scene, entries, plan);
+  const cli::TableContent content{scene, results, plan, effects, evaluator.report(), wall.count(), command_line};
+  write_table(cli::scene_table(content), path);
+  return fmt::format("{}: {} entries in {:.2f} s", path, entries.size(), wall.count());
+}
+
+std::string true_error(const Curve& curve, const Progress& progress) {
+  std::vector<SceneEntry> entries;
+  std::vector<PointResult> stated;
+  for (std::size_t i = 0; i < curve.entries().size(); i += kStride) {
+    entries.push_back(curve.entries()[i]);
+    stated.push_back(curve.results()[i]);
+  }
+  ReferenceEvaluator reference(ReferenceOptions{.threads = 1});
+  const std::vector<PointResult> truth = evaluate_scene(curve.scene(), entries, reference, progress);
+  std::size_t worst = 0;
+  double largest = -1.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const double error = std::abs(stated[i].dolp - truth[i].dolp);
+    if (!is_good(stated[i]) || !(error > largest)) continue;
+    largest = error;
+    worst = i;
+  }
+  if (largest < 0.0) return "no direction whose DOLP means something";
+  return fmt::format("{:.1e} at θ = {:g}°, bound {:.1e}; {} directions", largest, entries[worst].theta_deg,
+                     stated[worst].error_estimate, entries.size());
+}
+
+}  // namespace dolp::explore

@@ -1,0 +1,91 @@
+// A map over two of theta, sigma and q, from 16 x 16 to 128 x 128.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "explore/quantity.hpp"
+#include "explore/worker.hpp"
+
+namespace dolp::explore {
+
+enum class AxisKind { kTheta, kSigma, kQ };
+
+/// One axis of a map. `from` < `to`; with `is_log` both are positive.
+struct MapAxis {
+  AxisKind kind = AxisKind::kTheta;
+  double from = 0.0;
+  double to = 1.0;
+  bool is_log = false;
+
+  /// The value at a position from 0 to 1, and back (not clamped).
+  double value(double position) const;
+  double position(double value) const;
+  friend bool operator==(const MapAxis&, const MapAxis&) = default;
+};
+
+/// The axis as a scene suggests it: its grid where that has a range, else that of the parameter's slider.
+MapAxis suggested_axis(AxisKind kind, const Scene& scene, double theta_max_deg);
+
+/// "θ [°]", "σ", "q".
+const char* axis_label(AxisKind kind);
+
+/// What a map shows of one quantity.
+/// Shape: count x count in rows, x fastest; y from the bottom up.
+struct MapField {
+  std::size_t count = 0;
+  std::vector<double> values;  ///< NaN where there is none
+  std::vector<std::uint8_t> is_good;
+  double min = 0.0;  ///< of the good values
+  double max = 0.0;
+};
+
+/// The results behind a map.
+class HeatMap {
+ public:
+  struct Level {
+    std::size_t count;  ///< of rows and columns
+    double tolerance;   ///< at least; 0: the scene's own
+    std::size_t batch;  ///< rows at a time
+  };
+  static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 16}, {64, 1e-2, 8}, {128, 0.0, 4}}};
+
+  /// From now on this map. `key` stands for the content of the scene but for what the axes vary. The third of theta,
+  /// sigma and q is `theta_deg` or the scene's.
+  void follow(const std::string& key, const Scene& scene, bool keep_all, const MapAxis& x, const MapAxis& y,
+              double theta_deg);
+
+  std::optional<Job> wanted(std::size_t level) const;
+  bool take(const News& news);
+  bool is_finished() const;
+
+  const MapAxis& x() const { return x_; }
+  const MapAxis& y() const { return y_; }
+  /// Rows and columns, and the part of the next level that is there, for the legend.
+  std::size_t finished_count() const;
+  double progress() const;
+  /// Changes with everything that changes the field.
+  std::size_t version() const { return version_; }
+
+  /// The finest that there is; rows that a level lacks come from the coarser one.
+  MapField field(Quantity quantity) const;
+
+ private:
+  std::string key_of(std::size_t level) const;
+  Job job(std::size_t level) const;
+  SceneEntry entry(double x, double y) const;
+
+  std::string key_;
+  Scene scene_;
+  bool keep_all_ = false;
+  MapAxis x_, y_;
+  double theta_deg_ = 0.0;
+  std::string shown_key_;  ///< the map that the results are of
+  std::array<std::vector<PointResult>, kLevels.size()> results_;
+  std::size_t version_ = 0;
+};
+
+}  // namespace dolp::explore

@@ -1,0 +1,159 @@
+#include "explore/peak.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "error.hpp"
+#include "scene/text.hpp"
+
+namespace dolp::explore {
+namespace {
+
+constexpr std::array kAway = {
+    WithoutEffect{"emission", "emission=none", true},         WithoutEffect{"source", "source=none", true},
+    WithoutEffect{"surroundings", "surroundings=none", true}, WithoutEffect{"path", "path=none", false},
+    WithoutEffect{"diffuse", "surface.diffuse=0", false},     WithoutEffect{"specular", "surface.specular=0", false},
+    WithoutEffect{"masking", "surface.masking=none", false},  WithoutEffect{"roughness", "surface.sigma=0", false},
+};
+
+bool has(const Scene& scene, const WithoutEffect& away) {
+  const std::string name = away.effect;
+  if (name == "emission") return scene.emission.has_value();
+  if (name == "source") return scene.source.has_value();
+  if (name == "surroundings") return scene.surroundings.has_value();
+  if (name == "path") return scene.path.has_value();
+  if (name == "diffuse") return scene.surface.diffuse > 0.0;
+  if (name == "specular") return scene.surface.specular > 0.0;
+  if (name == "masking") return scene.surface.masking != Masking::kNone;
+  return scene.surface.sigma > 0.0;
+}
+
+std::size_t position_of_largest(const std::vector<PointResult>& results) {
+  std::size_t best = results.size();
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (is_good(results[i]) && (best == results.size() || results[i].dolp > results[best].dolp)) best = i;
+  }
+  return best;
+}
+
+}  // namespace
+
+void Peak::follow(const Curve& curve, const SceneEdits& edits, double theta_max_deg) {
+  const std::string key = "up to " + format_number(theta_max_deg) + ' ' + curve.key();
+  if (key == key_) return;
+  key_ = key;
+  scene_ = curve.scene();
+  theta_deg_.clear();
+  answer_.reset();
+  without_.clear();
+  scenes_without_.clear();
+  const auto is_shown = [&](const SceneEntry& entry) { return entry.theta_deg <= theta_max_deg; };
+  const auto count = std::ranges::count_if(curve.entries(), is_shown);
+  curve_entries_.assign(curve.entries().begin(), curve.entries().begin() + count);
+  curve_results_.assign(curve.results().begin(), curve.results().begin() + count);
+  const std::size_t best = position_of_largest(curve_results_);
+  if (best == curve_results_.size()) return;
+  const double low = curve_entries_[best == 0 ? 0 : best - 1].theta_deg;
+  const double high = curve_entries_[std::min(best + 1, curve_results_.size() - 1)].theta_deg;
+  theta_deg_ = zeniths(low, high, static_cast<std::size_t>(std::lround((high - low) / kStepDeg)) + 1);
+  take_away(edits);
+}
+
+void Peak::take_away(const SceneEdits& edits) {
+  for (const WithoutEffect& away : kAway) {
+    if (!has(scene_, away)) continue;
+    try {
+      scenes_without_.push_back(edits.variant({away.override_}));
+      without_.push_back(away);
+    } catch (const InputError&) {
+      // Nothing else radiates, or the source is relative to the emission.
+    }
+  }
+}
+
+std::string Peak::key_of(const WithoutEffect& of) const { return std::string("without ") + of.override_ + ' ' + key_; }
+
+std::vector<Job> Peak::wanted() const {
+  std::vector<Job> jobs;
+  if (theta_deg_.empty()) return jobs;
+  if (!answer_) {
+    Job job;
+    job.key = "peak " + key_;
+    job.scene = scene_;
+    job.entries = entries_at(scene_, theta_deg_);
+    jobs.push_back(std::move(job));
+    return jobs;
+  }
+  for (std::size_t i = 0; i < without_.size(); ++i) {
+    if (without_[i].is_known) continue;
+    Job job;
+    job.key = key_of(without_[i]);
+    job.scene = scenes_without_[i];
+    job.entries = entries_at(scenes_without_[i], {answer_->theta_deg});
+    jobs.push_back(std::move(job));
+  }
+  return jobs;
+}
+
+bool Peak::take(const News& news) {
+  if (news.key == "peak " + key_) {
+    answer_from(news.results);
+    return true;
+  }
+  for (WithoutEffect& without : without_) {
+    if (news.key != key_of(without)) continue;
+    without.result = news.results.front();
+    without.is_known = true;
+    return true;
+  }
+  return false;
+}
+
+void Peak::answer_from(const std::vector<PointResult>& results) {
+  const std::size_t best = position_of_largest(results);
+  if (best == results.size()) {
+    theta_deg_.clear();
+    return;
+  }
+  at_peak_ = results[best];
+  PeakAnswer answer;
+  answer.theta_deg = theta_deg_[best];
+  answer.dolp = at_peak_.dolp;
+  answer.q_over_i = at_peak_.stokes_q / at_peak_.stokes_i;
+  answer.error = at_peak_.error_estimate;
+  answer.albedo = at_peak_.albedo;
+  const double least = at_peak_.dolp - at_peak_.error_estimate;
+  const auto may_be_largest = [&](std::size_t i) {
+    return is_good(results[i]) && results[i].dolp + results[i].error_estimate >= least;
+  };
+  std::size_t first = best;
+  std::size_t last = best;
+  while (first > 0 && may_be_largest(first - 1)) --first;
+  while (last + 1 < results.size() && may_be_largest(last + 1)) ++last;
+  answer.rival_deg = rival(least);
+  answer.theta_low_deg = theta_deg_[first];
+  answer.theta_high_deg = theta_deg_[last];
+  answer.is_at_end = best + 1 == results.size() || (best + 1 < results.size() && !is_good(results[best + 1]));
+  answer_ = answer;
+}
+
+std::optional<double> Peak::rival(double least) const {
+  for (std::size_t i = 0; i < curve_results_.size(); ++i) {
+    const double theta_deg = curve_entries_[i].theta_deg;
+    const bool is_beside = theta_deg >= theta_deg_.front() && theta_deg <= theta_deg_.back();
+    const PointResult& result = curve_results_[i];
+    if (!is_beside && is_good(result) && result.dolp + result.error_estimate >= least) return theta_deg;
+  }
+  return std::nullopt;
+}
+
+bool Peak::is_complete() const {
+  return answer_ && std::ranges::all_of(without_, [](const WithoutEffect& away) { return away.is_known; });
+}
+
+double Peak::contribution(const WithoutEffect& of) const {
+  return (at_peak_.stokes_q - of.result.stokes_q) / at_peak_.stokes_i;
+}
+
+}  // namespace dolp::explore

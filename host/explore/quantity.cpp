@@ -1,0 +1,70 @@
+#include "explore/quantity.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace dolp::explore {
+namespace {
+
+constexpr std::array kQuantities = {
+    QuantityDescription{Quantity::kDolp, "DOLP", "√(Q² + U²)/I, in percent", true, false},
+    QuantityDescription{Quantity::kSignedDolp, "Q/I", "positive: s polarised, negative: p; in percent", true, false},
+    QuantityDescription{Quantity::kRhoS, "ρ_s", "ρ_I + ρ_Q, eq. (16)", false, true},
+    QuantityDescription{Quantity::kRhoP, "ρ_p", "ρ_I − ρ_Q, eq. (16)", false, true},
+    QuantityDescription{Quantity::kEmissivityS, "ε_s", "1 − ρ_s (Kirchhoff)", false, true},
+    QuantityDescription{Quantity::kEmissivityP, "ε_p", "1 − ρ_p (Kirchhoff)", false, true},
+    QuantityDescription{Quantity::kAlbedo, "albedo", "A(θ), ρ of perfectly reflecting facets", false, true},
+};
+
+}  // namespace
+
+std::span<const QuantityDescription> quantities() { return kQuantities; }
+
+const QuantityDescription& described(Quantity quantity) {
+  for (const QuantityDescription& known : kQuantities) {
+    if (known.quantity == quantity) return known;
+  }
+  throw std::logic_error("no such quantity");
+}
+
+double value_of(Quantity quantity, const PointResult& r) {
+  switch (quantity) {
+    case Quantity::kDolp:
+      return r.dolp;
+    case Quantity::kSignedDolp:
+      return r.stokes_q / r.stokes_i;
+    case Quantity::kRhoS:
+      return r.rho_i + r.rho_q;
+    case Quantity::kRhoP:
+      return r.rho_i - r.rho_q;
+    case Quantity::kEmissivityS:
+      return 1.0 - (r.rho_i + r.rho_q);
+    case Quantity::kEmissivityP:
+      return 1.0 - (r.rho_i - r.rho_q);
+    case Quantity::kAlbedo:
+      return r.albedo;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+double error_of(Quantity quantity, const PointResult& r) {
+  if (quantity == Quantity::kDolp || quantity == Quantity::kSignedDolp) return r.error_estimate;
+  if (quantity == Quantity::kAlbedo) return std::numeric_limits<double>::quiet_NaN();
+  return 2.0 * r.rho_error_estimate * std::abs(r.rho_i);  // of the sum of two moments
+}
+
+std::string status_text(std::uint32_t status) {
+  std::string text;
+  const auto add = [&](std::uint32_t bit, const char* meaning) {
+    if (status & bit) text += (text.empty() ? "" : ", ") + std::string(meaning);
+  };
+  add(kStatusUnphysicalReflectance, "ρ outside [0, 1]");
+  add(kStatusToleranceMissed, "tolerance missed");
+  add(kStatusOutsideDomain, "outside the model's domain");
+  add(kStatusNonPositiveIntensity, "I ≤ 0");
+  return text.empty() ? "good" : text;
+}
+
+}  // namespace dolp::explore

@@ -1,0 +1,58 @@
+// The scene that the window shows: a file's text and what was changed since.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace dolp::explore {
+
+/// A scene file with changes, each one a scene key and a value as in `--set KEY=VALUE`: what the window computes is
+/// what `dolp eval` computes with the same overrides.
+class SceneEdits {
+ public:
+  using Change = std::pair<std::string, std::string>;
+
+  /// Errors: InputError as parse_scene.
+  SceneEdits(std::string text, std::string path_name, std::vector<std::string> overrides);
+
+  /// Changes keys together; "none" of an effect's table removes it, any key of it brings it back. Alternatives of a key
+  /// (n and k, material, material file) go.
+  /// Errors: InputError; the scene then is as it was.
+  void set(const std::vector<Change>& changes);
+  void set(const std::string& key, const std::string& value) { set({{key, value}}); }
+  void set(const std::string& key, double value);
+
+  /// Takes changes of a key back: the value is that of the scene as opened.
+  /// Errors: InputError, as set.
+  void reset(const std::string& key);
+  void reset_all();
+
+  const Scene& scene() const { return scene_; }
+  const Scene& opened() const { return opened_; }
+  bool is_changed() const { return changes_ != given_; }
+  /// All changes, as arguments of --set.
+  std::vector<std::string> overrides() const;
+  /// The same without some keys.
+  std::vector<std::string> overrides_without(const std::vector<std::string>& keys) const;
+  /// The scene with further overrides. Errors: InputError.
+  Scene variant(const std::vector<std::string>& more) const;
+
+  /// TOML that reads back as this scene; see scene_toml.
+  std::string toml(const std::filesystem::path& folder) const;
+
+ private:
+  void become(std::vector<Change> changes);
+
+  std::string text_;
+  std::string path_name_;
+  std::vector<Change> given_;  ///< of the command line
+  std::vector<Change> changes_;
+  Scene opened_;
+  Scene scene_;
+};
+
+}  // namespace dolp::explore

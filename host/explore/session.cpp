@@ -1,0 +1,225 @@
+#include "explore/session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "error.hpp"
+#include "explore/parameters.hpp"
+#include "scene/text.hpp"
+
+namespace dolp::explore {
+namespace {
+
+std::string content_key(const std::vector<std::string>& overrides, bool keep_all) {
+  std::string key = keep_all ? "all" : "plan";
+  for (const std::string& override : overrides) key += '\n' + override;
+  return key;
+}
+
+/// The other distribution with the same density of flat facets: sigma_G = sigma / sqrt(q - 1).
+std::vector<std::string> other_distribution(const Surface& surface) {
+  const double ratio = std::sqrt(surface.q - 1.0);
+  const bool is_cauchy = surface.distribution == Distribution::kCauchy;
+  const double sigma = is_cauchy ? surface.sigma / ratio : surface.sigma * ratio;
+  return {is_cauchy ? "surface.distribution=gaussian" : "surface.distribution=cauchy",
+          "surface.sigma=" + format_number(sigma)};
+}
+
+std::string own_key(AxisKind kind) {
+  if (kind == AxisKind::kTheta) return {};
+  return kind == AxisKind::kSigma ? "surface.sigma" : "surface.q";
+}
+
+}  // namespace
+
+std::string surface_name(const Scene& scene) {
+  const Surface& surface = scene.surface;
+  const bool is_cauchy = surface.distribution == Distribution::kCauchy;
+  std::string name = fmt::format("{} σ {:.4g}", is_cauchy ? "cauchy" : "gaussian", surface.sigma);
+  if (is_cauchy) name += fmt::format(" q {:.4g}", surface.q);
+  for (const Choice& choice : choices()) {
+    if (choice.description->key == "surface.masking") name += ", " + choice.description->words[*choice.word(scene)];
+  }
+  if (!surface.material.name.empty()) return name + ", " + surface.material.name;
+  return name + fmt::format(", n {:.4g} k {:.4g}", surface.material.constant.n, surface.material.constant.k);
+}
+
+Session::Session(SceneEdits edits) : edits_(std::move(edits)) { follow(); }
+
+template <class Command>
+void Session::attempt(const Command& command) {
+  try {
+    command();
+    message_ = {};
+  } catch (const InputError& error) {
+    tell(error.what(), true);
+  }
+  follow();
+}
+
+void Session::set(const std::string& key, double value) {
+  attempt([&] { edits_.set(key, value); });
+}
+
+void Session::set(const std::vector<SceneEdits::Change>& changes) {
+  attempt([&] { edits_.set(changes); });
+}
+
+void Session::reset(const std::string& key) {
+  attempt([&] { edits_.reset(key); });
+}
+
+void Session::reset_all() {
+  attempt([&] { edits_.reset_all(); });
+}
+
+void Session::load_measured(const std::string& path) {
+  attempt([&] { residuals_.load(read_measured(path)); });
+}
+
+void Session::pin() {
+  if (pins_.size() == kMostPins) {
+    tell(fmt::format("{} curves are pinned already: take one away first", kMostPins), true);
+    return;
+  }
+  std::size_t colour = 0;
+  while (std::ranges::any_of(pins_, [&](const Pin& pin) { return pin.colour == colour; })) ++colour;
+  pins_.push_back({surface_name(scene()), colour, true, curve_});
+  is_changed_ = true;
+}
+
+void Session::remove_pin(std::size_t position) {
+  pins_.erase(pins_.begin() + static_cast<std::ptrdiff_t>(position));
+  is_changed_ = true;
+}
+
+void Session::set_view(const View& view) {
+  view_ = view;
+  if (view_.map_x == view_.map_y) {
+    view_.map_y = view_.map_x == AxisKind::kSigma ? AxisKind::kTheta : AxisKind::kSigma;
+  }
+  view_.theta_max_deg = std::clamp(view_.theta_max_deg, kLeastThetaMaxDeg, 90.0);
+  set_theta(theta_deg_);
+}
+
+void Session::set_theta(double theta_deg) {
+  theta_deg_ = std::clamp(theta_deg, 0.0, view_.theta_max_deg);
+  follow();
+}
+
+void Session::set_map_cursor(double x, double y) {
+  std::vector<SceneEdits::Change> changes;
+  for (const auto& [axis, position] : {std::pair{&map_.x(), x}, std::pair{&map_.y(), y}}) {
+    if (axis->kind == AxisKind::kTheta) {
+      theta_deg_ = axis->value(position);
+      continue;
+    }
+    const std::string key = own_key(axis->kind);
+    // Not below four digits: what a slider gives too.
+    const double value = std::clamp(axis->value(position), axis->from, axis->to);
+    changes.emplace_back(key, fmt::format("{:.4g}", value));
+  }
+  set(changes);
+}
+
+double Session::cursor_position(const MapAxis& axis) const {
+  if (axis.kind == AxisKind::kTheta) return axis.position(theta_deg_);
+  return axis.position(axis.kind == AxisKind::kSigma ? scene().surface.sigma : scene().surface.q);
+}
+
+const PointResult* Session::at_cursor() const {
+  const std::vector<SceneEntry>& entries = curve_.entries();
+  if (entries.empty()) return nullptr;
+  const auto distance = [&](const SceneEntry& entry) { return std::abs(entry.theta_deg - theta_deg_); };
+  const auto nearest = std::ranges::min_element(entries, {}, distance);
+  return &curve_.results()[static_cast<std::size_t>(nearest - entries.begin())];
+}
+
+void Session::follow() {
+  const bool keep_all = view_.keeps_all || described(view_.quantity).needs_rho;
+  const std::string content = content_key(edits_.overrides(), keep_all);
+  curve_.follow(content, scene(), keep_all);
+  residuals_.follow(content, scene());
+  follow_overlay(content, keep_all);
+  follow_map(keep_all);
+  bound_effects();
+  follow_peak();
+  is_changed_ = true;
+}
+
+void Session::bound_effects() {
+  effects_ = curve_.rows();
+  add_influences(effects_, curve_.scene(), entries_at(curve_.scene(), {theta_deg_}));
+}
+
+std::string Session::overlay_name() const {
+  if (!overlay_) return {};
+  const Surface& surface = overlay_->scene().surface;
+  const bool is_cauchy = surface.distribution == Distribution::kCauchy;
+  return fmt::format("{} σ {:.4g}, same D(0)", is_cauchy ? "cauchy" : "gaussian", surface.sigma);
+}
+
+void Session::follow_overlay(const std::string& content, bool keep_all) {
+  if (!view_.has_overlay) {
+    overlay_.reset();
+    return;
+  }
+  try {
+    const Scene other = edits_.variant(other_distribution(scene().surface));
+    if (!overlay_) overlay_.emplace();
+    overlay_->follow("other distribution " + content, other, keep_all);
+  } catch (const InputError&) {
+    overlay_.reset();  // its sigma or q is outside the model
+  }
+}
+
+void Session::follow_map(bool keep_all) {
+  const MapAxis x = suggested_axis(view_.map_x, scene(), view_.theta_max_deg);
+  const MapAxis y = suggested_axis(view_.map_y, scene(), view_.theta_max_deg);
+  std::string key = content_key(edits_.overrides_without({own_key(x.kind), own_key(y.kind)}), keep_all);
+  const bool has_theta = x.kind == AxisKind::kTheta || y.kind == AxisKind::kTheta;
+  if (!has_theta) key += "\ntheta=" + format_number(theta_deg_);
+  key += fmt::format("\n{} {} {} {} {} {}", axis_label(x.kind), x.from, x.to, axis_label(y.kind), y.from, y.to);
+  map_.follow(key, scene(), keep_all, x, y, theta_deg_);
+}
+
+std::vector<Job> Session::wanted() const {
+  std::vector<Job> jobs;
+  const auto add = [&](std::optional<Job> job) {
+    if (job) jobs.push_back(std::move(*job));
+  };
+  add(curve_.wanted(Curve::Stage::kCoarse));
+  add(curve_.wanted(Curve::Stage::kFine));
+  if (overlay_) add(overlay_->wanted(Curve::Stage::kFine));
+  add(map_.wanted(0));
+  for (Job& job : peak_.wanted()) jobs.push_back(std::move(job));
+  add(residuals_.wanted());
+  for (const Pin& pin : pins_) add(pin.curve.wanted(Curve::Stage::kFine));
+  add(map_.wanted(1));
+  add(map_.wanted(2));
+  return jobs;
+}
+
+bool Session::take_changed() { return std::exchange(is_changed_, false); }
+
+void Session::take(const std::vector<News>& news) {
+  for (const News& part : news) {
+    curve_.take(part);
+    if (overlay_) overlay_->take(part);
+    for (Pin& pin : pins_) pin.curve.take(part);
+    map_.take(part);
+    peak_.take(part);
+    residuals_.take(part);
+    is_changed_ = is_changed_ || part.is_last;
+  }
+  follow_peak();
+  if (curve_.is_finished() && !news.empty()) bound_effects();
+}
+
+void Session::follow_peak() {
+  if (curve_.is_finished()) peak_.follow(curve_, edits_, view_.theta_max_deg);
+}
+
+}  // namespace dolp::explore

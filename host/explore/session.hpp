@@ -1,0 +1,122 @@
+// What is behind the window: the scene under the hand, its curves, its map, pins and cursor.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "explore/curve.hpp"
+#include "explore/heat_map.hpp"
+#include "explore/measured.hpp"
+#include "explore/peak.hpp"
+#include "explore/quantity.hpp"
+#include "explore/scene_edits.hpp"
+
+namespace dolp::explore {
+
+/// A curve that stays while the scene changes.
+struct Pin {
+  std::string name;
+  std::size_t colour = 0;  ///< position among the colours of pins
+  bool is_visible = true;
+  Curve curve;
+};
+
+/// What is shown, and how.
+struct View {
+  Quantity quantity = Quantity::kDolp;
+  bool is_log = false;
+  bool has_overlay = true;      ///< the other slope distribution with the same D(0)
+  bool keeps_all = false;       ///< compute what the plan would drop, too
+  double theta_max_deg = 90.0;  ///< what is shown, and where the maximum is looked for
+  AxisKind map_x = AxisKind::kTheta;
+  AxisKind map_y = AxisKind::kSigma;
+};
+
+/// One line for the user.
+struct Message {
+  std::string text;
+  bool is_error = false;
+};
+
+/// State and commands; a Worker computes what it wants. Knows nothing of drawing.
+class Session {
+ public:
+  static constexpr std::size_t kMostPins = 6;
+  static constexpr double kLeastThetaMaxDeg = 10.0;
+
+  explicit Session(SceneEdits edits);
+
+  // ---- Commands. Those that the scene refuses change nothing and leave the reason in message().
+  void set(const std::string& key, double value);
+  void set(const std::vector<SceneEdits::Change>& changes);
+  void reset(const std::string& key);
+  void reset_all();
+  void pin();
+  void remove_pin(std::size_t position);
+  void show_pin(std::size_t position, bool is_visible) { pins_[position].is_visible = is_visible; }
+  void set_view(const View& view);
+  void set_theta(double theta_deg);
+  /// Moves the cursor of the map; what its axes are of follows. Positions from 0 to 1.
+  void set_map_cursor(double x, double y);
+  void load_measured(const std::string& path);
+  void clear_measured() { residuals_.clear(); }
+  void tell(std::string text, bool is_error = false) { message_ = {std::move(text), is_error}; }
+
+  // ---- Computing.
+  /// The most wanted first.
+  std::vector<Job> wanted() const;
+  /// Whether wanted() may have changed since the last call.
+  bool take_changed();
+  void take(const std::vector<News>& news);
+
+  // ---- State.
+  const SceneEdits& edits() const { return edits_; }
+  const Scene& scene() const { return edits_.scene(); }
+  const View& view() const { return view_; }
+  double theta_deg() const { return theta_deg_; }
+  const Curve& curve() const { return curve_; }
+  const std::optional<Curve>& overlay() const { return overlay_; }
+  std::string overlay_name() const;
+  const std::deque<Pin>& pins() const { return pins_; }
+  const HeatMap& map() const { return map_; }
+  const Peak& peak() const { return peak_; }
+  const Residuals& residuals() const { return residuals_; }
+  const Message& message() const { return message_; }
+  /// The effects of the finished curve; bounds of what is kept are those at the cursor's zenith.
+  const std::vector<EffectRow>& effects() const { return effects_; }
+  /// The position of the scene's own values on the map.
+  double map_cursor_x() const { return cursor_position(map_.x()); }
+  double map_cursor_y() const { return cursor_position(map_.y()); }
+  /// The shown result whose zenith is nearest to the cursor's; none before there is one.
+  const PointResult* at_cursor() const;
+
+ private:
+  template <class Command>
+  void attempt(const Command& command);
+  void follow();
+  void follow_overlay(const std::string& content, bool keep_all);
+  void follow_map(bool keep_all);
+  void bound_effects();
+  void follow_peak();
+  double cursor_position(const MapAxis& axis) const;
+
+  SceneEdits edits_;
+  View view_;
+  double theta_deg_ = 60.0;
+  Curve curve_;
+  std::optional<Curve> overlay_;
+  std::deque<Pin> pins_;
+  HeatMap map_;
+  Peak peak_;
+  Residuals residuals_;
+  std::vector<EffectRow> effects_;
+  Message message_;
+  bool is_changed_ = true;
+};
+
+/// The surface of a scene in few words, for a legend: "cauchy σ 0.15 q 3, smith".
+std::string surface_name(const Scene& scene);
+
+}  // namespace dolp::explore

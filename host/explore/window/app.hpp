@@ -1,0 +1,69 @@
+// The window as a program: display, device, threads and the loop of frames.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "explore/scene_edits.hpp"
+#include "explore/session.hpp"
+#include "explore/window/area.hpp"
+#include "scene/scene.hpp"
+
+namespace dolp::explore {
+
+struct AppOptions {
+  std::string device;        ///< see choose_device
+  std::string file_name;     ///< what suggested file names begin with
+  std::string command_line;  ///< for the history of tables
+};
+
+/// How long frames took.
+struct FrameTimes {
+  std::vector<double> all_s;   ///< from one frame's start to the next
+  std::vector<double> busy_s;  ///< those in which the worker had something to do
+};
+
+/// Two lines: count, median and worst, of all frames and of those while something was computed.
+std::string summary_of(const FrameTimes& times);
+
+class App {
+ public:
+  /// Opens the window. Errors: DeviceError without a display, or without a device that can show a window on it.
+  App(SceneEdits edits, const AppOptions& options);
+  App(const App&) = delete;
+  App& operator=(const App&) = delete;
+  ~App();
+
+  Session& session();
+  /// Where the slider of a scene key was drawn last. Errors: std::out_of_range when it was not.
+  Area slider_area(const std::string& key) const;
+
+  /// Takes input and news, and draws one frame. False when the user has closed the window.
+  /// Errors: DeviceError when the device is lost or the validation layer complains.
+  bool frame();
+  /// Until the window is closed; between events nothing is drawn.
+  void run();
+  /// This many frames one after the other; the last ones wait until everything wanted is computed if there is a path
+  /// for a picture, which is of the last one.
+  FrameTimes run_frames(std::size_t count, const std::string& screenshot_path);
+
+  /// Nothing is left to compute, and all of it is in the session.
+  bool is_idle() const;
+  /// Draws until that is so.
+  void settle();
+  void resize(int width, int height);
+  /// Writes a picture of the window with its next frame. Errors: IoError.
+  void save_picture(const std::string& path);
+
+ private:
+  void wait_for_results();
+
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace dolp::explore

@@ -1,0 +1,35 @@
+// Colours that people with any colour vision tell apart.
+#pragma once
+
+#include <imgui.h>
+
+#include <cstddef>
+
+namespace dolp::explore {
+
+/// The map "viridis" at 0 to 1, dark to light; colours outside are those of the ends.
+/// Source: S. van der Walt, N. Smith, viridis of Matplotlib (CC0), at seventeen equal steps, linear in between.
+ImU32 viridis(double position);
+
+/// How a curve is drawn: colours never tell alone.
+struct CurveStyle {
+  ImU32 colour;
+  float dash;  ///< length of dashes in pixels, 0 for a full line
+  float gap;
+};
+
+/// The current curve, the overlaid one, and pins by their number.
+/// Source: M. Okabe, K. Ito, Color Universal Design (2008).
+CurveStyle current_style();
+CurveStyle overlay_style();
+CurveStyle pin_style(std::size_t pin);
+
+inline constexpr ImU32 kTextColour = IM_COL32(225, 228, 232, 255);
+inline constexpr ImU32 kDimColour = IM_COL32(150, 156, 163, 255);
+inline constexpr ImU32 kGridColour = IM_COL32(62, 66, 72, 255);
+inline constexpr ImU32 kPlotColour = IM_COL32(20, 21, 24, 255);
+inline constexpr ImU32 kBadColour = IM_COL32(110, 112, 116, 255);    ///< entries with a status
+inline constexpr ImU32 kErrorColour = IM_COL32(255, 150, 110, 255);  ///< messages
+inline constexpr ImU32 kCursorColour = IM_COL32(255, 255, 255, 200);
+
+}  // namespace dolp::explore

@@ -1,0 +1,214 @@
+#include "explore/window/controls_panel.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "explore/parameters.hpp"
+#include "explore/window/colours.hpp"
+#include "explore/window/text.hpp"
+#include "scene/material_data.hpp"
+#include "scene/text.hpp"
+
+namespace dolp::explore {
+namespace {
+
+void heading(const char* text) {
+  ImGui::Spacing();
+  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_PlotHistogram));
+  ImGui::TextUnformatted(text);
+  ImGui::PopStyleColor();
+  ImGui::Separator();
+}
+
+/// The text of a row, in a column of fixed width; the control follows beside it.
+void row_label(const std::string& text) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(shown(text).c_str());
+  // As wide as the longest text that is not cut.
+  const float longest = ImGui::CalcTextSize(shown("λ1, λ2 [µm]").c_str()).x;
+  ImGui::SameLine(std::max(6.2F * ImGui::GetTextLineHeight(), longest + 2.0F * ImGui::GetStyle().ItemSpacing.x));
+}
+
+void tooltip(const std::string& text) {
+  if (!ImGui::IsItemHovered()) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(28.0F * ImGui::GetFontSize());
+  ImGui::TextUnformatted(shown(text).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+std::string fallback_text(const Parameter& parameter, const Session& session) {
+  const std::optional<double> opened = parameter.value(session.edits().opened());
+  return opened ? fmt::format("\nCtrl-click: {:.6g}, as opened", *opened) : "";
+}
+
+std::string description_of(const Parameter& p, const Session& session) {
+  const KeyDescription& key = *p.description;
+  return fmt::format("{} = {}\n{}\nallowed: {} {}{}", key.key, key.meaning, p.equation, key.range.text(),
+                     unit_text(key), fallback_text(p, session));
+}
+
+void draw_choice(Session& session, const Choice& choice, std::size_t word) {
+  const std::vector<std::string>& words = choice.description->words;
+  row_label(choice.label);
+  ImGui::SetNextItemWidth(-1.0F);
+  const std::string id = "##" + choice.description->key;
+  if (ImGui::BeginCombo(id.c_str(), words[word].c_str())) {
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      if (ImGui::Selectable(words[i].c_str(), i == word)) session.set({{choice.description->key, words[i]}});
+    }
+    ImGui::EndCombo();
+  } else {
+    tooltip(choice.description->key + ": " + choice.description->meaning + "\n" + choice.equation);
+  }
+}
+
+void draw_choices(Session& session, const std::string& table) {
+  for (const Choice& choice : choices()) {
+    if (table_of(choice.description->key) != table) continue;
+    if (const auto word = choice.word(session.scene())) draw_choice(session, choice, *word);
+  }
+}
+
+void draw_material(Session& session) {
+  const Material& material = session.scene().surface.material;
+  const bool is_own = material.name.empty() && material.is_constant();
+  const OpticalConstants now = material.at(session.scene().spectrum.min_um);
+  row_label("material");
+  ImGui::SetNextItemWidth(-1.0F);
+  constexpr const char* kOwn = "n and k as below";
+  const std::string current = is_own ? kOwn : material.name.empty() ? "file" : material.name;
+  if (!ImGui::BeginCombo("##material", current.c_str(), ImGuiComboFlags_HeightLarge)) {
+    tooltip(is_own ? "a built-in material, or n and k of your own" : "N = n + ik of " + material.source);
+    return;
+  }
+  if (ImGui::Selectable(kOwn, is_own) && !is_own) {
+    session.set({{"surface.n", format_number(now.n)}, {"surface.k", format_number(now.k)}});
+  }
+  for (const std::string& name : material_names()) {
+    if (ImGui::Selectable(name.c_str(), name == material.name)) session.set({{"surface.material", name}});
+  }
+  ImGui::EndCombo();
+}
+
+void draw_source_kind(Session& session) {
+  struct Kind {
+    const char* name;
+    SceneEdits::Change change;
+  };
+  static const std::array<Kind, 3> kKinds = {{{"E0 as below", {"source.irradiance", "1"}},
+                                              {"e = E0/(πB(T)) as below", {"source.relative_irradiance", "0.6"}},
+                                              {"the sun", {"source.preset", "sun"}}}};
+  const auto now = static_cast<std::size_t>(session.scene().source->kind);
+  row_label("kind");
+  ImGui::SetNextItemWidth(-1.0F);
+  if (!ImGui::BeginCombo("##source kind", shown(kKinds[now].name).c_str())) return;
+  for (std::size_t i = 0; i < kKinds.size(); ++i) {
+    if (ImGui::Selectable(shown(kKinds[i].name).c_str(), i == now) && i != now) session.set({kKinds[i].change});
+  }
+  ImGui::EndCombo();
+}
+
+/// A box that takes an effect out of the scene, and back in as it was or with values to begin with.
+void draw_effect_box(Session& session, const std::string& table, bool is_present) {
+  bool wanted = is_present;
+  if (!ImGui::Checkbox(table.c_str(), &wanted)) return;
+  if (!wanted) {
+    session.set({{table, "none"}});
+    return;
+  }
+  session.reset(table);
+  const Scene& scene = session.scene();
+  if (table == "emission" && !scene.emission) session.set({{"emission.temperature_K", "300"}});
+  if (table == "source" && !scene.source) session.set({{"source.preset", "sun"}});
+  if (table == "surroundings" && !scene.surroundings) session.set({{"surroundings.temperature_K", "250"}});
+  if (table == "path" && !scene.path) session.set({{"path.transmittance", "0.9"}, {"path.temperature_K", "280"}});
+}
+
+void draw_spectrum(Session& session) {
+  const Spectrum& spectrum = session.scene().spectrum;
+  bool is_band = spectrum.is_band();
+  if (ImGui::Checkbox("band", &is_band)) {
+    if (is_band) session.set({{"spectrum.band_um", "[8, 14]"}});
+    if (!is_band) session.set({{"spectrum.wavelength_um", "10.6"}});
+  }
+  if (!session.scene().spectrum.is_band()) return;
+  std::array<double, 2> ends = {spectrum.min_um, spectrum.max_um};
+  row_label("λ1, λ2 [µm]");
+  ImGui::SetNextItemWidth(-1.0F);
+  constexpr ImGuiInputTextFlags kFlags = ImGuiInputTextFlags_EnterReturnsTrue;
+  if (ImGui::InputScalarN("##band", ImGuiDataType_Double, ends.data(), 2, nullptr, nullptr, "%.6g", kFlags)) {
+    session.set({{"spectrum.band_um", fmt::format("[{}, {}]", format_number(ends[0]), format_number(ends[1]))}});
+  }
+}
+
+}  // namespace
+
+void ControlsPanel::draw_parameter(Session& session, const Parameter& parameter, double value) {
+  const KeyDescription& key = *parameter.description;
+  const std::string unit = unit_text(key);
+  row_label(unit.empty() ? parameter.symbol : fmt::format("{} [{}]", parameter.symbol, unit));
+  ImGui::PushID(key.key.c_str());
+  const float typed_width = 5.2F * ImGui::GetFontSize();
+  ImGui::SetNextItemWidth(-typed_width - ImGui::GetStyle().ItemSpacing.x);
+  auto position = static_cast<float>(slider_position(parameter, value));
+  const bool is_moved = ImGui::SliderFloat("##slider", &position, 0.0F, 1.0F, "", ImGuiSliderFlags_NoInput);
+  const ImVec2 corner = ImGui::GetItemRectMin();
+  const ImVec2 end = ImGui::GetItemRectMax();
+  areas_[key.key] = {corner.x, corner.y, end.x, end.y};
+  const bool is_ctrl = ImGui::GetIO().KeyCtrl;
+  if (ImGui::IsItemClicked() && is_ctrl) session.reset(key.key);
+  if (is_moved && !is_ctrl) session.set(key.key, slider_value(parameter, position));
+  if (!ImGui::IsItemActive()) tooltip(description_of(parameter, session));
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(-1.0F);
+  double typed = value;
+  if (ImGui::InputDouble("##number", &typed, 0.0, 0.0, "%.6g", ImGuiInputTextFlags_EnterReturnsTrue)) {
+    session.set(key.key, typed);
+  }
+  ImGui::PopID();
+}
+
+void ControlsPanel::draw_table(Session& session, const std::string& table) {
+  for (const Parameter& parameter : parameters()) {
+    if (table_of(parameter.description->key) != table) continue;
+    // Again from the scene for each, because the one before may have changed it.
+    if (const auto value = parameter.value(session.scene())) draw_parameter(session, parameter, *value);
+  }
+}
+
+void ControlsPanel::draw(Session& session) {
+  areas_.clear();
+  heading("Surface");
+  draw_material(session);
+  draw_choices(session, "surface");
+  draw_table(session, "surface");
+  heading("Radiation");
+  draw_effect_box(session, "emission", session.scene().emission.has_value());
+  if (session.scene().emission) draw_choices(session, "emission");
+  draw_table(session, "emission");
+  draw_effect_box(session, "source", session.scene().source.has_value());
+  if (session.scene().source) draw_source_kind(session);
+  draw_table(session, "source");
+  draw_effect_box(session, "surroundings", session.scene().surroundings.has_value());
+  draw_table(session, "surroundings");
+  draw_effect_box(session, "path", session.scene().path.has_value());
+  draw_table(session, "path");
+  heading("Spectrum and geometry");
+  draw_spectrum(session);
+  draw_table(session, "spectrum");
+  draw_choices(session, "geometry");
+  draw_table(session, "geometry");
+}
+
+void ControlsPanel::draw_accuracy(Session& session) {
+  draw_table(session, "accuracy");
+  draw_choices(session, "accuracy");
+}
+
+}  // namespace dolp::explore

@@ -1,0 +1,29 @@
+// The left side of the window: everything of the scene that can be moved, made from parameter descriptions.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "explore/parameters.hpp"
+#include "explore/session.hpp"
+#include "explore/window/area.hpp"
+
+namespace dolp::explore {
+
+class ControlsPanel {
+ public:
+  /// Fills the current ImGui window.
+  void draw(Session& session);
+  /// Tolerance and precision, which stand beside what they cost; to be called after `draw`.
+  void draw_accuracy(Session& session);
+
+  /// Sliders by their scene key, for tests that move the mouse there.
+  const std::map<std::string, Area>& areas() const { return areas_; }
+
+ private:
+  void draw_parameter(Session& session, const Parameter& parameter, double value);
+  void draw_table(Session& session, const std::string& table);
+  std::map<std::string, Area> areas_;
+};
+
+}  // namespace dolp::explore

@@ -1,0 +1,229 @@
+#include "explore/window/curve_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "explore/window/plot.hpp"
+
+namespace dolp::explore {
+namespace {
+
+constexpr float kWidth = 2.0F;
+/// A curve as it is drawn.
+struct Shown {
+  const Curve* curve;
+  CurveStyle style;
+  std::string name;
+};
+
+std::vector<Shown> shown_curves(const Session& session) {
+  std::vector<Shown> curves;
+  if (session.overlay()) curves.push_back({&*session.overlay(), overlay_style(), session.overlay_name()});
+  for (const Pin& pin : session.pins()) {
+    if (pin.is_visible) curves.push_back({&pin.curve, pin_style(pin.colour), "pinned: " + pin.name});
+  }
+  // Last, so that it lies over the others.
+  curves.push_back({&session.curve(), current_style(), surface_name(session.scene())});
+  return curves;
+}
+
+double scale_of(Quantity quantity) { return described(quantity).in_percent ? 100.0 : 1.0; }
+
+/// What the axis of values has to hold.
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  void add(double value) {
+    if (!std::isfinite(value)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  bool is_empty() const { return !(low <= high); }
+};
+
+Range range_of(const Session& session, const std::vector<Shown>& curves, bool is_log) {
+  const Quantity quantity = session.view().quantity;
+  Range range;
+  const auto add = [&](double value) {
+    if (!is_log || value > 0.0) range.add(value);
+  };
+  for (const Shown& shown : curves) {
+    for (std::size_t i = 0; i < shown.curve->results().size(); ++i) {
+      if (shown.curve->entries()[i].theta_deg > session.view().theta_max_deg) break;
+      const PointResult& result = shown.curve->results()[i];
+      if (is_good(result)) add(scale_of(quantity) * value_of(quantity, result));
+    }
+  }
+  const std::optional<PeakAnswer>& peak = session.peak().answer();
+  if (peak && session.curve().is_finished() && quantity == Quantity::kDolp) add(scale_of(quantity) * peak->dolp);
+  if (peak && session.curve().is_finished() && quantity == Quantity::kSignedDolp) {
+    add(scale_of(quantity) * peak->q_over_i);
+  }
+  if (quantity == Quantity::kDolp && session.residuals().points()) {
+    for (const double dolp : session.residuals().points()->dolp) add(scale_of(quantity) * dolp);
+  }
+  return range;
+}
+
+PlotAxis value_axis(const Session& session, const std::vector<Shown>& curves) {
+  const bool is_log = session.view().is_log;
+  const QuantityDescription& of = described(session.view().quantity);
+  PlotAxis axis{of.in_percent ? fmt::format("{} [%]", of.name) : of.name, 0.0, 1.0, is_log};
+  Range range = range_of(session, curves, is_log);
+  if (range.is_empty()) range = {is_log ? 0.01 : 0.0, 1.0};
+  if (is_log) {
+    constexpr double kMostDecades = 1e6;
+    constexpr double kRoom = 4.0;  // for the mark of the maximum
+    axis.to = kRoom * range.high;
+    axis.from = std::max(range.low / 1.5, axis.to / kMostDecades);
+    return axis;
+  }
+  range.add(0.0);
+  const double room = 0.06 * std::max(range.high - range.low, 1e-9);
+  axis.from = range.low < 0.0 ? range.low - room : 0.0;
+  axis.to = range.high > 0.0 ? range.high + 2.0 * room : 0.0;
+  if (axis.to <= axis.from) axis.to = axis.from + 1.0;
+  return axis;
+}
+
+/// Draws the good parts in the curve's style, the others thin and grey.
+void draw_curve(const Plot& plot, const Shown& shown, Quantity quantity) {
+  const std::vector<PointResult>& results = shown.curve->results();
+  std::vector<ImVec2> points;
+  bool is_good_part = true;
+  const auto finish = [&] {
+    const CurveStyle bad{kBadColour, 4.0F, 4.0F};
+    draw_line(plot.list(), points, is_good_part ? shown.style : bad, is_good_part ? kWidth : 1.0F);
+    points.clear();
+  };
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const double value = scale_of(quantity) * value_of(quantity, results[i]);
+    if (!std::isfinite(value) || (plot.y().is_log && value <= 0.0)) {
+      finish();
+      continue;
+    }
+    const ImVec2 at = plot.at(shown.curve->entries()[i].theta_deg, value);
+    if (is_good(results[i]) != is_good_part) {
+      // The line between a good entry and another is not good.
+      if (!is_good(results[i]) && !points.empty()) {
+        const ImVec2 last = points.back();
+        finish();
+        points.push_back(last);
+      } else {
+        points.push_back(at);
+        finish();
+      }
+      is_good_part = is_good(results[i]);
+    }
+    points.push_back(at);
+  }
+  finish();
+}
+
+void draw_legend(const Plot& plot, const std::vector<Shown>& curves, const Session& session) {
+  const float line = ImGui::GetTextLineHeight();
+  ImVec2 at{plot.min().x + 0.7F * line, plot.min().y + 0.5F * line};
+  const auto entry = [&](const CurveStyle& style, const std::string& name) {
+    const float middle = at.y + 0.5F * line;
+    draw_label(plot.list(), {at.x + 2.6F * line, at.y}, {0.0F, 0.0F}, kTextColour, name);
+    draw_line(plot.list(), {{at.x, middle}, {at.x + 2.2F * line, middle}}, style, kWidth);
+    at.y += 1.25F * line;
+  };
+  entry(curves.back().style, curves.back().name);
+  for (std::size_t i = 0; i + 1 < curves.size(); ++i) entry(curves[i].style, curves[i].name);
+  const bool has_bad = std::ranges::any_of(session.curve().results(), [](const PointResult& r) { return !is_good(r); });
+  if (has_bad) entry({kBadColour, 4.0F, 4.0F}, "the model fails here (status)");
+}
+
+void draw_cursor(const Plot& plot, const Session& session) {
+  const float x = plot.at_position(plot.x().position(session.theta_deg()), 0.0).x;
+  plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour);
+  const PointResult* result = session.at_cursor();
+  if (!result) return;
+  const Quantity quantity = session.view().quantity;
+  const double value = scale_of(quantity) * value_of(quantity, *result);
+  if (!std::isfinite(value) || (plot.y().is_log && value <= 0.0)) return;
+  const ImVec2 at = plot.at(session.theta_deg(), value);
+  plot.list()->AddCircleFilled(at, 4.0F, current_style().colour);
+  plot.list()->AddCircle(at, 4.5F, kTextColour);
+}
+
+void draw_peak(const Plot& plot, const Session& session) {
+  const std::optional<PeakAnswer>& peak = session.peak().answer();
+  const Quantity quantity = session.view().quantity;
+  if (!peak || !session.curve().is_finished()) return;
+  if (quantity != Quantity::kDolp && quantity != Quantity::kSignedDolp) return;
+  const double value = scale_of(quantity) * (quantity == Quantity::kDolp ? peak->dolp : peak->q_over_i);
+  if (plot.y().is_log && value <= 0.0) return;
+  const bool is_low = value < 0.0;
+  const ImVec2 at = plot.at(peak->theta_deg, value);
+  const float side = is_low ? 1.0F : -1.0F;
+  plot.list()->AddTriangleFilled({at.x, at.y + side * 3.0F}, {at.x - 5.0F, at.y + side * 12.0F},
+                                 {at.x + 5.0F, at.y + side * 12.0F}, kTextColour);
+  // Beside the mark towards the middle, so that it stays inside.
+  const bool is_right = at.x > 0.5F * (plot.min().x + plot.max().x);
+  draw_label(plot.list(), {at.x + (is_right ? -9.0F : 9.0F), at.y + side * 8.0F}, {is_right ? 1.0F : 0.0F, 0.5F},
+             kTextColour, fmt::format("{:.2f} % at {:.1f}°", value, peak->theta_deg));
+}
+
+void draw_measured(const Plot& plot, const MeasuredPoints& points) {
+  for (std::size_t i = 0; i < points.theta_deg.size(); ++i) {
+    const double value = scale_of(Quantity::kDolp) * points.dolp[i];
+    if (plot.y().is_log && value <= 0.0) continue;
+    plot.list()->AddCircle(plot.at(points.theta_deg[i], value), 4.0F, kTextColour, 0, 1.5F);
+  }
+}
+
+void draw_residuals(const Session& session, ImVec2 size) {
+  const std::vector<double> residuals = session.residuals().residuals();
+  double largest = 1e-6;
+  for (const double residual : residuals) {
+    if (std::isfinite(residual)) largest = std::max(largest, std::abs(100.0 * residual));
+  }
+  const std::optional<double> rms = session.residuals().rms();
+  const std::string label = rms ? fmt::format("measured − model [points]; root mean square {:.3g}", 100.0 * *rms)
+                                : "measured − model [points]";
+  const double theta_max = session.view().theta_max_deg;
+  const Plot plot("residuals", size, {"", 0.0, theta_max}, {label, -1.2 * largest, 1.2 * largest});
+  plot.clip();
+  plot.list()->AddLine(plot.at(0.0, 0.0), plot.at(theta_max, 0.0), kDimColour);
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (!std::isfinite(residuals[i])) continue;
+    const double theta = session.residuals().points()->theta_deg[i];
+    plot.list()->AddLine(plot.at(theta, 0.0), plot.at(theta, 100.0 * residuals[i]), kTextColour);
+    plot.list()->AddCircleFilled(plot.at(theta, 100.0 * residuals[i]), 3.0F, kTextColour);
+  }
+  plot.unclip();
+}
+
+}  // namespace
+
+void draw_curve_view(Session& session, ImVec2 size) {
+  const std::vector<Shown> curves = shown_curves(session);
+  const Quantity quantity = session.view().quantity;
+  const bool has_measured = session.residuals().points().has_value() && quantity == Quantity::kDolp;
+  const float gap = ImGui::GetStyle().ItemSpacing.y;
+  const float residual_height = has_measured ? 0.28F * size.y : 0.0F;
+  const double theta_max = session.view().theta_max_deg;
+  const bool is_bistatic = session.scene().geometry.mode == Mode::kBistatic;
+  const Plot plot("curve", {size.x, size.y - residual_height - (has_measured ? gap : 0.0F)},
+                  {is_bistatic ? "zenith θ of the source [°]" : "zenith θ [°]", 0.0, theta_max},
+                  value_axis(session, curves));
+  if (plot.is_dragged()) session.set_theta(plot.mouse_x());
+  plot.clip();
+  if (!plot.y().is_log) plot.list()->AddLine(plot.at(0.0, 0.0), plot.at(theta_max, 0.0), kDimColour);
+  for (const Shown& shown : curves) draw_curve(plot, shown, quantity);
+  if (has_measured) draw_measured(plot, *session.residuals().points());
+  draw_cursor(plot, session);
+  draw_peak(plot, session);
+  draw_legend(plot, curves, session);
+  plot.unclip();
+  if (has_measured) draw_residuals(session, {size.x, residual_height});
+}
+
+}  // namespace dolp::explore

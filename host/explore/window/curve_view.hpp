@@ -1,0 +1,14 @@
+// The curves over theta.
+#pragma once
+
+#include <imgui.h>
+
+#include "explore/session.hpp"
+
+namespace dolp::explore {
+
+/// Fills `size` of the current ImGui window with the current curve, the overlaid one, pins and measured points; a click
+/// or drag moves the cursor.
+void draw_curve_view(Session& session, ImVec2 size);
+
+}  // namespace dolp::explore

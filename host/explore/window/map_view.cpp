@@ -1,0 +1,165 @@
+#include "explore/window/map_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "explore/ticks.hpp"
+#include "explore/window/plot.hpp"
+
+namespace dolp::explore {
+namespace {
+
+// Few enough that neighbours share a colour and are drawn as one, more than the eye tells apart.
+constexpr double kColourSteps = 96.0;
+constexpr double kMostContrast = 1e3;  // of a logarithmic colour scale
+constexpr float kBarRoom = 5.4F;       // right of the map, in lines of text
+
+PlotAxis axis_of(const MapAxis& axis) { return {axis_label(axis.kind), axis.from, axis.to, axis.is_log}; }
+
+double scale_of(const QuantityDescription& quantity) { return quantity.in_percent ? 100.0 : 1.0; }
+
+std::string title_of(const Session& session) {
+  const HeatMap& map = session.map();
+  const QuantityDescription& of = described(session.view().quantity);
+  const std::string state = map.is_finished() ? "" : fmt::format(", refining {:.0f} %", 100.0 * map.progress());
+  return fmt::format("{}; {} × {}{}", of.in_percent ? fmt::format("{} [%]", of.name) : of.name, map.finished_count(),
+                     map.finished_count(), state);
+}
+
+void move_cursor(Session& session, const Plot& plot) {
+  if (plot.is_dragged()) session.set_map_cursor(plot.mouse_position_x(), plot.mouse_position_y());
+}
+
+void draw_cursor(const Session& session, const Plot& plot) {
+  const ImVec2 at = plot.at_position(session.map_cursor_x(), session.map_cursor_y());
+  plot.list()->AddLine({at.x, plot.min().y}, {at.x, plot.max().y}, kCursorColour);
+  plot.list()->AddLine({plot.min().x, at.y}, {plot.max().x, at.y}, kCursorColour);
+  plot.list()->AddCircle(at, 5.0F, kTextColour, 0, 2.0F);
+}
+
+}  // namespace
+
+double MapView::colour_position(double value) const {
+  if (!(low_ < field_.max)) return 0.0;
+  if (!uses_log()) return (value - low_) / (field_.max - low_);
+  return value > low_ ? std::log(value / low_) / std::log(field_.max / low_) : 0.0;
+}
+
+void MapView::update(const Session& session) {
+  const Quantity quantity = session.view().quantity;
+  const bool is_log = session.view().is_log;
+  if (version_ == session.map().version() && quantity_ == quantity && is_log_ == is_log) return;
+  version_ = session.map().version();
+  quantity_ = quantity;
+  field_ = session.map().field(quantity);
+  // Only what is positive throughout, but for a few smallest values, has a logarithm.
+  is_log_ = is_log;
+  low_ = is_log && field_.max > 0.0 ? std::max(field_.min, field_.max / kMostContrast) : field_.min;
+  colours_.clear();
+  for (std::size_t i = 0; i < field_.values.size(); ++i) {
+    const double position = colour_position(field_.values[i]);
+    colours_.push_back(field_.is_good[i] ? viridis(std::round(position * kColourSteps) / kColourSteps) : kBadColour);
+  }
+  runs_ = runs_along(true);
+  std::vector<Run> upwards = runs_along(false);
+  if (upwards.size() < runs_.size()) runs_ = std::move(upwards);
+  lines_.clear();
+  for (const double level : contour_levels(low_, field_.max, uses_log()))
+    lines_.push_back({level, contour(field_, level)});
+}
+
+std::vector<MapView::Run> MapView::runs_along(bool rows) const {
+  const std::size_t count = field_.count;
+  std::vector<Run> runs;
+  for (std::size_t line = 0; line < count; ++line) {
+    const auto colour = [&](std::size_t i) { return colours_[rows ? line * count + i : i * count + line]; };
+    for (std::size_t begin = 0; begin < count;) {
+      std::size_t end = begin + 1;
+      while (end < count && colour(end) == colour(begin)) ++end;
+      const std::size_t length = end - begin;
+      runs.push_back(rows ? Run{begin, line, length, 1, colour(begin)} : Run{line, begin, 1, length, colour(begin)});
+      begin = end;
+    }
+  }
+  return runs;
+}
+
+void MapView::draw_cells(const Plot& plot) const {
+  const auto edge = [&](std::size_t i) {
+    // Entries are at the ends too, so that the outer cells are half as wide.
+    return std::clamp((static_cast<double>(i) - 0.5) / static_cast<double>(field_.count - 1), 0.0, 1.0);
+  };
+  const ImVec2 white = ImGui::GetFontTexUvWhitePixel();
+  for (const Run& run : runs_) {
+    const ImVec2 low = plot.at_position(edge(run.column), edge(run.row));
+    const ImVec2 high = plot.at_position(edge(run.column + run.columns), edge(run.row + run.rows));
+    plot.list()->PrimReserve(6, 4);
+    plot.list()->PrimRectUV({low.x, high.y}, {high.x, low.y}, white, white, run.colour);
+  }
+}
+
+void MapView::draw_lines(const Plot& plot, double scale) const {
+  constexpr ImU32 kLine = IM_COL32(255, 255, 255, 170);
+  for (const Line& line : lines_) {
+    for (const Segment& s : line.segments) {
+      plot.list()->AddLine(plot.at_position(s.x0, s.y0), plot.at_position(s.x1, s.y1), kLine);
+    }
+  }
+  std::vector<ImVec2> labels;
+  for (const Line& line : lines_) {
+    if (line.segments.empty()) continue;
+    // Where the line is farthest from the edges.
+    const auto room = [](const Segment& s) { return std::min({s.x0, 1.0 - s.x0, s.y0, 1.0 - s.y0}); };
+    const Segment& inner = *std::ranges::max_element(line.segments, {}, room);
+    const ImVec2 at = plot.at_position(inner.x0, inner.y0);
+    const float apart = 1.5F * ImGui::GetTextLineHeight();
+    const auto is_near = [&](ImVec2 other) { return std::hypot(at.x - other.x, at.y - other.y) < apart; };
+    if (std::ranges::any_of(labels, is_near)) continue;
+    labels.push_back(at);
+    draw_label(plot.list(), at, {0.5F, 0.5F}, kTextColour, tick_text(scale * line.level));
+  }
+}
+
+void MapView::draw_bar(const Plot& plot, const QuantityDescription& quantity) const {
+  if (!(field_.min <= field_.max)) return;
+  constexpr int kSteps = 64;
+  const float line = ImGui::GetTextLineHeight();
+  const float left = plot.max().x + 0.9F * line;
+  const float right = left + 0.9F * line;
+  const float height = plot.max().y - plot.min().y;
+  for (int i = 0; i < kSteps; ++i) {
+    const auto y = [&](int step) { return plot.max().y - height * static_cast<float>(step) / kSteps; };
+    plot.list()->AddRectFilled({left, y(i + 1)}, {right, y(i)}, viridis((i + 0.5) / kSteps));
+  }
+  plot.list()->AddRect({left, plot.min().y}, {right, plot.max().y}, kDimColour);
+  if (!(low_ < field_.max)) return;
+  const double scale = scale_of(quantity);
+  const auto most = static_cast<std::size_t>(std::max(2.0F, height / (2.2F * line)));
+  const std::vector<double> ticks = uses_log() ? log_ticks(scale * low_, scale * field_.max, most)
+                                               : linear_ticks(scale * low_, scale * field_.max, most);
+  for (const double tick : ticks) {
+    const float y = plot.max().y - static_cast<float>(colour_position(tick / scale)) * height;
+    plot.list()->AddLine({right, y}, {right + 0.25F * line, y}, kDimColour);
+    draw_text(plot.list(), {right + 0.4F * line, y}, {0.0F, 0.5F}, kDimColour, tick_text(tick));
+  }
+}
+
+void MapView::draw(Session& session, ImVec2 size) {
+  update(session);
+  const QuantityDescription& quantity = described(session.view().quantity);
+  const float line = ImGui::GetTextLineHeight();
+  const Plot plot("map", size, axis_of(session.map().x()), axis_of(session.map().y()), kBarRoom * line, false);
+  move_cursor(session, plot);
+  draw_text(plot.list(), {plot.max().x, plot.min().y - 0.15F * line}, {1.0F, 1.0F}, kTextColour, title_of(session));
+  plot.clip();
+  draw_cells(plot);
+  draw_lines(plot, scale_of(quantity));
+  draw_cursor(session, plot);
+  plot.unclip();
+  draw_bar(plot, quantity);
+}
+
+}  // namespace dolp::explore

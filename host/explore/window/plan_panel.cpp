@@ -1,0 +1,111 @@
+#include "explore/window/plan_panel.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <cmath>
+
+#include "explore/readout.hpp"
+#include "explore/window/colours.hpp"
+#include "explore/window/text.hpp"
+
+namespace dolp::explore {
+namespace {
+
+void cell(const std::string& text, ImU32 colour = kTextColour) {
+  ImGui::TableNextColumn();
+  ImGui::PushStyleColor(ImGuiCol_Text, colour);
+  ImGui::TextUnformatted(shown(text).c_str());
+  ImGui::PopStyleColor();
+}
+
+std::string bound_text(const EffectRow& row) {
+  if (!row.bound) return "";
+  const double points = 100.0 * *row.bound;
+  if (row.unbounded > 0) return "none is known";
+  return points == 0.0    ? "0"
+         : points >= 10.0 ? fmt::format("≤ {:.0f} points", points)
+                          : fmt::format("≤ {:.2g} points", points);
+}
+
+/// What the maximum would be without the effect; a surface without slopes is a smooth one.
+std::string taken_away_text(const Session& session, const EffectRow& row) {
+  const std::string name = row.name;
+  if (name != "distribution") return without_text(session, name);
+  const std::string text = without_text(session, "roughness");
+  return text.empty() ? "" : "smooth: " + text;
+}
+
+void draw_row(const Session& session, const EffectRow& row) {
+  const bool is_absent = row.state == EffectState::kAbsent;
+  const ImU32 colour = is_absent ? kDimColour : kTextColour;
+  cell(row.name, colour);
+  cell(row.state == EffectState::kNotNeeded ? "not needed" : state_name(row.state), colour);
+  cell(bound_text(row), colour);
+  cell(is_absent ? "" : taken_away_text(session, row), colour);
+  cell(row.reason, colour);
+  if (!ImGui::IsItemHovered()) return;
+  const std::string needs = row.needs.empty() ? "" : "\nit takes: " + row.needs;
+  ImGui::SetTooltip("%s", shown(row.reason + needs).c_str());
+}
+
+}  // namespace
+
+void draw_effects(const Session& session) {
+  constexpr int kColumns = 5;
+  const float em = ImGui::GetFontSize();
+  const bool is_narrow = ImGui::GetContentRegionAvail().x < 36.0F * em;
+  ImGuiTableFlags flags =
+      ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingFixedFit;
+  if (is_narrow) flags |= ImGuiTableFlags_ScrollX;
+  if (!ImGui::BeginTable(is_narrow ? "narrow effects" : "effects", kColumns, flags)) return;
+  ImGui::TableSetupScrollFreeze(0, 1);
+  ImGui::TableSetupColumn("effect", ImGuiTableColumnFlags_WidthFixed, 7.5F * em);
+  ImGui::TableSetupColumn("plan", ImGuiTableColumnFlags_WidthFixed, 5.2F * em);
+  ImGui::TableSetupColumn("bound at cursor");
+  ImGui::TableSetupColumn("maximum without it");
+  ImGui::TableSetupColumn("why", is_narrow ? ImGuiTableColumnFlags_WidthFixed : ImGuiTableColumnFlags_WidthStretch);
+  ImGui::TableHeadersRow();
+  for (const EffectRow& row : session.effects()) {
+    ImGui::TableNextRow();
+    draw_row(session, row);
+  }
+  ImGui::EndTable();
+}
+
+bool draw_price(Session& session, ControlsPanel& controls, BackgroundTask& true_error) {
+  controls.draw_accuracy(session);
+  for (const std::string& line : cost_lines(session)) ImGui::TextWrapped("%s", shown(line).c_str());
+  const bool is_ready = session.curve().is_finished() && true_error.state() != BackgroundTask::State::kRunning;
+  ImGui::BeginDisabled(!is_ready);
+  const bool is_asked = ImGui::Button("True error (Ctrl+K)");
+  ImGui::EndDisabled();
+  draw_task("reference", true_error);
+  return is_asked;
+}
+
+void draw_task(const char* name, BackgroundTask& task) {
+  ImGui::PushID(name);
+  const std::string message = shown(task.message());
+  switch (task.state()) {
+    case BackgroundTask::State::kNone:
+      break;
+    case BackgroundTask::State::kRunning:
+      if (ImGui::Button("Cancel")) task.cancel();
+      ImGui::SameLine();
+      ImGui::ProgressBar(static_cast<float>(task.progress()), {-1.0F, 0.0F});
+      break;
+    case BackgroundTask::State::kFailed:
+      ImGui::PushStyleColor(ImGuiCol_Text, kErrorColour);
+      ImGui::TextWrapped("%s", message.c_str());
+      ImGui::PopStyleColor();
+      break;
+    case BackgroundTask::State::kDone:
+    case BackgroundTask::State::kCancelled:
+      ImGui::TextWrapped("%s", message.c_str());
+      break;
+  }
+  ImGui::PopID();
+}
+
+}  // namespace dolp::explore

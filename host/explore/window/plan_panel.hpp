@@ -1,0 +1,19 @@
+// What is computed, what is left out, why, and what that costs.
+#pragma once
+
+#include "explore/background_task.hpp"
+#include "explore/session.hpp"
+#include "explore/window/controls_panel.hpp"
+
+namespace dolp::explore {
+
+/// The table of effects, in the current ImGui window.
+void draw_effects(const Session& session);
+
+/// Tolerance, its cost, and the true error on request; returns whether that was asked for.
+bool draw_price(Session& session, ControlsPanel& controls, BackgroundTask& true_error);
+
+/// A bar with a button to cancel, or what became of a task.
+void draw_task(const char* name, BackgroundTask& task);
+
+}  // namespace dolp::explore

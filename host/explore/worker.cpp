@@ -1,0 +1,148 @@
+#include "explore/worker.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <utility>
+
+#include "evaluate/run/scene_run.hpp"
+
+namespace dolp::explore {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+bool contains(const std::vector<std::string>& keys, const std::string& key) {
+  return std::ranges::find(keys, key) != keys.end();
+}
+
+}  // namespace
+
+Worker::Worker(MomentsEvaluator& evaluator, std::function<void()> on_news)
+    : evaluator_(evaluator), on_news_(std::move(on_news)), thread_([this] { run(); }) {}
+
+Worker::~Worker() {
+  {
+    const std::scoped_lock lock(mutex_);
+    is_stopping_ = true;
+    wanted_.clear();
+  }
+  changed_.notify_all();
+}
+
+void Worker::want(std::vector<Job> jobs) {
+  {
+    const std::scoped_lock lock(mutex_);
+    std::vector<Task> old = std::exchange(tasks_, {});
+    wanted_.clear();
+    for (Job& job : jobs) {
+      wanted_.push_back(job.key);
+      if (job.key == running_ || contains(finished_, job.key)) continue;
+      const auto same = std::ranges::find_if(old, [&](const Task& task) { return task.job.key == job.key; });
+      if (same != old.end()) {
+        tasks_.push_back(std::move(*same));
+        same->job.key.clear();
+      } else {
+        Task task;
+        task.job = std::move(job);
+        tasks_.push_back(std::move(task));
+      }
+    }
+    std::erase_if(finished_, [&](const std::string& key) { return !contains(wanted_, key); });
+  }
+  changed_.notify_all();
+}
+
+std::vector<News> Worker::take_news() {
+  const std::scoped_lock lock(mutex_);
+  if (failure_) std::rethrow_exception(failure_);
+  return std::exchange(news_, {});
+}
+
+bool Worker::is_idle() const {
+  const std::scoped_lock lock(mutex_);
+  return (tasks_.empty() && running_.empty()) || failure_ != nullptr;
+}
+
+bool Worker::is_wanted(const std::string& key) const {
+  const std::scoped_lock lock(mutex_);
+  return contains(wanted_, key);
+}
+
+void Worker::run() {
+  try {
+    run_tasks();
+  } catch (...) {
+    const std::scoped_lock lock(mutex_);
+    failure_ = std::current_exception();
+  }
+  on_news_();
+}
+
+void Worker::run_tasks() {
+  for (;;) {
+    Task task;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return is_stopping_ || !tasks_.empty(); });
+      if (is_stopping_) return;
+      task = std::move(tasks_.front());
+      tasks_.erase(tasks_.begin());
+      running_ = task.job.key;
+    }
+    std::vector<News> parts;
+    try {
+      parts.push_back(advance(task));
+    } catch (const Cancelled&) {
+      // It was not wanted any more; perhaps it is again by now.
+    }
+    put_back(std::move(task), std::move(parts));
+    on_news_();
+  }
+}
+
+void Worker::put_back(Task task, std::vector<News> parts) {
+  const std::scoped_lock lock(mutex_);
+  running_.clear();
+  if (!contains(wanted_, task.job.key)) return;
+  const bool is_done = !parts.empty() && parts.front().is_last;
+  std::ranges::move(parts, std::back_inserter(news_));
+  if (is_done) {
+    finished_.push_back(task.job.key);
+    return;
+  }
+  const auto rank = [this](const Task& of) { return std::ranges::find(wanted_, of.job.key); };
+  const auto place = std::ranges::find_if(tasks_, [&](const Task& other) { return rank(other) > rank(task); });
+  tasks_.insert(place, std::move(task));
+}
+
+News Worker::advance(Task& task) {
+  const Job& job = task.job;
+  const Clock::time_point start = Clock::now();
+  const double evaluations_before = evaluator_.report().evaluations;
+  if (task.next == 0) task.plan = plan_effects(job.scene, job.entries, job.keep_all);
+  const std::size_t left = job.entries.size() - task.next;
+  const std::size_t count = job.batch == 0 ? left : std::min(job.batch, left);
+  const auto begin = job.entries.begin() + static_cast<std::ptrdiff_t>(task.next);
+  const std::vector<SceneEntry> entries(begin, begin + static_cast<std::ptrdiff_t>(count));
+  News news;
+  news.key = job.key;
+  news.first = task.next;
+  news.results = evaluate_scene(job.scene, entries, task.plan, &evaluator_,
+                                [&](std::size_t, std::size_t) { return is_wanted(job.key); });
+  task.next += count;
+  task.wall_s += seconds_since(start);
+  task.evaluations += evaluator_.report().evaluations - evaluations_before;
+  news.is_last = task.next == job.entries.size();
+  if (!news.is_last) return news;
+  news.plan = task.plan;
+  news.wall_s = task.wall_s;
+  news.evaluations = task.evaluations;
+  news.entries = job.entries.size();
+  if (job.wants_rows) news.rows = effect_rows(job.scene, job.entries, task.plan);
+  return news;
+}
+
+}  // namespace dolp::explore

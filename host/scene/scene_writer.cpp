@@ -1,0 +1,80 @@
+#include "scene/scene_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "scene/scene_document.hpp"
+#include "scene/scene_keys.hpp"
+#include "scene/scene_reader.hpp"
+#include "scene/text.hpp"
+
+namespace dolp {
+namespace {
+
+template <class Value>
+std::string formatted(const Value& value) {
+  std::ostringstream stream;
+  stream << value;
+  return stream.str();
+}
+
+/// A value in one line.
+std::string value_text(const toml::node& node) {
+  if (const auto* number = node.as_floating_point()) return format_number(number->get());
+  std::string text;
+  if (const toml::array* array = node.as_array()) {
+    for (const toml::node& element : *array) text += (text.empty() ? "" : ", ") + value_text(element);
+    return '[' + text + ']';
+  }
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [name, inner] : *table) {
+      text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", name.str(), value_text(inner));
+    }
+    return "{ " + text + " }";
+  }
+  if (const auto* word = node.as_string()) return formatted(*word);
+  return formatted(*node.as_integer());
+}
+
+bool names_file(const std::string& key) { return key == "surface.material_file" || key == "source.file"; }
+
+/// Where a file that a scene names is, seen from `folder`.
+std::string path_from(const std::filesystem::path& folder, const std::string& file, const std::string& scene_path) {
+  namespace fs = std::filesystem;
+  if (fs::path(file).is_absolute()) return file;
+  const fs::path found = fs::absolute(fs::path(scene_path).parent_path() / file);
+  return found.lexically_relative(fs::absolute(folder)).string();
+}
+
+}  // namespace
+
+std::string scene_toml(const std::string& text, const std::string& path_name, const std::vector<std::string>& overrides,
+                       const std::filesystem::path& folder) {
+  parse_scene(text, path_name, overrides);
+  SceneDocument document(text, path_name);
+  for (const std::string& argument : overrides) document.apply_override(argument);
+  std::string written;
+  for (const KeyDescription& description : scene_keys()) {
+    if (description.key.find('.') != std::string::npos) continue;
+    if (const toml::node* node = document.find(description.key)) {
+      written += description.key + " = " + value_text(*node) + '\n';
+    }
+  }
+  for (const std::string& table : scene_tables()) {
+    if (!document.find(table)) continue;
+    written += "\n[" + table + "]\n";
+    for (const KeyDescription& description : scene_keys()) {
+      const toml::node* node = description.key.starts_with(table + '.') ? document.find(description.key) : nullptr;
+      if (!node) continue;
+      const std::string value =
+          names_file(description.key)
+              ? formatted(toml::value(path_from(folder, node->value_or(std::string()), path_name)))
+              : value_text(*node);
+      written += description.key.substr(table.size() + 1) + " = " + value + '\n';
+    }
+  }
+  return written;
+}
+
+}  // namespace dolp

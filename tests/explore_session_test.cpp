@@ -1,0 +1,170 @@
+// What is behind the window as a whole: curve, map, maximum, pins, cursor, effects.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "explore/readout.hpp"
+#include "explore_support.hpp"
+
+namespace dolp::explore {
+namespace {
+
+TEST(ExploreSession, Curve_IsThatOfTheSceneAtItsTolerance) {
+  Driver driver(paint());
+  driver.session.set("surface.sigma", 0.3);
+  driver.settle();
+  const Curve& curve = driver.session.curve();
+  ASSERT_TRUE(curve.is_finished());
+  EXPECT_EQ(curve.entries().size(), Curve::kFineCount);
+  expect_same(curve.results(), truth(driver.session.scene(), curve.entries()));
+  EXPECT_LE(curve.worst_error(), 1e-3);
+  EXPECT_GT(curve.worst_error(), 0.0);
+}
+
+TEST(ExploreSession, RefusedValue_IsAMessageAndNoChange) {
+  Driver driver(paint());
+  driver.session.set("surface.sigma", 99.0);
+  EXPECT_TRUE(driver.session.message().is_error);
+  EXPECT_EQ(driver.session.scene().surface.sigma, 0.15);
+  EXPECT_TRUE(driver.session.curve().is_finished());
+}
+
+TEST(ExploreSession, Overlay_IsTheOtherDistributionOfTheSameD0) {
+  Driver driver(paint());
+  ASSERT_TRUE(driver.session.overlay());
+  const Surface& other = driver.session.overlay()->scene().surface;
+  EXPECT_EQ(other.distribution, Distribution::kGaussian);
+  EXPECT_DOUBLE_EQ(other.sigma, 0.15 / std::sqrt(2.0));
+  driver.session.set({{"surface.distribution", "gaussian"}});
+  EXPECT_EQ(driver.session.overlay()->scene().surface.distribution, Distribution::kCauchy);
+}
+
+TEST(ExploreSession, Pin_StaysWhileTheSceneChanges) {
+  Driver driver(paint());
+  const std::vector<PointResult> before = driver.session.curve().results();
+  driver.session.pin();
+  driver.session.set("surface.sigma", 0.6);
+  driver.settle();
+  ASSERT_EQ(driver.session.pins().size(), 1U);
+  expect_same(driver.session.pins()[0].curve.results(), before);
+  EXPECT_NE(driver.session.curve().results()[100].dolp, before[100].dolp);
+  driver.session.remove_pin(0);
+  EXPECT_TRUE(driver.session.pins().empty());
+}
+
+TEST(ExploreSession, PinOfAnUnfinishedCurve_IsFinishedLater) {
+  Driver driver(paint());
+  driver.session.set("surface.sigma", 0.6);
+  driver.session.pin();
+  driver.session.set("surface.sigma", 0.2);
+  driver.settle();
+  const Curve& pinned = driver.session.pins()[0].curve;
+  EXPECT_TRUE(pinned.is_finished());
+  EXPECT_EQ(pinned.entries().front().shape.sigma, 0.6);
+  expect_same(pinned.results(), truth(pinned.scene(), pinned.entries()));
+}
+
+TEST(ExploreSession, MapCursor_DrivesTheCurveAndDoesNotChangeTheMap) {
+  Driver driver(paint());
+  const std::size_t version = driver.session.map().version();
+  driver.session.set_map_cursor(0.5, 0.5);
+  driver.settle();
+  EXPECT_DOUBLE_EQ(driver.session.theta_deg(), 45.0);
+  EXPECT_NEAR(driver.session.scene().surface.sigma, 0.2, 1e-4);  // the grid's 0.1 .. 0.4
+  EXPECT_EQ(driver.session.curve().entries().front().shape.sigma, driver.session.scene().surface.sigma);
+  EXPECT_NEAR(driver.session.map_cursor_y(), 0.5, 1e-3);
+  EXPECT_EQ(driver.session.map().version(), version);
+}
+
+TEST(ExploreSession, Map_FinishesAt128WithTheValuesOfTheScene) {
+  Driver driver(paint());
+  const HeatMap& map = driver.session.map();
+  ASSERT_TRUE(map.is_finished());
+  const MapField field = map.field(Quantity::kDolp);
+  ASSERT_EQ(field.count, 128U);
+  const auto entry = [&](std::size_t column, std::size_t row) {
+    return SceneEntry{
+        map.x().value(static_cast<double>(column) / 127.0), {map.y().value(static_cast<double>(row) / 127.0), 3.0}, {}};
+  };
+  const std::vector<SceneEntry> some = {entry(0, 0), entry(80, 3), entry(5, 127), entry(100, 64)};
+  const std::vector<PointResult> exact = truth(driver.session.scene(), some);
+  EXPECT_EQ(field.values[80 + 3 * 128], exact[1].dolp);
+  EXPECT_EQ(field.values[5 + 127 * 128], exact[2].dolp);
+  EXPECT_EQ(field.values[100 + 64 * 128], exact[3].dolp);
+}
+
+TEST(ExploreSession, MapAxes_AreNeverTheSame) {
+  Driver driver(paint());
+  View view = driver.session.view();
+  view.map_x = AxisKind::kSigma;
+  view.map_y = AxisKind::kSigma;
+  driver.session.set_view(view);
+  EXPECT_NE(driver.session.map().x().kind, driver.session.map().y().kind);
+}
+
+TEST(ExploreSession, Peak_IsTheLargestOfTheCurveAndItsCausesAddUp) {
+  Driver driver(paint());
+  const Peak& peak = driver.session.peak();
+  ASSERT_TRUE(peak.is_complete());
+  double sum = 0.0;
+  for (const WithoutEffect& away : peak.without()) {
+    if (away.radiates) sum += peak.contribution(away);
+  }
+  EXPECT_NEAR(sum, peak.answer()->q_over_i, 2e-3);  // two runs at a tolerance of 1e-3
+  for (const PointResult& result : driver.session.curve().results()) {
+    if (!is_good(result)) continue;
+    EXPECT_LE(result.dolp, peak.answer()->dolp + result.error_estimate);
+  }
+  EXPECT_LE(peak.answer()->theta_low_deg, peak.answer()->theta_deg);
+  EXPECT_GE(peak.answer()->theta_high_deg, peak.answer()->theta_deg);
+  EXPECT_NE(cause_text(driver.session).find("emission -"), std::string::npos) << cause_text(driver.session);
+  EXPECT_NE(cause_text(driver.session).find("against it: surroundings +"), std::string::npos);
+}
+
+TEST(ExploreSession, ThetaMax_BoundsMapCursorAndPeak) {
+  Driver driver(paint());
+  View view = driver.session.view();
+  view.theta_max_deg = 50.0;
+  driver.session.set_view(view);
+  driver.settle();
+  EXPECT_EQ(driver.session.map().x().to, 50.0);
+  EXPECT_EQ(driver.session.theta_deg(), 50.0);
+  ASSERT_TRUE(driver.session.peak().answer());
+  EXPECT_EQ(driver.session.peak().answer()->theta_deg, 50.0);
+  EXPECT_TRUE(driver.session.peak().answer()->is_at_end);
+}
+
+TEST(ExploreSession, FlatCurve_HasARival) {
+  Driver driver(paint({"surroundings=none", "source.irradiance=1e-9", "geometry.mode=bistatic"}));
+  ASSERT_TRUE(driver.session.peak().answer());
+  EXPECT_TRUE(driver.session.peak().answer()->rival_deg);
+  EXPECT_NE(peak_text(driver.session).find("may as well be elsewhere"), std::string::npos) << peak_text(driver.session);
+}
+
+TEST(ExploreSession, Effects_AreThoseOfThePlanWithBoundsAtTheCursor) {
+  Driver driver(paint());
+  driver.session.set_theta(60.0);
+  const auto bound_of = [&](const std::string& name) {
+    for (const EffectRow& row : driver.session.effects()) {
+      if (row.name == name) return row.bound.value_or(-1.0);
+    }
+    return -2.0;
+  };
+  const double at_60 = bound_of("surroundings");
+  EXPECT_GT(at_60, 0.0);
+  driver.session.set_theta(20.0);
+  EXPECT_LT(bound_of("surroundings"), at_60);
+}
+
+TEST(ExploreSession, RhoOfADroppingPlan_IsComputedWhenItIsShown) {
+  Driver driver(paint({"surroundings.temperature_K=290"}));
+  EXPECT_TRUE(std::isnan(driver.session.curve().results()[50].rho_i));
+  View view = driver.session.view();
+  view.quantity = Quantity::kRhoS;
+  driver.session.set_view(view);
+  driver.settle();
+  EXPECT_TRUE(std::isfinite(driver.session.curve().results()[50].rho_i));
+}
+
+}  // namespace
+}  // namespace dolp::explore

@@ -1,0 +1,280 @@
+// The window itself on a virtual display, moved by real events of mouse and keyboard.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "cli_support.hpp"
+#include "explore/exports.hpp"
+#include "explore/parameters.hpp"
+#include "explore/quantity.hpp"
+#include "explore/window/app.hpp"
+#include "explore/window/text.hpp"
+#include "table/table_file.hpp"
+#include "virtual_display.hpp"
+
+namespace {
+
+using namespace dolp;
+using explore::App;
+using explore::Area;
+
+// A slider jumps to the mouse: where on it the mouse is put.
+constexpr float kPartOfSlider = 0.7F;
+// Frames in which ImGui has taken all of an event in.
+constexpr int kFrames = 4;
+
+// The handle's own width takes part of a slider's length.
+constexpr double kGrab = 0.2;
+
+// Cheap, because each test waits for its whole map.
+const std::string kEdited = R"(title = "Painted"
+[surface]
+n = 1.5
+k = 0.1
+sigma = 0.15
+q = 3.0
+masking = "v-cavity"
+specular = 0.97
+diffuse = 0.03
+[emission]
+temperature_K = 290.0
+[surroundings]
+temperature_K = 240.0
+[spectrum]
+band_um = [8.0, 14.0]
+[grid]
+theta_deg = [0, 30, 60]
+[accuracy]
+tolerance = 1e-2
+)";
+
+class Window : public CommandLine {
+ protected:
+  void SetUp() override {
+    CommandLine::SetUp();
+    put("scene.toml", kEdited);
+    explore::AppOptions options;
+    options.file_name = at("made").string();
+    options.command_line = "dolp explore";
+    app_ = std::make_unique<App>(explore::SceneEdits(kEdited, at("scene.toml").string(), {}), options);
+    app_->settle();
+    frames();
+    std::string found = xdotool({"search", "--name", "dolp explore"});
+    window_ = found.substr(0, found.find('\n'));
+  }
+  void TearDown() override { app_.reset(); }
+
+  void frames(int count = kFrames) {
+    for (int i = 0; i < count; ++i) app_->frame();
+  }
+  void move_to(float x, float y) {
+    xdotool({"mousemove", "--window", window_, std::to_string(std::lround(x)), std::to_string(std::lround(y))});
+    frames();
+  }
+  void press(const std::string& what) {
+    xdotool({what, "1"});
+    frames();
+  }
+  void click_slider(const std::string& key, float part) {
+    const Area area = app_->slider_area(key);
+    move_to(area.left + part * (area.right - area.left), 0.5F * (area.top + area.bottom));
+    press("mousedown");
+    press("mouseup");
+  }
+  void drag_slider(const std::string& key, float to) {
+    const Area area = app_->slider_area(key);
+    const float y = 0.5F * (area.top + area.bottom);
+    move_to(area.left + 0.3F * (area.right - area.left), y);
+    press("mousedown");
+    for (int i = 1; i <= 10; ++i) {
+      const float part = 0.3F + 0.1F * static_cast<float>(i) * (to - 0.3F);
+      move_to(area.left + part * (area.right - area.left), y);
+    }
+    press("mouseup");
+    app_->settle();
+  }
+  void keys(const std::string& combination) {
+    xdotool({"windowfocus", "--sync", window_});
+    xdotool({"keydown", combination});
+    frames();
+    xdotool({"keyup", combination});
+    frames();
+  }
+  /// What `dolp eval` says at the zeniths of the curve, with the changes of the window.
+  Columns evaluated() const {
+    std::string points = "theta_deg\n";
+    for (const SceneEntry& entry : app_->session().curve().entries()) {
+      points += std::to_string(entry.theta_deg) + '\n';
+    }
+    put("points.csv", points);
+    std::vector<std::string> options;
+    for (const std::string& override : app_->session().edits().overrides()) {
+      options.insert(options.end(), {"--set", override});
+    }
+    return eval(options);
+  }
+
+  VirtualDisplay display_;
+  std::unique_ptr<App> app_;
+  std::string window_;
+};
+
+TEST_F(Window, Slider_Dragged_PlottedValuesChangeAndEqualEval) {
+  const explore::Session& session = app_->session();
+  const std::vector<PointResult> before = session.curve().results();
+  drag_slider("surface.sigma", kPartOfSlider);
+  const double wanted = 0.01 * std::pow(200.0, kPartOfSlider);
+  EXPECT_NEAR(session.scene().surface.sigma, wanted, kGrab * wanted);
+  ASSERT_TRUE(session.curve().is_finished());
+  const std::vector<PointResult>& after = session.curve().results();
+  const Columns truth = evaluated();
+  ASSERT_EQ(truth.at("dolp").size(), after.size());
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    if (after[i].dolp != before[i].dolp) ++changed;
+    if (std::isnan(after[i].rho_i)) continue;
+    EXPECT_EQ(after[i].dolp, truth.at("dolp")[i]) << i;
+    EXPECT_EQ(after[i].stokes_q, truth.at("stokes_q")[i]) << i;
+    EXPECT_EQ(after[i].error_estimate, truth.at("error_estimate")[i]) << i;
+  }
+  EXPECT_GT(changed, after.size() / 2);
+}
+
+TEST_F(Window, Slider_CtrlClicked_GivesTheValueAsOpened) {
+  drag_slider("surface.sigma", kPartOfSlider);
+  ASSERT_NE(app_->session().scene().surface.sigma, 0.15);
+  xdotool({"keydown", "ctrl"});
+  frames();
+  click_slider("surface.sigma", 0.1F);
+  xdotool({"keyup", "ctrl"});
+  app_->settle();
+  EXPECT_EQ(app_->session().scene().surface.sigma, 0.15);
+  EXPECT_FALSE(app_->session().edits().is_changed());
+}
+
+TEST_F(Window, Curve_Clicked_MovesTheCursor) {
+  const double before = app_->session().theta_deg();
+  // The middle of the curve's plot in the layout at its first size.
+  move_to(700.0F, 300.0F);
+  press("mousedown");
+  press("mouseup");
+  EXPECT_NE(app_->session().theta_deg(), before);
+}
+
+TEST_F(Window, Map_Clicked_CurveFollowsTheCursor) {
+  // The middle of the map in the layout at its first size.
+  move_to(1150.0F, 300.0F);
+  press("mousedown");
+  press("mouseup");
+  app_->settle();
+  const explore::Session& session = app_->session();
+  EXPECT_NE(session.scene().surface.sigma, 0.15);
+  EXPECT_EQ(session.curve().entries().front().shape.sigma, session.scene().surface.sigma);
+  EXPECT_TRUE(session.map().is_finished());
+}
+
+TEST_F(Window, Shortcuts_PinAndQuit_Work) {
+  keys("ctrl+p");
+  EXPECT_EQ(app_->session().pins().size(), 1U);
+  xdotool({"key", "ctrl+q"});
+  bool is_open = true;
+  for (int i = 0; i < kFrames && is_open; ++i) is_open = app_->frame();
+  EXPECT_FALSE(is_open);
+}
+
+TEST_F(Window, CurveCsv_ByShortcut_HasThePlottedValues) {
+  keys("ctrl+e");
+  keys("Return");
+  frames();
+  EXPECT_EQ(content("made_curve.csv"), explore::curve_csv(app_->session().curve()));
+}
+
+TEST_F(Window, Table_ByShortcut_EqualsThatOfTheCommand) {
+  ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc", "--quiet"}).status, 0);
+  const Table wanted = read_table(at("t.nc"));
+  keys("ctrl+t");
+  keys("Return");
+  for (int i = 0; i < 2000 && !std::filesystem::exists(at("made_table.nc")); ++i) app_->frame();
+  const Table made = read_table(at("made_table.nc"));
+  EXPECT_EQ(made.dolp, wanted.dolp);
+  EXPECT_EQ(made.theta_deg, wanted.theta_deg);
+  EXPECT_EQ(dolp({"verify", "made_table.nc"}).status, 0);
+}
+
+TEST_F(Window, Resized_DrawsAtTheNewSize) {
+  for (const auto& [width, height] : {std::pair{900, 700}, std::pair{1300, 850}, std::pair{200, 150}}) {
+    xdotool({"windowsize", "--sync", window_, std::to_string(width), std::to_string(height)});
+    frames(2 * kFrames);
+    app_->save_picture(at("picture.png").string());
+    frames();
+    // Width and height are the first numbers of a PNG's first chunk.
+    const std::string png = content("picture.png");
+    ASSERT_GT(png.size(), 24U);
+    const auto number = [&](std::size_t first) {
+      std::uint32_t value = 0;
+      for (std::size_t i = first; i < first + 4; ++i) value = 256 * value + static_cast<unsigned char>(png[i]);
+      return value;
+    };
+    EXPECT_EQ(number(16), static_cast<std::uint32_t>(width));
+    EXPECT_EQ(number(20), static_cast<std::uint32_t>(height));
+  }
+}
+
+bool is_ascii(const std::string& text) {
+  return std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 128; });
+}
+
+TEST(WindowText, WithoutAGreekFont_AllIsSaidInAscii) {
+  EXPECT_EQ(explore::ascii("θ ≤ 90°"), "theta <= 90 deg");
+  for (const explore::Parameter& parameter : explore::parameters()) {
+    for (const std::string& text :
+         {std::string(parameter.symbol), std::string(parameter.equation), explore::unit_text(*parameter.description)}) {
+      EXPECT_TRUE(is_ascii(explore::ascii(text))) << text;
+    }
+  }
+  for (const explore::Choice& choice : explore::choices()) {
+    EXPECT_TRUE(is_ascii(explore::ascii(choice.equation))) << choice.equation;
+  }
+  for (const explore::QuantityDescription& quantity : explore::quantities()) {
+    EXPECT_TRUE(is_ascii(explore::ascii(std::string(quantity.name) + quantity.meaning))) << quantity.name;
+  }
+}
+
+class ExploreCommand : public CommandLine {
+ protected:
+  VirtualDisplay display_;
+};
+
+TEST_F(ExploreCommand, FramesAndScreenshot_WritesAPictureAndTheTimes) {
+  const Outcome outcome = dolp({"explore", "--frames", "5", "--screenshot", "shot.png"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("frames     5 frames"), std::string::npos) << outcome.out;
+  EXPECT_TRUE(content("shot.png").starts_with("\x89PNG"));
+  EXPECT_GT(content("shot.png").size(), 50'000U);
+}
+
+TEST_F(ExploreCommand, WrongArguments_AreInputErrors) {
+  EXPECT_EQ(dolp({"explore", "scene.toml", "--screenshot", "shot.png"}).status, 2);
+  EXPECT_EQ(dolp({"explore", "missing.toml", "--frames", "1"}).status, 2);
+  EXPECT_EQ(dolp({"explore", "scene.toml", "--frames", "1", "--set", "surface.sigma=-1"}).status, 2);
+  put("measured.csv", "theta_deg,dolp\n60,two\n");
+  const Outcome outcome = dolp({"explore", "scene.toml", "--frames", "1", "--measured", "measured.csv"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.err, "dolp: measured.csv:2: dolp = two: not a number, a number in [-1, 1]\n");
+}
+
+TEST_F(ExploreCommand, NoDeviceOfThatName_IsADeviceError) {
+  EXPECT_EQ(dolp({"explore", "--frames", "1", "--device", "no such device"}).status, 3);
+}
+
+TEST_F(CommandLine, Explore_WithoutDisplay_SaysSoInOneLine) {
+  Command wanted = command({"explore", "--frames", "1"});
+  wanted.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}};
+  const Outcome outcome = run(wanted);
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_TRUE(outcome.err.starts_with("dolp: no display")) << outcome.err;
+  EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1);
+}
+
+}  // namespace

@@ -224,7 +224,7 @@ std::vector<double> evaluations_of(const Model& model, const std::vector<Point>&
 // A place where the number of evaluations differs on either side of a small interval, closed in on by bisection of all
 // places at a time.
 TEST_P(Switches, StepsOfTheOrders_MakeNoJump) {
-  constexpr double kStart = 1e-3;  // relative width at first
+  constexpr double kStart = 3e-3;  // relative width at first
   Random draws = random();
   std::vector<Pair> pairs;
   for (const Parameter parameter : kParameters) {

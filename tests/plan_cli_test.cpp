@@ -235,7 +235,8 @@ TEST_F(Plan, Device_PredictsEvaluationsAndDispatches) {
                                            "--set",       "grid.theta_deg=[65,40,10]",
                                            "--set",       "grid.sigma=0.4",
                                            "--set",       "grid.q=3",
-                                           "--set",       "surface.n=1.5"};
+                                           "--set",       "surface.n=1.5",
+                                           "--set",       "surface.diffuse=0.5"};
     const json predicted = plan(easy);
     const json spent = table(easy);
     const double evaluations = spent["evaluations"];

@@ -68,10 +68,16 @@ SlopeShape shape(Draw& draw, bool is_core, bool is_smith_cauchy) {
   drawn.q = 1.0 + (is_core ? draw.log_uniform(core_least, 12.0)
                            : draw.log_uniform(draw.chance(0.3) ? least : core_least, draw.chance(0.2) ? 1e4 : 40.0));
   if (draw.chance(0.15)) drawn.q = draw.round(kRoundExponents);
+  if (!is_core && is_smith_cauchy && draw.chance(0.2)) drawn.q = 1.5 + draw.log_uniform(5e-4, 0.1);
   return drawn;
 }
 
-OpticalConstants index(Draw& draw, bool is_core) {
+OpticalConstants index(Draw& draw, bool is_core, double theta) {
+  // The critical angle, or next to it.
+  if (!is_core && draw.chance(0.08)) {
+    const double beside = draw.chance(0.3) ? 0.0 : draw.log_uniform(1e-9, 1e-1);
+    return {std::max(cos_sin_deg(theta).sin * (1.0 + (draw.chance(0.5) ? beside : -beside)), 1e-3), 0.0};
+  }
   if (!is_core && draw.chance(0.3)) {
     const double kind = draw.uniform(0.0, 4.0);
     if (kind < 1.0) return {draw.log_uniform(0.01, 1.0), draw.chance(0.7) ? 0.0 : draw.log_uniform(1e-4, 0.3)};
@@ -146,7 +152,7 @@ std::vector<DoubtSample> samples_at(MomentsRequest request, double digits, std::
     const bool is_core = draw.chance(kCoreShare);
     const double theta = theta_deg(draw, is_core);
     const SlopeShape slopes = shape(draw, is_core, is_smith_cauchy);
-    add_entry(request, theta, slopes, index(draw, is_core));
+    add_entry(request, theta, slopes, index(draw, is_core, theta));
   }
   Kernel kernel(request);
   request.tolerance = std::max(kFinerBy * request.tolerance, kFinest);

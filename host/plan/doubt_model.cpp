@@ -45,10 +45,18 @@ constexpr double kSmallestCos = 1e-5;
 constexpr double kSmallestSin = 3e-3;
 constexpr double kSmallestQ = -1.22;
 constexpr double kSmallestSmithQ = -0.28;
+constexpr double kSmallestMean = -1.3;  // of 2q - 3
 constexpr double kLargestQ = 1.09;
 constexpr double kSmallestContrast = -0.8;
 constexpr double kLargestContrast = 4.0;
 constexpr double kSmallestPole = 0.01;  // of cos(theta) + pole_cos
+
+// What the calibration has drawn; the features of anything beyond are those of its end.
+constexpr std::array kCalibratedM = {1.4e-4, 14.2};
+constexpr std::array kCalibratedQ = {1e-3, 1e4};     // q - 1
+constexpr std::array kCalibratedMean = {1e-3, 1e4};  // 2q - 3
+constexpr std::array kCalibratedContrast = {2e-5, 1e12};
+constexpr std::array kCalibratedSquare = {1e-4, 1e12};  // |N^2|
 
 constexpr double kNearContrast = 2.4;  // |N^2 - 1| up to which Re N^2 < 1 reflects nearly all beyond an angle
 constexpr double kCoincidence = 1.05;  // of neighbouring breakpoints: their singularities act together
@@ -56,12 +64,14 @@ constexpr double kLeastDoubt = -3.0;   // log10 of the doubt over 10^-digits
 constexpr double kMostDoubt = 2.0;
 constexpr double kNoCusp = -100.0;
 constexpr double kWeakestCusp = -16.0;
-constexpr double kTiny = 1e-12;        // of what has a logarithm
 constexpr double kLeastFactor = -3.0;  // log10
 constexpr double kMostFactor = 12.0;
 
 double above(double value, double start) { return std::max(0.0, value - start); }
 double below(double value, double start) { return std::max(0.0, start - value); }
+double log10_in(double value, const std::array<double, 2>& range) {
+  return std::log10(std::clamp(value, range[0], range[1]));
+}
 double flag(bool condition) { return condition ? 1.0 : 0.0; }
 
 bool has_coincidence(const kernel::ThetaNode& theta) {
@@ -135,11 +145,13 @@ DoubtModel::Theta DoubtModel::theta_of(const kernel::ThetaNode& node) {
 
 DoubtModel::Shape DoubtModel::shape_of(const kernel::ShapeNode& node) const {
   const double smallest_q = is_smith_cauchy_ ? kSmallestSmithQ : kSmallestQ;
+  // Smith's mean slope diverges at q = 3/2.
+  const double log_mean = is_smith_cauchy_ ? log10_in(node.two_q_minus_3, kCalibratedMean) : 0.0;
   Shape shape;
-  shape.log_m = std::log10(std::max(node.m, kTiny));
+  shape.log_m = log10_in(node.m, kCalibratedM);
   shape.cusp_digits = node.cusp_digits;
   const double m = std::clamp(shape.log_m, kSmallestM, kLargestM);
-  const double log_q = is_cauchy_ ? std::log10(std::max(node.q_minus_1, kTiny)) : 0.0;
+  const double log_q = is_cauchy_ ? log10_in(node.q_minus_1, kCalibratedQ) : 0.0;
   const double q = std::clamp(log_q, smallest_q, kLargestQ);
   shape.log_q = q;
   const bool is_outside =
@@ -159,16 +171,16 @@ DoubtModel::Shape DoubtModel::shape_of(const kernel::ShapeNode& node) const {
                     below(q, 0.0) * below(m, -1.0),
                     below(q, 0.0) * above(m, -0.5),
                     above(q, 0.0) * m,
-                    below(log_q, smallest_q),
+                    is_smith_cauchy_ ? below(log_mean, kSmallestMean) : below(log_q, kSmallestQ),
                     above(log_q, kLargestQ)};
   return shape;
 }
 
 DoubtModel::Index DoubtModel::index_of(const kernel::IndexNode& node) {
   const double contrast = std::hypot(node.n2m1_re, node.n2m1_im);
-  const double log_contrast = std::log10(std::max(contrast, kTiny));
+  const double log_contrast = log10_in(contrast, kCalibratedContrast);
   const double clamped = std::clamp(log_contrast, kSmallestContrast, kLargestContrast);
-  const double log_n2 = std::log10(std::max(std::hypot(1.0 + node.n2m1_re, node.n2m1_im), kTiny));
+  const double log_n2 = log10_in(std::hypot(1.0 + node.n2m1_re, node.n2m1_im), kCalibratedSquare);
   Index index;
   index.pole_cos = node.pole_cos;
   index.is_critical = flag(node.critical_cos > 0.0);

@@ -18,6 +18,9 @@ constexpr double kSmallestGroupedM = 1e-3;
 // Between the exponents of a family, as a factor of q - 1: shapes further apart would want nodes in different places.
 constexpr double kMostSpread = 6.0;
 
+// Groups are not for entries that would leave this share of the members unused.
+constexpr double kLeastUse = 0.5;
+
 // What the members of a group share, in units of what each takes. Look-ups in masking tables are each member's own.
 constexpr double kWorkOfAGroup = 16.0;
 constexpr double kWorkBesideTables = 5.0;
@@ -148,8 +151,10 @@ Grouping grouped(const KernelData& data, std::span<const std::uint32_t> sizes) {
   double least = std::numeric_limits<double>::infinity();
   for (const std::uint32_t size : sizes) {
     Grouping grouping = grouped_exactly(data, size);
+    const auto groups = static_cast<double>(grouping.groups.size());
+    if (size > 1 && static_cast<double>(data.entries.size()) <= kLeastUse * size * groups) continue;
     const double shared = data.masking == Masking::kIntegral ? kWorkBesideTables : kWorkOfAGroup;
-    const double work = (shared + size) * static_cast<double>(grouping.groups.size());
+    const double work = (shared + size) * groups;
     if (work < least) {
       least = work;
       best = std::move(grouping);

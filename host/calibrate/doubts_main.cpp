@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
   CLI::App app("Writes random entries' errors over their doubts, for host/calibrate/fit_doubts.py.");
   std::string folder;
   std::vector<std::string> files;
-  std::size_t draws = 20000;
+  std::size_t draws = 14000;
   std::uint64_t seed = 1;
   app.add_option("FOLDER", folder, "made if it is not there")->required();
   app.add_option("--stored", files, "CSV files that dolp-reference-values wrote, whose cases are added");

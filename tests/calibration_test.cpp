@@ -30,7 +30,7 @@ std::vector<StoredCase> all_points() {
 class StoredPoints : public testing::TestWithParam<double> {};
 
 void expect_factors_suffice(const GroupCalibration& group, const std::vector<StoredCase>& cases) {
-  constexpr double allowed = 1.0;  // of what doubt_factor says
+  constexpr double allowed = 1.0;  // of what DoubtModel says
   std::size_t beyond = 0;
   std::string worst;
   for (const PointCalibration& point : group.points) {

@@ -16,7 +16,7 @@ struct PointCalibration {
   double evaluations = 0.0;     ///< integrand evaluations
   double error = 0.0;           ///< max(|d r_i|, |d r_q|) of what the rules sum, over r_i
   double estimate = 0.0;        ///< larger of the stated bounds of r_i and r_q, over r_i
-  double factor = 0.0;          ///< what doubt_factor must be multiplied by to bound the error of r_i and r_q
+  double factor = 0.0;          ///< what DoubtModel::factor must be multiplied by to bound the error of r_i and r_q
   double deficit_factor = 0.0;  ///< the same for the deficit
   double estimate_to_error =
       0.0;                      ///< estimate over the error of the moments as they are stated; infinite without error

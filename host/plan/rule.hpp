@@ -5,7 +5,7 @@
 
 namespace dolp {
 
-/// Calibrated numbers of one masking; tests/calibration_test.cpp checks them and dolp-calibrate derives the factors.
+/// Calibrated numbers of one masking; dolp-calibrate shows what they cost and reach.
 struct RuleModel {
   double margin_digits = 0.0;         ///< digits beyond the tolerance, so that few entries miss it
   double t_nodes = 0.0;               ///< RuleNode::t_nodes

@@ -53,7 +53,7 @@ real half_arc_nodes(RuleNode rule, real digits, real distance, real length) {
   return real(0.5) * digits * rule.phi_growth * nodes_per_digit(distance / length);
 }
 
-// How far a sum may be off by one rule, up to a factor that host/plan/rule.cpp knows. Where the integrand is smooth, the
+// How far a sum may be off by one rule, up to a factor that host/plan/doubt_model.cpp knows. Where the integrand is smooth, the
 // error of n nodes is to the null rule's value as that is to the sum; where it is not, it is what the orders were made
 // for, 10^-digits. The geometric mean of the two is the closest to the truth over the domain.
 real doubt(real sum, real null, real digits) {

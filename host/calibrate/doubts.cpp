@@ -79,7 +79,8 @@ OpticalConstants index(Draw& draw, bool is_core, double theta) {
     return {std::max(cos_sin_deg(theta).sin * (1.0 + (draw.chance(0.5) ? beside : -beside)), 1e-3), 0.0};
   }
   if (!is_core && draw.chance(0.3)) {
-    const double kind = draw.uniform(0.0, 4.0);
+    const double kind = draw.uniform(0.0, 5.0);
+    if (kind > 4.0) return {draw.log_uniform(1e-3, 0.2), draw.log_uniform(0.3, 30.0)};
     if (kind < 1.0) return {draw.log_uniform(0.01, 1.0), draw.chance(0.7) ? 0.0 : draw.log_uniform(1e-4, 0.3)};
     if (kind < 2.0) return {draw.uniform(0.1, 1.5), draw.log_uniform(1e-5, 2.0)};
     if (kind < 3.0) return {1.0 + draw.log_uniform(1e-5, 0.3), draw.chance(0.5) ? 0.0 : draw.log_uniform(1e-5, 0.3)};

@@ -29,7 +29,7 @@ constexpr std::array<std::string_view, kDoubtFeatures> kNames = {
     "heavy tail, rough", "light tail by m", "outside: q small by", "outside: q large by",
     // of the index
     "contrast", "contrast above 4", "contrast above 30", "contrast above 300", "outside: contrast small by", "critical",
-    "critical by n", "nearly critical", "nearly critical by n",
+    "critical by n", "nearly critical", "nearly critical by n", "outside: silvery", "outside: silvery by n",
     // of pairs
     "pole", "pole near", "rough, grazing", "smooth, grazing", "rough, pole", "outside: rough, grazing", "critical by m",
     "critical by cos", "nearly critical by m", "nearly critical by cos", "line", "line, smooth", "line by q",
@@ -50,6 +50,7 @@ constexpr double kLargestQ = 1.09;
 constexpr double kSmallestContrast = -0.8;
 constexpr double kLargestContrast = 4.0;
 constexpr double kSmallestPole = 0.01;  // of cos(theta) + pole_cos
+constexpr double kSmallestMetalN = 0.2;
 
 // What the calibration has drawn; the features of anything beyond are those of its end.
 constexpr std::array kCalibratedM = {1.4e-4, 14.2};
@@ -57,6 +58,7 @@ constexpr std::array kCalibratedQ = {1e-3, 1e4};     // q - 1
 constexpr std::array kCalibratedMean = {1e-3, 1e4};  // 2q - 3
 constexpr std::array kCalibratedContrast = {2e-5, 1e12};
 constexpr std::array kCalibratedSquare = {1e-4, 1e12};  // |N^2|
+constexpr std::array kCalibratedMetalN = {1e-3, 1e6};
 
 constexpr double kNearContrast = 2.4;  // |N^2 - 1| up to which Re N^2 < 1 reflects nearly all beyond an angle
 constexpr double kCoincidence = 1.05;  // of neighbouring breakpoints: their singularities act together
@@ -180,7 +182,12 @@ DoubtModel::Index DoubtModel::index_of(const kernel::IndexNode& node) {
   const double contrast = std::hypot(node.n2m1_re, node.n2m1_im);
   const double log_contrast = log10_in(contrast, kCalibratedContrast);
   const double clamped = std::clamp(log_contrast, kSmallestContrast, kLargestContrast);
-  const double log_n2 = log10_in(std::hypot(1.0 + node.n2m1_re, node.n2m1_im), kCalibratedSquare);
+  const double n2_size = std::hypot(1.0 + node.n2m1_re, node.n2m1_im);
+  const double log_n2 = log10_in(n2_size, kCalibratedSquare);
+  // Metals that hardly absorb: Re N^2 < 0, n = Im N^2 / (2 k) next to nothing.
+  const double k = std::sqrt(0.5 * (n2_size - 1.0 - node.n2m1_re));
+  const double n_of_metal = node.n2m1_re < -1.0 ? 0.5 * node.n2m1_im / k : kSmallestMetalN;
+  const double silvery = below(log10_in(n_of_metal, kCalibratedMetalN), std::log10(kSmallestMetalN));
   Index index;
   index.pole_cos = node.pole_cos;
   index.is_critical = flag(node.critical_cos > 0.0);
@@ -193,7 +200,9 @@ DoubtModel::Index DoubtModel::index_of(const kernel::IndexNode& node) {
                     index.is_critical,
                     index.is_critical * log_n2,
                     index.is_nearly_critical,
-                    index.is_nearly_critical * log_n2};
+                    index.is_nearly_critical * log_n2,
+                    flag(silvery > 0.0),
+                    silvery};
   return index;
 }
 

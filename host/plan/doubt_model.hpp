@@ -24,7 +24,7 @@ struct ThetaNode;
 /// What a doubt is of: r_i and r_q, or the deficit.
 enum class Doubted { kReflected, kDeficit };
 
-inline constexpr std::size_t kDoubtFeatures = 60;
+inline constexpr std::size_t kDoubtFeatures = 62;
 inline constexpr std::size_t kDoubtKnots = 4;
 
 using DoubtFeatures = std::array<double, kDoubtFeatures>;
@@ -53,7 +53,7 @@ class DoubtModel {
   static constexpr std::size_t kOwn = 4;
   static constexpr std::size_t kTheta = 8;
   static constexpr std::size_t kShape = 17;
-  static constexpr std::size_t kIndex = 9;
+  static constexpr std::size_t kIndex = 11;
   static constexpr std::size_t kPair = kDoubtFeatures - kOwn - kTheta - kShape - kIndex;
 
   // Logarithms that pairs of nodes need, and the share of the node's own features in the two scores.

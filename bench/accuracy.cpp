@@ -80,6 +80,7 @@ Study::Study(StudyRun& run)
     : run_(run),
       methods_(chosen(methods(), run.options().methods, "--method")),
       cases_(chosen(cases(), run.options().cases, "--case")) {
+  std::erase_if(methods_, [](const Method& method) { return method.needs_grid; });
   for (const Method& method : methods_) run_.expect(cases_.size() * settings(method).size());
 }
 

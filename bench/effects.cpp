@@ -16,6 +16,7 @@
 #include "bench/timing.hpp"
 #include "effects/effects.hpp"
 #include "error.hpp"
+#include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/run/scene_run.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 
@@ -139,7 +140,7 @@ class Study {
   StudyRun& run_;
   std::size_t repeats_;
   std::vector<EffectGroup> groups_;
-  VulkanEvaluator evaluator_;
+  InterpolatingEvaluator evaluator_;
 };
 
 constexpr std::array kDistributions = {Distribution::kCauchy, Distribution::kGaussian};
@@ -167,7 +168,7 @@ Study::Study(StudyRun& run)
     : run_(run),
       repeats_(run.options().quick ? kQuickRepeats : kFullRepeats),
       groups_(checked_groups(run.options())),
-      evaluator_({.device = run.options().device}) {
+      evaluator_(std::make_unique<VulkanEvaluator>(VulkanOptions{.device = run.options().device})) {
   for (const EffectGroup& group : groups_) {
     if (is_wanted(group.effect)) run_.expect(group.settings.size());
   }

@@ -5,6 +5,7 @@
 #include "bench/method.hpp"
 #include "error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 
 namespace dolp::bench {
@@ -12,11 +13,13 @@ namespace {
 
 class EvaluatorSolver final : public Solver {
  public:
-  explicit EvaluatorSolver(std::unique_ptr<MomentsEvaluator> evaluator) : evaluator_(std::move(evaluator)) {}
+  explicit EvaluatorSolver(std::unique_ptr<MomentsEvaluator> evaluator)
+      : precision_(evaluator->precision()), evaluator_(std::move(evaluator)) {}
 
   Solution solve(const MomentsRequest& request, double setting) override {
     MomentsRequest wanted = request;
     wanted.tolerance = setting;
+    wanted.precision = precision_;
     const EvaluationReport before = evaluator_->report();
     const std::vector<Moments> moments = evaluator_->evaluate(wanted, nullptr);
     const EvaluationReport after = evaluator_->report();
@@ -35,20 +38,30 @@ class EvaluatorSolver final : public Solver {
   }
 
  private:
+  Precision precision_;
   std::unique_ptr<MomentsEvaluator> evaluator_;
 };
 
-}  // namespace
-
-std::unique_ptr<Solver> make_vulkan(const SolverOptions& options, Precision precision) {
+std::unique_ptr<MomentsEvaluator> vulkan_evaluator(const SolverOptions& options, Precision precision) {
   VulkanOptions vulkan;
   vulkan.device = options.device;
   vulkan.precision = precision;
   try {
-    return std::make_unique<EvaluatorSolver>(std::make_unique<VulkanEvaluator>(vulkan));
+    return std::make_unique<VulkanEvaluator>(vulkan);
   } catch (const DeviceError& error) {
     throw Unavailable(error.what());
   }
+}
+
+}  // namespace
+
+std::unique_ptr<Solver> make_vulkan(const SolverOptions& options, Precision precision) {
+  return std::make_unique<EvaluatorSolver>(vulkan_evaluator(options, precision));
+}
+
+std::unique_ptr<Solver> make_vulkan_table(const SolverOptions& options) {
+  return std::make_unique<EvaluatorSolver>(
+      std::make_unique<InterpolatingEvaluator>(vulkan_evaluator(options, Precision::kFloat)));
 }
 
 std::unique_ptr<Solver> make_cpu(Precision precision) {

@@ -64,6 +64,7 @@ struct Method {
   std::vector<double> settings;        ///< from coarse to fine
   std::vector<double> quick_settings;  ///< the few of them that --quick runs
   bool is_batched = false;             ///< meant for many entries a call: its time is that of a call over its entries
+  bool needs_grid = false;             ///< gains nothing from entries that are no grid
   bool is_random = false;              ///< every call gives other answers; its error is the rms of them
   /// Errors: Unavailable.
   std::function<std::unique_ptr<Solver>(const SolverOptions&)> make;
@@ -85,6 +86,8 @@ std::unique_ptr<Solver> make_pcubature();
 std::unique_ptr<Solver> make_dblquad(const SolverOptions& options);
 /// Errors: Unavailable when there is no usable device of this precision.
 std::unique_ptr<Solver> make_vulkan(const SolverOptions& options, Precision precision);
+/// The same in float, interpolated between slope distributions where the entries are dense.
+std::unique_ptr<Solver> make_vulkan_table(const SolverOptions& options);
 std::unique_ptr<Solver> make_cpu(Precision precision);
 std::unique_ptr<Solver> make_native();
 

@@ -46,6 +46,9 @@ Call undisturbed_call(Solver& solver, const MomentsRequest& request, double sett
   return second.time_s < first.time_s ? second : first;
 }
 
+/// Of the smallest grid that shows what a method can do.
+std::size_t stride_of_tries(const Method& method) { return method.needs_grid ? 1 : NestedGrid::kLargestStride; }
+
 }  // namespace
 
 PeerSample::PeerSample(Masking which, const std::vector<NestedGrid::Place>& sample_places)
@@ -112,7 +115,7 @@ std::optional<double> PeerSettings::with_hindsight(double tolerance) const {
 /// Kernels are compiled, and tables of nodes made, at the first run.
 void PeerSettings::warm_up() {
   const MomentsRequest request =
-      method_.is_batched ? nested_grid(sample_, NestedGrid::kLargestStride).request : one_of(sample_, 0);
+      method_.is_batched ? nested_grid(sample_, stride_of_tries(method_)).request : one_of(sample_, 0);
   try {
     solver_.solve(request, method_.settings.front());
   } catch (const Unavailable&) {
@@ -143,7 +146,7 @@ bool PeerSettings::try_next() {
 
 /// Returns the seconds that it took, as try_each does.
 double PeerSettings::try_grid(TriedSetting& tried) {
-  const PeerBatch batch = nested_grid(sample_, NestedGrid::kLargestStride);
+  const PeerBatch batch = nested_grid(sample_, stride_of_tries(method_));
   const Call made = call(solver_, batch.request, tried.setting);
   for (std::size_t i = 0; i < batch.positions.size(); ++i) {
     tried.errors.push_back(error_of(made.solution.answers[batch.positions[i]], sample_.truths[i]));

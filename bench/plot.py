@@ -164,7 +164,7 @@ def draw_key(axes, result):
     axes.axis("off")
     context = result["context"]
     device = context["device"].get("name", "no Vulkan device")
-    y, step = 1.0, 0.048
+    y, step = 1.0, 0.038
     for method in result["methods"]:
         label, colour, marker, line = style(method["name"])
         reason = why_not_run(result, method["name"])
@@ -175,7 +175,7 @@ def draw_key(axes, result):
             text = text.replace(name, symbol)
         wrapped = textwrap.wrap(text, KEY_WIDTH)
         axes.text(0.1, y + 0.018, "\n".join(wrapped), fontsize=7.2, va="top")
-        y -= step * len(wrapped) + 0.012
+        y -= step * len(wrapped) + 0.011
     notes = [f"Vulkan and CPU use all {context['machine']['cores']} cores, the others one. "
              "Lines join the settings that no cheaper one of the same method beats; faint: the rest. "
              "Left of the grey edge the reference itself does not know the value.",

@@ -13,6 +13,7 @@ STYLES = {
     "pcubature": ("pcubature", "#CC79A7", "^", "--"),
     "dblquad": ("SciPy", "#555555", "X", "-"),
     "vulkan-float": ("Vulkan float", "#0072B2", "o", "-"),
+    "vulkan-table": ("Vulkan table", "#0072B2", "*", "-"),
     "vulkan-double": ("Vulkan double", "#0072B2", "o", "--"),
     "cpu-float": ("CPU float", "#D55E00", "p", "-"),
     "cpu-double": ("CPU double", "#D55E00", "p", "--"),

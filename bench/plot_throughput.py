@@ -5,6 +5,11 @@ NEEDED = {"context", "grid", "results"}
 TOLERANCE = 1e-4
 
 
+def interpolated(rows):
+    """As `dolp table` runs a grid."""
+    return [row for row in rows if row["interpolation"] == "auto"]
+
+
 def part(result, name):
     return [row for row in result["results"] if row["part"] == name and "not_run" not in row]
 
@@ -14,12 +19,13 @@ def millions(rate):
 
 
 def grid_table(rows):
-    lines = head(["masking", "grid (θ × σ × q)", "tolerance", "whole run", "kernels", "per entry, whole", "kernels",
+    lines = head(["masking", "grid (θ × σ × q)", "tolerance", "interpolation", "whole run", "kernels", "per entry, whole", "kernels",
                   "million entries/s", "million evaluations/s", "evaluations an entry", "time over half the entries"])
-    for row in sorted(rows, key=lambda row: (list(MASKINGS).index(row["case"]), -row["tolerance"], row["entries"])):
+    order = lambda row: (list(MASKINGS).index(row["case"]), -row["tolerance"], row["entries"], row["interpolation"])
+    for row in sorted(rows, key=order):
         lines.append(row_of_cells([
             row["case"], " × ".join(str(side) for side in row["grid"]), f"{row['tolerance']:g}",
-            time_text(row["run_s"]), time_text(row["kernel_run_s"]), time_text(row["time_s"]),
+            row["interpolation"], time_text(row["run_s"]), time_text(row["kernel_run_s"]), time_text(row["time_s"]),
             time_text(row["kernel_time_s"]), millions(row["entries_per_s"]), millions(row["evaluations_per_s"]),
             f"{row['evaluations']:.3g}", f"{row['doubled_ratio']:.2f}" if "doubled_ratio" in row else "—"]))
     return lines
@@ -65,7 +71,8 @@ def markdown(result):
 
 def draw_grids(axes, rows):
     for name, colour in MASKINGS.items():
-        own = sorted((row for row in rows if row["case"] == name and row["tolerance"] == TOLERANCE),
+        own = sorted((row for row in interpolated(rows) if row["case"] == name and row["tolerance"] == TOLERANCE
+                      and row["grid"][1] == row["grid"][2]),
                      key=lambda row: row["entries"])
         if not own:
             continue
@@ -84,7 +91,7 @@ def draw_grids(axes, rows):
 
 def draw_tolerances(axes, rows, grid):
     tolerances = sorted({row["tolerance"] for row in rows}, reverse=True)
-    own = [row for row in rows if " × ".join(str(side) for side in row["grid"]) == grid.replace("x", "×")]
+    own = [row for row in interpolated(rows) if " × ".join(str(side) for side in row["grid"]) == grid.replace("x", "×")]
     for i, (name, colour) in enumerate(MASKINGS.items()):
         for j, tolerance in enumerate(tolerances):
             for row in own:

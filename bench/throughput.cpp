@@ -19,7 +19,9 @@
 #include "bench/study_run.hpp"
 #include "bench/timed_scene.hpp"
 #include "bench/timing.hpp"
+#include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/devices.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
 
 namespace dolp::bench {
 namespace {
@@ -30,9 +32,14 @@ constexpr std::array kMaskings = {Masking::kNone, Masking::kVCavity, Masking::kI
 constexpr std::array kQuickMaskings = {Masking::kNone, Masking::kIntegral};  // of the kernels in processes of their own
 constexpr double kTolerance = 1e-4;
 constexpr std::array kTolerances = {1e-3, 1e-4, 1e-6};
-// Each but the first two has twice the entries of the one before.
-constexpr std::array<GridSize, 6> kGrids = {
-    {{32, 32, 32}, {64, 64, 64}, {128, 64, 64}, {256, 64, 64}, {256, 128, 64}, {256, 128, 128}}};
+constexpr std::array<GridSize, 8> kGrids = {{{32, 32, 32},
+                                             {64, 64, 64},
+                                             {128, 64, 64},
+                                             {64, 128, 64},
+                                             {64, 64, 128},
+                                             {256, 64, 64},
+                                             {256, 128, 64},
+                                             {256, 128, 128}}};
 constexpr std::size_t kMainGrid = 1;         // of kGrids: what all but the grids themselves are measured on
 constexpr GridSize kSmallGrid = {2, 2, 16};  // whose entries come in groups
 constexpr std::size_t kQuickEntries = 24 * 24 * 24;
@@ -90,7 +97,15 @@ ordered_json row_start(const char* part, const std::string& which, const ordered
 struct GridRun {
   GridSize size;
   double tolerance = kTolerance;
+  bool may_interpolate = true;
   std::unique_ptr<TimedScene> timed = {};
+
+  /// Whether it is the other run with one axis twice as long.
+  bool doubles(const GridRun& other) const {
+    return tolerance == other.tolerance && may_interpolate == other.may_interpolate &&
+           size.entries() == 2 * other.size.entries() && size.thetas % other.size.thetas == 0 &&
+           size.sigmas % other.size.sigmas == 0 && size.qs % other.size.qs == 0;
+  }
 };
 
 ordered_json grid_row(Masking masking, const GridRun& run) {
@@ -98,10 +113,15 @@ ordered_json grid_row(Masking masking, const GridRun& run) {
   const double time_s = median(run.timed->times_s());
   const double kernel_s = median(run.timed->kernel_times_s());
   const double evaluations = run.timed->evaluations() / static_cast<double>(entries);
-  ordered_json row = row_start("grids", masking_name(masking), fmt::format("{}, {:g}", run.size.text(), run.tolerance));
+  const std::string setting =
+      fmt::format("{}, {:g}{}", run.size.text(), run.tolerance, run.may_interpolate ? "" : ", off");
+  ordered_json row = row_start("grids", masking_name(masking), setting);
   row["grid"] = {run.size.thetas, run.size.sigmas, run.size.qs};
   row["tolerance"] = run.tolerance;
   row["entries"] = entries;
+  row["interpolation"] = run.may_interpolate ? "auto" : "off";
+  row["interpolated"] = run.timed->interpolated();
+  row["interpolation_nodes"] = run.timed->interpolation_nodes();
   row["time_s"] = time_s;
   row["kernel_time_s"] = kernel_s;
   row["run_s"] = rounded_time(time_s * static_cast<double>(entries));
@@ -153,7 +173,7 @@ Study::Study(StudyRun& run)
       parts_(chosen(kParts, run.options().cases, "--case")),
       grids_(grids_up_to(quick() ? std::min(run.options().entries, kQuickEntries) : run.options().entries)) {
   if (run.options().cases.empty()) parts_.pop_back();  // what the others run
-  if (runs("grids")) run_.expect(kMaskings.size() * (grids_.size() + kTolerances.size() - 1));
+  if (runs("grids")) run_.expect(kMaskings.size() * (grids_.size() + 2 * kTolerances.size() - 1));
   if (runs("arithmetic")) run_.expect(kMaskings.size() * arithmetic_tolerances().size());
   if (runs("kernels")) run_.expect(kernel_maskings().size());
 }
@@ -183,15 +203,17 @@ void Study::measure_all() {
 }
 
 void Study::run_grids(Masking masking) {
-  VulkanEvaluator evaluator({.device = run_.options().device});
+  InterpolatingEvaluator evaluator(std::make_unique<VulkanEvaluator>(VulkanOptions{.device = run_.options().device}));
   std::vector<GridRun> runs;
   for (const GridSize& size : grids_) runs.push_back({size});
   for (const double tolerance : kTolerances) {
     if (tolerance != kTolerance) runs.push_back({main_grid(), tolerance});
+    runs.push_back({main_grid(), tolerance, false});
   }
   for (GridRun& run : runs) {
     Scene scene = steel_scene(masking, run.size);
     scene.accuracy.tolerance = run.tolerance;
+    scene.accuracy.may_interpolate = run.may_interpolate;
     run.timed = std::make_unique<TimedScene>(std::move(scene), false, evaluator);
   }
   // In turns, so that what else the machine does is spread over all.
@@ -202,11 +224,12 @@ void Study::run_grids(Masking masking) {
       if (i < kQuickRepeats || !is_long) run.timed->repeat();
     }
   }
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    ordered_json row = grid_row(masking, runs[i]);
-    if (i > 0 && runs[i].size.entries() == 2 * runs[i - 1].size.entries()) {
-      const double before_s = median(runs[i - 1].timed->times_s()) * static_cast<double>(runs[i - 1].size.entries());
-      row["doubled_ratio"] = row["run_s"].get<double>() / before_s;
+  for (const GridRun& run : runs) {
+    ordered_json row = grid_row(masking, run);
+    const auto half = std::ranges::find_if(runs, [&](const GridRun& other) { return run.doubles(other); });
+    if (half != runs.end()) {
+      const double half_s = median(half->timed->times_s()) * static_cast<double>(half->size.entries());
+      row["doubled_ratio"] = row["run_s"].get<double>() / half_s;
     }
     run_.finish(row);
   }

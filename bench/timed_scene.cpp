@@ -17,13 +17,16 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 }  // namespace
 
-TimedScene::TimedScene(Scene scene, bool keep_all, VulkanEvaluator& evaluator)
+TimedScene::TimedScene(Scene scene, bool keep_all, MomentsEvaluator& evaluator)
     : scene_(std::move(scene)), entries_(grid_entries(scene_)), keep_all_(keep_all), evaluator_(evaluator) {
-  const double evaluations = evaluator_.report().evaluations;
+  const EvaluationReport before = evaluator_.report();
   const Clock::time_point start = Clock::now();
   results_ = run();
   first_s_ = seconds_since(start);
-  evaluations_ = evaluator_.report().evaluations - evaluations;
+  const EvaluationReport after = evaluator_.report();
+  evaluations_ = after.evaluations - before.evaluations;
+  interpolated_ = after.interpolated - before.interpolated;
+  interpolation_nodes_ = after.interpolation_nodes - before.interpolation_nodes;
 }
 
 void TimedScene::repeat() {

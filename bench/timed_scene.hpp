@@ -5,15 +5,14 @@
 
 #include "effects/effects.hpp"
 #include "evaluate/run/scene_run.hpp"
-#include "evaluate/vulkan/vulkan_evaluator.hpp"
 
 namespace dolp::bench {
 
-/// Plan and evaluation of a scene's grid on the Vulkan device, again and again.
+/// Plan and evaluation of a scene's grid, again and again.
 class TimedScene {
  public:
   /// Runs it once, which creates the pipelines. The evaluator outlives the object.
-  TimedScene(Scene scene, bool keep_all, VulkanEvaluator& evaluator);
+  TimedScene(Scene scene, bool keep_all, MomentsEvaluator& evaluator);
 
   /// Adds a raw time of a call.
   void repeat();
@@ -23,6 +22,9 @@ class TimedScene {
   const EffectPlan& plan() const { return plan_; }
   const std::vector<PointResult>& results() const { return results_; }
   double evaluations() const { return evaluations_; }  ///< of one call
+  /// Moments of one call that were interpolated, and those computed for that.
+  std::uint64_t interpolated() const { return interpolated_; }
+  std::uint64_t interpolation_nodes() const { return interpolation_nodes_; }
   /// Raw times in seconds an entry, of calls and of their kernels.
   std::vector<double> times_s() const;
   std::vector<double> kernel_times_s() const;
@@ -34,9 +36,11 @@ class TimedScene {
   Scene scene_;
   std::vector<SceneEntry> entries_;
   bool keep_all_;
-  VulkanEvaluator& evaluator_;
+  MomentsEvaluator& evaluator_;
   EffectPlan plan_;
   std::vector<PointResult> results_;
+  std::uint64_t interpolated_ = 0;
+  std::uint64_t interpolation_nodes_ = 0;
   double first_s_ = 0.0;
   double evaluations_ = 0.0;
   std::size_t calls_ = 0;

@@ -72,6 +72,7 @@ const std::map<std::string, Expected> kExpected = {
     {"pcubature", {1e-5, {{"easy", 1e-4}, {"median", 1e-4}, {"rough", 1e-4}, {"hard", 1e-4}, {"worst", 1e-4}}}},
     {"dblquad", {1e-2, {{"easy", 1e-2}, {"median", 1e-2}, {"rough", 1e-2}, {"hard", 1e-2}, {"worst", 1e-2}}}},
     {"vulkan-float", {1e-4, {{"easy", 1e-4}, {"median", 1e-4}, {"rough", 1e-4}, {"hard", 1e-4}, {"worst", 1e-4}}}},
+    {"vulkan-table", {1e-4, {{"easy", 1e-4}, {"median", 1e-4}, {"rough", 1e-4}, {"hard", 1e-4}, {"worst", 1e-4}}}},
     {"vulkan-double", {1e-5, {{"easy", 1e-5}, {"median", 1e-5}, {"rough", 1e-5}, {"hard", 1e-5}, {"worst", 1e-5}}}},
     {"cpu-float", {1e-4, {{"easy", 1e-4}, {"median", 1e-4}, {"rough", 1e-4}, {"hard", 1e-4}, {"worst", 1e-4}}}},
     {"native-float", {1e-4, {{"easy", 1e-4}, {"median", 1e-4}, {"rough", 1e-4}, {"hard", 1e-4}, {"worst", 1e-4}}}},

@@ -30,7 +30,7 @@ TEST_F(BenchThroughput, Json_GridsAndArithmetic_HaveTheirRows) {
   EXPECT_GT(result["peak"]["flops_per_s"].get<double>(), 0.0);
   for (const json& row : result["results"]) expect_keys(row, {"part", "case", "setting"});
   const std::vector<json> grids = part(result, "grids");
-  EXPECT_EQ(grids.size(), 4U * 3U);  // one grid, three tolerances
+  EXPECT_EQ(grids.size(), 4U * 3U * 2U);  // one grid, three tolerances, with and without interpolation
   for (const json& row : grids) {
     expect_keys(row, {"entries_per_s", "evaluations_per_s", "stated_error", "raw_kernel_times_s"});
     EXPECT_EQ(row["entries"], 64);
@@ -98,9 +98,9 @@ TEST_F(BenchThroughput, Plot_Results_GiveFigureAndTables) {
 class BenchPeers : public BenchProgram {
  protected:
   std::vector<std::string> options() const {
-    return {"peers",    "--quick",      "--case",   "v-cavity",    "--method", "gauss",
-            "--method", "hcubature",    "--method", "monte-carlo", "--method", "vulkan-gauss",
-            "--method", "vulkan-float", "--method", "native-float"};
+    return {"peers",    "--quick",      "--case",   "v-cavity",     "--method", "gauss",
+            "--method", "hcubature",    "--method", "monte-carlo",  "--method", "vulkan-gauss",
+            "--method", "vulkan-float", "--method", "vulkan-table", "--method", "native-float"};
   }
 };
 
@@ -110,7 +110,7 @@ TEST_F(BenchPeers, Json_Rows_ReachTheToleranceAndCompareWithTheKernels) {
   expect_keys(result, {"context", "error", "time_s", "methods", "cases", "targets", "results", "warnings"});
   ASSERT_EQ(result["cases"].size(), 1U);
   EXPECT_EQ(result["cases"][0]["sample"].size(), 3U);
-  ASSERT_EQ(result["results"].size(), 6U);
+  ASSERT_EQ(result["results"].size(), 7U);
   for (const json& row : result["results"]) {
     expect_keys(row, {"method", "case", "tolerance"});
     EXPECT_EQ(row["case"], "v-cavity");
@@ -118,11 +118,14 @@ TEST_F(BenchPeers, Json_Rows_ReachTheToleranceAndCompareWithTheKernels) {
       EXPECT_TRUE(row.contains("not_run")) << row.dump();  // a million samples have three digits
       continue;
     }
-    expect_keys(row, {"setting", "error", "time_s", "time_min_s", "raw_times_s", "entries", "ratio"});
+    expect_keys(row, {"setting", "error", "time_s", "time_min_s", "raw_times_s", "entries", "ratio", "table_ratio"});
     EXPECT_LE(row["error"], row["tolerance"]) << row.dump();
     EXPECT_GT(row["ratio"].get<double>(), 0.0);
     if (row["method"] == "vulkan-float") {
       EXPECT_EQ(row["ratio"], 1.0);
+    }
+    if (row["method"] == "vulkan-table") {
+      EXPECT_EQ(row["table_ratio"], 1.0);
     }
     const bool is_single = row["method"] == "gauss" || row["method"] == "hcubature";
     EXPECT_EQ(row.contains("hindsight_time_s"), is_single) << row.dump();

@@ -42,7 +42,7 @@ TEST(Grouped, EveryEntry_HasAPlaceInAGroupOfItsOwnDirectionIndexAndShape) {
   const MomentsRequest request =
       grid(Masking::kIntegral, {0.0, 30.0, 60.0}, {0.1, 0.3}, kManyQ, {{1.5, 0.0}, {0.9, 0.0}});
   const KernelData data = kernel_data(request);
-  const Grouping grouping = grouped(data, kSizes);
+  const Grouping grouping = grouped(data, kSizes, false);
   EXPECT_EQ(grouping.size, kSize);
   ASSERT_EQ(grouping.places.size(), data.entries.size());
   std::set<std::pair<std::uint32_t, std::uint32_t>> places;
@@ -68,7 +68,7 @@ TEST(Grouped, EveryEntry_HasAPlaceInAGroupOfItsOwnDirectionIndexAndShape) {
 
 TEST(Grouped, Families_ShareTheHardestNeedsAndAscendInQ) {
   const KernelData data = kernel_data(grid(Masking::kSmith, {30.0}, {0.05, 0.9}, kManyQ, {{1.5, 0.0}}));
-  const Grouping grouping = grouped(data, kSizes);
+  const Grouping grouping = grouped(data, kSizes, false);
   double widest = 0.0;
   for (const ShapeFamily& family : grouping.families) {
     const kernel::ShapeNode& first = grouping.shapes[family.first];
@@ -94,12 +94,27 @@ TEST(Grouped, Families_ShareTheHardestNeedsAndAscendInQ) {
 
 TEST(Grouped, EntriesThatShareNothing_AreAlone) {
   MomentsRequest request = grid(Masking::kNone, {10.0, 20.0, 40.0}, {0.1, 0.2, 0.4}, {2.0}, {{1.5, 0.0}});
-  EXPECT_EQ(grouped(kernel_data(request), kSizes).size, 1U);
+  EXPECT_EQ(grouped(kernel_data(request), kSizes, false).size, 1U);
   request = grid(Masking::kNone, {10.0}, {0.1}, kManyQ, {{1.5, 0.0}});
-  EXPECT_EQ(grouped(kernel_data(request), kSizes).size, kSize);
+  EXPECT_EQ(grouped(kernel_data(request), kSizes, false).size, kSize);
   EXPECT_EQ(grouped(kernel_data(request), std::array{1U}).size, 1U);
   request.distribution = Distribution::kGaussian;  // which has no q
+  EXPECT_EQ(grouped(kernel_data(request), kSizes, false).size, 1U);
+}
+
+TEST(Grouped, SmallRequest_IsNotWorthAKernelOfItsOwn) {
+  const std::vector<double> theta_deg = {5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0};
+  MomentsRequest request = grid(Masking::kNone, theta_deg, {0.1, 0.2}, kManyQ, {{1.5, 0.0}});
   EXPECT_EQ(grouped(kernel_data(request), kSizes).size, 1U);
+  for (std::uint32_t i = 1; i < 400; ++i) request.indices.push_back({1.5 + 0.01 * i, 0.0});
+  const std::vector<MomentsEntry> of_one = request.entries;
+  for (std::uint32_t i = 1; i < 400; ++i) {
+    for (MomentsEntry entry : of_one) {
+      entry.index = i;
+      request.entries.push_back(entry);
+    }
+  }
+  EXPECT_EQ(grouped(kernel_data(request), kSizes).size, kSize);
 }
 
 bool same(const Moments& a, const Moments& b) {
@@ -121,6 +136,7 @@ TEST_P(GroupedKernel, Members_AgreeWithEachAloneWithinTheBounds) {
   VulkanOptions options;
   options.precision = precision;
   options.validation = ValidationMode::kOn;
+  options.groups_small_requests = true;
   VulkanEvaluator evaluator(options);
   const std::vector<Moments> together = evaluator.evaluate(request, {});
   // one q at a time: nothing to group
@@ -160,6 +176,7 @@ TEST_P(GroupedKernel, ShuffledRequest_HasTheSameBits) {
   VulkanOptions options;
   options.precision = precision;
   options.validation = ValidationMode::kOn;
+  options.groups_small_requests = true;
   VulkanEvaluator evaluator(options);
   const std::vector<Moments> expected = evaluator.evaluate(request, {});
   std::mt19937 random(5);

@@ -144,6 +144,7 @@ inline std::unique_ptr<MomentsEvaluator> make_evaluator(Kernel kernel, VulkanOpt
   if (kernel == Kernel::kCpuFloat || kernel == Kernel::kCpuDouble) return std::make_unique<CpuEvaluator>(precision);
   options.precision = precision;
   options.validation = ValidationMode::kOn;
+  options.groups_small_requests = true;
   return std::make_unique<VulkanEvaluator>(options);
 }
 

@@ -150,6 +150,7 @@ const std::vector<KeyCase>& key_cases() {
        }},
       {"accuracy.tolerance", "1e-6", [](const Scene& s) { return s.accuracy.tolerance == 1e-6; }},
       {"accuracy.precision", "\"double\"", [](const Scene& s) { return s.accuracy.precision == Precision::kDouble; }},
+      {"accuracy.interpolation", "\"off\"", [](const Scene& s) { return !s.accuracy.may_interpolate; }},
   };
   return cases;
 }

@@ -31,6 +31,7 @@ VulkanOptions validated(Precision precision = Precision::kFloat) {
   VulkanOptions options;
   options.precision = precision;
   options.validation = ValidationMode::kOn;
+  options.groups_small_requests = true;
   return options;
 }
 

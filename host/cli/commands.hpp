@@ -30,6 +30,9 @@ int run_plan(const Options& options);
 /// silently.
 int run_verify(const Options& options);
 
+/// `dolp lookup TABLE --points IN -o OUT`: interpolates in a table, with the error of that.
+int run_lookup(const Options& options);
+
 /// `dolp explore [SCENE]`: the window.
 int run_explore(const Options& options);
 

@@ -61,6 +61,16 @@ void add_keep_all(CLI::App& command, Options& options) {
   command.add_flag("--keep-all", options.keep_all, "compute every effect that the scene has, however little it counts");
 }
 
+void add_lookup(CLI::App& command, Options& options) {
+  command.add_option("TABLE", options.table_path, "table file (.nc) that dolp table wrote")->required();
+  command.add_option("--points", options.points_path, "CSV with any of theta_deg, sigma, q, n, k; - is stdin")
+      ->required();
+  command.add_option("-o,--output", options.output_path, "file to write; - is stdout")->required();
+  command.add_flag("--json", options.json, "machine-readable report");
+  command.add_flag("--quiet", options.quiet, "no summary");
+  command.add_flag("--strict", options.strict, "exit 1 if any point misses the table's tolerance");
+}
+
 void add_verify(CLI::App& command, Options& options) {
   CLI::Option* table = command.add_option("TABLE", options.table_path, "table file (.nc) that dolp table wrote");
   const auto of_table = [&](CLI::Option* option) { option->needs(table); };
@@ -94,6 +104,7 @@ int run(CLI::App& app, Options& options) {
   if (given("plan")) return run_plan(options);
   if (given("explore")) return run_explore(options);
   if (given("verify")) return run_verify(options);
+  if (given("lookup")) return run_lookup(options);
   return run_devices(options);
 }
 
@@ -130,6 +141,8 @@ int parse_and_run(int argc, char** argv) {
   add_keep_all(*plan, options);
   plan->add_flag("--json", options.json, "machine-readable plan");
   add_verify(*app.add_subcommand("verify", "recompute entries of a table, or examine a device"), options);
+  add_lookup(*app.add_subcommand("lookup", "interpolate in a table at scattered points, with the error of that"),
+             options);
   add_explore(*app.add_subcommand("explore", "the window: parameters, curves, map, effects and their price, live"),
               options);
   CLI::App* devices = app.add_subcommand("devices", "Vulkan devices, and why each one is or is not usable");

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "scene/scene_reader.hpp"
@@ -12,7 +14,7 @@
 namespace dolp::cli {
 
 void check_output_is_no_input(const Options& options) {
-  for (const std::string& input : {options.scene_path, options.points_path}) {
+  for (const std::string& input : {options.scene_path, options.points_path, options.table_path}) {
     std::error_code missing;  // a file that is not there is not the same file
     if (std::filesystem::equivalent(options.output_path, input, missing)) {
       throw InputError(options.output_path + ": the output would overwrite an input");
@@ -49,12 +51,17 @@ EvaluationReport report_of(const MomentsEvaluator* evaluator, const Options& opt
 }
 
 std::unique_ptr<MomentsEvaluator> make_evaluator(const Options& options, const Scene& scene) {
-  if (options.evaluator == "cpu") return std::make_unique<CpuEvaluator>(scene.accuracy.precision);
   if (options.evaluator == "reference") return std::make_unique<ReferenceEvaluator>();
-  VulkanOptions vulkan;
-  vulkan.device = options.device;
-  vulkan.precision = scene.accuracy.precision;
-  return std::make_unique<VulkanEvaluator>(vulkan);
+  std::unique_ptr<MomentsEvaluator> evaluator;
+  if (options.evaluator == "cpu") {
+    evaluator = std::make_unique<CpuEvaluator>(scene.accuracy.precision);
+  } else {
+    VulkanOptions vulkan;
+    vulkan.device = options.device;
+    vulkan.precision = scene.accuracy.precision;
+    evaluator = std::make_unique<VulkanEvaluator>(vulkan);
+  }
+  return std::make_unique<InterpolatingEvaluator>(std::move(evaluator));
 }
 
 }  // namespace dolp::cli

@@ -16,7 +16,7 @@ namespace dolp::cli {
 struct Options {
   std::string scene_path;
   std::string points_path;
-  std::string table_path;  ///< of verify
+  std::string table_path;  ///< of verify and lookup
   std::string output_path;
   std::vector<std::string> overrides;  ///< --set KEY=VALUE
   std::string tolerance;               ///< as typed; empty when not given

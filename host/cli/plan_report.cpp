@@ -79,11 +79,16 @@ std::string precision_name(Precision precision) { return precision == Precision:
 std::string work_lines(const PlanReport& report) {
   const RunPrediction& run = report.run;
   std::string text;
-  const std::string how = run.is_exact ? "counted" : fmt::format("estimated from {} entries", kCountedEntries);
+  std::string how = run.is_exact ? "counted" : fmt::format("estimated from {} entries", kCountedEntries);
+  if (run.interpolated > 0 && !run.is_exact) how = fmt::format("estimated from {} directions", kCountedDirections);
   text += fmt::format(
       "  attempts    first: {} at tolerance {:g}, {} moments, {} values of f; {:.3g} % again, tighter\n",
       precision_name(run.first.precision), run.first.tolerance, run.moments, run.beams, kPoints * run.again_share);
   if (run.moments == 0) return text;
+  if (run.interpolated > 0) {
+    text += fmt::format("  interpolate {} moments follow from these, to the same tolerance (accuracy.interpolation)\n",
+                        run.interpolated);
+  }
   text += fmt::format("  work        {:.4g} integrand evaluations in the first attempt ({}), {:.2g} in others\n",
                       run.first_evaluations, how, run.again_evaluations);
   if (report.dispatches.group_size > 1) {
@@ -174,6 +179,7 @@ Json plan_json(const PlanReport& report) {
   json["why_no_device"] = report.why_no_device;
   json["spectral_samples"] = run.spectral_samples;
   json["moments"] = run.moments;
+  json["interpolated_moments"] = run.interpolated;
   json["beams"] = run.beams;
   json["first_attempt"] = {{"precision", precision_name(run.first.precision)},
                            {"tolerance", run.first.tolerance},

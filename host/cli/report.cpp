@@ -144,6 +144,10 @@ std::string summary_text(const RunReport& report) {
   text += fmt::format("  time       {:.3f} s in all, {:.3f} s in kernels, {} dispatches\n", report.wall_s, e.kernel_s,
                       e.dispatches);
   text += fmt::format("  work       {:.4g} integrand evaluations, {:.0f} an entry\n", e.evaluations, per_entry);
+  if (e.interpolated > 0) {
+    text += fmt::format("  of these   {} moments interpolated between slope distributions, from {}\n", e.interpolated,
+                        e.interpolation_nodes);
+  }
   const std::string rho =
       report.plan.gives_rho ? fmt::format("rho {} (of rho_I)", bound_text(report.worst_rho_error)) : "rho not computed";
   text += fmt::format("  error      DOLP {} (absolute), {}; tolerance {:g}\n", bound_text(report.worst_error), rho,
@@ -186,10 +190,12 @@ nlohmann::ordered_json summary_json(const RunReport& report) {
   json["driver"] = e.driver;
   json["precision"] = e.precision;
   json["effects"] = effects_json(report.effects, report.plan);
-  json["rule"] = rule_text(report.tolerance);
+  json["rule"] = rule_text(report.tolerance, e);
   json["tolerance"] = report.tolerance;
   json["dispatches"] = e.dispatches;
   json["evaluations"] = e.evaluations;
+  json["interpolated_moments"] = e.interpolated;
+  json["interpolation_nodes"] = e.interpolation_nodes;
   json["wall_s"] = report.wall_s;
   json["kernel_s"] = e.kernel_s;
   json["setup_s"] = e.setup_s;

@@ -67,17 +67,24 @@ std::vector<Attribute> attributes(const TableContent& content) {
           {"precision", evaluation.precision},
           {"tolerance", scene.accuracy.tolerance},
           {"effects", effects_text(content.effects, content.plan)},
-          {"rule", rule_text(scene.accuracy.tolerance)},
+          {"rule", rule_text(scene.accuracy.tolerance, evaluation)},
           {"wall_time_s", content.wall_s}};
 }
 
 }  // namespace
 
-std::string rule_text(double tolerance) {
-  return fmt::format(
+std::string rule_text(double tolerance, const EvaluationReport& evaluation) {
+  std::string text = fmt::format(
       "product Gauss rules on the smooth pieces of slope and azimuth, orders for tolerance {:g}, bounds from null "
       "rules",
       tolerance);
+  if (evaluation.interpolated > 0) {
+    text += fmt::format(
+        "; {} moments interpolated in ln(sigma) and ln(q - q0) between {} at Chebyshev nodes, bounds from the last "
+        "coefficients",
+        evaluation.interpolated, evaluation.interpolation_nodes);
+  }
+  return text;
 }
 
 Table scene_table(const TableContent& content) {

@@ -26,6 +26,6 @@ struct TableContent {
 Table scene_table(const TableContent& content);
 
 /// The rule in words, for reports and table attributes.
-std::string rule_text(double tolerance);
+std::string rule_text(double tolerance, const EvaluationReport& evaluation);
 
 }  // namespace dolp::cli

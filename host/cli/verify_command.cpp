@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <filesystem>
 #include <optional>
 
 #include "cli/commands.hpp"
@@ -13,23 +12,12 @@
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "scene/number_range.hpp"
 #include "scene/text.hpp"
-#include "table/table_file.hpp"
 #include "verify/table_scene.hpp"
 
 namespace dolp::cli {
 namespace {
 
 constexpr double kDefaultTolerance = 1e-4;
-
-Table load_table(const std::string& path) {
-  if (!std::filesystem::exists(path)) throw InputError(path + ": there is no such file");
-  const std::string suffix = std::filesystem::path(path).extension().string();
-  if (suffix == ".csv" || suffix == ".npy") {
-    throw InputError(
-        fmt::format("{}: only a table written as .nc holds its scene, which {} files do not in full", path, suffix));
-  }
-  return read_table(path);
-}
 
 int verify_table(const Options& options) {
   const auto start = std::chrono::steady_clock::now();

@@ -30,6 +30,7 @@ struct MomentsRequest {
   Masking masking = Masking::kIntegral;
   double tolerance = 1e-4;                 ///< of the rule, relative to r_i
   Precision precision = Precision::kAuto;  ///< kAuto: the evaluator's own
+  bool may_interpolate = true;             ///< between slope distributions, to the same tolerance
   std::vector<double> theta_deg;
   std::vector<SlopeShape> shapes;
   std::vector<OpticalConstants> indices;
@@ -66,8 +67,10 @@ struct EvaluationReport {
   std::string precision;  ///< float | double | float and double, as used
   std::uint64_t dispatches = 0;
   double evaluations = 0.0;
-  double kernel_s = 0.0;  ///< time on the device (timestamps), or of the loop on the CPU
+  double kernel_s = 0.0;  ///< time on the device (timestamps), or of the loop on the CPU, and of interpolation
   double setup_s = 0.0;   ///< device and pipeline creation
+  std::uint64_t interpolated = 0;         ///< moments that were interpolated between slope distributions,
+  std::uint64_t interpolation_nodes = 0;  ///< and moments computed for that
 };
 
 /// Adds a precision to EvaluationReport::precision.

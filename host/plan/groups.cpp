@@ -21,9 +21,14 @@ constexpr double kMostSpread = 6.0;
 // Groups are not for entries that would leave this share of the members unused.
 constexpr double kLeastUse = 0.5;
 
-// What the members of a group share, in units of what each takes. Look-ups in masking tables are each member's own.
-constexpr double kWorkOfAGroup = 16.0;
-constexpr double kWorkBesideTables = 5.0;
+// What a group takes, in units of what each of its members takes at kUsualDigits. Look-ups in masking tables are each
+// member's own.
+struct GroupWork {
+  double shared = 16.0;     // by the members
+  double kernel = 40000.0;  // to make the kernel, for each member that it is made for
+};
+constexpr GroupWork kWithTables = {.shared = 5.0, .kernel = 7000.0};
+constexpr double kUsualDigits = 6.0;
 
 bool has_line(const KernelData& data, const kernel::ShapeNode& shape) {
   return needs_line(data.distribution, data.masking, {shape.m / std::sqrt(2.0), 1.0 + shape.q_minus_1},
@@ -146,15 +151,17 @@ Grouping grouped_exactly(const KernelData& data, std::uint32_t size) {
 
 }  // namespace
 
-Grouping grouped(const KernelData& data, std::span<const std::uint32_t> sizes) {
+Grouping grouped(const KernelData& data, std::span<const std::uint32_t> sizes, bool counts_kernels) {
   Grouping best;
   double least = std::numeric_limits<double>::infinity();
   for (const std::uint32_t size : sizes) {
     Grouping grouping = grouped_exactly(data, size);
     const auto groups = static_cast<double>(grouping.groups.size());
     if (size > 1 && static_cast<double>(data.entries.size()) <= kLeastUse * size * groups) continue;
-    const double shared = data.masking == Masking::kIntegral ? kWorkBesideTables : kWorkOfAGroup;
-    const double work = (shared + size) * groups;
+    const GroupWork unit = data.masking == Masking::kIntegral ? kWithTables : GroupWork{};
+    const double evaluations = std::pow(data.rule.digits / kUsualDigits, 2.0);
+    const double kernel = counts_kernels ? unit.kernel * size : 0.0;
+    const double work = (unit.shared + size) * groups * evaluations + kernel;
     if (work < least) {
       least = work;
       best = std::move(grouping);

@@ -53,7 +53,8 @@ struct Grouping {
 std::vector<GroupPiece> pieces_of(const Grouping& grouping, const KernelData& data, std::uint32_t first,
                                   std::uint32_t count);
 
-/// Groups of the size that takes the least work; `sizes` must contain 1.
-Grouping grouped(const KernelData& data, std::span<const std::uint32_t> sizes);
+/// Groups of the size that takes the least work; `sizes` must contain 1. Making the kernel of a larger size is part of
+/// the work, so that small requests have none; unless `counts_kernels` is false.
+Grouping grouped(const KernelData& data, std::span<const std::uint32_t> sizes, bool counts_kernels = true);
 
 }  // namespace dolp

@@ -87,7 +87,7 @@ struct Spectrum {
 
 struct Geometry {
   Mode mode = Mode::kHemispherical;
-  double view_zenith_deg = 60.0;       ///< bistatic only
+  double view_zenith_deg = 60.0;        ///< bistatic only
   double relative_azimuth_deg = 180.0;  ///< bistatic only; 180 is the specular side
 };
 
@@ -101,6 +101,7 @@ struct Grid {
 struct Accuracy {
   double tolerance = 1e-4;
   Precision precision = Precision::kAuto;
+  bool may_interpolate = true;  ///< between slope distributions, where the grid is dense
 };
 
 struct Scene {
@@ -114,8 +115,8 @@ struct Scene {
   Geometry geometry;
   Grid grid;
   Accuracy accuracy;
-  std::string path_name;  ///< as given on the command line, for messages
-  std::string text;       ///< the file, verbatim
+  std::string path_name;               ///< as given on the command line, for messages
+  std::string text;                    ///< the file, verbatim
   std::vector<std::string> overrides;  ///< the --set KEY=VALUE arguments that were applied, verbatim
 };
 

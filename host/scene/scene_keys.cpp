@@ -137,6 +137,10 @@ std::vector<SceneKey> geometry_keys() {
              [](Draft& d, const Value& v) { d.scene.accuracy.tolerance = v.number; }),
       word("accuracy.precision", {"auto", "float", "double"}, "auto", "arithmetic of the device",
            [](Draft& d, const Value& v) { d.scene.accuracy.precision = static_cast<Precision>(v.word); }),
+      word(
+          "accuracy.interpolation", {"auto", "off"}, "auto",
+          "between slope distributions of a dense grid, within the tolerance; off: every entry is integrated by itself",
+          [](Draft& d, const Value& v) { d.scene.accuracy.may_interpolate = v.word == 0; }),
   };
 }
 

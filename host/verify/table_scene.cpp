@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string_view>
 
 #include "error.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene/text.hpp"
+#include "table/table_file.hpp"
 
 namespace dolp {
 namespace {
@@ -56,6 +58,16 @@ std::string scene_hash(const Scene& scene) {
   add(scene.text);
   for (const std::string& change : scene.overrides) add("\n" + change);
   return fmt::format("fnv1a64:{:016x}", hash);
+}
+
+Table load_table(const std::string& path) {
+  if (!std::filesystem::exists(path)) throw InputError(path + ": there is no such file");
+  const std::string suffix = std::filesystem::path(path).extension().string();
+  if (suffix == ".csv" || suffix == ".npy") {
+    throw InputError(
+        fmt::format("{}: only a table written as .nc holds its scene, which {} files do not in full", path, suffix));
+  }
+  return read_table(path);
 }
 
 Scene table_scene(const Table& table, const std::string& name) {

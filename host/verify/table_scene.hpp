@@ -18,6 +18,10 @@ std::vector<std::string> overrides_of(const std::string& text);
 /// the same scene, nothing more.
 std::string scene_hash(const Scene& scene);
 
+/// Reads a table file that holds its scene.
+/// Errors: those of read_table; InputError for a file that is not there, and for formats that do not hold it.
+Table load_table(const std::string& path);
+
 /// The scene of a table, whose overrides are applied.
 ///
 /// Files that the scene names are looked for beside the scene as the table's attribute "scene_path" has it, from the

@@ -1,7 +1,7 @@
 // Builds the masking table of one shape, from its far end inwards. All terms are positive, so that the relative accuracy
 // is kept down to the smallest tails.
 
-CONST int kTableOrder = 6;  // Gauss order on one cell, in which v grows by a sixteenth or less
+CONST int kTableOrder = 4;  // Gauss order on one cell, in which v grows by a sixteenth or less
 
 // What one cell [tau0, tau1] adds to the tails at tau1, so that (l, C, Pt, p) results at tau0; p is whole.
 real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {

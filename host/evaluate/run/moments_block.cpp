@@ -31,6 +31,8 @@ class BlockBuilder {
     request.masking = scene.surface.masking;
     request.tolerance = attempt.tolerance;
     request.precision = attempt.precision;
+    // What misses the tolerance between nodes is integrated by itself: its neighbours are the hard ones too.
+    request.may_interpolate = scene.accuracy.may_interpolate && attempt.tolerance >= scene.accuracy.tolerance;
     request.entries.reserve(count * samples.size());
     block_.first_moments.reserve(count);
     for (const OpticalConstants& sample : samples) sample_positions_.push_back(position(sample));

@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/interpolation/interpolating_evaluator.hpp"
+#include "evaluate/interpolation/shape_plan.hpp"
 #include "evaluate/run/beams.hpp"
 #include "evaluate/run/moments_block.hpp"
 #include "evaluate/run/scene_run.hpp"
@@ -16,21 +21,42 @@ namespace {
 // Its multiples modulo 1 fill the interval evenly and keep no step with the axes of a grid.
 constexpr double kGoldenRatio = 0.6180339887498949;
 
+/// Up to `count` of `size` positions.
+std::set<std::size_t> drawn_positions(std::size_t size, std::size_t count) {
+  std::set<std::size_t> positions;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double part = std::fmod(static_cast<double>(i + 1) * kGoldenRatio, 1.0);
+    positions.insert(static_cast<std::size_t>(part * static_cast<double>(size)));
+  }
+  return positions;
+}
+
 std::vector<SceneEntry> drawn_entries(std::span<const SceneEntry> entries) {
   if (entries.size() <= kCountedEntries) return {entries.begin(), entries.end()};
-  std::set<std::size_t> positions;
-  for (std::size_t i = 0; i < kCountedEntries; ++i) {
-    const double part = std::fmod(static_cast<double>(i) * kGoldenRatio, 1.0);
-    positions.insert(static_cast<std::size_t>(part * static_cast<double>(entries.size())));
-  }
   std::vector<SceneEntry> drawn;
-  for (const std::size_t position : positions) drawn.push_back(entries[position]);
+  for (const std::size_t position : drawn_positions(entries.size(), kCountedEntries))
+    drawn.push_back(entries[position]);
+  return drawn;
+}
+
+/// All entries of some directions.
+std::vector<SceneEntry> entries_of_drawn_directions(std::span<const SceneEntry> entries) {
+  std::set<double> directions;
+  for (const SceneEntry& entry : entries) directions.insert(entry.theta_deg);
+  const std::vector<double> sorted(directions.begin(), directions.end());
+  std::set<double> wanted;
+  for (const std::size_t position : drawn_positions(sorted.size(), kCountedDirections)) wanted.insert(sorted[position]);
+  std::vector<SceneEntry> drawn;
+  for (const SceneEntry& entry : entries) {
+    if (wanted.contains(entry.theta_deg)) drawn.push_back(entry);
+  }
   return drawn;
 }
 
 /// Sums of one kind of request, of the first attempt and of all others.
 struct Count {
-  std::size_t first = 0;  ///< moments or beams
+  std::size_t first_requests = 1;  ///< that the first attempt makes
+  std::size_t first = 0;           ///< moments or beams
   std::size_t again = 0;
   double first_evaluations = 0.0;
   double again_evaluations = 0.0;
@@ -38,7 +64,8 @@ struct Count {
 
   void add(std::size_t entries, const EvaluationReport& before, const EvaluationReport& after) {
     const double evaluations = after.evaluations - before.evaluations;
-    const bool is_first = first == 0;
+    const bool is_first = first_requests > 0;
+    if (is_first) --first_requests;
     (is_first ? first : again) += entries;
     (is_first ? first_evaluations : again_evaluations) += evaluations;
     spent_s += after.kernel_s - before.kernel_s;
@@ -48,7 +75,9 @@ struct Count {
 /// Notes what the attempts of a run ask for.
 class CountingEvaluator final : public MomentsEvaluator, public ScatteringEvaluator {
  public:
-  CountingEvaluator(Precision precision, bool has_double) : cpu_(precision), has_double_(has_double) {}
+  /// `first_requests`: for moments, that the first attempt makes.
+  CountingEvaluator(Precision precision, bool has_double, std::size_t first_requests)
+      : cpu_(precision), has_double_(has_double), moments_{.first_requests = first_requests} {}
 
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
     const EvaluationReport before = cpu_.report();
@@ -82,10 +111,23 @@ double scale_of(std::size_t all, const Count& counted) {
   return counted.first == 0 ? 0.0 : static_cast<double>(all) / static_cast<double>(counted.first);
 }
 
+/// Requests for moments that the first attempt makes.
+std::size_t requests_of(const Scene& scene, const std::vector<OpticalConstants>& samples,
+                        std::span<const SceneEntry> entries, const Attempt& attempt) {
+  const std::optional<ShapePlan> plan = shape_plan(moments_block(scene, samples, entries, attempt).request);
+  return plan && !plan->direct.entries.empty() ? 2 : 1;
+}
+
 void count_work(RunPrediction& run, const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan,
                 bool has_double) {
-  CountingEvaluator counting(scene.accuracy.precision, has_double);
-  evaluate_scene(scene, drawn_entries(entries), plan, &counting, {});
+  const std::vector<SceneEntry> drawn =
+      run.interpolated > 0 ? entries_of_drawn_directions(entries) : drawn_entries(entries);
+  const std::vector<OpticalConstants> samples = spectral_rule(scene).indices();
+  auto owned = std::make_unique<CountingEvaluator>(scene.accuracy.precision, has_double,
+                                                   requests_of(scene, samples, drawn, run.first));
+  const CountingEvaluator& counting = *owned;
+  InterpolatingEvaluator interpolating(std::move(owned));
+  evaluate_scene(scene, drawn, plan, &interpolating, {});
   const Count& moments = counting.moments();
   const Count& beams = counting.beams();
   const double moments_scale = scale_of(run.moments, moments);
@@ -115,9 +157,14 @@ RunPrediction predict_run(const Scene& scene, std::span<const SceneEntry> entrie
     std::size_t bytes = 0;
     if (plan.needs_moments) {
       const MomentsRequest request = moments_block(scene, samples, part, run.first).request;
-      run.moments += request.entries.size();
       bytes += request.entries.size() * (2 * sizeof(MomentsEntry) + sizeof(Moments));
-      visit.moments(request);
+      const std::optional<ShapePlan> shapes = shape_plan(request);
+      if (shapes) run.interpolated += request.entries.size() - shapes->direct.entries.size();
+      for (const MomentsRequest* computed : {shapes ? &shapes->nodes : &request, shapes ? &shapes->direct : nullptr}) {
+        if (computed == nullptr) continue;
+        run.moments += computed->entries.size();
+        visit.moments(*computed);
+      }
     }
     if (plan.needs_beams) {
       const ScatteringRequest request = beams_request(scene, samples, part, run.first.precision);

@@ -14,11 +14,15 @@ namespace dolp {
 /// Entries of a run whose nodes are counted; of more entries these stand for all.
 inline constexpr std::size_t kCountedEntries = 256;
 
+/// Where a run interpolates between slope distributions, the directions whose entries are counted instead.
+inline constexpr std::size_t kCountedDirections = 4;
+
 /// Work of a run.
 struct RunPrediction {
   std::size_t entries = 0;
   std::size_t spectral_samples = 0;
-  std::size_t moments = 0;         ///< that the first attempt asks for: entries that share them count once
+  std::size_t moments = 0;         ///< that the first attempt computes: entries that share them count once
+  std::size_t interpolated = 0;    ///< moments that it interpolates between others
   std::size_t beams = 0;           ///< that the first attempt asks for: f of one geometry and index each
   Attempt first;                   ///< precision and tolerance of the first attempt
   double first_evaluations = 0.0;  ///< integrand evaluations of it
@@ -37,8 +41,9 @@ struct RequestVisitor {
   std::function<void(const ScatteringRequest&)> beams;
 };
 
-/// Counts the work by running up to kCountedEntries entries, drawn evenly by a fixed sequence, through the code of the
-/// run itself on the CPU. `has_double`: whether the device that will run has it.
+/// Counts the work by running up to kCountedEntries entries, or all of up to kCountedDirections directions, drawn
+/// evenly by a fixed sequence, through the code of the run itself on the CPU. `has_double`: whether the device that
+/// will run has it.
 ///
 /// Accuracy: exact for scenes with up to kCountedEntries entries, but for orders that a device's float rounds
 /// otherwise; a few percent beyond (tests Plan.FewEntries_*, Plan.ManyEntries_*, Plan.Device_*).

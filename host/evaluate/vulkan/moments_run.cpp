@@ -25,7 +25,7 @@ MomentsRun::MomentsRun(const RunContext& context, const MomentsRequest& request,
     : context_(context),
       request_(request),
       data_(kernel_data(request)),
-      grouping_(grouped(data_, kGroupSizes)),
+      grouping_(grouped(data_, kGroupSizes, !context.groups_small_requests)),
       sizes_(sizes(tile_invocations, block_shapes)),
       thetas_(data_.thetas.size()),
       indices_(request.indices.size()) {

@@ -20,6 +20,7 @@ struct RunContext {
   Kernels& kernels;
   CommandStream& stream;
   Packing packing;
+  bool groups_small_requests = false;
   bool staged_uploads = false;
   double tile_timeout_s = 0.0;
 };

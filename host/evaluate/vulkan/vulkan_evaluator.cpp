@@ -91,6 +91,7 @@ class VulkanEvaluator::Impl {
             .kernels = kernels_for(requested),
             .stream = stream_,
             .packing = vulkan::Packing(in_double(requested)),
+            .groups_small_requests = options_.groups_small_requests,
             .staged_uploads = options_.staged_uploads,
             .tile_timeout_s = options_.tile_timeout_s};
   }

@@ -22,6 +22,7 @@ struct VulkanOptions {
   /// Of requests that leave it open: kAuto is float. kDouble also asks for a device that has it.
   Precision precision = Precision::kAuto;
   ValidationMode validation = ValidationMode::kFromEnvironment;
+  bool groups_small_requests = false;  ///< also where the kernel of a group takes longer to make than it saves
   // The results depend on none of these.
   std::uint32_t max_tile_invocations = 65'536;  ///< of a dispatch: progress and cancelling wait for one at most
   std::uint32_t max_block_shapes = 4'096;       ///< shapes whose masking tables are on the device at a time

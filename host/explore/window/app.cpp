@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "error.hpp"
+#include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/context.hpp"
 #include "evaluate/vulkan/result.hpp"
 #include "explore/exports.hpp"
@@ -163,7 +164,7 @@ class App::Impl {
         interface_(prepared(window_.get())),
         presenter_(context_, make_surface(context_.instance(), window_.get()), size_of(window_.get())),
         evaluator_(context_, vulkan_options_),
-        export_evaluator_(context_, vulkan_options_),
+        export_evaluator_(std::make_unique<VulkanEvaluator>(context_, vulkan_options_)),
         worker_(evaluator_, glfwPostEmptyEvent),
         table_export_(glfwPostEmptyEvent),
         true_error_(glfwPostEmptyEvent),
@@ -276,7 +277,7 @@ class App::Impl {
   Interface interface_;
   Presenter presenter_;
   VulkanEvaluator evaluator_;
-  VulkanEvaluator export_evaluator_;
+  InterpolatingEvaluator export_evaluator_;
   Worker worker_;
   BackgroundTask table_export_;
   BackgroundTask true_error_;

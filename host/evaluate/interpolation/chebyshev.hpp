@@ -1,0 +1,19 @@
+// Polynomial interpolation at Chebyshev-Lobatto points. Source: Trefethen, Approximation Theory and Approximation
+// Practice (SIAM 2013), chapters 3 to 5 and 8.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace dolp {
+
+/// The points cos(pi i / (count - 1)) on [-1, 1], descending. Domain: count >= 2.
+std::vector<double> lobatto_points(Eigen::Index count);
+
+/// What the interpolant at x in [-1, 1] multiplies the values at `points` with; their sum is 1.
+Eigen::RowVectorXd cardinal_values(const std::vector<double>& points, double x);
+
+/// Turns the values at lobatto_points(count) into the coefficients of Chebyshev polynomials of degree 0, 1, ...
+Eigen::MatrixXd chebyshev_coefficients(Eigen::Index count);
+
+}  // namespace dolp

@@ -1,0 +1,392 @@
+// Interpolation between slope distributions: its parts, the evaluator around a made-up one, and its stated errors
+// against the kernel's text at every entry.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "evaluate/interpolation/chebyshev.hpp"
+#include "evaluate/interpolation/interpolating_evaluator.hpp"
+#include "evaluate/interpolation/shape_axis.hpp"
+#include "evaluate/interpolation/shape_plan.hpp"
+#include "properties_support.hpp"
+
+namespace {
+
+using namespace dolp;
+
+std::vector<double> spaced(double first, double last, std::size_t count, bool in_ratios = false) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0.0;
+    values.push_back(in_ratios ? first * std::pow(last / first, share) : first + (last - first) * share);
+  }
+  return values;
+}
+
+/// The entries of a grid, q fastest.
+MomentsRequest grid_request(const Model& model, const std::vector<double>& theta_deg, const std::vector<double>& sigma,
+                            const std::vector<double>& q, double tolerance = 1e-4) {
+  MomentsRequest request;
+  request.distribution = model.distribution;
+  request.masking = model.masking;
+  request.tolerance = tolerance;
+  request.precision = Precision::kDouble;
+  request.theta_deg = theta_deg;
+  request.indices = {{1.5, 0.1}};
+  for (const double s : sigma) {
+    for (const double each : q) request.shapes.push_back({s, each});
+  }
+  for (std::uint32_t theta = 0; theta < theta_deg.size(); ++theta) {
+    for (std::uint32_t shape = 0; shape < request.shapes.size(); ++shape) request.entries.push_back({theta, shape, 0});
+  }
+  return request;
+}
+
+const Model kModel = kModels[2];  // cauchy, integral
+
+TEST(Chebyshev, Cardinal_Polynomials_AreInterpolatedExactly) {
+  const std::vector<double> points = lobatto_points(9);
+  EXPECT_EQ(points.front(), 1.0);
+  EXPECT_EQ(points.back(), -1.0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(points[i], -points[points.size() - 1 - i]);
+    const Eigen::RowVectorXd at_node = cardinal_values(points, points[i]);
+    for (Eigen::Index j = 0; j < at_node.size(); ++j) {
+      EXPECT_EQ(at_node[j], j == static_cast<Eigen::Index>(i) ? 1.0 : 0.0);
+    }
+  }
+  for (const double x : {-0.99, -0.3, 0.1234, 0.77}) {
+    const Eigen::RowVectorXd cardinal = cardinal_values(points, x);
+    for (int power = 0; power <= 8; ++power) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        sum += cardinal[static_cast<Eigen::Index>(i)] * std::pow(points[i], power);
+      }
+      EXPECT_NEAR(sum, std::pow(x, power), 1e-14) << x << " power " << power;
+    }
+  }
+}
+
+TEST(Chebyshev, Coefficients_OfAChebyshevPolynomial_AreOneAndZeros) {
+  const Eigen::Index count = 8;
+  const std::vector<double> points = lobatto_points(count);
+  const Eigen::MatrixXd to_coefficients = chebyshev_coefficients(count);
+  for (Eigen::Index degree = 0; degree < count; ++degree) {
+    Eigen::VectorXd values(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      values[i] = std::cos(static_cast<double>(degree) * std::acos(points[static_cast<std::size_t>(i)]));
+    }
+    const Eigen::VectorXd coefficients = to_coefficients * values;
+    for (Eigen::Index i = 0; i < count; ++i) EXPECT_NEAR(coefficients[i], i == degree ? 1.0 : 0.0, 1e-14);
+  }
+}
+
+TEST(ShapeAxis, DenseValues_FewerNodesBetweenTheExtremes) {
+  const std::vector<double> sigma = spaced(0.05, 1.0, 64);
+  const ShapeAxis axis = shape_axis(sigma_parameter(Distribution::kCauchy), sigma, 5.0);
+  ASSERT_TRUE(axis.is_interpolated());
+  EXPECT_LT(axis.nodes.size(), 32U);
+  EXPECT_EQ(axis.nodes.front(), 1.0);
+  EXPECT_EQ(axis.nodes.back(), 0.05);
+  ASSERT_EQ(axis.cardinal.rows(), 64);
+  for (Eigen::Index i = 0; i < 64; ++i) EXPECT_NEAR(axis.cardinal.row(i).sum(), 1.0, 1e-13);
+  const ShapeAxis finer = shape_axis(sigma_parameter(Distribution::kCauchy), sigma, 7.0);
+  EXPECT_GT(finer.nodes.size(), axis.nodes.size());
+  const ShapeAxis narrower = shape_axis(sigma_parameter(Distribution::kCauchy), spaced(0.5, 1.0, 64), 5.0);
+  EXPECT_LT(narrower.nodes.size(), axis.nodes.size());
+}
+
+TEST(ShapeAxis, FewOrEqualValues_AreTheirOwnNodes) {
+  for (const std::vector<double>& values : {std::vector{2.0}, std::vector{5.0, 1.5, 3.0}, spaced(1.1, 30.0, 12)}) {
+    const ShapeAxis axis = shape_axis(q_parameter(Distribution::kCauchy, Masking::kNone), values, 5.0);
+    EXPECT_FALSE(axis.is_interpolated());
+    EXPECT_EQ(axis.nodes, values);
+    EXPECT_TRUE(axis.cardinal.isIdentity());
+  }
+}
+
+TEST(ShapeAxis, ValuesInAnyOrder_TheSameNodes) {
+  std::vector<double> values = spaced(1.6, 9.0, 40);
+  const ShapeParameter q = q_parameter(Distribution::kCauchy, Masking::kSmith);
+  EXPECT_EQ(q.origin, 1.5);
+  const ShapeAxis ascending = shape_axis(q, values, 4.0);
+  std::ranges::reverse(values);
+  const ShapeAxis descending = shape_axis(q, values, 4.0);
+  EXPECT_EQ(ascending.nodes, descending.nodes);
+  EXPECT_EQ(ascending.cardinal.row(0), descending.cardinal.row(39));
+}
+
+TEST(ShapePlan, DenseGrid_NodesAreFew_AndTheirToleranceTighter) {
+  const MomentsRequest request = grid_request(kModel, {10.0, 60.0}, spaced(0.05, 1.0, 64), spaced(1.75, 8.0, 64));
+  const std::optional<ShapePlan> plan = shape_plan(request);
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->slabs.size(), 2U);
+  EXPECT_TRUE(plan->direct.entries.empty());
+  EXPECT_EQ(plan->nodes.entries.size(), 2 * plan->nodes_of_a_slab());
+  EXPECT_LT(plan->nodes.entries.size(), request.entries.size() / 10);
+  EXPECT_LT(plan->nodes.tolerance, 0.2 * request.tolerance);
+  EXPECT_EQ(plan->nodes.shapes.size(), plan->nodes_of_a_slab());
+}
+
+TEST(ShapePlan, Float_NodesStayAboveItsRounding) {
+  MomentsRequest request = grid_request(kModel, {10.0}, spaced(0.05, 1.0, 64), spaced(1.75, 8.0, 64), 3e-6);
+  request.precision = Precision::kFloat;
+  EXPECT_EQ(shape_plan(request)->nodes.tolerance, 2e-6);
+}
+
+TEST(ShapePlan, NothingDense_OrNotWanted_NoPlan) {
+  Random random(1);
+  const std::vector<Point> points = random.points(kModel, 500);
+  EXPECT_FALSE(shape_plan(request_of(kModel, points, 1e-4)));
+  EXPECT_FALSE(shape_plan(grid_request(kModel, spaced(0, 89, 90), {0.3}, {2.0, 3.0})));
+  EXPECT_FALSE(shape_plan(grid_request(kModel, {60.0}, spaced(0.1, 1, 6), spaced(2, 5, 5))));
+  MomentsRequest unwanted = grid_request(kModel, {60.0}, spaced(0.05, 1.0, 64), spaced(1.75, 8.0, 64));
+  unwanted.may_interpolate = false;
+  EXPECT_FALSE(shape_plan(unwanted));
+}
+
+TEST(ShapePlan, ExtremeRange_NoGain_NoPlan) {
+  EXPECT_FALSE(shape_plan(grid_request(kModel, {60.0}, spaced(1e-6, 10.0, 40, true), {2.0})));
+  // Just above the end of smith's range no logarithm helps.
+  EXPECT_FALSE(shape_plan(grid_request(kModels[3], {60.0}, {0.3}, {1.5 + 1e-12, 1.6, 2, 3, 4, 5, 6, 7, 8, 9})));
+}
+
+TEST(ShapePlan, OneAxisIsDense_TheOtherIsKept) {
+  const std::vector<double> q = {1.5, 2.0, 3.0, 5.0};
+  const std::optional<ShapePlan> plan = shape_plan(grid_request(kModel, {60.0}, spaced(0.05, 1.0, 64), q));
+  ASSERT_TRUE(plan);
+  EXPECT_TRUE(plan->sigma.is_interpolated());
+  EXPECT_FALSE(plan->q.is_interpolated());
+  EXPECT_EQ(plan->q.nodes, q);
+}
+
+TEST(ShapePlan, SparseSlab_IsComputedDirectly) {
+  MomentsRequest request = grid_request(kModel, {10.0, 60.0}, spaced(0.05, 1.0, 64), spaced(1.75, 8.0, 64));
+  request.entries.resize(64 * 64 + 20);  // of the second direction twenty
+  const std::optional<ShapePlan> plan = shape_plan(request);
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->slabs.size(), 1U);
+  ASSERT_EQ(plan->direct.entries.size(), 20U);
+  EXPECT_EQ(plan->direct_entries.front(), 64U * 64U);
+}
+
+/// Moments that a function of the slope distribution says, with a bound of its own.
+class Invented final : public MomentsEvaluator {
+ public:
+  using Function = double (*)(const SlopeShape&);
+  Invented(Function function, double error) : function_(function), error_(error) {}
+
+  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
+    requests.push_back(request);
+    std::vector<Moments> moments;
+    for (const MomentsEntry& entry : request.entries) {
+      const double r = function_(request.shapes[entry.shape]);
+      moments.push_back({r, -0.5 * r, 2.0 * r, 1.0 - r, error_, error_, error_, error_, 10.0});
+      if (progress && !progress(moments.size(), request.entries.size())) throw Cancelled{};
+    }
+    return moments;
+  }
+  EvaluationReport report() const override { return {}; }
+
+  std::vector<MomentsRequest> requests;
+
+ private:
+  Function function_;
+  double error_;
+};
+
+struct Interpolated {
+  MomentsRequest request;
+  Invented* inner;
+  InterpolatingEvaluator evaluator;
+};
+
+Interpolated interpolated(Invented::Function function, double error = 0.0, double tolerance = 1e-4) {
+  auto inner = std::make_unique<Invented>(function, error);
+  Invented* const known = inner.get();
+  return {grid_request(kModel, {10.0, 40.0}, spaced(0.05, 1.0, 48), spaced(1.75, 8.0, 40), tolerance), known,
+          InterpolatingEvaluator(std::move(inner))};
+}
+
+/// The largest error over what is stated, and the largest statement over r_i.
+struct Check {
+  double worst_share = 0.0;
+  double largest_bound = 0.0;
+};
+
+Check check(const MomentsRequest& request, const std::vector<Moments>& moments, Invented::Function function) {
+  Check result;
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    const double r = function(request.shapes[request.entries[i].shape]);
+    const Moments& m = moments[i];
+    for (const auto& [value, truth, bound] :
+         {std::tuple{m.r_i, r, m.r_i_error}, std::tuple{m.r_q, -0.5 * r, m.r_q_error},
+          std::tuple{m.albedo, 2.0 * r, m.albedo_error}, std::tuple{m.deficit, 1.0 - r, m.deficit_error}}) {
+      constexpr double kRounding = 1e-14;
+      result.worst_share = std::max(result.worst_share, std::abs(value - truth) / (bound + kRounding));
+    }
+    result.largest_bound = std::max(result.largest_bound, m.r_i_error / r);
+  }
+  return result;
+}
+
+// With the features of real moments: a peak that moves with sigma, a power that q sets.
+double smooth(const SlopeShape& shape) {
+  const double m2 = 2.0 * shape.sigma * shape.sigma;
+  return 0.05 + 1.0 - std::pow(m2 / (0.3 + m2), shape.q - 1.0);
+}
+
+double kinked(const SlopeShape& shape) { return 1.0 + std::abs(std::log(shape.sigma / 0.3)) * shape.q; }
+
+TEST(InterpolatingEvaluator, SmoothMoments_KeepTheToleranceAndTheStatedErrors) {
+  for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-9}) {
+    Interpolated one = interpolated(smooth, 0.0, tolerance);
+    const std::vector<Moments> moments = one.evaluator.evaluate(one.request, {});
+    ASSERT_EQ(moments.size(), one.request.entries.size());
+    const Check result = check(one.request, moments, smooth);
+    EXPECT_LE(result.worst_share, 1.0) << tolerance;
+    EXPECT_LE(result.largest_bound, tolerance);
+    EXPECT_EQ(one.evaluator.report().interpolated, moments.size());
+    EXPECT_EQ(one.evaluator.report().interpolation_nodes, one.inner->requests.at(0).entries.size());
+  }
+}
+
+TEST(InterpolatingEvaluator, MomentsWithAKink_StateALargeError) {
+  Interpolated one = interpolated(kinked);
+  const Check result = check(one.request, one.evaluator.evaluate(one.request, {}), kinked);
+  EXPECT_LE(result.worst_share, 1.0);
+  EXPECT_GT(result.largest_bound, one.request.tolerance);
+}
+
+TEST(InterpolatingEvaluator, BoundsOfTheNodes_AreCarriedOver) {
+  constexpr double error = 1e-3;
+  Interpolated one = interpolated(smooth, error);
+  for (const Moments& m : one.evaluator.evaluate(one.request, {})) {
+    EXPECT_GE(m.r_i_error, 0.999 * error);
+    EXPECT_LE(m.r_i_error, 20.0 * error);
+  }
+}
+
+TEST(InterpolatingEvaluator, EvaluationsOfTheNodes_AreSharedAmongTheEntries) {
+  Interpolated one = interpolated(smooth);
+  const std::vector<Moments> moments = one.evaluator.evaluate(one.request, {});
+  const double sum = std::accumulate(moments.begin(), moments.end(), 0.0,
+                                     [](double so_far, const Moments& m) { return so_far + m.evaluations; });
+  EXPECT_NEAR(sum, 10.0 * static_cast<double>(one.inner->requests.at(0).entries.size()), 1e-6);
+}
+
+TEST(InterpolatingEvaluator, NodeWithoutABound_ItsSlabIsComputedEntryByEntry) {
+  const Invented::Function infinite = [](const SlopeShape& shape) {
+    return shape.q == 8.0 ? std::numeric_limits<double>::infinity() : smooth(shape);
+  };
+  Interpolated one = interpolated(infinite);
+  const std::vector<Moments> moments = one.evaluator.evaluate(one.request, {});
+  ASSERT_EQ(one.inner->requests.size(), 2U);
+  EXPECT_EQ(one.inner->requests[1].entries.size(), one.request.entries.size());
+  EXPECT_EQ(one.inner->requests[1].tolerance, one.request.tolerance);
+  EXPECT_EQ(one.evaluator.report().interpolated, 0U);
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    EXPECT_EQ(moments[i].r_i, infinite(one.request.shapes[one.request.entries[i].shape]));
+  }
+}
+
+TEST(InterpolatingEvaluator, SparseAndDenseSlabs_ResultsInTheirOrder) {
+  Interpolated one = interpolated(smooth);
+  const std::size_t dense = 48 * 40;
+  std::vector<MomentsEntry> mixed;  // one sparse entry after each thousand
+  for (std::size_t i = 0; i < dense; ++i) {
+    mixed.push_back(one.request.entries[i]);
+    if (i % 1000 == 0) mixed.push_back(one.request.entries[dense + i]);
+  }
+  one.request.entries = mixed;
+  const std::vector<Moments> moments = one.evaluator.evaluate(one.request, {});
+  ASSERT_EQ(moments.size(), mixed.size());
+  EXPECT_EQ(one.inner->requests.at(1).entries.size(), 2U);
+  EXPECT_EQ(one.evaluator.report().interpolated, dense);
+  EXPECT_LE(check(one.request, moments, smooth).worst_share, 1.0);
+}
+
+TEST(InterpolatingEvaluator, Progress_RisesToAll_AndCancels) {
+  Interpolated one = interpolated(smooth);
+  std::vector<std::size_t> done;
+  one.evaluator.evaluate(one.request, [&](std::size_t now, std::size_t total) {
+    EXPECT_EQ(total, one.request.entries.size());
+    done.push_back(now);
+    return true;
+  });
+  EXPECT_TRUE(std::ranges::is_sorted(done));
+  EXPECT_EQ(done.back(), one.request.entries.size());
+  EXPECT_THROW(one.evaluator.evaluate(one.request, [](std::size_t, std::size_t) { return false; }), Cancelled);
+}
+
+/// A random dense grid: ranges of sigma and q of any width up to a factor of 60 and 30, directions and indices as
+/// Random draws them.
+MomentsRequest random_grid(Random& random, const Model& model) {
+  const bool is_smith_cauchy = model.masking == Masking::kSmith && model.distribution == Distribution::kCauchy;
+  const double origin = is_smith_cauchy ? 1.5 : 1.0;
+  const double sigma = random.log_uniform(1e-3, 2.0);
+  const double q = random.log_uniform(0.02, 8.0);
+  const std::vector<double> sigmas = spaced(sigma, std::min(10.0, sigma * random.log_uniform(1.2, 60.0)), 64, true);
+  std::vector<double> qs = spaced(q, q * random.log_uniform(1.2, 30.0), 48, true);
+  for (double& each : qs) each += origin;
+  if (model.distribution == Distribution::kGaussian) qs = {2.0};
+  MomentsRequest request =
+      grid_request(model, {random.uniform(0.0, 89.9), random.chance(0.5) ? random.theta_deg() : 60.0}, sigmas, qs,
+                   random.log_uniform(1e-7, 1e-2));
+  request.indices = {random.index()};
+  return request;
+}
+
+class RandomGrids : public testing::TestWithParam<Kernel> {};
+
+// Against the kernel's text in double at a hundredth of the tolerance, at some of the entries.
+TEST_P(RandomGrids, StatedErrors_HoldAgainstEveryEntryByItself) {
+  const char* wanted = std::getenv("DOLP_PROPERTY_DRAWS");
+  const int grids = wanted != nullptr ? std::atoi(wanted) : 5;
+  constexpr std::size_t kChecked = 60;
+  const std::unique_ptr<MomentsEvaluator> exact = make_evaluator(Kernel::kCpuDouble);
+  InterpolatingEvaluator evaluator(make_evaluator(GetParam()));
+  std::size_t in_all = 0;
+  for (const Model& model : kModels) {
+    Random random(20 + static_cast<std::uint64_t>(GetParam()));
+    for (int grid = 0; grid < grids; ++grid) {
+      SCOPED_TRACE(name_of(model) + " grid " + std::to_string(grid));
+      MomentsRequest request = random_grid(random, model);
+      request.precision = is_double(GetParam()) ? Precision::kDouble : Precision::kFloat;
+      const std::vector<Moments> moments = evaluator.evaluate(request, {});
+      in_all += moments.size();
+      MomentsRequest some = request;
+      some.entries.clear();
+      some.precision = Precision::kDouble;
+      some.tolerance = std::max(1e-2 * request.tolerance, 1e-10);
+      std::vector<std::size_t> positions;
+      for (std::size_t i = 0; i < kChecked; ++i) {
+        positions.push_back(static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(moments.size()))));
+        some.entries.push_back(request.entries[positions.back()]);
+      }
+      const std::vector<Moments> truth = exact->evaluate(some, {});
+      for (std::size_t i = 0; i < kChecked; ++i) {
+        const Moments& m = moments[positions[i]];
+        for (const Quantity& quantity : kQuantities) {
+          EXPECT_LE(std::abs(m.*quantity.value - truth[i].*quantity.value),
+                    m.*quantity.error + truth[i].*quantity.error)
+              << quantity.name << " at " << positions[i] << ", tolerance " << request.tolerance << ": theta "
+              << request.theta_deg[some.entries[i].theta] << " sigma " << request.shapes[some.entries[i].shape].sigma
+              << " q " << request.shapes[some.entries[i].shape].q << " n " << request.indices[0].n << " k "
+              << request.indices[0].k;
+        }
+      }
+    }
+  }
+  EXPECT_GT(2 * evaluator.report().interpolated, in_all);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, RandomGrids, testing::ValuesIn(kKernels),
+                         [](const auto& tested) { return name_of(tested.param); });
+
+}  // namespace

@@ -1,0 +1,233 @@
+// Interpolation in a table: stencils, made-up tables with known values between the entries, and their stated errors.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "error.hpp"
+#include "evaluate/radiometry/status.hpp"
+#include "lookup/axis_stencil.hpp"
+#include "lookup/table_lookup.hpp"
+
+namespace {
+
+using namespace dolp;
+using Scale = LookupAxis::Scale;
+
+double sum_of(const std::vector<double>& weights) { return std::accumulate(weights.begin(), weights.end(), 0.0); }
+
+TEST(LookupAxis, Stencil_Polynomials_AreExact) {
+  const std::vector<double> values = {0.0, 1.0, 2.5, 3.0, 5.0, 8.0, 9.0};
+  const LookupAxis axis(values, Scale::kLinear);
+  for (const double x : {0.2, 1.7, 2.9, 4.0, 8.5}) {
+    for (std::size_t count = 2; count <= 6; ++count) {
+      const Stencil stencil = axis.stencil(x, count);
+      ASSERT_EQ(stencil.positions.size(), count);
+      EXPECT_NEAR(sum_of(stencil.weights), 1.0, 1e-13);
+      double sum = 0.0;
+      for (std::size_t i = 0; i < count; ++i) {
+        sum += stencil.weights[i] * std::pow(values[stencil.positions[i]], static_cast<double>(count - 1));
+      }
+      const double exact = std::pow(x, static_cast<double>(count - 1));
+      EXPECT_NEAR(sum, exact, 1e-11 * (1.0 + std::pow(9.0, static_cast<double>(count - 1)))) << x << " " << count;
+    }
+  }
+}
+
+TEST(LookupAxis, Stencil_IsAroundThePoint) {
+  const LookupAxis axis({0, 1, 2, 3, 4, 5, 6, 7}, Scale::kLinear);
+  EXPECT_EQ(axis.stencil(3.5, 2).positions, (std::vector<std::size_t>{3, 4}));
+  EXPECT_EQ(axis.stencil(3.5, 4).positions, (std::vector<std::size_t>{2, 3, 4, 5}));
+  EXPECT_EQ(axis.stencil(0.5, 4).positions, (std::vector<std::size_t>{0, 1, 2, 3}));
+  EXPECT_EQ(axis.stencil(6.5, 4).positions, (std::vector<std::size_t>{4, 5, 6, 7}));
+  EXPECT_EQ(axis.stencil(3.5, 4, -1).positions, (std::vector<std::size_t>{1, 2, 3, 4}));
+  EXPECT_EQ(axis.stencil(3.5, 4, -9).positions, (std::vector<std::size_t>{1, 2, 3, 4}));
+  EXPECT_EQ(axis.stencil(3.5, 4, 9).positions, (std::vector<std::size_t>{3, 4, 5, 6}));
+}
+
+TEST(LookupAxis, Stencil_AtAValue_IsThatValue) {
+  const LookupAxis axis({5.0, 0.1, 2.0}, Scale::kLogarithm);  // in any order
+  EXPECT_EQ(axis.min(), 0.1);
+  EXPECT_EQ(axis.max(), 5.0);
+  for (const auto& [value, position] : {std::pair{5.0, 0U}, std::pair{0.1, 1U}, std::pair{2.0, 2U}}) {
+    const Stencil stencil = axis.stencil(value, 6);
+    EXPECT_EQ(stencil.positions, std::vector<std::size_t>{position});
+    EXPECT_EQ(stencil.weights, std::vector<double>{1.0});
+  }
+  EXPECT_EQ(axis.stencil(0.1 + 1e-17, 6).positions, std::vector<std::size_t>{1});
+  EXPECT_FALSE(axis.contains(0.0999));
+  EXPECT_FALSE(axis.contains(5.001));
+  EXPECT_TRUE(axis.contains(5.0));
+}
+
+TEST(LookupAxis, LogarithmOfValuesAtItsOrigin_BecomesLinear) {
+  const LookupAxis axis({0.0, 1.0, 2.0}, Scale::kLogarithm);
+  const Stencil stencil = axis.stencil(0.5, 2);
+  EXPECT_EQ(stencil.weights, (std::vector<double>{0.5, 0.5}));
+}
+
+/// A made-up table: smooth in theta, ln sigma and ln(q - 1), with a Q that changes sign.
+struct Truth {
+  double i, q, rho_i, rho_q, albedo;
+};
+Truth truth(double theta_deg, double sigma, double q) {
+  const double x = theta_deg / 30.0;
+  const double s = std::log(sigma);
+  const double t = std::log(q - 1.0);
+  return {20.0 + std::cos(x) + 0.3 * s * s, std::sin(x - 0.5 + 0.1 * s) + 0.2 * t, 0.4 + 0.1 * std::sin(x + s),
+          0.05 * x * std::exp(0.1 * t), 0.9 + 0.05 * std::cos(s + t)};
+}
+
+constexpr double kEntryError = 1e-7;
+
+std::vector<double> range(double first, double last, std::size_t count) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    values.push_back(first + (last - first) * static_cast<double>(i) / static_cast<double>(count - 1));
+  }
+  return values;
+}
+
+Table made_up(const std::vector<double>& theta, const std::vector<double>& sigma, const std::vector<double>& q) {
+  Table table;
+  table.theta_deg = theta;
+  table.sigma = sigma;
+  table.q = q;
+  for (const double a : theta) {
+    for (const double b : sigma) {
+      for (const double c : q) {
+        const Truth t = truth(a, b, c);
+        table.stokes_i.push_back(t.i);
+        table.stokes_q.push_back(t.q);
+        table.stokes_u.push_back(0.0);
+        table.stokes_v.push_back(0.0);
+        table.rho_i.push_back(t.rho_i);
+        table.rho_q.push_back(t.rho_q);
+        table.albedo.push_back(t.albedo);
+        table.dolp.push_back(std::abs(t.q) / t.i);
+        table.error_estimate.push_back(kEntryError);
+        table.rho_error_estimate.push_back(kEntryError);
+        table.status.push_back(0);
+      }
+    }
+  }
+  return table;
+}
+
+void expect_holds(const PointResult& result, double theta_deg, double sigma, double q) {
+  const Truth t = truth(theta_deg, sigma, q);
+  EXPECT_NEAR(result.dolp, std::abs(t.q) / t.i, result.error_estimate) << theta_deg << " " << sigma << " " << q;
+  EXPECT_NEAR(result.rho_i, t.rho_i, result.rho_error_estimate * t.rho_i) << theta_deg << " " << sigma << " " << q;
+  EXPECT_NEAR(result.rho_q, t.rho_q, result.rho_error_estimate * t.rho_i) << theta_deg << " " << sigma << " " << q;
+}
+
+TEST(TableLookup, BetweenEntries_ErrorIsWithinWhatIsStated) {
+  for (const std::size_t count : {3U, 5U, 9U, 17U}) {
+    const Table table = made_up(range(0, 80, count), range(0.1, 1.0, count), range(1.5, 6.0, count));
+    const TableLookup lookup(table, 1e-4, "t.nc");
+    double worst = 0.0;
+    for (const double theta : {1.0, 33.3, 47.0, 79.0}) {
+      for (const double sigma : {0.11, 0.37, 0.98}) {
+        for (const double q : {1.51, 2.2, 5.7}) {
+          const PointResult result = lookup.at(theta, sigma, q);
+          expect_holds(result, theta, sigma, q);
+          worst = std::max(worst, result.error_estimate);
+          EXPECT_EQ((result.status & kStatusToleranceMissed) != 0,
+                    result.error_estimate > 1e-4 || result.rho_error_estimate > 1e-4);
+        }
+      }
+    }
+    if (count >= 17) {
+      EXPECT_LT(worst, 1e-4);
+    }
+    if (count == 3) {
+      EXPECT_GT(worst, 1e-3);
+    }
+  }
+}
+
+TEST(TableLookup, AtAnEntry_ItsValuesAndItsErrors) {
+  const Table table = made_up(range(0, 80, 9), {0.1, 0.3, 0.9}, {2.0, 3.0});
+  const TableLookup lookup(table, 1e-4, "t.nc");
+  const std::size_t position = table.position(4, 1, 1);
+  const PointResult result = lookup.at(40.0, 0.3, 3.0);
+  EXPECT_EQ(result.stokes_q, table.stokes_q[position]);
+  EXPECT_EQ(result.rho_i, table.rho_i[position]);
+  EXPECT_NEAR(result.error_estimate, kEntryError, 1e-15);
+  EXPECT_NEAR(result.rho_error_estimate, kEntryError, 1e-15);
+  EXPECT_EQ(result.status, 0U);
+}
+
+TEST(TableLookup, AxisWithTwoOrThreeValues_StatesNoErrorBetweenThem) {
+  const Table table = made_up(range(0, 80, 9), {0.1, 0.3, 0.9}, {2.0});
+  const TableLookup lookup(table, 1e-4, "t.nc");
+  const PointResult between = lookup.at(41.0, 0.2, 2.0);
+  EXPECT_TRUE(std::isinf(between.error_estimate) && std::isinf(between.rho_error_estimate));
+  EXPECT_EQ(between.status, kStatusToleranceMissed);
+  EXPECT_TRUE(std::isfinite(lookup.at(41.0, 0.3, 2.0).error_estimate));
+}
+
+TEST(TableLookup, AxesWithOneValue_AreNotInterpolated) {
+  const Table table = made_up(range(0, 80, 33), {0.3}, {2.0});
+  const TableLookup lookup(table, 1e-4, "t.nc");
+  const PointResult result = lookup.at(41.3, 0.3, 2.0);
+  expect_holds(result, 41.3, 0.3, 2.0);
+  EXPECT_LT(result.error_estimate, 1e-5);
+}
+
+TEST(TableLookup, DescendingAxes_TheSameResult) {
+  const Table up = made_up(range(0, 80, 9), range(0.1, 1.0, 7), {2.0, 3.0, 4.0, 5.0});
+  const Table down = made_up(range(80, 0, 9), range(1.0, 0.1, 7), {5.0, 4.0, 3.0, 2.0});
+  const PointResult a = TableLookup(up, 1e-4, "").at(33.0, 0.42, 2.7);
+  const PointResult b = TableLookup(down, 1e-4, "").at(33.0, 0.42, 2.7);
+  EXPECT_NEAR(a.dolp, b.dolp, 1e-12);
+  EXPECT_NEAR(a.error_estimate, b.error_estimate, 1e-12);
+}
+
+TEST(TableLookup, NextToUnknownEntries_ReadsThoseItKnows) {
+  Table table = made_up(range(0, 90, 19), {0.3}, {2.0});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::size_t last = table.size() - 1;  // 90 degrees
+  for (auto column : {&Table::stokes_i, &Table::stokes_q, &Table::stokes_u, &Table::stokes_v, &Table::rho_i,
+                      &Table::rho_q, &Table::error_estimate}) {
+    (table.*column)[last] = nan;
+  }
+  table.status[last] = kStatusOutsideDomain | kStatusUnphysicalReflectance;
+  const TableLookup lookup(table, 1e-3, "t.nc");
+  const PointResult before = lookup.at(84.0, 0.3, 2.0);
+  expect_holds(before, 84.0, 0.3, 2.0);
+  EXPECT_EQ(before.status, 0U);
+  const PointResult between = lookup.at(87.0, 0.3, 2.0);
+  EXPECT_TRUE(std::isnan(between.dolp));
+  EXPECT_EQ(between.status, kStatusOutsideDomain);
+}
+
+TEST(TableLookup, StatusOfTheCell_IsKept_AndNegativeIntensityIsFound) {
+  Table table = made_up(range(0, 80, 9), {0.3}, {2.0});
+  table.status[5] = kStatusUnphysicalReflectance;
+  for (std::size_t i = 6; i < table.size(); ++i) table.stokes_i[i] = -1.0;
+  const TableLookup lookup(table, 1e-3, "t.nc");
+  EXPECT_EQ(lookup.at(12.0, 0.3, 2.0).status & kStatusUnphysicalReflectance, 0U);
+  EXPECT_NE(lookup.at(45.0, 0.3, 2.0).status & kStatusUnphysicalReflectance, 0U);
+  EXPECT_NE(lookup.at(70.0, 0.3, 2.0).status & kStatusNonPositiveIntensity, 0U);
+}
+
+TEST(TableLookup, QuantitiesThatTheTableLacks_AreNan) {
+  Table table = made_up(range(0, 80, 9), {0.3}, {2.0});
+  table.rho_i.clear();
+  table.rho_q.clear();
+  table.albedo.clear();
+  table.rho_error_estimate.clear();
+  const PointResult result = TableLookup(table, 1e-2, "t.nc").at(42.0, 0.3, 2.0);
+  EXPECT_TRUE(std::isnan(result.rho_i) && std::isnan(result.albedo) && std::isnan(result.rho_error_estimate));
+  EXPECT_GT(result.dolp, 0.0);
+  EXPECT_EQ(result.status, 0U);
+}
+
+TEST(TableLookup, AValueTwice_IsRefused) {
+  const Table table = made_up({0.0, 10.0, 10.0}, {0.3}, {2.0});
+  EXPECT_THROW(TableLookup(table, 1e-4, "t.nc"), InputError);
+}
+
+}  // namespace

@@ -42,7 +42,7 @@ TEST(Grouped, EveryEntry_HasAPlaceInAGroupOfItsOwnDirectionIndexAndShape) {
   const MomentsRequest request =
       grid(Masking::kIntegral, {0.0, 30.0, 60.0}, {0.1, 0.3}, kManyQ, {{1.5, 0.0}, {0.9, 0.0}});
   const KernelData data = kernel_data(request);
-  const Grouping grouping = grouped(data, kSizes, false);
+  const Grouping grouping = grouped(data, kSizes, kSizes);
   EXPECT_EQ(grouping.size, kSize);
   ASSERT_EQ(grouping.places.size(), data.entries.size());
   std::set<std::pair<std::uint32_t, std::uint32_t>> places;
@@ -68,7 +68,7 @@ TEST(Grouped, EveryEntry_HasAPlaceInAGroupOfItsOwnDirectionIndexAndShape) {
 
 TEST(Grouped, Families_ShareTheHardestNeedsAndAscendInQ) {
   const KernelData data = kernel_data(grid(Masking::kSmith, {30.0}, {0.05, 0.9}, kManyQ, {{1.5, 0.0}}));
-  const Grouping grouping = grouped(data, kSizes, false);
+  const Grouping grouping = grouped(data, kSizes, kSizes);
   double widest = 0.0;
   for (const ShapeFamily& family : grouping.families) {
     const kernel::ShapeNode& first = grouping.shapes[family.first];
@@ -94,12 +94,12 @@ TEST(Grouped, Families_ShareTheHardestNeedsAndAscendInQ) {
 
 TEST(Grouped, EntriesThatShareNothing_AreAlone) {
   MomentsRequest request = grid(Masking::kNone, {10.0, 20.0, 40.0}, {0.1, 0.2, 0.4}, {2.0}, {{1.5, 0.0}});
-  EXPECT_EQ(grouped(kernel_data(request), kSizes, false).size, 1U);
+  EXPECT_EQ(grouped(kernel_data(request), kSizes, kSizes).size, 1U);
   request = grid(Masking::kNone, {10.0}, {0.1}, kManyQ, {{1.5, 0.0}});
-  EXPECT_EQ(grouped(kernel_data(request), kSizes, false).size, kSize);
+  EXPECT_EQ(grouped(kernel_data(request), kSizes, kSizes).size, kSize);
   EXPECT_EQ(grouped(kernel_data(request), std::array{1U}).size, 1U);
   request.distribution = Distribution::kGaussian;  // which has no q
-  EXPECT_EQ(grouped(kernel_data(request), kSizes, false).size, 1U);
+  EXPECT_EQ(grouped(kernel_data(request), kSizes, kSizes).size, 1U);
 }
 
 TEST(Grouped, SmallRequest_IsNotWorthAKernelOfItsOwn) {

@@ -151,7 +151,7 @@ Grouping grouped_exactly(const KernelData& data, std::uint32_t size) {
 
 }  // namespace
 
-Grouping grouped(const KernelData& data, std::span<const std::uint32_t> sizes, bool counts_kernels) {
+Grouping grouped(const KernelData& data, std::span<const std::uint32_t> sizes, std::span<const std::uint32_t> made) {
   Grouping best;
   double least = std::numeric_limits<double>::infinity();
   for (const std::uint32_t size : sizes) {
@@ -160,7 +160,8 @@ Grouping grouped(const KernelData& data, std::span<const std::uint32_t> sizes, b
     if (size > 1 && static_cast<double>(data.entries.size()) <= kLeastUse * size * groups) continue;
     const GroupWork unit = data.masking == Masking::kIntegral ? kWithTables : GroupWork{};
     const double evaluations = std::pow(data.rule.digits / kUsualDigits, 2.0);
-    const double kernel = counts_kernels ? unit.kernel * size : 0.0;
+    const bool is_made = std::ranges::find(made, size) != made.end();
+    const double kernel = is_made ? 0.0 : unit.kernel * size;
     const double work = (unit.shared + size) * groups * evaluations + kernel;
     if (work < least) {
       least = work;

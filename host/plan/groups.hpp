@@ -53,8 +53,9 @@ struct Grouping {
 std::vector<GroupPiece> pieces_of(const Grouping& grouping, const KernelData& data, std::uint32_t first,
                                   std::uint32_t count);
 
-/// Groups of the size that takes the least work; `sizes` must contain 1. Making the kernel of a larger size is part of
-/// the work, so that small requests have none; unless `counts_kernels` is false.
-Grouping grouped(const KernelData& data, std::span<const std::uint32_t> sizes, bool counts_kernels = true);
+/// Groups of the size that takes the least work; `sizes` must contain 1. Making a kernel is part of the work, so that
+/// small requests have no groups, except for the sizes whose kernels are `made` already.
+Grouping grouped(const KernelData& data, std::span<const std::uint32_t> sizes,
+                 std::span<const std::uint32_t> made = {});
 
 }  // namespace dolp

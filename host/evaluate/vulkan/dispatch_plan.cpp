@@ -30,7 +30,9 @@ DispatchPlan dispatch_plan(const MomentsRequest& request, const DeviceDescriptio
   if (request.entries.empty()) return {};
   const vulkan::Packing packing(request.precision == Precision::kDouble);
   const KernelData data = kernel_data(request);
-  const Grouping grouping = grouped(data, kGroupSizes, !options.groups_small_requests);
+  const Grouping grouping = grouped(
+      data, kGroupSizes,
+      options.groups_small_requests ? std::span<const std::uint32_t>(kGroupSizes) : std::span<const std::uint32_t>{});
   const vulkan::TileCosts costs = vulkan::tile_costs(packing, grouping.size);
   const std::uint64_t most = grouping.groups.size() * DOLP_MAX_PIECES;
   const vulkan::TileSizes sizes =

@@ -90,6 +90,15 @@ VkPipeline Kernels::moments(Distribution distribution, Masking masking, std::uin
   return cached(moments_cache(group_size), moments_module(group_size, float64_), distribution, masking);
 }
 
+std::vector<std::uint32_t> Kernels::made_group_sizes(Distribution distribution, Masking masking) {
+  const std::scoped_lock lock(mutex_);
+  std::vector<std::uint32_t> sizes;
+  for (const auto& [size, cache] : moments_) {
+    if (cache.contains({distribution, masking})) sizes.push_back(size);
+  }
+  return sizes;
+}
+
 Kernels::Cache& Kernels::moments_cache(std::uint32_t group_size) {
   const std::scoped_lock lock(mutex_);
   return moments_[group_size];

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "evaluate/vulkan/device.hpp"
 #include "evaluate/vulkan/handle.hpp"
@@ -30,6 +31,8 @@ class Kernels {
 
   /// `group_size`: one of kGroupSizes of plan/groups.hpp.
   VkPipeline moments(Distribution distribution, Masking masking, std::uint32_t group_size);
+  /// The sizes of groups that `moments` has made a pipeline for.
+  std::vector<std::uint32_t> made_group_sizes(Distribution distribution, Masking masking);
   VkPipeline masking_table(Distribution distribution, Masking masking);
   VkPipeline mueller(Distribution distribution, Masking masking);
   /// Runs `pipeline` of `create` in place of that of `moments`, for studies of other modules.

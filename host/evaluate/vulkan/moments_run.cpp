@@ -18,6 +18,11 @@ using RulePoint = std::array<double, 4>;
 constexpr std::size_t kGroupsAtOnce = 1024;
 constexpr std::size_t kEntriesAtOnce = 4096;
 
+std::vector<std::uint32_t> made_group_sizes(const RunContext& context, const MomentsRequest& request) {
+  if (context.groups_small_requests) return {kGroupSizes.begin(), kGroupSizes.end()};
+  return context.kernels.made_group_sizes(request.distribution, request.masking);
+}
+
 }  // namespace
 
 MomentsRun::MomentsRun(const RunContext& context, const MomentsRequest& request, std::uint32_t tile_invocations,
@@ -25,7 +30,7 @@ MomentsRun::MomentsRun(const RunContext& context, const MomentsRequest& request,
     : context_(context),
       request_(request),
       data_(kernel_data(request)),
-      grouping_(grouped(data_, kGroupSizes, !context.groups_small_requests)),
+      grouping_(grouped(data_, kGroupSizes, made_group_sizes(context, request))),
       sizes_(sizes(tile_invocations, block_shapes)),
       thetas_(data_.thetas.size()),
       indices_(request.indices.size()) {

@@ -145,9 +145,20 @@ TEST(ShapePlan, NothingDense_OrNotWanted_NoPlan) {
   EXPECT_FALSE(shape_plan(request_of(kModel, points, 1e-4)));
   EXPECT_FALSE(shape_plan(grid_request(kModel, spaced(0, 89, 90), {0.3}, {2.0, 3.0})));
   EXPECT_FALSE(shape_plan(grid_request(kModel, {60.0}, spaced(0.1, 1, 6), spaced(2, 5, 5))));
+  EXPECT_FALSE(shape_plan(grid_request(kModel, {}, {}, {})));
   MomentsRequest unwanted = grid_request(kModel, {60.0}, spaced(0.05, 1.0, 64), spaced(1.75, 8.0, 64));
   unwanted.may_interpolate = false;
   EXPECT_FALSE(shape_plan(unwanted));
+}
+
+TEST(ShapePlan, ScatteredShapesOfOneDirection_NoPlan) {
+  MomentsRequest request = grid_request(kModel, {60.0}, {}, {});
+  Random random(2);
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    request.shapes.push_back({random.uniform(0.05, 1.0), random.uniform(1.75, 8.0)});
+    request.entries.push_back({0, i, 0});
+  }
+  EXPECT_FALSE(shape_plan(request));
 }
 
 TEST(ShapePlan, ExtremeRange_NoGain_NoPlan) {

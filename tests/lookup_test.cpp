@@ -198,6 +198,12 @@ TEST(TableLookup, NextToUnknownEntries_ReadsThoseItKnows) {
   const PointResult before = lookup.at(84.0, 0.3, 2.0);
   expect_holds(before, 84.0, 0.3, 2.0);
   EXPECT_EQ(before.status, 0U);
+  table.dolp[last] = 0.25;  // a limit
+  table.error_estimate[last] = 1e-5;
+  const PointResult at_horizon = lookup.at(90.0, 0.3, 2.0);
+  EXPECT_EQ(at_horizon.dolp, 0.25);
+  EXPECT_EQ(at_horizon.error_estimate, 1e-5);
+  EXPECT_EQ(at_horizon.status, table.status[last]);
   const PointResult between = lookup.at(87.0, 0.3, 2.0);
   EXPECT_TRUE(std::isnan(between.dolp));
   EXPECT_EQ(between.status, kStatusOutsideDomain);
@@ -210,7 +216,16 @@ TEST(TableLookup, StatusOfTheCell_IsKept_AndNegativeIntensityIsFound) {
   const TableLookup lookup(table, 1e-3, "t.nc");
   EXPECT_EQ(lookup.at(12.0, 0.3, 2.0).status & kStatusUnphysicalReflectance, 0U);
   EXPECT_NE(lookup.at(45.0, 0.3, 2.0).status & kStatusUnphysicalReflectance, 0U);
-  EXPECT_NE(lookup.at(70.0, 0.3, 2.0).status & kStatusNonPositiveIntensity, 0U);
+  EXPECT_NE(lookup.at(75.0, 0.3, 2.0).status & kStatusNonPositiveIntensity, 0U);
+}
+
+TEST(TableLookup, EntryWithoutABound_IsReadWithoutABound) {
+  Table table = made_up(range(0, 80, 9), {0.3}, {2.0});
+  table.error_estimate[4] = std::numeric_limits<double>::infinity();
+  const PointResult result = TableLookup(table, 1e-3, "t.nc").at(42.0, 0.3, 2.0);
+  EXPECT_TRUE(std::isinf(result.error_estimate));
+  EXPECT_EQ(result.status, kStatusToleranceMissed);
+  EXPECT_TRUE(std::isfinite(result.dolp));
 }
 
 TEST(TableLookup, QuantitiesThatTheTableLacks_AreNan) {

@@ -257,6 +257,12 @@ TEST_F(Plan, ManyEntries_PredictionFromSomeIsNearly) {
   EXPECT_NEAR(predicted["evaluations"], evaluations, kSampling * evaluations);
 }
 
+TEST_F(Plan, Mirrors_NothingIsPlanned) {
+  const json predicted = plan({"--set", "grid.sigma=0"});
+  EXPECT_EQ(predicted["moments"], 0);
+  EXPECT_EQ(predicted["evaluations"], 0.0);
+}
+
 TEST_F(Plan, NoDevice_PlansAllTheSame) {
   Command wanted = command({"plan", "scene.toml", "--json"});
   wanted.environment = kNoDriver;

@@ -17,6 +17,9 @@ struct SlopeShape {
   friend bool operator==(const SlopeShape&, const SlopeShape&) = default;
 };
 
+/// The tightest tolerance of a rule in float; beyond, rounding drowns it.
+inline constexpr double kLeastFloatTolerance = 2e-6;
+
 /// One entry: positions in the three lists of its request.
 struct MomentsEntry {
   std::uint32_t theta = 0;
@@ -67,9 +70,9 @@ struct EvaluationReport {
   std::string precision;  ///< float | double | float and double, as used
   std::uint64_t dispatches = 0;
   double evaluations = 0.0;
-  double kernel_s = 0.0;  ///< time on the device (timestamps), or of the loop on the CPU, and of interpolation
-  double setup_s = 0.0;   ///< device and pipeline creation
-  std::uint64_t interpolated = 0;         ///< moments that were interpolated between slope distributions,
+  double kernel_s = 0.0;           ///< time on the device (timestamps), or of the loop on the CPU, and of interpolation
+  double setup_s = 0.0;            ///< device and pipeline creation
+  std::uint64_t interpolated = 0;  ///< moments that were interpolated between slope distributions,
   std::uint64_t interpolation_nodes = 0;  ///< and moments computed for that
 };
 

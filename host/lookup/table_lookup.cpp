@@ -42,6 +42,8 @@ struct TableLookup::Window {
   Stencil sigma;
   Stencil q;
 
+  std::size_t size() const { return theta.positions.size() * sigma.positions.size() * q.positions.size(); }
+
   /// Calls visit(position, weight) for each entry.
   template <class Visit>
   void each(const Table& table, const Visit& visit) const {
@@ -86,10 +88,25 @@ TableLookup::TableLookup(const Table& table, double tolerance, const std::string
 
 bool TableLookup::is_known(const Window& window) const {
   bool known = true;
-  window.each(table_, [&](std::size_t position, double) {
-    known = known && std::isfinite(table_.stokes_i[position]) && std::isfinite(table_.error_estimate[position]);
-  });
+  window.each(table_, [&](std::size_t position, double) { known = known && std::isfinite(table_.stokes_i[position]); });
   return known;
+}
+
+PointResult TableLookup::entry(const Window& window) const {
+  const std::size_t position =
+      table_.position(window.theta.positions.front(), window.sigma.positions.front(), window.q.positions.front());
+  const auto value = [position](const std::vector<double>& column) { return column.empty() ? kNan : column[position]; };
+  return {.dolp = value(table_.dolp),
+          .stokes_i = value(table_.stokes_i),
+          .stokes_q = value(table_.stokes_q),
+          .stokes_u = value(table_.stokes_u),
+          .stokes_v = value(table_.stokes_v),
+          .rho_i = value(table_.rho_i),
+          .rho_q = value(table_.rho_q),
+          .albedo = value(table_.albedo),
+          .error_estimate = value(table_.error_estimate),
+          .rho_error_estimate = value(table_.rho_error_estimate),
+          .status = table_.status[position]};
 }
 
 TableLookup::Values TableLookup::read(const Window& window) const {
@@ -115,6 +132,7 @@ PointResult TableLookup::at(double theta_deg, double sigma, double q) const {
     return Window{theta_.stencil(theta_deg, count, shift), sigma_.stencil(sigma, kWindow), q_.stencil(q, kWindow)};
   };
   Window window = window_of(kWindow, 0);
+  if (window.size() == 1) return entry(window);
   int shift = 0;
   std::size_t count = kWindow;
   while (!is_known(window)) {

@@ -29,7 +29,7 @@ class TableLookup {
   const LookupAxis& sigma() const { return sigma_; }
   const LookupAxis& q() const { return q_; }
 
-  /// What the table says at a point within its axes; quantities that it does not have are NaN.
+  /// What the table says at a point within its axes, at an entry just that; quantities that it does not have are NaN.
   /// Domain: next to entries outside the model's domain the window moves away from them; between such entries the
   /// result is NaN with status 4.
   PointResult at(double theta_deg, double sigma, double q) const;
@@ -39,6 +39,7 @@ class TableLookup {
   struct Values;
 
   bool is_known(const Window& window) const;
+  PointResult entry(const Window& window) const;
   Values read(const Window& window) const;
   PointResult result_of(const Window& cell, const Values& values, const Values& spread) const;
 

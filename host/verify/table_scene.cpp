@@ -74,7 +74,7 @@ Scene table_scene(const Table& table, const std::string& name) {
   const std::string* text = find_text(table, "scene");
   if (!text) {
     throw InputError(
-        fmt::format("{}: has no attribute \"scene\"; only a table that dolp wrote as .nc can be verified", name));
+        fmt::format("{}: has no attribute \"scene\"; only a table that dolp wrote as .nc holds its scene", name));
   }
   const std::string* overrides = find_text(table, "scene_overrides");
   const std::string* path = find_text(table, "scene_path");

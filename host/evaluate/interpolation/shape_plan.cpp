@@ -10,7 +10,6 @@ namespace dolp {
 namespace {
 
 constexpr double kNodeTolerance = 0.0625;  // of the request's tolerance: bounds grow by the interpolant's weights
-constexpr double kFloatLimit = 2e-6;       // rules below it drown in rounding
 constexpr double kExtraDigits = 1.0;       // of the interpolation
 constexpr std::size_t kLeastGain = 2;      // entries of a slab for each node
 constexpr double kTail = 3.0;         // error bound over the largest of the last coefficients, where these fall fast
@@ -50,7 +49,8 @@ MomentsRequest request_like(const MomentsRequest& request) {
 
 double node_tolerance(const MomentsRequest& request) {
   const double wanted = kNodeTolerance * request.tolerance;
-  return request.precision == Precision::kDouble ? wanted : std::max(wanted, std::min(kFloatLimit, request.tolerance));
+  return request.precision == Precision::kDouble ? wanted
+                                                 : std::max(wanted, std::min(kLeastFloatTolerance, request.tolerance));
 }
 
 /// Sorts the entries of a request into slabs, and those of slabs with few entries out.
@@ -132,8 +132,8 @@ constexpr std::array<double Moments::*, kQuantities> kBounds = {&Moments::r_i_er
 
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
   const std::size_t entries = request.entries.size();
-  if (!request.may_interpolate) return std::nullopt;
-  // Scattered points have directions or indices of their own.
+  if (!request.may_interpolate || entries == 0) return std::nullopt;
+  // Scattered points have directions or indices of their own,
   if (request.theta_deg.size() * request.indices.size() * kLeastGain > entries) return std::nullopt;
   const SlabSorter sorter(request);
   const double digits = kExtraDigits - std::log10(request.tolerance);
@@ -142,7 +142,9 @@ std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
   ShapePlan plan;
   plan.sigma = shape_axis(sigma_parameter(request.distribution), sigma.values, digits);
   plan.q = shape_axis(q_parameter(request.distribution, request.masking), q.values, digits);
-  const std::size_t least_entries = kLeastGain * plan.nodes_of_a_slab();
+  // or slope distributions that are no grid.
+  const std::size_t least_entries =
+      std::max(kLeastGain * plan.nodes_of_a_slab(), sigma.values.size() * plan.q.nodes.size());
   if (sorter.largest() < least_entries) return std::nullopt;
   plan.sigma_of = sigma.position_of;
   plan.q_of = q.position_of;

@@ -2,7 +2,7 @@
 //
 // The entries of one direction and one index that differ in the slope distribution alone form a slab. Its moments are
 // analytic in ln(sigma) and ln(q - 1), so that a dense slab follows from its values at a few Chebyshev nodes, to a
-// tolerance of its own. A slab that has few entries is computed entry by entry.
+// tolerance of its own. A slab that has few entries, or is no grid, is computed entry by entry.
 #pragma once
 
 #include <cstddef>

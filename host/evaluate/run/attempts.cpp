@@ -6,9 +6,7 @@
 namespace dolp {
 namespace {
 
-// Rules below these tolerances drown in rounding.
-constexpr double kFloatLimit = 2e-6;
-constexpr double kDoubleLimit = 1e-15;
+constexpr double kLeastDoubleTolerance = 1e-15;  // as kLeastFloatTolerance
 
 // A miss by a little asks for more than the little, or the next attempt may miss too.
 constexpr double kSafety = 1.5;
@@ -25,7 +23,7 @@ double half_decades(double decades) { return 0.5 * std::ceil(2.0 * decades); }
 }  // namespace
 
 Attempt first_attempt(const Accuracy& accuracy, bool has_double) {
-  const bool wants_double = accuracy.precision == Precision::kDouble || accuracy.tolerance < kFloatLimit;
+  const bool wants_double = accuracy.precision == Precision::kDouble || accuracy.tolerance < kLeastFloatTolerance;
   return {wants_double && may_use_double(accuracy, has_double) ? Precision::kDouble : Precision::kFloat,
           accuracy.tolerance};
 }
@@ -45,12 +43,12 @@ std::optional<Attempt> next_attempt(const Attempt& last, const PointResult& resu
   const double missed_by = std::isfinite(excess) ? half_decades(std::log10(kSafety * excess)) : kMostDecades;
   const double decades = std::min(std::max(missed_by, least), kMostDecades);
   const double wanted = last.tolerance * std::pow(10.0, -decades);
-  if (last.precision == Precision::kFloat && wanted >= kFloatLimit) return Attempt{Precision::kFloat, wanted};
+  if (last.precision == Precision::kFloat && wanted >= kLeastFloatTolerance) return Attempt{Precision::kFloat, wanted};
   if (!may_use_double(accuracy, has_double)) {
-    const bool can_tighten = last.precision == Precision::kFloat && last.tolerance > kFloatLimit;
-    return can_tighten ? std::optional(Attempt{Precision::kFloat, kFloatLimit}) : std::nullopt;
+    const bool can_tighten = last.precision == Precision::kFloat && last.tolerance > kLeastFloatTolerance;
+    return can_tighten ? std::optional(Attempt{Precision::kFloat, kLeastFloatTolerance}) : std::nullopt;
   }
-  const double tolerance = std::max(wanted, kDoubleLimit);
+  const double tolerance = std::max(wanted, kLeastDoubleTolerance);
   if (last.precision == Precision::kDouble && tolerance >= last.tolerance) return std::nullopt;
   return Attempt{Precision::kDouble, tolerance};
 }

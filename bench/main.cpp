@@ -2,6 +2,9 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <string>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "bench/study.hpp"
 #include "cli/commands.hpp"
@@ -92,9 +95,19 @@ int parse_and_run(int argc, char** argv) {
   return cli::kExitDone;
 }
 
+// What a repeat frees the next one finds again. glibc gives large blocks back to the system, so that repeats of large
+// grids would pay for fresh pages, and those of small ones would not.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, -1);
+#endif
+}
+
 }  // namespace
 }  // namespace dolp::bench
 
 int main(int argc, char** argv) {
+  dolp::bench::keep_freed_memory();
   return dolp::cli::guarded("dolp-bench", [&] { return dolp::bench::parse_and_run(argc, argv); });
 }

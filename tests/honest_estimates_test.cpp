@@ -61,5 +61,52 @@ INSTANTIATE_TEST_SUITE_P(Kernels, RandomPoints,
                            return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
                          });
 
+// The DOLP asks the most of rho where hardly anything is emitted: next to the horizon.
+class NextToTheHorizon : public testing::TestWithParam<Masking> {
+ protected:
+  static constexpr std::size_t kPoints = 300;
+  static constexpr double kFinest = 1e-10;
+
+  static std::vector<Point> points() {
+    Random random(kSeed);
+    std::vector<Point> drawn;
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      const double theta_deg = 90.0 - random.log_uniform(0.06, 2.0);
+      const SlopeShape shape{random.log_uniform(0.05, 1.0), 1.0 + random.log_uniform(0.75, 7.0)};
+      drawn.push_back({theta_deg, shape, {random.uniform(1.3, 4.0), 0.0}});
+    }
+    return drawn;
+  }
+};
+
+TEST_P(NextToTheHorizon, RulesAndBounds_KeepUpWithTheTolerance) {
+  const Model model{Distribution::kCauchy, GetParam()};
+  CpuEvaluator evaluator(Precision::kDouble);
+  const std::vector<Moments> exact = evaluator.evaluate(request_of(model, points(), kFinest), {});
+  for (const double tolerance : {1e-4, 1e-6}) {
+    const std::vector<Moments> moments = evaluator.evaluate(request_of(model, points(), tolerance), {});
+    std::vector<double> errors, bounds;
+    for (std::size_t i = 0; i < moments.size(); ++i) {
+      const double asked = tolerance * exact[i].r_i;
+      const double error = std::max(std::abs(moments[i].r_i - exact[i].r_i), std::abs(moments[i].r_q - exact[i].r_q));
+      errors.push_back(error / asked);
+      bounds.push_back(std::max(moments[i].r_i_error, moments[i].r_q_error) / asked);
+    }
+    std::ranges::sort(errors);
+    std::ranges::sort(bounds);
+    std::printf("tolerance %g: errors %.2g of it at most, bounds %.2g in the median, %.2g for nine in ten\n", tolerance,
+                errors.back(), bounds[kPoints / 2], bounds[kPoints * 9 / 10]);
+    EXPECT_LT(errors[kPoints * 99 / 100], 1.5);
+    EXPECT_LT(bounds[kPoints / 2], 4.0);
+    EXPECT_LT(bounds[kPoints * 9 / 10], 15.0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Maskings, NextToTheHorizon,
+                         testing::Values(Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith),
+                         [](const auto& test) {
+                           return name_of({Distribution::kCauchy, test.param});
+                         });
+
 }  // namespace
 }  // namespace dolp

@@ -27,8 +27,9 @@ constexpr double kManyDigits = 8.5;  // from here on half as many entries
 constexpr double kFinerBy = 1e-4;
 constexpr double kFinest = 1e-15;
 constexpr double kDoubleRoundoff = 0x1p-53;
-constexpr double kCoreShare = 0.55;
-constexpr std::size_t kAtOnce = 1000;  // entries whose masking tables are in memory
+constexpr double kCoreShare = 0.6;
+constexpr double kGrazingShare = 0.25;  // of the core
+constexpr std::size_t kAtOnce = 1000;   // entries whose masking tables are in memory
 
 class Draw {
  public:
@@ -54,7 +55,7 @@ constexpr std::array kRoundExponents = {1.6, 1.75, 2.0, 2.5, 3.0, 4.0, 5.0, 8.0}
 double theta_deg(Draw& draw, bool is_core) {
   if (draw.chance(0.03)) return draw.chance(0.5) ? 0.0 : 90.0;
   if (draw.chance(0.1)) return 5.0 * std::floor(draw.uniform(0.0, 18.0));
-  if (is_core) return draw.uniform(0.0, 89.5);
+  if (is_core) return draw.chance(kGrazingShare) ? 90.0 - draw.log_uniform(1e-4, 10.0) : draw.uniform(0.0, 89.5);
   if (draw.chance(0.35)) return 90.0 - draw.log_uniform(1e-5, 10.0);
   return draw.chance(0.15) ? draw.log_uniform(1e-3, 10.0) : draw.uniform(0.0, 90.0);
 }

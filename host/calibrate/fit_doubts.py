@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Fits the coefficients of the error model (host/plan/doubt_model.hpp) and writes host/plan/doubt_coefficients.inc.
 
-    build/release/host/calibrate/dolp-doubts FOLDER --draws 14000 --seed 1 \
+    build/release/host/calibrate/dolp-doubts FIRST --draws 20000 --seed 1 \
         --stored tests/data/random_points.csv --stored host/verify/hard_cases.csv
-    /usr/bin/python3 host/calibrate/fit_doubts.py FOLDER -o host/plan/doubt_coefficients.inc
-    build/release/host/calibrate/dolp-doubts OTHER --draws 2000 --seed 2
+    build/release/host/calibrate/dolp-doubts SECOND --draws 4000 --seed 2
+    /usr/bin/python3 host/calibrate/fit_doubts.py FIRST SECOND -o host/plan/doubt_coefficients.inc
+    build/release/host/calibrate/dolp-doubts OTHER --draws 4000 --seed 3
     /usr/bin/python3 host/calibrate/fit_doubts.py OTHER --check host/plan/doubt_coefficients.inc
 
 log10(error bound / doubt) is linear in the features. For each model the fit is the function of the least mean over the
@@ -13,6 +14,7 @@ matter, which are added until none is violated. --check says how many entries of
 """
 
 import argparse
+import concurrent.futures
 import pathlib
 import re
 import sys
@@ -38,6 +40,7 @@ PULL_TO_ZERO = 1e-3  # on coefficients that no entry decides
 LARGEST_COEFFICIENT = 30.0
 FIRST_CONSTRAINTS = 4000
 MORE_CONSTRAINTS = 2000
+AT_ONCE = 2  # models, a gigabyte or two each
 
 
 def read_description(folder):
@@ -50,9 +53,10 @@ def hats(digits, knots):
     return np.stack([np.interp(digits, knots, row) for row in np.eye(len(knots))], axis=1)
 
 
-def read_samples(folder, model, knots, names):
+def read_samples(folders, model, knots, names):
     """digits, excess (entries, 2), margins, and the two design matrices (entries, features * knots)."""
-    rows = np.fromfile(folder / "{}{}.bin".format(*model)).reshape(-1, 3 + 2 * len(names))
+    files = [folder / "{}{}.bin".format(*model) for folder in folders]
+    rows = np.concatenate([np.fromfile(file) for file in files]).reshape(-1, 3 + 2 * len(names))
     digits, excess = rows[:, 0], rows[:, 1:3]
     blocks = np.split(rows[:, 3:], 2, axis=1)
     outside = blocks[0][:, [name.startswith(OUTSIDE) for name in names]].any(axis=1)
@@ -95,7 +99,7 @@ def fit(excess, margins, design):
     return envelope(design, np.maximum(excess, UNSEEN_EXCESS) + margins, weights)
 
 
-def describe(title, digits, excess, margins, bound):
+def described(title, digits, excess, margins, bound):
     """How the bounds stand: median over the error seen, by digits, and entries that are understated."""
     core = margins == CORE_MARGIN
     over = np.where(np.isfinite(excess), bound - excess, np.inf)
@@ -107,7 +111,7 @@ def describe(title, digits, excess, margins, bound):
         short = over[part] < 0.0
         worst = 10 ** max(0.0, -over[part].min())
         parts.append(f"{short.sum()} of {part.sum()} understated, up to {worst:.2f} times")
-    print(f"{title:32s} bound/error by digits {', '.join(parts[:4])}; core {parts[4]}; outside {parts[5]}", flush=True)
+    return f"{title:32s} bound/error by digits {', '.join(parts[:4])}; core {parts[4]}; outside {parts[5]}"
 
 
 def title_of(model, i):
@@ -138,22 +142,36 @@ def read_coefficients(path):
     return {(m, d, i): numbers[m, d, i] for m, d in MODELS for i in range(2)}
 
 
+def examine(folders, model, knots, names, given):
+    """Coefficients of a model, fitted unless given, and how they stand."""
+    digits, excess, margins, designs = read_samples(folders, model, knots, names)
+    coefficients = {}
+    lines = []
+    for i in range(2):
+        coefficients[(*model, i)] = given[(*model, i)] if given else fit(excess[:, i], margins, designs[i])
+        bound = designs[i] @ coefficients[(*model, i)]
+        lines.append(described(title_of(model, i), digits, excess[:, i], margins, bound))
+    return coefficients, lines
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("folders", type=pathlib.Path, nargs="+", metavar="FOLDER")
     action = parser.add_mutually_exclusive_group(required=True)
     action.add_argument("-o", dest="output", type=pathlib.Path, metavar="FILE")
     action.add_argument("--check", type=pathlib.Path, metavar="FILE")
     arguments = parser.parse_args()
-    knots, names = read_description(arguments.folder)
+    knots, names = read_description(arguments.folders[0])
     coefficients = read_coefficients(arguments.check) if arguments.check else {}
-    for model in MODELS:
-        digits, excess, margins, designs = read_samples(arguments.folder, model, knots, names)
-        for i in range(2):
-            if arguments.output:
-                coefficients[(*model, i)] = fit(excess[:, i], margins, designs[i])
-            bound = designs[i] @ coefficients[(*model, i)]
-            describe(title_of(model, i), digits, excess[:, i], margins, bound)
+    with concurrent.futures.ProcessPoolExecutor(AT_ONCE) as pool:
+        tasks = [
+            pool.submit(examine, arguments.folders, model, knots, names, arguments.check and coefficients)
+            for model in MODELS
+        ]
+        for task in tasks:
+            fitted, lines = task.result()
+            coefficients.update(fitted)
+            print("\n".join(lines), flush=True)
     if arguments.output:
         write_coefficients(arguments.output, names, coefficients)
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <boost/math/constants/constants.hpp>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <functional>
 #include <limits>
 
 #include "evaluate/radiometry/smooth_surface.hpp"
 #include "evaluate/scattering.hpp"
+#include "plan/gamma_ratio.hpp"
 #include "plan/geometry.hpp"
 
 namespace dolp {
@@ -96,7 +96,7 @@ std::array<Shell, kShells> shells_of(const Surface& surface, const CosSin& a, co
 double mean_slope(Distribution distribution, const SlopeShape& shape) {
   const double w = width(shape) / root_pi<double>();
   if (distribution == Distribution::kGaussian) return w;
-  return shape.q > 1.5 ? w * boost::math::tgamma_delta_ratio(shape.q - 1.5, 0.5) : kInfinity;
+  return shape.q > 1.5 ? w / gamma_ratio(shape.q - 1.5) : kInfinity;
 }
 
 /// Most of smith's L at a direction.

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <boost/math/constants/constants.hpp>
 #include <boost/math/special_functions/cos_pi.hpp>
-#include <boost/math/special_functions/gamma.hpp>
 #include <boost/math/special_functions/sin_pi.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <limits>
 
+#include "plan/gamma_ratio.hpp"
 #include "plan/geometry.hpp"
 #include "plan/rule_nodes.hpp"
 
@@ -45,19 +45,13 @@ double log_density(Distribution distribution, const SlopeShape& shape, double sl
   return front + std::log(shape.q - 1.0) - shape.q * log1p_square(u);
 }
 
-// Gamma(q - 1/2) / Gamma(q - 1), accurate near q = 1 as well as for q where both overflow.
-double gamma_ratio(double q) {
-  if (q < 2.0) return boost::math::tgamma_ratio(q - 0.5, q - 1.0);
-  return boost::math::tgamma_delta_ratio(q - 0.5, -0.5);
-}
-
 kernel::ShapeNode masking_shape(Distribution distribution, const SlopeShape& shape) {
   kernel::ShapeNode node{};
   const bool is_cauchy = distribution == Distribution::kCauchy;
   node.m = std::sqrt(2.0) * std::max(shape.sigma, kSmallestMaskingSigma);
   node.q_minus_1 = shape.q - 1.0;
   node.two_q_minus_3 = 2.0 * shape.q - 3.0;
-  node.marginal_norm = (is_cauchy ? gamma_ratio(shape.q) : 1.0) / (root_pi<double>() * node.m);
+  node.marginal_norm = (is_cauchy ? gamma_ratio(node.q_minus_1) : 1.0) / (root_pi<double>() * node.m);
   node.scale = std::min(is_cauchy ? node.m / std::sqrt(shape.q) : node.m, 1.0);
   node.cut = node.m * std::sqrt(is_cauchy ? std::expm1(kCutExponent / (shape.q - 0.5)) : kCutExponent);
   return node;

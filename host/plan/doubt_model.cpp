@@ -21,8 +21,8 @@ constexpr std::array<std::string_view, kDoubtFeatures> kNames = {
     // of the doubt
     "one", "doubt", "doubt above a tenth", "doubt above 1",
     // of the direction
-    "grazing", "cos below 0.2", "cos below 0.04", "sin below 0.5", "sin below 0.1", "coincidence",
-    "outside: grazing by", "outside: grazing",
+    "grazing", "cos below 0.2", "cos below 0.04", "sin below 0.5", "sin below 0.1", "coincidence", "cos below 0.001",
+    "next to the horizon",
     // of the shape
     "m", "m above 0.03", "m above 0.1", "m above 0.3", "m above 1", "outside: m small by", "outside: m large by",
     "outside: shape", "q", "q - 1 above 0.3", "q - 1 above 1", "q - 1 above 3", "heavy tail, smooth",
@@ -31,16 +31,17 @@ constexpr std::array<std::string_view, kDoubtFeatures> kNames = {
     "contrast", "contrast above 4", "contrast above 30", "contrast above 300", "outside: contrast small by", "critical",
     "critical by n", "nearly critical", "nearly critical by n", "outside: silvery", "outside: silvery by n",
     // of pairs
-    "pole", "pole near", "rough, grazing", "smooth, grazing", "rough, pole", "outside: rough, grazing", "critical by m",
-    "critical by cos", "nearly critical by m", "nearly critical by cos", "line", "line, smooth", "line by q",
-    "cusp above 0.01", "cusp above 1", "cusp above 100", "split cusp above 1", "split cusp above 1000", "cusp",
-    "cusp, grazing", "cusp, rough", "cusp, rough, grazing"};
+    "pole", "pole near", "rough, grazing", "smooth, grazing", "steep", "steep above 10", "rough, pole",
+    "outside: rough, grazing", "outside: smooth, grazing", "outside: smooth, next to the horizon",
+    "outside: shape, next to the horizon", "critical by m", "critical by cos", "nearly critical by m",
+    "nearly critical by cos", "line", "line, smooth", "line by q", "cusp above 0.01", "cusp above 1", "cusp above 100",
+    "split cusp above 1", "split cusp above 1000", "cusp", "cusp, grazing", "cusp, rough", "cusp, rough, grazing"};
 
 // Where features end, as log10: of m, cos(theta), q - 1 and |N^2 - 1|. What lies outside has features of its own, so
 // that it does not weigh on the rest.
 constexpr double kSmallestM = -1.85;
 constexpr double kLargestM = 0.25;
-constexpr double kGrazing = 2.06;
+constexpr double kGrazing = 3.0;
 constexpr double kSmallestCos = 1e-5;
 constexpr double kSmallestSin = 3e-3;
 constexpr double kSmallestQ = -1.22;
@@ -156,8 +157,8 @@ DoubtModel::Shape DoubtModel::shape_of(const kernel::ShapeNode& node) const {
   const double log_q = is_cauchy_ ? log10_in(node.q_minus_1, kCalibratedQ) : 0.0;
   const double q = std::clamp(log_q, smallest_q, kLargestQ);
   shape.log_q = q;
-  const bool is_outside =
-      shape.log_m < kSmallestM || shape.log_m > kLargestM || log_q < smallest_q || log_q > kLargestQ;
+  shape.is_outside =
+      flag(shape.log_m < kSmallestM || shape.log_m > kLargestM || log_q < smallest_q || log_q > kLargestQ);
   shape.features = {m,
                     above(m, -1.5),
                     above(m, -1.0),
@@ -165,7 +166,7 @@ DoubtModel::Shape DoubtModel::shape_of(const kernel::ShapeNode& node) const {
                     above(m, 0.0),
                     below(shape.log_m, kSmallestM),
                     above(shape.log_m, kLargestM),
-                    flag(is_outside),
+                    shape.is_outside,
                     q,
                     above(q, -0.5),
                     above(q, 0.0),
@@ -221,13 +222,19 @@ std::array<double, DoubtModel::kPair> DoubtModel::pair_features(const Theta& the
   const double cusp = flag(has_cusp) * (1.0 - theta.has_line);
   const double size = std::clamp(shape.cusp_digits, kWeakestCusp, 0.0) + digits_;
   const double rough = above(m, -0.3);
+  const double steep = m + grazing;  // facets that lean away from the view
   const double oblique = above(grazing, 0.7);
   return {above(pole, 0.3),
           above(pole, 1.2),
           above(m, -0.5) * above(grazing, 1.0),
           below(m, -0.8) * grazing,
+          above(steep, 0.0),
+          above(steep, 1.0),
           above(m, -1.0) * above(pole, 1.0),
           above(shape.log_m, kLargestM) * grazing,
+          below(shape.log_m, kSmallestM) * grazing,
+          below(shape.log_m, kSmallestM) * above(theta.log_cos, kGrazing),
+          shape.is_outside * flag(theta.log_cos > kGrazing),
           index.is_critical * shape.log_m,
           index.is_critical * theta.log_cos,
           index.is_nearly_critical * shape.log_m,

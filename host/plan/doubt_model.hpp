@@ -24,7 +24,7 @@ struct ThetaNode;
 /// What a doubt is of: r_i and r_q, or the deficit.
 enum class Doubted { kReflected, kDeficit };
 
-inline constexpr std::size_t kDoubtFeatures = 62;
+inline constexpr std::size_t kDoubtFeatures = 67;
 inline constexpr std::size_t kDoubtKnots = 4;
 
 using DoubtFeatures = std::array<double, kDoubtFeatures>;
@@ -68,6 +68,7 @@ class DoubtModel {
     double log_m = 0.0;
     double log_q = 0.0;
     double cusp_digits = 0.0;
+    double is_outside = 0.0;
     std::array<double, kShape> features{};
     std::array<double, 2> score{};
   };

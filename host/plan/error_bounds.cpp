@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <boost/math/constants/constants.hpp>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -11,7 +10,6 @@ namespace dolp {
 namespace {
 
 using boost::math::constants::pi;
-using boost::math::constants::root_pi;
 
 constexpr double kCosineRounding = 2.0 * std::numeric_limits<double>::epsilon();
 
@@ -49,8 +47,8 @@ double roundings(const KernelData& data, const kernel::ShapeNode& shape, const k
 
 // Mean of |t_x|, the slope in one plane. Domain: q > 1.5 for the cauchy.
 double mean_slope(Distribution distribution, const kernel::ShapeNode& shape) {
-  if (distribution == Distribution::kGaussian) return shape.m / root_pi<double>();
-  return shape.m / root_pi<double>() * boost::math::tgamma_delta_ratio(shape.q_minus_1 - 0.5, 0.5);
+  const double gaussian = shape.m * shape.m * shape.marginal_norm;
+  return distribution == Distribution::kGaussian ? gaussian : 2.0 * gaussian / shape.two_q_minus_3;
 }
 
 // Upper bound of G over all facets. v-cavity: e G <= 2 c is used instead. smith: the facets that theta sees add up to

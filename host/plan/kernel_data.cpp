@@ -4,7 +4,6 @@
 #include <array>
 #include <boost/math/constants/constants.hpp>
 #include <boost/math/special_functions/cos_pi.hpp>
-#include <boost/math/special_functions/gamma.hpp>
 #include <boost/math/special_functions/sin_pi.hpp>
 #include <cassert>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <map>
 #include <utility>
 
+#include "plan/gamma_ratio.hpp"
 #include "plan/rule.hpp"
 #include "plan/rule_nodes.hpp"
 
@@ -227,8 +227,7 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
   node.m = std::sqrt(2.0) * shape.sigma;
   node.q_minus_1 = shape.q - 1.0;
   const bool cauchy = request.distribution == Distribution::kCauchy;
-  node.marginal_norm =
-      (cauchy ? boost::math::tgamma_ratio(shape.q - 0.5, shape.q - 1.0) : 1.0) / (root_pi<double>() * node.m);
+  node.marginal_norm = (cauchy ? gamma_ratio(node.q_minus_1) : 1.0) / (root_pi<double>() * node.m);
   node.two_q_minus_3 = 2.0 * shape.q - 3.0;
   node.scale = std::min(cauchy ? node.m / std::sqrt(std::max(1.0, 0.25 * shape.q)) : node.m, 1.0);
   node.cut = slope_cut(request, shape, kCutShare * request.tolerance);

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <boost/math/constants/constants.hpp>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <numbers>
+
+#include "plan/gamma_ratio.hpp"
 
 namespace dolp {
 namespace {
@@ -45,7 +46,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_pole_growth = 0.465,
      .circle_pole = 1.28},
     // integral
-    {.margin_digits = 2.18,
+    {.margin_digits = 2.1,
      .t_nodes = 0.895,
      .t_strip = 1.08,
      .t_oblique = 0.0295,
@@ -67,7 +68,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_line = 0.944,
      .line_threshold = 5.47e+05},
     // smith
-    {.margin_digits = 1.84,
+    {.margin_digits = 1.7,
      .t_nodes = 1.13,
      .t_strip = 0.694,
      .t_oblique = -0.266,
@@ -85,8 +86,8 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_cluster_growth = 3.57,
      .cluster_curvature = -0.00769,
      .cluster_pole = 0.446,
-     .t_line = 0.522,
-     .phi_line = 0.226,
+     .t_line = 0.7,
+     .phi_line = 0.6,
      .cusp_digits = 4.04,
      .line_threshold = 4.5e+06,
      .tight_growth = 0.08},
@@ -113,6 +114,11 @@ constexpr double kGaussianCuspDigits = 0.0;
 constexpr double kUnsplitNodes = 40.0;
 constexpr double kUnsplitDigits = 10.0;
 
+// Digits that smith's cusp loses for each unit of q beyond 2: the higher the derivative that it is in, the less the
+// rules feel it.
+constexpr double kCuspPerQ = 1.5;
+constexpr double kSharpCuspQ = 2.0;
+
 // Digits by which RuleModel::cusp_digits falls for each digit from here on.
 constexpr double kCuspDigits = 7.0;
 constexpr double kCuspFall = 1.0;
@@ -123,8 +129,25 @@ constexpr double kOrderPerDigit = 8.0;
 
 constexpr double kNoCusp = -1000.0;
 
-double cusp_offset(double digits) {
-  return std::max(0.0, rule_model(Masking::kSmith).cusp_digits - kCuspFall * std::max(0.0, digits - kCuspDigits));
+double cusp_offset(Distribution distribution, const SlopeShape& shape, double digits) {
+  const double smooth = distribution == Distribution::kCauchy ? kCuspPerQ * std::max(0.0, shape.q - kSharpCuspQ) : 0.0;
+  const double small = rule_model(Masking::kSmith).cusp_digits - kCuspFall * std::max(0.0, digits - kCuspDigits);
+  return smooth + std::max(0.0, small);
+}
+
+// log10 of the size of smith's cusp, L = C (m tan(theta_r))^(2q-2) and more beside theta_r = 0; kNoCusp where none is
+// felt.
+double cusp_size(Distribution distribution, const SlopeShape& shape, double digits) {
+  if (distribution == Distribution::kGaussian) {
+    const bool is_felt = shape.sigma > kGaussianCuspSigma && digits > kTightDigits;
+    return is_felt ? kGaussianCuspDigits + cusp_offset(distribution, shape, digits) : kNoCusp;
+  }
+  const double from_integer = std::abs(shape.q - std::round(shape.q));
+  if (from_integer == 0.0) return kNoCusp;
+  const double width = std::min(1.0, std::numbers::sqrt2 * shape.sigma);
+  const double coefficient = gamma_ratio(shape.q - 1.0) / (boost::math::constants::root_pi<double>() *
+                                                           (2.0 * shape.q - 3.0) * (2.0 * shape.q - 2.0));
+  return (2.0 * shape.q - 2.0) * std::log10(width) + std::log10(coefficient * std::min(1.0, 4.0 * from_integer));
 }
 
 double curved(double curvature, double digits) { return std::max(0.5, 1.0 + curvature * (digits - kCalibratedDigits)); }
@@ -170,7 +193,7 @@ bool needs_line(Distribution distribution, Masking masking, const SlopeShape& sh
   if (masking == Masking::kSmith) {
     // A rule that does not split at |x|^(2q-2) gains with its nodes to the power 2q, and no more however many digits.
     const double gain = std::pow(kUnsplitNodes, 2.0 * shape.q) * std::pow(10.0, -digits);
-    return std::pow(10.0, cusp_digits(distribution, masking, shape, digits) + cusp_offset(digits)) >
+    return std::pow(10.0, cusp_size(distribution, shape, digits)) >
            (digits > kUnsplitDigits ? std::min(threshold, gain) : threshold);
   }
   if (masking != Masking::kIntegral) return false;
@@ -183,19 +206,8 @@ bool needs_line(Distribution distribution, Masking masking, const SlopeShape& sh
 
 double cusp_digits(Distribution distribution, Masking masking, const SlopeShape& shape, double digits) {
   if (masking != Masking::kSmith) return kNoCusp;
-  if (distribution == Distribution::kGaussian) {
-    const bool is_felt = shape.sigma > kGaussianCuspSigma && digits > kTightDigits;
-    return is_felt ? kGaussianCuspDigits : kNoCusp;
-  }
-  const double from_integer = std::abs(shape.q - std::round(shape.q));
-  if (from_integer == 0.0) return kNoCusp;
-  const double width = std::min(1.0, std::numbers::sqrt2 * shape.sigma);
-  // L = C (m tan(theta_r))^(2q-2) and more beside theta_r = 0.
-  const double coefficient =
-      boost::math::tgamma_ratio(shape.q - 0.5, shape.q - 1.0) /
-      (boost::math::constants::root_pi<double>() * (2.0 * shape.q - 3.0) * (2.0 * shape.q - 2.0));
-  return (2.0 * shape.q - 2.0) * std::log10(width) + std::log10(coefficient * std::min(1.0, 4.0 * from_integer)) -
-         cusp_offset(digits);
+  const double size = cusp_size(distribution, shape, digits);
+  return size > kNoCusp ? size - cusp_offset(distribution, shape, digits) : kNoCusp;
 }
 
 }  // namespace dolp

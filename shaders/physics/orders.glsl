@@ -8,24 +8,32 @@ CONST real kHalfLn10 = real(1.15129254649702284);
 CONST real kInverseLn10 = real(0.43429448190325182765);
 CONST real kLn10 = real(2.30258509299404568402);
 CONST real kDoubtPower = real(0.75);
+CONST real kLeastWeight = real(1e-20);  // so that at 90 degrees all slopes weigh the same
 
 real nodes_per_digit(real distance_over_half_length) {
   return kHalfLn10 / asinh_real(max(distance_over_half_length, real(1e-3)));
 }
 
-// Digits that are wanted of the slopes in [a, b]: fewer by log10 of the share of the moments they carry, judged by the
-// albedo without masking, P t (c + s t).
+// What facets of slope t add to the albedo, c + s t without masking. The cavities let through no more than 2 c.
+real weight_of_slope(ThetaNode theta, real t) {
+  real bare = theta.c + theta.s * t;
+  return kMasking == DOLP_MASKING_V_CAVITY ? min(bare, max(real(2.0) * theta.c, kLeastWeight)) : bare;
+}
+
+// The same of all facets.
+real weight_of_shape(ThetaNode theta, ShapeNode shape) { return weight_of_slope(theta, real(0.6) * shape.m); }
+
+// Digits that are wanted of the slopes in [a, b]: fewer by log10 of the share of the albedo they carry.
 real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, real b, real mass) {
-  real typical = theta.c + theta.s * clamp(shape.m, a, b);
-  real whole = theta.c + real(0.6) * theta.s * shape.m;
-  real share = min(mass * typical / whole, real(1.0));
+  real typical = weight_of_slope(theta, clamp(shape.m, a, b));
+  real share = min(mass * typical / weight_of_shape(theta, shape), real(1.0));
   return max(rule.digits + kInverseLn10 * log_unit(share), real(0.0));
 }
 
 // Digits that are wanted of the azimuths at slope t, one of `order` slopes of a piece, that stands for `mass` of the
 // facets: less than of the piece where it carries less than its part.
 real digits_of_slope(RuleNode rule, ThetaNode theta, ShapeNode shape, real digits, int order, real t, real mass) {
-  real share = real(order) * mass * (theta.c + theta.s * t) / (theta.c + real(0.6) * theta.s * shape.m);
+  real share = real(order) * mass * weight_of_slope(theta, t) / weight_of_shape(theta, shape);
   return clamp(rule.digits + kInverseLn10 * log_unit(min(share, real(1.0))), real(0.0), digits);
 }
 

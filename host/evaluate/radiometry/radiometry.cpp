@@ -223,10 +223,11 @@ bool is_unphysical(const Reflectance& r) {
 }
 
 std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
-  constexpr std::uint32_t kNoDolpPromised =
-      kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
-  const bool dolp_missed = (result.status & kNoDolpPromised) == 0 && result.error_estimate > tolerance;
-  return dolp_missed || result.rho_error_estimate > tolerance ? kStatusToleranceMissed : 0;
+  constexpr std::uint32_t kNoDolpPromised = kStatusUnphysicalReflectance | kStatusNonPositiveIntensity;
+  const bool is_outside = (result.status & kStatusOutsideDomain) != 0;  // rho diverges; the DOLP is a limit, or NaN
+  const bool dolp_missed = (is_outside || (result.status & kNoDolpPromised) == 0) && result.error_estimate > tolerance;
+  const bool rho_missed = !is_outside && result.rho_error_estimate > tolerance;
+  return dolp_missed || rho_missed ? kStatusToleranceMissed : 0;
 }
 
 PointResult outside_domain() {

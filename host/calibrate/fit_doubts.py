@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Fits the coefficients of the error model (host/plan/doubt_model.hpp) and writes host/plan/doubt_coefficients.inc.
 
-    build/release/host/calibrate/dolp-doubts FIRST --draws 20000 --seed 1 \
+    build/release/host/calibrate/dolp-doubts FIRST --draws 16000 --seed 1 \
         --stored tests/data/random_points.csv --stored host/verify/hard_cases.csv
     build/release/host/calibrate/dolp-doubts SECOND --draws 4000 --seed 2
     /usr/bin/python3 host/calibrate/fit_doubts.py FIRST SECOND -o host/plan/doubt_coefficients.inc

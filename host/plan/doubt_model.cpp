@@ -37,8 +37,8 @@ constexpr std::array<std::string_view, kDoubtFeatures> kNames = {
     "nearly critical by cos", "line", "line, smooth", "line by q", "cusp above 0.01", "cusp above 1", "cusp above 100",
     "split cusp above 1", "split cusp above 1000", "cusp", "cusp, grazing", "cusp, rough", "cusp, rough, grazing"};
 
-// Where features end, as log10: of m, cos(theta), q - 1 and |N^2 - 1|. What lies outside has features of its own, so
-// that it does not weigh on the rest.
+// Where features end, as log10: of m, cos(theta), q - 1 and |N^2 - 1|. What lies outside, and
+// what is next to the horizon, has features of its own, so that it does not weigh on the rest.
 constexpr double kSmallestM = -1.85;
 constexpr double kLargestM = 0.25;
 constexpr double kGrazing = 3.0;
@@ -222,7 +222,7 @@ std::array<double, DoubtModel::kPair> DoubtModel::pair_features(const Theta& the
   const double cusp = flag(has_cusp) * (1.0 - theta.has_line);
   const double size = std::clamp(shape.cusp_digits, kWeakestCusp, 0.0) + digits_;
   const double rough = above(m, -0.3);
-  const double steep = m + grazing;  // facets that lean away from the view
+  const double steep = m + grazing;  // log10 of m / cos(theta)
   const double oblique = above(grazing, 0.7);
   return {above(pole, 0.3),
           above(pole, 1.2),

@@ -6,11 +6,11 @@
 #define DOLP_BINDING_THETAS 0         // ThetaNode[]
 #define DOLP_BINDING_SHAPES 1         // ShapeNode[]
 #define DOLP_BINDING_INDICES 2        // IndexNode[]
-#define DOLP_BINDING_ENTRIES 3        // uvec4[]: theta, first shape (of those bound), index, shapes + 256 * piece
-#define DOLP_BINDING_RULE_NODES 4     // real4[]: see physics/quadrature.glsl
+#define DOLP_BINDING_TASKS 3          // uvec4[]: theta, first shape (of those bound), index, task word
+#define DOLP_BINDING_RULE_NODES 4     // real2[]: see physics/quadrature.glsl
 #define DOLP_BINDING_MASKING_TABLE 5  // real4[]: one table for each shape bound, see physics/masking.glsl
-#define DOLP_BINDING_MOMENTS 6        // MomentsNode[]: one for each member of each group and piece of the dispatch
-#define DOLP_BINDING_RULE 7           // RuleNode: one for all entries
+#define DOLP_BINDING_MOMENTS 6        // MomentsNode[]: one for each member of each task of the dispatch
+#define DOLP_BINDING_RULE 7           // RuleNode: one for all tasks
 // mueller.comp reads the rule nodes, and in place of the first and the results of the moments:
 #define DOLP_BINDING_BEAMS DOLP_BINDING_THETAS      // BeamNode[]: one for each entry of the dispatch
 #define DOLP_BINDING_MUELLERS DOLP_BINDING_MOMENTS  // MuellerNode[]: likewise
@@ -19,6 +19,7 @@
 #define DOLP_SPEC_LOCAL_SIZE 0
 #define DOLP_SPEC_DISTRIBUTION 1  // DOLP_CAUCHY | DOLP_GAUSSIAN
 #define DOLP_SPEC_MASKING 2       // DOLP_MASKING_*
+#define DOLP_SPEC_TOTAL_REFLECTION 3  // whether any index of the request has a critical_cos
 
 #define DOLP_CAUCHY 0u
 #define DOLP_GAUSSIAN 1u
@@ -28,14 +29,25 @@
 #define DOLP_MASKING_SMITH 3u
 
 // ---- Push constants: four uints, used by all entry points -----------------------------------------------------------
-// count: groups of this dispatch (moments.comp), entries (mueller.comp) or shapes bound (masking_table.comp); first: the
+// count: tasks of this dispatch (moments.comp), entries (mueller.comp) or shapes bound (masking_table.comp); first: the
 // first of them, as a position in the bound buffers. Output i of a dispatch belongs to entry first + i, outputs
-// i * DOLP_GROUP and following to group first + i.
-#define DOLP_PUSH_CONSTANTS uint first; uint count; uint unused_0; uint unused_1;
+// i * DOLP_WIDTH and following to task first + i. largest_order: of the rule nodes.
+#define DOLP_PUSH_CONSTANTS uint first; uint count; uint largest_order; uint unused;
+
+// ---- Task word: what an invocation of moments.comp computes, as bits -------------------------------------------------
+#define DOLP_TASK_MEMBERS_BITS 5u    // from bit 0: members of the row
+#define DOLP_TASK_PIECE_SHIFT 5u     // number of the piece of the slope axis
+#define DOLP_TASK_PIECE_BITS 4u
+#define DOLP_TASK_ROOT_AT_START 9u   // bit: square root of the slope at the start of the piece
+#define DOLP_TASK_ROOT_AT_END 10u    // bit: the same at its end
+#define DOLP_TASK_ROOT_BEFORE_START 11u // bit: a square root at the breakpoint before the piece, facing it
+#define DOLP_TASK_ROOT_AFTER_END 12u // bit: the same beyond its end
+#define DOLP_TASK_SPLIT_LINE 13u     // bit: the direction is split at the line b = pi/2 of `integral` or smith's cusp
+#define DOLP_TASK_AZIMUTHS_SHIFT 14u // most azimuths of an arc, which bounds the loop iterations
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
-#ifndef DOLP_GROUP
-#define DOLP_GROUP 1             // entries of one invocation, see Group of physics/integrand.glsl
+#ifndef DOLP_WIDTH
+#define DOLP_WIDTH 1             // entries of one invocation, see Row of physics/row.glsl
 #endif
 #define DOLP_MAX_PIECES 12       // pieces of the slope axis for one direction
 #define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes
@@ -49,40 +61,23 @@
 // How the orders of the Gauss rules follow from what they are to integrate; physics/orders.glsl has the formulas.
 struct RuleNode {
   real digits;            // decimal digits that the sums are to have
-  real t_nodes;           // slope axis: nodes of a piece whatever its digits
-  real t_growth;          // factor of the nodes for each digit,
-  real t_curvature;       // and by how much less it would be for a digit less
-  real t_strip;           // distance in X to the next singularity off the real axis
-  real t_root_nodes;      // more nodes for a square root at an end
-  real phi_half_nodes;    // azimuth: the same for an arc that touches phi = 0 or pi,
-  real phi_centre_nodes;  // for any other arc
-  real phi_circle_nodes;  // and for the whole half circle
-  real phi_growth;
-  real phi_curvature;
-  real phi_circle_growth;
-  real phi_pole_growth;
-  real circle_pole;
-  real phi_cluster_growth;
-  real phi_cluster_digits;   // factor of its nodes for each digit
-  real cluster_pole_growth;  // factor of what the pole asks for
-  real strip[3];         // for the arcs of each zone: distance in phi to the next singularity off the real axis
-  real cluster_below_q;  // below this q an arc clusters its nodes where the limit b of `integral` meets pi/2
-  real largest_order;    // of the rule nodes
+  real t_nodes;           // slope axis: nodes of a piece whatever its digits,
+  real t_digits;          // digits that the size of its singularities asks for,
+  real t_strip_cauchy;    // and where that of the density acts, off the axis of X
+  real t_strip_gaussian;
+  real phi_nodes;         // azimuth: likewise
+  real phi_digits;
+  real cluster_stretch;   // nodes for each digit from which on smith's cusp is worth a cluster
+  real cluster_below_q;   // below this q an arc clusters its nodes where the limit b of `integral` meets pi/2
 };
 
 // One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. Under total
 // reflection the pieces depend on the index too, so that a direction has a node for each such index; with `integral` and
 // smith masking they depend on the slope distribution, which may need a line more.
 struct ThetaNode {
-  real c;                          // cos(theta)
-  real s;                          // sin(theta)
-  real piece_count;                // <= DOLP_MAX_PIECES
-  real has_line;                   // 1: split at the line b = pi/2 of `integral`, or at the cusp of smith
-  real t_growth;                   // toward grazing incidence more nodes for each digit: factor of RuleNode::t_growth,
-  real phi_narrowing;              // divisor of RuleNode::strip
-  real phi_order;                  // most nodes of an arc, which bounds the loop iterations
-  real end[DOLP_MAX_PIECES + 1];   // ascending slopes; the last may exceed any cut
-  real kind[DOLP_MAX_PIECES + 1];  // bit 0: square-root end just above, bit 1: just below
+  real c;                         // cos(theta)
+  real s;                         // sin(theta)
+  real end[DOLP_MAX_PIECES + 1];  // ascending slopes; the last stands for all that follow, and may exceed any cut
 };
 
 // One slope distribution.
@@ -101,7 +96,10 @@ struct ShapeNode {
 struct IndexNode {
   real n2m1_re;       // Re(N^2 - 1)
   real n2m1_im;       // Im(N^2 - 1)
-  real pole_cos;      // smaller of |1 / sqrt(N^2 + 1)|, R_p's pole in cos(beta), and |sqrt(N^2 - 1)|, the branch point of w
+  real pole_re;       // R_p's pole in cos(beta), -1 / sqrt(N^2 + 1)
+  real pole_im;
+  real branch_re;     // the branch point of w in cos(beta), i sqrt(N^2 - 1), in the quadrant where both parts are positive
+  real branch_im;
   real critical_cos;  // sqrt(1 - Re N^2), where total reflection begins, sharply (k = 0) or nearly so; otherwise 0
 };
 
@@ -136,14 +134,16 @@ struct MuellerNode {
   real m[16];
 };
 
-// Moments times cos(theta) (MODEL.md section 3), and what the rules say of themselves (physics/moments.glsl).
+// Moments times cos(theta) (section 3 of physics/README.md), from the finer of two rules, and how far the coarser one is
+// off (physics/moments.glsl).
 struct MomentsNode {
   real r_i;
   real r_q;
   real albedo;
   real deficit;
-  real doubt;          // of r_i and r_q
-  real deficit_doubt;
-  real deficit_scale;  // sum of the absolute values of the deficit's terms, for its rounding error
+  real behind;               // facets that face away from theta, which the deficit counts twice: once each way
+  real reflected_difference; // of r_i or r_q, whichever is larger
+  real albedo_difference;
+  real deficit_difference;
   real evaluations;
 };

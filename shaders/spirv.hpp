@@ -8,18 +8,17 @@ namespace dolp::spirv {
 
 extern const std::span<const std::uint32_t> moments_float;
 extern const std::span<const std::uint32_t> moments_double;
-extern const std::span<const std::uint32_t> moments_group4_float;  // 4, 8 and 16 entries an invocation
-extern const std::span<const std::uint32_t> moments_group4_double;
-extern const std::span<const std::uint32_t> moments_group8_float;
-extern const std::span<const std::uint32_t> moments_group8_double;
-extern const std::span<const std::uint32_t> moments_group16_float;
-extern const std::span<const std::uint32_t> moments_group16_double;
+extern const std::span<const std::uint32_t> moments_row4_float;  // rows of 4, 8 and 16
+extern const std::span<const std::uint32_t> moments_row4_double;
+extern const std::span<const std::uint32_t> moments_row8_float;
+extern const std::span<const std::uint32_t> moments_row8_double;
+extern const std::span<const std::uint32_t> moments_row16_float;
+extern const std::span<const std::uint32_t> moments_row16_double;
 extern const std::span<const std::uint32_t> masking_table_float;
 extern const std::span<const std::uint32_t> masking_table_double;
 extern const std::span<const std::uint32_t> mueller_float;
 extern const std::span<const std::uint32_t> mueller_double;
 // Of the benchmark, in bench/:
-extern const std::span<const std::uint32_t> moments_uniform_float;
 extern const std::span<const std::uint32_t> product_rule_float;
 extern const std::span<const std::uint32_t> arithmetic_peak_float;
 

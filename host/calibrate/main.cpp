@@ -1,93 +1,100 @@
-// dolp-calibrate: how large the kernel's errors, doubts and estimates are at reference points, which the numbers of
-// plan/rule.cpp are tuned and checked with.
+// dolp-calibrate: makes the numbers of plan/rule.cpp again, and shows whether the error bounds hold.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <map>
 #include <string>
 #include <vector>
 
-#include "calibrate/calibration.hpp"
-#include "calibrate/calibration_report.hpp"
-#include "error.hpp"
-#include "scene/number_range.hpp"
+#include "calibrate/hold_out.hpp"
+#include "calibrate/rule_fit.hpp"
 
 namespace {
 
-enum ExitStatus { kDone = 0, kUsage = 2, kFile = 4, kInternal = 5 };
+enum ExitStatus { kDone = 0, kUnderstated = 1, kUsage = 2, kInternal = 5 };
 
-struct Arguments {
-  std::vector<std::string> files;
-  std::vector<double> tolerances{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10};
-  std::string precision = "double";
-  std::size_t worst = 0;
-  bool json = false;
+const std::map<std::string, dolp::Masking> kMaskings = {{"none", dolp::Masking::kNone},
+                                                        {"v-cavity", dolp::Masking::kVCavity},
+                                                        {"integral", dolp::Masking::kIntegral},
+                                                        {"smith", dolp::Masking::kSmith}};
+const std::map<std::string, dolp::Domain> kDomains = {{"ordinary", dolp::Domain::kOrdinary},
+                                                      {"corners", dolp::Domain::kCorners}};
+
+struct CheckArguments {
+  std::vector<double> tolerances{1e-2, 1e-3, 1e-4, 1e-6};
+  dolp::HoldOutOptions options;
 };
 
-void add_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("FILE", arguments.files, "CSV files that dolp-reference-values wrote")->required();
-  app.add_option("--tolerance", arguments.tolerances,
-                 "tolerance of the rules, repeatable, in " + dolp::kToleranceRange.text())
-      ->check([](const std::string& text) {
-        double value = 0.0;
-        const bool is_allowed = CLI::detail::lexical_cast(text, value) && dolp::kToleranceRange.contains(value);
-        return is_allowed ? std::string() : text + " must be a number in " + dolp::kToleranceRange.text();
-      })
-      ->allow_extra_args(false)
-      ->capture_default_str();
-  app.add_option("--precision", arguments.precision, "arithmetic of the kernel")
-      ->check(CLI::IsMember({"float", "double"}))
-      ->capture_default_str();
-  app.add_option("--worst", arguments.worst, "list this many points of each group, those that need the largest factor")
-      ->capture_default_str();
-  app.add_flag("--json", arguments.json, "the report as JSON");
+void fit(dolp::Masking masking, const dolp::RuleFitOptions& options) {
+  const auto note = [](const dolp::RuleModel& model, double work) {
+    fmt::print("{:.4f}  {}\n", work, dolp::rule_text(model));
+    std::fflush(stdout);
+  };
+  fmt::print("mean logarithm of the evaluations of an entry, numbers of plan/rule.cpp\n");
+  dolp::fit_rule(masking, dolp::rule_model(masking), options, note);
 }
 
-void run(const Arguments& arguments) {
-  dolp::CalibrationReport report;
-  report.precision = arguments.precision;
-  report.worst = arguments.worst;
-  for (const std::string& file : arguments.files) {
-    for (const dolp::StoredCase& stored : dolp::read_stored_cases(file)) {
-      if (dolp::is_calibration_case(stored)) report.cases.push_back(stored);
-    }
-  }
-  if (report.cases.empty()) {
-    throw dolp::InputError(arguments.files.front() + ": no point to calibrate with; sigma and r_i must be above 0");
-  }
+std::string entry_text(const dolp::CheckedEntry& checked) {
+  const dolp::RandomEntry& e = checked.entry;
+  return fmt::format("{:.3g} at theta {:.17g} sigma {:.17g} q {:.17g} n {:.17g} k {:.17g}", checked.ratio, e.theta_deg,
+                     e.shape.sigma, e.shape.q, e.index.n, e.index.k);
+}
+
+/// A line for each tolerance, masking and distribution. Returns whether all bounds hold.
+bool check(const CheckArguments& arguments) {
+  std::size_t understated = 0;
   for (const double tolerance : arguments.tolerances) {
-    for (dolp::GroupCalibration& group : dolp::calibrate(report.cases, tolerance, report.precision == "double")) {
-      report.groups.push_back(std::move(group));
+    for (const auto& [name, masking] : kMaskings) {
+      for (const auto distribution : {dolp::Distribution::kCauchy, dolp::Distribution::kGaussian}) {
+        dolp::HoldOutOptions options = arguments.options;
+        options.tolerance = tolerance;
+        const dolp::HoldOut found = dolp::hold_out(distribution, masking, options);
+        understated += found.understated + (found.climbed.ratio > 1.0 ? 1 : 0);
+        fmt::print("{:.0e} {:<8} {:<8} understated {} of {}, first attempts that miss {:.1f} %, evaluations {:.0f}, worst {}\n",
+                   tolerance, name, distribution == dolp::Distribution::kCauchy ? "cauchy" : "gaussian",
+                   found.understated, found.entries, 100.0 * found.flagged_share, found.mean_evaluations,
+                   entry_text(found.worst));
+        if (options.climbs > 0) fmt::print("    climbed to {}\n", entry_text(found.climbed));
+        std::fflush(stdout);
+      }
     }
   }
-  const std::string text =
-      arguments.json ? dolp::calibration_json(report).dump(2) + "\n" : dolp::calibration_text(report);
-  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
-    throw dolp::IoError("cannot write to standard output");
-  }
-}
-
-int fail(const std::exception& error, ExitStatus status) {
-  std::fprintf(stderr, "dolp-calibrate: %s\n", error.what());
-  return status;
+  return understated == 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Compares the kernel's errors, doubts and estimates with reference moments.");
-  Arguments arguments;
-  add_options(app, arguments);
+  CLI::App app("Makes the numbers of the quadrature rules again, and checks that error bounds hold.");
+  app.require_subcommand(1);
+  dolp::Masking masking = dolp::Masking::kNone;
+  dolp::RuleFitOptions fit_options;
+  CLI::App* fit_command = app.add_subcommand("fit", "the numbers of plan/rule.cpp that take the least work");
+  fit_command->add_option("MASKING", masking)->required()->transform(CLI::CheckedTransformer(kMaskings));
+  fit_command->add_option("--entries", fit_options.entries, "random entries of each distribution and tolerance")
+      ->capture_default_str();
+  fit_command->add_option("--rounds", fit_options.rounds, "of the search, each of half the step")->capture_default_str();
+  fit_command->add_option("--seed", fit_options.seed)->capture_default_str();
+  CheckArguments arguments;
+  CLI::App* check_command = app.add_subcommand("check", "errors over bounds at random entries; exit 1 if one exceeds its bound");
+  check_command->add_option("--domain", arguments.options.domain)
+      ->transform(CLI::CheckedTransformer(kDomains))
+      ->default_str("ordinary");
+  check_command->add_option("--tolerance", arguments.tolerances, "repeatable")->capture_default_str();
+  check_command->add_option("--entries", arguments.options.entries, "of each masking and distribution")->capture_default_str();
+  check_command->add_option("--climbs", arguments.options.climbs, "worst entries to climb from")->capture_default_str();
+  check_command->add_option("--seed", arguments.options.seed)->capture_default_str();
   try {
     app.parse(argc, argv);
-    run(arguments);
+    if (*fit_command) fit(masking, fit_options);
+    if (*check_command && !check(arguments)) return kUnderstated;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kUsage;
-  } catch (const dolp::InputError& error) {
-    return fail(error, kUsage);
-  } catch (const dolp::IoError& error) {
-    return fail(error, kFile);
   } catch (const std::exception& error) {
-    return fail(error, kInternal);
+    std::fprintf(stderr, "dolp-calibrate: %s\n", error.what());
+    return kInternal;
   }
   return kDone;
 }

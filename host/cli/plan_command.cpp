@@ -51,7 +51,7 @@ void add_request(PlanReport& report, const MomentsRequest& request, const Device
   if (request.entries.empty()) return;
   add_dispatches(report, dispatch_plan(request, device));
   const KernelData data = kernel_data(request);
-  report.rule = {data.rule.digits, static_cast<int>(data.rule.largest_order)};
+  report.rule = {data.rule.digits, data.rule_order};
   add_pipeline(report, "moments", request.precision);
   if (data.needs_masking_table()) add_pipeline(report, "masking_table", request.precision);
 }

@@ -73,9 +73,8 @@ KernelData model_data(const ScatteringRequest& request) {
   KernelData data;
   data.distribution = request.distribution;
   data.masking = request.masking;
-  data.rule.largest_order = kLargestOrder;
-  static const auto nodes = rule_nodes(kLargestOrder);
-  data.rule_nodes = nodes;
+  data.rule_order = kLargestOrder;
+  data.rule_nodes = rule_nodes(kLargestOrder);
   return data;
 }
 

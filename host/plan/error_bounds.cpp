@@ -62,7 +62,7 @@ double masking_bound(Distribution distribution, Masking masking, const kernel::T
 // Upper bound of the albedo integral (times cos theta) over the slopes T beyond the cut, which the kernel leaves out:
 // e <= c + s t, so that without masking it is at most c * tail(T) + 2 s * integral of P t^2 over t > T.
 double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape) {
-  if (shape.cut >= theta.end[static_cast<std::size_t>(theta.piece_count)]) return 0.0;
+  if (shape.cut >= theta.end[DOLP_MAX_PIECES]) return 0.0;
   const double u = shape.cut / shape.m;
   const bool gaussian = data.distribution == Distribution::kGaussian;
   const double log_square = std::log1p(u * u);
@@ -96,11 +96,17 @@ double steep_reflectance(const kernel::IndexNode& index, const kernel::ThetaNode
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
 }
 
-constexpr double kAlbedoFactor = 3.0;
+// Error of the finer of two rules over its distance from the coarser one: how much slower than expected the rules may
+// converge. Smith's cusp of a heavy tail makes them converge algebraically.
+constexpr double kPairFactor = 4.0;
+constexpr double kSmithCauchyPairFactor = 8.0;
 
-// What the rules may have missed of a sum, from their doubts.
-double bound_of(const KernelData& data, Doubted doubted, const MomentsEntry& entry, double doubt, double scale) {
-  return doubt > 0.0 ? doubt * data.doubts.factor(doubted, entry, doubt / scale) : doubt;
+// Two rules of few nodes may agree by chance: none is taken to be better than this share of the tolerance it is made for.
+constexpr double kLeastShareOfTolerance = 0.05;
+
+double pair_factor(const KernelData& data) {
+  const bool has_cusp = data.masking == Masking::kSmith && data.distribution == Distribution::kCauchy;
+  return has_cusp ? kSmithCauchyPairFactor : kPairFactor;
 }
 
 }  // namespace
@@ -123,17 +129,20 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   moments.r_q = node.r_q;
   moments.albedo = node.albedo;
   moments.deficit = node.deficit;
+  const double pair = pair_factor(data);
   const double r_i_scale = std::abs(node.r_i);  // a rule that fails can make it negative
-  const double reflected_rule = bound_of(data, Doubted::kReflected, entry, node.doubt, r_i_scale);
-  const double deficit_rule = bound_of(data, Doubted::kDeficit, entry, node.deficit_doubt, node.deficit_scale);
-  moments.r_i_error = reflected_rule + (rounding + masking) * r_i_scale + reflected_cut;
+  const double deficit_scale = node.deficit + 2.0 * node.behind;
+  const double least = kLeastShareOfTolerance * data.tolerance;
+  moments.r_i_error = pair * node.reflected_difference + (least + rounding + masking) * r_i_scale + reflected_cut;
   moments.r_q_error = moments.r_i_error;
+  const double largest_difference =
+      std::max({node.reflected_difference, node.albedo_difference, node.deficit_difference});
+  moments.albedo_error = pair * largest_difference + (least + rounding + masking) * std::abs(node.albedo) + cut;
   // Beyond the critical angle the deficit ends where r_i goes on.
-  const double deficit_scale = index.critical_cos > 0.0 ? std::abs(node.albedo) : node.deficit_scale;
-  // The albedo shares the nodes of the two, whose errors may cancel what the albedo keeps.
-  moments.albedo_error =
-      kAlbedoFactor * (reflected_rule + deficit_rule) + (rounding + masking) * std::abs(node.albedo) + cut;
-  moments.deficit_error = deficit_rule + rounding * deficit_scale + masking * std::abs(node.albedo) + cut;
+  const double deficit_terms =
+      std::max(std::abs(deficit_scale), index.critical_cos > 0.0 ? std::abs(node.albedo) : 0.0);
+  moments.deficit_error =
+      pair * node.deficit_difference + (least + rounding) * deficit_terms + masking * std::abs(node.albedo) + cut;
   moments.evaluations = node.evaluations;
   // r_i + deficit = cos(theta): the better known of the two gives the other.
   const double cosine = theta.c;

@@ -31,7 +31,7 @@ constexpr GroupWork kWithTables = {.shared = 5.0, .kernel = 7000.0};
 constexpr double kUsualDigits = 6.0;
 
 bool has_line(const KernelData& data, const kernel::ShapeNode& shape) {
-  return needs_line(data.distribution, data.masking, {shape.m / std::sqrt(2.0), 1.0 + shape.q_minus_1},
+  return needs_line(rule_model(data.masking), data.distribution, data.masking, {shape.m / std::sqrt(2.0), 1.0 + shape.q_minus_1},
                     data.rule.digits);
 }
 
@@ -122,7 +122,9 @@ std::vector<Member> members_of(const Grouping& grouping, const std::vector<std::
   return members;
 }
 
-Grouping grouped_exactly(const KernelData& data, std::uint32_t size) {
+}  // namespace
+
+Grouping grouped_by(const KernelData& data, std::uint32_t size) {
   Grouping grouping;
   grouping.size = size;
   const std::vector<std::uint32_t> positions = make_families(data, grouping);
@@ -149,19 +151,16 @@ Grouping grouped_exactly(const KernelData& data, std::uint32_t size) {
   return grouping;
 }
 
-}  // namespace
-
-Grouping grouped(const KernelData& data, std::span<const std::uint32_t> sizes, std::span<const std::uint32_t> made) {
+Grouping grouped(const KernelData& data, bool kernels_are_free) {
   Grouping best;
   double least = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t size : sizes) {
-    Grouping grouping = grouped_exactly(data, size);
+  for (const std::uint32_t size : kGroupSizes) {
+    Grouping grouping = grouped_by(data, size);
     const auto groups = static_cast<double>(grouping.groups.size());
     if (size > 1 && static_cast<double>(data.entries.size()) <= kLeastUse * size * groups) continue;
     const GroupWork unit = data.masking == Masking::kIntegral ? kWithTables : GroupWork{};
     const double evaluations = std::pow(data.rule.digits / kUsualDigits, 2.0);
-    const bool is_made = std::ranges::find(made, size) != made.end();
-    const double kernel = is_made ? 0.0 : unit.kernel * size;
+    const double kernel = kernels_are_free ? 0.0 : unit.kernel * size;
     const double work = (unit.shared + size) * groups * evaluations + kernel;
     if (work < least) {
       least = work;
@@ -185,7 +184,7 @@ std::vector<GroupPiece> pieces_of(const Grouping& grouping, const KernelData& da
     const kernel::ShapeNode& shape = grouping.shapes[grouping.families[grouping.groups[begin].family].first];
     for (std::uint32_t piece = 0; piece < DOLP_MAX_PIECES; ++piece) {
       for (std::uint32_t g = begin; g < next; ++g) {
-        if (piece < piece_count(data.thetas[grouping.groups[g].theta], shape)) pieces.push_back({g, piece});
+        if (piece < piece_count(data, grouping.groups[g].theta, shape)) pieces.push_back({g, piece});
       }
     }
     begin = next;

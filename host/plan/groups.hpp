@@ -53,9 +53,10 @@ struct Grouping {
 std::vector<GroupPiece> pieces_of(const Grouping& grouping, const KernelData& data, std::uint32_t first,
                                   std::uint32_t count);
 
-/// Groups of the size that takes the least work; `sizes` must contain 1. Making a kernel is part of the work, so that
-/// small requests have no groups, except for the sizes whose kernels are `made` already.
-Grouping grouped(const KernelData& data, std::span<const std::uint32_t> sizes,
-                 std::span<const std::uint32_t> made = {});
+/// Groups of the size that takes the least work. Making a kernel is part of the work, unless `kernels_are_free`, so that
+/// small requests have no groups.
+Grouping grouped(const KernelData& data, bool kernels_are_free = false);
+/// Groups of one size.
+Grouping grouped_by(const KernelData& data, std::uint32_t size);
 
 }  // namespace dolp

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <boost/math/constants/constants.hpp>
 #include <boost/math/special_functions/cos_pi.hpp>
 #include <boost/math/special_functions/sin_pi.hpp>
@@ -23,24 +24,16 @@ namespace {
 using boost::math::constants::pi;
 using boost::math::constants::root_pi;
 
-constexpr double kEndAbove = 1.0;  // square-root end just above a breakpoint
-constexpr double kEndBelow = 2.0;  // just below
+constexpr unsigned kRootAbove = 1;  // a square root just above a breakpoint
+constexpr unsigned kRootBelow = 2;  // just below
+constexpr unsigned kRoots = kRootAbove | kRootBelow;
 constexpr double kNoEnd = 1e30;    // a slope beyond every cut, in place of infinity
-
-// Breakpoints nearer to each other than this share of the piece beyond, in ln(slope): the square root of the one is
-// felt beyond the other.
-constexpr double kNear = 0.25;
-constexpr double kFirst = 2.0;  // what the piece from 0 counts as
 
 // Share of the tolerance that the slopes beyond the cut may carry.
 constexpr double kCutShare = 0.03;
 
 // Im N^2 above which absorption has smoothed the critical line of total reflection.
 constexpr double kSoftCriticalLine = 0.3;
-
-// The square root of total reflection wants more nodes.
-constexpr double kTotalReflectionGrowthT = 1.4;
-constexpr double kTotalReflectionNarrowing = 1.5;
 
 constexpr double kSmallestPole = 1e-6;  // of |N^2 + 1| and |N^2 - 1|
 
@@ -60,7 +53,7 @@ constexpr double kLargestTableScale = 0.5;
 
 struct Breakpoint {
   double slope;
-  double kind;  // sum of the ends
+  unsigned roots;  // bits
   bool operator<(const Breakpoint& other) const { return slope < other.slope; }
 };
 
@@ -79,57 +72,36 @@ double critical_cos(const OpticalConstants& index) {
 // Slopes at which the critical line cos(beta) = critical_cos meets phi = 0 or pi, the horizon or theta_r = theta.
 void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, double critical) {
   const double critical_deg = std::acos(critical) * 180.0 / pi<double>();
-  points.push_back({tan_deg(std::abs(theta_deg - critical_deg)), kEndAbove + kEndBelow});
-  if (theta_deg + critical_deg < 90.0) points.push_back({tan_deg(theta_deg + critical_deg), kEndAbove + kEndBelow});
+  points.push_back({tan_deg(std::abs(theta_deg - critical_deg)), kRoots});
+  if (theta_deg + critical_deg < 90.0) points.push_back({tan_deg(theta_deg + critical_deg), kRoots});
   for (const double facet_cos : {a.cos / (2.0 * critical), a.cos / critical}) {
     if (facet_cos <= 0.0 || facet_cos >= 1.0) continue;
-    points.push_back({std::sqrt((1.0 - facet_cos) * (1.0 + facet_cos)) / facet_cos, kEndAbove + kEndBelow});
+    points.push_back({std::sqrt((1.0 - facet_cos) * (1.0 + facet_cos)) / facet_cos, kRoots});
   }
 }
 
 // Slopes at which the line b = pi/2 of `integral` meets phi = 0 or pi, and theta_r = theta; or smith's cusp.
 void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking) {
   if (masking == Masking::kSmith) {
-    points.push_back({tan_deg(0.5 * theta_deg), kEndAbove + kEndBelow});
+    points.push_back({tan_deg(0.5 * theta_deg), kRoots});
     return;
   }
   if (theta_deg > 45.0) {
-    points.push_back({a.cos > 0.0 ? tan_deg(2.0 * theta_deg - 90.0) : kNoEnd, kEndAbove + kEndBelow});
+    points.push_back({a.cos > 0.0 ? tan_deg(2.0 * theta_deg - 90.0) : kNoEnd, kRoots});
   } else {
-    points.push_back({tan_deg(30.0 - theta_deg * 2.0 / 3.0), kEndAbove});
+    points.push_back({tan_deg(30.0 - theta_deg * 2.0 / 3.0), kRootAbove});
   }
-  points.push_back({a.cos > 0.0 ? tan_deg(30.0 + theta_deg * 2.0 / 3.0) : kNoEnd, kEndBelow});
+  points.push_back({a.cos > 0.0 ? tan_deg(30.0 + theta_deg * 2.0 / 3.0) : kNoEnd, kRootBelow});
 }
 
 void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a) {
-  points.push_back({tan_deg(30.0 - theta_deg / 3.0), kEndAbove});
+  points.push_back({tan_deg(30.0 - theta_deg / 3.0), kRootAbove});
   if (theta_deg < 45.0) {
-    points.push_back({tan_deg(30.0 + theta_deg / 3.0), kEndBelow});
+    points.push_back({tan_deg(30.0 + theta_deg / 3.0), kRootBelow});
   } else {
-    points.push_back({a.cos / a.sin, kEndAbove});
-    points.push_back({1.0, 0.0});
-    points.push_back({a.cos > 0.0 ? a.sin / a.cos : kNoEnd, kEndBelow});
-  }
-}
-
-bool has_end(const Breakpoint& point, double end) {
-  return end == kEndBelow ? point.kind > 1.5 : std::fmod(point.kind, 2.0) > 0.5;
-}
-
-// A breakpoint next to one with a square root, seen from the piece beyond, gets one too.
-void spread_roots(std::vector<Breakpoint>& points) {
-  const std::vector<Breakpoint> own = points;
-  const auto log_slope = [&](std::size_t i) {
-    return i > 0 ? std::log(own[i].slope) : std::log(own[1].slope) - kFirst;
-  };
-  const auto distance = [&](std::size_t i, std::size_t j) { return std::abs(log_slope(i) - log_slope(j)); };
-  for (std::size_t j = 1; j + 1 < own.size(); ++j) {
-    for (std::size_t i = 1; i < own.size(); ++i) {
-      const double end = i < j ? kEndAbove : kEndBelow;
-      const std::size_t beyond = i < j ? j + 1 : j - 1;
-      const bool is_near = i != j && distance(i, j) < kNear * distance(j, beyond);
-      if (is_near && has_end(own[i], end) && !has_end(points[j], end)) points[j].kind += end;
-    }
+    points.push_back({a.cos / a.sin, kRootAbove});
+    points.push_back({1.0, 0});
+    points.push_back({a.cos > 0.0 ? a.sin / a.cos : kNoEnd, kRootBelow});
   }
 }
 
@@ -146,18 +118,19 @@ struct Variant {
 // v-cavity at tan(30 -+ theta/3), cot(theta), 1 and tan(theta); smith's cusp is at tan(theta/2).
 std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking masking, const Variant& variant) {
   const double horizon = a.cos > 0.0 ? (1.0 + a.sin) / a.cos : kNoEnd;
-  std::vector<Breakpoint> points = {{a.cos / (1.0 + a.sin), kEndAbove}, {horizon, kEndBelow}};
-  if (masking == Masking::kIntegral && a.cos > 0.0) points.push_back({a.sin / a.cos, kEndBelow});
+  std::vector<Breakpoint> points = {{a.cos / (1.0 + a.sin), kRootAbove}, {horizon, kRootBelow}};
+  if (masking == Masking::kIntegral && a.cos > 0.0) points.push_back({a.sin / a.cos, kRootBelow});
   if (variant.has_line) add_line_breakpoints(points, theta_deg, a, masking);
   if (masking == Masking::kVCavity) add_v_cavity_breakpoints(points, theta_deg, a);
   for (const double slope : kPlainBreakpoints) {
-    if (horizon > kLongWay * slope) points.push_back({slope, 0.0});
+    if (horizon > kLongWay * slope) points.push_back({slope, 0});
   }
   if (variant.critical_cos > 0.0) add_critical_breakpoints(points, theta_deg, a, variant.critical_cos);
   std::erase_if(points, [&](const Breakpoint& point) { return point.slope <= 0.0 || point.slope > horizon; });
-  points.push_back({0.0, 0.0});
+  // At the normal smith's cusp lies at slope 0.
+  const bool cusp_at_0 = variant.has_line && masking == Masking::kSmith && a.sin == 0.0;
+  points.push_back({0.0, cusp_at_0 ? kRootAbove : 0U});
   std::sort(points.begin(), points.end());
-  spread_roots(points);
   return points;
 }
 
@@ -169,48 +142,41 @@ double arcs_per_slope(Masking masking, double critical) {
 // Loops of one invocation: below the 65,535 iterations at which lavapipe stops without notice.
 constexpr double kMostIterations = 64'000.0;
 
-// Bound of the loop iterations of one invocation, that is of one piece: slopes, arcs, azimuths, with everything at its
-// most nodes. No bound on what an entry does is enough, because invocations that run in lockstep wait for each other.
-double iterations(const kernel::RuleNode& rule, double phi_order, double arcs) {
-  return rule.largest_order * (1.0 + arcs * (2.0 + phi_order));
+// Bound of the loop iterations of one invocation, that is of one piece: two rules, slopes, arcs, azimuths, with
+// everything at its most nodes. No bound on what an entry does is enough, because invocations that run in lockstep wait
+// for each other.
+double iterations(int rule_order, double most_azimuths, double arcs) {
+  const auto of_rule = [&](double share) {
+    return 1.0 + share * rule_order * (1.0 + arcs * (2.0 + share * most_azimuths));
+  };
+  return of_rule(1.0) + of_rule(kCoarseShare + 1.0 / rule_order);
 }
 
 // The most nodes of an arc; the error estimate shows what that costs.
-double phi_order(const kernel::RuleNode& rule, double arcs) {
-  const double of_slope = kMostIterations / rule.largest_order - 1.0;
-  return std::min(rule.largest_order, std::floor(of_slope / arcs - 2.0));
+std::uint32_t most_azimuths(int rule_order, double arcs) {
+  int most = rule_order;
+  while (iterations(rule_order, most, arcs) > kMostIterations) --most;
+  return static_cast<std::uint32_t>(most);
 }
 
-kernel::ThetaNode theta_node(const MomentsRequest& request, const kernel::RuleNode& rule, double theta_deg,
-                             const Variant& variant) {
+void add_direction(KernelData& data, const MomentsRequest& request, double theta_deg, const Variant& variant) {
   const CosSin a = cos_sin_deg(theta_deg);
-  const RuleModel& model = rule_model(request.masking);
   kernel::ThetaNode node{};
   node.c = a.cos;
   node.s = a.sin;
   const std::vector<Breakpoint> points = breakpoints(theta_deg, a, request.masking, variant);
   assert(points.size() <= DOLP_MAX_PIECES + 1);
+  std::ranges::fill(node.end, points.back().slope);
+  Pieces pieces;
   for (std::size_t i = 0; i < points.size(); ++i) {
     node.end[i] = points[i].slope;
-    node.kind[i] = points[i].kind;
+    pieces.roots[i] = static_cast<std::uint8_t>(points[i].roots);
   }
-  node.piece_count = static_cast<double>(points.size() - 1);
-  node.has_line = variant.has_line ? 1.0 : 0.0;
-  // Toward grazing incidence the pseudo-Brewster structure asks for slopes, the horizon for azimuths.
-  const double oblique = std::clamp((theta_deg - 65.0) / 15.0, 0.0, 1.0);
-  const double grazing = std::clamp((theta_deg - 80.0) / 9.0, 0.0, 1.0) + 0.3 * std::max(0.0, theta_deg - 88.0);
-  node.t_growth = 1.0 + model.t_oblique * oblique;
-  node.phi_narrowing = 1.0 + model.phi_grazing * grazing;
-  if (variant.has_line) {
-    node.t_growth *= model.t_line;
-    node.phi_narrowing *= model.phi_line;
-  }
-  if (variant.critical_cos > 0.0) {
-    node.t_growth *= kTotalReflectionGrowthT;
-    node.phi_narrowing *= kTotalReflectionNarrowing;
-  }
-  node.phi_order = phi_order(rule, arcs_per_slope(request.masking, variant.critical_cos));
-  return node;
+  pieces.count = static_cast<std::uint32_t>(points.size() - 1);
+  pieces.has_split_line = variant.has_line;
+  pieces.most_azimuths = most_azimuths(data.rule_order, arcs_per_slope(request.masking, variant.critical_cos));
+  data.thetas.push_back(node);
+  data.pieces.push_back(pieces);
 }
 
 // Slope beyond which less than `share` of the facets' weight lies, weighted by 1 and by slope.
@@ -222,7 +188,7 @@ double slope_cut(const MomentsRequest& request, const SlopeShape& shape, double 
   return std::min(kLargestCut, m * std::sqrt(std::expm1(std::min(-std::log(share) / exponent, 500.0))));
 }
 
-kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& shape) {
+kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& shape, double digits) {
   kernel::ShapeNode node{};
   node.m = std::sqrt(2.0) * shape.sigma;
   node.q_minus_1 = shape.q - 1.0;
@@ -234,8 +200,7 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
   const double width = cauchy ? node.m / std::sqrt(std::max(1.0, shape.q / 1.5)) : node.m;
   const bool heavy_tail = cauchy && shape.q < kLightTailQ;
   node.table_scale = std::clamp(width, heavy_tail ? kSmallestHeavyTableScale : 0.0, kLargestTableScale);
-  node.cusp_digits =
-      cusp_digits(request.distribution, request.masking, shape, rule_digits(request.masking, request.tolerance));
+  node.cusp_digits = cusp_digits(request.distribution, request.masking, shape, digits);
   return node;
 }
 
@@ -243,30 +208,31 @@ kernel::IndexNode index_node(const OpticalConstants& index) {
   const std::complex<double> n(index.n, index.k);
   const double n2m1_re = (index.n - 1.0) * (index.n + 1.0) - index.k * index.k;
   const double n2m1_im = 2.0 * index.n * index.k;
-  const double pole = 1.0 / std::sqrt(std::max(std::abs(n * n + 1.0), kSmallestPole));
-  const double branch_point = std::sqrt(std::max(std::hypot(n2m1_re, n2m1_im), kSmallestPole));
-  return {n2m1_re, n2m1_im, std::min(pole, branch_point), critical_cos(index)};
+  const auto bounded_root = [](std::complex<double> square) {
+    return std::sqrt(std::abs(square) > kSmallestPole ? square : std::complex<double>(kSmallestPole));
+  };
+  const std::complex<double> pole = -1.0 / bounded_root(n * n + 1.0);
+  const std::complex<double> branch = bounded_root({n2m1_re, n2m1_im});
+  return {n2m1_re,           n2m1_im,       pole.real(), std::abs(pole.imag()), std::abs(branch.imag()),
+          std::abs(branch.real()), critical_cos(index)};
 }
 
 // Gives each entry the variant of its direction that it needs.
-void add_directions(KernelData& data, const MomentsRequest& request) {
+void add_directions(KernelData& data, const MomentsRequest& request, const RuleModel& model) {
   std::vector<bool> has_line;
   for (const SlopeShape& shape : request.shapes) {
-    has_line.push_back(needs_line(request.distribution, request.masking, shape, data.rule.digits));
+    has_line.push_back(needs_line(model, request.distribution, request.masking, shape, data.rule.digits));
   }
-  std::map<std::pair<std::uint32_t, Variant>, std::uint32_t> nodes;
-  for (const double theta_deg : request.theta_deg) {
-    nodes[{static_cast<std::uint32_t>(data.thetas.size()), Variant{}}] = static_cast<std::uint32_t>(data.thetas.size());
-    data.thetas.push_back(theta_node(request, data.rule, theta_deg, {}));
+  std::map<std::pair<std::uint32_t, Variant>, std::uint32_t> known;
+  for (std::uint32_t i = 0; i < request.theta_deg.size(); ++i) {
+    known[{i, Variant{}}] = i;
+    add_direction(data, request, request.theta_deg[i], {});
   }
   for (MomentsEntry& entry : data.entries) {
     const Variant variant{data.indices[entry.index].critical_cos, has_line[entry.shape]};
-    if (variant == Variant{}) continue;
     const auto [found, is_new] =
-        nodes.try_emplace({entry.theta, variant}, static_cast<std::uint32_t>(data.thetas.size()));
-    if (is_new) {
-      data.thetas.push_back(theta_node(request, data.rule, request.theta_deg[entry.theta], variant));
-    }
+        known.try_emplace({entry.theta, variant}, static_cast<std::uint32_t>(data.thetas.size()));
+    if (is_new) add_direction(data, request, request.theta_deg[entry.theta], variant);
     entry.theta = found->second;
   }
 }
@@ -281,37 +247,47 @@ CosSin cos_sin_deg(double angle_deg) {
   return {cosine, boost::math::sin_pi(angle_deg / 180.0)};
 }
 
-std::uint32_t piece_count(const kernel::ThetaNode& theta, const kernel::ShapeNode& shape) {
-  const auto all = static_cast<std::uint32_t>(theta.piece_count);
+std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t members) {
+  const auto bit = [](bool is_set, unsigned position) { return static_cast<std::uint32_t>(is_set) << position; };
+  return members | piece << DOLP_TASK_PIECE_SHIFT |
+         bit((pieces.roots[piece] & kRootAbove) != 0, DOLP_TASK_ROOT_AT_START) |
+         bit((pieces.roots[piece + 1] & kRootBelow) != 0, DOLP_TASK_ROOT_AT_END) |
+         bit(piece > 0 && (pieces.roots[piece - 1] & kRootAbove) != 0, DOLP_TASK_ROOT_BEFORE_START) |
+         bit(piece + 2 <= pieces.count && (pieces.roots[piece + 2] & kRootBelow) != 0, DOLP_TASK_ROOT_AFTER_END) |
+         bit(pieces.has_split_line, DOLP_TASK_SPLIT_LINE) | pieces.most_azimuths << DOLP_TASK_AZIMUTHS_SHIFT;
+}
+
+std::uint32_t piece_count(const KernelData& data, std::uint32_t theta, const kernel::ShapeNode& shape) {
   std::uint32_t count = 1;
-  while (count < all && theta.end[count] < shape.cut) ++count;
+  while (count < data.pieces[theta].count && data.thetas[theta].end[count] < shape.cut) ++count;
   return count;
 }
 
 void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece) {
-  sum.r_i += piece.r_i;
-  sum.r_q += piece.r_q;
-  sum.albedo += piece.albedo;
-  sum.deficit += piece.deficit;
-  sum.doubt += piece.doubt;
-  sum.deficit_doubt += piece.deficit_doubt;
-  sum.deficit_scale += piece.deficit_scale;
-  sum.evaluations += piece.evaluations;
+  using Numbers = std::array<double, sizeof(kernel::MomentsNode) / sizeof(double)>;
+  auto numbers = std::bit_cast<Numbers>(sum);
+  const auto more = std::bit_cast<Numbers>(piece);
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] += more[i];
+  sum = std::bit_cast<kernel::MomentsNode>(numbers);
 }
 
-KernelData kernel_data(const MomentsRequest& request) {
-  const double digits = rule_digits(request.masking, request.tolerance);
+KernelData kernel_data(const MomentsRequest& request) { return kernel_data(request, rule_model(request.masking)); }
+
+KernelData kernel_data(const MomentsRequest& request, const RuleModel& model) {
+  const double digits = rule_digits(model, request.tolerance);
   KernelData data;
   data.distribution = request.distribution;
   data.masking = request.masking;
   data.tolerance = request.tolerance;
-  data.rule = rule_node(request.masking, digits);
-  for (const SlopeShape& shape : request.shapes) data.shapes.push_back(shape_node(request, shape));
+  data.rule = rule_node(model, digits);
+  data.rule_order = largest_order(digits);
+  for (const SlopeShape& shape : request.shapes) data.shapes.push_back(shape_node(request, shape, digits));
   for (const OpticalConstants& index : request.indices) data.indices.push_back(index_node(index));
   data.entries = request.entries;
-  add_directions(data, request);
-  data.rule_nodes = rule_nodes(static_cast<int>(data.rule.largest_order));
-  data.doubts = DoubtModel(data.distribution, data.masking, digits, data.thetas, data.shapes, data.indices);
+  add_directions(data, request, model);
+  data.rule_nodes = rule_nodes(data.rule_order);
+  data.has_total_reflection =
+      std::ranges::any_of(data.indices, [](const kernel::IndexNode& index) { return index.critical_cos > 0.0; });
   return data;
 }
 
@@ -319,7 +295,7 @@ double worst_iterations(const KernelData& data) {
   double worst = 0.0;
   for (const MomentsEntry& entry : data.entries) {
     const double arcs = arcs_per_slope(data.masking, data.indices[entry.index].critical_cos);
-    worst = std::max(worst, iterations(data.rule, data.thetas[entry.theta].phi_order, arcs));
+    worst = std::max(worst, iterations(data.rule_order, data.pieces[entry.theta].most_azimuths, arcs));
   }
   return worst;
 }

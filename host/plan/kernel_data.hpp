@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "evaluate/moments.hpp"
-#include "plan/doubt_model.hpp"
 
 namespace dolp {
 
@@ -16,6 +15,14 @@ using real = double;
 #include "shaders/interface.glsl"  // NOLINT: one text for host and shaders
 }  // namespace kernel
 
+/// The pieces of the slope axis of one direction, beside what ThetaNode says of them.
+struct Pieces {
+  std::uint32_t count = 0;
+  std::array<std::uint8_t, DOLP_MAX_PIECES + 1> roots{};  ///< of each end: bits kRootAbove, kRootBelow
+  bool has_split_line = false;  ///< b = pi/2 of `integral`, or smith's cusp
+  std::uint32_t most_azimuths = 1;  ///< of an arc, which bounds the loop iterations
+};
+
 /// Inputs of one run of the kernel. `shapes` and `indices` match the lists of the request, `entries` its entries,
 /// position by position. `thetas` has the request's directions first and variants of them after: for total reflection,
 /// and for slope distributions that need the line b = pi/2 of `integral` or smith's cusp.
@@ -24,20 +31,29 @@ struct KernelData {
   Masking masking = Masking::kIntegral;
   double tolerance = 1e-4;
   kernel::RuleNode rule{};
+  int rule_order = 1;  ///< largest order of the rule nodes
+  bool has_total_reflection = false;  ///< of any index, sharp or nearly so
   std::vector<kernel::ThetaNode> thetas;
+  std::vector<Pieces> pieces;  ///< of each of `thetas`
   std::vector<kernel::ShapeNode> shapes;
   std::vector<kernel::IndexNode> indices;
   std::vector<MomentsEntry> entries;
-  std::vector<std::array<double, 4>> rule_nodes;
-  DoubtModel doubts;
+  std::vector<std::array<double, 2>> rule_nodes;
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
 };
 
-/// Splits, orders, nodes and constants for a request at its tolerance. Pure.
+struct RuleModel;
+
+/// Splits, orders, nodes and constants for a request at its tolerance, by the rules of its masking or by other ones.
+/// Pure.
 KernelData kernel_data(const MomentsRequest& request);
+KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
+
+/// The task word of interface.glsl for one piece of a row of `members` entries.
+std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t members);
 
 /// Pieces of the slope axis up to the cut: those that the kernel has to compute, the first always.
-std::uint32_t piece_count(const kernel::ThetaNode& theta, const kernel::ShapeNode& shape);
+std::uint32_t piece_count(const KernelData& data, std::uint32_t theta, const kernel::ShapeNode& shape);
 
 /// Adds what the kernel returned for a piece to what it returned for others.
 void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece);

@@ -10,8 +10,8 @@ namespace dolp {
 /// Accuracy: 1e-15 (tests/plan_test.cpp integrates polynomials of degree 2 * order - 1).
 std::vector<std::array<double, 2>> gauss_legendre(int order);
 
-/// The sections of shaders/physics/quadrature.glsl, orders 1 to `largest_order` each, as (abscissa, weight, null
-/// weight, second null weight). Computed once; the reference stays valid.
-const std::vector<std::array<double, 4>>& rule_nodes(int largest_order);
+/// The sections of shaders/physics/quadrature.glsl, orders 1 to `largest_order` each, as (abscissa, weight). Computed
+/// once; the reference stays valid.
+const std::vector<std::array<double, 2>>& rule_nodes(int largest_order);
 
 }  // namespace dolp

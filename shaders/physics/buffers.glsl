@@ -2,17 +2,15 @@
 layout(local_size_x_id = DOLP_SPEC_LOCAL_SIZE) in;
 layout(constant_id = DOLP_SPEC_DISTRIBUTION) const uint kDistribution = DOLP_CAUCHY;
 layout(constant_id = DOLP_SPEC_MASKING) const uint kMasking = DOLP_MASKING_NONE;
+layout(constant_id = DOLP_SPEC_TOTAL_REFLECTION) const bool kTotalReflection = false;
 
 layout(push_constant) uniform PushConstants { DOLP_PUSH_CONSTANTS } push;
-#ifdef DOLP_UNIFORM_BRANCHES  // for the benchmark: the same values, which no compiler knows, because unused_0 is 0
-#define kDistribution (kDistribution ^ push.unused_0)
-#define kMasking (kMasking ^ push.unused_0)
-#endif
 
 layout(std430, binding = DOLP_BINDING_SHAPES) readonly buffer Shapes { ShapeNode shapes[]; };
-layout(std430, binding = DOLP_BINDING_RULE_NODES) readonly buffer RuleNodes { real4 rule_nodes[]; };
+layout(std430, binding = DOLP_BINDING_RULE_NODES) readonly buffer RuleNodes { real2 rule_nodes[]; };
 layout(std430, binding = DOLP_BINDING_MASKING_TABLE) buffer MaskingTable { real4 masking_table[]; };
 
-real4 rule_node(int i) { return rule_nodes[i]; }
+int largest_order() { return int(push.largest_order); }
+real2 rule_node(int i) { return rule_nodes[i]; }
 real4 masking_node(uint i) { return masking_table[i]; }
 void store_masking_node(uint i, real4 node) { masking_table[i] = node; }

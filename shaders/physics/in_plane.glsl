@@ -33,7 +33,7 @@ real in_plane_sum(ShapeNode shape, uint weight, real mu, real from, real to) {
   real sum = real(0.0);
   for (int panel = 0; panel < panels; ++panel) {
     for (int i = 0; i < kInPlaneOrder; ++i) {
-      real4 node = rule_node(gauss_offset(kInPlaneOrder) + i);
+      real2 node = rule_node(gauss_offset(kInPlaneOrder) + i);
       real2 hyperbolic = sinh_cosh(start + length * (real(panel) + node.x));
       real tau = shape.scale * hyperbolic.x;
       real visible = max(tau - mu, real(0.0)) * masking_weight(tau);

@@ -10,7 +10,7 @@ real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   real first = real(0.0);
   real probability = real(0.0);
   for (int i = 0; i < kTableOrder; ++i) {
-    real4 node = rule_node(gauss_offset(kTableOrder) + i);
+    real2 node = rule_node(gauss_offset(kTableOrder) + i);
     real rise = h * node.x;
     real tau = tau0 + rise;
     real weight = h * node.y * marginal_density(shape, tau);

@@ -1,171 +1,213 @@
-// The moments of a group of entries, piece by piece: Gauss rules on the smooth pieces of the slope axis, of orders that follow from the digits
-// wanted (orders.glsl).
+// The moments of a row of entries, piece by piece of the slope axis: a Gauss rule over the slopes of the piece, and at
+// each slope Gauss rules over the smooth arcs of the azimuth. Everything is summed twice, by rules of two orders: the
+// finer sum is the result, its distance from the coarser one bounds the error (host/plan/error_bounds.cpp).
 
-// A piece [a, b] of the slope axis. X = asinh(t/scale) is linear in y(v), which takes up square-root ends:
-// v, v^2 (at a), 1 - (1-v)^2 (at b), v^2 (3 - 2v) (both).
-struct Piece {
-  real start;   // X at a
-  real extent;  // in X
-  bool root_at_a;
-  bool root_at_b;
-  real mass[DOLP_GROUP];  // share of the facets
-  real digits;            // wanted by the member that wants most
-  int order;
-  real lost;  // digits that the order does not allow
+// ---- Azimuth -------------------------------------------------------------------------------------------------------
+
+// One slope of a piece, and what its arcs share.
+struct Slope {
+  real t;
+  real digits;        // wanted of the sum over the azimuths
+  Masked of_theta;
+  bool has_split_line;
+  int most_azimuths;
+  bool is_coarse;
 };
 
-Piece make_piece(RuleNode rule, ThetaNode theta, Group group, int number) {
-  ShapeNode shape = group.shape[0];
-  real a = theta.end[number];
-  real b = min(theta.end[number + 1], shape.cut);
+// A sum over azimuths, for each member of a row.
+struct AzimuthSums {
+  real4 member[DOLP_WIDTH];
+  real evaluations;
+};
+
+AzimuthSums no_azimuths() {
+  AzimuthSums sums;
+  sums.evaluations = real(0.0);
+  for (int g = 0; g < DOLP_WIDTH; ++g) sums.member[g] = real4(real(0.0));
+  return sums;
+}
+
+AzimuthSums arc_sums(ThetaNode theta, Row row, IndexNode index, Slope slope, Arc arc, int zone, int order) {
+  AzimuthSums sums = no_azimuths();
+  int first_node = rule_offset(arc.section, order);
+  for (int i = 0; i < order; ++i) {
+    Azimuth at = azimuth(arc, place_on_arc(arc, rule_node(first_node + i)));
+    Facet f = facet(theta, index, slope.t, at.x, at.sin_phi);
+    Masked of_ray = masking_of_ray(row, f.cos_r, slope.t, zone);
+    for (int g = 0; g < masked_members(); ++g) {
+      Projection part = project(theta, f, zone, slope.of_theta.value[g], of_ray.value[g]);
+      sums.member[g] += at.weight * reflected(f, part);
+    }
+  }
+  sums.evaluations = real(order);
+  return sums;
+}
+
+// Integral over the azimuths from 0 to pi whose reflected ray leaves. Each zone is an arc, or two with the critical line of
+// total reflection between them.
+AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, SplitLines lines) {
+  AzimuthSums sums = no_azimuths();
+  bool is_critical = kTotalReflection && index.critical_cos > real(0.0);
+  int zones = (kMasking == DOLP_MASKING_INTEGRAL || kMasking == DOLP_MASKING_V_CAVITY) ? 3 : 1;
+  for (int part = 0; part < (is_critical ? 2 * zones : zones); ++part) {
+    int zone = is_critical ? part >> 1 : part;
+    bool is_second = is_critical && (part & 1) == 1;
+    real2 from = (zone == 0) ? real2(real(1.0), real(0.0)) : ((zone == 1) ? lines.first : lines.second);
+    real2 to = (zone == 0) ? lines.first : ((zone == 1) ? lines.second : lines.horizon);
+    if (is_critical) {
+      real2 middle = clamp_half_angle(lines.critical, from, to);
+      from = is_second ? middle : from;
+      to = is_second ? to : middle;
+    }
+    // Devices that run invocations in lockstep compute both sides of an `if`; a loop of one turn they skip where none of
+    // them needs it. It counts as an iteration, see worst_iterations of host/plan/kernel_data.hpp.
+    for (bool is_due = is_before(from, to); is_due; is_due = false) {
+      Arc arc;
+      if (is_critical) {
+        arc = critical_arc(theta, index, slope.t, slope.digits, from, to, !is_second);
+      } else {
+        arc = zone_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits, from, to, zone);
+      }
+      real nodes = arc_nodes(rule, theta, row.shape[0], index, slope.t, slope.digits, arc, zone, is_critical);
+      int order = order_between(nodes, slope.most_azimuths);
+      if (slope.is_coarse) order = coarse_order(order);
+      AzimuthSums more = arc_sums(theta, row, index, slope, arc, zone, order);
+      for (int g = 0; g < masked_members(); ++g) sums.member[g] += more.member[g];
+      sums.evaluations += more.evaluations;
+    }
+  }
+  return sums;
+}
+
+// ---- Slope axis ----------------------------------------------------------------------------------------------------
+
+Piece make_piece(RuleNode rule, ThetaNode theta, Row row, Task task) {
+  ShapeNode shape = row.shape[0];
+  real a = theta.end[task.piece];
+  real b = min(theta.end[task.piece + 1], shape.cut);
   real exponent_a = common_exponent(a / shape.m);
   real exponent_b = common_exponent(b / shape.m);
   Piece piece;
   piece.start = asinh_real(a / shape.scale);
   piece.extent = asinh_real(b / shape.scale) - piece.start;
   real largest_mass = real(0.0);
-  for (int g = 0; g < DOLP_GROUP; ++g) {
-    real factor = exponent_factor(group.shape[g]);
+  for (int g = 0; g < DOLP_WIDTH; ++g) {
+    real factor = exponent_factor(row.shape[g]);
     piece.mass[g] = -exp_real(-factor * exponent_a) * expm1_real(factor * (exponent_a - exponent_b));
     largest_mass = max(largest_mass, piece.mass[g]);
   }
   piece.digits = digits_of_piece(rule, theta, shape, a, b, largest_mass);
-  piece.root_at_a = mod(theta.kind[number], real(2.0)) > real(0.5);
-  piece.root_at_b = b < shape.cut && theta.kind[number + 1] > real(1.5);
-  real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
-  real nodes = nodes_t(rule, theta, piece.digits, piece.extent, roots);
-  piece.order = order_between(nodes, rule.largest_order);
-  real growth = theta.t_growth * rule.t_growth;
-  piece.lost = lost_digits(piece.digits, growth, theta.t_growth * rule.t_curvature, nodes, rule.largest_order);
+  piece.root_at_a = task.root_at_start;
+  piece.root_at_b = b < shape.cut && task.root_at_end;
+  piece.order = order_between(slope_nodes(rule, theta, shape, task, piece), largest_order());
   return piece;
 }
 
-// Sums over the slopes of a piece, for each member of a group.
-struct SlopeSums {
-  FacetSums sum[DOLP_GROUP];
-  real null_i[DOLP_GROUP];        // sizes of the slopes' null rules' sums
-  real null_q[DOLP_GROUP];
-  real null_deficit[DOLP_GROUP];
-  real doubt[DOLP_GROUP];         // of the azimuths
-  real deficit_doubt[DOLP_GROUP];
-  real mass[DOLP_GROUP];          // the rule's value of Piece::mass
-  real deficit_scale[DOLP_GROUP];
+// (y, dy/dv) of a piece.
+real2 place_on_piece(Piece piece, real v) {
+  if (piece.root_at_a && piece.root_at_b) {
+    return real2(v * v * (real(3.0) - real(2.0) * v), real(6.0) * v * (real(1.0) - v));
+  }
+  if (piece.root_at_a) return real2(v * v, real(2.0) * v);
+  if (piece.root_at_b) return real2(v * (real(2.0) - v), real(2.0) * (real(1.0) - v));
+  return real2(v, real(1.0));
+}
+
+// Sums over the slopes of a piece by one rule, for each member of a row.
+struct PieceSums {
+  real4 member[DOLP_WIDTH];
+  real behind[DOLP_WIDTH];  // MomentsNode::behind
   real evaluations;
 };
 
-real null_size(real first, real second) { return sqrt(first * first + second * second); }
-
-SlopeSums piece_sums(RuleNode rule, ThetaNode theta, Group group, IndexNode index, Piece piece) {
-  SlopeSums sums;
-  real second_i[DOLP_GROUP];
-  real second_q[DOLP_GROUP];
-  real second_deficit[DOLP_GROUP];
-  for (int g = 0; g < DOLP_GROUP; ++g) {
-    sums.sum[g] = no_facets();
-    sums.null_i[g] = real(0.0);
-    sums.null_q[g] = real(0.0);
-    sums.null_deficit[g] = real(0.0);
-    second_i[g] = real(0.0);
-    second_q[g] = real(0.0);
-    second_deficit[g] = real(0.0);
-    sums.doubt[g] = real(0.0);
-    sums.deficit_doubt[g] = real(0.0);
-    sums.mass[g] = real(0.0);
-    sums.deficit_scale[g] = real(0.0);
-  }
+PieceSums no_slopes() {
+  PieceSums sums;
   sums.evaluations = real(0.0);
-  ShapeNode shape = group.shape[0];
-  Masked at_theta = looked_up(group, theta.c, theta.s);
-  int first_node = rule_offset(rule, kSectionGauss, piece.order);
-  for (int i = 0; i < piece.order; ++i) {
-    real4 node = rule_node(first_node + i);
-    real v = node.x;
-    real y = v;
-    real dy = real(1.0);
-    if (piece.root_at_a) {
-      y = piece.root_at_b ? v * v * (real(3.0) - real(2.0) * v) : v * v;
-      dy = piece.root_at_b ? real(6.0) * v * (real(1.0) - v) : real(2.0) * v;
-    } else if (piece.root_at_b) {
-      y = v * (real(2.0) - v);
-      dy = real(2.0) * (real(1.0) - v);
-    }
-    real2 hyperbolic = sinh_cosh(piece.start + piece.extent * y);
-    real t = shape.scale * hyperbolic.x;
-    real u = t / shape.m;
-    real du = shape.scale / shape.m * hyperbolic.y * piece.extent * dy;
-    real exponent = common_exponent(u);
-    real density[DOLP_GROUP];
-    real largest_density = real(0.0);
-    for (int g = 0; g < DOLP_GROUP; ++g) {
-      density[g] = real(2.0) * slope_density(group.shape[g], u, exponent) * du;
-      largest_density = max(largest_density, density[g]);
-    }
-    real digits = digits_of_slope(rule, theta, shape, piece.digits, piece.order, t, kPi * largest_density * node.y);
-    AzimuthSums term = azimuth_sums(rule, theta, group, index, at_theta, t, digits);
-    for (int g = 0; g < DOLP_GROUP; ++g) {
-      int member = min(g, masked_members() - 1);
-      real weight = density[g] * node.y;
-      real first = density[g] * node.z;
-      real second = density[g] * node.w;
-      FacetSums facets = term.sum[member];
-      sums.sum[g] = add_weighted(sums.sum[g], facets, weight);
-      sums.null_i[g] += first * facets.r_i;
-      sums.null_q[g] += first * facets.r_q;
-      sums.null_deficit[g] += first * facets.deficit;
-      second_i[g] += second * facets.r_i;
-      second_q[g] += second * facets.r_q;
-      second_deficit[g] += second * facets.deficit;
-      sums.doubt[g] += weight * term.doubt[member];
-      sums.deficit_doubt[g] += weight * term.deficit_doubt[member];
-      sums.mass[g] += kPi * weight;
-      sums.deficit_scale[g] += weight * term.deficit_scale[member];
-    }
-    sums.evaluations += term.evaluations;
-  }
-  for (int g = 0; g < DOLP_GROUP; ++g) {
-    sums.null_i[g] = null_size(sums.null_i[g], second_i[g]);
-    sums.null_q[g] = null_size(sums.null_q[g], second_q[g]);
-    sums.null_deficit[g] = null_size(sums.null_deficit[g], second_deficit[g]);
+  for (int g = 0; g < DOLP_WIDTH; ++g) {
+    sums.member[g] = real4(real(0.0));
+    sums.behind[g] = real(0.0);
   }
   return sums;
 }
 
-// The moments of the members of a group.
-struct GroupMoments {
-  MomentsNode member[DOLP_GROUP];
-};
-
-// Adds a piece's sums, and its doubts, to the moments of a group. Multiplied by the ratio of its true mass to the
-// rule's: the error that the density P alone makes cancels.
-void add_piece(Piece piece, SlopeSums sums, INOUT(GroupMoments) total) {
-  real digits = piece.digits - piece.lost;
-  for (int g = 0; g < DOLP_GROUP; ++g) {
-    real ratio = (sums.mass[g] > real(0.0)) ? piece.mass[g] / sums.mass[g] : real(1.0);
-    FacetSums facets = sums.sum[g];
-    total.member[g].r_i += ratio * facets.r_i;
-    total.member[g].r_q += ratio * facets.r_q;
-    total.member[g].albedo += ratio * facets.albedo;
-    total.member[g].deficit += ratio * facets.deficit;
-    total.member[g].doubt += doubt(facets.r_i, max(sums.null_i[g], sums.null_q[g]), digits) + sums.doubt[g];
-    total.member[g].deficit_doubt +=
-        doubt(sums.deficit_scale[g], sums.null_deficit[g], digits) + sums.deficit_doubt[g];
-    total.member[g].deficit_scale += ratio * sums.deficit_scale[g];
-    total.member[g].evaluations += sums.evaluations;
+PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task task, Piece piece, Masked of_theta,
+                     bool is_coarse) {
+  ShapeNode shape = row.shape[0];
+  PieceSums sums = no_slopes();
+  real mass[DOLP_WIDTH];
+  for (int g = 0; g < DOLP_WIDTH; ++g) mass[g] = real(0.0);
+  int order = is_coarse ? min(coarse_order(piece.order), largest_order()) : piece.order;
+  int first_node = rule_offset(kSectionGauss, order);
+  for (int i = 0; i < order; ++i) {
+    real2 node = rule_node(first_node + i);
+    real2 place = place_on_piece(piece, node.x);
+    real2 hyperbolic = sinh_cosh(piece.start + piece.extent * place.x);
+    real t = shape.scale * hyperbolic.x;
+    real u = t / shape.m;
+    real du = shape.scale / shape.m * hyperbolic.y * piece.extent * place.y;
+    real exponent = common_exponent(u);
+    real weight[DOLP_WIDTH];
+    real largest_weight = real(0.0);
+    for (int g = 0; g < DOLP_WIDTH; ++g) {
+      weight[g] = real(2.0) * node.y * slope_density(row.shape[g], u, exponent) * du;
+      largest_weight = max(largest_weight, weight[g]);
+    }
+    SplitLines lines = split_lines(theta, index, t, task.has_split_line);
+    Slope slope;
+    slope.t = t;
+    slope.digits = digits_of_slope(rule, theta, shape, piece.digits, order, t, kPi * largest_weight);
+    slope.of_theta = of_theta;
+    if (kMasking == DOLP_MASKING_INTEGRAL) slope.of_theta = shadows(row, of_theta, theta.c, theta.s, t);
+    slope.has_split_line = task.has_split_line;
+    slope.most_azimuths = task.most_azimuths;
+    slope.is_coarse = is_coarse;
+    AzimuthSums azimuths = azimuth_sums(rule, theta, row, index, slope, lines);
+    // Facets whose ray does not leave: their projection toward theta, which is negative for those that face away.
+    real below = theta.c * real(4.0) * atan_unit(lines.horizon.x / (real(1.0) + lines.horizon.y));
+    real behind = real(2.0) * theta.s * t * lines.horizon.x * lines.horizon.y;
+    for (int g = 0; g < DOLP_WIDTH; ++g) {
+      real4 facets = azimuths.member[min(g, masked_members() - 1)];
+      sums.member[g] += weight[g] * (facets + real4(real(0.0), real(0.0), real(0.0), below - behind));
+      sums.behind[g] += weight[g] * behind;
+      mass[g] += kPi * weight[g];
+    }
+    sums.evaluations += azimuths.evaluations;
   }
+  // The share of the facets is known: the error that the density alone makes cancels.
+  for (int g = 0; g < DOLP_WIDTH; ++g) {
+    real ratio = (mass[g] > real(0.0)) ? piece.mass[g] / mass[g] : real(1.0);
+    sums.member[g] *= ratio;
+    sums.behind[g] *= ratio;
+  }
+  return sums;
 }
 
-// What one piece adds to the moments of a group; the first also what lies beyond the last.
-GroupMoments piece_moments(RuleNode rule, ThetaNode theta, Group group, IndexNode index, int number) {
-  real cut = group.shape[0].cut;
-  real reached = min(theta.end[int(theta.piece_count)], cut);
-  GroupMoments total;
-  for (int g = 0; g < DOLP_GROUP; ++g) {
-    real beyond = (number == 0) ? theta.c * slope_tail(group.shape[g], reached) : real(0.0);
-    total.member[g] = MomentsNode(real(0.0), real(0.0), real(0.0), beyond, real(0.0), real(0.0), beyond, real(0.0));
+// The moments of the members of a row.
+struct RowMoments {
+  MomentsNode member[DOLP_WIDTH];
+};
+
+// What one piece adds to the moments of a row; the first also what lies beyond the last.
+RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task task) {
+  real cut = row.shape[0].cut;
+  Piece piece = make_piece(rule, theta, row, task);
+  Masked of_theta = masking_of_direction(row, theta.c, theta.s);
+  PieceSums coarse = no_slopes();
+  PieceSums fine = no_slopes();
+  int passes = (theta.end[task.piece] < cut) ? 2 : 0;  // a piece that none of the row reaches
+  for (int pass = 0; pass < passes; ++pass) {
+    coarse = fine;
+    fine = piece_sums(rule, theta, row, index, task, piece, of_theta, pass == 0);
   }
-  if (theta.end[number] < cut) {
-    Piece piece = make_piece(rule, theta, group, number);
-    add_piece(piece, piece_sums(rule, theta, group, index, piece), total);
+  real reached = min(theta.end[DOLP_MAX_PIECES], cut);
+  RowMoments result;
+  for (int g = 0; g < DOLP_WIDTH; ++g) {
+    real beyond = (task.piece == 0) ? theta.c * slope_tail(row.shape[g], reached) : real(0.0);
+    real4 sums = fine.member[g];
+    real4 difference = abs(sums - coarse.member[g]);
+    result.member[g] = MomentsNode(sums.x, sums.y, sums.z, sums.w + beyond, fine.behind[g],
+                                   max(difference.x, difference.y), difference.z, difference.w,
+                                   fine.evaluations + coarse.evaluations);
   }
-  return total;
+  return result;
 }

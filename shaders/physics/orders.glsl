@@ -1,18 +1,37 @@
-// How many nodes a piece of the slope axis or an arc of the azimuth gets.
+// How many nodes a piece of the slope axis or an arc of the azimuth gets: policy, of which the sums know nothing.
 //
-// A Gauss rule of n nodes on an interval of half length h, with the integrand's next singularity at a distance d beside
-// it, is wrong by rho^(-2n), rho = exp(asinh(d/h)): a decimal digit costs ln(10) / (2 asinh(d/h)) nodes. What d is worth
-// follows from a scan of the domain (host/plan/rule.cpp). The less a piece carries, the fewer digits it needs.
+// A Gauss rule of n nodes on [0, 1] is wrong by e^(-2 n mu) where the integrand's next singularity y0 lies on the ellipse
+// with the interval's ends as foci and cosh(mu) = |y0| + |y0 - 1| (Trefethen 2013, chapter 19): a decimal digit costs
+// ln(10) / (2 mu) nodes. Where the singularities of the azimuth lie is known exactly; RuleNode scales the law with what
+// is fitted (host/plan/rule.hpp). The less a piece carries, the fewer digits it needs.
 
 CONST real kHalfLn10 = real(1.15129254649702284);
 CONST real kInverseLn10 = real(0.43429448190325182765);
-CONST real kLn10 = real(2.30258509299404568402);
-CONST real kDoubtPower = real(0.75);
 CONST real kLeastWeight = real(1e-20);  // so that at 90 degrees all slopes weigh the same
 
-real nodes_per_digit(real distance_over_half_length) {
-  return kHalfLn10 / asinh_real(max(distance_over_half_length, real(1e-3)));
+// acosh(1 + gap), without cancellation.
+real acosh_above_1(real gap) { return log1p_real(gap + sqrt(gap * (gap + real(2.0)))); }
+
+// |y| + |y - 1| - 1 for y = a + i b, without cancellation: how far y is from [0, 1].
+real gap_beside_unit(real a, real b) {
+  real to_0 = sqrt(a * a + b * b);
+  real to_1 = sqrt((a - real(1.0)) * (a - real(1.0)) + b * b);
+  real off_axis = b * b / max(to_0 + abs(a), real(1e-30)) + b * b / max(to_1 + abs(a - real(1.0)), real(1e-30));
+  return off_axis + real(2.0) * (max(a - real(1.0), real(0.0)) + max(-a, real(0.0)));
 }
+
+real nodes_per_digit(real mu) { return kHalfLn10 / max(mu, real(1e-3)); }
+
+int order_between(real nodes, int limit) { return int(clamp(floor(nodes + real(0.5)), real(1.0), real(limit))); }
+
+// The coarser rule of a pair, whose distance from the finer one bounds the error. Below three nodes two rules may agree
+// by chance more often than not: there it is the finer one.
+int coarse_order(int order) {
+  int fewer = (8 * order + 5) / 10;
+  return (fewer < 3) ? order + 1 : fewer;
+}
+
+// ---- Slope axis ----------------------------------------------------------------------------------------------------
 
 // What facets of slope t add to the albedo, c + s t without masking. The cavities let through no more than 2 c.
 real weight_of_slope(ThetaNode theta, real t) {
@@ -37,34 +56,167 @@ real digits_of_slope(RuleNode rule, ThetaNode theta, ShapeNode shape, real digit
   return clamp(rule.digits + kInverseLn10 * log_unit(min(share, real(1.0))), real(0.0), digits);
 }
 
-int order_between(real nodes, real limit) { return int(clamp(floor(nodes + real(0.5)), real(1.0), limit)); }
-
-// Digits that a rule loses whose nodes are cut down to a limit. For d of its digits less, the nodes are
-// (digits - d) (growth - curvature d), up to a factor.
-real lost_digits(real digits, real growth, real curvature, real nodes, real limit) {
-  if (nodes <= limit) return real(0.0);
-  real cut = (real(1.0) - limit / nodes) * digits * growth;
-  real slope = growth + curvature * digits;
-  return real(2.0) * cut / (slope + sqrt(max(slope * slope - real(4.0) * curvature * cut, real(0.0))));
+// Nodes for each digit on a piece, from a singularity at X = re + i im. A root at an end makes the abscissa the root of the
+// distance from it.
+real piece_cost(Piece piece, real re, real im) {
+  real2 z = real2((re - piece.start) / piece.extent, im / piece.extent);
+  bool is_nearer_a = !piece.root_at_b || (piece.root_at_a && z.x < real(0.5));
+  real2 from_root = real2(is_nearer_a ? z.x : real(1.0) - z.x, z.y);
+  real2 y = (piece.root_at_a || piece.root_at_b) ? sqrt_upper(from_root.x, from_root.y) : z;
+  return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
 }
 
-// Slope axis: nodes of a piece of length `extent` in X with `roots` at its ends.
-real nodes_t(RuleNode rule, ThetaNode theta, real digits, real extent, real roots) {
-  real per_digit = theta.t_growth * rule.t_growth * nodes_per_digit(real(2.0) * rule.t_strip / max(extent, real(1e-9)));
-  return max(rule.t_nodes + digits * per_digit + rule.t_root_nodes * roots, real(2.0));
+// acosh(y) for y >= 1, 0 below: the real part of asinh(i y), whose imaginary part is pi/2 then.
+real real_part_of_asinh(real y) { return acosh_above_1(max(y - real(1.0), real(0.0))); }
+
+// Singularities of the integrand over the slopes: the density at t = i m, where the gaussian has none but grows as fast; the
+// geometry at t = i; and the square roots at the breakpoints beyond the piece's ends that face it.
+real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, Task task, Piece piece) {
+  bool is_cauchy = kDistribution == DOLP_CAUCHY;
+  real width = is_cauchy ? real_part_of_asinh(shape.m / shape.scale)
+                         : clamp(asinh_real(shape.m / shape.scale), piece.start, piece.start + piece.extent);
+  real cost = piece_cost(piece, width, is_cauchy ? rule.t_strip_cauchy : rule.t_strip_gaussian);
+  cost = max(cost, piece_cost(piece, real_part_of_asinh(real(1.0) / shape.scale), real(0.5) * kPi));
+  if (task.root_before_start) {
+    cost = max(cost, piece_cost(piece, asinh_real(theta.end[task.piece - 1] / shape.scale), real(0.0)));
+  }
+  if (task.root_after_end && theta.end[task.piece + 1] < shape.cut) {
+    cost = max(cost, piece_cost(piece, asinh_real(theta.end[task.piece + 2] / shape.scale), real(0.0)));
+  }
+  return max(rule.t_nodes + (piece.digits + rule.t_digits) * cost, real(2.0));
 }
 
-// Length of an arc in phi, from tan of its quarter: 4 atan(quarter), a percent too long at most.
-real arc_length(real quarter) { return real(4.0) * quarter / (real(1.0) + real(0.28) * quarter * quarter); }
+// ---- Azimuth -------------------------------------------------------------------------------------------------------
 
-real half_arc_nodes(RuleNode rule, real digits, real distance, real length) {
-  return real(0.5) * digits * rule.phi_growth * nodes_per_digit(distance / length);
+// A singularity of the integrand as a function of the azimuth, in the half plane Im(phi) >= 0.
+struct Singularity {
+  real re;
+  real im;
+};
+
+// acos(u).
+real arc_cosine(real u) {
+  real angle = real(2.0) * atan_unit(sqrt((real(1.0) - abs(u)) / (real(1.0) + abs(u))));
+  return (u < real(0.0)) ? kPi - angle : angle;
 }
 
-// How far a sum may be off by one rule, up to a factor that host/plan/doubt_model.cpp knows. Where the integrand is smooth, the
-// error of n nodes is to the null rule's value as that is to the sum; where it is not, it is what the orders were made
-// for, 10^-digits. The geometric mean of the two is the closest to the truth over the domain.
-real doubt(real sum, real null, real digits) {
-  real whole = abs(sum);
-  return min(exp_real(-kDoubtPower * kLn10 * digits) * sqrt(whole * abs(null)), whole);
+// arccos(a + i b), from the distances of cos(phi) to +-1 (Hull, Fairgrieve and Tang 1997).
+Singularity singularity_at(real a, real b) {
+  real to_minus_1 = sqrt((a + real(1.0)) * (a + real(1.0)) + b * b);
+  real to_1 = sqrt((a - real(1.0)) * (a - real(1.0)) + b * b);
+  real gap = real(0.5) * gap_beside_unit(real(0.5) * (a + real(1.0)), real(0.5) * b) * real(2.0);
+  return Singularity(arc_cosine(clamp(real(0.5) * (to_minus_1 - to_1), real(-1.0), real(1.0))), acosh_above_1(gap));
+}
+
+// Nodes for each digit on an arc, from the singularity's place in the abscissa of the arc's rule. Rules that are even about
+// the arc's centre converge as one of half the nodes in the square of their abscissa, clusters are in its root.
+real arc_cost(Arc arc, Singularity at) {
+  if (arc.section == kSectionCircle) return nodes_per_digit(at.im);
+  real re = abs(at.re - arc.origin) / arc.span;
+  bool is_beyond = (at.re - arc.origin) * arc.extent < real(0.0);
+  real im = at.im / arc.span;
+  re = is_beyond ? -re : re;
+  real2 y = real2(re, im);
+  if (arc.section == kSectionHalf) y = real2(re * re - im * im, real(2.0) * re * im);
+  if (arc.section == kSectionCluster) y = sqrt_upper(re, im);
+  return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
+}
+
+// The singularities of Fresnel's coefficients: R_p's pole, at cos(beta) = -1 / sqrt(N^2 + 1), and the branch point of w, at
+// cos^2(beta) = 1 - N^2. Beside a critical line w goes as the abscissa v of the cluster and the pole w = -N^2 cos(beta)
+// lies at v = -N^2 critical_cos / w of the arc's other end; beyond the line w is imaginary.
+real fresnel_cost(ThetaNode theta, IndexNode index, real t, Arc arc, bool is_critical) {
+  real sec = sqrt(real(1.0) + t * t);
+  real st = max(theta.s * t, real(1e-15));
+  if (is_critical) {
+    real2 end = (arc.extent < real(0.0)) ? arc.from : arc.to;
+    real cos_beta = (theta.c + theta.s * t * cosine(end)) / sec;
+    real w2 = cos_beta * cos_beta - index.critical_cos * index.critical_cos;
+    real v = abs(index.n2m1_re + real(1.0)) * index.critical_cos / max(sqrt(abs(w2)), real(1e-15));
+    v = min(v, real(1e9));
+    return nodes_per_digit(acosh_above_1((w2 > real(0.0)) ? gap_beside_unit(-v, real(0.0)) : gap_beside_unit(real(0.0), v)));
+  }
+  real scale = sec / st;
+  real offset = theta.c / st;
+  Singularity pole = singularity_at(index.pole_re * scale - offset, index.pole_im * scale);
+  Singularity branch = singularity_at(index.branch_re * scale - offset, index.branch_im * scale);
+  return max(arc_cost(arc, pole), arc_cost(arc, branch));
+}
+
+// Those of the masking of the reflected ray: the in-plane slopes' density at cot(theta_r) = +- i m, and for `integral` the
+// pole of kappa at cot(theta_r) = -t.
+real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
+  if (kMasking != DOLP_MASKING_SMITH && (kMasking != DOLP_MASKING_INTEGRAL || zone == 0)) return real(0.0);
+  real sec2 = real(1.0) + t * t;
+  real st = max(theta.s * t, real(1e-15));
+  real scale = real(0.5) * sec2 / st;
+  real offset = theta.c * scale - theta.c / st;
+  // cos(theta_r) = i m / sqrt(1 - m^2)
+  real width = real(1.0) - shape.m * shape.m;
+  real cos_r = shape.m / sqrt(max(abs(width), real(1e-6)));
+  Singularity density = singularity_at(offset + ((width > real(0.0)) ? real(0.0) : -cos_r * scale),
+                                       (width > real(0.0)) ? cos_r * scale : real(0.0));
+  real cost = arc_cost(arc, density);
+  if (kMasking == DOLP_MASKING_INTEGRAL) cost = max(cost, arc_cost(arc, singularity_at(offset - t / sqrt(sec2) * scale, real(0.0))));
+  return cost;
+}
+
+// Smith's L goes as |theta_r|^(2q - 2) near the facet (tan(theta/2), phi = 0), where theta_r = 0: not smooth unless q is an
+// integer, and the less so the smaller q. For the arc from phi = 0, theta_r = 0 lies at
+// cosh(i phi) = 1 + (1 + c) (t - tan(theta/2))^2 / (2 s t).
+real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) {
+  if (kMasking != DOLP_MASKING_SMITH || shape.cusp_digits < real(-100.0)) return real(0.0);
+  real away = t - theta.s / (real(1.0) + theta.c);
+  real rise = (real(1.0) + theta.c) * away * away / (real(2.0) * max(theta.s * t, real(1e-30)));
+  real wanted = max(digits + shape.cusp_digits, real(0.0));
+  return wanted * arc_cost(arc, Singularity(real(0.0), max(acosh_above_1(rise), real(1e-3))));
+}
+
+// The arc of a zone without total reflection.
+Arc zone_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_line, real t, real digits, real2 from,
+             real2 to, int zone) {
+  Arc arc = make_arc(from, to);
+  if (kMasking == DOLP_MASKING_SMITH && has_split_line) {
+    real wanted = max(digits + shape.cusp_digits, real(0.0));
+    if (cusp_nodes(theta, shape, t, digits, arc) > rule.cluster_stretch * wanted) return make_root_arc(from, to, false);
+  }
+  // Where the limit b of `integral` meets pi/2, G goes as the distance to the power 2q - 1.
+  bool is_rough_line = kMasking == DOLP_MASKING_INTEGRAL && kDistribution == DOLP_CAUCHY && zone == 2 &&
+                       has_split_line && shape.q_minus_1 + real(1.0) < rule.cluster_below_q;
+  return is_rough_line ? make_root_arc(from, to, false) : arc;
+}
+
+// The arc on one side of the critical line. w^2 = cos^2(beta) - critical_cos^2 + i Im N^2 vanishes beside its end, as far
+// off the axis as Im N^2 is of the range of w^2 on the arc. Where that is too little to be felt at all, the root counts
+// as sharp: what it would change is of the order of the resolution to the power 3/2.
+Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, real2 from, real2 to, bool at_end) {
+  Arc arc = make_root_arc(from, to, at_end);
+  real e = theta.c + theta.s * t * cosine(at_end ? from : to);
+  real range = abs(e * e / (real(1.0) + t * t) - index.critical_cos * index.critical_cos);
+  real resolution = min(index.n2m1_im / max(range, real(1e-30)), real(1.0));
+  bool is_felt = digits + real(1.5) * kInverseLn10 * log_unit(resolution) > real(-1.0);
+  arc.resolution = is_felt ? resolution : real(0.0);
+  return arc;
+}
+
+// A smoothed square root has singularities at v = asinh(sqrt(+-i)) / a = (0.76 +- 0.57 i) / a in the abscissa of
+// place_on_arc; what they carry is resolution^(3/2) of the whole.
+real resolution_nodes(real digits, real resolution) {
+  if (resolution <= real(0.0)) return real(0.0);
+  real wanted = max(digits + real(1.5) * kInverseLn10 * log_unit(resolution), real(0.0));
+  real a = asinh_real(real(1.0) / sqrt(resolution));
+  return wanted * nodes_per_digit(acosh_above_1(gap_beside_unit(real(0.76) / a, real(0.57) / a)));
+}
+
+// Nodes of an arc. With fewer than two on the whole half circle cos(2 phi) would not average out.
+real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, real t, real digits, Arc arc, int zone,
+               bool is_critical) {
+  real map = nodes_per_digit(asinh_real(real(1.0) / max(abs(arc.extent), real(1e-9))));  // dphi = 4 dtau / (1 + tau^2)
+  if (arc.section == kSectionHalf) map = real(0.5) * map;
+  if (arc.section == kSectionCircle) map = real(0.0);
+  real cost = max(max(map, fresnel_cost(theta, index, t, arc, is_critical)), masking_cost(theta, shape, t, arc, zone));
+  real nodes = rule.phi_nodes + (digits + rule.phi_digits) * cost;
+  nodes = max(nodes, rule.phi_nodes + cusp_nodes(theta, shape, t, digits, arc));
+  nodes = max(nodes, rule.phi_nodes + resolution_nodes(digits, arc.resolution));
+  return (arc.section == kSectionCircle) ? max(nodes, real(2.0)) : nodes;
 }

@@ -6,11 +6,9 @@
 //       the body of that class, and the data accessors (masking_node, rule_node) are its members.
 #ifdef __cplusplus
 #define CONST static constexpr
-#define INOUT(Type) Type&
 #define precise
 #else
 #define CONST const
-#define INOUT(Type) inout Type
 #ifdef DOLP_DOUBLE
 #define real double
 #define real2 dvec2

@@ -1,15 +1,11 @@
-// The nodes of the rules, one buffer of (abscissa, weight, null weight, second null weight) in five sections; within a
-// section the rule of order n starts at n (n - 1) / 2. host/plan/rule_nodes.cpp fills it.
+// The nodes of the rules, one buffer of (abscissa, weight) in five sections; within a section the rule of order n starts
+// at n (n - 1) / 2. host/plan/rule_nodes.cpp fills it.
 //   gauss   Gauss-Legendre on [0, 1]
 //   centre  Gauss-Legendre on [-1, 1]                              an arc between two split lines
 //   half    the positive nodes of the rule of order 2n on [-1, 1]  an arc that touches phi = 0 or pi: even about its end
 //   circle  tan(psi/4) of the midpoints of n equal parts of [0, pi]: the whole half circle, spectral for periodic f
 //   cluster Gauss-Legendre on [0, 1] in sqrt(tau / T): an arc from a cusp or square root at its centre
 // centre, half, circle and cluster hold abscissae of tau / T, where tau = tan(psi/4), dpsi = 4 T / (1 + tau^2) d(tau/T).
-//
-// The null weights, times the values that a rule adds up, give the coefficients of the values' expansion in the
-// polynomials (or cosines) of the two highest degrees that the nodes still tell apart: zero for a smooth integrand. The
-// sections of the azimuth hold the sum of the two.
 
 CONST int kSectionGauss = 0;
 CONST int kSectionCentre = 1;
@@ -19,7 +15,6 @@ CONST int kSectionCluster = 4;
 
 int gauss_offset(int order) { return order * (order - 1) / 2; }
 
-int rule_offset(RuleNode rule, int section, int order) {
-  int stride = int(rule.largest_order);
-  return section * (stride * (stride + 1) / 2) + gauss_offset(order);
+int rule_offset(int section, int order) {
+  return section * (largest_order() * (largest_order() + 1) / 2) + gauss_offset(order);
 }

@@ -31,10 +31,13 @@ struct Text {
 
   uint kDistribution = DOLP_CAUCHY;
   uint kMasking = DOLP_MASKING_NONE;
-  std::vector<real4> rule_nodes;
+  bool kTotalReflection = false;
+  int order_of_nodes = 1;
+  std::vector<real2> rule_nodes;
   std::vector<real4> masking_table;
 
-  real4 rule_node(int i) const { return rule_nodes[static_cast<std::size_t>(i)]; }
+  int largest_order() const { return order_of_nodes; }
+  real2 rule_node(int i) const { return rule_nodes[static_cast<std::size_t>(i)]; }
   real4 masking_node(uint i) const { return masking_table[i]; }
   void store_masking_node(uint i, real4 node) { masking_table[i] = node; }
 };
@@ -45,19 +48,22 @@ class TextKernel final : public KernelText {
       : data_(data), rule_(convert_reals<real, Text::RuleNode, double>(data.rule)) {
     text_.kDistribution = static_cast<uint>(data.distribution);
     text_.kMasking = static_cast<uint>(data.masking);
-    for (const auto& node : data.rule_nodes) text_.rule_nodes.push_back(convert_reals<real, real4, double>(node));
+    text_.kTotalReflection = data.has_total_reflection;
+    text_.order_of_nodes = data.rule_order;
+    for (const auto& node : data.rule_nodes) text_.rule_nodes.push_back(convert_reals<real, real2, double>(node));
     if (data.needs_masking_table()) text_.masking_table.resize(data.shapes.size() * Text::kMaskingNodes);
   }
 
   void build_masking_table(std::size_t shape) override { text_.build_masking_table(shape_node(shape), table(shape)); }
 
   kernel::MomentsNode moments(const MomentsEntry& entry) override {
-    const Text::Group group{{shape_node(entry.shape)}, {table(entry.shape)}};
+    const Text::Row row{{shape_node(entry.shape)}, {table(entry.shape)}};
     const auto theta = convert_reals<real, Text::ThetaNode, double>(data_.thetas[entry.theta]);
     const auto index = convert_reals<real, Text::IndexNode, double>(data_.indices[entry.index]);
     kernel::MomentsNode moments{};
-    for (std::uint32_t piece = 0; piece < piece_count(data_.thetas[entry.theta], data_.shapes[entry.shape]); ++piece) {
-      const auto part = text_.piece_moments(rule_, theta, group, index, static_cast<int>(piece));
+    for (std::uint32_t piece = 0; piece < piece_count(data_, entry.theta, data_.shapes[entry.shape]); ++piece) {
+      const auto task = text_.task_of(task_word(data_.pieces[entry.theta], piece, 1));
+      const auto part = text_.piece_moments(rule_, theta, row, index, task);
       add_piece(moments, convert_reals<double, kernel::MomentsNode, real>(part.member[0]));
     }
     return moments;

@@ -86,9 +86,10 @@ void CommandStream::barrier(Barrier barrier) {
   vkCmdPipelineBarrier(commands_, scopes.from_stage, scopes.to_stage, 0, 1, &memory, 0, nullptr, 0, nullptr);
 }
 
-void CommandStream::dispatch(const Kernels& kernels, VkPipeline pipeline, std::uint32_t first, std::uint32_t count) {
+void CommandStream::dispatch(const Kernels& kernels, VkPipeline pipeline, std::uint32_t first, std::uint32_t count,
+                             int largest_order) {
   if (count == 0) return;
-  const std::array<std::uint32_t, kPushConstantCount> constants{first, count};
+  const std::array<std::uint32_t, kPushConstantCount> constants{first, count, static_cast<std::uint32_t>(largest_order)};
   const VkDescriptorSet set = kernels.descriptor_set();
   vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
   vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernels.layout(), 0, 1, &set, 0, nullptr);

@@ -20,7 +20,7 @@ vulkan::TileLimits tile_limits(const DeviceDescription& device, std::uint64_t ti
 }
 
 std::uint64_t node_bytes(const vulkan::Packing& packing, const KernelData& data) {
-  return data.rule_nodes.size() * packing.node_bytes<std::array<double, 4>>();
+  return data.rule_nodes.size() * packing.node_bytes<std::array<double, 2>>();
 }
 
 }  // namespace
@@ -30,9 +30,7 @@ DispatchPlan dispatch_plan(const MomentsRequest& request, const DeviceDescriptio
   if (request.entries.empty()) return {};
   const vulkan::Packing packing(request.precision == Precision::kDouble);
   const KernelData data = kernel_data(request);
-  const Grouping grouping = grouped(
-      data, kGroupSizes,
-      options.groups_small_requests ? std::span<const std::uint32_t>(kGroupSizes) : std::span<const std::uint32_t>{});
+  const Grouping grouping = grouped(data, options.groups_small_requests);
   const vulkan::TileCosts costs = vulkan::tile_costs(packing, grouping.size);
   const std::uint64_t most = grouping.groups.size() * DOLP_MAX_PIECES;
   const vulkan::TileSizes sizes =

@@ -6,20 +6,33 @@
 namespace dolp::vulkan {
 namespace {
 
-std::span<const std::uint32_t> moments_module(std::uint32_t group_size, bool float64) {
-  switch (group_size) {
+/// The SPIR-V of a variant: every module that there is.
+std::span<const std::uint32_t> module_of(const KernelVariant& variant, bool float64) {
+  if (variant.entry == EntryPoint::kMaskingTable) {
+    return float64 ? spirv::masking_table_double : spirv::masking_table_float;
+  }
+  if (variant.entry == EntryPoint::kMueller) return float64 ? spirv::mueller_double : spirv::mueller_float;
+  switch (variant.width) {
     case 4:
-      return float64 ? spirv::moments_group4_double : spirv::moments_group4_float;
+      return float64 ? spirv::moments_row4_double : spirv::moments_row4_float;
     case 8:
-      return float64 ? spirv::moments_group8_double : spirv::moments_group8_float;
+      return float64 ? spirv::moments_row8_double : spirv::moments_row8_float;
     case 16:
-      return float64 ? spirv::moments_group16_double : spirv::moments_group16_float;
+      return float64 ? spirv::moments_row16_double : spirv::moments_row16_float;
     default:
       return float64 ? spirv::moments_double : spirv::moments_float;
   }
 }
 
 }  // namespace
+
+KernelVariant moments_variant(const KernelData& data, std::uint32_t width) {
+  return {EntryPoint::kMoments, data.distribution, data.masking, data.has_total_reflection, width};
+}
+
+KernelVariant masking_table_variant(const KernelData& data) {
+  return {EntryPoint::kMaskingTable, data.distribution, data.masking};
+}
 
 Kernels::Kernels(const Device& device, bool float64) : device_(device), float64_(float64) {
   create_layouts();
@@ -86,47 +99,19 @@ void Kernels::bind(const std::array<VkBuffer, kBindingCount>& buffers) {
   vkUpdateDescriptorSets(device_.get(), count, writes.data(), 0, nullptr);
 }
 
-VkPipeline Kernels::moments(Distribution distribution, Masking masking, std::uint32_t group_size) {
-  return cached(moments_cache(group_size), moments_module(group_size, float64_), distribution, masking);
-}
-
-std::vector<std::uint32_t> Kernels::made_group_sizes(Distribution distribution, Masking masking) {
-  const std::scoped_lock lock(mutex_);
-  std::vector<std::uint32_t> sizes;
-  for (const auto& [size, cache] : moments_) {
-    if (cache.contains({distribution, masking})) sizes.push_back(size);
-  }
-  return sizes;
-}
-
-Kernels::Cache& Kernels::moments_cache(std::uint32_t group_size) {
-  const std::scoped_lock lock(mutex_);
-  return moments_[group_size];
-}
-
-VkPipeline Kernels::masking_table(Distribution distribution, Masking masking) {
-  return cached(masking_tables_, float64_ ? spirv::masking_table_double : spirv::masking_table_float, distribution,
-                masking);
-}
-
-VkPipeline Kernels::mueller(Distribution distribution, Masking masking) {
-  return cached(muellers_, float64_ ? spirv::mueller_double : spirv::mueller_float, distribution, masking);
-}
-
-VkPipeline Kernels::cached(Cache& cache, std::span<const std::uint32_t> spirv, Distribution distribution,
-                           Masking masking) {
+VkPipeline Kernels::pipeline(const KernelVariant& variant) {
   const auto known = [&]() -> VkPipeline {
     const std::scoped_lock lock(mutex_);
-    const auto found = cache.find({distribution, masking});
-    return found == cache.end() ? VK_NULL_HANDLE : found->second.get();
+    const auto found = pipelines_.find(variant);
+    return found == pipelines_.end() ? VK_NULL_HANDLE : found->second.get();
   };
   if (VkPipeline pipeline = known()) return pipeline;
-  UniquePipeline pipeline = create(spirv, distribution, masking);
+  UniquePipeline created = create(module_of(variant, float64_), variant);
   const std::scoped_lock lock(mutex_);
-  return cache.emplace(std::pair(distribution, masking), std::move(pipeline)).first->second.get();
+  return pipelines_.emplace(variant, std::move(created)).first->second.get();
 }
 
-UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, Distribution distribution, Masking masking) const {
+UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const {
   const VkShaderModuleCreateInfo module_info{
       .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
   VkShaderModule created_module = VK_NULL_HANDLE;
@@ -134,12 +119,14 @@ UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, Distributio
   const UniqueShaderModule shader(device_.get(), created_module);
 
   // The enumerators are the values of interface.glsl.
-  const std::array<std::uint32_t, 3> values{kLocalSize, static_cast<std::uint32_t>(distribution),
-                                            static_cast<std::uint32_t>(masking)};
+  const std::array<std::uint32_t, 4> values{kLocalSize, static_cast<std::uint32_t>(variant.distribution),
+                                            static_cast<std::uint32_t>(variant.masking),
+                                            variant.has_total_reflection ? 1U : 0U};
   constexpr std::uint32_t kSize = sizeof(std::uint32_t);
-  const std::array<VkSpecializationMapEntry, 3> entries{{{DOLP_SPEC_LOCAL_SIZE, 0, kSize},
+  const std::array<VkSpecializationMapEntry, 4> entries{{{DOLP_SPEC_LOCAL_SIZE, 0, kSize},
                                                          {DOLP_SPEC_DISTRIBUTION, kSize, kSize},
-                                                         {DOLP_SPEC_MASKING, 2 * kSize, kSize}}};
+                                                         {DOLP_SPEC_MASKING, 2 * kSize, kSize},
+                                                         {DOLP_SPEC_TOTAL_REFLECTION, 3 * kSize, kSize}}};
   const VkSpecializationInfo constants{.mapEntryCount = static_cast<std::uint32_t>(entries.size()),
                                        .pMapEntries = entries.data(),
                                        .dataSize = sizeof values,

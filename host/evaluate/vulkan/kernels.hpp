@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <mutex>
@@ -20,7 +21,24 @@ constexpr std::uint32_t kPushConstantCount = 4;
 /// Invocations of a workgroup; every device allows 128.
 constexpr std::uint32_t kLocalSize = 64;
 
-/// Creates pipelines on demand, one for each combination of the specialization constants; any thread may ask for one.
+/// The entry points of shaders/*.comp.
+enum class EntryPoint { kMoments, kMaskingTable, kMueller };
+
+/// What a pipeline is compiled for: the specialization constants of interface.glsl, and the width of a row.
+struct KernelVariant {
+  EntryPoint entry = EntryPoint::kMoments;
+  Distribution distribution = Distribution::kCauchy;
+  Masking masking = Masking::kNone;
+  bool has_total_reflection = false;
+  std::uint32_t width = 1;  ///< of moments: one of kRowWidths of plan/groups.hpp
+  auto operator<=>(const KernelVariant&) const = default;
+};
+
+/// The variants that a request's data wants.
+KernelVariant moments_variant(const KernelData& data, std::uint32_t width);
+KernelVariant masking_table_variant(const KernelData& data);
+
+/// Creates pipelines on demand, one for each variant; any thread may ask for one.
 class Kernels {
  public:
   Kernels(const Device& device, bool float64);
@@ -29,26 +47,14 @@ class Kernels {
   /// pipelines to run do not use.
   void bind(const std::array<VkBuffer, kBindingCount>& buffers);
 
-  /// `group_size`: one of kGroupSizes of plan/groups.hpp.
-  VkPipeline moments(Distribution distribution, Masking masking, std::uint32_t group_size);
-  /// The sizes of groups that `moments` has made a pipeline for.
-  std::vector<std::uint32_t> made_group_sizes(Distribution distribution, Masking masking);
-  VkPipeline masking_table(Distribution distribution, Masking masking);
-  VkPipeline mueller(Distribution distribution, Masking masking);
-  /// Runs `pipeline` of `create` in place of that of `moments`, for studies of other modules.
-  void replace_moments(Distribution distribution, Masking masking, UniquePipeline pipeline) {
-    moments_[1].insert_or_assign({distribution, masking}, std::move(pipeline));
-  }
+  VkPipeline pipeline(const KernelVariant& variant);
   VkPipelineLayout layout() const { return layout_.get(); }
   VkDescriptorSet descriptor_set() const { return set_; }
 
   /// A pipeline of any module that keeps to interface.glsl.
-  UniquePipeline create(std::span<const std::uint32_t> spirv, Distribution distribution, Masking masking) const;
+  UniquePipeline create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const;
 
  private:
-  using Cache = std::map<std::pair<Distribution, Masking>, UniquePipeline>;
-  Cache& moments_cache(std::uint32_t group_size);
-  VkPipeline cached(Cache& cache, std::span<const std::uint32_t> spirv, Distribution distribution, Masking masking);
   void create_layouts();
   void create_descriptor_set();
 
@@ -58,9 +64,8 @@ class Kernels {
   UniquePipelineLayout layout_;
   UniqueDescriptorPool pool_;
   VkDescriptorSet set_ = VK_NULL_HANDLE;
-  std::mutex mutex_;                        ///< of the caches
-  std::map<std::uint32_t, Cache> moments_;  ///< by the size of a group
-  Cache masking_tables_, muellers_;
+  std::mutex mutex_;  ///< of the pipelines
+  std::map<KernelVariant, UniquePipeline> pipelines_;
 };
 
 }  // namespace dolp::vulkan

@@ -12,16 +12,11 @@ namespace {
 
 using EntryWords = std::array<std::uint32_t, 4>;
 using MaskingNode = std::array<double, 4>;
-using RulePoint = std::array<double, 4>;
+using RulePoint = std::array<double, 2>;
 
 // What a thread takes at a time.
 constexpr std::size_t kGroupsAtOnce = 1024;
 constexpr std::size_t kEntriesAtOnce = 4096;
-
-std::vector<std::uint32_t> made_group_sizes(const RunContext& context, const MomentsRequest& request) {
-  if (context.groups_small_requests) return {kGroupSizes.begin(), kGroupSizes.end()};
-  return context.kernels.made_group_sizes(request.distribution, request.masking);
-}
 
 }  // namespace
 
@@ -30,7 +25,7 @@ MomentsRun::MomentsRun(const RunContext& context, const MomentsRequest& request,
     : context_(context),
       request_(request),
       data_(kernel_data(request)),
-      grouping_(grouped(data_, kGroupSizes, made_group_sizes(context, request))),
+      grouping_(grouped(data_, context.groups_small_requests)),
       sizes_(sizes(tile_invocations, block_shapes)),
       thetas_(data_.thetas.size()),
       indices_(request.indices.size()) {
@@ -70,7 +65,7 @@ void MomentsRun::create_buffers() {
   buffers[DOLP_BINDING_THETAS] = theta_buffer_->get();
   buffers[DOLP_BINDING_SHAPES] = shape_buffer_->get();
   buffers[DOLP_BINDING_INDICES] = index_buffer_->get();
-  buffers[DOLP_BINDING_ENTRIES] = entry_buffer_->get();
+  buffers[DOLP_BINDING_TASKS] = entry_buffer_->get();
   buffers[DOLP_BINDING_RULE] = rule_buffer_->get();
   buffers[DOLP_BINDING_RULE_NODES] = rule_node_buffer_->get();
   buffers[DOLP_BINDING_MASKING_TABLE] = masking_buffer_->get();
@@ -81,9 +76,9 @@ void MomentsRun::create_buffers() {
 void MomentsRun::create_pipelines() {
   std::future<void> tables;
   if (data_.needs_masking_table()) {
-    tables = std::async(std::launch::async, [&] { context_.kernels.masking_table(data_.distribution, data_.masking); });
+    tables = std::async(std::launch::async, [&] { context_.kernels.pipeline(masking_table_variant(data_)); });
   }
-  context_.kernels.moments(data_.distribution, data_.masking, grouping_.size);
+  context_.kernels.pipeline(moments_variant(data_, grouping_.size));
   if (tables.valid()) tables.get();
 }
 
@@ -125,8 +120,8 @@ void MomentsRun::start_block(const Block& block) {
   rule_buffer_->write(scratch_, stream);
   stream.barrier(Barrier::kUploadToKernel);
   if (data_.needs_masking_table()) {
-    stream.dispatch(context_.kernels, context_.kernels.masking_table(data_.distribution, data_.masking), 0,
-                    block.shape_count);
+    stream.dispatch(context_.kernels, context_.kernels.pipeline(masking_table_variant(data_)), 0, block.shape_count,
+                    data_.rule_order);
     stream.barrier(Barrier::kKernelToKernel);
     ++cost_.dispatches;
   }
@@ -134,7 +129,6 @@ void MomentsRun::start_block(const Block& block) {
 }
 
 void MomentsRun::upload_tile(const Block& block, std::span<const GroupPiece> pieces) {
-  constexpr std::uint32_t kPieceUnit = 256;  // see DOLP_BINDING_ENTRIES
   thetas_.clear();
   indices_.clear();
   std::vector<EntryWords> words;
@@ -143,7 +137,7 @@ void MomentsRun::upload_tile(const Block& block, std::span<const GroupPiece> pie
     const EntryGroup& group = grouping_.groups[own.group];
     const ShapeFamily& family = grouping_.families[group.family];
     words.push_back({thetas_(group.theta), family.first - block.first_shape, indices_(group.index),
-                     family.count + kPieceUnit * own.piece});
+                     task_word(data_.pieces[group.theta], own.piece, family.count)});
   }
   entry_buffer_->write(std::as_bytes(std::span(words)), context_.stream);
   upload(data_.thetas, thetas_.used(), *theta_buffer_);
@@ -156,8 +150,8 @@ void MomentsRun::run_tile(const Block& block, std::span<const GroupPiece> pieces
   stream.begin();
   upload_tile(block, pieces);
   stream.barrier(Barrier::kUploadToKernel);
-  stream.dispatch(context_.kernels, context_.kernels.moments(data_.distribution, data_.masking, grouping_.size), 0,
-                  static_cast<std::uint32_t>(pieces.size()));
+  stream.dispatch(context_.kernels, context_.kernels.pipeline(moments_variant(data_, grouping_.size)), 0,
+                  static_cast<std::uint32_t>(pieces.size()), data_.rule_order);
   stream.barrier(Barrier::kKernelToHost);
   cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
   ++cost_.dispatches;

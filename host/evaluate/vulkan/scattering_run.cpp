@@ -4,6 +4,10 @@
 
 namespace dolp::vulkan {
 
+KernelVariant mueller_variant(const ScatteringRequest& request) {
+  return {EntryPoint::kMueller, request.distribution, request.masking};
+}
+
 ScatteringRun::ScatteringRun(const RunContext& context, const ScatteringRequest& request, std::uint32_t tile_entries)
     : context_(context), request_(request), plan_(request), tile_size_(tile_size(tile_entries)) {
   create_buffers();
@@ -23,7 +27,7 @@ std::uint32_t ScatteringRun::tile_size(std::uint32_t tile_entries) const {
 void ScatteringRun::create_buffers() {
   const Packing& packing = context_.packing;
   const bool staged = context_.staged_uploads;
-  const std::size_t rule_bytes = plan_.data().rule_nodes.size() * packing.node_bytes<std::array<double, 4>>();
+  const std::size_t rule_bytes = plan_.data().rule_nodes.size() * packing.node_bytes<std::array<double, 2>>();
   beam_buffer_.emplace(context_.device, tile_size_ * packing.node_bytes<kernel::BeamNode>(), staged);
   rule_node_buffer_.emplace(context_.device, rule_bytes, staged);
   mueller_buffer_.emplace(context_.device, tile_size_ * packing.node_bytes<kernel::MuellerNode>(),
@@ -69,8 +73,8 @@ void ScatteringRun::run_tile(std::span<const ScatteringEntry> entries, std::span
   stream.begin();
   beam_buffer_->write(scratch_, stream);
   stream.barrier(Barrier::kUploadToKernel);
-  stream.dispatch(context_.kernels, context_.kernels.mueller(request_.distribution, request_.masking), 0,
-                  static_cast<std::uint32_t>(entries.size()));
+  stream.dispatch(context_.kernels, context_.kernels.pipeline(mueller_variant(request_)), 0,
+                  static_cast<std::uint32_t>(entries.size()), plan_.data().rule_order);
   stream.barrier(Barrier::kKernelToHost);
   cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
   ++cost_.dispatches;

@@ -11,6 +11,8 @@
 
 namespace dolp::vulkan {
 
+KernelVariant mueller_variant(const ScatteringRequest& request);
+
 /// Owns the buffers of one request and computes it. Entries bring their own shapes and need no tables, so that a tile's
 /// size bounds the memory whatever the shapes are.
 class ScatteringRun {

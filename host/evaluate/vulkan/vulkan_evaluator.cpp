@@ -74,15 +74,15 @@ class VulkanEvaluator::Impl {
                                         EvaluationReport& report) {
     const Clock::time_point start = Clock::now();
     if (prepared_.valid()) prepared_.wait();
-    kernels_for(request.precision).mueller(request.distribution, request.masking);
+    kernels_for(request.precision).pipeline(vulkan::mueller_variant(request));
     report.setup_s += seconds_since(start);
     scattering_run_.emplace(context_for(request.precision), request, options_.max_tile_invocations);
     return finish(scattering_run_, scattering_run_->compute(progress), request.precision, report);
   }
   void prepare(const ScatteringRequest& request) {
     vulkan::Kernels& kernels = kernels_for(request.precision);
-    prepared_ = std::async(std::launch::async, [&kernels, distribution = request.distribution,
-                                                masking = request.masking] { kernels.mueller(distribution, masking); });
+    prepared_ = std::async(std::launch::async,
+                           [&kernels, variant = vulkan::mueller_variant(request)] { kernels.pipeline(variant); });
   }
 
  private:

@@ -1,0 +1,148 @@
+#include "calibrate/hold_out.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "evaluate/cpu/cpu_evaluator.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr double kFinerBy = 1e-5;
+constexpr double kFinest = 1e-13;
+constexpr std::size_t kAtOnce = 2000;  // entries whose masking tables are in memory
+constexpr std::size_t kClimbSteps = 40;
+constexpr std::size_t kNeighbours = 16;  // of each step
+
+/// The entries of a domain with what the rules say of them.
+struct Answers {
+  std::vector<Moments> stated;
+  std::vector<Moments> exact;
+};
+
+class Check {
+ public:
+  Check(Distribution distribution, Masking masking, double tolerance)
+      : distribution_(distribution), masking_(masking), tolerance_(tolerance) {}
+
+  Answers operator()(const std::vector<RandomEntry>& entries) const {
+    const Precision precision = tolerance_ < kLeastFloatTolerance ? Precision::kDouble : Precision::kFloat;
+    Answers answers;
+    for (std::size_t first = 0; first < entries.size(); first += kAtOnce) {
+      const std::vector part(entries.begin() + static_cast<std::ptrdiff_t>(first),
+                             entries.begin() + static_cast<std::ptrdiff_t>(std::min(first + kAtOnce, entries.size())));
+      append_all(answers.stated, part, tolerance_, precision);
+      append_all(answers.exact, part, std::max(kFinerBy * tolerance_, kFinest), Precision::kDouble);
+    }
+    return answers;
+  }
+
+ private:
+  void append_all(std::vector<Moments>& moments, const std::vector<RandomEntry>& entries, double tolerance,
+                  Precision precision) const {
+    MomentsRequest request;
+    request.distribution = distribution_;
+    request.masking = masking_;
+    request.tolerance = tolerance;
+    request.precision = precision;
+    request.may_interpolate = false;
+    for (const RandomEntry& entry : entries) append(request, entry);
+    const std::vector<Moments> more = CpuEvaluator(precision).evaluate(request, {});
+    moments.insert(moments.end(), more.begin(), more.end());
+  }
+
+  Distribution distribution_;
+  Masking masking_;
+  double tolerance_;
+};
+
+/// The largest error of the four moments over what is stated of it, by both rules.
+double error_over_bound(const Moments& stated, const Moments& exact) {
+  using Pair = std::pair<double Moments::*, double Moments::*>;
+  double worst = 0.0;
+  for (const auto& [value, error] : {Pair{&Moments::r_i, &Moments::r_i_error}, Pair{&Moments::r_q, &Moments::r_q_error},
+                                     Pair{&Moments::albedo, &Moments::albedo_error},
+                                     Pair{&Moments::deficit, &Moments::deficit_error}}) {
+    const double difference = std::abs(stated.*value - exact.*value);
+    if (difference > 0.0) worst = std::max(worst, difference / (stated.*error + exact.*error));
+  }
+  return worst;
+}
+
+/// A number near `value`, `low` being the end of its range.
+double moved(Draw& draw, double value, double low, double width) {
+  return low + (value - low) * std::exp(width * draw.uniform(-1.0, 1.0));
+}
+
+RandomEntry neighbour(Draw& draw, const RandomEntry& entry, Domain domain, double q_end, double width) {
+  RandomEntry next = entry;
+  const double largest_deg = domain == Domain::kOrdinary ? 85.0 : 90.0;
+  next.theta_deg = std::clamp(largest_deg - moved(draw, largest_deg - entry.theta_deg, 0.0, width), 0.0, largest_deg);
+  next.shape = {moved(draw, entry.shape.sigma, 0.0, width), moved(draw, entry.shape.q, q_end, width)};
+  next.index = {moved(draw, entry.index.n, domain == Domain::kOrdinary ? 1.0 : 0.0, width),
+                moved(draw, entry.index.k, 0.0, width)};
+  return next;
+}
+
+/// Whether `entry` lies where the domain's entries are drawn.
+bool is_in(Domain domain, const RandomEntry& entry, double q_end) {
+  if (domain == Domain::kCorners) return entry.shape.sigma <= 10.0 && entry.shape.q <= q_end + 20.0;
+  return entry.shape.sigma >= 0.01 && entry.shape.sigma <= 2.0 && entry.shape.q >= q_end + 0.1 &&
+         entry.shape.q <= q_end + 10.0 && entry.index.n >= 1.1;
+}
+
+CheckedEntry climbed(const Check& check, Draw& draw, CheckedEntry best, Domain domain, double q_end) {
+  double width = 0.3;
+  for (std::size_t step = 0; step < kClimbSteps; ++step) {
+    std::vector<RandomEntry> entries;
+    for (std::size_t i = 0; i < kNeighbours; ++i) {
+      const RandomEntry next = neighbour(draw, best.entry, domain, q_end, width);
+      if (is_in(domain, next, q_end)) entries.push_back(next);
+    }
+    const Answers answers = check(entries);
+    const double before = best.ratio;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const double ratio = error_over_bound(answers.stated[i], answers.exact[i]);
+      if (ratio > best.ratio) best = {entries[i], ratio};
+    }
+    if (best.ratio == before) width *= 0.8;
+  }
+  return best;
+}
+
+}  // namespace
+
+HoldOut hold_out(Distribution distribution, Masking masking, const HoldOutOptions& options) {
+  Draw draw(options.seed * 8 + 2 * static_cast<std::uint64_t>(masking) + static_cast<std::uint64_t>(distribution));
+  const Check check(distribution, masking, options.tolerance);
+  std::vector<RandomEntry> entries;
+  for (std::size_t i = 0; i < options.entries; ++i) {
+    entries.push_back(random_entry(draw, options.domain, distribution, masking));
+  }
+  const Answers answers = check(entries);
+  HoldOut result;
+  result.distribution = distribution;
+  result.masking = masking;
+  result.entries = entries.size();
+  std::vector<CheckedEntry> checked;
+  std::size_t flagged = 0;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Moments& stated = answers.stated[i];
+    checked.push_back({entries[i], error_over_bound(stated, answers.exact[i])});
+    if (!(checked.back().ratio <= 1.0)) ++result.understated;
+    if (!(std::max(stated.r_i_error, stated.r_q_error) <= options.tolerance * answers.exact[i].r_i)) ++flagged;
+    result.mean_evaluations += stated.evaluations / static_cast<double>(entries.size());
+  }
+  result.flagged_share = static_cast<double>(flagged) / static_cast<double>(entries.size());
+  std::ranges::sort(checked, std::ranges::greater{}, &CheckedEntry::ratio);
+  result.worst = result.climbed = checked.front();
+  for (std::size_t i = 0; i < std::min(options.climbs, checked.size()); ++i) {
+    const CheckedEntry top = climbed(check, draw, checked[i], options.domain, least_q(distribution, masking));
+    if (top.ratio > result.climbed.ratio) result.climbed = top;
+  }
+  return result;
+}
+
+}  // namespace dolp

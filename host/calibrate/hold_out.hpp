@@ -1,0 +1,41 @@
+// Whether error bounds hold: fresh random entries, and a climb from the worst of them, against rules of many more digits.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "calibrate/random_entries.hpp"
+
+namespace dolp {
+
+struct HoldOutOptions {
+  Domain domain = Domain::kOrdinary;
+  double tolerance = 1e-4;
+  std::size_t entries = 1000;
+  std::uint64_t seed = 1;
+  std::size_t climbs = 0;  ///< of the worst entries, each climbed from in kClimbSteps steps
+};
+
+/// An entry, and its error over the bound stated with it: above 1 the bound is understated.
+struct CheckedEntry {
+  RandomEntry entry;
+  double ratio = 0.0;
+};
+
+/// What hold-outs of one distribution and masking show.
+struct HoldOut {
+  Distribution distribution = Distribution::kCauchy;
+  Masking masking = Masking::kNone;
+  std::size_t entries = 0;
+  std::size_t understated = 0;    ///< of any of the four moments
+  double flagged_share = 0.0;     ///< entries whose bound of rho misses the tolerance at the first attempt
+  double mean_evaluations = 0.0;
+  CheckedEntry worst;             ///< drawn
+  CheckedEntry climbed;           ///< found by climbing
+};
+
+/// Evaluates the shaders' text on the CPU, in float where the tolerance allows it.
+HoldOut hold_out(Distribution distribution, Masking masking, const HoldOutOptions& options);
+
+}  // namespace dolp

@@ -1,0 +1,145 @@
+#include "calibrate/rule_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "calibrate/random_entries.hpp"
+#include "evaluate/cpu/parallel.hpp"
+#include "evaluate/cpu/text.hpp"
+#include "plan/kernel_data.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr std::array kTolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8};
+constexpr double kDoubleRoundoff = 0x1p-53;
+constexpr double kCornerShare = 0.25;
+// What is computed again shares nothing with its neighbours.
+constexpr double kAgainWeight = 2.0;
+constexpr int kMostAttempts = 8;
+constexpr double kLeastTolerance = 1e-13;
+
+MomentsRequest random_request(Distribution distribution, Masking masking, const RuleFitOptions& options) {
+  Draw draw(options.seed);
+  MomentsRequest request;
+  request.distribution = distribution;
+  request.masking = masking;
+  for (std::size_t i = 0; i < options.entries; ++i) {
+    const Domain domain = draw.chance(kCornerShare) ? Domain::kCorners : Domain::kOrdinary;
+    append(request, random_entry(draw, domain, distribution, masking));
+  }
+  return request;
+}
+
+/// Moments of all entries of a request.
+std::vector<Moments> computed(const MomentsRequest& request, const RuleModel& model) {
+  const KernelData data = kernel_data(request, model);
+  const std::unique_ptr<KernelText> text = make_kernel_text_double(data);
+  std::vector<Moments> moments(data.entries.size());
+  const auto one = [&](std::size_t i) {
+    const MomentsEntry& entry = data.entries[i];
+    if (data.needs_masking_table()) text->build_masking_table(entry.shape);
+    moments[i] = moments_from_kernel(text->moments(entry), data, entry, kDoubleRoundoff);
+  };
+  parallel_for(moments.size(), one, nullptr);
+  return moments;
+}
+
+/// Sum over the entries of the logarithm of the evaluations until each meets `tolerance`.
+double log_work(const MomentsRequest& all, double tolerance, const RuleModel& model) {
+  std::vector<double> work(all.entries.size(), 0.0);
+  std::vector<std::uint32_t> wanted(all.entries.size());
+  for (std::uint32_t i = 0; i < wanted.size(); ++i) wanted[i] = i;
+  MomentsRequest request = all;
+  request.tolerance = tolerance;
+  for (int attempt = 0; attempt < kMostAttempts && !wanted.empty(); ++attempt) {
+    request.shapes.clear();
+    request.theta_deg.clear();
+    request.indices.clear();
+    request.entries.clear();
+    for (const std::uint32_t i : wanted) {
+      append(request, {all.theta_deg[i], all.shapes[i], all.indices[i]});
+    }
+    const std::vector<Moments> moments = computed(request, model);
+    std::vector<std::uint32_t> again;
+    for (std::size_t j = 0; j < wanted.size(); ++j) {
+      work[wanted[j]] += (attempt == 0 ? 1.0 : kAgainWeight) * moments[j].evaluations;
+      const double error = std::max(moments[j].r_i_error, moments[j].r_q_error);
+      if (!(error <= tolerance * std::abs(moments[j].r_i))) again.push_back(wanted[j]);
+    }
+    wanted = again;
+    request.tolerance = std::max(request.tolerance * std::sqrt(0.1), kLeastTolerance);
+  }
+  double sum = 0.0;
+  for (const double of_entry : work) sum += std::log(of_entry);
+  return sum;
+}
+
+/// A number of a model, and how far from it the search looks first.
+struct Parameter {
+  double RuleModel::*value;
+  double step;
+};
+
+std::vector<Parameter> parameters(Masking masking) {
+  std::vector<Parameter> all = {
+      {&RuleModel::margin_digits, 0.4}, {&RuleModel::t_nodes, 0.4},        {&RuleModel::t_digits, 0.5},
+      {&RuleModel::t_strip_cauchy, 0.2}, {&RuleModel::t_strip_gaussian, 0.15}, {&RuleModel::phi_nodes, 0.3},
+      {&RuleModel::phi_digits, 0.5}};
+  if (masking == Masking::kIntegral || masking == Masking::kSmith) all.push_back({&RuleModel::line_digits, 1.0});
+  if (masking == Masking::kSmith) all.push_back({&RuleModel::cluster_stretch, 1.0});
+  return all;
+}
+
+}  // namespace
+
+double mean_log_work(Masking masking, const RuleModel& model, const RuleFitOptions& options) {
+  double sum = 0.0;
+  for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
+    const MomentsRequest request = random_request(distribution, masking, options);
+    for (const double tolerance : kTolerances) sum += log_work(request, tolerance, model);
+  }
+  return sum / static_cast<double>(2 * kTolerances.size() * options.entries);
+}
+
+RuleModel fit_rule(Masking masking, const RuleModel& start, const RuleFitOptions& options,
+                   const std::function<void(const RuleModel&, double)>& note) {
+  RuleModel best = start;
+  double least = mean_log_work(masking, best, options);
+  note(best, least);
+  double width = 1.0;
+  for (int round = 0; round < options.rounds; ++round, width *= 0.5) {
+    for (const Parameter& parameter : parameters(masking)) {
+      for (const double direction : {1.0, -1.0}) {
+        const double before = least;
+        for (bool gains = true; gains;) {
+          RuleModel candidate = best;
+          candidate.*parameter.value += direction * width * parameter.step;
+          const double work = mean_log_work(masking, candidate, options);
+          gains = work < least;
+          if (!gains) break;
+          best = candidate;
+          least = work;
+          note(best, least);
+        }
+        if (least < before) break;  // the other direction is where the search came from
+      }
+    }
+  }
+  return best;
+}
+
+std::string rule_text(const RuleModel& model) {
+  return fmt::format(
+      "{{.margin_digits = {:.3g}, .t_nodes = {:.3g}, .t_digits = {:.3g}, .t_strip_cauchy = {:.3g}, .t_strip_gaussian = "
+      "{:.3g}, .phi_nodes = {:.3g}, .phi_digits = {:.3g}, .line_digits = {:.3g}, .cluster_stretch = {:.3g}}}",
+      model.margin_digits, model.t_nodes, model.t_digits, model.t_strip_cauchy, model.t_strip_gaussian, model.phi_nodes,
+      model.phi_digits, model.line_digits, model.cluster_stretch);
+}
+
+}  // namespace dolp

@@ -1,0 +1,157 @@
+// The azimuths at one slope: the lines that split [0, pi] into arcs on which the integrand is smooth, and the place of a
+// rule's node on an arc.
+//
+// Azimuths are half angles (cos(phi/2), sin(phi/2)), which keep their digits at 0 and pi and need no arc cosine.
+
+// From 1 + cos(phi) and 1 - cos(phi), clamped to [0, pi].
+real2 half_angle(real one_plus_x, real one_minus_x) {
+  return real2(sqrt(clamp(real(0.5) * one_plus_x, real(0.0), real(1.0))),
+               sqrt(clamp(real(0.5) * one_minus_x, real(0.0), real(1.0))));
+}
+
+real cosine(real2 half_phi) { return (half_phi.x - half_phi.y) * (half_phi.x + half_phi.y); }
+
+real arc_tangent(real y) { return (y <= real(1.0)) ? atan_unit(y) : real(0.5) * kPi - atan_unit(real(1.0) / y); }
+
+// phi.
+real phase(real2 half_phi) { return real(4.0) * arc_tangent(half_phi.y / (real(1.0) + half_phi.x)); }
+
+bool is_before(real2 from, real2 to) { return to.y * from.x > to.x * from.y; }
+
+// The azimuth in [from, to] nearest to `phi`.
+real2 clamp_half_angle(real2 phi, real2 from, real2 to) {
+  real2 above = is_before(from, phi) ? phi : from;
+  return is_before(above, to) ? above : to;
+}
+
+// An arc of azimuths phi = centre + psi, psi = 4 atan(extent * abscissa), on which the integrand is smooth. Its extent is
+// negative when the centre is its end.
+struct Arc {
+  real2 from;
+  real2 to;
+  real centre_cos;
+  real centre_sin;
+  real extent;
+  real quarter;     // tan of a quarter of its length
+  real origin;      // phi of its beginning; of the symmetry or singularity at one of its ends where its rule has one
+  real span;        // length in phi
+  int section;      // of the rule nodes
+  real resolution;  // of the square root at its centre that absorption has smoothed, see place_on_arc; 0: it is sharp
+};
+
+// The arc between two azimuths.
+Arc make_arc(real2 from, real2 to) {
+  real sin_half = to.y * from.x - to.x * from.y;
+  real cos_half = to.x * from.x + to.y * from.y;
+  bool starts_at_0 = from.y <= real(0.0);
+  bool ends_at_pi = to.x <= real(0.0);
+  Arc arc;
+  arc.from = from;
+  arc.to = to;
+  arc.quarter = sin_half / (real(1.0) + cos_half);
+  arc.centre_cos = from.x * to.x - from.y * to.y;
+  arc.centre_sin = from.y * to.x + from.x * to.y;
+  arc.extent = arc.quarter / (real(1.0) + sqrt(real(1.0) + arc.quarter * arc.quarter));
+  arc.section = kSectionCentre;
+  arc.resolution = real(0.0);
+  arc.origin = phase(from);
+  arc.span = real(4.0) * arc_tangent(arc.quarter);
+  if (starts_at_0 || ends_at_pi) {
+    arc.origin = starts_at_0 ? real(0.0) : kPi;
+    arc.centre_cos = starts_at_0 ? real(1.0) : real(-1.0);
+    arc.centre_sin = real(0.0);
+    arc.extent = arc.quarter;
+    arc.section = kSectionHalf;
+  }
+  if (starts_at_0 && ends_at_pi) {
+    arc.extent = real(1.0);
+    arc.section = kSectionCircle;
+  }
+  return arc;
+}
+
+// The arc between two azimuths with a square root, or another singularity, at one of them: at its end, otherwise at its
+// beginning.
+Arc make_root_arc(real2 from, real2 to, bool at_end) {
+  Arc arc = make_arc(from, to);
+  real2 root = at_end ? to : from;
+  arc.centre_cos = cosine(root);
+  arc.centre_sin = real(2.0) * root.x * root.y;
+  arc.origin = phase(root);
+  arc.extent = at_end ? -arc.quarter : arc.quarter;
+  arc.section = kSectionCluster;
+  return arc;
+}
+
+// An azimuth of an arc as (cos(phi), sin(phi)), and dphi for its rule's weight.
+struct Azimuth {
+  real x;
+  real sin_phi;
+  real weight;
+};
+
+// A node of an arc's rule where the square root at its centre is smoothed: the cluster's v^2 becomes (sinh(a v) / sinh(a))^2,
+// a = asinh(1 / sqrt(resolution)), which spaces the nodes by ratios down to the resolution and by squares below.
+real2 place_on_arc(Arc arc, real2 node) {
+  if (!kTotalReflection || arc.resolution <= real(0.0)) return node;
+  real scale = real(1.0) / sqrt(arc.resolution);  // sinh(a)
+  real a = asinh_real(scale);
+  real v = sqrt(node.x);
+  real2 hyperbolic = sinh_cosh(a * v);
+  real y = hyperbolic.x / scale;
+  return real2(y * y, node.y * a * y * hyperbolic.y / (scale * v));
+}
+
+Azimuth azimuth(Arc arc, real2 node) {
+  real tau = arc.extent * node.x;
+  real inverse = real(1.0) / (real(1.0) + tau * tau);
+  real cos_half = real(2.0) * inverse - real(1.0);
+  real cos_psi = real(2.0) * cos_half * cos_half - real(1.0);
+  real sin_psi = real(4.0) * tau * inverse * cos_half;
+  Azimuth at;
+  at.x = arc.centre_cos * cos_psi - arc.centre_sin * sin_psi;
+  at.sin_phi = arc.centre_sin * cos_psi + arc.centre_cos * sin_psi;
+  at.weight = real(4.0) * abs(arc.extent) * inverse * node.y;
+  return at;
+}
+
+// The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth: three in ascending order
+// and the critical one, anywhere among them.
+struct SplitLines {
+  real2 first;
+  real2 second;
+  real2 horizon;   // theta_r = 90 degrees: beyond it the reflected ray does not leave
+  real2 critical;  // cos(beta) = critical_cos: a square root on either side
+};
+
+// cos(phi) = level / (s t), as a half angle.
+real2 line_at(real level, real st) { return half_angle((st + level) / st, (st - level) / st); }
+
+SplitLines split_lines(ThetaNode theta, IndexNode index, real t, bool has_split_line) {
+  real c = theta.c;
+  real s = theta.s;
+  real st = max(s * t, real(1e-30));
+  real sec2 = real(1.0) + t * t;
+  SplitLines lines;
+  lines.horizon = half_angle((t - c / (real(1.0) + s)) * (c * t + real(1.0) + s) / (real(2.0) * st),
+                             (real(1.0) + s - c * t) * (t + c / (real(1.0) + s)) / (real(2.0) * st));
+  lines.first = lines.horizon;
+  lines.second = lines.horizon;
+  lines.critical = line_at(index.critical_cos * sqrt(sec2) - c, st);
+  real2 same_zenith = line_at(c * t * t, st);  // theta_r = theta
+  if (kMasking == DOLP_MASKING_INTEGRAL) {
+    // The limit b of eq. (11) reaches pi/2 at theta_r = pi/4 + alpha/2; 1 - sin(alpha) = cos^2(alpha) / (1 + sin(alpha)).
+    real sec = sqrt(sec2);
+    real cos_limit = sqrt(real(0.5) / (sec * (sec + t)));
+    lines.first = same_zenith;
+    bool limited = has_split_line && cos_limit < c;
+    lines.second = limited ? line_at(real(0.5) * (cos_limit + c) * sec2 - c, st) : same_zenith;
+  }
+  if (kMasking == DOLP_MASKING_V_CAVITY) {
+    // G = 1 between 2 cos(alpha) cos(theta) = cos(beta) and the same with theta_r; the two lines meet at t = 1.
+    bool open = t < real(1.0);
+    lines.first = open ? line_at(c, st) : same_zenith;
+    lines.second = open ? line_at(c * (real(3.0) * t * t - real(1.0)) / (real(3.0) - t * t), st) : same_zenith;
+  }
+  return lines;
+}

@@ -1,0 +1,48 @@
+// What one facet does: the integrand of the moments in slope space (sections 1 to 3 of README.md beside this file).
+//
+// A facet has slope t and azimuth phi from the plane of incidence; x = cos(phi), r2 = cos^2(alpha) = 1 / (1 + t^2),
+// e = c + s t x. Then
+//   rho c = integral P(t) t dt * 2 integral_0^phi_m e G M dphi,     cos(beta) = r e,     cos(theta_r) = 2 r2 e - c,
+//   sin^2(beta)             = r2 [(c t x - s)^2 + t^2 (1 - x^2)],
+//   sin^2(beta) cos(2 eta)  = r2 [(c t x - s)^2 - t^2 (1 - x^2)],
+//   M00 = R_s - D sin^2(beta) / 2,   M01 = D sin^2(beta) cos(2 eta) / 2,   D = (R_s - R_p) / sin^2(beta).
+//
+// Moments and their sums are vectors (r_i, r_q, albedo, deficit); the deficit is what keeps the beam from being
+// reflected: masked, absorbed, or sent below the horizon.
+
+struct Facet {
+  real e;         // projected area toward theta, over that of the facet's own base
+  real cos_r;     // of the reflected ray
+  real m00;
+  real m01;
+  real absorbed;  // 1 - m00
+};
+
+Facet facet(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
+  real r2 = real(1.0) / (real(1.0) + t * t);
+  real e = theta.c + theta.s * t * x;
+  real along = theta.c * t * x - theta.s;
+  real across = t * sin_phi;
+  Fresnel f = fresnel(index, sqrt(r2) * e);
+  real half_split = real(0.5) * f.split_over_sin2 * r2;
+  real split = half_split * (along * along + across * across);
+  Facet result;
+  result.e = e;
+  result.cos_r = clamp(real(2.0) * r2 * e - theta.c, real(0.0), real(1.0));
+  result.m00 = f.r_s - split;
+  result.m01 = half_split * (along * along - across * across);
+  result.absorbed = f.absorbed_s + split;
+  return result;
+}
+
+// The facet's projection as the part that masking leaves, e G, and the part that it hides, e (1 - G): each is computed on
+// its own, because either may be the difference of two nearly equal numbers.
+struct Projection {
+  real seen;
+  real hidden;
+};
+
+// Integrand per unit of azimuth.
+real4 reflected(Facet f, Projection part) {
+  return real4(part.seen * f.m00, part.seen * f.m01, part.seen, part.hidden + part.seen * f.absorbed);
+}

@@ -1,0 +1,83 @@
+// Entries that one invocation computes together: they differ in the exponent q alone and share nodes, facets and
+// reflection. What masking says differs from member to member.
+
+// In ascending order of q. Scale, cut and cusp of the shapes are the same, those that the hardest of them needs.
+struct Row {
+  ShapeNode shape[DOLP_WIDTH];
+  uint table[DOLP_WIDTH];  // first node of its masking table
+};
+
+// Masking without q has one sum over the azimuths for all members of a row.
+int masked_members() {
+  return (kMasking == DOLP_MASKING_INTEGRAL || kMasking == DOLP_MASKING_SMITH) ? DOLP_WIDTH : 1;
+}
+
+// What masking says of one direction, for each member: the shadow 1 - G1 of the facets of slope t (`integral`) or Smith's
+// L.
+struct Masked {
+  real value[DOLP_WIDTH];
+};
+
+Masked unmasked() {
+  Masked masked;
+  for (int g = 0; g < DOLP_WIDTH; ++g) masked.value[g] = real(0.0);
+  return masked;
+}
+
+// The part that no slope changes: Smith's L, at 90 degrees a number so large that G is 0, and l of `integral`.
+Masked masking_of_direction(Row row, real cos_theta, real sin_theta) {
+  Masked heights = unmasked();
+  if (kMasking == DOLP_MASKING_SMITH) {
+    real mu = cos_theta / max(sin_theta, real(1e-30));
+    TableCell cell = table_cell(row.shape[0], mu);
+    real inverse = real(1.0) / max(mu, real(1e-30));
+    for (int g = 0; g < DOLP_WIDTH; ++g) heights.value[g] = masking_height(cell, row.table[g]) * inverse;
+  }
+  if (kMasking == DOLP_MASKING_INTEGRAL) {
+    TableCell cell = table_cell(row.shape[0], shadow_cot(cos_theta, sin_theta));
+    for (int g = 0; g < DOLP_WIDTH; ++g) heights.value[g] = masking_height(cell, row.table[g]);
+  }
+  return heights;
+}
+
+// The shadows of a direction on facets of slope t. Look-ups are done for every invocation: those that need none wait for
+// their neighbours anyway.
+Masked shadows(Row row, Masked heights, real cos_theta, real sin_theta, real t) {
+  ShadowPlace place = shadow_place(row.shape[0], cos_theta, sin_theta, t);
+  TableCell cell = table_cell(row.shape[0], place.far);
+  LimitTerms terms = limit_terms(row.shape[0], place, cell);
+  Masked masked;
+  for (int g = 0; g < DOLP_WIDTH; ++g) {
+    real limited = limited_shadow(row.shape[g], terms, cell, row.table[g]);
+    masked.value[g] = place.kappa * heights.value[g] + (place.is_limited ? limited : real(0.0));
+  }
+  return masked;
+}
+
+// What masking says of the reflected ray; the first arcs of `integral` ask theta instead.
+Masked masking_of_ray(Row row, real cos_r, real t, int zone) {
+  real sin_r = sqrt((real(1.0) - cos_r) * (real(1.0) + cos_r));
+  if (kMasking == DOLP_MASKING_SMITH) return masking_of_direction(row, cos_r, sin_r);
+  Masked masked = unmasked();
+  if (kMasking == DOLP_MASKING_INTEGRAL && zone > 0) {
+    masked = shadows(row, masking_of_direction(row, cos_r, sin_r), cos_r, sin_r, t);
+  }
+  return masked;
+}
+
+// A facet's projection, by what masking says of theta and of the reflected ray. `zone` numbers the arcs from phi = 0; in
+// the first, theta_r < theta, so that `integral` asks theta.
+Projection project(ThetaNode theta, Facet f, int zone, real of_theta, real of_ray) {
+  if (kMasking == DOLP_MASKING_NONE) return Projection(f.e, real(0.0));
+  if (kMasking == DOLP_MASKING_V_CAVITY) {
+    real seen = min(f.e, real(2.0) * min(theta.c, f.cos_r));
+    return Projection(seen, f.e - seen);
+  }
+  if (kMasking == DOLP_MASKING_SMITH) {
+    real lambdas = of_theta + of_ray;
+    real g = real(1.0) / (real(1.0) + lambdas);
+    return Projection(f.e * g, f.e * (lambdas * g));
+  }
+  real shadow = (zone > 0) ? of_ray : of_theta;
+  return Projection(f.e * (real(1.0) - shadow), f.e * shadow);
+}

@@ -1,0 +1,38 @@
+// What an invocation of moments.comp computes, from a task word of interface.glsl.
+struct Task {
+  int members;
+  int piece;
+  bool root_at_start;
+  bool root_at_end;
+  bool root_before_start;  // at the breakpoint before, facing the piece
+  bool root_after_end;
+  bool has_split_line;
+  int most_azimuths;
+};
+
+bool has_bit(uint word, uint bit) { return ((word >> bit) & 1u) == 1u; }
+
+Task task_of(uint word) {
+  Task task;
+  task.members = int(word & ((1u << DOLP_TASK_MEMBERS_BITS) - 1u));
+  task.piece = int((word >> DOLP_TASK_PIECE_SHIFT) & ((1u << DOLP_TASK_PIECE_BITS) - 1u));
+  task.root_at_start = has_bit(word, DOLP_TASK_ROOT_AT_START);
+  task.root_at_end = has_bit(word, DOLP_TASK_ROOT_AT_END);
+  task.root_before_start = has_bit(word, DOLP_TASK_ROOT_BEFORE_START);
+  task.root_after_end = has_bit(word, DOLP_TASK_ROOT_AFTER_END);
+  task.has_split_line = has_bit(word, DOLP_TASK_SPLIT_LINE);
+  task.most_azimuths = int(word >> DOLP_TASK_AZIMUTHS_SHIFT);
+  return task;
+}
+
+// A piece [a, b] of the slope axis. X = asinh(t/scale) is linear in y(v), which takes up square-root ends:
+// v, v^2 (at a), 1 - (1-v)^2 (at b), v^2 (3 - 2v) (both).
+struct Piece {
+  real start;   // X at a
+  real extent;  // in X
+  bool root_at_a;
+  bool root_at_b;
+  real mass[DOLP_WIDTH];  // share of the facets
+  real digits;            // wanted by the member that wants most
+  int order;
+};

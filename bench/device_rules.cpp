@@ -6,10 +6,10 @@
 #include <numbers>
 #include <optional>
 
+#include "base/error.hpp"
 #include "bench/bench_device.hpp"
 #include "bench/method.hpp"
 #include "bench/product_rules.hpp"
-#include "error.hpp"
 #include "evaluate/vulkan/buffer.hpp"
 #include "evaluate/vulkan/kernels.hpp"
 #include "evaluate/vulkan/packing.hpp"

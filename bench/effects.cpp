@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/error.hpp"
 #include "bench/branches.hpp"
 #include "bench/cases.hpp"
 #include "bench/effect_cases.hpp"
@@ -14,11 +15,10 @@
 #include "bench/study_run.hpp"
 #include "bench/timed_scene.hpp"
 #include "bench/timing.hpp"
-#include "effects/effects.hpp"
-#include "error.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
-#include "evaluate/run/scene_run.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "plan/effects.hpp"
+#include "run/scene_run.hpp"
 
 namespace dolp::bench {
 namespace {

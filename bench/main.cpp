@@ -6,10 +6,10 @@
 #include <malloc.h>
 #endif
 
+#include "base/error.hpp"
 #include "bench/study.hpp"
 #include "cli/commands.hpp"
 #include "cli/guarded.hpp"
-#include "error.hpp"
 
 namespace dolp::bench {
 namespace {

@@ -5,9 +5,9 @@
 #include <functional>
 #include <thread>
 
+#include "base/processor.hpp"
 #include "bench/method.hpp"
 #include "bench/text/grouped_text.hpp"
-#include "evaluate/processor.hpp"
 
 namespace dolp::bench {
 namespace {

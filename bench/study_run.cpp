@@ -3,11 +3,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/atomic_file.hpp"
 #include "bench/context.hpp"
 #include "bench/report.hpp"
 #include "cli/progress_bar.hpp"
 #include "evaluate/vulkan/devices.hpp"
-#include "table/atomic_file.hpp"
 
 namespace dolp::bench {
 namespace {

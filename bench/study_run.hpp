@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "bench/study.hpp"
 #include "bench/timing.hpp"
-#include "error.hpp"
-#include "evaluate/moments.hpp"
+#include "model/moments.hpp"
 
 namespace dolp::bench {
 

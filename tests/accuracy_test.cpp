@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "evaluate/radiometry/planck.hpp"
-#include "evaluate/radiometry/radiometry.hpp"
-#include "evaluate/run/scene_run.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "radiometry/radiometry.hpp"
+#include "run/scene_run.hpp"
 #include "stored_evaluator.hpp"
 #include "verify/qualification.hpp"
 #include "verify/stored_cases.hpp"

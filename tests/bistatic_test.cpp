@@ -13,8 +13,8 @@
 #include "evaluate/radiometry/planck.hpp"
 #include "evaluate/reference/mueller.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
-#include "evaluate/run/scene_run.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "run/scene_run.hpp"
 
 namespace dolp {
 namespace {

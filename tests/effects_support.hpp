@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "effects/effects.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/run/scene_run.hpp"
+#include "plan/effects.hpp"
 #include "properties_support.hpp"
+#include "run/scene_run.hpp"
 
 namespace effects_support {
 

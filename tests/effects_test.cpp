@@ -6,7 +6,7 @@
 #include <map>
 
 #include "effects_support.hpp"
-#include "evaluate/scattering.hpp"
+#include "model/scattering.hpp"
 
 namespace dolp {
 namespace {

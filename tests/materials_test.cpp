@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scene/material_data.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene/spectral_data.hpp"

@@ -1,6 +1,6 @@
 // Whole runs: points and their errors, what is asked of the evaluator, and that neither order nor grouping changes a
 // bit.
-#include "evaluate/run/scene_run.hpp"
+#include "run/scene_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <numeric>
 #include <random>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scene_run_support.hpp"
 
 namespace dolp {

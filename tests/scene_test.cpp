@@ -10,7 +10,7 @@
 #include <iostream>
 #include <random>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scene/text.hpp"
 #include "tests/temporary_file.hpp"
 

@@ -20,8 +20,8 @@
 #include <string>
 #include <vector>
 
-#include "error.hpp"
-#include "table/atomic_file.hpp"
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
 #include "table/table_file.hpp"
 
 namespace {

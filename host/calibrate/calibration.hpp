@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "evaluate/moments.hpp"
+#include "model/moments.hpp"
 #include "verify/stored_cases.hpp"
 
 namespace dolp {

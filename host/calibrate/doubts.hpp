@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "evaluate/moments.hpp"
+#include "model/moments.hpp"
 #include "plan/doubt_model.hpp"
 #include "verify/stored_cases.hpp"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "calibrate/doubts.hpp"
-#include "error.hpp"
 
 namespace {
 

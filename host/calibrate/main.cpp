@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "calibrate/calibration.hpp"
 #include "calibrate/calibration_report.hpp"
-#include "error.hpp"
 #include "scene/number_range.hpp"
 
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "cli/commands.hpp"
-#include "error.hpp"
 #include "evaluate/vulkan/devices.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "verify/qualification.hpp"

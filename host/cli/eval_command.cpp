@@ -2,13 +2,13 @@
 
 #include <chrono>
 
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/progress_bar.hpp"
 #include "cli/report.hpp"
-#include "cli/result_csv.hpp"
-#include "error.hpp"
 #include "scene/points.hpp"
-#include "table/atomic_file.hpp"
+#include "table/result_csv.hpp"
 
 namespace dolp::cli {
 

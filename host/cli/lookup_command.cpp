@@ -5,14 +5,14 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
 #include "cli/commands.hpp"
-#include "cli/result_csv.hpp"
-#include "error.hpp"
-#include "lookup/table_lookup.hpp"
+#include "run/table_scene.hpp"
 #include "scene/points.hpp"
 #include "scene/text.hpp"
-#include "table/atomic_file.hpp"
-#include "verify/table_scene.hpp"
+#include "table/result_csv.hpp"
+#include "table/table_lookup.hpp"
 
 namespace dolp::cli {
 namespace {

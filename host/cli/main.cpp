@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/guarded.hpp"
-#include "error.hpp"
 
 namespace dolp::cli {
 namespace {

@@ -6,11 +6,11 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/atomic_file.hpp"
 #include "cli/commands.hpp"
 #include "cli/progress_bar.hpp"
-#include "evaluate/run/mueller_run.hpp"
+#include "run/mueller_run.hpp"
 #include "scene/points.hpp"
-#include "table/atomic_file.hpp"
 
 namespace dolp::cli {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/plan_report.hpp"
-#include "error.hpp"
-#include "evaluate/run/scene_run.hpp"
 #include "plan/kernel_data.hpp"
+#include "run/scene_run.hpp"
 #include "verify/stored_cases.hpp"
 
 namespace dolp::cli {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "effects/effects.hpp"
-#include "evaluate/run/prediction.hpp"
-#include "evaluate/vulkan/dispatch_plan.hpp"
+#include "evaluate/vulkan/dispatch_forecast.hpp"
+#include "plan/effects.hpp"
+#include "run/prediction.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp::cli {

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "cli/scene_table.hpp"
+#include "run/scene_table.hpp"
 
 namespace dolp::cli {
 namespace {

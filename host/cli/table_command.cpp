@@ -5,7 +5,7 @@
 #include "cli/commands.hpp"
 #include "cli/progress_bar.hpp"
 #include "cli/report.hpp"
-#include "cli/scene_table.hpp"
+#include "run/scene_table.hpp"
 #include "table/table_file.hpp"
 
 namespace dolp::cli {

@@ -3,16 +3,16 @@
 #include <chrono>
 #include <optional>
 
+#include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/progress_bar.hpp"
 #include "cli/verify_report.hpp"
-#include "error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/vulkan/devices.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "run/table_scene.hpp"
 #include "scene/number_range.hpp"
 #include "scene/text.hpp"
-#include "verify/table_scene.hpp"
 
 namespace dolp::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "evaluate/moments.hpp"
+#include "model/moments.hpp"
 
 namespace dolp::explore {
 

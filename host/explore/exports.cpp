@@ -5,11 +5,11 @@
 #include <chrono>
 #include <cmath>
 
-#include "cli/result_csv.hpp"
-#include "cli/scene_table.hpp"
+#include "base/atomic_file.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
-#include "evaluate/run/scene_run.hpp"
-#include "table/atomic_file.hpp"
+#include "run/scene_run.hpp"
+#include "run/scene_table.hpp"
+#include "table/result_csv.hpp"
 #include "table/table_file.hpp"
 
 namespace dolp::explore {

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "evaluate/radiometry/radiometry.hpp"
+#include "radiometry/radiometry.hpp"
 
 namespace dolp::explore {
 

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "evaluate/run/scene_run.hpp"
+#include "run/scene_run.hpp"
 
 namespace dolp::explore {
 namespace {

@@ -10,10 +10,10 @@
 #include <thread>
 #include <vector>
 
-#include "effects/effects.hpp"
-#include "evaluate/moments.hpp"
-#include "evaluate/radiometry/radiometry.hpp"
-#include "evaluate/scene_entry.hpp"
+#include "model/moments.hpp"
+#include "model/scene_entry.hpp"
+#include "plan/effects.hpp"
+#include "radiometry/radiometry.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp::explore {

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "evaluate/moments.hpp"
+#include "model/moments.hpp"
 
 namespace dolp {
 

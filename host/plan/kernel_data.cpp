@@ -13,7 +13,7 @@
 #include <map>
 #include <utility>
 
-#include "plan/gamma_ratio.hpp"
+#include "model/gamma_ratio.hpp"
 #include "plan/rule.hpp"
 #include "plan/rule_nodes.hpp"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "evaluate/moments.hpp"
+#include "model/moments.hpp"
 #include "plan/doubt_model.hpp"
 
 namespace dolp {

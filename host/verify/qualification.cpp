@@ -9,9 +9,9 @@
 #include <map>
 #include <utility>
 
-#include "evaluate/radiometry/radiometry.hpp"
 #include "evaluate/reference/hemisphere.hpp"
-#include "evaluate/run/scene_run.hpp"
+#include "radiometry/radiometry.hpp"
+#include "run/scene_run.hpp"
 
 namespace dolp {
 namespace {

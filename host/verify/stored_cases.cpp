@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scene/text.hpp"
 
 namespace dolp {

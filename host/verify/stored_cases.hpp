@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "evaluate/moments.hpp"
+#include "model/moments.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {

@@ -9,10 +9,10 @@
 #include <random>
 #include <set>
 
-#include "error.hpp"
-#include "evaluate/radiometry/radiometry.hpp"
+#include "base/error.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
-#include "evaluate/run/scene_run.hpp"
+#include "radiometry/radiometry.hpp"
+#include "run/scene_run.hpp"
 #include "scene/number_range.hpp"
 
 namespace dolp {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/moments.hpp"
+#include "model/moments.hpp"
 #include "scene/scene.hpp"
 #include "table/table.hpp"
 

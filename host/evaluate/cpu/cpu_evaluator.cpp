@@ -4,9 +4,9 @@
 #include <limits>
 #include <memory>
 
+#include "base/processor.hpp"
 #include "evaluate/cpu/parallel.hpp"
 #include "evaluate/cpu/text.hpp"
-#include "evaluate/processor.hpp"
 #include "plan/beam.hpp"
 
 namespace dolp {

@@ -2,7 +2,7 @@
 
 #include <mutex>
 
-#include "parallel_ranges.hpp"
+#include "base/parallel_ranges.hpp"
 
 namespace dolp {
 

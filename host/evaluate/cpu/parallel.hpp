@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "evaluate/moments.hpp"
+#include "model/moments.hpp"
 
 namespace dolp {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <span>
 
+#include "base/parallel_ranges.hpp"
 #include "evaluate/interpolation/shape_plan.hpp"
-#include "parallel_ranges.hpp"
 
 namespace dolp {
 namespace {

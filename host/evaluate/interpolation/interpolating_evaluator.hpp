@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "evaluate/moments.hpp"
+#include "model/moments.hpp"
 
 namespace dolp {
 

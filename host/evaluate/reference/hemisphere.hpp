@@ -3,9 +3,9 @@
 
 #include <cstddef>
 
-#include "evaluate/moments.hpp"
 #include "evaluate/reference/attenuation.hpp"
 #include "evaluate/reference/slopes.hpp"
+#include "model/moments.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp::reference {

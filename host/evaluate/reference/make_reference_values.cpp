@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "evaluate/reference/hemisphere.hpp"
 #include "evaluate/reference/reference_cases.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"

@@ -13,8 +13,8 @@
 #include <thread>
 #include <utility>
 
-#include "error.hpp"
-#include "evaluate/processor.hpp"
+#include "base/error.hpp"
+#include "base/processor.hpp"
 #include "evaluate/reference/hemisphere.hpp"
 #include "evaluate/reference/mueller.hpp"
 

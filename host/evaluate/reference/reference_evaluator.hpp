@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "evaluate/scattering.hpp"
+#include "model/scattering.hpp"
 
 namespace dolp {
 

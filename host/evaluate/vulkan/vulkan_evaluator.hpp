@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/scattering.hpp"
+#include "model/scattering.hpp"
 
 namespace dolp {
 

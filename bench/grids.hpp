@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/moments.hpp"
+#include "scene/scene.hpp"
 
 namespace dolp::bench {
 

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/progress.hpp"
 #include "bench/study.hpp"
 #include "bench/timing.hpp"
-#include "model/moments.hpp"
 
 namespace dolp::bench {
 

@@ -142,7 +142,4 @@ inline double polarisation_change(const PointResult& a, const PointResult& b) {
                     a.stokes_u / a.stokes_i - b.stokes_u / b.stokes_i);
 }
 
-inline constexpr std::uint32_t kNoPromise =
-    kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
-
 }  // namespace effects_support

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
-#include "evaluate/radiometry/status.hpp"
+#include "model/status.hpp"
 #include "table/axis_stencil.hpp"
 #include "table/table_lookup.hpp"
 

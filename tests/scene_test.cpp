@@ -12,7 +12,7 @@
 
 #include "base/error.hpp"
 #include "scene/text.hpp"
-#include "tests/temporary_file.hpp"
+#include "temporary_file.hpp"
 
 namespace dolp {
 namespace {

@@ -1,5 +1,6 @@
 // Tables as files: what is written is what is read, and a file is whole or not there.
 #include "table/table.hpp"
+#include "base/number_text.hpp"
 
 #include <gtest/gtest.h>
 #include <netcdf.h>

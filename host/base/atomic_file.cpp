@@ -161,11 +161,4 @@ void write_text_atomically(const fs::path& path, std::string_view content) {
   write_and_rename(path, target, content);
 }
 
-std::string number_text(double value) {
-  if (std::isnan(value)) return "nan";
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
-}
-
 }  // namespace dolp

@@ -19,7 +19,4 @@ void check_writable(const std::filesystem::path& path);
 /// Errors: IoError; the temporary file is removed and `path` is as it was.
 void write_text_atomically(const std::filesystem::path& path, std::string_view content);
 
-/// The shortest text that reads back as the same double; "nan", "inf" and "-inf" otherwise.
-std::string number_text(double value);
-
 }  // namespace dolp

@@ -1,4 +1,4 @@
-// The exceptions of the program, one per exit status; cli/main.cpp translates them in one place.
+// The exceptions of the program, one per exit status; terminal/guarded.cpp translates them in one place.
 #pragma once
 
 #include <stdexcept>

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <functional>
 
+#include "base/progress.hpp"
+
 namespace dolp {
 
 /// Calls body(first, last) for ranges of at most `grain` items that together cover [0, count) once, in any order. The
@@ -13,5 +15,9 @@ namespace dolp {
 /// Errors: the first exception of `body` stops the loop and is thrown from here.
 void parallel_ranges(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t first, std::size_t last)>& body);
+
+/// Calls body(i) once for each i < count, likewise; `progress` is called from one thread at a time.
+/// Errors: as above; a cancel by `progress` (Cancelled) stops the loop and is thrown from here.
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, const Progress& progress);
 
 }  // namespace dolp

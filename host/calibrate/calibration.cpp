@@ -8,7 +8,7 @@
 #include <memory>
 #include <utility>
 
-#include "evaluate/cpu/parallel.hpp"
+#include "base/parallel_ranges.hpp"
 #include "evaluate/cpu/text.hpp"
 #include "plan/kernel_data.hpp"
 

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "model/moments.hpp"
 #include "verify/stored_cases.hpp"
 
 namespace dolp {

@@ -7,9 +7,10 @@
 #include <memory>
 #include <random>
 
+#include "base/parallel_ranges.hpp"
 #include "calibrate/calibration.hpp"
-#include "evaluate/cpu/parallel.hpp"
 #include "evaluate/cpu/text.hpp"
+#include "model/angles.hpp"
 #include "plan/kernel_data.hpp"
 #include "plan/rule.hpp"
 

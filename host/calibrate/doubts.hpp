@@ -6,7 +6,6 @@
 #include <functional>
 #include <vector>
 
-#include "model/moments.hpp"
 #include "plan/doubt_model.hpp"
 #include "verify/stored_cases.hpp"
 

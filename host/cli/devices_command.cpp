@@ -11,6 +11,7 @@
 #include "cli/commands.hpp"
 #include "evaluate/vulkan/devices.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "terminal/exit_status.hpp"
 #include "verify/qualification.hpp"
 
 namespace dolp::cli {

@@ -8,6 +8,7 @@
 #include "explore/window/app.hpp"
 #include "scene/embedded_data.hpp"
 #include "scene/text.hpp"
+#include "terminal/exit_status.hpp"
 
 namespace dolp::cli {
 namespace {

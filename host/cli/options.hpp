@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "model/moments.hpp"
+#include "evaluate/evaluator.hpp"
 #include "plan/effects.hpp"
 #include "scene/scene.hpp"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "model/point_result.hpp"
 #include "plan/effects.hpp"
-#include "radiometry/radiometry.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene.hpp"
 

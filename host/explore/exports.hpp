@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "evaluate/evaluator.hpp"
 #include "explore/curve.hpp"
-#include "model/moments.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp::explore {

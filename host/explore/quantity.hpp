@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "radiometry/radiometry.hpp"
+#include "model/point_result.hpp"
 
 namespace dolp::explore {
 

@@ -10,10 +10,10 @@
 #include <thread>
 #include <vector>
 
-#include "model/moments.hpp"
+#include "evaluate/evaluator.hpp"
+#include "model/point_result.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/effects.hpp"
-#include "radiometry/radiometry.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp::explore {

@@ -1,7 +1,7 @@
 // What stands for 90 degrees where rho or f has a limit there.
 #pragma once
 
-#include "scene/scene.hpp"
+#include "model/choices.hpp"
 
 namespace dolp {
 

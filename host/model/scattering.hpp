@@ -1,4 +1,4 @@
-// What the evaluators compute beside moments: the Mueller pBRDF of single pairs of beams.
+// The Mueller pBRDF of single pairs of beams.
 #pragma once
 
 #include <array>
@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/moments.hpp"
+#include "model/choices.hpp"
+#include "model/optical_constants.hpp"
+#include "model/slopes.hpp"
 
 namespace dolp {
 
@@ -55,14 +57,5 @@ struct ScatteringMatrix {
 /// Bounds of the errors over m00, rounding included (tests MuellerAccuracy.*).
 constexpr double kScatteringErrorFloat = 1e-5;
 constexpr double kScatteringErrorDouble = 1e-11;
-
-/// Computes pBRDFs. Results are in the order of `request.entries`.
-class ScatteringEvaluator {
- public:
-  virtual ~ScatteringEvaluator() = default;
-  /// Says that `scatter` is to be called with this request, after another that may take its time meanwhile.
-  virtual void prepare(const ScatteringRequest& /*request*/) {}
-  virtual std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) = 0;
-};
 
 }  // namespace dolp

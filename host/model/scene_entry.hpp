@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "model/moments.hpp"
-#include "scene/scene.hpp"
+#include "model/optical_constants.hpp"
+#include "model/slopes.hpp"
 
 namespace dolp {
 

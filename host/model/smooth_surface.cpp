@@ -1,4 +1,6 @@
-#include "evaluate/radiometry/smooth_surface.hpp"
+#include "model/smooth_surface.hpp"
+#include "model/moments.hpp"
+#include "model/optical_constants.hpp"
 
 #include <complex>
 #include <limits>

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "model/moments.hpp"
-#include "scene/scene.hpp"
 
 namespace dolp {
 

@@ -14,4 +14,11 @@ inline constexpr std::uint32_t kStatusOutsideDomain = 4;
 /// I <= 0: the sum of what is emitted and reflected is not a radiation that exists.
 inline constexpr std::uint32_t kStatusNonPositiveIntensity = 8;
 
+/// With any of these nothing is promised of the DOLP.
+inline constexpr std::uint32_t kStatusNoDolpPromised =
+    kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
+
+/// Whether the tolerance, or else kStatusToleranceMissed, is promised for the DOLP.
+inline bool promises_dolp(std::uint32_t status) { return (status & kStatusNoDolpPromised) == 0; }
+
 }  // namespace dolp

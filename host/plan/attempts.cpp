@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/moments.hpp"
+#include "model/status.hpp"
+
 namespace dolp {
 namespace {
 

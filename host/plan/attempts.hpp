@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "radiometry/radiometry.hpp"
+#include "model/point_result.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {

@@ -1,4 +1,4 @@
-#include "evaluate/interpolation/chebyshev.hpp"
+#include "plan/chebyshev.hpp"
 
 #include <cmath>
 #include <cstddef>

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/radiometry/kept_effects.hpp"
+#include "model/kept_effects.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/influence.hpp"
 #include "scene/scene.hpp"

@@ -7,9 +7,10 @@
 #include <functional>
 #include <limits>
 
-#include "evaluate/radiometry/smooth_surface.hpp"
+#include "model/angles.hpp"
 #include "model/gamma_ratio.hpp"
 #include "model/scattering.hpp"
+#include "model/smooth_surface.hpp"
 #include "plan/geometry.hpp"
 
 namespace dolp {
@@ -31,20 +32,10 @@ constexpr double kRounding = 1e-13;
 
 bool keeps_energy(Masking masking) { return masking == Masking::kVCavity || masking == Masking::kSmith; }
 
-double width(const SlopeShape& shape) { return std::sqrt(2.0) * shape.sigma; }
-
-/// Share of the facets that are steeper than a slope.
-double steeper(Distribution distribution, const SlopeShape& shape, double slope) {
-  if (shape.sigma == 0.0) return 0.0;
-  const double u = slope / width(shape);
-  return distribution == Distribution::kGaussian ? std::exp(-u * u) : std::exp((1.0 - shape.q) * std::log1p(u * u));
-}
-
 /// The slope, in widths, beyond which kLeftOver of the facets lies.
 double reach(Distribution distribution, const SlopeShape& shape) {
-  const double log_left = -std::log(kLeftOver);
-  if (distribution == Distribution::kGaussian) return std::sqrt(log_left);
-  return std::min(kWidest, std::sqrt(std::expm1(std::min(log_left / (shape.q - 1.0), 500.0))));
+  if (distribution == Distribution::kGaussian) return std::sqrt(-std::log(kLeftOver));
+  return std::min(kWidest, power_law_reach(kLeftOver, shape.q - 1.0));
 }
 
 /// R_s of the best reflecting index, a bound of its rounding included.
@@ -71,7 +62,7 @@ struct Shell {
 std::array<Shell, kShells> shells_of(const Surface& surface, const CosSin& a, const SlopeShape& shape,
                                      std::span<const OpticalConstants> indices) {
   const double horizon = (1.0 + a.sin) / a.cos;
-  const double w = width(shape);
+  const double w = slope_width(shape);
   const double first = std::min(kFirstShell * w, horizon);
   const double last = std::clamp(reach(surface.distribution, shape) * w, first, horizon);
   const double ratio = first > 0.0 ? std::pow(last / first, 1.0 / static_cast<double>(kShells - 2)) : 1.0;
@@ -80,7 +71,7 @@ std::array<Shell, kShells> shells_of(const Surface& surface, const CosSin& a, co
   double left = 1.0;
   for (std::size_t k = 0; k < kShells; ++k) {
     const double to = k + 1 == kShells ? horizon : std::min(first * std::pow(ratio, static_cast<double>(k)), horizon);
-    const double left_after = steeper(surface.distribution, shape, to);
+    const double left_after = steeper_share(surface.distribution, shape, to);
     double projection = mean_projection(a, to);
     if (surface.masking == Masking::kVCavity) projection = std::min(projection, 2.0 * a.cos);
     const double low_facet = (a.cos - a.sin * to) / std::hypot(1.0, to);
@@ -94,7 +85,7 @@ std::array<Shell, kShells> shells_of(const Surface& surface, const CosSin& a, co
 }
 
 double mean_slope(Distribution distribution, const SlopeShape& shape) {
-  const double w = width(shape) / root_pi<double>();
+  const double w = slope_width(shape) / root_pi<double>();
   if (distribution == Distribution::kGaussian) return w;
   return shape.q > 1.5 ? w / gamma_ratio(shape.q - 1.5) : kInfinity;
 }
@@ -141,7 +132,7 @@ double least_albedo(const Surface& surface, const CosSin& a, const SlopeShape& s
   const double edge = a.cos / (1.0 + a.sin);
   double least = 0.0;
   for (const double share : kShares) {
-    const double facets = 1.0 - steeper(surface.distribution, shape, share * edge);
+    const double facets = 1.0 - steeper_share(surface.distribution, shape, share * edge);
     least = std::max(least, facets * least_projection(surface, a, shape, share * edge));
   }
   return least * (1.0 - kRounding);
@@ -189,7 +180,7 @@ BeamBounds beam_bounds(const Surface& surface, double theta_i_deg, double theta_
   if (!has_facet(angles) || (is_mirror && is_specular(angles))) return {kInfinity, 0.0, kInfinity};
   if (is_mirror) return {};
   const kernel::GeometryNode g = geometry_node(theta_i_deg, theta_r_deg, delta_phi_deg);
-  const double w = width(shape);
+  const double w = slope_width(shape);
   const double sec2 = 1.0 + g.slope * g.slope;
   const double u2 = g.slope * g.slope / (w * w);
   const double profile = surface.distribution == Distribution::kGaussian

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "model/moments.hpp"
+#include "model/slopes.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "evaluate/radiometry/smooth_surface.hpp"
+#include "model/angles.hpp"
 #include "model/grazing.hpp"
+#include "model/smooth_surface.hpp"
 
 namespace dolp {
 namespace {

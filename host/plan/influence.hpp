@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "evaluate/radiometry/kept_effects.hpp"
-#include "evaluate/radiometry/spectral_rule.hpp"
+#include "model/kept_effects.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/facet_bounds.hpp"
+#include "spectrum/spectral_rule.hpp"
 
 namespace dolp {
 

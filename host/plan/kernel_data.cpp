@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <boost/math/constants/constants.hpp>
-#include <boost/math/special_functions/cos_pi.hpp>
-#include <boost/math/special_functions/sin_pi.hpp>
 #include <cassert>
 #include <cmath>
 #include <compare>
@@ -13,6 +11,7 @@
 #include <map>
 #include <utility>
 
+#include "model/angles.hpp"
 #include "model/gamma_ratio.hpp"
 #include "plan/rule.hpp"
 #include "plan/rule_nodes.hpp"
@@ -215,16 +214,16 @@ kernel::ThetaNode theta_node(const MomentsRequest& request, const kernel::RuleNo
 
 // Slope beyond which less than `share` of the facets' weight lies, weighted by 1 and by slope.
 double slope_cut(const MomentsRequest& request, const SlopeShape& shape, double share) {
-  const double m = std::sqrt(2.0) * shape.sigma;
+  const double m = slope_width(shape);
   if (request.distribution == Distribution::kGaussian) return m * std::sqrt(1.0 - std::log(share));
   const double exponent = shape.q - 1.5;
   if (exponent <= 0.0) return kLargestCut;
-  return std::min(kLargestCut, m * std::sqrt(std::expm1(std::min(-std::log(share) / exponent, 500.0))));
+  return std::min(kLargestCut, m * power_law_reach(share, exponent));
 }
 
 kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& shape) {
   kernel::ShapeNode node{};
-  node.m = std::sqrt(2.0) * shape.sigma;
+  node.m = slope_width(shape);
   node.q_minus_1 = shape.q - 1.0;
   const bool cauchy = request.distribution == Distribution::kCauchy;
   node.marginal_norm = (cauchy ? gamma_ratio(node.q_minus_1) : 1.0) / (root_pi<double>() * node.m);
@@ -272,14 +271,6 @@ void add_directions(KernelData& data, const MomentsRequest& request) {
 }
 
 }  // namespace
-
-CosSin cos_sin_deg(double angle_deg) {
-  // Near 90 degrees the cosine keeps its relative accuracy as the sine of what is left.
-  const bool is_near_90 = std::abs(angle_deg - 90.0) < 45.0;
-  const double cosine =
-      is_near_90 ? boost::math::sin_pi((90.0 - angle_deg) / 180.0) : boost::math::cos_pi(angle_deg / 180.0);
-  return {cosine, boost::math::sin_pi(angle_deg / 180.0)};
-}
 
 std::uint32_t piece_count(const kernel::ThetaNode& theta, const kernel::ShapeNode& shape) {
   const auto all = static_cast<std::uint32_t>(theta.piece_count);

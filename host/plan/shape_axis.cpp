@@ -1,10 +1,11 @@
-#include "evaluate/interpolation/shape_axis.hpp"
+#include "plan/shape_axis.hpp"
+#include "model/choices.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
-#include "evaluate/interpolation/chebyshev.hpp"
+#include "plan/chebyshev.hpp"
 
 namespace dolp {
 namespace {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "model/moments.hpp"
+#include "model/choices.hpp"
 
 namespace dolp {
 

@@ -1,4 +1,7 @@
-#include "evaluate/interpolation/shape_plan.hpp"
+#include "plan/shape_plan.hpp"
+#include "model/choices.hpp"
+#include "model/moments.hpp"
+#include "model/slopes.hpp"
 
 #include <algorithm>
 #include <array>

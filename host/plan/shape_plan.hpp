@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "evaluate/interpolation/shape_axis.hpp"
 #include "model/moments.hpp"
+#include "plan/shape_axis.hpp"
 
 namespace dolp {
 

@@ -7,7 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "evaluate/radiometry/smooth_surface.hpp"
+#include "model/smooth_surface.hpp"
+#include "model/status.hpp"
 
 namespace dolp {
 namespace {
@@ -223,9 +224,8 @@ bool is_unphysical(const Reflectance& r) {
 }
 
 std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
-  constexpr std::uint32_t kNoDolpPromised = kStatusUnphysicalReflectance | kStatusNonPositiveIntensity;
   const bool is_outside = (result.status & kStatusOutsideDomain) != 0;  // rho diverges; the DOLP is a limit, or NaN
-  const bool dolp_missed = (is_outside || (result.status & kNoDolpPromised) == 0) && result.error_estimate > tolerance;
+  const bool dolp_missed = (is_outside || promises_dolp(result.status)) && result.error_estimate > tolerance;
   const bool rho_missed = !is_outside && result.rho_error_estimate > tolerance;
   return dolp_missed || rho_missed ? kStatusToleranceMissed : 0;
 }

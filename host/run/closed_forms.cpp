@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include "evaluate/radiometry/smooth_surface.hpp"
+#include "model/angles.hpp"
+#include "model/smooth_surface.hpp"
 #include "run/grazing_limit.hpp"
 
 namespace dolp {
@@ -17,10 +18,9 @@ constexpr double kMirrorSlope = 1e-6;
 constexpr double kNearGrazingCosine = 1e-100;
 
 double steep_share(const Scene& scene, const SlopeShape& shape) {
-  if (shape.sigma == 0.0) return 0.0;
-  const double u = kMirrorSlope / (std::sqrt(2.0) * shape.sigma);
-  if (scene.surface.distribution == Distribution::kGaussian) return std::exp(-u * u);
-  return std::exp((1.0 - shape.q) * std::log1p(u * u)) + kMirrorSlope;
+  const double share = steeper_share(scene.surface.distribution, shape, kMirrorSlope);
+  const bool has_tail = shape.sigma > 0.0 && scene.surface.distribution == Distribution::kCauchy;
+  return has_tail ? share + kMirrorSlope : share;
 }
 
 /// At 90 degrees the moments of a heavy tail diverge, and only their quotients have a limit.

@@ -5,6 +5,7 @@
 
 #include "model/moments.hpp"
 #include "model/scene_entry.hpp"
+#include "scene/scene.hpp"
 
 namespace dolp {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "evaluate/radiometry/smooth_surface.hpp"
+#include "model/smooth_surface.hpp"
 
 namespace dolp {
 namespace {

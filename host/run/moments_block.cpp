@@ -55,7 +55,7 @@ class BlockBuilder {
     block_.first_moments.push_back(last_first_);
   }
 
-  Block take() { return std::move(block_); }
+  MomentsBlock take() { return std::move(block_); }
 
  private:
   std::uint32_t position(const OpticalConstants& index) { return indices_.position({index.n, index.k}, index); }
@@ -79,7 +79,7 @@ class BlockBuilder {
   }
 
   const Scene& scene_;
-  Block block_;
+  MomentsBlock block_;
   Distinct<double> thetas_{block_.request.theta_deg};
   Distinct<SlopeShape> shapes_{block_.request.shapes};
   Distinct<OpticalConstants> indices_{block_.request.indices};
@@ -97,8 +97,8 @@ SceneEntry seen_entry(const Scene& scene, const SceneEntry& entry) {
   return seen;
 }
 
-Block moments_block(const Scene& scene, const std::vector<OpticalConstants>& samples,
-                    std::span<const SceneEntry> entries, const Attempt& attempt) {
+MomentsBlock moments_block(const Scene& scene, const std::vector<OpticalConstants>& samples,
+                           std::span<const SceneEntry> entries, const Attempt& attempt) {
   BlockBuilder builder(scene, samples, entries.size(), attempt);
   for (const SceneEntry& entry : entries) builder.add(seen_entry(scene, entry));
   return builder.take();

@@ -15,7 +15,7 @@ namespace dolp {
 SceneEntry seen_entry(const Scene& scene, const SceneEntry& entry);
 
 /// What the evaluator is asked for, and where the moments of each entry are in its answer.
-struct Block {
+struct MomentsBlock {
   MomentsRequest request;
   std::vector<std::uint32_t> first_moments;  ///< meaningless for entries with closed forms
 };
@@ -23,7 +23,7 @@ struct Block {
 /// The moments of these entries at each of the scene's spectral samples, or at their own index. An entry that repeats
 /// the one before it, as those do that differ in the q of a gaussian alone, shares its moments; in bistatic mode all
 /// entries of one surface do, whatever the source's direction.
-Block moments_block(const Scene& scene, const std::vector<OpticalConstants>& samples,
-                    std::span<const SceneEntry> entries, const Attempt& attempt);
+MomentsBlock moments_block(const Scene& scene, const std::vector<OpticalConstants>& samples,
+                           std::span<const SceneEntry> entries, const Attempt& attempt);
 
 }  // namespace dolp

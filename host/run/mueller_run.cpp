@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "base/error.hpp"
+#include "model/angles.hpp"
 #include "model/grazing.hpp"
 #include "run/scene_run.hpp"
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "evaluate/evaluator.hpp"
 #include "model/scattering.hpp"
 #include "scene/points.hpp"
 #include "scene/scene.hpp"

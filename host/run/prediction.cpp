@@ -10,7 +10,7 @@
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
-#include "evaluate/interpolation/shape_plan.hpp"
+#include "plan/shape_plan.hpp"
 #include "run/beams.hpp"
 #include "run/moments_block.hpp"
 #include "run/scene_run.hpp"

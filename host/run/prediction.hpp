@@ -4,6 +4,7 @@
 #include <functional>
 #include <span>
 
+#include "model/moments.hpp"
 #include "model/scattering.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/attempts.hpp"

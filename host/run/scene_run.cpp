@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "base/parallel_ranges.hpp"
+#include "model/angles.hpp"
 #include "model/grazing.hpp"
+#include "model/status.hpp"
 #include "plan/attempts.hpp"
 #include "run/beams.hpp"
 #include "run/closed_forms.hpp"
@@ -39,7 +41,7 @@ struct SceneRun {
 
 /// What the evaluator said of the entries of a block.
 struct BlockAnswer {
-  const Block& block;
+  const MomentsBlock& block;
   std::span<const Moments> moments;
   std::span<const Scattered> beams;  ///< the samples of each entry in turn, or nothing where the plan needs none
 };
@@ -155,7 +157,7 @@ std::vector<PointResult> attempt_block(const Attempts& all, std::span<const Scen
                                        const Progress& progress) {
   const Scene& scene = all.run.scene;
   const std::vector<OpticalConstants> samples = all.run.radiometry.rule().indices();
-  Block block;
+  MomentsBlock block;
   ScatteringRequest beams;
   if (all.run.plan.needs_moments) block = moments_block(scene, samples, entries, attempt);
   if (all.run.plan.needs_beams) beams = beams_request(scene, samples, entries, attempt.precision);

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "model/moments.hpp"
+#include "evaluate/evaluator.hpp"
+#include "model/point_result.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/effects.hpp"
-#include "radiometry/radiometry.hpp"
 #include "scene/points.hpp"
 #include "scene/scene.hpp"
 

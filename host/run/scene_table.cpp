@@ -9,7 +9,7 @@
 #include "base/parallel_ranges.hpp"
 #include "run/table_scene.hpp"
 
-namespace dolp::cli {
+namespace dolp {
 namespace {
 
 struct Column {
@@ -99,4 +99,4 @@ Table scene_table(const TableContent& content) {
   return table;
 }
 
-}  // namespace dolp::cli
+}  // namespace dolp

@@ -4,12 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "evaluate/evaluator.hpp"
+#include "model/point_result.hpp"
 #include "plan/effects.hpp"
-#include "radiometry/radiometry.hpp"
 #include "scene/scene.hpp"
 #include "table/table.hpp"
 
-namespace dolp::cli {
+namespace dolp {
 
 /// A run over the grid of a scene.
 struct TableContent {
@@ -28,4 +29,4 @@ Table scene_table(const TableContent& content);
 /// The rule in words, for reports and table attributes.
 std::string rule_text(double tolerance, const EvaluationReport& evaluation);
 
-}  // namespace dolp::cli
+}  // namespace dolp

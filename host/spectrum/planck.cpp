@@ -1,4 +1,4 @@
-#include "evaluate/radiometry/planck.hpp"
+#include "spectrum/planck.hpp"
 
 #include <cmath>
 

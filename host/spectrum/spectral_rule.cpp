@@ -1,4 +1,6 @@
-#include "evaluate/radiometry/spectral_rule.hpp"
+#include "spectrum/spectral_rule.hpp"
+#include "model/kept_effects.hpp"
+#include "model/optical_constants.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +10,8 @@
 #include <cstddef>
 #include <numbers>
 
-#include "evaluate/radiometry/planck.hpp"
-#include "evaluate/radiometry/smooth_surface.hpp"
+#include "model/smooth_surface.hpp"
+#include "spectrum/planck.hpp"
 
 namespace dolp {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "evaluate/radiometry/kept_effects.hpp"
+#include "model/kept_effects.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {

@@ -1,8 +1,8 @@
 #include "table/result_csv.hpp"
 
-#include "base/atomic_file.hpp"
+#include "base/number_text.hpp"
 
-namespace dolp::cli {
+namespace dolp {
 
 std::string result_cells(const PointResult& r) {
   std::string cells;
@@ -13,4 +13,4 @@ std::string result_cells(const PointResult& r) {
   return cells + std::to_string(r.status);
 }
 
-}  // namespace dolp::cli
+}  // namespace dolp

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "radiometry/radiometry.hpp"
+#include "model/point_result.hpp"
 
-namespace dolp::cli {
+namespace dolp {
 
 inline constexpr const char* kResultColumns =
     "rho_i,rho_q,albedo,stokes_i,stokes_q,stokes_u,stokes_v,dolp,error_estimate,rho_error_estimate,status";
@@ -13,4 +13,4 @@ inline constexpr const char* kResultColumns =
 /// The cells of a row in the order of kResultColumns.
 std::string result_cells(const PointResult& result);
 
-}  // namespace dolp::cli
+}  // namespace dolp

@@ -6,6 +6,7 @@
 
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
+#include "base/number_text.hpp"
 #include "table/table_netcdf.hpp"
 
 namespace dolp {

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "radiometry/radiometry.hpp"
+#include "model/point_result.hpp"
 #include "table/axis_stencil.hpp"
 #include "table/table.hpp"
 

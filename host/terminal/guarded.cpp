@@ -1,14 +1,14 @@
-#include "cli/guarded.hpp"
+#include "terminal/guarded.hpp"
+#include "base/progress.hpp"
+#include "terminal/exit_status.hpp"
 
 #include <cstdio>
 #include <exception>
 #include <system_error>
 
 #include "base/error.hpp"
-#include "cli/commands.hpp"
-#include "model/moments.hpp"
 
-namespace dolp::cli {
+namespace dolp {
 
 // fmt::print would throw where stderr cannot be written to.
 int fail(const std::string& program, int status, const std::string& message) {
@@ -34,4 +34,4 @@ int guarded(const std::string& program, const std::function<int()>& body) {
   }
 }
 
-}  // namespace dolp::cli
+}  // namespace dolp

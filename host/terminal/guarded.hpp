@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-namespace dolp::cli {
+namespace dolp {
 
 /// One line on stderr that begins with the program's name; returns `status`.
 int fail(const std::string& program, int status, const std::string& message);
@@ -12,4 +12,4 @@ int fail(const std::string& program, int status, const std::string& message);
 /// What `body` returns, or the exit status of the error that it threw, after a message of one line.
 int guarded(const std::string& program, const std::function<int()>& body);
 
-}  // namespace dolp::cli
+}  // namespace dolp

@@ -1,4 +1,6 @@
-#include "cli/progress_bar.hpp"
+#include "terminal/progress_bar.hpp"
+#include "base/progress.hpp"
+#include "base/stopwatch.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -8,7 +10,7 @@
 #include <cstdio>
 #include <string>
 
-namespace dolp::cli {
+namespace dolp {
 namespace {
 
 volatile std::sig_atomic_t interrupted = 0;  // the only state that a signal handler may touch
@@ -42,7 +44,7 @@ Progress ProgressBar::callback() {
 }
 
 void ProgressBar::draw(std::size_t done, std::size_t total) {
-  const double elapsed_s = std::chrono::duration<double>(Clock::now() - start_).count();
+  const double elapsed_s = seconds_since(start_);
   const double rate = elapsed_s > 0.0 ? static_cast<double>(done) / elapsed_s : 0.0;
   const double left_s = rate > 0.0 ? static_cast<double>(total - done) / rate : 0.0;
   const std::size_t filled = total > 0 ? kBarWidth * done / total : kBarWidth;
@@ -52,4 +54,4 @@ void ProgressBar::draw(std::size_t done, std::size_t total) {
   drawn_ = true;
 }
 
-}  // namespace dolp::cli
+}  // namespace dolp

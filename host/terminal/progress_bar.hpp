@@ -4,9 +4,9 @@
 #include <chrono>
 #include <cstddef>
 
-#include "model/moments.hpp"
+#include "base/progress.hpp"
 
-namespace dolp::cli {
+namespace dolp {
 
 /// A bar with rate and time left, drawn on stderr when that is a terminal and `quiet` is off.
 ///
@@ -32,4 +32,4 @@ class ProgressBar {
   Clock::time_point last_drawn_;
 };
 
-}  // namespace dolp::cli
+}  // namespace dolp

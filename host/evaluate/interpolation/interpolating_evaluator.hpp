@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "evaluate/evaluator.hpp"
 #include "model/moments.hpp"
 
 namespace dolp {

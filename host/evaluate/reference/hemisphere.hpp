@@ -6,7 +6,6 @@
 #include "evaluate/reference/attenuation.hpp"
 #include "evaluate/reference/slopes.hpp"
 #include "model/moments.hpp"
-#include "scene/scene.hpp"
 
 namespace dolp::reference {
 

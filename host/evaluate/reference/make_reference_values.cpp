@@ -25,9 +25,9 @@ namespace {
 using dolp::Distribution;
 using dolp::Masking;
 using dolp::Moments;
+using dolp::name_of;
 using dolp::reference::Case;
 using dolp::reference::Group;
-using dolp::reference::name_of;
 
 // Reflection below this share of the albedo is rounding: N = 1.
 constexpr double kNegligible = 1e-12;

@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "evaluate/evaluator.hpp"
+#include "model/moments.hpp"
 #include "model/scattering.hpp"
 
 namespace dolp {

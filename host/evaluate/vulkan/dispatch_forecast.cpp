@@ -25,8 +25,8 @@ std::uint64_t node_bytes(const vulkan::Packing& packing, const KernelData& data)
 
 }  // namespace
 
-DispatchPlan dispatch_plan(const MomentsRequest& request, const DeviceDescription& device,
-                           const VulkanOptions& options) {
+DispatchForecast dispatch_forecast(const MomentsRequest& request, const DeviceDescription& device,
+                                   const VulkanOptions& options) {
   if (request.entries.empty()) return {};
   const vulkan::Packing packing(request.precision == Precision::kDouble);
   const KernelData data = kernel_data(request);
@@ -39,21 +39,21 @@ DispatchPlan dispatch_plan(const MomentsRequest& request, const DeviceDescriptio
       vulkan::tile_sizes(tile_limits(device, std::min<std::uint64_t>(options.max_tile_invocations, most),
                                      std::min<std::uint64_t>(options.max_block_shapes, data.shapes.size())),
                          costs);
-  DispatchPlan plan{.tile_invocations = sizes.invocations, .block_shapes = sizes.shapes};
-  plan.group_size = grouping.size;
-  plan.groups = grouping.groups.size();
+  DispatchForecast forecast{.tile_invocations = sizes.invocations, .block_shapes = sizes.shapes};
+  forecast.group_size = grouping.size;
+  forecast.groups = grouping.groups.size();
   for (const vulkan::Block& block : vulkan::blocks_of(grouping, sizes.shapes)) {
     const std::size_t pieces = pieces_of(grouping, data, block.first_group, block.group_count).size();
-    plan.dispatches += (pieces + sizes.invocations - 1) / sizes.invocations;
-    plan.dispatches += data.needs_masking_table() ? 1 : 0;
+    forecast.dispatches += (pieces + sizes.invocations - 1) / sizes.invocations;
+    forecast.dispatches += data.needs_masking_table() ? 1 : 0;
   }
-  plan.device_bytes =
+  forecast.device_bytes =
       sizes.invocations * costs.invocation_bytes + sizes.shapes * costs.shape_bytes + node_bytes(packing, data);
-  return plan;
+  return forecast;
 }
 
-DispatchPlan dispatch_plan(const ScatteringRequest& request, const DeviceDescription& device,
-                           const VulkanOptions& options) {
+DispatchForecast dispatch_forecast(const ScatteringRequest& request, const DeviceDescription& device,
+                                   const VulkanOptions& options) {
   if (request.entries.empty()) return {};
   const vulkan::Packing packing(request.precision == Precision::kDouble);
   const vulkan::TileCosts costs = vulkan::scattering_tile_costs(packing);

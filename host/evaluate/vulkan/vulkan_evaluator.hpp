@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "evaluate/evaluator.hpp"
+#include "model/moments.hpp"
 #include "model/scattering.hpp"
 
 namespace dolp {

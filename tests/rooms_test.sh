@@ -31,7 +31,7 @@ room verify verify/stored_cases.hpp base evaluate evaluate/reference model plan 
 room calibrate calibrate/doubts.hpp base evaluate evaluate/cpu model plan scene spectrum table verify
 room explore explore/ticks.hpp base evaluate evaluate/reference model plan radiometry run scene spectrum table
 room explore/window explore/window/area.hpp \
-  base evaluate evaluate/interpolation evaluate/vulkan explore model plan radiometry scene spectrum
+  base evaluate evaluate/interpolation evaluate/vulkan explore model plan scene spectrum
 room cli cli/options.hpp base evaluate evaluate/cpu evaluate/interpolation evaluate/reference evaluate/vulkan explore \
   explore/window model plan radiometry run scene spectrum table terminal verify
 

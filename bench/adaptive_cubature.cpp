@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <numbers>
 
+#include "base/processor.hpp"
 #include "bench/direct_brdf.hpp"
 #include "bench/method.hpp"
-#include "evaluate/processor.hpp"
 
 namespace dolp::bench {
 namespace {

@@ -1,6 +1,5 @@
 #include "bench/cases.hpp"
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -29,10 +28,7 @@ const std::vector<Case>& cases() {
   return list;
 }
 
-std::string masking_name(Masking masking) {
-  constexpr std::array<const char*, 4> kNames{"none", "v-cavity", "integral", "smith"};
-  return kNames.at(static_cast<std::size_t>(masking));
-}
+std::string masking_name(Masking masking) { return name_of(masking); }
 
 MomentsRequest neighbourhood(const Case& which, std::size_t count) {
   MomentsRequest request;

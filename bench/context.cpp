@@ -11,8 +11,8 @@
 #include <fstream>
 #include <thread>
 
-#include "error.hpp"
-#include "evaluate/processor.hpp"
+#include "base/error.hpp"
+#include "base/processor.hpp"
 #include "evaluate/vulkan/devices.hpp"
 
 namespace dolp::bench {

@@ -6,13 +6,15 @@
 #include <numbers>
 #include <optional>
 
+#include "base/error.hpp"
+#include "base/stopwatch.hpp"
 #include "bench/bench_device.hpp"
 #include "bench/method.hpp"
 #include "bench/product_rules.hpp"
-#include "error.hpp"
 #include "evaluate/vulkan/buffer.hpp"
 #include "evaluate/vulkan/kernels.hpp"
 #include "evaluate/vulkan/packing.hpp"
+#include "model/angles.hpp"
 #include "shaders/spirv.hpp"
 
 namespace dolp::bench {
@@ -125,8 +127,8 @@ class DeviceRule final : public Solver {
                              static_cast<std::uint32_t>(std::min(tile, words_.size() - first)));
       bench_.stream.barrier(vulkan::Barrier::kKernelToHost);
       kernel_s += bench_.stream.submit_and_wait(kTimeout);
-      const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-      if (elapsed.count() > time_limit_s_) throw TookTooLong("it takes longer than its time limit");
+      const double elapsed_s = seconds_since(start);
+      if (elapsed_s > time_limit_s_) throw TookTooLong("it takes longer than its time limit");
     }
     return kernel_s;
   }

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "evaluate/moments.hpp"
+#include "model/moments.hpp"
 
 namespace dolp::bench {
 

@@ -5,11 +5,11 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "base/error.hpp"
 #include "bench/child.hpp"
 #include "bench/context.hpp"
 #include "bench/method.hpp"
 #include "bench/timing.hpp"
-#include "error.hpp"
 
 namespace dolp::bench {
 namespace {

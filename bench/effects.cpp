@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/error.hpp"
 #include "bench/branches.hpp"
 #include "bench/cases.hpp"
 #include "bench/effect_cases.hpp"
@@ -14,11 +15,11 @@
 #include "bench/study_run.hpp"
 #include "bench/timed_scene.hpp"
 #include "bench/timing.hpp"
-#include "effects/effects.hpp"
-#include "error.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
-#include "evaluate/run/scene_run.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "model/status.hpp"
+#include "plan/effects.hpp"
+#include "run/scene_run.hpp"
 
 namespace dolp::bench {
 namespace {
@@ -28,7 +29,6 @@ using nlohmann::ordered_json;
 constexpr std::size_t kFullRepeats = 5;
 constexpr std::size_t kQuickRepeats = 3;
 constexpr std::size_t kQuickEntries = 4096;
-constexpr std::uint32_t kNoPromise = kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
 
 /// The largest |change of DOLP| of the entries for which both promise one, and how many those are.
 struct Change {
@@ -39,7 +39,7 @@ struct Change {
 Change change_of(const std::vector<PointResult>& planned, const std::vector<PointResult>& all) {
   Change change;
   for (std::size_t i = 0; i < planned.size(); ++i) {
-    if (((planned[i].status | all[i].status) & kNoPromise) != 0) continue;
+    if (((planned[i].status | all[i].status) & kStatusNoDolpPromised) != 0) continue;
     change.dolp = std::max(change.dolp, std::abs(planned[i].dolp - all[i].dolp));
     ++change.compared;
   }

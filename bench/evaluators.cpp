@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.hpp"
 #include "bench/method.hpp"
-#include "error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"

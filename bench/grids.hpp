@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/moments.hpp"
+#include "model/moments.hpp"
+#include "scene/scene.hpp"
 
 namespace dolp::bench {
 

@@ -6,10 +6,10 @@
 #include <malloc.h>
 #endif
 
+#include "base/error.hpp"
 #include "bench/study.hpp"
-#include "cli/commands.hpp"
-#include "cli/guarded.hpp"
-#include "error.hpp"
+#include "terminal/exit_status.hpp"
+#include "terminal/guarded.hpp"
 
 namespace dolp::bench {
 namespace {
@@ -92,7 +92,7 @@ int parse_and_run(int argc, char** argv) {
     run_accuracy(accuracy);
   }
   if (std::fflush(stdout) != 0) throw IoError("standard output: cannot write the table");
-  return cli::kExitDone;
+  return kExitDone;
 }
 
 // What a repeat frees the next one finds again. glibc gives large blocks back to the system, so that repeats of large
@@ -109,5 +109,5 @@ void keep_freed_memory() {
 
 int main(int argc, char** argv) {
   dolp::bench::keep_freed_memory();
-  return dolp::cli::guarded("dolp-bench", [&] { return dolp::bench::parse_and_run(argc, argv); });
+  return dolp::guarded("dolp-bench", [&] { return dolp::bench::parse_and_run(argc, argv); });
 }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/moments.hpp"
+#include "model/moments.hpp"
 
 namespace dolp::bench {
 

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <random>
 
+#include "base/processor.hpp"
 #include "bench/direct_brdf.hpp"
 #include "bench/method.hpp"
-#include "evaluate/processor.hpp"
 
 namespace dolp::bench {
 namespace {

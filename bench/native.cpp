@@ -5,18 +5,15 @@
 #include <functional>
 #include <thread>
 
+#include "base/processor.hpp"
+#include "base/stopwatch.hpp"
 #include "bench/method.hpp"
 #include "bench/text/grouped_text.hpp"
-#include "evaluate/processor.hpp"
 
 namespace dolp::bench {
 namespace {
 
 constexpr std::size_t kBlock = 64;  // invocations between two choices of a core
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// Calls body(i) once for each i < count. Threads of OpenMP would spin while they wait, and lose where anything else
 /// runs.

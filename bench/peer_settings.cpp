@@ -1,4 +1,5 @@
 #include "bench/peer_settings.hpp"
+#include "base/stopwatch.hpp"
 
 #include <fmt/format.h>
 
@@ -33,9 +34,9 @@ struct Call {
 Call call(Solver& solver, const MomentsRequest& request, double setting) {
   const auto start = std::chrono::steady_clock::now();
   Call made{solver.solve(request, setting)};
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  const double elapsed_s = seconds_since(start);
   const std::vector<double>& own_s = made.solution.own_times_s;
-  made.time_s = own_s.empty() ? elapsed.count() : median(own_s);
+  made.time_s = own_s.empty() ? elapsed_s : median(own_s);
   return made;
 }
 

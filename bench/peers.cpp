@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/stopwatch.hpp"
 #include "bench/cases.hpp"
 #include "bench/grids.hpp"
 #include "bench/method.hpp"
@@ -85,8 +86,8 @@ PeerBatch timed_batch(const Method& method, Solver& solver, const PeerSample& sa
   while (stride > 1) {
     const auto start = std::chrono::steady_clock::now();
     solver.solve(batch.request, setting);
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    if (kGrowth * elapsed.count() > effort.grid_s) break;
+    const double elapsed_s = seconds_since(start);
+    if (kGrowth * elapsed_s > effort.grid_s) break;
     stride /= 2;
     batch = nested_grid(sample, stride);
   }

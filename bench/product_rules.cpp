@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/processor.hpp"
 #include "bench/direct_brdf.hpp"
 #include "bench/method.hpp"
-#include "evaluate/processor.hpp"
 
 namespace dolp::bench {
 namespace {

@@ -1,13 +1,14 @@
 #include "bench/study_run.hpp"
+#include "base/stopwatch.hpp"
 
 #include <cmath>
 #include <cstdio>
 
+#include "base/atomic_file.hpp"
 #include "bench/context.hpp"
 #include "bench/report.hpp"
-#include "cli/progress_bar.hpp"
 #include "evaluate/vulkan/devices.hpp"
-#include "table/atomic_file.hpp"
+#include "terminal/progress_bar.hpp"
 
 namespace dolp::bench {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 using nlohmann::ordered_json;
 
 ordered_json measured(const StudyOptions& options, const StudyParts& parts) {
-  cli::ProgressBar bar(options.quiet);
+  ProgressBar bar(options.quiet);
   StudyRun run(options, bar.callback());
   parts.measure(run);
   return run.result();
@@ -37,8 +38,8 @@ void StudyRun::finish(const ordered_json& row) {
 }
 
 ordered_json StudyRun::result() {
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start_;
-  json_["wall_s"] = std::round(10.0 * wall.count()) / 10.0;
+  const double wall_s = seconds_since(start_);
+  json_["wall_s"] = std::round(10.0 * wall_s) / 10.0;
   return std::move(json_);
 }
 

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
+#include "base/progress.hpp"
 #include "bench/study.hpp"
 #include "bench/timing.hpp"
-#include "error.hpp"
-#include "evaluate/moments.hpp"
 
 namespace dolp::bench {
 

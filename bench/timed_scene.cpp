@@ -1,4 +1,5 @@
 #include "bench/timed_scene.hpp"
+#include "base/stopwatch.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -12,8 +13,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kRawTime = 5e-3;  // seconds: shorter calls are made several times for one raw time
 constexpr double kLongTime = 0.5;  // a first call that takes that long says enough
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 }  // namespace
 

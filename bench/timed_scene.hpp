@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "effects/effects.hpp"
-#include "evaluate/run/scene_run.hpp"
+#include "plan/effects.hpp"
+#include "run/scene_run.hpp"
 
 namespace dolp::bench {
 

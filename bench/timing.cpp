@@ -1,4 +1,5 @@
 #include "bench/timing.hpp"
+#include "base/stopwatch.hpp"
 
 #include <fmt/format.h>
 
@@ -23,8 +24,8 @@ Timed timed(Solver& solver, const MomentsRequest& request, double setting, std::
     result.solution = solver.solve(request, setting);
     result.kernel_s += result.solution.kernel_s.value_or(0.0);
   }
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  result.time_s = elapsed.count() / static_cast<double>(calls);
+  const double elapsed_s = seconds_since(start);
+  result.time_s = elapsed_s / static_cast<double>(calls);
   result.kernel_s /= static_cast<double>(calls);
   return result;
 }

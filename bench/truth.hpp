@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bench/method.hpp"
-#include "evaluate/moments.hpp"
+#include "model/moments.hpp"
 
 namespace dolp::bench {
 

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/radiometry/planck.hpp"
-#include "evaluate/radiometry/radiometry.hpp"
-#include "evaluate/run/scene_run.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "model/point_result.hpp"
+#include "run/scene_run.hpp"
+#include "spectrum/planck.hpp"
 #include "stored_evaluator.hpp"
 #include "verify/qualification.hpp"
 #include "verify/stored_cases.hpp"
@@ -28,9 +28,6 @@ constexpr double kMedianPessimism = 30.0;
 // sixteen units in the last place of a float's 24 bits. In double the reference's own bound, 1e-12, times ten.
 constexpr double kFloatRounding = 1e-6;
 constexpr double kDoubleRounding = 1e-11;
-
-constexpr std::uint32_t kNoDolpPromised =
-    kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
 
 enum class Light { kEmission, kSurroundingsAndSource };
 
@@ -65,7 +62,7 @@ struct Compared {
   }
   double dolp_error() const { return std::abs(result.dolp - reference.dolp); }
   bool is_missed() const { return (result.status & kStatusToleranceMissed) != 0; }
-  bool promises_dolp() const { return (result.status & kNoDolpPromised) == 0; }
+  bool promises_dolp() const { return dolp::promises_dolp(result.status); }
   std::string name() const {
     return std::string(name_of(point.distribution)) + " " + name_of(point.masking) + " theta " +
            std::to_string(point.theta_deg) + " sigma " + std::to_string(point.shape.sigma) + " q " +

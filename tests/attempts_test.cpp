@@ -1,6 +1,8 @@
 // With which precision and rule an entry is tried, and tried again where it misses the tolerance; and that whole runs
 // do so for the entries that miss, and for no others.
-#include "evaluate/run/attempts.hpp"
+#include "plan/attempts.hpp"
+#include "model/angles.hpp"
+#include "model/status.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-#include "evaluate/run/scene_run.hpp"
+#include "run/scene_run.hpp"
 
 namespace dolp {
 namespace {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "effects/effects.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/run/scene_run.hpp"
+#include "plan/effects.hpp"
 #include "properties_support.hpp"
+#include "run/scene_run.hpp"
 
 namespace effects_support {
 
@@ -141,8 +141,5 @@ inline double polarisation_change(const PointResult& a, const PointResult& b) {
   return std::hypot(a.stokes_q / a.stokes_i - b.stokes_q / b.stokes_i,
                     a.stokes_u / a.stokes_i - b.stokes_u / b.stokes_i);
 }
-
-inline constexpr std::uint32_t kNoPromise =
-    kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
 
 }  // namespace effects_support

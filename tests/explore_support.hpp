@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/run/scene_run.hpp"
 #include "explore/session.hpp"
 #include "explore/worker.hpp"
+#include "run/scene_run.hpp"
 
 namespace dolp::explore {
 

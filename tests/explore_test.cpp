@@ -6,7 +6,7 @@
 #include <fstream>
 #include <mutex>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "explore/background_task.hpp"
 #include "explore/contours.hpp"
 #include "explore/exports.hpp"

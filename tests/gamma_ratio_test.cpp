@@ -1,5 +1,5 @@
 // The ratio of gamma functions against fifty digits.
-#include "plan/gamma_ratio.hpp"
+#include "model/gamma_ratio.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The quotients of diverging moments at 90 degrees: against an integral of its own, and against the kernel just before.
-#include "evaluate/run/grazing_limit.hpp"
+#include "run/grazing_limit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,13 +12,13 @@
 #include <tuple>
 #include <vector>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/radiometry/radiometry.hpp"
 #include "evaluate/reference/hemisphere.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
-#include "evaluate/run/scene_run.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "model/point_result.hpp"
+#include "run/scene_run.hpp"
 #include "stored_evaluator.hpp"
 #include "verify/qualification.hpp"
 #include "verify/stored_cases.hpp"

@@ -9,10 +9,10 @@
 #include <numbers>
 #include <numeric>
 
-#include "evaluate/interpolation/chebyshev.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
-#include "evaluate/interpolation/shape_axis.hpp"
-#include "evaluate/interpolation/shape_plan.hpp"
+#include "plan/chebyshev.hpp"
+#include "plan/shape_axis.hpp"
+#include "plan/shape_plan.hpp"
 #include "properties_support.hpp"
 
 namespace {

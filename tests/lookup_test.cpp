@@ -5,10 +5,10 @@
 #include <limits>
 #include <numeric>
 
-#include "error.hpp"
-#include "evaluate/radiometry/status.hpp"
-#include "lookup/axis_stencil.hpp"
-#include "lookup/table_lookup.hpp"
+#include "base/error.hpp"
+#include "model/status.hpp"
+#include "table/axis_stencil.hpp"
+#include "table/table_lookup.hpp"
 
 namespace {
 

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scene/material_data.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene/spectral_data.hpp"
-#include "tests/temporary_file.hpp"
+#include "temporary_file.hpp"
 
 namespace dolp {
 namespace {

@@ -1,5 +1,5 @@
 // The rules of `dolp mueller` about a scene: diffuse part, k_s, mirrors, 90 degrees, precision and wavelength.
-#include "evaluate/run/mueller_run.hpp"
+#include "run/mueller_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/reference/mueller.hpp"
-#include "evaluate/run/scene_run.hpp"
+#include "run/scene_run.hpp"
 
 namespace dolp {
 namespace {

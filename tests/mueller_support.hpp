@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "evaluate/scattering.hpp"
+#include "model/scattering.hpp"
 
 namespace dolp {
 

@@ -16,6 +16,7 @@
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "model/angles.hpp"
 #include "mueller_support.hpp"
 
 namespace dolp {

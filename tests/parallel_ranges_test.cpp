@@ -1,5 +1,5 @@
 // The loop over ranges on all cores: each item once, the same ranges whatever the machine, and errors that arrive.
-#include "parallel_ranges.hpp"
+#include "base/parallel_ranges.hpp"
 
 #include <gtest/gtest.h>
 

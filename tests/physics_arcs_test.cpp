@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "model/angles.hpp"
 #include "physics_text.hpp"
 #include "plan/rule.hpp"
 #include "plan/rule_nodes.hpp"

@@ -13,6 +13,7 @@
 
 #include "evaluate/reference/attenuation.hpp"
 #include "evaluate/reference/slopes.hpp"
+#include "model/angles.hpp"
 #include "physics_text.hpp"
 
 // A text in double with the cells of a float's table, filled by the test.

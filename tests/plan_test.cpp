@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "evaluate/cpu/text.hpp"
+#include "model/angles.hpp"
 #include "plan/kernel_data.hpp"
 #include "plan/rule.hpp"
 

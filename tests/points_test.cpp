@@ -7,7 +7,7 @@
 #include <iostream>
 #include <random>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scene/text.hpp"
 
 namespace dolp {

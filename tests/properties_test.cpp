@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "evaluate/cpu/text.hpp"
+#include "model/angles.hpp"
 #include "physics_text.hpp"
 #include "plan/geometry.hpp"
 #include "properties_support.hpp"

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "model/status.hpp"
 #include "radiometry_support.hpp"
 
 namespace {

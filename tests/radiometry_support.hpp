@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "evaluate/radiometry/radiometry.hpp"
+#include "radiometry/radiometry.hpp"
 #include "scene/scene.hpp"
 
 namespace radiometry_support {

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "evaluate/radiometry/planck.hpp"
 #include "radiometry_support.hpp"
+#include "spectrum/planck.hpp"
 
 namespace {
 

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "evaluate/reference/adaptive.hpp"
 #include "evaluate/reference/mueller.hpp"
 #include "verify/stored_cases.hpp"

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/status.hpp"
+#include "radiometry/radiometry.hpp"
 #include "scene/material_data.hpp"
 #include "scene_run_support.hpp"
 
@@ -186,7 +188,7 @@ TEST(SceneExact_IndexOfOne, ReflectsNothing) {
           EXPECT_NEAR(r.rho_i, 0.0, kRounding) << name_of(masking);
           EXPECT_NEAR(r.rho_q, 0.0, kRounding);
           EXPECT_NEAR(r.dolp, 0.0, kRounding);
-          EXPECT_EQ(r.status & kNoDolpPromised, 0U);
+          EXPECT_EQ(r.status & kStatusNoDolpPromised, 0U);
         }
       }
     }
@@ -265,9 +267,9 @@ TEST(SceneExact_VCavityAndSmith, NeverGiveBackMoreThanTheyReceive) {
         for (std::size_t i = 0; i < entries.size(); ++i) {
           // With R = 1 to 1e-8, albedo and rho_I share the error estimate.
           const double most = 1.0 + results[i].rho_error_estimate;
-          EXPECT_LE(results[i].albedo, most) << name_of(scene, entries[i]);
-          EXPECT_LE(results[i].rho_i + std::abs(results[i].rho_q), most) << name_of(scene, entries[i]);
-          EXPECT_EQ(results[i].status & kStatusUnphysicalReflectance, 0U) << name_of(scene, entries[i]);
+          EXPECT_LE(results[i].albedo, most) << text_of(scene, entries[i]);
+          EXPECT_LE(results[i].rho_i + std::abs(results[i].rho_q), most) << text_of(scene, entries[i]);
+          EXPECT_EQ(results[i].status & kStatusUnphysicalReflectance, 0U) << text_of(scene, entries[i]);
         }
       }
     }

@@ -10,9 +10,9 @@
 #include <iostream>
 #include <random>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scene/text.hpp"
-#include "tests/temporary_file.hpp"
+#include "temporary_file.hpp"
 
 namespace dolp {
 namespace {

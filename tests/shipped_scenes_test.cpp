@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "effects/effects.hpp"
+#include "plan/effects.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene_run_support.hpp"
 

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "evaluate/radiometry/planck.hpp"
-#include "evaluate/radiometry/smooth_surface.hpp"
-#include "evaluate/radiometry/spectral_rule.hpp"
+#include "model/smooth_surface.hpp"
 #include "radiometry_support.hpp"
 #include "radiometry_values.hpp"
+#include "spectrum/planck.hpp"
+#include "spectrum/spectral_rule.hpp"
 
 namespace {
 

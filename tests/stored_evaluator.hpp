@@ -8,7 +8,8 @@
 #include <tuple>
 #include <vector>
 
-#include "evaluate/moments.hpp"
+#include "evaluate/evaluator.hpp"
+#include "model/moments.hpp"
 #include "verify/stored_cases.hpp"
 
 namespace dolp {

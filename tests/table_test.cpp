@@ -1,5 +1,6 @@
 // Tables as files: what is written is what is read, and a file is whole or not there.
 #include "table/table.hpp"
+#include "base/number_text.hpp"
 
 #include <gtest/gtest.h>
 #include <netcdf.h>
@@ -20,8 +21,8 @@
 #include <string>
 #include <vector>
 
-#include "error.hpp"
-#include "table/atomic_file.hpp"
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
 #include "table/table_file.hpp"
 
 namespace {

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "cli_support.hpp"
-#include "error.hpp"
+#include "run/table_scene.hpp"
 #include "scene/scene_reader.hpp"
 #include "table/table_file.hpp"
 #include "verify/table_check.hpp"
-#include "verify/table_scene.hpp"
 
 namespace dolp {
 namespace {

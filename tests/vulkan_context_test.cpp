@@ -4,7 +4,7 @@
 #include <thread>
 #include <vector>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "evaluate/vulkan/context.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "evaluate/vulkan/devices.hpp"
 #include "evaluate/vulkan/packing.hpp"
 #include "evaluate/vulkan/tiles.hpp"

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "evaluate/vulkan/devices.hpp"
 #include "evaluate/vulkan/instance.hpp"
 #include "evaluate/vulkan/moments_run.hpp"

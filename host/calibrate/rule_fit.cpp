@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "calibrate/random_entries.hpp"
-#include "evaluate/cpu/parallel.hpp"
+#include "base/parallel_ranges.hpp"
 #include "evaluate/cpu/text.hpp"
 #include "plan/kernel_data.hpp"
 

@@ -1,17 +1,9 @@
-// The commands of the program; each returns the exit status of a run without an error (see error.hpp for the others).
+// The commands of the program; each returns the exit status of a run without an error (terminal/exit_status.hpp).
 #pragma once
 
 #include "cli/options.hpp"
 
 namespace dolp::cli {
-
-inline constexpr int kExitDone = 0;
-inline constexpr int kExitAccuracy = 1;
-inline constexpr int kExitInput = 2;
-inline constexpr int kExitDevice = 3;
-inline constexpr int kExitIo = 4;
-inline constexpr int kExitInternal = 5;
-inline constexpr int kExitInterrupted = 130;
 
 /// `dolp table SCENE -o FILE`: a lookup table over the scene's grid.
 int run_table(const Options& options);

@@ -7,10 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "cli/commands.hpp"
-#include "error.hpp"
 #include "evaluate/vulkan/devices.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "terminal/exit_status.hpp"
 #include "verify/qualification.hpp"
 
 namespace dolp::cli {

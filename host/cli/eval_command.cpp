@@ -2,13 +2,15 @@
 
 #include <chrono>
 
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
+#include "base/stopwatch.hpp"
 #include "cli/commands.hpp"
-#include "cli/progress_bar.hpp"
 #include "cli/report.hpp"
-#include "cli/result_csv.hpp"
-#include "error.hpp"
 #include "scene/points.hpp"
-#include "table/atomic_file.hpp"
+#include "table/result_csv.hpp"
+#include "terminal/exit_status.hpp"
+#include "terminal/progress_bar.hpp"
 
 namespace dolp::cli {
 
@@ -30,8 +32,8 @@ int run_eval(const Options& options) {
   }
   std::string csv = points.header + ',' + kResultColumns + '\n';
   for (std::size_t i = 0; i < results.size(); ++i) csv += points.rows[i] + ',' + result_cells(results[i]) + '\n';
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  RunReport report = make_report(scene, entries, results, plan, report_of(evaluator.get(), options), wall.count());
+  const double wall_s = seconds_since(start);
+  RunReport report = make_report(scene, entries, results, plan, report_of(evaluator.get(), options), wall_s);
   report.output = options.output_path;
   report.shape = fmt::format("{} points", results.size());
   write_text_atomically(options.output_path, csv);

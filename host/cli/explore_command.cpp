@@ -2,12 +2,13 @@
 
 #include <filesystem>
 
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
 #include "cli/commands.hpp"
-#include "error.hpp"
 #include "explore/window/app.hpp"
 #include "scene/embedded_data.hpp"
 #include "scene/text.hpp"
-#include "table/atomic_file.hpp"
+#include "terminal/exit_status.hpp"
 
 namespace dolp::cli {
 namespace {

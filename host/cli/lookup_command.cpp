@@ -5,14 +5,17 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
+#include "base/stopwatch.hpp"
 #include "cli/commands.hpp"
-#include "cli/result_csv.hpp"
-#include "error.hpp"
-#include "lookup/table_lookup.hpp"
+#include "model/status.hpp"
+#include "run/table_scene.hpp"
 #include "scene/points.hpp"
 #include "scene/text.hpp"
-#include "table/atomic_file.hpp"
-#include "verify/table_scene.hpp"
+#include "table/result_csv.hpp"
+#include "table/table_lookup.hpp"
+#include "terminal/exit_status.hpp"
 
 namespace dolp::cli {
 namespace {
@@ -81,14 +84,12 @@ struct Summary {
 };
 
 Summary summary_of(const std::vector<PointResult>& results, double tolerance) {
-  constexpr std::uint32_t kNoPromise =
-      kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
   Summary summary;
   summary.points = results.size();
   summary.tolerance = tolerance;
   for (const PointResult& r : results) {
     if ((r.status & kStatusToleranceMissed) != 0) ++summary.missed;
-    if ((r.status & kNoPromise) != 0) continue;
+    if (!promises_dolp(r.status)) continue;
     summary.worst_error = std::max(summary.worst_error.value_or(0.0), r.error_estimate);
     summary.worst_rho_error = std::max(summary.worst_rho_error.value_or(0.0), r.rho_error_estimate);
   }
@@ -141,7 +142,7 @@ int run_lookup(const Options& options) {
   Summary summary = summary_of(results, scene.accuracy.tolerance);
   summary.table = options.table_path;
   summary.output = options.output_path;
-  summary.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  summary.wall_s = seconds_since(start);
   std::FILE* const out = options.output_path == "-" ? stderr : stdout;
   if (options.json) {
     fmt::print(out, "{}\n", json_of(summary).dump(2));

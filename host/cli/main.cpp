@@ -9,9 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "cli/commands.hpp"
-#include "cli/guarded.hpp"
-#include "error.hpp"
+#include "terminal/exit_status.hpp"
+#include "terminal/guarded.hpp"
 
 namespace dolp::cli {
 namespace {
@@ -172,5 +173,5 @@ void keep_freed_memory() {
 
 int main(int argc, char** argv) {
   dolp::cli::keep_freed_memory();
-  return dolp::cli::guarded("dolp", [&] { return dolp::cli::parse_and_run(argc, argv); });
+  return dolp::guarded("dolp", [&] { return dolp::cli::parse_and_run(argc, argv); });
 }

@@ -6,11 +6,14 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/atomic_file.hpp"
+#include "base/number_text.hpp"
+#include "base/stopwatch.hpp"
 #include "cli/commands.hpp"
-#include "cli/progress_bar.hpp"
-#include "evaluate/run/mueller_run.hpp"
+#include "run/mueller_run.hpp"
 #include "scene/points.hpp"
-#include "table/atomic_file.hpp"
+#include "terminal/exit_status.hpp"
+#include "terminal/progress_bar.hpp"
 
 namespace dolp::cli {
 namespace {
@@ -112,7 +115,7 @@ int run_mueller(const Options& options) {
   report.tolerance = scene.accuracy.tolerance;
   report.accuracy = is_float ? kScatteringErrorFloat : kScatteringErrorDouble;
   report.evaluation = evaluator->report();
-  report.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.wall_s = seconds_since(start);
   print(report, options);
   return options.strict && report.accuracy > report.tolerance ? kExitAccuracy : kExitDone;
 }

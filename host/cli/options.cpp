@@ -4,7 +4,7 @@
 #include <system_error>
 #include <utility>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "effects/effects.hpp"
-#include "evaluate/moments.hpp"
+#include "evaluate/evaluator.hpp"
+#include "plan/effects.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp::cli {

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 
+#include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/plan_report.hpp"
-#include "error.hpp"
-#include "evaluate/run/scene_run.hpp"
 #include "plan/kernel_data.hpp"
+#include "run/scene_run.hpp"
+#include "terminal/exit_status.hpp"
 #include "verify/stored_cases.hpp"
 
 namespace dolp::cli {
@@ -30,7 +31,7 @@ DeviceDescription device_of(const Options& options, const Scene& scene, PlanRepo
   }
 }
 
-void add_dispatches(PlanReport& report, const DispatchPlan& of_request) {
+void add_dispatches(PlanReport& report, const DispatchForecast& of_request) {
   report.dispatches.dispatches += of_request.dispatches;
   report.dispatches.tile_invocations = std::max(report.dispatches.tile_invocations, of_request.tile_invocations);
   report.dispatches.group_size = std::max(report.dispatches.group_size, of_request.group_size);
@@ -49,7 +50,7 @@ void add_pipeline(PlanReport& report, const char* kernel, Precision precision) {
 
 void add_request(PlanReport& report, const MomentsRequest& request, const DeviceDescription& device) {
   if (request.entries.empty()) return;
-  add_dispatches(report, dispatch_plan(request, device));
+  add_dispatches(report, dispatch_forecast(request, device));
   const KernelData data = kernel_data(request);
   report.rule = {data.rule.digits, data.rule_order};
   add_pipeline(report, "moments", request.precision);
@@ -58,7 +59,7 @@ void add_request(PlanReport& report, const MomentsRequest& request, const Device
 
 void add_request(PlanReport& report, const ScatteringRequest& request, const DeviceDescription& device) {
   if (request.entries.empty()) return;
-  add_dispatches(report, dispatch_plan(request, device));
+  add_dispatches(report, dispatch_forecast(request, device));
   add_pipeline(report, "mueller", request.precision);
 }
 

@@ -150,7 +150,7 @@ Json rows_json(const PlanReport& report) {
   return rows;
 }
 
-Json rule_json(const RulePlan& rule) { return {{"digits", rule.digits}, {"most_nodes", rule.most_nodes}}; }
+Json rule_json(const RuleSize& rule) { return {{"digits", rule.digits}, {"most_nodes", rule.most_nodes}}; }
 
 }  // namespace
 

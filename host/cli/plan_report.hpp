@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "effects/effects.hpp"
-#include "evaluate/run/prediction.hpp"
-#include "evaluate/vulkan/dispatch_plan.hpp"
+#include "evaluate/vulkan/dispatch_forecast.hpp"
+#include "plan/effects.hpp"
+#include "run/prediction.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp::cli {
 
 /// The rule of the moments in the first attempt.
-struct RulePlan {
+struct RuleSize {
   double digits = 0.0;
   int most_nodes = 0;  ///< of a piece of the slope axis or an arc of azimuth
 };
@@ -26,9 +26,9 @@ struct PlanReport {
   std::vector<EffectRow> effects;
   std::vector<double> work_shares;  ///< of each effect: evaluations and f that would go with it, 0 to 1
   RunPrediction run;
-  std::optional<RulePlan> rule;        ///< none without moments
+  std::optional<RuleSize> rule;        ///< none without moments
   std::vector<std::string> pipelines;  ///< of the first attempt; none when nothing is left for the evaluator
-  DispatchPlan dispatches;             ///< likewise
+  DispatchForecast dispatches;         ///< likewise
   std::string device;                  ///< its name; empty without one
   std::string why_no_device;
 };

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "effects/effects.hpp"
-#include "evaluate/radiometry/radiometry.hpp"
-#include "evaluate/run/scene_run.hpp"
+#include "model/point_result.hpp"
+#include "plan/effects.hpp"
+#include "run/scene_run.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp::cli {

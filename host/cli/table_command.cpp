@@ -2,11 +2,13 @@
 
 #include <chrono>
 
+#include "base/stopwatch.hpp"
 #include "cli/commands.hpp"
-#include "cli/progress_bar.hpp"
 #include "cli/report.hpp"
-#include "cli/scene_table.hpp"
+#include "run/scene_table.hpp"
 #include "table/table_file.hpp"
+#include "terminal/exit_status.hpp"
+#include "terminal/progress_bar.hpp"
 
 namespace dolp::cli {
 
@@ -24,8 +26,8 @@ int run_table(const Options& options) {
     ProgressBar bar(options.quiet);
     results = evaluate_scene(scene, entries, plan, evaluator.get(), bar.callback());
   }
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  RunReport report = make_report(scene, entries, results, plan, report_of(evaluator.get(), options), wall.count());
+  const double wall_s = seconds_since(start);
+  RunReport report = make_report(scene, entries, results, plan, report_of(evaluator.get(), options), wall_s);
   report.output = options.output_path;
   report.shape = fmt::format("{} x {} x {} (theta x sigma x q)", scene.grid.theta_deg.size(), scene.grid.sigma.size(),
                              scene.grid.q.size());

@@ -3,16 +3,18 @@
 #include <chrono>
 #include <optional>
 
+#include "base/error.hpp"
+#include "base/stopwatch.hpp"
 #include "cli/commands.hpp"
-#include "cli/progress_bar.hpp"
 #include "cli/verify_report.hpp"
-#include "error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/vulkan/devices.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "run/table_scene.hpp"
 #include "scene/number_range.hpp"
 #include "scene/text.hpp"
-#include "verify/table_scene.hpp"
+#include "terminal/exit_status.hpp"
+#include "terminal/progress_bar.hpp"
 
 namespace dolp::cli {
 namespace {
@@ -31,7 +33,7 @@ int verify_table(const Options& options) {
     ProgressBar bar(options.quiet);
     report.check = check_table(table, scene, options.table_path, report.options, bar.callback());
   }
-  report.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.wall_s = seconds_since(start);
   if (options.json) {
     fmt::print("{}\n", table_json(report).dump(2));
   } else if (!options.quiet) {

@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "evaluate/radiometry/status.hpp"
+#include "model/status.hpp"
 
 namespace dolp::cli {
 namespace {

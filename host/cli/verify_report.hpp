@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/moments.hpp"
 #include "verify/qualification.hpp"
 #include "verify/table_check.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "evaluate/moments.hpp"
+#include "base/progress.hpp"
 
 namespace dolp::explore {
 

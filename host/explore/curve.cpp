@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/status.hpp"
+
 namespace dolp::explore {
 
 std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count) {
@@ -21,10 +23,7 @@ std::vector<SceneEntry> entries_at(const Scene& scene, const std::vector<double>
   return entries;
 }
 
-bool is_good(const PointResult& result) {
-  constexpr std::uint32_t kBad = kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
-  return (result.status & kBad) == 0 && std::isfinite(result.dolp);
-}
+bool is_good(const PointResult& result) { return promises_dolp(result.status) && std::isfinite(result.dolp); }
 
 void Curve::follow(const std::string& key, const Scene& scene, bool keep_all) {
   key_ = key;

@@ -5,11 +5,12 @@
 #include <chrono>
 #include <cmath>
 
-#include "cli/result_csv.hpp"
-#include "cli/scene_table.hpp"
+#include "base/number_text.hpp"
+#include "base/stopwatch.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
-#include "evaluate/run/scene_run.hpp"
-#include "table/atomic_file.hpp"
+#include "run/scene_run.hpp"
+#include "run/scene_table.hpp"
+#include "table/result_csv.hpp"
 #include "table/table_file.hpp"
 
 namespace dolp::explore {
@@ -20,11 +21,11 @@ constexpr std::size_t kStride = 10;  // of the entries that the reference recomp
 }  // namespace
 
 std::string curve_csv(const Curve& curve) {
-  std::string csv = std::string("theta_deg,sigma,q,") + cli::kResultColumns + '\n';
+  std::string csv = std::string("theta_deg,sigma,q,") + kResultColumns + '\n';
   for (std::size_t i = 0; i < curve.entries().size(); ++i) {
     const SceneEntry& entry = curve.entries()[i];
     csv += number_text(entry.theta_deg) + ',' + number_text(entry.shape.sigma) + ',' + number_text(entry.shape.q) +
-           ',' + cli::result_cells(curve.results()[i]) + '\n';
+           ',' + result_cells(curve.results()[i]) + '\n';
   }
   return csv;
 }
@@ -36,11 +37,11 @@ std::string export_table(const Scene& scene, const std::string& path, const std:
   const std::vector<SceneEntry> entries = grid_entries(scene);
   const EffectPlan plan = plan_effects(scene, entries, false);
   const std::vector<PointResult> results = evaluate_scene(scene, entries, plan, &evaluator, progress);
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  const double wall_s = seconds_since(start);
   const std::vector<EffectRow> effects = effect_rows(scene, entries, plan);
-  const cli::TableContent content{scene, results, plan, effects, evaluator.report(), wall.count(), command_line};
-  write_table(cli::scene_table(content), path);
-  return fmt::format("{}: {} entries in {:.2f} s", path, entries.size(), wall.count());
+  const TableContent content{scene, results, plan, effects, evaluator.report(), wall_s, command_line};
+  write_table(scene_table(content), path);
+  return fmt::format("{}: {} entries in {:.2f} s", path, entries.size(), wall_s);
 }
 
 std::string true_error(const Curve& curve, const Progress& progress) {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "evaluate/moments.hpp"
+#include "evaluate/evaluator.hpp"
 #include "explore/curve.hpp"
 #include "scene/scene.hpp"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scene/number_range.hpp"
 #include "scene/text.hpp"
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scene/text.hpp"
 
 namespace dolp::explore {

@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "model/status.hpp"
+
 namespace dolp::explore {
 namespace {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "evaluate/radiometry/radiometry.hpp"
+#include "model/point_result.hpp"
 
 namespace dolp::explore {
 

@@ -5,14 +5,13 @@
 #include <iterator>
 #include <utility>
 
-#include "evaluate/run/scene_run.hpp"
+#include "base/stopwatch.hpp"
+#include "run/scene_run.hpp"
 
 namespace dolp::explore {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 bool contains(const std::vector<std::string>& keys, const std::string& key) {
   return std::ranges::find(keys, key) != keys.end();

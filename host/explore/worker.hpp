@@ -10,10 +10,10 @@
 #include <thread>
 #include <vector>
 
-#include "effects/effects.hpp"
-#include "evaluate/moments.hpp"
-#include "evaluate/radiometry/radiometry.hpp"
-#include "evaluate/scene_entry.hpp"
+#include "evaluate/evaluator.hpp"
+#include "model/point_result.hpp"
+#include "model/scene_entry.hpp"
+#include "plan/effects.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp::explore {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "plan/gamma_ratio.hpp"
+#include "model/gamma_ratio.hpp"
 #include "plan/geometry.hpp"
 #include "plan/rule_nodes.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "evaluate/scattering.hpp"
+#include "model/scattering.hpp"
 #include "plan/kernel_data.hpp"
 
 namespace dolp {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/angles.hpp"
+
 namespace dolp {
 namespace {
 

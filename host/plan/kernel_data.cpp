@@ -4,8 +4,6 @@
 #include <array>
 #include <bit>
 #include <boost/math/constants/constants.hpp>
-#include <boost/math/special_functions/cos_pi.hpp>
-#include <boost/math/special_functions/sin_pi.hpp>
 #include <cassert>
 #include <cmath>
 #include <compare>
@@ -14,7 +12,8 @@
 #include <map>
 #include <utility>
 
-#include "plan/gamma_ratio.hpp"
+#include "model/angles.hpp"
+#include "model/gamma_ratio.hpp"
 #include "plan/rule.hpp"
 #include "plan/rule_nodes.hpp"
 
@@ -181,16 +180,16 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
 
 // Slope beyond which less than `share` of the facets' weight lies, weighted by 1 and by slope.
 double slope_cut(const MomentsRequest& request, const SlopeShape& shape, double share) {
-  const double m = std::sqrt(2.0) * shape.sigma;
+  const double m = slope_width(shape);
   if (request.distribution == Distribution::kGaussian) return m * std::sqrt(1.0 - std::log(share));
   const double exponent = shape.q - 1.5;
   if (exponent <= 0.0) return kLargestCut;
-  return std::min(kLargestCut, m * std::sqrt(std::expm1(std::min(-std::log(share) / exponent, 500.0))));
+  return std::min(kLargestCut, m * power_law_reach(share, exponent));
 }
 
 kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& shape, double digits) {
   kernel::ShapeNode node{};
-  node.m = std::sqrt(2.0) * shape.sigma;
+  node.m = slope_width(shape);
   node.q_minus_1 = shape.q - 1.0;
   const bool cauchy = request.distribution == Distribution::kCauchy;
   node.marginal_norm = (cauchy ? gamma_ratio(node.q_minus_1) : 1.0) / (root_pi<double>() * node.m);
@@ -238,14 +237,6 @@ void add_directions(KernelData& data, const MomentsRequest& request, const RuleM
 }
 
 }  // namespace
-
-CosSin cos_sin_deg(double angle_deg) {
-  // Near 90 degrees the cosine keeps its relative accuracy as the sine of what is left.
-  const bool is_near_90 = std::abs(angle_deg - 90.0) < 45.0;
-  const double cosine =
-      is_near_90 ? boost::math::sin_pi((90.0 - angle_deg) / 180.0) : boost::math::cos_pi(angle_deg / 180.0);
-  return {cosine, boost::math::sin_pi(angle_deg / 180.0)};
-}
 
 std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t members) {
   const auto bit = [](bool is_set, unsigned position) { return static_cast<std::uint32_t>(is_set) << position; };

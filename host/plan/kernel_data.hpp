@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "evaluate/moments.hpp"
+#include "model/moments.hpp"
 
 namespace dolp {
 

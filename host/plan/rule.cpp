@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "plan/gamma_ratio.hpp"
+#include "model/gamma_ratio.hpp"
 
 namespace dolp {
 namespace {

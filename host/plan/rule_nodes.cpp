@@ -8,7 +8,7 @@
 #include <mutex>
 #include <utility>
 
-#include "parallel_ranges.hpp"
+#include "base/parallel_ranges.hpp"
 
 namespace dolp {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scene/material_data.hpp"
 #include "scene/spectral_data.hpp"
 #include "scene/text.hpp"

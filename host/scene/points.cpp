@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scene/number_range.hpp"
 #include "scene/text.hpp"
 

@@ -2,25 +2,17 @@
 // degrees are what the user typed and what the table's coordinate must repeat).
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "model/choices.hpp"
+#include "model/optical_constants.hpp"
+
 namespace dolp {
 
-enum class Distribution : std::uint32_t { kCauchy = 0, kGaussian = 1 };
-enum class Masking : std::uint32_t { kNone = 0, kVCavity = 1, kIntegral = 2, kSmith = 3 };
 enum class EmissionModel { kMoments, kFresnel };
 enum class Mode { kHemispherical, kBistatic };
-enum class Precision { kAuto, kFloat, kDouble };
-
-/// Complex refractive index n + ik; time factor e^(-i omega t), so k >= 0.
-struct OpticalConstants {
-  double n = 1.0;
-  double k = 0.0;
-  friend bool operator==(const OpticalConstants&, const OpticalConstants&) = default;
-};
 
 /// A quantity tabulated over wavelength (strictly ascending), with the interpolation that suits it.
 /// Outside the table the scene reader refuses the scene, so `at` is only asked inside.

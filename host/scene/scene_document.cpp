@@ -5,7 +5,7 @@
 #include <optional>
 #include <sstream>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/text.hpp"
 

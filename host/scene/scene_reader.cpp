@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <numeric>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scene/material_data.hpp"
 #include "scene/scene_document.hpp"
 #include "scene/scene_keys.hpp"

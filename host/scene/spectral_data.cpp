@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scene/embedded_data.hpp"
 #include "scene/number_range.hpp"
 #include "scene/text.hpp"

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <system_error>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scene/number_range.hpp"
 
 namespace dolp {

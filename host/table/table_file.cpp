@@ -4,8 +4,9 @@
 #include <string>
 #include <string_view>
 
-#include "error.hpp"
-#include "table/atomic_file.hpp"
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
+#include "base/number_text.hpp"
 #include "table/table_netcdf.hpp"
 
 namespace dolp {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "table/table_file.hpp"
 
 namespace dolp {

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/moments.hpp"
+#include "evaluate/evaluator.hpp"
+#include "model/status.hpp"
 #include "scene/scene.hpp"
 #include "verify/stored_cases.hpp"
 

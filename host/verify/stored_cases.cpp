@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "scene/text.hpp"
 
 namespace dolp {
@@ -95,9 +95,5 @@ std::vector<StoredCase> read_stored_cases(const std::string& path) {
 }
 
 std::vector<StoredCase> hard_cases() { return parse_stored_cases(embedded_hard_cases_csv(), "hard_cases.csv"); }
-
-const char* name_of(Distribution distribution) { return kDistributions[static_cast<std::size_t>(distribution)]; }
-
-const char* name_of(Masking masking) { return kMaskings[static_cast<std::size_t>(masking)]; }
 
 }  // namespace dolp

@@ -9,10 +9,11 @@
 #include <random>
 #include <set>
 
-#include "error.hpp"
-#include "evaluate/radiometry/radiometry.hpp"
+#include "base/error.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
-#include "evaluate/run/scene_run.hpp"
+#include "model/point_result.hpp"
+#include "model/status.hpp"
+#include "run/scene_run.hpp"
 #include "scene/number_range.hpp"
 
 namespace dolp {
@@ -21,9 +22,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The reference is a hundred times better than the table if it can, and this good at least.
 constexpr double kReferenceTolerance = 1e-11;
-
-constexpr std::uint32_t kNoDolpPromised =
-    kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
 
 /// How the bound of a quantity follows from the two estimates.
 enum class Bound { kDolp, kReflectance, kPolarisedRadiation, kRadiation };
@@ -82,7 +80,7 @@ double estimate_at(const std::vector<double>& estimates, std::size_t position) {
 double allowed_error(const Quantity& quantity, std::uint32_t status, double tolerance, const PointResult& reference) {
   const bool is_promised = (status & kStatusToleranceMissed) == 0;
   if (is_promised && is_reflectance(quantity.bound)) return tolerance * std::abs(reference.rho_i);
-  const bool is_dolp = quantity.bound == Bound::kDolp && (status & kNoDolpPromised) == 0;
+  const bool is_dolp = quantity.bound == Bound::kDolp && promises_dolp(status);
   if (is_promised && is_dolp) return tolerance;
   return kInfinity;
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/moments.hpp"
+#include "base/progress.hpp"
 #include "scene/scene.hpp"
 #include "table/table.hpp"
 

@@ -4,17 +4,16 @@
 #include <limits>
 #include <memory>
 
-#include "evaluate/cpu/parallel.hpp"
+#include "base/parallel_ranges.hpp"
+#include "base/processor.hpp"
+#include "base/stopwatch.hpp"
 #include "evaluate/cpu/text.hpp"
-#include "evaluate/processor.hpp"
 #include "plan/beam.hpp"
 
 namespace dolp {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 std::unique_ptr<KernelText> make_text(const KernelData& data, bool in_double) {
   return in_double ? make_kernel_text_double(data) : make_kernel_text_float(data);

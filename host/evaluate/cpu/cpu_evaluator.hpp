@@ -1,7 +1,9 @@
 // Moments and pBRDFs by the shaders' own text on the CPU, on all its cores.
 #pragma once
 
-#include "evaluate/scattering.hpp"
+#include "evaluate/evaluator.hpp"
+#include "model/moments.hpp"
+#include "model/scattering.hpp"
 
 namespace dolp {
 

@@ -6,8 +6,9 @@
 #include <optional>
 #include <span>
 
-#include "evaluate/interpolation/shape_plan.hpp"
-#include "parallel_ranges.hpp"
+#include "base/parallel_ranges.hpp"
+#include "base/stopwatch.hpp"
+#include "plan/shape_plan.hpp"
 
 namespace dolp {
 namespace {
@@ -60,7 +61,7 @@ std::vector<Moments> InterpolatingEvaluator::evaluate(const MomentsRequest& requ
   std::vector<Moments> moments(total);
   const Clock::time_point start = Clock::now();
   interpolate(*plan, request, nodes, moments);
-  interpolation_s_ += std::chrono::duration<double>(Clock::now() - start).count();
+  interpolation_s_ += seconds_since(start);
   nodes_ += node_count;
   interpolated_ += total - plan->direct.entries.size();
   if (plan->direct.entries.empty()) return moments;

@@ -4,7 +4,8 @@
 #include <memory>
 #include <utility>
 
-#include "evaluate/moments.hpp"
+#include "evaluate/evaluator.hpp"
+#include "model/moments.hpp"
 
 namespace dolp {
 

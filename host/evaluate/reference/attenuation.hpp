@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "evaluate/reference/slopes.hpp"
-#include "scene/scene.hpp"
 
 namespace dolp::reference {
 

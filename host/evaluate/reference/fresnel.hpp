@@ -3,7 +3,7 @@
 
 #include <complex>
 
-#include "scene/scene.hpp"
+#include "model/optical_constants.hpp"
 
 namespace dolp::reference {
 

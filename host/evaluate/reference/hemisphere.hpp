@@ -3,10 +3,9 @@
 
 #include <cstddef>
 
-#include "evaluate/moments.hpp"
 #include "evaluate/reference/attenuation.hpp"
 #include "evaluate/reference/slopes.hpp"
-#include "scene/scene.hpp"
+#include "model/moments.hpp"
 
 namespace dolp::reference {
 

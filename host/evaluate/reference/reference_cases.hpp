@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/moments.hpp"
-#include "scene/scene.hpp"
+#include "model/choices.hpp"
+#include "model/optical_constants.hpp"
+#include "model/slopes.hpp"
 
 namespace dolp::reference {
 
@@ -34,10 +35,6 @@ inline constexpr std::array<Group, 8> kGroups{{{Distribution::kCauchy, Masking::
                                                {Distribution::kCauchy, Masking::kSmith},
                                                {Distribution::kGaussian, Masking::kVCavity},
                                                {Distribution::kGaussian, Masking::kSmith}}};
-
-/// The names of a group as scenes write them.
-const char* name_of(Distribution distribution);
-const char* name_of(Masking masking);
 
 /// The hard cases of a group: ends of every range, split lines that coincide, indices that reflect nothing or all.
 ///

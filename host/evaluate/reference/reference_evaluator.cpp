@@ -13,8 +13,9 @@
 #include <thread>
 #include <utility>
 
-#include "error.hpp"
-#include "evaluate/processor.hpp"
+#include "base/error.hpp"
+#include "base/processor.hpp"
+#include "base/stopwatch.hpp"
 #include "evaluate/reference/hemisphere.hpp"
 #include "evaluate/reference/mueller.hpp"
 
@@ -177,7 +178,7 @@ std::vector<Moments> ReferenceEvaluator::evaluate(const MomentsRequest& request,
                      [&](std::size_t i) { return moments_of(request, request.entries[i], refinement); });
   std::vector<Moments> results = crew.run(thread_count(options_, request.entries.size()), progress);
   for (const Moments& moments : results) report_.evaluations += moments.evaluations;
-  note(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  note(seconds_since(start));
   return results;
 }
 
@@ -187,7 +188,7 @@ std::vector<ScatteringMatrix> ReferenceEvaluator::scatter(const ScatteringReques
   Crew<ScatteringMatrix> crew(request.entries.size(),
                               [&](std::size_t i) { return matrix_of(request, request.entries[i]); });
   std::vector<ScatteringMatrix> results = crew.run(thread_count(options_, request.entries.size()), progress);
-  note(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  note(seconds_since(start));
   return results;
 }
 

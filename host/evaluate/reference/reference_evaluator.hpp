@@ -4,7 +4,9 @@
 
 #include <vector>
 
-#include "evaluate/scattering.hpp"
+#include "evaluate/evaluator.hpp"
+#include "model/moments.hpp"
+#include "model/scattering.hpp"
 
 namespace dolp {
 

@@ -1,7 +1,7 @@
 // The two slope distributions of the reference.
 #pragma once
 
-#include "scene/scene.hpp"
+#include "model/choices.hpp"
 
 namespace dolp::reference {
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/stopwatch.hpp"
 #include "evaluate/vulkan/buffer.hpp"
 #include "evaluate/vulkan/kernels.hpp"
 #include "evaluate/vulkan/result.hpp"
@@ -113,9 +114,9 @@ double CommandStream::submit_and_wait(double timeout_s) {
     throw DeviceTimeout("the Vulkan device did not finish a tile within " + std::to_string(timeout_s) + " s");
   }
   check(result, "waiting for the device");
-  const std::chrono::duration<double> host_s = std::chrono::steady_clock::now() - start;
+  const double host_s = seconds_since(start);
   check(vkResetFences(device_.get(), 1, &fence), "resetting a fence");
-  return timestamps_.get() == VK_NULL_HANDLE ? host_s.count() : elapsed_s();
+  return timestamps_.get() == VK_NULL_HANDLE ? host_s : elapsed_s();
 }
 
 double CommandStream::elapsed_s() const {

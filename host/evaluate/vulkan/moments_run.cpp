@@ -4,8 +4,8 @@
 #include <future>
 #include <numeric>
 
+#include "base/parallel_ranges.hpp"
 #include "evaluate/vulkan/result.hpp"
-#include "parallel_ranges.hpp"
 
 namespace dolp::vulkan {
 namespace {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "evaluate/vulkan/buffer.hpp"
 #include "evaluate/vulkan/command_stream.hpp"
 #include "evaluate/vulkan/kernels.hpp"

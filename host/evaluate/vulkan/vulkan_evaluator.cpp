@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/stopwatch.hpp"
 #include "evaluate/vulkan/context.hpp"
 #include "evaluate/vulkan/moments_run.hpp"
 #include "evaluate/vulkan/result.hpp"
@@ -14,8 +15,6 @@ namespace dolp {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 void check_entries(const MomentsRequest& request) {
   for (std::size_t i = 0; i < request.entries.size(); ++i) {

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/scattering.hpp"
+#include "evaluate/evaluator.hpp"
+#include "model/moments.hpp"
+#include "model/scattering.hpp"
 
 namespace dolp {
 

@@ -12,7 +12,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "error.hpp"
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/context.hpp"
 #include "evaluate/vulkan/result.hpp"
@@ -22,7 +23,6 @@
 #include "explore/window/text.hpp"
 #include "explore/window/ui.hpp"
 #include "explore/worker.hpp"
-#include "table/atomic_file.hpp"
 
 namespace dolp::explore {
 namespace {

@@ -5,8 +5,8 @@
 #define STBI_WRITE_NO_STDIO
 #include <stb_image_write.h>
 
-#include "error.hpp"
-#include "table/atomic_file.hpp"
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
 
 namespace dolp::explore {
 

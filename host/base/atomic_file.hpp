@@ -1,0 +1,22 @@
+// Files that appear whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace dolp {
+
+/// Refuses an output path of any suffix, before anything is computed for it; "-" is standard output.
+///
+/// Errors: IoError when it is a folder, or its folder is missing or cannot be written to.
+void check_writable(const std::filesystem::path& path);
+
+/// Writes text or bytes to a temporary file in the folder of `path`, syncs it and renames it to `path`; to standard
+/// output for "-", and straight into a device or pipe.
+///
+/// A symbolic link stays, what it points to is replaced; an existing file keeps its permissions.
+/// Errors: IoError; the temporary file is removed and `path` is as it was.
+void write_text_atomically(const std::filesystem::path& path, std::string_view content);
+
+}  // namespace dolp

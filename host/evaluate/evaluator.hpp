@@ -1,0 +1,59 @@
+// What computes moments and pBRDFs, whatever it runs on.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/progress.hpp"
+#include "model/moments.hpp"
+#include "model/scattering.hpp"
+
+namespace dolp {
+
+/// What ran, for the report.
+struct EvaluationReport {
+  std::string evaluator;  ///< vulkan | cpu | reference
+  std::string device;     ///< device name, or the processor
+  std::string driver;     ///< driver name and version; empty for cpu and reference
+  std::string precision;  ///< float | double | float and double, as used
+  std::uint64_t dispatches = 0;
+  double evaluations = 0.0;
+  double kernel_s = 0.0;           ///< time on the device (timestamps), or of the loop on the CPU, and of interpolation
+  double setup_s = 0.0;            ///< device and pipeline creation
+  std::uint64_t interpolated = 0;  ///< moments that were interpolated between slope distributions,
+  std::uint64_t interpolation_nodes = 0;  ///< and moments computed for that
+};
+
+/// Adds a precision to EvaluationReport::precision.
+inline void note_precision(std::string& used, bool in_double) {
+  const char* name = in_double ? "double" : "float";
+  if (used.empty()) used = name;
+  if (used != name) used = "float and double";
+}
+
+/// Computes pBRDFs. Results are in the order of `request.entries`.
+class ScatteringEvaluator {
+ public:
+  virtual ~ScatteringEvaluator() = default;
+  /// Says that `scatter` is to be called with this request, after another that may take its time meanwhile.
+  virtual void prepare(const ScatteringRequest& /*request*/) {}
+  virtual std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) = 0;
+};
+
+/// Computes moments. Results are in the order of `request.entries`.
+class MomentsEvaluator {
+ public:
+  virtual ~MomentsEvaluator() = default;
+  virtual std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) = 0;
+  /// The precision it was made for: that of scenes which leave theirs open. kAuto leaves it open too.
+  virtual Precision precision() const { return Precision::kAuto; }
+  /// Whether requests in double are possible.
+  virtual bool has_double() const { return true; }
+  /// The same evaluator's pBRDFs, which the bistatic mode needs; null when it has none.
+  virtual ScatteringEvaluator* scattering() { return nullptr; }
+  /// Totals over all calls, pBRDFs included.
+  virtual EvaluationReport report() const = 0;
+};
+
+}  // namespace dolp

@@ -1,0 +1,74 @@
+#include "evaluate/vulkan/dispatch_forecast.hpp"
+
+#include <algorithm>
+
+#include "evaluate/vulkan/kernels.hpp"
+#include "evaluate/vulkan/tiles.hpp"
+#include "plan/beam.hpp"
+#include "plan/groups.hpp"
+
+namespace dolp {
+namespace {
+
+vulkan::TileLimits tile_limits(const DeviceDescription& device, std::uint64_t tile_invocations,
+                               std::uint64_t block_shapes) {
+  return {.buffer_bytes = device.max_storage_buffer_bytes,
+          .heap_bytes = device.heap_bytes,
+          .dispatch_count = std::uint64_t{device.max_workgroups} * vulkan::kLocalSize,
+          .tile_invocations = tile_invocations,
+          .block_shapes = block_shapes};
+}
+
+std::uint64_t node_bytes(const vulkan::Packing& packing, const KernelData& data) {
+  return data.rule_nodes.size() * packing.node_bytes<std::array<double, 2>>();
+}
+
+}  // namespace
+
+DispatchForecast dispatch_forecast(const MomentsRequest& request, const DeviceDescription& device,
+                                   const VulkanOptions& options) {
+  if (request.entries.empty()) return {};
+  const vulkan::Packing packing(request.precision == Precision::kDouble);
+  const KernelData data = kernel_data(request);
+  const Grouping grouping = grouped(data, options.groups_small_requests);
+  const vulkan::TileCosts costs = vulkan::tile_costs(packing, grouping.size);
+  const std::uint64_t most = grouping.groups.size() * DOLP_MAX_PIECES;
+  const vulkan::TileSizes sizes =
+      vulkan::tile_sizes(tile_limits(device, std::min<std::uint64_t>(options.max_tile_invocations, most),
+                                     std::min<std::uint64_t>(options.max_block_shapes, data.shapes.size())),
+                         costs);
+  DispatchForecast forecast{.tile_invocations = sizes.invocations, .block_shapes = sizes.shapes};
+  forecast.group_size = grouping.size;
+  forecast.groups = grouping.groups.size();
+  for (const vulkan::Block& block : vulkan::blocks_of(grouping, sizes.shapes)) {
+    const std::size_t pieces = pieces_of(grouping, data, block.first_group, block.group_count).size();
+    forecast.dispatches += (pieces + sizes.invocations - 1) / sizes.invocations;
+    forecast.dispatches += data.needs_masking_table() ? 1 : 0;
+  }
+  forecast.device_bytes =
+      sizes.invocations * costs.invocation_bytes + sizes.shapes * costs.shape_bytes + node_bytes(packing, data);
+  return forecast;
+}
+
+DispatchForecast dispatch_forecast(const ScatteringRequest& request, const DeviceDescription& device,
+                                   const VulkanOptions& options) {
+  if (request.entries.empty()) return {};
+  const vulkan::Packing packing(request.precision == Precision::kDouble);
+  const vulkan::TileCosts costs = vulkan::scattering_tile_costs(packing);
+  const std::uint64_t wanted = std::min<std::uint64_t>(options.max_tile_invocations, request.entries.size());
+  const std::uint32_t beams = vulkan::tile_sizes(tile_limits(device, wanted, 1), costs).invocations;
+  return {.tile_invocations = beams,
+          .block_shapes = 0,
+          .dispatches = (request.entries.size() + beams - 1) / beams,
+          .device_bytes = beams * costs.invocation_bytes + node_bytes(packing, BeamPlan(request).data())};
+}
+
+DeviceDescription least_device() {
+  DeviceDescription least;
+  least.max_storage_buffer_bytes = std::uint64_t{1} << 27U;
+  least.max_workgroups = 65535;
+  least.heap_bytes = std::uint64_t{1} << 30U;
+  return least;
+}
+
+}  // namespace dolp

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+
+#include "evaluate/vulkan/devices.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "model/moments.hpp"
+#include "model/scattering.hpp"
+
+namespace dolp {
+
+/// How a request is cut into dispatches.
+struct DispatchForecast {
+  std::uint32_t tile_invocations = 0;
+  std::uint32_t block_shapes = 0;
+  std::uint32_t group_size = 1;  ///< most entries that share an invocation, see plan/groups.hpp
+  std::uint64_t groups = 0;      ///< of the moments
+  std::uint64_t dispatches = 0;
+  std::uint64_t device_bytes = 0;  ///< bound of the memory of all buffers
+};
+
+/// What VulkanEvaluator does with a request on a device, by the code that it uses itself.
+DispatchForecast dispatch_forecast(const MomentsRequest& request, const DeviceDescription& device,
+                                   const VulkanOptions& options = {});
+DispatchForecast dispatch_forecast(const ScatteringRequest& request, const DeviceDescription& device,
+                                   const VulkanOptions& options = {});
+
+/// The limits that every Vulkan device keeps, for plans without one. The heap is a guess.
+DeviceDescription least_device();
+
+}  // namespace dolp

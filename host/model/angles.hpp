@@ -1,0 +1,13 @@
+#pragma once
+
+namespace dolp {
+
+struct CosSin {
+  double cos = 1.0;
+  double sin = 0.0;
+};
+
+/// cos and sin of an angle in degrees, exact at multiples of 90 degrees.
+CosSin cos_sin_deg(double angle_deg);
+
+}  // namespace dolp

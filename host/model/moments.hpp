@@ -1,0 +1,51 @@
+// The hemispherical moments of the specular microfacet term (k_s = 1, no diffuse part).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "model/choices.hpp"
+#include "model/optical_constants.hpp"
+#include "model/slopes.hpp"
+
+namespace dolp {
+
+/// The tightest tolerance of a rule in float; beyond, rounding drowns it.
+inline constexpr double kLeastFloatTolerance = 2e-6;
+
+/// One entry: positions in the three lists of its request.
+struct MomentsEntry {
+  std::uint32_t theta = 0;
+  std::uint32_t shape = 0;
+  std::uint32_t index = 0;
+};
+
+/// Lists of distinct directions, slope shapes and refractive indices, and the combinations that are wanted.
+struct MomentsRequest {
+  Distribution distribution = Distribution::kCauchy;
+  Masking masking = Masking::kIntegral;
+  double tolerance = 1e-4;                 ///< of the rule, relative to r_i
+  Precision precision = Precision::kAuto;  ///< kAuto: the evaluator's own
+  bool may_interpolate = true;             ///< between slope distributions, to the same tolerance
+  std::vector<double> theta_deg;
+  std::vector<SlopeShape> shapes;
+  std::vector<OpticalConstants> indices;
+  std::vector<MomentsEntry> entries;
+};
+
+/// The moments of one entry, all multiplied by cos(theta), which keeps them finite at theta = 90 degrees.
+/// MODEL: r = rho cos(theta); rho_s = rho_I + rho_Q, rho_p = rho_I - rho_Q.
+struct Moments {
+  double r_i = 0.0;      ///< rho_I cos(theta)
+  double r_q = 0.0;      ///< rho_Q cos(theta), signed
+  double albedo = 0.0;   ///< A cos(theta): the same integral with R = 1
+  double deficit = 0.0;  ///< cos(theta) - r_i, summed directly: no cancellation where rho_I is near 1
+  // Bounds of the absolute errors of the four, in the same units (quadrature, masking tables and rounding).
+  double r_i_error = 0.0;
+  double r_q_error = 0.0;
+  double albedo_error = 0.0;
+  double deficit_error = 0.0;
+  double evaluations = 0.0;  ///< integrand evaluations spent on this entry
+};
+
+}  // namespace dolp

@@ -1,0 +1,25 @@
+#include "model/slopes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dolp {
+namespace {
+
+constexpr double kLargestExponent = 500.0;  // of e, so that nothing overflows
+
+}  // namespace
+
+double slope_width(const SlopeShape& shape) { return std::sqrt(2.0) * shape.sigma; }
+
+double steeper_share(Distribution distribution, const SlopeShape& shape, double slope) {
+  if (shape.sigma == 0.0) return 0.0;
+  const double u = slope / slope_width(shape);
+  return distribution == Distribution::kGaussian ? std::exp(-u * u) : std::exp((1.0 - shape.q) * std::log1p(u * u));
+}
+
+double power_law_reach(double share, double exponent) {
+  return std::sqrt(std::expm1(std::min(-std::log(share) / exponent, kLargestExponent)));
+}
+
+}  // namespace dolp

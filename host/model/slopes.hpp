@@ -1,0 +1,28 @@
+// The distribution of the facets' slopes.
+#pragma once
+
+#include "model/choices.hpp"
+
+namespace dolp {
+
+/// The two parameters of the slope distribution. The gaussian ignores q.
+struct SlopeShape {
+  double sigma = 0.0;
+  double q = 2.0;
+  friend bool operator==(const SlopeShape&, const SlopeShape&) = default;
+};
+
+/// m = sqrt(2) sigma, the unit of the slopes.
+double slope_width(const SlopeShape& shape);
+
+/// Share of the facets that are steeper than a slope.
+///
+/// Equation: with u = slope / m, exp(-u^2) of the gaussian, (1 + u^2)^(1 - q) of the cauchy distribution.
+/// Domain: slope >= 0; sigma = 0 has no facet steeper than any.
+double steeper_share(Distribution distribution, const SlopeShape& shape, double slope);
+
+/// The slope u in units of m beyond which the power law (1 + u^2)^-exponent is less than `share`.
+/// Domain: share in (0, 1], exponent > 0; finite however heavy the tail.
+double power_law_reach(double share, double exponent);
+
+}  // namespace dolp

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "model/moments.hpp"
+
+namespace dolp {
+
+/// Parts absorbed by a smooth surface, 1 - R_s and 1 - R_p.
+struct SmoothAbsorptance {
+  double s = 1.0;
+  double p = 1.0;
+};
+
+/// What a smooth surface absorbs at an angle of incidence.
+///
+/// Equation: 1 - R_s = 4 c Re(w) / |c + w|^2, 1 - R_p = 4 c Re(N^2* w) / |N^2 c + w|^2, w = sqrt(N^2 - 1 + c^2).
+/// Domain: cosine c in (0, 1], n > 0, k >= 0; total reflection (n < 1, k = 0) gives exactly 0.
+/// Accuracy: no cancellation, however good the reflector.
+SmoothAbsorptance smooth_absorptance(const OpticalConstants& index, double cosine);
+
+/// Moments of the mirror, the limit sigma -> 0 of every surface: R_s and R_p at the direction itself, no masking.
+///
+/// Domain: cosine in (0, 1].
+/// Accuracy: as smooth_absorptance.
+Moments mirror_moments(const OpticalConstants& index, double cosine);
+
+}  // namespace dolp

@@ -1,0 +1,59 @@
+#include "plan/attempts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/moments.hpp"
+#include "model/status.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr double kLeastDoubleTolerance = 1e-15;  // as kLeastFloatTolerance
+
+// A miss by a little asks for more than the little, or the next attempt may miss too.
+constexpr double kSafety = 1.5;
+constexpr double kLeastDecades = 0.5;
+constexpr double kMostDecades = 5.0;
+
+bool may_use_double(const Accuracy& accuracy, bool has_double) {
+  return has_double && accuracy.precision != Precision::kFloat;
+}
+
+// Steps of half a decade, so that many entries share an attempt.
+double half_decades(double decades) { return 0.5 * std::ceil(2.0 * decades); }
+
+}  // namespace
+
+Attempt first_attempt(const Accuracy& accuracy, bool has_double) {
+  const bool wants_double = accuracy.precision == Precision::kDouble || accuracy.tolerance < kLeastFloatTolerance;
+  return {wants_double && may_use_double(accuracy, has_double) ? Precision::kDouble : Precision::kFloat,
+          accuracy.tolerance};
+}
+
+std::optional<Attempt> next_attempt(const Attempt& last, const PointResult& result, const Accuracy& accuracy,
+                                    bool has_double) {
+  if ((result.status & kStatusToleranceMissed) == 0) return std::nullopt;
+  // Outside the domain the DOLP may still have a limit; where it has none, nothing can be done.
+  const bool is_outside = (result.status & kStatusOutsideDomain) != 0;
+  if (is_outside && std::isnan(result.error_estimate)) return std::nullopt;
+  const double rho_error = is_outside ? 0.0 : result.rho_error_estimate;
+  const double excess =
+      std::isnan(rho_error) ? rho_error : std::max(result.error_estimate, rho_error) / accuracy.tolerance;
+  // The tighter the last attempt was already, the larger the step, or an entry that never meets it takes for ever.
+  const double so_far = std::log10(accuracy.tolerance / last.tolerance);
+  const double least = std::max(kLeastDecades, half_decades(0.5 * so_far));
+  const double missed_by = std::isfinite(excess) ? half_decades(std::log10(kSafety * excess)) : kMostDecades;
+  const double decades = std::min(std::max(missed_by, least), kMostDecades);
+  const double wanted = last.tolerance * std::pow(10.0, -decades);
+  if (last.precision == Precision::kFloat && wanted >= kLeastFloatTolerance) return Attempt{Precision::kFloat, wanted};
+  if (!may_use_double(accuracy, has_double)) {
+    const bool can_tighten = last.precision == Precision::kFloat && last.tolerance > kLeastFloatTolerance;
+    return can_tighten ? std::optional(Attempt{Precision::kFloat, kLeastFloatTolerance}) : std::nullopt;
+  }
+  const double tolerance = std::max(wanted, kLeastDoubleTolerance);
+  if (last.precision == Precision::kDouble && tolerance >= last.tolerance) return std::nullopt;
+  return Attempt{Precision::kDouble, tolerance};
+}
+
+}  // namespace dolp

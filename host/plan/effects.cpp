@@ -1,0 +1,388 @@
+#include "plan/effects.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+#include <tuple>
+
+#include "base/parallel_ranges.hpp"
+#include "spectrum/spectral_rule.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr std::array kDroppingOrder = {Part::kMoments,      Part::kSource,  Part::kSurroundings, Part::kEmission,
+                                       Part::kPathRadiance, Part::kDiffuse, Part::kMoments};
+
+constexpr double kFarBelow = 0.1;
+
+constexpr std::size_t kEntriesAtOnce = 256;  // of a thread; some microseconds each
+
+DropBound worst_of(const DropBound& a, const DropBound& b) {
+  return {std::max(a.dolp, b.dolp), std::max(a.rho, b.rho)};
+}
+
+bool is_within(const DropBound& bound, double limit) { return bound.dolp <= limit && bound.rho <= limit; }
+
+/// Which part may go, and what it may change.
+struct Candidate {
+  Part part;
+  KeptEffects kept;
+  double limit = 0.0;
+};
+
+/// The bound at one entry: a coarse one where that is far below the limit.
+DropBound entry_bound(const InfluenceBounds& bounds, const Candidate& candidate, const KeptEffects& kept,
+                      const SceneEntry& entry, ReflectanceMemory& memory) {
+  const DropBound coarse = bounds.bound(candidate.part, kept, entry, Detail::kCoarse, memory);
+  if (is_within(coarse, kFarBelow * candidate.limit)) return coarse;
+  return bounds.bound(candidate.part, kept, entry, Detail::kFine, memory);
+}
+
+/// The worst bound of some entries; stops, above the limit, as soon as it is there.
+DropBound worst_of_entries(const InfluenceBounds& bounds, const Candidate& candidate,
+                           std::span<const SceneEntry> entries, std::span<const std::uint32_t> positions) {
+  ReflectanceMemory memory;
+  DropBound worst;
+  for (const std::uint32_t i : positions) {
+    worst = worst_of(worst, entry_bound(bounds, candidate, candidate.kept, entries[i], memory));
+    // What counts in the whole scene is not dropped for want of what it acts on.
+    if (candidate.part != Part::kMoments)
+      worst = worst_of(worst, entry_bound(bounds, candidate, {}, entries[i], memory));
+    if (!is_within(worst, candidate.limit)) break;
+  }
+  return worst;
+}
+
+/// Entries in the order in which their bounds are looked at: in bistatic mode, where those of one shape share the
+/// reflectance, one shape after the other.
+class OrderedEntries {
+ public:
+  OrderedEntries(const Scene& scene, std::span<const SceneEntry> entries)
+      : entries_(entries), is_by_shape_(scene.geometry.mode == Mode::kBistatic) {}
+
+  std::span<const SceneEntry> entries() const { return entries_; }
+
+  /// Made when first asked for; most plans never ask.
+  std::span<const std::uint32_t> positions() {
+    if (positions_.empty()) {
+      positions_.resize(entries_.size());
+      std::iota(positions_.begin(), positions_.end(), 0U);
+      const auto key = [&](std::uint32_t i) { return std::tie(entries_[i].shape.sigma, entries_[i].shape.q); };
+      if (is_by_shape_) std::ranges::stable_sort(positions_, {}, key);
+    }
+    return positions_;
+  }
+
+ private:
+  std::span<const SceneEntry> entries_;
+  bool is_by_shape_;
+  std::vector<std::uint32_t> positions_;
+};
+
+/// The worst entry's bound, or one above the limit where there is such an entry.
+DropBound worst_bound(const InfluenceBounds& bounds, const Candidate& candidate, OrderedEntries& ordered) {
+  const std::span<const SceneEntry> entries = ordered.entries();
+  const bool adds_now = is_kept(candidate.kept, candidate.part) && !bounds.adds_nothing(candidate.part, candidate.kept);
+  const bool adds_in_all = candidate.part != Part::kMoments && !bounds.adds_nothing(candidate.part, {});
+  if (entries.empty() || (!adds_now && !adds_in_all)) return {};
+  // The grazing entries of a grid come last and are the worst: the last one tells most often.
+  const std::uint32_t last = static_cast<std::uint32_t>(entries.size() - 1);
+  DropBound worst = worst_of_entries(bounds, candidate, entries, {&last, 1});
+  if (!is_within(worst, candidate.limit)) return worst;
+  const std::span<const std::uint32_t> positions = ordered.positions();
+  std::mutex mutex;
+  std::atomic<bool> is_over = false;
+  parallel_ranges(positions.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t end) {
+    if (is_over) return;
+    const DropBound of_range = worst_of_entries(bounds, candidate, entries, positions.subspan(first, end - first));
+    const std::lock_guard lock(mutex);
+    worst = worst_of(worst, of_range);
+    is_over = !is_within(worst, candidate.limit);
+  });
+  return worst;
+}
+
+bool is_asked_for(const Scene& scene, Part part) {
+  switch (part) {
+    case Part::kMoments:
+      return scene.surface.specular > 0.0;
+    case Part::kSource:
+      return scene.source.has_value();
+    case Part::kSurroundings:
+      return scene.surroundings.has_value();
+    case Part::kEmission:
+      return scene.emission.has_value();
+    case Part::kPathRadiance:
+      return scene.path && (scene.path->temperature_K || scene.path->radiance);
+    case Part::kDiffuse:
+      return scene.surface.diffuse > 0.0;
+  }
+  return false;
+}
+
+bool is_bistatic(const Scene& scene) { return scene.geometry.mode == Mode::kBistatic; }
+
+bool is_fresnel(const Scene& scene) { return scene.emission && scene.emission->model == EmissionModel::kFresnel; }
+
+bool needs_beams(const Scene& scene, const InfluenceBounds& bounds, const KeptEffects& kept) {
+  return is_bistatic(scene) && kept.source && !bounds.adds_nothing(Part::kSource, kept) && scene.surface.specular > 0.0;
+}
+
+const DroppedPart* find_dropped(const EffectPlan& plan, Part part) {
+  const auto found = std::ranges::find(plan.dropped, part, &DroppedPart::part);
+  return found == plan.dropped.end() ? nullptr : &*found;
+}
+
+std::string below_share(double bound, double tolerance) {
+  return fmt::format("changes DOLP by {:.2g} at most, {:.2g} of the tolerance", bound, bound / tolerance);
+}
+
+/// Why the moments are not needed although nothing is lost.
+std::string why_no_moments(const Scene& scene, const KeptEffects& kept) {
+  const bool has_emission = scene.emission && kept.emission;
+  const bool has_surroundings = scene.surroundings && kept.surroundings;
+  if (has_emission && has_surroundings && !is_fresnel(scene)) {
+    return "surroundings as warm as the surface reflect what it does not emit: its thermal radiation is unpolarised";
+  }
+  if (has_emission) return "emission is that of the smooth surface, and nothing shines on it from all around";
+  return "no emission and no surroundings: f in the one direction is enough";
+}
+
+EffectRow absent(const char* name, std::string why) { return {name, EffectState::kAbsent, std::move(why)}; }
+
+/// A part as it stands in the plan; `kept` says why and what for.
+EffectRow part_row(const Scene& scene, const EffectPlan& plan, const char* name, Part part, EffectRow row) {
+  row.name = name;
+  row.part = part;
+  const DroppedPart* dropped = find_dropped(plan, part);
+  if (dropped == nullptr) return row;
+  row.state = EffectState::kDropped;
+  row.needs.clear();
+  row.bound = dropped->bound.dolp;
+  row.reason = below_share(dropped->bound.dolp, scene.accuracy.tolerance);
+  if (dropped->bound.dolp == 0.0) row.reason = "adds nothing";
+  return row;
+}
+
+std::string moments_needs(const Scene& scene) {
+  return is_bistatic(scene) ? fmt::format("moments at {:g} deg", scene.geometry.view_zenith_deg)
+                            : "moments at each theta";
+}
+
+EffectRow specular_row(const Scene& scene, const EffectPlan& plan) {
+  constexpr const char* kName = "specular";
+  if (scene.surface.specular == 0.0) return absent(kName, "surface.specular is 0");
+  EffectRow row{kName, EffectState::kKept, {}, {}, {}, Part::kMoments};
+  if (plan.needs_moments) {
+    row.reason = "what is emitted or reflected depends on it";
+    row.needs = moments_needs(scene) + (plan.needs_beams ? ", f at each theta" : "");
+    return row;
+  }
+  const double bound = find_dropped(plan, Part::kMoments) ? find_dropped(plan, Part::kMoments)->bound.dolp : 0.0;
+  row.bound = bound;
+  const std::string why =
+      bound == 0.0 ? why_no_moments(scene, plan.kept) : below_share(bound, scene.accuracy.tolerance);
+  if (plan.needs_beams) {
+    row.needs = "f at each theta";
+    row.reason = "reflects the source; no moments: " + why;
+  } else {
+    row.state = EffectState::kDropped;
+    row.reason = why;
+  }
+  return row;
+}
+
+EffectRow model_row(const Scene& scene, const EffectPlan& plan, const char* name, const std::string& choice,
+                    std::span<const SceneEntry> entries) {
+  const bool all_mirrors = !entries.empty() && std::ranges::all_of(entries, [](const SceneEntry& entry) {
+    return entry.shape.sigma == 0.0;
+  });
+  if (all_mirrors) return absent(name, "sigma is 0 everywhere: a mirror");
+  if (scene.surface.specular == 0.0) return absent(name, "surface.specular is 0");
+  EffectRow row{name, EffectState::kKept, choice + ", a choice of the model: never swapped"};
+  if (plan.needs_moments || plan.needs_beams) return row;
+  row.state = EffectState::kNotNeeded;
+  row.reason = choice + ": nothing depends on it without the specular part";
+  return row;
+}
+
+EffectRow complex_index_row(const Scene& scene, const EffectPlan& plan, std::span<const SceneEntry> entries) {
+  constexpr const char* kName = "complex index";
+  const std::vector<OpticalConstants> indices = spectral_rule(scene).indices();
+  const auto is_complex = [](const OpticalConstants& index) { return index.k > 0.0; };
+  const bool own = std::ranges::any_of(entries, [&](const SceneEntry& e) { return e.index && is_complex(*e.index); });
+  if (!own && std::ranges::none_of(indices, is_complex)) return absent(kName, "k is 0");
+  EffectRow row{kName, EffectState::kKept, "costs nothing: the kernel treats real indices alike"};
+  const bool is_used = plan.needs_moments || plan.needs_beams || (is_fresnel(scene) && plan.kept.emission);
+  if (is_used) return row;
+  row.state = EffectState::kNotNeeded;
+  row.reason = "nothing depends on the index";
+  return row;
+}
+
+EffectRow emission_row(const Scene& scene, const EffectPlan& plan) {
+  constexpr const char* kName = "emission";
+  if (!scene.emission) return absent(kName, "no [emission]");
+  EffectRow row{kName, EffectState::kKept};
+  row.reason = fmt::format("{:g} K, {}", scene.emission->temperature_K,
+                           is_fresnel(scene) ? "of the smooth surface" : "1 - rho of the surface (Kirchhoff)");
+  row.needs = is_fresnel(scene) || !plan.needs_moments ? "closed form" : moments_needs(scene);
+  return part_row(scene, plan, kName, Part::kEmission, row);
+}
+
+EffectRow source_row(const Scene& scene, const EffectPlan& plan) {
+  constexpr const char* kName = "source";
+  if (!scene.source) return absent(kName, "no [source]");
+  EffectRow row{kName, EffectState::kKept};
+  row.reason = is_bistatic(scene) ? "one beam, one direction of view" : "a beam, reflected into the view";
+  row.needs = is_bistatic(scene) ? (plan.needs_beams ? "f at each theta" : "closed form") : moments_needs(scene);
+  if (!is_bistatic(scene) && !plan.needs_moments) row.needs = "closed form";
+  return part_row(scene, plan, kName, Part::kSource, row);
+}
+
+EffectRow surroundings_row(const Scene& scene, const EffectPlan& plan) {
+  constexpr const char* kName = "surroundings";
+  if (!scene.surroundings) return absent(kName, "no [surroundings]");
+  EffectRow row{kName, EffectState::kKept};
+  row.reason = fmt::format("{:g} K, reflected into the view", scene.surroundings->temperature_K);
+  row.needs = plan.needs_moments ? moments_needs(scene) : "closed form";
+  return part_row(scene, plan, kName, Part::kSurroundings, row);
+}
+
+EffectRow path_row(const Scene& scene, const EffectPlan& plan) {
+  constexpr const char* kName = "path";
+  if (!scene.path) return absent(kName, "no [path]");
+  EffectRow row{kName, EffectState::kKept, {}, "closed form"};
+  if (!is_asked_for(scene, Part::kPathRadiance)) {
+    row.reason = "its transmittance alone, which DOLP does not see";
+    row.bound = 0.0;
+    return row;
+  }
+  row.reason = "its radiance adds to I";
+  row = part_row(scene, plan, kName, Part::kPathRadiance, row);
+  if (row.state == EffectState::kDropped) row.reason = "its radiance " + row.reason + "; the transmittance stays";
+  return row;
+}
+
+EffectRow diffuse_row(const Scene& scene, const EffectPlan& plan) {
+  constexpr const char* kName = "diffuse";
+  if (scene.surface.diffuse == 0.0) return absent(kName, "surface.diffuse is 0");
+  EffectRow row{kName, EffectState::kKept, "adds to rho_I", "closed form"};
+  return part_row(scene, plan, kName, Part::kDiffuse, row);
+}
+
+EffectRow band_row(const Scene& scene) {
+  constexpr const char* kName = "band";
+  if (!scene.spectrum.is_band()) return absent(kName, "a single wavelength");
+  const std::size_t count = spectral_rule(scene).samples.size();
+  EffectRow row{kName, EffectState::kKept};
+  row.reason = fmt::format("{:g}..{:g} um", scene.spectrum.min_um, scene.spectrum.max_um);
+  row.needs = count == 1 ? "one index for the whole band" : fmt::format("{} spectral samples", count);
+  return row;
+}
+
+EffectRow masking_row(const Scene& scene, const EffectPlan& plan, std::span<const SceneEntry> entries) {
+  if (scene.surface.masking == Masking::kNone) return absent("masking", "surface.masking is none");
+  return model_row(scene, plan, "masking", name_of(scene.surface.masking), entries);
+}
+
+}  // namespace
+
+EffectPlan plan_effects(const Scene& scene, std::span<const SceneEntry> entries, bool keep_all) {
+  const SpectralRule rule = spectral_rule(scene);
+  const InfluenceBounds bounds(scene, rule);
+  const double allowed = kDroppedShare * scene.accuracy.tolerance;
+  OrderedEntries ordered(scene, entries);
+  EffectPlan plan;
+  plan.keep_all = keep_all;
+  if (!keep_all) {
+    for (const Part part : kDroppingOrder) {
+      if (!is_kept(plan.kept, part)) continue;
+      const double left = allowed - std::max(plan.bound.dolp, plan.bound.rho);
+      const DropBound bound = worst_bound(bounds, {part, plan.kept, left}, ordered);
+      if (!is_within(bound, left)) continue;
+      plan.kept = without(plan.kept, part);
+      plan.bound = {plan.bound.dolp + bound.dolp, plan.bound.rho + bound.rho};
+      if (is_asked_for(scene, part)) plan.dropped.push_back({part, bound});
+    }
+  }
+  plan.needs_moments = plan.kept.moments;
+  plan.needs_beams = needs_beams(scene, bounds, plan.kept);
+  plan.gives_rho = plan.needs_moments || scene.surface.specular == 0.0;
+  return plan;
+}
+
+Needs needs_without(const Scene& scene, const EffectPlan& plan, Part part) {
+  const InfluenceBounds bounds(scene, spectral_rule(scene));
+  const KeptEffects kept = without(plan.kept, part);
+  return {kept.moments && !bounds.adds_nothing(Part::kMoments, kept),
+          part != Part::kMoments && needs_beams(scene, bounds, kept)};
+}
+
+std::vector<EffectRow> effect_rows(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan) {
+  return {specular_row(scene, plan),
+          diffuse_row(scene, plan),
+          model_row(scene, plan, "distribution", name_of(scene.surface.distribution), entries),
+          masking_row(scene, plan, entries),
+          complex_index_row(scene, plan, entries),
+          emission_row(scene, plan),
+          source_row(scene, plan),
+          surroundings_row(scene, plan),
+          path_row(scene, plan),
+          band_row(scene)};
+}
+
+void add_influences(std::vector<EffectRow>& rows, const Scene& scene, std::span<const SceneEntry> entries) {
+  const SpectralRule rule = spectral_rule(scene);
+  const InfluenceBounds bounds(scene, rule);
+  std::vector<EffectRow*> open;
+  for (EffectRow& row : rows) {
+    if (row.state == EffectState::kKept && row.part && !row.bound) open.push_back(&row);
+  }
+  for (EffectRow* row : open) row->bound = 0.0;
+  OrderedEntries ordered(scene, entries);
+  const std::span<const std::uint32_t> positions = ordered.positions();
+  std::mutex mutex;
+  parallel_ranges(positions.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
+    ReflectanceMemory memory;
+    std::vector<double> most(open.size(), 0.0);
+    std::vector<std::size_t> unbounded(open.size(), 0);
+    for (std::size_t i = first; i < last; ++i) {
+      for (std::size_t r = 0; r < open.size(); ++r) {
+        const SceneEntry& entry = entries[positions[i]];
+        const double bound = bounds.bound(*open[r]->part, {}, entry, Detail::kFine, memory).dolp;
+        if (std::isinf(bound)) ++unbounded[r];
+        if (!std::isinf(bound)) most[r] = std::max(most[r], bound);
+      }
+    }
+    const std::lock_guard lock(mutex);
+    for (std::size_t r = 0; r < open.size(); ++r) {
+      open[r]->bound = std::max(*open[r]->bound, most[r]);
+      open[r]->unbounded += unbounded[r];
+    }
+  });
+}
+
+const char* state_name(EffectState state) {
+  constexpr std::array kNames = {"absent", "kept", "dropped", "not_needed"};
+  return kNames[static_cast<std::size_t>(state)];
+}
+
+std::string effects_text(const std::vector<EffectRow>& rows, const EffectPlan& plan) {
+  std::string kept;
+  std::string dropped;
+  for (const EffectRow& row : rows) {
+    if (row.state == EffectState::kKept) kept += (kept.empty() ? "" : ", ") + std::string(row.name);
+    if (row.state != EffectState::kDropped) continue;
+    dropped += fmt::format("{}{} ({})", dropped.empty() ? "" : ", ", row.name, row.reason);
+  }
+  const std::string why = plan.keep_all ? " (--keep-all)" : "";
+  return fmt::format("kept: {}; dropped{}: {}", kept, why, dropped.empty() ? "nothing" : dropped);
+}
+
+}  // namespace dolp

@@ -1,0 +1,89 @@
+// What a scene asks for, effect by effect, and which of it a run leaves out because it cannot be seen.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/kept_effects.hpp"
+#include "model/scene_entry.hpp"
+#include "plan/influence.hpp"
+#include "scene/scene.hpp"
+
+namespace dolp {
+
+/// What all dropped effects together may change: this share of the scene's tolerance.
+inline constexpr double kDroppedShare = 0.1;
+
+/// A part that is left out, and what that changes at most at any entry.
+struct DroppedPart {
+  Part part;
+  DropBound bound;
+};
+
+/// Which effects a run computes at a list of entries.
+struct EffectPlan {
+  bool keep_all = false;
+  KeptEffects kept;
+  std::vector<DroppedPart> dropped;  ///< in the order of dropping; parts that the scene lacks are not among them
+  DropBound bound;                   ///< of all dropped parts together
+  bool needs_moments = true;         ///< the specular moments, at theta or in bistatic mode at the view
+  bool needs_beams = false;          ///< f of the source's and the view's direction
+  bool gives_rho = true;  ///< rho_i, rho_q and rho_error_estimate are known; the albedo with the moments alone
+};
+
+/// The effects that the scene's output needs at these entries.
+///
+/// A part goes, in the order of Part and the moments once more at the end, if the bound of InfluenceBounds, worst
+/// entry, leaves the sum of all that is dropped at kDroppedShare of the tolerance or below; each bound is that of the
+/// scene without what was dropped before, so that the sum bounds the whole change; but for the moments a part's bound
+/// in the whole scene counts too. A part that adds exactly nothing goes at no cost: the moments where emission and
+/// surroundings have one temperature, for instance. Model choices (distribution, masking, k) never go. `keep_all` keeps
+/// everything that the scene has. Host only: some microseconds an entry and part, none where the last entries tell that
+/// a part counts.
+EffectPlan plan_effects(const Scene& scene, std::span<const SceneEntry> entries, bool keep_all);
+
+/// Nothing left out: what `plan_effects` says with `keep_all`.
+inline EffectPlan keep_everything(const Scene& scene) { return plan_effects(scene, {}, true); }
+
+/// What a run has to compute.
+struct Needs {
+  bool moments = false;
+  bool beams = false;
+};
+
+/// What the run would have to compute if one more part were not there.
+Needs needs_without(const Scene& scene, const EffectPlan& plan, Part part);
+
+enum class EffectState {
+  kAbsent,     ///< the scene does not ask for it
+  kKept,       ///< computed
+  kDropped,    ///< left out: a bound says that it cannot be seen
+  kNotNeeded,  ///< a choice of the model that nothing kept depends on
+};
+
+/// One effect for a reader.
+struct EffectRow {
+  const char* name = "";
+  EffectState state = EffectState::kKept;
+  std::string reason = {};
+  std::string needs = {};            ///< what computing it takes; empty when it is not kept
+  std::optional<double> bound = {};  ///< of its influence on (Q/I, U/I); of a dropped one, what dropping it changes
+  std::optional<Part> part = {};     ///< what the sums lose with it; none for model choices
+  std::size_t unbounded = 0;         ///< entries without a bound, which `bound` leaves out
+};
+
+/// All effects that there are, in the order of the scene file.
+std::vector<EffectRow> effect_rows(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan);
+
+/// Bounds of what each kept part changes in the scene with everything kept, worst entry of those that have one.
+void add_influences(std::vector<EffectRow>& rows, const Scene& scene, std::span<const SceneEntry> entries);
+
+const char* state_name(EffectState state);
+
+/// One line for reports and table attributes: what is kept, what is dropped and why.
+std::string effects_text(const std::vector<EffectRow>& rows, const EffectPlan& plan);
+
+}  // namespace dolp

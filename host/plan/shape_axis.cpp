@@ -1,0 +1,64 @@
+#include "plan/shape_axis.hpp"
+#include "model/choices.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "plan/chebyshev.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr double kLeastNodes = 6.0;  // how the coefficients of fewer fall says nothing
+constexpr double kFirstNodes = 3.0;  // whatever the digits
+constexpr double kLeastGain = 1.25;  // values for each node
+
+double nodes_needed(const ShapeParameter& parameter, double half_length, double digits) {
+  const double per_digit = std::log(10.0) / std::asinh(parameter.strip / half_length);
+  return std::max(std::ceil(kFirstNodes + digits * per_digit), kLeastNodes);
+}
+
+ShapeAxis without_interpolation(const std::vector<double>& values) {
+  const auto count = static_cast<Eigen::Index>(values.size());
+  return {values, Eigen::MatrixXd::Identity(count, count), {}};
+}
+
+}  // namespace
+
+ShapeParameter sigma_parameter(Distribution distribution) {
+  return {0.0, distribution == Distribution::kGaussian ? 0.78 : 1.15};
+}
+
+ShapeParameter q_parameter(Distribution distribution, Masking masking) {
+  const bool needs_mean_slope = masking == Masking::kSmith && distribution == Distribution::kCauchy;
+  return {needs_mean_slope ? 1.5 : 1.0, 1.45};
+}
+
+ShapeAxis shape_axis(const ShapeParameter& parameter, const std::vector<double>& values, double digits) {
+  const auto [least, largest] = std::minmax_element(values.begin(), values.end());
+  const double start = std::log(*least - parameter.origin);
+  const double end = std::log(*largest - parameter.origin);
+  const double half_length = 0.5 * (end - start);
+  if (half_length <= 0.0) return without_interpolation(values);
+  const double count = nodes_needed(parameter, half_length, digits);
+  if (!(count * kLeastGain <= static_cast<double>(values.size()))) return without_interpolation(values);
+
+  ShapeAxis axis;
+  const auto nodes = static_cast<Eigen::Index>(count);
+  const std::vector<double> points = lobatto_points(nodes);
+  for (const double point : points) {
+    axis.nodes.push_back(parameter.origin + std::exp(0.5 * (start + end) + half_length * point));
+  }
+  axis.nodes.front() = *largest;
+  axis.nodes.back() = *least;
+  axis.cardinal.resize(static_cast<Eigen::Index>(values.size()), nodes);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double x = (std::log(values[i] - parameter.origin) - 0.5 * (start + end)) / half_length;
+    axis.cardinal.row(static_cast<Eigen::Index>(i)) = cardinal_values(points, std::clamp(x, -1.0, 1.0));
+  }
+  axis.coefficients = chebyshev_coefficients(nodes);
+  return axis;
+}
+
+}  // namespace dolp

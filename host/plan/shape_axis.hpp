@@ -1,0 +1,35 @@
+// One parameter of the slope distributions of a request, and the fewer values from which the others are interpolated.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "model/choices.hpp"
+
+namespace dolp {
+
+/// The moments are analytic in ln(x - origin) within `strip` of the real axis, x being sigma or q.
+///
+/// For sigma: with the slope in units of m, sigma enters P(u) = (1 + u^2)^-q alone, analytic where |Im ln m| < pi/2;
+/// toward there a power of q grows, so that less is worth relying on. For q: P is analytic for Re q > 1, smith masking
+/// for Re q > 3/2 (MODEL.md section 2). A polynomial of n nodes in the logarithm then is wrong by rho^-n, rho =
+/// exp(asinh(strip / half length)).
+struct ShapeParameter {
+  double origin = 0.0;
+  double strip = 1.0;
+};
+ShapeParameter sigma_parameter(Distribution distribution);
+ShapeParameter q_parameter(Distribution distribution, Masking masking);
+
+/// Values of a parameter, and the nodes that stand for them.
+struct ShapeAxis {
+  std::vector<double> nodes;     ///< the values themselves where nothing is to be gained
+  Eigen::MatrixXd cardinal;      ///< values x nodes: what the moments at the nodes are multiplied with
+  Eigen::MatrixXd coefficients;  ///< nodes x nodes: from values to Chebyshev coefficients; empty without interpolation
+  bool is_interpolated() const { return coefficients.size() > 0; }
+};
+
+/// Nodes for `values`, all different, such that the interpolation keeps `digits` decimal digits.
+ShapeAxis shape_axis(const ShapeParameter& parameter, const std::vector<double>& values, double digits);
+
+}  // namespace dolp

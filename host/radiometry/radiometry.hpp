@@ -1,0 +1,82 @@
+// From moments to what a sensor sees: rho, Stokes parameters, DOLP, error bounds and status, in double.
+#pragma once
+
+#include <span>
+
+#include "model/kept_effects.hpp"
+#include "model/moments.hpp"
+#include "model/point_result.hpp"
+#include "scene/scene.hpp"
+#include "spectrum/spectral_rule.hpp"
+
+namespace dolp {
+
+/// The direction of one entry. `cos_theta` is the cosine that its moments were computed with: exact, except at 90
+/// degrees under v-cavity and smith masking, where a tiny positive one stands for the limit.
+struct Direction {
+  double theta_deg = 0.0;
+  double cos_theta = 1.0;
+};
+
+/// What unpolarised light of one direction becomes in another: the first column of f_s cos(theta_i) cos(theta_r) for
+/// k_s = 1.
+///
+/// Units: sr-1.
+struct Scattered {
+  double i = 0.0;
+  double q = 0.0;
+  double u = 0.0;
+  double v = 0.0;
+  double error = 0.0;  ///< bound of the absolute error of each
+};
+
+/// Radiometry of a scene: everything that does not depend on the entry is prepared once.
+///
+/// Equation: I = pi B (1 - rho_I) + X rho_I, Q = (X - pi B) rho_Q, X = E0 cos(theta) + pi B(T_surr), then the path.
+/// With emission.model = "fresnel", 1 - rho_s is replaced in the emission by 1 - R_s(theta) of the smooth surface,
+/// likewise p, whatever k_s and the diffuse part are. In bistatic mode the same without E0 over pi, plus E0
+/// cos(theta_i) f at the view direction. Source: MODEL.md sections 3 and 4; Wang, Li, Wang 2025, eqs. (16), (18).
+class Radiometry {
+ public:
+  /// Of what is not kept nothing is added; without the moments the specular part of rho counts as 0, `point` looks at
+  /// none of the numbers in its Moments, and what would need them is NaN. `dropped` widens the error estimates.
+  explicit Radiometry(const Scene& scene, const KeptEffects& kept = {}, const DropBound& dropped = {});
+
+  /// The indices at which `point` wants moments, in its order, and their weights.
+  const SpectralRule& rule() const { return rule_; }
+
+  /// Result at one entry.
+  /// Shape: one Moments per sample of rule(), in its order.
+  /// Domain: moments with a NaN are outside the model's domain: status 4, everything NaN. At 90 degrees, where rho
+  /// diverges (masking none or integral, or k_d > 0 with c < 0), rho and Stokes are NaN with status 1 | 4 and dolp is
+  /// the limit.
+  PointResult point(const Direction& direction, std::span<const Moments> moments) const;
+
+  /// The same with other indices than those of rule(), as scattered points with their own n or k have; only the fresnel
+  /// emission looks at them.
+  PointResult point(const Direction& direction, std::span<const Moments> moments,
+                    std::span<const OpticalConstants> indices) const;
+
+  /// Bistatic result: `moments` and rho at the view direction, the source at theta_i.
+  /// Shape: one Moments and one Scattered per sample of rule(), in its order.
+  /// Domain: a view at 90 degrees as in `point`, but where rho diverges everything is NaN with status 1 | 4.
+  PointResult bistatic_point(const Direction& view, double cos_theta_i, std::span<const Moments> moments,
+                             std::span<const OpticalConstants> indices, std::span<const Scattered> scattered) const;
+
+ private:
+  PointResult assemble(std::span<const Moments> moments, double cos_theta, std::span<const OpticalConstants> indices,
+                       double cos_theta_i, std::span<const Scattered> scattered) const;
+
+  PointResult finished(PointResult result) const;
+
+  Scene scene_;  ///< with the surface that the moments' terms see
+  double beam_specular_;
+  KeptEffects kept_;
+  DropBound dropped_;
+  bool knows_rho_;
+  SpectralRule rule_;
+  SpectralRule kept_rule_;  ///< without the factors that are not kept
+  std::vector<OpticalConstants> indices_;
+};
+
+}  // namespace dolp

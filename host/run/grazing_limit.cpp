@@ -1,0 +1,60 @@
+#include "run/grazing_limit.hpp"
+
+#include <boost/math/constants/constants.hpp>
+#include <boost/math/quadrature/tanh_sinh.hpp>
+#include <cmath>
+#include <limits>
+
+#include "model/smooth_surface.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr double kRelativeError = 1e-12;
+// The quadrature stops when two levels agree to this, far later than its error needs.
+constexpr double kAgreement = 1e-13;
+// Rounding of 1 - absorptance, a few operations on numbers up to 1.
+constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();
+
+// Cosines below it, whose squares may underflow, weigh nothing: the integrand falls at least like the cosine.
+constexpr double kSmallestCosine = 1e-100;
+
+/// Where total reflection begins, abruptly (k = 0) or nearly so; 0 without one. Units: rad from grazing incidence.
+double critical_angle(const OpticalConstants& index) {
+  const double squared_cosine = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
+  return squared_cosine > 0.0 && squared_cosine < 1.0 ? std::asin(std::sqrt(squared_cosine)) : 0.0;
+}
+
+}  // namespace
+
+Moments grazing_limit_moments(const OpticalConstants& index, double q) {
+  boost::math::quadrature::tanh_sinh<double> integrator;
+  const double critical = critical_angle(index);
+  // phi = pi/2 - psi, so that x = sin(psi) keeps its digits at grazing incidence, where the power is not smooth.
+  const auto integral = [&](auto&& of_cosine) {
+    const auto integrand = [&](double psi) {
+      const double x = std::sin(psi);
+      return x > kSmallestCosine ? std::pow(x, 4.0 - 2.0 * q) * of_cosine(x) : 0.0;
+    };
+    const double above =
+        integrator.integrate(integrand, critical, boost::math::constants::half_pi<double>(), kAgreement);
+    return critical > 0.0 ? integrator.integrate(integrand, 0.0, critical, kAgreement) + above : above;
+  };
+  Moments moments;
+  moments.albedo = integral([](double) { return 1.0; });
+  moments.r_i = integral([&](double x) {
+    const SmoothAbsorptance absorbed = smooth_absorptance(index, x);
+    return 1.0 - 0.5 * (absorbed.s + absorbed.p);
+  });
+  moments.r_q = integral([&](double x) {
+    const SmoothAbsorptance absorbed = smooth_absorptance(index, x);
+    return 0.5 * (absorbed.s - absorbed.p);
+  });
+  moments.deficit = -moments.r_i;
+  moments.albedo_error = kRelativeError * moments.albedo;
+  moments.r_i_error = kRelativeError * moments.r_i + kReflectanceRounding * moments.albedo;
+  moments.r_q_error = moments.deficit_error = moments.r_i_error;
+  return moments;
+}
+
+}  // namespace dolp

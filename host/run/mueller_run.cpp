@@ -1,0 +1,136 @@
+#include "run/mueller_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/constants/constants.hpp>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <stdexcept>
+
+#include "base/error.hpp"
+#include "model/angles.hpp"
+#include "model/grazing.hpp"
+#include "run/scene_run.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr std::size_t kPointsAtOnce = 1U << 20U;  // bounds the memory of the requests
+
+bool is_grazing(const BeamAngles& angles) { return angles.theta_i_deg == 90.0 || angles.theta_r_deg == 90.0; }
+
+/// Whether f has no finite value.
+bool is_undefined(const Surface& surface, const MuellerPoint& point) {
+  const bool has_specular = surface.specular > 0.0;
+  const bool has_limit = has_grazing_limit(surface.masking);
+  const bool diffuse_diverges = surface.diffuse > 0.0 && surface.diffuse_exponent < 0.0;
+  if (has_specular && point.shape.sigma == 0.0 && is_specular(point.angles)) return true;
+  const bool specular_diverges = has_specular && point.shape.sigma > 0.0 && (!has_limit || !has_facet(point.angles));
+  return is_grazing(point.angles) && (specular_diverges || diffuse_diverges);
+}
+
+bool needs_evaluator(const Surface& surface, const MuellerPoint& point) {
+  return surface.specular > 0.0 && point.shape.sigma > 0.0 && !is_undefined(surface, point);
+}
+
+BeamAngles before_grazing(const BeamAngles& angles) {
+  return {std::min(angles.theta_i_deg, kNearGrazingDeg), std::min(angles.theta_r_deg, kNearGrazingDeg),
+          angles.delta_phi_deg};
+}
+
+ScatteringRequest request_for(const Scene& scene, std::span<const MuellerPoint> points, Precision precision) {
+  ScatteringRequest request;
+  request.distribution = scene.surface.distribution;
+  request.masking = scene.surface.masking;
+  request.precision = precision;
+  for (const MuellerPoint& point : points) {
+    if (!needs_evaluator(scene.surface, point)) continue;
+    const auto position = static_cast<std::uint32_t>(request.entries.size());
+    request.angles.push_back(before_grazing(point.angles));
+    request.shapes.push_back(point.shape);
+    request.indices.push_back(point.index);
+    request.entries.push_back({position, position, position});
+  }
+  return request;
+}
+
+double diffuse_brdf(const Surface& surface, const BeamAngles& angles) {
+  if (surface.diffuse == 0.0) return 0.0;
+  const double cosines = cos_sin_deg(angles.theta_i_deg).cos * cos_sin_deg(angles.theta_r_deg).cos;
+  return surface.diffuse / boost::math::constants::pi<double>() * std::pow(cosines, surface.diffuse_exponent);
+}
+
+/// `specular` is null for a point that the evaluator is not asked for.
+MuellerElements elements(const Surface& surface, const MuellerPoint& point, const ScatteringMatrix* specular) {
+  MuellerElements f{};
+  if (is_undefined(surface, point)) {
+    f.fill(std::numeric_limits<double>::quiet_NaN());
+    return f;
+  }
+  if (specular != nullptr) {
+    const BeamAngles angles = before_grazing(point.angles);
+    const double cosines = cos_sin_deg(angles.theta_i_deg).cos * cos_sin_deg(angles.theta_r_deg).cos;
+    // + 0 takes the sign from a zero.
+    for (std::size_t i = 0; i < f.size(); ++i) f[i] = surface.specular * specular->m[i] / cosines + 0.0;
+  }
+  f[0] += diffuse_brdf(surface, point.angles);
+  return f;
+}
+
+double value_or(const std::optional<std::vector<double>>& column, std::size_t row, double fallback) {
+  return column ? (*column)[row] : fallback;
+}
+
+}  // namespace
+
+std::vector<MuellerPoint> mueller_points(const Scene& scene, const Points& points) {
+  check_smith(scene, points);
+  const Surface& surface = scene.surface;
+  const bool has_own_index = points.n && points.k;
+  if (scene.spectrum.is_band() && !surface.material.is_constant() && !has_own_index) {
+    throw InputError(fmt::format(
+        "{}: spectrum.band_um: the Mueller matrix is that of one wavelength and the material \"{}\" depends on "
+        "it; give spectrum.wavelength_um, or columns n and k",
+        scene.path_name, surface.material.name));
+  }
+  const OpticalConstants index = surface.material.at(scene.spectrum.min_um);
+  std::vector<MuellerPoint> result;
+  result.reserve(points.size());
+  for (std::size_t row = 0; row < points.size(); ++row) {
+    result.push_back({{(*points.theta_i_deg)[row], (*points.theta_r_deg)[row], (*points.delta_phi_deg)[row]},
+                      {value_or(points.sigma, row, surface.sigma), value_or(points.q, row, surface.q)},
+                      {value_or(points.n, row, index.n), value_or(points.k, row, index.k)}});
+  }
+  return result;
+}
+
+Precision mueller_precision(const Accuracy& accuracy, bool has_double) {
+  if (accuracy.precision != Precision::kAuto) return accuracy.precision;
+  return accuracy.tolerance < kScatteringErrorFloat && has_double ? Precision::kDouble : Precision::kFloat;
+}
+
+std::vector<MuellerElements> evaluate_mueller(const Scene& scene, const std::vector<MuellerPoint>& points,
+                                              MomentsEvaluator& evaluator, const Progress& progress) {
+  if (evaluator.scattering() == nullptr) throw std::logic_error("Mueller matrices need an evaluator of pBRDFs");
+  const Precision precision = mueller_precision(scene.accuracy, evaluator.has_double());
+  std::vector<MuellerElements> results;
+  results.reserve(points.size());
+  for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce) {
+    const auto block = std::span(points).subspan(first, std::min(kPointsAtOnce, points.size() - first));
+    const Progress block_progress = [&](std::size_t done, std::size_t total) {
+      return !progress || progress(first + block.size() * done / total, points.size());
+    };
+    const std::vector<ScatteringMatrix> specular =
+        evaluator.scattering()->scatter(request_for(scene, block, precision), block_progress);
+    auto next = specular.begin();
+    for (const MuellerPoint& point : block) {
+      const bool is_evaluated = needs_evaluator(scene.surface, point);
+      results.push_back(elements(scene.surface, point, is_evaluated ? &*next++ : nullptr));
+    }
+  }
+  return results;
+}
+
+}  // namespace dolp

@@ -1,0 +1,182 @@
+#include "run/prediction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/interpolation/interpolating_evaluator.hpp"
+#include "plan/shape_plan.hpp"
+#include "run/beams.hpp"
+#include "run/moments_block.hpp"
+#include "run/scene_run.hpp"
+
+namespace dolp {
+namespace {
+
+// Its multiples modulo 1 fill the interval evenly and keep no step with the axes of a grid.
+constexpr double kGoldenRatio = 0.6180339887498949;
+
+/// Up to `count` of `size` positions.
+std::set<std::size_t> drawn_positions(std::size_t size, std::size_t count) {
+  std::set<std::size_t> positions;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double part = std::fmod(static_cast<double>(i + 1) * kGoldenRatio, 1.0);
+    positions.insert(static_cast<std::size_t>(part * static_cast<double>(size)));
+  }
+  return positions;
+}
+
+std::vector<SceneEntry> drawn_entries(std::span<const SceneEntry> entries) {
+  if (entries.size() <= kCountedEntries) return {entries.begin(), entries.end()};
+  std::vector<SceneEntry> drawn;
+  for (const std::size_t position : drawn_positions(entries.size(), kCountedEntries))
+    drawn.push_back(entries[position]);
+  return drawn;
+}
+
+/// All entries of some directions.
+std::vector<SceneEntry> entries_of_drawn_directions(std::span<const SceneEntry> entries) {
+  std::set<double> directions;
+  for (const SceneEntry& entry : entries) directions.insert(entry.theta_deg);
+  const std::vector<double> sorted(directions.begin(), directions.end());
+  std::set<double> wanted;
+  for (const std::size_t position : drawn_positions(sorted.size(), kCountedDirections)) wanted.insert(sorted[position]);
+  std::vector<SceneEntry> drawn;
+  for (const SceneEntry& entry : entries) {
+    if (wanted.contains(entry.theta_deg)) drawn.push_back(entry);
+  }
+  return drawn;
+}
+
+/// Sums of one kind of request, of the first attempt and of all others.
+struct Count {
+  std::size_t first_requests = 1;  ///< that the first attempt makes
+  std::size_t first = 0;           ///< moments or beams
+  std::size_t again = 0;
+  double first_evaluations = 0.0;
+  double again_evaluations = 0.0;
+  double spent_s = 0.0;
+
+  void add(std::size_t entries, const EvaluationReport& before, const EvaluationReport& after) {
+    const double evaluations = after.evaluations - before.evaluations;
+    const bool is_first = first_requests > 0;
+    if (is_first) --first_requests;
+    (is_first ? first : again) += entries;
+    (is_first ? first_evaluations : again_evaluations) += evaluations;
+    spent_s += after.kernel_s - before.kernel_s;
+  }
+};
+
+/// Notes what the attempts of a run ask for.
+class CountingEvaluator final : public MomentsEvaluator, public ScatteringEvaluator {
+ public:
+  /// `first_requests`: for moments, that the first attempt makes.
+  CountingEvaluator(Precision precision, bool has_double, std::size_t first_requests)
+      : cpu_(precision), has_double_(has_double), moments_{.first_requests = first_requests} {}
+
+  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
+    const EvaluationReport before = cpu_.report();
+    std::vector<Moments> moments = cpu_.evaluate(request, progress);
+    moments_.add(request.entries.size(), before, cpu_.report());
+    return moments;
+  }
+  std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override {
+    const EvaluationReport before = cpu_.report();
+    std::vector<ScatteringMatrix> matrices = cpu_.scatter(request, progress);
+    beams_.add(request.entries.size(), before, cpu_.report());
+    return matrices;
+  }
+  ScatteringEvaluator* scattering() override { return this; }
+  Precision precision() const override { return cpu_.precision(); }
+  bool has_double() const override { return has_double_; }
+  EvaluationReport report() const override { return cpu_.report(); }
+
+  const Count& moments() const { return moments_; }
+  const Count& beams() const { return beams_; }
+
+ private:
+  CpuEvaluator cpu_;
+  bool has_double_;
+  Count moments_;
+  Count beams_;
+};
+
+/// How many of all there are for each that was counted.
+double scale_of(std::size_t all, const Count& counted) {
+  return counted.first == 0 ? 0.0 : static_cast<double>(all) / static_cast<double>(counted.first);
+}
+
+/// Requests for moments that the first attempt makes.
+std::size_t requests_of(const Scene& scene, const std::vector<OpticalConstants>& samples,
+                        std::span<const SceneEntry> entries, const Attempt& attempt) {
+  const std::optional<ShapePlan> plan = shape_plan(moments_block(scene, samples, entries, attempt).request);
+  return plan && !plan->direct.entries.empty() ? 2 : 1;
+}
+
+void count_work(RunPrediction& run, const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan,
+                bool has_double) {
+  const std::vector<SceneEntry> drawn =
+      run.interpolated > 0 ? entries_of_drawn_directions(entries) : drawn_entries(entries);
+  const std::vector<OpticalConstants> samples = spectral_rule(scene).indices();
+  auto owned = std::make_unique<CountingEvaluator>(scene.accuracy.precision, has_double,
+                                                   requests_of(scene, samples, drawn, run.first));
+  const CountingEvaluator& counting = *owned;
+  InterpolatingEvaluator interpolating(std::move(owned));
+  evaluate_scene(scene, drawn, plan, &interpolating, {});
+  const Count& moments = counting.moments();
+  const Count& beams = counting.beams();
+  const double moments_scale = scale_of(run.moments, moments);
+  const double beams_scale = scale_of(run.beams, beams);
+  run.first_evaluations = moments_scale * moments.first_evaluations;
+  run.again_evaluations = moments_scale * moments.again_evaluations;
+  run.again_beams = beams_scale * static_cast<double>(beams.again);
+  const double again = moments_scale * static_cast<double>(moments.again) + run.again_beams;
+  if (run.moments + run.beams > 0) run.again_share = again / static_cast<double>(run.moments + run.beams);
+  run.is_exact = moments.first == run.moments && beams.first == run.beams;
+  run.moments_s = moments_scale * moments.spent_s;
+  run.beams_s = beams_scale * beams.spent_s;
+}
+
+}  // namespace
+
+RunPrediction predict_run(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan,
+                          bool has_double, const RequestVisitor& visit) {
+  const std::vector<OpticalConstants> samples = spectral_rule(scene).indices();
+  RunPrediction run;
+  run.entries = entries.size();
+  run.spectral_samples = samples.size();
+  run.first = first_attempt(scene.accuracy, has_double);
+  run.host_bytes = static_cast<double>(entries.size() * (sizeof(SceneEntry) + sizeof(PointResult)));
+  std::size_t largest = 0;
+  for (const std::span<const SceneEntry> part : run_blocks(entries, samples.size())) {
+    std::size_t bytes = 0;
+    if (plan.needs_moments) {
+      const MomentsRequest request = moments_block(scene, samples, part, run.first).request;
+      bytes += request.entries.size() * (2 * sizeof(MomentsEntry) + sizeof(Moments));
+      const std::optional<ShapePlan> shapes = shape_plan(request);
+      if (shapes) run.interpolated += request.entries.size() - shapes->direct.entries.size();
+      for (const MomentsRequest* computed : {shapes ? &shapes->nodes : &request, shapes ? &shapes->direct : nullptr}) {
+        if (computed == nullptr) continue;
+        run.moments += computed->entries.size();
+        visit.moments(*computed);
+      }
+    }
+    if (plan.needs_beams) {
+      const ScatteringRequest request = beams_request(scene, samples, part, run.first.precision);
+      run.beams += request.entries.size();
+      bytes += request.entries.size() * (sizeof(ScatteringEntry) + sizeof(ScatteringMatrix) + sizeof(Scattered));
+      visit.beams(request);
+    }
+    largest = std::max(largest, bytes);
+  }
+  run.host_bytes += static_cast<double>(largest);
+  if (run.moments + run.beams > 0) count_work(run, scene, entries, plan, has_double);
+  return run;
+}
+
+}  // namespace dolp

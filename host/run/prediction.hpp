@@ -1,0 +1,54 @@
+// What a run will cost, before it runs.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "model/moments.hpp"
+#include "model/scattering.hpp"
+#include "model/scene_entry.hpp"
+#include "plan/attempts.hpp"
+#include "plan/effects.hpp"
+
+namespace dolp {
+
+/// Entries of a run whose nodes are counted; of more entries these stand for all.
+inline constexpr std::size_t kCountedEntries = 256;
+
+/// Where a run interpolates between slope distributions, the directions whose entries are counted instead.
+inline constexpr std::size_t kCountedDirections = 4;
+
+/// Work of a run.
+struct RunPrediction {
+  std::size_t entries = 0;
+  std::size_t spectral_samples = 0;
+  std::size_t moments = 0;         ///< that the first attempt computes: entries that share them count once
+  std::size_t interpolated = 0;    ///< moments that it interpolates between others
+  std::size_t beams = 0;           ///< that the first attempt asks for: f of one geometry and index each
+  Attempt first;                   ///< precision and tolerance of the first attempt
+  double first_evaluations = 0.0;  ///< integrand evaluations of it
+  double again_share = 0.0;        ///< of its moments and beams, those that need another attempt
+  double again_evaluations = 0.0;
+  double again_beams = 0.0;
+  bool is_exact = true;    ///< all moments and beams were counted, none estimated from others
+  double moments_s = 0.0;  ///< of all attempts on this machine's processor, from counting
+  double beams_s = 0.0;
+  double host_bytes = 0.0;  ///< entries, requests and results of the largest block, and all results
+};
+
+/// Called with each request of the first attempt.
+struct RequestVisitor {
+  std::function<void(const MomentsRequest&)> moments;
+  std::function<void(const ScatteringRequest&)> beams;
+};
+
+/// Counts the work by running up to kCountedEntries entries, or all of up to kCountedDirections directions, drawn
+/// evenly by a fixed sequence, through the code of the run itself on the CPU. `has_double`: whether the device that
+/// will run has it.
+///
+/// Accuracy: exact for scenes with up to kCountedEntries entries, but for orders that a device's float rounds
+/// otherwise; a few percent beyond (tests Plan.FewEntries_*, Plan.ManyEntries_*, Plan.Device_*).
+RunPrediction predict_run(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan,
+                          bool has_double, const RequestVisitor& visit);
+
+}  // namespace dolp

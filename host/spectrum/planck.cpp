@@ -1,0 +1,24 @@
+#include "spectrum/planck.hpp"
+
+#include <cmath>
+
+namespace dolp {
+namespace {
+
+constexpr double kPlanck_Js = 6.62607015e-34;
+constexpr double kLightSpeed_m_per_s = 299792458.0;
+constexpr double kBoltzmann_J_per_K = 1.380649e-23;
+// Powers of ten of um in m: 1e6 for the length; 1e24 turns m-5 m into um-5 m2 um-1 of the radiance.
+constexpr double kSecondRadiationConstant_umK = kPlanck_Js * kLightSpeed_m_per_s / kBoltzmann_J_per_K * 1e6;
+constexpr double kFirstRadianceConstant = 2.0 * kPlanck_Js * kLightSpeed_m_per_s * kLightSpeed_m_per_s * 1e24;
+
+}  // namespace
+
+double planck_radiance(double wavelength_um, double temperature_K) {
+  if (temperature_K == 0.0) return 0.0;
+  const double exponent = kSecondRadiationConstant_umK / (wavelength_um * temperature_K);
+  const double squared = wavelength_um * wavelength_um;
+  return kFirstRadianceConstant / (squared * squared * wavelength_um) / std::expm1(exponent);
+}
+
+}  // namespace dolp

@@ -1,0 +1,285 @@
+#include "spectrum/spectral_rule.hpp"
+#include "model/kept_effects.hpp"
+#include "model/optical_constants.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/quadrature/gauss.hpp>
+#include <boost/math/special_functions/legendre.hpp>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "model/smooth_surface.hpp"
+#include "spectrum/planck.hpp"
+
+namespace dolp {
+namespace {
+
+using FineRule = boost::math::quadrature::gauss<double, 16>;
+
+// A piece of the band on which 16 Gauss nodes integrate Planck's function to rounding: its exponent changes by no more
+// than this, the wavelength by no more than that factor.
+constexpr double kPieceExponentChange = 4.0;
+constexpr double kPieceWavelengthRatio = 1.5;
+// h c / k_B in um K, to choose pieces with, and the exponent beyond which Planck's function underflows.
+constexpr double kExponentScale_umK = 14388.0;
+constexpr double kLargestExponent = 750.0;
+// Pieces are good to rounding; this bounds what is left in their sums.
+constexpr double kPieceRelativeError = 1e-12;
+
+// Nodes of a segment of the material: enough for the smooth surface's absorptances to this, which is relative to the
+// smaller of what is reflected and absorbed (but not below a small part of the whole: n = 1 reflects nothing).
+constexpr double kNodesRelativeError = 1e-10;
+constexpr double kSmallestPart = 1e-4;
+constexpr int kMostNodes = 24;
+// The rough surface averages the smooth one's absorptances over angles; the probes below are three of them.
+constexpr double kProbeSafety = 10.0;
+constexpr std::array<double, 3> kProbeCosines = {1.0, 0.5, 0.1};
+
+/// A node of the fine rule with the spectral factors there, all multiplied by the node's weight.
+struct FineNode {
+  double wavelength_um = 0.0;
+  double emitted = 0.0;
+  double surroundings = 0.0;
+  double excess = 0.0;
+  double irradiance = 0.0;
+  double width = 0.0;
+  double path = 0.0;
+};
+
+double source_irradiance(const Scene& scene, double wavelength_um, double emitted) {
+  const Source& source = *scene.source;
+  switch (source.kind) {
+    case Source::Kind::kFlat:
+      return source.scale * source.irradiance;
+    case Source::Kind::kRelative:
+      return source.scale * source.relative_irradiance * emitted;
+    case Source::Kind::kTabulated:
+      return source.scale * source.table.at(wavelength_um);
+  }
+  return 0.0;
+}
+
+double path_exitance(const Path& path, double wavelength_um) {
+  if (path.radiance) return std::numbers::pi * *path.radiance;
+  if (!path.temperature_K) return 0.0;
+  return std::numbers::pi * (1.0 - path.transmittance) * planck_radiance(wavelength_um, *path.temperature_K);
+}
+
+FineNode fine_node(const Scene& scene, double wavelength_um, double weight) {
+  const double emitted =
+      scene.emission ? std::numbers::pi * planck_radiance(wavelength_um, scene.emission->temperature_K) : 0.0;
+  const double surroundings =
+      scene.surroundings ? std::numbers::pi * planck_radiance(wavelength_um, scene.surroundings->temperature_K) : 0.0;
+  FineNode node;
+  node.wavelength_um = wavelength_um;
+  node.emitted = weight * emitted;
+  node.surroundings = weight * surroundings;
+  node.excess = weight * (surroundings - emitted);
+  node.irradiance = scene.source ? weight * source_irradiance(scene, wavelength_um, emitted) : 0.0;
+  node.width = weight;
+  node.path = scene.path ? weight * path_exitance(*scene.path, wavelength_um) : 0.0;
+  return node;
+}
+
+std::vector<double> temperatures(const Scene& scene) {
+  std::vector<double> result;
+  if (scene.emission) result.push_back(scene.emission->temperature_K);
+  if (scene.surroundings) result.push_back(scene.surroundings->temperature_K);
+  if (scene.path && scene.path->temperature_K) result.push_back(*scene.path->temperature_K);
+  return result;
+}
+
+bool is_one_piece(const Scene& scene, double from_um, double to_um) {
+  if (to_um > kPieceWavelengthRatio * from_um) return false;
+  return std::ranges::all_of(temperatures(scene), [&](double temperature_K) {
+    if (temperature_K == 0.0) return true;
+    const auto exponent = [&](double wavelength_um) {
+      return std::min(kExponentScale_umK / (wavelength_um * temperature_K), kLargestExponent);
+    };
+    return exponent(from_um) - exponent(to_um) <= kPieceExponentChange;
+  });
+}
+
+void append_fine_nodes(const Scene& scene, double from_um, double to_um, std::vector<FineNode>& nodes) {
+  const double middle_um = 0.5 * (from_um + to_um);
+  if (!is_one_piece(scene, from_um, to_um)) {
+    append_fine_nodes(scene, from_um, middle_um, nodes);
+    append_fine_nodes(scene, middle_um, to_um, nodes);
+    return;
+  }
+  const double half_um = 0.5 * (to_um - from_um);
+  for (std::size_t i = 0; i < FineRule::abscissa().size(); ++i) {
+    const double offset_um = half_um * FineRule::abscissa()[i];
+    const double weight = half_um * FineRule::weights()[i];
+    nodes.push_back(fine_node(scene, middle_um - offset_um, weight));
+    nodes.push_back(fine_node(scene, middle_um + offset_um, weight));
+  }
+}
+
+/// The ends of the band and the table wavelengths inside it.
+std::vector<double> segment_ends(double from_um, double to_um, std::initializer_list<const SpectralTable*> tables) {
+  std::vector<double> ends = {from_um, to_um};
+  for (const SpectralTable* table : tables)
+    for (const double wavelength_um : table->wavelength_um)
+      if (wavelength_um > from_um && wavelength_um < to_um) ends.push_back(wavelength_um);
+  std::ranges::sort(ends);
+  const auto repeated = std::ranges::unique(ends);
+  ends.erase(repeated.begin(), repeated.end());
+  return ends;
+}
+
+std::vector<FineNode> fine_nodes(const Scene& scene, double from_um, double to_um) {
+  static const SpectralTable kNoTable;
+  const bool tabulated = scene.source && scene.source->kind == Source::Kind::kTabulated;
+  const std::vector<double> ends = segment_ends(from_um, to_um, {tabulated ? &scene.source->table : &kNoTable});
+  std::vector<FineNode> nodes;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_fine_nodes(scene, ends[i], ends[i + 1], nodes);
+  return nodes;
+}
+
+std::vector<double> gauss_wavelengths(double from_um, double to_um, int count) {
+  std::vector<double> wavelengths_um;
+  for (const double zero : boost::math::legendre_p_zeros<double>(count)) {
+    const double offset_um = 0.5 * (to_um - from_um) * zero;
+    wavelengths_um.push_back(0.5 * (from_um + to_um) + offset_um);
+    if (zero > 0.0) wavelengths_um.push_back(0.5 * (from_um + to_um) - offset_um);
+  }
+  return wavelengths_um;
+}
+
+/// Lagrange polynomials of the nodes, at one wavelength.
+std::vector<double> lagrange(const std::vector<double>& nodes_um, double wavelength_um) {
+  std::vector<double> values(nodes_um.size(), 1.0);
+  for (std::size_t j = 0; j < nodes_um.size(); ++j)
+    for (std::size_t k = 0; k < nodes_um.size(); ++k)
+      if (k != j) values[j] *= (wavelength_um - nodes_um[k]) / (nodes_um[j] - nodes_um[k]);
+  return values;
+}
+
+void add(SpectralSample& sample, const FineNode& node, double factor) {
+  sample.emitted += factor * node.emitted;
+  sample.surroundings += factor * node.surroundings;
+  sample.excess += factor * node.excess;
+  sample.irradiance += factor * node.irradiance;
+  sample.width += factor * node.width;
+}
+
+std::vector<SpectralSample> samples_at(const Scene& scene, const std::vector<double>& nodes_um,
+                                       const std::vector<FineNode>& fine) {
+  std::vector<SpectralSample> samples(nodes_um.size());
+  for (std::size_t j = 0; j < nodes_um.size(); ++j) {
+    samples[j].wavelength_um = nodes_um[j];
+    samples[j].index = scene.surface.material.at(nodes_um[j]);
+  }
+  for (const FineNode& node : fine) {
+    const std::vector<double> values = lagrange(nodes_um, node.wavelength_um);
+    for (std::size_t j = 0; j < samples.size(); ++j) add(samples[j], node, values[j]);
+  }
+  return samples;
+}
+
+/// Relative error of the smooth surface's absorptances at one cosine, integrated with one of the factors.
+template <typename Factor>
+double probe_error(const Scene& scene, const std::vector<SpectralSample>& samples, const std::vector<FineNode>& fine,
+                   double cosine, Factor factor) {
+  double whole = 0.0;
+  SmoothAbsorptance exact{0.0, 0.0};
+  SmoothAbsorptance approximate{0.0, 0.0};
+  for (const FineNode& node : fine) {
+    const SmoothAbsorptance at = smooth_absorptance(scene.surface.material.at(node.wavelength_um), cosine);
+    whole += factor(node);
+    exact.s += factor(node) * at.s;
+    exact.p += factor(node) * at.p;
+  }
+  for (const SpectralSample& sample : samples) {
+    const SmoothAbsorptance at = smooth_absorptance(sample.index, cosine);
+    approximate.s += factor(sample) * at.s;
+    approximate.p += factor(sample) * at.p;
+  }
+  if (whole == 0.0) return 0.0;
+  const double absorbed = 0.5 * (exact.s + exact.p);
+  const double part = std::max(std::min(absorbed, whole - absorbed), kSmallestPart * whole);
+  return std::max(std::abs(exact.s - approximate.s), std::abs(exact.p - approximate.p)) / part;
+}
+
+double nodes_error(const Scene& scene, const std::vector<SpectralSample>& samples, const std::vector<FineNode>& fine) {
+  double worst = 0.0;
+  for (const double cosine : kProbeCosines) {
+    worst = std::max({worst, probe_error(scene, samples, fine, cosine, [](const auto& at) { return at.emitted; }),
+                      probe_error(scene, samples, fine, cosine, [](const auto& at) { return at.surroundings; }),
+                      probe_error(scene, samples, fine, cosine, [](const auto& at) { return at.irradiance; })});
+  }
+  return worst;
+}
+
+void append_merged(std::vector<SpectralSample>& samples, const SpectralSample& sample) {
+  const auto same = std::ranges::find(samples, sample.index, &SpectralSample::index);
+  if (same == samples.end()) {
+    samples.push_back(sample);
+    return;
+  }
+  same->emitted += sample.emitted;
+  same->surroundings += sample.surroundings;
+  same->excess += sample.excess;
+  same->irradiance += sample.irradiance;
+  same->width += sample.width;
+}
+
+/// Adds one segment of the material to a rule.
+void append_segment(const Scene& scene, double from_um, double to_um, SpectralRule& rule) {
+  const std::vector<FineNode> fine = fine_nodes(scene, from_um, to_um);
+  for (const FineNode& node : fine) rule.path_exitance += node.path;
+  std::vector<SpectralSample> samples;
+  double error = 0.0;
+  for (int count = 1; count <= kMostNodes; ++count) {
+    samples = samples_at(scene, gauss_wavelengths(from_um, to_um, count), fine);
+    error = scene.surface.material.is_constant() ? 0.0 : nodes_error(scene, samples, fine);
+    if (error <= kNodesRelativeError) break;
+  }
+  if (error > 0.0) rule.relative_error = std::max(rule.relative_error, kProbeSafety * error);
+  for (const SpectralSample& sample : samples) append_merged(rule.samples, sample);
+}
+
+SpectralRule single_wavelength_rule(const Scene& scene, double wavelength_um) {
+  const FineNode node = fine_node(scene, wavelength_um, 1.0);
+  SpectralSample sample;
+  sample.wavelength_um = wavelength_um;
+  sample.index = scene.surface.material.at(wavelength_um);
+  add(sample, node, 1.0);
+  return {{sample}, node.path, 0.0};
+}
+
+}  // namespace
+
+std::vector<OpticalConstants> SpectralRule::indices() const {
+  std::vector<OpticalConstants> result;
+  for (const SpectralSample& sample : samples) result.push_back(sample.index);
+  return result;
+}
+
+SpectralRule spectral_rule(const Scene& scene) {
+  if (!scene.spectrum.is_band()) return single_wavelength_rule(scene, scene.spectrum.min_um);
+  SpectralRule rule;
+  rule.relative_error = kPieceRelativeError;
+  const Material& material = scene.surface.material;
+  const std::vector<double> ends =
+      segment_ends(scene.spectrum.min_um, scene.spectrum.max_um, {&material.n, &material.k});
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_segment(scene, ends[i], ends[i + 1], rule);
+  return rule;
+}
+
+SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept) {
+  for (SpectralSample& sample : rule.samples) {
+    if (!kept.surroundings) sample.excess = -sample.emitted;
+    if (!kept.emission) sample.excess = kept.surroundings ? sample.surroundings : 0.0;
+    if (!kept.surroundings) sample.surroundings = 0.0;
+    if (!kept.emission) sample.emitted = 0.0;
+    if (!kept.source) sample.irradiance = 0.0;
+  }
+  if (!kept.path_radiance) rule.path_exitance = 0.0;
+  return rule;
+}
+
+}  // namespace dolp

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "model/kept_effects.hpp"
+#include "scene/scene.hpp"
+
+namespace dolp {
+
+/// One refractive index at which moments are wanted, and what the radiation at its wavelengths adds up to.
+///
+/// The moments rho(lambda) depend on the wavelength only through the index. On each segment between rows of the
+/// material they are the polynomial through the Gauss nodes of that segment, so that a band integral of a factor F
+/// times rho is the sum over the nodes of rho times the integral of F times the node's Lagrange polynomial. The
+/// integrals of the factors are below. They can be negative (of a node that other nodes outweigh); their sums are the
+/// band integrals. Units: exitances and irradiances in W m-2 um-1 at a single wavelength, in W m-2 over a band.
+struct SpectralSample {
+  OpticalConstants index;
+  double wavelength_um = 0.0;  ///< where the index was first met
+  double emitted = 0.0;        ///< pi B(T); 0 without [emission]
+  double surroundings = 0.0;   ///< pi B(T_surr); 0 without [surroundings]
+  double excess = 0.0;         ///< pi B(T_surr) - pi B(T), exactly 0 where the temperatures are equal
+  double irradiance = 0.0;     ///< E0 at normal incidence; 0 without [source]
+  double width = 0.0;          ///< um; 1 at a single wavelength
+};
+
+/// The distinct indices of a scene, with their spectral weights.
+struct SpectralRule {
+  std::vector<SpectralSample> samples;
+  double path_exitance = 0.0;   ///< pi times the path radiance; 0 without [path]
+  double relative_error = 0.0;  ///< bound of the relative error of the band sums; 0 at a single wavelength
+  std::vector<OpticalConstants> indices() const;
+};
+
+/// Spectral rule of a scene: one sample at a single wavelength or for a constant index, Gauss nodes on each segment of
+/// the material otherwise, as many as it takes for the reflectances of the smooth surface.
+///
+/// Accuracy: band sums to 1e-9 relative (tests SpectralRule_*Band*).
+SpectralRule spectral_rule(const Scene& scene);
+
+/// The rule with 0 for every factor that is not kept.
+SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept);
+
+}  // namespace dolp

@@ -1,0 +1,60 @@
+#include "table/axis_stencil.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace dolp {
+namespace {
+
+// Values that differ by less were typed with fewer digits than the table keeps.
+constexpr double kSame = 4.0 * std::numeric_limits<double>::epsilon();
+
+bool is_same(double a, double b) { return std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b)); }
+
+}  // namespace
+
+LookupAxis::LookupAxis(const std::vector<double>& values, Scale scale, double origin)
+    : scale_(scale), origin_(origin), positions_(values.size()) {
+  std::iota(positions_.begin(), positions_.end(), std::size_t{0});
+  std::ranges::sort(positions_, {}, [&](std::size_t i) { return values[i]; });
+  for (const std::size_t i : positions_) values_.push_back(values[i]);
+  if (!(values_.front() > origin_)) scale_ = Scale::kLinear;
+  for (const double value : values_) coordinates_.push_back(coordinate(value));
+}
+
+double LookupAxis::coordinate(double value) const {
+  return scale_ == Scale::kLinear ? value : std::log(value - origin_);
+}
+
+bool LookupAxis::contains(double value) const {
+  return (min() <= value && value <= max()) || is_same(value, min()) || is_same(value, max());
+}
+
+Stencil LookupAxis::stencil(double value, std::size_t count, int shift) const {
+  const auto above = static_cast<std::size_t>(std::ranges::lower_bound(values_, value) - values_.begin());
+  for (const std::size_t i : {above, above - 1}) {
+    if (i < values_.size() && is_same(values_[i], value)) return {{positions_[i]}, {1.0}};
+  }
+  const auto size = static_cast<std::ptrdiff_t>(values_.size());
+  const auto wanted = std::min(static_cast<std::ptrdiff_t>(count), size);
+  const auto next = static_cast<std::ptrdiff_t>(above);  // values_[next - 1] < value < values_[next]
+  const std::ptrdiff_t centred = std::clamp<std::ptrdiff_t>(next - wanted / 2, 0, size - wanted);
+  const std::ptrdiff_t first = std::clamp<std::ptrdiff_t>(
+      std::clamp<std::ptrdiff_t>(centred + shift, next + 1 - wanted, next - 1), 0, size - wanted);
+  Stencil stencil;
+  const double x = coordinate(value);
+  for (std::ptrdiff_t i = first; i < first + wanted; ++i) {
+    double weight = 1.0;
+    for (std::ptrdiff_t j = first; j < first + wanted; ++j) {
+      const auto [own, other] = std::pair{static_cast<std::size_t>(i), static_cast<std::size_t>(j)};
+      if (i != j) weight *= (x - coordinates_[other]) / (coordinates_[own] - coordinates_[other]);
+    }
+    stencil.positions.push_back(positions_[static_cast<std::size_t>(i)]);
+    stencil.weights.push_back(weight);
+  }
+  return stencil;
+}
+
+}  // namespace dolp

@@ -1,0 +1,37 @@
+#include "terminal/guarded.hpp"
+#include "base/progress.hpp"
+#include "terminal/exit_status.hpp"
+
+#include <cstdio>
+#include <exception>
+#include <system_error>
+
+#include "base/error.hpp"
+
+namespace dolp {
+
+// fmt::print would throw where stderr cannot be written to.
+int fail(const std::string& program, int status, const std::string& message) {
+  std::fputs((program + ": " + message + "\n").c_str(), stderr);
+  return status;
+}
+
+int guarded(const std::string& program, const std::function<int()>& body) {
+  try {
+    return body();
+  } catch (const Cancelled&) {
+    return fail(program, kExitInterrupted, "interrupted; nothing was written");
+  } catch (const InputError& error) {
+    return fail(program, kExitInput, error.what());
+  } catch (const DeviceError& error) {
+    return fail(program, kExitDevice, error.what());
+  } catch (const IoError& error) {
+    return fail(program, kExitIo, error.what());
+  } catch (const std::system_error& error) {
+    return fail(program, kExitIo, error.what());
+  } catch (const std::exception& error) {
+    return fail(program, kExitInternal, std::string("internal error: ") + error.what());
+  }
+}
+
+}  // namespace dolp

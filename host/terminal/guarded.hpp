@@ -1,0 +1,15 @@
+// The only place where errors become exit statuses.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace dolp {
+
+/// One line on stderr that begins with the program's name; returns `status`.
+int fail(const std::string& program, int status, const std::string& message);
+
+/// What `body` returns, or the exit status of the error that it threw, after a message of one line.
+int guarded(const std::string& program, const std::function<int()>& body);
+
+}  // namespace dolp

@@ -1,0 +1,57 @@
+#include "terminal/progress_bar.hpp"
+#include "base/progress.hpp"
+#include "base/stopwatch.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <string>
+
+namespace dolp {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;  // the only state that a signal handler may touch
+
+constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
+constexpr std::size_t kBarWidth = 30;
+
+void watch_for_interrupts() {
+  const auto handler = [](int) { interrupted = 1; };
+  std::signal(SIGINT, handler);
+  std::signal(SIGTERM, handler);
+}
+
+}  // namespace
+
+ProgressBar::ProgressBar(bool quiet) : visible_(!quiet && isatty(STDERR_FILENO) == 1) { watch_for_interrupts(); }
+
+ProgressBar::~ProgressBar() {
+  if (drawn_) std::fputs("\r\033[K", stderr);
+}
+
+Progress ProgressBar::callback() {
+  return [this](std::size_t done, std::size_t total) {
+    const Clock::time_point now = Clock::now();
+    if (visible_ && now - last_drawn_ >= kRedrawInterval) {
+      draw(done, total);
+      last_drawn_ = now;
+    }
+    return interrupted == 0;
+  };
+}
+
+void ProgressBar::draw(std::size_t done, std::size_t total) {
+  const double elapsed_s = seconds_since(start_);
+  const double rate = elapsed_s > 0.0 ? static_cast<double>(done) / elapsed_s : 0.0;
+  const double left_s = rate > 0.0 ? static_cast<double>(total - done) / rate : 0.0;
+  const std::size_t filled = total > 0 ? kBarWidth * done / total : kBarWidth;
+  const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
+  fmt::print(stderr, "\r\033[K[{}] {}/{} entries, {:.3g}/s, {:.0f} s left", bar, done, total, rate, left_s);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+}  // namespace dolp

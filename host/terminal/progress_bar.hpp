@@ -1,0 +1,35 @@
+// Progress on stderr, and the way Ctrl-C ends a run.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+
+#include "base/progress.hpp"
+
+namespace dolp {
+
+/// A bar with rate and time left, drawn on stderr when that is a terminal and `quiet` is off.
+///
+/// From its construction on SIGINT and SIGTERM only ask the run to stop, so that a result that is complete is still
+/// written whole. Before, while inputs are read, they end the program as usual.
+class ProgressBar {
+ public:
+  explicit ProgressBar(bool quiet);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  /// Draws, and says whether to go on: false after an interrupt. Refers to this object.
+  Progress callback();
+
+ private:
+  void draw(std::size_t done, std::size_t total);
+
+  using Clock = std::chrono::steady_clock;
+  bool visible_;
+  bool drawn_ = false;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_drawn_;
+};
+
+}  // namespace dolp

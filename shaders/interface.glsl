@@ -63,8 +63,7 @@ struct RuleNode {
   real digits;            // decimal digits that the sums are to have
   real t_nodes;           // slope axis: nodes of a piece whatever its digits,
   real t_digits;          // digits that the size of its singularities asks for,
-  real t_strip_cauchy;    // and where that of the density acts, off the axis of X
-  real t_strip_gaussian;
+  real t_fall;            // and nodes for each e-fold by which the density falls over the piece
   real phi_nodes;         // azimuth: likewise
   real phi_digits;
   real cluster_stretch;   // nodes for each digit from which on smith's cusp is worth a cluster

@@ -89,7 +89,7 @@ struct Parameter {
 std::vector<Parameter> parameters(Masking masking) {
   std::vector<Parameter> all = {
       {&RuleModel::margin_digits, 0.4}, {&RuleModel::t_nodes, 0.4},        {&RuleModel::t_digits, 0.5},
-      {&RuleModel::t_strip_cauchy, 0.2}, {&RuleModel::t_strip_gaussian, 0.15}, {&RuleModel::phi_nodes, 0.3},
+      {&RuleModel::t_fall, 0.06},         {&RuleModel::phi_nodes, 0.1},
       {&RuleModel::phi_digits, 0.5}};
   if (masking == Masking::kIntegral || masking == Masking::kSmith) all.push_back({&RuleModel::line_digits, 1.0});
   if (masking == Masking::kSmith) all.push_back({&RuleModel::cluster_stretch, 1.0});
@@ -136,9 +136,9 @@ RuleModel fit_rule(Masking masking, const RuleModel& start, const RuleFitOptions
 
 std::string rule_text(const RuleModel& model) {
   return fmt::format(
-      "{{.margin_digits = {:.3g}, .t_nodes = {:.3g}, .t_digits = {:.3g}, .t_strip_cauchy = {:.3g}, .t_strip_gaussian = "
-      "{:.3g}, .phi_nodes = {:.3g}, .phi_digits = {:.3g}, .line_digits = {:.3g}, .cluster_stretch = {:.3g}}}",
-      model.margin_digits, model.t_nodes, model.t_digits, model.t_strip_cauchy, model.t_strip_gaussian, model.phi_nodes,
+      "{{.margin_digits = {:.3g}, .t_nodes = {:.3g}, .t_digits = {:.3g}, .t_fall = {:.3g}, "
+      ".phi_nodes = {:.3g}, .phi_digits = {:.3g}, .line_digits = {:.3g}, .cluster_stretch = {:.3g}}}",
+      model.margin_digits, model.t_nodes, model.t_digits, model.t_fall, model.phi_nodes,
       model.phi_digits, model.line_digits, model.cluster_stretch);
 }
 

@@ -27,6 +27,7 @@ struct MomentsRequest {
   double tolerance = 1e-4;                 ///< of the rule, relative to r_i
   Precision precision = Precision::kAuto;  ///< kAuto: the evaluator's own
   bool may_interpolate = true;             ///< between slope distributions, to the same tolerance
+  bool has_extra_splits = false;           ///< a rule of another kind, to check others with
   std::vector<double> theta_deg;
   std::vector<SlopeShape> shapes;
   std::vector<OpticalConstants> indices;

@@ -111,6 +111,18 @@ struct Variant {
   auto operator<=>(const Variant&) const = default;
 };
 
+// Splits each piece once more, so that no node of its rules stays where it was.
+void add_extra_splits(std::vector<Breakpoint>& points) {
+  constexpr double kShare = 0.43;  // no fraction that a rule's nodes have
+  const std::size_t count = points.size();
+  for (std::size_t i = 0; i + 1 < count && points.size() <= DOLP_MAX_PIECES; ++i) {
+    const double start = std::asinh(points[i].slope);
+    const double end = std::asinh(std::min(points[i + 1].slope, kLargestCut));
+    if (end > start) points.push_back({std::sinh(start + kShare * (end - start)), 0});
+  }
+  std::sort(points.begin(), points.end());
+}
+
 // Slopes from 0 on at which the set of smooth arcs changes: where a split line of the azimuth (integrand.glsl) meets
 // phi = 0 or pi or another line. The horizon does at t1 = c / (1 + s) and t2 = (1 + s) / c, theta_r = theta at
 // tan(theta), the limit b = pi/2 at tan(30 -+ 2/3 theta) and, on theta_r = theta, at tan(2 theta - 90); the lines of
@@ -163,7 +175,8 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   kernel::ThetaNode node{};
   node.c = a.cos;
   node.s = a.sin;
-  const std::vector<Breakpoint> points = breakpoints(theta_deg, a, request.masking, variant);
+  std::vector<Breakpoint> points = breakpoints(theta_deg, a, request.masking, variant);
+  if (request.has_extra_splits) add_extra_splits(points);
   assert(points.size() <= DOLP_MAX_PIECES + 1);
   std::ranges::fill(node.end, points.back().slope);
   Pieces pieces;

@@ -14,17 +14,17 @@ namespace {
 // Written by `dolp-calibrate fit`.
 constexpr std::array<RuleModel, 4> kModels = {{
     // none
-    {.margin_digits = 2.2, .t_nodes = 0.9, .t_digits = 1.0, .t_strip_cauchy = 1.0, .t_strip_gaussian = 0.85,
-     .phi_nodes = 0.5, .phi_digits = 0.5},
+    {.margin_digits = 1.4, .t_nodes = 0.8, .t_digits = 0.5, .t_fall = 0.2,
+     .phi_nodes = 0.4, .phi_digits = 0.25},
     // v-cavity
-    {.margin_digits = 2.2, .t_nodes = 1.3, .t_digits = 0.0, .t_strip_cauchy = 1.2, .t_strip_gaussian = 0.85,
-     .phi_nodes = 0.8, .phi_digits = 0.5},
+    {.margin_digits = 1.4, .t_nodes = 0.8, .t_digits = 0.0, .t_fall = 0.2,
+     .phi_nodes = 0.4, .phi_digits = 0.5},
     // integral
-    {.margin_digits = 2.2, .t_nodes = 1.7, .t_digits = 0.5, .t_strip_cauchy = 1.0, .t_strip_gaussian = 0.85,
-     .phi_nodes = 0.5, .phi_digits = 0.0, .line_digits = 4.5},
+    {.margin_digits = 1.4, .t_nodes = 0.8, .t_digits = 0.5, .t_fall = 0.2,
+     .phi_nodes = 0.4, .phi_digits = 0.0, .line_digits = 4.0},
     // smith
-    {.margin_digits = 2.4, .t_nodes = 1.7, .t_digits = 0.5, .t_strip_cauchy = 0.8, .t_strip_gaussian = 0.85,
-     .phi_nodes = 0.5, .phi_digits = 0.0, .line_digits = 5.0, .cluster_stretch = 3.0},
+    {.margin_digits = 1.5, .t_nodes = 0.8, .t_digits = 0.5, .t_fall = 0.2,
+     .phi_nodes = 0.4, .phi_digits = 0.0, .line_digits = 5.0, .cluster_stretch = 3.0},
 }};
 
 // Nodes that a piece has for each digit, roughly.
@@ -89,8 +89,7 @@ kernel::RuleNode rule_node(const RuleModel& model, double digits) {
   node.digits = digits;
   node.t_nodes = model.t_nodes;
   node.t_digits = model.t_digits;
-  node.t_strip_cauchy = model.t_strip_cauchy;
-  node.t_strip_gaussian = model.t_strip_gaussian;
+  node.t_fall = model.t_fall;
   node.phi_nodes = model.phi_nodes;
   node.phi_digits = model.phi_digits;
   node.cluster_stretch = model.cluster_stretch;

@@ -16,8 +16,7 @@ struct RuleModel {
   double margin_digits = 0.0;     ///< digits of the coarser rule beyond the tolerance
   double t_nodes = 0.0;           ///< kernel::RuleNode, field by field
   double t_digits = 0.0;
-  double t_strip_cauchy = 1.0;
-  double t_strip_gaussian = 1.0;
+  double t_fall = 0.0;
   double phi_nodes = 0.0;
   double phi_digits = 0.0;
   double line_digits = 0.0;       ///< digits that the line of `integral` or smith's cusp must spoil to be split off

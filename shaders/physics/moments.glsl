@@ -91,8 +91,10 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, Task task) {
   piece.start = asinh_real(a / shape.scale);
   piece.extent = asinh_real(b / shape.scale) - piece.start;
   real largest_mass = real(0.0);
+  piece.fall = real(0.0);
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     real factor = exponent_factor(row.shape[g]);
+    piece.fall = max(piece.fall, factor * (exponent_b - exponent_a));
     piece.mass[g] = -exp_real(-factor * exponent_a) * expm1_real(factor * (exponent_a - exponent_b));
     largest_mass = max(largest_mass, piece.mass[g]);
   }

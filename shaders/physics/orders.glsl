@@ -6,6 +6,7 @@
 // is fitted (host/plan/rule.hpp). The less a piece carries, the fewer digits it needs.
 
 CONST real kHalfLn10 = real(1.15129254649702284);
+CONST real kLn10 = real(2.30258509299404568402);
 CONST real kInverseLn10 = real(0.43429448190325182765);
 CONST real kLeastWeight = real(1e-20);  // so that at 90 degrees all slopes weigh the same
 
@@ -39,8 +40,18 @@ real weight_of_slope(ThetaNode theta, real t) {
   return kMasking == DOLP_MASKING_V_CAVITY ? min(bare, max(real(2.0) * theta.c, kLeastWeight)) : bare;
 }
 
-// The same of all facets.
-real weight_of_shape(ThetaNode theta, ShapeNode shape) { return weight_of_slope(theta, real(0.6) * shape.m); }
+// The same of all facets: those up to slope t1 send every ray up, those between t1 and t2 about half of them.
+real weight_of_shape(ThetaNode theta, ShapeNode shape) {
+  real t1 = theta.c / (real(1.0) + theta.s);
+  real t2 = (real(1.0) + theta.s) / max(theta.c, real(1e-15));
+  real typical = real(0.6) * shape.m;
+  real exponent = slope_tail_exponent(shape, t1);
+  real beyond = exp_real(-exponent);
+  real below = -expm1_real(-exponent);
+  return max(below * weight_of_slope(theta, min(typical, t1)) +
+                 real(0.5) * (beyond - slope_tail(shape, t2)) * weight_of_slope(theta, clamp(typical, t1, t2)),
+             kLeastWeight);
+}
 
 // Digits that are wanted of the slopes in [a, b]: fewer by log10 of the share of the albedo they carry.
 real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, real b, real mass) {
@@ -69,21 +80,26 @@ real piece_cost(Piece piece, real re, real im) {
 // acosh(y) for y >= 1, 0 below: the real part of asinh(i y), whose imaginary part is pi/2 then.
 real real_part_of_asinh(real y) { return acosh_above_1(max(y - real(1.0), real(0.0))); }
 
-// Singularities of the integrand over the slopes: the density at t = i m, where the gaussian has none but grows as fast; the
-// geometry at t = i; and the square roots at the breakpoints beyond the piece's ends that face it.
+// Singularities of the integrand over the slopes: the cauchy's density at t = i m; the geometry at t = i; and the square
+// roots at the breakpoints beyond the piece's ends that face it. Before a rule converges it must resolve how the density
+// falls over the piece, for which it takes nodes in proportion to the logarithm; a root and the map that takes it up make
+// the integrand a polynomial of two degrees more.
 real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, Task task, Piece piece) {
-  bool is_cauchy = kDistribution == DOLP_CAUCHY;
-  real width = is_cauchy ? real_part_of_asinh(shape.m / shape.scale)
-                         : clamp(asinh_real(shape.m / shape.scale), piece.start, piece.start + piece.extent);
-  real cost = piece_cost(piece, width, is_cauchy ? rule.t_strip_cauchy : rule.t_strip_gaussian);
-  cost = max(cost, piece_cost(piece, real_part_of_asinh(real(1.0) / shape.scale), real(0.5) * kPi));
+  real cost = piece_cost(piece, real_part_of_asinh(real(1.0) / shape.scale), real(0.5) * kPi);
+  if (kDistribution == DOLP_CAUCHY) {
+    cost = max(cost, piece_cost(piece, real_part_of_asinh(shape.m / shape.scale), real(0.5) * kPi));
+  }
   if (task.root_before_start) {
     cost = max(cost, piece_cost(piece, asinh_real(theta.end[task.piece - 1] / shape.scale), real(0.0)));
   }
   if (task.root_after_end && theta.end[task.piece + 1] < shape.cut) {
     cost = max(cost, piece_cost(piece, asinh_real(theta.end[task.piece + 2] / shape.scale), real(0.0)));
   }
-  return max(rule.t_nodes + (piece.digits + rule.t_digits) * cost, real(2.0));
+  real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
+  // The gaussian falls ever faster in X: all of it in the last unit.
+  real steepest = (kDistribution == DOLP_GAUSSIAN) ? max(piece.extent, real(1.0)) : real(1.0);
+  real resolved = min(piece.fall, piece.digits * kLn10) * steepest;
+  return max(rule.t_nodes + roots + rule.t_fall * resolved + (piece.digits + rule.t_digits) * cost, real(2.0));
 }
 
 // ---- Azimuth -------------------------------------------------------------------------------------------------------
@@ -215,8 +231,11 @@ real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index,
   if (arc.section == kSectionHalf) map = real(0.5) * map;
   if (arc.section == kSectionCircle) map = real(0.0);
   real cost = max(max(map, fresnel_cost(theta, index, t, arc, is_critical)), masking_cost(theta, shape, t, arc, zone));
-  real nodes = rule.phi_nodes + (digits + rule.phi_digits) * cost;
-  nodes = max(nodes, rule.phi_nodes + cusp_nodes(theta, shape, t, digits, arc));
-  nodes = max(nodes, rule.phi_nodes + resolution_nodes(digits, arc.resolution));
+  // Before a rule converges it must resolve cos(phi) to cos(3 phi), for which it takes nodes in proportion to the arc; a
+  // cluster's dphi goes as its abscissa, half a node more.
+  real base = rule.phi_nodes * arc.span + (arc.section == kSectionCluster ? real(1.0) : real(0.5));
+  real nodes = base + (digits + rule.phi_digits) * cost;
+  nodes = max(nodes, base + cusp_nodes(theta, shape, t, digits, arc));
+  nodes = max(nodes, base + resolution_nodes(digits, arc.resolution));
   return (arc.section == kSectionCircle) ? max(nodes, real(2.0)) : nodes;
 }

@@ -33,6 +33,7 @@ struct Piece {
   bool root_at_a;
   bool root_at_b;
   real mass[DOLP_WIDTH];  // share of the facets
+  real fall;              // of the share of facets beyond, from a to b, as a logarithm
   real digits;            // wanted by the member that wants most
   int order;
 };

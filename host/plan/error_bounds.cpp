@@ -102,7 +102,7 @@ constexpr double kPairFactor = 4.0;
 constexpr double kSmithCauchyPairFactor = 8.0;
 
 // Two rules of few nodes may agree by chance: none is taken to be better than this share of the tolerance it is made for.
-constexpr double kLeastShareOfTolerance = 0.05;
+constexpr double kLeastShareOfTolerance = 0.04;
 
 double pair_factor(const KernelData& data) {
   const bool has_cusp = data.masking == Masking::kSmith && data.distribution == Distribution::kCauchy;

@@ -14,17 +14,15 @@ namespace {
 // Written by `dolp-calibrate fit`.
 constexpr std::array<RuleModel, 4> kModels = {{
     // none
-    {.margin_digits = 1.4, .t_nodes = 0.8, .t_digits = 0.5, .t_fall = 0.2,
-     .phi_nodes = 0.4, .phi_digits = 0.25},
+    {.margin_digits = 1.4, .t_nodes = 1.4, .t_digits = 0.25, .t_fall = 0.2, .phi_nodes = 0.35, .phi_digits = 0.25},
     // v-cavity
-    {.margin_digits = 1.4, .t_nodes = 0.8, .t_digits = 0.0, .t_fall = 0.2,
-     .phi_nodes = 0.4, .phi_digits = 0.5},
+    {.margin_digits = 1.5, .t_nodes = 1.4, .t_digits = -0.25, .t_fall = 0.2, .phi_nodes = 0.35, .phi_digits = 0.5},
     // integral
-    {.margin_digits = 1.4, .t_nodes = 0.8, .t_digits = 0.5, .t_fall = 0.2,
-     .phi_nodes = 0.4, .phi_digits = 0.0, .line_digits = 4.0},
+    {.margin_digits = 1.2, .t_nodes = 1.8, .t_digits = 0.0, .t_fall = 0.2, .phi_nodes = 0.5, .phi_digits = -0.5,
+     .line_digits = 3.0},
     // smith
-    {.margin_digits = 1.5, .t_nodes = 0.8, .t_digits = 0.5, .t_fall = 0.2,
-     .phi_nodes = 0.4, .phi_digits = 0.0, .line_digits = 5.0, .cluster_stretch = 3.0},
+    {.margin_digits = 1.7, .t_nodes = 1.8, .t_digits = 0.5, .t_fall = 0.2, .phi_nodes = 0.35, .phi_digits = 0.75,
+     .line_digits = 1.0, .cluster_stretch = 3.0},
 }};
 
 // Nodes that a piece has for each digit, roughly.
@@ -37,9 +35,8 @@ constexpr double kClusterBelowQ = 0.3;
 // The line of the gaussian is smooth but steep for rough surfaces.
 constexpr double kLineSigma = 0.6;
 constexpr double kTightLineSigma = 0.3;
-// So is its cusp under smith masking: all derivatives vanish at theta_r = 0.
-constexpr double kCuspSigma = 0.8;
 constexpr double kTightDigits = 8.0;
+constexpr double kGaussianCuspPower = 4.0;  // of the cauchy with q = 2, which it resembles
 
 // Largest orders: what few digits can use, and what each digit beyond asks for.
 constexpr int kPlainOrder = 64;
@@ -50,17 +47,20 @@ constexpr double kNone = -1000.0;
 // log10 of what is left of smith's cusp, L = C (m tan(theta_r))^(2q-2) and more beside theta_r = 0, where rules do not split:
 // a point of the slope plane, which n nodes each way see to n^-2q.
 double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double digits) {
+  // L varies over slopes of 1/m beside the point.
+  const double width = std::max(1.0, std::numbers::sqrt2 * shape.sigma);
+  const double per_node = std::log10(std::max(kNodesPerDigit * digits / width, 1.5));
   if (distribution == Distribution::kGaussian) {
-    return shape.sigma > kCuspSigma && digits > kTightDigits ? kTightDigits - digits : kNone;
+    // All derivatives vanish at theta_r = 0; at 45 degrees L is about exp(-1/m^2).
+    return -0.5 / (shape.sigma * shape.sigma * std::numbers::ln10) - kGaussianCuspPower * per_node;
   }
   const double from_integer = std::abs(shape.q - std::round(shape.q));
   if (from_integer == 0.0) return kNone;
-  const double width = std::min(1.0, std::numbers::sqrt2 * shape.sigma);
   const double coefficient = gamma_ratio(shape.q - 1.0) / (boost::math::constants::root_pi<double>() *
                                                            (2.0 * shape.q - 3.0) * (2.0 * shape.q - 2.0));
-  const double size = (2.0 * shape.q - 2.0) * std::log10(width) +
+  const double size = (2.0 * shape.q - 2.0) * std::log10(std::min(1.0, std::numbers::sqrt2 * shape.sigma)) +
                       std::log10(std::min(coefficient, 1.0) * std::min(1.0, 4.0 * from_integer));
-  return size - 2.0 * shape.q * std::log10(std::max(kNodesPerDigit * digits, 2.0));
+  return size - 2.0 * shape.q * per_node;
 }
 
 // The same for the line b = pi/2 of `integral`: of the share of the facets steeper than 45 degrees, |x|^(2q-1).

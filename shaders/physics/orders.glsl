@@ -179,11 +179,17 @@ real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
 
 // Smith's L goes as |theta_r|^(2q - 2) near the facet (tan(theta/2), phi = 0), where theta_r = 0: not smooth unless q is an
 // integer, and the less so the smaller q. For the arc from phi = 0, theta_r = 0 lies at
-// cosh(i phi) = 1 + (1 + c) (t - tan(theta/2))^2 / (2 s t).
+// cosh(i phi) = 1 + (1 + c) (t - tan(theta/2))^2 / (2 s t). The gaussian's L is smooth, but grows beyond bounds toward
+// imaginary theta_r: by the digits wanted at 1 / (m sqrt(digits ln 10)).
 real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) {
   if (kMasking != DOLP_MASKING_SMITH || shape.cusp_digits < real(-100.0)) return real(0.0);
   real away = t - theta.s / (real(1.0) + theta.c);
-  real rise = (real(1.0) + theta.c) * away * away / (real(2.0) * max(theta.s * t, real(1e-30)));
+  real beside = real(0.0);
+  if (kDistribution == DOLP_GAUSSIAN) {
+    real zenith = real(1.0) / (shape.m * sqrt(max(digits, real(1.0)) * kLn10));
+    beside = zenith / (real(1.0) + theta.c);  // as a slope
+  }
+  real rise = (real(1.0) + theta.c) * (away * away + beside * beside) / (real(2.0) * max(theta.s * t, real(1e-30)));
   real wanted = max(digits + shape.cusp_digits, real(0.0));
   return wanted * arc_cost(arc, Singularity(real(0.0), max(acosh_above_1(rise), real(1e-3))));
 }

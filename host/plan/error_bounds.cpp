@@ -97,17 +97,15 @@ double steep_reflectance(const kernel::IndexNode& index, const kernel::ThetaNode
 }
 
 // Error of the finer of two rules over its distance from the coarser one: how much slower than expected the rules may
-// converge. Smith's cusp of a heavy tail makes them converge algebraically.
+// converge. G of the maskings with tables has cusps and lines at which it is not smooth, where they converge
+// algebraically.
 constexpr double kPairFactor = 4.0;
-constexpr double kSmithCauchyPairFactor = 8.0;
+constexpr double kTablePairFactor = 8.0;
 
 // Two rules of few nodes may agree by chance: none is taken to be better than this share of the tolerance it is made for.
 constexpr double kLeastShareOfTolerance = 0.04;
 
-double pair_factor(const KernelData& data) {
-  const bool has_cusp = data.masking == Masking::kSmith && data.distribution == Distribution::kCauchy;
-  return has_cusp ? kSmithCauchyPairFactor : kPairFactor;
-}
+double pair_factor(const KernelData& data) { return data.needs_masking_table() ? kTablePairFactor : kPairFactor; }
 
 }  // namespace
 

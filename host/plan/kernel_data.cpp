@@ -28,6 +28,8 @@ constexpr unsigned kRootBelow = 2;  // just below
 constexpr unsigned kRoots = kRootAbove | kRootBelow;
 constexpr double kNoEnd = 1e30;    // a slope beyond every cut, in place of infinity
 
+constexpr double kCoincident = 1e-9;  // relative distance of breakpoints that are the same but for rounding
+
 // Share of the tolerance that the slopes beyond the cut may carry.
 constexpr double kCutShare = 0.03;
 
@@ -111,6 +113,17 @@ struct Variant {
   auto operator<=>(const Variant&) const = default;
 };
 
+// Breakpoints that are one but for rounding, as one with the roots of all.
+std::vector<Breakpoint> without_coincident(const std::vector<Breakpoint>& points) {
+  std::vector<Breakpoint> distinct;
+  for (const Breakpoint& point : points) {
+    const bool is_new = distinct.empty() || point.slope > distinct.back().slope * (1.0 + kCoincident);
+    if (is_new) distinct.push_back(point);
+    distinct.back().roots |= point.roots;
+  }
+  return distinct;
+}
+
 // Splits each piece once more, so that no node of its rules stays where it was.
 void add_extra_splits(std::vector<Breakpoint>& points) {
   constexpr double kShare = 0.43;  // no fraction that a rule's nodes have
@@ -142,7 +155,7 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking m
   const bool cusp_at_0 = variant.has_line && masking == Masking::kSmith && a.sin == 0.0;
   points.push_back({0.0, cusp_at_0 ? kRootAbove : 0U});
   std::sort(points.begin(), points.end());
-  return points;
+  return without_coincident(points);
 }
 
 double arcs_per_slope(Masking masking, double critical) {

@@ -36,6 +36,7 @@ struct Arc {
   real origin;      // phi of its beginning; of the symmetry or singularity at one of its ends where its rule has one
   real span;        // length in phi
   int section;      // of the rule nodes
+  bool is_critical; // whether w vanishes at or beside its centre
   real resolution;  // of the square root at its centre that absorption has smoothed, see place_on_arc; 0: it is sharp
 };
 
@@ -53,6 +54,7 @@ Arc make_arc(real2 from, real2 to) {
   arc.centre_sin = from.y * to.x + from.x * to.y;
   arc.extent = arc.quarter / (real(1.0) + sqrt(real(1.0) + arc.quarter * arc.quarter));
   arc.section = kSectionCentre;
+  arc.is_critical = false;
   arc.resolution = real(0.0);
   arc.origin = phase(from);
   arc.span = real(4.0) * arc_tangent(arc.quarter);

@@ -62,13 +62,9 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
     // Devices that run invocations in lockstep compute both sides of an `if`; a loop of one turn they skip where none of
     // them needs it. It counts as an iteration, see worst_iterations of host/plan/kernel_data.hpp.
     for (bool is_due = is_before(from, to); is_due; is_due = false) {
-      Arc arc;
-      if (is_critical) {
-        arc = critical_arc(theta, index, slope.t, slope.digits, from, to, !is_second);
-      } else {
-        arc = zone_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits, from, to, zone);
-      }
-      real nodes = arc_nodes(rule, theta, row.shape[0], index, slope.t, slope.digits, arc, zone, is_critical);
+      Arc arc = zone_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits, from, to, zone);
+      if (is_critical) arc = critical_arc(theta, index, slope.t, slope.digits, from, to, !is_second, arc);
+      real nodes = arc_nodes(rule, theta, row.shape[0], index, slope.has_split_line, slope.t, slope.digits, arc, zone);
       int order = order_between(nodes, slope.most_azimuths);
       if (slope.is_coarse) order = coarse_order(order);
       AzimuthSums more = arc_sums(theta, row, index, slope, arc, zone, order);
@@ -81,7 +77,9 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
 
 // ---- Slope axis ----------------------------------------------------------------------------------------------------
 
-Piece make_piece(RuleNode rule, ThetaNode theta, Row row, Task task) {
+CONST real kNearRoot = real(0.2);
+
+Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task task) {
   ShapeNode shape = row.shape[0];
   real a = theta.end[task.piece];
   real b = min(theta.end[task.piece + 1], shape.cut);
@@ -101,7 +99,23 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, Task task) {
   piece.digits = digits_of_piece(rule, theta, shape, a, b, largest_mass);
   piece.root_at_a = task.root_at_start;
   piece.root_at_b = b < shape.cut && task.root_at_end;
-  piece.order = order_between(slope_nodes(rule, theta, shape, task, piece), largest_order());
+  // A root beside an end that is near, measured by the piece, counts as the end's own.
+  real end = piece.start + piece.extent;
+  piece.root_before = piece.start;
+  piece.root_after = end;
+  if (task.root_before_start) {
+    real x = asinh_real(theta.end[task.piece - 1] / shape.scale);
+    bool is_near = piece.start - x < kNearRoot * piece.extent;
+    piece.root_at_a = piece.root_at_a || is_near;
+    piece.root_before = is_near ? piece.start : x;
+  }
+  if (task.root_after_end && b < shape.cut) {
+    real x = asinh_real(theta.end[task.piece + 2] / shape.scale);
+    bool is_near = x - end < kNearRoot * piece.extent;
+    piece.root_at_b = piece.root_at_b || is_near;
+    piece.root_after = is_near ? end : x;
+  }
+  piece.order = order_between(slope_nodes(rule, theta, shape, index, piece), largest_order());
   return piece;
 }
 
@@ -192,7 +206,7 @@ struct RowMoments {
 // What one piece adds to the moments of a row; the first also what lies beyond the last.
 RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task task) {
   real cut = row.shape[0].cut;
-  Piece piece = make_piece(rule, theta, row, task);
+  Piece piece = make_piece(rule, theta, row, index, task);
   Masked of_theta = masking_of_direction(row, theta.c, theta.s);
   PieceSums coarse = no_slopes();
   PieceSums fine = no_slopes();

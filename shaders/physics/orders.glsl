@@ -8,6 +8,8 @@
 CONST real kHalfLn10 = real(1.15129254649702284);
 CONST real kLn10 = real(2.30258509299404568402);
 CONST real kInverseLn10 = real(0.43429448190325182765);
+CONST real kWideResolution = real(0.1);   // of a root beside an arc, from which on it is a singularity like others
+CONST real kSharpResolution = real(1e-6);
 CONST real kLeastWeight = real(1e-20);  // so that at 90 degrees all slopes weigh the same
 
 // acosh(1 + gap), without cancellation.
@@ -80,21 +82,32 @@ real piece_cost(Piece piece, real re, real im) {
 // acosh(y) for y >= 1, 0 below: the real part of asinh(i y), whose imaginary part is pi/2 then.
 real real_part_of_asinh(real y) { return acosh_above_1(max(y - real(1.0), real(0.0))); }
 
-// Singularities of the integrand over the slopes: the cauchy's density at t = i m; the geometry at t = i; and the square
-// roots at the breakpoints beyond the piece's ends that face it. Before a rule converges it must resolve how the density
+// The same from one of Fresnel's coefficients in the plane of incidence, cos(beta) = re + i im: at t = (cos(beta) - c) / s, as
+// long as that is small.
+real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, real im) {
+  real unit = max(theta.s, real(1e-6)) * shape.scale;
+  real x = (re - theta.c) / unit;
+  real bent = asinh_real(abs(x));
+  return piece_cost(piece, (x < real(0.0)) ? -bent : bent, im / unit / sqrt(real(1.0) + x * x));
+}
+
+// Singularities of the integrand over the slopes: the cauchy's density at t = i m; the geometry at t = i; those of
+// Fresnel's coefficients; and the square roots at the breakpoints beyond the piece's ends that face it. Before a rule converges it must resolve how the density
 // falls over the piece, for which it takes nodes in proportion to the logarithm; a root and the map that takes it up make
 // the integrand a polynomial of two degrees more.
-real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, Task task, Piece piece) {
+real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, Piece piece) {
   real cost = piece_cost(piece, real_part_of_asinh(real(1.0) / shape.scale), real(0.5) * kPi);
   if (kDistribution == DOLP_CAUCHY) {
     cost = max(cost, piece_cost(piece, real_part_of_asinh(shape.m / shape.scale), real(0.5) * kPi));
   }
-  if (task.root_before_start) {
-    cost = max(cost, piece_cost(piece, asinh_real(theta.end[task.piece - 1] / shape.scale), real(0.0)));
+  cost = max(cost, fresnel_piece_cost(theta, shape, piece, index.pole_re, index.pole_im));
+  if (index.critical_cos <= real(0.0)) {
+    cost = max(cost, fresnel_piece_cost(theta, shape, piece, index.branch_re, index.branch_im));
   }
-  if (task.root_after_end && theta.end[task.piece + 1] < shape.cut) {
-    cost = max(cost, piece_cost(piece, asinh_real(theta.end[task.piece + 2] / shape.scale), real(0.0)));
-  }
+  if (piece.root_before < piece.start) cost = max(cost, piece_cost(piece, piece.root_before, real(0.0)));
+  if (piece.root_after > piece.start + piece.extent) cost = max(cost, piece_cost(piece, piece.root_after, real(0.0)));
+  // The roots of v^2 (3 - 2v) = y meet at v = -1/2 and 3/2.
+  if (piece.root_at_a && piece.root_at_b) cost = max(cost, nodes_per_digit(acosh_above_1(real(1.0))));
   real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
   // The gaussian falls ever faster in X: all of it in the last unit.
   real steepest = (kDistribution == DOLP_GAUSSIAN) ? max(piece.extent, real(1.0)) : real(1.0);
@@ -141,10 +154,10 @@ real arc_cost(Arc arc, Singularity at) {
 // The singularities of Fresnel's coefficients: R_p's pole, at cos(beta) = -1 / sqrt(N^2 + 1), and the branch point of w, at
 // cos^2(beta) = 1 - N^2. Beside a critical line w goes as the abscissa v of the cluster and the pole w = -N^2 cos(beta)
 // lies at v = -N^2 critical_cos / w of the arc's other end; beyond the line w is imaginary.
-real fresnel_cost(ThetaNode theta, IndexNode index, real t, Arc arc, bool is_critical) {
+real fresnel_cost(ThetaNode theta, IndexNode index, real t, Arc arc) {
   real sec = sqrt(real(1.0) + t * t);
   real st = max(theta.s * t, real(1e-15));
-  if (is_critical) {
+  if (arc.is_critical) {
     real2 end = (arc.extent < real(0.0)) ? arc.from : arc.to;
     real cos_beta = (theta.c + theta.s * t * cosine(end)) / sec;
     real w2 = cos_beta * cos_beta - index.critical_cos * index.critical_cos;
@@ -208,17 +221,33 @@ Arc zone_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_lin
   return is_rough_line ? make_root_arc(from, to, false) : arc;
 }
 
-// The arc on one side of the critical line. w^2 = cos^2(beta) - critical_cos^2 + i Im N^2 vanishes beside its end, as far
-// off the axis as Im N^2 is of the range of w^2 on the arc. Where that is too little to be felt at all, the root counts
-// as sharp: what it would change is of the order of the resolution to the power 3/2.
-Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, real2 from, real2 to, bool at_end) {
+// The arc on one side of the critical line, or the whole zone where the line lies beyond. w^2 = cos^2(beta) -
+// critical_cos^2 + i Im N^2 vanishes at or beside its end, as far away as w^2 there is of its range on the arc. Where that
+// is far, the arc is like any other; where it is too little to be felt, the root counts as sharp: what it would change is
+// of the order of the resolution to the power 3/2.
+Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, real2 from, real2 to, bool at_end, Arc otherwise) {
+  real level = index.critical_cos * index.critical_cos;
+  real r2 = real(1.0) / (real(1.0) + t * t);
+  real e_root = theta.c + theta.s * t * cosine(at_end ? to : from);
+  real e_far = theta.c + theta.s * t * cosine(at_end ? from : to);
+  real at_root = r2 * e_root * e_root - level;
+  real range = max(abs(r2 * e_far * e_far - level), real(1e-30));
+  real resolution = min(sqrt(at_root * at_root + index.n2m1_im * index.n2m1_im) / range, real(1.0));
+  if (resolution > kWideResolution) return otherwise;
   Arc arc = make_root_arc(from, to, at_end);
-  real e = theta.c + theta.s * t * cosine(at_end ? from : to);
-  real range = abs(e * e / (real(1.0) + t * t) - index.critical_cos * index.critical_cos);
-  real resolution = min(index.n2m1_im / max(range, real(1e-30)), real(1.0));
-  bool is_felt = digits + real(1.5) * kInverseLn10 * log_unit(resolution) > real(-1.0);
+  arc.is_critical = true;
+  // Rounding leaves the line itself a little beside its place.
+  bool is_felt = resolution > kSharpResolution && digits + real(1.5) * kInverseLn10 * log_unit(resolution) > real(0.0);
   arc.resolution = is_felt ? resolution : real(0.0);
   return arc;
+}
+
+// The gaussian's G goes as exp(-1/distance^2) there: an essential singularity at the end of the arc, which costs a rule nodes
+// in proportion to the square of the digits.
+real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
+  bool is_line = kMasking == DOLP_MASKING_INTEGRAL && kDistribution == DOLP_GAUSSIAN && zone == 2 && has_split_line;
+  real wanted = max(digits - kInverseLn10 / (shape.m * shape.m), real(0.0));
+  return is_line ? real(0.25) * wanted * wanted : real(0.0);
 }
 
 // A smoothed square root has singularities at v = asinh(sqrt(+-i)) / a = (0.76 +- 0.57 i) / a in the abscissa of
@@ -231,17 +260,19 @@ real resolution_nodes(real digits, real resolution) {
 }
 
 // Nodes of an arc. With fewer than two on the whole half circle cos(2 phi) would not average out.
-real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, real t, real digits, Arc arc, int zone,
-               bool is_critical) {
+real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, real t, real digits,
+               Arc arc, int zone) {
   real map = nodes_per_digit(asinh_real(real(1.0) / max(abs(arc.extent), real(1e-9))));  // dphi = 4 dtau / (1 + tau^2)
   if (arc.section == kSectionHalf) map = real(0.5) * map;
   if (arc.section == kSectionCircle) map = real(0.0);
-  real cost = max(max(map, fresnel_cost(theta, index, t, arc, is_critical)), masking_cost(theta, shape, t, arc, zone));
-  // Before a rule converges it must resolve cos(phi) to cos(3 phi), for which it takes nodes in proportion to the arc; a
-  // cluster's dphi goes as its abscissa, half a node more.
+  real cost = max(max(map, fresnel_cost(theta, index, t, arc)), masking_cost(theta, shape, t, arc, zone));
+  // Before a rule converges it must resolve cos(phi) to cos(3 phi), for which it takes nodes in proportion to the arc, and
+  // how place_on_arc spreads its nodes, e^(2 a v); a cluster's dphi goes as its abscissa, half a node more.
   real base = rule.phi_nodes * arc.span + (arc.section == kSectionCluster ? real(1.0) : real(0.5));
+  if (arc.resolution > real(0.0)) base += real(0.5) * asinh_real(real(1.0) / sqrt(arc.resolution));
   real nodes = base + (digits + rule.phi_digits) * cost;
   nodes = max(nodes, base + cusp_nodes(theta, shape, t, digits, arc));
   nodes = max(nodes, base + resolution_nodes(digits, arc.resolution));
+  nodes = max(nodes, base + line_nodes(shape, has_split_line, digits, zone));
   return (arc.section == kSectionCircle) ? max(nodes, real(2.0)) : nodes;
 }

@@ -32,6 +32,8 @@ struct Piece {
   real extent;  // in X
   bool root_at_a;
   bool root_at_b;
+  real root_before;       // X of a root at the breakpoint before a that faces the piece; none: X at a
+  real root_after;        // the same beyond b
   real mass[DOLP_WIDTH];  // share of the facets
   real fall;              // of the share of facets beyond, from a to b, as a logarithm
   real digits;            // wanted by the member that wants most

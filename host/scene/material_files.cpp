@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "error.hpp"
+#include "scene/csv.hpp"
 #include "scene/material_data.hpp"
 #include "scene/spectral_data.hpp"
 #include "scene/text.hpp"
@@ -18,25 +19,24 @@ struct Columns {
   std::size_t count() const { return 1U + (has_n ? 1U : 0U) + (has_k ? 1U : 0U); }
 };
 
-void append_cells(Material& material, const Columns& columns, const std::vector<std::string_view>& cells,
-                  std::string_view line, const std::string& where) {
-  if (cells.size() != columns.count()) {
-    throw InputError(
-        fmt::format("{}{}: {} values; {} are expected", where, one_line(line), cells.size(), columns.count()));
+void append_row(Material& material, const Columns& columns, const CsvReader& row) {
+  const std::size_t cells = row.cells().size();
+  if (cells != columns.count()) {
+    row.fail(fmt::format("{}: {} values; {} are expected", one_line(row.line()), cells, columns.count()));
   }
   std::optional<double> n, k;
-  const double wavelength_um = parse_cell(cells[0], "wavelength_um", where);
-  if (columns.has_n) n = parse_cell(cells[1], "n", where);
-  if (columns.has_k) k = parse_cell(cells.back(), "k", where);
-  append_index(material, wavelength_um, n, k, where);
+  const double wavelength_um = row.number(0, "wavelength_um");
+  if (columns.has_n) n = row.number(1, "n");
+  if (columns.has_k) k = row.number(cells - 1, "k");
+  append_index(material, wavelength_um, n, k, row.where());
 }
 
 /// The columns that a line of names announces, nullopt where it announces none.
 std::optional<Columns> parse_column_names(const std::vector<std::string_view>& cells) {
-  const std::string first = lower_case(trim(cells[0]));
+  const std::string first = lower_case(cells[0]);
   if (first != "wl" && first != "wavelength_um") return std::nullopt;
   std::string others;
-  for (std::size_t i = 1; i < cells.size(); ++i) others += lower_case(trim(cells[i])) + ' ';
+  for (std::size_t i = 1; i < cells.size(); ++i) others += lower_case(cells[i]) + ' ';
   if (others == "n k ") return Columns{true, true};
   if (others == "n ") return Columns{true, false};
   if (others == "k ") return Columns{false, true};
@@ -45,29 +45,15 @@ std::optional<Columns> parse_column_names(const std::vector<std::string_view>& c
 
 void parse_csv(Material& material, std::string_view text) {
   std::optional<Columns> columns;
-  const std::vector<std::string_view> lines = split_lines(text);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const std::string_view line = trim(lines[i]);
-    if (line.empty() || line.front() == '#') continue;
-    const std::string where = fmt::format("{}:{}: ", material.source, i + 1);
-    const std::vector<std::string_view> cells = split(line, ',');
-    if (const auto named = parse_column_names(cells)) {
+  for (CsvReader row(text, material.source); row.next();) {
+    if (const auto named = parse_column_names(row.cells())) {
       columns = named;
     } else if (columns) {
-      append_cells(material, *columns, cells, line, where);
+      append_row(material, *columns, row);
     } else {
-      throw InputError(fmt::format("{}{}: the columns must be named first: wavelength_um (or wl), then n, k or both",
-                                   where, one_line(line)));
+      row.fail(one_line(row.line()) + ": the columns must be named first: wavelength_um (or wl), then n, k or both");
     }
   }
-}
-
-std::vector<std::string_view> split_blanks(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (const std::string_view word : split(line, ' ')) {
-    if (!trim(word).empty()) words.push_back(trim(word));
-  }
-  return words;
 }
 
 /// The value of a "key: value" or "- key: value" line, without quotes; nullopt where the line has another key.
@@ -107,7 +93,9 @@ void parse_yaml(Material& material, std::string_view text) {
     } else if (yaml_value(line, "data")) {
       is_in_rows = true;
     } else if (is_in_rows) {
-      append_cells(material, columns, split_blanks(line), trim(line), where);
+      CsvReader row(line, material.source, {.separator = ' ', .first_line = i + 1});
+      row.next();
+      append_row(material, columns, row);
     } else {
       throw InputError(fmt::format("{}{}: a DATA item has the keys type and data", where, one_line(line)));
     }

@@ -29,11 +29,6 @@ const std::vector<Case>& cases() {
   return list;
 }
 
-std::string masking_name(Masking masking) {
-  constexpr std::array<const char*, 4> kNames{"none", "v-cavity", "integral", "smith"};
-  return kNames.at(static_cast<std::size_t>(masking));
-}
-
 MomentsRequest neighbourhood(const Case& which, std::size_t count) {
   MomentsRequest request;
   request.masking = which.masking;

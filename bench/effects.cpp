@@ -19,6 +19,7 @@
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/run/scene_run.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "scene/names.hpp"
 
 namespace dolp::bench {
 namespace {
@@ -28,7 +29,6 @@ using nlohmann::ordered_json;
 constexpr std::size_t kFullRepeats = 5;
 constexpr std::size_t kQuickRepeats = 3;
 constexpr std::size_t kQuickEntries = 4096;
-constexpr std::uint32_t kNoPromise = kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
 
 /// The largest |change of DOLP| of the entries for which both promise one, and how many those are.
 struct Change {
@@ -39,7 +39,7 @@ struct Change {
 Change change_of(const std::vector<PointResult>& planned, const std::vector<PointResult>& all) {
   Change change;
   for (std::size_t i = 0; i < planned.size(); ++i) {
-    if (((planned[i].status | all[i].status) & kNoPromise) != 0) continue;
+    if (((planned[i].status | all[i].status) & kStatusNoDolpPromised) != 0) continue;
     change.dolp = std::max(change.dolp, std::abs(planned[i].dolp - all[i].dolp));
     ++change.compared;
   }
@@ -111,8 +111,8 @@ ordered_json branches_row(const MomentsRequest& request, const BranchTimes& time
   const std::vector<double> uniform_s = per_entry(times.uniform_s, entries);
   const double specialised_s = median(per_entry(times.specialised_s, entries));
   ordered_json row = {{"part", "branches"}, {"effect", "branches"}};
-  row["case"] = request.distribution == Distribution::kCauchy ? "cauchy" : "gaussian";
-  row["setting"] = masking_name(request.masking);
+  row["case"] = name_of(request.distribution);
+  row["setting"] = name_of(request.masking);
   row["error"] = times.error;
   row["time_s"] = median(uniform_s);
   row["specialised_time_s"] = specialised_s;

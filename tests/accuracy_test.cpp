@@ -29,9 +29,6 @@ constexpr double kMedianPessimism = 30.0;
 constexpr double kFloatRounding = 1e-6;
 constexpr double kDoubleRounding = 1e-11;
 
-constexpr std::uint32_t kNoDolpPromised =
-    kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
-
 enum class Light { kEmission, kSurroundingsAndSource };
 
 struct Setting {
@@ -65,7 +62,7 @@ struct Compared {
   }
   double dolp_error() const { return std::abs(result.dolp - reference.dolp); }
   bool is_missed() const { return (result.status & kStatusToleranceMissed) != 0; }
-  bool promises_dolp() const { return (result.status & kNoDolpPromised) == 0; }
+  bool promises_dolp() const { return (result.status & kStatusNoDolpPromised) == 0; }
   std::string name() const {
     return std::string(name_of(point.distribution)) + " " + name_of(point.masking) + " theta " +
            std::to_string(point.theta_deg) + " sigma " + std::to_string(point.shape.sigma) + " q " +

@@ -12,6 +12,7 @@
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/run/scene_run.hpp"
 #include "properties_support.hpp"
+#include "scene/names.hpp"
 
 namespace effects_support {
 
@@ -104,8 +105,8 @@ inline std::string describe(const Scene& s) {
       "{:.2g}",
       name_of(Model{s.surface.distribution, s.surface.masking}), s.surface.material.constant.n,
       s.surface.material.constant.k, s.surface.specular, s.surface.diffuse, s.surface.diffuse_exponent,
-      s.spectrum.min_um, s.spectrum.max_um, s.geometry.mode == Mode::kBistatic ? "bistatic" : "hemispherical",
-      s.geometry.view_zenith_deg, s.geometry.relative_azimuth_deg, s.accuracy.tolerance);
+      s.spectrum.min_um, s.spectrum.max_um, name_of(s.geometry.mode), s.geometry.view_zenith_deg,
+      s.geometry.relative_azimuth_deg, s.accuracy.tolerance);
   if (s.emission)
     text += fmt::format(", emission {:.9g} K{}", s.emission->temperature_K,
                         s.emission->model == EmissionModel::kFresnel ? " fresnel" : "");
@@ -141,8 +142,5 @@ inline double polarisation_change(const PointResult& a, const PointResult& b) {
   return std::hypot(a.stokes_q / a.stokes_i - b.stokes_q / b.stokes_i,
                     a.stokes_u / a.stokes_i - b.stokes_u / b.stokes_i);
 }
-
-inline constexpr std::uint32_t kNoPromise =
-    kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
 
 }  // namespace effects_support

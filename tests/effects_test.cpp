@@ -51,8 +51,8 @@ TEST(Dropping, RandomScenes_TheAnswerWithEverythingIsWithinTheEstimates) {
         EXPECT_EQ(std::isnan(a.stokes_i), std::isnan(b.stokes_i)) << name;
         continue;
       }
-      if ((a.status & kNoPromise) != 0) continue;
-      EXPECT_EQ(b.status & kNoPromise, 0U) << name;
+      if ((a.status & kStatusNoDolpPromised) != 0) continue;
+      EXPECT_EQ(b.status & kStatusNoDolpPromised, 0U) << name;
       EXPECT_LE(std::abs(a.dolp - b.dolp), a.error_estimate + b.error_estimate) << name;
       EXPECT_GE(b.error_estimate, plan.bound.dolp) << name;
       const bool is_missed = (b.status & kStatusToleranceMissed) != 0;

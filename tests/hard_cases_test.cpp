@@ -19,6 +19,7 @@
 #include "evaluate/reference/reference_evaluator.hpp"
 #include "evaluate/run/scene_run.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "scene/names.hpp"
 #include "stored_evaluator.hpp"
 #include "verify/qualification.hpp"
 #include "verify/stored_cases.hpp"

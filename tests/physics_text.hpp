@@ -31,6 +31,7 @@ using real4 = glm::dvec4;
 #define DOLP_TEXT_NAMESPACE tested_double
 #define DOLP_DOUBLE
 #include "evaluate/cpu/text_body.hpp"
+#include "scene/names.hpp"
 #undef DOLP_DOUBLE
 #undef DOLP_TEXT_NAMESPACE
 
@@ -109,8 +110,7 @@ struct ShapeCase {
 
 inline std::string name_of(const ShapeCase& shape) {
   std::array<char, 80> text{};
-  const char* distribution = shape.distribution == Distribution::kCauchy ? "cauchy" : "gaussian";
-  std::snprintf(text.data(), text.size(), "%s sigma %g q %g", distribution, shape.sigma, shape.q);
+  std::snprintf(text.data(), text.size(), "%s sigma %g q %g", name_of(shape.distribution), shape.sigma, shape.q);
   return text.data();
 }
 

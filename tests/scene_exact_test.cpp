@@ -186,7 +186,7 @@ TEST(SceneExact_IndexOfOne, ReflectsNothing) {
           EXPECT_NEAR(r.rho_i, 0.0, kRounding) << name_of(masking);
           EXPECT_NEAR(r.rho_q, 0.0, kRounding);
           EXPECT_NEAR(r.dolp, 0.0, kRounding);
-          EXPECT_EQ(r.status & kNoDolpPromised, 0U);
+          EXPECT_EQ(r.status & kStatusNoDolpPromised, 0U);
         }
       }
     }

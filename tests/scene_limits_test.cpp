@@ -178,7 +178,8 @@ void expect_sound(const PointResult& r, double tolerance, const std::string& nam
   }
   const bool dolp_missed = r.error_estimate > tolerance;
   const bool is_missed =
-      outside ? dolp_missed : r.rho_error_estimate > tolerance || ((r.status & kNoDolpPromised) == 0 && dolp_missed);
+      outside ? dolp_missed
+              : r.rho_error_estimate > tolerance || ((r.status & kStatusNoDolpPromised) == 0 && dolp_missed);
   EXPECT_EQ((r.status & kStatusToleranceMissed) != 0, is_missed) << name;
   EXPECT_TRUE(r.error_estimate >= 0.0 && r.rho_error_estimate >= 0.0) << name;
 }
@@ -228,10 +229,11 @@ TEST(Limits_Metals, DolpIsThatOfTheReferenceOrSaysThatItIsNot) {
       const std::vector<PointResult> results = run(scene, entries, evaluator);
       for (std::size_t i = 0; i < entries.size(); ++i) {
         const PointResult& r = results[i];
-        EXPECT_EQ(r.status & kNoDolpPromised, reference[i].status & kNoDolpPromised) << name_of(scene, entries[i]);
+        EXPECT_EQ(r.status & kStatusNoDolpPromised, reference[i].status & kStatusNoDolpPromised)
+            << name_of(scene, entries[i]);
         EXPECT_LE(std::abs(r.dolp - reference[i].dolp), r.error_estimate + reference[i].error_estimate)
             << name_of(scene, entries[i]);
-        if ((r.status & (kNoDolpPromised | kStatusToleranceMissed)) != 0) continue;
+        if ((r.status & (kStatusNoDolpPromised | kStatusToleranceMissed)) != 0) continue;
         EXPECT_NEAR(r.dolp, reference[i].dolp, scene.accuracy.tolerance) << name_of(scene, entries[i]);
       }
     }

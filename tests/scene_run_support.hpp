@@ -11,6 +11,7 @@
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
 #include "evaluate/run/scene_run.hpp"
+#include "scene/names.hpp"
 
 namespace scene_run_support {
 
@@ -27,10 +28,6 @@ inline constexpr OpticalConstants kAbsorbing{2.0, 0.7};
 inline constexpr OpticalConstants kMetal{27.0, 90.0};
 inline constexpr OpticalConstants kTotallyReflecting{0.6, 0.0};
 inline constexpr std::array kIndices = {kDielectric, kAbsorbing, kMetal, kTotallyReflecting};
-
-/// The status bits that take back the promise on DOLP.
-inline constexpr std::uint32_t kNoDolpPromised =
-    kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
 
 /// A surface at 300 K under surroundings at 240 K, at 10.6 um, without a diffuse part.
 inline Scene make_scene(Distribution distribution, Masking masking, const OpticalConstants& index) {
@@ -78,19 +75,10 @@ inline SmoothReflectance smooth_reflectance(const OpticalConstants& index, long 
   return {std::norm((cosine - w) / (cosine + w)), std::norm((square * cosine - w) / (square * cosine + w))};
 }
 
-inline std::string name_of(Distribution distribution) {
-  return distribution == Distribution::kCauchy ? "cauchy" : "gaussian";
-}
-
-inline std::string name_of(Masking masking) {
-  constexpr std::array kNames = {"none", "v-cavity", "integral", "smith"};
-  return kNames[static_cast<std::size_t>(masking)];
-}
-
 /// For messages: the scene and the entry that a check is about.
 inline std::string name_of(const Scene& scene, const SceneEntry& entry) {
   const OpticalConstants index = entry.index.value_or(scene.surface.material.constant);
-  return name_of(scene.surface.distribution) + " " + name_of(scene.surface.masking) + " theta " +
+  return std::string(name_of(scene.surface.distribution)) + " " + name_of(scene.surface.masking) + " theta " +
          std::to_string(entry.theta_deg) + " log10 sigma " + std::to_string(std::log10(entry.shape.sigma)) + " q " +
          std::to_string(entry.shape.q) + " N " + std::to_string(index.n) + " + " + std::to_string(index.k) + "i";
 }

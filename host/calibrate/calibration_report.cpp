@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "plan/rule.hpp"
+#include "scene/names.hpp"
 
 namespace dolp {
 namespace {

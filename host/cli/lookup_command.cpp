@@ -81,14 +81,12 @@ struct Summary {
 };
 
 Summary summary_of(const std::vector<PointResult>& results, double tolerance) {
-  constexpr std::uint32_t kNoPromise =
-      kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
   Summary summary;
   summary.points = results.size();
   summary.tolerance = tolerance;
   for (const PointResult& r : results) {
     if ((r.status & kStatusToleranceMissed) != 0) ++summary.missed;
-    if ((r.status & kNoPromise) != 0) continue;
+    if ((r.status & kStatusNoDolpPromised) != 0) continue;
     summary.worst_error = std::max(summary.worst_error.value_or(0.0), r.error_estimate);
     summary.worst_rho_error = std::max(summary.worst_rho_error.value_or(0.0), r.rho_error_estimate);
   }

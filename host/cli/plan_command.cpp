@@ -7,6 +7,7 @@
 #include "error.hpp"
 #include "evaluate/run/scene_run.hpp"
 #include "plan/kernel_data.hpp"
+#include "scene/names.hpp"
 #include "verify/stored_cases.hpp"
 
 namespace dolp::cli {
@@ -41,9 +42,8 @@ void add_dispatches(PlanReport& report, const DispatchPlan& of_request) {
 
 void add_pipeline(PlanReport& report, const char* kernel, Precision precision) {
   const Surface& surface = report.scene.surface;
-  const std::string text =
-      fmt::format("{}, {}: distribution {}, masking {}", kernel, precision == Precision::kDouble ? "double" : "float",
-                  name_of(surface.distribution), name_of(surface.masking));
+  const std::string text = fmt::format("{}, {}: distribution {}, masking {}", kernel, name_of(precision),
+                                       name_of(surface.distribution), name_of(surface.masking));
   if (std::ranges::find(report.pipelines, text) == report.pipelines.end()) report.pipelines.push_back(text);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/report.hpp"
+#include "scene/names.hpp"
 
 namespace dolp::cli {
 namespace {
@@ -74,16 +75,14 @@ std::string output_text(const PlanReport& report) {
   return "  output      Stokes parameters, DOLP, rho, albedo\n";
 }
 
-std::string precision_name(Precision precision) { return precision == Precision::kDouble ? "double" : "float"; }
-
 std::string work_lines(const PlanReport& report) {
   const RunPrediction& run = report.run;
   std::string text;
   std::string how = run.is_exact ? "counted" : fmt::format("estimated from {} entries", kCountedEntries);
   if (run.interpolated > 0 && !run.is_exact) how = fmt::format("estimated from {} directions", kCountedDirections);
-  text += fmt::format(
-      "  attempts    first: {} at tolerance {:g}, {} moments, {} values of f; {:.3g} % again, tighter\n",
-      precision_name(run.first.precision), run.first.tolerance, run.moments, run.beams, kPoints * run.again_share);
+  text +=
+      fmt::format("  attempts    first: {} at tolerance {:g}, {} moments, {} values of f; {:.3g} % again, tighter\n",
+                  name_of(run.first.precision), run.first.tolerance, run.moments, run.beams, kPoints * run.again_share);
   if (run.moments == 0) return text;
   if (run.interpolated > 0) {
     text += fmt::format("  interpolate {} moments follow from these, to the same tolerance (accuracy.interpolation)\n",
@@ -156,11 +155,10 @@ Json rule_json(const RulePlan& rule) { return {{"digits", rule.digits}, {"most_n
 
 std::string plan_text(const PlanReport& report) {
   const Scene& scene = report.scene;
-  const char* mode = scene.geometry.mode == Mode::kBistatic ? "bistatic" : "hemispherical";
   std::string text = fmt::format("{}\n", scene.title);
-  text += fmt::format("  scene       {}, {} x {} x {} (theta x sigma x q) = {} entries, spectral samples: {}\n", mode,
-                      scene.grid.theta_deg.size(), scene.grid.sigma.size(), scene.grid.q.size(), report.run.entries,
-                      report.run.spectral_samples);
+  text += fmt::format("  scene       {}, {} x {} x {} (theta x sigma x q) = {} entries, spectral samples: {}\n",
+                      name_of(scene.geometry.mode), scene.grid.theta_deg.size(), scene.grid.sigma.size(),
+                      scene.grid.q.size(), report.run.entries, report.run.spectral_samples);
   return text + "\n" + effects_table(report) + "\n" + dropped_text(report) + output_text(report) + cost_lines(report);
 }
 
@@ -181,7 +179,7 @@ Json plan_json(const PlanReport& report) {
   json["moments"] = run.moments;
   json["interpolated_moments"] = run.interpolated;
   json["beams"] = run.beams;
-  json["first_attempt"] = {{"precision", precision_name(run.first.precision)},
+  json["first_attempt"] = {{"precision", name_of(run.first.precision)},
                            {"tolerance", run.first.tolerance},
                            {"evaluations", run.first_evaluations},
                            {"is_exact", run.is_exact},

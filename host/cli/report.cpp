@@ -12,9 +12,6 @@
 namespace dolp::cli {
 namespace {
 
-constexpr std::uint32_t kNoDolpStatement =
-    kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
-
 std::vector<RunReport::StatusCount> count_status(const std::vector<PointResult>& results) {
   std::vector<RunReport::StatusCount> counts = {{"reflectance outside [0, 1]", kStatusUnphysicalReflectance, 0},
                                                 {"tolerance not met", kStatusToleranceMissed, 0},
@@ -44,7 +41,7 @@ void add_ranges(RunReport& report, const Scene& scene, const std::vector<SceneEn
   const bool bistatic = scene.geometry.mode == Mode::kBistatic;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const PointResult& r = results[i];
-    if ((r.status & kNoDolpStatement) == 0)
+    if ((r.status & kStatusNoDolpPromised) == 0)
       report.worst_error = std::max(report.worst_error.value_or(0.0), r.error_estimate);
     if ((r.status & kStatusOutsideDomain) == 0 && report.plan.gives_rho) {
       report.worst_rho_error = std::max(report.worst_rho_error.value_or(0.0), r.rho_error_estimate);

@@ -10,6 +10,7 @@
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/vulkan/devices.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "scene/names.hpp"
 #include "scene/number_range.hpp"
 #include "scene/text.hpp"
 #include "verify/table_scene.hpp"
@@ -60,8 +61,8 @@ std::unique_ptr<MomentsEvaluator> evaluator_in(Precision precision, const Option
 
 /// The precisions to examine. `left_out` says why one is missing that --precision auto would include.
 std::vector<Precision> precisions_of(const Options& options, std::string& left_out) {
-  if (options.precision == "float") return {Precision::kFloat};
-  if (options.precision == "double") return {Precision::kDouble};
+  const std::optional<Precision> wanted = named<Precision>(options.precision);
+  if (wanted && *wanted != Precision::kAuto) return {*wanted};
   if (options.evaluator == "cpu") return {Precision::kFloat, Precision::kDouble};
   const DeviceList list = list_devices();
   if (list.devices.empty()) throw DeviceError(list.why_empty);

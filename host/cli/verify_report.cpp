@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "evaluate/radiometry/status.hpp"
+#include "scene/names.hpp"
 
 namespace dolp::cli {
 namespace {

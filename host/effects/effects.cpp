@@ -11,6 +11,7 @@
 
 #include "evaluate/radiometry/spectral_rule.hpp"
 #include "parallel_ranges.hpp"
+#include "scene/names.hpp"
 
 namespace dolp {
 namespace {
@@ -286,18 +287,9 @@ EffectRow band_row(const Scene& scene) {
   return row;
 }
 
-std::string distribution_name(const Scene& scene) {
-  return scene.surface.distribution == Distribution::kCauchy ? "cauchy" : "gaussian";
-}
-
-std::string masking_name(const Scene& scene) {
-  constexpr std::array kNames = {"none", "v-cavity", "integral", "smith"};
-  return kNames[static_cast<std::size_t>(scene.surface.masking)];
-}
-
 EffectRow masking_row(const Scene& scene, const EffectPlan& plan, std::span<const SceneEntry> entries) {
   if (scene.surface.masking == Masking::kNone) return absent("masking", "surface.masking is none");
-  return model_row(scene, plan, "masking", masking_name(scene), entries);
+  return model_row(scene, plan, "masking", name_of(scene.surface.masking), entries);
 }
 
 }  // namespace
@@ -336,7 +328,7 @@ Needs needs_without(const Scene& scene, const EffectPlan& plan, Part part) {
 std::vector<EffectRow> effect_rows(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan) {
   return {specular_row(scene, plan),
           diffuse_row(scene, plan),
-          model_row(scene, plan, "distribution", distribution_name(scene), entries),
+          model_row(scene, plan, "distribution", name_of(scene.surface.distribution), entries),
           masking_row(scene, plan, entries),
           complex_index_row(scene, plan, entries),
           emission_row(scene, plan),

@@ -22,8 +22,7 @@ std::vector<SceneEntry> entries_at(const Scene& scene, const std::vector<double>
 }
 
 bool is_good(const PointResult& result) {
-  constexpr std::uint32_t kBad = kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
-  return (result.status & kBad) == 0 && std::isfinite(result.dolp);
+  return (result.status & kStatusNoDolpPromised) == 0 && std::isfinite(result.dolp);
 }
 
 void Curve::follow(const std::string& key, const Scene& scene, bool keep_all) {

@@ -19,8 +19,6 @@ constexpr std::size_t kLeastValues = 4;  // of an axis: how the changes of fewer
 constexpr double kRemainder = 10.0;      // error over the change that one value makes, where changes fall fast
 constexpr double kSlowestFall = 0.9;     // of the changes
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::uint32_t kNoDolpStatement =
-    kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
 
 /// What is interpolated: the quantities of a table that are smooth.
 constexpr std::array kColumns = {&Table::stokes_i, &Table::stokes_q, &Table::stokes_u, &Table::stokes_v,
@@ -205,7 +203,7 @@ PointResult TableLookup::result_of(const Window& cell, const Values& values, con
     result.status |= table_.status[position] & kStatusUnphysicalReflectance;
   });
   if (i <= 0.0) result.status |= kStatusNonPositiveIntensity;
-  const bool states_dolp = (result.status & kNoDolpStatement) == 0;
+  const bool states_dolp = (result.status & kStatusNoDolpPromised) == 0;
   if ((states_dolp && !(result.error_estimate <= tolerance_)) || result.rho_error_estimate > tolerance_) {
     result.status |= kStatusToleranceMissed;
   }

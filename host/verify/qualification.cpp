@@ -12,6 +12,7 @@
 #include "evaluate/radiometry/radiometry.hpp"
 #include "evaluate/reference/hemisphere.hpp"
 #include "evaluate/run/scene_run.hpp"
+#include "scene/names.hpp"
 
 namespace dolp {
 namespace {
@@ -19,9 +20,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Rounding of r / cos(theta) and of the quotients of stored values.
 constexpr double kQuotientRounding = 8.0 * std::numeric_limits<double>::epsilon();
-
-constexpr std::uint32_t kNoDolpPromised =
-    kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
 
 constexpr std::array kOrdinaryCases{"ordinary",    "sigma-1e-2",     "brewster",     "index-27-90",
                                     "index-0.2-3", "split-lines-18", "almost-normal"};
@@ -84,7 +82,7 @@ CaseOutcome outcome_of(const StoredCase& stored, const PointResult& result, doub
   const Expected expected = expected_of(stored);
   CaseOutcome outcome;
   outcome.status = result.status;
-  outcome.promises_dolp = (result.status & kNoDolpPromised) == 0;
+  outcome.promises_dolp = (result.status & kStatusNoDolpPromised) == 0;
   const bool is_promised = (result.status & kStatusToleranceMissed) == 0;
   outcome.dolp = {std::abs(result.dolp - expected.dolp), result.error_estimate, expected.dolp_error};
   // At I = 0 neither side has a DOLP.

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "scene/csv.hpp"
+#include "scene/names.hpp"
 #include "scene/text.hpp"
 
 namespace dolp {
@@ -16,18 +18,16 @@ constexpr std::array<std::string_view, 17> kColumns{
     "distribution",  "masking", "theta_deg", "sigma",   "q",         "n",         "k",
     "r_i",           "r_q",     "albedo",    "deficit", "r_i_error", "r_q_error", "albedo_error",
     "deficit_error", "case",    "origin"};
-constexpr std::array<const char*, 2> kDistributions{"cauchy", "gaussian"};
-constexpr std::array<const char*, 4> kMaskings{"none", "v-cavity", "integral", "smith"};
 
-/// The position of a word in a list that has the order of an enumeration.
-template <std::size_t N>
-std::size_t word(const CsvReader& row, std::size_t column, const std::array<const char*, N>& words) {
-  const auto found = std::ranges::find(words, row.cells()[column]);
-  if (found == words.end()) {
-    row.fail(fmt::format("{} = {}: must be one of {}", kColumns[column], one_line(row.cells()[column]),
-                         fmt::join(words, ", ")));
+template <class Choice>
+Choice choice(const CsvReader& row, std::size_t column) {
+  const std::string_view word = row.cells()[column];
+  const std::optional<Choice> found = named<Choice>(word);
+  if (!found) {
+    row.fail(fmt::format("{} = {}: must be one of {}", kColumns[column], one_line(word),
+                         fmt::join(Names<Choice>::kAll, ", ")));
   }
-  return static_cast<std::size_t>(found - words.begin());
+  return *found;
 }
 
 StoredCase parse_case(const CsvReader& row) {
@@ -35,8 +35,8 @@ StoredCase parse_case(const CsvReader& row) {
   if (cells != kColumns.size()) row.fail(fmt::format("{} cells, {} are expected", cells, kColumns.size()));
   const auto number = [&row](std::size_t column) { return row.number(column, kColumns[column]); };
   StoredCase stored;
-  stored.distribution = static_cast<Distribution>(word(row, 0, kDistributions));
-  stored.masking = static_cast<Masking>(word(row, 1, kMaskings));
+  stored.distribution = choice<Distribution>(row, 0);
+  stored.masking = choice<Masking>(row, 1);
   stored.theta_deg = number(2);
   stored.shape = {number(3), number(4)};
   stored.index = {number(5), number(6)};
@@ -65,9 +65,5 @@ std::vector<StoredCase> read_stored_cases(const std::string& path) {
 }
 
 std::vector<StoredCase> hard_cases() { return parse_stored_cases(embedded_hard_cases_csv(), "hard_cases.csv"); }
-
-const char* name_of(Distribution distribution) { return kDistributions[static_cast<std::size_t>(distribution)]; }
-
-const char* name_of(Masking masking) { return kMaskings[static_cast<std::size_t>(masking)]; }
 
 }  // namespace dolp

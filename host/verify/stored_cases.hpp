@@ -38,8 +38,4 @@ std::vector<StoredCase> parse_stored_cases(std::string_view text, const std::str
 /// The same from a file.
 std::vector<StoredCase> read_stored_cases(const std::string& path);
 
-/// The words of scene files: "cauchy", "gaussian"; "none", "v-cavity", "integral", "smith".
-const char* name_of(Distribution distribution);
-const char* name_of(Masking masking);
-
 }  // namespace dolp

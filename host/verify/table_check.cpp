@@ -22,9 +22,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The reference is a hundred times better than the table if it can, and this good at least.
 constexpr double kReferenceTolerance = 1e-11;
 
-constexpr std::uint32_t kNoDolpPromised =
-    kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
-
 /// How the bound of a quantity follows from the two estimates.
 enum class Bound { kDolp, kReflectance, kPolarisedRadiation, kRadiation };
 
@@ -82,7 +79,7 @@ double estimate_at(const std::vector<double>& estimates, std::size_t position) {
 double allowed_error(const Quantity& quantity, std::uint32_t status, double tolerance, const PointResult& reference) {
   const bool is_promised = (status & kStatusToleranceMissed) == 0;
   if (is_promised && is_reflectance(quantity.bound)) return tolerance * std::abs(reference.rho_i);
-  const bool is_dolp = quantity.bound == Bound::kDolp && (status & kNoDolpPromised) == 0;
+  const bool is_dolp = quantity.bound == Bound::kDolp && (status & kStatusNoDolpPromised) == 0;
   if (is_promised && is_dolp) return tolerance;
   return kInfinity;
 }
@@ -120,11 +117,9 @@ void check_axis(const std::vector<double>& values, const NumberRange& range, con
 }
 
 void check_axes(const Table& table, const Scene& scene, const std::string& name) {
-  const Surface& surface = scene.surface;
-  const bool needs_mean_slope = surface.masking == Masking::kSmith && surface.distribution == Distribution::kCauchy;
   check_axis(table.theta_deg, kZenithDegRange, "theta", name);
   check_axis(table.sigma, kSigmaRange, "sigma", name);
-  check_axis(table.q, needs_mean_slope ? kSmithCauchyQRange : kQRange, "q", name);
+  check_axis(table.q, scene.surface.needs_mean_slope() ? kSmithCauchyQRange : kQRange, "q", name);
 }
 
 bool has_dolp(const Table& table) { return !table.dolp.empty() && !table.error_estimate.empty(); }

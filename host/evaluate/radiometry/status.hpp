@@ -14,4 +14,8 @@ inline constexpr std::uint32_t kStatusOutsideDomain = 4;
 /// I <= 0: the sum of what is emitted and reflected is not a radiation that exists.
 inline constexpr std::uint32_t kStatusNonPositiveIntensity = 8;
 
+/// Without one of these the tolerance is promised for DOLP, or its error said.
+inline constexpr std::uint32_t kStatusNoDolpPromised =
+    kStatusUnphysicalReflectance | kStatusOutsideDomain | kStatusNonPositiveIntensity;
+
 }  // namespace dolp

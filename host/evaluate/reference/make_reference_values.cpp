@@ -19,15 +19,16 @@
 #include "evaluate/reference/hemisphere.hpp"
 #include "evaluate/reference/reference_cases.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
+#include "scene/names.hpp"
 
 namespace {
 
 using dolp::Distribution;
 using dolp::Masking;
 using dolp::Moments;
+using dolp::name_of;
 using dolp::reference::Case;
 using dolp::reference::Group;
-using dolp::reference::name_of;
 
 // Reflection below this share of the albedo is rounding: N = 1.
 constexpr double kNegligible = 1e-12;

@@ -159,13 +159,6 @@ std::vector<Case> exponents() {
 
 }  // namespace
 
-const char* name_of(Distribution distribution) { return distribution == Distribution::kCauchy ? "cauchy" : "gaussian"; }
-
-const char* name_of(Masking masking) {
-  constexpr std::array<const char*, 4> kNames{"none", "v-cavity", "integral", "smith"};
-  return kNames[static_cast<std::size_t>(masking)];
-}
-
 std::vector<Case> hard_cases(const Group& group) {
   const bool is_cauchy = group.distribution == Distribution::kCauchy;
   const bool is_smith = group.masking == Masking::kSmith;

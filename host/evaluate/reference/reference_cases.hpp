@@ -35,10 +35,6 @@ inline constexpr std::array<Group, 8> kGroups{{{Distribution::kCauchy, Masking::
                                                {Distribution::kGaussian, Masking::kVCavity},
                                                {Distribution::kGaussian, Masking::kSmith}}};
 
-/// The names of a group as scenes write them.
-const char* name_of(Distribution distribution);
-const char* name_of(Masking masking);
-
 /// The hard cases of a group: ends of every range, split lines that coincide, indices that reflect nothing or all.
 ///
 /// v-cavity and smith moments vanish at 90 degrees, so that those groups have the case just before ("grazing-limit")

@@ -1,0 +1,52 @@
+// The words of a scene's choices, as scene files, reports and case files write them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+#include "scene/scene.hpp"
+
+namespace dolp {
+
+/// The words of an enumeration, in its order.
+template <class Choice>
+struct Names;
+template <>
+struct Names<Distribution> {
+  static constexpr std::array kAll{"cauchy", "gaussian"};
+};
+template <>
+struct Names<Masking> {
+  static constexpr std::array kAll{"none", "v-cavity", "integral", "smith"};
+};
+template <>
+struct Names<EmissionModel> {
+  static constexpr std::array kAll{"moments", "fresnel"};
+};
+template <>
+struct Names<Mode> {
+  static constexpr std::array kAll{"hemispherical", "bistatic"};
+};
+template <>
+struct Names<Precision> {
+  static constexpr std::array kAll{"auto", "float", "double"};
+};
+
+template <class Choice>
+constexpr const char* name_of(Choice choice) requires requires {
+  Names<Choice>::kAll;
+}
+{ return Names<Choice>::kAll[static_cast<std::size_t>(choice)]; }
+
+/// The choice of that name, nullopt for another word.
+template <class Choice>
+constexpr std::optional<Choice> named(std::string_view word) {
+  const auto found = std::ranges::find(Names<Choice>::kAll, word);
+  if (found == Names<Choice>::kAll.end()) return std::nullopt;
+  return static_cast<Choice>(found - Names<Choice>::kAll.begin());
+}
+
+}  // namespace dolp

@@ -102,11 +102,7 @@ int run_plan(const Options& options) {
                             [&](const ScatteringRequest& request) { add_request(report, request, device); }});
   share_evaluations(report);
   report.work_shares = work_shares(report);
-  if (options.json) {
-    fmt::print("{}\n", plan_json(report).dump(2));
-  } else {
-    fmt::print("{}", plan_text(report));
-  }
+  plan_report(report).print(options.json, false);
   return kExitDone;
 }
 

@@ -13,4 +13,10 @@ std::string result_cells(const PointResult& r) {
   return cells + std::to_string(r.status);
 }
 
+std::string result_csv(const Points& points, const std::vector<PointResult>& results) {
+  std::string csv = points.header + ',' + kResultColumns + '\n';
+  for (std::size_t i = 0; i < results.size(); ++i) csv += points.rows[i] + ',' + result_cells(results[i]) + '\n';
+  return csv;
+}
+
 }  // namespace dolp::cli

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "evaluate/radiometry/radiometry.hpp"
+#include "scene/points.hpp"
 
 namespace dolp::cli {
 
@@ -12,5 +14,8 @@ inline constexpr const char* kResultColumns =
 
 /// The cells of a row in the order of kResultColumns.
 std::string result_cells(const PointResult& result);
+
+/// The columns of the points as they were given, and those of their results.
+std::string result_csv(const Points& points, const std::vector<PointResult>& results);
 
 }  // namespace dolp::cli

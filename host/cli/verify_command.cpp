@@ -1,10 +1,8 @@
-#include <fmt/format.h>
-
-#include <chrono>
 #include <optional>
 
 #include "cli/commands.hpp"
 #include "cli/progress_bar.hpp"
+#include "cli/run_report.hpp"
 #include "cli/verify_report.hpp"
 #include "error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
@@ -21,7 +19,7 @@ namespace {
 constexpr double kDefaultTolerance = 1e-4;
 
 int verify_table(const Options& options) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const Table table = load_table(options.table_path);
   const Scene scene = table_scene(table, options.table_path);
   TableReport report;
@@ -32,12 +30,8 @@ int verify_table(const Options& options) {
     ProgressBar bar(options.quiet);
     report.check = check_table(table, scene, options.table_path, report.options, bar.callback());
   }
-  report.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (options.json) {
-    fmt::print("{}\n", table_json(report).dump(2));
-  } else if (!options.quiet) {
-    fmt::print("{}", table_text(report));
-  }
+  report.wall_s = watch.seconds();
+  table_report(report).print(options.json, options.quiet);
   return report.check.passed() ? kExitDone : kExitAccuracy;
 }
 
@@ -83,11 +77,7 @@ int verify_hard_cases(const Options& options) {
     of_precision.outcomes = qualify(report.cases, *evaluator, report.tolerance, bar.callback());
     of_precision.evaluation = evaluator->report();
   }
-  if (options.json) {
-    fmt::print("{}\n", hard_case_json(report).dump(2));
-  } else if (!options.quiet) {
-    fmt::print("{}", hard_case_text(report, options.all));
-  }
+  hard_case_report(report, options.all).print(options.json, options.quiet);
   return report.failures() == 0 ? kExitDone : kExitAccuracy;
 }
 

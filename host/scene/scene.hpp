@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/dispersion.hpp"
+
 namespace dolp {
 
 enum class Distribution : std::uint32_t { kCauchy = 0, kGaussian = 1 };
@@ -22,13 +24,15 @@ struct OpticalConstants {
   friend bool operator==(const OpticalConstants&, const OpticalConstants&) = default;
 };
 
-/// A quantity tabulated over wavelength (strictly ascending), with the interpolation that suits it.
+/// A quantity tabulated over wavelength (strictly ascending), with the interpolation that suits it: where there is a
+/// formula, that between the first wavelength and the last.
 /// Outside the table the scene reader refuses the scene, so `at` is only asked inside.
 struct SpectralTable {
   enum class Interpolation { kLinear, kLogLog };
   std::vector<double> wavelength_um;
   std::vector<double> value;
   Interpolation interpolation = Interpolation::kLinear;
+  Dispersion formula = {};
   double at(double wavelength_um) const;
 };
 

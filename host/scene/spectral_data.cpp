@@ -39,6 +39,7 @@ SpectralTable parse_irradiance(std::string_view text, const std::string& name) {
 
 double SpectralTable::at(double asked_um) const {
   const double clamped_um = std::clamp(asked_um, wavelength_um.front(), wavelength_um.back());
+  if (formula.number != 0) return formula.at(clamped_um);
   const auto above = std::upper_bound(wavelength_um.begin(), wavelength_um.end(), clamped_um);
   if (above == wavelength_um.end()) return value.back();
   const auto i = static_cast<std::size_t>(above - wavelength_um.begin());

@@ -1,5 +1,6 @@
 // The user's own refractive indices: refractiveindex.info database records and CSV files.
 #include <fmt/format.h>
+#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -169,15 +170,13 @@ void read_item(Material& material, const YAML::Node& item) {
 
 /// Reads the DATA items; everything else in the record is of no interest here.
 void parse_yaml(Material& material, const std::string& text) {
-  if (text.size() > kMostRecordBytes) {
-    throw InputError(
-        fmt::format("{}:1: {} bytes; a record may have {}", material.source, text.size(), kMostRecordBytes));
-  }
   try {
     const YAML::Node record = YAML::Load(text);
     const YAML::Node data = record.IsMap() ? record["DATA"] : YAML::Node();
     if (data.IsDefined() && !data.IsNull() && !data.IsSequence()) fail(material, data, "DATA: must be a list of items");
     for (const YAML::Node& item : data) read_item(material, item);
+  } catch (const YAML::DeepRecursion& error) {
+    throw InputError(place(material, error.mark) + "nested too deeply");
   } catch (const YAML::Exception& error) {
     throw InputError(place(material, error.mark) + "not valid YAML: " + one_line(error.msg));
   }
@@ -186,12 +185,13 @@ void parse_yaml(Material& material, const std::string& text) {
 }  // namespace
 
 Material read_material_file(const std::string& path, const Spectrum& spectrum, const std::string& prefix) {
-  const std::string text = read_text(path, prefix);
   const std::string lower_path = lower_case(path);
+  const bool is_record = lower_path.ends_with(".yml") || lower_path.ends_with(".yaml");
+  const std::string text = read_text(path, prefix, is_record ? kMostRecordBytes : SIZE_MAX);
   Material material;
   material.name = path.substr(path.find_last_of('/') + 1);
   material.source = path;
-  if (lower_path.ends_with(".yml") || lower_path.ends_with(".yaml")) {
+  if (is_record) {
     parse_yaml(material, text);
   } else {
     parse_csv(material, text);

@@ -15,6 +15,7 @@
 #include "evaluate/radiometry/radiometry.hpp"
 #include "evaluate/run/scene_run.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "scene/names.hpp"
 #include "stored_evaluator.hpp"
 #include "verify/qualification.hpp"
 #include "verify/stored_cases.hpp"

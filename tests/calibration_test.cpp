@@ -13,6 +13,7 @@
 #include "calibrate/calibration.hpp"
 #include "plan/rule.hpp"
 #include "program.hpp"
+#include "scene/names.hpp"
 #include "verify/stored_cases.hpp"
 
 namespace dolp {

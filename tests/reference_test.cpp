@@ -19,6 +19,7 @@
 #include "error.hpp"
 #include "evaluate/reference/adaptive.hpp"
 #include "evaluate/reference/mueller.hpp"
+#include "scene/names.hpp"
 #include "verify/stored_cases.hpp"
 
 namespace dolp {

@@ -265,9 +265,9 @@ TEST(SceneExact_VCavityAndSmith, NeverGiveBackMoreThanTheyReceive) {
         for (std::size_t i = 0; i < entries.size(); ++i) {
           // With R = 1 to 1e-8, albedo and rho_I share the error estimate.
           const double most = 1.0 + results[i].rho_error_estimate;
-          EXPECT_LE(results[i].albedo, most) << name_of(scene, entries[i]);
-          EXPECT_LE(results[i].rho_i + std::abs(results[i].rho_q), most) << name_of(scene, entries[i]);
-          EXPECT_EQ(results[i].status & kStatusUnphysicalReflectance, 0U) << name_of(scene, entries[i]);
+          EXPECT_LE(results[i].albedo, most) << label_of(scene, entries[i]);
+          EXPECT_LE(results[i].rho_i + std::abs(results[i].rho_q), most) << label_of(scene, entries[i]);
+          EXPECT_EQ(results[i].status & kStatusUnphysicalReflectance, 0U) << label_of(scene, entries[i]);
         }
       }
     }

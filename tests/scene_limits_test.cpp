@@ -61,7 +61,7 @@ TEST(Limits_RightAngle, DivergingReflectanceLeavesOnlyTheDolp) {
         scene.surface.diffuse = diffuse;
         for (const Evaluator evaluator : kPrecisions) {
           const PointResult r = run_one(scene, 90.0, {0.3, q}, evaluator);
-          const std::string name = name_of(scene, {90.0, {0.3, q}, {}});
+          const std::string name = label_of(scene, {90.0, {0.3, q}, {}});
           EXPECT_TRUE(std::isnan(r.rho_i) && std::isnan(r.rho_q) && std::isnan(r.stokes_i)) << name;
           EXPECT_TRUE(std::isnan(r.stokes_q) && std::isnan(r.stokes_u) && std::isnan(r.stokes_v)) << name;
           const std::uint32_t missed = r.status & kStatusToleranceMissed;
@@ -140,8 +140,8 @@ TEST(Limits_TinySlopes, AreThoseOfTheMirror) {
             const PointResult r = run_one(scene, theta_deg, {sigma, 2.0}, evaluator);
             EXPECT_NEAR(r.rho_i, mirror.rho_i, r.rho_error_estimate * r.rho_i + 1e-15);
             EXPECT_NEAR(r.dolp, mirror.dolp, r.error_estimate + mirror.error_estimate)
-                << name_of(scene, {theta_deg, {sigma, 2.0}, {}});
-            EXPECT_EQ(r.status, 0U) << name_of(scene, {theta_deg, {sigma, 2.0}, {}});
+                << label_of(scene, {theta_deg, {sigma, 2.0}, {}});
+            EXPECT_EQ(r.status, 0U) << label_of(scene, {theta_deg, {sigma, 2.0}, {}});
           }
         }
       }
@@ -192,9 +192,9 @@ TEST(Limits_HardEntries, AreFiniteOrSayWhyNot) {
       const std::vector<PointResult> results = run(scene, entries, evaluator);
       for (std::size_t i = 0; i < entries.size(); ++i) {
         const bool at_right_angle = entries[i].theta_deg == 90.0;
-        expect_sound(results[i], scene.accuracy.tolerance, name_of(scene, entries[i]));
+        expect_sound(results[i], scene.accuracy.tolerance, label_of(scene, entries[i]));
         if (!at_right_angle) {
-          EXPECT_EQ(results[i].status & kStatusOutsideDomain, 0U) << name_of(scene, entries[i]);
+          EXPECT_EQ(results[i].status & kStatusOutsideDomain, 0U) << label_of(scene, entries[i]);
         }
       }
     }
@@ -230,11 +230,11 @@ TEST(Limits_Metals, DolpIsThatOfTheReferenceOrSaysThatItIsNot) {
       for (std::size_t i = 0; i < entries.size(); ++i) {
         const PointResult& r = results[i];
         EXPECT_EQ(r.status & kStatusNoDolpPromised, reference[i].status & kStatusNoDolpPromised)
-            << name_of(scene, entries[i]);
+            << label_of(scene, entries[i]);
         EXPECT_LE(std::abs(r.dolp - reference[i].dolp), r.error_estimate + reference[i].error_estimate)
-            << name_of(scene, entries[i]);
+            << label_of(scene, entries[i]);
         if ((r.status & (kStatusNoDolpPromised | kStatusToleranceMissed)) != 0) continue;
-        EXPECT_NEAR(r.dolp, reference[i].dolp, scene.accuracy.tolerance) << name_of(scene, entries[i]);
+        EXPECT_NEAR(r.dolp, reference[i].dolp, scene.accuracy.tolerance) << label_of(scene, entries[i]);
       }
     }
   });

@@ -76,7 +76,7 @@ inline SmoothReflectance smooth_reflectance(const OpticalConstants& index, long 
 }
 
 /// For messages: the scene and the entry that a check is about.
-inline std::string name_of(const Scene& scene, const SceneEntry& entry) {
+inline std::string label_of(const Scene& scene, const SceneEntry& entry) {
   const OpticalConstants index = entry.index.value_or(scene.surface.material.constant);
   return std::string(name_of(scene.surface.distribution)) + " " + name_of(scene.surface.masking) + " theta " +
          std::to_string(entry.theta_deg) + " log10 sigma " + std::to_string(std::log10(entry.shape.sigma)) + " q " +

@@ -203,7 +203,7 @@ TEST_P(EveryModel, PermutedEntries_KeepTheirBits) {
   for (const std::size_t i : order) permuted.push_back(entries[i]);
   const std::vector<PointResult> again = run(scene, permuted, evaluator);
   for (std::size_t i = 0; i < order.size(); ++i) {
-    EXPECT_EQ(bits_of(again[i]), bits_of(results[order[i]])) << name_of(scene, permuted[i]);
+    EXPECT_EQ(bits_of(again[i]), bits_of(results[order[i]])) << label_of(scene, permuted[i]);
   }
 }
 
@@ -227,7 +227,7 @@ TEST_P(EveryModel, Grid_EqualsThePointsOneByOne) {
   const std::vector<SceneEntry> entries = grid_entries(scene);
   const std::vector<PointResult> results = run(scene, entries, evaluator);
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    EXPECT_EQ(bits_of(run(scene, {entries[i]}, evaluator).front()), bits_of(results[i])) << name_of(scene, entries[i]);
+    EXPECT_EQ(bits_of(run(scene, {entries[i]}, evaluator).front()), bits_of(results[i])) << label_of(scene, entries[i]);
   }
 }
 

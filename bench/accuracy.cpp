@@ -12,6 +12,7 @@
 #include "bench/study_run.hpp"
 #include "bench/timing.hpp"
 #include "bench/truth.hpp"
+#include "model/choices.hpp"
 
 namespace dolp::bench {
 namespace {
@@ -95,7 +96,7 @@ void Study::describe() {
     json["cases"].push_back({{"name", one.name},
                              {"what", one.what},
                              {"distribution", "cauchy"},
-                             {"masking", masking_name(one.masking)},
+                             {"masking", name_of(one.masking)},
                              {"theta_deg", one.theta_deg},
                              {"sigma", one.shape.sigma},
                              {"q", one.shape.q},

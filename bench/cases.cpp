@@ -28,8 +28,6 @@ const std::vector<Case>& cases() {
   return list;
 }
 
-std::string masking_name(Masking masking) { return name_of(masking); }
-
 MomentsRequest neighbourhood(const Case& which, std::size_t count) {
   MomentsRequest request;
   request.masking = which.masking;

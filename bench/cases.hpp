@@ -22,9 +22,6 @@ struct Case {
 /// The cases in the order of figures.
 const std::vector<Case>& cases();
 
-/// "none", "v-cavity", "integral" or "smith", as in scenes.
-std::string masking_name(Masking masking);
-
 /// A request of `count` entries of the same cost that share nothing: the first is the case itself, each other one has a
 /// theta, sigma and q of its own within 1e-3 (relative) of it.
 MomentsRequest neighbourhood(const Case& which, std::size_t count);

@@ -8,6 +8,7 @@
 #include "bench/child.hpp"
 #include "bench/direct_brdf.hpp"
 #include "bench/method.hpp"
+#include "model/choices.hpp"
 
 namespace dolp::bench {
 namespace {
@@ -39,16 +40,15 @@ class Dblquad final : public Solver {
 
  private:
   void add(const Entry& entry, double tolerance, Solution& solution) const {
-    const nlohmann::json question = {
-        {"distribution", entry.distribution == Distribution::kCauchy ? "cauchy" : "gaussian"},
-        {"masking", masking_name(entry.masking)},
-        {"theta_rad", entry.theta_rad},
-        {"sigma", entry.shape.sigma},
-        {"q", entry.shape.q},
-        {"n", entry.index.n},
-        {"k", entry.index.k},
-        {"tolerance", tolerance},
-        {"time_limit_s", time_limit_s_}};
+    const nlohmann::json question = {{"distribution", name_of(entry.distribution)},
+                                     {"masking", name_of(entry.masking)},
+                                     {"theta_rad", entry.theta_rad},
+                                     {"sigma", entry.shape.sigma},
+                                     {"q", entry.shape.q},
+                                     {"n", entry.index.n},
+                                     {"k", entry.index.k},
+                                     {"tolerance", tolerance},
+                                     {"time_limit_s", time_limit_s_}};
     const ChildOutcome outcome = run_child({python_, kScript, question.dump()}, ChildErrors::kShown);
     const nlohmann::json reply = nlohmann::json::parse(outcome.out, nullptr, false);
     if (outcome.status != 0 || !reply.is_object()) throw Unavailable(kScript + " failed; its message is above");

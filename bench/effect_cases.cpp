@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "model/choices.hpp"
+
 namespace dolp::bench {
 namespace {
 
@@ -69,7 +71,7 @@ struct Change {
 };
 
 EffectGroup group(const std::string& effect, const Scene& base, const std::vector<Change>& changes) {
-  EffectGroup made{effect, base.geometry.mode == Mode::kBistatic ? "bistatic" : "hemispherical", {}};
+  EffectGroup made{effect, name_of(base.geometry.mode), {}};
   for (const Change& change : changes) {
     made.settings.push_back({change.name, base});
     change.apply(made.settings.back().scene);
@@ -77,8 +79,8 @@ EffectGroup group(const std::string& effect, const Scene& base, const std::vecto
   return made;
 }
 
-Change masking(const std::string& name, Masking masking) {
-  return {name, [masking](Scene& scene) { scene.surface.masking = masking; }};
+Change masking(Masking masking) {
+  return {name_of(masking), [masking](Scene& scene) { scene.surface.masking = masking; }};
 }
 
 Change source(const std::string& name, double irradiance) {
@@ -97,8 +99,8 @@ std::vector<EffectGroup> surface_groups(const Scene& base) {
           group("distribution", base,
                 {{"cauchy"}, {"gaussian", [](Scene& scene) { scene.surface.distribution = Distribution::kGaussian; }}}),
           group("masking", base,
-                {masking("none", Masking::kNone), masking("v-cavity", Masking::kVCavity),
-                 masking("integral", Masking::kIntegral), masking("smith", Masking::kSmith)}),
+                {masking(Masking::kNone), masking(Masking::kVCavity), masking(Masking::kIntegral),
+                 masking(Masking::kSmith)}),
           group("complex index", base,
                 {{"k = 0"}, {"k = 0.5", [](Scene& scene) { scene.surface.material.constant.k = 0.5; }}})};
 }

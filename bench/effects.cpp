@@ -17,6 +17,7 @@
 #include "bench/timing.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "model/choices.hpp"
 #include "model/status.hpp"
 #include "plan/effects.hpp"
 #include "run/scene_run.hpp"
@@ -111,8 +112,8 @@ ordered_json branches_row(const MomentsRequest& request, const BranchTimes& time
   const std::vector<double> uniform_s = per_entry(times.uniform_s, entries);
   const double specialised_s = median(per_entry(times.specialised_s, entries));
   ordered_json row = {{"part", "branches"}, {"effect", "branches"}};
-  row["case"] = request.distribution == Distribution::kCauchy ? "cauchy" : "gaussian";
-  row["setting"] = masking_name(request.masking);
+  row["case"] = name_of(request.distribution);
+  row["setting"] = name_of(request.masking);
   row["error"] = times.error;
   row["time_s"] = median(uniform_s);
   row["specialised_time_s"] = specialised_s;

@@ -1,5 +1,6 @@
 // The registry: every method that any study compares, the ones that lose included.
 #include "bench/method.hpp"
+#include "model/choices.hpp"
 
 namespace dolp::bench {
 namespace {
@@ -85,7 +86,7 @@ void add_adaptive(std::vector<Method>& list) {
 Method evaluator(const std::string& name, Precision precision,
                  std::function<std::unique_ptr<Solver>(const SolverOptions&)> make) {
   const bool in_double = precision == Precision::kDouble;
-  const std::string suffix = in_double ? "double" : "float";
+  const std::string suffix = name_of(precision);
   const bool on_device = name == "vulkan";
   return {.name = name + "-" + suffix,
           .label = (on_device ? "dolp Vulkan " : "dolp CPU text ") + suffix,

@@ -17,6 +17,7 @@
 #include "bench/study.hpp"
 #include "bench/study_run.hpp"
 #include "bench/timing.hpp"
+#include "model/choices.hpp"
 
 namespace dolp::bench {
 namespace {
@@ -28,10 +29,11 @@ struct PeerCase {
   std::string name;
   Masking masking;
 };
-const std::vector<PeerCase> kCases = {{"none", Masking::kNone},
-                                      {"v-cavity", Masking::kVCavity},
-                                      {"integral", Masking::kIntegral},
-                                      {"smith", Masking::kSmith}};
+std::vector<PeerCase> peer_cases() {
+  std::vector<PeerCase> cases;
+  for (const char* name : Names<Masking>::kAll) cases.push_back({name, *named<Masking>(name)});
+  return cases;
+}
 
 // Whose kernels the others are compared with: every entry integrated, and as `dolp table` computes a grid.
 constexpr const char* kOwn = "vulkan-float";
@@ -95,7 +97,7 @@ PeerBatch timed_batch(const Method& method, Solver& solver, const PeerSample& sa
 }
 
 ordered_json row_start(const Method& method, const PeerSample& sample, double tolerance) {
-  return {{"method", method.name}, {"case", masking_name(sample.masking)}, {"tolerance", tolerance}};
+  return {{"method", method.name}, {"case", name_of(sample.masking)}, {"tolerance", tolerance}};
 }
 
 class Study {
@@ -104,7 +106,7 @@ class Study {
       : run_(run),
         effort_(run.options().quick ? kQuick : kFull),
         methods_(chosen(methods(), run.options().methods, "--method")),
-        cases_(chosen(kCases, run.options().cases, "--case")) {
+        cases_(chosen(peer_cases(), run.options().cases, "--case")) {
     run_.expect(methods_.size() * cases_.size() * effort_.tolerances.size());
   }
 

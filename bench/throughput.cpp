@@ -22,6 +22,7 @@
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/devices.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "model/choices.hpp"
 
 namespace dolp::bench {
 namespace {
@@ -115,7 +116,7 @@ ordered_json grid_row(Masking masking, const GridRun& run) {
   const double evaluations = run.timed->evaluations() / static_cast<double>(entries);
   const std::string setting =
       fmt::format("{}, {:g}{}", run.size.text(), run.tolerance, run.may_interpolate ? "" : ", off");
-  ordered_json row = row_start("grids", masking_name(masking), setting);
+  ordered_json row = row_start("grids", name_of(masking), setting);
   row["grid"] = {run.size.thetas, run.size.sigmas, run.size.qs};
   row["tolerance"] = run.tolerance;
   row["entries"] = entries;
@@ -260,7 +261,7 @@ void Study::run_arithmetic() {
       const double kernel_s = median(measurement.raw_kernel_s);
       const double flops_per_s = static_cast<double>(work.counts.flops()) / kernel_s;
       const auto each = [&](std::uint64_t count) { return std::round(static_cast<double>(count) / entries); };
-      ordered_json row = row_start("arithmetic", masking_name(masking), tolerance);
+      ordered_json row = row_start("arithmetic", name_of(masking), tolerance);
       row["entries"] = request.entries.size();
       row["time_s"] = rounded_time(kernel_s / entries);
       row["evaluations"] = *measurement.evaluations / entries;
@@ -283,7 +284,7 @@ void Study::run_kernels() {
   for (const Masking masking : kernel_maskings()) {
     const std::size_t entries = main_grid().entries();
     const std::vector<double> times_s = per_entry(kernel_times(masking, kTolerance).raw_kernel_s, entries);
-    ordered_json row = row_start("kernels", masking_name(masking), kTolerance);
+    ordered_json row = row_start("kernels", name_of(masking), kTolerance);
     row["entries"] = entries;
     row["time_s"] = median(times_s);
     row["time_min_s"] = minimum(times_s);

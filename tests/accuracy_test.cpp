@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "model/choices.hpp"
 #include "model/point_result.hpp"
 #include "run/scene_run.hpp"
 #include "spectrum/planck.hpp"

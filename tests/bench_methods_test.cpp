@@ -14,6 +14,7 @@
 #include "bench/report.hpp"
 #include "bench/timing.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
+#include "model/choices.hpp"
 
 namespace {
 
@@ -122,7 +123,7 @@ TEST(BenchFormulas, AdaptiveCubature_TightTolerance_AgreesWithReferenceForBothDi
   const std::unique_ptr<Solver> hcubature = solver_of("hcubature");
   for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
     for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
-      SCOPED_TRACE(masking_name(masking));
+      SCOPED_TRACE(name_of(masking));
       MomentsRequest request;
       request.distribution = distribution;
       request.masking = masking;

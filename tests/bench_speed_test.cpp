@@ -11,6 +11,7 @@
 #include "bench/method.hpp"
 #include "bench/operations.hpp"
 #include "bench/truth.hpp"
+#include "model/choices.hpp"
 
 namespace {
 
@@ -68,7 +69,7 @@ TEST(BenchNative, GroupedGrid_EveryMasking_GivesTheMomentsOfTheDevice) {
   const std::unique_ptr<Solver> native = solver_of("native-float");
   const std::unique_ptr<Solver> device = solver_of("vulkan-float");
   for (const Masking masking : kMaskings) {
-    SCOPED_TRACE(masking_name(masking));
+    SCOPED_TRACE(name_of(masking));
     const MomentsRequest request = small_grid(masking);
     const Solution ours = native->solve(request, 1e-4);
     const Solution theirs = device->solve(request, 1e-4);
@@ -92,7 +93,7 @@ TEST(BenchDeviceRule, ManyNodes_EveryMasking_GivesTheSumOfTheHost) {
   const std::unique_ptr<Solver> device = solver_of("vulkan-gauss");
   const std::unique_ptr<Solver> host = solver_of("gauss");
   for (const Masking masking : kMaskings) {
-    SCOPED_TRACE(masking_name(masking));
+    SCOPED_TRACE(name_of(masking));
     const MomentsRequest request = sample_request(masking, places);
     EXPECT_LE(largest_difference(device->solve(request, kNodes).answers, host->solve(request, kNodes).answers),
               kRounding);

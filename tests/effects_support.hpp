@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
+#include "model/choices.hpp"
 #include "plan/effects.hpp"
 #include "properties_support.hpp"
 #include "run/scene_run.hpp"
@@ -104,8 +105,8 @@ inline std::string describe(const Scene& s) {
       "{:.2g}",
       name_of(Model{s.surface.distribution, s.surface.masking}), s.surface.material.constant.n,
       s.surface.material.constant.k, s.surface.specular, s.surface.diffuse, s.surface.diffuse_exponent,
-      s.spectrum.min_um, s.spectrum.max_um, s.geometry.mode == Mode::kBistatic ? "bistatic" : "hemispherical",
-      s.geometry.view_zenith_deg, s.geometry.relative_azimuth_deg, s.accuracy.tolerance);
+      s.spectrum.min_um, s.spectrum.max_um, name_of(s.geometry.mode), s.geometry.view_zenith_deg,
+      s.geometry.relative_azimuth_deg, s.accuracy.tolerance);
   if (s.emission)
     text += fmt::format(", emission {:.9g} K{}", s.emission->temperature_K,
                         s.emission->model == EmissionModel::kFresnel ? " fresnel" : "");

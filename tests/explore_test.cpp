@@ -248,8 +248,7 @@ std::string measured_error(const std::string& text) {
 TEST(Measured, WrongFiles_AreNamedByLineAndColumn) {
   EXPECT_EQ(measured_error("theta_deg\n1\n"), "m.csv:1: column \"dolp\" is missing, a number in [-1, 1]");
   EXPECT_EQ(measured_error("dolp,theta_deg\n0.1,95\n"), "m.csv:2: theta_deg = 95: out of range, a number in [0, 90]");
-  EXPECT_EQ(measured_error("theta_deg,dolp\n60,0.1\n61\n"),
-            "m.csv:3: dolp = : the value is missing, a number in [-1, 1]");
+  EXPECT_EQ(measured_error("theta_deg,dolp\n60,0.1\n61\n"), "m.csv:3: dolp: the value is missing, a number in [-1, 1]");
   EXPECT_EQ(measured_error("theta_deg,who,dolp\n60,me,0.1\n"), "no error");
 }
 

@@ -17,6 +17,7 @@
 #include "evaluate/reference/hemisphere.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "model/choices.hpp"
 #include "model/point_result.hpp"
 #include "run/scene_run.hpp"
 #include "stored_evaluator.hpp"

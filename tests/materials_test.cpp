@@ -120,6 +120,69 @@ TEST(MaterialFile_WithoutK, HasNone) {
   EXPECT_EQ(read_material_file(file.path(), {8.0, 12.0}, "").at(10.0), (OpticalConstants{2.0, 0.0}));
 }
 
+std::string formula(const std::string& range, const std::string& coefficients, int number = 1) {
+  return "DATA:\n  - type: formula " + std::to_string(number) + "\n    wavelength_range: " + range +
+         "\n    coefficients: " + coefficients + "\n";
+}
+
+// Published coefficients of every formula, and the index by hand from the equation; where one is well known, beside it.
+TEST(Dispersion_Formulas, HaveThePublishedValues) {
+  struct Case {
+    int number;
+    const char* coefficients;
+    double wavelength_um;
+    double n;
+  };
+  const std::vector<Case> cases = {
+      // fused silica, Malitson 1965: 1.4504
+      {1, "0 0.6961663 0.0684043 0.4079426 0.1162414 0.8974794 9.896161", 1.0, 1.4504174},
+      // ZnSe, Connolly 1979: 2.4028
+      {1, "0 4.45813734 0.200859853 0.467216334 0.391371166 2.89566290 47.1362108", 10.6, 2.4027809},
+      // NaCl, Li 1976: 1.4947
+      {1, "0.00055 0.198 0.05 0.48398 0.1 0.38696 0.128 0.25998 0.158 0.08796 40.5 3.17064 60.98 0.30038 120.34", 10.0,
+       1.4947343},
+      // Ge, Burnett 2016: 4.0036
+      {2, "0 0.4886331 1.393959 14.5142535 0.1626427 0.0091224 752.190", 10.6, 4.0035563},
+      // BK7: n_d = 1.51680, in two notations
+      {2, "0 1.03961212 0.00600069867 0.231792344 0.0200179144 1.01046945 103.560653", 0.5875618, 1.5168000},
+      {3, "2.2718929 -0.010108077 2 0.010592509 -2 2.0816965e-4 -4 -7.6472538e-6 -6 4.9240991e-7 -8", 0.5875618,
+       1.5167997},
+      // LiB3O5, Chen 1989: 1.5656; TiO2, DeVore 1951: 2.613
+      {4, "2.4542 0.01125 0 0.01135 1 0 0 0 1 -0.01388 2", 1.0, 1.5657903},
+      {4, "5.913 0.2441 0 0.0803 1", 0.5893, 2.6129140},
+      // BK7 of the textbooks
+      {5, "1.5046 0.0042 -2", 0.5893, 1.5166942},
+      // air, Ciddor 1996: 1.000277
+      {6, "0 0.05792105 238.0185 0.00167917 57.362", 0.5893, 1.0002771},
+      // Si, Edwards 1980: 3.42
+      {7, "3.41983 0.159906 -0.123109 1.26878e-6 -1.95104e-9", 10.0, 3.4215246},
+      // AgBr, Schröter 1931
+      {8, "0.452505 0.09939 0.070537 -0.0015", 0.5893, 2.2555035},
+      // urea, Rosker 1985
+      {9, "2.51527 0.0240 0.0300 0.0202 1.52 0.8771", 0.5893, 1.6062783},
+  };
+  constexpr double kDigits = 1e-7;  // of the values above
+  for (const Case& row : cases) {
+    const double um = row.wavelength_um;
+    const std::string range = std::to_string(0.99 * um) + " " + std::to_string(1.01 * um);
+    const TemporaryFile file("f.yml", formula(range, row.coefficients, row.number));
+    const Material material = read_material_file(file.path(), {um, um}, "");
+    EXPECT_NEAR(material.at(um).n, row.n, kDigits) << row.number << ": " << row.coefficients;
+    EXPECT_EQ(material.at(um).k, 0.0);
+  }
+}
+
+TEST(MaterialFile_FormulaAndTable, AreJoined) {
+  const TemporaryFile file("f.yml", formula("0.5 18",
+                                            "0 4.45813734 0.200859853 0.467216334 0.391371166 2.8956629 "
+                                            "47.1362108") +
+                                        "  - type: tabulated k\n    data: |\n      9 0.5\n      12 1.0\n");
+  const Material material = read_material_file(file.path(), {9.0, 12.0}, "");
+  EXPECT_FALSE(material.is_constant());
+  EXPECT_NEAR(material.at(10.6).n, 2.4027809, 1e-7);
+  EXPECT_DOUBLE_EQ(material.at(10.5).k, 0.75);
+}
+
 TEST(MaterialFile_Wrong, NamesFileAndLine) {
   struct Case {
     const char* name;
@@ -136,7 +199,28 @@ TEST(MaterialFile_Wrong, NamesFileAndLine) {
       {"e.csv", "wl,n,k\n8,1,1\n8,1,1\n", "e.csv:3: wavelength_um = 8: must be greater than 8"},
       {"e.csv", "wl,n,k\n0.01,1,1\n", "e.csv:2: wavelength_um = 0.01: must be in [0.1, 1e4]"},
       {"e.csv", "wl,k\n8,1\n", "e.csv:1: no values of n"},
-      {"e.yml", "DATA:\n  - type: formula 1\n", "e.yml:2: type = formula 1: must be tabulated nk"},
+      {"e.yml", "DATA:\n  - type: formula 10\n", "e.yml:2: type = formula 10: must be tabulated nk"},
+      {"e.yml", "DATA:\n  - type: formula 1\n    coefficients: 0 1 0.1\n", "e.yml:2: wavelength_range: missing"},
+      {"e.yml", formula("8 14", ""), "e.yml:2: coefficients: missing; a DATA item must have it"},
+      {"e.yml", formula("8 14", "0 1"), "e.yml:4: coefficients = 0 1: 2 numbers; formula 1 takes 1, 3, 5,"},
+      {"e.yml", formula("8 14", "0 1 x"), "e.yml:4: coefficients = x: not a number"},
+      {"e.yml", formula("8", "0 1 0.1"), "e.yml:3: wavelength_range = 8: must be two numbers, in um"},
+      {"e.yml", formula("14 8", "0 1 0.1"), "e.yml:3: wavelength_um = 8: must be greater than 14"},
+      {"e.yml", formula("0.01 14", "0 1 0.1"), "e.yml:3: wavelength_um = 0.01: must be in [0.1, 1e4]"},
+      {"e.yml", formula("8 14", "-3 1 0.1"), "e.yml:3: n = "},
+      {"e.yml", formula("8 14", "0 1 11"), "e.yml:3: n = "},
+      {"e.yml", formula("8 14", "0 0.5 11"), "e.yml:4: n = "},
+      {"e.yml", formula("1 5", "0 1 0.1"), "known at 1 to 5 um, and the spectrum is 10.6 um"},
+      {"e.yml", formula("8 14", "0 1 0.1") + "  - type: tabulated n\n    data: 20 1\n",
+       "e.yml:5: type = tabulated n: n is given twice"},
+      {"e.yml", "DATA: 1\n", "e.yml:1: DATA: must be a list of items"},
+      {"e.yml", "DATA:\n  - 1\n", "e.yml:2: a DATA item has the keys type and data"},
+      {"e.yml", "DATA:\n  - type: [1]\n", "e.yml:2: type: missing"},
+      {"e.yml", "DATA:\n  - {type\n", "not valid YAML: "},
+      {"e.yml", "a: *b\n", "e.yml:1: not valid YAML: "},
+      {"e.yml", std::string(1U << 20U, '['), "e.yml:1: nested too deeply"},
+      {"e.yml", "a: &a [*a]\nDATA: *a\n", "a DATA item has the keys type and data"},
+      {"e.yml", std::string(3U << 20U, ' '), "is longer than 2097152 bytes"},
       {"e.yml", "DATA:\n  - type: tabulated n\n    data: |\n        8 1 1\n",
        "e.yml:4: 8 1 1: 3 values; 2 are expected"},
       {"e.yml", "DATA:\n  - type: tabulated n\n    rows: 1\n",

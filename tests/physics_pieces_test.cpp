@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "model/choices.hpp"
 #include "physics_text.hpp"
 
 namespace dolp {
@@ -20,7 +21,6 @@ using std::numbers::pi;
 using Text = tested_double::Text;
 
 constexpr std::array kMaskings = {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith};
-constexpr std::array kMaskingNames = {"none", "v-cavity", "integral", "smith"};
 
 // Indices without and with total reflection.
 constexpr std::array kIndices = {1.508, 0.999, 0.8, std::numbers::sqrt2 / 2.0, 0.5, 0.1};
@@ -48,8 +48,8 @@ struct Direction {
   kernel::IndexNode index{};
   std::size_t pieces() const { return static_cast<std::size_t>(node.piece_count); }
   std::string name() const {
-    return std::string(kMaskingNames[static_cast<std::size_t>(masking)]) + " theta " + std::to_string(theta_deg) +
-           (has_line ? " with line" : "") + " critical cos " + std::to_string(index.critical_cos);
+    return std::string(name_of(masking)) + " theta " + std::to_string(theta_deg) + (has_line ? " with line" : "") +
+           " critical cos " + std::to_string(index.critical_cos);
   }
 };
 

@@ -12,6 +12,8 @@
 #include <string>
 #include <type_traits>
 
+#include "model/choices.hpp"
+
 namespace dolp::tested_float {
 using real = float;
 using real2 = glm::vec2;
@@ -109,8 +111,7 @@ struct ShapeCase {
 
 inline std::string name_of(const ShapeCase& shape) {
   std::array<char, 80> text{};
-  const char* distribution = shape.distribution == Distribution::kCauchy ? "cauchy" : "gaussian";
-  std::snprintf(text.data(), text.size(), "%s sigma %g q %g", distribution, shape.sigma, shape.q);
+  std::snprintf(text.data(), text.size(), "%s sigma %g q %g", name_of(shape.distribution), shape.sigma, shape.q);
   return text.data();
 }
 

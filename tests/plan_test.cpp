@@ -16,6 +16,7 @@
 
 #include "evaluate/cpu/text.hpp"
 #include "model/angles.hpp"
+#include "model/choices.hpp"
 #include "plan/kernel_data.hpp"
 #include "plan/rule.hpp"
 
@@ -25,7 +26,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr std::array kMaskings = {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith};
-constexpr std::array kMaskingNames = {"none", "v-cavity", "integral", "smith"};
 constexpr std::array kDistributions = {Distribution::kCauchy, Distribution::kGaussian};
 constexpr std::array kHardDirectionsDeg = {0.0,  1e-6, 12.857142857, 12.9, 18.0,  30.0, 30.2,
                                            44.9, 45.0, 45.1,         60.0, 89.99, 90.0};
@@ -108,9 +108,8 @@ TEST(KernelDataOrders, EveryTolerance_StaysBelowTheDriversLoopLimit) {
           EXPECT_EQ(static_cast<double>(data.rule_nodes.size()), 2.5 * order * (order + 1.0));
           most = std::max(most, iterations);
         }
-        std::printf("%s %s%s: at most %.0f iterations\n", distribution == Distribution::kCauchy ? "cauchy" : "gaussian",
-                    kMaskingNames[static_cast<std::size_t>(masking)], total_reflection ? ", total reflection" : "",
-                    most);
+        std::printf("%s %s%s: at most %.0f iterations\n", name_of(distribution), name_of(masking),
+                    total_reflection ? ", total reflection" : "", most);
       }
     }
   }
@@ -166,14 +165,12 @@ TEST(KernelDataOrders, WorstIterations_BoundTheEvaluationsOfEveryEntry) {
             const Computed entry = computed(masking, tolerance, theta_deg, shape, index);
             const double bound = worst_iterations(entry.data);
             fullest = std::max(fullest, entry.node.evaluations / bound);
-            EXPECT_LE(entry.node.evaluations, bound)
-                << kMaskingNames[static_cast<std::size_t>(masking)] << " tolerance " << tolerance << " sigma "
-                << shape.sigma << " theta " << theta_deg << " n " << index.n;
+            EXPECT_LE(entry.node.evaluations, bound) << name_of(masking) << " tolerance " << tolerance << " sigma "
+                                                     << shape.sigma << " theta " << theta_deg << " n " << index.n;
           }
         }
       }
-      std::printf("%s, tolerance %g: at most %.2f of the bound\n", kMaskingNames[static_cast<std::size_t>(masking)],
-                  tolerance, fullest);
+      std::printf("%s, tolerance %g: at most %.2f of the bound\n", name_of(masking), tolerance, fullest);
     }
   }
 }
@@ -240,8 +237,8 @@ TEST(KernelDataOrders, TighterTolerance_NeverCostsLess) {
             const double tolerance = std::pow(10.0, -exponent);
             const double evaluations =
                 computed(masking, tolerance, theta_deg, shape, {2.0, 0.7}, distribution).node.evaluations;
-            EXPECT_GE(evaluations, before) << kMaskingNames[static_cast<std::size_t>(masking)] << " theta " << theta_deg
-                                           << " sigma " << shape.sigma << " tolerance " << tolerance;
+            EXPECT_GE(evaluations, before)
+                << name_of(masking) << " theta " << theta_deg << " sigma " << shape.sigma << " tolerance " << tolerance;
             if (first == 0.0) first = evaluations;
             before = evaluations;
           }
@@ -448,9 +445,9 @@ TEST(Cut, WhatItLeavesOut_IsBelowItsBoundAndAShareOfTheTolerance) {
             ++with_cut;
             const Moments nothing = moments_from_kernel({}, entry.data, entry.data.entries[0], 0x1p-53);
             const double bound = nothing.albedo_error;
-            const std::string where = std::string(kMaskingNames[static_cast<std::size_t>(masking)]) + " theta " +
-                                      std::to_string(theta_deg) + " sigma " + std::to_string(shape.sigma) + " q " +
-                                      std::to_string(shape.q) + " tolerance " + std::to_string(tolerance);
+            const std::string where = std::string(name_of(masking)) + " theta " + std::to_string(theta_deg) +
+                                      " sigma " + std::to_string(shape.sigma) + " q " + std::to_string(shape.q) +
+                                      " tolerance " + std::to_string(tolerance);
             // v-cavity hides all but 2 cos(theta) of a facet, smith a share that depends on theta
             if (masking == Masking::kNone || masking == Masking::kIntegral) {
               EXPECT_LE(beyond, bound * (1.0 + 1e-9)) << where;
@@ -476,7 +473,7 @@ TEST(Cut, TighterTolerance_AddsNoMoreThanTheBounds) {
           const Moments wide = computed(masking, 1e-2, theta_deg, shape, {2.0, 0.7}, distribution).moments();
           const Moments tight = computed(masking, 1e-10, theta_deg, shape, {2.0, 0.7}, distribution).moments();
           EXPECT_NEAR(wide.albedo, tight.albedo, wide.albedo_error + tight.albedo_error)
-              << kMaskingNames[static_cast<std::size_t>(masking)] << " theta " << theta_deg << " sigma " << shape.sigma;
+              << name_of(masking) << " theta " << theta_deg << " sigma " << shape.sigma;
           EXPECT_NEAR(wide.r_i, tight.r_i, wide.r_i_error + tight.r_i_error) << theta_deg << " " << shape.sigma;
           EXPECT_NEAR(wide.r_q, tight.r_q, wide.r_q_error + tight.r_q_error) << theta_deg << " " << shape.sigma;
           EXPECT_NEAR(wide.deficit, tight.deficit, wide.deficit_error + tight.deficit_error)
@@ -536,10 +533,9 @@ TEST(PlannedOrders, ScanOfOrdinarySurfaces_MissesTheToleranceRarely) {
         worst = std::max(worst, error);
         evaluations += moments.evaluations;
       }
-      std::printf("%-8s %-8s missed %d, worst estimate %.2g, mean evaluations %.0f\n",
-                  distribution == Distribution::kCauchy ? "cauchy" : "gaussian",
-                  kMaskingNames[static_cast<std::size_t>(masking)], missed, worst, evaluations / kScanEntries);
-      EXPECT_LE(missed, kMostMissed * kScanEntries) << kMaskingNames[static_cast<std::size_t>(masking)];
+      std::printf("%-8s %-8s missed %d, worst estimate %.2g, mean evaluations %.0f\n", name_of(distribution),
+                  name_of(masking), missed, worst, evaluations / kScanEntries);
+      EXPECT_LE(missed, kMostMissed * kScanEntries) << name_of(masking);
     }
   }
 }

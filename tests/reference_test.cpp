@@ -19,6 +19,7 @@
 #include "base/error.hpp"
 #include "evaluate/reference/adaptive.hpp"
 #include "evaluate/reference/mueller.hpp"
+#include "model/choices.hpp"
 #include "verify/stored_cases.hpp"
 
 namespace dolp {

@@ -10,6 +10,7 @@
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
+#include "model/choices.hpp"
 #include "run/scene_run.hpp"
 
 namespace scene_run_support {

@@ -102,9 +102,9 @@ TEST(SpectralRule, FlatMaterialSegments_ShareOneSample) {
   EXPECT_EQ(spectral_rule(scene).samples.size(), 1u);
 }
 
-TEST(SpectralRule, TabulatedMaterialBand_IntegratesReflectancesToItsPromise) {
+void expect_promised_reflectances(const Material& material) {
   Scene scene = night_scene();
-  scene.surface.material = tabulated_material();
+  scene.surface.material = material;
   scene.spectrum = {7.5, 14.5};
   scene.source = Source{};
   scene.source->kind = Source::Kind::kTabulated;
@@ -131,6 +131,16 @@ TEST(SpectralRule, TabulatedMaterialBand_IntegratesReflectancesToItsPromise) {
     EXPECT_NEAR(static_cast<double>(actual_emitted / emitted), 1.0, kBandAgreement) << cosine;
     EXPECT_NEAR(static_cast<double>(actual_direct / direct), 1.0, kBandAgreement) << cosine;
   }
+}
+
+TEST(SpectralRule, TabulatedMaterialBand_IntegratesReflectancesToItsPromise) {
+  expect_promised_reflectances(tabulated_material());
+}
+
+TEST(SpectralRule, FormulaMaterialBand_IntegratesReflectancesToItsPromise) {
+  Material material = tabulated_material();  // of which k is kept
+  material.n = {{7.0, 15.0}, {0.0, 0.0}, SpectralTable::Interpolation::kLinear, {1, {0.0, 4.458, 0.2, 2.896, 47.14}}};
+  expect_promised_reflectances(material);
 }
 
 }  // namespace

@@ -1,16 +1,13 @@
-#include <fmt/format.h>
-
-#include <cmath>
-#include <cstdio>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
+#include "cli/report.hpp"
 #include "evaluate/vulkan/devices.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "model/choices.hpp"
 #include "terminal/exit_status.hpp"
 #include "verify/qualification.hpp"
 
@@ -31,7 +28,7 @@ struct Quality {
 
 Quality quality_in(const DeviceDescription& device, std::size_t position, Precision precision) {
   const bool in_double = precision == Precision::kDouble;
-  Quality quality{in_double ? "double" : "float", {}, {}};
+  Quality quality{name_of(precision), {}, {}};
   if (!device.usable) quality.why_not = "the device is not usable";
   if (in_double && !device.float64) quality.why_not = "the device has no double precision (shaderFloat64)";
   if (!quality.why_not.empty()) return quality;
@@ -47,70 +44,54 @@ Quality quality_in(const DeviceDescription& device, std::size_t position, Precis
   return quality;
 }
 
-std::string quality_text(const Quality& quality) {
-  if (!quality.measured) return fmt::format("   {:<6} not measured: {}\n", quality.precision, quality.why_not);
+Report quality_report(const Quality& quality) {
+  Report report;
+  if (!quality.measured) {
+    report.line("   {:<6} not measured: {}", quality.precision, key("why_not", quality.why_not));
+    return report;
+  }
   const DeviceQuality& q = *quality.measured;
-  return fmt::format(
-      "   {:<6} error of rho at most {:.1e} in {} ordinary cases, {} of which say that they miss {:g}{}\n",
-      quality.precision, q.worst_error, q.cases, q.missed, q.tolerance,
-      q.is_sound ? "" : "; SOME ERRORS EXCEED THEIR ESTIMATES, see dolp verify --hard-cases");
+  report.line("   {:<6} error of rho at most {:.1e} in {} ordinary cases, {} of which say that they miss {:g}{}",
+              quality.precision, key("worst_rho_error", q.worst_error), key("cases", q.cases),
+              key("missed_tolerance", q.missed), key("tolerance", q.tolerance),
+              q.is_sound ? "" : "; SOME ERRORS EXCEED THEIR ESTIMATES, see dolp verify --hard-cases");
+  report.values({{"worst_case", q.worst_case}, {"sound", q.is_sound}});
+  return report;
 }
 
-nlohmann::ordered_json quality_json(const Quality& quality) {
-  if (!quality.measured) return {{"why_not", quality.why_not}};
-  const DeviceQuality& q = *quality.measured;
-  const auto error = std::isfinite(q.worst_error) ? nlohmann::ordered_json(q.worst_error) : nlohmann::ordered_json();
-  return {{"tolerance", q.tolerance}, {"cases", q.cases},           {"missed_tolerance", q.missed},
-          {"worst_rho_error", error}, {"worst_case", q.worst_case}, {"sound", q.is_sound}};
-}
-
-std::vector<Quality> qualities_of(const DeviceDescription& device, std::size_t position) {
-  return {quality_in(device, position, Precision::kFloat), quality_in(device, position, Precision::kDouble)};
-}
-
-nlohmann::ordered_json device_json(const DeviceDescription& device, std::size_t position) {
-  return {{"index", position},
-          {"name", device.name},
-          {"type", type_name(device.type)},
-          {"driver", device.driver},
-          {"api_version", device.api_version},
-          {"usable", device.usable},
-          {"why_not", device.why_not},
-          {"float64", device.float64},
-          {"max_storage_buffer_bytes", device.max_storage_buffer_bytes},
-          {"max_workgroups", device.max_workgroups},
-          {"heap_bytes", device.heap_bytes},
-          {"subgroup_size", device.subgroup_size},
-          {"timestamps", device.timestamps}};
-}
-
-std::string device_text(const DeviceDescription& device, std::size_t position) {
-  return fmt::format(
-      "{}: {} ({})\n   {}, Vulkan {}\n   {}\n   double precision {}, storage buffer {:.0f} MiB, heap {:.0f} MiB, {} "
-      "workgroups, subgroup {}, timestamps {}\n",
-      position, device.name, type_name(device.type), device.driver, device.api_version,
-      device.usable ? "usable" : "not usable: " + device.why_not, device.float64 ? "yes" : "no",
-      static_cast<double>(device.max_storage_buffer_bytes) / kMebibyte,
-      static_cast<double>(device.heap_bytes) / kMebibyte, device.max_workgroups, device.subgroup_size,
-      device.timestamps ? "yes" : "no");
+Report device_report(const DeviceDescription& device, std::size_t position) {
+  Report report;
+  report.line("{}: {} ({})", key("index", position), key("name", device.name), type_name(device.type));
+  report.line("   {}, Vulkan {}", key("driver", device.driver), key("api_version", device.api_version));
+  report.line("   {}{}", device.usable ? "usable" : "not usable: ", key("why_not", device.why_not));
+  report.line(
+      "   double precision {}, storage buffer {:.0f} MiB, heap {:.0f} MiB, {} workgroups, subgroup {}, timestamps {}",
+      device.float64 ? "yes" : "no", static_cast<double>(device.max_storage_buffer_bytes) / kMebibyte,
+      static_cast<double>(device.heap_bytes) / kMebibyte, key("max_workgroups", device.max_workgroups),
+      key("subgroup_size", device.subgroup_size), device.timestamps ? "yes" : "no");
+  report.values({{"type", type_name(device.type)},
+                 {"usable", device.usable},
+                 {"float64", device.float64},
+                 {"max_storage_buffer_bytes", device.max_storage_buffer_bytes},
+                 {"heap_bytes", device.heap_bytes},
+                 {"timestamps", device.timestamps}});
+  for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
+    const Quality quality = quality_in(device, position, precision);
+    report.add((std::string("quality/") + quality.precision).c_str(), quality_report(quality));
+  }
+  return report;
 }
 
 }  // namespace
 
 int run_devices(const Options& options) {
   const DeviceList list = list_devices();
-  nlohmann::ordered_json json = {{"devices", nlohmann::ordered_json::array()}, {"why_empty", list.why_empty}};
-  for (std::size_t i = 0; i < list.devices.size(); ++i) {
-    const DeviceDescription& device = list.devices[i];
-    nlohmann::ordered_json of_device = device_json(device, i);
-    if (!options.json) fmt::print("{}", device_text(device, i));
-    for (const Quality& quality : qualities_of(device, i)) {
-      of_device["quality"][quality.precision] = quality_json(quality);
-      if (!options.json) fmt::print("{}", quality_text(quality));
-    }
-    json["devices"].push_back(of_device);
-  }
-  if (options.json) fmt::print("{}\n", json.dump(2));
+  std::vector<Report> devices;
+  for (std::size_t i = 0; i < list.devices.size(); ++i) devices.push_back(device_report(list.devices[i], i));
+  Report report;
+  report.add("devices", devices);
+  report.value("why_empty", list.why_empty);
+  report.print(options.json, false);
   if (list.devices.empty()) throw DeviceError(list.why_empty);
   choose_device(list.devices, options.device, false);  // says why when no device can be used
   return kExitDone;

@@ -1,19 +1,16 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
 #include "cli/commands.hpp"
+#include "cli/run_report.hpp"
 #include "model/status.hpp"
 #include "run/table_scene.hpp"
-#include "scene/points.hpp"
 #include "scene/text.hpp"
-#include "table/result_csv.hpp"
 #include "table/table_lookup.hpp"
 #include "terminal/exit_status.hpp"
 
@@ -72,54 +69,6 @@ void check_index(const Scene& scene, const Points& points) {
   check("k", points.k, material.constant.k);
 }
 
-struct Summary {
-  std::string table;
-  std::string output;
-  std::size_t points = 0;
-  std::size_t missed = 0;
-  double tolerance = 0.0;
-  std::optional<double> worst_error;
-  std::optional<double> worst_rho_error;
-  double wall_s = 0.0;
-};
-
-Summary summary_of(const std::vector<PointResult>& results, double tolerance) {
-  Summary summary;
-  summary.points = results.size();
-  summary.tolerance = tolerance;
-  for (const PointResult& r : results) {
-    if ((r.status & kStatusToleranceMissed) != 0) ++summary.missed;
-    if (!promises_dolp(r.status)) continue;
-    summary.worst_error = std::max(summary.worst_error.value_or(0.0), r.error_estimate);
-    summary.worst_rho_error = std::max(summary.worst_rho_error.value_or(0.0), r.rho_error_estimate);
-  }
-  return summary;
-}
-
-nlohmann::ordered_json json_of(const Summary& summary) {
-  const auto number = [](const std::optional<double>& value) {
-    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
-  };
-  return {{"table", summary.table},
-          {"output", summary.output},
-          {"points", summary.points},
-          {"tolerance", summary.tolerance},
-          {"tolerance_missed", summary.missed},
-          {"worst_error_estimate", number(summary.worst_error)},
-          {"worst_rho_error_estimate", number(summary.worst_rho_error)},
-          {"wall_s", summary.wall_s}};
-}
-
-std::string text_of(const Summary& summary) {
-  const std::string worst =
-      summary.worst_error ? fmt::format("DOLP <= {:.2g} (absolute)", *summary.worst_error) : "stated for no point";
-  return fmt::format(
-      "{}\n  points     {}\n  error      {}, interpolation included; tolerance of the table {:g}\n  status 2   {} of "
-      "{} "
-      "points: tolerance not met\n  written    {}\n",
-      summary.table, summary.points, worst, summary.tolerance, summary.missed, summary.points, summary.output);
-}
-
 }  // namespace
 
 int run_lookup(const Options& options) {
@@ -136,20 +85,23 @@ int run_lookup(const Options& options) {
   check_writable(options.output_path);
   std::vector<PointResult> results;
   for (std::size_t i = 0; i < points.size(); ++i) results.push_back(lookup.at(theta[i], sigma[i], q[i]));
-  std::string csv = points.header + ',' + kResultColumns + '\n';
-  for (std::size_t i = 0; i < results.size(); ++i) csv += points.rows[i] + ',' + result_cells(results[i]) + '\n';
-  write_text_atomically(options.output_path, csv);
-  Summary summary = summary_of(results, scene.accuracy.tolerance);
-  summary.table = options.table_path;
-  summary.output = options.output_path;
-  summary.wall_s = seconds_since(start);
-  std::FILE* const out = options.output_path == "-" ? stderr : stdout;
-  if (options.json) {
-    fmt::print(out, "{}\n", json_of(summary).dump(2));
-  } else if (!options.quiet) {
-    fmt::print(out, "{}", text_of(summary));
-  }
-  return options.strict && summary.missed > 0 ? kExitAccuracy : kExitDone;
+  write_text_atomically(options.output_path, result_csv(points, results));
+
+  const std::size_t missed = count_status(results, kStatusToleranceMissed);
+  const std::optional<double> worst = worst_of(results, &PointResult::error_estimate, kStatusNoDolpPromised);
+  Report report;
+  report.line("{}", key("table", options.table_path));
+  report.row("points", "{}", key("points", results.size()));
+  report.row("error", "{}, interpolation included; tolerance of the table {:g}",
+             worst ? fmt::format("DOLP <= {:.2g} (absolute)", *worst) : "stated for no point",
+             key("tolerance", scene.accuracy.tolerance));
+  report.row("status 2", "{} of {} points: tolerance not met", key("tolerance_missed", missed), results.size());
+  report.row("written", "{}", key("output", options.output_path));
+  report.value("worst_error_estimate", worst);
+  report.value("worst_rho_error_estimate", worst_of(results, &PointResult::rho_error_estimate, kStatusNoDolpPromised));
+  report.value("wall_s", seconds_since(start));
+  report.print(options.json, options.quiet, options.output_path);
+  return options.strict && missed > 0 ? kExitAccuracy : kExitDone;
 }
 
 }  // namespace dolp::cli

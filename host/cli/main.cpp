@@ -11,6 +11,8 @@
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
+#include "model/choices.hpp"
+#include "scene/number_range.hpp"
 #include "terminal/exit_status.hpp"
 #include "terminal/guarded.hpp"
 
@@ -24,8 +26,9 @@ void add_overrides(CLI::App& command, Options& options) {
   command.add_option("--set", options.overrides, "KEY=VALUE: any scene key, e.g. surface.masking=none")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
-  command.add_option("--tolerance", options.tolerance, "the scene's accuracy.tolerance, 1e-10 .. 1e-2");
-  command.add_option("--precision", options.precision, "the scene's accuracy.precision: auto, float or double");
+  command.add_option("--tolerance", options.tolerance, "the scene's accuracy.tolerance, in " + kToleranceRange.text());
+  command.add_option("--precision", options.precision,
+                     fmt::format("the scene's accuracy.precision: {}", fmt::join(Names<Precision>::kAll, ", ")));
 }
 
 void add_scene(CLI::App& command, Options& options) {
@@ -85,12 +88,13 @@ void add_verify(CLI::App& command, Options& options) {
   const auto of_device = [&](CLI::Option* option) { option->needs(hard); };
   of_device(command.add_option("--device", options.device, "Vulkan device: its position or a part of its name"));
   of_device(command.add_option("--precision", options.precision, "auto is both")
-                ->check(CLI::IsMember({"auto", "float", "double"})));
+                ->check(CLI::IsMember(
+                    std::vector<std::string>(Names<Precision>::kAll.begin(), Names<Precision>::kAll.end()))));
   of_device(command.add_option("--evaluator", options.evaluator, "vulkan; cpu: the same text on the CPU")
                 ->check(CLI::IsMember({"vulkan", "cpu"}))
                 ->capture_default_str());
-  of_device(
-      command.add_option("--tolerance", options.tolerance, "what to ask for, 1e-10 .. 1e-2; 1e-4 when not given"));
+  of_device(command.add_option("--tolerance", options.tolerance,
+                               "what to ask for, in " + kToleranceRange.text() + "; 1e-4 when not given"));
   of_device(command.add_flag("--all", options.all, "report every case"));
   command.add_flag("--json", options.json, "machine-readable report of everything compared");
   command.add_flag("--quiet", options.quiet, "no report and no progress bar; the exit status says it");

@@ -37,19 +37,6 @@ std::vector<std::string> all_overrides(const Options& options) {
 
 Scene load_scene(const Options& options) { return read_scene(options.scene_path, all_overrides(options)); }
 
-EffectPlan plan_run(const Options& options, const Scene& scene, const std::vector<SceneEntry>& entries) {
-  return plan_effects(scene, entries, options.keep_all);
-}
-
-EvaluationReport report_of(const MomentsEvaluator* evaluator, const Options& options) {
-  if (evaluator) return evaluator->report();
-  EvaluationReport nothing;
-  nothing.evaluator = options.evaluator;
-  nothing.device = "none";
-  nothing.precision = "none";
-  return nothing;
-}
-
 std::unique_ptr<MomentsEvaluator> make_evaluator(const Options& options, const Scene& scene) {
   if (options.evaluator == "reference") return std::make_unique<ReferenceEvaluator>();
   std::unique_ptr<MomentsEvaluator> evaluator;

@@ -51,12 +51,6 @@ std::vector<std::string> all_overrides(const Options& options);
 /// The scene with all_overrides.
 Scene load_scene(const Options& options);
 
-/// What a run of these entries keeps, as --keep-all and the scene's effects have it.
-EffectPlan plan_run(const Options& options, const Scene& scene, const std::vector<SceneEntry>& entries);
-
-/// What ran: nothing, where no evaluator was needed.
-EvaluationReport report_of(const MomentsEvaluator* evaluator, const Options& options);
-
 /// The evaluator that --evaluator, --device and the scene's precision ask for.
 /// Errors: DeviceError when vulkan is asked for and there is no usable device.
 std::unique_ptr<MomentsEvaluator> make_evaluator(const Options& options, const Scene& scene);

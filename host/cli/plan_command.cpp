@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/plan_report.hpp"
+#include "model/choices.hpp"
 #include "plan/kernel_data.hpp"
 #include "run/scene_run.hpp"
 #include "terminal/exit_status.hpp"
@@ -42,9 +43,8 @@ void add_dispatches(PlanReport& report, const DispatchForecast& of_request) {
 
 void add_pipeline(PlanReport& report, const char* kernel, Precision precision) {
   const Surface& surface = report.scene.surface;
-  const std::string text =
-      fmt::format("{}, {}: distribution {}, masking {}", kernel, precision == Precision::kDouble ? "double" : "float",
-                  name_of(surface.distribution), name_of(surface.masking));
+  const std::string text = fmt::format("{}, {}: distribution {}, masking {}", kernel, name_of(precision),
+                                       name_of(surface.distribution), name_of(surface.masking));
   if (std::ranges::find(report.pipelines, text) == report.pipelines.end()) report.pipelines.push_back(text);
 }
 
@@ -103,11 +103,7 @@ int run_plan(const Options& options) {
                             [&](const ScatteringRequest& request) { add_request(report, request, device); }});
   share_evaluations(report);
   report.work_shares = work_shares(report);
-  if (options.json) {
-    fmt::print("{}\n", plan_json(report).dump(2));
-  } else {
-    fmt::print("{}", plan_text(report));
-  }
+  plan_report(report).print(options.json, false);
   return kExitDone;
 }
 

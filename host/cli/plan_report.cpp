@@ -1,13 +1,12 @@
 #include "cli/plan_report.hpp"
 
-#include <fmt/format.h>
+#include <algorithm>
 
-#include "cli/report.hpp"
+#include "cli/run_report.hpp"
+#include "model/choices.hpp"
 
 namespace dolp::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kMebibyte = 1048576.0;
 constexpr double kPoints = 100.0;      // of DOLP
@@ -31,171 +30,134 @@ std::string work_text(const EffectRow& row, double share) {
   return share == 0.0 ? "0 %" : fmt::format("{:.3g} %", kPoints * share);
 }
 
-std::string effect_line(const EffectRow& row, double share) {
-  const std::string needs = row.needs.empty() ? "" : fmt::format(" [{}]", row.needs);
-  return fmt::format("  {:<14} {:<11} {:>11} {:>7}  {}{}\n", row.name, state_text(row.state), influence_text(row),
-                     work_text(row, share), row.reason, needs);
+Report effect_report(const EffectRow& row, double share) {
+  Report report;
+  report.line("  {:<14} {:<11} {:>11} {:>7}  {}{}", key("name", row.name), state_text(row.state), influence_text(row),
+              work_text(row, share), key("reason", row.reason),
+              row.needs.empty() ? "" : fmt::format(" [{}]", row.needs));
+  report.values(
+      {{"asked_for", row.state != EffectState::kAbsent}, {"state", state_name(row.state)}, {"needs", row.needs}});
+  report.value("bound", row.bound);
+  report.values({{"entries_without_bound", row.unbounded}, {"work_share", share}});
+  return report;
 }
 
-std::string effects_table(const PlanReport& report) {
-  std::string text =
-      fmt::format("  {:<14} {:<11} {:>11} {:>7}  {}\n", "effect", "plan", "influence", "work", "why [what it takes]");
-  for (std::size_t i = 0; i < report.effects.size(); ++i) {
-    text += effect_line(report.effects[i], report.work_shares[i]);
+void add_effects(Report& report, const PlanReport& plan) {
+  report.value("effects", effects_json(plan.effects, plan.plan));
+  report.line("  {:<14} {:<11} {:>11} {:>7}  {}", "effect", "plan", "influence", "work", "why [what it takes]");
+  std::vector<Report> rows;
+  for (std::size_t i = 0; i < plan.effects.size(); ++i) {
+    rows.push_back(effect_report(plan.effects[i], plan.work_shares[i]));
   }
-  text += "  influence: bound of the change of (Q/I, U/I) without the effect, in points of DOLP (0.01), worst entry\n";
-  for (const EffectRow& row : report.effects) {
-    if (row.unbounded == 0) continue;
-    text += fmt::format("  *: none is known for {} of {} entries, so that nothing marked can be dropped\n",
-                        row.unbounded, report.run.entries);
-    break;
+  report.add("rows", rows);
+  report.line(
+      "  influence: bound of the change of (Q/I, U/I) without the effect, in points of DOLP (0.01), worst entry");
+  const auto marked = std::ranges::find_if(plan.effects, [](const EffectRow& row) { return row.unbounded > 0; });
+  if (marked != plan.effects.end()) {
+    report.line("  *: none is known for {} of {} entries, so that nothing marked can be dropped", marked->unbounded,
+                plan.run.entries);
   }
-  text +=
+  report.line(
       "  work: share of the evaluations, f among them, that would go with the effect; those that share theirs have "
-      "none alone\n";
-  return text;
+      "none alone");
 }
 
-std::string dropped_text(const PlanReport& report) {
-  const double tolerance = report.scene.accuracy.tolerance;
-  if (report.plan.keep_all) return "  dropped     nothing (--keep-all)\n";
-  if (report.plan.dropped.empty() && report.plan.needs_moments) {
-    return fmt::format("  dropped     nothing: every bound exceeds {:g}, {:g} of the tolerance {:g}\n",
-                       kDroppedShare * tolerance, kDroppedShare, tolerance);
+std::string dropped_text(const EffectPlan& plan, double tolerance) {
+  if (plan.keep_all) return "nothing (--keep-all)";
+  const double allowed = kDroppedShare * tolerance;
+  if (plan.dropped.empty() && plan.needs_moments) {
+    return fmt::format("nothing: every bound exceeds {:g}, {:g} of the tolerance {:g}", allowed, kDroppedShare,
+                       tolerance);
   }
-  return fmt::format(
-      "  dropped     changes DOLP by {:.2g} at most in all; {:g}, {:g} of the tolerance {:g}, is allowed\n",
-      report.plan.bound.dolp, kDroppedShare * tolerance, kDroppedShare, tolerance);
+  return fmt::format("changes DOLP by {:.2g} at most in all; {:g}, {:g} of the tolerance {:g}, is allowed",
+                     plan.bound.dolp, allowed, kDroppedShare, tolerance);
 }
 
-std::string output_text(const PlanReport& report) {
-  if (!report.plan.gives_rho) return "  output      Stokes parameters, DOLP; without rho_i, rho_q and albedo\n";
-  if (!report.plan.needs_moments) return "  output      Stokes parameters, DOLP, rho; without albedo\n";
-  return "  output      Stokes parameters, DOLP, rho, albedo\n";
+std::string output_text(const EffectPlan& plan) {
+  if (!plan.gives_rho) return "Stokes parameters, DOLP; without rho_i, rho_q and albedo";
+  return plan.needs_moments ? "Stokes parameters, DOLP, rho, albedo" : "Stokes parameters, DOLP, rho; without albedo";
 }
 
-std::string precision_name(Precision precision) { return precision == Precision::kDouble ? "double" : "float"; }
+std::string how_counted(const RunPrediction& run) {
+  if (run.is_exact) return "counted";
+  return run.interpolated > 0 ? fmt::format("estimated from {} directions", kCountedDirections)
+                              : fmt::format("estimated from {} entries", kCountedEntries);
+}
 
-std::string work_lines(const PlanReport& report) {
-  const RunPrediction& run = report.run;
-  std::string text;
-  std::string how = run.is_exact ? "counted" : fmt::format("estimated from {} entries", kCountedEntries);
-  if (run.interpolated > 0 && !run.is_exact) how = fmt::format("estimated from {} directions", kCountedDirections);
-  text += fmt::format(
-      "  attempts    first: {} at tolerance {:g}, {} moments, {} values of f; {:.3g} % again, tighter\n",
-      precision_name(run.first.precision), run.first.tolerance, run.moments, run.beams, kPoints * run.again_share);
-  if (run.moments == 0) return text;
-  if (run.interpolated > 0) {
-    text += fmt::format("  interpolate {} moments follow from these, to the same tolerance (accuracy.interpolation)\n",
-                        run.interpolated);
+/// What the first attempt computes, and others again; `is_idle`: nothing.
+void add_attempts(Report& report, const PlanReport& plan, bool is_idle) {
+  const RunPrediction& run = plan.run;
+  const DispatchForecast& dispatches = plan.dispatches;
+  report.row_if(
+      !is_idle, "attempts", "first: {} at tolerance {:g}, {} moments, {} values of f; {:.3g} % again, tighter",
+      key("first_attempt/precision", name_of(run.first.precision)), key("first_attempt/tolerance", run.first.tolerance),
+      key("moments", run.moments), key("beams", run.beams), kPoints * run.again_share);
+  report.value("further_attempts/share", run.again_share);
+  report.row_if(run.interpolated > 0 && run.moments > 0, "interpolate",
+                "{} moments follow from these, to the same tolerance (accuracy.interpolation)",
+                key("interpolated_moments", run.interpolated));
+  report.row_if(run.moments > 0, "work", "{:.4g} integrand evaluations in the first attempt ({}), {:.2g} in others",
+                key("first_attempt/evaluations", run.first_evaluations), how_counted(run),
+                key("further_attempts/evaluations", run.again_evaluations));
+  report.row_if(run.moments > 0 && dispatches.group_size > 1, "sharing",
+                "entries that differ in q alone share their evaluations: {} groups of up to {}", dispatches.groups,
+                dispatches.group_size);
+  report.value("first_attempt/is_exact", run.is_exact);
+  report.value("further_attempts/beams", run.again_beams);
+  report.value("evaluations", run.first_evaluations + run.again_evaluations);
+}
+
+void add_kernels(Report& report, const PlanReport& plan) {
+  const bool is_idle = plan.pipelines.empty();
+  report.row_if(is_idle, "work", "no integrand evaluations: no device is used");
+  for (const std::string& pipeline : plan.pipelines) report.row("pipeline", "{}", pipeline);
+  report.value("pipelines", plan.pipelines);
+  report.value("rule", nullptr);
+  if (plan.rule) {
+    report.row("rule", "Gauss rules on smooth pieces, {:.3g} digits; at most {} nodes a piece",
+               key("rule/digits", plan.rule->digits), key("rule/most_nodes", plan.rule->most_nodes));
   }
-  text += fmt::format("  work        {:.4g} integrand evaluations in the first attempt ({}), {:.2g} in others\n",
-                      run.first_evaluations, how, run.again_evaluations);
-  if (report.dispatches.group_size > 1) {
-    text += fmt::format("  sharing     entries that differ in q alone share their evaluations: {} groups of up to {}\n",
-                        report.dispatches.groups, report.dispatches.group_size);
-  }
-  return text;
+  add_attempts(report, plan, is_idle);
+  const bool has_device = !plan.device.empty();
+  report.row_if(
+      !is_idle, "dispatches", "{} in the first attempt, at most {} invocations and {} shapes at a time ({}{})",
+      key("first_attempt/dispatches", plan.dispatches.dispatches),
+      key("tile_invocations", plan.dispatches.tile_invocations), key("block_shapes", plan.dispatches.block_shapes),
+      has_device ? plan.device : "limits of any Vulkan device; none here: ", key("why_no_device", plan.why_no_device));
+  report.value("device", has_device ? std::optional(plan.device) : std::nullopt);
 }
 
-std::string kernel_lines(const PlanReport& report) {
-  std::string text;
-  for (const std::string& pipeline : report.pipelines) text += fmt::format("  pipeline    {}\n", pipeline);
-  if (report.rule) {
-    text += fmt::format("  rule        Gauss rules on smooth pieces, {:.3g} digits; at most {} nodes a piece\n",
-                        report.rule->digits, report.rule->most_nodes);
-  }
-  text += work_lines(report);
-  const std::string device =
-      report.device.empty() ? "limits of any Vulkan device; none here: " + report.why_no_device : report.device;
-  text += fmt::format("  dispatches  {} in the first attempt, at most {} invocations and {} shapes at a time ({})\n",
-                      report.dispatches.dispatches, report.dispatches.tile_invocations, report.dispatches.block_shapes,
-                      device);
-  return text;
+void add_cost(Report& report, const PlanReport& plan) {
+  const RunPrediction& run = plan.run;
+  report.row("memory", "{:.3g} MiB of the host, {:.3g} MiB of the device", run.host_bytes / kMebibyte,
+             static_cast<double>(plan.dispatches.device_bytes) / kMebibyte);
+  report.values({{"host_bytes", run.host_bytes}, {"device_bytes", plan.dispatches.device_bytes}});
+  report.value("estimated_cpu_s", nullptr);
+  if (run.moments + run.beams == 0) return;
+  report.row("time", "estimate: {:.2g} s of evaluation with --evaluator cpu, from counting here; no device is timed",
+             key("estimated_cpu_s", run.moments_s + run.beams_s));
 }
-
-std::optional<double> estimated_s(const RunPrediction& run) {
-  if (run.moments + run.beams == 0) return std::nullopt;
-  return run.moments_s + run.beams_s;
-}
-
-std::string cost_lines(const PlanReport& report) {
-  const bool is_idle = report.pipelines.empty();
-  std::string text = is_idle ? "  work        no integrand evaluations: no device is used\n" : kernel_lines(report);
-  text +=
-      fmt::format("  memory      {:.3g} MiB of the host, {:.3g} MiB of the device\n", report.run.host_bytes / kMebibyte,
-                  static_cast<double>(report.dispatches.device_bytes) / kMebibyte);
-  if (const std::optional<double> seconds = estimated_s(report.run)) {
-    text += fmt::format(
-        "  time        estimate: {:.2g} s of evaluation with --evaluator cpu, from counting here; no device is "
-        "timed\n",
-        *seconds);
-  }
-  return text;
-}
-
-Json rows_json(const PlanReport& report) {
-  Json rows = Json::array();
-  for (std::size_t i = 0; i < report.effects.size(); ++i) {
-    const EffectRow& row = report.effects[i];
-    rows.push_back({{"name", row.name},
-                    {"asked_for", row.state != EffectState::kAbsent},
-                    {"state", state_name(row.state)},
-                    {"reason", row.reason},
-                    {"needs", row.needs},
-                    {"bound", row.bound ? Json(*row.bound) : Json(nullptr)},
-                    {"entries_without_bound", row.unbounded},
-                    {"work_share", report.work_shares[i]}});
-  }
-  return rows;
-}
-
-Json rule_json(const RuleSize& rule) { return {{"digits", rule.digits}, {"most_nodes", rule.most_nodes}}; }
 
 }  // namespace
 
-std::string plan_text(const PlanReport& report) {
-  const Scene& scene = report.scene;
-  const char* mode = scene.geometry.mode == Mode::kBistatic ? "bistatic" : "hemispherical";
-  std::string text = fmt::format("{}\n", scene.title);
-  text += fmt::format("  scene       {}, {} x {} x {} (theta x sigma x q) = {} entries, spectral samples: {}\n", mode,
-                      scene.grid.theta_deg.size(), scene.grid.sigma.size(), scene.grid.q.size(), report.run.entries,
-                      report.run.spectral_samples);
-  return text + "\n" + effects_table(report) + "\n" + dropped_text(report) + output_text(report) + cost_lines(report);
-}
-
-Json plan_json(const PlanReport& report) {
-  const RunPrediction& run = report.run;
-  Json json = {{"title", report.scene.title},
-               {"entries", run.entries},
-               {"tolerance", report.scene.accuracy.tolerance},
-               {"effects", effects_json(report.effects, report.plan)},
-               {"rows", rows_json(report)},
-               {"gives_rho", report.plan.gives_rho},
-               {"gives_albedo", report.plan.needs_moments}};
-  json["rule"] = report.rule ? rule_json(*report.rule) : Json(nullptr);
-  json["pipelines"] = report.pipelines;
-  json["device"] = report.device.empty() ? Json(nullptr) : Json(report.device);
-  json["why_no_device"] = report.why_no_device;
-  json["spectral_samples"] = run.spectral_samples;
-  json["moments"] = run.moments;
-  json["interpolated_moments"] = run.interpolated;
-  json["beams"] = run.beams;
-  json["first_attempt"] = {{"precision", precision_name(run.first.precision)},
-                           {"tolerance", run.first.tolerance},
-                           {"evaluations", run.first_evaluations},
-                           {"is_exact", run.is_exact},
-                           {"dispatches", report.dispatches.dispatches}};
-  json["further_attempts"] = {
-      {"share", run.again_share}, {"evaluations", run.again_evaluations}, {"beams", run.again_beams}};
-  json["evaluations"] = run.first_evaluations + run.again_evaluations;
-  json["tile_invocations"] = report.dispatches.tile_invocations;
-  json["block_shapes"] = report.dispatches.block_shapes;
-  json["host_bytes"] = run.host_bytes;
-  json["device_bytes"] = report.dispatches.device_bytes;
-  const std::optional<double> seconds = estimated_s(run);
-  json["estimated_cpu_s"] = seconds ? Json(*seconds) : Json(nullptr);
-  return json;
+Report plan_report(const PlanReport& plan) {
+  constexpr int kLabelWidth = 11;
+  const Scene& scene = plan.scene;
+  Report report(kLabelWidth);
+  report.line("{}", key("title", scene.title));
+  report.row("scene", "{}, {} = {} entries, spectral samples: {}", name_of(scene.geometry.mode), grid_text(scene.grid),
+             key("entries", plan.run.entries), key("spectral_samples", plan.run.spectral_samples));
+  report.line("");
+  add_effects(report, plan);
+  report.line("");
+  report.row("dropped", "{}", dropped_text(plan.plan, scene.accuracy.tolerance));
+  report.row("output", "{}", output_text(plan.plan));
+  report.values({{"tolerance", scene.accuracy.tolerance},
+                 {"gives_rho", plan.plan.gives_rho},
+                 {"gives_albedo", plan.plan.needs_moments}});
+  add_kernels(report, plan);
+  add_cost(report, plan);
+  return report;
 }
 
 }  // namespace dolp::cli

@@ -1,11 +1,11 @@
 // What `dolp plan` reports: for people, and as JSON.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/report.hpp"
 #include "evaluate/vulkan/dispatch_forecast.hpp"
 #include "plan/effects.hpp"
 #include "run/prediction.hpp"
@@ -33,7 +33,6 @@ struct PlanReport {
   std::string why_no_device;
 };
 
-std::string plan_text(const PlanReport& report);
-nlohmann::ordered_json plan_json(const PlanReport& report);
+Report plan_report(const PlanReport& plan);
 
 }  // namespace dolp::cli

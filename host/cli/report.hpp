@@ -1,69 +1,104 @@
-// What a command reports on stdout: a summary for people, or JSON for programs.
+// What a command reports: one list of values, rendered for people or for programs.
 #pragma once
+
+#include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
-
-#include "model/point_result.hpp"
-#include "plan/effects.hpp"
-#include "run/scene_run.hpp"
-#include "scene/scene.hpp"
 
 namespace dolp::cli {
 
-/// The part of a grid where the albedo of the surface model is off: how many entries, and the smallest box around them.
-struct EnergyRange {
-  std::size_t entries = 0;
-  double theta_min_deg = 0.0;  ///< of the view in bistatic mode
-  double theta_max_deg = 0.0;
-  double sigma_min = 0.0;
-  double sigma_max = 0.0;
+/// A value and its key in JSON: a path, whose parts are separated by slashes.
+template <class T>
+struct Keyed {
+  const char* path;
+  const T& value;
 };
 
-/// Everything there is to say about one run of a scene.
-struct RunReport {
-  std::string title;
-  std::string output;
-  std::string shape;  ///< "91 x 32 x 5 (theta x sigma x q)" or "200 points"
-  std::size_t entries = 0;
-  double tolerance = 0.0;
-  double wall_s = 0.0;
-  EffectPlan plan;
-  std::vector<EffectRow> effects;
-  EvaluationReport evaluation;
-  // Empty when no entry promises anything.
-  std::optional<double> worst_error;      ///< largest stated error of DOLP where status has none of the bits 1, 4, 8
-  std::optional<double> worst_rho_error;  ///< largest stated relative error of rho where status has no bit 4
-  struct StatusCount {
-    std::string meaning;
-    std::uint32_t bit = 0;
-    std::size_t count = 0;
-  };
-  std::vector<StatusCount> status;   ///< entries that carry each bit
-  std::size_t missed_tolerance = 0;  ///< entries with the bit of a missed tolerance
-  double albedo_min = 0.0;
-  double albedo_max = 0.0;
-  EnergyRange loses;  ///< albedo below kAlbedoMin
-  EnergyRange gains;  ///< albedo above kAlbedoMax
+template <class T>
+Keyed<T> key(const char* path, const T& value) {
+  return {path, value};
+}
+
+/// Lines of text whose arguments are values; those that are Keyed are values of the JSON too.
+class Report {
+ public:
+  using Json = nlohmann::ordered_json;
+
+  /// Texts stand behind their labels, in a column of their own.
+  explicit Report(int label_width = 10) : label_width_(label_width) {}
+
+  /// A line that begins as `text` says.
+  template <class... Args>
+  void line(fmt::format_string<const Args&...> text, const Args&... args) {
+    text_ += fmt::format(text, args...) + '\n';
+    (record(args), ...);
+  }
+
+  /// A line with a label.
+  template <class... Args>
+  void row(std::string_view label, fmt::format_string<const Args&...> text, const Args&... args) {
+    row_if(true, label, text, args...);
+  }
+
+  /// A line with a label that people see on a condition; programs always get its values.
+  template <class... Args>
+  void row_if(bool is_shown, std::string_view label, fmt::format_string<const Args&...> text, const Args&... args) {
+    if (is_shown) text_ += fmt::format("  {:<{}} {}\n", label, label_width_, fmt::format(text, args...));
+    (record(args), ...);
+  }
+
+  /// A value that the text words otherwise or leaves out. NaN, infinity and no value are null.
+  template <class T>
+  void value(const char* path, const T& value) {
+    json_[Json::json_pointer(std::string("/") + path)] = value;
+  }
+  template <class T>
+  void value(const char* path, const std::optional<T>& optional) {
+    optional ? value(path, *optional) : value(path, nullptr);
+  }
+
+  /// Several such values.
+  void values(const Json& object) { json_.update(object); }
+
+  /// A part: its lines follow, its values are those of the path.
+  void add(const char* path, const Report& part);
+
+  /// A list of parts, which may be empty.
+  void add(const char* path, const std::vector<Report>& parts);
+
+  /// The lines of a part, without its values.
+  void show(const Report& part) { text_ += part.text_; }
+
+  const Json& json() const { return json_; }
+
+  /// Prints what `json` and `quiet` ask for: to stdout, or to stderr when the results themselves (`output`) go to
+  /// stdout.
+  void print(bool json, bool quiet, const std::string& output = {}) const;
+
+ private:
+  template <class T>
+  void record(const Keyed<T>& keyed) {
+    value(keyed.path, keyed.value);
+  }
+  template <class T>
+  void record(const T&) {}
+
+  int label_width_;
+  std::string text_;
+  Json json_ = Json::object();
 };
-
-inline constexpr double kAlbedoMin = 0.95;
-inline constexpr double kAlbedoMax = 1.05;
-
-RunReport make_report(const Scene& scene, const std::vector<SceneEntry>& entries,
-                      const std::vector<PointResult>& results, const EffectPlan& plan,
-                      const EvaluationReport& evaluation, double wall_s);
-
-/// Names and reasons of what is kept, dropped and absent.
-nlohmann::ordered_json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan);
-
-/// The same for people (several lines) and for programs.
-std::string summary_text(const RunReport& report);
-nlohmann::ordered_json summary_json(const RunReport& report);
-
-/// Prints what `json` and `quiet` ask for: to stdout, or to stderr when the results themselves go to stdout.
-void print_report(const RunReport& report, bool json, bool quiet);
 
 }  // namespace dolp::cli
+
+/// Formats as its value does.
+template <class T>
+struct fmt::formatter<dolp::cli::Keyed<T>> : fmt::formatter<T> {
+  template <class Context>
+  auto format(const dolp::cli::Keyed<T>& keyed, Context& context) const {
+    return fmt::formatter<T>::format(keyed.value, context);
+  }
+};

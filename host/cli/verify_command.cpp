@@ -1,15 +1,15 @@
-#include <fmt/format.h>
-
 #include <chrono>
 #include <optional>
 
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
 #include "cli/commands.hpp"
+#include "cli/run_report.hpp"
 #include "cli/verify_report.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/vulkan/devices.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "model/choices.hpp"
 #include "run/table_scene.hpp"
 #include "scene/number_range.hpp"
 #include "scene/text.hpp"
@@ -34,11 +34,7 @@ int verify_table(const Options& options) {
     report.check = check_table(table, scene, options.table_path, report.options, bar.callback());
   }
   report.wall_s = seconds_since(start);
-  if (options.json) {
-    fmt::print("{}\n", table_json(report).dump(2));
-  } else if (!options.quiet) {
-    fmt::print("{}", table_text(report));
-  }
+  table_report(report).print(options.json, options.quiet);
   return report.check.passed() ? kExitDone : kExitAccuracy;
 }
 
@@ -62,8 +58,8 @@ std::unique_ptr<MomentsEvaluator> evaluator_in(Precision precision, const Option
 
 /// The precisions to examine. `left_out` says why one is missing that --precision auto would include.
 std::vector<Precision> precisions_of(const Options& options, std::string& left_out) {
-  if (options.precision == "float") return {Precision::kFloat};
-  if (options.precision == "double") return {Precision::kDouble};
+  const std::optional<Precision> wanted = named<Precision>(options.precision);
+  if (wanted && *wanted != Precision::kAuto) return {*wanted};
   if (options.evaluator == "cpu") return {Precision::kFloat, Precision::kDouble};
   const DeviceList list = list_devices();
   if (list.devices.empty()) throw DeviceError(list.why_empty);
@@ -84,11 +80,7 @@ int verify_hard_cases(const Options& options) {
     of_precision.outcomes = qualify(report.cases, *evaluator, report.tolerance, bar.callback());
     of_precision.evaluation = evaluator->report();
   }
-  if (options.json) {
-    fmt::print("{}\n", hard_case_json(report).dump(2));
-  } else if (!options.quiet) {
-    fmt::print("{}", hard_case_text(report, options.all));
-  }
+  hard_case_report(report, options.all).print(options.json, options.quiet);
   return report.failures() == 0 ? kExitDone : kExitAccuracy;
 }
 

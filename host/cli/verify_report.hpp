@@ -1,10 +1,10 @@
 // What `dolp verify` reports: for people, and as JSON.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "cli/report.hpp"
 #include "verify/qualification.hpp"
 #include "verify/table_check.hpp"
 
@@ -18,8 +18,7 @@ struct TableReport {
   TableCheck check;
   double wall_s = 0.0;
 };
-std::string table_text(const TableReport& report);
-nlohmann::ordered_json table_json(const TableReport& report);
+Report table_report(const TableReport& table);
 
 /// The hard cases in one precision.
 struct PrecisionReport {
@@ -37,7 +36,6 @@ struct HardCaseReport {
   std::size_t failures() const;
 };
 /// One line for each precision, distribution and masking, and one for each case that fails; `all`: for every case.
-std::string hard_case_text(const HardCaseReport& report, bool all);
-nlohmann::ordered_json hard_case_json(const HardCaseReport& report);
+Report hard_case_report(const HardCaseReport& cases, bool all);
 
 }  // namespace dolp::cli

@@ -12,10 +12,6 @@ namespace {
 
 constexpr NumberRange kSmithQ{1.6, 20.0};  // smith needs more than 1.5
 
-bool is_smith_cauchy(const Scene& scene) {
-  return scene.surface.masking == Masking::kSmith && scene.surface.distribution == Distribution::kCauchy;
-}
-
 MapAxis axis_of(AxisKind kind, const std::vector<double>& grid, const NumberRange& fallback, bool is_log) {
   const auto [low, high] = std::ranges::minmax_element(grid);
   const bool has_range = *low < *high && (!is_log || *low > 0.0);
@@ -44,7 +40,7 @@ MapAxis suggested_axis(AxisKind kind, const Scene& scene, double theta_max_deg) 
     case AxisKind::kQ:
       break;
   }
-  const NumberRange slider = is_smith_cauchy(scene) ? kSmithQ : parameter("surface.q").slider;
+  const NumberRange slider = scene.surface.needs_mean_slope() ? kSmithQ : parameter("surface.q").slider;
   return axis_of(kind, scene.grid.q, slider, true);
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "explore/parameters.hpp"
+#include "model/choices.hpp"
 #include "scene/text.hpp"
 
 namespace dolp::explore {
@@ -23,7 +24,7 @@ std::vector<std::string> other_distribution(const Surface& surface) {
   const double ratio = std::sqrt(surface.q - 1.0);
   const bool is_cauchy = surface.distribution == Distribution::kCauchy;
   const double sigma = is_cauchy ? surface.sigma / ratio : surface.sigma * ratio;
-  return {is_cauchy ? "surface.distribution=gaussian" : "surface.distribution=cauchy",
+  return {std::string("surface.distribution=") + name_of(is_cauchy ? Distribution::kGaussian : Distribution::kCauchy),
           "surface.sigma=" + format_number(sigma)};
 }
 
@@ -37,11 +38,9 @@ std::string own_key(AxisKind kind) {
 std::string surface_name(const Scene& scene) {
   const Surface& surface = scene.surface;
   const bool is_cauchy = surface.distribution == Distribution::kCauchy;
-  std::string name = fmt::format("{} σ {:.4g}", is_cauchy ? "cauchy" : "gaussian", surface.sigma);
+  std::string name = fmt::format("{} σ {:.4g}", name_of(surface.distribution), surface.sigma);
   if (is_cauchy) name += fmt::format(" q {:.4g}", surface.q);
-  for (const Choice& choice : choices()) {
-    if (choice.description->key == "surface.masking") name += ", " + choice.description->words[*choice.word(scene)];
-  }
+  name += std::string(", ") + name_of(surface.masking);
   if (!surface.material.name.empty()) return name + ", " + surface.material.name;
   return name + fmt::format(", n {:.4g} k {:.4g}", surface.material.constant.n, surface.material.constant.k);
 }
@@ -157,8 +156,7 @@ void Session::bound_effects() {
 std::string Session::overlay_name() const {
   if (!overlay_) return {};
   const Surface& surface = overlay_->scene().surface;
-  const bool is_cauchy = surface.distribution == Distribution::kCauchy;
-  return fmt::format("{} σ {:.4g}, same D(0)", is_cauchy ? "cauchy" : "gaussian", surface.sigma);
+  return fmt::format("{} σ {:.4g}, same D(0)", name_of(surface.distribution), surface.sigma);
 }
 
 void Session::follow_overlay(const std::string& content, bool keep_all) {

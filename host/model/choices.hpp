@@ -1,16 +1,57 @@
-// What a model of a surface is chosen by, and how precisely it is computed.
+// What a scene chooses between, and the words for it that scene files, reports and case files write.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string_view>
 
 namespace dolp {
 
 enum class Distribution : std::uint32_t { kCauchy = 0, kGaussian = 1 };
 enum class Masking : std::uint32_t { kNone = 0, kVCavity = 1, kIntegral = 2, kSmith = 3 };
+enum class EmissionModel { kMoments, kFresnel };
+enum class Mode { kHemispherical, kBistatic };
 enum class Precision { kAuto, kFloat, kDouble };
 
-/// The words of scene files: "cauchy", "gaussian"; "none", "v-cavity", "integral", "smith".
-const char* name_of(Distribution distribution);
-const char* name_of(Masking masking);
+/// The words of an enumeration, in its order.
+template <class Choice>
+struct Names;
+template <>
+struct Names<Distribution> {
+  static constexpr std::array kAll{"cauchy", "gaussian"};
+};
+template <>
+struct Names<Masking> {
+  static constexpr std::array kAll{"none", "v-cavity", "integral", "smith"};
+};
+template <>
+struct Names<EmissionModel> {
+  static constexpr std::array kAll{"moments", "fresnel"};
+};
+template <>
+struct Names<Mode> {
+  static constexpr std::array kAll{"hemispherical", "bistatic"};
+};
+template <>
+struct Names<Precision> {
+  static constexpr std::array kAll{"auto", "float", "double"};
+};
+
+template <class Choice>
+constexpr const char* name_of(Choice choice) requires requires {
+  Names<Choice>::kAll;
+}
+{ return Names<Choice>::kAll[static_cast<std::size_t>(choice)]; }
+
+/// The choice of that name, nullopt for another word.
+template <class Choice>
+constexpr std::optional<Choice> named(std::string_view word) {
+  const auto found = std::ranges::find(Names<Choice>::kAll, word);
+  if (found == Names<Choice>::kAll.end()) return std::nullopt;
+  return static_cast<Choice>(found - Names<Choice>::kAll.begin());
+}
 
 }  // namespace dolp

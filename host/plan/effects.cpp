@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "base/parallel_ranges.hpp"
+#include "model/choices.hpp"
 #include "spectrum/spectral_rule.hpp"
 
 namespace dolp {

@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "base/error.hpp"
+#include "scene/csv.hpp"
 #include "scene/embedded_data.hpp"
 #include "scene/number_range.hpp"
 #include "scene/spectral_data.hpp"
@@ -15,21 +16,9 @@
 namespace dolp {
 namespace {
 
-/// The cells of a CSV line; a cell in double quotes may hold commas.
-std::vector<std::string> split_csv(std::string_view line) {
-  std::vector<std::string> cells(1);
-  bool is_quoted = false;
-  for (const char c : line) {
-    if (c == '"') {
-      is_quoted = !is_quoted;
-    } else if (c == ',' && !is_quoted) {
-      cells.emplace_back();
-    } else {
-      cells.back() += c;
-    }
-  }
-  for (std::string& cell : cells) cell = std::string(trim(cell));
-  return cells;
+std::string without_quotes(std::string_view cell) {
+  const bool is_quoted = cell.size() >= 2 && cell.front() == '"' && cell.back() == '"';
+  return std::string(is_quoted ? cell.substr(1, cell.size() - 2) : cell);
 }
 
 /// A line of the built-in file: name, wavelength_um, n, k, bracket_um, rii_path, source.
@@ -37,22 +26,16 @@ enum MaterialColumn : std::size_t { kName = 0, kWavelength = 1, kIndexN = 2, kIn
 
 std::vector<Material> built_in_materials() {
   std::vector<Material> materials;
-  const std::vector<std::string_view> lines = split_lines(embedded_materials_csv());
-  bool is_header = true;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (lines[i].empty() || lines[i].front() == '#') continue;
-    if (is_header) {
-      is_header = false;
-      continue;
+  CsvReader row(embedded_materials_csv(), "materials.csv (built in)");
+  row.next();  // names
+  while (row.next()) {
+    if (row.cells().size() != kColumns) row.fail("7 columns are expected");
+    const std::string name(row.cells()[kName]);
+    if (materials.empty() || materials.back().name != name) {
+      materials.push_back({name, without_quotes(row.cells()[kSource]), {}, {}, {}});
     }
-    const std::string where = fmt::format("materials.csv (built in):{}: ", i + 1);
-    const std::vector<std::string> cells = split_csv(lines[i]);
-    if (cells.size() != kColumns) throw InputError(where + "7 columns are expected");
-    if (materials.empty() || materials.back().name != cells[kName]) {
-      materials.push_back({cells[kName], cells[kSource], {}, {}, {}});
-    }
-    append_index(materials.back(), parse_cell(cells[kWavelength], "wavelength_um", where),
-                 parse_cell(cells[kIndexN], "n", where), parse_cell(cells[kIndexK], "k", where), where);
+    append_index(materials.back(), row.number(kWavelength, "wavelength_um"), row.number(kIndexN, "n"),
+                 row.number(kIndexK, "k"), row.where());
   }
   return materials;
 }
@@ -103,13 +86,8 @@ OpticalConstants Material::at(double wavelength_um) const {
 
 void append_index(Material& material, double wavelength_um, std::optional<double> n, std::optional<double> k,
                   const std::string& where) {
-  const auto append = [&](SpectralTable& table, const char* name, double value, const NumberRange& range) {
-    if (!range.contains(value))
-      throw InputError(fmt::format("{}{} = {}: must be in {}", where, name, value, range.text()));
-    append_row(table, wavelength_um, value, where);
-  };
-  if (n) append(material.n, "n", *n, kNRange);
-  if (k) append(material.k, "k", *k, kKRange);
+  if (n) append_row(material.n, wavelength_um, {"n", *n, kNRange}, where);
+  if (k) append_row(material.k, wavelength_um, {"k", *k, kKRange}, where);
 }
 
 Material fit_to_spectrum(Material material, const Spectrum& spectrum, const std::string& prefix) {

@@ -26,7 +26,8 @@ Material find_material(std::string_view name, const Spectrum& spectrum, const st
 
 /// A user's file of n and k over wavelength [um], linear in between, for use over `spectrum`.
 ///
-/// `.yml`, `.yaml`: a "full database record" of refractiveindex.info whose DATA items are tabulated nk, n or k.
+/// `.yml`, `.yaml`: a "full database record" of refractiveindex.info whose DATA items are tabulated nk, n or k, or a
+/// formula 1 to 9 for n, with or without tabulated k.
 /// Anything else: CSV with a line of column names, `wl` or `wavelength_um` first, then n, k or both; a further such
 /// line begins a further table, as in the CSV that refractiveindex.info exports. # begins a comment line. Without k, k
 /// = 0. Errors: InputError with file and line; `prefix` begins the message when the file cannot be opened or does not

@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "base/error.hpp"
+#include "scene/csv.hpp"
 #include "scene/number_range.hpp"
 #include "scene/text.hpp"
 
@@ -43,77 +43,52 @@ std::vector<std::string> names_of(const std::vector<ColumnRule>& rules) {
   return names;
 }
 
-const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const std::string& where) {
+const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const CsvReader& header) {
   for (const ColumnRule& rule : rules) {
     if (rule.name == name) return rule;
   }
   const std::vector<std::string> names = names_of(rules);
-  throw InputError(fmt::format("{}column \"{}\" is unknown; the nearest known is {}, allowed are {}", where,
-                               one_line(name), nearest_name(name, names), join(names)));
+  header.fail(fmt::format("column \"{}\" is unknown; the nearest known is {}, allowed are {}", one_line(name),
+                          nearest_name(name, names), join(names)));
 }
 
 /// The rules of the file's columns in the file's order; makes those columns present in `points`.
-std::vector<ColumnRule> parse_header(std::string_view line, const std::vector<ColumnRule>& rules, Points& points,
-                                     const std::string& where) {
+std::vector<ColumnRule> parse_header(const CsvReader& header, const std::vector<ColumnRule>& rules, Points& points) {
   std::vector<ColumnRule> columns;
-  for (const std::string_view cell : split(line, ',')) {
-    const ColumnRule& rule = find_rule(rules, trim(cell), where);
-    if (points.*rule.column) throw InputError(fmt::format("{}column \"{}\" appears twice", where, rule.name));
+  for (const std::string_view cell : header.cells()) {
+    const ColumnRule& rule = find_rule(rules, cell, header);
+    if (points.*rule.column) header.fail(fmt::format("column \"{}\" appears twice", rule.name));
     (points.*rule.column).emplace();
     columns.push_back(rule);
-    points.header += (points.header.empty() ? "" : ",") + std::string(rule.name);
   }
   for (const ColumnRule& rule : rules) {
-    if (rule.is_required && !(points.*rule.column)) {
-      throw InputError(fmt::format("{}column \"{}\" is missing, a number in {}", where, rule.name, rule.range.text()));
-    }
+    if (rule.is_required) header.position(rule.name, rule.range);
   }
+  points.header = fmt::format("{}", fmt::join(header.cells(), ","));
   return columns;
 }
 
-void parse_row(std::string_view line, const std::vector<ColumnRule>& columns, Points& points,
-               const std::string& where) {
-  const std::vector<std::string_view> cells = split(line, ',');
-  std::string row;
+void parse_row(const CsvReader& row, const std::vector<ColumnRule>& columns, Points& points) {
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    const ColumnRule& rule = columns[i];
-    const std::string_view cell = i < cells.size() ? trim(cells[i]) : std::string_view{};
-    if (cell.empty()) {
-      throw InputError(fmt::format("{}{}: the value is missing, a number in {}", where, rule.name, rule.range.text()));
-    }
-    const std::optional<double> value = parse_number(cell);
-    if (!value || !rule.range.contains(*value)) {
-      throw InputError(fmt::format("{}{} = {}: {}, a number in {}", where, rule.name, one_line(cell),
-                                   value ? "out of range" : "not a number", rule.range.text()));
-    }
-    (points.*rule.column)->push_back(*value);
-    if (i > 0) row += ',';
-    row += cell;
+    (points.*columns[i].column)->push_back(row.number(i, columns[i].name, &columns[i].range));
   }
-  if (cells.size() > columns.size()) {
-    throw InputError(fmt::format("{}{}: one value too many after column {}; the header has {}", where,
-                                 one_line(trim(cells[columns.size()])), columns.back().name, columns.size()));
+  if (row.cells().size() > columns.size()) {
+    row.fail(fmt::format("{}: one value too many after column {}; the header has {}",
+                         one_line(row.cells()[columns.size()]), columns.back().name, columns.size()));
   }
-  points.rows.push_back(std::move(row));
+  points.rows.push_back(fmt::format("{}", fmt::join(row.cells(), ",")));
 }
 
 }  // namespace
 
 Points parse_points(const std::string& text, const std::string& path_name, PointsKind kind) {
-  const std::string name = input_name(path_name);
   const std::vector<ColumnRule> rules = column_rules(kind);
-  const std::vector<std::string_view> lines = split_lines(text);
-  if (lines.empty()) {
-    throw InputError(
-        fmt::format("{}:1: the file is empty; a line of column names is expected: {}", name, join(names_of(rules))));
-  }
   Points points;
-  points.name = name;
-  const std::vector<ColumnRule> columns = parse_header(lines[0], rules, points, name + ":1: ");
-  points.rows.reserve(lines.size() - 1);
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    parse_row(lines[i], columns, points, fmt::format("{}:{}: ", name, points.line(i - 1)));
-  }
+  points.name = input_name(path_name);
+  CsvReader row(text, points.name, {.has_comments = false});
+  if (!row.next()) row.fail("the file is empty; a line of column names is expected: " + join(names_of(rules)));
+  const std::vector<ColumnRule> columns = parse_header(row, rules, points);
+  while (row.next()) parse_row(row, columns, points);
   return points;
 }
 

@@ -8,19 +8,19 @@
 
 #include "model/choices.hpp"
 #include "model/optical_constants.hpp"
+#include "scene/dispersion.hpp"
 
 namespace dolp {
 
-enum class EmissionModel { kMoments, kFresnel };
-enum class Mode { kHemispherical, kBistatic };
-
-/// A quantity tabulated over wavelength (strictly ascending), with the interpolation that suits it.
+/// A quantity tabulated over wavelength (strictly ascending), with the interpolation that suits it: where there is a
+/// formula, that between the first wavelength and the last.
 /// Outside the table the scene reader refuses the scene, so `at` is only asked inside.
 struct SpectralTable {
   enum class Interpolation { kLinear, kLogLog };
   std::vector<double> wavelength_um;
   std::vector<double> value;
   Interpolation interpolation = Interpolation::kLinear;
+  Dispersion formula = {};
   double at(double wavelength_um) const;
 };
 
@@ -43,6 +43,8 @@ struct Surface {
   double specular = 1.0;           ///< k_s in [0, 1]
   double diffuse = 0.0;            ///< k_d in [0, 1]
   double diffuse_exponent = -0.5;  ///< c in (-1, 0]
+  /// Whether the masking needs the mean slope, which the distribution does not always have: kSmithCauchyQRange.
+  bool needs_mean_slope() const { return masking == Masking::kSmith && distribution == Distribution::kCauchy; }
 };
 
 struct Emission {

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "model/choices.hpp"
 #include "scene/text.hpp"
 
 namespace dolp {
@@ -22,6 +23,12 @@ SceneKey number(const char* key, const char* unit, const NumberRange& range, con
 /// The words are in the order of the enumeration they stand for.
 SceneKey word(const char* key, std::vector<std::string> words, const char* fallback, const char* meaning, Set set) {
   return {{key, Type::kWord, "", {}, std::move(words), fallback, meaning}, set};
+}
+
+template <class Choice>
+SceneKey choice(const char* key, Choice fallback, const char* meaning, Set set) {
+  const auto& words = Names<Choice>::kAll;
+  return word(key, {words.begin(), words.end()}, name_of(fallback), meaning, set);
 }
 
 SceneKey text(const char* key, const char* meaning, Set set) {
@@ -49,16 +56,15 @@ std::vector<SceneKey> surface_keys() {
            [](Draft& d, const Value& v) { d.material = v.text; }),
       text("surface.material_file", "your own n and k: refractiveindex.info YAML or CSV, instead of n and k",
            [](Draft& d, const Value& v) { d.material_file = v.text; }),
-      word("surface.distribution", {"cauchy", "gaussian"}, "cauchy", "slope distribution D",
-           [](Draft& d, const Value& v) { d.scene.surface.distribution = static_cast<Distribution>(v.word); }),
+      choice("surface.distribution", Surface().distribution, "slope distribution D",
+             [](Draft& d, const Value& v) { d.scene.surface.distribution = static_cast<Distribution>(v.word); }),
       number("surface.sigma", "1", kSigmaRange, "required",
              "slope width sigma (m^2 = 2 sigma^2); may be absent with grid.sigma, whose first value it then is",
              [](Draft& d, const Value& v) { d.scene.surface.sigma = v.number; }),
       number("surface.q", "1", kQRange, "2", "tail exponent q of the cauchy distribution; 2 is GGX",
              [](Draft& d, const Value& v) { d.scene.surface.q = v.number; }),
-      word("surface.masking", {"none", "v-cavity", "integral", "smith"}, "integral",
-           "geometric attenuation G; smith with cauchy needs every q > 1.5",
-           [](Draft& d, const Value& v) { d.scene.surface.masking = static_cast<Masking>(v.word); }),
+      choice("surface.masking", Surface().masking, "geometric attenuation G; smith with cauchy needs every q > 1.5",
+             [](Draft& d, const Value& v) { d.scene.surface.masking = static_cast<Masking>(v.word); }),
       number("surface.specular", "1", kFractionRange, "1", "specular factor k_s",
              [](Draft& d, const Value& v) { d.scene.surface.specular = v.number; }),
       number("surface.diffuse", "1", kFractionRange, "0", "diffuse factor k_d",
@@ -73,9 +79,9 @@ std::vector<SceneKey> radiation_keys() {
   return {
       number("emission.temperature_K", "K", kEmissionTemperatureRange, "required", "temperature T of the surface",
              [](Draft& d, const Value& v) { d.scene.emission->temperature_K = v.number; }),
-      word("emission.model", {"moments", "fresnel"}, "moments",
-           "emissivity from the rough surface's own moments, or from the smooth surface",
-           [](Draft& d, const Value& v) { d.scene.emission->model = static_cast<EmissionModel>(v.word); }),
+      choice("emission.model", Emission().model,
+             "emissivity from the rough surface's own moments, or from the smooth surface",
+             [](Draft& d, const Value& v) { d.scene.emission->model = static_cast<EmissionModel>(v.word); }),
       number("source.irradiance", "W m-2 um-1", kNonNegativeRange, "", "E0 at normal incidence, flat over a band",
              [](Draft& d, const Value& v) {
                d.scene.source->kind = Source::Kind::kFlat;
@@ -117,9 +123,9 @@ std::vector<SceneKey> geometry_keys() {
        [](Draft& d, const Value& v) {
          d.scene.spectrum = {v.numbers[0], v.numbers[1]};
        }},
-      word("geometry.mode", {"hemispherical", "bistatic"}, "hemispherical",
-           "source all around at the view's zenith theta, or from one direction theta with the view fixed",
-           [](Draft& d, const Value& v) { d.scene.geometry.mode = static_cast<Mode>(v.word); }),
+      choice("geometry.mode", Geometry().mode,
+             "source all around at the view's zenith theta, or from one direction theta with the view fixed",
+             [](Draft& d, const Value& v) { d.scene.geometry.mode = static_cast<Mode>(v.word); }),
       number("geometry.view_zenith_deg", "degree", kZenithDegRange, "60", "bistatic: view zenith theta_v",
              [](Draft& d, const Value& v) { d.scene.geometry.view_zenith_deg = v.number; }),
       number("geometry.relative_azimuth_deg", "degree", kAzimuthDegRange, "180",
@@ -135,8 +141,8 @@ std::vector<SceneKey> geometry_keys() {
       number("accuracy.tolerance", "1", kToleranceRange, "1e-4",
              "largest error of rho, relative to rho_I, and of DOLP, absolute",
              [](Draft& d, const Value& v) { d.scene.accuracy.tolerance = v.number; }),
-      word("accuracy.precision", {"auto", "float", "double"}, "auto", "arithmetic of the device",
-           [](Draft& d, const Value& v) { d.scene.accuracy.precision = static_cast<Precision>(v.word); }),
+      choice("accuracy.precision", Accuracy().precision, "arithmetic of the device",
+             [](Draft& d, const Value& v) { d.scene.accuracy.precision = static_cast<Precision>(v.word); }),
       word(
           "accuracy.interpolation", {"auto", "off"}, "auto",
           "between slope distributions of a dense grid, within the tolerance; off: every entry is integrated by itself",

@@ -153,9 +153,7 @@ void fill_grid(Scene& scene, const SceneDocument& document) {
 
 /// Where the masking has no finite mean slope to work with, the scene is refused.
 void check_smith(const Scene& scene, const SceneDocument& document) {
-  const bool is_smith_cauchy =
-      scene.surface.masking == Masking::kSmith && scene.surface.distribution == Distribution::kCauchy;
-  if (!is_smith_cauchy) return;
+  if (!scene.surface.needs_mean_slope()) return;
   const std::string what = "masking = \"smith\" with distribution = \"cauchy\" needs q in " + kSmithCauchyQRange.text();
   if (!kSmithCauchyQRange.contains(scene.surface.q)) document.fail("surface.q", what);
   for (const double q : scene.grid.q) {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
+#include "scene/number_range.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {
@@ -19,17 +19,20 @@ SpectralTable sun_irradiance();
 /// Errors: InputError; `prefix` begins the message when the file cannot be opened.
 SpectralTable read_irradiance_file(const std::string& path, const std::string& prefix);
 
-/// Appends a row and checks that the wavelength is in range and ascends; `where` begins the message.
-void append_row(SpectralTable& table, double wavelength_um, double value, const std::string& where);
+/// A number that a file has, and what is allowed.
+struct NamedValue {
+  const char* name;
+  double value;
+  NumberRange range;
+};
+
+/// Appends a row and checks that both numbers are in range and the wavelength ascends; `where` begins the message.
+void append_row(SpectralTable& table, double wavelength_um, const NamedValue& value, const std::string& where);
 
 /// Whether the table has values over the whole spectrum.
 bool covers(const SpectralTable& table, const Spectrum& spectrum);
 
 /// "10.6 um" or "8 to 14 um".
 std::string wavelength_text(double min_um, double max_um);
-
-/// A number of a data file.
-/// Errors: InputError, "`where`column = cell: …".
-double parse_cell(std::string_view cell, const std::string& column, const std::string& where);
 
 }  // namespace dolp

@@ -133,7 +133,7 @@ std::string one_line(std::string_view text) {
 
 std::string join(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
 
-std::string read_text(const std::string& path, const std::string& prefix) {
+std::string read_text(const std::string& path, const std::string& prefix, std::size_t most_bytes) {
   const auto fail = [&](int code) {
     throw InputError(prefix + "cannot be read: " + std::generic_category().message(code));
   };
@@ -149,6 +149,7 @@ std::string read_text(const std::string& path, const std::string& prefix) {
   for (;;) {
     const std::size_t got = std::fread(block.data(), 1, block.size(), file.get());
     text.append(block.data(), got);
+    if (text.size() > most_bytes) throw InputError(fmt::format("{}is longer than {} bytes", prefix, most_bytes));
     if (std::ferror(file.get())) fail(errno);
     if (got < block.size()) return text;
   }

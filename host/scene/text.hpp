@@ -1,6 +1,8 @@
 // Reading text that people wrote: numbers, lines, names that are nearly right.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -40,8 +42,8 @@ std::string one_line(std::string_view text);
 std::string join(const std::vector<std::string>& words);
 
 /// A file's bytes, or stdin's for "-".
-/// Errors: InputError, "`prefix`cannot be read: reason".
-std::string read_text(const std::string& path, const std::string& prefix);
+/// Errors: InputError, "`prefix`cannot be read: reason", and for more than `most_bytes`.
+std::string read_text(const std::string& path, const std::string& prefix, std::size_t most_bytes = SIZE_MAX);
 
 /// The name of an input for messages: "stdin" for "-".
 std::string input_name(const std::string& path);

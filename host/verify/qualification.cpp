@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "evaluate/reference/hemisphere.hpp"
+#include "model/choices.hpp"
 #include "model/point_result.hpp"
 #include "run/scene_run.hpp"
 

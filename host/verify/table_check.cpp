@@ -118,11 +118,9 @@ void check_axis(const std::vector<double>& values, const NumberRange& range, con
 }
 
 void check_axes(const Table& table, const Scene& scene, const std::string& name) {
-  const Surface& surface = scene.surface;
-  const bool needs_mean_slope = surface.masking == Masking::kSmith && surface.distribution == Distribution::kCauchy;
   check_axis(table.theta_deg, kZenithDegRange, "theta", name);
   check_axis(table.sigma, kSigmaRange, "sigma", name);
-  check_axis(table.q, needs_mean_slope ? kSmithCauchyQRange : kQRange, "q", name);
+  check_axis(table.q, scene.surface.needs_mean_slope() ? kSmithCauchyQRange : kQRange, "q", name);
 }
 
 bool has_dolp(const Table& table) { return !table.dolp.empty() && !table.error_estimate.empty(); }

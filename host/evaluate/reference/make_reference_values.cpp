@@ -19,6 +19,7 @@
 #include "evaluate/reference/hemisphere.hpp"
 #include "evaluate/reference/reference_cases.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
+#include "model/choices.hpp"
 
 namespace {
 

@@ -1,0 +1,230 @@
+#include "cli/run_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/stopwatch.hpp"
+#include "cli/commands.hpp"
+#include "model/status.hpp"
+#include "run/scene_run.hpp"
+#include "run/scene_table.hpp"
+#include "table/result_csv.hpp"
+#include "terminal/exit_status.hpp"
+#include "terminal/progress_bar.hpp"
+
+namespace dolp::cli {
+namespace {
+
+constexpr double kAlbedoMin = 0.95;
+constexpr double kAlbedoMax = 1.05;
+
+/// The part of a grid where the albedo of the surface model is off: how many entries, and the smallest box around them.
+struct EnergyRange {
+  std::size_t entries = 0;
+  std::pair<double, double> theta_deg;  ///< of the view in bistatic mode
+  std::pair<double, double> sigma;
+};
+
+void widen(std::pair<double, double>& range, bool is_first, double value) {
+  range.first = is_first ? value : std::min(range.first, value);
+  range.second = is_first ? value : std::max(range.second, value);
+}
+
+/// Over which part of the grid the surface model itself gains or loses energy.
+class Energy {
+ public:
+  Energy(const Scene& scene, const std::vector<SceneEntry>& entries, const std::vector<PointResult>& results) {
+    const bool bistatic = scene.geometry.mode == Mode::kBistatic;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      const double albedo = results[i].albedo;
+      if (std::isnan(albedo)) continue;
+      widen(albedo_, count_++ == 0, albedo);
+      const double theta_deg = bistatic ? scene.geometry.view_zenith_deg : entries[i].theta_deg;
+      if (albedo < kAlbedoMin) add(loses_, theta_deg, entries[i].shape.sigma);
+      if (albedo > kAlbedoMax) add(gains_, theta_deg, entries[i].shape.sigma);
+    }
+  }
+
+  void report(Report& report, bool is_computed) const {
+    if (count_ == 0) {
+      report.row("albedo", "{}", is_computed ? "not given for any entry" : "not computed: nothing kept depends on it");
+      report.value("albedo", nullptr);
+      return;
+    }
+    const bool is_off = loses_.entries + gains_.entries > 0;
+    report.row("albedo", "{:.3g}..{:.3g}{}", key("albedo/min", albedo_.first), key("albedo/max", albedo_.second),
+               is_off ? ": the surface model itself does not keep the energy" : "");
+    report.add("albedo/loses_energy", range_report("loses it (below", kAlbedoMin, loses_));
+    report.add("albedo/gains_energy", range_report("gains it (above", kAlbedoMax, gains_));
+  }
+
+ private:
+  static void add(EnergyRange& range, double theta_deg, double sigma) {
+    const bool is_first = range.entries++ == 0;
+    widen(range.theta_deg, is_first, theta_deg);
+    widen(range.sigma, is_first, sigma);
+  }
+
+  static Report range_report(const char* what, double limit, const EnergyRange& range) {
+    Report report;
+    report.values({{"entries", range.entries}, {"theta_deg", range.theta_deg}, {"sigma", range.sigma}});
+    if (range.entries == 0) return report;
+    report.line("    {} {}): {} entries, theta {:g}..{:g}, sigma {:.4g}..{:.4g}", what, limit, range.entries,
+                range.theta_deg.first, range.theta_deg.second, range.sigma.first, range.sigma.second);
+    return report;
+  }
+
+  std::size_t count_ = 0;
+  std::pair<double, double> albedo_;
+  EnergyRange loses_;
+  EnergyRange gains_;
+};
+
+/// What is kept, and a line for each effect that is dropped.
+void add_effects(Report& report, const SceneRun& run) {
+  std::string kept;
+  for (const EffectRow& row : run.effects) {
+    if (row.state == EffectState::kKept) kept += (kept.empty() ? "" : ", ") + std::string(row.name);
+  }
+  report.row("kept", "{}{}", kept.empty() ? "nothing" : kept, run.plan.keep_all ? " (--keep-all)" : "");
+  for (const EffectRow& row : run.effects) {
+    report.row_if(row.state == EffectState::kDropped, "dropped", "{}: {}", row.name, row.reason);
+  }
+  report.value("effects", effects_json(run.effects, run.plan));
+}
+
+std::string bound_text(const std::optional<double>& bound) {
+  return bound ? fmt::format("<= {:.2g}", *bound) : "not promised for any entry";
+}
+
+void add_work(Report& report, const EvaluationReport& e, std::size_t entries) {
+  const double per_entry = entries > 0 ? e.evaluations / static_cast<double>(entries) : 0.0;
+  report.row("work", "{:.4g} integrand evaluations, {:.0f} an entry", key("evaluations", e.evaluations), per_entry);
+  report.row_if(e.interpolated > 0, "of these", "{} moments interpolated between slope distributions, from {}",
+                key("interpolated_moments", e.interpolated), key("interpolation_nodes", e.interpolation_nodes));
+}
+
+void add_errors(Report& report, const SceneRun& run, double tolerance) {
+  const std::optional<double> dolp = worst_of(run.results, &PointResult::error_estimate, kStatusNoDolpPromised);
+  std::optional<double> rho;
+  if (run.plan.gives_rho) rho = worst_of(run.results, &PointResult::rho_error_estimate, kStatusOutsideDomain);
+  report.row("error", "DOLP {} (absolute), {}; tolerance {:g}", bound_text(dolp),
+             run.plan.gives_rho ? fmt::format("rho {} (of rho_I)", bound_text(rho)) : "rho not computed",
+             key("tolerance", tolerance));
+  report.value("worst_error_estimate", dolp);
+  report.value("worst_rho_error_estimate", rho);
+}
+
+void add_status(Report& report, const std::vector<PointResult>& results) {
+  std::vector<Report> parts;
+  for (const auto& [bit, meaning] : {std::pair{kStatusUnphysicalReflectance, "reflectance outside [0, 1]"},
+                                     std::pair{kStatusToleranceMissed, "tolerance not met"},
+                                     std::pair{kStatusOutsideDomain, "outside the model's domain"},
+                                     std::pair{kStatusNonPositiveIntensity, "intensity not positive"}}) {
+    Report& part = parts.emplace_back();
+    part.value("bit", bit);
+    part.row(fmt::format("status {}", bit), "{} of {} entries: {}", key("count", count_status(results, bit)),
+             results.size(), key("meaning", meaning));
+  }
+  report.add("status", parts);
+}
+
+/// What ran: nothing, where no evaluator was needed.
+EvaluationReport evaluation_of(const MomentsEvaluator* evaluator, const Options& options) {
+  if (evaluator) return evaluator->report();
+  EvaluationReport nothing;
+  nothing.evaluator = options.evaluator;
+  nothing.device = nothing.precision = "none";
+  return nothing;
+}
+
+}  // namespace
+
+SceneRun run_entries(const Options& options, const Scene& scene, const std::vector<SceneEntry>& entries,
+                     std::chrono::steady_clock::time_point start) {
+  SceneRun run;
+  run.plan = plan_effects(scene, entries, options.keep_all);
+  const bool integrates = wants_evaluator(scene, entries, run.plan);
+  const std::unique_ptr<MomentsEvaluator> evaluator = integrates ? make_evaluator(options, scene) : nullptr;
+  {
+    ProgressBar bar(options.quiet);
+    run.results = evaluate_scene(scene, entries, run.plan, evaluator.get(), bar.callback());
+  }
+  run.wall_s = seconds_since(start);
+  run.effects = effect_rows(scene, entries, run.plan);
+  run.evaluation = evaluation_of(evaluator.get(), options);
+  return run;
+}
+
+int report_run(const Options& options, const Scene& scene, const std::vector<SceneEntry>& entries, const SceneRun& run,
+               const std::string& shape) {
+  Report report;
+  report.line("{}", key("title", scene.title));
+  report.row("entries", "{}", key("shape", shape));
+  report.value("entries", run.results.size());
+  add_effects(report, run);
+  add_evaluation(report, run.evaluation, run.wall_s);
+  add_work(report, run.evaluation, run.results.size());
+  report.value("rule", rule_text(scene.accuracy.tolerance, run.evaluation));
+  add_errors(report, run, scene.accuracy.tolerance);
+  add_status(report, run.results);
+  Energy(scene, entries, run.results).report(report, run.plan.needs_moments);
+  report.row("written", "{}", key("output", options.output_path));
+  report.print(options.json, options.quiet, options.output_path);
+  return options.strict && count_status(run.results, kStatusToleranceMissed) > 0 ? kExitAccuracy : kExitDone;
+}
+
+std::string result_csv(const Points& points, const std::vector<PointResult>& results) {
+  std::string csv = points.header + ',' + kResultColumns + '\n';
+  for (std::size_t i = 0; i < results.size(); ++i) csv += points.rows[i] + ',' + result_cells(results[i]) + '\n';
+  return csv;
+}
+
+std::string grid_text(const Grid& grid) {
+  return fmt::format("{} x {} x {} (theta x sigma x q)", grid.theta_deg.size(), grid.sigma.size(), grid.q.size());
+}
+
+Report::Json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan) {
+  Report::Json json;
+  for (const EffectState state :
+       {EffectState::kKept, EffectState::kDropped, EffectState::kNotNeeded, EffectState::kAbsent}) {
+    json[state_name(state)] = Report::Json::array();
+  }
+  for (const EffectRow& row : effects) {
+    Report::Json of_row = {{"name", row.name}, {"reason", row.reason}};
+    if (row.state == EffectState::kDropped) of_row["bound"] = row.bound.value_or(0.0);
+    json[state_name(row.state)].push_back(of_row);
+  }
+  json["keep_all"] = plan.keep_all;
+  json["allowed_share_of_tolerance"] = kDroppedShare;
+  json["dolp_bound"] = plan.bound.dolp;
+  json["rho_bound"] = plan.bound.rho;
+  return json;
+}
+
+void add_evaluation(Report& report, const EvaluationReport& e, double wall_s) {
+  const bool is_idle = e.device == "none";
+  report.row_if(is_idle, "device", "none: nothing is integrated");
+  report.row_if(!is_idle, "device", "{}{}{}, {} precision", key("device", e.device), e.driver.empty() ? "" : ", ",
+                key("driver", e.driver), key("precision", e.precision));
+  report.row("time", "{:.3f} s in all, {:.3f} s in kernels, {} dispatches", key("wall_s", wall_s),
+             key("kernel_s", e.kernel_s), key("dispatches", e.dispatches));
+  report.values({{"evaluator", e.evaluator}, {"setup_s", e.setup_s}});
+}
+
+std::size_t count_status(const std::vector<PointResult>& results, std::uint32_t bit) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(results, [bit](const PointResult& r) { return (r.status & bit) != 0; }));
+}
+
+std::optional<double> worst_of(const std::vector<PointResult>& results, double PointResult::*error,
+                               std::uint32_t refused) {
+  std::optional<double> worst;
+  for (const PointResult& r : results) {
+    if ((r.status & refused) == 0) worst = std::max(worst.value_or(0.0), r.*error);
+  }
+  return worst;
+}
+
+}  // namespace dolp::cli

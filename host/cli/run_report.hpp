@@ -1,0 +1,54 @@
+// A run of a scene's entries as `table` and `eval` make it, and what commands report of runs.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/options.hpp"
+#include "cli/report.hpp"
+#include "model/point_result.hpp"
+#include "plan/effects.hpp"
+#include "scene/points.hpp"
+
+namespace dolp::cli {
+
+/// A finished run.
+struct SceneRun {
+  EffectPlan plan;
+  std::vector<EffectRow> effects;
+  std::vector<PointResult> results;
+  EvaluationReport evaluation;
+  double wall_s = 0.0;
+};
+
+/// Evaluates the entries as the options ask for. The command began at `start`.
+SceneRun run_entries(const Options& options, const Scene& scene, const std::vector<SceneEntry>& entries,
+                     std::chrono::steady_clock::time_point start);
+
+/// Prints the report of a run; returns the exit status. `shape`: that of the grid, or "200 points".
+int report_run(const Options& options, const Scene& scene, const std::vector<SceneEntry>& entries, const SceneRun& run,
+               const std::string& shape);
+
+/// The columns of the points as they were given, and those of their results.
+std::string result_csv(const Points& points, const std::vector<PointResult>& results);
+
+/// "91 x 32 x 5 (theta x sigma x q)".
+std::string grid_text(const Grid& grid);
+
+/// Names and reasons of what is kept, dropped, not needed and absent.
+Report::Json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan);
+
+/// Where a run was evaluated, and how long it took.
+void add_evaluation(Report& report, const EvaluationReport& evaluation, double wall_s);
+
+/// The results that carry a bit of the status.
+std::size_t count_status(const std::vector<PointResult>& results, std::uint32_t bit);
+
+/// The largest of an error that results state, of those whose status has none of `refused`; none without any.
+std::optional<double> worst_of(const std::vector<PointResult>& results, double PointResult::*error,
+                               std::uint32_t refused);
+
+}  // namespace dolp::cli

@@ -77,7 +77,9 @@ constexpr std::array<HardEntry, 4> kHardEntries{{
     {{Distribution::kGaussian, Masking::kVCavity},
      1e-4,
      {89.999, {10.0, 2.0}, {0.17134404080532892, 1.1850961920100356e-05}}},
-    {{Distribution::kCauchy, Masking::kSmith}, 1e-2, {0.0, {1.0083003838870053, 1.525062756962191}, {4.011651599797131, 0.0}}},
+    {{Distribution::kCauchy, Masking::kSmith},
+     1e-2,
+     {0.0, {1.0083003838870053, 1.525062756962191}, {4.011651599797131, 0.0}}},
     {{Distribution::kGaussian, Masking::kSmith}, 1e-6, {0.001, {0.8041800068746714, 2.0}, {1.96, 0.74}}},
 }};
 
@@ -96,7 +98,8 @@ TEST(HardEntries, Moments_AreWithinTheirBoundsOfFinerRulesAndOfTheReference) {
   for (const HardEntry& entry : kHardEntries) {
     for (const Kernel kernel : kKernels) {
       if (!is_double(kernel) && entry.tolerance < kLeastFloatTolerance) continue;
-      const Moments stated = make_evaluator(kernel)->evaluate(request_of(entry.model, {entry.point}, entry.tolerance), {}).at(0);
+      const Moments stated =
+          make_evaluator(kernel)->evaluate(request_of(entry.model, {entry.point}, entry.tolerance), {}).at(0);
       const MomentsRequest finest = request_of(entry.model, {entry.point}, kFinest);
       const std::string where = name_of(kernel) + " " + name_of(entry.model) + " at " + text_of(entry.point);
       const Moments fine = CpuEvaluator(Precision::kDouble).evaluate(finest, {}).at(0);

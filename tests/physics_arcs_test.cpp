@@ -194,8 +194,8 @@ TYPED_TEST(ArcsText, SplitLines_Ascend) {
   }
 }
 
-// What of a facet's projection reflects upward is seen or hidden: over all arcs it adds up to the integral of e up to the
-// horizon, so that arcs tile those azimuths and no others. Without masking all is seen; of v-cavity e in the middle
+// What of a facet's projection reflects upward is seen or hidden: over all arcs it adds up to the integral of e up to
+// the horizon, so that arcs tile those azimuths and no others. Without masking all is seen; of v-cavity e in the middle
 // zone, 2 c before it and 2 cos(theta_r) behind it.
 TYPED_TEST(ArcsText, Arcs_CoverTheAzimuthsWhoseRayLeaves) {
   Worst worst;
@@ -218,7 +218,8 @@ TYPED_TEST(ArcsText, Arcs_CoverTheAzimuthsWhoseRayLeaves) {
         const double second = azimuth_of(lines.second);
         const double horizon = azimuth_of(lines.horizon);
         const double scale = pi * (facet.c + facet.s * facet.t);
-        const std::string where = name_of(masking) + std::string(" c ") + std::to_string(facet.c) + " t " + std::to_string(facet.t);
+        const std::string where =
+            name_of(masking) + std::string(" c ") + std::to_string(facet.c) + " t " + std::to_string(facet.t);
         worst.update(std::abs(static_cast<double>(sums.x + sums.w) - integral_of_e(0.0, horizon)) / scale, where);
         double seen = integral_of_e(0.0, horizon);
         if (masking == Masking::kVCavity) {
@@ -328,7 +329,9 @@ TYPED_TEST(ArcsText, MakeArc_HasTheSectionOriginAndSpanOfItsEnds) {
   using Half = decltype(TypeParam{}.half_angle(RealOf<TypeParam>(1), RealOf<TypeParam>(1)));
   TypeParam text;
   constexpr double kAllowed = 8.0 * kEpsilon<TypeParam>;  // of angles up to pi
-  const auto half = [](double phi) { return Half(static_cast<Real>(std::cos(0.5 * phi)), static_cast<Real>(std::sin(0.5 * phi))); };
+  const auto half = [](double phi) {
+    return Half(static_cast<Real>(std::cos(0.5 * phi)), static_cast<Real>(std::sin(0.5 * phi)));
+  };
   const Half forward(Real(1), Real(0));
   const Half back(Real(0), Real(1));
   const Half near = half(0.7);
@@ -356,14 +359,18 @@ TYPED_TEST(ArcsText, Azimuths_LieOnTheirArcAndWeighItsLength) {
   TypeParam text = text_for<TypeParam>(whole_data(kShape, Masking::kNone, {1.508, 0.0}));
   constexpr double kAllowed = 20.0 * kEpsilon<TypeParam>;  // sums of kExactOrder terms
   const auto half = [](double phi) {
-    return phi == pi ? Half(Real(0), Real(1)) : Half(static_cast<Real>(std::cos(0.5 * phi)), static_cast<Real>(std::sin(0.5 * phi)));
+    return phi == pi ? Half(Real(0), Real(1))
+                     : Half(static_cast<Real>(std::cos(0.5 * phi)), static_cast<Real>(std::sin(0.5 * phi)));
   };
-  for (const auto& [from, to] : {std::array{0.0, pi}, std::array{0.0, 1.1}, std::array{1.1, pi}, std::array{0.4, 2.9}}) {
+  for (const auto& [from, to] :
+       {std::array{0.0, pi}, std::array{0.0, 1.1}, std::array{1.1, pi}, std::array{0.4, 2.9}}) {
     for (const int root : {-1, 0, 1}) {
-      const auto arc = root < 0 ? text.make_arc(half(from), half(to)) : text.make_root_arc(half(from), half(to), root == 1);
+      const auto arc =
+          root < 0 ? text.make_arc(half(from), half(to)) : text.make_root_arc(half(from), half(to), root == 1);
       double length = 0.0;
       for (int i = 0; i < kExactOrder; ++i) {
-        const auto at = text.azimuth(arc, text.place_on_arc(arc, text.rule_node(text.rule_offset(arc.section, kExactOrder) + i)));
+        const auto at =
+            text.azimuth(arc, text.place_on_arc(arc, text.rule_node(text.rule_offset(arc.section, kExactOrder) + i)));
         // Beyond pi the integrand is what it is before.
         const double phi = std::abs(std::atan2(static_cast<double>(at.sin_phi), static_cast<double>(at.x)));
         EXPECT_GE(phi, from - kAllowed);
@@ -470,8 +477,8 @@ double digits_per_node(const Error& error) {
   return (digits.back() - digits.front()) / static_cast<double>(digits.size() - 1);
 }
 
-// Digits gained per node over what orders.glsl says, of many arcs or pieces. The law is asymptotic; what stands before it
-// changes the digits by a part of one, and a rare one happens upon it.
+// Digits gained per node over what orders.glsl says, of many arcs or pieces. The law is asymptotic; what stands before
+// it changes the digits by a part of one, and a rare one happens upon it.
 class SharesOfLaw {
  public:
   void add(double gained, double cost, const std::string& where) {
@@ -480,7 +487,8 @@ class SharesOfLaw {
     worst_.update(1.0 / shares_.back(), where);
   }
   void expect_at_least(double least, std::size_t count) {
-    std::printf("%zu sums, least share of the law %.2f at %s\n", shares_.size(), 1.0 / worst_.value, worst_.where.c_str());
+    std::printf("%zu sums, least share of the law %.2f at %s\n", shares_.size(), 1.0 / worst_.value,
+                worst_.where.c_str());
     ASSERT_GE(shares_.size(), count);
     std::ranges::sort(shares_);
     EXPECT_GE(shares_[shares_.size() / 100], least) << worst_.where;
@@ -512,9 +520,9 @@ double error_of(const Sums& sums, const Sums& exact) {
 TEST(ArcCost, SmoothArcs_GainTheDigitsPerNodeThatItSays) {
   using Text = tested_double::Text;
   SharesOfLaw shares;
-  for (const OpticalConstants& optical : {OpticalConstants{1.508, 0.0}, OpticalConstants{4.0, 0.0},
-                                          OpticalConstants{2.0, 0.7}, OpticalConstants{27.0, 90.0},
-                                          OpticalConstants{0.3, 2.0}}) {
+  for (const OpticalConstants& optical :
+       {OpticalConstants{1.508, 0.0}, OpticalConstants{4.0, 0.0}, OpticalConstants{2.0, 0.7},
+        OpticalConstants{27.0, 90.0}, OpticalConstants{0.3, 2.0}}) {
     const KernelData data = whole_data(kShape, Masking::kNone, optical);
     Text text = text_for<Text>(data);
     const auto index = index_in<Text>(data.indices[0]);
@@ -532,8 +540,9 @@ TEST(ArcCost, SmoothArcs_GainTheDigitsPerNodeThatItSays) {
         const auto exact = sums(DOLP_MAX_ORDER);
         const double gained = digits_per_node([&](int order) { return error_of(sums(order), exact); });
         const double nodes = text.arc_nodes(rule, theta, row.shape[0], index, t, kManyDigits, arc, 0, false);
-        shares.add(gained, nodes / kManyDigits,
-                   "n " + std::to_string(optical.n) + " theta " + std::to_string(theta_deg) + " t " + std::to_string(t));
+        shares.add(
+            gained, nodes / kManyDigits,
+            "n " + std::to_string(optical.n) + " theta " + std::to_string(theta_deg) + " t " + std::to_string(t));
       }
     }
   }
@@ -557,7 +566,8 @@ void measure_pieces(KernelData data, const Add& add) {
     task.most_azimuths = DOLP_MAX_ORDER;
     auto piece = text.make_piece(full, theta, row, task);
     piece.digits = kManyDigits;
-    const double nodes = text.slope_nodes(rule_in<Text>(rule_of_nodes(0.0, data.rule)), theta, row.shape[0], task, piece);
+    const double nodes =
+        text.slope_nodes(rule_in<Text>(rule_of_nodes(0.0, data.rule)), theta, row.shape[0], task, piece);
     const auto sums = [&](int order) {
       piece.order = order;
       piece.digits = 0.0;
@@ -580,7 +590,8 @@ TEST(PieceCost, Pieces_GainTheDigitsPerNodeThatItSays) {
         MomentsRequest request = request_of({distribution, slopes.sigma, slopes.q}, Masking::kNone, {2.0, 0.7});
         request.theta_deg = {theta_deg};
         request.tolerance = 1e-12;
-        const std::string where = name_of({distribution, slopes.sigma, slopes.q}) + " theta " + std::to_string(theta_deg);
+        const std::string where =
+            name_of({distribution, slopes.sigma, slopes.q}) + " theta " + std::to_string(theta_deg);
         measure_pieces(kernel_data(request), [&](double gained, double cost, bool has_two_roots) {
           SharesOfLaw& shares =
               distribution == Distribution::kGaussian ? gaussian : (has_two_roots ? cauchy_two_roots : cauchy);
@@ -594,7 +605,8 @@ TEST(PieceCost, Pieces_GainTheDigitsPerNodeThatItSays) {
   gaussian.expect_at_least(kLeastShareWithoutSingularity, 50);
 }
 
-// Every arc gets more nodes for more digits, and the whole circle never fewer than the two that its second harmonic needs.
+// Every arc gets more nodes for more digits, and the whole circle never fewer than the two that its second harmonic
+// needs.
 TYPED_TEST(ArcsText, ArcNodes_GrowWithTheDigits) {
   using Real = RealOf<TypeParam>;
   for (const Masking masking : kMaskings) {
@@ -616,8 +628,10 @@ TYPED_TEST(ArcsText, ArcNodes_GrowWithTheDigits) {
         Real before = Real(0);
         for (int digits = 0; digits <= 20; ++digits) {
           const auto arc = text.make_arc(from, to);
-          const Real nodes = text.arc_nodes(rule, facets.theta, shape, index, facets.slope, static_cast<Real>(digits), arc, zone, false);
-          EXPECT_TRUE(std::isfinite(nodes) && nodes >= before) << "c " << facets.theta.c << " t " << facets.slope << " zone " << zone;
+          const Real nodes = text.arc_nodes(rule, facets.theta, shape, index, facets.slope, static_cast<Real>(digits),
+                                            arc, zone, false);
+          EXPECT_TRUE(std::isfinite(nodes) && nodes >= before)
+              << "c " << facets.theta.c << " t " << facets.slope << " zone " << zone;
           if (arc.section == TypeParam::kSectionCircle) {
             EXPECT_GE(nodes, Real(2));
           }
@@ -685,7 +699,8 @@ std::array<double, 2> adaptive_integrals(tested_double::Text& text, const tested
         const auto f = text.facet(theta, index, slope, std::cos(phi), std::sin(phi));
         return 2.0 * v * std::abs(length) * f.e * f.*member;
       };
-      if (length != 0.0) sum += boost::math::quadrature::gauss_kronrod<double, 31>::integrate(integrand, 0.0, 1.0, 15, 1e-14);
+      if (length != 0.0)
+        sum += boost::math::quadrature::gauss_kronrod<double, 31>::integrate(integrand, 0.0, 1.0, 15, 1e-14);
     }
     return sum;
   };
@@ -699,7 +714,8 @@ TEST(TotalReflection, AzimuthSums_AgreeWithAdaptiveQuadrature) {
   constexpr double kAllDigits = 16.0;
   Worst worst;
   int with_line = 0;
-  for (const OpticalConstants& optical : {OpticalConstants{0.8, 0.0}, OpticalConstants{0.2, 0.0}, OpticalConstants{0.8, 1e-3}, OpticalConstants{0.5, 0.05}}) {
+  for (const OpticalConstants& optical : {OpticalConstants{0.8, 0.0}, OpticalConstants{0.2, 0.0},
+                                          OpticalConstants{0.8, 1e-3}, OpticalConstants{0.5, 0.05}}) {
     const KernelData data = whole_data(kShape, Masking::kNone, optical);
     Text text = text_for<Text>(data);
     const auto index = index_in<Text>(data.indices[0]);
@@ -711,7 +727,8 @@ TEST(TotalReflection, AzimuthSums_AgreeWithAdaptiveQuadrature) {
         if (cosine_of(lines.critical) < 1.0 && cosine_of(lines.critical) > cosine_of(lines.horizon)) ++with_line;
         const auto sums = sums_of_order(text, DOLP_MAX_ORDER, theta, shape, index, slope, kAllDigits).member[0];
         const auto exact = adaptive_integrals(text, theta, index, slope);
-        const std::string where = "n " + std::to_string(optical.n) + " k " + std::to_string(optical.k) + " theta " + std::to_string(theta_deg) + " t " + std::to_string(slope);
+        const std::string where = "n " + std::to_string(optical.n) + " k " + std::to_string(optical.k) + " theta " +
+                                  std::to_string(theta_deg) + " t " + std::to_string(slope);
         worst.update(std::abs(sums.x - exact[0]), where + " r_i");
         worst.update(std::abs(sums.y - exact[1]), where + " r_q");
       }

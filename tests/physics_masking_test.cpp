@@ -161,8 +161,7 @@ TYPED_TEST(MaskingText, IntegralG1_AgreesWithDirectIntegration) {
         const double error = std::abs((1.0 - table.shadowed(a, slope)) - exact(std::atan(slope)));
         const std::string where =
             name_of(shape) + " theta " + std::to_string(theta_deg) + " alpha " + std::to_string(alpha_deg);
-        const double allowed =
-            allowed_error(table, shape, a, slope) + unused(theta_deg, alpha_deg);
+        const double allowed = allowed_error(table, shape, a, slope) + unused(theta_deg, alpha_deg);
         EXPECT_LE(error, allowed) << where;
         worst.update(error, where);
         worst_share.update(error / allowed, where);
@@ -302,8 +301,7 @@ TYPED_TEST(MaskingText, IntegralG1_IsBetweenAHalfAndOneAndFallsWithTheZenithAngl
       for (double theta_deg = 0.0; theta_deg <= 90.0; theta_deg += 1.25) {
         const CosSin a = cos_sin_deg(theta_deg);
         const double shadowed = table.shadowed(a, slope);
-        const double slack =
-            allowed_error(table, shape, a, slope) + unused(theta_deg - 1.25, alpha_deg);
+        const double slack = allowed_error(table, shape, a, slope) + unused(theta_deg - 1.25, alpha_deg);
         EXPECT_GE(shadowed, before - slack) << name_of(shape) << " " << theta_deg << " " << alpha_deg;
         EXPECT_GE(shadowed, -slack) << name_of(shape) << " " << theta_deg << " " << alpha_deg;
         EXPECT_LE(shadowed, 0.5 + slack) << name_of(shape) << " " << theta_deg << " " << alpha_deg;
@@ -322,8 +320,7 @@ TYPED_TEST(MaskingText, GrazingDirection_HidesHalfForIntegralAndAllForSmith) {
     const CosSin grazing = cos_sin_deg(90.0);
     const double density = static_cast<double>(integral.node().marginal_norm);
     EXPECT_NEAR(integral.shadowed(grazing, kSlope), 0.5 - 0.5 * density * kSlope,
-                kSlope * kSlope * kSlope / shape.sigma +
-                    allowed_error(integral, shape, grazing, kSlope));
+                kSlope * kSlope * kSlope / shape.sigma + allowed_error(integral, shape, grazing, kSlope));
     Table<TypeParam> smith(shape, Masking::kSmith);
     EXPECT_GT(smith.lambda(cos_sin_deg(90.0)), 1e20);
     EXPECT_LE(smith.lambda(cos_sin_deg(0.0)), smith.stated());

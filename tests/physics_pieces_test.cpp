@@ -1,5 +1,5 @@
-// The pieces of the slope axis and the task words that say them: between two breakpoints the shaders' arcs of azimuth change
-// smoothly, and every square root lies at an end that its pieces know of.
+// The pieces of the slope axis and the task words that say them: between two breakpoints the shaders' arcs of azimuth
+// change smoothly, and every square root lies at an end that its pieces know of.
 #include <gtest/gtest.h>
 
 #include <algorithm>

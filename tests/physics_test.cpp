@@ -85,30 +85,84 @@ constexpr double kRootUlps = 6.0;  // up to three roots and quotients on the way
 
 TYPED_TEST(Elementary, Functions_OverTheirDomain_AreAFewUlpsFromExact) {
   using enum Spacing;
-  const Row<TypeParam> expm1{"expm1_real", [](auto& text, auto x) { return text.expm1_real(x); },
-                             [](auto x) { return std::expm1(x); }, -80.0, 80.0, kUniform, kFewUlps};
-  const Row<TypeParam> minus_expm1{"expm1_real(-x)", [](auto& text, auto x) { return -text.expm1_real(-x); },
-                                   [](auto x) { return -std::expm1(-x); }, 1e-30, 80.0, kLogarithmic, kFewUlps};
+  const Row<TypeParam> expm1{"expm1_real",
+                             [](auto& text, auto x) { return text.expm1_real(x); },
+                             [](auto x) { return std::expm1(x); },
+                             -80.0,
+                             80.0,
+                             kUniform,
+                             kFewUlps};
+  const Row<TypeParam> minus_expm1{"expm1_real(-x)",
+                                   [](auto& text, auto x) { return -text.expm1_real(-x); },
+                                   [](auto x) { return -std::expm1(-x); },
+                                   1e-30,
+                                   80.0,
+                                   kLogarithmic,
+                                   kFewUlps};
   const double lowest = static_cast<double>(TypeParam::kLowestExponent);
-  const Row<TypeParam> exp{"exp_real", [](auto& text, auto x) { return text.exp_real(x); },
-                           [](auto x) { return std::exp(x); }, lowest, 80.0, kUniform, kFewUlps};
-  const Row<TypeParam> sinh{"sinh_cosh.x", [](auto& text, auto x) { return text.sinh_cosh(x).x; },
-                            [](auto x) { return std::sinh(x); }, 1e-30, 80.0, kLogarithmic, kFewUlps};
-  const Row<TypeParam> cosh{"sinh_cosh.y", [](auto& text, auto x) { return text.sinh_cosh(x).y; },
-                            [](auto x) { return std::cosh(x); }, 1e-30, 80.0, kLogarithmic, kFewUlps};
-  const Row<TypeParam> log1p{"log1p_real", [](auto& text, auto x) { return text.log1p_real(x); },
-                             [](auto x) { return std::log1p(x); }, 1e-30, 1e30, kLogarithmic, kFewUlps};
-  const Row<TypeParam> log1p_square{"log1p_square", [](auto& text, auto x) { return text.log1p_square(x); },
-                                    [](auto x) { return std::log1p(x * x); }, 1e-15, 1e30, kLogarithmic, kFewUlps};
-  const Row<TypeParam> asinh{"asinh_real", [](auto& text, auto x) { return text.asinh_real(x); },
-                             [](auto x) { return std::asinh(x); }, 1e-30, 1e30, kLogarithmic, kFewUlps};
-  const Row<TypeParam> acosh{"acosh_above_1", [](auto& text, auto x) { return text.acosh_above_1(x); },
-                             [](auto x) { return std::log1p(x + std::sqrt(x * (x + 2.0L))); }, 1e-30, 1e15,
-                             kLogarithmic, kRootUlps};
-  const Row<TypeParam> atan{"arc_tangent", [](auto& text, auto x) { return text.arc_tangent(x); },
-                            [](auto x) { return std::atan(x); }, 1e-30, 1e30, kLogarithmic, kRootUlps};
-  const Row<TypeParam> acos{"arc_cosine", [](auto& text, auto x) { return text.arc_cosine(x); },
-                            [](auto x) { return std::acos(x); }, -1.0, 1.0, kUniform, kRootUlps};
+  const Row<TypeParam> exp{"exp_real",
+                           [](auto& text, auto x) { return text.exp_real(x); },
+                           [](auto x) { return std::exp(x); },
+                           lowest,
+                           80.0,
+                           kUniform,
+                           kFewUlps};
+  const Row<TypeParam> sinh{"sinh_cosh.x",
+                            [](auto& text, auto x) { return text.sinh_cosh(x).x; },
+                            [](auto x) { return std::sinh(x); },
+                            1e-30,
+                            80.0,
+                            kLogarithmic,
+                            kFewUlps};
+  const Row<TypeParam> cosh{"sinh_cosh.y",
+                            [](auto& text, auto x) { return text.sinh_cosh(x).y; },
+                            [](auto x) { return std::cosh(x); },
+                            1e-30,
+                            80.0,
+                            kLogarithmic,
+                            kFewUlps};
+  const Row<TypeParam> log1p{"log1p_real",
+                             [](auto& text, auto x) { return text.log1p_real(x); },
+                             [](auto x) { return std::log1p(x); },
+                             1e-30,
+                             1e30,
+                             kLogarithmic,
+                             kFewUlps};
+  const Row<TypeParam> log1p_square{"log1p_square",
+                                    [](auto& text, auto x) { return text.log1p_square(x); },
+                                    [](auto x) { return std::log1p(x * x); },
+                                    1e-15,
+                                    1e30,
+                                    kLogarithmic,
+                                    kFewUlps};
+  const Row<TypeParam> asinh{"asinh_real",
+                             [](auto& text, auto x) { return text.asinh_real(x); },
+                             [](auto x) { return std::asinh(x); },
+                             1e-30,
+                             1e30,
+                             kLogarithmic,
+                             kFewUlps};
+  const Row<TypeParam> acosh{"acosh_above_1",
+                             [](auto& text, auto x) { return text.acosh_above_1(x); },
+                             [](auto x) { return std::log1p(x + std::sqrt(x * (x + 2.0L))); },
+                             1e-30,
+                             1e15,
+                             kLogarithmic,
+                             kRootUlps};
+  const Row<TypeParam> atan{"arc_tangent",
+                            [](auto& text, auto x) { return text.arc_tangent(x); },
+                            [](auto x) { return std::atan(x); },
+                            1e-30,
+                            1e30,
+                            kLogarithmic,
+                            kRootUlps};
+  const Row<TypeParam> acos{"arc_cosine",
+                            [](auto& text, auto x) { return text.arc_cosine(x); },
+                            [](auto x) { return std::acos(x); },
+                            -1.0,
+                            1.0,
+                            kUniform,
+                            kRootUlps};
   const auto within = [](Row<TypeParam> row, double low, double high, Spacing spacing) {
     row.low = low;
     row.high = high;
@@ -398,8 +452,8 @@ TYPED_TEST(FresnelText, RandomFacets_ReflectAsTheirVectorsSay) {
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   Worst worst;
   TypeParam text;
-  for (const OpticalConstants& optical :
-       {OpticalConstants{1.508, 0.0}, OpticalConstants{27.0, 90.0}, OpticalConstants{0.2, 3.0}, OpticalConstants{1.5, 1e-3}}) {
+  for (const OpticalConstants& optical : {OpticalConstants{1.508, 0.0}, OpticalConstants{27.0, 90.0},
+                                          OpticalConstants{0.2, 3.0}, OpticalConstants{1.5, 1e-3}}) {
     const kernel::IndexNode index = rounded_index<TypeParam>(optical);
     for (int i = 0; i < kSamples / 10; ++i) {
       const double angle = 0.5 * pi * (i % 10 == 0 ? 1.0 - 1e-3 * unit(random) : unit(random));
@@ -410,8 +464,9 @@ TYPED_TEST(FresnelText, RandomFacets_ReflectAsTheirVectorsSay) {
       theta.s = static_cast<Real>(std::sin(angle));
       const Real x = static_cast<Real>(std::cos(phi));
       const Real sin_phi = static_cast<Real>(std::sin(phi));
-      const ExactFacet exact = exact_facet(index, {static_cast<double>(theta.c), static_cast<double>(theta.s)},
-                                           static_cast<double>(t), {static_cast<double>(x), static_cast<double>(sin_phi)});
+      const ExactFacet exact =
+          exact_facet(index, {static_cast<double>(theta.c), static_cast<double>(theta.s)}, static_cast<double>(t),
+                      {static_cast<double>(x), static_cast<double>(sin_phi)});
       if (exact.cos_r <= 0) continue;
       const double scale = static_cast<double>(theta.c + theta.s * t * abs(x));
       const double allowed = kEpsilon<TypeParam> * (kFacetUlps + kFeltUlps * scale / static_cast<double>(exact.e));

@@ -96,8 +96,8 @@ typename Text::Row row_of(const typename Text::ShapeNode& shape) {
 
 /// What the masking of a text says of a direction and facets of slope t: 1 - G1 of `integral` or L of smith.
 template <class Text>
-RealOf<Text> masked(Text& text, const typename Text::ShapeNode& shape, RealOf<Text> cos_theta,
-                    RealOf<Text> sin_theta, RealOf<Text> t) {
+RealOf<Text> masked(Text& text, const typename Text::ShapeNode& shape, RealOf<Text> cos_theta, RealOf<Text> sin_theta,
+                    RealOf<Text> t) {
   const auto row = row_of<Text>(shape);
   const auto of_direction = text.masking_of_direction(row, cos_theta, sin_theta);
   return (text.kMasking == DOLP_MASKING_INTEGRAL ? text.shadows(row, of_direction, cos_theta, sin_theta, t)

@@ -168,7 +168,8 @@ void expect_projection_within_the_facet(MaskingOfShape<Text>& masking, Random& r
   const int zone = cos_r > a.cos ? 0 : 1;  // theta_r < theta: the shadow of theta
   const auto t = static_cast<Real>(slope);
   const Real of_ray = masking.text.masking_of_ray(row_of<Text>(masking.node), facet.cos_r, t, zone).value[0];
-  const auto part = masking.text.project(theta, facet, zone, masked(masking.text, masking.node, theta.c, theta.s, t), of_ray);
+  const auto part =
+      masking.text.project(theta, facet, zone, masked(masking.text, masking.node, theta.c, theta.s, t), of_ray);
   const double error = kMaskingError<Text> * e;
   const double seen = static_cast<double>(part.seen);
   const double hidden = static_cast<double>(part.hidden);

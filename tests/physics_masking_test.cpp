@@ -290,27 +290,6 @@ TEST(MaskingInterpolation, Albedo_IsWithinWhatThePlanAllows) {
   }
 }
 
-TYPED_TEST(MaskingText, IntegralG1_IsBetweenAHalfAndOneAndFallsWithTheZenithAngle) {
-  using Real = RealOf<TypeParam>;
-  for (const ShapeCase& shape : shape_cases(Masking::kIntegral)) {
-    Table<TypeParam> table(shape, Masking::kIntegral);
-    for (const double alpha_deg : kSlopeAnglesDeg) {
-      const double slope = static_cast<double>(static_cast<Real>(std::tan(alpha_deg * pi / 180.0)));
-      EXPECT_LE(table.shadowed(cos_sin_deg(0.0), slope), kUnusedError) << name_of(shape) << " " << alpha_deg;
-      double before = 0.0;
-      for (double theta_deg = 0.0; theta_deg <= 90.0; theta_deg += 1.25) {
-        const CosSin a = cos_sin_deg(theta_deg);
-        const double shadowed = table.shadowed(a, slope);
-        const double slack = allowed_error(table, shape, a, slope) + unused(theta_deg - 1.25, alpha_deg);
-        EXPECT_GE(shadowed, before - slack) << name_of(shape) << " " << theta_deg << " " << alpha_deg;
-        EXPECT_GE(shadowed, -slack) << name_of(shape) << " " << theta_deg << " " << alpha_deg;
-        EXPECT_LE(shadowed, 0.5 + slack) << name_of(shape) << " " << theta_deg << " " << alpha_deg;
-        before = shadowed;
-      }
-    }
-  }
-}
-
 TYPED_TEST(MaskingText, GrazingDirection_HidesHalfForIntegralAndAllForSmith) {
   for (const ShapeCase& shape :
        {ShapeCase{Distribution::kCauchy, 0.3, 2.0}, ShapeCase{Distribution::kGaussian, 0.905, 2.0}}) {

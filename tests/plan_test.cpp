@@ -1,5 +1,5 @@
-// The plan: digits and orders for a tolerance, loop bounds, what the cut leaves out, which entries need a line more,
-// and a scan that shows how often its orders are too low.
+// The plan: digits and orders for a tolerance, loop bounds, error bounds, what the cut leaves out, and which entries
+// need a line more.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstring>
 #include <numbers>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -469,82 +468,6 @@ TEST(Cut, WhatItLeavesOut_IsBelowItsBoundAndAShareOfTheTolerance) {
   std::printf("%d entries with a cut, bound used up to %.2f\n", with_cut, fullest);
   EXPECT_GT(with_cut, 300);
   EXPECT_GT(fullest, 0.3);
-}
-
-// Between a wide and a tight tolerance the albedo grows by what the wide one cuts, whatever the masking hides of it.
-TEST(Cut, TighterTolerance_AddsNoMoreThanTheBounds) {
-  for (const Distribution distribution : kDistributions) {
-    for (const Masking masking : kMaskings) {
-      for (const SlopeShape& shape : {SlopeShape{0.02, 3.0}, SlopeShape{0.3, 5.0}, SlopeShape{0.3, 50.0}}) {
-        for (const double theta_deg : {0.0, 60.0, 80.0, 89.0}) {
-          const Moments wide = computed(masking, 1e-2, theta_deg, shape, {2.0, 0.7}, distribution).moments();
-          const Moments tight = computed(masking, 1e-10, theta_deg, shape, {2.0, 0.7}, distribution).moments();
-          EXPECT_NEAR(wide.albedo, tight.albedo, wide.albedo_error + tight.albedo_error)
-              << name_of(masking) << " theta " << theta_deg << " sigma " << shape.sigma;
-          EXPECT_NEAR(wide.r_i, tight.r_i, wide.r_i_error + tight.r_i_error) << theta_deg << " " << shape.sigma;
-          EXPECT_NEAR(wide.r_q, tight.r_q, wide.r_q_error + tight.r_q_error) << theta_deg << " " << shape.sigma;
-          EXPECT_NEAR(wide.deficit, tight.deficit, wide.deficit_error + tight.deficit_error)
-              << theta_deg << " " << shape.sigma;
-        }
-      }
-    }
-  }
-}
-
-// ---- The orders, by a scan -----------------------------------------------------------------------------------------
-
-constexpr unsigned kScanSeed = 20250804;
-constexpr std::uint32_t kScanEntries = 300;
-constexpr double kScanTolerance = 1e-4;
-
-// Entries over the domain of ordinary surfaces: sigma 0.001 to 5, q 1.01 to 45 (smith: from 1.53), theta to 89.9
-// degrees, dielectrics and metals.
-MomentsRequest scan_request(Distribution distribution, Masking masking) {
-  MomentsRequest request;
-  request.distribution = distribution;
-  request.masking = masking;
-  request.tolerance = kScanTolerance;
-  std::mt19937 random(kScanSeed);
-  std::uniform_real_distribution<double> unit(0.0, 1.0);
-  const auto logarithmic = [&](double low, double high) { return low * std::pow(high / low, unit(random)); };
-  const double smallest_q = masking == Masking::kSmith ? 1.53 : 1.01;
-  for (std::uint32_t i = 0; i < kScanEntries; ++i) {
-    request.theta_deg.push_back(89.9 * unit(random));
-    request.shapes.push_back({logarithmic(1e-3, 5.0), 1.0 + logarithmic(smallest_q - 1.0, 44.0)});
-    const bool metal = unit(random) < 0.5;
-    const double n = metal ? logarithmic(0.2, 30.0) : 1.0 + logarithmic(0.05, 3.0);
-    request.indices.push_back({n, metal ? logarithmic(1.0, 100.0) : 0.0});
-    request.entries.push_back({i, i, i});
-  }
-  return request;
-}
-
-TEST(PlannedOrders, ScanOfOrdinarySurfaces_MissesTheToleranceRarely) {
-  // What misses is computed again. Half of these surfaces are at the edge of the domain.
-  constexpr double kMostMissed = 0.4;
-  std::printf("seed %u, %u entries each, tolerance %g\n", kScanSeed, kScanEntries, kScanTolerance);
-  for (const Distribution distribution : kDistributions) {
-    for (const Masking masking : kMaskings) {
-      const KernelData data = kernel_data(scan_request(distribution, masking));
-      const auto text = make_kernel_text_double(data);
-      int missed = 0;
-      double evaluations = 0.0;
-      double worst = 0.0;
-      for (const MomentsEntry& entry : data.entries) {
-        if (data.needs_masking_table()) text->build_masking_table(entry.shape);
-        const Moments moments = moments_from_kernel(text->moments(entry), data, entry, kDoubleRoundoff);
-        ASSERT_GT(moments.r_i, 0.0);
-        const double error = std::max(moments.r_i_error, moments.r_q_error) / moments.r_i;
-        ASSERT_TRUE(std::isfinite(error) || data.shapes[entry.shape].q_minus_1 <= 0.5);
-        if (!(error <= kScanTolerance)) ++missed;
-        worst = std::max(worst, error);
-        evaluations += moments.evaluations;
-      }
-      std::printf("%-8s %-8s missed %d, worst estimate %.2g, mean evaluations %.0f\n", name_of(distribution),
-                  name_of(masking), missed, worst, evaluations / kScanEntries);
-      EXPECT_LE(missed, kMostMissed * kScanEntries) << name_of(masking);
-    }
-  }
 }
 
 }  // namespace

@@ -26,7 +26,6 @@ using boost::math::constants::root_pi;
 constexpr unsigned kRootAbove = 1;  // a square root just above a breakpoint
 constexpr unsigned kRootBelow = 2;  // just below
 constexpr unsigned kRoots = kRootAbove | kRootBelow;
-constexpr double kSameSlope = 1e-9;  // relative: of closer breakpoints, a root moved by as little changes 1e-13
 constexpr double kNoEnd = 1e30;    // a slope beyond every cut, in place of infinity
 
 // Share of the tolerance that the slopes beyond the cut may carry.
@@ -112,19 +111,6 @@ struct Variant {
   auto operator<=>(const Variant&) const = default;
 };
 
-// Points that coincide, as at 45 degrees and 18, are one that has the roots of all.
-std::vector<Breakpoint> merged(const std::vector<Breakpoint>& sorted) {
-  std::vector<Breakpoint> points;
-  for (const Breakpoint& point : sorted) {
-    if (!points.empty() && point.slope - points.back().slope <= kSameSlope * point.slope) {
-      points.back().roots |= point.roots;
-    } else {
-      points.push_back(point);
-    }
-  }
-  return points;
-}
-
 // Slopes from 0 on at which the set of smooth arcs changes: where a split line of the azimuth (integrand.glsl) meets
 // phi = 0 or pi or another line. The horizon does at t1 = c / (1 + s) and t2 = (1 + s) / c, theta_r = theta at
 // tan(theta), the limit b = pi/2 at tan(30 -+ 2/3 theta) and, on theta_r = theta, at tan(2 theta - 90); the lines of
@@ -144,7 +130,7 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking m
   const bool cusp_at_0 = variant.has_line && masking == Masking::kSmith && a.sin == 0.0;
   points.push_back({0.0, cusp_at_0 ? kRootAbove : 0U});
   std::sort(points.begin(), points.end());
-  return merged(points);
+  return points;
 }
 
 double arcs_per_slope(Masking masking, double critical) {

@@ -24,7 +24,9 @@ namespace dolp {
 namespace {
 
 constexpr double kMissedShare = 0.01;
-constexpr double kMedianPessimism = 30.0;
+// The bound is a multiple of the distance from a rule of a fifth fewer digits: at six digits one and a half of them, and
+// half a digit for the multiple.
+constexpr double kMedianPessimism = 100.0;
 // Errors below this are rounding, whose bound must hold for the worst sum of signs and is far above the typical one:
 // sixteen units in the last place of a float's 24 bits. In double the reference's own bound, 1e-12, times ten.
 constexpr double kFloatRounding = 1e-6;

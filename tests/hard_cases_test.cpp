@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -16,9 +15,8 @@
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/reference/hemisphere.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
-#include "evaluate/vulkan/vulkan_evaluator.hpp"
-#include "model/choices.hpp"
 #include "model/point_result.hpp"
+#include "properties_support.hpp"
 #include "run/scene_run.hpp"
 #include "stored_evaluator.hpp"
 #include "verify/qualification.hpp"
@@ -68,14 +66,7 @@ TEST(HardCases, References_AreAsGoodAsStated) {
 }
 
 Moments recomputed(const StoredCase& c, const ReferenceOptions& options) {
-  MomentsRequest request;
-  request.distribution = c.distribution;
-  request.masking = c.masking;
-  request.tolerance = 0.0;
-  request.theta_deg = {c.theta_deg};
-  request.shapes = {c.shape};
-  request.indices = {c.index};
-  request.entries = {{0, 0, 0}};
+  const MomentsRequest request = request_of({c.distribution, c.masking}, {{c.theta_deg, c.shape, c.index}}, 0.0);
   return ReferenceEvaluator(options).evaluate(request, {}).at(0);
 }
 
@@ -114,8 +105,6 @@ TEST(StoredCases, BadFile_NamesLineAndColumn) {
 
 // ---- Every evaluator against it ------------------------------------------------------------------------------------
 
-enum class Evaluator { kCpuFloat, kCpuDouble, kVulkanFloat, kVulkanDouble };
-
 /// An evaluator in one precision alone, whatever a request says: scenes ask for float first and for double where that
 /// misses.
 class InOnePrecision final : public MomentsEvaluator {
@@ -135,18 +124,7 @@ class InOnePrecision final : public MomentsEvaluator {
   Precision precision_;
 };
 
-std::unique_ptr<MomentsEvaluator> make(Evaluator evaluator) {
-  const bool in_double = evaluator == Evaluator::kCpuDouble || evaluator == Evaluator::kVulkanDouble;
-  const Precision precision = in_double ? Precision::kDouble : Precision::kFloat;
-  if (evaluator == Evaluator::kCpuFloat || evaluator == Evaluator::kCpuDouble) {
-    return std::make_unique<InOnePrecision>(std::make_unique<CpuEvaluator>(precision), precision);
-  }
-  VulkanOptions options;
-  options.precision = precision;
-  return std::make_unique<InOnePrecision>(std::make_unique<VulkanEvaluator>(options), precision);
-}
-
-using Setting = std::tuple<Evaluator, double>;
+using Setting = std::tuple<Kernel, double>;
 
 class HardCasesOn : public testing::TestWithParam<Setting> {};
 
@@ -164,9 +142,10 @@ TEST(MeasureQuality, EvaluatorInDouble_IsMeasuredInDouble) {
 }
 
 TEST_P(HardCasesOn, EveryCase_IsWithinItsEstimateAndMeetsTheToleranceOrSaysSo) {
-  const auto [evaluator, tolerance] = GetParam();
+  const auto [kernel, tolerance] = GetParam();
+  InOnePrecision evaluator(make_evaluator(kernel), is_double(kernel) ? Precision::kDouble : Precision::kFloat);
   const std::vector<StoredCase> cases = hard_cases();
-  const std::vector<CaseOutcome> outcomes = qualify(cases, *make(evaluator), tolerance, {});
+  const std::vector<CaseOutcome> outcomes = qualify(cases, evaluator, tolerance, {});
   ASSERT_EQ(outcomes.size(), cases.size());
   std::size_t missed = 0;
   for (const CaseOutcome& outcome : outcomes) {
@@ -179,18 +158,16 @@ TEST_P(HardCasesOn, EveryCase_IsWithinItsEstimateAndMeetsTheToleranceOrSaysSo) {
 }
 
 std::string setting_name(const testing::TestParamInfo<Setting>& info) {
-  constexpr std::array kNames = {"CpuFloat", "CpuDouble", "VulkanFloat", "VulkanDouble"};
   const double digits = -std::log10(std::get<1>(info.param));
-  return std::string(kNames[static_cast<std::size_t>(std::get<0>(info.param))]) + "_1em" +
-         std::to_string(std::lround(digits));
+  return name_of(std::get<0>(info.param)) + "_1em" + std::to_string(std::lround(digits));
 }
 
 INSTANTIATE_TEST_SUITE_P(Float, HardCasesOn,
-                         testing::Combine(testing::Values(Evaluator::kCpuFloat, Evaluator::kVulkanFloat),
+                         testing::Combine(testing::Values(Kernel::kCpuFloat, Kernel::kVulkanFloat),
                                           testing::Values(1e-2, 1e-4, 1e-6)),
                          setting_name);
 INSTANTIATE_TEST_SUITE_P(Double, HardCasesOn,
-                         testing::Combine(testing::Values(Evaluator::kCpuDouble, Evaluator::kVulkanDouble),
+                         testing::Combine(testing::Values(Kernel::kCpuDouble, Kernel::kVulkanDouble),
                                           testing::Values(1e-4, 1e-6, 1e-9)),
                          setting_name);
 

@@ -1,5 +1,5 @@
-// The pieces of the slope axis: between two breakpoints the shaders' arcs of azimuth change smoothly, and a piece takes
-// up every square root at its ends, its own and those just beyond them.
+// The pieces of the slope axis and the task words that say them: between two breakpoints the shaders' arcs of azimuth
+// change smoothly, and every square root lies at an end that its pieces know of.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -45,8 +45,8 @@ struct Direction {
   Masking masking = Masking::kNone;
   bool has_line = false;
   kernel::ThetaNode node{};
+  Pieces pieces;
   kernel::IndexNode index{};
-  std::size_t pieces() const { return static_cast<std::size_t>(node.piece_count); }
   std::string name() const {
     return std::string(name_of(masking)) + " theta " + std::to_string(theta_deg) + (has_line ? " with line" : "") +
            " critical cos " + std::to_string(index.critical_cos);
@@ -68,8 +68,9 @@ std::vector<Direction> directions(const std::vector<double>& theta_deg, const st
   const KernelData data = kernel_data(request);
   std::vector<Direction> result;
   for (std::size_t i = 0; i < theta_deg.size(); ++i) {
-    result.push_back({theta_deg[i], masking, has_line, data.thetas[data.entries[i].theta], data.indices[i]});
-    EXPECT_EQ(result.back().node.has_line, has_line ? 1.0 : 0.0) << result.back().name();
+    const std::uint32_t theta = data.entries[i].theta;
+    result.push_back({theta_deg[i], masking, has_line, data.thetas[theta], data.pieces[theta], data.indices[i]});
+    EXPECT_EQ(result.back().pieces.has_split_line, has_line) << result.back().name();
   }
   return result;
 }
@@ -92,22 +93,24 @@ void for_each_direction(const std::vector<double>& theta_deg, const Check& check
 
 void expect_ascending_to_the_horizon(const Direction& d) {
   const kernel::ThetaNode& node = d.node;
-  const std::size_t last = d.pieces();
+  const std::size_t last = d.pieces.count;
   ASSERT_GE(last, 1U) << d.name();
   ASSERT_LE(last, static_cast<std::size_t>(DOLP_MAX_PIECES)) << d.name();
   EXPECT_EQ(node.end[0], 0.0);
   for (std::size_t i = 0; i < last; ++i) {
     EXPECT_LE(node.end[i], node.end[i + 1]) << d.name() << " piece " << i;
-    EXPECT_TRUE(node.kind[i] >= 0.0 && node.kind[i] <= 3.0) << d.name() << " piece " << i;
   }
   // beyond slope (1 + s) / c no reflected ray leaves
-  EXPECT_DOUBLE_EQ(node.end[last], node.c > 0.0 ? (1.0 + node.s) / node.c : 1e30) << d.name();
+  if (node.c > 0.0) {
+    EXPECT_DOUBLE_EQ(node.end[last], (1.0 + node.s) / node.c) << d.name();
+  }
+  EXPECT_EQ(node.end[DOLP_MAX_PIECES], node.end[last]) << d.name();
 }
 
 TEST(Pieces, HardDirections_AscendFromZeroToTheHorizonWithinTheirRoom) {
   std::size_t most = 0;
   for_each_direction(directions_deg(), [&](const Direction& d) {
-    most = std::max(most, d.pieces());
+    most = std::max<std::size_t>(most, d.pieces.count);
     expect_ascending_to_the_horizon(d);
   });
   for_each_direction({0.0, 1e-6, 90.0 - 1e-9, 90.0}, expect_ascending_to_the_horizon);
@@ -143,7 +146,7 @@ double azimuth_of(const Half& half) {
 // Which arcs there are at one slope: where a line has left the azimuths from 0 to pi, and whether the critical line is
 // before the horizon.
 std::array<int, 5> arrangement(Text& text, const Direction& d, double slope) {
-  const auto lines = text.split_lines(theta_in<Text>(d.node), index_in<Text>(d.index), slope);
+  const auto lines = text.split_lines(theta_in<Text>(d.node), index_in<Text>(d.index), slope, d.has_line);
   const auto place = [](const auto& line) { return line.y <= 0.0 ? 0 : (line.x <= 0.0 ? 2 : 1); };
   const double critical = azimuth_of(lines.critical);
   int place_of_critical = critical <= 0.0 ? 0 : (critical < azimuth_of(lines.horizon) ? 1 : 2);
@@ -175,7 +178,7 @@ TEST(Pieces, BetweenBreakpoints_TheArrangementOfTheArcsStays) {
   std::string first;
   for_each_direction(directions_deg(), [&](const Direction& d) {
     text.kMasking = static_cast<glm::uint>(d.masking);
-    for (std::size_t i = 0; i < d.pieces(); ++i) {
+    for (std::size_t i = 0; i < d.pieces.count; ++i) {
       const std::vector<double> slopes = slopes_inside(d.node.end[i], d.node.end[i + 1]);
       for (const double slope : slopes) {
         ++checked;
@@ -243,64 +246,68 @@ std::vector<Root> roots_of(const Direction& d) {
   return roots;
 }
 
-// How far beyond an end of a piece a root is felt in it, as a share of the piece's extent in ln(slope): up to here it
-// must be taken up, and beyond there it must not, because that costs nodes.
-constexpr double kFelt = 0.2;
-constexpr double kNotFelt = 0.3;
 constexpr double kSameSlope = 1e-9;
 
-// Whether a piece [from, to] has a root within `share` of its extent of its lower end, or of its upper.
-bool is_near_start(const std::vector<Root>& roots, double from, double to, double share) {
+// Whether a root lies at a slope, facing the facets above or below it.
+bool has_root(const std::vector<Root>& roots, double slope, bool above) {
   return std::ranges::any_of(roots, [&](const Root& root) {
-    const double distance = std::log(from / root.slope);
-    return root.above && distance > -kSameSlope && distance < share * std::log(to / from) + kSameSlope;
-  });
-}
-bool is_near_end(const std::vector<Root>& roots, double from, double to, double share) {
-  return std::ranges::any_of(roots, [&](const Root& root) {
-    const double distance = std::log(root.slope / to);
-    return root.below && distance > -kSameSlope && distance < share * std::log(to / from) + kSameSlope;
+    return (above ? root.above : root.below) && std::abs(std::log(slope / root.slope)) < kSameSlope;
   });
 }
 
 void expect_roots(const Direction& d) {
   const std::vector<Root> roots = roots_of(d);
-  for (std::size_t i = 0; i < d.pieces(); ++i) {
-    const double from = d.node.end[i];
-    const double to = d.node.end[i + 1];
-    const bool root_at_start = std::fmod(d.node.kind[i], 2.0) == 1.0;
-    const bool root_at_end = d.node.kind[i + 1] >= 2.0;
-    const std::string where = d.name() + " piece " + std::to_string(from) + " to " + std::to_string(to);
-    if (from == 0.0) {
-      EXPECT_FALSE(root_at_start) << where;
-      if (is_near_end(roots, to / 2.0, to, 0.0)) {
-        EXPECT_TRUE(root_at_end) << where;
-      }
-      continue;
+  const auto expected = [&](std::uint32_t end, bool above) {
+    return end <= d.pieces.count && d.node.end[end] > 0.0 && has_root(roots, d.node.end[end], above);
+  };
+  const auto is_same = [&](std::uint32_t end) { return std::log(d.node.end[end + 1] / d.node.end[end]) < kSameSlope; };
+  const auto coincides = [&](std::uint32_t end) {
+    return (end > 0 && is_same(end - 1)) || (end < d.pieces.count && is_same(end));
+  };
+  for (std::uint32_t i = 0; i < d.pieces.count; ++i) {
+    // Where ends coincide, one of them has the root that others would have.
+    if (coincides(i) || coincides(i + 1)) continue;
+    const auto task = Text().task_of(task_word(d.pieces, i, 1));
+    const std::string where = d.name() + " piece " + std::to_string(i);
+    EXPECT_EQ(task.root_at_start, expected(i, true)) << where;
+    EXPECT_EQ(task.root_at_end, expected(i + 1, false)) << where;
+    if (i > 0 && !coincides(i - 1)) {
+      EXPECT_EQ(task.root_before_start, expected(i - 1, true)) << where;
     }
-    if (std::log(to / from) < kSameSlope) continue;
-    if (is_near_start(roots, from, to, kFelt)) {
-      EXPECT_TRUE(root_at_start) << where;
-    }
-    if (!is_near_start(roots, from, to, kNotFelt)) {
-      EXPECT_FALSE(root_at_start) << where;
-    }
-    if (is_near_end(roots, from, to, kFelt)) {
-      EXPECT_TRUE(root_at_end) << where;
-    }
-    if (!is_near_end(roots, from, to, kNotFelt)) {
-      EXPECT_FALSE(root_at_end) << where;
+    if (i + 2 <= d.pieces.count && !coincides(i + 2)) {
+      EXPECT_EQ(task.root_after_end, expected(i + 2, false)) << where;
     }
   }
 }
 
-TEST(Pieces, SquareRoots_AreTakenUpWhereTheyAreFelt) { for_each_direction(directions_deg(), expect_roots); }
+TEST(Pieces, SquareRoots_AreKnownAtTheirEndsAndNowhereElse) { for_each_direction(directions_deg(), expect_roots); }
 
-// Without anything near, a first piece is smooth up to its end: nothing begins before slope cot(45 + theta/2).
-TEST(Pieces, FirstPieceWithoutMasking_HasNoRoot) {
-  const std::vector<double> theta_deg = {20.0, 45.0, 60.0, 75.0};  // nearer to the normal the horizon is felt
-  const std::vector<double> n(theta_deg.size(), 1.508);
-  for (const Direction& d : directions(theta_deg, n, Masking::kNone, false)) EXPECT_EQ(d.node.kind[1], 1.0) << d.name();
+// ---- Task words ----------------------------------------------------------------------------------------------------
+
+TEST(TaskWord, EveryField_ComesBack) {
+  constexpr unsigned kSeed = 20250804;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  const auto below = [&](unsigned end) { return static_cast<std::uint32_t>(random() % end); };
+  for (int i = 0; i < 10'000; ++i) {
+    Pieces pieces;
+    pieces.count = 1 + below(DOLP_MAX_PIECES);
+    for (std::uint8_t& root : pieces.roots) root = static_cast<std::uint8_t>(below(4));
+    pieces.has_split_line = below(2) == 1;
+    pieces.most_azimuths = 1 + below(DOLP_MAX_ORDER);
+    const std::uint32_t piece = below(pieces.count);
+    const std::uint32_t members = 1 + below(16);
+    const auto task = Text().task_of(task_word(pieces, piece, members));
+    EXPECT_EQ(task.members, static_cast<int>(members));
+    EXPECT_EQ(task.piece, static_cast<int>(piece));
+    EXPECT_EQ(task.has_split_line, pieces.has_split_line);
+    EXPECT_EQ(task.most_azimuths, static_cast<int>(pieces.most_azimuths));
+    // Bit 0 of an end: a root above it; bit 1: below.
+    EXPECT_EQ(task.root_at_start, (pieces.roots[piece] & 1) != 0);
+    EXPECT_EQ(task.root_at_end, (pieces.roots[piece + 1] & 2) != 0);
+    EXPECT_EQ(task.root_before_start, piece > 0 && (pieces.roots[piece - 1] & 1) != 0);
+    EXPECT_EQ(task.root_after_end, piece + 2 <= pieces.count && (pieces.roots[piece + 2] & 2) != 0);
+  }
 }
 
 }  // namespace

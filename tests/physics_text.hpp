@@ -69,18 +69,19 @@ template <class Text>
 typename Text::IndexNode index_in(const kernel::IndexNode& node) {
   return convert_reals<RealOf<Text>, typename Text::IndexNode, double>(node);
 }
-
 template <class Text>
 typename Text::RuleNode rule_in(const kernel::RuleNode& node) {
   return convert_reals<RealOf<Text>, typename Text::RuleNode, double>(node);
 }
 
-/// A text with the distribution, the masking and the rules of `data`, and room for the masking table of one shape.
+/// A text with the model and the rules of `data`, and room for the masking table of one shape.
 template <class Text>
 Text text_for(const KernelData& data) {
   Text text;
   text.kDistribution = static_cast<glm::uint>(data.distribution);
   text.kMasking = static_cast<glm::uint>(data.masking);
+  text.kTotalReflection = data.has_total_reflection;
+  text.order_of_nodes = data.rule_order;
   using Vector = typename decltype(text.rule_nodes)::value_type;
   for (const auto& node : data.rule_nodes) {
     text.rule_nodes.push_back(convert_reals<RealOf<Text>, Vector, double>(node));
@@ -89,17 +90,21 @@ Text text_for(const KernelData& data) {
   return text;
 }
 
-/// A shape with its table at `table` as a group of one.
+/// A shape with its table at the first node, as a row of one.
 template <class Text>
-typename Text::Group group_of(const typename Text::ShapeNode& shape, glm::uint table = 0U) {
-  return {{shape}, {table}};
+typename Text::Row row_of(const typename Text::ShapeNode& shape) {
+  return {{shape}, {0U}};
 }
 
 /// What the masking of a text says of a direction and facets of slope t: 1 - G1 of `integral` or L of smith.
 template <class Text>
 RealOf<Text> masked(Text& text, const typename Text::ShapeNode& shape, RealOf<Text> cos_theta, RealOf<Text> sin_theta,
                     RealOf<Text> t) {
-  return text.masked_direction(group_of<Text>(shape), cos_theta, sin_theta, t, true).value[0];
+  const auto row = row_of<Text>(shape);
+  const auto of_direction = text.masking_of_direction(row, cos_theta, sin_theta);
+  return (text.kMasking == DOLP_MASKING_INTEGRAL ? text.shadows(row, of_direction, cos_theta, sin_theta, t)
+                                                 : of_direction)
+      .value[0];
 }
 
 /// One slope distribution of a test.
@@ -115,16 +120,21 @@ inline std::string name_of(const ShapeCase& shape) {
   return text.data();
 }
 
-/// The plan's data for one shape and, where a test needs one, one index.
-inline KernelData data_of(const ShapeCase& shape, Masking masking, const OpticalConstants& index = {}) {
+/// One entry, at 60 degrees.
+inline MomentsRequest request_of(const ShapeCase& shape, Masking masking, const OpticalConstants& index) {
   MomentsRequest request;
   request.distribution = shape.distribution;
   request.masking = masking;
   request.shapes = {{shape.sigma, shape.q}};
   request.indices = {index};
-  request.theta_deg = {60.0};  // of the rule nodes there are as many as the directions need
+  request.theta_deg = {60.0};
   request.entries = {{0U, 0U, 0U}};
-  return kernel_data(request);
+  return request;
+}
+
+/// The plan's data for one shape and, where a test needs one, one index.
+inline KernelData data_of(const ShapeCase& shape, Masking masking, const OpticalConstants& index = {}) {
+  return kernel_data(request_of(shape, masking, index));
 }
 
 /// The largest value of what a test measures, and where.

@@ -38,8 +38,8 @@ std::uint64_t number_of(const Model& model) {
 constexpr int kShapes = 60;
 constexpr int kDirections = 40;
 
-// Of G, relative to what it hides or lets through: interpolation of the tables (3e-8 in float, 4e-11 in double,
-// relative to the albedo; plan/error_bounds.cpp) and the roundings of their sums, 400 at most where q is near 1.
+// Of G, relative to what it hides or lets through: interpolation of the tables, 3e-8 in float and 4e-11 in double
+// relative to the albedo (physics_masking_test), and the roundings of their sums, 400 at most where q is near 1.
 constexpr double kTableErrorFloat = 3e-8;
 constexpr double kTableErrorDouble = 4e-11;
 constexpr double kRoundings = 400.0;
@@ -162,15 +162,14 @@ void expect_projection_within_the_facet(MaskingOfShape<Text>& masking, Random& r
   typename Text::ThetaNode theta{};
   theta.c = static_cast<Real>(a.cos);
   theta.s = static_cast<Real>(a.sin);
-  const auto slope_real = static_cast<Real>(slope);
+  typename Text::Facet facet{};
+  facet.e = static_cast<Real>(e);
+  facet.cos_r = static_cast<Real>(cos_r);
   const int zone = cos_r > a.cos ? 0 : 1;  // theta_r < theta: the shadow of theta
-  const auto group = group_of<Text>(masking.node);
-  const auto of_theta = masking.text.masked_direction(group, theta.c, theta.s, slope_real, true);
-  const auto of_ray =
-      masking.text.masked_direction(group, static_cast<Real>(cos_r),
-                                    static_cast<Real>(std::sqrt((1.0 - cos_r) * (1.0 + cos_r))), slope_real, zone > 0);
-  const auto part = masking.text.project(theta, static_cast<Real>(e), static_cast<Real>(cos_r), zone, of_theta.value[0],
-                                         of_ray.value[0]);
+  const auto t = static_cast<Real>(slope);
+  const Real of_ray = masking.text.masking_of_ray(row_of<Text>(masking.node), facet.cos_r, t, zone).value[0];
+  const auto part =
+      masking.text.project(theta, facet, zone, masked(masking.text, masking.node, theta.c, theta.s, t), of_ray);
   const double error = kMaskingError<Text> * e;
   const double seen = static_cast<double>(part.seen);
   const double hidden = static_cast<double>(part.hidden);
@@ -463,7 +462,7 @@ TEST_P(BothSums, ReflectedAndNotReflected_AddUpToTheCosine) {
       const double sum = node.r_i + node.deficit;
       // The bound of r_q is that of the reflected sum; with nothing known of r_i the deficit keeps its own.
       const double reflected_error = moments_from_kernel(node, data, data.entries[i], 0x1p-53).r_q_error;
-      node.doubt = kInfinity;
+      node.reflected_difference = kInfinity;
       const double deficit_error = moments_from_kernel(node, data, data.entries[i], 0x1p-53).deficit_error;
       EXPECT_LE(std::abs(sum - cos_sin_deg(points[i].theta_deg).cos), reflected_error + deficit_error)
           << "tolerance " << tolerance << " " << text_of(points[i]);

@@ -24,8 +24,11 @@ struct Answers {
 
 class Check {
  public:
-  Check(Distribution distribution, Masking masking, double tolerance)
-      : distribution_(distribution), masking_(masking), tolerance_(tolerance) {}
+  Check(Distribution distribution, Masking masking, const HoldOutOptions& options)
+      : distribution_(distribution),
+        masking_(masking),
+        tolerance_(options.tolerance),
+        bound_share_(options.bound_share) {}
 
   Answers operator()(const std::vector<RandomEntry>& entries) const {
     const Precision precision = tolerance_ < kLeastFloatTolerance ? Precision::kDouble : Precision::kFloat;
@@ -34,6 +37,7 @@ class Check {
       const std::vector part(entries.begin() + static_cast<std::ptrdiff_t>(first),
                              entries.begin() + static_cast<std::ptrdiff_t>(std::min(first + kAtOnce, entries.size())));
       append_all(answers.stated, part, tolerance_, precision);
+      for (std::size_t i = first; i < answers.stated.size(); ++i) lower_bounds(answers.stated[i]);
       append_all(answers.exact, part, std::max(kFinerBy * tolerance_, kFinest), Precision::kDouble);
     }
     return answers;
@@ -53,9 +57,16 @@ class Check {
     moments.insert(moments.end(), more.begin(), more.end());
   }
 
+  void lower_bounds(Moments& moments) const {
+    for (double* bound : {&moments.r_i_error, &moments.r_q_error, &moments.albedo_error, &moments.deficit_error}) {
+      *bound *= bound_share_;
+    }
+  }
+
   Distribution distribution_;
   Masking masking_;
   double tolerance_;
+  double bound_share_;
 };
 
 /// The largest error of the four moments over what is stated of it, by both rules.
@@ -116,7 +127,7 @@ CheckedEntry climbed(const Check& check, Draw& draw, CheckedEntry best, Domain d
 
 HoldOut hold_out(Distribution distribution, Masking masking, const HoldOutOptions& options) {
   Draw draw(options.seed * 8 + 2 * static_cast<std::uint64_t>(masking) + static_cast<std::uint64_t>(distribution));
-  const Check check(distribution, masking, options.tolerance);
+  const Check check(distribution, masking, options);
   std::vector<RandomEntry> entries;
   for (std::size_t i = 0; i < options.entries; ++i) {
     entries.push_back(random_entry(draw, options.domain, distribution, masking));

@@ -15,6 +15,7 @@ struct HoldOutOptions {
   std::size_t entries = 1000;
   std::uint64_t seed = 1;
   std::size_t climbs = 0;  ///< of the worst entries, each climbed from in kClimbSteps steps
+  double bound_share = 1.0;  ///< of each bound that errors are held against: below 1 shows what bounds have to spare
 };
 
 /// An entry, and its error over the bound stated with it: above 1 the bound is understated.

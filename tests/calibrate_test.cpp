@@ -1,0 +1,143 @@
+// What finds the numbers of the rules and whether their bounds hold: dolp-calibrate, and its two halves.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "calibrate/hold_out.hpp"
+#include "calibrate/rule_fit.hpp"
+#include "program.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr std::uint64_t kSeed = 3;
+
+HoldOut held_out(const HoldOutOptions& options) { return hold_out(Distribution::kCauchy, Masking::kNone, options); }
+
+HoldOutOptions few_entries() {
+  std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
+  HoldOutOptions options;
+  options.entries = 50;
+  options.seed = kSeed;
+  return options;
+}
+
+// Errors are a tenth of their bounds in the median: of bounds a thousand times too low most are found out, and the
+// worst ratio rises by as much.
+TEST(HoldOut, PlantedUnderstatement_IsFound) {
+  HoldOutOptions options = few_entries();
+  const HoldOut honest = held_out(options);
+  EXPECT_EQ(honest.entries, options.entries);
+  EXPECT_EQ(honest.understated, 0U);
+  EXPECT_GT(honest.worst.ratio, 0.0);
+  EXPECT_LE(honest.worst.ratio, 1.0);
+  EXPECT_GT(honest.mean_evaluations, 0.0);
+  options.bound_share = 1e-3;
+  const HoldOut planted = held_out(options);
+  EXPECT_GT(planted.understated, options.entries / 2);
+  EXPECT_LE(planted.understated, options.entries);
+  EXPECT_GT(planted.worst.ratio, 100.0 * honest.worst.ratio);
+  // An understatement of the one worst entry alone is found too.
+  options.bound_share = 0.9 * honest.worst.ratio;
+  const HoldOut lowered = held_out(options);
+  EXPECT_GE(lowered.understated, 1U);
+  EXPECT_EQ(lowered.worst.entry.theta_deg, honest.worst.entry.theta_deg);
+}
+
+TEST(HoldOut, Climb_FindsNoLessThanTheDraws) {
+  HoldOutOptions options = few_entries();
+  options.entries = 10;
+  const HoldOut drawn = held_out(options);
+  options.climbs = 1;
+  const HoldOut climbed = held_out(options);
+  EXPECT_EQ(climbed.worst.ratio, drawn.worst.ratio);
+  EXPECT_GT(climbed.climbed.ratio, drawn.worst.ratio);
+}
+
+std::vector<RandomEntry> drawn(Domain domain, Distribution distribution, Masking masking) {
+  Draw draw(kSeed);
+  std::vector<RandomEntry> entries;
+  for (int i = 0; i < 2000; ++i) entries.push_back(random_entry(draw, domain, distribution, masking));
+  return entries;
+}
+
+TEST(RandomEntries, BothDomains_LieWhereScenesMay) {
+  for (const Domain domain : {Domain::kOrdinary, Domain::kCorners}) {
+    for (const Masking masking : {Masking::kNone, Masking::kSmith}) {
+      for (const RandomEntry& entry : drawn(domain, Distribution::kCauchy, masking)) {
+        EXPECT_TRUE(entry.theta_deg >= 0.0 && entry.theta_deg <= (domain == Domain::kOrdinary ? 85.0 : 90.0));
+        EXPECT_TRUE(entry.shape.sigma > 0.0 && entry.shape.sigma <= 10.0);
+        EXPECT_GT(entry.shape.q, least_q(Distribution::kCauchy, masking));
+        EXPECT_TRUE(entry.index.n > 0.0 && entry.index.k >= 0.0);
+      }
+    }
+  }
+}
+
+TEST(FitRule, FewEntries_TakeNoMoreWorkAndAreTheSameAgain) {
+  RuleFitOptions options;
+  options.entries = 2;
+  options.rounds = 1;
+  const RuleModel start = rule_model(Masking::kNone);
+  std::vector<double> steps;
+  const auto fit = [&] {
+    steps.clear();
+    return fit_rule(Masking::kNone, start, options, [&](const RuleModel&, double work) { steps.push_back(work); });
+  };
+  const RuleModel found = fit();
+  ASSERT_FALSE(steps.empty());
+  EXPECT_EQ(steps.front(), mean_log_work(Masking::kNone, start, options));
+  EXPECT_EQ(steps.back(), mean_log_work(Masking::kNone, found, options));
+  EXPECT_TRUE(std::ranges::is_sorted(steps, std::ranges::greater{}));
+  const std::vector<double> first = steps;
+  EXPECT_EQ(rule_text(fit()), rule_text(found));
+  EXPECT_EQ(steps, first);
+}
+
+// ---- The program ---------------------------------------------------------------------------------------------------
+
+Outcome calibrate(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), DOLP_CALIBRATE);
+  const TemporaryFolder folder;
+  return run({.arguments = arguments, .folder = folder.path()});
+}
+
+std::ptrdiff_t lines_of(const std::string& text) { return std::ranges::count(text, '\n'); }
+
+TEST(Calibrate, CheckOfOrdinaryEntries_SaysALinePerModelAndExitsWith0) {
+  const Outcome outcome = calibrate({"check", "--entries", "20", "--tolerance", "1e-4", "--seed", "3"});
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(lines_of(outcome.out), 8) << outcome.out;
+  for (const char* masking : {"none", "v-cavity", "integral", "smith"}) {
+    for (const char* distribution : {"cauchy", "gaussian"}) {
+      std::string line = masking;
+      line.resize(9, ' ');
+      EXPECT_NE(outcome.out.find(line + distribution), std::string::npos) << outcome.out;
+    }
+  }
+}
+
+TEST(Calibrate, Fit_SaysItsStepsAndExitsWith0) {
+  const Outcome outcome = calibrate({"fit", "none", "--entries", "1", "--rounds", "1"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_GE(lines_of(outcome.out), 2);
+  EXPECT_NE(outcome.out.find(rule_text(rule_model(Masking::kNone))), std::string::npos) << outcome.out;
+}
+
+TEST(Calibrate, BadArguments_ExitWith2) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{},
+                                                    {"fit"},
+                                                    {"fit", "glass"},
+                                                    {"check", "--domain", "all"},
+                                                    {"check", "--entries", "x"}}) {
+    EXPECT_EQ(calibrate(arguments).status, 2);
+  }
+}
+
+}  // namespace
+}  // namespace dolp

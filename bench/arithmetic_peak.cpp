@@ -26,7 +26,7 @@ std::vector<double> arithmetic_peak(const std::string& device, std::size_t repea
   BenchDevice bench(device);
   vulkan::Kernels kernels(bench.device, false);
   const vulkan::UniquePipeline pipeline =
-      kernels.create(spirv::arithmetic_peak_float, Distribution::kCauchy, Masking::kNone);
+      kernels.create(spirv::arithmetic_peak_float, vulkan::KernelVariant{});
   const vulkan::Buffer results(bench.device, kInvocations * sizeof(float), vulkan::MemoryUse::kDeviceOnly);
   std::array<VkBuffer, vulkan::kBindingCount> buffers{};
   buffers[DOLP_BINDING_MOMENTS] = results.get();
@@ -35,7 +35,7 @@ std::vector<double> arithmetic_peak(const std::string& device, std::size_t repea
     bench.stream.begin();
     for (std::size_t i = 0; i < dispatches; ++i) {
       if (i > 0) bench.stream.barrier(vulkan::Barrier::kKernelToKernel);
-      bench.stream.dispatch(kernels, pipeline.get(), 0, kInvocations);
+      bench.stream.dispatch(kernels, pipeline.get(), 0, kInvocations, 0);
     }
     return bench.stream.submit_and_wait(kTimeout);
   };

@@ -30,9 +30,9 @@ constexpr std::size_t kMostIterations = 1U << 14U;   // of an invocation: driver
 constexpr std::size_t kMostSamples = 1U << 26U;      // of a dispatch, so that a time limit is noticed
 constexpr std::size_t kMostShapes = 1U << 12U;       // masking tables of 4 kB
 constexpr std::size_t kMostInvocations = 1U << 22U;  // of a call
-constexpr std::uint32_t kRowUnit = 1U << 16U;
+constexpr std::uint32_t kZenithUnit = 1U << 16U;
 
-/// n; the rows; the azimuths.
+/// n; the zeniths; the azimuths.
 std::vector<Node> product_nodes(const Rule& rule) {
   std::vector<Node> nodes{{static_cast<double>(rule.nodes.size()), 0.0, 0.0, 0.0}};
   for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
@@ -67,14 +67,15 @@ class DeviceRule final : public Solver {
   std::string where() const override { return bench_.where(); }
 
  private:
-  /// Invocations, neighbours the same rows of different entries.
+  /// Invocations, neighbours the same zeniths of different entries.
   void make_words(const MomentsRequest& request, std::size_t nodes) {
-    const std::size_t most_rows = std::max<std::size_t>(1, kMostIterations / nodes);
+    const std::size_t most_zeniths = std::max<std::size_t>(1, kMostIterations / nodes);
     words_.clear();
-    for (std::size_t first = 0; first < nodes; first += most_rows) {
-      const std::size_t rows = std::min(most_rows, nodes - first);
+    for (std::size_t first = 0; first < nodes; first += most_zeniths) {
+      const std::size_t zeniths = std::min(most_zeniths, nodes - first);
       for (const MomentsEntry& entry : request.entries) {
-        words_.push_back({entry.theta, entry.shape, entry.index, static_cast<std::uint32_t>(first + kRowUnit * rows)});
+        const auto range = static_cast<std::uint32_t>(first + kZenithUnit * zeniths);
+        words_.push_back({entry.theta, entry.shape, entry.index, range});
       }
     }
   }
@@ -110,12 +111,12 @@ class DeviceRule final : public Solver {
     buffers[DOLP_BINDING_INDICES] = upload(index_buffer_, data.indices).get();
     buffers[DOLP_BINDING_RULE_NODES] = upload(rule_node_buffer_, data.rule_nodes).get();
     buffers[DOLP_BINDING_RULE] = upload(product_buffer_, product_nodes(rule)).get();
-    buffers[DOLP_BINDING_ENTRIES] = upload_bytes(entry_buffer_, std::as_bytes(std::span(words_))).get();
+    buffers[DOLP_BINDING_TASKS] = upload_bytes(entry_buffer_, std::as_bytes(std::span(words_))).get();
     kernels_.bind(buffers);
     bench_.stream.barrier(vulkan::Barrier::kUploadToKernel);
     if (tables > 0) {
-      bench_.stream.dispatch(kernels_, kernels_.masking_table(data.distribution, data.masking), 0,
-                             static_cast<std::uint32_t>(data.shapes.size()));
+      bench_.stream.dispatch(kernels_, kernels_.pipeline(vulkan::masking_table_variant(data)), 0,
+                             static_cast<std::uint32_t>(data.shapes.size()), data.rule_order);
     }
     double kernel_s = bench_.stream.submit_and_wait(kTimeout);
     const std::size_t samples = rule.nodes.size() * std::min(rule.nodes.size(), kMostIterations / rule.nodes.size());
@@ -124,7 +125,7 @@ class DeviceRule final : public Solver {
       bench_.stream.begin();
       bench_.stream.barrier(vulkan::Barrier::kKernelToKernel);
       bench_.stream.dispatch(kernels_, pipeline(data), static_cast<std::uint32_t>(first),
-                             static_cast<std::uint32_t>(std::min(tile, words_.size() - first)));
+                             static_cast<std::uint32_t>(std::min(tile, words_.size() - first)), data.rule_order);
       bench_.stream.barrier(vulkan::Barrier::kKernelToHost);
       kernel_s += bench_.stream.submit_and_wait(kTimeout);
       const double elapsed_s = seconds_since(start);
@@ -134,12 +135,10 @@ class DeviceRule final : public Solver {
   }
 
   VkPipeline pipeline(const KernelData& data) {
-    const auto found = pipelines_.find({data.distribution, data.masking});
+    const vulkan::KernelVariant variant{.distribution = data.distribution, .masking = data.masking};
+    const auto found = pipelines_.find(variant);
     if (found != pipelines_.end()) return found->second.get();
-    return pipelines_
-        .emplace(std::pair(data.distribution, data.masking),
-                 kernels_.create(spirv::product_rule_float, data.distribution, data.masking))
-        .first->second.get();
+    return pipelines_.emplace(variant, kernels_.create(spirv::product_rule_float, variant)).first->second.get();
   }
 
   std::vector<Answer> sums(std::size_t entries) const {
@@ -159,7 +158,7 @@ class DeviceRule final : public Solver {
   vulkan::Packing packing_{false};
   double time_limit_s_;
   Rule (*rule_)(std::size_t);
-  std::map<std::pair<Distribution, Masking>, vulkan::UniquePipeline> pipelines_;
+  std::map<vulkan::KernelVariant, vulkan::UniquePipeline> pipelines_;
   std::vector<EntryWords> words_;
   std::optional<vulkan::InputBuffer> theta_buffer_, shape_buffer_, index_buffer_, rule_node_buffer_, product_buffer_,
       entry_buffer_;

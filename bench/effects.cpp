@@ -1,15 +1,12 @@
-// The study of effects: what each costs alone, what the plan saves, and what specialised kernels save.
+// The study of effects: what each costs alone, and what the plan saves.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/error.hpp"
-#include "bench/branches.hpp"
-#include "bench/cases.hpp"
 #include "bench/effect_cases.hpp"
 #include "bench/study.hpp"
 #include "bench/study_run.hpp"
@@ -73,7 +70,7 @@ struct Pair {
 ordered_json effect_row(const EffectGroup& group, const Pair& pair, const Pair& base) {
   const Change change = change_of(pair.planned.results(), pair.all.results());
   const double time_s = median(pair.planned.times_s());
-  ordered_json row = {{"part", "effects"}, {"effect", group.effect}, {"case", group.mode}, {"setting", pair.name}};
+  ordered_json row = {{"effect", group.effect}, {"case", group.mode}, {"setting", pair.name}};
   row["base"] = base.name;
   row["error"] = change.dolp;
   row["compared"] = change.compared;
@@ -92,37 +89,6 @@ ordered_json effect_row(const EffectGroup& group, const Pair& pair, const Pair& 
   return row;
 }
 
-/// All slopes and directions of the grid with one index.
-MomentsRequest request_of(const Scene& scene, Distribution distribution, Masking masking) {
-  MomentsRequest request;
-  request.distribution = distribution;
-  request.masking = masking;
-  request.tolerance = scene.accuracy.tolerance;
-  request.theta_deg = scene.grid.theta_deg;
-  request.indices = {scene.surface.material.constant};
-  for (const double sigma : scene.grid.sigma) request.shapes.push_back({sigma, scene.grid.q.front()});
-  for (std::uint32_t theta = 0; theta < request.theta_deg.size(); ++theta) {
-    for (std::uint32_t shape = 0; shape < request.shapes.size(); ++shape) request.entries.push_back({theta, shape, 0});
-  }
-  return request;
-}
-
-ordered_json branches_row(const MomentsRequest& request, const BranchTimes& times) {
-  const std::size_t entries = request.entries.size();
-  const std::vector<double> uniform_s = per_entry(times.uniform_s, entries);
-  const double specialised_s = median(per_entry(times.specialised_s, entries));
-  ordered_json row = {{"part", "branches"}, {"effect", "branches"}};
-  row["case"] = name_of(request.distribution);
-  row["setting"] = name_of(request.masking);
-  row["error"] = times.error;
-  row["time_s"] = median(uniform_s);
-  row["specialised_time_s"] = specialised_s;
-  row["ratio"] = median(uniform_s) / specialised_s;
-  row["entries"] = entries;
-  row["raw_times_s"] = uniform_s;
-  return row;
-}
-
 /// Everything that is asked for.
 class Study {
  public:
@@ -132,7 +98,6 @@ class Study {
  private:
   void describe();
   void run_group(const EffectGroup& group);
-  void run_branches(const Scene& scene);
   bool is_wanted(const std::string& effect) const {
     const std::vector<std::string>& cases = run_.options().cases;
     return cases.empty() || std::ranges::find(cases, effect) != cases.end();
@@ -144,16 +109,13 @@ class Study {
   InterpolatingEvaluator evaluator_;
 };
 
-constexpr std::array kDistributions = {Distribution::kCauchy, Distribution::kGaussian};
-constexpr std::array kMaskings = {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith};
-
 void check_names(const std::vector<std::string>& names, const std::vector<EffectGroup>& groups) {
-  std::string known = "branches";
+  std::string known;
   for (const EffectGroup& group : groups) {
-    if (known.find(group.effect) == std::string::npos) known += ", " + group.effect;
+    if (known.find(group.effect) == std::string::npos) known += (known.empty() ? "" : ", ") + group.effect;
   }
   for (const std::string& name : names) {
-    if (name == "branches" || std::ranges::find(groups, name, &EffectGroup::effect) != groups.end()) continue;
+    if (std::ranges::find(groups, name, &EffectGroup::effect) != groups.end()) continue;
     throw InputError(fmt::format("--case {}: there is none of this name; choose among {}", name, known));
   }
 }
@@ -173,16 +135,13 @@ Study::Study(StudyRun& run)
   for (const EffectGroup& group : groups_) {
     if (is_wanted(group.effect)) run_.expect(group.settings.size());
   }
-  if (is_wanted("branches")) run_.expect(kDistributions.size() * kMaskings.size());
 }
 
 void Study::describe() {
   const Scene& base = groups_.front().settings.front().scene;
   run_.describe("effects",
-                "effects: largest |change of DOLP| by what the plan drops, entries with status 1, 4 or 8 left out; "
-                "branches: largest max(|d r_i|, |d r_q|)/r_i between both kernels",
-                "seconds an entry, median; effects: plan and evaluation on the Vulkan device, whose creation is not "
-                "counted; branches: in kernels, masking tables included, with uniform branches");
+                "largest |change of DOLP| by what the plan drops, entries with status 1, 4 or 8 left out",
+                "seconds an entry, median: plan and evaluation on the Vulkan device, whose creation is not counted");
   run_.json()["tolerance"] = base.accuracy.tolerance;
   run_.json()["grid"] = {{"theta_deg", base.grid.theta_deg}, {"sigma", base.grid.sigma}, {"q", base.grid.q}};
 }
@@ -192,7 +151,6 @@ void Study::measure_all() {
   for (const EffectGroup& group : groups_) {
     if (is_wanted(group.effect)) run_group(group);
   }
-  if (is_wanted("branches")) run_branches(groups_.front().settings.front().scene);
 }
 
 void Study::run_group(const EffectGroup& group) {
@@ -208,16 +166,6 @@ void Study::run_group(const EffectGroup& group) {
     }
   }
   for (const Pair& pair : pairs) run_.finish(effect_row(group, pair, pairs.front()));
-}
-
-void Study::run_branches(const Scene& scene) {
-  BranchComparison comparison(run_.options().device);
-  for (const Distribution distribution : kDistributions) {
-    for (const Masking masking : kMaskings) {
-      const MomentsRequest request = request_of(scene, distribution, masking);
-      run_.finish(branches_row(request, comparison.compare(request, repeats_)));
-    }
-  }
 }
 
 std::string joined(const ordered_json& names) {
@@ -238,31 +186,13 @@ std::string effect_text(const ordered_json& row) {
                      row["error"].get<double>(), joined(row["left_out"]));
 }
 
-std::string branches_text(const ordered_json& row) {
-  return fmt::format("  {:<14} {:<13} {:>14.3g} {:>14.3g} {:>7.3g} {:>8.1e}\n", row["setting"].get<std::string>(),
-                     row["case"].get<std::string>(), kMicro * row["specialised_time_s"].get<double>(),
-                     kMicro * row["time_s"].get<double>(), row["ratio"].get<double>(), row["error"].get<double>());
-}
-
 /// The table for people.
 std::string table_text(const ordered_json& result) {
-  std::string effects;
-  std::string branches;
-  for (const ordered_json& row : result["results"]) {
-    if (row["part"] == "effects") effects += effect_text(row);
-    if (row["part"] == "branches") branches += branches_text(row);
-  }
-  std::string text;
-  if (!effects.empty()) {
-    text += fmt::format(
-        "Times in us an entry; ratio to the first line of an effect\n  {:<14} {:<13} {:<22} {:>9} {:>9} "
-        "{:>7} {:>9} {:>8}  {}\n{}",
-        "effect", "mode", "setting", "time", "kernel", "ratio", "keep all", "error", "left out", effects);
-  }
-  if (!branches.empty()) {
-    text += fmt::format("Kernels, us an entry\n  {:<14} {:<13} {:>14} {:>14} {:>7} {:>8}\n{}", "masking",
-                        "distribution", "specialised", "uniform", "ratio", "error", branches);
-  }
+  std::string text = fmt::format(
+      "Times in us an entry; ratio to the first line of an effect\n  {:<14} {:<13} {:<22} {:>9} {:>9} {:>7} {:>9} "
+      "{:>8}  {}\n",
+      "effect", "mode", "setting", "time", "kernel", "ratio", "keep all", "error", "left out");
+  for (const ordered_json& row : result["results"]) text += effect_text(row);
   return text;
 }
 

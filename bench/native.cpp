@@ -31,13 +31,11 @@ void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& bod
 class NativeText final : public Solver {
  public:
   Solution solve(const MomentsRequest& request, double setting) override {
-    if (request.distribution != Distribution::kCauchy) throw Unavailable("it is compiled for the cauchy alone");
     MomentsRequest wanted = request;
     wanted.tolerance = setting;
     const GroupedWork work(wanted);
-    // The faster of the two.
-    const std::unique_ptr<GroupedText> text =
-        work.data.needs_masking_table() ? make_native_text(work) : make_vector_text(work);
+    if (!has_text_for(work.data)) throw Unavailable("it is compiled for the cauchy without total reflection alone");
+    const std::unique_ptr<GroupedText> text = make_native_text(work);
     std::vector<kernel::MomentsNode> nodes(work.pieces.size() * work.grouping.size);
     Solution solution;
     solution.kernel_s = run(work, *text, nodes);

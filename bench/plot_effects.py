@@ -3,17 +3,12 @@ import textwrap
 
 NEEDED = {"context", "grid", "results"}
 PLANNED, KERNEL, KEPT = "#0072B2", "#56B4E9", "#D55E00"
-SPECIALISED, UNIFORM = "#0072B2", "#E69F00"
-NOTE_WIDTH = 150  # letters
+NOTE_WIDTH = 140  # letters
 
 
 def micro(time_s):
     """Three digits."""
     return f"{1e6 * time_s:.3g}"
-
-
-def part(result, name):
-    return [row for row in result["results"] if row["part"] == name]
 
 
 def label(row):
@@ -25,18 +20,13 @@ def left_out(row):
 
 
 def markdown(result):
-    """Both parts as Markdown tables."""
+    """The Markdown table."""
     lines = ["| effect | mode | scene | time, µs | in kernels, µs | ratio | `--keep-all`, µs | error | left out |",
              "|---" * 9 + "|"]
-    for row in part(result, "effects"):
+    for row in result["results"]:
         everything = micro(row["keep_all_time_s"]) if "keep_all_time_s" in row else "the same"
         cells = [row["effect"], row["case"], row["setting"].replace("(lambda)", "(λ)"), micro(row["time_s"]),
                  micro(row["kernel_time_s"]), f"{row['ratio']:.2g}", everything, f"{row['error']:.1g}", left_out(row)]
-        lines.append("| " + " | ".join(cells) + " |")
-    lines += ["", "| masking | distribution | specialised, µs | uniform branches, µs | ratio | error |", "|---" * 6 + "|"]
-    for row in part(result, "branches"):
-        cells = [row["setting"], row["case"], micro(row["specialised_time_s"]), micro(row["time_s"]),
-                 f"{row['ratio']:.2f}", f"{row['error']:.1g}"]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
 
@@ -88,22 +78,6 @@ def draw_effects(axes, rows):
     tidy(axes)
 
 
-def draw_branches(axes, rows):
-    for y, row in enumerate(rows):
-        axes.barh(y - 0.2, 1e6 * row["specialised_time_s"], height=0.36, color=SPECIALISED)
-        axes.barh(y + 0.2, 1e6 * row["time_s"], height=0.36, color=UNIFORM)
-        axes.annotate(f" × {row['ratio']:.2f}", (1e6 * row["time_s"], y + 0.2), va="center", fontsize=8)
-    for colour, name in ((SPECIALISED, "specialised"), (UNIFORM, "one kernel, uniform branches")):
-        axes.barh(0, 0, color=colour, label=name)
-    axes.set_yticks(range(len(rows)), [f"{row['setting']}, {row['case']}" for row in rows])
-    axes.set_ylim(len(rows) - 0.4, -0.6)
-    axes.set_xlim(0, 1.2e6 * max(max(row["time_s"], row["specialised_time_s"]) for row in rows))
-    axes.set_xlabel("time in kernels per entry [µs]", fontsize=9)
-    axes.set_title("Specialised kernels", fontsize=10, loc="left")
-    axes.legend(fontsize=8, loc="lower center", bbox_to_anchor=(0.5, -0.13), ncol=2, frameon=False)
-    tidy(axes)
-
-
 def note(result):
     context = result["context"]
     grid = result["grid"]
@@ -114,19 +88,15 @@ def note(result):
 
 
 def figure(result, path, save):
-    """Draws the parts that the result has; `save(drawing, path)` writes it."""
+    """Draws the result; `save(drawing, path)` writes it."""
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     plt.rcParams["font.family"] = "DejaVu Sans"
-    parts = [(draw, rows) for draw, rows in ((draw_effects, part(result, "effects")),
-                                             (draw_branches, part(result, "branches"))) if rows]
-    if not parts:
+    if not result["results"]:
         raise ValueError("holds no measured setting")
-    widths = [1.25 if draw is draw_effects else 1.0 for draw, _ in parts]
-    drawing, grid = plt.subplots(1, len(parts), figsize=(13.5, 8.4), squeeze=False, width_ratios=widths)
-    for axes, (draw, rows) in zip(grid.flat, parts):
-        draw(axes, rows)
+    drawing, axes = plt.subplots(figsize=(9.5, 8.4))
+    draw_effects(axes, result["results"])
     drawing.text(0.01, 0.008, note(result), fontsize=7.5, color="#444444")
-    drawing.tight_layout(w_pad=7.0, rect=(0.0, 0.02, 1.0, 1.0))
+    drawing.tight_layout(rect=(0.0, 0.03, 1.0, 1.0))
     save(drawing, path)

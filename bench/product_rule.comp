@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Product rule over the running beam: some rows (zeniths theta_r) of one entry, all azimuths, per invocation. Density,
+// Product rule over the running beam: some zeniths theta_r of one entry, all azimuths, per invocation. Density,
 // geometry and rotations are the plain formulas; Fresnel and the tables of the masking are dolp's own.
 //   r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r) / 2
 
@@ -11,26 +11,26 @@
 
 layout(std430, binding = DOLP_BINDING_THETAS) readonly buffer Thetas { real2 thetas[]; };  // cos, sin
 layout(std430, binding = DOLP_BINDING_INDICES) readonly buffer Indices { IndexNode indices[]; };
-// theta, shape, index, first row + 65536 * rows
-layout(std430, binding = DOLP_BINDING_ENTRIES) readonly buffer Entries { uvec4 entries[]; };
-// n; n rows (cos(theta_r), sin(theta_r), weight); n azimuths (cos(delta_phi), weight)
+// theta, shape, index, first zenith + 65536 * zeniths
+layout(std430, binding = DOLP_BINDING_TASKS) readonly buffer Entries { uvec4 entries[]; };
+// n; n zeniths (cos(theta_r), sin(theta_r), weight); n azimuths (cos(delta_phi), weight)
 layout(std430, binding = DOLP_BINDING_RULE) readonly buffer Product { real4 product[]; };
 layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer Sums { real2 sums[]; };  // r_i, r_q
 
-// The facet between the two beams.
-struct Facet {
+// The facet that reflects one beam into the other.
+struct Bisector {
   real slope2;  // tan^2(alpha)
   real along;   // of the fixed beam on the facet, in the plane of incidence, over cos(alpha)
   real across2;
   real cos_beta;
 };
 
-Facet facet_between(real2 fixed_beam, real2 running, real cos_azimuth) {
+Bisector facet_between(real2 fixed_beam, real2 running, real cos_azimuth) {
   real height = fixed_beam.x + running.x;
   real away = fixed_beam.y - running.y;
   real side = running.y * running.y * (real(1.0) - cos_azimuth * cos_azimuth);
   real inverse = real(1.0) / height;
-  Facet facet;
+  Bisector facet;
   facet.slope2 = (away * away + real(2.0) * fixed_beam.y * running.y * (real(1.0) + cos_azimuth)) * inverse * inverse;
   facet.along = fixed_beam.x * (fixed_beam.y + running.y * cos_azimuth) * inverse - fixed_beam.y;
   facet.across2 = side * inverse * inverse;
@@ -38,32 +38,32 @@ Facet facet_between(real2 fixed_beam, real2 running, real cos_azimuth) {
   return facet;
 }
 
-real attenuation(Group group, real2 lower, Masked of_lower, Masked of_higher, Facet facet, real cos_alpha) {
+real attenuation(Row row, real2 lower, Masked of_lower, Masked of_higher, Bisector facet, real cos_alpha) {
   if (kMasking == DOLP_MASKING_NONE) return real(1.0);
   if (kMasking == DOLP_MASKING_V_CAVITY) return min(real(1.0), real(2.0) * cos_alpha * lower.x / facet.cos_beta);
   if (kMasking == DOLP_MASKING_SMITH) return real(1.0) / (real(1.0) + of_lower.value[0] + of_higher.value[0]);
-  return real(1.0) - shadows(group, of_lower, lower.x, lower.y, sqrt(facet.slope2)).value[0];
+  return real(1.0) - shadows(row, of_lower, lower.x, lower.y, sqrt(facet.slope2)).value[0];
 }
 
 void main() {
   uint i = push.first + min(gl_GlobalInvocationID.x, push.count - 1u);
   uvec4 entry = entries[i];
-  Group group;
-  group.shape[0] = shapes[entry.y];
-  group.table[0] = entry.y * kMaskingNodes;
+  Row row;
+  row.shape[0] = shapes[entry.y];
+  row.table[0] = entry.y * kMaskingNodes;
   real2 fixed_beam = thetas[entry.x];
   IndexNode index = indices[entry.z];
-  Masked of_fixed = looked_up(group, fixed_beam.x, fixed_beam.y);
+  Masked of_fixed = masking_of_direction(row, fixed_beam.x, fixed_beam.y);
   int nodes = int(product[0].x);
   int first = int(entry.w & 65535u);
-  int rows = int(entry.w >> 16);
-  real m2 = group.shape[0].m * group.shape[0].m;
-  real q = group.shape[0].q_minus_1 + real(1.0);
+  int zeniths = int(entry.w >> 16);
+  real m2 = row.shape[0].m * row.shape[0].m;
+  real q = row.shape[0].q_minus_1 + real(1.0);
   real2 sum = real2(real(0.0), real(0.0));
-  for (int row = 0; row < rows; ++row) {
-    real4 zenith = product[1 + first + row];
+  for (int number = 0; number < zeniths; ++number) {
+    real4 zenith = product[1 + first + number];
     real2 running = real2(zenith.x, zenith.y);
-    Masked of_running = looked_up(group, running.x, running.y);
+    Masked of_running = masking_of_direction(row, running.x, running.y);
     bool is_lower = running.x < fixed_beam.x;
     real2 lower = is_lower ? running : fixed_beam;
     Masked of_lower = of_fixed;
@@ -72,10 +72,10 @@ void main() {
       of_lower = of_running;
       of_higher = of_fixed;
     }
-    real2 row_sum = real2(real(0.0), real(0.0));
+    real2 azimuth_sum = real2(real(0.0), real(0.0));
     for (int column = 0; column < nodes; ++column) {
       real4 azimuth = product[1 + nodes + column];
-      Facet facet = facet_between(fixed_beam, running, azimuth.x);
+      Bisector facet = facet_between(fixed_beam, running, azimuth.x);
       real cos2_alpha = real(1.0) / (real(1.0) + facet.slope2);
       real u2 = facet.slope2 / m2;
       real profile = (kDistribution == DOLP_CAUCHY) ? (q - real(1.0)) * pow(real(1.0) + u2, -q) : exp(-u2);
@@ -83,11 +83,11 @@ void main() {
       real half_split = real(0.5) * f.split_over_sin2 * cos2_alpha;
       real along2 = facet.along * facet.along;
       real weight = azimuth.y * profile / (cos2_alpha * cos2_alpha) *
-                    attenuation(group, lower, of_lower, of_higher, facet, sqrt(cos2_alpha));
-      row_sum.x += weight * (f.r_s - half_split * (along2 + facet.across2));
-      row_sum.y += weight * (half_split * (along2 - facet.across2));
+                    attenuation(row, lower, of_lower, of_higher, facet, sqrt(cos2_alpha));
+      azimuth_sum.x += weight * (f.r_s - half_split * (along2 + facet.across2));
+      azimuth_sum.y += weight * (half_split * (along2 - facet.across2));
     }
-    sum += zenith.z * row_sum;
+    sum += zenith.z * azimuth_sum;
   }
   if (gl_GlobalInvocationID.x < push.count) sums[i] = sum / (kPi * m2);
 }

@@ -27,13 +27,11 @@ struct StudyOptions {
 /// had; IoError; Cancelled.
 void run_accuracy(const StudyOptions& options);
 
-/// `dolp-bench effects`: time per entry with each effect alone on and off, on one grid, with what the plan drops; and
-/// specialised kernels against one kernel that branches by uniform values.
+/// `dolp-bench effects`: time per entry with each effect alone on and off, on one grid, with what the plan drops.
 ///
 /// `cases` are names of effects, `entries` those of the grid. The error of an effect is the largest |change of DOLP|
-/// that dropping makes, against the same scene with everything kept; that of a kernel the largest difference of its
-/// moments over r_i. Errors: InputError for an effect that there is not; DeviceError without a usable device; IoError;
-/// Cancelled.
+/// that dropping makes, against the same scene with everything kept. Errors: InputError for an effect that there is
+/// not; DeviceError without a usable device; IoError; Cancelled.
 void run_effects(const StudyOptions& options);
 
 /// `dolp-bench throughput`: entries and integrand evaluations a second on the grid of the stainless-steel scene, its

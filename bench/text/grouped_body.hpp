@@ -1,6 +1,5 @@
 // Body of native_text.cpp and counted_text.cpp, which define DOLP_TEXT_NAMESPACE and in it real, real2, real4 and
-// as_data first. Masking and the size of groups are template parameters, as they are specialization constants and
-// modules of a device.
+// as_data first. Masking and the width of a row are known to the compiler, as they are to that of a device.
 
 #include <algorithm>
 #include <array>
@@ -9,23 +8,26 @@
 #include "bench/text/grouped_text.hpp"
 #include "plan/convert_reals.hpp"
 
-#undef DOLP_GROUP
-#define DOLP_GROUP kGroup
+#undef DOLP_WIDTH
+#define DOLP_WIDTH kWidth
 
 namespace dolp::bench::DOLP_TEXT_NAMESPACE {
 
 #include "shaders/physics/prelude.glsl"
 
-template <int kGroup, uint kMasking>
+template <int kWidth, uint kMasking>
 struct Text {
 #include "shaders/interface.glsl"
 #include "shaders/physics/all.glsl"
 
   static constexpr uint kDistribution = DOLP_CAUCHY;
-  std::vector<real4> rule_nodes;
+  static constexpr bool kTotalReflection = false;
+  int order_of_nodes = 1;
+  std::vector<real2> rule_nodes;
   std::vector<real4> masking_table;
 
-  real4 rule_node(int i) const { return rule_nodes[static_cast<std::size_t>(i)]; }
+  int largest_order() const { return order_of_nodes; }
+  real2 rule_node(int i) const { return rule_nodes[static_cast<std::size_t>(i)]; }
   real4 masking_node(uint i) const { return masking_table[i]; }
   void store_masking_node(uint i, real4 node) { masking_table[i] = node; }
 };
@@ -38,13 +40,14 @@ To narrowed(const From& from) {
   return std::bit_cast<To>(numbers);
 }
 
-template <int kGroup, uint kMasking>
+template <int kWidth, uint kMasking>
 class Kernel final : public GroupedText {
  public:
-  using Own = Text<kGroup, kMasking>;
+  using Own = Text<kWidth, kMasking>;
 
   explicit Kernel(const GroupedWork& work) : work_(work), rule_(narrowed<typename Own::RuleNode>(work.data.rule)) {
-    for (const auto& node : work.data.rule_nodes) text_.rule_nodes.push_back(narrowed<real4>(node));
+    text_.order_of_nodes = work.data.rule_order;
+    for (const auto& node : work.data.rule_nodes) text_.rule_nodes.push_back(narrowed<real2>(node));
     for (const auto& shape : work.grouping.shapes) shapes_.push_back(narrowed<typename Own::ShapeNode>(shape));
     for (const auto& theta : work.data.thetas) thetas_.push_back(narrowed<typename Own::ThetaNode>(theta));
     for (const auto& index : work.data.indices) indices_.push_back(narrowed<typename Own::IndexNode>(index));
@@ -54,7 +57,7 @@ class Kernel final : public GroupedText {
   void build_masking_table(std::size_t shape) override { text_.build_masking_table(shapes_[shape], table(shape)); }
 
   void run_pieces(std::size_t first, std::span<kernel::MomentsNode> members) override {
-    for (std::size_t i = 0; i < members.size() / kGroup; ++i) run_piece(first + i, members.subspan(i * kGroup, kGroup));
+    for (std::size_t i = 0; i < members.size() / kWidth; ++i) run_piece(first + i, members.subspan(i * kWidth, kWidth));
   }
 
  private:
@@ -62,15 +65,15 @@ class Kernel final : public GroupedText {
     const GroupPiece& own = work_.pieces[piece];
     const EntryGroup& group = work_.grouping.groups[own.group];
     const ShapeFamily& family = work_.grouping.families[group.family];
-    typename Own::Group shapes;
-    for (std::uint32_t g = 0; g < kGroup; ++g) {
+    typename Own::Row row;
+    for (std::uint32_t g = 0; g < kWidth; ++g) {
       const std::size_t shape = family.first + std::min(g, family.count - 1);
-      shapes.shape[g] = shapes_[shape];
-      shapes.table[g] = table(shape);
+      row.shape[g] = shapes_[shape];
+      row.table[g] = table(shape);
     }
-    const auto moments =
-        text_.piece_moments(rule_, thetas_[group.theta], shapes, indices_[group.index], static_cast<int>(own.piece));
-    for (std::size_t g = 0; g < kGroup; ++g) {
+    const auto task = text_.task_of(task_word(work_.data.pieces[group.theta], own.piece, family.count));
+    const auto moments = text_.piece_moments(rule_, thetas_[group.theta], row, indices_[group.index], task);
+    for (std::size_t g = 0; g < kWidth; ++g) {
       members[g] = convert_reals<double, kernel::MomentsNode, real>(moments.member[g]);
     }
   }
@@ -85,19 +88,19 @@ class Kernel final : public GroupedText {
   std::vector<typename Own::IndexNode> indices_;
 };
 
-template <int kGroup>
+template <int kWidth>
 std::unique_ptr<GroupedText> make_text(const GroupedWork& work) {
   switch (work.data.masking) {
     case Masking::kNone:
-      return std::make_unique<Kernel<kGroup, DOLP_MASKING_NONE>>(work);
+      return std::make_unique<Kernel<kWidth, DOLP_MASKING_NONE>>(work);
     case Masking::kVCavity:
-      return std::make_unique<Kernel<kGroup, DOLP_MASKING_V_CAVITY>>(work);
+      return std::make_unique<Kernel<kWidth, DOLP_MASKING_V_CAVITY>>(work);
     case Masking::kIntegral:
-      return std::make_unique<Kernel<kGroup, DOLP_MASKING_INTEGRAL>>(work);
+      return std::make_unique<Kernel<kWidth, DOLP_MASKING_INTEGRAL>>(work);
     case Masking::kSmith:
       break;
   }
-  return std::make_unique<Kernel<kGroup, DOLP_MASKING_SMITH>>(work);
+  return std::make_unique<Kernel<kWidth, DOLP_MASKING_SMITH>>(work);
 }
 
 inline std::unique_ptr<GroupedText> text_for(const GroupedWork& work) {

@@ -37,12 +37,13 @@ class GroupedText {
 /// Adds what the pieces gave, groups size by size, and turns it into moments in the order of the request.
 std::vector<Moments> moments_of(const GroupedWork& work, const std::vector<kernel::MomentsNode>& nodes);
 
-/// Compiled for this processor, one invocation after the other, vectors where the compiler finds some. Cauchy
-/// distribution only.
-std::unique_ptr<GroupedText> make_native_text(const GroupedWork& work);
+/// Whether the builds below can do this work: they are made for the cauchy distribution without total reflection.
+inline bool has_text_for(const KernelData& data) {
+  return data.distribution == Distribution::kCauchy && !data.has_total_reflection;
+}
 
-/// The same with invocations side by side in vectors. Only masking without tables: none and v-cavity.
-std::unique_ptr<GroupedText> make_vector_text(const GroupedWork& work);
+/// Compiled for this processor, one invocation after the other, vectors where the compiler finds some.
+std::unique_ptr<GroupedText> make_native_text(const GroupedWork& work);
 
 /// Operations of arithmetic, by kind.
 struct OperationCounts {
@@ -56,7 +57,7 @@ struct OperationCounts {
   std::uint64_t flops() const { return add + multiply + divide + square_root; }
 };
 
-/// Counts what it does. Cauchy distribution only; one thread at a time.
+/// Counts what it does; one thread at a time.
 std::unique_ptr<GroupedText> make_counted_text(const GroupedWork& work);
 
 /// What this thread has counted since the program began.

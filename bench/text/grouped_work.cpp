@@ -9,7 +9,7 @@ constexpr double kUnitRoundoff = 0x1p-24;  // of float
 
 GroupedWork::GroupedWork(const MomentsRequest& request)
     : data(kernel_data(request)),
-      grouping(grouped(data, kGroupSizes, kGroupSizes)),  // as the evaluators are timed
+      grouping(grouped(data, true)),  // as the evaluators are timed
       pieces(pieces_of(grouping, data, 0, static_cast<std::uint32_t>(grouping.groups.size()))) {}
 
 std::vector<Moments> moments_of(const GroupedWork& work, const std::vector<kernel::MomentsNode>& nodes) {

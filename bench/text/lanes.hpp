@@ -21,6 +21,9 @@ struct Vec4 {
   constexpr Vec4(Real x0, Real y0, Real z0, Real w0) : x(x0), y(y0), z(z0), w(w0) {}
   friend constexpr Vec4 operator+(Vec4 a, Vec4 b) { return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w}; }
   friend constexpr Vec4 operator-(Vec4 a, Vec4 b) { return {a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w}; }
+  friend constexpr Vec4 operator*(Real a, Vec4 b) { return {a * b.x, a * b.y, a * b.z, a * b.w}; }
+  constexpr Vec4& operator+=(Vec4 more) { return *this = *this + more; }
+  constexpr Vec4& operator*=(Real factor) { return *this = factor * *this; }
 };
 
 using uint = std::uint32_t;
@@ -36,6 +39,10 @@ inline float min(float a, float b) { return b < a ? b : a; }
 inline float max(float a, float b) { return a < b ? b : a; }
 inline float clamp(float value, float low, float high) { return min(max(value, low), high); }
 inline float abs(float value) { return std::fabs(value); }
+template <class Real>
+Vec4<Real> abs(Vec4<Real> a) {
+  return {abs(a.x), abs(a.y), abs(a.z), abs(a.w)};
+}
 inline float floor(float value) { return std::floor(value); }
 inline float sqrt(float value) { return std::sqrt(value); }
 inline float mod(float value, float by) { return value - by * std::floor(value / by); }

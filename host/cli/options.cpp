@@ -37,7 +37,7 @@ std::vector<std::string> all_overrides(const Options& options) {
 
 Scene load_scene(const Options& options) { return read_scene(options.scene_path, all_overrides(options)); }
 
-EffectPlan plan_run(const Options& options, const Scene& scene, const std::vector<SceneEntry>& entries) {
+EffectPlan plan_run(const Options& options, const Scene& scene, const SceneEntries& entries) {
   return plan_effects(scene, entries, options.keep_all);
 }
 

@@ -52,7 +52,7 @@ std::vector<std::string> all_overrides(const Options& options);
 Scene load_scene(const Options& options);
 
 /// What a run of these entries keeps, as --keep-all and the scene's effects have it.
-EffectPlan plan_run(const Options& options, const Scene& scene, const std::vector<SceneEntry>& entries);
+EffectPlan plan_run(const Options& options, const Scene& scene, const SceneEntries& entries);
 
 /// What ran: nothing, where no evaluator was needed.
 EvaluationReport report_of(const MomentsEvaluator* evaluator, const Options& options);

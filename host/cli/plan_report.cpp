@@ -91,9 +91,9 @@ std::string work_lines(const PlanReport& report) {
   }
   text += fmt::format("  work        {:.4g} integrand evaluations in the first attempt ({}), {:.2g} in others\n",
                       run.first_evaluations, how, run.again_evaluations);
-  if (report.dispatches.group_size > 1) {
+  if (report.dispatches.row_width > 1) {
     text += fmt::format("  sharing     entries that differ in q alone share their evaluations: {} groups of up to {}\n",
-                        report.dispatches.groups, report.dispatches.group_size);
+                        report.dispatches.rows, report.dispatches.row_width);
   }
   return text;
 }

@@ -35,7 +35,7 @@ void add(EnergyRange& range, double theta_deg, double sigma) {
   widen(range.sigma_min, range.sigma_max, sigma);
 }
 
-void add_ranges(RunReport& report, const Scene& scene, const std::vector<SceneEntry>& entries,
+void add_ranges(RunReport& report, const Scene& scene, const SceneEntries& entries,
                 const std::vector<PointResult>& results) {
   report.albedo_min = std::numeric_limits<double>::infinity();
   report.albedo_max = -std::numeric_limits<double>::infinity();
@@ -49,9 +49,10 @@ void add_ranges(RunReport& report, const Scene& scene, const std::vector<SceneEn
     if (std::isnan(r.albedo)) continue;
     report.albedo_min = std::min(report.albedo_min, r.albedo);
     report.albedo_max = std::max(report.albedo_max, r.albedo);
-    const double theta_deg = bistatic ? scene.geometry.view_zenith_deg : entries[i].theta_deg;
-    if (r.albedo < kAlbedoMin) add(report.loses, theta_deg, entries[i].shape.sigma);
-    if (r.albedo > kAlbedoMax) add(report.gains, theta_deg, entries[i].shape.sigma);
+    if (r.albedo >= kAlbedoMin && r.albedo <= kAlbedoMax) continue;
+    const SceneEntry entry = entries[i];
+    const double theta_deg = bistatic ? scene.geometry.view_zenith_deg : entry.theta_deg;
+    add(r.albedo < kAlbedoMin ? report.loses : report.gains, theta_deg, entry.shape.sigma);
   }
 }
 
@@ -111,7 +112,7 @@ std::string device_line(const EvaluationReport& e) {
 
 }  // namespace
 
-RunReport make_report(const Scene& scene, const std::vector<SceneEntry>& entries,
+RunReport make_report(const Scene& scene, const SceneEntries& entries,
                       const std::vector<PointResult>& results, const EffectPlan& plan,
                       const EvaluationReport& evaluation, double wall_s) {
   RunReport report;

@@ -52,7 +52,7 @@ struct RunReport {
 inline constexpr double kAlbedoMin = 0.95;
 inline constexpr double kAlbedoMax = 1.05;
 
-RunReport make_report(const Scene& scene, const std::vector<SceneEntry>& entries,
+RunReport make_report(const Scene& scene, const SceneEntries& entries,
                       const std::vector<PointResult>& results, const EffectPlan& plan,
                       const EvaluationReport& evaluation, double wall_s);
 

@@ -17,7 +17,7 @@ int run_table(const Options& options) {
   check_output_is_no_input(options);
   const Scene scene = load_scene(options);
   check_output_path(options.output_path);
-  const std::vector<SceneEntry> entries = grid_entries(scene);
+  const SceneEntries entries = grid_entries(scene);
   const EffectPlan plan = plan_run(options, scene, entries);
   const bool integrates = wants_evaluator(scene, entries, plan);
   const std::unique_ptr<MomentsEvaluator> evaluator = integrates ? make_evaluator(options, scene) : nullptr;

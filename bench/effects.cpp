@@ -99,15 +99,13 @@ MomentsRequest request_of(const Scene& scene, Distribution distribution, Masking
   request.tolerance = scene.accuracy.tolerance;
   request.theta_deg = scene.grid.theta_deg;
   request.indices = {scene.surface.material.constant};
-  for (const double sigma : scene.grid.sigma) request.shapes.push_back({sigma, scene.grid.q.front()});
-  for (std::uint32_t theta = 0; theta < request.theta_deg.size(); ++theta) {
-    for (std::uint32_t shape = 0; shape < request.shapes.size(); ++shape) request.entries.push_back({theta, shape, 0});
-  }
+  request.sigma = scene.grid.sigma;
+  request.q = {scene.grid.q.front()};
   return request;
 }
 
 ordered_json branches_row(const MomentsRequest& request, const BranchTimes& times) {
-  const std::size_t entries = request.entries.size();
+  const std::size_t entries = request.size();
   const std::vector<double> uniform_s = per_entry(times.uniform_s, entries);
   const double specialised_s = median(per_entry(times.specialised_s, entries));
   ordered_json row = {{"part", "branches"}, {"effect", "branches"}};

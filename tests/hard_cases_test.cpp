@@ -71,10 +71,7 @@ Moments recomputed(const StoredCase& c, const ReferenceOptions& options) {
   request.distribution = c.distribution;
   request.masking = c.masking;
   request.tolerance = 0.0;
-  request.theta_deg = {c.theta_deg};
-  request.shapes = {c.shape};
-  request.indices = {c.index};
-  request.entries = {{0, 0, 0}};
+  request.append({c.theta_deg, c.shape, c.index});
   return ReferenceEvaluator(options).evaluate(request, {}).at(0);
 }
 

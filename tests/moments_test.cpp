@@ -44,13 +44,7 @@ MomentsRequest request_of(const std::vector<StoredCase>& rows) {
   request.distribution = rows.front().distribution;
   request.masking = rows.front().masking;
   request.tolerance = kTolerance;
-  for (const StoredCase& row : rows) {
-    const auto position = static_cast<std::uint32_t>(request.entries.size());
-    request.theta_deg.push_back(row.theta_deg);
-    request.shapes.push_back(row.shape);
-    request.indices.push_back(row.index);
-    request.entries.push_back({position, position, position});
-  }
+  for (const StoredCase& row : rows) request.append({row.theta_deg, row.shape, row.index});
   return request;
 }
 
@@ -154,13 +148,10 @@ TEST(NearCoincidences, EveryEntry_ErrorIsBelowItsEstimate) {
   for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
     MomentsRequest request;
     request.masking = masking;
-    request.shapes = {{0.3, 2.2}};
+    request.theta_deg = {kNearCoincidencesDeg.begin(), kNearCoincidencesDeg.end()};
     request.indices = {{2.0, 0.7}, {0.8, 0.0}};
-    for (const double theta_deg : kNearCoincidencesDeg) {
-      const auto position = static_cast<std::uint32_t>(request.theta_deg.size());
-      request.theta_deg.push_back(theta_deg);
-      for (const std::uint32_t index : {0U, 1U}) request.entries.push_back({position, 0U, index});
-    }
+    request.sigma = {0.3};
+    request.q = {2.2};
     const std::vector<Moments> references = ReferenceEvaluator().evaluate(request, {});
     for (const double tolerance : {1e-3, 1e-5, 1e-8}) {
       request.tolerance = tolerance;
@@ -169,8 +160,8 @@ TEST(NearCoincidences, EveryEntry_ErrorIsBelowItsEstimate) {
         const Moments& m = moments[i];
         const Moments& reference = references[i];
         const std::string where = "masking " + std::to_string(static_cast<int>(masking)) + " theta " +
-                                  std::to_string(request.theta_deg[request.entries[i].theta]) + " index " +
-                                  std::to_string(request.entries[i].index) + " tolerance " + std::to_string(tolerance);
+                                  std::to_string(request[i].theta_deg) + " index " +
+                                  std::to_string(request[i].index.n) + " tolerance " + std::to_string(tolerance);
         EXPECT_LE(std::abs(m.r_i - reference.r_i), m.r_i_error + reference.r_i_error) << where;
         EXPECT_LE(std::abs(m.r_q - reference.r_q), m.r_q_error + reference.r_q_error) << where;
         EXPECT_LE(std::abs(m.albedo - reference.albedo), m.albedo_error + reference.albedo_error) << where;

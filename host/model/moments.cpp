@@ -5,7 +5,7 @@
 namespace dolp {
 
 std::size_t MomentsRequest::size() const {
-  if (layout == Layout::kPoints) return theta_deg.size();
+  if (layout == Layout::kList) return theta_deg.size();
   return theta_deg.size() * indices.size() * sigma.size() * q.size();
 }
 
@@ -15,7 +15,7 @@ std::size_t MomentsRequest::wanted_count() const {
 }
 
 MomentsPoint MomentsRequest::operator[](std::size_t entry) const {
-  if (layout == Layout::kPoints) return {theta_deg[entry], {sigma[entry], q[entry]}, indices[entry]};
+  if (layout == Layout::kList) return {theta_deg[entry], {sigma[entry], q[entry]}, indices[entry]};
   const std::size_t of_sigma = entry / q.size();
   const std::size_t of_index = of_sigma / sigma.size();
   return {theta_deg[of_index / indices.size()],
@@ -24,7 +24,7 @@ MomentsPoint MomentsRequest::operator[](std::size_t entry) const {
 }
 
 void MomentsRequest::append(const MomentsPoint& point) {
-  layout = Layout::kPoints;
+  layout = Layout::kList;
   theta_deg.push_back(point.theta_deg);
   sigma.push_back(point.shape.sigma);
   q.push_back(point.shape.q);

@@ -24,7 +24,7 @@ struct MomentsPoint {
 /// Where moments are wanted: on the grid theta x index x sigma x q, q fastest, or at points, of which the four lists have
 /// one value each. An entry is its position in that order.
 struct MomentsRequest {
-  enum class Layout { kGrid, kPoints };
+  enum class Layout { kGrid, kList };
 
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;

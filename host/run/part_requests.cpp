@@ -127,7 +127,7 @@ PartRequests::Place PartRequests::moments_of(std::size_t member) const {
 }
 
 void PartRequests::ask_points(const Selection& selection) {
-  moments_.layout = MomentsRequest::Layout::kPoints;
+  moments_.layout = MomentsRequest::Layout::kList;
   places_.reserve(selection.size());
   std::vector<MomentsPoint> last;  // those of the entry before, which begin at `place`
   std::vector<MomentsPoint> own;

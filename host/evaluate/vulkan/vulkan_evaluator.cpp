@@ -18,7 +18,7 @@ using Clock = std::chrono::steady_clock;
 
 void check_entries(const MomentsRequest& request) {
   const std::size_t size = request.size();
-  const bool is_points = request.layout == MomentsRequest::Layout::kPoints;
+  const bool is_points = request.layout == MomentsRequest::Layout::kList;
   const bool is_even = request.indices.size() == size && request.sigma.size() == size && request.q.size() == size;
   if (is_points && !(is_even && request.wanted.empty())) {
     throw InputError("the lists of a request for points differ in length, or it has a mask");

@@ -119,10 +119,10 @@ inline KernelData data_of(const ShapeCase& shape, Masking masking, const Optical
   MomentsRequest request;
   request.distribution = shape.distribution;
   request.masking = masking;
-  request.shapes = {{shape.sigma, shape.q}};
+  request.sigma = {shape.sigma};
+  request.q = {shape.q};
   request.indices = {index};
   request.theta_deg = {60.0};  // of the rule nodes there are as many as the directions need
-  request.entries = {{0U, 0U, 0U}};
   return kernel_data(request);
 }
 

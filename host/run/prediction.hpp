@@ -15,7 +15,7 @@ namespace dolp {
 inline constexpr std::size_t kCountedEntries = 256;
 
 /// Where a run interpolates between slope distributions, the directions whose entries are counted instead.
-inline constexpr std::size_t kCountedDirections = 4;
+inline constexpr std::size_t kCountedDirections = 6;
 
 /// Work of a run.
 struct RunPrediction {

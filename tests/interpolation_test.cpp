@@ -394,8 +394,8 @@ TEST_P(RandomGrids, StatedErrors_HoldAgainstEveryEntryByItself) {
           EXPECT_LE(std::abs(m.*quantity.value - truth[i].*quantity.value),
                     m.*quantity.error + truth[i].*quantity.error)
               << quantity.name << " at " << positions[i] << ", tolerance " << request.tolerance << ": theta "
-              << some[i].theta_deg << " sigma " << some[i].shape.sigma << " q " << some[i].shape.q << " n " << request.indices[0].n << " k "
-              << request.indices[0].k;
+              << some[i].theta_deg << " sigma " << some[i].shape.sigma << " q " << some[i].shape.q << " n "
+              << request.indices[0].n << " k " << request.indices[0].k;
         }
       }
     }

@@ -125,8 +125,7 @@ TEST(RowsOf, Neighbours_DifferInTheDirection) {
   const MomentsRequest request = grid(Masking::kNone, {10.0, 20.0, 40.0}, {0.1, 0.2}, kManyQ, {{1.5, 0.0}, {2.0, 1.0}});
   const KernelData data = kernel_data(request);
   const Rows rows = rows_of(request, data, 8);
-  const std::vector<RowPiece> pieces =
-      pieces_of(rows, data, 0, static_cast<std::uint32_t>(rows.rows.size()));
+  const std::vector<RowPiece> pieces = pieces_of(rows, data, 0, static_cast<std::uint32_t>(rows.rows.size()));
   std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
   std::size_t alike = 0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -180,8 +179,8 @@ class RowKernel : public testing::TestWithParam<std::tuple<Masking, Precision>> 
     const auto [masking, precision] = GetParam();
     std::vector<double> sigma;
     for (int i = 0; i < 48; ++i) sigma.push_back(0.02 * std::pow(50.0, i / 47.0));
-    MomentsRequest request = grid(masking, {0.0, 20.0, 45.0, 70.0, 88.0, 89.9}, sigma, kManyQ,
-                                  {{1.508, 0.0}, {27.0, 90.0}, {0.8, 0.0}});
+    MomentsRequest request =
+        grid(masking, {0.0, 20.0, 45.0, 70.0, 88.0, 89.9}, sigma, kManyQ, {{1.508, 0.0}, {27.0, 90.0}, {0.8, 0.0}});
     request.precision = precision;
     request.tolerance = precision == Precision::kDouble ? 1e-7 : 1e-4;
     return request;
@@ -247,8 +246,8 @@ TEST_P(RowKernel, ShuffledAxes_KeepTheBitsOfEveryEntry) {
     const MomentsPoint point = other[i];
     const std::size_t direction = place(request.theta_deg, point.theta_deg) * request.indices.size();
     const std::size_t shapes = (direction + place(request.indices, point.index)) * request.sigma.size();
-    const std::size_t j = (shapes + place(request.sigma, point.shape.sigma)) * request.q.size() +
-                          place(request.q, point.shape.q);
+    const std::size_t j =
+        (shapes + place(request.sigma, point.shape.sigma)) * request.q.size() + place(request.q, point.shape.q);
     ASSERT_TRUE(same(shuffled[i], expected[j])) << i;
   }
 }

@@ -97,8 +97,7 @@ TEST(PointEntries_SmallQ, IsAllowedWhereItHasAMeaning) {
 
 TEST(PointEntries_MissingTheta, NamesTheFileUnlessTheSceneHasOneTheta) {
   Scene scene = make_scene(Distribution::kCauchy, Masking::kNone, kDielectric);
-  const SceneEntries entries =
-      point_entries(scene, parse_points("sigma\n0.2\n", "p.csv", PointsKind::kDirections));
+  const SceneEntries entries = point_entries(scene, parse_points("sigma\n0.2\n", "p.csv", PointsKind::kDirections));
   ASSERT_EQ(entries.size(), 1U);
   EXPECT_EQ(entries[0].theta_deg, 60.0);
   scene.grid.theta_deg = {0.0, 60.0};

@@ -65,8 +65,7 @@ void add_request(PlanReport& report, const ScatteringRequest& request, const Dev
 /// its hardest member needs, hence estimated.
 void share_evaluations(PlanReport& report) {
   if (report.dispatches.row_width == 1) return;
-  report.run.first_evaluations *=
-      static_cast<double>(report.dispatches.rows) / static_cast<double>(report.run.moments);
+  report.run.first_evaluations *= static_cast<double>(report.dispatches.rows) / static_cast<double>(report.run.moments);
   report.run.is_exact = false;
 }
 

@@ -112,9 +112,8 @@ std::string device_line(const EvaluationReport& e) {
 
 }  // namespace
 
-RunReport make_report(const Scene& scene, const SceneEntries& entries,
-                      const std::vector<PointResult>& results, const EffectPlan& plan,
-                      const EvaluationReport& evaluation, double wall_s) {
+RunReport make_report(const Scene& scene, const SceneEntries& entries, const std::vector<PointResult>& results,
+                      const EffectPlan& plan, const EvaluationReport& evaluation, double wall_s) {
   RunReport report;
   report.title = scene.title;
   report.entries = results.size();

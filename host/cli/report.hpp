@@ -52,9 +52,8 @@ struct RunReport {
 inline constexpr double kAlbedoMin = 0.95;
 inline constexpr double kAlbedoMax = 1.05;
 
-RunReport make_report(const Scene& scene, const SceneEntries& entries,
-                      const std::vector<PointResult>& results, const EffectPlan& plan,
-                      const EvaluationReport& evaluation, double wall_s);
+RunReport make_report(const Scene& scene, const SceneEntries& entries, const std::vector<PointResult>& results,
+                      const EffectPlan& plan, const EvaluationReport& evaluation, double wall_s);
 
 /// Names and reasons of what is kept, dropped and absent.
 nlohmann::ordered_json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan);

@@ -21,8 +21,8 @@ struct MomentsPoint {
   friend bool operator==(const MomentsPoint&, const MomentsPoint&) = default;
 };
 
-/// Where moments are wanted: on the grid theta x index x sigma x q, q fastest, or at points, of which the four lists have
-/// one value each. An entry is its position in that order.
+/// Where moments are wanted: on the grid theta x index x sigma x q, q fastest, or at points, of which the four lists
+/// have one value each. An entry is its position in that order.
 struct MomentsRequest {
   enum class Layout { kGrid, kList };
 

@@ -30,13 +30,12 @@ class SceneEntries {
   static SceneEntries grid(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q);
 
   bool is_grid() const { return is_grid_; }
-  std::size_t size() const {
-    return is_grid_ ? theta_deg_.size() * sigma_.size() * q_.size() : points_.size();
-  }
+  std::size_t size() const { return is_grid_ ? theta_deg_.size() * sigma_.size() * q_.size() : points_.size(); }
   bool empty() const { return size() == 0; }
   SceneEntry operator[](std::size_t entry) const;
   auto all() const {
-    return std::views::iota(std::size_t{0}, size()) | std::views::transform([this](std::size_t i) { return (*this)[i]; });
+    return std::views::iota(std::size_t{0}, size()) |
+           std::views::transform([this](std::size_t i) { return (*this)[i]; });
   }
 
   // Of a grid.

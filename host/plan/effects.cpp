@@ -44,8 +44,8 @@ DropBound entry_bound(const InfluenceBounds& bounds, const Candidate& candidate,
 }
 
 /// The worst bound of some entries; stops, above the limit, as soon as it is there.
-DropBound worst_of_entries(const InfluenceBounds& bounds, const Candidate& candidate,
-                           const SceneEntries& entries, std::span<const std::uint32_t> positions) {
+DropBound worst_of_entries(const InfluenceBounds& bounds, const Candidate& candidate, const SceneEntries& entries,
+                           std::span<const std::uint32_t> positions) {
   ReflectanceMemory memory;
   DropBound worst;
   for (const std::uint32_t i : positions) {
@@ -218,7 +218,8 @@ EffectRow complex_index_row(const Scene& scene, const EffectPlan& plan, const Sc
   constexpr const char* kName = "complex index";
   const std::vector<OpticalConstants> indices = spectral_rule(scene).indices();
   const auto is_complex = [](const OpticalConstants& index) { return index.k > 0.0; };
-  const bool own = std::ranges::any_of(entries.all(), [&](const SceneEntry& e) { return e.index && is_complex(*e.index); });
+  const bool own =
+      std::ranges::any_of(entries.all(), [&](const SceneEntry& e) { return e.index && is_complex(*e.index); });
   if (!own && std::ranges::none_of(indices, is_complex)) return absent(kName, "k is 0");
   EffectRow row{kName, EffectState::kKept, "costs nothing: the kernel treats real indices alike"};
   const bool is_used = plan.needs_moments || plan.needs_beams || (is_fresnel(scene) && plan.kept.emission);

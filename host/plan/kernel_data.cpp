@@ -225,7 +225,8 @@ void add_grid_directions(KernelData& data, const MomentsRequest& request) {
   }
   for (const double critical_cos : critical) {
     for (std::uint32_t line = 0; line < lines; ++line) {
-      for (const double theta_deg : request.theta_deg) add_direction(data, request, theta_deg, {critical_cos, line == 1});
+      for (const double theta_deg : request.theta_deg)
+        add_direction(data, request, theta_deg, {critical_cos, line == 1});
     }
   }
 }

@@ -31,9 +31,9 @@ struct MomentsEntry {
 };
 
 /// Inputs of one run of the kernel. Of a grid `indices` and `shapes` (sigma x q, q fastest) match its axes and `thetas`
-/// has its directions first, then as often as necessary the variants of them all: for total reflection, whose split lines
-/// depend on the index, and for shapes that need one line more. Of points each has its own direction and index, and
-/// neighbours of one shape share it.
+/// has its directions first, then as often as necessary the variants of them all: for total reflection, whose split
+/// lines depend on the index, and for shapes that need one line more. Of points each has its own direction and index,
+/// and neighbours of one shape share it.
 struct KernelData {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;

@@ -74,7 +74,8 @@ SceneEntries point_entries(const Scene& scene, const Points& points) {
     entry.theta_deg = value_or(points.theta_deg, row, scene.grid.theta_deg.front());
     entry.shape = {value_or(points.sigma, row, surface.sigma), value_or(points.q, row, surface.q)};
     const OpticalConstants& index = surface.material.constant;
-    if (has_own_index) entry.index = OpticalConstants{value_or(points.n, row, index.n), value_or(points.k, row, index.k)};
+    if (has_own_index)
+      entry.index = OpticalConstants{value_or(points.n, row, index.n), value_or(points.k, row, index.k)};
     entries.push_back(entry);
   }
   return entries;

@@ -53,9 +53,9 @@ std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spe
 /// Whether anything is left for an evaluator: the plan needs moments or beams, and not all entries have closed forms.
 bool wants_evaluator(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan);
 
-/// Goes all the way, part by part: what the plan keeps, computed again where it misses the tolerance; what the plan does
-/// not give is NaN. Progress counts entries. The evaluator may be null where wants_evaluator says so.
-/// Errors: those of the evaluator, of Radiometry and of the sink; Cancelled when `progress` returns false.
+/// Goes all the way, part by part: what the plan keeps, computed again where it misses the tolerance; what the plan
+/// does not give is NaN. Progress counts entries. The evaluator may be null where wants_evaluator says so. Errors:
+/// those of the evaluator, of Radiometry and of the sink; Cancelled when `progress` returns false.
 void run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan, MomentsEvaluator* evaluator,
                Sink& sink, const Progress& progress);
 

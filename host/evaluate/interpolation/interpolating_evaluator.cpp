@@ -27,7 +27,8 @@ std::vector<std::size_t> interpolate_all(const ShapePlan& plan, std::span<const 
   std::vector<char> is_done(request.theta_deg.size(), 0);
   parallel_ranges(is_done.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t theta = first; theta < last; ++theta) {
-      if (!std::ranges::all_of(nodes.subspan(theta * indices * of_direction, indices * of_direction), is_finite)) continue;
+      if (!std::ranges::all_of(nodes.subspan(theta * indices * of_direction, indices * of_direction), is_finite))
+        continue;
       for (std::size_t i = theta * indices; i < (theta + 1) * indices; ++i) {
         interpolate(plan, nodes.subspan(i * of_direction, of_direction), moments.subspan(i * shapes, shapes));
       }

@@ -33,13 +33,12 @@ MomentsRun::MomentsRun(const RunContext& context, const MomentsRequest& request,
 
 TileSizes MomentsRun::sizes(std::uint32_t tile_invocations, std::uint32_t block_shapes) const {
   const VkPhysicalDeviceLimits& limits = context_.device.limits();
-  return tile_sizes(
-      {.buffer_bytes = limits.maxStorageBufferRange,
-       .heap_bytes = context_.device.heap_bytes(),
-       .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
-       .tile_invocations = std::min<std::uint64_t>(tile_invocations, rows_.rows.size() * DOLP_MAX_PIECES),
-       .block_shapes = std::min<std::uint64_t>(block_shapes, rows_.shapes.size())},
-      tile_costs(context_.packing, rows_.width));
+  return tile_sizes({.buffer_bytes = limits.maxStorageBufferRange,
+                     .heap_bytes = context_.device.heap_bytes(),
+                     .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
+                     .tile_invocations = std::min<std::uint64_t>(tile_invocations, rows_.rows.size() * DOLP_MAX_PIECES),
+                     .block_shapes = std::min<std::uint64_t>(block_shapes, rows_.shapes.size())},
+                    tile_costs(context_.packing, rows_.width));
 }
 
 void MomentsRun::create_buffers() {
@@ -92,7 +91,8 @@ std::optional<std::vector<Moments>> MomentsRun::compute(const Progress& progress
       run_tile(block, std::span(pieces).subspan(first, count), results);
       const double of_block = static_cast<double>(first + count) / static_cast<double>(pieces.size());
       const double share = (block.first_row + block.row_count * of_block) / static_cast<double>(rows_.rows.size());
-      if (progress && !progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted)) return std::nullopt;
+      if (progress && !progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted))
+        return std::nullopt;
     }
   }
   return moments_of(results);

@@ -65,8 +65,7 @@ class MomentsRun {
   Renumbering thetas_, indices_;
   std::vector<std::byte> scratch_;
   RunCost cost_;
-  std::optional<InputBuffer> theta_buffer_, shape_buffer_, index_buffer_, task_buffer_, rule_buffer_,
-      rule_node_buffer_;
+  std::optional<InputBuffer> theta_buffer_, shape_buffer_, index_buffer_, task_buffer_, rule_buffer_, rule_node_buffer_;
   std::optional<Buffer> masking_buffer_, moments_buffer_;
 };
 

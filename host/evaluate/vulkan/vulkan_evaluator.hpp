@@ -47,8 +47,9 @@ class VulkanEvaluator : public MomentsEvaluator, public ScatteringEvaluator {
   ~VulkanEvaluator() override;
 
   /// Errors: DeviceError for double precision on a device without it; InputError for lists that do not fit the
-  /// request's layout; DeviceError when the device fails, is lost or exceeds the time allowed for a tile (the object is useless
-  /// then), or the validation layer complains; Cancelled when `progress`, called after each tile, returns false.
+  /// request's layout; DeviceError when the device fails, is lost or exceeds the time allowed for a tile (the object is
+  /// useless then), or the validation layer complains; Cancelled when `progress`, called after each tile, returns
+  /// false.
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
 
   /// Creates the pipeline in the background; what fails there fails again in `scatter`.

@@ -147,7 +147,7 @@ void Study::run_settings(const Method& method, Solver& solver, const Case& which
     try {
       const Measurement measurement =
           measure(solver, request, setting, method.is_random, options.quick ? kQuickTiming : kFullTiming);
-      run_.finish(measured_row(method, which, setting, truth, measurement, request.entries.size()));
+      run_.finish(measured_row(method, which, setting, truth, measurement, request.size()));
     } catch (const TookTooLong& error) {
       too_long = fmt::format("at {:g} {}", setting, error.what());
       not_run(method, which, setting, too_long);

@@ -42,8 +42,8 @@ class Cubature final : public Solver {
     constexpr double kLow[] = {0.0, 0.0};
     constexpr double kHigh[] = {0.5 * pi, pi};
     Solution solution{.evaluations = 0.0};
-    for (const MomentsEntry& entry : request.entries) {
-      const DirectSurface surface(entry_of(request, entry), DirectSurface::SmithBy::kTable);
+    for (std::size_t i = 0; i < request.size(); ++i) {
+      const DirectSurface surface(entry_of(request, i), DirectSurface::SmithBy::kTable);
       Integral integral{surface};
       double values[2];
       double errors[2];

@@ -1,7 +1,6 @@
 #include "bench/cases.hpp"
 
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 
 namespace dolp::bench {
@@ -31,15 +30,12 @@ const std::vector<Case>& cases() {
 MomentsRequest neighbourhood(const Case& which, std::size_t count) {
   MomentsRequest request;
   request.masking = which.masking;
-  request.indices = {which.index};
   for (std::size_t i = 0; i < count; ++i) {
-    request.theta_deg.push_back(which.theta_deg * (1.0 + kSpread * (i > 0 ? spread(i, std::numbers::phi) : 0.0)));
+    const double theta_deg = which.theta_deg * (1.0 + kSpread * (i > 0 ? spread(i, std::numbers::phi) : 0.0));
     SlopeShape shape = which.shape;
     shape.sigma *= 1.0 + kSpread * (i > 0 ? spread(i, std::numbers::sqrt2) : 0.0);
     shape.q *= 1.0 + kSpread * (i > 0 ? spread(i, std::numbers::sqrt3) : 0.0);
-    request.shapes.push_back(shape);
-    const auto position = static_cast<std::uint32_t>(i);
-    request.entries.push_back({position, position, 0});
+    request.append({theta_deg, shape, which.index});
   }
   return request;
 }

@@ -53,14 +53,14 @@ class DeviceRule final : public Solver {
   Solution solve(const MomentsRequest& request, double setting) override {
     const Rule rule = rule_(static_cast<std::size_t>(setting));
     const KernelData data = kernel_data(request);
-    make_words(request, rule.nodes.size());
-    if (words_.size() > kMostInvocations || request.shapes.size() > kMostShapes) {
+    make_words(data, rule.nodes.size());
+    if (words_.size() > kMostInvocations || data.shapes.size() > kMostShapes) {
       throw Unavailable("its buffers hold fewer entries than that");
     }
     Solution solution;
     solution.kernel_s = run(request, data, rule);
-    solution.evaluations = setting * setting * static_cast<double>(request.entries.size());
-    solution.answers = sums(request.entries.size());
+    solution.evaluations = setting * setting * static_cast<double>(request.size());
+    solution.answers = sums(request.size());
     bench_.check_messages();
     return solution;
   }
@@ -68,14 +68,16 @@ class DeviceRule final : public Solver {
 
  private:
   /// Invocations, neighbours the same zeniths of different entries.
-  void make_words(const MomentsRequest& request, std::size_t nodes) {
+  void make_words(const KernelData& data, std::size_t nodes) {
     const std::size_t most_zeniths = std::max<std::size_t>(1, kMostIterations / nodes);
     words_.clear();
     for (std::size_t first = 0; first < nodes; first += most_zeniths) {
       const std::size_t zeniths = std::min(most_zeniths, nodes - first);
-      for (const MomentsEntry& entry : request.entries) {
-        const auto range = static_cast<std::uint32_t>(first + kZenithUnit * zeniths);
-        words_.push_back({entry.theta, entry.shape, entry.index, range});
+      for (std::size_t i = 0; i < data.size(); ++i) {
+        const MomentsEntry entry = data[i];
+        // The directions as they are, without their variants.
+        const auto direction = static_cast<std::uint32_t>(entry.theta % data.directions);
+        words_.push_back({direction, entry.shape, entry.index, static_cast<std::uint32_t>(first + kZenithUnit * zeniths)});
       }
     }
   }

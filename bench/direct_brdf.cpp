@@ -173,9 +173,9 @@ double MaskingTails::at(const Interpolant& function, double tau, double exponent
   return is_gaussian_ ? 0.0 : value * std::pow(tau / end_tau_, exponent);
 }
 
-Entry entry_of(const MomentsRequest& request, const MomentsEntry& entry) {
-  return {request.distribution, request.masking, request.theta_deg.at(entry.theta) * pi / 180.0,
-          request.shapes.at(entry.shape), request.indices.at(entry.index)};
+Entry entry_of(const MomentsRequest& request, std::size_t position) {
+  const MomentsPoint point = request[position];
+  return {request.distribution, request.masking, point.theta_deg * pi / 180.0, point.shape, point.index};
 }
 
 DirectSurface::DirectSurface(const Entry& entry, SmithBy smith_by)

@@ -4,6 +4,7 @@
 // the paper comes from tables of its three primitives, because a user who cares about time would do so too.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include "model/moments.hpp"
@@ -18,7 +19,7 @@ struct Entry {
   SlopeShape shape;
   OpticalConstants index;
 };
-Entry entry_of(const MomentsRequest& request, const MomentsEntry& entry);
+Entry entry_of(const MomentsRequest& request, std::size_t position);
 
 /// G M00 and G M01: what one facet reflects.
 struct Reflected {

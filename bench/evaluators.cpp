@@ -46,7 +46,6 @@ std::unique_ptr<MomentsEvaluator> vulkan_evaluator(const SolverOptions& options,
   VulkanOptions vulkan;
   vulkan.device = options.device;
   vulkan.precision = precision;
-  vulkan.groups_small_requests = true;  // a method is timed with its kernels made
   try {
     return std::make_unique<VulkanEvaluator>(vulkan);
   } catch (const DeviceError& error) {

@@ -22,13 +22,6 @@ double share(std::size_t i, std::size_t count) {
 
 double in_equal_ratios(double first, double last, double share) { return first * std::pow(last / first, share); }
 
-MomentsRequest steel(Masking masking) {
-  MomentsRequest request;
-  request.masking = masking;
-  request.indices = {{kIndex, 0.0}};
-  return request;
-}
-
 }  // namespace
 
 std::string GridSize::text() const { return fmt::format("{} x {} x {}", thetas, sigmas, qs); }
@@ -65,14 +58,12 @@ Scene steel_scene(Masking masking, const GridSize& size) {
 }
 
 MomentsRequest steel_request(Masking masking, const Grid& grid) {
-  MomentsRequest request = steel(masking);
+  MomentsRequest request;
+  request.masking = masking;
   request.theta_deg = grid.theta_deg;
-  for (const double sigma : grid.sigma) {
-    for (const double q : grid.q) request.shapes.push_back({sigma, q});
-  }
-  for (std::uint32_t theta = 0; theta < grid.theta_deg.size(); ++theta) {
-    for (std::uint32_t shape = 0; shape < request.shapes.size(); ++shape) request.entries.push_back({theta, shape, 0});
-  }
+  request.indices = {{kIndex, 0.0}};
+  request.sigma = grid.sigma;
+  request.q = grid.q;
   return request;
 }
 
@@ -109,12 +100,10 @@ std::vector<NestedGrid::Place> NestedGrid::sample(std::size_t count) {
 
 MomentsRequest sample_request(Masking masking, const std::vector<NestedGrid::Place>& sample) {
   const Grid grid = NestedGrid::with_stride(NestedGrid::kLargestStride);
-  MomentsRequest request = steel(masking);
+  MomentsRequest request;
+  request.masking = masking;
   for (const NestedGrid::Place& place : sample) {
-    const auto position = static_cast<std::uint32_t>(request.entries.size());
-    request.theta_deg.push_back(grid.theta_deg[place.theta]);
-    request.shapes.push_back({grid.sigma[place.sigma], grid.q[place.q]});
-    request.entries.push_back({position, position, 0});
+    request.append({grid.theta_deg[place.theta], {grid.sigma[place.sigma], grid.q[place.q]}, {kIndex, 0.0}});
   }
   return request;
 }

@@ -41,11 +41,11 @@ class MonteCarlo final : public Solver {
   Solution solve(const MomentsRequest& request, double setting) override {
     const auto samples = static_cast<std::uint64_t>(setting);
     Solution solution;
-    for (const MomentsEntry& entry : request.entries) {
+    for (std::size_t i = 0; i < request.size(); ++i) {
       solution.answers.push_back(
-          sample_mean(DirectSurface(entry_of(request, entry), DirectSurface::SmithBy::kTable), samples, random_));
+          sample_mean(DirectSurface(entry_of(request, i), DirectSurface::SmithBy::kTable), samples, random_));
     }
-    solution.evaluations = setting * static_cast<double>(request.entries.size());
+    solution.evaluations = setting * static_cast<double>(request.size());
     return solution;
   }
   std::string where() const override { return processor_name(); }

@@ -18,10 +18,12 @@ constexpr double kShortCall = 0.01;  // seconds: of shorter calls the faster of 
 
 /// One entry of the sample.
 MomentsRequest one_of(const PeerSample& sample, std::size_t i) {
-  MomentsRequest request = sample.alone;
-  request.theta_deg = {sample.alone.theta_deg[i]};
-  request.shapes = {sample.alone.shapes[i]};
-  request.entries = {{0, 0, 0}};
+  MomentsRequest request;
+  request.distribution = sample.alone.distribution;
+  request.masking = sample.alone.masking;
+  request.tolerance = sample.alone.tolerance;
+  request.precision = sample.alone.precision;
+  request.append(sample.alone[i]);
   return request;
 }
 
@@ -151,7 +153,7 @@ double PeerSettings::try_grid(TriedSetting& tried) {
   const Call made = call(solver_, batch.request, tried.setting);
   for (std::size_t i = 0; i < batch.positions.size(); ++i) {
     tried.errors.push_back(error_of(made.solution.answers[batch.positions[i]], sample_.truths[i]));
-    tried.times_s.push_back(made.time_s / static_cast<double>(batch.request.entries.size()));
+    tried.times_s.push_back(made.time_s / static_cast<double>(batch.request.size()));
   }
   return made.time_s;
 }

@@ -143,8 +143,8 @@ void Study::describe() {
     described = {{"name", which.name}, {"what", "stainless steel, cauchy"}, {"masking", which.name}};
     for (std::size_t i = 0; i < places.size(); ++i) {
       described["sample"].push_back({{"theta_deg", sample.alone.theta_deg[i]},
-                                     {"sigma", sample.alone.shapes[i].sigma},
-                                     {"q", sample.alone.shapes[i].q},
+                                     {"sigma", sample.alone.sigma[i]},
+                                     {"q", sample.alone.q[i]},
                                      {"r_i", sample.truths[i].moments.r_i},
                                      {"bound", sample.truths[i].bound}});
     }
@@ -185,7 +185,7 @@ ordered_json Study::measured_row(const Method& method, Solver& solver, const Pee
   ordered_json row = row_start(method, sample, tolerance);
   while (const TriedSetting* tried = settings.reaching(tolerance)) {
     const PeerBatch batch = timed_batch(method, solver, sample, tried->setting, effort_);
-    const std::size_t entries = batch.request.entries.size();
+    const std::size_t entries = batch.request.size();
     const Measurement measurement = measure(solver, batch.request, tried->setting, method.is_random, effort_.timing);
     const double error = method.is_batched ? batch.worst_error(measurement.last, sample) : tried->worst_error();
     if (error > tolerance) {  // a larger grid shares more

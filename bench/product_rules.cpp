@@ -48,10 +48,10 @@ class ProductRule final : public Solver {
     const auto count = static_cast<std::size_t>(setting);
     const Rule rule = rule_(count);
     Solution solution;
-    for (const MomentsEntry& entry : request.entries) {
-      solution.answers.push_back(product_rule(DirectSurface(entry_of(request, entry), kSmithBy), rule));
+    for (std::size_t i = 0; i < request.size(); ++i) {
+      solution.answers.push_back(product_rule(DirectSurface(entry_of(request, i), kSmithBy), rule));
     }
-    solution.evaluations = static_cast<double>(count * count * request.entries.size());
+    solution.evaluations = static_cast<double>(count * count * request.size());
     return solution;
   }
   std::string where() const override { return processor_name(); }

@@ -255,14 +255,14 @@ void Study::run_arithmetic() {
     for (const double tolerance : arithmetic_tolerances()) {
       MomentsRequest request = main_request(masking);
       request.tolerance = tolerance;
-      const auto entries = static_cast<double>(request.entries.size());
+      const auto entries = static_cast<double>(request.size());
       const KernelWork work = count_operations(request, quick() ? kQuickWorkgroups : kFullWorkgroups, lanes);
       const Measurement measurement = kernel_times(masking, tolerance);
       const double kernel_s = median(measurement.raw_kernel_s);
       const double flops_per_s = static_cast<double>(work.counts.flops()) / kernel_s;
       const auto each = [&](std::uint64_t count) { return std::round(static_cast<double>(count) / entries); };
       ordered_json row = row_start("arithmetic", name_of(masking), tolerance);
-      row["entries"] = request.entries.size();
+      row["entries"] = request.size();
       row["time_s"] = rounded_time(kernel_s / entries);
       row["evaluations"] = *measurement.evaluations / entries;
       row["flops"] = each(work.counts.flops());
@@ -274,7 +274,7 @@ void Study::run_arithmetic() {
       row["flops_per_s"] = std::round(flops_per_s);
       row["share_of_peak"] = flops_per_s / peak;
       row["busy_lanes"] = work.busy_lanes;
-      row["raw_times_s"] = per_entry(measurement.raw_kernel_s, request.entries.size());
+      row["raw_times_s"] = per_entry(measurement.raw_kernel_s, request.size());
       run_.finish(row);
     }
   }

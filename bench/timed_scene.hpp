@@ -18,7 +18,7 @@ class TimedScene {
   void repeat();
 
   const Scene& scene() const { return scene_; }
-  const std::vector<SceneEntry>& entries() const { return entries_; }
+  const SceneEntries& entries() const { return entries_; }
   const EffectPlan& plan() const { return plan_; }
   const std::vector<PointResult>& results() const { return results_; }
   double evaluations() const { return evaluations_; }  ///< of one call
@@ -34,7 +34,7 @@ class TimedScene {
   std::size_t calls_of_a_raw_time();
 
   Scene scene_;
-  std::vector<SceneEntry> entries_;
+  SceneEntries entries_;
   bool keep_all_;
   MomentsEvaluator& evaluator_;
   EffectPlan plan_;

@@ -200,8 +200,8 @@ class Scripted final : public MomentsEvaluator {
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress&) override {
     requests.push_back(request);
     std::vector<Moments> results;
-    for (const MomentsEntry& entry : request.entries) {
-      const double theta_deg = request.theta_deg[entry.theta];
+    for (std::size_t i = 0; i < request.size(); ++i) {
+      const double theta_deg = request[i].theta_deg;
       const double cosine = cos_sin_deg(theta_deg).cos;
       const bool misses = theta_deg > kWorsensFrom_deg && (never_meets || request.precision == Precision::kFloat);
       Moments m;
@@ -244,7 +244,7 @@ TEST(EvaluateScene_Attempts, OnlyTheEntriesThatMiss_AreComputedAgain) {
   Scripted evaluator;
   const std::vector<PointResult> results = evaluate_scene(scene(), kEntries, evaluator, {});
   ASSERT_EQ(evaluator.requests.size(), 2U);
-  EXPECT_EQ(evaluator.requests[0].entries.size(), 4U);
+  EXPECT_EQ(evaluator.requests[0].size(), 4U);
   EXPECT_EQ(evaluator.requests[0].precision, Precision::kFloat);
   EXPECT_EQ(evaluator.requests[0].tolerance, kTolerance);
   EXPECT_EQ(evaluator.requests[1].theta_deg, kMissingDeg);
@@ -257,6 +257,43 @@ TEST(EvaluateScene_Attempts, OnlyTheEntriesThatMiss_AreComputedAgain) {
     const double rho_q = kEntries[i].theta_deg > kWorsensFrom_deg ? 0.1 * (1.0 + evaluator.shift) : 0.1;
     EXPECT_NEAR(results[i].rho_q, rho_q, 1e-12) << i;
   }
+}
+
+// A grid stays one: what meets the tolerance is masked out of the smallest grid around what does not.
+TEST(EvaluateScene_Attempts, EntriesOfAGridThatMiss_AreAskedForUnderAMask) {
+  class MissesTwo final : public MomentsEvaluator {
+   public:
+    std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
+      requests.push_back(request);
+      std::vector<Moments> moments = own_.evaluate(request, progress);
+      for (std::size_t i = 0; i < moments.size(); ++i) {
+        const MomentsPoint point = request[i];
+        const bool misses = (point.theta_deg == 60.0 && point.shape.sigma == 0.2) ||
+                            (point.theta_deg == 40.0 && point.shape.sigma == 0.3);
+        const double factor = misses && request.precision == Precision::kFloat ? 50.0 : 0.01;
+        Moments& m = moments[i];
+        m.r_i_error = m.r_q_error = m.deficit_error = factor * kTolerance * m.r_i;
+      }
+      return moments;
+    }
+    EvaluationReport report() const override { return {}; }
+    std::vector<MomentsRequest> requests;
+
+   private:
+    Scripted own_;
+  };
+  MissesTwo evaluator;
+  const SceneEntries grid = SceneEntries::grid({20.0, 40.0, 60.0}, {0.1, 0.2, 0.3}, {2.0});
+  Scene own = scene();
+  own.accuracy.tolerance = kTolerance;
+  evaluate_scene(own, grid, evaluator, {});
+  ASSERT_GE(evaluator.requests.size(), 2U);
+  EXPECT_EQ(evaluator.requests[0].size(), 9U);
+  EXPECT_TRUE(evaluator.requests[0].wanted.empty());
+  const MomentsRequest& again = evaluator.requests[1];
+  EXPECT_EQ(again.theta_deg, (std::vector{40.0, 60.0}));
+  EXPECT_EQ(again.sigma, (std::vector{0.2, 0.3}));
+  EXPECT_EQ(again.wanted, (std::vector<char>{0, 1, 1, 0}));
 }
 
 TEST(EvaluateScene_Attempts, WithoutDouble_TheMissStandsAndSaysSo) {
@@ -295,7 +332,7 @@ TEST(EvaluateScene_Attempts, Mirror_IsNeverTriedAgain) {
   Scripted evaluator;
   const std::vector<SceneEntry> mirror = {{60.0, {0.0, 2.0}, {}}};
   evaluate_scene(scene(), mirror, evaluator, {});
-  for (const MomentsRequest& request : evaluator.requests) EXPECT_TRUE(request.entries.empty());
+  for (const MomentsRequest& request : evaluator.requests) EXPECT_EQ(request.size(), 0U);
 }
 
 TEST(EvaluateScene_Attempts, TightTolerance_StartsInDouble) {

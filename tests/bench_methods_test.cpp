@@ -127,10 +127,9 @@ TEST(BenchFormulas, AdaptiveCubature_TightTolerance_AgreesWithReferenceForBothDi
       MomentsRequest request;
       request.distribution = distribution;
       request.masking = masking;
-      request.theta_deg = {20.0, 55.0, 80.0};
-      request.shapes = {{0.3, 1.7}, {0.9, 4.0}};
-      request.indices = {{1.5, 0.1}, {27.0, 90.0}};
-      request.entries = {{0, 0, 0}, {1, 1, 1}, {2, 0, 0}};
+      request.append({20.0, {0.3, 1.7}, {1.5, 0.1}});
+      request.append({55.0, {0.9, 4.0}, {27.0, 90.0}});
+      request.append({80.0, {0.3, 1.7}, {1.5, 0.1}});
       EXPECT_LE(worst_error(*hcubature, request, 1e-7), 1e-7);
     }
   }
@@ -198,15 +197,15 @@ TEST(BenchCases, Neighbourhood_Entries_AreDistinctCloseAndTheFirstExact) {
   constexpr std::size_t kCount = 500;
   const Case& one = case_of("worst");
   const MomentsRequest request = neighbourhood(one, kCount);
-  ASSERT_EQ(request.entries.size(), kCount);
+  ASSERT_EQ(request.size(), kCount);
   EXPECT_EQ(request.theta_deg.front(), one.theta_deg);
-  EXPECT_EQ(request.shapes.front(), one.shape);
+  EXPECT_EQ(request[0].shape, one.shape);
   std::vector<double> values[3];
   for (std::size_t i = 0; i < kCount; ++i) {
-    const MomentsEntry& entry = request.entries[i];
-    values[0].push_back(request.theta_deg[entry.theta] / one.theta_deg);
-    values[1].push_back(request.shapes[entry.shape].sigma / one.shape.sigma);
-    values[2].push_back(request.shapes[entry.shape].q / one.shape.q);
+    const MomentsPoint point = request[i];
+    values[0].push_back(point.theta_deg / one.theta_deg);
+    values[1].push_back(point.shape.sigma / one.shape.sigma);
+    values[2].push_back(point.shape.q / one.shape.q);
   }
   for (std::vector<double>& list : values) {
     std::ranges::sort(list);

@@ -43,11 +43,9 @@ TEST(BenchGrids, NestedGrid_SampleInEveryStride_IsTheSameEntry) {
   for (std::size_t stride = 1; stride <= NestedGrid::kLargestStride; stride *= 2) {
     SCOPED_TRACE(stride);
     const MomentsRequest grid = steel_request(Masking::kNone, NestedGrid::with_stride(stride));
-    ASSERT_EQ(grid.entries.size(), std::pow(NestedGrid::kSide / stride, 3));
+    ASSERT_EQ(grid.size(), std::pow(NestedGrid::kSide / stride, 3));
     for (std::size_t i = 0; i < kSample; ++i) {
-      const MomentsEntry& entry = grid.entries[places[i].position(stride)];
-      EXPECT_EQ(grid.theta_deg[entry.theta], alone.theta_deg[i]);
-      EXPECT_EQ(grid.shapes[entry.shape], alone.shapes[i]);
+      EXPECT_EQ(grid[places[i].position(stride)], alone[i]);
     }
   }
 }

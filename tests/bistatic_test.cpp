@@ -64,9 +64,9 @@ Radiance model_radiance(const Scene& scene, double theta_i_deg) {
   request.distribution = surface.distribution;
   request.masking = surface.masking;
   request.theta_deg = {scene.geometry.view_zenith_deg};
-  request.shapes = {{surface.sigma, surface.q}};
+  request.sigma = {surface.sigma};
+  request.q = {surface.q};
   request.indices = {surface.material.constant};
-  request.entries = {{0, 0, 0}};
   const Moments moments = ReferenceEvaluator().evaluate(request, {}).front();
   const double cos_i = std::cos(theta_i_deg * std::numbers::pi / 180.0);
   const double cos_v = std::cos(scene.geometry.view_zenith_deg * std::numbers::pi / 180.0);

@@ -122,8 +122,7 @@ inline std::string describe(const Scene& scene, const SceneEntry& entry) {
                      entry.shape.q);
 }
 
-inline std::vector<PointResult> run(const Scene& scene, const std::vector<SceneEntry>& entries,
-                                    const EffectPlan& plan) {
+inline std::vector<PointResult> run(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan) {
   CpuEvaluator evaluator(Precision::kDouble);
   return evaluate_scene(scene, entries, plan, &evaluator, {});
 }

@@ -60,7 +60,7 @@ TEST(ExploreSession, PinOfAnUnfinishedCurve_IsFinishedLater) {
   driver.settle();
   const Curve& pinned = driver.session.pins()[0].curve;
   EXPECT_TRUE(pinned.is_finished());
-  EXPECT_EQ(pinned.entries().front().shape.sigma, 0.6);
+  EXPECT_EQ(pinned.entries()[0].shape.sigma, 0.6);
   expect_same(pinned.results(), truth(pinned.scene(), pinned.entries()));
 }
 
@@ -71,7 +71,7 @@ TEST(ExploreSession, MapCursor_DrivesTheCurveAndDoesNotChangeTheMap) {
   driver.settle();
   EXPECT_DOUBLE_EQ(driver.session.theta_deg(), 45.0);
   EXPECT_NEAR(driver.session.scene().surface.sigma, 0.2, 1e-4);  // the grid's 0.1 .. 0.4
-  EXPECT_EQ(driver.session.curve().entries().front().shape.sigma, driver.session.scene().surface.sigma);
+  EXPECT_EQ(driver.session.curve().entries()[0].shape.sigma, driver.session.scene().surface.sigma);
   EXPECT_NEAR(driver.session.map_cursor_y(), 0.5, 1e-3);
   EXPECT_EQ(driver.session.map().version(), version);
 }

@@ -65,7 +65,7 @@ class Driver {
   Worker worker_;
 };
 
-inline std::vector<PointResult> truth(const Scene& scene, const std::vector<SceneEntry>& entries) {
+inline std::vector<PointResult> truth(const Scene& scene, const SceneEntries& entries) {
   CpuEvaluator evaluator(Precision::kAuto);
   return evaluate_scene(scene, entries, plan_effects(scene, entries, false), &evaluator, {});
 }

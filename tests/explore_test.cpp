@@ -99,8 +99,8 @@ TEST(SceneToml, ShippedScenesWithChanges_ReadBackAsTheSameScene) {
     EXPECT_EQ(again.grid.theta_deg, edits.scene().grid.theta_deg);
     EXPECT_EQ(again.grid.sigma, edits.scene().grid.sigma);
     EXPECT_EQ(again.grid.q, edits.scene().grid.q);
-    const std::vector<SceneEntry> entries = entries_at(edits.scene(), {0.0, 35.0, 70.0});
-    EXPECT_EQ(entries_at(again, {70.0}).front().shape, entries.back().shape);
+    const SceneEntries entries = entries_at(edits.scene(), {0.0, 35.0, 70.0});
+    EXPECT_EQ(entries_at(again, {70.0})[0].shape, entries[2].shape);
     expect_same(truth(edits.scene(), entries), truth(again, entries));
   }
 }
@@ -155,12 +155,11 @@ class SlowEvaluator final : public MomentsEvaluator {
   bool is_open_ = false;
 };
 
-Job job_of(const std::string& key, std::size_t batch = 0) {
+Job job_of(const std::string& key) {
   Job job;
   job.key = key;
   job.scene = parse_scene(kPaint, "paint.toml", {});
   job.entries = entries_at(job.scene, {10.0, 20.0, 30.0, 40.0});
-  job.batch = batch;
   return job;
 }
 
@@ -194,16 +193,17 @@ TEST(ExploreWorker, JobUnderWay_GoesOnWhenItIsStillWanted) {
   EXPECT_EQ(evaluator.cancelled, 0);
 }
 
-TEST(ExploreWorker, Batches_GiveThePartsInOrderWithTheResultsOfTheWhole) {
+TEST(ExploreWorker, Parts_ComeInOrderWithTheResultsOfTheWhole) {
   CpuEvaluator evaluator(Precision::kAuto);
   Worker worker(evaluator, [] {});
-  const Job job = job_of("parts", 3);
+  Job job = job_of("parts");
+  job.parts = job.entries.parts(3);
   worker.want({job});
   const std::vector<News> news = finish(worker);
   ASSERT_EQ(news.size(), 2U);
   EXPECT_EQ(news[0].results.size(), 3U);
   EXPECT_FALSE(news[0].is_last);
-  EXPECT_EQ(news[1].first, 3U);
+  EXPECT_EQ(news[1].part, 1U);
   EXPECT_TRUE(news[1].is_last);
   std::vector<PointResult> all = news[0].results;
   all.insert(all.end(), news[1].results.begin(), news[1].results.end());

@@ -104,7 +104,7 @@ class Window : public CommandLine {
   /// What `dolp eval` says at the zeniths of the curve, with the changes of the window.
   Columns evaluated() const {
     std::string points = "theta_deg\n";
-    for (const SceneEntry& entry : app_->session().curve().entries()) {
+    for (const SceneEntry& entry : app_->session().curve().entries().all()) {
       points += std::to_string(entry.theta_deg) + '\n';
     }
     put("points.csv", points);
@@ -170,7 +170,7 @@ TEST_F(Window, Map_Clicked_CurveFollowsTheCursor) {
   app_->settle();
   const explore::Session& session = app_->session();
   EXPECT_NE(session.scene().surface.sigma, 0.15);
-  EXPECT_EQ(session.curve().entries().front().shape.sigma, session.scene().surface.sigma);
+  EXPECT_EQ(session.curve().entries()[0].shape.sigma, session.scene().surface.sigma);
   EXPECT_TRUE(session.map().is_finished());
 }
 

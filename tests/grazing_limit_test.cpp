@@ -98,9 +98,9 @@ double quotient_before(Masking masking, const OpticalConstants& index, double q,
   request.masking = masking;
   request.tolerance = 1e-8;
   request.theta_deg = {90.0 - short_deg};
-  request.shapes = {{0.3, q}};
+  request.sigma = {0.3};
+  request.q = {q};
   request.indices = {index};
-  request.entries = {{0, 0, 0}};
   const Moments moments = CpuEvaluator(Precision::kDouble).evaluate(request, {}).front();
   return moments.r_q / moments.r_i;
 }

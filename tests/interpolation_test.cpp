@@ -28,7 +28,6 @@ std::vector<double> spaced(double first, double last, std::size_t count, bool in
   return values;
 }
 
-/// The entries of a grid, q fastest.
 MomentsRequest grid_request(const Model& model, const std::vector<double>& theta_deg, const std::vector<double>& sigma,
                             const std::vector<double>& q, double tolerance = 1e-4) {
   MomentsRequest request;
@@ -38,12 +37,8 @@ MomentsRequest grid_request(const Model& model, const std::vector<double>& theta
   request.precision = Precision::kDouble;
   request.theta_deg = theta_deg;
   request.indices = {{1.5, 0.1}};
-  for (const double s : sigma) {
-    for (const double each : q) request.shapes.push_back({s, each});
-  }
-  for (std::uint32_t theta = 0; theta < theta_deg.size(); ++theta) {
-    for (std::uint32_t shape = 0; shape < request.shapes.size(); ++shape) request.entries.push_back({theta, shape, 0});
-  }
+  request.sigma = sigma;
+  request.q = q;
   return request;
 }
 
@@ -125,12 +120,10 @@ TEST(ShapePlan, DenseGrid_NodesAreFew_AndTheirToleranceTighter) {
   const MomentsRequest request = grid_request(kModel, {10.0, 60.0}, spaced(0.05, 1.0, 64), spaced(1.75, 8.0, 64));
   const std::optional<ShapePlan> plan = shape_plan(request);
   ASSERT_TRUE(plan);
-  EXPECT_EQ(plan->slabs.size(), 2U);
-  EXPECT_TRUE(plan->direct.entries.empty());
-  EXPECT_EQ(plan->nodes.entries.size(), 2 * plan->nodes_of_a_slab());
-  EXPECT_LT(plan->nodes.entries.size(), request.entries.size() / 10);
+  EXPECT_EQ(plan->nodes.theta_deg, request.theta_deg);
+  EXPECT_EQ(plan->nodes.size(), 2 * plan->nodes_of_a_direction());
+  EXPECT_LT(plan->nodes.size(), request.size() / 10);
   EXPECT_LT(plan->nodes.tolerance, 0.2 * request.tolerance);
-  EXPECT_EQ(plan->nodes.shapes.size(), plan->nodes_of_a_slab());
 }
 
 TEST(ShapePlan, Float_NodesStayAboveItsRounding) {
@@ -151,14 +144,18 @@ TEST(ShapePlan, NothingDense_OrNotWanted_NoPlan) {
   EXPECT_FALSE(shape_plan(unwanted));
 }
 
-TEST(ShapePlan, ScatteredShapesOfOneDirection_NoPlan) {
-  MomentsRequest request = grid_request(kModel, {60.0}, {}, {});
+TEST(ShapePlan, PointsOfOneDirectionOrAMask_NoPlan) {
+  MomentsRequest points = grid_request(kModel, {}, {}, {});
+  points.indices.clear();
   Random random(2);
   for (std::uint32_t i = 0; i < 2000; ++i) {
-    request.shapes.push_back({random.uniform(0.05, 1.0), random.uniform(1.75, 8.0)});
-    request.entries.push_back({0, i, 0});
+    points.append({60.0, {random.uniform(0.05, 1.0), random.uniform(1.75, 8.0)}, {1.5, 0.1}});
   }
-  EXPECT_FALSE(shape_plan(request));
+  EXPECT_FALSE(shape_plan(points));
+  MomentsRequest masked = grid_request(kModel, {60.0}, spaced(0.05, 1.0, 64), spaced(1.75, 8.0, 64));
+  masked.wanted.assign(masked.size(), 1);
+  masked.wanted.front() = 0;
+  EXPECT_FALSE(shape_plan(masked));
 }
 
 TEST(ShapePlan, ExtremeRange_NoGain_NoPlan) {
@@ -176,16 +173,6 @@ TEST(ShapePlan, OneAxisIsDense_TheOtherIsKept) {
   EXPECT_EQ(plan->q.nodes, q);
 }
 
-TEST(ShapePlan, SparseSlab_IsComputedDirectly) {
-  MomentsRequest request = grid_request(kModel, {10.0, 60.0}, spaced(0.05, 1.0, 64), spaced(1.75, 8.0, 64));
-  request.entries.resize(64 * 64 + 20);  // of the second direction twenty
-  const std::optional<ShapePlan> plan = shape_plan(request);
-  ASSERT_TRUE(plan);
-  EXPECT_EQ(plan->slabs.size(), 1U);
-  ASSERT_EQ(plan->direct.entries.size(), 20U);
-  EXPECT_EQ(plan->direct_entries.front(), 64U * 64U);
-}
-
 /// Moments that a function of the slope distribution says, with a bound of its own.
 class Invented final : public MomentsEvaluator {
  public:
@@ -195,10 +182,10 @@ class Invented final : public MomentsEvaluator {
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
     requests.push_back(request);
     std::vector<Moments> moments;
-    for (const MomentsEntry& entry : request.entries) {
-      const double r = function_(request.shapes[entry.shape]);
+    for (std::size_t i = 0; i < request.size(); ++i) {
+      const double r = function_(request[i].shape);
       moments.push_back({r, -0.5 * r, 2.0 * r, 1.0 - r, error_, error_, error_, error_, 10.0});
-      if (progress && !progress(moments.size(), request.entries.size())) throw Cancelled{};
+      if (progress && !progress(moments.size(), request.size())) throw Cancelled{};
     }
     return moments;
   }
@@ -233,7 +220,7 @@ struct Check {
 Check check(const MomentsRequest& request, const std::vector<Moments>& moments, Invented::Function function) {
   Check result;
   for (std::size_t i = 0; i < moments.size(); ++i) {
-    const double r = function(request.shapes[request.entries[i].shape]);
+    const double r = function(request[i].shape);
     const Moments& m = moments[i];
     for (const auto& [value, truth, bound] :
          {std::tuple{m.r_i, r, m.r_i_error}, std::tuple{m.r_q, -0.5 * r, m.r_q_error},
@@ -258,12 +245,12 @@ TEST(InterpolatingEvaluator, SmoothMoments_KeepTheToleranceAndTheStatedErrors) {
   for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-9}) {
     Interpolated one = interpolated(smooth, 0.0, tolerance);
     const std::vector<Moments> moments = one.evaluator.evaluate(one.request, {});
-    ASSERT_EQ(moments.size(), one.request.entries.size());
+    ASSERT_EQ(moments.size(), one.request.size());
     const Check result = check(one.request, moments, smooth);
     EXPECT_LE(result.worst_share, 1.0) << tolerance;
     EXPECT_LE(result.largest_bound, tolerance);
     EXPECT_EQ(one.evaluator.report().interpolated, moments.size());
-    EXPECT_EQ(one.evaluator.report().interpolation_nodes, one.inner->requests.at(0).entries.size());
+    EXPECT_EQ(one.evaluator.report().interpolation_nodes, one.inner->requests.at(0).size());
   }
 }
 
@@ -288,50 +275,69 @@ TEST(InterpolatingEvaluator, EvaluationsOfTheNodes_AreSharedAmongTheEntries) {
   const std::vector<Moments> moments = one.evaluator.evaluate(one.request, {});
   const double sum = std::accumulate(moments.begin(), moments.end(), 0.0,
                                      [](double so_far, const Moments& m) { return so_far + m.evaluations; });
-  EXPECT_NEAR(sum, 10.0 * static_cast<double>(one.inner->requests.at(0).entries.size()), 1e-6);
+  EXPECT_NEAR(sum, 10.0 * static_cast<double>(one.inner->requests.at(0).size()), 1e-6);
 }
 
-TEST(InterpolatingEvaluator, NodeWithoutABound_ItsSlabIsComputedEntryByEntry) {
+TEST(InterpolatingEvaluator, NodeWithoutABound_ItsDirectionIsComputedEntryByEntry) {
   const Invented::Function infinite = [](const SlopeShape& shape) {
     return shape.q == 8.0 ? std::numeric_limits<double>::infinity() : smooth(shape);
   };
   Interpolated one = interpolated(infinite);
   const std::vector<Moments> moments = one.evaluator.evaluate(one.request, {});
   ASSERT_EQ(one.inner->requests.size(), 2U);
-  EXPECT_EQ(one.inner->requests[1].entries.size(), one.request.entries.size());
+  EXPECT_EQ(one.inner->requests[1].size(), one.request.size());
   EXPECT_EQ(one.inner->requests[1].tolerance, one.request.tolerance);
   EXPECT_EQ(one.evaluator.report().interpolated, 0U);
   for (std::size_t i = 0; i < moments.size(); ++i) {
-    EXPECT_EQ(moments[i].r_i, infinite(one.request.shapes[one.request.entries[i].shape]));
+    EXPECT_EQ(moments[i].r_i, infinite(one.request[i].shape));
   }
 }
 
-TEST(InterpolatingEvaluator, SparseAndDenseSlabs_ResultsInTheirOrder) {
-  Interpolated one = interpolated(smooth);
-  const std::size_t dense = 48 * 40;
-  std::vector<MomentsEntry> mixed;  // one sparse entry after each thousand
-  for (std::size_t i = 0; i < dense; ++i) {
-    mixed.push_back(one.request.entries[i]);
-    if (i % 1000 == 0) mixed.push_back(one.request.entries[dense + i]);
+// What has no bound at one direction does not hold up the others.
+TEST(InterpolatingEvaluator, DirectionWithoutABound_IsComputedByItselfInItsPlace) {
+  class InfiniteAt40 final : public MomentsEvaluator {
+   public:
+    std::vector<Moments> evaluate(const MomentsRequest& request, const Progress&) override {
+      sizes.push_back(request.size());
+      std::vector<Moments> moments;
+      for (std::size_t i = 0; i < request.size(); ++i) {
+        const MomentsPoint point = request[i];
+        const bool is_infinite = point.theta_deg == 40.0 && point.shape.q == 8.0;
+        const double r = is_infinite ? std::numeric_limits<double>::infinity()
+                                     : smooth(point.shape) * point.theta_deg * point.index.n;
+        moments.push_back({r, r, r, r, 0.0, 0.0, 0.0, 0.0, 1.0});
+      }
+      return moments;
+    }
+    EvaluationReport report() const override { return {}; }
+    std::vector<std::size_t> sizes;
+  };
+  auto inner = std::make_unique<InfiniteAt40>();
+  const InfiniteAt40& known = *inner;
+  InterpolatingEvaluator evaluator(std::move(inner));
+  MomentsRequest request = grid_request(kModel, {10.0, 40.0, 50.0}, spaced(0.05, 1.0, 48), spaced(1.75, 8.0, 40));
+  request.indices = {{1.5, 0.0}, {3.0, 0.0}};
+  const std::vector<Moments> moments = evaluator.evaluate(request, {});
+  EXPECT_EQ(known.sizes.at(1), request.size() / 3);
+  EXPECT_EQ(evaluator.report().interpolated, 2 * request.size() / 3);
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    const MomentsPoint point = request[i];
+    const double r = smooth(point.shape) * point.theta_deg * point.index.n;
+    if (point.theta_deg == 40.0 && point.shape.q == 8.0) continue;
+    ASSERT_NEAR(moments[i].r_i, r, moments[i].r_i_error + 1e-12 * r) << i;
   }
-  one.request.entries = mixed;
-  const std::vector<Moments> moments = one.evaluator.evaluate(one.request, {});
-  ASSERT_EQ(moments.size(), mixed.size());
-  EXPECT_EQ(one.inner->requests.at(1).entries.size(), 2U);
-  EXPECT_EQ(one.evaluator.report().interpolated, dense);
-  EXPECT_LE(check(one.request, moments, smooth).worst_share, 1.0);
 }
 
 TEST(InterpolatingEvaluator, Progress_RisesToAll_AndCancels) {
   Interpolated one = interpolated(smooth);
   std::vector<std::size_t> done;
   one.evaluator.evaluate(one.request, [&](std::size_t now, std::size_t total) {
-    EXPECT_EQ(total, one.request.entries.size());
+    EXPECT_EQ(total, one.request.size());
     done.push_back(now);
     return true;
   });
   EXPECT_TRUE(std::ranges::is_sorted(done));
-  EXPECT_EQ(done.back(), one.request.entries.size());
+  EXPECT_EQ(done.back(), one.request.size());
   EXPECT_THROW(one.evaluator.evaluate(one.request, [](std::size_t, std::size_t) { return false; }), Cancelled);
 }
 
@@ -371,14 +377,15 @@ TEST_P(RandomGrids, StatedErrors_HoldAgainstEveryEntryByItself) {
       request.precision = is_double(GetParam()) ? Precision::kDouble : Precision::kFloat;
       const std::vector<Moments> moments = evaluator.evaluate(request, {});
       in_all += moments.size();
-      MomentsRequest some = request;
-      some.entries.clear();
+      MomentsRequest some;
+      some.distribution = request.distribution;
+      some.masking = request.masking;
       some.precision = Precision::kDouble;
       some.tolerance = std::max(1e-2 * request.tolerance, 1e-10);
       std::vector<std::size_t> positions;
       for (std::size_t i = 0; i < kChecked; ++i) {
         positions.push_back(static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(moments.size()))));
-        some.entries.push_back(request.entries[positions.back()]);
+        some.append(request[positions.back()]);
       }
       const std::vector<Moments> truth = exact->evaluate(some, {});
       for (std::size_t i = 0; i < kChecked; ++i) {
@@ -387,9 +394,8 @@ TEST_P(RandomGrids, StatedErrors_HoldAgainstEveryEntryByItself) {
           EXPECT_LE(std::abs(m.*quantity.value - truth[i].*quantity.value),
                     m.*quantity.error + truth[i].*quantity.error)
               << quantity.name << " at " << positions[i] << ", tolerance " << request.tolerance << ": theta "
-              << request.theta_deg[some.entries[i].theta] << " sigma " << request.shapes[some.entries[i].shape].sigma
-              << " q " << request.shapes[some.entries[i].shape].q << " n " << request.indices[0].n << " k "
-              << request.indices[0].k;
+              << some[i].theta_deg << " sigma " << some[i].shape.sigma << " q " << some[i].shape.q << " n "
+              << request.indices[0].n << " k " << request.indices[0].k;
         }
       }
     }

@@ -288,9 +288,9 @@ TEST(Mueller, HemisphericalSum_GivesTheMoments) {
   MomentsRequest request;
   request.masking = Masking::kNone;
   request.theta_deg = {50.0};
-  request.shapes = {surface.shape};
+  request.sigma = {surface.shape.sigma};
+  request.q = {surface.shape.q};
   request.indices = {surface.index};
-  request.entries = {{0, 0, 0}};
   const Moments moments = evaluator.evaluate(request, {}).front();
   double r_i = 0.0;
   double r_q = 0.0;
@@ -329,10 +329,7 @@ TEST(MuellerOnTheDevice, MomentsBetween_ChangeNothing) {
   const std::vector<ScatteringPoint> points = RandomPoints(kSeed, Masking::kIntegral).draw(100);
   const ScatteringRequest request = request_of(Distribution::kCauchy, Masking::kIntegral, points);
   MomentsRequest moments;
-  moments.theta_deg = {30.0};
-  moments.shapes = {{0.3, 2.0}};
-  moments.indices = {{1.5, 0.0}};
-  moments.entries = {{0, 0, 0}};
+  moments.append({30.0, {0.3, 2.0}, {1.5, 0.0}});
   VulkanOptions options;
   options.validation = ValidationMode::kOn;
   VulkanEvaluator evaluator(options);

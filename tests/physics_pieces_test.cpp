@@ -59,16 +59,12 @@ std::vector<Direction> directions(const std::vector<double>& theta_deg, const st
   MomentsRequest request;
   request.masking = masking;
   request.tolerance = has_line ? kTightTolerance : 1e-2;
-  request.theta_deg = theta_deg;
-  request.shapes = {has_line ? SlopeShape{kRough.sigma, kRough.q} : SlopeShape{1e-3, 10.0}};
-  for (std::uint32_t i = 0; i < theta_deg.size(); ++i) {
-    request.indices.push_back({n[i], 0.0});
-    request.entries.push_back({i, 0U, i});
-  }
+  const SlopeShape shape = has_line ? SlopeShape{kRough.sigma, kRough.q} : SlopeShape{1e-3, 10.0};
+  for (std::size_t i = 0; i < theta_deg.size(); ++i) request.append({theta_deg[i], shape, {n[i], 0.0}});
   const KernelData data = kernel_data(request);
   std::vector<Direction> result;
   for (std::size_t i = 0; i < theta_deg.size(); ++i) {
-    const std::uint32_t theta = data.entries[i].theta;
+    const std::uint32_t theta = data[i].theta;
     result.push_back({theta_deg[i], masking, has_line, data.thetas[theta], data.pieces[theta], data.indices[i]});
     EXPECT_EQ(result.back().pieces.has_split_line, has_line) << result.back().name();
   }

@@ -125,10 +125,10 @@ inline MomentsRequest request_of(const ShapeCase& shape, Masking masking, const 
   MomentsRequest request;
   request.distribution = shape.distribution;
   request.masking = masking;
-  request.shapes = {{shape.sigma, shape.q}};
+  request.sigma = {shape.sigma};
+  request.q = {shape.q};
   request.indices = {index};
   request.theta_deg = {60.0};
-  request.entries = {{0U, 0U, 0U}};
   return request;
 }
 

@@ -116,13 +116,7 @@ inline MomentsRequest request_of(const Model& model, const std::vector<Point>& p
   request.distribution = model.distribution;
   request.masking = model.masking;
   request.tolerance = tolerance;
-  for (const Point& p : points) {
-    const auto position = static_cast<std::uint32_t>(request.entries.size());
-    request.theta_deg.push_back(p.theta_deg);
-    request.shapes.push_back(p.shape);
-    request.indices.push_back(p.index);
-    request.entries.push_back({position, position, position});
-  }
+  for (const Point& p : points) request.append({p.theta_deg, p.shape, p.index});
   return request;
 }
 
@@ -144,7 +138,6 @@ inline std::unique_ptr<MomentsEvaluator> make_evaluator(Kernel kernel, VulkanOpt
   if (kernel == Kernel::kCpuFloat || kernel == Kernel::kCpuDouble) return std::make_unique<CpuEvaluator>(precision);
   options.precision = precision;
   options.validation = ValidationMode::kOn;
-  options.groups_small_requests = true;
   return std::make_unique<VulkanEvaluator>(options);
 }
 

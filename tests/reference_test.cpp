@@ -42,9 +42,9 @@ Moments moments(Distribution distribution, Masking masking, double theta_deg, Sl
   request.masking = masking;
   request.tolerance = 0.0;
   request.theta_deg = {theta_deg};
-  request.shapes = {shape};
+  request.sigma = {shape.sigma};
+  request.q = {shape.q};
   request.indices = {index};
-  request.entries = {{0, 0, 0}};
   return ReferenceEvaluator(options).evaluate(request, {}).at(0);
 }
 
@@ -356,10 +356,10 @@ TEST(ReferenceMoments, CoarseQuadrature_StaysWithinItsErrors) {
 TEST(ReferenceEvaluator, SeveralEntries_KeepTheOrderOfTheRequest) {
   MomentsRequest request;
   request.masking = Masking::kSmith;
-  request.theta_deg = {10.0, 70.0};
-  request.shapes = {{0.2, 2.0}, {0.5, 3.0}};
-  request.indices = {kSteel, {27.0, 90.0}};
-  request.entries = {{1, 0, 1}, {0, 1, 0}, {1, 1, 1}, {0, 0, 0}};
+  request.append({70.0, {0.2, 2.0}, {27.0, 90.0}});
+  request.append({10.0, {0.5, 3.0}, kSteel});
+  request.append({70.0, {0.5, 3.0}, {27.0, 90.0}});
+  request.append({10.0, {0.2, 2.0}, kSteel});
   ReferenceEvaluator evaluator({.threads = 3});
   std::size_t told = 0;
   const std::vector<Moments> together = evaluator.evaluate(request, [&](std::size_t done, std::size_t total) {
@@ -369,11 +369,12 @@ TEST(ReferenceEvaluator, SeveralEntries_KeepTheOrderOfTheRequest) {
     return true;
   });
   EXPECT_EQ(told, 4U);
-  ASSERT_EQ(together.size(), request.entries.size());
-  const std::vector<MomentsEntry> entries = request.entries;
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    request.entries = {entries[i]};
-    EXPECT_EQ(evaluator.evaluate(request, {}).at(0).r_i, together[i].r_i) << i;
+  ASSERT_EQ(together.size(), request.size());
+  for (std::size_t i = 0; i < request.size(); ++i) {
+    MomentsRequest one;
+    one.masking = request.masking;
+    one.append(request[i]);
+    EXPECT_EQ(evaluator.evaluate(one, {}).at(0).r_i, together[i].r_i) << i;
   }
   EXPECT_EQ(evaluator.report().evaluator, "reference");
   EXPECT_EQ(evaluator.report().precision, "double");
@@ -383,10 +384,10 @@ TEST(ReferenceEvaluator, SeveralEntries_KeepTheOrderOfTheRequest) {
 
 TEST(ReferenceEvaluator, ProgressReturnsFalse_ThrowsCancelled) {
   MomentsRequest request;
-  request.theta_deg = {10.0};
-  request.shapes = {{0.2, 2.0}};
+  request.theta_deg.assign(8, 10.0);
   request.indices = {kSteel};
-  request.entries.assign(8, {0, 0, 0});
+  request.sigma = {0.2};
+  request.q = {2.0};
   EXPECT_THROW(ReferenceEvaluator().evaluate(request, [](std::size_t, std::size_t) { return false; }), Cancelled);
 }
 

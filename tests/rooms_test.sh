@@ -25,7 +25,7 @@ room evaluate/reference evaluate/reference/fresnel.hpp base evaluate model scene
 room evaluate/vulkan evaluate/vulkan/devices.hpp base evaluate model plan scene spectrum
 room evaluate/interpolation evaluate/interpolation/interpolating_evaluator.hpp base evaluate model plan scene spectrum
 room radiometry radiometry/radiometry.hpp model scene spectrum
-room run run/distinct.hpp base evaluate evaluate/cpu evaluate/interpolation model plan radiometry scene spectrum table
+room run run/table_scene.hpp base evaluate evaluate/cpu evaluate/interpolation model plan radiometry scene spectrum table
 room terminal terminal/exit_status.hpp base
 room verify verify/stored_cases.hpp base evaluate evaluate/reference model plan radiometry run scene spectrum table
 room calibrate calibrate/hold_out.hpp base evaluate evaluate/cpu model plan scene spectrum

@@ -49,11 +49,18 @@ inline std::unique_ptr<MomentsEvaluator> make_evaluator(Evaluator evaluator) {
 }
 
 /// In the evaluator's precision alone: no entry that misses is computed again in the other.
-inline std::vector<PointResult> run(const Scene& scene, const std::vector<SceneEntry>& entries, Evaluator evaluator) {
+inline std::vector<PointResult> run(const Scene& scene, const SceneEntries& entries, Evaluator evaluator) {
   Scene own = scene;
   if (evaluator == Evaluator::kFloat) own.accuracy.precision = Precision::kFloat;
   if (evaluator == Evaluator::kDouble) own.accuracy.precision = Precision::kDouble;
   return evaluate_scene(own, entries, *make_evaluator(evaluator), {});
+}
+
+/// Entries as a list of points.
+inline std::vector<SceneEntry> list_of(const SceneEntries& entries) {
+  std::vector<SceneEntry> list;
+  for (const SceneEntry& entry : entries.all()) list.push_back(entry);
+  return list;
 }
 
 inline PointResult run_one(const Scene& scene, double theta_deg, const SlopeShape& shape, Evaluator evaluator) {

@@ -27,7 +27,7 @@ class Recorder final : public MomentsEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
     requests.push_back(request);
-    const std::size_t count = request.entries.size();
+    const std::size_t count = request.size();
     for (std::size_t i = 0; i < count; ++i) progress(i + 1, count);
     Moments moments;
     moments.r_i = 0.02;
@@ -97,8 +97,7 @@ TEST(PointEntries_SmallQ, IsAllowedWhereItHasAMeaning) {
 
 TEST(PointEntries_MissingTheta, NamesTheFileUnlessTheSceneHasOneTheta) {
   Scene scene = make_scene(Distribution::kCauchy, Masking::kNone, kDielectric);
-  const std::vector<SceneEntry> entries =
-      point_entries(scene, parse_points("sigma\n0.2\n", "p.csv", PointsKind::kDirections));
+  const SceneEntries entries = point_entries(scene, parse_points("sigma\n0.2\n", "p.csv", PointsKind::kDirections));
   ASSERT_EQ(entries.size(), 1U);
   EXPECT_EQ(entries[0].theta_deg, 60.0);
   scene.grid.theta_deg = {0.0, 60.0};
@@ -131,20 +130,21 @@ TEST(EvaluateScene_GaussianGrid, AsksOnceForAllQ) {
   ASSERT_EQ(recorder.requests.size(), 1U);
   const MomentsRequest& request = recorder.requests.front();
   EXPECT_EQ(request.theta_deg.size(), 5U);
-  EXPECT_EQ(request.shapes.size(), 2U);  // sigma = 0 has a closed form
-  EXPECT_EQ(request.entries.size(), 10U);
+  EXPECT_EQ(request.sigma.size(), 2U);  // sigma = 0 has a closed form
+  EXPECT_EQ(request.q.size(), 1U);
   EXPECT_EQ(results.size(), 45U);
 }
 
-TEST(EvaluateScene_CauchyGrid, AsksForEveryEntryOfDistinctLists) {
+TEST(EvaluateScene_CauchyGrid, AsksForItsAxes) {
   Scene scene = small_grid(Distribution::kCauchy, Masking::kNone);
   Recorder recorder;
   evaluate_scene(scene, grid_entries(scene), recorder, {});
   const MomentsRequest& request = recorder.requests.front();
   EXPECT_EQ(request.theta_deg.size(), 5U);
-  EXPECT_EQ(request.shapes.size(), 6U);
+  EXPECT_EQ(request.sigma, (std::vector{0.4, 0.1}));
+  EXPECT_EQ(request.q, scene.grid.q);
   EXPECT_EQ(request.indices.size(), 1U);
-  EXPECT_EQ(request.entries.size(), 30U);
+  EXPECT_TRUE(request.wanted.empty());
 }
 
 TEST(EvaluateScene_PointsWithTheirOwnIndex, AskForItOnceWhateverTheBand) {
@@ -154,7 +154,7 @@ TEST(EvaluateScene_PointsWithTheirOwnIndex, AskForItOnceWhateverTheBand) {
   std::vector<SceneEntry> entries = {{10.0, {0.3, 2.0}, {}}, {10.0, {0.3, 2.0}, kMetal}, {20.0, {0.3, 2.0}, kMetal}};
   Recorder recorder;
   evaluate_scene(scene, entries, recorder, {});
-  EXPECT_EQ(recorder.requests.front().entries.size(), samples + 2U);
+  EXPECT_EQ(recorder.requests.front().size(), samples + 2U);
 }
 
 TEST(EvaluateScene_OwnIndexOfTheMaterial_GivesTheSameAsTheMaterial, OverABand) {
@@ -183,6 +183,49 @@ TEST(EvaluateScene_Progress, CountsEntriesUpToAllOfThem) {
   EXPECT_EQ(seen.back(), 45U);
 }
 
+TEST(EvaluateScene_BistaticGrid, AsksForOneDirection) {
+  Scene scene = small_grid(Distribution::kCauchy, Masking::kSmith);
+  scene.geometry = {Mode::kBistatic, 50.0, 180.0};
+  Recorder recorder;
+  evaluate_scene(scene, grid_entries(scene), recorder, {});
+  EXPECT_EQ(recorder.requests.front().theta_deg, std::vector{50.0});
+  EXPECT_EQ(recorder.requests.front().size(), 6U);
+}
+
+TEST(SceneEntries_Parts, AreConsecutiveAndKeepTheOrder) {
+  const SceneEntries grid = SceneEntries::grid({10.0, 20.0, 30.0}, {0.1, 0.2, 0.3, 0.4}, {2.0, 3.0});
+  for (const SceneEntries& entries : {grid, SceneEntries(list_of(grid))}) {
+    for (std::size_t most = 1; most <= 25; ++most) {
+      std::size_t position = 0;
+      for (const SceneEntries& part : entries.parts(most)) {
+        EXPECT_LE(part.size(), most);
+        for (const SceneEntry& entry : part.all()) {
+          EXPECT_EQ(entry.theta_deg, entries[position].theta_deg);
+          EXPECT_EQ(entry.shape, entries[position].shape);
+          ++position;
+        }
+      }
+      EXPECT_EQ(position, entries.size());
+    }
+  }
+}
+
+TEST(RunScene_Sink, GetsEveryPartInOrder) {
+  class Counted final : public Sink {
+   public:
+    void write(const SceneEntries& part, std::vector<PointResult> results) override {
+      EXPECT_EQ(results.size(), part.size());
+      entries += part.size();
+    }
+    std::size_t entries = 0;
+  };
+  const Scene scene = small_grid(Distribution::kCauchy, Masking::kNone);
+  Recorder recorder;
+  Counted sink;
+  run_scene(scene, grid_entries(scene), keep_everything(scene), &recorder, sink, {});
+  EXPECT_EQ(sink.entries, 45U);
+}
+
 TEST(EvaluateScene_NoEntries, GivesNoResults) {
   const Scene scene = make_scene(Distribution::kCauchy, Masking::kSmith, kDielectric);
   EXPECT_TRUE(run(scene, {}, Evaluator::kFloat).empty());
@@ -193,7 +236,7 @@ class EveryModel : public testing::TestWithParam<std::tuple<Evaluator, Distribut
 TEST_P(EveryModel, PermutedEntries_KeepTheirBits) {
   const auto [evaluator, distribution, masking] = GetParam();
   const Scene scene = small_grid(distribution, masking);
-  std::vector<SceneEntry> entries = grid_entries(scene);
+  std::vector<SceneEntry> entries = list_of(grid_entries(scene));
   for (const OpticalConstants& index : kIndices) entries.push_back({45.0, {0.2, 2.0}, index});
   const std::vector<PointResult> results = run(scene, entries, evaluator);
   std::vector<std::size_t> order(entries.size());
@@ -225,7 +268,7 @@ TEST_P(EveryModel, ReversedAxes_KeepTheBitsOfEveryEntry) {
 TEST_P(EveryModel, Grid_EqualsThePointsOneByOne) {
   const auto [evaluator, distribution, masking] = GetParam();
   const Scene scene = small_grid(distribution, masking);
-  const std::vector<SceneEntry> entries = grid_entries(scene);
+  const SceneEntries entries = grid_entries(scene);
   const std::vector<PointResult> results = run(scene, entries, evaluator);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     EXPECT_EQ(bits_of(run(scene, {entries[i]}, evaluator).front()), bits_of(results[i])) << text_of(scene, entries[i]);

@@ -23,9 +23,9 @@ class StoredEvaluator final : public MomentsEvaluator {
 
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress&) override {
     std::vector<Moments> results;
-    for (const MomentsEntry& entry : request.entries) {
-      const auto found =
-          moments_.find(key(request.theta_deg[entry.theta], request.shapes[entry.shape], request.indices[entry.index]));
+    for (std::size_t i = 0; i < request.size(); ++i) {
+      const MomentsPoint point = request[i];
+      const auto found = moments_.find(key(point.theta_deg, point.shape, point.index));
       EXPECT_NE(found, moments_.end());
       results.push_back(found == moments_.end() ? Moments{} : found->second);
     }

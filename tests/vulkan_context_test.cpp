@@ -26,12 +26,7 @@ VulkanOptions options_of_window() {
 MomentsRequest request_of(Masking masking) {
   MomentsRequest request;
   request.masking = masking;
-  request.indices = {{1.5, 0.1}};
-  for (std::uint32_t i = 0; i < 40; ++i) {
-    request.theta_deg.push_back(2.0 * i);
-    request.shapes.push_back({0.1 + 0.01 * i, 3.0});
-    request.entries.push_back({i, i, 0});
-  }
+  for (int i = 0; i < 40; ++i) request.append({2.0 * i, {0.1 + 0.01 * i, 3.0}, {1.5, 0.1}});
   return request;
 }
 

@@ -104,21 +104,21 @@ TEST(TileSizes, EachLimit_Binds) {
   EXPECT_EQ(tile_sizes({}, costs).invocations, 1U);
 }
 
-TEST(BlocksOf, Families_AreNeverCutAndOnlyThoseWithGroupsAreBound) {
-  Grouping grouping;
-  grouping.families = {{0, 2}, {2, 1}, {3, 4}, {7, 1}, {8, 1}};
-  for (const std::uint32_t family : {0U, 0U, 1U, 2U, 4U}) grouping.groups.push_back({.family = family});
+TEST(BlocksOf, Chunks_AreNeverCut) {
+  Rows rows;
+  rows.chunks = {{0, 2}, {2, 1}, {3, 4}, {7, 1}};
+  for (const std::uint32_t chunk : {0U, 0U, 1U, 2U, 3U}) rows.rows.push_back({.chunk = chunk});
   const auto summary = [&](std::uint32_t block_shapes) {
     std::vector<std::array<std::uint32_t, 4>> all;
-    for (const Block& block : blocks_of(grouping, block_shapes)) {
-      all.push_back({block.first_shape, block.shape_count, block.first_group, block.group_count});
+    for (const Block& block : blocks_of(rows, block_shapes)) {
+      all.push_back({block.first_shape, block.shape_count, block.first_row, block.row_count});
     }
     return all;
   };
   using Blocks = std::vector<std::array<std::uint32_t, 4>>;
-  EXPECT_EQ(summary(3), (Blocks{{0, 3, 0, 3}, {3, 4, 3, 1}, {8, 1, 4, 1}}));
-  EXPECT_EQ(summary(1), (Blocks{{0, 2, 0, 2}, {2, 1, 2, 1}, {3, 4, 3, 1}, {8, 1, 4, 1}}));
-  EXPECT_EQ(summary(100), (Blocks{{0, 9, 0, 5}}));
+  EXPECT_EQ(summary(3), (Blocks{{0, 3, 0, 3}, {3, 4, 3, 1}, {7, 1, 4, 1}}));
+  EXPECT_EQ(summary(1), (Blocks{{0, 2, 0, 2}, {2, 1, 2, 1}, {3, 4, 3, 1}, {7, 1, 4, 1}}));
+  EXPECT_EQ(summary(100), (Blocks{{0, 8, 0, 5}}));
 }
 
 TEST(Renumbering, Members_AreNumberedByFirstUseUntilCleared) {

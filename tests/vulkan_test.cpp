@@ -16,7 +16,7 @@
 #include "evaluate/vulkan/result.hpp"
 #include "evaluate/vulkan/tiles.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
-#include "plan/groups.hpp"
+#include "plan/rows.hpp"
 
 namespace dolp {
 namespace {
@@ -31,27 +31,22 @@ VulkanOptions validated(Precision precision = Precision::kFloat) {
   VulkanOptions options;
   options.precision = precision;
   options.validation = ValidationMode::kOn;
-  options.groups_small_requests = true;
   return options;
 }
 
-// All combinations of a few directions, shapes and indices, in random order.
+// All combinations of a few directions, shapes and indices, in an order that is none.
 MomentsRequest small_request(Distribution distribution, Masking masking) {
   MomentsRequest request;
   request.distribution = distribution;
   request.masking = masking;
   request.theta_deg = {0.0, 17.0, 45.0, 60.0, 75.5, 89.0, 90.0};
-  request.shapes = {{0.05, 2.0}, {0.2, 1.6}, {0.445, 2.0}, {0.7, 3.0}, {1.1, 5.0}};
-  request.indices = {{1.508, 0.0}, {2.5, 3.0}, {10.0, 40.0}};
-  for (std::uint32_t theta = 0; theta < request.theta_deg.size(); ++theta) {
-    for (std::uint32_t shape = 0; shape < request.shapes.size(); ++shape) {
-      for (std::uint32_t index = 0; index < request.indices.size(); ++index) {
-        request.entries.push_back({theta, shape, index});
-      }
-    }
-  }
+  request.sigma = {0.05, 0.2, 0.445, 0.7, 1.1};
+  request.q = {2.0, 1.6};
+  request.indices = {{1.508, 0.0}, {2.5, 3.0}};
   std::printf("seed %u\n", kSeed);
-  std::shuffle(request.entries.begin(), request.entries.end(), std::mt19937(kSeed));
+  std::mt19937 random(kSeed);
+  std::ranges::shuffle(request.theta_deg, random);
+  std::ranges::shuffle(request.sigma, random);
   return request;
 }
 
@@ -142,11 +137,38 @@ TEST(VulkanEvaluator, EmptyRequest_ReturnsNothing) {
   EXPECT_EQ(evaluator.report().dispatches, 0U);
 }
 
-TEST(VulkanEvaluator, EntryOutsideItsLists_ThrowsInputError) {
+TEST(VulkanEvaluator, ListsThatDoNotFitTheLayout_ThrowInputError) {
   VulkanEvaluator evaluator(validated());
   MomentsRequest request = small_request(Distribution::kCauchy, Masking::kNone);
-  request.entries[4].shape = static_cast<std::uint32_t>(request.shapes.size());
+  request.wanted.assign(request.size() - 1, 1);
   EXPECT_THROW(evaluator.evaluate(request, {}), InputError);
+  MomentsRequest points;
+  points.append({10.0, {0.3, 2.0}, {1.5, 0.0}});
+  points.sigma.push_back(0.4);
+  EXPECT_THROW(evaluator.evaluate(points, {}), InputError);
+}
+
+TEST(VulkanEvaluator, PointsAndMasks_SayTheSameAsTheGrid) {
+  VulkanEvaluator evaluator(validated(Precision::kDouble));
+  const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
+  const std::vector<Moments> expected = evaluator.evaluate(request, {});
+  MomentsRequest masked = request;
+  MomentsRequest points;
+  points.masking = request.masking;
+  std::vector<std::size_t> positions;
+  masked.wanted.assign(request.size(), 0);
+  for (std::size_t i = 0; i < request.size(); i += 3) {
+    masked.wanted[i] = 1;
+    points.append(request[i]);
+    positions.push_back(i);
+  }
+  const std::vector<Moments> of_mask = evaluator.evaluate(masked, {});
+  const std::vector<Moments> of_points = evaluator.evaluate(points, {});
+  ASSERT_EQ(of_mask.size(), request.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    EXPECT_TRUE(same(of_mask[positions[i]], expected[positions[i]])) << i;
+    EXPECT_TRUE(same(of_points[i], expected[positions[i]])) << i;
+  }
 }
 
 // A surface of slope sigma differs from the mirror by terms of order sigma^2 = 1e-6 at normal incidence, with a
@@ -160,9 +182,9 @@ TEST(VulkanEvaluator, AlmostFlatSurface_ReflectsLikeTheMirror) {
     request.distribution = Distribution::kGaussian;
     request.masking = Masking::kIntegral;
     request.theta_deg = {0.0};
-    request.shapes = {{1e-3, 2.0}};
+    request.sigma = {1e-3};
+    request.q = {2.0};
     request.indices = {{1.5, 0.0}, {1.0, 2.0}};
-    request.entries = {{0, 0, 0}, {0, 0, 1}};
     const std::vector<Moments> moments = evaluator.evaluate(request, {});
     EXPECT_NEAR(moments[0].r_i, 0.04, kNearMirror);  // (n-1)^2 / (n+1)^2
     EXPECT_NEAR(moments[1].r_i, 0.5, kNearMirror);   // k^2 / (k^2 + 4) at n = 1
@@ -187,8 +209,8 @@ TEST_P(EveryKernel, TilesBlocksAndStaging_ChangeNoBit) {
 
   const std::vector<Moments> expected = whole.evaluate(request, {});
   const std::vector<Moments> actual = tiled.evaluate(request, {});
-  ASSERT_EQ(expected.size(), request.entries.size());
-  ASSERT_EQ(actual.size(), request.entries.size());
+  ASSERT_EQ(expected.size(), request.size());
+  ASSERT_EQ(actual.size(), request.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_TRUE(same(expected[i], actual[i])) << "entry " << i;
     EXPECT_TRUE(std::isfinite(expected[i].r_i) && expected[i].r_i >= 0.0) << "entry " << i;
@@ -262,23 +284,23 @@ TEST(VulkanEvaluator, Progress_CountsEveryTileAndTheReportEveryDispatch) {
   const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
   std::vector<std::size_t> done;
   evaluator.evaluate(request, [&](std::size_t count, std::size_t total) {
-    EXPECT_EQ(total, request.entries.size());
+    EXPECT_EQ(total, request.size());
     done.push_back(count);
     return true;
   });
   EXPECT_TRUE(std::ranges::is_sorted(done));
-  EXPECT_EQ(done.back(), request.entries.size());
-  // Tiles of 10 pieces of entries, in blocks of 2, 2 and 1 shapes.
+  EXPECT_EQ(done.back(), request.size());
+  // Tiles of 10 pieces of rows, in blocks of 2 shapes.
   const KernelData data = kernel_data(request);
-  const Grouping grouping = grouped(data, std::array{1U});
+  const Rows rows = rows_of(request, data);
   std::size_t tiles = 0;
-  for (const vulkan::Block& block : vulkan::blocks_of(grouping, 2)) {
-    tiles += (pieces_of(grouping, data, block.first_group, block.group_count).size() + 9) / 10;
+  for (const vulkan::Block& block : vulkan::blocks_of(rows, 2)) {
+    tiles += (pieces_of(rows, data, block.first_row, block.row_count).size() + 9) / 10;
   }
   EXPECT_EQ(done.size(), tiles);
   const EvaluationReport report = evaluator.report();
-  EXPECT_EQ(report.dispatches, tiles + 3);
-  EXPECT_GT(report.evaluations, static_cast<double>(request.entries.size()));
+  EXPECT_EQ(report.dispatches, tiles + 5);
+  EXPECT_GT(report.evaluations, static_cast<double>(request.size()));
   EXPECT_GT(report.kernel_s, 0.0);
   EXPECT_GT(report.setup_s, 0.0);
 }
@@ -352,15 +374,17 @@ class SentinelRun {
     add(data_.thetas, 0);
     add(data_.shapes, 0);
     add(data_.indices, 0);
-    buffers_.emplace_back(session.device, request.entries.size() * sizeof(Words), MemoryUse::kUpload);
+    buffers_.emplace_back(session.device, request.size() * sizeof(Words), MemoryUse::kUpload);
     std::vector<Words> words;
-    // the plan's entries: their directions may be variants of the request's
-    for (const MomentsEntry& entry : data_.entries) words.push_back({entry.theta, entry.shape, entry.index, 1U});
+    for (std::size_t i = 0; i < request.size(); ++i) {
+      const MomentsEntry entry = data_[i];
+      words.push_back({entry.theta, entry.shape, entry.index, task_word(data_.pieces[entry.theta], 0, 1)});
+    }
     buffers_.back().write(std::as_bytes(std::span(words)));
     add(data_.rule_nodes, 0);
     using MaskingTable = std::array<double, 4 * DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT)>;
     add(std::vector<MaskingTable>{}, data_.shapes.size() + 1);
-    add(std::vector<kernel::MomentsNode>{}, request.entries.size() + kLocalSize);
+    add(std::vector<kernel::MomentsNode>{}, request.size() + kLocalSize);
     add(std::vector{data_.rule}, 0);
     std::array<VkBuffer, kBindingCount> handles{};
     for (std::uint32_t i = 0; i < kBindingCount; ++i) handles[i] = buffers_[i].get();
@@ -371,10 +395,11 @@ class SentinelRun {
   void run(std::uint32_t first, std::uint32_t count) {
     CommandStream& stream = session_.stream;
     stream.begin();
-    stream.dispatch(session_.kernels, session_.kernels.masking_table(data_.distribution, data_.masking), 0,
-                    static_cast<std::uint32_t>(data_.shapes.size()));
+    Kernels& kernels = session_.kernels;
+    stream.dispatch(kernels, kernels.pipeline(masking_table_variant(data_)), 0,
+                    static_cast<std::uint32_t>(data_.shapes.size()), data_.rule_order);
     stream.barrier(Barrier::kKernelToKernel);
-    stream.dispatch(session_.kernels, session_.kernels.moments(data_.distribution, data_.masking, 1), first, count);
+    stream.dispatch(kernels, kernels.pipeline(moments_variant(data_, 1)), first, count, data_.rule_order);
     stream.barrier(Barrier::kKernelToHost);
     stream.submit_and_wait(kTimeout_s);
   }
@@ -415,11 +440,11 @@ TEST(Kernels, LastWorkgroup_WritesNothingBeyondItsCount) {
     const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
     SentinelRun run(session, request);
     run.run(kFirst, kCount);
-    const std::size_t room = request.entries.size() + kLocalSize;
+    const std::size_t room = request.size() + kLocalSize;
     const std::vector<float> moments = run.numbers(DOLP_BINDING_MOMENTS, kNode * room);
     EXPECT_EQ(std::count_if(moments.begin(), moments.begin() + kNode * kCount, kIsSentinel), 0);
     EXPECT_TRUE(std::all_of(moments.begin() + kNode * kCount, moments.end(), kIsSentinel));
-    const std::size_t shapes = request.shapes.size();
+    const std::size_t shapes = request.sigma.size() * request.q.size();
     const std::vector<float> tables = run.numbers(DOLP_BINDING_MASKING_TABLE, kTable * (shapes + 1));
     const auto end = tables.begin() + static_cast<std::ptrdiff_t>(kTable * shapes);
     EXPECT_EQ(std::count_if(tables.begin(), end, kIsSentinel), 0);
@@ -427,8 +452,8 @@ TEST(Kernels, LastWorkgroup_WritesNothingBeyondItsCount) {
 
     // Output i belongs to entry kFirst + i.
     SentinelRun whole(session, request);
-    whole.run(0, static_cast<std::uint32_t>(request.entries.size()));
-    const std::vector<float> expected = whole.numbers(DOLP_BINDING_MOMENTS, kNode * request.entries.size());
+    whole.run(0, static_cast<std::uint32_t>(request.size()));
+    const std::vector<float> expected = whole.numbers(DOLP_BINDING_MOMENTS, kNode * request.size());
     EXPECT_TRUE(std::equal(moments.begin(), moments.begin() + kNode * kCount, expected.begin() + kNode * kFirst));
   }
   EXPECT_EQ(log.messages(), std::vector<std::string>{});

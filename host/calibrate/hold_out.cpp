@@ -30,7 +30,7 @@ class Check {
         tolerance_(options.tolerance),
         bound_share_(options.bound_share) {}
 
-  Answers operator()(const std::vector<RandomEntry>& entries) const {
+  Answers operator()(const std::vector<MomentsPoint>& entries) const {
     const Precision precision = tolerance_ < kLeastFloatTolerance ? Precision::kDouble : Precision::kFloat;
     Answers answers;
     for (std::size_t first = 0; first < entries.size(); first += kAtOnce) {
@@ -44,7 +44,7 @@ class Check {
   }
 
  private:
-  void append_all(std::vector<Moments>& moments, const std::vector<RandomEntry>& entries, double tolerance,
+  void append_all(std::vector<Moments>& moments, const std::vector<MomentsPoint>& entries, double tolerance,
                   Precision precision) const {
     MomentsRequest request;
     request.distribution = distribution_;
@@ -52,7 +52,7 @@ class Check {
     request.tolerance = tolerance;
     request.precision = precision;
     request.may_interpolate = false;
-    for (const RandomEntry& entry : entries) append(request, entry);
+    for (const MomentsPoint& entry : entries) request.append(entry);
     const std::vector<Moments> more = CpuEvaluator(precision).evaluate(request, {});
     moments.insert(moments.end(), more.begin(), more.end());
   }
@@ -87,8 +87,8 @@ double moved(Draw& draw, double value, double low, double width) {
   return low + (value - low) * std::exp(width * draw.uniform(-1.0, 1.0));
 }
 
-RandomEntry neighbour(Draw& draw, const RandomEntry& entry, Domain domain, double q_end, double width) {
-  RandomEntry next = entry;
+MomentsPoint neighbour(Draw& draw, const MomentsPoint& entry, Domain domain, double q_end, double width) {
+  MomentsPoint next = entry;
   const double largest_deg = domain == Domain::kOrdinary ? 85.0 : 90.0;
   next.theta_deg = std::clamp(largest_deg - moved(draw, largest_deg - entry.theta_deg, 0.0, width), 0.0, largest_deg);
   next.shape = {moved(draw, entry.shape.sigma, 0.0, width), moved(draw, entry.shape.q, q_end, width)};
@@ -98,7 +98,7 @@ RandomEntry neighbour(Draw& draw, const RandomEntry& entry, Domain domain, doubl
 }
 
 /// Whether `entry` lies where the domain's entries are drawn.
-bool is_in(Domain domain, const RandomEntry& entry, double q_end) {
+bool is_in(Domain domain, const MomentsPoint& entry, double q_end) {
   if (domain == Domain::kCorners) return entry.shape.sigma <= 10.0 && entry.shape.q <= q_end + 20.0;
   return entry.shape.sigma >= 0.01 && entry.shape.sigma <= 2.0 && entry.shape.q >= q_end + 0.1 &&
          entry.shape.q <= q_end + 10.0 && entry.index.n >= 1.1;
@@ -107,9 +107,9 @@ bool is_in(Domain domain, const RandomEntry& entry, double q_end) {
 CheckedEntry climbed(const Check& check, Draw& draw, CheckedEntry best, Domain domain, double q_end) {
   double width = 0.3;
   for (std::size_t step = 0; step < kClimbSteps; ++step) {
-    std::vector<RandomEntry> entries;
+    std::vector<MomentsPoint> entries;
     for (std::size_t i = 0; i < kNeighbours; ++i) {
-      const RandomEntry next = neighbour(draw, best.entry, domain, q_end, width);
+      const MomentsPoint next = neighbour(draw, best.entry, domain, q_end, width);
       if (is_in(domain, next, q_end)) entries.push_back(next);
     }
     const Answers answers = check(entries);
@@ -128,7 +128,7 @@ CheckedEntry climbed(const Check& check, Draw& draw, CheckedEntry best, Domain d
 HoldOut hold_out(Distribution distribution, Masking masking, const HoldOutOptions& options) {
   Draw draw(options.seed * 8 + 2 * static_cast<std::uint64_t>(masking) + static_cast<std::uint64_t>(distribution));
   const Check check(distribution, masking, options);
-  std::vector<RandomEntry> entries;
+  std::vector<MomentsPoint> entries;
   for (std::size_t i = 0; i < options.entries; ++i) {
     entries.push_back(random_entry(draw, options.domain, distribution, masking));
   }

@@ -20,7 +20,7 @@ struct HoldOutOptions {
 
 /// An entry, and its error over the bound stated with it: above 1 the bound is understated.
 struct CheckedEntry {
-  RandomEntry entry;
+  MomentsPoint entry;
   double ratio = 0.0;
 };
 

@@ -37,7 +37,7 @@ void fit(dolp::Masking masking, const dolp::RuleFitOptions& options) {
 }
 
 std::string entry_text(const dolp::CheckedEntry& checked) {
-  const dolp::RandomEntry& e = checked.entry;
+  const dolp::MomentsPoint& e = checked.entry;
   return fmt::format("{:.3g} at theta {:.17g} sigma {:.17g} q {:.17g} n {:.17g} k {:.17g}", checked.ratio, e.theta_deg,
                      e.shape.sigma, e.shape.q, e.index.n, e.index.k);
 }

@@ -6,8 +6,8 @@
 namespace dolp {
 namespace {
 
-RandomEntry ordinary_entry(Draw& draw, double q_end) {
-  RandomEntry entry;
+MomentsPoint ordinary_entry(Draw& draw, double q_end) {
+  MomentsPoint entry;
   entry.theta_deg = draw.chance(0.1) ? 5.0 * std::floor(draw.uniform(0.0, 17.0)) : draw.uniform(0.0, 85.0);
   entry.shape = {draw.log_uniform(0.01, 2.0), draw.chance(0.1) ? 2.0 : q_end + draw.log_uniform(0.1, 10.0)};
   const double kind = draw.uniform(0.0, 3.0);
@@ -37,8 +37,8 @@ OpticalConstants corner_index(Draw& draw, double theta_deg) {
   return {draw.log_uniform(0.2, 100.0), draw.log_uniform(0.1, 100.0)};
 }
 
-RandomEntry corner_entry(Draw& draw, double q_end) {
-  RandomEntry entry;
+MomentsPoint corner_entry(Draw& draw, double q_end) {
+  MomentsPoint entry;
   entry.theta_deg = corner_theta_deg(draw);
   entry.shape.sigma = draw.log_uniform(draw.chance(0.3) ? 1e-3 : 0.01, 10.0);
   entry.shape.q = draw.chance(0.1) ? 2.0 : q_end + draw.log_uniform(2e-3, draw.chance(0.3) ? 0.2 : 20.0);
@@ -54,17 +54,9 @@ double least_q(Distribution distribution, Masking masking) {
   return masking == Masking::kSmith && distribution == Distribution::kCauchy ? 1.5 : 1.0;
 }
 
-RandomEntry random_entry(Draw& draw, Domain domain, Distribution distribution, Masking masking) {
+MomentsPoint random_entry(Draw& draw, Domain domain, Distribution distribution, Masking masking) {
   const double q_end = least_q(distribution, masking);
   return domain == Domain::kOrdinary ? ordinary_entry(draw, q_end) : corner_entry(draw, q_end);
-}
-
-void append(MomentsRequest& request, const RandomEntry& entry) {
-  const auto position = static_cast<std::uint32_t>(request.entries.size());
-  request.theta_deg.push_back(entry.theta_deg);
-  request.shapes.push_back(entry.shape);
-  request.indices.push_back(entry.index);
-  request.entries.push_back({position, position, position});
 }
 
 }  // namespace dolp

@@ -26,19 +26,9 @@ class Draw {
   std::mt19937_64 engine_;
 };
 
-/// What a moment depends on beside the model.
-struct RandomEntry {
-  double theta_deg = 0.0;
-  SlopeShape shape;
-  OpticalConstants index;
-};
-
-RandomEntry random_entry(Draw& draw, Domain domain, Distribution distribution, Masking masking);
+MomentsPoint random_entry(Draw& draw, Domain domain, Distribution distribution, Masking masking);
 
 /// The lower end of q.
 double least_q(Distribution distribution, Masking masking);
-
-/// Adds an entry of its own direction, shape and index to a request.
-void append(MomentsRequest& request, const RandomEntry& entry);
 
 }  // namespace dolp

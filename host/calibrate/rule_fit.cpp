@@ -31,7 +31,7 @@ MomentsRequest random_request(Distribution distribution, Masking masking, const 
   request.masking = masking;
   for (std::size_t i = 0; i < options.entries; ++i) {
     const Domain domain = draw.chance(kCornerShare) ? Domain::kCorners : Domain::kOrdinary;
-    append(request, random_entry(draw, domain, distribution, masking));
+    request.append(random_entry(draw, domain, distribution, masking));
   }
   return request;
 }
@@ -40,9 +40,9 @@ MomentsRequest random_request(Distribution distribution, Masking masking, const 
 std::vector<Moments> computed(const MomentsRequest& request, const RuleModel& model) {
   const KernelData data = kernel_data(request, model);
   const std::unique_ptr<KernelText> text = make_kernel_text_double(data);
-  std::vector<Moments> moments(data.entries.size());
+  std::vector<Moments> moments(data.size());
   const auto one = [&](std::size_t i) {
-    const MomentsEntry& entry = data.entries[i];
+    const MomentsEntry entry = data[i];
     if (data.needs_masking_table()) text->build_masking_table(entry.shape);
     moments[i] = moments_from_kernel(text->moments(entry), data, entry, kDoubleRoundoff);
   };
@@ -52,19 +52,17 @@ std::vector<Moments> computed(const MomentsRequest& request, const RuleModel& mo
 
 /// Sum over the entries of the logarithm of the evaluations until each meets `tolerance`.
 double log_work(const MomentsRequest& all, double tolerance, const RuleModel& model) {
-  std::vector<double> work(all.entries.size(), 0.0);
-  std::vector<std::uint32_t> wanted(all.entries.size());
+  std::vector<double> work(all.size(), 0.0);
+  std::vector<std::uint32_t> wanted(all.size());
   for (std::uint32_t i = 0; i < wanted.size(); ++i) wanted[i] = i;
   MomentsRequest request = all;
   request.tolerance = tolerance;
   for (int attempt = 0; attempt < kMostAttempts && !wanted.empty(); ++attempt) {
-    request.shapes.clear();
     request.theta_deg.clear();
     request.indices.clear();
-    request.entries.clear();
-    for (const std::uint32_t i : wanted) {
-      append(request, {all.theta_deg[i], all.shapes[i], all.indices[i]});
-    }
+    request.sigma.clear();
+    request.q.clear();
+    for (const std::uint32_t i : wanted) request.append(all[i]);
     const std::vector<Moments> moments = computed(request, model);
     std::vector<std::uint32_t> again;
     for (std::size_t j = 0; j < wanted.size(); ++j) {

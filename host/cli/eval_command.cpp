@@ -13,7 +13,7 @@ int run_eval(const Options& options) {
   check_output_is_no_input(options);
   const Scene scene = load_scene(options);
   const Points points = read_points(options.points_path, PointsKind::kDirections);
-  const std::vector<SceneEntry> entries = point_entries(scene, points);
+  const SceneEntries entries = point_entries(scene, points);
   check_writable(options.output_path);
   const SceneRun run = run_entries(options, scene, entries, start);
   write_text_atomically(options.output_path, result_csv(points, run.results));

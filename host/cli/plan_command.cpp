@@ -35,8 +35,8 @@ DeviceDescription device_of(const Options& options, const Scene& scene, PlanRepo
 void add_dispatches(PlanReport& report, const DispatchForecast& of_request) {
   report.dispatches.dispatches += of_request.dispatches;
   report.dispatches.tile_invocations = std::max(report.dispatches.tile_invocations, of_request.tile_invocations);
-  report.dispatches.group_size = std::max(report.dispatches.group_size, of_request.group_size);
-  report.dispatches.groups += of_request.groups;
+  report.dispatches.row_width = std::max(report.dispatches.row_width, of_request.row_width);
+  report.dispatches.rows += of_request.rows;
   report.dispatches.block_shapes = std::max(report.dispatches.block_shapes, of_request.block_shapes);
   report.dispatches.device_bytes = std::max(report.dispatches.device_bytes, of_request.device_bytes);
 }
@@ -49,7 +49,6 @@ void add_pipeline(PlanReport& report, const char* kernel, Precision precision) {
 }
 
 void add_request(PlanReport& report, const MomentsRequest& request, const DeviceDescription& device) {
-  if (request.entries.empty()) return;
   add_dispatches(report, dispatch_forecast(request, device));
   const KernelData data = kernel_data(request);
   report.rule = {data.rule.digits, data.rule_order};
@@ -58,17 +57,15 @@ void add_request(PlanReport& report, const MomentsRequest& request, const Device
 }
 
 void add_request(PlanReport& report, const ScatteringRequest& request, const DeviceDescription& device) {
-  if (request.entries.empty()) return;
   add_dispatches(report, dispatch_forecast(request, device));
   add_pipeline(report, "mueller", request.precision);
 }
 
-/// The evaluations were counted entry by entry; on the device those of a group are made once. Its nodes are those that
+/// The evaluations were counted entry by entry; on the device those of a row are made once. Its nodes are those that
 /// its hardest member needs, hence estimated.
 void share_evaluations(PlanReport& report) {
-  if (report.dispatches.group_size == 1) return;
-  report.run.first_evaluations *=
-      static_cast<double>(report.dispatches.groups) / static_cast<double>(report.run.moments);
+  if (report.dispatches.row_width == 1) return;
+  report.run.first_evaluations *= static_cast<double>(report.dispatches.rows) / static_cast<double>(report.run.moments);
   report.run.is_exact = false;
 }
 
@@ -93,7 +90,7 @@ std::vector<double> work_shares(const PlanReport& report) {
 int run_plan(const Options& options) {
   PlanReport report;
   report.scene = load_scene(options);
-  const std::vector<SceneEntry> entries = grid_entries(report.scene);
+  const SceneEntries entries = grid_entries(report.scene);
   report.plan = plan_effects(report.scene, entries, options.keep_all);
   report.effects = effect_rows(report.scene, entries, report.plan);
   add_influences(report.effects, report.scene, entries);

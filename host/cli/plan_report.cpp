@@ -99,9 +99,9 @@ void add_attempts(Report& report, const PlanReport& plan, bool is_idle) {
   report.row_if(run.moments > 0, "work", "{:.4g} integrand evaluations in the first attempt ({}), {:.2g} in others",
                 key("first_attempt/evaluations", run.first_evaluations), how_counted(run),
                 key("further_attempts/evaluations", run.again_evaluations));
-  report.row_if(run.moments > 0 && dispatches.group_size > 1, "sharing",
-                "entries that differ in q alone share their evaluations: {} groups of up to {}", dispatches.groups,
-                dispatches.group_size);
+  report.row_if(run.moments > 0 && dispatches.row_width > 1, "sharing",
+                "entries that differ in q alone share their evaluations: {} groups of up to {}", dispatches.rows,
+                dispatches.row_width);
   report.value("first_attempt/is_exact", run.is_exact);
   report.value("further_attempts/beams", run.again_beams);
   report.value("evaluations", run.first_evaluations + run.again_evaluations);

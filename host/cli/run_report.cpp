@@ -34,7 +34,7 @@ void widen(std::pair<double, double>& range, bool is_first, double value) {
 /// Over which part of the grid the surface model itself gains or loses energy.
 class Energy {
  public:
-  Energy(const Scene& scene, const std::vector<SceneEntry>& entries, const std::vector<PointResult>& results) {
+  Energy(const Scene& scene, const SceneEntries& entries, const std::vector<PointResult>& results) {
     const bool bistatic = scene.geometry.mode == Mode::kBistatic;
     for (std::size_t i = 0; i < results.size(); ++i) {
       const double albedo = results[i].albedo;
@@ -141,7 +141,7 @@ EvaluationReport evaluation_of(const MomentsEvaluator* evaluator, const Options&
 
 }  // namespace
 
-SceneRun run_entries(const Options& options, const Scene& scene, const std::vector<SceneEntry>& entries,
+SceneRun run_entries(const Options& options, const Scene& scene, const SceneEntries& entries,
                      std::chrono::steady_clock::time_point start) {
   SceneRun run;
   run.plan = plan_effects(scene, entries, options.keep_all);
@@ -157,7 +157,7 @@ SceneRun run_entries(const Options& options, const Scene& scene, const std::vect
   return run;
 }
 
-int report_run(const Options& options, const Scene& scene, const std::vector<SceneEntry>& entries, const SceneRun& run,
+int report_run(const Options& options, const Scene& scene, const SceneEntries& entries, const SceneRun& run,
                const std::string& shape) {
   Report report;
   report.line("{}", key("title", scene.title));

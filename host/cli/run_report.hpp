@@ -25,11 +25,11 @@ struct SceneRun {
 };
 
 /// Evaluates the entries as the options ask for. The command began at `start`.
-SceneRun run_entries(const Options& options, const Scene& scene, const std::vector<SceneEntry>& entries,
+SceneRun run_entries(const Options& options, const Scene& scene, const SceneEntries& entries,
                      std::chrono::steady_clock::time_point start);
 
 /// Prints the report of a run; returns the exit status. `shape`: that of the grid, or "200 points".
-int report_run(const Options& options, const Scene& scene, const std::vector<SceneEntry>& entries, const SceneRun& run,
+int report_run(const Options& options, const Scene& scene, const SceneEntries& entries, const SceneRun& run,
                const std::string& shape);
 
 /// The columns of the points as they were given, and those of their results.

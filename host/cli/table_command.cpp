@@ -13,7 +13,7 @@ int run_table(const Options& options) {
   check_output_is_no_input(options);
   const Scene scene = load_scene(options);
   check_output_path(options.output_path);
-  const std::vector<SceneEntry> entries = grid_entries(scene);
+  const SceneEntries entries = grid_entries(scene);
   const SceneRun run = run_entries(options, scene, entries, start);
   const TableContent content{scene,      run.results,         run.plan, run.effects, run.evaluation,
                              run.wall_s, options.command_line};

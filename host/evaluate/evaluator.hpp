@@ -41,7 +41,7 @@ class ScatteringEvaluator {
   virtual std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) = 0;
 };
 
-/// Computes moments. Results are in the order of `request.entries`.
+/// Computes moments, in the order of the request's entries.
 class MomentsEvaluator {
  public:
   virtual ~MomentsEvaluator() = default;

@@ -17,10 +17,8 @@ std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count) {
   return theta_deg;
 }
 
-std::vector<SceneEntry> entries_at(const Scene& scene, const std::vector<double>& theta_deg) {
-  std::vector<SceneEntry> entries;
-  for (const double theta : theta_deg) entries.push_back({theta, {scene.surface.sigma, scene.surface.q}, {}});
-  return entries;
+SceneEntries entries_at(const Scene& scene, const std::vector<double>& theta_deg) {
+  return SceneEntries::grid(theta_deg, {scene.surface.sigma}, {scene.surface.q});
 }
 
 bool is_good(const PointResult& result) { return promises_dolp(result.status) && std::isfinite(result.dolp); }

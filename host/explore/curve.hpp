@@ -40,7 +40,7 @@ class Curve {
   const std::string& key() const { return key_; }
   bool is_finished() const { return shown_ == key_of(Stage::kFine); }
   // What is shown, perhaps of the scene before.
-  const std::vector<SceneEntry>& entries() const { return entries_; }
+  const SceneEntries& entries() const { return entries_; }
   const std::vector<PointResult>& results() const { return results_; }
   // Of the last finished curve.
   const Cost& cost() const { return cost_; }
@@ -58,7 +58,7 @@ class Curve {
   Scene scene_;
   bool keep_all_ = false;
   std::string shown_;  ///< key of the job whose results are shown
-  std::vector<SceneEntry> entries_;
+  SceneEntries entries_;
   std::vector<PointResult> results_;
   Cost cost_;
   EffectPlan plan_;
@@ -66,7 +66,7 @@ class Curve {
 };
 
 /// The entries of a scene's surface at these zeniths.
-std::vector<SceneEntry> entries_at(const Scene& scene, const std::vector<double>& theta_deg);
+SceneEntries entries_at(const Scene& scene, const std::vector<double>& theta_deg);
 
 /// `count` zeniths from `from` to `to`, both included.
 std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count);

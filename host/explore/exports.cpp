@@ -23,7 +23,7 @@ constexpr std::size_t kStride = 10;  // of the entries that the reference recomp
 std::string curve_csv(const Curve& curve) {
   std::string csv = std::string("theta_deg,sigma,q,") + kResultColumns + '\n';
   for (std::size_t i = 0; i < curve.entries().size(); ++i) {
-    const SceneEntry& entry = curve.entries()[i];
+    const SceneEntry entry = curve.entries()[i];
     csv += number_text(entry.theta_deg) + ',' + number_text(entry.shape.sigma) + ',' + number_text(entry.shape.q) +
            ',' + result_cells(curve.results()[i]) + '\n';
   }
@@ -34,7 +34,7 @@ std::string export_table(const Scene& scene, const std::string& path, const std:
                          MomentsEvaluator& evaluator, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   check_output_path(path);
-  const std::vector<SceneEntry> entries = grid_entries(scene);
+  const SceneEntries entries = grid_entries(scene);
   const EffectPlan plan = plan_effects(scene, entries, false);
   const std::vector<PointResult> results = evaluate_scene(scene, entries, plan, &evaluator, progress);
   const double wall_s = seconds_since(start);
@@ -45,12 +45,13 @@ std::string export_table(const Scene& scene, const std::string& path, const std:
 }
 
 std::string true_error(const Curve& curve, const Progress& progress) {
-  std::vector<SceneEntry> entries;
+  std::vector<double> theta_deg;
   std::vector<PointResult> stated;
   for (std::size_t i = 0; i < curve.entries().size(); i += kStride) {
-    entries.push_back(curve.entries()[i]);
+    theta_deg.push_back(curve.entries()[i].theta_deg);
     stated.push_back(curve.results()[i]);
   }
+  const SceneEntries entries = entries_at(curve.scene(), theta_deg);
   ReferenceEvaluator reference(ReferenceOptions{.threads = 1});
   const std::vector<PointResult> truth = evaluate_scene(curve.scene(), entries, reference, progress);
   std::size_t worst = 0;
@@ -62,7 +63,7 @@ std::string true_error(const Curve& curve, const Progress& progress) {
     worst = i;
   }
   if (largest < 0.0) return "no direction whose DOLP means something";
-  return fmt::format("{:.1e} at θ = {:g}°, bound {:.1e}; {} directions", largest, entries[worst].theta_deg,
+  return fmt::format("{:.1e} at θ = {:g}°, bound {:.1e}; {} directions", largest, theta_deg[worst],
                      stated[worst].error_estimate, entries.size());
 }
 

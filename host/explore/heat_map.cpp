@@ -69,15 +69,14 @@ std::string HeatMap::key_of(std::size_t level) const {
   return "map " + std::to_string(kLevels[level].count) + ' ' + key_;
 }
 
-SceneEntry HeatMap::entry(double x, double y) const {
-  SceneEntry entry{theta_deg_, {scene_.surface.sigma, scene_.surface.q}, {}};
-  for (const auto& [axis, position] : {std::pair{&x_, x}, std::pair{&y_, y}}) {
-    const double value = axis->value(position);
-    if (axis->kind == AxisKind::kTheta) entry.theta_deg = value;
-    if (axis->kind == AxisKind::kSigma) entry.shape.sigma = value;
-    if (axis->kind == AxisKind::kQ) entry.shape.q = value;
+SceneEntries HeatMap::grid(const std::vector<double>& x, const std::vector<double>& y) const {
+  std::vector<double> theta_deg{theta_deg_}, sigma{scene_.surface.sigma}, q{scene_.surface.q};
+  for (const auto& [axis, values] : {std::pair{&x_, &x}, std::pair{&y_, &y}}) {
+    if (axis->kind == AxisKind::kTheta) theta_deg = *values;
+    if (axis->kind == AxisKind::kSigma) sigma = *values;
+    if (axis->kind == AxisKind::kQ) q = *values;
   }
-  return entry;
+  return SceneEntries::grid(theta_deg, sigma, q);
 }
 
 Job HeatMap::job(std::size_t level) const {
@@ -87,12 +86,15 @@ Job HeatMap::job(std::size_t level) const {
   job.scene = scene_;
   job.scene.accuracy.tolerance = std::max(of.tolerance, scene_.accuracy.tolerance);
   job.keep_all = keep_all_;
-  job.batch = of.batch * of.count;
-  const double last = static_cast<double>(of.count - 1);
-  for (std::size_t row = 0; row < of.count; ++row) {
-    for (std::size_t column = 0; column < of.count; ++column) {
-      job.entries.push_back(entry(static_cast<double>(column) / last, static_cast<double>(row) / last));
-    }
+  std::vector<double> x, y;
+  for (std::size_t i = 0; i < of.count; ++i) {
+    const double position = static_cast<double>(i) / static_cast<double>(of.count - 1);
+    x.push_back(x_.value(position));
+    y.push_back(y_.value(position));
+  }
+  job.entries = grid(x, y);
+  for (auto first = y.begin(); first != y.end(); first += static_cast<std::ptrdiff_t>(of.batch)) {
+    job.parts.push_back(grid(x, {first, first + static_cast<std::ptrdiff_t>(of.batch)}));
   }
   return job;
 }
@@ -108,7 +110,13 @@ bool HeatMap::take(const News& news) {
     if (news.key != key_of(level)) continue;
     if (shown_key_ != key_) results_ = {};
     shown_key_ = key_;
-    results_[level].insert(results_[level].end(), news.results.begin(), news.results.end());
+    // Parts are grids, in which the last of theta, sigma and q is the fastest, whatever axis it is on.
+    const std::size_t columns = kLevels[level].count;
+    const std::size_t rows = news.results.size() / columns;
+    for (std::size_t i = 0; i < news.results.size(); ++i) {
+      const std::size_t place = x_.kind > y_.kind ? i : (i % columns) * rows + i / columns;
+      results_[level].push_back(news.results[place]);
+    }
     ++version_;
     return true;
   }

@@ -12,6 +12,7 @@
 
 namespace dolp::explore {
 
+/// In the order of a grid's axes.
 enum class AxisKind { kTheta, kSigma, kQ };
 
 /// One axis of a map. `from` < `to`; with `is_log` both are positive.
@@ -76,7 +77,7 @@ class HeatMap {
  private:
   std::string key_of(std::size_t level) const;
   Job job(std::size_t level) const;
-  SceneEntry entry(double x, double y) const;
+  SceneEntries grid(const std::vector<double>& x, const std::vector<double>& y) const;
 
   std::string key_;
   Scene scene_;

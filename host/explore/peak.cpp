@@ -48,14 +48,14 @@ void Peak::follow(const Curve& curve, const SceneEdits& edits, double theta_max_
   answer_.reset();
   without_.clear();
   scenes_without_.clear();
-  const auto is_shown = [&](const SceneEntry& entry) { return entry.theta_deg <= theta_max_deg; };
-  const auto count = std::ranges::count_if(curve.entries(), is_shown);
-  curve_entries_.assign(curve.entries().begin(), curve.entries().begin() + count);
+  const std::vector<double>& theta_deg = curve.entries().theta_deg();
+  const auto count = std::ranges::count_if(theta_deg, [&](double theta) { return theta <= theta_max_deg; });
+  curve_theta_deg_.assign(theta_deg.begin(), theta_deg.begin() + count);
   curve_results_.assign(curve.results().begin(), curve.results().begin() + count);
   const std::size_t best = position_of_largest(curve_results_);
   if (best == curve_results_.size()) return;
-  const double low = curve_entries_[best == 0 ? 0 : best - 1].theta_deg;
-  const double high = curve_entries_[std::min(best + 1, curve_results_.size() - 1)].theta_deg;
+  const double low = curve_theta_deg_[best == 0 ? 0 : best - 1];
+  const double high = curve_theta_deg_[std::min(best + 1, curve_results_.size() - 1)];
   theta_deg_ = zeniths(low, high, static_cast<std::size_t>(std::lround((high - low) / kStepDeg)) + 1);
   take_away(edits);
 }
@@ -140,7 +140,7 @@ void Peak::answer_from(const std::vector<PointResult>& results) {
 
 std::optional<double> Peak::rival(double least) const {
   for (std::size_t i = 0; i < curve_results_.size(); ++i) {
-    const double theta_deg = curve_entries_[i].theta_deg;
+    const double theta_deg = curve_theta_deg_[i];
     const bool is_beside = theta_deg >= theta_deg_.front() && theta_deg <= theta_deg_.back();
     const PointResult& result = curve_results_[i];
     if (!is_beside && is_good(result) && result.dolp + result.error_estimate >= least) return theta_deg;

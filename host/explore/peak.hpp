@@ -63,7 +63,7 @@ class Peak {
 
   std::string key_;
   Scene scene_;
-  std::vector<SceneEntry> curve_entries_;
+  std::vector<double> curve_theta_deg_;
   std::vector<PointResult> curve_results_;
   std::vector<double> theta_deg_;  ///< around the peak of the curve; empty when no entry is good
   std::optional<PeakAnswer> answer_;

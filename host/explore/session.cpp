@@ -129,11 +129,10 @@ double Session::cursor_position(const MapAxis& axis) const {
 }
 
 const PointResult* Session::at_cursor() const {
-  const std::vector<SceneEntry>& entries = curve_.entries();
-  if (entries.empty()) return nullptr;
-  const auto distance = [&](const SceneEntry& entry) { return std::abs(entry.theta_deg - theta_deg_); };
-  const auto nearest = std::ranges::min_element(entries, {}, distance);
-  return &curve_.results()[static_cast<std::size_t>(nearest - entries.begin())];
+  const std::vector<double>& theta_deg = curve_.entries().theta_deg();
+  if (theta_deg.empty()) return nullptr;
+  const auto nearest = std::ranges::min_element(theta_deg, {}, [&](double at) { return std::abs(at - theta_deg_); });
+  return &curve_.results()[static_cast<std::size_t>(nearest - theta_deg.begin())];
 }
 
 void Session::follow() {

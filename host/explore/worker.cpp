@@ -122,19 +122,15 @@ News Worker::advance(Task& task) {
   const Clock::time_point start = Clock::now();
   const double evaluations_before = evaluator_.report().evaluations;
   if (task.next == 0) task.plan = plan_effects(job.scene, job.entries, job.keep_all);
-  const std::size_t left = job.entries.size() - task.next;
-  const std::size_t count = job.batch == 0 ? left : std::min(job.batch, left);
-  const auto begin = job.entries.begin() + static_cast<std::ptrdiff_t>(task.next);
-  const std::vector<SceneEntry> entries(begin, begin + static_cast<std::ptrdiff_t>(count));
   News news;
   news.key = job.key;
-  news.first = task.next;
-  news.results = evaluate_scene(job.scene, entries, task.plan, &evaluator_,
-                                [&](std::size_t, std::size_t) { return is_wanted(job.key); });
-  task.next += count;
+  news.part = task.next;
+  news.results = evaluate_scene(job.scene, job.parts.empty() ? job.entries : job.parts[task.next], task.plan,
+                                &evaluator_, [&](std::size_t, std::size_t) { return is_wanted(job.key); });
+  ++task.next;
   task.wall_s += seconds_since(start);
   task.evaluations += evaluator_.report().evaluations - evaluations_before;
-  news.is_last = task.next == job.entries.size();
+  news.is_last = task.next >= job.parts.size();
   if (!news.is_last) return news;
   news.plan = task.plan;
   news.wall_s = task.wall_s;

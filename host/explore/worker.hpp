@@ -22,16 +22,17 @@ namespace dolp::explore {
 struct Job {
   std::string key;  ///< jobs with one key have one content
   Scene scene;
-  std::vector<SceneEntry> entries;
+  SceneEntries entries;
+  /// What is computed at a time, one after the other; a job of higher rank may come in between. Empty: all at once.
+  std::vector<SceneEntries> parts = {};
   bool keep_all = false;
-  std::size_t batch = 0;    ///< entries at a time, between which a job of higher rank may come in; 0: all
   bool wants_rows = false;  ///< the effects of the plan
 };
 
 /// A part of a job's results.
 struct News {
   std::string key;
-  std::size_t first = 0;  ///< position of the first of `results` among the job's entries
+  std::size_t part = 0;  ///< of the job
   std::vector<PointResult> results;
   bool is_last = false;
   // Of the whole job, in the last part.
@@ -63,7 +64,7 @@ class Worker {
  private:
   struct Task {
     Job job;
-    std::size_t next = 0;
+    std::size_t next = 0;  ///< of its parts
     EffectPlan plan;
     double wall_s = 0.0;
     double evaluations = 0.0;

@@ -1,7 +1,7 @@
 // The hemispherical moments of the specular microfacet term (k_s = 1, no diffuse part).
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <vector>
 
 #include "model/choices.hpp"
@@ -13,25 +13,38 @@ namespace dolp {
 /// The tightest tolerance of a rule in float; beyond, rounding drowns it.
 inline constexpr double kLeastFloatTolerance = 2e-6;
 
-/// One entry: positions in the three lists of its request.
-struct MomentsEntry {
-  std::uint32_t theta = 0;
-  std::uint32_t shape = 0;
-  std::uint32_t index = 0;
+/// What a moment depends on beside the model.
+struct MomentsPoint {
+  double theta_deg = 0.0;
+  SlopeShape shape;
+  OpticalConstants index;
+  friend bool operator==(const MomentsPoint&, const MomentsPoint&) = default;
 };
 
-/// Lists of distinct directions, slope shapes and refractive indices, and the combinations that are wanted.
+/// Where moments are wanted: on the grid theta x index x sigma x q, q fastest, or at points, of which the four lists
+/// have one value each. An entry is its position in that order.
 struct MomentsRequest {
+  enum class Layout { kGrid, kList };
+
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
   double tolerance = 1e-4;                 ///< of the rule, relative to r_i
   Precision precision = Precision::kAuto;  ///< kAuto: the evaluator's own
   bool may_interpolate = true;             ///< between slope distributions, to the same tolerance
   bool has_extra_splits = false;           ///< a rule of another kind, to check others with
+  Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
-  std::vector<SlopeShape> shapes;
   std::vector<OpticalConstants> indices;
-  std::vector<MomentsEntry> entries;
+  std::vector<double> sigma;
+  std::vector<double> q;
+  std::vector<char> wanted;  ///< of each entry of a grid; empty: all. The moments of the others mean nothing
+
+  std::size_t size() const;
+  bool is_wanted(std::size_t entry) const { return wanted.empty() || wanted[entry] != 0; }
+  std::size_t wanted_count() const;
+  MomentsPoint operator[](std::size_t entry) const;
+  /// Adds a point, which makes it a request for points.
+  void append(const MomentsPoint& point);
 };
 
 /// The moments of one entry, all multiplied by cos(theta), which keeps them finite at theta = 90 degrees.

@@ -45,8 +45,8 @@ DropBound entry_bound(const InfluenceBounds& bounds, const Candidate& candidate,
 }
 
 /// The worst bound of some entries; stops, above the limit, as soon as it is there.
-DropBound worst_of_entries(const InfluenceBounds& bounds, const Candidate& candidate,
-                           std::span<const SceneEntry> entries, std::span<const std::uint32_t> positions) {
+DropBound worst_of_entries(const InfluenceBounds& bounds, const Candidate& candidate, const SceneEntries& entries,
+                           std::span<const std::uint32_t> positions) {
   ReflectanceMemory memory;
   DropBound worst;
   for (const std::uint32_t i : positions) {
@@ -63,31 +63,34 @@ DropBound worst_of_entries(const InfluenceBounds& bounds, const Candidate& candi
 /// reflectance, one shape after the other.
 class OrderedEntries {
  public:
-  OrderedEntries(const Scene& scene, std::span<const SceneEntry> entries)
+  OrderedEntries(const Scene& scene, const SceneEntries& entries)
       : entries_(entries), is_by_shape_(scene.geometry.mode == Mode::kBistatic) {}
 
-  std::span<const SceneEntry> entries() const { return entries_; }
+  const SceneEntries& entries() const { return entries_; }
 
   /// Made when first asked for; most plans never ask.
   std::span<const std::uint32_t> positions() {
     if (positions_.empty()) {
       positions_.resize(entries_.size());
       std::iota(positions_.begin(), positions_.end(), 0U);
-      const auto key = [&](std::uint32_t i) { return std::tie(entries_[i].shape.sigma, entries_[i].shape.q); };
+      const auto key = [&](std::uint32_t i) {
+        const SlopeShape shape = entries_[i].shape;
+        return std::pair(shape.sigma, shape.q);
+      };
       if (is_by_shape_) std::ranges::stable_sort(positions_, {}, key);
     }
     return positions_;
   }
 
  private:
-  std::span<const SceneEntry> entries_;
+  const SceneEntries& entries_;
   bool is_by_shape_;
   std::vector<std::uint32_t> positions_;
 };
 
 /// The worst entry's bound, or one above the limit where there is such an entry.
 DropBound worst_bound(const InfluenceBounds& bounds, const Candidate& candidate, OrderedEntries& ordered) {
-  const std::span<const SceneEntry> entries = ordered.entries();
+  const SceneEntries& entries = ordered.entries();
   const bool adds_now = is_kept(candidate.kept, candidate.part) && !bounds.adds_nothing(candidate.part, candidate.kept);
   const bool adds_in_all = candidate.part != Part::kMoments && !bounds.adds_nothing(candidate.part, {});
   if (entries.empty() || (!adds_now && !adds_in_all)) return {};
@@ -199,8 +202,8 @@ EffectRow specular_row(const Scene& scene, const EffectPlan& plan) {
 }
 
 EffectRow model_row(const Scene& scene, const EffectPlan& plan, const char* name, const std::string& choice,
-                    std::span<const SceneEntry> entries) {
-  const bool all_mirrors = !entries.empty() && std::ranges::all_of(entries, [](const SceneEntry& entry) {
+                    const SceneEntries& entries) {
+  const bool all_mirrors = !entries.empty() && std::ranges::all_of(entries.all(), [](const SceneEntry& entry) {
     return entry.shape.sigma == 0.0;
   });
   if (all_mirrors) return absent(name, "sigma is 0 everywhere: a mirror");
@@ -212,11 +215,12 @@ EffectRow model_row(const Scene& scene, const EffectPlan& plan, const char* name
   return row;
 }
 
-EffectRow complex_index_row(const Scene& scene, const EffectPlan& plan, std::span<const SceneEntry> entries) {
+EffectRow complex_index_row(const Scene& scene, const EffectPlan& plan, const SceneEntries& entries) {
   constexpr const char* kName = "complex index";
   const std::vector<OpticalConstants> indices = spectral_rule(scene).indices();
   const auto is_complex = [](const OpticalConstants& index) { return index.k > 0.0; };
-  const bool own = std::ranges::any_of(entries, [&](const SceneEntry& e) { return e.index && is_complex(*e.index); });
+  const bool own =
+      std::ranges::any_of(entries.all(), [&](const SceneEntry& e) { return e.index && is_complex(*e.index); });
   if (!own && std::ranges::none_of(indices, is_complex)) return absent(kName, "k is 0");
   EffectRow row{kName, EffectState::kKept, "costs nothing: the kernel treats real indices alike"};
   const bool is_used = plan.needs_moments || plan.needs_beams || (is_fresnel(scene) && plan.kept.emission);
@@ -287,14 +291,14 @@ EffectRow band_row(const Scene& scene) {
   return row;
 }
 
-EffectRow masking_row(const Scene& scene, const EffectPlan& plan, std::span<const SceneEntry> entries) {
+EffectRow masking_row(const Scene& scene, const EffectPlan& plan, const SceneEntries& entries) {
   if (scene.surface.masking == Masking::kNone) return absent("masking", "surface.masking is none");
   return model_row(scene, plan, "masking", name_of(scene.surface.masking), entries);
 }
 
 }  // namespace
 
-EffectPlan plan_effects(const Scene& scene, std::span<const SceneEntry> entries, bool keep_all) {
+EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool keep_all) {
   const SpectralRule rule = spectral_rule(scene);
   const InfluenceBounds bounds(scene, rule);
   const double allowed = kDroppedShare * scene.accuracy.tolerance;
@@ -325,7 +329,7 @@ Needs needs_without(const Scene& scene, const EffectPlan& plan, Part part) {
           part != Part::kMoments && needs_beams(scene, bounds, kept)};
 }
 
-std::vector<EffectRow> effect_rows(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan) {
+std::vector<EffectRow> effect_rows(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan) {
   return {specular_row(scene, plan),
           diffuse_row(scene, plan),
           model_row(scene, plan, "distribution", name_of(scene.surface.distribution), entries),
@@ -338,7 +342,7 @@ std::vector<EffectRow> effect_rows(const Scene& scene, std::span<const SceneEntr
           band_row(scene)};
 }
 
-void add_influences(std::vector<EffectRow>& rows, const Scene& scene, std::span<const SceneEntry> entries) {
+void add_influences(std::vector<EffectRow>& rows, const Scene& scene, const SceneEntries& entries) {
   const SpectralRule rule = spectral_rule(scene);
   const InfluenceBounds bounds(scene, rule);
   std::vector<EffectRow*> open;
@@ -355,7 +359,7 @@ void add_influences(std::vector<EffectRow>& rows, const Scene& scene, std::span<
     std::vector<std::size_t> unbounded(open.size(), 0);
     for (std::size_t i = first; i < last; ++i) {
       for (std::size_t r = 0; r < open.size(); ++r) {
-        const SceneEntry& entry = entries[positions[i]];
+        const SceneEntry entry = entries[positions[i]];
         const double bound = bounds.bound(*open[r]->part, {}, entry, Detail::kFine, memory).dolp;
         if (std::isinf(bound)) ++unbounded[r];
         if (!std::isinf(bound)) most[r] = std::max(most[r], bound);

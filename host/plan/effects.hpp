@@ -23,7 +23,7 @@ struct DroppedPart {
   DropBound bound;
 };
 
-/// Which effects a run computes at a list of entries.
+/// Which effects a run computes at its entries.
 struct EffectPlan {
   bool keep_all = false;
   KeptEffects kept;
@@ -43,10 +43,10 @@ struct EffectPlan {
 /// surroundings have one temperature, for instance. Model choices (distribution, masking, k) never go. `keep_all` keeps
 /// everything that the scene has. Host only: some microseconds an entry and part, none where the last entries tell that
 /// a part counts.
-EffectPlan plan_effects(const Scene& scene, std::span<const SceneEntry> entries, bool keep_all);
+EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool keep_all);
 
 /// Nothing left out: what `plan_effects` says with `keep_all`.
-inline EffectPlan keep_everything(const Scene& scene) { return plan_effects(scene, {}, true); }
+inline EffectPlan keep_everything(const Scene& scene) { return plan_effects(scene, SceneEntries(), true); }
 
 /// What a run has to compute.
 struct Needs {
@@ -76,10 +76,10 @@ struct EffectRow {
 };
 
 /// All effects that there are, in the order of the scene file.
-std::vector<EffectRow> effect_rows(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan);
+std::vector<EffectRow> effect_rows(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan);
 
 /// Bounds of what each kept part changes in the scene with everything kept, worst entry of those that have one.
-void add_influences(std::vector<EffectRow>& rows, const Scene& scene, std::span<const SceneEntry> entries);
+void add_influences(std::vector<EffectRow>& rows, const Scene& scene, const SceneEntries& entries);
 
 const char* state_name(EffectState state);
 

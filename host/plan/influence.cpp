@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "model/angles.hpp"
-#include "model/grazing.hpp"
+#include "model/direction.hpp"
 #include "model/smooth_surface.hpp"
 
 namespace dolp {

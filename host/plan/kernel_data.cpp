@@ -6,11 +6,8 @@
 #include <boost/math/constants/constants.hpp>
 #include <cassert>
 #include <cmath>
-#include <compare>
 #include <complex>
 #include <limits>
-#include <map>
-#include <utility>
 
 #include "model/angles.hpp"
 #include "model/gamma_ratio.hpp"
@@ -110,7 +107,6 @@ void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
 struct Variant {
   double critical_cos = 0.0;
   bool has_line = false;
-  auto operator<=>(const Variant&) const = default;
 };
 
 // Breakpoints that are one but for rounding, as one with the roots of all.
@@ -242,23 +238,44 @@ kernel::IndexNode index_node(const OpticalConstants& index) {
           std::abs(branch.real()), critical_cos(index)};
 }
 
-// Gives each entry the variant of its direction that it needs.
-void add_directions(KernelData& data, const MomentsRequest& request, const RuleModel& model) {
-  std::vector<bool> has_line;
-  for (const SlopeShape& shape : request.shapes) {
-    has_line.push_back(needs_line(model, request.distribution, request.masking, shape, data.rule.digits));
+// Every direction of a grid, for each of the lines of total reflection that its indices have, without and with the line
+// that some shapes need.
+void add_grid_directions(KernelData& data, const MomentsRequest& request) {
+  const bool any_line = std::ranges::find(data.needs_line, 1) != data.needs_line.end();
+  const std::uint32_t lines = any_line ? 2 : 1;
+  std::vector<double> critical = {0.0};
+  for (const kernel::IndexNode& index : data.indices) {
+    const auto known = std::ranges::find(critical, index.critical_cos);
+    data.index_variant.push_back(lines * static_cast<std::uint32_t>(known - critical.begin()));
+    if (known == critical.end()) critical.push_back(index.critical_cos);
   }
-  std::map<std::pair<std::uint32_t, Variant>, std::uint32_t> known;
-  for (std::uint32_t i = 0; i < request.theta_deg.size(); ++i) {
-    known[{i, Variant{}}] = i;
-    add_direction(data, request, request.theta_deg[i], {});
+  for (const double critical_cos : critical) {
+    for (std::uint32_t line = 0; line < lines; ++line) {
+      for (const double theta_deg : request.theta_deg)
+        add_direction(data, request, theta_deg, {critical_cos, line == 1});
+    }
   }
-  for (MomentsEntry& entry : data.entries) {
-    const Variant variant{data.indices[entry.index].critical_cos, has_line[entry.shape]};
-    const auto [found, is_new] =
-        known.try_emplace({entry.theta, variant}, static_cast<std::uint32_t>(data.thetas.size()));
-    if (is_new) add_direction(data, request, request.theta_deg[entry.theta], variant);
-    entry.theta = found->second;
+}
+
+void add_shape(KernelData& data, const MomentsRequest& request, const RuleModel& model, const SlopeShape& shape) {
+  const double digits = data.rule.digits;
+  data.shapes.push_back(shape_node(request, shape, digits));
+  data.needs_line.push_back(needs_line(model, request.distribution, request.masking, shape, digits) ? 1 : 0);
+}
+
+void add_grid(KernelData& data, const MomentsRequest& request, const RuleModel& model) {
+  for (const double sigma : request.sigma) {
+    for (const double q : request.q) add_shape(data, request, model, {sigma, q});
+  }
+  add_grid_directions(data, request);
+}
+
+void add_points(KernelData& data, const MomentsRequest& request, const RuleModel& model) {
+  for (std::size_t i = 0; i < request.size(); ++i) {
+    const bool is_new = i == 0 || request[i].shape != request[i - 1].shape;
+    if (is_new) add_shape(data, request, model, request[i].shape);
+    data.shape_of.push_back(static_cast<std::uint32_t>(data.shapes.size() - 1));
+    add_direction(data, request, request.theta_deg[i], {data.indices[i].critical_cos, data.needs_line.back() != 0});
   }
 }
 
@@ -298,10 +315,14 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model) {
   data.tolerance = request.tolerance;
   data.rule = rule_node(model, digits);
   data.rule_order = largest_order(digits);
-  for (const SlopeShape& shape : request.shapes) data.shapes.push_back(shape_node(request, shape, digits));
+  data.is_grid = request.layout == MomentsRequest::Layout::kGrid;
+  data.directions = request.theta_deg.size();
   for (const OpticalConstants& index : request.indices) data.indices.push_back(index_node(index));
-  data.entries = request.entries;
-  add_directions(data, request, model);
+  if (data.is_grid) {
+    add_grid(data, request, model);
+  } else {
+    add_points(data, request, model);
+  }
   data.rule_nodes = rule_nodes(data.rule_order);
   data.has_total_reflection =
       std::ranges::any_of(data.indices, [](const kernel::IndexNode& index) { return index.critical_cos > 0.0; });
@@ -310,11 +331,23 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model) {
 
 double worst_iterations(const KernelData& data) {
   double worst = 0.0;
-  for (const MomentsEntry& entry : data.entries) {
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const MomentsEntry entry = data[i];
     const double arcs = arcs_per_slope(data.masking, data.indices[entry.index].critical_cos);
     worst = std::max(worst, iterations(data.rule_order, data.pieces[entry.theta].most_azimuths, arcs));
   }
   return worst;
+}
+
+MomentsEntry KernelData::operator[](std::size_t entry) const {
+  if (!is_grid) {
+    const auto point = static_cast<std::uint32_t>(entry);
+    return {point, shape_of[entry], point};
+  }
+  const auto shape = static_cast<std::uint32_t>(entry % shapes.size());
+  const std::size_t of_index = entry / shapes.size();
+  const auto index = static_cast<std::uint32_t>(of_index % indices.size());
+  return {theta_of(static_cast<std::uint32_t>(of_index / indices.size()), index, shape), shape, index};
 }
 
 }  // namespace dolp

@@ -23,9 +23,17 @@ struct Pieces {
   std::uint32_t most_azimuths = 1;  ///< of an arc, which bounds the loop iterations
 };
 
-/// Inputs of one run of the kernel. `shapes` and `indices` match the lists of the request, `entries` its entries,
-/// position by position. `thetas` has the request's directions first and variants of them after: for total reflection,
-/// and for slope distributions that need the line b = pi/2 of `integral` or smith's cusp.
+/// What the kernel reads of one entry: positions in three lists of KernelData.
+struct MomentsEntry {
+  std::uint32_t theta = 0;
+  std::uint32_t shape = 0;
+  std::uint32_t index = 0;
+};
+
+/// Inputs of one run of the kernel. Of a grid `indices` and `shapes` (sigma x q, q fastest) match its axes and `thetas`
+/// has its directions first, then as often as necessary the variants of them all: for total reflection, whose split
+/// lines depend on the index, and for shapes that need one line more. Of points each has its own direction and index,
+/// and neighbours of one shape share it.
 struct KernelData {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
@@ -33,13 +41,30 @@ struct KernelData {
   kernel::RuleNode rule{};
   int rule_order = 1;  ///< largest order of the rule nodes
   bool has_total_reflection = false;  ///< of any index, sharp or nearly so
+  bool is_grid = false;
+  std::size_t directions = 0;  ///< of the request
   std::vector<kernel::ThetaNode> thetas;
   std::vector<Pieces> pieces;  ///< of each of `thetas`
   std::vector<kernel::ShapeNode> shapes;
+  std::vector<char> needs_line;  ///< of each shape
   std::vector<kernel::IndexNode> indices;
-  std::vector<MomentsEntry> entries;
+  std::vector<std::uint32_t> index_variant;  ///< of each index of a grid, over the first of its variants of directions
+  std::vector<std::uint32_t> shape_of;       ///< of each point
   std::vector<std::array<double, 2>> rule_nodes;
+
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
+  std::size_t size() const { return is_grid ? directions * indices.size() * shapes.size() : directions; }
+  /// The node of a direction for an index and a shape.
+  std::uint32_t theta_of(std::uint32_t direction, std::uint32_t index, std::uint32_t shape) const {
+    if (!is_grid) return direction;
+    const std::uint32_t variant = index_variant[index] + (needs_line[shape] != 0 ? 1U : 0U);
+    return variant * static_cast<std::uint32_t>(directions) + direction;
+  }
+  /// The entry of a direction, an index and a shape.
+  std::size_t entry_of(std::uint32_t direction, std::uint32_t index, std::uint32_t shape) const {
+    return is_grid ? (direction * indices.size() + index) * shapes.size() + shape : direction;
+  }
+  MomentsEntry operator[](std::size_t entry) const;
 };
 
 struct RuleModel;

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "model/direction.hpp"
 #include "model/kept_effects.hpp"
 #include "model/moments.hpp"
 #include "model/point_result.hpp"
@@ -10,13 +11,6 @@
 #include "spectrum/spectral_rule.hpp"
 
 namespace dolp {
-
-/// The direction of one entry. `cos_theta` is the cosine that its moments were computed with: exact, except at 90
-/// degrees under v-cavity and smith masking, where a tiny positive one stands for the limit.
-struct Direction {
-  double theta_deg = 0.0;
-  double cos_theta = 1.0;
-};
 
 /// What unpolarised light of one direction becomes in another: the first column of f_s cos(theta_i) cos(theta_r) for
 /// k_s = 1.

@@ -48,7 +48,7 @@ void check_smith(const Scene& scene, const Points& points) {
   }
 }
 
-std::vector<SceneEntry> grid_entries(const Scene& scene) {
+SceneEntries grid_entries(const Scene& scene) {
   const Grid& grid = scene.grid;
   const double count = static_cast<double>(grid.theta_deg.size()) * static_cast<double>(grid.sigma.size()) *
                        static_cast<double>(grid.q.size());
@@ -56,28 +56,26 @@ std::vector<SceneEntry> grid_entries(const Scene& scene) {
     throw InputError(fmt::format("{}: grid: {} x {} x {} entries; at most {:.0f} in one table", scene.path_name,
                                  grid.theta_deg.size(), grid.sigma.size(), grid.q.size(), kMostEntries));
   }
-  std::vector<SceneEntry> entries;
-  entries.reserve(static_cast<std::size_t>(count));
-  for (const double theta_deg : scene.grid.theta_deg) {
-    for (const double sigma : scene.grid.sigma) {
-      for (const double q : scene.grid.q) entries.push_back({theta_deg, {sigma, q}, {}});
-    }
-  }
-  return entries;
+  return SceneEntries::grid(grid.theta_deg, grid.sigma, grid.q);
 }
 
-std::vector<SceneEntry> point_entries(const Scene& scene, const Points& points) {
+SceneEntries point_entries(const Scene& scene, const Points& points) {
   check_columns(scene, points);
   check_smith(scene, points);
-  const bool own_index = points.n || points.k;
+  const Surface& surface = scene.surface;
+  const bool has_own_index = points.n || points.k;
+  if (points.theta_deg && !points.sigma && !points.q && !has_own_index) {
+    return SceneEntries::grid(*points.theta_deg, {surface.sigma}, {surface.q});
+  }
   std::vector<SceneEntry> entries;
   entries.reserve(points.size());
   for (std::size_t row = 0; row < points.size(); ++row) {
     SceneEntry entry;
     entry.theta_deg = value_or(points.theta_deg, row, scene.grid.theta_deg.front());
-    entry.shape = {value_or(points.sigma, row, scene.surface.sigma), value_or(points.q, row, scene.surface.q)};
-    const OpticalConstants& index = scene.surface.material.constant;
-    if (own_index) entry.index = OpticalConstants{value_or(points.n, row, index.n), value_or(points.k, row, index.k)};
+    entry.shape = {value_or(points.sigma, row, surface.sigma), value_or(points.q, row, surface.q)};
+    const OpticalConstants& index = surface.material.constant;
+    if (has_own_index)
+      entry.index = OpticalConstants{value_or(points.n, row, index.n), value_or(points.k, row, index.k)};
     entries.push_back(entry);
   }
   return entries;

@@ -11,7 +11,7 @@
 
 #include "base/error.hpp"
 #include "model/angles.hpp"
-#include "model/grazing.hpp"
+#include "model/direction.hpp"
 #include "run/scene_run.hpp"
 
 namespace dolp {
@@ -35,9 +35,9 @@ bool needs_evaluator(const Surface& surface, const MuellerPoint& point) {
   return surface.specular > 0.0 && point.shape.sigma > 0.0 && !is_undefined(surface, point);
 }
 
-BeamAngles before_grazing(const BeamAngles& angles) {
-  return {std::min(angles.theta_i_deg, kNearGrazingDeg), std::min(angles.theta_r_deg, kNearGrazingDeg),
-          angles.delta_phi_deg};
+BeamAngles used_angles(const Surface& surface, const BeamAngles& angles) {
+  return {zenith_before_limit_deg(surface.masking, angles.theta_i_deg),
+          zenith_before_limit_deg(surface.masking, angles.theta_r_deg), angles.delta_phi_deg};
 }
 
 ScatteringRequest request_for(const Scene& scene, std::span<const MuellerPoint> points, Precision precision) {
@@ -48,7 +48,7 @@ ScatteringRequest request_for(const Scene& scene, std::span<const MuellerPoint> 
   for (const MuellerPoint& point : points) {
     if (!needs_evaluator(scene.surface, point)) continue;
     const auto position = static_cast<std::uint32_t>(request.entries.size());
-    request.angles.push_back(before_grazing(point.angles));
+    request.angles.push_back(used_angles(scene.surface, point.angles));
     request.shapes.push_back(point.shape);
     request.indices.push_back(point.index);
     request.entries.push_back({position, position, position});
@@ -70,7 +70,7 @@ MuellerElements elements(const Surface& surface, const MuellerPoint& point, cons
     return f;
   }
   if (specular != nullptr) {
-    const BeamAngles angles = before_grazing(point.angles);
+    const BeamAngles angles = used_angles(surface, point.angles);
     const double cosines = cos_sin_deg(angles.theta_i_deg).cos * cos_sin_deg(angles.theta_r_deg).cos;
     // + 0 takes the sign from a zero.
     for (std::size_t i = 0; i < f.size(); ++i) f[i] = surface.specular * specular->m[i] / cosines + 0.0;

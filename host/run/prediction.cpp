@@ -11,8 +11,7 @@
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "plan/shape_plan.hpp"
-#include "run/beams.hpp"
-#include "run/moments_block.hpp"
+#include "run/part_requests.hpp"
 #include "run/scene_run.hpp"
 
 namespace dolp {
@@ -31,32 +30,29 @@ std::set<std::size_t> drawn_positions(std::size_t size, std::size_t count) {
   return positions;
 }
 
-std::vector<SceneEntry> drawn_entries(std::span<const SceneEntry> entries) {
-  if (entries.size() <= kCountedEntries) return {entries.begin(), entries.end()};
+SceneEntries drawn_entries(const SceneEntries& entries) {
+  if (entries.size() <= kCountedEntries) return entries;
   std::vector<SceneEntry> drawn;
   for (const std::size_t position : drawn_positions(entries.size(), kCountedEntries))
     drawn.push_back(entries[position]);
   return drawn;
 }
 
-/// All entries of some directions.
-std::vector<SceneEntry> entries_of_drawn_directions(std::span<const SceneEntry> entries) {
-  std::set<double> directions;
-  for (const SceneEntry& entry : entries) directions.insert(entry.theta_deg);
-  const std::vector<double> sorted(directions.begin(), directions.end());
-  std::set<double> wanted;
-  for (const std::size_t position : drawn_positions(sorted.size(), kCountedDirections)) wanted.insert(sorted[position]);
-  std::vector<SceneEntry> drawn;
-  for (const SceneEntry& entry : entries) {
-    if (wanted.contains(entry.theta_deg)) drawn.push_back(entry);
+/// All entries of some directions of a grid.
+SceneEntries entries_of_drawn_directions(const SceneEntries& grid) {
+  std::vector<double> theta_deg = grid.theta_deg();
+  std::ranges::sort(theta_deg);
+  std::vector<double> drawn;
+  for (const std::size_t position : drawn_positions(theta_deg.size(), kCountedDirections)) {
+    drawn.push_back(theta_deg[position]);
   }
-  return drawn;
+  return SceneEntries::grid(drawn, grid.sigma(), grid.q());
 }
 
 /// Sums of one kind of request, of the first attempt and of all others.
 struct Count {
-  std::size_t first_requests = 1;  ///< that the first attempt makes
-  std::size_t first = 0;           ///< moments or beams
+  bool is_first = true;   ///< until the first attempt has made its request
+  std::size_t first = 0;  ///< moments or beams
   std::size_t again = 0;
   double first_evaluations = 0.0;
   double again_evaluations = 0.0;
@@ -64,10 +60,9 @@ struct Count {
 
   void add(std::size_t entries, const EvaluationReport& before, const EvaluationReport& after) {
     const double evaluations = after.evaluations - before.evaluations;
-    const bool is_first = first_requests > 0;
-    if (is_first) --first_requests;
     (is_first ? first : again) += entries;
     (is_first ? first_evaluations : again_evaluations) += evaluations;
+    is_first = false;
     spent_s += after.kernel_s - before.kernel_s;
   }
 };
@@ -75,14 +70,12 @@ struct Count {
 /// Notes what the attempts of a run ask for.
 class CountingEvaluator final : public MomentsEvaluator, public ScatteringEvaluator {
  public:
-  /// `first_requests`: for moments, that the first attempt makes.
-  CountingEvaluator(Precision precision, bool has_double, std::size_t first_requests)
-      : cpu_(precision), has_double_(has_double), moments_{.first_requests = first_requests} {}
+  CountingEvaluator(Precision precision, bool has_double) : cpu_(precision), has_double_(has_double) {}
 
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
     const EvaluationReport before = cpu_.report();
     std::vector<Moments> moments = cpu_.evaluate(request, progress);
-    moments_.add(request.entries.size(), before, cpu_.report());
+    moments_.add(request.wanted_count(), before, cpu_.report());
     return moments;
   }
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override {
@@ -111,20 +104,10 @@ double scale_of(std::size_t all, const Count& counted) {
   return counted.first == 0 ? 0.0 : static_cast<double>(all) / static_cast<double>(counted.first);
 }
 
-/// Requests for moments that the first attempt makes.
-std::size_t requests_of(const Scene& scene, const std::vector<OpticalConstants>& samples,
-                        std::span<const SceneEntry> entries, const Attempt& attempt) {
-  const std::optional<ShapePlan> plan = shape_plan(moments_block(scene, samples, entries, attempt).request);
-  return plan && !plan->direct.entries.empty() ? 2 : 1;
-}
-
-void count_work(RunPrediction& run, const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan,
+void count_work(RunPrediction& run, const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
                 bool has_double) {
-  const std::vector<SceneEntry> drawn =
-      run.interpolated > 0 ? entries_of_drawn_directions(entries) : drawn_entries(entries);
-  const std::vector<OpticalConstants> samples = spectral_rule(scene).indices();
-  auto owned = std::make_unique<CountingEvaluator>(scene.accuracy.precision, has_double,
-                                                   requests_of(scene, samples, drawn, run.first));
+  const SceneEntries drawn = run.interpolated > 0 ? entries_of_drawn_directions(entries) : drawn_entries(entries);
+  auto owned = std::make_unique<CountingEvaluator>(scene.accuracy.precision, has_double);
   const CountingEvaluator& counting = *owned;
   InterpolatingEvaluator interpolating(std::move(owned));
   evaluate_scene(scene, drawn, plan, &interpolating, {});
@@ -144,37 +127,31 @@ void count_work(RunPrediction& run, const Scene& scene, std::span<const SceneEnt
 
 }  // namespace
 
-RunPrediction predict_run(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan,
-                          bool has_double, const RequestVisitor& visit) {
+RunPrediction predict_run(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan, bool has_double,
+                          const RequestVisitor& visit) {
   const std::vector<OpticalConstants> samples = spectral_rule(scene).indices();
   RunPrediction run;
   run.entries = entries.size();
   run.spectral_samples = samples.size();
   run.first = first_attempt(scene.accuracy, has_double);
-  run.host_bytes = static_cast<double>(entries.size() * (sizeof(SceneEntry) + sizeof(PointResult)));
   std::size_t largest = 0;
-  for (const std::span<const SceneEntry> part : run_blocks(entries, samples.size())) {
-    std::size_t bytes = 0;
-    if (plan.needs_moments) {
-      const MomentsRequest request = moments_block(scene, samples, part, run.first).request;
-      bytes += request.entries.size() * (2 * sizeof(MomentsEntry) + sizeof(Moments));
-      const std::optional<ShapePlan> shapes = shape_plan(request);
-      if (shapes) run.interpolated += request.entries.size() - shapes->direct.entries.size();
-      for (const MomentsRequest* computed : {shapes ? &shapes->nodes : &request, shapes ? &shapes->direct : nullptr}) {
-        if (computed == nullptr) continue;
-        run.moments += computed->entries.size();
-        visit.moments(*computed);
-      }
+  for (const SceneEntries& part : run_parts(entries, samples.size())) {
+    const PartRequests requests(scene, samples, plan, {part}, run.first);
+    const std::size_t moments = requests.moments().size();
+    const std::size_t beams = requests.beams().entries.size();
+    if (moments > 0) {
+      const std::optional<ShapePlan> shapes = shape_plan(requests.moments());
+      const MomentsRequest& computed = shapes ? shapes->nodes : requests.moments();
+      if (shapes) run.interpolated += moments;
+      run.moments += computed.size();
+      visit.moments(computed);
     }
-    if (plan.needs_beams) {
-      const ScatteringRequest request = beams_request(scene, samples, part, run.first.precision);
-      run.beams += request.entries.size();
-      bytes += request.entries.size() * (sizeof(ScatteringEntry) + sizeof(ScatteringMatrix) + sizeof(Scattered));
-      visit.beams(request);
-    }
-    largest = std::max(largest, bytes);
+    run.beams += beams;
+    if (beams > 0) visit.beams(requests.beams());
+    largest = std::max(largest, part.size() * sizeof(PointResult) + moments * sizeof(Moments) +
+                                    beams * (sizeof(ScatteringEntry) + sizeof(ScatteringMatrix)));
   }
-  run.host_bytes += static_cast<double>(largest);
+  run.host_bytes = static_cast<double>(entries.size() * sizeof(PointResult) + largest);
   if (run.moments + run.beams > 0) count_work(run, scene, entries, plan, has_double);
   return run;
 }

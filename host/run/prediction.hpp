@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <span>
 
 #include "model/moments.hpp"
 #include "model/scattering.hpp"
@@ -16,7 +15,7 @@ namespace dolp {
 inline constexpr std::size_t kCountedEntries = 256;
 
 /// Where a run interpolates between slope distributions, the directions whose entries are counted instead.
-inline constexpr std::size_t kCountedDirections = 4;
+inline constexpr std::size_t kCountedDirections = 6;
 
 /// Work of a run.
 struct RunPrediction {
@@ -33,7 +32,7 @@ struct RunPrediction {
   bool is_exact = true;    ///< all moments and beams were counted, none estimated from others
   double moments_s = 0.0;  ///< of all attempts on this machine's processor, from counting
   double beams_s = 0.0;
-  double host_bytes = 0.0;  ///< entries, requests and results of the largest block, and all results
+  double host_bytes = 0.0;  ///< requests and answers of the largest part, and all results
 };
 
 /// Called with each request of the first attempt.
@@ -48,7 +47,7 @@ struct RequestVisitor {
 ///
 /// Accuracy: exact for scenes with up to kCountedEntries entries, but for orders that a device's float rounds
 /// otherwise; a few percent beyond (tests Plan.FewEntries_*, Plan.ManyEntries_*, Plan.Device_*).
-RunPrediction predict_run(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan,
-                          bool has_double, const RequestVisitor& visit);
+RunPrediction predict_run(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan, bool has_double,
+                          const RequestVisitor& visit);
 
 }  // namespace dolp

@@ -1,176 +1,149 @@
 #include "run/scene_run.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <span>
 #include <stdexcept>
-#include <utility>
 
 #include "base/parallel_ranges.hpp"
 #include "model/angles.hpp"
-#include "model/grazing.hpp"
 #include "model/status.hpp"
 #include "plan/attempts.hpp"
-#include "run/beams.hpp"
 #include "run/closed_forms.hpp"
-#include "run/moments_block.hpp"
+#include "run/part_requests.hpp"
 
 namespace dolp {
 namespace {
 
-constexpr std::size_t kMomentsAtOnce = 1U << 22U;  // bounds the memory of a run with many wavelengths
-constexpr std::size_t kEntriesAtOnce = 4096;       // of a thread: their radiometry takes longer than to start one
+// Bound the memory of a run. Points take more of it, because nothing is shared between them.
+constexpr std::size_t kMomentsAtOnce = 1U << 22U;
+constexpr std::size_t kPointsAtOnce = 1U << 20U;
+constexpr std::size_t kEntriesAtOnce = 4096;  // of a thread: their radiometry takes longer than to start one
 
-bool is_bistatic(const Scene& scene) { return scene.geometry.mode == Mode::kBistatic; }
-
-bool wants_moments(const Scene& scene, const SceneEntry& entry, const EffectPlan& plan) {
-  return plan.needs_moments && needs_evaluator(scene, seen_entry(scene, entry));
-}
-
-bool wants_beam(const Scene& scene, const SceneEntry& entry, const EffectPlan& plan) {
-  return plan.needs_beams && needs_scattering(scene, entry);
-}
-
-/// What the entries of a scene share.
-struct SceneRun {
+/// What the parts of a run share.
+struct Way {
   const Scene& scene;
   const EffectPlan& plan;
   const Radiometry& radiometry;
+  const std::vector<OpticalConstants>& samples;
+  MomentsEvaluator* evaluator;
+  Accuracy accuracy;  ///< the scene's, in the evaluator's precision where the scene leaves it open
 };
 
-/// What the evaluator said of the entries of a block.
-struct BlockAnswer {
-  const MomentsBlock& block;
-  std::span<const Moments> moments;
-  std::span<const Scattered> beams;  ///< the samples of each entry in turn, or nothing where the plan needs none
+/// What the evaluator said to the requests of a part.
+struct Answer {
+  std::vector<Moments> moments;
+  std::vector<ScatteringMatrix> beams;
 };
 
-/// The cosine of the direction of one entry after the other; those of a grid have long runs of one direction.
-class Cosine {
+/// The first column of a pBRDF.
+Scattered scattered(const ScatteringMatrix& f) { return {f.m[0], f.m[4], f.m[8], f.m[12], f.error}; }
+
+/// Results of the members of a selection, one by one; the object keeps its memory between them.
+class MemberResults {
  public:
-  double operator()(double theta_deg) {
-    if (theta_deg != theta_deg_) {
-      theta_deg_ = theta_deg;
-      cosine_ = cos_sin_deg(theta_deg).cos;
-    }
-    return cosine_;
-  }
-
- private:
-  double theta_deg_ = 0.0;
-  double cosine_ = 1.0;
-};
-
-/// Results of the entries of a block, one by one; the object keeps its memory between them.
-class EntryResults {
- public:
-  EntryResults(const SceneRun& run, const BlockAnswer& answer)
-      : run_(run),
+  MemberResults(const Way& way, const Selection& selection, const PartRequests& requests, const Answer& answer)
+      : way_(way),
+        selection_(selection),
+        requests_(requests),
         answer_(answer),
-        samples_(run.radiometry.rule().indices()),
-        indices_(samples_.size()),
-        moments_(samples_.size()),
-        no_beams_(samples_.size()) {}
+        moments_(way.samples.size()),
+        indices_(way.samples.size()),
+        beams_(way.samples.size()) {}
 
-  PointResult operator()(const SceneEntry& entry, std::size_t position) {
-    const SceneEntry seen = seen_entry(run_.scene, entry);
-    const std::span<const Moments> moments = moments_of(seen, position);
-    const Direction direction{seen.theta_deg, cosine_of(seen)};
-    const std::span<const OpticalConstants> indices = indices_of(seen);
-    if (!is_bistatic(run_.scene)) return run_.radiometry.point(direction, moments, indices);
-    return run_.radiometry.bistatic_point(direction, source_cosine_(entry.theta_deg), moments, indices,
-                                          beams_of(position));
+  PointResult operator()(std::size_t member) {
+    const SceneEntry entry = selection_[member];
+    const Direction direction = seen(entry);
+    if (entry.index) std::ranges::fill(indices_, *entry.index);
+    const std::span<const OpticalConstants> indices = entry.index ? indices_ : way_.samples;
+    const std::span<const Moments> moments = moments_of(member, entry, direction, indices);
+    if (way_.scene.geometry.mode != Mode::kBistatic) return way_.radiometry.point(direction, moments, indices);
+    fill_beams(member, entry);
+    return way_.radiometry.bistatic_point(direction, cos_sin_deg(entry.theta_deg).cos, moments, indices, beams_);
   }
 
  private:
-  std::span<const OpticalConstants> indices_of(const SceneEntry& seen) {
-    if (!seen.index) return samples_;
-    std::ranges::fill(indices_, *seen.index);
-    return indices_;
+  /// Neighbours in a grid mostly have one direction, and all of them one way to treat it.
+  const Direction& seen(const SceneEntry& entry) {
+    const Surface& surface = way_.scene.surface;
+    const double theta_deg = seen_deg(way_.scene, entry.theta_deg);
+    const Treatment treatment = treatment_of(surface.distribution, surface.masking, theta_deg, entry.shape);
+    if (!has_direction_ || theta_deg != direction_.theta_deg || treatment != direction_.treatment) {
+      direction_ = direction_of(surface.distribution, surface.masking, theta_deg, entry.shape);
+      has_direction_ = true;
+    }
+    return direction_;
   }
 
-  double cosine_of(const SceneEntry& seen) {
-    if (!needs_evaluator(run_.scene, seen)) return closed_form_cosine(seen);
-    return cosine_(zenith_before_limit_deg(run_.scene.surface.masking, seen.theta_deg));
-  }
-
-  /// The moments of the entry at `position` of the block, or their closed forms, or zeros where the plan needs none.
-  std::span<const Moments> moments_of(const SceneEntry& seen, std::size_t position) {
-    if (!run_.plan.needs_moments) return moments_;  // never written to
-    if (!needs_evaluator(run_.scene, seen)) {
-      const std::span<const OpticalConstants> indices = indices_of(seen);
-      moments_ = closed_forms(run_.scene, seen, {indices.begin(), indices.end()});
+  /// The answer, or closed forms, or zeros where the plan needs none.
+  std::span<const Moments> moments_of(std::size_t member, const SceneEntry& entry, const Direction& direction,
+                                      std::span<const OpticalConstants> indices) {
+    if (!way_.plan.needs_moments) return moments_;  // never written to
+    if (direction.treatment != Treatment::kIntegrated) {
+      for (std::size_t j = 0; j < moments_.size(); ++j) {
+        moments_[j] = closed_form(way_.scene.surface, direction, entry.shape, indices[j]);
+      }
       return moments_;
     }
-    const std::uint32_t first = answer_.block.first_moments[position];
-    if (!seen.index) return answer_.moments.subspan(first, samples_.size());
-    std::ranges::fill(moments_, answer_.moments[first]);
+    const PartRequests::Place place = requests_.moments_of(member);
+    if (place.stride == 1 || moments_.size() == 1) {
+      return std::span(answer_.moments).subspan(place.first, moments_.size());
+    }
+    for (std::size_t j = 0; j < moments_.size(); ++j) moments_[j] = answer_.moments[place.first + j * place.stride];
     return moments_;
   }
 
-  std::span<const Scattered> beams_of(std::size_t position) const {
-    if (answer_.beams.empty()) return no_beams_;
-    return answer_.beams.subspan(position * samples_.size(), samples_.size());
+  void fill_beams(std::size_t member, const SceneEntry& entry) {
+    if (!way_.plan.needs_beams) return;
+    if (!wants_beam(way_.scene, entry, way_.plan)) {
+      std::ranges::fill(beams_, beam_without_evaluator(way_.scene, entry.theta_deg));
+      return;
+    }
+    const std::size_t first = requests_.beams_of(member);
+    for (std::size_t j = 0; j < beams_.size(); ++j) beams_[j] = scattered(answer_.beams[first + j]);
   }
 
-  const SceneRun& run_;
-  const BlockAnswer& answer_;
-  std::vector<OpticalConstants> samples_;
-  std::vector<OpticalConstants> indices_;
+  const Way& way_;
+  const Selection& selection_;
+  const PartRequests& requests_;
+  const Answer& answer_;
   std::vector<Moments> moments_;
-  std::vector<Scattered> no_beams_;
-  Cosine cosine_, source_cosine_;
-};
-
-std::vector<Scattered> block_beams(const SceneRun& run, std::span<const SceneEntry> entries,
-                                   std::span<const ScatteringMatrix> matrices) {
-  if (!run.plan.needs_beams) return {};
-  return entry_beams(run.scene, run.radiometry.rule().samples.size(), entries, matrices);
-}
-
-std::vector<PointResult> block_results(const SceneRun& run, std::span<const SceneEntry> entries,
-                                       const BlockAnswer& answer) {
-  std::vector<PointResult> results(entries.size());
-  parallel_ranges(entries.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
-    EntryResults result_of(run, answer);
-    for (std::size_t i = first; i < last; ++i) results[i] = result_of(entries[i], i);
-  });
-  return results;
-}
-
-/// What the attempts at the entries of a scene share.
-struct Attempts {
-  const SceneRun& run;
-  Accuracy accuracy;  ///< the scene's, in the evaluator's precision where the scene leaves it open
-  MomentsEvaluator& evaluator;
+  std::vector<OpticalConstants> indices_;
+  std::vector<Scattered> beams_;
+  Direction direction_;
+  bool has_direction_ = false;
 };
 
 /// A part of the progress of a whole: `before` of `total` are done when it starts.
 Progress part_of(const Progress& progress, std::size_t before, std::size_t total) {
-  if (!progress) return {};
   return [&progress, before, total](std::size_t done, std::size_t) { return progress(before + done, total); };
 }
 
-/// One attempt at all entries of a block: moments and beams in the same precision.
-std::vector<PointResult> attempt_block(const Attempts& all, std::span<const SceneEntry> entries, const Attempt& attempt,
-                                       const Progress& progress) {
-  const Scene& scene = all.run.scene;
-  const std::vector<OpticalConstants> samples = all.run.radiometry.rule().indices();
-  MomentsBlock block;
-  ScatteringRequest beams;
-  if (all.run.plan.needs_moments) block = moments_block(scene, samples, entries, attempt);
-  if (all.run.plan.needs_beams) beams = beams_request(scene, samples, entries, attempt.precision);
-  const std::size_t before = block.request.entries.size();
-  const std::size_t total = before + beams.entries.size();
-  std::vector<Moments> moments;
-  std::vector<ScatteringMatrix> matrices;
-  ScatteringEvaluator* const scattering = all.evaluator.scattering();
-  if (total > before && scattering == nullptr) throw std::logic_error("the bistatic mode needs an evaluator of pBRDFs");
-  if (total > before && before > 0) scattering->prepare(beams);
-  if (before > 0) moments = all.evaluator.evaluate(block.request, part_of(progress, 0, total));
-  if (total > before) matrices = scattering->scatter(beams, part_of(progress, before, total));
-  return block_results(all.run, entries, {block, moments, block_beams(all.run, entries, matrices)});
+/// Moments and beams of one attempt, in the same precision.
+Answer asked(const Way& way, const PartRequests& requests, const Progress& progress) {
+  const std::size_t moments = requests.moments().wanted_count();
+  const std::size_t beams = requests.beams().entries.size();
+  const std::size_t total = moments + beams;
+  if (total == 0) return {};
+  ScatteringEvaluator* const scattering = way.evaluator->scattering();
+  if (beams > 0 && scattering == nullptr) throw std::logic_error("the bistatic mode needs an evaluator of pBRDFs");
+  Answer answer;
+  if (beams > 0 && moments > 0) scattering->prepare(requests.beams());
+  if (moments > 0) answer.moments = way.evaluator->evaluate(requests.moments(), part_of(progress, 0, total));
+  if (beams > 0) answer.beams = scattering->scatter(requests.beams(), part_of(progress, moments, total));
+  return answer;
+}
+
+std::vector<PointResult> attempted(const Way& way, const Selection& selection, const Attempt& attempt,
+                                   const Progress& progress) {
+  const PartRequests requests(way.scene, way.samples, way.plan, selection, attempt);
+  const Answer answer = asked(way, requests, progress);
+  std::vector<PointResult> results(selection.size());
+  parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
+    MemberResults result_of(way, selection, requests, answer);
+    for (std::size_t i = first; i < last; ++i) results[i] = result_of(i);
+  });
+  return results;
 }
 
 bool is_better(const PointResult& a, const PointResult& b) {
@@ -179,28 +152,26 @@ bool is_better(const PointResult& a, const PointResult& b) {
 }
 
 /// Whether an attempt at an entry finds more than the last one: f has no rule that a tolerance would make finer.
-bool finds_more(const Attempt& attempt, const Attempt& last, const SceneRun& run, const SceneEntry& entry) {
-  return wants_moments(run.scene, entry, run.plan) ||
-         (wants_beam(run.scene, entry, run.plan) && attempt.precision != last.precision);
+bool finds_more(const Way& way, const Attempt& attempt, const Attempt& last, const SceneEntry& entry) {
+  return wants_moments(way.scene, entry, way.plan) ||
+         (wants_beam(way.scene, entry, way.plan) && attempt.precision != last.precision);
 }
 
-/// Tries the entries of a block again that miss the tolerance, those together that want the same attempt. To `progress`
-/// the block is done already; it may still cancel.
-void retry(const Attempts& all, std::span<const SceneEntry> entries, const Attempt& first,
-           std::span<PointResult> results, const Progress& progress) {
+/// Tries the entries of a part again that miss the tolerance, those together that want the same attempt. To `progress`
+/// the part is done already; it may still cancel.
+void retry(const Way& way, const SceneEntries& part, const Attempt& first, std::span<PointResult> results,
+           const Progress& progress) {
   const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
   std::map<Attempt, std::vector<std::size_t>> waiting;
   const auto plan = [&](std::size_t i, const Attempt& last, const PointResult& result) {
-    const auto next = next_attempt(last, result, all.accuracy, all.evaluator.has_double());
-    if (next && finds_more(*next, last, all.run, entries[i])) waiting[*next].push_back(i);
+    const auto next = next_attempt(last, result, way.accuracy, way.evaluator->has_double());
+    if (next && finds_more(way, *next, last, part[i])) waiting[*next].push_back(i);
   };
-  for (std::size_t i = 0; i < entries.size(); ++i) plan(i, first, results[i]);
+  for (std::size_t i = 0; i < results.size(); ++i) plan(i, first, results[i]);
   while (!waiting.empty()) {
     const auto [attempt, members] = *waiting.begin();
     waiting.erase(waiting.begin());
-    std::vector<SceneEntry> again;
-    for (const std::size_t i : members) again.push_back(entries[i]);
-    const std::vector<PointResult> better = attempt_block(all, again, attempt, is_wanted);
+    const std::vector<PointResult> better = attempted(way, {part, members}, attempt, is_wanted);
     for (std::size_t j = 0; j < members.size(); ++j) {
       if (is_better(better[j], results[members[j]])) results[members[j]] = better[j];
       plan(members[j], attempt, better[j]);
@@ -208,60 +179,65 @@ void retry(const Attempts& all, std::span<const SceneEntry> entries, const Attem
   }
 }
 
-/// Results of a block: all attempts, or what needs none.
-std::vector<PointResult> evaluated_block(const SceneRun& run, std::span<const SceneEntry> entries,
-                                         MomentsEvaluator* evaluator, const Progress& progress) {
-  if (!wants_evaluator(run.scene, entries, run.plan)) {
-    std::vector<PointResult> results = block_results(run, entries, {{}, {}, block_beams(run, entries, {})});
+/// Results of a part: all attempts, or what needs none.
+std::vector<PointResult> part_results(const Way& way, const SceneEntries& part, const Progress& progress) {
+  if (!wants_evaluator(way.scene, part, way.plan)) {
+    std::vector<PointResult> results = attempted(way, {part}, {}, progress);
     if (!progress(1, 1)) throw Cancelled{};
     return results;
   }
-  Attempts all{run, run.scene.accuracy, *evaluator};
-  if (all.accuracy.precision == Precision::kAuto) all.accuracy.precision = evaluator->precision();
-  const Attempt first = first_attempt(all.accuracy, evaluator->has_double());
-  std::vector<PointResult> results = attempt_block(all, entries, first, progress);
-  retry(all, entries, first, results, progress);
+  const Attempt first = first_attempt(way.accuracy, way.evaluator->has_double());
+  std::vector<PointResult> results = attempted(way, {part}, first, progress);
+  retry(way, part, first, results, progress);
   return results;
 }
 
 }  // namespace
 
-bool wants_evaluator(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan) {
-  return std::ranges::any_of(entries, [&](const SceneEntry& entry) {
+void CollectedResults::write(const SceneEntries&, std::vector<PointResult> results) {
+  if (results_.empty()) {
+    results_ = std::move(results);
+  } else {
+    results_.insert(results_.end(), results.begin(), results.end());
+  }
+}
+
+std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples) {
+  const std::size_t moments = entries.is_grid() ? kMomentsAtOnce : kPointsAtOnce;
+  return entries.parts(std::max<std::size_t>(1, moments / spectral_samples));
+}
+
+bool wants_evaluator(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan) {
+  return std::ranges::any_of(entries.all(), [&](const SceneEntry& entry) {
     return wants_moments(scene, entry, plan) || wants_beam(scene, entry, plan);
   });
 }
 
-std::vector<std::span<const SceneEntry>> run_blocks(std::span<const SceneEntry> entries, std::size_t spectral_samples) {
-  const std::size_t block_size = std::max<std::size_t>(1, kMomentsAtOnce / spectral_samples);
-  std::vector<std::span<const SceneEntry>> blocks;
-  for (std::size_t first = 0; first < entries.size(); first += block_size) {
-    blocks.push_back(entries.subspan(first, std::min(block_size, entries.size() - first)));
-  }
-  return blocks;
-}
-
-std::vector<PointResult> evaluate_scene(const Scene& scene, const std::vector<SceneEntry>& entries,
-                                        const EffectPlan& plan, MomentsEvaluator* evaluator, const Progress& progress) {
+void run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan, MomentsEvaluator* evaluator,
+               Sink& sink, const Progress& progress) {
   const Radiometry radiometry(scene, plan.kept, plan.bound);
-  const SceneRun run{scene, plan, radiometry};
-  std::vector<PointResult> results;
-  for (const std::span<const SceneEntry> block : run_blocks(entries, radiometry.rule().samples.size())) {
-    const Progress block_progress = [&](std::size_t done, std::size_t total) {
-      return !progress || progress(results.size() + block.size() * done / total, entries.size());
+  const std::vector<OpticalConstants> samples = radiometry.rule().indices();
+  Way way{scene, plan, radiometry, samples, evaluator, scene.accuracy};
+  if (evaluator && way.accuracy.precision == Precision::kAuto) way.accuracy.precision = evaluator->precision();
+  std::size_t before = 0;
+  for (const SceneEntries& part : run_parts(entries, samples.size())) {
+    const Progress part_progress = [&](std::size_t done, std::size_t total) {
+      return !progress || progress(before + part.size() * done / total, entries.size());
     };
-    std::vector<PointResult> of_results = evaluated_block(run, block, evaluator, block_progress);
-    if (results.empty()) {
-      results = std::move(of_results);
-    } else {
-      results.insert(results.end(), of_results.begin(), of_results.end());
-    }
+    sink.write(part, part_results(way, part, part_progress));
+    before += part.size();
   }
-  return results;
 }
 
-std::vector<PointResult> evaluate_scene(const Scene& scene, const std::vector<SceneEntry>& entries,
-                                        MomentsEvaluator& evaluator, const Progress& progress) {
+std::vector<PointResult> evaluate_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
+                                        MomentsEvaluator* evaluator, const Progress& progress) {
+  CollectedResults results;
+  run_scene(scene, entries, plan, evaluator, results, progress);
+  return results.take();
+}
+
+std::vector<PointResult> evaluate_scene(const Scene& scene, const SceneEntries& entries, MomentsEvaluator& evaluator,
+                                        const Progress& progress) {
   return evaluate_scene(scene, entries, keep_everything(scene), &evaluator, progress);
 }
 

@@ -1,7 +1,7 @@
-// A scene at many entries: which moments are wanted, their evaluation, and the radiometry of each entry.
+// The one way of every front end: entries of a scene -> moments and beams -> radiometry -> sink.
 #pragma once
 
-#include <span>
+#include <utility>
 #include <vector>
 
 #include "evaluate/evaluator.hpp"
@@ -13,35 +13,58 @@
 
 namespace dolp {
 
-/// The product of the scene's grid axes in C order (theta, sigma, q), q fastest.
+/// The scene's grid.
 /// Errors: InputError for more than 2^24 entries.
-std::vector<SceneEntry> grid_entries(const Scene& scene);
+SceneEntries grid_entries(const Scene& scene);
 
-/// Scattered points; what they do not say comes from the scene.
+/// Scattered points; what they do not say comes from the scene. Points of which only the direction is said are a grid.
 /// Errors: InputError that names the points' file and line, column, value and what is allowed: theta_deg is neither in
 /// the points nor a single value in the grid; n without k, or k without n, beside a material that depends on the
 /// wavelength; q <= 3/2 with smith masking and the cauchy distribution.
-std::vector<SceneEntry> point_entries(const Scene& scene, const Points& points);
+SceneEntries point_entries(const Scene& scene, const Points& points);
 
 /// Refuses a q of the points that the scene's masking is not made for: q <= 3/2 with smith and the cauchy distribution;
 /// the scene's own q has passed the same check.
 /// Errors: InputError that names the points' file and line, column, value and what is allowed.
 void check_smith(const Scene& scene, const Points& points);
 
-/// How a run cuts its entries, which bounds its memory: consecutive blocks, each with requests of its own.
-std::vector<std::span<const SceneEntry>> run_blocks(std::span<const SceneEntry> entries, std::size_t spectral_samples);
+/// Where results go, part by part.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  /// Results of `part`, whose entries follow those of the part before.
+  virtual void write(const SceneEntries& part, std::vector<PointResult> results) = 0;
+};
+
+/// All results in memory.
+class CollectedResults final : public Sink {
+ public:
+  void write(const SceneEntries& part, std::vector<PointResult> results) override;
+  std::vector<PointResult> take() { return std::move(results_); }
+
+ private:
+  std::vector<PointResult> results_;
+};
+
+/// The parts in which a run goes through its entries, which bounds its memory: whole directions of a grid where they
+/// fit.
+std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples);
 
 /// Whether anything is left for an evaluator: the plan needs moments or beams, and not all entries have closed forms.
-bool wants_evaluator(const Scene& scene, std::span<const SceneEntry> entries, const EffectPlan& plan);
+bool wants_evaluator(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan);
 
-/// Results in the order of `entries`, of what the plan keeps; what that does not give is NaN. Progress counts entries.
-/// The evaluator may be null where wants_evaluator says so.
-/// Errors: those of the evaluator and of Radiometry.
-std::vector<PointResult> evaluate_scene(const Scene& scene, const std::vector<SceneEntry>& entries,
-                                        const EffectPlan& plan, MomentsEvaluator* evaluator, const Progress& progress);
+/// Goes all the way, part by part: what the plan keeps, computed again where it misses the tolerance; what the plan
+/// does not give is NaN. Progress counts entries. The evaluator may be null where wants_evaluator says so. Errors:
+/// those of the evaluator, of Radiometry and of the sink; Cancelled when `progress` returns false.
+void run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan, MomentsEvaluator* evaluator,
+               Sink& sink, const Progress& progress);
+
+/// The same into memory: results in the order of `entries`.
+std::vector<PointResult> evaluate_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
+                                        MomentsEvaluator* evaluator, const Progress& progress);
 
 /// The same with everything kept.
-std::vector<PointResult> evaluate_scene(const Scene& scene, const std::vector<SceneEntry>& entries,
-                                        MomentsEvaluator& evaluator, const Progress& progress);
+std::vector<PointResult> evaluate_scene(const Scene& scene, const SceneEntries& entries, MomentsEvaluator& evaluator,
+                                        const Progress& progress);
 
 }  // namespace dolp

@@ -129,13 +129,6 @@ bool has_rho(const Table& table) {
   return !table.rho_error_estimate.empty() && (!table.rho_i.empty() || !table.rho_q.empty());
 }
 
-SceneEntry entry_at(const Table& table, std::size_t position) {
-  const std::size_t q = position % table.q.size();
-  const std::size_t sigma = position / table.q.size() % table.sigma.size();
-  const std::size_t theta = position / (table.q.size() * table.sigma.size());
-  return {table.theta_deg[theta], {table.sigma[sigma], table.q[q]}, {}};
-}
-
 }  // namespace
 
 double CheckedValue::error() const { return std::abs(stored - reference); }
@@ -173,7 +166,8 @@ TableCheck check_table(const Table& table, const Scene& scene, const std::string
   check_axes(table, scene, name);
   const std::vector<std::size_t> positions = sample_positions(table.size(), options);
   std::vector<SceneEntry> entries;
-  for (const std::size_t position : positions) entries.push_back(entry_at(table, position));
+  const SceneEntries grid = SceneEntries::grid(table.theta_deg, table.sigma, table.q);
+  for (const std::size_t position : positions) entries.push_back(grid[position]);
   ReferenceEvaluator reference({.relative_tolerance = kReferenceTolerance});
   const std::vector<PointResult> results = evaluate_scene(scene, entries, reference, progress);
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <limits>
 #include <memory>
+#include <vector>
 
 #include "base/parallel_ranges.hpp"
 #include "base/processor.hpp"
@@ -24,6 +25,25 @@ double unit_roundoff_of(bool in_double) {
                    : 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon());
 }
 
+std::vector<std::size_t> wanted_entries(const MomentsRequest& request) {
+  std::vector<std::size_t> entries;
+  entries.reserve(request.wanted_count());
+  for (std::size_t i = 0; i < request.size(); ++i) {
+    if (request.is_wanted(i)) entries.push_back(i);
+  }
+  return entries;
+}
+
+std::vector<std::size_t> shapes_of(const KernelData& data, const std::vector<std::size_t>& entries) {
+  std::vector<char> is_used(data.shapes.size(), 0);
+  for (const std::size_t i : entries) is_used[data[i].shape] = 1;
+  std::vector<std::size_t> shapes;
+  for (std::size_t shape = 0; shape < is_used.size(); ++shape) {
+    if (is_used[shape] != 0) shapes.push_back(shape);
+  }
+  return shapes;
+}
+
 }  // namespace
 
 bool CpuEvaluator::in_double(Precision requested) const {
@@ -43,16 +63,18 @@ std::vector<Moments> CpuEvaluator::evaluate(const MomentsRequest& request, const
   const bool is_double = in_double(request.precision);
   const std::unique_ptr<KernelText> text = make_text(data, is_double);
   const double unit_roundoff = unit_roundoff_of(is_double);
+  const std::vector<std::size_t> entries = wanted_entries(request);
   if (data.needs_masking_table()) {
+    const std::vector<std::size_t> shapes = shapes_of(data, entries);
     parallel_for(
-        data.shapes.size(), [&](std::size_t i) { text->build_masking_table(i); }, nullptr);
+        shapes.size(), [&](std::size_t i) { text->build_masking_table(shapes[i]); }, nullptr);
   }
-  std::vector<Moments> moments(data.entries.size());
+  std::vector<Moments> moments(request.size());
   const auto one = [&](std::size_t i) {
-    const MomentsEntry& entry = data.entries[i];
-    moments[i] = moments_from_kernel(text->moments(entry), data, entry, unit_roundoff);
+    const MomentsEntry entry = data[entries[i]];
+    moments[entries[i]] = moments_from_kernel(text->moments(entry), data, entry, unit_roundoff);
   };
-  parallel_for(moments.size(), one, progress);
+  parallel_for(entries.size(), one, progress);
 
   for (const Moments& entry : moments) report_.evaluations += entry.evaluations;
   note(is_double, seconds_since(start));

@@ -18,56 +18,58 @@ bool is_finite(const Moments& m) {
          std::isfinite(m.r_i_error + m.r_q_error + m.albedo_error + m.deficit_error);
 }
 
-/// Progress of a part of the work, in units of `total` entries: `before` of `all` computed moments are done.
-Progress part_of(const Progress& progress, std::size_t before, std::size_t all, std::size_t total) {
-  if (!progress) return {};
-  return [&progress, before, all, total](std::size_t done, std::size_t) {
-    return progress(total * (before + done) / all, total);
-  };
-}
-
-/// Fills in the moments of the slabs whose nodes are finite; the entries of the others join plan.direct.
-void interpolate(ShapePlan& plan, const MomentsRequest& request, std::span<const Moments> nodes,
-                 std::span<Moments> moments) {
-  std::vector<char> is_done(plan.slabs.size(), 0);
-  parallel_ranges(plan.slabs.size(), 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t s = first; s < last; ++s) {
-      const std::span<const Moments> of_slab = nodes.subspan(s * plan.nodes_of_a_slab(), plan.nodes_of_a_slab());
-      if (!std::ranges::all_of(of_slab, is_finite)) continue;
-      const std::vector<Moments> results = interpolated(plan, plan.slabs[s], request, of_slab);
-      for (std::size_t i = 0; i < results.size(); ++i) moments[plan.slabs[s].entries[i]] = results[i];
-      is_done[s] = 1;
+/// Fills in the moments of the directions whose nodes are finite. Returns the others.
+std::vector<std::size_t> interpolate_all(const ShapePlan& plan, std::span<const Moments> nodes,
+                                         const MomentsRequest& request, std::span<Moments> moments) {
+  const std::size_t indices = request.indices.size();
+  const std::size_t of_direction = plan.nodes_of_a_direction();
+  const std::size_t shapes = request.sigma.size() * request.q.size();
+  std::vector<char> is_done(request.theta_deg.size(), 0);
+  parallel_ranges(is_done.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t theta = first; theta < last; ++theta) {
+      if (!std::ranges::all_of(nodes.subspan(theta * indices * of_direction, indices * of_direction), is_finite))
+        continue;
+      for (std::size_t i = theta * indices; i < (theta + 1) * indices; ++i) {
+        interpolate(plan, nodes.subspan(i * of_direction, of_direction), moments.subspan(i * shapes, shapes));
+      }
+      is_done[theta] = 1;
     }
   });
-  for (std::size_t s = 0; s < plan.slabs.size(); ++s) {
-    if (is_done[s] != 0) continue;
-    for (const std::uint32_t i : plan.slabs[s].entries) {
-      plan.direct_entries.push_back(i);
-      plan.direct.entries.push_back(request.entries[i]);
-    }
+  std::vector<std::size_t> left;
+  for (std::size_t theta = 0; theta < is_done.size(); ++theta) {
+    if (is_done[theta] == 0) left.push_back(theta);
   }
+  return left;
 }
 
 }  // namespace
 
 std::vector<Moments> InterpolatingEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
   using Clock = std::chrono::steady_clock;
-  std::optional<ShapePlan> plan = shape_plan(request);
+  const std::optional<ShapePlan> plan = shape_plan(request);
   if (!plan) return evaluator_->evaluate(request, progress);
-  const std::size_t total = request.entries.size();
-  const std::size_t node_count = plan->nodes.entries.size();
-  const std::size_t planned = node_count + plan->direct.entries.size();
-  const std::vector<Moments> nodes = evaluator_->evaluate(plan->nodes, part_of(progress, 0, planned, total));
-  std::vector<Moments> moments(total);
+  const Progress of_nodes = [&](std::size_t done, std::size_t all) {
+    return !progress || progress(request.size() * done / all, request.size());
+  };
+  const std::vector<Moments> nodes = evaluator_->evaluate(plan->nodes, of_nodes);
   const Clock::time_point start = Clock::now();
-  interpolate(*plan, request, nodes, moments);
+  std::vector<Moments> moments(request.size());
+  const std::vector<std::size_t> left = interpolate_all(*plan, nodes, request, moments);
   interpolation_s_ += seconds_since(start);
-  nodes_ += node_count;
-  interpolated_ += total - plan->direct.entries.size();
-  if (plan->direct.entries.empty()) return moments;
-  const std::size_t all = node_count + plan->direct.entries.size();
-  const std::vector<Moments> direct = evaluator_->evaluate(plan->direct, part_of(progress, node_count, all, total));
-  for (std::size_t i = 0; i < direct.size(); ++i) moments[plan->direct_entries[i]] = direct[i];
+  nodes_ += nodes.size();
+  const std::size_t of_theta = request.size() / request.theta_deg.size();
+  interpolated_ += request.size() - left.size() * of_theta;
+  if (left.empty()) return moments;
+  MomentsRequest direct = request;
+  direct.may_interpolate = false;
+  direct.theta_deg.clear();
+  for (const std::size_t theta : left) direct.theta_deg.push_back(request.theta_deg[theta]);
+  const Progress is_wanted = [&](std::size_t, std::size_t) { return !progress || progress(1, 1); };
+  const std::vector<Moments> computed = evaluator_->evaluate(direct, is_wanted);
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    std::copy_n(computed.begin() + static_cast<std::ptrdiff_t>(i * of_theta), of_theta,
+                moments.begin() + static_cast<std::ptrdiff_t>(left[i] * of_theta));
+  }
   return moments;
 }
 

@@ -9,7 +9,7 @@
 
 namespace dolp {
 
-/// Another evaluator, asked for the nodes of dense slabs (shape_plan.hpp) and for all that is not dense.
+/// Another evaluator, asked for the nodes of dense grids (shape_plan.hpp) and for all that is not dense.
 class InterpolatingEvaluator final : public MomentsEvaluator {
  public:
   explicit InterpolatingEvaluator(std::unique_ptr<MomentsEvaluator> evaluator) : evaluator_(std::move(evaluator)) {}

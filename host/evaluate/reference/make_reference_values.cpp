@@ -60,11 +60,7 @@ dolp::MomentsRequest request_of(const Group& group, const std::vector<Case>& cas
   request.masking = group.masking;
   request.tolerance = 0.0;
   for (const Case& c : cases) {
-    const auto position = static_cast<std::uint32_t>(request.theta_deg.size());
-    request.theta_deg.push_back(c.theta_deg);
-    request.shapes.push_back(c.shape);
-    request.indices.push_back(c.index);
-    request.entries.push_back({position, position, position});
+    request.append({c.theta_deg, c.shape, c.index});
   }
   return request;
 }

@@ -32,24 +32,23 @@ void check_zenith(double theta_deg) {
   require(theta_deg >= 0.0 && theta_deg <= 90.0, "theta must be in [0, 90] degrees", theta_deg);
 }
 
-template <class Request>
-void check_surfaces(const Request& request) {
-  const bool is_cauchy = request.distribution == Distribution::kCauchy;
-  const bool is_smith = request.masking == Masking::kSmith;
-  for (const SlopeShape& shape : request.shapes) {
-    require(shape.sigma >= 0.0, "sigma must not be negative", shape.sigma);
-    require(!is_cauchy || shape.q > 1.0, "q must be above 1", shape.q);
-    require(!is_cauchy || !is_smith || shape.q > 1.5, "smith masking needs q above 1.5", shape.q);
-  }
-  for (const OpticalConstants& index : request.indices) {
-    require(index.n > 0.0, "n must be above 0", index.n);
-    require(index.k >= 0.0, "k must not be negative", index.k);
-  }
+void check_shape(Distribution distribution, Masking masking, const SlopeShape& shape) {
+  const bool is_cauchy = distribution == Distribution::kCauchy;
+  require(shape.sigma >= 0.0, "sigma must not be negative", shape.sigma);
+  require(!is_cauchy || shape.q > 1.0, "q must be above 1", shape.q);
+  require(!is_cauchy || masking != Masking::kSmith || shape.q > 1.5, "smith masking needs q above 1.5", shape.q);
+}
+
+void check_index(const OpticalConstants& index) {
+  require(index.n > 0.0, "n must be above 0", index.n);
+  require(index.k >= 0.0, "k must not be negative", index.k);
 }
 
 void check(const MomentsRequest& request) {
   for (const double theta_deg : request.theta_deg) check_zenith(theta_deg);
-  check_surfaces(request);
+  for (const double sigma : request.sigma) check_shape(request.distribution, request.masking, {.sigma = sigma});
+  for (const double q : request.q) check_shape(request.distribution, request.masking, {.q = q});
+  for (const OpticalConstants& index : request.indices) check_index(index);
 }
 
 void check(const ScatteringRequest& request) {
@@ -57,17 +56,17 @@ void check(const ScatteringRequest& request) {
     check_zenith(angles.theta_i_deg);
     check_zenith(angles.theta_r_deg);
   }
-  check_surfaces(request);
-  for (const SlopeShape& shape : request.shapes) require(shape.sigma > 0.0, "sigma must be above 0", shape.sigma);
+  for (const SlopeShape& shape : request.shapes) {
+    check_shape(request.distribution, request.masking, shape);
+    require(shape.sigma > 0.0, "sigma must be above 0", shape.sigma);
+  }
+  for (const OpticalConstants& index : request.indices) check_index(index);
 }
 
-Moments moments_of(const MomentsRequest& request, const MomentsEntry& entry, const reference::Refinement& refinement) {
-  const double theta_deg = request.theta_deg.at(entry.theta);
-  const SlopeShape& shape = request.shapes.at(entry.shape);
-  const OpticalConstants& constants = request.indices.at(entry.index);
-  if (shape.sigma == 0.0) return reference::mirror_moments(theta_deg, constants);
-  const reference::Slopes slopes(request.distribution, shape.sigma, shape.q);
-  return reference::hemisphere_moments(slopes, request.masking, theta_deg, constants, refinement);
+Moments moments_of(const MomentsRequest& request, const MomentsPoint& point, const reference::Refinement& refinement) {
+  if (point.shape.sigma == 0.0) return reference::mirror_moments(point.theta_deg, point.index);
+  const reference::Slopes slopes(request.distribution, point.shape.sigma, point.shape.q);
+  return reference::hemisphere_moments(slopes, request.masking, point.theta_deg, point.index, refinement);
 }
 
 ScatteringMatrix matrix_of(const ScatteringRequest& request, const ScatteringEntry& entry) {
@@ -174,9 +173,10 @@ std::vector<Moments> ReferenceEvaluator::evaluate(const MomentsRequest& request,
   check(request);
   const auto start = std::chrono::steady_clock::now();
   const reference::Refinement refinement{relative_tolerance(options_, request.tolerance), options_.subdivisions};
-  Crew<Moments> crew(request.entries.size(),
-                     [&](std::size_t i) { return moments_of(request, request.entries[i], refinement); });
-  std::vector<Moments> results = crew.run(thread_count(options_, request.entries.size()), progress);
+  Crew<Moments> crew(request.size(), [&](std::size_t i) {
+    return request.is_wanted(i) ? moments_of(request, request[i], refinement) : Moments{};
+  });
+  std::vector<Moments> results = crew.run(thread_count(options_, request.size()), progress);
   for (const Moments& moments : results) report_.evaluations += moments.evaluations;
   note(seconds_since(start));
   return results;

@@ -5,7 +5,7 @@
 #include "evaluate/vulkan/kernels.hpp"
 #include "evaluate/vulkan/tiles.hpp"
 #include "plan/beam.hpp"
-#include "plan/groups.hpp"
+#include "plan/rows.hpp"
 
 namespace dolp {
 namespace {
@@ -27,21 +27,21 @@ std::uint64_t node_bytes(const vulkan::Packing& packing, const KernelData& data)
 
 DispatchForecast dispatch_forecast(const MomentsRequest& request, const DeviceDescription& device,
                                    const VulkanOptions& options) {
-  if (request.entries.empty()) return {};
+  if (request.wanted_count() == 0) return {};
   const vulkan::Packing packing(request.precision == Precision::kDouble);
   const KernelData data = kernel_data(request);
-  const Grouping grouping = grouped(data, options.groups_small_requests);
-  const vulkan::TileCosts costs = vulkan::tile_costs(packing, grouping.size);
-  const std::uint64_t most = grouping.groups.size() * DOLP_MAX_PIECES;
+  const Rows rows = rows_of(request, data);
+  const vulkan::TileCosts costs = vulkan::tile_costs(packing, rows.width);
+  const std::uint64_t most = rows.rows.size() * DOLP_MAX_PIECES;
   const vulkan::TileSizes sizes =
       vulkan::tile_sizes(tile_limits(device, std::min<std::uint64_t>(options.max_tile_invocations, most),
-                                     std::min<std::uint64_t>(options.max_block_shapes, data.shapes.size())),
+                                     std::min<std::uint64_t>(options.max_block_shapes, rows.shapes.size())),
                          costs);
   DispatchForecast forecast{.tile_invocations = sizes.invocations, .block_shapes = sizes.shapes};
-  forecast.group_size = grouping.size;
-  forecast.groups = grouping.groups.size();
-  for (const vulkan::Block& block : vulkan::blocks_of(grouping, sizes.shapes)) {
-    const std::size_t pieces = pieces_of(grouping, data, block.first_group, block.group_count).size();
+  forecast.row_width = rows.width;
+  forecast.rows = rows.rows.size();
+  for (const vulkan::Block& block : vulkan::blocks_of(rows, sizes.shapes)) {
+    const std::size_t pieces = pieces_of(rows, data, block.first_row, block.row_count).size();
     forecast.dispatches += (pieces + sizes.invocations - 1) / sizes.invocations;
     forecast.dispatches += data.needs_masking_table() ? 1 : 0;
   }

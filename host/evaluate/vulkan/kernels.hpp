@@ -30,7 +30,7 @@ struct KernelVariant {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kNone;
   bool has_total_reflection = false;
-  std::uint32_t width = 1;  ///< of moments: one of kRowWidths of plan/groups.hpp
+  std::uint32_t width = 1;  ///< of moments: one of kRowWidths of plan/rows.hpp
   auto operator<=>(const KernelVariant&) const = default;
 };
 

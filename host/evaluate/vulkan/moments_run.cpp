@@ -10,13 +10,12 @@
 namespace dolp::vulkan {
 namespace {
 
-using EntryWords = std::array<std::uint32_t, 4>;
+using TaskWords = std::array<std::uint32_t, 4>;
 using MaskingNode = std::array<double, 4>;
 using RulePoint = std::array<double, 2>;
 
 // What a thread takes at a time.
-constexpr std::size_t kGroupsAtOnce = 1024;
-constexpr std::size_t kEntriesAtOnce = 4096;
+constexpr std::size_t kRowsAtOnce = 512;
 
 }  // namespace
 
@@ -25,7 +24,7 @@ MomentsRun::MomentsRun(const RunContext& context, const MomentsRequest& request,
     : context_(context),
       request_(request),
       data_(kernel_data(request)),
-      grouping_(grouped(data_, context.groups_small_requests)),
+      rows_(rows_of(request, data_)),
       sizes_(sizes(tile_invocations, block_shapes)),
       thetas_(data_.thetas.size()),
       indices_(request.indices.size()) {
@@ -34,13 +33,12 @@ MomentsRun::MomentsRun(const RunContext& context, const MomentsRequest& request,
 
 TileSizes MomentsRun::sizes(std::uint32_t tile_invocations, std::uint32_t block_shapes) const {
   const VkPhysicalDeviceLimits& limits = context_.device.limits();
-  return tile_sizes(
-      {.buffer_bytes = limits.maxStorageBufferRange,
-       .heap_bytes = context_.device.heap_bytes(),
-       .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
-       .tile_invocations = std::min<std::uint64_t>(tile_invocations, grouping_.groups.size() * DOLP_MAX_PIECES),
-       .block_shapes = std::min<std::uint64_t>(block_shapes, data_.shapes.size())},
-      tile_costs(context_.packing, grouping_.size));
+  return tile_sizes({.buffer_bytes = limits.maxStorageBufferRange,
+                     .heap_bytes = context_.device.heap_bytes(),
+                     .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
+                     .tile_invocations = std::min<std::uint64_t>(tile_invocations, rows_.rows.size() * DOLP_MAX_PIECES),
+                     .block_shapes = std::min<std::uint64_t>(block_shapes, rows_.shapes.size())},
+                    tile_costs(context_.packing, rows_.width));
 }
 
 void MomentsRun::create_buffers() {
@@ -53,19 +51,19 @@ void MomentsRun::create_buffers() {
   theta_buffer_.emplace(device, thetas * packing.node_bytes<kernel::ThetaNode>(), staged);
   shape_buffer_.emplace(device, sizes_.shapes * packing.node_bytes<kernel::ShapeNode>(), staged);
   index_buffer_.emplace(device, indices * packing.node_bytes<kernel::IndexNode>(), staged);
-  entry_buffer_.emplace(device, sizes_.invocations * sizeof(EntryWords), staged);
+  task_buffer_.emplace(device, sizes_.invocations * sizeof(TaskWords), staged);
   rule_buffer_.emplace(device, packing.node_bytes<kernel::RuleNode>(), staged);
   rule_node_buffer_.emplace(device, data_.rule_nodes.size() * packing.node_bytes<RulePoint>(), staged);
   masking_buffer_.emplace(device, tables * packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
                           MemoryUse::kDeviceOnly);
-  moments_buffer_.emplace(device, sizes_.invocations * grouping_.size * packing.node_bytes<kernel::MomentsNode>(),
+  moments_buffer_.emplace(device, sizes_.invocations * rows_.width * packing.node_bytes<kernel::MomentsNode>(),
                           MemoryUse::kReadback);
 
   std::array<VkBuffer, kBindingCount> buffers{};
   buffers[DOLP_BINDING_THETAS] = theta_buffer_->get();
   buffers[DOLP_BINDING_SHAPES] = shape_buffer_->get();
   buffers[DOLP_BINDING_INDICES] = index_buffer_->get();
-  buffers[DOLP_BINDING_TASKS] = entry_buffer_->get();
+  buffers[DOLP_BINDING_TASKS] = task_buffer_->get();
   buffers[DOLP_BINDING_RULE] = rule_buffer_->get();
   buffers[DOLP_BINDING_RULE_NODES] = rule_node_buffer_->get();
   buffers[DOLP_BINDING_MASKING_TABLE] = masking_buffer_->get();
@@ -78,26 +76,26 @@ void MomentsRun::create_pipelines() {
   if (data_.needs_masking_table()) {
     tables = std::async(std::launch::async, [&] { context_.kernels.pipeline(masking_table_variant(data_)); });
   }
-  context_.kernels.pipeline(moments_variant(data_, grouping_.size));
+  context_.kernels.pipeline(moments_variant(data_, rows_.width));
   if (tables.valid()) tables.get();
 }
 
 std::optional<std::vector<Moments>> MomentsRun::compute(const Progress& progress) {
-  std::vector<kernel::MomentsNode> results(grouping_.groups.size() * grouping_.size);
-  for (const Block& block : blocks_of(grouping_, sizes_.shapes)) {
+  std::vector<kernel::MomentsNode> results(rows_.rows.size() * rows_.width);
+  const std::size_t wanted = request_.wanted_count();
+  for (const Block& block : blocks_of(rows_, sizes_.shapes)) {
     start_block(block);
-    const std::vector<GroupPiece> pieces = pieces_of(grouping_, data_, block.first_group, block.group_count);
+    const std::vector<RowPiece> pieces = pieces_of(rows_, data_, block.first_row, block.row_count);
     for (std::size_t first = 0; first < pieces.size(); first += sizes_.invocations) {
       const std::size_t count = std::min<std::size_t>(sizes_.invocations, pieces.size() - first);
       run_tile(block, std::span(pieces).subspan(first, count), results);
-      const double share = (block.first_group + block.group_count * static_cast<double>(first + count) /
-                                                    static_cast<double>(pieces.size())) /
-                           static_cast<double>(grouping_.groups.size());
-      const auto done = static_cast<std::size_t>(share * static_cast<double>(data_.entries.size()));
-      if (progress && !progress(done, data_.entries.size())) return std::nullopt;
+      const double of_block = static_cast<double>(first + count) / static_cast<double>(pieces.size());
+      const double share = (block.first_row + block.row_count * of_block) / static_cast<double>(rows_.rows.size());
+      if (progress && !progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted))
+        return std::nullopt;
     }
   }
-  return moments_of_entries(results);
+  return moments_of(results);
 }
 
 template <class Node>
@@ -113,7 +111,7 @@ void MomentsRun::start_block(const Block& block) {
   std::iota(nodes.begin(), nodes.end(), 0U);
   CommandStream& stream = context_.stream;
   stream.begin();
-  upload(grouping_.shapes, shapes, *shape_buffer_);
+  upload(rows_.shapes, shapes, *shape_buffer_);
   upload(data_.rule_nodes, nodes, *rule_node_buffer_);
   scratch_.clear();
   context_.packing.append(data_.rule, scratch_);
@@ -128,29 +126,30 @@ void MomentsRun::start_block(const Block& block) {
   cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
 }
 
-void MomentsRun::upload_tile(const Block& block, std::span<const GroupPiece> pieces) {
+void MomentsRun::upload_tile(const Block& block, std::span<const RowPiece> pieces) {
   thetas_.clear();
   indices_.clear();
-  std::vector<EntryWords> words;
+  std::vector<TaskWords> words;
   words.reserve(pieces.size());
-  for (const GroupPiece& own : pieces) {
-    const EntryGroup& group = grouping_.groups[own.group];
-    const ShapeFamily& family = grouping_.families[group.family];
-    words.push_back({thetas_(group.theta), family.first - block.first_shape, indices_(group.index),
-                     task_word(data_.pieces[group.theta], own.piece, family.count)});
+  for (const RowPiece& own : pieces) {
+    const Row& row = rows_.rows[own.row];
+    const Chunk& chunk = rows_.chunks[row.chunk];
+    const std::uint32_t theta = rows_.theta_of(data_, row);
+    words.push_back({thetas_(theta), chunk.first - block.first_shape, indices_(row.index),
+                     task_word(data_.pieces[theta], own.piece, chunk.count)});
   }
-  entry_buffer_->write(std::as_bytes(std::span(words)), context_.stream);
+  task_buffer_->write(std::as_bytes(std::span(words)), context_.stream);
   upload(data_.thetas, thetas_.used(), *theta_buffer_);
   upload(data_.indices, indices_.used(), *index_buffer_);
 }
 
-void MomentsRun::run_tile(const Block& block, std::span<const GroupPiece> pieces,
+void MomentsRun::run_tile(const Block& block, std::span<const RowPiece> pieces,
                           std::span<kernel::MomentsNode> results) {
   CommandStream& stream = context_.stream;
   stream.begin();
   upload_tile(block, pieces);
   stream.barrier(Barrier::kUploadToKernel);
-  stream.dispatch(context_.kernels, context_.kernels.pipeline(moments_variant(data_, grouping_.size)), 0,
+  stream.dispatch(context_.kernels, context_.kernels.pipeline(moments_variant(data_, rows_.width)), 0,
                   static_cast<std::uint32_t>(pieces.size()), data_.rule_order);
   stream.barrier(Barrier::kKernelToHost);
   cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
@@ -159,36 +158,41 @@ void MomentsRun::run_tile(const Block& block, std::span<const GroupPiece> pieces
   add_pieces(pieces, results);
 }
 
-void MomentsRun::add_pieces(std::span<const GroupPiece> pieces, std::span<kernel::MomentsNode> results) {
-  scratch_.resize(pieces.size() * grouping_.size * context_.packing.node_bytes<kernel::MomentsNode>());
+void MomentsRun::add_pieces(std::span<const RowPiece> pieces, std::span<kernel::MomentsNode> results) {
+  scratch_.resize(pieces.size() * rows_.width * context_.packing.node_bytes<kernel::MomentsNode>());
   moments_buffer_->read(scratch_);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    cost_.evaluations += context_.packing.read<kernel::MomentsNode>(scratch_, i * grouping_.size).evaluations;
+    cost_.evaluations += context_.packing.read<kernel::MomentsNode>(scratch_, i * rows_.width).evaluations;
   }
-  // The pieces of a group are summed in their order, whoever does it: each range has its groups.
-  const auto [least, most] = std::ranges::minmax(pieces, {}, &GroupPiece::group);
-  const std::uint32_t first_group = least.group;
-  parallel_ranges(most.group - least.group + std::size_t{1}, kGroupsAtOnce, [&](std::size_t first, std::size_t last) {
+  // The pieces of a row are summed in their order, whoever does it: each range has its rows.
+  const auto [least, most] = std::ranges::minmax(pieces, {}, &RowPiece::row);
+  const std::uint32_t first_row = least.row;
+  parallel_ranges(most.row - least.row + std::size_t{1}, kRowsAtOnce, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const std::size_t group = pieces[i].group - first_group;
-      if (group < first || group >= last) continue;
-      const std::uint32_t used = grouping_.groups[pieces[i].group].used;
-      for (std::uint32_t g = 0; g < grouping_.size; ++g) {
-        auto node = context_.packing.read<kernel::MomentsNode>(scratch_, i * grouping_.size + g);
-        node.evaluations /= used;
-        add_piece(results[pieces[i].group * std::size_t{grouping_.size} + g], node);
+      const std::size_t row = pieces[i].row - first_row;
+      if (row < first || row >= last) continue;
+      const Row& of_piece = rows_.rows[pieces[i].row];
+      for (std::uint32_t g = 0; g < rows_.chunks[of_piece.chunk].count; ++g) {
+        auto node = context_.packing.read<kernel::MomentsNode>(scratch_, i * rows_.width + g);
+        node.evaluations /= of_piece.used;
+        add_piece(results[pieces[i].row * std::size_t{rows_.width} + g], node);
       }
     }
   });
 }
 
-std::vector<Moments> MomentsRun::moments_of_entries(std::span<const kernel::MomentsNode> results) const {
-  std::vector<Moments> moments(data_.entries.size());
-  parallel_ranges(moments.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
+std::vector<Moments> MomentsRun::moments_of(std::span<const kernel::MomentsNode> results) const {
+  std::vector<Moments> moments(request_.size());
+  parallel_ranges(rows_.rows.size(), kRowsAtOnce, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      const EntryPlace& place = grouping_.places[i];
-      moments[i] = moments_from_kernel(results[place.group * std::size_t{grouping_.size} + place.member], data_,
-                                       data_.entries[i], context_.packing.unit_roundoff());
+      const Row& row = rows_.rows[i];
+      const Chunk& chunk = rows_.chunks[row.chunk];
+      const std::uint32_t theta = rows_.theta_of(data_, row);
+      for (std::uint32_t g = 0; g < chunk.count; ++g) {
+        const std::uint32_t shape = rows_.shape_of[chunk.first + g];
+        moments[data_.entry_of(row.direction, row.index, shape)] = moments_from_kernel(
+            results[i * rows_.width + g], data_, {theta, shape, row.index}, context_.packing.unit_roundoff());
+      }
     }
   });
   return moments;

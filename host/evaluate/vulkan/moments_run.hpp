@@ -21,7 +21,6 @@ struct RunContext {
   Kernels& kernels;
   CommandStream& stream;
   Packing packing;
-  bool groups_small_requests = false;
   bool staged_uploads = false;
   double tile_timeout_s = 0.0;
 };
@@ -43,7 +42,7 @@ class MomentsRun {
   /// Before the computation, so that its time is known apart.
   void create_pipelines();
 
-  /// All moments in the order of the request; nothing when `progress` returned false. Errors: DeviceError.
+  /// The wanted moments at the places of their entries; nothing when `progress` returned false. Errors: DeviceError.
   std::optional<std::vector<Moments>> compute(const Progress& progress);
   const RunCost& cost() const { return cost_; }
 
@@ -51,23 +50,22 @@ class MomentsRun {
   TileSizes sizes(std::uint32_t tile_invocations, std::uint32_t block_shapes) const;
   void create_buffers();
   void start_block(const Block& block);
-  void upload_tile(const Block& block, std::span<const GroupPiece> pieces);
-  void run_tile(const Block& block, std::span<const GroupPiece> pieces, std::span<kernel::MomentsNode> results);
-  void add_pieces(std::span<const GroupPiece> pieces, std::span<kernel::MomentsNode> results);
-  std::vector<Moments> moments_of_entries(std::span<const kernel::MomentsNode> results) const;
+  void upload_tile(const Block& block, std::span<const RowPiece> pieces);
+  void run_tile(const Block& block, std::span<const RowPiece> pieces, std::span<kernel::MomentsNode> results);
+  void add_pieces(std::span<const RowPiece> pieces, std::span<kernel::MomentsNode> results);
+  std::vector<Moments> moments_of(std::span<const kernel::MomentsNode> results) const;
   template <class Node>
   void upload(const std::vector<Node>& list, std::span<const std::uint32_t> members, InputBuffer& buffer);
 
   RunContext context_;
   const MomentsRequest& request_;
   KernelData data_;
-  Grouping grouping_;
+  Rows rows_;
   TileSizes sizes_;
   Renumbering thetas_, indices_;
   std::vector<std::byte> scratch_;
   RunCost cost_;
-  std::optional<InputBuffer> theta_buffer_, shape_buffer_, index_buffer_, entry_buffer_, rule_buffer_,
-      rule_node_buffer_;
+  std::optional<InputBuffer> theta_buffer_, shape_buffer_, index_buffer_, task_buffer_, rule_buffer_, rule_node_buffer_;
   std::optional<Buffer> masking_buffer_, moments_buffer_;
 };
 

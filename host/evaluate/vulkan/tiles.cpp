@@ -23,12 +23,12 @@ TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs) {
           .shapes = at_least_one(std::min({bytes / costs.shape_bytes, limits.dispatch_count, limits.block_shapes}))};
 }
 
-TileCosts tile_costs(const Packing& packing, std::uint32_t group_size) {
+TileCosts tile_costs(const Packing& packing, std::uint32_t width) {
   using EntryWords = std::array<std::uint32_t, 4>;
   using MaskingNode = std::array<double, 4>;
   return {.invocation_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
                               packing.node_bytes<kernel::IndexNode>() +
-                              group_size * packing.node_bytes<kernel::MomentsNode>(),
+                              width * packing.node_bytes<kernel::MomentsNode>(),
           .shape_bytes =
               packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>()};
 }
@@ -38,21 +38,19 @@ TileCosts scattering_tile_costs(const Packing& packing) {
           .shape_bytes = 1};
 }
 
-std::vector<Block> blocks_of(const Grouping& grouping, std::uint32_t block_shapes) {
+std::vector<Block> blocks_of(const Rows& rows, std::uint32_t block_shapes) {
   std::vector<Block> blocks;
-  std::uint32_t family = 0, group = 0;
-  while (group < grouping.groups.size()) {
-    family = grouping.groups[group].family;
-    Block block{.first_shape = grouping.families[family].first, .first_group = group};
-    while (family < grouping.families.size()) {
-      const std::uint32_t with_it = block.shape_count + grouping.families[family].count;
-      if (block.shape_count > 0 && with_it > block_shapes) break;
-      block.shape_count = with_it;
-      ++family;
-    }
-    while (group < grouping.groups.size() && grouping.groups[group].family < family) ++group;
-    block.group_count = group - block.first_group;
-    blocks.push_back(block);
+  std::uint32_t last_chunk = 0;
+  for (std::uint32_t i = 0; i < rows.rows.size(); ++i) {
+    const std::uint32_t number = rows.rows[i].chunk;
+    const Chunk& chunk = rows.chunks[number];
+    const bool is_new = blocks.empty() || number != last_chunk;
+    const bool fits = !blocks.empty() && chunk.first + chunk.count - blocks.back().first_shape <= block_shapes;
+    if (is_new && !fits) blocks.push_back({.first_shape = chunk.first, .first_row = i});
+    Block& block = blocks.back();
+    block.shape_count = chunk.first + chunk.count - block.first_shape;
+    ++block.row_count;
+    last_chunk = number;
   }
   return blocks;
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "evaluate/vulkan/packing.hpp"
-#include "plan/groups.hpp"
+#include "plan/rows.hpp"
 
 namespace dolp::vulkan {
 
@@ -20,7 +20,7 @@ struct TileLimits {
   std::uint64_t block_shapes = 0;      ///< wanted at most
 };
 
-/// Bytes that an invocation (a piece of a group of entries, or a beam) and a shape take in the buffers.
+/// Bytes that an invocation (a piece of a row, or a beam) and a shape take in the buffers.
 struct TileCosts {
   std::uint64_t invocation_bytes = 0;  ///< all buffers that grow with the invocations of a tile
   std::uint64_t shape_bytes = 0;       ///< the masking table and the node of a shape
@@ -35,25 +35,24 @@ struct TileSizes {
 /// The largest sizes within the limits; tiles and masking tables take at most an eighth of the heap each.
 TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs);
 
-/// Bytes of a piece of a group of entries, and of a shape, of the moments in a precision.
-TileCosts tile_costs(const Packing& packing, std::uint32_t group_size);
+/// Bytes of a piece of a row, and of a shape, of the moments in a precision.
+TileCosts tile_costs(const Packing& packing, std::uint32_t width);
 
 /// The same of the pBRDFs, whose entries bring their own shapes.
 TileCosts scattering_tile_costs(const Packing& packing);
 
-/// Families of shapes whose masking tables are bound together, and the groups of entries that need them.
+/// Chunks of shapes whose masking tables are bound together, and the rows that need them.
 struct Block {
   std::uint32_t first_shape = 0;
   std::uint32_t shape_count = 0;
-  std::uint32_t first_group = 0;
-  std::uint32_t group_count = 0;
+  std::uint32_t first_row = 0;
+  std::uint32_t row_count = 0;
 };
 
-/// Cuts the shapes between families into blocks of at most `block_shapes`, or of one family that has more. Blocks
-/// without groups are left out.
-std::vector<Block> blocks_of(const Grouping& grouping, std::uint32_t block_shapes);
+/// Cuts the shapes between chunks into blocks of at most `block_shapes`, or of one chunk that has more.
+std::vector<Block> blocks_of(const Rows& rows, std::uint32_t block_shapes);
 
-/// Numbers the members of a list in the order of their first use: a tile binds only what its entries use.
+/// Numbers the members of a list in the order of their first use: a tile binds only what its rows use.
 class Renumbering {
  public:
   explicit Renumbering(std::size_t list_size) : number_(list_size, kUnused) {}

@@ -17,17 +17,20 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 void check_entries(const MomentsRequest& request) {
-  for (std::size_t i = 0; i < request.entries.size(); ++i) {
-    const MomentsEntry& entry = request.entries[i];
-    if (entry.theta >= request.theta_deg.size() || entry.shape >= request.shapes.size() ||
-        entry.index >= request.indices.size()) {
-      throw InputError("entry " + std::to_string(i) + " of the request is outside its lists of " +
-                       std::to_string(request.theta_deg.size()) + " directions, " +
-                       std::to_string(request.shapes.size()) + " shapes and " + std::to_string(request.indices.size()) +
-                       " indices");
-    }
+  const std::size_t size = request.size();
+  const bool is_points = request.layout == MomentsRequest::Layout::kList;
+  const bool is_even = request.indices.size() == size && request.sigma.size() == size && request.q.size() == size;
+  if (is_points && !(is_even && request.wanted.empty())) {
+    throw InputError("the lists of a request for points differ in length, or it has a mask");
+  }
+  if (!request.wanted.empty() && request.wanted.size() != size) {
+    throw InputError("the mask of a request for " + std::to_string(size) + " entries has " +
+                     std::to_string(request.wanted.size()));
   }
 }
+
+std::size_t count_of(const MomentsRequest& request) { return request.wanted_count(); }
+std::size_t count_of(const ScatteringRequest& request) { return request.entries.size(); }
 
 void check_entries(const ScatteringRequest& request) {
   for (std::size_t i = 0; i < request.entries.size(); ++i) {
@@ -90,7 +93,6 @@ class VulkanEvaluator::Impl {
             .kernels = kernels_for(requested),
             .stream = stream_,
             .packing = vulkan::Packing(in_double(requested)),
-            .groups_small_requests = options_.groups_small_requests,
             .staged_uploads = options_.staged_uploads,
             .tile_timeout_s = options_.tile_timeout_s};
   }
@@ -154,7 +156,7 @@ template <class Result, class Request>
 std::vector<Result> VulkanEvaluator::compute(const Request& request, const Progress& progress) {
   if (!impl_) throw DeviceError("the Vulkan device was given up after a tile that did not finish in time");
   check_entries(request);
-  if (request.entries.empty()) return {};
+  if (count_of(request) == 0) return {};
   try {
     return impl_->compute(request, progress, report_);
   } catch (const vulkan::DeviceTimeout&) {

@@ -24,7 +24,6 @@ struct VulkanOptions {
   /// Of requests that leave it open: kAuto is float. kDouble also asks for a device that has it.
   Precision precision = Precision::kAuto;
   ValidationMode validation = ValidationMode::kFromEnvironment;
-  bool groups_small_requests = false;  ///< also where the kernel of a group takes longer to make than it saves
   // The results depend on none of these.
   std::uint32_t max_tile_invocations = 65'536;  ///< of a dispatch: progress and cancelling wait for one at most
   std::uint32_t max_block_shapes = 4'096;       ///< shapes whose masking tables are on the device at a time
@@ -47,9 +46,10 @@ class VulkanEvaluator : public MomentsEvaluator, public ScatteringEvaluator {
   VulkanEvaluator(vulkan::Context& context, const VulkanOptions& options);
   ~VulkanEvaluator() override;
 
-  /// Errors: DeviceError for double precision on a device without it; InputError for an entry outside the request's
-  /// lists; DeviceError when the device fails, is lost or exceeds the time allowed for a tile (the object is useless
-  /// then), or the validation layer complains; Cancelled when `progress`, called after each tile, returns false.
+  /// Errors: DeviceError for double precision on a device without it; InputError for lists that do not fit the
+  /// request's layout; DeviceError when the device fails, is lost or exceeds the time allowed for a tile (the object is
+  /// useless then), or the validation layer complains; Cancelled when `progress`, called after each tile, returns
+  /// false.
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
 
   /// Creates the pipeline in the background; what fails there fails again in `scatter`.

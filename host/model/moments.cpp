@@ -1,0 +1,34 @@
+#include "model/moments.hpp"
+
+#include <algorithm>
+
+namespace dolp {
+
+std::size_t MomentsRequest::size() const {
+  if (layout == Layout::kList) return theta_deg.size();
+  return theta_deg.size() * indices.size() * sigma.size() * q.size();
+}
+
+std::size_t MomentsRequest::wanted_count() const {
+  if (wanted.empty()) return size();
+  return wanted.size() - static_cast<std::size_t>(std::ranges::count(wanted, 0));
+}
+
+MomentsPoint MomentsRequest::operator[](std::size_t entry) const {
+  if (layout == Layout::kList) return {theta_deg[entry], {sigma[entry], q[entry]}, indices[entry]};
+  const std::size_t of_sigma = entry / q.size();
+  const std::size_t of_index = of_sigma / sigma.size();
+  return {theta_deg[of_index / indices.size()],
+          {sigma[of_sigma % sigma.size()], q[entry % q.size()]},
+          indices[of_index % indices.size()]};
+}
+
+void MomentsRequest::append(const MomentsPoint& point) {
+  layout = Layout::kList;
+  theta_deg.push_back(point.theta_deg);
+  sigma.push_back(point.shape.sigma);
+  q.push_back(point.shape.q);
+  indices.push_back(point.index);
+}
+
+}  // namespace dolp

@@ -1,0 +1,187 @@
+#include "plan/rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+
+namespace dolp {
+namespace {
+
+// Below it the masking tables of heavy and light tails have scales that no common one serves.
+constexpr double kSmallestSharedM = 1e-3;
+
+// Between the exponents of a chunk, as a factor of q - 1: shapes further apart would want nodes in different places.
+constexpr double kMostSpread = 6.0;
+
+// Rows are not for requests that would leave this share of the members unused.
+constexpr double kLeastUse = 0.5;
+
+// What a row takes, in units of what each of its members takes at kUsualDigits. Look-ups in masking tables are each
+// member's own.
+struct RowWork {
+  double shared = 16.0;     // by the members
+  double kernel = 40000.0;  // to make the kernel, for each member that it is made for
+};
+constexpr RowWork kWithTables = {.shared = 5.0, .kernel = 7000.0};
+constexpr double kUsualDigits = 6.0;
+
+// Whether shape `next` may join the chunk that begins with shape `first`.
+bool belongs(const KernelData& data, std::uint32_t first, std::uint32_t next) {
+  const kernel::ShapeNode& a = data.shapes[first];
+  return data.distribution == Distribution::kCauchy && a.m >= kSmallestSharedM &&
+         data.shapes[next].q_minus_1 <= kMostSpread * a.q_minus_1 && data.needs_line[first] == data.needs_line[next];
+}
+
+// Gives the shapes of a chunk what the kernel takes from the first of them.
+void unite(std::span<kernel::ShapeNode> chunk) {
+  kernel::ShapeNode common = chunk.front();
+  for (const kernel::ShapeNode& shape : chunk) {
+    common.scale = std::min(common.scale, shape.scale);
+    common.cut = std::max(common.cut, shape.cut);
+    common.table_scale = std::min(common.table_scale, shape.table_scale);
+    common.cusp_digits = std::max(common.cusp_digits, shape.cusp_digits);
+  }
+  for (kernel::ShapeNode& shape : chunk) {
+    shape.scale = common.scale;
+    shape.cut = common.cut;
+    shape.table_scale = common.table_scale;
+    shape.cusp_digits = common.cusp_digits;
+  }
+}
+
+// Shapes of a grid of which any entry is wanted.
+std::vector<char> wanted_shapes(const MomentsRequest& request, std::size_t shapes) {
+  if (request.wanted.empty()) return std::vector<char>(shapes, 1);
+  std::vector<char> wanted(shapes, 0);
+  for (std::size_t i = 0; i < request.wanted.size(); ++i) wanted[i % shapes] |= request.wanted[i];
+  return wanted;
+}
+
+void add_chunk(Rows& rows, const KernelData& data, std::span<const std::uint32_t> shapes) {
+  const auto first = static_cast<std::uint32_t>(rows.shapes.size());
+  rows.chunks.push_back({first, static_cast<std::uint32_t>(shapes.size())});
+  for (const std::uint32_t shape : shapes) {
+    rows.shape_of.push_back(shape);
+    rows.shapes.push_back(data.shapes[shape]);
+  }
+  unite(std::span(rows.shapes).subspan(first));
+}
+
+// The chunks of a grid: sigma by sigma along its ascending q.
+void add_grid_chunks(Rows& rows, const MomentsRequest& request, const KernelData& data) {
+  const std::vector<char> wanted = wanted_shapes(request, data.shapes.size());
+  std::vector<std::uint32_t> ascending(request.q.size());
+  std::iota(ascending.begin(), ascending.end(), 0U);
+  std::ranges::stable_sort(ascending, {}, [&](std::uint32_t i) { return request.q[i]; });
+  const auto of_q = static_cast<std::uint32_t>(request.q.size());
+  std::vector<std::uint32_t> chunk;
+  for (std::uint32_t sigma = 0; sigma < request.sigma.size(); ++sigma) {
+    const auto close = [&] {
+      if (!chunk.empty()) add_chunk(rows, data, chunk);
+      chunk.clear();
+    };
+    for (const std::uint32_t q : ascending) {
+      const std::uint32_t shape = sigma * of_q + q;
+      if (wanted[shape] == 0) continue;
+      if (!chunk.empty() && (chunk.size() == rows.width || !belongs(data, chunk.front(), shape))) close();
+      chunk.push_back(shape);
+    }
+    close();
+  }
+}
+
+// Members of a row that are wanted.
+std::uint32_t used_members(const Rows& rows, const MomentsRequest& request, const KernelData& data, const Row& row) {
+  const Chunk& chunk = rows.chunks[row.chunk];
+  if (request.wanted.empty()) return chunk.count;
+  std::uint32_t used = 0;
+  for (std::uint32_t member = chunk.first; member < chunk.first + chunk.count; ++member) {
+    used += request.is_wanted(data.entry_of(row.direction, row.index, rows.shape_of[member])) ? 1 : 0;
+  }
+  return used;
+}
+
+Rows grid_rows(const MomentsRequest& request, const KernelData& data, std::uint32_t width) {
+  Rows rows;
+  rows.width = width;
+  add_grid_chunks(rows, request, data);
+  if (request.wanted.empty()) rows.rows.reserve(rows.chunks.size() * data.indices.size() * data.directions);
+  for (std::uint32_t chunk = 0; chunk < rows.chunks.size(); ++chunk) {
+    for (std::uint32_t index = 0; index < data.indices.size(); ++index) {
+      for (std::uint32_t direction = 0; direction < data.directions; ++direction) {
+        Row row{direction, index, chunk};
+        row.used = used_members(rows, request, data, row);
+        if (row.used > 0) rows.rows.push_back(row);
+      }
+    }
+  }
+  return rows;
+}
+
+Rows point_rows(const KernelData& data) {
+  Rows rows;
+  for (std::uint32_t shape = 0; shape < data.shapes.size(); ++shape) add_chunk(rows, data, {&shape, 1});
+  for (std::uint32_t point = 0; point < data.directions; ++point) {
+    rows.rows.push_back({point, point, data.shape_of[point]});
+  }
+  return rows;
+}
+
+}  // namespace
+
+Rows rows_of(const MomentsRequest& request, const KernelData& data, std::uint32_t width) {
+  return data.is_grid ? grid_rows(request, data, width) : point_rows(data);
+}
+
+Rows rows_of(const MomentsRequest& request, const KernelData& data) {
+  if (!data.is_grid) return point_rows(data);
+  const auto wanted = static_cast<double>(request.wanted_count());
+  const RowWork unit = data.masking == Masking::kIntegral ? kWithTables : RowWork{};
+  const double evaluations = std::pow(data.rule.digits / kUsualDigits, 2.0);
+  Rows best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t width : kRowWidths) {
+    // Half of it would be unused.
+    if (width > 1 && request.q.size() * 2 <= width) break;
+    const double kernel = unit.kernel * width;
+    if (kernel + (unit.shared / width + 1.0) * wanted * evaluations >= least) continue;
+    Rows rows = grid_rows(request, data, width);
+    const auto count = static_cast<double>(rows.rows.size());
+    if (width > 1 && wanted <= kLeastUse * width * count) continue;
+    const double work = (unit.shared + width) * count * evaluations + kernel;
+    if (work < least) {
+      least = work;
+      best = std::move(rows);
+    }
+  }
+  return best;
+}
+
+std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count) {
+  const auto same_work = [&](const Row& a, const Row& b) {
+    return !data.is_grid || (a.chunk == b.chunk && a.index == b.index);
+  };
+  std::vector<RowPiece> pieces;
+  std::vector<std::uint32_t> counts;
+  const std::uint32_t end = first + count;
+  for (std::uint32_t begin = first; begin < end;) {
+    std::uint32_t next = begin + 1;
+    while (next < end && same_work(rows.rows[begin], rows.rows[next])) ++next;
+    counts.clear();
+    for (std::uint32_t i = begin; i < next; ++i) {
+      const Row& row = rows.rows[i];
+      counts.push_back(piece_count(data, rows.theta_of(data, row), rows.shapes[rows.chunks[row.chunk].first]));
+    }
+    for (std::uint32_t piece = 0; piece < std::ranges::max(counts); ++piece) {
+      for (std::uint32_t i = begin; i < next; ++i) {
+        if (piece < counts[i - begin]) pieces.push_back({i, piece});
+      }
+    }
+    begin = next;
+  }
+  return pieces;
+}
+
+}  // namespace dolp

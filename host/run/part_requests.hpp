@@ -1,0 +1,80 @@
+// What a run asks of the evaluator for a part of its entries, and where each entry finds its answer.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "model/direction.hpp"
+#include "model/moments.hpp"
+#include "model/scattering.hpp"
+#include "model/scene_entry.hpp"
+#include "plan/attempts.hpp"
+#include "plan/effects.hpp"
+#include "radiometry/radiometry.hpp"
+
+namespace dolp {
+
+/// Some entries of a part of a run, or all of them.
+struct Selection {
+  const SceneEntries& part;
+  std::span<const std::size_t> chosen = {};  ///< positions in the part; empty: all
+
+  std::size_t size() const { return chosen.empty() ? part.size() : chosen.size(); }
+  std::size_t position(std::size_t member) const { return chosen.empty() ? member : chosen[member]; }
+  SceneEntry operator[](std::size_t member) const { return part[position(member)]; }
+};
+
+/// The direction of an entry as its moments see it: in bistatic mode they are those of the view.
+double seen_deg(const Scene& scene, double theta_deg);
+
+bool wants_moments(const Scene& scene, const SceneEntry& entry, const EffectPlan& plan);
+
+/// Whether the evaluator has to compute the beam of an entry: not of a mirror, nor with source and view both at 90
+/// degrees.
+bool wants_beam(const Scene& scene, const SceneEntry& entry, const EffectPlan& plan);
+
+/// The beam of an entry that wants none: a mirror sends nothing but toward its specular direction, where the radiance
+/// is not defined, as it is not with source and view both at 90 degrees.
+Scattered beam_without_evaluator(const Scene& scene, double theta_deg);
+
+/// The requests of one attempt at a selection. Of a grid the moments are a grid again, of the values that any entry
+/// needs; in bistatic mode of one direction, the view. Of points neighbours that differ in nothing that the moments see
+/// share them.
+class PartRequests {
+ public:
+  PartRequests(const Scene& scene, const std::vector<OpticalConstants>& samples, const EffectPlan& plan,
+               const Selection& selection, const Attempt& attempt);
+
+  const MomentsRequest& moments() const { return moments_; }
+  const ScatteringRequest& beams() const { return beams_; }
+
+  /// Where the moments of a member are in the answer: at `first + j * stride` for spectral sample j.
+  struct Place {
+    std::size_t first = 0;
+    std::size_t stride = 0;
+  };
+  Place moments_of(std::size_t member) const;
+  /// The first of its beams, one for each sample.
+  std::size_t beams_of(std::size_t member) const { return first_beam_[member]; }
+
+ private:
+  void ask_grid(const Selection& selection);
+  void mask(const Selection& selection);
+  void ask_points(const Selection& selection);
+  void ask_beams(const Selection& selection);
+
+  const Scene& scene_;
+  const std::vector<OpticalConstants>& samples_;
+  const EffectPlan& plan_;
+  MomentsRequest moments_;
+  ScatteringRequest beams_;
+  // Of a grid: the position in the request of each value of the part's axes.
+  std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_;
+  std::span<const std::size_t> chosen_;
+  std::vector<Place> places_;  ///< of points
+  std::vector<std::size_t> first_beam_;
+};
+
+}  // namespace dolp

@@ -41,10 +41,10 @@ constexpr double kDoubleRoundoff = 0x1p-53;
 // interpolation and rounding.
 double stated_of_tables(KernelData data, double unit_roundoff) {
   data.tolerance = 0.0;
-  data.shapes[0].cut = data.thetas[data.entries[0].theta].end[DOLP_MAX_PIECES];
+  data.shapes[0].cut = data.thetas[data[0].theta].end[DOLP_MAX_PIECES];
   kernel::MomentsNode node{};
   node.albedo = 1.0;
-  return moments_from_kernel(node, data, data.entries[0], unit_roundoff).albedo_error;
+  return moments_from_kernel(node, data, data[0], unit_roundoff).albedo_error;
 }
 
 // Of interpolation alone: with the table of a float the least roundoff counts as one.

@@ -65,17 +65,11 @@ MomentsRequest hard_request(Distribution distribution, Masking masking, double t
   request.masking = masking;
   request.tolerance = tolerance;
   request.theta_deg.assign(kHardDirectionsDeg.begin(), kHardDirectionsDeg.end());
-  request.shapes = {{0.3, 2.0}, {1e-3, 1.6}, {5.0, 45.0}};
+  request.sigma = {0.3, 1e-3, 5.0};
+  request.q = {2.0, 1.6, 45.0};
   request.indices = {kDielectric, {27.0, 90.0}};
   if (total_reflection) {
     for (const double n : {0.999, 0.8, std::numbers::sqrt2 / 2.0, 0.5, 0.1}) request.indices.push_back({n, 0.0});
-  }
-  for (std::uint32_t theta = 0; theta < request.theta_deg.size(); ++theta) {
-    for (std::uint32_t shape = 0; shape < request.shapes.size(); ++shape) {
-      for (std::uint32_t index = 0; index < request.indices.size(); ++index) {
-        request.entries.push_back({theta, shape, index});
-      }
-    }
   }
   return request;
 }
@@ -117,7 +111,8 @@ TEST(MaskingTable, ItsLoops_StayBelowTheDriversLimitAndHaveTheirNodes) {
   constexpr int kTableOrderAtMost = 8;
   EXPECT_LT(DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE) * (1.0 + kTableOrderAtMost), kDriverLimit);
   MomentsRequest request;
-  request.shapes = {{0.3, 2.0}};
+  request.sigma = {0.3};
+  request.q = {2.0};
   request.indices = {kDielectric};
   EXPECT_GE(kernel_data(request).rule_order, kTableOrderAtMost);
 }
@@ -126,7 +121,7 @@ TEST(MaskingTable, ItsLoops_StayBelowTheDriversLimitAndHaveTheirNodes) {
 struct Computed {
   KernelData data;
   kernel::MomentsNode node;
-  Moments moments() const { return moments_from_kernel(node, data, data.entries[0], kDoubleRoundoff); }
+  Moments moments() const { return moments_from_kernel(node, data, data[0], kDoubleRoundoff); }
 };
 
 MomentsRequest request_of(Masking masking, double tolerance, double theta_deg, const SlopeShape& shape,
@@ -135,10 +130,7 @@ MomentsRequest request_of(Masking masking, double tolerance, double theta_deg, c
   request.distribution = distribution;
   request.masking = masking;
   request.tolerance = tolerance;
-  request.theta_deg = {theta_deg};
-  request.shapes = {shape};
-  request.indices = {index};
-  request.entries = {{0U, 0U, 0U}};
+  request.append({theta_deg, shape, index});
   return request;
 }
 
@@ -147,7 +139,7 @@ Computed computed(Masking masking, double tolerance, double theta_deg, const Slo
   Computed result{kernel_data(request_of(masking, tolerance, theta_deg, shape, index, distribution)), {}};
   const auto text = make_kernel_text_double(result.data);
   if (result.data.needs_masking_table()) text->build_masking_table(0);
-  result.node = text->moments(result.data.entries[0]);
+  result.node = text->moments(result.data[0]);
   return result;
 }
 
@@ -160,7 +152,7 @@ TEST(KernelDataOrders, WorstIterations_BoundTheEvaluationsOfEveryPiece) {
         for (const double theta_deg : kHardDirectionsDeg) {
           for (const OpticalConstants& index : {kDielectric, kTotallyReflecting}) {
             const Computed entry = computed(masking, tolerance, theta_deg, shape, index);
-            const double pieces = piece_count(entry.data, entry.data.entries[0].theta, entry.data.shapes[0]);
+            const double pieces = piece_count(entry.data, entry.data[0].theta, entry.data.shapes[0]);
             const double bound = pieces * worst_iterations(entry.data);
             fullest = std::max(fullest, entry.node.evaluations / bound);
             EXPECT_LE(entry.node.evaluations, bound)
@@ -179,12 +171,12 @@ TEST(KernelDataOrders, EntryWithTooFewNodesAllowed_SaysSo) {
     const Computed whole = computed(masking, 1e-9, 60.0, {0.3, 2.0}, kTotallyReflecting);
     KernelData data = whole.data;
     for (const std::uint32_t most : {9U, 11U}) {
-      data.pieces[data.entries[0].theta].most_azimuths = most;
+      data.pieces[data[0].theta].most_azimuths = most;
       const auto text = make_kernel_text_double(data);
       if (data.needs_masking_table()) text->build_masking_table(0);
-      const kernel::MomentsNode node = text->moments(data.entries[0]);
+      const kernel::MomentsNode node = text->moments(data[0]);
       EXPECT_LE(node.evaluations, whole.node.evaluations);
-      const Moments moments = moments_from_kernel(node, data, data.entries[0], kDoubleRoundoff);
+      const Moments moments = moments_from_kernel(node, data, data[0], kDoubleRoundoff);
       EXPECT_GE(moments.r_i_error, std::abs(moments.r_i - whole.moments().r_i)) << most;
       EXPECT_GE(moments.r_q_error, std::abs(moments.r_q - whole.moments().r_q)) << most;
     }
@@ -198,7 +190,7 @@ TEST(KernelDataOrders, EntryWithTooFewNodesAllowed_SaysSo) {
 TEST(MomentsFromKernel, Bounds_AreNoLessThanTheDistanceOfTheRules) {
   const Computed entry = computed(Masking::kNone, 1e-4, 60.0, {0.3, 5.0}, kDielectric);
   kernel::MomentsNode node = entry.node;
-  const auto bounds = [&] { return moments_from_kernel(node, entry.data, entry.data.entries[0], kDoubleRoundoff); };
+  const auto bounds = [&] { return moments_from_kernel(node, entry.data, entry.data[0], kDoubleRoundoff); };
   node.reflected_difference = node.albedo_difference = node.deficit_difference = 0.0;
   const Moments agreed = bounds();
   EXPECT_GT(agreed.r_i_error, 0.0);
@@ -265,31 +257,54 @@ TEST(KernelDataOrders, TighterTolerance_NeverCostsLess) {
   }
 }
 
-TEST(KernelDataTotalReflection, ItsEntries_HaveDirectionsOfTheirOwn) {
+// An index with total reflection splits the slopes elsewhere: of each of its directions there is one more.
+TEST(KernelDataTotalReflection, ItsIndices_HaveDirectionsOfTheirOwn) {
+  constexpr std::array kCriticalCos = {0.0, 0.6, 0.0, 0.5 * std::numbers::sqrt3};
   MomentsRequest request;
   request.masking = Masking::kVCavity;
   request.theta_deg = {20.0, 70.0};
-  request.shapes = {{0.3, 2.0}, {0.6, 3.0}};
-  request.indices = {kDielectric, kTotallyReflecting, {0.5, 0.0}};
-  // two entries with the same direction and index, one with another index, one with another direction
-  request.entries = {{0, 0, 0}, {0, 0, 1}, {0, 1, 1}, {0, 0, 2}, {1, 0, 1}, {1, 1, 0}};
+  request.indices = {kDielectric, kTotallyReflecting, {2.0, 0.7}, {0.5, 0.0}};
+  request.sigma = {0.3, 0.6};
+  request.q = {2.0, 3.0};
   const KernelData data = kernel_data(request);
-  ASSERT_EQ(data.entries.size(), request.entries.size());
-  ASSERT_EQ(data.thetas.size(), 5U);
-  for (const std::size_t plain : {0U, 5U}) EXPECT_EQ(data.entries[plain].theta, request.entries[plain].theta);
-  EXPECT_EQ(data.entries[1].theta, data.entries[2].theta);
-  std::vector<std::uint32_t> own = {data.entries[1].theta, data.entries[3].theta, data.entries[4].theta};
-  std::sort(own.begin(), own.end());
-  EXPECT_EQ(own, (std::vector<std::uint32_t>{2, 3, 4}));
-  for (std::size_t i = 0; i < data.entries.size(); ++i) {
-    const kernel::ThetaNode& node = data.thetas[data.entries[i].theta];
-    EXPECT_EQ(node.c, cos_sin_deg(request.theta_deg[request.entries[i].theta]).cos);
-    EXPECT_EQ(data.entries[i].shape, request.entries[i].shape);
-    EXPECT_EQ(data.entries[i].index, request.entries[i].index);
+  ASSERT_EQ(data.size(), request.size());
+  ASSERT_EQ(data.thetas.size(), 6U);  // without total reflection and for either of two lines
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const MomentsEntry entry = data[i];
+    EXPECT_EQ(data.thetas[entry.theta].c, cos_sin_deg(request[i].theta_deg).cos) << i;
+    EXPECT_NEAR(data.indices[entry.index].critical_cos, kCriticalCos[entry.index], kRounding);
+    EXPECT_EQ(request.indices[entry.index], request[i].index);
+    EXPECT_EQ(data.shapes[entry.shape].m, slope_width(request[i].shape));
+    for (std::size_t j = 0; j < i; ++j) {
+      const bool is_same = request[i].theta_deg == request[j].theta_deg &&
+                           kCriticalCos[entry.index] == kCriticalCos[data[j].index];
+      EXPECT_EQ(entry.theta == data[j].theta, is_same) << i << " " << j;
+    }
+    const bool is_total = kCriticalCos[entry.index] > 0.0;
+    const std::uint32_t plain = data.theta_of(request[i].theta_deg == 20.0 ? 0 : 1, 0, entry.shape);
+    EXPECT_EQ(data.pieces[entry.theta].count > data.pieces[plain].count, is_total) << i;
   }
-  EXPECT_GT(data.pieces[data.entries[1].theta].count, data.pieces[0].count);
-  EXPECT_NEAR(data.indices[1].critical_cos, 0.6, kRounding);
-  EXPECT_EQ(data.indices[0].critical_cos, 0.0);
+}
+
+TEST(KernelDataOfPoints, EachPoint_HasADirectionAndAnIndexOfItsOwn) {
+  MomentsRequest request;
+  request.masking = Masking::kVCavity;
+  request.append({20.0, {0.3, 2.0}, kDielectric});
+  request.append({20.0, {0.3, 2.0}, kTotallyReflecting});
+  request.append({70.0, {0.6, 3.0}, kTotallyReflecting});
+  request.append({70.0, {0.3, 2.0}, kTotallyReflecting});
+  const KernelData data = kernel_data(request);
+  ASSERT_EQ(data.size(), request.size());
+  ASSERT_EQ(data.shapes.size(), 3U);  // neighbours share theirs
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const MomentsEntry entry = data[i];
+    EXPECT_EQ(entry.theta, i);
+    EXPECT_EQ(entry.index, i);
+    EXPECT_EQ(data.thetas[entry.theta].c, cos_sin_deg(request[i].theta_deg).cos);
+    EXPECT_EQ(data.shapes[entry.shape].m, slope_width(request[i].shape));
+  }
+  EXPECT_EQ(data[0].shape, data[1].shape);
+  EXPECT_GT(data.pieces[1].count, data.pieces[0].count);
 }
 
 template <class Node>
@@ -305,7 +320,8 @@ TEST(KernelDataOfARequest, Twice_IsTheSame) {
     EXPECT_TRUE(same_bytes(a.thetas, b.thetas));
     EXPECT_TRUE(same_bytes(a.shapes, b.shapes));
     EXPECT_TRUE(same_bytes(a.indices, b.indices));
-    EXPECT_TRUE(same_bytes(a.entries, b.entries));
+    EXPECT_EQ(a.needs_line, b.needs_line);
+    EXPECT_EQ(a.index_variant, b.index_variant);
     EXPECT_TRUE(same_bytes(a.rule_nodes, b.rule_nodes));
     EXPECT_EQ(std::memcmp(&a.rule, &b.rule, sizeof a.rule), 0);
     const KernelData other = kernel_data(hard_request(Distribution::kCauchy, masking, 1e-5, true));
@@ -353,14 +369,17 @@ TEST(NeedsLine, MoreDigitsOrRoughness_NeverTakeItAway) {
 }
 
 // log10 of C(q) width^(2q-2), the part of smith's L that is not smooth at theta_r = 0, up to a constant and to what the
-// rules feel the less of it the larger q is; the width of slopes beyond 1 no longer counts.
+// rules feel of it, n^-2q with n nodes. Widths beyond 1 no longer count in the first, but L then varies over slopes of
+// 1 / width, which have as many nodes fewer, down to the fewest that count.
 TEST(CuspDigits, Size_GoesAsTheTailAtSlopeOne) {
   const auto size = [](double sigma, double q) {
     return cusp_digits(Distribution::kCauchy, Masking::kSmith, {sigma, q}, kFewDigits);
   };
   for (const double q : {1.6, 1.75, 2.4, 3.3}) {
     EXPECT_NEAR(size(0.02, q) - size(0.002, q), 2.0 * q - 2.0, 1e-12);
-    EXPECT_EQ(size(1.0, q), size(5.0, q));
+    const double wide = 1.0 / std::numbers::sqrt2;
+    EXPECT_NEAR(size(3.0 * wide, q) - size(wide, q), 2.0 * q * std::log10(3.0), 1e-12);
+    EXPECT_EQ(size(4.0, q), size(5.0, q));
     EXPECT_GT(size(1e-20, q), -1000.0);
     // more digits have more nodes, which feel less of it
     EXPECT_LT(cusp_digits(Distribution::kCauchy, Masking::kSmith, {1.0, q}, kManyDigits), size(1.0, q));
@@ -370,12 +389,23 @@ TEST(CuspDigits, Size_GoesAsTheTailAtSlopeOne) {
   EXPECT_NEAR(size(5.0, 1.99), size(5.0, 2.01), 0.1);
 }
 
+// All derivatives of the gaussian's L vanish there; what stands for it is exp(-1/width^2), L at 45 degrees.
+TEST(CuspDigits, OfTheGaussian_AreThoseOfItsTailAtSlopeOne) {
+  const auto size = [](double sigma, double digits) {
+    return cusp_digits(Distribution::kGaussian, Masking::kSmith, {sigma, 1.6}, digits);
+  };
+  EXPECT_NEAR(size(0.2, kFewDigits) - size(0.1, kFewDigits), (50.0 - 12.5) / std::numbers::ln10, 1e-12);
+  EXPECT_LT(size(0.1, kManyDigits), -kManyDigits);  // nothing at any digits
+  EXPECT_GT(size(2.0, kFewDigits), -kFewDigits);
+  EXPECT_LT(size(0.5, kManyDigits), size(0.5, kFewDigits));
+}
+
 TEST(CuspDigits, NoCusp_IsBelowAnyDigits) {
   constexpr double kKernelsLimit = -100.0;  // ShapeNode::cusp_digits
   for (const double q : {2.0, 3.0, 7.0}) {
     EXPECT_LT(cusp_digits(Distribution::kCauchy, Masking::kSmith, {1.0, q}, kFewDigits), kKernelsLimit);
   }
-  EXPECT_LT(cusp_digits(Distribution::kGaussian, Masking::kSmith, {0.1, 1.6}, kFewDigits), kKernelsLimit);
+  EXPECT_LT(cusp_digits(Distribution::kGaussian, Masking::kSmith, {0.04, 1.6}, kFewDigits), kKernelsLimit);
   EXPECT_LT(cusp_digits(Distribution::kCauchy, Masking::kIntegral, {1.0, 1.6}, kFewDigits), kKernelsLimit);
 }
 
@@ -384,20 +414,24 @@ TEST(KernelDataLines, OnlyTheShapesThatNeedThem_GetDirectionsOfTheirOwn) {
   request.masking = Masking::kIntegral;
   request.tolerance = 1e-8;
   request.theta_deg = {20.0, 70.0};
-  request.shapes = {{1.0, 1.2}, {1e-3, 10.0}, {2.0, 1.3}};
   request.indices = {kDielectric};
-  for (std::uint32_t theta = 0; theta < 2; ++theta) {
-    for (std::uint32_t shape = 0; shape < 3; ++shape) request.entries.push_back({theta, shape, 0});
-  }
+  request.sigma = {1.0, 1e-3};
+  request.q = {1.2, 10.0};
   const KernelData data = kernel_data(request);
   ASSERT_EQ(data.thetas.size(), 4U);
-  for (std::size_t i = 0; i < data.entries.size(); ++i) {
-    const kernel::ThetaNode& node = data.thetas[data.entries[i].theta];
-    EXPECT_EQ(data.pieces[data.entries[i].theta].has_split_line, request.entries[i].shape != 1) << i;
-    EXPECT_EQ(node.c, cos_sin_deg(request.theta_deg[request.entries[i].theta]).cos);
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const std::uint32_t theta = data[i].theta;
+    const bool is_needed = needs_line(rule_model(request.masking), request.distribution, request.masking,
+                                      request[i].shape, data.rule.digits);
+    EXPECT_EQ(data.pieces[theta].has_split_line, is_needed) << i;
+    EXPECT_EQ(data.thetas[theta].c, cos_sin_deg(request[i].theta_deg).cos);
   }
-  EXPECT_EQ(data.entries[0].theta, data.entries[2].theta);
-  EXPECT_GT(data.pieces[data.entries[0].theta].count, data.pieces[data.entries[1].theta].count);
+  // sigma 1 with q 1.2 and sigma 0.001 with q 10 of each direction
+  for (const std::size_t first : {0U, 4U}) {
+    EXPECT_TRUE(data.pieces[data[first].theta].has_split_line);
+    EXPECT_FALSE(data.pieces[data[first + 3].theta].has_split_line);
+    EXPECT_GT(data.pieces[data[first].theta].count, data.pieces[data[first + 3].theta].count);
+  }
 }
 
 // ---- The cut --------------------------------------------------------------------------------------------------------
@@ -413,7 +447,7 @@ double seen_at(double c, double s, double t) {
 // The albedo (times cos theta) without masking of the facets steeper than the cut.
 double albedo_beyond(const KernelData& data) {
   const kernel::ShapeNode& shape = data.shapes[0];
-  const kernel::ThetaNode& node = data.thetas[data.entries[0].theta];
+  const kernel::ThetaNode& node = data.thetas[data[0].theta];
   const double horizon = node.end[DOLP_MAX_PIECES];
   if (shape.cut >= horizon) return 0.0;
   const auto integrand = [&](double log_slope) {
@@ -449,7 +483,7 @@ TEST(Cut, WhatItLeavesOut_IsBelowItsBoundAndAShareOfTheTolerance) {
             const double beyond = albedo_beyond(entry.data);
             if (beyond == 0.0) continue;
             ++with_cut;
-            const Moments nothing = moments_from_kernel({}, entry.data, entry.data.entries[0], kDoubleRoundoff);
+            const Moments nothing = moments_from_kernel({}, entry.data, entry.data[0], kDoubleRoundoff);
             const double bound = nothing.albedo_error;
             const std::string where = std::string(name_of(masking)) + " theta " + std::to_string(theta_deg) +
                                       " sigma " + std::to_string(shape.sigma) + " q " + std::to_string(shape.q) +

@@ -149,7 +149,9 @@ SceneRun run_entries(const Options& options, const Scene& scene, const SceneEntr
   const std::unique_ptr<MomentsEvaluator> evaluator = integrates ? make_evaluator(options, scene) : nullptr;
   {
     ProgressBar bar(options.quiet);
-    run.results = evaluate_scene(scene, entries, run.plan, evaluator.get(), bar.callback());
+    CollectedResults results;
+    run.check = run_scene(scene, entries, run.plan, evaluator.get(), results, bar.callback());
+    run.results = results.take();
   }
   run.wall_s = seconds_since(start);
   run.effects = effect_rows(scene, entries, run.plan);
@@ -168,6 +170,10 @@ int report_run(const Options& options, const Scene& scene, const SceneEntries& e
   add_work(report, run.evaluation, run.results.size());
   report.value("rule", rule_text(scene.accuracy.tolerance, run.evaluation));
   add_errors(report, run, scene.accuracy.tolerance);
+  report.row_if(run.check.entries > 0, "checked",
+                "{} entries by a rule of another kind: largest difference {:.2g} of the bounds{}",
+                key("self_check/entries", run.check.entries), key("self_check/worst_ratio", run.check.worst_ratio),
+                run.check.worst_ratio > 1.0 ? "; a bound failed, see status 2" : "");
   add_status(report, run.results);
   Energy(scene, entries, run.results).report(report, run.plan.needs_moments);
   report.row("written", "{}", key("output", options.output_path));

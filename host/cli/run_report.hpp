@@ -11,6 +11,7 @@
 #include "cli/report.hpp"
 #include "model/point_result.hpp"
 #include "plan/effects.hpp"
+#include "run/self_check.hpp"
 #include "scene/points.hpp"
 
 namespace dolp::cli {
@@ -20,6 +21,7 @@ struct SceneRun {
   EffectPlan plan;
   std::vector<EffectRow> effects;
   std::vector<PointResult> results;
+  SelfCheck check;
   EvaluationReport evaluation;
   double wall_s = 0.0;
 };

@@ -15,7 +15,7 @@ int run_table(const Options& options) {
   check_output_path(options.output_path);
   const SceneEntries entries = grid_entries(scene);
   const SceneRun run = run_entries(options, scene, entries, start);
-  const TableContent content{scene,      run.results,         run.plan, run.effects, run.evaluation,
+  const TableContent content{scene,      run.results,         run.plan, run.effects, run.evaluation,   run.check,
                              run.wall_s, options.command_line};
   write_table(scene_table(content), options.output_path);
   return report_run(options, scene, entries, run, grid_text(scene.grid));

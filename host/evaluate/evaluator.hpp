@@ -18,6 +18,7 @@ struct EvaluationReport {
   std::string driver;     ///< driver name and version; empty for cpu and reference
   std::string precision;  ///< float | double | float and double, as used
   std::uint64_t dispatches = 0;
+  std::uint32_t row_width = 1;  ///< entries that an invocation computed together at last
   double evaluations = 0.0;
   double kernel_s = 0.0;           ///< time on the device (timestamps), or of the loop on the CPU, and of interpolation
   double setup_s = 0.0;            ///< device and pipeline creation

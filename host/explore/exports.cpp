@@ -36,10 +36,12 @@ std::string export_table(const Scene& scene, const std::string& path, const std:
   check_output_path(path);
   const SceneEntries entries = grid_entries(scene);
   const EffectPlan plan = plan_effects(scene, entries, false);
-  const std::vector<PointResult> results = evaluate_scene(scene, entries, plan, &evaluator, progress);
+  CollectedResults collected;
+  const SelfCheck check = run_scene(scene, entries, plan, &evaluator, collected, progress);
+  const std::vector<PointResult> results = collected.take();
   const double wall_s = seconds_since(start);
   const std::vector<EffectRow> effects = effect_rows(scene, entries, plan);
-  const TableContent content{scene, results, plan, effects, evaluator.report(), wall_s, command_line};
+  const TableContent content{scene, results, plan, effects, evaluator.report(), check, wall_s, command_line};
   write_table(scene_table(content), path);
   return fmt::format("{}: {} entries in {:.2f} s", path, entries.size(), wall_s);
 }

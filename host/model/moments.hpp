@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "model/choices.hpp"
@@ -32,6 +33,7 @@ struct MomentsRequest {
   Precision precision = Precision::kAuto;  ///< kAuto: the evaluator's own
   bool may_interpolate = true;             ///< between slope distributions, to the same tolerance
   bool has_extra_splits = false;           ///< a rule of another kind, to check others with
+  std::uint32_t row_width = 0;             ///< entries that an invocation computes together; 0: what takes least work
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
   std::vector<OpticalConstants> indices;

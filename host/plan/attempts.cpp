@@ -23,12 +23,27 @@ bool may_use_double(const Accuracy& accuracy, bool has_double) {
 // Steps of half a decade, so that many entries share an attempt.
 double half_decades(double decades) { return 0.5 * std::ceil(2.0 * decades); }
 
+Attempt attempt_at(Precision precision, double tolerance) {
+  Attempt attempt;
+  attempt.precision = precision;
+  attempt.tolerance = tolerance;
+  return attempt;
+}
+
 }  // namespace
 
 Attempt first_attempt(const Accuracy& accuracy, bool has_double) {
   const bool wants_double = accuracy.precision == Precision::kDouble || accuracy.tolerance < kLeastFloatTolerance;
-  return {wants_double && may_use_double(accuracy, has_double) ? Precision::kDouble : Precision::kFloat,
-          accuracy.tolerance};
+  Attempt first;
+  if (wants_double && may_use_double(accuracy, has_double)) first.precision = Precision::kDouble;
+  first.tolerance = accuracy.tolerance;
+  return first;
+}
+
+Attempt check_attempt(const Attempt& first, std::uint32_t row_width) {
+  constexpr double kFinerBy = 1e-2;
+  const double least = first.precision == Precision::kFloat ? kLeastFloatTolerance : kLeastDoubleTolerance;
+  return {first.precision, std::max(kFinerBy * first.tolerance, std::min(least, first.tolerance)), true, row_width};
 }
 
 std::optional<Attempt> next_attempt(const Attempt& last, const PointResult& result, const Accuracy& accuracy,
@@ -46,14 +61,14 @@ std::optional<Attempt> next_attempt(const Attempt& last, const PointResult& resu
   const double missed_by = std::isfinite(excess) ? half_decades(std::log10(kSafety * excess)) : kMostDecades;
   const double decades = std::min(std::max(missed_by, least), kMostDecades);
   const double wanted = last.tolerance * std::pow(10.0, -decades);
-  if (last.precision == Precision::kFloat && wanted >= kLeastFloatTolerance) return Attempt{Precision::kFloat, wanted};
+  if (last.precision == Precision::kFloat && wanted >= kLeastFloatTolerance) return attempt_at(Precision::kFloat, wanted);
   if (!may_use_double(accuracy, has_double)) {
     const bool can_tighten = last.precision == Precision::kFloat && last.tolerance > kLeastFloatTolerance;
-    return can_tighten ? std::optional(Attempt{Precision::kFloat, kLeastFloatTolerance}) : std::nullopt;
+    return can_tighten ? std::optional(attempt_at(Precision::kFloat, kLeastFloatTolerance)) : std::nullopt;
   }
   const double tolerance = std::max(wanted, kLeastDoubleTolerance);
   if (last.precision == Precision::kDouble && tolerance >= last.tolerance) return std::nullopt;
-  return Attempt{Precision::kDouble, tolerance};
+  return attempt_at(Precision::kDouble, tolerance);
 }
 
 }  // namespace dolp

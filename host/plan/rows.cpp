@@ -137,6 +137,7 @@ Rows rows_of(const MomentsRequest& request, const KernelData& data, std::uint32_
 
 Rows rows_of(const MomentsRequest& request, const KernelData& data) {
   if (!data.is_grid) return point_rows(data);
+  if (request.row_width > 0) return grid_rows(request, data, request.row_width);
   const auto wanted = static_cast<double>(request.wanted_count());
   const RowWork unit = data.masking == Masking::kIntegral ? kWithTables : RowWork{};
   const double evaluations = std::pow(data.rule.digits / kUsualDigits, 2.0);

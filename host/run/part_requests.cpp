@@ -71,6 +71,8 @@ PartRequests::PartRequests(const Scene& scene, const std::vector<OpticalConstant
   moments_.precision = beams_.precision = attempt.precision;
   moments_.tolerance = attempt.tolerance;
   // What misses the tolerance between nodes is integrated by itself: its neighbours are the hard ones too.
+  moments_.has_extra_splits = attempt.is_check;
+  moments_.row_width = attempt.row_width;
   moments_.may_interpolate = scene.accuracy.may_interpolate && attempt.tolerance >= scene.accuracy.tolerance;
   if (plan.needs_moments && selection.part.is_grid()) ask_grid(selection);
   if (plan.needs_moments && !selection.part.is_grid()) ask_points(selection);

@@ -11,6 +11,7 @@
 #include "plan/attempts.hpp"
 #include "run/closed_forms.hpp"
 #include "run/part_requests.hpp"
+#include "run/table_scene.hpp"
 
 namespace dolp {
 namespace {
@@ -179,16 +180,46 @@ void retry(const Way& way, const SceneEntries& part, const Attempt& first, std::
   }
 }
 
-/// Results of a part: all attempts, or what needs none.
-std::vector<PointResult> part_results(const Way& way, const SceneEntries& part, const Progress& progress) {
+/// Computes some entries of a grid again, after its first attempt, by a rule of another kind.
+std::vector<PointResult> computed_again(const Way& way, const SceneEntries& part, const Attempt& first,
+                                        std::span<const std::size_t> positions) {
+  if (positions.empty()) return {};
+  const Progress none = [](std::size_t, std::size_t) { return true; };
+  return attempted(way, {part, positions}, check_attempt(first, way.evaluator->report().row_width), none);
+}
+
+/// Which entries of a part a run checks: none of points. `nodes`: moments between which the others were interpolated.
+std::vector<std::size_t> positions_to_check(const Way& way, const SceneEntries& part, std::uint64_t nodes,
+                                            std::size_t before) {
+  if (!part.is_grid() || !way.plan.needs_moments) return {};
+  const std::size_t integrated = nodes > 0 ? nodes : part.size() * way.samples.size();
+  std::vector<std::size_t> positions =
+      checked_positions(part.size(), checked_count(integrated), scene_seed(way.scene) + before);
+  std::erase_if(positions, [&](std::size_t i) { return !wants_moments(way.scene, part[i], way.plan); });
+  return positions;
+}
+
+/// Results of a part: all attempts, or what needs none. `before`: entries of the parts before.
+std::vector<PointResult> part_results(const Way& way, const SceneEntries& part, std::size_t before, SelfCheck& check,
+                                      const Progress& progress) {
   if (!wants_evaluator(way.scene, part, way.plan)) {
     std::vector<PointResult> results = attempted(way, {part}, {}, progress);
     if (!progress(1, 1)) throw Cancelled{};
     return results;
   }
   const Attempt first = first_attempt(way.accuracy, way.evaluator->has_double());
+  const std::uint64_t nodes_before = way.evaluator->report().interpolation_nodes;
   std::vector<PointResult> results = attempted(way, {part}, first, progress);
+  const std::uint64_t nodes = way.evaluator->report().interpolation_nodes - nodes_before;
+  const std::vector<std::size_t> positions = positions_to_check(way, part, nodes, before);
+  const std::vector<PointResult> again = computed_again(way, part, first, positions);
   retry(way, part, first, results, progress);
+  SelfCheck of_part;
+  for (std::size_t i = 0; i < positions.size(); ++i) of_part.add(results[positions[i]], again[i]);
+  if (of_part.worst_ratio > 1.0) {
+    for (PointResult& result : results) result.status |= kStatusToleranceMissed;
+  }
+  check.add(of_part);
   return results;
 }
 
@@ -213,20 +244,22 @@ bool wants_evaluator(const Scene& scene, const SceneEntries& entries, const Effe
   });
 }
 
-void run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan, MomentsEvaluator* evaluator,
-               Sink& sink, const Progress& progress) {
+SelfCheck run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
+                    MomentsEvaluator* evaluator, Sink& sink, const Progress& progress) {
   const Radiometry radiometry(scene, plan.kept, plan.bound);
   const std::vector<OpticalConstants> samples = radiometry.rule().indices();
   Way way{scene, plan, radiometry, samples, evaluator, scene.accuracy};
   if (evaluator && way.accuracy.precision == Precision::kAuto) way.accuracy.precision = evaluator->precision();
+  SelfCheck check;
   std::size_t before = 0;
   for (const SceneEntries& part : run_parts(entries, samples.size())) {
     const Progress part_progress = [&](std::size_t done, std::size_t total) {
       return !progress || progress(before + part.size() * done / total, entries.size());
     };
-    sink.write(part, part_results(way, part, part_progress));
+    sink.write(part, part_results(way, part, before, check, part_progress));
     before += part.size();
   }
+  return check;
 }
 
 std::vector<PointResult> evaluate_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,

@@ -8,6 +8,7 @@
 #include "model/point_result.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/effects.hpp"
+#include "run/self_check.hpp"
 #include "scene/points.hpp"
 #include "scene/scene.hpp"
 
@@ -54,10 +55,11 @@ std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spe
 bool wants_evaluator(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan);
 
 /// Goes all the way, part by part: what the plan keeps, computed again where it misses the tolerance; what the plan
-/// does not give is NaN. Progress counts entries. The evaluator may be null where wants_evaluator says so. Errors:
-/// those of the evaluator, of Radiometry and of the sink; Cancelled when `progress` returns false.
-void run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan, MomentsEvaluator* evaluator,
-               Sink& sink, const Progress& progress);
+/// does not give is NaN. Progress counts entries. The evaluator may be null where wants_evaluator says so. Of grids
+/// some entries are checked; a part in which a bound fails gets the status of a missed tolerance.
+/// Errors: those of the evaluator, of Radiometry and of the sink; Cancelled when `progress` returns false.
+SelfCheck run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan, MomentsEvaluator* evaluator,
+                    Sink& sink, const Progress& progress);
 
 /// The same into memory: results in the order of `entries`.
 std::vector<PointResult> evaluate_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,

@@ -68,6 +68,8 @@ std::vector<Attribute> attributes(const TableContent& content) {
           {"tolerance", scene.accuracy.tolerance},
           {"effects", effects_text(content.effects, content.plan)},
           {"rule", rule_text(scene.accuracy.tolerance, evaluation)},
+          {"self_check_entries", static_cast<double>(content.check.entries)},
+          {"self_check_worst_ratio", content.check.worst_ratio},
           {"wall_time_s", content.wall_s}};
 }
 
@@ -75,8 +77,8 @@ std::vector<Attribute> attributes(const TableContent& content) {
 
 std::string rule_text(double tolerance, const EvaluationReport& evaluation) {
   std::string text = fmt::format(
-      "product Gauss rules on the smooth pieces of slope and azimuth, orders for tolerance {:g}, bounds from null "
-      "rules",
+      "product Gauss rules on the smooth pieces of slope and azimuth, orders for tolerance {:g}, bounds from pairs "
+      "of rules",
       tolerance);
   if (evaluation.interpolated > 0) {
     text += fmt::format(

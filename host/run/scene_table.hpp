@@ -7,6 +7,7 @@
 #include "evaluate/evaluator.hpp"
 #include "model/point_result.hpp"
 #include "plan/effects.hpp"
+#include "run/self_check.hpp"
 #include "scene/scene.hpp"
 #include "table/table.hpp"
 
@@ -19,6 +20,7 @@ struct TableContent {
   const EffectPlan& plan;
   const std::vector<EffectRow>& effects;  ///< effect_rows of the run
   EvaluationReport evaluation;
+  SelfCheck check;
   double wall_s = 0.0;
   std::string command_line;  ///< for the history
 };

@@ -50,15 +50,17 @@ std::vector<std::string> overrides_of(const std::string& text) {
   return overrides;
 }
 
-std::string scene_hash(const Scene& scene) {
+std::uint64_t scene_seed(const Scene& scene) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   const auto add = [&hash](const std::string& text) {
     for (const char byte : text) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
   };
   add(scene.text);
   for (const std::string& change : scene.overrides) add("\n" + change);
-  return fmt::format("fnv1a64:{:016x}", hash);
+  return hash;
 }
+
+std::string scene_hash(const Scene& scene) { return fmt::format("fnv1a64:{:016x}", scene_seed(scene)); }
 
 Table load_table(const std::string& path) {
   if (!std::filesystem::exists(path)) throw InputError(path + ": there is no such file");

@@ -17,6 +17,7 @@ std::vector<std::string> overrides_of(const std::string& text);
 /// The attribute "scene_hash": FNV-1a, 64 bits, over the scene's text and overrides. Says whether two tables come from
 /// the same scene, nothing more.
 std::string scene_hash(const Scene& scene);
+std::uint64_t scene_seed(const Scene& scene);  ///< the number itself
 
 /// Reads a table file that holds its scene.
 /// Errors: those of read_table; InputError for a file that is not there, and for formats that do not hold it.

@@ -45,6 +45,7 @@ class MomentsRun {
   /// The wanted moments at the places of their entries; nothing when `progress` returned false. Errors: DeviceError.
   std::optional<std::vector<Moments>> compute(const Progress& progress);
   const RunCost& cost() const { return cost_; }
+  std::uint32_t row_width() const { return rows_.width; }
 
  private:
   TileSizes sizes(std::uint32_t tile_invocations, std::uint32_t block_shapes) const;

@@ -70,6 +70,7 @@ class VulkanEvaluator::Impl {
     const Clock::time_point start = Clock::now();
     run_->create_pipelines();
     report.setup_s += seconds_since(start);
+    report.row_width = run_->row_width();
     return finish(run_, run_->compute(progress), request.precision, report);
   }
   std::vector<ScatteringMatrix> compute(const ScatteringRequest& request, const Progress& progress,

@@ -1,0 +1,29 @@
+// A run checks itself: some of its entries again, by a rule of another kind.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "model/point_result.hpp"
+
+namespace dolp {
+
+/// What the entries that were computed again say of the bounds of all.
+struct SelfCheck {
+  std::size_t entries = 0;
+  double worst_ratio = 0.0;  ///< largest difference over the sum of the bounds of both results; above 1 a bound failed
+
+  /// Adds what `again` says of `result`.
+  void add(const PointResult& result, const PointResult& again);
+  void add(const SelfCheck& other);
+};
+
+/// How many of `integrated` moments of a part are worth computing again: what costs a fiftieth of them, at most 64.
+std::size_t checked_count(std::size_t integrated);
+
+/// `count` of the positions below `size`, ascending; which ones follows from the seed alone.
+std::vector<std::size_t> checked_positions(std::size_t size, std::size_t count, std::uint64_t seed);
+
+}  // namespace dolp

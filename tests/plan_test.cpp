@@ -276,8 +276,8 @@ TEST(KernelDataTotalReflection, ItsIndices_HaveDirectionsOfTheirOwn) {
     EXPECT_EQ(request.indices[entry.index], request[i].index);
     EXPECT_EQ(data.shapes[entry.shape].m, slope_width(request[i].shape));
     for (std::size_t j = 0; j < i; ++j) {
-      const bool is_same = request[i].theta_deg == request[j].theta_deg &&
-                           kCriticalCos[entry.index] == kCriticalCos[data[j].index];
+      const bool is_same =
+          request[i].theta_deg == request[j].theta_deg && kCriticalCos[entry.index] == kCriticalCos[data[j].index];
       EXPECT_EQ(entry.theta == data[j].theta, is_same) << i << " " << j;
     }
     const bool is_total = kCriticalCos[entry.index] > 0.0;

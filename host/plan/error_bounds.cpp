@@ -30,15 +30,17 @@ constexpr double kExtremeTailQ = 1.01;
 // The critical line of total reflection lies at a difference of nearly equal angles, the more so the smoother the
 // surface.
 constexpr double kCriticalRoundings = 200.0;
-constexpr double kSmoothCriticalRoundings = 3000.0;
-constexpr double kSmoothM = 0.01;
+constexpr double kMostCriticalRoundings = 3000.0;
+constexpr double kSmoothM = 0.05;
 
 // Where the mean slope is about to diverge (smith, q near 3/2), G falls within 2q - 3 of the normal, which no rule
 // sees.
 constexpr double kDivergingSlope = 0.06;
 
 double roundings(const KernelData& data, const kernel::ShapeNode& shape, const kernel::IndexNode& index) {
-  if (index.critical_cos > 0.0) return shape.m < kSmoothM ? kSmoothCriticalRoundings : kCriticalRoundings;
+  if (index.critical_cos > 0.0) {
+    return std::clamp(kCriticalRoundings * kSmoothM / shape.m, kCriticalRoundings, kMostCriticalRoundings);
+  }
   if (!data.needs_masking_table() || data.distribution == Distribution::kGaussian) return kRoundings;
   if (shape.q_minus_1 < kExtremeTailQ - 1.0) return kExtremeTailRoundings;
   const double heavy_tail_q = data.masking == Masking::kSmith ? kHeavyTailSmithQ : kHeavyTailQ;

@@ -21,7 +21,7 @@ constexpr std::array<RuleModel, 4> kModels = {{
     {.margin_digits = 1.2, .t_nodes = 1.8, .t_digits = 0.0, .t_fall = 0.2, .phi_nodes = 0.5, .phi_digits = -0.5,
      .line_digits = 3.0},
     // smith
-    {.margin_digits = 1.7, .t_nodes = 1.8, .t_digits = 0.5, .t_fall = 0.2, .phi_nodes = 0.35, .phi_digits = 0.75,
+    {.margin_digits = 1.7, .t_nodes = 1.8, .t_digits = 0.5, .t_fall = 0.2, .phi_nodes = 0.45, .phi_digits = 1.25,
      .line_digits = 1.0, .cluster_stretch = 3.0},
 }};
 

@@ -115,7 +115,7 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task 
     piece.root_at_b = piece.root_at_b || is_near;
     piece.root_after = is_near ? end : x;
   }
-  piece.order = order_between(slope_nodes(rule, theta, shape, index, piece), largest_order());
+  piece.order = order_between(slope_nodes(rule, theta, shape, index, task.has_split_line, piece), largest_order());
   return piece;
 }
 

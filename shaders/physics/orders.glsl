@@ -10,10 +10,12 @@ CONST real kLn10 = real(2.30258509299404568402);
 CONST real kInverseLn10 = real(0.43429448190325182765);
 CONST real kWideResolution = real(0.1);   // of a root beside an arc, from which on it is a singularity like others
 CONST real kSharpResolution = real(1e-6);
+CONST real kMoreDigits = real(0.3);  // of the slope axis, for each digit beyond
+CONST real kPlainDigits = real(7.0);
 CONST real kLeastWeight = real(1e-20);  // so that at 90 degrees all slopes weigh the same
 
 // acosh(1 + gap), without cancellation.
-real acosh_above_1(real gap) { return log1p_real(gap + sqrt(gap * (gap + real(2.0)))); }
+real acosh_above_1(real gap) { return log1p_real(gap + sqrt(gap) * sqrt(gap + real(2.0))); }
 
 // |y| + |y - 1| - 1 for y = a + i b, without cancellation: how far y is from [0, 1].
 real gap_beside_unit(real a, real b) {
@@ -79,6 +81,13 @@ real piece_cost(Piece piece, real re, real im) {
   return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
 }
 
+// An essential singularity exp(-1/x^2) at an end costs a rule nodes in proportion to the square of the digits that it is
+// felt at.
+real essential_nodes(ShapeNode shape, real digits) {
+  real wanted = max(digits - kInverseLn10 / (shape.m * shape.m), real(0.0));
+  return real(0.25) * wanted * wanted;
+}
+
 // acosh(y) for y >= 1, 0 below: the real part of asinh(i y), whose imaginary part is pi/2 then.
 real real_part_of_asinh(real y) { return acosh_above_1(max(y - real(1.0), real(0.0))); }
 
@@ -88,14 +97,14 @@ real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, 
   real unit = max(theta.s, real(1e-6)) * shape.scale;
   real x = (re - theta.c) / unit;
   real bent = asinh_real(abs(x));
-  return piece_cost(piece, (x < real(0.0)) ? -bent : bent, im / unit / sqrt(real(1.0) + x * x));
+  return piece_cost(piece, (x < real(0.0)) ? -bent : bent, im / (unit * max(abs(x), real(1.0))));
 }
 
 // Singularities of the integrand over the slopes: the cauchy's density at t = i m; the geometry at t = i; those of
 // Fresnel's coefficients; and the square roots at the breakpoints beyond the piece's ends that face it. Before a rule converges it must resolve how the density
 // falls over the piece, for which it takes nodes in proportion to the logarithm; a root and the map that takes it up make
 // the integrand a polynomial of two degrees more.
-real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, Piece piece) {
+real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, Piece piece) {
   real cost = piece_cost(piece, real_part_of_asinh(real(1.0) / shape.scale), real(0.5) * kPi);
   if (kDistribution == DOLP_CAUCHY) {
     cost = max(cost, piece_cost(piece, real_part_of_asinh(shape.m / shape.scale), real(0.5) * kPi));
@@ -112,7 +121,14 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
   // The gaussian falls ever faster in X: all of it in the last unit.
   real steepest = (kDistribution == DOLP_GAUSSIAN) ? max(piece.extent, real(1.0)) : real(1.0);
   real resolved = min(piece.fall, piece.digits * kLn10) * steepest;
-  return max(rule.t_nodes + roots + rule.t_fall * resolved + (piece.digits + rule.t_digits) * cost, real(2.0));
+  // The poles' order, and weaker singularities, come to count with the digits.
+  real digits = piece.digits + kMoreDigits * max(piece.digits - kPlainDigits, real(0.0));
+  real nodes = rule.t_nodes + roots + rule.t_fall * resolved + (digits + rule.t_digits) * cost;
+  // Split at smith's cusp, the gaussian's L has an essential singularity at an end: see line_nodes.
+  if (kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_GAUSSIAN && has_split_line) {
+    nodes = max(nodes, rule.t_nodes + essential_nodes(shape, piece.digits));
+  }
+  return max(nodes, real(2.0));
 }
 
 // ---- Azimuth -------------------------------------------------------------------------------------------------------
@@ -242,12 +258,10 @@ Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, real2 fr
   return arc;
 }
 
-// The gaussian's G goes as exp(-1/distance^2) there: an essential singularity at the end of the arc, which costs a rule nodes
-// in proportion to the square of the digits.
+// The gaussian's G goes as exp(-1/distance^2) there.
 real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
   bool is_line = kMasking == DOLP_MASKING_INTEGRAL && kDistribution == DOLP_GAUSSIAN && zone == 2 && has_split_line;
-  real wanted = max(digits - kInverseLn10 / (shape.m * shape.m), real(0.0));
-  return is_line ? real(0.25) * wanted * wanted : real(0.0);
+  return is_line ? essential_nodes(shape, digits) : real(0.0);
 }
 
 // A smoothed square root has singularities at v = asinh(sqrt(+-i)) / a = (0.76 +- 0.57 i) / a in the abscissa of

@@ -35,7 +35,8 @@ class NativeText final : public Solver {
     wanted.tolerance = setting;
     const GroupedWork work(wanted);
     if (!has_text_for(work.data)) throw Unavailable("it is compiled for the cauchy without total reflection alone");
-    const std::unique_ptr<GroupedText> text = make_native_text(work);
+    const std::unique_ptr<GroupedText> text =
+        work.data.needs_masking_table() ? make_native_text(work) : make_vector_text(work);
     std::vector<kernel::MomentsNode> nodes(work.pieces.size() * work.grouping.size);
     Solution solution;
     solution.kernel_s = run(work, *text, nodes);

@@ -45,6 +45,9 @@ inline bool has_text_for(const KernelData& data) {
 /// Compiled for this processor, one invocation after the other, vectors where the compiler finds some.
 std::unique_ptr<GroupedText> make_native_text(const GroupedWork& work);
 
+/// The same with up to 16 invocations side by side in vectors. Only masking without tables: none and v-cavity.
+std::unique_ptr<GroupedText> make_vector_text(const GroupedWork& work);
+
 /// Operations of arithmetic, by kind.
 struct OperationCounts {
   std::uint64_t add = 0;  ///< and subtractions

@@ -113,7 +113,7 @@ struct Singularity {
 // acos(u).
 real arc_cosine(real u) {
   real angle = real(2.0) * atan_unit(sqrt((real(1.0) - abs(u)) / (real(1.0) + abs(u))));
-  return (u < real(0.0)) ? kPi - angle : angle;
+  return choose(u < real(0.0), kPi - angle, angle);
 }
 
 // arccos(a + i b), from the distances of cos(phi) to +-1 (Hull, Fairgrieve and Tang 1997).
@@ -129,9 +129,8 @@ Singularity singularity_at(real a, real b) {
 real arc_cost(Arc arc, Singularity at) {
   if (arc.section == kSectionCircle) return nodes_per_digit(at.im);
   real re = abs(at.re - arc.origin) / arc.span;
-  bool is_beyond = (at.re - arc.origin) * arc.extent < real(0.0);
   real im = at.im / arc.span;
-  re = is_beyond ? -re : re;
+  re = choose((at.re - arc.origin) * arc.extent < real(0.0), -re, re);  // beyond the arc's beginning
   real2 y = real2(re, im);
   if (arc.section == kSectionHalf) y = real2(re * re - im * im, real(2.0) * re * im);
   if (arc.section == kSectionCluster) y = sqrt_upper(re, im);

@@ -1,7 +1,7 @@
 // A number with a lane for each of several invocations of the shaders' text that go side by side in one thread.
 //
-// They keep together: a condition must hold for all lanes or for none, an integer is the largest of the lanes (so that all
-// take the rule of most nodes), and what differs from lane to lane is `choose` and `whole` in the text.
+// They keep together: a condition holds for all lanes or for none, an integer is the largest of the lanes, so that all take
+// the rule of most nodes; what differs from lane to lane is `choose` and `whole` in the text.
 #pragma once
 
 #include <bit>
@@ -36,6 +36,7 @@ struct Mask {
   }
 };
 
+/// An integer of each lane's own.
 struct Whole {
   Ints v;
   Whole() = default;
@@ -52,6 +53,7 @@ struct Real {
   DOLP_INLINE constexpr explicit Real(int all) : Real(static_cast<float>(all)) {}
   DOLP_INLINE constexpr explicit Real(uint all) : Real(static_cast<float>(all)) {}
   DOLP_INLINE explicit Real(Whole whole) : v(__builtin_convertvector(whole.v, Floats)) {}
+  /// The largest.
   DOLP_INLINE explicit operator float() const {
     float largest = v[0];
     for (int i = 1; i < kLanes; ++i) largest = bench::max(largest, v[i]);

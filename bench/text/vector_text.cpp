@@ -1,4 +1,5 @@
-// The text with invocations side by side; flags of its own, see bench/CMakeLists.txt.
+// The text with invocations side by side. With masking tables, whose look-ups each lane has to do alone, it is slower than
+// native_text.cpp. Flags of its own, see bench/CMakeLists.txt.
 #define DOLP_LANES
 
 #include "bench/text/vector_lanes.hpp"

@@ -1,4 +1,4 @@
-// The shaders' own text, compiled for this very processor: the same algorithm, groups and pieces as on the device.
+// The shaders' own text, compiled for this very processor: the same algorithm, rows and pieces as on the device.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -35,12 +35,13 @@ class NativeText final : public Solver {
     wanted.tolerance = setting;
     const GroupedWork work(wanted);
     if (!has_text_for(work.data)) throw Unavailable("it is compiled for the cauchy without total reflection alone");
-    const std::unique_ptr<GroupedText> text = make_native_text(work);
-    std::vector<kernel::MomentsNode> nodes(work.pieces.size() * work.grouping.size);
+    const std::unique_ptr<GroupedText> text =
+        work.data.needs_masking_table() ? make_native_text(work) : make_vector_text(work);
+    std::vector<kernel::MomentsNode> nodes(work.pieces.size() * work.rows.width);
     Solution solution;
     solution.kernel_s = run(work, *text, nodes);
     solution.evaluations = 0.0;
-    for (std::size_t i = 0; i < nodes.size(); i += work.grouping.size) *solution.evaluations += nodes[i].evaluations;
+    for (std::size_t i = 0; i < nodes.size(); i += work.rows.width) *solution.evaluations += nodes[i].evaluations;
     for (const Moments& entry : moments_of(work, nodes)) {
       solution.answers.push_back({entry.r_i, entry.r_q, std::max(entry.r_i_error, entry.r_q_error) / entry.r_i});
     }
@@ -51,9 +52,9 @@ class NativeText final : public Solver {
  private:
   static double run(const GroupedWork& work, GroupedText& text, std::vector<kernel::MomentsNode>& nodes) {
     const auto start = std::chrono::steady_clock::now();
-    const std::size_t size = work.grouping.size;
+    const std::size_t size = work.rows.width;
     if (work.data.needs_masking_table()) {
-      on_all_cores(work.grouping.shapes.size(), [&](std::size_t shape) { text.build_masking_table(shape); });
+      on_all_cores(work.rows.shapes.size(), [&](std::size_t shape) { text.build_masking_table(shape); });
     }
     on_all_cores((work.pieces.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
       const std::size_t first = block * kBlock;

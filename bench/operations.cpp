@@ -34,12 +34,12 @@ KernelWork count_operations(const MomentsRequest& request, std::size_t workgroup
   KernelWork result;
   if (work.data.needs_masking_table()) {
     const OperationCounts before = counted_operations();
-    for (std::size_t shape = 0; shape < work.grouping.shapes.size(); ++shape) text->build_masking_table(shape);
+    for (std::size_t shape = 0; shape < work.rows.shapes.size(); ++shape) text->build_masking_table(shape);
     add_scaled(result.counts, since(before), 1.0);
   }
   const std::size_t all = (work.pieces.size() + vulkan::kLocalSize - 1) / vulkan::kLocalSize;
   const std::size_t count = std::min(workgroups, all);
-  std::vector<kernel::MomentsNode> members(work.grouping.size);
+  std::vector<kernel::MomentsNode> members(work.rows.width);
   const OperationCounts before = counted_operations();
   std::size_t pieces = 0;
   double evaluations = 0.0;

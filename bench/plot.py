@@ -3,7 +3,7 @@
 
 Usage: plot.py accuracy RESULT.json -o FIGURE.png    error against time per entry, one panel a case
        plot.py accuracy RESULT.json --markdown       time per entry at given errors, as a Markdown table on stdout
-       plot.py effects RESULT.json -o FIGURE.png     time per entry of each effect, and of specialised kernels
+       plot.py effects RESULT.json -o FIGURE.png     time per entry of each effect
        plot.py effects RESULT.json --markdown        the same as Markdown tables on stdout
        plot.py throughput|peers RESULT.json -o FIGURE.png | --markdown    likewise, of those studies
 RESULT.json is what `dolp-bench accuracy|effects|throughput|peers --json RESULT.json` writes. Figures need python3-matplotlib (and with it Pillow).

@@ -23,7 +23,10 @@
 namespace dolp {
 namespace {
 
+// Of the points, those that no attempt brings to the tolerance: next to rounding and to the most nodes at 1e-9.
 constexpr double kMissedShare = 0.01;
+constexpr double kTightMissedShare = 0.05;
+constexpr double kTight = 1e-8;
 // The bound is a multiple of the distance from a rule of a fifth fewer digits: at six digits one and a half of them, and
 // half a digit for the multiple.
 constexpr double kMedianPessimism = 100.0;
@@ -148,7 +151,8 @@ TEST_P(RandomPoints, FewPoints_MissTheTolerance) {
   const std::vector<Compared>& points = sweep().points;
   const auto missed = std::ranges::count_if(points, &Compared::is_missed);
   std::printf("%td of %zu points say that they miss %.0e\n", missed, points.size(), GetParam().tolerance);
-  EXPECT_LT(static_cast<double>(missed), kMissedShare * static_cast<double>(points.size()));
+  const double share = GetParam().tolerance < kTight ? kTightMissedShare : kMissedShare;
+  EXPECT_LT(static_cast<double>(missed), share * static_cast<double>(points.size()));
 }
 
 TEST_P(RandomPoints, Estimates_AreNotFarAboveTheErrors) {

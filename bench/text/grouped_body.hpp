@@ -48,7 +48,7 @@ class Kernel final : public GroupedText {
   explicit Kernel(const GroupedWork& work) : work_(work), rule_(narrowed<typename Own::RuleNode>(work.data.rule)) {
     text_.order_of_nodes = work.data.rule_order;
     for (const auto& node : work.data.rule_nodes) text_.rule_nodes.push_back(narrowed<real2>(node));
-    for (const auto& shape : work.grouping.shapes) shapes_.push_back(narrowed<typename Own::ShapeNode>(shape));
+    for (const auto& shape : work.rows.shapes) shapes_.push_back(narrowed<typename Own::ShapeNode>(shape));
     for (const auto& theta : work.data.thetas) thetas_.push_back(narrowed<typename Own::ThetaNode>(theta));
     for (const auto& index : work.data.indices) indices_.push_back(narrowed<typename Own::IndexNode>(index));
     if (work.data.needs_masking_table()) text_.masking_table.resize(shapes_.size() * Own::kMaskingNodes);
@@ -62,17 +62,18 @@ class Kernel final : public GroupedText {
 
  private:
   void run_piece(std::size_t piece, std::span<kernel::MomentsNode> members) {
-    const GroupPiece& own = work_.pieces[piece];
-    const EntryGroup& group = work_.grouping.groups[own.group];
-    const ShapeFamily& family = work_.grouping.families[group.family];
+    const RowPiece& own = work_.pieces[piece];
+    const Row& entries = work_.rows.rows[own.row];
+    const Chunk& chunk = work_.rows.chunks[entries.chunk];
+    const std::uint32_t theta = work_.rows.theta_of(work_.data, entries);
     typename Own::Row row;
     for (std::uint32_t g = 0; g < kWidth; ++g) {
-      const std::size_t shape = family.first + std::min(g, family.count - 1);
+      const std::size_t shape = chunk.first + std::min(g, chunk.count - 1);
       row.shape[g] = shapes_[shape];
       row.table[g] = table(shape);
     }
-    const auto task = text_.task_of(task_word(work_.data.pieces[group.theta], own.piece, family.count));
-    const auto moments = text_.piece_moments(rule_, thetas_[group.theta], row, indices_[group.index], task);
+    const auto task = text_.task_of(task_word(work_.data.pieces[theta], own.piece, chunk.count));
+    const auto moments = text_.piece_moments(rule_, thetas_[theta], row, indices_[entries.index], task);
     for (std::size_t g = 0; g < kWidth; ++g) {
       members[g] = convert_reals<double, kernel::MomentsNode, real>(moments.member[g]);
     }
@@ -104,7 +105,7 @@ std::unique_ptr<GroupedText> make_text(const GroupedWork& work) {
 }
 
 inline std::unique_ptr<GroupedText> text_for(const GroupedWork& work) {
-  switch (work.grouping.size) {
+  switch (work.rows.width) {
     case 4: return make_text<4>(work);
     case 8: return make_text<8>(work);
     case 16: return make_text<16>(work);

@@ -1,4 +1,4 @@
-// The shaders' own text as C++ in float, in the groups and pieces in which a Vulkan device gets it.
+// The shaders' own text as C++ in float, in the rows and pieces in which a Vulkan device gets it.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "plan/groups.hpp"
 #include "plan/kernel_data.hpp"
+#include "plan/rows.hpp"
 
 namespace dolp::bench {
 
@@ -17,8 +17,8 @@ struct GroupedWork {
   explicit GroupedWork(const MomentsRequest& request);
 
   KernelData data;
-  Grouping grouping;
-  std::vector<GroupPiece> pieces;  ///< the invocations, in the order of the device
+  Rows rows;
+  std::vector<RowPiece> pieces;  ///< the invocations, in the order of the device
 };
 
 /// The kernels of shaders/ over one piece of work, which must outlive the object. All members may be called from
@@ -27,14 +27,14 @@ class GroupedText {
  public:
   virtual ~GroupedText() = default;
 
-  /// Fills the masking table of a shape of the grouping; needed before the pieces where the data needs tables.
+  /// Fills the masking table of a shape of the rows; needed before the pieces where the data needs tables.
   virtual void build_masking_table(std::size_t shape) = 0;
 
-  /// What invocations first, first + 1, ... give, a node for each member of each one's group, until `members` is full.
+  /// What invocations first, first + 1, ... give, a node for each member of each one's row, until `members` is full.
   virtual void run_pieces(std::size_t first, std::span<kernel::MomentsNode> members) = 0;
 };
 
-/// Adds what the pieces gave, groups size by size, and turns it into moments in the order of the request.
+/// Adds what the pieces gave, row by row, and turns it into moments in the order of the request.
 std::vector<Moments> moments_of(const GroupedWork& work, const std::vector<kernel::MomentsNode>& nodes);
 
 /// Whether the builds below can do this work: they are made for the cauchy distribution without total reflection.
@@ -44,6 +44,9 @@ inline bool has_text_for(const KernelData& data) {
 
 /// Compiled for this processor, one invocation after the other, vectors where the compiler finds some.
 std::unique_ptr<GroupedText> make_native_text(const GroupedWork& work);
+
+/// The same with up to 16 invocations side by side in vectors. Only masking without tables: none and v-cavity.
+std::unique_ptr<GroupedText> make_vector_text(const GroupedWork& work);
 
 /// Operations of arithmetic, by kind.
 struct OperationCounts {

@@ -28,18 +28,22 @@ constexpr double kExtremeTailRoundings = 400.0;
 constexpr double kExtremeTailQ = 1.01;
 
 // The critical line of total reflection lies at a difference of nearly equal angles, the more so the smoother the
-// surface.
-constexpr double kCriticalRoundings = 200.0;
+// surface and the nearer the horizon.
+constexpr double kCriticalRoundings = 300.0;
 constexpr double kMostCriticalRoundings = 3000.0;
+constexpr double kSmallestCosine = 1e-9;
 constexpr double kSmoothM = 0.05;
 
 // Where the mean slope is about to diverge (smith, q near 3/2), G falls within 2q - 3 of the normal, which no rule
 // sees.
 constexpr double kDivergingSlope = 0.06;
 
-double roundings(const KernelData& data, const kernel::ShapeNode& shape, const kernel::IndexNode& index) {
+double roundings(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape,
+                 const kernel::IndexNode& index) {
   if (index.critical_cos > 0.0) {
-    return std::clamp(kCriticalRoundings * kSmoothM / shape.m, kCriticalRoundings, kMostCriticalRoundings);
+    const double grazing = 1.0 - std::log10(std::max(theta.c, kSmallestCosine));
+    const double smooth = std::max(1.0, kSmoothM / shape.m);
+    return std::min(kCriticalRoundings * smooth * grazing, kMostCriticalRoundings);
   }
   if (!data.needs_masking_table() || data.distribution == Distribution::kGaussian) return kRoundings;
   if (shape.q_minus_1 < kExtremeTailQ - 1.0) return kExtremeTailRoundings;
@@ -122,7 +126,7 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   const kernel::IndexNode& index = data.indices[entry.index];
   const double cut = cut_bound(data, theta, shape);
   const double masking = masking_error(data, entry, unit_roundoff);
-  const double rounding = unit_roundoff * roundings(data, shape, index);
+  const double rounding = unit_roundoff * roundings(data, theta, shape, index);
   const double reflected_cut = cut == 0.0 ? 0.0 : cut * steep_reflectance(index, theta, shape);
   Moments moments;
   moments.r_i = node.r_i;

@@ -11,7 +11,11 @@ real2 half_angle(real one_plus_x, real one_minus_x) {
 
 real cosine(real2 half_phi) { return (half_phi.x - half_phi.y) * (half_phi.x + half_phi.y); }
 
-real arc_tangent(real y) { return (y <= real(1.0)) ? atan_unit(y) : real(0.5) * kPi - atan_unit(real(1.0) / y); }
+// atan(y) for y >= 0.
+real arc_tangent(real y) {
+  real angle = atan_unit(choose(y <= real(1.0), y, real(1.0) / y));
+  return choose(y <= real(1.0), angle, real(0.5) * kPi - angle);
+}
 
 // phi.
 real phase(real2 half_phi) { return real(4.0) * arc_tangent(half_phi.y / (real(1.0) + half_phi.x)); }
@@ -151,9 +155,9 @@ SplitLines split_lines(ThetaNode theta, IndexNode index, real t, bool has_split_
   }
   if (kMasking == DOLP_MASKING_V_CAVITY) {
     // G = 1 between 2 cos(alpha) cos(theta) = cos(beta) and the same with theta_r; the two lines meet at t = 1.
-    bool open = t < real(1.0);
-    lines.first = open ? line_at(c, st) : same_zenith;
-    lines.second = open ? line_at(c * (real(3.0) * t * t - real(1.0)) / (real(3.0) - t * t), st) : same_zenith;
+    real level = c * (real(3.0) * t * t - real(1.0)) / (real(3.0) - t * t);
+    lines.first = choose(t < real(1.0), line_at(c, st), same_zenith);
+    lines.second = choose(t < real(1.0), line_at(level, st), same_zenith);
   }
   return lines;
 }

@@ -191,7 +191,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
   }
   // The share of the facets is known: the error that the density alone makes cancels.
   for (int g = 0; g < DOLP_WIDTH; ++g) {
-    real ratio = (mass[g] > real(0.0)) ? piece.mass[g] / mass[g] : real(1.0);
+    real ratio = choose(mass[g] > real(0.0), piece.mass[g] / mass[g], real(1.0));
     sums.member[g] *= ratio;
     sums.behind[g] *= ratio;
   }

@@ -75,9 +75,9 @@ real digits_of_slope(RuleNode rule, ThetaNode theta, ShapeNode shape, real digit
 // distance from it.
 real piece_cost(Piece piece, real re, real im) {
   real2 z = real2((re - piece.start) / piece.extent, im / piece.extent);
-  bool is_nearer_a = !piece.root_at_b || (piece.root_at_a && z.x < real(0.5));
-  real2 from_root = real2(is_nearer_a ? z.x : real(1.0) - z.x, z.y);
-  real2 y = (piece.root_at_a || piece.root_at_b) ? sqrt_upper(from_root.x, from_root.y) : z;
+  real from_root = piece.root_at_b ? real(1.0) - z.x : z.x;
+  if (piece.root_at_a) from_root = choose(z.x < real(0.5), z.x, from_root);  // the nearer one
+  real2 y = (piece.root_at_a || piece.root_at_b) ? sqrt_upper(from_root, z.y) : z;
   return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
 }
 
@@ -97,7 +97,7 @@ real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, 
   real unit = max(theta.s, real(1e-6)) * shape.scale;
   real x = (re - theta.c) / unit;
   real bent = asinh_real(abs(x));
-  return piece_cost(piece, (x < real(0.0)) ? -bent : bent, im / (unit * max(abs(x), real(1.0))));
+  return piece_cost(piece, choose(x < real(0.0), -bent, bent), im / (unit * max(abs(x), real(1.0))));
 }
 
 // Singularities of the integrand over the slopes: the cauchy's density at t = i m; the geometry at t = i; those of
@@ -142,7 +142,7 @@ struct Singularity {
 // acos(u).
 real arc_cosine(real u) {
   real angle = real(2.0) * atan_unit(sqrt((real(1.0) - abs(u)) / (real(1.0) + abs(u))));
-  return (u < real(0.0)) ? kPi - angle : angle;
+  return choose(u < real(0.0), kPi - angle, angle);
 }
 
 // arccos(a + i b), from the distances of cos(phi) to +-1 (Hull, Fairgrieve and Tang 1997).
@@ -158,9 +158,8 @@ Singularity singularity_at(real a, real b) {
 real arc_cost(Arc arc, Singularity at) {
   if (arc.section == kSectionCircle) return nodes_per_digit(at.im);
   real re = abs(at.re - arc.origin) / arc.span;
-  bool is_beyond = (at.re - arc.origin) * arc.extent < real(0.0);
   real im = at.im / arc.span;
-  re = is_beyond ? -re : re;
+  re = choose((at.re - arc.origin) * arc.extent < real(0.0), -re, re);  // beyond the arc's beginning
   real2 y = real2(re, im);
   if (arc.section == kSectionHalf) y = real2(re * re - im * im, real(2.0) * re * im);
   if (arc.section == kSectionCluster) y = sqrt_upper(re, im);
@@ -199,7 +198,7 @@ real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   // cos(theta_r) = i m / sqrt(1 - m^2)
   real width = real(1.0) - shape.m * shape.m;
   real cos_r = shape.m / sqrt(max(abs(width), real(1e-6)));
-  Singularity density = singularity_at(offset + ((width > real(0.0)) ? real(0.0) : -cos_r * scale),
+  Singularity density = singularity_at(offset + ((width > real(0.0)) ? real(0.0) : cos_r * scale),
                                        (width > real(0.0)) ? cos_r * scale : real(0.0));
   real cost = arc_cost(arc, density);
   if (kMasking == DOLP_MASKING_INTEGRAL) cost = max(cost, arc_cost(arc, singularity_at(offset - t / sqrt(sec2) * scale, real(0.0))));

@@ -58,9 +58,9 @@ TEST(HoldOut, Climb_FindsNoLessThanTheDraws) {
   EXPECT_GT(climbed.climbed.ratio, drawn.worst.ratio);
 }
 
-std::vector<RandomEntry> drawn(Domain domain, Distribution distribution, Masking masking) {
+std::vector<MomentsPoint> drawn(Domain domain, Distribution distribution, Masking masking) {
   Draw draw(kSeed);
-  std::vector<RandomEntry> entries;
+  std::vector<MomentsPoint> entries;
   for (int i = 0; i < 2000; ++i) entries.push_back(random_entry(draw, domain, distribution, masking));
   return entries;
 }
@@ -68,7 +68,7 @@ std::vector<RandomEntry> drawn(Domain domain, Distribution distribution, Masking
 TEST(RandomEntries, BothDomains_LieWhereScenesMay) {
   for (const Domain domain : {Domain::kOrdinary, Domain::kCorners}) {
     for (const Masking masking : {Masking::kNone, Masking::kSmith}) {
-      for (const RandomEntry& entry : drawn(domain, Distribution::kCauchy, masking)) {
+      for (const MomentsPoint& entry : drawn(domain, Distribution::kCauchy, masking)) {
         EXPECT_TRUE(entry.theta_deg >= 0.0 && entry.theta_deg <= (domain == Domain::kOrdinary ? 85.0 : 90.0));
         EXPECT_TRUE(entry.shape.sigma > 0.0 && entry.shape.sigma <= 10.0);
         EXPECT_GT(entry.shape.q, least_q(Distribution::kCauchy, masking));

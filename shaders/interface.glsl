@@ -136,7 +136,8 @@ struct MuellerNode {
   real m[16];
 };
 
-// Moments times cos(theta) (MODEL.md section 3), and what the rules say of themselves (physics/moments.glsl).
+// Moments times cos(theta) (shaders/physics/README.md, section 3), and what the rules say of themselves
+// (physics/moments.glsl).
 struct MomentsNode {
   real r_i;
   real r_q;

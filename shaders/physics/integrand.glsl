@@ -1,4 +1,5 @@
-// The integrand of the moments in slope space, and its integral over the azimuth at one slope (MODEL.md section 3).
+// The integrand of the moments in slope space, and its integral over the azimuth at one slope
+// (shaders/physics/README.md, section 3).
 //
 // A facet has slope t and azimuth phi from the plane of incidence; x = cos(phi), r2 = cos^2(alpha) = 1 / (1 + t^2),
 // e = c + s t x. Then

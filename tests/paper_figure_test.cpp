@@ -14,7 +14,7 @@ using namespace dolp;
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-// The README gives DOLP and its differences to 0.01 points, angles to 0.1 degrees and G to 0.001; the curves themselves are
+// README gives DOLP and its differences to 0.01 points, angles to 0.1 degrees and G to 0.001; the curves themselves are
 // good to 1e-4 (0.01 points), the scenes' tolerance, and are sampled each 0.1 degrees.
 constexpr double kPointTolerance = 0.02;
 constexpr double kAngleToleranceDeg = 0.2;

@@ -1,5 +1,5 @@
 // Which entries one invocation of the kernel computes together: those that differ in the exponent q alone share the
-// nodes, the facets and their reflection (Group of shaders/physics/integrand.glsl).
+// nodes, the facets and their reflection (shaders/physics/row.glsl).
 #pragma once
 
 #include <array>

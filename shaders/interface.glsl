@@ -133,8 +133,8 @@ struct MuellerNode {
   real m[16];
 };
 
-// Moments times cos(theta) (section 3 of physics/README.md), from the finer of two rules, and how far the coarser one is
-// off (physics/moments.glsl).
+// Moments times cos(theta) (shaders/physics/README.md, section 3), from the finer of two rules, and how far the coarser
+// one is off (physics/moments.glsl).
 struct MomentsNode {
   real r_i;
   real r_q;

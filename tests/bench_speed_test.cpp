@@ -121,7 +121,7 @@ TEST(BenchOperations, WholeRequest_CountsWhatTheKernelDoes) {
   const KernelWork work = count_operations(request, 1'000'000, 8);
   const Solution solution = solver_of("vulkan-float")->solve(request, request.tolerance);
   EXPECT_NEAR(work.evaluations / *solution.evaluations, 1.0, 1e-3);
-  // NUMERICS: 3 square roots a sample, and those of the pieces; Fresnel alone takes about 40 multiplications.
+  // 3 square roots a sample, and those of the pieces; Fresnel alone takes about 40 multiplications.
   EXPECT_GT(static_cast<double>(work.counts.square_root), 3.0 * work.evaluations);
   EXPECT_GT(static_cast<double>(work.counts.multiply), 40.0 * work.evaluations);
   EXPECT_LT(static_cast<double>(work.counts.flops()), 5000.0 * work.evaluations);

@@ -1,5 +1,5 @@
-// The bistatic mode against MODEL's formula written out once more, with f from explicit vectors and the moments of the
-// independent reference.
+// The bistatic mode against the formula of shaders/physics/README.md, section 4, written out once more, with f from
+// explicit vectors and the moments of the independent reference.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -235,7 +235,7 @@ TEST(MaterialFile_Wrong, NamesFileAndLine) {
 }
 
 TEST(Sun_At10p6, IsTheReferenceSpectrum) {
-  // MODEL section 8: 0.179 to three digits.
+  // host/sun.csv: 0.179 to three digits.
   constexpr double kThreeDigits = 0.01;
   EXPECT_NEAR(sun_irradiance().at(10.6), 0.179, 0.179 * kThreeDigits);
 }

@@ -1,4 +1,4 @@
-// The commands that draw the paper's figures, and what README says of their curves.
+// The commands that draw the paper's figures, and what shaders/physics/README.md, section 5, says of their curves.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// MODEL.md's printed formulas of radiometry, written out again in long double, and scenes and moments to try them on.
+// The formulas of radiometry as shaders/physics/README.md, section 4, prints them, written out again in long double, and
+// scenes and moments to try them on.
 #pragma once
 
 #include <algorithm>
@@ -56,7 +57,8 @@ struct PrintedStokes {
   Real q = 0.0L;
 };
 
-/// Equation (18) in the reading of MODEL.md section 4 at one wavelength; `specular` holds rho_s, rho_p for k_s = 1.
+/// Equation (18) in the reading of shaders/physics/README.md, section 4, at one wavelength; `specular` holds rho_s,
+/// rho_p for k_s = 1.
 inline PrintedStokes printed_stokes(const Scene& scene, Real wavelength_um, Real c,
                                     const PrintedReflectance& specular) {
   const Real pi = std::numbers::pi_v<Real>;

@@ -50,7 +50,7 @@ struct MomentsRequest {
 };
 
 /// The moments of one entry, all multiplied by cos(theta), which keeps them finite at theta = 90 degrees.
-/// MODEL: r = rho cos(theta); rho_s = rho_I + rho_Q, rho_p = rho_I - rho_Q.
+/// r = rho cos(theta); rho_s = rho_I + rho_Q, rho_p = rho_I - rho_Q.
 struct Moments {
   double r_i = 0.0;      ///< rho_I cos(theta)
   double r_q = 0.0;      ///< rho_Q cos(theta), signed

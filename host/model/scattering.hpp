@@ -48,7 +48,7 @@ struct ScatteringRequest {
 };
 
 /// f_s cos(theta_i) cos(theta_r) for k_s = 1, which is finite at grazing incidence, row by row.
-/// Units: sr-1. Conventions: frames, Q, U and V of MODEL.md section 1.
+/// Units: sr-1. Conventions: frames, Q, U and V of shaders/physics/README.md, section 1.
 struct ScatteringMatrix {
   std::array<double, 16> m{};
   double error = 0.0;  ///< bound of the absolute error of each element

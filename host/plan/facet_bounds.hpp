@@ -17,7 +17,7 @@ struct ReflectanceBounds {
 
 /// Bounds that hold for each of the indices, so for every mean over them.
 ///
-/// Derivation, with the notation of shaders/physics/integrand.glsl: rho c = integral of P t dt over the slopes of
+/// Derivation, with the notation of shaders/physics/facet.glsl: rho c = integral of P t dt over the slopes of
 /// 2 * integral of e G M over the azimuths whose ray leaves, G <= 1, and e <= max(c + s t cos(phi), 0), whose azimuthal
 /// mean g(t) is c up to s t = c and (c acos(-z) + s t sqrt(1 - z^2)) / pi, z = c / (s t), beyond, and grows with t. On
 /// a shell of slopes [t0, t1] the integral with M = 1 is so at most (its share of the facets) * g(t1). No ray leaves

@@ -132,7 +132,7 @@ void add_extra_splits(std::vector<Breakpoint>& points) {
   std::sort(points.begin(), points.end());
 }
 
-// Slopes from 0 on at which the set of smooth arcs changes: where a split line of the azimuth (integrand.glsl) meets
+// Slopes from 0 on at which the set of smooth arcs changes: where a split line of the azimuth (arcs.glsl) meets
 // phi = 0 or pi or another line. The horizon does at t1 = c / (1 + s) and t2 = (1 + s) / c, theta_r = theta at
 // tan(theta), the limit b = pi/2 at tan(30 -+ 2/3 theta) and, on theta_r = theta, at tan(2 theta - 90); the lines of
 // v-cavity at tan(30 -+ theta/3), cot(theta), 1 and tan(theta); smith's cusp is at tan(theta/2).

@@ -12,8 +12,8 @@ namespace dolp {
 ///
 /// For sigma: with the slope in units of m, sigma enters P(u) = (1 + u^2)^-q alone, analytic where |Im ln m| < pi/2;
 /// toward there a power of q grows, so that less is worth relying on. For q: P is analytic for Re q > 1, smith masking
-/// for Re q > 3/2 (MODEL.md section 2). A polynomial of n nodes in the logarithm then is wrong by rho^-n, rho =
-/// exp(asinh(strip / half length)).
+/// for Re q > 3/2 (shaders/physics/README.md, section 2). A polynomial of n nodes in the logarithm then is wrong by
+/// rho^-n, rho = exp(asinh(strip / half length)).
 struct ShapeParameter {
   double origin = 0.0;
   double strip = 1.0;

@@ -39,7 +39,7 @@ struct KeyDescription {
   std::string allowed() const;
 };
 
-/// Every key a scene can have, in the order of INTERFACE: the reader accepts exactly these.
+/// Every key a scene can have, in the order of a scene file: the reader accepts exactly these.
 const std::vector<KeyDescription>& scene_keys();
 
 }  // namespace dolp

@@ -1,5 +1,5 @@
-// Geometric attenuation G (MODEL.md section 2): v-cavity in closed form, `integral` and smith from a table of
-// one-dimensional integrals of the in-plane slope density p, one table for each shape.
+// Geometric attenuation G (shaders/physics/README.md, section 2): v-cavity in closed form, `integral` and smith from a
+// table of one-dimensional integrals of the in-plane slope density p, one table for each shape.
 //
 // With Pt(x) = int_x^inf p, C(x) = int_x^inf g p and l(x) = int_x^inf g(tau) p(tau) (tau - x) dtau, where g = 1 for
 // smith and 1 / sqrt(1 + tau^2) for `integral`:   l' = -C,  C' = -g p,  Pt' = -p.

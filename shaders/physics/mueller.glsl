@@ -1,4 +1,5 @@
-// The specular Mueller pBRDF of one geometry, all 16 elements (MODEL.md sections 1 and 2, eqs. 4, 7, 15).
+// The specular Mueller pBRDF of one geometry, all 16 elements (shaders/physics/README.md, sections 1 and 2, eqs. 4, 7,
+// 15).
 //
 // The Jones matrix turns s and p into the facet's plane by eta_i, reflects, and turns back by eta_r into the plane of
 // the reflected beam; s of the facet is cos(eta) s + sin(eta) p, so that sin(eta) has the sign of sin(dphi) with the

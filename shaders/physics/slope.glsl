@@ -1,4 +1,5 @@
-// The slope distribution (MODEL.md section 2, eqs. 1 and 8). Slope t = tan(alpha), m = sqrt(2) sigma, u = t / m.
+// The slope distribution (shaders/physics/README.md, section 2, eqs. 1 and 8). Slope t = tan(alpha), m = sqrt(2) sigma,
+// u = t / m.
 // P(t) = (q - 1) / (pi m^2) (1 + u^2)^-q (cauchy) or exp(-u^2) / (pi m^2) (gaussian): the integral of P t dt dphi over
 // the slope plane is 1, and P = D cos^4(alpha).
 

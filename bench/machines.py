@@ -1,0 +1,23 @@
+#!/usr/bin/env python3
+"""Where and when the studies were measured, as a Markdown table: machines.py RESULT.json..."""
+import json
+import sys
+
+
+def row(path):
+    with open(path, encoding="utf-8") as file:
+        result = json.load(file)
+    context = result["context"]
+    machine, device = context["machine"], context["device"]
+    return [result["study"], context["date"][:10], context["program"], f"{machine['processor']}, {machine['cores']} cores",
+            f"{machine['load']:.1f}", f"{device.get('name', 'none')}, {device.get('driver', '')}", machine["system"]]
+
+
+def main():
+    print("| study | date | program | processor | load before | device | system |\n" + "|---" * 7 + "|")
+    for path in sys.argv[1:]:
+        print("| " + " | ".join(row(path)) + " |")
+
+
+if __name__ == "__main__":
+    main()

@@ -107,11 +107,15 @@ double steep_reflectance(const kernel::IndexNode& index, const kernel::ThetaNode
 // algebraically.
 constexpr double kPairFactor = 4.0;
 constexpr double kTablePairFactor = 8.0;
+constexpr double kCriticalFactor = 2.0;  // roots beside the critical line, which lies where rounding leaves it
 
 // Two rules of few nodes may agree by chance: none is taken to be better than this share of the tolerance it is made for.
 constexpr double kLeastShareOfTolerance = 0.04;
 
-double pair_factor(const KernelData& data) { return data.needs_masking_table() ? kTablePairFactor : kPairFactor; }
+double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
+  const double smooth = data.needs_masking_table() ? kTablePairFactor : kPairFactor;
+  return index.critical_cos > 0.0 ? kCriticalFactor * smooth : smooth;
+}
 
 }  // namespace
 
@@ -133,7 +137,7 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   moments.r_q = node.r_q;
   moments.albedo = node.albedo;
   moments.deficit = node.deficit;
-  const double pair = pair_factor(data);
+  const double pair = pair_factor(data, index);
   const double r_i_scale = std::abs(node.r_i);  // a rule that fails can make it negative
   const double deficit_scale = node.deficit + 2.0 * node.behind;
   const double least = kLeastShareOfTolerance * data.tolerance;

@@ -343,5 +343,61 @@ TEST(EvaluateScene_Attempts, TightTolerance_StartsInDouble) {
   EXPECT_EQ(evaluator.requests.front().precision, Precision::kDouble);
 }
 
+/// Moments whose check differs from them by a multiple of both their bounds.
+class Contradicts final : public MomentsEvaluator {
+ public:
+  explicit Contradicts(double bounds) : bounds_(bounds) {}
+  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress&) override {
+    std::vector<Moments> moments(request.size());
+    for (std::size_t i = 0; i < moments.size(); ++i) {
+      const double cosine = cos_sin_deg(request[i].theta_deg).cos;
+      Moments& m = moments[i];
+      m = {.r_i = 0.2 * cosine, .r_q = 0.1 * cosine, .albedo = cosine, .deficit = 0.8 * cosine};
+      m.r_i_error = m.r_q_error = m.deficit_error = 0.01 * kTolerance * m.r_i;
+      if (request.has_extra_splits) m.r_q += bounds_ * 2.0 * m.r_q_error;
+    }
+    checks += request.has_extra_splits ? 1 : 0;
+    return moments;
+  }
+  EvaluationReport report() const override { return {}; }
+
+  int checks = 0;
+
+ private:
+  double bounds_;
+};
+
+SelfCheck checked(Contradicts& evaluator, std::vector<PointResult>& results) {
+  std::vector<double> theta_deg(40), sigma(20);
+  for (std::size_t i = 0; i < theta_deg.size(); ++i) theta_deg[i] = static_cast<double>(i);
+  for (std::size_t i = 0; i < sigma.size(); ++i) sigma[i] = 0.1 + 0.01 * static_cast<double>(i);
+  const SceneEntries grid = SceneEntries::grid(theta_deg, sigma, {2.0});
+  CollectedResults collected;
+  const SelfCheck check = run_scene(scene(), grid, keep_everything(scene()), &evaluator, collected, {});
+  results = collected.take();
+  return check;
+}
+
+TEST(RunScene_SelfCheck, WithinTheBounds_ChangesNothing) {
+  Contradicts evaluator(0.5);
+  std::vector<PointResult> results;
+  const SelfCheck check = checked(evaluator, results);
+  EXPECT_EQ(evaluator.checks, 1);
+  EXPECT_GT(check.entries, 0U);
+  EXPECT_GT(check.worst_ratio, 0.3);
+  EXPECT_LT(check.worst_ratio, 1.0);
+  for (const PointResult& result : results) EXPECT_EQ(result.status, 0U);
+}
+
+TEST(RunScene_SelfCheck, BeyondTheBounds_NoEntryMeetsTheTolerance) {
+  Contradicts evaluator(3.0);
+  std::vector<PointResult> results;
+  const SelfCheck check = checked(evaluator, results);
+  EXPECT_GT(check.worst_ratio, 1.0);
+  EXPECT_LT(check.worst_ratio, 6.0);
+  ASSERT_EQ(results.size(), 800U);
+  for (const PointResult& result : results) EXPECT_EQ(result.status, kStatusToleranceMissed);
+}
+
 }  // namespace
 }  // namespace dolp

@@ -22,7 +22,7 @@ constexpr std::array kAllIndices = {
     OpticalConstants{1.508, 0.0}, OpticalConstants{1.0, 0.0},   OpticalConstants{1.0001, 0.0},
     OpticalConstants{2.0, 0.7},   OpticalConstants{27.0, 90.0}, OpticalConstants{1000.0, 1000.0},
     OpticalConstants{1e6, 1e6},   OpticalConstants{0.2, 3.0},   OpticalConstants{0.6, 0.0},
-    OpticalConstants{0.6, 1e-4},  OpticalConstants{0.01, 0.0}};
+    OpticalConstants{0.6, 1e-4},  OpticalConstants{0.01, 0.0},  OpticalConstants{0.51444802339652151, 4.4e-12}};
 
 // What the header promises.
 constexpr double kRelativeAccuracy = 1e-12;

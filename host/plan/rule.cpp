@@ -11,7 +11,8 @@
 namespace dolp {
 namespace {
 
-// Written by `dolp-calibrate fit`.
+// `dolp-calibrate fit MASKING` computes these; they are rounded from runs with 40 to 100 entries. Smith's phi_digits and
+// line_digits are larger than the fit's, as `dolp-calibrate check` asks for.
 constexpr std::array<RuleModel, 4> kModels = {{
     // none
     {.margin_digits = 1.4, .t_nodes = 1.4, .t_digits = 0.25, .t_fall = 0.2, .phi_nodes = 0.35, .phi_digits = 0.25},

@@ -21,8 +21,9 @@ constexpr double kSmallestCosine = 1e-100;
 
 /// Where total reflection begins, abruptly (k = 0) or nearly so; 0 without one. Units: rad from grazing incidence.
 double critical_angle(const OpticalConstants& index) {
-  const double squared_cosine = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
-  return squared_cosine > 0.0 && squared_cosine < 1.0 ? std::asin(std::sqrt(squared_cosine)) : 0.0;
+  const double squared_sine = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
+  const double squared_cosine = (index.n - index.k) * (index.n + index.k);
+  return squared_sine > 0.0 && squared_cosine > 0.0 ? std::atan2(std::sqrt(squared_sine), std::sqrt(squared_cosine)) : 0.0;
 }
 
 }  // namespace
@@ -32,7 +33,8 @@ Moments grazing_limit_moments(const OpticalConstants& index, double q) {
   const double critical = critical_angle(index);
   // phi = pi/2 - psi, so that x = sin(psi) keeps its digits at grazing incidence, where the power is not smooth.
   const auto integral = [&](auto&& of_cosine) {
-    const auto integrand = [&](double psi) {
+    // The distance to the nearer end, unused, chooses Boost's form whose nodes may round to the ends.
+    const auto integrand = [&](double psi, double) {
       const double x = std::sin(psi);
       return x > kSmallestCosine ? std::pow(x, 4.0 - 2.0 * q) * of_cosine(x) : 0.0;
     };

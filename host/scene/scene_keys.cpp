@@ -124,7 +124,8 @@ std::vector<SceneKey> geometry_keys() {
          d.scene.spectrum = {v.numbers[0], v.numbers[1]};
        }},
       choice("geometry.mode", Geometry().mode,
-             "source all around at the view's zenith theta, or from one direction theta with the view fixed",
+             "exitances, with rho(theta) for emission, surroundings and a source at zenith theta; or radiances in a "
+             "fixed view, with a source at zenith theta",
              [](Draft& d, const Value& v) { d.scene.geometry.mode = static_cast<Mode>(v.word); }),
       number("geometry.view_zenith_deg", "degree", kZenithDegRange, "60", "bistatic: view zenith theta_v",
              [](Draft& d, const Value& v) { d.scene.geometry.view_zenith_deg = v.number; }),

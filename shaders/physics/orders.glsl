@@ -149,7 +149,7 @@ real arc_cosine(real u) {
 Singularity singularity_at(real a, real b) {
   real to_minus_1 = sqrt((a + real(1.0)) * (a + real(1.0)) + b * b);
   real to_1 = sqrt((a - real(1.0)) * (a - real(1.0)) + b * b);
-  real gap = real(0.5) * gap_beside_unit(real(0.5) * (a + real(1.0)), real(0.5) * b) * real(2.0);
+  real gap = gap_beside_unit(real(0.5) * (a + real(1.0)), real(0.5) * b);
   return Singularity(arc_cosine(clamp(real(0.5) * (to_minus_1 - to_1), real(-1.0), real(1.0))), acosh_above_1(gap));
 }
 

@@ -49,7 +49,7 @@
 #ifndef DOLP_WIDTH
 #define DOLP_WIDTH 1             // entries of one invocation, see Row of physics/row.glsl
 #endif
-#define DOLP_MAX_PIECES 12       // pieces of the slope axis for one direction
+#define DOLP_MAX_PIECES 15       // pieces of the slope axis for one direction
 #define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes
 #define DOLP_MASKING_OCTAVES 29  // of v = 1 + tau/scale
 #define DOLP_MASKING_CELL_BITS_FLOAT 3   // 2^bits cells per octave

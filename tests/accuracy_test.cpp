@@ -23,12 +23,12 @@
 namespace dolp {
 namespace {
 
-// Of the points, those that no attempt brings to the tolerance: next to rounding and to the most nodes at 1e-9.
+// Of the points, those that no level brings to the tolerance: next to rounding and to the most nodes at 1e-9.
 constexpr double kMissedShare = 0.01;
 constexpr double kTightMissedShare = 0.05;
 constexpr double kTight = 1e-8;
-// The bound is a multiple of the distance from a rule of a fifth fewer digits: at six digits one and a half of them, and
-// half a digit for the multiple.
+// The bound is a multiple of the distance from a rule of a fifth fewer digits: at six digits one and a half of them,
+// and half a digit for the multiple.
 constexpr double kMedianPessimism = 100.0;
 // Errors below this are rounding, whose bound must hold for the worst sum of signs and is far above the typical one:
 // sixteen units in the last place of a float's 24 bits. In double the reference's own bound, 1e-12, times ten.

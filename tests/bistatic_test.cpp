@@ -161,7 +161,7 @@ class BiasedBeams final : public MomentsEvaluator, public ScatteringEvaluator {
   CpuEvaluator own_{Precision::kAuto};
 };
 
-// The bound of the beam is part of the stated error, and an attempt in double computes the beam in double too.
+// The bound of the beam is part of the stated error, and a level in double computes the beam in double too.
 TEST(Bistatic, BeamWithALargeError_IsTriedAgainInDouble) {
   Random random;
   Scene scene = random.scene();

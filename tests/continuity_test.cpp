@@ -190,14 +190,13 @@ double bisected(double low, double high, Switched switched) {
 }
 
 TEST_P(Switches, LineThatIsLeftOut_MakesNoJump) {
-  const RuleModel& rule = rule_model(model().masking);
-  const double digits = rule_digits(rule, tolerance());
+  const double digits = rule_digits(rule_model(model().masking), tolerance());
   Random draws = random();
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < 40 * kBases && pairs.size() < 4 * kBases; ++i) {
     Point point = base(draws);
     const auto switched = [&](double sigma) {
-      return needs_line(rule, model().distribution, model().masking, {sigma, point.shape.q}, digits);
+      return needs_line(model().distribution, model().masking, {sigma, point.shape.q}, digits, tolerance());
     };
     if (i % 2 == 0) point.shape.q = draws.uniform(model().masking == Masking::kSmith ? 1.55 : 1.05, 4.5);
     if (switched(1e-4) == switched(10.0)) continue;

@@ -163,10 +163,10 @@ Job job_of(const std::string& key) {
   return job;
 }
 
-std::vector<News> finish(Worker& worker) {
-  std::vector<News> news;
+std::vector<JobPart> finish(Worker& worker) {
+  std::vector<JobPart> news;
   while (!worker.is_idle()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  for (News& part : worker.take_news()) news.push_back(std::move(part));
+  for (JobPart& part : worker.take_news()) news.push_back(std::move(part));
   return news;
 }
 
@@ -177,7 +177,7 @@ TEST(ExploreWorker, StaleJob_IsCancelledAndItsResultsNeverCome) {
   evaluator.wait_for_call();
   worker.want({job_of("new")});
   evaluator.open();
-  const std::vector<News> news = finish(worker);
+  const std::vector<JobPart> news = finish(worker);
   ASSERT_EQ(news.size(), 1U);
   EXPECT_EQ(news.front().key, "new");
 }
@@ -199,7 +199,7 @@ TEST(ExploreWorker, Parts_ComeInOrderWithTheResultsOfTheWhole) {
   Job job = job_of("parts");
   job.parts = job.entries.parts(3);
   worker.want({job});
-  const std::vector<News> news = finish(worker);
+  const std::vector<JobPart> news = finish(worker);
   ASSERT_EQ(news.size(), 2U);
   EXPECT_EQ(news[0].results.size(), 3U);
   EXPECT_FALSE(news[0].is_last);

@@ -43,7 +43,7 @@ TEST_F(DenseTable, Interpolated_AgreesWithEveryEntryByItself) {
     const std::vector<std::string> options = joined(kDense, {"--set", "surface.masking=" + std::string(masking)});
     const json few = table(options);
     EXPECT_GE(few["interpolated_moments"], kDenseEntries);
-    EXPECT_LT(few["interpolation_nodes"], kDenseEntries / 3);
+    EXPECT_LT(3.0 * few["interpolation_nodes"].get<double>(), few["interpolated_moments"].get<double>());
     const json all = table(joined(options, joined(kOff, {"--tolerance", "1e-6"})), "all.nc");
     EXPECT_EQ(all["interpolated_moments"], 0);
     const Table a = read_table(at("t.nc"));

@@ -98,7 +98,7 @@ TEST(ShapeAxis, DenseValues_FewerNodesBetweenTheExtremes) {
 
 TEST(ShapeAxis, FewOrEqualValues_AreTheirOwnNodes) {
   for (const std::vector<double>& values : {std::vector{2.0}, std::vector{5.0, 1.5, 3.0}, spaced(1.1, 30.0, 12)}) {
-    const ShapeAxis axis = shape_axis(q_parameter(Distribution::kCauchy, Masking::kNone), values, 5.0);
+    const ShapeAxis axis = shape_axis({1.0, 1.45}, values, 5.0);
     EXPECT_FALSE(axis.is_interpolated());
     EXPECT_EQ(axis.nodes, values);
     EXPECT_TRUE(axis.cardinal.isIdentity());
@@ -107,13 +107,30 @@ TEST(ShapeAxis, FewOrEqualValues_AreTheirOwnNodes) {
 
 TEST(ShapeAxis, ValuesInAnyOrder_TheSameNodes) {
   std::vector<double> values = spaced(1.6, 9.0, 40);
-  const ShapeParameter q = q_parameter(Distribution::kCauchy, Masking::kSmith);
-  EXPECT_EQ(q.origin, 1.5);
+  const ShapeParameter q = {1.5, 1.45};
   const ShapeAxis ascending = shape_axis(q, values, 4.0);
   std::ranges::reverse(values);
   const ShapeAxis descending = shape_axis(q, values, 4.0);
   EXPECT_EQ(ascending.nodes, descending.nodes);
   EXPECT_EQ(ascending.cardinal.row(0), descending.cardinal.row(39));
+}
+
+// The moments of smith, and at grazing incidence those without v-cavity, grow like the mean slope, 1 / (q - 3/2).
+TEST(QParameter, WhatDependsOnTheMeanSlope_IsInterpolatedAboutItsPole) {
+  const auto origin = [](Masking masking, double theta_deg, double least_q) {
+    MomentsRequest request;
+    request.masking = masking;
+    request.theta_deg = {theta_deg};
+    request.q = {least_q, 8.0};
+    return q_parameter(request).origin;
+  };
+  EXPECT_EQ(origin(Masking::kSmith, 10.0, 1.6), 1.5);
+  for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
+    EXPECT_EQ(origin(masking, 90.0, 1.6), 1.5);
+    EXPECT_EQ(origin(masking, 90.0, 1.4), 1.0);
+    EXPECT_EQ(origin(masking, 80.0, 1.6), 1.0);
+  }
+  EXPECT_EQ(origin(Masking::kVCavity, 90.0, 1.6), 1.0);
 }
 
 TEST(ShapePlan, DenseGrid_NodesAreFew_AndTheirToleranceTighter) {

@@ -20,8 +20,8 @@ namespace {
 
 constexpr double kTolerance = 1e-4;
 
-// Share of the entries that may miss their tolerance by their own estimate at the first attempt: the orders are as low
-// as makes the whole cheapest, second attempts included. Domain A is sigma
+// Share of the entries that may miss their tolerance by their own estimate at the first level: the orders are as low
+// as makes the whole cheapest, further levels included. Domain A is sigma
 // 0.01-1.2, q 1.06-13, theta to 89.5 degrees; domain B, most of which the estimates treat as the edge of the domain, is
 // sigma 0.001-5, q 1.01-45, theta to 89.9 degrees.
 constexpr double kMissedShareA = 0.3;

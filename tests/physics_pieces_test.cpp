@@ -236,6 +236,14 @@ std::vector<Root> roots_of(const Direction& d) {
     roots.push_back({d.theta_deg + critical_deg, true, true});            // and on phi = pi
     if (0.5 * cosine < critical) roots.push_back({std::acos(0.5 * cosine / critical) * 180.0 / pi, true, true});
     if (cosine < critical) roots.push_back({std::acos(cosine / critical) * 180.0 / pi, true, true});
+    if (d.masking == Masking::kVCavity) {
+      // The lines of slopes below 1: cos(beta) = 2 cos(alpha) cos(theta), and cos(beta) = 2 cos(alpha) cos(theta_r)
+      // with cos(theta_r) = 2 cos(alpha) cos(beta) - cos(theta).
+      const double on_theta = 0.5 * critical / cosine;
+      const double on_ray = (cosine + std::sqrt(cosine * cosine + 4.0 * critical * critical)) / (4.0 * critical);
+      if (on_theta < 1.0 && on_theta > std::sqrt(0.5)) roots.push_back({std::acos(on_theta) * 180.0 / pi, true, true});
+      if (on_ray < 1.0 && on_ray > std::sqrt(0.5)) roots.push_back({std::acos(on_ray) * 180.0 / pi, true, true});
+    }
   }
   std::erase_if(roots, [](const Root& root) { return root.slope <= 0.0 || root.slope >= 90.0; });
   for (Root& root : roots) root.slope = std::tan(root.slope * pi / 180.0);

@@ -335,32 +335,33 @@ TEST(NeedsLine, WhatHasNone_NeverDoes) {
   for (double digits = 2.0; digits <= 16.0; digits += 1.0) {
     for (const Masking masking : {Masking::kNone, Masking::kVCavity}) {
       for (const Distribution distribution : kDistributions) {
-        EXPECT_FALSE(needs_line(rule_model(masking), distribution, masking, {1.0, 1.2}, digits));
+        EXPECT_FALSE(needs_line(distribution, masking, {1.0, 1.2}, digits, std::pow(10.0, -digits)));
       }
     }
     for (const double q : {2.0, 3.0, 10.0}) {  // theta_r^(2q-2) is smooth
-      EXPECT_FALSE(needs_line(rule_model(Masking::kSmith), Distribution::kCauchy, Masking::kSmith, {1.0, q}, digits))
-          << q;
+      EXPECT_FALSE(needs_line(Distribution::kCauchy, Masking::kSmith, {1.0, q}, digits, std::pow(10.0, -digits))) << q;
     }
   }
 }
 
-// What is needed for some digits is needed for more; a rougher surface does not need it less. Rough surfaces with heavy
-// tails do at many digits, narrow ones with light tails never.
-TEST(NeedsLine, MoreDigitsOrRoughness_NeverTakeItAway) {
+// What is needed for a tolerance is needed for tighter ones; a rougher surface does not need it less. Rough surfaces
+// with heavy tails do at tight tolerances, narrow ones with light tails never.
+TEST(NeedsLine, TighterToleranceOrRoughness_NeverTakesItAway) {
+  constexpr double kTightDecades = 10.0;
   for (const Distribution distribution : kDistributions) {
     for (const Masking masking : {Masking::kIntegral, Masking::kSmith}) {
-      const auto needed = [&](const SlopeShape& shape, double digits) {
-        return needs_line(rule_model(masking), distribution, masking, shape, digits);
+      const auto needed = [&](const SlopeShape& shape, double decades) {
+        const double tolerance = std::pow(10.0, -decades);
+        return needs_line(distribution, masking, shape, rule_digits(rule_model(masking), tolerance), tolerance);
       };
-      EXPECT_TRUE(needed({2.0, 1.6}, kManyDigits)) << name_of(distribution) << " " << name_of(masking);
-      EXPECT_FALSE(needed({1e-3, 10.5}, kManyDigits)) << name_of(distribution) << " " << name_of(masking);
+      EXPECT_TRUE(needed({2.0, 1.6}, kTightDecades)) << name_of(distribution) << " " << name_of(masking);
+      EXPECT_FALSE(needed({1e-3, 10.5}, kTightDecades)) << name_of(distribution) << " " << name_of(masking);
       for (const double q : {1.55, 1.6, 1.75, 2.4, 3.3}) {
         for (double sigma = 0.001; sigma < 5.0; sigma *= 1.7) {
-          for (double digits = 2.0; digits <= 16.0; digits += 0.25) {
-            if (!needed({sigma, q}, digits)) continue;
-            EXPECT_TRUE(needed({sigma, q}, digits + 0.25)) << q << " " << sigma << " " << digits;
-            EXPECT_TRUE(needed({1.7 * sigma, q}, digits)) << q << " " << sigma << " " << digits;
+          for (double decades = 2.0; decades <= kTightDecades; decades += 0.25) {
+            if (!needed({sigma, q}, decades)) continue;
+            EXPECT_TRUE(needed({sigma, q}, decades + 0.25)) << q << " " << sigma << " " << decades;
+            EXPECT_TRUE(needed({1.7 * sigma, q}, decades)) << q << " " << sigma << " " << decades;
           }
         }
       }
@@ -421,8 +422,8 @@ TEST(KernelDataLines, OnlyTheShapesThatNeedThem_GetDirectionsOfTheirOwn) {
   ASSERT_EQ(data.thetas.size(), 4U);
   for (std::size_t i = 0; i < data.size(); ++i) {
     const std::uint32_t theta = data[i].theta;
-    const bool is_needed = needs_line(rule_model(request.masking), request.distribution, request.masking,
-                                      request[i].shape, data.rule.digits);
+    const bool is_needed =
+        needs_line(request.distribution, request.masking, request[i].shape, data.rule.digits, request.tolerance);
     EXPECT_EQ(data.pieces[theta].has_split_line, is_needed) << i;
     EXPECT_EQ(data.thetas[theta].c, cos_sin_deg(request[i].theta_deg).cos);
   }

@@ -18,7 +18,7 @@ using namespace scene_run_support;
 
 // A few roundings of numbers up to 1.
 constexpr double kRounding = 1e-15;
-constexpr double kFloatStep = 0x1p-22;  // attempts that round to the same albedo may differ in the last bits
+constexpr double kFloatStep = 0x1p-22;  // levels that round to the same albedo may differ in the last bits
 // A dozen roundings, next to grazing incidence with the cosine's own on top.
 constexpr double kFresnelRounding = 4e-15;
 // The 180 x 180 Gauss points of the independent integral resolve slopes of width 0.3 and more far beyond this.
@@ -218,9 +218,9 @@ TEST(SceneExact_IsothermalSurroundings, LeaveExactlyNoPolarisation) {
   });
 }
 
-// Exactly so where the same attempt met the tolerance for both; it is relative to rho, which depends on the share.
+// Exactly so where the same level met the tolerance for both; it is relative to rho, which depends on the share.
 TEST(SceneExact_Reflectance, IsLinearInTheSpecularShare) {
-  int same_attempt = 0;
+  int same_level = 0;
   int all = 0;
   for_each_model([&](Distribution distribution, Masking masking) {
     Scene scene = make_scene(distribution, masking, kAbsorbing);
@@ -231,7 +231,7 @@ TEST(SceneExact_Reflectance, IsLinearInTheSpecularShare) {
         scene.surface.specular = specular;
         const PointResult part = run_one(scene, theta_deg, {0.3, 2.0}, Evaluator::kFloat);
         const bool is_same = part.albedo == whole.albedo;
-        same_attempt += is_same ? 1 : 0;
+        same_level += is_same ? 1 : 0;
         ++all;
         const double estimates =
             whole.rho_error_estimate * specular * whole.rho_i + part.rho_error_estimate * part.rho_i;
@@ -242,7 +242,7 @@ TEST(SceneExact_Reflectance, IsLinearInTheSpecularShare) {
       }
     }
   });
-  EXPECT_GT(2 * same_attempt, all);
+  EXPECT_GT(2 * same_level, all);
 }
 
 /// Entries over everything that changes the energy that a surface gives back.

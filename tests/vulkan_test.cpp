@@ -251,7 +251,7 @@ constexpr double kIterationLimit = 65'535.0;
 
 TEST_P(EveryKernel, TightestTolerance_StaysBelowTheIterationLimit) {
   MomentsRequest request = small_request(std::get<Distribution>(GetParam()), std::get<Masking>(GetParam()));
-  request.tolerance = 1e-15;  // of the last attempt at an entry
+  request.tolerance = 1e-15;  // of the last level at an entry
   const double bound = worst_iterations(kernel_data(request));
   EXPECT_LT(bound, kIterationLimit);
   VulkanEvaluator evaluator(validated(std::get<Precision>(GetParam())));

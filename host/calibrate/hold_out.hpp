@@ -1,4 +1,5 @@
-// Whether error bounds hold: fresh random entries, and a climb from the worst of them, against rules of many more digits.
+// Whether error bounds hold: fresh random entries, and a climb from the worst of them, against rules of many more
+// digits.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +15,7 @@ struct HoldOutOptions {
   double tolerance = 1e-4;
   std::size_t entries = 1000;
   std::uint64_t seed = 1;
-  std::size_t climbs = 0;  ///< of the worst entries, each climbed from in kClimbSteps steps
+  std::size_t climbs = 0;    ///< of the worst entries, each climbed from in kClimbSteps steps
   double bound_share = 1.0;  ///< of each bound that errors are held against: below 1 shows what bounds have to spare
 };
 
@@ -29,11 +30,11 @@ struct HoldOut {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kNone;
   std::size_t entries = 0;
-  std::size_t understated = 0;    ///< of any of the four moments
-  double flagged_share = 0.0;     ///< entries whose bound of rho misses the tolerance at the first attempt
+  std::size_t understated = 0;  ///< of any of the four moments
+  double flagged_share = 0.0;   ///< entries whose bound of rho misses the tolerance at the first level
   double mean_evaluations = 0.0;
-  CheckedEntry worst;             ///< drawn
-  CheckedEntry climbed;           ///< found by climbing
+  CheckedEntry worst;    ///< drawn
+  CheckedEntry climbed;  ///< found by climbing
 };
 
 /// Evaluates the shaders' text on the CPU, in float where the tolerance allows it.

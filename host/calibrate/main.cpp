@@ -52,10 +52,10 @@ bool check(const CheckArguments& arguments) {
         options.tolerance = tolerance;
         const dolp::HoldOut found = dolp::hold_out(distribution, masking, options);
         understated += found.understated + (found.climbed.ratio > 1.0 ? 1 : 0);
-        fmt::print("{:.0e} {:<8} {:<8} understated {} of {}, first attempts that miss {:.1f} %, evaluations {:.0f}, worst {}\n",
-                   tolerance, name, distribution == dolp::Distribution::kCauchy ? "cauchy" : "gaussian",
-                   found.understated, found.entries, 100.0 * found.flagged_share, found.mean_evaluations,
-                   entry_text(found.worst));
+        fmt::print(
+            "{:.0e} {:<8} {:<8} understated {} of {}, {:.1f} % miss at the first level, evaluations {:.0f}, worst {}\n",
+            tolerance, name, distribution == dolp::Distribution::kCauchy ? "cauchy" : "gaussian", found.understated,
+            found.entries, 100.0 * found.flagged_share, found.mean_evaluations, entry_text(found.worst));
         if (options.climbs > 0) fmt::print("    climbed to {}\n", entry_text(found.climbed));
         std::fflush(stdout);
       }
@@ -75,15 +75,18 @@ int main(int argc, char** argv) {
   fit_command->add_option("MASKING", masking)->required()->transform(CLI::CheckedTransformer(kMaskings));
   fit_command->add_option("--entries", fit_options.entries, "random entries of each distribution and tolerance")
       ->capture_default_str();
-  fit_command->add_option("--rounds", fit_options.rounds, "of the search, each of half the step")->capture_default_str();
+  fit_command->add_option("--rounds", fit_options.rounds, "of the search, each of half the step")
+      ->capture_default_str();
   fit_command->add_option("--seed", fit_options.seed)->capture_default_str();
   CheckArguments arguments;
-  CLI::App* check_command = app.add_subcommand("check", "errors over bounds at random entries; exit 1 if one exceeds its bound");
+  CLI::App* check_command =
+      app.add_subcommand("check", "errors over bounds at random entries; exit 1 if one exceeds its bound");
   check_command->add_option("--domain", arguments.options.domain)
       ->transform(CLI::CheckedTransformer(kDomains))
       ->default_str("ordinary");
   check_command->add_option("--tolerance", arguments.tolerances, "repeatable")->capture_default_str();
-  check_command->add_option("--entries", arguments.options.entries, "of each masking and distribution")->capture_default_str();
+  check_command->add_option("--entries", arguments.options.entries, "of each masking and distribution")
+      ->capture_default_str();
   check_command->add_option("--climbs", arguments.options.climbs, "worst entries to climb from")->capture_default_str();
   check_command->add_option("--seed", arguments.options.seed)->capture_default_str();
   try {

@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "calibrate/random_entries.hpp"
 #include "base/parallel_ranges.hpp"
+#include "calibrate/random_entries.hpp"
 #include "evaluate/cpu/text.hpp"
 #include "plan/kernel_data.hpp"
 
@@ -19,9 +19,12 @@ namespace {
 constexpr std::array kTolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8};
 constexpr double kDoubleRoundoff = 0x1p-53;
 constexpr double kCornerShare = 0.25;
-// What is computed again shares nothing with its neighbours.
-constexpr double kAgainWeight = 2.0;
-constexpr int kMostAttempts = 8;
+// What is computed again by itself shares less with its neighbours: nothing in a dense table, where interpolation had
+// spared it all but a thirtieth of its work, as much as before among points.
+constexpr double kAgainWeight = 8.0;
+// The DOLP of what is reflected, r_q / r_i, is wrong by up to two of their relative errors.
+constexpr double kErrorsOfDolp = 2.0;
+constexpr int kMostLevels = 8;
 constexpr double kLeastTolerance = 1e-13;
 
 MomentsRequest random_request(Distribution distribution, Masking masking, const RuleFitOptions& options) {
@@ -57,7 +60,7 @@ double log_work(const MomentsRequest& all, double tolerance, const RuleModel& mo
   for (std::uint32_t i = 0; i < wanted.size(); ++i) wanted[i] = i;
   MomentsRequest request = all;
   request.tolerance = tolerance;
-  for (int attempt = 0; attempt < kMostAttempts && !wanted.empty(); ++attempt) {
+  for (int level = 0; level < kMostLevels && !wanted.empty(); ++level) {
     request.theta_deg.clear();
     request.indices.clear();
     request.sigma.clear();
@@ -66,8 +69,8 @@ double log_work(const MomentsRequest& all, double tolerance, const RuleModel& mo
     const std::vector<Moments> moments = computed(request, model);
     std::vector<std::uint32_t> again;
     for (std::size_t j = 0; j < wanted.size(); ++j) {
-      work[wanted[j]] += (attempt == 0 ? 1.0 : kAgainWeight) * moments[j].evaluations;
-      const double error = std::max(moments[j].r_i_error, moments[j].r_q_error);
+      work[wanted[j]] += (level == 0 ? 1.0 : kAgainWeight) * moments[j].evaluations;
+      const double error = kErrorsOfDolp * std::max(moments[j].r_i_error, moments[j].r_q_error);
       if (!(error <= tolerance * std::abs(moments[j].r_i))) again.push_back(wanted[j]);
     }
     wanted = again;
@@ -85,11 +88,9 @@ struct Parameter {
 };
 
 std::vector<Parameter> parameters(Masking masking) {
-  std::vector<Parameter> all = {
-      {&RuleModel::margin_digits, 0.4}, {&RuleModel::t_nodes, 0.4},        {&RuleModel::t_digits, 0.5},
-      {&RuleModel::t_fall, 0.06},         {&RuleModel::phi_nodes, 0.1},
-      {&RuleModel::phi_digits, 0.5}};
-  if (masking == Masking::kIntegral || masking == Masking::kSmith) all.push_back({&RuleModel::line_digits, 1.0});
+  std::vector<Parameter> all = {{&RuleModel::margin_digits, 0.4}, {&RuleModel::t_nodes, 0.4},
+                                {&RuleModel::t_digits, 0.5},      {&RuleModel::t_fall, 0.06},
+                                {&RuleModel::phi_nodes, 0.1},     {&RuleModel::phi_digits, 0.5}};
   if (masking == Masking::kSmith) all.push_back({&RuleModel::cluster_stretch, 1.0});
   return all;
 }
@@ -135,9 +136,9 @@ RuleModel fit_rule(Masking masking, const RuleModel& start, const RuleFitOptions
 std::string rule_text(const RuleModel& model) {
   return fmt::format(
       "{{.margin_digits = {:.3g}, .t_nodes = {:.3g}, .t_digits = {:.3g}, .t_fall = {:.3g}, "
-      ".phi_nodes = {:.3g}, .phi_digits = {:.3g}, .line_digits = {:.3g}, .cluster_stretch = {:.3g}}}",
-      model.margin_digits, model.t_nodes, model.t_digits, model.t_fall, model.phi_nodes,
-      model.phi_digits, model.line_digits, model.cluster_stretch);
+      ".phi_nodes = {:.3g}, .phi_digits = {:.3g}, .cluster_stretch = {:.3g}}}",
+      model.margin_digits, model.t_nodes, model.t_digits, model.t_fall, model.phi_nodes, model.phi_digits,
+      model.cluster_stretch);
 }
 
 }  // namespace dolp

@@ -11,9 +11,9 @@
 namespace dolp {
 
 struct RuleFitOptions {
-  std::size_t entries = 200;  ///< of each distribution and tolerance
+  std::size_t entries = 300;  ///< of each distribution and tolerance
   std::uint64_t seed = 1;
-  int rounds = 3;             ///< of the search, each with steps half as wide as the one before
+  int rounds = 4;  ///< of the search, each with steps half as wide as the one before
 };
 
 /// Mean of the logarithm of the integrand evaluations that an entry takes, over both distributions and tolerances from

@@ -48,7 +48,7 @@ std::optional<Job> Curve::wanted(Stage stage) const {
   return job(stage);
 }
 
-bool Curve::take(const News& news) {
+bool Curve::take(const JobPart& news) {
   const bool is_fine = news.key == key_of(Stage::kFine);
   if (!is_fine && news.key != key_of(Stage::kCoarse)) return false;
   if (!is_fine && is_finished()) return true;

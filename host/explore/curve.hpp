@@ -34,7 +34,7 @@ class Curve {
   std::optional<Job> wanted(Stage stage) const;
 
   /// Takes what is this curve's; false for the rest.
-  bool take(const News& news);
+  bool take(const JobPart& news);
 
   const Scene& scene() const { return scene_; }
   const std::string& key() const { return key_; }

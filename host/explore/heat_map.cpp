@@ -105,7 +105,7 @@ std::optional<Job> HeatMap::wanted(std::size_t level) const {
   return job(level);
 }
 
-bool HeatMap::take(const News& news) {
+bool HeatMap::take(const JobPart& news) {
   for (std::size_t level = 0; level < kLevels.size(); ++level) {
     if (news.key != key_of(level)) continue;
     if (shown_key_ != key_) results_ = {};

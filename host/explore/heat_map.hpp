@@ -60,7 +60,7 @@ class HeatMap {
               double theta_deg);
 
   std::optional<Job> wanted(std::size_t level) const;
-  bool take(const News& news);
+  bool take(const JobPart& news);
   bool is_finished() const;
 
   const MapAxis& x() const { return x_; }

@@ -54,7 +54,7 @@ std::optional<Job> Residuals::wanted() const {
   return job;
 }
 
-bool Residuals::take(const News& news) {
+bool Residuals::take(const JobPart& news) {
   if (!points_ || news.key != job_key()) return false;
   known_ = news.key;
   results_ = news.results;

@@ -30,7 +30,7 @@ class Residuals {
   void follow(const std::string& key, const Scene& scene);
 
   std::optional<Job> wanted() const;
-  bool take(const News& news);
+  bool take(const JobPart& news);
 
   const std::optional<MeasuredPoints>& points() const { return points_; }
   /// Measured minus model, NaN where the model gives none; empty until it is known.

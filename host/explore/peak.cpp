@@ -96,7 +96,7 @@ std::vector<Job> Peak::wanted() const {
   return jobs;
 }
 
-bool Peak::take(const News& news) {
+bool Peak::take(const JobPart& news) {
   if (news.key == "peak " + key_) {
     answer_from(news.results);
     return true;

@@ -44,7 +44,7 @@ class Peak {
 
   /// What is still to be computed.
   std::vector<Job> wanted() const;
-  bool take(const News& news);
+  bool take(const JobPart& news);
 
   /// None while it is unknown, or where no entry is good.
   const std::optional<PeakAnswer>& answer() const { return answer_; }

@@ -201,8 +201,8 @@ std::vector<Job> Session::wanted() const {
 
 bool Session::take_changed() { return std::exchange(is_changed_, false); }
 
-void Session::take(const std::vector<News>& news) {
-  for (const News& part : news) {
+void Session::take(const std::vector<JobPart>& news) {
+  for (const JobPart& part : news) {
     curve_.take(part);
     if (overlay_) overlay_->take(part);
     for (Pin& pin : pins_) pin.curve.take(part);

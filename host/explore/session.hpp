@@ -69,7 +69,7 @@ class Session {
   std::vector<Job> wanted() const;
   /// Whether wanted() may have changed since the last call.
   bool take_changed();
-  void take(const std::vector<News>& news);
+  void take(const std::vector<JobPart>& news);
 
   // ---- State.
   const SceneEdits& edits() const { return edits_; }

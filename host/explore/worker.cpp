@@ -54,7 +54,7 @@ void Worker::want(std::vector<Job> jobs) {
   changed_.notify_all();
 }
 
-std::vector<News> Worker::take_news() {
+std::vector<JobPart> Worker::take_news() {
   const std::scoped_lock lock(mutex_);
   if (failure_) std::rethrow_exception(failure_);
   return std::exchange(news_, {});
@@ -91,7 +91,7 @@ void Worker::run_tasks() {
       tasks_.erase(tasks_.begin());
       running_ = task.job.key;
     }
-    std::vector<News> parts;
+    std::vector<JobPart> parts;
     try {
       parts.push_back(advance(task));
     } catch (const Cancelled&) {
@@ -102,7 +102,7 @@ void Worker::run_tasks() {
   }
 }
 
-void Worker::put_back(Task task, std::vector<News> parts) {
+void Worker::put_back(Task task, std::vector<JobPart> parts) {
   const std::scoped_lock lock(mutex_);
   running_.clear();
   if (!contains(wanted_, task.job.key)) return;
@@ -117,12 +117,12 @@ void Worker::put_back(Task task, std::vector<News> parts) {
   tasks_.insert(place, std::move(task));
 }
 
-News Worker::advance(Task& task) {
+JobPart Worker::advance(Task& task) {
   const Job& job = task.job;
   const Clock::time_point start = Clock::now();
   const double evaluations_before = evaluator_.report().evaluations;
   if (task.next == 0) task.plan = plan_effects(job.scene, job.entries, job.keep_all);
-  News news;
+  JobPart news;
   news.key = job.key;
   news.part = task.next;
   news.results = evaluate_scene(job.scene, job.parts.empty() ? job.entries : job.parts[task.next], task.plan,

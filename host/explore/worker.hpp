@@ -30,7 +30,7 @@ struct Job {
 };
 
 /// A part of a job's results.
-struct News {
+struct JobPart {
   std::string key;
   std::size_t part = 0;  ///< of the job
   std::vector<PointResult> results;
@@ -56,7 +56,7 @@ class Worker {
   void want(std::vector<Job> jobs);
 
   /// What is new since the last call. Errors: rethrows what ended the worker, a DeviceError for instance.
-  std::vector<News> take_news();
+  std::vector<JobPart> take_news();
 
   /// Nothing is wanted that is not done; its news may still wait to be taken.
   bool is_idle() const;
@@ -72,9 +72,9 @@ class Worker {
 
   void run();
   void run_tasks();
-  News advance(Task& task);
+  JobPart advance(Task& task);
   /// What was done of a task is news; the rest of it goes back to its rank among what is wanted now.
-  void put_back(Task task, std::vector<News> parts);
+  void put_back(Task task, std::vector<JobPart> parts);
   bool is_wanted(const std::string& key) const;
 
   MomentsEvaluator& evaluator_;
@@ -85,7 +85,7 @@ class Worker {
   std::vector<std::string> wanted_;
   std::vector<std::string> finished_;  ///< of those wanted
   std::string running_;                ///< empty when none is
-  std::vector<News> news_;
+  std::vector<JobPart> news_;
   std::exception_ptr failure_;
   bool is_stopping_ = false;
   std::jthread thread_;  ///< last: it uses all of the above

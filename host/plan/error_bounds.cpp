@@ -109,8 +109,9 @@ constexpr double kPairFactor = 4.0;
 constexpr double kTablePairFactor = 8.0;
 constexpr double kCriticalFactor = 2.0;  // roots beside the critical line, which lies where rounding leaves it
 
-// Two rules of few nodes may agree by chance: none is taken to be better than this share of the tolerance it is made for.
-constexpr double kLeastShareOfTolerance = 0.04;
+// Two rules of few nodes may agree by chance: none is taken to be better than this share of the tolerance it is made
+// for.
+constexpr double kLeastShareOfTolerance = 0.1;
 
 double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   const double smooth = data.needs_masking_table() ? kTablePairFactor : kPairFactor;

@@ -23,12 +23,12 @@ using boost::math::constants::root_pi;
 constexpr unsigned kRootAbove = 1;  // a square root just above a breakpoint
 constexpr unsigned kRootBelow = 2;  // just below
 constexpr unsigned kRoots = kRootAbove | kRootBelow;
-constexpr double kNoEnd = 1e30;    // a slope beyond every cut, in place of infinity
+constexpr double kNoEnd = 1e30;  // a slope beyond every cut, in place of infinity
 
 constexpr double kCoincident = 1e-9;  // relative distance of breakpoints that are the same but for rounding
 
 // Share of the tolerance that the slopes beyond the cut may carry.
-constexpr double kCutShare = 0.03;
+constexpr double kCutShare = 0.01;
 
 // Im N^2 above which absorption has smoothed the critical line of total reflection.
 constexpr double kSoftCriticalLine = 0.3;
@@ -67,12 +67,20 @@ double critical_cos(const OpticalConstants& index) {
   return is_sharp && squared > 0.0 && squared < 1.0 ? std::sqrt(squared) : 0.0;
 }
 
-// Slopes at which the critical line cos(beta) = critical_cos meets phi = 0 or pi, the horizon or theta_r = theta.
-void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, double critical) {
+// Slopes at which the critical line cos(beta) = critical_cos meets phi = 0 or pi, the horizon, theta_r = theta or the
+// lines of v-cavity, e = 2 c and e = 2 cos(theta_r).
+void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking,
+                              double critical) {
   const double critical_deg = std::acos(critical) * 180.0 / pi<double>();
   points.push_back({tan_deg(std::abs(theta_deg - critical_deg)), kRoots});
   if (theta_deg + critical_deg < 90.0) points.push_back({tan_deg(theta_deg + critical_deg), kRoots});
-  for (const double facet_cos : {a.cos / (2.0 * critical), a.cos / critical}) {
+  std::vector<double> facet_cosines = {a.cos / (2.0 * critical), a.cos / critical};
+  if (masking == Masking::kVCavity) {
+    for (const double facet_cos : {0.5 * critical / a.cos, critical / (std::hypot(a.cos, 2.0 * critical) - a.cos)}) {
+      if (facet_cos > std::sqrt(0.5)) facet_cosines.push_back(facet_cos);  // the lines end at slope 1
+    }
+  }
+  for (const double facet_cos : facet_cosines) {
     if (facet_cos <= 0.0 || facet_cos >= 1.0) continue;
     points.push_back({std::sqrt((1.0 - facet_cos) * (1.0 + facet_cos)) / facet_cos, kRoots});
   }
@@ -145,7 +153,7 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking m
   for (const double slope : kPlainBreakpoints) {
     if (horizon > kLongWay * slope) points.push_back({slope, 0});
   }
-  if (variant.critical_cos > 0.0) add_critical_breakpoints(points, theta_deg, a, variant.critical_cos);
+  if (variant.critical_cos > 0.0) add_critical_breakpoints(points, theta_deg, a, masking, variant.critical_cos);
   std::erase_if(points, [&](const Breakpoint& point) { return point.slope <= 0.0 || point.slope > horizon; });
   // At the normal smith's cusp lies at slope 0.
   const bool cusp_at_0 = variant.has_line && masking == Masking::kSmith && a.sin == 0.0;
@@ -234,8 +242,13 @@ kernel::IndexNode index_node(const OpticalConstants& index) {
   };
   const std::complex<double> pole = -1.0 / bounded_root(n * n + 1.0);
   const std::complex<double> branch = bounded_root({n2m1_re, n2m1_im});
-  return {n2m1_re,           n2m1_im,       pole.real(), std::abs(pole.imag()), std::abs(branch.imag()),
-          std::abs(branch.real()), critical_cos(index)};
+  return {n2m1_re,
+          n2m1_im,
+          pole.real(),
+          std::abs(pole.imag()),
+          std::abs(branch.imag()),
+          std::abs(branch.real()),
+          critical_cos(index)};
 }
 
 // Every direction of a grid, for each of the lines of total reflection that its indices have, without and with the line
@@ -257,23 +270,24 @@ void add_grid_directions(KernelData& data, const MomentsRequest& request) {
   }
 }
 
-void add_shape(KernelData& data, const MomentsRequest& request, const RuleModel& model, const SlopeShape& shape) {
+void add_shape(KernelData& data, const MomentsRequest& request, const SlopeShape& shape) {
   const double digits = data.rule.digits;
   data.shapes.push_back(shape_node(request, shape, digits));
-  data.needs_line.push_back(needs_line(model, request.distribution, request.masking, shape, digits) ? 1 : 0);
+  const bool is_split = needs_line(request.distribution, request.masking, shape, digits, request.tolerance);
+  data.needs_line.push_back(is_split ? 1 : 0);
 }
 
-void add_grid(KernelData& data, const MomentsRequest& request, const RuleModel& model) {
+void add_grid(KernelData& data, const MomentsRequest& request) {
   for (const double sigma : request.sigma) {
-    for (const double q : request.q) add_shape(data, request, model, {sigma, q});
+    for (const double q : request.q) add_shape(data, request, {sigma, q});
   }
   add_grid_directions(data, request);
 }
 
-void add_points(KernelData& data, const MomentsRequest& request, const RuleModel& model) {
+void add_points(KernelData& data, const MomentsRequest& request) {
   for (std::size_t i = 0; i < request.size(); ++i) {
     const bool is_new = i == 0 || request[i].shape != request[i - 1].shape;
-    if (is_new) add_shape(data, request, model, request[i].shape);
+    if (is_new) add_shape(data, request, request[i].shape);
     data.shape_of.push_back(static_cast<std::uint32_t>(data.shapes.size() - 1));
     add_direction(data, request, request.theta_deg[i], {data.indices[i].critical_cos, data.needs_line.back() != 0});
   }
@@ -319,9 +333,9 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model) {
   data.directions = request.theta_deg.size();
   for (const OpticalConstants& index : request.indices) data.indices.push_back(index_node(index));
   if (data.is_grid) {
-    add_grid(data, request, model);
+    add_grid(data, request);
   } else {
-    add_points(data, request, model);
+    add_points(data, request);
   }
   data.rule_nodes = rule_nodes(data.rule_order);
   data.has_total_reflection =

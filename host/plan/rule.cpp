@@ -11,26 +11,33 @@
 namespace dolp {
 namespace {
 
-// `dolp-calibrate fit MASKING` computes these; they are rounded from runs with 40 to 100 entries. Smith's phi_digits and
-// line_digits are larger than the fit's, as `dolp-calibrate check` asks for.
+// Made by `dolp-calibrate fit MASKING`.
 constexpr std::array<RuleModel, 4> kModels = {{
     // none
-    {.margin_digits = 1.4, .t_nodes = 1.4, .t_digits = 0.25, .t_fall = 0.2, .phi_nodes = 0.35, .phi_digits = 0.25},
+    {.margin_digits = 2.6, .t_nodes = 1.5, .t_digits = 0.125, .t_fall = 0.17, .phi_nodes = 0.175, .phi_digits = 0.875},
     // v-cavity
-    {.margin_digits = 1.5, .t_nodes = 1.4, .t_digits = -0.25, .t_fall = 0.2, .phi_nodes = 0.35, .phi_digits = 0.5},
+    {.margin_digits = 2.3, .t_nodes = 1.45, .t_digits = -1.44, .t_fall = 0.185, .phi_nodes = 0.54, .phi_digits = 0.5},
     // integral
-    {.margin_digits = 1.2, .t_nodes = 1.8, .t_digits = 0.0, .t_fall = 0.2, .phi_nodes = 0.5, .phi_digits = -0.5,
-     .line_digits = 3.0},
+    {.margin_digits = 2.3, .t_nodes = 2.4, .t_digits = -0.25, .t_fall = 0.17, .phi_nodes = 0.835, .phi_digits = -1.19},
     // smith
-    {.margin_digits = 1.7, .t_nodes = 1.8, .t_digits = 0.5, .t_fall = 0.2, .phi_nodes = 0.45, .phi_digits = 1.25,
-     .line_digits = 1.0, .cluster_stretch = 3.0},
+    {.margin_digits = 2.4,
+     .t_nodes = 2.5,
+     .t_digits = 0.625,
+     .t_fall = 0.115,
+     .phi_nodes = 0.15,
+     .phi_digits = 0.85,
+     .cluster_stretch = 5.62},
 }};
 
 // Nodes that a piece has for each digit, roughly.
 constexpr double kNodesPerDigit = 1.2;
 
-// A singularity |x|^p at an end costs a rule n^-(p + 2); a cluster of its nodes there squares that. Below this q, for each
-// digit, the line of `integral`, p = 2q - 1, would want more nodes than a cluster takes.
+// Share of the tolerance that a line may spoil without being split off: it spoils both rules of a pair alike, so that
+// their distance does not show it.
+constexpr double kLineShare = 0.1;
+
+// A singularity |x|^p at an end costs a rule n^-(p + 2); a cluster of its nodes there squares that. Below this q, for
+// each digit, the line of `integral`, p = 2q - 1, would want more nodes than a cluster takes.
 constexpr double kClusterBelowQ = 0.3;
 
 // The line of the gaussian is smooth but steep for rough surfaces.
@@ -45,12 +52,16 @@ constexpr double kOrderPerDigit = 8.0;
 
 constexpr double kNone = -1000.0;
 
-// log10 of what is left of smith's cusp, L = C (m tan(theta_r))^(2q-2) and more beside theta_r = 0, where rules do not split:
-// a point of the slope plane, which n nodes each way see to n^-2q.
+// log10 of the nodes on the scale of 1/m beside a line or cusp, where the share of steep facets varies.
+double decades_per_node(const SlopeShape& shape, double digits) {
+  const double width = std::max(1.0, slope_width(shape));
+  return std::log10(std::max(kNodesPerDigit * digits / width, 1.5));
+}
+
+// log10 of what is left of smith's cusp, L = C (m tan(theta_r))^(2q-2) and more beside theta_r = 0, where rules do not
+// split: a point of the slope plane, which n nodes each way see to n^-2q.
 double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double digits) {
-  // L varies over slopes of 1/m beside the point.
-  const double width = std::max(1.0, std::numbers::sqrt2 * shape.sigma);
-  const double per_node = std::log10(std::max(kNodesPerDigit * digits / width, 1.5));
+  const double per_node = decades_per_node(shape, digits);
   if (distribution == Distribution::kGaussian) {
     // All derivatives vanish at theta_r = 0; at 45 degrees L is about exp(-1/m^2).
     return -0.5 / (shape.sigma * shape.sigma * std::numbers::ln10) - kGaussianCuspPower * per_node;
@@ -70,7 +81,7 @@ double unsplit_line(Distribution distribution, const SlopeShape& shape, double d
     return shape.sigma > (digits > kTightDigits ? kTightLineSigma : kLineSigma) ? 0.0 : kNone;
   }
   const double tail = (1.0 - shape.q) * std::log10(1.0 + 0.5 / (shape.sigma * shape.sigma));
-  return tail - 2.0 * shape.q * std::log10(std::max(kNodesPerDigit * digits, 2.0));
+  return tail - 2.0 * shape.q * decades_per_node(shape, digits);
 }
 
 }  // namespace
@@ -98,10 +109,10 @@ kernel::RuleNode rule_node(const RuleModel& model, double digits) {
   return node;
 }
 
-bool needs_line(const RuleModel& model, Distribution distribution, Masking masking, const SlopeShape& shape,
-                double digits) {
-  if (masking == Masking::kSmith) return digits + unsplit_cusp(distribution, shape, digits) > model.line_digits;
-  return masking == Masking::kIntegral && digits + unsplit_line(distribution, shape, digits) > model.line_digits;
+bool needs_line(Distribution distribution, Masking masking, const SlopeShape& shape, double digits, double tolerance) {
+  const double allowed = std::log10(kLineShare * tolerance);
+  if (masking == Masking::kSmith) return unsplit_cusp(distribution, shape, digits) > allowed;
+  return masking == Masking::kIntegral && unsplit_line(distribution, shape, digits) > allowed;
 }
 
 double cusp_digits(Distribution distribution, Masking masking, const SlopeShape& shape, double digits) {

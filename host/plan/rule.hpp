@@ -10,17 +10,16 @@ namespace dolp {
 inline constexpr double kCoarseShare = 0.8;
 
 /// What is fitted of a masking's rules: everything else follows from where the integrand's singularities lie
-/// (shaders/physics/orders.glsl). `dolp-calibrate fit` finds the numbers: the least work on random entries, entries that
-/// have to be computed again included.
+/// (shaders/physics/orders.glsl). `dolp-calibrate fit` finds the numbers: the least work on random entries, entries
+/// that have to be computed again included.
 struct RuleModel {
-  double margin_digits = 0.0;     ///< digits of the coarser rule beyond the tolerance
-  double t_nodes = 0.0;           ///< kernel::RuleNode, field by field
+  double margin_digits = 0.0;  ///< digits of the coarser rule beyond the tolerance
+  double t_nodes = 0.0;        ///< kernel::RuleNode, field by field
   double t_digits = 0.0;
   double t_fall = 0.0;
   double phi_nodes = 0.0;
   double phi_digits = 0.0;
-  double line_digits = 0.0;       ///< digits that the line of `integral` or smith's cusp must spoil to be split off
-  double cluster_stretch = 1.0;   ///< smith: nodes for each digit from which on the cusp is worth a cluster
+  double cluster_stretch = 1.0;  ///< smith: nodes for each digit from which on the cusp is worth a cluster
 };
 
 /// The fitted numbers of a masking.
@@ -35,9 +34,9 @@ kernel::RuleNode rule_node(const RuleModel& model, double digits);
 /// The largest order of the rules for a number of digits.
 int largest_order(double digits);
 
-/// Whether a slope distribution needs the line b = pi/2 of `integral`, or smith's cusp, at this many digits.
-bool needs_line(const RuleModel& model, Distribution distribution, Masking masking, const SlopeShape& shape,
-                double digits);
+/// Whether a slope distribution needs the line b = pi/2 of `integral`, or smith's cusp, as a split: whether without one
+/// rules of so many digits would be wrong by a share of the tolerance.
+bool needs_line(Distribution distribution, Masking masking, const SlopeShape& shape, double digits, double tolerance);
 
 /// log10 of what smith's cusp at theta_r = 0 costs rules that do not split there, as a share of L; below -100 where it
 /// is none.

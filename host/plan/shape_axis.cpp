@@ -13,6 +13,7 @@ namespace {
 constexpr double kLeastNodes = 6.0;  // how the coefficients of fewer fall says nothing
 constexpr double kFirstNodes = 3.0;  // whatever the digits
 constexpr double kLeastGain = 1.25;  // values for each node
+constexpr double kGrazing_deg = 89.9;
 
 double nodes_needed(const ShapeParameter& parameter, double half_length, double digits) {
   const double per_digit = std::log(10.0) / std::asinh(parameter.strip / half_length);
@@ -30,9 +31,13 @@ ShapeParameter sigma_parameter(Distribution distribution) {
   return {0.0, distribution == Distribution::kGaussian ? 0.78 : 1.15};
 }
 
-ShapeParameter q_parameter(Distribution distribution, Masking masking) {
-  const bool needs_mean_slope = masking == Masking::kSmith && distribution == Distribution::kCauchy;
-  return {needs_mean_slope ? 1.5 : 1.0, 1.45};
+ShapeParameter q_parameter(const MomentsRequest& request) {
+  const auto is_grazing = [](double theta_deg) { return theta_deg > kGrazing_deg; };
+  const bool sees_slopes = request.masking == Masking::kNone || request.masking == Masking::kIntegral;
+  const bool needs_mean_slope =
+      request.masking == Masking::kSmith || (sees_slopes && std::ranges::all_of(request.theta_deg, is_grazing));
+  const bool has_mean_slope = request.distribution == Distribution::kCauchy && std::ranges::min(request.q) > 1.5;
+  return {needs_mean_slope && has_mean_slope ? 1.5 : 1.0, 1.45};
 }
 
 ShapeAxis shape_axis(const ShapeParameter& parameter, const std::vector<double>& values, double digits) {

@@ -5,21 +5,23 @@
 #include <vector>
 
 #include "model/choices.hpp"
+#include "model/moments.hpp"
 
 namespace dolp {
 
 /// The moments are analytic in ln(x - origin) within `strip` of the real axis, x being sigma or q.
 ///
 /// For sigma: with the slope in units of m, sigma enters P(u) = (1 + u^2)^-q alone, analytic where |Im ln m| < pi/2;
-/// toward there a power of q grows, so that less is worth relying on. For q: P is analytic for Re q > 1, smith masking
-/// for Re q > 3/2 (shaders/physics/README.md, section 2). A polynomial of n nodes in the logarithm then is wrong by
-/// rho^-n, rho = exp(asinh(strip / half length)).
+/// toward there a power of q grows, so that less is worth relying on. For q: P is analytic for Re q > 1; the mean
+/// slope, on which smith masking depends and, without shadows that bound it, the projection of the facets at grazing
+/// incidence, for Re q > 3/2 (shaders/physics/README.md, section 2). A polynomial of n nodes in the logarithm then is
+/// wrong by rho^-n, rho = exp(asinh(strip / half length)).
 struct ShapeParameter {
   double origin = 0.0;
   double strip = 1.0;
 };
 ShapeParameter sigma_parameter(Distribution distribution);
-ShapeParameter q_parameter(Distribution distribution, Masking masking);
+ShapeParameter q_parameter(const MomentsRequest& request);
 
 /// Values of a parameter, and the nodes that stand for them.
 struct ShapeAxis {

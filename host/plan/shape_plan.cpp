@@ -10,8 +10,8 @@ namespace dolp {
 namespace {
 
 constexpr double kNodeTolerance = 0.125;  // of the request's tolerance: bounds grow by the interpolant's weights
-constexpr double kExtraDigits = 1.0;       // of the interpolation
-constexpr std::size_t kLeastGain = 2;      // entries of a direction and index for each node
+constexpr double kExtraDigits = 1.0;      // of the interpolation
+constexpr std::size_t kLeastGain = 2;     // entries of a direction and index for each node
 constexpr double kTail = 3.0;         // error bound over the largest of the last coefficients, where these fall fast
 constexpr double kSlowestFall = 0.9;  // of the last coefficients over those before them
 constexpr Eigen::Index kLastCoefficients = 3;
@@ -63,7 +63,7 @@ std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
   const double digits = kExtraDigits - std::log10(request.tolerance);
   ShapePlan plan;
   plan.sigma = shape_axis(sigma_parameter(request.distribution), request.sigma, digits);
-  plan.q = shape_axis(q_parameter(request.distribution, request.masking), request.q, digits);
+  plan.q = shape_axis(q_parameter(request), request.q, digits);
   if (request.sigma.size() * request.q.size() < kLeastGain * plan.nodes_of_a_direction()) return std::nullopt;
   plan.nodes = request;
   plan.nodes.tolerance = node_tolerance(request);

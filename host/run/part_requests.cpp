@@ -64,16 +64,15 @@ Scattered beam_without_evaluator(const Scene& scene, double theta_deg) {
 }
 
 PartRequests::PartRequests(const Scene& scene, const std::vector<OpticalConstants>& samples, const EffectPlan& plan,
-                           const Selection& selection, const Attempt& attempt)
+                           const Selection& selection, const RefinementLevel& level)
     : scene_(scene), samples_(samples), plan_(plan), chosen_(selection.chosen) {
   moments_.distribution = beams_.distribution = scene.surface.distribution;
   moments_.masking = beams_.masking = scene.surface.masking;
-  moments_.precision = beams_.precision = attempt.precision;
-  moments_.tolerance = attempt.tolerance;
-  // What misses the tolerance between nodes is integrated by itself: its neighbours are the hard ones too.
-  moments_.has_extra_splits = attempt.is_check;
-  moments_.row_width = attempt.row_width;
-  moments_.may_interpolate = scene.accuracy.may_interpolate && attempt.tolerance >= scene.accuracy.tolerance;
+  moments_.precision = beams_.precision = level.precision;
+  moments_.tolerance = level.tolerance;
+  moments_.has_extra_splits = level.is_check;
+  moments_.row_width = level.row_width;
+  moments_.may_interpolate = level.may_interpolate;
   if (plan.needs_moments && selection.part.is_grid()) ask_grid(selection);
   if (plan.needs_moments && !selection.part.is_grid()) ask_points(selection);
   if (plan.needs_beams) ask_beams(selection);

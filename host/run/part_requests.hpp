@@ -10,8 +10,8 @@
 #include "model/moments.hpp"
 #include "model/scattering.hpp"
 #include "model/scene_entry.hpp"
-#include "plan/attempts.hpp"
 #include "plan/effects.hpp"
+#include "plan/refinement.hpp"
 #include "radiometry/radiometry.hpp"
 
 namespace dolp {
@@ -39,13 +39,13 @@ bool wants_beam(const Scene& scene, const SceneEntry& entry, const EffectPlan& p
 /// is not defined, as it is not with source and view both at 90 degrees.
 Scattered beam_without_evaluator(const Scene& scene, double theta_deg);
 
-/// The requests of one attempt at a selection. Of a grid the moments are a grid again, of the values that any entry
+/// The requests of one level at a selection. Of a grid the moments are a grid again, of the values that any entry
 /// needs; in bistatic mode of one direction, the view. Of points neighbours that differ in nothing that the moments see
 /// share them.
 class PartRequests {
  public:
   PartRequests(const Scene& scene, const std::vector<OpticalConstants>& samples, const EffectPlan& plan,
-               const Selection& selection, const Attempt& attempt);
+               const Selection& selection, const RefinementLevel& level);
 
   const MomentsRequest& moments() const { return moments_; }
   const ScatteringRequest& beams() const { return beams_; }

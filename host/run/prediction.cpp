@@ -49,9 +49,9 @@ SceneEntries entries_of_drawn_directions(const SceneEntries& grid) {
   return SceneEntries::grid(drawn, grid.sigma(), grid.q());
 }
 
-/// Sums of one kind of request, of the first attempt and of all others.
+/// Sums of one kind of request, of the first level and of all others.
 struct Count {
-  bool is_first = true;   ///< until the first attempt has made its request
+  bool is_first = true;   ///< until the first level has made its request
   std::size_t first = 0;  ///< moments or beams
   std::size_t again = 0;
   double first_evaluations = 0.0;
@@ -67,7 +67,7 @@ struct Count {
   }
 };
 
-/// Notes what the attempts of a run ask for.
+/// Notes what the levels of a run ask for.
 class CountingEvaluator final : public MomentsEvaluator, public ScatteringEvaluator {
  public:
   CountingEvaluator(Precision precision, bool has_double) : cpu_(precision), has_double_(has_double) {}
@@ -133,7 +133,7 @@ RunPrediction predict_run(const Scene& scene, const SceneEntries& entries, const
   RunPrediction run;
   run.entries = entries.size();
   run.spectral_samples = samples.size();
-  run.first = first_attempt(scene.accuracy, has_double);
+  run.first = first_level(scene.accuracy, has_double);
   std::size_t largest = 0;
   for (const SceneEntries& part : run_parts(entries, samples.size())) {
     const PartRequests requests(scene, samples, plan, {part}, run.first);

@@ -6,8 +6,8 @@
 #include "model/moments.hpp"
 #include "model/scattering.hpp"
 #include "model/scene_entry.hpp"
-#include "plan/attempts.hpp"
 #include "plan/effects.hpp"
+#include "plan/refinement.hpp"
 
 namespace dolp {
 
@@ -21,21 +21,21 @@ inline constexpr std::size_t kCountedDirections = 6;
 struct RunPrediction {
   std::size_t entries = 0;
   std::size_t spectral_samples = 0;
-  std::size_t moments = 0;         ///< that the first attempt computes: entries that share them count once
+  std::size_t moments = 0;         ///< that the first level computes: entries that share them count once
   std::size_t interpolated = 0;    ///< moments that it interpolates between others
-  std::size_t beams = 0;           ///< that the first attempt asks for: f of one geometry and index each
-  Attempt first;                   ///< precision and tolerance of the first attempt
+  std::size_t beams = 0;           ///< that the first level asks for: f of one geometry and index each
+  RefinementLevel first;           ///< precision and tolerance of the first level
   double first_evaluations = 0.0;  ///< integrand evaluations of it
-  double again_share = 0.0;        ///< of its moments and beams, those that need another attempt
+  double again_share = 0.0;        ///< of its moments and beams, those that need another level
   double again_evaluations = 0.0;
   double again_beams = 0.0;
   bool is_exact = true;    ///< all moments and beams were counted, none estimated from others
-  double moments_s = 0.0;  ///< of all attempts on this machine's processor, from counting
+  double moments_s = 0.0;  ///< of all levels on this machine's processor, from counting
   double beams_s = 0.0;
   double host_bytes = 0.0;  ///< requests and answers of the largest part, and all results
 };
 
-/// Called with each request of the first attempt.
+/// Called with each request of the first level.
 struct RequestVisitor {
   std::function<void(const MomentsRequest&)> moments;
   std::function<void(const ScatteringRequest&)> beams;

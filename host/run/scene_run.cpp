@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 
 #include "base/parallel_ranges.hpp"
 #include "model/angles.hpp"
 #include "model/status.hpp"
-#include "plan/attempts.hpp"
+#include "plan/refinement.hpp"
 #include "run/closed_forms.hpp"
 #include "run/part_requests.hpp"
 #include "run/table_scene.hpp"
@@ -19,6 +20,8 @@ namespace {
 // Bound the memory of a run. Points take more of it, because nothing is shared between them.
 constexpr std::size_t kMomentsAtOnce = 1U << 22U;
 constexpr std::size_t kPointsAtOnce = 1U << 20U;
+constexpr std::size_t kManyMisses =
+    8;  // a direction of which one in so many misses the tolerance is refined as a whole
 constexpr std::size_t kEntriesAtOnce = 4096;  // of a thread: their radiometry takes longer than to start one
 
 /// What the parts of a run share.
@@ -120,7 +123,7 @@ Progress part_of(const Progress& progress, std::size_t before, std::size_t total
   return [&progress, before, total](std::size_t done, std::size_t) { return progress(before + done, total); };
 }
 
-/// Moments and beams of one attempt, in the same precision.
+/// Moments and beams of one level, in the same precision.
 Answer asked(const Way& way, const PartRequests& requests, const Progress& progress) {
   const std::size_t moments = requests.moments().wanted_count();
   const std::size_t beams = requests.beams().entries.size();
@@ -135,9 +138,9 @@ Answer asked(const Way& way, const PartRequests& requests, const Progress& progr
   return answer;
 }
 
-std::vector<PointResult> attempted(const Way& way, const Selection& selection, const Attempt& attempt,
-                                   const Progress& progress) {
-  const PartRequests requests(way.scene, way.samples, way.plan, selection, attempt);
+std::vector<PointResult> computed_at(const Way& way, const Selection& selection, const RefinementLevel& level,
+                                     const Progress& progress) {
+  const PartRequests requests(way.scene, way.samples, way.plan, selection, level);
   const Answer answer = asked(way, requests, progress);
   std::vector<PointResult> results(selection.size());
   parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
@@ -152,40 +155,70 @@ bool is_better(const PointResult& a, const PointResult& b) {
          std::max(a.error_estimate, a.rho_error_estimate) < std::max(b.error_estimate, b.rho_error_estimate);
 }
 
-/// Whether an attempt at an entry finds more than the last one: f has no rule that a tolerance would make finer.
-bool finds_more(const Way& way, const Attempt& attempt, const Attempt& last, const SceneEntry& entry) {
+/// Whether a level at an entry finds more than the last one: f has no rule that a tolerance would make finer.
+bool finds_more(const Way& way, const RefinementLevel& level, const RefinementLevel& last, const SceneEntry& entry) {
   return wants_moments(way.scene, entry, way.plan) ||
-         (wants_beam(way.scene, entry, way.plan) && attempt.precision != last.precision);
+         (wants_beam(way.scene, entry, way.plan) && level.precision != last.precision);
 }
 
-/// Tries the entries of a part again that miss the tolerance, those together that want the same attempt. To `progress`
-/// the part is done already; it may still cancel.
-void retry(const Way& way, const SceneEntries& part, const Attempt& first, std::span<PointResult> results,
-           const Progress& progress) {
-  const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
-  std::map<Attempt, std::vector<std::size_t>> waiting;
-  const auto plan = [&](std::size_t i, const Attempt& last, const PointResult& result) {
-    const auto next = next_attempt(last, result, way.accuracy, way.evaluator->has_double());
-    if (next && finds_more(way, *next, last, part[i])) waiting[*next].push_back(i);
-  };
-  for (std::size_t i = 0; i < results.size(); ++i) plan(i, first, results[i]);
-  while (!waiting.empty()) {
-    const auto [attempt, members] = *waiting.begin();
-    waiting.erase(waiting.begin());
-    const std::vector<PointResult> better = attempted(way, {part, members}, attempt, is_wanted);
-    for (std::size_t j = 0; j < members.size(); ++j) {
-      if (is_better(better[j], results[members[j]])) results[members[j]] = better[j];
-      plan(members[j], attempt, better[j]);
-    }
+/// Entries waiting for the same level are computed together.
+using Waiting = std::map<RefinementLevel, std::vector<std::size_t>>;
+
+/// The next level of one direction whose `members` were computed at `last`: of all of it, between nodes again, where
+/// many miss the tolerance; else of each of these by itself.
+void plan_next(const Way& way, const SceneEntries& part, const RefinementLevel& last,
+               std::span<const std::size_t> members, std::span<const PointResult> results, Waiting& waiting) {
+  std::vector<std::pair<RefinementLevel, std::size_t>> missed;
+  for (std::size_t j = 0; j < members.size(); ++j) {
+    const auto next = next_level(last, results[j], way.accuracy, way.evaluator->has_double());
+    if (next && finds_more(way, *next, last, part[members[j]])) missed.emplace_back(*next, members[j]);
+  }
+  if (last.may_interpolate && missed.size() * kManyMisses > members.size()) {
+    const auto middle = missed.begin() + static_cast<std::ptrdiff_t>(missed.size() / 2);
+    std::nth_element(missed.begin(), middle, missed.end());
+    RefinementLevel next = middle->first;
+    next.may_interpolate = true;
+    std::vector<std::size_t>& all = waiting[next];
+    all.insert(all.end(), members.begin(), members.end());
+  } else {
+    for (const auto& [next, member] : missed) waiting[next].push_back(member);
   }
 }
 
-/// Computes some entries of a grid again, after its first attempt, by a rule of another kind.
-std::vector<PointResult> computed_again(const Way& way, const SceneEntries& part, const Attempt& first,
+/// Computes entries of a part that miss the tolerance again. To `progress` the part is done already; it may still
+/// cancel.
+void refine(const Way& way, const SceneEntries& part, const RefinementLevel& first, std::span<PointResult> results,
+            const Progress& progress) {
+  const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
+  const std::size_t of_direction = part.is_grid() ? part.sigma().size() * part.q().size() : 1;
+  Waiting waiting;
+  const auto plan = [&](const RefinementLevel& last, std::span<const std::size_t> members,
+                        std::span<const PointResult> found) {
+    for (std::size_t i = 0; i < members.size(); i += of_direction) {
+      const std::size_t count = std::min(of_direction, members.size() - i);
+      plan_next(way, part, last, members.subspan(i, count), found.subspan(i, count), waiting);
+    }
+  };
+  std::vector<std::size_t> all(results.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  plan(first, all, results);
+  while (!waiting.empty()) {
+    const auto [level, members] = *waiting.begin();
+    waiting.erase(waiting.begin());
+    const std::vector<PointResult> better = computed_at(way, {part, members}, level, is_wanted);
+    for (std::size_t j = 0; j < members.size(); ++j) {
+      if (is_better(better[j], results[members[j]])) results[members[j]] = better[j];
+    }
+    plan(level, members, better);
+  }
+}
+
+/// Computes some entries of a grid again, after its first level, by a rule of another kind.
+std::vector<PointResult> computed_again(const Way& way, const SceneEntries& part, const RefinementLevel& first,
                                         std::span<const std::size_t> positions) {
   if (positions.empty()) return {};
   const Progress none = [](std::size_t, std::size_t) { return true; };
-  return attempted(way, {part, positions}, check_attempt(first, way.evaluator->report().row_width), none);
+  return computed_at(way, {part, positions}, check_level(first, way.evaluator->report().row_width), none);
 }
 
 /// Which entries of a part a run checks: none of points. `nodes`: moments between which the others were interpolated.
@@ -199,21 +232,23 @@ std::vector<std::size_t> positions_to_check(const Way& way, const SceneEntries& 
   return positions;
 }
 
-/// Results of a part: all attempts, or what needs none. `before`: entries of the parts before.
+/// Results of a part: all levels, or what needs none. `before`: entries of the parts before.
 std::vector<PointResult> part_results(const Way& way, const SceneEntries& part, std::size_t before, SelfCheck& check,
                                       const Progress& progress) {
   if (!wants_evaluator(way.scene, part, way.plan)) {
-    std::vector<PointResult> results = attempted(way, {part}, {}, progress);
+    std::vector<PointResult> results = computed_at(way, {part}, {}, progress);
     if (!progress(1, 1)) throw Cancelled{};
     return results;
   }
-  const Attempt first = first_attempt(way.accuracy, way.evaluator->has_double());
+  const RefinementLevel first = first_level(way.accuracy, way.evaluator->has_double());
   const std::uint64_t nodes_before = way.evaluator->report().interpolation_nodes;
-  std::vector<PointResult> results = attempted(way, {part}, first, progress);
+  std::vector<PointResult> results = computed_at(way, {part}, first, progress);
   const std::uint64_t nodes = way.evaluator->report().interpolation_nodes - nodes_before;
   const std::vector<std::size_t> positions = positions_to_check(way, part, nodes, before);
   const std::vector<PointResult> again = computed_again(way, part, first, positions);
-  retry(way, part, first, results, progress);
+  RefinementLevel used = first;
+  used.may_interpolate = nodes > 0;
+  refine(way, part, used, results, progress);
   SelfCheck of_part;
   for (std::size_t i = 0; i < positions.size(); ++i) of_part.add(results[positions[i]], again[i]);
   if (of_part.worst_ratio > 1.0) {

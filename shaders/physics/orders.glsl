@@ -25,6 +25,26 @@ real gap_beside_unit(real a, real b) {
   return off_axis + real(2.0) * (max(a - real(1.0), real(0.0)) + max(-a, real(0.0)));
 }
 
+// A singularity of the integrand, in the upper half plane of its variable.
+struct Singularity {
+  real re;
+  real im;
+};
+
+// acos(u).
+real arc_cosine(real u) {
+  real angle = real(2.0) * atan_unit(sqrt((real(1.0) - abs(u)) / (real(1.0) + abs(u))));
+  return choose(u < real(0.0), kPi - angle, angle);
+}
+
+// arccos(a + i b), from the distances of cos(phi) to +-1 (Hull, Fairgrieve and Tang 1997).
+Singularity singularity_at(real a, real b) {
+  real to_minus_1 = sqrt((a + real(1.0)) * (a + real(1.0)) + b * b);
+  real to_1 = sqrt((a - real(1.0)) * (a - real(1.0)) + b * b);
+  real gap = gap_beside_unit(real(0.5) * (a + real(1.0)), real(0.5) * b);
+  return Singularity(arc_cosine(clamp(real(0.5) * (to_minus_1 - to_1), real(-1.0), real(1.0))), acosh_above_1(gap));
+}
+
 real nodes_per_digit(real mu) { return kHalfLn10 / max(mu, real(1e-3)); }
 
 int order_between(real nodes, int limit) { return int(clamp(floor(nodes + real(0.5)), real(1.0), real(limit))); }
@@ -100,6 +120,18 @@ real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, 
   return piece_cost(piece, choose(x < real(0.0), -bent, bent), im / (unit * max(abs(x), real(1.0))));
 }
 
+// The same from Fresnel's branch point cos(beta) = b on a line where arcs end: the horizon, cos(beta) = c sec(alpha) / 2, or
+// theta_r = theta, cos(beta) = c sec(alpha). `ratio`: sec(alpha) c / cos(beta) there. Below, total reflection has
+// breakpoints there.
+real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece piece, real ratio) {
+  real stretch = ratio / max(theta.c, real(1e-12));
+  real2 sec = real2(stretch * index.branch_re, stretch * index.branch_im);
+  real2 t = sqrt_upper(sec.x * sec.x - sec.y * sec.y - real(1.0), real(2.0) * sec.x * sec.y);
+  // asinh(z) = -i (pi/2 - arccos(-i z)), to the sign of -i z.
+  Singularity x = singularity_at(-t.y / shape.scale, t.x / shape.scale);
+  return piece_cost(piece, x.im, x.re - real(0.5) * kPi);
+}
+
 // Singularities of the integrand over the slopes: the cauchy's density at t = i m; the geometry at t = i; those of
 // Fresnel's coefficients; and the square roots at the breakpoints beyond the piece's ends that face it. Before a rule converges it must resolve how the density
 // falls over the piece, for which it takes nodes in proportion to the logarithm; a root and the map that takes it up make
@@ -112,6 +144,8 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
   cost = max(cost, fresnel_piece_cost(theta, shape, piece, index.pole_re, index.pole_im));
   if (index.critical_cos <= real(0.0)) {
     cost = max(cost, fresnel_piece_cost(theta, shape, piece, index.branch_re, index.branch_im));
+    cost = max(cost, line_piece_cost(theta, shape, index, piece, real(2.0)));
+    if (kMasking == DOLP_MASKING_INTEGRAL) cost = max(cost, line_piece_cost(theta, shape, index, piece, real(1.0)));
   }
   if (piece.root_before < piece.start) cost = max(cost, piece_cost(piece, piece.root_before, real(0.0)));
   if (piece.root_after > piece.start + piece.extent) cost = max(cost, piece_cost(piece, piece.root_after, real(0.0)));
@@ -132,26 +166,6 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
 }
 
 // ---- Azimuth -------------------------------------------------------------------------------------------------------
-
-// A singularity of the integrand as a function of the azimuth, in the half plane Im(phi) >= 0.
-struct Singularity {
-  real re;
-  real im;
-};
-
-// acos(u).
-real arc_cosine(real u) {
-  real angle = real(2.0) * atan_unit(sqrt((real(1.0) - abs(u)) / (real(1.0) + abs(u))));
-  return choose(u < real(0.0), kPi - angle, angle);
-}
-
-// arccos(a + i b), from the distances of cos(phi) to +-1 (Hull, Fairgrieve and Tang 1997).
-Singularity singularity_at(real a, real b) {
-  real to_minus_1 = sqrt((a + real(1.0)) * (a + real(1.0)) + b * b);
-  real to_1 = sqrt((a - real(1.0)) * (a - real(1.0)) + b * b);
-  real gap = gap_beside_unit(real(0.5) * (a + real(1.0)), real(0.5) * b);
-  return Singularity(arc_cosine(clamp(real(0.5) * (to_minus_1 - to_1), real(-1.0), real(1.0))), acosh_above_1(gap));
-}
 
 // Nodes for each digit on an arc, from the singularity's place in the abscissa of the arc's rule. Rules that are even about
 // the arc's centre converge as one of half the nodes in the square of their abscissa, clusters are in its root.

@@ -184,7 +184,7 @@ class App::Impl {
   }
   bool has_picture_to_save() const { return !picture_path_.empty(); }
 
-  /// News in, wishes out.
+  /// JobPart in, wishes out.
   void exchange() {
     is_all_taken_ = worker_.is_idle();
     session_.take(worker_.take_news());

@@ -1,6 +1,6 @@
 // With which precision and rule an entry is tried, and tried again where it misses the tolerance; and that whole runs
 // do so for the entries that miss, and for no others.
-#include "plan/attempts.hpp"
+#include "plan/refinement.hpp"
 #include "model/angles.hpp"
 #include "model/status.hpp"
 
@@ -43,45 +43,43 @@ PointResult missed(double tolerance, double factor) {
   return result;
 }
 
-void expect_attempt(const std::optional<Attempt>& attempt, Precision precision, double tolerance) {
-  ASSERT_TRUE(attempt.has_value());
-  EXPECT_EQ(attempt->precision, precision);
-  EXPECT_NEAR(attempt->tolerance, tolerance, kRounding * tolerance);
+void expect_level(const std::optional<RefinementLevel>& level, Precision precision, double tolerance) {
+  ASSERT_TRUE(level.has_value());
+  EXPECT_EQ(level->precision, precision);
+  EXPECT_NEAR(level->tolerance, tolerance, kRounding * tolerance);
 }
 
 // ---- One entry -----------------------------------------------------------------------------------------------------
 
 TEST(FirstAttempt, Auto_IsFloatWhereItsRoundingLeavesRoom) {
   for (const double tolerance : {1e-2, 1e-4, kInFloat}) {
-    expect_attempt(first_attempt(accuracy(tolerance), true), Precision::kFloat, tolerance);
+    expect_level(first_level(accuracy(tolerance), true), Precision::kFloat, tolerance);
   }
   for (const double tolerance : {kInDouble, 1e-8, 1e-10}) {
-    expect_attempt(first_attempt(accuracy(tolerance), true), Precision::kDouble, tolerance);
+    expect_level(first_level(accuracy(tolerance), true), Precision::kDouble, tolerance);
   }
 }
 
 TEST(FirstAttempt, PrecisionOfTheScene_IsKept) {
-  expect_attempt(first_attempt(accuracy(1e-2, Precision::kDouble), true), Precision::kDouble, 1e-2);
-  expect_attempt(first_attempt(accuracy(1e-9, Precision::kFloat), true), Precision::kFloat, 1e-9);
+  expect_level(first_level(accuracy(1e-2, Precision::kDouble), true), Precision::kDouble, 1e-2);
+  expect_level(first_level(accuracy(1e-9, Precision::kFloat), true), Precision::kFloat, 1e-9);
 }
 
-TEST(FirstAttempt, WithoutDouble_IsFloat) {
-  expect_attempt(first_attempt(accuracy(1e-9), false), Precision::kFloat, 1e-9);
-}
+TEST(FirstAttempt, WithoutDouble_IsFloat) { expect_level(first_level(accuracy(1e-9), false), Precision::kFloat, 1e-9); }
 
 TEST(NextAttempt, MetTolerance_NeedsNone) {
   PointResult met = missed(1e-4, 0.9);
   met.status = 0;
-  EXPECT_FALSE(next_attempt({Precision::kFloat, 1e-4}, met, accuracy(1e-4), true));
+  EXPECT_FALSE(next_level({Precision::kFloat, 1e-4}, met, accuracy(1e-4), true));
   met.status = kStatusUnphysicalReflectance;
-  EXPECT_FALSE(next_attempt({Precision::kFloat, 1e-4}, met, accuracy(1e-4), true));
+  EXPECT_FALSE(next_level({Precision::kFloat, 1e-4}, met, accuracy(1e-4), true));
 }
 
 TEST(NextAttempt, OutsideTheDomain_NeedsNone) {
   PointResult outside = missed(1e-4, 100.0);
   outside.status |= kStatusOutsideDomain;
   outside.error_estimate = kNaN;
-  EXPECT_FALSE(next_attempt({Precision::kFloat, 1e-4}, outside, accuracy(1e-4), true));
+  EXPECT_FALSE(next_level({Precision::kFloat, 1e-4}, outside, accuracy(1e-4), true));
 }
 
 // At 90 degrees rho may diverge while the DOLP has a limit.
@@ -89,7 +87,7 @@ TEST(NextAttempt, OutsideTheDomainWithALimitOfTheDolp_LooksAtThatAlone) {
   PointResult outside = missed(1e-4, 50.0);
   outside.status |= kStatusOutsideDomain;
   outside.rho_error_estimate = kNaN;
-  expect_attempt(next_attempt({Precision::kFloat, 1e-4}, outside, accuracy(1e-4), true), Precision::kFloat, 1e-5);
+  expect_level(next_level({Precision::kFloat, 1e-4}, outside, accuracy(1e-4), true), Precision::kFloat, 1e-5);
 }
 
 // An entry misses by its worse estimate; a rule that is as much tighter, and a little more, is tried next.
@@ -106,8 +104,7 @@ TEST(NextAttempt, Decades_FollowTheMiss) {
       PointResult result = missed(tolerance, factor);
       if (dolp_is_worse) std::swap(result.error_estimate, result.rho_error_estimate);
       const Precision precision = wanted >= kInFloat ? Precision::kFloat : Precision::kDouble;
-      expect_attempt(next_attempt({Precision::kFloat, tolerance}, result, accuracy(tolerance), true), precision,
-                     wanted);
+      expect_level(next_level({Precision::kFloat, tolerance}, result, accuracy(tolerance), true), precision, wanted);
     }
   }
 }
@@ -116,58 +113,57 @@ TEST(NextAttempt, NoEstimate_IsAMissByTheMost) {
   for (const double unknown : {kNaN, kInfinity}) {
     PointResult result = missed(1e-6, 1.0);
     result.error_estimate = unknown;
-    expect_attempt(next_attempt({Precision::kDouble, 1e-6}, result, accuracy(1e-6), true), Precision::kDouble, 1e-11);
+    expect_level(next_level({Precision::kDouble, 1e-6}, result, accuracy(1e-6), true), Precision::kDouble, 1e-11);
   }
 }
 
 TEST(NextAttempt, NoEstimateOfRho_IsAMissByTheMost) {
   PointResult result = missed(1e-6, 1.0);
   result.rho_error_estimate = kNaN;
-  expect_attempt(next_attempt({Precision::kDouble, 1e-6}, result, accuracy(1e-6), true), Precision::kDouble, 1e-11);
+  expect_level(next_level({Precision::kDouble, 1e-6}, result, accuracy(1e-6), true), Precision::kDouble, 1e-11);
 }
 
-// The decades are counted from the rule of the last attempt, not from the scene's tolerance.
+// The decades are counted from the rule of the last level, not from the scene's tolerance.
 TEST(NextAttempt, SecondMiss_GoesOnFromTheLastRule) {
   const Accuracy wanted = accuracy(1e-3);
-  expect_attempt(next_attempt({Precision::kFloat, 1e-4}, missed(1e-3, 5.0), wanted, true), Precision::kFloat, 1e-5);
+  expect_level(next_level({Precision::kFloat, 1e-4}, missed(1e-3, 5.0), wanted, true), Precision::kFloat, 1e-5);
   // after four decades the next step is two at least
-  expect_attempt(next_attempt({Precision::kDouble, 1e-7}, missed(1e-3, 5.0), wanted, true), Precision::kDouble, 1e-9);
+  expect_level(next_level({Precision::kDouble, 1e-7}, missed(1e-3, 5.0), wanted, true), Precision::kDouble, 1e-9);
 }
 
 TEST(NextAttempt, RuleTooTightForFloat_GoesOnInDouble) {
-  expect_attempt(next_attempt({Precision::kFloat, 1e-5}, missed(1e-5, 5.0), accuracy(1e-5), true), Precision::kDouble,
-                 1e-6);
+  expect_level(next_level({Precision::kFloat, 1e-5}, missed(1e-5, 5.0), accuracy(1e-5), true), Precision::kDouble,
+               1e-6);
   // without double, up to where float can go
   for (const auto& [wanted, has_double] :
        {std::pair{accuracy(1e-5), false}, std::pair{accuracy(1e-5, Precision::kFloat), true}}) {
-    expect_attempt(next_attempt({Precision::kFloat, 1e-5}, missed(1e-5, 5.0), wanted, has_double), Precision::kFloat,
-                   2e-6);
-    EXPECT_FALSE(next_attempt({Precision::kFloat, 2e-6}, missed(1e-5, 5.0), wanted, has_double));
+    expect_level(next_level({Precision::kFloat, 1e-5}, missed(1e-5, 5.0), wanted, has_double), Precision::kFloat, 2e-6);
+    EXPECT_FALSE(next_level({Precision::kFloat, 2e-6}, missed(1e-5, 5.0), wanted, has_double));
   }
 }
 
 TEST(NextAttempt, DoubleNeverGoesBackToFloat) {
-  expect_attempt(next_attempt({Precision::kDouble, 1e-2}, missed(1e-2, 5.0), accuracy(1e-2, Precision::kDouble), true),
-                 Precision::kDouble, 1e-3);
+  expect_level(next_level({Precision::kDouble, 1e-2}, missed(1e-2, 5.0), accuracy(1e-2, Precision::kDouble), true),
+               Precision::kDouble, 1e-3);
 }
 
 TEST(NextAttempt, TightestRule_IsTheLast) {
-  expect_attempt(next_attempt({Precision::kDouble, 1e-13}, missed(1e-10, 1e3), accuracy(1e-10), true),
-                 Precision::kDouble, kTightestRule);
-  EXPECT_FALSE(next_attempt({Precision::kDouble, kTightestRule}, missed(1e-10, 1e3), accuracy(1e-10), true));
+  expect_level(next_level({Precision::kDouble, 1e-13}, missed(1e-10, 1e3), accuracy(1e-10), true), Precision::kDouble,
+               kTightestRule);
+  EXPECT_FALSE(next_level({Precision::kDouble, kTightestRule}, missed(1e-10, 1e3), accuracy(1e-10), true));
 }
 
-// Whatever the results, the attempts get costlier and end.
-TEST(Attempts, EntryThatAlwaysMisses_EndsSoon) {
+// Whatever the results, the levels get costlier and end.
+TEST(Levels, EntryThatAlwaysMisses_EndsSoon) {
   constexpr int kMost = 12;  // steps that grow by half, and the change to double
   for (const bool has_double : {false, true}) {
     for (const Precision precision : {Precision::kAuto, Precision::kFloat, Precision::kDouble}) {
       for (int exponent = 2; exponent <= 10; ++exponent) {
         for (const double factor : {1.001, 30.0, 1e8, kNaN}) {
           const Accuracy wanted = accuracy(std::pow(10.0, -exponent), precision);
-          Attempt last = first_attempt(wanted, has_double);
+          RefinementLevel last = first_level(wanted, has_double);
           int count = 1;
-          while (const auto next = next_attempt(last, missed(wanted.tolerance, factor), wanted, has_double)) {
+          while (const auto next = next_level(last, missed(wanted.tolerance, factor), wanted, has_double)) {
             EXPECT_TRUE(last < *next);
             EXPECT_FALSE(*next < last);
             EXPECT_LT(next->tolerance, last.tolerance);
@@ -240,7 +236,7 @@ const std::vector<SceneEntry> kEntries = {
     {20.0, {0.3, 2.0}, {}}, {60.0, {0.3, 2.0}, {}}, {40.0, {0.3, 2.0}, {}}, {70.0, {0.2, 2.0}, {}}};
 const std::vector<double> kMissingDeg = {60.0, 70.0};
 
-TEST(EvaluateScene_Attempts, OnlyTheEntriesThatMiss_AreComputedAgain) {
+TEST(EvaluateScene_Levels, OnlyTheEntriesThatMiss_AreComputedAgain) {
   Scripted evaluator;
   const std::vector<PointResult> results = evaluate_scene(scene(), kEntries, evaluator, {});
   ASSERT_EQ(evaluator.requests.size(), 2U);
@@ -253,50 +249,73 @@ TEST(EvaluateScene_Attempts, OnlyTheEntriesThatMiss_AreComputedAgain) {
   ASSERT_EQ(results.size(), kEntries.size());
   for (std::size_t i = 0; i < results.size(); ++i) {
     EXPECT_EQ(results[i].status & kStatusToleranceMissed, 0U) << i;
-    // in its own place, from the attempt that met the tolerance
+    // in its own place, from the level that met the tolerance
     const double rho_q = kEntries[i].theta_deg > kWorsensFrom_deg ? 0.1 * (1.0 + evaluator.shift) : 0.1;
     EXPECT_NEAR(results[i].rho_q, rho_q, 1e-12) << i;
   }
 }
 
-// A grid stays one: what meets the tolerance is masked out of the smallest grid around what does not.
-TEST(EvaluateScene_Attempts, EntriesOfAGridThatMiss_AreAskedForUnderAMask) {
-  class MissesTwo final : public MomentsEvaluator {
-   public:
-    std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
-      requests.push_back(request);
-      std::vector<Moments> moments = own_.evaluate(request, progress);
-      for (std::size_t i = 0; i < moments.size(); ++i) {
-        const MomentsPoint point = request[i];
-        const bool misses = (point.theta_deg == 60.0 && point.shape.sigma == 0.2) ||
-                            (point.theta_deg == 40.0 && point.shape.sigma == 0.3);
-        const double factor = misses && request.precision == Precision::kFloat ? 50.0 : 0.01;
-        Moments& m = moments[i];
-        m.r_i_error = m.r_q_error = m.deficit_error = factor * kTolerance * m.r_i;
-      }
-      return moments;
+/// Misses at two entries in float.
+class MissesTwo final : public MomentsEvaluator {
+ public:
+  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
+    requests.push_back(request);
+    std::vector<Moments> moments = own_.evaluate(request, progress);
+    for (std::size_t i = 0; i < moments.size(); ++i) {
+      const MomentsPoint point = request[i];
+      const bool misses = (point.theta_deg == 60.0 && point.shape.sigma == 0.2) ||
+                          (point.theta_deg == 40.0 && point.shape.sigma == 0.3);
+      const double factor = misses && request.precision == Precision::kFloat ? 50.0 : 0.01;
+      Moments& m = moments[i];
+      m.r_i_error = m.r_q_error = m.deficit_error = factor * kTolerance * m.r_i;
     }
-    EvaluationReport report() const override { return {}; }
-    std::vector<MomentsRequest> requests;
+    return moments;
+  }
+  EvaluationReport report() const override {
+    EvaluationReport report;
+    report.interpolation_nodes = interpolates ? requests.size() : 0;
+    return report;
+  }
+  bool interpolates = true;
+  std::vector<MomentsRequest> requests;
 
-   private:
-    Scripted own_;
-  };
+ private:
+  Scripted own_;
+};
+
+// A grid stays one: what meets the tolerance is masked out of the smallest grid around what does not.
+TEST(EvaluateScene_Levels, FewEntriesOfADirectionMiss_AskedForUnderAMask) {
   MissesTwo evaluator;
-  const SceneEntries grid = SceneEntries::grid({20.0, 40.0, 60.0}, {0.1, 0.2, 0.3}, {2.0});
-  Scene own = scene();
-  own.accuracy.tolerance = kTolerance;
-  evaluate_scene(own, grid, evaluator, {});
+  const SceneEntries grid =
+      SceneEntries::grid({20.0, 40.0, 60.0}, {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0}, {2.0});
+  evaluate_scene(scene(), grid, evaluator, {});
   ASSERT_GE(evaluator.requests.size(), 2U);
-  EXPECT_EQ(evaluator.requests[0].size(), 9U);
+  EXPECT_EQ(evaluator.requests[0].size(), 30U);
   EXPECT_TRUE(evaluator.requests[0].wanted.empty());
-  const MomentsRequest& again = evaluator.requests[1];
+  EXPECT_TRUE(evaluator.requests[0].may_interpolate);
+  const MomentsRequest& again = evaluator.requests.back();
   EXPECT_EQ(again.theta_deg, (std::vector{40.0, 60.0}));
   EXPECT_EQ(again.sigma, (std::vector{0.2, 0.3}));
   EXPECT_EQ(again.wanted, (std::vector<char>{0, 1, 1, 0}));
+  EXPECT_FALSE(again.may_interpolate);
 }
 
-TEST(EvaluateScene_Attempts, WithoutDouble_TheMissStandsAndSaysSo) {
+// Interpolation spares most of a direction again, but only where it did so before.
+TEST(EvaluateScene_Levels, ManyEntriesOfAnInterpolatedDirectionMiss_AllOfItIsAskedFor) {
+  for (const bool interpolates : {true, false}) {
+    MissesTwo evaluator;
+    evaluator.interpolates = interpolates;
+    evaluate_scene(scene(), SceneEntries::grid({20.0, 40.0, 60.0}, {0.1, 0.2, 0.3}, {2.0}), evaluator, {});
+    ASSERT_GE(evaluator.requests.size(), 2U);
+    const MomentsRequest& again = evaluator.requests.back();
+    EXPECT_EQ(again.theta_deg, (std::vector{40.0, 60.0}));
+    EXPECT_EQ(again.sigma.size(), interpolates ? 3U : 2U);
+    EXPECT_EQ(again.wanted.empty(), interpolates);
+    EXPECT_EQ(again.may_interpolate, interpolates);
+  }
+}
+
+TEST(EvaluateScene_Levels, WithoutDouble_TheMissStandsAndSaysSo) {
   Scripted evaluator;
   evaluator.double_precision = false;
   const std::vector<PointResult> results = evaluate_scene(scene(), kEntries, evaluator, {});
@@ -305,37 +324,37 @@ TEST(EvaluateScene_Attempts, WithoutDouble_TheMissStandsAndSaysSo) {
   EXPECT_EQ(results[2].status & kStatusToleranceMissed, 0U);
 }
 
-TEST(EvaluateScene_Attempts, ThatAllMiss_KeepTheBest) {
+TEST(EvaluateScene_Levels, ThatAllMiss_KeepTheBest) {
   Scripted evaluator;
   evaluator.never_meets = true;
   evaluator.worsens = true;
   const std::vector<PointResult> results = evaluate_scene(scene(), kEntries, evaluator, {});
   EXPECT_GT(evaluator.requests.size(), 2U);
   EXPECT_NE(results[1].status & kStatusToleranceMissed, 0U);
-  EXPECT_NEAR(results[1].rho_q, 0.1, 1e-12);  // of the first attempt
+  EXPECT_NEAR(results[1].rho_q, 0.1, 1e-12);  // of the first level
 }
 
 // Entries that miss by more than others want a tighter rule, and are not held back by them.
-TEST(EvaluateScene_Attempts, EachRuleAndPrecision_IsAskedForOnce) {
+TEST(EvaluateScene_Levels, EachRuleAndPrecision_IsAskedForOnce) {
   Scripted evaluator;
   evaluator.never_meets = true;
   evaluate_scene(scene(), kEntries, evaluator, {});
   for (std::size_t i = 1; i < evaluator.requests.size(); ++i) {
-    const Attempt before{evaluator.requests[i - 1].precision, evaluator.requests[i - 1].tolerance};
-    const Attempt now{evaluator.requests[i].precision, evaluator.requests[i].tolerance};
+    const RefinementLevel before{evaluator.requests[i - 1].precision, evaluator.requests[i - 1].tolerance};
+    const RefinementLevel now{evaluator.requests[i].precision, evaluator.requests[i].tolerance};
     EXPECT_TRUE(before < now) << i;
   }
   EXPECT_EQ(evaluator.requests.back().precision, Precision::kDouble);
 }
 
-TEST(EvaluateScene_Attempts, Mirror_IsNeverTriedAgain) {
+TEST(EvaluateScene_Levels, Mirror_IsNeverTriedAgain) {
   Scripted evaluator;
   const std::vector<SceneEntry> mirror = {{60.0, {0.0, 2.0}, {}}};
   evaluate_scene(scene(), mirror, evaluator, {});
   for (const MomentsRequest& request : evaluator.requests) EXPECT_EQ(request.size(), 0U);
 }
 
-TEST(EvaluateScene_Attempts, TightTolerance_StartsInDouble) {
+TEST(EvaluateScene_Levels, TightTolerance_StartsInDouble) {
   Scripted evaluator;
   Scene tight = scene();
   tight.accuracy.tolerance = 1e-8;

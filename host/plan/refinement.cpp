@@ -1,4 +1,4 @@
-#include "plan/attempts.hpp"
+#include "plan/refinement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLeastDoubleTolerance = 1e-15;  // as kLeastFloatTolerance
 
-// A miss by a little asks for more than the little, or the next attempt may miss too.
+// A miss by a little asks for more than the little, or the next level may miss too.
 constexpr double kSafety = 1.5;
 constexpr double kLeastDecades = 0.5;
 constexpr double kMostDecades = 5.0;
@@ -20,34 +20,39 @@ bool may_use_double(const Accuracy& accuracy, bool has_double) {
   return has_double && accuracy.precision != Precision::kFloat;
 }
 
-// Steps of half a decade, so that many entries share an attempt.
+// Steps of half a decade, so that many entries share a level.
 double half_decades(double decades) { return 0.5 * std::ceil(2.0 * decades); }
 
-Attempt attempt_at(Precision precision, double tolerance) {
-  Attempt attempt;
-  attempt.precision = precision;
-  attempt.tolerance = tolerance;
-  return attempt;
+RefinementLevel level_at(Precision precision, double tolerance) {
+  RefinementLevel level;
+  level.precision = precision;
+  level.tolerance = tolerance;
+  return level;
 }
 
 }  // namespace
 
-Attempt first_attempt(const Accuracy& accuracy, bool has_double) {
+RefinementLevel first_level(const Accuracy& accuracy, bool has_double) {
   const bool wants_double = accuracy.precision == Precision::kDouble || accuracy.tolerance < kLeastFloatTolerance;
-  Attempt first;
+  RefinementLevel first;
   if (wants_double && may_use_double(accuracy, has_double)) first.precision = Precision::kDouble;
   first.tolerance = accuracy.tolerance;
+  first.may_interpolate = accuracy.may_interpolate;
   return first;
 }
 
-Attempt check_attempt(const Attempt& first, std::uint32_t row_width) {
+RefinementLevel check_level(const RefinementLevel& first, std::uint32_t row_width) {
   constexpr double kFinerBy = 1e-2;
   const double least = first.precision == Precision::kFloat ? kLeastFloatTolerance : kLeastDoubleTolerance;
-  return {first.precision, std::max(kFinerBy * first.tolerance, std::min(least, first.tolerance)), true, row_width};
+  RefinementLevel check =
+      level_at(first.precision, std::max(kFinerBy * first.tolerance, std::min(least, first.tolerance)));
+  check.is_check = true;
+  check.row_width = row_width;
+  return check;
 }
 
-std::optional<Attempt> next_attempt(const Attempt& last, const PointResult& result, const Accuracy& accuracy,
-                                    bool has_double) {
+std::optional<RefinementLevel> next_level(const RefinementLevel& last, const PointResult& result,
+                                          const Accuracy& accuracy, bool has_double) {
   if ((result.status & kStatusToleranceMissed) == 0) return std::nullopt;
   // Outside the domain the DOLP may still have a limit; where it has none, nothing can be done.
   const bool is_outside = (result.status & kStatusOutsideDomain) != 0;
@@ -55,20 +60,20 @@ std::optional<Attempt> next_attempt(const Attempt& last, const PointResult& resu
   const double rho_error = is_outside ? 0.0 : result.rho_error_estimate;
   const double excess =
       std::isnan(rho_error) ? rho_error : std::max(result.error_estimate, rho_error) / accuracy.tolerance;
-  // The tighter the last attempt was already, the larger the step, or an entry that never meets it takes for ever.
+  // The tighter the last level was already, the larger the step, or an entry that never meets it takes for ever.
   const double so_far = std::log10(accuracy.tolerance / last.tolerance);
   const double least = std::max(kLeastDecades, half_decades(0.5 * so_far));
   const double missed_by = std::isfinite(excess) ? half_decades(std::log10(kSafety * excess)) : kMostDecades;
   const double decades = std::min(std::max(missed_by, least), kMostDecades);
   const double wanted = last.tolerance * std::pow(10.0, -decades);
-  if (last.precision == Precision::kFloat && wanted >= kLeastFloatTolerance) return attempt_at(Precision::kFloat, wanted);
+  if (last.precision == Precision::kFloat && wanted >= kLeastFloatTolerance) return level_at(Precision::kFloat, wanted);
   if (!may_use_double(accuracy, has_double)) {
     const bool can_tighten = last.precision == Precision::kFloat && last.tolerance > kLeastFloatTolerance;
-    return can_tighten ? std::optional(attempt_at(Precision::kFloat, kLeastFloatTolerance)) : std::nullopt;
+    return can_tighten ? std::optional(level_at(Precision::kFloat, kLeastFloatTolerance)) : std::nullopt;
   }
   const double tolerance = std::max(wanted, kLeastDoubleTolerance);
   if (last.precision == Precision::kDouble && tolerance >= last.tolerance) return std::nullopt;
-  return attempt_at(Precision::kDouble, tolerance);
+  return level_at(Precision::kDouble, tolerance);
 }
 
 }  // namespace dolp

@@ -1,0 +1,40 @@
+// With which rule and precision an entry is computed, and with which again where that misses the scene's tolerance.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <tuple>
+
+#include "model/point_result.hpp"
+#include "scene/scene.hpp"
+
+namespace dolp {
+
+/// One way to compute the moments of an entry.
+struct RefinementLevel {
+  Precision precision = Precision::kFloat;  ///< kFloat or kDouble
+  double tolerance = 1e-4;                  ///< of the rule: MomentsRequest::tolerance
+  bool may_interpolate = false;             ///< between slope distributions
+  bool is_check = false;                    ///< by a rule of another kind, rows as wide as those of the first level
+  std::uint32_t row_width = 0;              ///< MomentsRequest::row_width
+  /// In the order of their cost: float before double, wide tolerances before tight ones.
+  friend bool operator<(const RefinementLevel& a, const RefinementLevel& b) {
+    return std::tuple(a.precision, -a.tolerance, a.may_interpolate) <
+           std::tuple(b.precision, -b.tolerance, b.may_interpolate);
+  }
+};
+
+/// The level at which a scene's entries are computed first: float where its rounding leaves room for the tolerance,
+/// unless the scene says otherwise.
+RefinementLevel first_level(const Accuracy& accuracy, bool has_double);
+
+/// What entries are checked with that `first` computed: a rule of another kind, for a hundredth of the tolerance.
+RefinementLevel check_level(const RefinementLevel& first, std::uint32_t row_width);
+
+/// The next level of an entry, tighter by as many half decades as the result misses the tolerance by, in double once
+/// float cannot do that; none when it meets the tolerance, or nothing better is left. Depends on nothing but its
+/// arguments.
+std::optional<RefinementLevel> next_level(const RefinementLevel& last, const PointResult& result,
+                                          const Accuracy& accuracy, bool has_double);
+
+}  // namespace dolp

@@ -19,8 +19,8 @@ namespace {
 constexpr std::array kTolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8};
 constexpr double kDoubleRoundoff = 0x1p-53;
 constexpr double kCornerShare = 0.25;
-// What is computed again by itself shares less with its neighbours: nothing in a dense table, where interpolation had
-// spared it all but a thirtieth of its work, as much as before among points.
+// Between 1, what computing a scattered point again costs, and 30, what it costs in a dense table: interpolation spares
+// all but a thirtieth of the entries, and none of those that are computed again by themselves.
 constexpr double kAgainWeight = 8.0;
 // The DOLP of what is reflected, r_q / r_i, is wrong by up to two of their relative errors.
 constexpr double kErrorsOfDolp = 2.0;

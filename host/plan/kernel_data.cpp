@@ -74,16 +74,16 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   const double critical_deg = std::acos(critical) * 180.0 / pi<double>();
   points.push_back({tan_deg(std::abs(theta_deg - critical_deg)), kRoots});
   if (theta_deg + critical_deg < 90.0) points.push_back({tan_deg(theta_deg + critical_deg), kRoots});
-  std::vector<double> facet_cosines = {a.cos / (2.0 * critical), a.cos / critical};
-  if (masking == Masking::kVCavity) {
-    for (const double facet_cos : {0.5 * critical / a.cos, critical / (std::hypot(a.cos, 2.0 * critical) - a.cos)}) {
-      if (facet_cos > std::sqrt(0.5)) facet_cosines.push_back(facet_cos);  // the lines end at slope 1
-    }
-  }
-  for (const double facet_cos : facet_cosines) {
-    if (facet_cos <= 0.0 || facet_cos >= 1.0) continue;
+  const auto add = [&](double facet_cos, double least_cos) {
+    if (facet_cos <= least_cos || facet_cos >= 1.0) return;
     points.push_back({std::sqrt((1.0 - facet_cos) * (1.0 + facet_cos)) / facet_cos, kRoots});
-  }
+  };
+  add(a.cos / (2.0 * critical), 0.0);
+  add(a.cos / critical, 0.0);
+  if (masking != Masking::kVCavity || a.cos <= 0.0) return;
+  const double at_slope_1 = std::sqrt(0.5);  // where the lines of v-cavity end
+  add(0.5 * critical / a.cos, at_slope_1);
+  add(critical / (std::hypot(a.cos, 2.0 * critical) - a.cos), at_slope_1);
 }
 
 // Slopes at which the line b = pi/2 of `integral` meets phi = 0 or pi, and theta_r = theta; or smith's cusp.

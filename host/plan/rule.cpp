@@ -11,7 +11,7 @@
 namespace dolp {
 namespace {
 
-// Made by `dolp-calibrate fit MASKING`.
+// From `dolp-calibrate fit MASKING`, which searches on from the numbers that stand here.
 constexpr std::array<RuleModel, 4> kModels = {{
     // none
     {.margin_digits = 2.6, .t_nodes = 1.5, .t_digits = 0.125, .t_fall = 0.17, .phi_nodes = 0.175, .phi_digits = 0.875},

@@ -9,7 +9,7 @@
 namespace dolp {
 namespace {
 
-constexpr double kNodeTolerance = 0.5;  // of the request's tolerance: bounds grow by the interpolant's weights
+constexpr double kNodeTolerance = 0.125;  // of the request's tolerance: bounds grow by the interpolant's weights
 constexpr double kExtraDigits = 1.0;      // of the interpolation
 constexpr std::size_t kLeastGain = 2;     // entries of a direction and index for each node
 constexpr double kTail = 3.0;         // error bound over the largest of the last coefficients, where these fall fast

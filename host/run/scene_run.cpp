@@ -20,8 +20,8 @@ namespace {
 // Bound the memory of a run. Points take more of it, because nothing is shared between them.
 constexpr std::size_t kMomentsAtOnce = 1U << 22U;
 constexpr std::size_t kPointsAtOnce = 1U << 20U;
-constexpr std::size_t kManyMisses =
-    8;  // a direction of which one in so many misses the tolerance is refined as a whole
+// A direction of which more than one entry in so many misses the tolerance is refined as a whole.
+constexpr std::size_t kManyMisses = 8;
 constexpr std::size_t kEntriesAtOnce = 4096;  // of a thread: their radiometry takes longer than to start one
 
 /// What the parts of a run share.

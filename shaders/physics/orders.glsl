@@ -120,22 +120,21 @@ real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, 
   return piece_cost(piece, choose(x < real(0.0), -bent, bent), im / (unit * max(abs(x), real(1.0))));
 }
 
-// The same from Fresnel's branch point cos(beta) = b on a line where arcs end: the horizon, cos(beta) = c sec(alpha) / 2, or
-// theta_r = theta, cos(beta) = c sec(alpha). `ratio`: sec(alpha) c / cos(beta) there. Below, total reflection has
-// breakpoints there.
+// The same from Fresnel's branch point cos(beta) = b on a line where arcs end: the horizon, sec(alpha) = 2 b / c, or
+// theta_r = theta, sec(alpha) = b / c; `ratio` is the 2 or the 1. Total reflection has breakpoints at these slopes.
 real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece piece, real ratio) {
   real stretch = ratio / max(theta.c, real(1e-12));
   real2 sec = real2(stretch * index.branch_re, stretch * index.branch_im);
   real2 t = sqrt_upper(sec.x * sec.x - sec.y * sec.y - real(1.0), real(2.0) * sec.x * sec.y);
-  // asinh(z) = -i (pi/2 - arccos(-i z)), to the sign of -i z.
+  // Re asinh(z) = Im arccos(i z), Im asinh(z) = Re arccos(i z) - pi/2, for z = (t.x + i t.y) / scale.
   Singularity x = singularity_at(-t.y / shape.scale, t.x / shape.scale);
   return piece_cost(piece, x.im, x.re - real(0.5) * kPi);
 }
 
 // Singularities of the integrand over the slopes: the cauchy's density at t = i m; the geometry at t = i; those of
-// Fresnel's coefficients; and the square roots at the breakpoints beyond the piece's ends that face it. Before a rule converges it must resolve how the density
-// falls over the piece, for which it takes nodes in proportion to the logarithm; a root and the map that takes it up make
-// the integrand a polynomial of two degrees more.
+// Fresnel's coefficients; and the square roots at the breakpoints beyond the piece's ends that face it. Before a rule
+// converges it must resolve how the density falls over the piece, for which it takes nodes in proportion to the
+// logarithm; a root and the map that takes it up make the integrand a polynomial of two degrees more.
 real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, Piece piece) {
   real cost = piece_cost(piece, real_part_of_asinh(real(1.0) / shape.scale), real(0.5) * kPi);
   if (kDistribution == DOLP_CAUCHY) {

@@ -82,15 +82,14 @@ TEST(FitRule, FewEntries_TakeNoMoreWorkAndAreTheSameAgain) {
   RuleFitOptions options;
   options.entries = 2;
   options.rounds = 1;
-  const RuleModel start = rule_model(Masking::kNone);
   std::vector<double> steps;
   const auto fit = [&] {
     steps.clear();
-    return fit_rule(Masking::kNone, start, options, [&](const RuleModel&, double work) { steps.push_back(work); });
+    return fit_rule(Masking::kNone, options, [&](const RuleModel&, double work) { steps.push_back(work); });
   };
   const RuleModel found = fit();
   ASSERT_FALSE(steps.empty());
-  EXPECT_EQ(steps.front(), mean_log_work(Masking::kNone, start, options));
+  EXPECT_EQ(steps.front(), mean_log_work(Masking::kNone, kFitStart, options));
   EXPECT_EQ(steps.back(), mean_log_work(Masking::kNone, found, options));
   EXPECT_TRUE(std::ranges::is_sorted(steps, std::ranges::greater{}));
   const std::vector<double> first = steps;

@@ -33,7 +33,7 @@ void fit(dolp::Masking masking, const dolp::RuleFitOptions& options) {
     std::fflush(stdout);
   };
   fmt::print("mean logarithm of the evaluations of an entry, numbers of plan/rule.cpp\n");
-  dolp::fit_rule(masking, dolp::rule_model(masking), options, note);
+  dolp::fit_rule(masking, options, note);
 }
 
 std::string entry_text(const dolp::CheckedEntry& checked) {

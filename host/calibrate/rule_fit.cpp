@@ -106,9 +106,9 @@ double mean_log_work(Masking masking, const RuleModel& model, const RuleFitOptio
   return sum / static_cast<double>(2 * kTolerances.size() * options.entries);
 }
 
-RuleModel fit_rule(Masking masking, const RuleModel& start, const RuleFitOptions& options,
+RuleModel fit_rule(Masking masking, const RuleFitOptions& options,
                    const std::function<void(const RuleModel&, double)>& note) {
-  RuleModel best = start;
+  RuleModel best = kFitStart;
   double least = mean_log_work(masking, best, options);
   note(best, least);
   double width = 1.0;

@@ -20,9 +20,18 @@ struct RuleFitOptions {
 /// 1e-2 to 1e-8: entries that miss their tolerance are computed again, as a run would.
 double mean_log_work(Masking masking, const RuleModel& model, const RuleFitOptions& options);
 
-/// The model with the least work near `start`, one number at a time. `note` is told of each step that gains. The same
-/// arguments give the same result on every machine.
-RuleModel fit_rule(Masking masking, const RuleModel& start, const RuleFitOptions& options,
+/// Where the search starts, for every masking.
+inline constexpr RuleModel kFitStart = {.margin_digits = 2.0,
+                                        .t_nodes = 2.0,
+                                        .t_digits = 0.0,
+                                        .t_fall = 0.15,
+                                        .phi_nodes = 0.5,
+                                        .phi_digits = 0.0,
+                                        .cluster_stretch = 5.0};
+
+/// The model with the least work, searched from kFitStart one number at a time. `note` is told of each step that gains.
+/// The same arguments give the same result on every machine.
+RuleModel fit_rule(Masking masking, const RuleFitOptions& options,
                    const std::function<void(const RuleModel&, double)>& note);
 
 /// A model as it stands in plan/rule.cpp.

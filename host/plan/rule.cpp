@@ -11,22 +11,22 @@
 namespace dolp {
 namespace {
 
-// From `dolp-calibrate fit MASKING`, which searches on from the numbers that stand here.
+// From `dolp-calibrate fit MASKING`.
 constexpr std::array<RuleModel, 4> kModels = {{
     // none
-    {.margin_digits = 2.6, .t_nodes = 1.5, .t_digits = 0.125, .t_fall = 0.17, .phi_nodes = 0.175, .phi_digits = 0.875},
+    {.margin_digits = 2.4, .t_nodes = 1.4, .t_digits = 0.5, .t_fall = 0.18, .phi_nodes = 0.362, .phi_digits = 0.25},
     // v-cavity
-    {.margin_digits = 2.3, .t_nodes = 1.45, .t_digits = -1.44, .t_fall = 0.185, .phi_nodes = 0.54, .phi_digits = 0.5},
+    {.margin_digits = 2.5, .t_nodes = 1, .t_digits = -0.812, .t_fall = 0.165, .phi_nodes = 0.562, .phi_digits = 0.188},
     // integral
-    {.margin_digits = 2.3, .t_nodes = 2.4, .t_digits = -0.25, .t_fall = 0.17, .phi_nodes = 0.835, .phi_digits = -1.19},
+    {.margin_digits = 2.4, .t_nodes = 2.15, .t_digits = -0.25, .t_fall = 0.225, .phi_nodes = 0.562, .phi_digits = -0.625},
     // smith
-    {.margin_digits = 2.4,
-     .t_nodes = 2.5,
-     .t_digits = 0.625,
-     .t_fall = 0.115,
-     .phi_nodes = 0.15,
-     .phi_digits = 0.85,
-     .cluster_stretch = 5.62},
+    {.margin_digits = 2.8,
+     .t_nodes = 2.4,
+     .t_digits = 0.25,
+     .t_fall = 0.112,
+     .phi_nodes = 0.3,
+     .phi_digits = -0.5,
+     .cluster_stretch = 5.5},
 }};
 
 // Nodes that a piece has for each digit, roughly.

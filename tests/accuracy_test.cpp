@@ -25,7 +25,7 @@ namespace {
 
 // Of the points, those that no level brings to the tolerance: next to rounding and to the most nodes at 1e-9.
 constexpr double kMissedShare = 0.01;
-constexpr double kTightMissedShare = 0.03;
+constexpr double kTightMissedShare = 0.04;
 constexpr double kTight = 1e-8;
 // The bound is a multiple of the distance from a rule of a fifth fewer digits: at six digits one and a half of them,
 // and half a digit for the multiple.

@@ -125,7 +125,7 @@ TEST(Calibrate, Fit_SaysItsStepsAndExitsWith0) {
   const Outcome outcome = calibrate({"fit", "none", "--entries", "1", "--rounds", "1"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_GE(lines_of(outcome.out), 2);
-  EXPECT_NE(outcome.out.find(rule_text(rule_model(Masking::kNone))), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find(rule_text(kFitStart)), std::string::npos) << outcome.out;
 }
 
 TEST(Calibrate, BadArguments_ExitWith2) {

@@ -343,9 +343,36 @@ TEST_F(CommandLine, Folders_MaterialByName_FoundFromAnywhere) {
   std::string scene = kScene;
   scene.replace(scene.find("n = 1.5\nk = 0.1"), 15, "material = \"iron\"");
   put("scene.toml", scene);
-  const Columns iron = eval({"--set", "spectrum.wavelength_um=10.6"});
-  // Iron is a good reflector in the long-wave infrared; no facet of it reflects less than half.
-  EXPECT_GT(iron.at("rho_i").at(0), 0.5);
+  const auto rho_of = [&](const std::string& spectrum) {
+    return eval({"--set", "spectrum." + spectrum}).at("rho_i").at(0);
+  };
+  const double at_8_um = rho_of("wavelength_um=8");
+  const double at_12_um = rho_of("wavelength_um=12");
+  const double over_the_band = rho_of("band_um=[8, 12]");
+  // Iron is a good reflector in the long-wave infrared, and the better the longer the wave.
+  EXPECT_GT(at_8_um, 0.5);
+  EXPECT_GT(over_the_band, at_8_um);
+  EXPECT_GT(at_12_um, over_the_band);
+}
+
+TEST_F(CommandLine, Materials_List_HasNameRangeAndSource) {
+  const Outcome text = dolp({"materials"});
+  const Outcome report = dolp({"materials", "--json"});
+  ASSERT_EQ(report.status, 0) << report.err;
+  EXPECT_EQ(text.status, 0) << text.err;
+  const json materials = json::parse(report.out)["materials"];
+  EXPECT_EQ(materials.size(), 34U);
+  EXPECT_EQ(std::ranges::count(text.out, '\n'), 34);
+  EXPECT_EQ(materials.at(0), json({{"name", "iron"},
+                                   {"from_um", 2.0},
+                                   {"to_um", 20.0},
+                                   {"source", "Ordal et al. 1988, Appl. Opt. 27, 1203 (Al,Fe,Ti,Ta,W,Mo)"}}));
+  const auto mirror = std::ranges::find(materials, "oxidised Al mirror", [](const json& m) { return m["name"]; });
+  ASSERT_NE(mirror, materials.end());
+  EXPECT_EQ((*mirror)["to_um"], 12.5);
+  const std::size_t line = text.out.find("oxidised Al mirror ");
+  ASSERT_NE(line, std::string::npos);
+  EXPECT_LT(text.out.find("2 to 12.5 ", line), text.out.find("Querry 1985\n", line)) << text.out;
 }
 
 TEST_F(CommandLine, Devices_List_NamesAUsableDevice) {
@@ -373,8 +400,11 @@ TEST_F(CommandLine, Device_ByPositionAndName_ReportedAsTheDevice) {
 }
 
 TEST_F(CommandLine, HelpAndVersion_OnStdout_Exit0) {
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"--help"}, {"table", "--help"}, {"eval", "--help"}, {"devices", "--help"}}) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
+                                                    {"table", "--help"},
+                                                    {"eval", "--help"},
+                                                    {"materials", "--help"},
+                                                    {"devices", "--help"}}) {
     const Outcome outcome = dolp(arguments);
     EXPECT_EQ(outcome.status, 0);
     EXPECT_NE(outcome.out.find("Usage: dolp"), std::string::npos) << outcome.out;

@@ -29,6 +29,15 @@ TEST(ExploreSession, RefusedValue_IsAMessageAndNoChange) {
   EXPECT_TRUE(driver.session.curve().is_finished());
 }
 
+TEST(ExploreSession, MaterialUnknownOverTheBand_IsAMessageWithItsRange) {
+  Driver driver(paint({"spectrum.band_um=[8, 14]"}));
+  driver.session.set({{"surface.material", "oxidised Al mirror"}});
+  EXPECT_TRUE(driver.session.message().is_error);
+  EXPECT_NE(driver.session.message().text.find("known at 2 to 12.5 um"), std::string::npos)
+      << driver.session.message().text;
+  EXPECT_EQ(driver.session.scene().surface.material.constant, (OpticalConstants{1.5, 0.1}));
+}
+
 TEST(ExploreSession, Overlay_IsTheOtherDistributionOfTheSameD0) {
   Driver driver(paint());
   ASSERT_TRUE(driver.session.overlay());

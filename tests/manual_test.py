@@ -31,7 +31,7 @@ NOT_RUN = {
 
 SHELL_BLOCK = re.compile(r"^```sh\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 ANY_BLOCK = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
-COMMAND = re.compile(r"^ *(build/release/)?dolp (table|eval|mueller|plan|verify|lookup|devices|explore)\b", re.MULTILINE)
+COMMAND = re.compile(r"^ *(build/release/)?dolp (table|eval|mueller|plan|verify|lookup|materials|devices|explore)\b", re.MULTILINE)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#+ +(.*)$", re.MULTILINE)
 

@@ -120,10 +120,9 @@ TEST(SceneExact_SmithAlbedoAtTheNormal, IsOneMinusLogTwo) {
 }
 
 TEST(SceneExact_SmoothSurface, HasFresnelReflectanceForEveryMaterial) {
-  const std::vector<std::string> names = material_names();
-  ASSERT_GE(names.size(), 20U);
-  for (const std::string& name : names) {
-    const Material material = find_material(name, {10.6, 10.6}, "");
+  ASSERT_GE(built_in_materials().size(), 20U);
+  for (const Material& material : built_in_materials()) {
+    const std::string& name = material.name;
     const OpticalConstants index = material.at(10.6);
     const Scene scene = make_scene(Distribution::kCauchy, Masking::kIntegral, index);
     for (const double theta_deg : {0.0, 30.0, 60.0, 85.0, 89.9}) {
@@ -143,8 +142,9 @@ TEST(SceneExact_SmallSlopes, TendToFresnelForEveryMaterial) {
   // pseudo-Brewster structure at 60 degrees, which 1000 covers; the tail of q = 3 adds less.
   constexpr double kSigma = 1e-4;
   constexpr double kSecondOrder = 1000.0 * kSigma * kSigma;
-  for (const std::string& name : material_names()) {
-    const OpticalConstants index = find_material(name, {10.6, 10.6}, "").at(10.6);
+  for (const Material& material : built_in_materials()) {
+    const std::string& name = material.name;
+    const OpticalConstants index = material.at(10.6);
     const SmoothReflectance smooth = smooth_reflectance(index, 0.5L);
     for_each_model([&](Distribution distribution, Masking masking) {
       const Scene scene = make_scene(distribution, masking, index);

@@ -28,6 +28,9 @@ int run_lookup(const Options& options);
 /// `dolp explore [SCENE]`: the window.
 int run_explore(const Options& options);
 
+/// `dolp materials`: the built-in materials, their ranges of wavelength and their sources.
+int run_materials(const Options& options);
+
 /// `dolp devices`: the Vulkan devices, and why each one is or is not usable.
 int run_devices(const Options& options);
 

@@ -110,6 +110,7 @@ int run(CLI::App& app, Options& options) {
   if (given("explore")) return run_explore(options);
   if (given("verify")) return run_verify(options);
   if (given("lookup")) return run_lookup(options);
+  if (given("materials")) return run_materials(options);
   return run_devices(options);
 }
 
@@ -150,6 +151,8 @@ int parse_and_run(int argc, char** argv) {
              options);
   add_explore(*app.add_subcommand("explore", "the window: parameters, curves, map, effects and their price, live"),
               options);
+  app.add_subcommand("materials", "built-in materials, their ranges of wavelength and their sources")
+      ->add_flag("--json", options.json, "machine-readable list");
   CLI::App* devices = app.add_subcommand("devices", "Vulkan devices, and why each one is or is not usable");
   devices->add_flag("--json", options.json, "machine-readable list");
   devices->add_option("--device", options.device, "check this one: its position or a part of its name");

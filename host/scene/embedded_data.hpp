@@ -8,6 +8,9 @@ namespace dolp {
 /// host/materials.csv.
 std::string_view embedded_materials_csv();
 
+/// host/materials_sources.csv.
+std::string_view embedded_materials_sources_csv();
+
 /// host/scenes/stainless_steel.toml.
 std::string_view embedded_stainless_steel_toml();
 

@@ -10,18 +10,14 @@
 
 namespace dolp {
 
-/// A material that is tabulated at a single wavelength may be used this far from it. Units: um.
-/// 0.1% of 10.6 um: the CO2 laser line and its rounding, not a claim that n and k are flat.
-inline constexpr double kSingleWavelengthReachUm = 0.01;
-
-/// The names in host/materials.csv, in the file's order.
-std::vector<std::string> material_names();
+/// The materials of host/materials.csv, with their sources, in the order of host/materials_sources.csv.
+const std::vector<Material>& built_in_materials();
 
 /// The built-in material called `name`, for use over `spectrum`.
 ///
 /// Case does not matter, and a name may be cut at a blank where that leaves one material ("water" for "water 25C").
-/// Errors: InputError that begins with `prefix`: unknown name (with the nearest), or tabulated elsewhere: a table must
-/// cover the spectrum, a single wavelength must be within kSingleWavelengthReachUm of it.
+/// Errors: InputError that begins with `prefix`: unknown name (with the nearest), or a spectrum that its table does not
+/// cover (with the range of the table).
 Material find_material(std::string_view name, const Spectrum& spectrum, const std::string& prefix);
 
 /// A user's file of n and k over wavelength [um], linear in between, for use over `spectrum`.
@@ -39,8 +35,14 @@ Material read_material_file(const std::string& path, const Spectrum& spectrum, c
 void append_index(Material& material, double wavelength_um, std::optional<double> n, std::optional<double> k,
                   const std::string& where);
 
-/// The material as a scene uses it: constant where a single wavelength is all there is, and covering the spectrum.
-/// Errors: InputError that begins with `prefix`.
-Material fit_to_spectrum(Material material, const Spectrum& spectrum, const std::string& prefix);
+/// The wavelengths at which a tabulated material has both n and k.
+Spectrum known_range(const Material& material);
+
+/// Whether a tabulated material has n and k over the whole spectrum.
+bool covers(const Material& material, const Spectrum& spectrum);
+
+/// A tabulated material as a scene uses it: over a band its tables, at a single wavelength the constant index there.
+/// Errors: InputError that begins with `prefix` where the tables do not cover the spectrum.
+Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
 }  // namespace dolp

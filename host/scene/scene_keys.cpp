@@ -52,7 +52,7 @@ std::vector<SceneKey> surface_keys() {
              [](Draft& d, const Value& v) { d.scene.surface.material.constant.n = v.number; }),
       number("surface.k", "1", kKRange, "0", "imaginary part k of the refractive index n + ik, with surface.n",
              [](Draft& d, const Value& v) { d.scene.surface.material.constant.k = v.number; }),
-      text("surface.material", "a built-in material by name, instead of n and k",
+      text("surface.material", "a built-in material by name (dolp materials lists them), instead of n and k",
            [](Draft& d, const Value& v) { d.material = v.text; }),
       text("surface.material_file", "your own n and k: refractiveindex.info YAML or CSV, instead of n and k",
            [](Draft& d, const Value& v) { d.material_file = v.text; }),

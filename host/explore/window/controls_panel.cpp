@@ -34,7 +34,7 @@ void row_label(const std::string& text) {
 }
 
 void tooltip(const std::string& text) {
-  if (!ImGui::IsItemHovered()) return;
+  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(28.0F * ImGui::GetFontSize());
   ImGui::TextUnformatted(shown(text).c_str());
@@ -75,6 +75,20 @@ void draw_choices(Session& session, const std::string& table) {
   }
 }
 
+/// A line for each built-in material; those without n and k over the spectrum are grey.
+void draw_built_in_materials(Session& session, const std::string& current) {
+  for (const Material& known : built_in_materials()) {
+    const Spectrum range = known_range(known);
+    const bool is_known = covers(known, session.scene().spectrum);
+    const std::string text = fmt::format("{}, {:g} to {:g} µm", known.name, range.min_um, range.max_um);
+    const auto flags = is_known ? ImGuiSelectableFlags_None : ImGuiSelectableFlags_Disabled;
+    if (ImGui::Selectable(shown(text).c_str(), known.name == current, flags)) {
+      session.set({{"surface.material", known.name}});
+    }
+    tooltip(known.source + (is_known ? "" : "\nnot known over the spectrum of this scene"));
+  }
+}
+
 void draw_material(Session& session) {
   const Material& material = session.scene().surface.material;
   const bool is_own = material.name.empty() && material.is_constant();
@@ -90,9 +104,7 @@ void draw_material(Session& session) {
   if (ImGui::Selectable(kOwn, is_own) && !is_own) {
     session.set({{"surface.n", format_number(now.n)}, {"surface.k", format_number(now.k)}});
   }
-  for (const std::string& name : material_names()) {
-    if (ImGui::Selectable(name.c_str(), name == material.name)) session.set({{"surface.material", name}});
-  }
+  draw_built_in_materials(session, current);
   ImGui::EndCombo();
 }
 

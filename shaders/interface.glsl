@@ -20,6 +20,8 @@
 #define DOLP_SPEC_DISTRIBUTION 1  // DOLP_CAUCHY | DOLP_GAUSSIAN
 #define DOLP_SPEC_MASKING 2       // DOLP_MASKING_*
 #define DOLP_SPEC_TOTAL_REFLECTION 3  // whether any index of the request has a critical_cos
+#define DOLP_SPEC_MULTIPLE 4          // whether rays are followed through all their bounces
+#define DOLP_SPEC_DIRECT 5            // whether the direct emission is wanted too
 
 #define DOLP_CAUCHY 0u
 #define DOLP_GAUSSIAN 1u
@@ -37,19 +39,25 @@
 // ---- Task word: what an invocation of moments.comp computes, as bits -------------------------------------------------
 #define DOLP_TASK_MEMBERS_BITS 5u    // from bit 0: members of the row
 #define DOLP_TASK_PIECE_SHIFT 5u     // number of the piece of the slope axis
-#define DOLP_TASK_PIECE_BITS 4u
-#define DOLP_TASK_ROOT_AT_START 9u   // bit: square root of the slope at the start of the piece
-#define DOLP_TASK_ROOT_AT_END 10u    // bit: the same at its end
-#define DOLP_TASK_ROOT_BEFORE_START 11u // bit: a square root at the breakpoint before the piece, facing it
-#define DOLP_TASK_ROOT_AFTER_END 12u // bit: the same beyond its end
-#define DOLP_TASK_SPLIT_LINE 13u     // bit: the direction is split at the line b = pi/2 of `integral` or smith's cusp
-#define DOLP_TASK_AZIMUTHS_SHIFT 14u // most azimuths of an arc, which bounds the loop iterations
+#define DOLP_TASK_PIECE_BITS 5u
+#define DOLP_TASK_ROOT_AT_START 10u   // bit: square root of the slope at the start of the piece
+#define DOLP_TASK_ROOT_AT_END 11u    // bit: the same at its end
+#define DOLP_TASK_ROOT_BEFORE_START 12u // bit: a square root at the breakpoint before the piece, facing it
+#define DOLP_TASK_ROOT_AFTER_END 13u // bit: the same beyond its end
+#define DOLP_TASK_SPLIT_LINE 14u     // bit: the direction is split at the line b = pi/2 of `integral` or smith's cusp
+#define DOLP_TASK_AZIMUTHS_SHIFT 15u // most azimuths of an arc, with all bounces of slopes too: bounds the iterations
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
 #ifndef DOLP_WIDTH
 #define DOLP_WIDTH 1             // entries of one invocation, see Row of physics/row.glsl
 #endif
-#define DOLP_MAX_PIECES 15       // pieces of the slope axis for one direction
+#define DOLP_MAX_PIECES 31       // pieces of the slope axis for one direction
+#define DOLP_MAX_ARCS 8         // arcs of the azimuth for one slope, but for those of total reflection
+// Of V-grooves, see physics/groove.glsl
+#define DOLP_SPLIT_BOUNCES 3      // bounces at which a beam that ends splits the azimuths
+#define DOLP_MOST_BOUNCES 32      // each on its own; of more, 2, 4, 8 ... are taken as one
+#define DOLP_MOST_DOUBLINGS 12
+#define DOLP_DOUBLINGS_AT_ONCE 4  // in one turn of a loop
 #define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes
 #define DOLP_MASKING_OCTAVES 29  // of v = 1 + tau/scale
 #define DOLP_MASKING_CELL_BITS_FLOAT 3   // 2^bits cells per octave
@@ -141,8 +149,11 @@ struct MomentsNode {
   real albedo;
   real deficit;
   real behind;               // facets that face away from theta, which the deficit counts twice: once each way
+  real direct_i;             // direct emission
+  real direct_q;
   real reflected_difference; // of r_i or r_q, whichever is larger
   real albedo_difference;
   real deficit_difference;
+  real direct_difference;    // of direct_i or direct_q, whichever is larger
   real evaluations;
 };

@@ -16,7 +16,13 @@ namespace {
 
 constexpr std::uint64_t kSeed = 3;
 
-HoldOut held_out(const HoldOutOptions& options) { return hold_out(Distribution::kCauchy, Masking::kNone, options); }
+MomentsRequest unmasked() {
+  MomentsRequest request;
+  request.masking = Masking::kNone;
+  return request;
+}
+
+HoldOut held_out(const HoldOutOptions& options) { return hold_out(unmasked(), options); }
 
 HoldOutOptions few_entries() {
   std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
@@ -85,12 +91,12 @@ TEST(FitRule, FewEntries_TakeNoMoreWorkAndAreTheSameAgain) {
   std::vector<double> steps;
   const auto fit = [&] {
     steps.clear();
-    return fit_rule(Masking::kNone, options, [&](const RuleModel&, double work) { steps.push_back(work); });
+    return fit_rule(unmasked(), options, [&](const RuleModel&, double work) { steps.push_back(work); });
   };
   const RuleModel found = fit();
   ASSERT_FALSE(steps.empty());
-  EXPECT_EQ(steps.front(), mean_log_work(Masking::kNone, kFitStart, options));
-  EXPECT_EQ(steps.back(), mean_log_work(Masking::kNone, found, options));
+  EXPECT_EQ(steps.front(), mean_log_work(unmasked(), kFitStart, options));
+  EXPECT_EQ(steps.back(), mean_log_work(unmasked(), found, options));
   EXPECT_TRUE(std::ranges::is_sorted(steps, std::ranges::greater{}));
   const std::vector<double> first = steps;
   EXPECT_EQ(rule_text(fit()), rule_text(found));

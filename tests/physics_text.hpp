@@ -81,6 +81,8 @@ Text text_for(const KernelData& data) {
   text.kDistribution = static_cast<glm::uint>(data.distribution);
   text.kMasking = static_cast<glm::uint>(data.masking);
   text.kTotalReflection = data.has_total_reflection;
+  text.kIsMultiple = data.scattering == Scattering::kMultiple;
+  text.kHasDirect = data.has_direct;
   text.order_of_nodes = data.rule_order;
   using Vector = typename decltype(text.rule_nodes)::value_type;
   for (const auto& node : data.rule_nodes) {

@@ -22,6 +22,8 @@ struct Text {
 
   static constexpr uint kDistribution = DOLP_CAUCHY;
   static constexpr bool kTotalReflection = false;
+  static constexpr bool kIsMultiple = false;
+  static constexpr bool kHasDirect = false;
   int order_of_nodes = 1;
   std::vector<real2> rule_nodes;
   std::vector<real4> masking_table;

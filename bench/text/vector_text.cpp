@@ -30,6 +30,8 @@ struct Text {
 
   static constexpr uint kDistribution = DOLP_CAUCHY;
   static constexpr bool kTotalReflection = false;
+  static constexpr bool kIsMultiple = false;
+  static constexpr bool kHasDirect = false;
   int order_of_nodes = 1;
   std::vector<Vec2<float>> rule_nodes;
 

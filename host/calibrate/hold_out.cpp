@@ -22,13 +22,19 @@ struct Answers {
   std::vector<Moments> exact;
 };
 
+/// Moments and the bounds of their errors.
+using Pair = std::pair<double Moments::*, double Moments::*>;
+constexpr std::array kMoments = {Pair{&Moments::r_i, &Moments::r_i_error},
+                                 Pair{&Moments::r_q, &Moments::r_q_error},
+                                 Pair{&Moments::albedo, &Moments::albedo_error},
+                                 Pair{&Moments::deficit, &Moments::deficit_error},
+                                 Pair{&Moments::direct_i, &Moments::direct_i_error},
+                                 Pair{&Moments::direct_q, &Moments::direct_q_error}};
+
 class Check {
  public:
-  Check(Distribution distribution, Masking masking, const HoldOutOptions& options)
-      : distribution_(distribution),
-        masking_(masking),
-        tolerance_(options.tolerance),
-        bound_share_(options.bound_share) {}
+  Check(const MomentsRequest& model, const HoldOutOptions& options)
+      : model_(model), tolerance_(options.tolerance), bound_share_(options.bound_share) {}
 
   Answers operator()(const std::vector<MomentsPoint>& entries) const {
     const Precision precision = tolerance_ < kLeastFloatTolerance ? Precision::kDouble : Precision::kFloat;
@@ -46,9 +52,7 @@ class Check {
  private:
   void append_all(std::vector<Moments>& moments, const std::vector<MomentsPoint>& entries, double tolerance,
                   Precision precision) const {
-    MomentsRequest request;
-    request.distribution = distribution_;
-    request.masking = masking_;
+    MomentsRequest request = model_;
     request.tolerance = tolerance;
     request.precision = precision;
     request.may_interpolate = false;
@@ -58,24 +62,18 @@ class Check {
   }
 
   void lower_bounds(Moments& moments) const {
-    for (double* bound : {&moments.r_i_error, &moments.r_q_error, &moments.albedo_error, &moments.deficit_error}) {
-      *bound *= bound_share_;
-    }
+    for (const auto& [value, error] : kMoments) moments.*error *= bound_share_;
   }
 
-  Distribution distribution_;
-  Masking masking_;
+  MomentsRequest model_;
   double tolerance_;
   double bound_share_;
 };
 
-/// The largest error of the four moments over what is stated of it, by both rules.
+/// The largest error of the moments over what is stated of it, by both rules.
 double error_over_bound(const Moments& stated, const Moments& exact) {
-  using Pair = std::pair<double Moments::*, double Moments::*>;
   double worst = 0.0;
-  for (const auto& [value, error] : {Pair{&Moments::r_i, &Moments::r_i_error}, Pair{&Moments::r_q, &Moments::r_q_error},
-                                     Pair{&Moments::albedo, &Moments::albedo_error},
-                                     Pair{&Moments::deficit, &Moments::deficit_error}}) {
+  for (const auto& [value, error] : kMoments) {
     const double difference = std::abs(stated.*value - exact.*value);
     if (difference > 0.0) worst = std::max(worst, difference / (stated.*error + exact.*error));
   }
@@ -125,17 +123,16 @@ CheckedEntry climbed(const Check& check, Draw& draw, CheckedEntry best, Domain d
 
 }  // namespace
 
-HoldOut hold_out(Distribution distribution, Masking masking, const HoldOutOptions& options) {
+HoldOut hold_out(const MomentsRequest& model, const HoldOutOptions& options) {
+  const auto [distribution, masking] = std::pair(model.distribution, model.masking);
   Draw draw(options.seed * 8 + 2 * static_cast<std::uint64_t>(masking) + static_cast<std::uint64_t>(distribution));
-  const Check check(distribution, masking, options);
+  const Check check(model, options);
   std::vector<MomentsPoint> entries;
   for (std::size_t i = 0; i < options.entries; ++i) {
     entries.push_back(random_entry(draw, options.domain, distribution, masking));
   }
   const Answers answers = check(entries);
   HoldOut result;
-  result.distribution = distribution;
-  result.masking = masking;
   result.entries = entries.size();
   std::vector<CheckedEntry> checked;
   std::size_t flagged = 0;

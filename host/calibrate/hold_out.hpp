@@ -25,12 +25,10 @@ struct CheckedEntry {
   double ratio = 0.0;
 };
 
-/// What hold-outs of one distribution and masking show.
+/// What hold-outs of one model show.
 struct HoldOut {
-  Distribution distribution = Distribution::kCauchy;
-  Masking masking = Masking::kNone;
   std::size_t entries = 0;
-  std::size_t understated = 0;  ///< of any of the four moments
+  std::size_t understated = 0;  ///< of any of the moments
   double flagged_share = 0.0;   ///< entries whose bound of rho misses the tolerance at the first level
   double mean_evaluations = 0.0;
   CheckedEntry worst;    ///< drawn
@@ -38,6 +36,7 @@ struct HoldOut {
 };
 
 /// Evaluates the shaders' text on the CPU, in float where the tolerance allows it.
-HoldOut hold_out(Distribution distribution, Masking masking, const HoldOutOptions& options);
+/// `model` is a request without entries.
+HoldOut hold_out(const MomentsRequest& model, const HoldOutOptions& options);
 
 }  // namespace dolp

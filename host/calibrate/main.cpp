@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <map>
@@ -10,30 +11,45 @@
 
 #include "calibrate/hold_out.hpp"
 #include "calibrate/rule_fit.hpp"
+#include "model/direction.hpp"
 
 namespace {
 
 enum ExitStatus { kDone = 0, kUnderstated = 1, kUsage = 2, kInternal = 5 };
 
-const std::map<std::string, dolp::Masking> kMaskings = {{"none", dolp::Masking::kNone},
-                                                        {"v-cavity", dolp::Masking::kVCavity},
-                                                        {"integral", dolp::Masking::kIntegral},
-                                                        {"smith", dolp::Masking::kSmith}};
+dolp::MomentsRequest integrand(dolp::Masking masking, dolp::Scattering scattering = dolp::Scattering::kSingle) {
+  dolp::MomentsRequest request;
+  request.masking = masking;
+  request.scattering = scattering;
+  request.wants_direct = scattering == dolp::Scattering::kSingle && dolp::has_direct_emission(masking);
+  return request;
+}
+
+/// What rules are made for: a masking, or all bounces in its grooves.
+const std::map<std::string, dolp::MomentsRequest> kIntegrands = {
+    {"none", integrand(dolp::Masking::kNone)},
+    {"v-cavity", integrand(dolp::Masking::kVCavity)},
+    {"integral", integrand(dolp::Masking::kIntegral)},
+    {"smith", integrand(dolp::Masking::kSmith)},
+    {"multiple", integrand(dolp::Masking::kVCavity, dolp::Scattering::kMultiple)}};
 const std::map<std::string, dolp::Domain> kDomains = {{"ordinary", dolp::Domain::kOrdinary},
                                                       {"corners", dolp::Domain::kCorners}};
 
 struct CheckArguments {
+  std::vector<std::string> integrands;  // empty: all
   std::vector<double> tolerances{1e-2, 1e-3, 1e-4, 1e-6};
   dolp::HoldOutOptions options;
 };
 
-void fit(dolp::Masking masking, const dolp::RuleFitOptions& options) {
+void fit(const std::string& name, const dolp::RuleFitOptions& options) {
   const auto note = [](const dolp::RuleModel& model, double work) {
     fmt::print("{:.4f}  {}\n", work, dolp::rule_text(model));
     std::fflush(stdout);
   };
   fmt::print("mean logarithm of the evaluations of an entry, numbers of plan/rule.cpp\n");
-  dolp::fit_rule(masking, options, note);
+  dolp::MomentsRequest request = kIntegrands.at(name);
+  request.wants_direct = false;
+  dolp::fit_rule(request, options, note);
 }
 
 std::string entry_text(const dolp::CheckedEntry& checked) {
@@ -46,11 +62,15 @@ std::string entry_text(const dolp::CheckedEntry& checked) {
 bool check(const CheckArguments& arguments) {
   std::size_t understated = 0;
   for (const double tolerance : arguments.tolerances) {
-    for (const auto& [name, masking] : kMaskings) {
+    for (const auto& [name, of_masking] : kIntegrands) {
+      const std::vector<std::string>& chosen = arguments.integrands;
+      if (!chosen.empty() && std::ranges::find(chosen, name) == chosen.end()) continue;
       for (const auto distribution : {dolp::Distribution::kCauchy, dolp::Distribution::kGaussian}) {
+        dolp::MomentsRequest model = of_masking;
+        model.distribution = distribution;
         dolp::HoldOutOptions options = arguments.options;
         options.tolerance = tolerance;
-        const dolp::HoldOut found = dolp::hold_out(distribution, masking, options);
+        const dolp::HoldOut found = dolp::hold_out(model, options);
         understated += found.understated + (found.climbed.ratio > 1.0 ? 1 : 0);
         fmt::print(
             "{:.0e} {:<8} {:<8} understated {} of {}, {:.1f} % miss at the first level, evaluations {:.0f}, worst {}\n",
@@ -69,10 +89,12 @@ bool check(const CheckArguments& arguments) {
 int main(int argc, char** argv) {
   CLI::App app("Makes the numbers of the quadrature rules again, and checks that error bounds hold.");
   app.require_subcommand(1);
-  dolp::Masking masking = dolp::Masking::kNone;
+  std::string name;
   dolp::RuleFitOptions fit_options;
   CLI::App* fit_command = app.add_subcommand("fit", "the numbers of plan/rule.cpp that take the least work");
-  fit_command->add_option("MASKING", masking)->required()->transform(CLI::CheckedTransformer(kMaskings));
+  fit_command->add_option("INTEGRAND", name, "a masking, or multiple: all bounces in grooves")
+      ->required()
+      ->check(CLI::IsMember(kIntegrands));
   fit_command->add_option("--entries", fit_options.entries, "random entries of each distribution and tolerance")
       ->capture_default_str();
   fit_command->add_option("--rounds", fit_options.rounds, "of the search, each of half the step")
@@ -81,17 +103,18 @@ int main(int argc, char** argv) {
   CheckArguments arguments;
   CLI::App* check_command =
       app.add_subcommand("check", "errors over bounds at random entries; exit 1 if one exceeds its bound");
+  check_command->add_option("INTEGRAND", arguments.integrands, "all by default")->check(CLI::IsMember(kIntegrands));
   check_command->add_option("--domain", arguments.options.domain)
       ->transform(CLI::CheckedTransformer(kDomains))
       ->default_str("ordinary");
   check_command->add_option("--tolerance", arguments.tolerances, "repeatable")->capture_default_str();
-  check_command->add_option("--entries", arguments.options.entries, "of each masking and distribution")
+  check_command->add_option("--entries", arguments.options.entries, "of each integrand and distribution")
       ->capture_default_str();
   check_command->add_option("--climbs", arguments.options.climbs, "worst entries to climb from")->capture_default_str();
   check_command->add_option("--seed", arguments.options.seed)->capture_default_str();
   try {
     app.parse(argc, argv);
-    if (*fit_command) fit(masking, fit_options);
+    if (*fit_command) fit(name, fit_options);
     if (*check_command && !check(arguments)) return kUnderstated;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kUsage;

@@ -27,14 +27,11 @@ constexpr double kErrorsOfDolp = 2.0;
 constexpr int kMostLevels = 8;
 constexpr double kLeastTolerance = 1e-13;
 
-MomentsRequest random_request(Distribution distribution, Masking masking, const RuleFitOptions& options) {
+MomentsRequest random_request(MomentsRequest request, const RuleFitOptions& options) {
   Draw draw(options.seed);
-  MomentsRequest request;
-  request.distribution = distribution;
-  request.masking = masking;
   for (std::size_t i = 0; i < options.entries; ++i) {
     const Domain domain = draw.chance(kCornerShare) ? Domain::kCorners : Domain::kOrdinary;
-    request.append(random_entry(draw, domain, distribution, masking));
+    request.append(random_entry(draw, domain, request.distribution, request.masking));
   }
   return request;
 }
@@ -97,29 +94,31 @@ std::vector<Parameter> parameters(Masking masking) {
 
 }  // namespace
 
-double mean_log_work(Masking masking, const RuleModel& model, const RuleFitOptions& options) {
+double mean_log_work(const MomentsRequest& integrand, const RuleModel& model, const RuleFitOptions& options) {
   double sum = 0.0;
   for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
-    const MomentsRequest request = random_request(distribution, masking, options);
+    MomentsRequest request = integrand;
+    request.distribution = distribution;
+    request = random_request(request, options);
     for (const double tolerance : kTolerances) sum += log_work(request, tolerance, model);
   }
   return sum / static_cast<double>(2 * kTolerances.size() * options.entries);
 }
 
-RuleModel fit_rule(Masking masking, const RuleFitOptions& options,
+RuleModel fit_rule(const MomentsRequest& integrand, const RuleFitOptions& options,
                    const std::function<void(const RuleModel&, double)>& note) {
   RuleModel best = kFitStart;
-  double least = mean_log_work(masking, best, options);
+  double least = mean_log_work(integrand, best, options);
   note(best, least);
   double width = 1.0;
   for (int round = 0; round < options.rounds; ++round, width *= 0.5) {
-    for (const Parameter& parameter : parameters(masking)) {
+    for (const Parameter& parameter : parameters(integrand.masking)) {
       for (const double direction : {1.0, -1.0}) {
         const double before = least;
         for (bool gains = true; gains;) {
           RuleModel candidate = best;
           candidate.*parameter.value += direction * width * parameter.step;
-          const double work = mean_log_work(masking, candidate, options);
+          const double work = mean_log_work(integrand, candidate, options);
           gains = work < least;
           if (!gains) break;
           best = candidate;

@@ -18,9 +18,10 @@ struct RuleFitOptions {
 
 /// Mean of the logarithm of the integrand evaluations that an entry takes, over both distributions and tolerances from
 /// 1e-2 to 1e-8: entries that miss their tolerance are computed again, as a run would.
-double mean_log_work(Masking masking, const RuleModel& model, const RuleFitOptions& options);
+/// `integrand` is a request without entries.
+double mean_log_work(const MomentsRequest& integrand, const RuleModel& model, const RuleFitOptions& options);
 
-/// Where the search starts, for every masking.
+/// Where every search starts.
 inline constexpr RuleModel kFitStart = {.margin_digits = 2.0,
                                         .t_nodes = 2.0,
                                         .t_digits = 0.0,
@@ -31,7 +32,7 @@ inline constexpr RuleModel kFitStart = {.margin_digits = 2.0,
 
 /// The model with the least work, searched from kFitStart one number at a time. `note` is told of each step that gains.
 /// The same arguments give the same result on every machine.
-RuleModel fit_rule(Masking masking, const RuleFitOptions& options,
+RuleModel fit_rule(const MomentsRequest& integrand, const RuleFitOptions& options,
                    const std::function<void(const RuleModel&, double)>& note);
 
 /// A model as it stands in plan/rule.cpp.

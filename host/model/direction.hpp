@@ -27,6 +27,9 @@ Direction direction_of(Distribution distribution, Masking masking, double theta_
 
 bool is_mirror(const SlopeShape& shape);
 
+/// Whether a masking lets each direction see facets of its own projected area in all: direct emission needs it.
+inline bool has_direct_emission(Masking masking) { return masking == Masking::kVCavity || masking == Masking::kSmith; }
+
 /// Whether rho and f of the specular part have a limit at 90 degrees.
 inline bool has_grazing_limit(Masking masking) { return masking == Masking::kVCavity || masking == Masking::kSmith; }
 

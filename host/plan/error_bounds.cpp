@@ -65,14 +65,21 @@ double masking_bound(Distribution distribution, Masking masking, const kernel::T
   return std::min(1.0, 2.0 * theta.c / (theta.c + theta.s * mean_slope(distribution, shape)));
 }
 
+double steeper_share(Distribution distribution, const kernel::ShapeNode& shape, double slope) {
+  const double u = slope / shape.m;
+  return std::exp(distribution == Distribution::kGaussian ? -u * u : -shape.q_minus_1 * std::log1p(u * u));
+}
+
 // Upper bound of the albedo integral (times cos theta) over the slopes T beyond the cut, which the kernel leaves out:
 // e <= c + s t, so that without masking it is at most c * tail(T) + 2 s * integral of P t^2 over t > T.
 double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape) {
-  if (shape.cut >= theta.end[DOLP_MAX_PIECES]) return 0.0;
+  const double reached = std::min(shape.cut, theta.end[DOLP_MAX_PIECES]);
+  const double tail = steeper_share(data.distribution, shape, reached);
+  if (data.scattering == Scattering::kMultiple) return theta.c * tail;
+  if (reached < shape.cut) return 0.0;
   const double u = shape.cut / shape.m;
   const bool gaussian = data.distribution == Distribution::kGaussian;
   const double log_square = std::log1p(u * u);
-  const double tail = std::exp(gaussian ? -u * u : -shape.q_minus_1 * log_square);
   if (data.masking == Masking::kVCavity) return 2.0 * theta.c * tail;
   if (!gaussian && shape.q_minus_1 <= 0.5) return std::numeric_limits<double>::infinity();
   const double slopes = gaussian ? shape.m / pi<double>() * (u + 0.5 / u) * tail
@@ -92,14 +99,19 @@ double masking_error(const KernelData& data, const MomentsEntry& entry, double u
   return table * (may_diverge ? 1.0 + kDivergingSlope / shape.two_q_minus_3 : 1.0);
 }
 
+// R_s, which falls with cos(beta) and bounds M00.
+double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
+  const std::complex<double> w =
+      std::sqrt(std::complex<double>(index.n2m1_re + cos_beta * cos_beta, std::max(index.n2m1_im, 0.0)));
+  return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
+}
+
 // Upper bound of M00 on the facets beyond the cut whose ray leaves: cos(theta_r) > 0 there means cos(beta) > c sqrt(1 +
 // t^2) / 2, and R_s, which falls with cos(beta), is no less than M00.
 double steep_reflectance(const kernel::IndexNode& index, const kernel::ThetaNode& theta,
                          const kernel::ShapeNode& shape) {
   const double cos_beta = std::min(1.0, 0.5 * theta.c * std::hypot(1.0, shape.cut));
-  const std::complex<double> w =
-      std::sqrt(std::complex<double>(index.n2m1_re + cos_beta * cos_beta, std::max(index.n2m1_im, 0.0)));
-  return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
+  return reflectance_s(index, cos_beta);
 }
 
 // Error of the finer of two rules over its distance from the coarser one: how much slower than expected the rules may
@@ -112,6 +124,34 @@ constexpr double kCriticalFactor = 2.0;  // roots beside the critical line, whic
 // Two rules of few nodes may agree by chance: none is taken to be better than this share of the tolerance it is made
 // for.
 constexpr double kLeastShareOfTolerance = 0.1;
+
+// Upper bound of what grooves steeper than a slope reflect of their light. Across a groove a ray of length a has at least
+// pi/3 slope - 1 bounces with cos(beta) >= a/2, and a >= level but for the azimuths with sin(theta) |cos(phi)| <
+// sqrt(level^2 - c^2), which take at most twice their share of the light.
+double reflected_by_steep_grooves(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double slope) {
+  const double bounces = std::max(pi<double>() / 3.0 * slope - 1.0, 0.0);
+  double least = 1.0;
+  for (double level = 1.0; level > 1e-6; level *= 0.5) {
+    const double along = std::sqrt(std::max((level - theta.c) * (level + theta.c), 0.0));
+    const double missed = along < theta.s ? 4.0 / pi<double>() * std::asin(along / theta.s) : 1.0;
+    least = std::min(least, missed + std::pow(reflectance_s(index, 0.5 * std::max(level, theta.c)), bounces));
+  }
+  return least;
+}
+
+// Rounding in grooves, in units of the roundoff and of the cosine: the last bounces may be grazing, where all that little
+// reflects does.
+constexpr double kGrooveRoundings = 4.0;
+
+// What taking many bounces in a groove as one changes, over the cosine and the share of the grooves it is done in.
+constexpr double kManyBouncesError = 2e-4;
+
+double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
+                          const kernel::ShapeNode& shape) {
+  const double slope = 1.0 / std::tan(0.5 * pi<double>() / DOLP_MOST_BOUNCES);
+  const double most = std::min(kManyBouncesError, reflected_by_steep_grooves(theta, index, slope));
+  return most * theta.c * steeper_share(data.distribution, shape, slope);
+}
 
 double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   const double smooth = data.needs_masking_table() ? kTablePairFactor : kPairFactor;
@@ -132,7 +172,13 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   const double cut = cut_bound(data, theta, shape);
   const double masking = masking_error(data, entry, unit_roundoff);
   const double rounding = unit_roundoff * roundings(data, theta, shape, index);
-  const double reflected_cut = cut == 0.0 ? 0.0 : cut * steep_reflectance(index, theta, shape);
+  const bool is_multiple = data.scattering == Scattering::kMultiple;
+  const double grooves = is_multiple ? many_bounces_bound(data, theta, index, shape) +
+                                           kGrooveRoundings * unit_roundoff * theta.c
+                                     : 0.0;
+  const double reach = std::min(shape.cut, theta.end[DOLP_MAX_PIECES]);
+  const double steep = is_multiple ? reflected_by_steep_grooves(theta, index, reach) : steep_reflectance(index, theta, shape);
+  const double reflected_cut = cut == 0.0 ? 0.0 : cut * steep;
   Moments moments;
   moments.r_i = node.r_i;
   moments.r_q = node.r_q;
@@ -142,7 +188,8 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   const double r_i_scale = std::abs(node.r_i);  // a rule that fails can make it negative
   const double deficit_scale = node.deficit + 2.0 * node.behind;
   const double least = kLeastShareOfTolerance * data.tolerance;
-  moments.r_i_error = pair * node.reflected_difference + (least + rounding + masking) * r_i_scale + reflected_cut;
+  moments.r_i_error = pair * node.reflected_difference + (least + rounding + masking) * r_i_scale +
+                      reflected_cut + grooves;
   moments.r_q_error = moments.r_i_error;
   const double largest_difference =
       std::max({node.reflected_difference, node.albedo_difference, node.deficit_difference});
@@ -151,8 +198,19 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   const double deficit_terms =
       std::max(std::abs(deficit_scale), index.critical_cos > 0.0 ? std::abs(node.albedo) : 0.0);
   moments.deficit_error =
-      pair * node.deficit_difference + (least + rounding) * deficit_terms + masking * std::abs(node.albedo) + cut;
+      pair * node.deficit_difference + (least + rounding) * deficit_terms + masking * std::abs(node.albedo) +
+      (is_multiple ? reflected_cut + grooves : cut);
   moments.evaluations = node.evaluations;
+  if (is_multiple) {
+    moments.albedo = theta.c;
+    moments.albedo_error = kCosineRounding * theta.c;
+  }
+  if (data.has_direct) {
+    moments.direct_i = node.direct_i;
+    moments.direct_q = node.direct_q;
+    moments.direct_i_error = pair * node.direct_difference + (least + rounding + masking) * theta.c + cut;
+    moments.direct_q_error = moments.direct_i_error;
+  }
   // r_i + deficit = cos(theta): the better known of the two gives the other.
   const double cosine = theta.c;
   if (moments.deficit_error > moments.r_i_error) {

@@ -100,6 +100,15 @@ void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, con
   points.push_back({a.cos > 0.0 ? tan_deg(30.0 + theta_deg * 2.0 / 3.0) : kNoEnd, kRootBelow});
 }
 
+// The direct emission goes on beyond the horizon, up to the line on which facets turn away; with v-cavity masking it has the
+// line e = 2 c, which crosses the horizon at sqrt(3).
+void add_direct_breakpoints(std::vector<Breakpoint>& points, const CosSin& a, Masking masking, double& last) {
+  last = kNoEnd;
+  points.push_back({last, 0});
+  if (a.sin > 0.0) points.push_back({a.cos / a.sin, kRootAbove});
+  if (masking == Masking::kVCavity) points.push_back({std::sqrt(3.0), 0});
+}
+
 void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a) {
   points.push_back({tan_deg(30.0 - theta_deg / 3.0), kRootAbove});
   if (theta_deg < 45.0) {
@@ -108,6 +117,29 @@ void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
     points.push_back({a.cos / a.sin, kRootAbove});
     points.push_back({1.0, 0});
     points.push_back({a.cos > 0.0 ? a.sin / a.cos : kNoEnd, kRootBelow});
+  }
+}
+
+// Slopes of V-grooves from which on twice, four times ... as many bounces are taken as one (groove.glsl), by what one turn
+// of its loop does; nothing steeper than the last is followed.
+double slope_with_bounces(double bounces) { return 1.0 / std::tan(0.5 * pi<double>() / bounces); }
+
+// Where the lines of groove_lines (arcs.glsl) meet phi = 0, psi = theta, or phi = pi, psi = -theta, or each other.
+void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg) {
+  const auto add = [&](double gamma_deg, unsigned roots) {
+    if (gamma_deg > 0.0 && gamma_deg <= 90.0) points.push_back({tan_deg(90.0 - gamma_deg), roots});
+  };
+  for (int j = 1; j <= DOLP_SPLIT_BOUNCES + 1; ++j) {
+    add((90.0 - theta_deg) / j, kRootBelow);
+    if (j * theta_deg < 90.0 + theta_deg) add((90.0 + theta_deg) / j, kRootAbove);
+    const double turns = 2.0 * j + 1.0;
+    if (turns * theta_deg < 180.0 - theta_deg) add((180.0 - theta_deg) / turns, kRootBelow);
+    if (turns * theta_deg < 180.0 + theta_deg) add((180.0 + theta_deg) / turns, kRootAbove);
+    if (90.0 < (j + 1) * theta_deg) add(90.0 / (j + 1), 0);
+  }
+  add(theta_deg, kRootAbove);
+  for (int doublings = 0; doublings < DOLP_MOST_DOUBLINGS; doublings += DOLP_DOUBLINGS_AT_ONCE) {
+    points.push_back({slope_with_bounces(std::ldexp(DOLP_MOST_BOUNCES, doublings)), 0});
   }
 }
 
@@ -144,17 +176,29 @@ void add_extra_splits(std::vector<Breakpoint>& points) {
 // phi = 0 or pi or another line. The horizon does at t1 = c / (1 + s) and t2 = (1 + s) / c, theta_r = theta at
 // tan(theta), the limit b = pi/2 at tan(30 -+ 2/3 theta) and, on theta_r = theta, at tan(2 theta - 90); the lines of
 // v-cavity at tan(30 -+ theta/3), cot(theta), 1 and tan(theta); smith's cusp is at tan(theta/2).
-std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking masking, const Variant& variant) {
+std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, const MomentsRequest& request,
+                                    const Variant& variant) {
+  const Masking masking = request.masking;
+  const bool is_multiple = request.scattering == Scattering::kMultiple;
   const double horizon = a.cos > 0.0 ? (1.0 + a.sin) / a.cos : kNoEnd;
-  std::vector<Breakpoint> points = {{a.cos / (1.0 + a.sin), kRootAbove}, {horizon, kRootBelow}};
+  std::vector<Breakpoint> points;
+  double last = horizon;
+  if (is_multiple) {
+    add_groove_breakpoints(points, theta_deg);
+    last = slope_with_bounces(std::ldexp(DOLP_MOST_BOUNCES, DOLP_MOST_DOUBLINGS));
+    points.push_back({last, 0});
+  } else {
+    points = {{a.cos / (1.0 + a.sin), kRootAbove}, {horizon, kRootBelow}};
+    if (request.wants_direct) add_direct_breakpoints(points, a, masking, last);
+  }
   if (masking == Masking::kIntegral && a.cos > 0.0) points.push_back({a.sin / a.cos, kRootBelow});
   if (variant.has_line) add_line_breakpoints(points, theta_deg, a, masking);
-  if (masking == Masking::kVCavity) add_v_cavity_breakpoints(points, theta_deg, a);
+  if (masking == Masking::kVCavity && !is_multiple) add_v_cavity_breakpoints(points, theta_deg, a);
   for (const double slope : kPlainBreakpoints) {
-    if (horizon > kLongWay * slope) points.push_back({slope, 0});
+    if (!is_multiple && last > kLongWay * slope) points.push_back({slope, 0});
   }
   if (variant.critical_cos > 0.0) add_critical_breakpoints(points, theta_deg, a, masking, variant.critical_cos);
-  std::erase_if(points, [&](const Breakpoint& point) { return point.slope <= 0.0 || point.slope > horizon; });
+  std::erase_if(points, [&](const Breakpoint& point) { return point.slope <= 0.0 || point.slope > last; });
   // At the normal smith's cusp lies at slope 0.
   const bool cusp_at_0 = variant.has_line && masking == Masking::kSmith && a.sin == 0.0;
   points.push_back({0.0, cusp_at_0 ? kRootAbove : 0U});
@@ -162,29 +206,52 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, Masking m
   return without_coincident(points);
 }
 
-double arcs_per_slope(Masking masking, double critical) {
-  const double zones = masking == Masking::kIntegral || masking == Masking::kVCavity ? 3.0 : 1.0;
-  return critical > 0.0 ? 2.0 * zones : zones;
+double arcs_per_slope(const KernelData& data, double critical) {
+  double arcs = data.masking == Masking::kIntegral || data.masking == Masking::kVCavity ? 3.0 : 1.0;
+  if (data.has_direct) arcs += data.masking == Masking::kVCavity ? 2.0 : 1.0;
+  if (data.scattering == Scattering::kMultiple) arcs = DOLP_MAX_ARCS;
+  return critical > 0.0 ? 2.0 * arcs : arcs;
+}
+
+// Turns of the loops of one azimuth of a groove up to a slope: its bounces, and the doublings of each. In few steps, because
+// what runs in lockstep must be alike.
+double turns_in_groove(double slope) {
+  constexpr double kFewBounces = 6.0;
+  if (slope <= slope_with_bounces(kFewBounces)) return kFewBounces + 1.0;
+  const double most = DOLP_MOST_BOUNCES + 1.0;
+  double turns = most;
+  for (int done = 0; done < DOLP_MOST_DOUBLINGS; done += DOLP_DOUBLINGS_AT_ONCE) {
+    if (slope > slope_with_bounces(std::ldexp(DOLP_MOST_BOUNCES, done))) turns += most;
+  }
+  return turns;
 }
 
 // Loops of one invocation: below the 65,535 iterations at which lavapipe stops without notice.
 constexpr double kMostIterations = 64'000.0;
+constexpr double kTurnsOfSlope = DOLP_MOST_DOUBLINGS + DOLP_SPLIT_BOUNCES + 1.0;  // of a groove, to prepare it
 
-// Bound of the loop iterations of one invocation, that is of one piece: two rules, slopes, arcs, azimuths, with
+// Bound of the loop iterations of one invocation, that is of one piece: two rules, slopes, arcs, azimuths, bounces, with
 // everything at its most nodes. No bound on what an entry does is enough, because invocations that run in lockstep wait
 // for each other.
-double iterations(int rule_order, double most_azimuths, double arcs) {
+double iterations(double slopes, double azimuths, double arcs, double turns) {
   const auto of_rule = [&](double share) {
-    return 1.0 + share * rule_order * (1.0 + arcs * (2.0 + share * most_azimuths));
+    const double of_slope = turns > 0.0 ? kTurnsOfSlope : 0.0;
+    return 1.0 + share * slopes * (1.0 + of_slope + arcs * (2.0 + share * azimuths * (1.0 + turns)));
   };
-  return of_rule(1.0) + of_rule(kCoarseShare + 1.0 / rule_order);
+  return of_rule(1.0) + of_rule(kCoarseShare + 1.0 / slopes);
+}
+
+double piece_iterations(const KernelData& data, double arcs, double end, double most_nodes) {
+  const bool is_multiple = data.scattering == Scattering::kMultiple;
+  return iterations(is_multiple ? most_nodes : data.rule_order, most_nodes, arcs,
+                    is_multiple ? turns_in_groove(end) : 0.0);
 }
 
 // The most nodes of an arc; the error estimate shows what that costs.
-std::uint32_t most_azimuths(int rule_order, double arcs) {
-  int most = rule_order;
-  while (iterations(rule_order, most, arcs) > kMostIterations) --most;
-  return static_cast<std::uint32_t>(most);
+std::uint8_t most_nodes(const KernelData& data, double arcs, double end) {
+  int most = data.rule_order;
+  while (piece_iterations(data, arcs, end, most) > kMostIterations) --most;
+  return static_cast<std::uint8_t>(most);
 }
 
 void add_direction(KernelData& data, const MomentsRequest& request, double theta_deg, const Variant& variant) {
@@ -192,7 +259,7 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   kernel::ThetaNode node{};
   node.c = a.cos;
   node.s = a.sin;
-  std::vector<Breakpoint> points = breakpoints(theta_deg, a, request.masking, variant);
+  std::vector<Breakpoint> points = breakpoints(theta_deg, a, request, variant);
   if (request.has_extra_splits) add_extra_splits(points);
   assert(points.size() <= DOLP_MAX_PIECES + 1);
   std::ranges::fill(node.end, points.back().slope);
@@ -203,7 +270,8 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   }
   pieces.count = static_cast<std::uint32_t>(points.size() - 1);
   pieces.has_split_line = variant.has_line;
-  pieces.most_azimuths = most_azimuths(data.rule_order, arcs_per_slope(request.masking, variant.critical_cos));
+  const double arcs = arcs_per_slope(data, variant.critical_cos);
+  for (std::size_t i = 0; i < pieces.count; ++i) pieces.most_nodes[i] = most_nodes(data, arcs, node.end[i + 1]);
   data.thetas.push_back(node);
   data.pieces.push_back(pieces);
 }
@@ -302,7 +370,7 @@ std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t
          bit((pieces.roots[piece + 1] & kRootBelow) != 0, DOLP_TASK_ROOT_AT_END) |
          bit(piece > 0 && (pieces.roots[piece - 1] & kRootAbove) != 0, DOLP_TASK_ROOT_BEFORE_START) |
          bit(piece + 2 <= pieces.count && (pieces.roots[piece + 2] & kRootBelow) != 0, DOLP_TASK_ROOT_AFTER_END) |
-         bit(pieces.has_split_line, DOLP_TASK_SPLIT_LINE) | pieces.most_azimuths << DOLP_TASK_AZIMUTHS_SHIFT;
+         bit(pieces.has_split_line, DOLP_TASK_SPLIT_LINE) | static_cast<std::uint32_t>(pieces.most_nodes[piece]) << DOLP_TASK_AZIMUTHS_SHIFT;
 }
 
 std::uint32_t piece_count(const KernelData& data, std::uint32_t theta, const kernel::ShapeNode& shape) {
@@ -319,13 +387,17 @@ void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece) {
   sum = std::bit_cast<kernel::MomentsNode>(numbers);
 }
 
-KernelData kernel_data(const MomentsRequest& request) { return kernel_data(request, rule_model(request.masking)); }
+KernelData kernel_data(const MomentsRequest& request) {
+  return kernel_data(request, rule_model(request.masking, request.scattering));
+}
 
 KernelData kernel_data(const MomentsRequest& request, const RuleModel& model) {
   const double digits = rule_digits(model, request.tolerance);
   KernelData data;
   data.distribution = request.distribution;
   data.masking = request.masking;
+  data.scattering = request.scattering;
+  data.has_direct = request.wants_direct;
   data.tolerance = request.tolerance;
   data.rule = rule_node(model, digits);
   data.rule_order = largest_order(digits);
@@ -347,8 +419,12 @@ double worst_iterations(const KernelData& data) {
   double worst = 0.0;
   for (std::size_t i = 0; i < data.size(); ++i) {
     const MomentsEntry entry = data[i];
-    const double arcs = arcs_per_slope(data.masking, data.indices[entry.index].critical_cos);
-    worst = std::max(worst, iterations(data.rule_order, data.pieces[entry.theta].most_azimuths, arcs));
+    const double arcs = arcs_per_slope(data, data.indices[entry.index].critical_cos);
+    const Pieces& pieces = data.pieces[entry.theta];
+    for (std::uint32_t piece = 0; piece < pieces.count; ++piece) {
+      const double end = data.thetas[entry.theta].end[piece + 1];
+      worst = std::max(worst, piece_iterations(data, arcs, end, pieces.most_nodes[piece]));
+    }
   }
   return worst;
 }

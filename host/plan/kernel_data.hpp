@@ -19,8 +19,9 @@ using real = double;
 struct Pieces {
   std::uint32_t count = 0;
   std::array<std::uint8_t, DOLP_MAX_PIECES + 1> roots{};  ///< of each end: bits kRootAbove, kRootBelow
+  /// Of each piece the most nodes of an arc, with all bounces of its slopes too, which bounds the loop iterations.
+  std::array<std::uint8_t, DOLP_MAX_PIECES> most_nodes{};
   bool has_split_line = false;  ///< b = pi/2 of `integral`, or smith's cusp
-  std::uint32_t most_azimuths = 1;  ///< of an arc, which bounds the loop iterations
 };
 
 /// What the kernel reads of one entry: positions in three lists of KernelData.
@@ -37,6 +38,8 @@ struct MomentsEntry {
 struct KernelData {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
+  Scattering scattering = Scattering::kSingle;
+  bool has_direct = false;
   double tolerance = 1e-4;
   kernel::RuleNode rule{};
   int rule_order = 1;  ///< largest order of the rule nodes

@@ -12,7 +12,7 @@ namespace dolp {
 namespace {
 
 // From `dolp-calibrate fit MASKING`.
-constexpr std::array<RuleModel, 4> kModels = {{
+constexpr std::array<RuleModel, 5> kModels = {{
     // none
     {.margin_digits = 2.4, .t_nodes = 1.4, .t_digits = 0.5, .t_fall = 0.18, .phi_nodes = 0.362, .phi_digits = 0.25},
     // v-cavity
@@ -27,6 +27,8 @@ constexpr std::array<RuleModel, 4> kModels = {{
      .phi_nodes = 0.3,
      .phi_digits = -0.5,
      .cluster_stretch = 5.5},
+    // v-cavity, all bounces
+    {.margin_digits = 2.5, .t_nodes = 1, .t_digits = -0.812, .t_fall = 0.165, .phi_nodes = 0.562, .phi_digits = 0.188},
 }};
 
 // Nodes that a piece has for each digit, roughly.
@@ -86,7 +88,9 @@ double unsplit_line(Distribution distribution, const SlopeShape& shape, double d
 
 }  // namespace
 
-const RuleModel& rule_model(Masking masking) { return kModels[static_cast<std::size_t>(masking)]; }
+const RuleModel& rule_model(Masking masking, Scattering scattering) {
+  return scattering == Scattering::kMultiple ? kModels.back() : kModels[static_cast<std::size_t>(masking)];
+}
 
 double rule_digits(const RuleModel& model, double tolerance) {
   return (model.margin_digits - std::log10(tolerance)) / kCoarseShare;

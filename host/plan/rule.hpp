@@ -22,8 +22,8 @@ struct RuleModel {
   double cluster_stretch = 1.0;  ///< smith: nodes for each digit from which on the cusp is worth a cluster
 };
 
-/// The fitted numbers of a masking.
-const RuleModel& rule_model(Masking masking);
+/// The fitted numbers of a masking, or of all bounces in its grooves.
+const RuleModel& rule_model(Masking masking, Scattering scattering = Scattering::kSingle);
 
 /// Digits that a tolerance asks of the finer rule: the coarser one must meet it, because their distance is the bound.
 double rule_digits(const RuleModel& model, double tolerance);

@@ -8,6 +8,7 @@
 #include "physics/facet.glsl"
 #include "physics/row.glsl"
 #include "physics/arcs.glsl"
+#include "physics/groove.glsl"
 #include "physics/task.glsl"
 #include "physics/orders.glsl"
 #include "physics/moments.glsl"

@@ -121,11 +121,12 @@ Azimuth azimuth(Arc arc, real2 node) {
   return at;
 }
 
-// The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth: three in ascending order
-// and the critical one, anywhere among them.
+// The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth, in ascending order; and the
+// critical one, anywhere among them.
 struct SplitLines {
-  real2 first;
-  real2 second;
+  real2 end[DOLP_MAX_ARCS];  // of each arc; the first begins at phi = 0
+  int arcs;
+  int leaving;     // how many of the arcs have a reflected ray that leaves
   real2 horizon;   // theta_r = 90 degrees: beyond it the reflected ray does not leave
   real2 critical;  // cos(beta) = critical_cos: a square root on either side
 };
@@ -133,31 +134,91 @@ struct SplitLines {
 // cos(phi) = level / (s t), as a half angle.
 real2 line_at(real level, real st) { return half_angle((st + level) / st, (st - level) / st); }
 
-SplitLines split_lines(ThetaNode theta, IndexNode index, real t, bool has_split_line) {
+SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines lines) {
   real c = theta.c;
-  real s = theta.s;
-  real st = max(s * t, real(1e-30));
+  real st = max(theta.s * t, real(1e-30));
   real sec2 = real(1.0) + t * t;
-  SplitLines lines;
-  lines.horizon = half_angle((t - c / (real(1.0) + s)) * (c * t + real(1.0) + s) / (real(2.0) * st),
-                             (real(1.0) + s - c * t) * (t + c / (real(1.0) + s)) / (real(2.0) * st));
-  lines.first = lines.horizon;
-  lines.second = lines.horizon;
-  lines.critical = line_at(index.critical_cos * sqrt(sec2) - c, st);
   real2 same_zenith = line_at(c * t * t, st);  // theta_r = theta
+  real2 facing = line_at(-c, st);  // beyond it facets face away
+  lines.arcs = kHasDirect ? 2 : 1;
+  lines.leaving = 1;
+  lines.end[0] = lines.horizon;
+  if (kHasDirect) lines.end[1] = facing;
   if (kMasking == DOLP_MASKING_INTEGRAL) {
     // The limit b of eq. (11) reaches pi/2 at theta_r = pi/4 + alpha/2; 1 - sin(alpha) = cos^2(alpha) / (1 + sin(alpha)).
     real sec = sqrt(sec2);
     real cos_limit = sqrt(real(0.5) / (sec * (sec + t)));
-    lines.first = same_zenith;
     bool limited = has_split_line && cos_limit < c;
-    lines.second = limited ? line_at(real(0.5) * (cos_limit + c) * sec2 - c, st) : same_zenith;
+    lines.end[0] = same_zenith;
+    lines.end[1] = limited ? line_at(real(0.5) * (cos_limit + c) * sec2 - c, st) : same_zenith;
+    lines.end[2] = lines.horizon;
+    lines.arcs = 3;
+    lines.leaving = 3;
   }
   if (kMasking == DOLP_MASKING_V_CAVITY) {
-    // G = 1 between 2 cos(alpha) cos(theta) = cos(beta) and the same with theta_r; the two lines meet at t = 1.
+    // G = 1 between 2 cos(alpha) cos(theta) = cos(beta) and the same with theta_r; the two lines meet at t = 1. The first
+    // is that of G1 of theta alone, which goes on below the horizon from t = sqrt(3) on.
+    real2 shaded = line_at(c, st);
     real level = c * (real(3.0) * t * t - real(1.0)) / (real(3.0) - t * t);
-    lines.first = choose(t < real(1.0), line_at(c, st), same_zenith);
-    lines.second = choose(t < real(1.0), line_at(level, st), same_zenith);
+    lines.end[0] = choose(t < real(1.0), shaded, same_zenith);
+    lines.end[1] = choose(t < real(1.0), line_at(level, st), same_zenith);
+    lines.end[2] = lines.horizon;
+    lines.arcs = 3;
+    lines.leaving = 3;
+    if (kHasDirect) {
+      bool shaded_leaves = t >= real(1.0) && t * t < real(3.0);
+      lines.end[2] = choose(shaded_leaves, shaded, lines.horizon);
+      lines.end[3] = choose(shaded_leaves || t < real(1.0), lines.horizon, shaded);
+      lines.end[4] = facing;
+      lines.arcs = 5;
+      lines.leaving = shaded_leaves ? 4 : 3;
+    }
   }
   return lines;
+}
+
+// Of a groove: where the number of bounces or the width of the beam changes its law. With psi the zenith of theta in the
+// plane across the groove, tan(psi) = tan(theta) cos(phi), and gamma = pi/2 - alpha these are psi = pi/2 - j gamma down to
+// gamma, j <= DOLP_SPLIT_BOUNCES; gamma; the three below it unless there are more above; and -gamma, beyond which facets
+// face away.
+real2 groove_line(ThetaNode theta, real cos_psi, real sin_psi) {
+  return line_at(theta.c * sin_psi / max(cos_psi, real(1e-30)), max(theta.s, real(1e-30)));
+}
+
+SplitLines groove_lines(ThetaNode theta, real t, SplitLines lines) {
+  real r = real(1.0) / sqrt(real(1.0) + t * t);
+  real2 turn = real2(t * r, r);  // e^(i gamma)
+  real2 at = turn;               // e^(i j gamma)
+  real2 next = multiply(at, turn);
+  lines.arcs = 0;
+  for (int j = 1; j <= DOLP_SPLIT_BOUNCES && next.x >= real(0.0); ++j) {
+    lines.end[lines.arcs] = groove_line(theta, at.y, at.x);
+    ++lines.arcs;
+    at = next;
+    next = multiply(at, turn);
+  }
+  lines.end[lines.arcs] = groove_line(theta, turn.x, turn.y);
+  ++lines.arcs;
+  if (next.x < real(0.0)) {
+    real2 both = multiply(at, next);
+    lines.end[lines.arcs] = groove_line(theta, at.y, at.x);
+    lines.end[lines.arcs + 1] = groove_line(theta, -both.x, both.y);
+    lines.end[lines.arcs + 2] = groove_line(theta, next.y, next.x);
+    lines.arcs += 3;
+  }
+  lines.end[lines.arcs] = groove_line(theta, turn.x, -turn.y);
+  ++lines.arcs;
+  lines.leaving = lines.arcs;
+  return lines;
+}
+
+SplitLines split_lines(ThetaNode theta, IndexNode index, real t, bool has_split_line) {
+  real c = theta.c;
+  real s = theta.s;
+  real st = max(s * t, real(1e-30));
+  SplitLines lines;
+  lines.horizon = half_angle((t - c / (real(1.0) + s)) * (c * t + real(1.0) + s) / (real(2.0) * st),
+                             (real(1.0) + s - c * t) * (t + c / (real(1.0) + s)) / (real(2.0) * st));
+  lines.critical = line_at(index.critical_cos * sqrt(real(1.0) + t * t) - c, st);
+  return kIsMultiple ? groove_lines(theta, t, lines) : single_lines(theta, t, has_split_line, lines);
 }

@@ -3,6 +3,8 @@ layout(local_size_x_id = DOLP_SPEC_LOCAL_SIZE) in;
 layout(constant_id = DOLP_SPEC_DISTRIBUTION) const uint kDistribution = DOLP_CAUCHY;
 layout(constant_id = DOLP_SPEC_MASKING) const uint kMasking = DOLP_MASKING_NONE;
 layout(constant_id = DOLP_SPEC_TOTAL_REFLECTION) const bool kTotalReflection = false;
+layout(constant_id = DOLP_SPEC_MULTIPLE) const bool kIsMultiple = false;
+layout(constant_id = DOLP_SPEC_DIRECT) const bool kHasDirect = false;
 
 layout(push_constant) uniform PushConstants { DOLP_PUSH_CONSTANTS } push;
 

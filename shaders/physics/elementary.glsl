@@ -8,6 +8,9 @@ CONST real kLn2Low = real(1.42860682030941723212e-6);      // ln 2 - kLn2High
 CONST real kInverseLn2 = real(1.44269504088896340736);
 CONST real kSqrtHalf = real(0.70710678118654752440);
 
+// The product of two complex numbers.
+real2 multiply(real2 a, real2 b) { return real2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
+
 // sum of r^j / (j+2)!, so that e^r = 1 + r + r^2 * this, for |r| <= ln(2)/2.
 real exp_series(real r) {
 #ifdef DOLP_DOUBLE

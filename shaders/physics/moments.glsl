@@ -8,6 +8,7 @@
 struct Slope {
   real t;
   real digits;        // wanted of the sum over the azimuths
+  Groove groove;      // with all bounces
   Masked of_theta;
   bool has_split_line;
   int most_azimuths;
@@ -17,43 +18,54 @@ struct Slope {
 // A sum over azimuths, for each member of a row.
 struct AzimuthSums {
   real4 member[DOLP_WIDTH];
+  real2 direct;       // what facets emit straight to the viewer, as (I, Q), before smith's masking
   real evaluations;
 };
 
 AzimuthSums no_azimuths() {
   AzimuthSums sums;
   sums.evaluations = real(0.0);
+  sums.direct = real2(real(0.0), real(0.0));
   for (int g = 0; g < DOLP_WIDTH; ++g) sums.member[g] = real4(real(0.0));
   return sums;
 }
 
-AzimuthSums arc_sums(ThetaNode theta, Row row, IndexNode index, Slope slope, Arc arc, int zone, int order) {
+AzimuthSums arc_sums(ThetaNode theta, Row row, IndexNode index, Slope slope, Arc arc, int zone, bool leaves,
+                     int order) {
   AzimuthSums sums = no_azimuths();
   int first_node = rule_offset(arc.section, order);
   for (int i = 0; i < order; ++i) {
     Azimuth at = azimuth(arc, place_on_arc(arc, rule_node(first_node + i)));
-    Facet f = facet(theta, index, slope.t, at.x, at.sin_phi);
-    Masked of_ray = masking_of_ray(row, f.cos_r, slope.t, zone);
-    for (int g = 0; g < masked_members(); ++g) {
-      Projection part = project(theta, f, zone, slope.of_theta.value[g], of_ray.value[g]);
-      sums.member[g] += at.weight * reflected(f, part);
+    if (kIsMultiple) {
+      sums.member[0] += at.weight * reflected_in_groove(theta, index, slope.groove, at.x, at.sin_phi);
+      continue;
     }
+    Facet f = facet(theta, index, slope.t, at.x, at.sin_phi);
+    if (leaves) {
+      Masked of_ray = masking_of_ray(row, f.cos_r, slope.t, zone);
+      for (int g = 0; g < masked_members(); ++g) {
+        Projection part = project(theta, f, zone, slope.of_theta.value[g], of_ray.value[g]);
+        sums.member[g] += at.weight * reflected(f, part);
+      }
+    }
+    if (kHasDirect) sums.direct += at.weight * emitted(theta, f);
   }
   sums.evaluations = real(order);
   return sums;
 }
 
-// Integral over the azimuths from 0 to pi whose reflected ray leaves. Each zone is an arc, or two with the critical line of
-// total reflection between them.
+// Integral over the azimuths from 0 to pi. Each zone is an arc, or two with the critical line of total reflection between
+// them.
 AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, SplitLines lines) {
   AzimuthSums sums = no_azimuths();
   bool is_critical = kTotalReflection && index.critical_cos > real(0.0);
-  int zones = (kMasking == DOLP_MASKING_INTEGRAL || kMasking == DOLP_MASKING_V_CAVITY) ? 3 : 1;
-  for (int part = 0; part < (is_critical ? 2 * zones : zones); ++part) {
+  real2 last = real2(real(1.0), real(0.0));
+  for (int part = 0; part < (is_critical ? 2 * lines.arcs : lines.arcs); ++part) {
     int zone = is_critical ? part >> 1 : part;
     bool is_second = is_critical && (part & 1) == 1;
-    real2 from = (zone == 0) ? real2(real(1.0), real(0.0)) : ((zone == 1) ? lines.first : lines.second);
-    real2 to = (zone == 0) ? lines.first : ((zone == 1) ? lines.second : lines.horizon);
+    real2 from = last;
+    real2 to = lines.end[zone];
+    if (!is_critical || is_second) last = to;
     if (is_critical) {
       real2 middle = clamp_half_angle(lines.critical, from, to);
       from = is_second ? middle : from;
@@ -67,8 +79,9 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
       real nodes = arc_nodes(rule, theta, row.shape[0], index, slope.has_split_line, slope.t, slope.digits, arc, zone);
       int order = order_between(nodes, slope.most_azimuths);
       if (slope.is_coarse) order = coarse_order(order);
-      AzimuthSums more = arc_sums(theta, row, index, slope, arc, zone, order);
+      AzimuthSums more = arc_sums(theta, row, index, slope, arc, zone, zone < lines.leaving, order);
       for (int g = 0; g < masked_members(); ++g) sums.member[g] += more.member[g];
+      sums.direct += more.direct;
       sums.evaluations += more.evaluations;
     }
   }
@@ -115,7 +128,8 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task 
     piece.root_at_b = piece.root_at_b || is_near;
     piece.root_after = is_near ? end : x;
   }
-  piece.order = order_between(slope_nodes(rule, theta, shape, index, task.has_split_line, piece), largest_order());
+  int most = kIsMultiple ? min(largest_order(), task.most_azimuths) : largest_order();
+  piece.order = order_between(slope_nodes(rule, theta, shape, index, task.has_split_line, piece), most);
   return piece;
 }
 
@@ -133,6 +147,7 @@ real2 place_on_piece(Piece piece, real v) {
 struct PieceSums {
   real4 member[DOLP_WIDTH];
   real behind[DOLP_WIDTH];  // MomentsNode::behind
+  real2 direct[DOLP_WIDTH];
   real evaluations;
 };
 
@@ -142,6 +157,7 @@ PieceSums no_slopes() {
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     sums.member[g] = real4(real(0.0));
     sums.behind[g] = real(0.0);
+    sums.direct[g] = real2(real(0.0), real(0.0));
   }
   return sums;
 }
@@ -171,6 +187,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
     SplitLines lines = split_lines(theta, index, t, task.has_split_line);
     Slope slope;
     slope.t = t;
+    if (kIsMultiple) slope.groove = groove(t);
     slope.digits = digits_of_slope(rule, theta, shape, piece.digits, order, t, kPi * largest_weight);
     slope.of_theta = of_theta;
     if (kMasking == DOLP_MASKING_INTEGRAL) slope.of_theta = shadows(row, of_theta, theta.c, theta.s, t);
@@ -178,13 +195,15 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
     slope.most_azimuths = task.most_azimuths;
     slope.is_coarse = is_coarse;
     AzimuthSums azimuths = azimuth_sums(rule, theta, row, index, slope, lines);
-    // Facets whose ray does not leave: their projection toward theta, which is negative for those that face away.
-    real below = theta.c * real(4.0) * atan_unit(lines.horizon.x / (real(1.0) + lines.horizon.y));
-    real behind = real(2.0) * theta.s * t * lines.horizon.x * lines.horizon.y;
+    // Facets whose ray does not leave: their projection toward theta, which is negative for those that face away. Of a
+    // groove all leave.
+    real below = kIsMultiple ? real(0.0) : theta.c * real(4.0) * atan_unit(lines.horizon.x / (real(1.0) + lines.horizon.y));
+    real behind = kIsMultiple ? real(0.0) : real(2.0) * theta.s * t * lines.horizon.x * lines.horizon.y;
     for (int g = 0; g < DOLP_WIDTH; ++g) {
       real4 facets = azimuths.member[min(g, masked_members() - 1)];
       sums.member[g] += weight[g] * (facets + real4(real(0.0), real(0.0), real(0.0), below - behind));
       sums.behind[g] += weight[g] * behind;
+      if (kHasDirect) sums.direct[g] += weight[g] * viewed(of_theta.value[g]) * azimuths.direct;
       mass[g] += kPi * weight[g];
     }
     sums.evaluations += azimuths.evaluations;
@@ -194,6 +213,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
     real ratio = choose(mass[g] > real(0.0), piece.mass[g] / mass[g], real(1.0));
     sums.member[g] *= ratio;
     sums.behind[g] *= ratio;
+    sums.direct[g] *= ratio;
   }
   return sums;
 }
@@ -221,8 +241,10 @@ RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
     real beyond = (task.piece == 0) ? theta.c * slope_tail(row.shape[g], reached) : real(0.0);
     real4 sums = fine.member[g];
     real4 difference = abs(sums - coarse.member[g]);
-    result.member[g] = MomentsNode(sums.x, sums.y, sums.z, sums.w + beyond, fine.behind[g],
-                                   max(difference.x, difference.y), difference.z, difference.w,
+    real2 direct = fine.direct[g];
+    real direct_difference = max(abs(direct.x - coarse.direct[g].x), abs(direct.y - coarse.direct[g].y));
+    result.member[g] = MomentsNode(sums.x, sums.y, sums.z, sums.w + beyond, fine.behind[g], direct.x, direct.y,
+                                   max(difference.x, difference.y), difference.z, difference.w, direct_difference,
                                    fine.evaluations + coarse.evaluations);
   }
   return result;

@@ -9,8 +9,6 @@
 //   [A B 0 0; B A 0 0; 0 0 C -S; 0 0 S C],   A, B = (R_s +- R_p)/2,   C + i S = r_s* r_p,   and the reverse by eta_r.
 // Without cancellation: r_s* r_p = a (sin^2 beta - c w) / (conj(c + w) (N^2 c + w)), a as in fresnel.glsl.
 
-real2 multiply(real2 a, real2 b) { return real2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
-
 // r_s* r_p, as (Re, Im), from R_s, w, c + w and N^2 c + w: R_s (sin^2 beta - c w) (c + w) / (N^2 c + w), since a = R_s B.
 real2 cross_amplitude(real r_s, GeometryNode g, real2 w, real2 s_sum, real2 p_sum) {
   real2 numerator = multiply(real2(g.sin2_beta - g.cos_beta * w.x, -g.cos_beta * w.y), s_sum);

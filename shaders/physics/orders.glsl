@@ -182,10 +182,20 @@ real arc_cost(Arc arc, Singularity at) {
 // The singularities of Fresnel's coefficients: R_p's pole, at cos(beta) = -1 / sqrt(N^2 + 1), and the branch point of w, at
 // cos^2(beta) = 1 - N^2. Beside a critical line w goes as the abscissa v of the cluster and the pole w = -N^2 cos(beta)
 // lies at v = -N^2 critical_cos / w of the arc's other end; beyond the line w is imaginary.
+// Those at the bounce whose facet is turned by (cos, sin) from the vertical: cos(beta) = c sin + s x cos.
+real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
+  real slant = theta.s * facet.x;
+  real size = max(abs(slant), real(1e-15));
+  real sign = (slant < real(0.0)) ? real(-1.0) : real(1.0);
+  real offset = theta.c * facet.y;
+  Singularity pole = singularity_at(sign * (index.pole_re - offset) / size, index.pole_im / size);
+  Singularity branch = singularity_at(sign * (index.branch_re - offset) / size, index.branch_im / size);
+  return max(arc_cost(arc, pole), arc_cost(arc, branch));
+}
+
 real fresnel_cost(ThetaNode theta, IndexNode index, real t, Arc arc) {
-  real sec = sqrt(real(1.0) + t * t);
-  real st = max(theta.s * t, real(1e-15));
   if (arc.is_critical) {
+    real sec = sqrt(real(1.0) + t * t);
     real2 end = (arc.extent < real(0.0)) ? arc.from : arc.to;
     real cos_beta = (theta.c + theta.s * t * cosine(end)) / sec;
     real w2 = cos_beta * cos_beta - index.critical_cos * index.critical_cos;
@@ -193,11 +203,23 @@ real fresnel_cost(ThetaNode theta, IndexNode index, real t, Arc arc) {
     v = min(v, real(1e9));
     return nodes_per_digit(acosh_above_1((w2 > real(0.0)) ? gap_beside_unit(-v, real(0.0)) : gap_beside_unit(real(0.0), v)));
   }
-  real scale = sec / st;
-  real offset = theta.c / st;
-  Singularity pole = singularity_at(index.pole_re * scale - offset, index.pole_im * scale);
-  Singularity branch = singularity_at(index.branch_re * scale - offset, index.branch_im * scale);
-  return max(arc_cost(arc, pole), arc_cost(arc, branch));
+  real r = real(1.0) / sqrt(real(1.0) + t * t);
+  real2 turn = real2(t * r, r);
+  real cost = bounce_cost(theta, index, turn, arc);
+  if (kIsMultiple) {
+    // All bounces of the rays in the arc's middle.
+    real2 step = multiply(turn, turn);
+    real2 facet = turn;
+    real2 middle = arc.from + arc.to;
+    real x = (middle.x * middle.x - middle.y * middle.y) / (middle.x * middle.x + middle.y * middle.y);
+    real least = max(theta.s * x * turn.x - theta.c * turn.y, real(0.0));
+    for (int k = 1; k <= DOLP_SPLIT_BOUNCES + 2; ++k) {
+      facet = multiply(facet, step);
+      if (theta.c * facet.y + theta.s * x * facet.x <= least) break;
+      cost = max(cost, bounce_cost(theta, index, facet, arc));
+    }
+  }
+  return cost;
 }
 
 // Those of the masking of the reflected ray: the in-plane slopes' density at cot(theta_r) = +- i m, and for `integral` the

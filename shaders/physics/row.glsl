@@ -65,6 +65,9 @@ Masked masking_of_ray(Row row, real cos_r, real t, int zone) {
   return masked;
 }
 
+// The part of a facet's direct emission that smith's masking leaves, by what it says of theta.
+real viewed(real of_theta) { return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) / (real(1.0) + of_theta) : real(1.0); }
+
 // A facet's projection, by what masking says of theta and of the reflected ray. `zone` numbers the arcs from phi = 0; in
 // the first, theta_r < theta, so that `integral` asks theta.
 Projection project(ThetaNode theta, Facet f, int zone, real of_theta, real of_ray) {

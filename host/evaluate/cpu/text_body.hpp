@@ -32,6 +32,8 @@ struct Text {
   uint kDistribution = DOLP_CAUCHY;
   uint kMasking = DOLP_MASKING_NONE;
   bool kTotalReflection = false;
+  bool kIsMultiple = false;
+  bool kHasDirect = false;
   int order_of_nodes = 1;
   std::vector<real2> rule_nodes;
   std::vector<real4> masking_table;
@@ -49,6 +51,8 @@ class TextKernel final : public KernelText {
     text_.kDistribution = static_cast<uint>(data.distribution);
     text_.kMasking = static_cast<uint>(data.masking);
     text_.kTotalReflection = data.has_total_reflection;
+    text_.kIsMultiple = data.scattering == Scattering::kMultiple;
+    text_.kHasDirect = data.has_direct;
     text_.order_of_nodes = data.rule_order;
     for (const auto& node : data.rule_nodes) text_.rule_nodes.push_back(convert_reals<real, real2, double>(node));
     if (data.needs_masking_table()) text_.masking_table.resize(data.shapes.size() * Text::kMaskingNodes);

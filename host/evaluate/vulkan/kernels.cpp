@@ -27,7 +27,13 @@ std::span<const std::uint32_t> module_of(const KernelVariant& variant, bool floa
 }  // namespace
 
 KernelVariant moments_variant(const KernelData& data, std::uint32_t width) {
-  return {EntryPoint::kMoments, data.distribution, data.masking, data.has_total_reflection, width};
+  return {.entry = EntryPoint::kMoments,
+          .distribution = data.distribution,
+          .masking = data.masking,
+          .has_total_reflection = data.has_total_reflection,
+          .is_multiple = data.scattering == Scattering::kMultiple,
+          .has_direct = data.has_direct,
+          .width = width};
 }
 
 KernelVariant masking_table_variant(const KernelData& data) {
@@ -119,14 +125,19 @@ UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, const Kerne
   const UniqueShaderModule shader(device_.get(), created_module);
 
   // The enumerators are the values of interface.glsl.
-  const std::array<std::uint32_t, 4> values{kLocalSize, static_cast<std::uint32_t>(variant.distribution),
+  const std::array<std::uint32_t, 6> values{kLocalSize,
+                                            static_cast<std::uint32_t>(variant.distribution),
                                             static_cast<std::uint32_t>(variant.masking),
-                                            variant.has_total_reflection ? 1U : 0U};
+                                            variant.has_total_reflection ? 1U : 0U,
+                                            variant.is_multiple ? 1U : 0U,
+                                            variant.has_direct ? 1U : 0U};
   constexpr std::uint32_t kSize = sizeof(std::uint32_t);
-  const std::array<VkSpecializationMapEntry, 4> entries{{{DOLP_SPEC_LOCAL_SIZE, 0, kSize},
+  const std::array<VkSpecializationMapEntry, 6> entries{{{DOLP_SPEC_LOCAL_SIZE, 0, kSize},
                                                          {DOLP_SPEC_DISTRIBUTION, kSize, kSize},
                                                          {DOLP_SPEC_MASKING, 2 * kSize, kSize},
-                                                         {DOLP_SPEC_TOTAL_REFLECTION, 3 * kSize, kSize}}};
+                                                         {DOLP_SPEC_TOTAL_REFLECTION, 3 * kSize, kSize},
+                                                         {DOLP_SPEC_MULTIPLE, 4 * kSize, kSize},
+                                                         {DOLP_SPEC_DIRECT, 5 * kSize, kSize}}};
   const VkSpecializationInfo constants{.mapEntryCount = static_cast<std::uint32_t>(entries.size()),
                                        .pMapEntries = entries.data(),
                                        .dataSize = sizeof values,

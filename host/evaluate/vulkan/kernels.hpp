@@ -30,6 +30,8 @@ struct KernelVariant {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kNone;
   bool has_total_reflection = false;
+  bool is_multiple = false;
+  bool has_direct = false;
   std::uint32_t width = 1;  ///< of moments: one of kRowWidths of plan/rows.hpp
   auto operator<=>(const KernelVariant&) const = default;
 };

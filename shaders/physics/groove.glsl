@@ -1,0 +1,123 @@
+// All bounces of a ray in a V-groove (README.md beside this file, section 2): two facets of slope t with normals
+// (t u + z) / sec and (-t u + z) / sec, u = (cos(phi), sin(phi), 0), met at the apex. gamma = pi/2 - alpha.
+//
+// Unfolded about its apex the groove is a fan of facets gamma, 3 gamma, 5 gamma, ... from the vertical, and the ray is
+// straight: it meets facet k at the angle chi_k = psi + (2k - 1) gamma in the plane across the groove, where its length is
+// a = sqrt(c^2 + (s x)^2) and its zenith psi. With (X, Y) = a (sin(chi), cos(chi)) and b = s sin(phi), its part along the
+// groove:
+//   cos(beta_k) = X_k,   the plane of incidence is turned by eta, (cos(eta), sin(eta)) ~ (Y_k, b X_k).
+// Mirrored at each facet, the fields never leave one frame: a bounce is Fresnel's matrix between two turns by eta. Of the
+// beam min(e, 2c) that meets the facet first, (min(X_k, X_1) - X_0) / (X_1 - X_0) goes on to bounce k, X_0 = max(a
+// sin(psi - gamma), 0).
+
+// A groove of one slope. Of more than DOLP_MOST_BOUNCES bounces 2^doublings are taken as one, by a facet that reflects so often
+// in a groove so much wider: what that changes is bounded in host/plan/error_bounds.cpp.
+struct Groove {
+  real t;
+  real2 turn;       // (cos, sin) of gamma, over the bounces taken as one
+  real angle;       // that gamma
+  int doublings;
+};
+
+Groove groove(real t) {
+  Groove g;
+  g.t = t;
+  real r = real(1.0) / sqrt(real(1.0) + t * t);
+  g.turn = real2(t * r, r);
+  g.angle = arc_tangent(real(1.0) / max(t, real(1e-30)));
+  g.doublings = 0;
+  for (real most = real(0.5) * kPi; most > real(DOLP_MOST_BOUNCES) * g.angle && g.doublings < DOLP_MOST_DOUBLINGS;) {
+    g.turn = real2((g.turn.x - g.turn.y) * (g.turn.x + g.turn.y), real(2.0) * g.turn.x * g.turn.y);
+    g.angle += g.angle;
+    ++g.doublings;
+  }
+  return g;
+}
+
+// What a facet does in its own frame, on (I, Q, U, V): [m00 m01 0 0; m01 m00 0 0; 0 0 cross.x cross.y; 0 0 -cross.y cross.x].
+struct Bounce {
+  real m00;
+  real m01;
+  real absorbed;  // 1 - m00
+  real2 cross;    // r_s r_p*, with the r_p that is r_s at normal incidence
+};
+
+// r_p / r_s = (cos(beta) w - sin^2(beta)) / (cos(beta) w + sin^2(beta)).
+Bounce bounce(IndexNode index, real cos_beta, real sin2_beta, int doublings) {
+  real2 w = sqrt_upper(index.n2m1_re + cos_beta * cos_beta, index.n2m1_im);
+  real2 s_sum = real2(cos_beta + w.x, w.y);
+  real2 p_sum = real2((index.n2m1_re + real(1.0)) * cos_beta + w.x, index.n2m1_im * cos_beta + w.y);
+  Fresnel f = fresnel_of_sums(real2(index.n2m1_re, index.n2m1_im), cos_beta, w, s_sum, p_sum);
+  real2 cw = real2(cos_beta * w.x, cos_beta * w.y);
+  real scale = f.r_s / max((cw.x + sin2_beta) * (cw.x + sin2_beta) + cw.y * cw.y, kSmallestSquare);
+  real half_split = real(0.5) * f.split_over_sin2 * sin2_beta;
+  Bounce one;
+  one.m00 = f.r_s - half_split;
+  one.m01 = half_split;
+  one.absorbed = f.absorbed_s + half_split;
+  one.cross = real2(scale * (cw.x * cw.x + cw.y * cw.y - sin2_beta * sin2_beta), scale * real(2.0) * sin2_beta * cw.y);
+  for (int i = 0; i < doublings; i += DOLP_DOUBLINGS_AT_ONCE) {
+    for (int j = 0; j < DOLP_DOUBLINGS_AT_ONCE; ++j) {
+      if (i + j < doublings) {
+        Bounce two;
+        two.m00 = one.m00 * one.m00 + one.m01 * one.m01;
+        two.m01 = real(2.0) * one.m00 * one.m01;
+        two.absorbed = one.absorbed * (real(1.0) + one.m00) - one.m01 * one.m01;
+        two.cross = real2((one.cross.x - one.cross.y) * (one.cross.x + one.cross.y),
+                          real(2.0) * one.cross.x * one.cross.y);
+        one = two;
+      }
+    }
+  }
+  return one;
+}
+
+// A Stokes vector after a bounce whose plane of incidence is turned by eta; `twice` is (cos, sin) of 2 eta.
+real4 bounced(Bounce by, real2 twice, real4 stokes) {
+  real q = twice.x * stokes.y + twice.y * stokes.z;
+  real u = twice.x * stokes.z - twice.y * stokes.y;
+  real q_after = by.m01 * stokes.x + by.m00 * q;
+  real u_after = by.cross.x * u + by.cross.y * stokes.w;
+  return real4(by.m00 * stokes.x + by.m01 * q, twice.x * q_after - twice.y * u_after,
+               twice.y * q_after + twice.x * u_after, by.cross.x * stokes.w - by.cross.y * u);
+}
+
+// (cos, sin) of 2 eta for (cos(eta), sin(eta)) ~ (x, y).
+real2 doubled_angle(real x, real y) {
+  real inverse = real(1.0) / max(x * x + y * y, kSmallestSquare);
+  return real2((x - y) * (x + y) * inverse, real(2.0) * x * y * inverse);
+}
+
+// Integrand of the moments per unit of azimuth, as in facet.glsl, of the rays that meet the facet (t, phi) first.
+real4 reflected_in_groove(ThetaNode theta, IndexNode index, Groove g, real x, real sin_phi) {
+  real c = theta.c;
+  real u = theta.s * x;
+  real b = theta.s * sin_phi;
+  real a2 = max(c * c + u * u, kSmallestSquare);
+  real first = c * g.turn.y + u * g.turn.x;  // X_1
+  real least = max(u * g.turn.x - c * g.turn.y, real(0.0));
+  real zenith = arc_tangent(abs(u) / max(c, real(1e-30)));
+  real left = (real(0.5) * kPi - choose(u < real(0.0), -zenith, zenith)) / g.angle;  // bounces, where there are many
+  real2 at = real2(first, c * g.turn.x - u * g.turn.y);
+  real2 step = real2((g.turn.x - g.turn.y) * (g.turn.x + g.turn.y), real(2.0) * g.turn.x * g.turn.y);
+  // Rays of intensity 1 and of Q = 1 as the surface sees it.
+  real4 natural = real4(real(1.0), real(0.0), real(0.0), real(0.0));
+  real2 seen = doubled_angle(-x, c * sin_phi);
+  real4 polarised = real4(real(0.0), seen.x, seen.y, real(0.0));
+  real absorbed = real(0.0);
+  real share = real(1.0);  // of the beam, that goes on
+  while (share > real(0.0)) {
+    real2 twice = doubled_angle(at.y, b * at.x);
+    real sin2_beta = min((at.y * at.y + b * b * at.x * at.x) / a2, real(1.0));
+    Bounce by = bounce(index, max(at.x, real(1e-15)), sin2_beta, g.doublings);
+    absorbed += share * (by.absorbed * natural.x - by.m01 * (twice.x * natural.y + twice.y * natural.z));
+    natural += share * (bounced(by, twice, natural) - natural);
+    polarised += share * (bounced(by, twice, polarised) - polarised);
+    at = real2(at.x * step.x + at.y * step.y, at.y * step.x - at.x * step.y);
+    left -= real(1.0);
+    share = choose(g.doublings > 0, left, (min(at.x, first) - least) / max(first - least, real(1e-30)));
+    share = clamp(share, real(0.0), real(1.0));
+  }
+  real beam = min(c + theta.s * g.t * x, real(2.0) * c);
+  return real4(beam * natural.x, beam * polarised.x, beam, beam * absorbed);
+}

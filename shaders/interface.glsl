@@ -58,6 +58,7 @@
 #define DOLP_MOST_BOUNCES 32      // each on its own; of more, 2, 4, 8 ... are taken as one
 #define DOLP_MOST_DOUBLINGS 12
 #define DOLP_DOUBLINGS_AT_ONCE 4  // in one turn of a loop
+#define DOLP_AZIMUTHS_PER_SLOPE 2 // nodes at most
 #define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes
 #define DOLP_MASKING_OCTAVES 29  // of v = 1 + tau/scale
 #define DOLP_MASKING_CELL_BITS_FLOAT 3   // 2^bits cells per octave

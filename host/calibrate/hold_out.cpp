@@ -22,15 +22,6 @@ struct Answers {
   std::vector<Moments> exact;
 };
 
-/// Moments and the bounds of their errors.
-using Pair = std::pair<double Moments::*, double Moments::*>;
-constexpr std::array kMoments = {Pair{&Moments::r_i, &Moments::r_i_error},
-                                 Pair{&Moments::r_q, &Moments::r_q_error},
-                                 Pair{&Moments::albedo, &Moments::albedo_error},
-                                 Pair{&Moments::deficit, &Moments::deficit_error},
-                                 Pair{&Moments::direct_i, &Moments::direct_i_error},
-                                 Pair{&Moments::direct_q, &Moments::direct_q_error}};
-
 class Check {
  public:
   Check(const MomentsRequest& model, const HoldOutOptions& options)
@@ -62,7 +53,7 @@ class Check {
   }
 
   void lower_bounds(Moments& moments) const {
-    for (const auto& [value, error] : kMoments) moments.*error *= bound_share_;
+    for (const auto& [value, error] : kMomentMembers) moments.*error *= bound_share_;
   }
 
   MomentsRequest model_;
@@ -73,7 +64,7 @@ class Check {
 /// The largest error of the moments over what is stated of it, by both rules.
 double error_over_bound(const Moments& stated, const Moments& exact) {
   double worst = 0.0;
-  for (const auto& [value, error] : kMoments) {
+  for (const auto& [value, error] : kMomentMembers) {
     const double difference = std::abs(stated.*value - exact.*value);
     if (difference > 0.0) worst = std::max(worst, difference / (stated.*error + exact.*error));
   }

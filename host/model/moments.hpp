@@ -1,8 +1,10 @@
 // The hemispherical moments of the specular microfacet term (k_s = 1, no diffuse part).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "model/choices.hpp"
@@ -58,8 +60,9 @@ struct Moments {
   double r_q = 0.0;      ///< rho_Q cos(theta), signed
   double albedo = 0.0;   ///< A cos(theta): the same integral with R = 1
   double deficit = 0.0;  ///< cos(theta) - r_i, summed directly: no cancellation where rho_I is near 1
-  double direct_i = 0.0;  ///< what facets emit straight to the viewer: eps_I cos(theta) of the direct emission
-  double direct_q = 0.0;  ///< eps_Q cos(theta); eps_s = eps_I + eps_Q, eps_p = eps_I - eps_Q
+  /// What facets emit straight to the viewer: eps_I cos(theta) of the direct emission; NaN where it was not wanted.
+  double direct_i = std::numeric_limits<double>::quiet_NaN();
+  double direct_q = std::numeric_limits<double>::quiet_NaN();  ///< eps_Q cos(theta); eps_s = eps_I + eps_Q, eps_p = eps_I - eps_Q
   // Bounds of the absolute errors of the six, in the same units (quadrature, masking tables and rounding).
   double r_i_error = 0.0;
   double r_q_error = 0.0;
@@ -69,5 +72,19 @@ struct Moments {
   double direct_q_error = 0.0;
   double evaluations = 0.0;  ///< integrand evaluations spent on this entry
 };
+
+/// A moment and the bound of its error.
+struct MomentMember {
+  double Moments::*value;
+  double Moments::*error;
+};
+/// All of them, the two of the direct emission last.
+inline constexpr std::array<MomentMember, 6> kMomentMembers = {{{&Moments::r_i, &Moments::r_i_error},
+                                                                {&Moments::r_q, &Moments::r_q_error},
+                                                                {&Moments::albedo, &Moments::albedo_error},
+                                                                {&Moments::deficit, &Moments::deficit_error},
+                                                                {&Moments::direct_i, &Moments::direct_i_error},
+                                                                {&Moments::direct_q, &Moments::direct_q_error}}};
+inline constexpr std::size_t kDirectMembers = 2;
 
 }  // namespace dolp

@@ -30,6 +30,9 @@ Moments mirror_moments(const OpticalConstants& index, double cosine) {
   moments.r_q_error = moments.r_i == 0.0 ? 0.0 : rounding;
   moments.albedo_error = rounding;
   moments.deficit_error = rounding * 0.5 * (absorbed.s + absorbed.p);
+  moments.direct_i = moments.deficit;
+  moments.direct_q = -moments.r_q;
+  moments.direct_i_error = moments.direct_q_error = moments.deficit_error;
   return moments;
 }
 

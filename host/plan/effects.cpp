@@ -11,13 +11,15 @@
 
 #include "base/parallel_ranges.hpp"
 #include "model/choices.hpp"
+#include "model/direction.hpp"
 #include "spectrum/spectral_rule.hpp"
 
 namespace dolp {
 namespace {
 
-constexpr std::array kDroppingOrder = {Part::kMoments,      Part::kSource,  Part::kSurroundings, Part::kEmission,
-                                       Part::kPathRadiance, Part::kDiffuse, Part::kMoments};
+constexpr std::array kDroppingOrder = {Part::kMoments,  Part::kSource,       Part::kSurroundings,
+                                       Part::kEmission, Part::kPathRadiance, Part::kDiffuse,
+                                       Part::kMoments,  Part::kFurtherBounces};
 
 constexpr double kFarBelow = 0.1;
 
@@ -113,6 +115,8 @@ DropBound worst_bound(const InfluenceBounds& bounds, const Candidate& candidate,
 
 bool is_asked_for(const Scene& scene, Part part) {
   switch (part) {
+    case Part::kFurtherBounces:
+      return scene.surface.scattering == Scattering::kMultiple;
     case Part::kMoments:
       return scene.surface.specular > 0.0;
     case Part::kSource:
@@ -131,7 +135,9 @@ bool is_asked_for(const Scene& scene, Part part) {
 
 bool is_bistatic(const Scene& scene) { return scene.geometry.mode == Mode::kBistatic; }
 
-bool is_fresnel(const Scene& scene) { return scene.emission && scene.emission->model == EmissionModel::kFresnel; }
+bool emits_as(const Scene& scene, EmissionModel model) { return scene.emission && scene.emission->model == model; }
+
+bool is_fresnel(const Scene& scene) { return emits_as(scene, EmissionModel::kFresnel); }
 
 bool needs_beams(const Scene& scene, const InfluenceBounds& bounds, const KeptEffects& kept) {
   return is_bistatic(scene) && kept.source && !bounds.adds_nothing(Part::kSource, kept) && scene.surface.specular > 0.0;
@@ -215,6 +221,18 @@ EffectRow model_row(const Scene& scene, const EffectPlan& plan, const char* name
   return row;
 }
 
+EffectRow scattering_row(const Scene& scene, const EffectPlan& plan, const SceneEntries& entries) {
+  constexpr const char* kName = "scattering";
+  if (scene.surface.scattering == Scattering::kSingle) {
+    return absent(kName, "surface.scattering is single: light is followed to its first facet");
+  }
+  EffectRow row = model_row(scene, plan, kName, "all bounces in V-grooves", entries);
+  if (row.state != EffectState::kKept) return row;
+  row.reason = "all bounces in V-grooves";
+  row.needs = moments_needs(scene);
+  return part_row(scene, plan, kName, Part::kFurtherBounces, row);
+}
+
 EffectRow complex_index_row(const Scene& scene, const EffectPlan& plan, const SceneEntries& entries) {
   constexpr const char* kName = "complex index";
   const std::vector<OpticalConstants> indices = spectral_rule(scene).indices();
@@ -234,8 +252,10 @@ EffectRow emission_row(const Scene& scene, const EffectPlan& plan) {
   constexpr const char* kName = "emission";
   if (!scene.emission) return absent(kName, "no [emission]");
   EffectRow row{kName, EffectState::kKept};
-  row.reason = fmt::format("{:g} K, {}", scene.emission->temperature_K,
-                           is_fresnel(scene) ? "of the smooth surface" : "1 - rho of the surface (Kirchhoff)");
+  const char* of = is_fresnel(scene)                              ? "of the smooth surface"
+                   : emits_as(scene, EmissionModel::kDirect) ? "of the facets, straight to the viewer"
+                                                                 : "1 - rho of the surface (Kirchhoff)";
+  row.reason = fmt::format("{:g} K, {}", scene.emission->temperature_K, of);
   row.needs = is_fresnel(scene) || !plan.needs_moments ? "closed form" : moments_needs(scene);
   return part_row(scene, plan, kName, Part::kEmission, row);
 }
@@ -298,6 +318,11 @@ EffectRow masking_row(const Scene& scene, const EffectPlan& plan, const SceneEnt
 
 }  // namespace
 
+bool shows_scattering_gap(const Scene& scene) {
+  return emits_as(scene, EmissionModel::kMoments) && scene.surface.scattering == Scattering::kSingle &&
+         has_direct_emission(scene.surface.masking) && !is_bistatic(scene);
+}
+
 EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool keep_all) {
   const SpectralRule rule = spectral_rule(scene);
   const InfluenceBounds bounds(scene, rule);
@@ -308,6 +333,7 @@ EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool ke
   if (!keep_all) {
     for (const Part part : kDroppingOrder) {
       if (!is_kept(plan.kept, part)) continue;
+      if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // it is made of them
       const double left = allowed - std::max(plan.bound.dolp, plan.bound.rho);
       const DropBound bound = worst_bound(bounds, {part, plan.kept, left}, ordered);
       if (!is_within(bound, left)) continue;
@@ -317,6 +343,9 @@ EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool ke
     }
   }
   plan.needs_moments = plan.kept.moments;
+  plan.needs_direct = plan.needs_moments && scene.emission &&
+                      (scene.emission->has_bracket ||
+                       (emits_as(scene, EmissionModel::kDirect) && plan.kept.emission));
   plan.needs_beams = needs_beams(scene, bounds, plan.kept);
   plan.gives_rho = plan.needs_moments || scene.surface.specular == 0.0;
   return plan;
@@ -334,6 +363,7 @@ std::vector<EffectRow> effect_rows(const Scene& scene, const SceneEntries& entri
           diffuse_row(scene, plan),
           model_row(scene, plan, "distribution", name_of(scene.surface.distribution), entries),
           masking_row(scene, plan, entries),
+          scattering_row(scene, plan, entries),
           complex_index_row(scene, plan, entries),
           emission_row(scene, plan),
           source_row(scene, plan),

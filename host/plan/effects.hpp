@@ -30,6 +30,7 @@ struct EffectPlan {
   std::vector<DroppedPart> dropped;  ///< in the order of dropping; parts that the scene lacks are not among them
   DropBound bound;                   ///< of all dropped parts together
   bool needs_moments = true;         ///< the specular moments, at theta or in bistatic mode at the view
+  bool needs_direct = false;         ///< those of the direct emission too
   bool needs_beams = false;          ///< f of the source's and the view's direction
   bool gives_rho = true;  ///< rho_i, rho_q and rho_error_estimate are known; the albedo with the moments alone
 };
@@ -44,6 +45,10 @@ struct EffectPlan {
 /// everything that the scene has. Host only: some microseconds an entry and part, none where the last entries tell that
 /// a part counts.
 EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool keep_all);
+
+/// Whether the direct emission would say how far single scattering may be off: Kirchhoff's emission, with a masking that
+/// has one.
+bool shows_scattering_gap(const Scene& scene);
 
 /// Nothing left out: what `plan_effects` says with `keep_all`.
 inline EffectPlan keep_everything(const Scene& scene) { return plan_effects(scene, SceneEntries(), true); }

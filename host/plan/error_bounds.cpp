@@ -3,7 +3,9 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <numbers>
 
+#include "model/slopes.hpp"
 #include "plan/kernel_data.hpp"
 
 namespace dolp {
@@ -65,16 +67,15 @@ double masking_bound(Distribution distribution, Masking masking, const kernel::T
   return std::min(1.0, 2.0 * theta.c / (theta.c + theta.s * mean_slope(distribution, shape)));
 }
 
-double steeper_share(Distribution distribution, const kernel::ShapeNode& shape, double slope) {
-  const double u = slope / shape.m;
-  return std::exp(distribution == Distribution::kGaussian ? -u * u : -shape.q_minus_1 * std::log1p(u * u));
+double share_beyond(Distribution distribution, const kernel::ShapeNode& shape, double slope) {
+  return steeper_share(distribution, {shape.m / std::numbers::sqrt2, shape.q_minus_1 + 1.0}, slope);
 }
 
 // Upper bound of the albedo integral (times cos theta) over the slopes T beyond the cut, which the kernel leaves out:
 // e <= c + s t, so that without masking it is at most c * tail(T) + 2 s * integral of P t^2 over t > T.
 double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape) {
   const double reached = std::min(shape.cut, theta.end[DOLP_MAX_PIECES]);
-  const double tail = steeper_share(data.distribution, shape, reached);
+  const double tail = share_beyond(data.distribution, shape, reached);
   if (data.scattering == Scattering::kMultiple) return theta.c * tail;
   if (reached < shape.cut) return 0.0;
   const double u = shape.cut / shape.m;
@@ -150,7 +151,7 @@ double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta
                           const kernel::ShapeNode& shape) {
   const double slope = 1.0 / std::tan(0.5 * pi<double>() / DOLP_MOST_BOUNCES);
   const double most = std::min(kManyBouncesError, reflected_by_steep_grooves(theta, index, slope));
-  return most * theta.c * steeper_share(data.distribution, shape, slope);
+  return most * theta.c * share_beyond(data.distribution, shape, slope);
 }
 
 double pair_factor(const KernelData& data, const kernel::IndexNode& index) {

@@ -19,6 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-8;
 // A cosine that may be divided by.
 constexpr double kSmallestCosine = 1e-300;
+constexpr double kMostDirectQ = 0.5;  // of |eps_Q| of the direct emission, because |M01| is at most R_s / 2
 
 double finite_or_infinite(double bound) {
   if (std::isnan(bound)) return kInfinity;
@@ -27,6 +28,8 @@ double finite_or_infinite(double bound) {
 
 bool KeptEffects::*flag(Part part) {
   switch (part) {
+    case Part::kFurtherBounces:
+      return &KeptEffects::further_bounces;
     case Part::kMoments:
       return &KeptEffects::moments;
     case Part::kSource:
@@ -41,6 +44,10 @@ bool KeptEffects::*flag(Part part) {
       return &KeptEffects::diffuse;
   }
   return nullptr;
+}
+
+bool changes_rho(Part part) {
+  return part == Part::kMoments || part == Part::kFurtherBounces || part == Part::kDiffuse;
 }
 
 }  // namespace
@@ -76,6 +83,7 @@ struct InfluenceBounds::Sums {
 /// What the sums at an entry are made of.
 struct InfluenceBounds::AtEntry {
   ReflectanceBounds specular;  ///< times k_s
+  double further = 0.0;        ///< of rho_I and rho_Q by bounces after the first, at most; in `specular` too
   double diffuse = 0.0;        ///< of rho
   BeamBounds beam;             ///< exitance for E0 = 1, times k_s
   double diffuse_beam = 0.0;
@@ -110,6 +118,12 @@ InfluenceBounds::AtEntry InfluenceBounds::at_entry(const KeptEffects& kept, cons
   if (kept.moments && surface.specular > 0.0) {
     at.specular = memory.bounds(surface, theta_deg, entry, own, detail);
     for (double* value : {&at.specular.most_i, &at.specular.most_q, &at.specular.least_i}) *value *= surface.specular;
+    if (kept.further_bounces && surface.scattering == Scattering::kMultiple) {
+      const double slope = std::tan((30.0 - theta_deg / 3.0) * pi<double>() / 180.0);
+      at.further = surface.specular * steeper_share(surface.distribution, entry.shape, slope);
+      at.specular.most_i = std::min(at.specular.most_i + at.further, surface.specular);
+      at.specular.most_q += at.further;
+    }
   }
   const double c = surface.diffuse_exponent;
   const bool has_diffuse = kept.diffuse && surface.diffuse > 0.0;
@@ -133,10 +147,14 @@ InfluenceBounds::AtEntry InfluenceBounds::at_entry(const KeptEffects& kept, cons
   return at;
 }
 
+/// Whether the emission is 1 - rho.
+bool InfluenceBounds::is_kirchhoff() const {
+  return scene_.emission && scene_.emission->model == EmissionModel::kMoments;
+}
+
 /// The exitance that the specular and diffuse parts of rho are multiplied by, at most: of emission and surroundings.
 double InfluenceBounds::weight(const KeptEffects& kept) const {
-  const bool fresnel = scene_.emission && scene_.emission->model == EmissionModel::kFresnel;
-  const double emitted = kept.emission && !fresnel ? total_.emitted : 0.0;
+  const double emitted = kept.emission && is_kirchhoff() ? total_.emitted : 0.0;
   const double surroundings = kept.surroundings ? total_.surroundings : 0.0;
   if (emitted != 0.0 && kept.surroundings && scene_.surroundings) return total_.excess;
   return std::max(emitted, surroundings);
@@ -144,6 +162,7 @@ double InfluenceBounds::weight(const KeptEffects& kept) const {
 
 InfluenceBounds::Sums InfluenceBounds::sums(const KeptEffects& kept, const AtEntry& at) const {
   const bool fresnel = scene_.emission && scene_.emission->model == EmissionModel::kFresnel;
+  const bool direct = scene_.emission && scene_.emission->model == EmissionModel::kDirect;
   const double surroundings = kept.surroundings ? total_.surroundings : 0.0;
   const double source = kept.source ? total_.irradiance : 0.0;
   const double certain = has_negative_ ? 0.0 : 1.0;  // weights of both signs leave nothing certain
@@ -157,6 +176,9 @@ InfluenceBounds::Sums InfluenceBounds::sums(const KeptEffects& kept, const AtEnt
   if (kept.emission && fresnel) {
     sum.least_i += at.smooth_emitted + surroundings * least;
     sum.most_qu += at.smooth_split + surroundings * at.specular.most_q;
+  } else if (kept.emission && direct) {
+    sum.least_i += surroundings * least;
+    sum.most_qu += kMostDirectQ * total_.emitted + surroundings * at.specular.most_q;
   } else if (kept.emission && total_.emitted > 0.0) {
     const double gap = weight(kept);
     const bool is_colder = surroundings < total_.emitted;
@@ -177,13 +199,17 @@ InfluenceBounds::Sums InfluenceBounds::sums(const KeptEffects& kept, const AtEnt
 
 InfluenceBounds::Sums InfluenceBounds::added_by(Part part, const KeptEffects& kept, const AtEntry& at) const {
   const bool fresnel = scene_.emission && scene_.emission->model == EmissionModel::kFresnel;
+  const bool direct = scene_.emission && scene_.emission->model == EmissionModel::kDirect;
   const double most = at.specular.most_i + at.diffuse;
   const double source = kept.source ? total_.irradiance : 0.0;
   const double incident = source * at.source_cosine;
   Sums sum;
   switch (part) {
+    case Part::kFurtherBounces:
+      sum.most_i = sum.most_qu = (weight(kept) + incident) * at.further;
+      break;
     case Part::kMoments:
-      sum.most_i = (weight(kept) + incident) * at.specular.most_i;
+      sum.most_i = direct && kept.emission ? kInfinity : (weight(kept) + incident) * at.specular.most_i;
       sum.most_qu = (weight(kept) + incident) * at.specular.most_q;
       break;
     case Part::kSource:
@@ -195,8 +221,10 @@ InfluenceBounds::Sums InfluenceBounds::added_by(Part part, const KeptEffects& ke
       sum.most_qu = total_.surroundings * at.specular.most_q;
       break;
     case Part::kEmission:
-      sum.most_i = fresnel ? at.smooth_emitted : total_.emitted * std::max(1.0, most - 1.0);
-      sum.most_qu = fresnel ? at.smooth_split : total_.emitted * at.specular.most_q;
+      sum.most_i = fresnel ? at.smooth_emitted : direct ? total_.emitted : total_.emitted * std::max(1.0, most - 1.0);
+      sum.most_qu = fresnel  ? at.smooth_split
+                    : direct ? kMostDirectQ * total_.emitted
+                             : total_.emitted * at.specular.most_q;
       break;
     case Part::kPathRadiance:
       sum.most_i = path_;
@@ -215,8 +243,12 @@ InfluenceBounds::Sums InfluenceBounds::added_by(Part part, const KeptEffects& ke
 bool InfluenceBounds::adds_nothing(Part part, const KeptEffects& kept) const {
   const Surface& surface = scene_.surface;
   const double into_hemisphere = bistatic_ || !kept.source ? 0.0 : total_.irradiance;
+  const bool emits_directly = kept.emission && scene_.emission && scene_.emission->model == EmissionModel::kDirect;
   switch (part) {
+    case Part::kFurtherBounces:
+      return surface.scattering == Scattering::kSingle || (!emits_directly && adds_nothing(Part::kMoments, kept));
     case Part::kMoments:
+      if (emits_directly && surface.specular > 0.0) return false;
       return surface.specular == 0.0 || (weight(kept) == 0.0 && into_hemisphere == 0.0);
     case Part::kSource:
       return total_.irradiance == 0.0;
@@ -244,7 +276,7 @@ DropBound InfluenceBounds::bound(Part part, const KeptEffects& kept, const Scene
   const KeptEffects rest = without(kept, part);
   const Sums whole = sums(kept, at);
   const Sums left =
-      sums(rest, part == Part::kMoments || part == Part::kDiffuse ? at_entry(rest, entry, detail, memory) : at);
+      sums(rest, changes_rho(part) ? at_entry(rest, entry, detail, memory) : at);
   const Sums added = added_by(part, kept, at);
   const auto polarisation = [](const Sums& sum) {
     const double most = sum.least_i > 0.0 ? finite_or_infinite(sum.most_qu / sum.least_i) : kInfinity;
@@ -261,6 +293,9 @@ DropBound InfluenceBounds::bound(Part part, const KeptEffects& kept, const Scene
   const bool gives_rho = kept.moments || scene_.surface.specular == 0.0;
   if (part == Part::kDiffuse && gives_rho) {
     bound.rho = finite_or_infinite(at.diffuse / (at.specular.least_i + at.diffuse)) * (1.0 + kRounding);
+  }
+  if (part == Part::kFurtherBounces && gives_rho) {
+    bound.rho = finite_or_infinite(at.further / (at.specular.least_i + at.diffuse)) * (1.0 + kRounding);
   }
   return bound;
 }

@@ -206,10 +206,15 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, const Mom
   return without_coincident(points);
 }
 
-double arcs_per_slope(const KernelData& data, double critical) {
+// `start`: of the piece.
+double arcs_per_slope(const KernelData& data, double critical, double start) {
   double arcs = data.masking == Masking::kIntegral || data.masking == Masking::kVCavity ? 3.0 : 1.0;
   if (data.has_direct) arcs += data.masking == Masking::kVCavity ? 2.0 : 1.0;
-  if (data.scattering == Scattering::kMultiple) arcs = DOLP_MAX_ARCS;
+  if (data.scattering == Scattering::kMultiple) {
+    // Steep grooves have no lines below gamma.
+    const bool is_steep = start >= slope_with_bounces(DOLP_SPLIT_BOUNCES + 2.0);
+    arcs = is_steep ? DOLP_SPLIT_BOUNCES + 2.0 : DOLP_MAX_ARCS;
+  }
   return critical > 0.0 ? 2.0 * arcs : arcs;
 }
 
@@ -219,7 +224,7 @@ double turns_in_groove(double slope) {
   constexpr double kFewBounces = 6.0;
   if (slope <= slope_with_bounces(kFewBounces)) return kFewBounces + 1.0;
   const double most = DOLP_MOST_BOUNCES + 1.0;
-  double turns = most;
+  double turns = most + DOLP_MOST_DOUBLINGS;
   for (int done = 0; done < DOLP_MOST_DOUBLINGS; done += DOLP_DOUBLINGS_AT_ONCE) {
     if (slope > slope_with_bounces(std::ldexp(DOLP_MOST_BOUNCES, done))) turns += most;
   }
@@ -228,7 +233,7 @@ double turns_in_groove(double slope) {
 
 // Loops of one invocation: below the 65,535 iterations at which lavapipe stops without notice.
 constexpr double kMostIterations = 64'000.0;
-constexpr double kTurnsOfSlope = DOLP_MOST_DOUBLINGS + DOLP_SPLIT_BOUNCES + 1.0;  // of a groove, to prepare it
+constexpr double kTurnsOfSlope = DOLP_SPLIT_BOUNCES + 1.0;  // of a groove, to find its lines
 
 // Bound of the loop iterations of one invocation, that is of one piece: two rules, slopes, arcs, azimuths, bounces, with
 // everything at its most nodes. No bound on what an entry does is enough, because invocations that run in lockstep wait
@@ -241,16 +246,16 @@ double iterations(double slopes, double azimuths, double arcs, double turns) {
   return of_rule(1.0) + of_rule(kCoarseShare + 1.0 / slopes);
 }
 
-double piece_iterations(const KernelData& data, double arcs, double end, double most_nodes) {
+double piece_iterations(const KernelData& data, double critical, double start, double end, double most_nodes) {
   const bool is_multiple = data.scattering == Scattering::kMultiple;
-  return iterations(is_multiple ? most_nodes : data.rule_order, most_nodes, arcs,
-                    is_multiple ? turns_in_groove(end) : 0.0);
+  return iterations(is_multiple ? std::floor(most_nodes / DOLP_AZIMUTHS_PER_SLOPE) : data.rule_order, most_nodes,
+                    arcs_per_slope(data, critical, start), is_multiple ? turns_in_groove(end) : 0.0);
 }
 
 // The most nodes of an arc; the error estimate shows what that costs.
-std::uint8_t most_nodes(const KernelData& data, double arcs, double end) {
+std::uint8_t most_nodes(const KernelData& data, double critical, double start, double end) {
   int most = data.rule_order;
-  while (piece_iterations(data, arcs, end, most) > kMostIterations) --most;
+  while (piece_iterations(data, critical, start, end, most) > kMostIterations) --most;
   return static_cast<std::uint8_t>(most);
 }
 
@@ -270,8 +275,9 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   }
   pieces.count = static_cast<std::uint32_t>(points.size() - 1);
   pieces.has_split_line = variant.has_line;
-  const double arcs = arcs_per_slope(data, variant.critical_cos);
-  for (std::size_t i = 0; i < pieces.count; ++i) pieces.most_nodes[i] = most_nodes(data, arcs, node.end[i + 1]);
+  for (std::size_t i = 0; i < pieces.count; ++i) {
+    pieces.most_nodes[i] = most_nodes(data, variant.critical_cos, node.end[i], node.end[i + 1]);
+  }
   data.thetas.push_back(node);
   data.pieces.push_back(pieces);
 }
@@ -419,11 +425,12 @@ double worst_iterations(const KernelData& data) {
   double worst = 0.0;
   for (std::size_t i = 0; i < data.size(); ++i) {
     const MomentsEntry entry = data[i];
-    const double arcs = arcs_per_slope(data, data.indices[entry.index].critical_cos);
+    const double critical = data.indices[entry.index].critical_cos;
     const Pieces& pieces = data.pieces[entry.theta];
+    const kernel::ThetaNode& theta = data.thetas[entry.theta];
     for (std::uint32_t piece = 0; piece < pieces.count; ++piece) {
-      const double end = data.thetas[entry.theta].end[piece + 1];
-      worst = std::max(worst, piece_iterations(data, arcs, end, pieces.most_nodes[piece]));
+      worst = std::max(worst,
+                       piece_iterations(data, critical, theta.end[piece], theta.end[piece + 1], pieces.most_nodes[piece]));
     }
   }
   return worst;

@@ -18,9 +18,9 @@ using real = double;
 /// The pieces of the slope axis of one direction, beside what ThetaNode says of them.
 struct Pieces {
   std::uint32_t count = 0;
-  std::array<std::uint8_t, DOLP_MAX_PIECES + 1> roots{};  ///< of each end: bits kRootAbove, kRootBelow
+  std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};  ///< of each end: bits kRootAbove, kRootBelow
   /// Of each piece the most nodes of an arc, with all bounces of its slopes too, which bounds the loop iterations.
-  std::array<std::uint8_t, DOLP_MAX_PIECES> most_nodes{};
+  std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};
   bool has_split_line = false;  ///< b = pi/2 of `integral`, or smith's cusp
 };
 

@@ -1,7 +1,6 @@
 #include "plan/shape_plan.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "model/choices.hpp"
@@ -24,7 +23,7 @@ double node_tolerance(const MomentsRequest& request) {
                                                  : std::max(wanted, std::min(kLeastFloatTolerance, request.tolerance));
 }
 
-/// One of the four moments, or its bound, at the nodes: sigma x q.
+/// One of the moments, or its bound, at the nodes: sigma x q.
 Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, double Moments::*quantity) {
   Values values(static_cast<Eigen::Index>(plan.sigma.nodes.size()), static_cast<Eigen::Index>(plan.q.nodes.size()));
   for (Eigen::Index i = 0; i < values.size(); ++i) values.data()[i] = nodes[static_cast<std::size_t>(i)].*quantity;
@@ -45,11 +44,6 @@ Eigen::RowVectorXd tails(const ShapeAxis& axis, const Values& values) {
   }
   return bounds;
 }
-
-constexpr std::array<double Moments::*, 4> kMoments = {&Moments::r_i, &Moments::r_q, &Moments::albedo,
-                                                       &Moments::deficit};
-constexpr std::array<double Moments::*, 4> kBounds = {&Moments::r_i_error, &Moments::r_q_error, &Moments::albedo_error,
-                                                      &Moments::deficit_error};
 
 void store(const Values& values, double Moments::*quantity, std::span<Moments> moments) {
   for (std::size_t i = 0; i < moments.size(); ++i) moments[i].*quantity = values.data()[i];
@@ -75,13 +69,14 @@ std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
 void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::span<Moments> moments) {
   const Values sigma = plan.sigma.cardinal;
   const Values q = plan.q.cardinal.transpose();
-  for (std::size_t k = 0; k < kMoments.size(); ++k) {
-    const Values at = at_nodes(plan, nodes, kMoments[k]);
-    Values bound = at_nodes(plan, nodes, kBounds[k]);
+  const std::size_t unwanted = plan.nodes.wants_direct ? 0 : kDirectMembers;
+  for (const auto& [value, error] : std::span(kMomentMembers).first(kMomentMembers.size() - unwanted)) {
+    const Values at = at_nodes(plan, nodes, value);
+    Values bound = at_nodes(plan, nodes, error);
     bound.rowwise() += tails(plan.sigma, at);
     bound.colwise() += tails(plan.q, at.transpose()).transpose();
-    store(sigma * at * q, kMoments[k], moments);
-    store(sigma.cwiseAbs() * bound * q.cwiseAbs(), kBounds[k], moments);
+    store(sigma * at * q, value, moments);
+    store(sigma.cwiseAbs() * bound * q.cwiseAbs(), error, moments);
   }
   double evaluations = 0.0;
   for (const Moments& node : nodes) evaluations += node.evaluations;

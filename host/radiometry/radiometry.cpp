@@ -34,10 +34,12 @@ struct Reflectance {
   double mismatch = 0.0;  ///< |rho_i + absorbed - 1|, which two independently summed moments need not make 0
 };
 
-/// Polarised emissivity of the fresnel model at one index: that of s is i + q, that of p is i - q.
+/// Polarised emissivity at one index: that of s is i + q, that of p is i - q.
 struct Emissivity {
   double i = 0.0;
   double q = 0.0;
+  double i_error = 0.0;
+  double q_error = 0.0;
   double terms = 0.0;  ///< sum of the magnitudes that make up either
 };
 
@@ -96,7 +98,27 @@ Reflectance reflectance(const Surface& surface, const Moments& moments, double c
 Emissivity fresnel_emissivity(const OpticalConstants& index, double cos_theta) {
   const SmoothAbsorptance absorptance = smooth_absorptance(index, cos_theta);
   const double mean = 0.5 * (absorptance.s + absorptance.p);
-  return {mean, 0.5 * (absorptance.s - absorptance.p), mean};
+  return {.i = mean, .q = 0.5 * (absorptance.s - absorptance.p), .terms = mean};
+}
+
+/// Equation: eps_I = k_s eps_I,direct + 1 - k_s - diffuse, eps_Q = k_s eps_Q,direct.
+Emissivity direct_emissivity(const Surface& surface, const Moments& m, double cos_theta) {
+  const double scale = surface.specular / cos_theta;
+  const double rest = 1.0 - surface.specular;
+  const double diffuse = diffuse_reflectance(surface, cos_theta);
+  return {.i = scale * m.direct_i + rest - diffuse,
+          .q = scale * m.direct_q,
+          .i_error = scale * m.direct_i_error,
+          .q_error = scale * m.direct_q_error,
+          .terms = scale * std::abs(m.direct_i) + rest + diffuse};
+}
+
+Emissivity kirchhoff_emissivity(const Reflectance& r) {
+  return {.i = r.absorbed,
+          .q = -r.rho_q,
+          .i_error = r.absorbed_error,
+          .q_error = r.rho_q_error,
+          .terms = std::abs(r.absorbed)};
 }
 
 /// What one sample adds to I under the moments' own emission.
@@ -136,15 +158,18 @@ void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflect
   sum.q_error += std::abs(net) * r.rho_q_error + rounding * net_terms * std::abs(r.rho_q);
 }
 
-/// The same with the emission of the smooth surface, whose absorptances have no error but rounding.
-void add_fresnel_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, const Emissivity& e,
+/// The same with an emission that is not 1 - rho.
+void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, const Emissivity& e,
                         double direct, double rounding) {
   const double incident = direct + sample.surroundings;
   sum.i += sample.emitted * e.i + incident * r.rho_i;
   sum.q += sample.emitted * e.q + incident * r.rho_q;
   const double emitted_terms = std::abs(sample.emitted) * e.terms;
-  sum.i_error += std::abs(incident) * r.rho_i_error + rounding * (emitted_terms + std::abs(incident * r.rho_i));
-  sum.q_error += std::abs(incident) * r.rho_q_error + rounding * (emitted_terms + std::abs(incident * r.rho_q));
+  const double emitted = std::abs(sample.emitted);
+  sum.i_error += emitted * e.i_error + std::abs(incident) * r.rho_i_error +
+                 rounding * (emitted_terms + std::abs(incident * r.rho_i));
+  sum.q_error += emitted * e.q_error + std::abs(incident) * r.rho_q_error +
+                 rounding * (emitted_terms + std::abs(incident * r.rho_q));
 }
 
 void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance) {
@@ -157,21 +182,73 @@ void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance
 }
 
 /// Exitances by emission and by reflection of the surroundings and, `with_source`, of the source into the hemisphere.
-Stokes stokes_sum(const Scene& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
-                  std::span<const OpticalConstants> indices, double cos_theta, bool with_source) {
-  const bool fresnel = emission_model(scene) == EmissionModel::kFresnel;
+Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflectances,
+                  std::span<const Emissivity> emissivities, EmissionModel model, double cos_theta, bool with_source) {
   const double rounding = kRadianceRounding + rule.relative_error;
   Stokes sum;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
     const double direct = with_source ? rule.samples[j].irradiance * cos_theta : 0.0;
-    if (fresnel) {
-      const Emissivity emissivity = fresnel_emissivity(indices[j], cos_theta);
-      add_fresnel_sample(sum, rule.samples[j], reflectances[j], emissivity, direct, rounding);
-    } else {
+    if (model == EmissionModel::kMoments) {
       add_moments_sample(sum, rule.samples[j], reflectances[j], direct, rounding);
+    } else {
+      add_emitting_sample(sum, rule.samples[j], reflectances[j], emissivities[j], direct, rounding);
     }
   }
   return sum;
+}
+
+double relative_bound(double error, double value) {
+  if (error == 0.0) return 0.0;
+  return value > error ? error / (value - error) : kInfinity;
+}
+
+/// What DOLP lies between of a surface with these facets and all its bounces.
+///
+/// Equation: its eps_I is larger than the direct one by d <= D = 1 - rho_I - eps_I,direct, which changes eps_Q by d at
+/// most; I = X + N eps_I, Q = N eps_Q with N = pi B - X, X the exitances of source and surroundings. Both ends lie at d =
+/// D, where I is that of single scattering: (|sum N eps_Q,direct| -+ sum |N| D) / I.
+struct Bracket {
+  double low = 0.0;
+  double high = 0.0;
+  double error = 0.0;
+};
+
+Bracket bracket(const Scene& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
+                std::span<const Emissivity> direct, double cos_theta) {
+  Stokes single = stokes_sum(rule, reflectances, {}, EmissionModel::kMoments, cos_theta, true);
+  double q = 0.0;
+  double slack = 0.0;
+  double error = 0.0;
+  for (std::size_t j = 0; j < reflectances.size(); ++j) {
+    const SpectralSample& sample = rule.samples[j];
+    const double net = sample.irradiance * cos_theta + sample.excess;
+    q -= net * direct[j].q;
+    slack += std::abs(net) * std::max(reflectances[j].absorbed - direct[j].i, 0.0);
+    error += std::abs(net) * (reflectances[j].absorbed_error + direct[j].i_error + direct[j].q_error);
+  }
+  const double transmittance = scene.path ? scene.path->transmittance : 1.0;
+  add_path(single, scene.path, rule.path_exitance);
+  const double scale = transmittance / single.i;
+  Bracket between;
+  between.low = scale * std::max(std::abs(q) - slack, 0.0);
+  between.high = scale * (std::abs(q) + slack);
+  between.error = std::abs(scale) * error + between.high * relative_bound(single.i_error, std::abs(single.i));
+  return between;
+}
+
+/// What the direct emission says beside another: the bracket, and how far the DOLP of single scattering is from its own.
+void add_direct(PointResult& result, const Scene& scene, const SpectralRule& rule,
+                std::span<const Reflectance> reflectances, std::span<const Emissivity> direct, double cos_theta) {
+  if (scene.emission->has_bracket) {
+    const Bracket between = bracket(scene, rule, reflectances, direct, cos_theta);
+    result.dolp_low = between.low;
+    result.dolp_high = between.high;
+    result.error_estimate = std::max(result.error_estimate, between.error);
+  }
+  if (scene.emission->model != EmissionModel::kMoments) return;
+  Stokes other = stokes_sum(rule, reflectances, direct, EmissionModel::kDirect, cos_theta, true);
+  add_path(other, scene.path, rule.path_exitance);
+  result.scattering_gap = std::abs(std::abs(other.q) / other.i - result.dolp);
 }
 
 /// Adds pi E0 cos(theta_i) f of the beam from the source, the factor pi as in the exitances of the sum.
@@ -210,17 +287,26 @@ void set_dolp(PointResult& result, const Stokes& sum) {
   }
 }
 
-double relative_bound(double error, double value) {
-  if (error == 0.0) return 0.0;
-  return value > error ? error / (value - error) : kInfinity;
-}
-
 /// Whether rho_s or rho_p is outside [0, 1] beyond doubt.
 bool is_unphysical(const Reflectance& r) {
   const double q = std::abs(r.rho_q);
   const double above = std::max(q - r.absorbed - r.absorbed_error, r.rho_i + q - 1.0 - r.rho_i_error);
   const double below = q - r.rho_i - r.rho_i_error;
   return std::max(above, below) > r.rho_q_error + kReflectanceRounding;
+}
+
+void add_emissivity(PointResult& result, const SpectralRule& rule, std::span<const Emissivity> emissivities) {
+  double total = 0.0;
+  double i = 0.0;
+  double q = 0.0;
+  for (std::size_t j = 0; j < emissivities.size(); ++j) {
+    const double weight = rule.samples[j].emitted;
+    total += weight;
+    i += weight * emissivities[j].i;
+    q += weight * emissivities[j].q;
+  }
+  result.emissivity_s = (i + q) / total;
+  result.emissivity_p = (i - q) / total;
 }
 
 std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
@@ -356,6 +442,7 @@ Radiometry::Radiometry(const Scene& scene, const KeptEffects& kept, const DropBo
 
 PointResult Radiometry::finished(PointResult result) const {
   if (!kept_.moments) result.albedo = kNan;
+  if (!knows_rho_ && emission_model(scene_) != EmissionModel::kFresnel) result.emissivity_s = result.emissivity_p = kNan;
   if (!knows_rho_) result.rho_i = result.rho_q = result.rho_error_estimate = kNan;
   result.error_estimate += dropped_.dolp;
   result.rho_error_estimate += dropped_.rho;
@@ -401,7 +488,19 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
     if (is_unphysical(own.back())) result.status |= kStatusUnphysicalReflectance;
   }
   const std::span<const Reflectance> reflectances(own.data(), own.size());
-  Stokes sum = stokes_sum(scene_, kept_rule_, reflectances, indices, cos_theta, !bistatic);
+  const EmissionModel model = emission_model(scene_);
+  const auto emissivities_of = [&](EmissionModel of) {
+    boost::container::small_vector<Emissivity, 1> list;
+    for (std::size_t j = 0; j < moments.size(); ++j) {
+      list.push_back(of == EmissionModel::kFresnel  ? fresnel_emissivity(indices[j], cos_theta)
+                     : of == EmissionModel::kDirect ? direct_emissivity(scene_.surface, moments[j], cos_theta)
+                                                    : kirchhoff_emissivity(own[j]));
+    }
+    return list;
+  };
+  const auto list = emissivities_of(model);
+  const std::span<const Emissivity> emissivities(list.data(), list.size());
+  Stokes sum = stokes_sum(kept_rule_, reflectances, emissivities, model, cos_theta, !bistatic);
   if (bistatic) add_beam(sum, scene_.surface, beam_specular_, kept_rule_, scattered, cos_theta_i, cos_theta);
   add_path(sum, scene_.path, kept_rule_.path_exitance);
   const double unit = bistatic ? 1.0 / pi<double>() : 1.0;  // an exitance, or the radiance that it is the integral of
@@ -415,6 +514,11 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   result.albedo = moments.front().albedo / cos_theta;
   result.rho_error_estimate = relative_bound(mean.error, mean.rho_i);
   set_dolp(result, sum);
+  if (scene_.emission) add_emissivity(result, rule_, emissivities);
+  if (!std::isnan(moments.front().direct_i) && model != EmissionModel::kFresnel) {
+    const auto direct = emissivities_of(EmissionModel::kDirect);
+    add_direct(result, scene_, kept_rule_, reflectances, {direct.data(), direct.size()}, cos_theta);
+  }
   if (sum.i <= 0.0) result.status |= kStatusNonPositiveIntensity;
   if (std::isnan(result.dolp)) result.status |= kStatusOutsideDomain;
   return result;

@@ -23,9 +23,7 @@ Moments closed_form(const Surface& surface, const Direction& direction, const Sl
   if (direction.treatment == Treatment::kDivergentLimit) return grazing_limit_moments(index, shape.q);
   const double steep = steep_share(surface, shape) * direction.cos_theta;
   Moments moments = mirror_moments(index, direction.cos_theta);
-  for (double* error : {&moments.r_i_error, &moments.r_q_error, &moments.albedo_error, &moments.deficit_error}) {
-    *error += steep;
-  }
+  for (const auto& [value, error] : kMomentMembers) moments.*error += steep;
   return moments;
 }
 

@@ -51,6 +51,7 @@ struct Surface {
 struct Emission {
   double temperature_K = 0.0;
   EmissionModel model = EmissionModel::kMoments;
+  bool has_bracket = false;  ///< dolp_low and dolp_high too
 };
 
 /// Irradiance at normal incidence; exactly one of the three kinds.

@@ -31,6 +31,10 @@ SceneKey choice(const char* key, Choice fallback, const char* meaning, Set set) 
   return word(key, {words.begin(), words.end()}, name_of(fallback), meaning, set);
 }
 
+SceneKey flag(const char* key, const char* meaning, Set set) {
+  return {{key, Type::kFlag, "", {}, {}, "false", meaning}, set};
+}
+
 SceneKey text(const char* key, const char* meaning, Set set) {
   return {{key, Type::kText, "", {}, {}, "", meaning}, set};
 }
@@ -65,6 +69,9 @@ std::vector<SceneKey> surface_keys() {
              [](Draft& d, const Value& v) { d.scene.surface.q = v.number; }),
       choice("surface.masking", Surface().masking, "geometric attenuation G; smith with cauchy needs every q > 1.5",
              [](Draft& d, const Value& v) { d.scene.surface.masking = static_cast<Masking>(v.word); }),
+      choice("surface.scattering", Surface().scattering,
+             "light followed to its first facet, or through all bounces in V-grooves (masking v-cavity)",
+             [](Draft& d, const Value& v) { d.scene.surface.scattering = static_cast<Scattering>(v.word); }),
       number("surface.specular", "1", kFractionRange, "1", "specular factor k_s",
              [](Draft& d, const Value& v) { d.scene.surface.specular = v.number; }),
       number("surface.diffuse", "1", kFractionRange, "0", "diffuse factor k_d",
@@ -80,8 +87,11 @@ std::vector<SceneKey> radiation_keys() {
       number("emission.temperature_K", "K", kEmissionTemperatureRange, "required", "temperature T of the surface",
              [](Draft& d, const Value& v) { d.scene.emission->temperature_K = v.number; }),
       choice("emission.model", Emission().model,
-             "emissivity from the rough surface's own moments, or from the smooth surface",
+             "emissivity 1 - rho of the rough surface, 1 - R of the smooth surface, or what the facets emit straight to "
+             "the viewer (masking smith or v-cavity)",
              [](Draft& d, const Value& v) { d.scene.emission->model = static_cast<EmissionModel>(v.word); }),
+      flag("emission.bracket", "adds dolp_low, dolp_high: what DOLP lies between with all bounces (masking smith or v-cavity)",
+           [](Draft& d, const Value& v) { d.scene.emission->has_bracket = v.is_set; }),
       number("source.irradiance", "W m-2 um-1", kNonNegativeRange, "", "E0 at normal incidence, flat over a band",
              [](Draft& d, const Value& v) {
                d.scene.source->kind = Source::Kind::kFlat;
@@ -217,6 +227,8 @@ std::string KeyDescription::allowed() const {
       return "a number in " + range.text();
     case Type::kWord:
       return words.size() == 1 ? '"' + words.front() + '"' : "one of " + join(words);
+    case Type::kFlag:
+      return "true or false";
     case Type::kText:
       return "a text";
     case Type::kPair:

@@ -23,6 +23,7 @@ struct KeyValue {
   double number = 0.0;
   std::size_t word = 0;  ///< position in KeyDescription::words
   std::string text;
+  bool is_set = false;          ///< flag
   std::vector<double> numbers;  ///< pair, axis
 };
 

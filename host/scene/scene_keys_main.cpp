@@ -15,6 +15,8 @@ std::string values(const KeyDescription& key) {
       return key.range.text();
     case KeyDescription::Type::kWord:
       return fmt::format("`{}`", fmt::join(key.words, "`, `"));
+    case KeyDescription::Type::kFlag:
+      return "`true`, `false`";
     case KeyDescription::Type::kText:
       return "text";
     case KeyDescription::Type::kPair:

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
+#include "model/direction.hpp"
 #include "scene/material_data.hpp"
 #include "scene/scene_document.hpp"
 #include "scene/scene_keys.hpp"
@@ -161,6 +162,33 @@ void check_smith(const Scene& scene, const SceneDocument& document) {
   }
 }
 
+/// What goes beyond single scattering needs the masking that it is defined for.
+void check_scattering(const Scene& scene, const SceneDocument& document) {
+  const Surface& surface = scene.surface;
+  const bool is_multiple = surface.scattering == Scattering::kMultiple;
+  const std::string masking = fmt::format("surface.masking is \"{}\"", name_of(surface.masking));
+  if (is_multiple && surface.masking != Masking::kVCavity) {
+    document.fail("surface.scattering", fmt::format("\"multiple\" needs masking = \"v-cavity\", and {}", masking));
+  }
+  if (!scene.emission) return;
+  const bool can_be_direct = has_direct_emission(surface.masking);
+  if (scene.emission->model == EmissionModel::kDirect && !can_be_direct) {
+    document.fail("emission.model", fmt::format("\"direct\" needs masking \"smith\" or \"v-cavity\", and {}", masking));
+  }
+  if (scene.emission->model == EmissionModel::kDirect && is_multiple) {
+    document.fail("emission.model", "\"direct\" needs surface.scattering = \"single\"");
+  }
+  if (!scene.emission->has_bracket) return;
+  if (!can_be_direct) {
+    document.fail("emission.bracket", fmt::format("needs masking \"smith\" or \"v-cavity\", and {}", masking));
+  }
+  if (is_multiple) document.fail("emission.bracket", "needs surface.scattering = \"single\"");
+  if (scene.emission->model == EmissionModel::kFresnel) {
+    document.fail("emission.bracket", "needs emission.model = \"moments\" or \"direct\"");
+  }
+  if (scene.geometry.mode == Mode::kBistatic) document.fail("emission.bracket", "needs geometry.mode = \"hemispherical\"");
+}
+
 void check_radiation(const Scene& scene, const SceneDocument& document) {
   if (!scene.emission && !scene.source && !scene.surroundings) {
     document.fail("emission", "missing; nothing radiates without one of the tables emission, source, surroundings");
@@ -181,6 +209,7 @@ Scene parse_scene(const std::string& text, const std::string& path_name, const s
   fill_grid(draft.scene, document);
   check_smith(draft.scene, document);
   check_radiation(draft.scene, document);
+  check_scattering(draft.scene, document);
   draft.scene.path_name = path_name;
   draft.scene.text = text;
   draft.scene.overrides = overrides;

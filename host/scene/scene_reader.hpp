@@ -26,7 +26,7 @@ Scene parse_scene(const std::string& text, const std::string& path_name, const s
 
 /// One scene key, for help texts, documentation and widgets.
 struct KeyDescription {
-  enum class Type { kNumber, kWord, kText, kPair, kAxis };
+  enum class Type { kNumber, kWord, kFlag, kText, kPair, kAxis };
   std::string key;  ///< dotted, e.g. "surface.n"
   Type type = Type::kNumber;
   std::string unit;                ///< "1" for numbers without one, empty for words and texts

@@ -136,6 +136,10 @@ KeyValue read_value(const SceneDocument& document, const KeyDescription& descrip
       break;
     case Type::kWord:
       return read_word(document, description, node);
+    case Type::kFlag:
+      if (!node.is_boolean()) document.fail(description.key, "must be " + description.allowed());
+      value.is_set = node.value_or(false);
+      break;
     case Type::kText:
       if (!node.is_string()) document.fail(description.key, "must be a text");
       value.text = node.value_or(std::string());

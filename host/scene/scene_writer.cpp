@@ -34,6 +34,7 @@ std::string value_text(const toml::node& node) {
     return "{ " + text + " }";
   }
   if (const auto* word = node.as_string()) return formatted(*word);
+  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
   return formatted(*node.as_integer());
 }
 

@@ -10,28 +10,28 @@
 // beam min(e, 2c) that meets the facet first, (min(X_k, X_1) - X_0) / (X_1 - X_0) goes on to bounce k, X_0 = max(a
 // sin(psi - gamma), 0).
 
-// A groove of one slope. Of more than DOLP_MOST_BOUNCES bounces 2^doublings are taken as one, by a facet that reflects so often
-// in a groove so much wider: what that changes is bounded in host/plan/error_bounds.cpp.
-struct Groove {
-  real t;
-  real2 turn;       // (cos, sin) of gamma, over the bounces taken as one
-  real angle;       // that gamma
+// The fan of facets that a ray meets: (cos, sin) of gamma and gamma itself, of as many grooves in one as bounces are taken
+// together: two turns of a ray that is reflected often are like one in a groove twice as wide, by a facet that reflects
+// twice. What that changes is bounded in host/plan/error_bounds.cpp.
+struct Fan {
+  real2 turn;
+  real angle;
   int doublings;
 };
 
-Groove groove(real t) {
-  Groove g;
-  g.t = t;
+// Of a groove of slope t, for a ray of zenith psi across it, which has (pi/2 - psi) / gamma bounces or one more.
+Fan fan(real t, real psi) {
   real r = real(1.0) / sqrt(real(1.0) + t * t);
-  g.turn = real2(t * r, r);
-  g.angle = arc_tangent(real(1.0) / max(t, real(1e-30)));
-  g.doublings = 0;
-  for (real most = real(0.5) * kPi; most > real(DOLP_MOST_BOUNCES) * g.angle && g.doublings < DOLP_MOST_DOUBLINGS;) {
-    g.turn = real2((g.turn.x - g.turn.y) * (g.turn.x + g.turn.y), real(2.0) * g.turn.x * g.turn.y);
-    g.angle += g.angle;
-    ++g.doublings;
+  Fan f;
+  f.turn = real2(t * r, r);
+  f.angle = arc_tangent(real(1.0) / max(t, real(1e-30)));
+  f.doublings = 0;
+  while (real(0.5) * kPi - psi > real(DOLP_MOST_BOUNCES) * f.angle && f.doublings < DOLP_MOST_DOUBLINGS) {
+    f.turn = real2((f.turn.x - f.turn.y) * (f.turn.x + f.turn.y), real(2.0) * f.turn.x * f.turn.y);
+    f.angle += f.angle;
+    ++f.doublings;
   }
-  return g;
+  return f;
 }
 
 // What a facet does in its own frame, on (I, Q, U, V): [m00 m01 0 0; m01 m00 0 0; 0 0 cross.x cross.y; 0 0 -cross.y cross.x].
@@ -89,17 +89,19 @@ real2 doubled_angle(real x, real y) {
 }
 
 // Integrand of the moments per unit of azimuth, as in facet.glsl, of the rays that meet the facet (t, phi) first.
-real4 reflected_in_groove(ThetaNode theta, IndexNode index, Groove g, real x, real sin_phi) {
+real4 reflected_in_groove(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   real c = theta.c;
   real u = theta.s * x;
   real b = theta.s * sin_phi;
   real a2 = max(c * c + u * u, kSmallestSquare);
-  real first = c * g.turn.y + u * g.turn.x;  // X_1
-  real least = max(u * g.turn.x - c * g.turn.y, real(0.0));
   real zenith = arc_tangent(abs(u) / max(c, real(1e-30)));
-  real left = (real(0.5) * kPi - choose(u < real(0.0), -zenith, zenith)) / g.angle;  // bounces, where there are many
-  real2 at = real2(first, c * g.turn.x - u * g.turn.y);
-  real2 step = real2((g.turn.x - g.turn.y) * (g.turn.x + g.turn.y), real(2.0) * g.turn.x * g.turn.y);
+  real psi = choose(u < real(0.0), -zenith, zenith);
+  Fan f = fan(t, psi);
+  real first = c * f.turn.y + u * f.turn.x;  // X_1
+  real least = max(u * f.turn.x - c * f.turn.y, real(0.0));
+  real left = (real(0.5) * kPi - psi) / f.angle;  // bounces, where there are many
+  real2 at = real2(first, c * f.turn.x - u * f.turn.y);
+  real2 step = real2((f.turn.x - f.turn.y) * (f.turn.x + f.turn.y), real(2.0) * f.turn.x * f.turn.y);
   // Rays of intensity 1 and of Q = 1 as the surface sees it.
   real4 natural = real4(real(1.0), real(0.0), real(0.0), real(0.0));
   real2 seen = doubled_angle(-x, c * sin_phi);
@@ -109,15 +111,15 @@ real4 reflected_in_groove(ThetaNode theta, IndexNode index, Groove g, real x, re
   while (share > real(0.0)) {
     real2 twice = doubled_angle(at.y, b * at.x);
     real sin2_beta = min((at.y * at.y + b * b * at.x * at.x) / a2, real(1.0));
-    Bounce by = bounce(index, max(at.x, real(1e-15)), sin2_beta, g.doublings);
+    Bounce by = bounce(index, max(at.x, real(1e-15)), sin2_beta, f.doublings);
     absorbed += share * (by.absorbed * natural.x - by.m01 * (twice.x * natural.y + twice.y * natural.z));
     natural += share * (bounced(by, twice, natural) - natural);
     polarised += share * (bounced(by, twice, polarised) - polarised);
     at = real2(at.x * step.x + at.y * step.y, at.y * step.x - at.x * step.y);
     left -= real(1.0);
-    share = choose(g.doublings > 0, left, (min(at.x, first) - least) / max(first - least, real(1e-30)));
+    share = choose(f.doublings > 0, left, (min(at.x, first) - least) / max(first - least, real(1e-30)));
     share = clamp(share, real(0.0), real(1.0));
   }
-  real beam = min(c + theta.s * g.t * x, real(2.0) * c);
+  real beam = min(c + theta.s * t * x, real(2.0) * c);
   return real4(beam * natural.x, beam * polarised.x, beam, beam * absorbed);
 }

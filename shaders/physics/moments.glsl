@@ -8,7 +8,6 @@
 struct Slope {
   real t;
   real digits;        // wanted of the sum over the azimuths
-  Groove groove;      // with all bounces
   Masked of_theta;
   bool has_split_line;
   int most_azimuths;
@@ -37,7 +36,7 @@ AzimuthSums arc_sums(ThetaNode theta, Row row, IndexNode index, Slope slope, Arc
   for (int i = 0; i < order; ++i) {
     Azimuth at = azimuth(arc, place_on_arc(arc, rule_node(first_node + i)));
     if (kIsMultiple) {
-      sums.member[0] += at.weight * reflected_in_groove(theta, index, slope.groove, at.x, at.sin_phi);
+      sums.member[0] += at.weight * reflected_in_groove(theta, index, slope.t, at.x, at.sin_phi);
       continue;
     }
     Facet f = facet(theta, index, slope.t, at.x, at.sin_phi);
@@ -128,7 +127,7 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task 
     piece.root_at_b = piece.root_at_b || is_near;
     piece.root_after = is_near ? end : x;
   }
-  int most = kIsMultiple ? min(largest_order(), task.most_azimuths) : largest_order();
+  int most = kIsMultiple ? min(largest_order(), task.most_azimuths / DOLP_AZIMUTHS_PER_SLOPE) : largest_order();
   piece.order = order_between(slope_nodes(rule, theta, shape, index, task.has_split_line, piece), most);
   return piece;
 }
@@ -187,7 +186,6 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
     SplitLines lines = split_lines(theta, index, t, task.has_split_line);
     Slope slope;
     slope.t = t;
-    if (kIsMultiple) slope.groove = groove(t);
     slope.digits = digits_of_slope(rule, theta, shape, piece.digits, order, t, kPi * largest_weight);
     slope.of_theta = of_theta;
     if (kMasking == DOLP_MASKING_INTEGRAL) slope.of_theta = shadows(row, of_theta, theta.c, theta.s, t);

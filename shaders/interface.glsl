@@ -39,22 +39,22 @@
 // ---- Task word: what an invocation of moments.comp computes, as bits -------------------------------------------------
 #define DOLP_TASK_MEMBERS_BITS 5u    // from bit 0: members of the row
 #define DOLP_TASK_PIECE_SHIFT 5u     // number of the piece of the slope axis
-#define DOLP_TASK_PIECE_BITS 5u
-#define DOLP_TASK_ROOT_AT_START 10u   // bit: square root of the slope at the start of the piece
-#define DOLP_TASK_ROOT_AT_END 11u    // bit: the same at its end
-#define DOLP_TASK_ROOT_BEFORE_START 12u // bit: a square root at the breakpoint before the piece, facing it
-#define DOLP_TASK_ROOT_AFTER_END 13u // bit: the same beyond its end
-#define DOLP_TASK_SPLIT_LINE 14u     // bit: the direction is split at the line b = pi/2 of `integral` or smith's cusp
-#define DOLP_TASK_AZIMUTHS_SHIFT 15u // most azimuths of an arc, with all bounces of slopes too: bounds the iterations
+#define DOLP_TASK_PIECE_BITS 6u
+#define DOLP_TASK_ROOT_AT_START 11u   // bit: square root of the slope at the start of the piece
+#define DOLP_TASK_ROOT_AT_END 12u    // bit: the same at its end
+#define DOLP_TASK_ROOT_BEFORE_START 13u // bit: a square root at the breakpoint before the piece, facing it
+#define DOLP_TASK_ROOT_AFTER_END 14u // bit: the same beyond its end
+#define DOLP_TASK_SPLIT_LINE 15u     // bit: the direction is split at the line b = pi/2 of `integral` or smith's cusp
+#define DOLP_TASK_AZIMUTHS_SHIFT 16u // most azimuths of an arc, with all bounces of slopes too: bounds the iterations
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
 #ifndef DOLP_WIDTH
 #define DOLP_WIDTH 1             // entries of one invocation, see Row of physics/row.glsl
 #endif
-#define DOLP_MAX_PIECES 31       // pieces of the slope axis for one direction
-#define DOLP_MAX_ARCS 8         // arcs of the azimuth for one slope, but for those of total reflection
+#define DOLP_MAX_PIECES 48       // pieces of the slope axis for one direction
+#define DOLP_MAX_ARCS 13        // arcs of the azimuth for one slope, but for those of total reflection
 // Of V-grooves, see physics/groove.glsl
-#define DOLP_SPLIT_BOUNCES 3      // bounces at which a beam that ends splits the azimuths
+#define DOLP_MOST_SPLITS 8       // bounces at which a beam that ends may split the azimuths
 #define DOLP_MOST_BOUNCES 32      // each on its own; of more, 2, 4, 8 ... are taken as one
 #define DOLP_MOST_DOUBLINGS 12
 #define DOLP_DOUBLINGS_AT_ONCE 4  // in one turn of a loop
@@ -76,6 +76,7 @@ struct RuleNode {
   real phi_nodes;         // azimuth: likewise
   real phi_digits;
   real cluster_stretch;   // nodes for each digit from which on smith's cusp is worth a cluster
+  real split_bounces;     // all bounces: at how many of them a beam that ends splits the azimuths
   real cluster_below_q;   // below this q an arc clusters its nodes where the limit b of `integral` meets pi/2
 };
 

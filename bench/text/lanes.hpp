@@ -11,6 +11,10 @@ namespace dolp::bench {
 template <class Real>
 struct Vec2 {
   Real x, y;
+  friend constexpr Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
+  friend constexpr Vec2 operator*(Real a, Vec2 b) { return {a * b.x, a * b.y}; }
+  constexpr Vec2& operator+=(Vec2 more) { return *this = *this + more; }
+  constexpr Vec2& operator*=(Real factor) { return *this = factor * *this; }
 };
 
 template <class Real>

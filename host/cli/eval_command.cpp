@@ -4,6 +4,7 @@
 #include "cli/commands.hpp"
 #include "cli/run_report.hpp"
 #include "run/scene_run.hpp"
+#include "run/scene_table.hpp"
 
 namespace dolp::cli {
 
@@ -16,7 +17,7 @@ int run_eval(const Options& options) {
   const SceneEntries entries = point_entries(scene, points);
   check_writable(options.output_path);
   const SceneRun run = run_entries(options, scene, entries, start);
-  write_text_atomically(options.output_path, result_csv(points, run.results));
+  write_text_atomically(options.output_path, result_csv(points, run.results, extra_columns(scene)));
   return report_run(options, scene, entries, run, fmt::format("{} points", run.results.size()));
 }
 

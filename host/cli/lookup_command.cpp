@@ -85,7 +85,7 @@ int run_lookup(const Options& options) {
   check_writable(options.output_path);
   std::vector<PointResult> results;
   for (std::size_t i = 0; i < points.size(); ++i) results.push_back(lookup.at(theta[i], sigma[i], q[i]));
-  write_text_atomically(options.output_path, result_csv(points, results));
+  write_text_atomically(options.output_path, result_csv(points, results, lookup.extra_columns()));
 
   const std::size_t missed = count_status(results, kStatusToleranceMissed);
   const std::optional<double> worst = worst_of(results, &PointResult::error_estimate, kStatusNoDolpPromised);

@@ -9,7 +9,6 @@
 #include "model/status.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
-#include "table/result_csv.hpp"
 #include "terminal/exit_status.hpp"
 #include "terminal/progress_bar.hpp"
 
@@ -174,6 +173,9 @@ int report_run(const Options& options, const Scene& scene, const SceneEntries& e
                 "{} entries by a rule of another kind: largest difference {:.2g} of the bounds{}",
                 key("self_check/entries", run.check.entries), key("self_check/worst_ratio", run.check.worst_ratio),
                 run.check.worst_ratio > 1.0 ? "; a bound failed, see status 2" : "");
+  report.row_if(run.check.scattering_gap > 0.0, "scattering",
+                "single: the direct emission, the other end of what all bounces may give, changes DOLP by up to {:.2g}",
+                key("scattering_gap", run.check.scattering_gap));
   add_status(report, run.results);
   Energy(scene, entries, run.results).report(report, run.plan.needs_moments);
   report.row("written", "{}", key("output", options.output_path));
@@ -181,9 +183,9 @@ int report_run(const Options& options, const Scene& scene, const SceneEntries& e
   return options.strict && count_status(run.results, kStatusToleranceMissed) > 0 ? kExitAccuracy : kExitDone;
 }
 
-std::string result_csv(const Points& points, const std::vector<PointResult>& results) {
-  std::string csv = points.header + ',' + kResultColumns + '\n';
-  for (std::size_t i = 0; i < results.size(); ++i) csv += points.rows[i] + ',' + result_cells(results[i]) + '\n';
+std::string result_csv(const Points& points, const std::vector<PointResult>& results, const ExtraColumns& extra) {
+  std::string csv = points.header + ',' + result_header(extra) + '\n';
+  for (std::size_t i = 0; i < results.size(); ++i) csv += points.rows[i] + ',' + result_cells(results[i], extra) + '\n';
   return csv;
 }
 

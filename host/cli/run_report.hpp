@@ -12,6 +12,7 @@
 #include "model/point_result.hpp"
 #include "plan/effects.hpp"
 #include "run/self_check.hpp"
+#include "table/result_csv.hpp"
 #include "scene/points.hpp"
 
 namespace dolp::cli {
@@ -35,7 +36,7 @@ int report_run(const Options& options, const Scene& scene, const SceneEntries& e
                const std::string& shape);
 
 /// The columns of the points as they were given, and those of their results.
-std::string result_csv(const Points& points, const std::vector<PointResult>& results);
+std::string result_csv(const Points& points, const std::vector<PointResult>& results, const ExtraColumns& extra);
 
 /// "91 x 32 x 5 (theta x sigma x q)".
 std::string grid_text(const Grid& grid);

@@ -21,11 +21,12 @@ constexpr std::size_t kStride = 10;  // of the entries that the reference recomp
 }  // namespace
 
 std::string curve_csv(const Curve& curve) {
-  std::string csv = std::string("theta_deg,sigma,q,") + kResultColumns + '\n';
+  const ExtraColumns extra = extra_columns(curve.scene());
+  std::string csv = std::string("theta_deg,sigma,q,") + result_header(extra) + '\n';
   for (std::size_t i = 0; i < curve.entries().size(); ++i) {
     const SceneEntry entry = curve.entries()[i];
     csv += number_text(entry.theta_deg) + ',' + number_text(entry.shape.sigma) + ',' + number_text(entry.shape.q) +
-           ',' + result_cells(curve.results()[i]) + '\n';
+           ',' + result_cells(curve.results()[i], extra) + '\n';
   }
   return csv;
 }

@@ -318,6 +318,10 @@ EffectRow masking_row(const Scene& scene, const EffectPlan& plan, const SceneEnt
 
 }  // namespace
 
+bool gives_emissivity(const Scene& scene, const EffectPlan& plan) {
+  return scene.emission && (plan.gives_rho || is_fresnel(scene));
+}
+
 bool shows_scattering_gap(const Scene& scene) {
   return emits_as(scene, EmissionModel::kMoments) && scene.surface.scattering == Scattering::kSingle &&
          has_direct_emission(scene.surface.masking) && !is_bistatic(scene);

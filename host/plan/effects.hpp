@@ -46,6 +46,9 @@ struct EffectPlan {
 /// a part counts.
 EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool keep_all);
 
+/// Whether a run knows the emissivities: with an emission, unless they need moments that are left out.
+bool gives_emissivity(const Scene& scene, const EffectPlan& plan);
+
 /// Whether the direct emission would say how far single scattering may be off: Kirchhoff's emission, with a masking that
 /// has one.
 bool shows_scattering_gap(const Scene& scene);

@@ -125,11 +125,11 @@ void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
 double slope_with_bounces(double bounces) { return 1.0 / std::tan(0.5 * pi<double>() / bounces); }
 
 // Where the lines of groove_lines (arcs.glsl) meet phi = 0, psi = theta, or phi = pi, psi = -theta, or each other.
-void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg) {
+void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg, int splits) {
   const auto add = [&](double gamma_deg, unsigned roots) {
     if (gamma_deg > 0.0 && gamma_deg <= 90.0) points.push_back({tan_deg(90.0 - gamma_deg), roots});
   };
-  for (int j = 1; j <= DOLP_SPLIT_BOUNCES + 1; ++j) {
+  for (int j = 1; j <= splits + 1; ++j) {
     add((90.0 - theta_deg) / j, kRootBelow);
     if (j * theta_deg < 90.0 + theta_deg) add((90.0 + theta_deg) / j, kRootAbove);
     const double turns = 2.0 * j + 1.0;
@@ -177,14 +177,14 @@ void add_extra_splits(std::vector<Breakpoint>& points) {
 // tan(theta), the limit b = pi/2 at tan(30 -+ 2/3 theta) and, on theta_r = theta, at tan(2 theta - 90); the lines of
 // v-cavity at tan(30 -+ theta/3), cot(theta), 1 and tan(theta); smith's cusp is at tan(theta/2).
 std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, const MomentsRequest& request,
-                                    const Variant& variant) {
+                                    const Variant& variant, int splits) {
   const Masking masking = request.masking;
   const bool is_multiple = request.scattering == Scattering::kMultiple;
   const double horizon = a.cos > 0.0 ? (1.0 + a.sin) / a.cos : kNoEnd;
   std::vector<Breakpoint> points;
   double last = horizon;
   if (is_multiple) {
-    add_groove_breakpoints(points, theta_deg);
+    add_groove_breakpoints(points, theta_deg, splits);
     last = slope_with_bounces(std::ldexp(DOLP_MOST_BOUNCES, DOLP_MOST_DOUBLINGS));
     points.push_back({last, 0});
   } else {
@@ -206,56 +206,61 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, const Mom
   return without_coincident(points);
 }
 
-// `start`: of the piece.
-double arcs_per_slope(const KernelData& data, double critical, double start) {
+/// What bounds the loops of one piece, beside the orders of its rules.
+struct Loops {
+  double arcs = 1.0;   ///< of a slope
+  double turns = 0.0;  ///< all bounces: of an azimuth
+};
+
+Loops single_loops(const KernelData& data) {
   double arcs = data.masking == Masking::kIntegral || data.masking == Masking::kVCavity ? 3.0 : 1.0;
   if (data.has_direct) arcs += data.masking == Masking::kVCavity ? 2.0 : 1.0;
-  if (data.scattering == Scattering::kMultiple) {
-    // Steep grooves have no lines below gamma.
-    const bool is_steep = start >= slope_with_bounces(DOLP_SPLIT_BOUNCES + 2.0);
-    arcs = is_steep ? DOLP_SPLIT_BOUNCES + 2.0 : DOLP_MAX_ARCS;
-  }
-  return critical > 0.0 ? 2.0 * arcs : arcs;
+  return {.arcs = arcs};
 }
 
-// Turns of the loops of one azimuth of a groove up to a slope: its bounces, and the doublings of each. In few steps, because
-// what runs in lockstep must be alike.
-double turns_in_groove(double slope) {
-  constexpr double kFewBounces = 6.0;
-  if (slope <= slope_with_bounces(kFewBounces)) return kFewBounces + 1.0;
-  const double most = DOLP_MOST_BOUNCES + 1.0;
-  double turns = most + DOLP_MOST_DOUBLINGS;
+// Of a piece from slope `start` to `end`: pi / (2 gamma) bounces and one more, those of steep grooves taken together, each of
+// which doubles some times. Steep grooves have no lines below gamma.
+Loops groove_loops(const KernelData& data, double start, double end) {
+  const double bounces = std::min(0.5 * pi<double>() / std::atan(1.0 / end), double{DOLP_MOST_BOUNCES});
+  const double splits = data.rule.split_bounces;
+  Loops loops;
+  loops.arcs = std::min(splits, std::floor(bounces) - 1.0) + (start >= slope_with_bounces(splits + 2.0) ? 2.0 : 5.0);
+  loops.turns = std::ceil(bounces) + 1.0;
+  if (bounces == DOLP_MOST_BOUNCES) loops.turns += DOLP_MOST_DOUBLINGS;
   for (int done = 0; done < DOLP_MOST_DOUBLINGS; done += DOLP_DOUBLINGS_AT_ONCE) {
-    if (slope > slope_with_bounces(std::ldexp(DOLP_MOST_BOUNCES, done))) turns += most;
+    if (end > slope_with_bounces(std::ldexp(DOLP_MOST_BOUNCES, done))) loops.turns += DOLP_MOST_BOUNCES + 1.0;
   }
-  return turns;
+  return loops;
+}
+
+Loops loops_of(const KernelData& data, double critical, double start, double end) {
+  Loops loops = data.scattering == Scattering::kMultiple ? groove_loops(data, start, end) : single_loops(data);
+  if (critical > 0.0) loops.arcs *= 2.0;
+  return loops;
 }
 
 // Loops of one invocation: below the 65,535 iterations at which lavapipe stops without notice.
 constexpr double kMostIterations = 64'000.0;
-constexpr double kTurnsOfSlope = DOLP_SPLIT_BOUNCES + 1.0;  // of a groove, to find its lines
+constexpr double kMostArcs = 2.0 * DOLP_MAX_ARCS;
+constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // of a groove, to find its lines
 
 // Bound of the loop iterations of one invocation, that is of one piece: two rules, slopes, arcs, azimuths, bounces, with
 // everything at its most nodes. No bound on what an entry does is enough, because invocations that run in lockstep wait
 // for each other.
-double iterations(double slopes, double azimuths, double arcs, double turns) {
+double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
+  const bool is_multiple = data.scattering == Scattering::kMultiple;
+  const double slopes = is_multiple ? std::floor(most_nodes / DOLP_AZIMUTHS_PER_SLOPE) : data.rule_order;
+  const double of_slope = is_multiple ? 1.0 + kTurnsOfSlope : 1.0;
   const auto of_rule = [&](double share) {
-    const double of_slope = turns > 0.0 ? kTurnsOfSlope : 0.0;
-    return 1.0 + share * slopes * (1.0 + of_slope + arcs * (2.0 + share * azimuths * (1.0 + turns)));
+    return 1.0 + share * slopes * (of_slope + loops.arcs * (2.0 + share * most_nodes * (1.0 + loops.turns)));
   };
   return of_rule(1.0) + of_rule(kCoarseShare + 1.0 / slopes);
 }
 
-double piece_iterations(const KernelData& data, double critical, double start, double end, double most_nodes) {
-  const bool is_multiple = data.scattering == Scattering::kMultiple;
-  return iterations(is_multiple ? std::floor(most_nodes / DOLP_AZIMUTHS_PER_SLOPE) : data.rule_order, most_nodes,
-                    arcs_per_slope(data, critical, start), is_multiple ? turns_in_groove(end) : 0.0);
-}
-
 // The most nodes of an arc; the error estimate shows what that costs.
-std::uint8_t most_nodes(const KernelData& data, double critical, double start, double end) {
+std::uint8_t most_nodes(const KernelData& data, const Loops& loops) {
   int most = data.rule_order;
-  while (piece_iterations(data, critical, start, end, most) > kMostIterations) --most;
+  while (iterations(data, loops, most) > kMostIterations) --most;
   return static_cast<std::uint8_t>(most);
 }
 
@@ -264,7 +269,7 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   kernel::ThetaNode node{};
   node.c = a.cos;
   node.s = a.sin;
-  std::vector<Breakpoint> points = breakpoints(theta_deg, a, request, variant);
+  std::vector<Breakpoint> points = breakpoints(theta_deg, a, request, variant, static_cast<int>(data.rule.split_bounces));
   if (request.has_extra_splits) add_extra_splits(points);
   assert(points.size() <= DOLP_MAX_PIECES + 1);
   std::ranges::fill(node.end, points.back().slope);
@@ -276,7 +281,9 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   pieces.count = static_cast<std::uint32_t>(points.size() - 1);
   pieces.has_split_line = variant.has_line;
   for (std::size_t i = 0; i < pieces.count; ++i) {
-    pieces.most_nodes[i] = most_nodes(data, variant.critical_cos, node.end[i], node.end[i + 1]);
+    const Loops loops = loops_of(data, variant.critical_cos, node.end[i], node.end[i + 1]);
+    pieces.most_nodes[i] = most_nodes(data, loops);
+    pieces.lockstep[i] = static_cast<std::uint16_t>(kMostArcs * loops.turns + loops.arcs);
   }
   data.thetas.push_back(node);
   data.pieces.push_back(pieces);
@@ -429,8 +436,8 @@ double worst_iterations(const KernelData& data) {
     const Pieces& pieces = data.pieces[entry.theta];
     const kernel::ThetaNode& theta = data.thetas[entry.theta];
     for (std::uint32_t piece = 0; piece < pieces.count; ++piece) {
-      worst = std::max(worst,
-                       piece_iterations(data, critical, theta.end[piece], theta.end[piece + 1], pieces.most_nodes[piece]));
+      const Loops loops = loops_of(data, critical, theta.end[piece], theta.end[piece + 1]);
+      worst = std::max(worst, iterations(data, loops, pieces.most_nodes[piece]));
     }
   }
   return worst;

@@ -21,6 +21,8 @@ struct Pieces {
   std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};  ///< of each end: bits kRootAbove, kRootBelow
   /// Of each piece the most nodes of an arc, with all bounces of its slopes too, which bounds the loop iterations.
   std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};
+  /// Of each piece what says whether it may run in lockstep with another within these bounds: equal numbers may.
+  std::array<std::uint16_t, DOLP_MAX_PIECES> lockstep{};
   bool has_split_line = false;  ///< b = pi/2 of `integral`, or smith's cusp
 };
 

@@ -164,9 +164,9 @@ Rows rows_of(const MomentsRequest& request, const KernelData& data) {
 namespace {
 
 std::vector<RowPiece> in_lockstep(const std::vector<RowPiece>& pieces, const Rows& rows, const KernelData& data) {
-  std::map<std::uint8_t, std::vector<RowPiece>> by_bound;
+  std::map<std::uint16_t, std::vector<RowPiece>> by_bound;
   for (const RowPiece& piece : pieces) {
-    by_bound[data.pieces[rows.theta_of(data, rows.rows[piece.row])].most_nodes[piece.piece]].push_back(piece);
+    by_bound[data.pieces[rows.theta_of(data, rows.rows[piece.row])].lockstep[piece.piece]].push_back(piece);
   }
   std::vector<RowPiece> sorted;
   for (const auto& [bound, alike] : by_bound) {

@@ -52,6 +52,11 @@ constexpr double kGaussianCuspPower = 4.0;  // of the cauchy with q = 2, which i
 constexpr int kPlainOrder = 64;
 constexpr double kOrderPerDigit = 8.0;
 
+// The kinks at which the beams of a groove end matter the less the more bounces they have: each split is worth about so
+// many digits, and some need none.
+constexpr double kDigitsOfNoSplit = 5.0;
+constexpr double kDigitsPerSplit = 1.3;
+
 constexpr double kNone = -1000.0;
 
 // log10 of the nodes on the scale of 1/m beside a line or cusp, where the share of steep facets varies.
@@ -100,6 +105,10 @@ int largest_order(double digits) {
   return std::min(DOLP_MAX_ORDER, std::max(kPlainOrder, static_cast<int>(std::ceil(kOrderPerDigit * digits))));
 }
 
+int split_bounces(double digits) {
+  return std::clamp(static_cast<int>((digits - kDigitsOfNoSplit) / kDigitsPerSplit), 1, DOLP_MOST_SPLITS);
+}
+
 kernel::RuleNode rule_node(const RuleModel& model, double digits) {
   kernel::RuleNode node{};
   node.digits = digits;
@@ -110,6 +119,7 @@ kernel::RuleNode rule_node(const RuleModel& model, double digits) {
   node.phi_digits = model.phi_digits;
   node.cluster_stretch = model.cluster_stretch;
   node.cluster_below_q = kClusterBelowQ * digits;
+  node.split_bounces = split_bounces(digits);
   return node;
 }
 

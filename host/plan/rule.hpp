@@ -31,6 +31,9 @@ double rule_digits(const RuleModel& model, double tolerance);
 /// The kernel's rule for a number of digits.
 kernel::RuleNode rule_node(const RuleModel& model, double digits);
 
+/// The bounces at which a beam that ends in a groove splits the azimuths.
+int split_bounces(double digits);
+
 /// The largest order of the rules for a number of digits.
 int largest_order(double digits);
 

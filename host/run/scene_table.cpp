@@ -3,6 +3,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 
@@ -12,28 +13,30 @@
 namespace dolp {
 namespace {
 
-struct Column {
-  std::vector<double> Table::*values;
-  double PointResult::*member;
-};
+/// Whether a run gives a variable at all.
+bool is_given(const TableVariable& variable, const Scene& scene, const EffectPlan& plan) {
+  const auto is_one_of = [&](std::initializer_list<double PointResult::*> members) {
+    return std::ranges::find(members, variable.member) != members.end();
+  };
+  if (is_one_of({&PointResult::albedo})) return plan.needs_moments;
+  if (is_one_of({&PointResult::rho_i, &PointResult::rho_q, &PointResult::rho_error_estimate})) return plan.gives_rho;
+  if (is_one_of({&PointResult::emissivity_s, &PointResult::emissivity_p})) return gives_emissivity(scene, plan);
+  if (is_one_of({&PointResult::dolp_low, &PointResult::dolp_high})) return scene.emission && scene.emission->has_bracket;
+  return true;
+}
 
-void fill_variables(Table& table, const std::vector<PointResult>& results, const EffectPlan& plan) {
-  std::vector<Column> columns = {
-      {&Table::dolp, &PointResult::dolp},         {&Table::stokes_i, &PointResult::stokes_i},
-      {&Table::stokes_q, &PointResult::stokes_q}, {&Table::stokes_u, &PointResult::stokes_u},
-      {&Table::stokes_v, &PointResult::stokes_v}, {&Table::error_estimate, &PointResult::error_estimate}};
-  if (plan.needs_moments) columns.push_back({&Table::albedo, &PointResult::albedo});
-  if (plan.gives_rho) {
-    columns.push_back({&Table::rho_i, &PointResult::rho_i});
-    columns.push_back({&Table::rho_q, &PointResult::rho_q});
-    columns.push_back({&Table::rho_error_estimate, &PointResult::rho_error_estimate});
+void fill_variables(Table& table, const TableContent& content) {
+  const std::vector<PointResult>& results = content.results;
+  std::vector<const TableVariable*> columns;
+  for (const TableVariable& variable : table_variables()) {
+    if (is_given(variable, content.scene, content.plan)) columns.push_back(&variable);
   }
-  for (const Column& column : columns) (table.*column.values).resize(results.size());
+  for (const TableVariable* column : columns) (table.*column->values).resize(results.size());
   table.status.resize(results.size());
   constexpr std::size_t kEntriesAtOnce = 16384;
   parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      for (const Column& column : columns) (table.*column.values)[i] = results[i].*column.member;
+      for (const TableVariable* column : columns) (table.*column->values)[i] = results[i].*column->member;
       table.status[i] = results[i].status;
     }
   });
@@ -89,6 +92,10 @@ std::string rule_text(double tolerance, const EvaluationReport& evaluation) {
   return text;
 }
 
+ExtraColumns extra_columns(const Scene& scene) {
+  return {.emissivity = scene.emission.has_value(), .bracket = scene.emission && scene.emission->has_bracket};
+}
+
 Table scene_table(const TableContent& content) {
   const Scene& scene = content.scene;
   Table table;
@@ -96,7 +103,7 @@ Table scene_table(const TableContent& content) {
   table.sigma = scene.grid.sigma;
   table.q = scene.grid.q;
   table.stokes_units = stokes_units(scene);
-  fill_variables(table, content.results, content.plan);
+  fill_variables(table, content);
   table.attributes = attributes(content);
   return table;
 }

@@ -9,6 +9,7 @@
 #include "plan/effects.hpp"
 #include "run/self_check.hpp"
 #include "scene/scene.hpp"
+#include "table/result_csv.hpp"
 #include "table/table.hpp"
 
 namespace dolp {
@@ -24,6 +25,9 @@ struct TableContent {
   double wall_s = 0.0;
   std::string command_line;  ///< for the history
 };
+
+/// The columns that a scene's results have beside those of every scene.
+ExtraColumns extra_columns(const Scene& scene);
 
 /// The table with all attributes, as `dolp table` and the window write it.
 Table scene_table(const TableContent& content);

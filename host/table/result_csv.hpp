@@ -7,10 +7,16 @@
 
 namespace dolp {
 
-inline constexpr const char* kResultColumns =
-    "rho_i,rho_q,albedo,stokes_i,stokes_q,stokes_u,stokes_v,dolp,error_estimate,rho_error_estimate,status";
+/// Columns that not every scene has.
+struct ExtraColumns {
+  bool emissivity = false;  ///< emissivity_s, emissivity_p
+  bool bracket = false;     ///< dolp_low, dolp_high
+};
 
-/// The cells of a row in the order of kResultColumns.
-std::string result_cells(const PointResult& result);
+/// The names of the columns, with commas between them.
+std::string result_header(const ExtraColumns& extra);
+
+/// The cells of a row in the order of the header.
+std::string result_cells(const PointResult& result, const ExtraColumns& extra);
 
 }  // namespace dolp

@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "model/point_result.hpp"
+
 namespace dolp {
 
 /// A global attribute of a table: text or a number.
@@ -33,6 +35,10 @@ struct Table {
   std::vector<double> rho_i;
   std::vector<double> rho_q;
   std::vector<double> albedo;
+  std::vector<double> emissivity_s;
+  std::vector<double> emissivity_p;
+  std::vector<double> dolp_low;
+  std::vector<double> dolp_high;
   std::vector<double> error_estimate;
   std::vector<double> rho_error_estimate;
   std::vector<std::uint32_t> status;
@@ -52,6 +58,7 @@ struct TableVariable {
   bool has_stokes_units;  ///< otherwise the unit is 1
   const char* ancillary;  ///< names of the variables that qualify this one, or ""
   std::vector<double> Table::*values;
+  double PointResult::*member;
 };
 std::span<const TableVariable> table_variables();
 

@@ -21,9 +21,22 @@ constexpr double kSlowestFall = 0.9;     // of the changes
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// What is interpolated: the quantities of a table that are smooth.
-constexpr std::array kColumns = {&Table::stokes_i, &Table::stokes_q, &Table::stokes_u, &Table::stokes_v,
-                                 &Table::rho_i,    &Table::rho_q,    &Table::albedo};
-enum Column : std::size_t { kI, kQ, kU, kV, kRhoI, kRhoQ, kAlbedo };
+struct SmoothColumn {
+  std::vector<double> Table::*values;
+  double PointResult::*member;
+};
+constexpr std::array<SmoothColumn, 11> kColumns = {{{&Table::stokes_i, &PointResult::stokes_i},
+                                                    {&Table::stokes_q, &PointResult::stokes_q},
+                                                    {&Table::stokes_u, &PointResult::stokes_u},
+                                                    {&Table::stokes_v, &PointResult::stokes_v},
+                                                    {&Table::rho_i, &PointResult::rho_i},
+                                                    {&Table::rho_q, &PointResult::rho_q},
+                                                    {&Table::albedo, &PointResult::albedo},
+                                                    {&Table::emissivity_s, &PointResult::emissivity_s},
+                                                    {&Table::emissivity_p, &PointResult::emissivity_p},
+                                                    {&Table::dolp_low, &PointResult::dolp_low},
+                                                    {&Table::dolp_high, &PointResult::dolp_high}}};
+enum Column : std::size_t { kI, kQ, kU, kV, kRhoI, kRhoQ };
 
 const std::vector<double>& checked(const std::vector<double>& values, const char* axis, const std::string& name) {
   if (std::set(values.begin(), values.end()).size() != values.size()) {
@@ -93,24 +106,19 @@ bool TableLookup::is_known(const Window& window) const {
 PointResult TableLookup::entry(const Window& window) const {
   const std::size_t position =
       table_.position(window.theta.positions.front(), window.sigma.positions.front(), window.q.positions.front());
-  const auto value = [position](const std::vector<double>& column) { return column.empty() ? kNan : column[position]; };
-  return {.dolp = value(table_.dolp),
-          .stokes_i = value(table_.stokes_i),
-          .stokes_q = value(table_.stokes_q),
-          .stokes_u = value(table_.stokes_u),
-          .stokes_v = value(table_.stokes_v),
-          .rho_i = value(table_.rho_i),
-          .rho_q = value(table_.rho_q),
-          .albedo = value(table_.albedo),
-          .error_estimate = value(table_.error_estimate),
-          .rho_error_estimate = value(table_.rho_error_estimate),
-          .status = table_.status[position]};
+  PointResult result;
+  for (const TableVariable& variable : table_variables()) {
+    const std::vector<double>& column = table_.*variable.values;
+    result.*variable.member = column.empty() ? kNan : column[position];
+  }
+  result.status = table_.status[position];
+  return result;
 }
 
 TableLookup::Values TableLookup::read(const Window& window) const {
   Values values;
   for (std::size_t c = 0; c < kColumns.size(); ++c) {
-    const std::vector<double>& column = table_.*kColumns[c];
+    const std::vector<double>& column = table_.*kColumns[c].values;
     if (column.empty()) {
       values.columns[c] = kNan;
       continue;
@@ -182,23 +190,17 @@ PointResult TableLookup::at(double theta_deg, double sigma, double q) const {
 
 PointResult TableLookup::result_of(const Window& cell, const Values& values, const Values& spread) const {
   PointResult result;
-  const auto& [i, q, u, v, rho_i, rho_q, albedo] = values.columns;
+  for (std::size_t c = 0; c < kColumns.size(); ++c) result.*kColumns[c].member = values.columns[c];
+  const double i = result.stokes_i;
   const auto& wide = spread.columns;
-  result.stokes_i = i;
-  result.stokes_q = q;
-  result.stokes_u = u;
-  result.stokes_v = v;
-  result.rho_i = rho_i;
-  result.rho_q = rho_q;
-  result.albedo = albedo;
-  result.dolp = std::hypot(q, u) / i;
+  result.dolp = std::hypot(result.stokes_q, result.stokes_u) / i;
   const double dolp_spread = std::hypot(wide[kQ], wide[kU]) / std::abs(i);
   // Where nothing is known of I either, an unpolarised result must not make it 0 * infinity.
   const double i_spread = result.dolp == 0.0 ? 0.0 : std::abs(result.dolp) * wide[kI] / std::abs(i);
   result.error_estimate = values.error + dolp_spread + i_spread;
   result.rho_error_estimate = table_.rho_error_estimate.empty()
                                   ? kNan
-                                  : (values.rho_error + std::max(wide[kRhoI], wide[kRhoQ])) / std::abs(rho_i);
+                                  : (values.rho_error + std::max(wide[kRhoI], wide[kRhoQ])) / std::abs(result.rho_i);
   cell.each(table_, [&](std::size_t position, double) {
     result.status |= table_.status[position] & kStatusUnphysicalReflectance;
   });

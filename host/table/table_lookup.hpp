@@ -6,6 +6,7 @@
 
 #include "model/point_result.hpp"
 #include "table/axis_stencil.hpp"
+#include "table/result_csv.hpp"
 #include "table/table.hpp"
 
 namespace dolp {
@@ -28,6 +29,10 @@ class TableLookup {
   const LookupAxis& theta_deg() const { return theta_; }
   const LookupAxis& sigma() const { return sigma_; }
   const LookupAxis& q() const { return q_; }
+  /// Those that the table has.
+  ExtraColumns extra_columns() const {
+    return {.emissivity = !table_.emissivity_s.empty(), .bracket = !table_.dolp_low.empty()};
+  }
 
   /// What the table says at a point within its axes, at an entry just that; quantities that it does not have are NaN.
   /// Domain: next to entries outside the model's domain the window moves away from them; between such entries the

@@ -167,8 +167,8 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
     lines.leaving = 3;
     if (kHasDirect) {
       bool shaded_leaves = t >= real(1.0) && t * t < real(3.0);
-      lines.end[2] = choose(shaded_leaves, shaded, lines.horizon);
-      lines.end[3] = choose(shaded_leaves || t < real(1.0), lines.horizon, shaded);
+      lines.end[2] = shaded_leaves ? shaded : lines.horizon;
+      lines.end[3] = (shaded_leaves || t < real(1.0)) ? lines.horizon : shaded;
       lines.end[4] = facing;
       lines.arcs = 5;
       lines.leaving = shaded_leaves ? 4 : 3;
@@ -179,27 +179,33 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
 
 // Of a groove: where the number of bounces or the width of the beam changes its law. With psi the zenith of theta in the
 // plane across the groove, tan(psi) = tan(theta) cos(phi), and gamma = pi/2 - alpha these are psi = pi/2 - j gamma down to
-// gamma, j <= DOLP_SPLIT_BOUNCES; gamma; the three below it unless there are more above; and -gamma, beyond which facets
+// gamma, j <= RuleNode::split_bounces; gamma; the three below it unless there are more above; and -gamma, beyond which facets
 // face away.
 real2 groove_line(ThetaNode theta, real cos_psi, real sin_psi) {
   return line_at(theta.c * sin_psi / max(cos_psi, real(1e-30)), max(theta.s, real(1e-30)));
 }
 
-SplitLines groove_lines(ThetaNode theta, real t, SplitLines lines) {
+// Of slopes that carry so little that a few digits do, only what faces the ray is told from what does not.
+CONST real kDigitsOfLines = real(3.0);
+
+SplitLines groove_lines(RuleNode rule, ThetaNode theta, real t, real digits, SplitLines lines) {
   real r = real(1.0) / sqrt(real(1.0) + t * t);
   real2 turn = real2(t * r, r);  // e^(i gamma)
   real2 at = turn;               // e^(i j gamma)
   real2 next = multiply(at, turn);
   lines.arcs = 0;
-  for (int j = 1; j <= DOLP_SPLIT_BOUNCES && next.x >= real(0.0); ++j) {
+  bool are_split = digits > kDigitsOfLines;
+  for (int j = 1; are_split && j <= int(rule.split_bounces) && next.x >= real(0.0); ++j) {
     lines.end[lines.arcs] = groove_line(theta, at.y, at.x);
     ++lines.arcs;
     at = next;
     next = multiply(at, turn);
   }
-  lines.end[lines.arcs] = groove_line(theta, turn.x, turn.y);
-  ++lines.arcs;
-  if (next.x < real(0.0)) {
+  if (are_split) {
+    lines.end[lines.arcs] = groove_line(theta, turn.x, turn.y);
+    ++lines.arcs;
+  }
+  if (are_split && next.x < real(0.0)) {
     real2 both = multiply(at, next);
     lines.end[lines.arcs] = groove_line(theta, at.y, at.x);
     lines.end[lines.arcs + 1] = groove_line(theta, -both.x, both.y);
@@ -212,7 +218,7 @@ SplitLines groove_lines(ThetaNode theta, real t, SplitLines lines) {
   return lines;
 }
 
-SplitLines split_lines(ThetaNode theta, IndexNode index, real t, bool has_split_line) {
+SplitLines split_lines(RuleNode rule, ThetaNode theta, IndexNode index, real t, bool has_split_line, real digits) {
   real c = theta.c;
   real s = theta.s;
   real st = max(s * t, real(1e-30));
@@ -220,5 +226,5 @@ SplitLines split_lines(ThetaNode theta, IndexNode index, real t, bool has_split_
   lines.horizon = half_angle((t - c / (real(1.0) + s)) * (c * t + real(1.0) + s) / (real(2.0) * st),
                              (real(1.0) + s - c * t) * (t + c / (real(1.0) + s)) / (real(2.0) * st));
   lines.critical = line_at(index.critical_cos * sqrt(real(1.0) + t * t) - c, st);
-  return kIsMultiple ? groove_lines(theta, t, lines) : single_lines(theta, t, has_split_line, lines);
+  return kIsMultiple ? groove_lines(rule, theta, t, digits, lines) : single_lines(theta, t, has_split_line, lines);
 }

@@ -10,26 +10,33 @@
 // beam min(e, 2c) that meets the facet first, (min(X_k, X_1) - X_0) / (X_1 - X_0) goes on to bounce k, X_0 = max(a
 // sin(psi - gamma), 0).
 
-// The fan of facets that a ray meets: (cos, sin) of gamma and gamma itself, of as many grooves in one as bounces are taken
-// together: two turns of a ray that is reflected often are like one in a groove twice as wide, by a facet that reflects
-// twice. What that changes is bounded in host/plan/error_bounds.cpp.
+// The fan of facets that a ray meets: (cos, sin) of gamma, of as many grooves in one as bounces are taken together: two turns
+// of a ray that is reflected often are like one in a groove twice as wide, by a facet that reflects twice. What that
+// changes is bounded in host/plan/error_bounds.cpp.
 struct Fan {
   real2 turn;
-  real angle;
+  real bounces;  // of the ray, where there are many: pi/2 - psi over gamma
   int doublings;
 };
 
-// Of a groove of slope t, for a ray of zenith psi across it, which has (pi/2 - psi) / gamma bounces or one more.
-Fan fan(real t, real psi) {
+real2 doubled_turn(real2 turn) { return real2((turn.x - turn.y) * (turn.x + turn.y), real(2.0) * turn.x * turn.y); }
+
+// Of a groove of slope t, for a ray that has the projections c and u on the vertical and across.
+Fan fan(real t, real c, real u) {
   real r = real(1.0) / sqrt(real(1.0) + t * t);
   Fan f;
   f.turn = real2(t * r, r);
-  f.angle = arc_tangent(real(1.0) / max(t, real(1e-30)));
+  f.bounces = real(0.0);
   f.doublings = 0;
-  while (real(0.5) * kPi - psi > real(DOLP_MOST_BOUNCES) * f.angle && f.doublings < DOLP_MOST_DOUBLINGS) {
-    f.turn = real2((f.turn.x - f.turn.y) * (f.turn.x + f.turn.y), real(2.0) * f.turn.x * f.turn.y);
-    f.angle += f.angle;
-    ++f.doublings;
+  // A ray has at most pi/gamma < pi t + 2 bounces; the loop is one that devices skip.
+  for (bool is_steep = t > real(DOLP_MOST_BOUNCES) / kPi; is_steep; is_steep = false) {
+    real zenith = arc_tangent(abs(u) / max(c, real(1e-30)));
+    f.bounces = (real(0.5) * kPi - choose(u < real(0.0), -zenith, zenith)) / arc_tangent(real(1.0) / t);
+    while (f.bounces > real(DOLP_MOST_BOUNCES) && f.doublings < DOLP_MOST_DOUBLINGS) {
+      f.turn = doubled_turn(f.turn);
+      f.bounces *= real(0.5);
+      ++f.doublings;
+    }
   }
   return f;
 }
@@ -93,15 +100,14 @@ real4 reflected_in_groove(ThetaNode theta, IndexNode index, real t, real x, real
   real c = theta.c;
   real u = theta.s * x;
   real b = theta.s * sin_phi;
-  real a2 = max(c * c + u * u, kSmallestSquare);
-  real zenith = arc_tangent(abs(u) / max(c, real(1e-30)));
-  real psi = choose(u < real(0.0), -zenith, zenith);
-  Fan f = fan(t, psi);
+  real inverse_a2 = real(1.0) / max(c * c + u * u, kSmallestSquare);
+  Fan f = fan(t, c, u);
   real first = c * f.turn.y + u * f.turn.x;  // X_1
   real least = max(u * f.turn.x - c * f.turn.y, real(0.0));
-  real left = (real(0.5) * kPi - psi) / f.angle;  // bounces, where there are many
+  real inverse_width = real(1.0) / max(first - least, real(1e-30));
+  real left = f.bounces;
   real2 at = real2(first, c * f.turn.x - u * f.turn.y);
-  real2 step = real2((f.turn.x - f.turn.y) * (f.turn.x + f.turn.y), real(2.0) * f.turn.x * f.turn.y);
+  real2 step = doubled_turn(f.turn);
   // Rays of intensity 1 and of Q = 1 as the surface sees it.
   real4 natural = real4(real(1.0), real(0.0), real(0.0), real(0.0));
   real2 seen = doubled_angle(-x, c * sin_phi);
@@ -109,15 +115,17 @@ real4 reflected_in_groove(ThetaNode theta, IndexNode index, real t, real x, real
   real absorbed = real(0.0);
   real share = real(1.0);  // of the beam, that goes on
   while (share > real(0.0)) {
-    real2 twice = doubled_angle(at.y, b * at.x);
-    real sin2_beta = min((at.y * at.y + b * b * at.x * at.x) / a2, real(1.0));
-    Bounce by = bounce(index, max(at.x, real(1e-15)), sin2_beta, f.doublings);
+    real along = b * at.x;
+    real norm = at.y * at.y + along * along;
+    real inverse_norm = real(1.0) / max(norm, kSmallestSquare);
+    real2 twice = real2((at.y - along) * (at.y + along) * inverse_norm, real(2.0) * at.y * along * inverse_norm);
+    Bounce by = bounce(index, max(at.x, real(1e-15)), min(norm * inverse_a2, real(1.0)), f.doublings);
     absorbed += share * (by.absorbed * natural.x - by.m01 * (twice.x * natural.y + twice.y * natural.z));
     natural += share * (bounced(by, twice, natural) - natural);
     polarised += share * (bounced(by, twice, polarised) - polarised);
     at = real2(at.x * step.x + at.y * step.y, at.y * step.x - at.x * step.y);
     left -= real(1.0);
-    share = choose(f.doublings > 0, left, (min(at.x, first) - least) / max(first - least, real(1e-30)));
+    share = (f.doublings > 0) ? left : (min(at.x, first) - least) * inverse_width;
     share = clamp(share, real(0.0), real(1.0));
   }
   real beam = min(c + theta.s * t * x, real(2.0) * c);

@@ -183,10 +183,10 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
       weight[g] = real(2.0) * node.y * slope_density(row.shape[g], u, exponent) * du;
       largest_weight = max(largest_weight, weight[g]);
     }
-    SplitLines lines = split_lines(theta, index, t, task.has_split_line);
     Slope slope;
     slope.t = t;
     slope.digits = digits_of_slope(rule, theta, shape, piece.digits, order, t, kPi * largest_weight);
+    SplitLines lines = split_lines(rule, theta, index, t, task.has_split_line, slope.digits);
     slope.of_theta = of_theta;
     if (kMasking == DOLP_MASKING_INTEGRAL) slope.of_theta = shadows(row, of_theta, theta.c, theta.s, t);
     slope.has_split_line = task.has_split_line;

@@ -193,7 +193,7 @@ real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
   return max(arc_cost(arc, pole), arc_cost(arc, branch));
 }
 
-real fresnel_cost(ThetaNode theta, IndexNode index, real t, Arc arc) {
+real fresnel_cost(RuleNode rule, ThetaNode theta, IndexNode index, real t, Arc arc) {
   if (arc.is_critical) {
     real sec = sqrt(real(1.0) + t * t);
     real2 end = (arc.extent < real(0.0)) ? arc.from : arc.to;
@@ -213,7 +213,7 @@ real fresnel_cost(ThetaNode theta, IndexNode index, real t, Arc arc) {
     real2 middle = arc.from + arc.to;
     real x = (middle.x * middle.x - middle.y * middle.y) / (middle.x * middle.x + middle.y * middle.y);
     real least = max(theta.s * x * turn.x - theta.c * turn.y, real(0.0));
-    for (int k = 1; k <= DOLP_SPLIT_BOUNCES + 2; ++k) {
+    for (int k = 1; k <= int(rule.split_bounces) + 2; ++k) {
       facet = multiply(facet, step);
       if (theta.c * facet.y + theta.s * x * facet.x <= least) break;
       cost = max(cost, bounce_cost(theta, index, facet, arc));
@@ -313,7 +313,7 @@ real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index,
   real map = nodes_per_digit(asinh_real(real(1.0) / max(abs(arc.extent), real(1e-9))));  // dphi = 4 dtau / (1 + tau^2)
   if (arc.section == kSectionHalf) map = real(0.5) * map;
   if (arc.section == kSectionCircle) map = real(0.0);
-  real cost = max(max(map, fresnel_cost(theta, index, t, arc)), masking_cost(theta, shape, t, arc, zone));
+  real cost = max(max(map, fresnel_cost(rule, theta, index, t, arc)), masking_cost(theta, shape, t, arc, zone));
   // Before a rule converges it must resolve cos(phi) to cos(3 phi), for which it takes nodes in proportion to the arc, and
   // how place_on_arc spreads its nodes, e^(2 a v); a cluster's dphi goes as its abscissa, half a node more.
   real base = rule.phi_nodes * arc.span + (arc.section == kSectionCluster ? real(1.0) : real(0.5));

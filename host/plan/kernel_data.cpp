@@ -138,6 +138,9 @@ void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg, i
     if (90.0 < (j + 1) * theta_deg) add(90.0 / (j + 1), 0);
   }
   add(theta_deg, kRootAbove);
+  for (double bounces = 8.0; bounces < DOLP_MOST_BOUNCES; bounces *= 2.0) {
+    if (bounces > splits + 2.0) points.push_back({slope_with_bounces(bounces), 0});
+  }
   for (int doublings = 0; doublings < DOLP_MOST_DOUBLINGS; doublings += DOLP_DOUBLINGS_AT_ONCE) {
     points.push_back({slope_with_bounces(std::ldexp(DOLP_MOST_BOUNCES, doublings)), 0});
   }

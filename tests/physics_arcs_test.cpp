@@ -74,7 +74,7 @@ typename Text::AzimuthSums sums_of_order(Text& text, int order, const typename T
   const typename Text::Slope slope{t, static_cast<RealOf<Text>>(digits), of_theta, true, order, false};
   auto rule = rule_of_nodes(0.0);
   rule.phi_digits = kMoreThanEnough;
-  return text.azimuth_sums(rule_in<Text>(rule), theta, row, index, slope, text.split_lines(theta, index, t, true));
+  return text.azimuth_sums(rule_in<Text>(rule), theta, row, index, slope, text.split_lines({}, theta, index, t, true, 0));
 }
 
 // A random direction and slope: steep, flat, near the normal and near grazing.
@@ -151,7 +151,7 @@ TYPED_TEST(ArcsText, SplitLines_LieWhereTheModelSays) {
     TypeParam text = text_for<TypeParam>(data);
     const auto index = index_in<TypeParam>(data.indices[0]);
     for (const auto& facets : random_facets<TypeParam>()) {
-      const auto lines = text.split_lines(facets.theta, index, facets.slope, true);
+      const auto lines = text.split_lines({}, facets.theta, index, facets.slope, true, 0);
       const Facet facet(facets);
       const auto check = [&](const char* name, const auto& line, const std::function<double(double)>& residual) {
         worst.update(distance_from_zero(line, residual),
@@ -186,7 +186,7 @@ TYPED_TEST(ArcsText, SplitLines_Ascend) {
     TypeParam text = text_for<TypeParam>(data);
     const auto index = index_in<TypeParam>(data.indices[0]);
     for (const auto& facets : random_facets<TypeParam>()) {
-      const auto lines = text.split_lines(facets.theta, index, facets.slope, true);
+      const auto lines = text.split_lines({}, facets.theta, index, facets.slope, true, 0);
       const Facet facet(facets);
       // cos(theta_r) of coinciding lines agrees as in the test above; cos(phi) is that over 2 s t / (1 + t^2).
       const double allowed = kLineUlps * kEpsilon<TypeParam> *
@@ -213,7 +213,7 @@ TYPED_TEST(ArcsText, Arcs_CoverTheAzimuthsWhoseRayLeaves) {
       for (const auto& facets : random_facets<TypeParam>()) {
         const Facet facet(facets);
         const auto sums = sums_of_order(text, kExactOrder, facets.theta, shape, index, facets.slope).member[0];
-        const auto lines = text.split_lines(facets.theta, index, facets.slope, true);
+        const auto lines = text.split_lines({}, facets.theta, index, facets.slope, true, 0);
         const auto integral_of_e = [&](double from, double to) {
           return facet.c * (to - from) + facet.s * facet.t * (std::sin(to) - std::sin(from));
         };
@@ -287,7 +287,7 @@ void expect_continuous(Masking masking, const ShapeCase& slopes) {
   for (const auto& facets : random_facets<Text>()) {
     const Facet facet(facets);
     const SeenProjection<Text> seen(text, shape, facets);
-    const auto lines = text.split_lines(facets.theta, index, facets.slope, true);
+    const auto lines = text.split_lines({}, facets.theta, index, facets.slope, true, 0);
     for (int zone = 0; zone < 2; ++zone) {
       const double x = cosine_of(zone == 0 ? lines.first : lines.second);
       if (std::abs(x) > 1.0 - 2.0 * step || facet.cos_r(x - step) < 0.0) continue;
@@ -538,7 +538,7 @@ TEST(ArcCost, SmoothArcs_GainTheDigitsPerNodeThatItSays) {
     for (double theta_deg = 5.0; theta_deg < 90.0; theta_deg += 6.5) {
       for (double t = 0.03; t < 5.0; t *= 1.4) {
         const auto theta = direction<Text>(theta_deg);
-        const auto lines = text.split_lines(theta, index, t, false);
+        const auto lines = text.split_lines({}, theta, index, t, false, 0);
         const auto forward = decltype(lines.horizon)(1.0, 0.0);
         if (!text.is_before(forward, lines.horizon)) continue;
         const auto arc = text.make_arc(forward, lines.horizon);
@@ -626,7 +626,7 @@ TYPED_TEST(ArcsText, ArcNodes_GrowWithTheDigits) {
     auto all = random_facets<TypeParam>();
     for (const double theta_deg : {0.0, 1e-6, 90.0}) all.push_back({direction<TypeParam>(theta_deg), Real(0.3)});
     for (const auto& facets : all) {
-      const auto lines = text.split_lines(facets.theta, index, facets.slope, true);
+      const auto lines = text.split_lines({}, facets.theta, index, facets.slope, true, 0);
       const auto forward = decltype(lines.first)(Real(1), Real(0));
       const std::array ends = {forward, lines.first, lines.second, lines.horizon};
       for (int zone = 0; zone < 3; ++zone) {
@@ -683,7 +683,7 @@ TYPED_TEST(ArcsText, CuspNodes_GrowTowardTheCuspAndNeedOne) {
     double before = 0.0;
     for (const double away : {1.0, 0.3, 0.1, 0.01}) {
       const Real t = static_cast<Real>(std::tan(pi / 6.0) * (1.0 + away));
-      const auto lines = text.split_lines(theta, index, t, true);
+      const auto lines = text.split_lines({}, theta, index, t, true, 0);
       const auto arc = text.make_arc(decltype(lines.horizon)(Real(1), Real(0)), lines.horizon);
       const double nodes = static_cast<double>(text.cusp_nodes(theta, shape, t, Real(12), arc));
       EXPECT_TRUE(q == 2.0 ? nodes == 0.0 : nodes > before) << q << " " << away;
@@ -696,7 +696,7 @@ TYPED_TEST(ArcsText, CuspNodes_GrowTowardTheCuspAndNeedOne) {
 // line.
 std::array<double, 2> adaptive_integrals(tested_double::Text& text, const tested_double::Text::ThetaNode& theta,
                                          const tested_double::Text::IndexNode& index, double slope) {
-  const auto lines = text.split_lines(theta, index, slope, false);
+  const auto lines = text.split_lines({}, theta, index, slope, false, 0);
   const double horizon = azimuth_of(lines.horizon);
   const double critical = std::min(azimuth_of(lines.critical), horizon);
   const auto integral = [&](auto member) {
@@ -731,7 +731,7 @@ TEST(TotalReflection, AzimuthSums_AgreeWithAdaptiveQuadrature) {
     for (const double theta_deg : {5.0, 30.0, 55.0, 75.0, 87.0}) {
       for (const double slope : {0.02, 0.1, 0.5, 1.0, 3.0}) {
         const auto theta = direction<Text>(theta_deg);
-        const auto lines = text.split_lines(theta, index, slope, false);
+        const auto lines = text.split_lines({}, theta, index, slope, false, 0);
         if (cosine_of(lines.critical) < 1.0 && cosine_of(lines.critical) > cosine_of(lines.horizon)) ++with_line;
         const auto sums = sums_of_order(text, DOLP_MAX_ORDER, theta, shape, index, slope, kAllDigits).member[0];
         const auto exact = adaptive_integrals(text, theta, index, slope);

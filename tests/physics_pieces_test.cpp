@@ -142,7 +142,7 @@ double azimuth_of(const Half& half) {
 // Which arcs there are at one slope: where a line has left the azimuths from 0 to pi, and whether the critical line is
 // before the horizon.
 std::array<int, 5> arrangement(Text& text, const Direction& d, double slope) {
-  const auto lines = text.split_lines(theta_in<Text>(d.node), index_in<Text>(d.index), slope, d.has_line);
+  const auto lines = text.split_lines({}, theta_in<Text>(d.node), index_in<Text>(d.index), slope, d.has_line, 0);
   const auto place = [](const auto& line) { return line.y <= 0.0 ? 0 : (line.x <= 0.0 ? 2 : 1); };
   const double critical = azimuth_of(lines.critical);
   int place_of_critical = critical <= 0.0 ? 0 : (critical < azimuth_of(lines.horizon) ? 1 : 2);

@@ -140,10 +140,10 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
   real sec2 = real(1.0) + t * t;
   real2 same_zenith = line_at(c * t * t, st);  // theta_r = theta
   real2 facing = line_at(-c, st);  // beyond it facets face away
-  lines.arcs = kHasDirect ? 2 : 1;
-  lines.leaving = 1;
-  lines.end[0] = lines.horizon;
-  if (kHasDirect) lines.end[1] = facing;
+  if (kHasDirect) {
+    lines.end[1] = facing;
+    lines.arcs = 2;
+  }
   if (kMasking == DOLP_MASKING_INTEGRAL) {
     // The limit b of eq. (11) reaches pi/2 at theta_r = pi/4 + alpha/2; 1 - sin(alpha) = cos^2(alpha) / (1 + sin(alpha)).
     real sec = sqrt(sec2);
@@ -225,6 +225,9 @@ SplitLines split_lines(RuleNode rule, ThetaNode theta, IndexNode index, real t, 
   SplitLines lines;
   lines.horizon = half_angle((t - c / (real(1.0) + s)) * (c * t + real(1.0) + s) / (real(2.0) * st),
                              (real(1.0) + s - c * t) * (t + c / (real(1.0) + s)) / (real(2.0) * st));
+  for (int i = 0; i < DOLP_MAX_ARCS; ++i) lines.end[i] = lines.horizon;
+  lines.arcs = 1;
+  lines.leaving = 1;
   lines.critical = line_at(index.critical_cos * sqrt(real(1.0) + t * t) - c, st);
   return kIsMultiple ? groove_lines(rule, theta, t, digits, lines) : single_lines(theta, t, has_split_line, lines);
 }

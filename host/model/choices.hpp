@@ -12,7 +12,9 @@ namespace dolp {
 
 enum class Distribution : std::uint32_t { kCauchy = 0, kGaussian = 1 };
 enum class Masking : std::uint32_t { kNone = 0, kVCavity = 1, kIntegral = 2, kSmith = 3 };
-enum class EmissionModel { kMoments, kFresnel };
+/// How often light is followed from facet to facet: once, or through all bounces in a V-groove.
+enum class Scattering : std::uint32_t { kSingle = 0, kMultiple = 1 };
+enum class EmissionModel { kMoments, kFresnel, kDirect };
 enum class Mode { kHemispherical, kBistatic };
 enum class Precision { kAuto, kFloat, kDouble };
 
@@ -28,8 +30,12 @@ struct Names<Masking> {
   static constexpr std::array kAll{"none", "v-cavity", "integral", "smith"};
 };
 template <>
+struct Names<Scattering> {
+  static constexpr std::array kAll{"single", "multiple"};
+};
+template <>
 struct Names<EmissionModel> {
-  static constexpr std::array kAll{"moments", "fresnel"};
+  static constexpr std::array kAll{"moments", "fresnel", "direct"};
 };
 template <>
 struct Names<Mode> {

@@ -29,6 +29,8 @@ struct MomentsRequest {
 
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
+  Scattering scattering = Scattering::kSingle;  ///< kMultiple: with v-cavity
+  bool wants_direct = false;                    ///< direct_i and direct_q too; with v-cavity or smith
   double tolerance = 1e-4;                 ///< of the rule, relative to r_i
   Precision precision = Precision::kAuto;  ///< kAuto: the evaluator's own
   bool may_interpolate = true;             ///< between slope distributions, to the same tolerance
@@ -56,11 +58,15 @@ struct Moments {
   double r_q = 0.0;      ///< rho_Q cos(theta), signed
   double albedo = 0.0;   ///< A cos(theta): the same integral with R = 1
   double deficit = 0.0;  ///< cos(theta) - r_i, summed directly: no cancellation where rho_I is near 1
-  // Bounds of the absolute errors of the four, in the same units (quadrature, masking tables and rounding).
+  double direct_i = 0.0;  ///< what facets emit straight to the viewer: eps_I cos(theta) of the direct emission
+  double direct_q = 0.0;  ///< eps_Q cos(theta); eps_s = eps_I + eps_Q, eps_p = eps_I - eps_Q
+  // Bounds of the absolute errors of the six, in the same units (quadrature, masking tables and rounding).
   double r_i_error = 0.0;
   double r_q_error = 0.0;
   double albedo_error = 0.0;
   double deficit_error = 0.0;
+  double direct_i_error = 0.0;
+  double direct_q_error = 0.0;
   double evaluations = 0.0;  ///< integrand evaluations spent on this entry
 };
 

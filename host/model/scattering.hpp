@@ -40,6 +40,7 @@ struct ScatteringEntry {
 struct ScatteringRequest {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
+  Scattering scattering = Scattering::kSingle;  ///< kMultiple: the sum over all bounces, with v-cavity
   Precision precision = Precision::kAuto;  ///< kAuto: the evaluator's own
   std::vector<BeamAngles> angles;
   std::vector<SlopeShape> shapes;

@@ -38,6 +38,7 @@ struct Surface {
   Material material;
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
+  Scattering scattering = Scattering::kSingle;  ///< kMultiple: with v-cavity
   double sigma = 0.0;
   double q = 2.0;
   double specular = 1.0;           ///< k_s in [0, 1]

@@ -161,16 +161,16 @@ TYPED_TEST(ArcsText, SplitLines_LieWhereTheModelSays) {
       const double critical = static_cast<double>(index.critical_cos);
       check("critical", lines.critical, [&](double x) { return facet.cos_beta(x) - critical; });
       if (masking == Masking::kIntegral) {
-        check("same zenith", lines.first, [&](double x) { return facet.cos_r(x) - facet.c; });
+        check("same zenith", lines.end[0], [&](double x) { return facet.cos_r(x) - facet.c; });
         // b = pi/2, that is 2 theta_r = pi/2 + alpha, unless theta itself lies lower
         const double limit = std::min(std::cos(0.25 * pi + 0.5 * std::atan(facet.t)), facet.c);
-        check("b = 90 degrees", lines.second, [&](double x) { return facet.cos_r(x) - limit; });
+        check("b = 90 degrees", lines.end[1], [&](double x) { return facet.cos_r(x) - limit; });
       }
       if (masking == Masking::kVCavity) {
         const bool open = facet.t < 1.0;
-        check("G(theta) = 1", lines.first,
+        check("G(theta) = 1", lines.end[0],
               [&](double x) { return open ? facet.e(x) - 2.0 * facet.c : facet.cos_r(x) - facet.c; });
-        check("G(theta_r) = 1", lines.second,
+        check("G(theta_r) = 1", lines.end[1],
               [&](double x) { return open ? 2.0 * facet.cos_r(x) - facet.e(x) : facet.cos_r(x) - facet.c; });
       }
     }
@@ -191,8 +191,8 @@ TYPED_TEST(ArcsText, SplitLines_Ascend) {
       // cos(theta_r) of coinciding lines agrees as in the test above; cos(phi) is that over 2 s t / (1 + t^2).
       const double allowed = kLineUlps * kEpsilon<TypeParam> *
                              (1.0 + 0.5 * (1.0 + facet.t * facet.t) / std::max(1e-30, facet.s * facet.t));
-      EXPECT_GE(cosine_of(lines.first), cosine_of(lines.second) - allowed) << facet.c << " " << facet.t;
-      EXPECT_GE(cosine_of(lines.second), cosine_of(lines.horizon) - allowed) << facet.c << " " << facet.t;
+      EXPECT_GE(cosine_of(lines.end[0]), cosine_of(lines.end[1]) - allowed) << facet.c << " " << facet.t;
+      EXPECT_GE(cosine_of(lines.end[1]), cosine_of(lines.horizon) - allowed) << facet.c << " " << facet.t;
     }
   }
 }
@@ -217,8 +217,8 @@ TYPED_TEST(ArcsText, Arcs_CoverTheAzimuthsWhoseRayLeaves) {
         const auto integral_of_e = [&](double from, double to) {
           return facet.c * (to - from) + facet.s * facet.t * (std::sin(to) - std::sin(from));
         };
-        const double first = azimuth_of(lines.first);
-        const double second = azimuth_of(lines.second);
+        const double first = azimuth_of(lines.end[0]);
+        const double second = azimuth_of(lines.end[1]);
         const double horizon = azimuth_of(lines.horizon);
         const double scale = pi * (facet.c + facet.s * facet.t);
         const std::string where =
@@ -289,7 +289,7 @@ void expect_continuous(Masking masking, const ShapeCase& slopes) {
     const SeenProjection<Text> seen(text, shape, facets);
     const auto lines = text.split_lines({}, facets.theta, index, facets.slope, true, 0);
     for (int zone = 0; zone < 2; ++zone) {
-      const double x = cosine_of(zone == 0 ? lines.first : lines.second);
+      const double x = cosine_of(zone == 0 ? lines.end[0] : lines.end[1]);
       if (std::abs(x) > 1.0 - 2.0 * step || facet.cos_r(x - step) < 0.0) continue;
       ++lines_met;
       const double change = seen(x + step, zone) - seen(x - step, zone + 1);
@@ -627,8 +627,8 @@ TYPED_TEST(ArcsText, ArcNodes_GrowWithTheDigits) {
     for (const double theta_deg : {0.0, 1e-6, 90.0}) all.push_back({direction<TypeParam>(theta_deg), Real(0.3)});
     for (const auto& facets : all) {
       const auto lines = text.split_lines({}, facets.theta, index, facets.slope, true, 0);
-      const auto forward = decltype(lines.first)(Real(1), Real(0));
-      const std::array ends = {forward, lines.first, lines.second, lines.horizon};
+      const auto forward = decltype(lines.horizon)(Real(1), Real(0));
+      const std::array ends = {forward, lines.end[0], lines.end[1], lines.horizon};
       for (int zone = 0; zone < 3; ++zone) {
         const auto from = ends[static_cast<std::size_t>(zone)];
         const auto to = ends[static_cast<std::size_t>(zone) + 1];

@@ -147,8 +147,8 @@ std::array<int, 5> arrangement(Text& text, const Direction& d, double slope) {
   const double critical = azimuth_of(lines.critical);
   int place_of_critical = critical <= 0.0 ? 0 : (critical < azimuth_of(lines.horizon) ? 1 : 2);
   if (d.index.critical_cos <= 0.0) place_of_critical = 0;
-  const int has_middle = azimuth_of(lines.second) > azimuth_of(lines.first) ? 1 : 0;
-  return {place(lines.first), place(lines.second), place(lines.horizon), has_middle, place_of_critical};
+  const int has_middle = azimuth_of(lines.end[1]) > azimuth_of(lines.end[0]) ? 1 : 0;
+  return {place(lines.end[0]), place(lines.end[1]), place(lines.horizon), has_middle, place_of_critical};
 }
 
 // Slopes inside a piece, near its ends too, where the piece has any extent.
@@ -298,14 +298,14 @@ TEST(TaskWord, EveryField_ComesBack) {
     pieces.count = 1 + below(DOLP_MAX_PIECES);
     for (std::uint8_t& root : pieces.roots) root = static_cast<std::uint8_t>(below(4));
     pieces.has_split_line = below(2) == 1;
-    pieces.most_azimuths = 1 + below(DOLP_MAX_ORDER);
+    pieces.most_nodes[piece] = static_cast<std::uint8_t>(1 + below(DOLP_MAX_ORDER));
     const std::uint32_t piece = below(pieces.count);
     const std::uint32_t members = 1 + below(16);
     const auto task = Text().task_of(task_word(pieces, piece, members));
     EXPECT_EQ(task.members, static_cast<int>(members));
     EXPECT_EQ(task.piece, static_cast<int>(piece));
     EXPECT_EQ(task.has_split_line, pieces.has_split_line);
-    EXPECT_EQ(task.most_azimuths, static_cast<int>(pieces.most_azimuths));
+    EXPECT_EQ(task.most_azimuths, static_cast<int>(pieces.most_nodes[piece]));
     // Bit 0 of an end: a root above it; bit 1: below.
     EXPECT_EQ(task.root_at_start, (pieces.roots[piece] & 1) != 0);
     EXPECT_EQ(task.root_at_end, (pieces.roots[piece + 1] & 2) != 0);

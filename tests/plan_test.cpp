@@ -90,8 +90,8 @@ TEST(KernelDataOrders, EveryTolerance_StaysBelowTheDriversLoopLimit) {
           EXPECT_LT(iterations, kDriverLimit) << tolerance;
           const auto order = static_cast<std::size_t>(data.rule_order);
           for (const Pieces& pieces : data.pieces) {
-            EXPECT_GE(pieces.most_azimuths, 40U);
-            EXPECT_LE(pieces.most_azimuths, order);
+            EXPECT_GE(pieces.most_nodes[0], 40U);
+            EXPECT_LE(pieces.most_nodes[0], order);
           }
           EXPECT_LE(order, static_cast<std::size_t>(DOLP_MAX_ORDER));
           constexpr std::size_t kSections = 5;  // of shaders/physics/quadrature.glsl
@@ -171,7 +171,7 @@ TEST(KernelDataOrders, EntryWithTooFewNodesAllowed_SaysSo) {
     const Computed whole = computed(masking, 1e-9, 60.0, {0.3, 2.0}, kTotallyReflecting);
     KernelData data = whole.data;
     for (const std::uint32_t most : {9U, 11U}) {
-      data.pieces[data[0].theta].most_azimuths = most;
+      data.pieces[data[0].theta].most_nodes.fill(static_cast<std::uint8_t>(most));
       const auto text = make_kernel_text_double(data);
       if (data.needs_masking_table()) text->build_masking_table(0);
       const kernel::MomentsNode node = text->moments(data[0]);

@@ -62,7 +62,7 @@ struct Moments {
   double deficit = 0.0;  ///< cos(theta) - r_i, summed directly: no cancellation where rho_I is near 1
   /// What facets emit straight to the viewer: eps_I cos(theta) of the direct emission; NaN where it was not wanted.
   double direct_i = std::numeric_limits<double>::quiet_NaN();
-  double direct_q = std::numeric_limits<double>::quiet_NaN();  ///< eps_Q cos(theta); eps_s = eps_I + eps_Q, eps_p = eps_I - eps_Q
+  double direct_q = std::numeric_limits<double>::quiet_NaN();  ///< eps_Q cos(theta); eps_s, eps_p = eps_I +- eps_Q
   // Bounds of the absolute errors of the six, in the same units (quadrature, masking tables and rounding).
   double r_i_error = 0.0;
   double r_q_error = 0.0;

@@ -351,6 +351,10 @@ Moments mirror_moments(double theta_deg, const OpticalConstants& constants) {
   moments.r_q_error = moments.r_i_error;
   moments.albedo_error = kRounding * moments.albedo;
   moments.deficit_error = kRounding * moments.deficit;
+  moments.direct_i = moments.deficit;
+  moments.direct_q = zenith.sin > 0.0 ? 0.5 * (r.absorbed_s - r.absorbed_p) * zenith.cos : 0.0;
+  moments.direct_i_error = moments.deficit_error;
+  moments.direct_q_error = moments.deficit_error;
   moments.evaluations = 1.0;
   return moments;
 }

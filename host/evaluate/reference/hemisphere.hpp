@@ -26,7 +26,7 @@ Zenith zenith_from_deg(double theta_deg);
 Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
                            const Refinement& refinement);
 
-/// The moments of the mirror that sigma = 0 stands for.
+/// The moments of the mirror that sigma = 0 stands for, its direct emission included.
 Moments mirror_moments(double theta_deg, const OpticalConstants& constants);
 
 }  // namespace dolp::reference

@@ -11,7 +11,7 @@ using MuellerMatrix = std::array<std::array<double, 4>, 4>;
 
 /// f_s cos(theta_i) cos(theta_r) with k_s = 1, its Jones matrix built from the s and p vectors of the beams and of the
 /// facet in quadruple precision: no angle eta, no care for cancellation.
-/// Equation: (4), (7), (15).
+/// Equation: (4), (7), (15); a surface whose scattering is kMultiple has the sum of reference_all_bounces.
 /// Units: sr^-1.
 /// Conventions: Delta_phi = 180 degrees is the specular side; s = k x z, p = k x s for both beams, at zenith 0 the
 /// limit
@@ -21,7 +21,27 @@ using MuellerMatrix = std::array<std::array<double, 4>, 4>;
 MuellerMatrix reference_scattering(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
                                    double theta_r_deg, double delta_phi_deg);
 
-/// The same without the cosines: f_s. Domain: zeniths below 90 degrees.
+/// The part of the light that bounces `bounces` times in V-grooves.
+/// Equation: f^(k) cos(theta_i) cos(theta_r) = D sin(alpha) cos(alpha) w_k M / (2 k |h|), h the horizontal part of
+///   omega_i + omega_r, summed over both facets that may be the first; gamma = 90 degrees - alpha is
+///   (180 - psi_i - psi_r)/(2 k) for odd k, (180 - psi_i + psi_r)/(2 k) for even k, psi from z toward u in the plane
+///   across the groove, u along h or against it; w_k cos(alpha) is the flux that leaves a groove after k bounces, M the
+///   Mueller matrix of the electric vectors followed through them.
+/// Domain: masking v-cavity. NaN where h = 0, in the direction of a mirror's reflection: for k >= 2 grooves of every
+///   azimuth reflect into it, so that f^(k) grows like 1/|h|, which can be integrated.
+MuellerMatrix reference_bounces(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+                                double theta_r_deg, double delta_phi_deg, int bounces);
+
+/// Their sum, and a bound of what is left out of it: nothing but for theta_i close to theta_r, where beams of any
+/// number of bounces contribute.
+struct BouncesSum {
+  MuellerMatrix matrix{};
+  double error = 0.0;
+};
+BouncesSum reference_all_bounces(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+                                 double theta_r_deg, double delta_phi_deg);
+
+/// reference_scattering without the cosines: f_s. Domain: zeniths below 90 degrees.
 MuellerMatrix reference_pbrdf(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
                               double theta_r_deg, double delta_phi_deg);
 

@@ -16,6 +16,8 @@
 #include "base/error.hpp"
 #include "base/processor.hpp"
 #include "base/stopwatch.hpp"
+#include "evaluate/reference/direct_emission.hpp"
+#include "evaluate/reference/grooves.hpp"
 #include "evaluate/reference/hemisphere.hpp"
 #include "evaluate/reference/mueller.hpp"
 
@@ -44,7 +46,18 @@ void check_index(const OpticalConstants& index) {
   require(index.k >= 0.0, "k must not be negative", index.k);
 }
 
+void check_scattering(Scattering scattering, Masking masking) {
+  if (scattering == Scattering::kMultiple && masking != Masking::kVCavity) {
+    throw InputError("reference: multiple scattering needs v-cavity masking");
+  }
+}
+
 void check(const MomentsRequest& request) {
+  check_scattering(request.scattering, request.masking);
+  const bool has_view_masking = request.masking == Masking::kVCavity || request.masking == Masking::kSmith;
+  if (request.wants_direct && !has_view_masking) {
+    throw InputError("reference: direct emission needs v-cavity or smith masking");
+  }
   for (const double theta_deg : request.theta_deg) check_zenith(theta_deg);
   for (const double sigma : request.sigma) check_shape(request.distribution, request.masking, {.sigma = sigma});
   for (const double q : request.q) check_shape(request.distribution, request.masking, {.q = q});
@@ -52,6 +65,7 @@ void check(const MomentsRequest& request) {
 }
 
 void check(const ScatteringRequest& request) {
+  check_scattering(request.scattering, request.masking);
   for (const BeamAngles& angles : request.angles) {
     check_zenith(angles.theta_i_deg);
     check_zenith(angles.theta_r_deg);
@@ -66,7 +80,20 @@ void check(const ScatteringRequest& request) {
 Moments moments_of(const MomentsRequest& request, const MomentsPoint& point, const reference::Refinement& refinement) {
   if (point.shape.sigma == 0.0) return reference::mirror_moments(point.theta_deg, point.index);
   const reference::Slopes slopes(request.distribution, point.shape.sigma, point.shape.q);
-  return reference::hemisphere_moments(slopes, request.masking, point.theta_deg, point.index, refinement);
+  const bool is_single = request.scattering == Scattering::kSingle;
+  Moments m = is_single
+                  ? reference::hemisphere_moments(slopes, request.masking, point.theta_deg, point.index, refinement)
+                  : reference::groove_moments(slopes, point.theta_deg, point.index, refinement);
+  if (request.wants_direct) {
+    const Moments direct =
+        reference::direct_emission(slopes, request.masking, point.theta_deg, point.index, refinement);
+    m.direct_i = direct.direct_i;
+    m.direct_q = direct.direct_q;
+    m.direct_i_error = direct.direct_i_error;
+    m.direct_q_error = direct.direct_q_error;
+    m.evaluations += direct.evaluations;
+  }
+  return m;
 }
 
 ScatteringMatrix matrix_of(const ScatteringRequest& request, const ScatteringEntry& entry) {
@@ -77,11 +104,15 @@ ScatteringMatrix matrix_of(const ScatteringRequest& request, const ScatteringEnt
   surface.masking = request.masking;
   surface.sigma = shape.sigma;
   surface.q = shape.q;
-  const MuellerMatrix f = reference_scattering(surface, request.indices.at(entry.index), angles.theta_i_deg,
-                                               angles.theta_r_deg, angles.delta_phi_deg);
+  const OpticalConstants& index = request.indices.at(entry.index);
+  const auto [theta_i_deg, theta_r_deg, delta_phi_deg] = angles;
+  const BouncesSum f =
+      request.scattering == Scattering::kMultiple
+          ? reference_all_bounces(surface, index, theta_i_deg, theta_r_deg, delta_phi_deg)
+          : BouncesSum{reference_scattering(surface, index, theta_i_deg, theta_r_deg, delta_phi_deg), 0.0};
   ScatteringMatrix matrix;
-  for (std::size_t i = 0; i < matrix.m.size(); ++i) matrix.m[i] = f[i / 4][i % 4];
-  matrix.error = kScatteringErrorDouble * std::abs(matrix.m[0]);
+  for (std::size_t i = 0; i < matrix.m.size(); ++i) matrix.m[i] = f.matrix[i / 4][i % 4];
+  matrix.error = f.error + kScatteringErrorDouble * std::abs(matrix.m[0]);
   return matrix;
 }
 

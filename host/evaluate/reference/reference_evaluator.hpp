@@ -21,6 +21,8 @@ struct ReferenceOptions {
 
 /// The independent reference: moments by nested adaptive Gauss-Kronrod quadrature in double, over zenith and azimuth of
 /// the other direction, the masking `integral` integrated over the facet tilt at every point.
+/// With Scattering::kMultiple they are those of V-grooves (reference/grooves.hpp), with wants_direct they have the
+/// direct emission too (reference/direct_emission.hpp), both integrated over the slopes of the facets.
 /// Equation: (4), (7), (9)-(13), (15), (16).
 /// Accuracy: relative_tolerance or, if that is larger, a hundredth of the request's tolerance; never more than half of
 ///   the request's tolerance. A request of tolerance 0 leaves it to relative_tolerance. The errors returned are those
@@ -28,6 +30,7 @@ struct ReferenceOptions {
 /// Domain: theta in [0, 90] degrees; sigma >= 0; cauchy q > 1, with smith masking q > 3/2; n > 0, k >= 0. At 90 degrees
 ///   all four moments are the limits: 0 for v-cavity and smith, finite for the others but infinite (with infinite
 ///   errors; r_q and deficit negative) for cauchy with q <= 3/2.
+///   Multiple scattering is for v-cavity masking, direct emission for v-cavity and smith.
 /// Errors: InputError outside the domain; Cancelled when `progress` returns false.
 class ReferenceEvaluator final : public MomentsEvaluator, public ScatteringEvaluator {
  public:

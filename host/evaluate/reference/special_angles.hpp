@@ -1,0 +1,28 @@
+// Where the Fresnel coefficients bend.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "model/optical_constants.hpp"
+
+namespace dolp::reference {
+
+/// The angles beta of total reflection and of the (pseudo-)Brewster minimum.
+class SpecialAngles {
+ public:
+  explicit SpecialAngles(const OpticalConstants& constants)
+      : brewster_(1.0 / std::hypot(1.0, constants.n, constants.k)),
+        critical_(constants.n < 1.0 ? std::sqrt(1.0 - constants.n * constants.n) : 0.0) {}
+
+  /// Which of them cos(beta) is beyond: 0 to 3.
+  std::uint64_t side(double cos_beta) const {
+    return (cos_beta < brewster_ ? 1U : 0U) + (cos_beta < critical_ ? 2U : 0U);
+  }
+
+ private:
+  double brewster_;
+  double critical_;
+};
+
+}  // namespace dolp::reference

@@ -1,0 +1,313 @@
+// The reference's V-grooves with all bounces and its direct emission: exact results of the model, and its beams and
+// quadratures against plainer ones.
+#include "evaluate/reference/grooves.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <cmath>
+#include <cstddef>
+#include <iostream>
+#include <numbers>
+#include <vector>
+
+#include "base/error.hpp"
+#include "evaluate/reference/adaptive.hpp"
+#include "evaluate/reference/attenuation.hpp"
+#include "evaluate/reference/fresnel.hpp"
+#include "evaluate/reference/groove_beam.hpp"
+#include "evaluate/reference/hemisphere.hpp"
+#include "evaluate/reference/mueller.hpp"
+#include "evaluate/reference/reference_evaluator.hpp"
+#include "evaluate/reference/slopes.hpp"
+
+namespace dolp {
+namespace {
+
+using boost::math::quadrature::gauss_kronrod;
+using reference::zenith_from_deg;
+using std::numbers::pi;
+
+constexpr double kRadPerDeg = pi / 180.0;
+constexpr auto kCauchy = Distribution::kCauchy;
+constexpr auto kGaussian = Distribution::kGaussian;
+constexpr OpticalConstants kPaint{1.5, 0.0};
+constexpr OpticalConstants kMetal{27.0, 90.0};
+constexpr OpticalConstants kInfraredMetal{10.0, 60.0};
+
+struct Point {
+  Distribution distribution;
+  double theta_deg;
+  SlopeShape shape;
+  OpticalConstants index;
+};
+
+Moments moments(const Point& point, Scattering scattering, Masking masking = Masking::kVCavity,
+                ReferenceOptions options = {}) {
+  MomentsRequest request;
+  request.distribution = point.distribution;
+  request.masking = masking;
+  request.scattering = scattering;
+  request.wants_direct = true;
+  request.tolerance = 0.0;
+  request.append({point.theta_deg, point.shape, point.index});
+  return ReferenceEvaluator(options).evaluate(request, {}).at(0);
+}
+
+Moments all_bounces(const Point& point, ReferenceOptions options = {}) {
+  return moments(point, Scattering::kMultiple, Masking::kVCavity, options);
+}
+
+TEST(ReferenceGrooves, PublishedValues_AreReached) {
+  struct Row {
+    Point point;
+    double rho_i, rho_q, unit;  // the unit of the last digit
+  };
+  const std::vector<Row> rows{{{kCauchy, 0.0, {0.3, 2.0}, kPaint}, 0.0321166, 0.0, 1e-7},
+                              {{kCauchy, 60.0, {0.3, 2.0}, kPaint}, 0.0652161, 0.0396415, 1e-7},
+                              {{kGaussian, 60.0, {0.2, 2.0}, kInfraredMetal}, 0.9843616, 0.0079579, 1e-7},
+                              {{kCauchy, 80.0, {0.5, 3.0}, {26.0, 90.0}}, 0.97526, 0.01232, 1e-5},
+                              {{kGaussian, 85.0, {0.1, 2.0}, {1.3, 0.05}}, 0.398024, 0.091648, 1e-6}};
+  for (const Row& row : rows) {
+    const Moments m = all_bounces(row.point, {.relative_tolerance = 1e-8});
+    const double cos_theta = zenith_from_deg(row.point.theta_deg).cos;
+    EXPECT_NEAR(m.r_i / cos_theta, row.rho_i, 0.6 * row.unit) << row.point.theta_deg;
+    EXPECT_NEAR(m.r_q / cos_theta, row.rho_q, 0.6 * row.unit) << row.point.theta_deg;
+    EXPECT_LE(m.r_i_error, 1e-7 * m.r_i);
+    EXPECT_LE(m.deficit_error, 1e-7 * m.deficit);
+  }
+}
+
+TEST(ReferenceGrooves, Albedo_IsOne_AndNothingIsLost) {
+  constexpr double kRounding = 1e-12;
+  const std::vector<Point> points{{kCauchy, 0.0, {0.3, 2.0}, kPaint},    {kCauchy, 60.0, {0.3, 2.0}, kPaint},
+                                  {kGaussian, 60.0, {0.3, 2.0}, kMetal}, {kCauchy, 60.0, {5.0, 2.0}, kPaint},
+                                  {kCauchy, 89.9, {0.3, 2.0}, kPaint},   {kCauchy, 60.0, {0.3, 1.001}, kPaint},
+                                  {kCauchy, 60.0, {10.0, 2.0}, {3, 1}},  {kCauchy, 90.0 - 1e-9, {0.3, 1.6}, kPaint}};
+  for (const Point& point : points) {
+    const Moments m = all_bounces(point, {.relative_tolerance = 1e-7});
+    const double cos_theta = zenith_from_deg(point.theta_deg).cos;
+    EXPECT_NEAR(m.albedo / cos_theta, 1.0, kRounding) << point.theta_deg << " " << point.shape.q;
+    EXPECT_NEAR((m.r_i + m.deficit) / cos_theta, 1.0, kRounding) << point.theta_deg << " " << point.shape.q;
+    EXPECT_GT(m.r_i, 0.0);
+    EXPECT_GT(m.deficit, 0.0);
+    EXPECT_LE(m.r_i_error, 1e-6 * m.r_i) << point.theta_deg << " " << point.shape.q;
+  }
+}
+
+// Counts rays by their bounces, each ray followed by looking for the nearest facet.
+std::vector<double> counted_shares(double alpha, const reference::Vector<double>& omega, int rays) {
+  std::vector<double> shares(40);
+  const double c = std::cos(alpha), s = std::sin(alpha);
+  for (int i = 0; i < rays; ++i) {
+    double x = c * (2.0 * (i + 0.5) / rays - 1.0), z = s, dx = -omega[0], dz = -omega[2];
+    std::size_t bounces = 0;
+    for (bool is_inside = true; is_inside;) {
+      double nearest = 1e300, side_hit = 0.0;
+      for (const double side : {-1.0, 1.0}) {  // the facet from (0, 0) to (side c, s); its normal is (-side s, c)
+        const double falls = -(dx * -side * s + dz * c);
+        const double tau = (x * -side * s + z * c) / falls;
+        const double along = (x + tau * dx) * side * c + (z + tau * dz) * s;
+        if (falls > 0.0 && tau > 1e-12 && tau < nearest && along <= 1.0) nearest = tau, side_hit = side;
+      }
+      is_inside = side_hit != 0.0;
+      if (!is_inside) break;
+      x += nearest * dx, z += nearest * dz;
+      const double across = 2.0 * (dx * -side_hit * s + dz * c);
+      dx -= across * -side_hit * s, dz -= across * c;
+      ++bounces;
+    }
+    shares.at(bounces) += 1.0 / rays;
+  }
+  return shares;
+}
+
+TEST(GrooveBeam, Fluxes_MatchCountedRays) {
+  constexpr int kRays = 20000;
+  constexpr double kTolerance = 3.0 / kRays;  // of a ray at each end of up to three beams
+  for (const double alpha_deg : {10.0, 35.0, 60.0, 80.0, 85.0}) {
+    for (const double theta_deg : {0.0, 20.0, 55.0, 80.0, 89.0}) {
+      for (const double phi_deg : {0.0, 40.0, 89.0, 130.0}) {
+        const double alpha = alpha_deg * kRadPerDeg, theta = theta_deg * kRadPerDeg, phi = phi_deg * kRadPerDeg;
+        const reference::Vector<double> omega{std::sin(theta) * std::cos(phi), -std::sin(theta) * std::sin(phi),
+                                              std::cos(theta)};
+        const std::vector<double> counted = counted_shares(alpha, omega, kRays);
+        std::vector<double> shares(counted.size());
+        for (const auto first : {reference::Facet::kA, reference::Facet::kB}) {
+          reference::GrooveBeam<double> beam({std::cos(alpha), std::sin(alpha)}, omega, first);
+          for (std::size_t k = 1; beam.flux() > 0.0; ++k) {
+            const auto b = reference::bounce<double>(beam.direction(), beam.normal(), {0, 1, 0});
+            shares.at(k) += beam.reflect(b.k_out) / (2.0 * std::cos(alpha) * std::cos(theta));
+          }
+        }
+        for (std::size_t k = 0; k < shares.size(); ++k) {
+          EXPECT_NEAR(shares[k], counted[k], kTolerance) << alpha_deg << " " << theta_deg << " " << phi_deg << " " << k;
+        }
+      }
+    }
+  }
+}
+
+TEST(ReferenceGrooves, FirstBounceAlone_IsSingleScatteringAndDirectEmission) {
+  constexpr double kPlainTolerance = 1e-6;
+  for (const Point& point :
+       {Point{kGaussian, 60.0, {0.4, 2.0}, {1.6, 0.4}}, Point{kGaussian, 80.0, {0.7, 2.0}, kMetal}}) {
+    const double m = std::numbers::sqrt2 * point.shape.sigma;
+    const reference::Goal goal{.relative = kPlainTolerance};
+    const auto own = [](const reference::Values<2>& value) { return value; };
+    const auto over_slopes = [&](double u) {  // t = m u, 2 pi P t dt = 2 u exp(-u^2) du
+      const auto at_chi = [&](double chi) -> reference::Values<2> {
+        const reference::GrooveLight light = reference::light_in_groove(m * u, std::sin(chi), std::cos(chi),
+                                                                        zenith_from_deg(point.theta_deg), point.index);
+        return {light.once_reflected, light.once_absorbed};
+      };
+      auto row = reference::integrate<2>(at_chi, reference::Breaks(0.0, 0.5 * pi), goal, own).value;
+      for (double& value : row) value *= 2.0 * u * std::exp(-u * u) * 2.0 / pi;
+      return row;
+    };
+    const auto once = reference::integrate<2>(over_slopes, reference::Breaks(0.0, 5.0), goal, own).value;
+    const Moments single = moments(point, Scattering::kSingle);
+    EXPECT_NEAR(once[0], single.r_i, 10.0 * kPlainTolerance * single.r_i);
+    EXPECT_NEAR(once[1], single.direct_i, 10.0 * kPlainTolerance * single.direct_i);
+  }
+}
+
+TEST(ReferenceGrooves, LimitsOfTheMaterial) {
+  constexpr double kRounding = 1e-12;
+  const Moments vacuum = all_bounces({kCauchy, 60.0, {0.3, 2.0}, {1.0, 0.0}});
+  EXPECT_EQ(vacuum.r_i, 0.0);
+  EXPECT_EQ(vacuum.r_q, 0.0);
+  EXPECT_NEAR(vacuum.deficit, 0.5, kRounding);
+  // 1 - R is 4e-12 at normal incidence, and more only for p within 1e-6 of grazing; few bounces.
+  const Moments mirror = all_bounces({kGaussian, 60.0, {0.3, 2.0}, {1.0, 1e6}}, {.relative_tolerance = 1e-6});
+  EXPECT_NEAR(mirror.r_i, 0.5, 1e-5);
+}
+
+TEST(ReferenceGrooves, SmoothSurface_IsFresnels) {
+  constexpr double kSigma = 1e-3;
+  constexpr double kTolerance = 2e-4;  // slopes of variance 2 sigma^2 times a logarithm for q = 2
+  for (const OpticalConstants index : {kPaint, kMetal}) {
+    for (const double theta_deg : {0.0, 60.0}) {
+      const Moments mirror = all_bounces({kCauchy, theta_deg, {0.0, 2.0}, index});
+      const Moments rough = all_bounces({kCauchy, theta_deg, {kSigma, 2.0}, index}, {.relative_tolerance = 1e-6});
+      EXPECT_NEAR(rough.r_i, mirror.r_i, kTolerance);
+      EXPECT_NEAR(rough.r_q, mirror.r_q, kTolerance);
+      EXPECT_NEAR(rough.deficit, mirror.deficit, kTolerance);
+      EXPECT_NEAR(rough.direct_i, mirror.direct_i, kTolerance);
+      EXPECT_NEAR(rough.direct_q, mirror.direct_q, kTolerance);
+    }
+  }
+}
+
+TEST(ReferenceGrooves, Grazing_HasALimit) {
+  const Point at_90{kCauchy, 90.0, {0.3, 2.0}, kPaint};
+  const Moments zero = all_bounces(at_90);
+  for (const double value : {zero.r_i, zero.r_q, zero.albedo, zero.deficit, zero.direct_i}) EXPECT_EQ(value, 0.0);
+  const auto rho = [&](double gap_deg) {
+    const Moments m = all_bounces({kCauchy, 90.0 - gap_deg, {0.3, 2.0}, kPaint}, {.relative_tolerance = 1e-8});
+    const double cos_theta = zenith_from_deg(90.0 - gap_deg).cos;
+    return std::array{m.r_i / cos_theta, m.r_q / cos_theta, m.direct_i / cos_theta};
+  };
+  const auto near = rho(1e-9), nearer = rho(1e-12);
+  for (std::size_t k = 0; k < near.size(); ++k) EXPECT_NEAR(near[k], nearer[k], 1e-7);
+}
+
+TEST(ReferenceGrooves, CoarseQuadrature_StaysWithinItsErrors) {
+  const std::vector<Point> points{{kCauchy, 60.0, {0.3, 2.0}, kMetal},
+                                  {kCauchy, 60.0, {0.3, 2.0}, {0.5, 0.0}},
+                                  {kCauchy, 47.5, {1.35, 1.45}, {2.8, 0.0}},
+                                  {kCauchy, 89.9, {0.3, 2.0}, kPaint},
+                                  {kCauchy, 20.0, {0.01, 1.001}, {4.0, 1.0}}};
+  double worst = 0.0;
+  for (const Point& point : points) {
+    const Moments coarse = all_bounces(point, {.relative_tolerance = 1e-4});
+    const Moments fine = all_bounces(point, {.relative_tolerance = 1e-6});
+    const auto check = [&](double a, double a_error, double b, double b_error) {
+      EXPECT_LE(std::abs(a - b), a_error + b_error) << point.theta_deg << " " << point.shape.q << " " << point.index.n;
+      worst = std::max(worst, std::abs(a - b) / (a_error + b_error));
+    };
+    check(coarse.r_i, coarse.r_i_error, fine.r_i, fine.r_i_error);
+    check(coarse.r_q, coarse.r_q_error, fine.r_q, fine.r_q_error);
+    check(coarse.deficit, coarse.deficit_error, fine.deficit, fine.deficit_error);
+    check(coarse.direct_i, coarse.direct_i_error, fine.direct_i, fine.direct_i_error);
+    check(coarse.direct_q, coarse.direct_q_error, fine.direct_q, fine.direct_q_error);
+  }
+  std::cout << "largest distance over error: " << worst << "\n";
+}
+
+TEST(ReferenceDirect, BracketsTheEmission) {
+  for (const Point& point : {Point{kCauchy, 60.0, {0.3, 2.0}, kPaint}, Point{kGaussian, 75.0, {0.6, 2.0}, kMetal},
+                             Point{kCauchy, 10.0, {1.5, 1.2}, {0.5, 0.0}}}) {
+    const Moments multiple = all_bounces(point, {.relative_tolerance = 1e-6});
+    const Moments single = moments(point, Scattering::kSingle, Masking::kVCavity, {.relative_tolerance = 1e-6});
+    EXPECT_EQ(multiple.direct_i, single.direct_i);
+    EXPECT_LT(0.0, multiple.direct_i);
+    EXPECT_LT(multiple.direct_i, multiple.deficit);
+    EXPECT_LT(multiple.deficit, single.deficit);
+    // What bounces again adds no more polarisation than light.
+    EXPECT_LE(std::abs(-multiple.r_q - multiple.direct_q), multiple.deficit - multiple.direct_i);
+  }
+}
+
+TEST(ReferenceDirect, Vacuum_EmitsAll) {
+  constexpr double kTolerance = 1e-9;
+  for (const Masking masking : {Masking::kSmith, Masking::kVCavity}) {
+    for (const double theta_deg : {0.0, 1e-6, 60.0, 89.99}) {
+      for (const SlopeShape shape : {SlopeShape{0.3, 2.0}, SlopeShape{5.0, 1.51}, SlopeShape{1e-3, 50.0}}) {
+        const Moments m = moments({kCauchy, theta_deg, shape, {1.0, 0.0}}, Scattering::kSingle, masking,
+                                  {.relative_tolerance = kTolerance});
+        const double cos_theta = zenith_from_deg(theta_deg).cos;
+        EXPECT_NEAR(m.direct_i / cos_theta, 1.0, kTolerance) << theta_deg << " " << shape.q;
+        EXPECT_LE(std::abs(m.direct_q), 1e-15 * cos_theta);
+      }
+    }
+  }
+}
+
+// Over facets by their angle beta from the view and their azimuth eta around it, of which Fresnel needs beta alone.
+TEST(ReferenceDirect, PlainQuadratureAroundTheView_Agrees) {
+  constexpr double kPlainTolerance = 1e-6;
+  constexpr unsigned kDepth = 9;
+  constexpr double kTheta = 65.0 * kRadPerDeg;
+  const OpticalConstants index{1.6, 0.4};
+  const reference::Slopes slopes(kCauchy, 0.5, 2.5);
+  for (const Masking masking : {Masking::kSmith, Masking::kVCavity}) {
+    const double smith = 1.0 / (1.0 + reference::smith_lambda(slopes, zenith_from_deg(65.0)));
+    const auto over_beta = [&](double beta, bool is_q) {
+      const auto at_eta = [&](double eta) {
+        const double cos_alpha = std::cos(kTheta) * std::cos(beta) + std::sin(kTheta) * std::sin(beta) * std::cos(eta);
+        if (cos_alpha <= 1e-6) return 0.0;
+        const double g =
+            masking == Masking::kSmith ? smith : std::min(1.0, 2.0 * cos_alpha * std::cos(kTheta) / std::cos(beta));
+        const double density = slopes.facet_density(1.0 / (cos_alpha * cos_alpha) - 1.0);
+        return 2.0 * density * g * (is_q ? std::cos(2.0 * eta) : 1.0);
+      };
+      const double mean = gauss_kronrod<double, 21>::integrate(at_eta, 0.0, pi, kDepth, kPlainTolerance);
+      const auto r = reference::fresnel(index, std::cos(beta));
+      const double absorbed = 0.5 * (is_q ? r.absorbed_s - r.absorbed_p : r.absorbed_s + r.absorbed_p);
+      return mean * absorbed * std::cos(beta) * std::sin(beta);
+    };
+    const auto total = [&](bool is_q) {
+      const auto integrand = [&](double beta) { return over_beta(beta, is_q); };
+      return gauss_kronrod<double, 21>::integrate(integrand, 0.0, 0.5 * pi, kDepth, kPlainTolerance);
+    };
+    const Moments m = moments({kCauchy, 65.0, {0.5, 2.5}, index}, Scattering::kSingle, masking);
+    EXPECT_NEAR(m.direct_i, total(false), 20.0 * kPlainTolerance * m.direct_i);
+    EXPECT_NEAR(m.direct_q, total(true), 20.0 * kPlainTolerance * m.direct_i);
+  }
+}
+
+TEST(ReferenceGrooves, OutsideTheDomain_ThrowsInputError) {
+  const Point point{kCauchy, 60.0, {0.3, 2.0}, kPaint};
+  EXPECT_THROW(moments(point, Scattering::kMultiple, Masking::kSmith), InputError);
+  EXPECT_THROW(moments(point, Scattering::kSingle, Masking::kIntegral), InputError);
+  EXPECT_THROW(moments(point, Scattering::kSingle, Masking::kNone), InputError);
+  ScatteringRequest request;
+  request.scattering = Scattering::kMultiple;
+  EXPECT_THROW(ReferenceEvaluator().scatter(request, {}), InputError);
+}
+
+}  // namespace
+}  // namespace dolp

@@ -117,8 +117,8 @@ TEST(Calibrate, CheckOfOrdinaryEntries_SaysALinePerModelAndExitsWith0) {
   const Outcome outcome = calibrate({"check", "--entries", "20", "--tolerance", "1e-4", "--seed", "3"});
   EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
   EXPECT_EQ(outcome.err, "");
-  EXPECT_EQ(lines_of(outcome.out), 8) << outcome.out;
-  for (const char* masking : {"none", "v-cavity", "integral", "smith"}) {
+  EXPECT_EQ(lines_of(outcome.out), 10) << outcome.out;
+  for (const char* masking : {"none", "v-cavity", "integral", "smith", "multiple"}) {
     for (const char* distribution : {"cauchy", "gaussian"}) {
       std::string line = masking;
       line.resize(9, ' ');

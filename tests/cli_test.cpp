@@ -80,11 +80,13 @@ TEST_F(CommandLine, TableNetcdf_EvalAtItsEntries_EqualBitForBit) {
   const Columns columns = parse_csv(content("e.csv"));
   ASSERT_EQ(table.size(), kSceneEntries);
   for (const TableVariable& variable : table_variables()) {
+    if (!columns.contains(variable.name)) continue;
     EXPECT_TRUE(same_bits(table.*variable.values, columns.at(variable.name))) << variable.name;
   }
+  EXPECT_TRUE(columns.contains("emissivity_s"));
   const Outcome other = run({.arguments = {kPython, DOLP_READ_TABLE, "t.nc", "e.csv"}, .folder = at("")});
   EXPECT_EQ(other.status, 0) << other.out << other.err;
-  EXPECT_NE(other.out.find("16 rows, 11 columns"), std::string::npos) << other.out;
+  EXPECT_NE(other.out.find("16 rows, 13 columns"), std::string::npos) << other.out;
 }
 
 TEST_F(CommandLine, TableFormats_SameScene_HoldTheSameNumbers) {
@@ -104,6 +106,7 @@ TEST_F(CommandLine, TableFormats_SameScene_HoldTheSameNumbers) {
   ASSERT_EQ(npy.status, 0) << npy.err;
   const Columns npy_columns = parse_csv(npy.out);
   for (const TableVariable& variable : table_variables()) {
+    if ((table.*variable.values).empty()) continue;
     EXPECT_TRUE(same_bits(table.*variable.values, columns.at(variable.name))) << variable.name;
     EXPECT_TRUE(same_bits(table.*variable.values, npy_columns.at(variable.name))) << variable.name;
   }

@@ -543,7 +543,7 @@ TEST(ArcCost, SmoothArcs_GainTheDigitsPerNodeThatItSays) {
         if (!text.is_before(forward, lines.horizon)) continue;
         const auto arc = text.make_arc(forward, lines.horizon);
         const Text::Slope slope{t, kManyDigits, text.unmasked(), false, DOLP_MAX_ORDER, false};
-        const auto sums = [&](int order) { return text.arc_sums(theta, row, index, slope, arc, 0, order).member[0]; };
+        const auto sums = [&](int order) { return text.arc_sums(theta, row, index, slope, arc, 0, true, order).member[0]; };
         const auto exact = sums(DOLP_MAX_ORDER);
         const double gained = digits_per_node([&](int order) { return error_of(sums(order), exact); });
         const double nodes = text.arc_nodes(rule, theta, row.shape[0], index, false, t, kManyDigits, arc, 0);

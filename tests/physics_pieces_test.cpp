@@ -298,7 +298,7 @@ TEST(TaskWord, EveryField_ComesBack) {
     pieces.count = 1 + below(DOLP_MAX_PIECES);
     for (std::uint8_t& root : pieces.roots) root = static_cast<std::uint8_t>(below(4));
     pieces.has_split_line = below(2) == 1;
-    pieces.most_nodes[piece] = static_cast<std::uint8_t>(1 + below(DOLP_MAX_ORDER));
+    for (std::uint8_t& most : pieces.most_nodes) most = static_cast<std::uint8_t>(1 + below(DOLP_MAX_ORDER));
     const std::uint32_t piece = below(pieces.count);
     const std::uint32_t members = 1 + below(16);
     const auto task = Text().task_of(task_word(pieces, piece, members));

@@ -279,12 +279,12 @@ TEST_F(Plan, NoDevice_PlansAllTheSame) {
 
 TEST_F(Plan, ShippedScenes_NameEachEffectOnceAndReadWell) {
   for (const char* name : {"aviation_aluminium", "bare_aluminium", "day", "far", "glint", "mwir_glint", "night_paint",
-                           "overcast", "stainless_steel", "water"}) {
+                           "overcast", "rough_metal", "sea_wind", "stainless_steel", "water"}) {
     const std::string scene = std::string(DOLP_HOST_DIR "/scenes/") + name + ".toml";
     const json json_plan = report({"plan", scene});
     EXPECT_EQ(names_in(json_plan["rows"]),
-              (std::vector<std::string>{"specular", "diffuse", "distribution", "masking", "complex index", "emission",
-                                        "source", "surroundings", "path", "band"}));
+              (std::vector<std::string>{"specular", "diffuse", "distribution", "masking", "scattering", "complex index",
+                                        "emission", "source", "surroundings", "path", "band"}));
     const Outcome outcome = dolp({"plan", scene});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     for (const json& row : json_plan["rows"]) {

@@ -208,9 +208,9 @@ TEST(MomentsFromKernel, Bounds_AreNoLessThanTheDistanceOfTheRules) {
 }
 
 TEST(AddPiece, EveryMember_IsTheSum) {
-  kernel::MomentsNode sum{1, 2, 3, 4, 5, 6, 7, 8, 9};
-  add_piece(sum, {10, 20, 30, 40, 50, 60, 70, 80, 90});
-  const kernel::MomentsNode expected{11, 22, 33, 44, 55, 66, 77, 88, 99};
+  kernel::MomentsNode sum{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  add_piece(sum, {10, 20, 30, 40, 50, 60, 70, 80, 90, 100, 110, 120});
+  const kernel::MomentsNode expected{11, 22, 33, 44, 55, 66, 77, 88, 99, 110, 121, 132};
   EXPECT_EQ(std::memcmp(&sum, &expected, sizeof sum), 0);
 }
 

@@ -116,11 +116,14 @@ const std::vector<KeyCase>& key_cases() {
       {"surface.sigma", "0.5", [](const Scene& s) { return s.surface.sigma == 0.5 && s.grid.sigma[0] == 0.5; }},
       {"surface.q", "3", [](const Scene& s) { return s.surface.q == 3.0 && s.grid.q[0] == 3.0; }},
       {"surface.masking", "\"v-cavity\"", [](const Scene& s) { return s.surface.masking == Masking::kVCavity; }},
+      {"surface.scattering", "\"single\"",
+       [](const Scene& s) { return s.surface.scattering == Scattering::kSingle; }},
       {"surface.specular", "0.5", [](const Scene& s) { return s.surface.specular == 0.5; }},
       {"surface.diffuse", "0.25", [](const Scene& s) { return s.surface.diffuse == 0.25; }},
       {"surface.diffuse_exponent", "-0.25", [](const Scene& s) { return s.surface.diffuse_exponent == -0.25; }},
       {"emission.temperature_K", "290", [](const Scene& s) { return s.emission->temperature_K == 290.0; }},
       {"emission.model", "\"fresnel\"", [](const Scene& s) { return s.emission->model == EmissionModel::kFresnel; }},
+      {"emission.bracket", "false", [](const Scene& s) { return !s.emission->has_bracket; }},
       {"source.irradiance", "0.5",
        [](const Scene& s) { return s.source->kind == Source::Kind::kFlat && s.source->irradiance == 0.5; }},
       {"source.relative_irradiance", "0.5",
@@ -242,7 +245,39 @@ TEST(Scene_EveryWord, NamesTheAllowedWords) {
     if (key.type != KeyDescription::Type::kWord) continue;
     const std::string error = error_of(kMinimal, {key.key + "=nonsense"});
     for (const std::string& word : key.words) EXPECT_TRUE(contains(error, word)) << error;
-    for (const std::string& word : key.words) EXPECT_EQ(error_of(kMinimal, {key.key + "=" + word}), "no error");
+    // All bounces and the direct emission need this masking.
+    for (const std::string& word : key.words) {
+      EXPECT_EQ(error_of(kMinimal, {"surface.masking=v-cavity", key.key + "=" + word}), "no error");
+    }
+  }
+}
+
+TEST(SceneScattering, WhatTheModelHas_Arrives) {
+  const Scene multiple = parse_scene(kMinimal, "s.toml", {"surface.masking=v-cavity", "surface.scattering=multiple"});
+  EXPECT_EQ(multiple.surface.scattering, Scattering::kMultiple);
+  const Scene direct = parse_scene(
+      kMinimal, "s.toml", {"surface.masking=v-cavity", "emission.model=direct", "emission.bracket=true"});
+  EXPECT_EQ(direct.emission->model, EmissionModel::kDirect);
+  EXPECT_TRUE(direct.emission->has_bracket);
+}
+
+TEST(SceneScattering, WhatTheModelLacks_NamesTheKeys) {
+  struct Case {
+    std::vector<std::string> overrides;
+    const char* expected;
+  };
+  for (const Case& c : std::vector<Case>{
+           {{"surface.masking=smith", "surface.scattering=multiple"}, "masking = \"v-cavity\""},
+           {{"surface.masking=none", "emission.model=direct"}, "\"smith\" or \"v-cavity\""},
+           {{"surface.masking=integral", "emission.bracket=true"}, "\"smith\" or \"v-cavity\""},
+           {{"surface.masking=v-cavity", "surface.scattering=multiple", "emission.bracket=true"}, "\"single\""},
+           {{"surface.masking=v-cavity", "surface.scattering=multiple", "emission.model=direct"}, "\"single\""},
+           {{"surface.masking=v-cavity", "emission.model=fresnel", "emission.bracket=true"}, "\"moments\" or \"direct\""},
+           {{"surface.masking=v-cavity", "geometry.mode=bistatic", "emission.bracket=true"}, "hemispherical"},
+           {{"surface.masking=v-cavity", "geometry.mode=bistatic", "surface.scattering=multiple"}, "hemispherical"},
+           {{"emission.bracket=yes"}, "true or false"}}) {
+    const std::string error = error_of(kMinimal, c.overrides);
+    EXPECT_TRUE(contains(error, c.expected)) << error;
   }
 }
 

@@ -77,7 +77,7 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
   const double reached = std::min(shape.cut, theta.end[DOLP_MAX_PIECES]);
   const double tail = share_beyond(data.distribution, shape, reached);
   if (data.scattering == Scattering::kMultiple) return theta.c * tail;
-  if (reached < shape.cut) return 0.0;
+  if (shape.cut >= theta.end[DOLP_MAX_PIECES]) return 0.0;
   const double u = shape.cut / shape.m;
   const bool gaussian = data.distribution == Distribution::kGaussian;
   const double log_square = std::log1p(u * u);
@@ -126,11 +126,13 @@ constexpr double kCriticalFactor = 2.0;  // roots beside the critical line, whic
 // for.
 constexpr double kLeastShareOfTolerance = 0.1;
 
-// Upper bound of what grooves steeper than a slope reflect of their light. Across a groove a ray of length a has at least
-// pi/3 slope - 1 bounces with cos(beta) >= a/2, and a >= level but for the azimuths with sin(theta) |cos(phi)| <
+// Upper bound of what grooves steeper than a slope reflect of their light. Across a groove a ray of length a has bounces at
+// psi + gamma, psi + 3 gamma ... up to pi - psi: at least slope min(pi/3, pi/2 - theta) - 1 of them with cos(beta) >= a/2.
+// And a >= level but for the azimuths with sin(theta) |cos(phi)| <
 // sqrt(level^2 - c^2), which take at most twice their share of the light.
 double reflected_by_steep_grooves(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double slope) {
-  const double bounces = std::max(pi<double>() / 3.0 * slope - 1.0, 0.0);
+  const double elevation = std::atan2(theta.c, theta.s);
+  const double bounces = std::max(std::min(pi<double>() / 3.0, elevation) * slope - 1.0, 0.0);
   double least = 1.0;
   for (double level = 1.0; level > 1e-6; level *= 0.5) {
     const double along = std::sqrt(std::max((level - theta.c) * (level + theta.c), 0.0));

@@ -41,6 +41,7 @@ constexpr double kLargestCut = 1e15;
 // Slopes that only split the long way to the horizon of a grazing direction, where a heavy tail reaches far, into
 // pieces of ten units of X or so.
 constexpr std::array kPlainBreakpoints = {30.0, 3e5};
+constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // the same of grooves, which have no horizon
 constexpr double kLongWay = 300.0;  // from a plain breakpoint to a horizon that is worth one, as a factor
 
 // Scale of the masking table, the width of the slope distribution if it can be. The end of the table, 5e8 scales away,
@@ -144,6 +145,7 @@ void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg, i
   for (int doublings = 0; doublings < DOLP_MOST_DOUBLINGS; doublings += DOLP_DOUBLINGS_AT_ONCE) {
     points.push_back({slope_with_bounces(std::ldexp(DOLP_MOST_BOUNCES, doublings)), 0});
   }
+  for (const double slope : kSteepBreakpoints) points.push_back({slope, 0});
 }
 
 // What makes a direction's pieces, beside the masking.
@@ -188,7 +190,7 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, const Mom
   double last = horizon;
   if (is_multiple) {
     add_groove_breakpoints(points, theta_deg, splits);
-    last = slope_with_bounces(std::ldexp(DOLP_MOST_BOUNCES, DOLP_MOST_DOUBLINGS));
+    last = kNoEnd;
     points.push_back({last, 0});
   } else {
     points = {{a.cos / (1.0 + a.sin), kRootAbove}, {horizon, kRootBelow}};

@@ -37,6 +37,7 @@ Fan fan(real t, real c, real u) {
       f.bounces *= real(0.5);
       ++f.doublings;
     }
+    f.bounces = min(f.bounces, real(DOLP_MOST_BOUNCES));  // of still more nothing is left
   }
   return f;
 }

@@ -152,7 +152,7 @@ Moments Facets::emission(const Refinement& refinement) {
 
 Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
                         const Refinement& refinement) {
-  if (zenith_from_deg(theta_deg).cos == 0.0) return {};
+  if (zenith_from_deg(theta_deg).cos == 0.0) return {.direct_i = 0.0, .direct_q = 0.0};
   return Facets(slopes, masking, theta_deg, constants).emission(refinement);
 }
 

@@ -259,7 +259,7 @@ GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zeni
 
 Moments groove_moments(const Slopes& slopes, double theta_deg, const OpticalConstants& constants,
                        const Refinement& refinement) {
-  if (zenith_from_deg(theta_deg).cos == 0.0) return {};
+  if (zenith_from_deg(theta_deg).cos == 0.0) return {.direct_i = 0.0, .direct_q = 0.0};
   double evaluations = 0.0;
   for (Refinement attempted = refinement;; attempted.relative_tolerance *= kLessAmbitious) {
     const bool is_last = attempted.relative_tolerance >= kLeastAmbition;

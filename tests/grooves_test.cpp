@@ -1,0 +1,272 @@
+// All bounces in V-grooves and the direct emission, on every kernel, against the reference and against what holds exactly.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "calibrate/random_entries.hpp"
+#include "evaluate/reference/reference_evaluator.hpp"
+#include "model/angles.hpp"
+#include "model/status.hpp"
+#include "properties_support.hpp"
+#include "run/scene_run.hpp"
+#include "run/scene_run.hpp"
+#include "scene/scene_reader.hpp"
+
+namespace dolp {
+namespace {
+
+MomentsRequest all_bounces(Distribution distribution, double tolerance) {
+  MomentsRequest request;
+  request.distribution = distribution;
+  request.masking = Masking::kVCavity;
+  request.scattering = Scattering::kMultiple;
+  request.tolerance = tolerance;
+  return request;
+}
+
+MomentsRequest direct_emission(Distribution distribution, Masking masking, double tolerance) {
+  MomentsRequest request;
+  request.distribution = distribution;
+  request.masking = masking;
+  request.wants_direct = true;
+  request.tolerance = tolerance;
+  return request;
+}
+
+/// rho of all bounces, from the reference to nine digits.
+struct KnownValue {
+  Distribution distribution;
+  MomentsPoint point;
+  double rho_i;
+  double rho_q;
+};
+const std::vector<KnownValue> kKnown = {
+    {Distribution::kCauchy, {0.0, {0.3, 2.0}, {1.5, 0.0}}, 0.0321166026, 0.0},
+    {Distribution::kCauchy, {60.0, {0.3, 2.0}, {1.5, 0.0}}, 0.0652161506, 0.0396415318},
+    {Distribution::kGaussian, {60.0, {0.2, 2.0}, {10.0, 60.0}}, 0.9843616317, 0.0079579054},
+    {Distribution::kCauchy, {80.0, {0.5, 3.0}, {26.0, 90.0}}, 0.9752597959, 0.0123237942},
+    {Distribution::kGaussian, {85.0, {0.1, 2.0}, {1.3, 0.05}}, 0.3980238980, 0.0916484045},
+    {Distribution::kGaussian, {60.0, {0.3, 2.0}, {10.0, 60.0}}, 0.9836486408, 0.0063643155}};
+constexpr double kPrinted = 5e-10;
+
+class Grooves : public testing::TestWithParam<Kernel> {};
+
+TEST_P(Grooves, KnownValues_WithinTheBounds) {
+  const auto evaluator = make_evaluator(GetParam());
+  for (const KnownValue& known : kKnown) {
+    MomentsRequest request = all_bounces(known.distribution, 1e-4);
+    request.append(known.point);
+    const Moments m = evaluator->evaluate(request, {}).front();
+    const double c = cos_sin_deg(known.point.theta_deg).cos;
+    EXPECT_NEAR(m.r_i / c, known.rho_i, m.r_i_error / c + kPrinted);
+    EXPECT_NEAR(m.r_q / c, known.rho_q, m.r_q_error / c + kPrinted);
+    EXPECT_NEAR(m.deficit / c, 1.0 - known.rho_i, m.deficit_error / c + kPrinted);
+    EXPECT_LT(m.r_i_error / m.r_i, 1e-4);
+    EXPECT_EQ(m.albedo, c);
+  }
+}
+
+TEST_P(Grooves, Vacuum_ReflectsNothingAndEmitsAll) {
+  const auto evaluator = make_evaluator(GetParam());
+  for (const double theta_deg : {0.0, 45.0, 80.0}) {
+    const double c = cos_sin_deg(theta_deg).cos;
+    MomentsRequest bounces = all_bounces(Distribution::kCauchy, 1e-4);
+    bounces.append({theta_deg, {0.3, 2.0}, {1.0, 0.0}});
+    const Moments m = evaluator->evaluate(bounces, {}).front();
+    EXPECT_NEAR(m.r_i, 0.0, m.r_i_error);
+    EXPECT_NEAR(m.deficit, c, m.deficit_error + 1e-7);
+    for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
+      MomentsRequest direct = direct_emission(Distribution::kCauchy, masking, 1e-4);
+      direct.append({theta_deg, {0.3, 2.0}, {1.0, 0.0}});
+      const Moments d = evaluator->evaluate(direct, {}).front();
+      EXPECT_NEAR(d.direct_i, c, d.direct_i_error);
+      EXPECT_NEAR(d.direct_q, 0.0, d.direct_q_error);
+      EXPECT_LT(d.direct_i_error, 2e-4);
+    }
+  }
+}
+
+// Grooves that no ray meets twice: slopes below 30 degrees - theta/3.
+TEST_P(Grooves, SmoothSurface_AsSingleScattering) {
+  const auto evaluator = make_evaluator(GetParam());
+  MomentsRequest multiple = all_bounces(Distribution::kGaussian, 1e-4);
+  multiple.append({60.0, {0.01, 2.0}, {26.0, 90.0}});
+  MomentsRequest single = multiple;
+  single.scattering = Scattering::kSingle;
+  const Moments a = evaluator->evaluate(multiple, {}).front();
+  const Moments b = evaluator->evaluate(single, {}).front();
+  EXPECT_NEAR(a.r_i, b.r_i, a.r_i_error + b.r_i_error);
+  EXPECT_NEAR(a.r_q, b.r_q, a.r_q_error + b.r_q_error);
+  EXPECT_NEAR(a.deficit, b.deficit, a.deficit_error + b.deficit_error);
+}
+
+TEST_P(Grooves, WithoutAndWithTheDirectEmission_TheOtherMomentsAgree) {
+  const auto evaluator = make_evaluator(GetParam());
+  for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
+    MomentsRequest with = direct_emission(Distribution::kCauchy, masking, 1e-4);
+    with.append({70.0, {0.4, 2.5}, {3.0, 4.0}});
+    MomentsRequest without = with;
+    without.wants_direct = false;
+    const Moments a = evaluator->evaluate(with, {}).front();
+    const Moments b = evaluator->evaluate(without, {}).front();
+    EXPECT_NEAR(a.r_i, b.r_i, a.r_i_error + b.r_i_error);
+    EXPECT_NEAR(a.deficit, b.deficit, a.deficit_error + b.deficit_error);
+    EXPECT_TRUE(std::isnan(b.direct_i));
+    // What a facet emits is all that is emitted at least; what single scattering loses, at most.
+    EXPECT_LE(a.direct_i, a.deficit);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryKernel, Grooves, testing::ValuesIn(kKernels),
+                         [](const auto& test) { return name_of(test.param); });
+
+/// Largest distance from the reference over the bounds of both.
+double worst_ratio(const MomentsRequest& request, double reference_tolerance) {
+  CpuEvaluator kernel(Precision::kDouble);
+  ReferenceEvaluator reference({.relative_tolerance = reference_tolerance});
+  const std::vector<Moments> own = kernel.evaluate(request, {});
+  const std::vector<Moments> other = reference.evaluate(request, {});
+  double worst = 0.0;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    for (const auto& [value, error] : kMomentMembers) {
+      const double distance = std::abs(own[i].*value - other[i].*value);
+      if (!(distance > 0.0)) continue;
+      const double ratio = distance / (own[i].*error + other[i].*error);
+      EXPECT_LE(ratio, 1.0) << "theta " << request[i].theta_deg << " sigma " << request[i].shape.sigma << " q "
+                            << request[i].shape.q << " n " << request[i].index.n << " k " << request[i].index.k;
+      worst = std::max(worst, ratio);
+    }
+  }
+  return worst;
+}
+
+void append_random(MomentsRequest& request, Domain domain, std::uint64_t seed, int count) {
+  Draw draw(seed);
+  for (int i = 0; i < count; ++i) request.append(random_entry(draw, domain, request.distribution, request.masking));
+}
+
+TEST(GroovesReference, RandomEntries_WithinTheBounds) {
+  for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
+    for (const double tolerance : {1e-2, 1e-4}) {
+      MomentsRequest request = all_bounces(distribution, tolerance);
+      append_random(request, Domain::kOrdinary, 11, 10);
+      std::printf("%s %.0e: worst %.2g\n", name_of(distribution), tolerance, worst_ratio(request, 1e-5));
+    }
+  }
+}
+
+TEST(GroovesReference, DirectEmission_WithinTheBounds) {
+  for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
+    for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
+      MomentsRequest request = direct_emission(distribution, masking, 1e-4);
+      append_random(request, Domain::kOrdinary, 12, 20);
+      append_random(request, Domain::kCorners, 13, 20);
+      std::printf("%s %s: worst %.2g\n", name_of(distribution), name_of(masking), worst_ratio(request, 1e-6));
+    }
+  }
+}
+
+// Steep grooves, heavy tails, the horizon, total reflection: bounds may be wide there, but hold.
+TEST(GroovesReference, HardCases_WithinTheBounds) {
+  MomentsRequest request = all_bounces(Distribution::kCauchy, 1e-2);
+  for (const MomentsPoint& point : std::vector<MomentsPoint>{{60.0, {5.0, 2.0}, {1.5, 0.1}},
+                                                             {30.0, {10.0, 1.5}, {1.5, 0.0}},
+                                                             {85.0, {0.3, 1.05}, {1.5, 0.0}},
+                                                             {60.0, {1.0, 2.0}, {0.2, 3.0}},
+                                                             {89.999881021755229, {0.009, 1.019}, {0.56, 7.6}},
+                                                             {40.0, {0.3, 3.0}, {0.7, 0.0}},
+                                                             {60.0, {1e-4, 2.0}, {26.0, 90.0}},
+                                                             {0.0, {0.5, 2.0}, {1.3, 0.0}}}) {
+    request.append(point);
+  }
+  worst_ratio(request, 1e-4);
+}
+
+// ---- Scenes --------------------------------------------------------------------------------------------------------
+
+constexpr const char* kScene = R"(
+[surface]
+n = 10
+k = 60
+distribution = "gaussian"
+sigma = 0.3
+masking = "v-cavity"
+[emission]
+temperature_K = 300
+[spectrum]
+wavelength_um = 10
+)";
+
+std::vector<PointResult> results_of(const std::vector<std::string>& overrides) {
+  const Scene scene = parse_scene(kScene, "s.toml", overrides);
+  CpuEvaluator evaluator(Precision::kDouble);
+  return evaluate_scene(scene, grid_entries(scene), evaluator, {});
+}
+
+TEST(GroovesScene, UpToTheHorizon_NothingIsUnphysical) {
+  const std::vector<PointResult> results =
+      results_of({"surface.scattering=multiple", "grid.theta_deg=[0, 30, 60, 80, 89, 89.99, 90]"});
+  for (const PointResult& r : results) {
+    EXPECT_EQ(r.status & (kStatusUnphysicalReflectance | kStatusNonPositiveIntensity | kStatusOutsideDomain), 0U);
+    EXPECT_EQ(r.albedo, 1.0);
+    EXPECT_TRUE(r.emissivity_s > 0.0 && r.emissivity_s <= r.emissivity_p + 1e-9 && r.emissivity_p < 1.0);
+    EXPECT_NEAR(0.5 * (r.emissivity_s + r.emissivity_p) + r.rho_i, 1.0, 1e-12);
+  }
+  // The emissivity of the metal is a seventh of what single scattering says, the DOLP ten times as large.
+  EXPECT_NEAR(0.5 * (results[2].emissivity_s + results[2].emissivity_p), 0.01635, 1e-5);
+  EXPECT_NEAR(results[2].dolp, 0.3892, 1e-4);
+}
+
+TEST(GroovesScene, AllBounces_LieInTheBracket) {
+  const std::vector<std::string> grid = {"grid.theta_deg=[0, 30, 60, 80]"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), grid.begin(), grid.end());
+    return results_of(more);
+  };
+  const std::vector<PointResult> all = with({"surface.scattering=multiple"});
+  for (const char* model : {"emission.model=moments", "emission.model=direct"}) {
+    const std::vector<PointResult> between = with({"emission.bracket=true", model});
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      EXPECT_LE(between[i].dolp_low, all[i].dolp + 1e-4);
+      EXPECT_GE(between[i].dolp_high, all[i].dolp - 1e-4);
+      EXPECT_LE(between[i].dolp_low, between[i].dolp + 1e-4);
+      EXPECT_GE(between[i].dolp_high, between[i].dolp - 1e-4);
+    }
+  }
+}
+
+// What the bracket is made of, from the emissivities of both ends (section 4 of the model).
+TEST(GroovesScene, Bracket_IsWhatItsEndsSay) {
+  const std::vector<std::string> surroundings = {"grid.theta_deg=[60]", "surroundings.temperature_K=250"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), surroundings.begin(), surroundings.end());
+    return results_of(more).front();
+  };
+  const PointResult single = with({"emission.bracket=true"});
+  const PointResult direct = with({"emission.model=direct"});
+  const double single_i = 0.5 * (single.emissivity_s + single.emissivity_p);
+  const double direct_i = 0.5 * (direct.emissivity_s + direct.emissivity_p);
+  const double direct_q = 0.5 * (direct.emissivity_s - direct.emissivity_p);
+  const double slack = single_i - direct_i;
+  // Q = N eps_Q with the same N for all: that of single scattering gives it.
+  const double net = single.stokes_q / (-single.rho_q);
+  EXPECT_NEAR(single.dolp_high, std::abs(net) * (std::abs(direct_q) + slack) / single.stokes_i, 1e-4);
+  EXPECT_NEAR(single.dolp_low, std::abs(net) * std::max(std::abs(direct_q) - slack, 0.0) / single.stokes_i, 1e-4);
+}
+
+TEST(GroovesScene, SmoothSurface_PlanLeavesTheBouncesOut) {
+  const std::vector<std::string> smooth = {"surface.scattering=multiple", "surface.sigma=0.02", "grid.theta_deg=[0, 45]"};
+  const Scene scene = parse_scene(kScene, "s.toml", smooth);
+  const EffectPlan plan = plan_effects(scene, grid_entries(scene), false);
+  EXPECT_FALSE(plan.kept.further_bounces);
+  EXPECT_TRUE(plan.kept.moments);
+  const Scene rough = parse_scene(kScene, "s.toml", {"surface.scattering=multiple"});
+  EXPECT_TRUE(plan_effects(rough, grid_entries(rough), false).kept.further_bounces);
+}
+
+}  // namespace
+}  // namespace dolp

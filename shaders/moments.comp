@@ -18,13 +18,21 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   uvec4 own = tasks[push.first + min(i, push.count - 1u)];
   Task task = task_of(own.w);
+  ThetaNode theta;
+  theta.c = thetas[own.x].c;
+  theta.s = thetas[own.x].s;
+  task.before = thetas[own.x].end[max(task.piece - 1, 0)];
+  task.start = thetas[own.x].end[task.piece];
+  task.end = thetas[own.x].end[min(task.piece + 1, DOLP_MAX_PIECES)];
+  task.after = thetas[own.x].end[min(task.piece + 2, DOLP_MAX_PIECES)];
+  task.last = thetas[own.x].end[DOLP_MAX_PIECES];
   Row row;
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     uint shape = own.y + uint(min(g, task.members - 1));
     row.shape[g] = shapes[shape];
     row.table[g] = shape * kMaskingNodes;
   }
-  RowMoments result = piece_moments(rule, thetas[own.x], row, indices[own.z], task);
+  RowMoments result = piece_moments(rule, theta, row, indices[own.z], task);
   if (i < push.count) {
     for (int g = 0; g < DOLP_WIDTH; ++g) moments[i * DOLP_WIDTH + g] = result.member[g];
   }

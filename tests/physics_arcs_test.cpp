@@ -569,7 +569,7 @@ void measure_pieces(KernelData data, const Add& add) {
   const auto row = row_of<Text>(shape_in<Text>(data.shapes[0]));
   const auto full = rule_in<Text>(rule_of_nodes(kAzimuths, data.rule));
   for (std::uint32_t i = 0; i < piece_count(data, 0, data.shapes[0]); ++i) {
-    auto task = text.task_of(task_word(data.pieces[0], i, 1));
+    auto task = text.with_slopes(text.task_of(task_word(data.pieces[0], i, 1)), theta);
     task.most_azimuths = DOLP_MAX_ORDER;
     auto piece = text.make_piece(full, theta, row, index, task);
     const auto nodes = [&](double digits) {

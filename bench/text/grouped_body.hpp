@@ -74,7 +74,8 @@ class Kernel final : public GroupedText {
       row.shape[g] = shapes_[shape];
       row.table[g] = table(shape);
     }
-    const auto task = text_.task_of(task_word(work_.data.pieces[theta], own.piece, chunk.count));
+    const std::uint32_t word = task_word(work_.data.pieces[theta], own.piece, chunk.count);
+    const auto task = text_.with_slopes(text_.task_of(word), thetas_[theta]);
     const auto moments = text_.piece_moments(rule_, thetas_[theta], row, indices_[entries.index], task);
     for (std::size_t g = 0; g < kWidth; ++g) {
       members[g] = convert_reals<double, kernel::MomentsNode, real>(moments.member[g]);

@@ -138,7 +138,8 @@ class Kernel final : public GroupedText {
     }
     const auto theta = side_by_side<typename Own::ThetaNode>(thetas);
     const auto index = side_by_side<typename Own::IndexNode>(all_lanes(work_.data.indices[row_of(first).index]));
-    const auto moments = text_.piece_moments(rule_, theta, row, index, text_.task_of(word(first)));
+    const auto moments = text_.piece_moments(rule_, theta, row, index,
+                                             text_.with_slopes(text_.task_of(word(first)), theta));
     for (std::size_t lane = 0; lane < count; ++lane) {
       for (std::size_t g = 0; g < kWidth; ++g) {
         members[lane * kWidth + g] = lane_of<kernel::MomentsNode>(moments.member[g], lane);

@@ -229,5 +229,10 @@ SplitLines split_lines(RuleNode rule, ThetaNode theta, IndexNode index, real t, 
   lines.arcs = 1;
   lines.leaving = 1;
   lines.critical = line_at(index.critical_cos * sqrt(real(1.0) + t * t) - c, st);
-  return kIsMultiple ? groove_lines(rule, theta, t, digits, lines) : single_lines(theta, t, has_split_line, lines);
+  if (kIsMultiple) {
+    lines = groove_lines(rule, theta, t, digits, lines);
+  } else {
+    lines = single_lines(theta, t, has_split_line, lines);
+  }
+  return lines;
 }

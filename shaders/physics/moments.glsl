@@ -37,17 +37,16 @@ AzimuthSums arc_sums(ThetaNode theta, Row row, IndexNode index, Slope slope, Arc
     Azimuth at = azimuth(arc, place_on_arc(arc, rule_node(first_node + i)));
     if (kIsMultiple) {
       sums.member[0] += at.weight * reflected_in_groove(theta, index, slope.t, at.x, at.sin_phi);
-      continue;
-    }
-    Facet f = facet(theta, index, slope.t, at.x, at.sin_phi);
-    if (leaves) {
+    } else {
+      Facet f = facet(theta, index, slope.t, at.x, at.sin_phi);
       Masked of_ray = masking_of_ray(row, f.cos_r, slope.t, zone);
+      real seen = leaves ? at.weight : real(0.0);
       for (int g = 0; g < masked_members(); ++g) {
         Projection part = project(theta, f, zone, slope.of_theta.value[g], of_ray.value[g]);
-        sums.member[g] += at.weight * reflected(f, part);
+        sums.member[g] += seen * reflected(f, part);
       }
+      if (kHasDirect) sums.direct += at.weight * emitted(theta, f);
     }
-    if (kHasDirect) sums.direct += at.weight * emitted(theta, f);
   }
   sums.evaluations = real(order);
   return sums;
@@ -93,8 +92,8 @@ CONST real kNearRoot = real(0.2);
 
 Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task task) {
   ShapeNode shape = row.shape[0];
-  real a = theta.end[task.piece];
-  real b = min(theta.end[task.piece + 1], shape.cut);
+  real a = task.start;
+  real b = min(task.end, shape.cut);
   real exponent_a = common_exponent(a / shape.m);
   real exponent_b = common_exponent(b / shape.m);
   Piece piece;
@@ -116,13 +115,13 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task 
   piece.root_before = piece.start;
   piece.root_after = end;
   if (task.root_before_start) {
-    real x = asinh_real(theta.end[task.piece - 1] / shape.scale);
+    real x = asinh_real(task.before / shape.scale);
     bool is_near = piece.start - x < kNearRoot * piece.extent;
     piece.root_at_a = piece.root_at_a || is_near;
     piece.root_before = is_near ? piece.start : x;
   }
   if (task.root_after_end && b < shape.cut) {
-    real x = asinh_real(theta.end[task.piece + 2] / shape.scale);
+    real x = asinh_real(task.after / shape.scale);
     bool is_near = x - end < kNearRoot * piece.extent;
     piece.root_at_b = piece.root_at_b || is_near;
     piece.root_after = is_near ? end : x;
@@ -228,12 +227,12 @@ RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
   Masked of_theta = masking_of_direction(row, theta.c, theta.s);
   PieceSums coarse = no_slopes();
   PieceSums fine = no_slopes();
-  int passes = (theta.end[task.piece] < cut) ? 2 : 0;  // a piece that none of the row reaches
+  int passes = (task.start < cut) ? 2 : 0;  // a piece that none of the row reaches
   for (int pass = 0; pass < passes; ++pass) {
     coarse = fine;
     fine = piece_sums(rule, theta, row, index, task, piece, of_theta, pass == 0);
   }
-  real reached = min(theta.end[DOLP_MAX_PIECES], cut);
+  real reached = min(task.last, cut);
   RowMoments result;
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     real beyond = (task.piece == 0) ? theta.c * slope_tail(row.shape[g], reached) : real(0.0);

@@ -8,6 +8,11 @@ struct Task {
   bool root_after_end;
   bool has_split_line;
   int most_azimuths;
+  real before;  // slopes: the breakpoints before the piece, at its ends and after it, and the last of the direction
+  real start;
+  real end;
+  real after;
+  real last;
 };
 
 bool has_bit(uint word, uint bit) { return ((word >> bit) & 1u) == 1u; }
@@ -22,6 +27,17 @@ Task task_of(uint word) {
   task.root_after_end = has_bit(word, DOLP_TASK_ROOT_AFTER_END);
   task.has_split_line = has_bit(word, DOLP_TASK_SPLIT_LINE);
   task.most_azimuths = int(word >> DOLP_TASK_AZIMUTHS_SHIFT);
+  return task;
+}
+
+// The task with its slopes. moments.comp reads them one by one: a copy of all of a direction's costs a driver half a second
+// of compilation.
+Task with_slopes(Task task, ThetaNode theta) {
+  task.before = theta.end[max(task.piece - 1, 0)];
+  task.start = theta.end[task.piece];
+  task.end = theta.end[min(task.piece + 1, DOLP_MAX_PIECES)];
+  task.after = theta.end[min(task.piece + 2, DOLP_MAX_PIECES)];
+  task.last = theta.end[DOLP_MAX_PIECES];
   return task;
 }
 

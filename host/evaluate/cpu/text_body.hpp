@@ -66,7 +66,7 @@ class TextKernel final : public KernelText {
     const auto index = convert_reals<real, Text::IndexNode, double>(data_.indices[entry.index]);
     kernel::MomentsNode moments{};
     for (std::uint32_t piece = 0; piece < piece_count(data_, entry.theta, data_.shapes[entry.shape]); ++piece) {
-      const auto task = text_.task_of(task_word(data_.pieces[entry.theta], piece, 1));
+      const auto task = text_.with_slopes(text_.task_of(task_word(data_.pieces[entry.theta], piece, 1)), theta);
       const auto part = text_.piece_moments(rule_, theta, row, index, task);
       add_piece(moments, convert_reals<double, kernel::MomentsNode, real>(part.member[0]));
     }

@@ -57,6 +57,8 @@ class Slice:
 
         self.dolp = 100.0 * values("dolp", np.nan)
         self.status = values("status", 0) if "status" in dataset.variables else np.zeros(self.dolp.shape, int)
+        has_bracket = "dolp_low" in dataset.variables and "dolp_high" in dataset.variables
+        self.bracket = [100.0 * values(name, np.nan) for name in ("dolp_low", "dolp_high")] if has_bracket else None
         errors = values("error_estimate", np.nan) if "error_estimate" in dataset.variables else None
         self.worst_error = self._worst(errors) if errors is not None else None
         self.title = getattr(dataset, "title", "")
@@ -98,11 +100,16 @@ def draw_curves(axes, table):
         good = np.where(table.status[:, j] == 0, table.dolp[:, j], np.nan)
         style = {"color": colour, "marker": "o" if table.theta.size <= FEW_ANGLES else None, "markersize": 3.5}
         axes.plot(table.theta, table.dolp[:, j], alpha=0.35, linewidth=1.2, linestyle="--", **style)
+        if table.bracket:
+            low, high = (end[:, j] for end in table.bracket)
+            axes.fill_between(table.theta, low, high, color=colour, alpha=0.12, linewidth=0.0)
         axes.plot(table.theta, good, linewidth=1.8, label=f"$\\sigma$ = {table.sigma[j]:.3g}", **style)
     axes.set_ylim(0.0, 1.08 * table.largest())
     axes.set_ylabel("DOLP (%)")
     axes.grid(alpha=0.25, linewidth=0.6)
     handles, _ = axes.get_legend_handles_labels()
+    if table.bracket:
+        handles.append(Patch(color="0.4", alpha=0.25, linewidth=0.0, label="all bounces lie between"))
     if np.any(table.status[:, chosen]):
         handles.append(Line2D([], [], color="0.4", alpha=0.6, linestyle="--", linewidth=1.2, label="status $\\neq$ 0"))
     axes.legend(handles=handles, frameon=False, fontsize=9, loc="upper left")

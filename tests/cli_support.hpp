@@ -37,8 +37,9 @@ q = [2, 3.5]
 inline const std::string kPoints = "theta_deg,sigma,q\n0,0.1,2\n60.0,0.4,3.5\n 80.5,0.1 ,2\n";
 
 inline const std::vector<std::string> kResultColumns = {
-    "rho_i",    "rho_q", "albedo",         "stokes_i",           "stokes_q", "stokes_u",
-    "stokes_v", "dolp",  "error_estimate", "rho_error_estimate", "emissivity_s", "emissivity_p", "status"};
+    "rho_i",        "rho_q",        "albedo", "stokes_i",       "stokes_q",
+    "stokes_u",     "stokes_v",     "dolp",   "error_estimate", "rho_error_estimate",
+    "emissivity_s", "emissivity_p", "status"};
 
 /// Columns of a CSV file by name; lines that begin with # are left out.
 using Columns = std::map<std::string, std::vector<double>>;

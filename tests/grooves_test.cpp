@@ -1,4 +1,5 @@
-// All bounces in V-grooves and the direct emission, on every kernel, against the reference and against what holds exactly.
+// All bounces in V-grooves and the direct emission, on every kernel, against the reference and against what holds
+// exactly.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +13,6 @@
 #include "model/angles.hpp"
 #include "model/status.hpp"
 #include "properties_support.hpp"
-#include "run/scene_run.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene_reader.hpp"
 
@@ -259,7 +259,8 @@ TEST(GroovesScene, Bracket_IsWhatItsEndsSay) {
 }
 
 TEST(GroovesScene, SmoothSurface_PlanLeavesTheBouncesOut) {
-  const std::vector<std::string> smooth = {"surface.scattering=multiple", "surface.sigma=0.02", "grid.theta_deg=[0, 45]"};
+  const std::vector<std::string> smooth = {"surface.scattering=multiple", "surface.sigma=0.02",
+                                           "grid.theta_deg=[0, 45]"};
   const Scene scene = parse_scene(kScene, "s.toml", smooth);
   const EffectPlan plan = plan_effects(scene, grid_entries(scene), false);
   EXPECT_FALSE(plan.kept.further_bounces);

@@ -74,7 +74,8 @@ typename Text::AzimuthSums sums_of_order(Text& text, int order, const typename T
   const typename Text::Slope slope{t, static_cast<RealOf<Text>>(digits), of_theta, true, order, false};
   auto rule = rule_of_nodes(0.0);
   rule.phi_digits = kMoreThanEnough;
-  return text.azimuth_sums(rule_in<Text>(rule), theta, row, index, slope, text.split_lines({}, theta, index, t, true, 0));
+  return text.azimuth_sums(rule_in<Text>(rule), theta, row, index, slope,
+                           text.split_lines({}, theta, index, t, true, 0));
 }
 
 // A random direction and slope: steep, flat, near the normal and near grazing.
@@ -543,7 +544,9 @@ TEST(ArcCost, SmoothArcs_GainTheDigitsPerNodeThatItSays) {
         if (!text.is_before(forward, lines.horizon)) continue;
         const auto arc = text.make_arc(forward, lines.horizon);
         const Text::Slope slope{t, kManyDigits, text.unmasked(), false, DOLP_MAX_ORDER, false};
-        const auto sums = [&](int order) { return text.arc_sums(theta, row, index, slope, arc, 0, true, order).member[0]; };
+        const auto sums = [&](int order) {
+          return text.arc_sums(theta, row, index, slope, arc, 0, true, order).member[0];
+        };
         const auto exact = sums(DOLP_MAX_ORDER);
         const double gained = digits_per_node([&](int order) { return error_of(sums(order), exact); });
         const double nodes = text.arc_nodes(rule, theta, row.shape[0], index, false, t, kManyDigits, arc, 0);

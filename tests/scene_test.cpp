@@ -116,8 +116,7 @@ const std::vector<KeyCase>& key_cases() {
       {"surface.sigma", "0.5", [](const Scene& s) { return s.surface.sigma == 0.5 && s.grid.sigma[0] == 0.5; }},
       {"surface.q", "3", [](const Scene& s) { return s.surface.q == 3.0 && s.grid.q[0] == 3.0; }},
       {"surface.masking", "\"v-cavity\"", [](const Scene& s) { return s.surface.masking == Masking::kVCavity; }},
-      {"surface.scattering", "\"single\"",
-       [](const Scene& s) { return s.surface.scattering == Scattering::kSingle; }},
+      {"surface.scattering", "\"single\"", [](const Scene& s) { return s.surface.scattering == Scattering::kSingle; }},
       {"surface.specular", "0.5", [](const Scene& s) { return s.surface.specular == 0.5; }},
       {"surface.diffuse", "0.25", [](const Scene& s) { return s.surface.diffuse == 0.25; }},
       {"surface.diffuse_exponent", "-0.25", [](const Scene& s) { return s.surface.diffuse_exponent == -0.25; }},
@@ -255,8 +254,8 @@ TEST(Scene_EveryWord, NamesTheAllowedWords) {
 TEST(SceneScattering, WhatTheModelHas_Arrives) {
   const Scene multiple = parse_scene(kMinimal, "s.toml", {"surface.masking=v-cavity", "surface.scattering=multiple"});
   EXPECT_EQ(multiple.surface.scattering, Scattering::kMultiple);
-  const Scene direct = parse_scene(
-      kMinimal, "s.toml", {"surface.masking=v-cavity", "emission.model=direct", "emission.bracket=true"});
+  const Scene direct =
+      parse_scene(kMinimal, "s.toml", {"surface.masking=v-cavity", "emission.model=direct", "emission.bracket=true"});
   EXPECT_EQ(direct.emission->model, EmissionModel::kDirect);
   EXPECT_TRUE(direct.emission->has_bracket);
 }
@@ -272,7 +271,8 @@ TEST(SceneScattering, WhatTheModelLacks_NamesTheKeys) {
            {{"surface.masking=integral", "emission.bracket=true"}, "\"smith\" or \"v-cavity\""},
            {{"surface.masking=v-cavity", "surface.scattering=multiple", "emission.bracket=true"}, "\"single\""},
            {{"surface.masking=v-cavity", "surface.scattering=multiple", "emission.model=direct"}, "\"single\""},
-           {{"surface.masking=v-cavity", "emission.model=fresnel", "emission.bracket=true"}, "\"moments\" or \"direct\""},
+           {{"surface.masking=v-cavity", "emission.model=fresnel", "emission.bracket=true"},
+            "\"moments\" or \"direct\""},
            {{"surface.masking=v-cavity", "geometry.mode=bistatic", "emission.bracket=true"}, "hemispherical"},
            {{"surface.masking=v-cavity", "geometry.mode=bistatic", "surface.scattering=multiple"}, "hemispherical"},
            {{"emission.bracket=yes"}, "true or false"}}) {

@@ -278,7 +278,7 @@ TEST_F(TableFiles, Npy_Bytes_AreAStructuredArray) {
   EXPECT_NE(header.find("('q', '<f8'), ('dolp', '<f8')"), std::string::npos) << header;
   EXPECT_NE(header.find("('status', '<u4')"), std::string::npos) << header;
   EXPECT_EQ(header.find("stokes_u"), std::string::npos) << header;
-  constexpr std::size_t kReals = 3 + 9;
+  constexpr std::size_t kReals = 3 + 13;
   constexpr std::size_t kRecord = kReals * sizeof(double) + sizeof(std::uint32_t);
   ASSERT_EQ(bytes.size() - start, table.size() * kRecord);
   for (std::size_t i = 0; i < table.size(); ++i) {

@@ -109,10 +109,14 @@ std::unique_ptr<GroupedText> make_text(const GroupedWork& work) {
 
 inline std::unique_ptr<GroupedText> text_for(const GroupedWork& work) {
   switch (work.rows.width) {
-    case 4: return make_text<4>(work);
-    case 8: return make_text<8>(work);
-    case 16: return make_text<16>(work);
-    default: return make_text<1>(work);
+    case 4:
+      return make_text<4>(work);
+    case 8:
+      return make_text<8>(work);
+    case 16:
+      return make_text<16>(work);
+    default:
+      return make_text<1>(work);
   }
 }
 

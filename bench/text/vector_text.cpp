@@ -1,5 +1,5 @@
-// The text with invocations side by side. With masking tables, whose look-ups each lane has to do alone, it is slower than
-// native_text.cpp. Flags of its own, see bench/CMakeLists.txt.
+// The text with invocations side by side. With masking tables, whose look-ups each lane has to do alone, it is slower
+// than native_text.cpp. Flags of its own, see bench/CMakeLists.txt.
 #define DOLP_LANES
 
 #include "bench/text/vector_lanes.hpp"
@@ -138,8 +138,8 @@ class Kernel final : public GroupedText {
     }
     const auto theta = side_by_side<typename Own::ThetaNode>(thetas);
     const auto index = side_by_side<typename Own::IndexNode>(all_lanes(work_.data.indices[row_of(first).index]));
-    const auto moments = text_.piece_moments(rule_, theta, row, index,
-                                             text_.with_slopes(text_.task_of(word(first)), theta));
+    const auto moments =
+        text_.piece_moments(rule_, theta, row, index, text_.with_slopes(text_.task_of(word(first)), theta));
     for (std::size_t lane = 0; lane < count; ++lane) {
       for (std::size_t g = 0; g < kWidth; ++g) {
         members[lane * kWidth + g] = lane_of<kernel::MomentsNode>(moments.member[g], lane);
@@ -165,10 +165,14 @@ namespace dolp::bench {
 
 std::unique_ptr<GroupedText> make_vector_text(const GroupedWork& work) {
   switch (work.rows.width) {
-    case 4: return vector_text::make_text<4>(work);
-    case 8: return vector_text::make_text<8>(work);
-    case 16: return vector_text::make_text<16>(work);
-    default: return vector_text::make_text<1>(work);
+    case 4:
+      return vector_text::make_text<4>(work);
+    case 8:
+      return vector_text::make_text<8>(work);
+    case 16:
+      return vector_text::make_text<16>(work);
+    default:
+      return vector_text::make_text<1>(work);
   }
 }
 

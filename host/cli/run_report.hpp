@@ -12,8 +12,8 @@
 #include "model/point_result.hpp"
 #include "plan/effects.hpp"
 #include "run/self_check.hpp"
-#include "table/result_csv.hpp"
 #include "scene/points.hpp"
+#include "table/result_csv.hpp"
 
 namespace dolp::cli {
 

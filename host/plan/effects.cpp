@@ -17,9 +17,8 @@
 namespace dolp {
 namespace {
 
-constexpr std::array kDroppingOrder = {Part::kMoments,  Part::kSource,       Part::kSurroundings,
-                                       Part::kEmission, Part::kPathRadiance, Part::kDiffuse,
-                                       Part::kMoments,  Part::kFurtherBounces};
+constexpr std::array kDroppingOrder = {Part::kMoments,      Part::kSource,  Part::kSurroundings, Part::kEmission,
+                                       Part::kPathRadiance, Part::kDiffuse, Part::kMoments,      Part::kFurtherBounces};
 
 constexpr double kFarBelow = 0.1;
 
@@ -252,9 +251,9 @@ EffectRow emission_row(const Scene& scene, const EffectPlan& plan) {
   constexpr const char* kName = "emission";
   if (!scene.emission) return absent(kName, "no [emission]");
   EffectRow row{kName, EffectState::kKept};
-  const char* of = is_fresnel(scene)                              ? "of the smooth surface"
+  const char* of = is_fresnel(scene)                         ? "of the smooth surface"
                    : emits_as(scene, EmissionModel::kDirect) ? "of the facets, straight to the viewer"
-                                                                 : "1 - rho of the surface (Kirchhoff)";
+                                                             : "1 - rho of the surface (Kirchhoff)";
   row.reason = fmt::format("{:g} K, {}", scene.emission->temperature_K, of);
   row.needs = is_fresnel(scene) || !plan.needs_moments ? "closed form" : moments_needs(scene);
   return part_row(scene, plan, kName, Part::kEmission, row);
@@ -348,8 +347,7 @@ EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool ke
   }
   plan.needs_moments = plan.kept.moments;
   plan.needs_direct = plan.needs_moments && scene.emission &&
-                      (scene.emission->has_bracket ||
-                       (emits_as(scene, EmissionModel::kDirect) && plan.kept.emission));
+                      (scene.emission->has_bracket || (emits_as(scene, EmissionModel::kDirect) && plan.kept.emission));
   plan.needs_beams = needs_beams(scene, bounds, plan.kept);
   plan.gives_rho = plan.needs_moments || scene.surface.specular == 0.0;
   return plan;

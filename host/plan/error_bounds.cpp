@@ -126,13 +126,10 @@ constexpr double kCriticalFactor = 2.0;  // roots beside the critical line, whic
 // for.
 constexpr double kLeastShareOfTolerance = 0.1;
 
-// Upper bound of what grooves steeper than a slope reflect of their light. Across a groove a ray of length a has bounces at
-// psi + gamma, psi + 3 gamma ... up to pi - psi: at least slope min(pi/3, pi/2 - theta) - 1 of them with cos(beta) >= a/2.
-// And a >= level but for the azimuths with sin(theta) |cos(phi)| <
-// sqrt(level^2 - c^2), which take at most twice their share of the light.
-double reflected_by_steep_grooves(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double slope) {
-  const double elevation = std::atan2(theta.c, theta.s);
-  const double bounces = std::max(std::min(pi<double>() / 3.0, elevation) * slope - 1.0, 0.0);
+// Upper bound of what is left of the light that has so many bounces with cos(beta) >= a/2, a its length across the
+// groove: a
+// >= level but for the azimuths with sin(theta) |cos(phi)| < sqrt(level^2 - c^2), which take at most twice their share.
+double reflected_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double bounces) {
   double least = 1.0;
   for (double level = 1.0; level > 1e-6; level *= 0.5) {
     const double along = std::sqrt(std::max((level - theta.c) * (level + theta.c), 0.0));
@@ -142,18 +139,31 @@ double reflected_by_steep_grooves(const kernel::ThetaNode& theta, const kernel::
   return least;
 }
 
-// Rounding in grooves, in units of the roundoff and of the cosine: the last bounces may be grazing, where all that little
-// reflects does.
+// Upper bound of what grooves steeper than a slope reflect of their light: a ray has bounces at psi + gamma, psi + 3
+// gamma
+// ... up to pi - psi, at least slope min(pi/3, pi/2 - theta) - 1 of them with cos(beta) >= a/2.
+double reflected_by_steep_grooves(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double slope) {
+  const double elevation = std::atan2(theta.c, theta.s);
+  return reflected_after(theta, index, std::max(std::min(pi<double>() / 3.0, elevation) * slope - 1.0, 0.0));
+}
+
+// Rounding in grooves, in units of the roundoff and of the cosine: the last bounces may be grazing, where all that
+// little reflects does.
 constexpr double kGrooveRoundings = 4.0;
 
-// What taking many bounces in a groove as one changes, over the cosine and the share of the grooves it is done in.
+// What taking many bounces in a groove as one changes, over the cosine and the share of the grooves it is done in. Of
+// more than DOLP_MOST_BOUNCES 2^DOLP_MOST_DOUBLINGS bounces only so many are counted.
 constexpr double kManyBouncesError = 2e-4;
+constexpr double kNotGrazing = 0.6;  // share of a ray's bounces with cos(beta) >= a/2, at least
 
 double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
                           const kernel::ShapeNode& shape) {
-  const double slope = 1.0 / std::tan(0.5 * pi<double>() / DOLP_MOST_BOUNCES);
-  const double most = std::min(kManyBouncesError, reflected_by_steep_grooves(theta, index, slope));
-  return most * theta.c * share_beyond(data.distribution, shape, slope);
+  const auto beyond = [&](double bounces, double most) {
+    const double share = share_beyond(data.distribution, shape, 1.0 / std::tan(0.5 * pi<double>() / bounces));
+    return share * std::min(most, reflected_after(theta, index, kNotGrazing * bounces));
+  };
+  const double most = std::ldexp(DOLP_MOST_BOUNCES, DOLP_MOST_DOUBLINGS);
+  return theta.c * (beyond(DOLP_MOST_BOUNCES, kManyBouncesError) + beyond(most, 1.0));
 }
 
 double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
@@ -176,11 +186,11 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   const double masking = masking_error(data, entry, unit_roundoff);
   const double rounding = unit_roundoff * roundings(data, theta, shape, index);
   const bool is_multiple = data.scattering == Scattering::kMultiple;
-  const double grooves = is_multiple ? many_bounces_bound(data, theta, index, shape) +
-                                           kGrooveRoundings * unit_roundoff * theta.c
-                                     : 0.0;
+  const double grooves =
+      is_multiple ? many_bounces_bound(data, theta, index, shape) + kGrooveRoundings * unit_roundoff * theta.c : 0.0;
   const double reach = std::min(shape.cut, theta.end[DOLP_MAX_PIECES]);
-  const double steep = is_multiple ? reflected_by_steep_grooves(theta, index, reach) : steep_reflectance(index, theta, shape);
+  const double steep =
+      is_multiple ? reflected_by_steep_grooves(theta, index, reach) : steep_reflectance(index, theta, shape);
   const double reflected_cut = cut == 0.0 ? 0.0 : cut * steep;
   Moments moments;
   moments.r_i = node.r_i;
@@ -191,8 +201,8 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   const double r_i_scale = std::abs(node.r_i);  // a rule that fails can make it negative
   const double deficit_scale = node.deficit + 2.0 * node.behind;
   const double least = kLeastShareOfTolerance * data.tolerance;
-  moments.r_i_error = pair * node.reflected_difference + (least + rounding + masking) * r_i_scale +
-                      reflected_cut + grooves;
+  moments.r_i_error =
+      pair * node.reflected_difference + (least + rounding + masking) * r_i_scale + reflected_cut + grooves;
   moments.r_q_error = moments.r_i_error;
   const double largest_difference =
       std::max({node.reflected_difference, node.albedo_difference, node.deficit_difference});
@@ -200,9 +210,8 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   // Beyond the critical angle the deficit ends where r_i goes on.
   const double deficit_terms =
       std::max(std::abs(deficit_scale), index.critical_cos > 0.0 ? std::abs(node.albedo) : 0.0);
-  moments.deficit_error =
-      pair * node.deficit_difference + (least + rounding) * deficit_terms + masking * std::abs(node.albedo) +
-      (is_multiple ? reflected_cut + grooves : cut);
+  moments.deficit_error = pair * node.deficit_difference + (least + rounding) * deficit_terms +
+                          masking * std::abs(node.albedo) + (is_multiple ? reflected_cut + grooves : cut);
   moments.evaluations = node.evaluations;
   if (is_multiple) {
     moments.albedo = theta.c;

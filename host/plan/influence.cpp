@@ -275,8 +275,7 @@ DropBound InfluenceBounds::bound(Part part, const KeptEffects& kept, const Scene
   const AtEntry at = at_entry(kept, entry, detail, memory);
   const KeptEffects rest = without(kept, part);
   const Sums whole = sums(kept, at);
-  const Sums left =
-      sums(rest, changes_rho(part) ? at_entry(rest, entry, detail, memory) : at);
+  const Sums left = sums(rest, changes_rho(part) ? at_entry(rest, entry, detail, memory) : at);
   const Sums added = added_by(part, kept, at);
   const auto polarisation = [](const Sums& sum) {
     const double most = sum.least_i > 0.0 ? finite_or_infinite(sum.most_qu / sum.least_i) : kInfinity;

@@ -50,12 +50,11 @@ class ReflectanceMemory {
 /// surroundings have one temperature and no source shines into the hemisphere. With the fresnel emission they weigh
 /// S + X, and E times the smooth surface's emissivity stands in place of E - E rho. In bistatic mode the beam and its
 /// diffuse part add to I, and the beam's length to (Q, U). A path multiplies all by its transmittance and adds to I.
-/// The direct emission has 0 <= eps_I <= 1 and |eps_Q| <= 1/2, and the moments weigh S + X beside it; without them it is not
-/// known. Bounces after the first add at most the light that meets facets steep enough for a second one, 30 degrees -
-/// theta/3.
-/// |q| <= 1 where most <= 1, which bounds rho_s and rho_p: then every part has a degree of polarisation of at most 1.
-/// All Stokes parameters are in the units of the exitances, bistatic ones times pi. Sums over a band are those of the
-/// spectral rule's samples.
+/// The direct emission has 0 <= eps_I <= 1 and |eps_Q| <= 1/2, and the moments weigh S + X beside it; without them it
+/// is not known. Bounces after the first add at most the light that meets facets steep enough for a second one, 30
+/// degrees - theta/3. |q| <= 1 where most <= 1, which bounds rho_s and rho_p: then every part has a degree of
+/// polarisation of at most 1. All Stokes parameters are in the units of the exitances, bistatic ones times pi. Sums
+/// over a band are those of the spectral rule's samples.
 class InfluenceBounds {
  public:
   InfluenceBounds(const Scene& scene, const SpectralRule& rule);

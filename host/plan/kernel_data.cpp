@@ -101,8 +101,8 @@ void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, con
   points.push_back({a.cos > 0.0 ? tan_deg(30.0 + theta_deg * 2.0 / 3.0) : kNoEnd, kRootBelow});
 }
 
-// The direct emission goes on beyond the horizon, up to the line on which facets turn away; with v-cavity masking it has the
-// line e = 2 c, which crosses the horizon at sqrt(3).
+// The direct emission goes on beyond the horizon, up to the line on which facets turn away; with v-cavity masking it
+// has the line e = 2 c, which crosses the horizon at sqrt(3).
 void add_direct_breakpoints(std::vector<Breakpoint>& points, const CosSin& a, Masking masking, double& last) {
   last = kNoEnd;
   points.push_back({last, 0});
@@ -121,8 +121,8 @@ void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   }
 }
 
-// Slopes of V-grooves from which on twice, four times ... as many bounces are taken as one (groove.glsl), by what one turn
-// of its loop does; nothing steeper than the last is followed.
+// Slopes of V-grooves from which on twice, four times ... as many bounces are taken as one (groove.glsl), by what one
+// turn of its loop does; nothing steeper than the last is followed.
 double slope_with_bounces(double bounces) { return 1.0 / std::tan(0.5 * pi<double>() / bounces); }
 
 // Where the lines of groove_lines (arcs.glsl) meet phi = 0, psi = theta, or phi = pi, psi = -theta, or each other.
@@ -223,15 +223,15 @@ Loops single_loops(const KernelData& data) {
   return {.arcs = arcs};
 }
 
-// Of a piece from slope `start` to `end`: pi / (2 gamma) bounces and one more, those of steep grooves taken together, each of
-// which doubles some times. Steep grooves have no lines below gamma.
+// Of a piece from slope `start` to `end`: pi / (2 gamma) bounces and one more, those of steep grooves taken together,
+// each of which doubles some times. Steep grooves have no lines below gamma.
 Loops groove_loops(const KernelData& data, double start, double end) {
   const double bounces = std::min(0.5 * pi<double>() / std::atan(1.0 / end), double{DOLP_MOST_BOUNCES});
   const double splits = data.rule.split_bounces;
   Loops loops;
   loops.arcs = std::min(splits, std::floor(bounces) - 1.0) + (start >= slope_with_bounces(splits + 2.0) ? 2.0 : 5.0);
   loops.turns = std::ceil(bounces) + 1.0;
-  if (bounces == DOLP_MOST_BOUNCES) loops.turns += DOLP_MOST_DOUBLINGS;
+  if (bounces == DOLP_MOST_BOUNCES) loops.turns += std::ceil(std::log2(std::min(end, kLargestCut)));
   for (int done = 0; done < DOLP_MOST_DOUBLINGS; done += DOLP_DOUBLINGS_AT_ONCE) {
     if (end > slope_with_bounces(std::ldexp(DOLP_MOST_BOUNCES, done))) loops.turns += DOLP_MOST_BOUNCES + 1.0;
   }
@@ -249,9 +249,9 @@ constexpr double kMostIterations = 64'000.0;
 constexpr double kMostArcs = 2.0 * DOLP_MAX_ARCS;
 constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // of a groove, to find its lines
 
-// Bound of the loop iterations of one invocation, that is of one piece: two rules, slopes, arcs, azimuths, bounces, with
-// everything at its most nodes. No bound on what an entry does is enough, because invocations that run in lockstep wait
-// for each other.
+// Bound of the loop iterations of one invocation, that is of one piece: two rules, slopes, arcs, azimuths, bounces,
+// with everything at its most nodes. No bound on what an entry does is enough, because invocations that run in lockstep
+// wait for each other.
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
   const bool is_multiple = data.scattering == Scattering::kMultiple;
   const double slopes = is_multiple ? std::floor(most_nodes / DOLP_AZIMUTHS_PER_SLOPE) : data.rule_order;
@@ -274,7 +274,8 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   kernel::ThetaNode node{};
   node.c = a.cos;
   node.s = a.sin;
-  std::vector<Breakpoint> points = breakpoints(theta_deg, a, request, variant, static_cast<int>(data.rule.split_bounces));
+  std::vector<Breakpoint> points =
+      breakpoints(theta_deg, a, request, variant, static_cast<int>(data.rule.split_bounces));
   if (request.has_extra_splits) add_extra_splits(points);
   assert(points.size() <= DOLP_MAX_PIECES + 1);
   std::ranges::fill(node.end, points.back().slope);
@@ -388,7 +389,8 @@ std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t
          bit((pieces.roots[piece + 1] & kRootBelow) != 0, DOLP_TASK_ROOT_AT_END) |
          bit(piece > 0 && (pieces.roots[piece - 1] & kRootAbove) != 0, DOLP_TASK_ROOT_BEFORE_START) |
          bit(piece + 2 <= pieces.count && (pieces.roots[piece + 2] & kRootBelow) != 0, DOLP_TASK_ROOT_AFTER_END) |
-         bit(pieces.has_split_line, DOLP_TASK_SPLIT_LINE) | static_cast<std::uint32_t>(pieces.most_nodes[piece]) << DOLP_TASK_AZIMUTHS_SHIFT;
+         bit(pieces.has_split_line, DOLP_TASK_SPLIT_LINE) |
+         static_cast<std::uint32_t>(pieces.most_nodes[piece]) << DOLP_TASK_AZIMUTHS_SHIFT;
 }
 
 std::uint32_t piece_count(const KernelData& data, std::uint32_t theta, const kernel::ShapeNode& shape) {

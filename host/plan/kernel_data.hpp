@@ -44,7 +44,7 @@ struct KernelData {
   bool has_direct = false;
   double tolerance = 1e-4;
   kernel::RuleNode rule{};
-  int rule_order = 1;  ///< largest order of the rule nodes
+  int rule_order = 1;                 ///< largest order of the rule nodes
   bool has_total_reflection = false;  ///< of any index, sharp or nearly so
   bool is_grid = false;
   std::size_t directions = 0;  ///< of the request

@@ -18,7 +18,12 @@ constexpr std::array<RuleModel, 5> kModels = {{
     // v-cavity
     {.margin_digits = 2.5, .t_nodes = 1, .t_digits = -0.812, .t_fall = 0.165, .phi_nodes = 0.562, .phi_digits = 0.188},
     // integral
-    {.margin_digits = 2.4, .t_nodes = 2.15, .t_digits = -0.25, .t_fall = 0.225, .phi_nodes = 0.562, .phi_digits = -0.625},
+    {.margin_digits = 2.4,
+     .t_nodes = 2.15,
+     .t_digits = -0.25,
+     .t_fall = 0.225,
+     .phi_nodes = 0.562,
+     .phi_digits = -0.625},
     // smith
     {.margin_digits = 2.8,
      .t_nodes = 2.4,

@@ -160,7 +160,7 @@ void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflect
 
 /// The same with an emission that is not 1 - rho.
 void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, const Emissivity& e,
-                        double direct, double rounding) {
+                         double direct, double rounding) {
   const double incident = direct + sample.surroundings;
   sum.i += sample.emitted * e.i + incident * r.rho_i;
   sum.q += sample.emitted * e.q + incident * r.rho_q;
@@ -205,8 +205,8 @@ double relative_bound(double error, double value) {
 /// What DOLP lies between of a surface with these facets and all its bounces.
 ///
 /// Equation: its eps_I is larger than the direct one by d <= D = 1 - rho_I - eps_I,direct, which changes eps_Q by d at
-/// most; I = X + N eps_I, Q = N eps_Q with N = pi B - X, X the exitances of source and surroundings. Both ends lie at d =
-/// D, where I is that of single scattering: (|sum N eps_Q,direct| -+ sum |N| D) / I.
+/// most; I = X + N eps_I, Q = N eps_Q with N = pi B - X, X the exitances of source and surroundings. Both ends lie at d
+/// = D, where I is that of single scattering: (|sum N eps_Q,direct| -+ sum |N| D) / I.
 struct Bracket {
   double low = 0.0;
   double high = 0.0;
@@ -236,7 +236,8 @@ Bracket bracket(const Scene& scene, const SpectralRule& rule, std::span<const Re
   return between;
 }
 
-/// What the direct emission says beside another: the bracket, and how far the DOLP of single scattering is from its own.
+/// What the direct emission says beside another: the bracket, and how far the DOLP of single scattering is from its
+/// own.
 void add_direct(PointResult& result, const Scene& scene, const SpectralRule& rule,
                 std::span<const Reflectance> reflectances, std::span<const Emissivity> direct, double cos_theta) {
   if (scene.emission->has_bracket) {
@@ -442,7 +443,8 @@ Radiometry::Radiometry(const Scene& scene, const KeptEffects& kept, const DropBo
 
 PointResult Radiometry::finished(PointResult result) const {
   if (!kept_.moments) result.albedo = kNan;
-  if (!knows_rho_ && emission_model(scene_) != EmissionModel::kFresnel) result.emissivity_s = result.emissivity_p = kNan;
+  if (!knows_rho_ && emission_model(scene_) != EmissionModel::kFresnel)
+    result.emissivity_s = result.emissivity_p = kNan;
   if (!knows_rho_) result.rho_i = result.rho_q = result.rho_error_estimate = kNan;
   result.error_estimate += dropped_.dolp;
   result.rho_error_estimate += dropped_.rho;

@@ -21,7 +21,8 @@ bool is_given(const TableVariable& variable, const Scene& scene, const EffectPla
   if (is_one_of({&PointResult::albedo})) return plan.needs_moments;
   if (is_one_of({&PointResult::rho_i, &PointResult::rho_q, &PointResult::rho_error_estimate})) return plan.gives_rho;
   if (is_one_of({&PointResult::emissivity_s, &PointResult::emissivity_p})) return gives_emissivity(scene, plan);
-  if (is_one_of({&PointResult::dolp_low, &PointResult::dolp_high})) return scene.emission && scene.emission->has_bracket;
+  if (is_one_of({&PointResult::dolp_low, &PointResult::dolp_high}))
+    return scene.emission && scene.emission->has_bracket;
   return true;
 }
 

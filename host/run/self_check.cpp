@@ -27,10 +27,10 @@ void SelfCheck::add(const PointResult& result, const PointResult& again) {
   ++entries;
   if (promises_dolp(result.status)) scattering_gap = std::fmax(scattering_gap, again.scattering_gap);
   if (promises_dolp(result.status)) {
-    worst_ratio =
-        std::max(worst_ratio, ratio(result.dolp - again.dolp, result.error_estimate + again.error_estimate));
+    worst_ratio = std::max(worst_ratio, ratio(result.dolp - again.dolp, result.error_estimate + again.error_estimate));
   }
-  const double rho = result.rho_error_estimate * std::abs(result.rho_i) + again.rho_error_estimate * std::abs(again.rho_i);
+  const double rho =
+      result.rho_error_estimate * std::abs(result.rho_i) + again.rho_error_estimate * std::abs(again.rho_i);
   worst_ratio = std::max({worst_ratio, ratio(result.rho_i - again.rho_i, rho), ratio(result.rho_q - again.rho_q, rho)});
 }
 
@@ -40,9 +40,7 @@ void SelfCheck::add(const SelfCheck& other) {
   scattering_gap = std::max(scattering_gap, other.scattering_gap);
 }
 
-std::size_t checked_count(std::size_t integrated) {
-  return std::min(kMostChecked, integrated / (kShare * kCostOfOne));
-}
+std::size_t checked_count(std::size_t integrated) { return std::min(kMostChecked, integrated / (kShare * kCostOfOne)); }
 
 std::vector<std::size_t> checked_positions(std::size_t size, std::size_t count, std::uint64_t seed) {
   std::mt19937_64 engine(seed);

@@ -86,11 +86,13 @@ std::vector<SceneKey> radiation_keys() {
   return {
       number("emission.temperature_K", "K", kEmissionTemperatureRange, "required", "temperature T of the surface",
              [](Draft& d, const Value& v) { d.scene.emission->temperature_K = v.number; }),
-      choice("emission.model", Emission().model,
-             "emissivity 1 - rho of the rough surface, 1 - R of the smooth surface, or what the facets emit straight to "
-             "the viewer (masking smith or v-cavity)",
-             [](Draft& d, const Value& v) { d.scene.emission->model = static_cast<EmissionModel>(v.word); }),
-      flag("emission.bracket", "adds dolp_low, dolp_high: what DOLP lies between with all bounces (masking smith or v-cavity)",
+      choice(
+          "emission.model", Emission().model,
+          "emissivity 1 - rho of the rough surface, 1 - R of the smooth surface, or what the facets emit straight to "
+          "the viewer (masking smith or v-cavity)",
+          [](Draft& d, const Value& v) { d.scene.emission->model = static_cast<EmissionModel>(v.word); }),
+      flag("emission.bracket",
+           "adds dolp_low, dolp_high: what DOLP lies between with all bounces (masking smith or v-cavity)",
            [](Draft& d, const Value& v) { d.scene.emission->has_bracket = v.is_set; }),
       number("source.irradiance", "W m-2 um-1", kNonNegativeRange, "", "E0 at normal incidence, flat over a band",
              [](Draft& d, const Value& v) {

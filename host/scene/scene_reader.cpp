@@ -189,7 +189,8 @@ void check_scattering(const Scene& scene, const SceneDocument& document) {
   if (scene.emission->model == EmissionModel::kFresnel) {
     document.fail("emission.bracket", "needs emission.model = \"moments\" or \"direct\"");
   }
-  if (scene.geometry.mode == Mode::kBistatic) document.fail("emission.bracket", "needs geometry.mode = \"hemispherical\"");
+  if (scene.geometry.mode == Mode::kBistatic)
+    document.fail("emission.bracket", "needs geometry.mode = \"hemispherical\"");
 }
 
 void check_radiation(const Scene& scene, const SceneDocument& document) {

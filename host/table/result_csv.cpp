@@ -5,8 +5,7 @@
 namespace dolp {
 
 std::string result_header(const ExtraColumns& extra) {
-  std::string header =
-      "rho_i,rho_q,albedo,stokes_i,stokes_q,stokes_u,stokes_v,dolp,error_estimate,rho_error_estimate,";
+  std::string header = "rho_i,rho_q,albedo,stokes_i,stokes_q,stokes_u,stokes_v,dolp,error_estimate,rho_error_estimate,";
   if (extra.emissivity) header += "emissivity_s,emissivity_p,";
   if (extra.bracket) header += "dolp_low,dolp_high,";
   return header + "status";

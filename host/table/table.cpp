@@ -10,22 +10,16 @@ constexpr const char* kRhoQualifiers = "rho_error_estimate status";
 constexpr const char* kStatus = "status";
 
 constexpr std::array<TableVariable, 14> kVariables = {{
-    {"dolp", "degree of linear polarisation", false, kDolpQualifiers, &Table::dolp,
-     &PointResult::dolp},
+    {"dolp", "degree of linear polarisation", false, kDolpQualifiers, &Table::dolp, &PointResult::dolp},
     {"stokes_i", "Stokes parameter I of the radiation that leaves the surface and reaches the sensor", true, kStatus,
-     &Table::stokes_i,
-     &PointResult::stokes_i},
-    {"stokes_q", "Stokes parameter Q = I_s - I_p", true, kStatus, &Table::stokes_q,
-     &PointResult::stokes_q},
-    {"stokes_u", "Stokes parameter U", true, kStatus, &Table::stokes_u,
-     &PointResult::stokes_u},
-    {"stokes_v", "Stokes parameter V", true, kStatus, &Table::stokes_v,
-     &PointResult::stokes_v},
+     &Table::stokes_i, &PointResult::stokes_i},
+    {"stokes_q", "Stokes parameter Q = I_s - I_p", true, kStatus, &Table::stokes_q, &PointResult::stokes_q},
+    {"stokes_u", "Stokes parameter U", true, kStatus, &Table::stokes_u, &PointResult::stokes_u},
+    {"stokes_v", "Stokes parameter V", true, kStatus, &Table::stokes_v, &PointResult::stokes_v},
     {"rho_i", "hemispherical-directional reflectance, mean of s and p", false, kRhoQualifiers, &Table::rho_i,
      &PointResult::rho_i},
     {"rho_q", "hemispherical-directional reflectance, half the difference of s and p", false, kRhoQualifiers,
-     &Table::rho_q,
-     &PointResult::rho_q},
+     &Table::rho_q, &PointResult::rho_q},
     {"albedo", "albedo of the surface model with perfectly reflecting facets", false, kStatus, &Table::albedo,
      &PointResult::albedo},
     {"emissivity_s", "emissivity of s-polarised radiation that the emission uses", false, kStatus, &Table::emissivity_s,
@@ -39,8 +33,7 @@ constexpr std::array<TableVariable, 14> kVariables = {{
     {"error_estimate", "bound of the absolute error of dolp", false, "", &Table::error_estimate,
      &PointResult::error_estimate},
     {"rho_error_estimate", "bound of the errors of rho_i and rho_q relative to rho_i", false, "",
-     &Table::rho_error_estimate,
-     &PointResult::rho_error_estimate},
+     &Table::rho_error_estimate, &PointResult::rho_error_estimate},
 }};
 
 }  // namespace

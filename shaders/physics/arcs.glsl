@@ -1,5 +1,5 @@
-// The azimuths at one slope: the lines that split [0, pi] into arcs on which the integrand is smooth, and the place of a
-// rule's node on an arc.
+// The azimuths at one slope: the lines that split [0, pi] into arcs on which the integrand is smooth, and the place of
+// a rule's node on an arc.
 //
 // Azimuths are half angles (cos(phi/2), sin(phi/2)), which keep their digits at 0 and pi and need no arc cosine.
 
@@ -28,8 +28,8 @@ real2 clamp_half_angle(real2 phi, real2 from, real2 to) {
   return is_before(above, to) ? above : to;
 }
 
-// An arc of azimuths phi = centre + psi, psi = 4 atan(extent * abscissa), on which the integrand is smooth. Its extent is
-// negative when the centre is its end.
+// An arc of azimuths phi = centre + psi, psi = 4 atan(extent * abscissa), on which the integrand is smooth. Its extent
+// is negative when the centre is its end.
 struct Arc {
   real2 from;
   real2 to;
@@ -96,8 +96,9 @@ struct Azimuth {
   real weight;
 };
 
-// A node of an arc's rule where the square root at its centre is smoothed: the cluster's v^2 becomes (sinh(a v) / sinh(a))^2,
-// a = asinh(1 / sqrt(resolution)), which spaces the nodes by ratios down to the resolution and by squares below.
+// A node of an arc's rule where the square root at its centre is smoothed: the cluster's v^2 becomes (sinh(a v) /
+// sinh(a))^2, a = asinh(1 / sqrt(resolution)), which spaces the nodes by ratios down to the resolution and by squares
+// below.
 real2 place_on_arc(Arc arc, real2 node) {
   if (!kTotalReflection || arc.resolution <= real(0.0)) return node;
   real scale = real(1.0) / sqrt(arc.resolution);  // sinh(a)
@@ -121,8 +122,8 @@ Azimuth azimuth(Arc arc, real2 node) {
   return at;
 }
 
-// The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth, in ascending order; and the
-// critical one, anywhere among them.
+// The azimuths, as half angles, that split [0, pi] into arcs on which the integrand is smooth, in ascending order; and
+// the critical one, anywhere among them.
 struct SplitLines {
   real2 end[DOLP_MAX_ARCS];  // of each arc; the first begins at phi = 0
   int arcs;
@@ -145,7 +146,8 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
     lines.arcs = 2;
   }
   if (kMasking == DOLP_MASKING_INTEGRAL) {
-    // The limit b of eq. (11) reaches pi/2 at theta_r = pi/4 + alpha/2; 1 - sin(alpha) = cos^2(alpha) / (1 + sin(alpha)).
+    // The limit b of eq. (11) reaches pi/2 at theta_r = pi/4 + alpha/2; 1 - sin(alpha) = cos^2(alpha) / (1 +
+    // sin(alpha)).
     real sec = sqrt(sec2);
     real cos_limit = sqrt(real(0.5) / (sec * (sec + t)));
     bool limited = has_split_line && cos_limit < c;
@@ -156,8 +158,8 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
     lines.leaving = 3;
   }
   if (kMasking == DOLP_MASKING_V_CAVITY) {
-    // G = 1 between 2 cos(alpha) cos(theta) = cos(beta) and the same with theta_r; the two lines meet at t = 1. The first
-    // is that of G1 of theta alone, which goes on below the horizon from t = sqrt(3) on.
+    // G = 1 between 2 cos(alpha) cos(theta) = cos(beta) and the same with theta_r; the two lines meet at t = 1. The
+    // first is that of G1 of theta alone, which goes on below the horizon from t = sqrt(3) on.
     real2 shaded = line_at(c, st);
     real level = c * (real(3.0) * t * t - real(1.0)) / (real(3.0) - t * t);
     lines.end[0] = choose(t < real(1.0), shaded, same_zenith);
@@ -177,10 +179,10 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
   return lines;
 }
 
-// Of a groove: where the number of bounces or the width of the beam changes its law. With psi the zenith of theta in the
-// plane across the groove, tan(psi) = tan(theta) cos(phi), and gamma = pi/2 - alpha these are psi = pi/2 - j gamma down to
-// gamma, j <= RuleNode::split_bounces; gamma; the three below it unless there are more above; and -gamma, beyond which facets
-// face away.
+// Of a groove: where the number of bounces or the width of the beam changes its law. With psi the zenith of theta in
+// the plane across the groove, tan(psi) = tan(theta) cos(phi), and gamma = pi/2 - alpha these are psi = pi/2 - j gamma
+// down to gamma, j <= RuleNode::split_bounces; gamma; the three below it unless there are more above; and -gamma,
+// beyond which facets face away.
 real2 groove_line(ThetaNode theta, real cos_psi, real sin_psi) {
   return line_at(theta.c * sin_psi / max(cos_psi, real(1e-30)), max(theta.s, real(1e-30)));
 }

@@ -35,8 +35,8 @@ Facet facet(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   return result;
 }
 
-// The facet's projection as the part that masking leaves, e G, and the part that it hides, e (1 - G): each is computed on
-// its own, because either may be the difference of two nearly equal numbers.
+// The facet's projection as the part that masking leaves, e G, and the part that it hides, e (1 - G): each is computed
+// on its own, because either may be the difference of two nearly equal numbers.
 struct Projection {
   real seen;
   real hidden;
@@ -47,8 +47,8 @@ real4 reflected(Facet f, Projection part) {
   return real4(part.seen * f.m00, part.seen * f.m01, part.seen, part.hidden + part.seen * f.absorbed);
 }
 
-// What a facet emits straight to the viewer per unit of azimuth, as (I, Q): e G1 (1 - M00) and -e G1 M01 with the masking
-// of theta alone; smith's, which no facet changes, is multiplied later.
+// What a facet emits straight to the viewer per unit of azimuth, as (I, Q): e G1 (1 - M00) and -e G1 M01 with the
+// masking of theta alone; smith's, which no facet changes, is multiplied later.
 real2 emitted(ThetaNode theta, Facet f) {
   real seen = (kMasking == DOLP_MASKING_V_CAVITY) ? min(f.e, real(2.0) * theta.c) : f.e;
   return real2(seen * f.absorbed, -seen * f.m01);

@@ -2,17 +2,17 @@
 // (t u + z) / sec and (-t u + z) / sec, u = (cos(phi), sin(phi), 0), met at the apex. gamma = pi/2 - alpha.
 //
 // Unfolded about its apex the groove is a fan of facets gamma, 3 gamma, 5 gamma, ... from the vertical, and the ray is
-// straight: it meets facet k at the angle chi_k = psi + (2k - 1) gamma in the plane across the groove, where its length is
-// a = sqrt(c^2 + (s x)^2) and its zenith psi. With (X, Y) = a (sin(chi), cos(chi)) and b = s sin(phi), its part along the
-// groove:
+// straight: it meets facet k at the angle chi_k = psi + (2k - 1) gamma in the plane across the groove, where its length
+// is a = sqrt(c^2 + (s x)^2) and its zenith psi. With (X, Y) = a (sin(chi), cos(chi)) and b = s sin(phi), its part
+// along the groove:
 //   cos(beta_k) = X_k,   the plane of incidence is turned by eta, (cos(eta), sin(eta)) ~ (Y_k, b X_k).
-// Mirrored at each facet, the fields never leave one frame: a bounce is Fresnel's matrix between two turns by eta. Of the
-// beam min(e, 2c) that meets the facet first, (min(X_k, X_1) - X_0) / (X_1 - X_0) goes on to bounce k, X_0 = max(a
+// Mirrored at each facet, the fields never leave one frame: a bounce is Fresnel's matrix between two turns by eta. Of
+// the beam min(e, 2c) that meets the facet first, (min(X_k, X_1) - X_0) / (X_1 - X_0) goes on to bounce k, X_0 = max(a
 // sin(psi - gamma), 0).
 
-// The fan of facets that a ray meets: (cos, sin) of gamma, of as many grooves in one as bounces are taken together: two turns
-// of a ray that is reflected often are like one in a groove twice as wide, by a facet that reflects twice. What that
-// changes is bounded in host/plan/error_bounds.cpp.
+// The fan of facets that a ray meets: (cos, sin) of gamma, of as many grooves in one as bounces are taken together: two
+// turns of a ray that is reflected often are like one in a groove twice as wide, by a facet that reflects twice. What
+// that changes is bounded in host/plan/error_bounds.cpp.
 struct Fan {
   real2 turn;
   real bounces;  // of the ray, where there are many: pi/2 - psi over gamma
@@ -32,17 +32,17 @@ Fan fan(real t, real c, real u) {
   for (bool is_steep = t > real(DOLP_MOST_BOUNCES) / kPi; is_steep; is_steep = false) {
     real zenith = arc_tangent(abs(u) / max(c, real(1e-30)));
     f.bounces = (real(0.5) * kPi - choose(u < real(0.0), -zenith, zenith)) / arc_tangent(real(1.0) / t);
-    while (f.bounces > real(DOLP_MOST_BOUNCES) && f.doublings < DOLP_MOST_DOUBLINGS) {
+    while (f.bounces > real(DOLP_MOST_BOUNCES)) {
       f.turn = doubled_turn(f.turn);
       f.bounces *= real(0.5);
       ++f.doublings;
     }
-    f.bounces = min(f.bounces, real(DOLP_MOST_BOUNCES));  // of still more nothing is left
   }
   return f;
 }
 
-// What a facet does in its own frame, on (I, Q, U, V): [m00 m01 0 0; m01 m00 0 0; 0 0 cross.x cross.y; 0 0 -cross.y cross.x].
+// What a facet does in its own frame, on (I, Q, U, V): [m00 m01 0 0; m01 m00 0 0; 0 0 cross.x cross.y; 0 0 -cross.y
+// cross.x].
 struct Bounce {
   real m00;
   real m01;
@@ -120,7 +120,8 @@ real4 reflected_in_groove(ThetaNode theta, IndexNode index, real t, real x, real
     real norm = at.y * at.y + along * along;
     real inverse_norm = real(1.0) / max(norm, kSmallestSquare);
     real2 twice = real2((at.y - along) * (at.y + along) * inverse_norm, real(2.0) * at.y * along * inverse_norm);
-    Bounce by = bounce(index, max(at.x, real(1e-15)), min(norm * inverse_a2, real(1.0)), f.doublings);
+    Bounce by = bounce(index, max(at.x, real(1e-15)), min(norm * inverse_a2, real(1.0)),
+                       min(f.doublings, DOLP_MOST_DOUBLINGS));  // of more bounces nothing is left
     absorbed += share * (by.absorbed * natural.x - by.m01 * (twice.x * natural.y + twice.y * natural.z));
     natural += share * (bounced(by, twice, natural) - natural);
     polarised += share * (bounced(by, twice, polarised) - polarised);

@@ -52,8 +52,8 @@ AzimuthSums arc_sums(ThetaNode theta, Row row, IndexNode index, Slope slope, Arc
   return sums;
 }
 
-// Integral over the azimuths from 0 to pi. Each zone is an arc, or two with the critical line of total reflection between
-// them.
+// Integral over the azimuths from 0 to pi. Each zone is an arc, or two with the critical line of total reflection
+// between them.
 AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, SplitLines lines) {
   AzimuthSums sums = no_azimuths();
   bool is_critical = kTotalReflection && index.critical_cos > real(0.0);
@@ -69,8 +69,8 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
       from = is_second ? middle : from;
       to = is_second ? to : middle;
     }
-    // Devices that run invocations in lockstep compute both sides of an `if`; a loop of one turn they skip where none of
-    // them needs it. It counts as an iteration, see worst_iterations of host/plan/kernel_data.hpp.
+    // Devices that run invocations in lockstep compute both sides of an `if`; a loop of one turn they skip where none
+    // of them needs it. It counts as an iteration, see worst_iterations of host/plan/kernel_data.hpp.
     for (bool is_due = is_before(from, to); is_due; is_due = false) {
       Arc arc = zone_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits, from, to, zone);
       if (is_critical) arc = critical_arc(theta, index, slope.t, slope.digits, from, to, !is_second, arc);

@@ -1,9 +1,9 @@
 // How many nodes a piece of the slope axis or an arc of the azimuth gets: policy, of which the sums know nothing.
 //
-// A Gauss rule of n nodes on [0, 1] is wrong by e^(-2 n mu) where the integrand's next singularity y0 lies on the ellipse
-// with the interval's ends as foci and cosh(mu) = |y0| + |y0 - 1| (Trefethen 2013, chapter 19): a decimal digit costs
-// ln(10) / (2 mu) nodes. Where the singularities of the azimuth lie is known exactly; RuleNode scales the law with what
-// is fitted (host/plan/rule.hpp). The less a piece carries, the fewer digits it needs.
+// A Gauss rule of n nodes on [0, 1] is wrong by e^(-2 n mu) where the integrand's next singularity y0 lies on the
+// ellipse with the interval's ends as foci and cosh(mu) = |y0| + |y0 - 1| (Trefethen 2013, chapter 19): a decimal digit
+// costs ln(10) / (2 mu) nodes. Where the singularities of the azimuth lie is known exactly; RuleNode scales the law
+// with what is fitted (host/plan/rule.hpp). The less a piece carries, the fewer digits it needs.
 
 CONST real kHalfLn10 = real(1.15129254649702284);
 CONST real kLn10 = real(2.30258509299404568402);
@@ -91,8 +91,8 @@ real digits_of_slope(RuleNode rule, ThetaNode theta, ShapeNode shape, real digit
   return clamp(rule.digits + kInverseLn10 * log_unit(min(share, real(1.0))), real(0.0), digits);
 }
 
-// Nodes for each digit on a piece, from a singularity at X = re + i im. A root at an end makes the abscissa the root of the
-// distance from it.
+// Nodes for each digit on a piece, from a singularity at X = re + i im. A root at an end makes the abscissa the root of
+// the distance from it.
 real piece_cost(Piece piece, real re, real im) {
   real2 z = real2((re - piece.start) / piece.extent, im / piece.extent);
   real from_root = piece.root_at_b ? real(1.0) - z.x : z.x;
@@ -101,8 +101,8 @@ real piece_cost(Piece piece, real re, real im) {
   return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
 }
 
-// An essential singularity exp(-1/x^2) at an end costs a rule nodes in proportion to the square of the digits that it is
-// felt at.
+// An essential singularity exp(-1/x^2) at an end costs a rule nodes in proportion to the square of the digits that it
+// is felt at.
 real essential_nodes(ShapeNode shape, real digits) {
   real wanted = max(digits - kInverseLn10 / (shape.m * shape.m), real(0.0));
   return real(0.25) * wanted * wanted;
@@ -111,8 +111,8 @@ real essential_nodes(ShapeNode shape, real digits) {
 // acosh(y) for y >= 1, 0 below: the real part of asinh(i y), whose imaginary part is pi/2 then.
 real real_part_of_asinh(real y) { return acosh_above_1(max(y - real(1.0), real(0.0))); }
 
-// The same from one of Fresnel's coefficients in the plane of incidence, cos(beta) = re + i im: at t = (cos(beta) - c) / s, as
-// long as that is small.
+// The same from one of Fresnel's coefficients in the plane of incidence, cos(beta) = re + i im: at t = (cos(beta) - c)
+// / s, as long as that is small.
 real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, real im) {
   real unit = max(theta.s, real(1e-6)) * shape.scale;
   real x = (re - theta.c) / unit;
@@ -166,8 +166,8 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
 
 // ---- Azimuth -------------------------------------------------------------------------------------------------------
 
-// Nodes for each digit on an arc, from the singularity's place in the abscissa of the arc's rule. Rules that are even about
-// the arc's centre converge as one of half the nodes in the square of their abscissa, clusters are in its root.
+// Nodes for each digit on an arc, from the singularity's place in the abscissa of the arc's rule. Rules that are even
+// about the arc's centre converge as one of half the nodes in the square of their abscissa, clusters are in its root.
 real arc_cost(Arc arc, Singularity at) {
   if (arc.section == kSectionCircle) return nodes_per_digit(at.im);
   real re = abs(at.re - arc.origin) / arc.span;
@@ -179,10 +179,10 @@ real arc_cost(Arc arc, Singularity at) {
   return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
 }
 
-// The singularities of Fresnel's coefficients: R_p's pole, at cos(beta) = -1 / sqrt(N^2 + 1), and the branch point of w, at
-// cos^2(beta) = 1 - N^2. Beside a critical line w goes as the abscissa v of the cluster and the pole w = -N^2 cos(beta)
-// lies at v = -N^2 critical_cos / w of the arc's other end; beyond the line w is imaginary.
-// Those at the bounce whose facet is turned by (cos, sin) from the vertical: cos(beta) = c sin + s x cos.
+// The singularities of Fresnel's coefficients: R_p's pole, at cos(beta) = -1 / sqrt(N^2 + 1), and the branch point of
+// w, at cos^2(beta) = 1 - N^2. Beside a critical line w goes as the abscissa v of the cluster and the pole w = -N^2
+// cos(beta) lies at v = -N^2 critical_cos / w of the arc's other end; beyond the line w is imaginary. Those at the
+// bounce whose facet is turned by (cos, sin) from the vertical: cos(beta) = c sin + s x cos.
 real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
   real slant = theta.s * facet.x;
   real size = max(abs(slant), real(1e-15));
@@ -222,8 +222,8 @@ real fresnel_cost(RuleNode rule, ThetaNode theta, IndexNode index, real t, Arc a
   return cost;
 }
 
-// Those of the masking of the reflected ray: the in-plane slopes' density at cot(theta_r) = +- i m, and for `integral` the
-// pole of kappa at cot(theta_r) = -t.
+// Those of the masking of the reflected ray: the in-plane slopes' density at cot(theta_r) = +- i m, and for `integral`
+// the pole of kappa at cot(theta_r) = -t.
 real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   if (kMasking != DOLP_MASKING_SMITH && (kMasking != DOLP_MASKING_INTEGRAL || zone == 0)) return real(0.0);
   real sec2 = real(1.0) + t * t;
@@ -240,10 +240,10 @@ real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   return cost;
 }
 
-// Smith's L goes as |theta_r|^(2q - 2) near the facet (tan(theta/2), phi = 0), where theta_r = 0: not smooth unless q is an
-// integer, and the less so the smaller q. For the arc from phi = 0, theta_r = 0 lies at
-// cosh(i phi) = 1 + (1 + c) (t - tan(theta/2))^2 / (2 s t). The gaussian's L is smooth, but grows beyond bounds toward
-// imaginary theta_r: by the digits wanted at 1 / (m sqrt(digits ln 10)).
+// Smith's L goes as |theta_r|^(2q - 2) near the facet (tan(theta/2), phi = 0), where theta_r = 0: not smooth unless q
+// is an integer, and the less so the smaller q. For the arc from phi = 0, theta_r = 0 lies at cosh(i phi) = 1 + (1 + c)
+// (t - tan(theta/2))^2 / (2 s t). The gaussian's L is smooth, but grows beyond bounds toward imaginary theta_r: by the
+// digits wanted at 1 / (m sqrt(digits ln 10)).
 real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) {
   if (kMasking != DOLP_MASKING_SMITH || shape.cusp_digits < real(-100.0)) return real(0.0);
   real away = t - theta.s / (real(1.0) + theta.c);
@@ -272,9 +272,9 @@ Arc zone_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_lin
 }
 
 // The arc on one side of the critical line, or the whole zone where the line lies beyond. w^2 = cos^2(beta) -
-// critical_cos^2 + i Im N^2 vanishes at or beside its end, as far away as w^2 there is of its range on the arc. Where that
-// is far, the arc is like any other; where it is too little to be felt, the root counts as sharp: what it would change is
-// of the order of the resolution to the power 3/2.
+// critical_cos^2 + i Im N^2 vanishes at or beside its end, as far away as w^2 there is of its range on the arc. Where
+// that is far, the arc is like any other; where it is too little to be felt, the root counts as sharp: what it would
+// change is of the order of the resolution to the power 3/2.
 Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, real2 from, real2 to, bool at_end, Arc otherwise) {
   real level = index.critical_cos * index.critical_cos;
   real r2 = real(1.0) / (real(1.0) + t * t);
@@ -314,8 +314,8 @@ real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index,
   if (arc.section == kSectionHalf) map = real(0.5) * map;
   if (arc.section == kSectionCircle) map = real(0.0);
   real cost = max(max(map, fresnel_cost(rule, theta, index, t, arc)), masking_cost(theta, shape, t, arc, zone));
-  // Before a rule converges it must resolve cos(phi) to cos(3 phi), for which it takes nodes in proportion to the arc, and
-  // how place_on_arc spreads its nodes, e^(2 a v); a cluster's dphi goes as its abscissa, half a node more.
+  // Before a rule converges it must resolve cos(phi) to cos(3 phi), for which it takes nodes in proportion to the arc,
+  // and how place_on_arc spreads its nodes, e^(2 a v); a cluster's dphi goes as its abscissa, half a node more.
   real base = rule.phi_nodes * arc.span + (arc.section == kSectionCluster ? real(1.0) : real(0.5));
   if (arc.resolution > real(0.0)) base += real(0.5) * asinh_real(real(1.0) / sqrt(arc.resolution));
   real nodes = base + (digits + rule.phi_digits) * cost;

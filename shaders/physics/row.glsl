@@ -12,8 +12,8 @@ int masked_members() {
   return (kMasking == DOLP_MASKING_INTEGRAL || kMasking == DOLP_MASKING_SMITH) ? DOLP_WIDTH : 1;
 }
 
-// What masking says of one direction, for each member: the shadow 1 - G1 of the facets of slope t (`integral`) or Smith's
-// L.
+// What masking says of one direction, for each member: the shadow 1 - G1 of the facets of slope t (`integral`) or
+// Smith's L.
 struct Masked {
   real value[DOLP_WIDTH];
 };
@@ -40,8 +40,8 @@ Masked masking_of_direction(Row row, real cos_theta, real sin_theta) {
   return heights;
 }
 
-// The shadows of a direction on facets of slope t. Look-ups are done for every invocation: those that need none wait for
-// their neighbours anyway.
+// The shadows of a direction on facets of slope t. Look-ups are done for every invocation: those that need none wait
+// for their neighbours anyway.
 Masked shadows(Row row, Masked heights, real cos_theta, real sin_theta, real t) {
   ShadowPlace place = shadow_place(row.shape[0], cos_theta, sin_theta, t);
   TableCell cell = table_cell(row.shape[0], place.far);
@@ -68,8 +68,8 @@ Masked masking_of_ray(Row row, real cos_r, real t, int zone) {
 // The part of a facet's direct emission that smith's masking leaves, by what it says of theta.
 real viewed(real of_theta) { return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) / (real(1.0) + of_theta) : real(1.0); }
 
-// A facet's projection, by what masking says of theta and of the reflected ray. `zone` numbers the arcs from phi = 0; in
-// the first, theta_r < theta, so that `integral` asks theta.
+// A facet's projection, by what masking says of theta and of the reflected ray. `zone` numbers the arcs from phi = 0;
+// in the first, theta_r < theta, so that `integral` asks theta.
 Projection project(ThetaNode theta, Facet f, int zone, real of_theta, real of_ray) {
   if (kMasking == DOLP_MASKING_NONE) return Projection(f.e, real(0.0));
   if (kMasking == DOLP_MASKING_V_CAVITY) {

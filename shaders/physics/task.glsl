@@ -30,8 +30,8 @@ Task task_of(uint word) {
   return task;
 }
 
-// The task with its slopes. moments.comp reads them one by one: a copy of all of a direction's costs a driver half a second
-// of compilation.
+// The task with its slopes. moments.comp reads them one by one: a copy of all of a direction's costs a driver half a
+// second of compilation.
 Task with_slopes(Task task, ThetaNode theta) {
   task.before = theta.end[max(task.piece - 1, 0)];
   task.start = theta.end[task.piece];

@@ -12,6 +12,7 @@
 #include "evaluate/reference/reference_evaluator.hpp"
 #include "model/angles.hpp"
 #include "model/status.hpp"
+#include "mueller_support.hpp"
 #include "properties_support.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene_reader.hpp"
@@ -121,9 +122,6 @@ TEST_P(Grooves, WithoutAndWithTheDirectEmission_TheOtherMomentsAgree) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryKernel, Grooves, testing::ValuesIn(kKernels),
-                         [](const auto& test) { return name_of(test.param); });
-
 /// Largest distance from the reference over the bounds of both.
 double worst_ratio(const MomentsRequest& request, double reference_tolerance) {
   CpuEvaluator kernel(Precision::kDouble);
@@ -184,6 +182,59 @@ TEST(GroovesReference, HardCases_WithinTheBounds) {
     request.append(point);
   }
   worst_ratio(request, 1e-4);
+}
+
+// ---- pBRDF ---------------------------------------------------------------------------------------------------------
+
+ScatteringRequest bounces_of(const std::vector<ScatteringPoint>& points) {
+  ScatteringRequest request = request_of(Distribution::kCauchy, Masking::kVCavity, points);
+  request.scattering = Scattering::kMultiple;
+  return request;
+}
+
+const std::vector<ScatteringPoint> kBeams = {
+    {{40.0, 20.0, 180.0}, {0.3, 2.0}, {1.5, 0.1}},  {{40.0, 20.0, 75.0}, {0.5, 2.5}, {10.0, 60.0}},
+    {{10.0, 70.0, -130.0}, {0.4, 3.0}, {3.0, 4.0}}, {{65.0, 64.0, 20.0}, {0.6, 2.0}, {26.0, 90.0}},
+    {{0.0, 50.0, 30.0}, {0.5, 2.0}, {10.0, 60.0}},  {{80.0, 75.0, 170.0}, {0.2, 1.5}, {1.33, 0.02}},
+    {{50.0, 50.0, 0.0}, {0.5, 3.0}, {3.0, 4.0}}};
+
+TEST_P(Grooves, MuellerMatrices_AreThoseOfTheReference) {
+  const auto evaluator = make_evaluator(GetParam());
+  const std::vector<ScatteringMatrix> own = evaluator->scattering()->scatter(bounces_of(kBeams), {});
+  const std::vector<ScatteringMatrix> other = ReferenceEvaluator().scatter(bounces_of(kBeams), {});
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    EXPECT_LT(own[i].error, 3e-5 * own[i].m[0]) << text_of(kBeams[i]);
+    for (std::size_t j = 0; j < own[i].m.size(); ++j) {
+      EXPECT_NEAR(own[i].m[j], other[i].m[j], own[i].error + other[i].error) << text_of(kBeams[i]) << " element " << j;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryKernel, Grooves, testing::ValuesIn(kKernels),
+                         [](const auto& test) { return name_of(test.param); });
+
+TEST(GroovesMueller, FurtherBounces_AreReciprocal) {
+  CpuEvaluator evaluator(Precision::kDouble);
+  std::vector<ScatteringPoint> reversed = kBeams;
+  for (ScatteringPoint& point : reversed) std::swap(point.angles.theta_i_deg, point.angles.theta_r_deg);
+  const std::vector<ScatteringMatrix> there = evaluator.scatter(bounces_of(kBeams), {});
+  const std::vector<ScatteringMatrix> back = evaluator.scatter(bounces_of(reversed), {});
+  constexpr std::array<double, 4> kSigns = {1.0, 1.0, 1.0, -1.0};  // at the same azimuth
+  for (std::size_t i = 0; i < there.size(); ++i) {
+    for (std::size_t row = 0; row < 4; ++row) {
+      for (std::size_t column = 0; column < 4; ++column) {
+        EXPECT_NEAR(there[i].m[4 * row + column], kSigns[row] * kSigns[column] * back[i].m[4 * column + row],
+                    there[i].error + back[i].error)
+            << text_of(kBeams[i]);
+      }
+    }
+  }
+}
+
+TEST(GroovesMueller, TowardTheMirrorDirection_IsNotDefined) {
+  CpuEvaluator evaluator(Precision::kDouble);
+  const auto matrix = evaluator.scatter(bounces_of({{{40.0, 40.0, 180.0}, {0.3, 2.0}, {1.5, 0.1}}}), {}).front();
+  for (const double element : matrix.m) EXPECT_TRUE(std::isnan(element));
 }
 
 // ---- Scenes --------------------------------------------------------------------------------------------------------

@@ -274,7 +274,6 @@ TEST(SceneScattering, WhatTheModelLacks_NamesTheKeys) {
            {{"surface.masking=v-cavity", "emission.model=fresnel", "emission.bracket=true"},
             "\"moments\" or \"direct\""},
            {{"surface.masking=v-cavity", "geometry.mode=bistatic", "emission.bracket=true"}, "hemispherical"},
-           {{"surface.masking=v-cavity", "geometry.mode=bistatic", "surface.scattering=multiple"}, "hemispherical"},
            {{"emission.bracket=yes"}, "true or false"}}) {
     const std::string error = error_of(kMinimal, c.overrides);
     EXPECT_TRUE(contains(error, c.expected)) << error;

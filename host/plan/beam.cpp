@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "model/gamma_ratio.hpp"
+#include "plan/further_bounces.hpp"
 #include "plan/geometry.hpp"
 #include "plan/rule_nodes.hpp"
 
@@ -35,15 +36,6 @@ constexpr double kDoubleRoundoff = 0x1p-53;
 
 // ln(1 + x^2), where x^2 may overflow.
 double log1p_square(double x) { return x > 1e8 ? 2.0 * std::log(x) : std::log1p(x * x); }
-
-// ln(D / 4).
-double log_density(Distribution distribution, const SlopeShape& shape, double slope) {
-  const double m = std::sqrt(2.0) * shape.sigma;
-  const double front = 2.0 * log1p_square(slope) - std::log(4.0 * pi<double>()) - 2.0 * std::log(m);
-  const double u = slope / m;
-  if (distribution == Distribution::kGaussian) return front - u * u;
-  return front + std::log(shape.q - 1.0) - shape.q * log1p_square(u);
-}
 
 kernel::ShapeNode masking_shape(Distribution distribution, const SlopeShape& shape) {
   kernel::ShapeNode node{};
@@ -80,6 +72,14 @@ KernelData model_data(const ScatteringRequest& request) {
 
 }  // namespace
 
+double log_density(Distribution distribution, const SlopeShape& shape, double slope) {
+  const double m = std::sqrt(2.0) * shape.sigma;
+  const double front = 2.0 * log1p_square(slope) - std::log(4.0 * pi<double>()) - 2.0 * std::log(m);
+  const double u = slope / m;
+  if (distribution == Distribution::kGaussian) return front - u * u;
+  return front + std::log(shape.q - 1.0) - shape.q * log1p_square(u);
+}
+
 BeamPlan::BeamPlan(const ScatteringRequest& request) : request_(request), data_(model_data(request)) {
   geometries_.reserve(request.angles.size());
   for (const BeamAngles& angles : request.angles) {
@@ -114,11 +114,13 @@ Beam BeamPlan::operator()(const ScatteringEntry& entry) const {
   return beam;
 }
 
-ScatteringMatrix matrix_from_kernel(const kernel::MuellerNode& node, const Beam& beam, double unit_roundoff) {
+ScatteringMatrix BeamPlan::matrix(const kernel::MuellerNode& node, const Beam& beam, const ScatteringEntry& entry,
+                                  double unit_roundoff) const {
   ScatteringMatrix matrix;
   for (std::size_t i = 0; i < matrix.m.size(); ++i) matrix.m[i] = std::ldexp(node.m[i], beam.power);
   const double relative = unit_roundoff > kDoubleRoundoff ? kScatteringErrorFloat : kScatteringErrorDouble;
   matrix.error = relative * std::abs(matrix.m[0]);
+  if (request_.scattering == Scattering::kMultiple) add_further_bounces(matrix, request_, entry);
   return matrix;
 }
 

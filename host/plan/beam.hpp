@@ -24,6 +24,11 @@ class BeamPlan {
   explicit BeamPlan(const ScatteringRequest& request);
   Beam operator()(const ScatteringEntry& entry) const;
 
+  /// The kernel's result with its power of two put back, its error bound, `unit_roundoff` being that of its precision,
+  /// and the further bounces that the request asks for.
+  ScatteringMatrix matrix(const kernel::MuellerNode& node, const Beam& beam, const ScatteringEntry& entry,
+                          double unit_roundoff) const;
+
   /// The kernel data that the text needs beside its beams: the model and the rule nodes.
   const KernelData& data() const { return data_; }
 
@@ -35,7 +40,7 @@ class BeamPlan {
   std::vector<kernel::GeometryNode> geometries_;
 };
 
-/// The kernel's result with its power of two put back and its error bound, `unit_roundoff` being that of its precision.
-ScatteringMatrix matrix_from_kernel(const kernel::MuellerNode& node, const Beam& beam, double unit_roundoff);
+/// ln(D / 4) at a slope.
+double log_density(Distribution distribution, const SlopeShape& shape, double slope);
 
 }  // namespace dolp

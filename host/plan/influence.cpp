@@ -135,6 +135,9 @@ InfluenceBounds::AtEntry InfluenceBounds::at_entry(const KeptEffects& kept, cons
     for (double* value : {&at.beam.most_i, &at.beam.least_i, &at.beam.most_qu}) {
       *value *= pi<double>() * surface.specular / cosine;
     }
+    if (kept.further_bounces && surface.scattering == Scattering::kMultiple) {
+      at.beam.most_i = at.beam.most_qu = kInfinity;  // they are not known before they are computed
+    }
     const double cosine_i = cos_sin_deg(entry.theta_deg).cos;
     if (has_diffuse) at.diffuse_beam = surface.diffuse * std::pow(cosine_i, c + 1.0) * std::pow(cosine, c);
   }
@@ -207,6 +210,7 @@ InfluenceBounds::Sums InfluenceBounds::added_by(Part part, const KeptEffects& ke
   switch (part) {
     case Part::kFurtherBounces:
       sum.most_i = sum.most_qu = (weight(kept) + incident) * at.further;
+      if (bistatic_ && source > 0.0) sum.most_i = sum.most_qu = kInfinity;
       break;
     case Part::kMoments:
       sum.most_i = direct && kept.emission ? kInfinity : (weight(kept) + incident) * at.specular.most_i;

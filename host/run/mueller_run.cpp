@@ -26,7 +26,8 @@ bool is_undefined(const Surface& surface, const MuellerPoint& point) {
   const bool has_specular = surface.specular > 0.0;
   const bool has_limit = has_grazing_limit(surface.masking);
   const bool diffuse_diverges = surface.diffuse > 0.0 && surface.diffuse_exponent < 0.0;
-  if (has_specular && point.shape.sigma == 0.0 && is_specular(point.angles)) return true;
+  const bool is_multiple = surface.scattering == Scattering::kMultiple;
+  if (has_specular && (point.shape.sigma == 0.0 || is_multiple) && is_specular(point.angles)) return true;
   const bool specular_diverges = has_specular && point.shape.sigma > 0.0 && (!has_limit || !has_facet(point.angles));
   return is_grazing(point.angles) && (specular_diverges || diffuse_diverges);
 }
@@ -44,6 +45,7 @@ ScatteringRequest request_for(const Scene& scene, std::span<const MuellerPoint> 
   ScatteringRequest request;
   request.distribution = scene.surface.distribution;
   request.masking = scene.surface.masking;
+  request.scattering = scene.surface.scattering;
   request.precision = precision;
   for (const MuellerPoint& point : points) {
     if (!needs_evaluator(scene.surface, point)) continue;

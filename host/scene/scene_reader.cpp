@@ -170,9 +170,6 @@ void check_scattering(const Scene& scene, const SceneDocument& document) {
   if (is_multiple && surface.masking != Masking::kVCavity) {
     document.fail("surface.scattering", fmt::format("\"multiple\" needs masking = \"v-cavity\", and {}", masking));
   }
-  if (is_multiple && scene.geometry.mode == Mode::kBistatic) {
-    document.fail("surface.scattering", "\"multiple\" needs geometry.mode = \"hemispherical\"");
-  }
   if (!scene.emission) return;
   const bool can_be_direct = has_direct_emission(surface.masking);
   if (scene.emission->model == EmissionModel::kDirect && !can_be_direct) {

@@ -89,7 +89,7 @@ std::vector<ScatteringMatrix> CpuEvaluator::scatter(const ScatteringRequest& req
   std::vector<ScatteringMatrix> matrices(request.entries.size());
   const auto one = [&](std::size_t i) {
     const Beam beam = plan(request.entries[i]);
-    matrices[i] = matrix_from_kernel(text->mueller(beam.node), beam, unit_roundoff_of(is_double));
+    matrices[i] = plan.matrix(text->mueller(beam.node), beam, request.entries[i], unit_roundoff_of(is_double));
   };
   parallel_for(matrices.size(), one, progress);
   note(is_double, seconds_since(start));

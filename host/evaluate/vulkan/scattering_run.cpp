@@ -83,7 +83,7 @@ void ScatteringRun::run_tile(std::span<const ScatteringEntry> entries, std::span
   mueller_buffer_->read(scratch_);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const auto node = packing.read<kernel::MuellerNode>(scratch_, i);
-    matrices[i] = matrix_from_kernel(node, beams_[i], packing.unit_roundoff());
+    matrices[i] = plan_.matrix(node, beams_[i], entries[i], packing.unit_roundoff());
   }
 }
 

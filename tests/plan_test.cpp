@@ -105,6 +105,22 @@ TEST(KernelDataOrders, EveryTolerance_StaysBelowTheDriversLoopLimit) {
   }
 }
 
+// With all bounces in grooves the bound is that of each piece, and what runs in lockstep has the same.
+TEST(KernelDataOrders, AllBounces_StayBelowTheDriversLoopLimit) {
+  for (const bool total_reflection : {false, true}) {
+    for (int exponent = 2; exponent <= 15; ++exponent) {
+      MomentsRequest request =
+          hard_request(Distribution::kCauchy, Masking::kVCavity, std::pow(10.0, -exponent), total_reflection);
+      request.scattering = Scattering::kMultiple;
+      const KernelData data = kernel_data(request);
+      EXPECT_LT(worst_iterations(data), kDriverLimit) << exponent;
+      for (const Pieces& pieces : data.pieces) {
+        for (std::uint32_t i = 0; i < pieces.count; ++i) EXPECT_GE(pieces.most_nodes[i], 4U) << exponent;
+      }
+    }
+  }
+}
+
 // One loop over the nodes, in each of which a small Gauss rule, which is read from the nodes of the moments' rules even
 // when no moments are asked for.
 TEST(MaskingTable, ItsLoops_StayBelowTheDriversLimitAndHaveTheirNodes) {

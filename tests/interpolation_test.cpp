@@ -201,7 +201,15 @@ class Invented final : public MomentsEvaluator {
     std::vector<Moments> moments;
     for (std::size_t i = 0; i < request.size(); ++i) {
       const double r = function_(request[i].shape);
-      moments.push_back({r, -0.5 * r, 2.0 * r, 1.0 - r, error_, error_, error_, error_, 10.0});
+      moments.push_back({.r_i = r,
+                         .r_q = -0.5 * r,
+                         .albedo = 2.0 * r,
+                         .deficit = 1.0 - r,
+                         .r_i_error = error_,
+                         .r_q_error = error_,
+                         .albedo_error = error_,
+                         .deficit_error = error_,
+                         .evaluations = 10.0});
       if (progress && !progress(moments.size(), request.size())) throw Cancelled{};
     }
     return moments;

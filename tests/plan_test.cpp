@@ -115,7 +115,8 @@ TEST(KernelDataOrders, AllBounces_StayBelowTheDriversLoopLimit) {
       const KernelData data = kernel_data(request);
       EXPECT_LT(worst_iterations(data), kDriverLimit) << exponent;
       for (const Pieces& pieces : data.pieces) {
-        for (std::uint32_t i = 0; i < pieces.count; ++i) EXPECT_GE(pieces.most_nodes[i], 4U) << exponent;
+        for (std::uint32_t i = 0; i < pieces.count; ++i)
+          EXPECT_GE(pieces.most_nodes[i], unsigned{DOLP_AZIMUTHS_PER_SLOPE}) << exponent;
       }
     }
   }

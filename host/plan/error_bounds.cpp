@@ -120,6 +120,7 @@ double steep_reflectance(const kernel::IndexNode& index, const kernel::ThetaNode
 // algebraically.
 constexpr double kPairFactor = 4.0;
 constexpr double kTablePairFactor = 8.0;
+constexpr double kGroovePairFactor = 8.0;  // beams of many bounces end at kinks that are not split
 constexpr double kCriticalFactor = 2.0;  // roots beside the critical line, which lies where rounding leaves it
 
 // Two rules of few nodes may agree by chance: none is taken to be better than this share of the tolerance it is made
@@ -167,7 +168,10 @@ double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta
 }
 
 double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
-  const double smooth = data.needs_masking_table() ? kTablePairFactor : kPairFactor;
+  const bool is_multiple = data.scattering == Scattering::kMultiple;
+  const double smooth = is_multiple                  ? kGroovePairFactor
+                        : data.needs_masking_table() ? kTablePairFactor
+                                                     : kPairFactor;
   return index.critical_cos > 0.0 ? kCriticalFactor * smooth : smooth;
 }
 

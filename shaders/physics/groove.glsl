@@ -1,4 +1,4 @@
-// All bounces of a ray in a V-groove (README.md beside this file, section 2): two facets of slope t with normals
+// All bounces of a ray in a V-groove (README.md beside this file, section 3): two facets of slope t with normals
 // (t u + z) / sec and (-t u + z) / sec, u = (cos(phi), sin(phi), 0), met at the apex. gamma = pi/2 - alpha.
 //
 // Unfolded about its apex the groove is a fan of facets gamma, 3 gamma, 5 gamma, ... from the vertical, and the ray is
@@ -23,9 +23,8 @@ real2 doubled_turn(real2 turn) { return real2((turn.x - turn.y) * (turn.x + turn
 
 // Of a groove of slope t, for a ray that has the projections c and u on the vertical and across.
 Fan fan(real t, real c, real u) {
-  real r = real(1.0) / sqrt(real(1.0) + t * t);
+  real slope = t;
   Fan f;
-  f.turn = real2(t * r, r);
   f.bounces = real(0.0);
   f.doublings = 0;
   // A ray has at most pi/gamma < pi t + 2 bounces; the loop is one that devices skip.
@@ -33,11 +32,13 @@ Fan fan(real t, real c, real u) {
     real zenith = arc_tangent(abs(u) / max(c, real(1e-30)));
     f.bounces = (real(0.5) * kPi - choose(u < real(0.0), -zenith, zenith)) / arc_tangent(real(1.0) / t);
     while (f.bounces > real(DOLP_MOST_BOUNCES)) {
-      f.turn = doubled_turn(f.turn);
+      slope = real(0.5) * (slope - real(1.0) / slope);  // cot(2 gamma)
       f.bounces *= real(0.5);
       ++f.doublings;
     }
   }
+  real r = real(1.0) / sqrt(real(1.0) + slope * slope);
+  f.turn = real2(slope * r, r);
   return f;
 }
 
@@ -96,6 +97,11 @@ real2 doubled_angle(real x, real y) {
   return real2((x - y) * (x + y) * inverse, real(2.0) * x * y * inverse);
 }
 
+// a (sin, cos) of an angle, a step on.
+real2 further_on(real2 at, real2 step) {
+  return real2(at.x * step.x + at.y * step.y, at.y * step.x - at.x * step.y);
+}
+
 // Integrand of the moments per unit of azimuth, as in facet.glsl, of the rays that meet the facet (t, phi) first.
 real4 reflected_in_groove(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   real c = theta.c;
@@ -104,8 +110,12 @@ real4 reflected_in_groove(ThetaNode theta, IndexNode index, real t, real x, real
   real inverse_a2 = real(1.0) / max(c * c + u * u, kSmallestSquare);
   Fan f = fan(t, c, u);
   real first = c * f.turn.y + u * f.turn.x;  // X_1
-  real least = max(u * f.turn.x - c * f.turn.y, real(0.0));
-  real inverse_width = real(1.0) / max(first - least, real(1e-30));
+  // X_1 - X_0 and X_k - X_1 are differences of nearly equal numbers next to the horizon: X_(k+1) - X_k is 2 sin(gamma)
+  // times a cos(psi + 2 k gamma).
+  real width = (u * f.turn.x > c * f.turn.y) ? real(2.0) * c * f.turn.y : first;
+  real inverse_width = real(1.0) / max(width, real(1e-30));
+  real rise = real(0.0);      // X_k - X_1
+  real2 between = real2(u, c);  // a (sin, cos) of psi + 2 k gamma
   real left = f.bounces;
   real2 at = real2(first, c * f.turn.x - u * f.turn.y);
   real2 step = doubled_turn(f.turn);
@@ -125,10 +135,11 @@ real4 reflected_in_groove(ThetaNode theta, IndexNode index, real t, real x, real
     absorbed += share * (by.absorbed * natural.x - by.m01 * (twice.x * natural.y + twice.y * natural.z));
     natural += share * (bounced(by, twice, natural) - natural);
     polarised += share * (bounced(by, twice, polarised) - polarised);
-    at = real2(at.x * step.x + at.y * step.y, at.y * step.x - at.x * step.y);
+    at = further_on(at, step);
+    between = further_on(between, step);
+    rise += real(2.0) * f.turn.y * between.y;
     left -= real(1.0);
-    share = (f.doublings > 0) ? left : (min(at.x, first) - least) * inverse_width;
-    share = clamp(share, real(0.0), real(1.0));
+    share = clamp((f.doublings > 0) ? left : real(1.0) + rise * inverse_width, real(0.0), real(1.0));
   }
   real beam = min(c + theta.s * t * x, real(2.0) * c);
   return real4(beam * natural.x, beam * polarised.x, beam, beam * absorbed);

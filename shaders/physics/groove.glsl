@@ -29,8 +29,8 @@ Fan fan(real t, real c, real u) {
   f.doublings = 0;
   // A ray has at most pi/gamma < pi t + 2 bounces; the loop is one that devices skip.
   for (bool is_steep = t > real(DOLP_MOST_BOUNCES) / kPi; is_steep; is_steep = false) {
-    real zenith = arc_tangent(abs(u) / max(c, real(1e-30)));
-    f.bounces = (real(0.5) * kPi - choose(u < real(0.0), -zenith, zenith)) / arc_tangent(real(1.0) / t);
+    real to_horizon = arc_tangent(c / max(abs(u), real(1e-30)));
+    f.bounces = choose(u < real(0.0), kPi - to_horizon, to_horizon) / arc_tangent(real(1.0) / t);
     while (f.bounces > real(DOLP_MOST_BOUNCES)) {
       slope = real(0.5) * (slope - real(1.0) / slope);  // cot(2 gamma)
       f.bounces *= real(0.5);
@@ -114,7 +114,7 @@ real4 reflected_in_groove(ThetaNode theta, IndexNode index, real t, real x, real
   // times a cos(psi + 2 k gamma).
   real width = (u * f.turn.x > c * f.turn.y) ? real(2.0) * c * f.turn.y : first;
   real inverse_width = real(1.0) / max(width, real(1e-30));
-  real rise = real(0.0);      // X_k - X_1
+  real rise = real(0.0);        // X_k - X_1
   real2 between = real2(u, c);  // a (sin, cos) of psi + 2 k gamma
   real left = f.bounces;
   real2 at = real2(first, c * f.turn.x - u * f.turn.y);

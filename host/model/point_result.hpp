@@ -27,8 +27,6 @@ struct PointResult {
   /// Between what DOLP lies of a surface with these facets and all its bounces; NaN where it was not asked for.
   double dolp_low = std::numeric_limits<double>::quiet_NaN();
   double dolp_high = std::numeric_limits<double>::quiet_NaN();
-  double scattering_gap =
-      std::numeric_limits<double>::quiet_NaN();  ///< |change of dolp| with the direct emission, if known
   double rho_error_estimate = 0.0;  ///< bound of max(|d rho_I|, |d rho_Q|) / rho_I; infinite when there is none
   std::uint32_t status = 0;         ///< bits of status.hpp
 };

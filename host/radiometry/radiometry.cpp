@@ -236,22 +236,6 @@ Bracket bracket(const Scene& scene, const SpectralRule& rule, std::span<const Re
   return between;
 }
 
-/// What the direct emission says beside another: the bracket, and how far the DOLP of single scattering is from its
-/// own.
-void add_direct(PointResult& result, const Scene& scene, const SpectralRule& rule,
-                std::span<const Reflectance> reflectances, std::span<const Emissivity> direct, double cos_theta) {
-  if (scene.emission->has_bracket) {
-    const Bracket between = bracket(scene, rule, reflectances, direct, cos_theta);
-    result.dolp_low = between.low;
-    result.dolp_high = between.high;
-    result.error_estimate = std::max(result.error_estimate, between.error);
-  }
-  if (scene.emission->model != EmissionModel::kMoments) return;
-  Stokes other = stokes_sum(rule, reflectances, direct, EmissionModel::kDirect, cos_theta, true);
-  add_path(other, scene.path, rule.path_exitance);
-  result.scattering_gap = std::abs(std::abs(other.q) / other.i - result.dolp);
-}
-
 /// Adds pi E0 cos(theta_i) f of the beam from the source, the factor pi as in the exitances of the sum.
 void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRule& rule,
               std::span<const Scattered> scattered, double cos_theta_i, double cos_theta_r) {
@@ -517,9 +501,12 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   result.rho_error_estimate = relative_bound(mean.error, mean.rho_i);
   set_dolp(result, sum);
   if (scene_.emission) add_emissivity(result, rule_, emissivities);
-  if (!std::isnan(moments.front().direct_i) && model != EmissionModel::kFresnel) {
+  if (scene_.emission && scene_.emission->has_bracket) {
     const auto direct = emissivities_of(EmissionModel::kDirect);
-    add_direct(result, scene_, kept_rule_, reflectances, {direct.data(), direct.size()}, cos_theta);
+    const Bracket between = bracket(scene_, kept_rule_, reflectances, {direct.data(), direct.size()}, cos_theta);
+    result.dolp_low = between.low;
+    result.dolp_high = between.high;
+    result.error_estimate = std::max(result.error_estimate, between.error);
   }
   if (sum.i <= 0.0) result.status |= kStatusNonPositiveIntensity;
   if (std::isnan(result.dolp)) result.status |= kStatusOutsideDomain;

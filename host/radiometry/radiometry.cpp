@@ -85,8 +85,8 @@ bool reflectance_diverges(const Surface& surface, const Direction& direction, st
          });
 }
 
-/// Equation: the terms of I and Q that grow fastest as cos(theta) -> 0, times whatever makes them finite: D r with D
-/// the surroundings without what the moments take off the emission; with D = 0 pi B + E0 r_i and E0 r_q, and the path.
+/// Equation: the terms of I and Q that grow fastest as cos(theta) -> 0, times whatever makes them finite: D r, D being
+/// the surroundings without what the moments take off the emission; with D = 0, pi B + E0 r_i and E0 r_q, and the path.
 /// The fresnel emission vanishes there.
 Stokes grazing_stokes(const Scene& scene, const SpectralRule& rule, std::span<const Moments> moments) {
   const Surface& surface = scene.surface;

@@ -281,6 +281,28 @@ TEST_F(CommandLine, Json_EachEvaluator_HasTheContractsKeys) {
   }
 }
 
+// A rough metal, of few entries: the summary says how much DOLP single scattering may be off.
+TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringLeavesOpen) {
+  const std::vector<std::string> metal = {"--set", "surface.masking=smith", "--set", "surface.n=10",
+                                          "--set", "surface.k=60"};
+  for (const std::vector<std::string>& start :
+       {std::vector<std::string>{"table", "scene.toml", "-o", "t.nc"},
+        std::vector<std::string>{"eval", "scene.toml", "--points", "points.csv", "-o", "e.csv"}}) {
+    const auto with = [&](std::vector<std::string> more) {
+      more.insert(more.begin(), start.begin(), start.end());
+      return dolp(more);
+    };
+    std::vector<std::string> options = metal;
+    const Outcome text = with(options);
+    ASSERT_EQ(text.status, 0) << text.err;
+    EXPECT_NE(text.out.find("changes DOLP by up to "), std::string::npos) << text.out;
+    options.push_back("--json");
+    EXPECT_GT(json::parse(with(options).out)["scattering_gap"], 0.01);
+    EXPECT_TRUE(json::parse(with({"--json"}).out)["scattering_gap"].is_null());  // masking integral
+    EXPECT_EQ(with({}).out.find("scattering"), std::string::npos);
+  }
+}
+
 TEST_F(CommandLine, Json_StatusCounts_AreThoseOfTheEntries) {
   const Outcome outcome =
       dolp({"table", "scene.toml", "-o", "t.nc", "--json", "--set", "grid.theta_deg=[0, 89.9, 90]"});

@@ -153,8 +153,8 @@ TEST_P(Switches, SplitLinesAndThresholds_MakeNoJump) {
 }
 
 // Total reflection begins at sin(beta) = n; its line meets phi = 0, the horizon and theta_r = theta where theta is the
-// critical angle, its complement, and twice the critical angle less 90 degrees; it ends where n reaches 1, and with 2 n
-// k.
+// critical angle, its complement, and twice the critical angle less 90 degrees; it ends where n reaches 1, and with
+// 2 n k.
 TEST_P(Switches, TotalReflection_MakesNoJump) {
   constexpr double kSoftCriticalLine = 0.3;  // 2 n k above which the plan takes total reflection for smooth
   Random draws = random();

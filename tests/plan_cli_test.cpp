@@ -298,6 +298,36 @@ TEST_F(Plan, ShippedScenes_NameEachEffectOnceAndReadWell) {
   }
 }
 
+TEST_F(Plan, AllBounces_WorkOfTheirRowAndPipeline) {
+  const std::vector<std::string> single = {"--set", "surface.masking=v-cavity"};
+  const std::vector<std::string> multiple = joined(single, {"--set", "surface.scattering=multiple"});
+  const json all = plan(multiple);
+  const json once = plan(single);
+  const json row = *std::ranges::find(all["rows"], "scattering", [](const json& r) { return r["name"]; });
+  const double work = all["evaluations"];
+  EXPECT_NEAR(row["work_share"], 1.0 - once["evaluations"].get<double>() / work, 1e-12);
+  EXPECT_GT(row["work_share"], 0.5);
+  EXPECT_EQ(all["pipelines"], json({"moments, float: distribution cauchy, masking v-cavity, all bounces"}));
+  EXPECT_EQ(once["pipelines"], json({"moments, float: distribution cauchy, masking v-cavity"}));
+}
+
+TEST_F(Plan, DirectEmission_PipelineAndOutputSaySo) {
+  const std::vector<std::string> direct = {"--set", "surface.masking=v-cavity", "--set", "emission.bracket=true"};
+  EXPECT_EQ(plan(direct)["pipelines"],
+            json({"moments, float: distribution cauchy, masking v-cavity, direct emission"}));
+  const auto output = [&](const std::vector<std::string>& options) {
+    const std::string text = dolp(joined({"plan", "scene.toml"}, options)).out;
+    const std::size_t start = text.find("  output");
+    return text.substr(start, text.find('\n', start) - start);
+  };
+  EXPECT_TRUE(output(direct).ends_with(" Stokes parameters, DOLP, its bracket, emissivity, rho, albedo"));
+  EXPECT_TRUE(output({"--set", "emission.model=fresnel", "--set", "surroundings=none"})
+                  .ends_with(" Stokes parameters, DOLP, emissivity; without rho_i, rho_q and albedo"));
+  EXPECT_TRUE(output(kIsothermal).ends_with(" Stokes parameters, DOLP; without rho_i, rho_q and albedo"));
+  EXPECT_TRUE(plan()["gives_emissivity"]);
+  EXPECT_FALSE(plan(kIsothermal)["gives_emissivity"]);
+}
+
 TEST_F(Plan, DaySceneAtOnePercent_DropsTheSun) {
   const std::string scene = DOLP_HOST_DIR "/scenes/day.toml";
   const json rows = report({"plan", scene, "--tolerance", "1e-2"})["effects"];

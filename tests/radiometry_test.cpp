@@ -175,6 +175,23 @@ TEST(Radiometry, SourceThatCancelsEmission_LeavesNoQ) {
   EXPECT_LE(result.dolp, result.error_estimate);
 }
 
+TEST(Radiometry, ErrorOfTheDirectEmission_IsInTheEstimateWhereTheBracketIs) {
+  const Direction direction = direction_of(60.0);
+  Moments moments = moments_of({0.3, 0.1}, direction.cos_theta);
+  moments.direct_i = 0.7 * direction.cos_theta;
+  moments.direct_q = -0.05 * direction.cos_theta;
+  moments.direct_q_error = 1e-3 * direction.cos_theta;
+  Scene scene = night_scene();
+  EXPECT_LT(evaluate(scene, direction, moments).error_estimate, 1e-6);
+  scene.emission->has_bracket = true;
+  const PointResult bounded = evaluate(scene, direction, moments);
+  moments.direct_q += moments.direct_q_error;
+  const PointResult other = evaluate(scene, direction, moments);
+  EXPECT_NE(other.dolp_high, bounded.dolp_high);
+  EXPECT_LE(std::abs(other.dolp_high - bounded.dolp_high), bounded.error_estimate * (1.0 + kAgreement));
+  EXPECT_LE(std::abs(other.dolp_low - bounded.dolp_low), bounded.error_estimate * (1.0 + kAgreement));
+}
+
 TEST(Radiometry, TemperaturesFromOneTo6000K_GiveFiniteStokes) {
   for (const double temperature_K : {1.0, 3.0, 77.0, 6000.0}) {
     for (const double wavelength_um : {0.3, 10.6, 1000.0}) {

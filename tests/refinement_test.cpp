@@ -376,23 +376,25 @@ class Contradicts final : public MomentsEvaluator {
       if (request.has_extra_splits) m.r_q += bounds_ * 2.0 * m.r_q_error;
     }
     checks += request.has_extra_splits ? 1 : 0;
+    wanted_direct |= request.wants_direct;
     return moments;
   }
   EvaluationReport report() const override { return {}; }
 
   int checks = 0;
+  bool wanted_direct = false;
 
  private:
   double bounds_;
 };
 
-SelfCheck checked(Contradicts& evaluator, std::vector<PointResult>& results) {
+SelfCheck checked(Contradicts& evaluator, std::vector<PointResult>& results, const Scene& of = scene()) {
   std::vector<double> theta_deg(40), sigma(20);
   for (std::size_t i = 0; i < theta_deg.size(); ++i) theta_deg[i] = static_cast<double>(i);
   for (std::size_t i = 0; i < sigma.size(); ++i) sigma[i] = 0.1 + 0.01 * static_cast<double>(i);
   const SceneEntries grid = SceneEntries::grid(theta_deg, sigma, {2.0});
   CollectedResults collected;
-  const SelfCheck check = run_scene(scene(), grid, keep_everything(scene()), &evaluator, collected, {});
+  const SelfCheck check = run_scene(of, grid, keep_everything(of), &evaluator, collected, {});
   results = collected.take();
   return check;
 }
@@ -406,6 +408,16 @@ TEST(RunScene_SelfCheck, WithinTheBounds_ChangesNothing) {
   EXPECT_GT(check.worst_ratio, 0.3);
   EXPECT_LT(check.worst_ratio, 1.0);
   for (const PointResult& result : results) EXPECT_EQ(result.status, 0U);
+}
+
+TEST(RunScene_SelfCheck, MaskingWithADirectEmission_AsksForTheKernelOfTheRun) {
+  Contradicts evaluator(0.5);
+  std::vector<PointResult> results;
+  Scene smith = scene();
+  smith.surface.masking = Masking::kSmith;
+  checked(evaluator, results, smith);
+  EXPECT_EQ(evaluator.checks, 1);
+  EXPECT_FALSE(evaluator.wanted_direct);
 }
 
 TEST(RunScene_SelfCheck, BeyondTheBounds_NoEntryMeetsTheTolerance) {

@@ -1,48 +1,18 @@
-// The scene reader: every key, every way to get one wrong, defaults, overrides, the shipped scenes.
-#include "scene/scene_reader.hpp"
-
+// The scene reader: every key, defaults, axes, the shipped scenes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <filesystem>
-#include <iostream>
-#include <random>
 
-#include "base/error.hpp"
 #include "scene/text.hpp"
+#include "scene_support.hpp"
 #include "temporary_file.hpp"
 
 namespace dolp {
 namespace {
 
 const std::string kHostDir = DOLP_HOST_DIR;
-
-/// A scene that is valid and leaves every default alone. [surface] is line 1, [emission] 4, [spectrum] 6.
-const std::string kMinimal =
-    "[surface]\n"
-    "n = 1.5\n"
-    "sigma = 0.3\n"
-    "[emission]\n"
-    "temperature_K = 300\n"
-    "[spectrum]\n"
-    "wavelength_um = 10.6\n";
-
-Scene parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  return parse_scene(text, "s.toml", overrides);
-}
-
-std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  try {
-    parse(text, overrides);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 // ---- Values --------------------------------------------------------------------------------------------------------
 
@@ -313,195 +283,6 @@ TEST(SceneGrid_SigmaWithoutSurfaceSigma, GivesTheSurfaceItsFirstValue) {
   const Scene scene =
       parse("surface.n = 1.5\nemission.temperature_K = 1\nspectrum.wavelength_um = 5\ngrid.sigma = [0.2, 0.1]");
   EXPECT_EQ(scene.surface.sigma, 0.2);
-}
-
-// ---- Errors --------------------------------------------------------------------------------------------------------
-
-/// A scene that is wrong: what is appended to the minimal one (whose last line is 7), and what the message must hold.
-struct ErrorCase {
-  const char* appended;
-  std::vector<std::string> expected;
-};
-
-TEST(SceneError_InTheFile, NamesFileLineKeyValueAndWhatIsAllowed) {
-  const std::vector<ErrorCase> cases = {
-      {"[surfaces]\n", {"s.toml:8: surfaces: unknown key", "surface"}},
-      {"wavelenght_um = 3\n", {"s.toml:8: spectrum.wavelenght_um = 3: unknown key", "spectrum.wavelength_um"}},
-      {"[grid]\nwavelength_um = 3\n", {"s.toml:9: grid.wavelength_um = 3: unknown key", "spectrum.wavelength_um"}},
-      {"[path]\ntemperature_k = 3\n", {"s.toml:9: path.temperature_k", "nearest known key is path.temperature_K"}},
-      {"[geometry]\nmode = \"bistatical\"\n",
-       {"s.toml:9: geometry.mode = \"bistatical\": ", "hemispherical, bistatic"}},
-      {"[geometry]\nmode = 1\n", {"s.toml:9: geometry.mode = 1: ", "hemispherical, bistatic"}},
-      {"[grid]\ntheta_deg = [0, 91]\n", {"s.toml:9: grid.theta_deg = [", "91 is out of range", "[0, 90]"}},
-      {"[grid]\ntheta_deg = []\n", {"s.toml:9: grid.theta_deg = []: the list is empty"}},
-      {"[grid]\nq = [2, \"3\"]\n", {"s.toml:9: grid.q = [", "(1, 1e4]"}},
-      {"[grid]\nq = [2, 3, 2.0]\n", {"s.toml:9: grid.q = [", "2 appears twice"}},
-      {"[grid]\nq = { from = 2, to = 3 }\n", {"s.toml:9: grid.q.count: missing", "[1, 1e6]"}},
-      {"[grid]\nq = { from = 2, to = 3, count = 0 }\n", {"s.toml:9: grid.q.count = 0: ", "[1, 1e6]"}},
-      {"[grid]\nq = { from = 2, to = 3, count = 2.5 }\n", {"s.toml:9: grid.q.count = 2.5: ", "whole number"}},
-      {"[grid]\nq = { from = 2, to = 3, count = 1 }\n", {"s.toml:9: grid.q.count = 1: ", "from = to"}},
-      {"[grid]\nq = { from = 1, to = 3, count = 5 }\n", {"s.toml:9: grid.q.from = 1: ", "(1, 1e4]"}},
-      {"[grid]\nq = { from = 2, to = 3, counts = 5 }\n", {"s.toml:9: grid.q.counts = 5: unknown key", "grid.q.count"}},
-      {"[grid]\nq = { from = 2, to = 3, count = 5, spacing = \"lin\" }\n", {"s.toml:9: grid.q.spacing", "linear, log"}},
-      {"[grid]\nsigma = { from = 0, to = 1, count = 5, spacing = \"log\" }\n",
-       {"s.toml:9: grid.sigma.from", "from > 0"}},
-      {"[grid]\nsigma = { from = 1, to = 0, count = 5, spacing = \"log\" }\n", {"s.toml:9: grid.sigma.to", "to > 0"}},
-      {"[source]\n", {"s.toml:8: source.irradiance: missing", "[0, inf)", "source.preset, source.file"}},
-      {"[source]\nscale = 2\n", {"s.toml:8: source.irradiance: missing"}},
-      {"[source]\nirradiance = 1\npreset = \"sun\"\n", {"s.toml:10: source.preset", "combined with source.irradiance"}},
-      {"[source]\nirradiance = -1\n", {"s.toml:9: source.irradiance = -1: ", "out of range", "[0, inf)"}},
-      {"[source]\nfile = \"absent.csv\"\n", {"s.toml:9: source.file = \"absent.csv\": cannot be read: No such file"}},
-      {"[source]\nfile = 3\n", {"s.toml:9: source.file = 3: must be a text"}},
-      {"[surroundings]\n", {"s.toml:8: surroundings.temperature_K: missing", "[0, 1e4]"}},
-      {"[path]\ntemperature_K = 3\nradiance = 1\n",
-       {"s.toml:10: path.radiance = 1", "combined with path.temperature_K"}},
-      {"[accuracy]\ntolerance = 0.1\n", {"s.toml:9: accuracy.tolerance = 0.1: ", "[1e-10, 0.01]"}},
-      {"[accuracy]\ntolerance = nan\n", {"s.toml:9: accuracy.tolerance = ", "[1e-10, 0.01]"}},
-      {"band_um = [8, 14]\n", {"s.toml:8: spectrum.band_um = [8, 14]: cannot be combined with spectrum.wavelength_um"}},
-      {"[[grid]]\n", {"s.toml:8: grid", "must be a table"}},
-      {"[surface]\n", {"s.toml:8: not valid TOML"}},
-      {"title = \n", {"s.toml:8: not valid TOML"}},
-      {"wavelength_um = 4\n", {"s.toml:8: not valid TOML"}},
-      {"\n\n]\n", {"s.toml:10: not valid TOML"}},
-      {"[grid]\nsigma = \"line\\nbreak\"\n", {"s.toml:9: grid.sigma = \"line break\": "}},
-  };
-  for (const ErrorCase& row : cases) {
-    const std::string error = error_of(kMinimal + row.appended);
-    for (const std::string& part : row.expected) {
-      EXPECT_TRUE(contains(error, part)) << row.appended << "\nsays:    " << error << "\nwithout: " << part;
-    }
-    EXPECT_FALSE(contains(error, "\n")) << error;
-  }
-}
-
-TEST(SceneError_SomethingMissing, NamesTheLineOfItsTable) {
-  const std::string rest = "[emission]\ntemperature_K = 300\n[spectrum]\nwavelength_um = 5\n";
-  const std::string surface = "[surface]\nn = 1.5\nsigma = 0.3\n";
-  EXPECT_TRUE(contains(error_of(""), "s.toml:1: surface.n: missing; must be a number in (0, 1e6]"));
-  EXPECT_TRUE(contains(error_of(rest + "[surface]\nsigma = 1\n"), "s.toml:5: surface.n: missing"));
-  EXPECT_TRUE(contains(error_of(rest + "[surface]\nn = 1.5\n"), "s.toml:5: surface.sigma: missing"));
-  EXPECT_TRUE(contains(error_of(rest + "[surface]\nsigma = 1\nk = 1\n"), "s.toml:7: surface.k = 1: needs surface.n"));
-  EXPECT_TRUE(contains(error_of(surface + "[emission]\n" + "[spectrum]\nwavelength_um = 5\n"),
-                       "s.toml:4: emission.temperature_K: missing; must be a number in (0, 1e4]"));
-  EXPECT_TRUE(
-      contains(error_of(surface + "[emission]\ntemperature_K = 300\n"), "s.toml:1: spectrum.wavelength_um: missing"));
-  EXPECT_TRUE(
-      contains(error_of(surface + "[spectrum]\nwavelength_um = 5\n"), "s.toml:1: emission: missing; nothing radiates"));
-  EXPECT_TRUE(contains(error_of("surface = 3\n"), "s.toml:1: surface = 3: must be a table, [surface]"));
-  EXPECT_TRUE(contains(error_of("title = 3\n" + kMinimal), "s.toml:1: title = 3: must be a text"));
-}
-
-TEST(SceneError_KeysThatDoNotGoTogether, AreNamed) {
-  const std::string no_emission = "surface.n = 1.5\nsurface.sigma = 0.3\nspectrum.wavelength_um = 5\n";
-  EXPECT_TRUE(contains(error_of(no_emission + "source.relative_irradiance = 1\n"),
-                       "s.toml:4: source.relative_irradiance = 1: needs the table [emission]"));
-  EXPECT_EQ(error_of(no_emission + "source.irradiance = 1\n"), "no error");
-  EXPECT_EQ(error_of(no_emission + "surroundings.temperature_K = 1\n"), "no error");
-  EXPECT_TRUE(contains(error_of(kMinimal + "[surface.unused]\n"), "s.toml:8: surface.unused: unknown key"));
-  const std::string grid = kMinimal + "[grid]\nq = [1.5, 2]\n";
-  EXPECT_TRUE(contains(error_of(grid, {"surface.masking=smith"}), "s.toml:9: grid.q = [1.5, 2]: 1.5 is out of range"));
-  EXPECT_TRUE(contains(error_of(grid, {"surface.masking=smith"}), "q in (1.5, 1e4]"));
-  EXPECT_EQ(error_of(grid, {"surface.masking=smith", "surface.distribution=gaussian"}), "no error");
-  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.masking=smith", "surface.q=1.5"}), "--set surface.q=1.5: "));
-}
-
-TEST(SceneError_BandThatDoesNotAscend, IsRefused) {
-  for (const char* band : {"[14, 8]", "[8, 8]", "[8]", "[8, 9, 10]", "8", "[8, nan]", "[0.01, 8]"}) {
-    const std::string error = error_of(kMinimal, {std::string("spectrum.band_um=") + band});
-    EXPECT_TRUE(contains(error, std::string("--set spectrum.band_um=") + band + ": ")) << error;
-    EXPECT_TRUE(contains(error, "two ascending numbers in [0.1, 1e4]")) << error;
-  }
-}
-
-TEST(SceneError_FileThatCannotBeRead, IsAnInputError) {
-  const auto error_of_path = [](const std::string& path) -> std::string {
-    try {
-      read_scene(path, {});
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
-  };
-  EXPECT_EQ(error_of_path("absent.toml"), "absent.toml: cannot be read: No such file or directory");
-  EXPECT_EQ(error_of_path(kHostDir), kHostDir + ": cannot be read: Is a directory");
-  const TemporaryFile empty("empty.toml", "");
-  EXPECT_TRUE(contains(error_of_path(empty.path()), "empty.toml:1: surface.n: missing"));
-}
-
-TEST(SceneError_RandomBytes, IsAlwaysOneLineAndAlwaysAnInputError) {
-  constexpr std::uint64_t kSeed = 20250804;
-  constexpr int kTrials = 2000;
-  std::cout << "seed " << kSeed << '\n';
-  std::mt19937_64 random(kSeed);
-  int refused = 0;
-  for (int trial = 0; trial < kTrials; ++trial) {
-    std::string text = kMinimal;
-    for (int i = 0; i < 3; ++i) text[random() % text.size()] = static_cast<char>(random() % 256);
-    const std::string error = error_of(text);
-    EXPECT_FALSE(contains(error, "\n")) << error;
-    if (error != "no error") ++refused;
-  }
-  // Three random bytes in a scene of 92 leave it valid only where they fall on digits and the like.
-  EXPECT_GT(refused, kTrials / 2);
-}
-
-// ---- Overrides -----------------------------------------------------------------------------------------------------
-
-TEST(SceneOverride_Malformed, IsRefused) {
-  for (const char* argument : {"surface.n", "=1", "surface..n=1", ".n=1", "surface.=1", ""}) {
-    EXPECT_TRUE(error_of(kMinimal, {argument}).starts_with(std::string("--set ") + argument + ": must be KEY=VALUE"))
-        << error_of(kMinimal, {argument});
-  }
-  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.nn=1"}),
-                       "--set surface.nn=1: unknown key; the nearest known key is surface.n"));
-  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.n.x=1"}), "--set surface.n.x=1: surface.n is not a table"));
-  EXPECT_TRUE(contains(error_of(kMinimal, {"surface=3"}), "--set surface=3: must be a table, [surface]"));
-  // A value may not bring further keys with it.
-  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.n=1\nsurface.k=2"}), "must be a number"));
-}
-
-TEST(SceneOverride_OfAnAlternative, ReplacesTheFilesChoice) {
-  const Scene iron = parse(kMinimal, {"surface.material=iron"});
-  EXPECT_EQ(iron.surface.material.name, "iron");
-  const std::string with_iron =
-      "surface.material = \"iron\"\nsurface.sigma = 0.3\nemission.temperature_K = 1\n"
-      "spectrum.wavelength_um = 10.6\n";
-  EXPECT_EQ(parse(with_iron, {"surface.n=1.4"}).surface.material.constant, (OpticalConstants{1.4, 0.0}));
-  EXPECT_TRUE(contains(error_of(with_iron, {"surface.k=1"}), "--set surface.k=1: needs surface.n"));
-  EXPECT_TRUE(contains(error_of(with_iron, {"surface.n=1.4", "surface.material=gold"}),
-                       "--set surface.material=gold: cannot be combined with surface.n"));
-  EXPECT_TRUE(parse(kMinimal, {"spectrum.band_um=[8, 14]"}).spectrum.is_band());
-}
-
-TEST(SceneOverride_None, RemovesAnEffect) {
-  const std::string text = kMinimal + "[surroundings]\ntemperature_K = 290\n";
-  EXPECT_FALSE(parse(text, {"emission=none"}).emission);
-  EXPECT_EQ(parse(text, {"emission=none", "emission.temperature_K=5"}).emission->temperature_K, 5.0);
-  EXPECT_TRUE(contains(error_of(text, {"surface=none"}), "--set surface=none: must be a table"));
-}
-
-TEST(SceneOverride_Values, NeedNoQuotesAndKeepTheirSpelling) {
-  EXPECT_EQ(parse(kMinimal, {"title=My scene # 1"}).title, "My scene # 1");
-  EXPECT_EQ(parse(kMinimal, {"title=2.50"}).title, "2.50");
-  EXPECT_EQ(parse(kMinimal, {"title=\"2.50\""}).title, "2.50");
-  EXPECT_EQ(parse(kMinimal, {"surface.sigma=.5"}).surface.sigma, 0.5);
-  EXPECT_EQ(parse(kMinimal, {" surface.sigma = 0.5 "}).surface.sigma, 0.5);
-  EXPECT_EQ(parse(kMinimal, {"surface.sigma=0.5", "surface.sigma=0.6"}).surface.sigma, 0.6);
-  EXPECT_EQ(parse(kMinimal, {"surroundings={ temperature_K = 7 }"}).surroundings->temperature_K, 7.0);
-}
-
-TEST(SceneOverride_RandomNumbers, ArriveBitForBit) {
-  constexpr std::uint64_t kSeed = 8004;
-  constexpr int kTrials = 1000;
-  std::cout << "seed " << kSeed << '\n';
-  std::mt19937_64 random(kSeed);
-  std::uniform_real_distribution<double> exponent(-300.0, 6.0);
-  for (int trial = 0; trial < kTrials; ++trial) {
-    const double value = std::pow(10.0, exponent(random));
-    const Scene scene = parse(kMinimal, {"surface.n=" + format_number(value), "surface.k=" + format_number(value)});
-    EXPECT_EQ(scene.surface.material.constant.n, value);
-    EXPECT_EQ(scene.surface.material.constant.k, value);
-  }
 }
 
 // ---- The shipped scenes --------------------------------------------------------------------------------------------

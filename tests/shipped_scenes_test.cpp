@@ -95,6 +95,16 @@ TEST_P(ShippedScene, Comment_StatesTheDolpToItsDigits) {
   }
 }
 
+TEST(RoughMetalScene, Comment_StatesTheEmissivities) {
+  const auto emissivity = [](const std::vector<std::string>& overrides) {
+    const PointResult result = result_at("rough_metal", 75.0, overrides);
+    return fmt::format("{:.3f}", 0.5 * (result.emissivity_s + result.emissivity_p));
+  };
+  const std::string statement = fmt::format("Emissivity at 75 degrees: {}, with scattering = \"single\" {}.",
+                                            emissivity({}), emissivity({"surface.scattering=single"}));
+  EXPECT_NE(comment_of("rough_metal").find(statement), std::string::npos) << statement;
+}
+
 /// The part of the sums that a comment names; none for the roughness, which is no effect.
 std::optional<Part> part_of(const std::string& effect) {
   static const std::map<std::string, Part> kParts = {{"source", Part::kSource},

@@ -41,10 +41,11 @@ void add_dispatches(PlanReport& report, const DispatchForecast& of_request) {
   report.dispatches.device_bytes = std::max(report.dispatches.device_bytes, of_request.device_bytes);
 }
 
-void add_pipeline(PlanReport& report, const char* kernel, Precision precision) {
+/// `more`: what else distinguishes the pipeline.
+void add_pipeline(PlanReport& report, const char* kernel, Precision precision, const std::string& more = {}) {
   const Surface& surface = report.scene.surface;
-  const std::string text = fmt::format("{}, {}: distribution {}, masking {}", kernel, name_of(precision),
-                                       name_of(surface.distribution), name_of(surface.masking));
+  const std::string text = fmt::format("{}, {}: distribution {}, masking {}{}", kernel, name_of(precision),
+                                       name_of(surface.distribution), name_of(surface.masking), more);
   if (std::ranges::find(report.pipelines, text) == report.pipelines.end()) report.pipelines.push_back(text);
 }
 
@@ -52,7 +53,10 @@ void add_request(PlanReport& report, const MomentsRequest& request, const Device
   add_dispatches(report, dispatch_forecast(request, device));
   const KernelData data = kernel_data(request);
   report.rule = {data.rule.digits, data.rule_order};
-  add_pipeline(report, "moments", request.precision);
+  std::string more;
+  if (request.scattering == Scattering::kMultiple) more += ", all bounces";
+  if (request.wants_direct) more += ", direct emission";
+  add_pipeline(report, "moments", request.precision, more);
   if (data.needs_masking_table()) add_pipeline(report, "masking_table", request.precision);
 }
 
@@ -69,18 +73,50 @@ void share_evaluations(PlanReport& report) {
   report.run.is_exact = false;
 }
 
+void add_forecast(PlanReport& report, const SceneEntries& entries, const DeviceDescription& device) {
+  report.run = predict_run(report.scene, entries, report.plan, device.float64,
+                           {[&](const MomentsRequest& request) { add_request(report, request, device); },
+                            [&](const ScatteringRequest& request) { add_request(report, request, device); }});
+  share_evaluations(report);
+}
+
+/// Evaluations, and values of f.
+struct Work {
+  double moments = 0.0;
+  double beams = 0.0;
+  double total() const { return moments + beams; }
+};
+
+Work work_of(const RunPrediction& run) {
+  return {run.first_evaluations + run.again_evaluations, static_cast<double>(run.beams) + run.again_beams};
+}
+
+/// The work of the run if one more part were not there.
+Work work_without(const PlanReport& report, Part part, const SceneEntries& entries, const DeviceDescription& device) {
+  if (part == Part::kFurtherBounces) {  // the moments stay, but of another kernel
+    PlanReport single;
+    single.scene = report.scene;
+    single.plan = report.plan;
+    single.plan.kept.further_bounces = false;
+    add_forecast(single, entries, device);
+    return work_of(single.run);
+  }
+  const Needs left = needs_without(report.scene, report.plan, part);
+  const Work work = work_of(report.run);
+  return {left.moments ? work.moments : 0.0, left.beams ? work.beams : 0.0};
+}
+
 /// For each effect the share of the evaluations that would not be made without it.
-std::vector<double> work_shares(const PlanReport& report) {
-  const double moments = report.run.first_evaluations + report.run.again_evaluations;
-  const double beams = static_cast<double>(report.run.beams) + report.run.again_beams;
+std::vector<double> work_shares(const PlanReport& report, const SceneEntries& entries,
+                                const DeviceDescription& device) {
+  const double total = work_of(report.run).total();
   std::vector<double> shares;
   for (const EffectRow& row : report.effects) {
     double saved = 0.0;
     if (row.part && row.state == EffectState::kKept) {
-      const Needs left = needs_without(report.scene, report.plan, *row.part);
-      saved = (left.moments ? 0.0 : moments) + (left.beams ? 0.0 : beams);
+      saved = total - work_without(report, *row.part, entries, device).total();
     }
-    shares.push_back(saved > 0.0 ? saved / (moments + beams) : 0.0);
+    shares.push_back(saved > 0.0 ? saved / total : 0.0);
   }
   return shares;
 }
@@ -95,11 +131,8 @@ int run_plan(const Options& options) {
   report.effects = effect_rows(report.scene, entries, report.plan);
   add_influences(report.effects, report.scene, entries);
   const DeviceDescription device = device_of(options, report.scene, report);
-  report.run = predict_run(report.scene, entries, report.plan, device.float64,
-                           {[&](const MomentsRequest& request) { add_request(report, request, device); },
-                            [&](const ScatteringRequest& request) { add_request(report, request, device); }});
-  share_evaluations(report);
-  report.work_shares = work_shares(report);
+  add_forecast(report, entries, device);
+  report.work_shares = work_shares(report, entries, device);
   plan_report(report).print(options.json, false);
   return kExitDone;
 }

@@ -73,9 +73,12 @@ std::string dropped_text(const EffectPlan& plan, double tolerance) {
                      plan.bound.dolp, allowed, kDroppedShare, tolerance);
 }
 
-std::string output_text(const EffectPlan& plan) {
-  if (!plan.gives_rho) return "Stokes parameters, DOLP; without rho_i, rho_q and albedo";
-  return plan.needs_moments ? "Stokes parameters, DOLP, rho, albedo" : "Stokes parameters, DOLP, rho; without albedo";
+std::string output_text(const Scene& scene, const EffectPlan& plan) {
+  std::string text = "Stokes parameters, DOLP";
+  if (scene.emission && scene.emission->has_bracket) text += ", its bracket";
+  if (gives_emissivity(scene, plan)) text += ", emissivity";
+  if (!plan.gives_rho) return text + "; without rho_i, rho_q and albedo";
+  return text + (plan.needs_moments ? ", rho, albedo" : ", rho; without albedo");
 }
 
 std::string how_counted(const RunPrediction& run) {
@@ -151,10 +154,11 @@ Report plan_report(const PlanReport& plan) {
   add_effects(report, plan);
   report.line("");
   report.row("dropped", "{}", dropped_text(plan.plan, scene.accuracy.tolerance));
-  report.row("output", "{}", output_text(plan.plan));
+  report.row("output", "{}", output_text(scene, plan.plan));
   report.values({{"tolerance", scene.accuracy.tolerance},
                  {"gives_rho", plan.plan.gives_rho},
-                 {"gives_albedo", plan.plan.needs_moments}});
+                 {"gives_albedo", plan.plan.needs_moments},
+                 {"gives_emissivity", gives_emissivity(scene, plan.plan)}});
   add_kernels(report, plan);
   add_cost(report, plan);
   return report;

@@ -7,6 +7,7 @@
 #include "base/stopwatch.hpp"
 #include "cli/commands.hpp"
 #include "model/status.hpp"
+#include "run/scattering_gap.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
 #include "terminal/exit_status.hpp"
@@ -17,6 +18,7 @@ namespace {
 
 constexpr double kAlbedoMin = 0.95;
 constexpr double kAlbedoMax = 1.05;
+constexpr double kPoints = 100.0;  // of DOLP
 
 /// The part of a grid where the albedo of the surface model is off: how many entries, and the smallest box around them.
 struct EnergyRange {
@@ -152,6 +154,7 @@ SceneRun run_entries(const Options& options, const Scene& scene, const SceneEntr
     run.check = run_scene(scene, entries, run.plan, evaluator.get(), results, bar.callback());
     run.results = results.take();
   }
+  run.scattering_gap = scattering_gap(scene, entries, run.plan);
   run.wall_s = seconds_since(start);
   run.effects = effect_rows(scene, entries, run.plan);
   run.evaluation = evaluation_of(evaluator.get(), options);
@@ -173,9 +176,11 @@ int report_run(const Options& options, const Scene& scene, const SceneEntries& e
                 "{} entries by a rule of another kind: largest difference {:.2g} of the bounds{}",
                 key("self_check/entries", run.check.entries), key("self_check/worst_ratio", run.check.worst_ratio),
                 run.check.worst_ratio > 1.0 ? "; a bound failed, see status 2" : "");
-  report.row_if(run.check.scattering_gap > 0.0, "scattering",
-                "single: the direct emission, the other end of what all bounces may give, changes DOLP by up to {:.2g}",
-                key("scattering_gap", run.check.scattering_gap));
+  report.row_if(run.scattering_gap.has_value(), "scattering",
+                "single: the direct emission, the other end of what all bounces may give, changes DOLP by up to {:.1f} "
+                "points",
+                kPoints * run.scattering_gap.value_or(0.0));
+  report.value("scattering_gap", run.scattering_gap);
   add_status(report, run.results);
   Energy(scene, entries, run.results).report(report, run.plan.needs_moments);
   report.row("written", "{}", key("output", options.output_path));

@@ -23,6 +23,7 @@ struct SceneRun {
   std::vector<EffectRow> effects;
   std::vector<PointResult> results;
   SelfCheck check;
+  std::optional<double> scattering_gap;  ///< none where it does not apply
   EvaluationReport evaluation;
   double wall_s = 0.0;
 };

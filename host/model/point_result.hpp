@@ -20,15 +20,13 @@ struct PointResult {
   double rho_i = 0.0;           ///< with k_s and the diffuse part
   double rho_q = 0.0;           ///< with k_s
   double albedo = 0.0;          ///< A(theta): R = 1, without k_s and the diffuse part
-  double error_estimate = 0.0;  ///< bound of |d DOLP|; infinite when there is none
+  double error_estimate = 0.0;  ///< bound of |d DOLP|, dolp_low and dolp_high included; infinite when there is none
   /// What the emission uses, over a band weighted with pi B(T); NaN without emission.
   double emissivity_s = std::numeric_limits<double>::quiet_NaN();
   double emissivity_p = std::numeric_limits<double>::quiet_NaN();
   /// Between what DOLP lies of a surface with these facets and all its bounces; NaN where it was not asked for.
   double dolp_low = std::numeric_limits<double>::quiet_NaN();
   double dolp_high = std::numeric_limits<double>::quiet_NaN();
-  double scattering_gap =
-      std::numeric_limits<double>::quiet_NaN();  ///< |change of dolp| with the direct emission, if known
   double rho_error_estimate = 0.0;  ///< bound of max(|d rho_I|, |d rho_Q|) / rho_I; infinite when there is none
   std::uint32_t status = 0;         ///< bits of status.hpp
 };

@@ -321,11 +321,6 @@ bool gives_emissivity(const Scene& scene, const EffectPlan& plan) {
   return scene.emission && (plan.gives_rho || is_fresnel(scene));
 }
 
-bool shows_scattering_gap(const Scene& scene) {
-  return emits_as(scene, EmissionModel::kMoments) && scene.surface.scattering == Scattering::kSingle &&
-         has_direct_emission(scene.surface.masking) && !is_bistatic(scene);
-}
-
 EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool keep_all) {
   const SpectralRule rule = spectral_rule(scene);
   const InfluenceBounds bounds(scene, rule);

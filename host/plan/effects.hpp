@@ -49,10 +49,6 @@ EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool ke
 /// Whether a run knows the emissivities: with an emission, unless they need moments that are left out.
 bool gives_emissivity(const Scene& scene, const EffectPlan& plan);
 
-/// Whether the direct emission would say how far single scattering may be off: Kirchhoff's emission, with a masking
-/// that has one.
-bool shows_scattering_gap(const Scene& scene);
-
 /// Nothing left out: what `plan_effects` says with `keep_all`.
 inline EffectPlan keep_everything(const Scene& scene) { return plan_effects(scene, SceneEntries(), true); }
 

@@ -26,8 +26,8 @@ struct ReflectanceBounds {
 /// leaves (0 < cos(theta_r) = 2 cos(alpha) cos(beta) - c). v-cavity and smith keep A <= 1: the shells are then filled
 /// from the best reflecting one down to a sum of 1, and e G <= 2 c with v-cavity. none and `integral` have no such end.
 ///
-/// From below: facets up to a slope T below c / (1 + s) send every ray up, e averages to c over their azimuths, and M00
-/// >= R_s / 2 >= R(normal) / 2. G is 1 (none), at least 1/2 (`integral`), e G >= min(c - s T, 2 c, 2 cos(theta_r))
+/// From below: facets up to a slope T below c / (1 + s) send every ray up, e averages to c over their azimuths, and
+/// M00 >= R_s / 2 >= R(normal) / 2. G is 1 (none), at least 1/2 (`integral`), e G >= min(c - s T, 2 c, 2 cos(theta_r))
 /// (v-cavity), G >= 1 / (1 + L + L_r) with L(theta) = E[(t_x - mu)+] / mu <= E|t_x| / (2 mu), mu = cot(theta) (smith).
 /// Domain: theta in [0, 90] degrees, sigma >= 0; 90 degrees is infinite for none and `integral`.
 ReflectanceBounds reflectance_bounds(const Surface& surface, double theta_deg, const SlopeShape& shape,

@@ -10,8 +10,8 @@ namespace dolp {
 /// of (sin i cos r - cos i sin r cos(dphi), sin r sin(dphi)), eta_r likewise with i and r exchanged in the first.
 /// Conventions: delta_phi = 180 degrees is the specular side; eta turns s toward p and has the sign of
 /// sin(delta_phi).
-/// Domain: zeniths in [0, 90] degrees, not 90 both. In the retro direction, where eta is undefined, the limit eta_i =
-/// eta_r = 0; at theta_i = 0 the plane of incidence is that of azimuth 0, at theta_r = 0 that of delta_phi.
+/// Domain: zeniths in [0, 90] degrees, not 90 both. In the retro direction, where eta is undefined, the limit
+/// eta_i = eta_r = 0; at theta_i = 0 the plane of incidence is that of azimuth 0, at theta_r = 0 that of delta_phi.
 kernel::GeometryNode geometry_node(double theta_i_deg, double theta_r_deg, double delta_phi_deg);
 
 }  // namespace dolp

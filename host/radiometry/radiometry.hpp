@@ -7,30 +7,20 @@
 #include "model/kept_effects.hpp"
 #include "model/moments.hpp"
 #include "model/point_result.hpp"
+#include "radiometry/scattered.hpp"
 #include "scene/scene.hpp"
 #include "spectrum/spectral_rule.hpp"
 
 namespace dolp {
-
-/// What unpolarised light of one direction becomes in another: the first column of f_s cos(theta_i) cos(theta_r) for
-/// k_s = 1.
-///
-/// Units: sr-1.
-struct Scattered {
-  double i = 0.0;
-  double q = 0.0;
-  double u = 0.0;
-  double v = 0.0;
-  double error = 0.0;  ///< bound of the absolute error of each
-};
 
 /// Radiometry of a scene: everything that does not depend on the entry is prepared once.
 ///
 /// Equation: I = pi B (1 - rho_I) + X rho_I, Q = (X - pi B) rho_Q, X = E0 cos(theta) + pi B(T_surr), then the path.
 /// With emission.model = "fresnel", 1 - rho_s is replaced in the emission by 1 - R_s(theta) of the smooth surface,
 /// likewise p, whatever k_s and the diffuse part are. In bistatic mode the same without E0 over pi, plus E0
-/// cos(theta_i) f at the view direction. Source: shaders/physics/README.md, section 4; Wang, Li, Wang 2025,
-/// eqs. (16), (18).
+/// cos(theta_i) f at the view direction. With emission.bracket the error estimate bounds the errors of dolp_low and
+/// dolp_high too.
+/// Source: shaders/physics/README.md, section 4; Wang, Li, Wang 2025, eqs. (16), (18).
 class Radiometry {
  public:
   /// Of what is not kept nothing is added; without the moments the specular part of rho counts as 0, `point` looks at

@@ -23,7 +23,8 @@ constexpr double kSmallestCosine = 1e-100;
 double critical_angle(const OpticalConstants& index) {
   const double squared_sine = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
   const double squared_cosine = (index.n - index.k) * (index.n + index.k);
-  return squared_sine > 0.0 && squared_cosine > 0.0 ? std::atan2(std::sqrt(squared_sine), std::sqrt(squared_cosine)) : 0.0;
+  return squared_sine > 0.0 && squared_cosine > 0.0 ? std::atan2(std::sqrt(squared_sine), std::sqrt(squared_cosine))
+                                                    : 0.0;
 }
 
 }  // namespace

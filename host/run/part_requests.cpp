@@ -69,7 +69,7 @@ PartRequests::PartRequests(const Scene& scene, const std::vector<OpticalConstant
   moments_.distribution = beams_.distribution = scene.surface.distribution;
   moments_.masking = beams_.masking = scene.surface.masking;
   moments_.scattering = beams_.scattering = plan.kept.further_bounces ? scene.surface.scattering : Scattering::kSingle;
-  moments_.wants_direct = plan.needs_direct || (level.is_check && shows_scattering_gap(scene));
+  moments_.wants_direct = plan.needs_direct;
   moments_.precision = beams_.precision = level.precision;
   moments_.tolerance = level.tolerance;
   moments_.has_extra_splits = level.is_check;

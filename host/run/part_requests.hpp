@@ -31,8 +31,8 @@ double seen_deg(const Scene& scene, double theta_deg);
 
 bool wants_moments(const Scene& scene, const SceneEntry& entry, const EffectPlan& plan);
 
-/// Whether the evaluator has to compute the beam of an entry: not of a mirror, nor with source and view both at 90
-/// degrees.
+/// Whether the evaluator has to compute the beam of an entry: not of a mirror, nor with source and view both at
+/// 90 degrees.
 bool wants_beam(const Scene& scene, const SceneEntry& entry, const EffectPlan& plan);
 
 /// The beam of an entry that wants none: a mirror sends nothing but toward its specular direction, where the radiance

@@ -1,42 +1,20 @@
 #include "run/prediction.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
-#include <set>
 #include <utility>
 #include <vector>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "plan/shape_plan.hpp"
+#include "run/drawn_entries.hpp"
 #include "run/part_requests.hpp"
 #include "run/scene_run.hpp"
 
 namespace dolp {
 namespace {
-
-// Its multiples modulo 1 fill the interval evenly and keep no step with the axes of a grid.
-constexpr double kGoldenRatio = 0.6180339887498949;
-
-/// Up to `count` of `size` positions.
-std::set<std::size_t> drawn_positions(std::size_t size, std::size_t count) {
-  std::set<std::size_t> positions;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double part = std::fmod(static_cast<double>(i + 1) * kGoldenRatio, 1.0);
-    positions.insert(static_cast<std::size_t>(part * static_cast<double>(size)));
-  }
-  return positions;
-}
-
-SceneEntries drawn_entries(const SceneEntries& entries) {
-  if (entries.size() <= kCountedEntries) return entries;
-  std::vector<SceneEntry> drawn;
-  for (const std::size_t position : drawn_positions(entries.size(), kCountedEntries))
-    drawn.push_back(entries[position]);
-  return drawn;
-}
 
 /// All entries of some directions of a grid.
 SceneEntries entries_of_drawn_directions(const SceneEntries& grid) {
@@ -106,7 +84,8 @@ double scale_of(std::size_t all, const Count& counted) {
 
 void count_work(RunPrediction& run, const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
                 bool has_double) {
-  const SceneEntries drawn = run.interpolated > 0 ? entries_of_drawn_directions(entries) : drawn_entries(entries);
+  const SceneEntries drawn =
+      run.interpolated > 0 ? entries_of_drawn_directions(entries) : drawn_entries(entries, kCountedEntries);
   auto owned = std::make_unique<CountingEvaluator>(scene.accuracy.precision, has_double);
   const CountingEvaluator& counting = *owned;
   InterpolatingEvaluator interpolating(std::move(owned));

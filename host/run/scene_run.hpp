@@ -58,8 +58,8 @@ bool wants_evaluator(const Scene& scene, const SceneEntries& entries, const Effe
 /// does not give is NaN. Progress counts entries. The evaluator may be null where wants_evaluator says so. Of grids
 /// some entries are checked; a part in which a bound fails gets the status of a missed tolerance.
 /// Errors: those of the evaluator, of Radiometry and of the sink; Cancelled when `progress` returns false.
-SelfCheck run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan, MomentsEvaluator* evaluator,
-                    Sink& sink, const Progress& progress);
+SelfCheck run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
+                    MomentsEvaluator* evaluator, Sink& sink, const Progress& progress);
 
 /// The same into memory: results in the order of `entries`.
 std::vector<PointResult> evaluate_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,

@@ -25,7 +25,6 @@ double ratio(double difference, double bounds) {
 
 void SelfCheck::add(const PointResult& result, const PointResult& again) {
   ++entries;
-  if (promises_dolp(result.status)) scattering_gap = std::fmax(scattering_gap, again.scattering_gap);
   if (promises_dolp(result.status)) {
     worst_ratio = std::max(worst_ratio, ratio(result.dolp - again.dolp, result.error_estimate + again.error_estimate));
   }
@@ -37,7 +36,6 @@ void SelfCheck::add(const PointResult& result, const PointResult& again) {
 void SelfCheck::add(const SelfCheck& other) {
   entries += other.entries;
   worst_ratio = std::max(worst_ratio, other.worst_ratio);
-  scattering_gap = std::max(scattering_gap, other.scattering_gap);
 }
 
 std::size_t checked_count(std::size_t integrated) { return std::min(kMostChecked, integrated / (kShare * kCostOfOne)); }

@@ -14,7 +14,6 @@ namespace dolp {
 struct SelfCheck {
   std::size_t entries = 0;
   double worst_ratio = 0.0;  ///< largest difference over the sum of the bounds of both results; above 1 a bound failed
-  double scattering_gap = 0.0;  ///< largest change of DOLP with the direct emission; 0 where it does not apply
 
   /// Adds what `again` says of `result`.
   void add(const PointResult& result, const PointResult& again);

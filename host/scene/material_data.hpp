@@ -25,9 +25,10 @@ Material find_material(std::string_view name, const Spectrum& spectrum, const st
 /// `.yml`, `.yaml`: a "full database record" of refractiveindex.info whose DATA items are tabulated nk, n or k, or a
 /// formula 1 to 9 for n, with or without tabulated k.
 /// Anything else: CSV with a line of column names, `wl` or `wavelength_um` first, then n, k or both; a further such
-/// line begins a further table, as in the CSV that refractiveindex.info exports. # begins a comment line. Without k, k
-/// = 0. Errors: InputError with file and line; `prefix` begins the message when the file cannot be opened or does not
-/// cover the spectrum.
+/// line begins a further table, as in the CSV that refractiveindex.info exports. # begins a comment line. A file
+/// without k has k = 0.
+/// Errors: InputError with file and line; `prefix` begins the message when the file cannot be opened or does not cover
+/// the spectrum.
 Material read_material_file(const std::string& path, const Spectrum& spectrum, const std::string& prefix);
 
 /// Appends n, k or both at one wavelength to the material's tables, after checking their ranges; `where` begins the

@@ -16,8 +16,9 @@ namespace dolp {
 /// .material, .material_file; source.irradiance, .relative_irradiance, .preset, .file; path.temperature_K, .radiance;
 /// spectrum.wavelength_um, .band_um) an override replaces what the file chose. `emission=none` removes that table; so
 /// do source, surroundings and path. Files named in a scene are relative to the folder of the scene (of the process for
-/// "-"). Errors: InputError, one line: `file:line: key = value: what is wrong and what is allowed`, or
-/// `--set KEY=VALUE: …`; a file that cannot be opened is an InputError too.
+/// "-").
+/// Errors: InputError, one line: `file:line: key = value: what is wrong and what is allowed`, or `--set KEY=VALUE: …`;
+/// a file that cannot be opened is an InputError too.
 Scene read_scene(const std::string& path, const std::vector<std::string>& overrides);
 
 /// The same for a text that is already in memory (the scene that a table file carries); `path_name` is for messages and

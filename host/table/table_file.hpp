@@ -19,9 +19,10 @@ void check_output_path(const std::filesystem::path& path);
 /// compressed.
 /// .csv and "-": one row per entry, `theta_deg,sigma,q` and the variables; attributes as `# name: value` lines before
 /// the header, a newline inside a value going on with `#   `. Numbers are the shortest text that reads back as the same
-/// double. .npy: a structured array of shape (theta, sigma, q) with the named fields of the .csv, so that `t["dolp"][i,
-/// j, k]` and `t["theta_deg"][:, 0, 0]` work. The format has no attributes. Errors: those of check_output_path; IoError
-/// when writing fails, after which the target is as it was.
+/// double.
+/// .npy: a structured array of shape (theta, sigma, q) with the named fields of the .csv, so that `t["dolp"][i, j, k]`
+/// and `t["theta_deg"][:, 0, 0]` work. The format has no attributes.
+/// Errors: those of check_output_path; IoError when writing fails, after which the target is as it was.
 void write_table(const Table& table, const std::filesystem::path& path);
 
 /// Reads a table that write_table wrote as .nc.

@@ -1,0 +1,105 @@
+#include "radiometry/reflectance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "model/smooth_surface.hpp"
+
+namespace dolp {
+namespace {
+
+// Rounding of the reflectances: fewer than 8 operations on positive terms.
+constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();
+
+double diffuse_reflectance(const Surface& surface, double cos_theta) {
+  if (surface.diffuse == 0.0) return 0.0;
+  const double c = surface.diffuse_exponent;
+  return 2.0 * surface.diffuse * std::pow(cos_theta, c) / (c + 2.0);
+}
+
+/// The weight of a sample in the mean reflectance, from the kind of radiation the scene has.
+double mean_weight(const SpectralSample& sample, double total_emitted, double total_incident, double cos_theta) {
+  if (total_emitted != 0.0) return sample.emitted;
+  if (total_incident != 0.0) return sample.irradiance * cos_theta + sample.surroundings;
+  return sample.width;
+}
+
+}  // namespace
+
+// 1 - rho comes from the deficit, never from 1 - rho, which would lose the digits of a metal's emission.
+Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta) {
+  const double scale = surface.specular / cos_theta;
+  const double diffuse = diffuse_reflectance(surface, cos_theta);
+  const double absorbed_terms = (1.0 - surface.specular) + scale * std::abs(moments.deficit) + diffuse;
+  Reflectance r;
+  r.rho_i = scale * moments.r_i + diffuse;
+  r.rho_q = scale * moments.r_q;
+  r.absorbed = (1.0 - surface.specular) + scale * moments.deficit - diffuse;
+  r.rho_i_error = scale * moments.r_i_error + kReflectanceRounding * std::abs(r.rho_i);
+  r.rho_q_error = scale * moments.r_q_error + kReflectanceRounding * std::abs(r.rho_q);
+  r.absorbed_error = scale * moments.deficit_error + kReflectanceRounding * absorbed_terms;
+  r.mismatch = scale * std::abs((moments.r_i - cos_theta) + moments.deficit);
+  return r;
+}
+
+bool is_unphysical(const Reflectance& r) {
+  const double q = std::abs(r.rho_q);
+  const double above = std::max(q - r.absorbed - r.absorbed_error, r.rho_i + q - 1.0 - r.rho_i_error);
+  const double below = q - r.rho_i - r.rho_i_error;
+  return std::max(above, below) > r.rho_q_error + kReflectanceRounding;
+}
+
+MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances,
+                                 double cos_theta) {
+  double emitted = 0.0;
+  double incident = 0.0;
+  for (const SpectralSample& sample : rule.samples) {
+    emitted += sample.emitted;
+    incident += sample.irradiance * cos_theta + sample.surroundings;
+  }
+  MeanReflectance mean;
+  double total = 0.0;
+  double rho_i_error = 0.0;
+  double rho_q_error = 0.0;
+  for (std::size_t j = 0; j < reflectances.size(); ++j) {
+    const Reflectance& r = reflectances[j];
+    const double weight = mean_weight(rule.samples[j], emitted, incident, cos_theta);
+    total += weight;
+    mean.rho_i += weight * r.rho_i;
+    mean.rho_q += weight * r.rho_q;
+    rho_i_error += std::abs(weight) * (r.rho_i_error + rule.relative_error * std::abs(r.rho_i));
+    rho_q_error += std::abs(weight) * (r.rho_q_error + rule.relative_error * std::abs(r.rho_q));
+  }
+  mean.rho_i /= total;
+  mean.rho_q /= total;
+  mean.error = std::max(rho_i_error, rho_q_error) / total;
+  return mean;
+}
+
+Emissivity fresnel_emissivity(const OpticalConstants& index, double cos_theta) {
+  const SmoothAbsorptance absorptance = smooth_absorptance(index, cos_theta);
+  const double mean = 0.5 * (absorptance.s + absorptance.p);
+  return {.i = mean, .q = 0.5 * (absorptance.s - absorptance.p), .terms = mean};
+}
+
+Emissivity direct_emissivity(const Surface& surface, const Moments& moments, double cos_theta) {
+  const double scale = surface.specular / cos_theta;
+  const double rest = 1.0 - surface.specular;
+  const double diffuse = diffuse_reflectance(surface, cos_theta);
+  return {.i = scale * moments.direct_i + rest - diffuse,
+          .q = scale * moments.direct_q,
+          .i_error = scale * moments.direct_i_error,
+          .q_error = scale * moments.direct_q_error,
+          .terms = scale * std::abs(moments.direct_i) + rest + diffuse};
+}
+
+Emissivity kirchhoff_emissivity(const Reflectance& r) {
+  return {.i = r.absorbed,
+          .q = -r.rho_q,
+          .i_error = r.absorbed_error,
+          .q_error = r.rho_q_error,
+          .terms = std::abs(r.absorbed)};
+}
+
+}  // namespace dolp

@@ -1,0 +1,58 @@
+// Reflectance and emissivity of a scene's surface, with bounds of their errors.
+#pragma once
+
+#include <span>
+
+#include "model/moments.hpp"
+#include "scene/scene.hpp"
+#include "spectrum/spectral_rule.hpp"
+
+namespace dolp {
+
+/// Reflectance at one index, with bounds of the errors.
+struct Reflectance {
+  double rho_i = 0.0;
+  double rho_q = 0.0;
+  double absorbed = 0.0;  ///< 1 - rho_i without cancellation
+  double rho_i_error = 0.0;
+  double rho_q_error = 0.0;
+  double absorbed_error = 0.0;
+  double mismatch = 0.0;  ///< |rho_i + absorbed - 1|, which two independently summed moments need not make 0
+};
+
+/// Polarised emissivity at one index: that of s is i + q, that of p is i - q.
+struct Emissivity {
+  double i = 0.0;
+  double q = 0.0;
+  double i_error = 0.0;
+  double q_error = 0.0;
+  double terms = 0.0;  ///< sum of the magnitudes that make up either
+};
+
+/// rho over the spectral samples.
+struct MeanReflectance {
+  double rho_i = 0.0;
+  double rho_q = 0.0;
+  double error = 0.0;  ///< of the worse of the two
+};
+
+Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta);
+
+/// Whether rho_s or rho_p is outside [0, 1] beyond doubt.
+bool is_unphysical(const Reflectance& r);
+
+/// Weighted with the kind of radiation that the scene has, as PointResult says.
+MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances, double cos_theta);
+
+/// Of the smooth surface.
+Emissivity fresnel_emissivity(const OpticalConstants& index, double cos_theta);
+
+/// Of the facets, straight to the viewer.
+///
+/// Equation: eps_I = k_s eps_I,direct + 1 - k_s - diffuse, eps_Q = k_s eps_Q,direct.
+Emissivity direct_emissivity(const Surface& surface, const Moments& moments, double cos_theta);
+
+/// 1 - rho of s and of p.
+Emissivity kirchhoff_emissivity(const Reflectance& r);
+
+}  // namespace dolp

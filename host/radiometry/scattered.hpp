@@ -1,0 +1,17 @@
+#pragma once
+
+namespace dolp {
+
+/// What unpolarised light of one direction becomes in another: the first column of f_s cos(theta_i) cos(theta_r) for
+/// k_s = 1.
+///
+/// Units: sr-1.
+struct Scattered {
+  double i = 0.0;
+  double q = 0.0;
+  double u = 0.0;
+  double v = 0.0;
+  double error = 0.0;  ///< bound of the absolute error of each
+};
+
+}  // namespace dolp

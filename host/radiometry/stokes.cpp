@@ -1,0 +1,150 @@
+#include "radiometry/stokes.hpp"
+
+#include <algorithm>
+#include <boost/math/constants/constants.hpp>
+#include <cmath>
+#include <limits>
+
+namespace dolp {
+namespace {
+
+using boost::math::constants::pi;
+
+// Rounding of the Stokes sums, each relative to its terms: Planck's exponent, at most 745, times an ulp or two.
+constexpr double kRadianceRounding = 1e-12;
+
+/// What one sample adds to I under the moments' own emission.
+struct Intensity {
+  double value = 0.0;
+  double terms = 0.0;  ///< sum of the magnitudes that were added, to which rounding is relative
+  double error = 0.0;  ///< from the errors of the moments
+};
+
+/// Equation: I = pi B (1 - rho_I) + X rho_I = pi B + (X - pi B) rho_I, whichever adds the smaller terms: the first
+/// keeps the digits of a metal, the second those of a reflectance far above 1 and of equal temperatures. The moments
+/// r_i and deficit err together if they err at all, so either may stand for the other at the price of their mismatch.
+Intensity moments_intensity(double emitted, double incident, double net, double net_terms, const Reflectance& r) {
+  const double split_terms = std::abs(emitted * r.absorbed) + std::abs(incident * r.rho_i);
+  const double whole_terms = std::abs(emitted) + net_terms * std::abs(r.rho_i);
+  const double difference = std::abs(net);
+  if (whole_terms <= split_terms) {
+    return {emitted + net * r.rho_i, whole_terms, difference * std::min(r.rho_i_error, r.absorbed_error + r.mismatch)};
+  }
+  const double apart = std::abs(emitted) * r.absorbed_error + std::abs(incident) * r.rho_i_error;
+  const double by_reflected = difference * r.rho_i_error + std::abs(emitted) * r.mismatch;
+  const double by_absorbed = difference * r.absorbed_error + std::abs(incident) * r.mismatch;
+  return {emitted * r.absorbed + incident * r.rho_i, split_terms, std::min({apart, by_reflected, by_absorbed})};
+}
+
+/// One sample's part of the Stokes sums with Kirchhoff's emission; `rounding` is relative to each term.
+void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, double direct,
+                        double rounding) {
+  const double net = direct + sample.excess;
+  // Equal temperatures cancel exactly: then the excess has no rounding either.
+  const double thermal = sample.excess == 0.0 ? 0.0 : std::abs(sample.emitted) + std::abs(sample.surroundings);
+  const double net_terms = std::abs(direct) + thermal;
+  const Intensity intensity = moments_intensity(sample.emitted, direct + sample.surroundings, net, net_terms, r);
+  sum.i += intensity.value;
+  sum.q += net * r.rho_q;
+  sum.i_error += intensity.error + rounding * intensity.terms;
+  sum.q_error += std::abs(net) * r.rho_q_error + rounding * net_terms * std::abs(r.rho_q);
+}
+
+/// The same with an emission that is not 1 - rho.
+void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, const Emissivity& e,
+                         double direct, double rounding) {
+  const double incident = direct + sample.surroundings;
+  sum.i += sample.emitted * e.i + incident * r.rho_i;
+  sum.q += sample.emitted * e.q + incident * r.rho_q;
+  const double emitted_terms = std::abs(sample.emitted) * e.terms;
+  const double emitted = std::abs(sample.emitted);
+  sum.i_error += emitted * e.i_error + std::abs(incident) * r.rho_i_error +
+                 rounding * (emitted_terms + std::abs(incident * r.rho_i));
+  sum.q_error += emitted * e.q_error + std::abs(incident) * r.rho_q_error +
+                 rounding * (emitted_terms + std::abs(incident * r.rho_q));
+}
+
+}  // namespace
+
+Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflectances,
+                  std::span<const Emissivity> emissivities, EmissionModel model, double cos_theta, bool with_source) {
+  const double rounding = kRadianceRounding + rule.relative_error;
+  Stokes sum;
+  for (std::size_t j = 0; j < reflectances.size(); ++j) {
+    const double direct = with_source ? rule.samples[j].irradiance * cos_theta : 0.0;
+    if (model == EmissionModel::kMoments) {
+      add_moments_sample(sum, rule.samples[j], reflectances[j], direct, rounding);
+    } else {
+      add_emitting_sample(sum, rule.samples[j], reflectances[j], emissivities[j], direct, rounding);
+    }
+  }
+  return sum;
+}
+
+void add_specular(Stokes& sum, double net, const Moments& moments) {
+  sum.i += net * moments.r_i;
+  sum.q += net * moments.r_q;
+  sum.i_error += std::abs(net) * (moments.r_i_error + kRadianceRounding * std::abs(moments.r_i));
+  sum.q_error += std::abs(net) * (moments.r_q_error + kRadianceRounding * std::abs(moments.r_q));
+}
+
+void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRule& rule,
+              std::span<const Scattered> scattered, double cos_theta_i, double cos_theta_r) {
+  const double diffuse = surface.diffuse == 0.0
+                             ? 0.0
+                             : surface.diffuse * std::pow(cos_theta_i, surface.diffuse_exponent + 1.0) *
+                                   std::pow(cos_theta_r, surface.diffuse_exponent);
+  const double rounding = kRadianceRounding + rule.relative_error;
+  for (std::size_t j = 0; j < scattered.size(); ++j) {
+    if (rule.samples[j].irradiance == 0.0) continue;
+    const double specular = pi<double>() * k_s * rule.samples[j].irradiance / cos_theta_r;
+    const double unpolarised = rule.samples[j].irradiance * diffuse;
+    const double error = std::abs(specular) * (scattered[j].error + rounding * std::abs(scattered[j].i));
+    sum.i += specular * scattered[j].i + unpolarised;
+    sum.q += specular * scattered[j].q;
+    sum.u += specular * scattered[j].u;
+    sum.v += specular * scattered[j].v;
+    sum.i_error += error + rounding * std::abs(unpolarised);
+    sum.q_error += error;
+    sum.u_error += error;
+  }
+}
+
+void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance) {
+  if (!path) return;
+  for (double* value : {&sum.i, &sum.q, &sum.u, &sum.v, &sum.i_error, &sum.q_error, &sum.u_error}) {
+    *value *= path->transmittance;
+  }
+  sum.i += path_exitance;
+  sum.i_error += kRadianceRounding * path_exitance;
+}
+
+Bracket bracket(const Scene& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
+                std::span<const Emissivity> direct, double cos_theta) {
+  Stokes single = stokes_sum(rule, reflectances, {}, EmissionModel::kMoments, cos_theta, true);
+  double q = 0.0;
+  double slack = 0.0;
+  double error = 0.0;
+  for (std::size_t j = 0; j < reflectances.size(); ++j) {
+    const SpectralSample& sample = rule.samples[j];
+    const double net = sample.irradiance * cos_theta + sample.excess;
+    q -= net * direct[j].q;
+    slack += std::abs(net) * std::max(reflectances[j].absorbed - direct[j].i, 0.0);
+    error += std::abs(net) * (reflectances[j].absorbed_error + direct[j].i_error + direct[j].q_error);
+  }
+  const double transmittance = scene.path ? scene.path->transmittance : 1.0;
+  add_path(single, scene.path, rule.path_exitance);
+  const double scale = transmittance / single.i;
+  Bracket between;
+  between.low = scale * std::max(std::abs(q) - slack, 0.0);
+  between.high = scale * (std::abs(q) + slack);
+  between.error = std::abs(scale) * error + between.high * relative_bound(single.i_error, std::abs(single.i));
+  return between;
+}
+
+double relative_bound(double error, double value) {
+  if (error == 0.0) return 0.0;
+  return value > error ? error / (value - error) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace dolp

@@ -1,0 +1,58 @@
+// Stokes parameters summed over the spectral samples, with bounds of their errors.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "model/choices.hpp"
+#include "model/moments.hpp"
+#include "radiometry/reflectance.hpp"
+#include "radiometry/scattered.hpp"
+#include "scene/scene.hpp"
+#include "spectrum/spectral_rule.hpp"
+
+namespace dolp {
+
+/// Sums over the spectral samples, with bounds of their errors.
+struct Stokes {
+  double i = 0.0;
+  double q = 0.0;
+  double i_error = 0.0;
+  double q_error = 0.0;
+  double u = 0.0;
+  double v = 0.0;
+  double u_error = 0.0;
+};
+
+/// What DOLP lies between of a surface with these facets and all its bounces.
+///
+/// Equation: its eps_I is larger than the direct one by d <= D = 1 - rho_I - eps_I,direct, which changes eps_Q by d at
+/// most; I = X + N eps_I, Q = N eps_Q with N = pi B - X, X the exitances of source and surroundings. Both ends lie at
+/// d = D, where I is that of single scattering: (|sum N eps_Q,direct| -+ sum |N| D) / I.
+struct Bracket {
+  double low = 0.0;
+  double high = 0.0;
+  double error = 0.0;  ///< bound of the absolute error of either end
+};
+
+/// Exitances by emission and by reflection of the surroundings and, `with_source`, of the source into the hemisphere.
+Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflectances,
+                  std::span<const Emissivity> emissivities, EmissionModel model, double cos_theta, bool with_source);
+
+/// Adds a specular term `net` * r, with cos(theta) in r.
+void add_specular(Stokes& sum, double net, const Moments& moments);
+
+/// Adds pi E0 cos(theta_i) f of the beam from the source, the factor pi as in the exitances of the sum.
+void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRule& rule,
+              std::span<const Scattered> scattered, double cos_theta_i, double cos_theta_r);
+
+/// What a path leaves of the sums, and what it adds.
+void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance);
+
+Bracket bracket(const Scene& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
+                std::span<const Emissivity> direct, double cos_theta);
+
+/// Bound of the relative error of a value with this bound of its absolute one.
+double relative_bound(double error, double value);
+
+}  // namespace dolp

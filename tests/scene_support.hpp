@@ -1,0 +1,36 @@
+// A scene that the tests of the reader change.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "scene/scene_reader.hpp"
+
+namespace dolp {
+
+/// A scene that is valid and leaves every default alone. [surface] is line 1, [emission] 4, [spectrum] 6.
+inline const std::string kMinimal =
+    "[surface]\n"
+    "n = 1.5\n"
+    "sigma = 0.3\n"
+    "[emission]\n"
+    "temperature_K = 300\n"
+    "[spectrum]\n"
+    "wavelength_um = 10.6\n";
+
+inline Scene parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return parse_scene(text, "s.toml", overrides);
+}
+
+inline std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    parse(text, overrides);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+}  // namespace dolp

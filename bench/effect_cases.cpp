@@ -1,8 +1,10 @@
 #include "bench/effect_cases.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 #include "model/choices.hpp"
 
@@ -15,6 +17,7 @@ constexpr double kFirstSigma = 0.05;
 constexpr double kLastSigma = 1.0;
 constexpr double kIrradiance = 20.0;  // W m-2 um-1, somewhat below what the surface emits
 constexpr double kFaint = 1e-9;       // of it
+constexpr double kSmooth = 5e-3;      // of the sigmas
 
 Grid grid_of(std::size_t entries) {
   const auto side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(entries))));
@@ -83,6 +86,14 @@ Change masking(Masking masking) {
   return {name_of(masking), [masking](Scene& scene) { scene.surface.masking = masking; }};
 }
 
+Change scattering(Scattering scattering) {
+  return {name_of(scattering), [scattering](Scene& scene) { scene.surface.scattering = scattering; }};
+}
+
+Change emission_model(EmissionModel model) {
+  return {name_of(model), [model](Scene& scene) { scene.emission->model = model; }};
+}
+
 Change source(const std::string& name, double irradiance) {
   return {name, [irradiance](Scene& scene) { scene.source = flat_source(irradiance); }};
 }
@@ -105,11 +116,25 @@ std::vector<EffectGroup> surface_groups(const Scene& base) {
                 {{"k = 0"}, {"k = 0.5", [](Scene& scene) { scene.surface.material.constant.k = 0.5; }}})};
 }
 
+/// What goes beyond single scattering, with the one masking that has all of it.
+std::vector<EffectGroup> scattering_groups(const Grid& grid) {
+  Scene rough = emitting(grid);
+  rough.surface.masking = Masking::kVCavity;
+  // No slope that counts is hit twice, so that the plan leaves further bounces out.
+  Scene smooth = rough;
+  smooth.surface.distribution = Distribution::kGaussian;
+  for (double& sigma : smooth.grid.sigma) sigma *= kSmooth;
+  return {group("scattering", rough, {scattering(Scattering::kSingle), scattering(Scattering::kMultiple)}),
+          group("smooth surface", smooth, {scattering(Scattering::kSingle), scattering(Scattering::kMultiple)}),
+          group("direct emission", rough,
+                {emission_model(EmissionModel::kMoments), emission_model(EmissionModel::kDirect)}),
+          group("bracket", rough, {{"off"}, {"on", [](Scene& scene) { scene.emission->has_bracket = true; }}})};
+}
+
 std::vector<EffectGroup> radiation_groups(const Scene& base, const Scene& bistatic) {
   Scene lit = bistatic;
   lit.source = flat_source(kIrradiance);
-  return {group("emission", base,
-                {{"moments"}, {"fresnel", [](Scene& scene) { scene.emission->model = EmissionModel::kFresnel; }}}),
+  return {group("emission", base, {emission_model(EmissionModel::kMoments), emission_model(EmissionModel::kFresnel)}),
           group("emission", lit, {{"on"}, {"off", [](Scene& scene) { scene.emission.reset(); }}}),
           group("source", base, {{"off"}, source("on", kIrradiance)}),
           group("source", bistatic, {{"off"}, source("on", kIrradiance), source("faint", kFaint * kIrradiance)}),
@@ -134,8 +159,10 @@ std::vector<EffectGroup> effect_groups(std::size_t entries) {
   const Grid grid = grid_of(entries);
   const Scene base = emitting(grid);
   std::vector<EffectGroup> groups = surface_groups(base);
-  for (EffectGroup& radiation : radiation_groups(base, seen_from_one_side(grid)))
-    groups.push_back(std::move(radiation));
+  for (std::vector<EffectGroup>& more :
+       std::array{scattering_groups(grid), radiation_groups(base, seen_from_one_side(grid))}) {
+    std::ranges::move(more, std::back_inserter(groups));
+  }
   return groups;
 }
 

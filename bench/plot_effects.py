@@ -95,7 +95,7 @@ def figure(result, path, save):
     plt.rcParams["font.family"] = "DejaVu Sans"
     if not result["results"]:
         raise ValueError("holds no measured setting")
-    drawing, axes = plt.subplots(figsize=(9.5, 8.4))
+    drawing, axes = plt.subplots(figsize=(9.5, 2.0 + 0.18 * max(places_of(result["results"]))))
     draw_effects(axes, result["results"])
     drawing.text(0.01, 0.008, note(result), fontsize=7.5, color="#444444")
     drawing.tight_layout(rect=(0.0, 0.03, 1.0, 1.0))

@@ -38,6 +38,70 @@ TEST(ExploreSession, MaterialUnknownOverTheBand_IsAMessageWithItsRange) {
   EXPECT_EQ(driver.session.scene().surface.material.constant, (OpticalConstants{1.5, 0.1}));
 }
 
+TEST(ExploreSession, ChoiceThatExcludesAnother_SwitchesItWithAWord) {
+  Session session(paint({"surface.masking=smith", "emission.bracket=true"}));
+  session.set({{"surface.scattering", "multiple"}});
+  const Scene& scene = session.scene();
+  EXPECT_EQ(scene.surface.masking, Masking::kVCavity);
+  EXPECT_FALSE(scene.emission->has_bracket);
+  EXPECT_FALSE(session.message().is_error);
+  EXPECT_EQ(session.message().text,
+            "With surface.scattering = multiple goes surface.masking = v-cavity, emission.bracket = false");
+  session.set("surface.sigma", 0.2);
+  EXPECT_EQ(session.message().text, "");
+}
+
+TEST(ExploreSession, EmissionThatComesBack_SwitchesWhatExcludesIt) {
+  Session session(paint({"emission.model=direct"}));
+  session.set({{"emission", "none"}});
+  session.set({{"surface.masking", "integral"}});
+  session.reset("emission");
+  EXPECT_EQ(session.scene().emission->model, EmissionModel::kDirect);
+  EXPECT_EQ(session.scene().surface.masking, Masking::kVCavity);
+  EXPECT_EQ(session.message().text, "With emission = as opened goes surface.masking = v-cavity");
+}
+
+TEST(ExploreSession, Bracket_LiesAroundTheCurveAndIsReadAtTheCursor) {
+  Driver driver(paint({"surface.sigma=0.4"}));
+  for (const PointResult& r : driver.session.curve().results()) EXPECT_FALSE(has_bracket(r));
+  EXPECT_EQ(cursor_text(driver.session).find("all bounces"), std::string::npos);
+  driver.session.set({{"emission.bracket", "true"}});
+  driver.settle();
+  for (const PointResult& r : driver.session.curve().results()) {
+    if (!is_good(r)) continue;
+    EXPECT_TRUE(has_bracket(r));
+    EXPECT_LE(r.dolp_low, r.dolp + r.error_estimate);
+    EXPECT_GE(r.dolp_high, r.dolp - r.error_estimate);
+  }
+  const PointResult* at_cursor = driver.session.at_cursor();
+  ASSERT_TRUE(at_cursor);
+  EXPECT_GT(at_cursor->dolp_high, 1.1 * at_cursor->dolp_low);
+  const std::string text = cursor_text(driver.session);
+  double low = 0.0, high = 0.0;
+  const std::size_t place = text.find("all bounces");
+  ASSERT_NE(place, std::string::npos) << text;
+  ASSERT_EQ(std::sscanf(text.c_str() + place, "all bounces %lf to %lf %%", &low, &high), 2) << text;
+  EXPECT_NEAR(low, 100.0 * at_cursor->dolp_low, 1e-3);
+  EXPECT_NEAR(high, 100.0 * at_cursor->dolp_high, 1e-3);
+}
+
+TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
+  Driver driver(paint({"surface.scattering=multiple", "surface.sigma=0.4"}));
+  ASSERT_TRUE(driver.session.peak().is_complete());
+  const auto& without = driver.session.peak().without();
+  const auto named = [&](const std::string& name) {
+    return std::ranges::find_if(without, [&](const WithoutEffect& away) { return away.effect == name; });
+  };
+  EXPECT_EQ(named("masking"), without.end());  // the bounces need it
+  ASSERT_NE(named("scattering"), without.end());
+  const Scene& scene = driver.session.scene();
+  const double theta_deg = driver.session.peak().answer()->theta_deg;
+  const Scene single = driver.session.edits().variant({"surface.scattering=single"});
+  EXPECT_EQ(named("scattering")->result.dolp, truth(single, entries_at(single, {theta_deg}))[0].dolp);
+  EXPECT_EQ(surface_name(scene), "cauchy σ 0.4 q 3, v-cavity, all bounces, n 1.5 k 0.1");
+  EXPECT_NE(without_text(driver.session, "scattering"), "");
+}
+
 TEST(ExploreSession, Overlay_IsTheOtherDistributionOfTheSameD0) {
   Driver driver(paint());
   ASSERT_TRUE(driver.session.overlay());

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "explore/background_task.hpp"
+#include "explore/conflicts.hpp"
 #include "explore/contours.hpp"
 #include "explore/exports.hpp"
 #include "explore/parameters.hpp"
@@ -92,6 +93,72 @@ TEST(Edits, Effects_GoAndComeBack) {
   EXPECT_EQ(edits.scene().surroundings->temperature_K, 240.0);
 }
 
+TEST(Edits, EffectOfTheCommandLine_ComesBackAsOpened) {
+  SceneEdits edits = paint({"emission.bracket=true", "emission.temperature_K=310"});
+  edits.set("emission", "none");
+  edits.reset("emission");
+  EXPECT_EQ(edits.scene().emission->temperature_K, 310.0);
+  EXPECT_TRUE(edits.scene().emission->has_bracket);
+  EXPECT_FALSE(edits.is_changed());
+}
+
+// ---- Choices that exclude one another ------------------------------------------------------------------------------
+
+using Changes = std::vector<SceneEdits::Change>;
+
+bool is_accepted(const SceneEdits& edits, const Changes& changes) {
+  std::vector<std::string> arguments;
+  for (const auto& [key, word] : changes) arguments.push_back(key + '=' + word);
+  try {
+    edits.variant(arguments);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// Every combination of the words of some choices that the scene reader accepts.
+std::vector<Changes> accepted_combinations(const std::vector<std::string>& keys) {
+  std::vector<Changes> all = {{}};
+  for (const Choice& choice : choices()) {
+    if (std::ranges::find(keys, choice.description->key) == keys.end()) continue;
+    std::vector<Changes> longer;
+    for (const Changes& begun : all) {
+      for (const std::string& word : words_of(*choice.description)) {
+        longer.push_back(begun);
+        longer.back().emplace_back(choice.description->key, word);
+      }
+    }
+    all = std::move(longer);
+  }
+  std::erase_if(all, [](const Changes& changes) { return !is_accepted(paint(), changes); });
+  return all;
+}
+
+TEST(Conflicts, EveryChoiceInEveryScene_IsTakenWithTheLeastThatItAsksFor) {
+  const std::vector<Changes> combinations = accepted_combinations(
+      {"surface.masking", "surface.scattering", "emission.model", "emission.bracket", "geometry.mode"});
+  EXPECT_EQ(combinations.size(), 28U);
+  for (const Changes& combination : combinations) {
+    SceneEdits edits = paint();
+    edits.set(combination);
+    for (const Choice& choice : choices()) {
+      for (const std::string& word : words_of(*choice.description)) {
+        const SceneEdits::Change chosen = {choice.description->key, word};
+        Changes asked = asked_for(edits.scene(), {chosen});
+        EXPECT_EQ(asked.empty(), is_accepted(edits, {chosen})) << chosen.first << " = " << word;
+        asked.push_back(chosen);
+        EXPECT_TRUE(is_accepted(edits, asked)) << chosen.first << " = " << word;
+      }
+    }
+  }
+}
+
+TEST(Conflicts, BothSidesChosen_AreLeftToTheReader) {
+  const Changes both = {{"surface.scattering", "multiple"}, {"surface.masking", "smith"}};
+  EXPECT_TRUE(asked_for(paint().scene(), both).empty());
+}
+
 TEST(SceneToml, ShippedScenesWithChanges_ReadBackAsTheSameScene) {
   for (const auto& file : std::filesystem::directory_iterator(kHostDir + "/scenes")) {
     SCOPED_TRACE(file.path().string());
@@ -107,6 +174,21 @@ TEST(SceneToml, ShippedScenesWithChanges_ReadBackAsTheSameScene) {
     EXPECT_EQ(entries_at(again, {70.0})[0].shape, entries[2].shape);
     expect_same(truth(edits.scene(), entries), truth(again, entries));
   }
+}
+
+TEST(SceneToml, WhatGoesBeyondSingleScattering_IsSaved) {
+  const auto saved = [](const std::vector<std::string>& overrides) {
+    SceneEdits edits = paint();
+    for (const std::string& override : overrides) {
+      const std::size_t equals = override.find('=');
+      edits.set(override.substr(0, equals), override.substr(equals + 1));
+    }
+    return parse_scene(edits.toml("."), "again.toml", {});
+  };
+  EXPECT_EQ(saved({"surface.scattering=multiple"}).surface.scattering, Scattering::kMultiple);
+  const Scene bracket = saved({"emission.model=direct", "emission.bracket=true"});
+  EXPECT_EQ(bracket.emission->model, EmissionModel::kDirect);
+  EXPECT_TRUE(bracket.emission->has_bracket);
 }
 
 TEST(SceneToml, NamedFiles_AreFoundFromTheNewFolder) {

@@ -77,13 +77,13 @@ class Window : public CommandLine {
     frames();
   }
   void click_slider(const std::string& key, float part) {
-    const Area area = app_->slider_area(key);
+    const Area area = app_->control_area(key);
     move_to(area.left + part * (area.right - area.left), 0.5F * (area.top + area.bottom));
     press("mousedown");
     press("mouseup");
   }
   void drag_slider(const std::string& key, float to) {
-    const Area area = app_->slider_area(key);
+    const Area area = app_->control_area(key);
     const float y = 0.5F * (area.top + area.bottom);
     move_to(area.left + 0.3F * (area.right - area.left), y);
     press("mousedown");
@@ -151,6 +151,37 @@ TEST_F(Window, Slider_CtrlClicked_GivesTheValueAsOpened) {
   app_->settle();
   EXPECT_EQ(app_->session().scene().surface.sigma, 0.15);
   EXPECT_FALSE(app_->session().edits().is_changed());
+}
+
+TEST_F(Window, BracketBox_Clicked_GivesTheCurveABand) {
+  const Area area = app_->control_area("emission.bracket");
+  move_to(0.5F * (area.left + area.right), 0.5F * (area.top + area.bottom));
+  press("mousedown");
+  press("mouseup");
+  app_->settle();
+  EXPECT_TRUE(app_->session().scene().emission->has_bracket);
+  EXPECT_TRUE(explore::has_bracket(app_->session().curve().results()[120]));
+  EXPECT_EQ(app_->session().edits().overrides(), std::vector<std::string>{"emission.bracket=true"});
+}
+
+TEST_F(Window, MaskingList_OtherWord_SwitchesTheBracketOff) {
+  Area area = app_->control_area("emission.bracket");
+  move_to(0.5F * (area.left + area.right), 0.5F * (area.top + area.bottom));
+  press("mousedown");
+  press("mouseup");
+  area = app_->control_area("surface.masking");
+  const float height = area.bottom - area.top;
+  move_to(0.5F * (area.left + area.right), 0.5F * (area.top + area.bottom));
+  press("mousedown");
+  press("mouseup");
+  // The first word of the list below, "none".
+  move_to(0.5F * (area.left + area.right), area.bottom + 0.6F * height);
+  press("mousedown");
+  press("mouseup");
+  app_->settle();
+  EXPECT_EQ(app_->session().scene().surface.masking, Masking::kNone);
+  EXPECT_FALSE(app_->session().scene().emission->has_bracket);
+  EXPECT_NE(app_->session().message().text.find("goes emission.bracket = false"), std::string::npos);
 }
 
 TEST_F(Window, Curve_Clicked_MovesTheCursor) {

@@ -23,6 +23,10 @@ SceneEntries entries_at(const Scene& scene, const std::vector<double>& theta_deg
 
 bool is_good(const PointResult& result) { return promises_dolp(result.status) && std::isfinite(result.dolp); }
 
+bool has_bracket(const PointResult& result) {
+  return std::isfinite(result.dolp_low) && std::isfinite(result.dolp_high);
+}
+
 void Curve::follow(const std::string& key, const Scene& scene, bool keep_all) {
   key_ = key;
   scene_ = scene;

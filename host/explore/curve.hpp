@@ -74,4 +74,7 @@ std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count);
 /// Whether status has none of the bits with which DOLP means nothing or promises nothing.
 bool is_good(const PointResult& result);
 
+/// Whether it says between what DOLP lies with all bounces.
+bool has_bracket(const PointResult& result);
+
 }  // namespace dolp::explore

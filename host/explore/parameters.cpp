@@ -152,8 +152,8 @@ std::vector<Parameter> geometry_parameters() {
   };
 }
 
-template <class Enumeration>
-Word word_of(Enumeration value) {
+template <class Value>
+Word word_of(Value value) {
   return static_cast<std::size_t>(value);
 }
 
@@ -176,8 +176,13 @@ const std::vector<Choice>& choices() {
        [](const Scene& s) { return word_of(s.surface.distribution); }},
       {described("surface.masking"), "masking", "G: eqs. (9)–(13) for integral",
        [](const Scene& s) { return word_of(s.surface.masking); }},
-      {described("emission.model"), "emissivity", "1 − ρ of the rough surface, or 1 − R(θ) of the smooth one",
+      {described("surface.scattering"), "scattering", "the first facet alone, or all bounces in V-grooves",
+       [](const Scene& s) { return word_of(s.surface.scattering); }},
+      {described("emission.model"), "emissivity",
+       "1 − ρ of the rough surface, 1 − R(θ) of the smooth one, or (1 − R) G of the facets in view",
        [](const Scene& s) { return s.emission ? word_of(s.emission->model) : std::nullopt; }},
+      {described("emission.bracket"), "bracket", "ε_I between the direct emission and 1 − ρ_I",
+       [](const Scene& s) { return s.emission ? word_of(s.emission->has_bracket) : std::nullopt; }},
       {described("geometry.mode"), "mode", "eq. (18) all around, or f of eq. (7) for one source and view",
        [](const Scene& s) { return word_of(s.geometry.mode); }},
       {described("accuracy.precision"), "precision", "arithmetic of the device",
@@ -191,6 +196,11 @@ const Parameter& parameter(const std::string& key) {
     if (known.description->key == key) return known;
   }
   throw std::logic_error("no parameter " + key);
+}
+
+std::vector<std::string> words_of(const KeyDescription& description) {
+  if (description.type == KeyDescription::Type::kFlag) return {"false", "true"};
+  return description.words;
 }
 
 std::string table_of(const std::string& key) { return key.substr(0, key.find('.')); }

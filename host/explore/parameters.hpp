@@ -22,12 +22,12 @@ struct Parameter {
   std::optional<double> (*value)(const Scene& scene);
 };
 
-/// A word of the scene that a list offers.
+/// A word of the scene that a list offers, or a flag that a box shows.
 struct Choice {
   const KeyDescription* description;
   const char* label;
   const char* equation;
-  /// Position in description->words; none where the control is not shown.
+  /// Position in words_of(*description); none where the control is not shown.
   std::optional<std::size_t> (*word)(const Scene& scene);
 };
 
@@ -37,6 +37,9 @@ const std::vector<Choice>& choices();
 
 /// The one with this key, which must exist.
 const Parameter& parameter(const std::string& key);
+
+/// What a choice is among: "false" and "true" for a flag.
+std::vector<std::string> words_of(const KeyDescription& description);
 
 /// The table of a dotted key: "surface" of "surface.sigma".
 std::string table_of(const std::string& key);

@@ -11,10 +11,15 @@ namespace dolp::explore {
 namespace {
 
 constexpr std::array kAway = {
-    WithoutEffect{"emission", "emission=none", true},         WithoutEffect{"source", "source=none", true},
-    WithoutEffect{"surroundings", "surroundings=none", true}, WithoutEffect{"path", "path=none", false},
-    WithoutEffect{"diffuse", "surface.diffuse=0", false},     WithoutEffect{"specular", "surface.specular=0", false},
-    WithoutEffect{"masking", "surface.masking=none", false},  WithoutEffect{"roughness", "surface.sigma=0", false},
+    WithoutEffect{"emission", "emission=none", true},
+    WithoutEffect{"source", "source=none", true},
+    WithoutEffect{"surroundings", "surroundings=none", true},
+    WithoutEffect{"path", "path=none", false},
+    WithoutEffect{"diffuse", "surface.diffuse=0", false},
+    WithoutEffect{"specular", "surface.specular=0", false},
+    WithoutEffect{"masking", "surface.masking=none", false},
+    WithoutEffect{"scattering", "surface.scattering=single", false},
+    WithoutEffect{"roughness", "surface.sigma=0", false},
 };
 
 bool has(const Scene& scene, const WithoutEffect& away) {
@@ -26,6 +31,7 @@ bool has(const Scene& scene, const WithoutEffect& away) {
   if (name == "diffuse") return scene.surface.diffuse > 0.0;
   if (name == "specular") return scene.surface.specular > 0.0;
   if (name == "masking") return scene.surface.masking != Masking::kNone;
+  if (name == "scattering") return scene.surface.scattering == Scattering::kMultiple;
   return scene.surface.sigma > 0.0;
 }
 
@@ -67,7 +73,7 @@ void Peak::take_away(const SceneEdits& edits) {
       scenes_without_.push_back(edits.variant({away.override_}));
       without_.push_back(away);
     } catch (const InputError&) {
-      // Nothing else radiates, or the source is relative to the emission.
+      // Nothing else radiates, the source is relative to the emission, or the emission needs the masking.
     }
   }
 }

@@ -95,6 +95,9 @@ std::string cursor_text(const Session& session) {
                                         session.scene().surface.sigma, session.scene().surface.q);
   std::string text = place + fmt::format("DOLP {:.3f} % ± {}, Q/I {:+.3f} %", kPercent * r->dolp,
                                          points_text(r->error_estimate), kPercent * r->stokes_q / r->stokes_i);
+  if (has_bracket(*r)) {
+    text += fmt::format(", all bounces {:.3f} to {:.3f} %", kPercent * r->dolp_low, kPercent * r->dolp_high);
+  }
   if (std::isfinite(r->rho_i)) {
     text += fmt::format(", ρ_s {:.4f}, ρ_p {:.4f}", r->rho_i + r->rho_q, r->rho_i - r->rho_q);
   }

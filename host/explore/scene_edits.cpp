@@ -1,6 +1,7 @@
 #include "explore/scene_edits.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "explore/parameters.hpp"
 #include "scene/scene_keys.hpp"
@@ -70,11 +71,10 @@ void SceneEdits::set(const std::vector<Change>& changes) {
 void SceneEdits::set(const std::string& key, double value) { set(key, format_number(value)); }
 
 void SceneEdits::reset(const std::string& key) {
+  const auto is_of_key = [&](const Change& change) { return change.first == key || table_of(change.first) == key; };
   std::vector<Change> all = changes_;
-  std::erase_if(all, [&](const Change& old) { return old.first == key; });
-  for (const Change& change : given_) {
-    if (change.first == key) all.push_back(change);
-  }
+  std::erase_if(all, is_of_key);
+  std::ranges::copy_if(given_, std::back_inserter(all), is_of_key);
   become(std::move(all));
 }
 

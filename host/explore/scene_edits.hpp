@@ -26,7 +26,7 @@ class SceneEdits {
   void set(const std::string& key, const std::string& value) { set({{key, value}}); }
   void set(const std::string& key, double value);
 
-  /// Takes changes of a key back: the value is that of the scene as opened.
+  /// Takes changes of a key, or of a whole table, back: the values are those of the scene as opened.
   /// Errors: InputError, as set.
   void reset(const std::string& key);
   void reset_all();

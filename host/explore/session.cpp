@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "explore/parameters.hpp"
+#include "explore/conflicts.hpp"
 #include "model/choices.hpp"
 #include "scene/text.hpp"
 
@@ -28,6 +28,12 @@ std::vector<std::string> other_distribution(const Surface& surface) {
           "surface.sigma=" + format_number(sigma)};
 }
 
+std::string text_of(const std::vector<SceneEdits::Change>& changes) {
+  std::string text;
+  for (const auto& [key, value] : changes) text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", key, value);
+  return text;
+}
+
 std::string own_key(AxisKind kind) {
   if (kind == AxisKind::kTheta) return {};
   return kind == AxisKind::kSigma ? "surface.sigma" : "surface.q";
@@ -41,6 +47,7 @@ std::string surface_name(const Scene& scene) {
   std::string name = fmt::format("{} σ {:.4g}", name_of(surface.distribution), surface.sigma);
   if (is_cauchy) name += fmt::format(" q {:.4g}", surface.q);
   name += std::string(", ") + name_of(surface.masking);
+  if (surface.scattering == Scattering::kMultiple) name += ", all bounces";
   if (!surface.material.name.empty()) return name + ", " + surface.material.name;
   return name + fmt::format(", n {:.4g} k {:.4g}", surface.material.constant.n, surface.material.constant.k);
 }
@@ -49,9 +56,9 @@ Session::Session(SceneEdits edits) : edits_(std::move(edits)) { follow(); }
 
 template <class Command>
 void Session::attempt(const Command& command) {
+  message_ = {};
   try {
     command();
-    message_ = {};
   } catch (const InputError& error) {
     tell(error.what(), true);
   }
@@ -63,11 +70,27 @@ void Session::set(const std::string& key, double value) {
 }
 
 void Session::set(const std::vector<SceneEdits::Change>& changes) {
-  attempt([&] { edits_.set(changes); });
+  attempt([&] {
+    const std::vector<SceneEdits::Change> asked = asked_for(scene(), changes);
+    std::vector<SceneEdits::Change> all = changes;
+    all.insert(all.end(), asked.begin(), asked.end());
+    edits_.set(all);
+    tell_asked(changes, asked);
+  });
 }
 
 void Session::reset(const std::string& key) {
-  attempt([&] { edits_.reset(key); });
+  attempt([&] {
+    const std::vector<SceneEdits::Change> chosen = choices_of(edits_.opened(), key);
+    const std::vector<SceneEdits::Change> asked = asked_for(scene(), chosen);
+    edits_.set(asked);
+    edits_.reset(key);
+    tell_asked({{key, "as opened"}}, asked);
+  });
+}
+
+void Session::tell_asked(const std::vector<SceneEdits::Change>& chosen, const std::vector<SceneEdits::Change>& asked) {
+  if (!asked.empty()) tell(fmt::format("With {} goes {}", text_of(chosen), text_of(asked)));
 }
 
 void Session::reset_all() {

@@ -48,7 +48,8 @@ class Session {
 
   explicit Session(SceneEdits edits);
 
-  // ---- Commands. Those that the scene refuses change nothing and leave the reason in message().
+  // ---- Commands. Those that the scene refuses change nothing and leave the reason in message(); so does what had to
+  // change with a choice.
   void set(const std::string& key, double value);
   void set(const std::vector<SceneEdits::Change>& changes);
   void reset(const std::string& key);
@@ -95,6 +96,7 @@ class Session {
  private:
   template <class Command>
   void attempt(const Command& command);
+  void tell_asked(const std::vector<SceneEdits::Change>& chosen, const std::vector<SceneEdits::Change>& asked);
   void follow();
   void follow_overlay(const std::string& content, bool keep_all);
   void follow_map(bool keep_all);

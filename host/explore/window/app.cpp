@@ -294,7 +294,7 @@ App::~App() = default;
 
 Session& App::session() { return impl_->session(); }
 
-Area App::slider_area(const std::string& key) const { return impl_->controls().areas().at(key); }
+Area App::control_area(const std::string& key) const { return impl_->controls().areas().at(key); }
 
 bool App::is_idle() const { return impl_->is_idle(); }
 

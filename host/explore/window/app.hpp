@@ -40,7 +40,7 @@ class App {
 
   Session& session();
   /// Where the slider of a scene key was drawn last. Errors: std::out_of_range when it was not.
-  Area slider_area(const std::string& key) const;
+  Area control_area(const std::string& key) const;
 
   /// Takes input and news, and draws one frame. False when the user has closed the window.
   /// Errors: DeviceError when the device is lost or the validation layer complains.

@@ -65,4 +65,9 @@ CurveStyle pin_style(std::size_t pin) {
   return kStyles[pin % kStyles.size()];
 }
 
+ImU32 band_colour(const CurveStyle& style) {
+  constexpr ImU32 kAlpha = 56;
+  return (style.colour & ~IM_COL32_A_MASK) | (kAlpha << IM_COL32_A_SHIFT);
+}
+
 }  // namespace dolp::explore

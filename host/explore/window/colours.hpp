@@ -24,6 +24,9 @@ CurveStyle current_style();
 CurveStyle overlay_style();
 CurveStyle pin_style(std::size_t pin);
 
+/// What a band around a curve of that style is filled with.
+ImU32 band_colour(const CurveStyle& style);
+
 inline constexpr ImU32 kTextColour = IM_COL32(225, 228, 232, 255);
 inline constexpr ImU32 kDimColour = IM_COL32(150, 156, 163, 255);
 inline constexpr ImU32 kGridColour = IM_COL32(62, 66, 72, 255);

@@ -53,26 +53,8 @@ std::string description_of(const Parameter& p, const Session& session) {
                      unit_text(key), fallback_text(p, session));
 }
 
-void draw_choice(Session& session, const Choice& choice, std::size_t word) {
-  const std::vector<std::string>& words = choice.description->words;
-  row_label(choice.label);
-  ImGui::SetNextItemWidth(-1.0F);
-  const std::string id = "##" + choice.description->key;
-  if (ImGui::BeginCombo(id.c_str(), words[word].c_str())) {
-    for (std::size_t i = 0; i < words.size(); ++i) {
-      if (ImGui::Selectable(words[i].c_str(), i == word)) session.set({{choice.description->key, words[i]}});
-    }
-    ImGui::EndCombo();
-  } else {
-    tooltip(choice.description->key + ": " + choice.description->meaning + "\n" + choice.equation);
-  }
-}
-
-void draw_choices(Session& session, const std::string& table) {
-  for (const Choice& choice : choices()) {
-    if (table_of(choice.description->key) != table) continue;
-    if (const auto word = choice.word(session.scene())) draw_choice(session, choice, *word);
-  }
+std::string description_of(const Choice& choice) {
+  return choice.description->key + ": " + choice.description->meaning + "\n" + choice.equation;
 }
 
 /// A line for each built-in material; those without n and k over the spectrum are grey.
@@ -161,6 +143,43 @@ void draw_spectrum(Session& session) {
 
 }  // namespace
 
+void ControlsPanel::remember_area(const std::string& key) {
+  const ImVec2 corner = ImGui::GetItemRectMin();
+  const ImVec2 end = ImGui::GetItemRectMax();
+  areas_[key] = {corner.x, corner.y, end.x, end.y};
+}
+
+void ControlsPanel::draw_choice(Session& session, const Choice& choice, std::size_t word) {
+  const std::string& key = choice.description->key;
+  const std::vector<std::string> words = words_of(*choice.description);
+  row_label(choice.label);
+  const std::string id = "##" + key;
+  if (choice.description->type == KeyDescription::Type::kFlag) {
+    bool is_set = word != 0;
+    if (ImGui::Checkbox(id.c_str(), &is_set)) session.set({{key, words[is_set ? 1 : 0]}});
+    remember_area(key);
+    tooltip(description_of(choice));
+    return;
+  }
+  ImGui::SetNextItemWidth(-1.0F);
+  if (!ImGui::BeginCombo(id.c_str(), words[word].c_str())) {
+    remember_area(key);
+    tooltip(description_of(choice));
+    return;
+  }
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (ImGui::Selectable(words[i].c_str(), i == word)) session.set({{key, words[i]}});
+  }
+  ImGui::EndCombo();
+}
+
+void ControlsPanel::draw_choices(Session& session, const std::string& table) {
+  for (const Choice& choice : choices()) {
+    if (table_of(choice.description->key) != table) continue;
+    if (const auto word = choice.word(session.scene())) draw_choice(session, choice, *word);
+  }
+}
+
 void ControlsPanel::draw_parameter(Session& session, const Parameter& parameter, double value) {
   const KeyDescription& key = *parameter.description;
   const std::string unit = unit_text(key);
@@ -170,9 +189,7 @@ void ControlsPanel::draw_parameter(Session& session, const Parameter& parameter,
   ImGui::SetNextItemWidth(-typed_width - ImGui::GetStyle().ItemSpacing.x);
   auto position = static_cast<float>(slider_position(parameter, value));
   const bool is_moved = ImGui::SliderFloat("##slider", &position, 0.0F, 1.0F, "", ImGuiSliderFlags_NoInput);
-  const ImVec2 corner = ImGui::GetItemRectMin();
-  const ImVec2 end = ImGui::GetItemRectMax();
-  areas_[key.key] = {corner.x, corner.y, end.x, end.y};
+  remember_area(key.key);
   const bool is_ctrl = ImGui::GetIO().KeyCtrl;
   if (ImGui::IsItemClicked() && is_ctrl) session.reset(key.key);
   if (is_moved && !is_ctrl) session.set(key.key, slider_value(parameter, position));

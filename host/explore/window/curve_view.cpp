@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "explore/window/plot.hpp"
@@ -56,7 +57,11 @@ Range range_of(const Session& session, const std::vector<Shown>& curves, bool is
     for (std::size_t i = 0; i < shown.curve->results().size(); ++i) {
       if (shown.curve->entries()[i].theta_deg > session.view().theta_max_deg) break;
       const PointResult& result = shown.curve->results()[i];
-      if (is_good(result)) add(scale_of(quantity) * value_of(quantity, result));
+      if (!is_good(result)) continue;
+      add(scale_of(quantity) * value_of(quantity, result));
+      if (shown.curve != &session.curve() || quantity != Quantity::kDolp) continue;
+      add(scale_of(quantity) * result.dolp_low);
+      add(scale_of(quantity) * result.dolp_high);
     }
   }
   const std::optional<PeakAnswer>& peak = session.peak().answer();
@@ -89,6 +94,26 @@ PlotAxis value_axis(const Session& session, const std::vector<Shown>& curves) {
   axis.to = range.high > 0.0 ? range.high + 2.0 * room : 0.0;
   if (axis.to <= axis.from) axis.to = axis.from + 1.0;
   return axis;
+}
+
+/// Fills what DOLP lies between with all bounces; of the current curve alone, because bands over bands say nothing.
+void draw_bracket(const Plot& plot, const Curve& curve) {
+  const std::vector<PointResult>& results = curve.results();
+  const ImU32 colour = band_colour(current_style());
+  const auto at = [&](std::size_t i, double dolp) {
+    const double value = std::max(scale_of(Quantity::kDolp) * dolp, plot.y().from);
+    return plot.at(curve.entries()[i].theta_deg, value);
+  };
+  // Without smooth edges, which would show as seams.
+  const ImDrawListFlags flags = std::exchange(plot.list()->Flags, ImDrawListFlags_None);
+  for (std::size_t i = 0; i + 1 < results.size(); ++i) {
+    const PointResult& a = results[i];
+    const PointResult& b = results[i + 1];
+    if (!is_good(a) || !is_good(b) || !has_bracket(a) || !has_bracket(b)) continue;
+    plot.list()->AddQuadFilled(at(i, a.dolp_low), at(i, a.dolp_high), at(i + 1, b.dolp_high), at(i + 1, b.dolp_low),
+                               colour);
+  }
+  plot.list()->Flags = flags;
 }
 
 /// Draws the good parts in the curve's style, the others thin and grey.
@@ -136,6 +161,15 @@ void draw_legend(const Plot& plot, const std::vector<Shown>& curves, const Sessi
   };
   entry(curves.back().style, curves.back().name);
   for (std::size_t i = 0; i + 1 < curves.size(); ++i) entry(curves[i].style, curves[i].name);
+  const bool has_band =
+      session.view().quantity == Quantity::kDolp &&
+      std::ranges::any_of(session.curve().results(), [](const PointResult& r) { return has_bracket(r); });
+  if (has_band) {
+    const ImVec2 end{at.x + 2.2F * line, at.y + 0.9F * line};
+    plot.list()->AddRectFilled({at.x, at.y + 0.1F * line}, end, band_colour(current_style()));
+    draw_label(plot.list(), {at.x + 2.6F * line, at.y}, {0.0F, 0.0F}, kTextColour, "all bounces lie between");
+    at.y += 1.25F * line;
+  }
   const bool has_bad = std::ranges::any_of(session.curve().results(), [](const PointResult& r) { return !is_good(r); });
   if (has_bad) entry({kBadColour, 4.0F, 4.0F}, "the model fails here (status)");
 }
@@ -217,6 +251,7 @@ void draw_curve_view(Session& session, ImVec2 size) {
   if (plot.is_dragged()) session.set_theta(plot.mouse_x());
   plot.clip();
   if (!plot.y().is_log) plot.list()->AddLine(plot.at(0.0, 0.0), plot.at(theta_max, 0.0), kDimColour);
+  if (quantity == Quantity::kDolp) draw_bracket(plot, session.curve());
   for (const Shown& shown : curves) draw_curve(plot, shown, quantity);
   if (has_measured) draw_measured(plot, *session.residuals().points());
   draw_cursor(plot, session);

@@ -1,0 +1,81 @@
+#include "explore/conflicts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "explore/parameters.hpp"
+
+namespace dolp::explore {
+namespace {
+
+using Change = SceneEdits::Change;
+
+/// Words of one key that exclude those of another, and the word that it takes when it gives way.
+struct Side {
+  const char* key;
+  std::vector<std::string_view> words;
+  const char* instead;
+
+  bool excludes(std::string_view word) const { return std::ranges::find(words, word) != words.end(); }
+};
+using Conflict = std::array<Side, 2>;
+
+// The words that are taken instead exclude nothing, so that one conflict never leads to the next.
+const std::vector<Conflict>& conflicts() {
+  const Side multiple{"surface.scattering", {"multiple"}, "single"};
+  const Side direct{"emission.model", {"direct"}, "moments"};
+  const Side bracket{"emission.bracket", {"true"}, "false"};
+  const Side without_direct{"surface.masking", {"none", "integral"}, "v-cavity"};
+  static const std::vector<Conflict> all = {
+      {multiple, {"surface.masking", {"none", "integral", "smith"}, "v-cavity"}},
+      {direct, without_direct},
+      {direct, multiple},
+      {bracket, without_direct},
+      {bracket, multiple},
+      {bracket, {"emission.model", {"fresnel"}, "moments"}},
+      {bracket, {"geometry.mode", {"bistatic"}, "hemispherical"}},
+  };
+  return all;
+}
+
+std::optional<std::string> word_in(const std::vector<Change>& changes, const std::string& key) {
+  const auto found = std::ranges::find(changes, key, &Change::first);
+  return found == changes.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::vector<Change> all_choices(const Scene& scene) {
+  std::vector<Change> words;
+  for (const Choice& choice : choices()) {
+    const auto word = choice.word(scene);
+    if (word) words.emplace_back(choice.description->key, words_of(*choice.description)[*word]);
+  }
+  return words;
+}
+
+}  // namespace
+
+std::vector<Change> choices_of(const Scene& scene, const std::string& table) {
+  std::vector<Change> words = all_choices(scene);
+  std::erase_if(words, [&](const Change& choice) { return table_of(choice.first) != table; });
+  return words;
+}
+
+std::vector<Change> asked_for(const Scene& scene, const std::vector<Change>& chosen) {
+  const std::vector<Change> words = all_choices(scene);
+  std::vector<Change> asked;
+  for (const Conflict& conflict : conflicts()) {
+    for (const bool is_second : {false, true}) {
+      const Side& own = conflict[is_second ? 1 : 0];
+      const Side& other = conflict[is_second ? 0 : 1];
+      const auto word = word_in(chosen, own.key);
+      if (!word || !own.excludes(*word) || word_in(chosen, other.key) || word_in(asked, other.key)) continue;
+      const auto now = word_in(words, other.key);
+      if (now && other.excludes(*now)) asked.emplace_back(other.key, other.instead);
+    }
+  }
+  return asked;
+}
+
+}  // namespace dolp::explore

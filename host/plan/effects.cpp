@@ -37,11 +37,13 @@ struct Candidate {
   double limit = 0.0;
 };
 
-/// The bound at one entry: a coarse one where that is far below the limit.
+/// The bound at one entry, no closer than it takes to see that it is far below the limit.
 DropBound entry_bound(const InfluenceBounds& bounds, const Candidate& candidate, const KeptEffects& kept,
                       const SceneEntry& entry, ReflectanceMemory& memory) {
-  const DropBound coarse = bounds.bound(candidate.part, kept, entry, Detail::kCoarse, memory);
-  if (is_within(coarse, kFarBelow * candidate.limit)) return coarse;
+  for (const Detail detail : {Detail::kCoarse, Detail::kMiddle}) {
+    const DropBound bound = bounds.bound(candidate.part, kept, entry, detail, memory);
+    if (is_within(bound, kFarBelow * candidate.limit)) return bound;
+  }
   return bounds.bound(candidate.part, kept, entry, Detail::kFine, memory);
 }
 
@@ -53,7 +55,7 @@ DropBound worst_of_entries(const InfluenceBounds& bounds, const Candidate& candi
   for (const std::uint32_t i : positions) {
     worst = worst_of(worst, entry_bound(bounds, candidate, candidate.kept, entries[i], memory));
     // What counts in the whole scene is not dropped for want of what it acts on.
-    if (candidate.part != Part::kMoments)
+    if (candidate.part != Part::kMoments && candidate.kept != KeptEffects{})
       worst = worst_of(worst, entry_bound(bounds, candidate, {}, entries[i], memory));
     if (!is_within(worst, candidate.limit)) break;
   }
@@ -89,15 +91,30 @@ class OrderedEntries {
   std::vector<std::uint32_t> positions_;
 };
 
+/// The entry whose bound is the worst most often: the last one of a grid, which is grazing; for further bounces the
+/// roughest of those.
+std::uint32_t likely_worst(Part part, const SceneEntries& entries) {
+  const auto last = static_cast<std::uint32_t>(entries.size() - 1);
+  if (part != Part::kFurtherBounces) return last;
+  const auto key = [&](std::uint32_t i) {
+    const SceneEntry entry = entries[i];
+    return std::tuple(entry.theta_deg, entry.shape.sigma, -entry.shape.q);
+  };
+  std::uint32_t worst = last;
+  for (std::uint32_t i = 0; i < last; ++i) {
+    if (key(i) > key(worst)) worst = i;
+  }
+  return worst;
+}
+
 /// The worst entry's bound, or one above the limit where there is such an entry.
 DropBound worst_bound(const InfluenceBounds& bounds, const Candidate& candidate, OrderedEntries& ordered) {
   const SceneEntries& entries = ordered.entries();
   const bool adds_now = is_kept(candidate.kept, candidate.part) && !bounds.adds_nothing(candidate.part, candidate.kept);
   const bool adds_in_all = candidate.part != Part::kMoments && !bounds.adds_nothing(candidate.part, {});
   if (entries.empty() || (!adds_now && !adds_in_all)) return {};
-  // The grazing entries of a grid come last and are the worst: the last one tells most often.
-  const std::uint32_t last = static_cast<std::uint32_t>(entries.size() - 1);
-  DropBound worst = worst_of_entries(bounds, candidate, entries, {&last, 1});
+  const std::uint32_t likely = likely_worst(candidate.part, entries);
+  DropBound worst = worst_of_entries(bounds, candidate, entries, {&likely, 1});
   if (!is_within(worst, candidate.limit)) return worst;
   const std::span<const std::uint32_t> positions = ordered.positions();
   std::mutex mutex;

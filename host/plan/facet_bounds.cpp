@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/container/static_vector.hpp>
 #include <boost/math/constants/constants.hpp>
 #include <cmath>
 #include <functional>
@@ -22,7 +23,8 @@ using boost::math::constants::root_pi;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Shells of slopes: the first ends at this share of the width, the last but one where so few facets are left.
-constexpr std::size_t kShells = 40;
+constexpr std::size_t kMostShells = 40;
+constexpr std::size_t kFewShells = 6;
 constexpr double kFirstShell = 0.125;
 constexpr double kLeftOver = 1e-12;
 constexpr double kWidest = 1e8;  // in widths
@@ -59,18 +61,19 @@ struct Shell {
   double r_s = 0.0;     ///< most of R_s
 };
 
-std::array<Shell, kShells> shells_of(const Surface& surface, const CosSin& a, const SlopeShape& shape,
-                                     std::span<const OpticalConstants> indices) {
+boost::container::static_vector<Shell, kMostShells> shells_of(std::size_t count, const Surface& surface,
+                                                              const CosSin& a, const SlopeShape& shape,
+                                                              std::span<const OpticalConstants> indices) {
   const double horizon = (1.0 + a.sin) / a.cos;
   const double w = slope_width(shape);
   const double first = std::min(kFirstShell * w, horizon);
   const double last = std::clamp(reach(surface.distribution, shape) * w, first, horizon);
-  const double ratio = first > 0.0 ? std::pow(last / first, 1.0 / static_cast<double>(kShells - 2)) : 1.0;
-  std::array<Shell, kShells> shells;
+  const double ratio = first > 0.0 ? std::pow(last / first, 1.0 / static_cast<double>(count - 2)) : 1.0;
+  boost::container::static_vector<Shell, kMostShells> shells(count);
   double from = 0.0;
   double left = 1.0;
-  for (std::size_t k = 0; k < kShells; ++k) {
-    const double to = k + 1 == kShells ? horizon : std::min(first * std::pow(ratio, static_cast<double>(k)), horizon);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double to = k + 1 == count ? horizon : std::min(first * std::pow(ratio, static_cast<double>(k)), horizon);
     const double left_after = steeper_share(surface.distribution, shape, to);
     double projection = mean_projection(a, to);
     if (surface.masking == Masking::kVCavity) projection = std::min(projection, 2.0 * a.cos);
@@ -141,7 +144,7 @@ double least_albedo(const Surface& surface, const CosSin& a, const SlopeShape& s
 }  // namespace
 
 ReflectanceBounds reflectance_bounds(const Surface& surface, double theta_deg, const SlopeShape& shape,
-                                     std::span<const OpticalConstants> indices) {
+                                     std::span<const OpticalConstants> indices, Detail detail) {
   const CosSin a = cos_sin_deg(theta_deg);
   const bool conserves = keeps_energy(surface.masking);
   if (a.cos == 0.0) {
@@ -149,7 +152,7 @@ ReflectanceBounds reflectance_bounds(const Surface& surface, double theta_deg, c
     if (conserves) most = 1.0;
     return {most, 0.5 * most, 0.0};
   }
-  std::array<Shell, kShells> shells = shells_of(surface, a, shape, indices);
+  auto shells = shells_of(detail == Detail::kFine ? kMostShells : kFewShells, surface, a, shape, indices);
   std::ranges::sort(shells, std::ranges::greater{}, &Shell::r_s);
   double room = kInfinity;
   if (conserves) room = a.cos;

@@ -61,15 +61,23 @@ KeptEffects without(KeptEffects kept, Part part) {
 
 const ReflectanceBounds& ReflectanceMemory::bounds(const Surface& surface, double theta_deg, const SceneEntry& entry,
                                                    std::span<const OpticalConstants> indices, Detail detail) {
-  Slot& slot = detail == Detail::kFine ? fine_ : coarse_;
+  Slot& slot = slots_[static_cast<std::size_t>(detail)];
   const bool is_same =
       slot.is_filled && slot.theta_deg == theta_deg && slot.shape == entry.shape && slot.index == entry.index;
   if (!is_same) {
     slot = {true, theta_deg, entry.shape, entry.index,
-            detail == Detail::kFine ? reflectance_bounds(surface, theta_deg, entry.shape, indices)
-                                    : coarse_reflectance_bounds(surface, theta_deg, entry.shape)};
+            detail == Detail::kCoarse ? coarse_reflectance_bounds(surface, theta_deg, entry.shape)
+                                      : reflectance_bounds(surface, theta_deg, entry.shape, indices, detail)};
   }
   return slot.bounds;
+}
+
+const CosSin& ReflectanceMemory::direction(double theta_deg) {
+  if (theta_deg != theta_deg_) {
+    theta_deg_ = theta_deg;
+    direction_ = cos_sin_deg(theta_deg);
+  }
+  return direction_;
 }
 
 /// Bounds of Stokes sums.
@@ -112,7 +120,8 @@ InfluenceBounds::AtEntry InfluenceBounds::at_entry(const KeptEffects& kept, cons
   const Surface& surface = scene_.surface;
   const double theta_deg =
       zenith_before_limit_deg(surface.masking, bistatic_ ? scene_.geometry.view_zenith_deg : entry.theta_deg);
-  const double cosine = std::max(cos_sin_deg(theta_deg).cos, kSmallestCosine);
+  const CosSin direction = memory.direction(theta_deg);
+  const double cosine = std::max(direction.cos, kSmallestCosine);
   const std::vector<OpticalConstants> own = entry.index ? std::vector{*entry.index} : indices_;
   AtEntry at;
   if (kept.moments && surface.specular > 0.0) {
@@ -141,7 +150,7 @@ InfluenceBounds::AtEntry InfluenceBounds::at_entry(const KeptEffects& kept, cons
     const double cosine_i = cos_sin_deg(entry.theta_deg).cos;
     if (has_diffuse) at.diffuse_beam = surface.diffuse * std::pow(cosine_i, c + 1.0) * std::pow(cosine, c);
   }
-  if (!bistatic_) at.source_cosine = cos_sin_deg(theta_deg).cos;
+  if (!bistatic_) at.source_cosine = direction.cos;
   for (std::size_t j = 0; j < emitted_.size(); ++j) {
     const SmoothAbsorptance absorbed = smooth_absorptance(own[entry.index ? 0 : j], cosine);
     at.smooth_emitted += 0.5 * emitted_[j] * (absorbed.s + absorbed.p);

@@ -1,10 +1,12 @@
 // How much of the polarisation an effect can be, before anything is integrated.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "model/angles.hpp"
 #include "model/kept_effects.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/facet_bounds.hpp"
@@ -18,14 +20,12 @@ enum class Part { kFurtherBounces, kMoments, kSource, kSurroundings, kEmission, 
 bool is_kept(const KeptEffects& kept, Part part);
 KeptEffects without(KeptEffects kept, Part part);
 
-/// Which bounds of the reflectance: the coarse ones are ten times faster.
-enum class Detail { kCoarse, kFine };
-
-/// The last bounds of the reflectance, which several parts, and in bistatic mode all entries of a shape, ask for.
+/// The last direction and the last bounds of the reflectance, which several parts, and in bistatic mode all entries of a shape, ask for.
 class ReflectanceMemory {
  public:
   const ReflectanceBounds& bounds(const Surface& surface, double theta_deg, const SceneEntry& entry,
                                   std::span<const OpticalConstants> indices, Detail detail);
+  const CosSin& direction(double theta_deg);
 
  private:
   struct Slot {
@@ -35,7 +35,9 @@ class ReflectanceMemory {
     std::optional<OpticalConstants> index;
     ReflectanceBounds bounds;
   };
-  Slot coarse_, fine_;
+  std::array<Slot, 3> slots_;  // by Detail
+  double theta_deg_ = 0.0;
+  CosSin direction_{1.0, 0.0};
 };
 
 /// Bounds of what the parts of a scene change at its entries.

@@ -24,9 +24,11 @@ struct AxisRule {
 
 double read_number(const SceneDocument& document, std::string_view key, const toml::node& node,
                    const NumberRange& range, const std::string& allowed) {
-  const bool is_number = node.is_integer() || node.is_floating_point();
-  if (!is_number) document.fail(key, "must be " + allowed);
-  const double number = *node.value<double>();
+  const auto* integer = node.as_integer();
+  const auto* real = node.as_floating_point();
+  if (!integer && !real) document.fail(key, "must be " + allowed);
+  // node.value<double>() is empty for integers that no double holds; these round like 9007199254740993.0 does.
+  const double number = integer ? static_cast<double>(integer->get()) : real->get();
   if (!range.contains(number)) document.fail(key, fmt::format("{} is out of range; must be {}", number, allowed));
   return number;
 }

@@ -212,6 +212,44 @@ TEST_F(TableFiles, ReadTable_VariableOverOtherAxes_IsRefused) {
   EXPECT_THROW(read_table(at("flat.nc")), InputError);
 }
 
+/// A file that claims axes of these lengths and holds no values of dolp.
+void put_claim(const fs::path& path, const std::array<std::size_t, 3>& lengths) {
+  const std::array<const char*, 3> axes = {"theta", "sigma", "q"};
+  std::array<int, 3> dimensions{};
+  int file = 0;
+  int variable = 0;
+  ASSERT_EQ(nc_create(path.c_str(), NC_NETCDF4, &file), NC_NOERR);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    ASSERT_EQ(nc_def_dim(file, axes[i], lengths[i], &dimensions[i]), NC_NOERR);
+    ASSERT_EQ(nc_def_var(file, axes[i], NC_DOUBLE, 1, &dimensions[i], &variable), NC_NOERR);
+    const std::size_t chunk = std::min<std::size_t>(lengths[i], 1000);
+    ASSERT_EQ(nc_def_var_chunking(file, variable, NC_CHUNKED, &chunk), NC_NOERR);
+  }
+  ASSERT_EQ(nc_def_var(file, "dolp", NC_DOUBLE, 3, dimensions.data(), &variable), NC_NOERR);
+  ASSERT_EQ(nc_def_var_chunking(file, variable, NC_CHUNKED, std::array<std::size_t, 3>{1, 1, 1}.data()), NC_NOERR);
+  ASSERT_EQ(nc_close(file), NC_NOERR);
+}
+
+TEST_F(TableFiles, ReadTable_SizesThatNoTableHas_AreRefusedByName) {
+  struct Claim {
+    std::array<std::size_t, 3> lengths;
+    const char* message;
+  };
+  // The product of the first wraps to 3456 modulo 2^64.
+  for (const Claim& claim : {Claim{{6365383, 1165742, 2485952}, "axis sigma: 1165742 values; a table has at most"},
+                             Claim{{1ULL << 60U, 1, 1}, "axis theta: 1152921504606846976 values"},
+                             Claim{{4096, 4096, 2}, "axis q: 2 values; a table has at most 16777216 entries"},
+                             Claim{{4096, 4000, 1}, "claims 1 variables of 16384000 entries, which "}}) {
+    put_claim(at("claim.nc"), claim.lengths);
+    try {
+      read_table(at("claim.nc"));
+      FAIL() << claim.message;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(claim.message), std::string::npos) << error.what();
+    }
+  }
+}
+
 // ---- CSV and NPY ----------------------------------------------------------------------------------------------------
 
 TEST_F(TableFiles, ReadTable_AttributeOfTypeString_IsText) {

@@ -13,14 +13,12 @@
 #include "cli/commands.hpp"
 #include "model/choices.hpp"
 #include "scene/number_range.hpp"
+#include "table/table.hpp"
 #include "terminal/exit_status.hpp"
 #include "terminal/guarded.hpp"
 
 namespace dolp::cli {
 namespace {
-
-// The most entries that a table has.
-constexpr std::size_t kMostSamples = 1U << 24U;
 
 void add_overrides(CLI::App& command, Options& options) {
   command.add_option("--set", options.overrides, "KEY=VALUE: any scene key, e.g. surface.masking=none")
@@ -79,7 +77,7 @@ void add_verify(CLI::App& command, Options& options) {
   CLI::Option* table = command.add_option("TABLE", options.table_path, "table file (.nc) that dolp table wrote");
   const auto of_table = [&](CLI::Option* option) { option->needs(table); };
   of_table(command.add_option("--samples", options.samples, "entries to recompute; all when the table has no more")
-               ->check(CLI::Range(std::size_t{1}, kMostSamples))
+               ->check(CLI::Range(std::size_t{1}, kMostTableEntries))
                ->capture_default_str());
   of_table(command.add_option("--seed", options.seed, "seed of their choice")->capture_default_str());
   CLI::Option* hard = command.add_flag("--hard-cases", options.hard_cases,

@@ -19,6 +19,9 @@ struct Attribute {
   friend bool operator==(const Attribute&, const Attribute&) = default;
 };
 
+/// The most entries that a table has: about 5 GB of memory while it is made.
+inline constexpr std::size_t kMostTableEntries = 1U << 24U;
+
 /// A lookup table over theta, sigma and q.
 ///
 /// Shape: axes in the user's order, one value or more each; variables in C order (theta, sigma, q), q fastest. A

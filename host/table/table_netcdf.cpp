@@ -1,5 +1,6 @@
 #include "table/table_netcdf.hpp"
 
+#include <fmt/format.h>
 #include <netcdf.h>
 #include <netcdf_mem.h>
 
@@ -19,6 +20,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kConventions = "CF-1.8";
 constexpr std::size_t kExpectedOverhead = 65536;
+// deflate, which other tools apply, leaves no less than a 1032nd of the bytes.
+constexpr std::size_t kMostShrinking = 1032;
 
 struct Axis {
   const char* name;
@@ -49,6 +52,7 @@ class NetcdfFile {
     if (id_ >= 0) nc_abort(id_);
   }
   int id() const { return id_; }
+  const fs::path& shown() const { return shown_; }
   void check(int code, const char* what) const {
     if (code != NC_NOERR) throw Error(shown_.string() + ": " + what + ": " + nc_strerror(code));
   }
@@ -132,7 +136,8 @@ bool has(const InputFile& file, const char* name, int& variable) {
   return nc_inq_varid(file.id(), name, &variable) == NC_NOERR;
 }
 
-std::vector<double> read_axis(const InputFile& file, const Axis& axis, int& dimension) {
+/// Errors: InputError for more than `most` values.
+std::vector<double> read_axis(const InputFile& file, const Axis& axis, std::size_t most, int& dimension) {
   constexpr const char* kNoTable = "is not a table of dolp (no axis theta, sigma or q)";
   int variable = 0;
   std::size_t length = 0;
@@ -144,9 +149,25 @@ std::vector<double> read_axis(const InputFile& file, const Axis& axis, int& dime
   file.check(nc_inq_varndims(file.id(), variable, &rank), kNoTable);
   if (rank == 1) file.check(nc_inq_vardimid(file.id(), variable, &only), kNoTable);
   file.check(rank == 1 && only == dimension && length > 0 ? NC_NOERR : NC_EBADDIM, kNoTable);
+  if (length > most) {
+    throw InputError(fmt::format("{}: axis {}: {} values; a table has at most {} entries", file.shown().string(),
+                                 axis.name, length, kMostTableEntries));
+  }
   std::vector<double> values(length);
   file.check(nc_get_var_double(file.id(), variable, values.data()), "cannot read an axis");
   return values;
+}
+
+/// Refuses variables that the file cannot hold, before memory is taken for them.
+void check_size(const InputFile& file, const Table& table) {
+  std::size_t variables = 0;
+  int id = 0;
+  for (const TableVariable& variable : table_variables()) variables += has(file, variable.name, id) ? 1 : 0;
+  const std::size_t claimed = variables * table.size() * sizeof(double);
+  const std::size_t bytes = fs::file_size(file.shown());
+  if (claimed / kMostShrinking <= bytes) return;
+  throw InputError(fmt::format("{}: claims {} variables of {} entries, which {} bytes cannot hold",
+                               file.shown().string(), variables, table.size(), bytes));
 }
 
 void check_shape(const InputFile& file, int variable, const Dimensions& dimensions) {
@@ -241,7 +262,12 @@ Table read_table(const fs::path& path) {
   const InputFile file(path, id);
   Table table;
   Dimensions dimensions{};
-  for (std::size_t i = 0; i < kAxes.size(); ++i) table.*kAxes[i].values = read_axis(file, kAxes[i], dimensions[i]);
+  std::size_t most = kMostTableEntries;
+  for (std::size_t i = 0; i < kAxes.size(); ++i) {
+    table.*kAxes[i].values = read_axis(file, kAxes[i], most, dimensions[i]);
+    most /= (table.*kAxes[i].values).size();
+  }
+  check_size(file, table);
   bool has_values = false;
   int id_of = 0;
   for (const TableVariable& variable : table_variables()) {

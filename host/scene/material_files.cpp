@@ -187,7 +187,7 @@ void parse_yaml(Material& material, const std::string& text) {
 Material read_material_file(const std::string& path, const Spectrum& spectrum, const std::string& prefix) {
   const std::string lower_path = lower_case(path);
   const bool is_record = lower_path.ends_with(".yml") || lower_path.ends_with(".yaml");
-  const std::string text = read_text(path, prefix, is_record ? kMostRecordBytes : SIZE_MAX);
+  const std::string text = read_text(path, prefix, is_record ? kMostRecordBytes : kMostTextBytes);
   Material material;
   material.name = path.substr(path.find_last_of('/') + 1);
   material.source = path;

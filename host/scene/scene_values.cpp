@@ -14,6 +14,8 @@ namespace {
 
 using Type = KeyDescription::Type;
 
+constexpr auto kMostListed = static_cast<std::size_t>(kAxisCountRange.max);
+
 /// An axis as from, to, count and spacing.
 struct AxisRule {
   double from = 0.0;
@@ -35,6 +37,9 @@ double read_number(const SceneDocument& document, std::string_view key, const to
 
 std::vector<double> read_list(const SceneDocument& document, const KeyDescription& description,
                               const toml::array& array) {
+  if (array.size() > kMostListed) {
+    document.fail(description.key, fmt::format("{} values; must be at most {}", array.size(), kMostListed));
+  }
   std::vector<double> numbers;
   for (const toml::node& element : array) {
     numbers.push_back(read_number(document, description.key, element, description.range, description.allowed()));

@@ -87,6 +87,24 @@ INSTANTIATE_TEST_SUITE_P(
                 kInput,
                 {"--points -", "SCENE", "stdin"}},
         Mistake{"NoValue", kTable + std::vector<std::string>{"--tolerance"}, kInput, {"--tolerance"}},
+        Mistake{"EmptyTolerance",
+                kTable + std::vector<std::string>{"--tolerance", ""},
+                kInput,
+                {"--tolerance", "must not be empty"}},
+        Mistake{"EmptyPrecision",
+                kTable + std::vector<std::string>{"--precision", ""},
+                kInput,
+                {"--precision", "must not be empty"}},
+        Mistake{"EmptyDevice",
+                kTable + std::vector<std::string>{"--device", ""},
+                kInput,
+                {"--device", "must not be empty"}},
+        Mistake{"DeviceOfAnEvaluatorWithoutOne",
+                kTable + std::vector<std::string>{"--device", "nvidia", "--evaluator", "cpu"},
+                kInput,
+                {"--device nvidia", "--evaluator vulkan"}},
+        Mistake{"NegativeSeed", {"verify", "scene.toml", "--seed", "-1"}, kInput, {"--seed", "-1"}},
+        Mistake{"ControlCharacters", {"table", "\x1b]0;t\a\n.toml", "-o", "out.nc"}, kInput, {"?]0;t??.toml: "}},
         Mistake{"UnknownEvaluator",
                 kTable + std::vector<std::string>{"--evaluator", "gpu"},
                 kInput,
@@ -238,6 +256,24 @@ TEST_F(CommandLine, BadScene_ExistingOutput_Kept) {
   put("out.nc", "kept\n");
   EXPECT_EQ(dolp(kTable + std::vector<std::string>{"--set", "surface.q=0"}).status, kInput);
   EXPECT_EQ(content("out.nc"), "kept\n");
+}
+
+TEST_F(CommandLine, Report_ForeignText_ObeysNoTerminal) {
+  put("scene.toml", scene_with("Sixteen entries", "\\u001b]0;mine\\u0007\\nsecond"));
+  const Outcome text = dolp(kEval);
+  EXPECT_EQ(text.status, kDone) << text.err;
+  EXPECT_TRUE(text.out.starts_with("?]0;mine??second\n")) << text.out;
+  const Outcome table = dolp({"table", "scene.toml", "-o", "-", "--quiet"});
+  EXPECT_EQ(table.out.find('\x1b'), std::string::npos);
+}
+
+TEST_F(CommandLine, Json_NameThatIsNotUtf8_Works) {
+  for (const char* name : {"\xff.csv", "\xc2\x9b.csv"}) {
+    const Outcome outcome = dolp({"eval", "scene.toml", "--points", "points.csv", "-o", name, "--json"});
+    EXPECT_EQ(outcome.status, kDone) << outcome.err;
+    EXPECT_TRUE(std::ranges::all_of(outcome.out, [](char c) { return c == '\n' || (c >= ' ' && c < '\x7f'); }));
+    EXPECT_TRUE(fs::exists(at(name)));
+  }
 }
 
 TEST_F(CommandLine, Interrupt_LongRun_Exit130AndNothingLeft) {

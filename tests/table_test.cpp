@@ -23,6 +23,7 @@
 
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
+#include "base/printable_text.hpp"
 #include "table/table_file.hpp"
 
 namespace {
@@ -181,7 +182,7 @@ TEST_F(TableFiles, Netcdf_Metadata_FollowsCf) {
 }
 
 TEST_F(TableFiles, ReadTable_WhatIsNoTable_IsRefusedByName) {
-  EXPECT_THROW(read_table(at("missing.nc")), IoError);
+  EXPECT_THROW(read_table(at("missing.nc")), InputError);
   put(at("text.nc"), "theta,sigma,q\n");
   EXPECT_THROW(read_table(at("text.nc")), InputError);
   int file = 0;
@@ -334,6 +335,16 @@ TEST(NumberText, Doubles_ReadBack) {
   EXPECT_EQ(number_text(90.0), "90");
   EXPECT_EQ(number_text(-kNan), "nan");
   EXPECT_EQ(number_text(-std::numeric_limits<double>::infinity()), "-inf");
+}
+
+TEST(PrintableLine, WhatATerminalObeys_IsReplaced) {
+  EXPECT_EQ(printable_line("10.6 \u00b5m, \u03c3\t\u20ac \U0001d70c"), "10.6 \u00b5m, \u03c3\t\u20ac \U0001d70c");
+  EXPECT_EQ(printable_line("\x1b]0;title\a\r\n\x7f"), "?]0;title????");
+  EXPECT_EQ(printable_line("\u009b31m\u2028\u202e\u2066"), "?31m???");
+  // Lone, cut, overlong and surrogate bytes.
+  EXPECT_EQ(printable_line("a\x80z\xc3"), "a?z?");
+  EXPECT_EQ(printable_line("\xc0\xaf\xe0\x80\xaf\xed\xa0\x80"), "????????");
+  EXPECT_EQ(printable_line(std::string_view("\0", 1)), "?");
 }
 
 // ---- Paths that cannot be written -----------------------------------------------------------------------------------

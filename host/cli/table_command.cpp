@@ -1,5 +1,6 @@
 #include <chrono>
 
+#include "base/stopwatch.hpp"
 #include "cli/commands.hpp"
 #include "cli/run_report.hpp"
 #include "run/scene_run.hpp"
@@ -14,10 +15,11 @@ int run_table(const Options& options) {
   const Scene scene = load_scene(options);
   check_output_path(options.output_path);
   const SceneEntries entries = grid_entries(scene);
-  const SceneRun run = run_entries(options, scene, entries, start);
-  const TableContent content{scene,      run.results,         run.plan, run.effects, run.evaluation,   run.check,
-                             run.wall_s, options.command_line};
+  SceneRun run = run_entries(options, scene, entries, start);
+  const TableContent content{scene,          run.results, run.plan,   run.effects,
+                             run.evaluation, run.check,   run.wall_s, options.command_line};
   write_table(scene_table(content), options.output_path);
+  run.wall_s = seconds_since(start);
   return report_run(options, scene, entries, run, grid_text(scene.grid));
 }
 

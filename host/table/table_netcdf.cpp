@@ -253,10 +253,10 @@ NetcdfBytes netcdf_bytes(const Table& table, const fs::path& path) {
 }
 
 Table read_table(const fs::path& path) {
-  if (!fs::exists(path)) throw IoError(path.string() + ": there is no such file");
+  if (!fs::exists(path)) throw InputError(path.string() + ": there is no such file");
   int id = -1;
   if (const int code = nc_open(path.c_str(), NC_NOWRITE, &id); code != NC_NOERR) {
-    if (code == EACCES) throw IoError(path.string() + ": cannot read: permission denied");
+    if (code == EACCES) throw InputError(path.string() + ": cannot be read: Permission denied");
     throw InputError(path.string() + ": is not a NetCDF table of dolp: " + nc_strerror(code));
   }
   const InputFile file(path, id);

@@ -7,12 +7,13 @@
 #include <system_error>
 
 #include "base/error.hpp"
+#include "base/printable_text.hpp"
 
 namespace dolp {
 
 // fmt::print would throw where stderr cannot be written to.
 int fail(const std::string& program, int status, const std::string& message) {
-  std::fputs((program + ": " + message + "\n").c_str(), stderr);
+  std::fputs((program + ": " + printable_line(message) + "\n").c_str(), stderr);
   return status;
 }
 

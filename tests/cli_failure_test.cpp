@@ -276,6 +276,35 @@ TEST_F(CommandLine, Json_NameThatIsNotUtf8_Works) {
   }
 }
 
+TEST_F(CommandLine, Output_OverAFileThatTheSceneNames_IsRefused) {
+  const std::string index = "wavelength_um,n,k\n9,1.4,0.1\n11,1.6,0.1\n";
+  const std::string light = "9,1\n11,2\n";
+  put("index.csv", index);
+  put("light.csv", light);
+  fs::create_hard_link(at("light.csv"), at("same.csv"));
+  put("scene.toml",
+      scene_with("n = 1.5\nk = 0.1", "material_file = \"index.csv\"") + "[source]\nfile = \"light.csv\"\n");
+  for (const char* output : {"index.csv", "light.csv", "same.csv"}) {
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"table", "scene.toml"}, {"eval", "scene.toml", "--points", "points.csv"}}) {
+      const Outcome outcome = dolp(arguments + std::vector<std::string>{"-o", output});
+      EXPECT_EQ(outcome.status, kInput);
+      EXPECT_NE(outcome.err.find("would overwrite an input"), std::string::npos) << outcome.err;
+    }
+  }
+  EXPECT_EQ(content("index.csv"), index);
+  EXPECT_EQ(content("light.csv"), light);
+}
+
+TEST_F(CommandLine, Output_ReadOnlyFile_IsKept) {
+  put("out.csv", "kept\n");
+  fs::permissions(at("out.csv"), fs::perms::owner_read);
+  const Outcome outcome = dolp(kEval);
+  EXPECT_EQ(outcome.status, kIo);
+  EXPECT_NE(outcome.err.find("out.csv: is read-only"), std::string::npos) << outcome.err;
+  EXPECT_EQ(content("out.csv"), "kept\n");
+}
+
 TEST_F(CommandLine, Interrupt_LongRun_Exit130AndNothingLeft) {
   put("out.nc", "kept\n");
   for (const int signal : {SIGINT, SIGTERM}) {

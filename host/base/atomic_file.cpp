@@ -22,6 +22,7 @@ constexpr int kMostLinks = 40;
 constexpr int kMostNames = 1000;
 constexpr mode_t kNewFileMode = 0666;
 constexpr mode_t kPermissionBits = 0777;
+constexpr mode_t kWriteBits = 0222;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what) { throw IoError(path.string() + ": " + what); }
 
@@ -148,6 +149,11 @@ void check_writable(const fs::path& path) {
     return;
   }
   if (target.filename().empty()) fail(path, "is not a file name");
+  struct stat existing {};
+  // Root may write to what is read-only, but did not say so.
+  if (::stat(target.c_str(), &existing) == 0 && (existing.st_mode & kWriteBits) == 0) {
+    fail(path, "is read-only; remove it first, or write to another file");
+  }
   const fs::path folder = folder_of(target);
   if (!fs::is_directory(folder, error)) fail(path, "there is no folder " + folder.string());
   if (::access(folder.c_str(), W_OK | X_OK) != 0) fail_errno(path, "cannot write to the folder " + folder.string());

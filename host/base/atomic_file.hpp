@@ -9,7 +9,7 @@ namespace dolp {
 
 /// Refuses an output path of any suffix, before anything is computed for it; "-" is standard output.
 ///
-/// Errors: IoError when it is a folder, or its folder is missing or cannot be written to.
+/// Errors: IoError when it is a folder or a file that is read-only, or its folder is missing or cannot be written to.
 void check_writable(const std::filesystem::path& path);
 
 /// Writes text or bytes to a temporary file in the folder of `path`, syncs it and renames it to `path`; to standard

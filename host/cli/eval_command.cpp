@@ -12,8 +12,8 @@ namespace dolp::cli {
 int run_eval(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   check_one_stdin(options);
-  check_output_is_no_input(options);
   const Scene scene = load_scene(options);
+  check_output_is_no_input(options, scene.files);
   const Points points = read_points(options.points_path, PointsKind::kDirections);
   const SceneEntries entries = point_entries(scene, points);
   check_writable(options.output_path);

@@ -37,9 +37,9 @@ struct Options {
   std::string command_line;     ///< for the table's history
 };
 
-/// Refuses to write over the scene or the points.
+/// Refuses to write over the scene, a file that it names, the points or the table.
 /// Errors: InputError.
-void check_output_is_no_input(const Options& options);
+void check_output_is_no_input(const Options& options, const std::vector<std::string>& scene_files = {});
 
 /// Refuses to read scene and points from stdin both.
 /// Errors: InputError.

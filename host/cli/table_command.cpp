@@ -11,8 +11,8 @@ namespace dolp::cli {
 
 int run_table(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
-  check_output_is_no_input(options);
   const Scene scene = load_scene(options);
+  check_output_is_no_input(options, scene.files);
   check_output_path(options.output_path);
   const SceneEntries entries = grid_entries(scene);
   SceneRun run = run_entries(options, scene, entries, start);

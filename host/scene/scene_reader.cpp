@@ -119,8 +119,9 @@ void load_material(SceneDraft& draft, const SceneDocument& document, const std::
     surface.material = find_material(draft.material, draft.scene.spectrum, document.prefix("surface.material"));
   }
   if (document.find("surface.material_file")) {
-    surface.material = read_material_file(resolve_path(draft.material_file, scene_path), draft.scene.spectrum,
-                                          document.prefix("surface.material_file"));
+    draft.scene.files.push_back(resolve_path(draft.material_file, scene_path));
+    surface.material =
+        read_material_file(draft.scene.files.back(), draft.scene.spectrum, document.prefix("surface.material_file"));
   }
 }
 
@@ -130,8 +131,12 @@ void load_source(SceneDraft& draft, const SceneDocument& document, const std::st
   const std::string prefix = document.prefix(is_preset ? "source.preset" : "source.file");
   Source& source = *draft.scene.source;
   source.kind = Source::Kind::kTabulated;
-  source.table =
-      is_preset ? sun_irradiance() : read_irradiance_file(resolve_path(draft.source_file, scene_path), prefix);
+  if (is_preset) {
+    source.table = sun_irradiance();
+  } else {
+    draft.scene.files.push_back(resolve_path(draft.source_file, scene_path));
+    source.table = read_irradiance_file(draft.scene.files.back(), prefix);
+  }
   const Spectrum& spectrum = draft.scene.spectrum;
   if (covers(source.table, spectrum)) return;
   const std::vector<double>& known_um = source.table.wavelength_um;

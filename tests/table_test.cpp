@@ -3,6 +3,7 @@
 #include "base/number_text.hpp"
 
 #include <gtest/gtest.h>
+#include <hdf5.h>
 #include <netcdf.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -15,8 +16,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <limits>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -237,10 +240,10 @@ TEST_F(TableFiles, ReadTable_SizesThatNoTableHas_AreRefusedByName) {
     const char* message;
   };
   // The product of the first wraps to 3456 modulo 2^64.
-  for (const Claim& claim : {Claim{{6365383, 1165742, 2485952}, "axis sigma: 1165742 values; a table has at most"},
+  for (const Claim& claim : {Claim{{6365383, 1165742, 2485952}, "theta: 50923064 bytes are claimed, which a file of"},
                              Claim{{1ULL << 60U, 1, 1}, "axis theta: 1152921504606846976 values"},
                              Claim{{4096, 4096, 2}, "axis q: 2 values; a table has at most 16777216 entries"},
-                             Claim{{4096, 4000, 1}, "claims 1 variables of 16384000 entries, which "}}) {
+                             Claim{{4096, 4000, 1}, "dolp: 131072000 bytes are claimed, which a file of"}}) {
     put_claim(at("claim.nc"), claim.lengths);
     try {
       read_table(at("claim.nc"));
@@ -249,6 +252,101 @@ TEST_F(TableFiles, ReadTable_SizesThatNoTableHas_AreRefusedByName) {
       EXPECT_NE(std::string(error.what()).find(claim.message), std::string::npos) << error.what();
     }
   }
+}
+
+TEST_F(TableFiles, Netcdf_OtherWriter_CanAppend) {
+  const Table table = sample_table(3, 2, 2);
+  write_table(table, at("t.nc"));
+  int file = 0;
+  ASSERT_EQ(nc_open(at("t.nc").c_str(), NC_WRITE, &file), NC_NOERR);
+  const std::string note = "seen";
+  int variable = 0;
+  std::array<int, 3> dimensions{};
+  const std::vector<double> twice(table.size(), 2.0);
+  EXPECT_EQ(nc_redef(file), NC_NOERR);
+  EXPECT_EQ(nc_put_att_text(file, NC_GLOBAL, "note", note.size(), note.data()), NC_NOERR);
+  EXPECT_EQ(nc_inq_varid(file, "dolp", &variable), NC_NOERR);
+  EXPECT_EQ(nc_inq_vardimid(file, variable, dimensions.data()), NC_NOERR);
+  EXPECT_EQ(nc_def_var(file, "mine", NC_DOUBLE, 3, dimensions.data(), &variable), NC_NOERR);
+  EXPECT_EQ(nc_enddef(file), NC_NOERR);
+  EXPECT_EQ(nc_put_var_double(file, variable, twice.data()), NC_NOERR);
+  EXPECT_EQ(nc_close(file), NC_NOERR);
+  Table expected = table;
+  expected.attributes.push_back({"note", note});
+  expect_same(read_table(at("t.nc")), expected);
+}
+
+TEST_F(TableFiles, Netcdf_LongTexts_AreKept) {
+  Table table = sample_table(3, 2, 2);
+  for (Attribute& attribute : table.attributes) {
+    if (attribute.name == "scene") attribute.value = std::string(100'000, '#') + "\n";
+  }
+  std::swap(*std::ranges::find(table.attributes, "scene", &Attribute::name), table.attributes.back());
+  write_table(table, at("t.nc"));
+  expect_same(read_table(at("t.nc")), table);
+  int file = 0;
+  int variable = 0;
+  nc_type type = NC_NAT;
+  ASSERT_EQ(nc_open(at("t.nc").c_str(), NC_WRITE, &file), NC_NOERR);
+  ASSERT_EQ(nc_inq_varid(file, "scene", &variable), NC_NOERR);
+  EXPECT_EQ(nc_inq_vartype(file, variable, &type), NC_NOERR);
+  EXPECT_EQ(type, NC_CHAR);
+  EXPECT_EQ(nc_close(file), NC_NOERR);
+}
+
+TEST_F(TableFiles, Netcdf_FlippedBit_IsFoundOrChangesNothing) {
+  const Table table = sample_table(12, 6, 4);
+  write_table(table, at("t.nc"));
+  const std::string bytes = content(at("t.nc"));
+  constexpr std::uint64_t kSeed = 4;
+  std::cout << "seed " << kSeed << '\n';
+  std::mt19937_64 random(kSeed);
+  int found = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    std::string damaged = bytes;
+    damaged[random() % damaged.size()] ^= static_cast<char>(1 << random() % 8);
+    put(at("damaged.nc"), damaged);
+    try {
+      const Table read = read_table(at("damaged.nc"));
+      expect_same(read, table);
+      if (HasFailure()) return;
+    } catch (const InputError&) {
+      ++found;
+    }
+  }
+  EXPECT_GT(found, 1000);
+}
+
+TEST_F(TableFiles, ReadTable_ValuesInAnotherFile_AreRefused) {
+  put(at("secret"), std::string(80, 'x'));
+  const hid_t file = H5Fcreate(at("t.nc").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hsize_t count = 10;
+  const hid_t space = H5Screate_simple(1, &count, nullptr);
+  const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+  ASSERT_GE(H5Pset_external(creation, at("secret").c_str(), 0, 80), 0);
+  const hid_t theta = H5Dcreate2(file, "theta", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+  ASSERT_GE(theta, 0);
+  H5Dclose(theta);
+  H5Lcreate_external(at("other.nc").c_str(), "/theta", file, "linked", H5P_DEFAULT, H5P_DEFAULT);
+  H5Pclose(creation);
+  H5Sclose(space);
+  H5Fclose(file);
+  EXPECT_THROW(read_table(at("t.nc")), InputError);
+  const hid_t again = H5Fopen(at("t.nc").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  H5Ldelete(again, "theta", H5P_DEFAULT);
+  H5Lmove(again, "linked", again, "theta", H5P_DEFAULT, H5P_DEFAULT);
+  H5Fclose(again);
+  try {
+    read_table(at("t.nc"));
+    FAIL() << "no exception";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("theta: is a link"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(TableFiles, ReadTable_Pipe_IsRefused) {
+  ASSERT_EQ(::mkfifo(at("t.nc").c_str(), 0600), 0);
+  EXPECT_THROW(read_table(at("t.nc")), InputError);
 }
 
 // ---- CSV and NPY ----------------------------------------------------------------------------------------------------

@@ -135,7 +135,7 @@ void check_output_path(const fs::path& path) {
 void write_table(const Table& table, const fs::path& path) {
   switch (format_of(path)) {
     case Format::kNetcdf:
-      return write_text_atomically(path, netcdf_bytes(table, path).view());
+      return write_text_atomically(path, NetcdfImage(table, path).bytes());
     case Format::kCsv:
       return write_text_atomically(path, csv_text(table));
     case Format::kNpy:

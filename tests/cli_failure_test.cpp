@@ -307,7 +307,7 @@ TEST_F(CommandLine, Output_ReadOnlyFile_IsKept) {
 
 TEST_F(CommandLine, Interrupt_LongRun_Exit130AndNothingLeft) {
   put("out.nc", "kept\n");
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     TerminalProcess process(command(kTable + kLongRun));
     ASSERT_TRUE(process.wait_for_output());  // the progress bar: the work has begun
     process.send_signal(signal);
@@ -317,6 +317,32 @@ TEST_F(CommandLine, Interrupt_LongRun_Exit130AndNothingLeft) {
     EXPECT_EQ(content("out.nc"), "kept\n");
     EXPECT_EQ(names(), (std::vector<std::string>{"out.nc", "points.csv", "scene.toml"}));
   }
+}
+
+TEST_F(CommandLine, Interrupt_WhileWriting_Exit130) {
+  ASSERT_EQ(dolp(kTable).status, kDone);
+  std::string points = "theta_deg,sigma,q\n";
+  for (int i = 0; i < 2000; ++i) points += "60,0.1,2\n";  // results for more than a pipe holds
+  put("many.csv", points);
+  ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"eval", "scene.toml", "--evaluator", "cpu"}, {"lookup", "out.nc"}}) {
+    TerminalProcess process(command(arguments + std::vector<std::string>{"--points", "many.csv", "-o", "pipe"}));
+    const Descriptor reader(::open(at("pipe").c_str(), O_RDONLY | O_CLOEXEC));  // waits until the program writes
+    process.send_signal(SIGINT);
+    const Outcome outcome = process.finish();
+    EXPECT_EQ(outcome.status, kInterrupted);
+    EXPECT_NE(outcome.err.find("dolp: interrupted"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(CommandLine, LimitOfFileSize_Exit4AndNothingLeft) {
+  Command wanted = command(kTable);
+  wanted.arguments.insert(wanted.arguments.begin(), {"bash", "-c", "ulimit -f 1; exec \"$@\"", "bash"});
+  const Outcome outcome = run(wanted);
+  EXPECT_EQ(outcome.status, kIo);
+  expect_one_line(outcome.err);
+  EXPECT_EQ(names(), kInputFiles);
 }
 
 TEST_F(CommandLine, Interrupt_WaitingForInput_Ends) {

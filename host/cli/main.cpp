@@ -4,6 +4,7 @@
 #include <malloc.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <limits>
 #include <string>
@@ -201,6 +202,7 @@ void keep_freed_memory() {
 }  // namespace dolp::cli
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of its writing
   dolp::cli::keep_freed_memory();
   return dolp::guarded("dolp", [&] { return dolp::cli::parse_and_run(argc, argv); });
 }

@@ -74,6 +74,7 @@ class Writer {
   Hdf5Handle define(const char* name, hid_t type, const std::vector<hsize_t>& shape, const void* fill) const {
     const Hdf5Handle creation = take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     check(H5Pset_attr_creation_order(creation.id(), kOrdered));
+    check(H5Pset_obj_track_times(creation.id(), false));  // same scene, same bytes
     // Every variable is written whole; to fill it first would write it twice.
     check(H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER));
     if (fill) check(H5Pset_fill_value(creation.id(), type, fill));

@@ -21,7 +21,7 @@ int guarded(const std::string& program, const std::function<int()>& body) {
   try {
     return body();
   } catch (const Cancelled&) {
-    return fail(program, kExitInterrupted, "interrupted; nothing was written");
+    return fail(program, kExitInterrupted, "interrupted; no file was written");
   } catch (const InputError& error) {
     return fail(program, kExitInput, error.what());
   } catch (const DeviceError& error) {

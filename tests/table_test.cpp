@@ -83,6 +83,8 @@ Table sample_table(std::size_t thetas, std::size_t sigmas, std::size_t qs) {
   }
   table.error_estimate.front() = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < table.size(); ++i) table.status.push_back(static_cast<std::uint32_t>(i % 16));
+  table.index_n = {{8.0, 10.0}, {1.5, 1.6}};
+  table.index_k = {{9.0}, {0.1}};
   table.attributes = {
       {"title", "Stainless steel, 10.6 µm"}, {"tolerance", 1e-4}, {"scene", "a = 1\nb = 2\n"}, {"driver", ""}};
   return table;
@@ -104,6 +106,7 @@ void expect_same(const Table& actual, const Table& expected) {
     expect_same(actual.*variable.values, expected.*variable.values, variable.name);
   }
   EXPECT_EQ(actual.status, expected.status);
+  for (const TableCurve& described : kTableCurves) EXPECT_EQ(actual.*described.curve, expected.*described.curve);
   EXPECT_EQ(actual.stokes_units, expected.stokes_units);
   EXPECT_EQ(actual.attributes, expected.attributes);
 }
@@ -245,8 +248,8 @@ TEST_F(TableFiles, ReadTable_SizesThatNoTableHas_AreRefusedByName) {
   };
   // The product of the first wraps to 3456 modulo 2^64.
   for (const Claim& claim : {Claim{{6365383, 1165742, 2485952}, "theta: 50923064 bytes are claimed, which a file of"},
-                             Claim{{1ULL << 60U, 1, 1}, "axis theta: 1152921504606846976 values"},
-                             Claim{{4096, 4096, 2}, "axis q: 2 values; a table has at most 16777216 entries"},
+                             Claim{{1ULL << 60U, 1, 1}, "theta: 1152921504606846976 values"},
+                             Claim{{4096, 4096, 2}, "q: 2 values; a table has at most 16777216 entries"},
                              Claim{{4096, 4000, 1}, "dolp: 131072000 bytes are claimed, which a file of"}}) {
     put_claim(at("claim.nc"), claim.lengths);
     try {

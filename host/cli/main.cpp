@@ -88,6 +88,8 @@ void add_verify(CLI::App& command, Options& options) {
   of_table(command.add_option("--seed", options.seed, "seed of their choice")
                ->check(not_negative, "")
                ->capture_default_str());
+  of_table(command.add_flag("--named-files", options.named_files,
+                            "take n, k and E0 from where the scene says, not from the table"));
   CLI::Option* hard = command.add_flag("--hard-cases", options.hard_cases,
                                        "examine a device with the model's hard cases, in float and double");
   hard->excludes(table);

@@ -29,6 +29,7 @@ struct Options {
   bool keep_all = false;        ///< drop no effect
   std::size_t samples = 64;     ///< of verify: entries to recompute
   std::uint64_t seed = 1;       ///< of verify: of their choice
+  bool named_files = false;     ///< of verify: n, k and E0 from the files that the scene names
   bool hard_cases = false;      ///< of verify: examine a device instead of a table
   bool all = false;             ///< of verify: report every hard case
   std::size_t frames = 0;       ///< of explore: draw so many and end; 0: until the window is closed

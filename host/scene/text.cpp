@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <numeric>
 #include <system_error>
@@ -155,6 +156,15 @@ std::string read_text(const std::string& path, const std::string& prefix, std::s
     if (std::memchr(block.data(), 0, got)) throw InputError(prefix + "is not a text: it holds a zero byte");
     if (got < block.size()) return text;
   }
+}
+
+std::string read_named_file(const std::string& path, const std::string& prefix, std::size_t most_bytes) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  const bool may_be_read =
+      is_regular_file(status) || is_directory(status) || !exists(status);  // for read_text's message
+  if (path == "-" || !may_be_read) throw InputError(prefix + "is not a regular file");
+  return read_text(path, prefix, most_bytes);
 }
 
 std::string input_name(const std::string& path) { return path == "-" ? "stdin" : path; }

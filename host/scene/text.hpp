@@ -49,6 +49,11 @@ inline constexpr std::size_t kMostTextBytes = 16U << 20U;
 /// Errors: InputError, "`prefix`cannot be read: reason", and for more than `most_bytes` or a zero byte among them.
 std::string read_text(const std::string& path, const std::string& prefix, std::size_t most_bytes = kMostTextBytes);
 
+/// The same for a file that an input names: a regular file, so that nobody waits for a pipe or reads a device.
+/// Errors: likewise, and for anything else.
+std::string read_named_file(const std::string& path, const std::string& prefix,
+                            std::size_t most_bytes = kMostTextBytes);
+
 /// The name of an input for messages: "stdin" for "-".
 std::string input_name(const std::string& path);
 

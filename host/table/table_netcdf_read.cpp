@@ -85,14 +85,14 @@ class Reader {
 
 bool is_of_class(hid_t type, H5T_class_t wanted) { return H5Tget_class(type) == wanted; }
 
-/// Errors: InputError for more than `most` values.
-std::vector<double> read_axis(const Reader& reader, const char* name, std::size_t most) {
+/// The values of a list; none where it is not there. Errors: InputError for more than `most`.
+std::vector<double> read_list(const Reader& reader, const std::string& name, std::size_t most) {
   const Hdf5Handle variable = reader.find(name);
-  if (!variable) reader.fail("is not a table of dolp (no axis theta, sigma or q)");
+  if (!variable) return {};
   const std::vector<hsize_t> shape = reader.shape_of(variable, name);
-  if (shape.size() != 1 || shape[0] == 0) reader.fail("is not a table of dolp (no axis theta, sigma or q)");
+  if (shape.size() != 1) reader.fail(name + ": is not a list");
   if (shape[0] > most) {
-    reader.fail(fmt::format("axis {}: {} values; a table has at most {} entries", name, shape[0], kMostTableEntries));
+    reader.fail(fmt::format("{}: {} values; a table has at most {} entries", name, shape[0], kMostTableEntries));
   }
   reader.check_claim(name, shape[0] * sizeof(double));
   std::vector<double> values(shape[0]);
@@ -218,7 +218,8 @@ Table read_table(const fs::path& path) {
   Table table;
   std::size_t most = kMostTableEntries;
   for (const NetcdfAxis& axis : kNetcdfAxes) {
-    table.*axis.values = read_axis(reader, axis.name, most);
+    table.*axis.values = read_list(reader, axis.name, most);
+    if ((table.*axis.values).empty()) reader.fail("is not a table of dolp (no axis theta, sigma or q)");
     most /= (table.*axis.values).size();
   }
   bool has_values = false;
@@ -229,6 +230,12 @@ Table read_table(const fs::path& path) {
   }
   read_variable(reader, table, "status", H5T_NATIVE_UINT, table.status);
   if (!has_values) reader.fail("is not a table of dolp (none of its variables is there)");
+  for (const TableCurve& described : kTableCurves) {
+    Curve& curve = table.*described.curve;
+    curve.values = read_list(reader, described.name, kMostTableEntries);
+    curve.wavelength_um = read_list(reader, described.name + std::string("_wavelength"), kMostTableEntries);
+    if (curve.values.size() != curve.wavelength_um.size()) reader.fail(described.name + std::string(": is cut short"));
+  }
   const std::optional<std::string> hash = find_text(reader, reader.file(), kValuesHash);
   if (hash && *hash != values_hash(table)) {
     reader.fail("the values are not those that dolp wrote (attribute values_hash): the file was changed or is damaged");

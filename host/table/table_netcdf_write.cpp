@@ -178,6 +178,24 @@ void put_status(const Writer& writer, const Table& table, const AxisVariables& a
   writer.write(status, H5T_NATIVE_UINT, table.status.data());
 }
 
+void put_curves(const Writer& writer, const Table& table) {
+  for (const TableCurve& described : kTableCurves) {
+    const Curve& curve = table.*described.curve;
+    if (curve.values.empty()) continue;
+    const std::string coordinate = described.name + std::string("_wavelength");
+    const Hdf5Handle wavelength = writer.define(coordinate.c_str(), H5T_IEEE_F64LE, {curve.values.size()}, nullptr);
+    writer.check(H5DSset_scale(wavelength.id(), coordinate.c_str()));
+    writer.put_text(wavelength, "long_name", "wavelength");
+    writer.put_text(wavelength, "units", "um");
+    writer.write(wavelength, H5T_NATIVE_DOUBLE, curve.wavelength_um.data());
+    const Hdf5Handle variable = writer.define(described.name, H5T_IEEE_F64LE, {curve.values.size()}, nullptr);
+    writer.check(H5DSattach_scale(variable.id(), wavelength.id(), 0));
+    writer.put_text(variable, "long_name", described.long_name);
+    writer.put_text(variable, "units", described.units);
+    writer.write(variable, H5T_NATIVE_DOUBLE, curve.values.data());
+  }
+}
+
 std::size_t expected_bytes(const Table& table) {
   std::size_t bytes = kExpectedOverhead + table.size() * (table_variables().size() + 1) * sizeof(double);
   for (const Attribute& attribute : table.attributes) {
@@ -199,6 +217,11 @@ std::string values_hash(const Table& table) {
   for (const NetcdfAxis& axis : kNetcdfAxes) add_all(table.*axis.values);
   for (const TableVariable& variable : table_variables()) add_all(table.*variable.values);
   for (const std::uint32_t status : table.status) add(status);
+  for (const TableCurve& described : kTableCurves) {
+    if ((table.*described.curve).values.empty()) continue;
+    add_all((table.*described.curve).wavelength_um);
+    add_all((table.*described.curve).values);
+  }
   return fmt::format("fnv1a64:{:016x}", hash);
 }
 
@@ -209,6 +232,7 @@ NetcdfImage::NetcdfImage(const Table& table, const fs::path& path) {
   const AxisVariables axes = put_axes(writer, table);
   put_variables(writer, table, axes);
   if (!table.status.empty()) put_status(writer, table, axes);
+  put_curves(writer, table);
   writer.check(H5Fflush(writer.file().id(), H5F_SCOPE_GLOBAL));
   void* memory = nullptr;
   writer.check(H5Fget_vfd_handle(writer.file().id(), H5P_DEFAULT, &memory));

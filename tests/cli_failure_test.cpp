@@ -14,7 +14,7 @@ namespace {
 using namespace dolp;
 namespace fs = std::filesystem;
 
-enum Status { kDone = 0, kAccuracy = 1, kInput = 2, kDevice = 3, kIo = 4, kInterrupted = 130 };
+enum Status { kDone = 0, kAccuracy = 1, kInput = 2, kDevice = 3, kIo = 4, kMemory = 6, kInterrupted = 130 };
 
 const std::vector<std::string> kInputFiles = {"points.csv", "scene.toml"};
 /// Half a million entries at a tight tolerance: minutes of work, so that an interrupt always comes in time.
@@ -342,6 +342,22 @@ TEST_F(CommandLine, LimitOfFileSize_Exit4AndNothingLeft) {
   const Outcome outcome = run(wanted);
   EXPECT_EQ(outcome.status, kIo);
   expect_one_line(outcome.err);
+  EXPECT_EQ(names(), kInputFiles);
+}
+
+TEST_F(CommandLine, OutOfMemory_Exit6InOneLine) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer takes terabytes of addresses";
+#endif
+  std::string points = "theta_deg\n";
+  for (int i = 0; i < 4'000'000; ++i) points += "0\n";
+  put("points.csv", points);
+  Command wanted = command(kEval + std::vector<std::string>{"--evaluator", "cpu"});
+  wanted.arguments.insert(wanted.arguments.begin(), {"bash", "-c", "ulimit -v 400000; exec \"$@\"", "bash"});
+  const Outcome outcome = run(wanted);
+  EXPECT_EQ(outcome.status, kMemory);
+  expect_one_line(outcome.err);
+  EXPECT_NE(outcome.err.find("out of memory: more than"), std::string::npos) << outcome.err;
   EXPECT_EQ(names(), kInputFiles);
 }
 

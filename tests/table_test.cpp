@@ -111,24 +111,34 @@ void expect_same(const Table& actual, const Table& expected) {
   EXPECT_EQ(actual.attributes, expected.attributes);
 }
 
+/// A limit of the process, for as long as the object lives.
+class Limit {
+ public:
+  Limit(__rlimit_resource resource, rlim_t value) : resource_(resource) {
+    ::getrlimit(resource_, &before_);
+    const rlimit limit{value, before_.rlim_max};
+    ::setrlimit(resource_, &limit);
+  }
+  Limit(const Limit&) = delete;
+  Limit& operator=(const Limit&) = delete;
+  ~Limit() { ::setrlimit(resource_, &before_); }
+
+ private:
+  __rlimit_resource resource_;
+  rlimit before_{};
+};
+
 /// Limits the size of files the process writes, as a full disk would.
 class FullDisk {
  public:
-  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
+  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)), limit_(RLIMIT_FSIZE, bytes) {}
   FullDisk(const FullDisk&) = delete;
   FullDisk& operator=(const FullDisk&) = delete;
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
+  ~FullDisk() { std::signal(SIGXFSZ, handler_); }
 
  private:
   void (*handler_)(int);
-  rlimit before_{};
+  Limit limit_;
 };
 
 // ---- NetCDF ---------------------------------------------------------------------------------------------------------
@@ -513,6 +523,23 @@ TEST_F(TableFiles, WriteTable_DiskFull_LeavesNothingOrWhatWasThere) {
     }
   }
   // The libraries below still work.
+  write_table(table, at("t.nc"));
+  expect_same(read_table(at("t.nc")), table);
+}
+
+TEST_F(TableFiles, WriteTable_OutOfMemory_LeavesNothing) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer takes terabytes of addresses";
+#endif
+  const Table table = sample_table(128, 64, 32);  // a file of 35 MB
+  {
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    constexpr rlim_t kFree = 20'000'000;
+    const Limit memory(RLIMIT_AS, pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + kFree);
+    EXPECT_THROW(write_table(table, at("t.nc")), std::bad_alloc);
+  }
+  EXPECT_EQ(names(), std::vector<std::string>{});
   write_table(table, at("t.nc"));
   expect_same(read_table(at("t.nc")), table);
 }

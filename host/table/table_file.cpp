@@ -135,7 +135,7 @@ void check_output_path(const fs::path& path) {
 void write_table(const Table& table, const fs::path& path) {
   switch (format_of(path)) {
     case Format::kNetcdf:
-      return write_text_atomically(path, NetcdfImage(table, path).bytes());
+      return write_text_atomically(path, NetcdfImage(table).bytes());
     case Format::kCsv:
       return write_text_atomically(path, csv_text(table));
     case Format::kNpy:

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -36,8 +35,8 @@ std::string values_hash(const Table& table);
 /// of the netCDF library is a variable of characters with the attribute's name.
 class NetcdfImage {
  public:
-  /// Errors: IoError that names `path`.
-  NetcdfImage(const Table& table, const std::filesystem::path& path);
+  /// Errors: std::bad_alloc.
+  explicit NetcdfImage(const Table& table);
   std::string_view bytes() const { return bytes_; }
 
  private:

@@ -7,16 +7,13 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
+#include <new>
 #include <string>
 
-#include "base/error.hpp"
-#include "table/table_file.hpp"
 #include "table/table_netcdf.hpp"
 
 namespace dolp {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kConventions = "CF-1.8";
 // The netCDF library stores attributes of less than 64 KiB.
@@ -28,10 +25,10 @@ constexpr std::array<int, 4> kFlagMasks = {1, 2, 4, 8};
 constexpr const char* kFlagMeanings =
     "reflectance_outside_zero_to_one tolerance_not_met outside_model_domain intensity_not_positive";
 
-/// Makes the objects of one file; a call that fails throws IoError with the file's name.
+/// Makes the objects of one file; a call that fails throws std::bad_alloc.
 class Writer {
  public:
-  Writer(const fs::path& shown, std::size_t expected_bytes) : shown_(shown) {
+  explicit Writer(std::size_t expected_bytes) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // messages are ours
     const Hdf5Handle access = take(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     // One block of memory for the whole file, so that it does not grow piece by piece.
@@ -48,7 +45,7 @@ class Writer {
   Hdf5Handle take_file() { return std::move(file_); }
 
   void check(herr_t code) const {
-    if (code < 0) throw IoError(shown_.string() + ": cannot make the NetCDF file in memory");
+    if (code < 0) throw std::bad_alloc();  // a file in memory can want nothing else
   }
 
   void put_text(const Hdf5Handle& object, const char* name, const std::string& text) const {
@@ -100,7 +97,6 @@ class Writer {
     if (value) check(H5Awrite(attribute.id(), memory_type, value));
   }
 
-  fs::path shown_;
   Hdf5Handle file_;
 };
 
@@ -225,8 +221,8 @@ std::string values_hash(const Table& table) {
   return fmt::format("fnv1a64:{:016x}", hash);
 }
 
-NetcdfImage::NetcdfImage(const Table& table, const fs::path& path) {
-  Writer writer(path, expected_bytes(table));
+NetcdfImage::NetcdfImage(const Table& table) {
+  Writer writer(expected_bytes(table));
   put_attributes(writer, table.attributes);
   writer.put_text(writer.file(), kValuesHash, values_hash(table));
   const AxisVariables axes = put_axes(writer, table);

@@ -2,8 +2,12 @@
 #include "base/progress.hpp"
 #include "terminal/exit_status.hpp"
 
+#include <fmt/format.h>
+#include <sys/resource.h>
+
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <system_error>
 
 #include "base/error.hpp"
@@ -28,6 +32,10 @@ int guarded(const std::string& program, const std::function<int()>& body) {
     return fail(program, kExitDevice, error.what());
   } catch (const IoError& error) {
     return fail(program, kExitIo, error.what());
+  } catch (const std::bad_alloc&) {
+    rusage used{};
+    getrusage(RUSAGE_SELF, &used);
+    return fail(program, kExitMemory, fmt::format("out of memory: more than {} MiB wanted", used.ru_maxrss / 1024));
   } catch (const std::system_error& error) {
     return fail(program, kExitIo, error.what());
   } catch (const std::exception& error) {

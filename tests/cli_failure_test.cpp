@@ -336,6 +336,23 @@ TEST_F(CommandLine, Interrupt_WhileWriting_Exit130) {
   }
 }
 
+TEST_F(CommandLine, Hangup_Ignored_IsNoInterrupt) {
+  std::string points = "theta_deg,sigma,q\n";
+  for (int i = 0; i < 2000; ++i) points += "60,0.1,2\n";
+  put("many.csv", points);
+  ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
+  Command wanted = command({"eval", "scene.toml", "--evaluator", "cpu", "--points", "many.csv", "-o", "pipe"});
+  wanted.arguments.insert(wanted.arguments.begin(), {"nohup"});
+  TerminalProcess process(wanted);
+  {
+    std::ifstream reader(at("pipe"));  // waits until the program writes
+    process.send_signal(SIGHUP);
+    const std::string written{std::istreambuf_iterator<char>(reader), {}};
+    EXPECT_EQ(std::ranges::count(written, '\n'), 2001);
+  }
+  EXPECT_EQ(process.finish().status, kDone);
+}
+
 TEST_F(CommandLine, LimitOfFileSize_Exit4AndNothingLeft) {
   Command wanted = command(kTable);
   wanted.arguments.insert(wanted.arguments.begin(), {"bash", "-c", "ulimit -f 1; exec \"$@\"", "bash"});

@@ -13,7 +13,11 @@ volatile std::sig_atomic_t is_interrupted = 0;  // the only state that a signal 
 void watch_for_interrupts() {
   struct sigaction action {};  // without SA_RESTART
   action.sa_handler = [](int) { is_interrupted = 1; };
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
 }
 
 bool interrupted() { return is_interrupted != 0; }

@@ -3,7 +3,8 @@
 
 namespace dolp {
 
-/// From here on SIGINT, SIGTERM and SIGHUP only make interrupted() true, and break off a call that waits.
+/// From here on SIGINT, SIGTERM and SIGHUP only make interrupted() true, and break off a call that waits. Those that
+/// are ignored, as by nohup, stay so.
 void watch_for_interrupts();
 
 bool interrupted();

@@ -11,11 +11,11 @@ set -euo pipefail
 
 declare -A packages=(
   [build]="g++ cmake ninja-build glslang-tools spirv-tools libvulkan-dev mesa-vulkan-drivers libglm-dev libboost-dev
-           libcli11-dev libeigen3-dev libfmt-dev libnetcdf-dev libtomlplusplus-dev libyaml-cpp-dev nlohmann-json3-dev
+           libcli11-dev libeigen3-dev libfmt-dev libhdf5-dev libtomlplusplus-dev libyaml-cpp-dev nlohmann-json3-dev
            libglfw3-dev libimgui-dev libstb-dev pkg-config fonts-dejavu-core"
   [picture]="python3 python3-matplotlib python3-netcdf4 python3-numpy"
   [bench]="libcubature-dev libgsl-dev python3 python3-matplotlib python3-numpy python3-scipy"
-  [test]="libgtest-dev netcdf-bin python3 python3-netcdf4 python3-numpy vulkan-validationlayers
+  [test]="libgtest-dev libnetcdf-dev netcdf-bin python3 python3-netcdf4 python3-numpy vulkan-validationlayers
           xvfb xauth xdotool"
 )
 

@@ -14,7 +14,7 @@ namespace {
 using namespace dolp;
 namespace fs = std::filesystem;
 
-enum Status { kDone = 0, kAccuracy = 1, kInput = 2, kDevice = 3, kIo = 4, kInterrupted = 130 };
+enum Status { kDone = 0, kAccuracy = 1, kInput = 2, kDevice = 3, kIo = 4, kMemory = 6, kInterrupted = 130 };
 
 const std::vector<std::string> kInputFiles = {"points.csv", "scene.toml"};
 /// Half a million entries at a tight tolerance: minutes of work, so that an interrupt always comes in time.
@@ -87,6 +87,24 @@ INSTANTIATE_TEST_SUITE_P(
                 kInput,
                 {"--points -", "SCENE", "stdin"}},
         Mistake{"NoValue", kTable + std::vector<std::string>{"--tolerance"}, kInput, {"--tolerance"}},
+        Mistake{"EmptyTolerance",
+                kTable + std::vector<std::string>{"--tolerance", ""},
+                kInput,
+                {"--tolerance", "must not be empty"}},
+        Mistake{"EmptyPrecision",
+                kTable + std::vector<std::string>{"--precision", ""},
+                kInput,
+                {"--precision", "must not be empty"}},
+        Mistake{"EmptyDevice",
+                kTable + std::vector<std::string>{"--device", ""},
+                kInput,
+                {"--device", "must not be empty"}},
+        Mistake{"DeviceOfAnEvaluatorWithoutOne",
+                kTable + std::vector<std::string>{"--device", "nvidia", "--evaluator", "cpu"},
+                kInput,
+                {"--device nvidia", "--evaluator vulkan"}},
+        Mistake{"NegativeSeed", {"verify", "scene.toml", "--seed", "-1"}, kInput, {"--seed", "-1"}},
+        Mistake{"ControlCharacters", {"table", "\x1b]0;t\a\n.toml", "-o", "out.nc"}, kInput, {"?]0;t??.toml: "}},
         Mistake{"UnknownEvaluator",
                 kTable + std::vector<std::string>{"--evaluator", "gpu"},
                 kInput,
@@ -240,9 +258,56 @@ TEST_F(CommandLine, BadScene_ExistingOutput_Kept) {
   EXPECT_EQ(content("out.nc"), "kept\n");
 }
 
+TEST_F(CommandLine, Report_ForeignText_ObeysNoTerminal) {
+  put("scene.toml", scene_with("Sixteen entries", "\\u001b]0;mine\\u0007\\nsecond"));
+  const Outcome text = dolp(kEval);
+  EXPECT_EQ(text.status, kDone) << text.err;
+  EXPECT_TRUE(text.out.starts_with("?]0;mine??second\n")) << text.out;
+  const Outcome table = dolp({"table", "scene.toml", "-o", "-", "--quiet"});
+  EXPECT_EQ(table.out.find('\x1b'), std::string::npos);
+}
+
+TEST_F(CommandLine, Json_NameThatIsNotUtf8_Works) {
+  for (const char* name : {"\xff.csv", "\xc2\x9b.csv"}) {
+    const Outcome outcome = dolp({"eval", "scene.toml", "--points", "points.csv", "-o", name, "--json"});
+    EXPECT_EQ(outcome.status, kDone) << outcome.err;
+    EXPECT_TRUE(std::ranges::all_of(outcome.out, [](char c) { return c == '\n' || (c >= ' ' && c < '\x7f'); }));
+    EXPECT_TRUE(fs::exists(at(name)));
+  }
+}
+
+TEST_F(CommandLine, Output_OverAFileThatTheSceneNames_IsRefused) {
+  const std::string index = "wavelength_um,n,k\n9,1.4,0.1\n11,1.6,0.1\n";
+  const std::string light = "9,1\n11,2\n";
+  put("index.csv", index);
+  put("light.csv", light);
+  fs::create_hard_link(at("light.csv"), at("same.csv"));
+  put("scene.toml",
+      scene_with("n = 1.5\nk = 0.1", "material_file = \"index.csv\"") + "[source]\nfile = \"light.csv\"\n");
+  for (const char* output : {"index.csv", "light.csv", "same.csv"}) {
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"table", "scene.toml"}, {"eval", "scene.toml", "--points", "points.csv"}}) {
+      const Outcome outcome = dolp(arguments + std::vector<std::string>{"-o", output});
+      EXPECT_EQ(outcome.status, kInput);
+      EXPECT_NE(outcome.err.find("would overwrite an input"), std::string::npos) << outcome.err;
+    }
+  }
+  EXPECT_EQ(content("index.csv"), index);
+  EXPECT_EQ(content("light.csv"), light);
+}
+
+TEST_F(CommandLine, Output_ReadOnlyFile_IsKept) {
+  put("out.csv", "kept\n");
+  fs::permissions(at("out.csv"), fs::perms::owner_read);
+  const Outcome outcome = dolp(kEval);
+  EXPECT_EQ(outcome.status, kIo);
+  EXPECT_NE(outcome.err.find("out.csv: is read-only"), std::string::npos) << outcome.err;
+  EXPECT_EQ(content("out.csv"), "kept\n");
+}
+
 TEST_F(CommandLine, Interrupt_LongRun_Exit130AndNothingLeft) {
   put("out.nc", "kept\n");
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     TerminalProcess process(command(kTable + kLongRun));
     ASSERT_TRUE(process.wait_for_output());  // the progress bar: the work has begun
     process.send_signal(signal);
@@ -252,6 +317,65 @@ TEST_F(CommandLine, Interrupt_LongRun_Exit130AndNothingLeft) {
     EXPECT_EQ(content("out.nc"), "kept\n");
     EXPECT_EQ(names(), (std::vector<std::string>{"out.nc", "points.csv", "scene.toml"}));
   }
+}
+
+TEST_F(CommandLine, Interrupt_WhileWriting_Exit130) {
+  ASSERT_EQ(dolp(kTable).status, kDone);
+  std::string points = "theta_deg,sigma,q\n";
+  for (int i = 0; i < 2000; ++i) points += "60,0.1,2\n";  // results for more than a pipe holds
+  put("many.csv", points);
+  ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"eval", "scene.toml", "--evaluator", "cpu"}, {"lookup", "out.nc"}}) {
+    TerminalProcess process(command(arguments + std::vector<std::string>{"--points", "many.csv", "-o", "pipe"}));
+    const Descriptor reader(::open(at("pipe").c_str(), O_RDONLY | O_CLOEXEC));  // waits until the program writes
+    process.send_signal(SIGINT);
+    const Outcome outcome = process.finish();
+    EXPECT_EQ(outcome.status, kInterrupted);
+    EXPECT_NE(outcome.err.find("dolp: interrupted"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(CommandLine, Hangup_Ignored_IsNoInterrupt) {
+  std::string points = "theta_deg,sigma,q\n";
+  for (int i = 0; i < 2000; ++i) points += "60,0.1,2\n";
+  put("many.csv", points);
+  ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
+  Command wanted = command({"eval", "scene.toml", "--evaluator", "cpu", "--points", "many.csv", "-o", "pipe"});
+  wanted.arguments.insert(wanted.arguments.begin(), {"nohup"});
+  TerminalProcess process(wanted);
+  {
+    std::ifstream reader(at("pipe"));  // waits until the program writes
+    process.send_signal(SIGHUP);
+    const std::string written{std::istreambuf_iterator<char>(reader), {}};
+    EXPECT_EQ(std::ranges::count(written, '\n'), 2001);
+  }
+  EXPECT_EQ(process.finish().status, kDone);
+}
+
+TEST_F(CommandLine, LimitOfFileSize_Exit4AndNothingLeft) {
+  Command wanted = command(kTable);
+  wanted.arguments.insert(wanted.arguments.begin(), {"bash", "-c", "ulimit -f 1; exec \"$@\"", "bash"});
+  const Outcome outcome = run(wanted);
+  EXPECT_EQ(outcome.status, kIo);
+  expect_one_line(outcome.err);
+  EXPECT_EQ(names(), kInputFiles);
+}
+
+TEST_F(CommandLine, OutOfMemory_Exit6InOneLine) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer takes terabytes of addresses";
+#endif
+  std::string points = "theta_deg\n";
+  for (int i = 0; i < 4'000'000; ++i) points += "0\n";
+  put("points.csv", points);
+  Command wanted = command(kEval + std::vector<std::string>{"--evaluator", "cpu"});
+  wanted.arguments.insert(wanted.arguments.begin(), {"bash", "-c", "ulimit -v 400000; exec \"$@\"", "bash"});
+  const Outcome outcome = run(wanted);
+  EXPECT_EQ(outcome.status, kMemory);
+  expect_one_line(outcome.err);
+  EXPECT_NE(outcome.err.find("out of memory: more than"), std::string::npos) << outcome.err;
+  EXPECT_EQ(names(), kInputFiles);
 }
 
 TEST_F(CommandLine, Interrupt_WaitingForInput_Ends) {

@@ -1,10 +1,13 @@
 // The program from outside: what its commands write and report.
 #include <gtest/gtest.h>
 #include <sched.h>
+#include <sys/stat.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "cli_support.hpp"
 #include "table/table_file.hpp"
@@ -301,6 +304,19 @@ TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringL
     EXPECT_TRUE(json::parse(with({"--json"}).out)["scattering_gap"].is_null());  // masking integral
     EXPECT_EQ(with({}).out.find("scattering"), std::string::npos);
   }
+}
+
+TEST_F(CommandLine, Json_WallTime_CountsTheWriting) {
+  ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
+  // Until somebody reads the pipe, nobody can write to it.
+  const std::jthread reader([this] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    content("pipe");
+  });
+  const Outcome outcome =
+      dolp({"eval", "scene.toml", "--points", "points.csv", "-o", "pipe", "--json", "--evaluator", "cpu"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_GT(json::parse(outcome.out)["wall_s"], 1.0);
 }
 
 TEST_F(CommandLine, Json_StatusCounts_AreThoseOfTheEntries) {

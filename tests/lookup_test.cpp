@@ -1,6 +1,7 @@
 // Interpolation in a table: stencils, made-up tables with known values between the entries, and their stated errors.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -238,6 +239,26 @@ TEST(TableLookup, QuantitiesThatTheTableLacks_AreNan) {
   EXPECT_TRUE(std::isnan(result.rho_i) && std::isnan(result.albedo) && std::isnan(result.rho_error_estimate));
   EXPECT_GT(result.dolp, 0.0);
   EXPECT_EQ(result.status, 0U);
+}
+
+TEST(TableLookup, VariablesThatEveryResultNeeds_AreNamedWhereTheyAreMissing) {
+  const auto expect_named = [](const Table& table, const std::string& variable) {
+    try {
+      const TableLookup lookup(table, 1e-4, "t.nc");
+      FAIL() << variable;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(), "t.nc: the variable " + variable + " is missing; lookup needs it");
+    }
+  };
+  const Table whole = made_up(range(0, 80, 9), {0.3}, {2.0});
+  for (const char* needed : {"dolp", "stokes_i", "stokes_q", "stokes_u", "stokes_v", "error_estimate", "rho_i"}) {
+    Table table = whole;
+    (table.*std::ranges::find(table_variables(), std::string_view(needed), &TableVariable::name)->values).clear();
+    expect_named(table, needed);
+  }
+  Table table = whole;
+  table.status.clear();
+  expect_named(table, "status");
 }
 
 TEST(TableLookup, AValueTwice_IsRefused) {

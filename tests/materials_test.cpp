@@ -1,5 +1,6 @@
 // Materials, the sun and the data files a scene can name.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 
@@ -285,7 +286,7 @@ TEST(MaterialFile_Wrong, NamesFileAndLine) {
   };
   const std::vector<Case> cases = {
       {"e.csv", "", "e.csv:1: no values of n"},
-      {"e.csv", "8,1.5,0\n", "e.csv:1: 8,1.5,0: the columns must be named first"},
+      {"e.csv", "8,1.5,0\n", "e.csv:1: the columns must be named first"},
       {"e.csv", "wl,n,k\n8,1.5\n", "e.csv:2: 8,1.5: 2 values; 3 are expected"},
       {"e.csv", "wl,n,k\n8,x,1\n", "e.csv:2: n = x: not a number"},
       {"e.csv", "wl,n,k\n8,0,1\n", "e.csv:2: n = 0: must be in (0, 1e6]"},
@@ -363,8 +364,8 @@ TEST(IrradianceFile_Wrong, NamesFileAndLine) {
       {"", "e.csv:1: no rows"},
       {"# only\nwavelength,irradiance\n", "e.csv:1: no rows"},
       {"wavelength,irradiance\nother,names\n", "e.csv:2: wavelength_um = other: not a number"},
-      {"8,1,2\n", "e.csv:1: 8,1,2: 3 columns"},
-      {"8,1\n9\n", "e.csv:2: 9: 1 columns"},
+      {"8,1,2\n", "e.csv:1: 3 columns"},
+      {"8,1\n9\n", "e.csv:2: 1 columns"},
       {"8,-1\n", "e.csv:1: irradiance = -1: must be in [0, inf)"},
       {"8,nan\n", "e.csv:1: irradiance = nan: not a number"},
       {"9,1\n8,1\n", "e.csv:2: wavelength_um = 8: must be greater than 9"},
@@ -374,6 +375,18 @@ TEST(IrradianceFile_Wrong, NamesFileAndLine) {
     const TemporaryFile file("e.csv", row.text);
     const std::string error = error_of(kScene, {"source.file=" + file.path()});
     EXPECT_TRUE(contains(error, row.expected)) << error << "\nwithout: " << row.expected;
+  }
+}
+
+TEST(NamedFile_ThatIsNoRegularFile, IsRefused) {
+  const TemporaryFile beside("beside", "");
+  const std::string pipe = beside.path() + ".pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string key : {"surface.material_file", "source.file"}) {
+    for (const std::string& path : {pipe, std::string("/dev/zero"), std::string("-")}) {
+      const std::string error = error_of(kScene, {key + "=" + path});
+      EXPECT_TRUE(error.ends_with(": is not a regular file")) << error;
+    }
   }
 }
 

@@ -39,7 +39,7 @@ room cli cli/options.hpp base evaluate evaluate/cpu evaluate/interpolation evalu
 declare -A library=(
   ['<(vulkan|vk_mem_alloc)']="evaluate/vulkan explore/window"
   ['<(GLFW|imgui)']="explore/window"
-  ['<netcdf']="table"
+  ['<hdf5']="table"
   ['<toml']="scene"
   ['<yaml']="scene"
   ['<CLI/']="calibrate cli evaluate/reference")

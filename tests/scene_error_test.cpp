@@ -123,9 +123,37 @@ TEST(SceneError_FileThatCannotBeRead, IsAnInputError) {
     return "no error";
   };
   EXPECT_EQ(error_of_path("absent.toml"), "absent.toml: cannot be read: No such file or directory");
+  EXPECT_EQ(error_of_path("/dev/zero"), "/dev/zero: is not a text: it holds a zero byte");
   EXPECT_EQ(error_of_path(kHostDir), kHostDir + ": cannot be read: Is a directory");
   const TemporaryFile empty("empty.toml", "");
   EXPECT_TRUE(contains(error_of_path(empty.path()), "empty.toml:1: surface.n: missing"));
+}
+
+TEST(SceneError_TooMuch, IsRefusedInOneShortLine) {
+  const auto repeated = [](const std::string& text, std::size_t count) {
+    std::string all;
+    for (std::size_t i = 0; i < count; ++i) all += text;
+    return all;
+  };
+  constexpr std::size_t kMany = 50'000;
+  const std::string deep = "nested deeper than 100";
+  EXPECT_EQ(error_of(kMinimal + repeated("a.", kMany) + "a = 1\n"), "s.toml:8: " + deep);
+  EXPECT_EQ(error_of(kMinimal + '[' + repeated("'a' . ", kMany) + "a]\n"), "s.toml:8: " + deep);
+  EXPECT_EQ(error_of(kMinimal + "a = " + repeated("{ a.a = [", 40)), "s.toml:8: " + deep);
+  EXPECT_TRUE(error_of(kMinimal, {repeated("a.", kMany) + "a=1"}).ends_with("...: " + deep));
+  EXPECT_TRUE(error_of(kMinimal, {"title={ " + repeated("a.", kMany) + "a=1}"}).ends_with("...: " + deep));
+  EXPECT_TRUE(contains(error_of(kMinimal + std::string(kMany, 'a') + " = 1\n"), "s.toml:8: spectrum.aaa"));
+  EXPECT_LT(error_of(kMinimal + std::string(kMany, 'a') + " = 1\n").size(), 300U);
+  EXPECT_EQ(error_of(kMinimal + '#' + std::string(16U << 20U, ' ')), "s.toml: is longer than 16777216 bytes");
+  EXPECT_TRUE(contains(error_of(kMinimal + "[grid]\nq = [" + repeated("2,", 1'000'001) + "]\n"),
+                       "1000001 values; must be at most 1000000"));
+}
+
+TEST(Scene_DotsThatNestNothing, AreAccepted) {
+  const std::string dots(200, '.');
+  parse("title = \"\"\"" + dots + "\\\"\n[[{\"\"\"  # " + dots + "\n" + kMinimal +
+        "[grid]\ntheta_deg = [0.1, 0.2,\n0.3]\n");
+  EXPECT_EQ(parse(kMinimal, {"title='" + dots + "'"}).title, dots);
 }
 
 TEST(SceneError_RandomBytes, IsAlwaysOneLineAndAlwaysAnInputError) {

@@ -209,6 +209,17 @@ TEST(Scene_EveryNumber, RefusesWhatIsOutOfRangeNotFiniteOrNoNumber) {
   }
 }
 
+TEST(Scene_EveryNumber, TakesIntegersThatNoDoubleHolds) {
+  const std::string integer = "9007199254740993";  // 2^53 + 1
+  for (const KeyDescription& key : scene_keys()) {
+    if (key.type != KeyDescription::Type::kNumber && key.type != KeyDescription::Type::kAxis) continue;
+    if (std::isinf(key.range.max)) continue;
+    const std::string error = error_of(kMinimal, {key.key + "=" + integer});
+    EXPECT_TRUE(contains(error, "out of range")) << error;
+  }
+  EXPECT_EQ(parse(kMinimal + "[source]\nirradiance = " + integer).source->irradiance, 9007199254740993.0);
+}
+
 TEST(Scene_EveryWord, NamesTheAllowedWords) {
   for (const KeyDescription& key : scene_keys()) {
     if (key.type != KeyDescription::Type::kWord) continue;

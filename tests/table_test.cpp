@@ -2,27 +2,35 @@
 #include "table/table.hpp"
 #include "base/number_text.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
 #include <netcdf.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <limits>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
+#include "base/printable_text.hpp"
 #include "table/table_file.hpp"
 
 namespace {
@@ -75,6 +83,8 @@ Table sample_table(std::size_t thetas, std::size_t sigmas, std::size_t qs) {
   }
   table.error_estimate.front() = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < table.size(); ++i) table.status.push_back(static_cast<std::uint32_t>(i % 16));
+  table.index_n = {{8.0, 10.0}, {1.5, 1.6}};
+  table.index_k = {{9.0}, {0.1}};
   table.attributes = {
       {"title", "Stainless steel, 10.6 µm"}, {"tolerance", 1e-4}, {"scene", "a = 1\nb = 2\n"}, {"driver", ""}};
   return table;
@@ -96,28 +106,39 @@ void expect_same(const Table& actual, const Table& expected) {
     expect_same(actual.*variable.values, expected.*variable.values, variable.name);
   }
   EXPECT_EQ(actual.status, expected.status);
+  for (const TableCurve& described : kTableCurves) EXPECT_EQ(actual.*described.curve, expected.*described.curve);
   EXPECT_EQ(actual.stokes_units, expected.stokes_units);
   EXPECT_EQ(actual.attributes, expected.attributes);
 }
 
+/// A limit of the process, for as long as the object lives.
+class Limit {
+ public:
+  Limit(__rlimit_resource resource, rlim_t value) : resource_(resource) {
+    ::getrlimit(resource_, &before_);
+    const rlimit limit{value, before_.rlim_max};
+    ::setrlimit(resource_, &limit);
+  }
+  Limit(const Limit&) = delete;
+  Limit& operator=(const Limit&) = delete;
+  ~Limit() { ::setrlimit(resource_, &before_); }
+
+ private:
+  __rlimit_resource resource_;
+  rlimit before_{};
+};
+
 /// Limits the size of files the process writes, as a full disk would.
 class FullDisk {
  public:
-  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
+  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)), limit_(RLIMIT_FSIZE, bytes) {}
   FullDisk(const FullDisk&) = delete;
   FullDisk& operator=(const FullDisk&) = delete;
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
+  ~FullDisk() { std::signal(SIGXFSZ, handler_); }
 
  private:
   void (*handler_)(int);
-  rlimit before_{};
+  Limit limit_;
 };
 
 // ---- NetCDF ---------------------------------------------------------------------------------------------------------
@@ -181,7 +202,7 @@ TEST_F(TableFiles, Netcdf_Metadata_FollowsCf) {
 }
 
 TEST_F(TableFiles, ReadTable_WhatIsNoTable_IsRefusedByName) {
-  EXPECT_THROW(read_table(at("missing.nc")), IoError);
+  EXPECT_THROW(read_table(at("missing.nc")), InputError);
   put(at("text.nc"), "theta,sigma,q\n");
   EXPECT_THROW(read_table(at("text.nc")), InputError);
   int file = 0;
@@ -210,6 +231,139 @@ TEST_F(TableFiles, ReadTable_VariableOverOtherAxes_IsRefused) {
   ASSERT_EQ(nc_def_var(file, "dolp", NC_DOUBLE, 2, dimensions.data(), &variable), NC_NOERR);
   ASSERT_EQ(nc_close(file), NC_NOERR);
   EXPECT_THROW(read_table(at("flat.nc")), InputError);
+}
+
+/// A file that claims axes of these lengths and holds no values of dolp.
+void put_claim(const fs::path& path, const std::array<std::size_t, 3>& lengths) {
+  const std::array<const char*, 3> axes = {"theta", "sigma", "q"};
+  std::array<int, 3> dimensions{};
+  int file = 0;
+  int variable = 0;
+  ASSERT_EQ(nc_create(path.c_str(), NC_NETCDF4, &file), NC_NOERR);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    ASSERT_EQ(nc_def_dim(file, axes[i], lengths[i], &dimensions[i]), NC_NOERR);
+    ASSERT_EQ(nc_def_var(file, axes[i], NC_DOUBLE, 1, &dimensions[i], &variable), NC_NOERR);
+    const std::size_t chunk = std::min<std::size_t>(lengths[i], 1000);
+    ASSERT_EQ(nc_def_var_chunking(file, variable, NC_CHUNKED, &chunk), NC_NOERR);
+  }
+  ASSERT_EQ(nc_def_var(file, "dolp", NC_DOUBLE, 3, dimensions.data(), &variable), NC_NOERR);
+  ASSERT_EQ(nc_def_var_chunking(file, variable, NC_CHUNKED, std::array<std::size_t, 3>{1, 1, 1}.data()), NC_NOERR);
+  ASSERT_EQ(nc_close(file), NC_NOERR);
+}
+
+TEST_F(TableFiles, ReadTable_SizesThatNoTableHas_AreRefusedByName) {
+  struct Claim {
+    std::array<std::size_t, 3> lengths;
+    const char* message;
+  };
+  // The product of the first wraps to 3456 modulo 2^64.
+  for (const Claim& claim : {Claim{{6365383, 1165742, 2485952}, "theta: 50923064 bytes are claimed, which a file of"},
+                             Claim{{1ULL << 60U, 1, 1}, "theta: 1152921504606846976 values"},
+                             Claim{{4096, 4096, 2}, "q: 2 values; a table has at most 16777216 entries"},
+                             Claim{{4096, 4000, 1}, "dolp: 131072000 bytes are claimed, which a file of"}}) {
+    put_claim(at("claim.nc"), claim.lengths);
+    try {
+      read_table(at("claim.nc"));
+      FAIL() << claim.message;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(claim.message), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST_F(TableFiles, Netcdf_OtherWriter_CanAppend) {
+  const Table table = sample_table(3, 2, 2);
+  write_table(table, at("t.nc"));
+  int file = 0;
+  ASSERT_EQ(nc_open(at("t.nc").c_str(), NC_WRITE, &file), NC_NOERR);
+  const std::string note = "seen";
+  int variable = 0;
+  std::array<int, 3> dimensions{};
+  const std::vector<double> twice(table.size(), 2.0);
+  EXPECT_EQ(nc_redef(file), NC_NOERR);
+  EXPECT_EQ(nc_put_att_text(file, NC_GLOBAL, "note", note.size(), note.data()), NC_NOERR);
+  EXPECT_EQ(nc_inq_varid(file, "dolp", &variable), NC_NOERR);
+  EXPECT_EQ(nc_inq_vardimid(file, variable, dimensions.data()), NC_NOERR);
+  EXPECT_EQ(nc_def_var(file, "mine", NC_DOUBLE, 3, dimensions.data(), &variable), NC_NOERR);
+  EXPECT_EQ(nc_enddef(file), NC_NOERR);
+  EXPECT_EQ(nc_put_var_double(file, variable, twice.data()), NC_NOERR);
+  EXPECT_EQ(nc_close(file), NC_NOERR);
+  Table expected = table;
+  expected.attributes.push_back({"note", note});
+  expect_same(read_table(at("t.nc")), expected);
+}
+
+TEST_F(TableFiles, Netcdf_LongTexts_AreKept) {
+  Table table = sample_table(3, 2, 2);
+  for (Attribute& attribute : table.attributes) {
+    if (attribute.name == "scene") attribute.value = std::string(100'000, '#') + "\n";
+  }
+  std::swap(*std::ranges::find(table.attributes, "scene", &Attribute::name), table.attributes.back());
+  write_table(table, at("t.nc"));
+  expect_same(read_table(at("t.nc")), table);
+  int file = 0;
+  int variable = 0;
+  nc_type type = NC_NAT;
+  ASSERT_EQ(nc_open(at("t.nc").c_str(), NC_WRITE, &file), NC_NOERR);
+  ASSERT_EQ(nc_inq_varid(file, "scene", &variable), NC_NOERR);
+  EXPECT_EQ(nc_inq_vartype(file, variable, &type), NC_NOERR);
+  EXPECT_EQ(type, NC_CHAR);
+  EXPECT_EQ(nc_close(file), NC_NOERR);
+}
+
+TEST_F(TableFiles, Netcdf_FlippedBit_IsFoundOrChangesNothing) {
+  const Table table = sample_table(12, 6, 4);
+  write_table(table, at("t.nc"));
+  const std::string bytes = content(at("t.nc"));
+  constexpr std::uint64_t kSeed = 4;
+  std::cout << "seed " << kSeed << '\n';
+  std::mt19937_64 random(kSeed);
+  int found = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    std::string damaged = bytes;
+    damaged[random() % damaged.size()] ^= static_cast<char>(1 << random() % 8);
+    put(at("damaged.nc"), damaged);
+    try {
+      const Table read = read_table(at("damaged.nc"));
+      expect_same(read, table);
+      if (HasFailure()) return;
+    } catch (const InputError&) {
+      ++found;
+    }
+  }
+  EXPECT_GT(found, 500);
+}
+
+TEST_F(TableFiles, ReadTable_ValuesInAnotherFile_AreRefused) {
+  put(at("secret"), std::string(80, 'x'));
+  const hid_t file = H5Fcreate(at("t.nc").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hsize_t count = 10;
+  const hid_t space = H5Screate_simple(1, &count, nullptr);
+  const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+  ASSERT_GE(H5Pset_external(creation, at("secret").c_str(), 0, 80), 0);
+  const hid_t theta = H5Dcreate2(file, "theta", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+  ASSERT_GE(theta, 0);
+  H5Dclose(theta);
+  H5Lcreate_external(at("other.nc").c_str(), "/theta", file, "linked", H5P_DEFAULT, H5P_DEFAULT);
+  H5Pclose(creation);
+  H5Sclose(space);
+  H5Fclose(file);
+  EXPECT_THROW(read_table(at("t.nc")), InputError);
+  const hid_t again = H5Fopen(at("t.nc").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  H5Ldelete(again, "theta", H5P_DEFAULT);
+  H5Lmove(again, "linked", again, "theta", H5P_DEFAULT, H5P_DEFAULT);
+  H5Fclose(again);
+  try {
+    read_table(at("t.nc"));
+    FAIL() << "no exception";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("theta: is a link"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(TableFiles, ReadTable_Pipe_IsRefused) {
+  ASSERT_EQ(::mkfifo(at("t.nc").c_str(), 0600), 0);
+  EXPECT_THROW(read_table(at("t.nc")), InputError);
 }
 
 // ---- CSV and NPY ----------------------------------------------------------------------------------------------------
@@ -298,6 +452,16 @@ TEST(NumberText, Doubles_ReadBack) {
   EXPECT_EQ(number_text(-std::numeric_limits<double>::infinity()), "-inf");
 }
 
+TEST(PrintableLine, WhatATerminalObeys_IsReplaced) {
+  EXPECT_EQ(printable_line("10.6 \u00b5m, \u03c3\t\u20ac \U0001d70c"), "10.6 \u00b5m, \u03c3\t\u20ac \U0001d70c");
+  EXPECT_EQ(printable_line("\x1b]0;title\a\r\n\x7f"), "?]0;title????");
+  EXPECT_EQ(printable_line("\u009b31m\u2028\u202e\u2066"), "?31m???");
+  // Lone, cut, overlong and surrogate bytes.
+  EXPECT_EQ(printable_line("a\x80z\xc3"), "a?z?");
+  EXPECT_EQ(printable_line("\xc0\xaf\xe0\x80\xaf\xed\xa0\x80"), "????????");
+  EXPECT_EQ(printable_line(std::string_view("\0", 1)), "?");
+}
+
 // ---- Paths that cannot be written -----------------------------------------------------------------------------------
 
 TEST_F(TableFiles, CheckOutputPath_WrongPaths_AreRefusedBeforeAnyWork) {
@@ -361,6 +525,55 @@ TEST_F(TableFiles, WriteTable_DiskFull_LeavesNothingOrWhatWasThere) {
   // The libraries below still work.
   write_table(table, at("t.nc"));
   expect_same(read_table(at("t.nc")), table);
+}
+
+TEST_F(TableFiles, WriteTable_OutOfMemory_LeavesNothing) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer takes terabytes of addresses";
+#endif
+  const Table table = sample_table(128, 64, 32);  // a file of 35 MB
+  {
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    constexpr rlim_t kFree = 20'000'000;
+    const Limit memory(RLIMIT_AS, pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + kFree);
+    EXPECT_THROW(write_table(table, at("t.nc")), std::bad_alloc);
+  }
+  EXPECT_EQ(names(), std::vector<std::string>{});
+  write_table(table, at("t.nc"));
+  expect_same(read_table(at("t.nc")), table);
+}
+
+TEST_F(TableFiles, WriteText_Killed_LeavesNothing) {
+  const pid_t writer = ::fork();
+  ASSERT_GE(writer, 0);
+  if (writer == 0) {
+    // Writing beyond the limit ends the process, without its destructors.
+    const FullDisk full(100'000);
+    std::signal(SIGXFSZ, SIG_DFL);
+    write_text_atomically(at("t.csv"), std::string(200'000, 'x'));
+    ::_exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(writer, &status, 0), writer);
+  EXPECT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(names(), std::vector<std::string>{});
+}
+
+TEST_F(TableFiles, WriteText_TemporaryFilesOfTheDead_AreClearedAway) {
+  const auto put_old = [this](const std::string& name) {
+    put(at(name), "part");
+    fs::last_write_time(at(name), fs::file_time_type::clock::now() - std::chrono::hours(1));
+  };
+  put_old(".dolp-1-0.tmp");
+  put_old(".dolp-2-0.tmp");
+  put_old(".other.tmp");
+  put(at(".dolp-3-0.tmp"), "young");
+  const int alive = ::open(at(".dolp-2-0.tmp").c_str(), O_WRONLY | O_CLOEXEC);
+  ASSERT_EQ(::flock(alive, LOCK_EX), 0);
+  write_text_atomically(at("t.csv"), "text");
+  ::close(alive);
+  EXPECT_EQ(names(), (std::vector<std::string>{".dolp-2-0.tmp", ".dolp-3-0.tmp", ".other.tmp", "t.csv"}));
 }
 
 TEST_F(TableFiles, WriteText_ExistingFile_IsReplacedWithItsPermissions) {

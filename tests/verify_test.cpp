@@ -285,12 +285,38 @@ TEST_F(Verify, FilesOfTheScene_AreFoundFromWhereTheTableWasMade) {
   put("folder/scene.toml", scene);
   const Outcome made = dolp({"table", "folder/scene.toml", "-o", "t.nc", "--quiet", "--evaluator", "cpu"});
   ASSERT_EQ(made.status, kDone) << made.err;
-  verify_json(kDone);
+  verify_json(kDone, {"--named-files"});
   std::filesystem::remove(at("folder/index.csv"));
-  const Outcome outcome = dolp({"verify", "t.nc"});
+  const Outcome outcome = dolp({"verify", "t.nc", "--named-files"});
   EXPECT_EQ(outcome.status, kInput);
   EXPECT_NE(outcome.err.find("surface.material_file = \"index.csv\": cannot be read"), std::string::npos)
       << outcome.err;
+}
+
+TEST_F(Verify, TheTableAlone_IsSufficient) {
+  put("index.csv", "wavelength_um,n,k\n7,1.4,0.1\n9,1.5,0.1\n13,1.6,0.1\n");
+  put("formula.yml", "DATA:\n  - type: formula 5\n    wavelength_range: 7 13\n    coefficients: 1.5 0.01 1\n");
+  put("light.csv", "7,1\n9,3\n13,2\n");
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--set", "surface.material_file=index.csv"},
+        {"--set", "surface.material_file=index.csv", "--set", "spectrum.band_um=[8, 12]"},
+        {"--set", "surface.material_file=formula.yml", "--set", "spectrum.band_um=[8, 12]", "--set",
+         "source.file=light.csv"},
+        {"--set", "surface.material=iron", "--set", "source.preset=sun"}}) {
+    put("index.csv", "wavelength_um,n,k\n7,1.4,0.1\n9,1.5,0.1\n13,1.6,0.1\n");
+    const Table table = make_table(options);
+    EXPECT_FALSE(table.index_n.values.empty());
+    const nlohmann::json before = verify_json(kDone, {"--named-files"})["quantities"];
+    // What the file says now is of no interest.
+    put("index.csv", "wavelength_um,n,k\n7,2.4,0.1\n13,2.6,0.1\n");
+    EXPECT_EQ(verify_json(kDone)["quantities"], before) << options[1];
+  }
+  Table old = make_table({"--set", "surface.material_file=index.csv"});
+  old.index_n = {};
+  write_table(old, at("t.nc"));
+  const Outcome outcome = dolp({"verify", "t.nc"});
+  EXPECT_EQ(outcome.status, kInput);
+  EXPECT_NE(outcome.err.find("is not in the table; dolp verify --named-files"), std::string::npos) << outcome.err;
 }
 
 TEST_F(Verify, WrongFiles_Exit2InOneLine) {

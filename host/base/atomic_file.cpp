@@ -1,17 +1,19 @@
 #include "base/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <cerrno>
-#include <charconv>
-#include <cmath>
+#include <ctime>
 #include <system_error>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/interrupt.hpp"
+#include "base/progress.hpp"
 
 namespace dolp {
 namespace {
@@ -20,8 +22,12 @@ namespace fs = std::filesystem;
 
 constexpr int kMostLinks = 40;
 constexpr int kMostNames = 1000;
+constexpr std::size_t kBytesAtOnce = 1U << 20U;
+constexpr std::time_t kLockedAfter_s = 60;  // a writer has its lock by then
+constexpr const char* kOpenFiles = "/proc/self/fd";
 constexpr mode_t kNewFileMode = 0666;
 constexpr mode_t kPermissionBits = 0777;
+constexpr mode_t kWriteBits = 0222;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what) { throw IoError(path.string() + ": " + what); }
 
@@ -47,7 +53,7 @@ class File {
   int descriptor_;
 };
 
-/// A file name that is unlinked unless it was released.
+/// A file name, if any, that is unlinked unless it was released.
 class Temporary {
  public:
   explicit Temporary(fs::path path) : path_(std::move(path)) {}
@@ -56,6 +62,7 @@ class Temporary {
   ~Temporary() {
     if (!path_.empty()) ::unlink(path_.c_str());
   }
+  void take(fs::path path) { path_ = std::move(path); }
   void release() { path_.clear(); }
 
  private:
@@ -84,7 +91,8 @@ bool is_device_or_pipe(const fs::path& path) {
 
 void write_all(int descriptor, const fs::path& path, std::string_view content) {
   while (!content.empty()) {
-    const ssize_t written = ::write(descriptor, content.data(), content.size());
+    if (interrupted()) throw Cancelled{};
+    const ssize_t written = ::write(descriptor, content.data(), std::min(content.size(), kBytesAtOnce));
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail_errno(path, "cannot write");
     content.remove_prefix(static_cast<std::size_t>(written));
@@ -93,31 +101,67 @@ void write_all(int descriptor, const fs::path& path, std::string_view content) {
 
 void write_directly(const fs::path& path, std::string_view content) {
   File file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  if (file.get() < 0 && interrupted()) throw Cancelled{};
   if (file.get() < 0) fail_errno(path, "cannot open for writing");
   write_all(file.get(), path, content);
   if (!file.close()) fail_errno(path, "cannot write");
 }
 
-struct NamedFile {
-  fs::path path;
-  File file;
-};
+fs::path temporary_name(const fs::path& target, int number) {
+  return folder_of(target) / (".dolp-" + std::to_string(::getpid()) + "-" + std::to_string(number) + ".tmp");
+}
 
-/// Creates an empty file of a new name beside `target`, with the permissions that the target has or would get.
-NamedFile create_temporary(const fs::path& target) {
+/// Calls make(name) with names beside `target` until it returns something else than -1 with EEXIST.
+template <class Make>
+std::pair<fs::path, int> with_new_name(const fs::path& target, const Make& make) {
   for (int i = 0; i < kMostNames; ++i) {
-    const fs::path path =
-        folder_of(target) / (".dolp-" + std::to_string(::getpid()) + "-" + std::to_string(i) + ".tmp");
-    File file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kNewFileMode));
-    if (file.get() < 0 && errno == EEXIST) continue;
-    if (file.get() < 0) fail_errno(target, "cannot create a file in its folder");
-    struct stat existing {};
-    const bool exists = ::stat(target.c_str(), &existing) == 0;
-    // Permissions that cannot be kept are no reason to lose the result.
-    if (exists) static_cast<void>(!::fchmod(file.get(), existing.st_mode & kPermissionBits));
-    return {path, std::move(file)};
+    const fs::path name = temporary_name(target, i);
+    const int result = make(name);
+    if (result < 0 && errno == EEXIST) continue;
+    if (result < 0) fail_errno(target, "cannot create a file in its folder");
+    return {name, result};
   }
   fail(target, "too many temporary files in its folder; remove .dolp-*.tmp");
+}
+
+/// Removes temporary files that nobody writes any more: their writer holds a lock, on network file systems too.
+void clear_away_left_ones(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(".dolp-") || !name.ends_with(".tmp")) continue;
+    struct stat found {};
+    const File file(::open(entry->path().c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    if (file.get() < 0 || ::fstat(file.get(), &found) != 0 || !S_ISREG(found.st_mode)) continue;
+    const bool is_new = found.st_mtime + kLockedAfter_s > std::time(nullptr);
+    if (!is_new && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0) ::unlink(entry->path().c_str());
+  }
+}
+
+/// A file that has no name yet, or a temporary one, with the permissions that the target has or would get.
+struct NewFile {
+  File file;
+  fs::path name;  ///< empty while there is none
+};
+
+NewFile create_temporary(const fs::path& target) {
+  clear_away_left_ones(folder_of(target));
+  const bool can_be_linked = ::access(kOpenFiles, X_OK) == 0;
+  const int unnamed =
+      can_be_linked ? ::open(folder_of(target).c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, kNewFileMode) : -1;
+  if (unnamed >= 0) return {File(unnamed), {}};
+  auto [name, named] = with_new_name(target, [](const fs::path& path) {
+    return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kNewFileMode);
+  });
+  ::flock(named, LOCK_EX | LOCK_NB);  // where there are no locks nothing is cleared away either
+  return {File(named), name};
+}
+
+void keep_permissions(const File& file, const fs::path& target) {
+  struct stat existing {};
+  const bool exists = ::stat(target.c_str(), &existing) == 0;
+  // Permissions that cannot be kept are no reason to lose the result.
+  if (exists) static_cast<void>(!::fchmod(file.get(), existing.st_mode & kPermissionBits));
 }
 
 void sync_folder(const fs::path& folder, const fs::path& path) {
@@ -127,10 +171,19 @@ void sync_folder(const fs::path& folder, const fs::path& path) {
 }
 
 void write_and_rename(const fs::path& path, const fs::path& target, std::string_view content) {
-  auto [name, file] = create_temporary(target);
+  auto [file, name] = create_temporary(target);
   Temporary temporary(name);
+  keep_permissions(file, target);
   write_all(file.get(), path, content);
-  if (::fsync(file.get()) != 0 || !file.close()) fail_errno(path, "cannot write");
+  if (::fsync(file.get()) != 0) fail_errno(path, "cannot write");
+  if (name.empty()) {
+    const std::string open_file = std::string(kOpenFiles) + '/' + std::to_string(file.get());
+    name = with_new_name(target, [&](const fs::path& free_name) {
+             return ::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, free_name.c_str(), AT_SYMLINK_FOLLOW);
+           }).first;
+    temporary.take(name);
+  }
+  if (!file.close()) fail_errno(path, "cannot write");
   if (::rename(name.c_str(), target.c_str()) != 0) fail_errno(path, "cannot rename the finished file");
   temporary.release();
   sync_folder(folder_of(target), path);
@@ -148,6 +201,11 @@ void check_writable(const fs::path& path) {
     return;
   }
   if (target.filename().empty()) fail(path, "is not a file name");
+  struct stat existing {};
+  // Root may write to what is read-only, but did not say so.
+  if (::stat(target.c_str(), &existing) == 0 && (existing.st_mode & kWriteBits) == 0) {
+    fail(path, "is read-only; remove it first, or write to another file");
+  }
   const fs::path folder = folder_of(target);
   if (!fs::is_directory(folder, error)) fail(path, "there is no folder " + folder.string());
   if (::access(folder.c_str(), W_OK | X_OK) != 0) fail_errno(path, "cannot write to the folder " + folder.string());

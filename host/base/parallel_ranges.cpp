@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -49,7 +50,11 @@ void parallel_ranges(std::size_t count, std::size_t grain,
   std::vector<std::jthread> threads;
   const std::size_t useful = (count + grain - 1) / grain;
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  for (std::size_t i = 1; i < std::min(cores, useful); ++i) threads.emplace_back(&Loop::work, &loop);
+  try {
+    for (std::size_t i = 1; i < std::min(cores, useful); ++i) threads.emplace_back(&Loop::work, &loop);
+  } catch (const std::system_error&) {
+    // Where memory is short the threads that there are do the work.
+  }
   loop.work();
   threads.clear();  // waits for them
   loop.rethrow();

@@ -5,6 +5,8 @@
 
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
+#include "base/interrupt.hpp"
+#include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 #include "cli/commands.hpp"
 #include "cli/run_report.hpp"
@@ -84,7 +86,11 @@ int run_lookup(const Options& options) {
   const std::vector<double> q = values_of({"q", points.q, lookup.q(), scene.surface.q}, points);
   check_writable(options.output_path);
   std::vector<PointResult> results;
-  for (std::size_t i = 0; i < points.size(); ++i) results.push_back(lookup.at(theta[i], sigma[i], q[i]));
+  watch_for_interrupts();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (interrupted()) throw Cancelled{};
+    results.push_back(lookup.at(theta[i], sigma[i], q[i]));
+  }
   write_text_atomically(options.output_path, result_csv(points, results, lookup.extra_columns()));
 
   const std::size_t missed = count_status(results, kStatusToleranceMissed);

@@ -4,6 +4,7 @@
 #include <malloc.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <limits>
 #include <string>
@@ -13,14 +14,12 @@
 #include "cli/commands.hpp"
 #include "model/choices.hpp"
 #include "scene/number_range.hpp"
+#include "table/table.hpp"
 #include "terminal/exit_status.hpp"
 #include "terminal/guarded.hpp"
 
 namespace dolp::cli {
 namespace {
-
-// The most entries that a table has.
-constexpr std::size_t kMostSamples = 1U << 24U;
 
 void add_overrides(CLI::App& command, Options& options) {
   command.add_option("--set", options.overrides, "KEY=VALUE: any scene key, e.g. surface.masking=none")
@@ -75,13 +74,22 @@ void add_lookup(CLI::App& command, Options& options) {
   command.add_flag("--strict", options.strict, "exit 1 if any point misses the table's tolerance");
 }
 
+/// A whole number with a minus sign would pass as 2^64 less it.
+std::string not_negative(const std::string& value) {
+  return value.starts_with('-') ? "must be a whole number from 0 on, not " + value : "";
+}
+
 void add_verify(CLI::App& command, Options& options) {
   CLI::Option* table = command.add_option("TABLE", options.table_path, "table file (.nc) that dolp table wrote");
   const auto of_table = [&](CLI::Option* option) { option->needs(table); };
   of_table(command.add_option("--samples", options.samples, "entries to recompute; all when the table has no more")
-               ->check(CLI::Range(std::size_t{1}, kMostSamples))
+               ->check(CLI::Range(std::size_t{1}, kMostTableEntries))
                ->capture_default_str());
-  of_table(command.add_option("--seed", options.seed, "seed of their choice")->capture_default_str());
+  of_table(command.add_option("--seed", options.seed, "seed of their choice")
+               ->check(not_negative, "")
+               ->capture_default_str());
+  of_table(command.add_flag("--named-files", options.named_files,
+                            "take n, k and E0 from where the scene says, not from the table"));
   CLI::Option* hard = command.add_flag("--hard-cases", options.hard_cases,
                                        "examine a device with the model's hard cases, in float and double");
   hard->excludes(table);
@@ -98,6 +106,21 @@ void add_verify(CLI::App& command, Options& options) {
   of_device(command.add_flag("--all", options.all, "report every case"));
   command.add_flag("--json", options.json, "machine-readable report of everything compared");
   command.add_flag("--quiet", options.quiet, "no report and no progress bar; the exit status says it");
+}
+
+/// Refuses empty values of options: they would pass as options that are not there.
+void refuse_empty_values(CLI::App& command) {
+  for (CLI::Option* option : command.get_options()) {
+    if (option->get_items_expected_max() == 0) continue;  // a flag
+    option->check([](const std::string& value) { return std::string(value.empty() ? "must not be empty" : ""); }, "");
+  }
+}
+
+/// Refuses a device for an evaluator that has none.
+void check_device(const Options& options) {
+  if (options.device.empty() || options.evaluator == "vulkan") return;
+  throw InputError(
+      fmt::format("--device {}: needs --evaluator vulkan, and it is {}", options.device, options.evaluator));
 }
 
 /// Runs the command that the arguments name.
@@ -157,12 +180,14 @@ int parse_and_run(int argc, char** argv) {
   devices->add_flag("--json", options.json, "machine-readable list");
   devices->add_option("--device", options.device, "check this one: its position or a part of its name");
 
+  for (CLI::App* command : app.get_subcommands({})) refuse_empty_values(*command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     return fail("dolp", kExitInput, usage_message(app, error));
   }
+  check_device(options);
   const int status = run(app, options);
   if (std::fflush(stdout) != 0) throw dolp::IoError("standard output: cannot write the report");
   return status;
@@ -179,6 +204,7 @@ void keep_freed_memory() {
 }  // namespace dolp::cli
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of its writing
   dolp::cli::keep_freed_memory();
   return dolp::guarded("dolp", [&] { return dolp::cli::parse_and_run(argc, argv); });
 }

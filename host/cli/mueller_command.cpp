@@ -36,8 +36,8 @@ std::string csv_text(const Points& points, const std::vector<MuellerElements>& r
 int run_mueller(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   check_one_stdin(options);
-  check_output_is_no_input(options);
   const Scene scene = load_scene(options);
+  check_output_is_no_input(options, scene.files);
   const Points points = read_points(options.points_path, PointsKind::kGeometries);
   const std::vector<MuellerPoint> geometries = mueller_points(scene, points);
   check_writable(options.output_path);

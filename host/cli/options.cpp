@@ -13,8 +13,10 @@
 
 namespace dolp::cli {
 
-void check_output_is_no_input(const Options& options) {
-  for (const std::string& input : {options.scene_path, options.points_path, options.table_path}) {
+void check_output_is_no_input(const Options& options, const std::vector<std::string>& scene_files) {
+  std::vector<std::string> inputs = {options.scene_path, options.points_path, options.table_path};
+  inputs.insert(inputs.end(), scene_files.begin(), scene_files.end());
+  for (const std::string& input : inputs) {
     std::error_code missing;  // a file that is not there is not the same file
     if (std::filesystem::equivalent(options.output_path, input, missing)) {
       throw InputError(options.output_path + ": the output would overwrite an input");

@@ -29,6 +29,7 @@ struct Options {
   bool keep_all = false;        ///< drop no effect
   std::size_t samples = 64;     ///< of verify: entries to recompute
   std::uint64_t seed = 1;       ///< of verify: of their choice
+  bool named_files = false;     ///< of verify: n, k and E0 from the files that the scene names
   bool hard_cases = false;      ///< of verify: examine a device instead of a table
   bool all = false;             ///< of verify: report every hard case
   std::size_t frames = 0;       ///< of explore: draw so many and end; 0: until the window is closed
@@ -37,9 +38,9 @@ struct Options {
   std::string command_line;     ///< for the table's history
 };
 
-/// Refuses to write over the scene or the points.
+/// Refuses to write over the scene, a file that it names, the points or the table.
 /// Errors: InputError.
-void check_output_is_no_input(const Options& options);
+void check_output_is_no_input(const Options& options, const std::vector<std::string>& scene_files = {});
 
 /// Refuses to read scene and points from stdin both.
 /// Errors: InputError.

@@ -21,7 +21,8 @@ void Report::add(const char* path, const std::vector<Report>& parts) {
 void Report::print(bool json, bool quiet, const std::string& output) const {
   std::FILE* const out = output == "-" ? stderr : stdout;
   if (json) {
-    fmt::print(out, "{}\n", json_.dump(2));
+    // ASCII alone, so that a terminal shows it safely; names of files need not be UTF-8.
+    fmt::print(out, "{}\n", json_.dump(2, ' ', true, Json::error_handler_t::replace));
   } else if (!quiet) {
     fmt::print(out, "{}", text_);
   }

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/printable_text.hpp"
+
 namespace dolp::cli {
 
 /// A value and its key in JSON: a path, whose parts are separated by slashes.
@@ -34,7 +36,7 @@ class Report {
   /// A line that begins as `text` says.
   template <class... Args>
   void line(fmt::format_string<const Args&...> text, const Args&... args) {
-    text_ += fmt::format(text, args...) + '\n';
+    text_ += printable_line(fmt::format(text, args...)) + '\n';
     (record(args), ...);
   }
 
@@ -47,7 +49,9 @@ class Report {
   /// A line with a label that people see on a condition; programs always get its values.
   template <class... Args>
   void row_if(bool is_shown, std::string_view label, fmt::format_string<const Args&...> text, const Args&... args) {
-    if (is_shown) text_ += fmt::format("  {:<{}} {}\n", label, label_width_, fmt::format(text, args...));
+    if (is_shown) {
+      text_ += fmt::format("  {:<{}} {}\n", label, label_width_, printable_line(fmt::format(text, args...)));
+    }
     (record(args), ...);
   }
 

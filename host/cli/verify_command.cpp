@@ -24,7 +24,8 @@ constexpr double kDefaultTolerance = 1e-4;
 int verify_table(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   const Table table = load_table(options.table_path);
-  const Scene scene = table_scene(table, options.table_path);
+  const Scene scene =
+      table_scene(table, options.table_path, options.named_files ? NamedData::kOfFiles : NamedData::kOfTable);
   TableReport report;
   report.path = options.table_path;
   report.title = scene.title;

@@ -2,6 +2,7 @@
 #include "model/moments.hpp"
 #include "model/optical_constants.hpp"
 
+#include <algorithm>
 #include <complex>
 #include <limits>
 
@@ -9,10 +10,16 @@ namespace dolp {
 
 SmoothAbsorptance smooth_absorptance(const OpticalConstants& index, double cosine) {
   using Complex = std::complex<double>;
-  // (n - 1)(n + 1) keeps the digits of N^2 - 1 where n is close to 1.
-  const Complex square_minus_one((index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k);
-  const Complex square = square_minus_one + 1.0;
-  const Complex w = std::sqrt(square_minus_one + cosine * cosine);
+  // Squares of squares of what is smaller underflow, and what it absorbs is less than 4e-75.
+  constexpr double kLeast = 1e-75;
+  const double n = index.k < kLeast ? std::max(index.n, kLeast) : index.n;
+  const double k = index.k;
+  const Complex square((n - k) * (n + k), 2.0 * n * k);
+  // N^2 - sin^2, with the digits of N^2 where it is small, and of N^2 - 1 where n is close to 1.
+  const bool is_small = n < 0.5 && k < 0.5;
+  const double real =
+      is_small ? square.real() - (1.0 - cosine) * (1.0 + cosine) : (n - 1.0) * (n + 1.0) - k * k + cosine * cosine;
+  const Complex w = std::sqrt(Complex(real, square.imag()));
   return {4.0 * cosine * w.real() / std::norm(cosine + w),
           4.0 * cosine * (std::conj(square) * w).real() / std::norm(square * cosine + w)};
 }

@@ -5,11 +5,10 @@
 #include "run/scene_run.hpp"
 #include "scene/number_range.hpp"
 #include "scene/text.hpp"
+#include "table/table.hpp"
 
 namespace dolp {
 namespace {
-
-constexpr double kMostEntries = 1U << 24U;  // of a table: about 5 GB of memory
 
 /// Refuses points that lack what the scene does not say.
 void check_columns(const Scene& scene, const Points& points) {
@@ -52,9 +51,9 @@ SceneEntries grid_entries(const Scene& scene) {
   const Grid& grid = scene.grid;
   const double count = static_cast<double>(grid.theta_deg.size()) * static_cast<double>(grid.sigma.size()) *
                        static_cast<double>(grid.q.size());
-  if (count > kMostEntries) {
-    throw InputError(fmt::format("{}: grid: {} x {} x {} entries; at most {:.0f} in one table", scene.path_name,
-                                 grid.theta_deg.size(), grid.sigma.size(), grid.q.size(), kMostEntries));
+  if (count > static_cast<double>(kMostTableEntries)) {
+    throw InputError(fmt::format("{}: grid: {} x {} x {} entries; at most {} in one table", scene.path_name,
+                                 grid.theta_deg.size(), grid.sigma.size(), grid.q.size(), kMostTableEntries));
   }
   return SceneEntries::grid(grid.theta_deg, grid.sigma, grid.q);
 }

@@ -39,8 +39,8 @@ Moments grazing_limit_moments(const OpticalConstants& index, double q) {
       const double x = std::sin(psi);
       return x > kSmallestCosine ? std::pow(x, 4.0 - 2.0 * q) * of_cosine(x) : 0.0;
     };
-    const double above =
-        integrator.integrate(integrand, critical, boost::math::constants::half_pi<double>(), kAgreement);
+    constexpr double kEnd = boost::math::constants::half_pi<double>();
+    const double above = critical < kEnd ? integrator.integrate(integrand, critical, kEnd, kAgreement) : 0.0;
     return critical > 0.0 ? integrator.integrate(integrand, 0.0, critical, kAgreement) + above : above;
   };
   Moments moments;

@@ -43,6 +43,20 @@ void fill_variables(Table& table, const TableContent& content) {
   });
 }
 
+void fill_curves(Table& table, const Scene& scene) {
+  const Material& material = scene.surface.material;
+  const std::vector<double> one_um = {scene.spectrum.min_um};
+  const auto curve_of = [&](const SpectralTable& tabulated, double constant) -> Curve {
+    if (tabulated.wavelength_um.empty()) return {one_um, {constant}};
+    return {tabulated.wavelength_um, tabulated.value};
+  };
+  table.index_n = curve_of(material.n, material.constant.n);
+  table.index_k = curve_of(material.k, material.constant.k);
+  if (!scene.source) return;
+  if (scene.source->kind == Source::Kind::kFlat) table.irradiance = {one_um, {scene.source->irradiance}};
+  if (scene.source->kind == Source::Kind::kTabulated) table.irradiance = curve_of(scene.source->table, 0.0);
+}
+
 /// An exitance, in bistatic mode a radiance; per um at a single wavelength.
 std::string stokes_units(const Scene& scene) {
   std::string units = "W m-2";
@@ -105,7 +119,10 @@ Table scene_table(const TableContent& content) {
   table.q = scene.grid.q;
   table.stokes_units = stokes_units(scene);
   fill_variables(table, content);
+  fill_curves(table, scene);
   table.attributes = attributes(content);
+  const Dispersion& formula = scene.surface.material.n.formula;
+  if (formula.number != 0) table.attributes.push_back({"index_n_formula", formula_text(formula)});
   return table;
 }
 

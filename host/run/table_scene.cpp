@@ -7,7 +7,9 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "scene/number_range.hpp"
 #include "scene/scene_reader.hpp"
+#include "scene/spectral_data.hpp"
 #include "scene/text.hpp"
 #include "table/table_file.hpp"
 
@@ -29,7 +31,57 @@ bool begins_override(std::string_view line) {
   });
 }
 
+/// The table of a curve, checked as one of a file is.
+SpectralTable checked_table(const Curve& curve, const NamedValue& value, const std::string& where) {
+  SpectralTable table;
+  for (std::size_t i = 0; i < curve.values.size(); ++i) {
+    append_row(table, curve.wavelength_um[i], {value.name, curve.values[i], value.range}, where);
+  }
+  return table;
+}
+
+Dispersion formula_of(const std::string& text, const std::string& where) {
+  Dispersion formula;
+  for (const std::string_view word : split(text, ' '))
+    formula.coefficients.push_back(parse_number(word).value_or(-1.0));
+  formula.number = static_cast<int>(std::clamp(formula.coefficients.front(), -1.0, kDispersionFormulas + 1.0));
+  formula.coefficients.erase(formula.coefficients.begin());
+  const bool is_known = formula.number >= 1 && formula.number <= kDispersionFormulas;
+  const std::vector<std::size_t> counts = is_known ? coefficient_counts(formula.number) : std::vector<std::size_t>{};
+  if (std::ranges::find(counts, formula.coefficients.size()) == counts.end()) {
+    throw InputError(fmt::format("{}attribute \"index_n_formula\": is no dispersion formula", where));
+  }
+  return formula;
+}
+
+/// n, k and E0 as the table has them.
+KnownData known_data(const Table& table, const std::string& name) {
+  const std::string where = name + ": ";
+  KnownData known;
+  if (!table.index_n.values.empty() && !table.index_k.values.empty()) {
+    Material& material = known.material.emplace();
+    material.n = checked_table(table.index_n, {"index_n", 0.0, kNRange}, where);
+    material.k = checked_table(table.index_k, {"index_k", 0.0, kKRange}, where);
+    material.constant = {material.n.value.front(), material.k.value.front()};
+    const std::string* formula = find_text(table, "index_n_formula");
+    if (formula) material.n.formula = formula_of(*formula, where);
+    for (SpectralTable* values : {&material.n, &material.k}) {
+      if (values->value.size() == 1) *values = {};
+    }
+  }
+  if (!table.irradiance.values.empty()) {
+    known.irradiance = checked_table(table.irradiance, {"irradiance", 0.0, kNonNegativeRange}, where);
+  }
+  return known;
+}
+
 }  // namespace
+
+std::string formula_text(const Dispersion& formula) {
+  std::string text = std::to_string(formula.number);
+  for (const double coefficient : formula.coefficients) text += ' ' + format_number(coefficient);
+  return text;
+}
 
 std::string overrides_text(const std::vector<std::string>& overrides) {
   std::string text;
@@ -72,7 +124,7 @@ Table load_table(const std::string& path) {
   return read_table(path);
 }
 
-Scene table_scene(const Table& table, const std::string& name) {
+Scene table_scene(const Table& table, const std::string& name, NamedData named_data) {
   const std::string* text = find_text(table, "scene");
   if (!text) {
     throw InputError(
@@ -80,9 +132,11 @@ Scene table_scene(const Table& table, const std::string& name) {
   }
   const std::string* overrides = find_text(table, "scene_overrides");
   const std::string* path = find_text(table, "scene_path");
+  const KnownData known = known_data(table, name);
   Scene scene;
   try {
-    scene = parse_scene(*text, path ? *path : name, overrides ? overrides_of(*overrides) : std::vector<std::string>{});
+    scene = parse_scene(*text, path ? *path : name, overrides ? overrides_of(*overrides) : std::vector<std::string>{},
+                        named_data == NamedData::kOfTable ? &known : nullptr);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: attribute \"scene\": {}", name, error.what()));
   }

@@ -23,12 +23,20 @@ std::uint64_t scene_seed(const Scene& scene);  ///< the number itself
 /// Errors: those of read_table; InputError for a file that is not there, and for formats that do not hold it.
 Table load_table(const std::string& path);
 
+/// The attribute "index_n_formula": the number of a dispersion formula and its coefficients, with blanks between them.
+std::string formula_text(const Dispersion& formula);
+
+/// Where n, k and E0 that a scene names come from.
+enum class NamedData {
+  kOfTable,  ///< the table alone; no file is opened
+  kOfFiles,  ///< what the names stand for now: files are looked for beside the scene as the table's attribute
+             ///< "scene_path" has it, from the folder where the program runs
+};
+
 /// The scene of a table, whose overrides are applied.
 ///
-/// Files that the scene names are looked for beside the scene as the table's attribute "scene_path" has it, from the
-/// folder where the program runs.
 /// Errors: InputError that begins with `name`: no scene in the table, one that is not the one the table was made of, or
 /// one that the reader refuses.
-Scene table_scene(const Table& table, const std::string& name);
+Scene table_scene(const Table& table, const std::string& name, NamedData named_data = NamedData::kOfTable);
 
 }  // namespace dolp

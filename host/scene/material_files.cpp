@@ -64,7 +64,7 @@ void parse_csv(Material& material, std::string_view text) {
     } else if (columns) {
       append_row(material, *columns, row);
     } else {
-      row.fail(one_line(row.line()) + ": the columns must be named first: wavelength_um (or wl), then n, k or both");
+      row.fail("the columns must be named first: wavelength_um (or wl), then n, k or both");
     }
   }
 }
@@ -187,7 +187,7 @@ void parse_yaml(Material& material, const std::string& text) {
 Material read_material_file(const std::string& path, const Spectrum& spectrum, const std::string& prefix) {
   const std::string lower_path = lower_case(path);
   const bool is_record = lower_path.ends_with(".yml") || lower_path.ends_with(".yaml");
-  const std::string text = read_text(path, prefix, is_record ? kMostRecordBytes : SIZE_MAX);
+  const std::string text = read_named_file(path, prefix, is_record ? kMostRecordBytes : kMostTextBytes);
   Material material;
   material.name = path.substr(path.find_last_of('/') + 1);
   material.source = path;

@@ -11,6 +11,8 @@
 namespace dolp {
 namespace {
 
+constexpr std::size_t kMostPointsBytes = 1U << 30U;
+
 using Column = std::optional<std::vector<double>> Points::*;
 
 /// A column that a file may have.
@@ -93,7 +95,7 @@ Points parse_points(const std::string& text, const std::string& path_name, Point
 }
 
 Points read_points(const std::string& path, PointsKind kind) {
-  return parse_points(read_text(path, input_name(path) + ": "), path, kind);
+  return parse_points(read_text(path, input_name(path) + ": ", kMostPointsBytes), path, kind);
 }
 
 }  // namespace dolp

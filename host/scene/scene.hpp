@@ -113,6 +113,7 @@ struct Scene {
   Accuracy accuracy;
   std::string path_name;               ///< as given on the command line, for messages
   std::string text;                    ///< the file, verbatim
+  std::vector<std::string> files;      ///< that the scene names, as the process finds them
   std::vector<std::string> overrides;  ///< the --set KEY=VALUE arguments that were applied, verbatim
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <sstream>
 
@@ -24,6 +25,50 @@ std::string toml_text(const toml::node& node) {
   std::ostringstream stream;
   node.visit([&](const auto& value) { stream << toml::toml_formatter{value}; });
   return stream.str();
+}
+
+constexpr std::size_t kMostDepth = 100;
+
+/// The end of the string that begins at `begin`, as TOML has four kinds of them.
+std::size_t end_of_string(std::string_view text, std::size_t begin) {
+  const char quote = text[begin];
+  const std::string three(3, quote);
+  const std::string_view close = text.substr(begin).starts_with(three) ? three : std::string_view(three).substr(0, 1);
+  for (std::size_t i = begin + close.size(); i < text.size(); ++i) {
+    if (text[i] == '\\' && quote == '"') {
+      ++i;
+    } else if (text.substr(i).starts_with(close)) {
+      return i + close.size();
+    }
+  }
+  return text.size();
+}
+
+/// The line on which keys and values are nested deeper than kMostDepth, 0 for none: the parser recurses on them.
+std::size_t line_of_deep_nesting(std::string_view text) {
+  std::vector<std::size_t> around = {0};  // depths outside of the open brackets
+  std::size_t depth = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"' || c == '\'') {
+      i = end_of_string(text, i) - 1;
+    } else if (c == '#') {
+      i = std::min(text.find('\n', i), text.size()) - 1;
+    } else if (c == '[' || c == '{') {
+      around.push_back(++depth);
+    } else if ((c == ']' || c == '}') && around.size() > 1) {
+      around.pop_back();
+      depth = around.back();
+    } else if (c == ',' || c == '\n') {
+      depth = around.back();
+    } else if (c == '.') {
+      ++depth;
+    }
+    if (depth > kMostDepth)
+      return static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n')) +
+             1;
+  }
+  return 0;
 }
 
 std::string last_part(std::string_view key) { return std::string(key.substr(key.find_last_of('.') + 1)); }
@@ -57,6 +102,12 @@ void with_override_value(const std::string& text, bool is_text_key, const Insert
 }  // namespace
 
 SceneDocument::SceneDocument(const std::string& text, const std::string& path_name) : name_(input_name(path_name)) {
+  if (text.size() > kMostTextBytes) {
+    throw InputError(fmt::format("{}: is longer than {} bytes", name_, kMostTextBytes));
+  }
+  if (const std::size_t line = line_of_deep_nesting(text); line > 0) {
+    throw InputError(fmt::format("{}:{}: nested deeper than {}", name_, line, kMostDepth));
+  }
   try {
     root_ = toml::parse(std::string_view(text));
   } catch (const toml::parse_error& error) {
@@ -76,6 +127,9 @@ void SceneDocument::apply_override(const std::string& argument) {
                                  one_line(argument)));
   }
   const std::string value(trim(argument.substr(equals + 1)));
+  if (path.size() > kMostDepth || line_of_deep_nesting(value) > 0) {
+    throw InputError(fmt::format("--set {}: nested deeper than {}", one_line(argument), kMostDepth));
+  }
   if (is_effect_table(key) && value == "none") {
     erase(key);
     return;
@@ -100,7 +154,8 @@ toml::table& SceneDocument::create_table(const std::vector<std::string_view>& pa
       overrides_[key] = argument;
     }
     table = table->get_as<toml::table>(part);
-    if (!table) throw InputError(fmt::format("--set {}: {} is not a table in this scene", one_line(argument), key));
+    if (!table)
+      throw InputError(fmt::format("--set {}: {} is not a table in this scene", one_line(argument), one_line(key)));
   }
   return *table;
 }
@@ -159,7 +214,7 @@ std::string SceneDocument::prefix(std::string_view key) const {
     return fmt::format("--set {}: ", one_line(*argument));
   }
   const std::string value = node && !node->is_table() ? " = " + one_line(toml_text(*node)) : "";
-  return fmt::format("{}:{}: {}{}: ", name_, line_of(key), key, value);
+  return fmt::format("{}:{}: {}{}: ", name_, line_of(key), one_line(key), value);
 }
 
 void SceneDocument::fail(std::string_view key, const std::string& what) const { throw InputError(prefix(key) + what); }

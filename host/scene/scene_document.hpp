@@ -11,7 +11,8 @@ namespace dolp {
 
 class SceneDocument {
  public:
-  /// Errors: InputError for a TOML syntax error, with its line.
+  /// Errors: InputError for a TOML syntax error, with its line, for nesting deeper than 100 and for a text longer than
+  /// kMostTextBytes.
   SceneDocument(const std::string& text, const std::string& path_name);
 
   /// Applies one KEY=VALUE argument. Errors: InputError.

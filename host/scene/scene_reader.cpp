@@ -113,25 +113,46 @@ std::string resolve_path(const std::string& file, const std::string& scene_path)
   return is_as_given ? file : scene_path.substr(0, slash + 1) + file;
 }
 
-void load_material(SceneDraft& draft, const SceneDocument& document, const std::string& scene_path) {
-  Surface& surface = draft.scene.surface;
-  if (document.find("surface.material")) {
-    surface.material = find_material(draft.material, draft.scene.spectrum, document.prefix("surface.material"));
-  }
-  if (document.find("surface.material_file")) {
-    surface.material = read_material_file(resolve_path(draft.material_file, scene_path), draft.scene.spectrum,
-                                          document.prefix("surface.material_file"));
+/// The path of a file that the scene names; an InputError that begins with `prefix` where no file may be opened.
+const std::string& named_file(SceneDraft& draft, const std::string& file, const std::string& scene_path,
+                              const std::string& prefix, bool may_open) {
+  if (!may_open) throw InputError(prefix + "is not in the table; dolp verify --named-files reads it from that file");
+  return draft.scene.files.emplace_back(resolve_path(file, scene_path));
+}
+
+void load_material(SceneDraft& draft, const SceneDocument& document, const std::string& scene_path,
+                   const KnownData* known) {
+  const bool is_file = document.find("surface.material_file") != nullptr;
+  if (!is_file && !document.find("surface.material")) return;
+  const std::string prefix = document.prefix(is_file ? "surface.material_file" : "surface.material");
+  Material& material = draft.scene.surface.material;
+  const Spectrum& spectrum = draft.scene.spectrum;
+  if (known && known->material) {
+    material = *known->material;
+    material.name = is_file ? draft.material_file : draft.material;
+    if (!material.is_constant()) material = fit_to_spectrum(material, spectrum, prefix);
+  } else if (is_file) {
+    material = read_material_file(named_file(draft, draft.material_file, scene_path, prefix, !known), spectrum, prefix);
+  } else {
+    material = find_material(draft.material, spectrum, prefix);
   }
 }
 
-void load_source(SceneDraft& draft, const SceneDocument& document, const std::string& scene_path) {
+void load_source(SceneDraft& draft, const SceneDocument& document, const std::string& scene_path,
+                 const KnownData* known) {
   const bool is_preset = document.find("source.preset") != nullptr;
   if (!is_preset && !document.find("source.file")) return;
   const std::string prefix = document.prefix(is_preset ? "source.preset" : "source.file");
   Source& source = *draft.scene.source;
   source.kind = Source::Kind::kTabulated;
-  source.table =
-      is_preset ? sun_irradiance() : read_irradiance_file(resolve_path(draft.source_file, scene_path), prefix);
+  if (known && known->irradiance) {
+    source.table = *known->irradiance;
+    if (is_preset) source.table.interpolation = SpectralTable::Interpolation::kLogLog;
+  } else if (is_preset) {
+    source.table = sun_irradiance();
+  } else {
+    source.table = read_irradiance_file(named_file(draft, draft.source_file, scene_path, prefix, !known), prefix);
+  }
   const Spectrum& spectrum = draft.scene.spectrum;
   if (covers(source.table, spectrum)) return;
   const std::vector<double>& known_um = source.table.wavelength_um;
@@ -201,12 +222,13 @@ void check_radiation(const Scene& scene, const SceneDocument& document) {
 
 }  // namespace
 
-Scene parse_scene(const std::string& text, const std::string& path_name, const std::vector<std::string>& overrides) {
+Scene parse_scene(const std::string& text, const std::string& path_name, const std::vector<std::string>& overrides,
+                  const KnownData* known) {
   SceneDocument document(text, path_name);
   for (const std::string& argument : overrides) document.apply_override(argument);
   SceneDraft draft = draft_scene(document);
-  load_material(draft, document, path_name);
-  load_source(draft, document, path_name);
+  load_material(draft, document, path_name, known);
+  load_source(draft, document, path_name, known);
   fill_grid(draft.scene, document);
   check_smith(draft.scene, document);
   check_radiation(draft.scene, document);

@@ -1,6 +1,7 @@
 // Reads a scene file (TOML) into a validated Scene.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,9 +22,17 @@ namespace dolp {
 /// a file that cannot be opened is an InputError too.
 Scene read_scene(const std::string& path, const std::vector<std::string>& overrides);
 
+/// n, k and E0 that the names in a scene stood for when a table was made of it.
+struct KnownData {
+  std::optional<Material> material;
+  std::optional<SpectralTable> irradiance;
+};
+
 /// The same for a text that is already in memory (the scene that a table file carries); `path_name` is for messages and
-/// gives the folder of the files the scene names.
-Scene parse_scene(const std::string& text, const std::string& path_name, const std::vector<std::string>& overrides);
+/// gives the folder of the files the scene names. With `known` none of these is opened: an InputError where it lacks
+/// what the scene takes from one.
+Scene parse_scene(const std::string& text, const std::string& path_name, const std::vector<std::string>& overrides,
+                  const KnownData* known = nullptr);
 
 /// One scene key, for help texts, documentation and widgets.
 struct KeyDescription {

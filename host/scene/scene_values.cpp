@@ -14,6 +14,8 @@ namespace {
 
 using Type = KeyDescription::Type;
 
+constexpr auto kMostListed = static_cast<std::size_t>(kAxisCountRange.max);
+
 /// An axis as from, to, count and spacing.
 struct AxisRule {
   double from = 0.0;
@@ -24,15 +26,20 @@ struct AxisRule {
 
 double read_number(const SceneDocument& document, std::string_view key, const toml::node& node,
                    const NumberRange& range, const std::string& allowed) {
-  const bool is_number = node.is_integer() || node.is_floating_point();
-  if (!is_number) document.fail(key, "must be " + allowed);
-  const double number = *node.value<double>();
+  const auto* integer = node.as_integer();
+  const auto* real = node.as_floating_point();
+  if (!integer && !real) document.fail(key, "must be " + allowed);
+  // node.value<double>() is empty for integers that no double holds; these round like 9007199254740993.0 does.
+  const double number = integer ? static_cast<double>(integer->get()) : real->get();
   if (!range.contains(number)) document.fail(key, fmt::format("{} is out of range; must be {}", number, allowed));
   return number;
 }
 
 std::vector<double> read_list(const SceneDocument& document, const KeyDescription& description,
                               const toml::array& array) {
+  if (array.size() > kMostListed) {
+    document.fail(description.key, fmt::format("{} values; must be at most {}", array.size(), kMostListed));
+  }
   std::vector<double> numbers;
   for (const toml::node& element : array) {
     numbers.push_back(read_number(document, description.key, element, description.range, description.allowed()));

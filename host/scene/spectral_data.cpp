@@ -21,8 +21,7 @@ SpectralTable parse_irradiance(std::string_view text, const std::string& name) {
   for (CsvReader row(text, name); row.next();) {
     const std::vector<std::string_view>& cells = row.cells();
     if (cells.size() != 2) {
-      row.fail(fmt::format("{}: {} columns; 2 are expected, wavelength in um and irradiance in W m-2 um-1",
-                           one_line(row.line()), cells.size()));
+      row.fail(fmt::format("{} columns; 2 are expected, wavelength in um and irradiance in W m-2 um-1", cells.size()));
     }
     const bool is_header = may_be_header && !parse_number(cells[0]) && !parse_number(cells[1]);
     may_be_header = false;
@@ -59,7 +58,7 @@ SpectralTable sun_irradiance() {
 }
 
 SpectralTable read_irradiance_file(const std::string& path, const std::string& prefix) {
-  return parse_irradiance(read_text(path, prefix), path);
+  return parse_irradiance(read_named_file(path, prefix), path);
 }
 
 void append_row(SpectralTable& table, double wavelength_um, const NamedValue& value, const std::string& where) {

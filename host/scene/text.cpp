@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <filesystem>
 #include <memory>
 #include <numeric>
 #include <system_error>
@@ -91,8 +93,8 @@ std::optional<double> parse_number(std::string_view text) {
 std::string format_number(double value) { return fmt::format("{}", value); }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  const std::string from = lower_case(a);
-  const std::string to = lower_case(b);
+  const std::string from = lower_case(a.substr(0, kMessageBytes));
+  const std::string to = lower_case(b.substr(0, kMessageBytes));
   std::vector<std::size_t> row(to.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -151,8 +153,18 @@ std::string read_text(const std::string& path, const std::string& prefix, std::s
     text.append(block.data(), got);
     if (text.size() > most_bytes) throw InputError(fmt::format("{}is longer than {} bytes", prefix, most_bytes));
     if (std::ferror(file.get())) fail(errno);
+    if (std::memchr(block.data(), 0, got)) throw InputError(prefix + "is not a text: it holds a zero byte");
     if (got < block.size()) return text;
   }
+}
+
+std::string read_named_file(const std::string& path, const std::string& prefix, std::size_t most_bytes) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  const bool may_be_read =
+      is_regular_file(status) || is_directory(status) || !exists(status);  // for read_text's message
+  if (path == "-" || !may_be_read) throw InputError(prefix + "is not a regular file");
+  return read_text(path, prefix, most_bytes);
 }
 
 std::string input_name(const std::string& path) { return path == "-" ? "stdin" : path; }

@@ -29,7 +29,8 @@ std::optional<double> parse_number(std::string_view text);
 /// The shortest text that reads back as the same number.
 std::string format_number(double value);
 
-/// Number of single-character insertions, deletions and replacements between two words, ignoring case.
+/// Number of single-character insertions, deletions and replacements between the beginnings of two words, 80 bytes of
+/// each, ignoring case.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The candidate with the least edit distance, the first of equals; `candidates` is not empty.
@@ -41,9 +42,17 @@ std::string one_line(std::string_view text);
 /// "a, b, c".
 std::string join(const std::vector<std::string>& words);
 
+/// The most bytes of a scene and of most other inputs.
+inline constexpr std::size_t kMostTextBytes = 16U << 20U;
+
 /// A file's bytes, or stdin's for "-".
-/// Errors: InputError, "`prefix`cannot be read: reason", and for more than `most_bytes`.
-std::string read_text(const std::string& path, const std::string& prefix, std::size_t most_bytes = SIZE_MAX);
+/// Errors: InputError, "`prefix`cannot be read: reason", and for more than `most_bytes` or a zero byte among them.
+std::string read_text(const std::string& path, const std::string& prefix, std::size_t most_bytes = kMostTextBytes);
+
+/// The same for a file that an input names: a regular file, so that nobody waits for a pipe or reads a device.
+/// Errors: likewise, and for anything else.
+std::string read_named_file(const std::string& path, const std::string& prefix,
+                            std::size_t most_bytes = kMostTextBytes);
 
 /// The name of an input for messages: "stdin" for "-".
 std::string input_name(const std::string& path);

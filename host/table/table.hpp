@@ -1,6 +1,7 @@
 // A lookup table in memory: plain data, no physics.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -18,6 +19,16 @@ struct Attribute {
   std::variant<std::string, double> value;
   friend bool operator==(const Attribute&, const Attribute&) = default;
 };
+
+/// A quantity over wavelength; one row is a constant.
+struct Curve {
+  std::vector<double> wavelength_um;
+  std::vector<double> values;
+  friend bool operator==(const Curve&, const Curve&) = default;
+};
+
+/// The most entries that a table has: about 5 GB of memory while it is made.
+inline constexpr std::size_t kMostTableEntries = 1U << 24U;
 
 /// A lookup table over theta, sigma and q.
 ///
@@ -42,6 +53,9 @@ struct Table {
   std::vector<double> error_estimate;
   std::vector<double> rho_error_estimate;
   std::vector<std::uint32_t> status;
+  Curve index_n;  ///< n, k and E0 that the table was computed with; empty where there is none
+  Curve index_k;
+  Curve irradiance;                         ///< before source.scale
   std::string stokes_units = "W m-2 um-1";  ///< "W m-2" over a band
   std::vector<Attribute> attributes;  ///< in the order they are written; without Conventions, which is the writer's
 
@@ -61,5 +75,19 @@ struct TableVariable {
   double PointResult::*member;
 };
 std::span<const TableVariable> table_variables();
+
+/// One curve of a table.
+struct TableCurve {
+  const char* name;
+  const char* long_name;
+  const char* units;
+  Curve Table::*curve;
+};
+inline constexpr std::array<TableCurve, 3> kTableCurves = {{
+    {"index_n", "refractive index n of the surface", "1", &Table::index_n},
+    {"index_k", "refractive index k of the surface", "1", &Table::index_k},
+    {"irradiance", "irradiance E0 of the source at normal incidence, before source.scale", "W m-2 um-1",
+     &Table::irradiance},
+}};
 
 }  // namespace dolp

@@ -7,6 +7,7 @@
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "base/number_text.hpp"
+#include "base/printable_text.hpp"
 #include "table/table_netcdf.hpp"
 
 namespace dolp {
@@ -38,14 +39,15 @@ std::string value_text(const Attribute& attribute) {
   std::string_view lines = std::get<std::string>(attribute.value);
   while (lines.ends_with('\n')) lines.remove_suffix(1);
   std::string text;
-  for (const char c : lines) {
-    if (c == '\n') {
-      text += "\n#   ";
-    } else if (c != '\r') {
-      text += c;
-    }
+  for (;;) {
+    const std::size_t end = lines.find('\n');
+    std::string_view line = lines.substr(0, end);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    text += printable_line(line);
+    if (end == std::string_view::npos) return text;
+    text += "\n#   ";
+    lines.remove_prefix(end + 1);
   }
-  return text;
 }
 
 std::string csv_header(const Table& table, const std::vector<const TableVariable*>& variables) {
@@ -133,7 +135,7 @@ void check_output_path(const fs::path& path) {
 void write_table(const Table& table, const fs::path& path) {
   switch (format_of(path)) {
     case Format::kNetcdf:
-      return write_text_atomically(path, netcdf_bytes(table, path).view());
+      return write_text_atomically(path, NetcdfImage(table).bytes());
     case Format::kCsv:
       return write_text_atomically(path, csv_text(table));
     case Format::kNpy:

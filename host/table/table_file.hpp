@@ -27,7 +27,8 @@ void write_table(const Table& table, const std::filesystem::path& path);
 
 /// Reads a table that write_table wrote as .nc.
 ///
-/// Errors: IoError when the file cannot be opened, InputError when it is not such a table.
+/// Errors: InputError when the file cannot be opened, is not such a table, has more than kMostTableEntries entries, or
+/// claims more values than a file of its size can hold.
 Table read_table(const std::filesystem::path& path);
 
 }  // namespace dolp

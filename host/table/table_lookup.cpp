@@ -36,6 +36,11 @@ constexpr std::array<SmoothColumn, 11> kColumns = {{{&Table::stokes_i, &PointRes
                                                     {&Table::emissivity_p, &PointResult::emissivity_p},
                                                     {&Table::dolp_low, &PointResult::dolp_low},
                                                     {&Table::dolp_high, &PointResult::dolp_high}}};
+/// What every table has, besides the status.
+constexpr std::array<double PointResult::*, 6> kNeeded = {&PointResult::dolp,     &PointResult::stokes_i,
+                                                          &PointResult::stokes_q, &PointResult::stokes_u,
+                                                          &PointResult::stokes_v, &PointResult::error_estimate};
+
 enum Column : std::size_t { kI, kQ, kU, kV, kRhoI, kRhoQ };
 
 const std::vector<double>& checked(const std::vector<double>& values, const char* axis, const std::string& name) {
@@ -43,6 +48,19 @@ const std::vector<double>& checked(const std::vector<double>& values, const char
     throw InputError(fmt::format("{}: {}: a value appears twice; nothing can be interpolated there", name, axis));
   }
   return values;
+}
+
+/// Refuses a table that lacks what every result needs.
+void check_variables(const Table& table, const std::string& name) {
+  const auto require = [&](bool is_there, std::string_view variable) {
+    if (!is_there) throw InputError(fmt::format("{}: the variable {} is missing; lookup needs it", name, variable));
+  };
+  for (const TableVariable& variable : table_variables()) {
+    const bool is_needed = std::ranges::find(kNeeded, variable.member) != kNeeded.end() ||
+                           (variable.member == &PointResult::rho_i && !table.rho_error_estimate.empty());
+    require(!is_needed || !(table.*variable.values).empty(), variable.name);
+  }
+  require(!table.status.empty(), "status");
 }
 
 }  // namespace
@@ -95,7 +113,9 @@ TableLookup::TableLookup(const Table& table, double tolerance, const std::string
       tolerance_(tolerance),
       theta_(checked(table.theta_deg, "theta", name), LookupAxis::Scale::kLinear),
       sigma_(checked(table.sigma, "sigma", name), LookupAxis::Scale::kLogarithm),
-      q_(checked(table.q, "q", name), LookupAxis::Scale::kLogarithm, 1.0) {}
+      q_(checked(table.q, "q", name), LookupAxis::Scale::kLogarithm, 1.0) {
+  check_variables(table, name);
+}
 
 bool TableLookup::is_known(const Window& window) const {
   bool known = true;

@@ -23,7 +23,8 @@ namespace dolp {
 class TableLookup {
  public:
   /// `table` must outlive the object; `tolerance` is its own, for status 2. Errors: InputError, which begins with
-  /// `name`, for an axis that has a value twice.
+  /// `name`, for an axis that has a value twice, and for a table without dolp, its error, Stokes parameters or status,
+  /// or with an error of rho but no rho.
   TableLookup(const Table& table, double tolerance, const std::string& name);
 
   const LookupAxis& theta_deg() const { return theta_; }

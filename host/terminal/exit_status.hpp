@@ -8,6 +8,7 @@ inline constexpr int kExitInput = 2;
 inline constexpr int kExitDevice = 3;
 inline constexpr int kExitIo = 4;
 inline constexpr int kExitInternal = 5;
+inline constexpr int kExitMemory = 6;
 inline constexpr int kExitInterrupted = 130;
 
 }  // namespace dolp

@@ -1,4 +1,5 @@
 #include "terminal/progress_bar.hpp"
+#include "base/interrupt.hpp"
 #include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 
@@ -6,23 +7,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <string>
 
 namespace dolp {
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;  // the only state that a signal handler may touch
-
 constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
 constexpr std::size_t kBarWidth = 30;
-
-void watch_for_interrupts() {
-  const auto handler = [](int) { interrupted = 1; };
-  std::signal(SIGINT, handler);
-  std::signal(SIGTERM, handler);
-}
 
 }  // namespace
 
@@ -39,7 +31,7 @@ Progress ProgressBar::callback() {
       draw(done, total);
       last_drawn_ = now;
     }
-    return interrupted == 0;
+    return !interrupted();
   };
 }
 

@@ -10,8 +10,8 @@ namespace dolp {
 
 /// A bar with rate and time left, drawn on stderr when that is a terminal and `quiet` is off.
 ///
-/// From its construction on SIGINT and SIGTERM only ask the run to stop, so that a result that is complete is still
-/// written whole. Before, while inputs are read, they end the program as usual.
+/// From its construction on SIGINT, SIGTERM and SIGHUP only ask the run to stop (base/interrupt.hpp). Before, while
+/// inputs are read, they end the program as usual.
 class ProgressBar {
  public:
   explicit ProgressBar(bool quiet);

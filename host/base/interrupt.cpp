@@ -1,0 +1,25 @@
+#include "base/interrupt.hpp"
+
+#include <csignal>
+#include <initializer_list>
+
+namespace dolp {
+namespace {
+
+volatile std::sig_atomic_t is_interrupted = 0;  // the only state that a signal handler may touch
+
+}  // namespace
+
+void watch_for_interrupts() {
+  struct sigaction action {};  // without SA_RESTART
+  action.sa_handler = [](int) { is_interrupted = 1; };
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
+}
+
+bool interrupted() { return is_interrupted != 0; }
+
+}  // namespace dolp

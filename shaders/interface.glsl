@@ -54,10 +54,12 @@
 #define DOLP_MAX_PIECES 56       // pieces of the slope axis for one direction
 #define DOLP_MAX_ARCS 13        // arcs of the azimuth for one slope, but for those of total reflection
 // Of V-grooves, see physics/groove.glsl
+#define DOLP_STEEPEST_SPLIT 20.0  // slope from which on no beam that ends splits the azimuths
 #define DOLP_MOST_SPLITS 8       // bounces at which a beam that ends may split the azimuths
 #define DOLP_MOST_BOUNCES 32      // each on its own; of more, 2, 4, 8 ... are taken as one
+#define DOLP_GROUPS_PER_DISTANCE 16 // bounces taken as one at once, over those before or after them
 #define DOLP_MOST_DOUBLINGS 12
-#define DOLP_DOUBLINGS_AT_ONCE 4  // in one turn of a loop
+#define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // of more nothing is left
 #define DOLP_AZIMUTHS_PER_SLOPE 2 // nodes at most
 #define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes
 #define DOLP_MASKING_OCTAVES 29  // of v = 1 + tau/scale

@@ -121,8 +121,10 @@ void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   }
 }
 
-// Slopes of V-grooves from which on twice, four times ... as many bounces are taken as one (groove.glsl), by what one
-// turn of its loop does; nothing steeper than the last is followed.
+// From a breakpoint of steep grooves to the next, in bounces.
+constexpr double kSteepStep = 16.0;
+
+// The slope of V-grooves in which a vertical ray has so many bounces.
 double slope_with_bounces(double bounces) { return 1.0 / std::tan(0.5 * pi<double>() / bounces); }
 
 // Where the lines of groove_lines (arcs.glsl) meet phi = 0, psi = theta, or phi = pi, psi = -theta, or each other.
@@ -142,8 +144,8 @@ void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg, i
   for (double bounces = 8.0; bounces < DOLP_MOST_BOUNCES; bounces *= 2.0) {
     if (bounces > splits + 2.0) points.push_back({slope_with_bounces(bounces), 0});
   }
-  for (int doublings = 0; doublings < DOLP_MOST_DOUBLINGS; doublings += DOLP_DOUBLINGS_AT_ONCE) {
-    points.push_back({slope_with_bounces(std::ldexp(DOLP_MOST_BOUNCES, doublings)), 0});
+  for (double bounces = DOLP_MOST_BOUNCES; bounces < DOLP_LAST_BOUNCES; bounces *= kSteepStep) {
+    points.push_back({slope_with_bounces(bounces), 0});
   }
   for (const double slope : kSteepBreakpoints) points.push_back({slope, 0});
 }
@@ -223,18 +225,32 @@ Loops single_loops(const KernelData& data) {
   return {.arcs = arcs};
 }
 
-// Of a piece from slope `start` to `end`: pi / (2 gamma) bounces and one more, those of steep grooves taken together,
-// each of which doubles some times. Steep grooves have no lines below gamma.
+// Loop turns of a ray that bounces so often: one for each bounce, or for those that next_bounces of groove.glsl takes as
+// one, which have a turn of their own.
+double turns_of(double bounces) {
+  double turns = 2.0;
+  double taken = 1.0;
+  for (double done = 0.0; done < bounces; done += taken) {
+    const double distance = std::min(done, bounces - done) / DOLP_GROUPS_PER_DISTANCE;
+    if (bounces > DOLP_MOST_BOUNCES && 2.0 * taken <= distance) {
+      taken *= 2.0;
+    } else if (taken > std::max(distance, 1.0)) {
+      taken *= 0.5;
+    }
+    turns += taken > 1.0 ? 2.0 : 1.0;
+  }
+  return turns;
+}
+
+// Of a piece from slope `start` to `end`, to pi / (2 gamma) bounces and more. Steep grooves have no lines below gamma.
 Loops groove_loops(const KernelData& data, double start, double end) {
-  const double bounces = std::min(0.5 * pi<double>() / std::atan(1.0 / end), double{DOLP_MOST_BOUNCES});
+  const double most = pi<double>() / (2.0 * std::atan(1.0 / end));
   const double splits = data.rule.split_bounces;
   Loops loops;
-  loops.arcs = std::min(splits, std::floor(bounces) - 1.0) + (start >= slope_with_bounces(splits + 2.0) ? 2.0 : 5.0);
-  loops.turns = std::ceil(bounces) + 1.0;
-  if (bounces == DOLP_MOST_BOUNCES) loops.turns += std::ceil(std::log2(std::min(end, kLargestCut)));
-  for (int done = 0; done < DOLP_MOST_DOUBLINGS; done += DOLP_DOUBLINGS_AT_ONCE) {
-    if (end > slope_with_bounces(std::ldexp(DOLP_MOST_BOUNCES, done))) loops.turns += DOLP_MOST_BOUNCES + 1.0;
-  }
+  loops.arcs = start >= slope_with_bounces(splits + 2.0) ? 2.0 : 5.0;
+  if (start < DOLP_STEEPEST_SPLIT) loops.arcs += std::min(splits, std::max(std::floor(most) - 1.0, 0.0));
+  // Rays that lean away from the facet have twice as many.
+  loops.turns = turns_of(std::min(2.0 * most, double{DOLP_LAST_BOUNCES}));
   return loops;
 }
 

@@ -58,7 +58,7 @@ constexpr int kPlainOrder = 64;
 constexpr double kOrderPerDigit = 8.0;
 
 // The kinks at which the beams of a groove end matter the less the more bounces they have: each split is worth about so
-// many digits. From 1.3 to 2 `dolp-calibrate fit multiple` finds the same work within 2 %.
+// many digits.
 constexpr double kDigitsPerSplit = 2.0;
 
 constexpr double kNone = -1000.0;

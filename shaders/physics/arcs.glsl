@@ -146,8 +146,8 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
     lines.arcs = 2;
   }
   if (kMasking == DOLP_MASKING_INTEGRAL) {
-    // The limit b of eq. (11) reaches pi/2 at theta_r = pi/4 + alpha/2; 1 - sin(alpha) = cos^2(alpha) / (1 +
-    // sin(alpha)).
+    // The limit b of eq. (11) reaches pi/2 at theta_r = pi/4 + alpha/2.
+    // 1 - sin(alpha) = cos^2(alpha) / (1 + sin(alpha)).
     real sec = sqrt(sec2);
     real cos_limit = sqrt(real(0.5) / (sec * (sec + t)));
     bool limited = has_split_line && cos_limit < c;
@@ -187,7 +187,8 @@ real2 groove_line(ThetaNode theta, real cos_psi, real sin_psi) {
   return line_at(theta.c * sin_psi / max(cos_psi, real(1e-30)), max(theta.s, real(1e-30)));
 }
 
-// Of slopes that carry so little that a few digits do, only what faces the ray is told from what does not.
+// Of slopes that carry so little that a few digits do, only what faces the ray is told from what does not; of steep
+// grooves no bounces are, because a line is one of many.
 CONST real kDigitsOfLines = real(3.0);
 
 SplitLines groove_lines(RuleNode rule, ThetaNode theta, real t, real digits, SplitLines lines) {
@@ -197,7 +198,8 @@ SplitLines groove_lines(RuleNode rule, ThetaNode theta, real t, real digits, Spl
   real2 next = multiply(at, turn);
   lines.arcs = 0;
   bool are_split = digits > kDigitsOfLines;
-  for (int j = 1; are_split && j <= int(rule.split_bounces) && next.x >= real(0.0); ++j) {
+  int splits = (t < real(DOLP_STEEPEST_SPLIT)) ? int(rule.split_bounces) : 0;
+  for (int j = 1; are_split && j <= splits && next.x >= real(0.0); ++j) {
     lines.end[lines.arcs] = groove_line(theta, at.y, at.x);
     ++lines.arcs;
     at = next;

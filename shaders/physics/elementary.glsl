@@ -113,6 +113,31 @@ real2 sinh_cosh(real x) {
   return real2(real(0.5) * (e + e * inverse), real(0.5) * (real(1.0) + e + inverse));
 }
 
+// (cos(x), sin(x)) for 0 <= x <= pi/4.
+real2 cos_sin(real x) {
+  real z = -x * x;
+#ifdef DOLP_DOUBLE
+  real c = real(1.0) / real(20922789888000.0);
+  real s = real(1.0) / real(355687428096000.0);
+  c = c * z + real(1.0) / real(87178291200.0);
+  s = s * z + real(1.0) / real(1307674368000.0);
+  c = c * z + real(1.0) / real(479001600.0);
+  s = s * z + real(1.0) / real(6227020800.0);
+  c = c * z + real(1.0) / real(3628800.0);
+  s = s * z + real(1.0) / real(39916800.0);
+#else
+  real c = real(1.0) / real(3628800.0);
+  real s = real(1.0) / real(39916800.0);
+#endif
+  c = c * z + real(1.0) / real(40320.0);
+  s = s * z + real(1.0) / real(362880.0);
+  c = c * z + real(1.0) / real(720.0);
+  s = s * z + real(1.0) / real(5040.0);
+  c = c * z + real(1.0) / real(24.0);
+  s = s * z + real(1.0) / real(120.0);
+  return real2(real(1.0) + z * (real(0.5) + z * c), x + x * z * (real(1.0) / real(6.0) + z * s));
+}
+
 // atan(y) for 0 <= y <= 1: the argument is halved twice, then the Taylor series.
 real atan_unit(real y) {
   real y1 = y / (real(1.0) + sqrt(real(1.0) + y * y));

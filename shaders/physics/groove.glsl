@@ -10,35 +10,60 @@
 // the beam min(e, 2c) that meets the facet first, (min(X_k, X_1) - X_0) / (X_1 - X_0) goes on to bounce k, X_0 = max(a
 // sin(psi - gamma), 0).
 
-// The fan of facets that a ray meets: (cos, sin) of gamma, of as many grooves in one as bounces are taken together: two
-// turns of a ray that is reflected often are like one in a groove twice as wide, by a facet that reflects twice. What
-// that changes is bounded in host/plan/error_bounds.cpp.
+// Of a ray that has many bounces, 2, 4, 8 ... are taken as one at their middle, the fewer the closer they are to its
+// first or last, which may be grazing. What that changes is bounded in host/plan/error_bounds.cpp.
 struct Fan {
-  real2 turn;
-  real bounces;  // of the ray, where there are many: pi/2 - psi over gamma
+  real2 turn;    // (cos, sin) of gamma times the bounces taken as one
+  real gamma;    // of a ray with many bounces, and what follows
+  real left;     // bounces, (pi/2 - psi) / gamma of them at first
+  real done;
+  real slant;    // psi over gamma, no more than 1
+  real taken;    // bounces taken as one, 2^doublings
   int doublings;
+  bool is_steep;
 };
-
-real2 doubled_turn(real2 turn) { return real2((turn.x - turn.y) * (turn.x + turn.y), real(2.0) * turn.x * turn.y); }
 
 // Of a groove of slope t, for a ray that has the projections c and u on the vertical and across.
 Fan fan(real t, real c, real u) {
-  real slope = t;
+  real r = real(1.0) / sqrt(real(1.0) + t * t);
   Fan f;
-  f.bounces = real(0.0);
+  f.turn = real2(t * r, r);
+  f.gamma = real(0.0);
+  f.left = real(0.0);
+  f.done = real(0.0);
+  f.slant = real(1.0);
+  f.taken = real(1.0);
   f.doublings = 0;
+  f.is_steep = false;
   // A ray has at most pi/gamma < pi t + 2 bounces; the loop is one that devices skip.
-  for (bool is_steep = t > real(DOLP_MOST_BOUNCES) / kPi; is_steep; is_steep = false) {
+  for (bool may_be = t > real(DOLP_MOST_BOUNCES) / kPi; may_be; may_be = false) {
     real to_horizon = arc_tangent(c / max(abs(u), real(1e-30)));
-    f.bounces = choose(u < real(0.0), kPi - to_horizon, to_horizon) / arc_tangent(real(1.0) / t);
-    while (f.bounces > real(DOLP_MOST_BOUNCES)) {
-      slope = real(0.5) * (slope - real(1.0) / slope);  // cot(2 gamma)
-      f.bounces *= real(0.5);
-      ++f.doublings;
-    }
+    f.gamma = arc_tangent(real(1.0) / t);
+    f.left = min(choose(u < real(0.0), kPi - to_horizon, to_horizon) / f.gamma, real(DOLP_LAST_BOUNCES));
+    real zenith = arc_tangent(abs(u) / max(c, real(1e-30)));
+    f.slant = min(choose(u < real(0.0), -zenith, zenith) / f.gamma, real(1.0));
+    f.is_steep = f.left > real(DOLP_MOST_BOUNCES);
   }
-  real r = real(1.0) / sqrt(real(1.0) + slope * slope);
-  f.turn = real2(slope * r, r);
+  return f;
+}
+
+// What goes on to one bounce more of a ray with many, with the sines of small angles for the angles.
+real last_share(Fan f) {
+  real sum = max(real(1.0) + f.slant, real(1e-30));
+  return (real(2.0) * f.left + f.slant - real(1.0)) / sum;
+}
+
+// The bounces that come next, of a ray with many: as many as one as keep their distance from its first and last.
+Fan next_bounces(Fan f) {
+  real distance = min(f.done, f.left) * (real(1.0) / real(DOLP_GROUPS_PER_DISTANCE));
+  if (real(2.0) * f.taken <= distance) {
+    f.taken *= real(2.0);
+    ++f.doublings;
+  } else if (f.doublings > 0 && f.taken > distance) {
+    f.taken *= real(0.5);
+    --f.doublings;
+  }
+  f.turn = cos_sin(f.gamma * f.taken);
   return f;
 }
 
@@ -65,9 +90,9 @@ Bounce bounce(IndexNode index, real cos_beta, real sin2_beta, int doublings) {
   one.m01 = half_split;
   one.absorbed = f.absorbed_s + half_split;
   one.cross = real2(scale * (cw.x * cw.x + cw.y * cw.y - sin2_beta * sin2_beta), scale * real(2.0) * sin2_beta * cw.y);
-  for (int i = 0; i < doublings; i += DOLP_DOUBLINGS_AT_ONCE) {
-    for (int j = 0; j < DOLP_DOUBLINGS_AT_ONCE; ++j) {
-      if (i + j < doublings) {
+  for (bool is_doubled = doublings > 0; is_doubled; is_doubled = false) {
+    for (int i = 0; i < DOLP_MOST_DOUBLINGS; ++i) {
+      if (i < doublings) {
         Bounce two;
         two.m00 = one.m00 * one.m00 + one.m01 * one.m01;
         two.m01 = real(2.0) * one.m00 * one.m01;
@@ -116,9 +141,6 @@ real4 reflected_in_groove(ThetaNode theta, IndexNode index, real t, real x, real
   real inverse_width = real(1.0) / max(width, real(1e-30));
   real rise = real(0.0);        // X_k - X_1
   real2 between = real2(u, c);  // a (sin, cos) of psi + 2 k gamma
-  real left = f.bounces;
-  real2 at = real2(first, c * f.turn.x - u * f.turn.y);
-  real2 step = doubled_turn(f.turn);
   // Rays of intensity 1 and of Q = 1 as the surface sees it.
   real4 natural = real4(real(1.0), real(0.0), real(0.0), real(0.0));
   real2 seen = doubled_angle(-x, c * sin_phi);
@@ -126,20 +148,24 @@ real4 reflected_in_groove(ThetaNode theta, IndexNode index, real t, real x, real
   real absorbed = real(0.0);
   real share = real(1.0);  // of the beam, that goes on
   while (share > real(0.0)) {
+    if (f.is_steep) f = next_bounces(f);
+    real2 at = further_on(between, f.turn);
     real along = b * at.x;
     real norm = at.y * at.y + along * along;
     real inverse_norm = real(1.0) / max(norm, kSmallestSquare);
     real2 twice = real2((at.y - along) * (at.y + along) * inverse_norm, real(2.0) * at.y * along * inverse_norm);
-    Bounce by = bounce(index, max(at.x, real(1e-15)), min(norm * inverse_a2, real(1.0)),
-                       min(f.doublings, DOLP_MOST_DOUBLINGS));  // of more bounces nothing is left
+    Bounce by = bounce(index, max(at.x, real(1e-15)), min(norm * inverse_a2, real(1.0)), f.doublings);
     absorbed += share * (by.absorbed * natural.x - by.m01 * (twice.x * natural.y + twice.y * natural.z));
     natural += share * (bounced(by, twice, natural) - natural);
     polarised += share * (bounced(by, twice, polarised) - polarised);
-    at = further_on(at, step);
-    between = further_on(between, step);
+    between = further_on(at, f.turn);
     rise += real(2.0) * f.turn.y * between.y;
-    left -= real(1.0);
-    share = clamp((f.doublings > 0) ? left : real(1.0) + rise * inverse_width, real(0.0), real(1.0));
+    if (f.is_steep) {
+      f.done += f.taken;
+      f.left -= f.taken;
+    }
+    share = f.is_steep ? last_share(f) : real(1.0) + rise * inverse_width;
+    share = clamp(share, real(0.0), real(1.0));
   }
   real beam = min(c + theta.s * t * x, real(2.0) * c);
   return real4(beam * natural.x, beam * polarised.x, beam, beam * absorbed);

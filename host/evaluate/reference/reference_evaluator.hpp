@@ -25,7 +25,8 @@ struct ReferenceOptions {
 /// direct emission too (reference/direct_emission.hpp), both integrated over the slopes of the facets.
 /// Equation: (4), (7), (9)-(13), (15), (16).
 /// Accuracy: relative_tolerance or, if that is larger, a hundredth of the request's tolerance; never more than half of
-///   the request's tolerance. A request of tolerance 0 leaves it to relative_tolerance. The errors returned are those
+///   the request's tolerance. A request of tolerance 0 leaves it to relative_tolerance. With all bounces of steep metal
+///   grooves the quadratures may end before: the errors say so. The errors returned are those
 ///   of the quadratures plus rounding (test ReferenceMoments_CoarseQuadrature_StaysWithinItsErrors).
 /// Domain: theta in [0, 90] degrees; sigma >= 0; cauchy q > 1, with smith masking q > 3/2; n > 0, k >= 0. At 90 degrees
 ///   all four moments are the limits: 0 for v-cavity and smith, finite for the others but infinite (with infinite

@@ -57,7 +57,7 @@
 #define DOLP_STEEPEST_SPLIT 20.0  // slope from which on no beam that ends splits the azimuths
 #define DOLP_MOST_SPLITS 8       // bounces at which a beam that ends may split the azimuths
 #define DOLP_MOST_BOUNCES 32      // each on its own; of more, 2, 4, 8 ... are taken as one
-#define DOLP_GROUPS_PER_DISTANCE 16 // bounces taken as one at once, over those before or after them
+#define DOLP_GROUPS_PER_DISTANCE 6 // bounces taken as one at once, over those before or after them
 #define DOLP_MOST_DOUBLINGS 12
 #define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // of more nothing is left
 #define DOLP_AZIMUTHS_PER_SLOPE 2 // nodes at most

@@ -129,13 +129,14 @@ constexpr double kLeastShareOfTolerance = 0.1;
 
 // Upper bound of what is left of the light that has so many bounces with cos(beta) >= a/2, a its length across the
 // groove. a is at least `level` but for the azimuths with sin(theta) |cos(phi)| < sqrt(level^2 - c^2), which take at
-// most twice their share.
-double reflected_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double bounces) {
-  double least = 1.0;
+// most twice their share. `most` is left in any case.
+double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double bounces, double most) {
+  double least = most;
   for (double level = 1.0; level > 1e-6; level *= 0.5) {
     const double along = std::sqrt(std::max((level - theta.c) * (level + theta.c), 0.0));
     const double missed = along < theta.s ? 4.0 / pi<double>() * std::asin(along / theta.s) : 1.0;
-    least = std::min(least, missed + std::pow(reflectance_s(index, 0.5 * std::max(level, theta.c)), bounces));
+    const double reflected = std::pow(reflectance_s(index, 0.5 * std::max(level, theta.c)), bounces);
+    least = std::min(least, most * missed + reflected);
   }
   return least;
 }
@@ -144,25 +145,29 @@ double reflected_after(const kernel::ThetaNode& theta, const kernel::IndexNode& 
 // 3 gamma ... up to pi - psi, at least slope min(pi/3, pi/2 - theta) - 1 of them with cos(beta) >= a/2.
 double reflected_by_steep_grooves(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double slope) {
   const double elevation = std::atan2(theta.c, theta.s);
-  return reflected_after(theta, index, std::max(std::min(pi<double>() / 3.0, elevation) * slope - 1.0, 0.0));
+  return left_after(theta, index, std::max(std::min(pi<double>() / 3.0, elevation) * slope - 1.0, 0.0), 1.0);
 }
 
 // Rounding in grooves, in units of the roundoff and of the cosine: the last bounces may be grazing, where all that
 // little reflects does.
 constexpr double kGrooveRoundings = 4.0;
 
-// What taking many bounces in a groove as one changes, over the cosine and the share of the grooves it is done in: 1e-4
-// for metals, most for the best of conductors (test GrooveText). Of more than DOLP_LAST_BOUNCES only so many are counted.
+// What taking many bounces in a groove as one changes, over the cosine and the share of the grooves it is done in (test
+// GrooveText): most where the best of conductors reflect very often. Of more than DOLP_LAST_BOUNCES only so many are
+// counted.
 constexpr double kManyBouncesError = 1e-3;
+constexpr double kVeryManyBounces = 1024.0;
+constexpr double kVeryManyBouncesError = 1e-2;
 constexpr double kNotGrazing = 0.6;  // share of a ray's bounces with cos(beta) >= a/2, at least
 
 double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
                           const kernel::ShapeNode& shape) {
   const auto beyond = [&](double bounces, double most) {
     const double share = share_beyond(data.distribution, shape, 1.0 / std::tan(0.5 * pi<double>() / bounces));
-    return share * std::min(most, reflected_after(theta, index, kNotGrazing * bounces));
+    return share * left_after(theta, index, kNotGrazing * bounces, most);
   };
-  return theta.c * (beyond(DOLP_MOST_BOUNCES, kManyBouncesError) + beyond(DOLP_LAST_BOUNCES, 1.0));
+  return theta.c * (beyond(DOLP_MOST_BOUNCES, kManyBouncesError) + beyond(kVeryManyBounces, kVeryManyBouncesError) +
+                    beyond(DOLP_LAST_BOUNCES, 1.0));
 }
 
 double pair_factor(const KernelData& data, const kernel::IndexNode& index) {

@@ -32,7 +32,7 @@ constexpr std::array<RuleModel, 5> kModels = {{
      .phi_nodes = 0.3,
      .phi_digits = -0.5,
      .cluster_stretch = 5.5},
-    // all bounces: as v-cavity, whose work `fit multiple` does not change much
+    // all bounces: those of v-cavity
     {.margin_digits = 2.5, .t_nodes = 1, .t_digits = -0.812, .t_fall = 0.165, .phi_nodes = 0.562, .phi_digits = 0.188},
 }};
 

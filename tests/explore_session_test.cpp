@@ -21,6 +21,66 @@ TEST(ExploreSession, Curve_IsThatOfTheSceneAtItsTolerance) {
   EXPECT_GT(curve.worst_error(), 0.0);
 }
 
+bool says_stale(const std::string& text) { return text.find("the scene before") != std::string::npos; }
+
+TEST(ExploreSession, WhatIsShownWhileTheSceneChanges_IsStaleAndKeepsItsParameters) {
+  Driver driver(paint());
+  const Session& session = driver.session;
+  const std::string name = curve_name(session.curve());
+  const std::string overlay = session.overlay_name();
+  const std::string cursor = cursor_text(session);
+  const double bound = session.effects().front().bound.value();
+  EXPECT_FALSE(says_stale(name + overlay + cursor));
+  driver.session.set({{"surface.sigma", "0.4"}, {"surface.n", "1.7"}});
+  EXPECT_TRUE(session.curve().is_stale());
+  EXPECT_TRUE(session.overlay()->is_stale());
+  EXPECT_TRUE(session.map().is_stale());
+  EXPECT_EQ(session.curve().shown_scene().surface.sigma, 0.15);
+  EXPECT_EQ(curve_name(session.curve()), name + ", the scene before");
+  EXPECT_EQ(session.overlay_name(), overlay + ", the scene before");
+  EXPECT_EQ(cursor_text(session), "Cursor, the scene before" + cursor.substr(std::string("Cursor").size()));
+  EXPECT_EQ(session.effects().front().bound, bound);
+  EXPECT_EQ(cost_lines(session).front(), "time …");
+  driver.settle();
+  EXPECT_FALSE(session.curve().is_stale() || session.overlay()->is_stale() || session.map().is_stale());
+  EXPECT_FALSE(says_stale(curve_name(session.curve()) + session.overlay_name() + cursor_text(session)));
+  EXPECT_NE(cursor_text(session).find("σ = 0.4,"), std::string::npos) << cursor_text(session);
+}
+
+TEST(ExploreSession, MapOfWhatItsAxesVary_IsNotStale) {
+  Driver driver(paint());
+  driver.session.set("surface.sigma", 0.4);
+  EXPECT_FALSE(driver.session.map().is_stale());
+}
+
+TEST(ExploreSession, CoarseCurveOfAnEarlierScene_IsShownAsSuch) {
+  Driver driver(paint());
+  driver.session.pin();
+  const std::vector<PointResult> pinned = driver.session.pins()[0].curve.results();
+  driver.session.set("surface.sigma", 0.3);
+  const Job coarse = driver.session.wanted().front();
+  EXPECT_TRUE(coarse.is_brief);
+  driver.session.set("surface.sigma", 0.4);
+  driver.session.take({done(coarse)});
+  const Curve& curve = driver.session.curve();
+  EXPECT_TRUE(curve.is_stale());
+  EXPECT_EQ(curve.entries().size(), Curve::kCoarseCount);
+  EXPECT_EQ(curve.shown_scene().surface.sigma, 0.3);
+  EXPECT_EQ(driver.session.at_cursor()->entry.shape.sigma, 0.3);
+  expect_same(driver.session.pins()[0].curve.results(), pinned);
+  driver.settle();
+  EXPECT_FALSE(curve.is_stale());
+  driver.session.take({done(coarse)});
+  EXPECT_EQ(curve.shown_scene().surface.sigma, 0.4);
+}
+
+TEST(ExploreSession, Cursor_SaysTheZenithOfTheValueThatItShows) {
+  Driver driver(paint());
+  driver.session.set_theta(60.2);
+  EXPECT_EQ(driver.session.at_cursor()->entry.theta_deg, 60.0);
+  EXPECT_TRUE(cursor_text(driver.session).starts_with("Cursor: θ = 60.0°")) << cursor_text(driver.session);
+}
+
 TEST(ExploreSession, RefusedValue_IsAMessageAndNoChange) {
   Driver driver(paint());
   driver.session.set("surface.sigma", 99.0);
@@ -73,16 +133,16 @@ TEST(ExploreSession, Bracket_LiesAroundTheCurveAndIsReadAtTheCursor) {
     EXPECT_LE(r.dolp_low, r.dolp + r.error_estimate);
     EXPECT_GE(r.dolp_high, r.dolp - r.error_estimate);
   }
-  const PointResult* at_cursor = driver.session.at_cursor();
-  ASSERT_TRUE(at_cursor);
-  EXPECT_GT(at_cursor->dolp_high, 1.1 * at_cursor->dolp_low);
+  ASSERT_TRUE(driver.session.at_cursor());
+  const PointResult at_cursor = driver.session.at_cursor()->result;
+  EXPECT_GT(at_cursor.dolp_high, 1.1 * at_cursor.dolp_low);
   const std::string text = cursor_text(driver.session);
   double low = 0.0, high = 0.0;
   const std::size_t place = text.find("all bounces");
   ASSERT_NE(place, std::string::npos) << text;
   ASSERT_EQ(std::sscanf(text.c_str() + place, "all bounces %lf to %lf %%", &low, &high), 2) << text;
-  EXPECT_NEAR(low, 100.0 * at_cursor->dolp_low, 1e-3);
-  EXPECT_NEAR(high, 100.0 * at_cursor->dolp_high, 1e-3);
+  EXPECT_NEAR(low, 100.0 * at_cursor.dolp_low, 1e-3);
+  EXPECT_NEAR(high, 100.0 * at_cursor.dolp_high, 1e-3);
 }
 
 TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {

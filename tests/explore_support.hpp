@@ -70,6 +70,17 @@ inline std::vector<PointResult> truth(const Scene& scene, const SceneEntries& en
   return evaluate_scene(scene, entries, plan_effects(scene, entries, false), &evaluator, {});
 }
 
+/// What a worker would say of a job.
+inline JobPart done(const Job& job) {
+  JobPart part;
+  part.key = job.key;
+  part.scene = job.scene;
+  part.entries = job.entries;
+  part.results = truth(job.scene, job.entries);
+  part.is_last = true;
+  return part;
+}
+
 inline void expect_same(const std::vector<PointResult>& a, const std::vector<PointResult>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {

@@ -279,6 +279,35 @@ TEST(ExploreWorker, JobUnderWay_GoesOnWhenItIsStillWanted) {
   EXPECT_EQ(evaluator.cancelled, 0);
 }
 
+TEST(ExploreWorker, BriefJobUnderWay_IsFinishedThoughItIsNotWanted) {
+  SlowEvaluator evaluator;
+  Worker worker(evaluator, [] {});
+  Job brief = job_of("brief");
+  brief.is_brief = true;
+  worker.want({brief});
+  evaluator.wait_for_call();
+  worker.want({job_of("new")});
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // time to give it up, were it not brief
+  evaluator.open();
+  const std::vector<JobPart> news = finish(worker);
+  ASSERT_EQ(news.size(), 2U);
+  EXPECT_EQ(news[0].key, "brief");
+  EXPECT_EQ(news[1].key, "new");
+  EXPECT_EQ(evaluator.cancelled, 0);
+}
+
+TEST(ExploreWorker, BriefJobUnderWay_IsGivenUpAtTheEnd) {
+  SlowEvaluator evaluator;
+  {
+    Worker worker(evaluator, [] {});
+    Job brief = job_of("brief");
+    brief.is_brief = true;
+    worker.want({brief});
+    evaluator.wait_for_call();
+  }
+  EXPECT_EQ(evaluator.cancelled, 1);
+}
+
 TEST(ExploreWorker, Parts_ComeInOrderWithTheResultsOfTheWhole) {
   CpuEvaluator evaluator(Precision::kAuto);
   Worker worker(evaluator, [] {});

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <thread>
 
 #include "cli_support.hpp"
 #include "explore/exports.hpp"
@@ -250,6 +251,68 @@ TEST_F(Window, Resized_DrawsAtTheNewSize) {
     EXPECT_EQ(number(16), static_cast<std::uint32_t>(width));
     EXPECT_EQ(number(20), static_cast<std::uint32_t>(height));
   }
+}
+
+TEST_F(Window, List_OpensAndClosesOnTheScreenWithoutTheMouseMoving) {
+  const Area area = app_->control_area("surface.masking");
+  move_to(0.5F * (area.left + area.right), 0.5F * (area.top + area.bottom));
+  app_->answer();
+  const auto below = [&] {
+    return display_.pixels(static_cast<std::size_t>(area.left), static_cast<std::size_t>(area.bottom) + 8, 60, 60);
+  };
+  const auto pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(500)); };
+  const std::string closed = below();
+  std::string opened, closed_again;
+  std::jthread hand([&] {
+    xdotool({"mousedown", "1"});
+    xdotool({"mouseup", "1"});
+    pause();
+    opened = below();
+    xdotool({"windowfocus", "--sync", window_, "keydown", "Escape", "sleep", "0.3", "keyup", "Escape"});
+    pause();
+    closed_again = below();
+    app_->close();
+  });
+  app_->run();
+  hand.join();
+  EXPECT_NE(opened, closed);
+  EXPECT_EQ(closed_again, closed);
+}
+
+TEST_F(Window, Tab_MovesToTheNextField) {
+  const Area area = app_->control_area("surface.sigma");
+  move_to(area.right + 30.0F, 0.5F * (area.top + area.bottom));
+  press("mousedown");
+  press("mouseup");
+  for (const char* key : {"Tab", "4", "Return"}) keys(key);
+  EXPECT_EQ(app_->session().scene().surface.q, 4.0);
+  EXPECT_EQ(app_->session().scene().surface.sigma, 0.15);
+}
+
+/// Where the curve is drawn in a window that opens on a display.
+Area plot_on(const std::string& size, const std::string& dots_per_inch) {
+  const VirtualDisplay display(size);
+  const std::vector<std::string> xprop = {"xprop", "-root", "-f", "RESOURCE_MANAGER", "8s", "-set", "RESOURCE_MANAGER"};
+  Command scale{.arguments = xprop, .folder = "/"};
+  scale.arguments.push_back("Xft.dpi: " + dots_per_inch);
+  EXPECT_EQ(run(scale).status, 0);
+  App app(explore::SceneEdits(kEdited, "scene.toml", {}), {});
+  for (int i = 0; i < kFrames; ++i) app.frame();
+  return app.plot_area();
+}
+
+TEST(WindowScale, OnALargeDisplayAt200Percent_PlotIsTwiceAsLarge) {
+  const Area single = plot_on("1440x900", "96");
+  const Area twice = plot_on("2880x1800", "192");
+  const float height = single.bottom - single.top;
+  EXPECT_GT(height, 300.0F);
+  EXPECT_NEAR(twice.bottom - twice.top, 2.0F * height, 0.05F * height);
+  EXPECT_NEAR(twice.right - twice.left, 2.0F * (single.right - single.left), 0.05F * height);
+}
+
+TEST(WindowScale, OnASmallDisplayAt200Percent_PlotKeepsAFifthOfTheHeight) {
+  const Area plot = plot_on("1440x900", "192");
+  EXPECT_GT(plot.bottom - plot.top, 0.2F * 900.0F);
 }
 
 bool is_ascii(const std::string& text) {

@@ -7,6 +7,9 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -18,14 +21,17 @@ namespace dolp {
 /// Xvfb on a display number of its own; DISPLAY of this process and its children points there.
 class VirtualDisplay {
  public:
-  VirtualDisplay() {
+  explicit VirtualDisplay(const std::string& size = "1440x900") {
+    std::string folder = (std::filesystem::temp_directory_path() / "dolp-display-XXXXXX").string();
+    if (!::mkdtemp(folder.data())) throw std::runtime_error("cannot make a folder");
+    folder_ = folder;
     int ends[2];
     if (::pipe(ends) != 0) throw std::runtime_error("cannot make a pipe");
     process_ = ::fork();
     if (process_ == 0) {
       const std::string number = std::to_string(ends[1]);
-      ::execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1440x900x24", "-nolisten", "tcp",
-               nullptr);
+      ::execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", (size + "x24").c_str(), "-fbdir",
+               folder.c_str(), "-noreset", "-nolisten", "tcp", nullptr);
       ::_exit(127);
     }
     ::close(ends[1]);
@@ -38,11 +44,30 @@ class VirtualDisplay {
   ~VirtualDisplay() {
     ::kill(process_, SIGTERM);
     ::waitpid(process_, nullptr, 0);
+    std::filesystem::remove_all(folder_);
   }
   VirtualDisplay(const VirtualDisplay&) = delete;
   VirtualDisplay& operator=(const VirtualDisplay&) = delete;
 
+  /// What is on the screen inside a rectangle: rows of pixels of four bytes.
+  std::string pixels(std::size_t left, std::size_t top, std::size_t width, std::size_t height) const {
+    // XWD: a header of big-endian numbers, a table of colours of 12 bytes each, the rows.
+    std::ifstream file(folder_ / "Xvfb_screen0", std::ios::binary);
+    const std::string screen{std::istreambuf_iterator<char>(file), {}};
+    const auto field = [&](std::size_t position) {
+      std::size_t value = 0;
+      for (std::size_t i = 0; i < 4; ++i) value = 256 * value + static_cast<unsigned char>(screen.at(4 * position + i));
+      return value;
+    };
+    const std::size_t begin = field(0) + 12 * field(19);
+    const std::size_t row = field(12);
+    std::string found;
+    for (std::size_t y = top; y < top + height; ++y) found += screen.substr(begin + y * row + 4 * left, 4 * width);
+    return found;
+  }
+
  private:
+  std::filesystem::path folder_;
   pid_t process_ = -1;
 };
 

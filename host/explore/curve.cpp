@@ -6,6 +6,11 @@
 #include "model/status.hpp"
 
 namespace dolp::explore {
+namespace {
+
+constexpr const char* kCoarsePrefix = "coarse curve ";
+
+}  // namespace
 
 std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count) {
   std::vector<double> theta_deg(count, from_deg);
@@ -33,7 +38,7 @@ void Curve::follow(const std::string& key, const Scene& scene, bool keep_all) {
   keep_all_ = keep_all;
 }
 
-std::string Curve::key_of(Stage stage) const { return (stage == Stage::kCoarse ? "coarse curve " : "curve ") + key_; }
+std::string Curve::key_of(Stage stage) const { return (stage == Stage::kCoarse ? kCoarsePrefix : "curve ") + key_; }
 
 Job Curve::job(Stage stage) const {
   const bool is_coarse = stage == Stage::kCoarse;
@@ -44,6 +49,7 @@ Job Curve::job(Stage stage) const {
   job.entries = entries_at(scene_, zeniths(0.0, 90.0, is_coarse ? kCoarseCount : kFineCount));
   job.keep_all = keep_all_;
   job.wants_rows = !is_coarse;
+  job.is_brief = is_coarse;
   return job;
 }
 
@@ -56,15 +62,20 @@ bool Curve::take(const JobPart& news) {
   const bool is_fine = news.key == key_of(Stage::kFine);
   if (!is_fine && news.key != key_of(Stage::kCoarse)) return false;
   if (!is_fine && is_finished()) return true;
-  shown_ = news.key;
-  entries_ = job(is_fine ? Stage::kFine : Stage::kCoarse).entries;
-  results_ = news.results;
-  if (is_fine) {
-    cost_ = {news.wall_s, news.evaluations, news.entries};
-    plan_ = news.plan;
-    rows_ = news.rows;
-  }
+  show(news);
+  if (is_fine) report_ = {news.scene, news.rows, news.wall_s, news.evaluations, news.entries.size()};
   return true;
+}
+
+void Curve::take_earlier(const JobPart& news) {
+  if (!is_current() && news.key.starts_with(kCoarsePrefix)) show(news);
+}
+
+void Curve::show(const JobPart& news) {
+  shown_ = news.key;
+  shown_scene_ = news.scene;
+  entries_ = news.entries;
+  results_ = news.results;
 }
 
 double Curve::worst_error() const {

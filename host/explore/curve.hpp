@@ -9,8 +9,10 @@
 
 namespace dolp::explore {
 
-/// What a finished job cost.
-struct Cost {
+/// What is said of a finished curve.
+struct CurveReport {
+  Scene scene;
+  std::vector<EffectRow> rows;
   double wall_s = 0.0;
   double evaluations = 0.0;
   std::size_t entries = 0;
@@ -26,8 +28,8 @@ class Curve {
   static constexpr std::size_t kCoarseCount = 46;
   static constexpr double kCoarseTolerance = 1e-2;
 
-  /// From now on the curve of this scene. `key` stands for the scene's content. What is shown stays until there is
-  /// something newer.
+  /// From now on the curve of this scene. `key` stands for the scene's content. What is shown stays, as stale, until
+  /// there is something newer.
   void follow(const std::string& key, const Scene& scene, bool keep_all);
 
   /// What is still to be computed, a stage at a time.
@@ -35,17 +37,20 @@ class Curve {
 
   /// Takes what is this curve's; false for the rest.
   bool take(const JobPart& news);
+  /// Takes a coarse curve that was begun before the scene changed, where what is shown is older still.
+  void take_earlier(const JobPart& news);
 
   const Scene& scene() const { return scene_; }
   const std::string& key() const { return key_; }
   bool is_finished() const { return shown_ == key_of(Stage::kFine); }
-  // What is shown, perhaps of the scene before.
+  /// What is shown is of a scene before this one.
+  bool is_stale() const { return !results_.empty() && !is_current(); }
+  // What is shown, and the scene that it was computed with.
+  const Scene& shown_scene() const { return results_.empty() ? scene_ : shown_scene_; }
   const SceneEntries& entries() const { return entries_; }
   const std::vector<PointResult>& results() const { return results_; }
-  // Of the last finished curve.
-  const Cost& cost() const { return cost_; }
-  const EffectPlan& plan() const { return plan_; }
-  const std::vector<EffectRow>& rows() const { return rows_; }
+  /// Of the last finished curve.
+  const CurveReport& report() const { return report_; }
 
   /// The largest stated error of DOLP where status promises one.
   double worst_error() const;
@@ -53,16 +58,17 @@ class Curve {
  private:
   std::string key_of(Stage stage) const;
   Job job(Stage stage) const;
+  bool is_current() const { return is_finished() || shown_ == key_of(Stage::kCoarse); }
+  void show(const JobPart& news);
 
   std::string key_;
   Scene scene_;
   bool keep_all_ = false;
   std::string shown_;  ///< key of the job whose results are shown
+  Scene shown_scene_;
   SceneEntries entries_;
   std::vector<PointResult> results_;
-  Cost cost_;
-  EffectPlan plan_;
-  std::vector<EffectRow> rows_;
+  CurveReport report_;
 };
 
 /// The entries of a scene's surface at these zeniths.

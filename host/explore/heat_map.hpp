@@ -62,6 +62,8 @@ class HeatMap {
   std::optional<Job> wanted(std::size_t level) const;
   bool take(const JobPart& news);
   bool is_finished() const;
+  /// What is shown is of a scene before this one.
+  bool is_stale() const { return !shown_key_.empty() && shown_key_ != key_; }
 
   const MapAxis& x() const { return x_; }
   const MapAxis& y() const { return y_; }

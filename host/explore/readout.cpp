@@ -89,20 +89,21 @@ std::string cause_text(const Session& session) {
 }
 
 std::string cursor_text(const Session& session) {
-  const PointResult* r = session.at_cursor();
-  if (!r) return "Cursor: …";
-  const std::string place = fmt::format("Cursor: θ = {:.1f}°, σ = {:.4g}, q = {:.4g}: ", session.theta_deg(),
-                                        session.scene().surface.sigma, session.scene().surface.q);
-  std::string text = place + fmt::format("DOLP {:.3f} % ± {}, Q/I {:+.3f} %", kPercent * r->dolp,
-                                         points_text(r->error_estimate), kPercent * r->stokes_q / r->stokes_i);
-  if (has_bracket(*r)) {
-    text += fmt::format(", all bounces {:.3f} to {:.3f} %", kPercent * r->dolp_low, kPercent * r->dolp_high);
+  const std::optional<AtCursor> shown = session.at_cursor();
+  if (!shown) return "Cursor: …";
+  const auto& [entry, r] = *shown;
+  std::string text =
+      fmt::format("Cursor{}: θ = {:.1f}°, σ = {:.4g}, q = {:.4g}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
+                  stale_text(session.curve().is_stale()), entry.theta_deg, entry.shape.sigma, entry.shape.q,
+                  kPercent * r.dolp, points_text(r.error_estimate), kPercent * r.stokes_q / r.stokes_i);
+  if (has_bracket(r)) {
+    text += fmt::format(", all bounces {:.3f} to {:.3f} %", kPercent * r.dolp_low, kPercent * r.dolp_high);
   }
-  if (std::isfinite(r->rho_i)) {
-    text += fmt::format(", ρ_s {:.4f}, ρ_p {:.4f}", r->rho_i + r->rho_q, r->rho_i - r->rho_q);
+  if (std::isfinite(r.rho_i)) {
+    text += fmt::format(", ρ_s {:.4f}, ρ_p {:.4f}", r.rho_i + r.rho_q, r.rho_i - r.rho_q);
   }
-  if (std::isfinite(r->albedo)) text += fmt::format(", albedo {:.3f}", r->albedo);
-  return text + "; " + status_text(r->status);
+  if (std::isfinite(r.albedo)) text += fmt::format(", albedo {:.3f}", r.albedo);
+  return text + "; " + status_text(r.status);
 }
 
 std::string without_text(const Session& session, const std::string& effect) {
@@ -119,16 +120,16 @@ std::string without_text(const Session& session, const std::string& effect) {
 
 std::vector<std::string> cost_lines(const Session& session) {
   const Curve& curve = session.curve();
-  const Cost& cost = curve.cost();
-  if (cost.entries == 0) return {"time …", "work …", "error …"};
+  const CurveReport& cost = curve.report();
+  if (!curve.is_finished()) return {"time …", "work …", "error …"};
   const double entries = static_cast<double>(cost.entries);
   constexpr double kMilliseconds = 1e3;
   constexpr double kMicroseconds = 1e6;
-  return {fmt::format("time    {:.1f} ms for {} directions, {:.0f} µs each", kMilliseconds * cost.wall_s, cost.entries,
-                      kMicroseconds * cost.wall_s / entries),
-          fmt::format("work    {:.0f} integrand evaluations an entry", cost.evaluations / entries),
-          fmt::format("error   DOLP ≤ {:.2g}; tolerance {:.2g}", curve.worst_error(),
-                      curve.scene().accuracy.tolerance)};
+  return {
+      fmt::format("time    {:.1f} ms for {} directions, {:.0f} µs each", kMilliseconds * cost.wall_s, cost.entries,
+                  kMicroseconds * cost.wall_s / entries),
+      fmt::format("work    {:.0f} integrand evaluations an entry", cost.evaluations / entries),
+      fmt::format("error   DOLP ≤ {:.2g}; tolerance {:.2g}", curve.worst_error(), curve.scene().accuracy.tolerance)};
 }
 
 }  // namespace dolp::explore

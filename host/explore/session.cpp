@@ -52,6 +52,10 @@ std::string surface_name(const Scene& scene) {
   return name + fmt::format(", n {:.4g} k {:.4g}", surface.material.constant.n, surface.material.constant.k);
 }
 
+const char* stale_text(bool is_stale) { return is_stale ? ", the scene before" : ""; }
+
+std::string curve_name(const Curve& curve) { return surface_name(curve.shown_scene()) + stale_text(curve.is_stale()); }
+
 Session::Session(SceneEdits edits) : edits_(std::move(edits)) { follow(); }
 
 template <class Command>
@@ -151,11 +155,12 @@ double Session::cursor_position(const MapAxis& axis) const {
   return axis.position(axis.kind == AxisKind::kSigma ? scene().surface.sigma : scene().surface.q);
 }
 
-const PointResult* Session::at_cursor() const {
+std::optional<AtCursor> Session::at_cursor() const {
   const std::vector<double>& theta_deg = curve_.entries().theta_deg();
-  if (theta_deg.empty()) return nullptr;
+  if (theta_deg.empty()) return std::nullopt;
   const auto nearest = std::ranges::min_element(theta_deg, {}, [&](double at) { return std::abs(at - theta_deg_); });
-  return &curve_.results()[static_cast<std::size_t>(nearest - theta_deg.begin())];
+  const auto position = static_cast<std::size_t>(nearest - theta_deg.begin());
+  return AtCursor{curve_.entries()[position], curve_.results()[position]};
 }
 
 void Session::follow() {
@@ -171,14 +176,16 @@ void Session::follow() {
 }
 
 void Session::bound_effects() {
-  effects_ = curve_.rows();
-  add_influences(effects_, curve_.scene(), entries_at(curve_.scene(), {theta_deg_}));
+  const CurveReport& report = curve_.report();
+  effects_ = report.rows;
+  if (!effects_.empty()) add_influences(effects_, report.scene, entries_at(report.scene, {theta_deg_}));
 }
 
 std::string Session::overlay_name() const {
   if (!overlay_) return {};
-  const Surface& surface = overlay_->scene().surface;
-  return fmt::format("{} σ {:.4g}, same D(0)", name_of(surface.distribution), surface.sigma);
+  const Surface& surface = overlay_->shown_scene().surface;
+  return fmt::format("{} σ {:.4g}, same D(0){}", name_of(surface.distribution), surface.sigma,
+                     stale_text(overlay_->is_stale()));
 }
 
 void Session::follow_overlay(const std::string& content, bool keep_all) {
@@ -226,7 +233,7 @@ bool Session::take_changed() { return std::exchange(is_changed_, false); }
 
 void Session::take(const std::vector<JobPart>& news) {
   for (const JobPart& part : news) {
-    curve_.take(part);
+    if (!curve_.take(part)) curve_.take_earlier(part);
     if (overlay_) overlay_->take(part);
     for (Pin& pin : pins_) pin.curve.take(part);
     map_.take(part);

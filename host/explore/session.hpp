@@ -34,6 +34,12 @@ struct View {
   AxisKind map_y = AxisKind::kSigma;
 };
 
+/// An entry of the curve that is shown.
+struct AtCursor {
+  SceneEntry entry;
+  PointResult result;
+};
+
 /// One line for the user.
 struct Message {
   std::string text;
@@ -85,13 +91,13 @@ class Session {
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
   const Message& message() const { return message_; }
-  /// The effects of the finished curve; bounds of what is kept are those at the cursor's zenith.
+  /// The effects of the last finished curve; bounds of what is kept are those at the cursor's zenith.
   const std::vector<EffectRow>& effects() const { return effects_; }
   /// The position of the scene's own values on the map.
   double map_cursor_x() const { return cursor_position(map_.x()); }
   double map_cursor_y() const { return cursor_position(map_.y()); }
-  /// The shown result whose zenith is nearest to the cursor's; none before there is one.
-  const PointResult* at_cursor() const;
+  /// What is shown at the zenith nearest to the cursor's; none before there is something.
+  std::optional<AtCursor> at_cursor() const;
 
  private:
   template <class Command>
@@ -120,5 +126,11 @@ class Session {
 
 /// The surface of a scene in few words, for a legend: "cauchy σ 0.15 q 3, smith".
 std::string surface_name(const Scene& scene);
+
+/// The surface of what is shown of a curve, and whether that is stale.
+std::string curve_name(const Curve& curve);
+
+/// Empty, or what stands beside something stale.
+const char* stale_text(bool is_stale);
 
 }  // namespace dolp::explore

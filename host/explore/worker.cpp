@@ -65,9 +65,9 @@ bool Worker::is_idle() const {
   return (tasks_.empty() && running_.empty()) || failure_ != nullptr;
 }
 
-bool Worker::is_wanted(const std::string& key) const {
+bool Worker::goes_on(const Job& job) const {
   const std::scoped_lock lock(mutex_);
-  return contains(wanted_, key);
+  return !is_stopping_ && (job.is_brief || contains(wanted_, job.key));
 }
 
 void Worker::run() {
@@ -103,11 +103,12 @@ void Worker::run_tasks() {
 }
 
 void Worker::put_back(Task task, std::vector<JobPart> parts) {
+  const bool is_done = !parts.empty() && parts.front().is_last;
   const std::scoped_lock lock(mutex_);
   running_.clear();
-  if (!contains(wanted_, task.job.key)) return;
-  const bool is_done = !parts.empty() && parts.front().is_last;
-  std::ranges::move(parts, std::back_inserter(news_));
+  const bool is_wanted = contains(wanted_, task.job.key);
+  if (is_wanted || task.job.is_brief) std::ranges::move(parts, std::back_inserter(news_));
+  if (!is_wanted) return;
   if (is_done) {
     finished_.push_back(task.job.key);
     return;
@@ -125,17 +126,17 @@ JobPart Worker::advance(Task& task) {
   JobPart news;
   news.key = job.key;
   news.part = task.next;
-  news.results = evaluate_scene(job.scene, job.parts.empty() ? job.entries : job.parts[task.next], task.plan,
-                                &evaluator_, [&](std::size_t, std::size_t) { return is_wanted(job.key); });
+  news.scene = job.scene;
+  news.entries = job.parts.empty() ? job.entries : job.parts[task.next];
+  news.results = evaluate_scene(news.scene, news.entries, task.plan, &evaluator_,
+                                [&](std::size_t, std::size_t) { return goes_on(job); });
   ++task.next;
   task.wall_s += seconds_since(start);
   task.evaluations += evaluator_.report().evaluations - evaluations_before;
   news.is_last = task.next >= job.parts.size();
   if (!news.is_last) return news;
-  news.plan = task.plan;
   news.wall_s = task.wall_s;
   news.evaluations = task.evaluations;
-  news.entries = job.entries.size();
   if (job.wants_rows) news.rows = effect_rows(job.scene, job.entries, task.plan);
   return news;
 }

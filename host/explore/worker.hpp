@@ -27,23 +27,24 @@ struct Job {
   std::vector<SceneEntries> parts = {};
   bool keep_all = false;
   bool wants_rows = false;  ///< the effects of the plan
+  bool is_brief = false;    ///< once begun it is finished, wanted or not
 };
 
 /// A part of a job's results.
 struct JobPart {
   std::string key;
   std::size_t part = 0;  ///< of the job
+  Scene scene;
+  SceneEntries entries;  ///< of this part
   std::vector<PointResult> results;
   bool is_last = false;
   // Of the whole job, in the last part.
-  EffectPlan plan;
   std::vector<EffectRow> rows;
   double wall_s = 0.0;
   double evaluations = 0.0;
-  std::size_t entries = 0;
 };
 
-/// Computes what is wanted, in order; what is no longer wanted is given up within a tile of the device.
+/// Computes what is wanted, in order; what is no longer wanted is given up within a tile of the device, unless brief.
 class Worker {
  public:
   /// `on_news` is called from the worker's thread after each part and after a failure. The evaluator must outlive this.
@@ -75,7 +76,7 @@ class Worker {
   JobPart advance(Task& task);
   /// What was done of a task is news; the rest of it goes back to its rank among what is wanted now.
   void put_back(Task task, std::vector<JobPart> parts);
-  bool is_wanted(const std::string& key) const;
+  bool goes_on(const Job& job) const;
 
   MomentsEvaluator& evaluator_;
   std::function<void()> on_news_;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <thread>
 
@@ -34,8 +35,8 @@ constexpr int kHeight = 900;
 constexpr float kFontPixels = 15.0F;
 constexpr auto kFading = std::chrono::milliseconds(300);  // of a dialog that was closed
 constexpr double kBlink_s = 0.3;                          // of a text cursor
-// Frames after an event: ImGui answers some of them one frame later.
-constexpr std::size_t kFramesAfterEvent = 3;
+// Frames after an event: ImGui shows some answers, a list that opens for one, only frames later.
+constexpr std::size_t kFramesAfterEvent = 4;
 // A frame waits for one tile at most where display and evaluator share a queue.
 constexpr std::uint32_t kTileInvocations = 2'048;
 
@@ -71,15 +72,21 @@ struct DestroyWindow {
 };
 using UniqueWindow = std::unique_ptr<GLFWwindow, DestroyWindow>;
 
+/// As large as its content at the display's scale, or as the display.
 UniqueWindow open_window() {
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
   int x = 0;
   int y = 0;
   int width = kWidth;
   int height = kHeight;
-  if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
-  UniqueWindow window(
-      glfwCreateWindow(std::min(kWidth, width), std::min(kHeight, height), "dolp explore", nullptr, nullptr));
+  float scale = 1.0F;
+  if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) {
+    glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
+    glfwGetMonitorContentScale(monitor, &scale, nullptr);
+  }
+  const auto scaled = [scale](int length) { return static_cast<int>(std::lround(scale * static_cast<float>(length))); };
+  UniqueWindow window(glfwCreateWindow(std::min(scaled(kWidth), width), std::min(scaled(kHeight), height),
+                                       "dolp explore", nullptr, nullptr));
   if (!window) throw DeviceError("the window cannot be opened: " + glfw_error());
   return window;
 }
@@ -125,6 +132,7 @@ struct Interface {
   explicit Interface(GLFWwindow* window) {
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
+    io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
     ImGui::StyleColorsDark();
     float scale = 1.0F;
     glfwGetWindowContentScale(window, &scale, nullptr);
@@ -175,7 +183,14 @@ class App::Impl {
 
   Session& session() { return session_; }
   const ControlsPanel& controls() const { return ui_.controls(); }
+  const Area& plot() const { return ui_.plot(); }
   GLFWwindow* window() const { return window_.get(); }
+  void close() {
+    glfwSetWindowShouldClose(window_.get(), GLFW_TRUE);
+    glfwPostEmptyEvent();
+  }
+  /// Whether there was input since the last call.
+  bool take_input() { return std::exchange(has_input_, false); }
   bool is_idle() const { return worker_.is_idle() && is_all_taken_; }
   bool is_computing() const { return !worker_.is_idle(); }
   void save_picture(const std::string& path, Clock::duration delay = {}) {
@@ -213,13 +228,27 @@ class App::Impl {
   /// With callbacks of our own, which ImGui calls after its own; until the user pointer is set they do nothing.
   static GLFWwindow* prepared(GLFWwindow* window) {
     glfwSetKeyCallback(window, [](GLFWwindow* of, int key, int, int action, int modifiers) {
+      note_input(of);
       const bool is_command = action == GLFW_PRESS && modifiers == GLFW_MOD_CONTROL;
       if (is_command && impl_of(of)) impl_of(of)->ui_.press(key);
     });
     glfwSetDropCallback(window, [](GLFWwindow* of, int count, const char** paths) {
+      note_input(of);
       if (count > 0 && impl_of(of)) impl_of(of)->session_.load_measured(paths[0]);
     });
+    glfwSetCharCallback(window, [](GLFWwindow* of, unsigned) { note_input(of); });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* of, int, int, int) { note_input(of); });
+    glfwSetCursorPosCallback(window, [](GLFWwindow* of, double, double) { note_input(of); });
+    glfwSetScrollCallback(window, [](GLFWwindow* of, double, double) { note_input(of); });
+    glfwSetCursorEnterCallback(window, [](GLFWwindow* of, int) { note_input(of); });
+    glfwSetWindowFocusCallback(window, [](GLFWwindow* of, int) { note_input(of); });
+    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* of, int, int) { note_input(of); });
+    glfwSetWindowRefreshCallback(window, note_input);
     return window;
+  }
+
+  static void note_input(GLFWwindow* window) {
+    if (impl_of(window)) impl_of(window)->has_input_ = true;
   }
 
   /// Runs what may fail for a reason that the user can mend.
@@ -258,7 +287,7 @@ class App::Impl {
     actions.find_true_error = [this] {
       true_error_.start([curve = session_.curve()](const Progress& progress) { return true_error(curve, progress); });
     };
-    actions.quit = [this] { glfwSetWindowShouldClose(window_.get(), GLFW_TRUE); };
+    actions.quit = [this] { close(); };
     return actions;
   }
 
@@ -285,6 +314,7 @@ class App::Impl {
   std::string picture_path_;
   Clock::time_point picture_time_;
   bool is_all_taken_ = false;
+  bool has_input_ = false;
   Ui ui_;
 };
 
@@ -295,6 +325,8 @@ App::~App() = default;
 Session& App::session() { return impl_->session(); }
 
 Area App::control_area(const std::string& key) const { return impl_->controls().areas().at(key); }
+
+Area App::plot_area() const { return impl_->plot(); }
 
 bool App::is_idle() const { return impl_->is_idle(); }
 
@@ -314,12 +346,19 @@ void App::settle() {
   }
 }
 
+bool App::answer() {
+  std::size_t left = kFramesAfterEvent;
+  while (left > 0) {
+    if (!frame()) return false;
+    left = impl_->take_input() || impl_->has_picture_to_save() ? kFramesAfterEvent : left - 1;
+  }
+  return true;
+}
+
+void App::close() { impl_->close(); }
+
 void App::run() {
-  std::size_t frames_left = kFramesAfterEvent;
-  while (frame()) {
-    if (--frames_left > 0) continue;
-    frames_left = kFramesAfterEvent;
-    if (impl_->has_picture_to_save()) continue;
+  while (answer()) {
     if (ImGui::GetIO().WantTextInput) {
       glfwWaitEventsTimeout(kBlink_s);
     } else {

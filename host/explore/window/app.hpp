@@ -41,10 +41,16 @@ class App {
   Session& session();
   /// Where the slider of a scene key was drawn last. Errors: std::out_of_range when it was not.
   Area control_area(const std::string& key) const;
+  /// Where the curve was drawn last, without its axes.
+  Area plot_area() const;
 
   /// Takes input and news, and draws one frame. False when the user has closed the window.
   /// Errors: DeviceError when the device is lost or the validation layer complains.
   bool frame();
+  /// Draws what follows from the events that there are, and from those that come meanwhile. False as for `frame`.
+  bool answer();
+  /// Ends `run`. May be called from any thread.
+  void close();
   /// Until the window is closed; between events nothing is drawn.
   void run();
   /// This many frames one after the other; the last ones wait until everything wanted is computed if there is a path

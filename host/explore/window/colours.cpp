@@ -37,6 +37,8 @@ constexpr ImU32 kBlue = IM_COL32(0, 114, 178, 255);
 constexpr ImU32 kVermilion = IM_COL32(213, 94, 0, 255);
 constexpr ImU32 kPurple = IM_COL32(204, 121, 167, 255);
 
+ImU32 with_alpha(ImU32 colour, ImU32 alpha) { return (colour & ~IM_COL32_A_MASK) | (alpha << IM_COL32_A_SHIFT); }
+
 }  // namespace
 
 ImU32 viridis(double position) {
@@ -65,9 +67,14 @@ CurveStyle pin_style(std::size_t pin) {
   return kStyles[pin % kStyles.size()];
 }
 
+CurveStyle stale(const CurveStyle& style) {
+  constexpr ImU32 kAlpha = 96;
+  return {with_alpha(style.colour, kAlpha), style.dash, style.gap};
+}
+
 ImU32 band_colour(const CurveStyle& style) {
-  constexpr ImU32 kAlpha = 56;
-  return (style.colour & ~IM_COL32_A_MASK) | (kAlpha << IM_COL32_A_SHIFT);
+  constexpr ImU32 kPart = 4;  // of the curve's own
+  return with_alpha(style.colour, (style.colour >> IM_COL32_A_SHIFT) / kPart);
 }
 
 }  // namespace dolp::explore

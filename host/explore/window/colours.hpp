@@ -24,6 +24,9 @@ CurveStyle current_style();
 CurveStyle overlay_style();
 CurveStyle pin_style(std::size_t pin);
 
+/// The same curve where it is of a scene before the present one.
+CurveStyle stale(const CurveStyle& style);
+
 /// What a band around a curve of that style is filled with.
 ImU32 band_colour(const CurveStyle& style);
 
@@ -33,6 +36,7 @@ inline constexpr ImU32 kGridColour = IM_COL32(62, 66, 72, 255);
 inline constexpr ImU32 kPlotColour = IM_COL32(20, 21, 24, 255);
 inline constexpr ImU32 kBadColour = IM_COL32(110, 112, 116, 255);    ///< entries with a status
 inline constexpr ImU32 kErrorColour = IM_COL32(255, 150, 110, 255);  ///< messages
+inline constexpr ImU32 kStaleVeil = IM_COL32(20, 21, 24, 150);       ///< over a stale map
 inline constexpr ImU32 kCursorColour = IM_COL32(255, 255, 255, 200);
 
 }  // namespace dolp::explore

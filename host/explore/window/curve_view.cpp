@@ -14,6 +14,7 @@ namespace dolp::explore {
 namespace {
 
 constexpr float kWidth = 2.0F;
+
 /// A curve as it is drawn.
 struct Shown {
   const Curve* curve;
@@ -23,12 +24,15 @@ struct Shown {
 
 std::vector<Shown> shown_curves(const Session& session) {
   std::vector<Shown> curves;
-  if (session.overlay()) curves.push_back({&*session.overlay(), overlay_style(), session.overlay_name()});
+  const auto add = [&](const Curve& curve, const CurveStyle& style, const std::string& name) {
+    curves.push_back({&curve, curve.is_stale() ? stale(style) : style, name});
+  };
+  if (session.overlay()) add(*session.overlay(), overlay_style(), session.overlay_name());
   for (const Pin& pin : session.pins()) {
-    if (pin.is_visible) curves.push_back({&pin.curve, pin_style(pin.colour), "pinned: " + pin.name});
+    if (pin.is_visible) add(pin.curve, pin_style(pin.colour), "pinned: " + curve_name(pin.curve));
   }
   // Last, so that it lies over the others.
-  curves.push_back({&session.curve(), current_style(), surface_name(session.scene())});
+  add(session.curve(), current_style(), curve_name(session.curve()));
   return curves;
 }
 
@@ -97,9 +101,10 @@ PlotAxis value_axis(const Session& session, const std::vector<Shown>& curves) {
 }
 
 /// Fills what DOLP lies between with all bounces; of the current curve alone, because bands over bands say nothing.
-void draw_bracket(const Plot& plot, const Curve& curve) {
+void draw_bracket(const Plot& plot, const Shown& shown) {
+  const Curve& curve = *shown.curve;
   const std::vector<PointResult>& results = curve.results();
-  const ImU32 colour = band_colour(current_style());
+  const ImU32 colour = band_colour(shown.style);
   const auto at = [&](std::size_t i, double dolp) {
     const double value = std::max(scale_of(Quantity::kDolp) * dolp, plot.y().from);
     return plot.at(curve.entries()[i].theta_deg, value);
@@ -153,20 +158,23 @@ void draw_curve(const Plot& plot, const Shown& shown, Quantity quantity) {
 void draw_legend(const Plot& plot, const std::vector<Shown>& curves, const Session& session) {
   const float line = ImGui::GetTextLineHeight();
   ImVec2 at{plot.min().x + 0.7F * line, plot.min().y + 0.5F * line};
-  const auto entry = [&](const CurveStyle& style, const std::string& name) {
+  const auto entry = [&](const CurveStyle& style, const std::string& name, ImU32 colour = kTextColour) {
     const float middle = at.y + 0.5F * line;
-    draw_label(plot.list(), {at.x + 2.6F * line, at.y}, {0.0F, 0.0F}, kTextColour, name);
+    draw_label(plot.list(), {at.x + 2.6F * line, at.y}, {0.0F, 0.0F}, colour, name);
     draw_line(plot.list(), {{at.x, middle}, {at.x + 2.2F * line, middle}}, style, kWidth);
     at.y += 1.25F * line;
   };
-  entry(curves.back().style, curves.back().name);
-  for (std::size_t i = 0; i + 1 < curves.size(); ++i) entry(curves[i].style, curves[i].name);
+  const auto curve = [&](const Shown& of) {
+    entry(of.style, of.name, of.curve->is_stale() ? kDimColour : kTextColour);
+  };
+  curve(curves.back());
+  for (std::size_t i = 0; i + 1 < curves.size(); ++i) curve(curves[i]);
   const bool has_band =
       session.view().quantity == Quantity::kDolp &&
       std::ranges::any_of(session.curve().results(), [](const PointResult& r) { return has_bracket(r); });
   if (has_band) {
     const ImVec2 end{at.x + 2.2F * line, at.y + 0.9F * line};
-    plot.list()->AddRectFilled({at.x, at.y + 0.1F * line}, end, band_colour(current_style()));
+    plot.list()->AddRectFilled({at.x, at.y + 0.1F * line}, end, band_colour(curves.back().style));
     draw_label(plot.list(), {at.x + 2.6F * line, at.y}, {0.0F, 0.0F}, kTextColour, "all bounces lie between");
     at.y += 1.25F * line;
   }
@@ -174,16 +182,16 @@ void draw_legend(const Plot& plot, const std::vector<Shown>& curves, const Sessi
   if (has_bad) entry({kBadColour, 4.0F, 4.0F}, "the model fails here (status)");
 }
 
-void draw_cursor(const Plot& plot, const Session& session) {
+void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& style) {
   const float x = plot.at_position(plot.x().position(session.theta_deg()), 0.0).x;
   plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour);
-  const PointResult* result = session.at_cursor();
-  if (!result) return;
+  const std::optional<AtCursor> shown = session.at_cursor();
+  if (!shown) return;
   const Quantity quantity = session.view().quantity;
-  const double value = scale_of(quantity) * value_of(quantity, *result);
+  const double value = scale_of(quantity) * value_of(quantity, shown->result);
   if (!std::isfinite(value) || (plot.y().is_log && value <= 0.0)) return;
-  const ImVec2 at = plot.at(session.theta_deg(), value);
-  plot.list()->AddCircleFilled(at, 4.0F, current_style().colour);
+  const ImVec2 at = plot.at(shown->entry.theta_deg, value);
+  plot.list()->AddCircleFilled(at, 4.0F, style.colour);
   plot.list()->AddCircle(at, 4.5F, kTextColour);
 }
 
@@ -237,7 +245,7 @@ void draw_residuals(const Session& session, ImVec2 size) {
 
 }  // namespace
 
-void draw_curve_view(Session& session, ImVec2 size) {
+Area draw_curve_view(Session& session, ImVec2 size) {
   const std::vector<Shown> curves = shown_curves(session);
   const Quantity quantity = session.view().quantity;
   const bool has_measured = session.residuals().points().has_value() && quantity == Quantity::kDolp;
@@ -251,14 +259,15 @@ void draw_curve_view(Session& session, ImVec2 size) {
   if (plot.is_dragged()) session.set_theta(plot.mouse_x());
   plot.clip();
   if (!plot.y().is_log) plot.list()->AddLine(plot.at(0.0, 0.0), plot.at(theta_max, 0.0), kDimColour);
-  if (quantity == Quantity::kDolp) draw_bracket(plot, session.curve());
+  if (quantity == Quantity::kDolp) draw_bracket(plot, curves.back());
   for (const Shown& shown : curves) draw_curve(plot, shown, quantity);
   if (has_measured) draw_measured(plot, *session.residuals().points());
-  draw_cursor(plot, session);
+  draw_cursor(plot, session, curves.back().style);
   draw_peak(plot, session);
   draw_legend(plot, curves, session);
   plot.unclip();
   if (has_measured) draw_residuals(session, {size.x, residual_height});
+  return {plot.min().x, plot.min().y, plot.max().x, plot.max().y};
 }
 
 }  // namespace dolp::explore

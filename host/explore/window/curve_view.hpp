@@ -4,11 +4,12 @@
 #include <imgui.h>
 
 #include "explore/session.hpp"
+#include "explore/window/area.hpp"
 
 namespace dolp::explore {
 
 /// Fills `size` of the current ImGui window with the current curve, the overlaid one, pins and measured points; a click
-/// or drag moves the cursor.
-void draw_curve_view(Session& session, ImVec2 size);
+/// or drag moves the cursor. Returns where the curves are.
+Area draw_curve_view(Session& session, ImVec2 size);
 
 }  // namespace dolp::explore

@@ -25,8 +25,8 @@ std::string title_of(const Session& session) {
   const HeatMap& map = session.map();
   const QuantityDescription& of = described(session.view().quantity);
   const std::string state = map.is_finished() ? "" : fmt::format(", refining {:.0f} %", 100.0 * map.progress());
-  return fmt::format("{}; {} × {}{}", of.in_percent ? fmt::format("{} [%]", of.name) : of.name, map.finished_count(),
-                     map.finished_count(), state);
+  return fmt::format("{}; {} × {}{}{}", of.in_percent ? fmt::format("{} [%]", of.name) : of.name, map.finished_count(),
+                     map.finished_count(), stale_text(map.is_stale()), state);
 }
 
 void move_cursor(Session& session, const Plot& plot) {
@@ -157,6 +157,7 @@ void MapView::draw(Session& session, ImVec2 size) {
   plot.clip();
   draw_cells(plot);
   draw_lines(plot, scale_of(quantity));
+  if (session.map().is_stale()) plot.list()->AddRectFilled(plot.min(), plot.max(), kStaleVeil);
   draw_cursor(session, plot);
   plot.unclip();
   draw_bar(plot, quantity);

@@ -36,9 +36,12 @@ std::string taken_away_text(const Session& session, const EffectRow& row) {
   return text.empty() ? "" : "smooth: " + text;
 }
 
+/// The effects are those of a scene before the present one.
+bool is_stale(const Session& session) { return !session.effects().empty() && !session.curve().is_finished(); }
+
 void draw_row(const Session& session, const EffectRow& row) {
   const bool is_absent = row.state == EffectState::kAbsent;
-  const ImU32 colour = is_absent ? kDimColour : kTextColour;
+  const ImU32 colour = is_absent || is_stale(session) ? kDimColour : kTextColour;
   cell(row.name, colour);
   cell(row.state == EffectState::kNotNeeded ? "not needed" : state_name(row.state), colour);
   cell(bound_text(row), colour);
@@ -60,7 +63,8 @@ void draw_effects(const Session& session) {
   if (is_narrow) flags |= ImGuiTableFlags_ScrollX;
   if (!ImGui::BeginTable(is_narrow ? "narrow effects" : "effects", kColumns, flags)) return;
   ImGui::TableSetupScrollFreeze(0, 1);
-  ImGui::TableSetupColumn("effect", ImGuiTableColumnFlags_WidthFixed, 7.5F * em);
+  const char* name = is_stale(session) ? "the scene before" : "effect";
+  ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthFixed, 8.0F * em);
   ImGui::TableSetupColumn("plan", ImGuiTableColumnFlags_WidthFixed, 5.2F * em);
   ImGui::TableSetupColumn("bound at cursor");
   ImGui::TableSetupColumn("maximum without it");

@@ -288,7 +288,7 @@ void Ui::draw_plots(ImVec2 size) {
   const float curve_width = 0.54F * size.x;
   constexpr ImGuiWindowFlags kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
   ImGui::BeginChild("curves", {curve_width, size.y}, false, kStill);
-  draw_curve_view(session_, ImGui::GetContentRegionAvail());
+  plot_ = draw_curve_view(session_, ImGui::GetContentRegionAvail());
   ImGui::EndChild();
   ImGui::SameLine();
   ImGui::BeginChild("maps", {size.x - curve_width - gap, size.y}, false, kStill);
@@ -312,9 +312,11 @@ void Ui::draw() {
   ImGui::SameLine();
   ImGui::BeginChild("right", {0.0F, all.y});
   draw_view_controls();
-  const float bottom = std::max(0.33F * all.y, 15.0F * ImGui::GetTextLineHeight());
   const float readout = 3.8F * ImGui::GetTextLineHeightWithSpacing();
-  draw_plots({ImGui::GetContentRegionAvail().x, ImGui::GetContentRegionAvail().y - bottom - readout});
+  const ImVec2 rest{ImGui::GetContentRegionAvail().x, ImGui::GetContentRegionAvail().y - readout};
+  // The panels below scroll; the plots keep half of what there is.
+  const float bottom = std::min(std::max(0.33F * all.y, 15.0F * ImGui::GetTextLineHeight()), 0.5F * rest.y);
+  draw_plots({rest.x, rest.y - bottom});
   ImGui::BeginChild("readout", {0.0F, readout});
   draw_readout();
   ImGui::EndChild();

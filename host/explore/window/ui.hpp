@@ -36,6 +36,8 @@ class Ui {
   void press(int key) { pressed_.push_back(key); }
 
   const ControlsPanel& controls() const { return controls_; }
+  /// Where the curves were drawn last.
+  const Area& plot() const { return plot_; }
 
  private:
   /// A menu entry with its shortcut: Ctrl and a key.
@@ -79,6 +81,7 @@ class Ui {
   std::vector<Command> commands_;
   ControlsPanel controls_;
   MapView map_view_;
+  Area plot_;
   std::vector<int> pressed_;
   PathDialog dialog_;
   bool shows_help_ = false;

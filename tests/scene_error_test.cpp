@@ -149,6 +149,11 @@ TEST(SceneError_TooMuch, IsRefusedInOneShortLine) {
                        "1000001 values; must be at most 1000000"));
 }
 
+TEST(SceneError_LongTextOfStrayBytes, IsCutAfterMostOfIt) {
+  const std::string stray(200, '\xb9');
+  EXPECT_EQ(one_line(stray), stray.substr(0, 77) + "...");
+}
+
 TEST(Scene_DotsThatNestNothing, AreAccepted) {
   const std::string dots(200, '.');
   parse("title = \"\"\"" + dots + "\\\"\n[[{\"\"\"  # " + dots + "\n" + kMinimal +

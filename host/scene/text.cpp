@@ -124,8 +124,8 @@ std::string one_line(std::string_view text) {
     if (!is_space) line += c;
     if (is_space && !line.empty() && line.back() != ' ') line += ' ';
     if (line.size() > kMessageBytes) {
-      // A cut inside a UTF-8 sequence would leave an invalid byte.
-      while (!line.empty() && (static_cast<unsigned char>(line.back()) & 0xC0U) == 0x80U) line.pop_back();
+      // A cut inside a UTF-8 sequence, up to three bytes after its first, would leave an invalid byte.
+      for (int i = 0; i < 3 && (static_cast<unsigned char>(line.back()) & 0xC0U) == 0x80U; ++i) line.pop_back();
       line.pop_back();
       return line + "...";
     }

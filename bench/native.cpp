@@ -34,9 +34,10 @@ class NativeText final : public Solver {
     MomentsRequest wanted = request;
     wanted.tolerance = setting;
     const GroupedWork work(wanted);
-    if (!has_text_for(work.data)) throw Unavailable("it is compiled for the cauchy without total reflection alone");
-    const std::unique_ptr<GroupedText> text =
-        work.data.needs_masking_table() ? make_native_text(work) : make_vector_text(work);
+    if (!has_text_for(work.data)) {
+      throw Unavailable("it is compiled for the cauchy with integral or smith and without total reflection alone");
+    }
+    const std::unique_ptr<GroupedText> text = make_native_text(work);
     std::vector<kernel::MomentsNode> nodes(work.pieces.size() * work.rows.width);
     Solution solution;
     solution.kernel_s = run(work, *text, nodes);
@@ -53,9 +54,7 @@ class NativeText final : public Solver {
   static double run(const GroupedWork& work, GroupedText& text, std::vector<kernel::MomentsNode>& nodes) {
     const auto start = std::chrono::steady_clock::now();
     const std::size_t size = work.rows.width;
-    if (work.data.needs_masking_table()) {
-      on_all_cores(work.rows.shapes.size(), [&](std::size_t shape) { text.build_masking_table(shape); });
-    }
+    on_all_cores(work.rows.shapes.size(), [&](std::size_t shape) { text.build_masking_table(shape); });
     on_all_cores((work.pieces.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
       const std::size_t first = block * kBlock;
       const std::size_t count = std::min(kBlock, work.pieces.size() - first);

@@ -32,11 +32,9 @@ KernelWork count_operations(const MomentsRequest& request, std::size_t workgroup
   const GroupedWork work(request);
   const std::unique_ptr<GroupedText> text = make_counted_text(work);
   KernelWork result;
-  if (work.data.needs_masking_table()) {
-    const OperationCounts before = counted_operations();
-    for (std::size_t shape = 0; shape < work.rows.shapes.size(); ++shape) text->build_masking_table(shape);
-    add_scaled(result.counts, since(before), 1.0);
-  }
+  const OperationCounts before_tables = counted_operations();
+  for (std::size_t shape = 0; shape < work.rows.shapes.size(); ++shape) text->build_masking_table(shape);
+  add_scaled(result.counts, since(before_tables), 1.0);
   const std::size_t all = (work.pieces.size() + vulkan::kLocalSize - 1) / vulkan::kLocalSize;
   const std::size_t count = std::min(workgroups, all);
   std::vector<kernel::MomentsNode> members(work.rows.width);

@@ -17,7 +17,7 @@ struct KernelWork {
 };
 
 /// Runs `workgroups` workgroups of the kernel, evenly spread, in arithmetic that counts.
-/// Accuracy: a few percent, for the rest is like the sample.
+/// Accuracy: a few percent, for the rest is like the sample. Domain: has_text_for.
 KernelWork count_operations(const MomentsRequest& request, std::size_t workgroups, std::size_t lanes);
 
 }  // namespace dolp::bench

@@ -11,6 +11,9 @@
 #define DOLP_BINDING_MASKING_TABLE 5  // real4[]: one table for each shape bound, see physics/masking.glsl
 #define DOLP_BINDING_MOMENTS 6        // MomentsNode[]: one for each member of each task of the dispatch
 #define DOLP_BINDING_RULE 7           // RuleNode: one for all tasks
+// slopes.comp reads directions, indices, rule and rule nodes, and in place of the tasks and the moments:
+#define DOLP_BINDING_SLOPES DOLP_BINDING_TASKS      // SlopeNode[]: one for each invocation
+#define DOLP_BINDING_AZIMUTHS DOLP_BINDING_MOMENTS  // AzimuthNode[]: likewise
 // mueller.comp reads the rule nodes, and in place of the first and the results of the moments:
 #define DOLP_BINDING_BEAMS DOLP_BINDING_THETAS      // BeamNode[]: one for each entry of the dispatch
 #define DOLP_BINDING_MUELLERS DOLP_BINDING_MOMENTS  // MuellerNode[]: likewise
@@ -31,7 +34,7 @@
 #define DOLP_MASKING_SMITH 3u
 
 // ---- Push constants: four uints, used by all entry points -----------------------------------------------------------
-// count: tasks of this dispatch (moments.comp), entries (mueller.comp) or shapes bound (masking_table.comp); first: the
+// count: tasks of this dispatch (moments.comp), slopes (slopes.comp), entries (mueller.comp) or shapes bound (masking_table.comp); first: the
 // first of them, as a position in the bound buffers. Output i of a dispatch belongs to entry first + i, outputs
 // i * DOLP_WIDTH and following to task first + i. largest_order: of the rule nodes.
 #define DOLP_PUSH_CONSTANTS uint first; uint count; uint largest_order; uint unused;
@@ -45,7 +48,7 @@
 #define DOLP_TASK_ROOT_BEFORE_START 13u // bit: a square root at the breakpoint before the piece, facing it
 #define DOLP_TASK_ROOT_AFTER_END 14u // bit: the same beyond its end
 #define DOLP_TASK_SPLIT_LINE 15u     // bit: the direction is split at the line b = pi/2 of `integral` or smith's cusp
-#define DOLP_TASK_AZIMUTHS_SHIFT 16u // most azimuths of an arc, with all bounces of slopes too: bounds the iterations
+#define DOLP_TASK_AZIMUTHS_SHIFT 16u // most azimuths of an arc, which bounds the iterations
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
 #ifndef DOLP_WIDTH
@@ -60,7 +63,6 @@
 #define DOLP_GROUPS_PER_DISTANCE 6 // bounces taken as one at once, over those before or after them
 #define DOLP_MOST_DOUBLINGS 12
 #define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // of more nothing is left
-#define DOLP_AZIMUTHS_PER_SLOPE 2 // nodes at most
 #define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes
 #define DOLP_MASKING_OCTAVES 29  // of v = 1 + tau/scale
 #define DOLP_MASKING_CELL_BITS_FLOAT 3   // 2^bits cells per octave
@@ -78,7 +80,8 @@ struct RuleNode {
   real phi_nodes;         // azimuth: likewise
   real phi_digits;
   real cluster_stretch;   // nodes for each digit from which on smith's cusp is worth a cluster
-  real split_bounces;     // all bounces: at how many of them a beam that ends splits the azimuths
+  real split_bounces;     // all bounces: at how many of them a beam that ends splits the azimuths,
+  real dimmest;           // and the share of a ray's light below which it is followed no further
   real cluster_below_q;   // below this q an arc clusters its nodes where the limit b of `integral` meets pi/2
 };
 
@@ -89,6 +92,16 @@ struct ThetaNode {
   real c;                         // cos(theta)
   real s;                         // sin(theta)
   real end[DOLP_MAX_PIECES + 1];  // ascending slopes; the last stands for all that follow, and may exceed any cut
+};
+
+// One slope of a profile (host/evaluate/text/profile.hpp).
+struct SlopeNode {
+  real t;
+  real digits;         // wanted of the sum over the azimuths
+  real theta;          // position of the direction
+  real index;          // position of the index
+  real most_azimuths;  // of an arc
+  real is_coarse;      // of the coarser rule
 };
 
 // One slope distribution.
@@ -145,6 +158,18 @@ struct MuellerNode {
   real m[16];
 };
 
+// The moments of the facets of one slope, per unit of P(t) t dt: sums over half of the azimuths.
+struct AzimuthNode {
+  real r_i;
+  real r_q;
+  real albedo;
+  real deficit;
+  real behind;  // MomentsNode::behind
+  real direct_i;
+  real direct_q;
+  real evaluations;
+};
+
 // Moments times cos(theta) (shaders/physics/README.md, section 3), from the finer of two rules, and how far the coarser
 // one is off (physics/moments.glsl).
 struct MomentsNode {
@@ -153,6 +178,7 @@ struct MomentsNode {
   real albedo;
   real deficit;
   real behind;               // facets that face away from theta, which the deficit counts twice: once each way
+  real many;                 // the part of r_i of grooves in which rays bounce more often than DOLP_MOST_BOUNCES
   real direct_i;             // direct emission
   real direct_q;
   real reflected_difference; // of r_i or r_q, whichever is larger

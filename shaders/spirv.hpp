@@ -14,6 +14,8 @@ extern const std::span<const std::uint32_t> moments_row8_float;
 extern const std::span<const std::uint32_t> moments_row8_double;
 extern const std::span<const std::uint32_t> moments_row16_float;
 extern const std::span<const std::uint32_t> moments_row16_double;
+extern const std::span<const std::uint32_t> slopes_float;
+extern const std::span<const std::uint32_t> slopes_double;
 extern const std::span<const std::uint32_t> masking_table_float;
 extern const std::span<const std::uint32_t> masking_table_double;
 extern const std::span<const std::uint32_t> mueller_float;

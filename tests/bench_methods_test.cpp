@@ -76,7 +76,7 @@ const std::map<std::string, Expected> kExpected = {
     {"vulkan-table", {1e-4, {{"easy", 1e-4}, {"median", 1e-4}, {"rough", 1e-4}, {"hard", 1e-4}, {"worst", 1e-4}}}},
     {"vulkan-double", {1e-5, {{"easy", 1e-5}, {"median", 1e-5}, {"rough", 1e-5}, {"hard", 1e-5}, {"worst", 1e-5}}}},
     {"cpu-float", {1e-4, {{"easy", 1e-4}, {"median", 1e-4}, {"rough", 1e-4}, {"hard", 1e-4}, {"worst", 1e-4}}}},
-    {"native-float", {1e-4, {{"easy", 1e-4}, {"median", 1e-4}, {"rough", 1e-4}, {"hard", 1e-4}, {"worst", 1e-4}}}},
+    {"native-float", {1e-4, {{"median", 1e-4}, {"rough", 1e-4}, {"worst", 1e-4}}}},
     {"cpu-double", {1e-5, {{"easy", 1e-5}, {"median", 1e-5}, {"rough", 1e-5}, {"hard", 1e-5}, {"worst", 1e-5}}}},
 };
 
@@ -87,6 +87,10 @@ TEST_P(BenchMethod, EveryCase_CheapSetting_AgreesWithReference) {
   const Expected& expected = kExpected.at(GetParam());
   const std::size_t entries = GetParam() == "dblquad" ? 1 : 2;  // it takes its own times, which takes time
   for (const Case& one : cases()) {
+    if (!expected.tolerance.contains(one.name)) {
+      EXPECT_THROW(worst_error(*solver, neighbourhood(one, entries), expected.setting), Unavailable) << one.name;
+      continue;
+    }
     const double error = worst_error(*solver, neighbourhood(one, entries), expected.setting);
     EXPECT_LE(error, expected.tolerance.at(one.name)) << one.name;
   }

@@ -545,7 +545,7 @@ TEST(ArcCost, SmoothArcs_GainTheDigitsPerNodeThatItSays) {
         const auto arc = text.make_arc(forward, lines.horizon);
         const Text::Slope slope{t, kManyDigits, text.unmasked(), false, DOLP_MAX_ORDER, false};
         const auto sums = [&](int order) {
-          return text.arc_sums(theta, row, index, slope, arc, 0, true, order).member[0];
+          return text.arc_sums({}, theta, row, index, slope, arc, 0, true, order).member[0];
         };
         const auto exact = sums(DOLP_MAX_ORDER);
         const double gained = digits_per_node([&](int order) { return error_of(sums(order), exact); });

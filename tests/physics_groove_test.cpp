@@ -63,7 +63,7 @@ TEST(GrooveText, ManyBouncesTakenAsOne_AreWithinTheirBound) {
           for (int i = 0; i < kSlopes; ++i) {
             const double t = slope * (1.0 + 0.2 * (i + 0.5) / kSlopes);
             if (theta.c + theta.s * t * x <= 0.0) continue;
-            const auto moments = text.reflected_in_groove(theta, index, t, x, std::sqrt(1.0 - x * x));
+            const auto moments = text.reflected_in_groove(Text::RuleNode{}, theta, index, t, x, std::sqrt(1.0 - x * x));
             difference += moments.x / moments.z - reflected_bounce_by_bounce(text, theta, index, t, x);
           }
           EXPECT_LE(std::abs(difference / kSlopes),

@@ -24,7 +24,7 @@ using real4 = glm::dvec4;
 }  // namespace dolp::tested_coarse
 
 #define DOLP_TEXT_NAMESPACE tested_coarse
-#include "evaluate/cpu/text_body.hpp"
+#include "evaluate/text/text_body.hpp"
 #undef DOLP_TEXT_NAMESPACE
 
 namespace dolp {

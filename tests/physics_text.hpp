@@ -21,7 +21,7 @@ using real4 = glm::vec4;
 }  // namespace dolp::tested_float
 
 #define DOLP_TEXT_NAMESPACE tested_float
-#include "evaluate/cpu/text_body.hpp"
+#include "evaluate/text/text_body.hpp"
 #undef DOLP_TEXT_NAMESPACE
 
 namespace dolp::tested_double {
@@ -32,7 +32,7 @@ using real4 = glm::dvec4;
 
 #define DOLP_TEXT_NAMESPACE tested_double
 #define DOLP_DOUBLE
-#include "evaluate/cpu/text_body.hpp"
+#include "evaluate/text/text_body.hpp"
 #undef DOLP_DOUBLE
 #undef DOLP_TEXT_NAMESPACE
 
@@ -77,17 +77,7 @@ typename Text::RuleNode rule_in(const kernel::RuleNode& node) {
 /// A text with the model and the rules of `data`, and room for the masking table of one shape.
 template <class Text>
 Text text_for(const KernelData& data) {
-  Text text;
-  text.kDistribution = static_cast<glm::uint>(data.distribution);
-  text.kMasking = static_cast<glm::uint>(data.masking);
-  text.kTotalReflection = data.has_total_reflection;
-  text.kIsMultiple = data.scattering == Scattering::kMultiple;
-  text.kHasDirect = data.has_direct;
-  text.order_of_nodes = data.rule_order;
-  using Vector = typename decltype(text.rule_nodes)::value_type;
-  for (const auto& node : data.rule_nodes) {
-    text.rule_nodes.push_back(convert_reals<RealOf<Text>, Vector, double>(node));
-  }
+  Text text = Text::of(data);
   text.masking_table.resize(Text::kMaskingNodes);
   return text;
 }

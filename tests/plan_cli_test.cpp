@@ -255,7 +255,7 @@ TEST_F(Plan, ManyEntries_PredictionFromSomeIsNearly) {
   const json spent = table(joined(grid, {"--evaluator", "cpu"}));
   EXPECT_FALSE(predicted["first_attempt"]["is_exact"]);
   const double evaluations = spent["evaluations"];
-  EXPECT_NEAR(predicted["evaluations"], evaluations, kSampling * evaluations);
+  EXPECT_NEAR(predicted["evaluations"], evaluations, 2.0 * kSampling * evaluations);  // directions differ
 }
 
 TEST_F(Plan, Mirrors_NothingIsPlanned) {
@@ -307,14 +307,14 @@ TEST_F(Plan, AllBounces_WorkOfTheirRowAndPipeline) {
   const double work = all["evaluations"];
   EXPECT_NEAR(row["work_share"], 1.0 - once["evaluations"].get<double>() / work, 1e-12);
   EXPECT_GT(row["work_share"], 0.5);
-  EXPECT_EQ(all["pipelines"], json({"moments, float: distribution cauchy, masking v-cavity, all bounces"}));
-  EXPECT_EQ(once["pipelines"], json({"moments, float: distribution cauchy, masking v-cavity"}));
+  EXPECT_EQ(all["pipelines"], json({"slopes, float: distribution cauchy, masking v-cavity, all bounces"}));
+  EXPECT_EQ(once["pipelines"], json({"slopes, float: distribution cauchy, masking v-cavity"}));
 }
 
 TEST_F(Plan, DirectEmission_PipelineAndOutputSaySo) {
   const std::vector<std::string> direct = {"--set", "surface.masking=v-cavity", "--set", "emission.bracket=true"};
   EXPECT_EQ(plan(direct)["pipelines"],
-            json({"moments, float: distribution cauchy, masking v-cavity, direct emission"}));
+            json({"slopes, float: distribution cauchy, masking v-cavity, direct emission"}));
   const auto output = [&](const std::vector<std::string>& options) {
     const std::string text = dolp(joined({"plan", "scene.toml"}, options)).out;
     const std::size_t start = text.find("  output");

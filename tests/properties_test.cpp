@@ -13,7 +13,7 @@
 #include <tuple>
 #include <vector>
 
-#include "evaluate/cpu/text.hpp"
+#include "evaluate/text/text.hpp"
 #include "model/angles.hpp"
 #include "physics_text.hpp"
 #include "plan/geometry.hpp"

@@ -20,20 +20,21 @@ room scene scene/number_range.hpp base model
 room spectrum spectrum/planck.hpp model scene
 room plan plan/rule_nodes.hpp base model scene spectrum
 room evaluate evaluate/evaluator.hpp base model
-room evaluate/cpu evaluate/cpu/cpu_evaluator.hpp base evaluate model plan scene spectrum
+room evaluate/text evaluate/text/profile.hpp base model plan scene spectrum
+room evaluate/cpu evaluate/cpu/cpu_evaluator.hpp base evaluate evaluate/text model plan scene spectrum
 room evaluate/reference evaluate/reference/fresnel.hpp base evaluate model scene
-room evaluate/vulkan evaluate/vulkan/devices.hpp base evaluate model plan scene spectrum
+room evaluate/vulkan evaluate/vulkan/devices.hpp base evaluate evaluate/text model plan scene spectrum
 room evaluate/interpolation evaluate/interpolation/interpolating_evaluator.hpp base evaluate model plan scene spectrum
 room radiometry radiometry/radiometry.hpp model scene spectrum
-room run run/table_scene.hpp base evaluate evaluate/cpu evaluate/interpolation model plan radiometry scene spectrum table
+room run run/table_scene.hpp base evaluate evaluate/cpu evaluate/interpolation evaluate/text model plan radiometry scene spectrum table
 room terminal terminal/exit_status.hpp base
 room verify verify/stored_cases.hpp base evaluate evaluate/reference model plan radiometry run scene spectrum table
-room calibrate calibrate/hold_out.hpp base evaluate evaluate/cpu model plan scene spectrum
+room calibrate calibrate/hold_out.hpp base evaluate evaluate/cpu evaluate/text model plan scene spectrum
 room explore explore/ticks.hpp base evaluate evaluate/reference model plan radiometry run scene spectrum table
 room explore/window explore/window/area.hpp \
   base evaluate evaluate/interpolation evaluate/vulkan explore model plan scene spectrum
-room cli cli/options.hpp base evaluate evaluate/cpu evaluate/interpolation evaluate/reference evaluate/vulkan explore \
-  explore/window model plan radiometry run scene spectrum table terminal verify
+room cli cli/options.hpp base evaluate evaluate/cpu evaluate/interpolation evaluate/reference evaluate/text \
+  evaluate/vulkan explore explore/window model plan radiometry run scene spectrum table terminal verify
 
 # Libraries that stay in some rooms, by what their headers are called.
 declare -A library=(

@@ -138,33 +138,6 @@ TEST(RowsOf, Neighbours_DifferInTheDirection) {
   EXPECT_GE(3 * (alike + 1), pieces.size());
 }
 
-// With all bounces the pieces in lockstep have the same bounds of their loops; what fills the gaps is no piece.
-TEST(RowsOf, AllBounces_WhatRunsInLockstepIsAlike) {
-  MomentsRequest request =
-      grid(Masking::kVCavity, {0.0, 10.0, 40.0, 60.0, 85.0, 89.99}, {0.3, 2.0}, kManyQ, {{1.5, 0.0}, {0.9, 0.0}});
-  request.scattering = Scattering::kMultiple;
-  const KernelData data = kernel_data(request);
-  const Rows rows = rows_of(request, data, 8);
-  const std::vector<RowPiece> pieces = pieces_of(rows, data, 0, static_cast<std::uint32_t>(rows.rows.size()));
-  ASSERT_EQ(pieces.size() % kLockstep, 0U);
-  std::set<std::pair<std::uint32_t, std::uint32_t>> found;
-  for (std::size_t first = 0; first < pieces.size(); first += kLockstep) {
-    std::set<std::uint16_t> bounds;
-    for (std::size_t i = first; i < first + kLockstep; ++i) {
-      const Pieces& of = data.pieces[rows.theta_of(data, rows.rows[pieces[i].row])];
-      if (pieces[i].piece == of.count) continue;
-      bounds.insert(of.lockstep[pieces[i].piece]);
-      EXPECT_TRUE(found.emplace(pieces[i].row, pieces[i].piece).second);
-    }
-    EXPECT_EQ(bounds.size(), 1U);
-  }
-  std::size_t expected = 0;
-  for (const Row& row : rows.rows) {
-    expected += piece_count(data, rows.theta_of(data, row), rows.shapes[rows.chunks[row.chunk].first]);
-  }
-  EXPECT_EQ(found.size(), expected);
-}
-
 TEST(RowsOf, EntriesThatShareNothing_AreAlone) {
   MomentsRequest request = grid(Masking::kNone, {10.0, 20.0, 40.0}, {0.1, 0.2, 0.4}, {2.0}, {{1.5, 0.0}});
   EXPECT_EQ(rows_of(request, kernel_data(request)).width, 1U);

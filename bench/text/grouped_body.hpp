@@ -53,7 +53,7 @@ class Kernel final : public GroupedText {
     for (const auto& shape : work.rows.shapes) shapes_.push_back(narrowed<typename Own::ShapeNode>(shape));
     for (const auto& theta : work.data.thetas) thetas_.push_back(narrowed<typename Own::ThetaNode>(theta));
     for (const auto& index : work.data.indices) indices_.push_back(narrowed<typename Own::IndexNode>(index));
-    if (work.data.needs_masking_table()) text_.masking_table.resize(shapes_.size() * Own::kMaskingNodes);
+    text_.masking_table.resize(shapes_.size() * Own::kMaskingNodes);
   }
 
   void build_masking_table(std::size_t shape) override { text_.build_masking_table(shapes_[shape], table(shape)); }
@@ -94,16 +94,7 @@ class Kernel final : public GroupedText {
 
 template <int kWidth>
 std::unique_ptr<GroupedText> make_text(const GroupedWork& work) {
-  switch (work.data.masking) {
-    case Masking::kNone:
-      return std::make_unique<Kernel<kWidth, DOLP_MASKING_NONE>>(work);
-    case Masking::kVCavity:
-      return std::make_unique<Kernel<kWidth, DOLP_MASKING_V_CAVITY>>(work);
-    case Masking::kIntegral:
-      return std::make_unique<Kernel<kWidth, DOLP_MASKING_INTEGRAL>>(work);
-    case Masking::kSmith:
-      break;
-  }
+  if (work.data.masking == Masking::kIntegral) return std::make_unique<Kernel<kWidth, DOLP_MASKING_INTEGRAL>>(work);
   return std::make_unique<Kernel<kWidth, DOLP_MASKING_SMITH>>(work);
 }
 

@@ -37,16 +37,14 @@ class GroupedText {
 /// Adds what the pieces gave, row by row, and turns it into moments in the order of the request.
 std::vector<Moments> moments_of(const GroupedWork& work, const std::vector<kernel::MomentsNode>& nodes);
 
-/// Whether the builds below can do this work: they are made for the cauchy distribution without total reflection.
+/// Whether the builds below can do this work: they are made for the cauchy distribution without total reflection, and
+/// for the maskings that the device computes by rows.
 inline bool has_text_for(const KernelData& data) {
-  return data.distribution == Distribution::kCauchy && !data.has_total_reflection;
+  return data.distribution == Distribution::kCauchy && !data.has_total_reflection && data.needs_masking_table();
 }
 
 /// Compiled for this processor, one invocation after the other, vectors where the compiler finds some.
 std::unique_ptr<GroupedText> make_native_text(const GroupedWork& work);
-
-/// The same with up to 16 invocations side by side in vectors. Only masking without tables: none and v-cavity.
-std::unique_ptr<GroupedText> make_vector_text(const GroupedWork& work);
 
 /// Operations of arithmetic, by kind.
 struct OperationCounts {

@@ -10,7 +10,7 @@
 
 #include "base/parallel_ranges.hpp"
 #include "calibrate/random_entries.hpp"
-#include "evaluate/cpu/text.hpp"
+#include "evaluate/text/text.hpp"
 #include "plan/kernel_data.hpp"
 
 namespace dolp {

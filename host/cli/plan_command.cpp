@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/plan_report.hpp"
+#include "evaluate/text/profile.hpp"
 #include "model/choices.hpp"
 #include "plan/kernel_data.hpp"
 #include "run/scene_run.hpp"
@@ -37,6 +38,7 @@ void add_dispatches(PlanReport& report, const DispatchForecast& of_request) {
   report.dispatches.tile_invocations = std::max(report.dispatches.tile_invocations, of_request.tile_invocations);
   report.dispatches.row_width = std::max(report.dispatches.row_width, of_request.row_width);
   report.dispatches.rows += of_request.rows;
+  report.dispatches.slopes += of_request.slopes;
   report.dispatches.block_shapes = std::max(report.dispatches.block_shapes, of_request.block_shapes);
   report.dispatches.device_bytes = std::max(report.dispatches.device_bytes, of_request.device_bytes);
 }
@@ -56,7 +58,7 @@ void add_request(PlanReport& report, const MomentsRequest& request, const Device
   std::string more;
   if (request.scattering == Scattering::kMultiple) more += ", all bounces";
   if (request.wants_direct) more += ", direct emission";
-  add_pipeline(report, "moments", request.precision, more);
+  add_pipeline(report, has_profiles(request) ? "slopes" : "moments", request.precision, more);
   if (data.needs_masking_table()) add_pipeline(report, "masking_table", request.precision);
 }
 

@@ -83,8 +83,8 @@ std::string output_text(const Scene& scene, const EffectPlan& plan) {
 
 std::string how_counted(const RunPrediction& run) {
   if (run.is_exact) return "counted";
-  return run.interpolated > 0 ? fmt::format("estimated from {} directions", kCountedDirections)
-                              : fmt::format("estimated from {} entries", kCountedEntries);
+  return run.counts_directions ? fmt::format("estimated from {} directions", kCountedDirections)
+                               : fmt::format("estimated from {} entries", kCountedEntries);
 }
 
 /// What the first attempt computes, and others again; `is_idle`: nothing.
@@ -105,6 +105,9 @@ void add_attempts(Report& report, const PlanReport& plan, bool is_idle) {
   report.row_if(run.moments > 0 && dispatches.row_width > 1, "sharing",
                 "entries that differ in q alone share their evaluations: {} groups of up to {}", dispatches.rows,
                 dispatches.row_width);
+  report.row_if(dispatches.slopes > 0, "sharing",
+                "all slope distributions share the sums over the azimuths: {} slopes of {} directions and indices",
+                dispatches.slopes, dispatches.rows);
   report.value("first_attempt/is_exact", run.is_exact);
   report.value("further_attempts/beams", run.again_beams);
   report.value("evaluations", run.first_evaluations + run.again_evaluations);
@@ -123,10 +126,12 @@ void add_kernels(Report& report, const PlanReport& plan) {
   add_attempts(report, plan, is_idle);
   const bool has_device = !plan.device.empty();
   report.row_if(
-      !is_idle, "dispatches", "{} in the first attempt, at most {} invocations and {} shapes at a time ({}{})",
+      !is_idle, "dispatches", "{} in the first attempt, at most {} invocations{} at a time ({}{})",
       key("first_attempt/dispatches", plan.dispatches.dispatches),
-      key("tile_invocations", plan.dispatches.tile_invocations), key("block_shapes", plan.dispatches.block_shapes),
+      key("tile_invocations", plan.dispatches.tile_invocations),
+      plan.dispatches.block_shapes > 0 ? fmt::format(" and {} shapes", plan.dispatches.block_shapes) : "",
       has_device ? plan.device : "limits of any Vulkan device; none here: ", key("why_no_device", plan.why_no_device));
+  report.value("block_shapes", plan.dispatches.block_shapes);
   report.value("device", has_device ? std::optional(plan.device) : std::nullopt);
 }
 

@@ -107,14 +107,6 @@ double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
 }
 
-// Upper bound of M00 on the facets beyond the cut whose ray leaves: cos(theta_r) > 0 there means cos(beta) > c sqrt(1 +
-// t^2) / 2, and R_s, which falls with cos(beta), is no less than M00.
-double steep_reflectance(const kernel::IndexNode& index, const kernel::ThetaNode& theta,
-                         const kernel::ShapeNode& shape) {
-  const double cos_beta = std::min(1.0, 0.5 * theta.c * std::hypot(1.0, shape.cut));
-  return reflectance_s(index, cos_beta);
-}
-
 // Error of the finer of two rules over its distance from the coarser one: how much slower than expected the rules may
 // converge. G of the maskings with tables has cusps and lines at which it is not smooth, where they converge
 // algebraically.
@@ -134,16 +126,23 @@ double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index
   double least = most;
   for (double level = 1.0; level > 1e-6; level *= 0.5) {
     const double along = std::sqrt(std::max((level - theta.c) * (level + theta.c), 0.0));
-    const double missed = along < theta.s ? 4.0 / pi<double>() * std::asin(along / theta.s) : 1.0;
+    const double missed = along <= 0.0 ? 0.0 : along < theta.s ? 4.0 / pi<double>() * std::asin(along / theta.s) : 1.0;
     const double reflected = std::pow(reflectance_s(index, 0.5 * std::max(level, theta.c)), bounces);
     least = std::min(least, most * missed + reflected);
   }
   return least;
 }
 
-// Upper bound of what grooves steeper than a slope reflect of their light. The bounces of a ray lie at psi + gamma, psi +
-// 3 gamma ... up to pi - psi, at least slope min(pi/3, pi/2 - theta) - 1 of them with cos(beta) >= a/2.
-double reflected_by_steep_grooves(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double slope) {
+// Upper bound of what the facets beyond the cut reflect of their light. Those whose ray leaves after one bounce have
+// cos(theta_r) > 0, which means cos(beta) > c sqrt(1 + t^2) / 2, and R_s, which falls with cos(beta), is no less than
+// M00. In grooves the bounces of a ray lie at psi + gamma, psi + 3 gamma ... up to pi - psi, at least slope min(pi/3,
+// pi/2 - theta) - 1 of them with cos(beta) >= a/2.
+double steep_reflectance(const KernelData& data, const kernel::IndexNode& index, const kernel::ThetaNode& theta,
+                         const kernel::ShapeNode& shape) {
+  if (data.scattering == Scattering::kSingle) {
+    return reflectance_s(index, std::min(1.0, 0.5 * theta.c * std::hypot(1.0, shape.cut)));
+  }
+  const double slope = std::min(shape.cut, theta.end[DOLP_MAX_PIECES]);
   const double elevation = std::atan2(theta.c, theta.s);
   return left_after(theta, index, std::max(std::min(pi<double>() / 3.0, elevation) * slope - 1.0, 0.0), 1.0);
 }
@@ -160,21 +159,23 @@ constexpr double kVeryManyBounces = 1024.0;
 constexpr double kVeryManyBouncesError = 1e-2;
 constexpr double kNotGrazing = 0.6;  // share of a ray's bounces with cos(beta) >= a/2, at least
 
+// `reflected` is what these grooves were found to reflect. Taking bounces as one changes the logarithm of what is left
+// by less than a hundredth: what is found to be little is little.
 double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
-                          const kernel::ShapeNode& shape) {
+                          const kernel::ShapeNode& shape, double reflected) {
+  if (reflected <= data.rule.dimmest * theta.c) return reflected;
   const auto beyond = [&](double bounces, double most) {
-    const double share = share_beyond(data.distribution, shape, 1.0 / std::tan(0.5 * pi<double>() / bounces));
+    const double share = share_beyond(data.distribution, shape, slope_with_bounces(bounces));
     return share * left_after(theta, index, kNotGrazing * bounces, most);
   };
-  return theta.c * (beyond(DOLP_MOST_BOUNCES, kManyBouncesError) + beyond(kVeryManyBounces, kVeryManyBouncesError) +
-                    beyond(DOLP_LAST_BOUNCES, 1.0));
+  const double most = beyond(DOLP_MOST_BOUNCES, kManyBouncesError) + beyond(kVeryManyBounces, kVeryManyBouncesError) +
+                      beyond(DOLP_LAST_BOUNCES, 1.0);
+  return std::min(theta.c * most, reflected);
 }
 
 double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   const bool is_multiple = data.scattering == Scattering::kMultiple;
-  const double smooth = is_multiple                  ? kGroovePairFactor
-                        : data.needs_masking_table() ? kTablePairFactor
-                                                     : kPairFactor;
+  const double smooth = is_multiple ? kGroovePairFactor : data.needs_masking_table() ? kTablePairFactor : kPairFactor;
   return index.critical_cos > 0.0 ? kCriticalFactor * smooth : smooth;
 }
 
@@ -193,12 +194,13 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   const double masking = masking_error(data, entry, unit_roundoff);
   const double rounding = unit_roundoff * roundings(data, theta, shape, index);
   const bool is_multiple = data.scattering == Scattering::kMultiple;
-  const double grooves =
-      is_multiple ? many_bounces_bound(data, theta, index, shape) + kGrooveRoundings * unit_roundoff * theta.c : 0.0;
-  const double reach = std::min(shape.cut, theta.end[DOLP_MAX_PIECES]);
-  const double steep =
-      is_multiple ? reflected_by_steep_grooves(theta, index, reach) : steep_reflectance(index, theta, shape);
-  const double reflected_cut = cut == 0.0 ? 0.0 : cut * steep;
+  double grooves = 0.0;
+  if (is_multiple) {
+    grooves = many_bounces_bound(data, theta, index, shape, std::abs(node.many)) +
+              (kGrooveRoundings * unit_roundoff + data.rule.dimmest) * theta.c;
+  }
+  const double reflected_cut =
+      cut <= data.rule.dimmest * theta.c ? cut : cut * steep_reflectance(data, index, theta, shape);
   Moments moments;
   moments.r_i = node.r_i;
   moments.r_q = node.r_q;

@@ -20,8 +20,6 @@ namespace {
 using boost::math::constants::pi;
 using boost::math::constants::root_pi;
 
-constexpr unsigned kRootAbove = 1;  // a square root just above a breakpoint
-constexpr unsigned kRootBelow = 2;  // just below
 constexpr unsigned kRoots = kRootAbove | kRootBelow;
 constexpr double kNoEnd = 1e30;  // a slope beyond every cut, in place of infinity
 
@@ -124,9 +122,6 @@ void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
 // From a breakpoint of steep grooves to the next, in bounces.
 constexpr double kSteepStep = 16.0;
 
-// The slope of V-grooves in which a vertical ray has so many bounces.
-double slope_with_bounces(double bounces) { return 1.0 / std::tan(0.5 * pi<double>() / bounces); }
-
 // Where the lines of groove_lines (arcs.glsl) meet phi = 0, psi = theta, or phi = pi, psi = -theta, or each other.
 void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg, int splits) {
   const auto add = [&](double gamma_deg, unsigned roots) {
@@ -225,8 +220,8 @@ Loops single_loops(const KernelData& data) {
   return {.arcs = arcs};
 }
 
-// Loop turns of a ray that bounces so often: one for each bounce, or for those that next_bounces of groove.glsl takes as
-// one, which have a turn of their own.
+// Loop turns of a ray that bounces so often: one for each bounce, or for those that next_bounces of groove.glsl takes
+// as one, which have a turn of their own.
 double turns_of(double bounces) {
   double turns = 2.0;
   double taken = 1.0;
@@ -265,17 +260,15 @@ constexpr double kMostIterations = 64'000.0;
 constexpr double kMostArcs = 2.0 * DOLP_MAX_ARCS;
 constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // of a groove, to find its lines
 
-// Bound of the loop iterations of one invocation, that is of one piece: two rules, slopes, arcs, azimuths, bounces,
-// with everything at its most nodes. No bound on what an entry does is enough, because invocations that run in lockstep
-// wait for each other.
+// Bound of the loop iterations of one invocation with everything at its most nodes: of one piece, two rules, slopes,
+// arcs and azimuths, or of one slope of a profile, arcs, azimuths and bounces. No bound on what an entry does is
+// enough, because invocations that run in lockstep wait for each other.
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
-  const bool is_multiple = data.scattering == Scattering::kMultiple;
-  const double slopes = is_multiple ? std::floor(most_nodes / DOLP_AZIMUTHS_PER_SLOPE) : data.rule_order;
-  const double of_slope = is_multiple ? 1.0 + kTurnsOfSlope : 1.0;
+  if (!data.needs_masking_table()) return kTurnsOfSlope + loops.arcs * (2.0 + most_nodes * (1.0 + loops.turns));
   const auto of_rule = [&](double share) {
-    return 1.0 + share * slopes * (of_slope + loops.arcs * (2.0 + share * most_nodes * (1.0 + loops.turns)));
+    return 1.0 + share * data.rule_order * (1.0 + loops.arcs * (2.0 + share * most_nodes));
   };
-  return of_rule(1.0) + of_rule(kCoarseShare + 1.0 / slopes);
+  return of_rule(1.0) + of_rule(kCoarseShare + 1.0 / data.rule_order);
 }
 
 // The most nodes of an arc; the error estimate shows what that costs.
@@ -398,6 +391,8 @@ void add_points(KernelData& data, const MomentsRequest& request) {
 
 }  // namespace
 
+double slope_with_bounces(double bounces) { return 1.0 / std::tan(0.5 * pi<double>() / bounces); }
+
 std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t members) {
   const auto bit = [](bool is_set, unsigned position) { return static_cast<std::uint32_t>(is_set) << position; };
   return members | piece << DOLP_TASK_PIECE_SHIFT |
@@ -435,7 +430,7 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model) {
   data.scattering = request.scattering;
   data.has_direct = request.wants_direct;
   data.tolerance = request.tolerance;
-  data.rule = rule_node(model, digits);
+  data.rule = rule_node(model, request.tolerance);
   data.rule_order = largest_order(digits);
   data.is_grid = request.layout == MomentsRequest::Layout::kGrid;
   data.directions = request.theta_deg.size();

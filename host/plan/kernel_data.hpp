@@ -15,11 +15,14 @@ using real = double;
 #include "shaders/interface.glsl"  // NOLINT: one text for host and shaders
 }  // namespace kernel
 
+inline constexpr unsigned kRootAbove = 1;  ///< a square root just above a breakpoint
+inline constexpr unsigned kRootBelow = 2;  ///< just below
+
 /// The pieces of the slope axis of one direction, beside what ThetaNode says of them.
 struct Pieces {
   std::uint32_t count = 0;
   std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};  ///< of each end: bits kRootAbove, kRootBelow
-  /// Of each piece the most nodes of an arc, with all bounces of its slopes too, which bounds the loop iterations.
+  /// Of each piece the most nodes of an arc, which bounds the loop iterations.
   std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};
   /// Of each piece what says whether it may run in lockstep with another within these bounds: equal numbers may.
   std::array<std::uint16_t, DOLP_MAX_PIECES> lockstep{};
@@ -84,6 +87,9 @@ std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t
 
 /// Pieces of the slope axis up to the cut: those that the kernel has to compute, the first always.
 std::uint32_t piece_count(const KernelData& data, std::uint32_t theta, const kernel::ShapeNode& shape);
+
+/// The slope of V-grooves in which a vertical ray has so many bounces.
+double slope_with_bounces(double bounces);
 
 /// Adds what the kernel returned for a piece to what it returned for others.
 void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <span>
 
@@ -161,25 +160,6 @@ Rows rows_of(const MomentsRequest& request, const KernelData& data) {
   return best;
 }
 
-namespace {
-
-std::vector<RowPiece> in_lockstep(const std::vector<RowPiece>& pieces, const Rows& rows, const KernelData& data) {
-  std::map<std::uint16_t, std::vector<RowPiece>> by_bound;
-  for (const RowPiece& piece : pieces) {
-    by_bound[data.pieces[rows.theta_of(data, rows.rows[piece.row])].lockstep[piece.piece]].push_back(piece);
-  }
-  std::vector<RowPiece> sorted;
-  for (const auto& [bound, alike] : by_bound) {
-    sorted.insert(sorted.end(), alike.begin(), alike.end());
-    const std::uint32_t row = alike.back().row;
-    const std::uint32_t none = data.pieces[rows.theta_of(data, rows.rows[row])].count;
-    while (sorted.size() % kLockstep != 0) sorted.push_back({row, none});
-  }
-  return sorted;
-}
-
-}  // namespace
-
 std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count) {
   const auto same_work = [&](const Row& a, const Row& b) {
     return !data.is_grid || (a.chunk == b.chunk && a.index == b.index);
@@ -202,7 +182,7 @@ std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::u
     }
     begin = next;
   }
-  return data.scattering == Scattering::kMultiple ? in_lockstep(pieces, rows, data) : pieces;
+  return pieces;
 }
 
 }  // namespace dolp

@@ -53,12 +53,7 @@ Rows rows_of(const MomentsRequest& request, const KernelData& data);
 /// Rows of one width.
 Rows rows_of(const MomentsRequest& request, const KernelData& data, std::uint32_t width);
 
-/// Invocations that may run in lockstep, so that each waits for the longest.
-inline constexpr std::uint32_t kLockstep = 64;
-
 /// The invocations of rows first, first + 1, ...: neighbours differ in the direction, so that they do the same work.
-/// With all bounces in grooves, whose pieces have different bounds of their loops, those in lockstep have the same: the
-/// gaps are filled with a piece that a row does not have, which adds nothing.
 std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count);
 
 }  // namespace dolp

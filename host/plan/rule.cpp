@@ -61,6 +61,9 @@ constexpr double kOrderPerDigit = 8.0;
 // many digits.
 constexpr double kDigitsPerSplit = 2.0;
 
+// Over the tolerance: far below what the darkest surfaces reflect.
+constexpr double kDimmest = 1e-10;
+
 constexpr double kNone = -1000.0;
 
 // log10 of the nodes on the scale of 1/m beside a line or cusp, where the share of steep facets varies.
@@ -109,11 +112,10 @@ int largest_order(double digits) {
   return std::min(DOLP_MAX_ORDER, std::max(kPlainOrder, static_cast<int>(std::ceil(kOrderPerDigit * digits))));
 }
 
-int split_bounces(double digits) {
-  return std::clamp(static_cast<int>(digits / kDigitsPerSplit), 1, DOLP_MOST_SPLITS);
-}
+int split_bounces(double digits) { return std::clamp(static_cast<int>(digits / kDigitsPerSplit), 1, DOLP_MOST_SPLITS); }
 
-kernel::RuleNode rule_node(const RuleModel& model, double digits) {
+kernel::RuleNode rule_node(const RuleModel& model, double tolerance) {
+  const double digits = rule_digits(model, tolerance);
   kernel::RuleNode node{};
   node.digits = digits;
   node.t_nodes = model.t_nodes;
@@ -124,6 +126,7 @@ kernel::RuleNode rule_node(const RuleModel& model, double digits) {
   node.cluster_stretch = model.cluster_stretch;
   node.cluster_below_q = kClusterBelowQ * digits;
   node.split_bounces = split_bounces(digits);
+  node.dimmest = kDimmest * tolerance;
   return node;
 }
 

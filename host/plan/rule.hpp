@@ -28,8 +28,8 @@ const RuleModel& rule_model(Masking masking, Scattering scattering = Scattering:
 /// Digits that a tolerance asks of the finer rule: the coarser one must meet it, because their distance is the bound.
 double rule_digits(const RuleModel& model, double tolerance);
 
-/// The kernel's rule for a number of digits.
-kernel::RuleNode rule_node(const RuleModel& model, double digits);
+/// The kernel's rule for a tolerance.
+kernel::RuleNode rule_node(const RuleModel& model, double tolerance);
 
 /// The bounces at which a beam that ends in a groove splits the azimuths.
 int split_bounces(double digits);

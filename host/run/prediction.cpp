@@ -8,6 +8,7 @@
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
+#include "evaluate/text/profile.hpp"
 #include "plan/shape_plan.hpp"
 #include "run/drawn_entries.hpp"
 #include "run/part_requests.hpp"
@@ -16,14 +17,13 @@
 namespace dolp {
 namespace {
 
-/// All entries of some directions of a grid.
+/// All entries of some directions of a grid, the middles of equal parts of them.
 SceneEntries entries_of_drawn_directions(const SceneEntries& grid) {
   std::vector<double> theta_deg = grid.theta_deg();
   std::ranges::sort(theta_deg);
   std::vector<double> drawn;
-  for (const std::size_t position : drawn_positions(theta_deg.size(), kCountedDirections)) {
-    drawn.push_back(theta_deg[position]);
-  }
+  const std::size_t count = std::min(theta_deg.size(), kCountedDirections);
+  for (std::size_t i = 0; i < count; ++i) drawn.push_back(theta_deg[(2 * i + 1) * theta_deg.size() / (2 * count)]);
   return SceneEntries::grid(drawn, grid.sigma(), grid.q());
 }
 
@@ -85,7 +85,7 @@ double scale_of(std::size_t all, const Count& counted) {
 void count_work(RunPrediction& run, const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
                 bool has_double) {
   const SceneEntries drawn =
-      run.interpolated > 0 ? entries_of_drawn_directions(entries) : drawn_entries(entries, kCountedEntries);
+      run.counts_directions ? entries_of_drawn_directions(entries) : drawn_entries(entries, kCountedEntries);
   auto owned = std::make_unique<CountingEvaluator>(scene.accuracy.precision, has_double);
   const CountingEvaluator& counting = *owned;
   InterpolatingEvaluator interpolating(std::move(owned));
@@ -122,6 +122,7 @@ RunPrediction predict_run(const Scene& scene, const SceneEntries& entries, const
       const std::optional<ShapePlan> shapes = shape_plan(requests.moments());
       const MomentsRequest& computed = shapes ? shapes->nodes : requests.moments();
       if (shapes) run.interpolated += moments;
+      run.counts_directions = entries.is_grid() && (shapes || has_profiles(computed));
       run.moments += computed.size();
       visit.moments(computed);
     }

@@ -14,7 +14,8 @@ namespace dolp {
 /// Entries of a run whose nodes are counted; of more entries these stand for all.
 inline constexpr std::size_t kCountedEntries = 256;
 
-/// Where a run interpolates between slope distributions, the directions whose entries are counted instead.
+/// Where the entries of a direction share their work (profiles, interpolation between slope distributions), the
+/// directions whose entries are counted instead.
 inline constexpr std::size_t kCountedDirections = 6;
 
 /// Work of a run.
@@ -29,6 +30,7 @@ struct RunPrediction {
   double again_share = 0.0;        ///< of its moments and beams, those that need another level
   double again_evaluations = 0.0;
   double again_beams = 0.0;
+  bool counts_directions = false;
   bool is_exact = true;    ///< all moments and beams were counted, none estimated from others
   double moments_s = 0.0;  ///< of all levels on this machine's processor, from counting
   double beams_s = 0.0;
@@ -46,7 +48,8 @@ struct RequestVisitor {
 /// will run has it.
 ///
 /// Accuracy: exact for scenes with up to kCountedEntries entries, but for orders that a device's float rounds
-/// otherwise; a few percent beyond (tests Plan.FewEntries_*, Plan.ManyEntries_*, Plan.Device_*).
+/// otherwise; a few percent beyond, or where directions are counted a fifth (tests Plan.FewEntries_*,
+/// Plan.ManyEntries_*, Plan.Device_*).
 RunPrediction predict_run(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan, bool has_double,
                           const RequestVisitor& visit);
 

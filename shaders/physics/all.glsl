@@ -1,4 +1,4 @@
-// The whole text in the order that GLSL needs: every function before its first use.
+// The int text in the order that GLSL needs: every function before its first use.
 #include "physics/elementary.glsl"
 #include "physics/slope.glsl"
 #include "physics/fresnel.glsl"
@@ -11,6 +11,7 @@
 #include "physics/groove.glsl"
 #include "physics/task.glsl"
 #include "physics/orders.glsl"
+#include "physics/azimuths.glsl"
 #include "physics/moments.glsl"
 #include "physics/in_plane.glsl"
 #include "physics/mueller.glsl"

@@ -13,8 +13,8 @@ real cosine(real2 half_phi) { return (half_phi.x - half_phi.y) * (half_phi.x + h
 
 // atan(y) for y >= 0.
 real arc_tangent(real y) {
-  real angle = atan_unit(choose(y <= real(1.0), y, real(1.0) / y));
-  return choose(y <= real(1.0), angle, real(0.5) * kPi - angle);
+  real angle = atan_unit(y <= real(1.0) ? y : real(1.0) / y);
+  return y <= real(1.0) ? angle : real(0.5) * kPi - angle;
 }
 
 // phi.
@@ -162,8 +162,8 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
     // first is that of G1 of theta alone, which goes on below the horizon from t = sqrt(3) on.
     real2 shaded = line_at(c, st);
     real level = c * (real(3.0) * t * t - real(1.0)) / (real(3.0) - t * t);
-    lines.end[0] = choose(t < real(1.0), shaded, same_zenith);
-    lines.end[1] = choose(t < real(1.0), line_at(level, st), same_zenith);
+    lines.end[0] = t < real(1.0) ? shaded : same_zenith;
+    lines.end[1] = t < real(1.0) ? line_at(level, st) : same_zenith;
     lines.end[2] = lines.horizon;
     lines.arcs = 3;
     lines.leaving = 3;

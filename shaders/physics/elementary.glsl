@@ -37,7 +37,7 @@ real expm1_real(real x) {
   real k = floor(bounded * kInverseLn2 + real(0.5));
   real r = (bounded - k * kLn2High) - k * kLn2Low;
   real fraction = r + r * r * exp_series(r);
-  real power = ldexp(real(1.0), whole(k));
+  real power = ldexp(real(1.0), int(k));
   return power * fraction + (power - real(1.0));
 }
 
@@ -53,8 +53,8 @@ real exp_real(real x) {
   real bounded = max(x, kLowestExponent);
   real k = floor(bounded * kInverseLn2 + real(0.5));
   real r = (bounded - k * kLn2High) - k * kLn2Low;
-  real power = ldexp(real(1.0) + (r + r * r * exp_series(r)), whole(k));
-  return choose(x < kLowestExponent, real(0.0), power);
+  real power = ldexp(real(1.0) + (r + r * r * exp_series(r)), int(k));
+  return x < kLowestExponent ? real(0.0) : power;
 }
 
 // atanh(z)/z - 1 over z^2, for z^2 <= 0.03.
@@ -80,11 +80,11 @@ real atanh_series(real z2) {
 real log1p_real(real u) {
   precise real v = real(1.0) + u;
   precise real above_one = v - real(1.0);
-  precise real lost = choose(u < real(1.0), u - above_one, real(1.0) - (v - u));
-  whole exponent;
+  precise real lost = u < real(1.0) ? u - above_one : real(1.0) - (v - u);
+  int exponent;
   real mantissa = frexp(v, exponent);
-  real k = real(exponent) - choose(mantissa < kSqrtHalf, real(1.0), real(0.0));
-  mantissa = choose(mantissa < kSqrtHalf, mantissa + mantissa, mantissa);
+  real k = real(exponent) - (mantissa < kSqrtHalf ? real(1.0) : real(0.0));
+  mantissa = mantissa < kSqrtHalf ? mantissa + mantissa : mantissa;
   real z = (mantissa - real(1.0)) / (mantissa + real(1.0));
   real z2 = z * z;
   real series = real(2.0) * (z + z * z2 * atanh_series(z2));
@@ -96,14 +96,14 @@ real log_unit(real x) { return -log1p_real((real(1.0) - x) / max(x, real(1e-30))
 
 // ln(1 + u^2) for u >= 0, also where u^2 overflows: there it is 2 ln(u).
 real log1p_square(real u) {
-  real logarithm = log1p_real(choose(u > real(1e9), u - real(1.0), u * u));
-  return choose(u > real(1e9), real(2.0) * logarithm, logarithm);
+  real logarithm = log1p_real(u > real(1e9) ? u - real(1.0) : u * u);
+  return u > real(1e9) ? real(2.0) * logarithm : logarithm;
 }
 
 // asinh(y) for y >= 0; ln(2 y) where y^2 might overflow.
 real asinh_real(real y) {
   real y2 = y * y;
-  return log1p_real(choose(y > real(1e9), real(2.0) * y - real(1.0), y + y2 / (real(1.0) + sqrt(real(1.0) + y2))));
+  return log1p_real(y > real(1e9) ? real(2.0) * y - real(1.0) : y + y2 / (real(1.0) + sqrt(real(1.0) + y2)));
 }
 
 // (sinh(x), cosh(x)) for 0 <= x <= 80.

@@ -39,9 +39,9 @@ Fan fan(real t, real c, real u) {
   for (bool may_be = t > real(DOLP_MOST_BOUNCES) / kPi; may_be; may_be = false) {
     real to_horizon = arc_tangent(c / max(abs(u), real(1e-30)));
     f.gamma = arc_tangent(real(1.0) / t);
-    f.left = min(choose(u < real(0.0), kPi - to_horizon, to_horizon) / f.gamma, real(DOLP_LAST_BOUNCES));
+    f.left = min((u < real(0.0) ? kPi - to_horizon : to_horizon) / f.gamma, real(DOLP_LAST_BOUNCES));
     real zenith = arc_tangent(abs(u) / max(c, real(1e-30)));
-    f.slant = min(choose(u < real(0.0), -zenith, zenith) / f.gamma, real(1.0));
+    f.slant = min((u < real(0.0) ? -zenith : zenith) / f.gamma, real(1.0));
     f.is_steep = f.left > real(DOLP_MOST_BOUNCES);
   }
   return f;
@@ -128,7 +128,7 @@ real2 further_on(real2 at, real2 step) {
 }
 
 // Integrand of the moments per unit of azimuth, as in facet.glsl, of the rays that meet the facet (t, phi) first.
-real4 reflected_in_groove(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
+real4 reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   real c = theta.c;
   real u = theta.s * x;
   real b = theta.s * sin_phi;
@@ -165,7 +165,7 @@ real4 reflected_in_groove(ThetaNode theta, IndexNode index, real t, real x, real
       f.left -= f.taken;
     }
     share = f.is_steep ? last_share(f) : real(1.0) + rise * inverse_width;
-    share = clamp(share, real(0.0), real(1.0));
+    share = (natural.x < rule.dimmest) ? real(0.0) : clamp(share, real(0.0), real(1.0));
   }
   real beam = min(c + theta.s * t * x, real(2.0) * c);
   return real4(beam * natural.x, beam * polarised.x, beam, beam * absorbed);

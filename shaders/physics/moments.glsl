@@ -1,92 +1,6 @@
-// The moments of a row of entries, piece by piece of the slope axis: a Gauss rule over the slopes of the piece, and at
-// each slope Gauss rules over the smooth arcs of the azimuth. Everything is summed twice, by rules of two orders: the
+// The moments of a row of entries, piece by piece of the slope axis: a Gauss rule over the slopes of the piece, and the
+// sums over the azimuths at each. Everything is summed twice, by rules of two orders: the
 // finer sum is the result, its distance from the coarser one bounds the error (host/plan/error_bounds.cpp).
-
-// ---- Azimuth -------------------------------------------------------------------------------------------------------
-
-// One slope of a piece, and what its arcs share.
-struct Slope {
-  real t;
-  real digits;        // wanted of the sum over the azimuths
-  Masked of_theta;
-  bool has_split_line;
-  int most_azimuths;
-  bool is_coarse;
-};
-
-// A sum over azimuths, for each member of a row.
-struct AzimuthSums {
-  real4 member[DOLP_WIDTH];
-  real2 direct;       // what facets emit straight to the viewer, as (I, Q), before smith's masking
-  real evaluations;
-};
-
-AzimuthSums no_azimuths() {
-  AzimuthSums sums;
-  sums.evaluations = real(0.0);
-  sums.direct = real2(real(0.0), real(0.0));
-  for (int g = 0; g < DOLP_WIDTH; ++g) sums.member[g] = real4(real(0.0));
-  return sums;
-}
-
-AzimuthSums arc_sums(ThetaNode theta, Row row, IndexNode index, Slope slope, Arc arc, int zone, bool leaves,
-                     int order) {
-  AzimuthSums sums = no_azimuths();
-  int first_node = rule_offset(arc.section, order);
-  for (int i = 0; i < order; ++i) {
-    Azimuth at = azimuth(arc, place_on_arc(arc, rule_node(first_node + i)));
-    if (kIsMultiple) {
-      sums.member[0] += at.weight * reflected_in_groove(theta, index, slope.t, at.x, at.sin_phi);
-    } else {
-      Facet f = facet(theta, index, slope.t, at.x, at.sin_phi);
-      Masked of_ray = masking_of_ray(row, f.cos_r, slope.t, zone);
-      real seen = leaves ? at.weight : real(0.0);
-      for (int g = 0; g < masked_members(); ++g) {
-        Projection part = project(theta, f, zone, slope.of_theta.value[g], of_ray.value[g]);
-        sums.member[g] += seen * reflected(f, part);
-      }
-      if (kHasDirect) sums.direct += at.weight * emitted(theta, f);
-    }
-  }
-  sums.evaluations = real(order);
-  return sums;
-}
-
-// Integral over the azimuths from 0 to pi. Each zone is an arc, or two with the critical line of total reflection
-// between them.
-AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, SplitLines lines) {
-  AzimuthSums sums = no_azimuths();
-  bool is_critical = kTotalReflection && index.critical_cos > real(0.0);
-  real2 last = real2(real(1.0), real(0.0));
-  for (int part = 0; part < (is_critical ? 2 * lines.arcs : lines.arcs); ++part) {
-    int zone = is_critical ? part >> 1 : part;
-    bool is_second = is_critical && (part & 1) == 1;
-    real2 from = last;
-    real2 to = lines.end[zone];
-    if (!is_critical || is_second) last = to;
-    if (is_critical) {
-      real2 middle = clamp_half_angle(lines.critical, from, to);
-      from = is_second ? middle : from;
-      to = is_second ? to : middle;
-    }
-    // Devices that run invocations in lockstep compute both sides of an `if`; a loop of one turn they skip where none
-    // of them needs it. It counts as an iteration, see worst_iterations of host/plan/kernel_data.hpp.
-    for (bool is_due = is_before(from, to); is_due; is_due = false) {
-      Arc arc = zone_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits, from, to, zone);
-      if (is_critical) arc = critical_arc(theta, index, slope.t, slope.digits, from, to, !is_second, arc);
-      real nodes = arc_nodes(rule, theta, row.shape[0], index, slope.has_split_line, slope.t, slope.digits, arc, zone);
-      int order = order_between(nodes, slope.most_azimuths);
-      if (slope.is_coarse) order = coarse_order(order);
-      AzimuthSums more = arc_sums(theta, row, index, slope, arc, zone, zone < lines.leaving, order);
-      for (int g = 0; g < masked_members(); ++g) sums.member[g] += more.member[g];
-      sums.direct += more.direct;
-      sums.evaluations += more.evaluations;
-    }
-  }
-  return sums;
-}
-
-// ---- Slope axis ----------------------------------------------------------------------------------------------------
 
 CONST real kNearRoot = real(0.2);
 
@@ -126,8 +40,7 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task 
     piece.root_at_b = piece.root_at_b || is_near;
     piece.root_after = is_near ? end : x;
   }
-  int most = kIsMultiple ? min(largest_order(), task.most_azimuths / DOLP_AZIMUTHS_PER_SLOPE) : largest_order();
-  piece.order = order_between(slope_nodes(rule, theta, shape, index, task.has_split_line, piece), most);
+  piece.order = order_between(slope_nodes(rule, theta, shape, index, task.has_split_line, piece), largest_order());
   return piece;
 }
 
@@ -185,21 +98,15 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
     Slope slope;
     slope.t = t;
     slope.digits = digits_of_slope(rule, theta, shape, piece.digits, order, t, kPi * largest_weight);
-    SplitLines lines = split_lines(rule, theta, index, t, task.has_split_line, slope.digits);
     slope.of_theta = of_theta;
     if (kMasking == DOLP_MASKING_INTEGRAL) slope.of_theta = shadows(row, of_theta, theta.c, theta.s, t);
     slope.has_split_line = task.has_split_line;
     slope.most_azimuths = task.most_azimuths;
     slope.is_coarse = is_coarse;
-    AzimuthSums azimuths = azimuth_sums(rule, theta, row, index, slope, lines);
-    // Facets whose ray does not leave: their projection toward theta, which is negative for those that face away. Of a
-    // groove all leave.
-    real below = kIsMultiple ? real(0.0) : theta.c * real(4.0) * atan_unit(lines.horizon.x / (real(1.0) + lines.horizon.y));
-    real behind = kIsMultiple ? real(0.0) : real(2.0) * theta.s * t * lines.horizon.x * lines.horizon.y;
+    AzimuthSums azimuths = slope_sums(rule, theta, row, index, slope);
     for (int g = 0; g < DOLP_WIDTH; ++g) {
-      real4 facets = azimuths.member[min(g, masked_members() - 1)];
-      sums.member[g] += weight[g] * (facets + real4(real(0.0), real(0.0), real(0.0), below - behind));
-      sums.behind[g] += weight[g] * behind;
+      sums.member[g] += weight[g] * azimuths.member[g];
+      sums.behind[g] += weight[g] * azimuths.behind;
       if (kHasDirect) sums.direct[g] += weight[g] * viewed(of_theta.value[g]) * azimuths.direct;
       mass[g] += kPi * weight[g];
     }
@@ -207,7 +114,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
   }
   // The share of the facets is known: the error that the density alone makes cancels.
   for (int g = 0; g < DOLP_WIDTH; ++g) {
-    real ratio = choose(mass[g] > real(0.0), piece.mass[g] / mass[g], real(1.0));
+    real ratio = mass[g] > real(0.0) ? piece.mass[g] / mass[g] : real(1.0);
     sums.member[g] *= ratio;
     sums.behind[g] *= ratio;
     sums.direct[g] *= ratio;
@@ -240,8 +147,8 @@ RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
     real4 difference = abs(sums - coarse.member[g]);
     real2 direct = fine.direct[g];
     real direct_difference = max(abs(direct.x - coarse.direct[g].x), abs(direct.y - coarse.direct[g].y));
-    result.member[g] = MomentsNode(sums.x, sums.y, sums.z, sums.w + beyond, fine.behind[g], direct.x, direct.y,
-                                   max(difference.x, difference.y), difference.z, difference.w, direct_difference,
+    result.member[g] = MomentsNode(sums.x, sums.y, sums.z, sums.w + beyond, fine.behind[g], real(0.0), direct.x,
+                                   direct.y, max(difference.x, difference.y), difference.z, difference.w, direct_difference,
                                    fine.evaluations + coarse.evaluations);
   }
   return result;

@@ -34,7 +34,7 @@ struct Singularity {
 // acos(u).
 real arc_cosine(real u) {
   real angle = real(2.0) * atan_unit(sqrt((real(1.0) - abs(u)) / (real(1.0) + abs(u))));
-  return choose(u < real(0.0), kPi - angle, angle);
+  return u < real(0.0) ? kPi - angle : angle;
 }
 
 // arccos(a + i b), from the distances of cos(phi) to +-1 (Hull, Fairgrieve and Tang 1997).
@@ -96,7 +96,7 @@ real digits_of_slope(RuleNode rule, ThetaNode theta, ShapeNode shape, real digit
 real piece_cost(Piece piece, real re, real im) {
   real2 z = real2((re - piece.start) / piece.extent, im / piece.extent);
   real from_root = piece.root_at_b ? real(1.0) - z.x : z.x;
-  if (piece.root_at_a) from_root = choose(z.x < real(0.5), z.x, from_root);  // the nearer one
+  if (piece.root_at_a) from_root = z.x < real(0.5) ? z.x : from_root;  // the nearer one
   real2 y = (piece.root_at_a || piece.root_at_b) ? sqrt_upper(from_root, z.y) : z;
   return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
 }
@@ -117,7 +117,7 @@ real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, 
   real unit = max(theta.s, real(1e-6)) * shape.scale;
   real x = (re - theta.c) / unit;
   real bent = asinh_real(abs(x));
-  return piece_cost(piece, choose(x < real(0.0), -bent, bent), im / (unit * max(abs(x), real(1.0))));
+  return piece_cost(piece, x < real(0.0) ? -bent : bent, im / (unit * max(abs(x), real(1.0))));
 }
 
 // The same from Fresnel's branch point cos(beta) = b on a line where arcs end: the horizon, sec(alpha) = 2 b / c, or
@@ -172,7 +172,7 @@ real arc_cost(Arc arc, Singularity at) {
   if (arc.section == kSectionCircle) return nodes_per_digit(at.im);
   real re = abs(at.re - arc.origin) / arc.span;
   real im = at.im / arc.span;
-  re = choose((at.re - arc.origin) * arc.extent < real(0.0), -re, re);  // beyond the arc's beginning
+  re = (at.re - arc.origin) * arc.extent < real(0.0) ? -re : re;  // beyond the arc's beginning
   real2 y = real2(re, im);
   if (arc.section == kSectionHalf) y = real2(re * re - im * im, real(2.0) * re * im);
   if (arc.section == kSectionCluster) y = sqrt_upper(re, im);
@@ -271,7 +271,7 @@ Arc zone_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_lin
   return is_rough_line ? make_root_arc(from, to, false) : arc;
 }
 
-// The arc on one side of the critical line, or the whole zone where the line lies beyond. w^2 = cos^2(beta) -
+// The arc on one side of the critical line, or the int zone where the line lies beyond. w^2 = cos^2(beta) -
 // critical_cos^2 + i Im N^2 vanishes at or beside its end, as far away as w^2 there is of its range on the arc. Where
 // that is far, the arc is like any other; where it is too little to be felt, the root counts as sharp: what it would
 // change is of the order of the resolution to the power 3/2.
@@ -307,7 +307,7 @@ real resolution_nodes(real digits, real resolution) {
   return wanted * nodes_per_digit(acosh_above_1(gap_beside_unit(real(0.76) / a, real(0.57) / a)));
 }
 
-// Nodes of an arc. With fewer than two on the whole half circle cos(2 phi) would not average out.
+// Nodes of an arc. With fewer than two on the int half circle cos(2 phi) would not average out.
 real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, real t, real digits,
                Arc arc, int zone) {
   real map = nodes_per_digit(asinh_real(real(1.0) / max(abs(arc.extent), real(1e-9))));  // dphi = 4 dtau / (1 + tau^2)

@@ -4,8 +4,6 @@
 // C++:  the including class lives in a namespace that defines `real` and its GLM vector types (real2, real4) and
 //       brings GLM's sqrt, abs, min, max, clamp, floor, ldexp, floatBitsToUint into scope; the whole text is then
 //       the body of that class, and the data accessors (masking_node, rule_node) are its members.
-//       A `real` may also be a vector of numbers, one for each of several invocations that go side by side: with
-//       DOLP_LANES the namespace defines choose and whole too.
 #ifdef __cplusplus
 #define CONST static constexpr
 #define precise
@@ -20,8 +18,4 @@
 #define real2 vec2
 #define real4 vec4
 #endif
-#endif
-#ifndef DOLP_LANES
-#define choose(condition, a, b) ((condition) ? (a) : (b))  // where neighbouring invocations differ
-#define whole int                                          // likewise
 #endif

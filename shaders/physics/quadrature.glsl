@@ -3,7 +3,7 @@
 //   gauss   Gauss-Legendre on [0, 1]
 //   centre  Gauss-Legendre on [-1, 1]                              an arc between two split lines
 //   half    the positive nodes of the rule of order 2n on [-1, 1]  an arc that touches phi = 0 or pi: even about its end
-//   circle  tan(psi/4) of the midpoints of n equal parts of [0, pi]: the whole half circle, spectral for periodic f
+//   circle  tan(psi/4) of the midpoints of n equal parts of [0, pi]: the int half circle, spectral for periodic f
 //   cluster Gauss-Legendre on [0, 1] in sqrt(tau / T): an arc from a cusp or square root at its centre
 // centre, half, circle and cluster hold abscissae of tau / T, where tau = tan(psi/4), dpsi = 4 T / (1 + tau^2) d(tau/T).
 

@@ -7,9 +7,15 @@ struct Row {
   uint table[DOLP_WIDTH];  // first node of its masking table
 };
 
-// Masking without q has one sum over the azimuths for all members of a row.
-int masked_members() {
-  return (kMasking == DOLP_MASKING_INTEGRAL || kMasking == DOLP_MASKING_SMITH) ? DOLP_WIDTH : 1;
+// For maskings that do not ask for the shape.
+Row no_row() {
+  Row row;
+  for (int g = 0; g < DOLP_WIDTH; ++g) {
+    row.shape[g] =
+        ShapeNode(real(1.0), real(1.0), real(1.0), real(1.0), real(1.0), real(1.0), real(1.0), real(0.0));
+    row.table[g] = 0u;
+  }
+  return row;
 }
 
 // What masking says of one direction, for each member: the shadow 1 - G1 of the facets of slope t (`integral`) or

@@ -8,7 +8,8 @@
 #include "base/parallel_ranges.hpp"
 #include "base/processor.hpp"
 #include "base/stopwatch.hpp"
-#include "evaluate/cpu/text.hpp"
+#include "evaluate/text/profile.hpp"
+#include "evaluate/text/text.hpp"
 #include "plan/beam.hpp"
 
 namespace dolp {
@@ -44,6 +45,51 @@ std::vector<std::size_t> shapes_of(const KernelData& data, const std::vector<std
   return shapes;
 }
 
+/// Moments entry by entry.
+std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData& data, KernelText& text,
+                                double unit_roundoff, const Progress& progress) {
+  const std::vector<std::size_t> entries = wanted_entries(request);
+  const std::vector<std::size_t> shapes = shapes_of(data, entries);
+  parallel_for(
+      shapes.size(), [&](std::size_t i) { text.build_masking_table(shapes[i]); }, nullptr);
+  std::vector<Moments> moments(request.size());
+  const auto one = [&](std::size_t i) {
+    const MomentsEntry entry = data[entries[i]];
+    moments[entries[i]] = moments_from_kernel(text.moments(entry), data, entry, unit_roundoff);
+  };
+  parallel_for(entries.size(), one, progress);
+  return moments;
+}
+
+/// The same from profiles, direction by direction.
+std::vector<Moments> by_profiles(const MomentsRequest& request, const KernelData& data, KernelText& text,
+                                 double unit_roundoff, const Progress& progress) {
+  const Profiles profiles(data);
+  std::vector<Moments> moments(request.size());
+  const auto one = [&](std::size_t direction) {
+    for (ProfileEntries& entries : profile_entries(request, data, direction, direction + 1)) {
+      const Profile profile = profiles.plan(std::move(entries));
+      std::vector<kernel::SlopeNode> slopes;
+      profiles.append(profile, slopes);
+      std::vector<kernel::AzimuthNode> samples;
+      samples.reserve(slopes.size());
+      for (const kernel::SlopeNode& slope : slopes) samples.push_back(text.azimuths(slope));
+      const ProfileEntries& own = profile.entries;
+      const auto store = [&](std::uint32_t shape, const kernel::MomentsNode& node) {
+        moments[data.entry_of(own.direction, own.index, shape)] =
+            moments_from_kernel(node, data, {own.theta, shape, own.index}, unit_roundoff);
+      };
+      profiles.integrate(profile, samples, store);
+    }
+  };
+  const std::size_t wanted = request.wanted_count();
+  const Progress of_entries = [&](std::size_t done, std::size_t all) {
+    return !progress || progress(wanted * done / all, wanted);
+  };
+  parallel_for(data.directions, one, of_entries);
+  return moments;
+}
+
 }  // namespace
 
 bool CpuEvaluator::in_double(Precision requested) const {
@@ -63,19 +109,9 @@ std::vector<Moments> CpuEvaluator::evaluate(const MomentsRequest& request, const
   const bool is_double = in_double(request.precision);
   const std::unique_ptr<KernelText> text = make_text(data, is_double);
   const double unit_roundoff = unit_roundoff_of(is_double);
-  const std::vector<std::size_t> entries = wanted_entries(request);
-  if (data.needs_masking_table()) {
-    const std::vector<std::size_t> shapes = shapes_of(data, entries);
-    parallel_for(
-        shapes.size(), [&](std::size_t i) { text->build_masking_table(shapes[i]); }, nullptr);
-  }
-  std::vector<Moments> moments(request.size());
-  const auto one = [&](std::size_t i) {
-    const MomentsEntry entry = data[entries[i]];
-    moments[entries[i]] = moments_from_kernel(text->moments(entry), data, entry, unit_roundoff);
-  };
-  parallel_for(entries.size(), one, progress);
-
+  const std::vector<Moments> moments = has_profiles(request)
+                                           ? by_profiles(request, data, *text, unit_roundoff, progress)
+                                           : by_entries(request, data, *text, unit_roundoff, progress);
   for (const Moments& entry : moments) report_.evaluations += entry.evaluations;
   note(is_double, seconds_since(start));
   return moments;

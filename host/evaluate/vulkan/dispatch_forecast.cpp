@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "evaluate/vulkan/kernels.hpp"
+#include "evaluate/vulkan/profile_run.hpp"
 #include "evaluate/vulkan/tiles.hpp"
 #include "plan/beam.hpp"
 #include "plan/rows.hpp"
@@ -23,12 +24,34 @@ std::uint64_t node_bytes(const vulkan::Packing& packing, const KernelData& data)
   return data.rule_nodes.size() * packing.node_bytes<std::array<double, 2>>();
 }
 
+DispatchForecast profile_forecast(const MomentsRequest& request, const vulkan::Packing& packing,
+                                  const DeviceDescription& device, const VulkanOptions& options) {
+  const KernelData data = kernel_data(request);
+  const Profiles profiles(data);
+  const std::size_t at_once = vulkan::batch_directions(request, data);
+  const std::uint32_t slopes = vulkan::profile_tile_size(tile_limits(device, options.max_tile_invocations, 1), packing);
+  DispatchForecast forecast{.tile_invocations = slopes};
+  for (std::size_t first = 0; first < data.directions; first += at_once) {
+    const vulkan::ProfileBatch batch =
+        vulkan::profile_batch(request, data, profiles, first, std::min(first + at_once, data.directions));
+    forecast.dispatches += (batch.in_lockstep.size() + slopes - 1) / slopes;
+    forecast.rows += batch.profiles.size();
+    forecast.slopes += batch.slopes.size();
+  }
+  forecast.device_bytes =
+      slopes * (packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::AzimuthNode>() +
+                packing.node_bytes<kernel::ThetaNode>() + packing.node_bytes<kernel::IndexNode>()) +
+      node_bytes(packing, data);
+  return forecast;
+}
+
 }  // namespace
 
 DispatchForecast dispatch_forecast(const MomentsRequest& request, const DeviceDescription& device,
                                    const VulkanOptions& options) {
   if (request.wanted_count() == 0) return {};
   const vulkan::Packing packing(request.precision == Precision::kDouble);
+  if (has_profiles(request)) return profile_forecast(request, packing, device, options);
   const KernelData data = kernel_data(request);
   const Rows rows = rows_of(request, data);
   const vulkan::TileCosts costs = vulkan::tile_costs(packing, rows.width);
@@ -43,7 +66,7 @@ DispatchForecast dispatch_forecast(const MomentsRequest& request, const DeviceDe
   for (const vulkan::Block& block : vulkan::blocks_of(rows, sizes.shapes)) {
     const std::size_t pieces = pieces_of(rows, data, block.first_row, block.row_count).size();
     forecast.dispatches += (pieces + sizes.invocations - 1) / sizes.invocations;
-    forecast.dispatches += data.needs_masking_table() ? 1 : 0;
+    ++forecast.dispatches;  // of the masking tables
   }
   forecast.device_bytes =
       sizes.invocations * costs.invocation_bytes + sizes.shapes * costs.shape_bytes + node_bytes(packing, data);

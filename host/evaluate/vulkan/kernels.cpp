@@ -1,5 +1,7 @@
 #include "evaluate/vulkan/kernels.hpp"
 
+#include <algorithm>
+
 #include "evaluate/vulkan/result.hpp"
 #include "shaders/spirv.hpp"
 
@@ -12,6 +14,7 @@ std::span<const std::uint32_t> module_of(const KernelVariant& variant, bool floa
     return float64 ? spirv::masking_table_double : spirv::masking_table_float;
   }
   if (variant.entry == EntryPoint::kMueller) return float64 ? spirv::mueller_double : spirv::mueller_float;
+  if (variant.entry == EntryPoint::kSlopes) return float64 ? spirv::slopes_double : spirv::slopes_float;
   switch (variant.width) {
     case 4:
       return float64 ? spirv::moments_row4_double : spirv::moments_row4_float;
@@ -31,9 +34,17 @@ KernelVariant moments_variant(const KernelData& data, std::uint32_t width) {
           .distribution = data.distribution,
           .masking = data.masking,
           .has_total_reflection = data.has_total_reflection,
-          .is_multiple = data.scattering == Scattering::kMultiple,
           .has_direct = data.has_direct,
           .width = width};
+}
+
+KernelVariant slopes_variant(const KernelData& data) {
+  return {.entry = EntryPoint::kSlopes,
+          .distribution = data.distribution,
+          .masking = data.masking,
+          .has_total_reflection = data.has_total_reflection,
+          .is_multiple = data.scattering == Scattering::kMultiple,
+          .has_direct = data.has_direct};
 }
 
 KernelVariant masking_table_variant(const KernelData& data) {
@@ -88,21 +99,20 @@ void Kernels::create_descriptor_set() {
   check(vkAllocateDescriptorSets(device_.get(), &info, &set_), "allocating a descriptor set");
 }
 
-void Kernels::bind(const std::array<VkBuffer, kBindingCount>& buffers) {
+void Kernels::bind(std::array<VkBuffer, kBindingCount> buffers) {
+  const VkBuffer any = *std::ranges::find_if(buffers, [](VkBuffer buffer) { return buffer != VK_NULL_HANDLE; });
   std::array<VkDescriptorBufferInfo, kBindingCount> infos{};
   std::array<VkWriteDescriptorSet, kBindingCount> writes{};
-  std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < kBindingCount; ++i) {
-    if (buffers[i] == VK_NULL_HANDLE) continue;
-    infos[i] = {.buffer = buffers[i], .offset = 0, .range = VK_WHOLE_SIZE};
-    writes[count++] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                       .dstSet = set_,
-                       .dstBinding = i,
-                       .descriptorCount = 1,
-                       .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                       .pBufferInfo = &infos[i]};
+    infos[i] = {.buffer = buffers[i] == VK_NULL_HANDLE ? any : buffers[i], .offset = 0, .range = VK_WHOLE_SIZE};
+    writes[i] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                 .dstSet = set_,
+                 .dstBinding = i,
+                 .descriptorCount = 1,
+                 .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                 .pBufferInfo = &infos[i]};
   }
-  vkUpdateDescriptorSets(device_.get(), count, writes.data(), 0, nullptr);
+  vkUpdateDescriptorSets(device_.get(), kBindingCount, writes.data(), 0, nullptr);
 }
 
 VkPipeline Kernels::pipeline(const KernelVariant& variant) {

@@ -22,7 +22,7 @@ constexpr std::uint32_t kPushConstantCount = 4;
 constexpr std::uint32_t kLocalSize = 64;
 
 /// The entry points of shaders/*.comp.
-enum class EntryPoint { kMoments, kMaskingTable, kMueller };
+enum class EntryPoint { kMoments, kSlopes, kMaskingTable, kMueller };
 
 /// What a pipeline is compiled for: the specialization constants of interface.glsl, and the width of a row.
 struct KernelVariant {
@@ -38,6 +38,7 @@ struct KernelVariant {
 
 /// The variants that a request's data wants.
 KernelVariant moments_variant(const KernelData& data, std::uint32_t width);
+KernelVariant slopes_variant(const KernelData& data);
 KernelVariant masking_table_variant(const KernelData& data);
 
 /// Creates pipelines on demand, one for each variant; any thread may ask for one.
@@ -45,9 +46,9 @@ class Kernels {
  public:
   Kernels(const Device& device, bool float64);
 
-  /// Binds one storage buffer to each binding of interface.glsl, whole; a null handle leaves a binding that the
-  /// pipelines to run do not use.
-  void bind(const std::array<VkBuffer, kBindingCount>& buffers);
+  /// Binds one storage buffer to each binding of interface.glsl, whole. A binding without one, which the pipelines to
+  /// run do not read, gets any of the others, so that none keeps a buffer that is gone.
+  void bind(std::array<VkBuffer, kBindingCount> buffers);
 
   VkPipeline pipeline(const KernelVariant& variant);
   VkPipelineLayout layout() const { return layout_.get(); }

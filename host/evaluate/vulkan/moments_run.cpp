@@ -47,14 +47,13 @@ void MomentsRun::create_buffers() {
   const bool staged = context_.staged_uploads;
   const std::size_t thetas = std::min<std::size_t>(sizes_.invocations, data_.thetas.size());
   const std::size_t indices = std::min<std::size_t>(sizes_.invocations, data_.indices.size());
-  const std::size_t tables = data_.needs_masking_table() ? sizes_.shapes : 0;
   theta_buffer_.emplace(device, thetas * packing.node_bytes<kernel::ThetaNode>(), staged);
   shape_buffer_.emplace(device, sizes_.shapes * packing.node_bytes<kernel::ShapeNode>(), staged);
   index_buffer_.emplace(device, indices * packing.node_bytes<kernel::IndexNode>(), staged);
   task_buffer_.emplace(device, sizes_.invocations * sizeof(TaskWords), staged);
   rule_buffer_.emplace(device, packing.node_bytes<kernel::RuleNode>(), staged);
   rule_node_buffer_.emplace(device, data_.rule_nodes.size() * packing.node_bytes<RulePoint>(), staged);
-  masking_buffer_.emplace(device, tables * packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
+  masking_buffer_.emplace(device, sizes_.shapes * packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
                           MemoryUse::kDeviceOnly);
   moments_buffer_.emplace(device, sizes_.invocations * rows_.width * packing.node_bytes<kernel::MomentsNode>(),
                           MemoryUse::kReadback);
@@ -72,12 +71,9 @@ void MomentsRun::create_buffers() {
 }
 
 void MomentsRun::create_pipelines() {
-  std::future<void> tables;
-  if (data_.needs_masking_table()) {
-    tables = std::async(std::launch::async, [&] { context_.kernels.pipeline(masking_table_variant(data_)); });
-  }
+  auto tables = std::async(std::launch::async, [&] { context_.kernels.pipeline(masking_table_variant(data_)); });
   context_.kernels.pipeline(moments_variant(data_, rows_.width));
-  if (tables.valid()) tables.get();
+  tables.get();
 }
 
 std::optional<std::vector<Moments>> MomentsRun::compute(const Progress& progress) {
@@ -117,12 +113,10 @@ void MomentsRun::start_block(const Block& block) {
   context_.packing.append(data_.rule, scratch_);
   rule_buffer_->write(scratch_, stream);
   stream.barrier(Barrier::kUploadToKernel);
-  if (data_.needs_masking_table()) {
-    stream.dispatch(context_.kernels, context_.kernels.pipeline(masking_table_variant(data_)), 0, block.shape_count,
-                    data_.rule_order);
-    stream.barrier(Barrier::kKernelToKernel);
-    ++cost_.dispatches;
-  }
+  stream.dispatch(context_.kernels, context_.kernels.pipeline(masking_table_variant(data_)), 0, block.shape_count,
+                  data_.rule_order);
+  stream.barrier(Barrier::kKernelToKernel);
+  ++cost_.dispatches;
   cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
 }
 

@@ -38,6 +38,14 @@ TileCosts scattering_tile_costs(const Packing& packing) {
           .shape_bytes = 1};
 }
 
+std::uint32_t profile_tile_size(const TileLimits& limits, const Packing& packing) {
+  const TileCosts costs{
+      .invocation_bytes = packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::ThetaNode>() +
+                          packing.node_bytes<kernel::IndexNode>() + packing.node_bytes<kernel::AzimuthNode>(),
+      .shape_bytes = 1};
+  return tile_sizes(limits, costs).invocations;
+}
+
 std::vector<Block> blocks_of(const Rows& rows, std::uint32_t block_shapes) {
   std::vector<Block> blocks;
   std::uint32_t last_chunk = 0;

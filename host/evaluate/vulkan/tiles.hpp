@@ -41,6 +41,9 @@ TileCosts tile_costs(const Packing& packing, std::uint32_t width);
 /// The same of the pBRDFs, whose entries bring their own shapes.
 TileCosts scattering_tile_costs(const Packing& packing);
 
+/// Slopes of profiles in a dispatch, at least one.
+std::uint32_t profile_tile_size(const TileLimits& limits, const Packing& packing);
+
 /// Chunks of shapes whose masking tables are bound together, and the rows that need them.
 struct Block {
   std::uint32_t first_shape = 0;

@@ -8,6 +8,7 @@
 #include "base/stopwatch.hpp"
 #include "evaluate/vulkan/context.hpp"
 #include "evaluate/vulkan/moments_run.hpp"
+#include "evaluate/vulkan/profile_run.hpp"
 #include "evaluate/vulkan/result.hpp"
 #include "evaluate/vulkan/scattering_run.hpp"
 
@@ -66,10 +67,14 @@ class VulkanEvaluator::Impl {
 
   /// Computes a request and adds what it cost to `report`. After a DeviceTimeout this object must not be destroyed.
   std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
-    run_.emplace(context_for(request.precision), request, options_.max_tile_invocations, options_.max_block_shapes);
-    const Clock::time_point start = Clock::now();
-    run_->create_pipelines();
-    report.setup_s += seconds_since(start);
+    const vulkan::RunContext context = context_for(request.precision);
+    if (has_profiles(request)) {
+      profile_run_.emplace(context, request, options_.max_tile_invocations);
+      prepare_pipelines(*profile_run_, report);
+      return finish(profile_run_, profile_run_->compute(progress), request.precision, report);
+    }
+    run_.emplace(context, request, options_.max_tile_invocations, options_.max_block_shapes);
+    prepare_pipelines(*run_, report);
     report.row_width = run_->row_width();
     return finish(run_, run_->compute(progress), request.precision, report);
   }
@@ -96,6 +101,13 @@ class VulkanEvaluator::Impl {
             .packing = vulkan::Packing(in_double(requested)),
             .staged_uploads = options_.staged_uploads,
             .tile_timeout_s = options_.tile_timeout_s};
+  }
+
+  template <class Run>
+  static void prepare_pipelines(Run& run, EvaluationReport& report) {
+    const Clock::time_point start = Clock::now();
+    run.create_pipelines();
+    report.setup_s += seconds_since(start);
   }
 
   /// Ends a run: its cost, its buffers, and what the validation layer had to say.
@@ -130,6 +142,7 @@ class VulkanEvaluator::Impl {
   vulkan::CommandStream stream_;
   // Members, so that their buffers outlive a submission that never ends.
   std::optional<vulkan::MomentsRun> run_;
+  std::optional<vulkan::ProfileRun> profile_run_;
   std::optional<vulkan::ScatteringRun> scattering_run_;
 };
 

@@ -9,7 +9,7 @@ using real2 = glm::vec2;
 using real4 = glm::vec4;
 }  // namespace dolp::text_float
 
-#include "evaluate/cpu/text_body.hpp"
+#include "evaluate/text/text_body.hpp"
 
 namespace dolp {
 

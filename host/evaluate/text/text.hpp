@@ -17,6 +17,9 @@ class KernelText {
   virtual void build_masking_table(std::size_t shape) = 0;
   virtual kernel::MomentsNode moments(const MomentsEntry& entry) = 0;
 
+  /// The sums over the azimuths at a slope.
+  virtual kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope) = 0;
+
   /// f cos(theta_i) cos(theta_r) for k_s = 1 over the beam's power of two, in 1/sr; of the data it needs the model and
   /// the rule nodes.
   virtual kernel::MuellerNode mueller(const kernel::BeamNode& beam) = 0;

@@ -10,7 +10,7 @@ using real2 = glm::dvec2;
 using real4 = glm::dvec4;
 }  // namespace dolp::text_double
 
-#include "evaluate/cpu/text_body.hpp"
+#include "evaluate/text/text_body.hpp"
 
 namespace dolp {
 

@@ -1,0 +1,303 @@
+#include "evaluate/text/profile.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#define DOLP_TEXT_NAMESPACE profile_text
+#define DOLP_DOUBLE
+
+namespace dolp::profile_text {
+using real = double;
+using real2 = glm::dvec2;
+using real4 = glm::dvec4;
+}  // namespace dolp::profile_text
+
+#include "evaluate/text/text_body.hpp"
+
+namespace dolp {
+
+using profile_text::Text;
+
+namespace {
+
+// Pieces of a profile for distributions of many widths end at slopes that are so far apart, in e-folds.
+constexpr double kWidthStep = 1.3;
+// Of many widths only some so far apart are asked how many nodes they want.
+constexpr double kAskedStep = 0.4;
+
+// -ln of a share of the facets that is none.
+constexpr double kNoFacets = 200.0;
+
+// An end of a piece of a profile.
+struct End {
+  double slope = 0.0;
+  std::uint32_t of_direction = 0;  // breakpoint at or before it
+  bool is_own = false;             // it is that breakpoint
+};
+
+// What the weights of a profile's slopes are made of, for all shapes of one width.
+struct SlopeWeights {
+  double m = 0.0;
+  Eigen::ArrayXd exponent;  // common_exponent of slope.glsl
+  Eigen::ArrayXd common;    // what no tail changes, but for a factor
+};
+
+// Shapes of which every other one of the profile is a mean: of each width the heaviest and the lightest tail.
+std::vector<kernel::ShapeNode> corners_of(const KernelData& data, std::span<const std::uint32_t> shapes) {
+  std::vector<kernel::ShapeNode> sorted;
+  for (const std::uint32_t shape : shapes) sorted.push_back(data.shapes[shape]);
+  std::ranges::sort(sorted, [](const kernel::ShapeNode& a, const kernel::ShapeNode& b) {
+    return a.m != b.m ? a.m < b.m : a.q_minus_1 < b.q_minus_1;
+  });
+  std::vector<kernel::ShapeNode> corners;
+  const auto end_of_width = [&](std::size_t i) {
+    while (i < sorted.size() && sorted[i].m == corners.back().m) ++i;
+    return i;
+  };
+  for (std::size_t i = 0; i < sorted.size();) {
+    const bool is_last = sorted[i].m == sorted.back().m;
+    const bool is_far = corners.empty() || sorted[i].m > corners.back().m * std::exp(kAskedStep);
+    if (!is_far && !is_last) {
+      ++i;
+      continue;
+    }
+    corners.push_back(sorted[i]);
+    i = end_of_width(i);
+    if (sorted[i - 1].q_minus_1 > corners.back().q_minus_1) corners.push_back(sorted[i - 1]);
+  }
+  return corners;
+}
+
+// Gives all corners the scale and cut that the hardest needs.
+void unite(std::span<kernel::ShapeNode> corners) {
+  double scale = corners.front().scale, cut = 0.0;
+  for (const kernel::ShapeNode& corner : corners) {
+    scale = std::min(scale, corner.scale);
+    cut = std::max(cut, corner.cut);
+  }
+  for (kernel::ShapeNode& corner : corners) {
+    corner.scale = scale;
+    corner.cut = cut;
+  }
+}
+
+}  // namespace
+
+bool has_profiles(const MomentsRequest& request) {
+  return request.masking == Masking::kNone || request.masking == Masking::kVCavity;
+}
+
+struct Profiles::Impl {
+  const KernelData& data;
+  Text text;
+  Text::RuleNode rule;
+
+  explicit Impl(const KernelData& of) : data(of), text(Text::of(of)), rule(std::bit_cast<Text::RuleNode>(of.rule)) {}
+
+  // The breakpoints of the direction below the cut, the cut's own, and one here and there among the shapes' widths.
+  std::vector<End> ends_of(std::uint32_t theta, std::span<const kernel::ShapeNode> corners) {
+    const kernel::ThetaNode& node = data.thetas[theta];
+    const double cut = corners.front().cut;
+    std::vector<End> ends;
+    for (std::uint32_t i = 0; i <= data.pieces[theta].count && (i == 0 || node.end[i - 1] < cut); ++i) {
+      ends.push_back({node.end[i], i, true});
+    }
+    const double last = std::min(ends.back().slope, cut);
+    const double narrowest = corners.front().scale;
+    const double widest = corners.back().m;
+    const auto steps = static_cast<int>(std::log(widest / narrowest) / kWidthStep);
+    for (int i = 0; i < steps + (steps > 0 ? 1 : 0); ++i) {
+      const double slope = narrowest * std::pow(widest / narrowest, (i + 0.5) / (steps + 1.0));
+      if (slope >= last) break;
+      const auto after = std::ranges::find_if(ends, [&](const End& end) { return end.slope > slope; });
+      ends.insert(after, {slope, (after - 1)->of_direction, false});
+    }
+    return ends;
+  }
+
+  Text::Task task_of(std::uint32_t theta, std::span<const End> ends, std::size_t piece) {
+    const auto has_root = [&](const End& end, unsigned bit) {
+      return end.is_own && (data.pieces[theta].roots[end.of_direction] & bit) != 0;
+    };
+    Text::Task task{};
+    const std::size_t last = ends.size() - 1;
+    task.members = 1;
+    task.piece = static_cast<int>(piece);
+    task.root_at_start = has_root(ends[piece], kRootAbove);
+    task.root_at_end = has_root(ends[piece + 1], kRootBelow);
+    task.root_before_start = piece > 0 && has_root(ends[piece - 1], kRootAbove);
+    task.root_after_end = piece + 2 <= last && has_root(ends[piece + 2], kRootBelow);
+    task.before = ends[piece > 0 ? piece - 1 : 0].slope;
+    task.start = ends[piece].slope;
+    task.end = ends[piece + 1].slope;
+    task.after = ends[std::min(piece + 2, last)].slope;
+    task.last = ends[last].slope;
+    return task;
+  }
+
+  // The piece as the hardest corner wants it, and how many digits each wants.
+  Text::Piece hardest_piece(const Text::ThetaNode& theta, const Text::IndexNode& index,
+                            std::span<const kernel::ShapeNode> corners, const Text::Task& task,
+                            std::vector<double>& digits) {
+    Text::Piece hardest{};
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      Text::Row row{};
+      row.shape[0] = std::bit_cast<Text::ShapeNode>(corners[i]);
+      const Text::Piece own = text.make_piece(rule, theta, row, index, task);
+      digits[i] = own.digits;
+      if (own.order > hardest.order) hardest = own;
+    }
+    return hardest;
+  }
+
+  void add_rule(Profile& profile, const Text::ThetaNode& theta, std::span<const kernel::ShapeNode> corners,
+                const Text::Piece& piece, const std::vector<double>& digits, int order) {
+    const int first = text.rule_offset(Text::kSectionGauss, order);
+    for (int i = 0; i < order; ++i) {
+      const auto node = text.rule_node(first + i);
+      const auto place = text.place_on_piece(piece, node.x);
+      const auto hyperbolic = text.sinh_cosh(piece.start + piece.extent * place.x);
+      const double scale = corners.front().scale;
+      ProfileSlope slope;
+      slope.t = scale * hyperbolic.x;
+      slope.dt = 2.0 * node.y * scale * hyperbolic.y * piece.extent * place.y;
+      for (std::size_t j = 0; j < corners.size(); ++j) {
+        if (digits[j] <= slope.digits) continue;  // it wants no more than that
+        const auto shape = std::bit_cast<Text::ShapeNode>(corners[j]);
+        const double u = slope.t / shape.m;
+        const double mass = Text::kPi * text.slope_density(shape, u, text.common_exponent(u)) * slope.dt / shape.m;
+        slope.digits =
+            std::max(slope.digits, text.digits_of_slope(rule, theta, shape, digits[j], order, slope.t, mass));
+      }
+      profile.slopes.push_back(slope);
+    }
+  }
+
+  SlopeWeights weights_of(const Profile& profile, Text::ShapeNode shape) {
+    shape.q_minus_1 = 1.0;  // so that they do not depend on which shape asks
+    const auto count = static_cast<Eigen::Index>(profile.slopes.size());
+    SlopeWeights weights{shape.m, Eigen::ArrayXd(count), Eigen::ArrayXd(count)};
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const ProfileSlope& slope = profile.slopes[static_cast<std::size_t>(i)];
+      const double u = slope.t / shape.m;
+      weights.exponent[i] = text.common_exponent(u);
+      weights.common[i] = text.slope_density(shape, u, 0.0) * slope.dt;
+    }
+    return weights;
+  }
+
+  // What a rule makes of a piece that begins where the exponent is `from` and has `share` of the facets. Their share is
+  // known, so that the error which the density alone makes cancels, and with it every factor of the weights.
+  kernel::AzimuthNode sum_of(std::uint32_t first, std::uint32_t count, const SlopeWeights& weights, double factor,
+                             double from, double share, std::span<const kernel::AzimuthNode> samples) {
+    using Samples = Eigen::Matrix<double, sizeof(kernel::AzimuthNode) / sizeof(double), Eigen::Dynamic>;
+    const Eigen::VectorXd own =
+        weights.common.segment(first, count) * (factor * (from - weights.exponent.segment(first, count))).exp();
+    const Eigen::Map<const Samples> all(&samples[first].r_i, Samples::RowsAtCompileTime, count);
+    std::array<double, Samples::RowsAtCompileTime> sums{};
+    const double mass = own.sum();
+    Eigen::Map<Eigen::Matrix<double, Samples::RowsAtCompileTime, 1>>(sums.data()).noalias() =
+        all.lazyProduct(own) * (mass > 0.0 ? share / (Text::kPi * mass) : 0.0);
+    return std::bit_cast<kernel::AzimuthNode>(sums);
+  }
+
+  void add_piece_of(const ProfilePiece& piece, const Text::ShapeNode& shape, const SlopeWeights& weights,
+                    std::span<const kernel::AzimuthNode> samples, kernel::MomentsNode& moments) {
+    const double factor = text.exponent_factor(shape);
+    const double from = text.common_exponent(piece.start / shape.m);
+    if (factor * from > kNoFacets) return;
+    const double to = text.common_exponent(piece.end / shape.m);
+    const double share = -std::exp(-factor * from) * std::expm1(factor * (from - to));
+    const auto fine = sum_of(piece.first, piece.fine, weights, factor, from, share, samples);
+    const auto coarse = sum_of(piece.first + piece.fine, piece.coarse, weights, factor, from, share, samples);
+    const auto apart = [](double a, double b) { return std::abs(a - b); };
+    const bool is_steep = piece.end > slope_with_bounces(DOLP_MOST_BOUNCES);
+    add_piece(moments,
+              {fine.r_i, fine.r_q, fine.albedo, fine.deficit, fine.behind, is_steep ? fine.r_i : 0.0, fine.direct_i,
+               fine.direct_q, std::max(apart(fine.r_i, coarse.r_i), apart(fine.r_q, coarse.r_q)),
+               apart(fine.albedo, coarse.albedo), apart(fine.deficit, coarse.deficit),
+               std::max(apart(fine.direct_i, coarse.direct_i), apart(fine.direct_q, coarse.direct_q)), 0.0});
+  }
+};
+
+Profiles::Profiles(const KernelData& data) : impl_(std::make_unique<Impl>(data)) {}
+Profiles::~Profiles() = default;
+
+Profile Profiles::plan(ProfileEntries entries) const {
+  std::vector<kernel::ShapeNode> corners = corners_of(impl_->data, entries.shapes);
+  unite(corners);
+  const std::vector<End> ends = impl_->ends_of(entries.theta, corners);
+  const auto theta = std::bit_cast<Text::ThetaNode>(impl_->data.thetas[entries.theta]);
+  const auto index = std::bit_cast<Text::IndexNode>(impl_->data.indices[entries.index]);
+  Profile profile;
+  profile.cut = std::min(corners.front().cut, ends.back().slope);
+  std::vector<double> digits(corners.size());
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    const Text::Piece piece =
+        impl_->hardest_piece(theta, index, corners, impl_->task_of(entries.theta, ends, i), digits);
+    const int coarse = std::min(impl_->text.coarse_order(piece.order), impl_->data.rule_order);
+    profile.pieces.push_back(
+        {ends[i].slope, std::min(ends[i + 1].slope, profile.cut), static_cast<std::uint32_t>(profile.slopes.size()),
+         static_cast<std::uint32_t>(piece.order), static_cast<std::uint32_t>(coarse), ends[i].of_direction});
+    impl_->add_rule(profile, theta, corners, piece, digits, piece.order);
+    impl_->add_rule(profile, theta, corners, piece, digits, coarse);
+  }
+  profile.entries = std::move(entries);
+  return profile;
+}
+
+void Profiles::append(const Profile& profile, std::vector<kernel::SlopeNode>& nodes) const {
+  const Pieces& pieces = impl_->data.pieces[profile.entries.theta];
+  for (const ProfilePiece& piece : profile.pieces) {
+    for (std::uint32_t i = 0; i < piece.fine + piece.coarse; ++i) {
+      const ProfileSlope& slope = profile.slopes[piece.first + i];
+      nodes.push_back({slope.t, slope.digits, static_cast<double>(profile.entries.theta),
+                       static_cast<double>(profile.entries.index),
+                       static_cast<double>(pieces.most_nodes[piece.of_direction]), i < piece.fine ? 0.0 : 1.0});
+    }
+  }
+}
+
+void Profiles::integrate(const Profile& profile, std::span<const kernel::AzimuthNode> samples,
+                         const Store& store) const {
+  const std::vector<std::uint32_t>& shapes = profile.entries.shapes;
+  const double cosine = impl_->data.thetas[profile.entries.theta].c;
+  double evaluations = 0.0;
+  for (const kernel::AzimuthNode& sample : samples) evaluations += sample.evaluations;
+  SlopeWeights weights;
+  for (const std::uint32_t shape : shapes) {
+    const auto node = std::bit_cast<Text::ShapeNode>(impl_->data.shapes[shape]);
+    if (node.m != weights.m) weights = impl_->weights_of(profile, node);
+    kernel::MomentsNode moments{};
+    for (const ProfilePiece& piece : profile.pieces) impl_->add_piece_of(piece, node, weights, samples, moments);
+    moments.deficit += cosine * impl_->text.slope_tail(node, profile.cut);
+    moments.evaluations = evaluations / static_cast<double>(shapes.size());
+    store(shape, moments);
+  }
+}
+
+std::vector<ProfileEntries> profile_entries(const MomentsRequest& request, const KernelData& data, std::size_t first,
+                                            std::size_t last) {
+  std::vector<ProfileEntries> profiles;
+  for (auto direction = static_cast<std::uint32_t>(first); direction < last; ++direction) {
+    if (!data.is_grid) {
+      profiles.push_back({direction, direction, direction, {data.shape_of[direction]}});
+      continue;
+    }
+    for (std::uint32_t index = 0; index < data.indices.size(); ++index) {
+      ProfileEntries own{direction, data.theta_of(direction, index, 0), index, {}};
+      for (std::uint32_t shape = 0; shape < data.shapes.size(); ++shape) {
+        if (request.is_wanted(data.entry_of(direction, index, shape))) own.shapes.push_back(shape);
+      }
+      if (!own.shapes.empty()) profiles.push_back(std::move(own));
+    }
+  }
+  return profiles;
+}
+
+}  // namespace dolp

@@ -1,0 +1,195 @@
+#include "evaluate/vulkan/profile_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+
+#include "base/parallel_ranges.hpp"
+#include "base/stopwatch.hpp"
+
+namespace dolp::vulkan {
+namespace {
+
+// Bounds the memory of a batch: entries of which the profiles are at hand at a time, and their directions.
+constexpr std::size_t kEntriesAtOnce = 1U << 20U;
+constexpr std::size_t kDirectionsAtOnce = 1024;
+
+// The samples in the order for the device: those that run in lockstep have the same bounds of their loops. The gaps are
+// filled with the sample before, once more.
+std::vector<std::uint32_t> in_lockstep(const ProfileBatch& batch, const KernelData& data) {
+  std::map<std::uint16_t, std::vector<std::uint32_t>> by_bound;
+  for (std::size_t i = 0; i < batch.profiles.size(); ++i) {
+    const Profile& profile = batch.profiles[i];
+    const Pieces& pieces = data.pieces[profile.entries.theta];
+    for (const ProfilePiece& piece : profile.pieces) {
+      std::vector<std::uint32_t>& alike = by_bound[pieces.lockstep[piece.of_direction]];
+      for (std::uint32_t k = piece.first; k < piece.first + piece.fine + piece.coarse; ++k) {
+        alike.push_back(static_cast<std::uint32_t>(batch.first[i] + k));
+      }
+    }
+  }
+  std::vector<std::uint32_t> order;
+  for (const auto& [bound, alike] : by_bound) {
+    order.insert(order.end(), alike.begin(), alike.end());
+    while (order.size() % kLockstep != 0) order.push_back(alike.back());
+  }
+  return order;
+}
+
+}  // namespace
+
+std::size_t batch_directions(const MomentsRequest& request, const KernelData& data) {
+  const std::size_t of_direction = std::max<std::size_t>(request.size() / data.directions, 1);
+  return std::clamp<std::size_t>(kEntriesAtOnce / of_direction, 1, kDirectionsAtOnce);
+}
+
+ProfileBatch profile_batch(const MomentsRequest& request, const KernelData& data, const Profiles& profiles,
+                           std::size_t first, std::size_t last) {
+  std::vector<ProfileEntries> entries = profile_entries(request, data, first, last);
+  ProfileBatch batch;
+  batch.profiles.resize(entries.size());
+  parallel_ranges(entries.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) batch.profiles[i] = profiles.plan(std::move(entries[i]));
+  });
+  for (const Profile& profile : batch.profiles) {
+    batch.first.push_back(batch.slopes.size());
+    profiles.append(profile, batch.slopes);
+  }
+  batch.in_lockstep = in_lockstep(batch, data);
+  return batch;
+}
+
+ProfileRun::ProfileRun(const RunContext& context, const MomentsRequest& request, std::uint32_t tile_slopes)
+    : context_(context),
+      request_(request),
+      data_(kernel_data(request)),
+      profiles_(data_),
+      tile_size_(tile_size(tile_slopes)),
+      thetas_(data_.thetas.size()),
+      indices_(request.indices.size()) {
+  create_buffers();
+}
+
+std::uint32_t ProfileRun::tile_size(std::uint32_t tile_slopes) const {
+  const VkPhysicalDeviceLimits& limits = context_.device.limits();
+  const std::uint64_t profiles = std::uint64_t{data_.directions} * (data_.is_grid ? data_.indices.size() : 1);
+  const std::uint64_t most = profiles * DOLP_MAX_PIECES * 2 * static_cast<std::uint64_t>(data_.rule_order);
+  return profile_tile_size({.buffer_bytes = limits.maxStorageBufferRange,
+                            .heap_bytes = context_.device.heap_bytes(),
+                            .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
+                            .tile_invocations = std::min<std::uint64_t>(tile_slopes, most),
+                            .block_shapes = 1},
+                           context_.packing);
+}
+
+void ProfileRun::create_buffers() {
+  const Packing& packing = context_.packing;
+  const Device& device = context_.device;
+  const bool staged = context_.staged_uploads;
+  const std::size_t thetas = std::min<std::size_t>(tile_size_, data_.thetas.size());
+  const std::size_t indices = std::min<std::size_t>(tile_size_, data_.indices.size());
+  theta_buffer_.emplace(device, thetas * packing.node_bytes<kernel::ThetaNode>(), staged);
+  index_buffer_.emplace(device, indices * packing.node_bytes<kernel::IndexNode>(), staged);
+  slope_buffer_.emplace(device, tile_size_ * packing.node_bytes<kernel::SlopeNode>(), staged);
+  rule_buffer_.emplace(device, packing.node_bytes<kernel::RuleNode>(), staged);
+  rule_node_buffer_.emplace(device, data_.rule_nodes.size() * packing.node_bytes<std::array<double, 2>>(), staged);
+  azimuth_buffer_.emplace(device, tile_size_ * packing.node_bytes<kernel::AzimuthNode>(), MemoryUse::kReadback);
+  std::array<VkBuffer, kBindingCount> buffers{};
+  buffers[DOLP_BINDING_THETAS] = theta_buffer_->get();
+  buffers[DOLP_BINDING_INDICES] = index_buffer_->get();
+  buffers[DOLP_BINDING_SLOPES] = slope_buffer_->get();
+  buffers[DOLP_BINDING_RULE] = rule_buffer_->get();
+  buffers[DOLP_BINDING_RULE_NODES] = rule_node_buffer_->get();
+  buffers[DOLP_BINDING_AZIMUTHS] = azimuth_buffer_->get();
+  context_.kernels.bind(buffers);
+}
+
+void ProfileRun::upload_rule() {
+  CommandStream& stream = context_.stream;
+  stream.begin();
+  scratch_.clear();
+  for (const auto& node : data_.rule_nodes) context_.packing.append(node, scratch_);
+  rule_node_buffer_->write(scratch_, stream);
+  scratch_.clear();
+  context_.packing.append(data_.rule, scratch_);
+  rule_buffer_->write(scratch_, stream);
+  stream.barrier(Barrier::kUploadToKernel);
+  cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
+}
+
+std::optional<std::vector<Moments>> ProfileRun::compute(const Progress& progress) {
+  std::vector<Moments> moments(request_.size());
+  const std::size_t wanted = request_.wanted_count();
+  const std::size_t at_once = batch_directions(request_, data_);
+  upload_rule();
+  for (std::size_t first = 0; first < data_.directions; first += at_once) {
+    const std::size_t last = std::min(first + at_once, data_.directions);
+    const ProfileBatch batch = profile_batch(request_, data_, profiles_, first, last);
+    const std::vector<kernel::AzimuthNode> samples = samples_of(batch);
+    const auto start = std::chrono::steady_clock::now();
+    integrate(batch, samples, moments);
+    cost_.kernel_s += seconds_since(start);
+    if (progress && !progress(wanted * last / data_.directions, wanted)) return std::nullopt;
+  }
+  return moments;
+}
+
+std::vector<kernel::AzimuthNode> ProfileRun::samples_of(const ProfileBatch& batch) {
+  std::vector<kernel::AzimuthNode> samples(batch.slopes.size());
+  const std::span<const std::uint32_t> slopes(batch.in_lockstep);
+  for (std::size_t first = 0; first < slopes.size(); first += tile_size_) {
+    run_tile(batch, slopes.subspan(first, std::min<std::size_t>(tile_size_, slopes.size() - first)), samples);
+  }
+  for (const kernel::AzimuthNode& sample : samples) cost_.evaluations += sample.evaluations;
+  return samples;
+}
+
+void ProfileRun::run_tile(const ProfileBatch& batch, std::span<const std::uint32_t> slopes,
+                          std::span<kernel::AzimuthNode> samples) {
+  const Packing& packing = context_.packing;
+  CommandStream& stream = context_.stream;
+  thetas_.clear();
+  indices_.clear();
+  stream.begin();
+  scratch_.clear();
+  for (const std::uint32_t i : slopes) {
+    kernel::SlopeNode node = batch.slopes[i];
+    node.theta = thetas_(static_cast<std::uint32_t>(node.theta));
+    node.index = indices_(static_cast<std::uint32_t>(node.index));
+    packing.append(node, scratch_);
+  }
+  slope_buffer_->write(scratch_, stream);
+  scratch_.clear();
+  for (const std::uint32_t theta : thetas_.used()) packing.append(data_.thetas[theta], scratch_);
+  theta_buffer_->write(scratch_, stream);
+  scratch_.clear();
+  for (const std::uint32_t index : indices_.used()) packing.append(data_.indices[index], scratch_);
+  index_buffer_->write(scratch_, stream);
+  stream.barrier(Barrier::kUploadToKernel);
+  stream.dispatch(context_.kernels, context_.kernels.pipeline(slopes_variant(data_)), 0,
+                  static_cast<std::uint32_t>(slopes.size()), data_.rule_order);
+  stream.barrier(Barrier::kKernelToHost);
+  cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
+  ++cost_.dispatches;
+  scratch_.resize(slopes.size() * packing.node_bytes<kernel::AzimuthNode>());
+  azimuth_buffer_->read(scratch_);
+  for (std::size_t i = 0; i < slopes.size(); ++i) samples[slopes[i]] = packing.read<kernel::AzimuthNode>(scratch_, i);
+}
+
+void ProfileRun::integrate(const ProfileBatch& batch, std::span<const kernel::AzimuthNode> samples,
+                           std::vector<Moments>& moments) const {
+  const double unit_roundoff = context_.packing.unit_roundoff();
+  parallel_ranges(batch.profiles.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Profile& profile = batch.profiles[i];
+      const ProfileEntries& own = profile.entries;
+      const auto store = [&](std::uint32_t shape, const kernel::MomentsNode& node) {
+        moments[data_.entry_of(own.direction, own.index, shape)] =
+            moments_from_kernel(node, data_, {own.theta, shape, own.index}, unit_roundoff);
+      };
+      profiles_.integrate(profile, samples.subspan(batch.first[i], profile.slopes.size()), store);
+    }
+  });
+}
+
+}  // namespace dolp::vulkan

@@ -1,0 +1,68 @@
+// One request on the device by profiles, which serve all slope distributions: some directions at a time.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/progress.hpp"
+#include "evaluate/text/profile.hpp"
+#include "evaluate/vulkan/moments_run.hpp"
+
+namespace dolp::vulkan {
+
+/// Invocations that may run in lockstep, so that each waits for the longest.
+inline constexpr std::uint32_t kLockstep = 16;
+
+/// Profiles that are planned, sampled and integrated together, with what the kernel reads of them.
+struct ProfileBatch {
+  std::vector<Profile> profiles;
+  std::vector<std::size_t> first;          ///< of each profile its first sample
+  std::vector<kernel::SlopeNode> slopes;   ///< in the order of the samples
+  std::vector<std::uint32_t> in_lockstep;  ///< the order for the device, with gaps filled: positions of samples
+};
+
+/// The batch of directions first ... last - 1 of a request.
+ProfileBatch profile_batch(const MomentsRequest& request, const KernelData& data, const Profiles& profiles,
+                           std::size_t first, std::size_t last);
+
+/// Directions of a batch, such that its samples take little memory.
+std::size_t batch_directions(const MomentsRequest& request, const KernelData& data);
+
+/// Owns the buffers of one request and computes it.
+class ProfileRun {
+ public:
+  /// `tile_slopes` bounds the invocations of a dispatch from above.
+  ProfileRun(const RunContext& context, const MomentsRequest& request, std::uint32_t tile_slopes);
+
+  /// Before the computation, so that its time is known apart.
+  void create_pipelines() { context_.kernels.pipeline(slopes_variant(data_)); }
+
+  /// The wanted moments at the places of their entries; nothing when `progress` returned false. Errors: DeviceError.
+  std::optional<std::vector<Moments>> compute(const Progress& progress);
+  const RunCost& cost() const { return cost_; }
+
+ private:
+  std::uint32_t tile_size(std::uint32_t tile_slopes) const;
+  void create_buffers();
+  void upload_rule();
+  std::vector<kernel::AzimuthNode> samples_of(const ProfileBatch& batch);
+  void run_tile(const ProfileBatch& batch, std::span<const std::uint32_t> slopes,
+                std::span<kernel::AzimuthNode> samples);
+  void integrate(const ProfileBatch& batch, std::span<const kernel::AzimuthNode> samples,
+                 std::vector<Moments>& moments) const;
+
+  RunContext context_;
+  const MomentsRequest& request_;
+  KernelData data_;
+  Profiles profiles_;
+  std::uint32_t tile_size_;
+  Renumbering thetas_, indices_;
+  std::vector<std::byte> scratch_;
+  RunCost cost_;
+  std::optional<InputBuffer> theta_buffer_, index_buffer_, slope_buffer_, rule_buffer_, rule_node_buffer_;
+  std::optional<Buffer> azimuth_buffer_;
+};
+
+}  // namespace dolp::vulkan

@@ -1,0 +1,112 @@
+// Sums over the azimuths at one slope: Gauss rules over the smooth arcs.
+
+// One slope of a piece, and what its arcs share.
+struct Slope {
+  real t;
+  real digits;        // wanted of the sum over the azimuths
+  Masked of_theta;
+  bool has_split_line;
+  int most_azimuths;
+  bool is_coarse;
+};
+
+// A sum over azimuths, for each member of a row.
+struct AzimuthSums {
+  real4 member[DOLP_WIDTH];
+  real2 direct;       // what facets emit straight to the viewer, as (I, Q), before smith's masking
+  real behind;        // MomentsNode::behind
+  real evaluations;
+};
+
+AzimuthSums no_azimuths() {
+  AzimuthSums sums;
+  sums.evaluations = real(0.0);
+  sums.behind = real(0.0);
+  sums.direct = real2(real(0.0), real(0.0));
+  for (int g = 0; g < DOLP_WIDTH; ++g) sums.member[g] = real4(real(0.0));
+  return sums;
+}
+
+AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, Arc arc, int zone,
+                     bool leaves, int order) {
+  AzimuthSums sums = no_azimuths();
+  int first_node = rule_offset(arc.section, order);
+  for (int i = 0; i < order; ++i) {
+    Azimuth at = azimuth(arc, place_on_arc(arc, rule_node(first_node + i)));
+    if (kIsMultiple) {
+      sums.member[0] += at.weight * reflected_in_groove(rule, theta, index, slope.t, at.x, at.sin_phi);
+    } else {
+      Facet f = facet(theta, index, slope.t, at.x, at.sin_phi);
+      Masked of_ray = masking_of_ray(row, f.cos_r, slope.t, zone);
+      real seen = leaves ? at.weight : real(0.0);
+      for (int g = 0; g < DOLP_WIDTH; ++g) {
+        Projection part = project(theta, f, zone, slope.of_theta.value[g], of_ray.value[g]);
+        sums.member[g] += seen * reflected(f, part);
+      }
+      if (kHasDirect) sums.direct += at.weight * emitted(theta, f);
+    }
+  }
+  sums.evaluations = real(order);
+  return sums;
+}
+
+// Integral over the azimuths from 0 to pi. Each zone is an arc, or two with the critical line of total reflection
+// between them.
+AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, SplitLines lines) {
+  AzimuthSums sums = no_azimuths();
+  bool is_critical = kTotalReflection && index.critical_cos > real(0.0);
+  real2 last = real2(real(1.0), real(0.0));
+  for (int part = 0; part < (is_critical ? 2 * lines.arcs : lines.arcs); ++part) {
+    int zone = is_critical ? part >> 1 : part;
+    bool is_second = is_critical && (part & 1) == 1;
+    real2 from = last;
+    real2 to = lines.end[zone];
+    if (!is_critical || is_second) last = to;
+    if (is_critical) {
+      real2 middle = clamp_half_angle(lines.critical, from, to);
+      from = is_second ? middle : from;
+      to = is_second ? to : middle;
+    }
+    // Devices that run invocations in lockstep compute both sides of an `if`; a loop of one turn they skip where none
+    // of them needs it. It counts as an iteration, see worst_iterations of host/plan/kernel_data.hpp.
+    for (bool is_due = is_before(from, to); is_due; is_due = false) {
+      Arc arc = zone_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits, from, to, zone);
+      if (is_critical) arc = critical_arc(theta, index, slope.t, slope.digits, from, to, !is_second, arc);
+      real nodes = arc_nodes(rule, theta, row.shape[0], index, slope.has_split_line, slope.t, slope.digits, arc, zone);
+      int order = order_between(nodes, slope.most_azimuths);
+      if (slope.is_coarse) order = coarse_order(order);
+      AzimuthSums more = arc_sums(rule, theta, row, index, slope, arc, zone, zone < lines.leaving, order);
+      for (int g = 0; g < DOLP_WIDTH; ++g) sums.member[g] += more.member[g];
+      sums.direct += more.direct;
+      sums.evaluations += more.evaluations;
+    }
+  }
+  return sums;
+}
+
+// Of all facets of a slope. Those whose ray does not leave lack their projection toward theta, which is negative for
+// those that face away; from a groove every ray leaves.
+AzimuthSums slope_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope) {
+  SplitLines lines = split_lines(rule, theta, index, slope.t, slope.has_split_line, slope.digits);
+  AzimuthSums sums = azimuth_sums(rule, theta, row, index, slope, lines);
+  if (!kIsMultiple) {
+    sums.behind = real(2.0) * theta.s * slope.t * lines.horizon.x * lines.horizon.y;
+    real below = theta.c * real(4.0) * atan_unit(lines.horizon.x / (real(1.0) + lines.horizon.y));
+    for (int g = 0; g < DOLP_WIDTH; ++g) sums.member[g].w += below - sums.behind;
+  }
+  return sums;
+}
+
+// The same as slopes.comp returns it: no masking asks for a shape.
+AzimuthNode azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNode own) {
+  Slope slope;
+  slope.t = own.t;
+  slope.digits = own.digits;
+  slope.of_theta = unmasked();
+  slope.has_split_line = false;
+  slope.most_azimuths = int(own.most_azimuths);
+  slope.is_coarse = own.is_coarse > real(0.5);
+  AzimuthSums sums = slope_sums(rule, theta, no_row(), index, slope);
+  real4 all = sums.member[0];
+  return AzimuthNode(all.x, all.y, all.z, all.w, sums.behind, sums.direct.x, sums.direct.y, sums.evaluations);
+}

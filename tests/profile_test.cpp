@@ -1,0 +1,162 @@
+// Profiles: slopes that serve every slope distribution.
+#include "evaluate/text/profile.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <set>
+
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/vulkan/profile_run.hpp"
+
+namespace dolp {
+namespace {
+
+// Grids whose shapes span decades of sigma and of q - 1, hard directions and indices among them.
+class RandomGrid {
+ public:
+  explicit RandomGrid(unsigned seed) : random_(seed) {}
+
+  MomentsRequest operator()(Masking masking, Scattering scattering, double tolerance) {
+    MomentsRequest request;
+    request.layout = MomentsRequest::Layout::kGrid;
+    request.masking = masking;
+    request.scattering = scattering;
+    request.distribution = share() < 0.3 ? Distribution::kGaussian : Distribution::kCauchy;
+    request.wants_direct = masking == Masking::kVCavity && scattering == Scattering::kSingle && share() < 0.5;
+    request.tolerance = tolerance;
+    request.precision = Precision::kDouble;
+    request.may_interpolate = false;
+    request.theta_deg = {share() < 0.2 ? 0.0 : 90.0 * share(), 90.0 - std::pow(10.0, -1.0 + 1.5 * share())};
+    const double least_sigma = 0.01 * std::exp(5.7 * share());
+    const double sigma_step = std::exp(0.9 * share());
+    const double least_q = 0.06 * std::exp(4.6 * share());
+    const double q_step = std::exp(0.8 * share());
+    for (int i = 0; i < 5; ++i) request.sigma.push_back(least_sigma * std::pow(sigma_step, i));
+    for (int i = 0; i < 4; ++i) request.q.push_back(1.0 + least_q * std::pow(q_step, i));
+    if (request.distribution == Distribution::kGaussian) request.q = {2.0};
+    request.indices = {{1.0 + std::pow(10.0, -1.5 + 2.0 * share()), share() < 0.5 ? 0.0 : share()},
+                       {0.3 + 26.0 * share(), 90.0 * share()}};
+    if (share() < 0.3) request.indices.push_back({0.3 + 0.65 * share(), 0.0});
+    return request;
+  }
+
+ private:
+  double share() { return std::uniform_real_distribution<double>(0.0, 1.0)(random_); }
+  std::mt19937 random_;
+};
+
+constexpr std::pair<Masking, Scattering> kModels[] = {{Masking::kNone, Scattering::kSingle},
+                                                      {Masking::kVCavity, Scattering::kSingle},
+                                                      {Masking::kVCavity, Scattering::kMultiple}};
+
+TEST(Profiles, SharedByManyShapes_StatedErrorsHoldAgainstEveryEntryByItself) {
+  RandomGrid grid(20261123);
+  CpuEvaluator cpu(Precision::kDouble);
+  std::size_t compared = 0;
+  for (const auto& [masking, scattering] : kModels) {
+    for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
+      for (int round = 0; round < 3; ++round) {
+        const MomentsRequest request = grid(masking, scattering, tolerance);
+        const std::vector<Moments> shared = cpu.evaluate(request, {});
+        MomentsRequest alone = request;
+        alone.tolerance = std::min(1e-9, 1e-4 * tolerance);
+        alone.theta_deg.clear();
+        alone.sigma.clear();
+        alone.q.clear();
+        alone.indices.clear();
+        constexpr std::size_t kEvery = 7;
+        for (std::size_t i = 0; i < request.size(); i += kEvery) alone.append(request[i]);
+        const std::vector<Moments> exact = cpu.evaluate(alone, {});
+        for (std::size_t i = 0; i < exact.size(); ++i) {
+          const Moments& own = shared[i * kEvery];
+          for (const auto& [value, error] : kMomentMembers) {
+            if (!(own.*error < 1.0) || std::isnan(own.*value)) continue;  // no bound, or a moment not asked for
+            EXPECT_LE(std::abs(own.*value - exact[i].*value), own.*error + exact[i].*error)
+                << name_of(masking) << ", tolerance " << tolerance << ", entry " << i * kEvery;
+            ++compared;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(compared, 1000U);
+}
+
+TEST(Profiles, DirectionsAndIndices_KeepTheirBitsAlone) {
+  RandomGrid grid(3);
+  CpuEvaluator cpu(Precision::kFloat);
+  for (const auto& [masking, scattering] : kModels) {
+    const MomentsRequest all = grid(masking, scattering, 1e-3);
+    const std::vector<Moments> expected = cpu.evaluate(all, {});
+    for (std::size_t theta = 0; theta < all.theta_deg.size(); ++theta) {
+      for (std::size_t index = 0; index < all.indices.size(); ++index) {
+        MomentsRequest one = all;
+        one.theta_deg = {all.theta_deg[theta]};
+        one.indices = {all.indices[index]};
+        const std::vector<Moments> moments = cpu.evaluate(one, {});
+        for (std::size_t i = 0; i < moments.size(); ++i) {
+          const Moments& other = expected[(theta * all.indices.size() + index) * moments.size() + i];
+          EXPECT_EQ(moments[i].r_i, other.r_i);
+          EXPECT_EQ(moments[i].deficit_error, other.deficit_error);
+        }
+      }
+    }
+  }
+}
+
+// What sharing is for: 400 shapes take a few times the evaluations of one.
+TEST(Profiles, ManyShapes_TakeLittleMoreThanOne) {
+  MomentsRequest request;
+  request.masking = Masking::kVCavity;
+  request.theta_deg = {60.0};
+  request.indices = {{1.5, 0.0}};
+  const auto evaluations = [&](const std::vector<double>& sigma, const std::vector<double>& q) {
+    request.sigma = sigma;
+    request.q = q;
+    const std::vector<Moments> moments = CpuEvaluator(Precision::kDouble).evaluate(request, {});
+    return std::accumulate(moments.begin(), moments.end(), 0.0,
+                           [](double sum, const Moments& own) { return sum + own.evaluations; });
+  };
+  std::vector<double> sigma, q;
+  for (int i = 0; i < 20; ++i) {
+    sigma.push_back(0.05 * std::pow(20.0, i / 19.0));
+    q.push_back(1.5 + 0.3 * i);
+  }
+  EXPECT_LT(evaluations(sigma, q), 6.0 * evaluations({0.3}, {2.0}));
+}
+
+// With all bounces the slopes in lockstep have the same bounds of their loops, and none is forgotten.
+TEST(ProfileBatch, AllBounces_WhatRunsInLockstepIsAlike) {
+  MomentsRequest request;
+  request.masking = Masking::kVCavity;
+  request.scattering = Scattering::kMultiple;
+  request.theta_deg = {0.0, 10.0, 40.0, 60.0, 85.0, 89.99};
+  request.sigma = {0.3, 2.0};
+  request.q = {1.2, 2.0, 8.0};
+  request.indices = {{1.5, 0.0}, {0.9, 0.0}};
+  const KernelData data = kernel_data(request);
+  const Profiles profiles(data);
+  const vulkan::ProfileBatch batch = vulkan::profile_batch(request, data, profiles, 0, data.directions);
+  ASSERT_EQ(batch.in_lockstep.size() % vulkan::kLockstep, 0U);
+  std::vector<std::uint16_t> bound_of;
+  for (const Profile& profile : batch.profiles) {
+    for (const ProfilePiece& piece : profile.pieces) {
+      bound_of.insert(bound_of.end(), piece.fine + piece.coarse,
+                      data.pieces[profile.entries.theta].lockstep[piece.of_direction]);
+    }
+  }
+  ASSERT_EQ(bound_of.size(), batch.slopes.size());
+  for (std::size_t first = 0; first < batch.in_lockstep.size(); first += vulkan::kLockstep) {
+    for (std::size_t i = first; i < first + vulkan::kLockstep; ++i) {
+      EXPECT_EQ(bound_of[batch.in_lockstep[i]], bound_of[batch.in_lockstep[first]]);
+    }
+  }
+  EXPECT_EQ(std::set(batch.in_lockstep.begin(), batch.in_lockstep.end()).size(), batch.slopes.size());
+}
+
+}  // namespace
+}  // namespace dolp

@@ -152,25 +152,27 @@ double steep_reflectance(const KernelData& data, const kernel::IndexNode& index,
 constexpr double kGrooveRoundings = 4.0;
 
 // What taking many bounces in a groove as one changes, over the cosine and the share of the grooves it is done in (test
-// GrooveText): most where the best of conductors reflect very often. Of more than DOLP_LAST_BOUNCES only so many are
-// counted.
+// GrooveText): most where the best of conductors reflect very often.
 constexpr double kManyBouncesError = 1e-3;
 constexpr double kVeryManyBounces = 1024.0;
 constexpr double kVeryManyBouncesError = 1e-2;
 constexpr double kNotGrazing = 0.6;  // share of a ray's bounces with cos(beta) >= a/2, at least
 
 // `reflected` is what these grooves were found to reflect. Taking bounces as one changes the logarithm of what is left
-// by less than a hundredth: what is found to be little is little.
+// by less than a hundredth: what is found to be little is little. Under total reflection bounces that lose nothing may be
+// taken as one with some that do. Beyond DOLP_LAST_BOUNCES nothing counts as left.
 double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
                           const kernel::ShapeNode& shape, double reflected) {
-  if (reflected <= data.rule.dimmest * theta.c) return reflected;
   const auto beyond = [&](double bounces, double most) {
-    const double share = share_beyond(data.distribution, shape, slope_with_bounces(bounces));
-    return share * left_after(theta, index, kNotGrazing * bounces, most);
+    const double share = theta.c * share_beyond(data.distribution, shape, slope_with_bounces(bounces));
+    return share <= data.rule.dimmest ? share : share * left_after(theta, index, kNotGrazing * bounces, most);
   };
-  const double most = beyond(DOLP_MOST_BOUNCES, kManyBouncesError) + beyond(kVeryManyBounces, kVeryManyBouncesError) +
-                      beyond(DOLP_LAST_BOUNCES, 1.0);
-  return std::min(theta.c * most, reflected);
+  const double last = beyond(DOLP_LAST_BOUNCES, 1.0);
+  if (index.critical_cos > 0.0) return last + beyond(DOLP_MOST_BOUNCES, 1.0);
+  if (reflected <= data.rule.dimmest) return last + reflected;
+  const double many = beyond(DOLP_MOST_BOUNCES, kManyBouncesError);
+  const double very_many = beyond(kVeryManyBounces, kVeryManyBouncesError);
+  return last + std::min(many + very_many, reflected);
 }
 
 double pair_factor(const KernelData& data, const kernel::IndexNode& index) {

@@ -139,7 +139,7 @@ void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg, i
   for (double bounces = 8.0; bounces < DOLP_MOST_BOUNCES; bounces *= 2.0) {
     if (bounces > splits + 2.0) points.push_back({slope_with_bounces(bounces), 0});
   }
-  for (double bounces = DOLP_MOST_BOUNCES; bounces < DOLP_LAST_BOUNCES; bounces *= kSteepStep) {
+  for (double bounces = DOLP_MOST_BOUNCES; bounces <= DOLP_LAST_BOUNCES; bounces *= kSteepStep) {
     points.push_back({slope_with_bounces(bounces), 0});
   }
   for (const double slope : kSteepBreakpoints) points.push_back({slope, 0});

@@ -21,6 +21,7 @@ struct Fan {
   real taken;    // bounces taken as one, 2^doublings
   int doublings;
   bool is_steep;
+  bool is_black; // so many that nothing leaves
 };
 
 // Of a groove of slope t, for a ray that has the projections c and u on the vertical and across.
@@ -35,14 +36,16 @@ Fan fan(real t, real c, real u) {
   f.taken = real(1.0);
   f.doublings = 0;
   f.is_steep = false;
+  f.is_black = false;
   // A ray has at most pi/gamma < pi t + 2 bounces; the loop is one that devices skip.
   for (bool may_be = t > real(DOLP_MOST_BOUNCES) / kPi; may_be; may_be = false) {
     real to_horizon = arc_tangent(c / max(abs(u), real(1e-30)));
     f.gamma = arc_tangent(real(1.0) / t);
-    f.left = min((u < real(0.0) ? kPi - to_horizon : to_horizon) / f.gamma, real(DOLP_LAST_BOUNCES));
+    f.left = (u < real(0.0) ? kPi - to_horizon : to_horizon) / f.gamma;
     real zenith = arc_tangent(abs(u) / max(c, real(1e-30)));
     f.slant = min((u < real(0.0) ? -zenith : zenith) / f.gamma, real(1.0));
     f.is_steep = f.left > real(DOLP_MOST_BOUNCES);
+    f.is_black = f.left > real(DOLP_LAST_BOUNCES);
   }
   return f;
 }
@@ -141,12 +144,12 @@ real4 reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index, real 
   real inverse_width = real(1.0) / max(width, real(1e-30));
   real rise = real(0.0);        // X_k - X_1
   real2 between = real2(u, c);  // a (sin, cos) of psi + 2 k gamma
+  real share = f.is_black ? real(0.0) : real(1.0);  // of the beam, that goes on
+  real absorbed = real(1.0) - share;
   // Rays of intensity 1 and of Q = 1 as the surface sees it.
-  real4 natural = real4(real(1.0), real(0.0), real(0.0), real(0.0));
+  real4 natural = real4(share, real(0.0), real(0.0), real(0.0));
   real2 seen = doubled_angle(-x, c * sin_phi);
-  real4 polarised = real4(real(0.0), seen.x, seen.y, real(0.0));
-  real absorbed = real(0.0);
-  real share = real(1.0);  // of the beam, that goes on
+  real4 polarised = real4(real(0.0), share * seen.x, share * seen.y, real(0.0));
   while (share > real(0.0)) {
     if (f.is_steep) f = next_bounces(f);
     real2 at = further_on(between, f.turn);

@@ -129,6 +129,7 @@ double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index
     const double missed = along <= 0.0 ? 0.0 : along < theta.s ? 4.0 / pi<double>() * std::asin(along / theta.s) : 1.0;
     const double reflected = std::pow(reflectance_s(index, 0.5 * std::max(level, theta.c)), bounces);
     least = std::min(least, most * missed + reflected);
+    if (reflected >= least) break;  // and the more so at lower levels
   }
   return least;
 }
@@ -159,17 +160,17 @@ constexpr double kVeryManyBouncesError = 1e-2;
 constexpr double kNotGrazing = 0.6;  // share of a ray's bounces with cos(beta) >= a/2, at least
 
 // `reflected` is what these grooves were found to reflect. Taking bounces as one changes the logarithm of what is left
-// by less than a hundredth: what is found to be little is little. Under total reflection bounces that lose nothing may be
-// taken as one with some that do. Beyond DOLP_LAST_BOUNCES nothing counts as left.
+// by less than a hundredth: what is found to be little is little. Under total reflection bounces that lose nothing may
+// be taken as one with some that do. `least` is too little to matter. Beyond DOLP_LAST_BOUNCES nothing counts as left.
 double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
-                          const kernel::ShapeNode& shape, double reflected) {
+                          const kernel::ShapeNode& shape, double reflected, double least) {
   const auto beyond = [&](double bounces, double most) {
     const double share = theta.c * share_beyond(data.distribution, shape, slope_with_bounces(bounces));
     return share <= data.rule.dimmest ? share : share * left_after(theta, index, kNotGrazing * bounces, most);
   };
   const double last = beyond(DOLP_LAST_BOUNCES, 1.0);
   if (index.critical_cos > 0.0) return last + beyond(DOLP_MOST_BOUNCES, 1.0);
-  if (reflected <= data.rule.dimmest) return last + reflected;
+  if (reflected <= least) return last + reflected;
   const double many = beyond(DOLP_MOST_BOUNCES, kManyBouncesError);
   const double very_many = beyond(kVeryManyBounces, kVeryManyBouncesError);
   return last + std::min(many + very_many, reflected);
@@ -198,7 +199,8 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   const bool is_multiple = data.scattering == Scattering::kMultiple;
   double grooves = 0.0;
   if (is_multiple) {
-    grooves = many_bounces_bound(data, theta, index, shape, std::abs(node.many)) +
+    grooves = many_bounces_bound(data, theta, index, shape, std::abs(node.many),
+                                 kLeastShareOfTolerance * data.tolerance * std::abs(node.r_i)) +
               (kGrooveRoundings * unit_roundoff + data.rule.dimmest) * theta.c;
   }
   const double reflected_cut =

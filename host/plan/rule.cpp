@@ -11,7 +11,7 @@
 namespace dolp {
 namespace {
 
-// From `dolp-calibrate fit MASKING`.
+// From `dolp-calibrate fit MASKING`, all bounces from `dolp-calibrate fit multiple --entries 60 --rounds 3`.
 constexpr std::array<RuleModel, 5> kModels = {{
     // none
     {.margin_digits = 2.4, .t_nodes = 1.4, .t_digits = 0.5, .t_fall = 0.18, .phi_nodes = 0.362, .phi_digits = 0.25},
@@ -32,8 +32,8 @@ constexpr std::array<RuleModel, 5> kModels = {{
      .phi_nodes = 0.3,
      .phi_digits = -0.5,
      .cluster_stretch = 5.5},
-    // all bounces: those of v-cavity
-    {.margin_digits = 2.5, .t_nodes = 1, .t_digits = -0.812, .t_fall = 0.165, .phi_nodes = 0.562, .phi_digits = 0.188},
+    // all bounces
+    {.margin_digits = 2.4, .t_nodes = 2.3, .t_digits = -0.375, .t_fall = 0.09, .phi_nodes = 0.625, .phi_digits = 0},
 }};
 
 // Nodes that a piece has for each digit, roughly.

@@ -31,7 +31,7 @@ constexpr double kWidthStep = 1.3;
 constexpr double kAskedStep = 0.4;
 
 // -ln of a share of the facets that is none.
-constexpr double kNoFacets = 200.0;
+constexpr double kNoFacets = 80.0;
 
 // An end of a piece of a profile.
 struct End {
@@ -191,37 +191,47 @@ struct Profiles::Impl {
     return weights;
   }
 
-  // What a rule makes of a piece that begins where the exponent is `from` and has `share` of the facets. Their share is
-  // known, so that the error which the density alone makes cancels, and with it every factor of the weights.
-  kernel::AzimuthNode sum_of(std::uint32_t first, std::uint32_t count, const SlopeWeights& weights, double factor,
-                             double from, double share, std::span<const kernel::AzimuthNode> samples) {
+  // What a rule makes of a piece with `share` of the facets. Their share is known, so that the error which the density
+  // alone makes cancels, and with it every factor of the weights.
+  static kernel::AzimuthNode sum_of(std::uint32_t first, std::uint32_t count, const Eigen::ArrayXd& own, double share,
+                                    std::span<const kernel::AzimuthNode> samples) {
     using Samples = Eigen::Matrix<double, sizeof(kernel::AzimuthNode) / sizeof(double), Eigen::Dynamic>;
-    const Eigen::VectorXd own =
-        weights.common.segment(first, count) * (factor * (from - weights.exponent.segment(first, count))).exp();
     const Eigen::Map<const Samples> all(&samples[first].r_i, Samples::RowsAtCompileTime, count);
+    const double mass = own.segment(first, count).sum();
     std::array<double, Samples::RowsAtCompileTime> sums{};
-    const double mass = own.sum();
     Eigen::Map<Eigen::Matrix<double, Samples::RowsAtCompileTime, 1>>(sums.data()).noalias() =
-        all.lazyProduct(own) * (mass > 0.0 ? share / (Text::kPi * mass) : 0.0);
+        all.lazyProduct(own.segment(first, count).matrix()) * (mass > 0.0 ? share / (Text::kPi * mass) : 0.0);
     return std::bit_cast<kernel::AzimuthNode>(sums);
   }
 
-  void add_piece_of(const ProfilePiece& piece, const Text::ShapeNode& shape, const SlopeWeights& weights,
-                    std::span<const kernel::AzimuthNode> samples, kernel::MomentsNode& moments) {
+  // The moments of one shape but for what lies beyond the cut; `own` is room for the weights.
+  kernel::MomentsNode moments_of(const Profile& profile, const Text::ShapeNode& shape, const SlopeWeights& weights,
+                                 std::span<const kernel::AzimuthNode> samples, Eigen::ArrayXd& own) {
     const double factor = text.exponent_factor(shape);
-    const double from = text.common_exponent(piece.start / shape.m);
-    if (factor * from > kNoFacets) return;
-    const double to = text.common_exponent(piece.end / shape.m);
-    const double share = -std::exp(-factor * from) * std::expm1(factor * (from - to));
-    const auto fine = sum_of(piece.first, piece.fine, weights, factor, from, share, samples);
-    const auto coarse = sum_of(piece.first + piece.fine, piece.coarse, weights, factor, from, share, samples);
-    const auto apart = [](double a, double b) { return std::abs(a - b); };
-    const bool is_steep = piece.end > slope_with_bounces(DOLP_MOST_BOUNCES);
-    add_piece(moments,
-              {fine.r_i, fine.r_q, fine.albedo, fine.deficit, fine.behind, is_steep ? fine.r_i : 0.0, fine.direct_i,
-               fine.direct_q, std::max(apart(fine.r_i, coarse.r_i), apart(fine.r_q, coarse.r_q)),
-               apart(fine.albedo, coarse.albedo), apart(fine.deficit, coarse.deficit),
-               std::max(apart(fine.direct_i, coarse.direct_i), apart(fine.direct_q, coarse.direct_q)), 0.0});
+    const auto has_facets = [&](const ProfilePiece& piece) {
+      return factor * text.common_exponent(piece.start / shape.m) < kNoFacets;
+    };
+    const auto end = std::ranges::partition_point(profile.pieces, has_facets);
+    const ProfilePiece& last = *(end - 1);
+    const auto count = static_cast<Eigen::Index>(last.first + last.fine + last.coarse);
+    own.head(count) = weights.common.head(count) * (-factor * weights.exponent.head(count)).exp();
+    kernel::MomentsNode moments{};
+    double from = 0.0;
+    for (auto piece = profile.pieces.begin(); piece != end; ++piece) {
+      const double to = factor * text.common_exponent(piece->end / shape.m);
+      const double share = -std::exp(-from) * std::expm1(from - to);
+      from = to;
+      const auto fine = sum_of(piece->first, piece->fine, own, share, samples);
+      const auto coarse = sum_of(piece->first + piece->fine, piece->coarse, own, share, samples);
+      const auto apart = [](double a, double b) { return std::abs(a - b); };
+      const bool is_steep = piece->end > slope_with_bounces(DOLP_MOST_BOUNCES);
+      add_piece(moments,
+                {fine.r_i, fine.r_q, fine.albedo, fine.deficit, fine.behind, is_steep ? fine.r_i : 0.0, fine.direct_i,
+                 fine.direct_q, std::max(apart(fine.r_i, coarse.r_i), apart(fine.r_q, coarse.r_q)),
+                 apart(fine.albedo, coarse.albedo), apart(fine.deficit, coarse.deficit),
+                 std::max(apart(fine.direct_i, coarse.direct_i), apart(fine.direct_q, coarse.direct_q)), 0.0});
+    }
+    return moments;
   }
 };
 
@@ -270,11 +280,11 @@ void Profiles::integrate(const Profile& profile, std::span<const kernel::Azimuth
   double evaluations = 0.0;
   for (const kernel::AzimuthNode& sample : samples) evaluations += sample.evaluations;
   SlopeWeights weights;
+  Eigen::ArrayXd own(static_cast<Eigen::Index>(profile.slopes.size()));
   for (const std::uint32_t shape : shapes) {
     const auto node = std::bit_cast<Text::ShapeNode>(impl_->data.shapes[shape]);
     if (node.m != weights.m) weights = impl_->weights_of(profile, node);
-    kernel::MomentsNode moments{};
-    for (const ProfilePiece& piece : profile.pieces) impl_->add_piece_of(piece, node, weights, samples, moments);
+    kernel::MomentsNode moments = impl_->moments_of(profile, node, weights, samples, own);
     moments.deficit += cosine * impl_->text.slope_tail(node, profile.cut);
     moments.evaluations = evaluations / static_cast<double>(shapes.size());
     store(shape, moments);

@@ -98,7 +98,7 @@ TEST_F(BenchThroughput, Plot_Results_GiveFigureAndTables) {
 class BenchPeers : public BenchProgram {
  protected:
   std::vector<std::string> options() const {
-    return {"peers",    "--quick",      "--case",   "v-cavity",     "--method", "gauss",
+    return {"peers",    "--quick",      "--case",   "integral",     "--method", "gauss",
             "--method", "hcubature",    "--method", "monte-carlo",  "--method", "vulkan-gauss",
             "--method", "vulkan-float", "--method", "vulkan-table", "--method", "native-float"};
   }
@@ -113,7 +113,7 @@ TEST_F(BenchPeers, Json_Rows_ReachTheToleranceAndCompareWithTheKernels) {
   ASSERT_EQ(result["results"].size(), 7U);
   for (const json& row : result["results"]) {
     expect_keys(row, {"method", "case", "tolerance"});
-    EXPECT_EQ(row["case"], "v-cavity");
+    EXPECT_EQ(row["case"], "integral");
     if (row["method"] == "monte-carlo") {
       EXPECT_TRUE(row.contains("not_run")) << row.dump();  // a million samples have three digits
       continue;
@@ -151,7 +151,7 @@ TEST_F(BenchPeers, Plot_Results_GiveFigureAndTables) {
   const Outcome table = plot({"peers", "r.json", "--markdown"});
   ASSERT_EQ(table.status, 0) << table.err;
   EXPECT_NE(table.out.find("| Gauss-Legendre rule |"), std::string::npos) << table.out;
-  EXPECT_NE(table.out.find("| libcubature -O2, one core | v-cavity | 300 |"), std::string::npos) << table.out;
+  EXPECT_NE(table.out.find("| libcubature -O2, one core | integral | 100 |"), std::string::npos) << table.out;
 }
 
 TEST_F(BenchPeers, NoVulkanDevice_OthersRunWithoutRatio) {

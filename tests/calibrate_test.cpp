@@ -127,6 +127,13 @@ TEST(Calibrate, CheckOfOrdinaryEntries_SaysALinePerModelAndExitsWith0) {
   }
 }
 
+TEST(Calibrate, CheckAgainstTheReference_ExitsWith0) {
+  const Outcome outcome =
+      calibrate({"check", "v-cavity", "multiple", "--reference", "--entries", "4", "--tolerance", "1e-3"});
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+  EXPECT_EQ(lines_of(outcome.out), 4) << outcome.out;
+}
+
 TEST(Calibrate, Fit_SaysItsStepsAndExitsWith0) {
   const Outcome outcome = calibrate({"fit", "none", "--entries", "1", "--rounds", "1"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;

@@ -29,7 +29,7 @@ room radiometry radiometry/radiometry.hpp model scene spectrum
 room run run/table_scene.hpp base evaluate evaluate/cpu evaluate/interpolation evaluate/text model plan radiometry scene spectrum table
 room terminal terminal/exit_status.hpp base
 room verify verify/stored_cases.hpp base evaluate evaluate/reference model plan radiometry run scene spectrum table
-room calibrate calibrate/hold_out.hpp base evaluate evaluate/cpu evaluate/text model plan scene spectrum
+room calibrate calibrate/hold_out.hpp base evaluate evaluate/cpu evaluate/reference evaluate/text model plan scene spectrum
 room explore explore/ticks.hpp base evaluate evaluate/reference model plan radiometry run scene spectrum table
 room explore/window explore/window/area.hpp \
   base evaluate evaluate/interpolation evaluate/vulkan explore model plan scene spectrum

@@ -6,12 +6,14 @@
 #include <utility>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/reference/reference_evaluator.hpp"
 
 namespace dolp {
 namespace {
 
 constexpr double kFinerBy = 1e-5;
 constexpr double kFinest = 1e-13;
+constexpr double kReferenceTolerance = 1e-9;
 constexpr std::size_t kAtOnce = 2000;  // entries whose masking tables are in memory
 constexpr std::size_t kClimbSteps = 40;
 constexpr std::size_t kNeighbours = 16;  // of each step
@@ -25,30 +27,36 @@ struct Answers {
 class Check {
  public:
   Check(const MomentsRequest& model, const HoldOutOptions& options)
-      : model_(model), tolerance_(options.tolerance), bound_share_(options.bound_share) {}
+      : model_(model),
+        tolerance_(options.tolerance),
+        against_reference_(options.against_reference),
+        bound_share_(options.bound_share) {}
 
   Answers operator()(const std::vector<MomentsPoint>& entries) const {
     const Precision precision = tolerance_ < kLeastFloatTolerance ? Precision::kDouble : Precision::kFloat;
+    CpuEvaluator rules(precision), finer_rules(Precision::kDouble);
+    ReferenceEvaluator reference({.relative_tolerance = kReferenceTolerance});
+    MomentsEvaluator& exact = against_reference_ ? static_cast<MomentsEvaluator&>(reference) : finer_rules;
+    const double finest = against_reference_ ? 0.0 : std::max(kFinerBy * tolerance_, kFinest);
     Answers answers;
     for (std::size_t first = 0; first < entries.size(); first += kAtOnce) {
       const std::vector part(entries.begin() + static_cast<std::ptrdiff_t>(first),
                              entries.begin() + static_cast<std::ptrdiff_t>(std::min(first + kAtOnce, entries.size())));
-      append_all(answers.stated, part, tolerance_, precision);
+      append_all(answers.stated, part, tolerance_, rules);
       for (std::size_t i = first; i < answers.stated.size(); ++i) lower_bounds(answers.stated[i]);
-      append_all(answers.exact, part, std::max(kFinerBy * tolerance_, kFinest), Precision::kDouble);
+      append_all(answers.exact, part, finest, exact);
     }
     return answers;
   }
 
  private:
   void append_all(std::vector<Moments>& moments, const std::vector<MomentsPoint>& entries, double tolerance,
-                  Precision precision) const {
+                  MomentsEvaluator& evaluator) const {
     MomentsRequest request = model_;
     request.tolerance = tolerance;
-    request.precision = precision;
     request.may_interpolate = false;
     for (const MomentsPoint& entry : entries) request.append(entry);
-    const std::vector<Moments> more = CpuEvaluator(precision).evaluate(request, {});
+    const std::vector<Moments> more = evaluator.evaluate(request, {});
     moments.insert(moments.end(), more.begin(), more.end());
   }
 
@@ -58,6 +66,7 @@ class Check {
 
   MomentsRequest model_;
   double tolerance_;
+  bool against_reference_;
   double bound_share_;
 };
 

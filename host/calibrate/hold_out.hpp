@@ -1,5 +1,5 @@
 // Whether error bounds hold: fresh random entries, and a climb from the worst of them, against rules of many more
-// digits.
+// digits or the independent reference.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,8 @@ struct HoldOutOptions {
   double tolerance = 1e-4;
   std::size_t entries = 1000;
   std::uint64_t seed = 1;
-  std::size_t climbs = 0;    ///< of the worst entries, each climbed from in kClimbSteps steps
+  std::size_t climbs = 0;          ///< of the worst entries, each climbed from in kClimbSteps steps
+  bool against_reference = false;  ///< a second of a core for each entry
   double bound_share = 1.0;  ///< of each bound that errors are held against: below 1 shows what bounds have to spare
 };
 

@@ -110,6 +110,9 @@ int main(int argc, char** argv) {
   check_command->add_option("--tolerance", arguments.tolerances, "repeatable")->capture_default_str();
   check_command->add_option("--entries", arguments.options.entries, "of each integrand and distribution")
       ->capture_default_str();
+  check_command->add_flag(
+      "--reference", arguments.options.against_reference,
+      "against the independent reference instead of finer rules: a second of a core for each entry");
   check_command->add_option("--climbs", arguments.options.climbs, "worst entries to climb from")->capture_default_str();
   check_command->add_option("--seed", arguments.options.seed)->capture_default_str();
   try {

@@ -236,9 +236,10 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
     moments.direct_i_error = pair * node.direct_difference + (least + rounding + masking) * theta.c + cut;
     moments.direct_q_error = moments.direct_i_error;
   }
-  // r_i + deficit = cos(theta): the better known of the two gives the other.
+  // r_i + deficit = cos(theta): the better known of the two gives the other. A groove absorbs no less than nothing.
   const double cosine = theta.c;
-  if (moments.deficit_error > moments.r_i_error) {
+  const bool gives_deficit = !is_multiple || moments.r_i < cosine;
+  if (moments.deficit_error > moments.r_i_error && gives_deficit) {
     moments.deficit = cosine - moments.r_i;
     moments.deficit_error = moments.r_i_error + kCosineRounding * cosine;
   } else {

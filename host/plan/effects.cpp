@@ -47,6 +47,16 @@ DropBound entry_bound(const InfluenceBounds& bounds, const Candidate& candidate,
   return bounds.bound(candidate.part, kept, entry, Detail::kFine, memory);
 }
 
+/// The bound of what a part adds at one entry, no closer than it takes to see that it is not above `most`.
+double bound_above(const InfluenceBounds& bounds, Part part, const SceneEntry& entry, double most,
+                   ReflectanceMemory& memory) {
+  for (const Detail detail : {Detail::kCoarse, Detail::kMiddle}) {
+    const double bound = bounds.bound(part, {}, entry, detail, memory).dolp;
+    if (bound <= most) return bound;
+  }
+  return bounds.bound(part, {}, entry, Detail::kFine, memory).dolp;
+}
+
 /// The worst bound of some entries; stops, above the limit, as soon as it is there.
 DropBound worst_of_entries(const InfluenceBounds& bounds, const Candidate& candidate, const SceneEntries& entries,
                            std::span<const std::uint32_t> positions) {
@@ -394,17 +404,21 @@ void add_influences(std::vector<EffectRow>& rows, const Scene& scene, const Scen
     if (row.state == EffectState::kKept && row.part && !row.bound) open.push_back(&row);
   }
   for (EffectRow* row : open) row->bound = 0.0;
+  if (open.empty() || entries.empty()) return;
   OrderedEntries ordered(scene, entries);
   const std::span<const std::uint32_t> positions = ordered.positions();
   std::mutex mutex;
-  parallel_ranges(positions.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
+  const auto look_at = [&](std::size_t first, std::size_t last) {
     ReflectanceMemory memory;
-    std::vector<double> most(open.size(), 0.0);
+    std::vector<double> most;
     std::vector<std::size_t> unbounded(open.size(), 0);
+    {
+      const std::lock_guard lock(mutex);
+      for (const EffectRow* row : open) most.push_back(*row->bound);
+    }
     for (std::size_t i = first; i < last; ++i) {
       for (std::size_t r = 0; r < open.size(); ++r) {
-        const SceneEntry entry = entries[positions[i]];
-        const double bound = bounds.bound(*open[r]->part, {}, entry, Detail::kFine, memory).dolp;
+        const double bound = bound_above(bounds, *open[r]->part, entries[positions[i]], most[r], memory);
         if (std::isinf(bound)) ++unbounded[r];
         if (!std::isinf(bound)) most[r] = std::max(most[r], bound);
       }
@@ -414,7 +428,10 @@ void add_influences(std::vector<EffectRow>& rows, const Scene& scene, const Scen
       open[r]->bound = std::max(*open[r]->bound, most[r]);
       open[r]->unbounded += unbounded[r];
     }
-  });
+  };
+  // The last entry of a grid, which is grazing, is the worst most often: it spares the others a close look.
+  look_at(positions.size() - 1, positions.size());
+  parallel_ranges(positions.size() - 1, kEntriesAtOnce, look_at);
 }
 
 const char* state_name(EffectState state) {

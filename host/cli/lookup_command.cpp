@@ -6,6 +6,7 @@
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "base/interrupt.hpp"
+#include "base/parallel_ranges.hpp"
 #include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 #include "cli/commands.hpp"
@@ -18,6 +19,8 @@
 
 namespace dolp::cli {
 namespace {
+
+constexpr std::size_t kPointsAtOnce = 1024;  // of a thread
 
 using OptionalColumn = std::optional<std::vector<double>>;
 
@@ -85,12 +88,12 @@ int run_lookup(const Options& options) {
   const std::vector<double> sigma = values_of({"sigma", points.sigma, lookup.sigma(), scene.surface.sigma}, points);
   const std::vector<double> q = values_of({"q", points.q, lookup.q(), scene.surface.q}, points);
   check_writable(options.output_path);
-  std::vector<PointResult> results;
+  std::vector<PointResult> results(points.size());
   watch_for_interrupts();
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  parallel_ranges(results.size(), kPointsAtOnce, [&](std::size_t first, std::size_t last) {
     if (interrupted()) throw Cancelled{};
-    results.push_back(lookup.at(theta[i], sigma[i], q[i]));
-  }
+    for (std::size_t i = first; i < last; ++i) results[i] = lookup.at(theta[i], sigma[i], q[i]);
+  });
   write_text_atomically(options.output_path, result_csv(points, results, lookup.extra_columns()));
 
   const std::size_t missed = count_status(results, kStatusToleranceMissed);

@@ -22,6 +22,18 @@ LookupAxis::LookupAxis(const std::vector<double>& values, Scale scale, double or
   for (const std::size_t i : positions_) values_.push_back(values[i]);
   if (!(values_.front() > origin_)) scale_ = Scale::kLinear;
   for (const double value : values_) coordinates_.push_back(coordinate(value));
+  for (std::size_t count = 2; count <= std::min(kMostStencil, size()); ++count) {
+    for (std::size_t first = 0; first + count <= size(); ++first) {
+      std::array<double, kMostStencil>& factors = factors_[count].emplace_back();
+      for (std::size_t i = 0; i < count; ++i) {
+        double product = 1.0;
+        for (std::size_t j = 0; j < count; ++j) {
+          if (i != j) product *= coordinates_[first + i] - coordinates_[first + j];
+        }
+        factors[i] = 1.0 / product;
+      }
+    }
+  }
 }
 
 double LookupAxis::coordinate(double value) const {
@@ -32,27 +44,34 @@ bool LookupAxis::contains(double value) const {
   return (min() <= value && value <= max()) || is_same(value, min()) || is_same(value, max());
 }
 
-Stencil LookupAxis::stencil(double value, std::size_t count, int shift) const {
+LookupAxis::Place LookupAxis::place(double value) const {
   const auto above = static_cast<std::size_t>(std::ranges::lower_bound(values_, value) - values_.begin());
   for (const std::size_t i : {above, above - 1}) {
-    if (i < values_.size() && is_same(values_[i], value)) return {{positions_[i]}, {1.0}};
+    if (i < values_.size() && is_same(values_[i], value)) return {coordinates_[i], i, true};
   }
+  return {coordinate(value), above, false};
+}
+
+Stencil LookupAxis::stencil(const Place& place, std::size_t count, int shift) const {
+  if (place.is_value) return {place.next, 1, {1.0}};
   const auto size = static_cast<std::ptrdiff_t>(values_.size());
   const auto wanted = std::min(static_cast<std::ptrdiff_t>(count), size);
-  const auto next = static_cast<std::ptrdiff_t>(above);  // values_[next - 1] < value < values_[next]
+  const auto next = static_cast<std::ptrdiff_t>(place.next);  // values_[next - 1] < value < values_[next]
   const std::ptrdiff_t centred = std::clamp<std::ptrdiff_t>(next - wanted / 2, 0, size - wanted);
   const std::ptrdiff_t first = std::clamp<std::ptrdiff_t>(
       std::clamp<std::ptrdiff_t>(centred + shift, next + 1 - wanted, next - 1), 0, size - wanted);
-  Stencil stencil;
-  const double x = coordinate(value);
-  for (std::ptrdiff_t i = first; i < first + wanted; ++i) {
-    double weight = 1.0;
-    for (std::ptrdiff_t j = first; j < first + wanted; ++j) {
-      const auto [own, other] = std::pair{static_cast<std::size_t>(i), static_cast<std::size_t>(j)};
-      if (i != j) weight *= (x - coordinates_[other]) / (coordinates_[own] - coordinates_[other]);
-    }
-    stencil.positions.push_back(positions_[static_cast<std::size_t>(i)]);
-    stencil.weights.push_back(weight);
+  Stencil stencil{static_cast<std::size_t>(first), static_cast<std::size_t>(wanted), {}};
+  const std::array<double, kMostStencil>& factors = factors_[stencil.count][stencil.first];
+  // The product of the distances from all values before i, then from all after it.
+  double before = 1.0;
+  for (std::size_t i = 0; i < stencil.count; ++i) {
+    stencil.weights[i] = before * factors[i];
+    before *= place.coordinate - coordinates_[stencil.first + i];
+  }
+  double after = 1.0;
+  for (std::size_t i = stencil.count; i-- > 0;) {
+    stencil.weights[i] *= after;
+    after *= place.coordinate - coordinates_[stencil.first + i];
   }
   return stencil;
 }

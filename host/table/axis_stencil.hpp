@@ -1,15 +1,20 @@
 // Which values of a table's axis an interpolation reads, and with which weights.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
 namespace dolp {
 
-/// Weighted positions on an axis; the weights add up to 1.
+/// Most values that an interpolation reads of an axis.
+inline constexpr std::size_t kMostStencil = 6;
+
+/// Neighbouring values of an axis, by their place in ascending order; the weights add up to 1.
 struct Stencil {
-  std::vector<std::size_t> positions;  ///< in the order of the table
-  std::vector<double> weights;
+  std::size_t first = 0;
+  std::size_t count = 0;
+  std::array<double, kMostStencil> weights{};
 };
 
 /// An axis as an interpolation sees it: a coordinate in which the table's quantities are smooth, ascending.
@@ -29,11 +34,21 @@ class LookupAxis {
   /// The axis has a single value, within rounding of its last digits, or the range contains it.
   bool contains(double value) const;
 
-  /// Lagrange interpolation at `value` from the `count` values around it, as many as there are; where the value is one
-  /// of the axis, that alone. `shift` moves the window by so many values, where it still contains the value; by nothing
-  /// otherwise.
-  /// Domain: contains(value).
-  Stencil stencil(double value, std::size_t count, int shift = 0) const;
+  /// The position in the table of a value, by its place in ascending order.
+  std::size_t position(std::size_t place) const { return positions_[place]; }
+
+  /// Where a value lies. Domain: contains(value).
+  struct Place {
+    double coordinate = 0.0;
+    std::size_t next = 0;   ///< the first value above it; or the value itself,
+    bool is_value = false;  ///< where it is one of the axis
+  };
+  Place place(double value) const;
+
+  /// Lagrange interpolation from the `count` values around a place, as many as there are; where it is a value of the
+  /// axis, that alone. `shift` moves the window by so many values, where it still contains the place; by nothing
+  /// otherwise. Domain: count from 2 to kMostStencil.
+  Stencil stencil(const Place& place, std::size_t count, int shift = 0) const;
 
  private:
   double coordinate(double value) const;
@@ -43,6 +58,8 @@ class LookupAxis {
   std::vector<double> values_;          ///< ascending
   std::vector<double> coordinates_;     ///< of values_
   std::vector<std::size_t> positions_;  ///< in the table, of values_
+  /// 1 / product of x_i - x_j over the other values j of a window, for each count, window and i.
+  std::array<std::vector<std::array<double, kMostStencil>>, kMostStencil + 1> factors_;
 };
 
 }  // namespace dolp

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/container/static_vector.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <set>
 
@@ -13,11 +15,11 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kWindow = 6;       // values of an axis
-constexpr int kMostShift = 3;            // of a window away from entries that are not known
-constexpr std::size_t kLeastValues = 4;  // of an axis: how the changes of fewer fall says nothing
-constexpr double kRemainder = 10.0;      // error over the change that one value makes, where changes fall fast
-constexpr double kSlowestFall = 0.9;     // of the changes
+constexpr std::size_t kWindow = kMostStencil;  // values of an axis
+constexpr int kMostShift = 3;                  // of a window away from entries that are not known
+constexpr std::size_t kLeastValues = 4;        // of an axis: how the changes of fewer fall says nothing
+constexpr double kRemainder = 10.0;            // error over the change that one value makes, where changes fall fast
+constexpr double kSlowestFall = 0.9;           // of the changes
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// What is interpolated: the quantities of a table that are smooth.
@@ -40,8 +42,6 @@ constexpr std::array<SmoothColumn, 11> kColumns = {{{&Table::stokes_i, &PointRes
 constexpr std::array<double PointResult::*, 6> kNeeded = {&PointResult::dolp,     &PointResult::stokes_i,
                                                           &PointResult::stokes_q, &PointResult::stokes_u,
                                                           &PointResult::stokes_v, &PointResult::error_estimate};
-
-enum Column : std::size_t { kI, kQ, kU, kV, kRhoI, kRhoQ };
 
 const std::vector<double>& checked(const std::vector<double>& values, const char* axis, const std::string& name) {
   if (std::set(values.begin(), values.end()).size() != values.size()) {
@@ -71,15 +71,16 @@ struct TableLookup::Window {
   Stencil sigma;
   Stencil q;
 
-  std::size_t size() const { return theta.positions.size() * sigma.positions.size() * q.positions.size(); }
+  std::size_t size() const { return theta.count * sigma.count * q.count; }
 
   /// Calls visit(position, weight) for each entry.
   template <class Visit>
-  void each(const Table& table, const Visit& visit) const {
-    for (std::size_t i = 0; i < theta.positions.size(); ++i) {
-      for (std::size_t j = 0; j < sigma.positions.size(); ++j) {
-        for (std::size_t k = 0; k < q.positions.size(); ++k) {
-          visit(table.position(theta.positions[i], sigma.positions[j], q.positions[k]),
+  void each(const TableLookup& lookup, const Visit& visit) const {
+    for (std::size_t i = 0; i < theta.count; ++i) {
+      for (std::size_t j = 0; j < sigma.count; ++j) {
+        for (std::size_t k = 0; k < q.count; ++k) {
+          visit(lookup.table_.position(lookup.theta_.position(theta.first + i), lookup.sigma_.position(sigma.first + j),
+                                       lookup.q_.position(q.first + k)),
                 theta.weights[i] * sigma.weights[j] * q.weights[k]);
         }
       }
@@ -87,24 +88,50 @@ struct TableLookup::Window {
   }
 };
 
-struct TableLookup::Values {
-  std::array<double, kColumns.size()> columns{};
-  double error = 0.0;      // of DOLP, sum over the entries read
-  double rho_error = 0.0;  // of rho, absolute
+/// How much fewer values of one axis, also aside, change what is interpolated: the stencils to compare with.
+struct TableLookup::Spread {
+  enum class Kind { kNone, kUnknown, kCompared };
+  Kind kind = Kind::kNone;
+  std::array<std::array<Stencil, 3>, 2> fewer;  // by one and by two values; in the middle and aside
+  std::size_t first = 0;                        // of all their values and the window's
+  std::size_t count = 0;
 
-  void widen(const Values& a, const Values& b) {
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      columns[c] = std::max(columns[c], std::abs(a.columns[c] - b.columns[c]));
+  Spread(const LookupAxis& axis, const LookupAxis::Place& place, const Stencil& own, int shift) {
+    first = own.first;
+    count = own.count;
+    if (own.count == 1) return;
+    if (own.count < kLeastValues) {
+      kind = Kind::kUnknown;
+      return;
     }
+    kind = Kind::kCompared;
+    std::size_t last = first + count;
+    for (std::size_t less = 1; less <= fewer.size(); ++less) {
+      for (const int aside : {0, 1, -1}) {
+        Stencil& other = fewer[less - 1][static_cast<std::size_t>(aside + 1)];
+        other = axis.stencil(place, own.count - less, shift + aside);
+        first = std::min(first, other.first);
+        last = std::max(last, other.first + other.count);
+      }
+    }
+    count = last - first;
   }
-  /// Adds what is missing if leaving out one value changes the result by `last`, and two by `before`, and more values
-  /// went on like that.
-  void add_remainder(const Values& last, const Values& before) {
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      if (last.columns[c] == 0.0) continue;
-      const double fall = std::min(last.columns[c] / before.columns[c], kSlowestFall);
-      columns[c] += kRemainder * last.columns[c] / (1.0 - fall);
+
+  /// Error of `value` by `sums`, what the other axes leave of the table at the values from `first` on: what is missing
+  /// if leaving out one value changes the result so much, and two so much, and more values went on like that.
+  double remainder(double value, const double* sums) const {
+    if (kind == Kind::kNone) return 0.0;
+    if (kind == Kind::kUnknown) return std::numeric_limits<double>::infinity();
+    std::array<double, 2> changes{};
+    for (std::size_t less = 0; less < fewer.size(); ++less) {
+      for (const Stencil& other : fewer[less]) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < other.count; ++i) sum += other.weights[i] * sums[other.first - first + i];
+        changes[less] = std::max(changes[less], std::abs(value - sum));
+      }
     }
+    if (changes[0] == 0.0) return 0.0;
+    return kRemainder * changes[0] / (1.0 - std::min(changes[0] / changes[1], kSlowestFall));
   }
 };
 
@@ -115,17 +142,25 @@ TableLookup::TableLookup(const Table& table, double tolerance, const std::string
       sigma_(checked(table.sigma, "sigma", name), LookupAxis::Scale::kLogarithm),
       q_(checked(table.q, "q", name), LookupAxis::Scale::kLogarithm, 1.0) {
   check_variables(table, name);
+  for (const SmoothColumn& column : kColumns) {
+    const std::vector<double>& values = table.*column.values;
+    if (std::ranges::any_of(values, [](double value) { return value != 0.0; })) {
+      columns_.push_back({&values, column.member});
+    }
+  }
+  all_known_ = std::ranges::all_of(table.stokes_i, [](double value) { return std::isfinite(value); });
 }
 
 bool TableLookup::is_known(const Window& window) const {
+  if (all_known_) return true;
   bool known = true;
-  window.each(table_, [&](std::size_t position, double) { known = known && std::isfinite(table_.stokes_i[position]); });
+  window.each(*this, [&](std::size_t position, double) { known = known && std::isfinite(table_.stokes_i[position]); });
   return known;
 }
 
 PointResult TableLookup::entry(const Window& window) const {
-  const std::size_t position =
-      table_.position(window.theta.positions.front(), window.sigma.positions.front(), window.q.positions.front());
+  const std::size_t position = table_.position(theta_.position(window.theta.first), sigma_.position(window.sigma.first),
+                                               q_.position(window.q.first));
   PointResult result;
   for (const TableVariable& variable : table_variables()) {
     const std::vector<double>& column = table_.*variable.values;
@@ -135,101 +170,131 @@ PointResult TableLookup::entry(const Window& window) const {
   return result;
 }
 
-TableLookup::Values TableLookup::read(const Window& window) const {
-  Values values;
-  for (std::size_t c = 0; c < kColumns.size(); ++c) {
-    const std::vector<double>& column = table_.*kColumns[c].values;
-    if (column.empty()) {
-      values.columns[c] = kNan;
-      continue;
+/// Where the entries are that a point asks for, the same in every column.
+struct TableLookup::Gather {
+  static constexpr std::size_t kMostWide = 2 * kMostStencil;
+  /// A row along q: where it begins, and the places of its theta and sigma among those of the spreads.
+  struct Row {
+    std::size_t begin = 0;
+    std::uint8_t theta = 0;
+    std::uint8_t sigma = 0;
+    double of_theta = 0.0;  ///< weight in the window, 0 outside
+    double of_sigma = 0.0;
+  };
+  boost::container::static_vector<Row, kMostWide * kMostWide> rows;
+  std::array<std::size_t, kMostWide> q{};  ///< position along a row
+  std::size_t own_q = 0;                   ///< where the window's begin among them
+
+  Gather(const TableLookup& lookup, const Window& window, const std::array<Spread, 3>& spreads) {
+    const auto& [theta, sigma, along_q] = spreads;
+    const auto weight = [](const Stencil& own, std::size_t place) {
+      const std::size_t i = place - own.first;  // wraps below the stencil
+      return i < own.count ? own.weights[i] : 0.0;
+    };
+    for (std::size_t i = 0; i < theta.count; ++i) {
+      for (std::size_t j = 0; j < sigma.count; ++j) {
+        Row row{.theta = static_cast<std::uint8_t>(i), .sigma = static_cast<std::uint8_t>(j)};
+        row.of_theta = weight(window.theta, theta.first + i);
+        row.of_sigma = weight(window.sigma, sigma.first + j);
+        if (row.of_theta == 0.0 && row.of_sigma == 0.0) continue;
+        row.begin =
+            lookup.table_.position(lookup.theta_.position(theta.first + i), lookup.sigma_.position(sigma.first + j), 0);
+        rows.push_back(row);
+      }
     }
-    window.each(table_, [&](std::size_t position, double weight) { values.columns[c] += weight * column[position]; });
+    for (std::size_t k = 0; k < along_q.count; ++k) q[k] = lookup.q_.position(along_q.first + k);
+    own_q = window.q.first - along_q.first;
   }
-  window.each(table_, [&](std::size_t position, double weight) {
-    values.error += std::abs(weight) * table_.error_estimate[position];
-    if (table_.rho_error_estimate.empty()) return;
-    values.rho_error += std::abs(weight * table_.rho_i[position]) * table_.rho_error_estimate[position];
-  });
-  return values;
+};
+
+void TableLookup::read(const Column& column, const Window& window, const std::array<Spread, 3>& spreads,
+                       const Gather& gather, PointResult& result, PointResult& change) const {
+  // What the stencils of the other axes leave of the table, along each axis.
+  std::array<std::array<double, Gather::kMostWide>, 3> sums{};
+  const std::size_t* const own_q = gather.q.data() + gather.own_q;
+  for (const Gather::Row& row : gather.rows) {
+    const double* const values = column.values->data() + row.begin;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < window.q.count; ++k) sum += window.q.weights[k] * values[own_q[k]];
+    // Outside the window an entry may be unknown.
+    if (row.of_sigma != 0.0) sums[0][row.theta] += row.of_sigma * sum;
+    if (row.of_theta != 0.0) sums[1][row.sigma] += row.of_theta * sum;
+    const double weight = row.of_theta * row.of_sigma;
+    if (weight == 0.0) continue;
+    for (std::size_t k = 0; k < spreads[2].count; ++k) sums[2][k] += weight * values[gather.q[k]];
+  }
+  double value = 0.0;
+  for (std::size_t i = 0; i < window.theta.count; ++i) {
+    value += window.theta.weights[i] * sums[0][window.theta.first - spreads[0].first + i];
+  }
+  result.*column.member = value;
+  for (std::size_t axis = 0; axis < spreads.size(); ++axis) {
+    change.*column.member += spreads[axis].remainder(value, sums[axis].data());
+  }
 }
 
 PointResult TableLookup::at(double theta_deg, double sigma, double q) const {
-  const auto window_of = [&](std::size_t count, int shift) {
-    return Window{theta_.stencil(theta_deg, count, shift), sigma_.stencil(sigma, kWindow), q_.stencil(q, kWindow)};
-  };
-  Window window = window_of(kWindow, 0);
+  const LookupAxis::Place theta_place = theta_.place(theta_deg);
+  const LookupAxis::Place sigma_place = sigma_.place(sigma);
+  const LookupAxis::Place q_place = q_.place(q);
+  Window window{theta_.stencil(theta_place, kWindow), sigma_.stencil(sigma_place, kWindow),
+                q_.stencil(q_place, kWindow)};
   if (window.size() == 1) return entry(window);
   int shift = 0;
   std::size_t count = kWindow;
+  const int away = theta_deg > 45.0 ? -1 : 1;
   while (!is_known(window)) {
     // Away from the horizon, where they are, then closer together.
     if (++shift > kMostShift) {
       shift = 0;
       if (--count < 2) break;
     }
-    window = window_of(count, theta_deg > 45.0 ? -shift : shift);
+    window.theta = theta_.stencil(theta_place, count, away * shift);
   }
-  if (count < 2) {
-    PointResult unknown;
-    unknown.dolp = unknown.stokes_i = unknown.stokes_q = unknown.stokes_u = unknown.stokes_v = kNan;
-    unknown.rho_i = unknown.rho_q = unknown.albedo = unknown.error_estimate = unknown.rho_error_estimate = kNan;
-    unknown.status = kStatusOutsideDomain;
-    return unknown;
-  }
-  const int side = theta_deg > 45.0 ? -shift : shift;
-  const Values values = read(window);
-  Values spread;
-  // Of one axis, of which the window reads so many values: how much fewer values, also aside, change the result.
-  const auto compare = [&](std::size_t values_read, const auto& with_stencil) {
-    if (values_read == 1) return;
-    if (values_read < kLeastValues) {
-      spread.columns.fill(std::numeric_limits<double>::infinity());
-      return;
-    }
-    std::array<Values, 2> changes;
-    for (std::size_t fewer = 1; fewer <= changes.size(); ++fewer) {
-      for (const int aside : {0, 1, -1}) {
-        const Values other = read(with_stencil(values_read - fewer, aside));
-        changes[fewer - 1].widen(values, other);
-      }
-    }
-    spread.add_remainder(changes[0], changes[1]);
-  };
-  compare(window.theta.positions.size(), [&](std::size_t few, int aside) {
-    return Window{theta_.stencil(theta_deg, few, side + aside), window.sigma, window.q};
-  });
-  compare(window.sigma.positions.size(), [&](std::size_t few, int aside) {
-    return Window{window.theta, sigma_.stencil(sigma, few, aside), window.q};
-  });
-  compare(window.q.positions.size(), [&](std::size_t few, int aside) {
-    return Window{window.theta, window.sigma, q_.stencil(q, few, aside)};
-  });
-  const Window cell{theta_.stencil(theta_deg, 2), sigma_.stencil(sigma, 2), q_.stencil(q, 2)};
-  return result_of(cell, values, spread);
-}
-
-PointResult TableLookup::result_of(const Window& cell, const Values& values, const Values& spread) const {
   PointResult result;
-  for (std::size_t c = 0; c < kColumns.size(); ++c) result.*kColumns[c].member = values.columns[c];
+  if (count < 2) {
+    for (const TableVariable& variable : table_variables()) result.*variable.member = kNan;
+    result.status = kStatusOutsideDomain;
+    return result;
+  }
+  const std::array<Spread, 3> spreads = {{{theta_, theta_place, window.theta, away * shift},
+                                          {sigma_, sigma_place, window.sigma, 0},
+                                          {q_, q_place, window.q, 0}}};
+  PointResult change;
+  for (const SmoothColumn& column : kColumns) {
+    if ((table_.*column.values).empty()) result.*column.member = kNan;
+  }
+  const Gather gather(*this, window, spreads);
+  for (const Column& column : columns_) read(column, window, spreads, gather, result, change);
+  double error = 0.0;      // of DOLP, sum over the entries read
+  double rho_error = 0.0;  // of rho, absolute
+  window.each(*this, [&](std::size_t position, double weight) {
+    error += std::abs(weight) * table_.error_estimate[position];
+    if (table_.rho_error_estimate.empty()) return;
+    rho_error += std::abs(weight * table_.rho_i[position]) * table_.rho_error_estimate[position];
+  });
   const double i = result.stokes_i;
-  const auto& wide = spread.columns;
   result.dolp = std::hypot(result.stokes_q, result.stokes_u) / i;
-  const double dolp_spread = std::hypot(wide[kQ], wide[kU]) / std::abs(i);
+  const double dolp_change = std::hypot(change.stokes_q, change.stokes_u) / std::abs(i);
   // Where nothing is known of I either, an unpolarised result must not make it 0 * infinity.
-  const double i_spread = result.dolp == 0.0 ? 0.0 : std::abs(result.dolp) * wide[kI] / std::abs(i);
-  result.error_estimate = values.error + dolp_spread + i_spread;
+  const double i_change = result.dolp == 0.0 ? 0.0 : std::abs(result.dolp) * change.stokes_i / std::abs(i);
+  result.error_estimate = error + dolp_change + i_change;
   result.rho_error_estimate = table_.rho_error_estimate.empty()
                                   ? kNan
-                                  : (values.rho_error + std::max(wide[kRhoI], wide[kRhoQ])) / std::abs(result.rho_i);
-  cell.each(table_, [&](std::size_t position, double) {
+                                  : (rho_error + std::max(change.rho_i, change.rho_q)) / std::abs(result.rho_i);
+  add_status({theta_.stencil(theta_place, 2), sigma_.stencil(sigma_place, 2), q_.stencil(q_place, 2)}, result);
+  return result;
+}
+
+void TableLookup::add_status(const Window& cell, PointResult& result) const {
+  cell.each(*this, [&](std::size_t position, double) {
     result.status |= table_.status[position] & kStatusUnphysicalReflectance;
   });
-  if (i <= 0.0) result.status |= kStatusNonPositiveIntensity;
+  if (result.stokes_i <= 0.0) result.status |= kStatusNonPositiveIntensity;
   const bool states_dolp = promises_dolp(result.status);
   if ((states_dolp && !(result.error_estimate <= tolerance_)) || result.rho_error_estimate > tolerance_) {
     result.status |= kStatusToleranceMissed;
   }
-  return result;
 }
 
 }  // namespace dolp

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "model/point_result.hpp"
 #include "table/axis_stencil.hpp"
@@ -42,18 +43,26 @@ class TableLookup {
 
  private:
   struct Window;
-  struct Values;
+  struct Spread;
+  struct Gather;
+  struct Column {
+    const std::vector<double>* values = nullptr;
+    double PointResult::*member = nullptr;
+  };
 
   bool is_known(const Window& window) const;
   PointResult entry(const Window& window) const;
-  Values read(const Window& window) const;
-  PointResult result_of(const Window& cell, const Values& values, const Values& spread) const;
+  void read(const Column& column, const Window& window, const std::array<Spread, 3>& spreads, const Gather& gather,
+            PointResult& result, PointResult& change) const;
+  void add_status(const Window& cell, PointResult& result) const;
 
   const Table& table_;
   double tolerance_;
   LookupAxis theta_;
   LookupAxis sigma_;
   LookupAxis q_;
+  std::vector<Column> columns_;  ///< what is interpolated: what is smooth, and not 0 everywhere
+  bool all_known_ = true;        ///< every entry is finite
 };
 
 }  // namespace dolp

@@ -54,7 +54,7 @@
 #ifndef DOLP_WIDTH
 #define DOLP_WIDTH 1             // entries of one invocation, see Row of physics/row.glsl
 #endif
-#define DOLP_MAX_PIECES 56       // pieces of the slope axis for one direction
+#define DOLP_MAX_PIECES 63       // pieces of the slope axis for one direction
 #define DOLP_MAX_ARCS 13        // arcs of the azimuth for one slope, but for those of total reflection
 // Of V-grooves, see physics/groove.glsl
 #define DOLP_STEEPEST_SPLIT 20.0  // slope from which on no beam that ends splits the azimuths

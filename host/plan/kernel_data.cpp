@@ -48,6 +48,9 @@ constexpr double kSmallestHeavyTableScale = 1e-4;
 constexpr double kLightTailQ = 1.5;
 constexpr double kLargestTableScale = 0.5;
 
+// Bounces of which the critical line splits the slopes.
+constexpr int kCriticalBounces = 3;
+
 struct Breakpoint {
   double slope;
   unsigned roots;  // bits
@@ -116,6 +119,20 @@ void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
     points.push_back({a.cos / a.sin, kRootAbove});
     points.push_back({1.0, 0});
     points.push_back({a.cos > 0.0 ? a.sin / a.cos : kNoEnd, kRootBelow});
+  }
+}
+
+// Slopes at which a bounce after the first meets the critical line at phi = 0 or pi, where its cos(beta) is the sine of
+// its angle in the fan (groove.glsl): where theta is 0 that is everywhere.
+void add_critical_bounces(std::vector<Breakpoint>& points, double theta_deg, double critical) {
+  const double critical_deg = std::asin(critical) * 180.0 / pi<double>();
+  for (int k = 2; k <= kCriticalBounces; ++k) {
+    for (const double angle_deg : {critical_deg, 180.0 - critical_deg}) {
+      for (const double turned_deg : {angle_deg - theta_deg, angle_deg + theta_deg}) {
+        const double gamma_deg = turned_deg / (2.0 * k - 1.0);
+        if (gamma_deg > 0.0 && gamma_deg < 90.0) points.push_back({tan_deg(90.0 - gamma_deg), kRoots});
+      }
+    }
   }
 }
 
@@ -199,7 +216,10 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, const Mom
   for (const double slope : kPlainBreakpoints) {
     if (!is_multiple && last > kLongWay * slope) points.push_back({slope, 0});
   }
-  if (variant.critical_cos > 0.0) add_critical_breakpoints(points, theta_deg, a, masking, variant.critical_cos);
+  if (variant.critical_cos > 0.0) {
+    add_critical_breakpoints(points, theta_deg, a, masking, variant.critical_cos);
+    if (is_multiple) add_critical_bounces(points, theta_deg, variant.critical_cos);
+  }
   std::erase_if(points, [&](const Breakpoint& point) { return point.slope <= 0.0 || point.slope > last; });
   // At the normal smith's cusp lies at slope 0.
   const bool cusp_at_0 = variant.has_line && masking == Masking::kSmith && a.sin == 0.0;

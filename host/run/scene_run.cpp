@@ -22,6 +22,7 @@ constexpr std::size_t kMomentsAtOnce = 1U << 22U;
 constexpr std::size_t kPointsAtOnce = 1U << 20U;
 // A direction of which more than one entry in so many misses the tolerance is refined as a whole.
 constexpr std::size_t kManyMisses = 8;
+constexpr std::size_t kFewEntries = 256;      // whose levels are joined
 constexpr std::size_t kEntriesAtOnce = 4096;  // of a thread: their radiometry takes longer than to start one
 
 /// What the parts of a run share.
@@ -164,6 +165,13 @@ bool finds_more(const Way& way, const RefinementLevel& level, const RefinementLe
 /// Entries waiting for the same level are computed together.
 using Waiting = std::map<RefinementLevel, std::vector<std::size_t>>;
 
+/// Whether entries that wait for the next level are better computed with the `count` before: a device waits longer for
+/// few entries than it computes.
+bool joins(const Waiting::value_type& next, const RefinementLevel& level, std::size_t count) {
+  return next.first.precision == level.precision && !next.first.may_interpolate && !level.may_interpolate &&
+         count + next.second.size() <= kFewEntries;
+}
+
 /// The next level of one direction whose `members` were computed at `last`: of all of it, between nodes again, where
 /// many miss the tolerance; else of each of these by itself.
 void plan_next(const Way& way, const SceneEntries& part, const RefinementLevel& last,
@@ -203,8 +211,15 @@ void refine(const Way& way, const SceneEntries& part, const RefinementLevel& fir
   std::iota(all.begin(), all.end(), std::size_t{0});
   plan(first, all, results);
   while (!waiting.empty()) {
-    const auto [level, members] = *waiting.begin();
+    RefinementLevel level = waiting.begin()->first;
+    std::vector<std::size_t> members = std::move(waiting.begin()->second);
     waiting.erase(waiting.begin());
+    while (!waiting.empty() && joins(*waiting.begin(), level, members.size())) {
+      level = waiting.begin()->first;
+      const std::vector<std::size_t>& more = waiting.begin()->second;
+      members.insert(members.end(), more.begin(), more.end());
+      waiting.erase(waiting.begin());
+    }
     const std::vector<PointResult> better = computed_at(way, {part, members}, level, is_wanted);
     for (std::size_t j = 0; j < members.size(); ++j) {
       if (is_better(better[j], results[members[j]])) results[members[j]] = better[j];

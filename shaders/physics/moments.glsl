@@ -80,6 +80,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
   real mass[DOLP_WIDTH];
   for (int g = 0; g < DOLP_WIDTH; ++g) mass[g] = real(0.0);
   int order = is_coarse ? min(coarse_order(piece.order), largest_order()) : piece.order;
+  real all = weight_of_shape(theta, shape);
   int first_node = rule_offset(kSectionGauss, order);
   for (int i = 0; i < order; ++i) {
     real2 node = rule_node(first_node + i);
@@ -97,7 +98,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
     }
     Slope slope;
     slope.t = t;
-    slope.digits = digits_of_slope(rule, theta, shape, piece.digits, order, t, kPi * largest_weight);
+    slope.digits = digits_of_slope(rule, theta, all, piece.digits, order, t, kPi * largest_weight);
     slope.of_theta = of_theta;
     if (kMasking == DOLP_MASKING_INTEGRAL) slope.of_theta = shadows(row, of_theta, theta.c, theta.s, t);
     slope.has_split_line = task.has_split_line;

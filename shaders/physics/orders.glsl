@@ -77,18 +77,21 @@ real weight_of_shape(ThetaNode theta, ShapeNode shape) {
              kLeastWeight);
 }
 
-// Digits that are wanted of the slopes in [a, b]: fewer by log10 of the share of the albedo they carry.
-real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, real b, real mass) {
-  real typical = weight_of_slope(theta, clamp(shape.m, a, b));
-  real share = min(mass * typical / weight_of_shape(theta, shape), real(1.0));
-  return max(rule.digits + kInverseLn10 * log_unit(share), real(0.0));
+// Digits that are wanted of what carries a share of the albedo: fewer by its logarithm.
+real digits_of_share(RuleNode rule, real share) {
+  return max(rule.digits + kInverseLn10 * log_unit(min(share, real(1.0))), real(0.0));
 }
 
-// Digits that are wanted of the azimuths at slope t, one of `order` slopes of a piece, that stands for `mass` of the
-// facets: less than of the piece where it carries less than its part.
-real digits_of_slope(RuleNode rule, ThetaNode theta, ShapeNode shape, real digits, int order, real t, real mass) {
-  real share = real(order) * mass * weight_of_slope(theta, t) / weight_of_shape(theta, shape);
-  return clamp(rule.digits + kInverseLn10 * log_unit(min(share, real(1.0))), real(0.0), digits);
+// The same of the slopes in [a, b].
+real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, real b, real mass) {
+  real typical = weight_of_slope(theta, clamp(shape.m, a, b));
+  return digits_of_share(rule, mass * typical / weight_of_shape(theta, shape));
+}
+
+// The same of the azimuths at slope t, one of `order` slopes of a piece, that stands for `mass` of the facets: less than
+// of the piece where it carries less than its part. `all` is weight_of_shape.
+real digits_of_slope(RuleNode rule, ThetaNode theta, real all, real digits, int order, real t, real mass) {
+  return min(digits_of_share(rule, real(order) * mass * weight_of_slope(theta, t) / all), digits);
 }
 
 // Nodes for each digit on a piece, from a singularity at X = re + i im. A root at an end makes the abscissa the root of

@@ -282,4 +282,15 @@ TEST(TableLookup, AValueTwice_IsRefused) {
   EXPECT_THROW(TableLookup(table, 1e-4, "t.nc"), InputError);
 }
 
+// As the lower end of a bracket often is.
+TEST(TableLookup, QuantityThatIs0Everywhere_Is0) {
+  Table table = made_up(range(0.0, 60.0, 8), range(0.1, 0.5, 6), range(1.5, 4.0, 6));
+  table.dolp_low.assign(table.dolp.size(), 0.0);
+  table.dolp_high = table.dolp;
+  const PointResult result = TableLookup(table, 1e-4, "t").at(31.0, 0.22, 2.3);
+  EXPECT_EQ(result.dolp_low, 0.0);
+  EXPECT_GT(result.dolp_high, 0.0);
+  EXPECT_TRUE(std::isnan(result.emissivity_s));
+}
+
 }  // namespace

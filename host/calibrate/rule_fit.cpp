@@ -10,6 +10,7 @@
 
 #include "base/parallel_ranges.hpp"
 #include "calibrate/random_entries.hpp"
+#include "evaluate/text/profile.hpp"
 #include "evaluate/text/text.hpp"
 #include "plan/kernel_data.hpp"
 
@@ -40,10 +41,15 @@ MomentsRequest random_request(MomentsRequest request, const RuleFitOptions& opti
 std::vector<Moments> computed(const MomentsRequest& request, const RuleModel& model) {
   const KernelData data = kernel_data(request, model);
   const std::unique_ptr<KernelText> text = make_kernel_text_double(data);
+  const Profiles profiles(data);
   std::vector<Moments> moments(data.size());
   const auto one = [&](std::size_t i) {
+    if (has_profiles(request)) {
+      profiles.compute(profile_entries(request, data, i, i + 1).front(), *text, kDoubleRoundoff, moments);
+      return;
+    }
     const MomentsEntry entry = data[i];
-    if (data.needs_masking_table()) text->build_masking_table(entry.shape);
+    text->build_masking_table(entry.shape);
     moments[i] = moments_from_kernel(text->moments(entry), data, entry, kDoubleRoundoff);
   };
   parallel_for(moments.size(), one, nullptr);

@@ -20,9 +20,9 @@ struct EvaluationReport {
   std::uint64_t dispatches = 0;
   std::uint32_t row_width = 1;  ///< entries that an invocation computed together at last
   double evaluations = 0.0;
-  double kernel_s = 0.0;           ///< time on the device (timestamps), or of the loop on the CPU, and of interpolation
-  double setup_s = 0.0;            ///< device and pipeline creation
-  std::uint64_t interpolated = 0;  ///< moments that were interpolated between slope distributions,
+  double kernel_s = 0.0;  ///< time on the device (timestamps) and of the host's sums, or of the loop on the CPU
+  double setup_s = 0.0;   ///< device and pipeline creation
+  std::uint64_t interpolated = 0;         ///< moments that were interpolated between slope distributions,
   std::uint64_t interpolation_nodes = 0;  ///< and moments computed for that
 };
 

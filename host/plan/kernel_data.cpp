@@ -4,10 +4,10 @@
 #include <array>
 #include <bit>
 #include <boost/math/constants/constants.hpp>
-#include <cassert>
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <stdexcept>
 
 #include "model/angles.hpp"
 #include "model/gamma_ratio.hpp"
@@ -306,7 +306,7 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   std::vector<Breakpoint> points =
       breakpoints(theta_deg, a, request, variant, static_cast<int>(data.rule.split_bounces));
   if (request.has_extra_splits) add_extra_splits(points);
-  assert(points.size() <= DOLP_MAX_PIECES + 1);
+  if (points.size() > DOLP_MAX_PIECES + 1) throw std::logic_error("a direction has more pieces than a kernel takes");
   std::ranges::fill(node.end, points.back().slope);
   Pieces pieces;
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -262,7 +262,7 @@ PointResult TableLookup::at(double theta_deg, double sigma, double q) const {
                                           {q_, q_place, window.q, 0}}};
   PointResult change;
   for (const SmoothColumn& column : kColumns) {
-    if ((table_.*column.values).empty()) result.*column.member = kNan;
+    result.*column.member = (table_.*column.values).empty() ? kNan : 0.0;
   }
   const Gather gather(*this, window, spreads);
   for (const Column& column : columns_) read(column, window, spreads, gather, result, change);

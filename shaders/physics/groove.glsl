@@ -21,7 +21,7 @@ struct Fan {
   real taken;    // bounces taken as one, 2^doublings
   int doublings;
   bool is_steep;
-  bool is_black; // so many that nothing leaves
+  bool is_black;  // so many that nothing leaves
 };
 
 // Of a groove of slope t, for a ray that has the projections c and u on the vertical and across.

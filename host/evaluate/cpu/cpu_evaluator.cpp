@@ -3,6 +3,7 @@
 #include <chrono>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/parallel_ranges.hpp"
@@ -68,18 +69,7 @@ std::vector<Moments> by_profiles(const MomentsRequest& request, const KernelData
   std::vector<Moments> moments(request.size());
   const auto one = [&](std::size_t direction) {
     for (ProfileEntries& entries : profile_entries(request, data, direction, direction + 1)) {
-      const Profile profile = profiles.plan(std::move(entries));
-      std::vector<kernel::SlopeNode> slopes;
-      profiles.append(profile, slopes);
-      std::vector<kernel::AzimuthNode> samples;
-      samples.reserve(slopes.size());
-      for (const kernel::SlopeNode& slope : slopes) samples.push_back(text.azimuths(slope));
-      const ProfileEntries& own = profile.entries;
-      const auto store = [&](std::uint32_t shape, const kernel::MomentsNode& node) {
-        moments[data.entry_of(own.direction, own.index, shape)] =
-            moments_from_kernel(node, data, {own.theta, shape, own.index}, unit_roundoff);
-      };
-      profiles.integrate(profile, samples, store);
+      profiles.compute(std::move(entries), text, unit_roundoff, moments);
     }
   };
   const std::size_t wanted = request.wanted_count();

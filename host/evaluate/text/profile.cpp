@@ -27,7 +27,7 @@ namespace {
 
 // Pieces of a profile for distributions of many widths end at slopes that are so far apart, in e-folds.
 constexpr double kWidthStep = 1.3;
-// Of many widths only some so far apart are asked how many nodes they want.
+// Widths so far apart are asked how many nodes they want.
 constexpr double kAskedStep = 0.4;
 
 // -ln of a share of the facets that is none.
@@ -53,43 +53,31 @@ struct SlopeWeights {
   Eigen::ArrayXd common;    // what no tail changes, but for a factor
 };
 
-// Shapes of which every other one of the profile is a mean: of each width the heaviest and the lightest tail.
+// Shapes between which all of a profile's lie, with the scale and cut that the hardest of these needs: widths from the
+// narrowest to the widest, each with the heaviest and the lightest tail.
 std::vector<kernel::ShapeNode> corners_of(const KernelData& data, std::span<const std::uint32_t> shapes) {
-  std::vector<kernel::ShapeNode> sorted;
-  for (const std::uint32_t shape : shapes) sorted.push_back(data.shapes[shape]);
-  std::ranges::sort(sorted, [](const kernel::ShapeNode& a, const kernel::ShapeNode& b) {
-    return a.m != b.m ? a.m < b.m : a.q_minus_1 < b.q_minus_1;
-  });
+  kernel::ShapeNode corner = data.shapes[shapes.front()];
+  double widest = corner.m, lightest = corner.q_minus_1;
+  for (const std::uint32_t i : shapes) {
+    const kernel::ShapeNode& shape = data.shapes[i];
+    corner.scale = std::min(corner.scale, shape.scale);
+    corner.cut = std::max(corner.cut, shape.cut);
+    corner.m = std::min(corner.m, shape.m);
+    corner.q_minus_1 = std::min(corner.q_minus_1, shape.q_minus_1);
+    widest = std::max(widest, shape.m);
+    lightest = std::max(lightest, shape.q_minus_1);
+  }
+  const double narrowest = corner.m, heaviest = corner.q_minus_1;
+  const double steps = std::ceil(std::log(widest / narrowest) / kAskedStep);
   std::vector<kernel::ShapeNode> corners;
-  const auto end_of_width = [&](std::size_t i) {
-    while (i < sorted.size() && sorted[i].m == corners.back().m) ++i;
-    return i;
-  };
-  for (std::size_t i = 0; i < sorted.size();) {
-    const bool is_last = sorted[i].m == sorted.back().m;
-    const bool is_far = corners.empty() || sorted[i].m > corners.back().m * std::exp(kAskedStep);
-    if (!is_far && !is_last) {
-      ++i;
-      continue;
-    }
-    corners.push_back(sorted[i]);
-    i = end_of_width(i);
-    if (sorted[i - 1].q_minus_1 > corners.back().q_minus_1) corners.push_back(sorted[i - 1]);
+  for (double i = 0.0; i <= steps; ++i) {
+    corner.m = i == 0.0 ? narrowest : narrowest * std::pow(widest / narrowest, i / steps);
+    corner.q_minus_1 = heaviest;
+    corners.push_back(corner);
+    corner.q_minus_1 = lightest;
+    if (lightest > heaviest) corners.push_back(corner);
   }
   return corners;
-}
-
-// Gives all corners the scale and cut that the hardest needs.
-void unite(std::span<kernel::ShapeNode> corners) {
-  double scale = corners.front().scale, cut = 0.0;
-  for (const kernel::ShapeNode& corner : corners) {
-    scale = std::min(scale, corner.scale);
-    cut = std::max(cut, corner.cut);
-  }
-  for (kernel::ShapeNode& corner : corners) {
-    corner.scale = scale;
-    corner.cut = cut;
-  }
 }
 
 }  // namespace
@@ -245,8 +233,7 @@ Profiles::Profiles(const KernelData& data) : impl_(std::make_unique<Impl>(data))
 Profiles::~Profiles() = default;
 
 Profile Profiles::plan(ProfileEntries entries) const {
-  std::vector<kernel::ShapeNode> corners = corners_of(impl_->data, entries.shapes);
-  unite(corners);
+  const std::vector<kernel::ShapeNode> corners = corners_of(impl_->data, entries.shapes);
   const std::vector<End> ends = impl_->ends_of(entries.theta, corners);
   const auto theta = std::bit_cast<Text::ThetaNode>(impl_->data.thetas[entries.theta]);
   const auto index = std::bit_cast<Text::IndexNode>(impl_->data.indices[entries.index]);
@@ -282,22 +269,34 @@ void Profiles::append(const Profile& profile, std::vector<kernel::SlopeNode>& no
   }
 }
 
-void Profiles::integrate(const Profile& profile, std::span<const kernel::AzimuthNode> samples,
-                         const Store& store) const {
-  const std::vector<std::uint32_t>& shapes = profile.entries.shapes;
-  const double cosine = impl_->data.thetas[profile.entries.theta].c;
+void Profiles::integrate(const Profile& profile, std::span<const kernel::AzimuthNode> samples, double unit_roundoff,
+                         std::span<Moments> moments) const {
+  const KernelData& data = impl_->data;
+  const auto& [direction, theta, index, shapes] = profile.entries;
   double evaluations = 0.0;
   for (const kernel::AzimuthNode& sample : samples) evaluations += sample.evaluations;
   SlopeWeights weights;
   Eigen::ArrayXd own(static_cast<Eigen::Index>(profile.slopes.size()));
   for (const std::uint32_t shape : shapes) {
-    const auto node = std::bit_cast<Text::ShapeNode>(impl_->data.shapes[shape]);
+    const auto node = std::bit_cast<Text::ShapeNode>(data.shapes[shape]);
     if (node.m != weights.m) weights = impl_->weights_of(profile, node);
-    kernel::MomentsNode moments = impl_->moments_of(profile, node, weights, samples, own);
-    moments.deficit += cosine * impl_->text.slope_tail(node, profile.cut);
-    moments.evaluations = evaluations / static_cast<double>(shapes.size());
-    store(shape, moments);
+    kernel::MomentsNode sums = impl_->moments_of(profile, node, weights, samples, own);
+    sums.deficit += data.thetas[theta].c * impl_->text.slope_tail(node, profile.cut);
+    sums.evaluations = evaluations / static_cast<double>(shapes.size());
+    moments[data.entry_of(direction, index, shape)] =
+        moments_from_kernel(sums, data, {theta, shape, index}, unit_roundoff);
   }
+}
+
+void Profiles::compute(ProfileEntries entries, KernelText& text, double unit_roundoff,
+                       std::span<Moments> moments) const {
+  const Profile profile = plan(std::move(entries));
+  std::vector<kernel::SlopeNode> slopes;
+  append(profile, slopes);
+  std::vector<kernel::AzimuthNode> samples;
+  samples.reserve(slopes.size());
+  for (const kernel::SlopeNode& slope : slopes) samples.push_back(text.azimuths(slope));
+  integrate(profile, samples, unit_roundoff, moments);
 }
 
 std::vector<ProfileEntries> profile_entries(const MomentsRequest& request, const KernelData& data, std::size_t first,

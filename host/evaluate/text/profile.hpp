@@ -5,11 +5,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "evaluate/text/text.hpp"
+#include "model/moments.hpp"
 #include "plan/kernel_data.hpp"
 
 namespace dolp {
@@ -50,7 +51,7 @@ struct Profile {
   std::vector<ProfileSlope> slopes;
 };
 
-/// Plans profiles of a request and integrates them. Any thread may call it.
+/// Plans profiles of a request and integrates them. `data` must outlive it; any thread may call it.
 class Profiles {
  public:
   explicit Profiles(const KernelData& data);
@@ -59,10 +60,12 @@ class Profiles {
   Profile plan(ProfileEntries entries) const;
   /// Appends what the kernel reads, slope by slope.
   void append(const Profile& profile, std::vector<kernel::SlopeNode>& nodes) const;
-  /// Calls store(shape, moments) for each of the profile's shapes; `samples` has what the kernel returned for each of
-  /// its slopes.
-  using Store = std::function<void(std::uint32_t shape, const kernel::MomentsNode& moments)>;
-  void integrate(const Profile& profile, std::span<const kernel::AzimuthNode> samples, const Store& store) const;
+  /// Puts the moments of the profile's shapes at the places of their entries in the request; `samples` has what the
+  /// kernel returned for each of its slopes, `unit_roundoff` is that of its precision.
+  void integrate(const Profile& profile, std::span<const kernel::AzimuthNode> samples, double unit_roundoff,
+                 std::span<Moments> moments) const;
+  /// All three, with the kernel's text on the processor.
+  void compute(ProfileEntries entries, KernelText& text, double unit_roundoff, std::span<Moments> moments) const;
 
  private:
   struct Impl;

@@ -28,7 +28,7 @@ DispatchForecast profile_forecast(const MomentsRequest& request, const vulkan::P
                                   const DeviceDescription& device, const VulkanOptions& options) {
   const KernelData data = kernel_data(request);
   const Profiles profiles(data);
-  const std::size_t at_once = vulkan::batch_directions(request, data);
+  const std::size_t at_once = vulkan::batch_directions(data);
   const std::uint32_t slopes = vulkan::profile_tile_size(tile_limits(device, options.max_tile_invocations, 1), packing);
   DispatchForecast forecast{.tile_invocations = slopes};
   for (std::size_t first = 0; first < data.directions; first += at_once) {

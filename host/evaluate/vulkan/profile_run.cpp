@@ -10,9 +10,8 @@
 namespace dolp::vulkan {
 namespace {
 
-// Bounds the memory of a batch: entries of which the profiles are at hand at a time, and their directions.
-constexpr std::size_t kEntriesAtOnce = 1U << 20U;
-constexpr std::size_t kDirectionsAtOnce = 1024;
+// Bounds the memory of a batch: some hundred slopes each.
+constexpr std::size_t kProfilesAtOnce = 1024;
 
 // The samples in the order for the device: those that run in lockstep have the same bounds of their loops. The gaps are
 // filled with the sample before, once more.
@@ -38,9 +37,8 @@ std::vector<std::uint32_t> in_lockstep(const ProfileBatch& batch, const KernelDa
 
 }  // namespace
 
-std::size_t batch_directions(const MomentsRequest& request, const KernelData& data) {
-  const std::size_t of_direction = std::max<std::size_t>(request.size() / data.directions, 1);
-  return std::clamp<std::size_t>(kEntriesAtOnce / of_direction, 1, kDirectionsAtOnce);
+std::size_t batch_directions(const KernelData& data) {
+  return std::max<std::size_t>(kProfilesAtOnce / (data.is_grid ? data.indices.size() : 1), 1);
 }
 
 ProfileBatch profile_batch(const MomentsRequest& request, const KernelData& data, const Profiles& profiles,
@@ -120,28 +118,35 @@ void ProfileRun::upload_rule() {
 std::optional<std::vector<Moments>> ProfileRun::compute(const Progress& progress) {
   std::vector<Moments> moments(request_.size());
   const std::size_t wanted = request_.wanted_count();
-  const std::size_t at_once = batch_directions(request_, data_);
+  const std::size_t at_once = batch_directions(data_);
   upload_rule();
   for (std::size_t first = 0; first < data_.directions; first += at_once) {
     const std::size_t last = std::min(first + at_once, data_.directions);
     const ProfileBatch batch = profile_batch(request_, data_, profiles_, first, last);
-    const std::vector<kernel::AzimuthNode> samples = samples_of(batch);
+    std::vector<kernel::AzimuthNode> samples(batch.slopes.size());
+    const std::span<const std::uint32_t> slopes(batch.in_lockstep);
+    for (std::size_t done = 0; done < slopes.size();) {
+      const std::size_t count = std::min<std::size_t>(tile_size_, slopes.size() - done);
+      run_tile(batch, slopes.subspan(done, count), samples);
+      done += count;
+      const double of_batch = static_cast<double>(done) / static_cast<double>(slopes.size());
+      const double share = (static_cast<double>(first) + of_batch * static_cast<double>(last - first)) /
+                           static_cast<double>(data_.directions);
+      if (progress && !progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted))
+        return std::nullopt;
+    }
+    for (const kernel::AzimuthNode& sample : samples) cost_.evaluations += sample.evaluations;
     const auto start = std::chrono::steady_clock::now();
-    integrate(batch, samples, moments);
+    parallel_ranges(batch.profiles.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Profile& profile = batch.profiles[i];
+        const auto own = std::span(samples).subspan(batch.first[i], profile.slopes.size());
+        profiles_.integrate(profile, own, context_.packing.unit_roundoff(), moments);
+      }
+    });
     cost_.kernel_s += seconds_since(start);
-    if (progress && !progress(wanted * last / data_.directions, wanted)) return std::nullopt;
   }
   return moments;
-}
-
-std::vector<kernel::AzimuthNode> ProfileRun::samples_of(const ProfileBatch& batch) {
-  std::vector<kernel::AzimuthNode> samples(batch.slopes.size());
-  const std::span<const std::uint32_t> slopes(batch.in_lockstep);
-  for (std::size_t first = 0; first < slopes.size(); first += tile_size_) {
-    run_tile(batch, slopes.subspan(first, std::min<std::size_t>(tile_size_, slopes.size() - first)), samples);
-  }
-  for (const kernel::AzimuthNode& sample : samples) cost_.evaluations += sample.evaluations;
-  return samples;
 }
 
 void ProfileRun::run_tile(const ProfileBatch& batch, std::span<const std::uint32_t> slopes,
@@ -174,22 +179,6 @@ void ProfileRun::run_tile(const ProfileBatch& batch, std::span<const std::uint32
   scratch_.resize(slopes.size() * packing.node_bytes<kernel::AzimuthNode>());
   azimuth_buffer_->read(scratch_);
   for (std::size_t i = 0; i < slopes.size(); ++i) samples[slopes[i]] = packing.read<kernel::AzimuthNode>(scratch_, i);
-}
-
-void ProfileRun::integrate(const ProfileBatch& batch, std::span<const kernel::AzimuthNode> samples,
-                           std::vector<Moments>& moments) const {
-  const double unit_roundoff = context_.packing.unit_roundoff();
-  parallel_ranges(batch.profiles.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Profile& profile = batch.profiles[i];
-      const ProfileEntries& own = profile.entries;
-      const auto store = [&](std::uint32_t shape, const kernel::MomentsNode& node) {
-        moments[data_.entry_of(own.direction, own.index, shape)] =
-            moments_from_kernel(node, data_, {own.theta, shape, own.index}, unit_roundoff);
-      };
-      profiles_.integrate(profile, samples.subspan(batch.first[i], profile.slopes.size()), store);
-    }
-  });
 }
 
 }  // namespace dolp::vulkan

@@ -12,9 +12,6 @@
 
 namespace dolp::vulkan {
 
-/// Invocations that may run in lockstep, so that each waits for the longest.
-inline constexpr std::uint32_t kLockstep = 16;
-
 /// Profiles that are planned, sampled and integrated together, with what the kernel reads of them.
 struct ProfileBatch {
   std::vector<Profile> profiles;
@@ -28,7 +25,7 @@ ProfileBatch profile_batch(const MomentsRequest& request, const KernelData& data
                            std::size_t first, std::size_t last);
 
 /// Directions of a batch, such that its samples take little memory.
-std::size_t batch_directions(const MomentsRequest& request, const KernelData& data);
+std::size_t batch_directions(const KernelData& data);
 
 /// Owns the buffers of one request and computes it.
 class ProfileRun {
@@ -47,11 +44,8 @@ class ProfileRun {
   std::uint32_t tile_size(std::uint32_t tile_slopes) const;
   void create_buffers();
   void upload_rule();
-  std::vector<kernel::AzimuthNode> samples_of(const ProfileBatch& batch);
   void run_tile(const ProfileBatch& batch, std::span<const std::uint32_t> slopes,
                 std::span<kernel::AzimuthNode> samples);
-  void integrate(const ProfileBatch& batch, std::span<const kernel::AzimuthNode> samples,
-                 std::vector<Moments>& moments) const;
 
   RunContext context_;
   const MomentsRequest& request_;

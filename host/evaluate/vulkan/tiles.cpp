@@ -43,7 +43,8 @@ std::uint32_t profile_tile_size(const TileLimits& limits, const Packing& packing
       .invocation_bytes = packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::ThetaNode>() +
                           packing.node_bytes<kernel::IndexNode>() + packing.node_bytes<kernel::AzimuthNode>(),
       .shape_bytes = 1};
-  return tile_sizes(limits, costs).invocations;
+  const std::uint32_t slopes = tile_sizes(limits, costs).invocations;
+  return std::max(slopes - slopes % kLockstep, kLockstep);
 }
 
 std::vector<Block> blocks_of(const Rows& rows, std::uint32_t block_shapes) {

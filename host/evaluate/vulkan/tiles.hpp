@@ -41,7 +41,11 @@ TileCosts tile_costs(const Packing& packing, std::uint32_t width);
 /// The same of the pBRDFs, whose entries bring their own shapes.
 TileCosts scattering_tile_costs(const Packing& packing);
 
-/// Slopes of profiles in a dispatch, at least one.
+/// Invocations that may run in lockstep on a device that bounds their loops, so that each waits for the longest: the
+/// numbers of lavapipe's widest vector.
+inline constexpr std::uint32_t kLockstep = 16;
+
+/// Slopes of profiles in a dispatch: a multiple of kLockstep, so that none of its groups is cut.
 std::uint32_t profile_tile_size(const TileLimits& limits, const Packing& packing);
 
 /// Chunks of shapes whose masking tables are bound together, and the rows that need them.

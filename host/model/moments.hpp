@@ -38,6 +38,7 @@ struct MomentsRequest {
   bool may_interpolate = true;                  ///< between slope distributions, to the same tolerance
   bool has_extra_splits = false;                ///< a rule of another kind, to check others with
   std::uint32_t row_width = 0;  ///< entries that an invocation computes together; 0: what takes least work
+  std::size_t run_size = 0;     ///< entries of all requests of this kind together; 0: of this one
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
   std::vector<OpticalConstants> indices;

@@ -1,7 +1,10 @@
 // Where a scene is looked at: a grid or scattered points.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <optional>
 #include <ranges>
@@ -18,38 +21,100 @@ struct SceneEntry {
   double theta_deg = 0.0;
   SlopeShape shape;
   std::optional<OpticalConstants> index;
+  std::uint32_t wavelength = 0;  ///< position in SceneEntries::wavelength_um
 };
 
-/// The product of three axes in the order theta, sigma, q, the last one fastest, or a list of points. An entry is its
-/// position; a grid has no list of them.
+/// Axis values in any order, each once; theta, sigma and q have one value at least, the others are the scene's where
+/// they are empty.
+struct Grid {
+  std::vector<double> theta_deg = {};
+  std::vector<double> sigma = {};
+  std::vector<double> q = {};
+  std::vector<double> wavelength_um = {};
+  std::vector<double> n = {};
+  std::vector<double> k = {};
+};
+
+/// The axes in the order of a table, the last one fastest.
+enum class Axis : std::uint8_t { kWavelength, kN, kK, kTheta, kSigma, kQ };
+inline constexpr std::array<std::vector<double> Grid::*, 6> kGridAxes = {&Grid::wavelength_um, &Grid::n, &Grid::k,
+                                                                         &Grid::theta_deg,     &Grid::sigma, &Grid::q};
+/// A number for each axis: positions, or counts.
+using PerAxis = std::array<std::size_t, kGridAxes.size()>;
+inline std::size_t at(const PerAxis& numbers, Axis axis) { return numbers[static_cast<std::size_t>(axis)]; }
+
+/// Values on each axis, of one that is empty 1; and their product.
+PerAxis counts_of(const Grid& grid);
+std::size_t size_of(const PerAxis& counts);
+
+/// Neighbours of a part of a grid that are neighbours in the whole as well.
+struct GridRun {
+  std::size_t in_part = 0;
+  std::size_t in_whole = 0;
+  std::size_t count = 0;
+};
+
+/// The product of the axes of a grid, or a list of points. An entry is its position; a grid has no list of them.
 class SceneEntries {
  public:
   SceneEntries() = default;
-  SceneEntries(std::vector<SceneEntry> points) : points_(std::move(points)) {}  // NOLINT: a list is entries
+  SceneEntries(std::vector<SceneEntry> points, std::vector<double> wavelength_um = {})  // NOLINT: a list is entries
+      : points_(std::move(points)) {
+    grid_.wavelength_um = std::move(wavelength_um);
+  }
   SceneEntries(std::initializer_list<SceneEntry> points) : points_(points) {}
+  /// `index`: of the surface, where a grid has an axis of n or of k alone.
+  static SceneEntries of_grid(Grid grid, const OpticalConstants& index);
   static SceneEntries grid(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q);
 
   bool is_grid() const { return is_grid_; }
-  std::size_t size() const { return is_grid_ ? theta_deg_.size() * sigma_.size() * q_.size() : points_.size(); }
+  std::size_t size() const { return is_grid_ ? size_of(counts_) : points_.size(); }
   bool empty() const { return size() == 0; }
   SceneEntry operator[](std::size_t entry) const;
   auto all() const {
     return std::views::iota(std::size_t{0}, size()) |
            std::views::transform([this](std::size_t i) { return (*this)[i]; });
   }
+  /// Of a grid its axis; of points those that are among them. Empty: the scene's spectrum.
+  const std::vector<double>& wavelength_um() const { return grid_.wavelength_um; }
 
   // Of a grid.
-  const std::vector<double>& theta_deg() const { return theta_deg_; }
-  const std::vector<double>& sigma() const { return sigma_; }
-  const std::vector<double>& q() const { return q_; }
+  const Grid& axes() const { return grid_; }
+  const PerAxis& counts() const { return counts_; }
+  const std::vector<double>& theta_deg() const { return grid_.theta_deg; }
+  const std::vector<double>& sigma() const { return grid_.sigma; }
+  const std::vector<double>& q() const { return grid_.q; }
+  PerAxis place(std::size_t entry) const;
+  /// Entries that differ in sigma and q alone.
+  std::size_t of_direction() const { return grid_.sigma.size() * grid_.q.size(); }
+  const OpticalConstants& index() const { return index_; }
+  bool has_own_index() const { return !grid_.n.empty() || !grid_.k.empty(); }
+  /// The index of an entry, of a grid with an axis of n or k.
+  OpticalConstants index_at(const PerAxis& place) const;
 
-  /// Consecutive parts of at most `most` entries each: of a grid whole directions where one fits, else parts of one.
+  /// Parts of at most `most` entries each: of a grid as many directions of all wavelengths and indices as fit, else
+  /// parts of these, each a grid; of points consecutive ones.
   std::vector<SceneEntries> parts(std::size_t most) const;
+  /// The part of a grid that has only the values first[i], ..., first[i] + count[i] - 1 of each axis.
+  SceneEntries part(const PerAxis& first, const PerAxis& count) const;
+  /// Of a part: where its axes begin in the whole, and how many values they have there.
+  const PerAxis& first() const { return first_; }
+  const PerAxis& whole() const { return whole_; }
+  /// The position of an entry of the whole, if the part has it.
+  std::optional<std::size_t> position_of(std::size_t in_whole) const;
 
  private:
   bool is_grid_ = false;
-  std::vector<double> theta_deg_, sigma_, q_;
+  Grid grid_;
+  OpticalConstants index_;
+  PerAxis counts_ = {};
+  PerAxis first_ = {};
+  PerAxis whole_ = {};
   std::vector<SceneEntry> points_;
 };
+
+/// Calls use(run) for a part, that begins at `first` and has `count` values of each axis, of a whole with `whole` values.
+void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
+                  const std::function<void(const GridRun&)>& use);
 
 }  // namespace dolp

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <deque>
 #include <mutex>
-#include <numeric>
 #include <tuple>
 
 #include "base/parallel_ranges.hpp"
@@ -37,39 +37,56 @@ struct Candidate {
   double limit = 0.0;
 };
 
+/// The bounds of a scene at each wavelength of its entries.
+class BoundsOfEntries {
+ public:
+  BoundsOfEntries(const Scene& scene, const SceneEntries& entries) {
+    if (entries.wavelength_um().empty()) scenes_.push_back(scene);
+    for (const double wavelength_um : entries.wavelength_um()) scenes_.push_back(at_wavelength(scene, wavelength_um));
+    for (const Scene& at : scenes_) bounds_.emplace_back(at, spectral_rule(at));
+  }
+  const InfluenceBounds& operator[](const SceneEntry& entry) const { return bounds_[entry.wavelength]; }
+  bool add_nothing(Part part, const KeptEffects& kept) const {
+    return std::ranges::all_of(bounds_, [&](const InfluenceBounds& b) { return b.adds_nothing(part, kept); });
+  }
+
+ private:
+  std::deque<Scene> scenes_;  // the bounds refer to them
+  std::vector<InfluenceBounds> bounds_;
+};
+
+/// One for the entries of one wavelength after the other.
+class MemoryOfEntries {
+ public:
+  ReflectanceMemory& operator[](const SceneEntry& entry) {
+    if (entry.wavelength != wavelength_) memory_ = {};
+    wavelength_ = entry.wavelength;
+    return memory_;
+  }
+
+ private:
+  ReflectanceMemory memory_;
+  std::uint32_t wavelength_ = 0;
+};
+
 /// The bound at one entry, no closer than it takes to see that it is far below the limit.
-DropBound entry_bound(const InfluenceBounds& bounds, const Candidate& candidate, const KeptEffects& kept,
-                      const SceneEntry& entry, ReflectanceMemory& memory) {
+DropBound entry_bound(const BoundsOfEntries& bounds, const Candidate& candidate, const KeptEffects& kept,
+                      const SceneEntry& entry, MemoryOfEntries& memory) {
   for (const Detail detail : {Detail::kCoarse, Detail::kMiddle}) {
-    const DropBound bound = bounds.bound(candidate.part, kept, entry, detail, memory);
+    const DropBound bound = bounds[entry].bound(candidate.part, kept, entry, detail, memory[entry]);
     if (is_within(bound, kFarBelow * candidate.limit)) return bound;
   }
-  return bounds.bound(candidate.part, kept, entry, Detail::kFine, memory);
+  return bounds[entry].bound(candidate.part, kept, entry, Detail::kFine, memory[entry]);
 }
 
 /// The bound of what a part adds at one entry, no closer than it takes to see that it is not above `most`.
-double bound_above(const InfluenceBounds& bounds, Part part, const SceneEntry& entry, double most,
-                   ReflectanceMemory& memory) {
+double bound_above(const BoundsOfEntries& bounds, Part part, const SceneEntry& entry, double most,
+                   MemoryOfEntries& memory) {
   for (const Detail detail : {Detail::kCoarse, Detail::kMiddle}) {
-    const double bound = bounds.bound(part, {}, entry, detail, memory).dolp;
+    const double bound = bounds[entry].bound(part, {}, entry, detail, memory[entry]).dolp;
     if (bound <= most) return bound;
   }
-  return bounds.bound(part, {}, entry, Detail::kFine, memory).dolp;
-}
-
-/// The worst bound of some entries; stops, above the limit, as soon as it is there.
-DropBound worst_of_entries(const InfluenceBounds& bounds, const Candidate& candidate, const SceneEntries& entries,
-                           std::span<const std::uint32_t> positions) {
-  ReflectanceMemory memory;
-  DropBound worst;
-  for (const std::uint32_t i : positions) {
-    worst = worst_of(worst, entry_bound(bounds, candidate, candidate.kept, entries[i], memory));
-    // What counts in the whole scene is not dropped for want of what it acts on.
-    if (candidate.part != Part::kMoments && candidate.kept != KeptEffects{})
-      worst = worst_of(worst, entry_bound(bounds, candidate, {}, entries[i], memory));
-    if (!is_within(worst, candidate.limit)) break;
-  }
-  return worst;
+  return bounds[entry].bound(part, {}, entry, Detail::kFine, memory[entry]).dolp;
 }
 
 /// Entries in the order in which their bounds are looked at: in bistatic mode, where those of one shape share the
@@ -77,61 +94,65 @@ DropBound worst_of_entries(const InfluenceBounds& bounds, const Candidate& candi
 class OrderedEntries {
  public:
   OrderedEntries(const Scene& scene, const SceneEntries& entries)
-      : entries_(entries), is_by_shape_(scene.geometry.mode == Mode::kBistatic) {}
+      : entries_(entries), is_by_shape_(scene.geometry.mode == Mode::kBistatic && entries.is_grid()) {}
 
-  const SceneEntries& entries() const { return entries_; }
-
-  /// Made when first asked for; most plans never ask.
-  std::span<const std::uint32_t> positions() {
-    if (positions_.empty()) {
-      positions_.resize(entries_.size());
-      std::iota(positions_.begin(), positions_.end(), 0U);
-      const auto key = [&](std::uint32_t i) {
-        const SlopeShape shape = entries_[i].shape;
-        return std::pair(shape.sigma, shape.q);
-      };
-      if (is_by_shape_) std::ranges::stable_sort(positions_, {}, key);
-    }
-    return positions_;
+  std::size_t size() const { return entries_.size(); }
+  SceneEntry operator[](std::size_t i) const {
+    if (!is_by_shape_) return entries_[i];
+    const std::size_t of_shape = size() / entries_.of_direction();
+    return entries_[i % of_shape * entries_.of_direction() + i / of_shape];
   }
 
  private:
   const SceneEntries& entries_;
   bool is_by_shape_;
-  std::vector<std::uint32_t> positions_;
 };
 
-/// The entry whose bound is the worst most often: the last one of a grid, which is grazing; for further bounces the
+/// The worst bound of some entries; stops, above the limit, as soon as it is there.
+DropBound worst_of_entries(const BoundsOfEntries& bounds, const Candidate& candidate, const OrderedEntries& entries,
+                           std::size_t first, std::size_t last) {
+  MemoryOfEntries memory;
+  DropBound worst;
+  for (std::size_t i = first; i < last; ++i) {
+    const SceneEntry entry = entries[i];
+    worst = worst_of(worst, entry_bound(bounds, candidate, candidate.kept, entry, memory));
+    // What counts in the whole scene is not dropped for want of what it acts on.
+    if (candidate.part != Part::kMoments && candidate.kept != KeptEffects{})
+      worst = worst_of(worst, entry_bound(bounds, candidate, {}, entry, memory));
+    if (!is_within(worst, candidate.limit)) break;
+  }
+  return worst;
+}
+
+/// The position whose bound is the worst most often: the last one of a grid, which is grazing; for further bounces the
 /// roughest of those.
-std::uint32_t likely_worst(Part part, const SceneEntries& entries) {
-  const auto last = static_cast<std::uint32_t>(entries.size() - 1);
+std::size_t likely_worst(Part part, const OrderedEntries& entries) {
+  const std::size_t last = entries.size() - 1;
   if (part != Part::kFurtherBounces) return last;
-  const auto key = [&](std::uint32_t i) {
+  const auto key = [&](std::size_t i) {
     const SceneEntry entry = entries[i];
     return std::tuple(entry.theta_deg, entry.shape.sigma, -entry.shape.q);
   };
-  std::uint32_t worst = last;
-  for (std::uint32_t i = 0; i < last; ++i) {
+  std::size_t worst = last;
+  for (std::size_t i = 0; i < last; ++i) {
     if (key(i) > key(worst)) worst = i;
   }
   return worst;
 }
 
 /// The worst entry's bound, or one above the limit where there is such an entry.
-DropBound worst_bound(const InfluenceBounds& bounds, const Candidate& candidate, OrderedEntries& ordered) {
-  const SceneEntries& entries = ordered.entries();
-  const bool adds_now = is_kept(candidate.kept, candidate.part) && !bounds.adds_nothing(candidate.part, candidate.kept);
-  const bool adds_in_all = candidate.part != Part::kMoments && !bounds.adds_nothing(candidate.part, {});
-  if (entries.empty() || (!adds_now && !adds_in_all)) return {};
-  const std::uint32_t likely = likely_worst(candidate.part, entries);
-  DropBound worst = worst_of_entries(bounds, candidate, entries, {&likely, 1});
+DropBound worst_bound(const BoundsOfEntries& bounds, const Candidate& candidate, const OrderedEntries& entries) {
+  const bool adds_now = is_kept(candidate.kept, candidate.part) && !bounds.add_nothing(candidate.part, candidate.kept);
+  const bool adds_in_all = candidate.part != Part::kMoments && !bounds.add_nothing(candidate.part, {});
+  if (entries.size() == 0 || (!adds_now && !adds_in_all)) return {};
+  const std::size_t likely = likely_worst(candidate.part, entries);
+  DropBound worst = worst_of_entries(bounds, candidate, entries, likely, likely + 1);
   if (!is_within(worst, candidate.limit)) return worst;
-  const std::span<const std::uint32_t> positions = ordered.positions();
   std::mutex mutex;
   std::atomic<bool> is_over = false;
-  parallel_ranges(positions.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t end) {
+  parallel_ranges(entries.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t end) {
     if (is_over) return;
-    const DropBound of_range = worst_of_entries(bounds, candidate, entries, positions.subspan(first, end - first));
+    const DropBound of_range = worst_of_entries(bounds, candidate, entries, first, end);
     const std::lock_guard lock(mutex);
     worst = worst_of(worst, of_range);
     is_over = !is_within(worst, candidate.limit);
@@ -165,8 +186,8 @@ bool emits_as(const Scene& scene, EmissionModel model) { return scene.emission &
 
 bool is_fresnel(const Scene& scene) { return emits_as(scene, EmissionModel::kFresnel); }
 
-bool needs_beams(const Scene& scene, const InfluenceBounds& bounds, const KeptEffects& kept) {
-  return is_bistatic(scene) && kept.source && !bounds.adds_nothing(Part::kSource, kept) && scene.surface.specular > 0.0;
+bool needs_beams(const Scene& scene, const BoundsOfEntries& bounds, const KeptEffects& kept) {
+  return is_bistatic(scene) && kept.source && !bounds.add_nothing(Part::kSource, kept) && scene.surface.specular > 0.0;
 }
 
 const DroppedPart* find_dropped(const EffectPlan& plan, Part part) {
@@ -235,9 +256,8 @@ EffectRow specular_row(const Scene& scene, const EffectPlan& plan) {
 
 EffectRow model_row(const Scene& scene, const EffectPlan& plan, const char* name, const std::string& choice,
                     const SceneEntries& entries) {
-  const bool all_mirrors = !entries.empty() && std::ranges::all_of(entries.all(), [](const SceneEntry& entry) {
-    return entry.shape.sigma == 0.0;
-  });
+  const auto is_flat = [](const SceneEntry& entry) { return entry.shape.sigma == 0.0; };
+  const bool all_mirrors = !entries.empty() && std::ranges::all_of(entries.all(), is_flat);
   if (all_mirrors) return absent(name, "sigma is 0 everywhere: a mirror");
   if (scene.surface.specular == 0.0) return absent(name, "surface.specular is 0");
   EffectRow row{name, EffectState::kKept, choice + ", a choice of the model: never swapped"};
@@ -263,8 +283,10 @@ EffectRow complex_index_row(const Scene& scene, const EffectPlan& plan, const Sc
   constexpr const char* kName = "complex index";
   const std::vector<OpticalConstants> indices = spectral_rule(scene).indices();
   const auto is_complex = [](const OpticalConstants& index) { return index.k > 0.0; };
-  const bool own =
-      std::ranges::any_of(entries.all(), [&](const SceneEntry& e) { return e.index && is_complex(*e.index); });
+  const bool own = entries.is_grid() ? std::ranges::any_of(entries.axes().k, [](double k) { return k > 0.0; })
+                                     : std::ranges::any_of(entries.all(), [&](const SceneEntry& e) {
+                                         return e.index && is_complex(*e.index);
+                                       });
   if (!own && std::ranges::none_of(indices, is_complex)) return absent(kName, "k is 0");
   EffectRow row{kName, EffectState::kKept, "costs nothing: the kernel treats real indices alike"};
   const bool is_used = plan.needs_moments || plan.needs_beams || (is_fresnel(scene) && plan.kept.emission);
@@ -349,10 +371,9 @@ bool gives_emissivity(const Scene& scene, const EffectPlan& plan) {
 }
 
 EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool keep_all) {
-  const SpectralRule rule = spectral_rule(scene);
-  const InfluenceBounds bounds(scene, rule);
+  const BoundsOfEntries bounds(scene, entries);
   const double allowed = kDroppedShare * scene.accuracy.tolerance;
-  OrderedEntries ordered(scene, entries);
+  const OrderedEntries ordered(scene, entries);
   EffectPlan plan;
   plan.keep_all = keep_all;
   if (!keep_all) {
@@ -376,9 +397,9 @@ EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool ke
 }
 
 Needs needs_without(const Scene& scene, const EffectPlan& plan, Part part) {
-  const InfluenceBounds bounds(scene, spectral_rule(scene));
+  const BoundsOfEntries bounds(scene, {});
   const KeptEffects kept = without(plan.kept, part);
-  return {kept.moments && !bounds.adds_nothing(Part::kMoments, kept),
+  return {kept.moments && !bounds.add_nothing(Part::kMoments, kept),
           part != Part::kMoments && needs_beams(scene, bounds, kept)};
 }
 
@@ -397,19 +418,17 @@ std::vector<EffectRow> effect_rows(const Scene& scene, const SceneEntries& entri
 }
 
 void add_influences(std::vector<EffectRow>& rows, const Scene& scene, const SceneEntries& entries) {
-  const SpectralRule rule = spectral_rule(scene);
-  const InfluenceBounds bounds(scene, rule);
+  const BoundsOfEntries bounds(scene, entries);
   std::vector<EffectRow*> open;
   for (EffectRow& row : rows) {
     if (row.state == EffectState::kKept && row.part && !row.bound) open.push_back(&row);
   }
   for (EffectRow* row : open) row->bound = 0.0;
   if (open.empty() || entries.empty()) return;
-  OrderedEntries ordered(scene, entries);
-  const std::span<const std::uint32_t> positions = ordered.positions();
+  const OrderedEntries ordered(scene, entries);
   std::mutex mutex;
   const auto look_at = [&](std::size_t first, std::size_t last) {
-    ReflectanceMemory memory;
+    MemoryOfEntries memory;
     std::vector<double> most;
     std::vector<std::size_t> unbounded(open.size(), 0);
     {
@@ -418,7 +437,7 @@ void add_influences(std::vector<EffectRow>& rows, const Scene& scene, const Scen
     }
     for (std::size_t i = first; i < last; ++i) {
       for (std::size_t r = 0; r < open.size(); ++r) {
-        const double bound = bound_above(bounds, *open[r]->part, entries[positions[i]], most[r], memory);
+        const double bound = bound_above(bounds, *open[r]->part, ordered[i], most[r], memory);
         if (std::isinf(bound)) ++unbounded[r];
         if (!std::isinf(bound)) most[r] = std::max(most[r], bound);
       }
@@ -430,8 +449,8 @@ void add_influences(std::vector<EffectRow>& rows, const Scene& scene, const Scen
     }
   };
   // The last entry of a grid, which is grazing, is the worst most often: it spares the others a close look.
-  look_at(positions.size() - 1, positions.size());
-  parallel_ranges(positions.size() - 1, kEntriesAtOnce, look_at);
+  look_at(ordered.size() - 1, ordered.size());
+  parallel_ranges(ordered.size() - 1, kEntriesAtOnce, look_at);
 }
 
 const char* state_name(EffectState state) {

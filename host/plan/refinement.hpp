@@ -15,8 +15,9 @@ struct RefinementLevel {
   Precision precision = Precision::kFloat;  ///< kFloat or kDouble
   double tolerance = 1e-4;                  ///< of the rule: MomentsRequest::tolerance
   bool may_interpolate = false;             ///< between slope distributions
-  bool is_check = false;                    ///< by a rule of another kind, rows as wide as those of the first level
+  bool is_check = false;                    ///< by a rule of another kind
   std::uint32_t row_width = 0;              ///< MomentsRequest::row_width
+  std::size_t run_size = 0;                 ///< MomentsRequest::run_size
   /// In the order of their cost: float before double, wide tolerances before tight ones.
   friend bool operator<(const RefinementLevel& a, const RefinementLevel& b) {
     return std::tuple(a.precision, -a.tolerance, a.may_interpolate) <

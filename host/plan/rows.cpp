@@ -51,14 +51,6 @@ void unite(std::span<kernel::ShapeNode> chunk) {
   }
 }
 
-// Shapes of a grid of which any entry is wanted.
-std::vector<char> wanted_shapes(const MomentsRequest& request, std::size_t shapes) {
-  if (request.wanted.empty()) return std::vector<char>(shapes, 1);
-  std::vector<char> wanted(shapes, 0);
-  for (std::size_t i = 0; i < request.wanted.size(); ++i) wanted[i % shapes] |= request.wanted[i];
-  return wanted;
-}
-
 void add_chunk(Rows& rows, const KernelData& data, std::span<const std::uint32_t> shapes) {
   const auto first = static_cast<std::uint32_t>(rows.shapes.size());
   rows.chunks.push_back({first, static_cast<std::uint32_t>(shapes.size())});
@@ -69,9 +61,9 @@ void add_chunk(Rows& rows, const KernelData& data, std::span<const std::uint32_t
   unite(std::span(rows.shapes).subspan(first));
 }
 
-// The chunks of a grid: sigma by sigma along its ascending q.
+// The chunks of a grid: sigma by sigma along its ascending q, whatever is wanted of it, so that an entry keeps its
+// neighbours.
 void add_grid_chunks(Rows& rows, const MomentsRequest& request, const KernelData& data) {
-  const std::vector<char> wanted = wanted_shapes(request, data.shapes.size());
   std::vector<std::uint32_t> ascending(request.q.size());
   std::iota(ascending.begin(), ascending.end(), 0U);
   std::ranges::stable_sort(ascending, {}, [&](std::uint32_t i) { return request.q[i]; });
@@ -84,7 +76,6 @@ void add_grid_chunks(Rows& rows, const MomentsRequest& request, const KernelData
     };
     for (const std::uint32_t q : ascending) {
       const std::uint32_t shape = sigma * of_q + q;
-      if (wanted[shape] == 0) continue;
       if (!chunk.empty() && (chunk.size() == rows.width || !belongs(data, chunk.front(), shape))) close();
       chunk.push_back(shape);
     }
@@ -103,10 +94,15 @@ std::uint32_t used_members(const Rows& rows, const MomentsRequest& request, cons
   return used;
 }
 
-Rows grid_rows(const MomentsRequest& request, const KernelData& data, std::uint32_t width) {
+// Without rows yet.
+Rows grid_chunks(const MomentsRequest& request, const KernelData& data, std::uint32_t width) {
   Rows rows;
   rows.width = width;
   add_grid_chunks(rows, request, data);
+  return rows;
+}
+
+void add_grid_rows(Rows& rows, const MomentsRequest& request, const KernelData& data) {
   if (request.wanted.empty()) rows.rows.reserve(rows.chunks.size() * data.indices.size() * data.directions);
   for (std::uint32_t chunk = 0; chunk < rows.chunks.size(); ++chunk) {
     for (std::uint32_t index = 0; index < data.indices.size(); ++index) {
@@ -117,7 +113,29 @@ Rows grid_rows(const MomentsRequest& request, const KernelData& data, std::uint3
       }
     }
   }
-  return rows;
+}
+
+// The chunks of the width that takes the least work for all of the run.
+Rows cheapest_chunks(const MomentsRequest& request, const KernelData& data) {
+  const auto shapes = static_cast<double>(data.shapes.size());
+  const auto entries = static_cast<double>(std::max(request.run_size, request.wanted_count()));
+  const RowWork unit = data.masking == Masking::kIntegral ? kWithTables : RowWork{};
+  const double evaluations = std::pow(data.rule.digits / kUsualDigits, 2.0);
+  Rows best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t width : kRowWidths) {
+    // Half of it would be unused.
+    if (width > 1 && request.q.size() * 2 <= width) break;
+    Rows rows = grid_chunks(request, data, width);
+    const auto chunks = static_cast<double>(rows.chunks.size());
+    if (width > 1 && shapes <= kLeastUse * width * chunks) continue;
+    const double work = (unit.shared + width) * chunks / shapes * entries * evaluations + unit.kernel * width;
+    if (work < least) {
+      least = work;
+      best = std::move(rows);
+    }
+  }
+  return best;
 }
 
 Rows point_rows(const KernelData& data) {
@@ -132,33 +150,13 @@ Rows point_rows(const KernelData& data) {
 }  // namespace
 
 Rows rows_of(const MomentsRequest& request, const KernelData& data, std::uint32_t width) {
-  return data.is_grid ? grid_rows(request, data, width) : point_rows(data);
+  if (!data.is_grid) return point_rows(data);
+  Rows rows = width > 0 ? grid_chunks(request, data, width) : cheapest_chunks(request, data);
+  add_grid_rows(rows, request, data);
+  return rows;
 }
 
-Rows rows_of(const MomentsRequest& request, const KernelData& data) {
-  if (!data.is_grid) return point_rows(data);
-  if (request.row_width > 0) return grid_rows(request, data, request.row_width);
-  const auto wanted = static_cast<double>(request.wanted_count());
-  const RowWork unit = data.masking == Masking::kIntegral ? kWithTables : RowWork{};
-  const double evaluations = std::pow(data.rule.digits / kUsualDigits, 2.0);
-  Rows best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t width : kRowWidths) {
-    // Half of it would be unused.
-    if (width > 1 && request.q.size() * 2 <= width) break;
-    const double kernel = unit.kernel * width;
-    if (kernel + (unit.shared / width + 1.0) * wanted * evaluations >= least) continue;
-    Rows rows = grid_rows(request, data, width);
-    const auto count = static_cast<double>(rows.rows.size());
-    if (width > 1 && wanted <= kLeastUse * width * count) continue;
-    const double work = (unit.shared + width) * count * evaluations + kernel;
-    if (work < least) {
-      least = work;
-      best = std::move(rows);
-    }
-  }
-  return best;
-}
+Rows rows_of(const MomentsRequest& request, const KernelData& data) { return rows_of(request, data, request.row_width); }
 
 std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count) {
   const auto same_work = [&](const Row& a, const Row& b) {

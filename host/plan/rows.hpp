@@ -48,9 +48,10 @@ struct Rows {
   }
 };
 
-/// Rows of the width that takes the least work, of which making the kernel is a part. A function of the request alone.
+/// Rows of the request's width; of 0, that which takes the least work, of which making the kernel is a part. The
+/// neighbours of an entry follow from the shapes and the run's size, not from directions, indices and what is wanted.
 Rows rows_of(const MomentsRequest& request, const KernelData& data);
-/// Rows of one width.
+/// Rows of another width.
 Rows rows_of(const MomentsRequest& request, const KernelData& data, std::uint32_t width);
 
 /// The invocations of rows first, first + 1, ...: neighbours differ in the direction, so that they do the same work.

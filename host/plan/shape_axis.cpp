@@ -15,6 +15,11 @@ constexpr double kFirstNodes = 3.0;  // whatever the digits
 constexpr double kLeastGain = 1.25;  // values for each node
 constexpr double kGrazing_deg = 89.9;
 
+bool is_grazing(double theta_deg) { return theta_deg > kGrazing_deg; }
+
+// Without shadows that bound the projection of the facets at grazing incidence.
+bool sees_slopes(Masking masking) { return masking == Masking::kNone || masking == Masking::kIntegral; }
+
 double nodes_needed(const ShapeParameter& parameter, double half_length, double digits) {
   const double per_digit = std::log(10.0) / std::asinh(parameter.strip / half_length);
   return std::max(std::ceil(kFirstNodes + digits * per_digit), kLeastNodes);
@@ -32,12 +37,31 @@ ShapeParameter sigma_parameter(Distribution distribution) {
 }
 
 ShapeParameter q_parameter(const MomentsRequest& request) {
-  const auto is_grazing = [](double theta_deg) { return theta_deg > kGrazing_deg; };
-  const bool sees_slopes = request.masking == Masking::kNone || request.masking == Masking::kIntegral;
   const bool needs_mean_slope =
-      request.masking == Masking::kSmith || (sees_slopes && std::ranges::all_of(request.theta_deg, is_grazing));
+      request.masking == Masking::kSmith ||
+      (sees_slopes(request.masking) && std::ranges::all_of(request.theta_deg, is_grazing));
   const bool has_mean_slope = request.distribution == Distribution::kCauchy && std::ranges::min(request.q) > 1.5;
   return {needs_mean_slope && has_mean_slope ? 1.5 : 1.0, 1.45};
+}
+
+std::vector<MomentsRequest> with_one_parameter(const MomentsRequest& request) {
+  const auto grazing = static_cast<std::size_t>(std::ranges::count_if(request.theta_deg, is_grazing));
+  if (!sees_slopes(request.masking) || grazing == 0 || grazing == request.theta_deg.size()) return {request};
+  std::vector<MomentsRequest> parts;
+  const std::size_t of_theta = request.size() / request.theta_deg.size();
+  for (const bool of_grazing : {false, true}) {
+    MomentsRequest& part = parts.emplace_back(request);
+    part.theta_deg.clear();
+    part.wanted.clear();
+    for (std::size_t i = 0; i < request.theta_deg.size(); ++i) {
+      if (is_grazing(request.theta_deg[i]) != of_grazing) continue;
+      part.theta_deg.push_back(request.theta_deg[i]);
+      if (request.wanted.empty()) continue;
+      const auto first = request.wanted.begin() + static_cast<std::ptrdiff_t>(i * of_theta);
+      part.wanted.insert(part.wanted.end(), first, first + static_cast<std::ptrdiff_t>(of_theta));
+    }
+  }
+  return parts;
 }
 
 ShapeAxis shape_axis(const ShapeParameter& parameter, const std::vector<double>& values, double digits) {

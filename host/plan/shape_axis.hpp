@@ -21,7 +21,10 @@ struct ShapeParameter {
   double strip = 1.0;
 };
 ShapeParameter sigma_parameter(Distribution distribution);
+/// All of the request's directions are grazing, or none is.
 ShapeParameter q_parameter(const MomentsRequest& request);
+/// The request in parts of which each has directions of one parameter, in the order of the request: usually one.
+std::vector<MomentsRequest> with_one_parameter(const MomentsRequest& request);
 
 /// Values of a parameter, and the nodes that stand for them.
 struct ShapeAxis {

@@ -49,11 +49,20 @@ void store(const Values& values, double Moments::*quantity, std::span<Moments> m
   for (std::size_t i = 0; i < moments.size(); ++i) moments[i].*quantity = values.data()[i];
 }
 
+/// Whether of each direction and index all is wanted, or nothing.
+bool wants_whole_directions(const MomentsRequest& request) {
+  if (request.layout != MomentsRequest::Layout::kGrid) return false;
+  const std::size_t shapes = request.sigma.size() * request.q.size();
+  for (std::size_t i = 0; i < request.wanted.size(); ++i) {
+    if (request.wanted[i] != request.wanted[i - i % shapes]) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
-  const bool is_whole_grid = request.layout == MomentsRequest::Layout::kGrid && request.wanted.empty();
-  if (!request.may_interpolate || !is_whole_grid || request.size() == 0) return std::nullopt;
+  if (!request.may_interpolate || request.size() == 0 || !wants_whole_directions(request)) return std::nullopt;
   const double digits = kExtraDigits - std::log10(request.tolerance);
   ShapePlan plan;
   plan.sigma = shape_axis(sigma_parameter(request.distribution), request.sigma, digits);
@@ -63,7 +72,25 @@ std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
   plan.nodes.tolerance = node_tolerance(request);
   plan.nodes.sigma = plan.sigma.nodes;
   plan.nodes.q = plan.q.nodes;
+  const std::size_t shapes = request.sigma.size() * request.q.size();
+  plan.nodes.run_size = request.run_size * plan.nodes_of_a_direction() / shapes;
+  if (!request.wanted.empty()) {
+    plan.nodes.wanted.clear();
+    for (std::size_t first = 0; first < request.size(); first += shapes)
+      plan.nodes.wanted.insert(plan.nodes.wanted.end(), plan.nodes_of_a_direction(), request.wanted[first]);
+  }
   return plan;
+}
+
+std::vector<char> interpolated_directions(const MomentsRequest& request) {
+  std::vector<char> is_interpolated(request.theta_deg.size(), 0);
+  for (const MomentsRequest& part : with_one_parameter(request)) {
+    if (!shape_plan(part)) continue;
+    for (std::size_t i = 0; i < is_interpolated.size(); ++i) {
+      if (std::ranges::find(part.theta_deg, request.theta_deg[i]) != part.theta_deg.end()) is_interpolated[i] = 1;
+    }
+  }
+  return is_interpolated;
 }
 
 void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::span<Moments> moments) {

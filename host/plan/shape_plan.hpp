@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "model/moments.hpp"
 #include "plan/shape_axis.hpp"
@@ -22,8 +23,12 @@ struct ShapePlan {
   std::size_t nodes_of_a_direction() const { return sigma.nodes.size() * q.nodes.size(); }
 };
 
-/// The plan of a request, or none where every entry is computed by itself.
+/// The plan of a request whose directions have one parameter (with_one_parameter), or none where every entry is computed
+/// by itself, as where only some entries of a direction and index are wanted.
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request);
+
+/// Which of a grid's directions the plans of its parts interpolate.
+std::vector<char> interpolated_directions(const MomentsRequest& request);
 
 /// The moments of one direction and index at the request's sigma x q, from those at its nodes. Bounds are those of the
 /// nodes, weighted with the interpolant's own weights, and what the last Chebyshev coefficients say of the

@@ -24,7 +24,7 @@ SceneEntries drawn_entries(const SceneEntries& entries, std::size_t count) {
   if (entries.size() <= count) return entries;
   std::vector<SceneEntry> drawn;
   for (const std::size_t position : drawn_positions(entries.size(), count)) drawn.push_back(entries[position]);
-  return drawn;
+  return {std::move(drawn), entries.wavelength_um()};
 }
 
 }  // namespace dolp

@@ -1,6 +1,9 @@
 // The entries of a table or of a list of points.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
+
 #include "base/error.hpp"
 #include "run/scene_run.hpp"
 #include "scene/number_range.hpp"
@@ -18,14 +21,38 @@ void check_columns(const Scene& scene, const Points& points) {
                     "does without",
                     points.name, kZenithDegRange.text()));
   }
-  if (points.n.has_value() != points.k.has_value() && !scene.surface.material.is_constant()) {
+  const Material& material = scene.surface.material;
+  const bool is_dispersive = !material.is_constant() || (points.wavelength_um && material.tabulated);
+  if (points.n.has_value() != points.k.has_value() && is_dispersive) {
     const char* given = points.n ? "n" : "k";
     const char* missing = points.n ? "k" : "n";
     throw InputError(
         fmt::format("{}:1: column \"{}\" needs column \"{}\" beside it, because the scene's material \"{}\" "
                     "depends on the wavelength",
-                    points.name, given, missing, scene.surface.material.name));
+                    points.name, given, missing, material.name));
   }
+}
+
+/// The distinct wavelengths of the points, which all must be where n, k and E0 are known.
+std::vector<double> wavelengths_of(const Scene& scene, const Points& points) {
+  if (scene.spectrum.is_band()) {
+    throw InputError(fmt::format("{}:1: column \"wavelength_um\" cannot be combined with spectrum.band_um", points.name));
+  }
+  std::vector<double> wavelengths = *points.wavelength_um;
+  std::ranges::sort(wavelengths);
+  const auto twice = std::ranges::unique(wavelengths);
+  wavelengths.erase(twice.begin(), twice.end());
+  for (const double wavelength_um : {wavelengths.front(), wavelengths.back()}) {
+    try {
+      at_wavelength(scene, wavelength_um);
+    } catch (const InputError& error) {
+      const auto row = static_cast<std::size_t>(std::ranges::find(*points.wavelength_um, wavelength_um) -
+                                                points.wavelength_um->begin());
+      throw InputError(fmt::format("{}:{}: wavelength_um = {}: {}", points.name, points.line(row),
+                                   format_number(wavelength_um), error.what()));
+    }
+  }
+  return wavelengths;
 }
 
 double value_or(const std::optional<std::vector<double>>& column, std::size_t row, double fallback) {
@@ -48,14 +75,14 @@ void check_smith(const Scene& scene, const Points& points) {
 }
 
 SceneEntries grid_entries(const Scene& scene) {
-  const Grid& grid = scene.grid;
-  const double count = static_cast<double>(grid.theta_deg.size()) * static_cast<double>(grid.sigma.size()) *
-                       static_cast<double>(grid.q.size());
-  if (count > static_cast<double>(kMostTableEntries)) {
-    throw InputError(fmt::format("{}: grid: {} x {} x {} entries; at most {} in one table", scene.path_name,
-                                 grid.theta_deg.size(), grid.sigma.size(), grid.q.size(), kMostTableEntries));
+  const PerAxis counts = counts_of(scene.grid);
+  double size = 1.0;
+  for (const std::size_t count : counts) size *= static_cast<double>(count);
+  if (size > static_cast<double>(kMostTableEntries)) {
+    throw InputError(fmt::format("{}: grid: {} entries; at most {} in one table", scene.path_name,
+                                 fmt::join(counts, " x "), kMostTableEntries));
   }
-  return SceneEntries::grid(grid.theta_deg, grid.sigma, grid.q);
+  return SceneEntries::of_grid(scene.grid, scene.surface.material.constant);
 }
 
 SceneEntries point_entries(const Scene& scene, const Points& points) {
@@ -63,9 +90,11 @@ SceneEntries point_entries(const Scene& scene, const Points& points) {
   check_smith(scene, points);
   const Surface& surface = scene.surface;
   const bool has_own_index = points.n || points.k;
-  if (points.theta_deg && !points.sigma && !points.q && !has_own_index) {
+  const bool has_wavelength = points.wavelength_um && points.size() > 0;
+  if (points.theta_deg && !points.sigma && !points.q && !has_own_index && !has_wavelength) {
     return SceneEntries::grid(*points.theta_deg, {surface.sigma}, {surface.q});
   }
+  const std::vector<double> wavelengths = has_wavelength ? wavelengths_of(scene, points) : std::vector<double>{};
   std::vector<SceneEntry> entries;
   entries.reserve(points.size());
   for (std::size_t row = 0; row < points.size(); ++row) {
@@ -75,9 +104,13 @@ SceneEntries point_entries(const Scene& scene, const Points& points) {
     const OpticalConstants& index = surface.material.constant;
     if (has_own_index)
       entry.index = OpticalConstants{value_or(points.n, row, index.n), value_or(points.k, row, index.k)};
+    if (has_wavelength) {
+      const auto found = std::ranges::lower_bound(wavelengths, (*points.wavelength_um)[row]);
+      entry.wavelength = static_cast<std::uint32_t>(found - wavelengths.begin());
+    }
     entries.push_back(entry);
   }
-  return entries;
+  return {std::move(entries), wavelengths};
 }
 
 }  // namespace dolp

@@ -21,16 +21,6 @@ Treatment treatment(const Scene& scene, const SceneEntry& entry) {
   return treatment_of(scene.surface.distribution, scene.surface.masking, seen_deg(scene, entry.theta_deg), entry.shape);
 }
 
-/// A position on each axis of a grid.
-struct GridPlace {
-  std::size_t theta, sigma, q;
-};
-
-GridPlace place_in(const SceneEntries& grid, std::size_t position) {
-  const std::size_t of_sigma = position / grid.q().size();
-  return {of_sigma / grid.sigma().size(), of_sigma % grid.sigma().size(), position % grid.q().size()};
-}
-
 /// Values that are used go to `axis`, in their order.
 std::vector<std::uint32_t> numbered(const std::vector<double>& values, const std::vector<char>& is_used,
                                     std::vector<double>& axis) {
@@ -63,9 +53,17 @@ Scattered beam_without_evaluator(const Scene& scene, double theta_deg) {
   return {.i = glare, .q = glare};
 }
 
-PartRequests::PartRequests(const Scene& scene, const std::vector<OpticalConstants>& samples, const EffectPlan& plan,
+SpectralIndices spectral_indices(const Scene& scene, const SceneEntries& entries) {
+  if (entries.wavelength_um().empty()) return {spectral_rule(scene).indices()};
+  SpectralIndices indices;
+  for (const double wavelength_um : entries.wavelength_um())
+    indices.push_back(spectral_rule(at_wavelength(scene, wavelength_um)).indices());
+  return indices;
+}
+
+PartRequests::PartRequests(const Scene& scene, const SpectralIndices& samples, const EffectPlan& plan,
                            const Selection& selection, const RefinementLevel& level)
-    : scene_(scene), samples_(samples), plan_(plan), chosen_(selection.chosen) {
+    : scene_(scene), samples_(samples), plan_(plan), selection_(selection) {
   moments_.distribution = beams_.distribution = scene.surface.distribution;
   moments_.masking = beams_.masking = scene.surface.masking;
   moments_.scattering = beams_.scattering = plan.kept.further_bounces ? scene.surface.scattering : Scattering::kSingle;
@@ -74,23 +72,43 @@ PartRequests::PartRequests(const Scene& scene, const std::vector<OpticalConstant
   moments_.tolerance = level.tolerance;
   moments_.has_extra_splits = level.is_check;
   moments_.row_width = level.row_width;
+  moments_.run_size = level.run_size;
   moments_.may_interpolate = level.may_interpolate;
   if (plan.needs_moments && selection.part.is_grid()) ask_grid(selection);
   if (plan.needs_moments && !selection.part.is_grid()) ask_points(selection);
   if (plan.needs_beams) ask_beams(selection);
 }
 
+std::size_t PartRequests::set_of(const SceneEntries& grid, const PerAxis& place) const {
+  if (!grid.has_own_index()) return at(place, Axis::kWavelength);
+  return at(place, Axis::kN) * at(grid.counts(), Axis::kK) + at(place, Axis::kK);
+}
+
 void PartRequests::ask_grid(const Selection& selection) {
   const SceneEntries& grid = selection.part;
+  const PerAxis& counts = grid.counts();
+  const bool is_whole = selection.chosen.empty();
+  const std::size_t sets =
+      grid.has_own_index() ? at(counts, Axis::kN) * at(counts, Axis::kK) : at(counts, Axis::kWavelength);
   std::vector<char> theta(grid.theta_deg().size(), 0), sigma(grid.sigma().size(), 0), q(grid.q().size(), 0);
-  for (std::size_t i = 0; i < selection.size(); ++i) {
-    if (!wants_moments(scene_, selection[i], plan_)) continue;
-    const GridPlace place = place_in(grid, selection.position(i));
-    theta[place.theta] = sigma[place.sigma] = q[place.q] = 1;
+  std::vector<char> set(sets, is_whole ? 1 : 0);
+  for (const std::size_t i : selection.chosen) {
+    if (!wants_moments(scene_, grid[i], plan_)) continue;
+    const PerAxis place = grid.place(i);
+    theta[at(place, Axis::kTheta)] = set[set_of(grid, place)] = 1;
+  }
+  for (std::size_t i = 0; i < sigma.size(); ++i) {
+    for (std::size_t j = 0; j < q.size(); ++j) {
+      const SlopeShape shape{grid.sigma()[i], grid.q()[j]};
+      if (!is_mirror(shape)) sigma[i] = q[j] = 1;
+      for (std::size_t t = 0; is_whole && t < theta.size(); ++t) {
+        if (theta[t] == 0) theta[t] = wants_moments(scene_, {grid.theta_deg()[t], shape, {}}, plan_) ? 1 : 0;
+      }
+    }
   }
   if (std::ranges::find(theta, 1) == theta.end()) return;
   moments_.layout = MomentsRequest::Layout::kGrid;
-  moments_.indices = samples_;
+  ask_indices(grid, set);
   sigma_at_ = numbered(grid.sigma(), sigma, moments_.sigma);
   if (scene_.surface.distribution == Distribution::kGaussian) {
     moments_.q = {SlopeShape{}.q};
@@ -107,26 +125,59 @@ void PartRequests::ask_grid(const Selection& selection) {
   for (double& theta_deg : moments_.theta_deg) {
     theta_deg = zenith_before_limit_deg(scene_.surface.masking, theta_deg);
   }
-  if (!selection.chosen.empty()) mask(selection);
+  if (!is_whole) mask(selection);
+}
+
+/// Sets that are alike share their indices.
+void PartRequests::ask_indices(const SceneEntries& grid, const std::vector<char>& is_used) {
+  set_at_.assign(is_used.size(), 0);
+  std::vector<OpticalConstants> last;
+  std::uint32_t first = 0;
+  for (std::size_t set = 0; set < is_used.size(); ++set) {
+    if (is_used[set] == 0) continue;
+    std::vector<OpticalConstants> own;
+    if (grid.has_own_index()) {
+      PerAxis place = {};
+      place[static_cast<std::size_t>(Axis::kN)] = set / at(grid.counts(), Axis::kK);
+      place[static_cast<std::size_t>(Axis::kK)] = set % at(grid.counts(), Axis::kK);
+      own = {grid.index_at(place)};
+    } else {
+      own = samples_[set];
+    }
+    if (own != last) {
+      first = static_cast<std::uint32_t>(moments_.indices.size());
+      moments_.indices.insert(moments_.indices.end(), own.begin(), own.end());
+      last = std::move(own);
+    }
+    set_at_[set] = first;
+  }
 }
 
 void PartRequests::mask(const Selection& selection) {
   moments_.wanted.assign(moments_.size(), 0);
   for (std::size_t i = 0; i < selection.size(); ++i) {
-    if (!wants_moments(scene_, selection[i], plan_)) continue;
+    const SceneEntry entry = selection[i];
+    if (!wants_moments(scene_, entry, plan_)) continue;
     const Place place = moments_of(i);
-    for (std::size_t j = 0; j < samples_.size(); ++j) moments_.wanted[place.first + j * place.stride] = 1;
+    const std::size_t samples = entry.index ? 1 : samples_[entry.wavelength].size();
+    for (std::size_t j = 0; j < samples; ++j) moments_.wanted[place.first + j * place.stride] = 1;
   }
   if (moments_.wanted_count() == moments_.size()) moments_.wanted.clear();
 }
 
 PartRequests::Place PartRequests::moments_of(std::size_t member) const {
   if (!places_.empty()) return places_[member];
-  const std::size_t position = chosen_.empty() ? member : chosen_[member];
-  const std::size_t of_sigma = position / q_at_.size();
+  const SceneEntries& grid = selection_.part;
+  const PerAxis place = grid.place(selection_.position(member));
   const std::size_t shapes = moments_.sigma.size() * moments_.q.size();
-  const std::size_t shape = sigma_at_[of_sigma % sigma_at_.size()] * moments_.q.size() + q_at_[position % q_at_.size()];
-  return {theta_at_[of_sigma / sigma_at_.size()] * samples_.size() * shapes + shape, shapes};
+  const std::size_t shape = sigma_at_[at(place, Axis::kSigma)] * moments_.q.size() + q_at_[at(place, Axis::kQ)];
+  const std::size_t theta = theta_at_[at(place, Axis::kTheta)];
+  return {(theta * moments_.indices.size() + set_at_[set_of(grid, place)]) * shapes + shape,
+          grid.has_own_index() ? std::size_t{0} : shapes};
+}
+
+std::size_t PartRequests::direction_of(std::size_t member) const {
+  return theta_at_[at(selection_.part.place(selection_.position(member)), Axis::kTheta)];
 }
 
 void PartRequests::ask_points(const Selection& selection) {
@@ -142,7 +193,8 @@ void PartRequests::ask_points(const Selection& selection) {
       const SlopeShape shape = normalised(scene_, entry.shape);
       own.clear();
       if (entry.index) own.push_back({used_deg, shape, *entry.index});
-      for (std::size_t j = 0; !entry.index && j < samples_.size(); ++j) own.push_back({used_deg, shape, samples_[j]});
+      for (std::size_t j = 0; !entry.index && j < samples_[entry.wavelength].size(); ++j)
+        own.push_back({used_deg, shape, samples_[entry.wavelength][j]});
       if (own != last) {
         place = {moments_.size(), entry.index ? std::size_t{0} : std::size_t{1}};
         for (const MomentsPoint& point : own) moments_.append(point);
@@ -162,7 +214,11 @@ void PartRequests::ask_beams(const Selection& selection) {
       for (const double q : selection.part.q()) beams_.shapes.push_back({sigma, q});
     }
   }
-  beams_.indices = samples_;
+  std::vector<std::uint32_t> first_index;
+  for (const std::vector<OpticalConstants>& of_wavelength : samples_) {
+    first_index.push_back(static_cast<std::uint32_t>(beams_.indices.size()));
+    beams_.indices.insert(beams_.indices.end(), of_wavelength.begin(), of_wavelength.end());
+  }
   first_beam_.reserve(selection.size());
   for (std::size_t i = 0; i < selection.size(); ++i) {
     const SceneEntry entry = selection[i];
@@ -170,18 +226,20 @@ void PartRequests::ask_beams(const Selection& selection) {
     if (!wants_beam(scene_, entry, plan_)) continue;
     ScatteringEntry wanted;
     if (is_grid) {
-      const GridPlace place = place_in(selection.part, selection.position(i));
-      wanted.angles = static_cast<std::uint32_t>(place.theta);
-      wanted.shape = static_cast<std::uint32_t>(place.sigma) * q_count + static_cast<std::uint32_t>(place.q);
+      const PerAxis place = selection.part.place(selection.position(i));
+      wanted.angles = static_cast<std::uint32_t>(at(place, Axis::kTheta));
+      wanted.shape = static_cast<std::uint32_t>(at(place, Axis::kSigma)) * q_count +
+                     static_cast<std::uint32_t>(at(place, Axis::kQ));
     } else {
       wanted.angles = wanted.shape = static_cast<std::uint32_t>(beams_.angles.size());
       beams_.angles.push_back(angles_of(scene_, entry.theta_deg));
       beams_.shapes.push_back(entry.shape);
     }
-    if (entry.index) beams_.indices.push_back(*entry.index);
+    if (entry.index && (beams_.indices.empty() || beams_.indices.back() != *entry.index))
+      beams_.indices.push_back(*entry.index);
     const auto own = static_cast<std::uint32_t>(beams_.indices.size() - 1);
-    for (std::uint32_t j = 0; j < samples_.size(); ++j) {
-      wanted.index = entry.index ? own : j;
+    for (std::uint32_t j = 0; j < samples_[entry.wavelength].size(); ++j) {
+      wanted.index = entry.index ? own : first_index[entry.wavelength] + j;
       beams_.entries.push_back(wanted);
     }
   }

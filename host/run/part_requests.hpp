@@ -39,13 +39,18 @@ bool wants_beam(const Scene& scene, const SceneEntry& entry, const EffectPlan& p
 /// is not defined, as it is not with source and view both at 90 degrees.
 Scattered beam_without_evaluator(const Scene& scene, double theta_deg);
 
-/// The requests of one level at a selection. Of a grid the moments are a grid again, of the values that any entry
-/// needs; in bistatic mode of one direction, the view. Of points neighbours that differ in nothing that the moments see
-/// share them.
+/// The indices at which a scene wants moments: of each wavelength of its entries, or of its spectrum.
+using SpectralIndices = std::vector<std::vector<OpticalConstants>>;
+SpectralIndices spectral_indices(const Scene& scene, const SceneEntries& entries);
+
+/// The requests of one level at a selection. Of a grid the moments are a grid again: of the directions and indices of
+/// the selection, and of all slope distributions, so that what an entry gets does not depend on which others are
+/// selected in other directions; in bistatic mode of one direction, the view. Of points neighbours that differ in
+/// nothing that the moments see share them.
 class PartRequests {
  public:
-  PartRequests(const Scene& scene, const std::vector<OpticalConstants>& samples, const EffectPlan& plan,
-               const Selection& selection, const RefinementLevel& level);
+  PartRequests(const Scene& scene, const SpectralIndices& samples, const EffectPlan& plan, const Selection& selection,
+               const RefinementLevel& level);
 
   const MomentsRequest& moments() const { return moments_; }
   const ScatteringRequest& beams() const { return beams_; }
@@ -56,23 +61,28 @@ class PartRequests {
     std::size_t stride = 0;
   };
   Place moments_of(std::size_t member) const;
+  /// Of a grid: the direction of the request that a member has its moments from.
+  std::size_t direction_of(std::size_t member) const;
   /// The first of its beams, one for each sample.
   std::size_t beams_of(std::size_t member) const { return first_beam_[member]; }
 
  private:
   void ask_grid(const Selection& selection);
+  void ask_indices(const SceneEntries& grid, const std::vector<char>& is_used);
   void mask(const Selection& selection);
+  std::size_t set_of(const SceneEntries& grid, const PerAxis& place) const;
   void ask_points(const Selection& selection);
   void ask_beams(const Selection& selection);
 
   const Scene& scene_;
-  const std::vector<OpticalConstants>& samples_;
+  const SpectralIndices& samples_;
   const EffectPlan& plan_;
+  const Selection selection_;
   MomentsRequest moments_;
   ScatteringRequest beams_;
-  // Of a grid: the position in the request of each value of the part's axes.
-  std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_;
-  std::span<const std::size_t> chosen_;
+  // Of a grid: the position in the request of each value of the part's axes, and of the first index of each set: those
+  // of a wavelength, or the one of n and k.
+  std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, set_at_;
   std::vector<Place> places_;  ///< of points
   std::vector<std::size_t> first_beam_;
 };

@@ -17,14 +17,19 @@
 namespace dolp {
 namespace {
 
-/// All entries of some directions of a grid, the middles of equal parts of them.
+/// All slope distributions of some directions of a grid, the middles of equal parts of them, at one wavelength and index.
 SceneEntries entries_of_drawn_directions(const SceneEntries& grid) {
-  std::vector<double> theta_deg = grid.theta_deg();
+  Grid axes = grid.axes();
+  std::vector<double>& theta_deg = axes.theta_deg;
   std::ranges::sort(theta_deg);
   std::vector<double> drawn;
   const std::size_t count = std::min(theta_deg.size(), kCountedDirections);
   for (std::size_t i = 0; i < count; ++i) drawn.push_back(theta_deg[(2 * i + 1) * theta_deg.size() / (2 * count)]);
-  return SceneEntries::grid(drawn, grid.sigma(), grid.q());
+  theta_deg = drawn;
+  for (std::vector<double>* axis : {&axes.wavelength_um, &axes.n, &axes.k}) {
+    if (!axis->empty()) *axis = {(*axis)[axis->size() / 2]};
+  }
+  return SceneEntries::of_grid(axes, grid.index());
 }
 
 /// Sums of one kind of request, of the first level and of all others.
@@ -108,20 +113,22 @@ void count_work(RunPrediction& run, const Scene& scene, const SceneEntries& entr
 
 RunPrediction predict_run(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan, bool has_double,
                           const RequestVisitor& visit) {
-  const std::vector<OpticalConstants> samples = spectral_rule(scene).indices();
   RunPrediction run;
   run.entries = entries.size();
-  run.spectral_samples = samples.size();
+  run.spectral_samples = spectral_rule(scene).samples.size();
   run.first = first_level(scene.accuracy, has_double);
   std::size_t largest = 0;
-  for (const SceneEntries& part : run_parts(entries, samples.size())) {
-    const PartRequests requests(scene, samples, plan, {part}, run.first);
+  run.first.run_size = entries.size();
+  for (const SceneEntries& part : run_parts(entries, run.spectral_samples)) {
+    const SpectralIndices indices = spectral_indices(scene, part);
+    const PartRequests requests(scene, indices, plan, {part}, run.first);
     const std::size_t moments = requests.moments().size();
     const std::size_t beams = requests.beams().entries.size();
-    if (moments > 0) {
-      const std::optional<ShapePlan> shapes = shape_plan(requests.moments());
-      const MomentsRequest& computed = shapes ? shapes->nodes : requests.moments();
-      if (shapes) run.interpolated += moments;
+    for (const MomentsRequest& asked : with_one_parameter(requests.moments())) {
+      if (asked.size() == 0) continue;
+      const std::optional<ShapePlan> shapes = shape_plan(asked);
+      const MomentsRequest& computed = shapes ? shapes->nodes : asked;
+      if (shapes) run.interpolated += asked.size();
       run.counts_directions = entries.is_grid() && (shapes || has_profiles(computed));
       run.moments += computed.size();
       visit.moments(computed);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <stdexcept>
 
@@ -10,6 +11,7 @@
 #include "model/angles.hpp"
 #include "model/status.hpp"
 #include "plan/refinement.hpp"
+#include "plan/shape_plan.hpp"
 #include "run/closed_forms.hpp"
 #include "run/part_requests.hpp"
 #include "run/table_scene.hpp"
@@ -22,17 +24,30 @@ constexpr std::size_t kMomentsAtOnce = 1U << 22U;
 constexpr std::size_t kPointsAtOnce = 1U << 20U;
 // A direction of which more than one entry in so many misses the tolerance is refined as a whole.
 constexpr std::size_t kManyMisses = 8;
-constexpr std::size_t kFewEntries = 256;      // whose levels are joined
 constexpr std::size_t kEntriesAtOnce = 4096;  // of a thread: their radiometry takes longer than to start one
 
-/// What the parts of a run share.
+/// What the scene is at each wavelength of a part.
+struct Spectra {
+  Spectra(const Scene& scene, const EffectPlan& plan, const std::vector<double>& wavelength_um) {
+    if (wavelength_um.empty()) radiometries.emplace_back(scene, plan.kept, plan.bound);
+    for (const double of_entry : wavelength_um)
+      radiometries.emplace_back(at_wavelength(scene, of_entry), plan.kept, plan.bound);
+    for (const Radiometry& radiometry : radiometries) indices.push_back(radiometry.rule().indices());
+  }
+  std::vector<Radiometry> radiometries;
+  SpectralIndices indices;
+};
+
+/// What the steps of a part share.
 struct Way {
   const Scene& scene;
   const EffectPlan& plan;
-  const Radiometry& radiometry;
-  const std::vector<OpticalConstants>& samples;
+  const Spectra& spectra;
   MomentsEvaluator* evaluator;
-  Accuracy accuracy;  ///< the scene's, in the evaluator's precision where the scene leaves it open
+  Accuracy accuracy;         ///< the scene's, in the evaluator's precision where the scene leaves it open
+  std::size_t run_size = 0;  ///< entries of the whole table
+
+  std::size_t samples() const { return spectra.indices.front().size(); }  ///< of every entry
 };
 
 /// What the evaluator said to the requests of a part.
@@ -52,19 +67,20 @@ class MemberResults {
         selection_(selection),
         requests_(requests),
         answer_(answer),
-        moments_(way.samples.size()),
-        indices_(way.samples.size()),
-        beams_(way.samples.size()) {}
+        moments_(way.samples()),
+        indices_(way.samples()),
+        beams_(way.samples()) {}
 
   PointResult operator()(std::size_t member) {
     const SceneEntry entry = selection_[member];
     const Direction direction = seen(entry);
     if (entry.index) std::ranges::fill(indices_, *entry.index);
-    const std::span<const OpticalConstants> indices = entry.index ? indices_ : way_.samples;
+    const std::span<const OpticalConstants> indices = entry.index ? indices_ : way_.spectra.indices[entry.wavelength];
     const std::span<const Moments> moments = moments_of(member, entry, direction, indices);
-    if (way_.scene.geometry.mode != Mode::kBistatic) return way_.radiometry.point(direction, moments, indices);
+    const Radiometry& radiometry = way_.spectra.radiometries[entry.wavelength];
+    if (way_.scene.geometry.mode != Mode::kBistatic) return radiometry.point(direction, moments, indices);
     fill_beams(member, entry);
-    return way_.radiometry.bistatic_point(direction, cos_sin_deg(entry.theta_deg).cos, moments, indices, beams_);
+    return radiometry.bistatic_point(direction, cos_sin_deg(entry.theta_deg).cos, moments, indices, beams_);
   }
 
  private:
@@ -139,9 +155,8 @@ Answer asked(const Way& way, const PartRequests& requests, const Progress& progr
   return answer;
 }
 
-std::vector<PointResult> computed_at(const Way& way, const Selection& selection, const RefinementLevel& level,
-                                     const Progress& progress) {
-  const PartRequests requests(way.scene, way.samples, way.plan, selection, level);
+std::vector<PointResult> results_of(const Way& way, const Selection& selection, const PartRequests& requests,
+                                    const Progress& progress) {
   const Answer answer = asked(way, requests, progress);
   std::vector<PointResult> results(selection.size());
   parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
@@ -149,6 +164,11 @@ std::vector<PointResult> computed_at(const Way& way, const Selection& selection,
     for (std::size_t i = first; i < last; ++i) results[i] = result_of(i);
   });
   return results;
+}
+
+std::vector<PointResult> computed_at(const Way& way, const Selection& selection, const RefinementLevel& level,
+                                     const Progress& progress) {
+  return results_of(way, selection, {way.scene, way.spectra.indices, way.plan, selection, level}, progress);
 }
 
 bool is_better(const PointResult& a, const PointResult& b) {
@@ -165,15 +185,8 @@ bool finds_more(const Way& way, const RefinementLevel& level, const RefinementLe
 /// Entries waiting for the same level are computed together.
 using Waiting = std::map<RefinementLevel, std::vector<std::size_t>>;
 
-/// Whether entries that wait for the next level are better computed with the `count` before: a device waits longer for
-/// few entries than it computes.
-bool joins(const Waiting::value_type& next, const RefinementLevel& level, std::size_t count) {
-  return next.first.precision == level.precision && !next.first.may_interpolate && !level.may_interpolate &&
-         count + next.second.size() <= kFewEntries;
-}
-
 /// The next level of one direction whose `members` were computed at `last`: of all of it, between nodes again, where
-/// many miss the tolerance; else of each of these by itself.
+/// many miss the tolerance; else of each of these by itself. What follows for an entry depends on its direction alone.
 void plan_next(const Way& way, const SceneEntries& part, const RefinementLevel& last,
                std::span<const std::size_t> members, std::span<const PointResult> results, Waiting& waiting) {
   std::vector<std::pair<RefinementLevel, std::size_t>> missed;
@@ -193,38 +206,64 @@ void plan_next(const Way& way, const SceneEntries& part, const RefinementLevel& 
   }
 }
 
+/// The first level's results of a part, and which directions were interpolated to get them.
+struct FirstResults {
+  RefinementLevel level;
+  std::vector<PointResult> results;
+  std::vector<char> is_interpolated;  ///< of each run of part.of_direction() entries
+};
+
+FirstResults first_results(const Way& way, const SceneEntries& part, const Progress& progress) {
+  FirstResults first;
+  first.level = first_level(way.accuracy, way.evaluator->has_double());
+  first.level.run_size = way.run_size;
+  const PartRequests requests(way.scene, way.spectra.indices, way.plan, {part}, first.level);
+  const std::uint64_t nodes = way.evaluator->report().interpolation_nodes;
+  first.results = results_of(way, {part}, requests, progress);
+  if (!part.is_grid() || way.evaluator->report().interpolation_nodes == nodes) return first;
+  const std::vector<char> of_request = interpolated_directions(requests.moments());
+  for (std::size_t i = 0; i < part.size(); i += part.of_direction())
+    first.is_interpolated.push_back(of_request[requests.direction_of(i)]);
+  return first;
+}
+
 /// Computes entries of a part that miss the tolerance again. To `progress` the part is done already; it may still
 /// cancel.
-void refine(const Way& way, const SceneEntries& part, const RefinementLevel& first, std::span<PointResult> results,
-            const Progress& progress) {
+void refine(const Way& way, const SceneEntries& part, FirstResults& first, const Progress& progress) {
   const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
-  const std::size_t of_direction = part.is_grid() ? part.sigma().size() * part.q().size() : 1;
+  const std::size_t of_direction = part.is_grid() ? part.of_direction() : 1;
+  const std::uint32_t row_width = way.evaluator->report().row_width;
+  std::vector<PointResult>& results = first.results;
   Waiting waiting;
-  const auto plan = [&](const RefinementLevel& last, std::span<const std::size_t> members,
-                        std::span<const PointResult> found) {
-    for (std::size_t i = 0; i < members.size(); i += of_direction) {
-      const std::size_t count = std::min(of_direction, members.size() - i);
-      plan_next(way, part, last, members.subspan(i, count), found.subspan(i, count), waiting);
+  // Members of one direction follow each other.
+  const auto plan = [&](RefinementLevel last, std::span<const std::size_t> members,
+                        std::span<const PointResult> found, std::span<const char> is_interpolated) {
+    for (std::size_t i = 0, end = 0; i < members.size(); i = end) {
+      const std::size_t direction = members[i] / of_direction;
+      while (end < members.size() && members[end] / of_direction == direction) ++end;
+      if (!is_interpolated.empty()) last.may_interpolate = is_interpolated[direction] != 0;
+      plan_next(way, part, last, members.subspan(i, end - i), found.subspan(i, end - i), waiting);
     }
   };
   std::vector<std::size_t> all(results.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  plan(first, all, results);
+  RefinementLevel last = first.level;
+  last.may_interpolate = false;
+  plan(last, all, results, first.is_interpolated);
   while (!waiting.empty()) {
     RefinementLevel level = waiting.begin()->first;
-    std::vector<std::size_t> members = std::move(waiting.begin()->second);
+    const std::vector<std::size_t> members = std::move(waiting.begin()->second);
     waiting.erase(waiting.begin());
-    while (!waiting.empty() && joins(*waiting.begin(), level, members.size())) {
-      level = waiting.begin()->first;
-      const std::vector<std::size_t>& more = waiting.begin()->second;
-      members.insert(members.end(), more.begin(), more.end());
-      waiting.erase(waiting.begin());
+    if (level.may_interpolate) {
+      level.run_size = way.run_size;
+    } else {
+      level.row_width = row_width;
     }
     const std::vector<PointResult> better = computed_at(way, {part, members}, level, is_wanted);
     for (std::size_t j = 0; j < members.size(); ++j) {
       if (is_better(better[j], results[members[j]])) results[members[j]] = better[j];
     }
-    plan(level, members, better);
+    plan(level, members, better, {});
   }
 }
 
@@ -236,47 +275,51 @@ std::vector<PointResult> computed_again(const Way& way, const SceneEntries& part
   return computed_at(way, {part, positions}, check_level(first, way.evaluator->report().row_width), none);
 }
 
-/// Which entries of a part a run checks: none of points. `nodes`: moments between which the others were interpolated.
-std::vector<std::size_t> positions_to_check(const Way& way, const SceneEntries& part, std::uint64_t nodes,
-                                            std::size_t before) {
-  if (!part.is_grid() || !way.plan.needs_moments) return {};
-  const std::size_t integrated = nodes > 0 ? nodes : part.size() * way.samples.size();
-  std::vector<std::size_t> positions =
-      checked_positions(part.size(), checked_count(integrated), scene_seed(way.scene) + before);
-  std::erase_if(positions, [&](std::size_t i) { return !wants_moments(way.scene, part[i], way.plan); });
+/// Those of the table's entries to check that are in a part, as positions in it.
+std::vector<std::size_t> positions_in(const Way& way, const SceneEntries& part, std::span<const std::size_t> checked) {
+  std::vector<std::size_t> positions;
+  for (const std::size_t in_whole : checked) {
+    const std::optional<std::size_t> position = part.position_of(in_whole);
+    if (position && wants_moments(way.scene, part[*position], way.plan)) positions.push_back(*position);
+  }
   return positions;
 }
 
-/// Results of a part: all levels, or what needs none. `before`: entries of the parts before.
-std::vector<PointResult> part_results(const Way& way, const SceneEntries& part, std::size_t before, SelfCheck& check,
-                                      const Progress& progress) {
+/// Results of a part: all levels, or what needs none. `checked`: positions in the whole grid; of points none.
+std::vector<PointResult> part_results(const Way& way, const SceneEntries& part, std::span<const std::size_t> checked,
+                                      SelfCheck& check, const Progress& progress) {
   if (!wants_evaluator(way.scene, part, way.plan)) {
     std::vector<PointResult> results = computed_at(way, {part}, {}, progress);
     if (!progress(1, 1)) throw Cancelled{};
     return results;
   }
-  const RefinementLevel first = first_level(way.accuracy, way.evaluator->has_double());
-  const std::uint64_t nodes_before = way.evaluator->report().interpolation_nodes;
-  std::vector<PointResult> results = computed_at(way, {part}, first, progress);
-  const std::uint64_t nodes = way.evaluator->report().interpolation_nodes - nodes_before;
-  const std::vector<std::size_t> positions = positions_to_check(way, part, nodes, before);
-  const std::vector<PointResult> again = computed_again(way, part, first, positions);
-  RefinementLevel used = first;
-  used.may_interpolate = nodes > 0;
-  refine(way, part, used, results, progress);
-  SelfCheck of_part;
-  for (std::size_t i = 0; i < positions.size(); ++i) of_part.add(results[positions[i]], again[i]);
-  if (of_part.worst_ratio > 1.0) {
-    for (PointResult& result : results) result.status |= kStatusToleranceMissed;
+  FirstResults first = first_results(way, part, progress);
+  std::vector<PointResult>& results = first.results;
+  const std::vector<std::size_t> positions = positions_in(way, part, checked);
+  const std::vector<PointResult> again = computed_again(way, part, first.level, positions);
+  refine(way, part, first, progress);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    SelfCheck of_entry;
+    of_entry.add(results[positions[i]], again[i]);
+    check.add(of_entry);
+    if (of_entry.worst_ratio <= 1.0) continue;
+    const std::size_t direction = positions[i] / part.of_direction();
+    for (PointResult& result : std::span(results).subspan(direction * part.of_direction(), part.of_direction()))
+      result.status |= kStatusToleranceMissed;
   }
-  check.add(of_part);
-  return results;
+  return std::move(results);
 }
 
 }  // namespace
 
-void CollectedResults::write(const SceneEntries&, std::vector<PointResult> results) {
-  if (results_.empty()) {
+void CollectedResults::write(const SceneEntries& part, std::vector<PointResult> results) {
+  if (part.is_grid() && part.whole() != part.counts()) {
+    results_.resize(size_of(part.whole()));
+    for_each_run(part.first(), part.counts(), part.whole(), [&](const GridRun& run) {
+      std::copy_n(results.begin() + static_cast<std::ptrdiff_t>(run.in_part), run.count,
+                  results_.begin() + static_cast<std::ptrdiff_t>(run.in_whole));
+    });
+  } else if (results_.empty()) {
     results_ = std::move(results);
   } else {
     results_.insert(results_.end(), results.begin(), results.end());
@@ -296,17 +339,22 @@ bool wants_evaluator(const Scene& scene, const SceneEntries& entries, const Effe
 
 SelfCheck run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
                     MomentsEvaluator* evaluator, Sink& sink, const Progress& progress) {
-  const Radiometry radiometry(scene, plan.kept, plan.bound);
-  const std::vector<OpticalConstants> samples = radiometry.rule().indices();
-  Way way{scene, plan, radiometry, samples, evaluator, scene.accuracy};
-  if (evaluator && way.accuracy.precision == Precision::kAuto) way.accuracy.precision = evaluator->precision();
+  const std::size_t samples = spectral_rule(scene).samples.size();
+  Accuracy accuracy = scene.accuracy;
+  if (evaluator && accuracy.precision == Precision::kAuto) accuracy.precision = evaluator->precision();
+  const std::size_t whole = entries.is_grid() ? size_of(entries.whole()) : entries.size();
+  std::vector<std::size_t> checked;
+  if (entries.is_grid() && plan.needs_moments)
+    checked = checked_positions(whole, checked_count(whole * samples), scene_seed(scene));
   SelfCheck check;
   std::size_t before = 0;
-  for (const SceneEntries& part : run_parts(entries, samples.size())) {
+  for (const SceneEntries& part : run_parts(entries, samples)) {
     const Progress part_progress = [&](std::size_t done, std::size_t total) {
       return !progress || progress(before + part.size() * done / total, entries.size());
     };
-    sink.write(part, part_results(way, part, before, check, part_progress));
+    const Spectra spectra(scene, plan, part.wavelength_um());
+    const Way way{scene, plan, spectra, evaluator, accuracy, whole};
+    sink.write(part, part_results(way, part, checked, check, part_progress));
     before += part.size();
   }
   return check;

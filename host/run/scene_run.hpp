@@ -15,7 +15,7 @@
 namespace dolp {
 
 /// The scene's grid.
-/// Errors: InputError for more than 2^24 entries.
+/// Errors: InputError for more than kMostTableEntries.
 SceneEntries grid_entries(const Scene& scene);
 
 /// Scattered points; what they do not say comes from the scene. Points of which only the direction is said are a grid.
@@ -33,7 +33,7 @@ void check_smith(const Scene& scene, const Points& points);
 class Sink {
  public:
   virtual ~Sink() = default;
-  /// Results of `part`, whose entries follow those of the part before.
+  /// Results of `part`: points follow those of the part before, the part of a grid says where it belongs.
   virtual void write(const SceneEntries& part, std::vector<PointResult> results) = 0;
 };
 
@@ -56,7 +56,8 @@ bool wants_evaluator(const Scene& scene, const SceneEntries& entries, const Effe
 
 /// Goes all the way, part by part: what the plan keeps, computed again where it misses the tolerance; what the plan
 /// does not give is NaN. Progress counts entries. The evaluator may be null where wants_evaluator says so. Of grids
-/// some entries are checked; a part in which a bound fails gets the status of a missed tolerance.
+/// some entries are checked; a direction in which a bound fails gets the status of a missed tolerance. What an entry of a
+/// grid gets depends on its direction and index alone, and on the slope distributions of the grid, not on the parts.
 /// Errors: those of the evaluator, of Radiometry and of the sink; Cancelled when `progress` returns false.
 SelfCheck run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
                     MomentsEvaluator* evaluator, Sink& sink, const Progress& progress);

@@ -11,6 +11,7 @@ namespace dolp {
 namespace {
 
 constexpr std::size_t kMostChecked = 64;
+constexpr std::size_t kManyMoments = std::size_t{1} << 22U;  // of which so many are checked
 // A fiftieth of the run; an entry that is computed again takes about four times what it took, with two digits more and
 // no neighbour to share with.
 constexpr std::size_t kShare = 50;
@@ -38,7 +39,9 @@ void SelfCheck::add(const SelfCheck& other) {
   worst_ratio = std::max(worst_ratio, other.worst_ratio);
 }
 
-std::size_t checked_count(std::size_t integrated) { return std::min(kMostChecked, integrated / (kShare * kCostOfOne)); }
+std::size_t checked_count(std::size_t moments) {
+  return std::min(kMostChecked + kMostChecked * (moments / kManyMoments), moments / (kShare * kCostOfOne));
+}
 
 std::vector<std::size_t> checked_positions(std::size_t size, std::size_t count, std::uint64_t seed) {
   std::mt19937_64 engine(seed);

@@ -20,8 +20,8 @@ struct SelfCheck {
   void add(const SelfCheck& other);
 };
 
-/// How many of `integrated` moments of a part are worth computing again: what costs a fiftieth of them, at most 64.
-std::size_t checked_count(std::size_t integrated);
+/// How many of a table's moments are worth computing again: what costs a fiftieth of them, at most 64 of four million.
+std::size_t checked_count(std::size_t moments);
 
 /// `count` of the positions below `size`, ascending; which ones follows from the seed alone.
 std::vector<std::size_t> checked_positions(std::size_t size, std::size_t count, std::uint64_t seed);

@@ -121,7 +121,8 @@ Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, con
                                  wavelength_text(spectrum.min_um, spectrum.max_um)));
   }
   if (spectrum.is_band()) return material;
-  return {material.name, material.source, material.at(spectrum.min_um), {}, {}};
+  return {material.name, material.source, material.at(spectrum.min_um), {}, {},
+          std::make_shared<const Material>(material)};
 }
 
 }  // namespace dolp

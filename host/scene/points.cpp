@@ -36,6 +36,8 @@ std::vector<ColumnRule> column_rules(PointsKind kind) {
   rules.push_back({"q", kQRange, &Points::q, false});
   rules.push_back({"n", kNRange, &Points::n, false});
   rules.push_back({"k", kKRange, &Points::k, false});
+  if (kind == PointsKind::kDirections)
+    rules.push_back({"wavelength_um", kWavelengthUmRange, &Points::wavelength_um, false});
   return rules;
 }
 

@@ -9,7 +9,7 @@
 namespace dolp {
 
 enum class PointsKind {
-  kDirections,  ///< eval, lookup: any of theta_deg, sigma, q, n, k, at least one
+  kDirections,  ///< eval, lookup: any of theta_deg, sigma, q, n, k, wavelength_um, at least one
   kGeometries,  ///< mueller: theta_i_deg, theta_r_deg, delta_phi_deg, and any of sigma, q, n, k
 };
 
@@ -19,7 +19,7 @@ struct Points {
   std::string header;             ///< column names as given, joined by commas, no blanks around them
   std::vector<std::string> rows;  ///< the input cells as typed, joined by commas, no blanks around them
   std::optional<std::vector<double>> theta_deg, theta_i_deg, theta_r_deg, delta_phi_deg;
-  std::optional<std::vector<double>> sigma, q, n, k;
+  std::optional<std::vector<double>> sigma, q, n, k, wavelength_um;
   std::size_t size() const { return rows.size(); }
   /// The line that a row stands on: the header is line 1, and no line between the rows is empty.
   std::size_t line(std::size_t row) const { return row + 2; }

@@ -2,12 +2,14 @@
 // degrees are what the user typed and what the table's coordinate must repeat).
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "model/choices.hpp"
 #include "model/optical_constants.hpp"
+#include "model/scene_entry.hpp"
 #include "scene/dispersion.hpp"
 
 namespace dolp {
@@ -30,6 +32,8 @@ struct Material {
   std::string source;  ///< where the values come from; empty for n, k given in the scene
   OpticalConstants constant;
   SpectralTable n, k;
+  /// Of a constant that comes from a table: n and k wherever they are known.
+  std::shared_ptr<const Material> tabulated = {};
   bool is_constant() const { return n.wavelength_um.empty(); }
   OpticalConstants at(double wavelength_um) const;
 };
@@ -87,13 +91,6 @@ struct Geometry {
   double relative_azimuth_deg = 180.0;  ///< bistatic only; 180 is the specular side
 };
 
-/// Axis values in the order the user gave; any order, at least one value each. sigma and q fall back to [surface].
-struct Grid {
-  std::vector<double> theta_deg;
-  std::vector<double> sigma;
-  std::vector<double> q;
-};
-
 struct Accuracy {
   double tolerance = 1e-4;
   Precision precision = Precision::kAuto;
@@ -109,12 +106,16 @@ struct Scene {
   std::optional<Path> path;
   Spectrum spectrum;
   Geometry geometry;
-  Grid grid;
+  Grid grid;  ///< in the user's order; sigma and q fall back to [surface]
   Accuracy accuracy;
   std::string path_name;               ///< as given on the command line, for messages
   std::string text;                    ///< the file, verbatim
   std::vector<std::string> files;      ///< that the scene names, as the process finds them
   std::vector<std::string> overrides;  ///< the --set KEY=VALUE arguments that were applied, verbatim
 };
+
+/// The same scene at one wavelength, without its grid and texts.
+/// Errors: InputError, where n, k or E0 are not known there.
+Scene at_wavelength(const Scene& scene, double wavelength_um);
 
 }  // namespace dolp

@@ -151,6 +151,13 @@ std::vector<SceneKey> geometry_keys() {
            [](Draft& d, const Value& v) { d.scene.grid.sigma = v.numbers; }),
       axis("grid.q", "1", kQRange, "surface.q", "tail exponents q of the table",
            [](Draft& d, const Value& v) { d.scene.grid.q = v.numbers; }),
+      axis("grid.wavelength_um", "um", kWavelengthUmRange, "",
+           "wavelengths of the table, without a band; spectrum.wavelength_um may then be absent, and is the first",
+           [](Draft& d, const Value& v) { d.scene.grid.wavelength_um = v.numbers; }),
+      axis("grid.n", "1", kNRange, "", "n of the table, without a material; surface.n may then be absent",
+           [](Draft& d, const Value& v) { d.scene.grid.n = v.numbers; }),
+      axis("grid.k", "1", kKRange, "", "k of the table, without a material",
+           [](Draft& d, const Value& v) { d.scene.grid.k = v.numbers; }),
       number("accuracy.tolerance", "1", kToleranceRange, "1e-4",
              "largest error of rho, relative to rho_I, and of DOLP, absolute",
              [](Draft& d, const Value& v) { d.scene.accuracy.tolerance = v.number; }),
@@ -186,10 +193,10 @@ const std::vector<KeyDescription>& scene_keys() {
 
 const std::vector<KeyChoice>& key_choices() {
   static const std::vector<KeyChoice> choices = {
-      {"surface", {{"surface.n", "surface.k"}, {"surface.material"}, {"surface.material_file"}}},
+      {"surface", {{"surface.n", "surface.k"}, {"surface.material"}, {"surface.material_file"}}, true, "grid.n"},
       {"source", {{"source.irradiance"}, {"source.relative_irradiance"}, {"source.preset"}, {"source.file"}}},
       {"path", {{"path.temperature_K"}, {"path.radiance"}}, false},
-      {"spectrum", {{"spectrum.wavelength_um"}, {"spectrum.band_um"}}},
+      {"spectrum", {{"spectrum.wavelength_um"}, {"spectrum.band_um"}}, true, "grid.wavelength_um"},
   };
   return choices;
 }

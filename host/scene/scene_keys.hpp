@@ -36,7 +36,8 @@ struct SceneKey {
 struct KeyChoice {
   std::string table;
   std::vector<std::vector<std::string>> alternatives;
-  bool is_required = true;  ///< if the table is there, or must be
+  bool is_required = true;      ///< if the table is there, or must be
+  std::string substitute = {};  ///< a key that does instead
 };
 
 const std::vector<SceneKey>& scene_key_table();

@@ -57,7 +57,8 @@ const std::string* chosen_key(const SceneDocument& document, const KeyChoice& ch
   for (const auto& alternative : choice.alternatives) {
     const std::string& head = alternative.front();
     for (const std::string& key : alternative) {
-      if (document.find(key) && !document.find(head)) document.fail(key, "needs " + head + " beside it");
+      const bool has_head = document.find(head) || (!choice.substitute.empty() && document.find(choice.substitute));
+      if (document.find(key) && !has_head) document.fail(key, "needs " + head + " beside it");
     }
     if (!document.find(head)) continue;
     if (chosen) document.fail(head, "cannot be combined with " + *chosen);
@@ -69,7 +70,8 @@ const std::string* chosen_key(const SceneDocument& document, const KeyChoice& ch
 void check_choices(const SceneDocument& document) {
   for (const KeyChoice& choice : key_choices()) {
     const bool is_present = document.find(choice.table) != nullptr;
-    if (chosen_key(document, choice) || !choice.is_required) continue;
+    const bool has_substitute = !choice.substitute.empty() && document.find(choice.substitute);
+    if (chosen_key(document, choice) || !choice.is_required || has_substitute) continue;
     if (!is_present && is_effect_table(choice.table)) continue;
     std::vector<std::string> heads;
     for (const auto& alternative : choice.alternatives) heads.push_back(alternative.front());
@@ -120,22 +122,33 @@ const std::string& named_file(SceneDraft& draft, const std::string& file, const 
   return draft.scene.files.emplace_back(resolve_path(file, scene_path));
 }
 
+/// From the shortest wavelength that a table or its scene has to the longest.
+Spectrum all_wavelengths(const Scene& scene) {
+  Spectrum all = scene.spectrum;
+  for (const double wavelength_um : scene.grid.wavelength_um) {
+    all.min_um = std::min(all.min_um, wavelength_um);
+    all.max_um = std::max(all.max_um, wavelength_um);
+  }
+  return all;
+}
+
 void load_material(SceneDraft& draft, const SceneDocument& document, const std::string& scene_path,
                    const KnownData* known) {
   const bool is_file = document.find("surface.material_file") != nullptr;
   if (!is_file && !document.find("surface.material")) return;
   const std::string prefix = document.prefix(is_file ? "surface.material_file" : "surface.material");
   Material& material = draft.scene.surface.material;
-  const Spectrum& spectrum = draft.scene.spectrum;
+  const Spectrum all = all_wavelengths(draft.scene);
   if (known && known->material) {
     material = *known->material;
     material.name = is_file ? draft.material_file : draft.material;
-    if (!material.is_constant()) material = fit_to_spectrum(material, spectrum, prefix);
+    if (!material.is_constant()) material = fit_to_spectrum(material, all, prefix);
   } else if (is_file) {
-    material = read_material_file(named_file(draft, draft.material_file, scene_path, prefix, !known), spectrum, prefix);
+    material = read_material_file(named_file(draft, draft.material_file, scene_path, prefix, !known), all, prefix);
   } else {
-    material = find_material(draft.material, spectrum, prefix);
+    material = find_material(draft.material, all, prefix);
   }
+  if (!material.is_constant()) material = fit_to_spectrum(material, draft.scene.spectrum, prefix);
 }
 
 void load_source(SceneDraft& draft, const SceneDocument& document, const std::string& scene_path,
@@ -153,12 +166,26 @@ void load_source(SceneDraft& draft, const SceneDocument& document, const std::st
   } else {
     source.table = read_irradiance_file(named_file(draft, draft.source_file, scene_path, prefix, !known), prefix);
   }
-  const Spectrum& spectrum = draft.scene.spectrum;
-  if (covers(source.table, spectrum)) return;
-  const std::vector<double>& known_um = source.table.wavelength_um;
-  throw InputError(fmt::format("{}known at {}, and the spectrum is {}", prefix,
-                               wavelength_text(known_um.front(), known_um.back()),
-                               wavelength_text(spectrum.min_um, spectrum.max_um)));
+  check_covers(source.table, all_wavelengths(draft.scene), prefix);
+}
+
+/// What a scene need not say beside an axis of it, whose first value it then is.
+void fill_from_grid(Scene& scene, const SceneDocument& document) {
+  const Grid& grid = scene.grid;
+  OpticalConstants& index = scene.surface.material.constant;
+  if (!grid.wavelength_um.empty()) {
+    if (document.find("spectrum.band_um")) document.fail("grid.wavelength_um", "cannot be combined with spectrum.band_um");
+    if (!document.find("spectrum.wavelength_um"))
+      scene.spectrum = {grid.wavelength_um.front(), grid.wavelength_um.front()};
+  }
+  for (const char* axis : {"grid.n", "grid.k"}) {
+    for (const char* material : {"surface.material", "surface.material_file"}) {
+      if (document.find(axis) && document.find(material))
+        document.fail(axis, fmt::format("cannot be combined with {}", material));
+    }
+  }
+  if (!grid.n.empty() && !document.find("surface.n")) index.n = grid.n.front();
+  if (!grid.k.empty() && !document.find("surface.k")) index.k = grid.k.front();
 }
 
 void fill_grid(Scene& scene, const SceneDocument& document) {
@@ -227,6 +254,7 @@ Scene parse_scene(const std::string& text, const std::string& path_name, const s
   SceneDocument document(text, path_name);
   for (const std::string& argument : overrides) document.apply_override(argument);
   SceneDraft draft = draft_scene(document);
+  fill_from_grid(draft.scene, document);
   load_material(draft, document, path_name, known);
   load_source(draft, document, path_name, known);
   fill_grid(draft.scene, document);

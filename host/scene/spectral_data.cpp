@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "scene/csv.hpp"
 #include "scene/embedded_data.hpp"
+#include "scene/material_data.hpp"
 #include "scene/number_range.hpp"
 #include "scene/text.hpp"
 
@@ -32,6 +33,10 @@ SpectralTable parse_irradiance(std::string_view text, const std::string& name) {
   }
   if (table.value.empty()) throw InputError(name + ":1: no rows; two columns of numbers are expected");
   return table;
+}
+
+bool covers(const SpectralTable& table, const Spectrum& spectrum) {
+  return table.wavelength_um.front() <= spectrum.min_um && spectrum.max_um <= table.wavelength_um.back();
 }
 
 }  // namespace
@@ -74,12 +79,34 @@ void append_row(SpectralTable& table, double wavelength_um, const NamedValue& va
   table.value.push_back(value.value);
 }
 
-bool covers(const SpectralTable& table, const Spectrum& spectrum) {
-  return table.wavelength_um.front() <= spectrum.min_um && spectrum.max_um <= table.wavelength_um.back();
+void check_covers(const SpectralTable& table, const Spectrum& spectrum, const std::string& prefix) {
+  if (covers(table, spectrum)) return;
+  const std::vector<double>& known_um = table.wavelength_um;
+  throw InputError(fmt::format("{}known at {}, and the spectrum is {}", prefix,
+                               wavelength_text(known_um.front(), known_um.back()),
+                               wavelength_text(spectrum.min_um, spectrum.max_um)));
 }
 
 std::string wavelength_text(double min_um, double max_um) {
   return min_um == max_um ? fmt::format("{} um", min_um) : fmt::format("{} to {} um", min_um, max_um);
+}
+
+Scene at_wavelength(const Scene& scene, double wavelength_um) {
+  Scene at = scene;
+  at.spectrum = {wavelength_um, wavelength_um};
+  at.grid = {};
+  at.text.clear();
+  at.overrides.clear();
+  const Material& material = scene.surface.material;
+  if (material.tabulated) at.surface.material = fit_to_spectrum(*material.tabulated, at.spectrum, "surface.material: ");
+  at.surface.material.tabulated.reset();
+  if (at.source && at.source->kind == Source::Kind::kTabulated) {
+    check_covers(at.source->table, at.spectrum, "source: ");
+    at.source->irradiance = at.source->table.at(wavelength_um);
+    at.source->kind = Source::Kind::kFlat;
+    at.source->table = {};
+  }
+  return at;
 }
 
 }  // namespace dolp

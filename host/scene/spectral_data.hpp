@@ -29,8 +29,8 @@ struct NamedValue {
 /// Appends a row and checks that both numbers are in range and the wavelength ascends; `where` begins the message.
 void append_row(SpectralTable& table, double wavelength_um, const NamedValue& value, const std::string& where);
 
-/// Whether the table has values over the whole spectrum.
-bool covers(const SpectralTable& table, const Spectrum& spectrum);
+/// Refuses a table that has no values over the whole spectrum; `prefix` begins the message.
+void check_covers(const SpectralTable& table, const Spectrum& spectrum, const std::string& prefix);
 
 /// "10.6 um" or "8 to 14 um".
 std::string wavelength_text(double min_um, double max_um);

@@ -28,7 +28,7 @@ struct Curve {
 };
 
 /// The most entries that a table has: about 5 GB of memory while it is made.
-inline constexpr std::size_t kMostTableEntries = 1U << 24U;
+inline constexpr std::size_t kMostTableEntries = std::size_t{1} << 24U;
 
 /// A lookup table over theta, sigma and q.
 ///

@@ -18,33 +18,51 @@ bool is_finite(const Moments& m) {
          std::isfinite(m.r_i_error + m.r_q_error + m.albedo_error + m.deficit_error);
 }
 
-/// Fills in the moments of the directions whose nodes are finite. Returns the others.
-std::vector<std::size_t> interpolate_all(const ShapePlan& plan, std::span<const Moments> nodes,
-                                         const MomentsRequest& request, std::span<Moments> moments) {
-  const std::size_t indices = request.indices.size();
-  const std::size_t of_direction = plan.nodes_of_a_direction();
+/// Fills in the moments of each direction and index whose nodes are finite. Returns which others are wanted.
+std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments> nodes, const MomentsRequest& request,
+                                  std::span<Moments> moments) {
+  const std::size_t of_nodes = plan.nodes_of_a_direction();
   const std::size_t shapes = request.sigma.size() * request.q.size();
-  std::vector<char> is_done(request.theta_deg.size(), 0);
-  parallel_ranges(is_done.size(), 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t theta = first; theta < last; ++theta) {
-      if (!std::ranges::all_of(nodes.subspan(theta * indices * of_direction, indices * of_direction), is_finite))
-        continue;
-      for (std::size_t i = theta * indices; i < (theta + 1) * indices; ++i) {
-        interpolate(plan, nodes.subspan(i * of_direction, of_direction), moments.subspan(i * shapes, shapes));
-      }
-      is_done[theta] = 1;
+  std::vector<char> is_left(request.size() / shapes, 0);
+  parallel_ranges(is_left.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      if (!request.is_wanted(i * shapes)) continue;
+      const std::span<const Moments> own = nodes.subspan(i * of_nodes, of_nodes);
+      is_left[i] = std::ranges::all_of(own, is_finite) ? 0 : 1;
+      if (is_left[i] == 0) interpolate(plan, own, moments.subspan(i * shapes, shapes));
     }
   });
-  std::vector<std::size_t> left;
-  for (std::size_t theta = 0; theta < is_done.size(); ++theta) {
-    if (is_done[theta] == 0) left.push_back(theta);
-  }
-  return left;
+  return is_left;
 }
 
 }  // namespace
 
 std::vector<Moments> InterpolatingEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
+  const std::vector<MomentsRequest> parts = with_one_parameter(request);
+  if (parts.size() == 1) return evaluate_part(request, progress);
+  std::vector<std::vector<Moments>> of_parts;
+  std::size_t before = 0;
+  for (const MomentsRequest& part : parts) {
+    const Progress of_part = [&](std::size_t done, std::size_t all) {
+      return !progress || progress(before + part.size() * done / all, request.size());
+    };
+    of_parts.push_back(evaluate_part(part, of_part));
+    before += part.size();
+  }
+  std::vector<Moments> moments;
+  moments.reserve(request.size());
+  const std::size_t of_theta = request.size() / request.theta_deg.size();
+  std::vector<std::size_t> next(parts.size(), 0);
+  for (const double theta_deg : request.theta_deg) {
+    std::size_t part = 0;
+    while (next[part] == parts[part].theta_deg.size() || parts[part].theta_deg[next[part]] != theta_deg) ++part;
+    const auto first = of_parts[part].begin() + static_cast<std::ptrdiff_t>(next[part]++ * of_theta);
+    moments.insert(moments.end(), first, first + static_cast<std::ptrdiff_t>(of_theta));
+  }
+  return moments;
+}
+
+std::vector<Moments> InterpolatingEvaluator::evaluate_part(const MomentsRequest& request, const Progress& progress) {
   using Clock = std::chrono::steady_clock;
   const std::optional<ShapePlan> plan = shape_plan(request);
   if (!plan) return evaluator_->evaluate(request, progress);
@@ -54,21 +72,30 @@ std::vector<Moments> InterpolatingEvaluator::evaluate(const MomentsRequest& requ
   const std::vector<Moments> nodes = evaluator_->evaluate(plan->nodes, of_nodes);
   const Clock::time_point start = Clock::now();
   std::vector<Moments> moments(request.size());
-  const std::vector<std::size_t> left = interpolate_all(*plan, nodes, request, moments);
+  const std::vector<char> is_left = interpolate_all(*plan, nodes, request, moments);
   interpolation_s_ += seconds_since(start);
-  nodes_ += nodes.size();
+  nodes_ += plan->nodes.wanted_count();
+  interpolated_ += request.wanted_count();
+  if (std::ranges::find(is_left, 1) == is_left.end()) return moments;
   const std::size_t of_theta = request.size() / request.theta_deg.size();
-  interpolated_ += request.size() - left.size() * of_theta;
-  if (left.empty()) return moments;
+  const std::size_t shapes = of_theta / request.indices.size();
   MomentsRequest direct = request;
   direct.may_interpolate = false;
   direct.theta_deg.clear();
-  for (const std::size_t theta : left) direct.theta_deg.push_back(request.theta_deg[theta]);
+  direct.wanted.clear();
+  std::vector<std::size_t> places;  // of the direct request's directions
+  for (std::size_t theta = 0; theta < request.theta_deg.size(); ++theta) {
+    const auto of_indices = std::span(is_left).subspan(theta * request.indices.size(), request.indices.size());
+    if (std::ranges::find(of_indices, 1) == of_indices.end()) continue;
+    direct.theta_deg.push_back(request.theta_deg[theta]);
+    places.push_back(theta * of_theta);
+    for (const char left : of_indices) direct.wanted.insert(direct.wanted.end(), shapes, left);
+  }
+  interpolated_ -= direct.wanted_count();
   const Progress is_wanted = [&](std::size_t, std::size_t) { return !progress || progress(1, 1); };
   const std::vector<Moments> computed = evaluator_->evaluate(direct, is_wanted);
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    std::copy_n(computed.begin() + static_cast<std::ptrdiff_t>(i * of_theta), of_theta,
-                moments.begin() + static_cast<std::ptrdiff_t>(left[i] * of_theta));
+  for (std::size_t i = 0; i < computed.size(); ++i) {
+    if (direct.wanted[i] != 0) moments[places[i / of_theta] + i % of_theta] = computed[i];
   }
   return moments;
 }

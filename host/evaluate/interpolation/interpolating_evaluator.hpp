@@ -21,6 +21,9 @@ class InterpolatingEvaluator final : public MomentsEvaluator {
   EvaluationReport report() const override;
 
  private:
+  /// Directions of one shape parameter.
+  std::vector<Moments> evaluate_part(const MomentsRequest& request, const Progress& progress);
+
   std::unique_ptr<MomentsEvaluator> evaluator_;
   std::uint64_t interpolated_ = 0;
   std::uint64_t nodes_ = 0;

@@ -22,7 +22,8 @@ using namespace scene_run_support;
 /// All numbers of a result, so that NaNs compare too.
 std::vector<std::uint64_t> bits_of(const PointResult& result) {
   std::vector<std::uint64_t> bits = {result.status};
-  for (const TableVariable& variable : table_variables()) bits.push_back(std::bit_cast<std::uint64_t>(result.*variable.member));
+  for (const TableVariable& variable : table_variables())
+    bits.push_back(std::bit_cast<std::uint64_t>(result.*variable.member));
   return bits;
 }
 
@@ -43,7 +44,8 @@ std::unique_ptr<MomentsEvaluator> evaluator_on(bool device) {
 /// Results of the grid, each part by an evaluator of its own and without knowledge of the others.
 std::vector<PointResult> in_parts(const Scene& scene, const std::vector<SceneEntries>& parts, bool device) {
   const EffectPlan plan = keep_everything(scene);
-  CollectedResults results;
+  const SceneEntries whole = grid_entries(scene);
+  CollectedResults results(whole);
   for (const SceneEntries& part : parts) {
     const auto evaluator = evaluator_on(device);
     run_scene(scene, part, plan, evaluator.get(), results, {});

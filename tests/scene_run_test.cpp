@@ -213,7 +213,7 @@ TEST(SceneEntries_Parts, AreConsecutiveAndKeepTheOrder) {
 TEST(RunScene_Sink, GetsEveryPartInOrder) {
   class Counted final : public Sink {
    public:
-    void write(const SceneEntries& part, std::vector<PointResult> results) override {
+    void write(const SceneEntries& part, std::vector<PointResult> results, const SelfCheck&) override {
       EXPECT_EQ(results.size(), part.size());
       entries += part.size();
     }

@@ -120,6 +120,15 @@ const std::vector<KeyCase>& key_cases() {
        [](const Scene& s) {
          return s.grid.q == std::vector<double>{1.5, 2.0};
        }},
+      {"grid.wavelength_um", "[8, 10]",
+       [](const Scene& s) {
+         return s.grid.wavelength_um == std::vector<double>{8.0, 10.0};
+       }},
+      {"grid.n", "[1.3, 2]",
+       [](const Scene& s) {
+         return s.grid.n == std::vector<double>{1.3, 2.0};
+       }},
+      {"grid.k", "0.5", [](const Scene& s) { return s.grid.k == std::vector<double>{0.5}; }},
       {"accuracy.tolerance", "1e-6", [](const Scene& s) { return s.accuracy.tolerance == 1e-6; }},
       {"accuracy.precision", "\"double\"", [](const Scene& s) { return s.accuracy.precision == Precision::kDouble; }},
       {"accuracy.interpolation", "\"off\"", [](const Scene& s) { return !s.accuracy.may_interpolate; }},

@@ -53,22 +53,6 @@ class File {
   int descriptor_;
 };
 
-/// A file name, if any, that is unlinked unless it was released.
-class Temporary {
- public:
-  explicit Temporary(fs::path path) : path_(std::move(path)) {}
-  Temporary(const Temporary&) = delete;
-  Temporary& operator=(const Temporary&) = delete;
-  ~Temporary() {
-    if (!path_.empty()) ::unlink(path_.c_str());
-  }
-  void take(fs::path path) { path_ = std::move(path); }
-  void release() { path_.clear(); }
-
- private:
-  fs::path path_;
-};
-
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
 // std::filesystem::canonical wants the target to exist; an output need not.
@@ -99,12 +83,16 @@ void write_all(int descriptor, const fs::path& path, std::string_view content) {
   }
 }
 
-void write_directly(const fs::path& path, std::string_view content) {
-  File file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
-  if (file.get() < 0 && interrupted()) throw Cancelled{};
-  if (file.get() < 0) fail_errno(path, "cannot open for writing");
-  write_all(file.get(), path, content);
-  if (!file.close()) fail_errno(path, "cannot write");
+void read_all(int descriptor, const fs::path& path, std::uint64_t offset, char* bytes, std::size_t size) {
+  while (size > 0) {
+    const ssize_t count = ::pread(descriptor, bytes, size, static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail_errno(path, "cannot read");
+    if (count == 0) fail(path, "is cut short");
+    bytes += count;
+    offset += static_cast<std::uint64_t>(count);
+    size -= static_cast<std::size_t>(count);
+  }
 }
 
 fs::path temporary_name(const fs::path& target, int number) {
@@ -148,10 +136,10 @@ NewFile create_temporary(const fs::path& target) {
   clear_away_left_ones(folder_of(target));
   const bool can_be_linked = ::access(kOpenFiles, X_OK) == 0;
   const int unnamed =
-      can_be_linked ? ::open(folder_of(target).c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, kNewFileMode) : -1;
+      can_be_linked ? ::open(folder_of(target).c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, kNewFileMode) : -1;
   if (unnamed >= 0) return {File(unnamed), {}};
   auto [name, named] = with_new_name(target, [](const fs::path& path) {
-    return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kNewFileMode);
+    return ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kNewFileMode);
   });
   ::flock(named, LOCK_EX | LOCK_NB);  // where there are no locks nothing is cleared away either
   return {File(named), name};
@@ -168,25 +156,6 @@ void sync_folder(const fs::path& folder, const fs::path& path) {
   const File file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   // Some file systems cannot sync a folder at all.
   if (file.get() < 0 || (::fsync(file.get()) != 0 && errno != EINVAL)) fail_errno(path, "cannot sync its folder");
-}
-
-void write_and_rename(const fs::path& path, const fs::path& target, std::string_view content) {
-  auto [file, name] = create_temporary(target);
-  Temporary temporary(name);
-  keep_permissions(file, target);
-  write_all(file.get(), path, content);
-  if (::fsync(file.get()) != 0) fail_errno(path, "cannot write");
-  if (name.empty()) {
-    const std::string open_file = std::string(kOpenFiles) + '/' + std::to_string(file.get());
-    name = with_new_name(target, [&](const fs::path& free_name) {
-             return ::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, free_name.c_str(), AT_SYMLINK_FOLLOW);
-           }).first;
-    temporary.take(name);
-  }
-  if (!file.close()) fail_errno(path, "cannot write");
-  if (::rename(name.c_str(), target.c_str()) != 0) fail_errno(path, "cannot rename the finished file");
-  temporary.release();
-  sync_folder(folder_of(target), path);
 }
 
 }  // namespace
@@ -211,12 +180,119 @@ void check_writable(const fs::path& path) {
   if (::access(folder.c_str(), W_OK | X_OK) != 0) fail_errno(path, "cannot write to the folder " + folder.string());
 }
 
-void write_text_atomically(const fs::path& path, std::string_view content) {
-  if (path == "-") return write_all(STDOUT_FILENO, "standard output", content);
+struct AtomicFile::Impl {
+  fs::path path;    // for messages
+  fs::path target;  // behind symbolic links
+  NewFile own;
+  bool is_kept = false;  // under its own name, if it is never whole
+  std::uint64_t size = 0;
+
+  Impl(fs::path of_user, fs::path of_file, NewFile file)
+      : path(std::move(of_user)), target(std::move(of_file)), own(std::move(file)) {}
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    if (!own.name.empty() && !is_kept) ::unlink(own.name.c_str());
+  }
+
+  int descriptor() const { return own.file.get(); }
+
+  /// Gives a file without a name a temporary one.
+  void link() {
+    const std::string open_file = std::string(kOpenFiles) + '/' + std::to_string(descriptor());
+    own.name = with_new_name(target, [&](const fs::path& free_name) {
+                 return ::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, free_name.c_str(), AT_SYMLINK_FOLLOW);
+               }).first;
+  }
+
+  /// All bytes to a device or pipe.
+  void copy_to_target() const {
+    File file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
+    if (file.get() < 0 && interrupted()) throw Cancelled{};
+    if (file.get() < 0) fail_errno(path, "cannot open for writing");
+    std::string bytes;
+    for (std::uint64_t done = 0; done < size; done += bytes.size()) {
+      bytes.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBytesAtOnce, size - done)));
+      read_all(descriptor(), path, done, bytes.data(), bytes.size());
+      write_all(file.get(), path, bytes);
+    }
+    if (!file.close()) fail_errno(path, "cannot write");
+  }
+};
+
+AtomicFile::AtomicFile(const fs::path& path) {
   check_writable(path);
   const fs::path target = follow_links(path);
-  if (is_device_or_pipe(target)) return write_directly(path, content);
-  write_and_rename(path, target, content);
+  const bool is_device = is_device_or_pipe(target);
+  impl_ = std::make_unique<Impl>(path, target, create_temporary(is_device ? fs::temp_directory_path() / "-" : target));
+  if (!is_device) keep_permissions(impl_->own.file, target);
+}
+
+AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
+  check_writable(path);
+  const fs::path target = follow_links(path);
+  File file(::open(under_way.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kNewFileMode));
+  if (file.get() < 0) fail_errno(under_way, "cannot create the file");
+  if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    throw InputError(under_way.string() + ": another run writes it");
+  }
+  struct stat found {};
+  if (::fstat(file.get(), &found) != 0 || !S_ISREG(found.st_mode)) fail(under_way, "is not a regular file");
+  keep_permissions(file, target);
+  impl_ = std::make_unique<Impl>(path, target, NewFile{std::move(file), under_way});
+  impl_->is_kept = true;
+  impl_->size = static_cast<std::uint64_t>(found.st_size);
+}
+
+AtomicFile::AtomicFile(AtomicFile&&) noexcept = default;
+AtomicFile& AtomicFile::operator=(AtomicFile&&) noexcept = default;
+AtomicFile::~AtomicFile() = default;
+
+void AtomicFile::write_at(std::uint64_t offset, const void* bytes, std::size_t size) {
+  std::string_view content(static_cast<const char*>(bytes), size);
+  while (!content.empty()) {
+    if (interrupted()) throw Cancelled{};
+    const ssize_t written = ::pwrite(impl_->descriptor(), content.data(), std::min(content.size(), kBytesAtOnce),
+                                     static_cast<off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail_errno(impl_->path, "cannot write");
+    content.remove_prefix(static_cast<std::size_t>(written));
+    offset += static_cast<std::uint64_t>(written);
+    impl_->size = std::max(impl_->size, offset);
+  }
+}
+
+void AtomicFile::append(std::string_view bytes) { write_at(impl_->size, bytes.data(), bytes.size()); }
+
+void AtomicFile::read_at(std::uint64_t offset, void* bytes, std::size_t size) const {
+  read_all(impl_->descriptor(), impl_->path, offset, static_cast<char*>(bytes), size);
+}
+
+void AtomicFile::resize(std::uint64_t size) {
+  if (::ftruncate(impl_->descriptor(), static_cast<off_t>(size)) != 0) fail_errno(impl_->path, "cannot write");
+  impl_->size = size;
+}
+
+void AtomicFile::commit() {
+  if (is_device_or_pipe(impl_->target)) return impl_->copy_to_target();
+  NewFile& own = impl_->own;
+  if (interrupted()) throw Cancelled{};
+  if (::fsync(own.file.get()) != 0) fail_errno(impl_->path, "cannot write");
+  if (own.name.empty()) impl_->link();
+  if (!own.file.close()) fail_errno(impl_->path, "cannot write");
+  if (::rename(own.name.c_str(), impl_->target.c_str()) != 0)
+    fail_errno(impl_->path, "cannot rename the finished file");
+  own.name.clear();
+  sync_folder(folder_of(impl_->target), impl_->path);
+}
+
+void AtomicFile::discard() { impl_->is_kept = false; }
+
+void write_text_atomically(const fs::path& path, std::string_view content) {
+  if (path == "-") return write_all(STDOUT_FILENO, "standard output", content);
+  AtomicFile file(path);
+  file.append(content);
+  file.commit();
 }
 
 }  // namespace dolp

@@ -8,6 +8,9 @@ namespace dolp::cli {
 /// `dolp table SCENE -o FILE`: a lookup table over the scene's grid.
 int run_table(const Options& options);
 
+/// `dolp merge SHARD... -o FILE`: the shards of a table as one.
+int run_merge(const Options& options);
+
 /// `dolp eval SCENE --points IN -o OUT`: the same quantities at scattered points.
 int run_eval(const Options& options);
 

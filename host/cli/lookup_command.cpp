@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <chrono>
 #include <optional>
 
@@ -27,8 +28,8 @@ using OptionalColumn = std::optional<std::vector<double>>;
 /// One coordinate of all points.
 struct Coordinate {
   const char* name;
+  Axis axis;
   const OptionalColumn& given;
-  const LookupAxis& axis;
   std::optional<double> of_scene;
 };
 
@@ -38,40 +39,62 @@ std::string range_text(const LookupAxis& axis) {
 }
 
 /// The coordinate of each point: as given, or the only one that the table has, or that of its scene.
-std::vector<double> values_of(const Coordinate& coordinate, const Points& points) {
+std::vector<double> values_of(const Coordinate& coordinate, const LookupAxis& axis, const Points& points) {
   if (coordinate.given) {
     for (std::size_t row = 0; row < points.size(); ++row) {
-      if (coordinate.axis.contains((*coordinate.given)[row])) continue;
+      if (axis.contains((*coordinate.given)[row])) continue;
       throw InputError(fmt::format("{}:{}: {} = {}: outside the table, which has {}", points.name, points.line(row),
-                                   coordinate.name, format_number((*coordinate.given)[row]),
-                                   range_text(coordinate.axis)));
+                                   coordinate.name, format_number((*coordinate.given)[row]), range_text(axis)));
     }
     return *coordinate.given;
   }
   std::optional<double> value = coordinate.of_scene;
-  if (coordinate.axis.size() == 1) value = coordinate.axis.min();
-  if (!value || !coordinate.axis.contains(*value)) {
-    throw InputError(fmt::format("{}:1: column \"{}\" is missing, a number in {}", points.name, coordinate.name,
-                                 range_text(coordinate.axis)));
+  if (axis.size() == 1) value = axis.min();
+  if (!value || !axis.contains(*value)) {
+    throw InputError(
+        fmt::format("{}:1: column \"{}\" is missing, a number in {}", points.name, coordinate.name, range_text(axis)));
   }
   return std::vector<double>(points.size(), *value);
 }
 
-/// Refuses another index than the table's.
-void check_index(const Scene& scene, const Points& points) {
+/// All coordinates of all points.
+std::vector<TableLookup::Point> coordinates(const TableLookup& lookup, const Scene& scene, const Points& points) {
+  const Surface& surface = scene.surface;
+  const std::optional<double> none;
+  const std::array<Coordinate, kGridAxes.size()> all = {
+      {{"wavelength_um", Axis::kWavelength, points.wavelength_um, scene.spectrum.min_um},
+       {"n", Axis::kN, points.n, surface.material.constant.n},
+       {"k", Axis::kK, points.k, surface.material.constant.k},
+       {"theta_deg", Axis::kTheta, points.theta_deg, none},
+       {"sigma", Axis::kSigma, points.sigma, surface.sigma},
+       {"q", Axis::kQ, points.q, surface.q}}};
+  std::vector<TableLookup::Point> result(points.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const LookupAxis* axis = lookup.axis(all[i].axis);
+    if (axis == nullptr) continue;
+    const std::vector<double> values = values_of(all[i], *axis, points);
+    for (std::size_t row = 0; row < points.size(); ++row) result[row][i] = values[row];
+  }
+  return result;
+}
+
+/// Refuses another index or wavelength than the table's, where it has no axis of these.
+void check_index(const TableLookup& lookup, const Scene& scene, const Points& points) {
   const Material& material = scene.surface.material;
-  const auto check = [&](const char* name, const OptionalColumn& given, double own) {
-    if (!given) return;
+  const auto check = [&](const char* name, Axis axis, const OptionalColumn& given, double own) {
+    if (!given || lookup.axis(axis)) return;
     for (std::size_t row = 0; row < points.size(); ++row) {
-      if (material.is_constant() && (*given)[row] == own) continue;
+      if ((material.is_constant() || axis == Axis::kWavelength) && (*given)[row] == own) continue;
       throw InputError(fmt::format("{}:{}: {} = {}: the table is of {}; dolp eval computes other indices", points.name,
                                    points.line(row), name, format_number((*given)[row]),
-                                   material.is_constant() ? fmt::format("{} = {}", name, format_number(own))
-                                                          : "a material that depends on the wavelength"));
+                                   material.is_constant() || axis == Axis::kWavelength
+                                       ? fmt::format("{} = {}", name, format_number(own))
+                                       : "a material that depends on the wavelength"));
     }
   };
-  check("n", points.n, material.constant.n);
-  check("k", points.k, material.constant.k);
+  check("n", Axis::kN, points.n, material.constant.n);
+  check("k", Axis::kK, points.k, material.constant.k);
+  check("wavelength_um", Axis::kWavelength, points.wavelength_um, scene.spectrum.min_um);
 }
 
 }  // namespace
@@ -83,16 +106,14 @@ int run_lookup(const Options& options) {
   const Scene scene = table_scene(table, options.table_path);
   const TableLookup lookup(table, scene.accuracy.tolerance, options.table_path);
   const Points points = read_points(options.points_path, PointsKind::kDirections);
-  check_index(scene, points);
-  const std::vector<double> theta = values_of({"theta_deg", points.theta_deg, lookup.theta_deg(), {}}, points);
-  const std::vector<double> sigma = values_of({"sigma", points.sigma, lookup.sigma(), scene.surface.sigma}, points);
-  const std::vector<double> q = values_of({"q", points.q, lookup.q(), scene.surface.q}, points);
+  check_index(lookup, scene, points);
+  const std::vector<TableLookup::Point> at = coordinates(lookup, scene, points);
   check_writable(options.output_path);
   std::vector<PointResult> results(points.size());
   watch_for_interrupts();
   parallel_ranges(results.size(), kPointsAtOnce, [&](std::size_t first, std::size_t last) {
     if (interrupted()) throw Cancelled{};
-    for (std::size_t i = first; i < last; ++i) results[i] = lookup.at(theta[i], sigma[i], q[i]);
+    for (std::size_t i = first; i < last; ++i) results[i] = lookup.at(at[i]);
   });
   write_text_atomically(options.output_path, result_csv(points, results, lookup.extra_columns()));
 

@@ -14,7 +14,6 @@
 #include "cli/commands.hpp"
 #include "model/choices.hpp"
 #include "scene/number_range.hpp"
-#include "table/table.hpp"
 #include "terminal/exit_status.hpp"
 #include "terminal/guarded.hpp"
 
@@ -66,7 +65,9 @@ void add_keep_all(CLI::App& command, Options& options) {
 
 void add_lookup(CLI::App& command, Options& options) {
   command.add_option("TABLE", options.table_path, "table file (.nc) that dolp table wrote")->required();
-  command.add_option("--points", options.points_path, "CSV with any of theta_deg, sigma, q, n, k; - is stdin")
+  command
+      .add_option("--points", options.points_path,
+                  "CSV with any of theta_deg, sigma, q, n, k, wavelength_um; - is stdin")
       ->required();
   command.add_option("-o,--output", options.output_path, "file to write; - is stdout")->required();
   command.add_flag("--json", options.json, "machine-readable report");
@@ -79,11 +80,13 @@ std::string not_negative(const std::string& value) {
   return value.starts_with('-') ? "must be a whole number from 0 on, not " + value : "";
 }
 
+constexpr std::size_t kMostSamples = std::size_t{1} << 24U;
+
 void add_verify(CLI::App& command, Options& options) {
   CLI::Option* table = command.add_option("TABLE", options.table_path, "table file (.nc) that dolp table wrote");
   const auto of_table = [&](CLI::Option* option) { option->needs(table); };
   of_table(command.add_option("--samples", options.samples, "entries to recompute; all when the table has no more")
-               ->check(CLI::Range(std::size_t{1}, kMostTableEntries))
+               ->check(CLI::Range(std::size_t{1}, kMostSamples))
                ->capture_default_str());
   of_table(command.add_option("--seed", options.seed, "seed of their choice")
                ->check(not_negative, "")
@@ -127,6 +130,7 @@ void check_device(const Options& options) {
 int run(CLI::App& app, Options& options) {
   const auto given = [&app](const char* name) { return app.got_subcommand(name); };
   if (given("table")) return run_table(options);
+  if (given("merge")) return run_merge(options);
   if (given("eval")) return run_eval(options);
   if (given("mueller")) return run_mueller(options);
   if (given("plan")) return run_plan(options);
@@ -153,10 +157,19 @@ int parse_and_run(int argc, char** argv) {
   CLI::App* table = app.add_subcommand("table", "lookup table over the scene's grid (.nc, .csv, .npy)");
   add_run(*table, options);
   add_keep_all(*table, options);
+  table->add_option("--shard", options.shard,
+                    "I/N: this part of the grid, into FILE with .I-of-N before its suffix; auto: in a Slurm array");
+  table->add_flag("--resume", options.resume, "go on where an interrupted run of the same scene stopped");
+  CLI::App* merge = app.add_subcommand("merge", "the shards of a table as one table");
+  merge->add_option("SHARD", options.shards, "all shards of one table (.nc)")->required();
+  merge->add_option("-o,--output", options.output_path, "file to write")->required();
+  merge->add_flag("--json", options.json, "machine-readable report");
+  merge->add_flag("--quiet", options.quiet, "no summary");
   CLI::App* eval = app.add_subcommand("eval", "the same quantities at scattered points");
   add_run(*eval, options);
   add_keep_all(*eval, options);
-  eval->add_option("--points", options.points_path, "CSV with any of theta_deg, sigma, q, n, k; - is stdin")
+  eval->add_option("--points", options.points_path,
+                   "CSV with any of theta_deg, sigma, q, n, k, wavelength_um; - is stdin")
       ->required();
   CLI::App* mueller = app.add_subcommand("mueller", "4 x 4 Mueller pBRDF [1/sr] at scattered geometries");
   add_run(*mueller, options);

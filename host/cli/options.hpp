@@ -18,6 +18,9 @@ struct Options {
   std::string points_path;
   std::string table_path;  ///< of verify and lookup
   std::string output_path;
+  std::string shard;                   ///< of table: "I/N" or "auto"; empty: all of it
+  bool resume = false;                 ///< of table: go on with what an interrupted run left
+  std::vector<std::string> shards;     ///< of merge
   std::vector<std::string> overrides;  ///< --set KEY=VALUE
   std::string tolerance;               ///< as typed; empty when not given
   std::string precision;               ///< likewise

@@ -1,88 +1,45 @@
 #include "cli/run_report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "base/parallel_ranges.hpp"
-#include "base/stopwatch.hpp"
 #include "cli/commands.hpp"
 #include "model/status.hpp"
-#include "run/scattering_gap.hpp"
-#include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
 #include "terminal/exit_status.hpp"
-#include "terminal/progress_bar.hpp"
 
 namespace dolp::cli {
 namespace {
 
-constexpr double kAlbedoMin = 0.95;
-constexpr double kAlbedoMax = 1.05;
 constexpr double kPoints = 100.0;          // of DOLP
 constexpr std::size_t kRowsAtOnce = 4096;  // of a thread
 
-/// The part of a grid where the albedo of the surface model is off: how many entries, and the smallest box around them.
-struct EnergyRange {
-  std::size_t entries = 0;
-  std::pair<double, double> theta_deg;  ///< of the view in bistatic mode
-  std::pair<double, double> sigma;
-};
-
-void widen(std::pair<double, double>& range, bool is_first, double value) {
-  range.first = is_first ? value : std::min(range.first, value);
-  range.second = is_first ? value : std::max(range.second, value);
+Report range_report(const char* what, double limit, const EnergyRange& range) {
+  Report report;
+  report.values({{"entries", range.entries}, {"theta_deg", range.theta_deg}, {"sigma", range.sigma}});
+  if (range.entries == 0) return report;
+  report.line("    {} {}): {} entries, theta {:g}..{:g}, sigma {:.4g}..{:.4g}", what, limit, range.entries,
+              range.theta_deg.first, range.theta_deg.second, range.sigma.first, range.sigma.second);
+  return report;
 }
 
 /// Over which part of the grid the surface model itself gains or loses energy.
-class Energy {
- public:
-  Energy(const Scene& scene, const SceneEntries& entries, const std::vector<PointResult>& results) {
-    const bool bistatic = scene.geometry.mode == Mode::kBistatic;
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      const double albedo = results[i].albedo;
-      if (std::isnan(albedo)) continue;
-      widen(albedo_, count_++ == 0, albedo);
-      const double theta_deg = bistatic ? scene.geometry.view_zenith_deg : entries[i].theta_deg;
-      if (albedo < kAlbedoMin) add(loses_, theta_deg, entries[i].shape.sigma);
-      if (albedo > kAlbedoMax) add(gains_, theta_deg, entries[i].shape.sigma);
-    }
+void add_energy(Report& report, const RunSummary& summary, bool is_computed) {
+  if (summary.albedos == 0) {
+    report.row("albedo", "{}", is_computed ? "not given for any entry" : "not computed: nothing kept depends on it");
+    report.value("albedo", nullptr);
+    return;
   }
-
-  void report(Report& report, bool is_computed) const {
-    if (count_ == 0) {
-      report.row("albedo", "{}", is_computed ? "not given for any entry" : "not computed: nothing kept depends on it");
-      report.value("albedo", nullptr);
-      return;
-    }
-    const bool is_off = loses_.entries + gains_.entries > 0;
-    report.row("albedo", "{:.3g}..{:.3g}{}", key("albedo/min", albedo_.first), key("albedo/max", albedo_.second),
-               is_off ? ": the surface model itself does not keep the energy" : "");
-    report.add("albedo/loses_energy", range_report("loses it (below", kAlbedoMin, loses_));
-    report.add("albedo/gains_energy", range_report("gains it (above", kAlbedoMax, gains_));
-  }
-
- private:
-  static void add(EnergyRange& range, double theta_deg, double sigma) {
-    const bool is_first = range.entries++ == 0;
-    widen(range.theta_deg, is_first, theta_deg);
-    widen(range.sigma, is_first, sigma);
-  }
-
-  static Report range_report(const char* what, double limit, const EnergyRange& range) {
-    Report report;
-    report.values({{"entries", range.entries}, {"theta_deg", range.theta_deg}, {"sigma", range.sigma}});
-    if (range.entries == 0) return report;
-    report.line("    {} {}): {} entries, theta {:g}..{:g}, sigma {:.4g}..{:.4g}", what, limit, range.entries,
-                range.theta_deg.first, range.theta_deg.second, range.sigma.first, range.sigma.second);
-    return report;
-  }
-
-  std::size_t count_ = 0;
-  std::pair<double, double> albedo_;
-  EnergyRange loses_;
-  EnergyRange gains_;
-};
+  const bool is_off = summary.loses.entries + summary.gains.entries > 0;
+  report.row("albedo", "{:.3g}..{:.3g}{}", key("albedo/min", summary.albedo.first),
+             key("albedo/max", summary.albedo.second),
+             is_off ? ": the surface model itself does not keep the energy" : "");
+  report.add("albedo/loses_energy", range_report("loses it (below", kAlbedoMin, summary.loses));
+  report.add("albedo/gains_energy", range_report("gains it (above", kAlbedoMax, summary.gains));
+}
 
 /// What is kept, and a line for each effect that is dropped.
 void add_effects(Report& report, const SceneRun& run) {
@@ -109,9 +66,9 @@ void add_work(Report& report, const EvaluationReport& e, std::size_t entries) {
 }
 
 void add_errors(Report& report, const SceneRun& run, double tolerance) {
-  const std::optional<double> dolp = worst_of(run.results, &PointResult::error_estimate, kStatusNoDolpPromised);
+  const std::optional<double> dolp = run.summary.worst_error;
   std::optional<double> rho;
-  if (run.plan.gives_rho) rho = worst_of(run.results, &PointResult::rho_error_estimate, kStatusOutsideDomain);
+  if (run.plan.gives_rho) rho = run.summary.worst_rho_error;
   report.row("error", "DOLP {} (absolute), {}; tolerance {:g}", bound_text(dolp),
              run.plan.gives_rho ? fmt::format("rho {} (of rho_I)", bound_text(rho)) : "rho not computed",
              key("tolerance", tolerance));
@@ -119,7 +76,7 @@ void add_errors(Report& report, const SceneRun& run, double tolerance) {
   report.value("worst_rho_error_estimate", rho);
 }
 
-void add_status(Report& report, const std::vector<PointResult>& results) {
+void add_status(Report& report, const RunSummary& summary) {
   std::vector<Report> parts;
   for (const auto& [bit, meaning] : {std::pair{kStatusUnphysicalReflectance, "reflectance outside [0, 1]"},
                                      std::pair{kStatusToleranceMissed, "tolerance not met"},
@@ -127,13 +84,14 @@ void add_status(Report& report, const std::vector<PointResult>& results) {
                                      std::pair{kStatusNonPositiveIntensity, "intensity not positive"}}) {
     Report& part = parts.emplace_back();
     part.value("bit", bit);
-    part.row(fmt::format("status {}", bit), "{} of {} entries: {}", key("count", count_status(results, bit)),
-             results.size(), key("meaning", meaning));
+    part.row(fmt::format("status {}", bit), "{} of {} entries: {}", key("count", summary.count(bit)), summary.entries,
+             key("meaning", meaning));
   }
   report.add("status", parts);
 }
 
-/// What ran: nothing, where no evaluator was needed.
+}  // namespace
+
 EvaluationReport evaluation_of(const MomentsEvaluator* evaluator, const Options& options) {
   if (evaluator) return evaluator->report();
   EvaluationReport nothing;
@@ -142,52 +100,33 @@ EvaluationReport evaluation_of(const MomentsEvaluator* evaluator, const Options&
   return nothing;
 }
 
-}  // namespace
-
-SceneRun run_entries(const Options& options, const Scene& scene, const SceneEntries& entries,
-                     std::chrono::steady_clock::time_point start) {
-  SceneRun run;
-  run.plan = plan_effects(scene, entries, options.keep_all);
-  const bool integrates = wants_evaluator(scene, entries, run.plan);
-  const std::unique_ptr<MomentsEvaluator> evaluator = integrates ? make_evaluator(options, scene) : nullptr;
-  {
-    ProgressBar bar(options.quiet);
-    CollectedResults results;
-    run.check = run_scene(scene, entries, run.plan, evaluator.get(), results, bar.callback());
-    run.results = results.take();
-  }
-  run.scattering_gap = scattering_gap(scene, entries, run.plan);
-  run.wall_s = seconds_since(start);
-  run.effects = effect_rows(scene, entries, run.plan);
-  run.evaluation = evaluation_of(evaluator.get(), options);
-  return run;
-}
-
-int report_run(const Options& options, const Scene& scene, const SceneEntries& entries, const SceneRun& run,
-               const std::string& shape) {
+int report_run(const Options& options, const Scene& scene, const SceneRun& run, const std::string& shape,
+               const std::string& path) {
+  const RunSummary& summary = run.summary;
   Report report;
   report.line("{}", key("title", scene.title));
   report.row("entries", "{}", key("shape", shape));
-  report.value("entries", run.results.size());
+  report.value("entries", summary.entries);
   add_effects(report, run);
   add_evaluation(report, run.evaluation, run.wall_s);
-  add_work(report, run.evaluation, run.results.size());
+  add_work(report, run.evaluation, summary.entries);
   report.value("rule", rule_text(scene.accuracy.tolerance, run.evaluation));
   add_errors(report, run, scene.accuracy.tolerance);
-  report.row_if(run.check.entries > 0, "checked",
+  report.row_if(summary.check.entries > 0, "checked",
                 "{} entries by a rule of another kind: largest difference {:.2g} of the bounds{}",
-                key("self_check/entries", run.check.entries), key("self_check/worst_ratio", run.check.worst_ratio),
-                run.check.worst_ratio > 1.0 ? "; a bound failed, see status 2" : "");
+                key("self_check/entries", summary.check.entries),
+                key("self_check/worst_ratio", summary.check.worst_ratio),
+                summary.check.worst_ratio > 1.0 ? "; a bound failed, see status 2" : "");
   report.row_if(run.scattering_gap.has_value(), "scattering",
                 "single: the direct emission, the other end of what all bounces may give, changes DOLP by up to {:.1f} "
                 "points",
                 kPoints * run.scattering_gap.value_or(0.0));
   report.value("scattering_gap", run.scattering_gap);
-  add_status(report, run.results);
-  Energy(scene, entries, run.results).report(report, run.plan.needs_moments);
-  report.row("written", "{}", key("output", options.output_path));
-  report.print(options.json, options.quiet, options.output_path);
-  return options.strict && count_status(run.results, kStatusToleranceMissed) > 0 ? kExitAccuracy : kExitDone;
+  add_status(report, summary);
+  add_energy(report, summary, run.plan.needs_moments);
+  report.row("written", "{}", key("output", path));
+  report.print(options.json, options.quiet, path);
+  return options.strict && summary.count(kStatusToleranceMissed) > 0 ? kExitAccuracy : kExitDone;
 }
 
 std::string result_csv(const Points& points, const std::vector<PointResult>& results, const ExtraColumns& extra) {
@@ -202,7 +141,15 @@ std::string result_csv(const Points& points, const std::vector<PointResult>& res
 }
 
 std::string grid_text(const Grid& grid) {
-  return fmt::format("{} x {} x {} (theta x sigma x q)", grid.theta_deg.size(), grid.sigma.size(), grid.q.size());
+  constexpr std::array kNames = {"wavelength", "n", "k", "theta", "sigma", "q"};
+  std::string counts, names;
+  for (std::size_t i = 0; i < kGridAxes.size(); ++i) {
+    const std::vector<double>& values = grid.*kGridAxes[i];
+    if (values.empty()) continue;
+    counts += fmt::format("{}{}", counts.empty() ? "" : " x ", values.size());
+    names += fmt::format("{}{}", names.empty() ? "" : " x ", kNames[i]);
+  }
+  return fmt::format("{} ({})", counts, names);
 }
 
 Report::Json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan) {

@@ -1,7 +1,6 @@
 // A run of a scene's entries as `table` and `eval` make it, and what commands report of runs.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,35 +10,34 @@
 #include "cli/report.hpp"
 #include "model/point_result.hpp"
 #include "plan/effects.hpp"
-#include "run/self_check.hpp"
+#include "run/run_summary.hpp"
 #include "scene/points.hpp"
 #include "table/result_csv.hpp"
 
 namespace dolp::cli {
 
-/// A finished run.
+/// A finished run, for its report.
 struct SceneRun {
   EffectPlan plan;
   std::vector<EffectRow> effects;
-  std::vector<PointResult> results;
-  SelfCheck check;
+  RunSummary summary;
   std::optional<double> scattering_gap;  ///< none where it does not apply
   EvaluationReport evaluation;
   double wall_s = 0.0;
 };
 
-/// Evaluates the entries as the options ask for. The command began at `start`.
-SceneRun run_entries(const Options& options, const Scene& scene, const SceneEntries& entries,
-                     std::chrono::steady_clock::time_point start);
+/// What ran: nothing, where no evaluator was needed.
+EvaluationReport evaluation_of(const MomentsEvaluator* evaluator, const Options& options);
 
-/// Prints the report of a run; returns the exit status. `shape`: that of the grid, or "200 points".
-int report_run(const Options& options, const Scene& scene, const SceneEntries& entries, const SceneRun& run,
-               const std::string& shape);
+/// Prints the report of a run; returns the exit status. `shape`: that of the grid, or "200 points"; `path`: what was
+/// written.
+int report_run(const Options& options, const Scene& scene, const SceneRun& run, const std::string& shape,
+               const std::string& path);
 
 /// The columns of the points as they were given, and those of their results.
 std::string result_csv(const Points& points, const std::vector<PointResult>& results, const ExtraColumns& extra);
 
-/// "91 x 32 x 5 (theta x sigma x q)".
+/// "91 x 32 x 5 (theta x sigma x q)"; an axis that the grid lacks is left out.
 std::string grid_text(const Grid& grid);
 
 /// Names and reasons of what is kept, dropped, not needed and absent.

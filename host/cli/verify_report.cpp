@@ -14,20 +14,28 @@ namespace {
 constexpr std::size_t kMostFailureLines = 20;
 
 std::string place(const CheckedValue& value) {
-  return fmt::format("theta {:g}, sigma {:g}, q {:g}", value.theta_deg, value.sigma, value.q);
+  std::string text;
+  if (value.wavelength_um) text += fmt::format("wavelength {:g}, ", *value.wavelength_um);
+  if (value.n) text += fmt::format("n {:g}, ", *value.n);
+  if (value.k) text += fmt::format("k {:g}, ", *value.k);
+  return text + fmt::format("theta {:g}, sigma {:g}, q {:g}", value.theta_deg, value.sigma, value.q);
 }
 
 Report::Json value_json(const CheckedValue& value) {
-  return {{"quantity", value.quantity},
-          {"theta_deg", value.theta_deg},
-          {"sigma", value.sigma},
-          {"q", value.q},
-          {"stored", value.stored},
-          {"reference", value.reference},
-          {"error", value.error()},
-          {"stated", value.stated},
-          {"reference_error", value.reference_error},
-          {"complaint", value.complaint}};
+  Report::Json json = {{"quantity", value.quantity},
+                       {"theta_deg", value.theta_deg},
+                       {"sigma", value.sigma},
+                       {"q", value.q},
+                       {"stored", value.stored},
+                       {"reference", value.reference},
+                       {"error", value.error()},
+                       {"stated", value.stated},
+                       {"reference_error", value.reference_error},
+                       {"complaint", value.complaint}};
+  if (value.wavelength_um) json["wavelength_um"] = *value.wavelength_um;
+  if (value.n) json["n"] = *value.n;
+  if (value.k) json["k"] = *value.k;
+  return json;
 }
 
 Report quantity_report(const QuantityCheck& check) {

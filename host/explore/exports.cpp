@@ -6,12 +6,11 @@
 #include <cmath>
 
 #include "base/number_text.hpp"
-#include "base/stopwatch.hpp"
 #include "evaluate/reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
+#include "run/table_run.hpp"
 #include "table/result_csv.hpp"
-#include "table/table_file.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -34,17 +33,10 @@ std::string curve_csv(const Curve& curve) {
 std::string export_table(const Scene& scene, const std::string& path, const std::string& command_line,
                          MomentsEvaluator& evaluator, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  check_output_path(path);
-  const SceneEntries entries = grid_entries(scene);
-  const EffectPlan plan = plan_effects(scene, entries, false);
-  CollectedResults collected;
-  const SelfCheck check = run_scene(scene, entries, plan, &evaluator, collected, progress);
-  const std::vector<PointResult> results = collected.take();
-  const double wall_s = seconds_since(start);
-  const std::vector<EffectRow> effects = effect_rows(scene, entries, plan);
-  const TableContent content{scene, results, plan, effects, evaluator.report(), check, wall_s, command_line};
-  write_table(scene_table(content), path);
-  return fmt::format("{}: {} entries in {:.2f} s", path, entries.size(), wall_s);
+  const TableJob job{.path = path, .shard = {}, .is_resumable = false, .command_line = command_line, .start = start};
+  const TableRun run = run_table_job(
+      scene, job, [&] { return &evaluator; }, progress);
+  return fmt::format("{}: {} entries in {:.2f} s", path, run.summary.entries, run.wall_s);
 }
 
 std::string true_error(const Curve& curve, const Progress& progress) {

@@ -41,8 +41,7 @@ constexpr std::array kCuttingOrder = {Axis::kTheta, Axis::kWavelength, Axis::kN,
 
 PerAxis counts_of(const Grid& grid) {
   PerAxis counts;
-  for (std::size_t i = 0; i < kGridAxes.size(); ++i)
-    counts[i] = std::max<std::size_t>((grid.*kGridAxes[i]).size(), 1);
+  for (std::size_t i = 0; i < kGridAxes.size(); ++i) counts[i] = std::max<std::size_t>((grid.*kGridAxes[i]).size(), 1);
   return counts;
 }
 
@@ -151,8 +150,7 @@ void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& who
   std::size_t slowest = count.size() - 1;
   while (slowest > 0 && count[slowest] == whole[slowest]) --slowest;
   const auto from = static_cast<std::ptrdiff_t>(slowest);
-  const std::size_t of_run =
-      std::accumulate(count.begin() + from, count.end(), std::size_t{1}, std::multiplies<>());
+  const std::size_t of_run = std::accumulate(count.begin() + from, count.end(), std::size_t{1}, std::multiplies<>());
   const std::size_t runs = size_of(count) / of_run;
   for (std::size_t run = 0; run < runs; ++run) {
     PerAxis at = first;

@@ -37,7 +37,7 @@ struct Grid {
 
 /// The axes in the order of a table, the last one fastest.
 enum class Axis : std::uint8_t { kWavelength, kN, kK, kTheta, kSigma, kQ };
-inline constexpr std::array<std::vector<double> Grid::*, 6> kGridAxes = {&Grid::wavelength_um, &Grid::n, &Grid::k,
+inline constexpr std::array<std::vector<double> Grid::*, 6> kGridAxes = {&Grid::wavelength_um, &Grid::n,     &Grid::k,
                                                                          &Grid::theta_deg,     &Grid::sigma, &Grid::q};
 /// A number for each axis: positions, or counts.
 using PerAxis = std::array<std::size_t, kGridAxes.size()>;
@@ -113,7 +113,8 @@ class SceneEntries {
   std::vector<SceneEntry> points_;
 };
 
-/// Calls use(run) for a part, that begins at `first` and has `count` values of each axis, of a whole with `whole` values.
+/// Calls use(run) for a part, that begins at `first` and has `count` values of each axis, of a whole with `whole`
+/// values.
 void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
                   const std::function<void(const GridRun&)>& use);
 

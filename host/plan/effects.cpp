@@ -283,10 +283,10 @@ EffectRow complex_index_row(const Scene& scene, const EffectPlan& plan, const Sc
   constexpr const char* kName = "complex index";
   const std::vector<OpticalConstants> indices = spectral_rule(scene).indices();
   const auto is_complex = [](const OpticalConstants& index) { return index.k > 0.0; };
-  const bool own = entries.is_grid() ? std::ranges::any_of(entries.axes().k, [](double k) { return k > 0.0; })
-                                     : std::ranges::any_of(entries.all(), [&](const SceneEntry& e) {
-                                         return e.index && is_complex(*e.index);
-                                       });
+  const bool own =
+      entries.is_grid()
+          ? std::ranges::any_of(entries.axes().k, [](double k) { return k > 0.0; })
+          : std::ranges::any_of(entries.all(), [&](const SceneEntry& e) { return e.index && is_complex(*e.index); });
   if (!own && std::ranges::none_of(indices, is_complex)) return absent(kName, "k is 0");
   EffectRow row{kName, EffectState::kKept, "costs nothing: the kernel treats real indices alike"};
   const bool is_used = plan.needs_moments || plan.needs_beams || (is_fresnel(scene) && plan.kept.emission);

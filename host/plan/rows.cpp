@@ -156,7 +156,9 @@ Rows rows_of(const MomentsRequest& request, const KernelData& data, std::uint32_
   return rows;
 }
 
-Rows rows_of(const MomentsRequest& request, const KernelData& data) { return rows_of(request, data, request.row_width); }
+Rows rows_of(const MomentsRequest& request, const KernelData& data) {
+  return rows_of(request, data, request.row_width);
+}
 
 std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count) {
   const auto same_work = [&](const Row& a, const Row& b) {

@@ -37,9 +37,8 @@ ShapeParameter sigma_parameter(Distribution distribution) {
 }
 
 ShapeParameter q_parameter(const MomentsRequest& request) {
-  const bool needs_mean_slope =
-      request.masking == Masking::kSmith ||
-      (sees_slopes(request.masking) && std::ranges::all_of(request.theta_deg, is_grazing));
+  const bool needs_mean_slope = request.masking == Masking::kSmith ||
+                                (sees_slopes(request.masking) && std::ranges::all_of(request.theta_deg, is_grazing));
   const bool has_mean_slope = request.distribution == Distribution::kCauchy && std::ranges::min(request.q) > 1.5;
   return {needs_mean_slope && has_mean_slope ? 1.5 : 1.0, 1.45};
 }

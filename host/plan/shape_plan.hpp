@@ -23,8 +23,8 @@ struct ShapePlan {
   std::size_t nodes_of_a_direction() const { return sigma.nodes.size() * q.nodes.size(); }
 };
 
-/// The plan of a request whose directions have one parameter (with_one_parameter), or none where every entry is computed
-/// by itself, as where only some entries of a direction and index are wanted.
+/// The plan of a request whose directions have one parameter (with_one_parameter), or none where every entry is
+/// computed by itself, as where only some entries of a direction and index are wanted.
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request);
 
 /// Which of a grid's directions the plans of its parts interpolate.

@@ -36,7 +36,8 @@ void check_columns(const Scene& scene, const Points& points) {
 /// The distinct wavelengths of the points, which all must be where n, k and E0 are known.
 std::vector<double> wavelengths_of(const Scene& scene, const Points& points) {
   if (scene.spectrum.is_band()) {
-    throw InputError(fmt::format("{}:1: column \"wavelength_um\" cannot be combined with spectrum.band_um", points.name));
+    throw InputError(
+        fmt::format("{}:1: column \"wavelength_um\" cannot be combined with spectrum.band_um", points.name));
   }
   std::vector<double> wavelengths = *points.wavelength_um;
   std::ranges::sort(wavelengths);

@@ -17,7 +17,8 @@
 namespace dolp {
 namespace {
 
-/// All slope distributions of some directions of a grid, the middles of equal parts of them, at one wavelength and index.
+/// All slope distributions of some directions of a grid, the middles of equal parts of them, at one wavelength and
+/// index.
 SceneEntries entries_of_drawn_directions(const SceneEntries& grid) {
   Grid axes = grid.axes();
   std::vector<double>& theta_deg = axes.theta_deg;

@@ -20,7 +20,7 @@ namespace dolp {
 namespace {
 
 // Bound the memory of a run. Points take more of it, because nothing is shared between them.
-constexpr std::size_t kMomentsAtOnce = 1U << 22U;
+constexpr std::size_t kMomentsAtOnce = 1U << 20U;
 constexpr std::size_t kPointsAtOnce = 1U << 20U;
 // A direction of which more than one entry in so many misses the tolerance is refined as a whole.
 constexpr std::size_t kManyMisses = 8;
@@ -236,8 +236,8 @@ void refine(const Way& way, const SceneEntries& part, FirstResults& first, const
   std::vector<PointResult>& results = first.results;
   Waiting waiting;
   // Members of one direction follow each other.
-  const auto plan = [&](RefinementLevel last, std::span<const std::size_t> members,
-                        std::span<const PointResult> found, std::span<const char> is_interpolated) {
+  const auto plan = [&](RefinementLevel last, std::span<const std::size_t> members, std::span<const PointResult> found,
+                        std::span<const char> is_interpolated) {
     for (std::size_t i = 0, end = 0; i < members.size(); i = end) {
       const std::size_t direction = members[i] / of_direction;
       while (end < members.size() && members[end] / of_direction == direction) ++end;
@@ -312,15 +312,17 @@ std::vector<PointResult> part_results(const Way& way, const SceneEntries& part, 
 
 }  // namespace
 
-void CollectedResults::write(const SceneEntries& part, std::vector<PointResult> results) {
-  if (part.is_grid() && part.whole() != part.counts()) {
-    results_.resize(size_of(part.whole()));
-    for_each_run(part.first(), part.counts(), part.whole(), [&](const GridRun& run) {
+void CollectedResults::write(const SceneEntries& part, std::vector<PointResult> results, const SelfCheck&) {
+  if (part.size() == entries_.size()) {
+    results_ = std::move(results);
+  } else if (part.is_grid()) {
+    results_.resize(entries_.size());
+    PerAxis first = part.first();
+    for (std::size_t i = 0; i < first.size(); ++i) first[i] -= entries_.first()[i];
+    for_each_run(first, part.counts(), entries_.counts(), [&](const GridRun& run) {
       std::copy_n(results.begin() + static_cast<std::ptrdiff_t>(run.in_part), run.count,
                   results_.begin() + static_cast<std::ptrdiff_t>(run.in_whole));
     });
-  } else if (results_.empty()) {
-    results_ = std::move(results);
   } else {
     results_.insert(results_.end(), results.begin(), results.end());
   }
@@ -352,9 +354,14 @@ SelfCheck run_scene(const Scene& scene, const SceneEntries& entries, const Effec
     const Progress part_progress = [&](std::size_t done, std::size_t total) {
       return !progress || progress(before + part.size() * done / total, entries.size());
     };
-    const Spectra spectra(scene, plan, part.wavelength_um());
-    const Way way{scene, plan, spectra, evaluator, accuracy, whole};
-    sink.write(part, part_results(way, part, checked, check, part_progress));
+    if (!sink.has(part)) {
+      const Spectra spectra(scene, plan, part.wavelength_um());
+      const Way way{scene, plan, spectra, evaluator, accuracy, whole};
+      SelfCheck of_part;
+      std::vector<PointResult> results = part_results(way, part, checked, of_part, part_progress);
+      sink.write(part, std::move(results), of_part);
+      check.add(of_part);
+    }
     before += part.size();
   }
   return check;
@@ -362,7 +369,7 @@ SelfCheck run_scene(const Scene& scene, const SceneEntries& entries, const Effec
 
 std::vector<PointResult> evaluate_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
                                         MomentsEvaluator* evaluator, const Progress& progress) {
-  CollectedResults results;
+  CollectedResults results(entries);
   run_scene(scene, entries, plan, evaluator, results, progress);
   return results.take();
 }

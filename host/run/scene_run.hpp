@@ -33,17 +33,23 @@ void check_smith(const Scene& scene, const Points& points);
 class Sink {
  public:
   virtual ~Sink() = default;
-  /// Results of `part`: points follow those of the part before, the part of a grid says where it belongs.
-  virtual void write(const SceneEntries& part, std::vector<PointResult> results) = 0;
+  /// Whether the results of a part are there already, so that it need not be computed.
+  virtual bool has(const SceneEntries& /*part*/) { return false; }
+  /// Results of `part`: points follow those of the part before, the part of a grid says where it belongs. `check`: of
+  /// its entries.
+  virtual void write(const SceneEntries& part, std::vector<PointResult> results, const SelfCheck& check) = 0;
 };
 
-/// All results in memory.
+/// All results in memory, in the order of the entries.
 class CollectedResults final : public Sink {
  public:
-  void write(const SceneEntries& part, std::vector<PointResult> results) override;
+  /// `entries` must outlive the object.
+  explicit CollectedResults(const SceneEntries& entries) : entries_(entries) {}
+  void write(const SceneEntries& part, std::vector<PointResult> results, const SelfCheck& check) override;
   std::vector<PointResult> take() { return std::move(results_); }
 
  private:
+  const SceneEntries& entries_;
   std::vector<PointResult> results_;
 };
 
@@ -56,8 +62,8 @@ bool wants_evaluator(const Scene& scene, const SceneEntries& entries, const Effe
 
 /// Goes all the way, part by part: what the plan keeps, computed again where it misses the tolerance; what the plan
 /// does not give is NaN. Progress counts entries. The evaluator may be null where wants_evaluator says so. Of grids
-/// some entries are checked; a direction in which a bound fails gets the status of a missed tolerance. What an entry of a
-/// grid gets depends on its direction and index alone, and on the slope distributions of the grid, not on the parts.
+/// some entries are checked; a direction in which a bound fails gets the status of a missed tolerance. What an entry of
+/// a grid gets depends on its direction and index alone, and on the slope distributions of the grid, not on the parts.
 /// Errors: those of the evaluator, of Radiometry and of the sink; Cancelled when `progress` returns false.
 SelfCheck run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
                     MomentsEvaluator* evaluator, Sink& sink, const Progress& progress);

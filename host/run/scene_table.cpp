@@ -26,35 +26,38 @@ bool is_given(const TableVariable& variable, const Scene& scene, const EffectPla
   return true;
 }
 
-void fill_variables(Table& table, const TableContent& content) {
-  const std::vector<PointResult>& results = content.results;
-  std::vector<const TableVariable*> columns;
-  for (const TableVariable& variable : table_variables()) {
-    if (is_given(variable, content.scene, content.plan)) columns.push_back(&variable);
-  }
-  for (const TableVariable* column : columns) (table.*column->values).resize(results.size());
-  table.status.resize(results.size());
-  constexpr std::size_t kEntriesAtOnce = 16384;
-  parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      for (const TableVariable* column : columns) (table.*column->values)[i] = results[i].*column->member;
-      table.status[i] = results[i].status;
-    }
-  });
-}
-
-void fill_curves(Table& table, const Scene& scene) {
+/// n, k and E0 as they are used: at the axis of wavelengths, else as the scene has them.
+void fill_curves(TableHead& head, const Scene& scene) {
   const Material& material = scene.surface.material;
+  if (!head.wavelength_um.empty()) {
+    std::vector<double> wavelengths = scene.grid.wavelength_um;
+    std::ranges::sort(wavelengths);
+    const bool is_axis = !head.n.empty() || !head.k.empty();
+    for (const double wavelength_um : wavelengths) {
+      const Scene at = at_wavelength(scene, wavelength_um);
+      const OpticalConstants& index = at.surface.material.constant;
+      const auto add = [&](Curve& curve, double value) {
+        curve.wavelength_um.push_back(wavelength_um);
+        curve.values.push_back(value);
+      };
+      if (!is_axis) add(head.index_n, index.n);
+      if (!is_axis) add(head.index_k, index.k);
+      if (at.source && at.source->kind == Source::Kind::kFlat) add(head.irradiance, at.source->irradiance);
+    }
+    return;
+  }
   const std::vector<double> one_um = {scene.spectrum.min_um};
   const auto curve_of = [&](const SpectralTable& tabulated, double constant) -> Curve {
     if (tabulated.wavelength_um.empty()) return {one_um, {constant}};
     return {tabulated.wavelength_um, tabulated.value};
   };
-  table.index_n = curve_of(material.n, material.constant.n);
-  table.index_k = curve_of(material.k, material.constant.k);
+  if (head.n.empty() && head.k.empty()) {
+    head.index_n = curve_of(material.n, material.constant.n);
+    head.index_k = curve_of(material.k, material.constant.k);
+  }
   if (!scene.source) return;
-  if (scene.source->kind == Source::Kind::kFlat) table.irradiance = {one_um, {scene.source->irradiance}};
-  if (scene.source->kind == Source::Kind::kTabulated) table.irradiance = curve_of(scene.source->table, 0.0);
+  if (scene.source->kind == Source::Kind::kFlat) head.irradiance = {one_um, {scene.source->irradiance}};
+  if (scene.source->kind == Source::Kind::kTabulated) head.irradiance = curve_of(scene.source->table, 0.0);
 }
 
 /// An exitance, in bistatic mode a radiance; per um at a single wavelength.
@@ -65,33 +68,26 @@ std::string stokes_units(const Scene& scene) {
   return units;
 }
 
-std::vector<Attribute> attributes(const TableContent& content) {
-  const Scene& scene = content.scene;
-  const EvaluationReport& evaluation = content.evaluation;
+}  // namespace
+
+std::string history_text(const std::string& command_line) {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  return {{"title", scene.title},
-          {"source", "dolp " DOLP_VERSION},
-          {"history", fmt::format("{:%Y-%m-%dT%H:%M:%SZ} {}", fmt::gmtime(now), content.command_line)},
-          {"references",
-           "W. Wang, Y. Li, L. Wang, Infrared Polarization Radiation Optimization Model Based on the Cauchy "
-           "Distribution, Infrared 46(8), 2025, doi:10.3969/j.issn.1672-8785.2025.08.004"},
-          {"scene", scene.text},
-          {"scene_path", scene.path_name},
-          {"scene_overrides", overrides_text(scene.overrides)},
-          {"scene_hash", scene_hash(scene)},
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ} {}", fmt::gmtime(now), command_line);
+}
+
+std::vector<Attribute> attributes_of(const Scene& scene, const RunFacts& run) {
+  const EvaluationReport& evaluation = run.evaluation;
+  return {{"history", history_text(run.command_line)},
           {"device", evaluation.device},
           {"driver", evaluation.driver},
           {"evaluator", evaluation.evaluator},
           {"precision", evaluation.precision},
-          {"tolerance", scene.accuracy.tolerance},
-          {"effects", effects_text(content.effects, content.plan)},
+          {"effects", effects_text(run.effects, run.plan)},
           {"rule", rule_text(scene.accuracy.tolerance, evaluation)},
-          {"self_check_entries", static_cast<double>(content.check.entries)},
-          {"self_check_worst_ratio", content.check.worst_ratio},
-          {"wall_time_s", content.wall_s}};
+          {"self_check_entries", static_cast<double>(run.check.entries)},
+          {"self_check_worst_ratio", run.check.worst_ratio},
+          {"wall_time_s", run.wall_s}};
 }
-
-}  // namespace
 
 std::string rule_text(double tolerance, const EvaluationReport& evaluation) {
   std::string text = fmt::format(
@@ -99,10 +95,7 @@ std::string rule_text(double tolerance, const EvaluationReport& evaluation) {
       "of rules",
       tolerance);
   if (evaluation.interpolated > 0) {
-    text += fmt::format(
-        "; {} moments interpolated in ln(sigma) and ln(q - q0) between {} at Chebyshev nodes, bounds from the last "
-        "coefficients",
-        evaluation.interpolated, evaluation.interpolation_nodes);
+    text += "; interpolated in ln(sigma) and ln(q - q0) between Chebyshev nodes, bounds from the last coefficients";
   }
   return text;
 }
@@ -111,18 +104,42 @@ ExtraColumns extra_columns(const Scene& scene) {
   return {.emissivity = scene.emission.has_value(), .bracket = scene.emission && scene.emission->has_bracket};
 }
 
-Table scene_table(const TableContent& content) {
-  const Scene& scene = content.scene;
-  Table table;
-  table.theta_deg = scene.grid.theta_deg;
-  table.sigma = scene.grid.sigma;
-  table.q = scene.grid.q;
-  table.stokes_units = stokes_units(scene);
-  fill_variables(table, content);
-  fill_curves(table, scene);
-  table.attributes = attributes(content);
+TableLayout table_layout(const Scene& scene, const EffectPlan& plan, const Grid& axes) {
+  TableLayout layout;
+  TableHead& head = layout.head;
+  for (std::size_t i = 0; i < kTableAxes.size(); ++i) head.*kTableAxes[i] = axes.*kGridAxes[i];
+  head.stokes_units = stokes_units(scene);
+  fill_curves(head, scene);
+  head.attributes = {{"title", scene.title},
+                     {"source", "dolp " DOLP_VERSION},
+                     {"references",
+                      "W. Wang, Y. Li, L. Wang, Infrared Polarization Radiation Optimization Model Based on the Cauchy "
+                      "Distribution, Infrared 46(8), 2025, doi:10.3969/j.issn.1672-8785.2025.08.004"},
+                     {"scene", scene.text},
+                     {"scene_path", scene.path_name},
+                     {"scene_overrides", overrides_text(scene.overrides)},
+                     {"scene_hash", scene_hash(scene)},
+                     {"tolerance", scene.accuracy.tolerance}};
   const Dispersion& formula = scene.surface.material.n.formula;
-  if (formula.number != 0) table.attributes.push_back({"index_n_formula", formula_text(formula)});
+  if (formula.number != 0) head.attributes.push_back({"index_n_formula", formula_text(formula)});
+  for (const TableVariable& variable : table_variables()) {
+    if (is_given(variable, scene, plan)) layout.variables.push_back(&variable);
+  }
+  return layout;
+}
+
+Table table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results) {
+  Table table;
+  for (std::size_t i = 0; i < kTableAxes.size(); ++i) table.*kTableAxes[i] = part.axes().*kGridAxes[i];
+  for (const TableVariable* column : layout.variables) (table.*column->values).resize(results.size());
+  table.status.resize(results.size());
+  constexpr std::size_t kEntriesAtOnce = 16384;
+  parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      for (const TableVariable* column : layout.variables) (table.*column->values)[i] = results[i].*column->member;
+      table.status[i] = results[i].status;
+    }
+  });
   return table;
 }
 

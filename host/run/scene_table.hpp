@@ -6,6 +6,7 @@
 
 #include "evaluate/evaluator.hpp"
 #include "model/point_result.hpp"
+#include "model/scene_entry.hpp"
 #include "plan/effects.hpp"
 #include "run/self_check.hpp"
 #include "scene/scene.hpp"
@@ -14,10 +15,18 @@
 
 namespace dolp {
 
-/// A run over the grid of a scene.
-struct TableContent {
-  const Scene& scene;
-  const std::vector<PointResult>& results;  ///< of grid_entries, in their order
+/// The columns that a scene's results have beside those of every scene.
+ExtraColumns extra_columns(const Scene& scene);
+
+/// The table of a grid of the scene before anything is computed, with the attributes that are known by then. `axes` may
+/// be a part of the scene's grid.
+TableLayout table_layout(const Scene& scene, const EffectPlan& plan, const Grid& axes);
+
+/// The values of a part of the grid.
+Table table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results);
+
+/// What is known after a run.
+struct RunFacts {
   const EffectPlan& plan;
   const std::vector<EffectRow>& effects;  ///< effect_rows of the run
   EvaluationReport evaluation;
@@ -25,12 +34,8 @@ struct TableContent {
   double wall_s = 0.0;
   std::string command_line;  ///< for the history
 };
-
-/// The columns that a scene's results have beside those of every scene.
-ExtraColumns extra_columns(const Scene& scene);
-
-/// The table with all attributes, as `dolp table` and the window write it.
-Table scene_table(const TableContent& content);
+std::string history_text(const std::string& command_line);
+std::vector<Attribute> attributes_of(const Scene& scene, const RunFacts& run);
 
 /// The rule in words, for reports and table attributes.
 std::string rule_text(double tolerance, const EvaluationReport& evaluation);

@@ -17,7 +17,7 @@ namespace dolp {
 namespace {
 
 /// A text attribute, or nullptr.
-const std::string* find_text(const Table& table, std::string_view attribute) {
+const std::string* find_text(const TableHead& table, std::string_view attribute) {
   const auto found = std::ranges::find(table.attributes, attribute, &Attribute::name);
   return found == table.attributes.end() ? nullptr : std::get_if<std::string>(&found->value);
 }
@@ -55,7 +55,7 @@ Dispersion formula_of(const std::string& text, const std::string& where) {
 }
 
 /// n, k and E0 as the table has them.
-KnownData known_data(const Table& table, const std::string& name) {
+KnownData known_data(const TableHead& table, const std::string& name) {
   const std::string where = name + ": ";
   KnownData known;
   if (!table.index_n.values.empty() && !table.index_k.values.empty()) {
@@ -124,7 +124,7 @@ Table load_table(const std::string& path) {
   return read_table(path);
 }
 
-Scene table_scene(const Table& table, const std::string& name, NamedData named_data) {
+Scene table_scene(const TableHead& table, const std::string& name, NamedData named_data) {
   const std::string* text = find_text(table, "scene");
   if (!text) {
     throw InputError(

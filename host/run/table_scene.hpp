@@ -37,6 +37,6 @@ enum class NamedData {
 ///
 /// Errors: InputError that begins with `name`: no scene in the table, one that is not the one the table was made of, or
 /// one that the reader refuses.
-Scene table_scene(const Table& table, const std::string& name, NamedData named_data = NamedData::kOfTable);
+Scene table_scene(const TableHead& table, const std::string& name, NamedData named_data = NamedData::kOfTable);
 
 }  // namespace dolp

@@ -174,7 +174,8 @@ void fill_from_grid(Scene& scene, const SceneDocument& document) {
   const Grid& grid = scene.grid;
   OpticalConstants& index = scene.surface.material.constant;
   if (!grid.wavelength_um.empty()) {
-    if (document.find("spectrum.band_um")) document.fail("grid.wavelength_um", "cannot be combined with spectrum.band_um");
+    if (document.find("spectrum.band_um"))
+      document.fail("grid.wavelength_um", "cannot be combined with spectrum.band_um");
     if (!document.find("spectrum.wavelength_um"))
       scene.spectrum = {grid.wavelength_um.front(), grid.wavelength_um.front()};
   }

@@ -1,5 +1,6 @@
 #include "table/table.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace dolp {
@@ -38,6 +39,21 @@ constexpr std::array<TableVariable, 14> kVariables = {{
 
 }  // namespace
 
+PerAxis TableHead::counts() const {
+  PerAxis counts;
+  for (std::size_t i = 0; i < kTableAxes.size(); ++i)
+    counts[i] = std::max<std::size_t>((this->*kTableAxes[i]).size(), 1);
+  return counts;
+}
+
 std::span<const TableVariable> table_variables() { return kVariables; }
+
+TableVariables present_variables(const Table& table) {
+  TableVariables present;
+  for (const TableVariable& variable : kVariables) {
+    if (!(table.*variable.values).empty()) present.push_back(&variable);
+  }
+  return present;
+}
 
 }  // namespace dolp

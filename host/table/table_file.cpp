@@ -1,37 +1,57 @@
 #include "table/table_file.hpp"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "base/number_text.hpp"
+#include "base/parallel_ranges.hpp"
 #include "base/printable_text.hpp"
-#include "table/table_netcdf.hpp"
+#include "table/table_store.hpp"
 
 namespace dolp {
 namespace {
 
 namespace fs = std::filesystem;
 
-enum class Format { kNetcdf, kCsv, kNpy };
+constexpr std::size_t kRowsAtOnce = 4096;  // of a thread
 
-Format format_of(const fs::path& path) {
-  const std::string suffix = path.extension().string();
-  if (suffix == ".nc") return Format::kNetcdf;
-  if (suffix == ".csv" || path == "-") return Format::kCsv;
-  if (suffix == ".npy") return Format::kNpy;
-  throw InputError(path.string() + ": the name of a table must end in .nc, .csv or .npy");
+/// The axes of a .csv or .npy, in the order of kTableAxes.
+constexpr std::array<const char*, kTableAxes.size()> kAxisColumns = {"wavelength_um", "n",     "k",
+                                                                     "theta_deg",     "sigma", "q"};
+
+/// Those that the table has.
+struct AxisColumn {
+  const char* name;
+  std::size_t axis;
+};
+std::vector<AxisColumn> axis_columns(const TableHead& head) {
+  std::vector<AxisColumn> columns;
+  for (std::size_t i = 0; i < kTableAxes.size(); ++i) {
+    if (!(head.*kTableAxes[i]).empty()) columns.push_back({kAxisColumns[i], i});
+  }
+  return columns;
 }
 
-/// The variables that a table has.
-std::vector<const TableVariable*> present_variables(const Table& table) {
-  std::vector<const TableVariable*> present;
-  for (const TableVariable& variable : table_variables()) {
-    if (!(table.*variable.values).empty()) present.push_back(&variable);
+/// Calls row(position, values of the axes) for positions first, first + 1, ... of a table.
+template <class Row>
+void each_row(const TableHead& head, const std::vector<AxisColumn>& axes, std::size_t first, std::size_t last,
+              const Row& row) {
+  std::vector<double> values(axes.size());
+  for (std::size_t position = first; position < last; ++position) {
+    std::size_t rest = position;
+    for (std::size_t i = axes.size(); i-- > 0;) {
+      const std::vector<double>& axis = head.*kTableAxes[axes[i].axis];
+      values[i] = axis[rest % axis.size()];
+      rest /= axis.size();
+    }
+    row(position, values);
   }
-  return present;
 }
 
 std::string value_text(const Attribute& attribute) {
@@ -50,49 +70,51 @@ std::string value_text(const Attribute& attribute) {
   }
 }
 
-std::string csv_header(const Table& table, const std::vector<const TableVariable*>& variables) {
+std::string csv_header(const TableLayout& layout) {
   std::string text;
-  for (const Attribute& attribute : table.attributes)
+  for (const Attribute& attribute : layout.head.attributes)
     text += "# " + attribute.name + ": " + value_text(attribute) + "\n";
-  text += "# units of stokes: " + table.stokes_units + "\n";
-  text += "theta_deg,sigma,q";
-  for (const TableVariable* variable : variables) (text += ',') += variable->name;
-  if (!table.status.empty()) text += ",status";
-  return text + "\n";
+  text += "# units of stokes: " + layout.head.stokes_units + "\n";
+  std::string names;
+  for (const AxisColumn& axis : axis_columns(layout.head)) (names += ',') += axis.name;
+  for (const TableVariable* variable : layout.variables) (names += ',') += variable->name;
+  if (layout.has_status) names += ",status";
+  return text + names.substr(1) + "\n";
 }
 
-std::string csv_text(const Table& table) {
-  const std::vector<const TableVariable*> variables = present_variables(table);
-  std::string text = csv_header(table, variables);
-  std::size_t position = 0;
-  for (const double theta_deg : table.theta_deg) {
-    for (const double sigma : table.sigma) {
-      const std::string start = number_text(theta_deg) + ',' + number_text(sigma) + ',';
-      for (const double q : table.q) {
-        text += start;
-        text += number_text(q);
-        for (const TableVariable* variable : variables)
-          (text += ',') += number_text((table.*variable->values)[position]);
-        if (!table.status.empty()) (text += ',') += std::to_string(table.status[position]);
-        text += '\n';
-        ++position;
+std::string csv_rows(const Table& part, const TableVariables& variables) {
+  const std::vector<AxisColumn> axes = axis_columns(part);
+  std::vector<std::string> pieces((part.size() + kRowsAtOnce - 1) / kRowsAtOnce);
+  parallel_ranges(part.size(), kRowsAtOnce, [&](std::size_t first, std::size_t last) {
+    std::string& text = pieces[first / kRowsAtOnce];
+    each_row(part, axes, first, last, [&](std::size_t position, const std::vector<double>& values) {
+      std::string_view separator;
+      for (const double value : values) {
+        (text += separator) += number_text(value);
+        separator = ",";
       }
-    }
-  }
+      for (const TableVariable* variable : variables) (text += ',') += number_text((part.*variable->values)[position]);
+      if (!part.status.empty()) (text += ',') += std::to_string(part.status[position]);
+      text += '\n';
+    });
+  });
+  std::string text;
+  for (const std::string& piece : pieces) text += piece;
   return text;
 }
 
 /// Source: the NumPy enhancement proposal "A Simple File Format for NumPy Arrays", version 1.0.
-std::string npy_header(const Table& table, const std::vector<const TableVariable*>& variables) {
+std::string npy_header(const TableLayout& layout) {
   constexpr std::size_t kAlignment = 64;
   constexpr std::size_t kPreambleSize = 10;
-  std::string fields;
-  for (const char* axis : {"theta_deg", "sigma", "q"}) fields += std::string("('") + axis + "', '<f8'), ";
-  for (const TableVariable* variable : variables) fields += std::string("('") + variable->name + "', '<f8'), ";
-  if (!table.status.empty()) fields += "('status', '<u4'), ";
-  std::string header = "{'descr': [" + fields + "], 'fortran_order': False, 'shape': (" +
-                       std::to_string(table.theta_deg.size()) + ", " + std::to_string(table.sigma.size()) + ", " +
-                       std::to_string(table.q.size()) + "), }";
+  std::string fields, shape;
+  for (const AxisColumn& axis : axis_columns(layout.head)) {
+    fields += fmt::format("('{}', '<f8'), ", axis.name);
+    shape += fmt::format("{}{}", shape.empty() ? "" : ", ", (layout.head.*kTableAxes[axis.axis]).size());
+  }
+  for (const TableVariable* variable : layout.variables) fields += fmt::format("('{}', '<f8'), ", variable->name);
+  if (layout.has_status) fields += "('status', '<u4'), ";
+  std::string header = "{'descr': [" + fields + "], 'fortran_order': False, 'shape': (" + shape + "), }";
   const std::size_t unpadded = kPreambleSize + header.size() + 1;
   header.append((kAlignment - unpadded % kAlignment) % kAlignment, ' ');
   header += '\n';
@@ -108,39 +130,49 @@ void append_bytes(std::string& bytes, Number value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-std::string npy_bytes(const Table& table) {
-  const std::vector<const TableVariable*> variables = present_variables(table);
-  std::string bytes = npy_header(table, variables);
-  std::size_t position = 0;
-  for (const double theta_deg : table.theta_deg) {
-    for (const double sigma : table.sigma) {
-      for (const double q : table.q) {
-        for (const double value : {theta_deg, sigma, q}) append_bytes(bytes, value);
-        for (const TableVariable* variable : variables) append_bytes(bytes, (table.*variable->values)[position]);
-        if (!table.status.empty()) append_bytes(bytes, table.status[position]);
-        ++position;
-      }
-    }
-  }
+std::string npy_rows(const Table& part, const TableVariables& variables) {
+  std::string bytes;
+  each_row(part, axis_columns(part), 0, part.size(), [&](std::size_t position, const std::vector<double>& axes) {
+    for (const double value : axes) append_bytes(bytes, value);
+    for (const TableVariable* variable : variables) append_bytes(bytes, (part.*variable->values)[position]);
+    if (!part.status.empty()) append_bytes(bytes, part.status[position]);
+  });
   return bytes;
 }
 
 }  // namespace
+
+TableFormat format_of(const fs::path& path) {
+  const std::string suffix = path.extension().string();
+  if (suffix == ".nc") return TableFormat::kNetcdf;
+  if (suffix == ".csv" || path == "-") return TableFormat::kCsv;
+  if (suffix == ".npy") return TableFormat::kNpy;
+  throw InputError(path.string() + ": the name of a table must end in .nc, .csv or .npy");
+}
 
 void check_output_path(const fs::path& path) {
   format_of(path);
   check_writable(path);
 }
 
+std::string table_start(const TableLayout& layout, TableFormat format) {
+  return format == TableFormat::kCsv ? csv_header(layout) : npy_header(layout);
+}
+
+std::string table_rows(const Table& part, const TableLayout& layout, TableFormat format) {
+  return format == TableFormat::kCsv ? csv_rows(part, layout.variables) : npy_rows(part, layout.variables);
+}
+
 void write_table(const Table& table, const fs::path& path) {
-  switch (format_of(path)) {
-    case Format::kNetcdf:
-      return write_text_atomically(path, NetcdfImage(table).bytes());
-    case Format::kCsv:
-      return write_text_atomically(path, csv_text(table));
-    case Format::kNpy:
-      return write_text_atomically(path, npy_bytes(table));
-  }
+  const TableFormat format = format_of(path);
+  const TableLayout layout{table, present_variables(table), !table.status.empty()};
+  if (format != TableFormat::kNetcdf)
+    return write_text_atomically(path, table_start(layout, format) + table_rows(table, layout, format));
+  AtomicFile file(path);
+  TableStore store(layout, file);
+  store.write(table, {});
+  store.finish({});
+  file.commit();
 }
 
 }  // namespace dolp

@@ -16,6 +16,7 @@ namespace dolp {
 namespace {
 
 constexpr std::size_t kWindow = kMostStencil;  // values of an axis
+constexpr std::size_t kBlockWindow = 4;        // of wavelength, n and k
 constexpr int kMostShift = 3;                  // of a window away from entries that are not known
 constexpr std::size_t kLeastValues = 4;        // of an axis: how the changes of fewer fall says nothing
 constexpr double kRemainder = 10.0;            // error over the change that one value makes, where changes fall fast
@@ -50,6 +51,25 @@ const std::vector<double>& checked(const std::vector<double>& values, const char
   return values;
 }
 
+/// The axes of wavelength, n and k; one value of those that the table lacks.
+std::vector<LookupAxis> block_axes(const Table& table, const std::string& name) {
+  constexpr std::array<const char*, 3> kNames = {"wavelength", "n", "k"};
+  std::vector<LookupAxis> axes;
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    const std::vector<double>& values = table.*kTableAxes[i];
+    axes.emplace_back(values.empty() ? std::vector<double>{1.0} : checked(values, kNames[i], name),
+                      LookupAxis::Scale::kLogarithm);
+  }
+  return axes;
+}
+
+PointResult unknown() {
+  PointResult result;
+  for (const TableVariable& variable : table_variables()) result.*variable.member = kNan;
+  result.status = kStatusOutsideDomain;
+  return result;
+}
+
 /// Refuses a table that lacks what every result needs.
 void check_variables(const Table& table, const std::string& name) {
   const auto require = [&](bool is_there, std::string_view variable) {
@@ -67,6 +87,7 @@ void check_variables(const Table& table, const std::string& name) {
 
 /// The entries that are read: a product of stencils.
 struct TableLookup::Window {
+  std::size_t block = 0;
   Stencil theta;
   Stencil sigma;
   Stencil q;
@@ -79,8 +100,7 @@ struct TableLookup::Window {
     for (std::size_t i = 0; i < theta.count; ++i) {
       for (std::size_t j = 0; j < sigma.count; ++j) {
         for (std::size_t k = 0; k < q.count; ++k) {
-          visit(lookup.table_.position(lookup.theta_.position(theta.first + i), lookup.sigma_.position(sigma.first + j),
-                                       lookup.q_.position(q.first + k)),
+          visit(lookup.position(block, theta.first + i, sigma.first + j, q.first + k),
                 theta.weights[i] * sigma.weights[j] * q.weights[k]);
         }
       }
@@ -138,6 +158,7 @@ struct TableLookup::Spread {
 TableLookup::TableLookup(const Table& table, double tolerance, const std::string& name)
     : table_(table),
       tolerance_(tolerance),
+      block_axes_(block_axes(table, name)),
       theta_(checked(table.theta_deg, "theta", name), LookupAxis::Scale::kLinear),
       sigma_(checked(table.sigma, "sigma", name), LookupAxis::Scale::kLogarithm),
       q_(checked(table.q, "q", name), LookupAxis::Scale::kLogarithm, 1.0) {
@@ -159,14 +180,13 @@ bool TableLookup::is_known(const Window& window) const {
 }
 
 PointResult TableLookup::entry(const Window& window) const {
-  const std::size_t position = table_.position(theta_.position(window.theta.first), sigma_.position(window.sigma.first),
-                                               q_.position(window.q.first));
+  const std::size_t at = position(window.block, window.theta.first, window.sigma.first, window.q.first);
   PointResult result;
   for (const TableVariable& variable : table_variables()) {
     const std::vector<double>& column = table_.*variable.values;
-    result.*variable.member = column.empty() ? kNan : column[position];
+    result.*variable.member = column.empty() ? kNan : column[at];
   }
-  result.status = table_.status[position];
+  result.status = table_.status[at];
   return result;
 }
 
@@ -197,8 +217,9 @@ struct TableLookup::Gather {
         row.of_theta = weight(window.theta, theta.first + i);
         row.of_sigma = weight(window.sigma, sigma.first + j);
         if (row.of_theta == 0.0 && row.of_sigma == 0.0) continue;
-        row.begin =
-            lookup.table_.position(lookup.theta_.position(theta.first + i), lookup.sigma_.position(sigma.first + j), 0);
+        row.begin = window.block + (lookup.theta_.position(theta.first + i) * lookup.sigma_.size() +
+                                    lookup.sigma_.position(sigma.first + j)) *
+                                       lookup.q_.size();
         rows.push_back(row);
       }
     }
@@ -233,11 +254,11 @@ void TableLookup::read(const Column& column, const Window& window, const std::ar
   }
 }
 
-PointResult TableLookup::at(double theta_deg, double sigma, double q) const {
+PointResult TableLookup::in_block(std::size_t block, double theta_deg, double sigma, double q) const {
   const LookupAxis::Place theta_place = theta_.place(theta_deg);
   const LookupAxis::Place sigma_place = sigma_.place(sigma);
   const LookupAxis::Place q_place = q_.place(q);
-  Window window{theta_.stencil(theta_place, kWindow), sigma_.stencil(sigma_place, kWindow),
+  Window window{block, theta_.stencil(theta_place, kWindow), sigma_.stencil(sigma_place, kWindow),
                 q_.stencil(q_place, kWindow)};
   if (window.size() == 1) return entry(window);
   int shift = 0;
@@ -251,12 +272,8 @@ PointResult TableLookup::at(double theta_deg, double sigma, double q) const {
     }
     window.theta = theta_.stencil(theta_place, count, away * shift);
   }
+  if (count < 2) return unknown();
   PointResult result;
-  if (count < 2) {
-    for (const TableVariable& variable : table_variables()) result.*variable.member = kNan;
-    result.status = kStatusOutsideDomain;
-    return result;
-  }
   const std::array<Spread, 3> spreads = {{{theta_, theta_place, window.theta, away * shift},
                                           {sigma_, sigma_place, window.sigma, 0},
                                           {q_, q_place, window.q, 0}}};
@@ -273,6 +290,15 @@ PointResult TableLookup::at(double theta_deg, double sigma, double q) const {
     if (table_.rho_error_estimate.empty()) return;
     rho_error += std::abs(weight * table_.rho_i[position]) * table_.rho_error_estimate[position];
   });
+  const Window cell{block, theta_.stencil(theta_place, 2), sigma_.stencil(sigma_place, 2), q_.stencil(q_place, 2)};
+  cell.each(*this, [&](std::size_t position, double) {
+    result.status |= table_.status[position] & kStatusUnphysicalReflectance;
+  });
+  finish(result, change, error, rho_error);
+  return result;
+}
+
+void TableLookup::finish(PointResult& result, const PointResult& change, double error, double rho_error) const {
   const double i = result.stokes_i;
   result.dolp = std::hypot(result.stokes_q, result.stokes_u) / i;
   const double dolp_change = std::hypot(change.stokes_q, change.stokes_u) / std::abs(i);
@@ -282,19 +308,112 @@ PointResult TableLookup::at(double theta_deg, double sigma, double q) const {
   result.rho_error_estimate = table_.rho_error_estimate.empty()
                                   ? kNan
                                   : (rho_error + std::max(change.rho_i, change.rho_q)) / std::abs(result.rho_i);
-  add_status({theta_.stencil(theta_place, 2), sigma_.stencil(sigma_place, 2), q_.stencil(q_place, 2)}, result);
-  return result;
+  add_status(result);
 }
 
-void TableLookup::add_status(const Window& cell, PointResult& result) const {
-  cell.each(*this, [&](std::size_t position, double) {
-    result.status |= table_.status[position] & kStatusUnphysicalReflectance;
-  });
+void TableLookup::add_status(PointResult& result) const {
   if (result.stokes_i <= 0.0) result.status |= kStatusNonPositiveIntensity;
   const bool states_dolp = promises_dolp(result.status);
   if ((states_dolp && !(result.error_estimate <= tolerance_)) || result.rho_error_estimate > tolerance_) {
     result.status |= kStatusToleranceMissed;
   }
+}
+
+/// The blocks around a point, each with its result there.
+struct TableLookup::Blocks {
+  static constexpr std::size_t kAxes = 3;
+  std::array<LookupAxis::Place, kAxes> places;
+  std::array<Stencil, kAxes> own;
+  std::vector<Spread> spreads;
+  struct Block {
+    std::array<std::size_t, kAxes> place{};  ///< among those of the spreads
+    std::array<double, kAxes> weight{};      ///< in the window, 0 outside
+    PointResult result;
+    double in_window() const { return weight[0] * weight[1] * weight[2]; }
+  };
+  std::vector<Block> blocks;
+
+  Blocks(const TableLookup& lookup, const Point& point) {
+    for (std::size_t i = 0; i < kAxes; ++i) {
+      const LookupAxis& axis = lookup.block_axes_[i];
+      places[i] = axis.place(axis.size() == 1 ? axis.min() : point[i]);
+      own[i] = axis.stencil(places[i], kBlockWindow);
+      spreads.emplace_back(axis, places[i], own[i], 0);
+    }
+    PerAxis place{};
+    add(lookup, point, 0, place);
+  }
+
+  void add(const TableLookup& lookup, const Point& point, std::size_t axis, PerAxis& place) {
+    if (axis < kAxes) {
+      for (place[axis] = 0; place[axis] < spreads[axis].count; ++place[axis]) add(lookup, point, axis + 1, place);
+      return;
+    }
+    Block block;
+    std::size_t number = 0;
+    std::size_t outside = 0;
+    for (std::size_t i = 0; i < kAxes; ++i) {
+      const LookupAxis& of_blocks = lookup.block_axes_[i];
+      block.place[i] = place[i];
+      const std::size_t in_own = spreads[i].first + place[i] - own[i].first;  // wraps below the stencil
+      block.weight[i] = in_own < own[i].count ? own[i].weights[in_own] : 0.0;
+      outside += in_own < own[i].count ? 0 : 1;
+      number = number * of_blocks.size() + of_blocks.position(spreads[i].first + place[i]);
+    }
+    if (outside > 1) return;
+    const std::size_t size = lookup.theta_.size() * lookup.sigma_.size() * lookup.q_.size();
+    block.result = lookup.in_block(number * size, point[3], point[4], point[5]);
+    blocks.push_back(block);
+  }
+
+  /// The interpolated member, and what is added to its change.
+  double value(double PointResult::*member, double& change) const {
+    double value = 0.0;
+    for (const Block& block : blocks) {
+      if (block.in_window() != 0.0) value += block.in_window() * block.result.*member;
+    }
+    for (std::size_t axis = 0; axis < kAxes; ++axis) {
+      std::vector<double> sums(spreads[axis].count, 0.0);
+      for (const Block& block : blocks) {
+        const double weight = block.weight[(axis + 1) % kAxes] * block.weight[(axis + 2) % kAxes];
+        if (weight != 0.0) sums[block.place[axis]] += weight * block.result.*member;
+      }
+      change += spreads[axis].remainder(value, sums.data());
+    }
+    return value;
+  }
+};
+
+PointResult TableLookup::at(const Point& point) const {
+  const auto is_one = [](const LookupAxis& axis) { return axis.size() == 1; };
+  if (std::ranges::all_of(block_axes_, is_one)) return in_block(0, point[3], point[4], point[5]);
+  const Blocks blocks(*this, point);
+  if (blocks.blocks.size() == 1) return blocks.blocks.front().result;
+  PointResult result;
+  PointResult change;
+  for (const SmoothColumn& column : kColumns) {
+    const bool is_there = !(table_.*column.values).empty();
+    result.*column.member = is_there ? blocks.value(column.member, change.*column.member) : kNan;
+  }
+  double error = 0.0;
+  double rho_error = 0.0;
+  for (const Blocks::Block& block : blocks.blocks) {
+    const double weight = std::abs(block.in_window());
+    if (weight == 0.0) continue;
+    if ((block.result.status & kStatusOutsideDomain) != 0) return unknown();
+    error += weight * block.result.error_estimate;
+    if (!table_.rho_error_estimate.empty())
+      rho_error += weight * std::abs(block.result.rho_i) * block.result.rho_error_estimate;
+    result.status |= block.result.status & kStatusUnphysicalReflectance;
+  }
+  finish(result, change, error, rho_error);
+  return result;
+}
+
+const LookupAxis* TableLookup::axis(Axis axis) const {
+  const auto number = static_cast<std::size_t>(axis);
+  if (number < block_axes_.size()) return (table_.*kTableAxes[number]).empty() ? nullptr : &block_axes_[number];
+  return axis == Axis::kTheta ? &theta_ : axis == Axis::kSigma ? &sigma_ : &q_;
 }
 
 }  // namespace dolp

@@ -2,46 +2,78 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
-#include <string_view>
+#include <vector>
 
-#include "table/hdf5_handle.hpp"
 #include "table/table.hpp"
 
 namespace dolp {
 
-/// A coordinate of a table in a file.
+/// A coordinate of a table in a file, in the order of kTableAxes.
 struct NetcdfAxis {
   const char* name;
   const char* long_name;
   const char* units;
-  std::vector<double> Table::*values;
+  bool is_required;
 };
-inline constexpr std::array<NetcdfAxis, 3> kNetcdfAxes = {{
-    {"theta", "zenith angle", "degree", &Table::theta_deg},
-    {"sigma", "roughness sigma of the slope distribution", "1", &Table::sigma},
-    {"q", "exponent q of the slope distribution", "1", &Table::q},
+inline constexpr std::array<NetcdfAxis, kTableAxes.size()> kNetcdfAxes = {{
+    {"wavelength", "wavelength", "um", false},
+    {"n", "refractive index n of the surface", "1", false},
+    {"k", "refractive index k of the surface", "1", false},
+    {"theta", "zenith angle", "degree", true},
+    {"sigma", "roughness sigma of the slope distribution", "1", true},
+    {"q", "exponent q of the slope distribution", "1", true},
 }};
 
-/// The attribute that holds values_hash.
+/// The attribute that holds the hash of ValuesHash.
 inline constexpr const char* kValuesHash = "values_hash";
 
-/// A hash over all axes and variables, by which damage is found; nothing more.
-std::string values_hash(const Table& table);
-
-/// A table as the bytes of a NetCDF-4 file. They are made in memory: HDF5 does not survive a disk that fills up.
-///
-/// HDF5 protects names, shapes and attributes with checksums, values_hash the values. A text too long for an attribute
-/// of the netCDF library is a variable of characters with the attribute's name.
-class NetcdfImage {
+/// A hash over the values of a table, by which damage is found; nothing more. Values may come in any order: a sum of
+/// their bits, each times an odd number that follows from its place, so that another value or place changes it.
+class ValuesHash {
  public:
-  /// Errors: std::bad_alloc.
-  explicit NetcdfImage(const Table& table);
-  std::string_view bytes() const { return bytes_; }
+  /// With the axes and curves of the head.
+  explicit ValuesHash(const TableHead& head);
+  /// One number for each of the variables and status.
+  using Sums = std::vector<std::uint64_t>;
+  static std::uint64_t sum(std::span<const double> values, std::size_t first_place);
+  static std::uint64_t sum(std::span<const std::uint32_t> values, std::size_t first_place);
+  std::string text(const TableVariables& variables, const Sums& sums) const;
 
  private:
-  Hdf5Handle file_;
-  std::string_view bytes_;
+  std::uint64_t hash_;
+};
+
+/// A NetCDF-4 file of a table without its values, which are to be put where it says; HDF5 protects names, shapes and
+/// attributes with checksums, the hash the values. It is made in memory: HDF5 does not survive a disk that fills up. A
+/// text too long for an attribute of the netCDF library is a variable of characters with the attribute's name.
+class NetcdfSkeleton {
+ public:
+  /// Errors: std::bad_alloc.
+  explicit NetcdfSkeleton(const TableLayout& layout);
+  NetcdfSkeleton(const NetcdfSkeleton&) = delete;
+  NetcdfSkeleton& operator=(const NetcdfSkeleton&) = delete;
+  ~NetcdfSkeleton();
+
+  /// Where the values of each of the variables, and last of status (32 bits each) if it is there, begin in the file.
+  const std::vector<std::uint64_t>& offsets() const;
+
+  /// More attributes of the file, after those of the head.
+  void add(const std::vector<Attribute>& attributes);
+
+  /// Bytes of the file that are no values.
+  struct Piece {
+    std::uint64_t offset = 0;
+    std::vector<char> bytes;
+  };
+  std::vector<Piece> pieces() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace dolp

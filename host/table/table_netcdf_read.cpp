@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 
 #include "base/error.hpp"
+#include "table/hdf5_handle.hpp"
 #include "table/table_file.hpp"
 #include "table/table_netcdf.hpp"
+#include "table/table_reader.hpp"
 
 namespace dolp {
 namespace {
@@ -43,7 +47,9 @@ class Reader {
 
   /// A variable whose values are in this file; nothing where it is not there.
   Hdf5Handle find(const std::string& name) const {
-    if (H5Lexists(file_.id(), name.c_str(), H5P_DEFAULT) <= 0) return {};
+    const htri_t exists = H5Lexists(file_.id(), name.c_str(), H5P_DEFAULT);
+    check(exists, name);
+    if (exists == 0) return {};
     H5L_info_t link{};
     check(H5Lget_info(file_.id(), name.c_str(), &link, H5P_DEFAULT), name);
     if (link.type != H5L_TYPE_HARD) fail(name + ": is a link; a table holds all of its values");
@@ -144,7 +150,9 @@ std::optional<std::variant<std::string, double>> read_value(const Reader& reader
 
 /// A text attribute of the file or of a variable.
 std::optional<std::string> find_text(const Reader& reader, const Hdf5Handle& object, const char* name) {
-  if (H5Aexists(object.id(), name) <= 0) return std::nullopt;
+  const htri_t exists = H5Aexists(object.id(), name);
+  reader.check(exists, name);
+  if (exists == 0) return std::nullopt;
   const Hdf5Handle attribute(H5Aopen(object.id(), name, H5P_DEFAULT), H5Aclose);
   reader.check(attribute ? 0 : -1, name);
   const auto value = read_value(reader, attribute, name);
@@ -195,53 +203,129 @@ void append_long_texts(const Reader& reader, std::vector<Attribute>& attributes)
   }
 }
 
-template <class Value>
-bool read_variable(const Reader& reader, const Table& table, const char* name, hid_t type, std::vector<Value>& values,
-                   std::string* units = nullptr) {
-  const Hdf5Handle variable = reader.find(name);
-  if (!variable) return false;
-  if (reader.shape_of(variable, name) !=
-      std::vector<hsize_t>{table.theta_deg.size(), table.sigma.size(), table.q.size()}) {
-    reader.fail(fmt::format("is not a table of dolp ({} is not over theta, sigma, q)", name));
-  }
-  reader.check_claim(name, table.size() * sizeof(Value));
-  values.resize(table.size());
-  reader.read(variable, name, type, values.data());
-  if (units) *units = find_text(reader, variable, "units").value_or(*units);
-  return true;
-}
-
 }  // namespace
 
+struct TableReader::Impl {
+  Reader reader;
+  TableHead head;
+  TableVariables variables;
+  bool has_status = false;
+  std::vector<std::pair<std::string, Hdf5Handle>> open;  // the variables and status
+
+  explicit Impl(const fs::path& path) : reader(path) {}
+
+  void read_axes() {
+    std::size_t most = kMostTableEntries;
+    for (std::size_t i = 0; i < kNetcdfAxes.size(); ++i) {
+      std::vector<double>& values = head.*kTableAxes[i];
+      values = read_list(reader, kNetcdfAxes[i].name, most);
+      if (values.empty() && kNetcdfAxes[i].is_required)
+        reader.fail("is not a table of dolp (no axis theta, sigma or q)");
+      most /= std::max<std::size_t>(values.size(), 1);
+    }
+  }
+
+  bool find(const char* name, std::size_t value_bytes) {
+    Hdf5Handle variable = reader.find(name);
+    if (!variable) return false;
+    std::vector<hsize_t> shape;
+    for (const auto axis : kTableAxes) {
+      if (!(head.*axis).empty()) shape.push_back((head.*axis).size());
+    }
+    if (reader.shape_of(variable, name) != shape)
+      reader.fail(fmt::format("is not a table of dolp ({} is not over its axes)", name));
+    reader.check_claim(name, head.size() * value_bytes);
+    open.emplace_back(name, std::move(variable));
+    return true;
+  }
+
+  void find_variables() {
+    for (const TableVariable& variable : table_variables()) {
+      if (!find(variable.name, sizeof(double))) continue;
+      variables.push_back(&variable);
+      if (variable.has_stokes_units)
+        head.stokes_units = find_text(reader, open.back().second, "units").value_or(head.stokes_units);
+    }
+    has_status = find("status", sizeof(std::uint32_t));
+    if (variables.empty()) reader.fail("is not a table of dolp (none of its variables is there)");
+  }
+
+  void read_curves() {
+    for (const TableCurve& described : kTableCurves) {
+      Curve& curve = head.*described.curve;
+      curve.values = read_list(reader, described.name, kMostTableEntries);
+      curve.wavelength_um = read_list(reader, described.name + std::string("_wavelength"), kMostTableEntries);
+      if (curve.values.size() != curve.wavelength_um.size())
+        reader.fail(described.name + std::string(": is cut short"));
+    }
+  }
+
+  template <class Value>
+  void read(std::size_t number, const TableBox& box, hid_t type, std::vector<Value>& values) const {
+    const auto& [name, variable] = open[number];
+    std::vector<hsize_t> first, count;
+    for (std::size_t i = 0; i < kTableAxes.size(); ++i) {
+      if ((head.*kTableAxes[i]).empty()) continue;
+      first.push_back(box.first[i]);
+      count.push_back(box.count[i]);
+    }
+    values.resize(size_of(box.count));
+    const Hdf5Handle in_file(H5Dget_space(variable.id()), H5Sclose);
+    const Hdf5Handle in_memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose);
+    reader.check(in_file && in_memory ? 0 : -1, name);
+    reader.check(H5Sselect_hyperslab(in_file.id(), H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr), name);
+    reader.check(H5Dread(variable.id(), type, in_memory.id(), in_file.id(), H5P_DEFAULT, values.data()), name);
+  }
+};
+
+TableReader::TableReader(const fs::path& path) : impl_(std::make_unique<Impl>(path)) {
+  impl_->read_axes();
+  impl_->find_variables();
+  impl_->read_curves();
+  impl_->head.attributes = read_attributes(impl_->reader);
+  append_long_texts(impl_->reader, impl_->head.attributes);
+}
+
+TableReader::~TableReader() = default;
+
+const TableHead& TableReader::head() const { return impl_->head; }
+const TableVariables& TableReader::variables() const { return impl_->variables; }
+bool TableReader::has_status() const { return impl_->has_status; }
+
+Table TableReader::read(const TableBox& box) const {
+  Table part;
+  static_cast<TableHead&>(part) = head_of(impl_->head, box);
+  const TableVariables& variables = impl_->variables;
+  for (std::size_t i = 0; i < variables.size(); ++i) impl_->read(i, box, H5T_NATIVE_DOUBLE, part.*variables[i]->values);
+  if (impl_->has_status) impl_->read(variables.size(), box, H5T_NATIVE_UINT, part.status);
+  return part;
+}
+
+void TableReader::check_hash(const ValuesHash::Sums& sums) const {
+  const std::optional<std::string> hash = find_text(impl_->reader, impl_->reader.file(), kValuesHash);
+  if (!hash || *hash == ValuesHash(impl_->head).text(impl_->variables, sums)) return;
+  impl_->reader.fail(
+      "the values are not those that dolp wrote (attribute values_hash): the file was changed or is damaged");
+}
+
+ValuesHash::Sums TableReader::sums_of(const Table& part, const TableBox& box) const {
+  ValuesHash::Sums sums;
+  const auto add = [&](const auto& values) {
+    std::uint64_t& sum = sums.emplace_back(0);
+    for_each_run(box.first, box.count, impl_->head.counts(), [&](const GridRun& run) {
+      sum += ValuesHash::sum(std::span(values).subspan(run.in_part, run.count), run.in_whole);
+    });
+  };
+  for (const TableVariable* variable : impl_->variables) add(part.*variable->values);
+  if (impl_->has_status) add(part.status);
+  return sums;
+}
+
 Table read_table(const fs::path& path) {
-  const Reader reader(path);
-  Table table;
-  std::size_t most = kMostTableEntries;
-  for (const NetcdfAxis& axis : kNetcdfAxes) {
-    table.*axis.values = read_list(reader, axis.name, most);
-    if ((table.*axis.values).empty()) reader.fail("is not a table of dolp (no axis theta, sigma or q)");
-    most /= (table.*axis.values).size();
-  }
-  bool has_values = false;
-  for (const TableVariable& variable : table_variables()) {
-    std::string* const units = variable.has_stokes_units ? &table.stokes_units : nullptr;
-    const bool is_there = read_variable(reader, table, variable.name, H5T_NATIVE_DOUBLE, table.*variable.values, units);
-    has_values = has_values || is_there;
-  }
-  read_variable(reader, table, "status", H5T_NATIVE_UINT, table.status);
-  if (!has_values) reader.fail("is not a table of dolp (none of its variables is there)");
-  for (const TableCurve& described : kTableCurves) {
-    Curve& curve = table.*described.curve;
-    curve.values = read_list(reader, described.name, kMostTableEntries);
-    curve.wavelength_um = read_list(reader, described.name + std::string("_wavelength"), kMostTableEntries);
-    if (curve.values.size() != curve.wavelength_um.size()) reader.fail(described.name + std::string(": is cut short"));
-  }
-  const std::optional<std::string> hash = find_text(reader, reader.file(), kValuesHash);
-  if (hash && *hash != values_hash(table)) {
-    reader.fail("the values are not those that dolp wrote (attribute values_hash): the file was changed or is damaged");
-  }
-  table.attributes = read_attributes(reader);
-  append_long_texts(reader, table.attributes);
+  const TableReader reader(path);
+  const TableBox all{{}, reader.head().counts()};
+  Table table = reader.read(all);
+  reader.check_hash(reader.sums_of(table, all));
   return table;
 }
 

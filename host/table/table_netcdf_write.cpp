@@ -9,7 +9,10 @@
 #include <limits>
 #include <new>
 #include <string>
+#include <utility>
 
+#include "table/hdf5_handle.hpp"
+#include "table/hdf5_memory.hpp"
 #include "table/table_netcdf.hpp"
 
 namespace dolp {
@@ -18,21 +21,18 @@ namespace {
 constexpr const char* kConventions = "CF-1.8";
 // The netCDF library stores attributes of less than 64 KiB.
 constexpr std::size_t kMostAttributeBytes = 64'000;
-constexpr std::size_t kExpectedOverhead = 1U << 20U;
 
 // CF-1.8 has no unsigned int, and wants masks of the variable's own type.
 constexpr std::array<int, 4> kFlagMasks = {1, 2, 4, 8};
 constexpr const char* kFlagMeanings =
     "reflectance_outside_zero_to_one tolerance_not_met outside_model_domain intensity_not_positive";
 
-/// Makes the objects of one file; a call that fails throws std::bad_alloc.
+/// Makes the objects of one file in memory; a call that fails throws std::bad_alloc.
 class Writer {
  public:
-  explicit Writer(std::size_t expected_bytes) {
+  explicit Writer(Hdf5Memory& memory) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // messages are ours
-    const Hdf5Handle access = take(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    // One block of memory for the whole file, so that it does not grow piece by piece.
-    check(H5Pset_fapl_core(access.id(), expected_bytes, false));
+    const Hdf5Handle access = memory.access();
     check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18));
     const Hdf5Handle creation = take(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     // Without an order of creation the netCDF library opens a file for reading only.
@@ -42,7 +42,6 @@ class Writer {
   }
 
   const Hdf5Handle& file() const { return file_; }
-  Hdf5Handle take_file() { return std::move(file_); }
 
   void check(herr_t code) const {
     if (code < 0) throw std::bad_alloc();  // a file in memory can want nothing else
@@ -66,14 +65,15 @@ class Writer {
         kFlagMasks.data());
   }
 
-  /// A variable without values. Uncompressed: zlib saves half of the file and takes longer than all the rest of a
-  /// table. In one piece: what points to pieces has no checksum.
+  /// A variable without values, which has its place in the file. Uncompressed: zlib saves half of the file and takes
+  /// longer than all the rest of a table. In one piece: what points to pieces has no checksum.
   Hdf5Handle define(const char* name, hid_t type, const std::vector<hsize_t>& shape, const void* fill) const {
     const Hdf5Handle creation = take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     check(H5Pset_attr_creation_order(creation.id(), kOrdered));
     check(H5Pset_obj_track_times(creation.id(), false));  // same scene, same bytes
     // Every variable is written whole; to fill it first would write it twice.
     check(H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER));
+    check(H5Pset_alloc_time(creation.id(), H5D_ALLOC_TIME_EARLY));
     if (fill) check(H5Pset_fill_value(creation.id(), type, fill));
     const Hdf5Handle space = take(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
     return take(H5Dcreate2(file_.id(), name, type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose);
@@ -113,8 +113,7 @@ void put_long_text(const Writer& writer, const std::string& name, const std::str
   writer.write(variable, H5T_C_S1, text.data());
 }
 
-void put_attributes(const Writer& writer, const std::vector<Attribute>& attributes) {
-  writer.put_text(writer.file(), "Conventions", kConventions);
+void put_more(const Writer& writer, const std::vector<Attribute>& attributes) {
   for (const Attribute& attribute : attributes) {
     if (const auto* number = std::get_if<double>(&attribute.value)) {
       writer.put_number(writer.file(), attribute.name.c_str(), *number);
@@ -126,13 +125,20 @@ void put_attributes(const Writer& writer, const std::vector<Attribute>& attribut
   }
 }
 
+void put_attributes(const Writer& writer, const std::vector<Attribute>& attributes) {
+  writer.put_text(writer.file(), "Conventions", kConventions);
+  put_more(writer, attributes);
+}
+
+/// The coordinate variables, of an axis that the table lacks none.
 using AxisVariables = std::array<Hdf5Handle, kNetcdfAxes.size()>;
 
-AxisVariables put_axes(const Writer& writer, const Table& table) {
+AxisVariables put_axes(const Writer& writer, const TableHead& head) {
   AxisVariables axes;
   for (std::size_t i = 0; i < kNetcdfAxes.size(); ++i) {
     const NetcdfAxis& axis = kNetcdfAxes[i];
-    const std::vector<double>& values = table.*axis.values;
+    const std::vector<double>& values = head.*kTableAxes[i];
+    if (values.empty()) continue;
     axes[i] = writer.define(axis.name, H5T_IEEE_F64LE, {values.size()}, nullptr);
     writer.check(H5DSset_scale(axes[i].id(), axis.name));
     writer.put_text(axes[i], "long_name", axis.long_name);
@@ -142,41 +148,50 @@ AxisVariables put_axes(const Writer& writer, const Table& table) {
   return axes;
 }
 
-Hdf5Handle define_over_axes(const Writer& writer, const Table& table, const AxisVariables& axes, const char* name,
+Hdf5Handle define_over_axes(const Writer& writer, const TableHead& head, const AxisVariables& axes, const char* name,
                             hid_t type, const void* fill) {
   std::vector<hsize_t> shape;
-  for (const NetcdfAxis& axis : kNetcdfAxes) shape.push_back((table.*axis.values).size());
+  for (const auto axis : kTableAxes) {
+    if (!(head.*axis).empty()) shape.push_back((head.*axis).size());
+  }
   Hdf5Handle variable = writer.define(name, type, shape, fill);
-  for (unsigned i = 0; i < axes.size(); ++i) writer.check(H5DSattach_scale(variable.id(), axes[i].id(), i));
+  unsigned dimension = 0;
+  for (const Hdf5Handle& axis : axes) {
+    if (axis) writer.check(H5DSattach_scale(variable.id(), axis.id(), dimension++));
+  }
   return variable;
 }
 
-void put_variables(const Writer& writer, const Table& table, const AxisVariables& axes) {
-  constexpr double kFill = std::numeric_limits<double>::quiet_NaN();
-  for (const TableVariable& described : table_variables()) {
-    const std::vector<double>& values = table.*described.values;
-    if (values.empty()) continue;
-    const Hdf5Handle variable = define_over_axes(writer, table, axes, described.name, H5T_IEEE_F64LE, &kFill);
-    writer.put_number(variable, "_FillValue", kFill);
-    writer.put_text(variable, "long_name", described.long_name);
-    writer.put_text(variable, "units", described.has_stokes_units ? table.stokes_units : "1");
-    if (*described.ancillary != '\0') writer.put_text(variable, "ancillary_variables", described.ancillary);
-    writer.write(variable, H5T_NATIVE_DOUBLE, values.data());
-  }
+/// Where the values of a variable are in the file.
+std::uint64_t offset_of(const Hdf5Handle& variable) {
+  const haddr_t offset = H5Dget_offset(variable.id());
+  if (offset == HADDR_UNDEF) throw std::bad_alloc();
+  return offset;
 }
 
-void put_status(const Writer& writer, const Table& table, const AxisVariables& axes) {
-  const Hdf5Handle status = define_over_axes(writer, table, axes, "status", H5T_STD_I32LE, nullptr);
+std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes,
+                           const TableVariable& described) {
+  constexpr double kFill = std::numeric_limits<double>::quiet_NaN();
+  const Hdf5Handle variable = define_over_axes(writer, head, axes, described.name, H5T_IEEE_F64LE, &kFill);
+  writer.put_number(variable, "_FillValue", kFill);
+  writer.put_text(variable, "long_name", described.long_name);
+  writer.put_text(variable, "units", described.has_stokes_units ? head.stokes_units : "1");
+  if (*described.ancillary != '\0') writer.put_text(variable, "ancillary_variables", described.ancillary);
+  return offset_of(variable);
+}
+
+std::uint64_t put_status(const Writer& writer, const TableHead& head, const AxisVariables& axes) {
+  const Hdf5Handle status = define_over_axes(writer, head, axes, "status", H5T_STD_I32LE, nullptr);
   writer.put_text(status, "long_name", "status bits of the entry; 0 where nothing is wrong");
   writer.put_text(status, "units", "1");
   writer.put_masks(status);
   writer.put_text(status, "flag_meanings", kFlagMeanings);
-  writer.write(status, H5T_NATIVE_UINT, table.status.data());
+  return offset_of(status);
 }
 
-void put_curves(const Writer& writer, const Table& table) {
+void put_curves(const Writer& writer, const TableHead& head) {
   for (const TableCurve& described : kTableCurves) {
-    const Curve& curve = table.*described.curve;
+    const Curve& curve = head.*described.curve;
     if (curve.values.empty()) continue;
     const std::string coordinate = described.name + std::string("_wavelength");
     const Hdf5Handle wavelength = writer.define(coordinate.c_str(), H5T_IEEE_F64LE, {curve.values.size()}, nullptr);
@@ -192,50 +207,109 @@ void put_curves(const Writer& writer, const Table& table) {
   }
 }
 
-std::size_t expected_bytes(const Table& table) {
-  std::size_t bytes = kExpectedOverhead + table.size() * (table_variables().size() + 1) * sizeof(double);
-  for (const Attribute& attribute : table.attributes) {
-    if (const auto* text = std::get_if<std::string>(&attribute.value)) bytes += text->size();
+constexpr std::uint64_t kPrime = 0x100000001b3U;
+constexpr std::uint64_t kPlaceFactor = 0x9e3779b97f4a7c15U;
+
+/// A step of FNV-1a over 64-bit words.
+std::uint64_t with_word(std::uint64_t hash, std::uint64_t word) { return (hash ^ word) * kPrime; }
+
+std::uint64_t with_all(std::uint64_t hash, const std::vector<double>& values) {
+  hash = with_word(hash, values.size());
+  for (const double value : values) hash = with_word(hash, std::bit_cast<std::uint64_t>(value));
+  return hash;
+}
+
+template <class Value, class Bits>
+std::uint64_t sum_of(std::span<const Value> values, std::size_t first_place, const Bits& bits) {
+  std::uint64_t sum = 0;
+  std::uint64_t factor = first_place * kPlaceFactor;
+  for (const Value value : values) {
+    sum += bits(value) * (factor | 1U);
+    factor += kPlaceFactor;
   }
-  return bytes;
+  return sum;
 }
 
 }  // namespace
 
-// FNV-1a over 64-bit words: a change of one word always changes the result.
-std::string values_hash(const Table& table) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  const auto add = [&hash](std::uint64_t word) { hash = (hash ^ word) * 0x100000001b3U; };
-  const auto add_all = [&add](const std::vector<double>& values) {
-    add(values.size());
-    for (const double value : values) add(std::bit_cast<std::uint64_t>(value));
-  };
-  for (const NetcdfAxis& axis : kNetcdfAxes) add_all(table.*axis.values);
-  for (const TableVariable& variable : table_variables()) add_all(table.*variable.values);
-  for (const std::uint32_t status : table.status) add(status);
+ValuesHash::ValuesHash(const TableHead& head) : hash_(0xcbf29ce484222325U) {
+  for (const auto axis : kTableAxes) hash_ = with_all(hash_, head.*axis);
   for (const TableCurve& described : kTableCurves) {
-    if ((table.*described.curve).values.empty()) continue;
-    add_all((table.*described.curve).wavelength_um);
-    add_all((table.*described.curve).values);
+    if ((head.*described.curve).values.empty()) continue;
+    hash_ = with_all(hash_, (head.*described.curve).wavelength_um);
+    hash_ = with_all(hash_, (head.*described.curve).values);
   }
-  return fmt::format("fnv1a64:{:016x}", hash);
 }
 
-NetcdfImage::NetcdfImage(const Table& table) {
-  Writer writer(expected_bytes(table));
-  put_attributes(writer, table.attributes);
-  writer.put_text(writer.file(), kValuesHash, values_hash(table));
-  const AxisVariables axes = put_axes(writer, table);
-  put_variables(writer, table, axes);
-  if (!table.status.empty()) put_status(writer, table, axes);
-  put_curves(writer, table);
-  writer.check(H5Fflush(writer.file().id(), H5F_SCOPE_GLOBAL));
-  void* memory = nullptr;
-  writer.check(H5Fget_vfd_handle(writer.file().id(), H5P_DEFAULT, &memory));
-  const ssize_t size = H5Fget_file_image(writer.file().id(), nullptr, 0);
-  writer.check(size < 0 ? -1 : 0);
-  bytes_ = {*static_cast<const char**>(memory), static_cast<std::size_t>(size)};
-  file_ = writer.take_file();
+std::uint64_t ValuesHash::sum(std::span<const double> values, std::size_t first_place) {
+  return sum_of(values, first_place, [](double value) { return std::bit_cast<std::uint64_t>(value); });
+}
+
+std::uint64_t ValuesHash::sum(std::span<const std::uint32_t> values, std::size_t first_place) {
+  return sum_of(values, first_place, [](std::uint32_t value) { return std::uint64_t{value} + 1U; });
+}
+
+std::string ValuesHash::text(const TableVariables& variables, const Sums& sums) const {
+  std::uint64_t hash = hash_;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    for (const char byte : std::string(i < variables.size() ? variables[i]->name : "status"))
+      hash = with_word(hash, static_cast<unsigned char>(byte));
+    hash = with_word(hash, sums[i]);
+  }
+  return fmt::format("placed64:{:016x}", hash);
+}
+
+struct NetcdfSkeleton::Impl {
+  Hdf5Memory memory;
+  Writer writer{memory};
+  std::size_t entries = 0;
+  bool has_status = false;
+  std::vector<std::uint64_t> offsets;
+};
+
+NetcdfSkeleton::NetcdfSkeleton(const TableLayout& layout) : impl_(std::make_unique<Impl>()) {
+  impl_->entries = layout.head.size();
+  impl_->has_status = layout.has_status;
+  const Writer& writer = impl_->writer;
+  const TableHead& head = layout.head;
+  put_attributes(writer, head.attributes);
+  const AxisVariables axes = put_axes(writer, head);
+  put_curves(writer, head);
+  std::vector<std::uint64_t>& offsets = impl_->offsets;
+  for (const TableVariable* variable : layout.variables) offsets.push_back(put_variable(writer, head, axes, *variable));
+  if (layout.has_status) offsets.push_back(put_status(writer, head, axes));
+}
+
+NetcdfSkeleton::~NetcdfSkeleton() = default;
+
+const std::vector<std::uint64_t>& NetcdfSkeleton::offsets() const { return impl_->offsets; }
+
+void NetcdfSkeleton::add(const std::vector<Attribute>& attributes) { put_more(impl_->writer, attributes); }
+
+std::vector<NetcdfSkeleton::Piece> NetcdfSkeleton::pieces() const {
+  impl_->writer.check(H5Fflush(impl_->writer.file().id(), H5F_SCOPE_GLOBAL));
+  // Between and around the values, where there is anything at all.
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> gaps;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> values;
+  for (std::size_t i = 0; i < impl_->offsets.size(); ++i) {
+    const bool is_status = impl_->has_status && i + 1 == impl_->offsets.size();
+    const std::size_t of_value = is_status ? sizeof(std::uint32_t) : sizeof(double);
+    values.emplace_back(impl_->offsets[i], impl_->offsets[i] + impl_->entries * of_value);
+  }
+  std::ranges::sort(values);
+  std::uint64_t end = 0;
+  for (const auto& [first, last] : values) {
+    gaps.emplace_back(end, first);
+    end = last;
+  }
+  gaps.emplace_back(end, impl_->memory.size());
+  std::vector<Piece> pieces;
+  for (const auto& [first, last] : gaps) {
+    if (first >= last) continue;
+    Piece& piece = pieces.emplace_back(Piece{first, std::vector<char>(last - first)});
+    impl_->memory.read(first, piece.bytes.data(), piece.bytes.size());
+  }
+  return pieces;
 }
 
 }  // namespace dolp

@@ -98,6 +98,9 @@ CheckedValue compare(const Table& table, const Quantity& quantity, std::size_t p
   value.theta_deg = entry.theta_deg;
   value.sigma = entry.shape.sigma;
   value.q = entry.shape.q;
+  if (!table.wavelength_um.empty()) value.wavelength_um = table.wavelength_um[entry.wavelength];
+  if (!table.n.empty()) value.n = entry.index->n;
+  if (!table.k.empty()) value.k = entry.index->k;
   value.stored = (table.*quantity.stored)[position];
   value.reference = reference.*quantity.recomputed;
   const double dolp_estimate = estimate_at(table.error_estimate, position);
@@ -118,6 +121,9 @@ void check_axis(const std::vector<double>& values, const NumberRange& range, con
 }
 
 void check_axes(const Table& table, const Scene& scene, const std::string& name) {
+  check_axis(table.wavelength_um, kWavelengthUmRange, "wavelength", name);
+  check_axis(table.n, kNRange, "n", name);
+  check_axis(table.k, kKRange, "k", name);
   check_axis(table.theta_deg, kZenithDegRange, "theta", name);
   check_axis(table.sigma, kSigmaRange, "sigma", name);
   check_axis(table.q, scene.surface.needs_mean_slope() ? kSmithCauchyQRange : kQRange, "q", name);
@@ -166,10 +172,12 @@ TableCheck check_table(const Table& table, const Scene& scene, const std::string
   check_axes(table, scene, name);
   const std::vector<std::size_t> positions = sample_positions(table.size(), options);
   std::vector<SceneEntry> entries;
-  const SceneEntries grid = SceneEntries::grid(table.theta_deg, table.sigma, table.q);
+  Grid axes;
+  for (std::size_t i = 0; i < kTableAxes.size(); ++i) axes.*kGridAxes[i] = table.*kTableAxes[i];
+  const SceneEntries grid = SceneEntries::of_grid(axes, scene.surface.material.constant);
   for (const std::size_t position : positions) entries.push_back(grid[position]);
   ReferenceEvaluator reference({.relative_tolerance = kReferenceTolerance});
-  const std::vector<PointResult> results = evaluate_scene(scene, entries, reference, progress);
+  const std::vector<PointResult> results = evaluate_scene(scene, {entries, table.wavelength_um}, reference, progress);
 
   TableCheck check;
   check.entries = table.size();

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct CheckedValue {
   double theta_deg = 0.0;
   double sigma = 0.0;
   double q = 0.0;
+  std::optional<double> wavelength_um, n, k;  ///< where the table has these axes
   double stored = 0.0;
   double reference = 0.0;
   double stated = 0.0;           ///< the table's bound of the error, in the units of the value

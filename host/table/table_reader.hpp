@@ -1,0 +1,39 @@
+// A table in a file, read part by part.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "table/table.hpp"
+#include "table/table_netcdf.hpp"
+#include "table/table_store.hpp"
+
+namespace dolp {
+
+/// An open .nc table. Errors of all: InputError for a file that cannot be opened, is not such a table, is damaged, or
+/// claims more values than a file of its size can hold.
+class TableReader {
+ public:
+  explicit TableReader(const std::filesystem::path& path);
+  TableReader(const TableReader&) = delete;
+  TableReader& operator=(const TableReader&) = delete;
+  ~TableReader();
+
+  const TableHead& head() const;
+  /// Those that the table has.
+  const TableVariables& variables() const;
+  bool has_status() const;
+
+  Table read(const TableBox& box) const;
+
+  /// What a part that was read adds to the hash.
+  ValuesHash::Sums sums_of(const Table& part, const TableBox& box) const;
+  /// Refuses values that are not those that were written, from the sums over all parts.
+  void check_hash(const ValuesHash::Sums& sums) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace dolp

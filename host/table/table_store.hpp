@@ -1,0 +1,48 @@
+// A table on disk, put there part by part.
+#pragma once
+
+#include <vector>
+
+#include "base/atomic_file.hpp"
+#include "table/table.hpp"
+#include "table/table_netcdf.hpp"
+
+namespace dolp {
+
+/// Where a part of a table lies in the whole: from `first` on `count` values of each axis.
+struct TableBox {
+  PerAxis first = {};
+  PerAxis count = {};
+};
+
+/// Boxes of at most `most` entries each, or of one, that follow each other in the order of the table.
+std::vector<TableBox> boxes_in_order(const PerAxis& counts, std::size_t most);
+
+/// The head of a part of a table.
+TableHead head_of(const TableHead& whole, const TableBox& box);
+
+/// A NetCDF-4 table under way in a file: its values may come in any order, each once.
+class TableStore {
+ public:
+  /// `file` must outlive the object; nothing is written to it yet. Errors: std::bad_alloc.
+  TableStore(const TableLayout& layout, AtomicFile& file);
+
+  /// Puts the values of a part, which has the layout's variables, in their places. Errors: IoError, Cancelled.
+  void write(const Table& part, const PerAxis& first);
+  /// Reads a part back. Errors: IoError.
+  Table read(const TableBox& box) const;
+  /// Puts all else in the file, with more attributes, when all values are there. Errors: IoError, Cancelled.
+  void finish(const std::vector<Attribute>& more);
+
+  /// What the values written so far add to the hash; to be given back before a run goes on.
+  const ValuesHash::Sums& sums() const { return sums_; }
+  void set_sums(ValuesHash::Sums sums) { sums_ = std::move(sums); }
+
+ private:
+  TableLayout layout_;
+  AtomicFile& file_;
+  NetcdfSkeleton skeleton_;
+  ValuesHash::Sums sums_;
+};
+
+}  // namespace dolp

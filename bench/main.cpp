@@ -63,6 +63,14 @@ CLI::App* add_peers(CLI::App& app, StudyOptions& options) {
   return study;
 }
 
+CLI::App* add_scale(CLI::App& app, StudyOptions& options) {
+  CLI::App* study = app.add_subcommand("scale", "time and peak memory of tables of all sizes, and of shards");
+  add_common(*study, options);
+  options.entries = 100'000'000;
+  study->add_option("--entries", options.entries, "entries of the largest table")->capture_default_str();
+  return study;
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app("dolp-bench: dolp against other ways to compute the same moments, and against itself", "dolp-bench");
   app.set_version_flag("--version", "dolp-bench " DOLP_VERSION);
@@ -75,6 +83,8 @@ int parse_and_run(int argc, char** argv) {
   const CLI::App* effects_study = add_effects(app, effects);
   StudyOptions peers = accuracy;
   const CLI::App* peers_study = add_peers(app, peers);
+  StudyOptions scale = accuracy;
+  const CLI::App* scale_study = add_scale(app, scale);
   const CLI::App* throughput_study = add_throughput(app, throughput);
   try {
     app.parse(argc, argv);
@@ -86,6 +96,8 @@ int parse_and_run(int argc, char** argv) {
     run_effects(effects);
   } else if (throughput_study->parsed()) {
     run_throughput(throughput);
+  } else if (scale_study->parsed()) {
+    run_scale(scale);
   } else if (peers_study->parsed()) {
     run_peers(peers);
   } else {

@@ -49,4 +49,10 @@ void run_throughput(const StudyOptions& options);
 /// and cannot be had; IoError; Cancelled.
 void run_peers(const StudyOptions& options);
 
+/// `dolp-bench scale`: time and peak memory of `dolp table` from 10^4 to 10^8 entries, and of shards that run at once.
+///
+/// `entries` are those of the largest table, which takes 100 bytes each of the temporary folder, twice. Errors:
+/// InputError for fewer than 10^4 entries; IoError; Cancelled.
+void run_scale(const StudyOptions& options);
+
 }  // namespace dolp::bench

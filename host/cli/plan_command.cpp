@@ -8,12 +8,15 @@
 #include "evaluate/text/profile.hpp"
 #include "model/choices.hpp"
 #include "plan/kernel_data.hpp"
+#include "run/drawn_entries.hpp"
 #include "run/scene_run.hpp"
 #include "terminal/exit_status.hpp"
 #include "verify/stored_cases.hpp"
 
 namespace dolp::cli {
 namespace {
+
+constexpr std::size_t kLookedAt = 65536;  // entries that influences are bounded at; of more these stand for all
 
 /// The device that a run would take; without one, limits that every device keeps.
 DeviceDescription device_of(const Options& options, const Scene& scene, PlanReport& report) {
@@ -131,7 +134,7 @@ int run_plan(const Options& options) {
   const SceneEntries entries = grid_entries(report.scene);
   report.plan = plan_effects(report.scene, entries, options.keep_all);
   report.effects = effect_rows(report.scene, entries, report.plan);
-  add_influences(report.effects, report.scene, entries);
+  add_influences(report.effects, report.scene, drawn_entries(entries, kLookedAt));
   const DeviceDescription device = device_of(options, report.scene, report);
   add_forecast(report, entries, device);
   report.work_shares = work_shares(report, entries, device);

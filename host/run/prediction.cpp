@@ -136,10 +136,11 @@ RunPrediction predict_run(const Scene& scene, const SceneEntries& entries, const
     }
     run.beams += beams;
     if (beams > 0) visit.beams(requests.beams());
-    largest = std::max(largest, part.size() * sizeof(PointResult) + moments * sizeof(Moments) +
+    // Results, the columns made of them, and those of the part before, which are being written.
+    largest = std::max(largest, 3 * part.size() * sizeof(PointResult) + moments * sizeof(Moments) +
                                     beams * (sizeof(ScatteringEntry) + sizeof(ScatteringMatrix)));
   }
-  run.host_bytes = static_cast<double>(entries.size() * sizeof(PointResult) + largest);
+  run.host_bytes = static_cast<double>(largest);
   if (run.moments + run.beams > 0) count_work(run, scene, entries, plan, has_double);
   return run;
 }

@@ -15,8 +15,8 @@ declare -A packages=(
            libglfw3-dev libimgui-dev libstb-dev pkg-config fonts-dejavu-core"
   [picture]="python3 python3-matplotlib python3-netcdf4 python3-numpy"
   [bench]="libcubature-dev libgsl-dev python3 python3-matplotlib python3-numpy python3-scipy"
-  [test]="libgtest-dev libnetcdf-dev netcdf-bin python3 python3-netcdf4 python3-numpy vulkan-validationlayers
-          x11-utils xvfb xauth xdotool slurmctld slurmd slurm-client munge"
+  [test]="libclang-rt-14-dev libgtest-dev libnetcdf-dev netcdf-bin python3 python3-netcdf4 python3-numpy
+          vulkan-validationlayers x11-utils xvfb xauth xdotool slurmctld slurmd slurm-client munge"
 )
 
 missing=()

@@ -5,7 +5,8 @@
 #   DOLP_BUILD_TYPE   Release (default) in build/release, Debug in build/debug, AsanUbsan in build/asan-ubsan
 #   DOLP_TEST_DEVICE  a part of the file name of another Vulkan driver (in vulkan/icd.d), e.g. nvidia or radeon
 #   DOLP_VALIDATION   1 (default): messages of the Vulkan validation layers fail a test; 0: without the layers
-# Arguments go to ctest, e.g. -R Eval.
+# Arguments go to ctest, e.g. -R Eval. With AsanUbsan the suite has a minute of fuzzing, `-L fuzz`; after that build,
+# `bash tests/fuzz/run.sh build/asan-ubsan 3600` is an hour of it.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

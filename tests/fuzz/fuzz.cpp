@@ -1,0 +1,10 @@
+// Where libFuzzer enters.
+#include "fuzz.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  dolp::fuzz::read(std::string(data, data + size));
+  return 0;
+}

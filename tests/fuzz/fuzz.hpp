@@ -1,0 +1,41 @@
+// What the fuzzers share: each gives bytes to a public reader, which takes them or refuses them with an InputError.
+#pragma once
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "base/error.hpp"
+
+namespace dolp::fuzz {
+
+/// The reader of one fuzzer. Anything but a return is a finding.
+void read(const std::string& text);
+
+template <class Reader>
+void refused(const Reader& reader) {
+  try {
+    reader();
+  } catch (const InputError&) {
+    // What a hostile file deserves.
+  }
+}
+
+/// A file that is written anew with each input.
+class InputFile {
+ public:
+  explicit InputFile(const std::string& suffix)
+      : path_(std::filesystem::temp_directory_path() / ("dolp-fuzz-" + std::to_string(::getpid()) + suffix)) {}
+  ~InputFile() { std::filesystem::remove(path_); }
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+  void write(const std::string& text) const { std::ofstream(path_, std::ios::binary) << text; }
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace dolp::fuzz

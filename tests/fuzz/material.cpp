@@ -1,0 +1,11 @@
+// Files of n and k, as CSV and as YAML.
+#include "fuzz.hpp"
+#include "scene/material_data.hpp"
+
+void dolp::fuzz::read(const std::string& text) {
+  static const InputFile csv(".csv"), yaml(".yml");
+  for (const InputFile* file : {&csv, &yaml}) {
+    file->write(text);
+    refused([&] { dolp::read_material_file(file->path(), {10.0, 10.0}, ""); });
+  }
+}

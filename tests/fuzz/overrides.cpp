@@ -1,0 +1,16 @@
+// Overrides of a scene, as `--set` has them, a line each.
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "fuzz.hpp"
+#include "scene/scene_reader.hpp"
+
+void dolp::fuzz::read(const std::string& text) {
+  static const dolp::KnownData nothing;
+  std::vector<std::string> overrides;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) overrides.push_back(line);
+  const char* scene = "[surface]\nn = 1.5\nk = 0.1\n[emission]\n[spectrum]\nwavelength_um = 10.0\n";
+  refused([&] { dolp::parse_scene(scene, "scene.toml", overrides, &nothing); });
+}

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# Runs fuzzers on the corpus beside this script: run.sh FUZZER SECONDS [LIBFUZZER_OPTION...]
+#
+# FUZZER is a program, or a build folder: then all of its fuzzers run, and share the seconds. What is found beyond the
+# corpus is not kept; an input that breaks a reader is left as crash-*, leak-*, oom-* or timeout-* in the current folder.
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+fuzzers=("$1")
+[[ -d $1 ]] && fuzzers=("$1"/tests/fuzz/fuzz_*[a-z])
+seconds=$(($2 / ${#fuzzers[@]}))
+shift 2
+found=$(mktemp -d)
+trap 'rm -r "$found"' EXIT
+for fuzzer in "${fuzzers[@]}"; do
+  name=${fuzzer##*/fuzz_}
+  mkdir "$found/$name"
+  "$fuzzer" "$found/$name" "$here/corpus/$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 \
+    -max_len=65536 -print_final_stats=1 -verbosity=0 "$@"
+done

@@ -55,18 +55,6 @@ class File {
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
-// std::filesystem::canonical wants the target to exist; an output need not.
-fs::path follow_links(fs::path path) {
-  std::error_code error;
-  for (int links = 0; fs::is_symlink(path, error); ++links) {
-    if (links == kMostLinks) fail(path, "too many symbolic links");
-    const fs::path target = fs::read_symlink(path, error);
-    if (error) fail(path, "cannot read the symbolic link: " + error.message());
-    path = folder_of(path) / target;
-  }
-  return path;
-}
-
 bool is_device_or_pipe(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -159,6 +147,18 @@ void sync_folder(const fs::path& folder, const fs::path& path) {
 }
 
 }  // namespace
+
+// std::filesystem::canonical wants the target to exist; an output need not.
+fs::path follow_links(fs::path path) {
+  std::error_code error;
+  for (int links = 0; fs::is_symlink(path, error); ++links) {
+    if (links == kMostLinks) fail(path, "too many symbolic links");
+    const fs::path target = fs::read_symlink(path, error);
+    if (error) fail(path, "cannot read the symbolic link: " + error.message());
+    path = folder_of(path) / target;
+  }
+  return path;
+}
 
 void check_writable(const fs::path& path) {
   if (path == "-") return;

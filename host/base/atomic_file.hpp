@@ -10,6 +10,9 @@
 
 namespace dolp {
 
+/// What a path stands for behind symbolic links; it need not be there. Errors: IoError for too many of them.
+std::filesystem::path follow_links(std::filesystem::path path);
+
 /// Refuses an output path of any suffix, before anything is computed for it; "-" is standard output.
 ///
 /// Errors: IoError when it is a folder or a file that is read-only, or its folder is missing or cannot be written to.

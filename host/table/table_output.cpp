@@ -17,8 +17,9 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kRowsAtOnce = std::size_t{1} << 17U;  // that a .csv or .npy is made of
 
-fs::path partial_path(const fs::path& path) { return path.string() + ".partial"; }
-fs::path progress_path(const fs::path& path) { return path.string() + ".partial.txt"; }
+// Beside the file itself, not beside a link to it, which may be on another file system.
+fs::path partial_path(const fs::path& path) { return follow_links(path).string() + ".partial"; }
+fs::path progress_path(const fs::path& path) { return partial_path(path).string() + ".txt"; }
 
 /// How far a partial file is.
 struct Progress {

@@ -67,6 +67,14 @@ Material dispersive() {
   return material;
 }
 
+std::vector<double> spaced(double first, double last, std::size_t count) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    values.push_back(first + (last - first) * static_cast<double>(i) / static_cast<double>(count - 1));
+  }
+  return values;
+}
+
 /// A name and what it makes of the base.
 struct Change {
   std::string name;
@@ -113,7 +121,11 @@ std::vector<EffectGroup> surface_groups(const Scene& base) {
                 {masking(Masking::kNone), masking(Masking::kVCavity), masking(Masking::kIntegral),
                  masking(Masking::kSmith)}),
           group("complex index", base,
-                {{"k = 0"}, {"k = 0.5", [](Scene& scene) { scene.surface.material.constant.k = 0.5; }}})};
+                {{"k = 0"}, {"k = 0.5", [](Scene& scene) { scene.surface.material.constant.k = 0.5; }}}),
+          group("axes of index", base, {{"one n and k"}, {"20 n x 20 k", [](Scene& scene) {
+                                                            scene.grid.n = spaced(1.3, 2.5, 20);
+                                                            scene.grid.k = spaced(0.01, 1.0, 20);
+                                                          }}})};
 }
 
 /// What goes beyond single scattering, with the one masking that has all of it.

@@ -71,6 +71,14 @@ CLI::App* add_scale(CLI::App& app, StudyOptions& options) {
   return study;
 }
 
+CLI::App* add_fit(CLI::App& app, StudyOptions& options) {
+  CLI::App* study = app.add_subcommand("fit", "synthetic measurements with a known truth, fitted");
+  add_common(*study, options);
+  options.entries = 200;
+  add_entries(*study, options, "sets of measurements");
+  return study;
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app("dolp-bench: dolp against other ways to compute the same moments, and against itself", "dolp-bench");
   app.set_version_flag("--version", "dolp-bench " DOLP_VERSION);
@@ -85,6 +93,8 @@ int parse_and_run(int argc, char** argv) {
   const CLI::App* peers_study = add_peers(app, peers);
   StudyOptions scale = accuracy;
   const CLI::App* scale_study = add_scale(app, scale);
+  StudyOptions fit = accuracy;
+  const CLI::App* fit_study = add_fit(app, fit);
   const CLI::App* throughput_study = add_throughput(app, throughput);
   try {
     app.parse(argc, argv);
@@ -100,6 +110,8 @@ int parse_and_run(int argc, char** argv) {
     run_scale(scale);
   } else if (peers_study->parsed()) {
     run_peers(peers);
+  } else if (fit_study->parsed()) {
+    run_fit_study(fit);
   } else {
     run_accuracy(accuracy);
   }

@@ -5,7 +5,7 @@ Usage: plot.py accuracy RESULT.json -o FIGURE.png    error against time per entr
        plot.py accuracy RESULT.json --markdown       time per entry at given errors, as a Markdown table on stdout
        plot.py effects RESULT.json -o FIGURE.png     time per entry of each effect
        plot.py effects RESULT.json --markdown        the same as Markdown tables on stdout
-       plot.py throughput|peers|scale RESULT.json -o FIGURE.png | --markdown    likewise, of those studies
+       plot.py throughput|peers|scale|fit RESULT.json -o FIGURE.png | --markdown    likewise, of those studies
 RESULT.json is what `dolp-bench STUDY --json RESULT.json` writes. Figures need python3-matplotlib (and with it Pillow).
 Exit status: 0 done, 2 usage or a file that is not such a result, 4 the figure could not be written.
 """
@@ -19,13 +19,14 @@ import textwrap
 sys.dont_write_bytecode = True  # leaves no folder among the sources
 
 import plot_effects  # noqa: E402
+import plot_fit_sets  # noqa: E402
 import plot_peers  # noqa: E402
 import plot_scale  # noqa: E402
 import plot_throughput  # noqa: E402
 from plot_style import style, time_text  # noqa: E402
 
 STUDIES = {"effects": plot_effects, "throughput": plot_throughput, "peers": plot_peers,
-           "scale": plot_scale}  # others than accuracy
+           "scale": plot_scale, "fit": plot_fit_sets}  # others than accuracy
 NEEDED = {"context", "methods", "cases", "results"}  # of accuracy
 WANTED_ERRORS = (1e-3, 1e-6, 1e-9)
 PANEL_COLUMNS = 3
@@ -251,7 +252,8 @@ def arguments():
     for name, what in (("accuracy", "error against time per entry"), ("effects", "time per entry of each effect"),
                        ("throughput", "entries a second, share of the peak, scaling"),
                        ("peers", "time per entry of all methods at the same accuracy"),
-                       ("scale", "time and peak memory over the size of a table")):
+                       ("scale", "time and peak memory over the size of a table"),
+                       ("fit", "intervals of fits beside the truth")):
         study = studies.add_parser(name, help=what)
         study.add_argument("result", metavar="RESULT.json")
         output = study.add_mutually_exclusive_group(required=True)

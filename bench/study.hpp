@@ -54,5 +54,9 @@ void run_peers(const StudyOptions& options);
 /// `entries` are those of the largest table, which takes 100 bytes each of the temporary folder, twice. Errors:
 /// InputError for fewer than 10^4 entries; IoError; Cancelled.
 void run_scale(const StudyOptions& options);
+/// `dolp-bench fit`: synthetic measurements with a known truth, fitted: how often intervals hold the truth, whether the
+/// global minimum is found; and how long a fit takes, against SciPy's least_squares around `dolp eval` where there is a
+/// SciPy. `entries` are the sets. Errors: DeviceError without a usable device; IoError; Cancelled.
+void run_fit_study(const StudyOptions& options);
 
 }  // namespace dolp::bench

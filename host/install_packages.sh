@@ -10,13 +10,14 @@
 set -euo pipefail
 
 declare -A packages=(
-  [build]="g++ cmake ninja-build glslang-tools spirv-tools libvulkan-dev mesa-vulkan-drivers libglm-dev libboost-dev
+  [build]="g++ cmake ninja-build glslang-tools spirv-tools libvulkan-dev mesa-vulkan-drivers libglm-dev libboost-dev libceres-dev
            libcli11-dev libeigen3-dev libfmt-dev libhdf5-dev libtomlplusplus-dev libyaml-cpp-dev nlohmann-json3-dev
+           pybind11-dev python3-dev python3-numpy python3-xarray python3-netcdf4
            libglfw3-dev libimgui-dev libstb-dev pkg-config fonts-dejavu-core"
   [picture]="python3 python3-matplotlib python3-netcdf4 python3-numpy"
   [bench]="libcubature-dev libgsl-dev python3 python3-matplotlib python3-numpy python3-scipy"
-  [test]="libclang-rt-14-dev libgtest-dev libnetcdf-dev netcdf-bin python3 python3-netcdf4 python3-numpy
-          vulkan-validationlayers x11-utils xvfb xauth xdotool slurmctld slurmd slurm-client munge"
+  [test]="dpkg-dev file fish zsh libclang-rt-14-dev libgtest-dev libnetcdf-dev netcdf-bin python3 python3-netcdf4 python3-numpy
+          octave octave-netcdf vulkan-validationlayers x11-utils xvfb xauth xdotool slurmctld slurmd slurm-client munge"
 )
 
 missing=()

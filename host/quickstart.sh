@@ -13,7 +13,7 @@ build=$root/build/release
 
 bash "$root/host/install_packages.sh" build picture
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF -DDOLP_BENCH=OFF
-cmake --build "$build" --target dolp
+cmake --build "$build" --target dolp dolp_python
 
 echo
 "$build/dolp" table "$scene" -o "$table"

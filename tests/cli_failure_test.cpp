@@ -76,8 +76,7 @@ std::string scene_with(const std::string& text, const std::string& replacement) 
 INSTANTIATE_TEST_SUITE_P(
     Usage, CommandLineMistake,
     testing::Values(
-        Mistake{"NoCommand", {}, kInput, {"subcommand"}},
-        Mistake{"UnknownCommand", {"tabel", "scene.toml"}, kInput, {"tabel"}},
+        Mistake{"UnknownCommand", {"tabel", "scene.toml"}, kInput, {"tabel", "nearest command is table"}},
         Mistake{"UnknownOption", kTable + std::vector<std::string>{"--fast"}, kInput, {"--fast"}},
         Mistake{"NoScene", {"table", "-o", "out.nc"}, kInput, {"SCENE"}},
         Mistake{"NoOutput", {"table", "scene.toml"}, kInput, {"--output"}},

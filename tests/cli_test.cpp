@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <thread>
 
 #include "cli_support.hpp"
@@ -396,6 +397,39 @@ TEST_F(CommandLine, Folders_MaterialByName_FoundFromAnywhere) {
   EXPECT_GT(at_12_um, over_the_band);
 }
 
+TEST_F(CommandLine, Eval_OwnOutputAsPoints_GivesTheSameAgain) {
+  put("p.csv", "theta_deg,sigma\n30,0.1\n60,0.2\n");
+  ASSERT_EQ(dolp({"eval", "scene.toml", "--points", "p.csv", "-o", "a.csv"}).status, 0);
+  const Outcome again = dolp({"eval", "scene.toml", "--points", "a.csv", "-o", "b.csv"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(read_file(at("a.csv")), read_file(at("b.csv")));
+  EXPECT_NE(again.err.find("left out, because they are results: rho_i"), std::string::npos) << again.err;
+}
+
+TEST_F(CommandLine, Keys_OneOrATable_SayWhatIsAllowed) {
+  const Outcome one = dolp({"keys", "surface.sigma"});
+  EXPECT_EQ(one.status, 0);
+  EXPECT_NE(one.out.find("a number in [0, 10]; required"), std::string::npos) << one.out;
+  const auto table = nlohmann::json::parse(dolp({"keys", "surface", "--json"}).out);
+  EXPECT_GT(table["keys"].size(), 5U);
+  const Outcome unknown = dolp({"keys", "surface.sgma"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("the nearest is surface.sigma"), std::string::npos) << unknown.err;
+}
+
+TEST_F(CommandLine, Help_OfEveryCommand_HasTwoExamples) {
+  const std::string help = dolp({"--help"}).out;
+  std::istringstream lines(help.substr(help.find("Subcommands:")));
+  std::string line;
+  std::getline(lines, line);
+  for (std::string name; std::getline(lines, line) && std::istringstream(line) >> name;) {
+    const std::string own = dolp({name, "--help"}).out;
+    const std::size_t examples = own.find("Examples:\n  dolp " + name);
+    ASSERT_NE(examples, std::string::npos) << own;
+    EXPECT_NE(own.find("\n  dolp " + name, examples + 12), std::string::npos) << own;
+  }
+}
+
 TEST_F(CommandLine, Materials_List_HasNameRangeAndSource) {
   const Outcome text = dolp({"materials"});
   const Outcome report = dolp({"materials", "--json"});
@@ -445,7 +479,8 @@ TEST_F(CommandLine, HelpAndVersion_OnStdout_Exit0) {
                                                     {"table", "--help"},
                                                     {"eval", "--help"},
                                                     {"materials", "--help"},
-                                                    {"devices", "--help"}}) {
+                                                    {"devices", "--help"},
+                                                    {}}) {
     const Outcome outcome = dolp(arguments);
     EXPECT_EQ(outcome.status, 0);
     EXPECT_NE(outcome.out.find("Usage: dolp"), std::string::npos) << outcome.out;
@@ -453,7 +488,7 @@ TEST_F(CommandLine, HelpAndVersion_OnStdout_Exit0) {
   }
   const Outcome version = dolp({"--version"});
   EXPECT_EQ(version.status, 0);
-  EXPECT_EQ(version.out, "dolp " DOLP_VERSION "\n");
+  EXPECT_TRUE(std::regex_match(version.out, std::regex("dolp " DOLP_VERSION " \\([-0-9a-z]+\\)\n"))) << version.out;
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ TEST_F(DenseTable, Verify_FindsNothing) {
 
 TEST_F(DenseTable, RuleAttributeAndSummary_SayWhatIsInterpolated) {
   const Outcome outcome = dolp(joined({"table", "scene.toml", "-o", "t.nc"}, kDense));
-  EXPECT_NE(outcome.out.find(" moments interpolated between slope distributions, from "), std::string::npos)
+  EXPECT_NE(outcome.out.find(" moments interpolated or combined, from "), std::string::npos)
       << outcome.out;
   std::string rule;
   for (const Attribute& attribute : read_table(at("t.nc")).attributes) {

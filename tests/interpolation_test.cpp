@@ -8,8 +8,10 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
+#include "model/index_basis.hpp"
 #include "plan/chebyshev.hpp"
 #include "plan/shape_axis.hpp"
 #include "plan/shape_plan.hpp"
@@ -353,6 +355,25 @@ TEST(InterpolatingEvaluator, DirectionWithoutABound_IsComputedByItselfInItsPlace
   }
 }
 
+TEST(InterpolatingEvaluator, PointsGrazingAndNot_AreThoseOfEachByItself) {
+  MomentsRequest request = grid_request(kModel, {}, {}, {});
+  request.indices.clear();
+  request.append({70.0, {0.1, 2.0}, {1.5, 0.1}});
+  request.append({89.99, {0.2, 3.0}, {1.4, 0.0}});
+  request.append({60.0, {0.3, 2.5}, {10.0, 60.0}});
+  InterpolatingEvaluator evaluator(std::make_unique<CpuEvaluator>(Precision::kDouble));
+  const std::vector<Moments> together = evaluator.evaluate(request, {});
+  ASSERT_EQ(together.size(), 3U);
+  for (std::size_t i = 0; i < together.size(); ++i) {
+    MomentsRequest alone = grid_request(kModel, {}, {}, {});
+    alone.indices.clear();
+    alone.append(request[i]);
+    const Moments exact = evaluator.evaluate(alone, {}).front();
+    EXPECT_NEAR(together[i].r_i, exact.r_i, together[i].r_i_error + exact.r_i_error) << i;
+    EXPECT_NEAR(together[i].albedo, exact.albedo, together[i].albedo_error + exact.albedo_error) << i;
+  }
+}
+
 TEST(InterpolatingEvaluator, Progress_RisesToAll_AndCancels) {
   Interpolated one = interpolated(smooth);
   std::vector<std::size_t> done;
@@ -426,6 +447,76 @@ TEST_P(RandomGrids, StatedErrors_HoldAgainstEveryEntryByItself) {
     }
   }
   EXPECT_GT(2 * evaluator.report().interpolated, in_all);
+}
+
+/// A request for a grid of indices, with their basis.
+MomentsRequest random_indices(Random& random, const Model& model) {
+  MomentsRequest request = grid_request(model, {random.uniform(0.0, 85.0), random.theta_deg()}, {0.05, 0.3, 1.2},
+                                        {2.5, 4.0}, random.log_uniform(1e-7, 1e-2));
+  if (model.distribution == Distribution::kGaussian) request.q = {2.0};
+  request.wants_direct = model.masking == Masking::kVCavity || model.masking == Masking::kSmith;
+  const OpticalConstants least{random.log_uniform(0.2, 20.0), random.log_uniform(1e-3, 20.0)};
+  request.indices.clear();
+  for (const double n : spaced(least.n, least.n * random.log_uniform(1.2, 3.0), 12)) {
+    for (const double k : spaced(least.k, least.k * random.log_uniform(1.2, 3.0), 10))
+      request.indices.push_back({n, k});
+  }
+  request.basis = IndexBasis::of(request.indices, request.tolerance);
+  return request;
+}
+
+// Against each index by itself.
+TEST_P(RandomGrids, StatedErrors_HoldAgainstEveryIndexByItself) {
+  const std::unique_ptr<MomentsEvaluator> exact = make_evaluator(Kernel::kCpuDouble);
+  InterpolatingEvaluator evaluator(make_evaluator(GetParam()));
+  std::size_t combined = 0;
+  for (const Model& model : kModels) {
+    Random random(40 + static_cast<std::uint64_t>(GetParam()));
+    SCOPED_TRACE(name_of(model));
+    MomentsRequest request = random_indices(random, model);
+    request.precision = is_double(GetParam()) ? Precision::kDouble : Precision::kFloat;
+    const std::vector<Moments> moments = evaluator.evaluate(request, {});
+    if (request.basis) combined += moments.size();
+    MomentsRequest alone = request;
+    alone.basis = nullptr;
+    alone.may_interpolate = false;
+    alone.precision = Precision::kDouble;
+    alone.tolerance = std::max(1e-2 * request.tolerance, 1e-10);
+    const std::vector<Moments> truth = exact->evaluate(alone, {});
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      for (const auto& [value, error] : std::span(kMomentMembers).first(request.wants_direct ? 6 : 4)) {
+        ASSERT_LE(std::abs(moments[i].*value - truth[i].*value), moments[i].*error + truth[i].*error)
+            << "entry " << i << " member " << moments[i].*value << " tolerance " << request.tolerance << " theta "
+            << request[i].theta_deg << " n " << request[i].index.n << " k " << request[i].index.k;
+      }
+    }
+  }
+  EXPECT_GT(combined, 0U);
+  EXPECT_EQ(evaluator.report().interpolated, combined);
+  EXPECT_LE(2 * evaluator.report().interpolation_nodes, combined);
+}
+
+// What is wanted of the basis follows from what is wanted of the indices; an index beyond its reach is computed itself.
+TEST(InterpolatingEvaluator, BasisOfIndices_ComputesWhatIsWanted) {
+  MomentsRequest request = grid_request(kModel, {30.0, 60.0}, {0.1, 0.3}, {2.0}, 1e-3);
+  request.indices.clear();
+  for (const double n : spaced(1.3, 2.0, 60)) request.indices.push_back({n, 0.1});
+  request.indices.push_back({0.8, 0.0});
+  request.basis = IndexBasis::of(request.indices, request.tolerance);
+  ASSERT_TRUE(request.basis);
+  const std::size_t of_basis = request.basis->indices().size();
+  auto inner = std::make_unique<Invented>(smooth, 0.0);
+  const Invented& known = *inner;
+  InterpolatingEvaluator evaluator(std::move(inner));
+  evaluator.evaluate(request, {});
+  ASSERT_EQ(known.requests.size(), 1U);
+  EXPECT_EQ(known.requests[0].indices.size(), of_basis + 1);
+  EXPECT_EQ(known.requests[0].indices.back(), request.indices.back());
+  EXPECT_LT(known.requests[0].tolerance, request.tolerance);
+  request.wanted.assign(request.size(), 0);
+  for (std::size_t shape = 0; shape < 2; ++shape) request.wanted[(61 + 17) * 2 + shape] = 1;
+  evaluator.evaluate(request, {});
+  EXPECT_EQ(known.requests[1].wanted_count(), 2 * of_basis);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, RandomGrids, testing::ValuesIn(kKernels),

@@ -17,7 +17,7 @@ sys.dont_write_bytecode = True  # no folder of caches in the source tree
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = pathlib.Path("build/release")
-FILES_WITH_COMMANDS = ("README.md", "host/cli/README.md", "host/scene/README.md")
+FILES_WITH_COMMANDS = ("README.md", "host/cli/README.md", "host/fit/README.md", "host/scene/README.md")
 MOST_README_LINES = 300
 BLOCK_TIMEOUT_S = 300  # a sanitizer build on two busy cores; each block takes seconds in a release build
 
@@ -31,7 +31,7 @@ NOT_RUN = {
 
 SHELL_BLOCK = re.compile(r"^```sh\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 ANY_BLOCK = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
-COMMAND = re.compile(r"^ *(build/release/)?dolp (table|eval|mueller|plan|verify|lookup|materials|devices|explore)\b", re.MULTILINE)
+COMMAND = re.compile(r"^ *(build/release/)?dolp (table|eval|mueller|plan|verify|lookup|fit|materials|devices|explore)\b", re.MULTILINE)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#+ +(.*)$", re.MULTILINE)
 

@@ -276,6 +276,7 @@ Surface surface_of(Distribution distribution, Masking masking, double sigma, dou
 TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
   // The masking bends inside the plain quadrature, which limits it to about its own tolerance.
   constexpr double kPlainTolerance = 1e-7;
+  constexpr double kOuterTolerance = 5e-7;  // above what the inner integrals leave
   constexpr unsigned kDepth = 8;
   constexpr double kTheta_deg = 65.0;
   const OpticalConstants index{1.6, 0.4};
@@ -290,8 +291,8 @@ TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
         return 2.0 * std::cos(theta_r) * std::sin(theta_r) *
                gauss_kronrod<double, 21>::integrate(element, 0.0, 180.0, kDepth, kPlainTolerance);
       };
-      const double sum = gauss_kronrod<double, 21>::integrate(over_azimuth, 0.0, kTheta_deg, kDepth, kPlainTolerance) +
-                         gauss_kronrod<double, 21>::integrate(over_azimuth, kTheta_deg, 90.0, kDepth, kPlainTolerance);
+      const double sum = gauss_kronrod<double, 21>::integrate(over_azimuth, 0.0, kTheta_deg, kDepth, kOuterTolerance) +
+                         gauss_kronrod<double, 21>::integrate(over_azimuth, kTheta_deg, 90.0, kDepth, kOuterTolerance);
       return sum * kRadPerDeg * kRadPerDeg * std::cos(kTheta_deg * kRadPerDeg);
     };
     const Moments m = moments(Distribution::kCauchy, masking, kTheta_deg, {0.5, 1.8}, index);

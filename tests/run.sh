@@ -2,7 +2,8 @@
 # Installs what is missing, builds everything and runs the whole test suite on lavapipe, Vulkan on the CPU.
 #
 # Environment:
-#   DOLP_BUILD_TYPE   Release (default) in build/release, Debug in build/debug, AsanUbsan in build/asan-ubsan
+#   DOLP_BUILD_TYPE   Release (default) in build/release, Debug in build/debug, AsanUbsan in build/asan-ubsan;
+#                     Tsan in build/tsan has the tests of the host's threads alone, since drivers are not instrumented
 #   DOLP_TEST_DEVICE  a part of the file name of another Vulkan driver (in vulkan/icd.d), e.g. nvidia or radeon
 #   DOLP_VALIDATION   1 (default): messages of the Vulkan validation layers fail a test; 0: without the layers
 # Arguments go to ctest, e.g. -R Eval. With AsanUbsan the suite has a minute of fuzzing, `-L fuzz`; after that build,
@@ -22,7 +23,8 @@ case $build_type in
   Release) build=$root/build/release ;;
   Debug) build=$root/build/debug ;;
   AsanUbsan) build=$root/build/asan-ubsan ;;
-  *) fail "DOLP_BUILD_TYPE is $build_type; it must be Release, Debug or AsanUbsan" ;;
+  Tsan) build=$root/build/tsan ;;
+  *) fail "DOLP_BUILD_TYPE is $build_type; it must be Release, Debug, AsanUbsan or Tsan" ;;
 esac
 
 bash "$root/host/install_packages.sh" build picture bench test
@@ -38,6 +40,11 @@ export DOLP_VALIDATION=${DOLP_VALIDATION:-1}
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=0}
 
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE="$build_type" -DBUILD_TESTING=ON -DDOLP_BENCH=ON
+if [[ $build_type == Tsan ]]; then
+  programs=(parallel_ranges_test explore_test explore_session_test interpolation_test mueller_run_test scene_run_test)
+  cmake --build "$build" --target "${programs[@]}"
+  exec ctest --test-dir "$build" --output-on-failure -j2 -L "^($(IFS='|'; echo "${programs[*]}"))\$" "$@"
+fi
 cmake --build "$build"
 "$build/dolp" devices || fail "no usable Vulkan device through $driver_file"
 ctest --test-dir "$build" --output-on-failure -j2 "$@"

@@ -41,13 +41,16 @@ std::unique_ptr<MomentsEvaluator> evaluator_on(bool device) {
   return std::make_unique<InterpolatingEvaluator>(std::move(inner));
 }
 
-/// Results of the grid, each part by an evaluator of its own and without knowledge of the others.
+constexpr std::size_t kFewParts = 4;  // making an evaluator takes longer than a part
+
+/// Results of the grid, each part without knowledge of the others; few parts have an evaluator of their own each.
 std::vector<PointResult> in_parts(const Scene& scene, const std::vector<SceneEntries>& parts, bool device) {
   const EffectPlan plan = keep_everything(scene);
   const SceneEntries whole = grid_entries(scene);
   CollectedResults results(whole);
+  auto evaluator = evaluator_on(device);
   for (const SceneEntries& part : parts) {
-    const auto evaluator = evaluator_on(device);
+    if (parts.size() <= kFewParts) evaluator = evaluator_on(device);
     run_scene(scene, part, plan, evaluator.get(), results, {});
   }
   return results.take();
@@ -97,6 +100,19 @@ TEST_P(EveryModel, AxesOfIndexAndWavelength_KeepTheirBitsInParts) {
 
 INSTANTIATE_TEST_SUITE_P(SceneParts, EveryModel,
                          testing::Combine(testing::ValuesIn(kDistributions), testing::ValuesIn(kMaskings)));
+
+// Many indices, which are combined from a few of all of the grid.
+TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
+  for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
+    Scene scene = make_scene(Distribution::kCauchy, masking, kAbsorbing);
+    scene.accuracy.tolerance = 1e-3;
+    scene.grid = {{80.0}, spaced(0.1, 0.4, 5), spaced(2.0, 5.0, 5), {}, spaced(1.3, 3.0, 10), {0.1, 0.3, 0.9}};
+    const auto evaluator = evaluator_on(true);
+    evaluate_scene(scene, grid_entries(scene), *evaluator, {});
+    EXPECT_LT(2 * evaluator->report().interpolation_nodes, evaluator->report().interpolated);
+    expect_same_bits(scene, true);
+  }
+}
 
 TEST(SceneParts, AllBounces_KeepTheirBitsInParts) {
   Scene scene = make_scene(Distribution::kCauchy, Masking::kVCavity, kMetal);

@@ -55,6 +55,14 @@ TEST(VulkanContext, TwoThreads_GetTheResultsOfOneAloneWithoutAValidationMessage)
   EXPECT_TRUE(context.validation_messages().empty()) << context.validation_messages().front();
 }
 
+TEST(VulkanContext, WorkgroupOnAProcessor_IsAVector) {
+  const vulkan::Context context(options_of_window());
+  const DeviceDescription& device = context.description();
+  const bool is_processor = device.type == DeviceDescription::Type::kCpu;
+  EXPECT_EQ(device.local_size, is_processor ? device.subgroup_size : 64U);
+  EXPECT_EQ(context.device().local_size(), device.local_size);
+}
+
 TEST(VulkanContext, NothingCanPresent_NamesTheDeviceAndSaysWhy) {
   const vulkan::Presentation nowhere{{}, [](VkInstance, VkPhysicalDevice, std::uint32_t) { return false; }};
   try {

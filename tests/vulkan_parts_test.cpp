@@ -80,6 +80,21 @@ TEST(Packing, RealsOfAStructure_ComeBackInTheKernelsPrecision) {
   }
 }
 
+TEST(Packing, ManyStructures_AreThoseOfOneAfterTheOther) {
+  using Node = std::array<double, 3>;
+  constexpr std::size_t kCount = 20'000;  // more than one thread takes
+  const auto node_of = [](std::size_t i) {
+    return Node{1.0 / static_cast<double>(i + 1), static_cast<double>(i), 1e60};
+  };
+  for (const bool float64 : {false, true}) {
+    const Packing packing(float64);
+    std::vector<std::byte> one_by_one, together(7);
+    for (std::size_t i = 0; i < kCount; ++i) packing.append(node_of(i), one_by_one);
+    packing.pack(kCount, node_of, together);
+    EXPECT_EQ(together, one_by_one);
+  }
+}
+
 TEST(TileSizes, EachLimit_Binds) {
   const TileLimits limits{.buffer_bytes = 1'000'000,
                           .heap_bytes = 80'000'000,

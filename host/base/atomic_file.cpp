@@ -130,7 +130,7 @@ NewFile create_temporary(const fs::path& target) {
     return ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kNewFileMode);
   });
   ::flock(named, LOCK_EX | LOCK_NB);  // where there are no locks nothing is cleared away either
-  return {File(named), name};
+  return {File(named), std::move(name)};
 }
 
 void keep_permissions(const File& file, const fs::path& target) {

@@ -16,6 +16,11 @@ struct DeviceError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Out of memory, on the device too (exit 6).
+struct MemoryError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// A file could not be read or written (exit 4).
 struct IoError : std::runtime_error {
   using std::runtime_error::runtime_error;

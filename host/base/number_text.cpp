@@ -6,11 +6,19 @@
 
 namespace dolp {
 
+void append_number(std::string& text, double value) {
+  if (std::isnan(value)) {  // whatever its sign
+    text += "nan";
+    return;
+  }
+  std::array<char, 32> digits;
+  text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+}
+
 std::string number_text(double value) {
-  if (std::isnan(value)) return "nan";
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
+  std::string text;
+  append_number(text, value);
+  return text;
 }
 
 }  // namespace dolp

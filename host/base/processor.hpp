@@ -5,6 +5,6 @@
 namespace dolp {
 
 /// Name of this machine's processor as the kernel reports it, or "unknown processor".
-std::string processor_name();
+const std::string& processor_name();
 
 }  // namespace dolp

@@ -28,11 +28,18 @@ int run_verify(const Options& options);
 /// `dolp lookup TABLE --points IN -o OUT`: interpolates in a table, with the error of that.
 int run_lookup(const Options& options);
 
+/// `dolp fit SCENE --data FILE --vary KEY=LOW:HIGH`: numbers of the scene from measured data. kExitAccuracy if no minimum
+/// is found.
+int run_fit(const Options& options);
+
 /// `dolp explore [SCENE]`: the window.
 int run_explore(const Options& options);
 
 /// `dolp materials`: the built-in materials, their ranges of wavelength and their sources.
 int run_materials(const Options& options);
+
+/// `dolp keys [KEY]`: what the keys of a scene mean and may be.
+int run_keys(const Options& options);
 
 /// `dolp devices`: the Vulkan devices, and why each one is or is not usable.
 int run_devices(const Options& options);

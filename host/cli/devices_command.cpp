@@ -4,7 +4,7 @@
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
-#include "cli/report.hpp"
+#include "report/report.hpp"
 #include "evaluate/vulkan/devices.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/choices.hpp"

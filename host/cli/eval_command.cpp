@@ -17,7 +17,7 @@ int run_eval(const Options& options) {
   check_one_stdin(options);
   const Scene scene = load_scene(options);
   check_output_is_no_input(options, scene.files);
-  const Points points = read_points(options.points_path, PointsKind::kDirections);
+  const Points points = load_points(options, PointsKind::kDirections);
   const SceneEntries entries = point_entries(scene, points);
   check_writable(options.output_path);
   SceneRun run;

@@ -1,7 +1,7 @@
 #include <vector>
 
 #include "cli/commands.hpp"
-#include "cli/report.hpp"
+#include "report/report.hpp"
 #include "scene/material_data.hpp"
 #include "terminal/exit_status.hpp"
 

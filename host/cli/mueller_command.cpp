@@ -38,7 +38,7 @@ int run_mueller(const Options& options) {
   check_one_stdin(options);
   const Scene scene = load_scene(options);
   check_output_is_no_input(options, scene.files);
-  const Points points = read_points(options.points_path, PointsKind::kGeometries);
+  const Points points = load_points(options, PointsKind::kGeometries);
   const std::vector<MuellerPoint> geometries = mueller_points(scene, points);
   check_writable(options.output_path);
   const std::unique_ptr<MomentsEvaluator> evaluator = make_evaluator(options, scene);

@@ -1,15 +1,16 @@
 #include "cli/options.hpp"
 
+#include <fmt/format.h>
+
+#include <cstdio>
 #include <filesystem>
 #include <system_error>
-#include <utility>
 
 #include "base/error.hpp"
-#include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/interpolation/interpolating_evaluator.hpp"
-#include "evaluate/reference/reference_evaluator.hpp"
-#include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "base/printable_text.hpp"
+#include "evaluate/named/named_evaluator.hpp"
 #include "scene/scene_reader.hpp"
+#include "table/result_csv.hpp"
 
 namespace dolp::cli {
 
@@ -39,18 +40,17 @@ std::vector<std::string> all_overrides(const Options& options) {
 
 Scene load_scene(const Options& options) { return read_scene(options.scene_path, all_overrides(options)); }
 
-std::unique_ptr<MomentsEvaluator> make_evaluator(const Options& options, const Scene& scene) {
-  if (options.evaluator == "reference") return std::make_unique<ReferenceEvaluator>();
-  std::unique_ptr<MomentsEvaluator> evaluator;
-  if (options.evaluator == "cpu") {
-    evaluator = std::make_unique<CpuEvaluator>(scene.accuracy.precision);
-  } else {
-    VulkanOptions vulkan;
-    vulkan.device = options.device;
-    vulkan.precision = scene.accuracy.precision;
-    evaluator = std::make_unique<VulkanEvaluator>(vulkan);
+Points load_points(const Options& options, PointsKind kind) {
+  Points points = read_points(options.points_path, kind, result_columns());
+  if (!options.quiet && !points.left_out.empty()) {
+    fmt::print(stderr, "dolp: {}: left out, because they are results: {}\n", printable_line(points.name),
+               fmt::join(points.left_out, ", "));
   }
-  return std::make_unique<InterpolatingEvaluator>(std::move(evaluator));
+  return points;
+}
+
+std::unique_ptr<MomentsEvaluator> make_evaluator(const Options& options, const Scene& scene) {
+  return dolp::make_evaluator({options.evaluator, options.device, scene.accuracy.precision});
 }
 
 }  // namespace dolp::cli

@@ -9,6 +9,7 @@
 
 #include "evaluate/evaluator.hpp"
 #include "plan/effects.hpp"
+#include "scene/points.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp::cli {
@@ -29,16 +30,24 @@ struct Options {
   bool json = false;
   bool quiet = false;
   bool strict = false;
-  bool keep_all = false;        ///< drop no effect
-  std::size_t samples = 64;     ///< of verify: entries to recompute
-  std::uint64_t seed = 1;       ///< of verify: of their choice
-  bool named_files = false;     ///< of verify: n, k and E0 from the files that the scene names
-  bool hard_cases = false;      ///< of verify: examine a device instead of a table
-  bool all = false;             ///< of verify: report every hard case
-  std::size_t frames = 0;       ///< of explore: draw so many and end; 0: until the window is closed
-  std::string screenshot_path;  ///< of explore
-  std::string measured_path;    ///< of explore
-  std::string command_line;     ///< for the table's history
+  bool keep_all = false;             ///< drop no effect
+  std::size_t samples = 64;          ///< of verify: entries to recompute
+  std::uint64_t seed = 1;            ///< of verify: of their choice
+  bool named_files = false;          ///< of verify: n, k and E0 from the files that the scene names
+  bool hard_cases = false;           ///< of verify: examine a device instead of a table
+  bool all = false;                  ///< of verify: report every hard case
+  std::size_t frames = 0;            ///< of explore: draw so many and end; 0: until the window is closed
+  std::string screenshot_path;       ///< of explore
+  std::string measured_path;         ///< of explore
+  std::vector<std::string> data;     ///< of fit: FILE or FILE:KEY=VALUE,...
+  std::vector<std::string> vary;     ///< of fit: KEY=LOW:HIGH or KEY=LOW:HIGH:START
+  std::vector<std::string> compare;  ///< of fit: KEY=WORD,WORD,...
+  std::size_t starts = 24;           ///< of fit
+  std::string loss = "squares";      ///< of fit
+  std::string plot_path;             ///< of fit
+  std::string key;                   ///< of keys: one of them, or a table; empty: all
+  std::string completion;            ///< of completion: one of kCompletions
+  std::string command_line;          ///< for the table's history
 };
 
 /// Refuses to write over the scene, a file that it names, the points or the table.
@@ -54,6 +63,9 @@ std::vector<std::string> all_overrides(const Options& options);
 
 /// The scene with all_overrides.
 Scene load_scene(const Options& options);
+
+/// The points of --points. Columns that are results, as eval and lookup write them, are left out with a word.
+Points load_points(const Options& options, PointsKind kind);
 
 /// The evaluator that --evaluator, --device and the scene's precision ask for.
 /// Errors: DeviceError when vulkan is asked for and there is no usable device.

@@ -1,7 +1,6 @@
 #include "cli/run_report.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -15,6 +14,7 @@ namespace dolp::cli {
 namespace {
 
 constexpr double kPoints = 100.0;          // of DOLP
+constexpr double kFewEvaluations = 1e6;     // a tenth of a second of one core
 constexpr std::size_t kRowsAtOnce = 4096;  // of a thread
 
 Report range_report(const char* what, double limit, const EnergyRange& range) {
@@ -61,7 +61,7 @@ std::string bound_text(const std::optional<double>& bound) {
 void add_work(Report& report, const EvaluationReport& e, std::size_t entries) {
   const double per_entry = entries > 0 ? e.evaluations / static_cast<double>(entries) : 0.0;
   report.row("work", "{:.4g} integrand evaluations, {:.0f} an entry", key("evaluations", e.evaluations), per_entry);
-  report.row_if(e.interpolated > 0, "of these", "{} moments interpolated between slope distributions, from {}",
+  report.row_if(e.interpolated > 0, "of these", "{} moments interpolated or combined, from {}",
                 key("interpolated_moments", e.interpolated), key("interpolation_nodes", e.interpolation_nodes));
 }
 
@@ -124,6 +124,10 @@ int report_run(const Options& options, const Scene& scene, const SceneRun& run, 
   report.value("scattering_gap", run.scattering_gap);
   add_status(report, summary);
   add_energy(report, summary, run.plan.needs_moments);
+  const EvaluationReport& evaluation = run.evaluation;
+  const bool is_faster_on_cpu =
+      evaluation.evaluator == "vulkan" && evaluation.evaluations < kFewEvaluations && evaluation.setup_s > 0.0;
+  report.row_if(is_faster_on_cpu, "hint", "--evaluator cpu has no device to set up and is faster for so little");
   report.row("written", "{}", key("output", path));
   report.print(options.json, options.quiet, path);
   return options.strict && summary.count(kStatusToleranceMissed) > 0 ? kExitAccuracy : kExitDone;
@@ -133,41 +137,16 @@ std::string result_csv(const Points& points, const std::vector<PointResult>& res
   std::vector<std::string> parts((results.size() + kRowsAtOnce - 1) / kRowsAtOnce);
   parallel_ranges(results.size(), kRowsAtOnce, [&](std::size_t first, std::size_t last) {
     std::string& part = parts[first / kRowsAtOnce];
-    for (std::size_t i = first; i < last; ++i) part += points.rows[i] + ',' + result_cells(results[i], extra) + '\n';
+    for (std::size_t i = first; i < last; ++i) {
+      part += points.rows[i];
+      part += ',';
+      append_result_cells(part, results[i], extra);
+      part += '\n';
+    }
   });
   std::string csv = points.header + ',' + result_header(extra) + '\n';
   for (const std::string& part : parts) csv += part;
   return csv;
-}
-
-std::string grid_text(const Grid& grid) {
-  constexpr std::array kNames = {"wavelength", "n", "k", "theta", "sigma", "q"};
-  std::string counts, names;
-  for (std::size_t i = 0; i < kGridAxes.size(); ++i) {
-    const std::vector<double>& values = grid.*kGridAxes[i];
-    if (values.empty()) continue;
-    counts += fmt::format("{}{}", counts.empty() ? "" : " x ", values.size());
-    names += fmt::format("{}{}", names.empty() ? "" : " x ", kNames[i]);
-  }
-  return fmt::format("{} ({})", counts, names);
-}
-
-Report::Json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan) {
-  Report::Json json;
-  for (const EffectState state :
-       {EffectState::kKept, EffectState::kDropped, EffectState::kNotNeeded, EffectState::kAbsent}) {
-    json[state_name(state)] = Report::Json::array();
-  }
-  for (const EffectRow& row : effects) {
-    Report::Json of_row = {{"name", row.name}, {"reason", row.reason}};
-    if (row.state == EffectState::kDropped) of_row["bound"] = row.bound.value_or(0.0);
-    json[state_name(row.state)].push_back(of_row);
-  }
-  json["keep_all"] = plan.keep_all;
-  json["allowed_share_of_tolerance"] = kDroppedShare;
-  json["dolp_bound"] = plan.bound.dolp;
-  json["rho_bound"] = plan.bound.rho;
-  return json;
 }
 
 void add_evaluation(Report& report, const EvaluationReport& e, double wall_s) {
@@ -175,6 +154,8 @@ void add_evaluation(Report& report, const EvaluationReport& e, double wall_s) {
   report.row_if(is_idle, "device", "none: nothing is integrated");
   report.row_if(!is_idle, "device", "{}{}{}, {} precision", key("device", e.device), e.driver.empty() ? "" : ", ",
                 key("driver", e.driver), key("precision", e.precision));
+  report.row_if(e.devices_lost > 0, "lost", "{} times a device, and began again on a new one",
+                key("devices_lost", e.devices_lost));
   report.row("time", "{:.3f} s in all, {:.3f} s in kernels, {} dispatches", key("wall_s", wall_s),
              key("kernel_s", e.kernel_s), key("dispatches", e.dispatches));
   report.values({{"evaluator", e.evaluator}, {"setup_s", e.setup_s}});

@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "cli/options.hpp"
-#include "cli/report.hpp"
 #include "model/point_result.hpp"
 #include "plan/effects.hpp"
+#include "report/plan_report.hpp"
+#include "report/report.hpp"
 #include "run/run_summary.hpp"
 #include "scene/points.hpp"
 #include "table/result_csv.hpp"
@@ -36,12 +37,6 @@ int report_run(const Options& options, const Scene& scene, const SceneRun& run, 
 
 /// The columns of the points as they were given, and those of their results.
 std::string result_csv(const Points& points, const std::vector<PointResult>& results, const ExtraColumns& extra);
-
-/// "91 x 32 x 5 (theta x sigma x q)"; an axis that the grid lacks is left out.
-std::string grid_text(const Grid& grid);
-
-/// Names and reasons of what is kept, dropped, not needed and absent.
-Report::Json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan);
 
 /// Where a run was evaluated, and how long it took.
 void add_evaluation(Report& report, const EvaluationReport& evaluation, double wall_s);

@@ -18,11 +18,12 @@ struct EvaluationReport {
   std::string driver;     ///< driver name and version; empty for cpu and reference
   std::string precision;  ///< float | double | float and double, as used
   std::uint64_t dispatches = 0;
+  std::uint32_t devices_lost = 0;  ///< and replaced by a new one
   std::uint32_t row_width = 1;  ///< entries that an invocation computed together at last
   double evaluations = 0.0;
   double kernel_s = 0.0;  ///< time on the device (timestamps) and of the host's sums, or of the loop on the CPU
   double setup_s = 0.0;   ///< device and pipeline creation
-  std::uint64_t interpolated = 0;         ///< moments that were interpolated between slope distributions,
+  std::uint64_t interpolated = 0;         ///< moments that were interpolated or combined from others,
   std::uint64_t interpolation_nodes = 0;  ///< and moments computed for that
 };
 
@@ -53,8 +54,10 @@ class MomentsEvaluator {
   virtual bool has_double() const { return true; }
   /// The same evaluator's pBRDFs, which the bistatic mode needs; null when it has none.
   virtual ScatteringEvaluator* scattering() { return nullptr; }
-  /// Totals over all calls, pBRDFs included.
+  /// Totals over all calls since clear_report, pBRDFs included.
   virtual EvaluationReport report() const = 0;
+  /// Begins a run of its own: nothing in its report, or in what follows from the report, is of a run before.
+  virtual void clear_report() {}
 };
 
 }  // namespace dolp

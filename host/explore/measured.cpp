@@ -18,7 +18,7 @@ constexpr NumberRange kDolpRange{-1.0, 1.0};
 MeasuredPoints parse_measured(const std::string& text, const std::string& path_name) {
   MeasuredPoints points;
   points.name = input_name(path_name);
-  CsvReader row(text, points.name, {.has_comments = false});
+  CsvReader row(text, points.name, {.has_blank_lines = false});
   if (!row.next()) row.fail("the file is empty; columns theta_deg and dolp are expected");
   const std::size_t theta = row.position("theta_deg", kZenithDegRange);
   const std::size_t dolp = row.position("dolp", kDolpRange);

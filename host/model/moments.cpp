@@ -14,6 +14,11 @@ std::size_t MomentsRequest::wanted_count() const {
   return wanted.size() - static_cast<std::size_t>(std::ranges::count(wanted, 0));
 }
 
+double MomentsRequest::finer_tolerance(double share) const {
+  const double finer = share * tolerance;
+  return precision == Precision::kDouble ? finer : std::max(finer, std::min(kLeastFloatTolerance, tolerance));
+}
+
 MomentsPoint MomentsRequest::operator[](std::size_t entry) const {
   if (layout == Layout::kList) return {theta_deg[entry], {sigma[entry], q[entry]}, indices[entry]};
   const std::size_t of_sigma = entry / q.size();

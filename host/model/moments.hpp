@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "model/choices.hpp"
@@ -12,6 +13,8 @@
 #include "model/slopes.hpp"
 
 namespace dolp {
+
+class IndexBasis;
 
 /// The tightest tolerance of a rule in float; beyond, rounding drowns it.
 inline constexpr double kLeastFloatTolerance = 2e-6;
@@ -37,8 +40,9 @@ struct MomentsRequest {
   Precision precision = Precision::kAuto;       ///< kAuto: the evaluator's own
   bool may_interpolate = true;                  ///< between slope distributions, to the same tolerance
   bool has_extra_splits = false;                ///< a rule of another kind, to check others with
-  std::uint32_t row_width = 0;  ///< entries that an invocation computes together; 0: what takes least work
-  std::size_t run_size = 0;     ///< entries of all requests of this kind together; 0: of this one
+  std::uint32_t row_width = 0;              ///< entries that an invocation computes together; 0: what takes least work
+  std::size_t run_size = 0;                 ///< entries of all requests of this kind together; 0: of this one
+  std::shared_ptr<const IndexBasis> basis;  ///< of a grid, to combine the moments of its indices from; null: none
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
   std::vector<OpticalConstants> indices;
@@ -49,6 +53,8 @@ struct MomentsRequest {
   std::size_t size() const;
   bool is_wanted(std::size_t entry) const { return wanted.empty() || wanted[entry] != 0; }
   std::size_t wanted_count() const;
+  /// A share of the tolerance, as far as the rules of the precision go.
+  double finer_tolerance(double share) const;
   MomentsPoint operator[](std::size_t entry) const;
   /// Adds a point, which makes it a request for points.
   void append(const MomentsPoint& point);

@@ -55,6 +55,7 @@ SceneEntries SceneEntries::of_grid(Grid grid, const OpticalConstants& index) {
   entries.counts_ = counts_of(grid);
   if (grid.theta_deg.empty() || grid.sigma.empty() || grid.q.empty()) entries.counts_ = {};
   entries.whole_ = entries.counts_;
+  entries.whole_axes_ = std::make_shared<const Grid>(grid);
   entries.grid_ = std::move(grid);
   entries.index_ = index;
   return entries;
@@ -95,6 +96,7 @@ SceneEntries SceneEntries::part(const PerAxis& first, const PerAxis& count) cons
   part.index_ = index_;
   part.counts_ = count;
   part.whole_ = whole_;
+  part.whole_axes_ = whole_axes_;
   for (std::size_t i = 0; i < kGridAxes.size(); ++i) {
     part.first_[i] = first_[i] + first[i];
     const std::vector<double>& values = grid_.*kGridAxes[i];

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
+#include <memory>
 #include <optional>
 #include <ranges>
 #include <utility>
@@ -100,6 +101,7 @@ class SceneEntries {
   /// Of a part: where its axes begin in the whole, and how many values they have there.
   const PerAxis& first() const { return first_; }
   const PerAxis& whole() const { return whole_; }
+  const Grid& whole_axes() const { return *whole_axes_; }
   /// The position of an entry of the whole, if the part has it.
   std::optional<std::size_t> position_of(std::size_t in_whole) const;
 
@@ -110,6 +112,7 @@ class SceneEntries {
   PerAxis counts_ = {};
   PerAxis first_ = {};
   PerAxis whole_ = {};
+  std::shared_ptr<const Grid> whole_axes_;
   std::vector<SceneEntry> points_;
 };
 

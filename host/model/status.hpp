@@ -1,6 +1,7 @@
 // The bits of the `status` variable; this is the only place that numbers them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 namespace dolp {
@@ -13,6 +14,18 @@ inline constexpr std::uint32_t kStatusToleranceMissed = 2;
 inline constexpr std::uint32_t kStatusOutsideDomain = 4;
 /// I <= 0: the sum of what is emitted and reflected is not a radiation that exists.
 inline constexpr std::uint32_t kStatusNonPositiveIntensity = 8;
+
+/// In the order in which files list them, with a word for each.
+struct StatusBit {
+  std::uint32_t mask;
+  const char* meaning;
+};
+inline constexpr std::array<StatusBit, 4> kStatusBits = {{
+    {kStatusUnphysicalReflectance, "reflectance_outside_zero_to_one"},
+    {kStatusToleranceMissed, "tolerance_not_met"},
+    {kStatusOutsideDomain, "outside_model_domain"},
+    {kStatusNonPositiveIntensity, "intensity_not_positive"},
+}};
 
 /// With any of these nothing is promised of the DOLP.
 inline constexpr std::uint32_t kStatusNoDolpPromised =

@@ -112,7 +112,7 @@ double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
 // algebraically.
 constexpr double kPairFactor = 4.0;
 constexpr double kTablePairFactor = 8.0;
-constexpr double kGroovePairFactor = 8.0;  // beams of many bounces end at kinks that are not split
+constexpr double kGroovePairFactor = 10.0;  // beams of many bounces end at kinks that are not split
 constexpr double kCriticalFactor = 2.0;    // roots beside the critical line, which lies where rounding leaves it
 
 // Two rules of few nodes may agree by chance: none is taken to be better than this share of the tolerance it is made

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <tuple>
 
+#include "model/moments.hpp"
 #include "model/point_result.hpp"
 #include "scene/scene.hpp"
 
@@ -12,12 +14,13 @@ namespace dolp {
 
 /// One way to compute the moments of an entry.
 struct RefinementLevel {
-  Precision precision = Precision::kFloat;  ///< kFloat or kDouble
-  double tolerance = 1e-4;                  ///< of the rule: MomentsRequest::tolerance
-  bool may_interpolate = false;             ///< between slope distributions
-  bool is_check = false;                    ///< by a rule of another kind
-  std::uint32_t row_width = 0;              ///< MomentsRequest::row_width
-  std::size_t run_size = 0;                 ///< MomentsRequest::run_size
+  Precision precision = Precision::kFloat;       ///< kFloat or kDouble
+  double tolerance = 1e-4;                       ///< of the rule: MomentsRequest::tolerance
+  bool may_interpolate = false;                  ///< between slope distributions
+  bool is_check = false;                         ///< by a rule of another kind
+  std::uint32_t row_width = 0;                   ///< MomentsRequest::row_width
+  std::size_t run_size = 0;                      ///< MomentsRequest::run_size
+  std::shared_ptr<const IndexBasis> basis = {};  ///< MomentsRequest::basis
   /// In the order of their cost: float before double, wide tolerances before tight ones.
   friend bool operator<(const RefinementLevel& a, const RefinementLevel& b) {
     return std::tuple(a.precision, -a.tolerance, a.may_interpolate) <

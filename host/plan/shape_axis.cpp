@@ -44,6 +44,7 @@ ShapeParameter q_parameter(const MomentsRequest& request) {
 }
 
 std::vector<MomentsRequest> with_one_parameter(const MomentsRequest& request) {
+  if (request.layout == MomentsRequest::Layout::kList) return {request};
   const auto grazing = static_cast<std::size_t>(std::ranges::count_if(request.theta_deg, is_grazing));
   if (!sees_slopes(request.masking) || grazing == 0 || grazing == request.theta_deg.size()) return {request};
   std::vector<MomentsRequest> parts;

@@ -23,7 +23,8 @@ struct ShapeParameter {
 ShapeParameter sigma_parameter(Distribution distribution);
 /// All of the request's directions are grazing, or none is.
 ShapeParameter q_parameter(const MomentsRequest& request);
-/// The request in parts of which each has directions of one parameter, in the order of the request: usually one.
+/// The request in parts of which each has directions of one parameter, in the order of the request: usually one, and
+/// one of points, between which nothing is interpolated.
 std::vector<MomentsRequest> with_one_parameter(const MomentsRequest& request);
 
 /// Values of a parameter, and the nodes that stand for them.

@@ -17,12 +17,6 @@ constexpr Eigen::Index kLastCoefficients = 3;
 
 using Values = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-double node_tolerance(const MomentsRequest& request) {
-  const double wanted = kNodeTolerance * request.tolerance;
-  return request.precision == Precision::kDouble ? wanted
-                                                 : std::max(wanted, std::min(kLeastFloatTolerance, request.tolerance));
-}
-
 /// One of the moments, or its bound, at the nodes: sigma x q.
 Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, double Moments::*quantity) {
   Values values(static_cast<Eigen::Index>(plan.sigma.nodes.size()), static_cast<Eigen::Index>(plan.q.nodes.size()));
@@ -69,7 +63,7 @@ std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
   plan.q = shape_axis(q_parameter(request), request.q, digits);
   if (request.sigma.size() * request.q.size() < kLeastGain * plan.nodes_of_a_direction()) return std::nullopt;
   plan.nodes = request;
-  plan.nodes.tolerance = node_tolerance(request);
+  plan.nodes.tolerance = request.finer_tolerance(kNodeTolerance);
   plan.nodes.sigma = plan.sigma.nodes;
   plan.nodes.q = plan.q.nodes;
   const std::size_t shapes = request.sigma.size() * request.q.size();
@@ -83,7 +77,7 @@ std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
 }
 
 std::vector<char> interpolated_directions(const MomentsRequest& request) {
-  std::vector<char> is_interpolated(request.theta_deg.size(), 0);
+  std::vector<char> is_interpolated(request.theta_deg.size(), request.basis ? 1 : 0);
   for (const MomentsRequest& part : with_one_parameter(request)) {
     if (!shape_plan(part)) continue;
     for (std::size_t i = 0; i < is_interpolated.size(); ++i) {

@@ -17,9 +17,9 @@ namespace {
 void check_columns(const Scene& scene, const Points& points) {
   if (!points.theta_deg && scene.grid.theta_deg.size() != 1) {
     throw InputError(
-        fmt::format("{}:1: column \"theta_deg\" is missing, a number in {}; only a scene with a single grid.theta_deg "
+        fmt::format("{}: column \"theta_deg\" is missing, a number in {}; only a scene with a single grid.theta_deg "
                     "does without",
-                    points.name, kZenithDegRange.text()));
+                    points.where(), kZenithDegRange.text()));
   }
   const Material& material = scene.surface.material;
   const bool is_dispersive = !material.is_constant() || (points.wavelength_um && material.tabulated);
@@ -27,9 +27,9 @@ void check_columns(const Scene& scene, const Points& points) {
     const char* given = points.n ? "n" : "k";
     const char* missing = points.n ? "k" : "n";
     throw InputError(
-        fmt::format("{}:1: column \"{}\" needs column \"{}\" beside it, because the scene's material \"{}\" "
+        fmt::format("{}: column \"{}\" needs column \"{}\" beside it, because the scene's material \"{}\" "
                     "depends on the wavelength",
-                    points.name, given, missing, material.name));
+                    points.where(), given, missing, material.name));
   }
 }
 
@@ -37,7 +37,7 @@ void check_columns(const Scene& scene, const Points& points) {
 std::vector<double> wavelengths_of(const Scene& scene, const Points& points) {
   if (scene.spectrum.is_band()) {
     throw InputError(
-        fmt::format("{}:1: column \"wavelength_um\" cannot be combined with spectrum.band_um", points.name));
+        fmt::format("{}: column \"wavelength_um\" cannot be combined with spectrum.band_um", points.where()));
   }
   std::vector<double> wavelengths = *points.wavelength_um;
   std::ranges::sort(wavelengths);
@@ -49,7 +49,7 @@ std::vector<double> wavelengths_of(const Scene& scene, const Points& points) {
     } catch (const InputError& error) {
       const auto row = static_cast<std::size_t>(std::ranges::find(*points.wavelength_um, wavelength_um) -
                                                 points.wavelength_um->begin());
-      throw InputError(fmt::format("{}:{}: wavelength_um = {}: {}", points.name, points.line(row),
+      throw InputError(fmt::format("{}: wavelength_um = {}: {}", points.where(row),
                                    format_number(wavelength_um), error.what()));
     }
   }
@@ -69,9 +69,9 @@ void check_smith(const Scene& scene, const Points& points) {
     const double q = (*points.q)[row];
     if (kSmithCauchyQRange.contains(q)) continue;
     throw InputError(
-        fmt::format("{}:{}: q = {}: out of range, a number in {} with masking = \"smith\" and distribution = "
+        fmt::format("{}: q = {}: out of range, a number in {} with masking = \"smith\" and distribution = "
                     "\"cauchy\"",
-                    points.name, points.line(row), format_number(q), kSmithCauchyQRange.text()));
+                    points.where(row), format_number(q), kSmithCauchyQRange.text()));
   }
 }
 

@@ -73,6 +73,7 @@ PartRequests::PartRequests(const Scene& scene, const SpectralIndices& samples, c
   moments_.has_extra_splits = level.is_check;
   moments_.row_width = level.row_width;
   moments_.run_size = level.run_size;
+  moments_.basis = level.basis;
   moments_.may_interpolate = level.may_interpolate;
   if (plan.needs_moments && selection.part.is_grid()) ask_grid(selection);
   if (plan.needs_moments && !selection.part.is_grid()) ask_points(selection);

@@ -9,8 +9,10 @@
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/text/profile.hpp"
+#include "plan/index_plan.hpp"
 #include "plan/shape_plan.hpp"
 #include "run/drawn_entries.hpp"
+#include "run/index_bases.hpp"
 #include "run/part_requests.hpp"
 #include "run/scene_run.hpp"
 
@@ -120,16 +122,20 @@ RunPrediction predict_run(const Scene& scene, const SceneEntries& entries, const
   run.first = first_level(scene.accuracy, has_double);
   std::size_t largest = 0;
   run.first.run_size = entries.size();
+  run.first.basis = IndexBases(scene, entries, plan).of(run.first);
   for (const SceneEntries& part : run_parts(entries, run.spectral_samples)) {
     const SpectralIndices indices = spectral_indices(scene, part);
     const PartRequests requests(scene, indices, plan, {part}, run.first);
     const std::size_t moments = requests.moments().size();
     const std::size_t beams = requests.beams().entries.size();
-    for (const MomentsRequest& asked : with_one_parameter(requests.moments())) {
+    const bool has_basis = requests.moments().basis != nullptr;
+    if (has_basis) run.interpolated += moments;
+    for (const MomentsRequest& asked :
+         with_one_parameter(has_basis ? index_plan(requests.moments()).nodes : requests.moments())) {
       if (asked.size() == 0) continue;
       const std::optional<ShapePlan> shapes = shape_plan(asked);
       const MomentsRequest& computed = shapes ? shapes->nodes : asked;
-      if (shapes) run.interpolated += asked.size();
+      if (shapes && !has_basis) run.interpolated += asked.size();
       run.counts_directions = entries.is_grid() && (shapes || has_profiles(computed));
       run.moments += computed.size();
       visit.moments(computed);

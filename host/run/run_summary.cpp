@@ -35,7 +35,7 @@ void raise(std::optional<double>& worst, const std::optional<double>& error) {
 
 void add_result(RunSummary& summary, double theta_deg, double sigma, const PointResult& result) {
   for (std::size_t bit = 0; bit < kStatusBits.size(); ++bit)
-    summary.status[bit] += (result.status & kStatusBits[bit]) != 0 ? 1 : 0;
+    summary.status[bit] += (result.status & kStatusBits[bit].mask) != 0 ? 1 : 0;
   if ((result.status & kStatusNoDolpPromised) == 0) raise(summary.worst_error, result.error_estimate);
   if ((result.status & kStatusOutsideDomain) == 0) raise(summary.worst_rho_error, result.rho_error_estimate);
   if (std::isnan(result.albedo)) return;
@@ -96,7 +96,7 @@ EvaluationReport RunSummary::totals(EvaluationReport report) const {
 }
 
 std::size_t RunSummary::count(std::uint32_t bit) const {
-  return status[static_cast<std::size_t>(std::ranges::find(kStatusBits, bit) - kStatusBits.begin())];
+  return status[static_cast<std::size_t>(std::ranges::find(kStatusBits, bit, &StatusBit::mask) - kStatusBits.begin())];
 }
 
 std::string RunSummary::text() const {

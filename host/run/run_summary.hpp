@@ -27,10 +27,6 @@ struct EnergyRange {
   std::pair<double, double> sigma;
 };
 
-/// The bits of a status, in the order in which they are counted.
-inline constexpr std::array<std::uint32_t, 4> kStatusBits = {kStatusUnphysicalReflectance, kStatusToleranceMissed,
-                                                             kStatusOutsideDomain, kStatusNonPositiveIntensity};
-
 struct RunSummary {
   std::size_t entries = 0;
   std::array<std::size_t, kStatusBits.size()> status{};

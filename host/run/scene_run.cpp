@@ -13,6 +13,7 @@
 #include "plan/refinement.hpp"
 #include "plan/shape_plan.hpp"
 #include "run/closed_forms.hpp"
+#include "run/index_bases.hpp"
 #include "run/part_requests.hpp"
 #include "run/table_scene.hpp"
 
@@ -44,7 +45,8 @@ struct Way {
   const EffectPlan& plan;
   const Spectra& spectra;
   MomentsEvaluator* evaluator;
-  Accuracy accuracy;         ///< the scene's, in the evaluator's precision where the scene leaves it open
+  Accuracy accuracy;  ///< the scene's, in the evaluator's precision where the scene leaves it open
+  IndexBases& bases;
   std::size_t run_size = 0;  ///< entries of the whole table
 
   std::size_t samples() const { return spectra.indices.front().size(); }  ///< of every entry
@@ -217,6 +219,7 @@ FirstResults first_results(const Way& way, const SceneEntries& part, const Progr
   FirstResults first;
   first.level = first_level(way.accuracy, way.evaluator->has_double());
   first.level.run_size = way.run_size;
+  first.level.basis = way.bases.of(first.level);
   const PartRequests requests(way.scene, way.spectra.indices, way.plan, {part}, first.level);
   const std::uint64_t nodes = way.evaluator->report().interpolation_nodes;
   first.results = results_of(way, {part}, requests, progress);
@@ -256,6 +259,7 @@ void refine(const Way& way, const SceneEntries& part, FirstResults& first, const
     waiting.erase(waiting.begin());
     if (level.may_interpolate) {
       level.run_size = way.run_size;
+      level.basis = way.bases.of(level);
     } else {
       level.row_width = row_width;
     }
@@ -348,6 +352,7 @@ SelfCheck run_scene(const Scene& scene, const SceneEntries& entries, const Effec
   std::vector<std::size_t> checked;
   if (entries.is_grid() && plan.needs_moments)
     checked = checked_positions(whole, checked_count(whole * samples), scene_seed(scene));
+  IndexBases bases(scene, entries, plan);
   SelfCheck check;
   std::size_t before = 0;
   for (const SceneEntries& part : run_parts(entries, samples)) {
@@ -356,7 +361,7 @@ SelfCheck run_scene(const Scene& scene, const SceneEntries& entries, const Effec
     };
     if (!sink.has(part)) {
       const Spectra spectra(scene, plan, part.wavelength_um());
-      const Way way{scene, plan, spectra, evaluator, accuracy, whole};
+      const Way way{scene, plan, spectra, evaluator, accuracy, bases, whole};
       SelfCheck of_part;
       std::vector<PointResult> results = part_results(way, part, checked, of_part, part_progress);
       sink.write(part, std::move(results), of_part);

@@ -132,11 +132,12 @@ Scene table_scene(const TableHead& table, const std::string& name, NamedData nam
   }
   const std::string* overrides = find_text(table, "scene_overrides");
   const std::string* path = find_text(table, "scene_path");
-  const KnownData known = known_data(table, name);
+  const KnownData known =
+      named_data == NamedData::kOfTable ? known_data(table, name) : KnownData{.may_open_files = true};
   Scene scene;
   try {
     scene = parse_scene(*text, path ? *path : name, overrides ? overrides_of(*overrides) : std::vector<std::string>{},
-                        named_data == NamedData::kOfTable ? &known : nullptr);
+                        &known);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: attribute \"scene\": {}", name, error.what()));
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -11,6 +12,15 @@
 
 namespace dolp {
 namespace {
+
+constexpr double kWholeInPercent = 100.0;
+
+/// What is between double quotes; a cell with others in it stays as it is.
+std::string_view unquoted(std::string_view cell) {
+  const bool is_quoted = cell.size() >= 2 && cell.front() == '"' && cell.back() == '"';
+  const std::string_view inner = is_quoted ? cell.substr(1, cell.size() - 2) : cell;
+  return inner.find('"') == std::string_view::npos ? inner : cell;
+}
 
 std::vector<std::string_view> split_cells(std::string_view line, char separator) {
   std::vector<std::string_view> cells;
@@ -21,7 +31,7 @@ std::vector<std::string_view> split_cells(std::string_view line, char separator)
     const auto separates = [separator](char c) { return c == separator || (separator == ' ' && c == '\t'); };
     const bool is_end = i == line.size() || (separates(line[i]) && !is_quoted);
     if (!is_end) continue;
-    const std::string_view cell = trim(line.substr(begin, i - begin));
+    const std::string_view cell = unquoted(trim(line.substr(begin, i - begin)));
     if (separator != ' ' || !cell.empty()) cells.push_back(cell);
     begin = i + 1;
   }
@@ -36,16 +46,16 @@ CsvReader::CsvReader(std::string_view text, std::string name, CsvForm form)
 bool CsvReader::next() {
   while (read_ < lines_.size()) {
     line_ = trim(lines_[read_++]);
-    if (form_.has_comments && (line_.empty() || line_.front() == '#')) continue;
+    if (line_.empty() ? form_.has_blank_lines : line_.front() == '#') continue;
     cells_ = split_cells(line_, form_.separator);
     return true;
   }
   return false;
 }
 
-std::string CsvReader::where() const {
-  return fmt::format("{}:{}: ", name_, form_.first_line + std::max(read_, std::size_t{1}) - 1);
-}
+std::size_t CsvReader::line_number() const { return form_.first_line + std::max(read_, std::size_t{1}) - 1; }
+
+std::string CsvReader::where() const { return fmt::format("{}:{}: ", name_, line_number()); }
 
 void CsvReader::fail(const std::string& what) const { throw InputError(where() + what); }
 
@@ -55,7 +65,11 @@ double CsvReader::number(std::size_t cell, std::string_view column, const Number
   if (range && text.empty()) fail(fmt::format("{}: the value is missing{}", column, allowed));
   const std::optional<double> value = parse_number(text);
   if (!value) fail(fmt::format("{} = {}: not a number{}", column, one_line(text), allowed));
-  if (range && !range->contains(*value)) fail(fmt::format("{} = {}: out of range{}", column, one_line(text), allowed));
+  if (range && !range->contains(*value)) {
+    const bool is_percent = range->max == 1.0 && std::abs(*value) <= kWholeInPercent;
+    fail(fmt::format("{} = {}: out of range{}{}", column, one_line(text), allowed,
+                     is_percent ? "; a fraction of 1 is expected, not percent" : ""));
+  }
   return *value;
 }
 

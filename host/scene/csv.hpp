@@ -11,14 +11,15 @@
 namespace dolp {
 
 struct CsvForm {
-  char separator = ',';      ///< with ' ', any number of blanks separates two cells
-  bool has_comments = true;  ///< blank lines and lines that begin with # are left out
+  char separator = ',';         ///< with ' ', any number of blanks separates two cells
+  bool has_blank_lines = true;  ///< they are left out, as lines that begin with # always are
   std::size_t first_line = 1;
 };
 
 /// Goes through a text line by line: `for (CsvReader row(text, name); row.next();)`.
 ///
-/// Accepts what split_lines does; a cell in double quotes may hold separators. All views are into `text`.
+/// Accepts what split_lines does; a cell in double quotes may hold separators, and is what is between the quotes. All
+/// views are into `text`.
 class CsvReader {
  public:
   CsvReader(std::string_view text, std::string name, CsvForm form = {});
@@ -29,6 +30,8 @@ class CsvReader {
   /// The line, and its cells, without blanks at both ends.
   std::string_view line() const { return line_; }
   const std::vector<std::string_view>& cells() const { return cells_; }
+
+  std::size_t line_number() const;
 
   /// "file:line: ", the beginning of every message about the line, or about the first before there is one.
   std::string where() const;

@@ -5,6 +5,9 @@
 
 namespace dolp {
 
+/// host/CITATION.cff.
+std::string_view embedded_citation_cff();
+
 /// host/materials.csv.
 std::string_view embedded_materials_csv();
 

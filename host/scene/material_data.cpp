@@ -15,11 +15,6 @@
 namespace dolp {
 namespace {
 
-std::string without_quotes(std::string_view cell) {
-  const bool is_quoted = cell.size() >= 2 && cell.front() == '"' && cell.back() == '"';
-  return std::string(is_quoted ? cell.substr(1, cell.size() - 2) : cell);
-}
-
 /// A line of host/materials.csv.
 enum IndexColumn : std::size_t { kIndexName = 0, kWavelength = 1, kN = 2, kK = 3, kIndexColumns = 4 };
 
@@ -33,7 +28,7 @@ std::vector<Material> read_sources() {
   row.next();  // names
   while (row.next()) {
     if (row.cells().size() != kSourceColumns) row.fail("7 columns are expected");
-    materials.push_back({std::string(row.cells()[kName]), without_quotes(row.cells()[kSource]), {}, {}, {}});
+    materials.push_back({std::string(row.cells()[kName]), std::string(row.cells()[kSource]), {}, {}, {}});
   }
   return materials;
 }

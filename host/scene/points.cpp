@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 
+#include "base/error.hpp"
 #include "scene/csv.hpp"
 #include "scene/number_range.hpp"
 #include "scene/text.hpp"
@@ -41,63 +43,125 @@ std::vector<ColumnRule> column_rules(PointsKind kind) {
   return rules;
 }
 
+/// A column of a file: a rule, or none where the column is left out.
+using FileColumns = std::vector<const ColumnRule*>;
+
 std::vector<std::string> names_of(const std::vector<ColumnRule>& rules) {
   std::vector<std::string> names;
   for (const ColumnRule& rule : rules) names.emplace_back(rule.name);
   return names;
 }
 
-const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const CsvReader& header) {
+/// Errors: InputError that begins with `where`.
+const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const std::string& where) {
   for (const ColumnRule& rule : rules) {
     if (rule.name == name) return rule;
   }
   const std::vector<std::string> names = names_of(rules);
-  header.fail(fmt::format("column \"{}\" is unknown; the nearest known is {}, allowed are {}", one_line(name),
-                          nearest_name(name, names), join(names)));
+  throw InputError(fmt::format("{}: column \"{}\" is unknown; the nearest known is {}, allowed are {}", where,
+                               one_line(name), nearest_name(name, names), join(names)));
 }
 
-/// The rules of the file's columns in the file's order; makes those columns present in `points`.
-std::vector<ColumnRule> parse_header(const CsvReader& header, const std::vector<ColumnRule>& rules, Points& points) {
-  std::vector<ColumnRule> columns;
-  for (const std::string_view cell : header.cells()) {
-    const ColumnRule& rule = find_rule(rules, cell, header);
-    if (points.*rule.column) header.fail(fmt::format("column \"{}\" appears twice", rule.name));
-    (points.*rule.column).emplace();
-    columns.push_back(rule);
-  }
+/// Makes a column present.
+std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
+  if (points.*rule.column) throw InputError(fmt::format("{}: column \"{}\" appears twice", points.where(), rule.name));
+  return (points.*rule.column).emplace();
+}
+
+/// Refuses points that lack a column.
+void check_required(const Points& points, const std::vector<ColumnRule>& rules) {
   for (const ColumnRule& rule : rules) {
-    if (rule.is_required) header.position(rule.name, rule.range);
+    if (!rule.is_required || points.*rule.column) continue;
+    throw InputError(
+        fmt::format("{}: column \"{}\" is missing, a number in {}", points.where(), rule.name, rule.range.text()));
   }
-  points.header = fmt::format("{}", fmt::join(header.cells(), ","));
+}
+
+/// The file's columns in its order; makes those that are not left out present in `points`.
+FileColumns parse_header(const CsvReader& header, const std::vector<ColumnRule>& rules,
+                         const std::vector<std::string>& results, Points& points) {
+  FileColumns columns;
+  std::vector<std::string_view> own;
+  for (const std::string_view cell : header.cells()) {
+    if (std::ranges::find(results, cell) != results.end()) {
+      points.left_out.emplace_back(cell);
+      columns.push_back(nullptr);
+      continue;
+    }
+    const ColumnRule& rule = find_rule(rules, cell, points.where());
+    add_column(points, rule);
+    columns.push_back(&rule);
+    own.push_back(cell);
+  }
+  check_required(points, rules);
+  points.header = fmt::format("{}", fmt::join(own, ","));
   return columns;
 }
 
-void parse_row(const CsvReader& row, const std::vector<ColumnRule>& columns, Points& points) {
+void parse_row(const CsvReader& row, const FileColumns& columns, Points& points) {
+  std::vector<std::string_view> own;
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    (points.*columns[i].column)->push_back(row.number(i, columns[i].name, &columns[i].range));
+    if (columns[i] == nullptr) continue;
+    (points.*columns[i]->column)->push_back(row.number(i, columns[i]->name, &columns[i]->range));
+    own.push_back(row.cells()[i]);
   }
   if (row.cells().size() > columns.size()) {
     row.fail(fmt::format("{}: one value too many after column {}; the header has {}",
-                         one_line(row.cells()[columns.size()]), columns.back().name, columns.size()));
+                         one_line(row.cells()[columns.size()]),
+                         columns.back() ? columns.back()->name : points.left_out.back(), columns.size()));
   }
-  points.rows.push_back(fmt::format("{}", fmt::join(row.cells(), ",")));
+  points.rows.push_back(fmt::format("{}", fmt::join(own, ",")));
+  points.row_lines.push_back(static_cast<std::uint32_t>(row.line_number()));
+  ++points.count;
 }
 
 }  // namespace
 
-Points parse_points(const std::string& text, const std::string& path_name, PointsKind kind) {
+std::string Points::where() const { return header_line > 0 ? fmt::format("{}:{}", name, header_line) : name; }
+
+std::string Points::where(std::size_t row) const {
+  return header_line > 0 ? fmt::format("{}:{}", name, row_lines[row]) : fmt::format("{}[{}]", name, row);
+}
+
+Points points_of(std::span<const NamedColumn> columns, std::size_t count, PointsKind kind) {
+  const std::vector<ColumnRule> rules = column_rules(kind);
+  Points points;
+  points.name = "points";
+  points.count = count;
+  for (const NamedColumn& column : columns) {
+    const ColumnRule& rule = find_rule(rules, column.name, points.where());
+    const std::span<const double> values = column.values;
+    if (values.size() != 1 && values.size() != count) {
+      throw InputError(
+          fmt::format("{}: column \"{}\" has {} values, not 1 or {}", points.where(), rule.name, values.size(), count));
+    }
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      if (rule.range.contains(values[row])) continue;
+      throw InputError(fmt::format("{}: {} = {}: out of range, a number in {}", points.where(row), rule.name,
+                                   format_number(values[row]), rule.range.text()));
+    }
+    std::vector<double>& own = add_column(points, rule);
+    values.size() == count ? own.assign(values.begin(), values.end()) : own.assign(count, values[0]);
+  }
+  check_required(points, rules);
+  return points;
+}
+
+Points parse_points(const std::string& text, const std::string& path_name, PointsKind kind,
+                    const std::vector<std::string>& results) {
   const std::vector<ColumnRule> rules = column_rules(kind);
   Points points;
   points.name = input_name(path_name);
-  CsvReader row(text, points.name, {.has_comments = false});
+  CsvReader row(text, points.name, {.has_blank_lines = false});
   if (!row.next()) row.fail("the file is empty; a line of column names is expected: " + join(names_of(rules)));
-  const std::vector<ColumnRule> columns = parse_header(row, rules, points);
+  points.header_line = row.line_number();
+  const FileColumns columns = parse_header(row, rules, results, points);
   while (row.next()) parse_row(row, columns, points);
   return points;
 }
 
-Points read_points(const std::string& path, PointsKind kind) {
-  return parse_points(read_text(path, input_name(path) + ": ", kMostPointsBytes), path, kind);
+Points read_points(const std::string& path, PointsKind kind, const std::vector<std::string>& results) {
+  return parse_points(read_text(path, input_name(path) + ": ", kMostPointsBytes), path, kind, results);
 }
 
 }  // namespace dolp

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,27 +15,44 @@ enum class PointsKind {
   kGeometries,  ///< mueller: theta_i_deg, theta_r_deg, delta_phi_deg, and any of sigma, q, n, k
 };
 
-/// The points in the file's order; a column that the file does not have is nullopt.
+/// The points in their order; a column that they do not have is nullopt.
 struct Points {
-  std::string name;               ///< of the file, for messages: its path, or stdin
+  std::string name;  ///< of the file, for messages: its path, or stdin; of arrays "points"
+  std::size_t count = 0;
   std::string header;             ///< column names as given, joined by commas, no blanks around them
-  std::vector<std::string> rows;  ///< the input cells as typed, joined by commas, no blanks around them
+  std::vector<std::string> rows;  ///< the input cells as typed, joined by commas, no blanks around them; none of arrays
+  std::vector<std::string> left_out;  ///< columns of the file that are results
   std::optional<std::vector<double>> theta_deg, theta_i_deg, theta_r_deg, delta_phi_deg;
   std::optional<std::vector<double>> sigma, q, n, k, wavelength_um;
-  std::size_t size() const { return rows.size(); }
-  /// The line that a row stands on: the header is line 1, and no line between the rows is empty.
-  std::size_t line(std::size_t row) const { return row + 2; }
+  std::size_t header_line = 0;           ///< 0 of arrays
+  std::vector<std::uint32_t> row_lines;  ///< the line of each row; empty of arrays
+  std::size_t size() const { return count; }
+  /// The beginning of a message about a row, "file:line" or "points[row]", and about the columns.
+  std::string where(std::size_t row) const;
+  std::string where() const;
 };
+
+/// A column of points in memory.
+struct NamedColumn {
+  std::string name;
+  std::span<const double> values;  ///< one of each point, or one of all
+};
+
+/// Points in memory: `count` of them.
+/// Errors: InputError as for a file, and for a column of another length.
+Points points_of(std::span<const NamedColumn> columns, std::size_t count, PointsKind kind);
 
 /// Reads the points at `path` ("-" is stdin). A header without rows is a valid list of no points.
 ///
-/// Accepts CRLF line ends, a UTF-8 byte order mark, blanks around cells and empty lines at the end of the file.
+/// Accepts CRLF line ends, a UTF-8 byte order mark, blanks and double quotes around cells, lines that begin with # and
+/// empty lines at the end of the file. Columns that are called as one of `results` are left out.
 /// Units: degrees; delta_phi_deg = 180 is the specular side, range [-360, 360].
 /// Errors: InputError, one line that names file, line, column, value and allowed range; a file that cannot be opened is
 /// an InputError too.
-Points read_points(const std::string& path, PointsKind kind);
+Points read_points(const std::string& path, PointsKind kind, const std::vector<std::string>& results = {});
 
 /// The same for a text in memory; `path_name` is for messages.
-Points parse_points(const std::string& text, const std::string& path_name, PointsKind kind);
+Points parse_points(const std::string& text, const std::string& path_name, PointsKind kind,
+                    const std::vector<std::string>& results = {});
 
 }  // namespace dolp

@@ -163,10 +163,11 @@ std::vector<SceneKey> geometry_keys() {
              [](Draft& d, const Value& v) { d.scene.accuracy.tolerance = v.number; }),
       choice("accuracy.precision", Accuracy().precision, "arithmetic of the device",
              [](Draft& d, const Value& v) { d.scene.accuracy.precision = static_cast<Precision>(v.word); }),
-      word(
-          "accuracy.interpolation", {"auto", "off"}, "auto",
-          "between slope distributions of a dense grid, within the tolerance; off: every entry is integrated by itself",
-          [](Draft& d, const Value& v) { d.scene.accuracy.may_interpolate = v.word == 0; }),
+      word("accuracy.interpolation", {"auto", "off"}, "auto",
+           "between slope distributions of a dense grid and from some of many indices to all, within the tolerance; "
+           "off: "
+           "every entry is integrated by itself",
+           [](Draft& d, const Value& v) { d.scene.accuracy.may_interpolate = v.word == 0; }),
   };
 }
 

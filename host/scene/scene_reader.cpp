@@ -115,11 +115,20 @@ std::string resolve_path(const std::string& file, const std::string& scene_path)
   return is_as_given ? file : scene_path.substr(0, slash + 1) + file;
 }
 
-/// The path of a file that the scene names; an InputError that begins with `prefix` where no file may be opened.
-const std::string& named_file(SceneDraft& draft, const std::string& file, const std::string& scene_path,
-                              const std::string& prefix, bool may_open) {
-  if (!may_open) throw InputError(prefix + "is not in the table; dolp verify --named-files reads it from that file");
-  return draft.scene.files.emplace_back(resolve_path(file, scene_path));
+/// What `read` makes of a file that the scene names; an InputError that begins with `prefix` where none may be opened.
+template <class Read>
+auto read_file_of(SceneDraft& draft, const std::string& file, const std::string& scene_path, const std::string& prefix,
+                  const KnownData* known, const Read& read) {
+  const std::string& path = draft.scene.files.emplace_back(resolve_path(file, scene_path));
+  if (!known) return read(path);
+  if (!known->may_open_files) {
+    throw InputError(prefix + "is not in the table; dolp verify --named-files reads it from that file");
+  }
+  try {
+    return read(path);
+  } catch (const InputError&) {  // which quotes the file, and a table may name any
+    throw InputError(prefix + "cannot be read, or holds nothing of the kind");
+  }
 }
 
 /// From the shortest wavelength that a table or its scene has to the longest.
@@ -144,7 +153,8 @@ void load_material(SceneDraft& draft, const SceneDocument& document, const std::
     material.name = is_file ? draft.material_file : draft.material;
     if (!material.is_constant()) material = fit_to_spectrum(material, all, prefix);
   } else if (is_file) {
-    material = read_material_file(named_file(draft, draft.material_file, scene_path, prefix, !known), all, prefix);
+    material = read_file_of(draft, draft.material_file, scene_path, prefix, known,
+                            [&](const std::string& path) { return read_material_file(path, all, prefix); });
   } else {
     material = find_material(draft.material, all, prefix);
   }
@@ -164,7 +174,8 @@ void load_source(SceneDraft& draft, const SceneDocument& document, const std::st
   } else if (is_preset) {
     source.table = sun_irradiance();
   } else {
-    source.table = read_irradiance_file(named_file(draft, draft.source_file, scene_path, prefix, !known), prefix);
+    source.table = read_file_of(draft, draft.source_file, scene_path, prefix, known,
+                                [&](const std::string& path) { return read_irradiance_file(path, prefix); });
   }
   check_covers(source.table, all_wavelengths(draft.scene), prefix);
 }

@@ -24,13 +24,14 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
 
 /// n, k and E0 that the names in a scene stood for when a table was made of it.
 struct KnownData {
-  std::optional<Material> material;
-  std::optional<SpectralTable> irradiance;
+  std::optional<Material> material = {};
+  std::optional<SpectralTable> irradiance = {};
+  bool may_open_files = false;  ///< for what is lacking; what they hold is in no message then
 };
 
 /// The same for a text that is already in memory (the scene that a table file carries); `path_name` is for messages and
-/// gives the folder of the files the scene names. With `known` none of these is opened: an InputError where it lacks
-/// what the scene takes from one.
+/// gives the folder of the files the scene names. With `known` none of these is opened, unless it says so: an InputError
+/// where it lacks what the scene takes from one.
 Scene parse_scene(const std::string& text, const std::string& path_name, const std::vector<std::string>& overrides,
                   const KnownData* known = nullptr);
 

@@ -76,4 +76,10 @@ Stencil LookupAxis::stencil(const Place& place, std::size_t count, int shift) co
   return stencil;
 }
 
+double LookupAxis::distances(const Place& place, std::size_t first, std::size_t count) const {
+  double product = 1.0;
+  for (std::size_t i = first; i < first + count; ++i) product *= place.coordinate - coordinates_[i];
+  return product;
+}
+
 }  // namespace dolp

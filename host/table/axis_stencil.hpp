@@ -3,12 +3,13 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace dolp {
 
-/// Most values that an interpolation reads of an axis.
-inline constexpr std::size_t kMostStencil = 6;
+/// Most values that an interpolation reads of an axis, or compares.
+inline constexpr std::size_t kMostStencil = 7;
 
 /// Neighbouring values of an axis, by their place in ascending order; the weights add up to 1.
 struct Stencil {
@@ -50,6 +51,14 @@ class LookupAxis {
   /// otherwise. Domain: count from 2 to kMostStencil.
   Stencil stencil(const Place& place, std::size_t count, int shift = 0) const;
 
+  /// The factors by which `count` values from `first` on give the divided difference over them: 1 / product of
+  /// x_i - x_j over the others. Domain: count from 2 to kMostStencil, first + count <= size().
+  std::span<const double> divided_difference(std::size_t first, std::size_t count) const {
+    return std::span(factors_[count][first]).first(count);
+  }
+  /// The product of the distances of a place from `count` values.
+  double distances(const Place& place, std::size_t first, std::size_t count) const;
+
  private:
   double coordinate(double value) const;
 
@@ -58,7 +67,7 @@ class LookupAxis {
   std::vector<double> values_;          ///< ascending
   std::vector<double> coordinates_;     ///< of values_
   std::vector<std::size_t> positions_;  ///< in the table, of values_
-  /// 1 / product of x_i - x_j over the other values j of a window, for each count, window and i.
+  /// For each count, window and value: divided_difference.
   std::array<std::vector<std::array<double, kMostStencil>>, kMostStencil + 1> factors_;
 };
 

@@ -1,5 +1,7 @@
 #include "table/result_csv.hpp"
 
+#include <sstream>
+
 #include "base/number_text.hpp"
 
 namespace dolp {
@@ -11,16 +13,31 @@ std::string result_header(const ExtraColumns& extra) {
   return header + "status";
 }
 
-std::string result_cells(const PointResult& r, const ExtraColumns& extra) {
-  std::string cells;
-  const auto add = [&](std::initializer_list<double> values) {
-    for (const double value : values) cells += number_text(value) + ',';
+std::vector<std::string> result_columns() {
+  std::vector<std::string> columns;
+  std::istringstream header(result_header({.emissivity = true, .bracket = true}));
+  for (std::string name; std::getline(header, name, ',');) columns.push_back(name);
+  return columns;
+}
+
+void append_result_cells(std::string& text, const PointResult& r, const ExtraColumns& extra) {
+  const auto add = [&text](std::initializer_list<double> values) {
+    for (const double value : values) {
+      append_number(text, value);
+      text += ',';
+    }
   };
   add({r.rho_i, r.rho_q, r.albedo, r.stokes_i, r.stokes_q, r.stokes_u, r.stokes_v, r.dolp, r.error_estimate,
        r.rho_error_estimate});
   if (extra.emissivity) add({r.emissivity_s, r.emissivity_p});
   if (extra.bracket) add({r.dolp_low, r.dolp_high});
-  return cells + std::to_string(r.status);
+  text += std::to_string(r.status);
+}
+
+std::string result_cells(const PointResult& result, const ExtraColumns& extra) {
+  std::string cells;
+  append_result_cells(cells, result, extra);
+  return cells;
 }
 
 }  // namespace dolp

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "model/point_result.hpp"
 
@@ -16,7 +17,12 @@ struct ExtraColumns {
 /// The names of the columns, with commas between them.
 std::string result_header(const ExtraColumns& extra);
 
+/// All columns that a result may have.
+std::vector<std::string> result_columns();
+
 /// The cells of a row in the order of the header.
 std::string result_cells(const PointResult& result, const ExtraColumns& extra);
+/// The same at the end of a text.
+void append_result_cells(std::string& text, const PointResult& result, const ExtraColumns& extra);
 
 }  // namespace dolp

@@ -15,30 +15,38 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kWindow = kMostStencil;  // values of an axis
-constexpr std::size_t kBlockWindow = 4;        // of wavelength, n and k
-constexpr int kMostShift = 3;                  // of a window away from entries that are not known
-constexpr std::size_t kLeastValues = 4;        // of an axis: how the changes of fewer fall says nothing
-constexpr double kRemainder = 10.0;            // error over the change that one value makes, where changes fall fast
-constexpr double kSlowestFall = 0.9;           // of the changes
+constexpr std::size_t kAxes = kGridAxes.size();
+constexpr auto kTheta = static_cast<std::size_t>(Axis::kTheta);
+constexpr auto kQ = static_cast<std::size_t>(Axis::kQ);
+constexpr std::array<std::size_t, kAxes> kWindow = {4, 4, 4, 6, 6, 6};  // values of each axis
+constexpr std::size_t kMostRows = 4 * 4 * 4 * 6 * 6;                    // of values along q
+constexpr int kMostShift = 3;                                           // of a window away from unknown entries
+constexpr std::size_t kLeastValues = 4;  // of an axis: how the changes of fewer fall says nothing
+constexpr std::size_t kLevels = 3;       // changes that are compared
+// Error over the sum of the changes: where the window has a value to add on both sides, and elsewhere.
+constexpr double kInside = 10.0;
+constexpr double kAtEnds = 20.0;
+constexpr double kSlowestFall = 0.9;  // of the changes
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What is interpolated: the quantities of a table that are smooth.
 struct SmoothColumn {
   std::vector<double> Table::*values;
   double PointResult::*member;
+  bool has_error;  ///< a stated error depends on it
 };
-constexpr std::array<SmoothColumn, 11> kColumns = {{{&Table::stokes_i, &PointResult::stokes_i},
-                                                    {&Table::stokes_q, &PointResult::stokes_q},
-                                                    {&Table::stokes_u, &PointResult::stokes_u},
-                                                    {&Table::stokes_v, &PointResult::stokes_v},
-                                                    {&Table::rho_i, &PointResult::rho_i},
-                                                    {&Table::rho_q, &PointResult::rho_q},
-                                                    {&Table::albedo, &PointResult::albedo},
-                                                    {&Table::emissivity_s, &PointResult::emissivity_s},
-                                                    {&Table::emissivity_p, &PointResult::emissivity_p},
-                                                    {&Table::dolp_low, &PointResult::dolp_low},
-                                                    {&Table::dolp_high, &PointResult::dolp_high}}};
+constexpr std::array<SmoothColumn, 11> kColumns = {{{&Table::stokes_i, &PointResult::stokes_i, true},
+                                                    {&Table::stokes_q, &PointResult::stokes_q, true},
+                                                    {&Table::stokes_u, &PointResult::stokes_u, true},
+                                                    {&Table::stokes_v, &PointResult::stokes_v, false},
+                                                    {&Table::rho_i, &PointResult::rho_i, true},
+                                                    {&Table::rho_q, &PointResult::rho_q, true},
+                                                    {&Table::albedo, &PointResult::albedo, false},
+                                                    {&Table::emissivity_s, &PointResult::emissivity_s, false},
+                                                    {&Table::emissivity_p, &PointResult::emissivity_p, false},
+                                                    {&Table::dolp_low, &PointResult::dolp_low, true},
+                                                    {&Table::dolp_high, &PointResult::dolp_high, true}}};
 /// What every table has, besides the status.
 constexpr std::array<double PointResult::*, 6> kNeeded = {&PointResult::dolp,     &PointResult::stokes_i,
                                                           &PointResult::stokes_q, &PointResult::stokes_u,
@@ -51,14 +59,14 @@ const std::vector<double>& checked(const std::vector<double>& values, const char
   return values;
 }
 
-/// The axes of wavelength, n and k; one value of those that the table lacks.
-std::vector<LookupAxis> block_axes(const Table& table, const std::string& name) {
-  constexpr std::array<const char*, 3> kNames = {"wavelength", "n", "k"};
+/// Those of a table, one value of one that it lacks.
+std::vector<LookupAxis> axes_of(const Table& table, const std::string& name) {
+  constexpr std::array<const char*, kAxes> kNames = {"wavelength", "n", "k", "theta", "sigma", "q"};
   std::vector<LookupAxis> axes;
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
+  for (std::size_t i = 0; i < kAxes; ++i) {
     const std::vector<double>& values = table.*kTableAxes[i];
     axes.emplace_back(values.empty() ? std::vector<double>{1.0} : checked(values, kNames[i], name),
-                      LookupAxis::Scale::kLogarithm);
+                      i == kTheta ? LookupAxis::Scale::kLinear : LookupAxis::Scale::kLogarithm, i == kQ ? 1.0 : 0.0);
   }
   return axes;
 }
@@ -87,227 +95,329 @@ void check_variables(const Table& table, const std::string& name) {
 
 /// The entries that are read: a product of stencils.
 struct TableLookup::Window {
-  std::size_t block = 0;
-  Stencil theta;
-  Stencil sigma;
-  Stencil q;
+  std::array<LookupAxis::Place, kAxes> places;
+  std::array<Stencil, kAxes> own;
 
-  std::size_t size() const { return theta.count * sigma.count * q.count; }
-
-  /// Calls visit(position, weight) for each entry.
-  template <class Visit>
-  void each(const TableLookup& lookup, const Visit& visit) const {
-    for (std::size_t i = 0; i < theta.count; ++i) {
-      for (std::size_t j = 0; j < sigma.count; ++j) {
-        for (std::size_t k = 0; k < q.count; ++k) {
-          visit(lookup.position(block, theta.first + i, sigma.first + j, q.first + k),
-                theta.weights[i] * sigma.weights[j] * q.weights[k]);
-        }
-      }
+  Window(const TableLookup& lookup, const Point& point) {
+    for (std::size_t i = 0; i < kAxes; ++i) {
+      const LookupAxis& axis = lookup.axes_[i];
+      places[i] = axis.size() == 1 ? LookupAxis::Place{.is_value = true} : axis.place(point[i]);
+      own[i] = axis.stencil(places[i], kWindow[i]);
     }
+  }
+
+  bool is_entry() const {
+    return std::ranges::all_of(own, [](const Stencil& of_axis) { return of_axis.count == 1; });
+  }
+  /// The place of an axis's value at or below the point.
+  std::size_t below(std::size_t axis) const {
+    return places[axis].is_value ? places[axis].next : places[axis].next - 1;
+  }
+
+  /// The positions of the corners of the point's cell, but for the part of one axis.
+  using Corners = boost::container::static_vector<std::size_t, std::size_t{1} << kAxes>;
+  Corners corners(const TableLookup& lookup, std::size_t without) const {
+    Corners corners = {0};
+    for (std::size_t axis = 0; axis < kAxes; ++axis) {
+      if (axis == without) continue;
+      const std::size_t before = corners.size();
+      if (!places[axis].is_value) {
+        const std::size_t above = lookup.position(axis, below(axis) + 1);
+        for (std::size_t i = 0; i < before; ++i) corners.push_back(corners[i] + above);
+      }
+      const std::size_t lower = lookup.position(axis, below(axis));
+      for (std::size_t i = 0; i < before; ++i) corners[i] += lower;
+    }
+    return corners;
   }
 };
 
-/// How much fewer values of one axis, also aside, change what is interpolated: the stencils to compare with.
-struct TableLookup::Spread {
-  enum class Kind { kNone, kUnknown, kCompared };
-  Kind kind = Kind::kNone;
-  std::array<std::array<Stencil, 3>, 2> fewer;  // by one and by two values; in the middle and aside
-  std::size_t first = 0;                        // of all their values and the window's
-  std::size_t count = 0;
+/// The entries of a window as rows along q, the same in every column.
+struct TableLookup::Rows {
+  struct Row {
+    std::size_t begin = 0;
+    double weight = 1.0;
+  };
+  boost::container::static_vector<Row, kMostRows> rows;
+  std::array<std::size_t, kMostStencil> along{};  ///< position along a row
+  Stencil q;
 
-  Spread(const LookupAxis& axis, const LookupAxis::Place& place, const Stencil& own, int shift) {
-    first = own.first;
-    count = own.count;
-    if (own.count == 1) return;
-    if (own.count < kLeastValues) {
-      kind = Kind::kUnknown;
-      return;
-    }
-    kind = Kind::kCompared;
-    std::size_t last = first + count;
-    for (std::size_t less = 1; less <= fewer.size(); ++less) {
-      for (const int aside : {0, 1, -1}) {
-        Stencil& other = fewer[less - 1][static_cast<std::size_t>(aside + 1)];
-        other = axis.stencil(place, own.count - less, shift + aside);
-        first = std::min(first, other.first);
-        last = std::max(last, other.first + other.count);
+  Rows(const TableLookup& lookup, const Window& window) : q(window.own[kQ]) {
+    rows.push_back({});
+    for (std::size_t axis = 0; axis < kQ; ++axis) {
+      const Stencil& own = window.own[axis];
+      const std::size_t before = rows.size();
+      for (std::size_t i = own.count; i-- > 0;) {  // the first last, because it takes the place of what is read
+        const std::size_t begin = lookup.position(axis, own.first + i);
+        for (std::size_t row = 0; row < before; ++row) {
+          const Row next = {rows[row].begin + begin, rows[row].weight * own.weights[i]};
+          i > 0 ? rows.push_back(next) : void(rows[row] = next);
+        }
       }
     }
-    count = last - first;
+    for (std::size_t k = 0; k < q.count; ++k) along[k] = lookup.position(kQ, q.first + k);
   }
 
-  /// Error of `value` by `sums`, what the other axes leave of the table at the values from `first` on: what is missing
-  /// if leaving out one value changes the result so much, and two so much, and more values went on like that.
-  double remainder(double value, const double* sums) const {
-    if (kind == Kind::kNone) return 0.0;
-    if (kind == Kind::kUnknown) return std::numeric_limits<double>::infinity();
-    std::array<double, 2> changes{};
-    for (std::size_t less = 0; less < fewer.size(); ++less) {
-      for (const Stencil& other : fewer[less]) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < other.count; ++i) sum += other.weights[i] * sums[other.first - first + i];
-        changes[less] = std::max(changes[less], std::abs(value - sum));
+  /// The sum of weight x value(position).
+  template <class Value>
+  double sum(const Value& value) const {
+    return sum_of(value, [](double weight) { return weight; });
+  }
+  /// The same with the sizes of the weights.
+  template <class Value>
+  double sum_of_sizes(const Value& value) const {
+    return sum_of(value, [](double weight) { return std::abs(weight); });
+  }
+
+ private:
+  template <class Value, class Use>
+  double sum_of(const Value& value, const Use& use) const {
+    bool is_dense = true;  // neighbours along q are neighbours in memory
+    for (std::size_t k = 1; k < q.count; ++k) is_dense = is_dense && along[k] == along[0] + k;
+    if (is_dense && q.count == kWindow[kQ]) return sum_dense<kWindow[kQ]>(value, use);
+    if (is_dense && q.count == kWindow[kQ] - 1) return sum_dense<kWindow[kQ] - 1>(value, use);
+    if (is_dense && q.count == 1) return sum_dense<1>(value, use);
+    double sum = 0.0;
+    for (const Row& row : rows) {
+      double of_row = 0.0;
+      for (std::size_t k = 0; k < q.count; ++k) of_row += use(q.weights[k]) * value(row.begin + along[k]);
+      sum += use(row.weight) * of_row;
+    }
+    return sum;
+  }
+  /// Loops of a length that the compiler knows, in two sums side by side.
+  template <std::size_t kCount, class Value, class Use>
+  double sum_dense(const Value& value, const Use& use) const {
+    std::array<double, kCount> weights;
+    for (std::size_t k = 0; k < kCount; ++k) weights[k] = use(q.weights[k]);
+    double even = 0.0;
+    double odd = 0.0;
+    for (const Row& row : rows) {
+      const std::size_t begin = row.begin + along[0];
+      double of_even = 0.0;
+      double of_odd = 0.0;
+#pragma GCC unroll 3
+      for (std::size_t k = 0; k + 1 < kCount; k += 2) {
+        of_even += weights[k] * value(begin + k);
+        of_odd += weights[k + 1] * value(begin + k + 1);
+      }
+      if (kCount % 2 == 1) of_even += weights[kCount - 1] * value(begin + kCount - 1);
+      even += use(row.weight) * of_even;
+      odd += use(row.weight) * of_odd;
+    }
+    return even + odd;
+  }
+};
+
+/// What one value more of an axis changes, on the lines along it through the corners of the point's cell.
+struct TableLookup::Lines {
+  /// An interpolation with one value more, at one of its ends: by how much it changes the result.
+  struct Change {
+    std::size_t first = 0;  ///< of the lines' values
+    std::size_t count = 0;
+    std::size_t level = 0;  ///< 0: beyond the window, or all values; then one value fewer each
+  };
+  static constexpr std::size_t kMostChanges = 2 * kLevels;
+  static constexpr std::size_t kMostValues = kMostStencil + 1;
+  boost::container::static_vector<Change, kMostChanges> changes;
+  std::array<std::array<double, kMostChanges>, kMostValues> factors{};  ///< of each value of a line in each change
+  std::array<std::size_t, kMostValues> along{};                         ///< position along a line
+  std::size_t count = 0;
+  Window::Corners begin;
+  double factor = 1.0;  ///< of the error, with what the weights of the other axes make of it
+  bool has_error = false;
+  bool is_unknown = false;
+
+  Lines(const TableLookup& lookup, const Window& window, std::size_t number) {
+    const LookupAxis& axis = lookup.axes_[number];
+    const Stencil& own = window.own[number];
+    has_error = own.count > 1;
+    const std::size_t most = std::min(axis.size(), own.count + 1);
+    is_unknown = has_error && most < kLeastValues;
+    if (!has_error || is_unknown) return;
+    const std::size_t below = window.below(number);
+    const std::size_t start = std::max(own.first, std::size_t{1}) - 1;
+    for (std::size_t level = 0; level < std::min(kLevels, most - 2); ++level) {
+      const std::size_t values = most - level;
+      const std::size_t before = values - 1;
+      const std::size_t centred = below + 1 > before / 2 ? below + 1 - before / 2 : 0;
+      const std::size_t first = std::clamp(centred, own.first, own.first + own.count - before);
+      const double distances = axis.distances(window.places[number], first, before);
+      for (const std::size_t with : {first - 1, first}) {  // wraps below the axis
+        if (with + values > axis.size() || with > first) continue;
+        const std::span<const double> of_change = axis.divided_difference(with, values);
+        for (std::size_t i = 0; i < values; ++i) factors[with - start + i][changes.size()] = distances * of_change[i];
+        changes.push_back({with - start, values, level});
+        count = std::max(count, with - start + values);
       }
     }
-    if (changes[0] == 0.0) return 0.0;
-    return kRemainder * changes[0] / (1.0 - std::min(changes[0] / changes[1], kSlowestFall));
+    for (std::size_t i = 0; i < count; ++i) along[i] = lookup.position(number, start + i);
+    begin = window.corners(lookup, number);
+    const bool is_at_end = most <= own.count || below == 0 || below + 2 == axis.size();
+    factor = is_at_end ? kAtEnds : kInside;
+    for (std::size_t i = 0; i < kAxes; ++i) {
+      if (i == number) continue;
+      double sizes = 0.0;
+      for (std::size_t k = 0; k < window.own[i].count; ++k) sizes += std::abs(window.own[i].weights[k]);
+      factor *= sizes;
+    }
+  }
+
+  /// The changes on a line with entries that are not known, from those that each needs.
+  void known_changes(const double* values, double* sums) const {
+    for (std::size_t j = 0; j < changes.size(); ++j) {
+      sums[j] = 0.0;
+      for (std::size_t i = changes[j].first; i < changes[j].first + changes[j].count; ++i) {
+        sums[j] += factors[i][j] * values[along[i]];
+      }
+    }
+  }
+
+  /// What the interpolation of a column along the axis leaves out.
+  double error(const std::vector<double>& column) const {
+    if (!has_error) return 0.0;
+    if (is_unknown) return kInfinity;
+    double of_change[kMostChanges];
+    std::fill(std::begin(of_change), std::end(of_change), -1.0);
+    const std::size_t* const places = along.data();
+    for (const std::size_t first : begin) {
+      const double* const values = column.data() + first;
+      double sums[kMostChanges] = {};
+      for (std::size_t i = 0; i < count; ++i) {
+        const double value = values[places[i]];
+        const double* const of_value = factors.data()[i].data();
+#pragma GCC unroll 6
+        for (std::size_t j = 0; j < kMostChanges; ++j) sums[j] += of_value[j] * value;
+      }
+      // With an entry that is not known a sum is NaN, which is not larger.
+      if (!std::isfinite(sums[0])) known_changes(values, sums);
+#pragma GCC unroll 6
+      for (std::size_t j = 0; j < kMostChanges; ++j) {
+        const double size = std::abs(sums[j]);
+        of_change[j] = size > of_change[j] ? size : of_change[j];
+      }
+    }
+    std::array<double, kLevels> largest;
+    largest.fill(-1.0);
+    for (std::size_t j = 0; j < changes.size(); ++j) {
+      largest[changes[j].level] = std::max(largest[changes[j].level], of_change[j]);
+    }
+    if (largest[0] < 0.0) return kInfinity;
+    if (largest[0] == 0.0) return 0.0;
+    // Of two steps together, as one of them may be small by chance.
+    const double fall = largest[2] > 0.0 ? std::sqrt(largest[0] / largest[2]) : largest[0] / largest[1];
+    return factor * largest[0] / (1.0 - std::min(fall, kSlowestFall));
   }
 };
 
 TableLookup::TableLookup(const Table& table, double tolerance, const std::string& name)
-    : table_(table),
-      tolerance_(tolerance),
-      block_axes_(block_axes(table, name)),
-      theta_(checked(table.theta_deg, "theta", name), LookupAxis::Scale::kLinear),
-      sigma_(checked(table.sigma, "sigma", name), LookupAxis::Scale::kLogarithm),
-      q_(checked(table.q, "q", name), LookupAxis::Scale::kLogarithm, 1.0) {
+    : table_(table), tolerance_(tolerance), axes_(axes_of(table, name)) {
   check_variables(table, name);
+  std::size_t stride = 1;
+  for (std::size_t i = kAxes; i-- > 0; stride *= axes_[i].size()) strides_[i] = stride;
   for (const SmoothColumn& column : kColumns) {
     const std::vector<double>& values = table.*column.values;
     if (std::ranges::any_of(values, [](double value) { return value != 0.0; })) {
-      columns_.push_back({&values, column.member});
+      columns_.push_back({&values, column.member, column.has_error});
     }
   }
-  all_known_ = std::ranges::all_of(table.stokes_i, [](double value) { return std::isfinite(value); });
+  std::vector<char> known(axes_[kTheta].size(), 1);
+  for (std::size_t i = 0; i < table.stokes_i.size(); ++i) {
+    if (!std::isfinite(table.stokes_i[i])) known[i / strides_[kTheta] % known.size()] = 0;
+  }
+  for (std::size_t i = 0; i < known.size(); ++i) is_known_.push_back(known[axes_[kTheta].position(i)]);
 }
 
 bool TableLookup::is_known(const Window& window) const {
-  if (all_known_) return true;
-  bool known = true;
-  window.each(*this, [&](std::size_t position, double) { known = known && std::isfinite(table_.stokes_i[position]); });
-  return known;
+  const Stencil& theta = window.own[kTheta];
+  const auto first = is_known_.begin() + static_cast<std::ptrdiff_t>(theta.first);
+  if (std::all_of(first, first + static_cast<std::ptrdiff_t>(theta.count), [](char known) { return known != 0; })) {
+    return true;
+  }
+  return std::isfinite(Rows(*this, window).sum([this](std::size_t position) { return table_.stokes_i[position]; }));
 }
 
-PointResult TableLookup::entry(const Window& window) const {
-  const std::size_t at = position(window.block, window.theta.first, window.sigma.first, window.q.first);
-  PointResult result;
-  for (const TableVariable& variable : table_variables()) {
-    const std::vector<double>& column = table_.*variable.values;
-    result.*variable.member = column.empty() ? kNan : column[at];
-  }
-  result.status = table_.status[at];
-  return result;
-}
-
-/// Where the entries are that a point asks for, the same in every column.
-struct TableLookup::Gather {
-  static constexpr std::size_t kMostWide = 2 * kMostStencil;
-  /// A row along q: where it begins, and the places of its theta and sigma among those of the spreads.
-  struct Row {
-    std::size_t begin = 0;
-    std::uint8_t theta = 0;
-    std::uint8_t sigma = 0;
-    double of_theta = 0.0;  ///< weight in the window, 0 outside
-    double of_sigma = 0.0;
-  };
-  boost::container::static_vector<Row, kMostWide * kMostWide> rows;
-  std::array<std::size_t, kMostWide> q{};  ///< position along a row
-  std::size_t own_q = 0;                   ///< where the window's begin among them
-
-  Gather(const TableLookup& lookup, const Window& window, const std::array<Spread, 3>& spreads) {
-    const auto& [theta, sigma, along_q] = spreads;
-    const auto weight = [](const Stencil& own, std::size_t place) {
-      const std::size_t i = place - own.first;  // wraps below the stencil
-      return i < own.count ? own.weights[i] : 0.0;
-    };
-    for (std::size_t i = 0; i < theta.count; ++i) {
-      for (std::size_t j = 0; j < sigma.count; ++j) {
-        Row row{.theta = static_cast<std::uint8_t>(i), .sigma = static_cast<std::uint8_t>(j)};
-        row.of_theta = weight(window.theta, theta.first + i);
-        row.of_sigma = weight(window.sigma, sigma.first + j);
-        if (row.of_theta == 0.0 && row.of_sigma == 0.0) continue;
-        row.begin = window.block + (lookup.theta_.position(theta.first + i) * lookup.sigma_.size() +
-                                    lookup.sigma_.position(sigma.first + j)) *
-                                       lookup.q_.size();
-        rows.push_back(row);
-      }
-    }
-    for (std::size_t k = 0; k < along_q.count; ++k) q[k] = lookup.q_.position(along_q.first + k);
-    own_q = window.q.first - along_q.first;
-  }
-};
-
-void TableLookup::read(const Column& column, const Window& window, const std::array<Spread, 3>& spreads,
-                       const Gather& gather, PointResult& result, PointResult& change) const {
-  // What the stencils of the other axes leave of the table, along each axis.
-  std::array<std::array<double, Gather::kMostWide>, 3> sums{};
-  const std::size_t* const own_q = gather.q.data() + gather.own_q;
-  for (const Gather::Row& row : gather.rows) {
-    const double* const values = column.values->data() + row.begin;
-    double sum = 0.0;
-    for (std::size_t k = 0; k < window.q.count; ++k) sum += window.q.weights[k] * values[own_q[k]];
-    // Outside the window an entry may be unknown.
-    if (row.of_sigma != 0.0) sums[0][row.theta] += row.of_sigma * sum;
-    if (row.of_theta != 0.0) sums[1][row.sigma] += row.of_theta * sum;
-    const double weight = row.of_theta * row.of_sigma;
-    if (weight == 0.0) continue;
-    for (std::size_t k = 0; k < spreads[2].count; ++k) sums[2][k] += weight * values[gather.q[k]];
-  }
-  double value = 0.0;
-  for (std::size_t i = 0; i < window.theta.count; ++i) {
-    value += window.theta.weights[i] * sums[0][window.theta.first - spreads[0].first + i];
-  }
-  result.*column.member = value;
-  for (std::size_t axis = 0; axis < spreads.size(); ++axis) {
-    change.*column.member += spreads[axis].remainder(value, sums[axis].data());
-  }
-}
-
-PointResult TableLookup::in_block(std::size_t block, double theta_deg, double sigma, double q) const {
-  const LookupAxis::Place theta_place = theta_.place(theta_deg);
-  const LookupAxis::Place sigma_place = sigma_.place(sigma);
-  const LookupAxis::Place q_place = q_.place(q);
-  Window window{block, theta_.stencil(theta_place, kWindow), sigma_.stencil(sigma_place, kWindow),
-                q_.stencil(q_place, kWindow)};
-  if (window.size() == 1) return entry(window);
+bool TableLookup::make_known(Window& window, double theta_deg) const {
   int shift = 0;
-  std::size_t count = kWindow;
+  std::size_t count = kWindow[kTheta];
   const int away = theta_deg > 45.0 ? -1 : 1;
   while (!is_known(window)) {
     // Away from the horizon, where they are, then closer together.
     if (++shift > kMostShift) {
       shift = 0;
-      if (--count < 2) break;
+      if (--count < 2) return false;
     }
-    window.theta = theta_.stencil(theta_place, count, away * shift);
+    window.own[kTheta] = axes_[kTheta].stencil(window.places[kTheta], count, away * shift);
   }
-  if (count < 2) return unknown();
+  return true;
+}
+
+PointResult TableLookup::entry(std::size_t position) const {
   PointResult result;
-  const std::array<Spread, 3> spreads = {{{theta_, theta_place, window.theta, away * shift},
-                                          {sigma_, sigma_place, window.sigma, 0},
-                                          {q_, q_place, window.q, 0}}};
+  for (const TableVariable& variable : table_variables()) {
+    const std::vector<double>& column = table_.*variable.values;
+    result.*variable.member = column.empty() ? kNan : column[position];
+  }
+  result.status = table_.status[position];
+  return result;
+}
+
+std::uint32_t TableLookup::cell_status(const Window& window) const {
+  std::uint32_t status = 0;
+  for (const std::size_t position : window.corners(*this, kAxes)) status |= table_.status[position];
+  return status;
+}
+
+PointResult TableLookup::at(const Point& point) const {
+  Window window(*this, point);
+  if (window.is_entry()) return entry(Rows(*this, window).rows.front().begin + position(kQ, window.own[kQ].first));
+  if (!make_known(window, point[kTheta])) return unknown();
+  const Rows rows(*this, window);
+  PointResult result;
   PointResult change;
   for (const SmoothColumn& column : kColumns) {
     result.*column.member = (table_.*column.values).empty() ? kNan : 0.0;
+    change.*column.member = 0.0;
   }
-  const Gather gather(*this, window, spreads);
-  for (const Column& column : columns_) read(column, window, spreads, gather, result, change);
-  double error = 0.0;      // of DOLP, sum over the entries read
-  double rho_error = 0.0;  // of rho, absolute
-  window.each(*this, [&](std::size_t position, double weight) {
-    error += std::abs(weight) * table_.error_estimate[position];
-    if (table_.rho_error_estimate.empty()) return;
-    rho_error += std::abs(weight * table_.rho_i[position]) * table_.rho_error_estimate[position];
-  });
-  const Window cell{block, theta_.stencil(theta_place, 2), sigma_.stencil(sigma_place, 2), q_.stencil(q_place, 2)};
-  cell.each(*this, [&](std::size_t position, double) {
-    result.status |= table_.status[position] & kStatusUnphysicalReflectance;
-  });
+  for (const Column& column : columns_) {
+    result.*column.member =
+        rows.sum([values = column.values->data()](std::size_t position) { return values[position]; });
+  }
+  for (std::size_t axis = 0; axis < kAxes; ++axis) {
+    if (window.own[axis].count == 1) continue;
+    const Lines lines(*this, window, axis);
+    for (const Column& column : columns_) {
+      if (column.has_error) change.*column.member += lines.error(*column.values);
+    }
+  }
+  const double error =
+      rows.sum_of_sizes([bounds = table_.error_estimate.data()](std::size_t position) { return bounds[position]; });
+  double rho_error = 0.0;  // absolute
+  if (!table_.rho_error_estimate.empty()) {
+    rho_error = rows.sum_of_sizes(
+        [&](std::size_t position) { return std::abs(table_.rho_i[position]) * table_.rho_error_estimate[position]; });
+  }
+  result.status = cell_status(window) & kStatusUnphysicalReflectance;
   finish(result, change, error, rho_error);
   return result;
 }
 
 void TableLookup::finish(PointResult& result, const PointResult& change, double error, double rho_error) const {
-  const double i = result.stokes_i;
-  result.dolp = std::hypot(result.stokes_q, result.stokes_u) / i;
-  const double dolp_change = std::hypot(change.stokes_q, change.stokes_u) / std::abs(i);
-  // Where nothing is known of I either, an unpolarised result must not make it 0 * infinity.
-  const double i_change = result.dolp == 0.0 ? 0.0 : std::abs(result.dolp) * change.stokes_i / std::abs(i);
-  result.error_estimate = error + dolp_change + i_change;
-  result.rho_error_estimate = table_.rho_error_estimate.empty()
-                                  ? kNan
-                                  : (rho_error + std::max(change.rho_i, change.rho_q)) / std::abs(result.rho_i);
+  // Of a quotient: the error of what is above, and of what is below times the quotient, over the least that is below.
+  const auto over = [](double below, double below_error, double quotient, double above_error) {
+    const double least = std::abs(below) - below_error;
+    // Where nothing is known of what is below, 0 over it is 0 nevertheless.
+    const double of_below = quotient == 0.0 ? 0.0 : std::abs(quotient) * below_error;
+    return above_error + of_below == 0.0 ? 0.0 : least > 0.0 ? (above_error + of_below) / least : kInfinity;
+  };
+  result.dolp = std::hypot(result.stokes_q, result.stokes_u) / result.stokes_i;
+  double dolp_error = over(result.stokes_i, change.stokes_i, result.dolp, std::hypot(change.stokes_q, change.stokes_u));
+  if (!table_.dolp_low.empty()) dolp_error = std::max({dolp_error, change.dolp_low, change.dolp_high});
+  result.error_estimate = error + dolp_error;
+  result.rho_error_estimate =
+      table_.rho_error_estimate.empty()
+          ? kNan
+          : over(result.rho_i, rho_error + change.rho_i, 0.0, rho_error + std::max(change.rho_i, change.rho_q));
   add_status(result);
 }
 
@@ -319,101 +429,9 @@ void TableLookup::add_status(PointResult& result) const {
   }
 }
 
-/// The blocks around a point, each with its result there.
-struct TableLookup::Blocks {
-  static constexpr std::size_t kAxes = 3;
-  std::array<LookupAxis::Place, kAxes> places;
-  std::array<Stencil, kAxes> own;
-  std::vector<Spread> spreads;
-  struct Block {
-    std::array<std::size_t, kAxes> place{};  ///< among those of the spreads
-    std::array<double, kAxes> weight{};      ///< in the window, 0 outside
-    PointResult result;
-    double in_window() const { return weight[0] * weight[1] * weight[2]; }
-  };
-  std::vector<Block> blocks;
-
-  Blocks(const TableLookup& lookup, const Point& point) {
-    for (std::size_t i = 0; i < kAxes; ++i) {
-      const LookupAxis& axis = lookup.block_axes_[i];
-      places[i] = axis.place(axis.size() == 1 ? axis.min() : point[i]);
-      own[i] = axis.stencil(places[i], kBlockWindow);
-      spreads.emplace_back(axis, places[i], own[i], 0);
-    }
-    PerAxis place{};
-    add(lookup, point, 0, place);
-  }
-
-  void add(const TableLookup& lookup, const Point& point, std::size_t axis, PerAxis& place) {
-    if (axis < kAxes) {
-      for (place[axis] = 0; place[axis] < spreads[axis].count; ++place[axis]) add(lookup, point, axis + 1, place);
-      return;
-    }
-    Block block;
-    std::size_t number = 0;
-    std::size_t outside = 0;
-    for (std::size_t i = 0; i < kAxes; ++i) {
-      const LookupAxis& of_blocks = lookup.block_axes_[i];
-      block.place[i] = place[i];
-      const std::size_t in_own = spreads[i].first + place[i] - own[i].first;  // wraps below the stencil
-      block.weight[i] = in_own < own[i].count ? own[i].weights[in_own] : 0.0;
-      outside += in_own < own[i].count ? 0 : 1;
-      number = number * of_blocks.size() + of_blocks.position(spreads[i].first + place[i]);
-    }
-    if (outside > 1) return;
-    const std::size_t size = lookup.theta_.size() * lookup.sigma_.size() * lookup.q_.size();
-    block.result = lookup.in_block(number * size, point[3], point[4], point[5]);
-    blocks.push_back(block);
-  }
-
-  /// The interpolated member, and what is added to its change.
-  double value(double PointResult::*member, double& change) const {
-    double value = 0.0;
-    for (const Block& block : blocks) {
-      if (block.in_window() != 0.0) value += block.in_window() * block.result.*member;
-    }
-    for (std::size_t axis = 0; axis < kAxes; ++axis) {
-      std::vector<double> sums(spreads[axis].count, 0.0);
-      for (const Block& block : blocks) {
-        const double weight = block.weight[(axis + 1) % kAxes] * block.weight[(axis + 2) % kAxes];
-        if (weight != 0.0) sums[block.place[axis]] += weight * block.result.*member;
-      }
-      change += spreads[axis].remainder(value, sums.data());
-    }
-    return value;
-  }
-};
-
-PointResult TableLookup::at(const Point& point) const {
-  const auto is_one = [](const LookupAxis& axis) { return axis.size() == 1; };
-  if (std::ranges::all_of(block_axes_, is_one)) return in_block(0, point[3], point[4], point[5]);
-  const Blocks blocks(*this, point);
-  if (blocks.blocks.size() == 1) return blocks.blocks.front().result;
-  PointResult result;
-  PointResult change;
-  for (const SmoothColumn& column : kColumns) {
-    const bool is_there = !(table_.*column.values).empty();
-    result.*column.member = is_there ? blocks.value(column.member, change.*column.member) : kNan;
-  }
-  double error = 0.0;
-  double rho_error = 0.0;
-  for (const Blocks::Block& block : blocks.blocks) {
-    const double weight = std::abs(block.in_window());
-    if (weight == 0.0) continue;
-    if ((block.result.status & kStatusOutsideDomain) != 0) return unknown();
-    error += weight * block.result.error_estimate;
-    if (!table_.rho_error_estimate.empty())
-      rho_error += weight * std::abs(block.result.rho_i) * block.result.rho_error_estimate;
-    result.status |= block.result.status & kStatusUnphysicalReflectance;
-  }
-  finish(result, change, error, rho_error);
-  return result;
-}
-
 const LookupAxis* TableLookup::axis(Axis axis) const {
   const auto number = static_cast<std::size_t>(axis);
-  if (number < block_axes_.size()) return (table_.*kTableAxes[number]).empty() ? nullptr : &block_axes_[number];
-  return axis == Axis::kTheta ? &theta_ : axis == Axis::kSigma ? &sigma_ : &q_;
+  return (table_.*kTableAxes[number]).empty() ? nullptr : &axes_[number];
 }
 
 }  // namespace dolp

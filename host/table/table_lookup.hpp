@@ -18,10 +18,12 @@ namespace dolp {
 /// ln(q - 1), and of degree three through four values in the logarithm of wavelength, n and k, the axes that a table
 /// may lack; fewer where an axis has fewer. DOLP follows from the interpolated Stokes parameters, which stay smooth
 /// where it has a kink.
-/// Errors stated: the bounds of the entries read, each with the size of its weight, and along each axis ten times the
-/// change that leaving out a value makes, summed as if more values went on changing the result as the last ones do.
-/// That part is an estimate: what is narrower than the grid stays unseen. Between the values of an axis that has fewer
-/// than four it is infinite.
+/// Errors stated: the bounds of the entries read, each with the size of its weight, and what the interpolation leaves
+/// out along each axis: the change that one value more makes on the lines through the corners of the point's cell, or
+/// the last one where all values are read; kInside or kAtEnds times its sum with all that would follow, if changes went
+/// on to fall as the last ones do. That part is an estimate: what is narrower than the grid stays unseen. Between the
+/// values of an axis that has fewer than four it is infinite.
+/// Accuracy: tests LookupEstimates.
 class TableLookup {
  public:
   /// `table` must outlive the object; `tolerance` is its own, for status 2. Errors: InputError, which begins with
@@ -46,34 +48,31 @@ class TableLookup {
 
  private:
   struct Window;
-  struct Spread;
-  struct Gather;
-  struct Blocks;
+  struct Rows;
+  struct Lines;
   struct Column {
     const std::vector<double>* values = nullptr;
     double PointResult::*member = nullptr;
+    bool has_error = false;  ///< the stated errors depend on it
   };
 
-  std::size_t position(std::size_t block, std::size_t theta, std::size_t sigma, std::size_t q) const {
-    return block + (theta_.position(theta) * sigma_.size() + sigma_.position(sigma)) * q_.size() + q_.position(q);
+  std::size_t position(std::size_t axis, std::size_t place) const {
+    return axes_[axis].position(place) * strides_[axis];
   }
-  /// The same in a block of the table: one wavelength, n and k, whose entries begin at a position.
-  PointResult in_block(std::size_t block, double theta_deg, double sigma, double q) const;
   bool is_known(const Window& window) const;
-  PointResult entry(const Window& window) const;
-  void read(const Column& column, const Window& window, const std::array<Spread, 3>& spreads, const Gather& gather,
-            PointResult& result, PointResult& change) const;
+  /// Moves a window away from entries that are not known; false where that is not possible.
+  bool make_known(Window& window, double theta_deg) const;
+  PointResult entry(std::size_t position) const;
+  std::uint32_t cell_status(const Window& window) const;
   void finish(PointResult& result, const PointResult& change, double error, double rho_error) const;
   void add_status(PointResult& result) const;
 
   const Table& table_;
   double tolerance_;
-  std::vector<LookupAxis> block_axes_;  ///< of wavelength, n and k, one value of those that the table lacks
-  LookupAxis theta_;
-  LookupAxis sigma_;
-  LookupAxis q_;
-  std::vector<Column> columns_;  ///< what is interpolated: what is smooth, and not 0 everywhere
-  bool all_known_ = true;        ///< every entry is finite
+  std::vector<LookupAxis> axes_;  ///< in the table's order; one value of those that it lacks
+  PerAxis strides_ = {};          ///< between the entries of an axis
+  std::vector<Column> columns_;   ///< what is interpolated: what is smooth, and not 0 everywhere
+  std::vector<char> is_known_;    ///< of each theta in ascending order: every entry is finite
 };
 
 }  // namespace dolp

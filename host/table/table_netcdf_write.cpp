@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "model/status.hpp"
 #include "table/hdf5_handle.hpp"
 #include "table/hdf5_memory.hpp"
 #include "table/table_netcdf.hpp"
@@ -21,11 +22,6 @@ namespace {
 constexpr const char* kConventions = "CF-1.8";
 // The netCDF library stores attributes of less than 64 KiB.
 constexpr std::size_t kMostAttributeBytes = 64'000;
-
-// CF-1.8 has no unsigned int, and wants masks of the variable's own type.
-constexpr std::array<int, 4> kFlagMasks = {1, 2, 4, 8};
-constexpr const char* kFlagMeanings =
-    "reflectance_outside_zero_to_one tolerance_not_met outside_model_domain intensity_not_positive";
 
 /// Makes the objects of one file in memory; a call that fails throws std::bad_alloc.
 class Writer {
@@ -59,10 +55,16 @@ class Writer {
     const hsize_t one = 1;
     put(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, take(H5Screate_simple(1, &one, nullptr), H5Sclose), &value);
   }
-  void put_masks(const Hdf5Handle& object) const {
-    const hsize_t count = kFlagMasks.size();
+  // CF-1.8 has no unsigned int, and wants masks of the variable's own type.
+  void put_status_bits(const Hdf5Handle& object) const {
+    std::array<int, kStatusBits.size()> masks{};
+    std::array<const char*, kStatusBits.size()> meanings{};
+    std::ranges::transform(kStatusBits, masks.begin(), [](const StatusBit& bit) { return static_cast<int>(bit.mask); });
+    std::ranges::transform(kStatusBits, meanings.begin(), &StatusBit::meaning);
+    const hsize_t count = masks.size();
     put(object, "flag_masks", H5T_STD_I32LE, H5T_NATIVE_INT, take(H5Screate_simple(1, &count, nullptr), H5Sclose),
-        kFlagMasks.data());
+        masks.data());
+    put_text(object, "flag_meanings", fmt::format("{}", fmt::join(meanings, " ")));
   }
 
   /// A variable without values, which has its place in the file. Uncompressed: zlib saves half of the file and takes
@@ -184,8 +186,7 @@ std::uint64_t put_status(const Writer& writer, const TableHead& head, const Axis
   const Hdf5Handle status = define_over_axes(writer, head, axes, "status", H5T_STD_I32LE, nullptr);
   writer.put_text(status, "long_name", "status bits of the entry; 0 where nothing is wrong");
   writer.put_text(status, "units", "1");
-  writer.put_masks(status);
-  writer.put_text(status, "flag_meanings", kFlagMeanings);
+  writer.put_status_bits(status);
   return offset_of(status);
 }
 

@@ -2,9 +2,10 @@
 #include "base/progress.hpp"
 #include "terminal/exit_status.hpp"
 
-#include <fmt/format.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -14,11 +15,30 @@
 #include "base/printable_text.hpp"
 
 namespace dolp {
+namespace {
+
+/// A thread without a stack is one of these.
+bool is_of_memory(const std::system_error& error) {
+  return error.code() == std::errc::not_enough_memory || error.code() == std::errc::resource_unavailable_try_again;
+}
+
+}  // namespace
 
 // fmt::print would throw where stderr cannot be written to.
 int fail(const std::string& program, int status, const std::string& message) {
   std::fputs((program + ": " + printable_line(message) + "\n").c_str(), stderr);
   return status;
+}
+
+int fail_out_of_memory(const char* program) noexcept {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  std::array<char, 128> line{};
+  const int length = std::snprintf(line.data(), line.size(), "%.40s: out of memory: more than %ld MiB wanted\n",
+                                   program, used.ru_maxrss / 1024);
+  // There is nothing left to say where even this cannot be written.
+  if (length > 0) static_cast<void>(!::write(STDERR_FILENO, line.data(), static_cast<std::size_t>(length)));
+  return kExitMemory;
 }
 
 int guarded(const std::string& program, const std::function<int()>& body) {
@@ -30,13 +50,14 @@ int guarded(const std::string& program, const std::function<int()>& body) {
     return fail(program, kExitInput, error.what());
   } catch (const DeviceError& error) {
     return fail(program, kExitDevice, error.what());
+  } catch (const MemoryError& error) {
+    return fail(program, kExitMemory, error.what());
   } catch (const IoError& error) {
     return fail(program, kExitIo, error.what());
   } catch (const std::bad_alloc&) {
-    rusage used{};
-    getrusage(RUSAGE_SELF, &used);
-    return fail(program, kExitMemory, fmt::format("out of memory: more than {} MiB wanted", used.ru_maxrss / 1024));
+    return fail_out_of_memory(program.c_str());
   } catch (const std::system_error& error) {
+    if (is_of_memory(error)) return fail_out_of_memory(program.c_str());
     return fail(program, kExitIo, error.what());
   } catch (const std::exception& error) {
     return fail(program, kExitInternal, std::string("internal error: ") + error.what());

@@ -9,6 +9,9 @@ namespace dolp {
 /// One line on stderr that begins with the program's name; returns `status`.
 int fail(const std::string& program, int status, const std::string& message);
 
+/// The line of a program that is out of memory, which needs none; returns kExitMemory.
+int fail_out_of_memory(const char* program) noexcept;
+
 /// What `body` returns, or the exit status of the error that it threw, after a message of one line.
 int guarded(const std::string& program, const std::function<int()>& body);
 

@@ -17,6 +17,7 @@ class CpuEvaluator final : public MomentsEvaluator, public ScatteringEvaluator {
   Precision precision() const override { return precision_; }
   ScatteringEvaluator* scattering() override { return this; }
   EvaluationReport report() const override { return report_; }
+  void clear_report() override { report_ = {}; }
 
  private:
   bool in_double(Precision requested) const;

@@ -8,10 +8,14 @@
 
 #include "base/parallel_ranges.hpp"
 #include "base/stopwatch.hpp"
+#include "model/angles.hpp"
+#include "plan/index_plan.hpp"
 #include "plan/shape_plan.hpp"
 
 namespace dolp {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 bool is_finite(const Moments& m) {
   return std::isfinite(m.r_i + m.r_q + m.albedo + m.deficit) &&
@@ -37,7 +41,33 @@ std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments
 
 }  // namespace
 
+std::vector<Moments> InterpolatingEvaluator::evaluate_basis(const MomentsRequest& request, const Progress& progress) {
+  const IndexPlan plan = index_plan(request);
+  const Progress of_nodes = [&](std::size_t done, std::size_t all) {
+    return !progress || progress(request.size() * done / all, request.size());
+  };
+  const std::uint64_t interpolated = interpolated_;
+  const std::uint64_t nodes = nodes_;
+  const std::vector<Moments> computed = evaluate(plan.nodes, of_nodes);
+  if (nodes_ == nodes) nodes_ += plan.nodes.wanted_count();
+  interpolated_ = interpolated + request.wanted_count();
+  const Clock::time_point start = Clock::now();
+  std::vector<Moments> moments(request.size());
+  const std::size_t shapes = request.sigma.size() * request.q.size();
+  const std::size_t of_theta = computed.size() / request.theta_deg.size();
+  parallel_ranges(moments.size() / shapes, 16, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const std::size_t theta = i / request.indices.size();
+      combine(plan, plan.sources[i % request.indices.size()], cos_sin_deg(request.theta_deg[theta]).cos,
+              std::span(computed).subspan(theta * of_theta, of_theta), std::span(moments).subspan(i * shapes, shapes));
+    }
+  });
+  interpolation_s_ += seconds_since(start);
+  return moments;
+}
+
 std::vector<Moments> InterpolatingEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
+  if (request.basis) return evaluate_basis(request, progress);
   const std::vector<MomentsRequest> parts = with_one_parameter(request);
   if (parts.size() == 1) return evaluate_part(request, progress);
   std::vector<std::vector<Moments>> of_parts;
@@ -63,7 +93,6 @@ std::vector<Moments> InterpolatingEvaluator::evaluate(const MomentsRequest& requ
 }
 
 std::vector<Moments> InterpolatingEvaluator::evaluate_part(const MomentsRequest& request, const Progress& progress) {
-  using Clock = std::chrono::steady_clock;
   const std::optional<ShapePlan> plan = shape_plan(request);
   if (!plan) return evaluator_->evaluate(request, progress);
   const Progress of_nodes = [&](std::size_t done, std::size_t all) {
@@ -98,6 +127,12 @@ std::vector<Moments> InterpolatingEvaluator::evaluate_part(const MomentsRequest&
     if (direct.wanted[i] != 0) moments[places[i / of_theta] + i % of_theta] = computed[i];
   }
   return moments;
+}
+
+void InterpolatingEvaluator::clear_report() {
+  evaluator_->clear_report();
+  interpolated_ = nodes_ = 0;
+  interpolation_s_ = 0.0;
 }
 
 EvaluationReport InterpolatingEvaluator::report() const {

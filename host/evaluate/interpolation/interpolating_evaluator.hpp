@@ -1,4 +1,4 @@
-// An evaluator that computes dense requests at fewer slope distributions and interpolates between them.
+// An evaluator that computes dense requests at fewer indices and slope distributions than they have.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,8 @@
 
 namespace dolp {
 
-/// Another evaluator, asked for the nodes of dense grids (shape_plan.hpp) and for all that is not dense.
+/// Another evaluator, asked for a basis of the indices (index_plan.hpp) and for the nodes of dense grids
+/// (shape_plan.hpp), and for all that is not dense.
 class InterpolatingEvaluator final : public MomentsEvaluator {
  public:
   explicit InterpolatingEvaluator(std::unique_ptr<MomentsEvaluator> evaluator) : evaluator_(std::move(evaluator)) {}
@@ -19,8 +20,10 @@ class InterpolatingEvaluator final : public MomentsEvaluator {
   bool has_double() const override { return evaluator_->has_double(); }
   ScatteringEvaluator* scattering() override { return evaluator_->scattering(); }
   EvaluationReport report() const override;
+  void clear_report() override;
 
  private:
+  std::vector<Moments> evaluate_basis(const MomentsRequest& request, const Progress& progress);
   /// Directions of one shape parameter.
   std::vector<Moments> evaluate_part(const MomentsRequest& request, const Progress& progress);
 

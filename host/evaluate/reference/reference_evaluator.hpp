@@ -41,6 +41,7 @@ class ReferenceEvaluator final : public MomentsEvaluator, public ScatteringEvalu
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override;
   ScatteringEvaluator* scattering() override { return this; }
   EvaluationReport report() const override { return report_; }
+  void clear_report() override { report_ = {}; }
 
  private:
   void note(double seconds);

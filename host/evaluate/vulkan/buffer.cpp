@@ -39,7 +39,8 @@ Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use)
                                         .allocationSize = requirements.size,
                                         .memoryTypeIndex = type.index};
   VkDeviceMemory memory = VK_NULL_HANDLE;
-  check(vkAllocateMemory(device_, &allocation, nullptr, &memory), "allocating memory");
+  check(vkAllocateMemory(device_, &allocation, nullptr, &memory),
+        "allocating " + std::to_string(requirements.size) + " bytes");
   memory_ = UniqueMemory(device_, memory);
   check(vkBindBufferMemory(device_, buffer, memory, 0), "binding memory");
   if (use == MemoryUse::kDeviceOnly) return;

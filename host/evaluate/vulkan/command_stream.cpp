@@ -3,6 +3,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "base/stopwatch.hpp"
 #include "evaluate/vulkan/buffer.hpp"
@@ -66,6 +67,7 @@ void CommandStream::create_timestamps() {
 void CommandStream::begin() {
   // An error may have left a recording behind.
   check(vkResetCommandBuffer(commands_, 0), "resetting commands");
+  has_copies_ = false;
   const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
   check(vkBeginCommandBuffer(commands_, &info), "recording commands");
@@ -77,9 +79,11 @@ void CommandStream::begin() {
 void CommandStream::copy(const Buffer& from, VkBuffer to, VkDeviceSize bytes) {
   const VkBufferCopy region{.srcOffset = 0, .dstOffset = 0, .size = bytes};
   vkCmdCopyBuffer(commands_, from.get(), to, 1, &region);
+  has_copies_ = true;
 }
 
 void CommandStream::barrier(Barrier barrier) {
+  if (barrier == Barrier::kUploadToKernel && !std::exchange(has_copies_, false)) return;
   const BarrierScopes scopes = scopes_of(barrier);
   const VkMemoryBarrier memory{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
                                .srcAccessMask = scopes.from_access,
@@ -90,12 +94,14 @@ void CommandStream::barrier(Barrier barrier) {
 void CommandStream::dispatch(const Kernels& kernels, VkPipeline pipeline, std::uint32_t first, std::uint32_t count,
                              int largest_order) {
   if (count == 0) return;
-  const std::array<std::uint32_t, kPushConstantCount> constants{first, count, static_cast<std::uint32_t>(largest_order)};
+  const std::array<std::uint32_t, kPushConstantCount> constants{first, count,
+                                                                static_cast<std::uint32_t>(largest_order)};
   const VkDescriptorSet set = kernels.descriptor_set();
+  const std::uint32_t local_size = kernels.local_size();
   vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
   vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernels.layout(), 0, 1, &set, 0, nullptr);
   vkCmdPushConstants(commands_, kernels.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof constants, constants.data());
-  vkCmdDispatch(commands_, (count + kLocalSize - 1) / kLocalSize, 1, 1);
+  vkCmdDispatch(commands_, (count + local_size - 1) / local_size, 1, 1);
 }
 
 double CommandStream::submit_and_wait(double timeout_s) {
@@ -113,9 +119,11 @@ double CommandStream::submit_and_wait(double timeout_s) {
   if (result == VK_TIMEOUT) {
     throw DeviceTimeout("the Vulkan device did not finish a tile within " + std::to_string(timeout_s) + " s");
   }
-  check(result, "waiting for the device");
   const double host_s = seconds_since(start);
-  check(vkResetFences(device_.get(), 1, &fence), "resetting a fence");
+  if (result != VK_SUCCESS) vkDeviceWaitIdle(device_.get());  // what failed is the wait: the work may be under way
+  const VkResult reset = vkResetFences(device_.get(), 1, &fence);
+  check(result, "waiting for the device");
+  check(reset, "resetting a fence");
   return timestamps_.get() == VK_NULL_HANDLE ? host_s : elapsed_s();
 }
 

@@ -13,7 +13,7 @@ class Kernels;
 
 /// Which accesses a barrier separates.
 enum class Barrier {
-  kUploadToKernel,  ///< staging copies, then kernels read
+  kUploadToKernel,  ///< staging copies, then kernels read; without copies there is nothing to wait for
   kKernelToKernel,  ///< a kernel writes, the next ones read
   kKernelToHost,    ///< kernels write, the host reads after the wait
 };
@@ -44,6 +44,7 @@ class CommandStream {
   UniqueFence fence_;
   UniqueQueryPool timestamps_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  bool has_copies_ = false;  ///< since the last barrier
 };
 
 }  // namespace dolp::vulkan

@@ -86,6 +86,12 @@ void add_properties_1_2(VkPhysicalDevice physical, DeviceDescription& descriptio
   description.subgroup_size = subgroup.subgroupSize;
 }
 
+// On a processor those that share a vector, because a dispatch of few would do the rest for nothing.
+std::uint32_t local_size_of(const DeviceDescription& device) {
+  if (device.type != DeviceDescription::Type::kCpu || device.subgroup_size == 0) return kLocalSize;
+  return std::min(device.subgroup_size, kLocalSize);
+}
+
 }  // namespace
 
 DeviceDescription describe(VkPhysicalDevice physical) {
@@ -110,6 +116,7 @@ DeviceDescription describe(VkPhysicalDevice physical) {
   description.heap_bytes = largest_device_heap(memory);
   description.timestamps = family && family->timestamp_bits > 0;
   if (properties.apiVersion >= VK_API_VERSION_1_2) add_properties_1_2(physical, description);
+  description.local_size = local_size_of(description);
   return description;
 }
 
@@ -135,6 +142,7 @@ Device::Device(VkPhysicalDevice physical, bool float64, std::optional<std::uint3
   VkPhysicalDeviceProperties properties{};
   vkGetPhysicalDeviceProperties(physical, &properties);
   limits_ = properties.limits;
+  local_size_ = describe(physical).local_size;
   vkGetPhysicalDeviceMemoryProperties(physical, &memory_);
   heap_bytes_ = largest_device_heap(memory_);
 

@@ -50,6 +50,8 @@ class Device {
   const VkPhysicalDeviceLimits& limits() const { return limits_; }
   /// Bytes of the largest heap of the device's own memory.
   VkDeviceSize heap_bytes() const { return heap_bytes_; }
+  /// Invocations of a workgroup.
+  std::uint32_t local_size() const { return local_size_; }
   /// Valid bits of the queue's timestamps; 0 when it has none.
   std::uint32_t timestamp_bits() const { return timestamp_bits_; }
 
@@ -67,6 +69,7 @@ class Device {
   mutable std::mutex queue_mutex_;
   std::uint32_t queue_family_ = 0;
   std::uint32_t timestamp_bits_ = 0;
+  std::uint32_t local_size_ = 0;
   VkPhysicalDeviceLimits limits_{};
   VkPhysicalDeviceMemoryProperties memory_{};
   VkDeviceSize heap_bytes_ = 0;

@@ -21,6 +21,7 @@ struct DeviceDescription {
   std::uint32_t max_workgroups = 0;            ///< maxComputeWorkGroupCount[0]
   std::uint64_t heap_bytes = 0;                ///< the largest heap of the device's own memory
   std::uint32_t subgroup_size = 0;             ///< 0 when unknown (Vulkan 1.0)
+  std::uint32_t local_size = 64;               ///< invocations of a workgroup, as dolp wants them
   bool timestamps = false;                     ///< the compute queue has a clock
 };
 

@@ -15,7 +15,7 @@ vulkan::TileLimits tile_limits(const DeviceDescription& device, std::uint64_t ti
                                std::uint64_t block_shapes) {
   return {.buffer_bytes = device.max_storage_buffer_bytes,
           .heap_bytes = device.heap_bytes,
-          .dispatch_count = std::uint64_t{device.max_workgroups} * vulkan::kLocalSize,
+          .dispatch_count = std::uint64_t{device.max_workgroups} * device.local_size,
           .tile_invocations = tile_invocations,
           .block_shapes = block_shapes};
 }
@@ -66,7 +66,7 @@ DispatchForecast dispatch_forecast(const MomentsRequest& request, const DeviceDe
   for (const vulkan::Block& block : vulkan::blocks_of(rows, sizes.shapes)) {
     const std::size_t pieces = pieces_of(rows, data, block.first_row, block.row_count).size();
     forecast.dispatches += (pieces + sizes.invocations - 1) / sizes.invocations;
-    ++forecast.dispatches;  // of the masking tables
+    if (data.needs_masking_table()) ++forecast.dispatches;
   }
   forecast.device_bytes =
       sizes.invocations * costs.invocation_bytes + sizes.shapes * costs.shape_bytes + node_bytes(packing, data);

@@ -15,6 +15,15 @@ constexpr std::array kValidationExtensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
 constexpr const char* kNoDriver =
     "no Vulkan driver was found (on Debian, mesa-vulkan-drivers has one that needs no GPU; VK_DRIVER_FILES and "
     "VK_ICD_FILENAMES override the search)";
+// What the loader calls out of memory; where memory is that short the program ends by itself.
+constexpr const char* kDriverNotLoaded =
+    "no Vulkan driver could be loaded: its file (VK_DRIVER_FILES, VK_ICD_FILENAMES, vulkan/icd.d) is malformed";
+
+/// The loader passes over a driver for which there are no addresses left.
+[[noreturn]] void fail_without_driver() {
+  if (lacks_addresses()) throw MemoryError("out of memory: too little is left to load a Vulkan driver");
+  throw DeviceError(kNoDriver);
+}
 
 bool has_validation_layer() {
   std::uint32_t count = 0;
@@ -78,7 +87,8 @@ Instance::Instance(ValidationLog* log, const std::vector<const char*>& extension
     info.ppEnabledLayerNames = &kValidationLayer;
   }
   const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
-  if (result == VK_ERROR_INCOMPATIBLE_DRIVER) throw DeviceError(kNoDriver);
+  if (result == VK_ERROR_INCOMPATIBLE_DRIVER) fail_without_driver();
+  if (result == VK_ERROR_OUT_OF_HOST_MEMORY) throw DeviceError(kDriverNotLoaded);
   check(result, "creating the instance");
   if (log) attach(messenger);
 }
@@ -104,7 +114,7 @@ std::vector<VkPhysicalDevice> Instance::physical_devices() const {
   std::uint32_t count = 0;
   const VkResult result = vkEnumeratePhysicalDevices(instance_, &count, nullptr);
   // The loader reports drivers that found no hardware either way.
-  if (result == VK_ERROR_INITIALIZATION_FAILED || (result == VK_SUCCESS && count == 0)) throw DeviceError(kNoDriver);
+  if (result == VK_ERROR_INITIALIZATION_FAILED || (result == VK_SUCCESS && count == 0)) fail_without_driver();
   check(result, "listing the devices");
   std::vector<VkPhysicalDevice> devices(count);
   check(vkEnumeratePhysicalDevices(instance_, &count, devices.data()), "listing the devices");

@@ -115,13 +115,14 @@ void Kernels::bind(std::array<VkBuffer, kBindingCount> buffers) {
   vkUpdateDescriptorSets(device_.get(), kBindingCount, writes.data(), 0, nullptr);
 }
 
+VkPipeline Kernels::known(const KernelVariant& variant) {
+  const std::scoped_lock lock(mutex_);
+  const auto found = pipelines_.find(variant);
+  return found == pipelines_.end() ? VK_NULL_HANDLE : found->second.get();
+}
+
 VkPipeline Kernels::pipeline(const KernelVariant& variant) {
-  const auto known = [&]() -> VkPipeline {
-    const std::scoped_lock lock(mutex_);
-    const auto found = pipelines_.find(variant);
-    return found == pipelines_.end() ? VK_NULL_HANDLE : found->second.get();
-  };
-  if (VkPipeline pipeline = known()) return pipeline;
+  if (VkPipeline pipeline = known(variant)) return pipeline;
   UniquePipeline created = create(module_of(variant, float64_), variant);
   const std::scoped_lock lock(mutex_);
   return pipelines_.emplace(variant, std::move(created)).first->second.get();
@@ -135,7 +136,7 @@ UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, const Kerne
   const UniqueShaderModule shader(device_.get(), created_module);
 
   // The enumerators are the values of interface.glsl.
-  const std::array<std::uint32_t, 6> values{kLocalSize,
+  const std::array<std::uint32_t, 6> values{local_size(),
                                             static_cast<std::uint32_t>(variant.distribution),
                                             static_cast<std::uint32_t>(variant.masking),
                                             variant.has_total_reflection ? 1U : 0U,

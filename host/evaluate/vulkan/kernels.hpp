@@ -18,7 +18,7 @@ namespace dolp::vulkan {
 
 constexpr std::uint32_t kBindingCount = DOLP_BINDING_RULE + 1;
 constexpr std::uint32_t kPushConstantCount = 4;
-/// Invocations of a workgroup; every device allows 128.
+/// Most invocations of a workgroup; every device allows 128.
 constexpr std::uint32_t kLocalSize = 64;
 
 /// The entry points of shaders/*.comp.
@@ -51,6 +51,9 @@ class Kernels {
   void bind(std::array<VkBuffer, kBindingCount> buffers);
 
   VkPipeline pipeline(const KernelVariant& variant);
+  /// Whether a pipeline is there already.
+  bool has(const KernelVariant& variant) { return known(variant) != VK_NULL_HANDLE; }
+  std::uint32_t local_size() const { return device_.local_size(); }
   VkPipelineLayout layout() const { return layout_.get(); }
   VkDescriptorSet descriptor_set() const { return set_; }
 
@@ -60,6 +63,7 @@ class Kernels {
  private:
   void create_layouts();
   void create_descriptor_set();
+  VkPipeline known(const KernelVariant& variant);
 
   const Device& device_;
   bool float64_;

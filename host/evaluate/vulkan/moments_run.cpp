@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <future>
-#include <numeric>
 
 #include "base/parallel_ranges.hpp"
 #include "evaluate/vulkan/result.hpp"
@@ -35,7 +34,7 @@ TileSizes MomentsRun::sizes(std::uint32_t tile_invocations, std::uint32_t block_
   const VkPhysicalDeviceLimits& limits = context_.device.limits();
   return tile_sizes({.buffer_bytes = limits.maxStorageBufferRange,
                      .heap_bytes = context_.device.heap_bytes(),
-                     .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
+                     .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * context_.device.local_size(),
                      .tile_invocations = std::min<std::uint64_t>(tile_invocations, rows_.rows.size() * DOLP_MAX_PIECES),
                      .block_shapes = std::min<std::uint64_t>(block_shapes, rows_.shapes.size())},
                     tile_costs(context_.packing, rows_.width));
@@ -71,19 +70,24 @@ void MomentsRun::create_buffers() {
 }
 
 void MomentsRun::create_pipelines() {
-  auto tables = std::async(std::launch::async, [&] { context_.kernels.pipeline(masking_table_variant(data_)); });
+  const KernelVariant tables = masking_table_variant(data_);
+  std::future<void> made;
+  if (data_.needs_masking_table() && !context_.kernels.has(tables)) {
+    made = std::async(std::launch::async, [&] { context_.kernels.pipeline(tables); });
+  }
   context_.kernels.pipeline(moments_variant(data_, rows_.width));
-  tables.get();
+  if (made.valid()) made.get();
 }
 
 std::optional<std::vector<Moments>> MomentsRun::compute(const Progress& progress) {
   std::vector<kernel::MomentsNode> results(rows_.rows.size() * rows_.width);
   const std::size_t wanted = request_.wanted_count();
   for (const Block& block : blocks_of(rows_, sizes_.shapes)) {
-    start_block(block);
     const std::vector<RowPiece> pieces = pieces_of(rows_, data_, block.first_row, block.row_count);
+    if (!pieces.empty()) begin_block(block);
     for (std::size_t first = 0; first < pieces.size(); first += sizes_.invocations) {
       const std::size_t count = std::min<std::size_t>(sizes_.invocations, pieces.size() - first);
+      if (first > 0) context_.stream.begin();
       run_tile(block, std::span(pieces).subspan(first, count), results);
       const double of_block = static_cast<double>(first + count) / static_cast<double>(pieces.size());
       const double share = (block.first_row + block.row_count * of_block) / static_cast<double>(rows_.rows.size());
@@ -94,30 +98,24 @@ std::optional<std::vector<Moments>> MomentsRun::compute(const Progress& progress
   return moments_of(results);
 }
 
-template <class Node>
-void MomentsRun::upload(const std::vector<Node>& list, std::span<const std::uint32_t> members, InputBuffer& buffer) {
-  scratch_.clear();
-  for (const std::uint32_t member : members) context_.packing.append(list[member], scratch_);
+template <class NodeOf>
+void MomentsRun::upload(InputBuffer& buffer, std::size_t count, const NodeOf& node_of) {
+  context_.packing.pack(count, node_of, scratch_);
   buffer.write(scratch_, context_.stream);
 }
 
-void MomentsRun::start_block(const Block& block) {
-  std::vector<std::uint32_t> shapes(block.shape_count), nodes(data_.rule_nodes.size());
-  std::iota(shapes.begin(), shapes.end(), block.first_shape);
-  std::iota(nodes.begin(), nodes.end(), 0U);
+void MomentsRun::begin_block(const Block& block) {
   CommandStream& stream = context_.stream;
   stream.begin();
-  upload(rows_.shapes, shapes, *shape_buffer_);
-  upload(data_.rule_nodes, nodes, *rule_node_buffer_);
-  scratch_.clear();
-  context_.packing.append(data_.rule, scratch_);
-  rule_buffer_->write(scratch_, stream);
+  upload(*shape_buffer_, block.shape_count, [&](std::size_t i) { return rows_.shapes[block.first_shape + i]; });
+  upload(*rule_node_buffer_, data_.rule_nodes.size(), [&](std::size_t i) { return data_.rule_nodes[i]; });
+  upload(*rule_buffer_, 1, [&](std::size_t) { return data_.rule; });
+  if (!data_.needs_masking_table()) return;
   stream.barrier(Barrier::kUploadToKernel);
   stream.dispatch(context_.kernels, context_.kernels.pipeline(masking_table_variant(data_)), 0, block.shape_count,
                   data_.rule_order);
   stream.barrier(Barrier::kKernelToKernel);
   ++cost_.dispatches;
-  cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
 }
 
 void MomentsRun::upload_tile(const Block& block, std::span<const RowPiece> pieces) {
@@ -133,14 +131,14 @@ void MomentsRun::upload_tile(const Block& block, std::span<const RowPiece> piece
                      task_word(data_.pieces[theta], own.piece, chunk.count)});
   }
   task_buffer_->write(std::as_bytes(std::span(words)), context_.stream);
-  upload(data_.thetas, thetas_.used(), *theta_buffer_);
-  upload(data_.indices, indices_.used(), *index_buffer_);
+  const std::span<const std::uint32_t> thetas = thetas_.used(), indices = indices_.used();
+  upload(*theta_buffer_, thetas.size(), [&](std::size_t i) { return data_.thetas[thetas[i]]; });
+  upload(*index_buffer_, indices.size(), [&](std::size_t i) { return data_.indices[indices[i]]; });
 }
 
 void MomentsRun::run_tile(const Block& block, std::span<const RowPiece> pieces,
                           std::span<kernel::MomentsNode> results) {
   CommandStream& stream = context_.stream;
-  stream.begin();
   upload_tile(block, pieces);
   stream.barrier(Barrier::kUploadToKernel);
   stream.dispatch(context_.kernels, context_.kernels.pipeline(moments_variant(data_, rows_.width)), 0,

@@ -50,13 +50,14 @@ class MomentsRun {
  private:
   TileSizes sizes(std::uint32_t tile_invocations, std::uint32_t block_shapes) const;
   void create_buffers();
-  void start_block(const Block& block);
+  /// Begins a submission with what all tiles of a block need; the first tile goes on with it.
+  void begin_block(const Block& block);
   void upload_tile(const Block& block, std::span<const RowPiece> pieces);
   void run_tile(const Block& block, std::span<const RowPiece> pieces, std::span<kernel::MomentsNode> results);
   void add_pieces(std::span<const RowPiece> pieces, std::span<kernel::MomentsNode> results);
   std::vector<Moments> moments_of(std::span<const kernel::MomentsNode> results) const;
-  template <class Node>
-  void upload(const std::vector<Node>& list, std::span<const std::uint32_t> members, InputBuffer& buffer);
+  template <class NodeOf>
+  void upload(InputBuffer& buffer, std::size_t count, const NodeOf& node_of);
 
   RunContext context_;
   const MomentsRequest& request_;

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/parallel_ranges.hpp"
 #include "plan/convert_reals.hpp"
 #include "plan/kernel_data.hpp"
 
@@ -42,11 +43,19 @@ class Packing {
   /// Appends one structure; numbers beyond the range of float become infinite.
   template <class Node>
   void append(const Node& node, std::vector<std::byte>& bytes) const {
-    if (float64_) {
-      append_as<double>(node, bytes);
-    } else {
-      append_as<float>(node, bytes);
-    }
+    bytes.resize(bytes.size() + node_bytes<Node>());
+    write(node, std::span(bytes).last(node_bytes<Node>()));
+  }
+
+  /// Makes `bytes` the structures node_of(0), ..., node_of(count - 1), in any order, on all cores.
+  template <class NodeOf>
+  void pack(std::size_t count, const NodeOf& node_of, std::vector<std::byte>& bytes) const {
+    constexpr std::size_t kNodesAtOnce = 8192;
+    const std::size_t each = node_bytes<std::decay_t<decltype(node_of(0))>>();
+    bytes.resize(count * each);
+    parallel_ranges(count, kNodesAtOnce, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) write(node_of(i), std::span(bytes).subspan(i * each, each));
+    });
   }
 
   /// Reads the structure at `position` of an array of them.
@@ -57,11 +66,19 @@ class Packing {
   }
 
  private:
+  template <class Node>
+  void write(const Node& node, std::span<std::byte> room) const {
+    if (float64_) {
+      write_as<double>(node, room);
+    } else {
+      write_as<float>(node, room);
+    }
+  }
+
   template <class Real, class Node>
-  static void append_as(const Node& node, std::vector<std::byte>& bytes) {
+  static void write_as(const Node& node, std::span<std::byte> room) {
     const auto numbers = convert_reals<Real, std::array<Real, real_count<Node>()>, double>(node);
-    const auto raw = std::as_bytes(std::span(numbers));
-    bytes.insert(bytes.end(), raw.begin(), raw.end());
+    std::memcpy(room.data(), numbers.data(), sizeof numbers);
   }
 
   template <class Real, class Node>

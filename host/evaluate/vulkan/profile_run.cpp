@@ -72,12 +72,13 @@ std::uint32_t ProfileRun::tile_size(std::uint32_t tile_slopes) const {
   const VkPhysicalDeviceLimits& limits = context_.device.limits();
   const std::uint64_t profiles = std::uint64_t{data_.directions} * (data_.is_grid ? data_.indices.size() : 1);
   const std::uint64_t most = profiles * DOLP_MAX_PIECES * 2 * static_cast<std::uint64_t>(data_.rule_order);
-  return profile_tile_size({.buffer_bytes = limits.maxStorageBufferRange,
-                            .heap_bytes = context_.device.heap_bytes(),
-                            .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
-                            .tile_invocations = std::min<std::uint64_t>(tile_slopes, most),
-                            .block_shapes = 1},
-                           context_.packing);
+  return profile_tile_size(
+      {.buffer_bytes = limits.maxStorageBufferRange,
+       .heap_bytes = context_.device.heap_bytes(),
+       .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * context_.device.local_size(),
+       .tile_invocations = std::min<std::uint64_t>(tile_slopes, most),
+       .block_shapes = 1},
+      context_.packing);
 }
 
 void ProfileRun::create_buffers() {
@@ -102,23 +103,22 @@ void ProfileRun::create_buffers() {
   context_.kernels.bind(buffers);
 }
 
+template <class NodeOf>
+void ProfileRun::upload(InputBuffer& buffer, std::size_t count, const NodeOf& node_of) {
+  context_.packing.pack(count, node_of, scratch_);
+  buffer.write(scratch_, context_.stream);
+}
+
 void ProfileRun::upload_rule() {
-  CommandStream& stream = context_.stream;
-  stream.begin();
-  scratch_.clear();
-  for (const auto& node : data_.rule_nodes) context_.packing.append(node, scratch_);
-  rule_node_buffer_->write(scratch_, stream);
-  scratch_.clear();
-  context_.packing.append(data_.rule, scratch_);
-  rule_buffer_->write(scratch_, stream);
-  stream.barrier(Barrier::kUploadToKernel);
-  cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
+  upload(*rule_node_buffer_, data_.rule_nodes.size(), [&](std::size_t i) { return data_.rule_nodes[i]; });
+  upload(*rule_buffer_, 1, [&](std::size_t) { return data_.rule; });
 }
 
 std::optional<std::vector<Moments>> ProfileRun::compute(const Progress& progress) {
   std::vector<Moments> moments(request_.size());
   const std::size_t wanted = request_.wanted_count();
   const std::size_t at_once = batch_directions(data_);
+  context_.stream.begin();
   upload_rule();
   for (std::size_t first = 0; first < data_.directions; first += at_once) {
     const std::size_t last = std::min(first + at_once, data_.directions);
@@ -127,6 +127,7 @@ std::optional<std::vector<Moments>> ProfileRun::compute(const Progress& progress
     const std::span<const std::uint32_t> slopes(batch.in_lockstep);
     for (std::size_t done = 0; done < slopes.size();) {
       const std::size_t count = std::min<std::size_t>(tile_size_, slopes.size() - done);
+      if (cost_.dispatches > 0) context_.stream.begin();
       run_tile(batch, slopes.subspan(done, count), samples);
       done += count;
       const double of_batch = static_cast<double>(done) / static_cast<double>(slopes.size());
@@ -155,21 +156,16 @@ void ProfileRun::run_tile(const ProfileBatch& batch, std::span<const std::uint32
   CommandStream& stream = context_.stream;
   thetas_.clear();
   indices_.clear();
-  stream.begin();
-  scratch_.clear();
+  nodes_.clear();
   for (const std::uint32_t i : slopes) {
-    kernel::SlopeNode node = batch.slopes[i];
+    kernel::SlopeNode& node = nodes_.emplace_back(batch.slopes[i]);
     node.theta = thetas_(static_cast<std::uint32_t>(node.theta));
     node.index = indices_(static_cast<std::uint32_t>(node.index));
-    packing.append(node, scratch_);
   }
-  slope_buffer_->write(scratch_, stream);
-  scratch_.clear();
-  for (const std::uint32_t theta : thetas_.used()) packing.append(data_.thetas[theta], scratch_);
-  theta_buffer_->write(scratch_, stream);
-  scratch_.clear();
-  for (const std::uint32_t index : indices_.used()) packing.append(data_.indices[index], scratch_);
-  index_buffer_->write(scratch_, stream);
+  const std::span<const std::uint32_t> thetas = thetas_.used(), indices = indices_.used();
+  upload(*slope_buffer_, nodes_.size(), [&](std::size_t i) { return nodes_[i]; });
+  upload(*theta_buffer_, thetas.size(), [&](std::size_t i) { return data_.thetas[thetas[i]]; });
+  upload(*index_buffer_, indices.size(), [&](std::size_t i) { return data_.indices[indices[i]]; });
   stream.barrier(Barrier::kUploadToKernel);
   stream.dispatch(context_.kernels, context_.kernels.pipeline(slopes_variant(data_)), 0,
                   static_cast<std::uint32_t>(slopes.size()), data_.rule_order);

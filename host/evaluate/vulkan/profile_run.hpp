@@ -43,6 +43,9 @@ class ProfileRun {
  private:
   std::uint32_t tile_size(std::uint32_t tile_slopes) const;
   void create_buffers();
+  template <class NodeOf>
+  void upload(InputBuffer& buffer, std::size_t count, const NodeOf& node_of);
+  /// Records it, for the first tile to go on with.
   void upload_rule();
   void run_tile(const ProfileBatch& batch, std::span<const std::uint32_t> slopes,
                 std::span<kernel::AzimuthNode> samples);
@@ -53,6 +56,7 @@ class ProfileRun {
   Profiles profiles_;
   std::uint32_t tile_size_;
   Renumbering thetas_, indices_;
+  std::vector<kernel::SlopeNode> nodes_;  ///< of a tile
   std::vector<std::byte> scratch_;
   RunCost cost_;
   std::optional<InputBuffer> theta_buffer_, index_buffer_, slope_buffer_, rule_buffer_, rule_node_buffer_;

@@ -1,5 +1,9 @@
 #include "evaluate/vulkan/result.hpp"
 
+#include <sys/mman.h>
+
+#include <cstddef>
+
 namespace dolp::vulkan {
 
 std::string result_name(VkResult result) {
@@ -37,10 +41,22 @@ std::string result_name(VkResult result) {
   }
 }
 
-void check(VkResult result, const char* action) {
+bool lacks_addresses() {
+  constexpr std::size_t kDriverBytes = 256U << 20U;  // of a driver with its compiler
+  void* const room = ::mmap(nullptr, kDriverBytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED) return true;
+  ::munmap(room, kDriverBytes);
+  return false;
+}
+
+void check(VkResult result, const std::string& action) {
   if (result == VK_SUCCESS) return;
-  if (result == VK_ERROR_DEVICE_LOST) throw DeviceError(std::string("the Vulkan device was lost while ") + action);
-  throw DeviceError(std::string("Vulkan: ") + action + " failed: " + result_name(result));
+  if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost("the Vulkan device was lost while " + action);
+  // Drivers that run out of addresses may call it anything.
+  if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY || lacks_addresses()) {
+    throw MemoryError("out of memory: Vulkan: " + action + " failed: " + result_name(result));
+  }
+  throw DeviceError("Vulkan: " + action + " failed: " + result_name(result));
 }
 
 }  // namespace dolp::vulkan

@@ -14,10 +14,21 @@ struct DeviceTimeout : DeviceError {
   using DeviceError::DeviceError;
 };
 
+/// The device is of no more use; another one, even of the same hardware, may be.
+struct DeviceLost : DeviceError {
+  using DeviceError::DeviceError;
+};
+
 /// The name of a result, e.g. "VK_ERROR_DEVICE_LOST".
 std::string result_name(VkResult result);
 
-/// Throws DeviceError "Vulkan: ACTION failed: RESULT" unless `result` is VK_SUCCESS; `action` is a gerund phrase.
-void check(VkResult result, const char* action);
+/// Whether the process has no addresses left for what a driver takes.
+bool lacks_addresses();
+
+/// Throws unless `result` is VK_SUCCESS; `action` is a gerund phrase.
+///
+/// Errors: DeviceLost; MemoryError when the device or its driver is out of memory; else DeviceError
+/// "Vulkan: ACTION failed: RESULT".
+void check(VkResult result, const std::string& action);
 
 }  // namespace dolp::vulkan

@@ -17,7 +17,7 @@ std::uint32_t ScatteringRun::tile_size(std::uint32_t tile_entries) const {
   const VkPhysicalDeviceLimits& limits = context_.device.limits();
   return tile_sizes({.buffer_bytes = limits.maxStorageBufferRange,
                      .heap_bytes = context_.device.heap_bytes(),
-                     .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * kLocalSize,
+                     .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * context_.device.local_size(),
                      .tile_invocations = std::min<std::uint64_t>(tile_entries, request_.entries.size()),
                      .block_shapes = 1},
                     scattering_tile_costs(context_.packing))
@@ -42,9 +42,11 @@ void ScatteringRun::create_buffers() {
 std::optional<std::vector<ScatteringMatrix>> ScatteringRun::compute(const Progress& progress) {
   std::vector<ScatteringMatrix> matrices(request_.entries.size());
   const std::span<const ScatteringEntry> entries(request_.entries);
+  context_.stream.begin();
   upload_rule_nodes();
   for (std::size_t first = 0; first < entries.size(); first += tile_size_) {
     const std::size_t count = std::min<std::size_t>(tile_size_, entries.size() - first);
+    if (first > 0) context_.stream.begin();
     run_tile(entries.subspan(first, count), std::span(matrices).subspan(first, count));
     if (progress && !progress(first + count, matrices.size())) return std::nullopt;
   }
@@ -52,13 +54,10 @@ std::optional<std::vector<ScatteringMatrix>> ScatteringRun::compute(const Progre
 }
 
 void ScatteringRun::upload_rule_nodes() {
-  CommandStream& stream = context_.stream;
-  scratch_.clear();
-  for (const auto& node : plan_.data().rule_nodes) context_.packing.append(node, scratch_);
-  stream.begin();
-  rule_node_buffer_->write(scratch_, stream);
-  stream.barrier(Barrier::kUploadToKernel);
-  cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
+  const auto& nodes = plan_.data().rule_nodes;
+  context_.packing.pack(
+      nodes.size(), [&](std::size_t i) { return nodes[i]; }, scratch_);
+  rule_node_buffer_->write(scratch_, context_.stream);
 }
 
 void ScatteringRun::run_tile(std::span<const ScatteringEntry> entries, std::span<ScatteringMatrix> matrices) {
@@ -70,7 +69,6 @@ void ScatteringRun::run_tile(std::span<const ScatteringEntry> entries, std::span
     beams_.push_back(plan_(entry));
     packing.append(beams_.back().node, scratch_);
   }
-  stream.begin();
   beam_buffer_->write(scratch_, stream);
   stream.barrier(Barrier::kUploadToKernel);
   stream.dispatch(context_.kernels, context_.kernels.pipeline(mueller_variant(request_)), 0,

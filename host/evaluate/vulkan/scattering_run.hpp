@@ -27,6 +27,7 @@ class ScatteringRun {
  private:
   std::uint32_t tile_size(std::uint32_t tile_entries) const;
   void create_buffers();
+  /// Records them, for the first tile to go on with.
   void upload_rule_nodes();
   void run_tile(std::span<const ScatteringEntry> entries, std::span<ScatteringMatrix> matrices);
 

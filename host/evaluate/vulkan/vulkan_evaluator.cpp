@@ -1,5 +1,6 @@
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <future>
 #include <optional>
@@ -16,6 +17,9 @@ namespace dolp {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr std::uint32_t kShrinking = 4;
+constexpr std::uint32_t kSmallestTile = 64;
 
 void check_entries(const MomentsRequest& request) {
   const std::size_t size = request.size();
@@ -64,6 +68,20 @@ class VulkanEvaluator::Impl {
   const DeviceDescription& description() const { return context_.description(); }
   std::vector<std::string> validation_messages() const { return context_.validation_messages(); }
   void abandon() { context_.abandon(); }
+  const VulkanOptions& options() const { return options_; }
+  bool has_own_device() const { return own_ != nullptr; }
+
+  /// Gives up what the last request left on the device and takes a part of its tiles from now on; false where they are
+  /// as small as is sensible.
+  bool shrink_tiles() {
+    run_.reset();
+    profile_run_.reset();
+    scattering_run_.reset();
+    if (options_.max_tile_invocations <= kSmallestTile) return false;
+    options_.max_tile_invocations /= kShrinking;
+    options_.max_block_shapes = std::max(options_.max_block_shapes / kShrinking, 1U);
+    return true;
+  }
 
   /// Computes a request and adds what it cost to `report`. After a DeviceTimeout this object must not be destroyed.
   std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
@@ -157,7 +175,12 @@ VulkanEvaluator::VulkanEvaluator(vulkan::Context& context, const VulkanOptions& 
   note_setup(0.0);
 }
 
+void VulkanEvaluator::clear_report() {
+  if (impl_) note_setup(0.0);
+}
+
 void VulkanEvaluator::note_setup(double seconds) {
+  report_ = {};
   report_.evaluator = "vulkan";
   report_.device = impl_->description().name;
   report_.driver = impl_->description().driver;
@@ -171,13 +194,22 @@ std::vector<Result> VulkanEvaluator::compute(const Request& request, const Progr
   if (!impl_) throw DeviceError("the Vulkan device was given up after a tile that did not finish in time");
   check_entries(request);
   if (count_of(request) == 0) return {};
-  try {
-    return impl_->compute(request, progress, report_);
-  } catch (const vulkan::DeviceTimeout&) {
-    // Vulkan forbids destroying what a submission still uses, so all of it is left to the end of the process.
-    impl_->abandon();
-    static_cast<void>(impl_.release());
-    throw;
+  for (bool is_new_device = false;;) {
+    try {
+      return impl_->compute(request, progress, report_);
+    } catch (const vulkan::DeviceTimeout&) {
+      // Vulkan forbids destroying what a submission still uses, so all of it is left to the end of the process.
+      impl_->abandon();
+      static_cast<void>(impl_.release());
+      throw;
+    } catch (const vulkan::DeviceLost&) {
+      if (is_new_device || !impl_->has_own_device()) throw;
+      is_new_device = true;
+      ++report_.devices_lost;
+      impl_ = std::make_unique<Impl>(impl_->options(), nullptr);
+    } catch (const MemoryError&) {
+      if (!impl_->shrink_tiles()) throw;
+    }
   }
 }
 

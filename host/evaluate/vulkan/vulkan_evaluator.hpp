@@ -47,9 +47,9 @@ class VulkanEvaluator : public MomentsEvaluator, public ScatteringEvaluator {
   ~VulkanEvaluator() override;
 
   /// Errors: DeviceError for double precision on a device without it; InputError for lists that do not fit the
-  /// request's layout; DeviceError when the device fails, is lost or exceeds the time allowed for a tile (the object is
-  /// useless then), or the validation layer complains; Cancelled when `progress`, called after each tile, returns
-  /// false.
+  /// request's layout; DeviceError when the device fails, is lost (its own is made anew once, to try again) or exceeds
+  /// the time allowed for a tile (the object is useless then), or the validation layer complains; MemoryError when even
+  /// small tiles do not fit; Cancelled when `progress`, called after each tile, returns false.
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
 
   /// Creates the pipeline in the background; what fails there fails again in `scatter`.
@@ -62,8 +62,9 @@ class VulkanEvaluator : public MomentsEvaluator, public ScatteringEvaluator {
   Precision precision() const override { return precision_; }
   bool has_double() const override;
 
-  /// Totals over all calls.
+  /// Totals over all calls since clear_report.
   EvaluationReport report() const override;
+  void clear_report() override;
 
   /// Warnings and errors of the validation layer so far; none after a tile that did not finish in time.
   std::vector<std::string> validation_messages() const;

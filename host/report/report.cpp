@@ -1,8 +1,8 @@
-#include "cli/report.hpp"
+#include "report/report.hpp"
 
 #include <cstdio>
 
-namespace dolp::cli {
+namespace dolp {
 
 void Report::add(const char* path, const Report& part) {
   text_ += part.text_;
@@ -21,11 +21,10 @@ void Report::add(const char* path, const std::vector<Report>& parts) {
 void Report::print(bool json, bool quiet, const std::string& output) const {
   std::FILE* const out = output == "-" ? stderr : stdout;
   if (json) {
-    // ASCII alone, so that a terminal shows it safely; names of files need not be UTF-8.
-    fmt::print(out, "{}\n", json_.dump(2, ' ', true, Json::error_handler_t::replace));
+    fmt::print(out, "{}\n", json_text());
   } else if (!quiet) {
     fmt::print(out, "{}", text_);
   }
 }
 
-}  // namespace dolp::cli
+}  // namespace dolp

@@ -1,17 +1,17 @@
-// What `dolp plan` reports: for people, and as JSON.
+// What there is to say about a run that has not happened: for people, and as JSON.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "cli/report.hpp"
 #include "evaluate/vulkan/dispatch_forecast.hpp"
 #include "plan/effects.hpp"
+#include "report/report.hpp"
 #include "run/prediction.hpp"
 #include "scene/scene.hpp"
 
-namespace dolp::cli {
+namespace dolp {
 
 /// The rule of the moments in the first attempt.
 struct RuleSize {
@@ -33,6 +33,17 @@ struct PlanReport {
   std::string why_no_device;
 };
 
+/// The plan of a run over the scene's grid. `device`: a position or a part of a name; empty is the default, and where
+/// there is none the limits that every device keeps.
+/// Errors: InputError of grid_entries; DeviceError where a named device is not usable.
+PlanReport plan_of(const Scene& scene, const std::string& device, bool keep_all);
+
 Report plan_report(const PlanReport& plan);
 
-}  // namespace dolp::cli
+/// "91 x 32 x 5 (theta x sigma x q)"; an axis that the grid lacks is left out.
+std::string grid_text(const Grid& grid);
+
+/// Names and reasons of what is kept, dropped, not needed and absent.
+Report::Json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan);
+
+}  // namespace dolp

@@ -1,11 +1,11 @@
-#include "cli/plan_report.hpp"
+#include "report/plan_report.hpp"
 
 #include <algorithm>
+#include <array>
 
-#include "cli/run_report.hpp"
 #include "model/choices.hpp"
 
-namespace dolp::cli {
+namespace dolp {
 namespace {
 
 constexpr double kMebibyte = 1048576.0;
@@ -148,6 +148,36 @@ void add_cost(Report& report, const PlanReport& plan) {
 
 }  // namespace
 
+std::string grid_text(const Grid& grid) {
+  constexpr std::array kNames = {"wavelength", "n", "k", "theta", "sigma", "q"};
+  std::string counts, names;
+  for (std::size_t i = 0; i < kGridAxes.size(); ++i) {
+    const std::vector<double>& values = grid.*kGridAxes[i];
+    if (values.empty()) continue;
+    counts += fmt::format("{}{}", counts.empty() ? "" : " x ", values.size());
+    names += fmt::format("{}{}", names.empty() ? "" : " x ", kNames[i]);
+  }
+  return fmt::format("{} ({})", counts, names);
+}
+
+Report::Json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan) {
+  Report::Json json;
+  for (const EffectState state :
+       {EffectState::kKept, EffectState::kDropped, EffectState::kNotNeeded, EffectState::kAbsent}) {
+    json[state_name(state)] = Report::Json::array();
+  }
+  for (const EffectRow& row : effects) {
+    Report::Json of_row = {{"name", row.name}, {"reason", row.reason}};
+    if (row.state == EffectState::kDropped) of_row["bound"] = row.bound.value_or(0.0);
+    json[state_name(row.state)].push_back(of_row);
+  }
+  json["keep_all"] = plan.keep_all;
+  json["allowed_share_of_tolerance"] = kDroppedShare;
+  json["dolp_bound"] = plan.bound.dolp;
+  json["rho_bound"] = plan.bound.rho;
+  return json;
+}
+
 Report plan_report(const PlanReport& plan) {
   constexpr int kLabelWidth = 11;
   const Scene& scene = plan.scene;
@@ -169,4 +199,4 @@ Report plan_report(const PlanReport& plan) {
   return report;
 }
 
-}  // namespace dolp::cli
+}  // namespace dolp

@@ -11,7 +11,7 @@
 
 #include "base/printable_text.hpp"
 
-namespace dolp::cli {
+namespace dolp {
 
 /// A value and its key in JSON: a path, whose parts are separated by slashes.
 template <class T>
@@ -78,6 +78,9 @@ class Report {
   void show(const Report& part) { text_ += part.text_; }
 
   const Json& json() const { return json_; }
+  /// ASCII alone, so that a terminal shows it safely; names of files need not be UTF-8.
+  std::string json_text() const { return json_.dump(2, ' ', true, Json::error_handler_t::replace); }
+  const std::string& text() const { return text_; }
 
   /// Prints what `json` and `quiet` ask for: to stdout, or to stderr when the results themselves (`output`) go to
   /// stdout.
@@ -96,13 +99,13 @@ class Report {
   Json json_ = Json::object();
 };
 
-}  // namespace dolp::cli
+}  // namespace dolp
 
 /// Formats as its value does.
 template <class T>
-struct fmt::formatter<dolp::cli::Keyed<T>> : fmt::formatter<T> {
+struct fmt::formatter<dolp::Keyed<T>> : fmt::formatter<T> {
   template <class Context>
-  auto format(const dolp::cli::Keyed<T>& keyed, Context& context) const {
+  auto format(const dolp::Keyed<T>& keyed, Context& context) const {
     return fmt::formatter<T>::format(keyed.value, context);
   }
 };

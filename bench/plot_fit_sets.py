@@ -1,0 +1,53 @@
+"""Figure and table of `dolp-bench fit`, for plot.py."""
+NEEDED = {"context", "results", "coverage"}
+HELD, MISSED = "#0072B2", "#D55E00"
+
+
+def sets_of(result):
+    return [row for row in result["results"] if row["part"] == "set"]
+
+
+def markdown(result):
+    """The Markdown table."""
+    coverage = result["coverage"]
+    rows = sets_of(result)
+    lines = ["| parameters | sets | median time, s | 68 % intervals hold the truth | 95 % intervals | global minimum found |",
+             "|---" * 6 + "|"]
+    for count in sorted({len(row["truth"]) for row in rows}):
+        own = [row for row in rows if len(row["truth"]) == count]
+        lines.append(line_of(count, own))
+    lines.append(line_of("all", rows))
+    lines += ["", f"{coverage['intervals']} intervals; those of one set are not independent."]
+    return "\n".join(lines)
+
+
+def line_of(name, rows):
+    intervals = sum(len(row["truth"]) for row in rows)
+    times = sorted(row["time_s"] for row in rows)
+    held = [100 * sum(row[which] for row in rows) / intervals for which in ("held_68", "held_95")]
+    return (f"| {name} | {len(rows)} | {times[len(times) // 2]:.2f} | {held[0]:.1f} % | {held[1]:.1f} % "
+            f"| {sum(row['is_global'] for row in rows)} of {len(rows)} |")
+
+
+def intervals_of(result):
+    """(low, high) of each bounded 95 % interval, less the truth and over half the width."""
+    for row in sets_of(result):
+        for truth, (low, high) in zip(row["truth"], row["interval_95"]):
+            if low is not None and high is not None:
+                yield tuple(2 * (end - truth) / (high - low) for end in (low, high))
+
+
+def figure(result, path, save):
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    plt.rcParams["font.family"] = "DejaVu Sans"
+    drawing, axes = plt.subplots(figsize=(10, 3.5))
+    for position, (low, high) in enumerate(sorted(intervals_of(result), key=sum)):
+        axes.plot([position, position], [low, high], color=HELD if low <= 0 <= high else MISSED, linewidth=0.9)
+    axes.axhline(0, color="black", linewidth=0.8)
+    axes.set_title("95 % intervals around the truth", fontsize=10, loc="left")
+    axes.set_xlabel("interval, in the order of their centres")
+    axes.set_ylabel("distance from the truth\nin half-widths")
+    drawing.tight_layout()
+    save(drawing, path)

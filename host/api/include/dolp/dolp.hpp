@@ -1,0 +1,314 @@
+// dolp: infrared degree of linear polarisation (DOLP) of rough surfaces. This header is all of the library's interface.
+//
+//   #include <dolp/dolp.hpp>
+//
+//   const dolp::Scene scene = dolp::Scene::from_file("scene.toml", {"surface.masking=smith"});
+//   dolp::Evaluator evaluator;                                     // keeps the device and its kernels
+//   const std::vector<double> theta_deg = {0, 30, 60};
+//   const dolp::Results results = evaluator.evaluate(scene, {{"theta_deg", theta_deg}});
+//   std::cout << results.values("dolp")[2] << '\n';
+//   evaluator.write_table(scene, "table.nc");                      // over the scene's [grid]
+//
+// CMake: find_package(dolp CONFIG REQUIRED), target_link_libraries(program PRIVATE dolp::dolp). C++20.
+//
+// Units and names are those of the command line and of the files: angles in degrees, wavelengths in um, temperatures in
+// K. Numbers are the bits that the command line computes on the same device.
+// Errors are exceptions derived from std::exception; a call that throws has changed nothing and left no file.
+// Threads: objects of one class may be used in several threads at a time as long as each thread has its own; an
+// Evaluator and a Table serve several threads too, their calls wait for one another.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#define DOLP_EXPORT __attribute__((visibility("default")))
+
+namespace dolp::api {
+
+/// A scene, points, a table or an argument is wrong. The message is one line: where, value, what is allowed.
+class DOLP_EXPORT InputError : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
+/// There is no usable Vulkan device, it was lost, or this process was forked from one that uses it.
+class DOLP_EXPORT DeviceError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A file could not be read or written.
+class DOLP_EXPORT IoError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The machine or the device is out of memory.
+class DOLP_EXPORT MemoryError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A Progress returned false.
+class DOLP_EXPORT Cancelled : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Called with the number of finished entries, from one thread at a time, not always the caller's; returning false ends
+/// the call with Cancelled.
+using Progress = std::function<bool(std::size_t done, std::size_t total)>;
+
+/// "0.1.0".
+DOLP_EXPORT std::string version();
+/// The commit that the library was built from; "unknown" outside of a repository.
+DOLP_EXPORT std::string commit();
+/// How to cite the program and the model, in the Citation File Format.
+DOLP_EXPORT std::string citation();
+
+/// A validated scene: surface, radiation, geometry, grid and accuracy. Copies share what they hold.
+class DOLP_EXPORT Scene {
+ public:
+  /// Reads a scene file (TOML). `overrides`: KEY=VALUE with any key of a scene, as --set takes them, in order.
+  /// Errors: InputError with file, line, key, value and allowed range.
+  static Scene from_file(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+  /// The same for a text; files that it names are looked for in the current folder. `name` is for messages.
+  static Scene from_text(const std::string& text, const std::vector<std::string>& overrides = {},
+                         const std::string& name = "scene");
+  /// The same scene with more overrides.
+  Scene with(const std::vector<std::string>& overrides) const;
+
+  const std::string& title() const;
+  const std::string& name() const;  ///< the path of its file, or the name of its text
+  const std::string& text() const;  ///< as it was read, without overrides
+  const std::vector<std::string>& overrides() const;
+  /// The scene with its overrides applied, as TOML.
+  std::string toml() const;
+
+  struct Impl;
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  explicit Scene(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+  std::shared_ptr<const Impl> impl_;
+};
+
+/// A key that scenes have.
+struct Key {
+  std::string key;       ///< "surface.sigma"
+  std::string unit;      ///< "1" for numbers without one, empty for words and texts
+  std::string allowed;   ///< "a number in [0, 10]"
+  std::string fallback;  ///< the default; "required"; empty when the key is simply absent
+  std::string meaning;
+};
+DOLP_EXPORT std::vector<Key> keys();
+
+/// A built-in material.
+struct Material {
+  std::string name;      ///< as surface.material takes it
+  double from_um = 0.0;  ///< the wavelengths at which n and k are known
+  double to_um = 0.0;
+  std::string source;
+};
+DOLP_EXPORT std::vector<Material> materials();
+
+/// A column of points by the name that it has in CSV files: theta_deg, sigma, q, n, k, wavelength_um; for Mueller
+/// matrices theta_i_deg, theta_r_deg, delta_phi_deg.
+struct Column {
+  std::string name;
+  std::span<const double> values;  ///< one for each point, or one for all
+};
+
+/// What is known of a variable beside its values, as in table files.
+struct Variable {
+  std::string name;  ///< "dolp"
+  std::string long_name;
+  std::string units;      ///< UDUNITS: "1", "W m-2 um-1"
+  std::string ancillary;  ///< names of the variables that qualify it, or nothing
+};
+
+/// Status bits of an entry or point; 0 where nothing is wrong.
+enum Status : std::uint32_t {
+  kReflectanceOutsideZeroToOne = 1,
+  kToleranceNotMet = 2,
+  kOutsideModelDomain = 4,
+  kIntensityNotPositive = 8,
+};
+
+/// A bit of Status with the word that files have for it.
+struct StatusBit {
+  std::uint32_t mask;
+  std::string meaning;
+};
+DOLP_EXPORT std::vector<StatusBit> status_bits();
+
+/// What was computed or read at points, in their order.
+struct Results {
+  struct Quantity {
+    Variable variable;
+    std::vector<double> values;  ///< NaN where the quantity was not computed
+  };
+  std::vector<Quantity> quantities;
+  std::vector<std::uint32_t> status;  ///< sums of Status
+  /// Global attributes as in table files: device, precision, effects, rule, ...
+  std::vector<std::pair<std::string, std::variant<std::string, double>>> attributes;
+
+  /// Errors: InputError for a name that is not there.
+  std::span<const double> values(std::string_view name) const {
+    for (const Quantity& quantity : quantities) {
+      if (quantity.variable.name == name) return quantity.values;
+    }
+    throw InputError("results have no " + std::string(name));
+  }
+};
+
+/// A lookup table in memory.
+class DOLP_EXPORT Table {
+ public:
+  /// Reads a table that dolp wrote as .nc. Errors: InputError.
+  static Table read(const std::filesystem::path& path);
+
+  /// Names of the axes in their order, the last one fastest: theta, sigma, q, before them wavelength, n, k where the
+  /// table has them.
+  std::vector<std::string> axes() const;
+  /// Values of an axis, in its unit (degree for theta, um for wavelength). Errors: InputError for another name.
+  std::span<const double> axis(std::string_view name) const;
+  std::vector<Variable> variables() const;
+  /// Values of a variable over all axes, in C order. Errors: InputError for a variable that the table lacks.
+  std::span<const double> values(std::string_view name) const;
+  std::span<const std::uint32_t> status() const;  ///< likewise
+
+  /// The table between its entries. An axis of one value needs no column; what else the columns lack is the scene's.
+  /// Its error estimates contain the interpolation.
+  /// Errors: InputError for a point outside of the axes, with its position, value and what is allowed.
+  Results lookup(const std::vector<Column>& points, const Progress& progress = {}) const;
+
+  /// Writes .nc, .csv or .npy, by the suffix; the file is whole or not there. Errors: InputError, IoError.
+  void write(const std::filesystem::path& path) const;
+
+ private:
+  friend class Evaluator;
+  struct Impl;
+  explicit Table(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+  std::shared_ptr<const Impl> impl_;
+};
+
+/// Where and how to compute.
+struct EvaluatorOptions {
+  std::string evaluator = "vulkan";  ///< vulkan; cpu: the shaders' text compiled as C++; reference: adaptive quadrature
+  std::string device = {};           ///< of vulkan: its position in devices(), or a part of its name; empty: the best
+};
+
+/// How to compute one table or list of points.
+struct RunOptions {
+  bool keep_all = false;     ///< drop no effect, however little it counts
+  Progress progress = {};    ///< may be empty
+  std::string history = {};  ///< what the attribute "history" of a table says beside the time
+};
+
+/// One of `count` parts of a table that several processes compute.
+struct Shard {
+  std::size_t number = 1;  ///< from 1 on
+  std::size_t count = 1;
+};
+
+/// The 4 x 4 Mueller pBRDF of a pair of directions, row by row. Units: 1/sr.
+using MuellerMatrix = std::array<double, 16>;
+
+/// A set of measured data: what `--data` of dolp fit takes, in memory.
+struct MeasuredData {
+  std::string csv;  ///< columns theta_deg or theta_i_deg; dolp, q_over_i or emissivities; uncertainty, wavelength_um
+  std::vector<std::string> overrides = {};  ///< KEY=VALUE of its own
+  std::string name = "data";                ///< for messages
+};
+
+/// How to fit.
+struct FitOptions {
+  std::vector<std::string> vary;  ///< KEY=LOW:HIGH or KEY=LOW:HIGH:START
+  std::size_t starts = 24;        ///< descents that look for minima
+  std::uint64_t seed = 1;         ///< of where they begin
+  Progress progress = {};         ///< may be empty
+};
+
+/// A fit: a report, all values, and the scene with what was found.
+struct Fit {
+  std::string text;  ///< for people
+  std::string json;  ///< parameters, intervals, correlation, minima, residuals, as `dolp fit --json` names them
+  Scene scene;
+};
+
+/// Computes. Device and kernels are made when they are first needed and kept as long as the object lives.
+/// Errors of all calls: InputError; DeviceError when there is no usable device: never a silent switch to the CPU. After
+/// fork() the child's calls for vulkan throw DeviceError: a device does not outlive a fork.
+class DOLP_EXPORT Evaluator {
+ public:
+  explicit Evaluator(EvaluatorOptions options = {});
+  Evaluator(Evaluator&&) noexcept;
+  Evaluator& operator=(Evaluator&&) noexcept;
+  ~Evaluator();
+
+  /// The table over the scene's [grid], in memory.
+  Table table(const Scene& scene, const RunOptions& options = {});
+  /// The same part by part, each of which `take` gets with its own axes, which are pieces of the table's. Memory does
+  /// not grow with the table. What `take` throws ends the call.
+  void table_parts(const Scene& scene, const std::function<void(const Table&)>& take, const RunOptions& options = {});
+  /// The same straight into a file, part by part, so that memory does not grow with the table. A shard's file has
+  /// "N-of-M" before its suffix; returns its path.
+  /// Errors: InputError, IoError too. The file is whole or not there.
+  std::filesystem::path write_table(const Scene& scene, const std::filesystem::path& path,
+                                    const RunOptions& options = {}, const Shard& shard = {});
+  /// The same quantities at scattered points; what the columns do not say comes from the scene.
+  Results evaluate(const Scene& scene, const std::vector<Column>& points, const RunOptions& options = {});
+  /// Mueller matrices, 1e-5 of m00 in float, 1e-11 in double; all 16 NaN where the model has no finite value.
+  std::vector<MuellerMatrix> mueller(const Scene& scene, const std::vector<Column>& points,
+                                     const RunOptions& options = {});
+  /// Numbers of the scene from measured data, with profile-likelihood intervals.
+  /// Errors: InputError too, where data, ranges and scene do not fit together, and where no minimum was found.
+  Fit fit(const Scene& scene, const std::vector<MeasuredData>& data, const FitOptions& options);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// What a table over the scene's grid would compute and leave out, why, and what it would cost; nothing is run but
+/// counting on the CPU.
+struct Plan {
+  std::string text;  ///< for people
+  std::string json;  ///< all values, as `dolp plan --json` prints them
+};
+DOLP_EXPORT Plan plan(const Scene& scene, const std::string& device = {}, bool keep_all = false);
+
+/// A Vulkan device of this machine.
+struct Device {
+  std::string name;
+  std::string type;  ///< "discrete GPU", "integrated GPU", "virtual GPU", "CPU" or "other"
+  std::string driver;
+  std::string api_version;
+  bool usable = false;
+  std::string why_not;             ///< empty when usable
+  bool has_double = false;         ///< double precision in kernels
+  std::uint64_t memory_bytes = 0;  ///< the largest heap of its own
+};
+/// All of them in the order of the Vulkan loader; EvaluatorOptions::device may be a position in it.
+DOLP_EXPORT std::vector<Device> devices();
+
+}  // namespace dolp::api
+
+// The library's own sources have other classes of these names in namespace dolp.
+#ifndef DOLP_BUILDS_THE_LIBRARY
+namespace dolp {
+using namespace api;
+}
+#endif

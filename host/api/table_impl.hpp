@@ -1,0 +1,28 @@
+// What a public table holds.
+#pragma once
+
+#include <dolp/dolp.hpp>
+
+#include <mutex>
+#include <optional>
+
+#include "scene/scene.hpp"
+#include "table/table.hpp"
+#include "table/table_lookup.hpp"
+
+namespace dolp::api {
+
+struct Table::Impl {
+  Impl(dolp::Table own, std::string own_name) : table(std::move(own)), name(std::move(own_name)) {}
+  /// Made when it is first asked for. Errors: those of table_scene and TableLookup.
+  const TableLookup& lookup() const;
+
+  const dolp::Table table;
+  const std::string name;  ///< for messages
+
+  mutable std::once_flag is_made;
+  mutable std::optional<dolp::Scene> scene;  ///< its own; with `between` from the first lookup on
+  mutable std::optional<TableLookup> between;
+};
+
+}  // namespace dolp::api

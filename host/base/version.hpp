@@ -1,0 +1,12 @@
+// Which program this is.
+#pragma once
+
+namespace dolp {
+
+/// "0.1.0".
+const char* program_version();
+
+/// The commit that it was built from, with "-changed" where files differ from it; "unknown" outside of a repository.
+const char* program_commit();
+
+}  // namespace dolp

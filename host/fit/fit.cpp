@@ -1,0 +1,357 @@
+#include "fit/fit.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/special_functions/gamma.hpp>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "fit/profile.hpp"
+#include "fit/search.hpp"
+#include "fit/together.hpp"
+#include "scene/text.hpp"
+
+namespace dolp::fit {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLevel68 = 0.682689492137086;
+constexpr double kLevel95 = 0.95;
+constexpr double kAtBound = 1e-6;  // of coordinates
+
+constexpr double kFineShare = 1e-2;    // of an uncertainty: the model's tolerance
+constexpr double kCoarseShare = 0.25;  // that of the search
+constexpr double kLeastTolerance = 1e-9;
+constexpr double kMostTolerance = 1e-3;
+constexpr double kToleranceWithoutUncertainties = 1e-5;
+constexpr double kCoarseToleranceWithoutUncertainties = 1e-4;
+
+constexpr double kGuessedShare = 1e-2;  // of the largest value: a residual where nothing says better
+constexpr double kNullShare = 1e-4;     // of the largest singular value: a direction that the data do not see
+constexpr double kUnseen = 1e-3;        // standard deviations: a parameter whose range changes no residual by more
+constexpr double kInDirection = 0.1;    // of the largest component: a parameter that a direction names
+constexpr int kMostRestarts = 4;
+constexpr double kGuessedDeviation = 0.1;  // in coordinates, of a parameter at its bound
+
+double least_uncertainty(const Model& model) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const FitData& data : model.data()) {
+    for (const Observation& one : data.observations) least = std::min(least, one.uncertainty.value_or(least));
+  }
+  return least;
+}
+
+/// The tolerance of the model's values; at most what the scene asks for.
+double fine_tolerance(const Model& model) {
+  const double wanted =
+      model.has_uncertainties() ? kFineShare * least_uncertainty(model) : kToleranceWithoutUncertainties;
+  return std::min(model.scene().accuracy.tolerance, std::max(wanted, kLeastTolerance));
+}
+
+/// That of the search.
+double coarse_tolerance(const Model& model) {
+  const double wanted =
+      model.has_uncertainties() ? kCoarseShare * least_uncertainty(model) : kCoarseToleranceWithoutUncertainties;
+  return std::max(fine_tolerance(model), std::min(wanted, kMostTolerance));
+}
+
+bool is_at_bound(double coordinate) { return coordinate < kAtBound || coordinate > 1.0 - kAtBound; }
+
+/// A direction of coordinates, the largest component 1, and how far it may be followed unseen.
+struct Direction {
+  Eigen::VectorXd along;
+  bool is_null = false;  ///< the data do not see it at all; else the whole range changes less than they can tell
+};
+
+/// What the Jacobian at a minimum says.
+struct Covariance {
+  Eigen::MatrixXd of_coordinates;     ///< infinite variance where a null direction points; NaN at a bound
+  std::vector<Direction> directions;  ///< that the data do not see
+  std::size_t rank = 0;
+};
+
+Covariance covariance_of(const Minimum& minimum, Loss loss, double scale) {
+  const Eigen::VectorXd weights = loss_weights(minimum.where.residuals, loss).cwiseSqrt();
+  Eigen::MatrixXd jacobian = weights.asDiagonal() * minimum.where.jacobian;
+  const Eigen::Index count = jacobian.cols();
+  Eigen::VectorXd norms = jacobian.colwise().norm();
+  Covariance result;
+  std::vector<bool> is_held;
+  const double largest_norm = norms.maxCoeff();
+  for (Eigen::Index j = 0; j < count; ++j) {
+    is_held.push_back(is_at_bound(minimum.where.at[j]));
+    const bool is_seen = norms[j] > std::max(kNullShare * kNullShare * largest_norm, kUnseen * std::sqrt(scale));
+    jacobian.col(j) *= is_held.back() || !is_seen ? 0.0 : 1.0 / norms[j];
+    if (!is_seen) norms[j] = 1.0;
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeThinU | Eigen::ComputeFullV);
+  Eigen::MatrixXd& covariance = result.of_coordinates;
+  covariance = Eigen::MatrixXd::Zero(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::VectorXd right = svd.matrixV().col(i);
+    const double singular = i < svd.singularValues().size() ? svd.singularValues()[i] : 0.0;
+    const Eigen::VectorXd along = right.cwiseQuotient(norms);
+    const double length = along.cwiseAbs().maxCoeff();
+    Eigen::Index first = 0;
+    right.cwiseAbs().maxCoeff(&first);
+    const bool is_null = singular <= kNullShare * svd.singularValues()[0];
+    if (is_null && is_held[static_cast<std::size_t>(first)]) continue;
+    if (is_null || singular < length * std::sqrt(scale)) result.directions.push_back({along / length, is_null});
+    if (is_null) {
+      const Eigen::VectorXd infinite =
+          (right.cwiseAbs().array() > kInDirection * right.cwiseAbs().maxCoeff())
+              .select(Eigen::VectorXd::Constant(count, std::numeric_limits<double>::infinity()),
+                      Eigen::VectorXd::Zero(count));
+      covariance.diagonal() += infinite;
+      continue;
+    }
+    ++result.rank;
+    covariance += scale / (singular * singular) * along * along.transpose();
+  }
+  for (Eigen::Index j = 0; j < count; ++j) {
+    if (is_held[static_cast<std::size_t>(j)]) covariance.row(j).setConstant(kNaN), covariance.col(j).setConstant(kNaN);
+  }
+  return result;
+}
+
+Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
+  Eigen::MatrixXd correlation(covariance.rows(), covariance.cols());
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+    for (Eigen::Index j = 0; j < covariance.cols(); ++j) {
+      const double product = covariance(i, i) * covariance(j, j);
+      const bool is_known = std::isfinite(product) && product > 0.0;
+      correlation(i, j) = !is_known ? kNaN : i == j ? 1.0 : covariance(i, j) / std::sqrt(product);
+    }
+  }
+  return correlation;
+}
+
+/// A direction in words.
+std::string words_of(const Direction& direction, const std::vector<Parameter>& parameters) {
+  std::vector<std::string> rising, falling;
+  const Eigen::VectorXd& along = direction.along;
+  for (Eigen::Index j = 0; j < along.size(); ++j) {
+    if (std::abs(along[j]) < kInDirection) continue;
+    (along[j] > 0.0 ? rising : falling).push_back(parameters[static_cast<std::size_t>(j)].key);
+  }
+  if (rising.empty()) std::swap(rising, falling);
+  const std::string extent = direction.is_null ? "at all" : "within its range";
+  if (rising.size() + falling.size() == 1)
+    return fmt::format("the data do not determine {} {}", rising.front(), extent);
+  std::vector<std::string> all = rising;
+  all.insert(all.end(), falling.begin(), falling.end());
+  const std::string names = fmt::format("{}", fmt::join(all, " and "));
+  if (falling.empty()) return fmt::format("the data cannot tell {} apart: both may rise or fall together", names);
+  return fmt::format("the data cannot tell {} apart: {} may rise while {} {}", names, fmt::join(rising, " and "),
+                     fmt::join(falling, " and "), falling.size() == 1 ? "falls" : "fall");
+}
+
+/// One fit while it runs.
+class Fit {
+ public:
+  Fit(const Model& model, MomentsEvaluator& evaluator, const FitOptions& options)
+      : model_(model),
+        options_(options),
+        poll_([this](std::size_t, std::size_t) { return !options_.progress || options_.progress(done_, total_); }),
+        coarse_(model, coarse_tolerance(model), Differences::kForward, evaluator, poll_),
+        fine_(model, fine_tolerance(model), Differences::kCentral, evaluator, poll_),
+        profile_(model, fine_tolerance(model), Differences::kForward, evaluator, poll_),
+        total_(1 + 2 * model.parameters().size()) {}
+
+  std::optional<FitResult> run() {
+    const SearchOptions search{options_.starts, options_.seed, options_.loss, model_.has_uncertainties(),
+                               guess_scale()};
+    minima_ = find_minima(coarse_, fine_, search);
+    if (minima_.empty()) return std::nullopt;
+    for (int i = 0; i < kMostRestarts && find_intervals(); ++i) {
+    }
+    describe();
+    return std::move(result_);
+  }
+
+ private:
+  std::size_t freedom() const { return model_.observation_count() - model_.parameters().size(); }
+
+  /// Whether there is anything to measure the growth of the objective with.
+  bool has_scale() const { return model_.has_uncertainties() || freedom() > 0; }
+
+  /// 1, or the square of a hundredth of what was measured.
+  double guess_scale() const {
+    if (model_.has_uncertainties()) return 1.0;
+    double largest = 0.0;
+    for (const FitData& data : model_.data()) {
+      for (const Observation& one : data.observations) largest = std::max(largest, std::abs(one.value));
+    }
+    return std::pow(std::max(kGuessedShare * largest, fine_.tolerance()), 2);
+  }
+
+  /// 1, or the mean square of the residuals, which the model's own error bounds from below.
+  double find_scale(const Minimum& minimum) const {
+    if (model_.has_uncertainties()) return 1.0;
+    const double mean = freedom() > 0 ? minimum.objective / static_cast<double>(freedom()) : 0.0;
+    return std::max(mean, fine_.tolerance() * fine_.tolerance());
+  }
+
+  std::array<double, 2> rises() const {
+    if (model_.has_uncertainties()) {
+      const boost::math::chi_squared one(1.0);
+      return {boost::math::quantile(one, kLevel68), boost::math::quantile(one, kLevel95)};
+    }
+    const boost::math::students_t t(static_cast<double>(freedom()));
+    const double at_68 = boost::math::quantile(t, 0.5 * (1.0 + kLevel68));
+    const double at_95 = boost::math::quantile(t, 0.5 * (1.0 + kLevel95));
+    return {at_68 * at_68, at_95 * at_95};
+  }
+
+  /// The intervals: around the best minimum, and around others that the data do not rule out. True when a profile led
+  /// to a lower one, which then is the best.
+  bool find_intervals() {
+    result_ = {};
+    result_.scale = find_scale(minima_.front());
+    const Minimum best = minima_.front();
+    covariance_ = covariance_of(best, options_.loss, result_.scale);
+    done_ = 1;
+    for (std::size_t j = 0; j < model_.parameters().size(); ++j) {
+      const Parameter& parameter = model_.parameters()[j];
+      const auto index = static_cast<Eigen::Index>(j);
+      FittedParameter& fitted = result_.parameters.emplace_back();
+      fitted.key = parameter.key;
+      fitted.value = parameter.at(best.where.at[index]);
+      fitted.is_at_bound = is_at_bound(best.where.at[index]);
+      const double deviation = std::sqrt(covariance_.of_coordinates(index, index));
+      if (has_scale() && std::isfinite(deviation)) fitted.standard_error = deviation * parameter.slope(fitted.value);
+    }
+    if (!has_scale()) return false;
+    for (std::size_t i = 0; i < minima_.size(); ++i) {
+      const double excess = (minima_[i].objective - best.objective) / result_.scale;
+      if (excess < rises()[1] && widen_intervals(minima_[i], excess, i == 0)) return true;
+    }
+    return false;
+  }
+
+  /// Widens all intervals to those around a minimum that lies higher than the best by `excess`. True when it is the
+  /// best and a profile led lower.
+  bool widen_intervals(const Minimum& minimum, double excess, bool is_best) {
+    const Eigen::MatrixXd covariance = covariance_of(minimum, options_.loss, result_.scale).of_coordinates;
+    std::vector<ProfileSide> sides(2 * model_.parameters().size());
+    run_together(profile_, sides.size(), [&](Residuals& own, std::size_t i) {
+      const auto index = static_cast<Eigen::Index>(i / 2);
+      const double variance = covariance(index, index);
+      const double deviation = std::isnan(variance) ? kGuessedDeviation : std::sqrt(variance);
+      sides[i] = profile_side(own, minimum, i / 2, direction_of(i), deviation,
+                              {rises()[0] - excess, rises()[1] - excess}, result_.scale, options_.loss);
+    });
+    done_ = std::min(done_ + sides.size(), total_);
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      if (sides[i].lower) {
+        // Toward a minimum that is lower anyway its own interval goes on.
+        if (is_best && take(*sides[i].lower)) return true;
+        continue;
+      }
+      FittedParameter& fitted = result_.parameters[i / 2];
+      if (excess < rises()[0]) widen(fitted.interval_68, i / 2, direction_of(i), sides[i].ends[0], is_best);
+      widen(fitted.interval_95, i / 2, direction_of(i), sides[i].ends[1], is_best);
+    }
+    return false;
+  }
+
+  /// Of a side of a profile.
+  static int direction_of(std::size_t side) { return side % 2 == 0 ? -1 : 1; }
+
+  void widen(Interval& interval, std::size_t parameter, int direction, const IntervalEnd& end, bool is_first) const {
+    std::optional<double>& known = direction < 0 ? interval.low : interval.high;
+    if (!is_first && !known) return;  // open already
+    if (!end) {
+      known.reset();
+      return;
+    }
+    const double value = model_.parameters()[parameter].at(*end);
+    known = is_first ? value : direction < 0 ? std::min(*known, value) : std::max(*known, value);
+  }
+
+  /// Goes to the bottom below a point; whether that is the new best minimum.
+  bool take(const Minimum& lower) {
+    DescentOptions descent;
+    descent.loss = options_.loss;
+    descent.scale = result_.scale;
+    Minimum bottom = descend(fine_, {lower.where.at, {}, {}}, descent);
+    if (!bottom.has_converged || bottom.objective >= minima_.front().objective) return false;
+    if (bottom.objective > minima_.front().objective - result_.scale) minima_.erase(minima_.begin());  // the same
+    minima_.insert(minima_.begin(), std::move(bottom));
+    return true;
+  }
+
+  void describe() {
+    const Minimum& best = minima_.front();
+    const Prediction prediction = fine_.predicted(best.where.at);
+    result_.correlation = correlation_of(covariance_.of_coordinates);
+    result_.chi_square = best.objective;
+    result_.degrees_of_freedom = freedom();
+    const double freedoms = static_cast<double>(freedom());
+    if (freedom() > 0) {
+      result_.reduced_chi_square = best.objective / freedoms;
+      if (model_.has_uncertainties() && options_.loss == Loss::kSquares) {
+        result_.p_value = boost::math::gamma_q(0.5 * freedoms, 0.5 * best.objective);
+      }
+    }
+    for (std::size_t i = 1; i < minima_.size(); ++i) {
+      result_.minima.push_back({fine_.values(minima_[i].where.at), minima_[i].objective});
+    }
+    result_.tolerance = fine_.tolerance();
+    result_.status = prediction.status;
+    result_.residuals = -best.where.residuals;
+    result_.predicted = fine_.observed(prediction);
+    result_.numerical_error = prediction.error.cwiseProduct(fine_.weights()).maxCoeff() / std::sqrt(result_.scale);
+    result_.evaluations = coarse_.evaluations() + fine_.evaluations() + profile_.evaluations();
+    name_degeneracies();
+    add_criteria();
+  }
+
+  /// A direction that is seen a little counts only where a profile confirms that a parameter in it is open.
+  void name_degeneracies() {
+    result_.determined = covariance_.rank;
+    for (const Direction& direction : covariance_.directions) {
+      bool is_open = direction.is_null;
+      for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
+        const Interval& interval = result_.parameters[j].interval_68;
+        is_open = is_open || (std::abs(direction.along[static_cast<Eigen::Index>(j)]) >= kInDirection &&
+                              !interval.low && !interval.high);
+      }
+      if (is_open) result_.degeneracies.push_back(words_of(direction, model_.parameters()));
+    }
+  }
+
+  void add_criteria() {
+    const auto points = static_cast<double>(model_.observation_count());
+    auto parameters = static_cast<double>(result_.determined);
+    double misfit = result_.chi_square;
+    if (!model_.has_uncertainties()) {
+      misfit = points * std::log(std::max(result_.chi_square, std::numeric_limits<double>::min()) / points);
+      parameters += 1.0;  // the scale
+    }
+    result_.aic = misfit + 2.0 * parameters;
+    result_.bic = misfit + std::log(points) * parameters;
+  }
+
+  const Model& model_;
+  const FitOptions& options_;
+  Progress poll_;
+  Residuals coarse_, fine_, profile_;
+  std::size_t done_ = 0, total_;
+  std::vector<Minimum> minima_;
+  Covariance covariance_;
+  FitResult result_;
+};
+
+}  // namespace
+
+std::optional<FitResult> fit(const Model& model, MomentsEvaluator& evaluator, const FitOptions& options) {
+  return Fit(model, evaluator, options).run();
+}
+
+}  // namespace dolp::fit

@@ -1,0 +1,230 @@
+#include "fit/model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include "base/error.hpp"
+#include "model/moments.hpp"
+#include "run/scene_run.hpp"
+#include "scene/scene_keys.hpp"
+#include "scene/scene_reader.hpp"
+#include "scene/text.hpp"
+
+namespace dolp::fit {
+namespace {
+
+// Each point of a list has its own, so that sets which differ in these alone share a call.
+constexpr std::array<std::string_view, 4> kPointKeys = {"surface.n", "surface.k", "surface.sigma", "surface.q"};
+
+bool is_point_key(const std::string& key) { return std::ranges::find(kPointKeys, key) != kPointKeys.end(); }
+
+std::string key_of(const std::string& override_text) {
+  return std::string(trim(std::string_view(override_text).substr(0, override_text.find('='))));
+}
+
+Eigen::VectorXd values_of(const std::vector<Parameter>& parameters, double Parameter::*value) {
+  Eigen::VectorXd values(static_cast<Eigen::Index>(parameters.size()));
+  for (std::size_t j = 0; j < parameters.size(); ++j) values[static_cast<Eigen::Index>(j)] = parameters[j].*value;
+  return values;
+}
+
+Eigen::VectorXd starts_of(const std::vector<Parameter>& parameters) {
+  Eigen::VectorXd values(static_cast<Eigen::Index>(parameters.size()));
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    values[static_cast<Eigen::Index>(j)] = parameters[j].start.value_or(parameters[j].at(0.5));
+  }
+  return values;
+}
+
+/// What an observable is at a point.
+Eigen::RowVector2d components_of(Observable observable, const PointResult& point) {
+  const Eigen::RowVector2d q_u(point.stokes_q / point.stokes_i, point.stokes_u / point.stokes_i);
+  switch (observable) {
+    case Observable::kDolp:  // at 90 degrees it may have a limit where the Stokes parameters have none
+      return q_u.allFinite() ? q_u : Eigen::RowVector2d(point.dolp, 0.0);
+    case Observable::kQOverI:
+      return {q_u[0], 0.0};
+    case Observable::kEmissivityS:
+      return {point.emissivity_s, 0.0};
+    case Observable::kEmissivityP:
+      return {point.emissivity_p, 0.0};
+  }
+  return {};
+}
+
+double error_of(Observable observable, const PointResult& point) {
+  const bool is_dolp = observable == Observable::kDolp || observable == Observable::kQOverI;
+  return is_dolp ? point.error_estimate : 2.0 * point.rho_error_estimate * point.rho_i;
+}
+
+}  // namespace
+
+Model::Model(const SceneText& scene, std::vector<FitData> data, std::vector<Parameter> parameters)
+    : data_(std::move(data)), parameters_(std::move(parameters)) {
+  for (const FitData& one : data_) count_ += one.observations.size();
+  check();
+  for (const Eigen::VectorXd& ends :
+       {values_of(parameters_, &Parameter::low), values_of(parameters_, &Parameter::high)}) {
+    parse(scene, data_.front(), {}, ends);
+  }
+  Eigen::Index first_row = 0;
+  for (const FitData& one : data_) {
+    add_groups(scene, one, first_row);
+    first_row += static_cast<Eigen::Index>(one.observations.size());
+  }
+}
+
+void Model::check() const {
+  if (data_.empty()) throw InputError("--data: at least one file is needed");
+  if (parameters_.empty()) throw InputError("--vary: at least one parameter is needed");
+  for (std::size_t j = 0; j < parameters_.size(); ++j) {
+    const std::string& key = parameters_[j].key;
+    if (std::ranges::find(parameters_.begin(), parameters_.begin() + static_cast<std::ptrdiff_t>(j), key,
+                          &Parameter::key) != parameters_.begin() + static_cast<std::ptrdiff_t>(j)) {
+      throw InputError(fmt::format("--vary {}: appears twice", key));
+    }
+    for (const FitData& one : data_) {
+      if (std::ranges::find(one.overrides, key, key_of) != one.overrides.end()) {
+        throw InputError(fmt::format("--data {}: {} is varied and cannot be fixed too", one.name, key));
+      }
+    }
+  }
+  for (const FitData& one : data_) {
+    if (one.has_uncertainties == has_uncertainties()) continue;
+    throw InputError(fmt::format("{}: column \"uncertainty\" is {}; all data sets have it, or none", one.name,
+                                 one.has_uncertainties ? "there, and not in " + data_.front().name
+                                                       : "missing, and " + data_.front().name + " has it"));
+  }
+  if (parameters_.size() > count_) {
+    throw InputError(fmt::format("--vary: {} parameters and {} measured points; at most as many parameters as points",
+                                 parameters_.size(), count_));
+  }
+}
+
+std::vector<std::string> Model::overrides(const Eigen::VectorXd& values) const {
+  std::vector<std::string> overrides;
+  for (std::size_t j = 0; j < parameters_.size(); ++j) {
+    overrides.push_back(parameters_[j].key + '=' + format_number(values[static_cast<Eigen::Index>(j)]));
+  }
+  return overrides;
+}
+
+Scene Model::parse(const SceneText& scene, const FitData& data, const std::vector<std::string>& own,
+                   const Eigen::VectorXd& values) const {
+  const std::vector<std::string> varied = overrides(values);
+  std::vector<std::string> all = scene.overrides;
+  for (const auto* more : {&data.overrides, &own, &varied}) all.insert(all.end(), more->begin(), more->end());
+  try {
+    return parse_scene(scene.text, scene.path_name, all);
+  } catch (const InputError& error) {
+    // Who typed --vary or --data is told of that.
+    const std::string message = error.what();
+    const auto is_about = [&](const std::string& one) { return message.starts_with("--set " + one + ":"); };
+    if (std::ranges::any_of(varied, is_about)) throw InputError("--vary " + message.substr(6));
+    if (std::ranges::any_of(data.overrides, is_about) || std::ranges::any_of(own, is_about)) {
+      throw InputError(fmt::format("--data {}: {}", data.name, message.substr(6)));
+    }
+    throw;
+  }
+}
+
+void Model::add_groups(const SceneText& scene, const FitData& data, Eigen::Index first_row) {
+  std::map<std::optional<double>, Group> of_wavelength;
+  for (std::size_t i = 0; i < data.observations.size(); ++i) {
+    Group& group = of_wavelength[data.observations[i].wavelength_um];
+    group.observations.push_back(&data.observations[i]);
+    group.rows.push_back(first_row + static_cast<Eigen::Index>(i));
+  }
+  for (auto& [wavelength_um, group] : of_wavelength) {
+    std::vector<std::string> own;
+    if (wavelength_um) {
+      const auto sets_spectrum = [](const std::string& one) { return key_of(one).starts_with("spectrum."); };
+      if (std::ranges::any_of(data.overrides, sets_spectrum) ||
+          std::ranges::find(parameters_, "spectrum.wavelength_um", &Parameter::key) != parameters_.end()) {
+        throw InputError(data.name + ": column \"wavelength_um\" and a spectrum key contradict each other");
+      }
+      own.push_back("spectrum.wavelength_um=" + format_number(*wavelength_um));
+    }
+    group.scene = parse(scene, data, own, starts_of(parameters_));
+    const Surface& surface = group.scene.surface;
+    const bool is_tabulated = group.scene.source && group.scene.source->kind == Source::Kind::kTabulated;
+    if (std::ranges::find(parameters_, "spectrum.wavelength_um", &Parameter::key) != parameters_.end() &&
+        (!surface.material.is_constant() || is_tabulated)) {
+      throw InputError("--vary spectrum.wavelength_um: needs n, k and a source that are constants of the scene");
+    }
+    if (data.zenith_column == "theta_i_deg" && group.scene.geometry.mode != Mode::kBistatic) {
+      throw InputError(data.name + ": column \"theta_i_deg\" needs geometry.mode = \"bistatic\"");
+    }
+    const bool is_emissivity = group.observations.front()->observable == Observable::kEmissivityS ||
+                               group.observations.front()->observable == Observable::kEmissivityP;
+    if (is_emissivity && !group.scene.emission) {
+      throw InputError(data.name + ": emissivities need the table [emission] in the scene");
+    }
+    groups_.push_back(std::move(group));
+  }
+}
+
+Scene Model::with(const Scene& scene, const Eigen::VectorXd& values) const {
+  SceneDraft draft;
+  draft.scene = scene;
+  for (std::size_t j = 0; j < parameters_.size(); ++j) {
+    KeyValue value;
+    value.number = values[static_cast<Eigen::Index>(j)];
+    find_scene_key(parameters_[j].key)->set(draft, value);
+  }
+  return std::move(draft.scene);
+}
+
+std::vector<Prediction> Model::predict(const std::vector<Eigen::VectorXd>& values, double tolerance,
+                                       MomentsEvaluator& evaluator, const Progress& progress) const {
+  const auto rows = static_cast<Eigen::Index>(count_);
+  std::vector<Prediction> predictions(values.size(), {Eigen::MatrixX2d(rows, 2), Eigen::VectorXd(rows)});
+  for (const Group& group : groups_) predict_group(group, values, tolerance, evaluator, progress, predictions);
+  return predictions;
+}
+
+void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>& values, double tolerance,
+                          MomentsEvaluator& evaluator, const Progress& progress,
+                          std::vector<Prediction>& predictions) const {
+  // Sets that agree in all but the keys of points make one call.
+  std::map<std::vector<double>, std::vector<std::size_t>> calls;
+  for (std::size_t set = 0; set < values.size(); ++set) {
+    std::vector<double> common;
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      if (!is_point_key(parameters_[j].key)) common.push_back(values[set][static_cast<Eigen::Index>(j)]);
+    }
+    calls[common].push_back(set);
+  }
+  for (const auto& [common, sets] : calls) {
+    std::vector<SceneEntry> entries;
+    entries.reserve(sets.size() * group.observations.size());
+    Scene scene;
+    for (const std::size_t set : sets) {
+      scene = with(group.scene, values[set]);
+      const Surface& surface = scene.surface;
+      for (const Observation* observation : group.observations) {
+        SceneEntry entry{observation->theta_deg, {surface.sigma, surface.q}, {}};
+        if (surface.material.is_constant()) entry.index = surface.material.constant;
+        entries.push_back(entry);
+      }
+    }
+    scene.accuracy.tolerance = tolerance;
+    const std::vector<PointResult> results = evaluate_scene(scene, entries, evaluator, progress);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      const std::size_t member = i % group.observations.size();
+      Prediction& prediction = predictions[sets[i / group.observations.size()]];
+      const Observable observable = group.observations[member]->observable;
+      prediction.components.row(group.rows[member]) = components_of(observable, results[i]);
+      prediction.error[group.rows[member]] = error_of(observable, results[i]);
+      prediction.status |= results[i].status;
+    }
+  }
+}
+
+}  // namespace dolp::fit

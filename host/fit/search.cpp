@@ -1,0 +1,232 @@
+#include "fit/search.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <boost/random/sobol.hpp>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "fit/together.hpp"
+
+namespace dolp::fit {
+namespace {
+
+constexpr std::size_t kPointsOfAStart = 8;  // of the sequence
+constexpr int kStepsOfARound = 3;
+constexpr int kMostRounds = 15;
+constexpr double kCoarseGain = 0.1;  // of the scale: ends a descent that another one will finish
+constexpr int kStepsToTheBottom = 100;
+constexpr double kBent = 0.05;      // of the squared change of the residuals: less than that off, a way is straight
+constexpr double kFarAbove = 30.0;  // standard deviations of the objective: more than the wider tolerance may hide
+constexpr int kPointsOfALine = 8;   // between two minima
+
+/// Points of the Sobol sequence in the unit cube, all shifted by one vector, modulo 1.
+std::vector<Eigen::VectorXd> sobol_points(std::size_t count, Eigen::Index dimensions, std::uint64_t seed) {
+  boost::random::sobol sequence(static_cast<std::size_t>(dimensions));
+  std::mt19937_64 engine(seed);
+  Eigen::VectorXd shift = Eigen::VectorXd::Zero(dimensions);
+  if (seed != 1) {
+    for (double& one : shift) one = std::generate_canonical<double, 53>(engine);
+  }
+  const double most = static_cast<double>(boost::random::sobol::max());
+  std::vector<Eigen::VectorXd> points(count, Eigen::VectorXd(dimensions));
+  for (Eigen::VectorXd& point : points) {
+    for (Eigen::Index j = 0; j < dimensions; ++j) {
+      const double at = static_cast<double>(sequence()) / most + shift[j];
+      point[j] = at - std::floor(at);
+    }
+  }
+  return points;
+}
+
+/// Where the descents begin: the best points, no two of them close together.
+std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& options) {
+  const std::vector<Parameter>& parameters = residuals.model().parameters();
+  const auto dimensions = static_cast<Eigen::Index>(parameters.size());
+  std::vector<Eigen::VectorXd> points = sobol_points(kPointsOfAStart * options.starts, dimensions, options.seed);
+  const bool has_start =
+      std::ranges::any_of(parameters, [](const Parameter& parameter) { return parameter.start.has_value(); });
+  if (has_start) {
+    Eigen::VectorXd given = Eigen::VectorXd::Constant(dimensions, 0.5);
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+      if (parameters[j].start) given[static_cast<Eigen::Index>(j)] = parameters[j].coordinate(*parameters[j].start);
+    }
+    points.insert(points.begin(), given);
+  }
+  const std::vector<Eigen::VectorXd> found = residuals.at(points);
+  std::vector<double> objectives;
+  for (const Eigen::VectorXd& one : found) {
+    objectives.push_back(one.allFinite() ? objective(one, options.loss) : std::numeric_limits<double>::infinity());
+  }
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin() + (has_start ? 1 : 0), order.end(),
+                   [&](std::size_t a, std::size_t b) { return objectives[a] < objectives[b]; });
+  const double apart = 0.5 * std::pow(static_cast<double>(points.size()), -1.0 / static_cast<double>(dimensions));
+  std::vector<Minimum> starts;
+  for (const std::size_t i : order) {
+    const bool is_near = std::ranges::any_of(
+        starts, [&](const Minimum& one) { return (one.where.at - points[i]).lpNorm<Eigen::Infinity>() < apart; });
+    if (!is_near && std::isfinite(objectives[i])) starts.push_back({.where = {points[i], found[i], {}}});
+    if (starts.size() == options.starts) break;
+  }
+  return starts;
+}
+
+/// The change of the objective that is one standard deviation: 1 with uncertainties, else the mean square residual.
+double scale_of(const SearchOptions& options, const Minimum& minimum) {
+  if (options.has_uncertainties) return options.scale;
+  const auto freedom = static_cast<double>(minimum.where.residuals.size() - minimum.where.at.size());
+  return minimum.objective / std::max(1.0, freedom);
+}
+
+/// A point across a line moved to where the residuals are least, as their derivatives say.
+Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& residuals,
+                         const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& line) {
+  const Eigen::VectorXd along = line.normalized();
+  const Eigen::MatrixXd across = jacobian - jacobian * along * along.transpose();
+  const Eigen::VectorXd moved = point - across.completeOrthogonalDecomposition().solve(residuals);
+  return moved.cwiseMax(0.0).cwiseMin(1.0);
+}
+
+/// Whether the objective falls from point to point, or rises nowhere by more than `scale`.
+bool falls(double from, const std::vector<Eigen::VectorXd>& residuals, Loss loss, double scale) {
+  double least = from;
+  return std::ranges::all_of(residuals, [&](const Eigen::VectorXd& one) {
+    const double here = one.allFinite() ? objective(one, loss) : std::numeric_limits<double>::infinity();
+    const bool is_low = here <= least + scale;
+    least = std::min(least, here);
+    return is_low;
+  });
+}
+
+/// Whether derivatives at a point foretell the residuals at a minimum: nothing parts the two then.
+bool is_straight(const Linearisation& from, const Linearisation& to, double scale) {
+  const Eigen::VectorXd foretold = from.residuals + from.jacobian * (to.at - from.at);
+  return (foretold - to.residuals).squaredNorm() < kBent * ((from.residuals - to.residuals).squaredNorm() + scale);
+}
+
+std::vector<Eigen::VectorXd> points_between(const Linearisation& from, const Minimum& to) {
+  std::vector<Eigen::VectorXd> points;
+  for (int i = 1; i < kPointsOfALine; ++i) {
+    points.push_back(from.at + (to.where.at - from.at) * (static_cast<double>(i) / kPointsOfALine));
+  }
+  return points;
+}
+
+/// Whether the objective falls from a point along the straight line to one of several minima or along the floor of the
+/// valley beside it, but for rises of less than one standard deviation.
+bool leads_down(Residuals& residuals, const Minimum& from, const std::vector<Minimum>& to,
+                const SearchOptions& options) {
+  const auto is_near = [&](const Minimum& one) { return is_straight(from.where, one.where, scale_of(options, one)); };
+  if (std::ranges::any_of(to, is_near)) return true;
+  std::vector<Eigen::VectorXd> points;
+  for (const Minimum& one : to) {
+    const std::vector<Eigen::VectorXd> between = points_between(from.where, one);
+    points.insert(points.end(), between.begin(), between.end());
+  }
+  constexpr auto kBetween = static_cast<std::size_t>(kPointsOfALine - 1);
+  const auto is_down = [&](const std::vector<Eigen::VectorXd>& found) {
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      const auto first = found.begin() + static_cast<std::ptrdiff_t>(i * kBetween);
+      if (falls(from.objective, {first, first + kBetween}, options.loss, scale_of(options, to[i]))) return true;
+    }
+    return false;
+  };
+  const std::vector<Eigen::VectorXd> found = residuals.at(points);
+  if (is_down(found)) return true;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Minimum& one = to[i / kBetween];
+    const Eigen::VectorXd line = one.where.at - from.where.at;
+    if (line.squaredNorm() == 0.0) return true;
+    if (!found[i].allFinite()) continue;
+    const double share = static_cast<double>(i % kBetween + 1) / kPointsOfALine;
+    points[i] = on_floor(points[i], found[i], (1.0 - share) * from.where.jacobian + share * one.where.jacobian, line);
+  }
+  return is_down(residuals.at(points));
+}
+
+/// The lowest first, without those from which the way leads down to a lower one.
+std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, const SearchOptions& options) {
+  std::erase_if(all, [](const Minimum& one) { return !std::isfinite(one.objective); });
+  std::ranges::stable_sort(all, {}, &Minimum::objective);
+  std::vector<Minimum> kept;
+  for (Minimum& one : all) {
+    if (kept.empty() || !leads_down(residuals, one, kept, options)) kept.push_back(std::move(one));
+  }
+  return kept;
+}
+
+/// Descents from several points at once; where they end.
+std::vector<Minimum> descend_all(Residuals& residuals, const std::vector<Minimum>& starts,
+                                 const DescentOptions& options) {
+  std::vector<Minimum> minima(starts.size());
+  run_together(residuals, starts.size(), [&](Residuals& own, std::size_t i) {
+    DescentOptions of_start = options;
+    of_start.radius = starts[i].radius > 0.0 ? starts[i].radius : options.radius;
+    minima[i] = descend(own, starts[i].where, of_start);
+  });
+  return minima;
+}
+
+/// The lowest of descents from several points, all in rounds of a few steps. One that derivatives lead to where a lower
+/// one has been ends with its round: it would go the same way.
+std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> starts, const SearchOptions& options,
+                                   const DescentOptions& descent) {
+  std::vector<Minimum> arrived, passed;
+  for (int round = 0; round < kMostRounds && !starts.empty(); ++round) {
+    std::vector<Minimum> ends = descend_all(residuals, starts, descent);
+    std::ranges::stable_sort(ends, {}, &Minimum::objective);
+    starts.clear();
+    for (Minimum& end : ends) {
+      const auto leads_to = [&](const Minimum& one) {
+        return one.objective <= end.objective && one.where.at != end.where.at &&
+               is_straight(end.where, one.where, scale_of(options, one));
+      };
+      if (!std::isfinite(end.objective) || std::ranges::any_of(passed, leads_to)) continue;
+      passed.push_back(end);
+      (end.has_converged ? arrived : starts).push_back(std::move(end));
+    }
+  }
+  std::ranges::move(starts, std::back_inserter(arrived));
+  return arrived;
+}
+
+/// The same places without what is known of them.
+std::vector<Minimum> places_of(const std::vector<Minimum>& minima) {
+  std::vector<Minimum> places;
+  for (const Minimum& one : minima) places.push_back({.where = {one.where.at, {}, {}}});
+  return places;
+}
+
+}  // namespace
+
+std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const SearchOptions& options) {
+  DescentOptions round;
+  round.loss = options.loss;
+  round.scale = options.scale;
+  round.least_gain = kCoarseGain;
+  round.most_steps = kStepsOfARound;
+
+  std::vector<Minimum> far =
+      distinct(descend_apart(coarse, choose_starts(coarse, options), options, round), coarse, options);
+  if (far.empty()) return far;
+  DescentOptions last_steps;
+  last_steps.loss = options.loss;
+  last_steps.most_steps = kStepsToTheBottom;
+  last_steps.scale = std::max(scale_of(options, far.front()), fine.tolerance() * fine.tolerance());
+  const double most = far.front().objective + kFarAbove * scale_of(options, far.front());
+  const auto end_of_near = std::ranges::find_if(far, [&](const Minimum& one) { return one.objective > most; });
+  const std::vector<Minimum> near(far.begin(), end_of_near);
+  far.erase(far.begin(), end_of_near);
+  std::vector<Minimum> minima = distinct(descend_all(fine, places_of(near), last_steps), fine, options);
+  std::ranges::move(far, std::back_inserter(minima));
+  std::erase_if(minima, [](const Minimum& one) { return !one.has_converged; });
+  std::ranges::stable_sort(minima, {}, &Minimum::objective);
+  return minima;
+}
+
+}  // namespace dolp::fit

@@ -1,0 +1,29 @@
+// Where a fit begins, and which minima it finds.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "fit/descent.hpp"
+
+namespace dolp::fit {
+
+struct SearchOptions {
+  std::size_t starts = 24;  ///< descents; at most so many
+  std::uint64_t seed = 1;   ///< 1: the Sobol sequence itself; others: shifted by a random vector
+  Loss loss = Loss::kSquares;
+  bool has_uncertainties = true;  ///< else the residuals of a minimum say what a standard deviation is
+  double scale = 1.0;             ///< a change of the objective by one standard deviation, or a guess of it
+};
+
+/// All distinct minima that descents from the best of a Sobol sequence end in, the lowest first. Parameters with a
+/// start add one descent from there. All descents go on at once, in rounds of a few steps, after which those end that
+/// come upon the way of a lower one. `coarse` has a wider tolerance than `fine`: it finds the minima, `fine` goes to
+/// the bottom of those that lie less than 30 standard deviations of the objective above the lowest. A point from which
+/// the floor of a valley leads down to a minimum, or that a rise of less than a standard deviation parts from it, is no
+/// minimum of its own. Empty when no descent converged. Errors: those of the evaluator; Cancelled.
+std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const SearchOptions& options);
+
+}  // namespace dolp::fit

@@ -1,0 +1,374 @@
+"""dolp: infrared degree of linear polarisation (DOLP) of rough surfaces.
+
+>>> import dolp
+>>> scene = dolp.Scene(text='''
+... [surface]
+... n = 1.5
+... k = 0.05
+... sigma = 0.2
+... q = 3.0
+... masking = "smith"
+... [emission]
+... temperature_K = 300.0
+... [spectrum]
+... wavelength_um = 10.0
+... [grid]
+... theta_deg = {from = 0, to = 80, count = 5}
+... ''')
+>>> dolp.evaluate(scene, theta_deg=[0, 40, 80]).dolp.values.round(4)
+array([0.    , 0.0295, 0.1346])
+
+Names and units are those of scene files and tables: angles in degrees, wavelengths in um, temperatures in K. Results are
+xarray Datasets with the variables, units and meanings that table files have, and the same bits that the command line
+computes; `dataset.dolp.plot()` draws. Every entry has its error bound in `error_estimate`.
+
+The device and its kernels are kept between calls. A long call lets Python's other threads run, and Ctrl-C ends it. A
+process that was forked from one that has used a Vulkan device gets a DeviceError: start processes afresh
+(multiprocessing.set_start_method("spawn")), or take evaluator="cpu". Errors: InputError (a ValueError) with one line
+that says what is allowed, DeviceError (a RuntimeError), IoError (an OSError).
+"""
+from __future__ import annotations
+
+import functools
+import json
+import os
+import pathlib
+import tempfile
+from collections.abc import Hashable, Mapping
+from typing import Any, NamedTuple, Union
+
+import numpy as np
+import xarray as xr
+
+from . import _native
+from ._native import DeviceError, InputError, IoError
+
+__all__ = ["DeviceError", "Fit", "InputError", "IoError", "Plan", "Scene", "citation", "devices", "evaluate", "fit", "keys", "lookup", "materials",
+           "mueller", "plan", "table", "write_table"]
+__version__ = _native.version()
+
+Path = Union[str, "os.PathLike[str]"]
+Array = Union[float, "np.ndarray", "xr.DataArray", "list[float]"]
+
+_COORDINATES = {
+    "theta_deg": ("zenith angle", "degree"), "sigma": ("width sigma of the slope distribution", "1"),
+    "q": ("exponent q of the slope distribution", "1"), "n": ("refractive index n", "1"),
+    "k": ("refractive index k", "1"), "wavelength_um": ("wavelength", "um"),
+    "theta_i_deg": ("zenith angle of incidence", "degree"), "theta_r_deg": ("zenith angle of the view", "degree"),
+    "delta_phi_deg": ("azimuth between the directions, 180 on the specular side", "degree")}
+
+
+class Scene:
+    """A surface, what it radiates and reflects, and how accurate results are to be: a scene file, or its text.
+
+    Parameters: a path or `text`, then overrides of any key of a scene.
+
+    >>> smooth = dolp.Scene(scene, {"surface.sigma": 0.01, "title": "a mirror"})
+    >>> smooth.title
+    'a mirror'
+    >>> dolp.Scene(scene, {"surface.sigma": -1})
+    Traceback (most recent call last):
+    dolp._native.InputError: --set surface.sigma=-1: -1 is out of range; must be a number in [0, 10]
+    """
+
+    def __init__(self, path: Path | Scene | None = None, overrides: Mapping[str, Any] | None = None, *,
+                 text: str | None = None) -> None:
+        if (path is None) == (text is None):
+            raise InputError("Scene: needs either a path or text")
+        words = _words(overrides or {})
+        if isinstance(path, Scene):
+            self._native = path._native.using(words)
+        elif path is not None:
+            self._native = _native.Scene.from_file(path, words)
+        else:
+            self._native = _native.Scene.from_text(text, words, "text")
+
+    @property
+    def title(self) -> str:
+        """The scene's title."""
+        return self._native.title
+
+    def toml(self) -> str:
+        """The scene with its overrides applied, as a scene file has it."""
+        return self._native.toml()
+
+    def __repr__(self) -> str:
+        return self.toml()
+
+
+class Plan:
+    """What a table of a scene would compute and leave out, why, and what it would cost; prints as a report.
+
+    `values` is what `dolp plan --json` prints, as a dictionary.
+    """
+
+    def __init__(self, text: str, values: dict[str, Any]) -> None:
+        self.text, self.values = text, values
+
+    def __repr__(self) -> str:
+        return self.text
+
+
+class Fit:
+    """What a fit found; prints as a report.
+
+    `values` is what `dolp fit --json` prints, as a dictionary: parameters with values and intervals, correlation,
+    chi_square, p_value, minima, residuals. `scene` has the values that were found.
+    """
+
+    def __init__(self, text: str, values: dict[str, Any], scene: Scene) -> None:
+        self.text, self.values, self.scene = text, values, scene
+
+    def __getitem__(self, key: str) -> float:
+        """The value of a parameter."""
+        return next(one["value"] for one in self.values["parameters"] if one["key"] == key)
+
+    def __repr__(self) -> str:
+        return self.text
+
+
+def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
+          **axes: Array) -> xr.Dataset:
+    """The table over the scene's grid: a Dataset that is what the file would hold.
+
+    `axes` (theta_deg, sigma, q, wavelength_um, n, k) replace those of the scene.
+
+    >>> t = dolp.table(scene, theta_deg=[0, 60], sigma=[0.1, 0.2, 0.3])
+    >>> dict(t.sizes)["theta"], dict(t.sizes)["sigma"], t.dolp.units, t.theta.units
+    (2, 3, '1', 'degree')
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "table.nc"
+        write_table(scene, path, evaluator=evaluator, device=device, keep_all=keep_all, **axes)
+        return xr.load_dataset(path)
+
+
+def write_table(scene: Scene, path: Path, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
+                **axes: Array) -> None:
+    """The same into a file (.nc, .csv or .npy), part by part, so that memory does not grow with the table.
+
+    >>> dolp.write_table(scene, "/tmp/table_of_scene.nc")
+    """
+    with_axes = Scene(scene, {f"grid.{axis}": np.atleast_1d(values) for axis, values in axes.items()})
+    _evaluator(evaluator, device).write_table(with_axes._native, path, keep_all)
+
+
+def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
+             **points: Array) -> xr.Dataset:
+    """The quantities of a table at points: a Dataset of the shape to which the arrays broadcast.
+
+    `points` (theta_deg, sigma, q, wavelength_um, n, k): what they do not say comes from the scene. DataArrays keep their
+    dimensions. Of other arrays, one that has a dimension to itself gives that its name and coordinate.
+
+    >>> float(dolp.evaluate(scene, theta_deg=40).dolp.round(4))
+    0.0295
+    >>> d = dolp.evaluate(scene, theta_deg=np.array([[0], [40]]), sigma=[0.1, 0.2, 0.3])
+    >>> d.dolp.dims, d.dolp.shape
+    (('theta_deg', 'sigma'), (2, 3))
+    """
+    frame, columns = _columns(points)
+    return _dataset(_evaluator(evaluator, device).evaluate(scene._native, columns, keep_all), frame)
+
+
+def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
+    """A table between its entries: error estimates contain the interpolation.
+
+    `table`: a file, or a Dataset from `table`. `points`: as for `evaluate`; an axis of one value needs none.
+
+    >>> t = dolp.table(scene, theta_deg=np.linspace(0, 80, 41))
+    >>> bool(abs(dolp.lookup(t, theta_deg=33).dolp - dolp.evaluate(scene, theta_deg=33).dolp) < 1e-5)
+    True
+    """
+    if isinstance(table, xr.Dataset):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "table.nc"
+            table.to_netcdf(path)
+            return lookup(path, **points)
+    frame, columns = _columns(points)
+    return _dataset(_native.Table.read(table).lookup(columns), frame)
+
+
+def mueller(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **points: Array) -> np.ndarray:
+    """Mueller matrices of the pBRDF in 1/sr, shape (..., 4, 4): of theta_i_deg, theta_r_deg, delta_phi_deg.
+
+    `delta_phi_deg` is 180 on the specular side. Also sigma, q, n, k. NaN where the model has no finite value.
+
+    >>> m = dolp.mueller(scene, theta_i_deg=[10, 20, 30], theta_r_deg=30, delta_phi_deg=180)
+    >>> m.shape, bool(m[2, 0, 0] > m[0, 0, 0])
+    ((3, 4, 4), True)
+    """
+    frame, columns = _columns(points)
+    matrices = _evaluator(evaluator, device).mueller(scene._native, columns)
+    return matrices.reshape(frame.shape + (4, 4))
+
+
+def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, starts: int = 24, seed: int = 1,
+        evaluator: str = "vulkan", device: str = "") -> Fit:
+    """Numbers of a scene from measured data, with profile-likelihood intervals.
+
+    `data`: a CSV file, or columns by name (a dictionary, a Dataset, a pandas DataFrame): theta_deg or theta_i_deg; dolp,
+    q_over_i (signed) or emissivity_s, emissivity_p; uncertainty (one standard deviation), wavelength_um. A list has
+    several sets, each alone or as a pair (data, overrides). `vary`: (low, high) or (low, high, start) of each key.
+
+    >>> truth = dolp.evaluate(scene, theta_deg=np.arange(5, 85, 5), n=1.6)
+    >>> data = {"theta_deg": truth.theta_deg, "dolp": truth.dolp, "uncertainty": np.full(16, 0.001)}
+    >>> found = dolp.fit(scene, data, {"surface.n": (1.1, 3)})
+    >>> round(found["surface.n"], 4), found.values["parameters"][0]["interval_95"][0] < 1.6
+    (1.6, True)
+    """
+    sets = [one if isinstance(one, tuple) else (one, {}) for one in (data if isinstance(data, list) else [data])]
+    texts = [(_csv(columns), _words(overrides)) for columns, overrides in sets]
+    ranges = [f"{key}={':'.join(repr(float(end)) for end in ends)}" for key, ends in vary.items()]
+    text, values, found = _evaluator(evaluator, device).fit(scene._native, texts, ranges, starts, seed)
+    fitted = Scene.__new__(Scene)
+    fitted._native = found
+    return Fit(text, json.loads(values), fitted)
+
+
+def plan(scene: Scene, *, device: str = "", keep_all: bool = False) -> Plan:
+    """What a table over the scene's grid would compute, leave out and cost; nothing is computed.
+
+    >>> dolp.plan(scene).values["entries"]
+    5
+    """
+    text, values = _native.plan(scene._native, device, keep_all)
+    return Plan(text, json.loads(values))
+
+
+def devices() -> list[dict[str, Any]]:
+    """The Vulkan devices of this machine: name, type, driver, api_version, usable, why_not, has_double, memory_bytes."""
+    return _native.devices()
+
+
+def keys() -> dict[str, dict[str, str]]:
+    """The keys that scenes have, with unit, allowed values, default and meaning.
+
+    >>> dolp.keys()["surface.sigma"]["allowed"]
+    'a number in [0, 10]'
+    """
+    names = ("unit", "allowed", "default", "meaning")
+    return {key: dict(zip(names, facts)) for key, *facts in _native.keys()}
+
+
+def materials() -> dict[str, dict[str, Any]]:
+    """The built-in materials, with the wavelengths at which they are known, in um, and the source.
+
+    >>> dolp.materials()["gold (Ordal)"]["from_um"] <= 8
+    True
+    """
+    return {name: {"from_um": low, "to_um": high, "source": source} for name, low, high, source in _native.materials()}
+
+
+def citation() -> str:
+    """How to cite the program and its model, in the Citation File Format."""
+    return _native.citation()
+
+
+@functools.lru_cache(maxsize=None)
+def _evaluator(evaluator: str, device: str) -> _native.Evaluator:
+    return _native.Evaluator(evaluator, device)
+
+
+def _words(overrides: Mapping[str, Any]) -> list[str]:
+    """As --set takes them."""
+    return [f"{key}={_toml(value)}" for key, value in overrides.items()]
+
+
+def _csv(data: Any) -> str:
+    """The text of a file, or columns as one."""
+    if isinstance(data, (str, os.PathLike)):
+        return pathlib.Path(data).read_text(encoding="utf-8")
+    names = list(data.variables) if isinstance(data, xr.Dataset) else list(data.keys())
+    columns = np.broadcast_arrays(*(np.asarray(data[name], dtype=float) for name in names))
+    rows = zip(*(column.ravel().tolist() for column in columns))
+    return "\n".join([",".join(names), *(",".join(map(repr, row)) for row in rows)]) + "\n"
+
+
+def _toml(value: Any) -> str:
+    """A value as a scene file would have it."""
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (int, np.integer)):
+        return str(int(value))
+    if isinstance(value, (float, np.floating)):
+        return repr(float(value))
+    if isinstance(value, (str, os.PathLike)):
+        return json.dumps(os.fspath(value), ensure_ascii=False)
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key} = {_toml(item)}" for key, item in value.items()) + "}"
+    return "[" + ", ".join(_toml(item) for item in np.asarray(value).tolist()) + "]"
+
+
+class _Frame(NamedTuple):
+    """What a result has beside its values."""
+
+    shape: tuple[int, ...]
+    dims: tuple[Hashable, ...]
+    coordinates: dict[Hashable, xr.Variable]
+
+
+def _columns(points: Mapping[str, Array]) -> tuple[_Frame, dict[str, np.ndarray]]:
+    """Columns for the library, of one value where there is one for all, and their common shape with its coordinates."""
+    for name in points:
+        if name not in _COORDINATES:
+            raise InputError(f"points: {name} is none of {', '.join(_COORDINATES)}")
+    if any(isinstance(values, xr.DataArray) for values in points.values()):
+        arrays = {name: xr.DataArray(values) for name, values in points.items()}
+        arrays = dict(zip(arrays, xr.broadcast(*arrays.values())))
+        template = next(iter(arrays.values()))
+        points = {name: array.values for name, array in arrays.items()}
+        shape, dims = template.shape, template.dims
+        coordinates = {name: array.variable.copy(deep=False) for name, array in template.coords.items()}
+    else:
+        points = {name: np.asarray(values, dtype=float) for name, values in points.items()}
+        try:
+            shape = np.broadcast_shapes(*(values.shape for values in points.values()))
+        except ValueError:
+            shapes = ", ".join(f"{name} {values.shape}" for name, values in points.items())
+            raise InputError(f"points: shapes do not broadcast: {shapes}") from None
+        dims, coordinates = _dimensions(points, shape)
+    for name, values in points.items():
+        known = dict(zip(("long_name", "units"), _COORDINATES[name]))
+        if name in coordinates:
+            coordinates[name].attrs.update(known)
+        else:
+            along = dims if values.ndim > 0 else ()
+            coordinates[name] = xr.Variable(along, np.broadcast_to(values, shape) if along else values, known)
+    columns = {name: np.broadcast_to(values, shape if values.ndim > 0 else ()).ravel()
+               for name, values in points.items()}
+    return _Frame(shape, dims, coordinates), columns
+
+
+def _dimensions(points: Mapping[str, np.ndarray],
+                shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, xr.Variable]]:
+    """Names of the dimensions and the coordinates along one of them."""
+    dims, coordinates = [], {}
+    for axis, size in enumerate(shape):
+        along = [name for name, values in points.items()
+                 if values.ndim >= len(shape) - axis and values.shape[axis - len(shape)] == size]
+        if len(along) == 1 and points[along[0]].size == size and along[0] not in coordinates:
+            dims.append(along[0])
+            coordinates[along[0]] = xr.Variable(along[0], points[along[0]].ravel())
+        else:
+            dims.append("point" if len(shape) == 1 else f"point_{axis}")
+    return tuple(dims), coordinates
+
+
+def _dataset(parts: _native.Parts, frame: _Frame) -> xr.Dataset:
+    quantities, status, attributes = parts
+    variables = {}
+    for name, long_name, units, ancillary, values in quantities:
+        known = {"long_name": long_name, "units": units}
+        if ancillary:
+            known["ancillary_variables"] = ancillary
+        variables[name] = xr.Variable(frame.dims, values.reshape(frame.shape), known)
+    variables["status"] = xr.Variable(frame.dims, status.view(np.int32).reshape(frame.shape), _status_attributes())
+    return xr.Dataset(variables, frame.coordinates, attributes)
+
+
+@functools.lru_cache(maxsize=None)
+def _status_attributes() -> dict[str, Any]:
+    bits = _native.status_bits()
+    return {"long_name": "status bits of the entry; 0 where nothing is wrong", "units": "1",
+            "flag_masks": np.array([mask for mask, _ in bits], dtype=np.int32),
+            "flag_meanings": " ".join(meaning for _, meaning in bits)}

@@ -1,0 +1,178 @@
+// The library for Python: arrays and dictionaries in, arrays out; what users see is in dolp/__init__.py.
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+#include <dolp/dolp.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace py = pybind11;
+
+namespace {
+
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Columns = std::map<std::string, Array>;
+
+constexpr auto kSignalsEvery = std::chrono::milliseconds(50);
+
+/// Has another thread call `body(progress)`, while Python's other threads run, and ends it when a signal wants that.
+template <class Body>
+auto interruptible(const Body& body) {
+  std::atomic<bool> goes_on = true;
+  const dolp::Progress progress = [&](std::size_t, std::size_t) { return goes_on.load(); };
+  py::gil_scoped_release others_run;
+  auto result = std::async(std::launch::async, [&] { return body(progress); });
+  while (result.wait_for(kSignalsEvery) != std::future_status::ready) {
+    const py::gil_scoped_acquire python;
+    if (PyErr_CheckSignals() == 0) continue;
+    py::error_already_set interrupt;
+    goes_on = false;
+    {
+      const py::gil_scoped_release end_of_call;
+      result.wait();
+    }
+    throw interrupt;
+  }
+  return result.get();
+}
+
+/// Views of arrays that outlive the result.
+std::vector<dolp::Column> views(const Columns& columns) {
+  std::vector<dolp::Column> all;
+  for (const auto& [name, values] : columns) {
+    all.push_back({name, {values.data(), static_cast<std::size_t>(values.size())}});
+  }
+  return all;
+}
+
+/// An array that owns `values`.
+template <class Value>
+py::array_t<Value> array_of(std::vector<Value> values) {
+  auto* const own = new std::vector<Value>(std::move(values));
+  const py::capsule owner(own, [](void* held) { delete static_cast<std::vector<Value>*>(held); });
+  return py::array_t<Value>(own->size(), own->data(), owner);
+}
+
+/// (quantities: [(name, long_name, units, ancillary, values)], status, attributes).
+py::tuple parts_of(dolp::Results results) {
+  py::list quantities;
+  for (dolp::Results::Quantity& quantity : results.quantities) {
+    const dolp::Variable& known = quantity.variable;
+    quantities.append(py::make_tuple(known.name, known.long_name, known.units, known.ancillary,
+                                     array_of(std::move(quantity.values))));
+  }
+  py::dict attributes;
+  for (const auto& [name, value] : results.attributes) attributes[py::str(name)] = value;
+  return py::make_tuple(quantities, array_of(std::move(results.status)), attributes);
+}
+
+py::dict description(const dolp::Device& device) {
+  using py::literals::operator""_a;
+  return py::dict("name"_a = device.name, "type"_a = device.type, "driver"_a = device.driver,
+                  "api_version"_a = device.api_version, "usable"_a = device.usable, "why_not"_a = device.why_not,
+                  "has_double"_a = device.has_double, "memory_bytes"_a = device.memory_bytes);
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_native, module) {
+  py::register_exception<dolp::InputError>(module, "InputError", PyExc_ValueError);
+  py::register_exception<dolp::DeviceError>(module, "DeviceError", PyExc_RuntimeError);
+  py::register_exception<dolp::IoError>(module, "IoError", PyExc_OSError);
+
+  py::register_exception<dolp::MemoryError>(module, "MemoryError", PyExc_MemoryError);
+
+  py::class_<dolp::Scene>(module, "Scene")
+      .def_static("from_file", &dolp::Scene::from_file)
+      .def_static("from_text", &dolp::Scene::from_text)
+      .def("using", &dolp::Scene::with)
+      .def("toml", &dolp::Scene::toml)
+      .def_property_readonly("title", &dolp::Scene::title);
+
+  py::class_<dolp::Table>(module, "Table")
+      .def_static("read", &dolp::Table::read)
+      .def("lookup", [](const dolp::Table& table, const Columns& columns) {
+        const std::vector<dolp::Column> points = views(columns);
+        return parts_of(interruptible([&](const dolp::Progress& progress) { return table.lookup(points, progress); }));
+      });
+
+  py::class_<dolp::Evaluator>(module, "Evaluator")
+      .def(py::init([](const std::string& evaluator, const std::string& device) {
+        return dolp::Evaluator({evaluator, device});
+      }))
+      .def("write_table",
+           [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const std::filesystem::path& path, bool keep_all) {
+             interruptible([&](const dolp::Progress& progress) {
+               return evaluator.write_table(scene, path, {keep_all, progress, "dolp.table"});
+             });
+           })
+      .def("evaluate",
+           [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const Columns& columns, bool keep_all) {
+             const std::vector<dolp::Column> points = views(columns);
+             return parts_of(interruptible([&](const dolp::Progress& progress) {
+               return evaluator.evaluate(scene, points, {keep_all, progress, "dolp.evaluate"});
+             }));
+           })
+      .def("fit",
+           [](dolp::Evaluator& evaluator, const dolp::Scene& scene,
+              const std::vector<std::pair<std::string, std::vector<std::string>>>& data,
+              const std::vector<std::string>& vary, std::size_t starts, std::uint64_t seed) {
+             std::vector<dolp::MeasuredData> sets;
+             for (const auto& [csv, overrides] : data) {
+               sets.push_back({csv, overrides, "data" + (data.size() > 1 ? std::to_string(sets.size() + 1) : "")});
+             }
+             dolp::Fit fit = interruptible([&](const dolp::Progress& progress) {
+               return evaluator.fit(scene, sets, {vary, starts, seed, progress});
+             });
+             return py::make_tuple(fit.text, fit.json, std::move(fit.scene));
+           })
+      .def("mueller", [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const Columns& columns) {
+        const std::vector<dolp::Column> points = views(columns);
+        const std::vector<dolp::MuellerMatrix> matrices = interruptible(
+            [&](const dolp::Progress& progress) { return evaluator.mueller(scene, points, {.progress = progress}); });
+        py::array_t<double> result({matrices.size(), std::size_t{4}, std::size_t{4}});
+        double* to = result.mutable_data();
+        for (const dolp::MuellerMatrix& matrix : matrices) to = std::copy(matrix.begin(), matrix.end(), to);
+        return result;
+      });
+
+  module.def("plan", [](const dolp::Scene& scene, const std::string& device, bool keep_all) {
+    const dolp::Plan plan = dolp::plan(scene, device, keep_all);
+    return py::make_tuple(plan.text, plan.json);
+  });
+  module.def("devices", [] {
+    py::list all;
+    for (const dolp::Device& device : dolp::devices()) all.append(description(device));
+    return all;
+  });
+  module.def("materials", [] {
+    py::list all;
+    for (const dolp::Material& material : dolp::materials()) {
+      all.append(py::make_tuple(material.name, material.from_um, material.to_um, material.source));
+    }
+    return all;
+  });
+  module.def("keys", [] {
+    py::list all;
+    for (const dolp::Key& key : dolp::keys()) {
+      all.append(py::make_tuple(key.key, key.unit, key.allowed, key.fallback, key.meaning));
+    }
+    return all;
+  });
+  module.def("status_bits", [] {
+    py::list all;
+    for (const dolp::StatusBit& bit : dolp::status_bits()) all.append(py::make_tuple(bit.mask, bit.meaning));
+    return all;
+  });
+  module.def("version", &dolp::version);
+  module.def("commit", &dolp::commit);
+  module.def("citation", &dolp::citation);
+}

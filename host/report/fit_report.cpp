@@ -1,0 +1,200 @@
+#include "report/fit_report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "model/status.hpp"
+
+namespace dolp {
+namespace {
+
+using fit::FitResult;
+using fit::FittedParameter;
+using Json = Report::Json;
+
+constexpr double kStrongCorrelation = 0.9;
+constexpr double kUnlikely = 0.001;  // p-value, on either side
+
+Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+Json json_of(const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); }
+
+Json json_of(const fit::Interval& interval) { return Json::array({json_of(interval.low), json_of(interval.high)}); }
+
+std::string text_of(const std::optional<double>& value, const char* none) {
+  return value ? fmt::format("{:.6g}", *value) : none;
+}
+
+std::string text_of(const fit::Interval& interval) {
+  return fmt::format("{} .. {}", text_of(interval.low, "open"), text_of(interval.high, "open"));
+}
+
+Json parameter_json(const FittedParameter& one) {
+  return {{"key", one.key},
+          {"value", one.value},
+          {"standard_error", json_of(one.standard_error)},
+          {"interval_68", json_of(one.interval_68)},
+          {"interval_95", json_of(one.interval_95)},
+          {"at_bound", one.is_at_bound}};
+}
+
+/// A line for each parameter, and one for each end that its range has before the data say no.
+void add_parameters(Report& report, const fit::Model& model, const FitResult& result) {
+  Json list = Json::array();
+  for (const FittedParameter& one : result.parameters) list.push_back(parameter_json(one));
+  report.value("parameters", list);
+  std::size_t width = 9;
+  for (const FittedParameter& one : result.parameters) width = std::max(width, one.key.size());
+  report.line("  {:<{}}  {:>11}  {:>11}  {:^25}  {:^25}", "parameter", width, "value", "std. error", "68 %", "95 %");
+  for (const FittedParameter& one : result.parameters) {
+    report.line("  {:<{}}  {:>11.6g}  {:>11}  {:^25}  {:^25}{}", one.key, width, one.value,
+                one.standard_error ? fmt::format("{:.2g}", *one.standard_error) : "none", text_of(one.interval_68),
+                text_of(one.interval_95), one.is_at_bound ? "  at its bound" : "");
+  }
+  const bool has_intervals = model.has_uncertainties() || result.degrees_of_freedom > 0;
+  for (std::size_t j = 0; has_intervals && j < result.parameters.size(); ++j) {
+    const FittedParameter& one = result.parameters[j];
+    const fit::Parameter& range = model.parameters()[j];
+    const auto is_open = [](const auto& low, const auto& high) { return !low || !high; };
+    if (!is_open(one.interval_95.low, one.interval_95.high)) continue;
+    const bool is_both = !one.interval_95.low && !one.interval_95.high;
+    report.row("open", "{}: the 95 % interval is not bounded {} within {:g}:{:g}", one.key,
+               is_both                ? "on either side"
+               : !one.interval_95.low ? "below"
+                                      : "above",
+               range.low, range.high);
+  }
+}
+
+void add_correlations(Report& report, const FitResult& result) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {
+    rows.push_back(json_of(Eigen::VectorXd(result.correlation.row(i).transpose())));
+  }
+  report.value("correlation", rows);
+  for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      const double one = result.correlation(i, j);
+      if (!std::isfinite(one)) continue;
+      report.row("correlated", "{} and {}: {:+.3f}{}", result.parameters[static_cast<std::size_t>(j)].key,
+                 result.parameters[static_cast<std::size_t>(i)].key, one,
+                 std::abs(one) > kStrongCorrelation ? ", strongly" : "");
+    }
+  }
+}
+
+/// How well the model fits, and what measures it.
+void add_misfit(Report& report, const fit::Model& model, const FitResult& result) {
+  report.row("minimum", "chi_square {:.6g}, {} degrees of freedom{}{}", key("chi_square", result.chi_square),
+             key("degrees_of_freedom", result.degrees_of_freedom),
+             result.reduced_chi_square ? fmt::format(", reduced {:.4g}", *result.reduced_chi_square) : "",
+             result.p_value ? fmt::format(", p-value {:.3g}", *result.p_value) : "");
+  report.value("reduced_chi_square", result.reduced_chi_square);
+  report.value("p_value", result.p_value);
+  report.value("aic", result.aic);
+  report.value("bic", result.bic);
+  report.value("scale_from", model.has_uncertainties() ? "uncertainties" : "residuals");
+  report.row_if(!model.has_uncertainties() && result.degrees_of_freedom > 0, "scale",
+                "the data have no uncertainties: the residuals give one of {:.3g}, for intervals and errors",
+                key("residual_standard_deviation", std::sqrt(result.scale)));
+  const double p = result.p_value.value_or(0.5);
+  report.row_if(p < kUnlikely, "misfit",
+                "the model does not fit: the residuals exceed the uncertainties, and the intervals mean little");
+  report.row_if(p > 1.0 - kUnlikely, "misfit", "the residuals are far below the uncertainties, which look too large");
+  report.row_if(!model.has_uncertainties() && result.degrees_of_freedom == 0, "scale",
+                "as many parameters as points: no interval can be given");
+}
+
+void add_minima(Report& report, const FitResult& result) {
+  Json list = Json::array();
+  for (const fit::OtherMinimum& minimum : result.minima) {
+    Json values;
+    std::string text;
+    for (std::size_t j = 0; j < result.parameters.size(); ++j) {
+      const double value = minimum.values[static_cast<Eigen::Index>(j)];
+      values[result.parameters[j].key] = value;
+      text += fmt::format(", {} {:.6g}", result.parameters[j].key, value);
+    }
+    list.push_back({{"values", values}, {"chi_square", minimum.chi_square}});
+    report.row("also", "a local minimum with chi_square {:.6g}{}", minimum.chi_square, text);
+  }
+  report.value("minima", list);
+}
+
+void add_points(Report& report, const fit::Model& model, const FitResult& result) {
+  static constexpr std::array<const char*, 4> kNames = {"dolp", "q_over_i", "emissivity_s", "emissivity_p"};
+  report.value("residuals", json_of(result.residuals));
+  Json points = Json::array();
+  Eigen::Index row = 0;
+  for (const fit::FitData& data : model.data()) {
+    for (const fit::Observation& one : data.observations) {
+      points.push_back({{"data", data.name},
+                        {"quantity", kNames[static_cast<std::size_t>(one.observable)]},
+                        {"theta_deg", one.theta_deg},
+                        {"wavelength_um", json_of(one.wavelength_um)},
+                        {"measured", one.value},
+                        {"uncertainty", json_of(one.uncertainty)},
+                        {"model", result.predicted[row]},
+                        {"residual", result.residuals[row]}});
+      ++row;
+    }
+  }
+  report.value("points", points);
+}
+
+std::string model_text(const ComparedModel& model) { return fmt::format("{}", fmt::join(model.overrides, " ")); }
+
+}  // namespace
+
+void add_fit(Report& report, const fit::Model& model, const FitResult& result) {
+  add_misfit(report, model, result);
+  add_parameters(report, model, result);
+  add_correlations(report, result);
+  for (const std::string& words : result.degeneracies) report.row("degenerate", "{}", words);
+  report.value("degeneracies", result.degeneracies);
+  add_minima(report, result);
+  report.row("error", "of the model at most {:.2g} of an uncertainty; its tolerance {:g}",
+             key("numerical_error", result.numerical_error), key("tolerance", result.tolerance));
+  const std::uint32_t beyond = result.status & kStatusNoDolpPromised;
+  report.row_if(beyond != 0, "status", "{} at some point of the best fit: the model fails there",
+                key("status", result.status));
+  report.row_if((result.status & kStatusToleranceMissed) != 0, "status", "2 at some point: the tolerance is not met");
+  report.value("evaluations", result.evaluations);
+  add_points(report, model, result);
+}
+
+void add_comparison(Report& report, const std::vector<ComparedModel>& models) {
+  Json list = Json::array();
+  double least_aic = std::numeric_limits<double>::infinity();
+  double least_bic = least_aic;
+  std::size_t width = 5;
+  for (const ComparedModel& model : models) {
+    width = std::max(width, model_text(model).size());
+    if (!model.result) continue;
+    least_aic = std::min(least_aic, model.result->aic);
+    least_bic = std::min(least_bic, model.result->bic);
+  }
+  report.line("  {:<{}}  {:>10}  {:>9}  {:>9}", "model", width, "chi_square", "delta AIC", "delta BIC");
+  for (const ComparedModel& model : models) {
+    Json one = {{"overrides", model.overrides}};
+    if (model.result) {
+      const FitResult& result = *model.result;
+      report.line("  {:<{}}  {:>10.5g}  {:>9.2f}  {:>9.2f}", model_text(model), width, result.chi_square,
+                  result.aic - least_aic, result.bic - least_bic);
+      one.update({{"chi_square", result.chi_square}, {"aic", result.aic}, {"bic", result.bic}});
+      for (const FittedParameter& parameter : result.parameters) {
+        one["parameters"].push_back(parameter_json(parameter));
+      }
+    } else {
+      const std::string reason = model.refusal.empty() ? "no minimum was found" : model.refusal;
+      report.line("  {:<{}}  {}", model_text(model), width, reason);
+      one["reason"] = reason;
+    }
+    list.push_back(one);
+  }
+  report.value("models", list);
+}
+
+}  // namespace dolp

@@ -1,0 +1,27 @@
+// What there is to say of a fit.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "fit/fit.hpp"
+#include "report/report.hpp"
+
+namespace dolp {
+
+/// One of the models that --compare asks for.
+struct ComparedModel {
+  std::vector<std::string> overrides;    ///< KEY=VALUE, those of --compare
+  std::optional<fit::FitResult> result;  ///< none where no minimum was found
+  std::string refusal;                   ///< why the scene does not have this combination; empty where it does
+};
+
+/// Adds the minimum, the parameters with their intervals, correlations, what the data cannot tell, other minima, and
+/// the list of the data.
+void add_fit(Report& report, const fit::Model& model, const fit::FitResult& result);
+
+/// Adds the table of compared models, the best first.
+void add_comparison(Report& report, const std::vector<ComparedModel>& models);
+
+}  // namespace dolp

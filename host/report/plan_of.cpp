@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "evaluate/text/profile.hpp"
+#include "model/choices.hpp"
+#include "plan/kernel_data.hpp"
+#include "report/plan_report.hpp"
+#include "run/drawn_entries.hpp"
+#include "run/scene_run.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr std::size_t kLookedAt = 65536;  // entries that influences are bounded at; of more these stand for all
+
+/// The device that a run would take; without one, limits that every device keeps.
+DeviceDescription device_of(const std::string& choice, const Scene& scene, PlanReport& report) {
+  const bool in_double = scene.accuracy.precision == Precision::kDouble;
+  const DeviceList list = list_devices();
+  try {
+    if (list.devices.empty()) throw DeviceError(list.why_empty);
+    const DeviceDescription& device = list.devices[choose_device(list.devices, choice, in_double)];
+    report.device = device.name;
+    return device;
+  } catch (const DeviceError& error) {
+    if (!choice.empty()) throw;
+    report.why_no_device = error.what();
+    DeviceDescription least = least_device();
+    least.float64 = true;
+    return least;
+  }
+}
+
+void add_dispatches(PlanReport& report, const DispatchForecast& of_request) {
+  report.dispatches.dispatches += of_request.dispatches;
+  report.dispatches.tile_invocations = std::max(report.dispatches.tile_invocations, of_request.tile_invocations);
+  report.dispatches.row_width = std::max(report.dispatches.row_width, of_request.row_width);
+  report.dispatches.rows += of_request.rows;
+  report.dispatches.slopes += of_request.slopes;
+  report.dispatches.block_shapes = std::max(report.dispatches.block_shapes, of_request.block_shapes);
+  report.dispatches.device_bytes = std::max(report.dispatches.device_bytes, of_request.device_bytes);
+}
+
+/// `more`: what else distinguishes the pipeline.
+void add_pipeline(PlanReport& report, const char* kernel, Precision precision, const std::string& more = {}) {
+  const Surface& surface = report.scene.surface;
+  const std::string text = fmt::format("{}, {}: distribution {}, masking {}{}", kernel, name_of(precision),
+                                       name_of(surface.distribution), name_of(surface.masking), more);
+  if (std::ranges::find(report.pipelines, text) == report.pipelines.end()) report.pipelines.push_back(text);
+}
+
+void add_request(PlanReport& report, const MomentsRequest& request, const DeviceDescription& device) {
+  add_dispatches(report, dispatch_forecast(request, device));
+  const KernelData data = kernel_data(request);
+  report.rule = {data.rule.digits, data.rule_order};
+  std::string more;
+  if (request.scattering == Scattering::kMultiple) more += ", all bounces";
+  if (request.wants_direct) more += ", direct emission";
+  add_pipeline(report, has_profiles(request) ? "slopes" : "moments", request.precision, more);
+  if (data.needs_masking_table()) add_pipeline(report, "masking_table", request.precision);
+}
+
+void add_request(PlanReport& report, const ScatteringRequest& request, const DeviceDescription& device) {
+  add_dispatches(report, dispatch_forecast(request, device));
+  add_pipeline(report, "mueller", request.precision);
+}
+
+/// The evaluations were counted entry by entry; on the device those of a row are made once. Its nodes are those that
+/// its hardest member needs, hence estimated.
+void share_evaluations(PlanReport& report) {
+  if (report.dispatches.row_width == 1) return;
+  report.run.first_evaluations *= static_cast<double>(report.dispatches.rows) / static_cast<double>(report.run.moments);
+  report.run.is_exact = false;
+}
+
+void add_forecast(PlanReport& report, const SceneEntries& entries, const DeviceDescription& device) {
+  report.run = predict_run(report.scene, entries, report.plan, device.float64,
+                           {[&](const MomentsRequest& request) { add_request(report, request, device); },
+                            [&](const ScatteringRequest& request) { add_request(report, request, device); }});
+  share_evaluations(report);
+}
+
+/// Evaluations, and values of f.
+struct Work {
+  double moments = 0.0;
+  double beams = 0.0;
+  double total() const { return moments + beams; }
+};
+
+Work work_of(const RunPrediction& run) {
+  return {run.first_evaluations + run.again_evaluations, static_cast<double>(run.beams) + run.again_beams};
+}
+
+/// The work of the run if one more part were not there.
+Work work_without(const PlanReport& report, Part part, const SceneEntries& entries, const DeviceDescription& device) {
+  if (part == Part::kFurtherBounces) {  // the moments stay, but of another kernel
+    PlanReport single;
+    single.scene = report.scene;
+    single.plan = report.plan;
+    single.plan.kept.further_bounces = false;
+    add_forecast(single, entries, device);
+    return work_of(single.run);
+  }
+  const Needs left = needs_without(report.scene, report.plan, part);
+  const Work work = work_of(report.run);
+  return {left.moments ? work.moments : 0.0, left.beams ? work.beams : 0.0};
+}
+
+/// For each effect the share of the evaluations that would not be made without it.
+std::vector<double> work_shares(const PlanReport& report, const SceneEntries& entries,
+                                const DeviceDescription& device) {
+  const double total = work_of(report.run).total();
+  std::vector<double> shares;
+  for (const EffectRow& row : report.effects) {
+    double saved = 0.0;
+    if (row.part && row.state == EffectState::kKept) {
+      saved = total - work_without(report, *row.part, entries, device).total();
+    }
+    shares.push_back(saved > 0.0 ? saved / total : 0.0);
+  }
+  return shares;
+}
+
+}  // namespace
+
+PlanReport plan_of(const Scene& scene, const std::string& device, bool keep_all) {
+  PlanReport report;
+  report.scene = scene;
+  const SceneEntries entries = grid_entries(scene);
+  report.plan = plan_effects(scene, entries, keep_all);
+  report.effects = effect_rows(scene, entries, report.plan);
+  add_influences(report.effects, scene, drawn_entries(entries, kLookedAt));
+  const DeviceDescription limits = device_of(device, scene, report);
+  add_forecast(report, entries, limits);
+  report.work_shares = work_shares(report, entries, limits);
+  return report;
+}
+
+}  // namespace dolp

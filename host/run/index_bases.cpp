@@ -1,0 +1,46 @@
+#include "run/index_bases.hpp"
+
+#include <algorithm>
+
+#include "run/part_requests.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr std::size_t kLeastEntries = 24;  // of an index: its weights take as long as some of them
+
+std::vector<OpticalConstants> indices_of(const Scene& scene, const SceneEntries& entries) {
+  const SceneEntries whole = SceneEntries::of_grid(entries.whole_axes(), entries.index());
+  std::vector<OpticalConstants> indices;
+  if (whole.has_own_index()) {
+    PerAxis place{};
+    for (std::size_t& n = place[static_cast<std::size_t>(Axis::kN)]; n < at(whole.counts(), Axis::kN); ++n) {
+      std::size_t& k = place[static_cast<std::size_t>(Axis::kK)];
+      for (k = 0; k < at(whole.counts(), Axis::kK); ++k) indices.push_back(whole.index_at(place));
+    }
+    return indices;
+  }
+  for (const std::vector<OpticalConstants>& own : spectral_indices(scene, whole)) {
+    if (indices.size() < own.size() || !std::ranges::equal(own, std::span(indices).last(own.size())))
+      indices.insert(indices.end(), own.begin(), own.end());
+  }
+  return indices;
+}
+
+}  // namespace
+
+IndexBases::IndexBases(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan) {
+  const bool has_bounces = plan.kept.further_bounces && scene.surface.scattering == Scattering::kMultiple;
+  const PerAxis& counts = entries.whole();
+  const bool pays = at(counts, Axis::kTheta) * at(counts, Axis::kSigma) * at(counts, Axis::kQ) >= kLeastEntries;
+  if (entries.is_grid() && pays && plan.needs_moments && !has_bounces) indices_ = indices_of(scene, entries);
+}
+
+std::shared_ptr<const IndexBasis> IndexBases::of(const RefinementLevel& level) {
+  if (!level.may_interpolate || indices_.empty()) return nullptr;
+  const auto [place, is_new] = of_tolerance_.try_emplace(level.tolerance);
+  if (is_new) place->second = IndexBasis::of(indices_, level.tolerance);
+  return place->second;
+}
+
+}  // namespace dolp

@@ -1,0 +1,30 @@
+// From which of a run's indices the moments of the others are combined.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "model/index_basis.hpp"
+#include "model/scene_entry.hpp"
+#include "plan/effects.hpp"
+#include "plan/refinement.hpp"
+#include "scene/scene.hpp"
+
+namespace dolp {
+
+/// The bases of a run, one for each tolerance. They follow from the whole grid, of which the entries may be a part.
+class IndexBases {
+ public:
+  IndexBases(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan);
+
+  /// Of a level that may interpolate; null where nothing is gained: for points, few entries of each
+  /// index, few indices and many bounces.
+  std::shared_ptr<const IndexBasis> of(const RefinementLevel& level);
+
+ private:
+  std::vector<OpticalConstants> indices_;  ///< of the run; none where they are not combined
+  std::map<double, std::shared_ptr<const IndexBasis>> of_tolerance_;
+};
+
+}  // namespace dolp

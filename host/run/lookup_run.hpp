@@ -1,0 +1,21 @@
+// A table read between its entries at scattered points.
+#pragma once
+
+#include <vector>
+
+#include "base/progress.hpp"
+#include "model/point_result.hpp"
+#include "scene/points.hpp"
+#include "scene/scene.hpp"
+#include "table/table_lookup.hpp"
+
+namespace dolp {
+
+/// What a table says at points; sigma, q and wavelength that they lack are those of `scene`, the table's own. An axis
+/// of one value needs no column; n, k and wavelength, where the table has no axis of them, must be the table's.
+/// Errors: InputError that names the point, column, value and what the table has; Cancelled when `progress` returns
+/// false.
+std::vector<PointResult> lookup_points(const TableLookup& lookup, const Scene& scene, const Points& points,
+                                       const Progress& progress);
+
+}  // namespace dolp

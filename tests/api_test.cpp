@@ -1,0 +1,154 @@
+// The library as its users see it: this file includes the public header alone.
+#include <gtest/gtest.h>
+#include <dolp/dolp.hpp>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace {
+
+const std::string kScene = R"([surface]
+n = 1.5
+k = 0.05
+sigma = 0.2
+q = 3.0
+masking = "v-cavity"
+[emission]
+temperature_K = 300.0
+[spectrum]
+wavelength_um = 10.0
+[grid]
+theta_deg = [0, 30, 60]
+sigma = [0.1, 0.4]
+q = [2, 3.5]
+)";
+
+class Library : public testing::Test {
+ protected:
+  void SetUp() override {
+    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::temp_directory_path() / ("dolp-library-" + std::string(test.name()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path folder_;
+  dolp::Scene scene_ = dolp::Scene::from_text(kScene);
+  dolp::Evaluator evaluator_{{.evaluator = "cpu"}};
+};
+
+TEST_F(Library, Tables_InMemoryAndInAFile_AreTheSameBits_AndPointsAgree) {
+  const dolp::Table table = evaluator_.table(scene_);
+  EXPECT_EQ(table.axes(), (std::vector<std::string>{"theta", "sigma", "q"}));
+  const auto path = evaluator_.write_table(scene_, folder_ / "t.nc");
+  const dolp::Table read = dolp::Table::read(path);
+  const std::vector<double> theta = {60, 60}, sigma = {0.1, 0.4}, q = {3.5};
+  const dolp::Results points = evaluator_.evaluate(scene_, {{"theta_deg", theta}, {"sigma", sigma}, {"q", q}});
+  for (const dolp::Variable& variable : table.variables()) {
+    const auto values = table.values(variable.name);
+    ASSERT_EQ(values.size(), 12U);
+    const auto of_file = read.values(variable.name);
+    for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(values[i], of_file[i]) << variable.name << i;
+  }
+  const auto agree = [&](std::size_t point, std::size_t entry) {
+    const double error = table.values("error_estimate")[entry] + points.values("error_estimate")[point];
+    EXPECT_LE(std::abs(points.values("dolp")[point] - table.values("dolp")[entry]), error);
+  };
+  agree(0, 9);
+  agree(1, 11);
+}
+
+TEST_F(Library, PartsOfATable_AreTheTable) {
+  const dolp::Scene scene = scene_.with({"surface.masking=none", "surface.distribution=gaussian", "grid.q=[2]",
+                                         "grid.theta_deg={from=0, to=80, count=1200}",
+                                         "grid.sigma={from=0.1, to=1, count=1000}", "accuracy.tolerance=1e-2"});
+  const dolp::Table whole = evaluator_.table(scene);
+  const auto expected = whole.values("dolp");
+  std::size_t entries = 0, parts = 0;
+  evaluator_.table_parts(scene, [&](const dolp::Table& part) {
+    ++parts;
+    EXPECT_EQ(part.axis("theta")[0], whole.axis("theta")[entries / 1000]);
+    for (const double value : part.values("dolp")) EXPECT_EQ(value, expected[entries++]);
+  });
+  EXPECT_EQ(entries, 1'200'000U);
+  EXPECT_GT(parts, 1U);
+}
+
+TEST_F(Library, Shards_AreFilesOfTheirOwn) {
+  EXPECT_EQ(evaluator_.write_table(scene_, folder_ / "t.nc", {}, {2, 3}).filename(), "t.2-of-3.nc");
+}
+
+TEST_F(Library, Lookup_BetweenEntries_StatesItsError) {
+  const dolp::Table table =
+      evaluator_.table(scene_.with({"grid.theta_deg={from=0, to=80, count=41}", "grid.sigma=[0.2]", "grid.q=[3]"}));
+  const std::vector<double> theta = {33.3};
+  const dolp::Results found = table.lookup({{"theta_deg", theta}});
+  const dolp::Results exact = evaluator_.evaluate(scene_, {{"theta_deg", theta}});
+  EXPECT_LE(std::abs(found.values("dolp")[0] - exact.values("dolp")[0]),
+            found.values("error_estimate")[0] + exact.values("error_estimate")[0]);
+}
+
+TEST_F(Library, Mueller_OfSpecularPair_Reflects) {
+  const std::vector<double> theta = {40}, azimuth = {180};
+  const auto matrices =
+      evaluator_.mueller(scene_, {{"theta_i_deg", theta}, {"theta_r_deg", theta}, {"delta_phi_deg", azimuth}});
+  ASSERT_EQ(matrices.size(), 1U);
+  EXPECT_GT(matrices[0][0], 0.0);
+}
+
+TEST_F(Library, WrongInput_IsAnInputError_OfOneLine) {
+  const auto line_of = [](const auto& call) {
+    try {
+      call();
+    } catch (const dolp::InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  const std::vector<double> theta = {95};
+  for (const std::string& line : {line_of([&] { dolp::Scene::from_file(folder_ / "none.toml"); }),
+                                  line_of([&] { scene_.with({"surface.n=0"}); }), line_of([&] {
+                                    evaluator_.evaluate(scene_, {{"theta_deg", theta}});
+                                  }),
+                                  line_of([&] {
+                                    evaluator_.evaluate(scene_, {{"zenith", theta}});
+                                  }),
+                                  line_of([&] { dolp::Evaluator({.evaluator = "abacus"}).table(scene_); }),
+                                  line_of([&] { evaluator_.table(scene_).values("colour"); })}) {
+    EXPECT_NE(line, "no error");
+    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+  }
+  EXPECT_THROW(evaluator_.write_table(scene_, folder_ / "none" / "t.nc"), dolp::IoError);
+}
+
+TEST_F(Library, AProgressThatReturnsFalse_Cancels_AndLeavesNoFile) {
+  const dolp::RunOptions options = {.progress = [](std::size_t, std::size_t) { return false; }};
+  EXPECT_THROW(evaluator_.write_table(scene_, folder_ / "t.nc", options), dolp::Cancelled);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
+TEST_F(Library, AnEvaluator_ServesSeveralThreads) {
+  const std::vector<double> theta = {10, 50};
+  const dolp::Results expected = evaluator_.evaluate(scene_, {{"theta_deg", theta}});
+  std::vector<dolp::Results> found(4);
+  std::vector<std::thread> threads;
+  for (dolp::Results& results : found) {
+    threads.emplace_back([&] { results = evaluator_.evaluate(scene_, {{"theta_deg", theta}}); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const dolp::Results& results : found) {
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(results.values("dolp")[i], expected.values("dolp")[i]);
+  }
+}
+
+TEST_F(Library, Facts_AreThere) {
+  EXPECT_FALSE(dolp::keys().empty());
+  EXPECT_NE(dolp::citation().find("cff-version"), std::string::npos);
+  EXPECT_NE(dolp::plan(scene_).text.find("12"), std::string::npos);
+  EXPECT_EQ(dolp::status_bits().size(), 4U);
+}
+
+}  // namespace

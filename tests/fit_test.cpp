@@ -1,0 +1,285 @@
+// Fits: known truths found again, intervals against closed forms and against synthetic measurements.
+#include "fit/fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "base/error.hpp"
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "fit/residuals.hpp"
+
+namespace {
+
+using namespace dolp;
+using namespace dolp::fit;
+
+const std::string kScene = R"([surface]
+n = 1.6
+k = 0.5
+sigma = 0.2
+q = 3
+masking = "smith"
+[emission]
+temperature_K = 300
+[surroundings]
+temperature_K = 200
+[spectrum]
+wavelength_um = 10
+)";
+
+constexpr double kNoise = 0.002;
+
+Parameter number(const std::string& key, double low, double high) { return {key, low, high, {}}; }
+
+/// Q/I of the scene at zeniths up to 80 degrees, exact but for `noise` times the deviates of a seed.
+class FitTest : public testing::Test {
+ protected:
+  FitData measured(double noise, const std::vector<std::string>& overrides = {}, bool has_uncertainties = true,
+                   int points = 20, std::uint64_t seed = 7) {
+    FitData data;
+    data.name = "synthetic";
+    data.zenith_column = "theta_deg";
+    data.has_uncertainties = has_uncertainties;
+    for (int i = 0; i < points; ++i) {
+      data.observations.push_back({Observable::kQOverI, 80.0 * (i + 1) / points, {}, 0.0, {}});
+      if (has_uncertainties) data.observations.back().uncertainty = kNoise;
+    }
+    const Model model({kScene, "scene", overrides}, {data}, {number("surface.n", 1.6, 2.0)});
+    const Eigen::VectorXd truth = Eigen::VectorXd::Constant(1, 1.6);
+    const Prediction exact = model.predict({truth}, 1e-8, evaluator_, {}).front();
+    std::mt19937_64 engine(seed);
+    for (std::size_t i = 0; i < data.observations.size(); ++i) {
+      double deviate = -6.0;  // the sum of twelve uniform numbers is normal enough
+      for (int j = 0; j < 12; ++j) deviate += static_cast<double>(engine() >> 11U) * 0x1p-53;
+      data.observations[i].value = exact.components(static_cast<Eigen::Index>(i), 0) + noise * deviate;
+    }
+    return data;
+  }
+  FitResult fitted(const FitData& data, const std::vector<Parameter>& parameters, FitOptions options = {},
+                   const std::vector<std::string>& overrides = {}) {
+    const Model model({kScene, "scene", overrides}, {data}, parameters);
+    const std::optional<FitResult> result = fit::fit(model, evaluator_, options);
+    EXPECT_TRUE(result.has_value());
+    return result.value_or(FitResult{});
+  }
+
+  CpuEvaluator evaluator_{Precision::kAuto};
+};
+
+TEST_F(FitTest, ExactData_GiveTheTruth) {
+  const FitResult result = fitted(measured(0.0), {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0),
+                                                  number("surface.sigma", 0.02, 1.0)});
+  const double truth[] = {1.6, 0.5, 0.2};
+  for (std::size_t j = 0; j < 3; ++j) {
+    // Without noise the minimum is at the truth; what is left is the model's own error, far below an uncertainty.
+    EXPECT_NEAR(result.parameters[j].value, truth[j], 0.02 * *result.parameters[j].standard_error);
+    EXPECT_FALSE(result.parameters[j].is_at_bound);
+  }
+  EXPECT_LT(result.chi_square, 1e-3);
+  EXPECT_LT(result.numerical_error, 0.01);
+  EXPECT_EQ(result.degrees_of_freedom, 17U);
+  EXPECT_TRUE(result.degeneracies.empty());
+}
+
+TEST_F(FitTest, LinearParameter_IntervalsAreThoseOfTheCovariance) {
+  // rho is linear in k_s, and with the emission of a black body's temperature nearly so is Q/I.
+  const FitResult result =
+      fitted(measured(kNoise), {number("surface.specular", 0.2, 1.0)}, {}, {"surface.specular=0.6"});
+  const FittedParameter& one = result.parameters.front();
+  ASSERT_TRUE(one.interval_68.low && one.interval_95.low && one.interval_68.high && one.interval_95.high);
+  const double error = *one.standard_error;
+  constexpr double kCurvature = 0.05;  // of Q/I in k_s, over the interval
+  EXPECT_NEAR(one.value - *one.interval_68.low, error, kCurvature * error);
+  EXPECT_NEAR(*one.interval_68.high - one.value, error, kCurvature * error);
+  EXPECT_NEAR(one.value - *one.interval_95.low, 1.96 * error, 2.0 * kCurvature * error);
+  EXPECT_NEAR(*one.interval_95.high - one.value, 1.96 * error, 2.0 * kCurvature * error);
+}
+
+TEST_F(FitTest, IntervalEnds_LieWhereTheBestOfTheOthersHasGrownSo) {
+  const FitData data = measured(kNoise);
+  const Parameter sigma = number("surface.sigma", 0.02, 1.0);
+  const FitResult result = fitted(data, {number("surface.n", 1.1, 4.0), sigma});
+  for (const bool is_95 : {false, true}) {
+    const Interval& interval = is_95 ? result.parameters[1].interval_95 : result.parameters[1].interval_68;
+    for (const std::optional<double>& end : {interval.low, interval.high}) {
+      ASSERT_TRUE(end.has_value());
+      const FitResult held =
+          fitted(data, {number("surface.n", 1.1, 4.0)}, {}, {"surface.sigma=" + std::to_string(*end)});
+      // The profile's root is met to 0.5 %, hence its square to 1 %; to_string keeps six digits.
+      EXPECT_NEAR(held.chi_square - result.chi_square, is_95 ? 3.841 : 1.0, 0.015 * (is_95 ? 3.841 : 1.0));
+    }
+  }
+}
+
+TEST_F(FitTest, NoUncertainties_TheResidualsGiveTheScale) {
+  const std::vector<Parameter> parameters = {number("surface.n", 1.1, 4.0), number("surface.sigma", 0.02, 1.0)};
+  const FitResult with = fitted(measured(kNoise), parameters);
+  const FitResult without = fitted(measured(kNoise, {}, false), parameters);
+  EXPECT_FALSE(without.p_value.has_value());
+  EXPECT_NEAR(without.chi_square, with.chi_square * kNoise * kNoise, 1e-3 * without.chi_square);
+  EXPECT_NEAR(without.scale, without.chi_square / 18.0, 1e-9 * without.scale);
+  const double ratio = std::sqrt(*with.reduced_chi_square);
+  for (std::size_t j = 0; j < 2; ++j) {
+    EXPECT_NEAR(without.parameters[j].value, with.parameters[j].value, 0.01 * *with.parameters[j].standard_error);
+    EXPECT_NEAR(*without.parameters[j].standard_error, ratio * *with.parameters[j].standard_error,
+                0.02 * *with.parameters[j].standard_error);
+  }
+}
+
+TEST_F(FitTest, ParameterWithoutInfluence_IsNamedAndOpen) {
+  const FitResult result =
+      fitted(measured(kNoise, {"surface.distribution=gaussian"}),
+             {number("surface.n", 1.1, 4.0), number("surface.q", 1.6, 5.0)}, {}, {"surface.distribution=gaussian"});
+  ASSERT_EQ(result.degeneracies.size(), 1U);
+  EXPECT_EQ(result.degeneracies.front(), "the data do not determine surface.q at all");
+  EXPECT_FALSE(result.parameters[1].standard_error.has_value());
+  EXPECT_FALSE(result.parameters[1].interval_68.low || result.parameters[1].interval_68.high);
+  EXPECT_TRUE(result.parameters[0].interval_95.low && result.parameters[0].interval_95.high);
+  EXPECT_EQ(result.determined, 1U);
+}
+
+TEST_F(FitTest, FactorsOfOneProduct_AreNamedAsAPair) {
+  // Nothing but the source: I and Q are both proportional to k_s times its irradiance, and Q/I depends on neither.
+  const std::vector<std::string> source_alone = {"emission=none", "surroundings=none", "source.irradiance=1"};
+  const FitData data = measured(kNoise, source_alone);
+  const FitResult result = fitted(
+      data, {number("surface.n", 1.1, 4.0), number("surface.specular", 0.2, 0.9), number("source.scale", 0.5, 2.0)}, {},
+      source_alone);
+  ASSERT_EQ(result.degeneracies.size(), 2U);
+  EXPECT_NE((result.degeneracies[0] + result.degeneracies[1]).find("surface.specular"), std::string::npos);
+  EXPECT_NE((result.degeneracies[0] + result.degeneracies[1]).find("source.scale"), std::string::npos);
+  EXPECT_TRUE(result.parameters[0].interval_95.low.has_value());
+}
+
+TEST_F(FitTest, TruthBeyondTheRange_IsAtItsBound) {
+  const FitResult result = fitted(measured(kNoise), {number("surface.n", 1.1, 1.5)});
+  EXPECT_TRUE(result.parameters.front().is_at_bound);
+  EXPECT_EQ(result.parameters.front().value, 1.5);
+  EXPECT_FALSE(result.parameters.front().standard_error.has_value());
+  EXPECT_FALSE(result.parameters.front().interval_95.high.has_value());
+}
+
+TEST_F(FitTest, Outlier_MovesSquaresMoreThanARobustLoss) {
+  FitData data = measured(0.0);
+  data.observations[15].value += 50.0 * kNoise;
+  const std::vector<Parameter> parameters = {number("surface.n", 1.1, 4.0)};
+  const double squares = std::abs(fitted(data, parameters).parameters.front().value - 1.6);
+  for (const Loss loss : {Loss::kHuber, Loss::kSoftL1, Loss::kCauchy, Loss::kTukey}) {
+    FitOptions options;
+    options.loss = loss;
+    const FitResult result = fitted(data, parameters, options);
+    EXPECT_LT(std::abs(result.parameters.front().value - 1.6), 0.3 * squares);
+    EXPECT_FALSE(result.p_value.has_value());
+  }
+}
+
+TEST_F(FitTest, TwoDataSets_ShareParametersAndKeepKeysOfTheirOwn) {
+  FitData warm = measured(0.0);
+  FitData cold = measured(0.0, {"emission.temperature_K=250"});
+  cold.overrides = {"emission.temperature_K=250"};
+  const Model model({kScene, "scene", {}}, {warm, cold}, {number("surface.n", 1.1, 4.0)});
+  const std::optional<FitResult> result = fit::fit(model, evaluator_, {});
+  ASSERT_TRUE(result.has_value());
+  EXPECT_NEAR(result->parameters.front().value, 1.6, 1e-4);
+  EXPECT_LT(result->chi_square, 1e-3);
+  EXPECT_EQ(result->residuals.size(), 40);
+}
+
+TEST_F(FitTest, Intervals_HoldTheTruthAsOftenAsTheySay) {
+  constexpr int kDraws = 40;
+  constexpr double kSpread = 3.0;  // standard deviations of the binomial distribution
+  const std::vector<Parameter> parameters = {number("surface.n", 1.3, 2.0), number("surface.sigma", 0.1, 0.4)};
+  const double truth[] = {1.6, 0.2};
+  for (const bool has_uncertainties : {true, false}) {
+    int held_68 = 0, held_95 = 0;
+    for (int draw = 0; draw < kDraws; ++draw) {
+      FitOptions options;
+      options.starts = 1;
+      const FitResult result =
+          fitted(measured(kNoise, {}, has_uncertainties, 5, static_cast<std::uint64_t>(draw)), parameters, options);
+      const std::size_t j = static_cast<std::size_t>(draw) % 2;  // one a draw: those of a draw are correlated
+      const auto holds = [&](const Interval& interval) {
+        return interval.low.value_or(0.0) <= truth[j] && truth[j] <= interval.high.value_or(10.0);
+      };
+      held_68 += holds(result.parameters[j].interval_68) ? 1 : 0;
+      held_95 += holds(result.parameters[j].interval_95) ? 1 : 0;
+    }
+    const auto expect_share = [&](int held, double share) {
+      EXPECT_NEAR(held, kDraws * share, kSpread * std::sqrt(kDraws * share * (1.0 - share))) << has_uncertainties;
+    };
+    expect_share(held_68, 0.6827);
+    expect_share(held_95, 0.95);
+  }
+}
+
+TEST_F(FitTest, SameSeed_GivesTheSameDigits) {
+  const FitData data = measured(kNoise);
+  const std::vector<Parameter> parameters = {number("surface.n", 1.1, 4.0), number("surface.sigma", 0.02, 1.0)};
+  const FitResult one = fitted(data, parameters);
+  const FitResult two = fitted(data, parameters);
+  EXPECT_EQ(one.parameters[0].value, two.parameters[0].value);
+  EXPECT_EQ(one.parameters[1].interval_95.high, two.parameters[1].interval_95.high);
+  FitOptions other;
+  other.seed = 2;
+  EXPECT_NEAR(fitted(data, parameters, other).parameters[0].value, one.parameters[0].value,
+              0.01 * *one.parameters[0].standard_error);
+}
+
+TEST_F(FitTest, Jacobian_IsThatOfFinerDifferences) {
+  const Model model({kScene, "scene", {}}, {measured(kNoise)},
+                    {number("surface.n", 1.1, 4.0), number("surface.sigma", 0.02, 1.0)});
+  Residuals residuals(model, 2e-5, Differences::kCentral, evaluator_, {});
+  Residuals exact(model, 1e-10, Differences::kCentral, evaluator_, {});
+  const Eigen::VectorXd point = Eigen::Vector2d(0.3, 0.6);
+  residuals.linearised(point);  // finds its steps
+  const Eigen::MatrixXd found = residuals.linearised(point).jacobian;
+  constexpr double kStep = 1e-4;
+  for (Eigen::Index j = 0; j < 2; ++j) {
+    Eigen::VectorXd below = point, above = point;
+    below[j] -= kStep;
+    above[j] += kStep;
+    const std::vector<Eigen::VectorXd> beside = exact.at({below, above});
+    const Eigen::VectorXd slope = (beside[1] - beside[0]) / (2.0 * kStep);
+    EXPECT_LT((found.col(j) - slope).norm(), 2e-3 * slope.norm());
+  }
+}
+
+TEST(FitData, Columns_AreReadAndCheckedLineByLine) {
+  const FitData data =
+      parse_fit_data("# a comment\ntheta_deg,dolp,uncertainty,wavelength_um\n30,0.1,0.01,10\n", "f.csv");
+  ASSERT_EQ(data.observations.size(), 1U);
+  EXPECT_EQ(data.observations.front().observable, Observable::kDolp);
+  EXPECT_EQ(data.observations.front().wavelength_um, 10.0);
+  EXPECT_TRUE(data.has_uncertainties);
+  EXPECT_EQ(parse_fit_data("theta_deg,emissivity_s,emissivity_p\n1,0.8,0.9\n", "f").observations.size(), 2U);
+  const auto message = [](const std::string& text) -> std::string {
+    try {
+      parse_fit_data(text, "f.csv");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  EXPECT_TRUE(message("").starts_with("f.csv:1: the file is empty"));
+  EXPECT_TRUE(message("theta_deg,dolp\n").starts_with("f.csv:1: no points"));
+  EXPECT_TRUE(message("theta_deg,dolp,q_over_i\n1,0,0\n").starts_with("f.csv:1: several measured quantities"));
+  EXPECT_TRUE(message("dolp\n1\n").starts_with("f.csv:1: column \"theta_deg\" is missing"));
+  EXPECT_TRUE(message("theta_deg,dolp\n1,12\n").starts_with("f.csv:2: dolp = 12: out of range"));
+  EXPECT_TRUE(message("theta_deg,dolp,uncertainty\n1,0.1,0\n").starts_with("f.csv:2: uncertainty = 0: out of range"));
+}
+
+TEST(FitParameter, Coordinates_AreLogarithmicOverADecade) {
+  const Parameter wide = parse_parameter("surface.sigma=0.01:1");
+  EXPECT_NEAR(wide.at(0.5), 0.1, 1e-15);
+  const Parameter narrow = parse_parameter("surface.n=1:2:1.25");
+  EXPECT_NEAR(narrow.at(0.5), 1.5, 1e-15);
+  EXPECT_EQ(narrow.start, 1.25);
+  for (const Parameter& one : {wide, narrow}) {
+    EXPECT_NEAR(one.coordinate(one.at(0.3)), 0.3, 1e-14);
+    EXPECT_NEAR(one.slope(one.at(0.3)), (one.at(0.3 + 1e-6) - one.at(0.3 - 1e-6)) / 2e-6, 1e-6);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,178 @@
+// The errors that a lookup states, in random tables, coarse ones too, against the model at random points between the
+// entries. DOLP_PROPERTY_DRAWS and DOLP_PROPERTY_SEED choose how many tables, and which.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <random>
+
+#include "model/status.hpp"
+#include "run/scene_table.hpp"
+#include "scene_run_support.hpp"
+#include "table/table_lookup.hpp"
+
+namespace {
+
+using namespace dolp;
+using namespace scene_run_support;
+
+constexpr std::size_t kTables = 40;
+constexpr std::uint64_t kSeed = 2;
+constexpr std::size_t kPoints = 80;  // of each table
+constexpr double kExact = 1e-7;      // tolerance of what the lookup is compared with
+
+std::size_t from_environment(const char* name, std::size_t otherwise) {
+  const char* text = std::getenv(name);
+  return text ? std::strtoul(text, nullptr, 10) : otherwise;
+}
+
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : engine_(seed) {}
+  double uniform(double low, double high) { return low + (high - low) * std::generate_canonical<double, 53>(engine_); }
+  double in_ratio(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
+  std::size_t count(std::size_t low, std::size_t high) { return low + engine_() % (high - low + 1); }
+  bool chance(double share) { return uniform(0.0, 1.0) < share; }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// Values from an origin in equal steps, or in equal ratios.
+std::vector<double> axis(double first, double last, std::size_t count, double origin, bool in_ratios) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(count - 1);
+    values.push_back(in_ratios ? origin + (first - origin) * std::pow((last - origin) / (first - origin), share)
+                               : first + share * (last - first));
+  }
+  values.back() = last;
+  return values;
+}
+
+/// A scene with a grid of 4 to some 60 values an axis, sometimes with n and k or the wavelength among the axes.
+Scene random_scene(Draw& draw) {
+  const Distribution distribution = draw.chance(0.75) ? Distribution::kCauchy : Distribution::kGaussian;
+  const bool is_metal = draw.chance(0.3);
+  Scene scene = make_scene(distribution, kMaskings[draw.count(0, 3)],
+                           is_metal ? OpticalConstants{draw.in_ratio(1.0, 10.0), draw.in_ratio(1.0, 60.0)}
+                                    : OpticalConstants{draw.uniform(1.1, 3.0), draw.chance(0.5) ? 0.0 : 0.2});
+  if (draw.chance(0.5)) scene.surroundings.reset();
+  if (draw.chance(0.4)) {
+    scene.source.emplace().irradiance = draw.uniform(0.1, 5.0);
+    if (draw.chance(0.5)) scene.geometry = {Mode::kBistatic, draw.uniform(0.0, 75.0), draw.uniform(0.0, 180.0)};
+  }
+  const bool is_coarse = draw.chance(0.5);
+  const auto values = [&](std::size_t most_coarse, std::size_t most_fine) {
+    return is_coarse ? draw.count(4, most_coarse) : draw.count(most_fine / 3, most_fine);
+  };
+  const double sigma = draw.in_ratio(0.01, 0.3);
+  const double q = draw.uniform(1.6, 2.5);
+  scene.grid.theta_deg = axis(0.0, draw.chance(0.3) ? 90.0 : draw.uniform(60.0, 90.0), values(11, 60), 0.0, false);
+  scene.grid.sigma = axis(sigma, sigma * draw.in_ratio(3.0, 30.0), values(7, 24), 0.0, draw.chance(0.5));
+  scene.grid.q = axis(q, q + draw.uniform(1.0, 8.0), values(6, 12), 1.0, draw.chance(0.5));
+  if (distribution == Distribution::kGaussian) scene.grid.q = {2.0};
+  if (draw.chance(0.15)) {
+    scene.grid.sigma.resize(4);
+    scene.grid.q.resize(1);
+    OpticalConstants& index = scene.surface.material.constant;
+    scene.grid.n = axis(index.n, index.n * draw.uniform(1.1, 2.0), draw.count(4, 7), 0.0, draw.chance(0.5));
+    if (index.k > 0.0) scene.grid.k = axis(index.k, index.k * draw.uniform(1.1, 3.0), 4, 0.0, draw.chance(0.5));
+  } else if (draw.chance(0.15)) {
+    scene.grid.q.resize(1);
+    scene.grid.wavelength_um = axis(8.0, draw.uniform(9.0, 14.0), draw.count(4, 8), 0.0, false);
+  }
+  scene.accuracy.tolerance = draw.in_ratio(1e-5, 1e-3);
+  return scene;
+}
+
+Table table_of(const Scene& scene) {
+  const SceneEntries grid = grid_entries(scene);
+  return table_part(table_layout(scene, keep_everything(scene), scene.grid), grid,
+                    evaluate_scene(scene, grid, *make_evaluator(Evaluator::kFloat), {}));
+}
+
+/// Points within the grid, even in the coordinates of a lookup.
+std::vector<TableLookup::Point> random_points(const Grid& grid, Draw& draw) {
+  std::vector<TableLookup::Point> points(kPoints);
+  for (TableLookup::Point& point : points) {
+    for (std::size_t i = 0; i < kGridAxes.size(); ++i) {
+      const std::vector<double>& values = grid.*kGridAxes[i];
+      if (values.empty()) continue;
+      const auto axis = static_cast<Axis>(i);
+      const double origin = axis == Axis::kQ ? 1.0 : 0.0;
+      const double value = axis == Axis::kTheta || values.size() == 1
+                               ? draw.uniform(values.front(), values.back())
+                               : origin + draw.in_ratio(values.front() - origin, values.back() - origin);
+      point[i] = std::clamp(value, values.front(), values.back());
+    }
+  }
+  return points;
+}
+
+std::vector<PointResult> exact_at(const Scene& scene, const std::vector<TableLookup::Point>& points) {
+  std::vector<SceneEntry> entries;
+  std::vector<double> wavelengths;
+  for (const TableLookup::Point& point : points) {
+    SceneEntry entry{point[3], {point[4], point[5]}, std::nullopt, 0};
+    if (!scene.grid.n.empty())
+      entry.index = OpticalConstants{point[1], scene.grid.k.empty() ? scene.surface.material.constant.k : point[2]};
+    if (!scene.grid.wavelength_um.empty()) {
+      entry.wavelength = static_cast<std::uint32_t>(wavelengths.size());
+      wavelengths.push_back(point[0]);
+    }
+    entries.push_back(entry);
+  }
+  Scene exact = scene;
+  exact.accuracy.tolerance = kExact;
+  return evaluate_scene(exact, {entries, wavelengths}, *make_evaluator(Evaluator::kDouble), {});
+}
+
+/// What all points say together.
+struct Tally {
+  std::size_t points = 0;
+  std::size_t flagged = 0;  ///< status 2
+  std::size_t missed = 0;   ///< the error with the entries' own bounds exceeds the tolerance
+  double worst = 0.0;       ///< error over what is stated
+};
+
+TEST(LookupEstimates, RandomPointsOfRandomTables_ErrorsAreWithinThem) {
+  const std::size_t tables = from_environment("DOLP_PROPERTY_DRAWS", kTables);
+  const std::uint64_t seed = from_environment("DOLP_PROPERTY_SEED", kSeed);
+  Tally tally;
+  for (std::size_t i = 0; i < tables; ++i) {
+    Draw draw(seed * 1000003 + i);
+    const Scene scene = random_scene(draw);
+    const Table table = table_of(scene);
+    const TableLookup lookup(table, scene.accuracy.tolerance, "random");
+    const std::vector<TableLookup::Point> points = random_points(scene.grid, draw);
+    const std::vector<PointResult> exact = exact_at(scene, points);
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      if (!promises_dolp(exact[j].status)) continue;
+      const PointResult found = lookup.at(points[j]);
+      if (!promises_dolp(found.status)) continue;
+      SCOPED_TRACE(testing::Message() << "table " << i << " of seed " << seed << ", theta " << points[j][3]
+                                      << ", sigma " << points[j][4] << ", q " << points[j][5] << ", "
+                                      << name_of(scene.surface.masking));
+      const double dolp_error = std::abs(found.dolp - exact[j].dolp);
+      EXPECT_LE(dolp_error, found.error_estimate + exact[j].error_estimate);
+      const double rho_error =
+          std::max(std::abs(found.rho_i - exact[j].rho_i), std::abs(found.rho_q - exact[j].rho_q)) / exact[j].rho_i;
+      EXPECT_LE(rho_error, found.rho_error_estimate + exact[j].rho_error_estimate);
+      ++tally.points;
+      tally.flagged += (found.status & kStatusToleranceMissed) != 0 ? 1 : 0;
+      tally.missed += std::max(dolp_error, rho_error) > scene.accuracy.tolerance ? 1 : 0;
+      tally.worst = std::max({tally.worst, dolp_error / (found.error_estimate + exact[j].error_estimate),
+                              rho_error / (found.rho_error_estimate + exact[j].rho_error_estimate)});
+    }
+  }
+  EXPECT_GT(tally.points, 40 * tables);
+  const double share = 100.0 / static_cast<double>(tally.points);
+  std::cout << "seed " << seed << ", " << tables << " tables, " << tally.points << " points: largest error "
+            << tally.worst << " of what is stated; status 2 at " << share * static_cast<double>(tally.flagged)
+            << " %, error above the tolerance at " << share * static_cast<double>(tally.missed) << " %\n";
+}
+
+}  // namespace

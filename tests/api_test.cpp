@@ -43,7 +43,7 @@ class Library : public testing::Test {
 TEST_F(Library, Tables_InMemoryAndInAFile_AreTheSameBits_AndPointsAgree) {
   const dolp::Table table = evaluator_.table(scene_);
   EXPECT_EQ(table.axes(), (std::vector<std::string>{"theta", "sigma", "q"}));
-  const auto path = evaluator_.write_table(scene_, folder_ / "t.nc");
+  const auto path = evaluator_.write_table(scene_, folder_ / "t.nc").output;
   const dolp::Table read = dolp::Table::read(path);
   const std::vector<double> theta = {60, 60}, sigma = {0.1, 0.4}, q = {3.5};
   const dolp::Results points = evaluator_.evaluate(scene_, {{"theta_deg", theta}, {"sigma", sigma}, {"q", q}});
@@ -78,7 +78,7 @@ TEST_F(Library, PartsOfATable_AreTheTable) {
 }
 
 TEST_F(Library, Shards_AreFilesOfTheirOwn) {
-  EXPECT_EQ(evaluator_.write_table(scene_, folder_ / "t.nc", {}, {2, 3}).filename(), "t.2-of-3.nc");
+  EXPECT_EQ(evaluator_.write_table(scene_, folder_ / "t.nc", {}, {2, 3}).output.filename(), "t.2-of-3.nc");
 }
 
 TEST_F(Library, Lookup_BetweenEntries_StatesItsError) {

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "explore/background_task.hpp"
 #include "explore/conflicts.hpp"
 #include "explore/contours.hpp"
@@ -15,7 +16,6 @@
 #include "explore/ticks.hpp"
 #include "explore_support.hpp"
 #include "scene/scene_reader.hpp"
-#include "scene/text.hpp"
 
 namespace dolp::explore {
 namespace {

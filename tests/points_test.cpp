@@ -8,7 +8,7 @@
 #include <random>
 
 #include "base/error.hpp"
-#include "scene/text.hpp"
+#include "base/text.hpp"
 
 namespace dolp {
 namespace {
@@ -54,9 +54,8 @@ TEST(Points_Cells, KeepTheirSpelling) {
 }
 
 TEST(Points_Results, AreLeftOut_AndNamed) {
-  const Points points =
-      parse_points("# written by a run\ntheta_deg,dolp,sigma,status\n30,\"0.1\",\"0.2\",0\n", "p.csv",
-                   PointsKind::kDirections, {"dolp", "stokes_i", "status"});
+  const Points points = parse_points("# written by a run\ntheta_deg,dolp,sigma,status\n30,\"0.1\",\"0.2\",0\n", "p.csv",
+                                     PointsKind::kDirections, {"dolp", "stokes_i", "status"});
   EXPECT_EQ(points.left_out, (std::vector<std::string>{"dolp", "status"}));
   EXPECT_EQ(points.header, "theta_deg,sigma");
   EXPECT_EQ(points.rows, std::vector<std::string>{"30,0.2"});

@@ -6,7 +6,7 @@
 #include <iostream>
 #include <random>
 
-#include "scene/text.hpp"
+#include "base/text.hpp"
 #include "scene_support.hpp"
 #include "temporary_file.hpp"
 
@@ -27,7 +27,8 @@ TEST(SceneError_InTheFile, NamesFileLineKeyValueAndWhatIsAllowed) {
   const std::vector<ErrorCase> cases = {
       {"[surfaces]\n", {"s.toml:8: surfaces: unknown key", "surface"}},
       {"wavelenght_um = 3\n", {"s.toml:8: spectrum.wavelenght_um = 3: unknown key", "spectrum.wavelength_um"}},
-      {"[grid]\nview_zenith_deg = 3\n", {"s.toml:9: grid.view_zenith_deg = 3: unknown key", "geometry.view_zenith_deg"}},
+      {"[grid]\nview_zenith_deg = 3\n",
+       {"s.toml:9: grid.view_zenith_deg = 3: unknown key", "geometry.view_zenith_deg"}},
       {"[path]\ntemperature_k = 3\n", {"s.toml:9: path.temperature_k", "nearest known key is path.temperature_K"}},
       {"[geometry]\nmode = \"bistatical\"\n",
        {"s.toml:9: geometry.mode = \"bistatical\": ", "hemispherical, bistatic"}},

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "scene/text.hpp"
+#include "base/text.hpp"
 #include "scene_support.hpp"
 #include "temporary_file.hpp"
 

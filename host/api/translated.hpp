@@ -21,8 +21,8 @@ auto translated(const Body& body) {
     throw MemoryError(error.what());
   } catch (const dolp::IoError& error) {
     throw IoError(error.what());
-  } catch (const dolp::Cancelled&) {
-    throw Cancelled("cancelled");
+  } catch (const dolp::Cancelled& cancelled) {
+    throw Cancelled(cancelled.left.empty() ? "no file was written" : cancelled.left);
   }
 }
 

@@ -3,21 +3,24 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <dolp/dolp.hpp>
 #include <string>
 #include <vector>
 
-#include "base/version.hpp"
 #include "cli/completion.hpp"
-#include "fit/descent.hpp"
-#include "model/choices.hpp"
-#include "scene/embedded_data.hpp"
-#include "scene/number_range.hpp"
 
 namespace dolp::cli {
 namespace {
 
 constexpr const char* kDescription =
     "dolp: infrared degree of linear polarisation of rough surfaces, on any Vulkan device";
+
+/// What a key of a scene may be.
+std::string allowed(const std::string& name) {
+  const std::vector<api::Key> keys = api::keys();
+  return std::ranges::find(keys, name, &api::Key::key)->allowed;
+}
 
 /// At the end of a command's help.
 void add_examples(CLI::App& command, const char* first, const char* second) {
@@ -28,9 +31,10 @@ void add_overrides(CLI::App& command, Options& options) {
   command.add_option("--set", options.overrides, "KEY=VALUE: any scene key, e.g. surface.masking=none")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
-  command.add_option("--tolerance", options.tolerance, "the scene's accuracy.tolerance, in " + kToleranceRange.text());
+  command.add_option("--tolerance", options.tolerance,
+                     "the scene's accuracy.tolerance: " + allowed("accuracy.tolerance"));
   command.add_option("--precision", options.precision,
-                     fmt::format("the scene's accuracy.precision: {}", fmt::join(Names<Precision>::kAll, ", ")));
+                     "the scene's accuracy.precision: " + allowed("accuracy.precision"));
 }
 
 void add_scene(CLI::App& command, Options& options) {
@@ -107,13 +111,12 @@ void add_verify(CLI::App& command, Options& options) {
   const auto of_device = [&](CLI::Option* option) { option->needs(hard); };
   of_device(command.add_option("--device", options.device, "Vulkan device: its position or a part of its name"));
   of_device(command.add_option("--precision", options.precision, "auto is both")
-                ->check(CLI::IsMember(
-                    std::vector<std::string>(Names<Precision>::kAll.begin(), Names<Precision>::kAll.end()))));
+                ->check(CLI::IsMember({"auto", "float", "double"})));
   of_device(command.add_option("--evaluator", options.evaluator, "vulkan; cpu: the same text on the CPU")
                 ->check(CLI::IsMember({"vulkan", "cpu"}))
                 ->capture_default_str());
   of_device(command.add_option("--tolerance", options.tolerance,
-                               "what to ask for, in " + kToleranceRange.text() + "; 1e-4 when not given"));
+                               "what to ask for: " + allowed("accuracy.tolerance") + "; 1e-4 when not given"));
   of_device(command.add_flag("--all", options.all, "report every case"));
   command.add_flag("--json", options.json, "machine-readable report of everything compared");
   command.add_flag("--quiet", options.quiet, "no report and no progress bar; the exit status says it");
@@ -140,8 +143,8 @@ void add_fit(CLI::App& command, Options& options) {
       ->check(not_negative, "")
       ->capture_default_str();
   command
-      .add_option("--loss", options.loss, fmt::format("what a residual counts: {}", fmt::join(fit::kLossNames, ", ")))
-      ->check(CLI::IsMember(std::vector<std::string>(fit::kLossNames.begin(), fit::kLossNames.end())))
+      .add_option("--loss", options.loss, fmt::format("what a residual counts: {}", fmt::join(api::fit_losses(), ", ")))
+      ->check(CLI::IsMember(api::fit_losses()))
       ->capture_default_str();
   add_evaluator(command, options);
 }
@@ -159,10 +162,9 @@ void refuse_empty_values(CLI::App& command) {
 std::unique_ptr<CLI::App> command_line(Options& options) {
   auto program = std::make_unique<CLI::App>(kDescription, "dolp");
   CLI::App& app = *program;
-  app.set_version_flag("--version", fmt::format("dolp {} ({})", program_version(), program_commit()));
+  app.set_version_flag("--version", fmt::format("dolp {} ({})", api::version(), api::commit()));
   app.add_flag_callback(
-      "--cite", [] { throw CLI::CallForVersion(std::string(embedded_citation_cff()), 0); },
-      "how to cite the program and its model");
+      "--cite", [] { throw CLI::CallForVersion(api::citation(), 0); }, "how to cite the program and its model");
   app.require_subcommand(0, 1);
 
   CLI::App* table = app.add_subcommand("table", "lookup table over the scene's grid (.nc, .csv, .npy)");

@@ -28,8 +28,8 @@ int run_verify(const Options& options);
 /// `dolp lookup TABLE --points IN -o OUT`: interpolates in a table, with the error of that.
 int run_lookup(const Options& options);
 
-/// `dolp fit SCENE --data FILE --vary KEY=LOW:HIGH`: numbers of the scene from measured data. kExitAccuracy if no minimum
-/// is found.
+/// `dolp fit SCENE --data FILE --vary KEY=LOW:HIGH`: numbers of the scene from measured data. kExitAccuracy if no
+/// minimum is found.
 int run_fit(const Options& options);
 
 /// `dolp explore [SCENE]`: the window.

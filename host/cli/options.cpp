@@ -2,32 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
-#include <filesystem>
-#include <system_error>
 
 #include "base/error.hpp"
-#include "base/printable_text.hpp"
-#include "evaluate/named/named_evaluator.hpp"
-#include "scene/scene_reader.hpp"
-#include "table/result_csv.hpp"
+#include "terminal/exit_status.hpp"
 
 namespace dolp::cli {
 
-void check_output_is_no_input(const Options& options, const std::vector<std::string>& scene_files) {
-  std::vector<std::string> inputs = {options.scene_path, options.points_path, options.table_path};
-  inputs.insert(inputs.end(), scene_files.begin(), scene_files.end());
-  for (const std::string& input : inputs) {
-    std::error_code missing;  // a file that is not there is not the same file
-    if (std::filesystem::equivalent(options.output_path, input, missing)) {
-      throw InputError(options.output_path + ": the output would overwrite an input");
-    }
-  }
-}
-
 void check_one_stdin(const Options& options) {
-  if (options.scene_path == "-" && options.points_path == "-") {
+  const auto is_stdin = [](const std::string& data) { return data == "-" || data.starts_with("-:"); };
+  const bool is_scene = options.scene_path == "-";
+  if (is_scene && options.points_path == "-") {
     throw InputError("--points -: SCENE is - too, and stdin can be read only once; name a file for one of them");
+  }
+  if (std::ranges::count_if(options.data, is_stdin) + (is_scene ? 1 : 0) > 1) {
+    throw InputError("--data -: stdin can be read only once; name a file for one of them");
   }
 }
 
@@ -38,19 +28,25 @@ std::vector<std::string> all_overrides(const Options& options) {
   return overrides;
 }
 
-Scene load_scene(const Options& options) { return read_scene(options.scene_path, all_overrides(options)); }
-
-Points load_points(const Options& options, PointsKind kind) {
-  Points points = read_points(options.points_path, kind, result_columns());
-  if (!options.quiet && !points.left_out.empty()) {
-    fmt::print(stderr, "dolp: {}: left out, because they are results: {}\n", printable_line(points.name),
-               fmt::join(points.left_out, ", "));
-  }
-  return points;
+api::Scene load_scene(const Options& options) {
+  check_one_stdin(options);
+  return api::Scene::from_file(options.scene_path, all_overrides(options));
 }
 
-std::unique_ptr<MomentsEvaluator> make_evaluator(const Options& options, const Scene& scene) {
-  return dolp::make_evaluator({options.evaluator, options.device, scene.accuracy.precision});
+api::Evaluator evaluator_of(const Options& options) { return api::Evaluator({options.evaluator, options.device}); }
+
+void print(const api::Report& report, const Options& options) {
+  std::FILE* const out = options.output_path == "-" ? stderr : stdout;
+  if (options.json) {
+    fmt::print(out, "{}\n", report.json);
+  } else if (!options.quiet) {
+    fmt::print(out, "{}", report.text);
+  }
+}
+
+int finish(const api::Report& report, const Options& options) {
+  print(report, options);
+  return options.strict && !report.is_good ? kExitAccuracy : kExitDone;
 }
 
 }  // namespace dolp::cli

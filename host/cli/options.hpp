@@ -3,14 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <dolp/dolp.hpp>
 #include <string>
 #include <vector>
-
-#include "evaluate/evaluator.hpp"
-#include "plan/effects.hpp"
-#include "scene/points.hpp"
-#include "scene/scene.hpp"
 
 namespace dolp::cli {
 
@@ -50,25 +45,22 @@ struct Options {
   std::string command_line;          ///< for the table's history
 };
 
-/// Refuses to write over the scene, a file that it names, the points or the table.
-/// Errors: InputError.
-void check_output_is_no_input(const Options& options, const std::vector<std::string>& scene_files = {});
-
-/// Refuses to read scene and points from stdin both.
-/// Errors: InputError.
+/// Refuses to read two inputs from stdin. Errors: InputError.
 void check_one_stdin(const Options& options);
 
 /// All overrides of the command line: --set first, then --tolerance and --precision.
 std::vector<std::string> all_overrides(const Options& options);
 
 /// The scene with all_overrides.
-Scene load_scene(const Options& options);
+api::Scene load_scene(const Options& options);
 
-/// The points of --points. Columns that are results, as eval and lookup write them, are left out with a word.
-Points load_points(const Options& options, PointsKind kind);
+/// The evaluator that --evaluator and --device ask for.
+api::Evaluator evaluator_of(const Options& options);
 
-/// The evaluator that --evaluator, --device and the scene's precision ask for.
-/// Errors: DeviceError when vulkan is asked for and there is no usable device.
-std::unique_ptr<MomentsEvaluator> make_evaluator(const Options& options, const Scene& scene);
+/// Prints a report as --json and --quiet ask for: to stdout, or to stderr when the results themselves go to stdout.
+void print(const api::Report& report, const Options& options);
+
+/// Prints a report; returns the exit status that --strict asks for.
+int finish(const api::Report& report, const Options& options);
 
 }  // namespace dolp::cli

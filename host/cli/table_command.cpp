@@ -1,21 +1,12 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstdlib>
-#include <memory>
+#include <optional>
 #include <string>
 
 #include "base/error.hpp"
-#include "base/stopwatch.hpp"
+#include "base/text.hpp"
 #include "cli/commands.hpp"
-#include "cli/run_report.hpp"
-#include "run/scattering_gap.hpp"
-#include "run/scene_run.hpp"
-#include "run/table_run.hpp"
-#include "scene/text.hpp"
-#include "table/table_file.hpp"
-#include "terminal/exit_status.hpp"
-#include "terminal/guarded.hpp"
 #include "terminal/progress_bar.hpp"
 
 namespace dolp::cli {
@@ -39,9 +30,9 @@ std::size_t slurm_number(const char* variable) {
 }
 
 /// "2/8", or what the Slurm array says for "auto".
-Shard shard_of(const std::string& text) {
+api::Shard shard_of(const std::string& text) {
   if (text.empty()) return {};
-  Shard shard;
+  api::Shard shard;
   if (text == "auto") {
     const std::size_t task = slurm_number("SLURM_ARRAY_TASK_ID");
     const std::size_t first = slurm_number("SLURM_ARRAY_TASK_MIN");
@@ -59,59 +50,20 @@ Shard shard_of(const std::string& text) {
 }  // namespace
 
 int run_table(const Options& options) {
-  const auto start = std::chrono::steady_clock::now();
-  const Scene scene = load_scene(options);
-  TableJob job;
-  job.shard = shard_of(options.shard);
-  job.path = shard_path(options.output_path, job.shard);
-  job.is_resumed = options.resume;
-  job.keep_all = options.keep_all;
-  job.command_line = options.command_line;
-  job.start = start;
-  check_output_is_no_input(options, scene.files);
-  check_output_path(job.path);
-  const SceneEntries entries = shard_entries(scene, job.shard);
-  if (!job.shard.is_whole() && is_there(scene, job)) {
-    Report report;
-    report.line("{}", key("title", scene.title));
-    report.row("kept", "{}: the whole shard is there already", key("output", job.path.string()));
-    report.print(options.json, options.quiet, job.path.string());
-    return kExitDone;
-  }
-  std::unique_ptr<MomentsEvaluator> evaluator;
-  const auto make = [&] {
-    evaluator = make_evaluator(options, scene);
-    return evaluator.get();
-  };
-  SceneRun run;
-  try {
+  const api::Scene scene = load_scene(options);
+  const api::Shard shard = shard_of(options.shard);
+  api::Report report;
+  {
     ProgressBar bar(options.quiet);
-    TableRun table = run_table_job(scene, job, make, bar.callback());
-    run = {std::move(table.plan), std::move(table.effects), table.summary, {}, table.evaluation, table.wall_s};
-  } catch (const InterruptedTable& interrupted) {
-    return fail("dolp", kExitInterrupted, "interrupted; " + interrupted.rest);
+    report = evaluator_of(options).write_table(
+        scene, options.output_path, {options.keep_all, bar.callback(), options.command_line, options.resume}, shard);
   }
-  if (!evaluator) run.evaluation = evaluation_of(nullptr, options);
-  run.scattering_gap = scattering_gap(scene, entries, run.plan);
-  run.wall_s = seconds_since(start);
-  return report_run(options, scene, run, grid_text(entries.axes()), job.path.string());
+  return finish(report, options);
 }
 
 int run_merge(const Options& options) {
-  const auto start = std::chrono::steady_clock::now();
-  for (const std::string& shard : options.shards) {
-    std::error_code error;
-    if (std::filesystem::equivalent(shard, options.output_path, error))
-      throw InputError(options.output_path + ": is a shard to merge; write to another file");
-  }
-  check_output_path(options.output_path);
-  const std::size_t entries = merge_shards(options.shards, options.output_path, options.command_line);
-  Report report;
-  report.line("{} entries of {} shards", key("entries", entries), key("shards", options.shards.size()));
-  report.row("written", "{}", key("output", options.output_path));
-  report.value("wall_s", seconds_since(start));
-  report.print(options.json, options.quiet, options.output_path);
-  return kExitDone;
+  return finish(api::merge({options.shards.begin(), options.shards.end()}, options.output_path, options.command_line),
+                options);
 }
 
 }  // namespace dolp::cli

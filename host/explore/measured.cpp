@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "base/text.hpp"
 #include "scene/csv.hpp"
 #include "scene/number_range.hpp"
-#include "scene/text.hpp"
 
 namespace dolp::explore {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "scene/text.hpp"
+#include "base/text.hpp"
 
 namespace dolp::explore {
 namespace {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <iterator>
 
+#include "base/text.hpp"
 #include "explore/parameters.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene/scene_writer.hpp"
-#include "scene/text.hpp"
 
 namespace dolp::explore {
 namespace {

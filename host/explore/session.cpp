@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "explore/conflicts.hpp"
 #include "model/choices.hpp"
-#include "scene/text.hpp"
 
 namespace dolp::explore {
 namespace {

@@ -11,10 +11,10 @@
 #include <limits>
 #include <utility>
 
+#include "base/text.hpp"
 #include "fit/profile.hpp"
 #include "fit/search.hpp"
 #include "fit/together.hpp"
-#include "scene/text.hpp"
 
 namespace dolp::fit {
 namespace {

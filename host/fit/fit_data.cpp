@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "scene/csv.hpp"
 #include "scene/number_range.hpp"
 #include "scene/scene_reader.hpp"
-#include "scene/text.hpp"
 
 namespace dolp::fit {
 namespace {
@@ -138,13 +138,15 @@ FitData parse_fit_data(const std::string& text, const std::string& path_name) {
   return data;
 }
 
-FitData read_fit_data(const std::string& argument) {
+DataArgument parse_data_argument(const std::string& argument) {
   const std::size_t colon = keys_begin(argument);
-  const std::string path = argument.substr(0, colon);
-  if (path.empty()) throw InputError(fmt::format("--data {}: must be FILE or FILE:KEY=VALUE,...", one_line(argument)));
-  FitData data = parse_fit_data(read_text(path, input_name(path) + ": "), path);
-  if (colon != std::string::npos) data.overrides = overrides_of(std::string_view(argument).substr(colon + 1));
-  return data;
+  DataArgument parts;
+  parts.path = argument.substr(0, colon);
+  if (parts.path.empty()) {
+    throw InputError(fmt::format("--data {}: must be FILE or FILE:KEY=VALUE,...", one_line(argument)));
+  }
+  if (colon != std::string::npos) parts.overrides = overrides_of(std::string_view(argument).substr(colon + 1));
+  return parts;
 }
 
 }  // namespace dolp::fit

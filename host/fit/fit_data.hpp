@@ -29,14 +29,19 @@ struct FitData {
   std::vector<Observation> observations;
 };
 
-/// Reads "FILE" or "FILE:KEY=VALUE,KEY=VALUE"; FILE "-" is stdin.
+/// What names a file of measured data and its own scene keys.
+struct DataArgument {
+  std::string path;
+  std::vector<std::string> overrides;  ///< KEY=VALUE
+};
+/// Takes "FILE" or "FILE:KEY=VALUE,KEY=VALUE" apart. Errors: InputError where FILE is empty.
+DataArgument parse_data_argument(const std::string& argument);
+
+/// Reads the text of such a file.
 ///
 /// Columns: theta_deg or theta_i_deg; dolp, or q_over_i (signed), or emissivity_s and emissivity_p or one of them; and
 /// any of uncertainty, wavelength_um. Values are fractions, not percent. Lines that begin with # are comments.
 /// Errors: InputError, one line that names file, line, column, value and what is allowed.
-FitData read_fit_data(const std::string& argument);
-
-/// The same for a text in memory.
 FitData parse_fit_data(const std::string& text, const std::string& path_name);
 
 }  // namespace dolp::fit

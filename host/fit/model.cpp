@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "model/moments.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_reader.hpp"
-#include "scene/text.hpp"
 
 namespace dolp::fit {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "scene/scene_reader.hpp"
-#include "scene/text.hpp"
 
 namespace dolp::fit {
 namespace {

@@ -109,9 +109,10 @@ PYBIND11_MODULE(_native, module) {
         return dolp::Evaluator({evaluator, device});
       }))
       .def("write_table",
-           [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const std::filesystem::path& path, bool keep_all) {
-             interruptible([&](const dolp::Progress& progress) {
-               return evaluator.write_table(scene, path, {keep_all, progress, "dolp.table"});
+           [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const std::filesystem::path& path, bool keep_all,
+              bool resume) {
+             return interruptible([&](const dolp::Progress& progress) {
+               return evaluator.write_table(scene, path, {keep_all, progress, "dolp.table", resume}).text;
              });
            })
       .def("evaluate",
@@ -132,7 +133,10 @@ PYBIND11_MODULE(_native, module) {
              dolp::Fit fit = interruptible([&](const dolp::Progress& progress) {
                return evaluator.fit(scene, sets, {vary, starts, seed, progress});
              });
-             return py::make_tuple(fit.text, fit.json, std::move(fit.scene));
+             if (!fit.has_minimum) {
+               throw dolp::InputError("fit: no descent converged; try other ranges, or more starts");
+             }
+             return py::make_tuple(fit.report.text, fit.report.json, std::move(fit.scene));
            })
       .def("mueller", [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const Columns& columns) {
         const std::vector<dolp::Column> points = views(columns);
@@ -145,7 +149,7 @@ PYBIND11_MODULE(_native, module) {
       });
 
   module.def("plan", [](const dolp::Scene& scene, const std::string& device, bool keep_all) {
-    const dolp::Plan plan = dolp::plan(scene, device, keep_all);
+    const dolp::Report plan = dolp::plan(scene, device, keep_all);
     return py::make_tuple(plan.text, plan.json);
   });
   module.def("devices", [] {

@@ -1,7 +1,5 @@
 #include "report/report.hpp"
 
-#include <cstdio>
-
 namespace dolp {
 
 void Report::add(const char* path, const Report& part) {
@@ -16,15 +14,6 @@ void Report::add(const char* path, const std::vector<Report>& parts) {
     list.push_back(part.json_);
   }
   value(path, list);
-}
-
-void Report::print(bool json, bool quiet, const std::string& output) const {
-  std::FILE* const out = output == "-" ? stderr : stdout;
-  if (json) {
-    fmt::print(out, "{}\n", json_text());
-  } else if (!quiet) {
-    fmt::print(out, "{}", text_);
-  }
 }
 
 }  // namespace dolp

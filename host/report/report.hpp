@@ -82,10 +82,6 @@ class Report {
   std::string json_text() const { return json_.dump(2, ' ', true, Json::error_handler_t::replace); }
   const std::string& text() const { return text_; }
 
-  /// Prints what `json` and `quiet` ask for: to stdout, or to stderr when the results themselves (`output`) go to
-  /// stdout.
-  void print(bool json, bool quiet, const std::string& output = {}) const;
-
  private:
   template <class T>
   void record(const Keyed<T>& keyed) {

@@ -5,9 +5,9 @@
 #include <cstdint>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "run/scene_run.hpp"
 #include "scene/number_range.hpp"
-#include "scene/text.hpp"
 #include "table/table.hpp"
 
 namespace dolp {
@@ -49,8 +49,8 @@ std::vector<double> wavelengths_of(const Scene& scene, const Points& points) {
     } catch (const InputError& error) {
       const auto row = static_cast<std::size_t>(std::ranges::find(*points.wavelength_um, wavelength_um) -
                                                 points.wavelength_um->begin());
-      throw InputError(fmt::format("{}: wavelength_um = {}: {}", points.where(row),
-                                   format_number(wavelength_um), error.what()));
+      throw InputError(
+          fmt::format("{}: wavelength_um = {}: {}", points.where(row), format_number(wavelength_um), error.what()));
     }
   }
   return wavelengths;

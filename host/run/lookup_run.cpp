@@ -8,7 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/parallel_ranges.hpp"
-#include "scene/text.hpp"
+#include "base/text.hpp"
 
 namespace dolp {
 namespace {

@@ -115,7 +115,7 @@ void with_rest(const TableOutput& output, const Body& body) {
   try {
     body();
   } catch (const Cancelled&) {
-    if (const auto rest = output.rest()) throw InterruptedTable(*rest);
+    if (const auto rest = output.rest()) throw Cancelled{*rest};
     throw;
   } catch (const IoError& error) {
     throw IoError(error.what() + more());

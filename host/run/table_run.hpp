@@ -51,18 +51,11 @@ struct TableRun {
   double wall_s = 0.0;
 };
 
-/// A cancelled run that left a part of the table, and how to go on with it.
-struct InterruptedTable : Cancelled {
-  explicit InterruptedTable(std::string what) : rest(std::move(what)) {}
-  std::string rest;
-};
-
 /// Makes the evaluator, when it is needed.
 using EvaluatorMaker = std::function<MomentsEvaluator*()>;
 
 /// Computes the job's entries and writes them; a part is written while the next is computed.
-/// Errors: those of run_scene and of TableOutput, which say what is there already; InterruptedTable instead of
-/// Cancelled where there is something.
+/// Errors: those of run_scene and of TableOutput, which say what is there already, as Cancelled does.
 TableRun run_table_job(const Scene& scene, const TableJob& job, const EvaluatorMaker& make_evaluator,
                        const Progress& progress);
 

@@ -7,10 +7,10 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "scene/number_range.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene/spectral_data.hpp"
-#include "scene/text.hpp"
 #include "table/table_file.hpp"
 
 namespace dolp {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "scene/text.hpp"
+#include "base/text.hpp"
 
 namespace dolp {
 namespace {

@@ -6,11 +6,11 @@
 #include <cstddef>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "scene/csv.hpp"
 #include "scene/embedded_data.hpp"
 #include "scene/number_range.hpp"
 #include "scene/spectral_data.hpp"
-#include "scene/text.hpp"
 
 namespace dolp {
 namespace {
@@ -116,8 +116,8 @@ Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, con
                                  wavelength_text(spectrum.min_um, spectrum.max_um)));
   }
   if (spectrum.is_band()) return material;
-  return {material.name, material.source, material.at(spectrum.min_um), {}, {},
-          std::make_shared<const Material>(material)};
+  return {
+      material.name, material.source, material.at(spectrum.min_um), {}, {}, std::make_shared<const Material>(material)};
 }
 
 }  // namespace dolp

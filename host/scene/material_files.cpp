@@ -8,11 +8,11 @@
 #include <cstddef>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "scene/csv.hpp"
 #include "scene/material_data.hpp"
 #include "scene/number_range.hpp"
 #include "scene/spectral_data.hpp"
-#include "scene/text.hpp"
 
 namespace dolp {
 namespace {

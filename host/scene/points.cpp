@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "scene/csv.hpp"
 #include "scene/number_range.hpp"
-#include "scene/text.hpp"
 
 namespace dolp {
 namespace {

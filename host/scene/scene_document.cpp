@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "scene/scene_keys.hpp"
-#include "scene/text.hpp"
 
 namespace dolp {
 namespace {

@@ -4,8 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include "base/text.hpp"
 #include "model/choices.hpp"
-#include "scene/text.hpp"
 
 namespace dolp {
 namespace {

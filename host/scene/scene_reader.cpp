@@ -7,13 +7,13 @@
 #include <numeric>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "model/direction.hpp"
 #include "scene/material_data.hpp"
 #include "scene/scene_document.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_values.hpp"
 #include "scene/spectral_data.hpp"
-#include "scene/text.hpp"
 
 namespace dolp {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "scene/text.hpp"
+#include "base/text.hpp"
 
 namespace dolp {
 namespace {

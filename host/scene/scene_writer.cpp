@@ -4,10 +4,10 @@
 
 #include <sstream>
 
+#include "base/text.hpp"
 #include "scene/scene_document.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_reader.hpp"
-#include "scene/text.hpp"
 
 namespace dolp {
 namespace {

@@ -44,8 +44,9 @@ int fail_out_of_memory(const char* program) noexcept {
 int guarded(const std::string& program, const std::function<int()>& body) {
   try {
     return body();
-  } catch (const Cancelled&) {
-    return fail(program, kExitInterrupted, "interrupted; no file was written");
+  } catch (const Cancelled& cancelled) {
+    return fail(program, kExitInterrupted,
+                "interrupted; " + (cancelled.left.empty() ? "no file was written" : cancelled.left));
   } catch (const InputError& error) {
     return fail(program, kExitInput, error.what());
   } catch (const DeviceError& error) {

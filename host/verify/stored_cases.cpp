@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <optional>
 
+#include "base/text.hpp"
 #include "model/choices.hpp"
 #include "scene/csv.hpp"
-#include "scene/text.hpp"
 
 namespace dolp {
 namespace {

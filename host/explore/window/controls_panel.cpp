@@ -7,11 +7,11 @@
 #include <array>
 #include <cmath>
 
+#include "base/text.hpp"
 #include "explore/parameters.hpp"
 #include "explore/window/colours.hpp"
 #include "explore/window/text.hpp"
 #include "scene/material_data.hpp"
-#include "scene/text.hpp"
 
 namespace dolp::explore {
 namespace {

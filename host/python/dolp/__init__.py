@@ -144,13 +144,16 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
 
 
 def write_table(scene: Scene, path: Path, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
-                **axes: Array) -> None:
+                resume: bool = False, **axes: Array) -> str:
     """The same into a file (.nc, .csv or .npy), part by part, so that memory does not grow with the table.
 
-    >>> dolp.write_table(scene, "/tmp/table_of_scene.nc")
+    Returns the report of the run. What an interrupted call has finished stays beside the file; `resume` goes on there.
+
+    >>> print(dolp.write_table(scene, "/tmp/table_of_scene.nc").splitlines()[1])
+      entries    5 (theta)
     """
     with_axes = Scene(scene, {f"grid.{axis}": np.atleast_1d(values) for axis, values in axes.items()})
-    _evaluator(evaluator, device).write_table(with_axes._native, path, keep_all)
+    return _evaluator(evaluator, device).write_table(with_axes._native, path, keep_all, resume)
 
 
 def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,

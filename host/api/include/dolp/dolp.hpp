@@ -13,7 +13,8 @@
 //
 // Units and names are those of the command line and of the files: angles in degrees, wavelengths in um, temperatures in
 // K. Numbers are the bits that the command line computes on the same device.
-// Errors are exceptions derived from std::exception; a call that throws has changed nothing and left no file.
+// Errors are exceptions derived from std::exception; a call that throws has changed nothing and left no file, but for
+// what write_table says of cancelled calls.
 // Threads: objects of one class may be used in several threads at a time as long as each thread has its own; an
 // Evaluator and a Table serve several threads too, their calls wait for one another.
 #pragma once
@@ -60,7 +61,7 @@ class DOLP_EXPORT MemoryError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A Progress returned false.
+/// A Progress returned false. The message says what is left.
 class DOLP_EXPORT Cancelled : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -77,10 +78,19 @@ DOLP_EXPORT std::string commit();
 /// How to cite the program and the model, in the Citation File Format.
 DOLP_EXPORT std::string citation();
 
+/// What a call says of its work.
+struct Report {
+  std::string text;              ///< for people, in lines
+  std::string json;              ///< all values, as the command's --json prints them
+  bool is_good = true;           ///< no entry misses its tolerance; of a check: nothing is wrong
+  std::filesystem::path output;  ///< the file that was written, where there is one
+};
+
 /// A validated scene: surface, radiation, geometry, grid and accuracy. Copies share what they hold.
 class DOLP_EXPORT Scene {
  public:
-  /// Reads a scene file (TOML). `overrides`: KEY=VALUE with any key of a scene, as --set takes them, in order.
+  /// Reads a scene file (TOML); "-" is stdin. `overrides`: KEY=VALUE with any key of a scene, as --set takes them, in
+  /// order.
   /// Errors: InputError with file, line, key, value and allowed range.
   static Scene from_file(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
   /// The same for a text; files that it names are looked for in the current folder. `name` is for messages.
@@ -215,6 +225,7 @@ struct RunOptions {
   bool keep_all = false;     ///< drop no effect, however little it counts
   Progress progress = {};    ///< may be empty
   std::string history = {};  ///< what the attribute "history" of a table says beside the time
+  bool resume = false;       ///< of write_table: go on with what a cancelled or killed call of the same scene left
 };
 
 /// One of `count` parts of a table that several processes compute.
@@ -226,26 +237,36 @@ struct Shard {
 /// The 4 x 4 Mueller pBRDF of a pair of directions, row by row. Units: 1/sr.
 using MuellerMatrix = std::array<double, 16>;
 
-/// A set of measured data: what `--data` of dolp fit takes, in memory.
-struct MeasuredData {
+/// A set of measured data.
+struct DOLP_EXPORT MeasuredData {
   std::string csv;  ///< columns theta_deg or theta_i_deg; dolp, q_over_i or emissivities; uncertainty, wavelength_um
   std::vector<std::string> overrides = {};  ///< KEY=VALUE of its own
-  std::string name = "data";                ///< for messages
+  std::string name = "data";                ///< of its file, for messages; "-" is stdin
+
+  /// Reads what --data of dolp fit names: "FILE" or "FILE:KEY=VALUE,KEY=VALUE"; FILE "-" is stdin. Errors: InputError.
+  static MeasuredData read(const std::string& argument);
 };
 
 /// How to fit.
 struct FitOptions {
-  std::vector<std::string> vary;  ///< KEY=LOW:HIGH or KEY=LOW:HIGH:START
-  std::size_t starts = 24;        ///< descents that look for minima
-  std::uint64_t seed = 1;         ///< of where they begin
-  Progress progress = {};         ///< may be empty
+  std::vector<std::string> vary;          ///< KEY=LOW:HIGH or KEY=LOW:HIGH:START
+  std::size_t starts = 24;                ///< descents that look for minima
+  std::uint64_t seed = 1;                 ///< of where they begin
+  Progress progress = {};                 ///< may be empty
+  std::string loss = "squares";           ///< one of fit_losses()
+  std::vector<std::string> compare = {};  ///< KEY=WORD,WORD,...: all combinations are fitted and ranked
+  std::filesystem::path output = {};      ///< file for the scene with what was found; "-" is stdout; empty: none
+  std::filesystem::path plot = {};        ///< PNG of data, model and residuals, which Matplotlib draws; empty: none
 };
 
-/// A fit: a report, all values, and the scene with what was found.
+/// What a residual can count: "squares", and robust ones.
+DOLP_EXPORT std::vector<std::string> fit_losses();
+
+/// A fit, of the best of the compared models.
 struct Fit {
-  std::string text;  ///< for people
-  std::string json;  ///< parameters, intervals, correlation, minima, residuals, as `dolp fit --json` names them
-  Scene scene;
+  Report report;             ///< parameters, intervals, correlation, minima, residuals
+  bool has_minimum = false;  ///< whether any descent converged
+  Scene scene;               ///< with what was compared and what was found; without a minimum the scene itself
 };
 
 /// Computes. Device and kernels are made when they are first needed and kept as long as the object lives.
@@ -263,18 +284,25 @@ class DOLP_EXPORT Evaluator {
   /// The same part by part, each of which `take` gets with its own axes, which are pieces of the table's. Memory does
   /// not grow with the table. What `take` throws ends the call.
   void table_parts(const Scene& scene, const std::function<void(const Table&)>& take, const RunOptions& options = {});
-  /// The same straight into a file, part by part, so that memory does not grow with the table. A shard's file has
-  /// "N-of-M" before its suffix; returns its path.
+  /// The same straight into a file, .nc, .csv or .npy by its suffix, part by part, so that memory does not grow with
+  /// the table. A shard's file has "N-of-M" before its suffix; one that is there already is kept. What a cancelled or
+  /// killed call has finished stays beside the file, for `resume`.
   /// Errors: InputError, IoError too. The file is whole or not there.
-  std::filesystem::path write_table(const Scene& scene, const std::filesystem::path& path,
-                                    const RunOptions& options = {}, const Shard& shard = {});
+  Report write_table(const Scene& scene, const std::filesystem::path& path, const RunOptions& options = {},
+                     const Shard& shard = {});
   /// The same quantities at scattered points; what the columns do not say comes from the scene.
   Results evaluate(const Scene& scene, const std::vector<Column>& points, const RunOptions& options = {});
+  /// The same of a CSV of points into a CSV that has their columns first; "-" is stdin and stdout.
+  Report write_points(const Scene& scene, const std::filesystem::path& points, const std::filesystem::path& path,
+                      const RunOptions& options = {});
   /// Mueller matrices, 1e-5 of m00 in float, 1e-11 in double; all 16 NaN where the model has no finite value.
   std::vector<MuellerMatrix> mueller(const Scene& scene, const std::vector<Column>& points,
                                      const RunOptions& options = {});
+  /// The same of a CSV of geometries into a CSV, likewise.
+  Report write_mueller(const Scene& scene, const std::filesystem::path& points, const std::filesystem::path& path,
+                       const RunOptions& options = {});
   /// Numbers of the scene from measured data, with profile-likelihood intervals.
-  /// Errors: InputError too, where data, ranges and scene do not fit together, and where no minimum was found.
+  /// Errors: InputError too, where data, ranges and scene do not fit together; IoError.
   Fit fit(const Scene& scene, const std::vector<MeasuredData>& data, const FitOptions& options);
 
  private:
@@ -282,13 +310,42 @@ class DOLP_EXPORT Evaluator {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Interpolates in a table file at a CSV of points, into a CSV that has their columns first, with the error of that;
+/// "-" is stdin and stdout. Errors: InputError, IoError.
+DOLP_EXPORT Report write_lookup(const std::filesystem::path& table, const std::filesystem::path& points,
+                                const std::filesystem::path& path, const Progress& progress = {});
+
+/// Joins all shards of a table into one file; they are opened one at a time. `history`: as in RunOptions.
+/// Errors: InputError that names a shard that is missing, there twice, or of another table; IoError.
+DOLP_EXPORT Report merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& path,
+                         const std::string& history = {});
+
 /// What a table over the scene's grid would compute and leave out, why, and what it would cost; nothing is run but
 /// counting on the CPU.
-struct Plan {
-  std::string text;  ///< for people
-  std::string json;  ///< all values, as `dolp plan --json` prints them
+DOLP_EXPORT Report plan(const Scene& scene, const std::string& device = {}, bool keep_all = false);
+
+/// How to check a table.
+struct TableCheck {
+  std::size_t samples = 64;  ///< entries to compute again; all when the table has no more
+  std::uint64_t seed = 1;    ///< of their choice
+  bool named_files = false;  ///< n, k and E0 from the files that the scene names, not from the table
+  Progress progress = {};    ///< may be empty
 };
-DOLP_EXPORT Plan plan(const Scene& scene, const std::string& device = {}, bool keep_all = false);
+/// Computes entries of a table file again with adaptive quadrature, which shares no formula with the kernels, and
+/// compares them with what the table states. Errors: InputError.
+DOLP_EXPORT Report verify(const std::filesystem::path& table, const TableCheck& options = {});
+
+/// How to examine a device.
+struct DeviceCheck {
+  std::string evaluator = "vulkan";  ///< vulkan; cpu: the shaders' text compiled as C++
+  std::string device = {};           ///< as in EvaluatorOptions
+  std::string precision = "auto";    ///< float, double; auto is both
+  double tolerance = 1e-4;           ///< what to ask for
+  bool all = false;                  ///< report every case, not only those that fail
+  Progress progress = {};            ///< may be empty
+};
+/// Computes the model's hard cases and compares them with stored references. Errors: InputError, DeviceError.
+DOLP_EXPORT Report verify_device(const DeviceCheck& options = {});
 
 /// A Vulkan device of this machine.
 struct Device {
@@ -303,6 +360,10 @@ struct Device {
 };
 /// All of them in the order of the Vulkan loader; EvaluatorOptions::device may be a position in it.
 DOLP_EXPORT std::vector<Device> devices();
+/// Refuses a device that cannot be used. Errors: DeviceError with the reason; with no name, where none can be used.
+DOLP_EXPORT void require_device(const std::string& device = {});
+/// The limits of all devices, and how well each computes a few ordinary cases.
+DOLP_EXPORT Report device_report();
 
 }  // namespace dolp::api
 

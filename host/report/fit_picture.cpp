@@ -1,4 +1,4 @@
-#include "cli/fit_picture.hpp"
+#include "report/fit_picture.hpp"
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -10,7 +10,7 @@
 
 #include "base/error.hpp"
 
-namespace dolp::cli {
+namespace dolp {
 
 void draw_fit(const std::string& json, const std::string& path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> input(std::tmpfile(), std::fclose);
@@ -34,4 +34,4 @@ void draw_fit(const std::string& json, const std::string& path) {
   }
 }
 
-}  // namespace dolp::cli
+}  // namespace dolp

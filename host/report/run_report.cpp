@@ -1,21 +1,17 @@
-#include "cli/run_report.hpp"
+#include "report/run_report.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "base/parallel_ranges.hpp"
-#include "cli/commands.hpp"
 #include "model/status.hpp"
 #include "run/scene_table.hpp"
-#include "terminal/exit_status.hpp"
 
-namespace dolp::cli {
+namespace dolp {
 namespace {
 
-constexpr double kPoints = 100.0;          // of DOLP
-constexpr double kFewEvaluations = 1e6;     // a tenth of a second of one core
-constexpr std::size_t kRowsAtOnce = 4096;  // of a thread
+constexpr double kPoints = 100.0;        // of DOLP
+constexpr double kFewEvaluations = 1e6;  // a tenth of a second of one core
 
 Report range_report(const char* what, double limit, const EnergyRange& range) {
   Report report;
@@ -92,16 +88,15 @@ void add_status(Report& report, const RunSummary& summary) {
 
 }  // namespace
 
-EvaluationReport evaluation_of(const MomentsEvaluator* evaluator, const Options& options) {
+EvaluationReport evaluation_of(const MomentsEvaluator* evaluator, const std::string& name) {
   if (evaluator) return evaluator->report();
   EvaluationReport nothing;
-  nothing.evaluator = options.evaluator;
+  nothing.evaluator = name;
   nothing.device = nothing.precision = "none";
   return nothing;
 }
 
-int report_run(const Options& options, const Scene& scene, const SceneRun& run, const std::string& shape,
-               const std::string& path) {
+Report run_report(const Scene& scene, const SceneRun& run, const std::string& shape, const std::string& path) {
   const RunSummary& summary = run.summary;
   Report report;
   report.line("{}", key("title", scene.title));
@@ -129,24 +124,7 @@ int report_run(const Options& options, const Scene& scene, const SceneRun& run, 
       evaluation.evaluator == "vulkan" && evaluation.evaluations < kFewEvaluations && evaluation.setup_s > 0.0;
   report.row_if(is_faster_on_cpu, "hint", "--evaluator cpu has no device to set up and is faster for so little");
   report.row("written", "{}", key("output", path));
-  report.print(options.json, options.quiet, path);
-  return options.strict && summary.count(kStatusToleranceMissed) > 0 ? kExitAccuracy : kExitDone;
-}
-
-std::string result_csv(const Points& points, const std::vector<PointResult>& results, const ExtraColumns& extra) {
-  std::vector<std::string> parts((results.size() + kRowsAtOnce - 1) / kRowsAtOnce);
-  parallel_ranges(results.size(), kRowsAtOnce, [&](std::size_t first, std::size_t last) {
-    std::string& part = parts[first / kRowsAtOnce];
-    for (std::size_t i = first; i < last; ++i) {
-      part += points.rows[i];
-      part += ',';
-      append_result_cells(part, results[i], extra);
-      part += '\n';
-    }
-  });
-  std::string csv = points.header + ',' + result_header(extra) + '\n';
-  for (const std::string& part : parts) csv += part;
-  return csv;
+  return report;
 }
 
 void add_evaluation(Report& report, const EvaluationReport& e, double wall_s) {
@@ -175,4 +153,4 @@ std::optional<double> worst_of(const std::vector<PointResult>& results, double P
   return worst;
 }
 
-}  // namespace dolp::cli
+}  // namespace dolp

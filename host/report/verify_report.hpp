@@ -8,7 +8,7 @@
 #include "verify/qualification.hpp"
 #include "verify/table_check.hpp"
 
-namespace dolp::cli {
+namespace dolp {
 
 /// A table that was checked.
 struct TableReport {
@@ -38,4 +38,4 @@ struct HardCaseReport {
 /// One line for each precision, distribution and masking, and one for each case that fails; `all`: for every case.
 Report hard_case_report(const HardCaseReport& cases, bool all);
 
-}  // namespace dolp::cli
+}  // namespace dolp

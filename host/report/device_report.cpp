@@ -1,17 +1,15 @@
+#include "report/device_report.hpp"
+
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/error.hpp"
-#include "cli/commands.hpp"
-#include "report/report.hpp"
-#include "evaluate/vulkan/devices.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/choices.hpp"
-#include "terminal/exit_status.hpp"
 #include "verify/qualification.hpp"
 
-namespace dolp::cli {
+namespace dolp {
 namespace {
 
 constexpr double kMebibyte = 1048576.0;
@@ -84,17 +82,13 @@ Report device_report(const DeviceDescription& device, std::size_t position) {
 
 }  // namespace
 
-int run_devices(const Options& options) {
-  const DeviceList list = list_devices();
+Report device_report(const DeviceList& list) {
   std::vector<Report> devices;
   for (std::size_t i = 0; i < list.devices.size(); ++i) devices.push_back(device_report(list.devices[i], i));
   Report report;
   report.add("devices", devices);
   report.value("why_empty", list.why_empty);
-  report.print(options.json, false);
-  if (list.devices.empty()) throw DeviceError(list.why_empty);
-  choose_device(list.devices, options.device, false);  // says why when no device can be used
-  return kExitDone;
+  return report;
 }
 
-}  // namespace dolp::cli
+}  // namespace dolp

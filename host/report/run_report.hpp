@@ -1,4 +1,4 @@
-// A run of a scene's entries as `table` and `eval` make it, and what commands report of runs.
+// What there is to say of a run over a scene's entries, and of what runs have in common.
 #pragma once
 
 #include <cstdint>
@@ -6,16 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "cli/options.hpp"
+#include "evaluate/evaluator.hpp"
 #include "model/point_result.hpp"
 #include "plan/effects.hpp"
 #include "report/plan_report.hpp"
 #include "report/report.hpp"
 #include "run/run_summary.hpp"
-#include "scene/points.hpp"
-#include "table/result_csv.hpp"
+#include "scene/scene.hpp"
 
-namespace dolp::cli {
+namespace dolp {
 
 /// A finished run, for its report.
 struct SceneRun {
@@ -27,16 +26,11 @@ struct SceneRun {
   double wall_s = 0.0;
 };
 
-/// What ran: nothing, where no evaluator was needed.
-EvaluationReport evaluation_of(const MomentsEvaluator* evaluator, const Options& options);
+/// What ran: nothing, where no evaluator was needed; `name` is the one that was asked for.
+EvaluationReport evaluation_of(const MomentsEvaluator* evaluator, const std::string& name);
 
-/// Prints the report of a run; returns the exit status. `shape`: that of the grid, or "200 points"; `path`: what was
-/// written.
-int report_run(const Options& options, const Scene& scene, const SceneRun& run, const std::string& shape,
-               const std::string& path);
-
-/// The columns of the points as they were given, and those of their results.
-std::string result_csv(const Points& points, const std::vector<PointResult>& results, const ExtraColumns& extra);
+/// The report of a run. `shape`: that of the grid, or "200 points"; `path`: what was written.
+Report run_report(const Scene& scene, const SceneRun& run, const std::string& shape, const std::string& path);
 
 /// Where a run was evaluated, and how long it took.
 void add_evaluation(Report& report, const EvaluationReport& evaluation, double wall_s);
@@ -48,4 +42,4 @@ std::size_t count_status(const std::vector<PointResult>& results, std::uint32_t 
 std::optional<double> worst_of(const std::vector<PointResult>& results, double PointResult::*error,
                                std::uint32_t refused);
 
-}  // namespace dolp::cli
+}  // namespace dolp

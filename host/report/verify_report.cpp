@@ -1,4 +1,4 @@
-#include "cli/verify_report.hpp"
+#include "report/verify_report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "model/choices.hpp"
 #include "model/status.hpp"
 
-namespace dolp::cli {
+namespace dolp {
 namespace {
 
 constexpr std::size_t kMostFailureLines = 20;
@@ -198,4 +198,4 @@ Report hard_case_report(const HardCaseReport& cases, bool all) {
   return report;
 }
 
-}  // namespace dolp::cli
+}  // namespace dolp

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace dolp::cli {
+namespace dolp {
 
 /// The text of host/plot_fit.py.
 extern const char* const kFitPictureScript;
@@ -12,4 +12,4 @@ extern const char* const kFitPictureScript;
 /// Errors: IoError when they are missing or the picture cannot be written.
 void draw_fit(const std::string& json, const std::string& path);
 
-}  // namespace dolp::cli
+}  // namespace dolp

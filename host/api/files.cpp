@@ -1,0 +1,241 @@
+// Calls that read and write files.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "api/evaluator_impl.hpp"
+#include "api/reports.hpp"
+#include "api/scene_impl.hpp"
+#include "base/atomic_file.hpp"
+#include "base/number_text.hpp"
+#include "base/parallel_ranges.hpp"
+#include "base/stopwatch.hpp"
+#include "base/text.hpp"
+#include "model/status.hpp"
+#include "report/run_report.hpp"
+#include "run/lookup_run.hpp"
+#include "run/mueller_run.hpp"
+#include "run/scattering_gap.hpp"
+#include "run/scene_run.hpp"
+#include "run/scene_table.hpp"
+#include "run/table_run.hpp"
+#include "run/table_scene.hpp"
+#include "table/result_csv.hpp"
+#include "table/table_file.hpp"
+#include "table/table_lookup.hpp"
+
+namespace dolp::api {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kRowsAtOnce = 4096;  // of a thread
+
+/// The points of a file. Columns that are results, as write_points and write_lookup write them, are left out.
+Points load_points(const std::filesystem::path& path, PointsKind kind) {
+  return read_points(path.string(), kind, result_columns());
+}
+
+void add_left_out(dolp::Report& report, const Points& points) {
+  report.row_if(!points.left_out.empty(), "left out", "{}, because they are results", join(points.left_out));
+}
+
+/// The columns of the points as they were given, and those of their results.
+std::string result_csv(const Points& points, const std::vector<PointResult>& results, const ExtraColumns& extra) {
+  std::vector<std::string> parts((results.size() + kRowsAtOnce - 1) / kRowsAtOnce);
+  parallel_ranges(results.size(), kRowsAtOnce, [&](std::size_t first, std::size_t last) {
+    std::string& part = parts[first / kRowsAtOnce];
+    for (std::size_t i = first; i < last; ++i) {
+      part += points.rows[i];
+      part += ',';
+      append_result_cells(part, results[i], extra);
+      part += '\n';
+    }
+  });
+  std::string csv = points.header + ',' + result_header(extra) + '\n';
+  for (const std::string& part : parts) csv += part;
+  return csv;
+}
+
+std::string mueller_csv(const Points& points, const std::vector<MuellerElements>& results) {
+  std::string csv = points.header;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) csv += fmt::format(",m{}{}", row, column);
+  }
+  csv += '\n';
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    csv += points.rows[i];
+    for (const double element : results[i]) (csv += ',') += number_text(element);
+    csv += '\n';
+  }
+  return csv;
+}
+
+}  // namespace
+
+Report public_report(const dolp::Report& report, bool is_good, const std::filesystem::path& output) {
+  return {report.text(), report.json_text(), is_good, output};
+}
+
+std::vector<std::string> files_of(const dolp::Scene& scene) {
+  std::vector<std::string> files = scene.files;
+  files.push_back(scene.path_name);
+  return files;
+}
+
+void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    std::error_code missing;  // a file that is not there is not the same file
+    if (std::filesystem::equivalent(output, input, missing)) {
+      throw dolp::InputError(output.string() + ": the output would overwrite an input");
+    }
+  }
+}
+
+Report Evaluator::write_table(const Scene& scene, const std::filesystem::path& path, const RunOptions& options,
+                              const Shard& shard) {
+  return impl_->exclusively([&] {
+    const dolp::Scene& own = scene.impl().scene;
+    TableJob job;
+    job.shard = {shard.number, shard.count};
+    job.path = shard_path(path, job.shard);
+    job.is_resumed = options.resume;
+    job.keep_all = options.keep_all;
+    job.command_line = options.history;
+    job.start = Clock::now();
+    check_output_is_no_input(job.path, files_of(own));
+    check_output_path(job.path);
+    const SceneEntries entries = shard_entries(own, job.shard);
+    if (!job.shard.is_whole() && is_there(own, job)) {
+      dolp::Report report;
+      report.line("{}", key("title", own.title));
+      report.row("kept", "{}: the whole shard is there already", key("output", job.path.string()));
+      return public_report(report, true, job.path);
+    }
+    MomentsEvaluator* evaluator = nullptr;
+    TableRun table = run_table_job(
+        own, job, [&] { return evaluator = impl_->begin(own); }, options.progress);
+    SceneRun run{std::move(table.plan), std::move(table.effects), table.summary, {}, table.evaluation, table.wall_s};
+    if (evaluator == nullptr) run.evaluation = evaluation_of(nullptr, impl_->options.evaluator);
+    run.scattering_gap = scattering_gap(own, entries, run.plan);
+    run.wall_s = seconds_since(job.start);
+    return public_report(run_report(own, run, grid_text(entries.axes()), job.path.string()),
+                         run.summary.count(kStatusToleranceMissed) == 0, job.path);
+  });
+}
+
+Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& points_path,
+                               const std::filesystem::path& path, const RunOptions& options) {
+  return impl_->exclusively([&] {
+    const Clock::time_point start = Clock::now();
+    const dolp::Scene& own = scene.impl().scene;
+    std::vector<std::string> inputs = files_of(own);
+    inputs.push_back(points_path.string());
+    check_output_is_no_input(path, inputs);
+    const Points points = load_points(points_path, PointsKind::kDirections);
+    const SceneEntries entries = point_entries(own, points);
+    check_writable(path);
+    SceneRun run;
+    run.plan = plan_effects(own, entries, options.keep_all);
+    MomentsEvaluator* const evaluator = wants_evaluator(own, entries, run.plan) ? impl_->begin(own) : nullptr;
+    CollectedResults collected(entries);
+    run.summary.check = run_scene(own, entries, run.plan, evaluator, collected, options.progress);
+    const std::vector<PointResult> results = collected.take();
+    run.summary.add(own, entries, results);
+    run.evaluation = evaluation_of(evaluator, impl_->options.evaluator);
+    run.scattering_gap = scattering_gap(own, entries, run.plan);
+    run.effects = effect_rows(own, entries, run.plan);
+    write_text_atomically(path, result_csv(points, results, extra_columns(own)));
+    run.wall_s = seconds_since(start);
+    dolp::Report report = run_report(own, run, fmt::format("{} points", results.size()), path.string());
+    add_left_out(report, points);
+    return public_report(report, run.summary.count(kStatusToleranceMissed) == 0, path);
+  });
+}
+
+Report Evaluator::write_mueller(const Scene& scene, const std::filesystem::path& points_path,
+                                const std::filesystem::path& path, const RunOptions& options) {
+  return impl_->exclusively([&] {
+    const Clock::time_point start = Clock::now();
+    const dolp::Scene& own = scene.impl().scene;
+    std::vector<std::string> inputs = files_of(own);
+    inputs.push_back(points_path.string());
+    check_output_is_no_input(path, inputs);
+    const Points points = load_points(points_path, PointsKind::kGeometries);
+    const std::vector<MuellerPoint> geometries = mueller_points(own, points);
+    check_writable(path);
+    MomentsEvaluator* const evaluator = impl_->begin(own);
+    const std::vector<MuellerElements> results = evaluate_mueller(own, geometries, *evaluator, options.progress);
+    write_text_atomically(path, mueller_csv(points, results));
+
+    const bool is_float = impl_->options.evaluator != "reference" &&
+                          mueller_precision(own.accuracy, evaluator->has_double()) == Precision::kFloat;
+    const double accuracy = is_float ? kScatteringErrorFloat : kScatteringErrorDouble;
+    const auto nans = std::ranges::count_if(results, [](const MuellerElements& f) { return std::isnan(f[0]); });
+    dolp::Report report;
+    report.line("{}", key("title", own.title));
+    report.row("entries", "{} geometries", key("entries", results.size()));
+    add_evaluation(report, evaluator->report(), seconds_since(start));
+    report.row("error", "<= {:g} of m00; tolerance {:g}", key("worst_error_estimate", accuracy),
+               key("tolerance", own.accuracy.tolerance));
+    report.row_if(nans > 0, "nan", "{} of {} geometries: f has no finite value there", key("without_value", nans),
+                  results.size());
+    add_left_out(report, points);
+    report.row("written", "{}", key("output", path.string()));
+    return public_report(report, accuracy <= own.accuracy.tolerance, path);
+  });
+}
+
+Report write_lookup(const std::filesystem::path& table_path, const std::filesystem::path& points_path,
+                    const std::filesystem::path& path, const Progress& progress) {
+  return translated([&] {
+    const Clock::time_point start = Clock::now();
+    check_output_is_no_input(path, {table_path.string(), points_path.string()});
+    const dolp::Table table = load_table(table_path.string());
+    const dolp::Scene scene = table_scene(table, table_path.string());
+    const TableLookup lookup(table, scene.accuracy.tolerance, table_path.string());
+    const Points points = load_points(points_path, PointsKind::kDirections);
+    check_writable(path);
+    const std::vector<PointResult> results = lookup_points(lookup, scene, points, progress);
+    write_text_atomically(path, result_csv(points, results, lookup.extra_columns()));
+
+    const std::size_t missed = count_status(results, kStatusToleranceMissed);
+    const std::optional<double> worst = worst_of(results, &PointResult::error_estimate, kStatusNoDolpPromised);
+    dolp::Report report;
+    report.line("{}", key("table", table_path.string()));
+    report.row("points", "{}", key("points", results.size()));
+    report.row("error", "{}, interpolation included; tolerance of the table {:g}",
+               worst ? fmt::format("DOLP <= {:.2g} (absolute)", *worst) : "stated for no point",
+               key("tolerance", scene.accuracy.tolerance));
+    report.row("status 2", "{} of {} points: tolerance not met", key("tolerance_missed", missed), results.size());
+    add_left_out(report, points);
+    report.row("written", "{}", key("output", path.string()));
+    report.value("worst_error_estimate", worst);
+    report.value("worst_rho_error_estimate",
+                 worst_of(results, &PointResult::rho_error_estimate, kStatusNoDolpPromised));
+    report.value("wall_s", seconds_since(start));
+    return public_report(report, missed == 0, path);
+  });
+}
+
+Report merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& path,
+             const std::string& history) {
+  return translated([&] {
+    const Clock::time_point start = Clock::now();
+    std::vector<std::string> names;
+    for (const std::filesystem::path& shard : shards) names.push_back(shard.string());
+    check_output_is_no_input(path, names);
+    check_output_path(path);
+    const std::size_t entries = merge_shards(names, path, history);
+    dolp::Report report;
+    report.line("{} entries of {} shards", key("entries", entries), key("shards", shards.size()));
+    report.row("written", "{}", key("output", path.string()));
+    report.value("wall_s", seconds_since(start));
+    return public_report(report, true, path);
+  });
+}
+
+}  // namespace dolp::api

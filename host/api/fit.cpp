@@ -1,0 +1,184 @@
+// Numbers of a scene from measured data.
+#include "fit/fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <limits>
+
+#include "api/evaluator_impl.hpp"
+#include "api/reports.hpp"
+#include "api/scene_impl.hpp"
+#include "base/atomic_file.hpp"
+#include "base/stopwatch.hpp"
+#include "base/text.hpp"
+#include "fit/fit_data.hpp"
+#include "model/status.hpp"
+#include "report/fit_picture.hpp"
+#include "report/fit_report.hpp"
+#include "report/run_report.hpp"
+#include "scene/scene_writer.hpp"
+
+namespace dolp::api {
+namespace {
+
+using Overrides = std::vector<std::string>;
+
+fit::Loss loss_of(const std::string& name, const std::vector<fit::FitData>& data) {
+  const auto found = std::ranges::find(fit::kLossNames, std::string_view(name));
+  if (found == fit::kLossNames.end()) {
+    throw dolp::InputError(fmt::format("loss {}: must be one of {}", one_line(name), fmt::join(fit::kLossNames, ", ")));
+  }
+  for (const fit::FitData& one : data) {
+    if (found == fit::kLossNames.begin() || one.has_uncertainties) continue;
+    throw dolp::InputError(
+        fmt::format("--loss {}: {} needs the column \"uncertainty\", which says what lies off", name, one.name));
+  }
+  return static_cast<fit::Loss>(found - fit::kLossNames.begin());
+}
+
+/// All combinations of what `compare` lists, one list of overrides each; one empty list without it.
+std::vector<Overrides> combinations(const std::vector<std::string>& compare,
+                                    const std::vector<fit::Parameter>& parameters) {
+  std::vector<Overrides> all = {{}};
+  for (const std::string& argument : compare) {
+    const std::size_t equals = argument.find('=');
+    if (equals == std::string::npos || equals + 1 == argument.size()) {
+      throw dolp::InputError(fmt::format("--compare {}: must be KEY=WORD,WORD,...", one_line(argument)));
+    }
+    const std::string key(trim(std::string_view(argument).substr(0, equals)));
+    if (std::ranges::find(parameters, key, &fit::Parameter::key) != parameters.end()) {
+      throw dolp::InputError(
+          fmt::format("--compare {}: {} is varied and cannot be compared too", one_line(argument), key));
+    }
+    std::vector<Overrides> more;
+    for (const Overrides& one : all) {
+      for (const std::string_view word : split(std::string_view(argument).substr(equals + 1), ',')) {
+        more.push_back(one);
+        more.back().push_back(fmt::format("{}={}", key, trim(word)));
+      }
+    }
+    all = std::move(more);
+  }
+  return all;
+}
+
+/// The best of the models that were compared.
+struct Best {
+  std::unique_ptr<fit::Model> model;
+  std::optional<fit::FitResult> result;
+  Overrides compared;
+
+  /// What was compared, and the values that were found.
+  Overrides overrides() const {
+    Eigen::VectorXd values(static_cast<Eigen::Index>(result->parameters.size()));
+    for (Eigen::Index j = 0; j < values.size(); ++j) values[j] = result->parameters[static_cast<std::size_t>(j)].value;
+    Overrides all = compared;
+    std::ranges::copy(model->overrides(values), std::back_inserter(all));
+    return all;
+  }
+};
+
+void check_outputs(const FitOptions& options, const dolp::Scene& scene, const std::vector<MeasuredData>& data) {
+  std::vector<std::string> inputs = files_of(scene);
+  for (const MeasuredData& one : data) inputs.push_back(one.name);
+  for (const std::filesystem::path& path : {options.output, options.plot}) {
+    if (path.empty()) continue;
+    check_output_is_no_input(path, inputs);
+    check_writable(path);
+  }
+}
+
+void write_fitted(const std::filesystem::path& path, const Scene& fitted) {
+  write_text_atomically(path, scene_toml(fitted.text(), fitted.name(), fitted.overrides(), path.parent_path()));
+}
+
+}  // namespace
+
+std::vector<std::string> fit_losses() { return {fit::kLossNames.begin(), fit::kLossNames.end()}; }
+
+MeasuredData MeasuredData::read(const std::string& argument) {
+  return translated([&] {
+    const fit::DataArgument parts = fit::parse_data_argument(argument);
+    return MeasuredData{read_text(parts.path, input_name(parts.path) + ": "), parts.overrides, parts.path};
+  });
+}
+
+Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, const FitOptions& options) {
+  return impl_->exclusively([&] {
+    const auto start = std::chrono::steady_clock::now();
+    const dolp::Scene& own = scene.impl().scene;
+    std::vector<fit::FitData> sets;
+    for (const MeasuredData& one : data) {
+      sets.push_back(fit::parse_fit_data(one.csv, one.name));
+      sets.back().overrides = one.overrides;
+    }
+    std::vector<fit::Parameter> parameters;
+    for (const std::string& one : options.vary) parameters.push_back(fit::parse_parameter(one));
+    const fit::FitOptions fit_options{options.starts, options.seed, loss_of(options.loss, sets), options.progress};
+
+    std::vector<ComparedModel> models;
+    MomentsEvaluator* evaluator = nullptr;
+    Best best;
+    const std::vector<Overrides> compared = combinations(options.compare, parameters);
+    for (const Overrides& overrides : compared) {
+      ComparedModel& one = models.emplace_back();
+      one.overrides = overrides;
+      fit::SceneText text{own.text, own.path_name, own.overrides};
+      std::ranges::copy(overrides, std::back_inserter(text.overrides));
+      std::unique_ptr<fit::Model> model;
+      try {
+        model = std::make_unique<fit::Model>(text, sets, parameters);
+      } catch (const dolp::InputError& error) {
+        if (compared.size() == 1) throw;
+        one.refusal = error.what();
+        continue;
+      }
+      if (evaluator == nullptr) {
+        check_outputs(options, model->scene(), data);
+        evaluator = impl_->begin(model->scene());
+      }
+      one.result = fit::fit(*model, *evaluator, fit_options);
+      if (one.result && (!best.result || one.result->aic < best.result->aic)) {
+        best = {std::move(model), one.result, overrides};
+      }
+    }
+    if (evaluator == nullptr) throw dolp::InputError("--compare: " + models.front().refusal);
+    std::ranges::stable_sort(models, {}, [](const ComparedModel& one) {
+      return one.result ? one.result->aic : std::numeric_limits<double>::infinity();
+    });
+
+    dolp::Report report;
+    report.line("{}", key("title", own.title));
+    if (best.result) {
+      report.row("data", "{} measured values of {} file{}", key("observations", best.model->observation_count()),
+                 sets.size(), sets.size() == 1 ? "" : "s");
+      if (models.size() > 1) add_comparison(report, models);
+      add_fit(report, *best.model, *best.result);
+    } else {
+      report.row("minimum", "none was found: no descent converged; try other ranges, or more starts");
+    }
+    report.value("has_minimum", best.result.has_value());
+    report.row("starts", "{} descents, seed {}", key("starts", options.starts), key("seed", options.seed));
+    report.value("loss", options.loss);
+    add_evaluation(report, evaluator->report(), seconds_since(start));
+    report.value("integrand_evaluations", evaluator->report().evaluations);
+    if (!best.result) return Fit{public_report(report, false), false, scene};
+
+    const Scene fitted = scene.with(best.overrides());
+    if (!options.output.empty()) {
+      write_fitted(options.output, fitted);
+      report.row("written", "{}", key("output", options.output.string()));
+    }
+    if (!options.plot.empty()) {
+      draw_fit(report.json_text(), options.plot.string());
+      report.row("picture", "{}", key("plot", options.plot.string()));
+    }
+    return Fit{public_report(report, (best.result->status & kStatusToleranceMissed) == 0, options.output), true,
+               fitted};
+  });
+}
+
+}  // namespace dolp::api

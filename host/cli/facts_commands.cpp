@@ -1,0 +1,79 @@
+// What there is: keys, materials, devices; and the plan of a scene.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "cli/commands.hpp"
+
+namespace dolp::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string default_text(const api::Key& key) {
+  if (key.fallback.empty()) return "absent when not given";
+  return key.fallback == "required" ? "required" : "default " + key.fallback;
+}
+
+void add_key(api::Report& report, Json& list, const api::Key& key) {
+  const bool has_unit = !key.unit.empty() && key.unit != "1";
+  report.text += fmt::format("{}\n    {}\n    {}{}; {}\n", key.key, key.meaning, key.allowed,
+                             has_unit ? ", " + key.unit : "", default_text(key));
+  list.push_back({{"key", key.key},
+                  {"meaning", key.meaning},
+                  {"unit", key.unit},
+                  {"allowed", key.allowed},
+                  {"default", key.fallback}});
+}
+
+int finish_list(api::Report report, const char* name, const Json& list, const Options& options) {
+  report.json = Json{{name, list}}.dump(2, ' ', true);
+  return finish(report, options);
+}
+
+}  // namespace
+
+int run_keys(const Options& options) {
+  api::Report report;
+  Json list = Json::array();
+  std::vector<std::string> names;
+  for (const api::Key& key : api::keys()) {
+    names.push_back(key.key);
+    const bool is_wanted = options.key.empty() || key.key == options.key || key.key.starts_with(options.key + ".");
+    if (is_wanted) add_key(report, list, key);
+  }
+  if (list.empty()) {
+    throw InputError(fmt::format("{}: is no key of a scene; the nearest is {}", one_line(options.key),
+                                 nearest_name(options.key, names)));
+  }
+  return finish_list(report, "keys", list, options);
+}
+
+int run_materials(const Options& options) {
+  api::Report report;
+  Json list = Json::array();
+  for (const api::Material& material : api::materials()) {
+    report.text += fmt::format("{:<46}  {:>7} to {:<8} um  {}\n", material.name, material.from_um, material.to_um,
+                               material.source);
+    list.push_back({{"name", material.name},
+                    {"from_um", material.from_um},
+                    {"to_um", material.to_um},
+                    {"source", material.source}});
+  }
+  return finish_list(report, "materials", list, options);
+}
+
+int run_devices(const Options& options) {
+  const int status = finish(api::device_report(), options);
+  api::require_device(options.device);
+  return status;
+}
+
+int run_plan(const Options& options) {
+  return finish(api::plan(load_scene(options), options.device, options.keep_all), options);
+}
+
+}  // namespace dolp::cli

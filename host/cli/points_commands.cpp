@@ -1,0 +1,37 @@
+#include "cli/commands.hpp"
+#include "terminal/progress_bar.hpp"
+
+namespace dolp::cli {
+
+int run_eval(const Options& options) {
+  const api::Scene scene = load_scene(options);
+  api::Report report;
+  {
+    ProgressBar bar(options.quiet);
+    report = evaluator_of(options).write_points(scene, options.points_path, options.output_path,
+                                                {options.keep_all, bar.callback()});
+  }
+  return finish(report, options);
+}
+
+int run_mueller(const Options& options) {
+  const api::Scene scene = load_scene(options);
+  api::Report report;
+  {
+    ProgressBar bar(options.quiet);
+    report = evaluator_of(options).write_mueller(scene, options.points_path, options.output_path,
+                                                 {.progress = bar.callback()});
+  }
+  return finish(report, options);
+}
+
+int run_lookup(const Options& options) {
+  api::Report report;
+  {
+    ProgressBar bar(options.quiet);
+    report = api::write_lookup(options.table_path, options.points_path, options.output_path, bar.callback());
+  }
+  return finish(report, options);
+}
+
+}  // namespace dolp::cli

@@ -1,0 +1,24 @@
+// The window as a command.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace dolp::explore {
+
+struct ProgramOptions {
+  std::string scene_path;  ///< "-" is stdin; empty: stainless steel
+  std::vector<std::string> overrides;
+  std::string device;           ///< its position or a part of its name
+  std::string command_line;     ///< for the history of tables
+  std::string measured_path;    ///< CSV of measured points; empty: none
+  std::size_t frames = 0;       ///< draw so many and end; 0: until the window is closed
+  std::string screenshot_path;  ///< PNG of the last frame; empty: none
+};
+
+/// Shows the window. Prints how long frames took, where their number is given.
+/// Errors: InputError, DeviceError, IoError.
+void run_program(const ProgramOptions& options);
+
+}  // namespace dolp::explore

@@ -1,0 +1,12 @@
+// What there is to say of the Vulkan devices.
+#pragma once
+
+#include "evaluate/vulkan/devices.hpp"
+#include "report/report.hpp"
+
+namespace dolp {
+
+/// Their limits, and how well each computes a few ordinary cases in float and double.
+Report device_report(const DeviceList& list);
+
+}  // namespace dolp

@@ -2,8 +2,12 @@
 #include <gtest/gtest.h>
 #include <dolp/dolp.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <optional>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -79,6 +83,66 @@ TEST_F(Library, PartsOfATable_AreTheTable) {
 
 TEST_F(Library, Shards_AreFilesOfTheirOwn) {
   EXPECT_EQ(evaluator_.write_table(scene_, folder_ / "t.nc", {}, {2, 3}).output.filename(), "t.2-of-3.nc");
+}
+
+TEST_F(Library, MergedShards_AreTheTable_AndOneThatIsThereIsKept) {
+  evaluator_.write_table(scene_, folder_ / "whole.nc");
+  std::vector<std::filesystem::path> shards;
+  for (std::size_t i = 1; i <= 2; ++i) {
+    shards.push_back(evaluator_.write_table(scene_, folder_ / "t.nc", {}, {i, 2}).output);
+  }
+  EXPECT_NE(evaluator_.write_table(scene_, folder_ / "t.nc", {}, {1, 2}).text.find("is there already"),
+            std::string::npos);
+  EXPECT_EQ(dolp::merge(shards, folder_ / "merged.nc").output, folder_ / "merged.nc");
+  const dolp::Table whole = dolp::Table::read(folder_ / "whole.nc"), merged = dolp::Table::read(folder_ / "merged.nc");
+  for (const dolp::Variable& variable : whole.variables()) {
+    const auto expected = whole.values(variable.name), found = merged.values(variable.name);
+    EXPECT_TRUE(std::equal(expected.begin(), expected.end(), found.begin(), found.end())) << variable.name;
+  }
+  EXPECT_THROW(dolp::merge({shards[0]}, folder_ / "half.nc"), dolp::InputError);
+}
+
+TEST_F(Library, FilesOfPoints_HaveTheNumbersOfPointsInMemory) {
+  std::ofstream(folder_ / "points.csv") << "theta_deg\n10\n50\n";
+  const std::vector<double> theta = {10, 50};
+  const auto dolp_of = [&](const std::filesystem::path& path) {
+    std::ifstream file(path);
+    std::string line, cell;
+    std::vector<double> values;
+    std::optional<std::size_t> column;
+    while (std::getline(file, line)) {
+      const bool is_header = !column;
+      std::istringstream cells(line);
+      for (std::size_t i = 0; std::getline(cells, cell, ','); ++i) {
+        if (is_header && cell == "dolp") column = i;
+        if (!is_header && i == column) values.push_back(std::stod(cell));
+      }
+    }
+    return values;
+  };
+  const dolp::Report written = evaluator_.write_points(scene_, folder_ / "points.csv", folder_ / "results.csv");
+  EXPECT_TRUE(written.is_good);
+  EXPECT_NE(written.json.find("\"entries\": 2"), std::string::npos) << written.json;
+  const auto expected = evaluator_.evaluate(scene_, {{"theta_deg", theta}});
+  const std::vector<double> found = dolp_of(folder_ / "results.csv");
+  ASSERT_EQ(found.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(found[i], expected.values("dolp")[i]);
+
+  evaluator_.write_table(scene_.with({"grid.sigma=[0.2]", "grid.q=[3]"}), folder_ / "t.nc");
+  dolp::write_lookup(folder_ / "t.nc", folder_ / "points.csv", folder_ / "between.csv");
+  const dolp::Results between = dolp::Table::read(folder_ / "t.nc").lookup({{"theta_deg", theta}});
+  EXPECT_EQ(dolp_of(folder_ / "between.csv"),
+            std::vector<double>(between.values("dolp").begin(), between.values("dolp").end()));
+  EXPECT_THROW(evaluator_.write_points(scene_, folder_ / "points.csv", folder_ / "points.csv"), dolp::InputError);
+}
+
+TEST_F(Library, Verify_ATableAndADevice_SayWhatIsWrong) {
+  evaluator_.write_table(scene_, folder_ / "t.nc");
+  const dolp::Report table = dolp::verify(folder_ / "t.nc", {.samples = 3});
+  EXPECT_TRUE(table.is_good) << table.text;
+  EXPECT_NE(table.text.find("3 of 12 entries"), std::string::npos) << table.text;
+  EXPECT_THROW(dolp::verify_device({.evaluator = "cpu", .tolerance = 1.0}), dolp::InputError);
+  EXPECT_THROW(dolp::verify_device({.evaluator = "cpu", .precision = "half"}), dolp::InputError);
 }
 
 TEST_F(Library, Lookup_BetweenEntries_StatesItsError) {

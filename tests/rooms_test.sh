@@ -30,17 +30,18 @@ room evaluate/named evaluate/named/named_evaluator.hpp \
 room radiometry radiometry/radiometry.hpp model scene spectrum
 room run run/table_scene.hpp base evaluate evaluate/cpu evaluate/interpolation evaluate/text model plan radiometry scene spectrum table
 room fit fit/parameter.hpp base evaluate model plan radiometry run scene spectrum table
-room report report/report.hpp base evaluate evaluate/text evaluate/vulkan fit model plan radiometry run scene spectrum table
-room api api/translated.hpp \
-  base evaluate evaluate/named evaluate/vulkan fit model plan radiometry report run scene spectrum table
-room terminal terminal/exit_status.hpp base
 room verify verify/stored_cases.hpp base evaluate evaluate/reference model plan radiometry run scene spectrum table
+room report report/report.hpp \
+  base evaluate evaluate/text evaluate/vulkan fit model plan radiometry run scene spectrum table verify
+room api api/translated.hpp \
+  base evaluate evaluate/cpu evaluate/named evaluate/vulkan fit model plan radiometry report run scene spectrum table verify
+room terminal terminal/exit_status.hpp base
 room calibrate calibrate/hold_out.hpp base evaluate evaluate/cpu evaluate/reference evaluate/text model plan scene spectrum
 room explore explore/ticks.hpp base evaluate evaluate/reference model plan radiometry run scene spectrum table
 room explore/window explore/window/area.hpp \
   base evaluate evaluate/interpolation evaluate/vulkan explore model plan scene spectrum
-room cli cli/options.hpp base evaluate evaluate/cpu evaluate/named evaluate/text evaluate/vulkan explore \
-  explore/window fit model plan radiometry report run scene spectrum table terminal verify
+room explore/program explore/program/program.hpp base evaluate evaluate/vulkan explore explore/window model plan scene spectrum
+room cli cli/options.hpp base explore/program terminal
 
 # Libraries that stay in some rooms, by what their headers are called.
 declare -A library=(

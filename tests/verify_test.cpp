@@ -361,6 +361,7 @@ TEST_F(Verify, WrongFiles_Exit2InOneLine) {
       {{"verify", "t.nc", "--samples", "0"}, "--samples"},
       {{"verify", "t.nc", "--tolerance", "1e-3"}, "--tolerance"},
       {{"verify", "--hard-cases", "--samples", "3"}, "--samples"},
+      {{"verify", "--hard-cases", "--tolerance", "much"}, "--tolerance much: must be a number in [1e-10, 0.01]"},
       {{"verify", "--hard-cases", "--tolerance", "1"}, "--tolerance 1: must be a number in [1e-10, 0.01]"},
       {{"verify", "--hard-cases", "--evaluator", "reference"}, "reference"},
       {{"verify", "--hard-cases", "--precision", "half"}, "half"}};

@@ -65,7 +65,7 @@ Report verify_device(const DeviceCheck& options) {
   return translated([&] {
     if (!kToleranceRange.contains(options.tolerance)) {
       throw dolp::InputError(
-          fmt::format("tolerance {:g}: must be a number in {}", options.tolerance, kToleranceRange.text()));
+          fmt::format("--tolerance {:g}: must be a number in {}", options.tolerance, kToleranceRange.text()));
     }
     HardCaseReport report;
     report.tolerance = options.tolerance;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <dolp/dolp.hpp>
 #include <string>
 #include <vector>
@@ -15,12 +14,6 @@ namespace {
 
 constexpr const char* kDescription =
     "dolp: infrared degree of linear polarisation of rough surfaces, on any Vulkan device";
-
-/// What a key of a scene may be.
-std::string allowed(const std::string& name) {
-  const std::vector<api::Key> keys = api::keys();
-  return std::ranges::find(keys, name, &api::Key::key)->allowed;
-}
 
 /// At the end of a command's help.
 void add_examples(CLI::App& command, const char* first, const char* second) {

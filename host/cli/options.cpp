@@ -28,6 +28,11 @@ std::vector<std::string> all_overrides(const Options& options) {
   return overrides;
 }
 
+std::string allowed(const std::string& key) {
+  const std::vector<api::Key> keys = api::keys();
+  return std::ranges::find(keys, key, &api::Key::key)->allowed;
+}
+
 api::Scene load_scene(const Options& options) {
   check_one_stdin(options);
   return api::Scene::from_file(options.scene_path, all_overrides(options));

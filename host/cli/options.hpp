@@ -51,6 +51,9 @@ void check_one_stdin(const Options& options);
 /// All overrides of the command line: --set first, then --tolerance and --precision.
 std::vector<std::string> all_overrides(const Options& options);
 
+/// What a key of a scene may be: "a number in [0, 10]".
+std::string allowed(const std::string& key);
+
 /// The scene with all_overrides.
 api::Scene load_scene(const Options& options);
 

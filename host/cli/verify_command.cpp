@@ -16,7 +16,10 @@ api::Report verify_device(const Options& options, const api::Progress& progress)
   if (!options.precision.empty()) check.precision = options.precision;
   if (!options.tolerance.empty()) {
     const std::optional<double> tolerance = parse_number(options.tolerance);
-    if (!tolerance) throw InputError(fmt::format("--tolerance {}: must be a number", one_line(options.tolerance)));
+    if (!tolerance) {
+      throw InputError(
+          fmt::format("--tolerance {}: must be {}", one_line(options.tolerance), allowed("accuracy.tolerance")));
+    }
     check.tolerance = *tolerance;
   }
   check.all = options.all;

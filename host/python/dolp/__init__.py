@@ -150,7 +150,7 @@ def write_table(scene: Scene, path: Path, *, evaluator: str = "vulkan", device: 
     Returns the report of the run. What an interrupted call has finished stays beside the file; `resume` goes on there.
 
     >>> print(dolp.write_table(scene, "/tmp/table_of_scene.nc").splitlines()[1])
-      entries    5 (theta)
+      entries    5 x 1 x 1 (theta x sigma x q)
     """
     with_axes = Scene(scene, {f"grid.{axis}": np.atleast_1d(values) for axis, values in axes.items()})
     return _evaluator(evaluator, device).write_table(with_axes._native, path, keep_all, resume)

@@ -75,11 +75,11 @@ ordered_json coverage_json(const ordered_json& rows) {
           {"share_95", share(held_95)}, {"global_minima", global}, {"median_time_s", median(times_s)}};
 }
 
-/// The same minimum by SciPy around the command line, from the middle of the ranges; null without SciPy.
+/// The same minimum by SciPy around the Python package, from the middle of the ranges; null without SciPy.
 ordered_json scipy_json(const FitSet& set, const fit::FitData& data, const fit::FitResult& result) {
   const std::string script = DOLP_BENCH_DIR "/fit_scipy.py";
-  if (run_child({kPython, script, "--version"}, ChildErrors::kHidden).status != 0) return {};
-  ordered_json question = {{"dolp", std::filesystem::path(own_program()).replace_filename("dolp").string()},
+  if (run_child({kPython, "-c", "import scipy, xarray"}, ChildErrors::kHidden).status != 0) return {};
+  ordered_json question = {{"package", std::filesystem::path(own_program()).replace_filename("python").string()},
                            {"scene", scene_toml(set.scene.text, "synthetic", set.scene.overrides, {})},
                            {"tolerance", result.tolerance},
                            {"uncertainty", set.noise}};
@@ -153,7 +153,7 @@ std::string table_text(const ordered_json& result) {
                       time_text(time["time_s"].get<double>()), time["evaluations"].get<std::size_t>());
   const ordered_json& scipy = time["scipy"];
   if (scipy.is_null()) return text;
-  text += fmt::format("  one descent of SciPy around dolp eval: {}, {} calls, {:.2g} standard errors apart\n",
+  text += fmt::format("  one descent of SciPy around dolp.evaluate: {}, {} calls, {:.2g} standard errors apart\n",
                       time_text(scipy["time_s"].get<double>()), scipy["calls"].get<std::size_t>(),
                       scipy["apart_in_standard_errors"].get<double>());
   return text;

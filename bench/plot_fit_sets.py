@@ -1,5 +1,5 @@
 """Figure and table of `dolp-bench fit`, for plot.py."""
-NEEDED = {"context", "results", "coverage"}
+NEEDED = {"context", "results", "coverage", "time"}
 HELD, MISSED = "#0072B2", "#D55E00"
 
 
@@ -17,7 +17,13 @@ def markdown(result):
         own = [row for row in rows if len(row["truth"]) == count]
         lines.append(line_of(count, own))
     lines.append(line_of("all", rows))
-    lines += ["", f"{coverage['intervals']} intervals; those of one set are not independent."]
+    time, scipy = result["time"], result["time"]["scipy"]
+    lines += ["", f"{coverage['intervals']} intervals; those of one set are not independent.", "",
+              f"A fit of {time['parameters']} parameters to {time['points']} points takes {time['time_s']:.2f} s with its "
+              f"intervals, {time['evaluations']} parameter sets."]
+    if scipy:
+        lines[-1] += (f" One descent of SciPy's `least_squares` around `dolp.evaluate` takes {scipy['time_s']:.2f} s "
+                      f"and {scipy['calls']} calls, and ends {scipy['apart_in_standard_errors']:.1g} standard errors away.")
     return "\n".join(lines)
 
 

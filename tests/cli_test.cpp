@@ -3,6 +3,8 @@
 #include <sched.h>
 #include <sys/stat.h>
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -404,6 +406,21 @@ TEST_F(CommandLine, Eval_OwnOutputAsPoints_GivesTheSameAgain) {
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(read_file(at("a.csv")), read_file(at("b.csv")));
   EXPECT_NE(again.out.find("left out   rho_i"), std::string::npos) << again.out;
+}
+
+TEST_F(CommandLine, Eval_MoreThanAPart_RowsAreThoseOfEachPoint) {
+  constexpr int kRows = 140'000;
+  std::string points = "theta_deg,sigma\n";
+  for (int i = 0; i < kRows; ++i) points += fmt::format("{},0\n", i * 6e-4);
+  put("p.csv", points);
+  ASSERT_EQ(dolp({"eval", "scene.toml", "--points", "p.csv", "-o", "all.csv"}).status, 0);
+  const std::vector<std::string> all = data_lines(read_file(at("all.csv")));
+  ASSERT_EQ(all.size(), kRows + 1U);
+  for (const int row : {0, 65'535, 65'536, 131'071, 131'072, kRows - 1}) {
+    put("one.csv", fmt::format("theta_deg,sigma\n{},0\n", row * 6e-4));
+    ASSERT_EQ(dolp({"eval", "scene.toml", "--points", "one.csv", "-o", "r.csv"}).status, 0);
+    EXPECT_EQ(all[static_cast<std::size_t>(row) + 1], data_lines(read_file(at("r.csv")))[1]);
+  }
 }
 
 TEST_F(CommandLine, Keys_OneOrATable_SayWhatIsAllowed) {

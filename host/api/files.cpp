@@ -11,13 +11,13 @@
 #include "api/scene_impl.hpp"
 #include "base/atomic_file.hpp"
 #include "base/number_text.hpp"
-#include "base/parallel_ranges.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
 #include "model/status.hpp"
 #include "report/run_report.hpp"
 #include "run/lookup_run.hpp"
 #include "run/mueller_run.hpp"
+#include "run/points_csv.hpp"
 #include "run/scattering_gap.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
@@ -32,8 +32,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kRowsAtOnce = 4096;  // of a thread
-
 /// The points of a file. Columns that are results, as write_points and write_lookup write them, are left out.
 Points load_points(const std::filesystem::path& path, PointsKind kind) {
   return read_points(path.string(), kind, result_columns());
@@ -43,22 +41,21 @@ void add_left_out(dolp::Report& report, const Points& points) {
   report.row_if(!points.left_out.empty(), "left out", "{}, because they are results", join(points.left_out));
 }
 
-/// The columns of the points as they were given, and those of their results.
-std::string result_csv(const Points& points, const std::vector<PointResult>& results, const ExtraColumns& extra) {
-  std::vector<std::string> parts((results.size() + kRowsAtOnce - 1) / kRowsAtOnce);
-  parallel_ranges(results.size(), kRowsAtOnce, [&](std::size_t first, std::size_t last) {
-    std::string& part = parts[first / kRowsAtOnce];
-    for (std::size_t i = first; i < last; ++i) {
-      part += points.rows[i];
-      part += ',';
-      append_result_cells(part, results[i], extra);
-      part += '\n';
-    }
-  });
-  std::string csv = points.header + ',' + result_header(extra) + '\n';
-  for (const std::string& part : parts) csv += part;
-  return csv;
-}
+/// Writes and counts the results of points, part by part.
+class PointsOutput final : public Sink {
+ public:
+  PointsOutput(const dolp::Scene& scene, PointsCsv& csv, RunSummary& summary)
+      : scene_(scene), csv_(csv), summary_(summary) {}
+  void write(const SceneEntries& part, std::vector<PointResult> results, const SelfCheck& /*check*/) override {
+    summary_.add(scene_, part, results);
+    csv_.append(results);
+  }
+
+ private:
+  const dolp::Scene& scene_;
+  PointsCsv& csv_;
+  RunSummary& summary_;
+};
 
 std::string mueller_csv(const Points& points, const std::vector<MuellerElements>& results) {
   std::string csv = points.header;
@@ -141,16 +138,15 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
     SceneRun run;
     run.plan = plan_effects(own, entries, options.keep_all);
     MomentsEvaluator* const evaluator = wants_evaluator(own, entries, run.plan) ? impl_->begin(own) : nullptr;
-    CollectedResults collected(entries);
-    run.summary.check = run_scene(own, entries, run.plan, evaluator, collected, options.progress);
-    const std::vector<PointResult> results = collected.take();
-    run.summary.add(own, entries, results);
+    PointsCsv csv(path, points, extra_columns(own));
+    PointsOutput output(own, csv, run.summary);
+    run.summary.check = run_scene(own, entries, run.plan, evaluator, output, options.progress);
     run.evaluation = evaluation_of(evaluator, impl_->options.evaluator);
     run.scattering_gap = scattering_gap(own, entries, run.plan);
     run.effects = effect_rows(own, entries, run.plan);
-    write_text_atomically(path, result_csv(points, results, extra_columns(own)));
+    csv.commit();
     run.wall_s = seconds_since(start);
-    dolp::Report report = run_report(own, run, fmt::format("{} points", results.size()), path.string());
+    dolp::Report report = run_report(own, run, fmt::format("{} points", points.size()), path.string());
     add_left_out(report, points);
     return public_report(report, run.summary.count(kStatusToleranceMissed) == 0, path);
   });
@@ -200,7 +196,9 @@ Report write_lookup(const std::filesystem::path& table_path, const std::filesyst
     const Points points = load_points(points_path, PointsKind::kDirections);
     check_writable(path);
     const std::vector<PointResult> results = lookup_points(lookup, scene, points, progress);
-    write_text_atomically(path, result_csv(points, results, lookup.extra_columns()));
+    PointsCsv csv(path, points, lookup.extra_columns());
+    csv.append(results);
+    csv.commit();
 
     const std::size_t missed = count_status(results, kStatusToleranceMissed);
     const std::optional<double> worst = worst_of(results, &PointResult::error_estimate, kStatusNoDolpPromised);

@@ -22,7 +22,7 @@ namespace {
 
 // Bound the memory of a run. Points take more of it, because nothing is shared between them.
 constexpr std::size_t kMomentsAtOnce = 1U << 20U;
-constexpr std::size_t kPointsAtOnce = 1U << 20U;
+constexpr std::size_t kPointsAtOnce = 1U << 17U;
 // A direction of which more than one entry in so many misses the tolerance is refined as a whole.
 constexpr std::size_t kManyMisses = 8;
 constexpr std::size_t kEntriesAtOnce = 4096;  // of a thread: their radiometry takes longer than to start one

@@ -13,7 +13,7 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kLookedAt = 65536;  // entries that influences are bounded at; of more these stand for all
+constexpr std::size_t kLookedAt = 16384;  // entries that influences are bounded at; of more these stand for all
 
 /// The device that a run would take; without one, limits that every device keeps.
 DeviceDescription device_of(const std::string& choice, const Scene& scene, PlanReport& report) {

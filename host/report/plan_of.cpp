@@ -135,6 +135,7 @@ PlanReport plan_of(const Scene& scene, const std::string& device, bool keep_all)
   const DeviceDescription limits = device_of(device, scene, report);
   add_forecast(report, entries, limits);
   report.work_shares = work_shares(report, entries, limits);
+  report.lookup = lookup_forecast(scene, report.plan);
   return report;
 }
 

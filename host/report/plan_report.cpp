@@ -8,6 +8,7 @@
 namespace dolp {
 namespace {
 
+constexpr int kLabelWidth = 11;
 constexpr double kMebibyte = 1048576.0;
 constexpr double kPoints = 100.0;      // of DOLP
 constexpr double kMostPoints = 200.0;  // from all s to all p; what a bound beyond says is nothing
@@ -146,16 +147,40 @@ void add_cost(Report& report, const PlanReport& plan) {
              key("estimated_cpu_s", run.moments_s + run.beams_s));
 }
 
+const char* axis_name(std::size_t axis) {
+  constexpr std::array kNames = {"wavelength", "n", "k", "theta", "sigma", "q"};
+  return kNames[axis];
+}
+
+std::string needed_text(const AxisForecast& axis) {
+  if (axis.needed_values == 0) return fmt::format("no number of values up to {} is enough", kMostForecastValues);
+  return fmt::format("{} values are about enough for {:.1g}", axis.needed_values, axis.wanted);
+}
+
+/// How densely the axes must lie for lookups.
+void add_lookup(Report& report, const PlanReport& plan) {
+  std::vector<Report> axes;
+  for (const AxisForecast& axis : plan.lookup) {
+    Report& row = axes.emplace_back(kLabelWidth);
+    row.row("lookup", "along {}: {} between {} values; {}", key("axis", axis_name(static_cast<std::size_t>(axis.axis))),
+            std::isfinite(axis.error) ? fmt::format("error about {:.1g}", axis.error) : "no error can be stated",
+            key("values", axis.values), needed_text(axis));
+    row.value("error", axis.error);
+    row.value("wanted_error", axis.wanted);
+    row.value("needed_values", axis.needed_values > 0 ? std::optional(axis.needed_values) : std::nullopt);
+  }
+  report.add("lookup", axes);
+}
+
 }  // namespace
 
 std::string grid_text(const Grid& grid) {
-  constexpr std::array kNames = {"wavelength", "n", "k", "theta", "sigma", "q"};
   std::string counts, names;
   for (std::size_t i = 0; i < kGridAxes.size(); ++i) {
     const std::vector<double>& values = grid.*kGridAxes[i];
     if (values.empty()) continue;
     counts += fmt::format("{}{}", counts.empty() ? "" : " x ", values.size());
-    names += fmt::format("{}{}", names.empty() ? "" : " x ", kNames[i]);
+    names += fmt::format("{}{}", names.empty() ? "" : " x ", axis_name(i));
   }
   return fmt::format("{} ({})", counts, names);
 }
@@ -179,7 +204,6 @@ Report::Json effects_json(const std::vector<EffectRow>& effects, const EffectPla
 }
 
 Report plan_report(const PlanReport& plan) {
-  constexpr int kLabelWidth = 11;
   const Scene& scene = plan.scene;
   Report report(kLabelWidth);
   report.line("{}", key("title", scene.title));
@@ -196,6 +220,7 @@ Report plan_report(const PlanReport& plan) {
                  {"gives_emissivity", gives_emissivity(scene, plan.plan)}});
   add_kernels(report, plan);
   add_cost(report, plan);
+  add_lookup(report, plan);
   return report;
 }
 

@@ -8,6 +8,7 @@
 #include "evaluate/vulkan/dispatch_forecast.hpp"
 #include "plan/effects.hpp"
 #include "report/report.hpp"
+#include "run/lookup_forecast.hpp"
 #include "run/prediction.hpp"
 #include "scene/scene.hpp"
 
@@ -29,6 +30,7 @@ struct PlanReport {
   std::optional<RuleSize> rule;        ///< none without moments
   std::vector<std::string> pipelines;  ///< of the first attempt; none when nothing is left for the evaluator
   DispatchForecast dispatches;         ///< likewise
+  std::vector<AxisForecast> lookup;    ///< of the axes of more than one value
   std::string device;                  ///< its name; empty without one
   std::string why_no_device;
 };

@@ -1,0 +1,180 @@
+#include "run/lookup_forecast.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "run/scene_run.hpp"
+#include "run/scene_table.hpp"
+#include "table/table_lookup.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr std::size_t kLines = 3;        // along an axis, at different values of the others
+constexpr std::size_t kParts = 4;        // of an axis, at whose ends the stretches lie
+constexpr std::size_t kStretch = 8;      // values: all that the error of a lookup in the middle depends on
+constexpr std::size_t kLeastValues = 4;  // for which a lookup states an error
+constexpr int kMostAttempts = 4;         // to find how many values are needed
+constexpr double kMostGrowth = 8.0;      // of the number of values in one attempt
+constexpr double kMargin = 1.5;          // of the error that an attempt aims at
+// A lookup reads six values of theta, sigma and q, and four of wavelength, n and k. The error falls with this power of
+// the spacing; the sizes of the weights in the middle of a cell add up to so much, which multiplies the errors along
+// the other axes.
+constexpr double kOrderOfSix = 6.0;
+constexpr double kOrderOfFour = 4.0;
+constexpr double kWeightsOfSix = 356.0 / 256.0;
+constexpr double kWeightsOfFour = 20.0 / 16.0;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool is_read_with_four(Axis axis) { return axis < Axis::kTheta; }
+
+/// The value at a position of an axis, which lies between two values mostly.
+double value_at(const std::vector<double>& values, double position) {
+  const auto below = std::min(static_cast<std::size_t>(position), values.size() - 2);
+  const double share = position - static_cast<double>(below);
+  return share == 0.0 ? values[below] : std::lerp(values[below], values[below + 1], share);
+}
+
+/// A short part of an axis at one value of each other axis, and a place between its values.
+struct Stretch {
+  Grid grid;
+  TableLookup::Point point{};
+};
+
+class Forecast {
+ public:
+  Forecast(const Scene& scene, const EffectPlan& plan) : scene_(scene), plan_(plan), evaluator_(Precision::kAuto) {
+    for (std::size_t i = 0; i < kGridAxes.size(); ++i) {
+      if ((scene.grid.*kGridAxes[i]).size() > 1) axes_.push_back(static_cast<Axis>(i));
+    }
+    lines_ = axes_.size() > 1 ? kLines : 1;
+  }
+
+  std::vector<AxisForecast> all() {
+    std::vector<AxisForecast> forecasts;
+    for (const Axis axis : axes_) {
+      double wanted = scene_.accuracy.tolerance / static_cast<double>(axes_.size() + 1);
+      for (const Axis other : axes_) {
+        if (other != axis) wanted /= is_read_with_four(other) ? kWeightsOfFour : kWeightsOfSix;
+      }
+      const std::size_t values = values_of(axis).size();
+      const double error = error_with(axis, values);
+      forecasts.push_back({axis, values, error, wanted, needed(axis, values, error, wanted)});
+    }
+    return forecasts;
+  }
+
+ private:
+  const std::vector<double>& values_of(Axis axis) const {
+    return scene_.grid.*kGridAxes[static_cast<std::size_t>(axis)];
+  }
+
+  /// The least number of values, of those tried, that gives the error that is wanted; 0 without one.
+  std::size_t needed(Axis axis, std::size_t values, double error, double wanted) {
+    const double order = is_read_with_four(axis) ? kOrderOfFour : kOrderOfSix;
+    std::size_t enough = 0, too_few = 0;
+    for (int attempt = 0;; ++attempt) {
+      if (error <= wanted) {
+        enough = enough == 0 ? values : std::min(enough, values);
+      } else {
+        too_few = std::max(too_few, values);
+      }
+      if (attempt == kMostAttempts) return enough;
+      const double growth = std::isfinite(error) ? std::pow(kMargin * error / wanted, 1.0 / order) : 2.0;
+      const double steps = static_cast<double>(values - 1) * std::clamp(growth, 1.0 / kMostGrowth, kMostGrowth);
+      std::size_t next = std::max(kLeastValues, static_cast<std::size_t>(std::ceil(steps)) + 1);
+      if (enough > 0) next = std::min(next, enough);
+      if (enough > 0 && next <= too_few) next = (enough + too_few) / 2;
+      if (next > kMostForecastValues) return enough;
+      if (next == enough || next == too_few) return enough;
+      values = next;
+      error = error_with(axis, values);
+    }
+  }
+
+  /// The most that a lookup leaves out along an axis of so many values, at the places looked at.
+  double error_with(Axis axis, std::size_t values) {
+    if (values < kLeastValues) return kInfinity;
+    std::vector<Stretch> stretches;
+    for (std::size_t line = 0; line < lines_; ++line) {
+      std::set<std::size_t> cells;
+      for (std::size_t i = 0; i <= kParts; ++i) cells.insert(i * (values - 2) / kParts);
+      for (const std::size_t cell : cells) stretches.push_back(stretch(axis, values, cell, line));
+    }
+    double largest = -1.0;  // NaN is not larger
+    for (const double error : errors_in(stretches)) largest = error > largest ? error : largest;
+    return largest < 0.0 ? kInfinity : largest;
+  }
+
+  /// The values around a cell, and its middle.
+  Stretch stretch(Axis axis, std::size_t values, std::size_t cell, std::size_t line) const {
+    const std::size_t length = std::min(values, kStretch);
+    const std::size_t centred = std::max(cell, kStretch / 2 - 1) - (kStretch / 2 - 1);
+    const std::size_t first = std::min(centred, values - length);
+    Stretch stretch;
+    for (std::size_t i = 0; i < kGridAxes.size(); ++i) {
+      const std::vector<double>& whole = scene_.grid.*kGridAxes[i];
+      std::vector<double>& own = stretch.grid.*kGridAxes[i];
+      if (whole.empty()) continue;
+      if (i != static_cast<std::size_t>(axis)) {
+        own = {whole[(2 * ((line + i) % kLines) + 1) * whole.size() / (2 * kLines)]};
+        stretch.point[i] = own.front();
+        continue;
+      }
+      const double step = static_cast<double>(whole.size() - 1) / static_cast<double>(values - 1);
+      for (std::size_t k = first; k < first + length; ++k) {
+        own.push_back(k + 1 == values ? whole.back() : value_at(whole, static_cast<double>(k) * step));
+      }
+      stretch.point[i] = std::midpoint(own[cell - first], own[cell - first + 1]);
+    }
+    return stretch;
+  }
+
+  /// What a lookup leaves out in each stretch; NaN where the model has no value. All are computed together.
+  std::vector<double> errors_in(const std::vector<Stretch>& stretches) {
+    std::vector<SceneEntry> all;
+    std::vector<double> wavelengths;
+    std::vector<SceneEntries> grids;
+    for (const Stretch& stretch : stretches) {
+      Scene scene = scene_;
+      scene.grid = stretch.grid;
+      const SceneEntries& own = grids.emplace_back(grid_entries(scene));
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        all.push_back(own[i]);
+        all.back().wavelength += static_cast<std::uint32_t>(wavelengths.size());
+      }
+      wavelengths.insert(wavelengths.end(), own.wavelength_um().begin(), own.wavelength_um().end());
+    }
+    const std::vector<PointResult> results = evaluate_scene(scene_, {all, wavelengths}, plan_, &evaluator_, {});
+    std::vector<double> errors;
+    auto next = results.begin();
+    for (std::size_t i = 0; i < stretches.size(); ++i) {
+      const auto end = next + static_cast<std::ptrdiff_t>(grids[i].size());
+      Table table = table_part(table_layout(scene_, plan_, stretches[i].grid), grids[i], {next, end});
+      next = end;
+      std::ranges::fill(table.error_estimate, 0.0);  // what remains is the interpolation's
+      std::ranges::fill(table.rho_error_estimate, 0.0);
+      const TableLookup lookup(table, scene_.accuracy.tolerance, "forecast");
+      errors.push_back(lookup.at(stretches[i].point).error_estimate);
+    }
+    return errors;
+  }
+
+  const Scene& scene_;
+  const EffectPlan& plan_;
+  CpuEvaluator evaluator_;
+  std::vector<Axis> axes_;
+  std::size_t lines_ = 1;
+};
+
+}  // namespace
+
+std::vector<AxisForecast> lookup_forecast(const Scene& scene, const EffectPlan& plan) {
+  return Forecast(scene, plan).all();
+}
+
+}  // namespace dolp

@@ -1,0 +1,97 @@
+// What the plan says of the density of axes, against tables that follow its advice.
+#include "run/lookup_forecast.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "model/status.hpp"
+#include "run/scene_table.hpp"
+#include "scene_run_support.hpp"
+#include "table/table_lookup.hpp"
+
+namespace {
+
+using namespace dolp;
+using namespace scene_run_support;
+
+constexpr double kTolerance = 1e-4;
+constexpr int kPoints = 400;
+
+std::vector<double> spaced(double first, double last, std::size_t count) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    values.push_back(std::lerp(first, last, static_cast<double>(i) / static_cast<double>(count - 1)));
+  }
+  return values;
+}
+
+Scene scene_with(Masking masking, std::size_t thetas, std::size_t sigmas, std::size_t qs) {
+  Scene scene = make_scene(Distribution::kCauchy, masking, {1.5, 0.1});
+  scene.grid.theta_deg = spaced(5.0, 80.0, thetas);
+  scene.grid.sigma = spaced(0.1, 0.5, sigmas);
+  scene.grid.q = spaced(1.8, 6.0, qs);
+  scene.accuracy.tolerance = kTolerance;
+  return scene;
+}
+
+/// Of random points in a table of the scene's grid those that a lookup flags.
+double flagged_share(const Scene& scene) {
+  const SceneEntries grid = grid_entries(scene);
+  const EffectPlan plan = keep_everything(scene);
+  const Table table = table_part(table_layout(scene, plan, scene.grid), grid,
+                                 evaluate_scene(scene, grid, *make_evaluator(Evaluator::kFloat), {}));
+  const TableLookup lookup(table, kTolerance, "table");
+  std::mt19937_64 engine(3);
+  const auto within = [&](const std::vector<double>& values) {
+    return std::lerp(values.front(), values.back(), std::generate_canonical<double, 53>(engine));
+  };
+  int flagged = 0;
+  for (int i = 0; i < kPoints; ++i) {
+    const double theta_deg = within(scene.grid.theta_deg), sigma = within(scene.grid.sigma), q = within(scene.grid.q);
+    flagged += (lookup.at(theta_deg, sigma, q).status & kStatusToleranceMissed) != 0 ? 1 : 0;
+  }
+  return static_cast<double>(flagged) / kPoints;
+}
+
+TEST(LookupForecast, TablesOfTheAdvisedDensity_AnswerMostPoints_AndHalfOfItTooFew) {
+  for (const Masking masking : {Masking::kSmith, Masking::kVCavity, Masking::kIntegral}) {
+    const Scene scene = scene_with(masking, 12, 9, 7);
+    const std::vector<AxisForecast> axes = lookup_forecast(scene, keep_everything(scene));
+    ASSERT_EQ(axes.size(), 3U);
+    std::vector<std::size_t> counts;
+    for (const AxisForecast& axis : axes) {
+      EXPECT_LT(axis.wanted, kTolerance / 4.0);
+      ASSERT_GE(axis.needed_values, 4U);
+      counts.push_back(axis.needed_values);
+    }
+    EXPECT_LT(flagged_share(scene_with(masking, counts[0], counts[1], counts[2])), 0.2) << name_of(masking);
+    EXPECT_GT(flagged_share(scene_with(masking, counts[0] / 2, counts[1] / 2, counts[2] / 2)), 0.5) << name_of(masking);
+  }
+}
+
+TEST(LookupForecast, DenseAxis_NeedsFewerValues_AndOneOfThreeHasNoError) {
+  Scene scene = scene_with(Masking::kVCavity, 200, 3, 1);
+  scene.grid.q = {3.0};
+  const std::vector<AxisForecast> axes = lookup_forecast(scene, keep_everything(scene));
+  ASSERT_EQ(axes.size(), 2U);
+  EXPECT_EQ(axes[0].axis, Axis::kTheta);
+  EXPECT_LT(axes[0].error, axes[0].wanted);
+  EXPECT_LT(axes[0].needed_values, 60U);
+  EXPECT_EQ(axes[1].axis, Axis::kSigma);
+  EXPECT_TRUE(std::isinf(axes[1].error));
+  EXPECT_GT(axes[1].needed_values, 3U);
+}
+
+TEST(LookupForecast, FurtherAxes_AreLookedAtToo) {
+  Scene scene = scene_with(Masking::kVCavity, 10, 5, 1);
+  scene.grid.q = {3.0};
+  scene.grid.n = spaced(1.3, 2.0, 6);
+  scene.grid.wavelength_um = spaced(9.0, 11.0, 5);
+  const std::vector<AxisForecast> axes = lookup_forecast(scene, keep_everything(scene));
+  ASSERT_EQ(axes.size(), 4U);
+  for (const AxisForecast& axis : axes) EXPECT_TRUE(std::isfinite(axis.error));
+}
+
+}  // namespace

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws what `dolp fit --json` reports: data and fit, residuals, and the two parameters that depend most on each other.
+"""Draws what `dolp fit --plot` reports: data, fit and bracket, residuals, contours of the two most correlated parameters.
 
 Usage: plot_fit.py PICTURE < REPORT.json    `dolp fit --plot PICTURE` runs it
 Needs python3-matplotlib. Exit status: 0 done, 2 no report of a fit, 4 the picture could not be written.
@@ -16,8 +16,7 @@ import numpy as np  # noqa: E402
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 LABELS = {"dolp": "DOLP (%)", "q_over_i": "Q/I (%)", "emissivity_s": "emissivity (%)", "emissivity_p": "emissivity (%)"}
 PERCENT = 100.0
-# Half axes, in standard deviations, of the regions that hold two parameters in 68.27 % and 95 % of all cases.
-ELLIPSES = ((1.515, "68 %"), (2.448, "95 %"))
+REGIONS = ("68 %", "95 %")  # of all pairs, at the levels of the report
 
 
 def curves(points):
@@ -50,6 +49,10 @@ def draw_data(upper, lower, report):
         upper.plot(curve["theta_deg"], PERCENT * curve["model"], color=colour, linewidth=1.6)
         lower.errorbar(curve["theta_deg"], factor * curve["residual"], 1.0 if has_uncertainties else None, fmt="o",
                        markersize=3.5, linewidth=1.0, color=colour)
+    for bracket in filter(None, report.get("brackets", [])):
+        low, high = (PERCENT * np.array(bracket[end], dtype=float) for end in ("low", "high"))
+        upper.fill_between(bracket["theta_deg"], low, high, color="0.75", alpha=0.5, linewidth=0.0,
+                           label="bracket of all bounces")
     lower.axhline(0.0, color="0.4", linewidth=1.0)
     lower.set_xlabel(r"zenith angle $\theta$ (degree)")
     lower.set_ylabel("measured − model\n" + ("(uncertainties)" if has_uncertainties else "(points of 1 %)"))
@@ -57,29 +60,20 @@ def draw_data(upper, lower, report):
     upper.legend(frameon=False, fontsize=9)
 
 
-def most_correlated(report):
-    """Positions of the two parameters of the largest correlation, or None where there is none."""
-    table = np.array([[np.nan if cell is None else cell for cell in row] for row in report["correlation"]], dtype=float)
-    np.fill_diagonal(table, np.nan)
-    if not np.isfinite(table).any():
-        return None
-    return sorted(np.unravel_index(np.nanargmax(np.abs(table)), table.shape))
-
-
 def draw_pair(axes, report):
-    pair = most_correlated(report)
-    if pair is None:
+    """Contours of what the objective grows by over two parameters, least over all others."""
+    contours = report.get("contours")
+    if contours is None:
         axes.set_visible(False)
         return
-    first, second = (report["parameters"][position] for position in pair)
-    correlation = report["correlation"][pair[0]][pair[1]]
-    turn = np.linspace(0.0, 2.0 * np.pi, 200)
-    for radius, name in ELLIPSES:
-        x = np.cos(turn)
-        y = correlation * x + np.sqrt(max(0.0, 1.0 - correlation**2)) * np.sin(turn)
-        axes.plot(first["value"] + radius * first["standard_error"] * x,
-                  second["value"] + radius * second["standard_error"] * y, color=COLOURS[0],
-                  linewidth=2.0 if name == "68 %" else 1.0, label=f"{name}, from the covariance")
+    y = np.array(contours["second"])
+    x = np.broadcast_to(np.array(contours["first"])[:, np.newaxis], y.shape)
+    growth = np.array([[np.nan if cell is None else cell for cell in row] for row in contours["growth"]], dtype=float)
+    for level, region, width in zip(contours["levels"], REGIONS, (2.0, 1.0)):
+        axes.contour(x, y, growth, levels=[level], colors=COLOURS[0], linewidths=width)
+        axes.plot([], [], color=COLOURS[0], linewidth=width, label=f"{region} of both, $\\Delta\\chi^2$ = {level:.2f}")
+    parameters = {one["key"]: one for one in report["parameters"]}
+    first, second = (parameters[key] for key in contours["keys"])
     for one, line in ((first, axes.axvline), (second, axes.axhline)):
         for end in one["interval_95"]:
             if end is not None:
@@ -88,9 +82,9 @@ def draw_pair(axes, report):
     axes.plot(first["value"], second["value"], "+", color="black", markersize=10)
     axes.set_xlabel(first["key"])
     axes.set_ylabel(second["key"])
-    axes.set_title(f"correlation {correlation:+.3f}", fontsize=10)
-    axes.legend(frameon=False, fontsize=8)
-    axes.margins(0.12, 0.3)
+    positions = [list(parameters).index(key) for key in contours["keys"]]
+    axes.set_title(f"correlation {report['correlation'][positions[0]][positions[1]]:+.3f}", fontsize=10)
+    axes.legend(frameon=False, fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.12))
 
 
 def caption(report):

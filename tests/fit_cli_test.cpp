@@ -155,9 +155,12 @@ TEST_F(FitProgram, BadData_AreOneLineThatNamesThePlace) {
 }
 
 TEST_F(FitProgram, Plot_IsAPng) {
-  const Outcome outcome =
-      fit({"--data", "data.csv", "--vary", "surface.sigma=0.02:1", "--vary", "surface.n=1.1:3", "--plot", "fit.png"});
+  const Outcome outcome = fit({"--data", "data.csv", "--vary", "surface.sigma=0.02:1", "--vary", "surface.n=1.1:3",
+                               "--plot", "fit.png", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json report = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(report["contours"]["growth"].size(), report["contours"]["first"].size());
+  EXPECT_EQ(report["brackets"].size(), 1U);
   EXPECT_TRUE(content("fit.png").starts_with("\x89PNG"));
 }
 

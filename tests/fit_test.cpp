@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
+#include "fit/contours.hpp"
 #include "fit/residuals.hpp"
 
 namespace {
@@ -110,6 +111,47 @@ TEST_F(FitTest, IntervalEnds_LieWhereTheBestOfTheOthersHasGrownSo) {
       // The profile's root is met to 0.5 %, hence its square to 1 %; to_string keeps six digits.
       EXPECT_NEAR(held.chi_square - result.chi_square, is_95 ? 3.841 : 1.0, 0.015 * (is_95 ? 3.841 : 1.0));
     }
+  }
+}
+
+TEST_F(FitTest, Contours_AreTheGrowthOverAllOthers) {
+  const std::vector<Parameter> parameters = {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0),
+                                             number("surface.sigma", 0.02, 1.0)};
+  const Model model({kScene, "scene", {}}, {measured(kNoise, {}, true, 8)}, parameters);
+  const FitResult result = fit::fit(model, evaluator_, {}).value();
+  const Contours contours = contours_of(model, evaluator_, result, {}).value();
+  const auto [first, second] = contours.parameters;
+  const std::size_t other = 3 - first - second;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = i + 1; j < 3; ++j) {
+      const auto correlation = [&](std::size_t a, std::size_t b) {
+        return std::abs(result.correlation(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)));
+      };
+      EXPECT_LE(correlation(i, j), correlation(first, second));
+    }
+  }
+  EXPECT_GT(contours.growth.minCoeff(), -0.02);
+  EXPECT_GT(contours.growth.maxCoeff(), kContourLevels[1]);
+  // Along the valley of a node no other value of the third parameter gives less.
+  Residuals residuals(model, result.tolerance, Differences::kForward, evaluator_, {});
+  for (const Eigen::Index row : {6, 15}) {
+    const auto at = static_cast<std::size_t>(row);
+    Eigen::VectorXd point(3);
+    const auto coordinate = [&](std::size_t parameter, double value) {
+      point[static_cast<Eigen::Index>(parameter)] = parameters[parameter].coordinate(value);
+    };
+    coordinate(first, contours.first[at]);
+    coordinate(second, contours.second(row, 20 - row));
+    std::vector<Eigen::VectorXd> points;
+    for (double value = 0.0; value <= 1.0; value += 1.0 / 64.0) {
+      point[static_cast<Eigen::Index>(other)] = value;
+      points.push_back(point);
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (const Eigen::VectorXd& found : residuals.at(points)) {
+      least = std::min(least, found.squaredNorm() - result.chi_square);
+    }
+    EXPECT_LE(contours.growth(row, 20 - row), least + 0.02);
   }
 }
 

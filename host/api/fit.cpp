@@ -19,6 +19,9 @@
 #include "report/fit_picture.hpp"
 #include "report/fit_report.hpp"
 #include "report/run_report.hpp"
+#include "run/scene_run.hpp"
+#include "scene/points.hpp"
+#include "scene/scene_reader.hpp"
 #include "scene/scene_writer.hpp"
 
 namespace dolp::api {
@@ -89,6 +92,37 @@ void check_outputs(const FitOptions& options, const dolp::Scene& scene, const st
     check_output_is_no_input(path, inputs);
     check_writable(path);
   }
+}
+
+/// The bracket of the fitted model over zenith for each data set; null where the scene has none, or none of DOLP was
+/// measured.
+dolp::Report::Json brackets(const Scene& fitted, const std::vector<fit::FitData>& sets, MomentsEvaluator& evaluator) {
+  dolp::Report::Json all = dolp::Report::Json::array();
+  for (const fit::FitData& data : sets) {
+    dolp::Report::Json& one = all.emplace_back(nullptr);
+    const bool has_dolp = std::ranges::any_of(
+        data.observations, [](const fit::Observation& o) { return o.observable == fit::Observable::kDolp; });
+    if (!has_dolp) continue;
+    Overrides overrides = fitted.overrides();
+    std::ranges::copy(data.overrides, std::back_inserter(overrides));
+    overrides.push_back("emission.bracket=true");
+    try {
+      const dolp::Scene scene = parse_scene(fitted.text(), fitted.name(), overrides);
+      std::vector<double> theta_deg;
+      for (const fit::Observation& o : data.observations) theta_deg.push_back(o.theta_deg);
+      std::ranges::sort(theta_deg);
+      const NamedColumn zeniths{"theta_deg", theta_deg};
+      const Points points = points_of(std::span(&zeniths, 1), theta_deg.size(), PointsKind::kDirections);
+      one["theta_deg"] = theta_deg;
+      for (const PointResult& result : evaluate_scene(scene, point_entries(scene, points), evaluator, {})) {
+        one["low"].push_back(result.dolp_low);
+        one["high"].push_back(result.dolp_high);
+      }
+    } catch (const dolp::InputError&) {
+      continue;  // a scene without a bracket
+    }
+  }
+  return all;
 }
 
 void write_fitted(const std::filesystem::path& path, const Scene& fitted) {
@@ -173,6 +207,9 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
       report.row("written", "{}", key("output", options.output.string()));
     }
     if (!options.plot.empty()) {
+      const auto contours = fit::contours_of(*best.model, *evaluator, *best.result, fit_options);
+      if (contours) add_contours(report, *best.model, *contours);
+      report.value("brackets", brackets(fitted, sets, *evaluator));
       draw_fit(report.json_text(), options.plot.string());
       report.row("picture", "{}", key("plot", options.plot.string()));
     }

@@ -157,7 +157,7 @@ Eigen::VectorXd loss_weights(const Eigen::VectorXd& residuals, Loss loss) {
 }
 
 Minimum descend(Residuals& residuals, const Linearisation& start, const DescentOptions& options) {
-  if (options.held && start.at.size() == 1) {  // nothing is left to move
+  if (static_cast<std::size_t>(start.at.size()) == options.held.size()) {  // nothing is left to move
     Minimum minimum{{start.at, residuals.at({start.at}).front(), start.jacobian}};
     minimum.objective = objective(minimum.where.residuals, options.loss);
     minimum.has_converged = std::isfinite(minimum.objective);
@@ -179,7 +179,7 @@ Minimum descend(Residuals& residuals, const Linearisation& start, const DescentO
   for (std::size_t j = 0; j < blocks.size(); ++j) {
     problem.SetParameterLowerBound(blocks[j], 0, 0.0);
     problem.SetParameterUpperBound(blocks[j], 0, 1.0);
-    if (options.held == j) problem.SetParameterBlockConstant(blocks[j]);
+    if (std::ranges::count(options.held, j) > 0) problem.SetParameterBlockConstant(blocks[j]);
   }
   Watch watch(batch, options.least_gain * options.scale);
   ceres::Solver::Options solver = solver_options(options);

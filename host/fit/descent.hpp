@@ -23,8 +23,8 @@ Eigen::VectorXd loss_weights(const Eigen::VectorXd& residuals, Loss loss);
 
 struct DescentOptions {
   Loss loss = Loss::kSquares;
-  double scale = 1.0;                    ///< a change of the objective by one standard deviation, at least about
-  std::optional<std::size_t> held = {};  ///< a parameter that stays
+  double scale = 1.0;                  ///< a change of the objective by one standard deviation, at least about
+  std::vector<std::size_t> held = {};  ///< parameters that stay
   int most_steps = 40;
   double radius = 0.1;       ///< of the trust region at first
   double least_gain = 1e-4;  ///< of the scale: a descent ends where derivatives promise less

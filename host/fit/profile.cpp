@@ -32,7 +32,7 @@ class Side {
     points_.push_back({0.0, 0.0, minimum.where});
     options_.loss = loss;
     options_.scale = scale;
-    options_.held = parameter;
+    options_.held = {parameter};
     options_.least_gain = kLeastGain;
   }
 

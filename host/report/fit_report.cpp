@@ -165,6 +165,20 @@ void add_fit(Report& report, const fit::Model& model, const FitResult& result) {
   add_points(report, model, result);
 }
 
+void add_contours(Report& report, const fit::Model& model, const fit::Contours& contours) {
+  const auto [first, second] = contours.parameters;
+  const auto rows_of = [](const Eigen::MatrixXd& values) {
+    Json rows = Json::array();
+    for (const auto& row : values.rowwise()) rows.push_back(json_of(row.transpose()));
+    return rows;
+  };
+  report.value("contours", Json{{"keys", {model.parameters()[first].key, model.parameters()[second].key}},
+                                {"first", contours.first},
+                                {"second", rows_of(contours.second)},
+                                {"growth", rows_of(contours.growth)},
+                                {"levels", fit::kContourLevels}});
+}
+
 void add_comparison(Report& report, const std::vector<ComparedModel>& models) {
   Json list = Json::array();
   double least_aic = std::numeric_limits<double>::infinity();

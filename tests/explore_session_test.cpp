@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
+#include "base/error.hpp"
+#include "explore/fitting.hpp"
 #include "explore/readout.hpp"
 #include "explore_support.hpp"
 
@@ -160,6 +163,64 @@ TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
   EXPECT_EQ(named("scattering")->result.dolp, truth(single, entries_at(single, {theta_deg}))[0].dolp);
   EXPECT_EQ(surface_name(scene), "cauchy σ 0.4 q 3, v-cavity, all bounces, n 1.5 k 0.1");
   EXPECT_NE(without_text(driver.session, "scattering"), "");
+}
+
+/// DOLP of the paint with another sigma and n, as if measured.
+MeasuredPoints as_if_measured(double uncertainty) {
+  const Scene scene = paint({"surface.sigma=0.25", "surface.n=1.7", "accuracy.tolerance=1e-6"}).scene();
+  MeasuredPoints points;
+  points.name = "synthetic";
+  for (double theta_deg = 10.0; theta_deg <= 80.0; theta_deg += 5.0) points.theta_deg.push_back(theta_deg);
+  for (const PointResult& result : truth(scene, entries_at(scene, points.theta_deg))) {
+    points.dolp.push_back(result.dolp);
+    points.uncertainty.push_back(uncertainty);
+  }
+  return points;
+}
+
+TEST(ExploreSession, Fit_MovesMarkedParametersToTheTruth_AndItsIntervalsGoWithTheNextChange) {
+  Fitting fitting;
+  const Scene start = paint().scene();
+  const MeasuredPoints points = as_if_measured(1e-3);
+  EXPECT_FALSE(fitting.job(start, points).has_value());
+  fitting.mark("surface.sigma", true);
+  fitting.mark("surface.n", true);
+  fitting.mark("surface.k", true);
+  fitting.mark("surface.k", false);
+  EXPECT_FALSE(fitting.job(start, std::nullopt).has_value());
+  const std::optional<FitJob> job = fitting.job(start, points);
+  ASSERT_TRUE(job.has_value());
+  ASSERT_EQ(job->varied.size(), 2U);
+  CpuEvaluator evaluator(Precision::kAuto);
+  const FitFound found = run_fit(*job, evaluator, {});
+
+  Driver driver(paint());
+  Session& session = driver.session;
+  EXPECT_EQ(session.fit_found(), nullptr);
+  session.take_fit(found);
+  EXPECT_NEAR(session.scene().surface.sigma, 0.25, 1e-3);
+  EXPECT_NEAR(session.scene().surface.material.constant.n, 1.7, 5e-3);
+  ASSERT_NE(session.fit_found(), nullptr);
+  for (const auto& [key, value] : {std::pair{"surface.sigma", 0.25}, std::pair{"surface.n", 1.7}}) {
+    const FitInterval& interval = session.fit_found()->interval_95.at(key);
+    ASSERT_TRUE(interval.low && interval.high) << key;
+    EXPECT_LT(*interval.low, value);
+    EXPECT_GT(*interval.high, value);
+  }
+  session.set("surface.sigma", 0.3);
+  EXPECT_EQ(session.fit_found(), nullptr);
+}
+
+TEST(ExploreSession, FitThatIsCancelled_OrHasTooManyParameters_SaysSo) {
+  MeasuredPoints points = as_if_measured(1e-3);
+  FitJob job{paint().scene(), points, {{"surface.sigma", 0.01, 1.0, 0.15}}};
+  CpuEvaluator evaluator(Precision::kAuto);
+  EXPECT_THROW(run_fit(job, evaluator, [](std::size_t, std::size_t) { return false; }), Cancelled);
+  job.points.theta_deg.resize(1);
+  job.points.dolp.resize(1);
+  job.points.uncertainty.resize(1);
+  job.varied.push_back({"surface.n", 1.1, 3.0, 1.5});
+  EXPECT_THROW(run_fit(job, evaluator, {}), InputError);
 }
 
 TEST(ExploreSession, Overlay_IsTheOtherDistributionOfTheSameD0) {

@@ -360,6 +360,13 @@ std::string measured_error(const std::string& text) {
   return "no error";
 }
 
+TEST(Measured, Uncertainties_AreReadWhereTheirColumnIs) {
+  EXPECT_TRUE(parse_measured("theta_deg,dolp\n60,0.1\n", "m.csv").uncertainty.empty());
+  const MeasuredPoints points = parse_measured("uncertainty,theta_deg,dolp\n0.01,60,0.1\n0.02,70,0.2\n", "m.csv");
+  EXPECT_EQ(points.uncertainty, (std::vector<double>{0.01, 0.02}));
+  EXPECT_THROW(parse_measured("theta_deg,dolp,uncertainty\n60,0.1,0\n", "m.csv"), InputError);
+}
+
 TEST(Measured, WrongFiles_AreNamedByLineAndColumn) {
   EXPECT_EQ(measured_error("theta_deg\n1\n"), "m.csv:1: column \"dolp\" is missing, a number in [-1, 1]");
   EXPECT_EQ(measured_error("dolp,theta_deg\n0.1,95\n"), "m.csv:2: theta_deg = 95: out of range, a number in [0, 90]");

@@ -1,4 +1,5 @@
 // The window itself on a virtual display, moved by real events of mouse and keyboard.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -183,6 +184,29 @@ TEST_F(Window, MaskingList_OtherWord_SwitchesTheBracketOff) {
   EXPECT_EQ(app_->session().scene().surface.masking, Masking::kNone);
   EXPECT_FALSE(app_->session().scene().emission->has_bracket);
   EXPECT_NE(app_->session().message().text.find("goes emission.bracket = false"), std::string::npos);
+}
+
+TEST_F(Window, Fit_OfAMarkedSlider_MovesItAndShowsTheInterval) {
+  put("points.csv", "theta_deg\n20\n40\n60\n70\n80\n");
+  std::string csv = "theta_deg,dolp,uncertainty\n";
+  const Columns truth = eval({"--set", "surface.sigma=0.3", "--tolerance", "1e-5"});
+  for (std::size_t i = 0; i < truth.at("dolp").size(); ++i) {
+    csv += fmt::format("{},{},0.002\n", truth.at("theta_deg")[i], truth.at("dolp")[i]);
+  }
+  put("measured.csv", csv);
+  app_->session().load_measured(at("measured.csv").string());
+  app_->settle();
+  frames();
+  const Area box = app_->control_area("vary surface.sigma");
+  move_to(0.5F * (box.left + box.right), 0.5F * (box.top + box.bottom));
+  press("mousedown");
+  press("mouseup");
+  ASSERT_TRUE(app_->session().varies("surface.sigma"));
+  keys("ctrl+f");
+  app_->settle();
+  EXPECT_NEAR(app_->session().scene().surface.sigma, 0.3, 2e-3);
+  ASSERT_NE(app_->session().fit_found(), nullptr);
+  EXPECT_LT(*app_->session().fit_found()->interval_68.at("surface.sigma").low, 0.3);
 }
 
 TEST_F(Window, Curve_Clicked_MovesTheCursor) {

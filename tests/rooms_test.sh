@@ -37,7 +37,7 @@ room api api/translated.hpp \
   base evaluate evaluate/cpu evaluate/named evaluate/vulkan fit model plan radiometry report run scene spectrum table verify
 room terminal terminal/exit_status.hpp base
 room calibrate calibrate/hold_out.hpp base evaluate evaluate/cpu evaluate/reference evaluate/text model plan scene spectrum
-room explore explore/ticks.hpp base evaluate evaluate/reference model plan radiometry run scene spectrum table
+room explore explore/ticks.hpp base evaluate evaluate/reference fit model plan radiometry run scene spectrum table
 room explore/window explore/window/area.hpp \
   base evaluate evaluate/interpolation evaluate/vulkan explore model plan scene spectrum
 room explore/program explore/program/program.hpp base evaluate evaluate/vulkan explore explore/window model plan scene spectrum

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/text.hpp"
@@ -12,6 +13,7 @@ namespace dolp::explore {
 namespace {
 
 constexpr NumberRange kDolpRange{-1.0, 1.0};
+constexpr NumberRange kUncertaintyRange{0.0, 1.0, NumberRange::Ends::kOpenBelow};
 
 }  // namespace
 
@@ -22,9 +24,13 @@ MeasuredPoints parse_measured(const std::string& text, const std::string& path_n
   if (!row.next()) row.fail("the file is empty; columns theta_deg and dolp are expected");
   const std::size_t theta = row.position("theta_deg", kZenithDegRange);
   const std::size_t dolp = row.position("dolp", kDolpRange);
+  const bool has_uncertainties = std::ranges::count(row.cells(), "uncertainty") > 0;
+  const std::size_t uncertainty = has_uncertainties ? row.position("uncertainty", kUncertaintyRange) : 0;
   while (row.next()) {
     points.theta_deg.push_back(row.number(theta, "theta_deg", &kZenithDegRange));
     points.dolp.push_back(row.number(dolp, "dolp", &kDolpRange));
+    if (!has_uncertainties) continue;
+    points.uncertainty.push_back(row.number(uncertainty, "uncertainty", &kUncertaintyRange));
   }
   return points;
 }

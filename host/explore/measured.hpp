@@ -14,10 +14,12 @@ struct MeasuredPoints {
   std::string name;  ///< of the file
   std::vector<double> theta_deg;
   std::vector<double> dolp;
+  std::vector<double> uncertainty;  ///< one standard deviation of each; empty without the column
 };
 
-/// Reads a CSV whose header has the columns `theta_deg` and `dolp`, in any order; further columns are ignored.
-/// Domain: theta_deg in [0, 90], dolp in [-1, 1] (a fraction, not percent).
+/// Reads a CSV whose header has the columns `theta_deg` and `dolp`, and any of `uncertainty`, in any order; further
+/// columns are ignored.
+/// Domain: theta_deg in [0, 90], dolp in [-1, 1] (a fraction, not percent), uncertainty in (0, 1].
 /// Errors: InputError, one line that names file, line, column, value and allowed range.
 MeasuredPoints read_measured(const std::string& path);
 MeasuredPoints parse_measured(const std::string& text, const std::string& path_name);

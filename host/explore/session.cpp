@@ -105,6 +105,11 @@ void Session::load_measured(const std::string& path) {
   attempt([&] { residuals_.load(read_measured(path)); });
 }
 
+void Session::take_fit(FitFound found) {
+  set(found.values);
+  if (!message_.is_error) fitting_.take(std::move(found), edits_.overrides());
+}
+
 void Session::pin() {
   if (pins_.size() == kMostPins) {
     tell(fmt::format("{} curves are pinned already: take one away first", kMostPins), true);

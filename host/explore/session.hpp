@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "explore/curve.hpp"
+#include "explore/fitting.hpp"
 #include "explore/heat_map.hpp"
 #include "explore/measured.hpp"
 #include "explore/peak.hpp"
@@ -69,6 +70,9 @@ class Session {
   void set_map_cursor(double x, double y);
   void load_measured(const std::string& path);
   void clear_measured() { residuals_.clear(); }
+  void mark(const std::string& key, bool varies) { fitting_.mark(key, varies); }
+  /// Moves the parameters to what a fit found.
+  void take_fit(FitFound found);
   void tell(std::string text, bool is_error = false) { message_ = {std::move(text), is_error}; }
 
   // ---- Computing.
@@ -90,6 +94,11 @@ class Session {
   const HeatMap& map() const { return map_; }
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
+  bool varies(const std::string& key) const { return fitting_.varies(key); }
+  /// The fit of the marked parameters to the measured points; none where one of them is missing.
+  std::optional<FitJob> fit_job() const { return fitting_.job(scene(), residuals_.points()); }
+  /// What the last fit found; null once the scene is another one.
+  const FitFound* fit_found() const { return fitting_.found(edits_.overrides()); }
   const Message& message() const { return message_; }
   /// The effects of the last finished curve; bounds of what is kept are those at the cursor's zenith.
   const std::vector<EffectRow>& effects() const { return effects_; }
@@ -119,6 +128,7 @@ class Session {
   HeatMap map_;
   Peak peak_;
   Residuals residuals_;
+  Fitting fitting_;
   std::vector<EffectRow> effects_;
   Message message_;
   bool is_changed_ = true;

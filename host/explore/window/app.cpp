@@ -19,6 +19,7 @@
 #include "evaluate/vulkan/context.hpp"
 #include "evaluate/vulkan/result.hpp"
 #include "explore/exports.hpp"
+#include "explore/fitting.hpp"
 #include "explore/window/png.hpp"
 #include "explore/window/presenter.hpp"
 #include "explore/window/text.hpp"
@@ -174,10 +175,12 @@ class App::Impl {
         evaluator_(context_, vulkan_options_),
         export_evaluator_(std::make_unique<VulkanEvaluator>(context_, vulkan_options_)),
         worker_(evaluator_, glfwPostEmptyEvent),
+        fit_evaluator_(std::make_unique<VulkanEvaluator>(context_, vulkan_options_)),
         table_export_(glfwPostEmptyEvent),
         true_error_(glfwPostEmptyEvent),
+        fit_(glfwPostEmptyEvent),
         command_line_(options.command_line),
-        ui_(session_, table_export_, true_error_, actions(), options.file_name) {
+        ui_(session_, table_export_, true_error_, fit_, actions(), options.file_name) {
     glfwSetWindowUserPointer(window_.get(), this);
   }
 
@@ -191,7 +194,10 @@ class App::Impl {
   }
   /// Whether there was input since the last call.
   bool take_input() { return std::exchange(has_input_, false); }
-  bool is_idle() const { return worker_.is_idle() && is_all_taken_; }
+  bool is_idle() const {
+    const std::scoped_lock lock(found_mutex_);
+    return worker_.is_idle() && is_all_taken_ && fit_.state() != BackgroundTask::State::kRunning && !found_;
+  }
   bool is_computing() const { return !worker_.is_idle(); }
   void save_picture(const std::string& path, Clock::duration delay = {}) {
     picture_path_ = path;
@@ -201,6 +207,7 @@ class App::Impl {
 
   /// JobPart in, wishes out.
   void exchange() {
+    if (std::optional<FitFound> found = take_found()) session_.take_fit(std::move(*found));
     is_all_taken_ = worker_.is_idle();
     session_.take(worker_.take_news());
     if (!session_.take_changed()) return;
@@ -287,6 +294,7 @@ class App::Impl {
     actions.find_true_error = [this] {
       true_error_.start([curve = session_.curve()](const Progress& progress) { return true_error(curve, progress); });
     };
+    actions.fit = [this] { start_fit(); };
     actions.quit = [this] { close(); };
     return actions;
   }
@@ -295,6 +303,26 @@ class App::Impl {
     table_export_.start([this, path, scene = session_.scene()](const Progress& progress) {
       return export_table(scene, path, command_line_, export_evaluator_, progress);
     });
+  }
+
+  void start_fit() {
+    std::optional<FitJob> job = session_.fit_job();
+    if (!job) {
+      session_.tell("a fit needs measured points, and parameters that are marked to vary", true);
+      return;
+    }
+    fit_.start([this, job = std::move(*job)](const Progress& progress) {
+      FitFound found = run_fit(job, fit_evaluator_, progress);
+      const std::scoped_lock lock(found_mutex_);
+      found_ = std::move(found);
+      return found_->text;
+    });
+  }
+
+  /// What a fit has found since the last call.
+  std::optional<FitFound> take_found() {
+    const std::scoped_lock lock(found_mutex_);
+    return std::exchange(found_, std::nullopt);
   }
 
   Session session_;
@@ -308,8 +336,12 @@ class App::Impl {
   VulkanEvaluator evaluator_;
   InterpolatingEvaluator export_evaluator_;
   Worker worker_;
+  InterpolatingEvaluator fit_evaluator_;
+  mutable std::mutex found_mutex_;
+  std::optional<FitFound> found_;  ///< of a fit that has ended
   BackgroundTask table_export_;
   BackgroundTask true_error_;
+  BackgroundTask fit_;
   std::string command_line_;
   std::string picture_path_;
   Clock::time_point picture_time_;

@@ -34,9 +34,10 @@ inline constexpr ImU32 kTextColour = IM_COL32(225, 228, 232, 255);
 inline constexpr ImU32 kDimColour = IM_COL32(150, 156, 163, 255);
 inline constexpr ImU32 kGridColour = IM_COL32(62, 66, 72, 255);
 inline constexpr ImU32 kPlotColour = IM_COL32(20, 21, 24, 255);
-inline constexpr ImU32 kBadColour = IM_COL32(110, 112, 116, 255);    ///< entries with a status
-inline constexpr ImU32 kErrorColour = IM_COL32(255, 150, 110, 255);  ///< messages
-inline constexpr ImU32 kStaleVeil = IM_COL32(20, 21, 24, 150);       ///< over a stale map
+inline constexpr ImU32 kBadColour = IM_COL32(110, 112, 116, 255);      ///< entries with a status
+inline constexpr ImU32 kErrorColour = IM_COL32(255, 150, 110, 255);    ///< messages
+inline constexpr ImU32 kStaleVeil = IM_COL32(20, 21, 24, 150);         ///< over a stale map
+inline constexpr ImU32 kIntervalColour = IM_COL32(90, 205, 130, 255);  ///< of a fit
 inline constexpr ImU32 kCursorColour = IM_COL32(255, 255, 255, 200);
 
 }  // namespace dolp::explore

@@ -47,10 +47,37 @@ std::string fallback_text(const Parameter& parameter, const Session& session) {
   return opened ? fmt::format("\nCtrl-click: {:.6g}, as opened", *opened) : "";
 }
 
+std::string interval_text(const FitInterval& interval) {
+  const auto end = [](const std::optional<double>& value) { return value ? fmt::format("{:.4g}", *value) : "open"; };
+  return end(interval.low) + " to " + end(interval.high);
+}
+
+/// What the last fit says of a parameter.
+std::string intervals_text(const Parameter& parameter, const Session& session) {
+  const FitFound* const found = session.fit_found();
+  const std::string& key = parameter.description->key;
+  if (found == nullptr || !found->interval_68.contains(key)) return {};
+  return fmt::format("\n68 %: {}\n95 %: {}", interval_text(found->interval_68.at(key)),
+                     interval_text(found->interval_95.at(key)));
+}
+
+/// The interval as a bar at the foot of the slider that was drawn last; an open end goes to the slider's.
+void draw_interval(const Parameter& parameter, const FitInterval& interval) {
+  const ImVec2 corner = ImGui::GetItemRectMin();
+  const ImVec2 end = ImGui::GetItemRectMax();
+  const auto at = [&](const std::optional<double>& value, double otherwise) {
+    const double position = value ? slider_position(parameter, *value) : otherwise;
+    return corner.x + static_cast<float>(position) * (end.x - corner.x);
+  };
+  constexpr float kThickness = 3.0F;
+  ImGui::GetWindowDrawList()->AddRectFilled({at(interval.low, 0.0), end.y - kThickness},
+                                            {at(interval.high, 1.0), end.y}, kIntervalColour);
+}
+
 std::string description_of(const Parameter& p, const Session& session) {
   const KeyDescription& key = *p.description;
-  return fmt::format("{} = {}\n{}\nallowed: {} {}{}", key.key, key.meaning, p.equation, key.range.text(),
-                     unit_text(key), fallback_text(p, session));
+  return fmt::format("{} = {}\n{}\nallowed: {} {}{}{}", key.key, key.meaning, p.equation, key.range.text(),
+                     unit_text(key), fallback_text(p, session), intervals_text(p, session));
 }
 
 std::string description_of(const Choice& choice) {
@@ -180,16 +207,31 @@ void ControlsPanel::draw_choices(Session& session, const std::string& table) {
   }
 }
 
+void ControlsPanel::draw_fit_box(Session& session, const Parameter& parameter) {
+  const std::string& key = parameter.description->key;
+  bool varies = session.varies(key);
+  if (ImGui::Checkbox("##vary", &varies)) session.mark(key, varies);
+  const ImVec2 corner = ImGui::GetItemRectMin();
+  const ImVec2 end = ImGui::GetItemRectMax();
+  areas_["vary " + key] = {corner.x, corner.y, end.x, end.y};
+  tooltip("varies in a fit to the measured points, over the range of its slider");
+  ImGui::SameLine();
+}
+
 void ControlsPanel::draw_parameter(Session& session, const Parameter& parameter, double value) {
   const KeyDescription& key = *parameter.description;
   const std::string unit = unit_text(key);
   row_label(unit.empty() ? parameter.symbol : fmt::format("{} [{}]", parameter.symbol, unit));
   ImGui::PushID(key.key.c_str());
+  if (session.residuals().points() && Fitting::can_vary(parameter)) draw_fit_box(session, parameter);
   const float typed_width = 5.2F * ImGui::GetFontSize();
   ImGui::SetNextItemWidth(-typed_width - ImGui::GetStyle().ItemSpacing.x);
   auto position = static_cast<float>(slider_position(parameter, value));
   const bool is_moved = ImGui::SliderFloat("##slider", &position, 0.0F, 1.0F, "", ImGuiSliderFlags_NoInput);
   remember_area(key.key);
+  const FitFound* const found = session.fit_found();
+  if (found != nullptr && found->interval_68.contains(key.key))
+    draw_interval(parameter, found->interval_68.at(key.key));
   const bool is_ctrl = ImGui::GetIO().KeyCtrl;
   if (ImGui::IsItemClicked() && is_ctrl) session.reset(key.key);
   if (is_moved && !is_ctrl) session.set(key.key, slider_value(parameter, position));

@@ -17,13 +17,15 @@ class ControlsPanel {
   /// Tolerance and precision, which stand beside what they cost; to be called after `draw`.
   void draw_accuracy(Session& session);
 
-  /// Sliders, lists and boxes by their scene key, for tests that move the mouse there.
+  /// Sliders, lists and boxes by their scene key, "vary KEY" of the box that lets it vary, for tests that move the
+  /// mouse there.
   const std::map<std::string, Area>& areas() const { return areas_; }
 
  private:
   void remember_area(const std::string& key);
   void draw_choice(Session& session, const Choice& choice, std::size_t word);
   void draw_choices(Session& session, const std::string& table);
+  void draw_fit_box(Session& session, const Parameter& parameter);
   void draw_parameter(Session& session, const Parameter& parameter, double value);
   void draw_table(Session& session, const std::string& table);
   std::map<std::string, Area> areas_;

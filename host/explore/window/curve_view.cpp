@@ -218,6 +218,11 @@ void draw_measured(const Plot& plot, const MeasuredPoints& points) {
     const double value = scale_of(Quantity::kDolp) * points.dolp[i];
     if (plot.y().is_log && value <= 0.0) continue;
     plot.list()->AddCircle(plot.at(points.theta_deg[i], value), 4.0F, kTextColour, 0, 1.5F);
+    if (points.uncertainty.empty()) continue;
+    const double deviation = scale_of(Quantity::kDolp) * points.uncertainty[i];
+    const double low = plot.y().is_log ? std::max(value - deviation, plot.y().from) : value - deviation;
+    plot.list()->AddLine(plot.at(points.theta_deg[i], low), plot.at(points.theta_deg[i], value + deviation),
+                         kTextColour);
   }
 }
 

@@ -33,8 +33,9 @@ void coloured_text(ImU32 colour, const std::string& text) {
 
 }  // namespace
 
-Ui::Ui(Session& session, BackgroundTask& table_export, BackgroundTask& true_error, Actions actions, std::string name)
-    : session_(session), table_export_(table_export), true_error_(true_error), actions_(std::move(actions)) {
+Ui::Ui(Session& session, BackgroundTask& table_export, BackgroundTask& true_error, BackgroundTask& fit, Actions actions,
+       std::string name)
+    : session_(session), table_export_(table_export), true_error_(true_error), fit_(fit), actions_(std::move(actions)) {
   add_file_commands(name);
   add_view_commands();
 }
@@ -105,6 +106,7 @@ void Ui::add_view_commands() {
          actions_.find_true_error();
        },
        {}});
+  add({"Scene", "Fit to the measured points", GLFW_KEY_F, "Ctrl+F", [this] { actions_.fit(); }, {}});
   add({"Scene", "Take all changes back", GLFW_KEY_R, "Ctrl+R", [this] { session_.reset_all(); }, {}});
   add({"Help", "Shortcuts and hints", GLFW_KEY_H, "Ctrl+H", [this] { shows_help_ = true; }, {}});
 }
@@ -241,6 +243,27 @@ void Ui::draw_view_controls() {
   if (is_changed) session_.set_view(view);
 }
 
+void Ui::draw_fit() {
+  const std::optional<MeasuredPoints>& points = session_.residuals().points();
+  if (!points) return;
+  const bool is_running = fit_.state() == BackgroundTask::State::kRunning;
+  const bool is_ready = session_.fit_job().has_value() && !is_running;
+  ImGui::Spacing();
+  ImGui::BeginDisabled(!is_ready);
+  if (ImGui::Button("Fit (Ctrl+F)")) actions_.fit();
+  ImGui::EndDisabled();
+  ImGui::SameLine();
+  ImGui::TextDisabled(
+      "%s", shown(is_ready || is_running ? std::filesystem::path(points->name).filename().string() : "mark what varies")
+                .c_str());
+  const bool is_old = fit_.state() == BackgroundTask::State::kDone && session_.fit_found() == nullptr;
+  if (is_old) {
+    coloured_text(kDimColour, "The scene is no longer that of the fit.");
+  } else {
+    draw_task("fit", fit_);
+  }
+}
+
 void Ui::draw_pins() {
   if (session_.pins().empty()) return;
   ImGui::Spacing();
@@ -306,6 +329,7 @@ void Ui::draw() {
   const ImVec2 all = ImGui::GetContentRegionAvail();
   const float left = 22.0F * ImGui::GetFontSize();
   ImGui::BeginChild("controls", {left, all.y}, true);
+  draw_fit();
   controls_.draw(session_);
   draw_pins();
   ImGui::EndChild();

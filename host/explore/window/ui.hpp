@@ -20,13 +20,15 @@ struct Actions {
   std::function<void(const std::string&)> save_picture;
   std::function<void(const std::string&)> load_measured;
   std::function<void()> find_true_error;
+  std::function<void()> fit;
   std::function<void()> quit;
 };
 
 class Ui {
  public:
   /// `name` begins the file names that dialogs suggest. All must outlive this.
-  Ui(Session& session, BackgroundTask& table_export, BackgroundTask& true_error, Actions actions, std::string name);
+  Ui(Session& session, BackgroundTask& table_export, BackgroundTask& true_error, BackgroundTask& fit, Actions actions,
+     std::string name);
 
   /// Draws everything, between ImGui's NewFrame and Render.
   void draw();
@@ -68,6 +70,7 @@ class Ui {
   void draw_path_dialog();
   void draw_help();
   void draw_view_controls();
+  void draw_fit();
   void draw_pins();
   void draw_readout();
   void draw_plots(ImVec2 size);
@@ -77,6 +80,7 @@ class Ui {
   Session& session_;
   BackgroundTask& table_export_;
   BackgroundTask& true_error_;
+  BackgroundTask& fit_;
   Actions actions_;
   std::vector<Command> commands_;
   ControlsPanel controls_;

@@ -1,0 +1,71 @@
+// A fit of the window's parameters to measured points.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/progress.hpp"
+#include "evaluate/evaluator.hpp"
+#include "explore/measured.hpp"
+#include "explore/parameters.hpp"
+#include "explore/scene_edits.hpp"
+
+namespace dolp::explore {
+
+/// A number that may vary, over the range of its slider, from the scene's value on.
+struct Varied {
+  std::string key;
+  double low = 0.0;
+  double high = 0.0;
+  double start = 0.0;
+};
+
+/// Everything that a fit needs, so that it can run in a thread of its own.
+struct FitJob {
+  Scene scene;
+  MeasuredPoints points;
+  std::vector<Varied> varied;
+};
+
+/// An interval of a number; an end is none where its slider ends before the data say no.
+struct FitInterval {
+  std::optional<double> low, high;
+};
+
+/// What a fit found.
+struct FitFound {
+  std::vector<SceneEdits::Change> values;
+  std::map<std::string, FitInterval> interval_68, interval_95;  ///< by key
+  std::string text;                                             ///< one line
+};
+
+/// Fits as `dolp fit` does. Errors: InputError where points, parameters and scene do not fit together and where no
+/// minimum was found; those of the evaluator; Cancelled.
+FitFound run_fit(const FitJob& job, MomentsEvaluator& evaluator, const Progress& progress);
+
+/// Which parameters vary, and what the last fit found, as long as the scene is the one that it left.
+class Fitting {
+ public:
+  /// Whether a parameter can vary at all.
+  static bool can_vary(const Parameter& parameter);
+
+  bool varies(const std::string& key) const { return marked_.contains(key); }
+  void mark(const std::string& key, bool varies);
+
+  /// None without points, or without a marked parameter that the scene has.
+  std::optional<FitJob> job(const Scene& scene, const std::optional<MeasuredPoints>& points) const;
+
+  void take(FitFound found, std::vector<std::string> overrides);
+  /// Null once the scene has other overrides than those that the fit left.
+  const FitFound* found(const std::vector<std::string>& overrides) const;
+
+ private:
+  std::set<std::string> marked_;
+  std::optional<FitFound> found_;
+  std::vector<std::string> overrides_;  ///< of the scene with what was found
+};
+
+}  // namespace dolp::explore

@@ -66,7 +66,7 @@ Table small_table() {
 
 std::string refusal(const Table& table, const std::string& scene_text) {
   try {
-    check_table(table, parse_scene(scene_text, "scene.toml", {}), "t.nc", {}, {});
+    check_table({table, {0}}, parse_scene(scene_text, "scene.toml", {}), "t.nc", {});
   } catch (const InputError& error) {
     return error.what();
   }
@@ -93,7 +93,7 @@ TEST(CheckTable, EmptyStatusAndNoEstimates_PromiseNothing) {
   Table table = small_table();
   table.rho_i = {0.3};
   table.rho_error_estimate = {std::numeric_limits<double>::infinity()};
-  const TableCheck check = check_table(table, parse_scene(kScene, "scene.toml", {}), "t.nc", {}, {});
+  const TableCheck check = check_table({table, {0}}, parse_scene(kScene, "scene.toml", {}), "t.nc", {});
   EXPECT_TRUE(check.passed());
   ASSERT_EQ(check.quantities.size(), 1U);
   EXPECT_EQ(check.quantities.front().unstated, 1U);

@@ -17,6 +17,7 @@
 #include "report/verify_report.hpp"
 #include "run/table_scene.hpp"
 #include "scene/number_range.hpp"
+#include "table/table_reader.hpp"
 
 namespace dolp::api {
 namespace {
@@ -49,13 +50,18 @@ Report verify(const std::filesystem::path& path, const TableCheck& options) {
   return translated([&] {
     const auto start = std::chrono::steady_clock::now();
     const std::string name = path.string();
-    const dolp::Table table = load_table(name);
-    const dolp::Scene scene = table_scene(table, name, options.named_files ? NamedData::kOfFiles : NamedData::kOfTable);
+    check_may_hold_scene(name);
+    const TableReader reader(path);
+    const dolp::Scene scene =
+        table_scene(reader.head(), name, options.named_files ? NamedData::kOfFiles : NamedData::kOfTable);
     TableReport report;
     report.path = name;
     report.title = scene.title;
     report.options = {options.samples, options.seed};
-    report.check = check_table(table, scene, name, report.options, options.progress);
+    TableSample sample;
+    sample.positions = sample_positions(reader.head().size(), report.options);
+    sample.table = reader.read_entries(sample.positions);
+    report.check = check_table(sample, scene, name, options.progress);
     report.wall_s = seconds_since(start);
     return public_report(table_report(report), report.check.passed());
   });

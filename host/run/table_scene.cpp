@@ -114,13 +114,17 @@ std::uint64_t scene_seed(const Scene& scene) {
 
 std::string scene_hash(const Scene& scene) { return fmt::format("fnv1a64:{:016x}", scene_seed(scene)); }
 
-Table load_table(const std::string& path) {
+void check_may_hold_scene(const std::string& path) {
   if (!std::filesystem::exists(path)) throw InputError(path + ": there is no such file");
   const std::string suffix = std::filesystem::path(path).extension().string();
   if (suffix == ".csv" || suffix == ".npy") {
     throw InputError(
         fmt::format("{}: only a table written as .nc holds its scene, which {} files do not in full", path, suffix));
   }
+}
+
+Table load_table(const std::string& path) {
+  check_may_hold_scene(path);
   return read_table(path);
 }
 

@@ -19,8 +19,10 @@ std::vector<std::string> overrides_of(const std::string& text);
 std::string scene_hash(const Scene& scene);
 std::uint64_t scene_seed(const Scene& scene);  ///< the number itself
 
-/// Reads a table file that holds its scene.
-/// Errors: those of read_table; InputError for a file that is not there, and for formats that do not hold it.
+/// Refuses a file that is not there, or is of a format that does not hold its scene. Errors: InputError.
+void check_may_hold_scene(const std::string& path);
+
+/// Reads a table file that holds its scene. Errors: those of check_may_hold_scene and read_table.
 Table load_table(const std::string& path);
 
 /// The attribute "index_n_formula": the number of a dispersion formula and its coefficients, with blanks between them.

@@ -18,6 +18,8 @@
 namespace dolp {
 namespace {
 
+constexpr std::size_t kEntriesAtOnce = std::size_t{1} << 18U;  // of a part that is read
+
 namespace fs = std::filesystem;
 
 // deflate, which other tools apply, leaves no less than a 1032nd of the bytes.
@@ -319,6 +321,30 @@ ValuesHash::Sums TableReader::sums_of(const Table& part, const TableBox& box) co
   for (const TableVariable* variable : impl_->variables) add(part.*variable->values);
   if (impl_->has_status) add(part.status);
   return sums;
+}
+
+Table TableReader::read_entries(std::span<const std::size_t> positions) const {
+  Table entries;
+  static_cast<TableHead&>(entries) = impl_->head;
+  ValuesHash::Sums sums;
+  std::size_t before = 0;
+  for (const TableBox& box : boxes_in_order(impl_->head.counts(), kEntriesAtOnce)) {
+    const Table part = read(box);
+    const ValuesHash::Sums of_part = sums_of(part, box);
+    sums.resize(of_part.size(), 0);
+    std::ranges::transform(sums, of_part, sums.begin(), std::plus<>());
+    const std::size_t end = before + size_of(box.count);
+    for (; !positions.empty() && positions.front() < end; positions = positions.subspan(1)) {
+      const std::size_t position = positions.front() - before;
+      for (const TableVariable* variable : impl_->variables) {
+        (entries.*variable->values).push_back((part.*variable->values)[position]);
+      }
+      if (impl_->has_status) entries.status.push_back(part.status[position]);
+    }
+    before = end;
+  }
+  check_hash(sums);
+  return entries;
 }
 
 Table read_table(const fs::path& path) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 
 #include "table/table.hpp"
 #include "table/table_netcdf.hpp"
@@ -25,6 +26,9 @@ class TableReader {
   bool has_status() const;
 
   Table read(const TableBox& box) const;
+  /// The values of some entries, at ascending positions: each variable has one for each of them. All are read, part by
+  /// part, and refused as by check_hash.
+  Table read_entries(std::span<const std::size_t> positions) const;
 
   /// What a part that was read adds to the hash.
   ValuesHash::Sums sums_of(const Table& part, const TableBox& box) const;

@@ -72,9 +72,9 @@ std::string complaint_about(const CheckedValue& value, double allowed) {
 }
 
 /// The estimates of an entry; a table without them states nothing.
-double estimate_at(const std::vector<double>& estimates, std::size_t position) {
+double estimate_at(const std::vector<double>& estimates, std::size_t i) {
   if (estimates.empty()) return kInfinity;
-  return estimates[position];
+  return estimates[i];
 }
 
 double allowed_error(const Quantity& quantity, std::uint32_t status, double tolerance, const PointResult& reference) {
@@ -91,7 +91,7 @@ void add(QuantityCheck& check, const CheckedValue& value) {
   if (check.compared == 1 || value.ratio() > check.worst.ratio()) check.worst = value;
 }
 
-CheckedValue compare(const Table& table, const Quantity& quantity, std::size_t position, const SceneEntry& entry,
+CheckedValue compare(const Table& table, const Quantity& quantity, std::size_t i, const SceneEntry& entry,
                      const PointResult& reference, double tolerance) {
   CheckedValue value;
   value.quantity = quantity.name;
@@ -101,13 +101,13 @@ CheckedValue compare(const Table& table, const Quantity& quantity, std::size_t p
   if (!table.wavelength_um.empty()) value.wavelength_um = table.wavelength_um[entry.wavelength];
   if (!table.n.empty()) value.n = entry.index->n;
   if (!table.k.empty()) value.k = entry.index->k;
-  value.stored = (table.*quantity.stored)[position];
+  value.stored = (table.*quantity.stored)[i];
   value.reference = reference.*quantity.recomputed;
-  const double dolp_estimate = estimate_at(table.error_estimate, position);
-  const double rho_estimate = estimate_at(table.rho_error_estimate, position);
+  const double dolp_estimate = estimate_at(table.error_estimate, i);
+  const double rho_estimate = estimate_at(table.rho_error_estimate, i);
   value.stated = bound_of(quantity.bound, dolp_estimate, rho_estimate, reference);
   value.reference_error = bound_of(quantity.bound, reference.error_estimate, reference.rho_error_estimate, reference);
-  const std::uint32_t status = table.status.empty() ? kStatusToleranceMissed : table.status[position];
+  const std::uint32_t status = table.status.empty() ? kStatusToleranceMissed : table.status[i];
   value.complaint = complaint_about(value, allowed_error(quantity, status, tolerance, reference));
   return value;
 }
@@ -161,8 +161,9 @@ std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckO
   return {chosen.begin(), chosen.end()};
 }
 
-TableCheck check_table(const Table& table, const Scene& scene, const std::string& name,
-                       const TableCheckOptions& options, const Progress& progress) {
+TableCheck check_table(const TableSample& sample, const Scene& scene, const std::string& name,
+                       const Progress& progress) {
+  const Table& table = sample.table;
   if (!has_dolp(table) && !has_rho(table)) {
     throw InputError(
         fmt::format("{}: has nothing to compare: neither dolp with error_estimate nor rho_i or rho_q with "
@@ -170,29 +171,28 @@ TableCheck check_table(const Table& table, const Scene& scene, const std::string
                     name));
   }
   check_axes(table, scene, name);
-  const std::vector<std::size_t> positions = sample_positions(table.size(), options);
   std::vector<SceneEntry> entries;
   Grid axes;
   for (std::size_t i = 0; i < kTableAxes.size(); ++i) axes.*kGridAxes[i] = table.*kTableAxes[i];
   const SceneEntries grid = SceneEntries::of_grid(axes, scene.surface.material.constant);
-  for (const std::size_t position : positions) entries.push_back(grid[position]);
+  for (const std::size_t position : sample.positions) entries.push_back(grid[position]);
   ReferenceEvaluator reference({.relative_tolerance = kReferenceTolerance});
   const std::vector<PointResult> results = evaluate_scene(scene, {entries, table.wavelength_um}, reference, progress);
 
   TableCheck check;
   check.entries = table.size();
-  check.checked = positions.size();
+  check.checked = entries.size();
   check.tolerance = scene.accuracy.tolerance;
-  for (const std::size_t position : positions) {
-    const std::uint32_t status = table.status.empty() ? 0 : table.status[position];
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const std::uint32_t status = table.status.empty() ? 0 : table.status[i];
     check.missed += (status & kStatusToleranceMissed) != 0 ? 1 : 0;
   }
   for (const Quantity& quantity : kQuantities) {
     if ((table.*quantity.stored).empty()) continue;
     QuantityCheck& of_quantity = check.quantities.emplace_back();
     of_quantity.name = quantity.name;
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-      const CheckedValue value = compare(table, quantity, positions[i], entries[i], results[i], check.tolerance);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const CheckedValue value = compare(table, quantity, i, entries[i], results[i], check.tolerance);
       add(of_quantity, value);
       if (!value.complaint.empty()) check.failures.push_back(value);
     }

@@ -56,7 +56,13 @@ struct TableCheck {
 /// Positions of `samples` distinct entries out of `entries`, ascending; the same for the same seed everywhere.
 std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckOptions& options);
 
-/// Compares dolp, rho_i, rho_q and the Stokes parameters of some entries, as far as the table has them, with
+/// Some entries of a table: its variables have one value for each of the ascending positions.
+struct TableSample {
+  Table table;
+  std::vector<std::size_t> positions;
+};
+
+/// Compares dolp, rho_i, rho_q and the Stokes parameters of the sample, as far as the table has them, with
 /// ReferenceEvaluator through the radiometry of the table's scene.
 ///
 /// A value is wrong if its error exceeds the stated bound plus the reference's own, if one of the two is no number and
@@ -66,7 +72,7 @@ std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckO
 /// Not independent: closed forms of mirrors and limits, which come from the same code in every evaluator.
 /// Errors: InputError that begins with `name` for a table without anything to compare or with axes out of range;
 /// Cancelled when `progress` returns false.
-TableCheck check_table(const Table& table, const Scene& scene, const std::string& name,
-                       const TableCheckOptions& options, const Progress& progress);
+TableCheck check_table(const TableSample& sample, const Scene& scene, const std::string& name,
+                       const Progress& progress);
 
 }  // namespace dolp

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Draws a lookup table: DOLP against theta for several sigma, and over theta and sigma, at one q.
+"""Draws a lookup table: DOLP against theta for several sigma, and over theta and sigma, at one value of each other axis.
 
-Usage: plot_table.py TABLE.nc OUT.png [--q Q]
-The q of the table nearest to --q is drawn, by default the middle one. Entries with a status other than 0 are drawn
+Usage: plot_table.py TABLE.nc OUT.png [--q Q] [--wavelength UM] [--n N] [--k K]
+The value of the table nearest to each option is drawn, by default the middle one. Entries with a status other than 0 are drawn
 faint in the curves and hatched grey in the map. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
 Exit status: 0 done, 2 usage or a file that is not such a table, 4 the picture could not be written.
 """
@@ -33,26 +33,38 @@ STATUS_MEANINGS = {
 }
 
 
+SYMBOLS = {"q": "q", "wavelength": "λ", "n": "n", "k": "k"}  # of the axes of which one value is drawn
+UNITS = {"wavelength": " µm"}
+
+
 class NotATable(Exception):
-    """The file is no table of dolp."""
+    """The file is no table of dolp, or has no such axis."""
 
 
 class Slice:
-    """One q of a table, theta and sigma ascending, DOLP in percent."""
+    """One value of all axes but theta and sigma, which are ascending; DOLP in percent."""
 
-    def __init__(self, dataset, wanted_q):
+    def __init__(self, dataset, wanted):
+        """`wanted`: a value of each axis in SYMBOLS, or None for the middle one."""
         for name in ("theta", "sigma", "q", "dolp"):
             if name not in dataset.variables:
                 raise NotATable(f"has no variable {name}; a table with DOLP is expected")
-        q_values = np.asarray(dataset["q"][:])
-        wanted = q_values[len(q_values) // 2] if wanted_q is None else wanted_q
-        q_index = int(np.argmin(np.abs(q_values - wanted)))
+        axes = dataset["dolp"].dimensions
+        at = {}
+        for axis, value in wanted.items():
+            if axis in axes:
+                along = np.asarray(dataset[axis][:])
+                at[axis] = int(np.argmin(np.abs(along - (along[len(along) // 2] if value is None else value))))
+            elif value is not None:
+                raise NotATable(f"has no axis {axis}; its axes are {', '.join(axes)}")
+        place = tuple(at.get(axis, slice(None)) for axis in axes)
         theta, sigma = np.asarray(dataset["theta"][:]), np.asarray(dataset["sigma"][:])
         rows, columns = np.argsort(theta), np.argsort(sigma)
-        self.theta, self.sigma, self.q = theta[rows], sigma[columns], q_values[q_index]
+        self.theta, self.sigma = theta[rows], sigma[columns]
+        self.place = ", ".join(f"{SYMBOLS[axis]} = {dataset[axis][i]:g}{UNITS.get(axis, '')}" for axis, i in at.items())
 
         def values(name, fill):
-            data = np.ma.filled(dataset[name][:, :, q_index], fill)
+            data = np.ma.filled(dataset[name][place], fill)
             return data[np.ix_(rows, columns)]
 
         self.dolp = 100.0 * values("dolp", np.nan)
@@ -74,7 +86,7 @@ class Slice:
         return max(np.percentile(shown, SHOWN_SHARE_PERCENT), SMALLEST_SPAN_PERCENT) if shown.size else 1.0
 
     def caption(self):
-        parts = [f"{self.theta.size} × {self.sigma.size} entries at q = {self.q:g}"]
+        parts = [f"{self.theta.size} × {self.sigma.size} entries at {self.place}"]
         if self.worst_error is not None:
             parts.append(f"worst error estimate of DOLP {100.0 * self.worst_error:.2g} points")
         flagged = int(np.count_nonzero(self.status))
@@ -174,11 +186,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("table")
     parser.add_argument("picture")
-    parser.add_argument("--q", type=float, default=None)
+    for axis, symbol in SYMBOLS.items():
+        parser.add_argument(f"--{axis}", type=float, help=f"draw the {symbol} nearest to it; default: the middle one")
     arguments = parser.parse_args()
     try:
         with netCDF4.Dataset(arguments.table) as dataset:
-            table = Slice(dataset, arguments.q)
+            table = Slice(dataset, {axis: getattr(arguments, axis) for axis in SYMBOLS})
     except (OSError, NotATable) as error:
         print(f"{arguments.table}: {error}", file=sys.stderr)
         return 2

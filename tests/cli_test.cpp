@@ -95,6 +95,21 @@ TEST_F(CommandLine, TableNetcdf_EvalAtItsEntries_EqualBitForBit) {
   EXPECT_NE(other.out.find("16 rows, 13 columns"), std::string::npos) << other.out;
 }
 
+TEST_F(CommandLine, PlotTable_OfFurtherAxes_DrawsTheNearestAndNamesThoseThatThereAre) {
+  ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc", "--set", "grid.n=[1.4,1.6]", "--set", "grid.k=[0.1]"}).status,
+            0);
+  const auto plot = [&](const std::string& option, const std::string& value) {
+    return run(
+        {.arguments = {kPython, DOLP_HOST_DIR "/plot_table.py", "t.nc", "t.png", option, value}, .folder = at("")});
+  };
+  const Outcome drawn = plot("--n", "1.55");
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_TRUE(content("t.png").starts_with("\x89PNG"));
+  const Outcome refused = plot("--wavelength", "9");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.err, "t.nc: has no axis wavelength; its axes are n, k, theta, sigma, q\n");
+}
+
 TEST_F(CommandLine, TableFormats_SameScene_HoldTheSameNumbers) {
   for (const char* name : {"t.nc", "t.csv", "t.npy"}) {
     ASSERT_EQ(dolp({"table", "scene.toml", "-o", name}).status, 0) << name;

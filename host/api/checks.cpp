@@ -58,6 +58,7 @@ Report verify(const std::filesystem::path& path, const TableCheck& options) {
     report.path = name;
     report.title = scene.title;
     report.options = {options.samples, options.seed};
+    begin(options.progress, options.samples);
     TableSample sample;
     sample.positions = sample_positions(reader.head().size(), report.options);
     sample.table = reader.read_entries(sample.positions);
@@ -73,6 +74,7 @@ Report verify_device(const DeviceCheck& options) {
       throw dolp::InputError(
           fmt::format("--tolerance {:g}: must be a number in {}", options.tolerance, kToleranceRange.text()));
     }
+    begin(options.progress, 1);
     HardCaseReport report;
     report.tolerance = options.tolerance;
     report.cases = hard_cases();

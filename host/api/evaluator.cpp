@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "api/evaluator_impl.hpp"
+#include "api/reports.hpp"
 #include "api/results.hpp"
 #include "api/scene_impl.hpp"
 #include "api/table_impl.hpp"
@@ -43,6 +44,7 @@ Run run_entries(const dolp::Scene& scene, const SceneEntries& entries, const Run
   const Clock::time_point start = Clock::now();
   const EffectPlan plan = plan_effects(scene, entries, wanted.keep_all);
   MomentsEvaluator* const evaluator = wants_evaluator(scene, entries, plan) ? begin(scene) : nullptr;
+  api::begin(wanted.progress, entries.size());
   CollectedResults collected(entries);
   const SelfCheck check = run_scene(scene, entries, plan, evaluator, collected, wanted.progress);
   Run run{collected.take(), table_layout(scene, plan, entries.axes())};
@@ -97,6 +99,7 @@ void Evaluator::table_parts(const Scene& scene, const std::function<void(const T
     const EffectPlan plan = plan_effects(own, entries, options.keep_all);
     MomentsEvaluator* const evaluator = wants_evaluator(own, entries, plan) ? impl_->begin(own) : nullptr;
     const TableLayout layout = table_layout(own, plan, entries.axes());
+    api::begin(options.progress, entries.size());
     Parts parts([&](const SceneEntries& part, const std::vector<PointResult>& results) {
       dolp::Table table = table_part(layout, part, results);
       table.stokes_units = layout.head.stokes_units;
@@ -120,6 +123,7 @@ std::vector<MuellerMatrix> Evaluator::mueller(const Scene& scene, const std::vec
   return impl_->exclusively([&] {
     const dolp::Scene& own = scene.impl().scene;
     const auto geometries = mueller_points(own, points_of_columns(points, PointsKind::kGeometries));
+    api::begin(options.progress, geometries.size());
     return evaluate_mueller(own, geometries, *impl_->begin(own), options.progress);
   });
 }

@@ -32,8 +32,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The points of a file. Columns that are results, as write_points and write_lookup write them, are left out.
-Points load_points(const std::filesystem::path& path, PointsKind kind) {
+/// The points of a file. Columns that are results, as write_points and write_lookup write them, are left out. Refuses
+/// an `output` that is this file or another input.
+Points load_points(const std::filesystem::path& path, PointsKind kind, std::vector<std::string> inputs,
+                   const std::filesystem::path& output) {
+  inputs.push_back(path.string());
+  check_output_is_no_input(output, inputs);
   return read_points(path.string(), kind, result_columns());
 }
 
@@ -72,6 +76,10 @@ std::string mueller_csv(const Points& points, const std::vector<MuellerElements>
 }
 
 }  // namespace
+
+void begin(const Progress& progress, std::size_t total) {
+  if (progress && !progress(0, total)) throw dolp::Cancelled{};
+}
 
 Report public_report(const dolp::Report& report, bool is_good, const std::filesystem::path& output) {
   return {report.text(), report.json_text(), is_good, output};
@@ -112,6 +120,7 @@ Report Evaluator::write_table(const Scene& scene, const std::filesystem::path& p
       report.row("kept", "{}: the whole shard is there already", key("output", job.path.string()));
       return public_report(report, true, job.path);
     }
+    begin(options.progress, entries.size());
     MomentsEvaluator* evaluator = nullptr;
     TableRun table = run_table_job(
         own, job, [&] { return evaluator = impl_->begin(own); }, options.progress);
@@ -129,12 +138,10 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
   return impl_->exclusively([&] {
     const Clock::time_point start = Clock::now();
     const dolp::Scene& own = scene.impl().scene;
-    std::vector<std::string> inputs = files_of(own);
-    inputs.push_back(points_path.string());
-    check_output_is_no_input(path, inputs);
-    const Points points = load_points(points_path, PointsKind::kDirections);
+    const Points points = load_points(points_path, PointsKind::kDirections, files_of(own), path);
     const SceneEntries entries = point_entries(own, points);
     check_writable(path);
+    begin(options.progress, points.size());
     SceneRun run;
     run.plan = plan_effects(own, entries, options.keep_all);
     MomentsEvaluator* const evaluator = wants_evaluator(own, entries, run.plan) ? impl_->begin(own) : nullptr;
@@ -157,12 +164,10 @@ Report Evaluator::write_mueller(const Scene& scene, const std::filesystem::path&
   return impl_->exclusively([&] {
     const Clock::time_point start = Clock::now();
     const dolp::Scene& own = scene.impl().scene;
-    std::vector<std::string> inputs = files_of(own);
-    inputs.push_back(points_path.string());
-    check_output_is_no_input(path, inputs);
-    const Points points = load_points(points_path, PointsKind::kGeometries);
+    const Points points = load_points(points_path, PointsKind::kGeometries, files_of(own), path);
     const std::vector<MuellerPoint> geometries = mueller_points(own, points);
     check_writable(path);
+    begin(options.progress, points.size());
     MomentsEvaluator* const evaluator = impl_->begin(own);
     const std::vector<MuellerElements> results = evaluate_mueller(own, geometries, *evaluator, options.progress);
     write_text_atomically(path, mueller_csv(points, results));
@@ -189,12 +194,12 @@ Report write_lookup(const std::filesystem::path& table_path, const std::filesyst
                     const std::filesystem::path& path, const Progress& progress) {
   return translated([&] {
     const Clock::time_point start = Clock::now();
-    check_output_is_no_input(path, {table_path.string(), points_path.string()});
+    const Points points = load_points(points_path, PointsKind::kDirections, {table_path.string()}, path);
     const dolp::Table table = load_table(table_path.string());
     const dolp::Scene scene = table_scene(table, table_path.string());
     const TableLookup lookup(table, scene.accuracy.tolerance, table_path.string());
-    const Points points = load_points(points_path, PointsKind::kDirections);
     check_writable(path);
+    begin(progress, points.size());
     const std::vector<PointResult> results = lookup_points(lookup, scene, points, progress);
     PointsCsv csv(path, points, lookup.extra_columns());
     csv.append(results);

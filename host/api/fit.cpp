@@ -153,6 +153,7 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     for (const std::string& one : options.vary) parameters.push_back(fit::parse_parameter(one));
     const fit::FitOptions fit_options{options.starts, options.seed, loss_of(options.loss, sets), options.progress};
 
+    begin(options.progress, 1);
     std::vector<ComparedModel> models;
     MomentsEvaluator* evaluator = nullptr;
     Best best;

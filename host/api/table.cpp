@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "api/reports.hpp"
 #include "api/results.hpp"
 #include "api/table_impl.hpp"
 #include "api/translated.hpp"
@@ -60,6 +61,7 @@ Results Table::lookup(const std::vector<Column>& points, const Progress& progres
   return translated([&] {
     const TableLookup& between = impl_->lookup();
     const Points at = points_of_columns(points, PointsKind::kDirections);
+    begin(progress, at.size());
     return results_of(lookup_points(between, *impl_->scene, at, progress), between.extra_columns(), impl_->table);
   });
 }

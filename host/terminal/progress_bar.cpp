@@ -18,7 +18,7 @@ constexpr std::size_t kBarWidth = 30;
 
 }  // namespace
 
-ProgressBar::ProgressBar(bool quiet) : visible_(!quiet && isatty(STDERR_FILENO) == 1) { watch_for_interrupts(); }
+ProgressBar::ProgressBar(bool quiet) : visible_(!quiet && isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() {
   if (drawn_) std::fputs("\r\033[K", stderr);
@@ -26,6 +26,8 @@ ProgressBar::~ProgressBar() {
 
 Progress ProgressBar::callback() {
   return [this](std::size_t done, std::size_t total) {
+    if (!watches_) watch_for_interrupts();
+    watches_ = true;
     const Clock::time_point now = Clock::now();
     if (visible_ && now - last_drawn_ >= kRedrawInterval) {
       draw(done, total);

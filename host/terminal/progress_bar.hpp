@@ -10,8 +10,8 @@ namespace dolp {
 
 /// A bar with rate and time left, drawn on stderr when that is a terminal and `quiet` is off.
 ///
-/// From its construction on SIGINT, SIGTERM and SIGHUP only ask the run to stop (base/interrupt.hpp). Before, while
-/// inputs are read, they end the program as usual.
+/// From the first call of its callback on SIGINT, SIGTERM and SIGHUP only ask the run to stop (base/interrupt.hpp).
+/// Before, while inputs are read, they end the program as usual.
 class ProgressBar {
  public:
   explicit ProgressBar(bool quiet);
@@ -28,6 +28,7 @@ class ProgressBar {
   using Clock = std::chrono::steady_clock;
   bool visible_;
   bool drawn_ = false;
+  bool watches_ = false;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_drawn_;
 };

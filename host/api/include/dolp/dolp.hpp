@@ -67,8 +67,8 @@ class DOLP_EXPORT Cancelled : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Called with the number of finished entries, from one thread at a time, not always the caller's; returning false ends
-/// the call with Cancelled.
+/// Called with the number of finished entries, first with 0 when all inputs are read, from one thread at a time, not
+/// always the caller's; returning false ends the call with Cancelled.
 using Progress = std::function<bool(std::size_t done, std::size_t total)>;
 
 /// "0.1.0".

@@ -78,6 +78,7 @@ TEST(SceneError_InTheFile, NamesFileLineKeyValueAndWhatIsAllowed) {
 TEST(SceneError_SomethingMissing, NamesTheLineOfItsTable) {
   const std::string rest = "[emission]\ntemperature_K = 300\n[spectrum]\nwavelength_um = 5\n";
   const std::string surface = "[surface]\nn = 1.5\nsigma = 0.3\n";
+  EXPECT_TRUE(contains(error_of("\"surface.k\" = 0.1\n" + kMinimal), "surface.k: its dot is inside of quotes"));
   EXPECT_TRUE(contains(error_of(""), "s.toml:1: surface.n: missing; must be a number in (0, 1e6]"));
   EXPECT_TRUE(contains(error_of(rest + "[surface]\nsigma = 1\n"), "s.toml:5: surface.n: missing"));
   EXPECT_TRUE(contains(error_of(rest + "[surface]\nn = 1.5\n"), "s.toml:5: surface.sigma: missing"));

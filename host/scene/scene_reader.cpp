@@ -95,6 +95,7 @@ SceneDraft draft_scene(const SceneDocument& document) {
   const std::vector<std::string> keys = document_keys(document);
   for (const std::string& key : keys) {
     if (!find_scene_key(key)) document.fail(key, "unknown key; the nearest known key is " + key_hint(key));
+    if (!document.find(key)) document.fail(key, "its dot is inside of quotes; write it without them");
   }
   for (const std::string& table : scene_tables()) {
     if (document.find(table)) add_effect(draft, table);

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Draws a lookup table: DOLP against theta for several sigma, and over theta and sigma, at one value of each other axis.
+"""Draws a lookup table: DOLP against theta for several sigma, and over theta and sigma.
 
 Usage: plot_table.py TABLE.nc OUT.png [--q Q] [--wavelength UM] [--n N] [--k K]
-The value of the table nearest to each option is drawn, by default the middle one. Entries with a status other than 0 are drawn
+One value of each other axis is drawn: the nearest to its option, by default the middle one. Entries with a status other than 0 are drawn
 faint in the curves and hatched grey in the map. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
 Exit status: 0 done, 2 usage or a file that is not such a table, 4 the picture could not be written.
 """
@@ -182,12 +182,20 @@ def draw(table, path):
     figure.savefig(path)
 
 
+def finite(text):
+    """A number for argparse, which names it in its message."""
+    number = float(text)
+    if not np.isfinite(number):
+        raise ValueError
+    return number
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("table")
     parser.add_argument("picture")
     for axis, symbol in SYMBOLS.items():
-        parser.add_argument(f"--{axis}", type=float, help=f"draw the {symbol} nearest to it; default: the middle one")
+        parser.add_argument(f"--{axis}", type=finite, help=f"draw the {symbol} nearest to it; default: the middle one")
     arguments = parser.parse_args()
     try:
         with netCDF4.Dataset(arguments.table) as dataset:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws what `dolp fit --plot` reports: data, fit and bracket, residuals, contours of the two most correlated parameters.
+"""Draws what `dolp fit --plot` reports: data, fit and bracket, residuals, contours of two parameters.
 
 Usage: plot_fit.py PICTURE < REPORT.json    `dolp fit --plot PICTURE` runs it
 Needs python3-matplotlib. Exit status: 0 done, 2 no report of a fit, 4 the picture could not be written.

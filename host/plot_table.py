@@ -2,8 +2,9 @@
 """Draws a lookup table: DOLP against theta for several sigma, and over theta and sigma.
 
 Usage: plot_table.py TABLE.nc OUT.png [--q Q] [--wavelength UM] [--n N] [--k K]
-One value of each other axis is drawn: the nearest to its option, by default the middle one. Entries with a status other than 0 are drawn
-faint in the curves and hatched grey in the map. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
+One value of each other axis is drawn: the nearest to its option, by default the middle one. Entries with a status other
+than 0 are drawn faint in the curves and hatched grey in the map. Needs python3-netcdf4, python3-numpy and
+python3-matplotlib.
 Exit status: 0 done, 2 usage or a file that is not such a table, 4 the picture could not be written.
 """
 import argparse

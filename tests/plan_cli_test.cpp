@@ -1,4 +1,5 @@
 // Dropped effects and `dolp plan`, from outside.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,6 +78,33 @@ TEST_F(Plan, IsothermalSurroundings_NothingRunsAndDolpIsZero) {
     EXPECT_EQ(made.stokes_i[i], made.stokes_i[0]);
   }
   EXPECT_EQ(dolp({"verify", "t.nc"}).status, 0);
+}
+
+TEST_F(Plan, Memory_IsAboutThatOfTheTable) {
+  const std::string peak =
+      "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
+      "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)";
+  for (const char* count : {"200", "1200"}) {  // a part of a table, and two
+    const std::vector<std::string> grid = {"scene.toml",
+                                           "--tolerance",
+                                           "1e-2",
+                                           "--set",
+                                           "surface.masking=none",
+                                           "--set",
+                                           fmt::format("grid={{theta_deg={{from=0,to=80,count={}}},"
+                                                       "sigma={{from=0.1,to=0.5,count=1000}},q=[2]}}",
+                                                       count)};
+    std::vector<std::string> plan = {"plan", "--json"},
+                             table = {"/usr/bin/python3", "-c", peak, DOLP_PROGRAM, "table", "-o", "t.nc", "--quiet"};
+    plan.insert(plan.end(), grid.begin(), grid.end());
+    table.insert(table.end(), grid.begin(), grid.end());
+    const double said = nlohmann::json::parse(dolp(plan).out)["host_bytes"].get<double>();
+    const Outcome outcome = run({.arguments = table, .folder = at("")});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const double taken = 1024.0 * std::stod(outcome.out);
+    EXPECT_GT(said, 0.7 * taken) << count;
+    EXPECT_LT(said, 1.4 * taken) << count;
+  }
 }
 
 TEST_F(Plan, KeepAll_EverythingIsComputedAndTheAnswerIsTheSame) {
@@ -313,8 +341,7 @@ TEST_F(Plan, AllBounces_WorkOfTheirRowAndPipeline) {
 
 TEST_F(Plan, DirectEmission_PipelineAndOutputSaySo) {
   const std::vector<std::string> direct = {"--set", "surface.masking=v-cavity", "--set", "emission.bracket=true"};
-  EXPECT_EQ(plan(direct)["pipelines"],
-            json({"slopes, float: distribution cauchy, masking v-cavity, direct emission"}));
+  EXPECT_EQ(plan(direct)["pipelines"], json({"slopes, float: distribution cauchy, masking v-cavity, direct emission"}));
   const auto output = [&](const std::vector<std::string>& options) {
     const std::string text = dolp(joined({"plan", "scene.toml"}, options)).out;
     const std::size_t start = text.find("  output");

@@ -1,5 +1,7 @@
 #include "base/processor.hpp"
 
+#include <sys/resource.h>
+
 #include <fstream>
 
 namespace dolp {
@@ -19,6 +21,12 @@ std::string read_name() {
 const std::string& processor_name() {
   static const std::string name = read_name();
   return name;
+}
+
+std::size_t peak_resident_bytes() {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  return static_cast<std::size_t>(used.ru_maxrss) * 1024;  // which is in kilobytes
 }
 
 }  // namespace dolp

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/processor.hpp"
 #include "evaluate/text/profile.hpp"
 #include "model/choices.hpp"
 #include "plan/kernel_data.hpp"
@@ -128,14 +129,16 @@ std::vector<double> work_shares(const PlanReport& report, const SceneEntries& en
 PlanReport plan_of(const Scene& scene, const std::string& device, bool keep_all) {
   PlanReport report;
   report.scene = scene;
+  const DeviceDescription limits = device_of(device, scene, report);
+  const std::size_t without_a_run = peak_resident_bytes();  // with the scene and the driver
   const SceneEntries entries = grid_entries(scene);
   report.plan = plan_effects(scene, entries, keep_all);
   report.effects = effect_rows(scene, entries, report.plan);
   add_influences(report.effects, scene, drawn_entries(entries, kLookedAt));
-  const DeviceDescription limits = device_of(device, scene, report);
   add_forecast(report, entries, limits);
   report.work_shares = work_shares(report, entries, limits);
   report.lookup = lookup_forecast(scene, report.plan);
+  report.run.host_bytes += static_cast<double>(without_a_run);
   return report;
 }
 

@@ -15,6 +15,7 @@
 #include "run/index_bases.hpp"
 #include "run/part_requests.hpp"
 #include "run/scene_run.hpp"
+#include "table/table.hpp"
 
 namespace dolp {
 namespace {
@@ -120,7 +121,7 @@ RunPrediction predict_run(const Scene& scene, const SceneEntries& entries, const
   run.entries = entries.size();
   run.spectral_samples = spectral_rule(scene).samples.size();
   run.first = first_level(scene.accuracy, has_double);
-  std::size_t largest = 0;
+  std::size_t largest = 0, columns_before = 0;
   run.first.run_size = entries.size();
   run.first.basis = IndexBases(scene, entries, plan).of(run.first);
   for (const SceneEntries& part : run_parts(entries, run.spectral_samples)) {
@@ -143,8 +144,11 @@ RunPrediction predict_run(const Scene& scene, const SceneEntries& entries, const
     run.beams += beams;
     if (beams > 0) visit.beams(requests.beams());
     // Results, the columns made of them, and those of the part before, which are being written.
-    largest = std::max(largest, 3 * part.size() * sizeof(PointResult) + moments * sizeof(Moments) +
-                                    beams * (sizeof(ScatteringEntry) + sizeof(ScatteringMatrix)));
+    const std::size_t columns = part.size() * (table_variables().size() * sizeof(double) + sizeof(std::uint32_t));
+    largest =
+        std::max(largest, part.size() * sizeof(PointResult) + columns + columns_before + moments * sizeof(Moments) +
+                              beams * (sizeof(ScatteringEntry) + sizeof(ScatteringMatrix)));
+    columns_before = columns;
   }
   run.host_bytes = static_cast<double>(largest);
   if (run.moments + run.beams > 0) count_work(run, scene, entries, plan, has_double);

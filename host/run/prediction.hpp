@@ -34,7 +34,7 @@ struct RunPrediction {
   bool is_exact = true;    ///< all moments and beams were counted, none estimated from others
   double moments_s = 0.0;  ///< of all levels on this machine's processor, from counting
   double beams_s = 0.0;
-  double host_bytes = 0.0;  ///< of the largest part: requests, answers, results and the columns that are written
+  double host_bytes = 0.0;  ///< of the largest part: answers, results and the columns that are written
 };
 
 /// Called with each request of the first level.

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "bench/bench_device.hpp"
-#include "evaluate/vulkan/buffer.hpp"
+#include "device/buffer.hpp"
 #include "evaluate/vulkan/kernels.hpp"
 #include "shaders/spirv.hpp"
 
@@ -25,8 +25,7 @@ constexpr double kTimeout = 60.0;
 std::vector<double> arithmetic_peak(const std::string& device, std::size_t repeats) {
   BenchDevice bench(device);
   vulkan::Kernels kernels(bench.device, false);
-  const vulkan::UniquePipeline pipeline =
-      kernels.create(spirv::arithmetic_peak_float, vulkan::KernelVariant{});
+  const vulkan::UniquePipeline pipeline = kernels.create(spirv::arithmetic_peak_float, vulkan::KernelVariant{});
   const vulkan::Buffer results(bench.device, kInvocations * sizeof(float), vulkan::MemoryUse::kDeviceOnly);
   std::array<VkBuffer, vulkan::kBindingCount> buffers{};
   buffers[DOLP_BINDING_MOMENTS] = results.get();

@@ -3,9 +3,9 @@
 
 #include <string>
 
+#include "device/device.hpp"
+#include "device/instance.hpp"
 #include "evaluate/vulkan/command_stream.hpp"
-#include "evaluate/vulkan/device.hpp"
-#include "evaluate/vulkan/instance.hpp"
 
 namespace dolp::bench {
 

@@ -13,7 +13,7 @@
 
 #include "base/error.hpp"
 #include "base/processor.hpp"
-#include "evaluate/vulkan/devices.hpp"
+#include "device/devices.hpp"
 
 namespace dolp::bench {
 namespace {

@@ -11,7 +11,8 @@
 #include "bench/bench_device.hpp"
 #include "bench/method.hpp"
 #include "bench/product_rules.hpp"
-#include "evaluate/vulkan/buffer.hpp"
+#include "device/buffer.hpp"
+#include "evaluate/vulkan/input_buffer.hpp"
 #include "evaluate/vulkan/kernels.hpp"
 #include "evaluate/vulkan/packing.hpp"
 #include "model/angles.hpp"
@@ -77,7 +78,8 @@ class DeviceRule final : public Solver {
         const MomentsEntry entry = data[i];
         // The directions as they are, without their variants.
         const auto direction = static_cast<std::uint32_t>(entry.theta % data.directions);
-        words_.push_back({direction, entry.shape, entry.index, static_cast<std::uint32_t>(first + kZenithUnit * zeniths)});
+        words_.push_back(
+            {direction, entry.shape, entry.index, static_cast<std::uint32_t>(first + kZenithUnit * zeniths)});
       }
     }
   }

@@ -76,20 +76,20 @@ std::string FitSet::keys() const {
 FitSet fit_set(std::size_t number) {
   static constexpr std::array<const char*, 4> kMaskings = {"smith", "v-cavity", "integral", "none"};
   static constexpr std::array<const char*, 2> kDistributions = {"cauchy", "gaussian"};
-  static const std::array<std::vector<Choice>, 6> kVaried = {
+  static const std::array<std::vector<Choice>, 6> varied_choices = {
       {{kN, kSigma}, {kN, kK}, {kN, kK, kSigma}, {kN, kSigma, kQ}, {kN, kSigma, kSpecular}, {kN, kK, kSigma, kSky}}};
   Random random(number);
   FitSet set;
   const std::size_t distribution = random.below(kDistributions.size());
-  std::size_t varied = random.below(kVaried.size());
+  std::size_t varied = random.below(varied_choices.size());
   if (distribution == 1 && varied == 3) varied = 2;  // Gaussian slopes have no q
   set.scene = {kSceneText,
                "synthetic",
                {fmt::format("surface.masking={}", kMaskings[random.below(kMaskings.size())]),
                 fmt::format("surface.distribution={}", kDistributions[distribution])}};
-  set.truth.resize(static_cast<Eigen::Index>(kVaried[varied].size()));
-  for (std::size_t j = 0; j < kVaried[varied].size(); ++j) {
-    const Choice& choice = kVaried[varied][j];
+  set.truth.resize(static_cast<Eigen::Index>(varied_choices[varied].size()));
+  for (std::size_t j = 0; j < varied_choices[varied].size(); ++j) {
+    const Choice& choice = varied_choices[varied][j];
     set.parameters.push_back(choice.parameter);
     set.truth[static_cast<Eigen::Index>(j)] = random.uniform(choice.least, choice.most);
   }

@@ -7,7 +7,7 @@
 #include "base/atomic_file.hpp"
 #include "bench/context.hpp"
 #include "bench/report.hpp"
-#include "evaluate/vulkan/devices.hpp"
+#include "device/devices.hpp"
 #include "terminal/progress_bar.hpp"
 
 namespace dolp::bench {

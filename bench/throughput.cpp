@@ -19,8 +19,8 @@
 #include "bench/study_run.hpp"
 #include "bench/timed_scene.hpp"
 #include "bench/timing.hpp"
+#include "device/devices.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
-#include "evaluate/vulkan/devices.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/choices.hpp"
 

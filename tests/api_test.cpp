@@ -136,6 +136,98 @@ TEST_F(Library, FilesOfPoints_HaveTheNumbersOfPointsInMemory) {
   EXPECT_THROW(evaluator_.write_points(scene_, folder_ / "points.csv", folder_ / "points.csv"), dolp::InputError);
 }
 
+TEST_F(Library, CsvOfResults_IsTheFileOfThePoints) {
+  std::ofstream(folder_ / "points.csv") << "theta_deg,sigma\n10,0.1\n50,0.3\n";
+  const dolp::Scene scene = scene_.with({"emission.bracket=true"});
+  evaluator_.write_points(scene, folder_ / "points.csv", folder_ / "results.csv");
+  std::stringstream file;
+  file << std::ifstream(folder_ / "results.csv").rdbuf();
+  const std::vector<double> theta = {10, 50}, sigma = {0.1, 0.3};
+  const std::vector<dolp::Column> points = {{"theta_deg", theta}, {"sigma", sigma}};
+  const dolp::Results results = evaluator_.evaluate(scene, points);
+  EXPECT_EQ(dolp::to_csv(points, results), file.str());
+  EXPECT_GT(results.integrand_evaluations, 0.0);
+}
+
+TEST_F(Library, Scene_SaysItsValues) {
+  EXPECT_EQ(scene_.number("surface.sigma"), 0.2);
+  EXPECT_EQ(scene_.number("surface.specular"), 1.0);  // a default
+  EXPECT_EQ(scene_.number("source.scale"), std::nullopt);
+  EXPECT_EQ(scene_.word("surface.masking"), "v-cavity");
+  EXPECT_EQ(scene_.word("emission.bracket"), "false");
+  EXPECT_EQ(scene_.word("surface.material"), std::nullopt);
+  EXPECT_EQ(scene_.numbers("grid.q"), (std::vector<double>{2, 3.5}));
+  EXPECT_TRUE(scene_.numbers("spectrum.band_um").empty());
+  EXPECT_EQ(scene_.refractive_index(10.0), std::pair(1.5, 0.05));
+  const dolp::Scene gold = scene_.with({"surface.material=GOLD (ordal)", "spectrum.band_um=[8, 12]"});
+  EXPECT_EQ(gold.word("surface.material"), "gold (Ordal)");
+  EXPECT_EQ(gold.number("surface.n"), std::nullopt);
+  EXPECT_EQ(gold.numbers("spectrum.band_um"), (std::vector<double>{8, 12}));
+  EXPECT_GT(gold.refractive_index(10.0).second, 10.0);
+  EXPECT_THROW(scene_.number("surface.masking"), dolp::InputError);
+  EXPECT_THROW(scene_.word("surface.colour"), dolp::InputError);
+}
+
+TEST_F(Library, EveryKeyWithADefault_HasIt) {
+  for (const dolp::Key& key : dolp::keys()) {
+    if (key.fallback.empty() || key.fallback == "required" || key.key.starts_with("grid.")) continue;
+    const dolp::Scene scene = scene_.with(
+        {"source.irradiance=1", "path.radiance=1", "surface.masking=integral", key.key + "=" + key.fallback});
+    const std::string value =
+        key.words.empty() ? std::to_string(scene.number(key.key).value()) : scene.word(key.key).value();
+    const std::string wanted = key.words.empty() ? std::to_string(std::stod(key.fallback)) : key.fallback;
+    EXPECT_EQ(value, wanted) << key.key;
+  }
+}
+
+TEST_F(Library, Keys_NameTheirWordsAndRivals) {
+  const auto named = [](const std::string& key) { return *std::ranges::find(dolp::keys(), key, &dolp::Key::key); };
+  EXPECT_EQ(named("surface.scattering").words, (std::vector<std::string>{"single", "multiple"}));
+  EXPECT_EQ(named("emission.bracket").words, (std::vector<std::string>{"false", "true"}));
+  EXPECT_EQ(named("surface.k").rivals, (std::vector<std::string>{"surface.material", "surface.material_file"}));
+  EXPECT_TRUE(named("surface.sigma").rivals.empty());
+}
+
+TEST_F(Library, Effects_AreBoundedAtThePoints) {
+  const auto diffuse_at = [&](double theta_deg, const char* factor) {
+    const std::vector<double> theta = {theta_deg};
+    const auto all = dolp::effects(scene_.with({std::string("surface.diffuse=") + factor}), {{"theta_deg", theta}});
+    return *std::ranges::find(all, "diffuse", &dolp::Effect::name);
+  };
+  EXPECT_EQ(diffuse_at(60, "0").state, "absent");
+  EXPECT_EQ(diffuse_at(60, "1e-9").state, "dropped");
+  EXPECT_LT(diffuse_at(60, "1e-9").bound, 1e-5);
+  EXPECT_EQ(diffuse_at(60, "0.1").state, "kept");
+  EXPECT_GT(diffuse_at(60, "0.1").bound, 1e-3);
+}
+
+TEST_F(Library, Fit_GivesValuesWithIntervals) {
+  const std::vector<double> theta = {20, 40, 50, 60, 70, 80};
+  const dolp::Results truth = evaluator_.evaluate(scene_.with({"surface.sigma=0.3"}), {{"theta_deg", theta}});
+  dolp::MeasuredData data{.csv = "theta_deg,dolp,uncertainty\n"};
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    data.csv += std::to_string(theta[i]) + ',' + std::to_string(truth.values("dolp")[i]) + ",0.002\n";
+  }
+  const std::vector<dolp::Measurement> measured = data.measurements();
+  ASSERT_EQ(measured.size(), theta.size());
+  EXPECT_EQ(measured[1].quantity, "dolp");
+  EXPECT_EQ(measured[1].theta_deg, 40.0);
+  EXPECT_EQ(measured[1].uncertainty, 0.002);
+  EXPECT_EQ(measured[1].wavelength_um, std::nullopt);
+  const dolp::Fit fit = evaluator_.fit(scene_, {data}, {.vary = {"surface.sigma=0.05:1"}});
+  ASSERT_EQ(fit.parameters.size(), 1U);
+  EXPECT_NEAR(fit.parameters[0].value, 0.3, 1e-3);
+  EXPECT_EQ(fit.scene.number("surface.sigma"), fit.parameters[0].value);
+  const dolp::FitInterval& likely = fit.parameters[0].interval_68;
+  ASSERT_TRUE(likely.low && likely.high);
+  EXPECT_NEAR(*likely.high - *likely.low, 2.0 * fit.parameters[0].standard_error.value(), 0.01);
+  EXPECT_LT(fit.chi_square, 1e-3);
+  EXPECT_EQ(fit.degrees_of_freedom, 5U);
+  EXPECT_GT(fit.p_value, 0.99);
+  data.csv = "theta_deg,dolp\n95,0.1\n";
+  EXPECT_THROW(data.measurements(), dolp::InputError);
+}
+
 TEST_F(Library, Verify_ATableAndADevice_SayWhatIsWrong) {
   evaluator_.write_table(scene_, folder_ / "t.nc");
   const dolp::Report table = dolp::verify(folder_ / "t.nc", {.samples = 3});

@@ -1,10 +1,11 @@
 // What is behind the window as a whole: curve, map, maximum, pins, cursor, effects.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "base/error.hpp"
 #include "explore/fitting.hpp"
 #include "explore/readout.hpp"
 #include "explore_support.hpp"
@@ -18,8 +19,8 @@ TEST(ExploreSession, Curve_IsThatOfTheSceneAtItsTolerance) {
   driver.settle();
   const Curve& curve = driver.session.curve();
   ASSERT_TRUE(curve.is_finished());
-  EXPECT_EQ(curve.entries().size(), Curve::kFineCount);
-  expect_same(curve.results(), truth(driver.session.scene(), curve.entries()));
+  EXPECT_EQ(curve.points().size(), Curve::kFineCount);
+  expect_same(curve.points(), truth(driver.session.scene(), curve.points()));
   EXPECT_LE(curve.worst_error(), 1e-3);
   EXPECT_GT(curve.worst_error(), 0.0);
 }
@@ -38,7 +39,7 @@ TEST(ExploreSession, WhatIsShownWhileTheSceneChanges_IsStaleAndKeepsItsParameter
   EXPECT_TRUE(session.curve().is_stale());
   EXPECT_TRUE(session.overlay()->is_stale());
   EXPECT_TRUE(session.map().is_stale());
-  EXPECT_EQ(session.curve().shown_scene().surface.sigma, 0.15);
+  EXPECT_EQ(session.curve().shown_scene().number("surface.sigma"), 0.15);
   EXPECT_EQ(curve_name(session.curve()), name + ", the scene before");
   EXPECT_EQ(session.overlay_name(), overlay + ", the scene before");
   EXPECT_EQ(cursor_text(session), "Cursor, the scene before" + cursor.substr(std::string("Cursor").size()));
@@ -59,7 +60,7 @@ TEST(ExploreSession, MapOfWhatItsAxesVary_IsNotStale) {
 TEST(ExploreSession, CoarseCurveOfAnEarlierScene_IsShownAsSuch) {
   Driver driver(paint());
   driver.session.pin();
-  const std::vector<PointResult> pinned = driver.session.pins()[0].curve.results();
+  const std::vector<Point> pinned = driver.session.pins()[0].curve.points();
   driver.session.set("surface.sigma", 0.3);
   const Job coarse = driver.session.wanted().front();
   EXPECT_TRUE(coarse.is_brief);
@@ -67,20 +68,20 @@ TEST(ExploreSession, CoarseCurveOfAnEarlierScene_IsShownAsSuch) {
   driver.session.take({done(coarse)});
   const Curve& curve = driver.session.curve();
   EXPECT_TRUE(curve.is_stale());
-  EXPECT_EQ(curve.entries().size(), Curve::kCoarseCount);
-  EXPECT_EQ(curve.shown_scene().surface.sigma, 0.3);
-  EXPECT_EQ(driver.session.at_cursor()->entry.shape.sigma, 0.3);
-  expect_same(driver.session.pins()[0].curve.results(), pinned);
+  EXPECT_EQ(curve.points().size(), Curve::kCoarseCount);
+  EXPECT_EQ(curve.shown_scene().number("surface.sigma"), 0.3);
+  EXPECT_EQ(driver.session.at_cursor()->sigma, 0.3);
+  expect_same(driver.session.pins()[0].curve.points(), pinned);
   driver.settle();
   EXPECT_FALSE(curve.is_stale());
   driver.session.take({done(coarse)});
-  EXPECT_EQ(curve.shown_scene().surface.sigma, 0.4);
+  EXPECT_EQ(curve.shown_scene().number("surface.sigma"), 0.4);
 }
 
 TEST(ExploreSession, Cursor_SaysTheZenithOfTheValueThatItShows) {
   Driver driver(paint());
   driver.session.set_theta(60.2);
-  EXPECT_EQ(driver.session.at_cursor()->entry.theta_deg, 60.0);
+  EXPECT_EQ(driver.session.at_cursor()->theta_deg, 60.0);
   EXPECT_TRUE(cursor_text(driver.session).starts_with("Cursor: θ = 60.0°")) << cursor_text(driver.session);
 }
 
@@ -88,7 +89,7 @@ TEST(ExploreSession, RefusedValue_IsAMessageAndNoChange) {
   Driver driver(paint());
   driver.session.set("surface.sigma", 99.0);
   EXPECT_TRUE(driver.session.message().is_error);
-  EXPECT_EQ(driver.session.scene().surface.sigma, 0.15);
+  EXPECT_EQ(driver.session.scene().number("surface.sigma"), 0.15);
   EXPECT_TRUE(driver.session.curve().is_finished());
 }
 
@@ -98,15 +99,15 @@ TEST(ExploreSession, MaterialUnknownOverTheBand_IsAMessageWithItsRange) {
   EXPECT_TRUE(driver.session.message().is_error);
   EXPECT_NE(driver.session.message().text.find("known at 2 to 12.5 um"), std::string::npos)
       << driver.session.message().text;
-  EXPECT_EQ(driver.session.scene().surface.material.constant, (OpticalConstants{1.5, 0.1}));
+  EXPECT_EQ(driver.session.scene().number("surface.n"), 1.5);
 }
 
 TEST(ExploreSession, ChoiceThatExcludesAnother_SwitchesItWithAWord) {
   Session session(paint({"surface.masking=smith", "emission.bracket=true"}));
   session.set({{"surface.scattering", "multiple"}});
   const Scene& scene = session.scene();
-  EXPECT_EQ(scene.surface.masking, Masking::kVCavity);
-  EXPECT_FALSE(scene.emission->has_bracket);
+  EXPECT_EQ(scene.word("surface.masking"), "v-cavity");
+  EXPECT_EQ(scene.word("emission.bracket"), "false");
   EXPECT_FALSE(session.message().is_error);
   EXPECT_EQ(session.message().text,
             "With surface.scattering = multiple goes surface.masking = v-cavity, emission.bracket = false");
@@ -119,25 +120,25 @@ TEST(ExploreSession, EmissionThatComesBack_SwitchesWhatExcludesIt) {
   session.set({{"emission", "none"}});
   session.set({{"surface.masking", "integral"}});
   session.reset("emission");
-  EXPECT_EQ(session.scene().emission->model, EmissionModel::kDirect);
-  EXPECT_EQ(session.scene().surface.masking, Masking::kVCavity);
+  EXPECT_EQ(session.scene().word("emission.model"), "direct");
+  EXPECT_EQ(session.scene().word("surface.masking"), "v-cavity");
   EXPECT_EQ(session.message().text, "With emission = as opened goes surface.masking = v-cavity");
 }
 
 TEST(ExploreSession, Bracket_LiesAroundTheCurveAndIsReadAtTheCursor) {
   Driver driver(paint({"surface.sigma=0.4"}));
-  for (const PointResult& r : driver.session.curve().results()) EXPECT_FALSE(has_bracket(r));
+  for (const Point& r : driver.session.curve().points()) EXPECT_FALSE(has_bracket(r));
   EXPECT_EQ(cursor_text(driver.session).find("all bounces"), std::string::npos);
   driver.session.set({{"emission.bracket", "true"}});
   driver.settle();
-  for (const PointResult& r : driver.session.curve().results()) {
+  for (const Point& r : driver.session.curve().points()) {
     if (!is_good(r)) continue;
     EXPECT_TRUE(has_bracket(r));
     EXPECT_LE(r.dolp_low, r.dolp + r.error_estimate);
     EXPECT_GE(r.dolp_high, r.dolp - r.error_estimate);
   }
   ASSERT_TRUE(driver.session.at_cursor());
-  const PointResult at_cursor = driver.session.at_cursor()->result;
+  const Point at_cursor = *driver.session.at_cursor();
   EXPECT_GT(at_cursor.dolp_high, 1.1 * at_cursor.dolp_low);
   const std::string text = cursor_text(driver.session);
   double low = 0.0, high = 0.0;
@@ -160,7 +161,7 @@ TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
   const Scene& scene = driver.session.scene();
   const double theta_deg = driver.session.peak().answer()->theta_deg;
   const Scene single = driver.session.edits().variant({"surface.scattering=single"});
-  EXPECT_EQ(named("scattering")->result.dolp, truth(single, entries_at(single, {theta_deg}))[0].dolp);
+  EXPECT_EQ(named("scattering")->result.dolp, truth(single, points_at(single, {theta_deg}))[0].dolp);
   EXPECT_EQ(surface_name(scene), "cauchy σ 0.4 q 3, v-cavity, all bounces, n 1.5 k 0.1");
   EXPECT_NE(without_text(driver.session, "scattering"), "");
 }
@@ -168,14 +169,11 @@ TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
 /// DOLP of the paint with another sigma and n, as if measured.
 MeasuredPoints as_if_measured(double uncertainty) {
   const Scene scene = paint({"surface.sigma=0.25", "surface.n=1.7", "accuracy.tolerance=1e-6"}).scene();
-  MeasuredPoints points;
-  points.name = "synthetic";
-  for (double theta_deg = 10.0; theta_deg <= 80.0; theta_deg += 5.0) points.theta_deg.push_back(theta_deg);
-  for (const PointResult& result : truth(scene, entries_at(scene, points.theta_deg))) {
-    points.dolp.push_back(result.dolp);
-    points.uncertainty.push_back(uncertainty);
+  MeasuredData data{.csv = "theta_deg,dolp,uncertainty\n", .name = "synthetic"};
+  for (const Point& point : truth(scene, points_at(scene, zeniths(10.0, 80.0, 15)))) {
+    data.csv += fmt::format("{},{},{}\n", point.theta_deg, point.dolp, uncertainty);
   }
-  return points;
+  return points_of(std::move(data));
 }
 
 TEST(ExploreSession, Fit_MovesMarkedParametersToTheTruth_AndItsIntervalsGoWithTheNextChange) {
@@ -191,15 +189,15 @@ TEST(ExploreSession, Fit_MovesMarkedParametersToTheTruth_AndItsIntervalsGoWithTh
   const std::optional<FitJob> job = fitting.job(start, points);
   ASSERT_TRUE(job.has_value());
   ASSERT_EQ(job->varied.size(), 2U);
-  CpuEvaluator evaluator(Precision::kAuto);
+  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
   const FitFound found = run_fit(*job, evaluator, {});
 
   Driver driver(paint());
   Session& session = driver.session;
   EXPECT_EQ(session.fit_found(), nullptr);
   session.take_fit(found);
-  EXPECT_NEAR(session.scene().surface.sigma, 0.25, 1e-3);
-  EXPECT_NEAR(session.scene().surface.material.constant.n, 1.7, 5e-3);
+  EXPECT_NEAR(*session.scene().number("surface.sigma"), 0.25, 1e-3);
+  EXPECT_NEAR(*session.scene().number("surface.n"), 1.7, 5e-3);
   ASSERT_NE(session.fit_found(), nullptr);
   for (const auto& [key, value] : {std::pair{"surface.sigma", 0.25}, std::pair{"surface.n", 1.7}}) {
     const FitInterval& interval = session.fit_found()->interval_95.at(key);
@@ -212,13 +210,10 @@ TEST(ExploreSession, Fit_MovesMarkedParametersToTheTruth_AndItsIntervalsGoWithTh
 }
 
 TEST(ExploreSession, FitThatIsCancelled_OrHasTooManyParameters_SaysSo) {
-  MeasuredPoints points = as_if_measured(1e-3);
-  FitJob job{paint().scene(), points, {{"surface.sigma", 0.01, 1.0, 0.15}}};
-  CpuEvaluator evaluator(Precision::kAuto);
+  FitJob job{paint().scene(), as_if_measured(1e-3).data, {{"surface.sigma", 0.01, 1.0, 0.15}}};
+  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
   EXPECT_THROW(run_fit(job, evaluator, [](std::size_t, std::size_t) { return false; }), Cancelled);
-  job.points.theta_deg.resize(1);
-  job.points.dolp.resize(1);
-  job.points.uncertainty.resize(1);
+  job.data.csv = "theta_deg,dolp,uncertainty\n60,0.05,0.001\n";
   job.varied.push_back({"surface.n", 1.1, 3.0, 1.5});
   EXPECT_THROW(run_fit(job, evaluator, {}), InputError);
 }
@@ -226,22 +221,22 @@ TEST(ExploreSession, FitThatIsCancelled_OrHasTooManyParameters_SaysSo) {
 TEST(ExploreSession, Overlay_IsTheOtherDistributionOfTheSameD0) {
   Driver driver(paint());
   ASSERT_TRUE(driver.session.overlay());
-  const Surface& other = driver.session.overlay()->scene().surface;
-  EXPECT_EQ(other.distribution, Distribution::kGaussian);
-  EXPECT_DOUBLE_EQ(other.sigma, 0.15 / std::sqrt(2.0));
+  const Scene& other = driver.session.overlay()->scene();
+  EXPECT_EQ(other.word("surface.distribution"), "gaussian");
+  EXPECT_DOUBLE_EQ(*other.number("surface.sigma"), 0.15 / std::sqrt(2.0));
   driver.session.set({{"surface.distribution", "gaussian"}});
-  EXPECT_EQ(driver.session.overlay()->scene().surface.distribution, Distribution::kCauchy);
+  EXPECT_EQ(driver.session.overlay()->scene().word("surface.distribution"), "cauchy");
 }
 
 TEST(ExploreSession, Pin_StaysWhileTheSceneChanges) {
   Driver driver(paint());
-  const std::vector<PointResult> before = driver.session.curve().results();
+  const std::vector<Point> before = driver.session.curve().points();
   driver.session.pin();
   driver.session.set("surface.sigma", 0.6);
   driver.settle();
   ASSERT_EQ(driver.session.pins().size(), 1U);
-  expect_same(driver.session.pins()[0].curve.results(), before);
-  EXPECT_NE(driver.session.curve().results()[100].dolp, before[100].dolp);
+  expect_same(driver.session.pins()[0].curve.points(), before);
+  EXPECT_NE(driver.session.curve().points()[100].dolp, before[100].dolp);
   driver.session.remove_pin(0);
   EXPECT_TRUE(driver.session.pins().empty());
 }
@@ -254,8 +249,8 @@ TEST(ExploreSession, PinOfAnUnfinishedCurve_IsFinishedLater) {
   driver.settle();
   const Curve& pinned = driver.session.pins()[0].curve;
   EXPECT_TRUE(pinned.is_finished());
-  EXPECT_EQ(pinned.entries()[0].shape.sigma, 0.6);
-  expect_same(pinned.results(), truth(pinned.scene(), pinned.entries()));
+  EXPECT_EQ(pinned.points()[0].sigma, 0.6);
+  expect_same(pinned.points(), truth(pinned.scene(), pinned.points()));
 }
 
 TEST(ExploreSession, MapCursor_DrivesTheCurveAndDoesNotChangeTheMap) {
@@ -264,8 +259,8 @@ TEST(ExploreSession, MapCursor_DrivesTheCurveAndDoesNotChangeTheMap) {
   driver.session.set_map_cursor(0.5, 0.5);
   driver.settle();
   EXPECT_DOUBLE_EQ(driver.session.theta_deg(), 45.0);
-  EXPECT_NEAR(driver.session.scene().surface.sigma, 0.2, 1e-4);  // the grid's 0.1 .. 0.4
-  EXPECT_EQ(driver.session.curve().entries()[0].shape.sigma, driver.session.scene().surface.sigma);
+  EXPECT_NEAR(*driver.session.scene().number("surface.sigma"), 0.2, 1e-4);  // the grid's 0.1 .. 0.4
+  EXPECT_EQ(driver.session.curve().points()[0].sigma, driver.session.scene().number("surface.sigma"));
   EXPECT_NEAR(driver.session.map_cursor_y(), 0.5, 1e-3);
   EXPECT_EQ(driver.session.map().version(), version);
 }
@@ -276,12 +271,13 @@ TEST(ExploreSession, Map_FinishesAt128WithTheValuesOfTheScene) {
   ASSERT_TRUE(map.is_finished());
   const MapField field = map.field(Quantity::kDolp);
   ASSERT_EQ(field.count, 128U);
-  const auto entry = [&](std::size_t column, std::size_t row) {
-    return SceneEntry{
-        map.x().value(static_cast<double>(column) / 127.0), {map.y().value(static_cast<double>(row) / 127.0), 3.0}, {}};
-  };
-  const std::vector<SceneEntry> some = {entry(0, 0), entry(80, 3), entry(5, 127), entry(100, 64)};
-  const std::vector<PointResult> exact = truth(driver.session.scene(), some);
+  PointList list;
+  for (const auto& [column, row] : {std::pair{0.0, 0.0}, {80.0, 3.0}, {5.0, 127.0}, {100.0, 64.0}}) {
+    list.theta_deg.push_back(map.x().value(column / 127.0));
+    list.sigma.push_back(map.y().value(row / 127.0));
+    list.q.push_back(3.0);
+  }
+  const std::vector<Point> exact = truth(driver.session.scene(), list);
   EXPECT_NEAR(field.values[80 + 3 * 128], exact[1].dolp, 2.0 * exact[1].error_estimate);
   EXPECT_NEAR(field.values[5 + 127 * 128], exact[2].dolp, 2.0 * exact[2].error_estimate);
   EXPECT_NEAR(field.values[100 + 64 * 128], exact[3].dolp, 2.0 * exact[3].error_estimate);
@@ -305,7 +301,7 @@ TEST(ExploreSession, Peak_IsTheLargestOfTheCurveAndItsCausesAddUp) {
     if (away.radiates) sum += peak.contribution(away);
   }
   EXPECT_NEAR(sum, peak.answer()->q_over_i, 2e-3);  // two runs at a tolerance of 1e-3
-  for (const PointResult& result : driver.session.curve().results()) {
+  for (const Point& result : driver.session.curve().points()) {
     if (!is_good(result)) continue;
     EXPECT_LE(result.dolp, peak.answer()->dolp + result.error_estimate);
   }
@@ -339,7 +335,7 @@ TEST(ExploreSession, Effects_AreThoseOfThePlanWithBoundsAtTheCursor) {
   Driver driver(paint());
   driver.session.set_theta(60.0);
   const auto bound_of = [&](const std::string& name) {
-    for (const EffectRow& row : driver.session.effects()) {
+    for (const Effect& row : driver.session.effects()) {
       if (row.name == name) return row.bound.value_or(-1.0);
     }
     return -2.0;
@@ -352,12 +348,12 @@ TEST(ExploreSession, Effects_AreThoseOfThePlanWithBoundsAtTheCursor) {
 
 TEST(ExploreSession, RhoOfADroppingPlan_IsComputedWhenItIsShown) {
   Driver driver(paint({"surroundings.temperature_K=290"}));
-  EXPECT_TRUE(std::isnan(driver.session.curve().results()[50].rho_i));
+  EXPECT_TRUE(std::isnan(driver.session.curve().points()[50].rho_i));
   View view = driver.session.view();
   view.quantity = Quantity::kRhoS;
   driver.session.set_view(view);
   driver.settle();
-  EXPECT_TRUE(std::isfinite(driver.session.curve().results()[50].rho_i));
+  EXPECT_TRUE(std::isfinite(driver.session.curve().points()[50].rho_i));
 }
 
 }  // namespace

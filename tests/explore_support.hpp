@@ -10,10 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "evaluate/cpu/cpu_evaluator.hpp"
 #include "explore/session.hpp"
 #include "explore/worker.hpp"
-#include "run/scene_run.hpp"
 
 namespace dolp::explore {
 
@@ -39,12 +37,20 @@ sigma = [0.1, 0.4]
 tolerance = 1e-3
 )";
 
-inline SceneEdits paint(const std::vector<std::string>& overrides = {}) { return {kPaint, "paint.toml", overrides}; }
+inline SceneEdits paint(const std::vector<std::string>& overrides = {}) {
+  return SceneEdits(Scene::from_text(kPaint, overrides, "paint.toml"));
+}
+
+inline Evaluate on_the_cpu(Evaluator& evaluator) {
+  return [&evaluator](const Scene& scene, const PointList& list, const RunOptions& options) {
+    return evaluate(evaluator, scene, list, options);
+  };
+}
 
 /// A session with a worker on the CPU.
 class Driver {
  public:
-  explicit Driver(SceneEdits edits) : session(std::move(edits)), worker_(evaluator_, [] {}) { settle(); }
+  explicit Driver(SceneEdits edits) : session(std::move(edits)), worker_(on_the_cpu(evaluator_), [] {}) { settle(); }
 
   void settle() {
     for (;;) {
@@ -61,27 +67,28 @@ class Driver {
   Session session;
 
  private:
-  CpuEvaluator evaluator_{Precision::kAuto};
+  Evaluator evaluator_{EvaluatorOptions{.evaluator = "cpu"}};
   Worker worker_;
 };
 
-inline std::vector<PointResult> truth(const Scene& scene, const SceneEntries& entries) {
-  CpuEvaluator evaluator(Precision::kAuto);
-  return evaluate_scene(scene, entries, plan_effects(scene, entries, false), &evaluator, {});
+inline std::vector<Point> truth(const Scene& scene, const PointList& list) {
+  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
+  return points_of(list, evaluator.evaluate(scene, list.columns()));
 }
 
-/// What a worker would say of a job.
+/// The same at the zeniths of a curve.
+inline std::vector<Point> truth(const Scene& scene, const std::vector<Point>& points) {
+  std::vector<double> theta_deg;
+  for (const Point& point : points) theta_deg.push_back(point.theta_deg);
+  return truth(scene, points_at(scene, theta_deg));
+}
+
+/// What a worker would say of a job of one part, at its tolerance.
 inline JobPart done(const Job& job) {
-  JobPart part;
-  part.key = job.key;
-  part.scene = job.scene;
-  part.entries = job.entries;
-  part.results = truth(job.scene, job.entries);
-  part.is_last = true;
-  return part;
+  return {.key = job.key, .scene = job.scene, .points = truth(job.scene, job.parts.front()), .is_last = true};
 }
 
-inline void expect_same(const std::vector<PointResult>& a, const std::vector<PointResult>& b) {
+inline void expect_same(const std::vector<Point>& a, const std::vector<Point>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (std::isnan(a[i].dolp) && std::isnan(b[i].dolp)) continue;

@@ -1,12 +1,12 @@
 // What is behind the window, piece by piece: parameters, edits, worker, measured points, exports, ticks, lines.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <condition_variable>
 #include <filesystem>
 #include <fstream>
 #include <mutex>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "explore/background_task.hpp"
 #include "explore/conflicts.hpp"
@@ -15,7 +15,6 @@
 #include "explore/parameters.hpp"
 #include "explore/ticks.hpp"
 #include "explore_support.hpp"
-#include "scene/scene_reader.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -27,11 +26,14 @@ const std::string kHostDir = DOLP_HOST_DIR;
 TEST(Parameters, All_HaveSymbolEquationAndASliderInsideTheirRange) {
   EXPECT_GT(parameters().size(), 15U);
   for (const Parameter& p : parameters()) {
-    EXPECT_STRNE(p.symbol, "") << p.description->key;
-    EXPECT_STRNE(p.equation, "") << p.description->key;
-    EXPECT_TRUE(p.description->range.contains(p.slider.min)) << p.description->key;
-    EXPECT_TRUE(p.description->range.contains(p.slider.max)) << p.description->key;
-    EXPECT_TRUE(!p.is_log || p.slider.min > 0.0) << p.description->key;
+    EXPECT_STRNE(p.symbol, "") << p.key->key;
+    EXPECT_STRNE(p.equation, "") << p.key->key;
+    for (const double end : {p.slider.min, p.slider.max}) {
+      const std::string beside = p.key->key == "source.scale" ? "source.irradiance=1" : "title=paint";
+      const Scene scene = paint({beside, p.key->key + "=" + format_number(end)}).scene();
+      EXPECT_EQ(scene.number(p.key->key), end) << p.key->key;
+    }
+    EXPECT_TRUE(!p.is_log || p.slider.min > 0.0) << p.key->key;
   }
   EXPECT_TRUE(parameter("surface.sigma").is_log);
 }
@@ -39,12 +41,12 @@ TEST(Parameters, All_HaveSymbolEquationAndASliderInsideTheirRange) {
 TEST(Parameters, SliderPositions_ComeBackToFourDigits) {
   constexpr double kFourDigits = 6e-4;  // half of the last of four digits of a number that begins with 1, and rounding
   for (const Parameter& p : parameters()) {
-    EXPECT_EQ(slider_value(p, 0.0), p.slider.min) << p.description->key;
-    EXPECT_EQ(slider_value(p, 1.0), p.slider.max) << p.description->key;
+    EXPECT_EQ(slider_value(p, 0.0), p.slider.min) << p.key->key;
+    EXPECT_EQ(slider_value(p, 1.0), p.slider.max) << p.key->key;
     for (const double position : {0.1, 0.37, 0.5, 0.93}) {
       const double value = slider_value(p, position);
       EXPECT_EQ(*parse_number(format_number(value)), value);
-      EXPECT_NEAR(slider_position(p, value), position, kFourDigits) << p.description->key;
+      EXPECT_NEAR(slider_position(p, value), position, kFourDigits) << p.key->key;
     }
   }
 }
@@ -53,7 +55,7 @@ TEST(Edits, RefusedChange_LeavesTheSceneAsItWas) {
   SceneEdits edits = paint();
   EXPECT_THROW(edits.set("surface.sigma", -1.0), InputError);
   EXPECT_THROW(edits.set("surface.n", "none"), InputError);
-  EXPECT_EQ(edits.scene().surface.sigma, 0.15);
+  EXPECT_EQ(edits.scene().number("surface.sigma"), 0.15);
   EXPECT_TRUE(edits.overrides().empty());
 }
 
@@ -62,7 +64,7 @@ TEST(Edits, Reset_GivesTheValueOfTheCommandLineBack) {
   edits.set("surface.sigma", 0.5);
   EXPECT_TRUE(edits.is_changed());
   edits.reset("surface.sigma");
-  EXPECT_EQ(edits.scene().surface.sigma, 0.3);
+  EXPECT_EQ(edits.scene().number("surface.sigma"), 0.3);
   EXPECT_FALSE(edits.is_changed());
 }
 
@@ -70,35 +72,35 @@ TEST(Edits, Alternatives_ReplaceOneAnother) {
   SceneEdits edits = paint();
   edits.set("spectrum.wavelength_um", "10.6");
   edits.set("surface.material", "gold (Ordal)");
-  EXPECT_EQ(edits.scene().surface.material.name, "gold (Ordal)");
-  const OpticalConstants gold = edits.scene().surface.material.at(10.6);
+  EXPECT_EQ(edits.scene().word("surface.material"), "gold (Ordal)");
+  const auto gold = edits.scene().refractive_index(10.6);
   edits.set("spectrum.band_um", "[8, 12]");
-  EXPECT_EQ(edits.scene().surface.material.at(10.6), gold);
+  EXPECT_EQ(edits.scene().refractive_index(10.6), gold);
   edits.set("spectrum.wavelength_um", "10.6");
   edits.set({{"surface.n", "1.6"}, {"surface.k", "0.2"}});
-  EXPECT_EQ(edits.scene().surface.material.constant, (OpticalConstants{1.6, 0.2}));
+  EXPECT_EQ(edits.scene().refractive_index(10.6), std::pair(1.6, 0.2));
   edits.set("spectrum.band_um", "[8, 14]");
-  EXPECT_TRUE(edits.scene().spectrum.is_band());
+  EXPECT_EQ(edits.scene().numbers("spectrum.band_um"), (std::vector<double>{8.0, 14.0}));
   edits.set("source.preset", "sun");
   edits.set("source.irradiance", 2.0);
-  EXPECT_EQ(edits.scene().source->irradiance, 2.0);
+  EXPECT_EQ(edits.scene().number("source.irradiance"), 2.0);
 }
 
 TEST(Edits, Effects_GoAndComeBack) {
   SceneEdits edits = paint();
   edits.set("surroundings.temperature_K", 250.0);
   edits.set("surroundings", "none");
-  EXPECT_FALSE(edits.scene().surroundings);
+  EXPECT_FALSE(edits.scene().number("surroundings.temperature_K"));
   edits.reset("surroundings");
-  EXPECT_EQ(edits.scene().surroundings->temperature_K, 240.0);
+  EXPECT_EQ(edits.scene().number("surroundings.temperature_K"), 240.0);
 }
 
 TEST(Edits, EffectOfTheCommandLine_ComesBackAsOpened) {
   SceneEdits edits = paint({"emission.bracket=true", "emission.temperature_K=310"});
   edits.set("emission", "none");
   edits.reset("emission");
-  EXPECT_EQ(edits.scene().emission->temperature_K, 310.0);
-  EXPECT_TRUE(edits.scene().emission->has_bracket);
+  EXPECT_EQ(edits.scene().number("emission.temperature_K"), 310.0);
+  EXPECT_EQ(edits.scene().word("emission.bracket"), "true");
   EXPECT_FALSE(edits.is_changed());
 }
 
@@ -121,12 +123,12 @@ bool is_accepted(const SceneEdits& edits, const Changes& changes) {
 std::vector<Changes> accepted_combinations(const std::vector<std::string>& keys) {
   std::vector<Changes> all = {{}};
   for (const Choice& choice : choices()) {
-    if (std::ranges::find(keys, choice.description->key) == keys.end()) continue;
+    if (std::ranges::find(keys, choice.key->key) == keys.end()) continue;
     std::vector<Changes> longer;
     for (const Changes& begun : all) {
-      for (const std::string& word : words_of(*choice.description)) {
+      for (const std::string& word : choice.key->words) {
         longer.push_back(begun);
-        longer.back().emplace_back(choice.description->key, word);
+        longer.back().emplace_back(choice.key->key, word);
       }
     }
     all = std::move(longer);
@@ -143,8 +145,8 @@ TEST(Conflicts, EveryChoiceInEveryScene_IsTakenWithTheLeastThatItAsksFor) {
     SceneEdits edits = paint();
     edits.set(combination);
     for (const Choice& choice : choices()) {
-      for (const std::string& word : words_of(*choice.description)) {
-        const SceneEdits::Change chosen = {choice.description->key, word};
+      for (const std::string& word : choice.key->words) {
+        const SceneEdits::Change chosen = {choice.key->key, word};
         Changes asked = asked_for(edits.scene(), {chosen});
         EXPECT_EQ(asked.empty(), is_accepted(edits, {chosen})) << chosen.first << " = " << word;
         asked.push_back(chosen);
@@ -162,33 +164,26 @@ TEST(Conflicts, BothSidesChosen_AreLeftToTheReader) {
 TEST(SceneToml, ShippedScenesWithChanges_ReadBackAsTheSameScene) {
   for (const auto& file : std::filesystem::directory_iterator(kHostDir + "/scenes")) {
     SCOPED_TRACE(file.path().string());
-    const std::string path = file.path().string();
-    SceneEdits edits(read_text(path, ""), path, {"title=a \"quoted\" title", "surface.sigma=0.1234567890123"});
-    const std::string text = edits.toml(kHostDir);
-    const Scene again = parse_scene(text, kHostDir + "/again.toml", {});
-    EXPECT_EQ(again.title, "a \"quoted\" title");
-    EXPECT_EQ(again.grid.theta_deg, edits.scene().grid.theta_deg);
-    EXPECT_EQ(again.grid.sigma, edits.scene().grid.sigma);
-    EXPECT_EQ(again.grid.q, edits.scene().grid.q);
-    const SceneEntries entries = entries_at(edits.scene(), {0.0, 35.0, 70.0});
-    EXPECT_EQ(entries_at(again, {70.0})[0].shape, entries[2].shape);
-    expect_same(truth(edits.scene(), entries), truth(again, entries));
+    const Scene scene = Scene::from_file(file.path(), {"title=a \"quoted\" title", "surface.sigma=0.1234567890123"});
+    const Scene again = Scene::from_text(scene.toml(kHostDir), {}, kHostDir + "/again.toml");
+    EXPECT_EQ(again.title(), "a \"quoted\" title");
+    for (const char* axis : {"grid.theta_deg", "grid.sigma", "grid.q"}) {
+      EXPECT_EQ(again.numbers(axis), scene.numbers(axis));
+    }
+    EXPECT_EQ(again.number("surface.sigma"), 0.1234567890123);
+    expect_same(truth(scene, points_at(scene, {0.0, 35.0, 70.0})), truth(again, points_at(again, {0.0, 35.0, 70.0})));
   }
 }
 
 TEST(SceneToml, WhatGoesBeyondSingleScattering_IsSaved) {
-  const auto saved = [](const std::vector<std::string>& overrides) {
+  const auto saved = [](const SceneEdits::Change& change) {
     SceneEdits edits = paint();
-    for (const std::string& override : overrides) {
-      const std::size_t equals = override.find('=');
-      edits.set(override.substr(0, equals), override.substr(equals + 1));
-    }
-    return parse_scene(edits.toml("."), "again.toml", {});
+    edits.set(change.first, change.second);
+    return Scene::from_text(edits.scene().toml()).word(change.first);
   };
-  EXPECT_EQ(saved({"surface.scattering=multiple"}).surface.scattering, Scattering::kMultiple);
-  const Scene bracket = saved({"emission.model=direct", "emission.bracket=true"});
-  EXPECT_EQ(bracket.emission->model, EmissionModel::kDirect);
-  EXPECT_TRUE(bracket.emission->has_bracket);
+  EXPECT_EQ(saved({"surface.scattering", "multiple"}), "multiple");
+  EXPECT_EQ(saved({"emission.model", "direct"}), "direct");
+  EXPECT_EQ(saved({"emission.bracket", "true"}), "true");
 }
 
 TEST(SceneToml, NamedFiles_AreFoundFromTheNewFolder) {
@@ -197,31 +192,32 @@ TEST(SceneToml, NamedFiles_AreFoundFromTheNewFolder) {
   std::filesystem::create_directories(folder / "saved");
   std::ofstream(folder / "scenes" / "paint.csv") << "wavelength_um,n,k\n8,1.5,0.1\n14,1.6,0.2\n";
   const std::string path = (folder / "scenes" / "paint.toml").string();
-  const SceneEdits edits(kPaint, path, {"surface.material_file=paint.csv"});
-  const Scene again = parse_scene(edits.toml(folder / "saved"), (folder / "saved" / "s.toml").string(), {});
-  EXPECT_EQ(again.surface.material.constant, edits.scene().surface.material.constant);
+  const Scene scene = Scene::from_text(kPaint, {"surface.material_file=paint.csv"}, path);
+  const Scene again = Scene::from_text(scene.toml(folder / "saved"), {}, (folder / "saved" / "s.toml").string());
+  EXPECT_EQ(again.refractive_index(10.0), scene.refractive_index(10.0));
   std::filesystem::remove_all(folder);
 }
 
 // ---- Worker --------------------------------------------------------------------------------------------------------
 
 /// Waits in each call until it is let go, and notes what it was asked for.
-class SlowEvaluator final : public MomentsEvaluator {
+class SlowEvaluator {
  public:
-  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
-    std::unique_lock lock(mutex_);
-    ++calls;
-    changed_.notify_all();
-    while (!is_open_) {
-      changed_.wait_for(lock, std::chrono::milliseconds(1));
-      if (!progress(0, 1)) {
-        ++cancelled;
-        throw Cancelled{};
+  Evaluate evaluate() {
+    return [this](const Scene& scene, const PointList& list, const RunOptions& options) {
+      std::unique_lock lock(mutex_);
+      ++calls;
+      changed_.notify_all();
+      while (!is_open_) {
+        changed_.wait_for(lock, std::chrono::milliseconds(1));
+        if (!options.progress(0, 1)) {
+          ++cancelled;
+          throw Cancelled("no file was written");
+        }
       }
-    }
-    return cpu_.evaluate(request, progress);
+      return explore::evaluate(cpu_, scene, list, options);
+    };
   }
-  EvaluationReport report() const override { return cpu_.report(); }
   void open() {
     const std::scoped_lock lock(mutex_);
     is_open_ = true;
@@ -235,18 +231,15 @@ class SlowEvaluator final : public MomentsEvaluator {
   int cancelled = 0;
 
  private:
-  CpuEvaluator cpu_{Precision::kAuto};
+  Evaluator cpu_{EvaluatorOptions{.evaluator = "cpu"}};
   std::mutex mutex_;
   std::condition_variable changed_;
   bool is_open_ = false;
 };
 
 Job job_of(const std::string& key) {
-  Job job;
-  job.key = key;
-  job.scene = parse_scene(kPaint, "paint.toml", {});
-  job.entries = entries_at(job.scene, {10.0, 20.0, 30.0, 40.0});
-  return job;
+  const Scene scene = paint().scene();
+  return {.key = key, .scene = scene, .parts = {points_at(scene, {10.0, 20.0, 30.0, 40.0})}};
 }
 
 std::vector<JobPart> finish(Worker& worker) {
@@ -258,7 +251,7 @@ std::vector<JobPart> finish(Worker& worker) {
 
 TEST(ExploreWorker, StaleJob_IsCancelledAndItsResultsNeverCome) {
   SlowEvaluator evaluator;
-  Worker worker(evaluator, [] {});
+  Worker worker(evaluator.evaluate(), [] {});
   worker.want({job_of("stale")});
   evaluator.wait_for_call();
   worker.want({job_of("new")});
@@ -270,7 +263,7 @@ TEST(ExploreWorker, StaleJob_IsCancelledAndItsResultsNeverCome) {
 
 TEST(ExploreWorker, JobUnderWay_GoesOnWhenItIsStillWanted) {
   SlowEvaluator evaluator;
-  Worker worker(evaluator, [] {});
+  Worker worker(evaluator.evaluate(), [] {});
   worker.want({job_of("kept")});
   evaluator.wait_for_call();
   worker.want({job_of("first"), job_of("kept")});
@@ -281,7 +274,7 @@ TEST(ExploreWorker, JobUnderWay_GoesOnWhenItIsStillWanted) {
 
 TEST(ExploreWorker, BriefJobUnderWay_IsFinishedThoughItIsNotWanted) {
   SlowEvaluator evaluator;
-  Worker worker(evaluator, [] {});
+  Worker worker(evaluator.evaluate(), [] {});
   Job brief = job_of("brief");
   brief.is_brief = true;
   worker.want({brief});
@@ -299,7 +292,7 @@ TEST(ExploreWorker, BriefJobUnderWay_IsFinishedThoughItIsNotWanted) {
 TEST(ExploreWorker, BriefJobUnderWay_IsGivenUpAtTheEnd) {
   SlowEvaluator evaluator;
   {
-    Worker worker(evaluator, [] {});
+    Worker worker(evaluator.evaluate(), [] {});
     Job brief = job_of("brief");
     brief.is_brief = true;
     worker.want({brief});
@@ -309,39 +302,50 @@ TEST(ExploreWorker, BriefJobUnderWay_IsGivenUpAtTheEnd) {
 }
 
 TEST(ExploreWorker, Parts_ComeInOrderWithTheResultsOfTheWhole) {
-  CpuEvaluator evaluator(Precision::kAuto);
-  Worker worker(evaluator, [] {});
-  Job job = job_of("parts");
-  job.parts = job.entries.parts(3);
+  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
+  Worker worker(on_the_cpu(evaluator), [] {});
+  const Job whole = job_of("whole");
+  Job job = whole;
+  job.parts = {points_at(job.scene, {10.0, 20.0, 30.0}), points_at(job.scene, {40.0})};
   worker.want({job});
   const std::vector<JobPart> news = finish(worker);
   ASSERT_EQ(news.size(), 2U);
-  EXPECT_EQ(news[0].results.size(), 3U);
+  EXPECT_EQ(news[0].points.size(), 3U);
   EXPECT_FALSE(news[0].is_last);
   EXPECT_EQ(news[1].part, 1U);
   EXPECT_TRUE(news[1].is_last);
-  std::vector<PointResult> all = news[0].results;
-  all.insert(all.end(), news[1].results.begin(), news[1].results.end());
-  expect_same(all, truth(job.scene, job.entries));
+  EXPECT_GT(news[1].evaluations, 0.0);
+  std::vector<Point> all = news[0].points;
+  all.insert(all.end(), news[1].points.begin(), news[1].points.end());
+  expect_same(all, truth(whole.scene, whole.parts.front()));
+}
+
+TEST(ExploreWorker, Tolerance_IsTheWiderOfJobAndScene) {
+  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
+  Worker worker(on_the_cpu(evaluator), [] {});
+  for (const auto& [wanted, taken] : {std::pair{1e-2, 1e-2}, {1e-6, 1e-3}}) {
+    Job job = job_of(std::to_string(wanted));
+    job.tolerance = wanted;
+    worker.want({job});
+    EXPECT_EQ(finish(worker).at(0).scene.number("accuracy.tolerance"), taken);
+  }
 }
 
 TEST(ExploreWorker, LostDevice_IsThrownToWhoAsksForNews) {
-  class Lost final : public MomentsEvaluator {
-   public:
-    std::vector<Moments> evaluate(const MomentsRequest&, const Progress&) override { throw DeviceError("lost"); }
-    EvaluationReport report() const override { return {}; }
-  } evaluator;
-  Worker worker(evaluator, [] {});
+  const auto lost = [](const Scene&, const PointList&, const RunOptions&) -> Results {
+    throw api::DeviceError("lost");
+  };
+  Worker worker(lost, [] {});
   worker.want({job_of("any")});
   while (!worker.is_idle()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  EXPECT_THROW(worker.take_news(), DeviceError);
+  EXPECT_THROW(worker.take_news(), api::DeviceError);
 }
 
 TEST(Task, Cancelled_EndsAndSaysSo) {
   BackgroundTask task([] {});
   task.start([](const Progress& progress) -> std::string {
     while (progress(1, 2)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    throw Cancelled{};
+    throw Cancelled("no file was written");
   });
   EXPECT_EQ(task.state(), BackgroundTask::State::kRunning);
   task.cancel();
@@ -351,51 +355,43 @@ TEST(Task, Cancelled_EndsAndSaysSo) {
 
 // ---- Measured points, exports --------------------------------------------------------------------------------------
 
-std::string measured_error(const std::string& text) {
-  try {
-    parse_measured(text, "m.csv");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+TEST(Measured, Quantities_AreReadAsDolpFitReadsThem) {
+  const MeasuredPoints points = points_of({.csv = "uncertainty,theta_deg,q_over_i\n0.01,60,-0.1\n", .name = "m.csv"});
+  ASSERT_EQ(points.points.size(), 1U);
+  EXPECT_EQ(points.points[0].quantity, Quantity::kSignedDolp);
+  EXPECT_EQ(points.points[0].value, -0.1);
+  EXPECT_EQ(points.points[0].uncertainty, 0.01);
+  EXPECT_EQ(points_of({.csv = "theta_deg,emissivity_s,emissivity_p\n60,0.9,0.8\n"}).points.size(), 2U);
+  EXPECT_THROW(points_of({.csv = "theta_deg,dolp\n95,0.1\n"}), InputError);
 }
 
-TEST(Measured, Uncertainties_AreReadWhereTheirColumnIs) {
-  EXPECT_TRUE(parse_measured("theta_deg,dolp\n60,0.1\n", "m.csv").uncertainty.empty());
-  const MeasuredPoints points = parse_measured("uncertainty,theta_deg,dolp\n0.01,60,0.1\n0.02,70,0.2\n", "m.csv");
-  EXPECT_EQ(points.uncertainty, (std::vector<double>{0.01, 0.02}));
-  EXPECT_THROW(parse_measured("theta_deg,dolp,uncertainty\n60,0.1,0\n", "m.csv"), InputError);
-}
-
-TEST(Measured, WrongFiles_AreNamedByLineAndColumn) {
-  EXPECT_EQ(measured_error("theta_deg\n1\n"), "m.csv:1: column \"dolp\" is missing, a number in [-1, 1]");
-  EXPECT_EQ(measured_error("dolp,theta_deg\n0.1,95\n"), "m.csv:2: theta_deg = 95: out of range, a number in [0, 90]");
-  EXPECT_EQ(measured_error("theta_deg,dolp\n60,0.1\n61\n"), "m.csv:3: dolp: the value is missing, a number in [-1, 1]");
-  EXPECT_EQ(measured_error("theta_deg,who,dolp\n60,me,0.1\n"), "no error");
-}
-
-TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredZeniths) {
+TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredPoints) {
   Driver driver(paint());
   const std::string path = (std::filesystem::temp_directory_path() / "dolp-measured.csv").string();
-  std::ofstream(path) << "theta_deg,dolp\n33.3,0.05\n61.7,0.06\n";
-  driver.session.load_measured(path);
-  driver.settle();
-  const Scene& scene = driver.session.scene();
-  const std::vector<PointResult> model = truth(scene, entries_at(scene, {33.3, 61.7}));
-  const std::vector<double> residuals = driver.session.residuals().residuals();
-  ASSERT_EQ(residuals.size(), 2U);
-  EXPECT_EQ(residuals[0], 0.05 - model[0].dolp);
-  EXPECT_EQ(residuals[1], 0.06 - model[1].dolp);
-  EXPECT_DOUBLE_EQ(*driver.session.residuals().rms(),
-                   std::sqrt((residuals[0] * residuals[0] + residuals[1] * residuals[1]) / 2.0));
+  for (const bool is_signed : {false, true}) {
+    std::ofstream(path) << (is_signed ? "theta_deg,q_over_i\n" : "theta_deg,dolp\n") << "33.3,0.05\n61.7,0.06\n";
+    driver.session.load_measured(path);
+    driver.settle();
+    const Scene& scene = driver.session.scene();
+    const std::vector<Point> model = truth(scene, points_at(scene, {33.3, 61.7}));
+    const auto value = [&](std::size_t i) { return is_signed ? model[i].stokes_q / model[i].stokes_i : model[i].dolp; };
+    const std::vector<double> residuals = driver.session.residuals().residuals();
+    ASSERT_EQ(residuals.size(), 2U);
+    EXPECT_EQ(residuals[0], 0.05 - value(0));
+    EXPECT_EQ(residuals[1], 0.06 - value(1));
+    const Quantity quantity = is_signed ? Quantity::kSignedDolp : Quantity::kDolp;
+    EXPECT_DOUBLE_EQ(*driver.session.residuals().rms(quantity),
+                     std::sqrt((residuals[0] * residuals[0] + residuals[1] * residuals[1]) / 2.0));
+    EXPECT_FALSE(driver.session.residuals().rms(Quantity::kAlbedo));
+  }
   std::filesystem::remove(path);
 }
 
 TEST(Exports, CancelledTable_LeavesNoFile) {
   const std::string path = (std::filesystem::temp_directory_path() / "dolp-cancelled.nc").string();
-  CpuEvaluator evaluator(Precision::kAuto);
-  const Scene scene = parse_scene(kPaint, "paint.toml", {});
-  EXPECT_THROW(export_table(scene, path, "", evaluator, [](std::size_t, std::size_t) { return false; }), Cancelled);
+  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
+  const auto cancelled = [](std::size_t, std::size_t) { return false; };
+  EXPECT_THROW(export_table(paint().scene(), path, "", evaluator, cancelled), Cancelled);
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 

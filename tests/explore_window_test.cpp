@@ -59,7 +59,8 @@ class Window : public CommandLine {
     explore::AppOptions options;
     options.file_name = at("made").string();
     options.command_line = "dolp explore";
-    app_ = std::make_unique<App>(explore::SceneEdits(kEdited, at("scene.toml").string(), {}), options);
+    const auto scene = api::Scene::from_file(at("scene.toml"));
+    app_ = std::make_unique<App>(explore::SceneEdits(scene), options);
     app_->settle();
     frames();
     std::string found = xdotool({"search", "--name", "dolp explore"});
@@ -106,8 +107,8 @@ class Window : public CommandLine {
   /// What `dolp eval` says at the zeniths of the curve, with the changes of the window.
   Columns evaluated() const {
     std::string points = "theta_deg\n";
-    for (const SceneEntry& entry : app_->session().curve().entries().all()) {
-      points += std::to_string(entry.theta_deg) + '\n';
+    for (const explore::Point& point : app_->session().curve().points()) {
+      points += std::to_string(point.theta_deg) + '\n';
     }
     put("points.csv", points);
     std::vector<std::string> options;
@@ -124,12 +125,12 @@ class Window : public CommandLine {
 
 TEST_F(Window, Slider_Dragged_PlottedValuesChangeAndEqualEval) {
   const explore::Session& session = app_->session();
-  const std::vector<PointResult> before = session.curve().results();
+  const std::vector<explore::Point> before = session.curve().points();
   drag_slider("surface.sigma", kPartOfSlider);
   const double wanted = 0.01 * std::pow(200.0, kPartOfSlider);
-  EXPECT_NEAR(session.scene().surface.sigma, wanted, kGrab * wanted);
+  EXPECT_NEAR(*session.scene().number("surface.sigma"), wanted, kGrab * wanted);
   ASSERT_TRUE(session.curve().is_finished());
-  const std::vector<PointResult>& after = session.curve().results();
+  const std::vector<explore::Point>& after = session.curve().points();
   const Columns truth = evaluated();
   ASSERT_EQ(truth.at("dolp").size(), after.size());
   std::size_t changed = 0;
@@ -145,13 +146,13 @@ TEST_F(Window, Slider_Dragged_PlottedValuesChangeAndEqualEval) {
 
 TEST_F(Window, Slider_CtrlClicked_GivesTheValueAsOpened) {
   drag_slider("surface.sigma", kPartOfSlider);
-  ASSERT_NE(app_->session().scene().surface.sigma, 0.15);
+  ASSERT_NE(app_->session().scene().number("surface.sigma"), 0.15);
   xdotool({"keydown", "ctrl"});
   frames();
   click_slider("surface.sigma", 0.1F);
   xdotool({"keyup", "ctrl"});
   app_->settle();
-  EXPECT_EQ(app_->session().scene().surface.sigma, 0.15);
+  EXPECT_EQ(app_->session().scene().number("surface.sigma"), 0.15);
   EXPECT_FALSE(app_->session().edits().is_changed());
 }
 
@@ -161,8 +162,8 @@ TEST_F(Window, BracketBox_Clicked_GivesTheCurveABand) {
   press("mousedown");
   press("mouseup");
   app_->settle();
-  EXPECT_TRUE(app_->session().scene().emission->has_bracket);
-  EXPECT_TRUE(explore::has_bracket(app_->session().curve().results()[120]));
+  EXPECT_EQ(app_->session().scene().word("emission.bracket"), "true");
+  EXPECT_TRUE(explore::has_bracket(app_->session().curve().points()[120]));
   EXPECT_EQ(app_->session().edits().overrides(), std::vector<std::string>{"emission.bracket=true"});
 }
 
@@ -181,8 +182,8 @@ TEST_F(Window, MaskingList_OtherWord_SwitchesTheBracketOff) {
   press("mousedown");
   press("mouseup");
   app_->settle();
-  EXPECT_EQ(app_->session().scene().surface.masking, Masking::kNone);
-  EXPECT_FALSE(app_->session().scene().emission->has_bracket);
+  EXPECT_EQ(app_->session().scene().word("surface.masking"), "none");
+  EXPECT_EQ(app_->session().scene().word("emission.bracket"), "false");
   EXPECT_NE(app_->session().message().text.find("goes emission.bracket = false"), std::string::npos);
 }
 
@@ -204,7 +205,7 @@ TEST_F(Window, Fit_OfAMarkedSlider_MovesItAndShowsTheInterval) {
   ASSERT_TRUE(app_->session().varies("surface.sigma"));
   keys("ctrl+f");
   app_->settle();
-  EXPECT_NEAR(app_->session().scene().surface.sigma, 0.3, 2e-3);
+  EXPECT_NEAR(*app_->session().scene().number("surface.sigma"), 0.3, 2e-3);
   ASSERT_NE(app_->session().fit_found(), nullptr);
   EXPECT_LT(*app_->session().fit_found()->interval_68.at("surface.sigma").low, 0.3);
 }
@@ -225,8 +226,8 @@ TEST_F(Window, Map_Clicked_CurveFollowsTheCursor) {
   press("mouseup");
   app_->settle();
   const explore::Session& session = app_->session();
-  EXPECT_NE(session.scene().surface.sigma, 0.15);
-  EXPECT_EQ(session.curve().entries()[0].shape.sigma, session.scene().surface.sigma);
+  EXPECT_NE(session.scene().number("surface.sigma"), 0.15);
+  EXPECT_EQ(session.curve().points()[0].sigma, session.scene().number("surface.sigma"));
   EXPECT_TRUE(session.map().is_finished());
 }
 
@@ -243,7 +244,11 @@ TEST_F(Window, CurveCsv_ByShortcut_HasThePlottedValues) {
   keys("ctrl+e");
   keys("Return");
   frames();
-  EXPECT_EQ(content("made_curve.csv"), explore::curve_csv(app_->session().curve()));
+  EXPECT_EQ(content("made_curve.csv"), app_->session().curve().report().csv);
+  put("points.csv", "theta_deg\n45\n");
+  const std::string command = dolp({"eval", "scene.toml", "--points", "points.csv", "-o", "-"}).out;
+  EXPECT_EQ(content("made_curve.csv").substr(0, content("made_curve.csv").find('\n')),
+            "theta_deg,sigma,q" + command.substr(command.find(','), command.find('\n') - command.find(',')));
 }
 
 TEST_F(Window, Table_ByShortcut_EqualsThatOfTheCommand) {
@@ -309,8 +314,8 @@ TEST_F(Window, Tab_MovesToTheNextField) {
   press("mousedown");
   press("mouseup");
   for (const char* key : {"Tab", "4", "Return"}) keys(key);
-  EXPECT_EQ(app_->session().scene().surface.q, 4.0);
-  EXPECT_EQ(app_->session().scene().surface.sigma, 0.15);
+  EXPECT_EQ(app_->session().scene().number("surface.q"), 4.0);
+  EXPECT_EQ(app_->session().scene().number("surface.sigma"), 0.15);
 }
 
 /// Where the curve is drawn in a window that opens on a display.
@@ -320,7 +325,7 @@ Area plot_on(const std::string& size, const std::string& dots_per_inch) {
   Command scale{.arguments = xprop, .folder = "/"};
   scale.arguments.push_back("Xft.dpi: " + dots_per_inch);
   EXPECT_EQ(run(scale).status, 0);
-  App app(explore::SceneEdits(kEdited, "scene.toml", {}), {});
+  App app(explore::SceneEdits(api::Scene::from_text(kEdited)), {});
   for (int i = 0; i < kFrames; ++i) app.frame();
   return app.plot_area();
 }
@@ -347,7 +352,7 @@ TEST(WindowText, WithoutAGreekFont_AllIsSaidInAscii) {
   EXPECT_EQ(explore::ascii("θ ≤ 90°"), "theta <= 90 deg");
   for (const explore::Parameter& parameter : explore::parameters()) {
     for (const std::string& text :
-         {std::string(parameter.symbol), std::string(parameter.equation), explore::unit_text(*parameter.description)}) {
+         {std::string(parameter.symbol), std::string(parameter.equation), explore::unit_text(*parameter.key)}) {
       EXPECT_TRUE(is_ascii(explore::ascii(text))) << text;
     }
   }

@@ -14,6 +14,7 @@ trap 'rm -rf "$work"' EXIT
 declare -A header sees
 room() { header[$1]=$2 sees[$1]=" $1 ${*:3} "; }
 room base base/progress.hpp
+room device device/devices.hpp base
 room model model/choices.hpp
 room table table/axis_stencil.hpp base model
 room scene scene/number_range.hpp base model
@@ -23,29 +24,28 @@ room evaluate evaluate/evaluator.hpp base model
 room evaluate/text evaluate/text/profile.hpp base model plan scene spectrum
 room evaluate/cpu evaluate/cpu/cpu_evaluator.hpp base evaluate evaluate/text model plan scene spectrum
 room evaluate/reference evaluate/reference/fresnel.hpp base evaluate model scene
-room evaluate/vulkan evaluate/vulkan/devices.hpp base evaluate evaluate/text model plan scene spectrum
+room evaluate/vulkan evaluate/vulkan/vulkan_evaluator.hpp base device evaluate evaluate/text model plan scene spectrum
 room evaluate/interpolation evaluate/interpolation/interpolating_evaluator.hpp base evaluate model plan scene spectrum
 room evaluate/named evaluate/named/named_evaluator.hpp \
-  base evaluate evaluate/cpu evaluate/interpolation evaluate/reference evaluate/vulkan model plan scene spectrum
+  base device evaluate evaluate/cpu evaluate/interpolation evaluate/reference evaluate/vulkan model plan scene spectrum
 room radiometry radiometry/radiometry.hpp model scene spectrum
 room run run/table_scene.hpp base evaluate evaluate/cpu evaluate/interpolation evaluate/text model plan radiometry scene spectrum table
 room fit fit/parameter.hpp base evaluate model plan radiometry run scene spectrum table
 room verify verify/stored_cases.hpp base evaluate evaluate/reference model plan radiometry run scene spectrum table
 room report report/report.hpp \
-  base evaluate evaluate/text evaluate/vulkan fit model plan radiometry run scene spectrum table verify
+  base device evaluate evaluate/text evaluate/vulkan fit model plan radiometry run scene spectrum table verify
 room api api/translated.hpp \
-  base evaluate evaluate/cpu evaluate/named evaluate/vulkan fit model plan radiometry report run scene spectrum table verify
+  base device evaluate evaluate/cpu evaluate/named evaluate/vulkan fit model plan radiometry report run scene spectrum table verify
 room terminal terminal/exit_status.hpp base
 room calibrate calibrate/hold_out.hpp base evaluate evaluate/cpu evaluate/reference evaluate/text model plan scene spectrum
-room explore explore/ticks.hpp base evaluate evaluate/reference fit model plan radiometry run scene spectrum table
-room explore/window explore/window/area.hpp \
-  base evaluate evaluate/interpolation evaluate/vulkan explore model plan scene spectrum
-room explore/program explore/program/program.hpp base evaluate evaluate/vulkan explore explore/window model plan scene spectrum
+room explore explore/ticks.hpp base
+room explore/window explore/window/area.hpp base device explore
+room explore/program explore/program/program.hpp base device explore explore/window
 room cli cli/options.hpp base explore/program terminal
 
 # Libraries that stay in some rooms, by what their headers are called.
 declare -A library=(
-  ['<(vulkan|vk_mem_alloc)']="evaluate/vulkan explore/window"
+  ['<(vulkan|vk_mem_alloc)']="device evaluate/vulkan explore/window"
   ['<(GLFW|imgui)']="explore/window"
   ['<hdf5']="table"
   ['<toml']="scene"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "evaluate/vulkan/devices.hpp"
+#include "device/devices.hpp"
 #include "evaluate/vulkan/packing.hpp"
 #include "evaluate/vulkan/tiles.hpp"
 

@@ -10,10 +10,10 @@
 #include <random>
 
 #include "base/error.hpp"
-#include "evaluate/vulkan/devices.hpp"
-#include "evaluate/vulkan/instance.hpp"
+#include "device/devices.hpp"
+#include "device/instance.hpp"
+#include "device/result.hpp"
 #include "evaluate/vulkan/moments_run.hpp"
-#include "evaluate/vulkan/result.hpp"
 #include "evaluate/vulkan/tiles.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "plan/rows.hpp"

@@ -36,6 +36,7 @@ class Parts final : public Sink {
 struct Run {
   std::vector<PointResult> results;
   TableLayout layout;
+  double evaluations = 0.0;  ///< of integrands
 };
 
 /// All entries of a grid or of points. `begin` makes the evaluator, when it is needed.
@@ -47,11 +48,12 @@ Run run_entries(const dolp::Scene& scene, const SceneEntries& entries, const Run
   api::begin(wanted.progress, entries.size());
   CollectedResults collected(entries);
   const SelfCheck check = run_scene(scene, entries, plan, evaluator, collected, wanted.progress);
-  Run run{collected.take(), table_layout(scene, plan, entries.axes())};
+  const EvaluationReport evaluation = evaluation_of(evaluator, "none");
+  Run run{collected.take(), table_layout(scene, plan, entries.axes()), evaluation.evaluations};
   const std::vector<EffectRow> effects = effect_rows(scene, entries, plan);
   std::vector<dolp::Attribute>& attributes = run.layout.head.attributes;
-  for (dolp::Attribute& attribute : attributes_of(
-           scene, {plan, effects, evaluation_of(evaluator, "none"), check, seconds_since(start), wanted.history})) {
+  for (dolp::Attribute& attribute :
+       attributes_of(scene, {plan, effects, evaluation, check, seconds_since(start), wanted.history})) {
     attributes.push_back(std::move(attribute));
   }
   return run;
@@ -114,7 +116,9 @@ Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& point
     const dolp::Scene& own = scene.impl().scene;
     const SceneEntries entries = point_entries(own, points_of_columns(points, PointsKind::kDirections));
     const Run run = run_entries(own, entries, options, [&](const dolp::Scene& one) { return impl_->begin(one); });
-    return results_of(run.results, extra_columns(own), run.layout.head);
+    Results results = results_of(run.results, extra_columns(own), run.layout.head);
+    results.integrand_evaluations = run.evaluations;
+    return results;
   });
 }
 

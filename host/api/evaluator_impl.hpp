@@ -26,7 +26,7 @@ struct Evaluator::Impl {
   MomentsEvaluator* begin(const dolp::Scene& scene) {
     const Precision precision = scene.accuracy.precision;
     std::unique_ptr<MomentsEvaluator>& evaluator = evaluators[precision];
-    if (!evaluator) evaluator = make_evaluator({options.evaluator, options.device, precision});
+    if (!evaluator) evaluator = make_evaluator({options.evaluator, options.device, precision, options.is_interactive});
     evaluator->clear_report();
     return evaluator.get();
   }

@@ -76,8 +76,9 @@ struct Best {
 
   /// What was compared, and the values that were found.
   Overrides overrides() const {
-    Eigen::VectorXd values(static_cast<Eigen::Index>(result->parameters.size()));
-    for (Eigen::Index j = 0; j < values.size(); ++j) values[j] = result->parameters[static_cast<std::size_t>(j)].value;
+    const std::vector<fit::FittedParameter>& found = result.value().parameters;
+    Eigen::VectorXd values(static_cast<Eigen::Index>(found.size()));
+    for (Eigen::Index j = 0; j < values.size(); ++j) values[j] = found[static_cast<std::size_t>(j)].value;
     Overrides all = compared;
     std::ranges::copy(model->overrides(values), std::back_inserter(all));
     return all;
@@ -125,6 +126,20 @@ dolp::Report::Json brackets(const Scene& fitted, const std::vector<fit::FitData>
   return all;
 }
 
+FitInterval interval_of(const fit::Interval& interval) { return {interval.low, interval.high}; }
+
+void add_numbers(Fit& found, const fit::FitResult& result) {
+  for (const fit::FittedParameter& one : result.parameters) {
+    found.parameters.push_back(
+        {one.key, one.value, one.standard_error, interval_of(one.interval_68), interval_of(one.interval_95)});
+  }
+  found.chi_square = result.chi_square;
+  found.degrees_of_freedom = result.degrees_of_freedom;
+  found.p_value = result.p_value;
+  found.other_minima = result.minima.size();
+  found.degeneracies = result.degeneracies;
+}
+
 void write_fitted(const std::filesystem::path& path, const Scene& fitted) {
   write_text_atomically(path, scene_toml(fitted.text(), fitted.name(), fitted.overrides(), path.parent_path()));
 }
@@ -137,6 +152,16 @@ MeasuredData MeasuredData::read(const std::string& argument) {
   return translated([&] {
     const fit::DataArgument parts = fit::parse_data_argument(argument);
     return MeasuredData{read_text(parts.path, input_name(parts.path) + ": "), parts.overrides, parts.path};
+  });
+}
+
+std::vector<Measurement> MeasuredData::measurements() const {
+  return translated([&] {
+    std::vector<Measurement> all;
+    for (const fit::Observation& one : fit::parse_fit_data(csv, name).observations) {
+      all.push_back({fit::name_of(one.observable), one.theta_deg, one.value, one.uncertainty, one.wavelength_um});
+    }
+    return all;
   });
 }
 
@@ -214,8 +239,9 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
       draw_fit(report.json_text(), options.plot.string());
       report.row("picture", "{}", key("plot", options.plot.string()));
     }
-    return Fit{public_report(report, (best.result->status & kStatusToleranceMissed) == 0, options.output), true,
-               fitted};
+    Fit found{public_report(report, (best.result->status & kStatusToleranceMissed) == 0, options.output), true, fitted};
+    add_numbers(found, *best.result);
+    return found;
   });
 }
 

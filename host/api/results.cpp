@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/number_text.hpp"
 #include "base/parallel_ranges.hpp"
 
 namespace dolp::api {
@@ -42,6 +43,31 @@ Results results_of(const std::vector<PointResult>& points, const ExtraColumns& e
     results.attributes.push_back({attribute.name, attribute.value});
   }
   return results;
+}
+
+std::string to_csv(const std::vector<Column>& points, const Results& results) {
+  std::vector<const Results::Quantity*> quantities;
+  for (const std::string& name : result_columns()) {
+    const auto named = [&](const Results::Quantity& quantity) { return quantity.variable.name == name; };
+    const auto found = std::ranges::find_if(results.quantities, named);
+    if (found != results.quantities.end()) quantities.push_back(&*found);
+  }
+  std::string csv;
+  for (const Column& column : points) csv += column.name + ',';
+  for (const Results::Quantity* quantity : quantities) csv += quantity->variable.name + ',';
+  csv += "status\n";
+  for (std::size_t i = 0; i < results.status.size(); ++i) {
+    for (const Column& column : points) {
+      append_number(csv, column.values[column.values.size() == 1 ? 0 : i]);
+      csv += ',';
+    }
+    for (const Results::Quantity* quantity : quantities) {
+      append_number(csv, quantity->values[i]);
+      csv += ',';
+    }
+    csv += std::to_string(results.status[i]) + '\n';
+  }
+  return csv;
 }
 
 Points points_of_columns(const std::vector<Column>& columns, PointsKind kind) {

@@ -1,9 +1,50 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "api/scene_impl.hpp"
 #include "api/translated.hpp"
+#include "base/text.hpp"
+#include "scene/embedded_data.hpp"
+#include "scene/scene_keys.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene/scene_writer.hpp"
 
 namespace dolp::api {
+namespace {
+
+using Type = KeyDescription::Type;
+
+/// The value of a key that is of one of these types. Errors: InputError.
+std::optional<KeyValue> value_of(const dolp::Scene& scene, std::string_view key, std::initializer_list<Type> types) {
+  const SceneKey* const known = find_scene_key(key);
+  if (!known) throw InputError(fmt::format("{}: is no key of a scene", one_line(key)));
+  if (std::ranges::find(types, known->description.type) == types.end()) {
+    throw InputError(fmt::format("{}: is {}", known->description.key, known->description.allowed()));
+  }
+  return known->value(scene);
+}
+
+std::vector<std::string> words_of(const KeyDescription& key) {
+  if (key.type == Type::kFlag) return {"false", "true"};
+  return key.words;
+}
+
+std::vector<std::string> rivals_of(const std::string& key) {
+  std::vector<std::string> rivals;
+  for (const KeyChoice& choice : key_choices()) {
+    const auto own = std::ranges::find_if(choice.alternatives, [&](const std::vector<std::string>& alternative) {
+      return std::ranges::find(alternative, key) != alternative.end();
+    });
+    if (own == choice.alternatives.end()) continue;
+    for (auto other = choice.alternatives.begin(); other != choice.alternatives.end(); ++other) {
+      if (other != own) rivals.insert(rivals.end(), other->begin(), other->end());
+    }
+  }
+  return rivals;
+}
+
+}  // namespace
 
 Scene Scene::from_file(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
   return translated([&] { return Scene(std::make_shared<const Impl>(Impl{read_scene(path.string(), overrides)})); });
@@ -24,15 +65,42 @@ const std::string& Scene::name() const { return impl_->scene.path_name; }
 const std::string& Scene::text() const { return impl_->scene.text; }
 const std::vector<std::string>& Scene::overrides() const { return impl_->scene.overrides; }
 
-std::string Scene::toml() const {
-  return translated([&] { return scene_toml(text(), name(), overrides(), std::filesystem::current_path()); });
+std::string Scene::toml(const std::filesystem::path& folder) const {
+  return translated([&] { return scene_toml(text(), name(), overrides(), std::filesystem::absolute(folder)); });
 }
 
-std::vector<Key> keys() {
-  std::vector<Key> all;
-  for (const KeyDescription& key : scene_keys()) {
-    all.push_back({key.key, key.unit, key.allowed(), key.fallback, key.meaning});
-  }
+std::optional<double> Scene::number(std::string_view key) const {
+  const std::optional<KeyValue> value = value_of(impl_->scene, key, {Type::kNumber});
+  return value ? std::optional(value->number) : std::nullopt;
+}
+
+std::optional<std::string> Scene::word(std::string_view key) const {
+  const std::optional<KeyValue> value = value_of(impl_->scene, key, {Type::kWord, Type::kText, Type::kFlag});
+  if (!value) return std::nullopt;
+  if (find_scene_key(key)->description.type != Type::kFlag) return value->text;
+  return value->is_set ? "true" : "false";
+}
+
+std::vector<double> Scene::numbers(std::string_view key) const {
+  const std::optional<KeyValue> value = value_of(impl_->scene, key, {Type::kAxis, Type::kPair});
+  return value ? value->numbers : std::vector<double>{};
+}
+
+std::pair<double, double> Scene::refractive_index(double wavelength_um) const {
+  const OpticalConstants index = impl_->scene.surface.material.at(wavelength_um);
+  return {index.n, index.k};
+}
+
+std::string example_scene() { return std::string(embedded_stainless_steel_toml()); }
+
+const std::vector<Key>& keys() {
+  static const std::vector<Key> all = [] {
+    std::vector<Key> list;
+    for (const KeyDescription& key : scene_keys()) {
+      list.push_back({key.key, key.unit, key.allowed(), key.fallback, key.meaning, words_of(key), rivals_of(key.key)});
+    }
+    return list;
+  }();
   return all;
 }
 

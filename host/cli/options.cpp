@@ -28,10 +28,7 @@ std::vector<std::string> all_overrides(const Options& options) {
   return overrides;
 }
 
-std::string allowed(const std::string& key) {
-  const std::vector<api::Key> keys = api::keys();
-  return std::ranges::find(keys, key, &api::Key::key)->allowed;
-}
+std::string allowed(const std::string& key) { return std::ranges::find(api::keys(), key, &api::Key::key)->allowed; }
 
 api::Scene load_scene(const Options& options) {
   check_one_stdin(options);

@@ -28,8 +28,8 @@ void BackgroundTask::run(const Work& work) {
       return !is_cancelled_;
     });
     end(State::kDone, message);
-  } catch (const Cancelled&) {
-    end(State::kCancelled, "cancelled");
+  } catch (const Cancelled& cancelled) {
+    end(State::kCancelled, std::string("cancelled; ") + cancelled.what());
   } catch (const std::exception& error) {
     end(State::kFailed, error.what());
   }

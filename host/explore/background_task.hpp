@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "base/progress.hpp"
+#include "explore/library.hpp"
 
 namespace dolp::explore {
 

@@ -49,7 +49,7 @@ std::vector<Change> all_choices(const Scene& scene) {
   std::vector<Change> words;
   for (const Choice& choice : choices()) {
     const auto word = choice.word(scene);
-    if (word) words.emplace_back(choice.description->key, words_of(*choice.description)[*word]);
+    if (word) words.emplace_back(choice.key->key, choice.key->words[*word]);
   }
   return words;
 }

@@ -9,7 +9,7 @@
 namespace dolp::explore {
 namespace {
 
-struct Point {
+struct Crossing {
   double x, y;
 };
 
@@ -37,7 +37,7 @@ std::vector<Segment> contour(const MapField& field, double level) {
         good = good && field.is_good[at] != 0;
       }
       if (!good) continue;
-      std::vector<Point> crossings;
+      std::vector<Crossing> crossings;
       for (std::size_t i = 0; i < 4; ++i) {
         const std::size_t j = (i + 1) % 4;
         if ((value[i] < 0.0) == (value[j] < 0.0)) continue;

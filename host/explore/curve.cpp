@@ -1,9 +1,6 @@
 #include "explore/curve.hpp"
 
 #include <algorithm>
-#include <cmath>
-
-#include "model/status.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -11,26 +8,6 @@ namespace {
 constexpr const char* kCoarsePrefix = "coarse curve ";
 
 }  // namespace
-
-std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count) {
-  std::vector<double> theta_deg(count, from_deg);
-  const double last = static_cast<double>(count - 1);
-  for (std::size_t i = 1; i < count; ++i) {
-    const double done = static_cast<double>(i);
-    theta_deg[i] = ((last - done) * from_deg + done * to_deg) / last;
-  }
-  return theta_deg;
-}
-
-SceneEntries entries_at(const Scene& scene, const std::vector<double>& theta_deg) {
-  return SceneEntries::grid(theta_deg, {scene.surface.sigma}, {scene.surface.q});
-}
-
-bool is_good(const PointResult& result) { return promises_dolp(result.status) && std::isfinite(result.dolp); }
-
-bool has_bracket(const PointResult& result) {
-  return std::isfinite(result.dolp_low) && std::isfinite(result.dolp_high);
-}
 
 void Curve::follow(const std::string& key, const Scene& scene, bool keep_all) {
   key_ = key;
@@ -42,15 +19,13 @@ std::string Curve::key_of(Stage stage) const { return (stage == Stage::kCoarse ?
 
 Job Curve::job(Stage stage) const {
   const bool is_coarse = stage == Stage::kCoarse;
-  Job job;
-  job.key = key_of(stage);
-  job.scene = scene_;
-  if (is_coarse) job.scene.accuracy.tolerance = std::max(kCoarseTolerance, scene_.accuracy.tolerance);
-  job.entries = entries_at(scene_, zeniths(0.0, 90.0, is_coarse ? kCoarseCount : kFineCount));
-  job.keep_all = keep_all_;
-  job.wants_rows = !is_coarse;
-  job.is_brief = is_coarse;
-  return job;
+  return {.key = key_of(stage),
+          .scene = scene_,
+          .parts = {points_at(scene_, zeniths(0.0, 90.0, is_coarse ? kCoarseCount : kFineCount))},
+          .tolerance = is_coarse ? kCoarseTolerance : 0.0,
+          .keep_all = keep_all_,
+          .wants_effects = !is_coarse,
+          .is_brief = is_coarse};
 }
 
 std::optional<Job> Curve::wanted(Stage stage) const {
@@ -63,7 +38,9 @@ bool Curve::take(const JobPart& news) {
   if (!is_fine && news.key != key_of(Stage::kCoarse)) return false;
   if (!is_fine && is_finished()) return true;
   show(news);
-  if (is_fine) report_ = {news.scene, news.rows, news.wall_s, news.evaluations, news.entries.size()};
+  if (is_fine) {
+    report_ = {news.scene, news.effects, news.csv, news.wall_s, news.evaluations, news.points.size()};
+  }
   return true;
 }
 
@@ -74,14 +51,13 @@ void Curve::take_earlier(const JobPart& news) {
 void Curve::show(const JobPart& news) {
   shown_ = news.key;
   shown_scene_ = news.scene;
-  entries_ = news.entries;
-  results_ = news.results;
+  points_ = news.points;
 }
 
 double Curve::worst_error() const {
   double worst = 0.0;
-  for (const PointResult& result : results_) {
-    if (is_good(result)) worst = std::max(worst, result.error_estimate);
+  for (const Point& point : points_) {
+    if (is_good(point)) worst = std::max(worst, point.error_estimate);
   }
   return worst;
 }

@@ -12,10 +12,11 @@ namespace dolp::explore {
 /// What is said of a finished curve.
 struct CurveReport {
   Scene scene;
-  std::vector<EffectRow> rows;
+  std::vector<Effect> effects = {};
+  std::string csv = {};  ///< with the columns of `dolp eval`
   double wall_s = 0.0;
   double evaluations = 0.0;
-  std::size_t entries = 0;
+  std::size_t points = 0;
 };
 
 /// Results of a scene over all zeniths.
@@ -27,6 +28,8 @@ class Curve {
   static constexpr std::size_t kFineCount = 181;
   static constexpr std::size_t kCoarseCount = 46;
   static constexpr double kCoarseTolerance = 1e-2;
+
+  explicit Curve(const Scene& scene) : scene_(scene), shown_scene_(scene), report_{scene} {}
 
   /// From now on the curve of this scene. `key` stands for the scene's content. What is shown stays, as stale, until
   /// there is something newer.
@@ -44,11 +47,10 @@ class Curve {
   const std::string& key() const { return key_; }
   bool is_finished() const { return shown_ == key_of(Stage::kFine); }
   /// What is shown is of a scene before this one.
-  bool is_stale() const { return !results_.empty() && !is_current(); }
+  bool is_stale() const { return !points_.empty() && !is_current(); }
   // What is shown, and the scene that it was computed with.
-  const Scene& shown_scene() const { return results_.empty() ? scene_ : shown_scene_; }
-  const SceneEntries& entries() const { return entries_; }
-  const std::vector<PointResult>& results() const { return results_; }
+  const Scene& shown_scene() const { return points_.empty() ? scene_ : shown_scene_; }
+  const std::vector<Point>& points() const { return points_; }
   /// Of the last finished curve.
   const CurveReport& report() const { return report_; }
 
@@ -66,21 +68,8 @@ class Curve {
   bool keep_all_ = false;
   std::string shown_;  ///< key of the job whose results are shown
   Scene shown_scene_;
-  SceneEntries entries_;
-  std::vector<PointResult> results_;
+  std::vector<Point> points_;
   CurveReport report_;
 };
-
-/// The entries of a scene's surface at these zeniths.
-SceneEntries entries_at(const Scene& scene, const std::vector<double>& theta_deg);
-
-/// `count` zeniths from `from` to `to`, both included.
-std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count);
-
-/// Whether status has none of the bits with which DOLP means nothing or promises nothing.
-bool is_good(const PointResult& result);
-
-/// Whether it says between what DOLP lies with all bounces.
-bool has_bracket(const PointResult& result);
 
 }  // namespace dolp::explore

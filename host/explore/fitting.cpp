@@ -4,56 +4,32 @@
 
 #include <algorithm>
 
-#include "base/error.hpp"
-#include "fit/fit.hpp"
+#include "base/text.hpp"
 
 namespace dolp::explore {
-namespace {
 
-constexpr std::size_t kStarts = 24;
-
-/// DOLP, or Q/I where some of it is negative.
-fit::FitData data_of(const MeasuredPoints& points, const Scene& scene) {
-  fit::FitData data;
-  data.name = points.name;
-  data.zenith_column = scene.geometry.mode == Mode::kBistatic ? "theta_i_deg" : "theta_deg";
-  data.has_uncertainties = !points.uncertainty.empty();
-  const bool is_signed = std::ranges::any_of(points.dolp, [](double dolp) { return dolp < 0.0; });
-  for (std::size_t i = 0; i < points.dolp.size(); ++i) {
-    fit::Observation& one = data.observations.emplace_back();
-    one.observable = is_signed ? fit::Observable::kQOverI : fit::Observable::kDolp;
-    one.theta_deg = points.theta_deg[i];
-    one.value = points.dolp[i];
-    if (data.has_uncertainties) one.uncertainty = points.uncertainty[i];
+FitFound run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress) {
+  api::FitOptions options{.vary = {}, .progress = progress};
+  for (const Varied& one : job.varied) {
+    options.vary.push_back(
+        fmt::format("{}={}:{}:{}", one.key, format_number(one.low), format_number(one.high), format_number(one.start)));
   }
-  return data;
-}
-
-FitInterval interval_of(const fit::Interval& interval) { return {interval.low, interval.high}; }
-
-}  // namespace
-
-FitFound run_fit(const FitJob& job, MomentsEvaluator& evaluator, const Progress& progress) {
-  std::vector<fit::Parameter> parameters;
-  for (const Varied& one : job.varied) parameters.push_back({one.key, one.low, one.high, one.start});
-  const fit::Model model({job.scene.text, job.scene.path_name, job.scene.overrides}, {data_of(job.points, job.scene)},
-                         parameters);
-  const auto result = fit::fit(model, evaluator, {.starts = kStarts, .progress = progress});
-  if (!result) throw InputError("no minimum was found: no descent converged");
+  const api::Fit fit = evaluator.fit(job.scene, {job.data}, options);
+  if (!fit.has_minimum) throw InputError("no minimum was found: no descent converged");
   FitFound found;
-  for (const fit::FittedParameter& one : result->parameters) {
+  for (const api::FitParameter& one : fit.parameters) {
     found.values.emplace_back(one.key, fmt::format("{:.6g}", one.value));
-    found.interval_68[one.key] = interval_of(one.interval_68);
-    found.interval_95[one.key] = interval_of(one.interval_95);
+    found.interval_68[one.key] = one.interval_68;
+    found.interval_95[one.key] = one.interval_95;
   }
-  found.text = fmt::format("χ² {:.4g}, {} degrees of freedom", result->chi_square, result->degrees_of_freedom);
-  if (result->p_value) found.text += fmt::format(", p {:.2g}", *result->p_value);
-  if (!result->minima.empty()) found.text += fmt::format("; {} other minima", result->minima.size());
-  for (const std::string& words : result->degeneracies) found.text += "; " + words;
+  found.text = fmt::format("χ² {:.4g}, {} degrees of freedom", fit.chi_square, fit.degrees_of_freedom);
+  if (fit.p_value) found.text += fmt::format(", p {:.2g}", *fit.p_value);
+  if (fit.other_minima > 0) found.text += fmt::format("; {} other minima", fit.other_minima);
+  for (const std::string& words : fit.degeneracies) found.text += "; " + words;
   return found;
 }
 
-bool Fitting::can_vary(const Parameter& parameter) { return !parameter.description->key.starts_with("accuracy."); }
+bool Fitting::can_vary(const Parameter& parameter) { return !parameter.key->key.starts_with("accuracy."); }
 
 void Fitting::mark(const std::string& key, bool varies) {
   if (varies) {
@@ -65,9 +41,9 @@ void Fitting::mark(const std::string& key, bool varies) {
 
 std::optional<FitJob> Fitting::job(const Scene& scene, const std::optional<MeasuredPoints>& points) const {
   if (!points) return std::nullopt;
-  FitJob job{scene, *points, {}};
+  FitJob job{scene, points->data, {}};
   for (const Parameter& parameter : parameters()) {
-    const std::string& key = parameter.description->key;
+    const std::string& key = parameter.key->key;
     const std::optional<double> value = parameter.value(scene);
     if (!value || !varies(key)) continue;
     job.varied.push_back({key, std::min(parameter.slider.min, *value), std::max(parameter.slider.max, *value), *value});

@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.hpp"
-#include "evaluate/evaluator.hpp"
 #include "explore/measured.hpp"
 #include "explore/parameters.hpp"
 #include "explore/scene_edits.hpp"
@@ -26,13 +24,8 @@ struct Varied {
 /// Everything that a fit needs, so that it can run in a thread of its own.
 struct FitJob {
   Scene scene;
-  MeasuredPoints points;
+  MeasuredData data;
   std::vector<Varied> varied;
-};
-
-/// An interval of a number; an end is none where its slider ends before the data say no.
-struct FitInterval {
-  std::optional<double> low, high;
 };
 
 /// What a fit found.
@@ -43,8 +36,8 @@ struct FitFound {
 };
 
 /// Fits as `dolp fit` does. Errors: InputError where points, parameters and scene do not fit together and where no
-/// minimum was found; those of the evaluator; Cancelled.
-FitFound run_fit(const FitJob& job, MomentsEvaluator& evaluator, const Progress& progress);
+/// minimum was found; those of Evaluator::fit; Cancelled.
+FitFound run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress);
 
 /// Which parameters vary, and what the last fit found, as long as the scene is the one that it left.
 class Fitting {

@@ -4,15 +4,14 @@
 #include <cmath>
 #include <limits>
 
-#include "explore/curve.hpp"
 #include "explore/parameters.hpp"
 
 namespace dolp::explore {
 namespace {
 
-constexpr NumberRange kSmithQ{1.6, 20.0};  // smith needs more than 1.5
+constexpr SliderRange kSmithQ{1.6, 20.0};  // smith needs more than 1.5
 
-MapAxis axis_of(AxisKind kind, const std::vector<double>& grid, const NumberRange& fallback, bool is_log) {
+MapAxis axis_of(AxisKind kind, const std::vector<double>& grid, const SliderRange& fallback, bool is_log) {
   const auto [low, high] = std::ranges::minmax_element(grid);
   const bool has_range = *low < *high && (!is_log || *low > 0.0);
   if (has_range) return {kind, *low, *high, is_log};
@@ -36,12 +35,13 @@ MapAxis suggested_axis(AxisKind kind, const Scene& scene, double theta_max_deg) 
     case AxisKind::kTheta:
       return {kind, 0.0, theta_max_deg, false};
     case AxisKind::kSigma:
-      return axis_of(kind, scene.grid.sigma, parameter("surface.sigma").slider, true);
+      return axis_of(kind, scene.numbers("grid.sigma"), parameter("surface.sigma").slider, true);
     case AxisKind::kQ:
       break;
   }
-  const NumberRange slider = scene.surface.needs_mean_slope() ? kSmithQ : parameter("surface.q").slider;
-  return axis_of(kind, scene.grid.q, slider, true);
+  const bool is_smith = scene.word("surface.masking") == "smith" && scene.word("surface.distribution") == "cauchy";
+  const SliderRange slider = is_smith ? kSmithQ : parameter("surface.q").slider;
+  return axis_of(kind, scene.numbers("grid.q"), slider, true);
 }
 
 const char* axis_label(AxisKind kind) {
@@ -53,7 +53,7 @@ void HeatMap::follow(const std::string& key, const Scene& scene, bool keep_all, 
                      double theta_deg) {
   if (x != x_ || y != y_) {
     // Old results along new axes would be wrong ones.
-    results_ = {};
+    points_ = {};
     shown_key_.clear();
     ++version_;
   }
@@ -69,53 +69,47 @@ std::string HeatMap::key_of(std::size_t level) const {
   return "map " + std::to_string(kLevels[level].count) + ' ' + key_;
 }
 
-SceneEntries HeatMap::grid(const std::vector<double>& x, const std::vector<double>& y) const {
-  std::vector<double> theta_deg{theta_deg_}, sigma{scene_.surface.sigma}, q{scene_.surface.q};
-  for (const auto& [axis, values] : {std::pair{&x_, &x}, std::pair{&y_, &y}}) {
-    if (axis->kind == AxisKind::kTheta) theta_deg = *values;
-    if (axis->kind == AxisKind::kSigma) sigma = *values;
-    if (axis->kind == AxisKind::kQ) q = *values;
-  }
-  return SceneEntries::grid(theta_deg, sigma, q);
+PointList HeatMap::rows(std::size_t level, std::size_t first) const {
+  const Level& of = kLevels[level];
+  const auto values = [&](const MapAxis& axis, std::size_t from, std::size_t count) {
+    std::vector<double> some;
+    const double last = static_cast<double>(of.count - 1);
+    for (std::size_t i = from; i < from + count; ++i) some.push_back(axis.value(static_cast<double>(i) / last));
+    return some;
+  };
+  PointList list = points_at(scene_, {theta_deg_});
+  const std::array<std::vector<double>*, 3> columns = {&list.theta_deg, &list.sigma, &list.q};
+  *columns[static_cast<std::size_t>(x_.kind)] = values(x_, 0, of.count);
+  *columns[static_cast<std::size_t>(y_.kind)] = values(y_, first, of.batch);
+  list.is_grid = true;
+  return list;
 }
 
 Job HeatMap::job(std::size_t level) const {
-  const Level& of = kLevels[level];
-  Job job;
-  job.key = key_of(level);
-  job.scene = scene_;
-  job.scene.accuracy.tolerance = std::max(of.tolerance, scene_.accuracy.tolerance);
+  Job job{.key = key_of(level), .scene = scene_, .parts = {}, .tolerance = kLevels[level].tolerance};
   job.keep_all = keep_all_;
-  std::vector<double> x, y;
-  for (std::size_t i = 0; i < of.count; ++i) {
-    const double position = static_cast<double>(i) / static_cast<double>(of.count - 1);
-    x.push_back(x_.value(position));
-    y.push_back(y_.value(position));
-  }
-  job.entries = grid(x, y);
-  for (auto first = y.begin(); first != y.end(); first += static_cast<std::ptrdiff_t>(of.batch)) {
-    job.parts.push_back(grid(x, {first, first + static_cast<std::ptrdiff_t>(of.batch)}));
+  for (std::size_t row = 0; row < kLevels[level].count; row += kLevels[level].batch) {
+    job.parts.push_back(rows(level, row));
   }
   return job;
 }
 
 std::optional<Job> HeatMap::wanted(std::size_t level) const {
   const std::size_t all = kLevels[level].count * kLevels[level].count;
-  if (key_.empty() || (shown_key_ == key_ && results_[level].size() == all)) return std::nullopt;
+  if (key_.empty() || (shown_key_ == key_ && points_[level].size() == all)) return std::nullopt;
   return job(level);
 }
 
 bool HeatMap::take(const JobPart& news) {
   for (std::size_t level = 0; level < kLevels.size(); ++level) {
     if (news.key != key_of(level)) continue;
-    if (shown_key_ != key_) results_ = {};
+    if (shown_key_ != key_) points_ = {};
     shown_key_ = key_;
-    // Parts are grids, in which the last of theta, sigma and q is the fastest, whatever axis it is on.
+    // On a grid the last of theta, sigma and q is the fastest, whatever axis it is on.
     const std::size_t columns = kLevels[level].count;
-    const std::size_t rows = news.results.size() / columns;
-    for (std::size_t i = 0; i < news.results.size(); ++i) {
-      const std::size_t place = x_.kind > y_.kind ? i : (i % columns) * rows + i / columns;
-      results_[level].push_back(news.results[place]);
+    const std::size_t rows = news.points.size() / columns;
+    for (std::size_t i = 0; i < news.points.size(); ++i) {
+      points_[level].push_back(news.points[x_.kind > y_.kind ? i : (i % columns) * rows + i / columns]);
     }
     ++version_;
     return true;
@@ -124,14 +118,14 @@ bool HeatMap::take(const JobPart& news) {
 }
 
 bool HeatMap::is_finished() const {
-  return shown_key_ == key_ && results_.back().size() == kLevels.back().count * kLevels.back().count;
+  return shown_key_ == key_ && points_.back().size() == kLevels.back().count * kLevels.back().count;
 }
 
 std::size_t HeatMap::finished_count() const {
   std::size_t finest = 0;
   for (std::size_t level = 0; level < kLevels.size(); ++level) {
     const std::size_t count = kLevels[level].count;
-    if (results_[level].size() == count * count) finest = count;
+    if (points_[level].size() == count * count) finest = count;
   }
   return finest;
 }
@@ -141,7 +135,7 @@ double HeatMap::progress() const {
   double all = 0.0;
   for (std::size_t level = 0; level < kLevels.size(); ++level) {
     all += static_cast<double>(kLevels[level].count * kLevels[level].count);
-    if (shown_key_ == key_) done += static_cast<double>(results_[level].size());
+    if (shown_key_ == key_) done += static_cast<double>(points_[level].size());
   }
   return done / all;
 }
@@ -150,9 +144,9 @@ MapField HeatMap::field(Quantity quantity) const {
   MapField field;
   std::size_t finest = 0;
   for (std::size_t level = 0; level < kLevels.size(); ++level) {
-    if (!results_[level].empty()) finest = level;
+    if (!points_[level].empty()) finest = level;
   }
-  if (results_[finest].empty()) return field;
+  if (points_[finest].empty()) return field;
   const std::size_t count = kLevels[finest].count;
   field.count = count;
   field.min = std::numeric_limits<double>::infinity();
@@ -165,10 +159,10 @@ MapField HeatMap::field(Quantity quantity) const {
         const auto nearest = [&](std::size_t i) { return (2 * i * last + count - 1) / (2 * (count - 1)); };
         return nearest(row) * kLevels[level].count + nearest(column);
       };
-      while (level > 0 && place() >= results_[level].size()) --level;
-      const PointResult& result = results_[level][place()];
-      const double value = value_of(quantity, result);
-      const bool good = is_good(result) && std::isfinite(value);
+      while (level > 0 && place() >= points_[level].size()) --level;
+      const Point& point = points_[level][place()];
+      const double value = value_of(quantity, point);
+      const bool good = is_good(point) && std::isfinite(value);
       field.values.push_back(value);
       field.is_good.push_back(good ? 1 : 0);
       if (!good) continue;

@@ -54,6 +54,8 @@ class HeatMap {
   };
   static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 16}, {64, 1e-2, 8}, {128, 0.0, 4}}};
 
+  explicit HeatMap(const Scene& scene) : scene_(scene) {}
+
   /// From now on this map. `key` stands for the content of the scene but for what the axes vary. The third of theta,
   /// sigma and q is `theta_deg` or the scene's.
   void follow(const std::string& key, const Scene& scene, bool keep_all, const MapAxis& x, const MapAxis& y,
@@ -79,15 +81,16 @@ class HeatMap {
  private:
   std::string key_of(std::size_t level) const;
   Job job(std::size_t level) const;
-  SceneEntries grid(const std::vector<double>& x, const std::vector<double>& y) const;
+  /// `batch` rows of a level.
+  PointList rows(std::size_t level, std::size_t first) const;
 
   std::string key_;
   Scene scene_;
   bool keep_all_ = false;
   MapAxis x_, y_;
   double theta_deg_ = 0.0;
-  std::string shown_key_;  ///< the map that the results are of
-  std::array<std::vector<PointResult>, kLevels.size()> results_;
+  std::string shown_key_;                                  ///< the map that the results are of
+  std::array<std::vector<Point>, kLevels.size()> points_;  ///< row by row
   std::size_t version_ = 0;
 };
 

@@ -5,28 +5,34 @@
 #include <string>
 #include <vector>
 
-#include "explore/curve.hpp"
+#include "explore/quantity.hpp"
+#include "explore/worker.hpp"
 
 namespace dolp::explore {
 
-/// DOLP over zenith, as measured.
-struct MeasuredPoints {
-  std::string name;  ///< of the file
-  std::vector<double> theta_deg;
-  std::vector<double> dolp;
-  std::vector<double> uncertainty;  ///< one standard deviation of each; empty without the column
+/// One value, as measured.
+struct MeasuredPoint {
+  Quantity quantity = Quantity::kDolp;
+  double theta_deg = 0.0;
+  double value = 0.0;
+  std::optional<double> uncertainty;  ///< one standard deviation
 };
 
-/// Reads a CSV whose header has the columns `theta_deg` and `dolp`, and any of `uncertainty`, in any order; further
-/// columns are ignored.
-/// Domain: theta_deg in [0, 90], dolp in [-1, 1] (a fraction, not percent), uncertainty in (0, 1].
-/// Errors: InputError, one line that names file, line, column, value and allowed range.
-MeasuredPoints read_measured(const std::string& path);
-MeasuredPoints parse_measured(const std::string& text, const std::string& path_name);
+/// What a file of `dolp fit --data` says.
+struct MeasuredPoints {
+  MeasuredData data;
+  std::vector<MeasuredPoint> points;
+  std::vector<double> wavelength_um;  ///< of each point; empty: the scene's
+};
 
-/// The model at the measured zeniths.
+/// Errors: those of MeasuredData.
+MeasuredPoints points_of(MeasuredData data);
+
+/// The model at the measured points.
 class Residuals {
  public:
+  explicit Residuals(const Scene& scene) : scene_(scene) {}
+
   void load(MeasuredPoints points);
   void clear() { points_.reset(); }
   void follow(const std::string& key, const Scene& scene);
@@ -35,10 +41,10 @@ class Residuals {
   bool take(const JobPart& news);
 
   const std::optional<MeasuredPoints>& points() const { return points_; }
-  /// Measured minus model, NaN where the model gives none; empty until it is known.
+  /// Measured minus model of each point, NaN where the model gives none; empty until it is known.
   std::vector<double> residuals() const;
-  /// Root mean square of those that are numbers; none without any.
-  std::optional<double> rms() const;
+  /// Root mean square of a quantity's residuals that are numbers; none without any.
+  std::optional<double> rms(Quantity quantity) const;
 
  private:
   std::string job_key() const;
@@ -48,7 +54,7 @@ class Residuals {
   std::string key_;
   Scene scene_;
   std::string known_;  ///< key of the job whose results are here
-  std::vector<PointResult> results_;
+  std::vector<Point> model_;
 };
 
 }  // namespace dolp::explore

@@ -6,30 +6,42 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene.hpp"
-#include "scene/scene_reader.hpp"
+#include "explore/library.hpp"
 
 namespace dolp::explore {
 
+/// The part of a number's range that its slider covers; typing reaches all of it.
+struct SliderRange {
+  double min, max;
+};
+
 /// A number of the scene that a slider moves.
 struct Parameter {
-  const KeyDescription* description;  ///< key, unit, range, meaning
-  const char* symbol;                 ///< UTF-8
-  NumberRange slider;                 ///< the part of the range that the slider covers; typing reaches all of it
-  bool is_log;                        ///< the slider's scale
-  const char* equation;               ///< UTF-8, with its number in the paper where it has one
-  /// The scene's value; none where the scene does not have the key and the control is not shown.
-  std::optional<double> (*value)(const Scene& scene);
+  const Key* key;
+  const char* symbol;  ///< UTF-8
+  SliderRange slider;
+  bool is_log;           ///< the slider's scale
+  const char* equation;  ///< UTF-8, with its number in the paper where it has one
+  /// Whether the scene makes use of it; null: wherever it has it.
+  bool (*is_used)(const Scene& scene) = nullptr;
+
+  /// The scene's value; none where the control is not shown.
+  std::optional<double> value(const Scene& scene) const;
 };
 
 /// A word of the scene that a list offers, or a flag that a box shows.
 struct Choice {
-  const KeyDescription* description;
+  const Key* key;
   const char* label;
   const char* equation;
-  /// Position in words_of(*description); none where the control is not shown.
-  std::optional<std::size_t> (*word)(const Scene& scene);
+
+  /// Position in Key::words; none where the control is not shown.
+  std::optional<std::size_t> word(const Scene& scene) const;
+  bool is_flag() const { return key->words.front() == "false"; }
 };
+
+/// The key of this name, which must exist.
+const Key& described(const std::string& key);
 
 /// All of them, in the order of the scene keys.
 const std::vector<Parameter>& parameters();
@@ -38,14 +50,11 @@ const std::vector<Choice>& choices();
 /// The one with this key, which must exist.
 const Parameter& parameter(const std::string& key);
 
-/// What a choice is among: "false" and "true" for a flag.
-std::vector<std::string> words_of(const KeyDescription& description);
-
 /// The table of a dotted key: "surface" of "surface.sigma".
 std::string table_of(const std::string& key);
 
 /// The unit as a reader wants it: empty for 1, "°" for degree.
-std::string unit_text(const KeyDescription& description);
+std::string unit_text(const Key& key);
 
 /// The position of a value on its slider, 0 to 1, and back.
 double slider_position(const Parameter& parameter, double value);

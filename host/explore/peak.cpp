@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 
 namespace dolp::explore {
@@ -24,21 +23,21 @@ constexpr std::array kAway = {
 
 bool has(const Scene& scene, const WithoutEffect& away) {
   const std::string name = away.effect;
-  if (name == "emission") return scene.emission.has_value();
-  if (name == "source") return scene.source.has_value();
-  if (name == "surroundings") return scene.surroundings.has_value();
-  if (name == "path") return scene.path.has_value();
-  if (name == "diffuse") return scene.surface.diffuse > 0.0;
-  if (name == "specular") return scene.surface.specular > 0.0;
-  if (name == "masking") return scene.surface.masking != Masking::kNone;
-  if (name == "scattering") return scene.surface.scattering == Scattering::kMultiple;
-  return scene.surface.sigma > 0.0;
+  if (name == "emission") return scene.number("emission.temperature_K").has_value();
+  if (name == "source") return scene.number("source.scale").has_value();
+  if (name == "surroundings") return scene.number("surroundings.temperature_K").has_value();
+  if (name == "path") return scene.number("path.transmittance").has_value();
+  if (name == "diffuse") return scene.number("surface.diffuse") > 0.0;
+  if (name == "specular") return scene.number("surface.specular") > 0.0;
+  if (name == "masking") return scene.word("surface.masking") != "none";
+  if (name == "scattering") return scene.word("surface.scattering") == "multiple";
+  return scene.number("surface.sigma") > 0.0;
 }
 
-std::size_t position_of_largest(const std::vector<PointResult>& results) {
-  std::size_t best = results.size();
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    if (is_good(results[i]) && (best == results.size() || results[i].dolp > results[best].dolp)) best = i;
+std::size_t position_of_largest(const std::vector<Point>& points) {
+  std::size_t best = points.size();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (is_good(points[i]) && (best == points.size() || points[i].dolp > points[best].dolp)) best = i;
   }
   return best;
 }
@@ -54,14 +53,12 @@ void Peak::follow(const Curve& curve, const SceneEdits& edits, double theta_max_
   answer_.reset();
   without_.clear();
   scenes_without_.clear();
-  const std::vector<double>& theta_deg = curve.entries().theta_deg();
-  const auto count = std::ranges::count_if(theta_deg, [&](double theta) { return theta <= theta_max_deg; });
-  curve_theta_deg_.assign(theta_deg.begin(), theta_deg.begin() + count);
-  curve_results_.assign(curve.results().begin(), curve.results().begin() + count);
-  const std::size_t best = position_of_largest(curve_results_);
-  if (best == curve_results_.size()) return;
-  const double low = curve_theta_deg_[best == 0 ? 0 : best - 1];
-  const double high = curve_theta_deg_[std::min(best + 1, curve_results_.size() - 1)];
+  curve_ = curve.points();
+  std::erase_if(curve_, [&](const Point& point) { return point.theta_deg > theta_max_deg; });
+  const std::size_t best = position_of_largest(curve_);
+  if (best == curve_.size()) return;
+  const double low = curve_[best == 0 ? 0 : best - 1].theta_deg;
+  const double high = curve_[std::min(best + 1, curve_.size() - 1)].theta_deg;
   theta_deg_ = zeniths(low, high, static_cast<std::size_t>(std::lround((high - low) / kStepDeg)) + 1);
   take_away(edits);
 }
@@ -84,45 +81,38 @@ std::vector<Job> Peak::wanted() const {
   std::vector<Job> jobs;
   if (theta_deg_.empty()) return jobs;
   if (!answer_) {
-    Job job;
-    job.key = "peak " + key_;
-    job.scene = scene_;
-    job.entries = entries_at(scene_, theta_deg_);
-    jobs.push_back(std::move(job));
+    jobs.push_back({.key = "peak " + key_, .scene = scene_, .parts = {points_at(scene_, theta_deg_)}});
     return jobs;
   }
   for (std::size_t i = 0; i < without_.size(); ++i) {
     if (without_[i].is_known) continue;
-    Job job;
-    job.key = key_of(without_[i]);
-    job.scene = scenes_without_[i];
-    job.entries = entries_at(scenes_without_[i], {answer_->theta_deg});
-    jobs.push_back(std::move(job));
+    const Scene& scene = scenes_without_[i];
+    jobs.push_back({.key = key_of(without_[i]), .scene = scene, .parts = {points_at(scene, {answer_->theta_deg})}});
   }
   return jobs;
 }
 
 bool Peak::take(const JobPart& news) {
   if (news.key == "peak " + key_) {
-    answer_from(news.results);
+    answer_from(news.points);
     return true;
   }
   for (WithoutEffect& without : without_) {
     if (news.key != key_of(without)) continue;
-    without.result = news.results.front();
+    without.result = news.points.front();
     without.is_known = true;
     return true;
   }
   return false;
 }
 
-void Peak::answer_from(const std::vector<PointResult>& results) {
-  const std::size_t best = position_of_largest(results);
-  if (best == results.size()) {
+void Peak::answer_from(const std::vector<Point>& points) {
+  const std::size_t best = position_of_largest(points);
+  if (best == points.size()) {
     theta_deg_.clear();
     return;
   }
-  at_peak_ = results[best];
+  at_peak_ = points[best];
   PeakAnswer answer;
   answer.theta_deg = theta_deg_[best];
   answer.dolp = at_peak_.dolp;
@@ -131,25 +121,23 @@ void Peak::answer_from(const std::vector<PointResult>& results) {
   answer.albedo = at_peak_.albedo;
   const double least = at_peak_.dolp - at_peak_.error_estimate;
   const auto may_be_largest = [&](std::size_t i) {
-    return is_good(results[i]) && results[i].dolp + results[i].error_estimate >= least;
+    return is_good(points[i]) && points[i].dolp + points[i].error_estimate >= least;
   };
   std::size_t first = best;
   std::size_t last = best;
   while (first > 0 && may_be_largest(first - 1)) --first;
-  while (last + 1 < results.size() && may_be_largest(last + 1)) ++last;
+  while (last + 1 < points.size() && may_be_largest(last + 1)) ++last;
   answer.rival_deg = rival(least);
   answer.theta_low_deg = theta_deg_[first];
   answer.theta_high_deg = theta_deg_[last];
-  answer.is_at_end = best + 1 == results.size() || (best + 1 < results.size() && !is_good(results[best + 1]));
+  answer.is_at_end = best + 1 == points.size() || (best + 1 < points.size() && !is_good(points[best + 1]));
   answer_ = answer;
 }
 
 std::optional<double> Peak::rival(double least) const {
-  for (std::size_t i = 0; i < curve_results_.size(); ++i) {
-    const double theta_deg = curve_theta_deg_[i];
-    const bool is_beside = theta_deg >= theta_deg_.front() && theta_deg <= theta_deg_.back();
-    const PointResult& result = curve_results_[i];
-    if (!is_beside && is_good(result) && result.dolp + result.error_estimate >= least) return theta_deg;
+  for (const Point& point : curve_) {
+    const bool is_beside = point.theta_deg >= theta_deg_.front() && point.theta_deg <= theta_deg_.back();
+    if (!is_beside && is_good(point) && point.dolp + point.error_estimate >= least) return point.theta_deg;
   }
   return std::nullopt;
 }

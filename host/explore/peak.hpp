@@ -26,11 +26,11 @@ struct PeakAnswer {
 
 /// What the peak would be without one effect.
 struct WithoutEffect {
-  const char* effect;     ///< as in EffectRow::name, or "roughness"
+  const char* effect;     ///< as in Effect::name, or "roughness"
   const char* override_;  ///< what takes it away
   bool radiates;          ///< a part of the sum of radiances
   bool is_known = false;  ///< otherwise the scene cannot be without it
-  PointResult result = {};
+  Point result = {};
 };
 
 /// Looks for the peak of a finished curve on a fine grid, then takes each effect away there.
@@ -38,6 +38,8 @@ class Peak {
  public:
   /// Zeniths are told apart to this.
   static constexpr double kStepDeg = 0.02;
+
+  explicit Peak(const Scene& scene) : scene_(scene) {}
 
   /// The peak of this curve, which is finished, up to a zenith; the scene behind it is that of `edits`.
   void follow(const Curve& curve, const SceneEdits& edits, double theta_max_deg);
@@ -57,17 +59,16 @@ class Peak {
 
  private:
   std::optional<double> rival(double least) const;
-  void answer_from(const std::vector<PointResult>& results);
+  void answer_from(const std::vector<Point>& points);
   std::string key_of(const WithoutEffect& of) const;
   void take_away(const SceneEdits& edits);
 
   std::string key_;
   Scene scene_;
-  std::vector<double> curve_theta_deg_;
-  std::vector<PointResult> curve_results_;
+  std::vector<Point> curve_;
   std::vector<double> theta_deg_;  ///< around the peak of the curve; empty when no entry is good
   std::optional<PeakAnswer> answer_;
-  PointResult at_peak_;
+  Point at_peak_ = {};
   std::vector<WithoutEffect> without_;
   std::vector<Scene> scenes_without_;
 };

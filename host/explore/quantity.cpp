@@ -5,8 +5,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "model/status.hpp"
-
 namespace dolp::explore {
 namespace {
 
@@ -31,7 +29,7 @@ const QuantityDescription& described(Quantity quantity) {
   throw std::logic_error("no such quantity");
 }
 
-double value_of(Quantity quantity, const PointResult& r) {
+double value_of(Quantity quantity, const Point& r) {
   switch (quantity) {
     case Quantity::kDolp:
       return r.dolp;
@@ -51,7 +49,7 @@ double value_of(Quantity quantity, const PointResult& r) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-double error_of(Quantity quantity, const PointResult& r) {
+double error_of(Quantity quantity, const Point& r) {
   if (quantity == Quantity::kDolp || quantity == Quantity::kSignedDolp) return r.error_estimate;
   if (quantity == Quantity::kAlbedo) return std::numeric_limits<double>::quiet_NaN();
   return 2.0 * r.rho_error_estimate * std::abs(r.rho_i);  // of the sum of two moments
@@ -62,10 +60,10 @@ std::string status_text(std::uint32_t status) {
   const auto add = [&](std::uint32_t bit, const char* meaning) {
     if (status & bit) text += (text.empty() ? "" : ", ") + std::string(meaning);
   };
-  add(kStatusUnphysicalReflectance, "ρ outside [0, 1]");
-  add(kStatusToleranceMissed, "tolerance missed");
-  add(kStatusOutsideDomain, "outside the model's domain");
-  add(kStatusNonPositiveIntensity, "I ≤ 0");
+  add(api::kReflectanceOutsideZeroToOne, "ρ outside [0, 1]");
+  add(api::kToleranceNotMet, "tolerance missed");
+  add(api::kOutsideModelDomain, "outside the model's domain");
+  add(api::kIntensityNotPositive, "I ≤ 0");
   return text.empty() ? "good" : text;
 }
 

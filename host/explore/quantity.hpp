@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "model/point_result.hpp"
+#include "explore/points.hpp"
 
 namespace dolp::explore {
 
@@ -22,10 +22,10 @@ std::span<const QuantityDescription> quantities();
 const QuantityDescription& described(Quantity quantity);
 
 /// The value of an entry; NaN where the model gives none.
-double value_of(Quantity quantity, const PointResult& result);
+double value_of(Quantity quantity, const Point& point);
 
 /// The bound of its numerical error.
-double error_of(Quantity quantity, const PointResult& result);
+double error_of(Quantity quantity, const Point& point);
 
 /// "good", or what its status bits say, in few words.
 std::string status_text(std::uint32_t status);

@@ -34,15 +34,16 @@ std::vector<Part> radiating_parts(const Session& session) {
     parts.push_back({away.effect, peak.contribution(away)});
     rest -= parts.back().q_over_i;
   }
+  const auto has = [&](const char* key) { return session.scene().number(key).has_value(); };
   const bool has_emission = !parts.empty() && parts.front().name == "emission";
   if (has_emission) return parts;
-  const char* name = session.scene().emission ? "emission" : session.scene().source ? "source" : "surroundings";
+  const char* name = has("emission.temperature_K") ? "emission" : has("source.scale") ? "source" : "surroundings";
   const bool is_known = std::ranges::any_of(parts, [&](const Part& part) { return part.name == name; });
   if (!is_known) parts.insert(parts.begin(), {name, rest});
   return parts;
 }
 
-bool is_bistatic(const Scene& scene) { return scene.geometry.mode == Mode::kBistatic; }
+bool is_bistatic(const Scene& scene) { return scene.word("geometry.mode") == "bistatic"; }
 
 }  // namespace
 
@@ -89,13 +90,12 @@ std::string cause_text(const Session& session) {
 }
 
 std::string cursor_text(const Session& session) {
-  const std::optional<AtCursor> shown = session.at_cursor();
+  const Point* const shown = session.at_cursor();
   if (!shown) return "Cursor: …";
-  const auto& [entry, r] = *shown;
-  std::string text =
-      fmt::format("Cursor{}: θ = {:.1f}°, σ = {:.4g}, q = {:.4g}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
-                  stale_text(session.curve().is_stale()), entry.theta_deg, entry.shape.sigma, entry.shape.q,
-                  kPercent * r.dolp, points_text(r.error_estimate), kPercent * r.stokes_q / r.stokes_i);
+  const Point& r = *shown;
+  std::string text = fmt::format("Cursor{}: θ = {:.1f}°, σ = {:.4g}, q = {:.4g}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
+                                 stale_text(session.curve().is_stale()), r.theta_deg, r.sigma, r.q, kPercent * r.dolp,
+                                 points_text(r.error_estimate), kPercent * r.stokes_q / r.stokes_i);
   if (has_bracket(r)) {
     text += fmt::format(", all bounces {:.3f} to {:.3f} %", kPercent * r.dolp_low, kPercent * r.dolp_high);
   }
@@ -122,14 +122,14 @@ std::vector<std::string> cost_lines(const Session& session) {
   const Curve& curve = session.curve();
   const CurveReport& cost = curve.report();
   if (!curve.is_finished()) return {"time …", "work …", "error …"};
-  const double entries = static_cast<double>(cost.entries);
+  const double points = static_cast<double>(cost.points);
   constexpr double kMilliseconds = 1e3;
   constexpr double kMicroseconds = 1e6;
-  return {
-      fmt::format("time    {:.1f} ms for {} directions, {:.0f} µs each", kMilliseconds * cost.wall_s, cost.entries,
-                  kMicroseconds * cost.wall_s / entries),
-      fmt::format("work    {:.0f} integrand evaluations an entry", cost.evaluations / entries),
-      fmt::format("error   DOLP ≤ {:.2g}; tolerance {:.2g}", curve.worst_error(), curve.scene().accuracy.tolerance)};
+  return {fmt::format("time    {:.1f} ms for {} directions, {:.0f} µs each", kMilliseconds * cost.wall_s, cost.points,
+                      kMicroseconds * cost.wall_s / points),
+          fmt::format("work    {:.0f} integrand evaluations an entry", cost.evaluations / points),
+          fmt::format("error   DOLP ≤ {:.2g}; tolerance {:.2g}", curve.worst_error(),
+                      *curve.scene().number("accuracy.tolerance"))};
 }
 
 }  // namespace dolp::explore

@@ -5,9 +5,6 @@
 
 #include "base/text.hpp"
 #include "explore/parameters.hpp"
-#include "scene/scene_keys.hpp"
-#include "scene/scene_reader.hpp"
-#include "scene/scene_writer.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -27,35 +24,26 @@ bool contains(const std::vector<std::string>& keys, const std::string& key) {
   return std::ranges::find(keys, key) != keys.end();
 }
 
-/// Whether a change of `key` makes an older change of `other` void.
+/// Whether a change makes an older change of `other` void.
 bool replaces(const Change& change, const std::string& other) {
   const std::string& key = change.first;
   if (other == key || other == table_of(key)) return true;
-  if (is_effect_table(key) && table_of(other) == key) return true;
-  for (const KeyChoice& choice : key_choices()) {
-    for (const auto& alternative : choice.alternatives) {
-      if (!contains(alternative, key)) continue;
-      for (const auto& rival : choice.alternatives) {
-        if (&rival != &alternative && contains(rival, other)) return true;
-      }
-    }
-  }
-  return false;
+  const bool is_table = key.find('.') == std::string::npos && key != "title";
+  if (is_table) return table_of(other) == key;
+  return contains(described(key).rivals, other);
 }
 
 }  // namespace
 
-SceneEdits::SceneEdits(std::string text, std::string path_name, std::vector<std::string> overrides)
-    : text_(std::move(text)), path_name_(std::move(path_name)), opened_(parse_scene(text_, path_name_, overrides)) {
-  for (const std::string& override : overrides) given_.push_back(change_of(override));
+SceneEdits::SceneEdits(const Scene& opened) : opened_(opened), scene_(opened) {
+  for (const std::string& override : opened.overrides()) given_.push_back(change_of(override));
   changes_ = given_;
-  scene_ = opened_;
 }
 
 void SceneEdits::become(std::vector<Change> changes) {
   std::vector<std::string> arguments;
   for (const Change& change : changes) arguments.push_back(argument(change));
-  scene_ = parse_scene(text_, path_name_, arguments);
+  scene_ = Scene::from_text(opened_.text(), arguments, opened_.name());
   changes_ = std::move(changes);
 }
 
@@ -90,14 +78,6 @@ std::vector<std::string> SceneEdits::overrides_without(const std::vector<std::st
   return arguments;
 }
 
-Scene SceneEdits::variant(const std::vector<std::string>& more) const {
-  std::vector<std::string> arguments = overrides();
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return parse_scene(text_, path_name_, arguments);
-}
-
-std::string SceneEdits::toml(const std::filesystem::path& folder) const {
-  return scene_toml(text_, path_name_, overrides(), folder);
-}
+Scene SceneEdits::variant(const std::vector<std::string>& more) const { return scene_.with(more); }
 
 }  // namespace dolp::explore

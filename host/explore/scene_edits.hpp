@@ -1,12 +1,11 @@
 // The scene that the window shows: a file's text and what was changed since.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "scene/scene.hpp"
+#include "explore/library.hpp"
 
 namespace dolp::explore {
 
@@ -16,8 +15,7 @@ class SceneEdits {
  public:
   using Change = std::pair<std::string, std::string>;
 
-  /// Errors: InputError as parse_scene.
-  SceneEdits(std::string text, std::string path_name, std::vector<std::string> overrides);
+  explicit SceneEdits(const Scene& opened);
 
   /// Changes keys together; "none" of an effect's table removes it, any key of it brings it back. Alternatives of a key
   /// (n and k, material, material file) go.
@@ -41,14 +39,9 @@ class SceneEdits {
   /// The scene with further overrides. Errors: InputError.
   Scene variant(const std::vector<std::string>& more) const;
 
-  /// TOML that reads back as this scene; see scene_toml.
-  std::string toml(const std::filesystem::path& folder) const;
-
  private:
   void become(std::vector<Change> changes);
 
-  std::string text_;
-  std::string path_name_;
   std::vector<Change> given_;  ///< of the command line
   std::vector<Change> changes_;
   Scene opened_;

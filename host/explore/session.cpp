@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "explore/conflicts.hpp"
-#include "model/choices.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -20,12 +18,12 @@ std::string content_key(const std::vector<std::string>& overrides, bool keep_all
 }
 
 /// The other distribution with the same density of flat facets: sigma_G = sigma / sqrt(q - 1).
-std::vector<std::string> other_distribution(const Surface& surface) {
-  const double ratio = std::sqrt(surface.q - 1.0);
-  const bool is_cauchy = surface.distribution == Distribution::kCauchy;
-  const double sigma = is_cauchy ? surface.sigma / ratio : surface.sigma * ratio;
-  return {std::string("surface.distribution=") + name_of(is_cauchy ? Distribution::kGaussian : Distribution::kCauchy),
-          "surface.sigma=" + format_number(sigma)};
+std::vector<std::string> other_distribution(const Scene& scene) {
+  const double sigma = scene.number("surface.sigma").value();
+  const double ratio = std::sqrt(scene.number("surface.q").value() - 1.0);
+  const bool is_cauchy = scene.word("surface.distribution") == "cauchy";
+  return {std::string("surface.distribution=") + (is_cauchy ? "gaussian" : "cauchy"),
+          "surface.sigma=" + format_number(is_cauchy ? sigma / ratio : sigma * ratio)};
 }
 
 std::string text_of(const std::vector<SceneEdits::Change>& changes) {
@@ -42,21 +40,25 @@ std::string own_key(AxisKind kind) {
 }  // namespace
 
 std::string surface_name(const Scene& scene) {
-  const Surface& surface = scene.surface;
-  const bool is_cauchy = surface.distribution == Distribution::kCauchy;
-  std::string name = fmt::format("{} σ {:.4g}", name_of(surface.distribution), surface.sigma);
-  if (is_cauchy) name += fmt::format(" q {:.4g}", surface.q);
-  name += std::string(", ") + name_of(surface.masking);
-  if (surface.scattering == Scattering::kMultiple) name += ", all bounces";
-  if (!surface.material.name.empty()) return name + ", " + surface.material.name;
-  return name + fmt::format(", n {:.4g} k {:.4g}", surface.material.constant.n, surface.material.constant.k);
+  const std::string distribution = scene.word("surface.distribution").value();
+  std::string name = fmt::format("{} σ {:.4g}", distribution, scene.number("surface.sigma").value());
+  if (distribution == "cauchy") name += fmt::format(" q {:.4g}", scene.number("surface.q").value());
+  name += ", " + scene.word("surface.masking").value();
+  if (scene.word("surface.scattering") == "multiple") name += ", all bounces";
+  if (const auto material = scene.word("surface.material")) return name + ", " + *material;
+  if (const auto file = scene.word("surface.material_file")) return name + ", " + *file;
+  const double n = scene.number("surface.n").value();
+  return name + fmt::format(", n {:.4g} k {:.4g}", n, scene.number("surface.k").value());
 }
 
 const char* stale_text(bool is_stale) { return is_stale ? ", the scene before" : ""; }
 
 std::string curve_name(const Curve& curve) { return surface_name(curve.shown_scene()) + stale_text(curve.is_stale()); }
 
-Session::Session(SceneEdits edits) : edits_(std::move(edits)) { follow(); }
+Session::Session(SceneEdits edits)
+    : edits_(std::move(edits)), curve_(scene()), map_(scene()), peak_(scene()), residuals_(scene()) {
+  follow();
+}
 
 template <class Command>
 void Session::attempt(const Command& command) {
@@ -102,7 +104,7 @@ void Session::reset_all() {
 }
 
 void Session::load_measured(const std::string& path) {
-  attempt([&] { residuals_.load(read_measured(path)); });
+  attempt([&] { residuals_.load(points_of(MeasuredData::read(path))); });
 }
 
 void Session::take_fit(FitFound found) {
@@ -157,15 +159,14 @@ void Session::set_map_cursor(double x, double y) {
 
 double Session::cursor_position(const MapAxis& axis) const {
   if (axis.kind == AxisKind::kTheta) return axis.position(theta_deg_);
-  return axis.position(axis.kind == AxisKind::kSigma ? scene().surface.sigma : scene().surface.q);
+  return axis.position(scene().number(own_key(axis.kind)).value());
 }
 
-std::optional<AtCursor> Session::at_cursor() const {
-  const std::vector<double>& theta_deg = curve_.entries().theta_deg();
-  if (theta_deg.empty()) return std::nullopt;
-  const auto nearest = std::ranges::min_element(theta_deg, {}, [&](double at) { return std::abs(at - theta_deg_); });
-  const auto position = static_cast<std::size_t>(nearest - theta_deg.begin());
-  return AtCursor{curve_.entries()[position], curve_.results()[position]};
+const Point* Session::at_cursor() const {
+  const std::vector<Point>& points = curve_.points();
+  if (points.empty()) return nullptr;
+  const auto distance = [&](const Point& point) { return std::abs(point.theta_deg - theta_deg_); };
+  return &*std::ranges::min_element(points, {}, distance);
 }
 
 void Session::follow() {
@@ -182,15 +183,22 @@ void Session::follow() {
 
 void Session::bound_effects() {
   const CurveReport& report = curve_.report();
-  effects_ = report.rows;
-  if (!effects_.empty()) add_influences(effects_, report.scene, entries_at(report.scene, {theta_deg_}));
+  effects_ = report.effects;
+  if (effects_.empty()) return;
+  const std::vector<Effect> at_cursor =
+      api::effects(report.scene, points_at(report.scene, {theta_deg_}).columns(), true);
+  for (std::size_t i = 0; i < effects_.size(); ++i) {
+    if (effects_[i].state != "kept") continue;
+    effects_[i].bound = at_cursor[i].bound;
+    effects_[i].unbounded = at_cursor[i].unbounded;
+  }
 }
 
 std::string Session::overlay_name() const {
   if (!overlay_) return {};
-  const Surface& surface = overlay_->shown_scene().surface;
-  return fmt::format("{} σ {:.4g}, same D(0){}", name_of(surface.distribution), surface.sigma,
-                     stale_text(overlay_->is_stale()));
+  const Scene& shown = overlay_->shown_scene();
+  return fmt::format("{} σ {:.4g}, same D(0){}", shown.word("surface.distribution").value(),
+                     shown.number("surface.sigma").value(), stale_text(overlay_->is_stale()));
 }
 
 void Session::follow_overlay(const std::string& content, bool keep_all) {
@@ -199,8 +207,8 @@ void Session::follow_overlay(const std::string& content, bool keep_all) {
     return;
   }
   try {
-    const Scene other = edits_.variant(other_distribution(scene().surface));
-    if (!overlay_) overlay_.emplace();
+    const Scene other = edits_.variant(other_distribution(scene()));
+    if (!overlay_) overlay_.emplace(other);
     overlay_->follow("other distribution " + content, other, keep_all);
   } catch (const InputError&) {
     overlay_.reset();  // its sigma or q is outside the model

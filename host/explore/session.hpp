@@ -35,12 +35,6 @@ struct View {
   AxisKind map_y = AxisKind::kSigma;
 };
 
-/// An entry of the curve that is shown.
-struct AtCursor {
-  SceneEntry entry;
-  PointResult result;
-};
-
 /// One line for the user.
 struct Message {
   std::string text;
@@ -101,12 +95,12 @@ class Session {
   const FitFound* fit_found() const { return fitting_.found(edits_.overrides()); }
   const Message& message() const { return message_; }
   /// The effects of the last finished curve; bounds of what is kept are those at the cursor's zenith.
-  const std::vector<EffectRow>& effects() const { return effects_; }
+  const std::vector<Effect>& effects() const { return effects_; }
   /// The position of the scene's own values on the map.
   double map_cursor_x() const { return cursor_position(map_.x()); }
   double map_cursor_y() const { return cursor_position(map_.y()); }
-  /// What is shown at the zenith nearest to the cursor's; none before there is something.
-  std::optional<AtCursor> at_cursor() const;
+  /// What is shown at the zenith nearest to the cursor's; null before there is something.
+  const Point* at_cursor() const;
 
  private:
   template <class Command>
@@ -129,7 +123,7 @@ class Session {
   Peak peak_;
   Residuals residuals_;
   Fitting fitting_;
-  std::vector<EffectRow> effects_;
+  std::vector<Effect> effects_;
   Message message_;
   bool is_changed_ = true;
 };

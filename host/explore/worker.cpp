@@ -6,12 +6,19 @@
 #include <utility>
 
 #include "base/stopwatch.hpp"
-#include "run/scene_run.hpp"
+#include "base/text.hpp"
 
 namespace dolp::explore {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+Job with_tolerance(Job job) {
+  if (job.tolerance > job.scene.number("accuracy.tolerance")) {
+    job.scene = job.scene.with({"accuracy.tolerance=" + format_number(job.tolerance)});
+  }
+  return job;
+}
 
 bool contains(const std::vector<std::string>& keys, const std::string& key) {
   return std::ranges::find(keys, key) != keys.end();
@@ -19,8 +26,8 @@ bool contains(const std::vector<std::string>& keys, const std::string& key) {
 
 }  // namespace
 
-Worker::Worker(MomentsEvaluator& evaluator, std::function<void()> on_news)
-    : evaluator_(evaluator), on_news_(std::move(on_news)), thread_([this] { run(); }) {}
+Worker::Worker(Evaluate evaluate, std::function<void()> on_news)
+    : evaluate_(std::move(evaluate)), on_news_(std::move(on_news)), thread_([this] { run(); }) {}
 
 Worker::~Worker() {
   {
@@ -44,9 +51,7 @@ void Worker::want(std::vector<Job> jobs) {
         tasks_.push_back(std::move(*same));
         same->job.key.clear();
       } else {
-        Task task;
-        task.job = std::move(job);
-        tasks_.push_back(std::move(task));
+        tasks_.push_back({.job = std::move(job)});
       }
     }
     std::erase_if(finished_, [&](const std::string& key) { return !contains(wanted_, key); });
@@ -80,17 +85,21 @@ void Worker::run() {
   on_news_();
 }
 
+std::optional<Worker::Task> Worker::next_task() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return is_stopping_ || !tasks_.empty(); });
+  if (is_stopping_) return std::nullopt;
+  Task task = std::move(tasks_.front());
+  tasks_.erase(tasks_.begin());
+  running_ = task.job.key;
+  return task;
+}
+
 void Worker::run_tasks() {
   for (;;) {
-    Task task;
-    {
-      std::unique_lock lock(mutex_);
-      changed_.wait(lock, [this] { return is_stopping_ || !tasks_.empty(); });
-      if (is_stopping_) return;
-      task = std::move(tasks_.front());
-      tasks_.erase(tasks_.begin());
-      running_ = task.job.key;
-    }
+    std::optional<Task> next = next_task();
+    if (!next) return;
+    Task& task = *next;
     std::vector<JobPart> parts;
     try {
       parts.push_back(advance(task));
@@ -119,25 +128,23 @@ void Worker::put_back(Task task, std::vector<JobPart> parts) {
 }
 
 JobPart Worker::advance(Task& task) {
+  if (task.next == 0) task.job = with_tolerance(std::move(task.job));
   const Job& job = task.job;
+  const PointList& list = job.parts[task.next];
   const Clock::time_point start = Clock::now();
-  const double evaluations_before = evaluator_.report().evaluations;
-  if (task.next == 0) task.plan = plan_effects(job.scene, job.entries, job.keep_all);
-  JobPart news;
-  news.key = job.key;
-  news.part = task.next;
-  news.scene = job.scene;
-  news.entries = job.parts.empty() ? job.entries : job.parts[task.next];
-  news.results = evaluate_scene(news.scene, news.entries, task.plan, &evaluator_,
-                                [&](std::size_t, std::size_t) { return goes_on(job); });
+  const Results results = evaluate_(
+      job.scene, list, {.keep_all = job.keep_all, .progress = [&](std::size_t, std::size_t) { return goes_on(job); }});
+  JobPart news{.key = job.key, .part = task.next, .scene = job.scene, .points = points_of(list, results)};
   ++task.next;
   task.wall_s += seconds_since(start);
-  task.evaluations += evaluator_.report().evaluations - evaluations_before;
-  news.is_last = task.next >= job.parts.size();
+  task.evaluations += results.integrand_evaluations;
+  news.is_last = task.next == job.parts.size();
   if (!news.is_last) return news;
   news.wall_s = task.wall_s;
   news.evaluations = task.evaluations;
-  if (job.wants_rows) news.rows = effect_rows(job.scene, job.entries, task.plan);
+  if (!job.wants_effects) return news;
+  news.csv = api::to_csv(list.columns(), results);
+  news.effects = api::effects(job.scene, list.columns(), job.keep_all);
   return news;
 }
 

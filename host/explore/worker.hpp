@@ -6,49 +6,49 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "evaluate/evaluator.hpp"
-#include "model/point_result.hpp"
-#include "model/scene_entry.hpp"
-#include "plan/effects.hpp"
-#include "scene/scene.hpp"
+#include "explore/points.hpp"
 
 namespace dolp::explore {
 
-/// Entries of a scene that the window wants, computed as `dolp eval` computes them.
+/// Points of a scene that the window wants, computed as `dolp eval` computes them.
 struct Job {
   std::string key;  ///< jobs with one key have one content
   Scene scene;
-  SceneEntries entries;
-  /// What is computed at a time, one after the other; a job of higher rank may come in between. Empty: all at once.
-  std::vector<SceneEntries> parts = {};
+  /// What is computed at a time, one after the other; a job of higher rank may come in between.
+  std::vector<PointList> parts;
+  double tolerance = 0.0;  ///< instead of the scene's, where that is less
   bool keep_all = false;
-  bool wants_rows = false;  ///< the effects of the plan
-  bool is_brief = false;    ///< once begun it is finished, wanted or not
+  bool wants_effects = false;
+  bool is_brief = false;  ///< once begun it is finished, wanted or not
 };
 
 /// A part of a job's results.
 struct JobPart {
   std::string key;
   std::size_t part = 0;  ///< of the job
-  Scene scene;
-  SceneEntries entries;  ///< of this part
-  std::vector<PointResult> results;
+  Scene scene;           ///< of the job, with its tolerance
+  std::vector<Point> points = {};
+  std::string csv = {};  ///< of this part, where the job wants effects
   bool is_last = false;
   // Of the whole job, in the last part.
-  std::vector<EffectRow> rows;
+  std::vector<Effect> effects = {};
   double wall_s = 0.0;
   double evaluations = 0.0;
 };
 
+/// As `evaluate`. Called from one thread.
+using Evaluate = std::function<Results(const Scene& scene, const PointList& list, const RunOptions& options)>;
+
 /// Computes what is wanted, in order; what is no longer wanted is given up within a tile of the device, unless brief.
 class Worker {
  public:
-  /// `on_news` is called from the worker's thread after each part and after a failure. The evaluator must outlive this.
-  Worker(MomentsEvaluator& evaluator, std::function<void()> on_news);
+  /// `on_news` is called from the worker's thread after each part and after a failure.
+  Worker(Evaluate evaluate, std::function<void()> on_news);
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
   ~Worker();
@@ -66,19 +66,20 @@ class Worker {
   struct Task {
     Job job;
     std::size_t next = 0;  ///< of its parts
-    EffectPlan plan;
     double wall_s = 0.0;
     double evaluations = 0.0;
   };
 
   void run();
   void run_tasks();
+  /// Waits for one; none at the end.
+  std::optional<Task> next_task();
   JobPart advance(Task& task);
   /// What was done of a task is news; the rest of it goes back to its rank among what is wanted now.
   void put_back(Task task, std::vector<JobPart> parts);
   bool goes_on(const Job& job) const;
 
-  MomentsEvaluator& evaluator_;
+  Evaluate evaluate_;
   std::function<void()> on_news_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;

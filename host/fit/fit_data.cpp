@@ -124,6 +124,10 @@ std::vector<std::string> overrides_of(std::string_view text) {
 
 }  // namespace
 
+const char* name_of(Observable observable) {
+  return std::ranges::find(kColumns, std::optional(observable), &ColumnRule::observable)->name;
+}
+
 FitData parse_fit_data(const std::string& text, const std::string& path_name) {
   FitData data;
   data.name = input_name(path_name);

@@ -11,6 +11,9 @@ namespace dolp::fit {
 /// What was measured: a column of the data, and a quantity of the model.
 enum class Observable { kDolp, kQOverI, kEmissivityS, kEmissivityP };
 
+/// "dolp", "q_over_i", ...
+const char* name_of(Observable observable);
+
 /// One measured number.
 struct Observation {
   Observable observable = Observable::kDolp;

@@ -171,14 +171,13 @@ void Model::add_groups(const SceneText& scene, const FitData& data, Eigen::Index
 }
 
 Scene Model::with(const Scene& scene, const Eigen::VectorXd& values) const {
-  SceneDraft draft;
-  draft.scene = scene;
+  Scene own = scene;
   for (std::size_t j = 0; j < parameters_.size(); ++j) {
     KeyValue value;
     value.number = values[static_cast<Eigen::Index>(j)];
-    find_scene_key(parameters_[j].key)->set(draft, value);
+    find_scene_key(parameters_[j].key)->set(own, value);
   }
-  return std::move(draft.scene);
+  return own;
 }
 
 std::vector<Prediction> Model::predict(const std::vector<Eigen::VectorXd>& values, double tolerance,

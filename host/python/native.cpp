@@ -94,7 +94,7 @@ PYBIND11_MODULE(_native, module) {
       .def_static("from_file", &dolp::Scene::from_file)
       .def_static("from_text", &dolp::Scene::from_text)
       .def("using", &dolp::Scene::with)
-      .def("toml", &dolp::Scene::toml)
+      .def("toml", [](const dolp::Scene& scene) { return scene.toml(); })
       .def_property_readonly("title", &dolp::Scene::title);
 
   py::class_<dolp::Table>(module, "Table")

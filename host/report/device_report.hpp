@@ -1,7 +1,7 @@
 // What there is to say of the Vulkan devices.
 #pragma once
 
-#include "evaluate/vulkan/devices.hpp"
+#include "device/devices.hpp"
 #include "report/report.hpp"
 
 namespace dolp {

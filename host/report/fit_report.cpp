@@ -124,14 +124,13 @@ void add_minima(Report& report, const FitResult& result) {
 }
 
 void add_points(Report& report, const fit::Model& model, const FitResult& result) {
-  static constexpr std::array<const char*, 4> kNames = {"dolp", "q_over_i", "emissivity_s", "emissivity_p"};
   report.value("residuals", json_of(result.residuals));
   Json points = Json::array();
   Eigen::Index row = 0;
   for (const fit::FitData& data : model.data()) {
     for (const fit::Observation& one : data.observations) {
       points.push_back({{"data", data.name},
-                        {"quantity", kNames[static_cast<std::size_t>(one.observable)]},
+                        {"quantity", name_of(one.observable)},
                         {"theta_deg", one.theta_deg},
                         {"wavelength_um", json_of(one.wavelength_um)},
                         {"measured", one.value},

@@ -97,8 +97,15 @@ struct Accuracy {
   bool may_interpolate = true;  ///< between slope distributions, where the grid is dense
 };
 
+/// What a scene names, the material in full; empty where it names nothing.
+struct SceneNames {
+  std::string material, material_file;
+  std::string source_preset, source_file;
+};
+
 struct Scene {
   std::string title;
+  SceneNames names;
   Surface surface;
   std::optional<Emission> emission;
   std::optional<Source> source;

@@ -11,163 +11,234 @@ namespace dolp {
 namespace {
 
 using Type = KeyDescription::Type;
-using Draft = SceneDraft;
 using Value = KeyValue;
-using Set = void (*)(SceneDraft&, const KeyValue&);
 
+// What a place of a scene holds; a null pointer is a place that the scene does not have.
+std::optional<Value> value_at(const double* at) { return at ? std::optional(Value{.number = *at}) : std::nullopt; }
+std::optional<Value> value_at(const bool* at) {
+  return at ? std::optional(Value{.word = *at ? std::size_t{1} : 0, .is_set = *at}) : std::nullopt;
+}
+std::optional<Value> value_at(const std::string* at) {
+  return at && !at->empty() ? std::optional(Value{.text = *at}) : std::nullopt;
+}
+std::optional<Value> value_at(const std::vector<double>* at) {
+  return at && !at->empty() ? std::optional(Value{.numbers = *at}) : std::nullopt;
+}
+
+// In all of these `place` gives the address in a Scene that the key stands for.
+
+template <class Place>
 SceneKey number(const char* key, const char* unit, const NumberRange& range, const char* fallback, const char* meaning,
-                Set set) {
-  return {{key, Type::kNumber, unit, range, {}, fallback, meaning}, set};
+                Place place) {
+  return {{key, Type::kNumber, unit, range, {}, fallback, meaning},
+          [place](Scene& s, const Value& v) { *place(s) = v.number; },
+          [place](const Scene& s) { return value_at(place(s)); }};
 }
 
-/// The words are in the order of the enumeration they stand for.
-SceneKey word(const char* key, std::vector<std::string> words, const char* fallback, const char* meaning, Set set) {
-  return {{key, Type::kWord, "", {}, std::move(words), fallback, meaning}, set};
+/// One of several keys for one thing: its place is there once it was set.
+template <class Place, class Set>
+SceneKey number(const char* key, const char* unit, const NumberRange& range, const char* fallback, const char* meaning,
+                Place place, Set set) {
+  return {{key, Type::kNumber, unit, range, {}, fallback, meaning}, set, [place](const Scene& s) {
+            return value_at(place(s));
+          }};
 }
 
-template <class Choice>
-SceneKey choice(const char* key, Choice fallback, const char* meaning, Set set) {
+/// The words are in the order of the enumeration.
+template <class Choice, class Place>
+SceneKey choice(const char* key, Choice fallback, const char* meaning, Place place) {
   const auto& words = Names<Choice>::kAll;
-  return word(key, {words.begin(), words.end()}, name_of(fallback), meaning, set);
+  return {{key, Type::kWord, "", {}, {words.begin(), words.end()}, name_of(fallback), meaning},
+          [place](Scene& s, const Value& v) { *place(s) = static_cast<Choice>(v.word); },
+          [place](const Scene& s) -> std::optional<Value> {
+            const auto* at = place(s);
+            if (!at) return std::nullopt;
+            return Value{.word = static_cast<std::size_t>(*at), .text = name_of(*at)};
+          }};
 }
 
-SceneKey flag(const char* key, const char* meaning, Set set) {
-  return {{key, Type::kFlag, "", {}, {}, "false", meaning}, set};
+template <class Place>
+SceneKey flag(const char* key, const char* meaning, Place place) {
+  return {{key, Type::kFlag, "", {}, {}, "false", meaning},
+          [place](Scene& s, const Value& v) { *place(s) = v.is_set; },
+          [place](const Scene& s) { return value_at(place(s)); }};
 }
 
-SceneKey text(const char* key, const char* meaning, Set set) {
-  return {{key, Type::kText, "", {}, {}, "", meaning}, set};
+template <class Place>
+SceneKey text(const char* key, const char* meaning, Place place) {
+  return {{key, Type::kText, "", {}, {}, "", meaning},
+          [place](Scene& s, const Value& v) { *place(s) = v.text; },
+          [place](const Scene& s) { return value_at(place(s)); }};
 }
 
+template <class Place>
 SceneKey axis(const char* key, const char* unit, const NumberRange& range, const char* fallback, const char* meaning,
-              Set set) {
-  return {{key, Type::kAxis, unit, range, {}, fallback, meaning}, set};
+              Place place) {
+  return {{key, Type::kAxis, unit, range, {}, fallback, meaning},
+          [place](Scene& s, const Value& v) { *place(s) = v.numbers; },
+          [place](const Scene& s) { return value_at(place(s)); }};
 }
 
 void append(std::vector<SceneKey>& keys, std::vector<SceneKey> more) {
   std::move(more.begin(), more.end(), std::back_inserter(keys));
 }
 
+bool has_own_index(const Scene& s) { return s.names.material.empty() && s.names.material_file.empty(); }
+
+bool is_of_kind(const Scene& s, Source::Kind kind) { return s.source && s.source->kind == kind; }
+
 std::vector<SceneKey> surface_keys() {
   return {
-      text("title", "name of the scene, for the table and the window",
-           [](Draft& d, const Value& v) { d.scene.title = v.text; }),
-      number("surface.n", "1", kNRange, "", "real part n of the refractive index n + ik; or material, or material_file",
-             [](Draft& d, const Value& v) { d.scene.surface.material.constant.n = v.number; }),
-      number("surface.k", "1", kKRange, "0", "imaginary part k of the refractive index n + ik, with surface.n",
-             [](Draft& d, const Value& v) { d.scene.surface.material.constant.k = v.number; }),
+      text("title", "name of the scene, for the table and the window", [](auto& s) { return &s.title; }),
+      number(
+          "surface.n", "1", kNRange, "", "real part n of the refractive index n + ik; or material, or material_file",
+          [](const Scene& s) { return has_own_index(s) ? &s.surface.material.constant.n : nullptr; },
+          [](Scene& s, const Value& v) { s.surface.material.constant.n = v.number; }),
+      number(
+          "surface.k", "1", kKRange, "0", "imaginary part k of the refractive index n + ik, with surface.n",
+          [](const Scene& s) { return has_own_index(s) ? &s.surface.material.constant.k : nullptr; },
+          [](Scene& s, const Value& v) { s.surface.material.constant.k = v.number; }),
       text("surface.material", "a built-in material by name (dolp materials lists them), instead of n and k",
-           [](Draft& d, const Value& v) { d.material = v.text; }),
+           [](auto& s) { return &s.names.material; }),
       text("surface.material_file", "your own n and k: refractiveindex.info YAML or CSV, instead of n and k",
-           [](Draft& d, const Value& v) { d.material_file = v.text; }),
+           [](auto& s) { return &s.names.material_file; }),
       choice("surface.distribution", Surface().distribution, "slope distribution D",
-             [](Draft& d, const Value& v) { d.scene.surface.distribution = static_cast<Distribution>(v.word); }),
+             [](auto& s) { return &s.surface.distribution; }),
       number("surface.sigma", "1", kSigmaRange, "required",
              "slope width sigma (m^2 = 2 sigma^2); may be absent with grid.sigma, whose first value it then is",
-             [](Draft& d, const Value& v) { d.scene.surface.sigma = v.number; }),
+             [](auto& s) { return &s.surface.sigma; }),
       number("surface.q", "1", kQRange, "2", "tail exponent q of the cauchy distribution; 2 is GGX",
-             [](Draft& d, const Value& v) { d.scene.surface.q = v.number; }),
+             [](auto& s) { return &s.surface.q; }),
       choice("surface.masking", Surface().masking, "geometric attenuation G; smith with cauchy needs every q > 1.5",
-             [](Draft& d, const Value& v) { d.scene.surface.masking = static_cast<Masking>(v.word); }),
+             [](auto& s) { return &s.surface.masking; }),
       choice("surface.scattering", Surface().scattering,
              "light followed to its first facet, or through all bounces in V-grooves (masking v-cavity)",
-             [](Draft& d, const Value& v) { d.scene.surface.scattering = static_cast<Scattering>(v.word); }),
+             [](auto& s) { return &s.surface.scattering; }),
       number("surface.specular", "1", kFractionRange, "1", "specular factor k_s",
-             [](Draft& d, const Value& v) { d.scene.surface.specular = v.number; }),
+             [](auto& s) { return &s.surface.specular; }),
       number("surface.diffuse", "1", kFractionRange, "0", "diffuse factor k_d",
-             [](Draft& d, const Value& v) { d.scene.surface.diffuse = v.number; }),
+             [](auto& s) { return &s.surface.diffuse; }),
       number("surface.diffuse_exponent", "1", kDiffuseExponentRange, "-0.5",
              "exponent c of the diffuse term (cos theta_i cos theta_r)^c",
-             [](Draft& d, const Value& v) { d.scene.surface.diffuse_exponent = v.number; }),
+             [](auto& s) { return &s.surface.diffuse_exponent; }),
   };
 }
 
 std::vector<SceneKey> radiation_keys() {
   return {
       number("emission.temperature_K", "K", kEmissionTemperatureRange, "required", "temperature T of the surface",
-             [](Draft& d, const Value& v) { d.scene.emission->temperature_K = v.number; }),
+             [](auto& s) { return s.emission ? &s.emission->temperature_K : nullptr; }),
       choice(
           "emission.model", Emission().model,
           "emissivity 1 - rho of the rough surface, 1 - R of the smooth surface, or what the facets emit straight to "
           "the viewer (masking smith or v-cavity)",
-          [](Draft& d, const Value& v) { d.scene.emission->model = static_cast<EmissionModel>(v.word); }),
+          [](auto& s) { return s.emission ? &s.emission->model : nullptr; }),
       flag("emission.bracket",
            "adds dolp_low, dolp_high: what DOLP lies between with all bounces (masking smith or v-cavity)",
-           [](Draft& d, const Value& v) { d.scene.emission->has_bracket = v.is_set; }),
-      number("source.irradiance", "W m-2 um-1", kNonNegativeRange, "", "E0 at normal incidence, flat over a band",
-             [](Draft& d, const Value& v) {
-               d.scene.source->kind = Source::Kind::kFlat;
-               d.scene.source->irradiance = v.number;
-             }),
-      number("source.relative_irradiance", "1", kNonNegativeRange, "",
-             "e = E0/(pi B(T)) at each wavelength, T of the emission; instead of irradiance",
-             [](Draft& d, const Value& v) {
-               d.scene.source->kind = Source::Kind::kRelative;
-               d.scene.source->relative_irradiance = v.number;
-             }),
-      word("source.preset", {"sun"}, "", "E0 of the sun at the top of the atmosphere; instead of irradiance",
-           [](Draft& d, const Value& v) { d.source_preset = v.text; }),
+           [](auto& s) { return s.emission ? &s.emission->has_bracket : nullptr; }),
+      number(
+          "source.irradiance", "W m-2 um-1", kNonNegativeRange, "", "E0 at normal incidence, flat over a band",
+          [](const Scene& s) { return is_of_kind(s, Source::Kind::kFlat) ? &s.source->irradiance : nullptr; },
+          [](Scene& s, const Value& v) {
+            s.source->kind = Source::Kind::kFlat;
+            s.source->irradiance = v.number;
+          }),
+      number(
+          "source.relative_irradiance", "1", kNonNegativeRange, "",
+          "e = E0/(pi B(T)) at each wavelength, T of the emission; instead of irradiance",
+          [](const Scene& s) {
+            return is_of_kind(s, Source::Kind::kRelative) ? &s.source->relative_irradiance : nullptr;
+          },
+          [](Scene& s, const Value& v) {
+            s.source->kind = Source::Kind::kRelative;
+            s.source->relative_irradiance = v.number;
+          }),
+      {{"source.preset",
+        Type::kWord,
+        "",
+        {},
+        {"sun"},
+        "",
+        "E0 of the sun at the top of the atmosphere; instead of irradiance"},
+       [](Scene& s, const Value& v) { s.names.source_preset = v.text; },
+       [](const Scene& s) { return value_at(&s.names.source_preset); }},
       text("source.file", "your own E0: CSV of wavelength_um, irradiance; instead of irradiance",
-           [](Draft& d, const Value& v) { d.source_file = v.text; }),
+           [](auto& s) { return &s.names.source_file; }),
       number("source.scale", "1", kNonNegativeRange, "1", "factor on E0, whatever its kind",
-             [](Draft& d, const Value& v) { d.scene.source->scale = v.number; }),
+             [](auto& s) { return s.source ? &s.source->scale : nullptr; }),
       number("surroundings.temperature_K", "K", kBackgroundTemperatureRange, "required",
              "temperature T_surr of the black surroundings that the surface reflects",
-             [](Draft& d, const Value& v) { d.scene.surroundings->temperature_K = v.number; }),
+             [](auto& s) { return s.surroundings ? &s.surroundings->temperature_K : nullptr; }),
       number("path.transmittance", "1", kFractionRange, "1", "transmittance tau of the path to the sensor",
-             [](Draft& d, const Value& v) { d.scene.path->transmittance = v.number; }),
-      number("path.temperature_K", "K", kBackgroundTemperatureRange, "",
-             "temperature of the path, whose radiance is (1 - tau) B(T); without it and radiance, none",
-             [](Draft& d, const Value& v) { d.scene.path->temperature_K = v.number; }),
-      number("path.radiance", "W m-2 sr-1 um-1", kNonNegativeRange, "",
-             "path radiance L_path; instead of path.temperature_K",
-             [](Draft& d, const Value& v) { d.scene.path->radiance = v.number; }),
+             [](auto& s) { return s.path ? &s.path->transmittance : nullptr; }),
+      number(
+          "path.temperature_K", "K", kBackgroundTemperatureRange, "",
+          "temperature of the path, whose radiance is (1 - tau) B(T); without it and radiance, none",
+          [](const Scene& s) { return s.path && s.path->temperature_K ? &*s.path->temperature_K : nullptr; },
+          [](Scene& s, const Value& v) { s.path->temperature_K = v.number; }),
+      number(
+          "path.radiance", "W m-2 sr-1 um-1", kNonNegativeRange, "",
+          "path radiance L_path; instead of path.temperature_K",
+          [](const Scene& s) { return s.path && s.path->radiance ? &*s.path->radiance : nullptr; },
+          [](Scene& s, const Value& v) { s.path->radiance = v.number; }),
   };
 }
 
 std::vector<SceneKey> geometry_keys() {
   return {
-      number("spectrum.wavelength_um", "um", kWavelengthUmRange, "", "wavelength lambda; or band_um",
-             [](Draft& d, const Value& v) {
-               d.scene.spectrum = {v.number, v.number};
-             }),
+      number(
+          "spectrum.wavelength_um", "um", kWavelengthUmRange, "", "wavelength lambda; or band_um",
+          [](const Scene& s) { return s.spectrum.is_band() ? nullptr : &s.spectrum.min_um; },
+          [](Scene& s, const Value& v) {
+            s.spectrum = {v.number, v.number};
+          }),
       {{"spectrum.band_um", Type::kPair, "um", kWavelengthUmRange, {}, "", "band [lambda1, lambda2] to integrate over"},
-       [](Draft& d, const Value& v) {
-         d.scene.spectrum = {v.numbers[0], v.numbers[1]};
+       [](Scene& s, const Value& v) {
+         s.spectrum = {v.numbers[0], v.numbers[1]};
+       },
+       [](const Scene& s) -> std::optional<Value> {
+         if (!s.spectrum.is_band()) return std::nullopt;
+         return Value{.numbers = {s.spectrum.min_um, s.spectrum.max_um}};
        }},
       choice("geometry.mode", Geometry().mode,
              "exitances, with rho(theta) for emission, surroundings and a source at zenith theta; or radiances in a "
              "fixed view, with a source at zenith theta",
-             [](Draft& d, const Value& v) { d.scene.geometry.mode = static_cast<Mode>(v.word); }),
+             [](auto& s) { return &s.geometry.mode; }),
       number("geometry.view_zenith_deg", "degree", kZenithDegRange, "60", "bistatic: view zenith theta_v",
-             [](Draft& d, const Value& v) { d.scene.geometry.view_zenith_deg = v.number; }),
+             [](auto& s) { return &s.geometry.view_zenith_deg; }),
       number("geometry.relative_azimuth_deg", "degree", kAzimuthDegRange, "180",
              "bistatic: azimuth Delta phi between source and view; 180 is the specular side",
-             [](Draft& d, const Value& v) { d.scene.geometry.relative_azimuth_deg = v.number; }),
+             [](auto& s) { return &s.geometry.relative_azimuth_deg; }),
       axis("grid.theta_deg", "degree", kZenithDegRange, "{ from = 0, to = 90, count = 91 }",
            "zenith theta: of the view (hemispherical) or of the source (bistatic)",
-           [](Draft& d, const Value& v) { d.scene.grid.theta_deg = v.numbers; }),
+           [](auto& s) { return &s.grid.theta_deg; }),
       axis("grid.sigma", "1", kSigmaRange, "surface.sigma", "slope widths sigma of the table",
-           [](Draft& d, const Value& v) { d.scene.grid.sigma = v.numbers; }),
-      axis("grid.q", "1", kQRange, "surface.q", "tail exponents q of the table",
-           [](Draft& d, const Value& v) { d.scene.grid.q = v.numbers; }),
+           [](auto& s) { return &s.grid.sigma; }),
+      axis("grid.q", "1", kQRange, "surface.q", "tail exponents q of the table", [](auto& s) { return &s.grid.q; }),
       axis("grid.wavelength_um", "um", kWavelengthUmRange, "",
            "wavelengths of the table, without a band; spectrum.wavelength_um may then be absent, and is the first",
-           [](Draft& d, const Value& v) { d.scene.grid.wavelength_um = v.numbers; }),
+           [](auto& s) { return &s.grid.wavelength_um; }),
       axis("grid.n", "1", kNRange, "", "n of the table, without a material; surface.n may then be absent",
-           [](Draft& d, const Value& v) { d.scene.grid.n = v.numbers; }),
-      axis("grid.k", "1", kKRange, "", "k of the table, without a material",
-           [](Draft& d, const Value& v) { d.scene.grid.k = v.numbers; }),
+           [](auto& s) { return &s.grid.n; }),
+      axis("grid.k", "1", kKRange, "", "k of the table, without a material", [](auto& s) { return &s.grid.k; }),
       number("accuracy.tolerance", "1", kToleranceRange, "1e-4",
              "largest error of rho, relative to rho_I, and of DOLP, absolute",
-             [](Draft& d, const Value& v) { d.scene.accuracy.tolerance = v.number; }),
+             [](auto& s) { return &s.accuracy.tolerance; }),
       choice("accuracy.precision", Accuracy().precision, "arithmetic of the device",
-             [](Draft& d, const Value& v) { d.scene.accuracy.precision = static_cast<Precision>(v.word); }),
-      word("accuracy.interpolation", {"auto", "off"}, "auto",
-           "between slope distributions of a dense grid and from some of many indices to all, within the tolerance; "
-           "off: "
-           "every entry is integrated by itself",
-           [](Draft& d, const Value& v) { d.scene.accuracy.may_interpolate = v.word == 0; }),
+             [](auto& s) { return &s.accuracy.precision; }),
+      {{"accuracy.interpolation",
+        Type::kWord,
+        "",
+        {},
+        {"auto", "off"},
+        "auto",
+        "between slope distributions of a dense grid and from some of many indices to all, within the tolerance; off: "
+        "every entry is integrated by itself"},
+       [](Scene& s, const Value& v) { s.accuracy.may_interpolate = v.word == 0; },
+       [](const Scene& s) -> std::optional<Value> {
+         const bool is_auto = s.accuracy.may_interpolate;
+         return Value{.word = is_auto ? std::size_t{0} : 1, .text = is_auto ? "auto" : "off"};
+       }},
   };
 }
 
@@ -224,11 +295,11 @@ bool is_effect_table(std::string_view table) {
   return table == "emission" || table == "source" || table == "surroundings" || table == "path";
 }
 
-void add_effect(SceneDraft& draft, std::string_view table) {
-  if (table == "emission") draft.scene.emission.emplace();
-  if (table == "source") draft.scene.source.emplace();
-  if (table == "surroundings") draft.scene.surroundings.emplace();
-  if (table == "path") draft.scene.path.emplace();
+void add_effect(Scene& scene, std::string_view table) {
+  if (table == "emission") scene.emission.emplace();
+  if (table == "source") scene.source.emplace();
+  if (table == "surroundings") scene.surroundings.emplace();
+  if (table == "path") scene.path.emplace();
 }
 
 std::string KeyDescription::allowed() const {

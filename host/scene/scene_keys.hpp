@@ -1,6 +1,8 @@
-// The one list of scene keys: what each may be, and where in the Scene it goes.
+// The one list of scene keys: what each may be, and where in the Scene it is.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,27 +11,20 @@
 
 namespace dolp {
 
-/// The scene under construction: names of files and materials are looked up when all keys are known.
-struct SceneDraft {
-  Scene scene;
-  std::string material;
-  std::string material_file;
-  std::string source_preset;
-  std::string source_file;
-};
-
 /// A value that is what its KeyDescription allows.
 struct KeyValue {
   double number = 0.0;
   std::size_t word = 0;  ///< position in KeyDescription::words
-  std::string text;
-  bool is_set = false;          ///< flag
-  std::vector<double> numbers;  ///< pair, axis
+  std::string text = {};
+  bool is_set = false;               ///< flag
+  std::vector<double> numbers = {};  ///< pair, axis
 };
 
 struct SceneKey {
   KeyDescription description;
-  void (*set)(SceneDraft& draft, const KeyValue& value);
+  std::function<void(Scene& scene, const KeyValue& value)> set;
+  /// None where the scene has no such thing: n with a material, the temperature of an emission that is not there.
+  std::function<std::optional<KeyValue>(const Scene& scene)> value;
 };
 
 /// Alternatives of which one is chosen; each is a list of keys that belong together, and its first key chooses it.
@@ -51,6 +46,6 @@ std::vector<std::string> scene_tables();
 bool is_effect_table(std::string_view table);
 
 /// Makes the table's effect present in the scene.
-void add_effect(SceneDraft& draft, std::string_view table);
+void add_effect(Scene& scene, std::string_view table);
 
 }  // namespace dolp

@@ -90,23 +90,23 @@ void check_required(const SceneDocument& document) {
   }
 }
 
-SceneDraft draft_scene(const SceneDocument& document) {
-  SceneDraft draft;
+Scene read_keys(const SceneDocument& document) {
+  Scene scene;
   const std::vector<std::string> keys = document_keys(document);
   for (const std::string& key : keys) {
     if (!find_scene_key(key)) document.fail(key, "unknown key; the nearest known key is " + key_hint(key));
     if (!document.find(key)) document.fail(key, "its dot is inside of quotes; write it without them");
   }
   for (const std::string& table : scene_tables()) {
-    if (document.find(table)) add_effect(draft, table);
+    if (document.find(table)) add_effect(scene, table);
   }
   for (const std::string& key : keys) {
     const SceneKey& known = *find_scene_key(key);
-    known.set(draft, read_value(document, known.description));
+    known.set(scene, read_value(document, known.description));
   }
   check_choices(document);
   check_required(document);
-  return draft;
+  return scene;
 }
 
 /// A file named in a scene, as the process finds it.
@@ -118,9 +118,9 @@ std::string resolve_path(const std::string& file, const std::string& scene_path)
 
 /// What `read` makes of a file that the scene names; an InputError that begins with `prefix` where none may be opened.
 template <class Read>
-auto read_file_of(SceneDraft& draft, const std::string& file, const std::string& scene_path, const std::string& prefix,
+auto read_file_of(Scene& scene, const std::string& file, const std::string& scene_path, const std::string& prefix,
                   const KnownData* known, const Read& read) {
-  const std::string& path = draft.scene.files.emplace_back(resolve_path(file, scene_path));
+  const std::string& path = scene.files.emplace_back(resolve_path(file, scene_path));
   if (!known) return read(path);
   if (!known->may_open_files) {
     throw InputError(prefix + "is not in the table; dolp verify --named-files reads it from that file");
@@ -142,32 +142,31 @@ Spectrum all_wavelengths(const Scene& scene) {
   return all;
 }
 
-void load_material(SceneDraft& draft, const SceneDocument& document, const std::string& scene_path,
-                   const KnownData* known) {
+void load_material(Scene& scene, const SceneDocument& document, const std::string& scene_path, const KnownData* known) {
   const bool is_file = document.find("surface.material_file") != nullptr;
   if (!is_file && !document.find("surface.material")) return;
   const std::string prefix = document.prefix(is_file ? "surface.material_file" : "surface.material");
-  Material& material = draft.scene.surface.material;
-  const Spectrum all = all_wavelengths(draft.scene);
+  Material& material = scene.surface.material;
+  const Spectrum all = all_wavelengths(scene);
   if (known && known->material) {
     material = *known->material;
-    material.name = is_file ? draft.material_file : draft.material;
+    material.name = is_file ? scene.names.material_file : scene.names.material;
     if (!material.is_constant()) material = fit_to_spectrum(material, all, prefix);
   } else if (is_file) {
-    material = read_file_of(draft, draft.material_file, scene_path, prefix, known,
+    material = read_file_of(scene, scene.names.material_file, scene_path, prefix, known,
                             [&](const std::string& path) { return read_material_file(path, all, prefix); });
   } else {
-    material = find_material(draft.material, all, prefix);
+    material = find_material(scene.names.material, all, prefix);
+    scene.names.material = material.name;
   }
-  if (!material.is_constant()) material = fit_to_spectrum(material, draft.scene.spectrum, prefix);
+  if (!material.is_constant()) material = fit_to_spectrum(material, scene.spectrum, prefix);
 }
 
-void load_source(SceneDraft& draft, const SceneDocument& document, const std::string& scene_path,
-                 const KnownData* known) {
+void load_source(Scene& scene, const SceneDocument& document, const std::string& scene_path, const KnownData* known) {
   const bool is_preset = document.find("source.preset") != nullptr;
   if (!is_preset && !document.find("source.file")) return;
   const std::string prefix = document.prefix(is_preset ? "source.preset" : "source.file");
-  Source& source = *draft.scene.source;
+  Source& source = *scene.source;
   source.kind = Source::Kind::kTabulated;
   if (known && known->irradiance) {
     source.table = *known->irradiance;
@@ -175,10 +174,10 @@ void load_source(SceneDraft& draft, const SceneDocument& document, const std::st
   } else if (is_preset) {
     source.table = sun_irradiance();
   } else {
-    source.table = read_file_of(draft, draft.source_file, scene_path, prefix, known,
+    source.table = read_file_of(scene, scene.names.source_file, scene_path, prefix, known,
                                 [&](const std::string& path) { return read_irradiance_file(path, prefix); });
   }
-  check_covers(source.table, all_wavelengths(draft.scene), prefix);
+  check_covers(source.table, all_wavelengths(scene), prefix);
 }
 
 /// What a scene need not say beside an axis of it, whose first value it then is.
@@ -266,18 +265,18 @@ Scene parse_scene(const std::string& text, const std::string& path_name, const s
                   const KnownData* known) {
   SceneDocument document(text, path_name);
   for (const std::string& argument : overrides) document.apply_override(argument);
-  SceneDraft draft = draft_scene(document);
-  fill_from_grid(draft.scene, document);
-  load_material(draft, document, path_name, known);
-  load_source(draft, document, path_name, known);
-  fill_grid(draft.scene, document);
-  check_smith(draft.scene, document);
-  check_radiation(draft.scene, document);
-  check_scattering(draft.scene, document);
-  draft.scene.path_name = path_name;
-  draft.scene.text = text;
-  draft.scene.overrides = overrides;
-  return std::move(draft.scene);
+  Scene scene = read_keys(document);
+  fill_from_grid(scene, document);
+  load_material(scene, document, path_name, known);
+  load_source(scene, document, path_name, known);
+  fill_grid(scene, document);
+  check_smith(scene, document);
+  check_radiation(scene, document);
+  check_scattering(scene, document);
+  scene.path_name = path_name;
+  scene.text = text;
+  scene.overrides = overrides;
+  return scene;
 }
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {

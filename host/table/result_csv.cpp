@@ -34,10 +34,4 @@ void append_result_cells(std::string& text, const PointResult& r, const ExtraCol
   text += std::to_string(r.status);
 }
 
-std::string result_cells(const PointResult& result, const ExtraColumns& extra) {
-  std::string cells;
-  append_result_cells(cells, result, extra);
-  return cells;
-}
-
 }  // namespace dolp

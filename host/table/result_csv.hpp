@@ -20,9 +20,7 @@ std::string result_header(const ExtraColumns& extra);
 /// All columns that a result may have.
 std::vector<std::string> result_columns();
 
-/// The cells of a row in the order of the header.
-std::string result_cells(const PointResult& result, const ExtraColumns& extra);
-/// The same at the end of a text.
+/// Appends the cells of a row in the order of the header.
 void append_result_cells(std::string& text, const PointResult& result, const ExtraColumns& extra);
 
 }  // namespace dolp

@@ -10,6 +10,8 @@ fuzzers=("$1")
 [[ -d $1 ]] && fuzzers=("$1"/tests/fuzz/fuzz_*[a-z])
 seconds=$(($2 / ${#fuzzers[@]}))
 shift 2
+# What UBSan finds ends the program, so that it leaves its input too.
+export UBSAN_OPTIONS=abort_on_error=1:print_stacktrace=1
 found=$(mktemp -d)
 trap 'rm -r "$found"' EXIT
 for fuzzer in "${fuzzers[@]}"; do

@@ -9,6 +9,12 @@
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 
 namespace dolp {
+namespace {
+
+// On two cores some milliseconds of the dearest entries.
+constexpr std::uint32_t kInteractiveTileInvocations = 2'048;
+
+}  // namespace
 
 std::unique_ptr<MomentsEvaluator> make_evaluator(const EvaluatorChoice& choice) {
   const bool is_vulkan = choice.name == "vulkan";
@@ -24,6 +30,7 @@ std::unique_ptr<MomentsEvaluator> make_evaluator(const EvaluatorChoice& choice) 
     VulkanOptions options;
     options.device = choice.device;
     options.precision = choice.precision;
+    if (choice.is_interactive) options.max_tile_invocations = kInteractiveTileInvocations;
     evaluator = std::make_unique<VulkanEvaluator>(options);
   } else {
     evaluator = std::make_unique<CpuEvaluator>(choice.precision);

@@ -13,6 +13,7 @@ struct EvaluatorChoice {
   std::string name = "vulkan";  ///< vulkan | cpu | reference
   std::string device;           ///< of vulkan: its position or a part of its name; empty is the default
   Precision precision = Precision::kAuto;
+  bool is_interactive = false;  ///< of vulkan: in short dispatches
 };
 
 /// Errors: InputError for another name, and for a device beside cpu or reference; DeviceError when vulkan is asked for

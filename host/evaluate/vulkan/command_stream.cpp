@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "base/stopwatch.hpp"
-#include "evaluate/vulkan/buffer.hpp"
+#include "device/buffer.hpp"
+#include "device/result.hpp"
 #include "evaluate/vulkan/kernels.hpp"
-#include "evaluate/vulkan/result.hpp"
 
 namespace dolp::vulkan {
 namespace {
@@ -113,7 +113,7 @@ double CommandStream::submit_and_wait(double timeout_s) {
       .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands_};
   const VkFence fence = fence_.get();
   const auto start = std::chrono::steady_clock::now();
-  check(device_.submit(info, fence), "submitting work");
+  check(vkQueueSubmit(device_.queue(), 1, &info, fence), "submitting work");
   const auto timeout_ns = static_cast<std::uint64_t>(timeout_s * kNanosecondsPerSecond);
   const VkResult result = vkWaitForFences(device_.get(), 1, &fence, VK_TRUE, timeout_ns);
   if (result == VK_TIMEOUT) {

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "evaluate/vulkan/device.hpp"
-#include "evaluate/vulkan/handle.hpp"
+#include "device/device.hpp"
+#include "device/handle.hpp"
 
 namespace dolp::vulkan {
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "evaluate/vulkan/devices.hpp"
+#include "device/devices.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/moments.hpp"
 #include "model/scattering.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "evaluate/vulkan/result.hpp"
+#include "device/result.hpp"
 #include "shaders/spirv.hpp"
 
 namespace dolp::vulkan {

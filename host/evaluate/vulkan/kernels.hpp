@@ -10,16 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "evaluate/vulkan/device.hpp"
-#include "evaluate/vulkan/handle.hpp"
+#include "device/device.hpp"
+#include "device/handle.hpp"
 #include "plan/kernel_data.hpp"
 
 namespace dolp::vulkan {
 
-constexpr std::uint32_t kBindingCount = DOLP_BINDING_RULE + 1;
+static_assert(kBindingCount == DOLP_BINDING_RULE + 1);
 constexpr std::uint32_t kPushConstantCount = 4;
-/// Most invocations of a workgroup; every device allows 128.
-constexpr std::uint32_t kLocalSize = 64;
 
 /// The entry points of shaders/*.comp.
 enum class EntryPoint { kMoments, kSlopes, kMaskingTable, kMueller };

@@ -4,7 +4,7 @@
 #include <future>
 
 #include "base/parallel_ranges.hpp"
-#include "evaluate/vulkan/result.hpp"
+#include "device/result.hpp"
 
 namespace dolp::vulkan {
 namespace {

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "base/progress.hpp"
-#include "evaluate/vulkan/buffer.hpp"
+#include "device/buffer.hpp"
 #include "evaluate/vulkan/command_stream.hpp"
+#include "evaluate/vulkan/input_buffer.hpp"
 #include "evaluate/vulkan/kernels.hpp"
 #include "evaluate/vulkan/packing.hpp"
 #include "evaluate/vulkan/tiles.hpp"

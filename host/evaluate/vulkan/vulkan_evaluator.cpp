@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "base/stopwatch.hpp"
-#include "evaluate/vulkan/context.hpp"
+#include "device/context.hpp"
+#include "device/result.hpp"
 #include "evaluate/vulkan/moments_run.hpp"
 #include "evaluate/vulkan/profile_run.hpp"
-#include "evaluate/vulkan/result.hpp"
 #include "evaluate/vulkan/scattering_run.hpp"
 
 namespace dolp {
@@ -54,11 +54,9 @@ void check_entries(const ScatteringRequest& request) {
 
 class VulkanEvaluator::Impl {
  public:
-  /// Without a `context` it makes its own.
-  Impl(const VulkanOptions& options, vulkan::Context* context)
+  explicit Impl(const VulkanOptions& options)
       : options_(options),
-        own_(context ? nullptr : std::make_unique<vulkan::Context>(options)),
-        context_(context ? *context : *own_),
+        context_({options.device, options.precision == Precision::kDouble, options.validation}),
         stream_(context_.device()) {}
 
   /// Whether a request is to be computed in double.
@@ -67,9 +65,7 @@ class VulkanEvaluator::Impl {
   }
   const DeviceDescription& description() const { return context_.description(); }
   std::vector<std::string> validation_messages() const { return context_.validation_messages(); }
-  void abandon() { context_.abandon(); }
   const VulkanOptions& options() const { return options_; }
-  bool has_own_device() const { return own_ != nullptr; }
 
   /// Gives up what the last request left on the device and takes a part of its tiles from now on; false where they are
   /// as small as is sensible.
@@ -153,8 +149,7 @@ class VulkanEvaluator::Impl {
   }
 
   VulkanOptions options_;
-  std::unique_ptr<vulkan::Context> own_;
-  vulkan::Context& context_;
+  vulkan::Context context_;
   std::optional<vulkan::Kernels> float_kernels_, double_kernels_;
   std::future<void> prepared_;  ///< waits when it is destroyed
   vulkan::CommandStream stream_;
@@ -166,13 +161,8 @@ class VulkanEvaluator::Impl {
 
 VulkanEvaluator::VulkanEvaluator(const VulkanOptions& options) : precision_(options.precision) {
   const Clock::time_point start = Clock::now();
-  impl_ = std::make_unique<Impl>(options, nullptr);
+  impl_ = std::make_unique<Impl>(options);
   note_setup(seconds_since(start));
-}
-
-VulkanEvaluator::VulkanEvaluator(vulkan::Context& context, const VulkanOptions& options)
-    : impl_(std::make_unique<Impl>(options, &context)), precision_(options.precision) {
-  note_setup(0.0);
 }
 
 void VulkanEvaluator::clear_report() {
@@ -199,14 +189,13 @@ std::vector<Result> VulkanEvaluator::compute(const Request& request, const Progr
       return impl_->compute(request, progress, report_);
     } catch (const vulkan::DeviceTimeout&) {
       // Vulkan forbids destroying what a submission still uses, so all of it is left to the end of the process.
-      impl_->abandon();
       static_cast<void>(impl_.release());
       throw;
     } catch (const vulkan::DeviceLost&) {
-      if (is_new_device || !impl_->has_own_device()) throw;
+      if (is_new_device) throw;
       is_new_device = true;
       ++report_.devices_lost;
-      impl_ = std::make_unique<Impl>(impl_->options(), nullptr);
+      impl_ = std::make_unique<Impl>(impl_->options());
     } catch (const MemoryError&) {
       if (!impl_->shrink_tiles()) throw;
     }

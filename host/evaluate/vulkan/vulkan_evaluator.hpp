@@ -6,23 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "device/devices.hpp"
 #include "evaluate/evaluator.hpp"
 #include "model/moments.hpp"
 #include "model/scattering.hpp"
 
 namespace dolp {
 
-/// The Khronos validation layer, for tests: any message of it makes `evaluate` throw DeviceError.
-enum class ValidationMode {
-  kFromEnvironment,  ///< on when the environment variable DOLP_VALIDATION is 1
-  kOff,
-  kOn,
-};
-
 struct VulkanOptions {
   std::string device;  ///< name or position, see choose_device
   /// Of requests that leave it open: kAuto is float. kDouble also asks for a device that has it.
   Precision precision = Precision::kAuto;
+  /// Any message of the layer makes `evaluate` throw DeviceError.
   ValidationMode validation = ValidationMode::kFromEnvironment;
   // The results depend on none of these.
   std::uint32_t max_tile_invocations = 65'536;  ///< of a dispatch: progress and cancelling wait for one at most
@@ -31,23 +26,16 @@ struct VulkanOptions {
   double tile_timeout_s = 600.0;
 };
 
-namespace vulkan {
-class Context;
-}
-
-/// Computes moments and pBRDFs with the kernels of shaders/. The pipelines live as long as the object, and so does the
-/// device where it is its own.
+/// Computes moments and pBRDFs with the kernels of shaders/. Device and pipelines live as long as the object.
 class VulkanEvaluator : public MomentsEvaluator, public ScatteringEvaluator {
  public:
   /// Errors: DeviceError when there is no usable device, `device` matches none, it has no double precision and that
   /// is wanted, or the validation layer is wanted and missing.
   explicit VulkanEvaluator(const VulkanOptions& options);
-  /// On a device that others use too, from other threads; it must outlive this object.
-  VulkanEvaluator(vulkan::Context& context, const VulkanOptions& options);
   ~VulkanEvaluator() override;
 
   /// Errors: DeviceError for double precision on a device without it; InputError for lists that do not fit the
-  /// request's layout; DeviceError when the device fails, is lost (its own is made anew once, to try again) or exceeds
+  /// request's layout; DeviceError when the device fails, is lost (it is made anew once, to try again) or exceeds
   /// the time allowed for a tile (the object is useless then), or the validation layer complains; MemoryError when even
   /// small tiles do not fit; Cancelled when `progress`, called after each tile, returns false.
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;

@@ -1,15 +1,14 @@
 // The window as a command.
 #pragma once
 
+#include <dolp/dolp.hpp>
+
 #include <cstddef>
 #include <string>
-#include <vector>
 
 namespace dolp::explore {
 
 struct ProgramOptions {
-  std::string scene_path;  ///< "-" is stdin; empty: stainless steel
-  std::vector<std::string> overrides;
   std::string device;           ///< its position or a part of its name
   std::string command_line;     ///< for the history of tables
   std::string measured_path;    ///< CSV of measured points; empty: none
@@ -18,7 +17,7 @@ struct ProgramOptions {
 };
 
 /// Shows the window. Prints how long frames took, where their number is given.
-/// Errors: InputError, DeviceError, IoError.
-void run_program(const ProgramOptions& options);
+/// Errors: those of the public header; DeviceError, IoError.
+void run_program(const api::Scene& scene, const ProgramOptions& options);
 
 }  // namespace dolp::explore

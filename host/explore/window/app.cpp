@@ -15,9 +15,8 @@
 
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
-#include "evaluate/interpolation/interpolating_evaluator.hpp"
-#include "evaluate/vulkan/context.hpp"
-#include "evaluate/vulkan/result.hpp"
+#include "device/context.hpp"
+#include "device/result.hpp"
 #include "explore/exports.hpp"
 #include "explore/fitting.hpp"
 #include "explore/window/png.hpp"
@@ -38,8 +37,6 @@ constexpr auto kFading = std::chrono::milliseconds(300);  // of a dialog that wa
 constexpr double kBlink_s = 0.3;                          // of a text cursor
 // Frames after an event: ImGui shows some answers, a list that opens for one, only frames later.
 constexpr std::size_t kFramesAfterEvent = 4;
-// A frame waits for one tile at most where display and evaluator share a queue.
-constexpr std::uint32_t kTileInvocations = 2'048;
 
 std::string glfw_error() {
   const char* text = nullptr;
@@ -102,18 +99,12 @@ vulkan::Presentation presentation() {
   return {{names, names + count}, can_present};
 }
 
-VulkanOptions device_options(const std::string& device, Precision precision) {
-  VulkanOptions options;
-  options.device = device;
-  options.precision = precision;
-  options.max_tile_invocations = kTileInvocations;
-  return options;
+vulkan::Context make_context(const std::string& device) {
+  const vulkan::Presentation wanted = presentation();
+  return vulkan::Context({.device = device}, &wanted);
 }
 
-vulkan::Context make_context(const VulkanOptions& options) {
-  const vulkan::Presentation wanted = presentation();
-  return vulkan::Context(options, &wanted);
-}
+Evaluator make_evaluator(const std::string& device) { return Evaluator({.device = device, .is_interactive = true}); }
 
 VkSurfaceKHR make_surface(VkInstance instance, GLFWwindow* window) {
   VkSurfaceKHR surface = VK_NULL_HANDLE;
@@ -168,14 +159,15 @@ class App::Impl {
   Impl(SceneEdits edits, const AppOptions& options)
       : session_(std::move(edits)),
         window_(open_window()),
-        vulkan_options_(device_options(options.device, session_.scene().accuracy.precision)),
-        context_(make_context(vulkan_options_)),
+        context_(make_context(options.device)),
         interface_(prepared(window_.get())),
         presenter_(context_, make_surface(context_.instance(), window_.get()), size_of(window_.get())),
-        evaluator_(context_, vulkan_options_),
-        export_evaluator_(std::make_unique<VulkanEvaluator>(context_, vulkan_options_)),
-        worker_(evaluator_, glfwPostEmptyEvent),
-        fit_evaluator_(std::make_unique<VulkanEvaluator>(context_, vulkan_options_)),
+        evaluator_(make_evaluator(options.device)),
+        export_evaluator_(make_evaluator(options.device)),
+        fit_evaluator_(make_evaluator(options.device)),
+        worker_([this](const Scene& scene, const PointList& list,
+                       const RunOptions& run) { return evaluate(evaluator_, scene, list, run); },
+                glfwPostEmptyEvent),
         table_export_(glfwPostEmptyEvent),
         true_error_(glfwPostEmptyEvent),
         fit_(glfwPostEmptyEvent),
@@ -273,7 +265,7 @@ class App::Impl {
     actions.save_scene = [this](const std::string& path) {
       attempt("saved " + path, [&] {
         const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-        write_text_atomically(path, session_.edits().toml(folder.empty() ? "." : folder));
+        write_text_atomically(path, session_.scene().toml(folder.empty() ? "." : folder));
       });
     };
     actions.save_curve = [this](const std::string& path) {
@@ -281,7 +273,7 @@ class App::Impl {
         session_.tell("the curve is not finished yet", true);
         return;
       }
-      attempt("saved " + path, [&] { write_text_atomically(path, curve_csv(session_.curve())); });
+      attempt("saved " + path, [&] { write_text_atomically(path, session_.curve().report().csv); });
     };
     actions.save_picture = [this](const std::string& path) {
       attempt("saved " + path, [&] {
@@ -328,15 +320,15 @@ class App::Impl {
   Session session_;
   Library library_;
   UniqueWindow window_;
-  VulkanOptions vulkan_options_;
   vulkan::Context context_;
   ImGuiOwner imgui_;
   Interface interface_;
   Presenter presenter_;
-  VulkanEvaluator evaluator_;
-  InterpolatingEvaluator export_evaluator_;
+  // Each with a device of its own, so that none waits for another.
+  Evaluator evaluator_;
+  Evaluator export_evaluator_;
+  Evaluator fit_evaluator_;
   Worker worker_;
-  InterpolatingEvaluator fit_evaluator_;
   mutable std::mutex found_mutex_;
   std::optional<FitFound> found_;  ///< of a fit that has ended
   BackgroundTask table_export_;

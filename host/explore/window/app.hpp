@@ -11,7 +11,6 @@
 #include "explore/scene_edits.hpp"
 #include "explore/session.hpp"
 #include "explore/window/area.hpp"
-#include "scene/scene.hpp"
 
 namespace dolp::explore {
 

@@ -11,7 +11,6 @@
 #include "explore/parameters.hpp"
 #include "explore/window/colours.hpp"
 #include "explore/window/text.hpp"
-#include "scene/material_data.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -55,7 +54,7 @@ std::string interval_text(const FitInterval& interval) {
 /// What the last fit says of a parameter.
 std::string intervals_text(const Parameter& parameter, const Session& session) {
   const FitFound* const found = session.fit_found();
-  const std::string& key = parameter.description->key;
+  const std::string& key = parameter.key->key;
   if (found == nullptr || !found->interval_68.contains(key)) return {};
   return fmt::format("\n68 %: {}\n95 %: {}", interval_text(found->interval_68.at(key)),
                      interval_text(found->interval_95.at(key)));
@@ -75,21 +74,29 @@ void draw_interval(const Parameter& parameter, const FitInterval& interval) {
 }
 
 std::string description_of(const Parameter& p, const Session& session) {
-  const KeyDescription& key = *p.description;
-  return fmt::format("{} = {}\n{}\nallowed: {} {}{}{}", key.key, key.meaning, p.equation, key.range.text(),
-                     unit_text(key), fallback_text(p, session), intervals_text(p, session));
+  const Key& key = *p.key;
+  return fmt::format("{} = {}\n{}\nallowed: {} {}{}{}", key.key, key.meaning, p.equation, key.allowed, unit_text(key),
+                     fallback_text(p, session), intervals_text(p, session));
 }
 
 std::string description_of(const Choice& choice) {
-  return choice.description->key + ": " + choice.description->meaning + "\n" + choice.equation;
+  return choice.key->key + ": " + choice.key->meaning + "\n" + choice.equation;
+}
+
+/// The wavelengths at which a scene needs n and k.
+std::pair<double, double> spectrum_of(const Scene& scene) {
+  const std::vector<double> band = scene.numbers("spectrum.band_um");
+  if (!band.empty()) return {band[0], band[1]};
+  const double wavelength_um = scene.number("spectrum.wavelength_um").value();
+  return {wavelength_um, wavelength_um};
 }
 
 /// A line for each built-in material; those without n and k over the spectrum are grey.
 void draw_built_in_materials(Session& session, const std::string& current) {
-  for (const Material& known : built_in_materials()) {
-    const Spectrum range = known_range(known);
-    const bool is_known = covers(known, session.scene().spectrum);
-    const std::string text = fmt::format("{}, {:g} to {:g} µm", known.name, range.min_um, range.max_um);
+  const auto [from_um, to_um] = spectrum_of(session.scene());
+  for (const api::Material& known : api::materials()) {
+    const bool is_known = known.from_um <= from_um && to_um <= known.to_um;
+    const std::string text = fmt::format("{}, {:g} to {:g} µm", known.name, known.from_um, known.to_um);
     const auto flags = is_known ? ImGuiSelectableFlags_None : ImGuiSelectableFlags_Disabled;
     if (ImGui::Selectable(shown(text).c_str(), known.name == current, flags)) {
       session.set({{"surface.material", known.name}});
@@ -99,19 +106,19 @@ void draw_built_in_materials(Session& session, const std::string& current) {
 }
 
 void draw_material(Session& session) {
-  const Material& material = session.scene().surface.material;
-  const bool is_own = material.name.empty() && material.is_constant();
-  const OpticalConstants now = material.at(session.scene().spectrum.min_um);
+  const Scene& scene = session.scene();
+  const bool is_own = scene.number("surface.n").has_value();
   row_label("material");
   ImGui::SetNextItemWidth(-1.0F);
   constexpr const char* kOwn = "n and k as below";
-  const std::string current = is_own ? kOwn : material.name.empty() ? "file" : material.name;
+  const std::string current = is_own ? kOwn : scene.word("surface.material").value_or("file");
   if (!ImGui::BeginCombo("##material", current.c_str(), ImGuiComboFlags_HeightLarge)) {
-    tooltip(is_own ? "a built-in material, or n and k of your own" : "N = n + ik of " + material.source);
+    tooltip(is_own ? "a built-in material, or n and k of your own" : "N = n + ik of " + surface_name(scene));
     return;
   }
   if (ImGui::Selectable(kOwn, is_own) && !is_own) {
-    session.set({{"surface.n", format_number(now.n)}, {"surface.k", format_number(now.k)}});
+    const auto [n, k] = scene.refractive_index(spectrum_of(scene).first);
+    session.set({{"surface.n", format_number(n)}, {"surface.k", format_number(k)}});
   }
   draw_built_in_materials(session, current);
   ImGui::EndCombo();
@@ -125,7 +132,8 @@ void draw_source_kind(Session& session) {
   static const std::array<Kind, 3> kKinds = {{{"E0 as below", {"source.irradiance", "1"}},
                                               {"e = E0/(πB(T)) as below", {"source.relative_irradiance", "0.6"}},
                                               {"the sun", {"source.preset", "sun"}}}};
-  const auto now = static_cast<std::size_t>(session.scene().source->kind);
+  const Scene& scene = session.scene();
+  const std::size_t now = scene.number("source.irradiance") ? 0 : scene.number("source.relative_irradiance") ? 1 : 2;
   row_label("kind");
   ImGui::SetNextItemWidth(-1.0F);
   if (!ImGui::BeginCombo("##source kind", shown(kKinds[now].name).c_str())) return;
@@ -135,31 +143,36 @@ void draw_source_kind(Session& session) {
   ImGui::EndCombo();
 }
 
+bool has_effect(const Scene& scene, const std::string& table) {
+  if (table == "source") return scene.number("source.scale").has_value();
+  if (table == "path") return scene.number("path.transmittance").has_value();
+  return scene.number(table + ".temperature_K").has_value();
+}
+
 /// A box that takes an effect out of the scene, and back in as it was or with values to begin with.
-void draw_effect_box(Session& session, const std::string& table, bool is_present) {
-  bool wanted = is_present;
+void draw_effect_box(Session& session, const std::string& table) {
+  bool wanted = has_effect(session.scene(), table);
   if (!ImGui::Checkbox(table.c_str(), &wanted)) return;
   if (!wanted) {
     session.set({{table, "none"}});
     return;
   }
   session.reset(table);
-  const Scene& scene = session.scene();
-  if (table == "emission" && !scene.emission) session.set({{"emission.temperature_K", "300"}});
-  if (table == "source" && !scene.source) session.set({{"source.preset", "sun"}});
-  if (table == "surroundings" && !scene.surroundings) session.set({{"surroundings.temperature_K", "250"}});
-  if (table == "path" && !scene.path) session.set({{"path.transmittance", "0.9"}, {"path.temperature_K", "280"}});
+  if (has_effect(session.scene(), table)) return;
+  if (table == "emission") session.set({{"emission.temperature_K", "300"}});
+  if (table == "source") session.set({{"source.preset", "sun"}});
+  if (table == "surroundings") session.set({{"surroundings.temperature_K", "250"}});
+  if (table == "path") session.set({{"path.transmittance", "0.9"}, {"path.temperature_K", "280"}});
 }
 
 void draw_spectrum(Session& session) {
-  const Spectrum& spectrum = session.scene().spectrum;
-  bool is_band = spectrum.is_band();
+  bool is_band = !session.scene().numbers("spectrum.band_um").empty();
   if (ImGui::Checkbox("band", &is_band)) {
     if (is_band) session.set({{"spectrum.band_um", "[8, 14]"}});
     if (!is_band) session.set({{"spectrum.wavelength_um", "10.6"}});
   }
-  if (!session.scene().spectrum.is_band()) return;
-  std::array<double, 2> ends = {spectrum.min_um, spectrum.max_um};
+  std::vector<double> ends = session.scene().numbers("spectrum.band_um");
+  if (ends.empty()) return;
   row_label("λ1, λ2 [µm]");
   ImGui::SetNextItemWidth(-1.0F);
   constexpr ImGuiInputTextFlags kFlags = ImGuiInputTextFlags_EnterReturnsTrue;
@@ -177,11 +190,11 @@ void ControlsPanel::remember_area(const std::string& key) {
 }
 
 void ControlsPanel::draw_choice(Session& session, const Choice& choice, std::size_t word) {
-  const std::string& key = choice.description->key;
-  const std::vector<std::string> words = words_of(*choice.description);
+  const std::string& key = choice.key->key;
+  const std::vector<std::string>& words = choice.key->words;
   row_label(choice.label);
   const std::string id = "##" + key;
-  if (choice.description->type == KeyDescription::Type::kFlag) {
+  if (choice.is_flag()) {
     bool is_set = word != 0;
     if (ImGui::Checkbox(id.c_str(), &is_set)) session.set({{key, words[is_set ? 1 : 0]}});
     remember_area(key);
@@ -202,13 +215,13 @@ void ControlsPanel::draw_choice(Session& session, const Choice& choice, std::siz
 
 void ControlsPanel::draw_choices(Session& session, const std::string& table) {
   for (const Choice& choice : choices()) {
-    if (table_of(choice.description->key) != table) continue;
+    if (table_of(choice.key->key) != table) continue;
     if (const auto word = choice.word(session.scene())) draw_choice(session, choice, *word);
   }
 }
 
 void ControlsPanel::draw_fit_box(Session& session, const Parameter& parameter) {
-  const std::string& key = parameter.description->key;
+  const std::string& key = parameter.key->key;
   bool varies = session.varies(key);
   if (ImGui::Checkbox("##vary", &varies)) session.mark(key, varies);
   const ImVec2 corner = ImGui::GetItemRectMin();
@@ -219,7 +232,7 @@ void ControlsPanel::draw_fit_box(Session& session, const Parameter& parameter) {
 }
 
 void ControlsPanel::draw_parameter(Session& session, const Parameter& parameter, double value) {
-  const KeyDescription& key = *parameter.description;
+  const Key& key = *parameter.key;
   const std::string unit = unit_text(key);
   row_label(unit.empty() ? parameter.symbol : fmt::format("{} [{}]", parameter.symbol, unit));
   ImGui::PushID(key.key.c_str());
@@ -247,7 +260,7 @@ void ControlsPanel::draw_parameter(Session& session, const Parameter& parameter,
 
 void ControlsPanel::draw_table(Session& session, const std::string& table) {
   for (const Parameter& parameter : parameters()) {
-    if (table_of(parameter.description->key) != table) continue;
+    if (table_of(parameter.key->key) != table) continue;
     // Again from the scene for each, because the one before may have changed it.
     if (const auto value = parameter.value(session.scene())) draw_parameter(session, parameter, *value);
   }
@@ -260,15 +273,15 @@ void ControlsPanel::draw(Session& session) {
   draw_choices(session, "surface");
   draw_table(session, "surface");
   heading("Radiation");
-  draw_effect_box(session, "emission", session.scene().emission.has_value());
-  if (session.scene().emission) draw_choices(session, "emission");
+  draw_effect_box(session, "emission");
+  draw_choices(session, "emission");
   draw_table(session, "emission");
-  draw_effect_box(session, "source", session.scene().source.has_value());
-  if (session.scene().source) draw_source_kind(session);
+  draw_effect_box(session, "source");
+  if (has_effect(session.scene(), "source")) draw_source_kind(session);
   draw_table(session, "source");
-  draw_effect_box(session, "surroundings", session.scene().surroundings.has_value());
+  draw_effect_box(session, "surroundings");
   draw_table(session, "surroundings");
-  draw_effect_box(session, "path", session.scene().path.has_value());
+  draw_effect_box(session, "path");
   draw_table(session, "path");
   heading("Spectrum and geometry");
   draw_spectrum(session);

@@ -38,6 +38,14 @@ std::vector<Shown> shown_curves(const Session& session) {
 
 double scale_of(Quantity quantity) { return described(quantity).in_percent ? 100.0 : 1.0; }
 
+/// What was measured of a quantity.
+std::vector<MeasuredPoint> measured_of(const Session& session, Quantity quantity) {
+  if (!session.residuals().points()) return {};
+  std::vector<MeasuredPoint> points = session.residuals().points()->points;
+  std::erase_if(points, [&](const MeasuredPoint& point) { return point.quantity != quantity; });
+  return points;
+}
+
 /// What the axis of values has to hold.
 struct Range {
   double low = std::numeric_limits<double>::infinity();
@@ -58,14 +66,13 @@ Range range_of(const Session& session, const std::vector<Shown>& curves, bool is
     if (!is_log || value > 0.0) range.add(value);
   };
   for (const Shown& shown : curves) {
-    for (std::size_t i = 0; i < shown.curve->results().size(); ++i) {
-      if (shown.curve->entries()[i].theta_deg > session.view().theta_max_deg) break;
-      const PointResult& result = shown.curve->results()[i];
-      if (!is_good(result)) continue;
-      add(scale_of(quantity) * value_of(quantity, result));
+    for (const Point& point : shown.curve->points()) {
+      if (point.theta_deg > session.view().theta_max_deg) break;
+      if (!is_good(point)) continue;
+      add(scale_of(quantity) * value_of(quantity, point));
       if (shown.curve != &session.curve() || quantity != Quantity::kDolp) continue;
-      add(scale_of(quantity) * result.dolp_low);
-      add(scale_of(quantity) * result.dolp_high);
+      add(scale_of(quantity) * point.dolp_low);
+      add(scale_of(quantity) * point.dolp_high);
     }
   }
   const std::optional<PeakAnswer>& peak = session.peak().answer();
@@ -73,9 +80,7 @@ Range range_of(const Session& session, const std::vector<Shown>& curves, bool is
   if (peak && session.curve().is_finished() && quantity == Quantity::kSignedDolp) {
     add(scale_of(quantity) * peak->q_over_i);
   }
-  if (quantity == Quantity::kDolp && session.residuals().points()) {
-    for (const double dolp : session.residuals().points()->dolp) add(scale_of(quantity) * dolp);
-  }
+  for (const MeasuredPoint& point : measured_of(session, quantity)) add(scale_of(quantity) * point.value);
   return range;
 }
 
@@ -102,18 +107,17 @@ PlotAxis value_axis(const Session& session, const std::vector<Shown>& curves) {
 
 /// Fills what DOLP lies between with all bounces; of the current curve alone, because bands over bands say nothing.
 void draw_bracket(const Plot& plot, const Shown& shown) {
-  const Curve& curve = *shown.curve;
-  const std::vector<PointResult>& results = curve.results();
+  const std::vector<Point>& points = shown.curve->points();
   const ImU32 colour = band_colour(shown.style);
   const auto at = [&](std::size_t i, double dolp) {
     const double value = std::max(scale_of(Quantity::kDolp) * dolp, plot.y().from);
-    return plot.at(curve.entries()[i].theta_deg, value);
+    return plot.at(points[i].theta_deg, value);
   };
   // Without smooth edges, which would show as seams.
   const ImDrawListFlags flags = std::exchange(plot.list()->Flags, ImDrawListFlags_None);
-  for (std::size_t i = 0; i + 1 < results.size(); ++i) {
-    const PointResult& a = results[i];
-    const PointResult& b = results[i + 1];
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const Point& a = points[i];
+    const Point& b = points[i + 1];
     if (!is_good(a) || !is_good(b) || !has_bracket(a) || !has_bracket(b)) continue;
     plot.list()->AddQuadFilled(at(i, a.dolp_low), at(i, a.dolp_high), at(i + 1, b.dolp_high), at(i + 1, b.dolp_low),
                                colour);
@@ -123,34 +127,33 @@ void draw_bracket(const Plot& plot, const Shown& shown) {
 
 /// Draws the good parts in the curve's style, the others thin and grey.
 void draw_curve(const Plot& plot, const Shown& shown, Quantity quantity) {
-  const std::vector<PointResult>& results = shown.curve->results();
-  std::vector<ImVec2> points;
+  std::vector<ImVec2> line;
   bool is_good_part = true;
   const auto finish = [&] {
     const CurveStyle bad{kBadColour, 4.0F, 4.0F};
-    draw_line(plot.list(), points, is_good_part ? shown.style : bad, is_good_part ? kWidth : 1.0F);
-    points.clear();
+    draw_line(plot.list(), line, is_good_part ? shown.style : bad, is_good_part ? kWidth : 1.0F);
+    line.clear();
   };
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    const double value = scale_of(quantity) * value_of(quantity, results[i]);
+  for (const Point& point : shown.curve->points()) {
+    const double value = scale_of(quantity) * value_of(quantity, point);
     if (!std::isfinite(value) || (plot.y().is_log && value <= 0.0)) {
       finish();
       continue;
     }
-    const ImVec2 at = plot.at(shown.curve->entries()[i].theta_deg, value);
-    if (is_good(results[i]) != is_good_part) {
+    const ImVec2 at = plot.at(point.theta_deg, value);
+    if (is_good(point) != is_good_part) {
       // The line between a good entry and another is not good.
-      if (!is_good(results[i]) && !points.empty()) {
-        const ImVec2 last = points.back();
+      if (!is_good(point) && !line.empty()) {
+        const ImVec2 last = line.back();
         finish();
-        points.push_back(last);
+        line.push_back(last);
       } else {
-        points.push_back(at);
+        line.push_back(at);
         finish();
       }
-      is_good_part = is_good(results[i]);
+      is_good_part = is_good(point);
     }
-    points.push_back(at);
+    line.push_back(at);
   }
   finish();
 }
@@ -171,26 +174,27 @@ void draw_legend(const Plot& plot, const std::vector<Shown>& curves, const Sessi
   for (std::size_t i = 0; i + 1 < curves.size(); ++i) curve(curves[i]);
   const bool has_band =
       session.view().quantity == Quantity::kDolp &&
-      std::ranges::any_of(session.curve().results(), [](const PointResult& r) { return has_bracket(r); });
+      std::ranges::any_of(session.curve().points(), [](const Point& point) { return has_bracket(point); });
   if (has_band) {
     const ImVec2 end{at.x + 2.2F * line, at.y + 0.9F * line};
     plot.list()->AddRectFilled({at.x, at.y + 0.1F * line}, end, band_colour(curves.back().style));
     draw_label(plot.list(), {at.x + 2.6F * line, at.y}, {0.0F, 0.0F}, kTextColour, "all bounces lie between");
     at.y += 1.25F * line;
   }
-  const bool has_bad = std::ranges::any_of(session.curve().results(), [](const PointResult& r) { return !is_good(r); });
+  const bool has_bad =
+      std::ranges::any_of(session.curve().points(), [](const Point& point) { return !is_good(point); });
   if (has_bad) entry({kBadColour, 4.0F, 4.0F}, "the model fails here (status)");
 }
 
 void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& style) {
   const float x = plot.at_position(plot.x().position(session.theta_deg()), 0.0).x;
   plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour);
-  const std::optional<AtCursor> shown = session.at_cursor();
+  const Point* const shown = session.at_cursor();
   if (!shown) return;
   const Quantity quantity = session.view().quantity;
-  const double value = scale_of(quantity) * value_of(quantity, shown->result);
+  const double value = scale_of(quantity) * value_of(quantity, *shown);
   if (!std::isfinite(value) || (plot.y().is_log && value <= 0.0)) return;
-  const ImVec2 at = plot.at(shown->entry.theta_deg, value);
+  const ImVec2 at = plot.at(shown->theta_deg, value);
   plot.list()->AddCircleFilled(at, 4.0F, style.colour);
   plot.list()->AddCircle(at, 4.5F, kTextColour);
 }
@@ -213,37 +217,41 @@ void draw_peak(const Plot& plot, const Session& session) {
              kTextColour, fmt::format("{:.2f} % at {:.1f}°", value, peak->theta_deg));
 }
 
-void draw_measured(const Plot& plot, const MeasuredPoints& points) {
-  for (std::size_t i = 0; i < points.theta_deg.size(); ++i) {
-    const double value = scale_of(Quantity::kDolp) * points.dolp[i];
+void draw_measured(const Plot& plot, const std::vector<MeasuredPoint>& points) {
+  for (const MeasuredPoint& point : points) {
+    const double value = scale_of(point.quantity) * point.value;
     if (plot.y().is_log && value <= 0.0) continue;
-    plot.list()->AddCircle(plot.at(points.theta_deg[i], value), 4.0F, kTextColour, 0, 1.5F);
-    if (points.uncertainty.empty()) continue;
-    const double deviation = scale_of(Quantity::kDolp) * points.uncertainty[i];
+    plot.list()->AddCircle(plot.at(point.theta_deg, value), 4.0F, kTextColour, 0, 1.5F);
+    if (!point.uncertainty) continue;
+    const double deviation = scale_of(point.quantity) * *point.uncertainty;
     const double low = plot.y().is_log ? std::max(value - deviation, plot.y().from) : value - deviation;
-    plot.list()->AddLine(plot.at(points.theta_deg[i], low), plot.at(points.theta_deg[i], value + deviation),
-                         kTextColour);
+    plot.list()->AddLine(plot.at(point.theta_deg, low), plot.at(point.theta_deg, value + deviation), kTextColour);
   }
 }
 
 void draw_residuals(const Session& session, ImVec2 size) {
+  const Quantity quantity = session.view().quantity;
+  const double scale = scale_of(quantity);
   const std::vector<double> residuals = session.residuals().residuals();
+  std::vector<std::pair<double, double>> shown;  // zenith and residual
   double largest = 1e-6;
-  for (const double residual : residuals) {
-    if (std::isfinite(residual)) largest = std::max(largest, std::abs(100.0 * residual));
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    const MeasuredPoint& point = session.residuals().points()->points[i];
+    if (point.quantity != quantity || !std::isfinite(residuals[i])) continue;
+    shown.emplace_back(point.theta_deg, scale * residuals[i]);
+    largest = std::max(largest, std::abs(shown.back().second));
   }
-  const std::optional<double> rms = session.residuals().rms();
-  const std::string label = rms ? fmt::format("measured − model [points]; root mean square {:.3g}", 100.0 * *rms)
-                                : "measured − model [points]";
+  const std::string unit = described(quantity).in_percent ? " [points]" : "";
+  const std::optional<double> rms = session.residuals().rms(quantity);
+  const std::string label =
+      rms ? fmt::format("measured − model{}; root mean square {:.3g}", unit, scale * *rms) : "measured − model" + unit;
   const double theta_max = session.view().theta_max_deg;
   const Plot plot("residuals", size, {"", 0.0, theta_max}, {label, -1.2 * largest, 1.2 * largest});
   plot.clip();
   plot.list()->AddLine(plot.at(0.0, 0.0), plot.at(theta_max, 0.0), kDimColour);
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    if (!std::isfinite(residuals[i])) continue;
-    const double theta = session.residuals().points()->theta_deg[i];
-    plot.list()->AddLine(plot.at(theta, 0.0), plot.at(theta, 100.0 * residuals[i]), kTextColour);
-    plot.list()->AddCircleFilled(plot.at(theta, 100.0 * residuals[i]), 3.0F, kTextColour);
+  for (const auto& [theta, residual] : shown) {
+    plot.list()->AddLine(plot.at(theta, 0.0), plot.at(theta, residual), kTextColour);
+    plot.list()->AddCircleFilled(plot.at(theta, residual), 3.0F, kTextColour);
   }
   plot.unclip();
 }
@@ -253,11 +261,12 @@ void draw_residuals(const Session& session, ImVec2 size) {
 Area draw_curve_view(Session& session, ImVec2 size) {
   const std::vector<Shown> curves = shown_curves(session);
   const Quantity quantity = session.view().quantity;
-  const bool has_measured = session.residuals().points().has_value() && quantity == Quantity::kDolp;
+  const std::vector<MeasuredPoint> measured = measured_of(session, quantity);
+  const bool has_measured = !measured.empty();
   const float gap = ImGui::GetStyle().ItemSpacing.y;
   const float residual_height = has_measured ? 0.28F * size.y : 0.0F;
   const double theta_max = session.view().theta_max_deg;
-  const bool is_bistatic = session.scene().geometry.mode == Mode::kBistatic;
+  const bool is_bistatic = session.scene().word("geometry.mode") == "bistatic";
   const Plot plot("curve", {size.x, size.y - residual_height - (has_measured ? gap : 0.0F)},
                   {is_bistatic ? "zenith θ of the source [°]" : "zenith θ [°]", 0.0, theta_max},
                   value_axis(session, curves));
@@ -266,7 +275,7 @@ Area draw_curve_view(Session& session, ImVec2 size) {
   if (!plot.y().is_log) plot.list()->AddLine(plot.at(0.0, 0.0), plot.at(theta_max, 0.0), kDimColour);
   if (quantity == Quantity::kDolp) draw_bracket(plot, curves.back());
   for (const Shown& shown : curves) draw_curve(plot, shown, quantity);
-  if (has_measured) draw_measured(plot, *session.residuals().points());
+  draw_measured(plot, measured);
   draw_cursor(plot, session, curves.back().style);
   draw_peak(plot, session);
   draw_legend(plot, curves, session);

@@ -19,7 +19,7 @@ void cell(const std::string& text, ImU32 colour = kTextColour) {
   ImGui::PopStyleColor();
 }
 
-std::string bound_text(const EffectRow& row) {
+std::string bound_text(const Effect& row) {
   if (!row.bound) return "";
   const double points = 100.0 * *row.bound;
   if (row.unbounded > 0) return "none is known";
@@ -29,9 +29,8 @@ std::string bound_text(const EffectRow& row) {
 }
 
 /// What the maximum would be without the effect; a surface without slopes is a smooth one.
-std::string taken_away_text(const Session& session, const EffectRow& row) {
-  const std::string name = row.name;
-  if (name != "distribution") return without_text(session, name);
+std::string taken_away_text(const Session& session, const Effect& row) {
+  if (row.name != "distribution") return without_text(session, row.name);
   const std::string text = without_text(session, "roughness");
   return text.empty() ? "" : "smooth: " + text;
 }
@@ -39,11 +38,11 @@ std::string taken_away_text(const Session& session, const EffectRow& row) {
 /// The effects are those of a scene before the present one.
 bool is_stale(const Session& session) { return !session.effects().empty() && !session.curve().is_finished(); }
 
-void draw_row(const Session& session, const EffectRow& row) {
-  const bool is_absent = row.state == EffectState::kAbsent;
+void draw_row(const Session& session, const Effect& row) {
+  const bool is_absent = row.state == "absent";
   const ImU32 colour = is_absent || is_stale(session) ? kDimColour : kTextColour;
   cell(row.name, colour);
-  cell(row.state == EffectState::kNotNeeded ? "not needed" : state_name(row.state), colour);
+  cell(row.state == "not_needed" ? "not needed" : row.state, colour);
   cell(bound_text(row), colour);
   cell(is_absent ? "" : taken_away_text(session, row), colour);
   cell(row.reason, colour);
@@ -70,7 +69,7 @@ void draw_effects(const Session& session) {
   ImGui::TableSetupColumn("maximum without it");
   ImGui::TableSetupColumn("why", is_narrow ? ImGuiTableColumnFlags_WidthFixed : ImGuiTableColumnFlags_WidthStretch);
   ImGui::TableHeadersRow();
-  for (const EffectRow& row : session.effects()) {
+  for (const Effect& row : session.effects()) {
     ImGui::TableNextRow();
     draw_row(session, row);
   }

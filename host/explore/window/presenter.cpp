@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "evaluate/vulkan/result.hpp"
+#include "device/result.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -36,11 +36,10 @@ Presenter::Presenter(vulkan::Context& context, VkSurfaceKHR surface, VkExtent2D 
 }
 
 Presenter::~Presenter() {
-  // After a submission that never ends there is nothing to wait for, and the device stays.
-  if (!context_.is_abandoned()) static_cast<void>(context_.device().wait_idle());
+  vkQueueWaitIdle(context_.device().queue());
   ImGui_ImplVulkan_Shutdown();
   swapchain_.reset();
-  if (!context_.is_abandoned()) vkDestroySurfaceKHR(context_.instance(), surface_, nullptr);
+  vkDestroySurfaceKHR(context_.instance(), surface_, nullptr);
 }
 
 void Presenter::create_frames() {
@@ -101,7 +100,7 @@ void Presenter::start_imgui() {
       .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &frame.commands};
   const VkFence fence = frame.done.get();
   check(vkResetFences(device, 1, &fence), "resetting a fence");
-  check(context_.device().submit(submission, fence), "submitting the fonts");
+  check(vkQueueSubmit(context_.device().queue(), 1, &submission, fence), "submitting the fonts");
   wait(frame);
   ImGui_ImplVulkan_DestroyFontUploadObjects();
 }
@@ -112,7 +111,7 @@ void Presenter::wait(const Frame& frame) const {
 }
 
 void Presenter::recreate(VkExtent2D size) {
-  check(context_.device().wait_idle(), "waiting for the device");
+  check(vkQueueWaitIdle(context_.device().queue()), "waiting for the device");
   size_ = size;
   auto next = std::make_unique<Swapchain>(context_, surface_, format_, pass_.get(), size, swapchain_->get());
   swapchain_ = std::move(next);
@@ -212,7 +211,7 @@ void Presenter::submit(const Frame& frame, const Swapchain::Image& image) const 
                           .pSignalSemaphores = &drawn};
   const VkFence fence = frame.done.get();
   check(vkResetFences(context_.device().get(), 1, &fence), "resetting a fence");
-  check(context_.device().submit(info, fence), "submitting a frame");
+  check(vkQueueSubmit(context_.device().queue(), 1, &info, fence), "submitting a frame");
 }
 
 void Presenter::present(const Swapchain::Image& image, std::uint32_t index, VkExtent2D size) {
@@ -224,7 +223,7 @@ void Presenter::present(const Swapchain::Image& image, std::uint32_t index, VkEx
                               .swapchainCount = 1,
                               .pSwapchains = &swapchain,
                               .pImageIndices = &index};
-  const VkResult result = context_.device().present(info);
+  const VkResult result = vkQueuePresentKHR(context_.device().queue(), &info);
   if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR) {
     if (size.width > 0 && size.height > 0 && has_area(context_.physical_device(), surface_, size)) recreate(size);
     return;

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "evaluate/vulkan/buffer.hpp"
+#include "device/buffer.hpp"
 #include "explore/window/swapchain.hpp"
 
 struct ImDrawData;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "evaluate/vulkan/result.hpp"
+#include "device/result.hpp"
 
 namespace dolp::explore {
 namespace {

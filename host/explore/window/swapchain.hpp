@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "evaluate/vulkan/context.hpp"
-#include "evaluate/vulkan/handle.hpp"
+#include "device/context.hpp"
+#include "device/handle.hpp"
 
 namespace dolp::explore {
 

@@ -140,7 +140,7 @@ void Ui::draw_menus() {
   if (!ImGui::BeginMainMenuBar()) return;
   for (const char* menu : {"File", "View", "Scene", "Help"}) draw_menu(menu);
   ImGui::TextDisabled("|");
-  ImGui::TextUnformatted(shown(session_.scene().title).c_str());
+  ImGui::TextUnformatted(shown(session_.scene().title()).c_str());
   if (session_.edits().is_changed()) ImGui::TextDisabled("(changed)");
   ImGui::EndMainMenuBar();
 }
@@ -253,9 +253,9 @@ void Ui::draw_fit() {
   if (ImGui::Button("Fit (Ctrl+F)")) actions_.fit();
   ImGui::EndDisabled();
   ImGui::SameLine();
-  ImGui::TextDisabled(
-      "%s", shown(is_ready || is_running ? std::filesystem::path(points->name).filename().string() : "mark what varies")
-                .c_str());
+  ImGui::TextDisabled("%s", shown(is_ready || is_running ? std::filesystem::path(points->data.name).filename().string()
+                                                         : "mark what varies")
+                                .c_str());
   const bool is_old = fit_.state() == BackgroundTask::State::kDone && session_.fit_found() == nullptr;
   if (is_old) {
     coloured_text(kDimColour, "The scene is no longer that of the fit.");

@@ -25,6 +25,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -103,8 +104,18 @@ class DOLP_EXPORT Scene {
   const std::string& name() const;  ///< the path of its file, or the name of its text
   const std::string& text() const;  ///< as it was read, without overrides
   const std::vector<std::string>& overrides() const;
-  /// The scene with its overrides applied, as TOML.
-  std::string toml() const;
+  /// The scene with its overrides applied, as TOML; files that it names are found from `folder`.
+  std::string toml(const std::filesystem::path& folder = ".") const;
+
+  /// The value of a key, given or default, in its unit. None where the scene has no such thing: the temperature of an
+  /// emission that is not there, n where there is a material. Errors: InputError for a key that has no number.
+  std::optional<double> number(std::string_view key) const;
+  /// Likewise of words, texts (none where they are empty) and flags ("true", "false").
+  std::optional<std::string> word(std::string_view key) const;
+  /// Likewise of axes and pairs, empty where the scene has none.
+  std::vector<double> numbers(std::string_view key) const;
+  /// n and k at a wavelength of the scene.
+  std::pair<double, double> refractive_index(double wavelength_um) const;
 
   struct Impl;
   const Impl& impl() const { return *impl_; }
@@ -114,6 +125,9 @@ class DOLP_EXPORT Scene {
   std::shared_ptr<const Impl> impl_;
 };
 
+/// The text of a scene to begin with: bare stainless steel at 10.6 um.
+DOLP_EXPORT std::string example_scene();
+
 /// A key that scenes have.
 struct Key {
   std::string key;       ///< "surface.sigma"
@@ -121,8 +135,10 @@ struct Key {
   std::string allowed;   ///< "a number in [0, 10]"
   std::string fallback;  ///< the default; "required"; empty when the key is simply absent
   std::string meaning;
+  std::vector<std::string> words;   ///< of a word what it may be, of a flag "false" and "true"
+  std::vector<std::string> rivals;  ///< keys in whose place it can be; an override of one takes the other away
 };
-DOLP_EXPORT std::vector<Key> keys();
+DOLP_EXPORT const std::vector<Key>& keys();
 
 /// A built-in material.
 struct Material {
@@ -173,6 +189,7 @@ struct Results {
   std::vector<std::uint32_t> status;  ///< sums of Status
   /// Global attributes as in table files: device, precision, effects, rule, ...
   std::vector<std::pair<std::string, std::variant<std::string, double>>> attributes;
+  double integrand_evaluations = 0.0;  ///< that they took
 
   /// Errors: InputError for a name that is not there.
   std::span<const double> values(std::string_view name) const {
@@ -182,6 +199,9 @@ struct Results {
     throw InputError("results have no " + std::string(name));
   }
 };
+
+/// Points and their results as CSV, as write_points writes it.
+DOLP_EXPORT std::string to_csv(const std::vector<Column>& points, const Results& results);
 
 /// A lookup table in memory.
 class DOLP_EXPORT Table {
@@ -218,6 +238,8 @@ class DOLP_EXPORT Table {
 struct EvaluatorOptions {
   std::string evaluator = "vulkan";  ///< vulkan; cpu: the shaders' text compiled as C++; reference: adaptive quadrature
   std::string device = {};           ///< of vulkan: its position in devices(), or a part of its name; empty: the best
+  bool is_interactive = false;       ///< in short dispatches: a call ends soon after its Progress says so, and a window
+                                     ///< on the same device goes on drawing
 };
 
 /// How to compute one table or list of points.
@@ -237,6 +259,15 @@ struct Shard {
 /// The 4 x 4 Mueller pBRDF of a pair of directions, row by row. Units: 1/sr.
 using MuellerMatrix = std::array<double, 16>;
 
+/// A measured number.
+struct Measurement {
+  std::string quantity;    ///< dolp, q_over_i (signed), emissivity_s or emissivity_p
+  double theta_deg = 0.0;  ///< in bistatic mode the zenith of the source
+  double value = 0.0;
+  std::optional<double> uncertainty;    ///< one standard deviation
+  std::optional<double> wavelength_um;  ///< none: the scene's
+};
+
 /// A set of measured data.
 struct DOLP_EXPORT MeasuredData {
   std::string csv;  ///< columns theta_deg or theta_i_deg; dolp, q_over_i or emissivities; uncertainty, wavelength_um
@@ -245,6 +276,9 @@ struct DOLP_EXPORT MeasuredData {
 
   /// Reads what --data of dolp fit names: "FILE" or "FILE:KEY=VALUE,KEY=VALUE"; FILE "-" is stdin. Errors: InputError.
   static MeasuredData read(const std::string& argument);
+
+  /// What the CSV says, row by row. Errors: InputError with line, column, value and what is allowed.
+  std::vector<Measurement> measurements() const;
 };
 
 /// How to fit.
@@ -262,11 +296,29 @@ struct FitOptions {
 /// What a residual can count: "squares", and robust ones.
 DOLP_EXPORT std::vector<std::string> fit_losses();
 
+/// A profile-likelihood interval; an end is none where the range ends before the data say no.
+struct FitInterval {
+  std::optional<double> low, high;
+};
+
+struct FitParameter {
+  std::string key;
+  double value = 0.0;
+  std::optional<double> standard_error;  ///< none at a bound, and where the data say nothing
+  FitInterval interval_68, interval_95;
+};
+
 /// A fit, of the best of the compared models.
 struct Fit {
   Report report;             ///< parameters, intervals, correlation, minima, residuals
   bool has_minimum = false;  ///< whether any descent converged
   Scene scene;               ///< with what was compared and what was found; without a minimum the scene itself
+  std::vector<FitParameter> parameters = {};  ///< in the order of FitOptions::vary
+  double chi_square = 0.0;
+  std::size_t degrees_of_freedom = 0;
+  std::optional<double> p_value = {};          ///< with uncertainties and the loss "squares"
+  std::size_t other_minima = 0;                ///< that were found above the best
+  std::vector<std::string> degeneracies = {};  ///< what the data cannot tell, in words
 };
 
 /// Computes. Device and kernels are made when they are first needed and kept as long as the object lives.
@@ -319,6 +371,18 @@ DOLP_EXPORT Report write_lookup(const std::filesystem::path& table, const std::f
 /// Errors: InputError that names a shard that is missing, there twice, or of another table; IoError.
 DOLP_EXPORT Report merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& path,
                          const std::string& history = {});
+
+/// What a scene can ask for, and what becomes of it at some points.
+struct Effect {
+  std::string name;
+  std::string state;  ///< absent, kept, dropped (it cannot be seen), not_needed (nothing kept depends on it)
+  std::string reason;
+  std::string needs;            ///< what computing it takes; empty when it is not kept
+  std::optional<double> bound;  ///< of its influence on Q/I and U/I, worst point; none of what nothing bounds
+  std::size_t unbounded = 0;    ///< points without a bound, which `bound` leaves out
+};
+/// All effects that there are, in the order of a scene file. Nothing is integrated.
+DOLP_EXPORT std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& points, bool keep_all = false);
 
 /// What a table over the scene's grid would compute and leave out, why, and what it would cost; nothing is run but
 /// counting on the CPU.

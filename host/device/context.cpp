@@ -1,9 +1,9 @@
-#include "evaluate/vulkan/context.hpp"
+#include "device/context.hpp"
 
 #include <cstdlib>
 #include <string_view>
 
-#include "evaluate/vulkan/result.hpp"
+#include "device/result.hpp"
 
 namespace dolp::vulkan {
 namespace {
@@ -16,17 +16,17 @@ bool wants_validation(ValidationMode mode) {
 
 }  // namespace
 
-Context::Context(const VulkanOptions& options, const Presentation* presentation) {
+Context::Context(const DeviceWish& wish, const Presentation* presentation) {
   const std::vector<const char*> extensions =
       presentation ? presentation->instance_extensions : std::vector<const char*>{};
-  instance_ = std::make_unique<Instance>(wants_validation(options.validation) ? &log_ : nullptr, extensions);
-  choose(options, presentation);
+  instance_ = std::make_unique<Instance>(wants_validation(wish.validation) ? &log_ : nullptr, extensions);
+  choose(wish, presentation);
   const std::optional<std::uint32_t> window_family =
       presentation ? presenting_family(instance(), physical_, *presentation) : std::nullopt;
   device_ = std::make_unique<Device>(physical_, description_.float64, window_family);
 }
 
-void Context::choose(const VulkanOptions& options, const Presentation* presentation) {
+void Context::choose(const DeviceWish& wish, const Presentation* presentation) {
   const std::vector<VkPhysicalDevice> physical = instance_->physical_devices();
   std::vector<DeviceDescription> descriptions;
   for (VkPhysicalDevice device : physical) {
@@ -37,15 +37,9 @@ void Context::choose(const VulkanOptions& options, const Presentation* presentat
     }
     descriptions.push_back(description);
   }
-  const std::size_t index = choose_device(descriptions, options.device, options.precision == Precision::kDouble);
+  const std::size_t index = choose_device(descriptions, wish.device, wish.needs_double);
   physical_ = physical[index];
   description_ = descriptions[index];
-}
-
-Context::~Context() {
-  if (!is_abandoned_) return;
-  static_cast<void>(device_.release());
-  static_cast<void>(instance_.release());
 }
 
 void Context::check_validation() const {

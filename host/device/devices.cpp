@@ -1,13 +1,13 @@
-#include "evaluate/vulkan/devices.hpp"
+#include "device/devices.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <optional>
 
-#include "evaluate/vulkan/device.hpp"
-#include "evaluate/vulkan/instance.hpp"
-#include "evaluate/vulkan/result.hpp"
+#include "device/device.hpp"
+#include "device/instance.hpp"
+#include "device/result.hpp"
 
 namespace dolp {
 namespace {

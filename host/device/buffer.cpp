@@ -1,22 +1,16 @@
-#include "evaluate/vulkan/buffer.hpp"
+#include "device/buffer.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cstring>
 
-#include "evaluate/vulkan/command_stream.hpp"
-#include "evaluate/vulkan/result.hpp"
+#include "device/result.hpp"
 
 namespace dolp::vulkan {
 namespace {
 
 // Vulkan has no empty buffers, and no structure of the kernels is larger than this.
 constexpr VkDeviceSize kSmallestBuffer = 256;
-
-bool must_stage(const Device& device) {
-  constexpr std::uint32_t kAnyType = UINT32_MAX;
-  return !(device.memory_type(kAnyType, MemoryUse::kUpload).flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-}
 
 }  // namespace
 
@@ -70,21 +64,6 @@ void Buffer::read(std::span<std::byte> bytes) const {
     check(vkInvalidateMappedMemoryRanges(device_, 1, &whole), "invalidating memory");
   }
   std::memcpy(bytes.data(), mapped_, bytes.size());
-}
-
-InputBuffer::InputBuffer(const Device& device, VkDeviceSize bytes, bool force_staging)
-    : staging_(force_staging || must_stage(device)
-                   ? std::optional<Buffer>(std::in_place, device, bytes, MemoryUse::kUpload)
-                   : std::nullopt),
-      buffer_(device, bytes, staging_ ? MemoryUse::kDeviceOnly : MemoryUse::kUpload) {}
-
-void InputBuffer::write(std::span<const std::byte> bytes, CommandStream& stream) {
-  if (!staging_) {
-    buffer_.write(bytes);
-  } else if (!bytes.empty()) {
-    staging_->write(bytes);
-    stream.copy(*staging_, buffer_.get(), bytes.size());
-  }
 }
 
 }  // namespace dolp::vulkan

@@ -1,4 +1,4 @@
-// What evaluators and a window share: instance, device and validation log.
+// A device with its instance and validation log.
 #pragma once
 
 #include <functional>
@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/vulkan/device.hpp"
-#include "evaluate/vulkan/devices.hpp"
-#include "evaluate/vulkan/instance.hpp"
-#include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "device/device.hpp"
+#include "device/devices.hpp"
+#include "device/instance.hpp"
 
 namespace dolp::vulkan {
 
@@ -20,15 +19,14 @@ struct Presentation {
   std::function<bool(VkInstance, VkPhysicalDevice, std::uint32_t family)> can_present;
 };
 
-/// A device of an instance, chosen as VulkanOptions say; with `presentation` one that can show a window.
+/// A device of an instance, chosen as wished; with `presentation` one that can show a window.
 class Context {
  public:
-  /// Errors: DeviceError when no usable device matches, it has no double precision and that is wanted, or the
+  /// Errors: DeviceError when no usable device matches, it has no double precision and that is needed, or the
   /// validation layer is wanted and missing.
-  explicit Context(const VulkanOptions& options, const Presentation* presentation = nullptr);
+  explicit Context(const DeviceWish& wish, const Presentation* presentation = nullptr);
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
-  ~Context();
 
   const DeviceDescription& description() const { return description_; }
   VkInstance instance() const { return instance_->get(); }
@@ -39,20 +37,14 @@ class Context {
   /// Errors: DeviceError with the first message of the validation layer, if there is one.
   void check_validation() const;
 
-  /// A submission never ended: instance and device are left to the end of the process, because Vulkan forbids
-  /// destroying what is in use.
-  void abandon() { is_abandoned_ = true; }
-  bool is_abandoned() const { return is_abandoned_; }
-
  private:
-  void choose(const VulkanOptions& options, const Presentation* presentation);
+  void choose(const DeviceWish& wish, const Presentation* presentation);
 
   ValidationLog log_;
   std::unique_ptr<Instance> instance_;
   VkPhysicalDevice physical_ = VK_NULL_HANDLE;
   DeviceDescription description_;
   std::unique_ptr<Device> device_;
-  bool is_abandoned_ = false;
 };
 
 }  // namespace dolp::vulkan

@@ -4,12 +4,16 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
-#include <mutex>
 #include <optional>
 
-#include "evaluate/vulkan/devices.hpp"
+#include "device/devices.hpp"
 
 namespace dolp::vulkan {
+
+/// Storage buffers that a kernel binds.
+constexpr std::uint32_t kBindingCount = 8;
+/// Most invocations of a workgroup; every device allows 128.
+constexpr std::uint32_t kLocalSize = 64;
 
 /// What the device offers, and whether dolp can run on it.
 DeviceDescription describe(VkPhysicalDevice physical);
@@ -33,7 +37,7 @@ struct Presentation;
 std::optional<std::uint32_t> presenting_family(VkInstance instance, VkPhysicalDevice physical,
                                                const Presentation& presentation);
 
-/// A logical device with one queue, which threads may share: they submit through this object alone.
+/// A logical device with one queue.
 class Device {
  public:
   /// `float64` asks for double precision in shaders, which the device must have. `window_family`: the family of a queue
@@ -44,7 +48,6 @@ class Device {
   ~Device();
 
   VkDevice get() const { return device_; }
-  /// To be named to others, not to be submitted to.
   VkQueue queue() const { return queue_; }
   std::uint32_t queue_family() const { return queue_family_; }
   const VkPhysicalDeviceLimits& limits() const { return limits_; }
@@ -55,18 +58,12 @@ class Device {
   /// Valid bits of the queue's timestamps; 0 when it has none.
   std::uint32_t timestamp_bits() const { return timestamp_bits_; }
 
-  // Vulkan lets only one thread at a time use a queue.
-  VkResult submit(const VkSubmitInfo& info, VkFence fence) const;
-  VkResult present(const VkPresentInfoKHR& info) const;
-  VkResult wait_idle() const;
-
   /// The best of the memory types in `allowed` (a bit mask) for a use. Errors: DeviceError when none will do.
   MemoryType memory_type(std::uint32_t allowed, MemoryUse use) const;
 
  private:
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
-  mutable std::mutex queue_mutex_;
   std::uint32_t queue_family_ = 0;
   std::uint32_t timestamp_bits_ = 0;
   std::uint32_t local_size_ = 0;

@@ -2,15 +2,12 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 
-#include "evaluate/vulkan/device.hpp"
-#include "evaluate/vulkan/handle.hpp"
+#include "device/device.hpp"
+#include "device/handle.hpp"
 
 namespace dolp::vulkan {
-
-class CommandStream;
 
 /// A storage buffer with memory of its own, never empty.
 class Buffer {
@@ -36,22 +33,6 @@ class Buffer {
   UniqueMemory memory_;
   UniqueBuffer buffer_;
   std::byte* mapped_ = nullptr;
-};
-
-/// A buffer that the host writes and kernels read, in the device's own memory: directly where that can be mapped, by a
-/// copy from a staging buffer elsewhere.
-class InputBuffer {
- public:
-  /// `force_staging` takes the second way on every device.
-  InputBuffer(const Device& device, VkDeviceSize bytes, bool force_staging);
-
-  VkBuffer get() const { return buffer_.get(); }
-  /// Writes to the start of the buffer; a staging copy is recorded in `stream`, which must be recording.
-  void write(std::span<const std::byte> bytes, CommandStream& stream);
-
- private:
-  std::optional<Buffer> staging_;
-  Buffer buffer_;
 };
 
 }  // namespace dolp::vulkan

@@ -1,10 +1,10 @@
-#include "evaluate/vulkan/instance.hpp"
+#include "device/instance.hpp"
 
 #include <algorithm>
 #include <array>
 #include <string_view>
 
-#include "evaluate/vulkan/result.hpp"
+#include "device/result.hpp"
 
 namespace dolp::vulkan {
 namespace {

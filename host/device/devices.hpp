@@ -25,6 +25,20 @@ struct DeviceDescription {
   bool timestamps = false;                     ///< the compute queue has a clock
 };
 
+/// The Khronos validation layer, for tests.
+enum class ValidationMode {
+  kFromEnvironment,  ///< on when the environment variable DOLP_VALIDATION is 1
+  kOff,
+  kOn,
+};
+
+/// Which device is wanted, and how it is watched.
+struct DeviceWish {
+  std::string device = {};    ///< name or position, see choose_device
+  bool needs_double = false;  ///< double precision in shaders
+  ValidationMode validation = ValidationMode::kFromEnvironment;
+};
+
 /// "discrete GPU", "integrated GPU", "virtual GPU", "CPU" or "other".
 std::string type_name(DeviceDescription::Type type);
 

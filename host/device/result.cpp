@@ -1,4 +1,4 @@
-#include "evaluate/vulkan/result.hpp"
+#include "device/result.hpp"
 
 #include <sys/mman.h>
 

@@ -1,4 +1,4 @@
-#include "evaluate/vulkan/device.hpp"
+#include "device/device.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/vulkan/context.hpp"
-#include "evaluate/vulkan/kernels.hpp"
-#include "evaluate/vulkan/result.hpp"
+#include "device/context.hpp"
+#include "device/result.hpp"
 
 namespace dolp::vulkan {
 namespace {
@@ -163,21 +162,6 @@ Device::Device(VkPhysicalDevice physical, bool float64, std::optional<std::uint3
 }
 
 Device::~Device() { vkDestroyDevice(device_, nullptr); }
-
-VkResult Device::submit(const VkSubmitInfo& info, VkFence fence) const {
-  const std::scoped_lock lock(queue_mutex_);
-  return vkQueueSubmit(queue_, 1, &info, fence);
-}
-
-VkResult Device::present(const VkPresentInfoKHR& info) const {
-  const std::scoped_lock lock(queue_mutex_);
-  return vkQueuePresentKHR(queue_, &info);
-}
-
-VkResult Device::wait_idle() const {
-  const std::scoped_lock lock(queue_mutex_);
-  return vkQueueWaitIdle(queue_);
-}
 
 MemoryType Device::memory_type(std::uint32_t allowed, MemoryUse use) const {
   VkMemoryPropertyFlags required = 0;

@@ -1,0 +1,114 @@
+#include "explore/points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "base/text.hpp"
+
+namespace dolp::explore {
+namespace {
+
+constexpr std::uint32_t kNoDolpPromised =
+    api::kReflectanceOutsideZeroToOne | api::kOutsideModelDomain | api::kIntensityNotPositive;
+
+/// A quantity; empty where the results do not have it.
+std::span<const double> values_of(const Results& results, std::string_view name) {
+  const auto found = std::ranges::find_if(
+      results.quantities, [&](const Results::Quantity& quantity) { return quantity.variable.name == name; });
+  return found == results.quantities.end() ? std::span<const double>{} : found->values;
+}
+
+/// KEY=[VALUE, ...].
+std::string axis(const char* key, const std::vector<double>& values) {
+  std::string text = std::string(key) + "=[";
+  for (const double value : values) text += format_number(value) + ", ";
+  return text + ']';
+}
+
+/// The scene with the grid of a list; axes that the scene's own has beside these keep the scene's value.
+Scene with_grid(const Scene& scene, const PointList& list) {
+  std::vector<std::string> overrides = {axis("grid.theta_deg", list.theta_deg), axis("grid.sigma", list.sigma),
+                                        axis("grid.q", list.q)};
+  for (const auto& [own, of] :
+       {std::pair{"grid.wavelength_um", "spectrum.wavelength_um"}, {"grid.n", "surface.n"}, {"grid.k", "surface.k"}}) {
+    if (!scene.numbers(own).empty()) overrides.push_back(axis(own, {scene.number(of).value()}));
+  }
+  return scene.with(overrides);
+}
+
+}  // namespace
+
+std::size_t PointList::size() const { return is_grid ? theta_deg.size() * sigma.size() * q.size() : theta_deg.size(); }
+
+Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options) {
+  if (!list.is_grid) return evaluator.evaluate(scene, list.columns(), options);
+  const api::Table table = evaluator.table(with_grid(scene, list), options);
+  Results results;
+  for (const api::Variable& variable : table.variables()) {
+    const std::span<const double> values = table.values(variable.name);
+    results.quantities.push_back({variable, {values.begin(), values.end()}});
+  }
+  results.status.assign(table.status().begin(), table.status().end());
+  return results;
+}
+
+std::vector<Column> PointList::columns() const {
+  std::vector<Column> columns = {{"theta_deg", theta_deg}, {"sigma", sigma}, {"q", q}};
+  if (!wavelength_um.empty()) columns.push_back({"wavelength_um", wavelength_um});
+  return columns;
+}
+
+std::vector<Point> points_of(const PointList& list, const Results& results) {
+  const std::pair<double Point::*, const char*> members[] = {{&Point::dolp, "dolp"},
+                                                             {&Point::dolp_low, "dolp_low"},
+                                                             {&Point::dolp_high, "dolp_high"},
+                                                             {&Point::error_estimate, "error_estimate"},
+                                                             {&Point::stokes_i, "stokes_i"},
+                                                             {&Point::stokes_q, "stokes_q"},
+                                                             {&Point::rho_i, "rho_i"},
+                                                             {&Point::rho_q, "rho_q"},
+                                                             {&Point::rho_error_estimate, "rho_error_estimate"},
+                                                             {&Point::albedo, "albedo"}};
+  std::vector<Point> points(list.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::size_t shapes = list.is_grid ? list.sigma.size() * list.q.size() : 1;
+    points[i].theta_deg = list.theta_deg[i / shapes];
+    points[i].sigma = list.sigma[list.is_grid ? i / list.q.size() % list.sigma.size() : i];
+    points[i].q = list.q[list.is_grid ? i % list.q.size() : i];
+    points[i].status = results.status[i];
+  }
+  for (const auto& [member, name] : members) {
+    const std::span<const double> values = values_of(results, name);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i].*member = values.empty() ? std::numeric_limits<double>::quiet_NaN() : values[i];
+    }
+  }
+  return points;
+}
+
+bool is_good(const Point& point) { return (point.status & kNoDolpPromised) == 0 && std::isfinite(point.dolp); }
+
+bool has_bracket(const Point& point) { return std::isfinite(point.dolp_low) && std::isfinite(point.dolp_high); }
+
+PointList points_at(const Scene& scene, std::vector<double> theta_deg) {
+  const std::size_t count = theta_deg.size();
+  const auto all = [&](const char* key) { return std::vector<double>(count, scene.number(key).value()); };
+  return {std::move(theta_deg), all("surface.sigma"), all("surface.q")};
+}
+
+std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count) {
+  std::vector<double> theta_deg(count, from_deg);
+  const double last = static_cast<double>(count - 1);
+  for (std::size_t i = 1; i < count; ++i) {
+    const double done = static_cast<double>(i);
+    theta_deg[i] = ((last - done) * from_deg + done * to_deg) / last;
+  }
+  return theta_deg;
+}
+
+}  // namespace dolp::explore

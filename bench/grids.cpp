@@ -85,13 +85,13 @@ std::size_t NestedGrid::Place::position(std::size_t stride) const {
 }
 
 std::vector<NestedGrid::Place> NestedGrid::sample(std::size_t count) {
-  constexpr double kSide8 = static_cast<double>(kSide / kLargestStride);
+  constexpr std::size_t kPlaces = kSide / kLargestStride;
   std::vector<Place> places;
   for (std::size_t i = 0; i < count; ++i) {
     // Multiples of irrationals fill an interval evenly and never repeat.
     const auto position = [&](double irrational) {
       const double x = (static_cast<double>(i) + 0.5) * irrational;
-      return static_cast<std::size_t>(kSide8 * (x - std::floor(x)));
+      return static_cast<std::size_t>(static_cast<double>(kPlaces) * (x - std::floor(x)));
     };
     places.push_back({position(std::numbers::phi), position(std::numbers::sqrt2), position(std::numbers::sqrt3)});
   }

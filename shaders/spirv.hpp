@@ -6,6 +6,7 @@
 
 namespace dolp::spirv {
 
+// NOLINTBEGIN(readability-identifier-naming): named as their files.
 extern const std::span<const std::uint32_t> moments_float;
 extern const std::span<const std::uint32_t> moments_double;
 extern const std::span<const std::uint32_t> moments_row4_float;  // rows of 4, 8 and 16
@@ -23,5 +24,6 @@ extern const std::span<const std::uint32_t> mueller_double;
 // Of the benchmark, in bench/:
 extern const std::span<const std::uint32_t> product_rule_float;
 extern const std::span<const std::uint32_t> arithmetic_peak_float;
+// NOLINTEND(readability-identifier-naming)
 
 }  // namespace dolp::spirv

@@ -164,6 +164,10 @@ TEST_F(Library, Scene_SaysItsValues) {
   EXPECT_EQ(gold.number("surface.n"), std::nullopt);
   EXPECT_EQ(gold.numbers("spectrum.band_um"), (std::vector<double>{8, 12}));
   EXPECT_GT(gold.refractive_index(10.0).second, 10.0);
+  EXPECT_NE(gold.refractive_index(9.0), gold.refractive_index(11.0));
+  const dolp::Scene at_10 = scene_.with({"surface.material=water"});
+  EXPECT_NE(at_10.refractive_index(10.0), at_10.refractive_index(11.0));
+  EXPECT_THROW(at_10.refractive_index(1e3), dolp::InputError);
   EXPECT_THROW(scene_.number("surface.masking"), dolp::InputError);
   EXPECT_THROW(scene_.word("surface.colour"), dolp::InputError);
 }

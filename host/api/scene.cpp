@@ -6,6 +6,7 @@
 #include "api/translated.hpp"
 #include "base/text.hpp"
 #include "scene/embedded_data.hpp"
+#include "scene/material_data.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene/scene_writer.hpp"
@@ -87,7 +88,16 @@ std::vector<double> Scene::numbers(std::string_view key) const {
 }
 
 std::pair<double, double> Scene::refractive_index(double wavelength_um) const {
-  const OpticalConstants index = impl_->scene.surface.material.at(wavelength_um);
+  const dolp::Material& used = impl_->scene.surface.material;
+  const dolp::Material& material = used.tabulated ? *used.tabulated : used;
+  if (!material.is_constant()) {
+    const Spectrum range = known_range(material);
+    if (wavelength_um < range.min_um || wavelength_um > range.max_um) {
+      throw InputError(fmt::format("{} um: n and k of {} are known from {} to {} um", wavelength_um, material.name,
+                                   range.min_um, range.max_um));
+    }
+  }
+  const OpticalConstants index = material.at(wavelength_um);
   return {index.n, index.k};
 }
 

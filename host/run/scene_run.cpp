@@ -311,7 +311,7 @@ std::vector<PointResult> part_results(const Way& way, const SceneEntries& part, 
     for (PointResult& result : std::span(results).subspan(direction * part.of_direction(), part.of_direction()))
       result.status |= kStatusToleranceMissed;
   }
-  return std::move(results);
+  return results;
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ void coloured_text(ImU32 colour, const std::string& text) {
 }  // namespace
 
 Ui::Ui(Session& session, BackgroundTask& table_export, BackgroundTask& true_error, BackgroundTask& fit, Actions actions,
-       std::string name)
+       const std::string& name)
     : session_(session), table_export_(table_export), true_error_(true_error), fit_(fit), actions_(std::move(actions)) {
   add_file_commands(name);
   add_view_commands();

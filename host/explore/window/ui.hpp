@@ -28,7 +28,7 @@ class Ui {
  public:
   /// `name` begins the file names that dialogs suggest. All must outlive this.
   Ui(Session& session, BackgroundTask& table_export, BackgroundTask& true_error, BackgroundTask& fit, Actions actions,
-     std::string name);
+     const std::string& name);
 
   /// Draws everything, between ImGui's NewFrame and Render.
   void draw();

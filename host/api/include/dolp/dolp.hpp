@@ -114,7 +114,7 @@ class DOLP_EXPORT Scene {
   std::optional<std::string> word(std::string_view key) const;
   /// Likewise of axes and pairs, empty where the scene has none.
   std::vector<double> numbers(std::string_view key) const;
-  /// n and k at a wavelength of the scene.
+  /// n and k at a wavelength. Errors: InputError where the material has none.
   std::pair<double, double> refractive_index(double wavelength_um) const;
 
   struct Impl;

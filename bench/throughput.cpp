@@ -44,7 +44,7 @@ constexpr std::array<GridSize, 8> kGrids = {{{32, 32, 32},
                                              {256, 128, 128}}};
 constexpr std::size_t kMainGrid = 1;         // of kGrids: what all but the grids themselves are measured on
 constexpr GridSize kSmallGrid = {2, 2, 16};  // whose entries come in groups
-constexpr std::size_t kQuickEntries = 24 * 24 * 24;
+constexpr std::size_t kQuickEntries = std::size_t{24} * 24 * 24;
 constexpr std::size_t kFullRepeats = 5;
 constexpr std::size_t kQuickRepeats = 2;
 constexpr double kLongTime = 1.0;  // seconds of a call that is repeated as in a quick study

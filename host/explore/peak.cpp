@@ -67,7 +67,7 @@ void Peak::take_away(const SceneEdits& edits) {
   for (const WithoutEffect& away : kAway) {
     if (!has(scene_, away)) continue;
     try {
-      scenes_without_.push_back(edits.variant({away.override_}));
+      scenes_without_.push_back(edits.variant({away.change}));
       without_.push_back(away);
     } catch (const InputError&) {
       // Nothing else radiates, the source is relative to the emission, or the emission needs the masking.
@@ -75,7 +75,7 @@ void Peak::take_away(const SceneEdits& edits) {
   }
 }
 
-std::string Peak::key_of(const WithoutEffect& of) const { return std::string("without ") + of.override_ + ' ' + key_; }
+std::string Peak::key_of(const WithoutEffect& of) const { return std::string("without ") + of.change + ' ' + key_; }
 
 std::vector<Job> Peak::wanted() const {
   std::vector<Job> jobs;

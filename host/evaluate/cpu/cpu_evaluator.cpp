@@ -99,9 +99,8 @@ std::vector<Moments> CpuEvaluator::evaluate(const MomentsRequest& request, const
   const bool is_double = in_double(request.precision);
   const std::unique_ptr<KernelText> text = make_text(data, is_double);
   const double unit_roundoff = unit_roundoff_of(is_double);
-  const std::vector<Moments> moments = has_profiles(request)
-                                           ? by_profiles(request, data, *text, unit_roundoff, progress)
-                                           : by_entries(request, data, *text, unit_roundoff, progress);
+  std::vector<Moments> moments = has_profiles(request) ? by_profiles(request, data, *text, unit_roundoff, progress)
+                                                       : by_entries(request, data, *text, unit_roundoff, progress);
   for (const Moments& entry : moments) report_.evaluations += entry.evaluations;
   note(is_double, seconds_since(start));
   return moments;

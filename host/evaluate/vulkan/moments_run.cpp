@@ -52,7 +52,8 @@ void MomentsRun::create_buffers() {
   task_buffer_.emplace(device, sizes_.invocations * sizeof(TaskWords), staged);
   rule_buffer_.emplace(device, packing.node_bytes<kernel::RuleNode>(), staged);
   rule_node_buffer_.emplace(device, data_.rule_nodes.size() * packing.node_bytes<RulePoint>(), staged);
-  masking_buffer_.emplace(device, sizes_.shapes * packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
+  masking_buffer_.emplace(device,
+                          std::size_t{sizes_.shapes} * packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
                           MemoryUse::kDeviceOnly);
   moments_buffer_.emplace(device, sizes_.invocations * rows_.width * packing.node_bytes<kernel::MomentsNode>(),
                           MemoryUse::kReadback);

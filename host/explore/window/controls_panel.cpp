@@ -129,16 +129,16 @@ void draw_source_kind(Session& session) {
     const char* name;
     SceneEdits::Change change;
   };
-  static const std::array<Kind, 3> kKinds = {{{"E0 as below", {"source.irradiance", "1"}},
-                                              {"e = E0/(πB(T)) as below", {"source.relative_irradiance", "0.6"}},
-                                              {"the sun", {"source.preset", "sun"}}}};
+  static const std::array<Kind, 3> kinds = {{{"E0 as below", {"source.irradiance", "1"}},
+                                             {"e = E0/(πB(T)) as below", {"source.relative_irradiance", "0.6"}},
+                                             {"the sun", {"source.preset", "sun"}}}};
   const Scene& scene = session.scene();
   const std::size_t now = scene.number("source.irradiance") ? 0 : scene.number("source.relative_irradiance") ? 1 : 2;
   row_label("kind");
   ImGui::SetNextItemWidth(-1.0F);
-  if (!ImGui::BeginCombo("##source kind", shown(kKinds[now].name).c_str())) return;
-  for (std::size_t i = 0; i < kKinds.size(); ++i) {
-    if (ImGui::Selectable(shown(kKinds[i].name).c_str(), i == now) && i != now) session.set({kKinds[i].change});
+  if (!ImGui::BeginCombo("##source kind", shown(kinds[now].name).c_str())) return;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    if (ImGui::Selectable(shown(kinds[i].name).c_str(), i == now) && i != now) session.set({kinds[i].change});
   }
   ImGui::EndCombo();
 }
@@ -247,7 +247,7 @@ void ControlsPanel::draw_parameter(Session& session, const Parameter& parameter,
     draw_interval(parameter, found->interval_68.at(key.key));
   const bool is_ctrl = ImGui::GetIO().KeyCtrl;
   if (ImGui::IsItemClicked() && is_ctrl) session.reset(key.key);
-  if (is_moved && !is_ctrl) session.set(key.key, slider_value(parameter, position));
+  if (is_moved && !is_ctrl) session.set(key.key, slider_value(parameter, static_cast<double>(position)));
   if (!ImGui::IsItemActive()) tooltip(description_of(parameter, session));
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1.0F);

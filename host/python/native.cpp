@@ -39,7 +39,7 @@ auto interruptible(const Body& body) {
       const py::gil_scoped_release end_of_call;
       result.wait();
     }
-    throw interrupt;
+    throw interrupt;  // NOLINT(misc-throw-by-value-catch-by-reference): it has to be made before the call has ended
   }
   return result.get();
 }

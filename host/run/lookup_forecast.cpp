@@ -106,10 +106,9 @@ class Forecast {
       for (const std::size_t cell : cells) stretches.push_back(stretch(axis, values, cell, line));
     }
     double largest = -1.0;  // NaN is not larger
-    for (const double error : errors_in(stretches)) {
-      if (error > largest) largest = error;
-    }
-    return largest < 0.0 ? kInfinity : largest;
+    for (const double error : errors_in(stretches)) largest = error > largest ? error : largest;
+    if (largest < 0.0) return kInfinity;
+    return largest;
   }
 
   /// The values around a cell, and its middle.

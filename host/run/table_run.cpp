@@ -224,8 +224,8 @@ fs::path shard_path(const fs::path& path, const Shard& shard) {
 }
 
 SceneEntries shard_entries(const Scene& scene, const Shard& shard) {
+  if (shard.is_whole()) return grid_entries(scene);
   const SceneEntries whole = grid_entries(scene);
-  if (shard.is_whole()) return whole;
   PerAxis count = whole.counts();
   Cuts cuts{};
   if (!find_cuts(count, shard.count, 0, cuts)) {

@@ -110,7 +110,7 @@ using Changes = std::vector<SceneEdits::Change>;
 
 bool is_accepted(const SceneEdits& edits, const Changes& changes) {
   std::vector<std::string> arguments;
-  for (const auto& [key, word] : changes) arguments.push_back(key + '=' + word);
+  for (const auto& [key, word] : changes) arguments.emplace_back(key).append("=").append(word);
   try {
     edits.variant(arguments);
     return true;
@@ -363,6 +363,7 @@ TEST(Measured, Quantities_AreReadAsDolpFitReadsThem) {
   EXPECT_EQ(points.points[0].uncertainty, 0.01);
   EXPECT_EQ(points_of({.csv = "theta_deg,emissivity_s,emissivity_p\n60,0.9,0.8\n"}).points.size(), 2U);
   EXPECT_THROW(points_of({.csv = "theta_deg,dolp\n95,0.1\n"}), InputError);
+  EXPECT_THROW(points_of({.csv = "theta_deg,dolp\n60,0.1\n", .overrides = {"surface.n=2"}}), InputError);
 }
 
 TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredPoints) {

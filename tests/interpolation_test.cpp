@@ -289,11 +289,11 @@ TEST(InterpolatingEvaluator, MomentsWithAKink_StateALargeError) {
 }
 
 TEST(InterpolatingEvaluator, BoundsOfTheNodes_AreCarriedOver) {
-  constexpr double error = 1e-3;
-  Interpolated one = interpolated(smooth, error);
+  constexpr double kError = 1e-3;
+  Interpolated one = interpolated(smooth, kError);
   for (const Moments& m : one.evaluator.evaluate(one.request, {})) {
-    EXPECT_GE(m.r_i_error, 0.999 * error);
-    EXPECT_LE(m.r_i_error, 20.0 * error);
+    EXPECT_GE(m.r_i_error, 0.999 * kError);
+    EXPECT_LE(m.r_i_error, 20.0 * kError);
   }
 }
 
@@ -514,7 +514,7 @@ TEST(InterpolatingEvaluator, BasisOfIndices_ComputesWhatIsWanted) {
   EXPECT_EQ(known.requests[0].indices.back(), request.indices.back());
   EXPECT_LT(known.requests[0].tolerance, request.tolerance);
   request.wanted.assign(request.size(), 0);
-  for (std::size_t shape = 0; shape < 2; ++shape) request.wanted[(61 + 17) * 2 + shape] = 1;
+  for (std::size_t shape = 0; shape < 2; ++shape) request.wanted[std::size_t{61 + 17} * 2 + shape] = 1;
   evaluator.evaluate(request, {});
   EXPECT_EQ(known.requests[1].wanted_count(), 2 * of_basis);
 }

@@ -384,7 +384,7 @@ TEST(NamedFile_ThatIsNoRegularFile, IsRefused) {
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   for (const std::string key : {"surface.material_file", "source.file"}) {
     for (const std::string& path : {pipe, std::string("/dev/zero"), std::string("-")}) {
-      const std::string error = error_of(kScene, {key + "=" + path});
+      const std::string error = error_of(kScene, {std::string(key).append("=").append(path)});
       EXPECT_TRUE(error.ends_with(": is not a regular file")) << error;
     }
   }

@@ -146,7 +146,7 @@ Eigen::Matrix4cd coherency(const Matrix& f) {
     for (int column = 0; column < 4; ++column) {
       const Eigen::Matrix2cd& a = pauli[static_cast<std::size_t>(row)];
       const Eigen::Matrix2cd b = pauli[static_cast<std::size_t>(column)].conjugate();
-      for (int block = 0; block < 4; ++block) {
+      for (Eigen::Index block = 0; block < 4; ++block) {
         result.block<2, 2>(2 * (block / 2), 2 * (block % 2)) += 0.25 * f(row, column) * a(block / 2, block % 2) * b;
       }
     }

@@ -37,7 +37,7 @@ class PaperFigure : public testing::Test {
     return json::parse(outcome.out);
   }
   json numbers_and_picture(const std::string& number) const {
-    const json report = numbers(number, {"-o", "f.png"});
+    json report = numbers(number, {"-o", "f.png"});
     const std::string picture = read_file(folder_.path() / "f.png");
     EXPECT_TRUE(picture.starts_with("\x89PNG"));
     EXPECT_LT(picture.size(), kLargestPictureBytes);

@@ -147,7 +147,8 @@ TEST_F(Plan, Eval_QuantitiesNotNeeded_AreNan) {
     EXPECT_EQ(columns.at("dolp")[i], 0.0);
     EXPECT_EQ(columns.at("status")[i], 0.0);
   }
-  for (const double rho : eval(joined(kIsothermal, {"--keep-all"})).at("rho_i")) EXPECT_GT(rho, 0.0);
+  const Columns all = eval(joined(kIsothermal, {"--keep-all"}));
+  for (const double rho : all.at("rho_i")) EXPECT_GT(rho, 0.0);
 }
 
 TEST_F(Plan, NoSpecularPart_OnlyClosedForms) {

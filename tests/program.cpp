@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdlib>
@@ -34,25 +35,41 @@ int open_partner(const Descriptor& terminal) {
   return open_file(::ptsname(terminal.number()), O_RDWR);
 }
 
-[[noreturn]] void become(const Command& command, const Descriptor& in, const Descriptor& out, const Descriptor& err) {
+/// Arguments and environment of a program as the kernel takes them.
+class Image {
+ public:
+  explicit Image(const Command& command) : texts_(command.arguments) {
+    const std::size_t argument_count = texts_.size();
+    for (char** one = environ; *one != nullptr; ++one) {
+      const std::string text = *one;
+      const auto replaces = [&](const auto& own) { return text.starts_with(own.first + '='); };
+      if (std::ranges::none_of(command.environment, replaces)) texts_.push_back(text);
+    }
+    for (const auto& [name, value] : command.environment) texts_.push_back(name + '=' + value);
+    for (std::string& text : texts_) {
+      (arguments_.size() < argument_count ? arguments_ : environment_).push_back(text.data());
+    }
+    arguments_.push_back(nullptr);
+    environment_.push_back(nullptr);
+  }
+  void execute() const { ::execvpe(arguments_.front(), arguments_.data(), environment_.data()); }
+
+ private:
+  std::vector<std::string> texts_;
+  std::vector<char*> arguments_, environment_;
+};
+
+pid_t start(const Command& command, const Descriptor& in, const Descriptor& out, const Descriptor& err) {
+  // Made before the fork: a thread that is not in the child may hold the lock of the memory there.
+  const Image image(command);
+  const pid_t process = ::fork();
+  require(process >= 0, "cannot fork");
+  if (process != 0) return process;
   ::alarm(kLongestRun_s);
   const bool redirected = ::dup2(in.number(), STDIN_FILENO) >= 0 && ::dup2(out.number(), STDOUT_FILENO) >= 0 &&
                           ::dup2(err.number(), STDERR_FILENO) >= 0;
-  if (!redirected || ::chdir(command.folder.c_str()) != 0) ::_exit(kCannotStart);
-  for (const auto& [name, value] : command.environment) ::setenv(name.c_str(), value.c_str(), 1);
-  std::vector<std::string> texts = command.arguments;
-  std::vector<char*> arguments;
-  for (std::string& text : texts) arguments.push_back(text.data());
-  arguments.push_back(nullptr);
-  ::execvp(arguments.front(), arguments.data());
+  if (redirected && ::chdir(command.folder.c_str()) == 0) image.execute();
   ::_exit(kCannotStart);
-}
-
-pid_t start(const Command& command, const Descriptor& in, const Descriptor& out, const Descriptor& err) {
-  const pid_t process = ::fork();
-  require(process >= 0, "cannot fork");
-  if (process == 0) become(command, in, out, err);
-  return process;
 }
 
 pid_t start_on_terminal(const Command& command, const Descriptor& terminal) {

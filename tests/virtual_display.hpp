@@ -27,11 +27,12 @@ class VirtualDisplay {
     folder_ = folder;
     int ends[2];
     if (::pipe(ends) != 0) throw std::runtime_error("cannot make a pipe");
+    const std::string end = std::to_string(ends[1]);
+    const std::string screen = size + "x24";
     process_ = ::fork();
     if (process_ == 0) {
-      const std::string number = std::to_string(ends[1]);
-      ::execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", (size + "x24").c_str(), "-fbdir",
-               folder.c_str(), "-noreset", "-nolisten", "tcp", nullptr);
+      ::execlp("Xvfb", "Xvfb", "-displayfd", end.c_str(), "-screen", "0", screen.c_str(), "-fbdir", folder.c_str(),
+               "-noreset", "-nolisten", "tcp", nullptr);
       ::_exit(127);
     }
     ::close(ends[1]);

@@ -18,6 +18,9 @@ Quantity quantity_of(const std::string& column) {
 }  // namespace
 
 MeasuredPoints points_of(MeasuredData data) {
+  if (!data.overrides.empty()) {
+    throw InputError(data.name + ": measured points take the window's scene; KEY=VALUE beside them is for dolp fit");
+  }
   MeasuredPoints all;
   for (const api::Measurement& one : data.measurements()) {
     all.points.push_back({quantity_of(one.quantity), one.theta_deg, one.value, one.uncertainty});

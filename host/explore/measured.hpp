@@ -25,7 +25,7 @@ struct MeasuredPoints {
   std::vector<double> wavelength_um;  ///< of each point; empty: the scene's
 };
 
-/// Errors: those of MeasuredData.
+/// Errors: those of MeasuredData; InputError for data with keys of their own.
 MeasuredPoints points_of(MeasuredData data);
 
 /// The model at the measured points.

@@ -68,11 +68,13 @@ Function next(const char* name) {
 
 }  // namespace
 
+// NOLINTBEGIN(bugprone-macro-parentheses): what comes in parentheses has them.
 #define DOLP_MAY_FAIL(name, parameters, arguments)                          \
   extern "C" VKAPI_ATTR VkResult VKAPI_CALL name parameters {               \
     const VkResult fault = fault_of(#name);                                 \
     return fault == VK_SUCCESS ? next<PFN_##name>(#name) arguments : fault; \
   }
+// NOLINTEND(bugprone-macro-parentheses)
 
 DOLP_MAY_FAIL(vkCreateInstance, (const VkInstanceCreateInfo* i, const VkAllocationCallbacks* a, VkInstance* o),
               (i, a, o))

@@ -321,7 +321,8 @@ TEST_F(TableFiles, Netcdf_FlippedBit_IsFoundOrChangesNothing) {
   int found = 0;
   for (int trial = 0; trial < 1000; ++trial) {
     std::string damaged = bytes;
-    damaged[random() % damaged.size()] ^= static_cast<char>(1 << random() % 8);
+    char& byte = damaged[random() % damaged.size()];
+    byte = static_cast<char>(byte ^ (1 << random() % 8));
     put(at("damaged.nc"), damaged);
     try {
       const Table read = read_table(at("damaged.nc"));

@@ -118,7 +118,7 @@ std::vector<double> read_pair(const SceneDocument& document, const KeyDescriptio
   const toml::array* array = node.as_array();
   const std::string what = "must be " + description.allowed();
   if (!array || array->size() != 2) document.fail(description.key, what);
-  const std::vector<double> pair = read_list(document, description, *array);
+  std::vector<double> pair = read_list(document, description, *array);
   if (!(pair[0] < pair[1])) document.fail(description.key, what);
   return pair;
 }

@@ -165,7 +165,7 @@ std::string table_rows(const Table& part, const TableLayout& layout, TableFormat
 
 void write_table(const Table& table, const fs::path& path) {
   const TableFormat format = format_of(path);
-  const TableLayout layout{table, present_variables(table), !table.status.empty()};
+  const TableLayout layout{static_cast<const TableHead&>(table), present_variables(table), !table.status.empty()};
   if (format != TableFormat::kNetcdf)
     return write_text_atomically(path, table_start(layout, format) + table_rows(table, layout, format));
   AtomicFile file(path);

@@ -55,7 +55,8 @@ void MomentsRun::create_buffers() {
   masking_buffer_.emplace(device,
                           std::size_t{sizes_.shapes} * packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
                           MemoryUse::kDeviceOnly);
-  moments_buffer_.emplace(device, sizes_.invocations * rows_.width * packing.node_bytes<kernel::MomentsNode>(),
+  moments_buffer_.emplace(device,
+                          std::size_t{sizes_.invocations} * rows_.width * packing.node_bytes<kernel::MomentsNode>(),
                           MemoryUse::kReadback);
 
   std::array<VkBuffer, kBindingCount> buffers{};

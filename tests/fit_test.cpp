@@ -58,7 +58,7 @@ class FitTest : public testing::Test {
     }
     return data;
   }
-  FitResult fitted(const FitData& data, const std::vector<Parameter>& parameters, FitOptions options = {},
+  FitResult fitted(const FitData& data, const std::vector<Parameter>& parameters, const FitOptions& options = {},
                    const std::vector<std::string>& overrides = {}) {
     const Model model({kScene, "scene", overrides}, {data}, parameters);
     const std::optional<FitResult> result = fit::fit(model, evaluator_, options);

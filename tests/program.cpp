@@ -45,7 +45,7 @@ class Image {
       const auto replaces = [&](const auto& own) { return text.starts_with(own.first + '='); };
       if (std::ranges::none_of(command.environment, replaces)) texts_.push_back(text);
     }
-    for (const auto& [name, value] : command.environment) texts_.push_back(name + '=' + value);
+    for (const auto& [name, value] : command.environment) texts_.emplace_back(name).append("=").append(value);
     for (std::string& text : texts_) {
       (arguments_.size() < argument_count ? arguments_ : environment_).push_back(text.data());
     }

@@ -25,7 +25,7 @@ namespace {
 constexpr std::uint64_t kSeed = 20260403;
 
 std::uint64_t printed_seed(std::uint64_t offset) {
-  std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed + offset));
+  std::printf("seed %s\n", std::to_string(kSeed + offset).c_str());
   return kSeed + offset;
 }
 

@@ -93,9 +93,9 @@ TEST_P(EveryModel, ScatteredAxes_KeepTheirBitsInParts) {
 }
 
 TEST_P(EveryModel, AxesOfIndexAndWavelength_KeepTheirBitsInParts) {
-  Scene scene_ = scene();
-  scene_.grid = {{80.0, 30.0, 90.0}, {0.1, 0.4}, {2.0, 1.8, 5.0}, {8.0, 10.0}, {1.4, 4.0}, {0.0, 3.0}};
-  expect_same_bits(scene_, true);
+  Scene own = scene();
+  own.grid = {{80.0, 30.0, 90.0}, {0.1, 0.4}, {2.0, 1.8, 5.0}, {8.0, 10.0}, {1.4, 4.0}, {0.0, 3.0}};
+  expect_same_bits(own, true);
 }
 
 INSTANTIATE_TEST_SUITE_P(SceneParts, EveryModel,

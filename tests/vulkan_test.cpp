@@ -369,8 +369,7 @@ constexpr std::uint32_t kCount = 70;  // more than one workgroup, and not a mult
 // The buffers of a request, with room for one more workgroup of sentinels after each output.
 class SentinelRun {
  public:
-  SentinelRun(Session& session, const MomentsRequest& request)
-      : session_(session), request_(request), data_(kernel_data(request)) {
+  SentinelRun(Session& session, const MomentsRequest& request) : session_(session), data_(kernel_data(request)) {
     add(data_.thetas, 0);
     add(data_.shapes, 0);
     add(data_.indices, 0);
@@ -382,7 +381,7 @@ class SentinelRun {
     }
     buffers_.back().write(std::as_bytes(std::span(words)));
     add(data_.rule_nodes, 0);
-    using MaskingTable = std::array<double, 4 * DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT)>;
+    using MaskingTable = std::array<double, std::size_t{4} * DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT)>;
     add(std::vector<MaskingTable>{}, data_.shapes.size() + 1);
     add(std::vector<kernel::MomentsNode>{}, request.size() + kLocalSize);
     add(std::vector{data_.rule}, 0);
@@ -424,7 +423,6 @@ class SentinelRun {
   }
 
   Session& session_;
-  const MomentsRequest& request_;
   KernelData data_;
   Packing packing_{false};
   std::vector<Buffer> buffers_;
@@ -433,7 +431,7 @@ class SentinelRun {
 TEST(Kernels, LastWorkgroup_WritesNothingBeyondItsCount) {
   constexpr auto kIsSentinel = [](float value) { return value == static_cast<float>(kSentinel); };
   constexpr std::size_t kNode = real_count<kernel::MomentsNode>();
-  constexpr std::size_t kTable = 4 * DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT);
+  constexpr std::size_t kTable = std::size_t{4} * DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT);
   ValidationLog log;
   {
     Session session(log);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Static analysis of all C++ sources by cppcheck and clang-tidy: analyse.sh [BUILD]
+# Static analysis: cppcheck of host/, clang-tidy of all C++ sources: analyse.sh [BUILD]
 #
 # BUILD, build/release when not given, is a configured build folder with its generated headers. Prints what is found; the
 # exit status is not 0 then. The checks of clang-tidy are in .clang-tidy. Needs the packages clang-tidy-16 and cppcheck.

@@ -1,6 +1,6 @@
 # A room is a folder of host/ that is a library with an include root of its own: build/.../roots/ROOM holds the room's
 # headers under the room's path and nothing else. `#include "plan/rule.hpp"` compiles only where room plan is among what
-# a target needs. host/README.md is the map of the rooms, tests/rooms_test.sh proves it.
+# a target needs. host/README.md is the map of the rooms.
 
 # A link of an earlier configuration may lead to where this one wants a folder.
 file(REMOVE_RECURSE ${CMAKE_BINARY_DIR}/roots)
@@ -70,5 +70,4 @@ function(dolp_room path)
     file(GLOB shown RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.hpp)
   endif()
   dolp_root(${target} ${path} ${shown})
-  set_property(GLOBAL APPEND PROPERTY DOLP_ROOMS ${path})
 endfunction()

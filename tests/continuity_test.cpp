@@ -10,8 +10,6 @@
 #include <tuple>
 #include <vector>
 
-#include "plan/kernel_data.hpp"
-#include "plan/rule.hpp"
 #include "properties_support.hpp"
 
 namespace dolp {
@@ -176,36 +174,6 @@ TEST_P(Switches, TotalReflection_MakesNoJump) {
     pairs.push_back(across(vacuum, Parameter::kN, "n = 1"));
   }
   expect_no_jump(pairs);
-}
-
-/// Where `switched` changes between two values of sigma, to the last bit or nearly.
-template <class Switched>
-double bisected(double low, double high, Switched switched) {
-  const bool at_low = switched(low);
-  for (int i = 0; i < 100; ++i) {
-    const double middle = std::sqrt(low * high);
-    (switched(middle) == at_low ? low : high) = middle;
-  }
-  return low;
-}
-
-TEST_P(Switches, LineThatIsLeftOut_MakesNoJump) {
-  const double digits = rule_digits(rule_model(model().masking), tolerance());
-  Random draws = random();
-  std::vector<Pair> pairs;
-  for (std::size_t i = 0; i < 40 * kBases && pairs.size() < 4 * kBases; ++i) {
-    Point point = base(draws);
-    const auto switched = [&](double sigma) {
-      return needs_line(model().distribution, model().masking, {sigma, point.shape.q}, digits, tolerance());
-    };
-    if (i % 2 == 0) point.shape.q = draws.uniform(model().masking == Masking::kSmith ? 1.55 : 1.05, 4.5);
-    if (switched(1e-4) == switched(10.0)) continue;
-    point.shape.sigma = bisected(1e-4, 10.0, switched);
-    pairs.push_back(across(point, Parameter::kSigma, "line left out"));
-  }
-  const bool may_have_lines = model().masking == Masking::kIntegral || model().masking == Masking::kSmith;
-  ASSERT_TRUE(may_have_lines || pairs.empty());
-  if (!pairs.empty()) expect_no_jump(pairs);
 }
 
 /// Evaluations of the points by the kernel's plan, in double.

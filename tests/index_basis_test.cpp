@@ -84,35 +84,6 @@ TEST(IndexBasis, CombinedReflectances_StayWithinTheirBounds) {
   }
 }
 
-TEST(IndexBasis, WeightsStaySmall_SoThatErrorsOfTheBasisDoNotGrow) {
-  Random random(2);
-  for (const Box& box : kBoxes) {
-    const std::vector<OpticalConstants> run = random_indices(box, 400, random);
-    const auto basis = IndexBasis::of(run, 1e-4);
-    ASSERT_TRUE(basis) << box.name;
-    double all = 0.0;
-    for (const OpticalConstants& index : run) {
-      const auto weights = basis->weights_of(index);
-      if (!weights) continue;
-      double sum = 0.0;
-      for (std::size_t i = 0; i < basis->indices().size(); ++i)
-        sum += std::abs(weights->mean[static_cast<Eigen::Index>(i)]) * level_of(basis->indices()[i]);
-      all += sum / level_of(index) / static_cast<double>(run.size());
-    }
-    EXPECT_LT(all, 5.0) << box.name;
-  }
-}
-
-TEST(IndexBasis, ManyPaints_TakeEleven) {
-  std::vector<OpticalConstants> run;
-  for (int i = 0; i < 20; ++i) {
-    for (int j = 0; j < 20; ++j) run.push_back({1.3 + 1.2 * i / 19.0, 0.01 + 0.99 * j / 19.0});
-  }
-  const auto basis = IndexBasis::of(run, 1e-4);
-  ASSERT_TRUE(basis);
-  EXPECT_EQ(basis->indices().size(), 11U);
-}
-
 TEST(IndexBasis, FewOrEqualIndices_HaveNone) {
   EXPECT_FALSE(IndexBasis::of({}, 1e-4));
   EXPECT_FALSE(IndexBasis::of({{1.5, 0.1}}, 1e-4));

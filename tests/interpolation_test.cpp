@@ -1,20 +1,15 @@
-// Interpolation between slope distributions: its parts, the evaluator around a made-up one, and its stated errors
-// against the kernel's text at every entry.
+// Interpolation between slope distributions: the evaluator around a made-up one, and its stated errors against the
+// kernel's text at every entry.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <numbers>
-#include <numeric>
 #include <span>
 
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "model/index_basis.hpp"
-#include "plan/chebyshev.hpp"
-#include "plan/shape_axis.hpp"
-#include "plan/shape_plan.hpp"
 #include "properties_support.hpp"
 
 namespace {
@@ -45,152 +40,6 @@ MomentsRequest grid_request(const Model& model, const std::vector<double>& theta
 }
 
 const Model kModel = kModels[2];  // cauchy, integral
-
-TEST(Chebyshev, Cardinal_Polynomials_AreInterpolatedExactly) {
-  const std::vector<double> points = lobatto_points(9);
-  EXPECT_EQ(points.front(), 1.0);
-  EXPECT_EQ(points.back(), -1.0);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    EXPECT_EQ(points[i], -points[points.size() - 1 - i]);
-    const Eigen::RowVectorXd at_node = cardinal_values(points, points[i]);
-    for (Eigen::Index j = 0; j < at_node.size(); ++j) {
-      EXPECT_EQ(at_node[j], j == static_cast<Eigen::Index>(i) ? 1.0 : 0.0);
-    }
-  }
-  for (const double x : {-0.99, -0.3, 0.1234, 0.77}) {
-    const Eigen::RowVectorXd cardinal = cardinal_values(points, x);
-    for (int power = 0; power <= 8; ++power) {
-      double sum = 0.0;
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        sum += cardinal[static_cast<Eigen::Index>(i)] * std::pow(points[i], power);
-      }
-      EXPECT_NEAR(sum, std::pow(x, power), 1e-14) << x << " power " << power;
-    }
-  }
-}
-
-TEST(Chebyshev, Coefficients_OfAChebyshevPolynomial_AreOneAndZeros) {
-  const Eigen::Index count = 8;
-  const std::vector<double> points = lobatto_points(count);
-  const Eigen::MatrixXd to_coefficients = chebyshev_coefficients(count);
-  for (Eigen::Index degree = 0; degree < count; ++degree) {
-    Eigen::VectorXd values(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      values[i] = std::cos(static_cast<double>(degree) * std::acos(points[static_cast<std::size_t>(i)]));
-    }
-    const Eigen::VectorXd coefficients = to_coefficients * values;
-    for (Eigen::Index i = 0; i < count; ++i) EXPECT_NEAR(coefficients[i], i == degree ? 1.0 : 0.0, 1e-14);
-  }
-}
-
-TEST(ShapeAxis, DenseValues_FewerNodesBetweenTheExtremes) {
-  const std::vector<double> sigma = spaced(0.05, 1.0, 64);
-  const ShapeAxis axis = shape_axis(sigma_parameter(Distribution::kCauchy), sigma, 5.0);
-  ASSERT_TRUE(axis.is_interpolated());
-  EXPECT_LT(axis.nodes.size(), 32U);
-  EXPECT_EQ(axis.nodes.front(), 1.0);
-  EXPECT_EQ(axis.nodes.back(), 0.05);
-  ASSERT_EQ(axis.cardinal.rows(), 64);
-  for (Eigen::Index i = 0; i < 64; ++i) EXPECT_NEAR(axis.cardinal.row(i).sum(), 1.0, 1e-13);
-  const ShapeAxis finer = shape_axis(sigma_parameter(Distribution::kCauchy), sigma, 7.0);
-  EXPECT_GT(finer.nodes.size(), axis.nodes.size());
-  const ShapeAxis narrower = shape_axis(sigma_parameter(Distribution::kCauchy), spaced(0.5, 1.0, 64), 5.0);
-  EXPECT_LT(narrower.nodes.size(), axis.nodes.size());
-}
-
-TEST(ShapeAxis, FewOrEqualValues_AreTheirOwnNodes) {
-  for (const std::vector<double>& values : {std::vector{2.0}, std::vector{5.0, 1.5, 3.0}, spaced(1.1, 30.0, 12)}) {
-    const ShapeAxis axis = shape_axis({1.0, 1.45}, values, 5.0);
-    EXPECT_FALSE(axis.is_interpolated());
-    EXPECT_EQ(axis.nodes, values);
-    EXPECT_TRUE(axis.cardinal.isIdentity());
-  }
-}
-
-TEST(ShapeAxis, ValuesInAnyOrder_TheSameNodes) {
-  std::vector<double> values = spaced(1.6, 9.0, 40);
-  const ShapeParameter q = {1.5, 1.45};
-  const ShapeAxis ascending = shape_axis(q, values, 4.0);
-  std::ranges::reverse(values);
-  const ShapeAxis descending = shape_axis(q, values, 4.0);
-  EXPECT_EQ(ascending.nodes, descending.nodes);
-  EXPECT_EQ(ascending.cardinal.row(0), descending.cardinal.row(39));
-}
-
-// The moments of smith, and at grazing incidence those without v-cavity, grow like the mean slope, 1 / (q - 3/2).
-TEST(QParameter, WhatDependsOnTheMeanSlope_IsInterpolatedAboutItsPole) {
-  const auto origin = [](Masking masking, double theta_deg, double least_q) {
-    MomentsRequest request;
-    request.masking = masking;
-    request.theta_deg = {theta_deg};
-    request.q = {least_q, 8.0};
-    return q_parameter(request).origin;
-  };
-  EXPECT_EQ(origin(Masking::kSmith, 10.0, 1.6), 1.5);
-  for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
-    EXPECT_EQ(origin(masking, 90.0, 1.6), 1.5);
-    EXPECT_EQ(origin(masking, 90.0, 1.4), 1.0);
-    EXPECT_EQ(origin(masking, 80.0, 1.6), 1.0);
-  }
-  EXPECT_EQ(origin(Masking::kVCavity, 90.0, 1.6), 1.0);
-}
-
-TEST(ShapePlan, DenseGrid_NodesAreFew_AndTheirToleranceTighter) {
-  const MomentsRequest request = grid_request(kModel, {10.0, 60.0}, spaced(0.05, 1.0, 64), spaced(1.75, 8.0, 64));
-  const std::optional<ShapePlan> plan = shape_plan(request);
-  ASSERT_TRUE(plan);
-  EXPECT_EQ(plan->nodes.theta_deg, request.theta_deg);
-  EXPECT_EQ(plan->nodes.size(), 2 * plan->nodes_of_a_direction());
-  EXPECT_LT(plan->nodes.size(), request.size() / 10);
-  EXPECT_LT(plan->nodes.tolerance, 0.2 * request.tolerance);
-}
-
-TEST(ShapePlan, Float_NodesStayAboveItsRounding) {
-  MomentsRequest request = grid_request(kModel, {10.0}, spaced(0.05, 1.0, 64), spaced(1.75, 8.0, 64), 3e-6);
-  request.precision = Precision::kFloat;
-  EXPECT_EQ(shape_plan(request)->nodes.tolerance, 2e-6);
-}
-
-TEST(ShapePlan, NothingDense_OrNotWanted_NoPlan) {
-  Random random(1);
-  const std::vector<Point> points = random.points(kModel, 500);
-  EXPECT_FALSE(shape_plan(request_of(kModel, points, 1e-4)));
-  EXPECT_FALSE(shape_plan(grid_request(kModel, spaced(0, 89, 90), {0.3}, {2.0, 3.0})));
-  EXPECT_FALSE(shape_plan(grid_request(kModel, {60.0}, spaced(0.1, 1, 6), spaced(2, 5, 5))));
-  EXPECT_FALSE(shape_plan(grid_request(kModel, {}, {}, {})));
-  MomentsRequest unwanted = grid_request(kModel, {60.0}, spaced(0.05, 1.0, 64), spaced(1.75, 8.0, 64));
-  unwanted.may_interpolate = false;
-  EXPECT_FALSE(shape_plan(unwanted));
-}
-
-TEST(ShapePlan, PointsOfOneDirectionOrAMask_NoPlan) {
-  MomentsRequest points = grid_request(kModel, {}, {}, {});
-  points.indices.clear();
-  Random random(2);
-  for (std::uint32_t i = 0; i < 2000; ++i) {
-    points.append({60.0, {random.uniform(0.05, 1.0), random.uniform(1.75, 8.0)}, {1.5, 0.1}});
-  }
-  EXPECT_FALSE(shape_plan(points));
-  MomentsRequest masked = grid_request(kModel, {60.0}, spaced(0.05, 1.0, 64), spaced(1.75, 8.0, 64));
-  masked.wanted.assign(masked.size(), 1);
-  masked.wanted.front() = 0;
-  EXPECT_FALSE(shape_plan(masked));
-}
-
-TEST(ShapePlan, ExtremeRange_NoGain_NoPlan) {
-  EXPECT_FALSE(shape_plan(grid_request(kModel, {60.0}, spaced(1e-6, 10.0, 40, true), {2.0})));
-  // Just above the end of smith's range no logarithm helps.
-  EXPECT_FALSE(shape_plan(grid_request(kModels[3], {60.0}, {0.3}, {1.5 + 1e-12, 1.6, 2, 3, 4, 5, 6, 7, 8, 9})));
-}
-
-TEST(ShapePlan, OneAxisIsDense_TheOtherIsKept) {
-  const std::vector<double> q = {1.5, 2.0, 3.0, 5.0};
-  const std::optional<ShapePlan> plan = shape_plan(grid_request(kModel, {60.0}, spaced(0.05, 1.0, 64), q));
-  ASSERT_TRUE(plan);
-  EXPECT_TRUE(plan->sigma.is_interpolated());
-  EXPECT_FALSE(plan->q.is_interpolated());
-  EXPECT_EQ(plan->q.nodes, q);
-}
 
 /// Moments that a function of the slope distribution says, with a bound of its own.
 class Invented final : public MomentsEvaluator {
@@ -295,14 +144,6 @@ TEST(InterpolatingEvaluator, BoundsOfTheNodes_AreCarriedOver) {
     EXPECT_GE(m.r_i_error, 0.999 * kError);
     EXPECT_LE(m.r_i_error, 20.0 * kError);
   }
-}
-
-TEST(InterpolatingEvaluator, EvaluationsOfTheNodes_AreSharedAmongTheEntries) {
-  Interpolated one = interpolated(smooth);
-  const std::vector<Moments> moments = one.evaluator.evaluate(one.request, {});
-  const double sum = std::accumulate(moments.begin(), moments.end(), 0.0,
-                                     [](double so_far, const Moments& m) { return so_far + m.evaluations; });
-  EXPECT_NEAR(sum, 10.0 * static_cast<double>(one.inner->requests.at(0).size()), 1e-6);
 }
 
 TEST(InterpolatingEvaluator, NodeWithoutABound_ItsDirectionIsComputedEntryByEntry) {
@@ -494,29 +335,6 @@ TEST_P(RandomGrids, StatedErrors_HoldAgainstEveryIndexByItself) {
   EXPECT_GT(combined, 0U);
   EXPECT_EQ(evaluator.report().interpolated, combined);
   EXPECT_LE(2 * evaluator.report().interpolation_nodes, combined);
-}
-
-// What is wanted of the basis follows from what is wanted of the indices; an index beyond its reach is computed itself.
-TEST(InterpolatingEvaluator, BasisOfIndices_ComputesWhatIsWanted) {
-  MomentsRequest request = grid_request(kModel, {30.0, 60.0}, {0.1, 0.3}, {2.0}, 1e-3);
-  request.indices.clear();
-  for (const double n : spaced(1.3, 2.0, 60)) request.indices.push_back({n, 0.1});
-  request.indices.push_back({0.8, 0.0});
-  request.basis = IndexBasis::of(request.indices, request.tolerance);
-  ASSERT_TRUE(request.basis);
-  const std::size_t of_basis = request.basis->indices().size();
-  auto inner = std::make_unique<Invented>(smooth, 0.0);
-  const Invented& known = *inner;
-  InterpolatingEvaluator evaluator(std::move(inner));
-  evaluator.evaluate(request, {});
-  ASSERT_EQ(known.requests.size(), 1U);
-  EXPECT_EQ(known.requests[0].indices.size(), of_basis + 1);
-  EXPECT_EQ(known.requests[0].indices.back(), request.indices.back());
-  EXPECT_LT(known.requests[0].tolerance, request.tolerance);
-  request.wanted.assign(request.size(), 0);
-  for (std::size_t shape = 0; shape < 2; ++shape) request.wanted[std::size_t{61 + 17} * 2 + shape] = 1;
-  evaluator.evaluate(request, {});
-  EXPECT_EQ(known.requests[1].wanted_count(), 2 * of_basis);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, RandomGrids, testing::ValuesIn(kKernels),

@@ -1,89 +1,17 @@
-// Interpolation in a table: stencils, made-up tables with known values between the entries, and their stated errors.
+// Interpolation in a table: made-up tables with known values between the entries, and their stated errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "base/error.hpp"
 #include "model/status.hpp"
-#include "table/axis_stencil.hpp"
 #include "table/table_lookup.hpp"
 
 namespace {
 
 using namespace dolp;
-using Scale = LookupAxis::Scale;
-
-double sum_of(const std::vector<double>& weights) { return std::accumulate(weights.begin(), weights.end(), 0.0); }
-
-/// A stencil by positions in the table.
-struct Read {
-  std::vector<std::size_t> positions;
-  std::vector<double> weights;
-};
-
-Read read_at(const LookupAxis& axis, double value, std::size_t count, int shift = 0) {
-  const Stencil stencil = axis.stencil(axis.place(value), count, shift);
-  Read read;
-  for (std::size_t i = 0; i < stencil.count; ++i) {
-    read.positions.push_back(axis.position(stencil.first + i));
-    read.weights.push_back(stencil.weights[i]);
-  }
-  return read;
-}
-
-TEST(LookupAxis, Stencil_Polynomials_AreExact) {
-  const std::vector<double> values = {0.0, 1.0, 2.5, 3.0, 5.0, 8.0, 9.0};
-  const LookupAxis axis(values, Scale::kLinear);
-  for (const double x : {0.2, 1.7, 2.9, 4.0, 8.5}) {
-    for (std::size_t count = 2; count <= 6; ++count) {
-      const Read stencil = read_at(axis, x, count);
-      ASSERT_EQ(stencil.positions.size(), count);
-      EXPECT_NEAR(sum_of(stencil.weights), 1.0, 1e-13);
-      double sum = 0.0;
-      for (std::size_t i = 0; i < count; ++i) {
-        sum += stencil.weights[i] * std::pow(values[stencil.positions[i]], static_cast<double>(count - 1));
-      }
-      const double exact = std::pow(x, static_cast<double>(count - 1));
-      EXPECT_NEAR(sum, exact, 1e-11 * (1.0 + std::pow(9.0, static_cast<double>(count - 1)))) << x << " " << count;
-    }
-  }
-}
-
-TEST(LookupAxis, Stencil_IsAroundThePoint) {
-  const LookupAxis axis({0, 1, 2, 3, 4, 5, 6, 7}, Scale::kLinear);
-  EXPECT_EQ(read_at(axis, 3.5, 2).positions, (std::vector<std::size_t>{3, 4}));
-  EXPECT_EQ(read_at(axis, 3.5, 4).positions, (std::vector<std::size_t>{2, 3, 4, 5}));
-  EXPECT_EQ(read_at(axis, 0.5, 4).positions, (std::vector<std::size_t>{0, 1, 2, 3}));
-  EXPECT_EQ(read_at(axis, 6.5, 4).positions, (std::vector<std::size_t>{4, 5, 6, 7}));
-  EXPECT_EQ(read_at(axis, 3.5, 4, -1).positions, (std::vector<std::size_t>{1, 2, 3, 4}));
-  EXPECT_EQ(read_at(axis, 3.5, 4, -9).positions, (std::vector<std::size_t>{1, 2, 3, 4}));
-  EXPECT_EQ(read_at(axis, 3.5, 4, 9).positions, (std::vector<std::size_t>{3, 4, 5, 6}));
-}
-
-TEST(LookupAxis, Stencil_AtAValue_IsThatValue) {
-  const LookupAxis axis({5.0, 0.1, 2.0}, Scale::kLogarithm);  // in any order
-  EXPECT_EQ(axis.min(), 0.1);
-  EXPECT_EQ(axis.max(), 5.0);
-  for (const auto& [value, position] : {std::pair{5.0, 0U}, std::pair{0.1, 1U}, std::pair{2.0, 2U}}) {
-    const Read stencil = read_at(axis, value, 6);
-    EXPECT_EQ(stencil.positions, std::vector<std::size_t>{position});
-    EXPECT_EQ(stencil.weights, std::vector<double>{1.0});
-  }
-  EXPECT_EQ(read_at(axis, 0.1 + 1e-17, 6).positions, std::vector<std::size_t>{1});
-  EXPECT_FALSE(axis.contains(0.0999));
-  EXPECT_FALSE(axis.contains(5.001));
-  EXPECT_TRUE(axis.contains(5.0));
-}
-
-TEST(LookupAxis, LogarithmOfValuesAtItsOrigin_BecomesLinear) {
-  const LookupAxis axis({0.0, 1.0, 2.0}, Scale::kLogarithm);
-  const Read stencil = read_at(axis, 0.5, 2);
-  EXPECT_EQ(stencil.weights, (std::vector<double>{0.5, 0.5}));
-}
-
 /// A made-up table: smooth in theta, ln sigma and ln(q - 1), with a Q that changes sign.
 struct Truth {
   double i, q, rho_i, rho_q, albedo;

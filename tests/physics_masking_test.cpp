@@ -2,8 +2,6 @@
 // double, against direct integration.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -16,17 +14,6 @@
 #include "model/angles.hpp"
 #include "physics_text.hpp"
 
-// A text in double with the cells of a float's table, filled by the test.
-namespace dolp::tested_coarse {
-using real = double;
-using real2 = glm::dvec2;
-using real4 = glm::dvec4;
-}  // namespace dolp::tested_coarse
-
-#define DOLP_TEXT_NAMESPACE tested_coarse
-#include "evaluate/text/text_body.hpp"
-#undef DOLP_TEXT_NAMESPACE
-
 namespace dolp {
 namespace {
 
@@ -34,8 +21,6 @@ using reference::IntegralMasking;
 using reference::Slopes;
 using reference::Zenith;
 using std::numbers::pi;
-
-constexpr double kDoubleRoundoff = 0x1p-53;
 
 // What the plan states of an albedo of 1 whose two rules agree, at a tolerance of 0 and without a cut: the table's
 // interpolation and rounding.
@@ -46,10 +31,6 @@ double stated_of_tables(KernelData data, double unit_roundoff) {
   node.albedo = 1.0;
   return moments_from_kernel(node, data, data[0], unit_roundoff).albedo_error;
 }
-
-// Of interpolation alone: with the table of a float the least roundoff counts as one.
-double stated_of_float_table(const KernelData& data) { return stated_of_tables(data, 1.001 * kDoubleRoundoff); }
-double stated_of_double_table(const KernelData& data) { return stated_of_tables(data, 1e-3 * kDoubleRoundoff); }
 
 constexpr double kReferenceTolerance = 1e-13;
 
@@ -88,7 +69,6 @@ class Table {
         masked(text_, node_, static_cast<Real>(zenith.cos), static_cast<Real>(zenith.sin), Real(0)));
   }
   double stated() const { return stated_; }
-  Text& text() { return text_; }
   const typename Text::ShapeNode& node() const { return node_; }
 
  private:
@@ -196,100 +176,6 @@ TYPED_TEST(MaskingText, SmithLambda_AgreesWithTheClosedForm) {
   std::printf("worst relative error of G1 %.2g at %s\n", worst.value, worst.where.c_str());
 }
 
-// ---- Interpolation alone -------------------------------------------------------------------------------------------
-
-// The cells of the float's table in double, and each cell of the double's in full: what the interpolation alone does.
-class Interpolation {
- public:
-  Interpolation(const ShapeCase& shape, Masking masking) : data_(data_of(shape, masking)), masking_(masking) {
-    fine_ = text_for<tested_double::Text>(data_);
-    fine_.build_masking_table(shape_in<tested_double::Text>(data_.shapes[0]), 0U);
-    coarse_ = text_for<tested_coarse::Text>(data_);
-    constexpr unsigned kStride = 1U << (DOLP_MASKING_CELL_BITS_DOUBLE - DOLP_MASKING_CELL_BITS_FLOAT);
-    for (unsigned i = 0; i < tested_coarse::Text::kMaskingNodes; ++i) {
-      coarse_.store_masking_node(i, fine_.masking_node(kStride * i));
-    }
-  }
-
-  // Albedo integral over the facets of slope t whose reflected ray leaves, by the fine table, and the integral of the
-  // absolute difference that the coarse one makes. Both without the density.
-  std::array<double, 2> azimuth_integrals(const CosSin& a, double slope) {
-    constexpr int kAzimuths = 12;
-    std::array<double, 2> sums{};
-    for (int i = 0; i < kAzimuths; ++i) {
-      const double e = a.cos + a.sin * slope * std::cos(pi * (i + 0.5) / kAzimuths);
-      const double cos_r = 2.0 * e / (1.0 + slope * slope) - a.cos;
-      if (!(cos_r > 0.0)) continue;
-      const double fine = attenuation(fine_, shape_in<tested_double::Text>(data_.shapes[0]), a, cos_r, slope);
-      const double coarse = attenuation(coarse_, shape_in<tested_coarse::Text>(data_.shapes[0]), a, cos_r, slope);
-      sums[0] += e * fine;
-      sums[1] += e * std::abs(coarse - fine);
-    }
-    return sums;
-  }
-
-  const kernel::ShapeNode& node() const { return data_.shapes[0]; }
-
-  // The difference relative to the albedo.
-  double error(const ShapeCase& shape, const CosSin& a) {
-    double albedo = 0.0;
-    double difference = 0.0;
-    constexpr double kStep = 0.21;  // of ln(u): beside the cells of v, at other places in each
-    for (double log_u = -9.0; log_u < 16.0; log_u += kStep) {
-      const double u = std::exp(log_u);
-      const double power = shape.distribution == Distribution::kCauchy ? -shape.q * std::log1p(u * u) : -u * u;
-      const double weight = u * u * std::exp(power);
-      const auto sums = azimuth_integrals(a, u * data_.shapes[0].m);
-      albedo += weight * sums[0];
-      difference += weight * sums[1];
-    }
-    return difference / albedo;
-  }
-
- private:
-  template <class Text>
-  double attenuation(Text& text, const typename Text::ShapeNode& shape, const CosSin& a, double cos_r, double slope) {
-    const double sin_r = std::sqrt((1.0 - cos_r) * (1.0 + cos_r));
-    if (masking_ == Masking::kSmith) {
-      return 1.0 / (1.0 + masked(text, shape, a.cos, a.sin, slope) + masked(text, shape, cos_r, sin_r, slope));
-    }
-    const bool is_lower = cos_r < a.cos;
-    return 1.0 - masked(text, shape, is_lower ? cos_r : a.cos, is_lower ? sin_r : a.sin, slope);
-  }
-
-  KernelData data_;
-  Masking masking_;
-  tested_double::Text fine_;
-  tested_coarse::Text coarse_;
-};
-
-// Of sixth order: a cell of an eighth of the width has 8^-6 of the error.
-TEST(MaskingInterpolation, Albedo_IsWithinWhatThePlanAllows) {
-  constexpr double kFinerCells = 1.0 / (512.0 * 512.0);  // 8^-6, from 8 to 64 cells an octave
-  for (const Masking masking : {Masking::kIntegral, Masking::kSmith}) {
-    Worst worst;
-    Worst worst_share;
-    for (const ShapeCase& shape : shape_cases(masking)) {
-      Interpolation tables(shape, masking);
-      const KernelData data = data_of(shape, masking);
-      const double stated = stated_of_float_table(data);
-      for (const double theta_deg : directions_deg()) {
-        const CosSin a = cos_sin_deg(theta_deg);
-        if (!table_resolves(tables.node(), a.cos, a.sin)) continue;
-        const double error = tables.error(shape, a);
-        const std::string where = name_of(shape) + " theta " + std::to_string(theta_deg);
-        EXPECT_LE(error, stated) << where;
-        EXPECT_LE(error * kFinerCells, stated_of_double_table(data)) << where;
-        worst.update(error, where);
-        worst_share.update(error / stated, where);
-      }
-    }
-    std::printf("%s: worst error %.2g of the albedo at %s, worst share %.2f at %s\n",
-                masking == Masking::kSmith ? "smith" : "integral", worst.value, worst.where.c_str(), worst_share.value,
-                worst_share.where.c_str());
-  }
-}
-
 TYPED_TEST(MaskingText, GrazingDirection_HidesHalfForIntegralAndAllForSmith) {
   for (const ShapeCase& shape :
        {ShapeCase{Distribution::kCauchy, 0.3, 2.0}, ShapeCase{Distribution::kGaussian, 0.905, 2.0}}) {
@@ -304,35 +190,6 @@ TYPED_TEST(MaskingText, GrazingDirection_HidesHalfForIntegralAndAllForSmith) {
     EXPECT_GT(smith.lambda(cos_sin_deg(90.0)), 1e20);
     EXPECT_LE(smith.lambda(cos_sin_deg(0.0)), smith.stated());
   }
-}
-
-// q = 2 and smith: p = (1 + u^2)^(-3/2) / (2 m), which integrates twice to roots, without cancellation as written here.
-TYPED_TEST(MaskingText, TableNodes_KeepTheirRelativeAccuracyToTheSmallestTails) {
-  constexpr double kNodeRoundings = 20.0;  // of compensated sums of positive terms
-  Worst worst;
-  for (const double sigma : {1e-3, 0.3, 5.0}) {
-    const ShapeCase shape{Distribution::kCauchy, sigma, 2.0};
-    Table<TypeParam> table(shape, Masking::kSmith);
-    const double m = static_cast<double>(table.node().m);
-    for (glm::uint i = 0; i < TypeParam::kMaskingNodes; ++i) {
-      const double tau = static_cast<double>(table.text().masking_node_tau(table.node(), i));
-      const auto node = table.text().masking_node(i);
-      const double root = std::hypot(tau, m);
-      const double height = 0.5 * m * m / (root + tau);
-      const double tail = 0.5 * m * m / (root * (root + tau));
-      const std::string where = name_of(shape) + " tau " + std::to_string(tau);
-      // p = exp(-E) has the rounding of E, and the tails beyond it too.
-      const double exponent = 1.5 * std::log1p(tau * tau / (m * m));
-      const double allowed = 0.5 * kEpsilon<TypeParam> * (kNodeRoundings + 4.0 * exponent);
-      worst.update(std::abs(static_cast<double>(node.x) / height - 1.0) / allowed, where + " l");
-      worst.update(std::abs(static_cast<double>(node.y) / tail - 1.0) / allowed, where + " C");
-      worst.update(std::abs(static_cast<double>(node.z) / tail - 1.0) / allowed, where + " Pt");
-      worst.update(std::abs(static_cast<double>(node.w) * 2.0 * root * root * root / (m * m) - 1.0) / allowed,
-                   where + " p");
-    }
-  }
-  std::printf("worst error of a node over what is allowed %.2f at %s\n", worst.value, worst.where.c_str());
-  EXPECT_LE(worst.value, 1.0) << worst.where;
 }
 
 }  // namespace

@@ -152,27 +152,6 @@ TYPED_TEST(Elementary, Functions_OverTheirDomain_AreAFewUlpsFromExact) {
   }
 }
 
-// ln(x) near 1 is a small number, whose relative accuracy the subtraction of 1 keeps: 1 - x is exact there.
-TYPED_TEST(Elementary, LogUnit_OverItsDomain_IsAFewRoundingsFromExact) {
-  using Real = RealOf<TypeParam>;
-  TypeParam text;
-  Worst worst;
-  std::mt19937 random(kSeed);
-  std::uniform_real_distribution<double> exponent(-29.0, 0.0);
-  for (int i = 0; i < kSamples; ++i) {
-    const Real x =
-        static_cast<Real>(i % 3 == 0 ? 1.0 + 0.03 * exponent(random) / 29.0 : std::pow(10.0, exponent(random)));
-    const double exact = static_cast<double>(std::log(static_cast<long double>(x)));
-    const double error = std::abs(static_cast<double>(text.log_unit(x)) - exact);
-    worst.update(error / (std::abs(exact) + 1e-300), std::to_string(static_cast<double>(x)));
-  }
-  EXPECT_EQ(text.log_unit(Real(1)), Real(0));
-  EXPECT_TRUE(std::isfinite(static_cast<double>(text.log_unit(Real(0)))));
-  EXPECT_LT(text.log_unit(Real(0)), Real(-60));  // no facets at all want no digits
-  std::printf("worst relative error %.2g at %s\n", worst.value, worst.where.c_str());
-  EXPECT_LE(worst.value, kFewUlps * kEpsilon<TypeParam>) << worst.where;
-}
-
 TYPED_TEST(Elementary, EndsOfTheDomains_AreExact) {
   using Real = RealOf<TypeParam>;
   TypeParam text;
@@ -188,45 +167,6 @@ TYPED_TEST(Elementary, EndsOfTheDomains_AreExact) {
   EXPECT_EQ(text.sinh_cosh(Real(0)).x, Real(0));
   EXPECT_EQ(text.sinh_cosh(Real(0)).y, Real(1));
   EXPECT_EQ(text.atan_unit(Real(0)), Real(0));
-}
-
-// ---- Interpolation in the masking tables ---------------------------------------------------------------------------
-
-// Two values, slopes and second derivatives determine a polynomial of degree five, in whatever cell of the tables.
-TYPED_TEST(Elementary, TableCell_InterpolatesPolynomialsOfDegreeFive) {
-  using Real = RealOf<TypeParam>;
-  TypeParam text;
-  text.kMasking = DOLP_MASKING_INTEGRAL;
-  typename TypeParam::ShapeNode shape{};
-  shape.table_scale = Real(0.3);
-  constexpr double kRoundings = 16.0;  // of about twenty operations with numbers up to 20
-  for (const double first : {0.0, 0.01, 1.0, 1000.0}) {
-    const auto beginning = text.table_cell(shape, static_cast<Real>(first));
-    const double tau0 = static_cast<double>(text.masking_node_tau(shape, beginning.node));
-    const double h = static_cast<double>(text.masking_node_tau(shape, beginning.node + 1U)) - tau0;
-    for (int degree = 0; degree <= 6; ++degree) {
-      double worst = 0.0;
-      for (double y = 0.005; y < 1.0; y += 0.01) {
-        const Real tau = static_cast<Real>(tau0 + y * h);
-        const double exact = std::pow((static_cast<double>(tau) - tau0) / h, degree);
-        const auto cell = text.table_cell(shape, tau);
-        ASSERT_EQ(cell.node, beginning.node);
-        const double value = static_cast<double>(cell.f0) * (degree == 0) + static_cast<double>(cell.f1) +
-                             static_cast<double>(cell.d0) * (degree == 1) / h +
-                             static_cast<double>(cell.d1) * degree / h +
-                             static_cast<double>(cell.e0) * (degree == 2 ? 2 : 0) / (h * h) +
-                             static_cast<double>(cell.e1) * degree * (degree - 1) / (h * h);
-        worst = std::max(worst, std::abs(value - exact));
-      }
-      // tau in its cell is known to a rounding of v
-      const double place = kEpsilon<TypeParam> * (tau0 + static_cast<double>(shape.table_scale)) / h;
-      if (degree <= 5) {
-        EXPECT_LE(worst, kRoundings * kEpsilon<TypeParam> + 5.0 * place) << first << " " << degree;
-      } else {
-        EXPECT_GT(worst, 1e-3) << first;
-      }
-    }
-  }
 }
 
 // ---- Fresnel reflection --------------------------------------------------------------------------------------------
@@ -463,20 +403,6 @@ TYPED_TEST(FresnelText, RandomFacets_ReflectAsTheirVectorsSay) {
   EXPECT_LE(worst.value, 1.0) << worst.where;
 }
 
-// What is seen is reflected or absorbed, and what is hidden is not reflected: all of the facet's projection is there.
-TYPED_TEST(FresnelText, Reflected_AddsUpToTheProjection) {
-  using Real = RealOf<TypeParam>;
-  TypeParam text;
-  typename TypeParam::Facet f{Real(1.5), Real(0.4), Real(0.7), Real(-0.2), Real(0.3)};
-  const typename TypeParam::Projection part{Real(1.1), Real(0.4)};
-  const auto sums = text.reflected(f, part);
-  constexpr double kAllowed = 4.0 * kEpsilon<TypeParam>;  // a product and a sum
-  EXPECT_NEAR(static_cast<double>(sums.x), 0.77, kAllowed);
-  EXPECT_NEAR(static_cast<double>(sums.y), -0.22, kAllowed);
-  EXPECT_NEAR(static_cast<double>(sums.z), 1.1, kAllowed);
-  EXPECT_NEAR(static_cast<double>(sums.x + sums.w), 1.5, kAllowed);
-}
-
 // ---- Slope distribution --------------------------------------------------------------------------------------------
 
 std::vector<ShapeCase> shape_cases() {
@@ -587,33 +513,6 @@ TYPED_TEST(SlopeText, Marginal_IsNormalised) {
   constexpr double kAllowed = 20.0 * kEpsilon<TypeParam> + 1e-11;
   std::printf("worst %.2g at %s (allowed %.2g)\n", worst.value, worst.where.c_str(), kAllowed);
   EXPECT_LE(worst.value, kAllowed) << worst.where;
-}
-
-// -p'/p and -g'/g, which give the tables' second derivatives, against differences of ln(p) and ln(g).
-TEST(MaskingDecays, AreThoseOfTheDensityAndTheWeight) {
-  using Text = tested_double::Text;
-  constexpr double kAllowed = 1e-6;  // of differences over h = 1e-4: h^2 times the curvature, and rounding over h
-  for (const Masking masking : {Masking::kIntegral, Masking::kSmith}) {
-    for (const ShapeCase& shape :
-         {ShapeCase{Distribution::kCauchy, 0.3, 2.0}, ShapeCase{Distribution::kCauchy, 0.9, 1.2},
-          ShapeCase{Distribution::kGaussian, 0.5, 2.0}}) {
-      const KernelData data = data_of(shape, masking);
-      Text text = text_for<Text>(data);
-      const auto node = shape_in<Text>(data.shapes[0]);
-      for (double tau = 0.05; tau < 3.0; tau *= 1.3) {
-        const double h = 1e-4 * tau;
-        const auto difference = [&](const auto& f) {
-          return (std::log(f(tau - h)) - std::log(f(tau + h))) / (2.0 * h);
-        };
-        const double density = difference([&](double x) { return text.marginal_density(node, x); });
-        const double weight = difference([&](double x) { return text.masking_weight(x); });
-        EXPECT_NEAR(text.marginal_decay_factor(node) * text.marginal_decay(node, tau), density,
-                    kAllowed * std::max(1.0, std::abs(density)))
-            << tau;
-        EXPECT_NEAR(text.weight_decay(tau), weight, kAllowed) << tau;
-      }
-    }
-  }
 }
 
 }  // namespace

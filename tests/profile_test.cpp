@@ -1,17 +1,12 @@
 // Profiles: slopes that serve every slope distribution.
-#include "evaluate/text/profile.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <random>
-#include <set>
 #include <span>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/vulkan/profile_run.hpp"
 
 namespace dolp {
 namespace {
@@ -134,56 +129,6 @@ TEST(Profiles, DirectionsAndIndices_KeepTheirBitsAlone) {
       }
     }
   }
-}
-
-// What sharing is for: 400 shapes take a few times the evaluations of one.
-TEST(Profiles, ManyShapes_TakeLittleMoreThanOne) {
-  MomentsRequest request;
-  request.masking = Masking::kVCavity;
-  request.theta_deg = {60.0};
-  request.indices = {{1.5, 0.0}};
-  const auto evaluations = [&](const std::vector<double>& sigma, const std::vector<double>& q) {
-    request.sigma = sigma;
-    request.q = q;
-    const std::vector<Moments> moments = CpuEvaluator(Precision::kDouble).evaluate(request, {});
-    return std::accumulate(moments.begin(), moments.end(), 0.0,
-                           [](double sum, const Moments& own) { return sum + own.evaluations; });
-  };
-  std::vector<double> sigma, q;
-  for (int i = 0; i < 20; ++i) {
-    sigma.push_back(0.05 * std::pow(20.0, i / 19.0));
-    q.push_back(1.5 + 0.3 * i);
-  }
-  EXPECT_LT(evaluations(sigma, q), 6.0 * evaluations({0.3}, {2.0}));
-}
-
-// With all bounces the slopes in lockstep have the same bounds of their loops, and none is forgotten.
-TEST(ProfileBatch, AllBounces_WhatRunsInLockstepIsAlike) {
-  MomentsRequest request;
-  request.masking = Masking::kVCavity;
-  request.scattering = Scattering::kMultiple;
-  request.theta_deg = {0.0, 10.0, 40.0, 60.0, 85.0, 89.99};
-  request.sigma = {0.3, 2.0};
-  request.q = {1.2, 2.0, 8.0};
-  request.indices = {{1.5, 0.0}, {0.9, 0.0}};
-  const KernelData data = kernel_data(request);
-  const Profiles profiles(data);
-  const vulkan::ProfileBatch batch = vulkan::profile_batch(request, data, profiles, 0, data.directions);
-  ASSERT_EQ(batch.in_lockstep.size() % vulkan::kLockstep, 0U);
-  std::vector<std::uint16_t> bound_of;
-  for (const Profile& profile : batch.profiles) {
-    for (const ProfilePiece& piece : profile.pieces) {
-      bound_of.insert(bound_of.end(), piece.fine + piece.coarse,
-                      data.pieces[profile.entries.theta].lockstep[piece.of_direction]);
-    }
-  }
-  ASSERT_EQ(bound_of.size(), batch.slopes.size());
-  for (std::size_t first = 0; first < batch.in_lockstep.size(); first += vulkan::kLockstep) {
-    for (std::size_t i = first; i < first + vulkan::kLockstep; ++i) {
-      EXPECT_EQ(bound_of[batch.in_lockstep[i]], bound_of[batch.in_lockstep[first]]);
-    }
-  }
-  EXPECT_EQ(std::set(batch.in_lockstep.begin(), batch.in_lockstep.end()).size(), batch.slopes.size());
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What must hold whatever the inputs, on seeded random draws of the whole range that scenes allow: masking,
-// reciprocity, energy, limits, and independence of how a request is laid out.
+// What must hold whatever the inputs, on seeded random draws of the whole range that scenes allow: reciprocity,
+// energy, and independence of how a request is laid out.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,10 +13,7 @@
 #include <tuple>
 #include <vector>
 
-#include "evaluate/text/text.hpp"
 #include "model/angles.hpp"
-#include "physics_text.hpp"
-#include "plan/geometry.hpp"
 #include "properties_support.hpp"
 
 namespace dolp {
@@ -31,161 +28,6 @@ std::uint64_t printed_seed(std::uint64_t offset) {
 
 std::uint64_t number_of(const Model& model) {
   return 2 * static_cast<std::uint64_t>(model.masking) + static_cast<std::uint64_t>(model.distribution);
-}
-
-// ---- Masking -------------------------------------------------------------------------------------------------------
-
-constexpr int kShapes = 60;
-constexpr int kDirections = 40;
-
-// Of G, relative to what it hides or lets through: interpolation of the tables, 3e-8 in float and 4e-11 in double
-// relative to the albedo (physics_masking_test), and the roundings of their sums, 400 at most where q is near 1.
-constexpr double kTableErrorFloat = 3e-8;
-constexpr double kTableErrorDouble = 4e-11;
-constexpr double kRoundings = 400.0;
-
-template <class Text>
-constexpr double kMaskingError = (std::is_same_v<RealOf<Text>, float> ? kTableErrorFloat : kTableErrorDouble) +
-                                 0.5 * kRoundings* kEpsilon<Text>;
-
-/// The text with the masking of one random shape.
-template <class Text>
-struct MaskingOfShape {
-  using Real = RealOf<Text>;
-
-  MaskingOfShape(const Model& model, const SlopeShape& drawn) : shape(drawn) {
-    const KernelData data = kernel_data(request_of(model, {{.shape = shape}}, 1e-4));
-    text = text_for<Text>(data);
-    node = shape_in<Text>(data.shapes[0]);
-    if (data.needs_masking_table()) text.build_masking_table(node, 0U);
-  }
-
-  double g1(double theta_deg, double slope) {
-    const CosSin a = cos_sin_deg(theta_deg);
-    return 1.0 - static_cast<double>(
-                     masked(text, node, static_cast<Real>(a.cos), static_cast<Real>(a.sin), static_cast<Real>(slope)));
-  }
-  // What rounding and interpolation do to G1: its terms are kappa l, with kappa = 1 / cos(theta - alpha), which next to
-  // grazing facets of grazing directions is large.
-  double error(double theta_deg, double slope) {
-    const CosSin a = cos_sin_deg(theta_deg);
-    const double mu = a.cos / std::max(a.sin, 1e-10);
-    const double height = static_cast<double>(text.masking_height(text.table_cell(node, static_cast<Real>(mu)), 0U));
-    return kMaskingError<Text> * (1.0 + std::sqrt(1.0 + slope * slope) / (mu + slope) * height);
-  }
-  double lambda(double theta_deg) {
-    const CosSin a = cos_sin_deg(theta_deg);
-    return static_cast<double>(masked(text, node, static_cast<Real>(a.cos), static_cast<Real>(a.sin), Real(0)));
-  }
-  std::string where(double theta_deg, double slope) const {
-    return fmt::format("sigma {:.17g} q {:.17g} theta {:.17g} slope {:.17g}", shape.sigma, shape.q, theta_deg, slope);
-  }
-
-  SlopeShape shape;
-  Text text;
-  typename Text::ShapeNode node;
-};
-
-template <class Text>
-class MaskingProperties : public testing::Test {};
-TYPED_TEST_SUITE(MaskingProperties, Texts, TextNames);
-
-TYPED_TEST(MaskingProperties, IntegralG1_IsBetweenAHalfAndOne_AndFallsWithTheta) {
-  Random random(printed_seed(1));
-  for (int i = 0; i < kShapes; ++i) {
-    const Model model{random.chance(0.7) ? Distribution::kCauchy : Distribution::kGaussian, Masking::kIntegral};
-    MaskingOfShape<TypeParam> masking(model, random.shape(model));
-    for (int j = 0; j < kDirections; ++j) {
-      const double slope = random.log_uniform(1e-6, 1e3);
-      const double theta = random.theta_deg();
-      const double beyond = std::min(90.0, theta + random.log_uniform(1e-9, 90.0));
-      const double g1 = masking.g1(theta, slope);
-      const double error = masking.error(theta, slope);
-      EXPECT_GE(g1, 0.5 - error) << masking.where(theta, slope);
-      EXPECT_LE(g1, 1.0 + error) << masking.where(theta, slope);
-      EXPECT_LE(masking.g1(beyond, slope), g1 + error + masking.error(beyond, slope))
-          << masking.where(theta, slope) << " and theta " << beyond;
-    }
-  }
-}
-
-// With the facet's tilt toward theta G1 rises until the facet faces it, tan(alpha) = tan(theta), and falls beyond: the
-// weight 1 + cos(theta + gamma) / cos(theta - alpha) does, and the limit b only adds where it is 0.
-TYPED_TEST(MaskingProperties, IntegralG1_RisesWithTheSlopeUpToTheFacingFacet_AndFallsBeyond) {
-  Random random(printed_seed(2));
-  for (int i = 0; i < kShapes; ++i) {
-    const Model model{random.chance(0.7) ? Distribution::kCauchy : Distribution::kGaussian, Masking::kIntegral};
-    MaskingOfShape<TypeParam> masking(model, random.shape(model));
-    for (int j = 0; j < kDirections; ++j) {
-      const double theta = random.uniform(0.5, 89.5);
-      const double facing = std::tan(theta * std::numbers::pi / 180.0);
-      const double below = facing * random.uniform(0.0, 1.0);
-      const double nearer = below + (facing - below) * random.uniform(0.0, 1.0);
-      EXPECT_LE(masking.g1(theta, below), masking.g1(theta, nearer) + 2.0 * masking.error(theta, below))
-          << masking.where(theta, below);
-      const double above = facing * random.log_uniform(1.0, 1e3);
-      const double farther = above * random.log_uniform(1.0, 1e3);
-      EXPECT_GE(masking.g1(theta, above), masking.g1(theta, farther) - 2.0 * masking.error(theta, above))
-          << masking.where(theta, above);
-    }
-  }
-}
-
-TYPED_TEST(MaskingProperties, SmithG1_IsBetweenNothingAndOne_AndFallsWithTheta) {
-  constexpr double kError = kMaskingError<TypeParam>;
-  Random random(printed_seed(3));
-  for (int i = 0; i < kShapes; ++i) {
-    const Model model{random.chance(0.7) ? Distribution::kCauchy : Distribution::kGaussian, Masking::kSmith};
-    MaskingOfShape<TypeParam> masking(model, random.shape(model));
-    for (int j = 0; j < kDirections; ++j) {
-      const double theta = random.theta_deg();
-      const double beyond = std::min(90.0, theta + random.log_uniform(1e-9, 90.0));
-      const double lambda = masking.lambda(theta);
-      EXPECT_GE(lambda, -kError) << masking.where(theta, 0.0);
-      // What a table's error does to G1 = 1 / (1 + L).
-      EXPECT_LE(1.0 / (1.0 + masking.lambda(beyond)), 1.0 / (1.0 + lambda) + 2.0 * kError)
-          << masking.where(theta, 0.0) << " and theta " << beyond;
-    }
-  }
-}
-
-/// A facet that reflects theta to a direction above the horizon, and what masking leaves of it.
-template <class Text>
-void expect_projection_within_the_facet(MaskingOfShape<Text>& masking, Random& random) {
-  using Real = RealOf<Text>;
-  const double theta_deg = random.theta_deg();
-  const double slope = random.log_uniform(1e-4, 100.0);
-  const CosSin a = cos_sin_deg(theta_deg);
-  const double e = a.cos + a.sin * slope * random.uniform(-1.0, 1.0);
-  const double cos_r = 2.0 * e / (1.0 + slope * slope) - a.cos;
-  if (e <= 0.0 || cos_r <= 0.0) return;
-  typename Text::ThetaNode theta{};
-  theta.c = static_cast<Real>(a.cos);
-  theta.s = static_cast<Real>(a.sin);
-  typename Text::Facet facet{};
-  facet.e = static_cast<Real>(e);
-  facet.cos_r = static_cast<Real>(cos_r);
-  const int zone = cos_r > a.cos ? 0 : 1;  // theta_r < theta: the shadow of theta
-  const auto t = static_cast<Real>(slope);
-  const Real of_ray = masking.text.masking_of_ray(row_of<Text>(masking.node), facet.cos_r, t, zone).value[0];
-  const auto part =
-      masking.text.project(theta, facet, zone, masked(masking.text, masking.node, theta.c, theta.s, t), of_ray);
-  const double error = kMaskingError<Text> * e;
-  const double seen = static_cast<double>(part.seen);
-  const double hidden = static_cast<double>(part.hidden);
-  EXPECT_GE(seen, -error) << masking.where(theta_deg, slope) << " e " << e;
-  EXPECT_GE(hidden, -error) << masking.where(theta_deg, slope) << " e " << e;
-  EXPECT_NEAR(seen + hidden, e, 4.0 * kEpsilon<Text> * e) << masking.where(theta_deg, slope);
-}
-
-TYPED_TEST(MaskingProperties, EveryMasking_LeavesAShareBetweenNothingAndAll) {
-  Random random(printed_seed(4));
-  for (const Model& model : kModels) {
-    for (int i = 0; i < kShapes; ++i) {
-      MaskingOfShape<TypeParam> masking(model, random.shape(model));
-      for (int j = 0; j < kDirections; ++j) expect_projection_within_the_facet(masking, random);
-    }
-  }
 }
 
 // ---- pBRDF ---------------------------------------------------------------------------------------------------------
@@ -334,43 +176,6 @@ TEST_P(EveryKernel, RandomPoints_KeepTheEnergy) {
   }
 }
 
-TEST_P(EveryKernel, IndexOfOne_ReflectsNothing) {
-  const auto [kernel, model] = GetParam();
-  std::vector<Point> points = Random(printed_seed(400 + number_of(model))).points(model, kPoints);
-  for (Point& point : points) point.index = {1.0, 0.0};
-  const std::vector<Moments> moments = make_evaluator(kernel)->evaluate(request_of(model, points, 1e-4), {});
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    // r_i may be cos(theta) less the deficit, which knows it to its stated error.
-    EXPECT_LE(std::abs(moments[i].r_i), moments[i].r_i_error) << text_of(points[i]);
-    EXPECT_EQ(moments[i].r_q, 0.0) << text_of(points[i]);
-  }
-}
-
-/// Equation: at theta = 0 without masking A = 1 - (m^2 / (1 + m^2))^(q - 1), gaussian 1 - exp(-1 / m^2).
-double normal_albedo(Distribution distribution, const SlopeShape& shape) {
-  const double m2 = 2.0 * shape.sigma * shape.sigma;
-  if (distribution == Distribution::kGaussian) return -std::expm1(-1.0 / m2);
-  return -std::expm1((1.0 - shape.q) * std::log1p(1.0 / m2));
-}
-
-TEST_P(EveryKernel, NormalIncidence_HasNoPolarisation) {
-  const auto [kernel, model] = GetParam();
-  std::vector<Point> points = Random(printed_seed(500 + number_of(model))).points(model, kPoints);
-  for (Point& point : points) point.theta_deg = 0.0;
-  for (const double tolerance : kTolerances) {
-    const std::vector<Moments> moments = make_evaluator(kernel)->evaluate(request_of(model, points, tolerance), {});
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const Moments& m = moments[i];
-      EXPECT_LE(std::abs(m.r_q), m.r_q_error) << "tolerance " << tolerance << " " << text_of(points[i]);
-      EXPECT_GT(m.evaluations, 0.0) << text_of(points[i]);
-      EXPECT_GT(m.albedo, 0.0) << text_of(points[i]);
-      if (model.masking != Masking::kNone) continue;
-      EXPECT_LE(std::abs(m.albedo - normal_albedo(model.distribution, points[i].shape)), m.albedo_error)
-          << "tolerance " << tolerance << " " << text_of(points[i]);
-    }
-  }
-}
-
 // ---- Layout of a request -------------------------------------------------------------------------------------------
 
 bool same(const Moments& a, const Moments& b) {
@@ -462,32 +267,6 @@ TEST_P(EveryKernel, OrderOfAxes_TilesAndBlocks_ChangeNoBit) {
 
 INSTANTIATE_TEST_SUITE_P(Kernels, EveryKernel,
                          testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)), case_name);
-
-// What the kernel sums before the better of r_i and deficit stands in for the other.
-class BothSums : public testing::TestWithParam<Model> {};
-
-TEST_P(BothSums, ReflectedAndNotReflected_AddUpToTheCosine) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const std::vector<Point> points = Random(printed_seed(700 + number_of(GetParam()))).points(GetParam(), kPoints);
-  for (const double tolerance : kTolerances) {
-    const KernelData data = kernel_data(request_of(GetParam(), points, tolerance));
-    const auto text = make_kernel_text_double(data);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (data.needs_masking_table()) text->build_masking_table(i);
-      kernel::MomentsNode node = text->moments(data[i]);
-      const double sum = node.r_i + node.deficit;
-      // The bound of r_q is that of the reflected sum; with nothing known of r_i the deficit keeps its own.
-      const double reflected_error = moments_from_kernel(node, data, data[i], 0x1p-53).r_q_error;
-      node.reflected_difference = kInfinity;
-      const double deficit_error = moments_from_kernel(node, data, data[i], 0x1p-53).deficit_error;
-      EXPECT_LE(std::abs(sum - cos_sin_deg(points[i].theta_deg).cos), reflected_error + deficit_error)
-          << "tolerance " << tolerance << " " << text_of(points[i]);
-    }
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Models, BothSums, testing::ValuesIn(kModels),
-                         [](const testing::TestParamInfo<Model>& test) { return name_of(test.param); });
 
 }  // namespace
 }  // namespace dolp

@@ -25,7 +25,6 @@ constexpr int kCentre = 1;
 constexpr int kHalf = 2;
 constexpr int kCircle = 3;
 constexpr int kCluster = 4;
-constexpr int kSections = 5;
 
 // Abscissae and weights carry a rounding or two each; a polynomial of size 1 and degree d oscillates d times and feels
 // the abscissae's as often.
@@ -75,24 +74,6 @@ TEST(GaussLegendre, EveryOrder_IntegratesPolynomialsOfDegree2nMinus1) {
   }
   std::printf("worst error %.2f of what is allowed\n", worst);
   EXPECT_LE(worst, 1.0);
-}
-
-TEST(GaussLegendre, Degree2n_IsNotIntegrated) {
-  const double sum = summed(gauss_legendre(3), [](double x) { return std::pow(x, 6); });
-  EXPECT_GT(std::abs(sum - 2.0 / 7.0), 1e-3);
-}
-
-TEST(RuleNodes, AllSections_AreThereAndDependOnTheirOrderAlone) {
-  constexpr int kFew = 7;
-  const Nodes few = rule_nodes(kFew);
-  EXPECT_EQ(few.size(), static_cast<std::size_t>(kSections * kFew * (kFew + 1) / 2));
-  EXPECT_EQ(rule_nodes(DOLP_MAX_ORDER).size(),
-            static_cast<std::size_t>(kSections * DOLP_MAX_ORDER * (DOLP_MAX_ORDER + 1) / 2));
-  for (int section = 0; section < kSections; ++section) {
-    for (int order = 1; order <= kFew; ++order) {
-      EXPECT_EQ(section_of(few, kFew, section, order), section_rule(section, order)) << section << " " << order;
-    }
-  }
 }
 
 // What a section's rule of `order` nodes integrates: the functions of each number below `exact`, and their integrals.

@@ -4,12 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "run/drawn_entries.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene_reader.hpp"
 
@@ -88,30 +86,6 @@ TEST(ScatteringGap, ManyEntriesOfABand_LooksAtFew) {
   const std::optional<double> gap = gap_of(many);
   ASSERT_TRUE(gap.has_value());
   EXPECT_GT(*gap, 0.05);
-}
-
-TEST(DrawnEntries, FewerThanTheCount_AreAll) {
-  const SceneEntries grid = SceneEntries::grid({0.0, 30.0}, {0.1, 0.2}, {2.0});
-  const SceneEntries drawn = drawn_entries(grid, 4);
-  EXPECT_TRUE(drawn.is_grid());
-  EXPECT_EQ(drawn.size(), 4U);
-}
-
-TEST(DrawnEntries, More_AreSpreadOverAllAxes) {
-  std::vector<double> theta_deg, sigma;
-  for (int i = 0; i < 64; ++i) theta_deg.push_back(i);
-  for (int i = 0; i < 16; ++i) sigma.push_back(0.1 + 0.01 * i);
-  const SceneEntries drawn = drawn_entries(SceneEntries::grid(theta_deg, sigma, {2.0}), 16);
-  ASSERT_EQ(drawn.size(), 16U);
-  std::set<double> directions, widths;
-  for (const SceneEntry& entry : drawn.all()) {
-    directions.insert(entry.theta_deg);
-    widths.insert(entry.shape.sigma);
-  }
-  EXPECT_EQ(directions.size(), 16U);
-  EXPECT_LT(*directions.begin(), 8.0);
-  EXPECT_GT(*directions.rbegin(), 56.0);
-  EXPECT_GT(widths.size(), 8U);
 }
 
 }  // namespace

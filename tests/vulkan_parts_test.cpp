@@ -1,14 +1,11 @@
-// The parts of the Vulkan evaluator that need no device.
+// The choice of a device from a list.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
+#include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "device/devices.hpp"
-#include "evaluate/vulkan/packing.hpp"
-#include "evaluate/vulkan/tiles.hpp"
 
 namespace dolp {
 namespace {
@@ -61,91 +58,4 @@ TEST(ChooseDevice, NoMatchOrUnfit_ThrowsWithTheReason) {
 }
 
 }  // namespace
-
-namespace vulkan {
-namespace {
-
-TEST(Packing, RealsOfAStructure_ComeBackInTheKernelsPrecision) {
-  const std::array<double, 3> values{1.0 / 3.0, -2.5, 1e300};
-  for (const bool float64 : {false, true}) {
-    const Packing packing(float64);
-    std::vector<std::byte> bytes;
-    packing.append(std::array<double, 3>{}, bytes);
-    packing.append(values, bytes);
-    ASSERT_EQ(bytes.size(), 6 * packing.real_bytes());
-    const auto read = packing.read<std::array<double, 3>>(bytes, 1);
-    EXPECT_EQ(read[0], float64 ? values[0] : static_cast<double>(1.0F / 3.0F));
-    EXPECT_EQ(read[1], -2.5);
-    EXPECT_EQ(read[2], float64 ? 1e300 : HUGE_VAL);
-  }
-}
-
-TEST(Packing, ManyStructures_AreThoseOfOneAfterTheOther) {
-  using Node = std::array<double, 3>;
-  constexpr std::size_t kCount = 20'000;  // more than one thread takes
-  const auto node_of = [](std::size_t i) {
-    return Node{1.0 / static_cast<double>(i + 1), static_cast<double>(i), 1e60};
-  };
-  for (const bool float64 : {false, true}) {
-    const Packing packing(float64);
-    std::vector<std::byte> one_by_one, together(7);
-    for (std::size_t i = 0; i < kCount; ++i) packing.append(node_of(i), one_by_one);
-    packing.pack(kCount, node_of, together);
-    EXPECT_EQ(together, one_by_one);
-  }
-}
-
-TEST(TileSizes, EachLimit_Binds) {
-  const TileLimits limits{.buffer_bytes = 1'000'000,
-                          .heap_bytes = 80'000'000,
-                          .dispatch_count = 9'000,
-                          .tile_invocations = 8'000,
-                          .block_shapes = 50};
-  const TileCosts costs{.invocation_bytes = 100, .shape_bytes = 10'000};
-  EXPECT_EQ(tile_sizes(limits, costs).invocations, 8'000U);
-  EXPECT_EQ(tile_sizes(limits, costs).shapes, 50U);
-  TileLimits small_buffers = limits;
-  small_buffers.buffer_bytes = 400'000;
-  EXPECT_EQ(tile_sizes(small_buffers, costs).invocations, 4'000U);
-  EXPECT_EQ(tile_sizes(small_buffers, costs).shapes, 40U);
-  TileLimits small_heap = limits;
-  small_heap.heap_bytes = 800'000;
-  EXPECT_EQ(tile_sizes(small_heap, costs).invocations, 1'000U);
-  EXPECT_EQ(tile_sizes(small_heap, costs).shapes, 10U);
-  TileLimits few_workgroups = limits;
-  few_workgroups.dispatch_count = 30;
-  EXPECT_EQ(tile_sizes(few_workgroups, costs).invocations, 30U);
-  EXPECT_EQ(tile_sizes(few_workgroups, costs).shapes, 30U);
-  EXPECT_EQ(tile_sizes({}, costs).invocations, 1U);
-}
-
-TEST(BlocksOf, Chunks_AreNeverCut) {
-  Rows rows;
-  rows.chunks = {{0, 2}, {2, 1}, {3, 4}, {7, 1}};
-  for (const std::uint32_t chunk : {0U, 0U, 1U, 2U, 3U}) rows.rows.push_back({.chunk = chunk});
-  const auto summary = [&](std::uint32_t block_shapes) {
-    std::vector<std::array<std::uint32_t, 4>> all;
-    for (const Block& block : blocks_of(rows, block_shapes)) {
-      all.push_back({block.first_shape, block.shape_count, block.first_row, block.row_count});
-    }
-    return all;
-  };
-  using Blocks = std::vector<std::array<std::uint32_t, 4>>;
-  EXPECT_EQ(summary(3), (Blocks{{0, 3, 0, 3}, {3, 4, 3, 1}, {7, 1, 4, 1}}));
-  EXPECT_EQ(summary(1), (Blocks{{0, 2, 0, 2}, {2, 1, 2, 1}, {3, 4, 3, 1}, {7, 1, 4, 1}}));
-  EXPECT_EQ(summary(100), (Blocks{{0, 8, 0, 5}}));
-}
-
-TEST(Renumbering, Members_AreNumberedByFirstUseUntilCleared) {
-  Renumbering numbers(10);
-  EXPECT_EQ(numbers(7), 0U);
-  EXPECT_EQ(numbers(2), 1U);
-  EXPECT_EQ(numbers(7), 0U);
-  EXPECT_TRUE(std::ranges::equal(numbers.used(), std::vector<std::uint32_t>{7, 2}));
-  numbers.clear();
-  EXPECT_EQ(numbers(2), 0U);
-}
-
-}  // namespace
-}  // namespace vulkan
 }  // namespace dolp

@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <string>
-#include <utility>
 
 #include "bench/cases.hpp"
 #include "bench/context.hpp"
@@ -110,18 +108,6 @@ std::string test_name(const testing::TestParamInfo<std::string>& tested) {
 }
 INSTANTIATE_TEST_SUITE_P(Registry, BenchMethod, testing::ValuesIn(method_names()), test_name);
 
-TEST(BenchRegistry, EveryMethod_Settings_AreSortedAndQuickOnesAmongThem) {
-  EXPECT_EQ(methods().size(), kExpected.size());
-  for (const Method& method : methods()) {
-    SCOPED_TRACE(method.name);
-    const auto rises = [&](double a, double b) { return method.setting_name == "tolerance" ? a > b : a < b; };
-    EXPECT_TRUE(std::ranges::is_sorted(method.settings, rises));
-    for (const double quick : method.quick_settings) {
-      EXPECT_NE(std::ranges::find(method.settings, quick), method.settings.end()) << quick;
-    }
-  }
-}
-
 // The tables of both maskings and the horizon of the integration region hold far beyond the tolerances above.
 TEST(BenchFormulas, AdaptiveCubature_TightTolerance_AgreesWithReferenceForBothDistributions) {
   const std::unique_ptr<Solver> hcubature = solver_of("hcubature");
@@ -144,15 +130,6 @@ TEST(BenchFormulas, AdaptiveCubature_TotalReflection_AgreesWithReference) {
   MomentsRequest request = neighbourhood(case_of("easy"), 1);
   request.indices = {{0.8, 0.0}};
   EXPECT_LE(worst_error(*solver_of("hcubature"), request, 1e-6), 1e-5);
-}
-
-// With many nodes on a smooth integrand nothing is left but the formulas, Smith's closed form and rounding.
-TEST(BenchFormulas, GaussRule_SmoothSmith_IsExactForBothDistributions) {
-  for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
-    MomentsRequest request = neighbourhood(case_of("rough"), 2);
-    request.distribution = distribution;
-    EXPECT_LE(worst_error(*solver_of("gauss"), request, 128), 2e-9);
-  }
 }
 
 TEST(BenchRules, Midpoint_TwiceTheNodes_QuartersTheError) {
@@ -197,102 +174,11 @@ TEST(BenchDblquad, TimeLimit_IsKept) {
   EXPECT_THROW(dblquad->solve(neighbourhood(case_of("hard"), 1), 1e-8), TookTooLong);
 }
 
-TEST(BenchCases, Neighbourhood_Entries_AreDistinctCloseAndTheFirstExact) {
-  constexpr std::size_t kCount = 500;
-  const Case& one = case_of("worst");
-  const MomentsRequest request = neighbourhood(one, kCount);
-  ASSERT_EQ(request.size(), kCount);
-  EXPECT_EQ(request.theta_deg.front(), one.theta_deg);
-  EXPECT_EQ(request[0].shape, one.shape);
-  std::vector<double> values[3];
-  for (std::size_t i = 0; i < kCount; ++i) {
-    const MomentsPoint point = request[i];
-    values[0].push_back(point.theta_deg / one.theta_deg);
-    values[1].push_back(point.shape.sigma / one.shape.sigma);
-    values[2].push_back(point.shape.q / one.shape.q);
-  }
-  for (std::vector<double>& list : values) {
-    std::ranges::sort(list);
-    EXPECT_EQ(std::ranges::adjacent_find(list), list.end());
-    EXPECT_GE(list.front(), 1.0 - 1.001e-3);
-    EXPECT_LE(list.back(), 1.0 + 1.001e-3);
-  }
-}
-
-/// Counts its calls, and answers with their number.
-class CountingSolver final : public Solver {
- public:
-  Solution solve(const MomentsRequest&, double) override {
-    Solution solution;
-    solution.answers = {{.r_i = ++calls_, .r_q = 0.0, .stated_error = {}}};
-    solution.own_times_s = own_times_s;
-    return solution;
-  }
-  std::string where() const override { return "here"; }
-  double calls() const { return calls_; }
-  std::vector<double> own_times_s;
-
- private:
-  double calls_ = 0.0;
-};
-
-constexpr TimingPolicy kOneCallEach{
-    .min_repeats = 4, .max_repeats = 9, .random_repeats = 6, .enough_s = 0.0, .most_s = 100.0, .raw_time_s = 0.0};
-
-TEST(BenchTiming, Measure_EnoughTime_WarmsUpThenRepeatsTheLeast) {
-  CountingSolver solver;
-  const Measurement measurement = measure(solver, {}, 1.0, false, kOneCallEach);
-  EXPECT_EQ(measurement.raw_s.size(), 4U);
-  EXPECT_EQ(solver.calls(), 5.0);
-  EXPECT_EQ(measurement.answers.size(), 1U);
-}
-
-TEST(BenchTiming, Measure_NeverEnoughTime_StopsAtTheMost) {
-  CountingSolver solver;
-  TimingPolicy policy = kOneCallEach;
-  policy.enough_s = 100.0;
-  EXPECT_EQ(measure(solver, {}, 1.0, false, policy).raw_s.size(), 9U);
-}
-
-TEST(BenchTiming, Measure_RandomMethod_KeepsTheAnswerOfEachRepeat) {
-  CountingSolver solver;
-  const Measurement measurement = measure(solver, {}, 1.0, true, kOneCallEach);
-  ASSERT_EQ(measurement.answers.size(), 6U);
-  EXPECT_EQ(measurement.answers.front().r_i, 2.0);  // the first call was the warm-up
-  EXPECT_EQ(measurement.answers.back().r_i, 7.0);
-}
-
-TEST(BenchTiming, Measure_RandomMethodPastItsTime_StillRepeats) {
-  CountingSolver solver;
-  TimingPolicy policy = kOneCallEach;
-  policy.most_s = 0.0;
-  EXPECT_EQ(measure(solver, {}, 1.0, true, policy).raw_s.size(), 6U);
-}
-
-TEST(BenchTiming, Measure_LongCall_IsMadeOnce) {
-  CountingSolver solver;
-  TimingPolicy policy = kOneCallEach;
-  policy.most_s = 0.0;
-  EXPECT_EQ(measure(solver, {}, 1.0, false, policy).raw_s.size(), 1U);
-  EXPECT_EQ(solver.calls(), 1.0);
-}
-
-TEST(BenchTiming, Measure_MethodThatTakesItsOwnTimes_IsBelieved) {
-  CountingSolver solver;
-  solver.own_times_s = {3.0, 1.0, 2.0};
-  EXPECT_EQ(measure(solver, {}, 1.0, false, kOneCallEach).raw_s, solver.own_times_s);
-  EXPECT_EQ(solver.calls(), 1.0);
-}
-
 TEST(BenchTiming, MedianAndSpread_OddAndEven_AreThoseOfTheList) {
   EXPECT_EQ(median({5.0, 1.0, 3.0}), 3.0);
   EXPECT_EQ(median({4.0, 1.0, 3.0, 2.0}), 2.5);
   EXPECT_EQ(minimum({4.0, 1.0, 3.0}), 1.0);
   EXPECT_DOUBLE_EQ(spread({1.0, 1.5, 9.0}), 0.5);
-}
-
-TEST(BenchContext, ShellLine_SpecialLetters_AreQuoted) {
-  EXPECT_EQ(shell_line({"dolp-bench", "--json", "a b", "it's", ""}), R"(dolp-bench --json 'a b' 'it'\''s' '')");
 }
 
 /// A study of one result, measured under the best conditions.
@@ -302,12 +188,6 @@ nlohmann::ordered_json quiet_study() {
       {"context",
        {{"machine", {{"load", 0.1}, {"cores", 2}}}, {"compiler", {{"build_type", "Release"}}}, {"validation", false}}},
       {"results", {{{"method", "gauss"}, {"case", "easy"}, {"setting", 16.0}, {"raw_times_s", {1.0, 1.1, 1.2}}}}}};
-}
-
-TEST(BenchReport, Warnings_GoodConditions_AreNone) {
-  nlohmann::ordered_json study = quiet_study();
-  add_warnings(study);
-  EXPECT_TRUE(study["warnings"].empty()) << study["warnings"];
 }
 
 TEST(BenchReport, Warnings_BadConditions_EachSayWhatToDo) {
@@ -326,16 +206,6 @@ TEST(BenchReport, Warnings_BadConditions_EachSayWhatToDo) {
       "this is no Release build: configure with -DCMAKE_BUILD_TYPE=Release before using the times",
       "the Vulkan validation layer is on: unset DOLP_VALIDATION before using the times of vulkan-*"};
   EXPECT_EQ(study["warnings"].get<std::vector<std::string>>(), expected);
-}
-
-TEST(BenchReport, JsonText_Study_ReadsBackWithOneResultALine) {
-  nlohmann::ordered_json study = quiet_study();
-  study["results"].push_back(study["results"][0]);
-  const std::string text = json_text(study);
-  EXPECT_EQ(nlohmann::json::parse(text), nlohmann::json(study));
-  const std::size_t first = text.find("{\"method\"");
-  const std::size_t second = text.find("{\"method\"", first + 1);
-  EXPECT_EQ(std::ranges::count(text.substr(first, second - first), '\n'), 1);
 }
 
 }  // namespace

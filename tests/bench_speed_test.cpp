@@ -37,48 +37,6 @@ double largest_difference(const std::vector<Answer>& a, const std::vector<Answer
   return largest;
 }
 
-TEST(BenchGrids, NestedGrid_SampleInEveryStride_IsTheSameEntry) {
-  constexpr std::size_t kSample = 20;
-  const std::vector<NestedGrid::Place> places = NestedGrid::sample(kSample);
-  const MomentsRequest alone = sample_request(Masking::kNone, places);
-  for (std::size_t stride = 1; stride <= NestedGrid::kLargestStride; stride *= 2) {
-    SCOPED_TRACE(stride);
-    const MomentsRequest grid = steel_request(Masking::kNone, NestedGrid::with_stride(stride));
-    ASSERT_EQ(grid.size(), std::pow(NestedGrid::kSide / stride, 3));
-    for (std::size_t i = 0; i < kSample; ++i) {
-      EXPECT_EQ(grid[places[i].position(stride)], alone[i]);
-    }
-  }
-}
-
-TEST(BenchGrids, SteelGrid_Axes_AreThoseOfTheScene) {
-  const Grid grid = steel_grid({91, 32, 5});
-  EXPECT_EQ(grid.theta_deg.front(), 0.0);
-  EXPECT_EQ(grid.theta_deg.back(), 90.0);
-  EXPECT_DOUBLE_EQ(grid.sigma.front(), 0.05);
-  EXPECT_DOUBLE_EQ(grid.sigma.back(), 1.0);
-  EXPECT_DOUBLE_EQ(grid.q.front(), 1.75);
-  EXPECT_DOUBLE_EQ(grid.q.back(), 8.0);
-  EXPECT_EQ(GridSize({91, 32, 5}).text(), "91 x 32 x 5");
-}
-
-// Nobody beside it with other orders: what differs is the rounding.
-TEST(BenchNative, OneDirection_HasTheNodesAndMomentsOfTheDevice) {
-  constexpr double kRounding = 1e-5;
-  const std::unique_ptr<Solver> native = solver_of("native-float");
-  const std::unique_ptr<Solver> device = solver_of("vulkan-float");
-  for (const Masking masking : kMaskingsByRows) {
-    SCOPED_TRACE(name_of(masking));
-    Grid grid = NestedGrid::with_stride(NestedGrid::kLargestStride);
-    grid.theta_deg = {grid.theta_deg[5]};
-    const MomentsRequest request = steel_request(masking, grid);
-    const Solution ours = native->solve(request, 1e-4);
-    const Solution theirs = device->solve(request, 1e-4);
-    EXPECT_LE(largest_difference(ours.answers, theirs.answers), kRounding);
-    EXPECT_NEAR(*ours.evaluations / *theirs.evaluations, 1.0, 1e-3);
-  }
-}
-
 // Directions side by side take the largest of their orders, which on this coarse grid are far apart.
 TEST(BenchNative, Grid_HasTheDevicesNodesOrMoreAndItsMoments) {
   constexpr double kTolerance = 1e-4;
@@ -94,13 +52,6 @@ TEST(BenchNative, Grid_HasTheDevicesNodesOrMoreAndItsMoments) {
     EXPECT_LE(*ours.evaluations / *theirs.evaluations, 4.0);
     EXPECT_GT(*ours.kernel_s, 0.0);
   }
-}
-
-TEST(BenchNative, GaussianDistributionOrProfiles_AreUnavailable) {
-  MomentsRequest request = small_grid(Masking::kSmith);
-  request.distribution = Distribution::kGaussian;
-  EXPECT_THROW(solver_of("native-float")->solve(request, 1e-4), Unavailable);
-  EXPECT_THROW(solver_of("native-float")->solve(small_grid(Masking::kNone), 1e-4), Unavailable);
 }
 
 // So many nodes that an entry is spread over several invocations.
@@ -130,43 +81,6 @@ TEST(BenchOperations, WholeRequest_CountsWhatTheKernelDoes) {
   EXPECT_GT(work.counts.add, work.counts.divide);
   EXPECT_GT(work.busy_lanes, 0.2);
   EXPECT_LT(work.busy_lanes, 1.0);
-}
-
-TEST(BenchOperations, MaskingTable_BelongsToTheWork) {
-  const auto flops_each = [](const Grid& grid) {
-    const KernelWork work = count_operations(steel_request(Masking::kSmith, grid), 1'000, 8);
-    return static_cast<double>(work.counts.flops()) / work.evaluations;
-  };
-  const Grid all = NestedGrid::with_stride(NestedGrid::kLargestStride);
-  Grid one = all;
-  one.theta_deg = {all.theta_deg[5]};
-  EXPECT_GT(flops_each(one), 1.1 * flops_each(all));
-}
-
-TEST(BenchOperations, Sample_IsCloseToTheWhole_OneLaneIsAlwaysBusy) {
-  constexpr double kSampling = 0.2;
-  const MomentsRequest request = steel_request(Masking::kSmith, NestedGrid::with_stride(4));
-  const KernelWork whole = count_operations(request, 1'000'000, 1);
-  const KernelWork sample = count_operations(request, 20, 1);
-  EXPECT_NEAR(static_cast<double>(sample.counts.flops()) / static_cast<double>(whole.counts.flops()), 1.0, kSampling);
-  EXPECT_DOUBLE_EQ(whole.busy_lanes, 1.0);
-}
-
-TEST(BenchPeak, Device_Rates_AreSorted) {
-  const std::vector<double> rates = arithmetic_peak("", 3);
-  ASSERT_EQ(rates.size(), 3U);
-  EXPECT_TRUE(std::ranges::is_sorted(rates));
-  EXPECT_GT(rates.front(), 0.0);
-}
-
-TEST(BenchTruth, Sample_BoundsAreTight_ErrorIsRelative) {
-  const MomentsRequest request = sample_request(Masking::kVCavity, NestedGrid::sample(2));
-  const std::vector<Truth> truths = truths_of(request);
-  ASSERT_EQ(truths.size(), 2U);
-  const Moments& first = truths.front().moments;
-  EXPECT_LE(truths.front().bound, 1e-11);
-  EXPECT_EQ(error_of({first.r_i, first.r_q, {}}, truths.front()), 0.0);
-  EXPECT_NEAR(error_of({first.r_i, first.r_q + 1e-3 * first.r_i, {}}, truths.front()), 1e-3, 1e-12);
 }
 
 }  // namespace

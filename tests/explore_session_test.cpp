@@ -51,12 +51,6 @@ TEST(ExploreSession, WhatIsShownWhileTheSceneChanges_IsStaleAndKeepsItsParameter
   EXPECT_NE(cursor_text(session).find("σ = 0.4,"), std::string::npos) << cursor_text(session);
 }
 
-TEST(ExploreSession, MapOfWhatItsAxesVary_IsNotStale) {
-  Driver driver(paint());
-  driver.session.set("surface.sigma", 0.4);
-  EXPECT_FALSE(driver.session.map().is_stale());
-}
-
 TEST(ExploreSession, CoarseCurveOfAnEarlierScene_IsShownAsSuch) {
   Driver driver(paint());
   driver.session.pin();
@@ -76,13 +70,6 @@ TEST(ExploreSession, CoarseCurveOfAnEarlierScene_IsShownAsSuch) {
   EXPECT_FALSE(curve.is_stale());
   driver.session.take({done(coarse)});
   EXPECT_EQ(curve.shown_scene().number("surface.sigma"), 0.4);
-}
-
-TEST(ExploreSession, Cursor_SaysTheZenithOfTheValueThatItShows) {
-  Driver driver(paint());
-  driver.session.set_theta(60.2);
-  EXPECT_EQ(driver.session.at_cursor()->theta_deg, 60.0);
-  EXPECT_TRUE(cursor_text(driver.session).starts_with("Cursor: θ = 60.0°")) << cursor_text(driver.session);
 }
 
 TEST(ExploreSession, RefusedValue_IsAMessageAndNoChange) {
@@ -241,18 +228,6 @@ TEST(ExploreSession, Pin_StaysWhileTheSceneChanges) {
   EXPECT_TRUE(driver.session.pins().empty());
 }
 
-TEST(ExploreSession, PinOfAnUnfinishedCurve_IsFinishedLater) {
-  Driver driver(paint());
-  driver.session.set("surface.sigma", 0.6);
-  driver.session.pin();
-  driver.session.set("surface.sigma", 0.2);
-  driver.settle();
-  const Curve& pinned = driver.session.pins()[0].curve;
-  EXPECT_TRUE(pinned.is_finished());
-  EXPECT_EQ(pinned.points()[0].sigma, 0.6);
-  expect_same(pinned.points(), truth(pinned.scene(), pinned.points()));
-}
-
 TEST(ExploreSession, MapCursor_DrivesTheCurveAndDoesNotChangeTheMap) {
   Driver driver(paint());
   const std::size_t version = driver.session.map().version();
@@ -281,15 +256,6 @@ TEST(ExploreSession, Map_FinishesAt128WithTheValuesOfTheScene) {
   EXPECT_NEAR(field.values[80 + 3 * 128], exact[1].dolp, 2.0 * exact[1].error_estimate);
   EXPECT_NEAR(field.values[5 + 127 * 128], exact[2].dolp, 2.0 * exact[2].error_estimate);
   EXPECT_NEAR(field.values[100 + 64 * 128], exact[3].dolp, 2.0 * exact[3].error_estimate);
-}
-
-TEST(ExploreSession, MapAxes_AreNeverTheSame) {
-  Driver driver(paint());
-  View view = driver.session.view();
-  view.map_x = AxisKind::kSigma;
-  view.map_y = AxisKind::kSigma;
-  driver.session.set_view(view);
-  EXPECT_NE(driver.session.map().x().kind, driver.session.map().y().kind);
 }
 
 TEST(ExploreSession, Peak_IsTheLargestOfTheCurveAndItsCausesAddUp) {

@@ -38,19 +38,6 @@ TEST(Parameters, All_HaveSymbolEquationAndASliderInsideTheirRange) {
   EXPECT_TRUE(parameter("surface.sigma").is_log);
 }
 
-TEST(Parameters, SliderPositions_ComeBackToFourDigits) {
-  constexpr double kFourDigits = 6e-4;  // half of the last of four digits of a number that begins with 1, and rounding
-  for (const Parameter& p : parameters()) {
-    EXPECT_EQ(slider_value(p, 0.0), p.slider.min) << p.key->key;
-    EXPECT_EQ(slider_value(p, 1.0), p.slider.max) << p.key->key;
-    for (const double position : {0.1, 0.37, 0.5, 0.93}) {
-      const double value = slider_value(p, position);
-      EXPECT_EQ(*parse_number(format_number(value)), value);
-      EXPECT_NEAR(slider_position(p, value), position, kFourDigits) << p.key->key;
-    }
-  }
-}
-
 TEST(Edits, RefusedChange_LeavesTheSceneAsItWas) {
   SceneEdits edits = paint();
   EXPECT_THROW(edits.set("surface.sigma", -1.0), InputError);
@@ -289,18 +276,6 @@ TEST(ExploreWorker, BriefJobUnderWay_IsFinishedThoughItIsNotWanted) {
   EXPECT_EQ(evaluator.cancelled, 0);
 }
 
-TEST(ExploreWorker, BriefJobUnderWay_IsGivenUpAtTheEnd) {
-  SlowEvaluator evaluator;
-  {
-    Worker worker(evaluator.evaluate(), [] {});
-    Job brief = job_of("brief");
-    brief.is_brief = true;
-    worker.want({brief});
-    evaluator.wait_for_call();
-  }
-  EXPECT_EQ(evaluator.cancelled, 1);
-}
-
 TEST(ExploreWorker, Parts_ComeInOrderWithTheResultsOfTheWhole) {
   Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
   Worker worker(on_the_cpu(evaluator), [] {});
@@ -339,18 +314,6 @@ TEST(ExploreWorker, LostDevice_IsThrownToWhoAsksForNews) {
   worker.want({job_of("any")});
   while (!worker.is_idle()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_THROW(worker.take_news(), api::DeviceError);
-}
-
-TEST(Task, Cancelled_EndsAndSaysSo) {
-  BackgroundTask task([] {});
-  task.start([](const Progress& progress) -> std::string {
-    while (progress(1, 2)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    throw Cancelled("no file was written");
-  });
-  EXPECT_EQ(task.state(), BackgroundTask::State::kRunning);
-  task.cancel();
-  while (task.state() == BackgroundTask::State::kRunning) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  EXPECT_EQ(task.state(), BackgroundTask::State::kCancelled);
 }
 
 // ---- Measured points, exports --------------------------------------------------------------------------------------
@@ -408,42 +371,6 @@ TEST(Exports, TrueError_IsBelowItsBound) {
 }
 
 // ---- Ticks and lines -----------------------------------------------------------------------------------------------
-
-TEST(Ticks, Linear_AreRoundAndNotTooMany) {
-  EXPECT_EQ(linear_ticks(0.0, 90.0, 10), (std::vector<double>{0, 10, 20, 30, 40, 50, 60, 70, 80, 90}));
-  EXPECT_EQ(linear_ticks(0.0, 90.0, 9).size(), 5U);
-  for (const auto& [low, high] : {std::pair{-3.3, 7.1}, std::pair{0.0, 1e-9}, std::pair{99.99, 100.01}}) {
-    const std::vector<double> ticks = linear_ticks(low, high, 6);
-    EXPECT_GE(ticks.size(), 2U);
-    EXPECT_LE(ticks.size(), 6U);
-    EXPECT_GE(ticks.front(), low - 1e-9 * (high - low));
-    EXPECT_LE(ticks.back(), high + 1e-9 * (high - low));
-  }
-}
-
-TEST(Ticks, Log_AreOneTwoFive) {
-  EXPECT_EQ(log_ticks(0.01, 0.1, 10), (std::vector<double>{0.01, 0.02, 0.05, 0.1}));
-  EXPECT_LE(log_ticks(1e-9, 1.0, 5).size(), 5U);
-}
-
-TEST(Contours, OfAPlane_AreStraightLines) {
-  MapField field;
-  field.count = 11;
-  for (std::size_t row = 0; row < 11; ++row) {
-    for (std::size_t column = 0; column < 11; ++column) {
-      field.values.push_back(static_cast<double>(column));
-      field.is_good.push_back(1);
-    }
-  }
-  const std::vector<Segment> segments = contour(field, 3.5);
-  EXPECT_EQ(segments.size(), 10U);
-  for (const Segment& s : segments) {
-    EXPECT_DOUBLE_EQ(s.x0, 0.35);
-    EXPECT_DOUBLE_EQ(s.x1, 0.35);
-  }
-  field.is_good[3] = 0;
-  EXPECT_EQ(contour(field, 3.5).size(), 9U);
-}
 
 }  // namespace
 }  // namespace dolp::explore

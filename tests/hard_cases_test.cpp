@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -30,27 +28,6 @@ std::string label(const StoredCase& c) {
 }
 
 // ---- What is stored ------------------------------------------------------------------------------------------------
-
-TEST(HardCases, EveryModel_HasTheCasesOnce) {
-  std::map<std::string, std::set<std::string>> names;
-  for (const StoredCase& c : hard_cases()) {
-    const std::string model = std::string(name_of(c.distribution)) + " " + name_of(c.masking);
-    EXPECT_TRUE(names[model].insert(c.name).second) << label(c);
-    EXPECT_FALSE(c.origin.empty()) << label(c);
-  }
-  EXPECT_EQ(names.size(), 8U);
-  for (const auto& [model, cases] : names) {
-    for (const char* wanted : {"normal", "almost-normal", "brewster", "split-lines-30", "almost-grazing", "mirror",
-                               "sigma-1e-4", "sigma-5", "vacuum", "total-reflection", "index-0.2-3", "index-27-90",
-                               "index-1000-1000", "almost-total-reflection-89.999", "grazing-limit"}) {
-      EXPECT_TRUE(cases.contains(wanted)) << model << " " << wanted;
-    }
-    const bool is_heavy = model == "cauchy none" || model == "cauchy v-cavity" || model == "cauchy integral";
-    for (const char* wanted : {"q-1.001", "q-1.5-below", "q-1.5"}) EXPECT_EQ(cases.contains(wanted), is_heavy) << model;
-    const bool is_cauchy = model.starts_with("cauchy");
-    for (const char* wanted : {"q-50", "q-1000", "q-1.5-above"}) EXPECT_EQ(cases.contains(wanted), is_cauchy) << model;
-  }
-}
 
 TEST(HardCases, References_AreAsGoodAsStated) {
   constexpr double kRelative = 1.5e-13;

@@ -107,16 +107,6 @@ TEST_P(StoredValues, RandomPoints_MeetTheToleranceOrSaySo) {
   EXPECT_LE(static_cast<double>(missed_b), std::ceil(kMissedShareB * static_cast<double>(count_b)));
 }
 
-TEST_P(StoredValues, HardCases_AreFinite) {
-  std::printf("%-28s %10s %10s\n", "case", "error", "estimate");
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    if (rows_[i].name.starts_with("random")) continue;
-    std::printf("%-28s %10.1e %10.1e\n", rows_[i].name.c_str(), error(i), estimate(i));
-    EXPECT_TRUE(std::isfinite(moments_[i].r_i) && std::isfinite(moments_[i].r_q)) << rows_[i].name;
-    EXPECT_TRUE(std::isfinite(moments_[i].albedo) && std::isfinite(moments_[i].deficit)) << rows_[i].name;
-  }
-}
-
 // Directions at which breakpoints of the slope axis nearly coincide.
 constexpr std::array kNearCoincidencesDeg = {12.9, 18.05, 30.2, 44.9, 45.1};
 

@@ -1,24 +1,81 @@
-// The shaders' elementary functions, Fresnel reflection, facets and slope distribution, in float and in double, against
+// The shaders' elementary functions, Fresnel reflection and facets, in float and in double, against
 // evaluations in higher precision. Each row prints its worst error, also when it passes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <boost/multiprecision/cpp_complex.hpp>
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 #include <limits>
 #include <numbers>
 #include <random>
 #include <string>
+#include <type_traits>
 #include <vector>
 
-#include "physics_text.hpp"
+namespace dolp::tested_float {
+using real = float;
+using real2 = glm::vec2;
+using real4 = glm::vec4;
+}  // namespace dolp::tested_float
+
+#define DOLP_TEXT_NAMESPACE tested_float
+#include "evaluate/text/text_body.hpp"
+#undef DOLP_TEXT_NAMESPACE
+
+namespace dolp::tested_double {
+using real = double;
+using real2 = glm::dvec2;
+using real4 = glm::dvec4;
+}  // namespace dolp::tested_double
+
+#define DOLP_TEXT_NAMESPACE tested_double
+#define DOLP_DOUBLE
+#include "evaluate/text/text_body.hpp"
+#undef DOLP_DOUBLE
+#undef DOLP_TEXT_NAMESPACE
 
 namespace dolp {
 namespace {
+
+/// The number that a text computes with.
+template <class Text>
+using RealOf = std::remove_const_t<decltype(Text::kPi)>;
+
+/// Spacing of its numbers at 1.
+template <class Text>
+constexpr double kEpsilon = static_cast<double>(std::numeric_limits<RealOf<Text>>::epsilon());
+
+/// Both texts, for typed test suites.
+using Texts = ::testing::Types<tested_float::Text, tested_double::Text>;
+
+struct TextNames {
+  template <class Text>
+  static std::string GetName(int) {
+    return std::is_same_v<RealOf<Text>, float> ? "Float" : "Double";
+  }
+};
+
+/// An index in the text's precision.
+template <class Text>
+typename Text::IndexNode index_in(const kernel::IndexNode& node) {
+  return convert_reals<RealOf<Text>, typename Text::IndexNode, double>(node);
+}
+
+/// The largest value of what a test measures, and where.
+struct Worst {
+  double value = 0.0;
+  std::string where;
+  void update(double candidate, const std::string& here) {
+    if (candidate <= value) return;
+    value = candidate;
+    where = here;
+  }
+};
 
 using std::numbers::pi;
 
@@ -270,20 +327,6 @@ TYPED_TEST(FresnelText, NormalIncidence_HasTheLimitOfTheQuotient) {
   }
 }
 
-TYPED_TEST(FresnelText, BrewsterAngle_HasNoReflectedP) {
-  using Real = RealOf<TypeParam>;
-  TypeParam text;
-  for (const double n : {1.1, 1.508, 4.0}) {
-    const kernel::IndexNode index = rounded_index<TypeParam>({n, 0.0});
-    const Real cos_beta = static_cast<Real>(1.0 / std::sqrt(index.n2m1_re + 2.0));  // tan(beta) = n
-    const double sin2 = 1.0 - static_cast<double>(cos_beta) * static_cast<double>(cos_beta);
-    const auto f = text.fresnel(index_in<TypeParam>(index), cos_beta);
-    const double r_p = static_cast<double>(f.r_s) - static_cast<double>(f.split_over_sin2) * sin2;
-    EXPECT_NEAR(r_p, 0.0, kFresnelUlps * kEpsilon<TypeParam> * static_cast<double>(f.r_s)) << n;
-    EXPECT_GT(f.r_s, Real(1e-3)) << n;
-  }
-}
-
 TYPED_TEST(FresnelText, TotalReflection_AbsorbsExactlyNothing) {
   using Real = RealOf<TypeParam>;
   TypeParam text;
@@ -304,18 +347,6 @@ TYPED_TEST(FresnelText, TotalReflection_AbsorbsExactlyNothing) {
     // n^2 - 1 + cos^2(beta) cancels, half way to normal incidence by a factor of 2 to 3.
     EXPECT_LE(relative_error(f.absorbed_s, 1 - exact.r_s), 3.0 * kFresnelUlps * kEpsilon<TypeParam>) << n;
     EXPECT_GT(f.absorbed_s, Real(0));
-  }
-}
-
-TYPED_TEST(FresnelText, IndexOne_ReflectsNothing) {
-  using Real = RealOf<TypeParam>;
-  TypeParam text;
-  const auto index = index_in<TypeParam>(rounded_index<TypeParam>({1.0, 0.0}));
-  for (const double cos_beta : cosines_of_incidence()) {
-    const auto f = text.fresnel(index, static_cast<Real>(cos_beta));
-    EXPECT_EQ(f.r_s, Real(0));
-    EXPECT_EQ(f.split_over_sin2, Real(0));
-    EXPECT_NEAR(static_cast<double>(f.absorbed_s), 1.0, kFresnelUlps * kEpsilon<TypeParam>);
   }
 }
 
@@ -401,118 +432,6 @@ TYPED_TEST(FresnelText, RandomFacets_ReflectAsTheirVectorsSay) {
   }
   std::printf("seed %u: worst error over tolerance %.2f at %s\n", kSeed, worst.value, worst.where.c_str());
   EXPECT_LE(worst.value, 1.0) << worst.where;
-}
-
-// ---- Slope distribution --------------------------------------------------------------------------------------------
-
-std::vector<ShapeCase> shape_cases() {
-  std::vector<ShapeCase> cases;
-  for (const double sigma : {1e-28, 1e-4, 0.3, 10.0}) {
-    for (const double q : {1.001, 1.06, 1.5, 2.0, 5.0, 100.0, 1e4}) cases.push_back({Distribution::kCauchy, sigma, q});
-    cases.push_back({Distribution::kGaussian, sigma, 2.0});
-  }
-  return cases;
-}
-
-// -ln of the share of the facets steeper than u.
-double tail_exponent(const ShapeCase& shape, double u) {
-  return shape.distribution == Distribution::kCauchy ? (shape.q - 1.0) * std::log1p(u * u) : u * u;
-}
-
-template <class Text>
-class SlopeText : public ::testing::Test {};
-TYPED_TEST_SUITE(SlopeText, Texts, TextNames);
-
-// P(t) t m.
-template <class Text>
-auto density_at(Text& text, const typename Text::ShapeNode& shape, RealOf<Text> t) {
-  const RealOf<Text> u = t / shape.m;
-  return text.slope_density(shape, u, text.common_exponent(u));
-}
-
-// exp turns the rounding of its argument, a relative one, into as many roundings of its value.
-double slope_tolerance(double exponent, double epsilon) { return epsilon * (8.0 + 4.0 * exponent); }
-
-TYPED_TEST(SlopeText, DensityAndTail_AgreeWithTheClosedForms) {
-  using Real = RealOf<TypeParam>;
-  Worst worst;
-  for (const ShapeCase& shape : shape_cases()) {
-    const KernelData data = data_of(shape, Masking::kNone);
-    TypeParam text = text_for<TypeParam>(data);
-    const auto node = shape_in<TypeParam>(data.shapes[0]);
-    for (double decade = -8.0; decade <= 8.0; decade += 0.25) {
-      const Real t = static_cast<Real>(std::pow(10.0, decade)) * node.m;
-      const double u = static_cast<double>(t) / static_cast<double>(node.m);
-      const double exponent = tail_exponent(shape, u);
-      if (exponent > 0.99 * std::abs(static_cast<double>(TypeParam::kLowestExponent))) continue;  // the text has 0
-      const double tail = std::exp(-exponent);
-      const double steep = shape.distribution == Distribution::kCauchy ? (shape.q - 1.0) / (1.0 + u * u) : 1.0;
-      const double tolerance = slope_tolerance(exponent, kEpsilon<TypeParam>);
-      const auto update = [&](const char* name, Real value, double exact) {
-        if (exact < static_cast<double>(std::numeric_limits<Real>::min())) return;  // subnormal: 0 on many devices
-        const double error = std::abs(static_cast<double>(value) / exact - 1.0) / tolerance;
-        worst.update(error, std::string(name) + " " + name_of(shape) + " u " + std::to_string(u));
-      };
-      update("slope_density", density_at(text, node, t), steep * u * tail / pi);
-      update("slope_tail", text.slope_tail(node, t), tail);
-    }
-    EXPECT_EQ(text.slope_tail(node, Real(0)), Real(1));
-  }
-  std::printf("worst error over tolerance %.2f at %s\n", worst.value, worst.where.c_str());
-  EXPECT_LE(worst.value, 1.0) << worst.where;
-}
-
-TYPED_TEST(SlopeText, Density_IntegratesToTheTail) {
-  using Real = RealOf<TypeParam>;
-  Worst worst;
-  for (const ShapeCase& shape : shape_cases()) {
-    const KernelData data = data_of(shape, Masking::kNone);
-    TypeParam text = text_for<TypeParam>(data);
-    const auto node = shape_in<TypeParam>(data.shapes[0]);
-    // Over u = e^y; below the first u the share of the facets is under q u^2.
-    const auto integrand = [&](double y) {
-      return std::exp(y) * static_cast<double>(density_at(text, node, static_cast<Real>(std::exp(y)) * node.m));
-    };
-    double sum = 0.0;
-    constexpr double kFirst = -23.0;
-    constexpr double kStep = 2.0;
-    for (double y = kFirst; y < 18.0; y += kStep) {
-      sum += boost::math::quadrature::gauss_kronrod<double, 61>::integrate(integrand, y, y + kStep, 4, 1e-10);
-      const Real end = static_cast<Real>(std::exp(y + kStep)) * node.m;
-      worst.update(std::abs(2.0 * pi * sum + static_cast<double>(text.slope_tail(node, end)) - 1.0), name_of(shape));
-    }
-  }
-  // A few roundings of the exponent x, which count where the tail does: x e^-x < 0.4; and the quadrature.
-  constexpr double kAllowed = 8.0 * kEpsilon<TypeParam> + 1e-13;
-  std::printf("worst %.2g at %s (allowed %.2g)\n", worst.value, worst.where.c_str(), kAllowed);
-  EXPECT_LE(worst.value, kAllowed) << worst.where;
-}
-
-TYPED_TEST(SlopeText, Marginal_IsNormalised) {
-  using Real = RealOf<TypeParam>;
-  Worst worst;
-  for (const ShapeCase& shape : shape_cases()) {
-    const KernelData data = data_of(shape, Masking::kIntegral);
-    TypeParam text = text_for<TypeParam>(data);
-    const auto node = shape_in<TypeParam>(data.shapes[0]);
-    const auto integrand = [&](double y) {
-      const double u = std::exp(y);
-      return u * static_cast<double>(text.marginal_density(node, static_cast<Real>(u) * node.m) * node.m);
-    };
-    // Beyond u = e^14 the cauchy is the power law of the masking table's end to 1e-12, and the gaussian nothing.
-    constexpr double kFirst = -35.0;
-    constexpr double kLast = 14.0;
-    double half = 0.0;
-    for (double y = kFirst; y < kLast; y += 1.0) {
-      half += boost::math::quadrature::gauss_kronrod<double, 61>::integrate(integrand, y, y + 1.0, 4, 1e-10);
-    }
-    half += static_cast<double>(text.masking_table_end(node, static_cast<Real>(std::exp(kLast)) * node.m).z);
-    worst.update(std::abs(2.0 * half - 1.0), name_of(shape));
-  }
-  // The exponent, rounded a few times, is up to 14 where the tail still counts (q near 1); the power law's 1e-12.
-  constexpr double kAllowed = 20.0 * kEpsilon<TypeParam> + 1e-11;
-  std::printf("worst %.2g at %s (allowed %.2g)\n", worst.value, worst.where.c_str(), kAllowed);
-  EXPECT_LE(worst.value, kAllowed) << worst.where;
 }
 
 }  // namespace

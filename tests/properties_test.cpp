@@ -1,13 +1,10 @@
-// What must hold whatever the inputs, on seeded random draws of the whole range that scenes allow: reciprocity,
-// energy, and independence of how a request is laid out.
+// What must hold whatever the inputs, on seeded random draws of the whole range that scenes allow: energy, and
+// independence of how a request is laid out.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <cstdio>
-#include <memory>
-#include <numbers>
 #include <numeric>
 #include <string>
 #include <tuple>
@@ -28,112 +25,6 @@ std::uint64_t printed_seed(std::uint64_t offset) {
 
 std::uint64_t number_of(const Model& model) {
   return 2 * static_cast<std::uint64_t>(model.masking) + static_cast<std::uint64_t>(model.distribution);
-}
-
-// ---- pBRDF ---------------------------------------------------------------------------------------------------------
-
-constexpr std::size_t kGeometries = 300;
-
-/// f cos(theta_i) cos(theta_r) of the text, row by row, for points of one model.
-class PbrdfOfPoints {
- public:
-  PbrdfOfPoints(const Model& model, const std::vector<Point>& points, bool in_double)
-      : model_(model), points_(points), evaluator_(in_double ? Precision::kDouble : Precision::kFloat) {}
-
-  ScatteringMatrix operator()(std::size_t point, const Beams& beams) {
-    ScatteringRequest request;
-    request.distribution = model_.distribution;
-    request.masking = model_.masking;
-    request.angles = {{beams.theta_i_deg, beams.theta_r_deg, beams.delta_phi_deg}};
-    request.shapes = {points_[point].shape};
-    request.indices = {points_[point].index};
-    request.entries = {{0, 0, 0}};
-    return evaluator_.scatter(request, {}).front();
-  }
-
- private:
-  Model model_;
-  const std::vector<Point>& points_;
-  CpuEvaluator evaluator_;
-};
-
-// Smaller matrices lose digits as subnormal numbers do.
-constexpr double kSmallest = 1e-300;
-
-class EveryModel : public testing::TestWithParam<Model> {};
-
-// f(i, r, dphi) = S f(r, i, -dphi)^T S with S = diag(1, 1, -1, 1). Both sides round cos(beta) and the rotations on
-// their own, in double beforehand; near the retro direction, where beta is small, the rotation's angle is known to
-// rounding over beta, which the matrix does not feel because R_s - R_p vanishes as beta^2.
-TEST_P(EveryModel, ExchangedBeams_GiveTheTransposedMatrix) {
-  constexpr double kDoubleTolerance = 1e-10;
-  constexpr double kFloatTolerance = 5e-5;
-  constexpr std::array kSigns = {1.0, 1.0, -1.0, 1.0};
-  Random random(printed_seed(100 + number_of(GetParam())));
-  const std::vector<Point> points = random.points(GetParam(), kGeometries);
-  for (const bool in_double : {true, false}) {
-    PbrdfOfPoints pbrdf(GetParam(), points, in_double);
-    for (std::size_t n = 0; n < points.size(); ++n) {
-      const Beams beams = random.beams();
-      const ScatteringMatrix f = pbrdf(n, beams);
-      const ScatteringMatrix g = pbrdf(n, {beams.theta_r_deg, beams.theta_i_deg, -beams.delta_phi_deg});
-      const double scale = std::max(f.m[0], kSmallest);
-      for (std::size_t i = 0; i < 16; ++i) {
-        const std::size_t row = i / 4;
-        const std::size_t column = i % 4;
-        EXPECT_NEAR(f.m[i], kSigns[row] * kSigns[column] * g.m[4 * column + row],
-                    (in_double ? kDoubleTolerance : kFloatTolerance) * scale)
-            << (in_double ? "double" : "float") << ", element " << row << column << " at " << text_of(points[n]) << " "
-            << text_of(beams);
-      }
-    }
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Models, EveryModel, testing::ValuesIn(kModels),
-                         [](const testing::TestParamInfo<Model>& test) { return name_of(test.param); });
-
-/// Equation: f_00 cos(theta_i) cos(theta_r) of a GGX surface with height-correlated Smith masking, from vectors.
-/// Source: Walter et al. 2007, eqs. (33), (34); Heitz 2014, eq. (99).
-double ggx_smith(double alpha, const std::complex<double>& index, const Beams& beams) {
-  const double degree = std::numbers::pi / 180.0;
-  const double ti = beams.theta_i_deg * degree;
-  const double tr = beams.theta_r_deg * degree;
-  const double dphi = beams.delta_phi_deg * degree;
-  const double hx = std::sin(ti) + std::sin(tr) * std::cos(dphi);
-  const double hy = std::sin(tr) * std::sin(dphi);
-  const double hz = std::cos(ti) + std::cos(tr);
-  const double length = std::sqrt(hx * hx + hy * hy + hz * hz);
-  const double cos_h = hz / length;
-  const double cos_beta = 0.5 * length;
-  const double base = cos_h * cos_h * (alpha * alpha - 1.0) + 1.0;
-  const double density = alpha * alpha / (std::numbers::pi * base * base);
-  const auto lambda = [&](double theta) {
-    return 0.5 * (std::sqrt(1.0 + alpha * alpha * std::tan(theta) * std::tan(theta)) - 1.0);
-  };
-  const std::complex<double> cos_t = std::sqrt(1.0 - (1.0 - cos_beta * cos_beta) / (index * index));
-  const double r_s = std::norm((cos_beta - index * cos_t) / (cos_beta + index * cos_t));
-  const double r_p = std::norm((index * cos_beta - cos_t) / (index * cos_beta + cos_t));
-  return 0.5 * (r_s + r_p) * density / (4.0 * (1.0 + lambda(ti) + lambda(tr)));
-}
-
-TEST(QOfTwo, IsGgxFromTextbooks) {
-  // 1 - cos^2(h) of the textbook's form and the slope of facets near the normal lose digits at the smallest alpha,
-  // 1e-3.
-  constexpr double kTolerance = 1e-8;
-  Random random(printed_seed(200));
-  std::vector<Point> points(3 * kGeometries);
-  for (Point& point : points) {
-    point.shape = {random.log_uniform(1e-3, 10.0), 2.0};
-    point.index = {random.log_uniform(0.1, 100.0), random.log_uniform(1e-3, 100.0)};
-  }
-  PbrdfOfPoints pbrdf({Distribution::kCauchy, Masking::kSmith}, points, true);
-  for (std::size_t n = 0; n < points.size(); ++n) {
-    const Beams beams = random.beams();
-    const double expected =
-        ggx_smith(std::numbers::sqrt2 * points[n].shape.sigma, {points[n].index.n, points[n].index.k}, beams);
-    EXPECT_NEAR(pbrdf(n, beams).m[0], expected, kTolerance * expected) << text_of(points[n]) << " " << text_of(beams);
-  }
 }
 
 // ---- Moments -------------------------------------------------------------------------------------------------------

@@ -123,40 +123,6 @@ TEST(PointEntries_AbsentColumns, ComeFromTheScene) {
   EXPECT_EQ(entries[0].index, (OpticalConstants{kAbsorbing.n, 0.25}));
 }
 
-TEST(EvaluateScene_GaussianGrid, AsksOnceForAllQ) {
-  Scene scene = small_grid(Distribution::kGaussian, Masking::kNone);
-  Recorder recorder;
-  const std::vector<PointResult> results = evaluate_scene(scene, grid_entries(scene), recorder, {});
-  ASSERT_EQ(recorder.requests.size(), 1U);
-  const MomentsRequest& request = recorder.requests.front();
-  EXPECT_EQ(request.theta_deg.size(), 5U);
-  EXPECT_EQ(request.sigma.size(), 2U);  // sigma = 0 has a closed form
-  EXPECT_EQ(request.q.size(), 1U);
-  EXPECT_EQ(results.size(), 45U);
-}
-
-TEST(EvaluateScene_CauchyGrid, AsksForItsAxes) {
-  Scene scene = small_grid(Distribution::kCauchy, Masking::kNone);
-  Recorder recorder;
-  evaluate_scene(scene, grid_entries(scene), recorder, {});
-  const MomentsRequest& request = recorder.requests.front();
-  EXPECT_EQ(request.theta_deg.size(), 5U);
-  EXPECT_EQ(request.sigma, (std::vector{0.4, 0.1}));
-  EXPECT_EQ(request.q, scene.grid.q);
-  EXPECT_EQ(request.indices.size(), 1U);
-  EXPECT_TRUE(request.wanted.empty());
-}
-
-TEST(EvaluateScene_PointsWithTheirOwnIndex, AskForItOnceWhateverTheBand) {
-  const Scene scene = band_scene();
-  const std::size_t samples = Radiometry(scene).rule().samples.size();
-  ASSERT_GT(samples, 1U);
-  std::vector<SceneEntry> entries = {{10.0, {0.3, 2.0}, {}}, {10.0, {0.3, 2.0}, kMetal}, {20.0, {0.3, 2.0}, kMetal}};
-  Recorder recorder;
-  evaluate_scene(scene, entries, recorder, {});
-  EXPECT_EQ(recorder.requests.front().size(), samples + 2U);
-}
-
 TEST(EvaluateScene_OwnIndexOfTheMaterial_GivesTheSameAsTheMaterial, OverABand) {
   Scene scene = band_scene();
   scene.surface.material = {};
@@ -181,49 +147,6 @@ TEST(EvaluateScene_Progress, CountsEntriesUpToAllOfThem) {
   ASSERT_EQ(seen.size(), 10U);
   EXPECT_TRUE(std::ranges::is_sorted(seen));
   EXPECT_EQ(seen.back(), 45U);
-}
-
-TEST(EvaluateScene_BistaticGrid, AsksForOneDirection) {
-  Scene scene = small_grid(Distribution::kCauchy, Masking::kSmith);
-  scene.geometry = {Mode::kBistatic, 50.0, 180.0};
-  Recorder recorder;
-  evaluate_scene(scene, grid_entries(scene), recorder, {});
-  EXPECT_EQ(recorder.requests.front().theta_deg, std::vector{50.0});
-  EXPECT_EQ(recorder.requests.front().size(), 6U);
-}
-
-TEST(SceneEntries_Parts, AreConsecutiveAndKeepTheOrder) {
-  const SceneEntries grid = SceneEntries::grid({10.0, 20.0, 30.0}, {0.1, 0.2, 0.3, 0.4}, {2.0, 3.0});
-  for (const SceneEntries& entries : {grid, SceneEntries(list_of(grid))}) {
-    for (std::size_t most = 1; most <= 25; ++most) {
-      std::size_t position = 0;
-      for (const SceneEntries& part : entries.parts(most)) {
-        EXPECT_LE(part.size(), most);
-        for (const SceneEntry& entry : part.all()) {
-          EXPECT_EQ(entry.theta_deg, entries[position].theta_deg);
-          EXPECT_EQ(entry.shape, entries[position].shape);
-          ++position;
-        }
-      }
-      EXPECT_EQ(position, entries.size());
-    }
-  }
-}
-
-TEST(RunScene_Sink, GetsEveryPartInOrder) {
-  class Counted final : public Sink {
-   public:
-    void write(const SceneEntries& part, std::vector<PointResult> results, const SelfCheck&) override {
-      EXPECT_EQ(results.size(), part.size());
-      entries += part.size();
-    }
-    std::size_t entries = 0;
-  };
-  const Scene scene = small_grid(Distribution::kCauchy, Masking::kNone);
-  Recorder recorder;
-  Counted sink;
-  run_scene(scene, grid_entries(scene), keep_everything(scene), &recorder, sink, {});
-  EXPECT_EQ(sink.entries, 45U);
 }
 
 TEST(EvaluateScene_NoEntries, GivesNoResults) {

@@ -23,29 +23,6 @@ enum Status { kDone = 0, kAccuracy = 1, kInput = 2, kDevice = 3 };
 
 // ---- Parts ---------------------------------------------------------------------------------------------------------
 
-TEST(SamplePositions, SeededDraw_IsDistinctRepeatableAndEven) {
-  constexpr std::size_t kEntries = 100;
-  constexpr std::size_t kDraws = 400;
-  constexpr std::size_t kSamples = 10;
-  std::vector<int> counts(kEntries, 0);
-  for (std::uint64_t seed = 0; seed < kDraws; ++seed) {
-    const std::vector<std::size_t> positions = sample_positions(kEntries, {kSamples, seed});
-    EXPECT_EQ(positions, sample_positions(kEntries, {kSamples, seed}));
-    EXPECT_EQ(std::set(positions.begin(), positions.end()).size(), kSamples);
-    EXPECT_TRUE(std::ranges::is_sorted(positions));
-    for (const std::size_t position : positions) ++counts.at(position);
-  }
-  // Each is drawn 40 times on average with a standard deviation of 6: all within five of them.
-  EXPECT_GT(*std::ranges::min_element(counts), 10);
-  EXPECT_LT(*std::ranges::max_element(counts), 70);
-}
-
-TEST(SamplePositions, AsManyAsThereAre_AreAll) {
-  for (const std::size_t samples : {3U, 4U, 1000U}) {
-    EXPECT_EQ(sample_positions(3, {samples, 7}), (std::vector<std::size_t>{0, 1, 2}));
-  }
-}
-
 TEST(Overrides, AnyValues_SurviveTheAttribute) {
   for (const std::vector<std::string>& overrides :
        {std::vector<std::string>{},

@@ -7,7 +7,7 @@
 #endif
 
 #include "base/error.hpp"
-#include "bench/study.hpp"
+#include "studies/study.hpp"
 #include "terminal/exit_status.hpp"
 #include "terminal/guarded.hpp"
 

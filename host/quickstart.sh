@@ -11,7 +11,7 @@ scene=${1:-$root/host/scenes/stainless_steel.toml}
 table=${2:-dolp.nc}
 build=$root/build/release
 
-bash "$root/host/install_packages.sh" build picture
+bash "$root/host/tools/install_packages.sh" build picture
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF -DDOLP_BENCH=OFF
 cmake --build "$build" --target dolp dolp_python
 

@@ -2,7 +2,7 @@
 file(READ ${MODULE} hex HEX)
 # SPIR-V is a stream of 32-bit words, which glslang writes in little-endian order.
 string(REGEX REPLACE "(..)(..)(..)(..)" "0x\\4\\3\\2\\1," words "${hex}")
-file(WRITE ${OUTPUT} "#include \"shaders/spirv.hpp\"
+file(WRITE ${OUTPUT} "#include \"spirv.hpp\"
 
 namespace dolp::spirv {
 namespace {

@@ -94,7 +94,7 @@ struct ThetaNode {
   real end[DOLP_MAX_PIECES + 1];  // ascending slopes; the last stands for all that follow, and may exceed any cut
 };
 
-// One slope of a profile (host/evaluate/text/profile.hpp).
+// One slope of a profile (host/compute/evaluate/text/profile.hpp).
 struct SlopeNode {
   real t;
   real digits;         // wanted of the sum over the azimuths

@@ -13,11 +13,11 @@ sources=$(git ls-files 'host/*.cpp' 'bench/*.cpp' 'tests/*.cpp' | grep -vE '/tex
 
 # What cppcheck 2.10 takes for an error: braces that choose a size or copy a range, references to statics, an assignment
 # that an if precedes, an iterator after an erase up to itself.
-suppressed=(containerOutOfBounds:host/evaluate/reference/hemisphere.cpp danglingTempReference:host/calibrate/hold_out.cpp
-  returnTempReference:host/plan/rule.cpp invalidContainer:host/fit/search.cpp cppcheckError
-  literalWithCharPtrCompare:host/explore/readout.cpp useInitializationList missingInclude unmatchedSuppression)
+suppressed=(containerOutOfBounds:host/reference/hemisphere.cpp danglingTempReference:host/programs/calibrate/hold_out.cpp
+  returnTempReference:host/compute/plan/rule.cpp invalidContainer:host/lib/fit/search.cpp cppcheckError
+  literalWithCharPtrCompare:host/programs/explore/readout.cpp useInitializationList missingInclude unmatchedSuppression)
 grep '^host/' <<<"$sources" | cppcheck --std=c++20 --language=c++ --enable=warning,performance,portability --quiet \
-  -j"$(nproc)" --error-exitcode=1 $(printf -- '-I%s ' "$build"/roots/*) -I host/api/include \
+  -j"$(nproc)" --error-exitcode=1 -I shaders $(printf -- '-I host/%s ' include support core compute reference/include lib programs) \
   "${suppressed[@]/#/--suppress=}" --file-list=-
 
 xargs -P "$(nproc)" -n 1 clang-tidy-16 -p "$build" --quiet --warnings-as-errors='*' 2>/dev/null <<<"$sources"

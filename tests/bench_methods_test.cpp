@@ -6,13 +6,13 @@
 #include <map>
 #include <string>
 
-#include "bench/cases.hpp"
-#include "bench/context.hpp"
-#include "bench/method.hpp"
-#include "bench/report.hpp"
-#include "bench/timing.hpp"
-#include "evaluate/reference/reference_evaluator.hpp"
+#include "methods/method.hpp"
 #include "model/choices.hpp"
+#include "reference/reference_evaluator.hpp"
+#include "studies/cases.hpp"
+#include "studies/context.hpp"
+#include "studies/report.hpp"
+#include "studies/timing.hpp"
 
 namespace {
 

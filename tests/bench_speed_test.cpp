@@ -5,13 +5,13 @@
 #include <array>
 #include <cmath>
 
-#include "bench/arithmetic_peak.hpp"
-#include "bench/cases.hpp"
-#include "bench/grids.hpp"
-#include "bench/method.hpp"
-#include "bench/operations.hpp"
-#include "bench/truth.hpp"
+#include "methods/arithmetic_peak.hpp"
+#include "methods/method.hpp"
+#include "methods/operations.hpp"
+#include "methods/truth.hpp"
 #include "model/choices.hpp"
+#include "studies/cases.hpp"
+#include "studies/grids.hpp"
 
 namespace {
 

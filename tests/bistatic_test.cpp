@@ -10,10 +10,10 @@
 #include <string_view>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/reference/mueller.hpp"
-#include "evaluate/reference/reference_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/status.hpp"
+#include "reference/mueller.hpp"
+#include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
 #include "spectrum/planck.hpp"
 

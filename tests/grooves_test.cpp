@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "calibrate/random_entries.hpp"
-#include "evaluate/reference/reference_evaluator.hpp"
 #include "model/angles.hpp"
 #include "model/status.hpp"
 #include "mueller_support.hpp"
 #include "properties_support.hpp"
+#include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene_reader.hpp"
 

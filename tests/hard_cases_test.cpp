@@ -11,10 +11,10 @@
 
 #include "base/error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/reference/hemisphere.hpp"
-#include "evaluate/reference/reference_evaluator.hpp"
 #include "model/point_result.hpp"
 #include "properties_support.hpp"
+#include "reference/hemisphere.hpp"
+#include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
 #include "stored_evaluator.hpp"
 #include "verify/qualification.hpp"

@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "evaluate/reference/fresnel.hpp"
 #include "model/index_basis.hpp"
 #include "properties_support.hpp"
+#include "reference/fresnel.hpp"
 
 namespace {
 

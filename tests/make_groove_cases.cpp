@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "calibrate/random_entries.hpp"
-#include "evaluate/reference/reference_evaluator.hpp"
 #include "model/choices.hpp"
+#include "reference/reference_evaluator.hpp"
 
 namespace {
 

@@ -17,7 +17,7 @@ sys.dont_write_bytecode = True  # no folder of caches in the source tree
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = pathlib.Path("build/release")
-FILES_WITH_COMMANDS = ("README.md", "host/cli/README.md", "host/fit/README.md", "host/scene/README.md")
+FILES_WITH_COMMANDS = ("README.md", "host/programs/cli/README.md", "host/lib/fit/README.md", "host/core/scene/README.md")
 BLOCK_TIMEOUT_S = 300  # a sanitizer build on two busy cores; each block takes seconds in a release build
 
 # What a block contains, and why it is not run.
@@ -84,9 +84,9 @@ class Manual(unittest.TestCase):
             self.assertTrue(any(part in block for block in SHELL_BLOCK.findall(text)), f"no block contains {part}")
 
     def test_generated_parts_are_current(self):
-        done = subprocess.run([sys.executable, ROOT / "host/write_manual.py", "--check", "--build", BUILD_FOLDER],
+        done = subprocess.run([sys.executable, ROOT / "host/tools/write_manual.py", "--check", "--build", BUILD_FOLDER],
                               capture_output=True, text=True, check=False)
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr + "host/write_manual.py rewrites them")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr + "host/tools/write_manual.py rewrites them")
 
     def test_links_resolve(self):
         for path in markdown_files():

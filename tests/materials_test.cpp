@@ -89,7 +89,7 @@ TEST(Material_BuiltIn, IsLinearBetweenTheRowsOfTheFile) {
 }
 
 TEST(Material_BuiltIn, IsWithinTheThinningOfTheWholeRecord) {
-  constexpr double kThinning = 1e-3;  // of |N|, as host/materials.csv says
+  constexpr double kThinning = 1e-3;  // of |N|, as host/data/materials.csv says
   struct Case {
     const char* name;
     double n, k;
@@ -330,7 +330,7 @@ TEST(MaterialFile_Wrong, NamesFileAndLine) {
 }
 
 TEST(Sun_At10p6, IsTheReferenceSpectrum) {
-  // host/sun.csv: 0.179 to three digits.
+  // host/data/sun.csv: 0.179 to three digits.
   constexpr double kThreeDigits = 0.01;
   EXPECT_NEAR(sun_irradiance().at(10.6), 0.179, 0.179 * kThreeDigits);
 }

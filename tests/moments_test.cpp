@@ -10,8 +10,8 @@
 #include <tuple>
 #include <vector>
 
-#include "evaluate/reference/reference_evaluator.hpp"
 #include "properties_support.hpp"
+#include "reference/reference_evaluator.hpp"
 #include "stored_evaluator.hpp"
 #include "verify/stored_cases.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "base/error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/reference/mueller.hpp"
+#include "reference/mueller.hpp"
 #include "run/scene_run.hpp"
 
 namespace dolp {

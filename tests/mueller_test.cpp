@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/reference/reference_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/angles.hpp"
 #include "mueller_support.hpp"
+#include "reference/reference_evaluator.hpp"
 
 namespace dolp {
 namespace {

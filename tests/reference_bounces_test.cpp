@@ -10,10 +10,10 @@
 #include <cstddef>
 #include <numbers>
 
-#include "evaluate/reference/grooves.hpp"
-#include "evaluate/reference/hemisphere.hpp"
-#include "evaluate/reference/mueller.hpp"
-#include "evaluate/reference/reference_evaluator.hpp"
+#include "reference/grooves.hpp"
+#include "reference/hemisphere.hpp"
+#include "reference/mueller.hpp"
+#include "reference/reference_evaluator.hpp"
 
 namespace dolp {
 namespace {

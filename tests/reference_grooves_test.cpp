@@ -1,6 +1,6 @@
 // The reference's V-grooves with all bounces and its direct emission: exact results of the model, and its beams and
 // quadratures against plainer ones.
-#include "evaluate/reference/grooves.hpp"
+#include "reference/grooves.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,14 +14,14 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "evaluate/reference/adaptive.hpp"
-#include "evaluate/reference/attenuation.hpp"
-#include "evaluate/reference/fresnel.hpp"
-#include "evaluate/reference/groove_beam.hpp"
-#include "evaluate/reference/hemisphere.hpp"
-#include "evaluate/reference/mueller.hpp"
-#include "evaluate/reference/reference_evaluator.hpp"
-#include "evaluate/reference/slopes.hpp"
+#include "reference/adaptive.hpp"
+#include "reference/attenuation.hpp"
+#include "reference/fresnel.hpp"
+#include "reference/groove_beam.hpp"
+#include "reference/hemisphere.hpp"
+#include "reference/mueller.hpp"
+#include "reference/reference_evaluator.hpp"
+#include "reference/slopes.hpp"
 
 namespace dolp {
 namespace {

@@ -12,10 +12,10 @@
 #include <limits>
 #include <numbers>
 
-#include "evaluate/reference/attenuation.hpp"
-#include "evaluate/reference/hemisphere.hpp"
-#include "evaluate/reference/mueller.hpp"
-#include "evaluate/reference/slopes.hpp"
+#include "reference/attenuation.hpp"
+#include "reference/hemisphere.hpp"
+#include "reference/mueller.hpp"
+#include "reference/slopes.hpp"
 
 namespace dolp {
 namespace {

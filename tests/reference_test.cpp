@@ -1,6 +1,6 @@
 // The independent reference: exact results of the model, and its own quadratures against plainer ones.
-#include "evaluate/reference/hemisphere.hpp"
-#include "evaluate/reference/reference_evaluator.hpp"
+#include "reference/hemisphere.hpp"
+#include "reference/reference_evaluator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "evaluate/reference/adaptive.hpp"
-#include "evaluate/reference/mueller.hpp"
 #include "model/choices.hpp"
+#include "reference/adaptive.hpp"
+#include "reference/mueller.hpp"
 #include "verify/stored_cases.hpp"
 
 namespace dolp {

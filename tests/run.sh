@@ -27,7 +27,7 @@ case $build_type in
   *) fail "DOLP_BUILD_TYPE is $build_type; it must be Release, Debug, AsanUbsan or Tsan" ;;
 esac
 
-bash "$root/host/install_packages.sh" build picture bench test
+bash "$root/host/tools/install_packages.sh" build picture bench test
 
 # The loader's own search would prefer a GPU where there is one.
 shopt -s nullglob

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/reference/reference_evaluator.hpp"
 #include "model/choices.hpp"
+#include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
 
 namespace scene_run_support {

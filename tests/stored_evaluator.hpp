@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "evaluate/evaluator.hpp"
+#include "model/evaluator.hpp"
 #include "model/moments.hpp"
 #include "verify/stored_cases.hpp"
 

@@ -68,7 +68,7 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
       to = is_second ? to : middle;
     }
     // Devices that run invocations in lockstep compute both sides of an `if`; a loop of one turn they skip where none
-    // of them needs it. It counts as an iteration, see worst_iterations of host/plan/kernel_data.hpp.
+    // of them needs it. It counts as an iteration, see worst_iterations of host/compute/plan/kernel_data.hpp.
     for (bool is_due = is_before(from, to); is_due; is_due = false) {
       Arc arc = zone_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits, from, to, zone);
       if (is_critical) arc = critical_arc(theta, index, slope.t, slope.digits, from, to, !is_second, arc);

@@ -11,7 +11,7 @@
 // sin(psi - gamma), 0).
 
 // Of a ray that has many bounces, 2, 4, 8 ... are taken as one at their middle, the fewer the closer they are to its
-// first or last, which may be grazing. What that changes is bounded in host/plan/error_bounds.cpp.
+// first or last, which may be grazing. What that changes is bounded in host/compute/plan/error_bounds.cpp.
 struct Fan {
   real2 turn;    // (cos, sin) of gamma times the bounces taken as one
   real gamma;    // of a ray with many bounces, and what follows

@@ -1,6 +1,6 @@
 // The moments of a row of entries, piece by piece of the slope axis: a Gauss rule over the slopes of the piece, and the
 // sums over the azimuths at each. Everything is summed twice, by rules of two orders: the
-// finer sum is the result, its distance from the coarser one bounds the error (host/plan/error_bounds.cpp).
+// finer sum is the result, its distance from the coarser one bounds the error (host/compute/plan/error_bounds.cpp).
 
 CONST real kNearRoot = real(0.2);
 

@@ -3,7 +3,7 @@
 // A Gauss rule of n nodes on [0, 1] is wrong by e^(-2 n mu) where the integrand's next singularity y0 lies on the
 // ellipse with the interval's ends as foci and cosh(mu) = |y0| + |y0 - 1| (Trefethen 2013, chapter 19): a decimal digit
 // costs ln(10) / (2 mu) nodes. Where the singularities of the azimuth lie is known exactly; RuleNode scales the law
-// with what is fitted (host/plan/rule.hpp). The less a piece carries, the fewer digits it needs.
+// with what is fitted (host/compute/plan/rule.hpp). The less a piece carries, the fewer digits it needs.
 
 CONST real kHalfLn10 = real(1.15129254649702284);
 CONST real kLn10 = real(2.30258509299404568402);

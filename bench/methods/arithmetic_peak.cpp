@@ -1,0 +1,53 @@
+#include "methods/arithmetic_peak.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "device/buffer.hpp"
+#include "evaluate/vulkan/kernels.hpp"
+#include "methods/bench_device.hpp"
+#include "spirv.hpp"
+
+namespace dolp::bench {
+namespace {
+
+// arithmetic_peak.comp
+constexpr double kChains = 12.0;
+constexpr double kSteps = 8.0 * DOLP_PEAK_TURNS;
+constexpr double kFlops = 2.0 * kChains * kSteps;  // of an invocation
+
+constexpr std::uint32_t kInvocations = 1U << 15U;
+constexpr double kEnoughTime = 0.02;  // seconds of one run
+constexpr double kTimeout = 60.0;
+
+}  // namespace
+
+std::vector<double> arithmetic_peak(const std::string& device, std::size_t repeats) {
+  BenchDevice bench(device);
+  vulkan::Kernels kernels(bench.device, false);
+  const vulkan::UniquePipeline pipeline = kernels.create(spirv::arithmetic_peak_float, vulkan::KernelVariant{});
+  const vulkan::Buffer results(bench.device, kInvocations * sizeof(float), vulkan::MemoryUse::kDeviceOnly);
+  std::array<VkBuffer, vulkan::kBindingCount> buffers{};
+  buffers[DOLP_BINDING_MOMENTS] = results.get();
+  kernels.bind(buffers);
+  const auto run = [&](std::size_t dispatches) {
+    bench.stream.begin();
+    for (std::size_t i = 0; i < dispatches; ++i) {
+      if (i > 0) bench.stream.barrier(vulkan::Barrier::kKernelToKernel);
+      bench.stream.dispatch(kernels, pipeline.get(), 0, kInvocations, 0);
+    }
+    return bench.stream.submit_and_wait(kTimeout);
+  };
+  run(1);  // compiles
+  std::size_t dispatches = 1;
+  while (run(dispatches) < kEnoughTime) dispatches *= 2;
+  std::vector<double> rates;
+  for (std::size_t i = 0; i < repeats; ++i) {
+    rates.push_back(kFlops * kInvocations * static_cast<double>(dispatches) / run(dispatches));
+  }
+  bench.check_messages();
+  std::ranges::sort(rates);
+  return rates;
+}
+
+}  // namespace dolp::bench

@@ -1,0 +1,71 @@
+// The evaluators of dolp as methods of the benchmark.
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/interpolation/interpolating_evaluator.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "methods/method.hpp"
+
+namespace dolp::bench {
+namespace {
+
+class EvaluatorSolver final : public Solver {
+ public:
+  explicit EvaluatorSolver(std::unique_ptr<MomentsEvaluator> evaluator)
+      : precision_(evaluator->precision()), evaluator_(std::move(evaluator)) {}
+
+  Solution solve(const MomentsRequest& request, double setting) override {
+    MomentsRequest wanted = request;
+    wanted.tolerance = setting;
+    wanted.precision = precision_;
+    const EvaluationReport before = evaluator_->report();
+    const std::vector<Moments> moments = evaluator_->evaluate(wanted, nullptr);
+    const EvaluationReport after = evaluator_->report();
+    Solution solution;
+    solution.kernel_s = after.kernel_s - before.kernel_s;
+    solution.evaluations = after.evaluations - before.evaluations;
+    for (const Moments& entry : moments) {
+      solution.answers.push_back({entry.r_i, entry.r_q, std::max(entry.r_i_error, entry.r_q_error) / entry.r_i});
+    }
+    return solution;
+  }
+
+  std::string where() const override {
+    const EvaluationReport report = evaluator_->report();
+    return report.driver.empty() ? report.device : report.device + ", " + report.driver;
+  }
+
+ private:
+  Precision precision_;
+  std::unique_ptr<MomentsEvaluator> evaluator_;
+};
+
+std::unique_ptr<MomentsEvaluator> vulkan_evaluator(const SolverOptions& options, Precision precision) {
+  VulkanOptions vulkan;
+  vulkan.device = options.device;
+  vulkan.precision = precision;
+  try {
+    return std::make_unique<VulkanEvaluator>(vulkan);
+  } catch (const DeviceError& error) {
+    throw Unavailable(error.what());
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Solver> make_vulkan(const SolverOptions& options, Precision precision) {
+  return std::make_unique<EvaluatorSolver>(vulkan_evaluator(options, precision));
+}
+
+std::unique_ptr<Solver> make_vulkan_table(const SolverOptions& options) {
+  return std::make_unique<EvaluatorSolver>(
+      std::make_unique<InterpolatingEvaluator>(vulkan_evaluator(options, Precision::kFloat)));
+}
+
+std::unique_ptr<Solver> make_cpu(Precision precision) {
+  return std::make_unique<EvaluatorSolver>(std::make_unique<CpuEvaluator>(precision));
+}
+
+}  // namespace dolp::bench

@@ -1,0 +1,24 @@
+// What the independent reference says of the entries that methods are judged by.
+#pragma once
+
+#include <vector>
+
+#include "methods/method.hpp"
+#include "model/moments.hpp"
+
+namespace dolp::bench {
+
+/// The reference's moments of one entry.
+struct Truth {
+  Moments moments;
+  double bound = 0.0;   ///< of max(|d r_i|, |d r_q|)/r_i
+  double time_s = 0.0;  ///< an entry, on one core
+};
+
+/// The reference at its tightest setting, for every entry of a request.
+std::vector<Truth> truths_of(MomentsRequest request);
+
+/// max(|d r_i|, |d r_q|)/r_i.
+double error_of(const Answer& answer, const Truth& truth);
+
+}  // namespace dolp::bench

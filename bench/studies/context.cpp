@@ -1,0 +1,89 @@
+#include "studies/context.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <gsl/gsl_version.h>
+#include <sys/utsname.h>
+
+#include <boost/version.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+#include "base/error.hpp"
+#include "base/processor.hpp"
+#include "device/devices.hpp"
+
+namespace dolp::bench {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// "Debian GNU/Linux 12 (bookworm), Linux 6.1.0", as far as it is known.
+std::string system_name() {
+  std::string name;
+  std::ifstream release("/etc/os-release");
+  const std::string key = "PRETTY_NAME=\"";
+  for (std::string line; std::getline(release, line);) {
+    if (line.starts_with(key)) name = line.substr(key.size(), line.find('"', key.size()) - key.size()) + ", ";
+  }
+  utsname kernel{};
+  return ::uname(&kernel) == 0 ? name + kernel.sysname + " " + kernel.release : name + "unknown kernel";
+}
+
+/// Mean number of busy programs over the last minute; 0 when the system does not tell.
+double load() {
+  double mean = 0.0;
+  return ::getloadavg(&mean, 1) == 1 ? mean : 0.0;
+}
+
+ordered_json device_json(const std::string& choice) {
+  try {
+    const DeviceList list = list_devices();
+    const DeviceDescription& device = list.devices[choose_device(list.devices, choice, false)];
+    return {{"name", device.name},
+            {"type", type_name(device.type)},
+            {"driver", device.driver},
+            {"vulkan", device.api_version}};
+  } catch (const DeviceError& error) {
+    return {{"none", error.what()}};
+  }
+}
+
+}  // namespace
+
+std::string shell_line(const std::vector<std::string>& arguments) {
+  const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%";
+  std::string line;
+  for (const std::string& argument : arguments) {
+    if (!line.empty()) line += ' ';
+    if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos) {
+      line += argument;
+      continue;
+    }
+    line += '\'';
+    for (const char letter : argument) line += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+    line += '\'';
+  }
+  return line;
+}
+
+ordered_json context_json(const std::string& device, const std::vector<std::string>& arguments) {
+  ordered_json context;
+  context["program"] = "dolp-bench " DOLP_VERSION;
+  context["command"] = shell_line(arguments);
+  context["date"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
+  context["machine"] = {{"processor", processor_name()},
+                        {"cores", std::thread::hardware_concurrency()},
+                        {"load", load()},
+                        {"system", system_name()}};
+  context["device"] = device_json(device);
+  context["compiler"] = {{"name", DOLP_COMPILER}, {"flags", DOLP_COMPILER_FLAGS}, {"build_type", DOLP_BUILD_TYPE}};
+  const char* validation = std::getenv("DOLP_VALIDATION");
+  context["validation"] = validation != nullptr && std::string(validation) == "1";
+  context["libraries"] = {{"GSL", GSL_VERSION}, {"Boost", BOOST_LIB_VERSION}, {"cubature", DOLP_CUBATURE_VERSION}};
+  return context;
+}
+
+}  // namespace dolp::bench

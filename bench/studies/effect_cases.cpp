@@ -1,0 +1,181 @@
+#include "studies/effect_cases.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <iterator>
+
+#include "model/choices.hpp"
+
+namespace dolp::bench {
+namespace {
+
+constexpr double kTemperature = 298.15;  // K, of the surface
+constexpr double kLastTheta = 85.0;
+constexpr double kFirstSigma = 0.05;
+constexpr double kLastSigma = 1.0;
+constexpr double kIrradiance = 20.0;  // W m-2 um-1, somewhat below what the surface emits
+constexpr double kFaint = 1e-9;       // of it
+constexpr double kSmooth = 5e-3;      // of the sigmas
+
+Grid grid_of(std::size_t entries) {
+  const auto side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(entries))));
+  const std::size_t thetas = std::max<std::size_t>(2, side);
+  const std::size_t sigmas = std::max<std::size_t>(2, entries / thetas);
+  Grid grid;
+  for (std::size_t i = 0; i < thetas; ++i) {
+    grid.theta_deg.push_back(kLastTheta * static_cast<double>(i) / static_cast<double>(thetas - 1));
+  }
+  for (std::size_t i = 0; i < sigmas; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(sigmas - 1);
+    grid.sigma.push_back(kFirstSigma * std::pow(kLastSigma / kFirstSigma, share));
+  }
+  grid.q = {3.0};
+  return grid;
+}
+
+/// The stainless steel of the paper, that emits and nothing else.
+Scene emitting(const Grid& grid) {
+  Scene scene;
+  scene.surface.material.constant = {1.508, 0.0};
+  scene.emission = Emission{kTemperature, EmissionModel::kMoments};
+  scene.spectrum.min_um = scene.spectrum.max_um = 10.6;
+  scene.grid = grid;
+  return scene;
+}
+
+/// The same, seen from one direction beside the plane of the source.
+Scene seen_from_one_side(const Grid& grid) {
+  Scene scene = emitting(grid);
+  scene.geometry = {Mode::kBistatic, 60.0, 90.0};
+  return scene;
+}
+
+Source flat_source(double irradiance) {
+  Source source;
+  source.irradiance = irradiance;
+  return source;
+}
+
+/// n and k that follow the wavelength, linear in between.
+Material dispersive() {
+  Material material;
+  material.name = "dispersive";
+  material.n = {{8.0, 10.0, 12.0, 14.0}, {1.4, 1.6, 1.5, 1.45}, SpectralTable::Interpolation::kLinear};
+  material.k = {{8.0, 10.0, 12.0, 14.0}, {0.05, 0.3, 0.15, 0.1}, SpectralTable::Interpolation::kLinear};
+  return material;
+}
+
+std::vector<double> spaced(double first, double last, std::size_t count) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    values.push_back(first + (last - first) * static_cast<double>(i) / static_cast<double>(count - 1));
+  }
+  return values;
+}
+
+/// A name and what it makes of the base.
+struct Change {
+  std::string name;
+  std::function<void(Scene&)> apply = [](Scene&) {};
+};
+
+EffectGroup group(const std::string& effect, const Scene& base, const std::vector<Change>& changes) {
+  EffectGroup made{effect, name_of(base.geometry.mode), {}};
+  for (const Change& change : changes) {
+    made.settings.push_back({change.name, base});
+    change.apply(made.settings.back().scene);
+  }
+  return made;
+}
+
+Change masking(Masking masking) {
+  return {name_of(masking), [masking](Scene& scene) { scene.surface.masking = masking; }};
+}
+
+Change scattering(Scattering scattering) {
+  return {name_of(scattering), [scattering](Scene& scene) { scene.surface.scattering = scattering; }};
+}
+
+Change emission_model(EmissionModel model) {
+  return {name_of(model), [model](Scene& scene) { scene.emission->model = model; }};
+}
+
+Change source(const std::string& name, double irradiance) {
+  return {name, [irradiance](Scene& scene) { scene.source = flat_source(irradiance); }};
+}
+
+Change surroundings(const std::string& name, double temperature_K) {
+  return {name, [temperature_K](Scene& scene) { scene.surroundings = Surroundings{temperature_K}; }};
+}
+
+void set_band(Scene& scene) { scene.spectrum = {8.0, 14.0}; }
+
+std::vector<EffectGroup> surface_groups(const Scene& base) {
+  return {group("specular", base, {{"k_s = 1"}, {"k_s = 0", [](Scene& scene) { scene.surface.specular = 0.0; }}}),
+          group("diffuse", base, {{"off"}, {"k_d = 0.3", [](Scene& scene) { scene.surface.diffuse = 0.3; }}}),
+          group("distribution", base,
+                {{"cauchy"}, {"gaussian", [](Scene& scene) { scene.surface.distribution = Distribution::kGaussian; }}}),
+          group("masking", base,
+                {masking(Masking::kNone), masking(Masking::kVCavity), masking(Masking::kIntegral),
+                 masking(Masking::kSmith)}),
+          group("complex index", base,
+                {{"k = 0"}, {"k = 0.5", [](Scene& scene) { scene.surface.material.constant.k = 0.5; }}}),
+          group("axes of index", base, {{"one n and k"}, {"20 n x 20 k", [](Scene& scene) {
+                                                            scene.grid.n = spaced(1.3, 2.5, 20);
+                                                            scene.grid.k = spaced(0.01, 1.0, 20);
+                                                          }}})};
+}
+
+/// What goes beyond single scattering, with the one masking that has all of it.
+std::vector<EffectGroup> scattering_groups(const Grid& grid) {
+  Scene rough = emitting(grid);
+  rough.surface.masking = Masking::kVCavity;
+  // No slope that counts is hit twice, so that the plan leaves further bounces out.
+  Scene smooth = rough;
+  smooth.surface.distribution = Distribution::kGaussian;
+  for (double& sigma : smooth.grid.sigma) sigma *= kSmooth;
+  return {group("scattering", rough, {scattering(Scattering::kSingle), scattering(Scattering::kMultiple)}),
+          group("smooth surface", smooth, {scattering(Scattering::kSingle), scattering(Scattering::kMultiple)}),
+          group("direct emission", rough,
+                {emission_model(EmissionModel::kMoments), emission_model(EmissionModel::kDirect)}),
+          group("bracket", rough, {{"off"}, {"on", [](Scene& scene) { scene.emission->has_bracket = true; }}})};
+}
+
+std::vector<EffectGroup> radiation_groups(const Scene& base, const Scene& bistatic) {
+  Scene lit = bistatic;
+  lit.source = flat_source(kIrradiance);
+  return {group("emission", base, {emission_model(EmissionModel::kMoments), emission_model(EmissionModel::kFresnel)}),
+          group("emission", lit, {{"on"}, {"off", [](Scene& scene) { scene.emission.reset(); }}}),
+          group("source", base, {{"off"}, source("on", kIrradiance)}),
+          group("source", bistatic, {{"off"}, source("on", kIrradiance), source("faint", kFaint * kIrradiance)}),
+          group("surroundings", base,
+                {{"off"}, surroundings("250 K", 250.0), surroundings("as warm as the surface", kTemperature)}),
+          group("path", base,
+                {{"off"},
+                 {"on",
+                  [](Scene& scene) {
+                    scene.path = Path{0.8, 280.0, std::nullopt};
+                  }}}),
+          group("band", base,
+                {{"one wavelength"}, {"8-14 um, constant n", set_band}, {"8-14 um, n(lambda)", [](Scene& scene) {
+                                                                           set_band(scene);
+                                                                           scene.surface.material = dispersive();
+                                                                         }}})};
+}
+
+}  // namespace
+
+std::vector<EffectGroup> effect_groups(std::size_t entries) {
+  const Grid grid = grid_of(entries);
+  const Scene base = emitting(grid);
+  std::vector<EffectGroup> groups = surface_groups(base);
+  for (std::vector<EffectGroup>& more :
+       std::array{scattering_groups(grid), radiation_groups(base, seen_from_one_side(grid))}) {
+    std::ranges::move(more, std::back_inserter(groups));
+  }
+  return groups;
+}
+
+}  // namespace dolp::bench

@@ -1,0 +1,182 @@
+// The study of fits: synthetic sets with a known truth, and the time of a fit.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "base/stopwatch.hpp"
+#include "evaluate/interpolation/interpolating_evaluator.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "scene/scene_writer.hpp"
+#include "studies/child.hpp"
+#include "studies/fit_sets.hpp"
+#include "studies/study.hpp"
+#include "studies/study_run.hpp"
+#include "studies/timing.hpp"
+
+namespace dolp::bench {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kQuickSets = 10;
+constexpr std::size_t kFirstSet = 1000;  // settings of the fit were chosen on sets below
+constexpr int kRepeats = 3;
+constexpr const char* kPython = "/usr/bin/python3";
+
+ordered_json interval_json(const fit::Interval& interval) {
+  const auto end = [](const std::optional<double>& value) { return value ? ordered_json(*value) : ordered_json(); };
+  return {end(interval.low), end(interval.high)};
+}
+
+ordered_json set_row(std::size_t number, const SetOutcome& outcome) {
+  const FitSet set = fit_set(number);
+  ordered_json row = {{"part", "set"}, {"case", set.keys()}, {"setting", number}};
+  row["model"] = set.scene.overrides;
+  row["noise"] = set.noise;
+  row["truth"] = std::vector<double>(set.truth.begin(), set.truth.end());
+  for (const fit::FittedParameter& one : outcome.result.parameters) {
+    row["values"].push_back(one.value);
+    row["interval_68"].push_back(interval_json(one.interval_68));
+    row["interval_95"].push_back(interval_json(one.interval_95));
+  }
+  row["held_68"] = outcome.held_68;
+  row["held_95"] = outcome.held_95;
+  row["chi_square"] = outcome.result.chi_square;
+  row["chi_square_of_truth"] = outcome.chi_square_of_truth;
+  row["chi_square_from_truth"] = outcome.chi_square_from_truth;
+  row["is_global"] = outcome.is_global();
+  row["is_consistent"] = outcome.is_consistent();
+  row["minima"] = outcome.result.minima.size();
+  row["evaluations"] = outcome.result.evaluations;
+  row["error"] = outcome.result.numerical_error;
+  row["time_s"] = outcome.time_s;
+  return row;
+}
+
+/// Shares of all intervals that hold the truth, and of the sets whose global minimum was found.
+ordered_json coverage_json(const ordered_json& rows) {
+  std::size_t intervals = 0, held_68 = 0, held_95 = 0, global = 0;
+  std::vector<double> times_s;
+  for (const ordered_json& row : rows) {
+    intervals += row["truth"].size();
+    held_68 += row["held_68"].get<std::size_t>();
+    held_95 += row["held_95"].get<std::size_t>();
+    global += row["is_global"].get<bool>() ? 1 : 0;
+    times_s.push_back(row["time_s"].get<double>());
+  }
+  const auto share = [&](std::size_t held) { return static_cast<double>(held) / static_cast<double>(intervals); };
+  return {{"sets", rows.size()},        {"intervals", intervals},  {"share_68", share(held_68)},
+          {"share_95", share(held_95)}, {"global_minima", global}, {"median_time_s", median(times_s)}};
+}
+
+/// The same minimum by SciPy around the Python package, from the middle of the ranges; null without SciPy.
+ordered_json scipy_json(const FitSet& set, const fit::FitData& data, const fit::FitResult& result) {
+  const std::string script = DOLP_BENCH_SCRIPTS "/fit_scipy.py";
+  if (run_child({kPython, "-c", "import scipy, xarray"}, ChildErrors::kHidden).status != 0) return {};
+  ordered_json question = {{"package", std::filesystem::path(own_program()).replace_filename("python").string()},
+                           {"scene", scene_toml(set.scene.text, "synthetic", set.scene.overrides, {})},
+                           {"tolerance", result.tolerance},
+                           {"uncertainty", set.noise}};
+  for (const fit::Parameter& one : set.parameters) {
+    question["columns"].push_back(one.key.substr(one.key.find('.') + 1));
+    question["low"].push_back(one.low);
+    question["high"].push_back(one.high);
+    question["start"].push_back(one.at(0.5));
+  }
+  for (const fit::Observation& one : data.observations) {
+    question["theta_deg"].push_back(one.theta_deg);
+    question["measured"].push_back(one.value);
+  }
+  const ChildOutcome outcome = run_child({kPython, script, question.dump()}, ChildErrors::kShown);
+  ordered_json reply = ordered_json::parse(outcome.out, nullptr, false);
+  if (outcome.status != 0 || !reply.is_object()) throw IoError(script + " failed; its message is above");
+  double apart = 0.0;
+  for (std::size_t j = 0; j < set.parameters.size(); ++j) {
+    const fit::FittedParameter& one = result.parameters[j];
+    apart = std::max(apart, std::abs(reply["values"][j].get<double>() - one.value) / one.standard_error.value_or(kNaN));
+  }
+  reply["apart_in_standard_errors"] = apart;
+  return reply;
+}
+
+/// A whole fit, search and intervals, with device and kernels ready.
+ordered_json time_json(MomentsEvaluator& evaluator) {
+  const FitSet set = timed_set();
+  const fit::FitData data = synthetic_data(set, 0, evaluator);
+  const fit::Model model(set.scene, {data}, set.parameters);
+  fit::FitResult result;
+  std::vector<double> times_s;
+  for (int i = 0; i < kRepeats; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    result = fit::fit(model, evaluator, {}).value();
+    times_s.push_back(rounded_time(seconds_since(start)));
+  }
+  return {{"parameters", set.parameters.size()},
+          {"points", set.points},
+          {"times_s", times_s},
+          {"time_s", median(times_s)},
+          {"evaluations", result.evaluations},
+          {"chi_square", result.chi_square},
+          {"scipy", scipy_json(set, data, result)}};
+}
+
+void measure_sets(StudyRun& run) {
+  InterpolatingEvaluator evaluator(std::make_unique<VulkanEvaluator>(VulkanOptions{.device = run.options().device}));
+  run.describe("fit", "largest bound of the model's error, in uncertainties",
+               "seconds a fit with its intervals; the device and its kernels are there");
+  const std::size_t sets = run.options().quick ? std::min(kQuickSets, run.options().entries) : run.options().entries;
+  run.expect(sets);
+  run.json()["time"] = time_json(evaluator);
+  for (std::size_t number = kFirstSet; number < kFirstSet + sets; ++number) {
+    run.finish(set_row(number, fit_outcome(number, evaluator)));
+  }
+  run.json()["coverage"] = coverage_json(run.rows());
+}
+
+std::string table_text(const ordered_json& result) {
+  const ordered_json& coverage = result["coverage"];
+  std::string text = fmt::format(
+      "{} synthetic sets, {} intervals\n  68 % intervals hold the truth {:.1f} %\n  95 % intervals {:.1f} %\n"
+      "  global minimum found in {}\n  median time {}\n",
+      coverage["sets"].get<std::size_t>(), coverage["intervals"].get<std::size_t>(),
+      100.0 * coverage["share_68"].get<double>(), 100.0 * coverage["share_95"].get<double>(),
+      coverage["global_minima"].get<std::size_t>(), time_text(coverage["median_time_s"].get<double>()));
+  const ordered_json& time = result["time"];
+  text += fmt::format("a fit of {} parameters to {} points: {}, {} evaluations\n",
+                      time["parameters"].get<std::size_t>(), time["points"].get<std::size_t>(),
+                      time_text(time["time_s"].get<double>()), time["evaluations"].get<std::size_t>());
+  const ordered_json& scipy = time["scipy"];
+  if (scipy.is_null()) return text;
+  text += fmt::format("  one descent of SciPy around dolp.evaluate: {}, {} calls, {:.2g} standard errors apart\n",
+                      time_text(scipy["time_s"].get<double>()), scipy["calls"].get<std::size_t>(),
+                      scipy["apart_in_standard_errors"].get<double>());
+  return text;
+}
+
+/// Names the sets whose global minimum was missed.
+void warn(ordered_json& result) {
+  for (const ordered_json& row : result["results"]) {
+    if (!row["is_consistent"].get<bool>()) {
+      result["warnings"].push_back(fmt::format("set {}: an interval leaves out a truth whose chi^2 lies inside",
+                                               row["setting"].get<std::size_t>()));
+    }
+    if (row["is_global"].get<bool>()) continue;
+    result["warnings"].push_back(fmt::format("set {}: chi^2 {:.6g}, and {:.6g} from the truth",
+                                             row["setting"].get<std::size_t>(), row["chi_square"].get<double>(),
+                                             row["chi_square_from_truth"].get<double>()));
+  }
+}
+
+}  // namespace
+
+void run_fit_study(const StudyOptions& options) {
+  run_study(options, {.measure = measure_sets, .table_text = table_text, .warn = warn});
+}
+
+}  // namespace dolp::bench

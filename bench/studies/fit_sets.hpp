@@ -1,0 +1,55 @@
+// Synthetic data with a known truth for the study of fits.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "fit/descent.hpp"
+#include "fit/fit.hpp"
+#include "model/evaluator.hpp"
+
+namespace dolp::bench {
+
+/// A scene, what varies in it, and what is true.
+struct FitSet {
+  fit::SceneText scene;
+  std::vector<fit::Parameter> parameters;
+  Eigen::VectorXd truth;
+  fit::Observable observable = fit::Observable::kQOverI;
+  std::size_t points = 0;  ///< zeniths from 2 to 80 degrees
+  double noise = 0.0;      ///< standard deviation of DOLP or Q/I
+
+  /// Varied keys joined by blanks.
+  std::string keys() const;
+};
+
+/// The set of a number, which is the seed of all that is random: one of the maskings and distributions, two to four
+/// parameters, 12 points, the truth inside of the ranges, noise of 0.0005 to 0.01, log-uniform.
+FitSet fit_set(std::size_t number);
+
+/// n, k and sigma of 40 points of Q/I, of which the time of a fit is taken.
+FitSet timed_set();
+
+/// The truth with Gaussian noise. `number`: the seed of the noise.
+fit::FitData synthetic_data(const FitSet& set, std::size_t number, MomentsEvaluator& evaluator);
+
+/// A fit of a set against its truth.
+struct SetOutcome {
+  fit::FitResult result;
+  double chi_square_of_truth = 0.0;
+  double chi_square_from_truth = 0.0;    ///< of the minimum that a descent from the truth ends in
+  std::size_t held_68 = 0, held_95 = 0;  ///< intervals that hold the truth
+  double time_s = 0.0;
+
+  /// Whether the intervals hold the truth wherever its own chi^2 says that they must.
+  bool is_consistent() const;
+  /// Whether no descent from the truth gets lower.
+  bool is_global() const;
+};
+
+/// Makes the data of a set and fits them.
+SetOutcome fit_outcome(std::size_t number, MomentsEvaluator& evaluator);
+
+}  // namespace dolp::bench

@@ -1,0 +1,194 @@
+// The study of scale: time and peak memory of `dolp table` over the size of the table, and of its shards.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "base/stopwatch.hpp"
+#include "methods/method.hpp"
+#include "studies/child.hpp"
+#include "studies/study.hpp"
+#include "studies/study_run.hpp"
+
+namespace dolp::bench {
+namespace {
+
+using nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr std::size_t kQuickEntries = 1'000'000;
+constexpr std::size_t kShardedEntries = 10'000'000;
+constexpr std::array<std::size_t, 4> kShards = {1, 2, 4, 8};
+constexpr std::size_t kBytesOfKilobyte = 1024;
+
+constexpr const char* kScene = R"([surface]
+masking = "v-cavity"
+[emission]
+temperature_K = 300
+[surroundings]
+temperature_K = 260
+[grid]
+theta_deg = { from = 0, to = 88, count = 50 }
+sigma = { from = 0.05, to = 0.8, count = 50, spacing = "log" }
+q = [1.8, 2, 3, 5]
+[accuracy]
+tolerance = 1e-3
+)";
+
+/// Values of wavelength, n and k beside the scene's 10,000 entries.
+struct Size {
+  std::size_t wavelengths, n, k;
+  std::size_t entries() const { return 10'000 * wavelengths * n * k; }
+};
+constexpr std::array<Size, 7> kSizes = {
+    {{1, 1, 1}, {1, 10, 1}, {1, 10, 10}, {10, 10, 10}, {10, 20, 10}, {10, 25, 20}, {10, 25, 40}}};
+
+std::vector<std::string> grid_of(const Size& size) {
+  const auto axis = [](const char* key, double from, double to, std::size_t count) {
+    return fmt::format("grid.{}={{from={}, to={}, count={}}}", key, from, count == 1 ? from : to, count);
+  };
+  return {"--set", axis("wavelength_um", 8.0, 12.0, size.wavelengths), "--set", axis("n", 1.3, 4.0, size.n), "--set",
+          axis("k", 0.05, 1.0, size.k)};
+}
+
+/// A folder of its own, gone at the end.
+class Folder {
+ public:
+  Folder() : path_((fs::temp_directory_path() / "dolp-bench-XXXXXX").string()) {
+    if (::mkdtemp(path_.data()) == nullptr) throw IoError(path_ + ": cannot create the folder");
+    std::ofstream(at("scene.toml")) << kScene;
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  std::string at(const std::string& name) const { return path_ + '/' + name; }
+
+ private:
+  std::string path_;
+};
+
+/// A program under way, without output.
+pid_t start(const std::vector<std::string>& arguments) {
+  std::vector<char*> words;
+  for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+  words.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+  pid_t process = 0;
+  const int error = ::posix_spawn(&process, words.front(), &actions, nullptr, words.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) throw Unavailable("no process could be started for " + arguments.front());
+  return process;
+}
+
+/// Peak memory of a program that has ended. Errors: Unavailable when it failed.
+std::size_t peak_bytes(pid_t process) {
+  int status = 0;
+  rusage used{};
+  if (::wait4(process, &status, 0, &used) < 0 || status != 0) throw Unavailable("dolp failed");
+  return static_cast<std::size_t>(used.ru_maxrss) * kBytesOfKilobyte;
+}
+
+std::vector<std::string> table_command(const StudyOptions& options, const Folder& folder, const Size& size) {
+  const std::string program = fs::path(own_program()).replace_filename("dolp").string();
+  std::vector<std::string> command = {program, "table", folder.at("scene.toml"), "-o", folder.at("t.nc"), "--quiet"};
+  const std::vector<std::string> grid = grid_of(size);
+  command.insert(command.end(), grid.begin(), grid.end());
+  if (!options.device.empty()) command.insert(command.end(), {"--device", options.device});
+  return command;
+}
+
+/// The table of one process; and how long a copy of it takes.
+ordered_json size_row(const StudyOptions& options, const Size& size) {
+  const Folder folder;
+  const auto begin = std::chrono::steady_clock::now();
+  const std::size_t peak = peak_bytes(start(table_command(options, folder, size)));
+  const double time_s = seconds_since(begin);
+  const auto copy = std::chrono::steady_clock::now();
+  peak_bytes(start({"/bin/cp", folder.at("t.nc"), folder.at("copy.nc")}));
+  return {{"method", "dolp table"},
+          {"case", "entries"},
+          {"setting", fmt::format("{} x {} x {} x 50 x 50 x 4", size.wavelengths, size.n, size.k)},
+          {"entries", size.entries()},
+          {"time_s", time_s},
+          {"copy_time_s", seconds_since(copy)},
+          {"peak_bytes", peak},
+          {"file_bytes", fs::file_size(folder.at("t.nc"))},
+          {"raw_times_s", {time_s}}};
+}
+
+/// All shards at once, then their merge.
+ordered_json shards_row(const StudyOptions& options, const Size& size, std::size_t count) {
+  const Folder folder;
+  const auto begin = std::chrono::steady_clock::now();
+  std::vector<pid_t> processes;
+  std::vector<std::string> merge = {fs::path(own_program()).replace_filename("dolp").string(), "merge"};
+  for (std::size_t i = 1; i <= count; ++i) {
+    std::vector<std::string> command = table_command(options, folder, size);
+    if (count > 1) command.insert(command.end(), {"--shard", fmt::format("{}/{}", i, count)});
+    processes.push_back(start(command));
+    merge.push_back(folder.at(fmt::format("t.{}-of-{}.nc", i, count)));
+  }
+  std::size_t peak = 0;
+  for (const pid_t process : processes) peak = std::max(peak, peak_bytes(process));
+  const double time_s = seconds_since(begin);
+  const auto join = std::chrono::steady_clock::now();
+  merge.insert(merge.end(), {"-o", folder.at("t.nc"), "--quiet"});
+  if (count > 1) peak_bytes(start(merge));
+  return {{"method", "dolp table"},
+          {"case", "shards"},
+          {"setting", std::to_string(count)},
+          {"entries", size.entries()},
+          {"time_s", time_s},
+          {"merge_time_s", count > 1 ? seconds_since(join) : 0.0},
+          {"peak_bytes", peak},
+          {"raw_times_s", {time_s}}};
+}
+
+void measure_tables(StudyRun& run) {
+  const StudyOptions& options = run.options();
+  const std::size_t most = options.quick ? std::min(options.entries, kQuickEntries) : options.entries;
+  std::vector<Size> sizes;
+  for (const Size& size : kSizes) {
+    if (size.entries() <= most) sizes.push_back(size);
+  }
+  if (sizes.empty()) throw InputError(fmt::format("--entries {}: must be at least 10000", options.entries));
+  Size sharded = sizes.back();
+  for (const Size& size : sizes) {
+    if (size.entries() == kShardedEntries) sharded = size;
+  }
+  run.describe("scale", "none", "seconds of `dolp table`, from its start to its end, file included");
+  run.expect(sizes.size() + kShards.size());
+  for (const Size& size : sizes) run.finish(size_row(options, size));
+  for (const std::size_t count : kShards) run.finish(shards_row(options, sharded, count));
+}
+
+std::string text_of(const ordered_json& result) {
+  std::string text = fmt::format("{:<8} {:>28} {:>12} {:>10} {:>10}\n", "case", "setting", "entries", "time", "peak");
+  for (const ordered_json& row : result["results"]) {
+    text += fmt::format("{:<8} {:>28} {:>12} {:>10} {:>7.0f} MB\n", row["case"].get<std::string>(),
+                        row["setting"].get<std::string>(), row["entries"].get<std::size_t>(),
+                        time_text(row["time_s"].get<double>()), 1e-6 * row["peak_bytes"].get<double>());
+  }
+  return text;
+}
+
+}  // namespace
+
+void run_scale(const StudyOptions& options) {
+  run_study(options, {.measure = measure_tables, .table_text = text_of});
+}
+
+}  // namespace dolp::bench

@@ -1,0 +1,87 @@
+// What all studies share: their run, from the check of the output file to the results and their warnings.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/progress.hpp"
+#include "studies/study.hpp"
+#include "studies/timing.hpp"
+
+namespace dolp::bench {
+
+/// A study while it runs: its JSON so far, and how many of its rows are done.
+class StudyRun {
+ public:
+  StudyRun(const StudyOptions& options, Progress progress) : options_(options), progress_(std::move(progress)) {}
+
+  const StudyOptions& options() const { return options_; }
+
+  /// Starts the JSON: the study's name, its context, and what `error` and `time_s` of its rows are.
+  void describe(const std::string& study, const std::string& error, const std::string& time_s);
+
+  /// What is not a row.
+  nlohmann::ordered_json& json() { return json_; }
+
+  /// Rows that will come.
+  void expect(std::size_t rows) { total_ += rows; }
+
+  /// Adds a finished row. Errors: Cancelled.
+  void finish(const nlohmann::ordered_json& row);
+
+  const nlohmann::ordered_json& rows() const { return json_["results"]; }
+
+  /// The finished JSON, with the time that all took.
+  nlohmann::ordered_json result();
+
+ private:
+  const StudyOptions& options_;
+  Progress progress_;
+  nlohmann::ordered_json json_;
+  std::size_t done_ = 0;
+  std::size_t total_ = 0;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// What is a study's own.
+struct StudyParts {
+  std::function<void(StudyRun&)> measure;
+  std::function<std::string(const nlohmann::ordered_json&)> table_text;                ///< the table for people
+  std::function<void(nlohmann::ordered_json&)> warn = [](nlohmann::ordered_json&) {};  ///< adds to `warnings`
+};
+
+/// Runs a study under a progress bar, which is gone before anything is printed; prints its table and its warnings and
+/// writes its JSON. Errors: IoError before anything runs when the file cannot be written; those of `measure`.
+void run_study(const StudyOptions& options, const StudyParts& parts);
+
+/// The members of `all` that are named, all of them when none is. Errors: InputError that names `option`, the name
+/// there is none of, and those there are.
+template <class Named>
+std::vector<Named> chosen(const std::vector<Named>& all, const std::vector<std::string>& names, const char* option) {
+  std::string known;
+  for (const Named& one : all) known += (known.empty() ? "" : ", ") + one.name;
+  for (const std::string& name : names) {
+    if (std::ranges::find(all, name, &Named::name) != all.end()) continue;
+    throw InputError(fmt::format("{} {}: there is none of this name; choose among {}", option, name, known));
+  }
+  std::vector<Named> kept = all;
+  if (!names.empty()) {
+    std::erase_if(kept, [&](const Named& one) { return std::ranges::find(names, one.name) == names.end(); });
+  }
+  return kept;
+}
+
+/// Errors: DeviceError when --device names a device that there is not, before anything runs.
+void check_device(const StudyOptions& options);
+
+/// Seconds for a table: "3.1 us".
+std::string time_text(double time_s);
+
+}  // namespace dolp::bench

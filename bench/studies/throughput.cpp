@@ -1,0 +1,360 @@
+// The study of throughput: how many entries and evaluations a second, of what the device can do.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <thread>
+
+#include "device/devices.hpp"
+#include "evaluate/interpolation/interpolating_evaluator.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "methods/arithmetic_peak.hpp"
+#include "methods/method.hpp"
+#include "methods/operations.hpp"
+#include "model/choices.hpp"
+#include "studies/cases.hpp"
+#include "studies/driver_variables.hpp"
+#include "studies/grids.hpp"
+#include "studies/study.hpp"
+#include "studies/study_run.hpp"
+#include "studies/timed_scene.hpp"
+#include "studies/timing.hpp"
+
+namespace dolp::bench {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::array kMaskings = {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith};
+constexpr std::array kMaskingsByRows = {Masking::kIntegral, Masking::kSmith};
+constexpr std::array kQuickMaskings = {Masking::kNone, Masking::kIntegral};  // of the kernels in processes of their own
+constexpr double kTolerance = 1e-4;
+constexpr std::array kTolerances = {1e-3, 1e-4, 1e-6};
+constexpr std::array<GridSize, 8> kGrids = {{{32, 32, 32},
+                                             {64, 64, 64},
+                                             {128, 64, 64},
+                                             {64, 128, 64},
+                                             {64, 64, 128},
+                                             {256, 64, 64},
+                                             {256, 128, 64},
+                                             {256, 128, 128}}};
+constexpr std::size_t kMainGrid = 1;         // of kGrids: what all but the grids themselves are measured on
+constexpr GridSize kSmallGrid = {2, 2, 16};  // whose entries come in groups
+constexpr std::size_t kQuickEntries = std::size_t{24} * 24 * 24;
+constexpr std::size_t kFullRepeats = 5;
+constexpr std::size_t kQuickRepeats = 2;
+constexpr double kLongTime = 1.0;  // seconds of a call that is repeated as in a quick study
+constexpr std::size_t kFullWorkgroups = 48;
+constexpr std::size_t kQuickWorkgroups = 6;
+constexpr std::size_t kFullRounds = 3;  // of processes
+constexpr std::size_t kQuickRounds = 1;
+constexpr std::size_t kPeakRepeats = 9;
+const TimingPolicy kFullTiming{.min_repeats = 5, .max_repeats = 15, .enough_s = 1.0, .most_s = 4.0};
+const TimingPolicy kQuickTiming{.min_repeats = 3, .max_repeats = 5, .enough_s = 0.1, .most_s = 0.5};
+
+/// A part of the study, as --case names it.
+struct Part {
+  std::string name;
+};
+const std::vector<Part> kParts = {{"grids"}, {"arithmetic"}, {"cores"}, {"vector-width"}, {"kernels"}};
+
+/// Grids of at most so many entries; one of about as many where the smallest has more.
+std::vector<GridSize> grids_up_to(std::size_t entries) {
+  std::vector<GridSize> sizes;
+  for (const GridSize& size : kGrids) {
+    if (size.entries() <= entries) sizes.push_back(size);
+  }
+  if (sizes.empty()) {
+    const auto side = static_cast<std::size_t>(std::max(2.0, std::floor(std::cbrt(static_cast<double>(entries)))));
+    sizes.push_back({side, side, side});
+  }
+  return sizes;
+}
+
+/// Errors: DeviceError without a usable device.
+DeviceDescription device_of(const StudyOptions& options) {
+  const DeviceList list = list_devices();
+  if (list.devices.empty()) throw DeviceError(list.why_empty);
+  return list.devices[choose_device(list.devices, options.device, false)];
+}
+
+/// The largest error that a run states, over the entries without a status.
+double stated_error(const std::vector<PointResult>& results) {
+  double largest = 0.0;
+  for (const PointResult& result : results) {
+    if (result.status == 0) largest = std::max(largest, result.rho_error_estimate);
+  }
+  return largest;
+}
+
+ordered_json row_start(const char* part, const std::string& which, const ordered_json& setting) {
+  return {{"part", part}, {"case", which}, {"setting", setting}};
+}
+
+/// A run of a grid as `dolp table` makes it, and what it is called.
+struct GridRun {
+  GridSize size;
+  double tolerance = kTolerance;
+  bool may_interpolate = true;
+  std::unique_ptr<TimedScene> timed = {};
+
+  /// Whether it is the other run with one axis twice as long.
+  bool doubles(const GridRun& other) const {
+    return tolerance == other.tolerance && may_interpolate == other.may_interpolate &&
+           size.entries() == 2 * other.size.entries() && size.thetas % other.size.thetas == 0 &&
+           size.sigmas % other.size.sigmas == 0 && size.qs % other.size.qs == 0;
+  }
+};
+
+ordered_json grid_row(Masking masking, const GridRun& run) {
+  const std::size_t entries = run.size.entries();
+  const double time_s = median(run.timed->times_s());
+  const double kernel_s = median(run.timed->kernel_times_s());
+  const double evaluations = run.timed->evaluations() / static_cast<double>(entries);
+  const std::string setting =
+      fmt::format("{}, {:g}{}", run.size.text(), run.tolerance, run.may_interpolate ? "" : ", off");
+  ordered_json row = row_start("grids", name_of(masking), setting);
+  row["grid"] = {run.size.thetas, run.size.sigmas, run.size.qs};
+  row["tolerance"] = run.tolerance;
+  row["entries"] = entries;
+  row["interpolation"] = run.may_interpolate ? "auto" : "off";
+  row["interpolated"] = run.timed->interpolated();
+  row["interpolation_nodes"] = run.timed->interpolation_nodes();
+  row["time_s"] = time_s;
+  row["kernel_time_s"] = kernel_s;
+  row["run_s"] = rounded_time(time_s * static_cast<double>(entries));
+  row["kernel_run_s"] = rounded_time(kernel_s * static_cast<double>(entries));
+  row["entries_per_s"] = std::round(1.0 / time_s);
+  row["evaluations"] = evaluations;
+  row["evaluations_per_s"] = std::round(evaluations / kernel_s);
+  row["stated_error"] = stated_error(run.timed->results());
+  row["time_min_s"] = minimum(run.timed->times_s());
+  row["raw_times_s"] = run.timed->times_s();
+  row["raw_kernel_times_s"] = run.timed->kernel_times_s();
+  return row;
+}
+
+class Study {
+ public:
+  explicit Study(StudyRun& run);
+  void measure_all();
+
+ private:
+  bool runs(const std::string& part) const { return std::ranges::find(parts_, part, &Part::name) != parts_.end(); }
+  bool quick() const { return run_.options().quick; }
+  GridSize main_grid() const { return grids_[std::min(kMainGrid, grids_.size() - 1)]; }
+  MomentsRequest main_request(Masking masking) const { return steel_request(masking, steel_grid(main_grid())); }
+  std::vector<double> arithmetic_tolerances() const {
+    return quick() ? std::vector<double>{kTolerance} : std::vector<double>(kTolerances.begin(), kTolerances.end());
+  }
+  std::span<const Masking> kernel_maskings() const {
+    return quick() ? std::span<const Masking>(kQuickMaskings) : std::span<const Masking>(kMaskings);
+  }
+  Measurement kernel_times(Masking masking, double tolerance);
+
+  void describe();
+  void run_grids(Masking masking);
+  void run_arithmetic();
+  void run_kernels();
+  void run_with(const char* part, const DriverVariable& variable);
+
+  StudyRun& run_;
+  DeviceDescription device_;
+  std::vector<Part> parts_;
+  std::vector<GridSize> grids_;
+  std::unique_ptr<Solver> float_solver_;
+};
+
+Study::Study(StudyRun& run)
+    : run_(run),
+      device_(device_of(run.options())),
+      parts_(chosen(kParts, run.options().cases, "--case")),
+      grids_(grids_up_to(quick() ? std::min(run.options().entries, kQuickEntries) : run.options().entries)) {
+  if (run.options().cases.empty()) parts_.pop_back();  // what the others run
+  if (runs("grids")) run_.expect(kMaskings.size() * (grids_.size() + 2 * kTolerances.size() - 1));
+  if (runs("arithmetic")) run_.expect(kMaskingsByRows.size() * arithmetic_tolerances().size());
+  if (runs("kernels")) run_.expect(kernel_maskings().size());
+}
+
+void Study::describe() {
+  run_.describe(
+      "throughput", "stated_error: largest rho_error_estimate of the entries without a status",
+      "seconds an entry, median; grids: plan, evaluation and radiometry as `dolp table` runs them, warm, files "
+      "and device creation not counted; others: in float kernels, masking tables included");
+  run_.json()["grid"] = main_grid().text();
+  run_.json()["scene"] = "stainless steel, precision auto";
+}
+
+void Study::measure_all() {
+  describe();
+  if (runs("grids")) {
+    for (const Masking masking : kMaskings) run_grids(masking);
+  }
+  if (runs("arithmetic")) run_arithmetic();
+  if (runs("kernels")) run_kernels();
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<unsigned> counts;
+  for (unsigned count = 1; count < cores; count *= 2) counts.push_back(count);
+  counts.push_back(cores);
+  if (runs("cores")) run_with("cores", {"LP_NUM_THREADS", counts});
+  if (runs("vector-width")) run_with("vector-width", {"LP_NATIVE_VECTOR_WIDTH", {256, 512}, true});
+}
+
+void Study::run_grids(Masking masking) {
+  InterpolatingEvaluator evaluator(std::make_unique<VulkanEvaluator>(VulkanOptions{.device = run_.options().device}));
+  std::vector<GridRun> runs;
+  for (const GridSize& size : grids_) runs.push_back({size});
+  for (const double tolerance : kTolerances) {
+    if (tolerance != kTolerance) runs.push_back({main_grid(), tolerance});
+    runs.push_back({main_grid(), tolerance, false});
+  }
+  for (GridRun& run : runs) {
+    Scene scene = steel_scene(masking, run.size);
+    scene.accuracy.tolerance = run.tolerance;
+    scene.accuracy.may_interpolate = run.may_interpolate;
+    run.timed = std::make_unique<TimedScene>(std::move(scene), false, evaluator);
+  }
+  // In turns, so that what else the machine does is spread over all.
+  for (std::size_t i = 0; i < (quick() ? kQuickRepeats : kFullRepeats); ++i) {
+    for (const GridRun& run : runs) {
+      const std::vector<double> times_s = run.timed->times_s();
+      const bool is_long = !times_s.empty() && times_s.back() * static_cast<double>(run.size.entries()) > kLongTime;
+      if (i < kQuickRepeats || !is_long) run.timed->repeat();
+    }
+  }
+  for (const GridRun& run : runs) {
+    ordered_json row = grid_row(masking, run);
+    const auto half = std::ranges::find_if(runs, [&](const GridRun& other) { return run.doubles(other); });
+    if (half != runs.end()) {
+      const double half_s = median(half->timed->times_s()) * static_cast<double>(half->size.entries());
+      row["doubled_ratio"] = row["run_s"].get<double>() / half_s;
+    }
+    run_.finish(row);
+  }
+}
+
+Measurement Study::kernel_times(Masking masking, double tolerance) {
+  if (!float_solver_) float_solver_ = make_vulkan({.device = run_.options().device}, Precision::kFloat);
+  // The kernels are compiled at their first run, which takes its time.
+  float_solver_->solve(steel_request(masking, steel_grid(kSmallGrid)), tolerance);
+  return measure(*float_solver_, main_request(masking), tolerance, false, quick() ? kQuickTiming : kFullTiming);
+}
+
+void Study::run_arithmetic() {
+  const std::vector<double> peaks = arithmetic_peak(run_.options().device, kPeakRepeats);
+  const double peak = peaks.back();
+  const std::uint32_t lanes = std::max(1U, device_.subgroup_size);
+  run_.json()["peak"] = {{"flops_per_s", std::round(peak)},
+                         {"median_flops_per_s", std::round(median(peaks))},
+                         {"what", "multiplications and additions in float, 12 independent chains an invocation"},
+                         {"lanes", lanes}};
+  for (const Masking masking : kMaskingsByRows) {
+    for (const double tolerance : arithmetic_tolerances()) {
+      MomentsRequest request = main_request(masking);
+      request.tolerance = tolerance;
+      const auto entries = static_cast<double>(request.size());
+      const KernelWork work = count_operations(request, quick() ? kQuickWorkgroups : kFullWorkgroups, lanes);
+      const Measurement measurement = kernel_times(masking, tolerance);
+      const double kernel_s = median(measurement.raw_kernel_s);
+      const double flops_per_s = static_cast<double>(work.counts.flops()) / kernel_s;
+      const auto each = [&](std::uint64_t count) { return std::round(static_cast<double>(count) / entries); };
+      ordered_json row = row_start("arithmetic", name_of(masking), tolerance);
+      row["entries"] = request.size();
+      row["time_s"] = rounded_time(kernel_s / entries);
+      row["evaluations"] = *measurement.evaluations / entries;
+      row["flops"] = each(work.counts.flops());
+      row["operations"] = {{"add", each(work.counts.add)},
+                           {"multiply", each(work.counts.multiply)},
+                           {"divide", each(work.counts.divide)},
+                           {"square_root", each(work.counts.square_root)},
+                           {"other", each(work.counts.other)}};
+      row["flops_per_s"] = std::round(flops_per_s);
+      row["share_of_peak"] = flops_per_s / peak;
+      row["busy_lanes"] = work.busy_lanes;
+      row["raw_times_s"] = per_entry(measurement.raw_kernel_s, request.size());
+      run_.finish(row);
+    }
+  }
+}
+
+void Study::run_kernels() {
+  for (const Masking masking : kernel_maskings()) {
+    const std::size_t entries = main_grid().entries();
+    const std::vector<double> times_s = per_entry(kernel_times(masking, kTolerance).raw_kernel_s, entries);
+    ordered_json row = row_start("kernels", name_of(masking), kTolerance);
+    row["entries"] = entries;
+    row["time_s"] = median(times_s);
+    row["time_min_s"] = minimum(times_s);
+    row["raw_times_s"] = times_s;
+    run_.finish(row);
+  }
+}
+
+void Study::run_with(const char* part, const DriverVariable& variable) {
+  const auto not_run = [&](const std::string& reason) {
+    run_.expect(1);
+    ordered_json row = row_start(part, "all", variable.name);
+    row["not_run"] = reason;
+    run_.finish(row);
+  };
+  if (!device_.name.starts_with("llvmpipe")) {
+    not_run("the device is not lavapipe, which alone reads " + variable.name);
+    return;
+  }
+  try {
+    const std::size_t rounds = quick() ? kQuickRounds : kFullRounds;
+    const std::vector<ordered_json> rows = kernels_with(variable, run_.options(), main_grid().entries(), rounds);
+    run_.expect(rows.size());
+    for (const ordered_json& row : rows) {
+      ordered_json whole = {{"part", part}};
+      whole.update(row);
+      run_.finish(whole);
+    }
+  } catch (const Unavailable& error) {
+    not_run(error.what());
+  }
+}
+
+std::string table_line(const ordered_json& row) {
+  const std::string start =
+      fmt::format("  {:<12} {:<10} {:<24}", row["part"].get<std::string>(), row["case"].get<std::string>(),
+                  row["setting"].is_string() ? row["setting"].get<std::string>()
+                                             : fmt::format("{:g}", row["setting"].get<double>()));
+  if (row.contains("not_run")) return start + "not run: " + row["not_run"].get<std::string>() + "\n";
+  std::string line = start + fmt::format("{:>9}", time_text(row["time_s"].get<double>()));
+  if (row.contains("kernel_time_s")) {
+    line += fmt::format(" {:>9} in kernels, {:.3g} entries/s, {:.3g} evaluations/s, run {}",
+                        time_text(row["kernel_time_s"].get<double>()), row["entries_per_s"].get<double>(),
+                        row["evaluations_per_s"].get<double>(), time_text(row["run_s"].get<double>()));
+  }
+  if (row.contains("doubled_ratio")) line += fmt::format(", {:.2f} of half", row["doubled_ratio"].get<double>());
+  if (row.contains("share_of_peak")) {
+    line += fmt::format(" {:>7.3g} flops, {:.1f} GFLOP/s, {:.0f} % of the peak, lanes {:.0f} % busy",
+                        row["flops"].get<double>(), 1e-9 * row["flops_per_s"].get<double>(),
+                        100.0 * row["share_of_peak"].get<double>(), 100.0 * row["busy_lanes"].get<double>());
+  }
+  if (row.contains("speedup")) line += fmt::format("  x {:.2f}", row["speedup"].get<double>());
+  return line + "\n";
+}
+
+std::string table_text(const ordered_json& result) {
+  std::string text = fmt::format("{}; time per entry on {}\n", result["scene"].get<std::string>(),
+                                 result["context"]["device"].value("name", std::string("no device")));
+  if (result.contains("peak")) {
+    text += fmt::format("peak: {:.1f} GFLOP/s\n", 1e-9 * result["peak"]["flops_per_s"].get<double>());
+  }
+  for (const ordered_json& row : result["results"]) text += table_line(row);
+  return text;
+}
+
+}  // namespace
+
+void run_throughput(const StudyOptions& options) {
+  run_study(options, {.measure = [](StudyRun& run) { Study(run).measure_all(); }, .table_text = table_text});
+}
+
+}  // namespace dolp::bench

@@ -1,0 +1,58 @@
+#include "studies/timed_scene.hpp"
+#include "base/stopwatch.hpp"
+
+#include <chrono>
+#include <cmath>
+
+#include "studies/timing.hpp"
+
+namespace dolp::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kRawTime = 5e-3;  // seconds: shorter calls are made several times for one raw time
+constexpr double kLongTime = 0.5;  // a first call that takes that long says enough
+
+}  // namespace
+
+TimedScene::TimedScene(Scene scene, bool keep_all, MomentsEvaluator& evaluator)
+    : scene_(std::move(scene)), entries_(grid_entries(scene_)), keep_all_(keep_all), evaluator_(evaluator) {
+  const EvaluationReport before = evaluator_.report();
+  const Clock::time_point start = Clock::now();
+  results_ = run();
+  first_s_ = seconds_since(start);
+  const EvaluationReport after = evaluator_.report();
+  evaluations_ = after.evaluations - before.evaluations;
+  interpolated_ = after.interpolated - before.interpolated;
+  interpolation_nodes_ = after.interpolation_nodes - before.interpolation_nodes;
+}
+
+void TimedScene::repeat() {
+  if (calls_ == 0) calls_ = calls_of_a_raw_time();
+  const double kernel_s = evaluator_.report().kernel_s;
+  const Clock::time_point start = Clock::now();
+  for (std::size_t i = 0; i < calls_; ++i) run();
+  const auto calls = static_cast<double>(calls_);
+  raw_s_.push_back(seconds_since(start) / calls);
+  raw_kernel_s_.push_back((evaluator_.report().kernel_s - kernel_s) / calls);
+}
+
+std::vector<double> TimedScene::times_s() const { return per_entry(raw_s_, entries_.size()); }
+
+std::vector<double> TimedScene::kernel_times_s() const { return per_entry(raw_kernel_s_, entries_.size()); }
+
+std::size_t TimedScene::calls_of_a_raw_time() {
+  if (first_s_ > kLongTime) return 1;
+  const Clock::time_point start = Clock::now();
+  run();
+  return static_cast<std::size_t>(std::ceil(std::max(1.0, kRawTime / seconds_since(start))));
+}
+
+std::vector<PointResult> TimedScene::run() {
+  plan_ = plan_effects(scene_, entries_, keep_all_);
+  const bool integrates = wants_evaluator(scene_, entries_, plan_);
+  return evaluate_scene(scene_, entries_, plan_, integrates ? &evaluator_ : nullptr, nullptr);
+}
+
+}  // namespace dolp::bench

@@ -1,0 +1,36 @@
+// An evaluator that computes dense requests at fewer indices and slope distributions than they have.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "model/evaluator.hpp"
+#include "model/moments.hpp"
+
+namespace dolp {
+
+/// Another evaluator, asked for a basis of the indices (index_plan.hpp) and for the nodes of dense grids
+/// (shape_plan.hpp), and for all that is not dense.
+class InterpolatingEvaluator final : public MomentsEvaluator {
+ public:
+  explicit InterpolatingEvaluator(std::unique_ptr<MomentsEvaluator> evaluator) : evaluator_(std::move(evaluator)) {}
+
+  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
+  Precision precision() const override { return evaluator_->precision(); }
+  bool has_double() const override { return evaluator_->has_double(); }
+  ScatteringEvaluator* scattering() override { return evaluator_->scattering(); }
+  EvaluationReport report() const override;
+  void clear_report() override;
+
+ private:
+  std::vector<Moments> evaluate_basis(const MomentsRequest& request, const Progress& progress);
+  /// Directions of one shape parameter.
+  std::vector<Moments> evaluate_part(const MomentsRequest& request, const Progress& progress);
+
+  std::unique_ptr<MomentsEvaluator> evaluator_;
+  std::uint64_t interpolated_ = 0;
+  std::uint64_t nodes_ = 0;
+  double interpolation_s_ = 0.0;
+};
+
+}  // namespace dolp

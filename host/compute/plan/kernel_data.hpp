@@ -1,0 +1,110 @@
+// Everything the kernel reads, computed by the host in double; the evaluators narrow it to the precision they run in.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "model/moments.hpp"
+
+namespace dolp {
+
+/// The structures and constants of shaders/interface.glsl with real = double.
+namespace kernel {
+using real = double;
+#include "interface.glsl"  // NOLINT: one text for host and shaders
+}  // namespace kernel
+
+inline constexpr unsigned kRootAbove = 1;  ///< a square root just above a breakpoint
+inline constexpr unsigned kRootBelow = 2;  ///< just below
+
+/// The pieces of the slope axis of one direction, beside what ThetaNode says of them.
+struct Pieces {
+  std::uint32_t count = 0;
+  std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};  ///< of each end: bits kRootAbove, kRootBelow
+  /// Of each piece the most nodes of an arc, which bounds the loop iterations.
+  std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};
+  /// Of each piece what says whether it may run in lockstep with another within these bounds: equal numbers may.
+  std::array<std::uint16_t, DOLP_MAX_PIECES> lockstep{};
+  bool has_split_line = false;  ///< b = pi/2 of `integral`, or smith's cusp
+};
+
+/// What the kernel reads of one entry: positions in three lists of KernelData.
+struct MomentsEntry {
+  std::uint32_t theta = 0;
+  std::uint32_t shape = 0;
+  std::uint32_t index = 0;
+};
+
+/// Inputs of one run of the kernel. Of a grid `indices` and `shapes` (sigma x q, q fastest) match its axes and `thetas`
+/// has its directions first, then as often as necessary the variants of them all: for total reflection, whose split
+/// lines depend on the index, and for shapes that need one line more. Of points each has its own direction and index,
+/// and neighbours of one shape share it.
+struct KernelData {
+  Distribution distribution = Distribution::kCauchy;
+  Masking masking = Masking::kIntegral;
+  Scattering scattering = Scattering::kSingle;
+  bool has_direct = false;
+  double tolerance = 1e-4;
+  kernel::RuleNode rule{};
+  int rule_order = 1;                 ///< largest order of the rule nodes
+  bool has_total_reflection = false;  ///< of any index, sharp or nearly so
+  bool is_grid = false;
+  std::size_t directions = 0;  ///< of the request
+  std::vector<kernel::ThetaNode> thetas;
+  std::vector<Pieces> pieces;  ///< of each of `thetas`
+  std::vector<kernel::ShapeNode> shapes;
+  std::vector<char> needs_line;  ///< of each shape
+  std::vector<kernel::IndexNode> indices;
+  std::vector<std::uint32_t> index_variant;  ///< of each index of a grid, over the first of its variants of directions
+  std::vector<std::uint32_t> shape_of;       ///< of each point
+  std::vector<std::array<double, 2>> rule_nodes;
+
+  bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
+  std::size_t size() const { return is_grid ? directions * indices.size() * shapes.size() : directions; }
+  /// The node of a direction for an index and a shape.
+  std::uint32_t theta_of(std::uint32_t direction, std::uint32_t index, std::uint32_t shape) const {
+    if (!is_grid) return direction;
+    const std::uint32_t variant = index_variant[index] + (needs_line[shape] != 0 ? 1U : 0U);
+    return variant * static_cast<std::uint32_t>(directions) + direction;
+  }
+  /// The entry of a direction, an index and a shape.
+  std::size_t entry_of(std::uint32_t direction, std::uint32_t index, std::uint32_t shape) const {
+    return is_grid ? (direction * indices.size() + index) * shapes.size() + shape : direction;
+  }
+  MomentsEntry operator[](std::size_t entry) const;
+};
+
+struct RuleModel;
+
+/// Splits, orders, nodes and constants for a request at its tolerance, by the rules of its masking or by other ones.
+/// Pure.
+KernelData kernel_data(const MomentsRequest& request);
+KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
+
+/// The task word of interface.glsl for one piece of a row of `members` entries.
+std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t members);
+
+/// Pieces of the slope axis up to the cut: those that the kernel has to compute, the first always.
+std::uint32_t piece_count(const KernelData& data, std::uint32_t theta, const kernel::ShapeNode& shape);
+
+/// The slope of V-grooves in which a vertical ray has so many bounces.
+double slope_with_bounces(double bounces);
+
+/// Adds what the kernel returned for a piece to what it returned for others.
+void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece);
+
+/// Turns what the kernel returned for one entry into moments with error bounds, `unit_roundoff` being that of the
+/// kernel's precision.
+Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
+                            double unit_roundoff);
+
+/// Whether the masking table of a shape sees the structure of G at a direction. Where the table is coarser than the
+/// slope distribution, directions whose cot(theta) lies within its first scale see none of it.
+bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta);
+
+/// Upper bound of the loop iterations of one invocation, a piece of any entry of `data`: all its nested loops together.
+/// Drivers may stop an invocation after 65,535 of them, without an error and with wrong sums.
+double worst_iterations(const KernelData& data);
+
+}  // namespace dolp

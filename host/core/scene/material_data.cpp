@@ -1,0 +1,123 @@
+#include "scene/material_data.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "scene/csv.hpp"
+#include "scene/embedded_data.hpp"
+#include "scene/number_range.hpp"
+#include "scene/spectral_data.hpp"
+
+namespace dolp {
+namespace {
+
+/// A line of host/data/materials.csv.
+enum IndexColumn : std::size_t { kIndexName = 0, kWavelength = 1, kN = 2, kK = 3, kIndexColumns = 4 };
+
+/// A line of host/data/materials_sources.csv: name, rii_path, from_um, to_um, points_in_table, points_kept, source.
+enum SourceColumn : std::size_t { kName = 0, kSource = 6, kSourceColumns = 7 };
+
+/// The names and sources, still without values.
+std::vector<Material> read_sources() {
+  std::vector<Material> materials;
+  CsvReader row(embedded_materials_sources_csv(), "materials_sources.csv (built in)");
+  row.next();  // names
+  while (row.next()) {
+    if (row.cells().size() != kSourceColumns) row.fail("7 columns are expected");
+    materials.push_back({std::string(row.cells()[kName]), std::string(row.cells()[kSource]), {}, {}, {}});
+  }
+  return materials;
+}
+
+std::vector<Material> read_built_in_materials() {
+  std::vector<Material> materials = read_sources();
+  CsvReader row(embedded_materials_csv(), "materials.csv (built in)");
+  row.next();  // names
+  while (row.next()) {
+    if (row.cells().size() != kIndexColumns) row.fail("4 columns are expected");
+    const auto material = std::ranges::find(materials, row.cells()[kIndexName], &Material::name);
+    if (material == materials.end()) row.fail("the material has no source");
+    append_index(*material, row.number(kWavelength, "wavelength_um"), row.number(kN, "n"), row.number(kK, "k"),
+                 row.where());
+  }
+  return materials;
+}
+
+/// The one material of that name, or the only one that begins with it up to a blank.
+const Material* match_name(std::string_view name) {
+  const std::string wanted = lower_case(trim(name));
+  const Material* match = nullptr;
+  for (const Material& material : built_in_materials()) {
+    const std::string known = lower_case(material.name);
+    if (known == wanted) return &material;
+    if (known.starts_with(wanted + ' ')) {
+      if (match) return nullptr;
+      match = &material;
+    }
+  }
+  return match;
+}
+
+/// Where a name is cut too short, what it could be; else the nearest name.
+std::string name_hint(std::string_view name) {
+  std::vector<std::string> names;
+  std::vector<std::string> begin_alike;
+  for (const Material& material : built_in_materials()) {
+    names.push_back(material.name);
+    if (lower_case(material.name).starts_with(lower_case(trim(name)))) begin_alike.push_back(material.name);
+  }
+  return begin_alike.empty() || trim(name).empty() ? nearest_name(name, names) : join(begin_alike);
+}
+
+}  // namespace
+
+const std::vector<Material>& built_in_materials() {
+  static const std::vector<Material> materials = read_built_in_materials();
+  return materials;
+}
+
+Material find_material(std::string_view name, const Spectrum& spectrum, const std::string& prefix) {
+  if (const Material* material = match_name(name)) return fit_to_spectrum(*material, spectrum, prefix);
+  throw InputError(fmt::format("{}unknown material; the nearest of the {} known: {}", prefix,
+                               built_in_materials().size(), name_hint(name)));
+}
+
+OpticalConstants Material::at(double wavelength_um) const {
+  if (is_constant()) return constant;
+  return {n.at(wavelength_um), k.wavelength_um.empty() ? constant.k : k.at(wavelength_um)};
+}
+
+void append_index(Material& material, double wavelength_um, std::optional<double> n, std::optional<double> k,
+                  const std::string& where) {
+  if (n) append_row(material.n, wavelength_um, {"n", *n, kNRange}, where);
+  if (k) append_row(material.k, wavelength_um, {"k", *k, kKRange}, where);
+}
+
+Spectrum known_range(const Material& material) {
+  const std::vector<double>& n_um = material.n.wavelength_um;
+  const std::vector<double>& k_um = material.k.wavelength_um.empty() ? n_um : material.k.wavelength_um;
+  return {std::max(n_um.front(), k_um.front()), std::min(n_um.back(), k_um.back())};
+}
+
+bool covers(const Material& material, const Spectrum& spectrum) {
+  const Spectrum known = known_range(material);
+  return known.min_um <= spectrum.min_um && spectrum.max_um <= known.max_um;
+}
+
+Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, const std::string& prefix) {
+  if (!covers(material, spectrum)) {
+    const Spectrum known = known_range(material);
+    throw InputError(fmt::format("{}n and k of \"{}\" are known at {}, and the spectrum is {}", prefix, material.name,
+                                 wavelength_text(known.min_um, known.max_um),
+                                 wavelength_text(spectrum.min_um, spectrum.max_um)));
+  }
+  if (spectrum.is_band()) return material;
+  return {
+      material.name, material.source, material.at(spectrum.min_um), {}, {}, std::make_shared<const Material>(material)};
+}
+
+}  // namespace dolp

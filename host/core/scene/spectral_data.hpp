@@ -1,0 +1,38 @@
+// Quantities tabulated over wavelength: the sun and the user's own irradiance files.
+#pragma once
+
+#include <string>
+
+#include "scene/number_range.hpp"
+#include "scene/scene.hpp"
+
+namespace dolp {
+
+/// Solar irradiance at the top of the atmosphere at normal incidence.
+/// Source: host/data/sun.csv (Gueymard 2003). Units: W m-2 um-1. Accuracy: interpolated log-log in wavelength.
+SpectralTable sun_irradiance();
+
+/// A user's file of two columns, wavelength in um and irradiance in W m-2 um-1, interpolated linearly.
+///
+/// Blank lines and lines that begin with # are skipped; one line of column names before the numbers is allowed.
+/// Domain: wavelengths strictly ascending, irradiance >= 0, at least one row.
+/// Errors: InputError; `prefix` begins the message when the file cannot be opened.
+SpectralTable read_irradiance_file(const std::string& path, const std::string& prefix);
+
+/// A number that a file has, and what is allowed.
+struct NamedValue {
+  const char* name;
+  double value;
+  NumberRange range;
+};
+
+/// Appends a row and checks that both numbers are in range and the wavelength ascends; `where` begins the message.
+void append_row(SpectralTable& table, double wavelength_um, const NamedValue& value, const std::string& where);
+
+/// Refuses a table that has no values over the whole spectrum; `prefix` begins the message.
+void check_covers(const SpectralTable& table, const Spectrum& spectrum, const std::string& prefix);
+
+/// "10.6 um" or "8 to 14 um".
+std::string wavelength_text(double min_um, double max_um);
+
+}  // namespace dolp

@@ -1,0 +1,72 @@
+// Parameters of a scene from measured data, with intervals.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/progress.hpp"
+#include "fit/descent.hpp"
+#include "fit/model.hpp"
+#include "model/evaluator.hpp"
+
+namespace dolp::fit {
+
+struct FitOptions {
+  std::size_t starts = 24;  ///< descents of the search for minima
+  std::uint64_t seed = 1;   ///< of where they begin
+  Loss loss = Loss::kSquares;
+  Progress progress = {};  ///< counts descents and sides of profiles
+};
+
+/// A profile-likelihood interval, from the least to the largest value that the data do not rule out, over all minima;
+/// an end is none where the parameter's range ends before the data say no.
+struct Interval {
+  std::optional<double> low, high;
+};
+
+struct FittedParameter {
+  std::string key;
+  double value = 0.0;
+  std::optional<double> standard_error;  ///< from the covariance; none at a bound or where the data say nothing
+  Interval interval_68, interval_95;     ///< 68.27 % and 95 %; both ends none without a scale of the residuals
+  bool is_at_bound = false;
+};
+
+/// A local minimum above the best.
+struct OtherMinimum {
+  Eigen::VectorXd values;
+  double chi_square = 0.0;
+};
+
+/// What a fit found. Lists over observations are in the order of the data.
+struct FitResult {
+  std::vector<FittedParameter> parameters;
+  Eigen::MatrixXd correlation;  ///< NaN of a parameter without a standard error
+  double chi_square = 0.0;      ///< sum of the squares of `residuals`, or of their loss
+  std::size_t degrees_of_freedom = 0;
+  std::optional<double> reduced_chi_square;  ///< none without degrees of freedom
+  std::optional<double> p_value;             ///< with uncertainties and without a robust loss
+  double scale = 1.0;  ///< change of chi_square that is one standard deviation: 1, or the residuals' mean square
+  std::vector<OtherMinimum> minima;
+  std::vector<std::string> degeneracies;  ///< what the data cannot tell, in words
+  std::size_t determined = 0;             ///< parameters less those directions
+  double numerical_error = 0.0;           ///< largest bound of the model's error, in uncertainties
+  double tolerance = 0.0;                 ///< of the model's values
+  std::uint32_t status = 0;               ///< bits of any point
+  Eigen::VectorXd residuals;              ///< (measured - model) / uncertainty; without uncertainties measured - model
+  Eigen::VectorXd predicted;              ///< the model's values
+  std::size_t evaluations = 0;            ///< parameter sets for which the model was computed
+  double aic = 0.0;                       ///< Akaike's information criterion, up to a constant of the data
+  double bic = 0.0;                       ///< Bayes' information criterion, likewise
+};
+
+/// Fits the model to its data: minima by descents from many starts, then intervals of the best one. Its values have a
+/// hundredth of the least uncertainty as their tolerance; the search takes a wider one.
+/// None when no descent converged. Errors: those of the evaluator; Cancelled.
+std::optional<FitResult> fit(const Model& model, MomentsEvaluator& evaluator, const FitOptions& options);
+
+}  // namespace dolp::fit

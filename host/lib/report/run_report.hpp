@@ -1,0 +1,45 @@
+// What there is to say of a run over a scene's entries, and of what runs have in common.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/evaluator.hpp"
+#include "model/point_result.hpp"
+#include "plan/effects.hpp"
+#include "report/plan_report.hpp"
+#include "report/report.hpp"
+#include "run/run_summary.hpp"
+#include "scene/scene.hpp"
+
+namespace dolp {
+
+/// A finished run, for its report.
+struct SceneRun {
+  EffectPlan plan;
+  std::vector<EffectRow> effects;
+  RunSummary summary;
+  std::optional<double> scattering_gap;  ///< none where it does not apply
+  EvaluationReport evaluation;
+  double wall_s = 0.0;
+};
+
+/// What ran: nothing, where no evaluator was needed; `name` is the one that was asked for.
+EvaluationReport evaluation_of(const MomentsEvaluator* evaluator, const std::string& name);
+
+/// The report of a run. `shape`: that of the grid, or "200 points"; `path`: what was written.
+Report run_report(const Scene& scene, const SceneRun& run, const std::string& shape, const std::string& path);
+
+/// Where a run was evaluated, and how long it took.
+void add_evaluation(Report& report, const EvaluationReport& evaluation, double wall_s);
+
+/// The results that carry a bit of the status.
+std::size_t count_status(const std::vector<PointResult>& results, std::uint32_t bit);
+
+/// The largest of an error that results state, of those whose status has none of `refused`; none without any.
+std::optional<double> worst_of(const std::vector<PointResult>& results, double PointResult::*error,
+                               std::uint32_t refused);
+
+}  // namespace dolp

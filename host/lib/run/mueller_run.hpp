@@ -1,0 +1,43 @@
+// The Mueller pBRDF of a scene's surface at scattered geometries.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "model/evaluator.hpp"
+#include "model/scattering.hpp"
+#include "scene/points.hpp"
+#include "scene/scene.hpp"
+
+namespace dolp {
+
+/// One geometry and surface.
+struct MuellerPoint {
+  BeamAngles angles;
+  SlopeShape shape;
+  OpticalConstants index;
+};
+
+/// f of eq. (15), row by row, with k_s and the diffuse part. Units: sr-1.
+using MuellerElements = std::array<double, 16>;
+
+/// Scattered geometries; what they do not say comes from the scene, n and k at its wavelength.
+/// Errors: InputError that names file, key or line and column, and what is allowed: a band with a material that depends
+/// on the wavelength, unless the points have n and k both; q <= 3/2 with smith masking and the cauchy distribution.
+std::vector<MuellerPoint> mueller_points(const Scene& scene, const Points& points);
+
+/// The precision of a scene's pBRDFs: what it says, and for kAuto float where kScatteringErrorFloat meets the tolerance
+/// (or the evaluator has nothing better), double elsewhere.
+Precision mueller_precision(const Accuracy& accuracy, bool has_double);
+
+/// pBRDFs in the order of `points`.
+///
+/// Accuracy: each element to kScatteringErrorFloat or kScatteringErrorDouble of m00.
+/// Domain: at 90 degrees the limits, which v-cavity and smith have with one beam there. Where f has no finite value all
+/// 16 are NaN: at 90 degrees otherwise, and for a mirror (sigma = 0) in its specular direction; in others its f is the
+/// diffuse part.
+/// Errors: those of the evaluator.
+std::vector<MuellerElements> evaluate_mueller(const Scene& scene, const std::vector<MuellerPoint>& points,
+                                              MomentsEvaluator& evaluator, const Progress& progress);
+
+}  // namespace dolp

@@ -1,0 +1,43 @@
+// The table of a scene, for whoever writes it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/evaluator.hpp"
+#include "model/point_result.hpp"
+#include "model/scene_entry.hpp"
+#include "plan/effects.hpp"
+#include "run/self_check.hpp"
+#include "scene/scene.hpp"
+#include "table/result_csv.hpp"
+#include "table/table.hpp"
+
+namespace dolp {
+
+/// The columns that a scene's results have beside those of every scene.
+ExtraColumns extra_columns(const Scene& scene);
+
+/// The table of a grid of the scene before anything is computed, with the attributes that are known by then. `axes` may
+/// be a part of the scene's grid.
+TableLayout table_layout(const Scene& scene, const EffectPlan& plan, const Grid& axes);
+
+/// The values of a part of the grid.
+Table table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results);
+
+/// What is known after a run.
+struct RunFacts {
+  const EffectPlan& plan;
+  const std::vector<EffectRow>& effects;  ///< effect_rows of the run
+  EvaluationReport evaluation;
+  SelfCheck check;
+  double wall_s = 0.0;
+  std::string command_line;  ///< for the history
+};
+std::string history_text(const std::string& command_line);
+std::vector<Attribute> attributes_of(const Scene& scene, const RunFacts& run);
+
+/// The rule in words, for reports and table attributes.
+std::string rule_text(double tolerance, const EvaluationReport& evaluation);
+
+}  // namespace dolp

@@ -1,0 +1,172 @@
+#include "verify/qualification.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "model/choices.hpp"
+#include "model/point_result.hpp"
+#include "reference/hemisphere.hpp"
+#include "run/scene_run.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Rounding of r / cos(theta) and of the quotients of stored values.
+constexpr double kQuotientRounding = 8.0 * std::numeric_limits<double>::epsilon();
+
+constexpr std::array kOrdinaryCases{"ordinary",    "sigma-1e-2",     "brewster",     "index-27-90",
+                                    "index-0.2-3", "split-lines-18", "almost-normal"};
+
+/// What the stored moments of a case say about rho and DOLP.
+struct Expected {
+  double rho_i = 0.0;
+  double rho_q = 0.0;
+  double rho_error = 0.0;  ///< of both, over rho_I
+  double dolp = 0.0;
+  double dolp_error = 0.0;
+  bool has_rho = true;
+};
+
+/// error / value, and 0 where neither is anything.
+double relative(double error, double value) {
+  if (error == 0.0) return 0.0;
+  return value > 0.0 ? error / value : kInfinity;
+}
+
+/// A quotient of two stored values that each have an error.
+double quotient_error(double above_error, double quotient, double below, double below_error) {
+  const double margin = std::abs(below) - below_error;
+  return margin > 0.0
+             ? (above_error + std::abs(quotient) * below_error) / margin + kQuotientRounding * std::abs(quotient)
+             : kInfinity;
+}
+
+Expected expected_of(const StoredCase& stored) {
+  const Moments& m = stored.moments;
+  const double cosine = reference::zenith_from_deg(stored.theta_deg).cos;
+  Expected expected;
+  expected.rho_error = relative(std::max(m.r_i_error, m.r_q_error), m.r_i) + (m.r_i > 0.0 ? kQuotientRounding : 0.0);
+  if (stored.theta_deg == 90.0) {
+    expected.has_rho = false;
+    expected.dolp = std::abs(m.r_q / m.r_i);
+    expected.dolp_error = quotient_error(m.r_q_error, expected.dolp, m.r_i, m.r_i_error);
+    return expected;
+  }
+  expected.rho_i = m.r_i / cosine;
+  expected.rho_q = m.r_q / cosine;
+  // Q = -pi B rho_Q, I = pi B (1 - rho_I)
+  expected.dolp = std::abs(m.r_q) / m.deficit;
+  expected.dolp_error = quotient_error(m.r_q_error, expected.dolp, m.deficit, m.deficit_error);
+  return expected;
+}
+
+/// What is wrong with a checked error, or nothing.
+std::string complaint_about(const char* quantity, const ErrorCheck& check, bool is_promised, double tolerance) {
+  if (std::isnan(check.error)) return fmt::format("{} is not a number", quantity);
+  if (std::isnan(check.estimate)) return fmt::format("{} has no estimate", quantity);
+  if (!check.is_within_estimate()) return fmt::format("the estimate of {} is below its error", quantity);
+  if (is_promised && check.is_above(tolerance)) {
+    return fmt::format("{} misses the tolerance without status 2", quantity);
+  }
+  return {};
+}
+
+CaseOutcome outcome_of(const StoredCase& stored, const PointResult& result, double tolerance) {
+  const Expected expected = expected_of(stored);
+  CaseOutcome outcome;
+  outcome.status = result.status;
+  outcome.promises_dolp = promises_dolp(result.status);
+  const bool is_promised = (result.status & kStatusToleranceMissed) == 0;
+  outcome.dolp = {std::abs(result.dolp - expected.dolp), result.error_estimate, expected.dolp_error};
+  // At I = 0 neither side has a DOLP.
+  const bool has_dolp = std::isfinite(expected.dolp) && std::isfinite(expected.dolp_error);
+  if (!has_dolp) outcome.dolp = {0.0, kInfinity, 0.0};
+  outcome.complaint = complaint_about("dolp", outcome.dolp, is_promised && outcome.promises_dolp, tolerance);
+  if (!expected.has_rho) {
+    outcome.rho.estimate = kInfinity;
+    return outcome;
+  }
+  const double distance = std::max(std::abs(result.rho_i - expected.rho_i), std::abs(result.rho_q - expected.rho_q));
+  const bool has_rho = !std::isnan(result.rho_i) && !std::isnan(result.rho_q);
+  outcome.rho = {has_rho ? relative(distance, expected.rho_i) : distance, result.rho_error_estimate,
+                 expected.rho_error};
+  const std::string complaint = complaint_about("rho", outcome.rho, is_promised, tolerance);
+  if (!complaint.empty()) outcome.complaint = complaint;
+  return outcome;
+}
+
+}  // namespace
+
+double ErrorCheck::ratio() const {
+  if (std::isinf(estimate)) return 0.0;
+  const double excess = std::max(0.0, error - reference);
+  if (excess == 0.0) return error > 0.0 && estimate > 0.0 ? std::min(1.0, error / estimate) : 0.0;
+  return estimate > 0.0 ? excess / estimate : kInfinity;
+}
+
+double CaseOutcome::worst_ratio() const { return std::max(rho.ratio(), dolp.ratio()); }
+
+Scene emission_scene(Distribution distribution, Masking masking, double tolerance) {
+  Scene scene;
+  scene.surface.distribution = distribution;
+  scene.surface.masking = masking;
+  scene.surface.material.constant = {1.508, 0.0};
+  scene.surface.sigma = 0.3;
+  scene.emission = Emission{300.0, EmissionModel::kMoments};
+  scene.spectrum = {10.6, 10.6};
+  scene.grid = {{60.0}, {0.3}, {2.0}};
+  scene.accuracy.tolerance = tolerance;
+  return scene;
+}
+
+std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, MomentsEvaluator& evaluator, double tolerance,
+                                 const Progress& progress) {
+  std::map<std::pair<Distribution, Masking>, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < cases.size(); ++i) groups[{cases[i].distribution, cases[i].masking}].push_back(i);
+  std::vector<CaseOutcome> outcomes(cases.size());
+  std::size_t finished = 0;
+  for (const auto& [group, positions] : groups) {
+    std::vector<SceneEntry> entries;
+    for (const std::size_t i : positions) entries.push_back({cases[i].theta_deg, cases[i].shape, cases[i].index});
+    const Scene scene = emission_scene(group.first, group.second, tolerance);
+    const Progress group_progress = [&](std::size_t done, std::size_t) {
+      return !progress || progress(finished + done, cases.size());
+    };
+    const std::vector<PointResult> results = evaluate_scene(scene, entries, evaluator, group_progress);
+    finished += positions.size();
+    for (std::size_t j = 0; j < positions.size(); ++j) {
+      const std::size_t i = positions[j];
+      outcomes[i] = outcome_of(cases[i], results[j], tolerance);
+      outcomes[i].position = i;
+    }
+  }
+  return outcomes;
+}
+
+DeviceQuality measure_quality(MomentsEvaluator& evaluator, double tolerance) {
+  std::vector<StoredCase> cases = hard_cases();
+  std::erase_if(cases,
+                [](const StoredCase& c) { return std::ranges::find(kOrdinaryCases, c.name) == kOrdinaryCases.end(); });
+  DeviceQuality quality;
+  quality.cases = cases.size();
+  quality.tolerance = tolerance;
+  for (const CaseOutcome& outcome : qualify(cases, evaluator, tolerance, {})) {
+    const StoredCase& stored = cases[outcome.position];
+    quality.missed += (outcome.status & kStatusToleranceMissed) != 0 ? 1 : 0;
+    quality.is_sound = quality.is_sound && outcome.complaint.empty();
+    // Written so that NaN is the worst, and stays it.
+    if (std::isnan(quality.worst_error) || outcome.rho.error <= quality.worst_error) continue;
+    quality.worst_error = outcome.rho.error;
+    quality.worst_case = fmt::format("{} {} {}", name_of(stored.distribution), name_of(stored.masking), stored.name);
+  }
+  return quality;
+}
+
+}  // namespace dolp

@@ -1,0 +1,159 @@
+#include "reference/direct_emission.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+
+#include "reference/adaptive.hpp"
+#include "reference/attenuation.hpp"
+#include "reference/fresnel.hpp"
+#include "reference/slope_plane.hpp"
+#include "reference/special_angles.hpp"
+#include "reference/unit_light.hpp"
+#include "reference/vectors.hpp"
+
+namespace dolp::reference {
+
+using std::numbers::pi;
+
+namespace {
+
+constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
+// Facets so many times steeper than what the view and the widths tell apart are vertical, to a share of its inverse.
+constexpr double kVertical = 1e10;
+constexpr double kSmallestSine = 1e-12;
+// Share of the slopes that weighs less than rounding.
+constexpr double kNoShare = 1e-19;
+constexpr int kHalvings = 60;
+
+enum Component : std::size_t { kIntensity, kPolarised, kCount };
+using Emitted = Values<kCount>;
+
+// The facets of one surface, seen from one direction.
+class Facets {
+ public:
+  Facets(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants)
+      : axis_(slopes),
+        masking_(masking),
+        theta_rad_(theta_deg * pi / 180.0),
+        view_(zenith_from_deg(theta_deg)),
+        constants_(constants),
+        special_(constants),
+        smith_(masking == Masking::kSmith ? 1.0 / (1.0 + smith_lambda(slopes, view_)) : 1.0) {}
+
+  Moments emission(const Refinement& refinement);
+
+ private:
+  // e, the facet's area across the view per area of its horizontal projection; `side` is 1 for A, -1 for B.
+  double facing(const SlopePoint& point, double side) const {
+    return view_.cos + side * point.t * view_.sin * point.sin_chi;
+  }
+  Emitted of_facet(const SlopePoint& point, double side) const;
+  Emitted of_pair(const SlopePoint& point);
+  std::uint64_t regime(const SlopePoint& point) const;
+  double end() const;
+  Emitted tail(double t, const Refinement& refinement);
+
+  SlopeAxis axis_;
+  Masking masking_;
+  double theta_rad_;
+  Zenith view_;
+  OpticalConstants constants_;
+  SpecialAngles special_;
+  double smith_;
+  double evaluations_ = 0.0;
+};
+
+Emitted Facets::of_facet(const SlopePoint& point, double side) const {
+  const double e = facing(point, side);
+  if (e <= 0.0) return {};
+  const double cos_alpha = 1.0 / std::sqrt(1.0 + point.t * point.t);
+  const Vector<double> normal{side * point.t * cos_alpha, 0.0, cos_alpha};
+  const Vector<double> k = scaled(-1.0, toward_view(point, view_));
+  const Bounce<double> b = bounce(k, normal, {0.0, 1.0, 0.0});
+  const FresnelCoefficients r = fresnel(constants_, e * cos_alpha);
+  UnitLight light = unit_light(point, k);
+  const double from_s = reflect(b, r, light.from_s);
+  const double from_p = reflect(b, r, light.from_p);
+  const double seen = masking_ == Masking::kVCavity ? std::min(e, 2.0 * view_.cos) : e * smith_;
+  return {seen * 0.5 * (from_s + from_p), seen * 0.5 * (from_s - from_p)};
+}
+
+// Mean of the facets at phi and phi + 180 degrees.
+Emitted Facets::of_pair(const SlopePoint& point) {
+  evaluations_ += 1.0;
+  const Emitted a = of_facet(point, 1.0);
+  const Emitted b = of_facet(point, -1.0);
+  return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])};
+}
+
+std::uint64_t Facets::regime(const SlopePoint& point) const {
+  const double cos_alpha = 1.0 / std::sqrt(1.0 + point.t * point.t);
+  std::uint64_t number = 0;
+  for (const double side : {1.0, -1.0}) {
+    const double e = facing(point, side);
+    const bool is_masked = masking_ == Masking::kVCavity && e > 2.0 * view_.cos;
+    number = 16 * number + (e > 0.0 ? 8U + (is_masked ? 4U : 0U) + special_.side(e * cos_alpha) : 0U);
+  }
+  return number;
+}
+
+// The slope beyond which facets are vertical, or beyond which there are none.
+double Facets::end() const {
+  const double vertical = kVertical * std::max(1.0, axis_.width()) / std::max(view_.sin, kSmallestSine);
+  return std::min(vertical, axis_.quantile(kNoShare));
+}
+
+// What vertical facets emit: e G_1 grows with t under smith masking, and has a limit under v-cavity.
+Emitted Facets::tail(double t, const Refinement& refinement) {
+  const double share = masking_ == Masking::kVCavity ? axis_.share_above(t) : axis_.length_above(t) / t;
+  if (share < kNoShare) return {};
+  Breaks breaks(0.0, 0.5 * pi);
+  const RegimeScan scan(view_, theta_rad_, {.halvings = kHalvings}, [this](const SlopePoint& p) { return regime(p); });
+  for (const double chi : scan.chi_breaks(t)) breaks.add(chi);
+  const Integral<kCount> row = integrate<kCount>([&](double chi) { return of_pair(slope_point(t, chi)); }, breaks,
+                                                 {.relative = refinement.relative_tolerance},
+                                                 [](const Emitted& value) {
+                                                   return Emitted{value[kIntensity], value[kIntensity]};
+                                                 });
+  const double factor = share * 2.0 * std::numbers::inv_pi;
+  return {factor * row.value[kIntensity], factor * row.value[kPolarised]};
+}
+
+Moments Facets::emission(const Refinement& refinement) {
+  const RegimeScan scan(view_, theta_rad_, {.halvings = kHalvings}, [this](const SlopePoint& p) { return regime(p); });
+  const double steepest = end();
+  const SlopeTask<kCount> task{.integrand = [this](const SlopePoint& point) { return of_pair(point); },
+                               .scales =
+                                   [](const Emitted& value) {
+                                     return Emitted{value[kIntensity], value[kIntensity]};
+                                   },
+                               .steepest = steepest,
+                               .bends_end = steepest,
+                               .thin_weight = 0.0,  // rows may grow with t
+                               .work = [] { return 0.0; },
+                               .most_work = 1.0};
+  const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(task, axis_, scan, refinement, {});
+  const Emitted beyond = tail(steepest, refinement);
+  const double rounding = (kRounding + 0.5 * refinement.relative_tolerance) * std::abs(beyond[kIntensity]) +
+                          kRounding * integral.value[kIntensity] + kNoShare * view_.cos;
+  Moments m;
+  m.direct_i = integral.value[kIntensity] + beyond[kIntensity];
+  m.direct_q = integral.value[kPolarised] + beyond[kPolarised];
+  m.direct_i_error = integral.error[kIntensity] + integral.value[kCount + kIntensity] + rounding;
+  m.direct_q_error = integral.error[kPolarised] + integral.value[kCount + kPolarised] + rounding;
+  m.evaluations = evaluations_;
+  return m;
+}
+
+}  // namespace
+
+Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
+                        const Refinement& refinement) {
+  if (zenith_from_deg(theta_deg).cos == 0.0) return {.direct_i = 0.0, .direct_q = 0.0};
+  return Facets(slopes, masking, theta_deg, constants).emission(refinement);
+}
+
+}  // namespace dolp::reference

@@ -1,0 +1,274 @@
+#include "reference/grooves.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+
+#include "reference/adaptive.hpp"
+#include "reference/fresnel.hpp"
+#include "reference/groove_beam.hpp"
+#include "reference/slope_plane.hpp"
+#include "reference/special_angles.hpp"
+#include "reference/unit_light.hpp"
+
+namespace dolp::reference {
+
+using std::numbers::pi;
+
+namespace {
+
+using Vector3 = Vector<double>;
+
+constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
+// Light of less intensity is taken as absorbed.
+constexpr double kDark = 1e-24;
+// Beams are followed so far; what is left then comes out or does not.
+constexpr int kMostFollowed = 2000;
+constexpr double kSteepest = 1e15;
+constexpr double kSteeper = 1.5;
+// Steeper grooves than those of a slope t reflect less than t's, with some room for the steps between bounces.
+constexpr double kTailRoom = 2.0;
+constexpr double kTailShare = 0.01;  // of the tolerance
+// Beams change their bounces over angles of the order of the groove's half-angle gamma.
+constexpr double kStepsPerGamma = 3.0;
+// Beyond the slope where this share of the integral is left bends are not looked for, nor in grooves steeper than
+// kSteepestBends, where they are many and small.
+constexpr double kBendShare = 1e-2;
+constexpr double kSteepestBends = 10.0;
+// Bounces that an attempt may take, some two seconds. One that takes more is abandoned for a less ambitious one, but
+// for the last, which ends with what it has reached.
+constexpr double kMostBounces = 2e7;
+constexpr double kLessAmbitious = 100.0;
+constexpr double kLeastAmbition = 1e-5;
+// Rows of less weight may be as far off as rows of this weight; integrals below this share of the albedo are zero but
+// for rounding.
+constexpr double kThinWeight = 0.02;
+constexpr double kNegligible = 1e-12;
+// In panels that still have bends the distance of two rules is of the size of the error and may be less by chance.
+constexpr double kBentErrors = 6.0;
+// Quantiles and azimuths of the first look at a surface.
+constexpr int kLookShares = 16;
+constexpr int kLookAzimuths = 16;
+constexpr double kLookSteepest = 50.0;
+
+// Components of the integrals. The lost light, of which it is not known whether it comes out, counts as reflected.
+enum Component : std::size_t { kAlbedo, kReflected, kPolarised, kAbsorbed, kLost, kCount };
+using GrooveValues = Values<kCount>;
+
+Groove<double> groove_of(double t) {
+  const double cos_alpha = 1.0 / std::sqrt(1.0 + t * t);
+  return {cos_alpha, t * cos_alpha};
+}
+
+double intensity(const Electric& e) { return std::norm(e[0]) + std::norm(e[1]) + std::norm(e[2]); }
+
+void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3& omega, Facet first,
+            const OpticalConstants& constants, GrooveLight& total) {
+  GrooveBeam<double> beam(groove, omega, first);
+  UnitLight light = unit_light(point, beam.direction());
+  for (int count = 1; beam.flux() > 0.0; ++count) {
+    const Bounce<double> b = bounce(beam.direction(), beam.normal(), {0.0, 1.0, 0.0});
+    const FresnelCoefficients r = fresnel(constants, b.cos_beta);
+    const double absorbed = 0.5 * (reflect(b, r, light.from_s) + reflect(b, r, light.from_p));
+    total.absorbed += beam.flux() * absorbed;
+    if (count == 1) total.once_absorbed += beam.flux() * absorbed;
+    const double left = beam.reflect(b.k_out);
+    const double s = intensity(light.from_s);
+    const double p = intensity(light.from_p);
+    total.albedo += left;
+    total.reflected += left * 0.5 * (s + p);
+    total.polarised += left * 0.5 * (s - p);
+    if (count == 1) total.once_reflected += left * 0.5 * (s + p);
+    total.bounces += 1.0;
+    const bool is_lost = count == kMostFollowed;
+    if (s + p < kDark || is_lost) {
+      total.albedo += beam.flux();
+      if (is_lost) total.lost += beam.flux() * 0.5 * (s + p);
+      return;
+    }
+  }
+}
+
+// What happens to the beam that meets `first` first: after each bounce none, some or all of it leaves.
+std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first, const SpecialAngles& special) {
+  constexpr std::uint64_t kPrime = 1099511628211U;
+  std::uint64_t hash = 14695981039346656037U;
+  GrooveBeam<double> beam(groove_of(point.t), omega, first);
+  for (int count = 0; beam.flux() > 0.0 && count < kMostFollowed; ++count) {
+    const Vector3 n = beam.normal();
+    const double cos_beta = -dot(beam.direction(), n);
+    const double left = beam.reflect(sum(beam.direction(), scaled(2.0 * cos_beta, n)));
+    const std::uint64_t leaves = (left > 0.0 ? 1U : 0U) + (beam.flux() > 0.0 ? 2U : 0U);
+    hash = (hash ^ (4U * special.side(cos_beta) + leaves)) * kPrime;
+  }
+  return hash;
+}
+
+GrooveValues scales_of(const GrooveValues& value) {
+  const double floor = kNegligible * value[kAlbedo] + std::numeric_limits<double>::min();
+  const double reflected = std::max(floor, value[kReflected]);
+  return {std::max(floor, value[kAlbedo]), reflected, reflected, std::max(floor, value[kAbsorbed]),
+          std::numeric_limits<double>::infinity()};
+}
+
+GrooveValues values_of(const GrooveLight& light) {
+  return {light.albedo, light.reflected + light.lost, light.polarised, light.absorbed, light.lost};
+}
+
+// The grooves of one surface, seen from one direction.
+class Surveyor {
+ public:
+  Surveyor(const Slopes& slopes, double theta_deg, const OpticalConstants& constants, const Refinement& refinement,
+           bool may_abandon)
+      : axis_(slopes),
+        theta_rad_(theta_deg * pi / 180.0),
+        view_(zenith_from_deg(theta_deg)),
+        constants_(constants),
+        refinement_(refinement),
+        may_abandon_(may_abandon) {}
+
+  /// Without meaning where the attempt is abandoned.
+  Moments moments();
+  bool is_abandoned() const { return may_abandon_ && bounces_ > kMostBounces; }
+  double evaluations() const { return evaluations_; }
+
+ private:
+  GrooveValues at(const SlopePoint& point) {
+    if (is_abandoned()) return {};
+    const GrooveLight light = light_in_groove(point.t, point.sin_chi, point.cos_chi, view_, constants_);
+    bounces_ += light.bounces;
+    evaluations_ += 1.0;
+    return values_of(light);
+  }
+  // Mean over the azimuths, by few of them.
+  GrooveValues look(double t) {
+    GrooveValues mean{};
+    for (int i = 0; i < kLookAzimuths; ++i) {
+      const GrooveValues value = at(slope_point(t, 0.5 * pi * (i + 0.5) / kLookAzimuths));
+      for (std::size_t k = 0; k < kCount; ++k) mean[k] += value[k] / kLookAzimuths;
+    }
+    return mean;
+  }
+  GrooveValues look_at_all();
+  /// The ends of what is worth an effort.
+  struct Ends {
+    double bends;  ///< the slope beyond which bends are not looked for
+    double all;    ///< the slope beyond which nothing is followed
+  };
+  Ends ends(const GrooveValues& expected);
+
+  SlopeAxis axis_;
+  double theta_rad_;
+  Zenith view_;
+  OpticalConstants constants_;
+  Refinement refinement_;
+  bool may_abandon_;
+  double bounces_ = 0.0;
+  double evaluations_ = 0.0;
+};
+
+GrooveValues Surveyor::look_at_all() {
+  GrooveValues mean{};
+  for (int i = 0; i < kLookShares; ++i) {
+    const double t = std::min(kLookSteepest, axis_.quantile((i + 0.5) / kLookShares));
+    const GrooveValues value = look(t);
+    for (std::size_t k = 0; k < kCount; ++k) mean[k] += value[k] / kLookShares;
+  }
+  return mean;
+}
+
+// Where too little is left to matter, or too many bounces.
+Surveyor::Ends Surveyor::ends(const GrooveValues& expected) {
+  const double scale = std::min(expected[kReflected], expected[kAbsorbed]);
+  Ends ends{kSteepestBends, kSteepest};
+  for (double t = 2.0 * axis_.width(); t < kSteepest; t *= kSteeper) {
+    const GrooveValues light = look(t);
+    const double beyond = kTailRoom * axis_.share_above(t) * light[kReflected];
+    const bool is_followed = light[kLost] < 0.5 * light[kReflected];
+    if (beyond < kBendShare * scale) ends.bends = std::min(ends.bends, t);
+    ends.all = t;
+    if (!is_followed || beyond < kTailShare * refinement_.relative_tolerance * scale) break;
+  }
+  return ends;
+}
+
+Moments Surveyor::moments() {
+  const GrooveValues expected = look_at_all();
+  const auto [bends_end, end] = ends(expected);
+  const SpecialAngles special(constants_);
+  const RegimeScan scan(view_, theta_rad_, {.per_gamma = kStepsPerGamma}, [&](const SlopePoint& point) {
+    if (is_abandoned()) return std::uint64_t{0};
+    const Vector3 omega = toward_view(point, view_);
+    return history(point, omega, Facet::kA, special) * 3 + history(point, omega, Facet::kB, special);
+  });
+  const SlopeTask<kCount> task{.integrand = [this](const SlopePoint& point) { return at(point); },
+                               .scales = scales_of,
+                               .steepest = end,
+                               .bends_end = std::min(bends_end, end),
+                               .thin_weight = kThinWeight,
+                               .work = [this] { return bounces_; },
+                               .most_work = kMostBounces};
+  const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(
+      task, axis_, scan, {refinement_.relative_tolerance / kBentErrors, refinement_.subdivisions}, expected);
+
+  // Beyond the end: reflected between 0 and kTailRoom times what the share of slope `end` does.
+  const double share = axis_.share_above(end);
+  const double tail_weight = share * view_.cos;
+  const GrooveValues at_end = look(end);
+  const double tail_most = std::min(tail_weight, kTailRoom * share * at_end[kReflected]);
+  const double half_lost = 0.5 * (integral.value[kLost] + integral.value[kCount + kLost]);
+  const double unknown = 0.5 * tail_most + half_lost;
+  const auto error_of = [&](std::size_t k) {
+    const double magnitude = k == kPolarised ? integral.value[kReflected] : integral.value[k];
+    return kBentErrors * (integral.error[k] + integral.value[kCount + k]) + kRounding * magnitude;
+  };
+  Moments m;
+  m.albedo = integral.value[kAlbedo] + tail_weight;
+  m.r_i = integral.value[kReflected] + 0.5 * tail_most - half_lost;
+  m.r_q = integral.value[kPolarised];
+  m.deficit = integral.value[kAbsorbed] + (tail_weight - 0.5 * tail_most) + half_lost;
+  m.albedo_error = error_of(kAlbedo) + kRounding * tail_weight;
+  // Amplitudes carry an absolute error, which shows in their squares where they are small: N near 1.
+  const double amplitude_error = kRounding * (std::sqrt(m.r_i * m.albedo) + kRounding * m.albedo);
+  m.r_i_error = error_of(kReflected) + unknown + amplitude_error;
+  m.r_q_error = std::max(error_of(kPolarised), error_of(kReflected)) + 2.0 * unknown + amplitude_error;
+  m.deficit_error = error_of(kAbsorbed) + unknown + kRounding * tail_weight;
+  return m;
+}
+
+}  // namespace
+
+GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view,
+                            const OpticalConstants& constants) {
+  const SlopePoint point{t, sin_chi, cos_chi};
+  const Groove<double> groove = groove_of(t);
+  const Vector3 omega = toward_view(point, view);
+  GrooveLight total;
+  for (const Facet first : {Facet::kA, Facet::kB}) follow(groove, point, omega, first, constants, total);
+  const double per_width = 0.5 / groove.cos_alpha;
+  for (double* value : {&total.albedo, &total.reflected, &total.polarised, &total.absorbed, &total.lost,
+                        &total.once_reflected, &total.once_absorbed}) {
+    *value *= per_width;
+  }
+  return total;
+}
+
+Moments groove_moments(const Slopes& slopes, double theta_deg, const OpticalConstants& constants,
+                       const Refinement& refinement) {
+  if (zenith_from_deg(theta_deg).cos == 0.0) return {.direct_i = 0.0, .direct_q = 0.0};
+  double evaluations = 0.0;
+  for (Refinement attempted = refinement;; attempted.relative_tolerance *= kLessAmbitious) {
+    const bool is_last = attempted.relative_tolerance >= kLeastAmbition;
+    Surveyor surveyor(slopes, theta_deg, constants, attempted, !is_last);
+    Moments moments = surveyor.moments();
+    evaluations += surveyor.evaluations();
+    moments.evaluations = evaluations;
+    if (!surveyor.is_abandoned()) return moments;
+  }
+}
+
+}  // namespace dolp::reference

@@ -1,0 +1,362 @@
+// With theta the fixed and theta_r the running zenith angle, mean = (theta + theta_r)/2, t = tan((theta_r - theta)/2),
+// delta = pi - Delta_phi (zero on the specular side) and s2 = sin^2(delta/2), equations (2) and (3) read
+//   cos^2 beta  = cos^2 mean + sin(theta) sin(theta_r) s2
+//   sin^2 beta  = t^2/(1 + t^2) + sin(theta) sin(theta_r) cos^2(delta/2)
+//   tan^2 alpha = t^2 + (1 + t^2) sin(theta) sin(theta_r) s2 / cos^2 mean
+// sums of non-negative terms, in which nothing cancels. The peak of D lies at t = 0, delta = 0.
+#include "reference/hemisphere.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "reference/adaptive.hpp"
+#include "reference/fresnel.hpp"
+
+namespace dolp::reference {
+
+using std::numbers::pi;
+
+namespace {
+
+constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// The absorbed part is only ever added to cos(theta) - albedo, so that less of it than this share of the albedo needs
+// no relative accuracy.
+constexpr double kSmallAbsorbed = 1e-2;
+// Directions are elevations above the horizon, known to a few ulps of themselves however small, and so is all that
+// grows with them (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
+constexpr double kElevationRounding = 32.0 * std::numeric_limits<double>::epsilon();
+// At theta = 90 degrees the running direction is integrated up to this distance from the horizon; the rest is a power.
+constexpr double kHorizonGap = 1e-30;
+// Below this elevation of the fixed direction the masking changes over running elevations of its size, a layer so thin
+// beside the slopes that panels could step over it; break points then come ever closer to the horizon.
+constexpr double kNearHorizon_rad = 1e-3;
+constexpr double kLayerGrowth = 10.0;
+// Errors of the nested integrals, relative to the one around them.
+constexpr double kInnerShare = 0.02;
+// Below it an azimuth integral cannot be refined: a Kronrod panel's own rounding is 1e-15 of its magnitude.
+constexpr double kInnerFloor = 4e-15;
+// Integrals below this share of the albedo are not refined for: they are zero but for rounding.
+constexpr double kNegligible = 1e-12;
+
+// Absolute error of G, which is of order 1: below what the azimuth could take for structure, above rounding.
+double masking_tolerance_for(const Refinement& refinement) {
+  return std::max(1e-14, 1e-3 * kInnerShare * refinement.relative_tolerance);
+}
+
+// Components of the integrals.
+enum Component : std::size_t { kAlbedo, kReflected, kPolarised, kAbsorbed, kMomentCount };
+using MomentValues = Values<kMomentCount>;
+
+MomentValues moment_scales(const MomentValues& value) {
+  const double floor = kNegligible * value[kAlbedo] + std::numeric_limits<double>::min();
+  const double reflected = std::max(floor, value[kReflected]);
+  const double absorbed = std::max(kSmallAbsorbed * value[kAlbedo] + floor, value[kAbsorbed]);
+  return {std::max(floor, value[kAlbedo]), reflected, reflected, absorbed};
+}
+
+// The moments followed by the errors of their azimuth integrals, which are only carried along.
+using BothValues = Values<2 * kMomentCount>;
+
+BothValues both_scales(const BothValues& value) {
+  BothValues scales;
+  scales.fill(kInfinity);
+  const MomentValues moments = moment_scales({value[kAlbedo], value[kReflected], value[kPolarised], value[kAbsorbed]});
+  std::copy(moments.begin(), moments.end(), scales.begin());
+  return scales;
+}
+
+// M00 and M01 of eq. (7) from the Jones matrix of eq. (4). The rotation by eta_r only turns its columns, whose squared
+// lengths are all that M00 and M01 need.
+struct MuellerRow {
+  double m00;
+  double m01;
+};
+MuellerRow mueller_row(const FresnelCoefficients& r, double cos_eta, double sin_eta) {
+  const double from_s = std::norm(r.r_s * cos_eta) + std::norm(r.r_p * sin_eta);
+  const double from_p = std::norm(r.r_s * -sin_eta) + std::norm(r.r_p * cos_eta);
+  return {0.5 * (from_s + from_p), 0.5 * (from_s - from_p)};
+}
+
+// The moments of one direction: holds what every nested integrand needs.
+class Hemisphere {
+ public:
+  Hemisphere(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
+             const Refinement& refinement)
+      : slopes_(slopes),
+        masking_(masking),
+        theta_rad_(theta_deg * pi / 180.0),
+        fixed_(zenith_from_deg(theta_deg)),
+        constants_(constants),
+        refinement_(refinement) {}
+
+  Integral<2 * kMomentCount> integrate_zenith();
+  double evaluations() const { return evaluations_; }
+
+ private:
+  // One running zenith angle with what it shares with the fixed one.
+  struct Row {
+    double t;
+    double cos2_mean;
+    double sin_sin;
+    Zenith running;
+    Attenuation attenuation;
+  };
+  Breaks zenith_breaks() const;
+  Breaks azimuth_breaks(const Row& row, double width) const;
+  Integral<kMomentCount> integrate_azimuth(const Row& row);
+  BothValues row_values(double u);
+  MomentValues integrand(const Row& row, double delta) const;
+  std::vector<double> special_beta_rad() const;
+
+  const Slopes& slopes_;
+  Masking masking_;
+  double theta_rad_;
+  Zenith fixed_;
+  OpticalConstants constants_;
+  Refinement refinement_;
+  double evaluations_ = 0.0;
+};
+
+// D G M / 4: what is left of cos(theta) f cos(theta_r), and the same with R = 1 and with 1 - R.
+MomentValues Hemisphere::integrand(const Row& row, double delta) const {
+  const double sin_half = std::sin(0.5 * delta);
+  const double cos_half = std::cos(0.5 * delta);
+  const double s2 = sin_half * sin_half;
+  const double cos2_beta = row.cos2_mean + row.sin_sin * s2;
+  const double sin2_beta = row.t * row.t / (1.0 + row.t * row.t) + row.sin_sin * cos_half * cos_half;
+  const double tan2_alpha = row.t * row.t + (1.0 + row.t * row.t) * row.sin_sin * s2 / row.cos2_mean;
+  const double bare = 0.25 * slopes_.facet_density(tan2_alpha) * row.attenuation(tan2_alpha, cos2_beta);
+
+  const FresnelCoefficients r = fresnel(constants_, std::sqrt(cos2_beta));
+  // h is (omega_i + omega_r) / (2 cos beta); its parts across and along the plane of omega_i and z, over sin beta. The
+  // retro direction, beta = 0, has no eta and no polarisation: r_p = -r_s.
+  const double sin_2beta = 2.0 * std::sqrt(cos2_beta * sin2_beta);
+  MuellerRow m{0.5 * (std::norm(r.r_s) + std::norm(r.r_p)), 0.0};
+  if (sin_2beta > 0.0) {
+    const double sin_eta = row.running.sin * std::sin(delta) / sin_2beta;
+    const double cos_eta = (row.running.cos * fixed_.sin + row.running.sin * fixed_.cos * std::cos(delta)) / sin_2beta;
+    m = mueller_row(r, cos_eta, sin_eta);
+  }
+  return {bare, bare * m.m00, bare * m.m01, bare * 0.5 * (r.absorbed_s + r.absorbed_p)};
+}
+
+// Angles beta where the Fresnel coefficients bend: total reflection, and the (pseudo-)Brewster angle.
+std::vector<double> Hemisphere::special_beta_rad() const {
+  std::vector<double> angles{std::atan(std::hypot(constants_.n, constants_.k))};
+  if (constants_.n < 1.0) angles.push_back(std::asin(constants_.n));
+  return angles;
+}
+
+// Break points in s2, at the special angles of beta and where the masking bends:
+//   v-cavity: (cos theta + cos theta_r) min(cos theta, cos theta_r) = cos^2 beta
+//   integral: alpha = 2 max(theta, theta_r) - pi/2, above which b = pi/2
+Breaks Hemisphere::azimuth_breaks(const Row& row, double width) const {
+  Breaks breaks(0.0, std::asinh(1.0 / width));
+  const auto add_s2 = [&](double s2) {
+    if (s2 > 0.0 && s2 < 1.0) breaks.add(std::asinh(std::tan(0.5 * std::asin(std::sqrt(s2))) / width));
+  };
+  if (row.sin_sin > 0.0) {
+    for (const double beta : special_beta_rad()) {
+      add_s2((std::cos(beta) * std::cos(beta) - row.cos2_mean) / row.sin_sin);
+    }
+    const double lower_cos = std::min(fixed_.cos, row.running.cos);
+    if (masking_ == Masking::kVCavity) {
+      add_s2(((fixed_.cos + row.running.cos) * lower_cos - row.cos2_mean) / row.sin_sin);
+    }
+    const double lower_elevation = std::min(fixed_.elevation_rad, row.running.elevation_rad);
+    if (masking_ == Masking::kIntegral && lower_elevation < 0.25 * pi) {
+      const double tan_alpha = 1.0 / std::tan(2.0 * lower_elevation);
+      add_s2((tan_alpha * tan_alpha - row.t * row.t) * row.cos2_mean / (row.sin_sin * (1.0 + row.t * row.t)));
+    }
+  }
+  breaks.add(1.5);
+  breaks.add(4.0);
+  return breaks;
+}
+
+// In v of tan(delta/4) = width sinh(v), width being where D has fallen off: 4 tan^2(delta/4) is about s2.
+Integral<kMomentCount> Hemisphere::integrate_azimuth(const Row& row) {
+  const double t2 = row.t * row.t;
+  const double scale2 =
+      slopes_.width() * slopes_.width() + (slopes_.is_gaussian() ? 0.0 : t2 / std::max(1.0, slopes_.q()));
+  const double width2 = 0.25 * scale2 * row.cos2_mean / ((1.0 + t2) * std::max(row.sin_sin, 1e-300));
+  const double width = std::min(10.0, std::sqrt(width2));
+  const auto in_v = [&](double v) {
+    const double x = width * std::sinh(v);
+    MomentValues values = integrand(row, 4.0 * std::atan(x));
+    for (double& value : values) value *= 4.0 * width * std::cosh(v) / (1.0 + x * x);
+    evaluations_ += 1.0;
+    return values;
+  };
+  const Goal goal{.relative = std::max(kInnerFloor, kInnerShare * refinement_.relative_tolerance),
+                  .max_panels = 200,
+                  .subdivisions = refinement_.subdivisions};
+  return integrate<kMomentCount>(in_v, azimuth_breaks(row, width), goal, moment_scales);
+}
+
+// Break points in u of tan((theta_r - theta)/2) = width sinh(u): the specular direction, and where the break points of
+// the azimuth enter or leave at Delta_phi = 180 or 0 degrees.
+Breaks Hemisphere::zenith_breaks() const {
+  const double width = slopes_.width();
+  Breaks breaks(std::asinh(-std::tan(0.5 * theta_rad_) / width),
+                std::asinh(std::tan(0.5 * fixed_.elevation_rad) / width));
+  for (const double u : {-4.0, -1.5, 0.0, 1.5, 4.0}) breaks.add(u);
+  if (fixed_.cos > 0.0 && fixed_.elevation_rad < kNearHorizon_rad) {
+    for (double t = std::tan(0.5 * fixed_.elevation_rad); t < width; t *= kLayerGrowth) {
+      breaks.add(std::asinh(-t / width));
+    }
+  }
+  std::vector<double> angles;
+  for (const double beta : special_beta_rad()) {
+    for (const double angle : {2.0 * beta - theta_rad_, theta_rad_ - 2.0 * beta, theta_rad_ + 2.0 * beta}) {
+      angles.push_back(angle);
+    }
+  }
+  if (masking_ == Masking::kVCavity || masking_ == Masking::kIntegral) {
+    for (const double angle :
+         {(pi - theta_rad_) / 3.0, (pi + theta_rad_) / 3.0, pi - 3.0 * theta_rad_, 3.0 * theta_rad_ - pi}) {
+      angles.push_back(angle);
+    }
+  }
+  for (const double angle : angles) {
+    if (angle > 0.0 && angle < 0.5 * pi) breaks.add(std::asinh(std::tan(0.5 * (angle - theta_rad_)) / width));
+  }
+  return breaks;
+}
+
+// The integrand in u: the azimuth integrals of one running zenith angle with their errors.
+BothValues Hemisphere::row_values(double u) {
+  const double t = slopes_.width() * std::sinh(u);
+  const double half_rad = std::atan(t);
+  const double elevation_rad = fixed_.elevation_rad - 2.0 * half_rad;
+  const Zenith running{elevation_rad, std::sin(elevation_rad), std::sin(theta_rad_ + 2.0 * half_rad)};
+  const double cos_mean = std::sin(fixed_.elevation_rad - half_rad);
+  const Row row{t, cos_mean * cos_mean, fixed_.sin * running.sin, running,
+                Attenuation(slopes_, masking_, fixed_, running, masking_tolerance_for(refinement_))};
+  const Integral<kMomentCount> inner = integrate_azimuth(row);
+  // Twice: delta runs over half of the azimuth.
+  const double jacobian = 2.0 * running.sin * 2.0 * slopes_.width() * std::cosh(u) / (1.0 + t * t);
+  BothValues both;
+  for (std::size_t k = 0; k < kMomentCount; ++k) {
+    both[k] = jacobian * inner.value[k];
+    both[kMomentCount + k] = jacobian * inner.error[k];
+  }
+  return both;
+}
+
+Integral<2 * kMomentCount> Hemisphere::integrate_zenith() {
+  const Goal goal{.relative = refinement_.relative_tolerance, .subdivisions = refinement_.subdivisions};
+  const Breaks breaks = zenith_breaks();
+  if (fixed_.cos > 0.0) {
+    return integrate<2 * kMomentCount>([this](double u) { return row_values(u); }, breaks, goal, both_scales);
+  }
+  // At theta = 90 degrees u runs up to 0, where the integrand is |u|^(2q - 4) for q < 2: integrated in log |u|, with
+  // what lies beyond the gap added as that power.
+  const auto in_log = [this](double x) {
+    BothValues values = row_values(-std::exp(x));
+    for (double& value : values) value *= std::exp(x);
+    return values;
+  };
+  const std::vector<double> points = breaks.sorted();
+  Breaks log_breaks(std::log(kHorizonGap), std::log(-points.front()));
+  for (const double u : points) {
+    if (u < 0.0) log_breaks.add(std::log(-u));
+  }
+  for (const double x : {-40.0, -20.0, -10.0, -5.0, -2.0}) log_breaks.add(x);
+  Integral<2 * kMomentCount> result = integrate<2 * kMomentCount>(in_log, log_breaks, goal, both_scales);
+  const double power = slopes_.is_gaussian() ? 1.0 : std::min(1.0, 2.0 * slopes_.q() - 3.0);
+  const BothValues at_gap = row_values(-kHorizonGap);
+  for (std::size_t k = 0; k < result.value.size(); ++k) result.value[k] += kHorizonGap * at_gap[k] / power;
+  return result;
+}
+
+// The amplitudes r_s and r_p carry an absolute error, which shows in their squares where they are small: N near 1.
+double amplitude_rounding(double reflected, double albedo) {
+  return kRounding * (2.0 * std::sqrt(reflected * albedo) + kRounding * albedo);
+}
+
+// The limits theta -> 90 degrees of a cauchy distribution whose vertical facets, which then reflect into the hemisphere
+// all together, are too many: r grows without bound. They turn the plane of incidence by 90 degrees, so r_q is
+// negative.
+Moments divergent_moments(const OpticalConstants& constants) {
+  const bool is_vacuum = constants.n == 1.0 && constants.k == 0.0;
+  const double grown = is_vacuum ? 0.0 : kInfinity;
+  return {.r_i = grown,
+          .r_q = -grown,
+          .albedo = kInfinity,
+          .deficit = -grown,
+          .r_i_error = grown,
+          .r_q_error = grown,
+          .albedo_error = kInfinity,
+          .deficit_error = grown,
+          .evaluations = 0.0};
+}
+
+}  // namespace
+
+Zenith zenith_from_deg(double theta_deg) {
+  const double elevation_rad = (90.0 - theta_deg) * pi / 180.0;
+  return {elevation_rad, std::sin(elevation_rad), std::sin(theta_deg * pi / 180.0)};
+}
+
+Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
+                           const Refinement& refinement) {
+  const bool is_unshadowed = masking == Masking::kNone || masking == Masking::kIntegral;
+  if (theta_deg == 90.0 && is_unshadowed && !slopes.is_gaussian() && slopes.q() <= 1.5) {
+    return divergent_moments(constants);
+  }
+  Hemisphere hemisphere(slopes, masking, theta_deg, constants, refinement);
+  const Integral<2 * kMomentCount> integral = hemisphere.integrate_zenith();
+  // G_1 is at least 1/2.
+  const double masking_error = 2.0 * masking_tolerance_for(refinement);
+  const double cos_theta = zenith_from_deg(theta_deg).cos;
+  const auto error_of = [&](std::size_t k) {
+    const double magnitude = k == kPolarised ? integral.value[kReflected] : integral.value[k];
+    return integral.error[k] + integral.value[kMomentCount + k] +
+           (masking_error + kRounding + kElevationRounding) * magnitude;
+  };
+  const double amplitude_error = amplitude_rounding(integral.value[kReflected], integral.value[kAlbedo]);
+  Moments moments;
+  moments.albedo = integral.value[kAlbedo];
+  moments.r_i = integral.value[kReflected];
+  moments.r_q = integral.value[kPolarised];
+  moments.albedo_error = error_of(kAlbedo);
+  moments.r_i_error = error_of(kReflected) + amplitude_error;
+  moments.r_q_error = error_of(kPolarised) + amplitude_error;
+  // cos(theta) - r_i loses least where little is reflected, (cos(theta) - albedo) + absorbed where little is absorbed.
+  const double direct_error = moments.r_i_error + kRounding * cos_theta;
+  const double split_error = moments.albedo_error + error_of(kAbsorbed) + kRounding * cos_theta;
+  const bool is_split = split_error < direct_error;
+  moments.deficit = is_split ? (cos_theta - moments.albedo) + integral.value[kAbsorbed] : cos_theta - moments.r_i;
+  moments.deficit_error = is_split ? split_error : direct_error;
+  moments.evaluations = hemisphere.evaluations();
+  return moments;
+}
+
+Moments mirror_moments(double theta_deg, const OpticalConstants& constants) {
+  const Zenith zenith = zenith_from_deg(theta_deg);
+  const FresnelCoefficients r = fresnel(constants, zenith.cos);
+  const double reflected_s = std::norm(r.r_s);
+  const double reflected_p = std::norm(r.r_p);
+  Moments moments;
+  moments.r_i = 0.5 * (reflected_s + reflected_p) * zenith.cos;
+  moments.r_q = zenith.sin > 0.0 ? 0.5 * (reflected_s - reflected_p) * zenith.cos : 0.0;
+  moments.albedo = zenith.cos;
+  moments.deficit = 0.5 * (r.absorbed_s + r.absorbed_p) * zenith.cos;
+  moments.r_i_error = kRounding * moments.r_i + amplitude_rounding(moments.r_i, moments.albedo);
+  moments.r_q_error = moments.r_i_error;
+  moments.albedo_error = kRounding * moments.albedo;
+  moments.deficit_error = kRounding * moments.deficit;
+  moments.direct_i = moments.deficit;
+  moments.direct_q = zenith.sin > 0.0 ? 0.5 * (r.absorbed_s - r.absorbed_p) * zenith.cos : 0.0;
+  moments.direct_i_error = moments.deficit_error;
+  moments.direct_q_error = moments.deficit_error;
+  moments.evaluations = 1.0;
+  return moments;
+}
+
+}  // namespace dolp::reference

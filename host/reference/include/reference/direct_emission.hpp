@@ -1,0 +1,19 @@
+// What facets emit straight to the viewer.
+#pragma once
+
+#include "model/moments.hpp"
+#include "reference/hemisphere.hpp"
+#include "reference/slopes.hpp"
+
+namespace dolp::reference {
+
+/// The direct emission of a rough surface (sigma > 0): direct_i, direct_q and their errors, the rest 0.
+///
+/// Equation: cos(theta) eps = int P t dt dphi e G_1 (1 - |r|^2) in the view's frame, e = cos(theta) + sin(theta) t
+///   cos(phi), over all facets with e > 0, G_1 the masking of the view alone.
+/// Domain: masking smith or v-cavity; theta in [0, 90] degrees; at 90 both are 0, the limit.
+/// Accuracy: that of `refinement`, relative to direct_i.
+Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
+                        const Refinement& refinement);
+
+}  // namespace dolp::reference

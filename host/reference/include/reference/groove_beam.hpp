@@ -1,0 +1,85 @@
+// A beam in a symmetric V-groove, followed from facet to facet and cut at the rims.
+//
+// Axes: u across the groove, v along it, z upward; the origin is the middle of the aperture. Facet A descends from the
+// rim at u = -cos(alpha) to the apex at (0, -sin(alpha)), facet B from the rim at u = +cos(alpha); both have length 1.
+#pragma once
+
+#include <algorithm>
+
+#include "reference/vectors.hpp"
+
+namespace dolp::reference {
+
+/// The slope angle alpha of the facets.
+template <class Real>
+struct Groove {
+  Real cos_alpha;
+  Real sin_alpha;
+};
+
+enum class Facet { kA, kB };
+
+/// The part of a parallel beam that enters through the whole aperture and meets one facet first.
+///
+/// Its flux is that across its width per length of groove: A's and B's first together have 2 cos(alpha) cos(theta). On
+/// a facet the beam covers a stretch, of which the edge nearer to the apex is followed as a ray; the other edge is flux
+/// / cos(beta) away from it, because reflection keeps the flux. What lies above the rim misses the facet.
+template <class Real>
+class GrooveBeam {
+ public:
+  /// `omega`: unit vector toward the source, omega[2] > 0.
+  GrooveBeam(const Groove<Real>& groove, const Vector<Real>& omega, Facet first)
+      : groove_(groove), side_(first == Facet::kA ? Real(-1) : Real(1)), k_(scaled(Real(-1), omega)) {
+    // Where the ray to the apex crosses the aperture; A's side of it meets A first.
+    const Real to_apex = groove.sin_alpha * omega[0] / omega[2];
+    const Real inside = std::clamp<Real>(to_apex, -groove.cos_alpha, groove.cos_alpha);
+    meets_apex_ = inside == to_apex;
+    flux_ = (first == Facet::kA ? groove.cos_alpha + inside : groove.cos_alpha - inside) * omega[2];
+    if (flux_ <= 0) return;
+    edge_ = {inside, Real(0), Real(0)};
+    if (land() <= 0) flux_ = 0;
+  }
+
+  /// Flux on the present facet; 0 when all has left.
+  const Real& flux() const { return flux_; }
+  /// Direction of propagation toward the present facet or, when all has left, away from the groove.
+  const Vector<Real>& direction() const { return k_; }
+  /// Outward normal of the present facet.
+  Vector<Real> normal() const { return {-side_ * groove_.sin_alpha, Real(0), groove_.cos_alpha}; }
+
+  /// Reflects the beam into `k_out` and goes to the other facet; returns the flux that leaves the groove instead.
+  Real reflect(const Vector<Real>& k_out) {
+    const Real before = flux_;
+    k_ = k_out;
+    side_ = -side_;
+    flux_ = std::min<Real>(flux_, land());
+    return before - flux_;
+  }
+
+ private:
+  // Moves the edge nearer to the apex on to the facet on `side_`; returns the flux that fits between it and the rim.
+  Real land() {
+    const Vector<Real> n = normal();
+    const Real cos_beta = -dot(k_, n);
+    if (cos_beta <= 0) return 0;
+    const Vector<Real> rim{side_ * groove_.cos_alpha, Real(0), Real(0)};
+    const Vector<Real> down{-side_ * groove_.cos_alpha, Real(0), -groove_.sin_alpha};
+    Real depth = 1;  // of the edge, along the facet from the rim
+    if (!meets_apex_) {
+      const Vector<Real> from_rim = sum(edge_, scaled(Real(-1), rim));
+      const Vector<Real> hit = sum(from_rim, scaled(Real(dot(from_rim, n) / cos_beta), k_));
+      depth = std::clamp<Real>(dot(hit, down), Real(0), Real(1));
+    }
+    edge_ = sum(rim, scaled(depth, down));
+    return depth * cos_beta;
+  }
+
+  Groove<Real> groove_;
+  Real side_;  ///< of the present facet along u: -1 for A
+  Vector<Real> k_;
+  Vector<Real> edge_{};
+  Real flux_;
+  bool meets_apex_;
+};
+
+}  // namespace dolp::reference

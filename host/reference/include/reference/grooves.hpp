@@ -1,0 +1,40 @@
+// The hemispherical moments of V-grooves with all bounces, by following beams and their electric vectors in space.
+#pragma once
+
+#include "model/moments.hpp"
+#include "reference/hemisphere.hpp"
+#include "reference/slopes.hpp"
+
+namespace dolp::reference {
+
+/// The moments of a rough surface (sigma > 0) of symmetric V-grooves, all bounces included, k_s = 1.
+///
+/// Equation: r = int P t dt dphi sum_k w_k |E_k|^2 over the facets that are met first, w_k the flux that leaves a
+///   groove after k bounces over half of its width, |E_k|^2 the intensity then, the mean of that of s and of p light;
+///   the deficit is the sum of what each bounce absorbs.
+/// Domain: theta in [0, 90] degrees; at 90 all are 0, the limit.
+/// Accuracy: the errors returned, those of `refinement` but where many steep grooves reflect much, which is too much
+///   work: metals reach 1e-8 to 1e-4 of r_i, total reflection at q close to 1 nothing. Grooves steeper than the last
+///   slope followed are taken to reflect between nothing and twice the share that those of that slope do (test
+///   ReferenceGrooves.CoarseQuadrature_StaysWithinItsErrors).
+Moments groove_moments(const Slopes& slopes, double theta_deg, const OpticalConstants& constants,
+                       const Refinement& refinement);
+
+/// What happens to the light that enters one groove, over both facets. All are over the width of the aperture, which
+/// makes the albedo cos(theta).
+struct GrooveLight {
+  double albedo = 0.0;          ///< flux that leaves if nothing is absorbed
+  double reflected = 0.0;       ///< I that leaves, for unpolarised light
+  double polarised = 0.0;       ///< Q: half of what leaves for s light less half of that for p light
+  double absorbed = 0.0;        ///< by all bounces
+  double lost = 0.0;            ///< I of what has been followed too far, neither reflected nor absorbed
+  double once_reflected = 0.0;  ///< I that leaves after one bounce
+  double once_absorbed = 0.0;   ///< by first bounces
+  double bounces = 0.0;         ///< followed
+};
+
+/// Domain: t > 0; cos(theta) > 0; chi = 90 degrees - phi, with sin_chi = cos(phi).
+GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view,
+                            const OpticalConstants& constants);
+
+}  // namespace dolp::reference

@@ -1,0 +1,32 @@
+// The hemispherical moments of one direction, integrated over the other direction.
+#pragma once
+
+#include <cstddef>
+
+#include "model/moments.hpp"
+#include "reference/attenuation.hpp"
+#include "reference/slopes.hpp"
+
+namespace dolp::reference {
+
+/// How finely the integrals are done; two different settings give two nearly independent values.
+struct Refinement {
+  double relative_tolerance = 1e-9;  ///< of r_i, albedo and absorbed part; r_q is within this times r_i
+  int subdivisions = 1;              ///< equal parts of each first panel
+};
+
+/// Zenith angle in degrees, exact at 0 and 90.
+Zenith zenith_from_deg(double theta_deg);
+
+/// The moments of a rough surface (sigma > 0) with k_s = 1.
+/// Equation: r = cos(theta) int f cos(theta_r) sin(theta_r) dtheta_r dDelta_phi, eqs. (7), (15), (16), over
+///   theta_r (outer) and delta = pi - Delta_phi (inner).
+/// Domain: theta in [0, 90] degrees. At 90 all four are the limits: 0 for v-cavity and smith, finite for the others but
+///   infinite for the cauchy distribution with q <= 3/2, whose vertical facets are too many.
+Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
+                           const Refinement& refinement);
+
+/// The moments of the mirror that sigma = 0 stands for, its direct emission included.
+Moments mirror_moments(double theta_deg, const OpticalConstants& constants);
+
+}  // namespace dolp::reference

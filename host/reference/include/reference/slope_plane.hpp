@@ -1,0 +1,146 @@
+// Integrals over the slopes of the facets, for integrands that bend along unknown curves.
+//
+// A slope has the length t and the angle chi from the normal of the plane of incidence, sin(chi) = cos(phi). What faces
+// A at phi faces B at phi + 180 degrees, and left and right of the plane of incidence are alike, so that chi runs over
+// a quarter of a turn. Where the integrand bends is not computed but watched: its `regime`, a number that stands for
+// the list of what happens to the beams, changes there, and bisection finds the place.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "reference/adaptive.hpp"
+#include "reference/attenuation.hpp"
+#include "reference/hemisphere.hpp"
+#include "reference/slopes.hpp"
+
+namespace dolp::reference {
+
+/// One azimuth of slopes of length t.
+struct SlopePoint {
+  double t;
+  double sin_chi;  ///< cos(phi)
+  double cos_chi;  ///< sin(phi)
+};
+
+/// Equal slopes of every direction: chi = 0 ... pi/2.
+inline SlopePoint slope_point(double t, double chi_rad) { return {t, std::sin(chi_rad), std::cos(chi_rad)}; }
+
+/// Numbers that differ where the integrand is on different sides of a bend.
+using Regime = std::function<std::uint64_t(const SlopePoint&)>;
+
+/// How closely chi is scanned, beside a dozen equal steps.
+struct ScanSteps {
+  double per_gamma = 0.0;  ///< equal steps of the view's angle in the plane across the groove, per its half-angle gamma
+  int halvings = 0;        ///< steps toward chi = 0, each half of the one before
+};
+
+/// Where the integrands of a view bend, by scanning and bisecting a regime.
+class RegimeScan {
+ public:
+  RegimeScan(const Zenith& view, double theta_rad, const ScanSteps& steps, Regime regime)
+      : view_(view), theta_rad_(theta_rad), steps_(steps), regime_(std::move(regime)) {}
+  /// Break points of chi in (0, pi/2) at one t; none where there are too many to be worth it.
+  std::vector<double> chi_breaks(double t) const;
+  /// Break points of t up to `end`, where bends enter at chi = 0 or pi/2.
+  std::vector<double> t_breaks(double width, double end) const;
+
+ private:
+  Zenith view_;
+  double theta_rad_;
+  ScanSteps steps_;
+  Regime regime_;
+};
+
+/// Shares and densities of slopes, in v of t = width sinh(v).
+class SlopeAxis {
+ public:
+  explicit SlopeAxis(const Slopes& slopes) : slopes_(slopes) {}
+  double t(double v) const { return slopes_.width() * std::sinh(v); }
+  double v(double t) const { return std::asinh(t / slopes_.width()); }
+  /// 2 pi P t dt/dv: its integral over all v is 1.
+  double density(double v) const;
+  /// Share of the slopes above t.
+  double share_above(double t) const;
+  /// int 2 pi P t^2 dt above t, t so large that P is its leading power. Domain: cauchy q > 3/2, t >= 1e8 m.
+  double length_above(double t) const;
+  /// The slope that a share of all slopes is above.
+  double quantile(double share) const;
+  double width() const { return slopes_.width(); }
+
+ private:
+  const Slopes& slopes_;
+};
+
+/// What an integral over slopes needs to know of its integrand.
+template <std::size_t N>
+struct SlopeTask {
+  std::function<Values<N>(const SlopePoint&)> integrand;
+  std::function<Values<N>(const Values<N>&)> scales;  ///< of the integrals, for the goal
+  double steepest;                                    ///< upper end of t
+  double bends_end;                                   ///< t up to which bends are looked for, at most the upper end
+  double thin_weight;                                 ///< rows of less weight per v may be as far off as those of it
+  std::function<double()> work;                       ///< done so far, in any unit
+  double most_work;                                   ///< beyond it nothing is refined any more
+};
+
+/// int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi of N functions; the errors of the inner integrals follow as N
+/// values more.
+template <std::size_t N>
+Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const SlopeAxis& axis, const RegimeScan& scan,
+                                    const Refinement& refinement, const Values<N>& expected) {
+  constexpr double kInnerShare = 0.02;
+  constexpr double kInnerFloor = 4e-15;  // a Kronrod panel's own rounding is 1e-15 of its magnitude
+  const auto is_tired = [&] { return task.work() > task.most_work; };
+  Values<N> boundless;
+  boundless.fill(std::numeric_limits<double>::infinity());
+
+  const auto row = [&](double v) {
+    const double t = axis.t(v);
+    const double weight = axis.density(v);
+    const double relaxed = std::max(1.0, task.thin_weight / std::max(weight, 1e-300));
+    const auto inner_scales = [&](const Values<N>& value) {
+      if (is_tired()) return boundless;
+      Values<N> larger;
+      for (std::size_t k = 0; k < N; ++k) larger[k] = relaxed * std::max(std::abs(value[k]), expected[k]);
+      return task.scales(larger);
+    };
+    Breaks breaks(0.0, 0.5 * std::numbers::pi);
+    for (const double chi : scan.chi_breaks(t)) breaks.add(chi);
+    const Goal goal{.relative = std::max(kInnerFloor, kInnerShare * refinement.relative_tolerance),
+                    .max_panels = 200,
+                    .subdivisions = refinement.subdivisions};
+    const auto in_chi = [&](double chi) { return task.integrand(slope_point(t, chi)); };
+    const Integral<N> inner = integrate<N>(in_chi, breaks, goal, inner_scales);
+    Values<2 * N> both;
+    for (std::size_t k = 0; k < N; ++k) {
+      both[k] = weight * 2.0 * std::numbers::inv_pi * inner.value[k];
+      both[N + k] = weight * 2.0 * std::numbers::inv_pi * inner.error[k];
+    }
+    return both;
+  };
+  const auto scales = [&](const Values<2 * N>& value) {
+    Values<2 * N> all;
+    all.fill(std::numeric_limits<double>::infinity());
+    if (is_tired()) return all;
+    Values<N> first;
+    std::copy_n(value.begin(), N, first.begin());
+    first = task.scales(first);
+    std::copy(first.begin(), first.end(), all.begin());
+    return all;
+  };
+  Breaks breaks(0.0, axis.v(task.steepest));
+  for (const double v : {1.5, 4.0, 8.0, 16.0, 24.0, 32.0, 40.0, 48.0}) breaks.add(v);
+  for (const double t : scan.t_breaks(axis.width(), task.bends_end)) breaks.add(axis.v(t));
+  const Goal goal{.relative = refinement.relative_tolerance, .subdivisions = refinement.subdivisions};
+  return integrate<2 * N>(row, breaks, goal, scales);
+}
+
+}  // namespace dolp::reference

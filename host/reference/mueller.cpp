@@ -1,0 +1,300 @@
+#include "reference/mueller.hpp"
+
+#include <algorithm>
+#include <boost/math/constants/constants.hpp>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/multiprecision/cpp_complex.hpp>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <limits>
+
+#include "reference/attenuation.hpp"
+#include "reference/groove_beam.hpp"
+#include "reference/hemisphere.hpp"
+#include "reference/slopes.hpp"
+#include "reference/vectors.hpp"
+
+namespace dolp {
+
+namespace {
+
+// 34 digits, so that the textbook's forms may cancel: near grazing, in the retro direction, at the critical angle.
+using Real = boost::multiprecision::cpp_bin_float_quad;
+using Complex = boost::multiprecision::cpp_complex_quad;
+using Vector = reference::Vector<Real>;
+template <class Number>
+using Jones = std::array<std::array<Number, 2>, 2>;
+
+constexpr double kMaskingTolerance = 1e-13;
+constexpr double kRetro = 1e-50;  // sin^2(2 beta) below which there is no plane of incidence
+// Squared horizontal part of omega_i + omega_r below which the two mirror each other, so that grooves of every azimuth
+// bring light from the one into the other.
+constexpr double kMirrored = 1e-50;
+constexpr int kMostBounces = 2000;
+// More bounces are a correction, for which double will do.
+constexpr int kMostInQuad = 24;
+// So many bounces in a row without a contribution end the sum over them.
+constexpr int kIdleBounces = 8;
+constexpr double kIdleShare = 1e-14;
+
+using reference::cross;
+using reference::dot;
+using reference::scaled;
+using reference::sum;
+using reference::unit;
+
+/// An incident or reflected beam with its frame: direction k of propagation, s = k x z / |k x z|, p = k x s.
+struct BeamFrame {
+  Vector k;
+  Vector s;
+  Vector p;
+};
+
+Real radians(double angle_deg) { return Real(angle_deg) * boost::math::constants::pi<Real>() / 180; }
+
+/// The unit vector toward a zenith and an azimuth.
+Vector toward(double zenith_deg, double azimuth_deg) {
+  const Real zenith = radians(zenith_deg);
+  const Real azimuth = radians(azimuth_deg);
+  return {sin(zenith) * cos(azimuth), sin(zenith) * sin(azimuth), cos(zenith)};
+}
+
+/// `s` of the azimuth, which at zenith 0 is the limit of k x z.
+BeamFrame incident_beam(double zenith_deg) {
+  const Vector k = scaled<Real>(-1, toward(zenith_deg, 0.0));
+  const Vector s{0, 1, 0};
+  return {k, s, cross(k, s)};
+}
+
+BeamFrame reflected_beam(double zenith_deg, double azimuth_deg) {
+  const Vector k = toward(zenith_deg, azimuth_deg);
+  const Real azimuth = radians(azimuth_deg);
+  const Vector s{sin(azimuth), -cos(azimuth), 0};
+  return {k, s, cross(k, s)};
+}
+
+template <class Number>
+reference::Amplitudes<Number> fresnel_amplitudes(const OpticalConstants& constants,
+                                                 const typename Number::value_type& cos_beta,
+                                                 const typename Number::value_type& sin2_beta) {
+  const Number n(constants.n, constants.k);
+  const Number n2 = n * n;
+  const Number w = sqrt(Number(n2 - sin2_beta));
+  return {(cos_beta - w) / (cos_beta + w), (n2 * cos_beta - w) / (n2 * cos_beta + w)};
+}
+
+// Columns: the reflected (s, p) amplitudes of an incident s and an incident p wave of unit amplitude. Of the facet s is
+// normal to both beams; in the retro direction any s is, because there r_p = -r_s.
+Jones<Complex> jones_matrix(const BeamFrame& in, const BeamFrame& out, const reference::Amplitudes<Complex>& r) {
+  const Vector normal = cross(in.k, out.k);
+  const Vector facet_s = dot(normal, normal) > kRetro ? unit(normal) : in.s;
+  const Vector facet_in_p = cross(in.k, facet_s);
+  const Vector facet_out_p = cross(out.k, facet_s);
+  const std::array<Vector, 2> incident{in.s, in.p};
+  const std::array<Vector, 2> reflected{out.s, out.p};
+  Jones<Complex> jones;
+  for (std::size_t row = 0; row < 2; ++row) {
+    for (std::size_t column = 0; column < 2; ++column) {
+      jones[row][column] = dot(reflected[row], facet_s) * r.s * dot(facet_s, incident[column]) +
+                           dot(reflected[row], facet_out_p) * r.p * dot(facet_in_p, incident[column]);
+    }
+  }
+  return jones;
+}
+
+// Element (a, b) is half the trace of sigma_a J sigma_b J^+, the sigma being the matrices that turn the coherency
+// matrix <E E^+> into the Stokes parameters I, Q, U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p).
+template <class Number>
+MuellerMatrix mueller_from_jones(const Jones<Number>& jones) {
+  using Matrix = Jones<Number>;
+  const Number zero(0), one(1), i(0, 1);
+  const std::array<Matrix, 4> basis{Matrix{{{one, zero}, {zero, one}}}, Matrix{{{one, zero}, {zero, -one}}},
+                                    Matrix{{{zero, one}, {one, zero}}}, Matrix{{{zero, -i}, {i, zero}}}};
+  MuellerMatrix mueller{};
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = 0; b < 4; ++b) {
+      Number trace = zero;
+      for (std::size_t e = 0; e < 16; ++e) {
+        const std::size_t w = e / 8, x = e / 4 % 2, y = e / 2 % 2, z = e % 2;
+        trace += basis[a][w][x] * jones[x][y] * basis[b][y][z] * conj(jones[w][z]);
+      }
+      mueller[a][b] = 0.5 * static_cast<double>(trace.real());
+    }
+  }
+  return mueller;
+}
+
+MuellerMatrix scaled_matrix(MuellerMatrix mueller, double factor) {
+  for (auto& row : mueller) {
+    for (double& element : row) element *= factor;
+  }
+  return mueller;
+}
+
+void add(MuellerMatrix& total, const MuellerMatrix& term) {
+  for (std::size_t i = 0; i < 16; ++i) total[i / 4][i % 4] += term[i / 4][i % 4];
+}
+
+/// The plane across the grooves that bring light from one beam into another: u is along the horizontal part of
+/// omega_i + omega_r or against it, because reflection keeps the component along the groove.
+struct GroovePlane {
+  Vector u, v;
+  Real across;        ///< length of that horizontal part
+  Real psi_i, psi_r;  ///< of omega_i and omega_r, from z toward u
+
+  GroovePlane(const BeamFrame& in, const BeamFrame& out, int sign) {
+    const Vector horizontal{out.k[0] - in.k[0], out.k[1] - in.k[1], 0};
+    across = sqrt(dot(horizontal, horizontal));
+    u = scaled<Real>(sign / across, horizontal);
+    v = {-u[1], u[0], 0};
+    psi_i = atan2(-dot(in.k, u), -in.k[2]);
+    psi_r = atan2(dot(out.k, u), out.k[2]);
+  }
+  Vector in_groove(const Vector& a) const { return {dot(a, u), dot(a, v), a[2]}; }
+  /// Half of the angle of the groove that does it with so many bounces, of which the first is at A. Unfolded, the ray
+  /// passes 2 bounces times gamma from omega_i to -omega_r, or to its mirror image.
+  Real gamma(int bounces) const {
+    const Real turn = bounces % 2 == 1 ? Real(psi_i + psi_r) : Real(psi_i - psi_r);
+    return (boost::math::constants::pi<Real>() - turn) / (2 * bounces);
+  }
+};
+
+template <class Number>
+using RealVector = reference::Vector<typename Number::value_type>;
+
+template <class Number>
+RealVector<Number> rounded(const Vector& a) {
+  using Part = typename Number::value_type;
+  return {static_cast<Part>(a[0]), static_cast<Part>(a[1]), static_cast<Part>(a[2])};
+}
+
+template <class Number>
+std::array<Number, 3> electric(const RealVector<Number>& a) {
+  return {Number(a[0]), Number(a[1]), Number(a[2])};
+}
+
+template <class Number>
+Number along(const RealVector<Number>& a, const std::array<Number, 3>& e) {
+  return a[0] * e[0] + a[1] * e[1] + a[2] * e[2];
+}
+
+// f^(k) cos(theta_i) cos(theta_r) of the beams that meet A of one groove plane first, `Number` being complex.
+template <class Number>
+MuellerMatrix bounces_in_plane(const reference::Slopes& slopes, const OpticalConstants& constants, const BeamFrame& in,
+                               const BeamFrame& out, const GroovePlane& plane, int bounces) {
+  using Part = typename Number::value_type;
+  const Real gamma = plane.gamma(bounces);
+  if (gamma <= 0 || 2 * gamma >= boost::math::constants::pi<Real>()) return {};
+  const auto in_groove = [&](const Vector& a) { return rounded<Number>(plane.in_groove(a)); };
+  const reference::Groove<Part> groove{static_cast<Part>(sin(gamma)), static_cast<Part>(cos(gamma))};
+  reference::GrooveBeam<Part> beam(groove, in_groove(scaled<Real>(-1, in.k)), reference::Facet::kA);
+  std::array waves{electric<Number>(in_groove(in.s)), electric<Number>(in_groove(in.p))};
+  Part left = 0;
+  for (int i = 0; i < bounces; ++i) {
+    if (beam.flux() <= 0) return {};
+    const auto b = reference::bounce<Part>(beam.direction(), beam.normal(), {0, 1, 0});
+    const auto r = fresnel_amplitudes<Number>(constants, b.cos_beta, 1 - b.cos_beta * b.cos_beta);
+    for (auto& e : waves) e = reference::reflected(b, reference::components(b, e), r);
+    left = beam.reflect(b.k_out);
+  }
+  if (left <= 0) return {};
+  const auto s = in_groove(out.s);
+  const auto p = in_groove(out.p);
+  const Jones<Number> jones{{{along<Number>(s, waves[0]), along<Number>(s, waves[1])},
+                             {along<Number>(p, waves[0]), along<Number>(p, waves[1])}}};
+  const auto cotangent = static_cast<double>(cos(gamma) / sin(gamma));
+  const auto factor = static_cast<double>(cos(gamma) * left / (2 * bounces * plane.across));
+  return scaled_matrix(mueller_from_jones(jones), slopes.facet_density(cotangent * cotangent) * factor);
+}
+
+/// Two beams, and the planes of the grooves between them.
+struct GroovePair {
+  BeamFrame in, out;
+  GroovePlane toward, against;
+
+  GroovePair(double theta_i_deg, double theta_r_deg, double delta_phi_deg)
+      : in(incident_beam(theta_i_deg)),
+        out(reflected_beam(theta_r_deg, delta_phi_deg)),
+        toward(in, out, 1),
+        against(in, out, -1) {}
+  bool is_mirrored() const { return toward.across * toward.across < kMirrored; }
+  MuellerMatrix term(const reference::Slopes& slopes, const OpticalConstants& constants, int bounces) const {
+    const auto& in_plane = bounces > kMostInQuad ? bounces_in_plane<std::complex<double>> : bounces_in_plane<Complex>;
+    MuellerMatrix total = in_plane(slopes, constants, in, out, toward, bounces);
+    add(total, in_plane(slopes, constants, in, out, against, bounces));
+    return total;
+  }
+  /// Whether no ray can leave at psi_r after so many bounces or more. Unfolded, a ray passes the apex at a distance
+  /// between cos(gamma) sin(|psi| - gamma) and sin(|psi| + gamma), psi being psi_i as well as psi_r.
+  bool is_beyond(int bounces) const {
+    const Real widest = std::max(toward.gamma(bounces), against.gamma(bounces));
+    return abs(Real(abs(toward.psi_i) - abs(toward.psi_r))) > 4 * widest;
+  }
+};
+
+MuellerMatrix not_a_number() {
+  MuellerMatrix mueller;
+  for (auto& row : mueller) row.fill(std::numeric_limits<double>::quiet_NaN());
+  return mueller;
+}
+
+}  // namespace
+
+MuellerMatrix reference_bounces(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+                                double theta_r_deg, double delta_phi_deg, int bounces) {
+  const GroovePair pair(theta_i_deg, theta_r_deg, delta_phi_deg);
+  if (pair.is_mirrored()) return not_a_number();
+  return pair.term(reference::Slopes(surface.distribution, surface.sigma, surface.q), constants, bounces);
+}
+
+BouncesSum reference_all_bounces(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+                                 double theta_r_deg, double delta_phi_deg) {
+  const GroovePair pair(theta_i_deg, theta_r_deg, delta_phi_deg);
+  if (pair.is_mirrored()) return {not_a_number(), std::numeric_limits<double>::quiet_NaN()};
+  const reference::Slopes slopes(surface.distribution, surface.sigma, surface.q);
+  BouncesSum sum;
+  std::array<double, kIdleBounces> latest{};
+  double recent = 0.0;
+  for (int k = 1; k <= kMostBounces; ++k) {
+    if (pair.is_beyond(k)) return sum;
+    const MuellerMatrix term = pair.term(slopes, constants, k);
+    add(sum.matrix, term);
+    latest[static_cast<std::size_t>(k % kIdleBounces)] = term[0][0];
+    recent = 0.0;
+    for (const double value : latest) recent += value;
+    if (k >= kIdleBounces && recent <= kIdleShare * sum.matrix[0][0]) return sum;
+  }
+  // Enough for what falls at least like the power -9/8 of the bounces, or by a share of 1e-4 from each to the next.
+  sum.error = recent * kMostBounces;
+  return sum;
+}
+
+MuellerMatrix reference_scattering(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+                                   double theta_r_deg, double delta_phi_deg) {
+  if (surface.scattering == Scattering::kMultiple) {
+    return reference_all_bounces(surface, constants, theta_i_deg, theta_r_deg, delta_phi_deg).matrix;
+  }
+  const BeamFrame in = incident_beam(theta_i_deg);
+  const BeamFrame out = reflected_beam(theta_r_deg, delta_phi_deg);
+  const Vector facet = sum(out.k, scaled<Real>(-1, in.k));  // 2 cos(beta) times the facet's normal
+  const Real cos2_beta = dot(facet, facet) / 4;
+  const auto tan2_alpha = static_cast<double>((facet[0] * facet[0] + facet[1] * facet[1]) / (facet[2] * facet[2]));
+  const auto r = fresnel_amplitudes<Complex>(constants, sqrt(cos2_beta), 1 - cos2_beta);
+
+  const reference::Slopes slopes(surface.distribution, surface.sigma, surface.q);
+  const reference::Attenuation attenuation(slopes, surface.masking, reference::zenith_from_deg(theta_i_deg),
+                                           reference::zenith_from_deg(theta_r_deg), kMaskingTolerance);
+  const double factor =
+      0.25 * slopes.facet_density(tan2_alpha) * attenuation(tan2_alpha, static_cast<double>(cos2_beta));
+  return scaled_matrix(mueller_from_jones(jones_matrix(in, out, r)), factor);
+}
+
+MuellerMatrix reference_pbrdf(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+                              double theta_r_deg, double delta_phi_deg) {
+  const double cosines = reference::zenith_from_deg(theta_i_deg).cos * reference::zenith_from_deg(theta_r_deg).cos;
+  return scaled_matrix(reference_scattering(surface, constants, theta_i_deg, theta_r_deg, delta_phi_deg),
+                       1.0 / cosines);
+}
+
+}  // namespace dolp

@@ -1,0 +1,226 @@
+#include "reference/reference_evaluator.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/processor.hpp"
+#include "base/stopwatch.hpp"
+#include "reference/direct_emission.hpp"
+#include "reference/grooves.hpp"
+#include "reference/hemisphere.hpp"
+#include "reference/mueller.hpp"
+
+namespace dolp {
+
+namespace {
+
+void require(bool is_met, const std::string& what, double value) {
+  if (!is_met) throw InputError("reference: " + what + ", but it is " + std::to_string(value));
+}
+
+// Written so that NaN fails.
+void check_zenith(double theta_deg) {
+  require(theta_deg >= 0.0 && theta_deg <= 90.0, "theta must be in [0, 90] degrees", theta_deg);
+}
+
+void check_shape(Distribution distribution, Masking masking, const SlopeShape& shape) {
+  const bool is_cauchy = distribution == Distribution::kCauchy;
+  require(shape.sigma >= 0.0, "sigma must not be negative", shape.sigma);
+  require(!is_cauchy || shape.q > 1.0, "q must be above 1", shape.q);
+  require(!is_cauchy || masking != Masking::kSmith || shape.q > 1.5, "smith masking needs q above 1.5", shape.q);
+}
+
+void check_index(const OpticalConstants& index) {
+  require(index.n > 0.0, "n must be above 0", index.n);
+  require(index.k >= 0.0, "k must not be negative", index.k);
+}
+
+void check_scattering(Scattering scattering, Masking masking) {
+  if (scattering == Scattering::kMultiple && masking != Masking::kVCavity) {
+    throw InputError("reference: multiple scattering needs v-cavity masking");
+  }
+}
+
+void check(const MomentsRequest& request) {
+  check_scattering(request.scattering, request.masking);
+  const bool has_view_masking = request.masking == Masking::kVCavity || request.masking == Masking::kSmith;
+  if (request.wants_direct && !has_view_masking) {
+    throw InputError("reference: direct emission needs v-cavity or smith masking");
+  }
+  for (const double theta_deg : request.theta_deg) check_zenith(theta_deg);
+  for (const double sigma : request.sigma) check_shape(request.distribution, request.masking, {.sigma = sigma});
+  for (const double q : request.q) check_shape(request.distribution, request.masking, {.q = q});
+  for (const OpticalConstants& index : request.indices) check_index(index);
+}
+
+void check(const ScatteringRequest& request) {
+  check_scattering(request.scattering, request.masking);
+  for (const BeamAngles& angles : request.angles) {
+    check_zenith(angles.theta_i_deg);
+    check_zenith(angles.theta_r_deg);
+  }
+  for (const SlopeShape& shape : request.shapes) {
+    check_shape(request.distribution, request.masking, shape);
+    require(shape.sigma > 0.0, "sigma must be above 0", shape.sigma);
+  }
+  for (const OpticalConstants& index : request.indices) check_index(index);
+}
+
+Moments moments_of(const MomentsRequest& request, const MomentsPoint& point, const reference::Refinement& refinement) {
+  if (point.shape.sigma == 0.0) return reference::mirror_moments(point.theta_deg, point.index);
+  const reference::Slopes slopes(request.distribution, point.shape.sigma, point.shape.q);
+  const bool is_single = request.scattering == Scattering::kSingle;
+  Moments m = is_single
+                  ? reference::hemisphere_moments(slopes, request.masking, point.theta_deg, point.index, refinement)
+                  : reference::groove_moments(slopes, point.theta_deg, point.index, refinement);
+  if (request.wants_direct) {
+    const Moments direct =
+        reference::direct_emission(slopes, request.masking, point.theta_deg, point.index, refinement);
+    m.direct_i = direct.direct_i;
+    m.direct_q = direct.direct_q;
+    m.direct_i_error = direct.direct_i_error;
+    m.direct_q_error = direct.direct_q_error;
+    m.evaluations += direct.evaluations;
+  }
+  return m;
+}
+
+ScatteringMatrix matrix_of(const ScatteringRequest& request, const ScatteringEntry& entry) {
+  const BeamAngles& angles = request.angles.at(entry.angles);
+  const SlopeShape& shape = request.shapes.at(entry.shape);
+  Surface surface;
+  surface.distribution = request.distribution;
+  surface.masking = request.masking;
+  surface.sigma = shape.sigma;
+  surface.q = shape.q;
+  const OpticalConstants& index = request.indices.at(entry.index);
+  const auto [theta_i_deg, theta_r_deg, delta_phi_deg] = angles;
+  const BouncesSum f =
+      request.scattering == Scattering::kMultiple
+          ? reference_all_bounces(surface, index, theta_i_deg, theta_r_deg, delta_phi_deg)
+          : BouncesSum{reference_scattering(surface, index, theta_i_deg, theta_r_deg, delta_phi_deg), 0.0};
+  ScatteringMatrix matrix;
+  for (std::size_t i = 0; i < matrix.m.size(); ++i) matrix.m[i] = f.matrix[i / 4][i % 4];
+  matrix.error = f.error + kScatteringErrorDouble * std::abs(matrix.m[0]);
+  return matrix;
+}
+
+// What ReferenceEvaluator promises under "Accuracy".
+double relative_tolerance(const ReferenceOptions& options, double requested) {
+  if (requested <= 0.0) return options.relative_tolerance;
+  return std::min(0.5 * requested, std::max(options.relative_tolerance, 0.01 * requested));
+}
+
+// Shares the entries between threads; the calling thread alone talks to `progress`.
+template <class Result>
+class Crew {
+ public:
+  Crew(std::size_t entries, std::function<Result(std::size_t)> work_on)
+      : work_on_(std::move(work_on)), results_(entries) {}
+
+  std::vector<Result> run(unsigned threads, const Progress& progress) {
+    std::vector<std::jthread> workers;
+    for (unsigned i = 0; i < threads; ++i) workers.emplace_back([this] { work(); });
+    report_until_done(progress, threads);
+    workers.clear();
+    if (failure_) std::rethrow_exception(failure_);
+    return std::move(results_);
+  }
+
+ private:
+  void work() {
+    try {
+      for (std::size_t i = next_++; i < results_.size() && !is_stopping_; i = next_++) {
+        results_[i] = work_on_(i);
+        const std::lock_guard lock(mutex_);
+        ++done_;
+        changed_.notify_one();
+      }
+    } catch (...) {
+      is_stopping_ = true;
+      const std::lock_guard lock(mutex_);
+      failure_ = std::current_exception();
+    }
+    const std::lock_guard lock(mutex_);
+    ++idle_;
+    changed_.notify_one();
+  }
+
+  void report_until_done(const Progress& progress, unsigned threads) {
+    std::unique_lock lock(mutex_);
+    for (std::size_t told = 0; idle_ < threads || told < done_;) {
+      changed_.wait(lock, [&] { return done_ > told || idle_ == threads; });
+      if (done_ == told) continue;
+      told = done_;
+      lock.unlock();
+      try {
+        if (progress && !is_stopping_ && !progress(told, results_.size())) throw Cancelled{};
+        lock.lock();
+      } catch (...) {
+        is_stopping_ = true;
+        lock.lock();
+        failure_ = std::current_exception();
+      }
+    }
+  }
+
+  std::function<Result(std::size_t)> work_on_;
+  std::vector<Result> results_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<bool> is_stopping_{false};
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::size_t done_ = 0;
+  unsigned idle_ = 0;
+  std::exception_ptr failure_;
+};
+
+unsigned thread_count(const ReferenceOptions& options, std::size_t entries) {
+  const unsigned available = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  return static_cast<unsigned>(std::min<std::size_t>(available, entries));
+}
+
+}  // namespace
+
+void ReferenceEvaluator::note(double seconds) {
+  report_.evaluator = "reference";
+  report_.device = processor_name();
+  report_.precision = "double";
+  report_.kernel_s += seconds;
+}
+
+std::vector<Moments> ReferenceEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
+  check(request);
+  const auto start = std::chrono::steady_clock::now();
+  const reference::Refinement refinement{relative_tolerance(options_, request.tolerance), options_.subdivisions};
+  Crew<Moments> crew(request.size(), [&](std::size_t i) {
+    return request.is_wanted(i) ? moments_of(request, request[i], refinement) : Moments{};
+  });
+  std::vector<Moments> results = crew.run(thread_count(options_, request.size()), progress);
+  for (const Moments& moments : results) report_.evaluations += moments.evaluations;
+  note(seconds_since(start));
+  return results;
+}
+
+std::vector<ScatteringMatrix> ReferenceEvaluator::scatter(const ScatteringRequest& request, const Progress& progress) {
+  check(request);
+  const auto start = std::chrono::steady_clock::now();
+  Crew<ScatteringMatrix> crew(request.entries.size(),
+                              [&](std::size_t i) { return matrix_of(request, request.entries[i]); });
+  std::vector<ScatteringMatrix> results = crew.run(thread_count(options_, request.entries.size()), progress);
+  note(seconds_since(start));
+  return results;
+}
+
+}  // namespace dolp

@@ -1,0 +1,125 @@
+#include "reference/slope_plane.hpp"
+
+namespace dolp::reference {
+
+using std::numbers::pi;
+
+namespace {
+
+constexpr int kBisections = 60;
+constexpr int kMostSteps = 150;
+constexpr int kPlainSteps = 12;
+// More bends than this lie so close together that each is small, and plain refinement does as well.
+constexpr std::size_t kMostBends = 40;
+// Equal steps of 1/gamma, in which the bends of grooves are equally far apart, and equal steps of log t.
+constexpr double kStepInverse = 0.04;
+constexpr double kMostInverse = 10.0;
+constexpr int kStepsPerDecade = 16;
+// Below this share of the width slopes weigh less than rounding.
+constexpr double kSmallestShare = 1e-7;
+// A layer thinner than this needs break points of its own, each so many times farther out.
+constexpr double kThinLayer = 0.05;
+constexpr double kLayerGrowth = 8.0;
+
+// Where `regime` changes between sorted points: each change once, to the last bits.
+std::vector<double> changes(const std::vector<double>& points, const std::function<std::uint64_t(double)>& regime) {
+  std::vector<double> found;
+  std::uint64_t below = regime(points.front());
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const std::uint64_t above = regime(points[i + 1]);
+    double start = points[i];
+    while (below != above) {
+      double low = start;
+      double high = points[i + 1];
+      std::uint64_t at_high = above;
+      for (int j = 0; j < kBisections; ++j) {
+        const double middle = 0.5 * (low + high);
+        if (middle <= low || middle >= high) break;
+        const std::uint64_t at_middle = regime(middle);
+        if (at_middle == below) {
+          low = middle;
+        } else {
+          high = middle;
+          at_high = at_middle;
+        }
+      }
+      found.push_back(high);
+      start = high;
+      below = at_high;
+      if (high >= points[i + 1]) break;
+    }
+    below = above;
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<double> RegimeScan::chi_breaks(double t) const {
+  std::vector<double> layers;
+  const double layer = view_.cos / std::max(view_.sin, 1e-300);
+  for (double x = layer; x < kThinLayer; x *= kLayerGrowth) layers.push_back(std::asin(x));
+  const double gamma = std::atan2(1.0, t);
+  const double exact_steps = steps_.per_gamma * theta_rad_ / gamma;
+  if (exact_steps > kMostSteps) return layers;
+  const int steps = static_cast<int>(exact_steps) + 1;
+  std::vector<double> points;
+  for (int i = 0; i <= kPlainSteps; ++i) points.push_back(0.5 * pi * i / kPlainSteps);
+  // Equal steps of the view's angle in the plane across the groove, tan(psi) = tan(theta) sin(chi).
+  for (int i = 1; i < steps; ++i) {
+    const double psi = theta_rad_ * i / steps;
+    points.push_back(std::asin(std::min(1.0, std::tan(psi) * layer)));
+  }
+  double half = 0.5 * pi / kPlainSteps;
+  for (int i = 0; i < steps_.halvings; ++i) points.push_back(half *= 0.5);
+  std::sort(points.begin(), points.end());
+  std::vector<double> found = changes(points, [&](double chi) { return regime_(slope_point(t, chi)); });
+  if (found.size() > kMostBends) found.clear();
+  found.insert(found.end(), layers.begin(), layers.end());
+  return found;
+}
+
+std::vector<double> RegimeScan::t_breaks(double width, double end) const {
+  std::vector<double> points;
+  const double decade = std::pow(10.0, 1.0 / kStepsPerDecade);
+  for (double t = kSmallestShare * std::min(width, 1.0); t < end; t *= decade) points.push_back(t);
+  for (double inverse = 1.0; inverse < kMostInverse; inverse += kStepInverse) {
+    const double t = std::tan(0.5 * pi - 1.0 / inverse);
+    if (t < end) points.push_back(t);
+  }
+  points.push_back(end);
+  std::sort(points.begin(), points.end());
+  std::vector<double> found;
+  for (const double chi : {0.0, 0.5 * pi}) {
+    const std::vector<double> more = changes(points, [&](double t) { return regime_(slope_point(t, chi)); });
+    found.insert(found.end(), more.begin(), more.end());
+  }
+  const double layer = view_.cos / std::max(view_.sin, 1e-300);
+  for (double t = std::max(layer, points.front()); t < kThinLayer * width; t *= kLayerGrowth) found.push_back(t);
+  return found;
+}
+
+double SlopeAxis::density(double v) const {
+  const double slope = t(v);
+  const double inverse_cos2 = 1.0 + slope * slope;
+  const double plane = slopes_.facet_density(slope * slope) / (inverse_cos2 * inverse_cos2);
+  return 2.0 * pi * plane * slope * slopes_.width() * std::cosh(v);
+}
+
+double SlopeAxis::share_above(double t) const {
+  const double u = t / slopes_.m();
+  return slopes_.is_gaussian() ? std::exp(-u * u) : std::exp((1.0 - slopes_.q()) * std::log1p(u * u));
+}
+
+double SlopeAxis::length_above(double t) const {
+  if (slopes_.is_gaussian()) return 0.0;
+  return 2.0 * (slopes_.q() - 1.0) / (2.0 * slopes_.q() - 3.0) * t * share_above(t);
+}
+
+double SlopeAxis::quantile(double share) const {
+  const double log_share = -std::log(share);
+  const double u2 = slopes_.is_gaussian() ? log_share : std::expm1(std::min(500.0, log_share / (slopes_.q() - 1.0)));
+  return slopes_.m() * std::sqrt(u2);
+}
+
+}  // namespace dolp::reference

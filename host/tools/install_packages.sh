@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 packages that are missing: install_packages.sh SET...
+#
+#   build    the program and its lookup tables
+#   picture  host/plot_table.py and host/tools/paper_figure.py
+#   bench    dolp-bench and its figures
+#   test     the test suite
+#
+# Nothing is changed, and no root is needed, when everything is there. Otherwise apt-get runs, through sudo when needed.
+set -euo pipefail
+
+declare -A packages
+need() { packages[$1]+=" ${*:2}"; }
+need build g++ cmake ninja-build
+need build glslang-tools spirv-tools                # compile, optimise and check the shaders
+need build libvulkan-dev mesa-vulkan-drivers        # run the kernels, on GPUs of all makers and on the processor
+need build libglm-dev                               # GLSL's vector types in C++, for the CPU build of the shaders
+need build libboost-dev                             # special functions, Gauss-Kronrod nodes, short lists
+need build libceres-dev libeigen3-dev               # the descents of dolp fit; small matrices
+need build libhdf5-dev                              # table files, which are NetCDF-4
+need build libtomlplusplus-dev libyaml-cpp-dev      # scenes, material records
+need build libcli11-dev libfmt-dev nlohmann-json3-dev  # command line, messages, JSON reports
+need build libglfw3-dev libimgui-dev libstb-dev pkg-config fonts-dejavu-core  # the window
+need build pybind11-dev python3-dev python3-numpy python3-xarray python3-netcdf4  # the Python package
+need picture python3 python3-matplotlib python3-netcdf4 python3-numpy
+need bench libcubature-dev libgsl-dev python3-scipy  # methods to compare with
+need bench python3 python3-matplotlib python3-numpy
+need test libgtest-dev libclang-rt-14-dev            # framework, fuzzing
+need test vulkan-validationlayers                    # misuse of Vulkan
+need test libnetcdf-dev netcdf-bin octave octave-netcdf python3 python3-netcdf4 python3-numpy  # second readers of tables
+need test x11-utils xvfb xauth xdotool               # a display with mouse and keyboard
+need test slurmctld slurmd slurm-client munge        # a cluster of one node
+need test dpkg-dev file fish zsh                     # the package, completions
+
+missing=()
+for set in "$@"; do
+  if [[ -z ${packages[$set]:-} ]]; then
+    echo "install_packages.sh: no set '$set'; the sets are ${!packages[*]}" >&2
+    exit 2
+  fi
+  for package in ${packages[$set]}; do
+    state=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+    [[ $state == installed ]] || missing+=("$package")
+  done
+done
+((${#missing[@]} > 0)) || exit 0
+
+as_root=()
+if ((EUID != 0)); then
+  if ! command -v sudo >/dev/null; then
+    echo "install_packages.sh: missing packages, and neither root nor sudo to install them: ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+echo "installing: ${missing[*]}"
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q update
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q install -y --no-install-recommends "${missing[@]}"

@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <string>
 #ifdef __GLIBC__
+#include <dolp/errors.hpp>
 #include <malloc.h>
 #endif
 
-#include "base/error.hpp"
 #include "studies/study.hpp"
 #include "terminal/exit_status.hpp"
 #include "terminal/guarded.hpp"

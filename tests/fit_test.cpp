@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <dolp/errors.hpp>
 #include <random>
 
-#include "base/error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "fit/contours.hpp"
 #include "fit/residuals.hpp"
@@ -32,33 +32,33 @@ wavelength_um = 10
 
 constexpr double kNoise = 0.002;
 
-Parameter number(const std::string& key, double low, double high) { return {key, low, high, {}}; }
+FitRange number(const std::string& key, double low, double high) { return {key, low, high, {}}; }
 
 /// Q/I of the scene at zeniths up to 80 degrees, exact but for `noise` times the deviates of a seed.
 class FitTest : public testing::Test {
  protected:
-  FitData measured(double noise, const std::vector<std::string>& overrides = {}, bool has_uncertainties = true,
+  MeasuredData measured(double noise, const std::vector<std::string>& overrides = {}, bool has_uncertainties = true,
                    int points = 20, std::uint64_t seed = 7) {
-    FitData data;
+    MeasuredData data;
     data.name = "synthetic";
     data.zenith_column = "theta_deg";
     data.has_uncertainties = has_uncertainties;
     for (int i = 0; i < points; ++i) {
-      data.observations.push_back({Observable::kQOverI, 80.0 * (i + 1) / points, {}, 0.0, {}});
-      if (has_uncertainties) data.observations.back().uncertainty = kNoise;
+      data.measurements.push_back({Observable::kQOverI, 80.0 * (i + 1) / points, {}, 0.0, {}});
+      if (has_uncertainties) data.measurements.back().uncertainty = kNoise;
     }
     const Model model({kScene, "scene", overrides}, {data}, {number("surface.n", 1.6, 2.0)});
     const Eigen::VectorXd truth = Eigen::VectorXd::Constant(1, 1.6);
     const Prediction exact = model.predict({truth}, 1e-8, evaluator_, {}).front();
     std::mt19937_64 engine(seed);
-    for (std::size_t i = 0; i < data.observations.size(); ++i) {
+    for (std::size_t i = 0; i < data.measurements.size(); ++i) {
       double deviate = -6.0;  // the sum of twelve uniform numbers is normal enough
       for (int j = 0; j < 12; ++j) deviate += static_cast<double>(engine() >> 11U) * 0x1p-53;
-      data.observations[i].value = exact.components(static_cast<Eigen::Index>(i), 0) + noise * deviate;
+      data.measurements[i].value = exact.components(static_cast<Eigen::Index>(i), 0) + noise * deviate;
     }
     return data;
   }
-  FitResult fitted(const FitData& data, const std::vector<Parameter>& parameters, const FitOptions& options = {},
+  FitResult fitted(const MeasuredData& data, const std::vector<FitRange>& parameters, const FitOptions& options = {},
                    const std::vector<std::string>& overrides = {}) {
     const Model model({kScene, "scene", overrides}, {data}, parameters);
     const std::optional<FitResult> result = fit::fit(model, evaluator_, options);
@@ -88,7 +88,7 @@ TEST_F(FitTest, LinearParameter_IntervalsAreThoseOfTheCovariance) {
   // rho is linear in k_s, and with the emission of a black body's temperature nearly so is Q/I.
   const FitResult result =
       fitted(measured(kNoise), {number("surface.specular", 0.2, 1.0)}, {}, {"surface.specular=0.6"});
-  const FittedParameter& one = result.parameters.front();
+  const FitParameter& one = result.parameters.front();
   ASSERT_TRUE(one.interval_68.low && one.interval_95.low && one.interval_68.high && one.interval_95.high);
   const double error = *one.standard_error;
   constexpr double kCurvature = 0.05;  // of Q/I in k_s, over the interval
@@ -99,8 +99,8 @@ TEST_F(FitTest, LinearParameter_IntervalsAreThoseOfTheCovariance) {
 }
 
 TEST_F(FitTest, IntervalEnds_LieWhereTheBestOfTheOthersHasGrownSo) {
-  const FitData data = measured(kNoise);
-  const Parameter sigma = number("surface.sigma", 0.02, 1.0);
+  const MeasuredData data = measured(kNoise);
+  const FitRange sigma = number("surface.sigma", 0.02, 1.0);
   const FitResult result = fitted(data, {number("surface.n", 1.1, 4.0), sigma});
   for (const bool is_95 : {false, true}) {
     const Interval& interval = is_95 ? result.parameters[1].interval_95 : result.parameters[1].interval_68;
@@ -115,7 +115,7 @@ TEST_F(FitTest, IntervalEnds_LieWhereTheBestOfTheOthersHasGrownSo) {
 }
 
 TEST_F(FitTest, Contours_AreTheGrowthOverAllOthers) {
-  const std::vector<Parameter> parameters = {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0),
+  const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0),
                                              number("surface.sigma", 0.02, 1.0)};
   const Model model({kScene, "scene", {}}, {measured(kNoise, {}, true, 8)}, parameters);
   const FitResult result = fit::fit(model, evaluator_, {}).value();
@@ -156,7 +156,7 @@ TEST_F(FitTest, Contours_AreTheGrowthOverAllOthers) {
 }
 
 TEST_F(FitTest, NoUncertainties_TheResidualsGiveTheScale) {
-  const std::vector<Parameter> parameters = {number("surface.n", 1.1, 4.0), number("surface.sigma", 0.02, 1.0)};
+  const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.sigma", 0.02, 1.0)};
   const FitResult with = fitted(measured(kNoise), parameters);
   const FitResult without = fitted(measured(kNoise, {}, false), parameters);
   EXPECT_FALSE(without.p_value.has_value());
@@ -185,7 +185,7 @@ TEST_F(FitTest, ParameterWithoutInfluence_IsNamedAndOpen) {
 TEST_F(FitTest, FactorsOfOneProduct_AreNamedAsAPair) {
   // Nothing but the source: I and Q are both proportional to k_s times its irradiance, and Q/I depends on neither.
   const std::vector<std::string> source_alone = {"emission=none", "surroundings=none", "source.irradiance=1"};
-  const FitData data = measured(kNoise, source_alone);
+  const MeasuredData data = measured(kNoise, source_alone);
   const FitResult result = fitted(
       data, {number("surface.n", 1.1, 4.0), number("surface.specular", 0.2, 0.9), number("source.scale", 0.5, 2.0)}, {},
       source_alone);
@@ -204,9 +204,9 @@ TEST_F(FitTest, TruthBeyondTheRange_IsAtItsBound) {
 }
 
 TEST_F(FitTest, Outlier_MovesSquaresMoreThanARobustLoss) {
-  FitData data = measured(0.0);
-  data.observations[15].value += 50.0 * kNoise;
-  const std::vector<Parameter> parameters = {number("surface.n", 1.1, 4.0)};
+  MeasuredData data = measured(0.0);
+  data.measurements[15].value += 50.0 * kNoise;
+  const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0)};
   const double squares = std::abs(fitted(data, parameters).parameters.front().value - 1.6);
   for (const Loss loss : {Loss::kHuber, Loss::kSoftL1, Loss::kCauchy, Loss::kTukey}) {
     FitOptions options;
@@ -218,8 +218,8 @@ TEST_F(FitTest, Outlier_MovesSquaresMoreThanARobustLoss) {
 }
 
 TEST_F(FitTest, TwoDataSets_ShareParametersAndKeepKeysOfTheirOwn) {
-  FitData warm = measured(0.0);
-  FitData cold = measured(0.0, {"emission.temperature_K=250"});
+  MeasuredData warm = measured(0.0);
+  MeasuredData cold = measured(0.0, {"emission.temperature_K=250"});
   cold.overrides = {"emission.temperature_K=250"};
   const Model model({kScene, "scene", {}}, {warm, cold}, {number("surface.n", 1.1, 4.0)});
   const std::optional<FitResult> result = fit::fit(model, evaluator_, {});
@@ -232,7 +232,7 @@ TEST_F(FitTest, TwoDataSets_ShareParametersAndKeepKeysOfTheirOwn) {
 TEST_F(FitTest, Intervals_HoldTheTruthAsOftenAsTheySay) {
   constexpr int kDraws = 40;
   constexpr double kSpread = 3.0;  // standard deviations of the binomial distribution
-  const std::vector<Parameter> parameters = {number("surface.n", 1.3, 2.0), number("surface.sigma", 0.1, 0.4)};
+  const std::vector<FitRange> parameters = {number("surface.n", 1.3, 2.0), number("surface.sigma", 0.1, 0.4)};
   const double truth[] = {1.6, 0.2};
   for (const bool has_uncertainties : {true, false}) {
     int held_68 = 0, held_95 = 0;
@@ -257,8 +257,8 @@ TEST_F(FitTest, Intervals_HoldTheTruthAsOftenAsTheySay) {
 }
 
 TEST_F(FitTest, SameSeed_GivesTheSameDigits) {
-  const FitData data = measured(kNoise);
-  const std::vector<Parameter> parameters = {number("surface.n", 1.1, 4.0), number("surface.sigma", 0.02, 1.0)};
+  const MeasuredData data = measured(kNoise);
+  const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.sigma", 0.02, 1.0)};
   const FitResult one = fitted(data, parameters);
   const FitResult two = fitted(data, parameters);
   EXPECT_EQ(one.parameters[0].value, two.parameters[0].value);
@@ -288,17 +288,17 @@ TEST_F(FitTest, Jacobian_IsThatOfFinerDifferences) {
   }
 }
 
-TEST(FitData, Columns_AreReadAndCheckedLineByLine) {
-  const FitData data =
-      parse_fit_data("# a comment\ntheta_deg,dolp,uncertainty,wavelength_um\n30,0.1,0.01,10\n", "f.csv");
-  ASSERT_EQ(data.observations.size(), 1U);
-  EXPECT_EQ(data.observations.front().observable, Observable::kDolp);
-  EXPECT_EQ(data.observations.front().wavelength_um, 10.0);
+TEST(MeasuredData, Columns_AreReadAndCheckedLineByLine) {
+  const MeasuredData data =
+      MeasuredData::from_csv("# a comment\ntheta_deg,dolp,uncertainty,wavelength_um\n30,0.1,0.01,10\n", "f.csv");
+  ASSERT_EQ(data.measurements.size(), 1U);
+  EXPECT_EQ(data.measurements.front().observable, Observable::kDolp);
+  EXPECT_EQ(data.measurements.front().wavelength_um, 10.0);
   EXPECT_TRUE(data.has_uncertainties);
-  EXPECT_EQ(parse_fit_data("theta_deg,emissivity_s,emissivity_p\n1,0.8,0.9\n", "f").observations.size(), 2U);
+  EXPECT_EQ(MeasuredData::from_csv("theta_deg,emissivity_s,emissivity_p\n1,0.8,0.9\n", "f").measurements.size(), 2U);
   const auto message = [](const std::string& text) -> std::string {
     try {
-      parse_fit_data(text, "f.csv");
+      MeasuredData::from_csv(text, "f.csv");
     } catch (const InputError& error) {
       return error.what();
     }
@@ -313,12 +313,12 @@ TEST(FitData, Columns_AreReadAndCheckedLineByLine) {
 }
 
 TEST(FitParameter, Coordinates_AreLogarithmicOverADecade) {
-  const Parameter wide = parse_parameter("surface.sigma=0.01:1");
+  const FitRange wide = FitRange::from_text("surface.sigma=0.01:1");
   EXPECT_NEAR(wide.at(0.5), 0.1, 1e-15);
-  const Parameter narrow = parse_parameter("surface.n=1:2:1.25");
+  const FitRange narrow = FitRange::from_text("surface.n=1:2:1.25");
   EXPECT_NEAR(narrow.at(0.5), 1.5, 1e-15);
   EXPECT_EQ(narrow.start, 1.25);
-  for (const Parameter& one : {wide, narrow}) {
+  for (const FitRange& one : {wide, narrow}) {
     EXPECT_NEAR(one.coordinate(one.at(0.3)), 0.3, 1e-14);
     EXPECT_NEAR(one.slope(one.at(0.3)), (one.at(0.3 + 1e-6) - one.at(0.3 - 1e-6)) / 2e-6, 1e-6);
   }

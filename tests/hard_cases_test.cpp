@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+
+#include <dolp/errors.hpp>
+#include <map>
 #include <memory>
 #include <string>
 #include <tuple>
 #include <vector>
 
-#include "base/error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "model/point_result.hpp"
 #include "properties_support.hpp"

@@ -61,7 +61,7 @@ class Invented final : public MomentsEvaluator {
                          .albedo_error = error_,
                          .deficit_error = error_,
                          .evaluations = 10.0});
-      if (progress && !progress(moments.size(), request.size())) throw Cancelled{};
+      if (progress && !progress(moments.size(), request.size())) throw Cancelled();
     }
     return moments;
   }

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <dolp/errors.hpp>
 #include <limits>
 
-#include "base/error.hpp"
 #include "model/status.hpp"
 #include "table/table_lookup.hpp"
 

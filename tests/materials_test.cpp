@@ -3,8 +3,8 @@
 #include <sys/stat.h>
 
 #include <cmath>
+#include <dolp/errors.hpp>
 
-#include "base/error.hpp"
 #include "scene/csv.hpp"
 #include "scene/embedded_data.hpp"
 #include "scene/material_data.hpp"

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <dolp/errors.hpp>
 #include <numbers>
 
-#include "base/error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "reference/mueller.hpp"
 #include "run/scene_run.hpp"
@@ -28,15 +28,15 @@ Scene scene_with(Masking masking) {
   return scene;
 }
 
-MuellerElements elements(const Scene& scene, const BeamAngles& angles, double sigma = 0.3) {
+MuellerMatrix elements(const Scene& scene, const BeamAngles& angles, double sigma = 0.3) {
   CpuEvaluator evaluator(Precision::kAuto);
   return evaluate_mueller(scene, {{angles, {sigma, 3.0}, kPaint}}, evaluator, {}).front();
 }
 
-bool is_all_nan(const MuellerElements& f) {
+bool is_all_nan(const MuellerMatrix& f) {
   return std::ranges::all_of(f, [](double m) { return std::isnan(m); });
 }
-bool is_finite(const MuellerElements& f) {
+bool is_finite(const MuellerMatrix& f) {
   return std::ranges::all_of(f, [](double m) { return std::isfinite(m); });
 }
 
@@ -46,7 +46,7 @@ TEST(MuellerRun, SpecularAndDiffuse_AreAddedAsInEquation15) {
   scene.surface.diffuse = 0.2;
   scene.surface.diffuse_exponent = -0.4;
   const BeamAngles angles{30.0, 55.0, 140.0};
-  const MuellerElements f = elements(scene, angles);
+  const MuellerMatrix f = elements(scene, angles);
   const MuellerMatrix specular = reference_pbrdf(scene.surface, kPaint, 30.0, 55.0, 140.0);
   const double cosines = std::cos(std::numbers::pi / 6.0) * std::cos(55.0 * std::numbers::pi / 180.0);
   const double diffuse = 0.2 / std::numbers::pi * std::pow(cosines, -0.4);
@@ -59,10 +59,10 @@ TEST(MuellerRun, SpecularAndDiffuse_AreAddedAsInEquation15) {
 TEST(MuellerRun, NinetyDegrees_IsTheLimitWhereThereIsOneAndNanElsewhere) {
   for (const BeamAngles& at : {BeamAngles{90.0, 40.0, 160.0}, BeamAngles{40.0, 90.0, 160.0}}) {
     for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
-      const MuellerElements f = elements(scene_with(masking), at);
+      const MuellerMatrix f = elements(scene_with(masking), at);
       BeamAngles near = at;
       (at.theta_i_deg == 90.0 ? near.theta_i_deg : near.theta_r_deg) = 90.0 - 1e-6;
-      const MuellerElements g = elements(scene_with(masking), near);
+      const MuellerMatrix g = elements(scene_with(masking), near);
       EXPECT_GT(f[0], 0.0);
       for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(f[i], g[i], 1e-6 * f[0]);  // the step is 2e-8 rad
       Scene diffuse = scene_with(masking);
@@ -86,7 +86,7 @@ TEST(MuellerRun, Mirror_HasTheDiffusePartButInItsSpecularDirection) {
   EXPECT_TRUE(is_all_nan(elements(scene, {40.0, 40.0, 180.0}, 0.0)));
   EXPECT_TRUE(is_all_nan(elements(scene, {40.0, 40.0, -180.0}, 0.0)));
   EXPECT_TRUE(is_all_nan(elements(scene, {0.0, 0.0, 33.0}, 0.0)));
-  MuellerElements expected{};
+  MuellerMatrix expected{};
   expected[0] = 0.3 / std::numbers::pi;
   EXPECT_EQ(elements(scene, {40.0, 41.0, 180.0}, 0.0), expected);
   EXPECT_EQ(elements(scene, {90.0, 40.0, 180.0}, 0.0), expected);
@@ -97,7 +97,7 @@ TEST(MuellerRun, WithoutASpecularPart_OnlyTheDiffuseIsLeft) {
   scene.surface.specular = 0.0;
   scene.surface.diffuse = 0.3;
   scene.surface.diffuse_exponent = 0.0;
-  MuellerElements expected{};
+  MuellerMatrix expected{};
   expected[0] = 0.3 / std::numbers::pi;
   EXPECT_EQ(elements(scene, {40.0, 90.0, 0.0}), expected);
   EXPECT_EQ(elements(scene, {40.0, 40.0, 180.0}, 0.0), expected);

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <dolp/errors.hpp>
 #include <iostream>
 #include <random>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 
 namespace dolp {

@@ -9,11 +9,11 @@
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 #include <cstddef>
+#include <dolp/errors.hpp>
 #include <iostream>
 #include <numbers>
 #include <vector>
 
-#include "base/error.hpp"
 #include "reference/adaptive.hpp"
 #include "reference/attenuation.hpp"
 #include "reference/fresnel.hpp"

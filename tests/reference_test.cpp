@@ -9,6 +9,7 @@
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 #include <complex>
+#include <dolp/errors.hpp>
 #include <iostream>
 #include <limits>
 #include <numbers>
@@ -16,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
+
 #include "model/choices.hpp"
 #include "reference/adaptive.hpp"
 #include "reference/mueller.hpp"

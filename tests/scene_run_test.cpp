@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <dolp/errors.hpp>
 #include <iostream>
 #include <numeric>
 #include <random>
 
-#include "base/error.hpp"
 #include "radiometry/radiometry.hpp"
 #include "scene_run_support.hpp"
 

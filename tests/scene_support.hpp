@@ -1,10 +1,10 @@
 // A scene that the tests of the reader change.
 #pragma once
 
+#include <dolp/setting.hpp>
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
 #include "scene/scene_reader.hpp"
 
 namespace dolp {
@@ -20,7 +20,7 @@ inline const std::string kMinimal =
     "wavelength_um = 10.6\n";
 
 inline Scene parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  return parse_scene(text, "s.toml", overrides);
+  return parse_scene(text, "s.toml", settings_from_text(overrides, "--set"));
 }
 
 inline std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {

@@ -18,6 +18,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <dolp/errors.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -29,7 +30,6 @@
 #include <vector>
 
 #include "base/atomic_file.hpp"
-#include "base/error.hpp"
 #include "base/printable_text.hpp"
 #include "table/table_file.hpp"
 

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <dolp/errors.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
 #include "cli_support.hpp"
 #include "run/table_scene.hpp"
 #include "scene/scene_reader.hpp"

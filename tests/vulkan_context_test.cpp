@@ -1,7 +1,7 @@
 // The choice of a device, under the validation layer.
+#include <dolp/errors.hpp>
 #include <gtest/gtest.h>
 
-#include "base/error.hpp"
 #include "device/context.hpp"
 
 namespace dolp {

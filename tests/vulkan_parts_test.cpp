@@ -3,8 +3,11 @@
 
 #include <string>
 #include <vector>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <dolp/errors.hpp>
 
-#include "base/error.hpp"
 #include "device/devices.hpp"
 
 namespace dolp {

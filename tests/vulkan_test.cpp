@@ -6,9 +6,9 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <dolp/errors.hpp>
 #include <random>
 
-#include "base/error.hpp"
 #include "device/devices.hpp"
 #include "device/instance.hpp"
 #include "device/result.hpp"

@@ -1,10 +1,10 @@
 #include "methods/bench_device.hpp"
 
 #include <cstdlib>
+#include <dolp/errors.hpp>
 #include <string_view>
 #include <vector>
 
-#include "base/error.hpp"
 
 namespace dolp::bench {
 namespace {

@@ -2,11 +2,11 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <dolp/errors.hpp>
 #include <map>
 #include <numbers>
 #include <optional>
 
-#include "base/error.hpp"
 #include "base/stopwatch.hpp"
 #include "device/buffer.hpp"
 #include "evaluate/vulkan/input_buffer.hpp"

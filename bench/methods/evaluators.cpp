@@ -1,8 +1,9 @@
 // The evaluators of dolp as methods of the benchmark.
 #include <algorithm>
 #include <cmath>
+#include <dolp/errors.hpp>
 
-#include "base/error.hpp"
+
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"

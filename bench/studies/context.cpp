@@ -8,10 +8,10 @@
 #include <boost/version.hpp>
 #include <chrono>
 #include <cstdlib>
+#include <dolp/errors.hpp>
 #include <fstream>
 #include <thread>
 
-#include "base/error.hpp"
 #include "base/processor.hpp"
 #include "device/devices.hpp"
 

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <dolp/errors.hpp>
 #include <filesystem>
 
-#include "base/error.hpp"
 #include "methods/method.hpp"
 #include "studies/child.hpp"
 #include "studies/context.hpp"

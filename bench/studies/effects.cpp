@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <dolp/errors.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "base/error.hpp"
+
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/choices.hpp"

@@ -29,7 +29,7 @@ constexpr std::size_t kFirstSet = 1000;  // settings of the fit were chosen on s
 constexpr int kRepeats = 3;
 constexpr const char* kPython = "/usr/bin/python3";
 
-ordered_json interval_json(const fit::Interval& interval) {
+ordered_json interval_json(const FitInterval& interval) {
   const auto end = [](const std::optional<double>& value) { return value ? ordered_json(*value) : ordered_json(); };
   return {end(interval.low), end(interval.high)};
 }
@@ -37,10 +37,10 @@ ordered_json interval_json(const fit::Interval& interval) {
 ordered_json set_row(std::size_t number, const SetOutcome& outcome) {
   const FitSet set = fit_set(number);
   ordered_json row = {{"part", "set"}, {"case", set.keys()}, {"setting", number}};
-  row["model"] = set.scene.overrides;
+  for (const Setting& setting : set.scene.settings) row["model"].push_back(setting.text());
   row["noise"] = set.noise;
   row["truth"] = std::vector<double>(set.truth.begin(), set.truth.end());
-  for (const fit::FittedParameter& one : outcome.result.parameters) {
+  for (const FitParameter& one : outcome.result.parameters) {
     row["values"].push_back(one.value);
     row["interval_68"].push_back(interval_json(one.interval_68));
     row["interval_95"].push_back(interval_json(one.interval_95));
@@ -76,20 +76,20 @@ ordered_json coverage_json(const ordered_json& rows) {
 }
 
 /// The same minimum by SciPy around the Python package, from the middle of the ranges; null without SciPy.
-ordered_json scipy_json(const FitSet& set, const fit::FitData& data, const fit::FitResult& result) {
+ordered_json scipy_json(const FitSet& set, const MeasuredData& data, const fit::FitResult& result) {
   const std::string script = DOLP_BENCH_SCRIPTS "/fit_scipy.py";
   if (run_child({kPython, "-c", "import scipy, xarray"}, ChildErrors::kHidden).status != 0) return {};
   ordered_json question = {{"package", std::filesystem::path(own_program()).replace_filename("python").string()},
-                           {"scene", scene_toml(set.scene.text, "synthetic", set.scene.overrides, {})},
+                           {"scene", scene_toml(set.scene, {})},
                            {"tolerance", result.tolerance},
                            {"uncertainty", set.noise}};
-  for (const fit::Parameter& one : set.parameters) {
+  for (const FitRange& one : set.parameters) {
     question["columns"].push_back(one.key.substr(one.key.find('.') + 1));
     question["low"].push_back(one.low);
     question["high"].push_back(one.high);
     question["start"].push_back(one.at(0.5));
   }
-  for (const fit::Observation& one : data.observations) {
+  for (const Measurement& one : data.measurements) {
     question["theta_deg"].push_back(one.theta_deg);
     question["measured"].push_back(one.value);
   }
@@ -98,7 +98,7 @@ ordered_json scipy_json(const FitSet& set, const fit::FitData& data, const fit::
   if (outcome.status != 0 || !reply.is_object()) throw IoError(script + " failed; its message is above");
   double apart = 0.0;
   for (std::size_t j = 0; j < set.parameters.size(); ++j) {
-    const fit::FittedParameter& one = result.parameters[j];
+    const FitParameter& one = result.parameters[j];
     apart = std::max(apart, std::abs(reply["values"][j].get<double>() - one.value) / one.standard_error.value_or(kNaN));
   }
   reply["apart_in_standard_errors"] = apart;
@@ -108,7 +108,7 @@ ordered_json scipy_json(const FitSet& set, const fit::FitData& data, const fit::
 /// A whole fit, search and intervals, with device and kernels ready.
 ordered_json time_json(MomentsEvaluator& evaluator) {
   const FitSet set = timed_set();
-  const fit::FitData data = synthetic_data(set, 0, evaluator);
+  const MeasuredData data = synthetic_data(set, 0, evaluator);
   const fit::Model model(set.scene, {data}, set.parameters);
   fit::FitResult result;
   std::vector<double> times_s;

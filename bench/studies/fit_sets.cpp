@@ -5,9 +5,9 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <dolp/errors.hpp>
 #include <random>
 
-#include "base/error.hpp"
 #include "base/stopwatch.hpp"
 
 namespace dolp::bench {
@@ -54,7 +54,7 @@ class Random {
 
 /// A parameter, where its truth lies, and where it is looked for.
 struct Choice {
-  fit::Parameter parameter;
+  FitRange parameter;
   double least, most;
 };
 
@@ -69,7 +69,7 @@ const Choice kSpecular = {{"surface.specular", 0.1, 1.0, {}}, 0.6, 0.9};
 
 std::string FitSet::keys() const {
   std::string text;
-  for (const fit::Parameter& parameter : parameters) text += (text.empty() ? "" : " ") + parameter.key;
+  for (const FitRange& parameter : parameters) text += (text.empty() ? "" : " ") + parameter.key;
   return text;
 }
 
@@ -93,7 +93,7 @@ FitSet fit_set(std::size_t number) {
     set.parameters.push_back(choice.parameter);
     set.truth[static_cast<Eigen::Index>(j)] = random.uniform(choice.least, choice.most);
   }
-  set.observable = random.below(2) == 0 ? fit::Observable::kQOverI : fit::Observable::kDolp;
+  set.observable = random.below(2) == 0 ? Observable::kQOverI : Observable::kDolp;
   set.points = kPoints;
   set.noise = random.log_uniform(5e-4, 1e-2);
   return set;
@@ -109,22 +109,22 @@ FitSet timed_set() {
   return set;
 }
 
-fit::FitData synthetic_data(const FitSet& set, std::size_t number, MomentsEvaluator& evaluator) {
-  fit::FitData data;
+MeasuredData synthetic_data(const FitSet& set, std::size_t number, MomentsEvaluator& evaluator) {
+  MeasuredData data;
   data.name = "synthetic";
   data.zenith_column = "theta_deg";
   data.has_uncertainties = true;
   for (std::size_t i = 0; i < set.points; ++i) {
     const double share = static_cast<double>(i) / (static_cast<double>(set.points) - 1.0);
-    data.observations.push_back({set.observable, kFirstDeg + share * (kLastDeg - kFirstDeg), {}, 0.0, set.noise});
+    data.measurements.push_back({set.observable, kFirstDeg + share * (kLastDeg - kFirstDeg), {}, 0.0, set.noise});
   }
   const fit::Model model(set.scene, {data}, set.parameters);
   const Eigen::MatrixX2d exact = model.predict({set.truth}, kExactTolerance, evaluator, {}).front().components;
   Random random(number + 1'000'000);
   for (std::size_t i = 0; i < set.points; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    const double value = set.observable == fit::Observable::kDolp ? exact.row(row).norm() : exact(row, 0);
-    data.observations[i].value = value + set.noise * random.normal();
+    const double value = set.observable == Observable::kDolp ? exact.row(row).norm() : exact(row, 0);
+    data.measurements[i].value = value + set.noise * random.normal();
   }
   return data;
 }
@@ -141,7 +141,7 @@ bool SetOutcome::is_consistent() const {
 
 SetOutcome fit_outcome(std::size_t number, MomentsEvaluator& evaluator) {
   const FitSet set = fit_set(number);
-  const fit::FitData data = synthetic_data(set, number, evaluator);
+  const MeasuredData data = synthetic_data(set, number, evaluator);
   const fit::Model model(set.scene, {data}, set.parameters);
   SetOutcome outcome;
   const auto start = std::chrono::steady_clock::now();
@@ -150,9 +150,9 @@ SetOutcome fit_outcome(std::size_t number, MomentsEvaluator& evaluator) {
   if (!result) throw InputError(fmt::format("set {}: no minimum was found", number));
   outcome.result = std::move(*result);
   for (std::size_t j = 0; j < set.parameters.size(); ++j) {
-    const fit::FittedParameter& fitted = outcome.result.parameters[j];
+    const FitParameter& fitted = outcome.result.parameters[j];
     const double truth = set.truth[static_cast<Eigen::Index>(j)];
-    const auto holds = [&](const fit::Interval& interval) {
+    const auto holds = [&](const FitInterval& interval) {
       return (!interval.low || *interval.low <= truth) && (!interval.high || truth <= *interval.high);
     };
     outcome.held_68 += holds(fitted.interval_68) ? 1 : 0;

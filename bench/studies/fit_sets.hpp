@@ -15,9 +15,9 @@ namespace dolp::bench {
 /// A scene, what varies in it, and what is true.
 struct FitSet {
   fit::SceneText scene;
-  std::vector<fit::Parameter> parameters;
+  std::vector<FitRange> parameters;
   Eigen::VectorXd truth;
-  fit::Observable observable = fit::Observable::kQOverI;
+  Observable observable = Observable::kQOverI;
   std::size_t points = 0;  ///< zeniths from 2 to 80 degrees
   double noise = 0.0;      ///< standard deviation of DOLP or Q/I
 
@@ -33,7 +33,7 @@ FitSet fit_set(std::size_t number);
 FitSet timed_set();
 
 /// The truth with Gaussian noise. `number`: the seed of the noise.
-fit::FitData synthetic_data(const FitSet& set, std::size_t number, MomentsEvaluator& evaluator);
+MeasuredData synthetic_data(const FitSet& set, std::size_t number, MomentsEvaluator& evaluator);
 
 /// A fit of a set against its truth.
 struct SetOutcome {

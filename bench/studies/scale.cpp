@@ -7,11 +7,11 @@
 
 #include <array>
 #include <chrono>
+#include <dolp/errors.hpp>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "base/error.hpp"
 #include "base/stopwatch.hpp"
 #include "methods/method.hpp"
 #include "studies/child.hpp"

@@ -34,7 +34,7 @@ void StudyRun::describe(const std::string& study, const std::string& error, cons
 
 void StudyRun::finish(const ordered_json& row) {
   json_["results"].push_back(row);
-  if (!progress_(++done_, total_)) throw Cancelled{};
+  if (!progress_(++done_, total_)) throw Cancelled();
 }
 
 ordered_json StudyRun::result() {

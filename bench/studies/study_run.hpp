@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <dolp/errors.hpp>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
-#include "base/progress.hpp"
 #include "studies/study.hpp"
 #include "studies/timing.hpp"
 

@@ -44,6 +44,37 @@ auto interruptible(const Body& body) {
   return result.get();
 }
 
+/// A value of a key: None, bool, float, str, a list of floats or a dictionary of from, to, count and spacing.
+dolp::Value value_of(const std::string& key, const py::handle& value) {
+  if (value.is_none()) return {};
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
+  if (py::isinstance<py::float_>(value)) return value.cast<double>();
+  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+  if (!py::isinstance<py::dict>(value)) return value.cast<std::vector<double>>();
+  const auto range = value.cast<std::map<std::string, py::object>>();
+  for (const auto& [name, item] : range) {
+    if (name == "from" || name == "to" || name == "count" || name == "spacing") continue;
+    throw dolp::InputError(key + ": " + name + " is none of from, to, count, spacing");
+  }
+  if (!range.contains("from") || !range.contains("to") || !range.contains("count")) {
+    throw dolp::InputError(key + ": a range needs from, to and count");
+  }
+  const auto spacing = range.find("spacing");
+  const std::string word = spacing == range.end() ? "linear" : spacing->second.cast<std::string>();
+  if (word != "linear" && word != "log") throw dolp::InputError(key + ".spacing: must be one of linear, log");
+  return dolp::AxisRange{range.at("from").cast<double>(), range.at("to").cast<double>(),
+                         range.at("count").cast<std::size_t>(), word == "log"};
+}
+
+std::vector<dolp::Setting> settings_of(const py::dict& values) {
+  std::vector<dolp::Setting> settings;
+  for (const auto& [key, value] : values) {
+    const auto name = key.cast<std::string>();
+    settings.push_back({name, value_of(name, value)});
+  }
+  return settings;
+}
+
 /// Views of arrays that outlive the result.
 std::vector<dolp::Column> views(const Columns& columns) {
   std::vector<dolp::Column> all;
@@ -51,6 +82,16 @@ std::vector<dolp::Column> views(const Columns& columns) {
     all.push_back({name, {values.data(), static_cast<std::size_t>(values.size())}});
   }
   return all;
+}
+
+/// Low, high and perhaps a start of each key.
+std::vector<dolp::FitRange> ranges_of(const std::map<std::string, std::vector<double>>& vary) {
+  std::vector<dolp::FitRange> ranges;
+  for (const auto& [key, ends] : vary) {
+    if (ends.size() < 2 || ends.size() > 3) throw dolp::InputError(key + ": must vary over (low, high) or (low, high, start)");
+    ranges.push_back({key, ends[0], ends[1], ends.size() == 3 ? std::optional(ends[2]) : std::nullopt});
+  }
+  return ranges;
 }
 
 /// An array that owns `values`.
@@ -91,9 +132,13 @@ PYBIND11_MODULE(_native, module) {
   py::register_exception<dolp::MemoryError>(module, "MemoryError", PyExc_MemoryError);
 
   py::class_<dolp::Scene>(module, "Scene")
-      .def_static("from_file", &dolp::Scene::from_file)
-      .def_static("from_text", &dolp::Scene::from_text)
-      .def("using", &dolp::Scene::with)
+      .def_static("from_file", [](const std::filesystem::path& path, const py::dict& values) {
+        return dolp::Scene::from_file(path, settings_of(values));
+      })
+      .def_static("from_text", [](const std::string& text, const py::dict& values) {
+        return dolp::Scene::from_text(text, settings_of(values), "text");
+      })
+      .def("with_", [](const dolp::Scene& scene, const py::dict& values) { return scene.with(settings_of(values)); })
       .def("toml", [](const dolp::Scene& scene) { return scene.toml(); })
       .def_property_readonly("title", &dolp::Scene::title);
 
@@ -124,14 +169,17 @@ PYBIND11_MODULE(_native, module) {
            })
       .def("fit",
            [](dolp::Evaluator& evaluator, const dolp::Scene& scene,
-              const std::vector<std::pair<std::string, std::vector<std::string>>>& data,
-              const std::vector<std::string>& vary, std::size_t starts, std::uint64_t seed) {
+              const std::vector<std::pair<std::string, py::dict>>& data,
+              const std::map<std::string, std::vector<double>>& vary, std::size_t starts, std::uint64_t seed) {
              std::vector<dolp::MeasuredData> sets;
-             for (const auto& [csv, overrides] : data) {
-               sets.push_back({csv, overrides, "data" + (data.size() > 1 ? std::to_string(sets.size() + 1) : "")});
+             for (const auto& [csv, values] : data) {
+               const std::string name = "data" + (data.size() > 1 ? std::to_string(sets.size() + 1) : "");
+               sets.push_back(dolp::MeasuredData::from_csv(csv, name, settings_of(values)));
              }
+             dolp::FitOptions options{.vary = ranges_of(vary), .starts = starts, .seed = seed};
              dolp::Fit fit = interruptible([&](const dolp::Progress& progress) {
-               return evaluator.fit(scene, sets, {vary, starts, seed, progress});
+               options.progress = progress;
+               return evaluator.fit(scene, sets, options);
              });
              if (!fit.has_minimum) {
                throw dolp::InputError("fit: no descent converged; try other ranges, or more starts");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <cstddef>
+#include <dolp/errors.hpp>
 #include <exception>
 #include <functional>
 #include <mutex>
@@ -13,7 +14,6 @@
 #include <thread>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/processor.hpp"
 #include "base/stopwatch.hpp"
 #include "reference/direct_emission.hpp"
@@ -165,7 +165,7 @@ class Crew {
       told = done_;
       lock.unlock();
       try {
-        if (progress && !is_stopping_ && !progress(told, results_.size())) throw Cancelled{};
+        if (progress && !is_stopping_ && !progress(told, results_.size())) throw Cancelled();
         lock.lock();
       } catch (...) {
         is_stopping_ = true;

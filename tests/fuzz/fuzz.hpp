@@ -3,11 +3,11 @@
 
 #include <unistd.h>
 
+#include <dolp/errors.hpp>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
-#include "base/error.hpp"
 
 namespace dolp::fuzz {
 

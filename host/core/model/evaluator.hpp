@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <dolp/errors.hpp>
 #include <string>
 #include <vector>
 
-#include "base/progress.hpp"
 #include "model/moments.hpp"
 #include "model/scattering.hpp"
 
@@ -54,6 +54,8 @@ class MomentsEvaluator {
   virtual bool has_double() const { return true; }
   /// The same evaluator's pBRDFs, which the bistatic mode needs; null when it has none.
   virtual ScatteringEvaluator* scattering() { return nullptr; }
+  /// Of each direction of a grid 1 where evaluate() interpolates between slope distributions; empty where it never does.
+  virtual std::vector<char> interpolated_directions(const MomentsRequest& /*request*/) const { return {}; }
   /// Totals over all calls since clear_report, pBRDFs included.
   virtual EvaluationReport report() const = 0;
   /// Begins a run of its own: nothing in its report, or in what follows from the report, is of a run before.

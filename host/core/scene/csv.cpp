@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <dolp/errors.hpp>
 #include <optional>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 
 namespace dolp {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <dolp/errors.hpp>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "scene/csv.hpp"
 #include "scene/embedded_data.hpp"

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <dolp/errors.hpp>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "scene/csv.hpp"
 #include "scene/material_data.hpp"

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <dolp/errors.hpp>
 #include <string_view>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "scene/csv.hpp"
 #include "scene/number_range.hpp"
@@ -15,13 +15,13 @@ namespace {
 
 constexpr std::size_t kMostPointsBytes = 1U << 30U;
 
-using Column = std::optional<std::vector<double>> Points::*;
+using Member = std::optional<std::vector<double>> Points::*;
 
 /// A column that a file may have.
 struct ColumnRule {
   const char* name;
   NumberRange range;
-  Column column;
+  Member column;
   bool is_required;
 };
 
@@ -123,12 +123,12 @@ std::string Points::where(std::size_t row) const {
   return header_line > 0 ? fmt::format("{}:{}", name, row_lines[row]) : fmt::format("{}[{}]", name, row);
 }
 
-Points points_of(std::span<const NamedColumn> columns, std::size_t count, PointsKind kind) {
+Points points_of(std::span<const Column> columns, std::size_t count, PointsKind kind) {
   const std::vector<ColumnRule> rules = column_rules(kind);
   Points points;
   points.name = "points";
   points.count = count;
-  for (const NamedColumn& column : columns) {
+  for (const Column& column : columns) {
     const ColumnRule& rule = find_rule(rules, column.name, points.where());
     const std::span<const double> values = column.values;
     if (values.size() != 1 && values.size() != count) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <dolp/options.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -32,15 +33,9 @@ struct Points {
   std::string where() const;
 };
 
-/// A column of points in memory.
-struct NamedColumn {
-  std::string name;
-  std::span<const double> values;  ///< one of each point, or one of all
-};
-
 /// Points in memory: `count` of them.
 /// Errors: InputError as for a file, and for a column of another length.
-Points points_of(std::span<const NamedColumn> columns, std::size_t count, PointsKind kind);
+Points points_of(std::span<const Column> columns, std::size_t count, PointsKind kind);
 
 /// Reads the points at `path` ("-" is stdin). A header without rows is a valid list of no points.
 ///

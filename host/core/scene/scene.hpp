@@ -2,6 +2,7 @@
 // degrees are what the user typed and what the table's coordinate must repeat).
 #pragma once
 
+#include <dolp/setting.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -103,6 +104,8 @@ struct SceneNames {
   std::string source_preset, source_file;
 };
 
+class SceneDocument;
+
 struct Scene {
   std::string title;
   SceneNames names;
@@ -118,7 +121,8 @@ struct Scene {
   std::string path_name;               ///< as given on the command line, for messages
   std::string text;                    ///< the file, verbatim
   std::vector<std::string> files;      ///< that the scene names, as the process finds them
-  std::vector<std::string> overrides;  ///< the --set KEY=VALUE arguments that were applied, verbatim
+  std::vector<Setting> settings;       ///< that were applied to the text
+  std::shared_ptr<const SceneDocument> document;  ///< text and settings as TOML; none of a scene that was not read
 };
 
 /// The same scene at one wavelength, without its grid and texts.

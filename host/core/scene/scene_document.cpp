@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <dolp/errors.hpp>
 #include <optional>
 #include <sstream>
+#include <variant>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "scene/scene_keys.hpp"
 
@@ -79,9 +81,9 @@ std::string_view table_part(std::string_view key) {
   return dot == std::string_view::npos ? std::string_view{} : key.substr(0, dot);
 }
 
-/// Calls `insert` with the value of an override: TOML, else a number in another notation, else a text.
+/// Calls `insert` with what a text stands for: TOML, else a number in another notation, else a word.
 template <class Insert>
-void with_override_value(const std::string& text, bool is_text_key, const Insert& insert) {
+void insert_text(const std::string& text, bool is_text_key, const Insert& insert) {
   try {
     const toml::table parsed = toml::parse("v = " + text);
     const toml::node* node = parsed.get("v");
@@ -98,6 +100,30 @@ void with_override_value(const std::string& text, bool is_text_key, const Insert
   }
   insert(text);
 }
+
+/// Calls `insert` with a value as TOML has it.
+template <class Insert>
+struct ValueInserter {
+  const Insert& insert;
+  bool is_text_key;
+
+  void operator()(std::monostate) const {}
+  void operator()(bool flag) const { insert(flag); }
+  void operator()(double number) const { insert(number); }
+  void operator()(const std::string& text) const { insert(text); }
+  void operator()(const std::vector<double>& numbers) const {
+    toml::array list;
+    for (const double number : numbers) list.push_back(number);
+    insert(list);
+  }
+  void operator()(const AxisRange& range) const {
+    insert(toml::table{{"from", range.from},
+                       {"to", range.to},
+                       {"count", static_cast<std::int64_t>(range.count)},
+                       {"spacing", range.is_logarithmic ? "log" : "linear"}});
+  }
+  void operator()(const TomlText& toml) const { insert_text(toml.text, is_text_key, insert); }
+};
 
 }  // namespace
 
@@ -116,46 +142,42 @@ SceneDocument::SceneDocument(const std::string& text, const std::string& path_na
   }
 }
 
-void SceneDocument::apply_override(const std::string& argument) {
-  const std::size_t equals = argument.find('=');
-  const std::string key = equals == std::string::npos ? argument : std::string(trim(argument.substr(0, equals)));
+void SceneDocument::apply(const Setting& setting) {
+  const std::string& key = setting.key;
+  const std::string value = setting.value.text();
+  const std::string origin = setting.origin.empty() ? one_line(key + " = " + value) : setting.origin;
   std::vector<std::string_view> path = split(key, '.');
-  bool is_malformed = equals == std::string::npos;
-  for (const std::string_view part : path) is_malformed = is_malformed || part.empty();
-  if (is_malformed) {
-    throw InputError(fmt::format("--set {}: must be KEY=VALUE with a scene key, for example surface.masking=smith",
-                                 one_line(argument)));
-  }
-  const std::string value(trim(argument.substr(equals + 1)));
+  if (std::ranges::any_of(path, &std::string_view::empty)) throw InputError(origin + ": needs the key of a scene");
   if (path.size() > kMostDepth || line_of_deep_nesting(value) > 0) {
-    throw InputError(fmt::format("--set {}: nested deeper than {}", one_line(argument), kMostDepth));
+    throw InputError(fmt::format("{}: nested deeper than {}", origin, kMostDepth));
   }
-  if (is_effect_table(key) && value == "none") {
+  const bool is_word_none = is_effect_table(key) && (value == "none" || value == "\"none\"");
+  if (is_word_none || std::holds_alternative<std::monostate>(setting.value.content())) {
     erase(key);
     return;
   }
   const std::string_view leaf = path.back();
   path.pop_back();
-  toml::table& table = create_table(path, argument);
+  toml::table& table = create_table(path, origin);
   drop_other_alternatives(key);
   const SceneKey* known = find_scene_key(key);
+  const auto insert = [&](const auto& v) { table.insert_or_assign(leaf, v); };
   const bool is_text_key = known && known->description.type == KeyDescription::Type::kText;
-  with_override_value(value, is_text_key, [&](const auto& v) { table.insert_or_assign(leaf, v); });
-  overrides_[key] = argument;
+  std::visit(ValueInserter<decltype(insert)>{insert, is_text_key}, setting.value.content());
+  origins_[key] = origin;
 }
 
-toml::table& SceneDocument::create_table(const std::vector<std::string_view>& path, const std::string& argument) {
+toml::table& SceneDocument::create_table(const std::vector<std::string_view>& path, const std::string& origin) {
   toml::table* table = &root_;
   std::string key;
   for (const std::string_view part : path) {
     key += (key.empty() ? "" : ".") + std::string(part);
     if (!table->contains(part)) {
       table->insert(part, toml::table{});
-      overrides_[key] = argument;
+      origins_[key] = origin;
     }
     table = table->get_as<toml::table>(part);
-    if (!table)
-      throw InputError(fmt::format("--set {}: {} is not a table in this scene", one_line(argument), one_line(key)));
+    if (!table) throw InputError(fmt::format("{}: {} is not a table in this scene", origin, one_line(key)));
   }
   return *table;
 }
@@ -167,7 +189,7 @@ void SceneDocument::drop_other_alternatives(const std::string& key) {
     if (!chooses) continue;
     for (const auto& alternative : choice.alternatives) {
       for (const std::string& other : alternative) {
-        if (alternative.front() != key && !is_overridden(other)) erase(other);
+        if (alternative.front() != key && !is_set(other)) erase(other);
       }
     }
   }
@@ -177,7 +199,7 @@ void SceneDocument::erase(const std::string& key) {
   const std::string_view table_name = table_part(key);
   toml::table* table = table_name.empty() ? &root_ : root_.get_as<toml::table>(table_name);
   if (table) table->erase(last_part(key));
-  std::erase_if(overrides_,
+  std::erase_if(origins_,
                 [&](const auto& entry) { return entry.first == key || entry.first.starts_with(key + '.'); });
 }
 
@@ -191,9 +213,9 @@ const toml::node* SceneDocument::find(std::string_view key) const {
   return node;
 }
 
-const std::string* SceneDocument::override_of(std::string_view key) const {
+const std::string* SceneDocument::origin_of(std::string_view key) const {
   for (;;) {
-    if (const auto found = overrides_.find(key); found != overrides_.end()) return &found->second;
+    if (const auto found = origins_.find(key); found != origins_.end()) return &found->second;
     if (table_part(key).empty()) return nullptr;
     key = table_part(key);
   }
@@ -209,10 +231,8 @@ unsigned SceneDocument::line_of(std::string_view key) const {
 
 std::string SceneDocument::prefix(std::string_view key) const {
   const toml::node* node = find(key);
-  // A table that an override merely created is not where a missing key should be put right.
-  if (const std::string* argument = node ? override_of(key) : nullptr; argument) {
-    return fmt::format("--set {}: ", one_line(*argument));
-  }
+  // A table that a setting merely created is not where a missing key should be put right.
+  if (const std::string* origin = node ? origin_of(key) : nullptr; origin) return *origin + ": ";
   const std::string value = node && !node->is_table() ? " = " + one_line(toml_text(*node)) : "";
   return fmt::format("{}:{}: {}{}: ", name_, line_of(key), one_line(key), value);
 }

@@ -1,7 +1,9 @@
-// The TOML of a scene with the overrides applied, which knows where each value came from.
+// The TOML of a scene with settings applied, which knows where each value came from.
 #pragma once
 
 #include <toml++/toml.h>
+
+#include <dolp/setting.hpp>
 #include <map>
 #include <string>
 #include <string_view>
@@ -15,12 +17,12 @@ class SceneDocument {
   /// kMostTextBytes.
   SceneDocument(const std::string& text, const std::string& path_name);
 
-  /// Applies one KEY=VALUE argument. Errors: InputError.
-  void apply_override(const std::string& argument);
+  /// Gives a key another value, or takes it away. Errors: InputError.
+  void apply(const Setting& setting);
 
   const toml::table& root() const { return root_; }
   const toml::node* find(std::string_view key) const;
-  bool is_overridden(std::string_view key) const { return override_of(key) != nullptr; }
+  bool is_set(std::string_view key) const { return origin_of(key) != nullptr; }
 
   /// Throws InputError: where the key's value is, the key and its value, and what is wrong. Of an absent key it names
   /// the line of its table.
@@ -33,14 +35,14 @@ class SceneDocument {
   unsigned line_of(std::string_view key) const;
 
  private:
-  const std::string* override_of(std::string_view key) const;
-  toml::table& create_table(const std::vector<std::string_view>& path, const std::string& argument);
+  const std::string* origin_of(std::string_view key) const;
+  toml::table& create_table(const std::vector<std::string_view>& path, const std::string& origin);
   void drop_other_alternatives(const std::string& key);
   void erase(const std::string& key);
 
   std::string name_;
   toml::table root_;
-  std::map<std::string, std::string, std::less<>> overrides_;  // dotted key -> the argument that set it
+  std::map<std::string, std::string, std::less<>> origins_;  // of a key that was set: what messages about it begin with
 };
 
 }  // namespace dolp

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <dolp/errors.hpp>
 #include <numeric>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "model/direction.hpp"
 #include "scene/material_data.hpp"
@@ -259,12 +259,8 @@ void check_radiation(const Scene& scene, const SceneDocument& document) {
   }
 }
 
-}  // namespace
-
-Scene parse_scene(const std::string& text, const std::string& path_name, const std::vector<std::string>& overrides,
-                  const KnownData* known) {
-  SceneDocument document(text, path_name);
-  for (const std::string& argument : overrides) document.apply_override(argument);
+/// The scene of a document, with files found from the folder of `path_name`.
+Scene scene_of(const SceneDocument& document, const std::string& path_name, const KnownData* known) {
   Scene scene = read_keys(document);
   fill_from_grid(scene, document);
   load_material(scene, document, path_name, known);
@@ -274,13 +270,34 @@ Scene parse_scene(const std::string& text, const std::string& path_name, const s
   check_radiation(scene, document);
   check_scattering(scene, document);
   scene.path_name = path_name;
-  scene.text = text;
-  scene.overrides = overrides;
+  scene.document = std::make_shared<const SceneDocument>(document);
   return scene;
 }
 
-Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
-  return parse_scene(read_text(path, input_name(path) + ": "), path, overrides);
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::string& path_name, const std::vector<Setting>& settings,
+                  const KnownData* known) {
+  SceneDocument document(text, path_name);
+  for (const Setting& setting : settings) document.apply(setting);
+  Scene scene = scene_of(document, path_name, known);
+  scene.text = text;
+  scene.settings = settings;
+  return scene;
+}
+
+Scene read_scene(const std::string& path, const std::vector<Setting>& settings) {
+  return parse_scene(read_text(path, input_name(path) + ": "), path, settings);
+}
+
+Scene with_settings(const Scene& scene, const std::vector<Setting>& settings) {
+  SceneDocument document = *scene.document;
+  for (const Setting& setting : settings) document.apply(setting);
+  Scene changed = scene_of(document, scene.path_name, nullptr);
+  changed.text = scene.text;
+  changed.settings = scene.settings;
+  changed.settings.insert(changed.settings.end(), settings.begin(), settings.end());
+  return changed;
 }
 
 }  // namespace dolp

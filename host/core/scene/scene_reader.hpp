@@ -10,17 +10,14 @@
 
 namespace dolp {
 
-/// Reads the scene at `path` ("-" is stdin), applies the `--set` overrides in order and validates the result.
-///
-/// Overrides: KEY=VALUE with KEY any scene key, dotted (surface.masking, grid.theta_deg.count). VALUE is a TOML value;
-/// what is not one is a string, so words need no quotes. A missing table is created. Between alternatives (surface.n,
-/// .material, .material_file; source.irradiance, .relative_irradiance, .preset, .file; path.temperature_K, .radiance;
-/// spectrum.wavelength_um, .band_um) an override replaces what the file chose. `emission=none` removes that table; so
-/// do source, surroundings and path. Files named in a scene are relative to the folder of the scene (of the process for
-/// "-").
-/// Errors: InputError, one line: `file:line: key = value: what is wrong and what is allowed`, or `--set KEY=VALUE: …`;
-/// a file that cannot be opened is an InputError too.
-Scene read_scene(const std::string& path, const std::vector<std::string>& overrides);
+/// Reads the scene at `path` ("-" is stdin), applies the settings in order and validates the result. Files named in a
+/// scene are relative to the folder of the scene (of the process for "-").
+/// Errors: InputError, one line: `file:line: key = value: what is wrong and what is allowed`, of a setting its origin
+/// instead; a file that cannot be opened is an InputError too.
+Scene read_scene(const std::string& path, const std::vector<Setting>& settings = {});
+
+/// The scene with more settings. Domain: a scene that was read. Errors: InputError, as read_scene.
+Scene with_settings(const Scene& scene, const std::vector<Setting>& settings);
 
 /// n, k and E0 that the names in a scene stood for when a table was made of it.
 struct KnownData {
@@ -32,7 +29,7 @@ struct KnownData {
 /// The same for a text that is already in memory (the scene that a table file carries); `path_name` is for messages and
 /// gives the folder of the files the scene names. With `known` none of these is opened, unless it says so: an InputError
 /// where it lacks what the scene takes from one.
-Scene parse_scene(const std::string& text, const std::string& path_name, const std::vector<std::string>& overrides,
+Scene parse_scene(const std::string& text, const std::string& path_name, const std::vector<Setting>& settings = {},
                   const KnownData* known = nullptr);
 
 /// One scene key, for help texts, documentation and widgets.

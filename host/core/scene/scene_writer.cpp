@@ -50,11 +50,8 @@ std::string path_from(const std::filesystem::path& folder, const std::string& fi
 
 }  // namespace
 
-std::string scene_toml(const std::string& text, const std::string& path_name, const std::vector<std::string>& overrides,
-                       const std::filesystem::path& folder) {
-  parse_scene(text, path_name, overrides);
-  SceneDocument document(text, path_name);
-  for (const std::string& argument : overrides) document.apply_override(argument);
+std::string scene_toml(const Scene& scene, const std::filesystem::path& folder) {
+  const SceneDocument& document = *scene.document;
   std::string written;
   for (const KeyDescription& description : scene_keys()) {
     if (description.key.find('.') != std::string::npos) continue;
@@ -70,7 +67,7 @@ std::string scene_toml(const std::string& text, const std::string& path_name, co
       if (!node) continue;
       const std::string value =
           names_file(description.key)
-              ? formatted(toml::value(path_from(folder, node->value_or(std::string()), path_name)))
+              ? formatted(toml::value(path_from(folder, node->value_or(std::string()), scene.path_name)))
               : value_text(*node);
       written += description.key.substr(table.size() + 1) + " = " + value + '\n';
     }

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <dolp/errors.hpp>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "scene/csv.hpp"
 #include "scene/embedded_data.hpp"
@@ -96,7 +96,8 @@ Scene at_wavelength(const Scene& scene, double wavelength_um) {
   at.spectrum = {wavelength_um, wavelength_um};
   at.grid = {};
   at.text.clear();
-  at.overrides.clear();
+  at.settings.clear();
+  at.document = nullptr;
   const Material& material = scene.surface.material;
   if (material.tabulated) at.surface.material = fit_to_spectrum(*material.tabulated, at.spectrum, "surface.material: ");
   at.surface.material.tabulated.reset();

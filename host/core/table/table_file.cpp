@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <dolp/errors.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/atomic_file.hpp"
-#include "base/error.hpp"
 #include "base/number_text.hpp"
 #include "base/parallel_ranges.hpp"
 #include "base/printable_text.hpp"

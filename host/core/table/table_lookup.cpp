@@ -6,10 +6,10 @@
 #include <boost/container/static_vector.hpp>
 #include <cmath>
 #include <cstdint>
+#include <dolp/errors.hpp>
 #include <limits>
 #include <set>
 
-#include "base/error.hpp"
 #include "model/status.hpp"
 
 namespace dolp {

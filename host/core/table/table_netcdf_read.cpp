@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <dolp/errors.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
-#include "base/error.hpp"
 #include "table/hdf5_handle.hpp"
 #include "table/table_file.hpp"
 #include "table/table_netcdf.hpp"

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <dolp/errors.hpp>
 #include <fstream>
 #include <sstream>
 
 #include "base/atomic_file.hpp"
-#include "base/error.hpp"
 #include "table/table_file.hpp"
 #include "table/table_store.hpp"
 
@@ -22,7 +22,7 @@ fs::path partial_path(const fs::path& path) { return follow_links(path).string()
 fs::path progress_path(const fs::path& path) { return partial_path(path).string() + ".txt"; }
 
 /// How far a partial file is.
-struct Progress {
+struct ProgressFile {
   std::string identity;
   std::size_t parts = 0;
   ValuesHash::Sums sums;
@@ -33,9 +33,9 @@ struct Progress {
   }
 
   /// Nothing where there is none.
-  static std::optional<Progress> read(const fs::path& path) {
+  static std::optional<ProgressFile> read(const fs::path& path) {
     std::ifstream file(path);
-    Progress progress;
+    ProgressFile progress;
     std::string title, parts, sums;
     if (!std::getline(file, title) || !std::getline(file, progress.identity) || !std::getline(file, parts) ||
         !std::getline(file, sums) || !std::getline(file, progress.note)) {
@@ -57,7 +57,7 @@ struct TableOutput::Impl {
   std::optional<TableStore> store;
   Table only_part;
   std::size_t written = 0;
-  Progress progress;
+  ProgressFile progress;
 
   explicit Impl(Job of_run) : job(std::move(of_run)), format(format_of(job.path)) {
     check_output_path(job.path);
@@ -76,8 +76,8 @@ struct TableOutput::Impl {
   bool is_named() const { return job.is_resumable && job.parts > 1 && job.path != "-"; }
 
   void go_on() {
-    std::optional<Progress> found;
-    if (job.is_resumed) found = Progress::read(progress_path(job.path));
+    std::optional<ProgressFile> found;
+    if (job.is_resumed) found = ProgressFile::read(progress_path(job.path));
     if (found && found->identity != job.identity) {
       throw InputError(fmt::format("{}: is of another run ({}); this one is {}: remove it, or leave out --resume",
                                    partial_path(job.path).string(), found->identity, job.identity));

@@ -2,7 +2,7 @@
 //
 //   #include <dolp/dolp.hpp>
 //
-//   const dolp::Scene scene = dolp::Scene::from_file("scene.toml", {"surface.masking=smith"});
+//   const dolp::Scene scene = dolp::Scene::from_file("scene.toml", {{"surface.masking", "smith"}});
 //   dolp::Evaluator evaluator;                                     // keeps the device and its kernels
 //   const std::vector<double> theta_deg = {0, 30, 60};
 //   const dolp::Results results = evaluator.evaluate(scene, {{"theta_deg", theta_deg}});
@@ -27,50 +27,18 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#define DOLP_EXPORT __attribute__((visibility("default")))
+#include <dolp/errors.hpp>
+#include <dolp/fit.hpp>
+#include <dolp/options.hpp>
+#include <dolp/setting.hpp>
 
 namespace dolp::api {
-
-/// A scene, points, a table or an argument is wrong. The message is one line: where, value, what is allowed.
-class DOLP_EXPORT InputError : public std::invalid_argument {
- public:
-  using std::invalid_argument::invalid_argument;
-};
-
-/// There is no usable Vulkan device, it was lost, or this process was forked from one that uses it.
-class DOLP_EXPORT DeviceError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// A file could not be read or written.
-class DOLP_EXPORT IoError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// The machine or the device is out of memory.
-class DOLP_EXPORT MemoryError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// A Progress returned false. The message says what is left.
-class DOLP_EXPORT Cancelled : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// Called with the number of finished entries, first with 0 when all inputs are read, from one thread at a time, not
-/// always the caller's; returning false ends the call with Cancelled.
-using Progress = std::function<bool(std::size_t done, std::size_t total)>;
 
 /// "0.1.0".
 DOLP_EXPORT std::string version();
@@ -90,21 +58,25 @@ struct Report {
 /// A validated scene: surface, radiation, geometry, grid and accuracy. Copies share what they hold.
 class DOLP_EXPORT Scene {
  public:
-  /// Reads a scene file (TOML); "-" is stdin. `overrides`: KEY=VALUE with any key of a scene, as --set takes them, in
-  /// order.
+  /// Reads a scene file (TOML); "-" is stdin. Settings apply in their order.
   /// Errors: InputError with file, line, key, value and allowed range.
-  static Scene from_file(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+  static Scene from_file(const std::filesystem::path& path, const std::vector<Setting>& settings = {});
   /// The same for a text; files that it names are looked for in the current folder. `name` is for messages.
-  static Scene from_text(const std::string& text, const std::vector<std::string>& overrides = {},
+  static Scene from_text(const std::string& text, const std::vector<Setting>& settings = {},
                          const std::string& name = "scene");
-  /// The same scene with more overrides.
-  Scene with(const std::vector<std::string>& overrides) const;
+  /// The same scene with another value of a key: with("surface.sigma", 0.2). Errors: InputError with key and value.
+  Scene with(const std::string& key, const Value& value) const { return with({{key, value}}); }
+  Scene with(const std::vector<Setting>& settings) const;
+  /// The same scene on other axes: with_grid({{"theta_deg", AxisRange{0, 60, 7}}, {"sigma", {0.1, 0.2}}}).
+  Scene with_grid(const std::vector<Setting>& axes) const;
+  /// The same scene without a table, as "surroundings", or a key.
+  Scene without(const std::string& key) const { return with(key, Value()); }
 
   const std::string& title() const;
   const std::string& name() const;  ///< the path of its file, or the name of its text
-  const std::string& text() const;  ///< as it was read, without overrides
-  const std::vector<std::string>& overrides() const;
-  /// The scene with its overrides applied, as TOML; files that it names are found from `folder`.
+  const std::string& text() const;  ///< as it was read, without settings
+  const std::vector<Setting>& settings() const;
+  /// The scene with its settings applied, as TOML; files that it names are found from `folder`.
   std::string toml(const std::filesystem::path& folder = ".") const;
 
   /// The value of a key, given or default, in its unit. None where the scene has no such thing: the temperature of an
@@ -136,7 +108,7 @@ struct Key {
   std::string fallback;  ///< the default; "required"; empty when the key is simply absent
   std::string meaning;
   std::vector<std::string> words;   ///< of a word what it may be, of a flag "false" and "true"
-  std::vector<std::string> rivals;  ///< keys in whose place it can be; an override of one takes the other away
+  std::vector<std::string> rivals;  ///< keys in whose place it can be; a setting of one takes the other away
 };
 DOLP_EXPORT const std::vector<Key>& keys();
 
@@ -148,13 +120,6 @@ struct Material {
   std::string source;
 };
 DOLP_EXPORT std::vector<Material> materials();
-
-/// A column of points by the name that it has in CSV files: theta_deg, sigma, q, n, k, wavelength_um; for Mueller
-/// matrices theta_i_deg, theta_r_deg, delta_phi_deg.
-struct Column {
-  std::string name;
-  std::span<const double> values;  ///< one for each point, or one for all
-};
 
 /// What is known of a variable beside its values, as in table files.
 struct Variable {
@@ -232,80 +197,6 @@ class DOLP_EXPORT Table {
   struct Impl;
   explicit Table(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
   std::shared_ptr<const Impl> impl_;
-};
-
-/// Where and how to compute.
-struct EvaluatorOptions {
-  std::string evaluator = "vulkan";  ///< vulkan; cpu: the shaders' text compiled as C++; reference: adaptive quadrature
-  std::string device = {};           ///< of vulkan: its position in devices(), or a part of its name; empty: the best
-  bool is_interactive = false;       ///< in short dispatches: a call ends soon after its Progress says so, and a window
-                                     ///< on the same device goes on drawing
-};
-
-/// How to compute one table or list of points.
-struct RunOptions {
-  bool keep_all = false;     ///< drop no effect, however little it counts
-  Progress progress = {};    ///< may be empty
-  std::string history = {};  ///< what the attribute "history" of a table says beside the time
-  bool resume = false;       ///< of write_table: go on with what a cancelled or killed call of the same scene left
-};
-
-/// One of `count` parts of a table that several processes compute.
-struct Shard {
-  std::size_t number = 1;  ///< from 1 on
-  std::size_t count = 1;
-};
-
-/// The 4 x 4 Mueller pBRDF of a pair of directions, row by row. Units: 1/sr.
-using MuellerMatrix = std::array<double, 16>;
-
-/// A measured number.
-struct Measurement {
-  std::string quantity;    ///< dolp, q_over_i (signed), emissivity_s or emissivity_p
-  double theta_deg = 0.0;  ///< in bistatic mode the zenith of the source
-  double value = 0.0;
-  std::optional<double> uncertainty;    ///< one standard deviation
-  std::optional<double> wavelength_um;  ///< none: the scene's
-};
-
-/// A set of measured data.
-struct DOLP_EXPORT MeasuredData {
-  std::string csv;  ///< columns theta_deg or theta_i_deg; dolp, q_over_i or emissivities; uncertainty, wavelength_um
-  std::vector<std::string> overrides = {};  ///< KEY=VALUE of its own
-  std::string name = "data";                ///< of its file, for messages; "-" is stdin
-
-  /// Reads what --data of dolp fit names: "FILE" or "FILE:KEY=VALUE,KEY=VALUE"; FILE "-" is stdin. Errors: InputError.
-  static MeasuredData read(const std::string& argument);
-
-  /// What the CSV says, row by row. Errors: InputError with line, column, value and what is allowed.
-  std::vector<Measurement> measurements() const;
-};
-
-/// How to fit.
-struct FitOptions {
-  std::vector<std::string> vary;          ///< KEY=LOW:HIGH or KEY=LOW:HIGH:START
-  std::size_t starts = 24;                ///< descents that look for minima
-  std::uint64_t seed = 1;                 ///< of where they begin
-  Progress progress = {};                 ///< may be empty
-  std::string loss = "squares";           ///< one of fit_losses()
-  std::vector<std::string> compare = {};  ///< KEY=WORD,WORD,...: all combinations are fitted and ranked
-  std::filesystem::path output = {};      ///< file for the scene with what was found; "-" is stdout; empty: none
-  std::filesystem::path plot = {};        ///< PNG of data, model and residuals, which Matplotlib draws; empty: none
-};
-
-/// What a residual can count: "squares", and robust ones.
-DOLP_EXPORT std::vector<std::string> fit_losses();
-
-/// A profile-likelihood interval; an end is none where the range ends before the data say no.
-struct FitInterval {
-  std::optional<double> low, high;
-};
-
-struct FitParameter {
-  std::string key;
-  double value = 0.0;
-  std::optional<double> standard_error;  ///< none at a bound, and where the data say nothing
-  FitInterval interval_68, interval_95;
 };
 
 /// A fit, of the best of the compared models.
@@ -388,28 +279,12 @@ DOLP_EXPORT std::vector<Effect> effects(const Scene& scene, const std::vector<Co
 /// counting on the CPU.
 DOLP_EXPORT Report plan(const Scene& scene, const std::string& device = {}, bool keep_all = false);
 
-/// How to check a table.
-struct TableCheck {
-  std::size_t samples = 64;  ///< entries to compute again; all when the table has no more
-  std::uint64_t seed = 1;    ///< of their choice
-  bool named_files = false;  ///< n, k and E0 from the files that the scene names, not from the table
-  Progress progress = {};    ///< may be empty
-};
 /// Computes entries of a table file again with adaptive quadrature, which shares no formula with the kernels, and
 /// compares them with what the table states. Errors: InputError.
-DOLP_EXPORT Report verify(const std::filesystem::path& table, const TableCheck& options = {});
+DOLP_EXPORT Report verify(const std::filesystem::path& table, const TableCheckOptions& options = {});
 
-/// How to examine a device.
-struct DeviceCheck {
-  std::string evaluator = "vulkan";  ///< vulkan; cpu: the shaders' text compiled as C++
-  std::string device = {};           ///< as in EvaluatorOptions
-  std::string precision = "auto";    ///< float, double; auto is both
-  double tolerance = 1e-4;           ///< what to ask for
-  bool all = false;                  ///< report every case, not only those that fail
-  Progress progress = {};            ///< may be empty
-};
 /// Computes the model's hard cases and compares them with stored references. Errors: InputError, DeviceError.
-DOLP_EXPORT Report verify_device(const DeviceCheck& options = {});
+DOLP_EXPORT Report verify_device(const DeviceCheckOptions& options = {});
 
 /// A Vulkan device of this machine.
 struct Device {

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "api/reports.hpp"
-#include "api/translated.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
 #include "device/devices.hpp"
@@ -17,12 +16,13 @@
 #include "report/verify_report.hpp"
 #include "run/table_scene.hpp"
 #include "scene/number_range.hpp"
+#include "run/scene_run.hpp"
 #include "table/table_reader.hpp"
 
 namespace dolp::api {
 namespace {
 
-std::unique_ptr<MomentsEvaluator> evaluator_in(Precision precision, const DeviceCheck& options) {
+std::unique_ptr<MomentsEvaluator> evaluator_in(Precision precision, const DeviceCheckOptions& options) {
   if (options.evaluator == "cpu") return std::make_unique<CpuEvaluator>(precision);
   VulkanOptions vulkan;
   vulkan.device = options.device;
@@ -31,13 +31,13 @@ std::unique_ptr<MomentsEvaluator> evaluator_in(Precision precision, const Device
 }
 
 /// The precisions to examine. `left_out` says why one is missing that auto would include.
-std::vector<Precision> precisions_of(const DeviceCheck& options, std::string& left_out) {
+std::vector<Precision> precisions_of(const DeviceCheckOptions& options, std::string& left_out) {
   const std::optional<Precision> wanted = named<Precision>(options.precision);
-  if (!wanted) throw dolp::InputError("precision " + one_line(options.precision) + ": must be auto, float or double");
+  if (!wanted) throw InputError("precision " + one_line(options.precision) + ": must be auto, float or double");
   if (*wanted != Precision::kAuto) return {*wanted};
   if (options.evaluator == "cpu") return {Precision::kFloat, Precision::kDouble};
   const DeviceList list = list_devices();
-  if (list.devices.empty()) throw dolp::DeviceError(list.why_empty);
+  if (list.devices.empty()) throw DeviceError(list.why_empty);
   const DeviceDescription& device = list.devices[choose_device(list.devices, options.device, false)];
   if (device.float64) return {Precision::kFloat, Precision::kDouble};
   left_out = "double is left out: " + device.name + " has no double precision (shaderFloat64)";
@@ -46,46 +46,42 @@ std::vector<Precision> precisions_of(const DeviceCheck& options, std::string& le
 
 }  // namespace
 
-Report verify(const std::filesystem::path& path, const TableCheck& options) {
-  return translated([&] {
-    const auto start = std::chrono::steady_clock::now();
-    const std::string name = path.string();
-    check_may_hold_scene(name);
-    const TableReader reader(path);
-    const dolp::Scene scene =
-        table_scene(reader.head(), name, options.named_files ? NamedData::kOfFiles : NamedData::kOfTable);
-    TableReport report;
-    report.path = name;
-    report.title = scene.title;
-    report.options = {options.samples, options.seed};
-    begin(options.progress, options.samples);
-    TableSample sample;
-    sample.positions = sample_positions(reader.head().size(), report.options);
-    sample.table = reader.read_entries(sample.positions);
-    report.check = check_table(sample, scene, name, options.progress);
-    report.wall_s = seconds_since(start);
-    return public_report(table_report(report), report.check.passed());
-  });
+Report verify(const std::filesystem::path& path, const TableCheckOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string name = path.string();
+  check_may_hold_scene(name);
+  const TableReader reader(path);
+  const dolp::Scene scene =
+      table_scene(reader.head(), name, options.named_files ? NamedData::kOfFiles : NamedData::kOfTable);
+  TableReport report;
+  report.path = name;
+  report.title = scene.title;
+  report.options = options;
+  dolp::begin(options.progress, options.samples);
+  TableSample sample;
+  sample.positions = sample_positions(reader.head().size(), report.options);
+  sample.table = reader.read_entries(sample.positions);
+  report.check = check_table(sample, scene, name, options.progress);
+  report.wall_s = seconds_since(start);
+  return public_report(table_report(report), report.check.passed());
 }
 
-Report verify_device(const DeviceCheck& options) {
-  return translated([&] {
-    if (!kToleranceRange.contains(options.tolerance)) {
-      throw dolp::InputError(
-          fmt::format("--tolerance {:g}: must be a number in {}", options.tolerance, kToleranceRange.text()));
-    }
-    begin(options.progress, 1);
-    HardCaseReport report;
-    report.tolerance = options.tolerance;
-    report.cases = hard_cases();
-    for (const Precision precision : precisions_of(options, report.left_out)) {
-      const std::unique_ptr<MomentsEvaluator> evaluator = evaluator_in(precision, options);
-      PrecisionReport& of_precision = report.precisions.emplace_back();
-      of_precision.outcomes = qualify(report.cases, *evaluator, report.tolerance, options.progress);
-      of_precision.evaluation = evaluator->report();
-    }
-    return public_report(hard_case_report(report, options.all), report.failures() == 0);
-  });
+Report verify_device(const DeviceCheckOptions& options) {
+  if (!kToleranceRange.contains(options.tolerance)) {
+    throw InputError(
+        fmt::format("tolerance {:g}: must be a number in {}", options.tolerance, kToleranceRange.text()));
+  }
+  dolp::begin(options.progress, 1);
+  HardCaseReport report;
+  report.tolerance = options.tolerance;
+  report.cases = hard_cases();
+  for (const Precision precision : precisions_of(options, report.left_out)) {
+    const std::unique_ptr<MomentsEvaluator> evaluator = evaluator_in(precision, options);
+    PrecisionReport& of_precision = report.precisions.emplace_back();
+    of_precision.outcomes = qualify(report.cases, *evaluator, report.tolerance, options.progress);
+    of_precision.evaluation = evaluator->report();
+  }
+  return public_report(hard_case_report(report, options.all), report.failures() == 0);
 }
 
 std::vector<Device> devices() {
@@ -98,15 +94,13 @@ std::vector<Device> devices() {
 }
 
 void require_device(const std::string& device) {
-  translated([&] {
-    const DeviceList list = list_devices();
-    if (list.devices.empty()) throw dolp::DeviceError(list.why_empty);
-    choose_device(list.devices, device, false);  // says why when none can be used
-  });
+  const DeviceList list = list_devices();
+  if (list.devices.empty()) throw DeviceError(list.why_empty);
+  choose_device(list.devices, device, false);  // says why when none can be used
 }
 
 Report device_report() {
-  return translated([&] { return public_report(dolp::device_report(list_devices())); });
+  return public_report(dolp::device_report(list_devices()));
 }
 
 }  // namespace dolp::api

@@ -11,6 +11,7 @@
 
 #include "api/named_evaluator.hpp"
 #include "api/translated.hpp"
+#include "run/scene_run.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp::api {
@@ -22,33 +23,34 @@ void check_no_fork();
 struct Evaluator::Impl {
   explicit Impl(EvaluatorOptions own) : options(std::move(own)) {}
 
-  /// The evaluator for a scene, before a run. Errors: those of make_evaluator.
+  /// The evaluator for a scene, before a run; a scene in double gets a device that has it. Errors: those of
+  /// make_evaluator.
   MomentsEvaluator* begin(const dolp::Scene& scene) {
-    const Precision precision = scene.accuracy.precision;
-    std::unique_ptr<MomentsEvaluator>& evaluator = evaluators[precision];
-    if (!evaluator) evaluator = make_evaluator({options.evaluator, options.device, precision, options.is_interactive});
+    const bool needs_double = scene.accuracy.precision == Precision::kDouble;
+    if (!evaluator || (needs_double && !evaluator->has_double())) evaluator = make_evaluator(options, needs_double);
     evaluator->clear_report();
     return evaluator.get();
+  }
+  EvaluatorMaker maker(const dolp::Scene& scene) {
+    return [this, &scene] { return begin(scene); };
   }
 
   /// Calls `body` with nobody else using the evaluators; a device that failed is not used again.
   template <class Body>
   auto exclusively(const Body& body) {
-    return translated([&] {
-      if (options.evaluator == "vulkan") check_no_fork();
-      const std::lock_guard lock(mutex);
-      try {
-        return body();
-      } catch (const dolp::DeviceError&) {
-        evaluators.clear();
-        throw;
-      }
-    });
+    if (options.evaluator == "vulkan") check_no_fork();
+    const std::lock_guard lock(mutex);
+    try {
+      return body();
+    } catch (const DeviceError&) {
+      evaluator.reset();
+      throw;
+    }
   }
 
   EvaluatorOptions options;
   std::mutex mutex;
-  std::map<Precision, std::unique_ptr<MomentsEvaluator>> evaluators;
+  std::unique_ptr<MomentsEvaluator> evaluator;
   pid_t owner = getpid();
 };
 

@@ -1,7 +1,6 @@
 #include "api/reports.hpp"
 #include "api/results.hpp"
 #include "api/scene_impl.hpp"
-#include "api/translated.hpp"
 #include "base/version.hpp"
 #include "model/status.hpp"
 #include "plan/effects.hpp"
@@ -17,21 +16,19 @@ std::string commit() { return program_commit(); }
 std::string citation() { return std::string(embedded_citation_cff()); }
 
 Report plan(const Scene& scene, const std::string& device, bool keep_all) {
-  return translated([&] { return public_report(plan_report(plan_of(scene.impl().scene, device, keep_all))); });
+  return public_report(plan_report(plan_of(scene.impl().scene, device, keep_all)));
 }
 
 std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& points, bool keep_all) {
-  return translated([&] {
-    const dolp::Scene& own = scene.impl().scene;
-    const SceneEntries entries = point_entries(own, points_of_columns(points, PointsKind::kDirections));
-    std::vector<EffectRow> rows = effect_rows(own, entries, plan_effects(own, entries, keep_all));
-    add_influences(rows, own, entries);
-    std::vector<Effect> all;
-    for (const EffectRow& row : rows) {
-      all.push_back({row.name, state_name(row.state), row.reason, row.needs, row.bound, row.unbounded});
-    }
-    return all;
-  });
+  const dolp::Scene& own = scene.impl().scene;
+  const SceneEntries entries = point_entries(own, points_of_columns(points, PointsKind::kDirections));
+  std::vector<EffectRow> rows = effect_rows(own, entries, plan_effects(own, entries, keep_all));
+  add_influences(rows, own, entries);
+  std::vector<Effect> all;
+  for (const EffectRow& row : rows) {
+    all.push_back({row.name, state_name(row.state), row.reason, row.needs, row.bound, row.unbounded});
+  }
+  return all;
 }
 
 std::vector<Material> materials() {

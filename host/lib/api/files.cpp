@@ -45,23 +45,7 @@ void add_left_out(dolp::Report& report, const Points& points) {
   report.row_if(!points.left_out.empty(), "left out", "{}, because they are results", join(points.left_out));
 }
 
-/// Writes and counts the results of points, part by part.
-class PointsOutput final : public Sink {
- public:
-  PointsOutput(const dolp::Scene& scene, PointsCsv& csv, RunSummary& summary)
-      : scene_(scene), csv_(csv), summary_(summary) {}
-  void write(const SceneEntries& part, std::vector<PointResult> results, const SelfCheck& /*check*/) override {
-    summary_.add(scene_, part, results);
-    csv_.append(results);
-  }
-
- private:
-  const dolp::Scene& scene_;
-  PointsCsv& csv_;
-  RunSummary& summary_;
-};
-
-std::string mueller_csv(const Points& points, const std::vector<MuellerElements>& results) {
+std::string mueller_csv(const Points& points, const std::vector<MuellerMatrix>& results) {
   std::string csv = points.header;
   for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 4; ++column) csv += fmt::format(",m{}{}", row, column);
@@ -77,10 +61,6 @@ std::string mueller_csv(const Points& points, const std::vector<MuellerElements>
 
 }  // namespace
 
-void begin(const Progress& progress, std::size_t total) {
-  if (progress && !progress(0, total)) throw dolp::Cancelled{};
-}
-
 Report public_report(const dolp::Report& report, bool is_good, const std::filesystem::path& output) {
   return {report.text(), report.json_text(), is_good, output};
 }
@@ -95,7 +75,7 @@ void check_output_is_no_input(const std::filesystem::path& output, const std::ve
   for (const std::string& input : inputs) {
     std::error_code missing;  // a file that is not there is not the same file
     if (std::filesystem::equivalent(output, input, missing)) {
-      throw dolp::InputError(output.string() + ": the output would overwrite an input");
+      throw InputError(output.string() + ": the output would overwrite an input");
     }
   }
 }
@@ -104,31 +84,19 @@ Report Evaluator::write_table(const Scene& scene, const std::filesystem::path& p
                               const Shard& shard) {
   return impl_->exclusively([&] {
     const dolp::Scene& own = scene.impl().scene;
-    TableJob job;
-    job.shard = {shard.number, shard.count};
-    job.path = shard_path(path, job.shard);
-    job.is_resumed = options.resume;
-    job.keep_all = options.keep_all;
-    job.command_line = options.history;
-    job.start = Clock::now();
+    const TableJob job{shard_path(path, shard), shard, options};
     check_output_is_no_input(job.path, files_of(own));
     check_output_path(job.path);
-    const SceneEntries entries = shard_entries(own, job.shard);
-    if (!job.shard.is_whole() && is_there(own, job)) {
+    const SceneEntries entries = shard_entries(own, shard);
+    if (!shard.is_whole() && is_there(own, job)) {
       dolp::Report report;
       report.line("{}", key("title", own.title));
       report.row("kept", "{}: the whole shard is there already", key("output", job.path.string()));
       return public_report(report, true, job.path);
     }
-    begin(options.progress, entries.size());
-    MomentsEvaluator* evaluator = nullptr;
-    TableRun table = run_table_job(
-        own, job, [&] { return evaluator = impl_->begin(own); }, options.progress);
-    SceneRun run{std::move(table.plan), std::move(table.effects), table.summary, {}, table.evaluation, table.wall_s};
-    if (evaluator == nullptr) run.evaluation = evaluation_of(nullptr, impl_->options.evaluator);
-    run.scattering_gap = scattering_gap(own, entries, run.plan);
-    run.wall_s = seconds_since(job.start);
-    return public_report(run_report(own, run, grid_text(entries.axes()), job.path.string()),
+    const RunOutcome run = dolp::write_table(own, job, impl_->maker(own));
+    const std::optional<double> gap = scattering_gap(own, entries, run.plan);
+    return public_report(run_report(own, run, gap, grid_text(entries.axes()), job.path.string()),
                          run.summary.count(kStatusToleranceMissed) == 0, job.path);
   });
 }
@@ -136,26 +104,20 @@ Report Evaluator::write_table(const Scene& scene, const std::filesystem::path& p
 Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& points_path,
                                const std::filesystem::path& path, const RunOptions& options) {
   return impl_->exclusively([&] {
-    const Clock::time_point start = Clock::now();
     const dolp::Scene& own = scene.impl().scene;
     const Points points = load_points(points_path, PointsKind::kDirections, files_of(own), path);
-    const SceneEntries entries = point_entries(own, points);
+    SceneEntries entries = point_entries(own, points);
     check_writable(path);
-    begin(options.progress, points.size());
-    SceneRun run;
-    run.plan = plan_effects(own, entries, options.keep_all);
-    MomentsEvaluator* const evaluator = wants_evaluator(own, entries, run.plan) ? impl_->begin(own) : nullptr;
+    Run run(own, std::move(entries), options, impl_->maker(own));
     PointsCsv csv(path, points, extra_columns(own));
-    PointsOutput output(own, csv, run.summary);
-    run.summary.check = run_scene(own, entries, run.plan, evaluator, output, options.progress);
-    run.evaluation = evaluation_of(evaluator, impl_->options.evaluator);
-    run.scattering_gap = scattering_gap(own, entries, run.plan);
-    run.effects = effect_rows(own, entries, run.plan);
+    PassedResults rows([&](const SceneEntries&, const std::vector<PointResult>& results) { csv.append(results); });
+    const RunOutcome outcome = run.compute(rows);
+    const std::optional<double> gap = scattering_gap(own, run.entries(), outcome.plan);
     csv.commit();
-    run.wall_s = seconds_since(start);
-    dolp::Report report = run_report(own, run, fmt::format("{} points", points.size()), path.string());
+    dolp::Report report =
+        run_report(own, outcome, gap, fmt::format("{} points", points.size()), path.string());
     add_left_out(report, points);
-    return public_report(report, run.summary.count(kStatusToleranceMissed) == 0, path);
+    return public_report(report, outcome.summary.count(kStatusToleranceMissed) == 0, path);
   });
 }
 
@@ -167,15 +129,15 @@ Report Evaluator::write_mueller(const Scene& scene, const std::filesystem::path&
     const Points points = load_points(points_path, PointsKind::kGeometries, files_of(own), path);
     const std::vector<MuellerPoint> geometries = mueller_points(own, points);
     check_writable(path);
-    begin(options.progress, points.size());
+    dolp::begin(options.progress, points.size());
     MomentsEvaluator* const evaluator = impl_->begin(own);
-    const std::vector<MuellerElements> results = evaluate_mueller(own, geometries, *evaluator, options.progress);
+    const std::vector<MuellerMatrix> results = evaluate_mueller(own, geometries, *evaluator, options.progress);
     write_text_atomically(path, mueller_csv(points, results));
 
     const bool is_float = impl_->options.evaluator != "reference" &&
                           mueller_precision(own.accuracy, evaluator->has_double()) == Precision::kFloat;
     const double accuracy = is_float ? kScatteringErrorFloat : kScatteringErrorDouble;
-    const auto nans = std::ranges::count_if(results, [](const MuellerElements& f) { return std::isnan(f[0]); });
+    const auto nans = std::ranges::count_if(results, [](const MuellerMatrix& f) { return std::isnan(f[0]); });
     dolp::Report report;
     report.line("{}", key("title", own.title));
     report.row("entries", "{} geometries", key("entries", results.size()));
@@ -192,53 +154,49 @@ Report Evaluator::write_mueller(const Scene& scene, const std::filesystem::path&
 
 Report write_lookup(const std::filesystem::path& table_path, const std::filesystem::path& points_path,
                     const std::filesystem::path& path, const Progress& progress) {
-  return translated([&] {
-    const Clock::time_point start = Clock::now();
-    const Points points = load_points(points_path, PointsKind::kDirections, {table_path.string()}, path);
-    const dolp::Table table = load_table(table_path.string());
-    const dolp::Scene scene = table_scene(table, table_path.string());
-    const TableLookup lookup(table, scene.accuracy.tolerance, table_path.string());
-    check_writable(path);
-    begin(progress, points.size());
-    const std::vector<PointResult> results = lookup_points(lookup, scene, points, progress);
-    PointsCsv csv(path, points, lookup.extra_columns());
-    csv.append(results);
-    csv.commit();
+  const Clock::time_point start = Clock::now();
+  const Points points = load_points(points_path, PointsKind::kDirections, {table_path.string()}, path);
+  const dolp::Table table = load_table(table_path.string());
+  const dolp::Scene scene = table_scene(table, table_path.string());
+  const TableLookup lookup(table, scene.accuracy.tolerance, table_path.string());
+  check_writable(path);
+  dolp::begin(progress, points.size());
+  const std::vector<PointResult> results = lookup_points(lookup, scene, points, progress);
+  PointsCsv csv(path, points, lookup.extra_columns());
+  csv.append(results);
+  csv.commit();
 
-    const std::size_t missed = count_status(results, kStatusToleranceMissed);
-    const std::optional<double> worst = worst_of(results, &PointResult::error_estimate, kStatusNoDolpPromised);
-    dolp::Report report;
-    report.line("{}", key("table", table_path.string()));
-    report.row("points", "{}", key("points", results.size()));
-    report.row("error", "{}, interpolation included; tolerance of the table {:g}",
-               worst ? fmt::format("DOLP <= {:.2g} (absolute)", *worst) : "stated for no point",
-               key("tolerance", scene.accuracy.tolerance));
-    report.row("status 2", "{} of {} points: tolerance not met", key("tolerance_missed", missed), results.size());
-    add_left_out(report, points);
-    report.row("written", "{}", key("output", path.string()));
-    report.value("worst_error_estimate", worst);
-    report.value("worst_rho_error_estimate",
-                 worst_of(results, &PointResult::rho_error_estimate, kStatusNoDolpPromised));
-    report.value("wall_s", seconds_since(start));
-    return public_report(report, missed == 0, path);
-  });
+  const std::size_t missed = count_status(results, kStatusToleranceMissed);
+  const std::optional<double> worst = worst_of(results, &PointResult::error_estimate, kStatusNoDolpPromised);
+  dolp::Report report;
+  report.line("{}", key("table", table_path.string()));
+  report.row("points", "{}", key("points", results.size()));
+  report.row("error", "{}, interpolation included; tolerance of the table {:g}",
+             worst ? fmt::format("DOLP <= {:.2g} (absolute)", *worst) : "stated for no point",
+             key("tolerance", scene.accuracy.tolerance));
+  report.row("status 2", "{} of {} points: tolerance not met", key("tolerance_missed", missed), results.size());
+  add_left_out(report, points);
+  report.row("written", "{}", key("output", path.string()));
+  report.value("worst_error_estimate", worst);
+  report.value("worst_rho_error_estimate",
+               worst_of(results, &PointResult::rho_error_estimate, kStatusNoDolpPromised));
+  report.value("wall_s", seconds_since(start));
+  return public_report(report, missed == 0, path);
 }
 
 Report merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& path,
              const std::string& history) {
-  return translated([&] {
-    const Clock::time_point start = Clock::now();
-    std::vector<std::string> names;
-    for (const std::filesystem::path& shard : shards) names.push_back(shard.string());
-    check_output_is_no_input(path, names);
-    check_output_path(path);
-    const std::size_t entries = merge_shards(names, path, history);
-    dolp::Report report;
-    report.line("{} entries of {} shards", key("entries", entries), key("shards", shards.size()));
-    report.row("written", "{}", key("output", path.string()));
-    report.value("wall_s", seconds_since(start));
-    return public_report(report, true, path);
-  });
+  const Clock::time_point start = Clock::now();
+  std::vector<std::string> names;
+  for (const std::filesystem::path& shard : shards) names.push_back(shard.string());
+  check_output_is_no_input(path, names);
+  check_output_path(path);
+  const std::size_t entries = merge_shards(names, path, history);
+  dolp::Report report;
+  report.line("{} entries of {} shards", key("entries", entries), key("shards", shards.size()));
+  report.row("written", "{}", key("output", path.string()));
+  report.value("wall_s", seconds_since(start));
+  return public_report(report, true, path);
 }
 
 }  // namespace dolp::api

@@ -1,8 +1,8 @@
 #include "api/named_evaluator.hpp"
 
+#include <dolp/errors.hpp>
 #include <utility>
 
-#include "base/error.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
@@ -16,24 +16,24 @@ constexpr std::uint32_t kInteractiveTileInvocations = 2'048;
 
 }  // namespace
 
-std::unique_ptr<MomentsEvaluator> make_evaluator(const EvaluatorChoice& choice) {
-  const bool is_vulkan = choice.name == "vulkan";
-  if (!is_vulkan && choice.name != "cpu" && choice.name != "reference") {
-    throw InputError("evaluator " + choice.name + ": is not one of vulkan, cpu, reference");
+std::unique_ptr<MomentsEvaluator> make_evaluator(const EvaluatorOptions& wanted, bool needs_double) {
+  const bool is_vulkan = wanted.evaluator == "vulkan";
+  if (!is_vulkan && wanted.evaluator != "cpu" && wanted.evaluator != "reference") {
+    throw InputError("evaluator " + wanted.evaluator + ": is not one of vulkan, cpu, reference");
   }
-  if (!is_vulkan && !choice.device.empty()) {
-    throw InputError("device " + choice.device + ": needs the evaluator vulkan, and it is " + choice.name);
+  if (!is_vulkan && !wanted.device.empty()) {
+    throw InputError("device " + wanted.device + ": needs the evaluator vulkan, and it is " + wanted.evaluator);
   }
-  if (choice.name == "reference") return std::make_unique<ReferenceEvaluator>();
+  if (wanted.evaluator == "reference") return std::make_unique<ReferenceEvaluator>();
   std::unique_ptr<MomentsEvaluator> evaluator;
   if (is_vulkan) {
     VulkanOptions options;
-    options.device = choice.device;
-    options.precision = choice.precision;
-    if (choice.is_interactive) options.max_tile_invocations = kInteractiveTileInvocations;
+    options.device = wanted.device;
+    options.needs_double = needs_double;
+    if (wanted.is_interactive) options.max_tile_invocations = kInteractiveTileInvocations;
     evaluator = std::make_unique<VulkanEvaluator>(options);
   } else {
-    evaluator = std::make_unique<CpuEvaluator>(choice.precision);
+    evaluator = std::make_unique<CpuEvaluator>(Precision::kAuto);
   }
   return std::make_unique<InterpolatingEvaluator>(std::move(evaluator));
 }

@@ -1,23 +1,17 @@
-// The evaluator that a name stands for.
+// Evaluator factory.
 #pragma once
 
+#include <dolp/options.hpp>
 #include <memory>
-#include <string>
 
 #include "model/choices.hpp"
 #include "model/evaluator.hpp"
 
 namespace dolp {
 
-struct EvaluatorChoice {
-  std::string name = "vulkan";  ///< vulkan | cpu | reference
-  std::string device;           ///< of vulkan: its position or a part of its name; empty is the default
-  Precision precision = Precision::kAuto;
-  bool is_interactive = false;  ///< of vulkan: in short dispatches
-};
-
+/// `needs_double`: of a device, double precision in kernels.
 /// Errors: InputError for another name, and for a device beside cpu or reference; DeviceError when vulkan is asked for
 /// and there is no usable device.
-std::unique_ptr<MomentsEvaluator> make_evaluator(const EvaluatorChoice& choice);
+std::unique_ptr<MomentsEvaluator> make_evaluator(const EvaluatorOptions& wanted, bool needs_double);
 
 }  // namespace dolp

@@ -15,9 +15,6 @@ namespace dolp::api {
 /// `output`: the file that was written.
 Report public_report(const dolp::Report& report, bool is_good = true, const std::filesystem::path& output = {});
 
-/// The first call of a progress: all inputs are read. Errors: Cancelled.
-void begin(const Progress& progress, std::size_t total);
-
 /// What a scene is read from.
 std::vector<std::string> files_of(const dolp::Scene& scene);
 

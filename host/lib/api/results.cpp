@@ -72,12 +72,10 @@ std::string to_csv(const std::vector<Column>& points, const Results& results) {
 
 Points points_of_columns(const std::vector<Column>& columns, PointsKind kind) {
   std::size_t count = 1;
-  std::vector<NamedColumn> named;
   for (const Column& column : columns) {
     if (column.values.size() != 1) count = column.values.size();
-    named.push_back({column.name, column.values});
   }
-  return points_of(named, count, kind);
+  return points_of(columns, count, kind);
 }
 
 }  // namespace dolp::api

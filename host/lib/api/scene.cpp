@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "api/scene_impl.hpp"
-#include "api/translated.hpp"
 #include "base/text.hpp"
 #include "scene/embedded_data.hpp"
 #include "scene/material_data.hpp"
@@ -47,27 +46,31 @@ std::vector<std::string> rivals_of(const std::string& key) {
 
 }  // namespace
 
-Scene Scene::from_file(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
-  return translated([&] { return Scene(std::make_shared<const Impl>(Impl{read_scene(path.string(), overrides)})); });
+Scene Scene::from_file(const std::filesystem::path& path, const std::vector<Setting>& settings) {
+  return Scene(std::make_shared<const Impl>(Impl{read_scene(path.string(), settings)}));
 }
 
-Scene Scene::from_text(const std::string& text, const std::vector<std::string>& overrides, const std::string& name) {
-  return translated([&] { return Scene(std::make_shared<const Impl>(Impl{parse_scene(text, name, overrides)})); });
+Scene Scene::from_text(const std::string& text, const std::vector<Setting>& settings, const std::string& name) {
+  return Scene(std::make_shared<const Impl>(Impl{parse_scene(text, name, settings)}));
 }
 
-Scene Scene::with(const std::vector<std::string>& overrides) const {
-  std::vector<std::string> all = this->overrides();
-  all.insert(all.end(), overrides.begin(), overrides.end());
-  return from_text(text(), all, name());
+Scene Scene::with(const std::vector<Setting>& settings) const {
+  return Scene(std::make_shared<const Impl>(Impl{with_settings(impl_->scene, settings)}));
+}
+
+Scene Scene::with_grid(const std::vector<Setting>& axes) const {
+  std::vector<Setting> settings = axes;
+  for (Setting& axis : settings) axis.key = "grid." + axis.key;
+  return with(settings);
 }
 
 const std::string& Scene::title() const { return impl_->scene.title; }
 const std::string& Scene::name() const { return impl_->scene.path_name; }
 const std::string& Scene::text() const { return impl_->scene.text; }
-const std::vector<std::string>& Scene::overrides() const { return impl_->scene.overrides; }
+const std::vector<Setting>& Scene::settings() const { return impl_->scene.settings; }
 
 std::string Scene::toml(const std::filesystem::path& folder) const {
-  return translated([&] { return scene_toml(text(), name(), overrides(), std::filesystem::absolute(folder)); });
+  return scene_toml(impl_->scene, std::filesystem::absolute(folder));
 }
 
 std::optional<double> Scene::number(std::string_view key) const {

@@ -3,10 +3,10 @@
 #include "api/reports.hpp"
 #include "api/results.hpp"
 #include "api/table_impl.hpp"
-#include "api/translated.hpp"
 #include "run/lookup_run.hpp"
 #include "run/table_scene.hpp"
 #include "table/table_file.hpp"
+#include "run/scene_run.hpp"
 #include "table/table_netcdf.hpp"
 
 namespace dolp::api {
@@ -20,7 +20,7 @@ const TableLookup& Table::Impl::lookup() const {
 }
 
 Table Table::read(const std::filesystem::path& path) {
-  return translated([&] { return Table(std::make_shared<const Impl>(load_table(path.string()), path.string())); });
+  return Table(std::make_shared<const Impl>(load_table(path.string()), path.string()));
 }
 
 std::vector<std::string> Table::axes() const {
@@ -58,16 +58,14 @@ std::span<const double> Table::values(std::string_view name) const {
 std::span<const std::uint32_t> Table::status() const { return impl_->table.status; }
 
 Results Table::lookup(const std::vector<Column>& points, const Progress& progress) const {
-  return translated([&] {
-    const TableLookup& between = impl_->lookup();
-    const Points at = points_of_columns(points, PointsKind::kDirections);
-    begin(progress, at.size());
-    return results_of(lookup_points(between, *impl_->scene, at, progress), between.extra_columns(), impl_->table);
-  });
+  const TableLookup& between = impl_->lookup();
+  const Points at = points_of_columns(points, PointsKind::kDirections);
+  dolp::begin(progress, at.size());
+  return results_of(lookup_points(between, *impl_->scene, at, progress), between.extra_columns(), impl_->table);
 }
 
 void Table::write(const std::filesystem::path& path) const {
-  translated([&] { dolp::write_table(impl_->table, path); });
+  dolp::write_table(impl_->table, path);
 }
 
 }  // namespace dolp::api

@@ -34,12 +34,12 @@ std::optional<std::array<std::size_t, 2>> most_correlated(const Eigen::MatrixXd&
   return found;
 }
 
-double coordinate_of(const Parameter& parameter, const FittedParameter& fitted) {
+double coordinate_of(const FitRange& parameter, const FitParameter& fitted) {
   return parameter.coordinate(fitted.value);
 }
 
 /// Coordinates around a parameter's value; an interval without an end goes to that of the range.
-std::vector<double> coordinates_around(const Parameter& parameter, const FittedParameter& fitted) {
+std::vector<double> coordinates_around(const FitRange& parameter, const FitParameter& fitted) {
   const double middle = coordinate_of(parameter, fitted);
   const auto end = [&](const std::optional<double>& value, double of_range) {
     return value ? std::clamp(middle + kWider * (parameter.coordinate(*value) - middle), 0.0, 1.0) : of_range;
@@ -140,7 +140,7 @@ class Map {
     return start;
   }
 
-  const std::vector<Parameter>& parameters_;
+  const std::vector<FitRange>& parameters_;
   const FitResult& result_;
   std::array<std::size_t, 2> pair_;
   Residuals residuals_;

@@ -2,18 +2,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
+#include <dolp/fit.hpp>
 #include <optional>
 #include <string>
 
 #include "fit/residuals.hpp"
 
 namespace dolp::fit {
-
-/// What a residual r adds to the objective: r^2, or less of it where a point lies off by more than one uncertainty.
-enum class Loss { kSquares, kHuber, kSoftL1, kCauchy, kTukey };
-inline constexpr std::array<const char*, 5> kLossNames = {"squares", "huber", "soft-l1", "cauchy", "tukey"};
 
 /// The sum over all residuals; without a robust loss chi^2.
 double objective(const Eigen::VectorXd& residuals, Loss loss);

@@ -40,8 +40,8 @@ constexpr double kGuessedDeviation = 0.1;  // in coordinates, of a parameter at 
 
 double least_uncertainty(const Model& model) {
   double least = std::numeric_limits<double>::infinity();
-  for (const FitData& data : model.data()) {
-    for (const Observation& one : data.observations) least = std::min(least, one.uncertainty.value_or(least));
+  for (const MeasuredData& data : model.data()) {
+    for (const Measurement& one : data.measurements) least = std::min(least, one.uncertainty.value_or(least));
   }
   return least;
 }
@@ -132,7 +132,7 @@ Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
 }
 
 /// A direction in words.
-std::string words_of(const Direction& direction, const std::vector<Parameter>& parameters) {
+std::string words_of(const Direction& direction, const std::vector<FitRange>& parameters) {
   std::vector<std::string> rising, falling;
   const Eigen::VectorXd& along = direction.along;
   for (Eigen::Index j = 0; j < along.size(); ++j) {
@@ -184,8 +184,8 @@ class Fit {
   double guess_scale() const {
     if (model_.has_uncertainties()) return 1.0;
     double largest = 0.0;
-    for (const FitData& data : model_.data()) {
-      for (const Observation& one : data.observations) largest = std::max(largest, std::abs(one.value));
+    for (const MeasuredData& data : model_.data()) {
+      for (const Measurement& one : data.measurements) largest = std::max(largest, std::abs(one.value));
     }
     return std::pow(std::max(kGuessedShare * largest, fine_.tolerance()), 2);
   }
@@ -217,9 +217,9 @@ class Fit {
     covariance_ = covariance_of(best, options_.loss, result_.scale);
     done_ = 1;
     for (std::size_t j = 0; j < model_.parameters().size(); ++j) {
-      const Parameter& parameter = model_.parameters()[j];
+      const FitRange& parameter = model_.parameters()[j];
       const auto index = static_cast<Eigen::Index>(j);
-      FittedParameter& fitted = result_.parameters.emplace_back();
+      FitParameter& fitted = result_.parameters.emplace_back();
       fitted.key = parameter.key;
       fitted.value = parameter.at(best.where.at[index]);
       fitted.is_at_bound = is_at_bound(best.where.at[index]);
@@ -253,7 +253,7 @@ class Fit {
         if (is_best && take(*sides[i].lower)) return true;
         continue;
       }
-      FittedParameter& fitted = result_.parameters[i / 2];
+      FitParameter& fitted = result_.parameters[i / 2];
       if (excess < rises()[0]) widen(fitted.interval_68, i / 2, direction_of(i), sides[i].ends[0], is_best);
       widen(fitted.interval_95, i / 2, direction_of(i), sides[i].ends[1], is_best);
     }
@@ -263,7 +263,7 @@ class Fit {
   /// Of a side of a profile.
   static int direction_of(std::size_t side) { return side % 2 == 0 ? -1 : 1; }
 
-  void widen(Interval& interval, std::size_t parameter, int direction, const IntervalEnd& end, bool is_first) const {
+  void widen(FitInterval& interval, std::size_t parameter, int direction, const IntervalEnd& end, bool is_first) const {
     std::optional<double>& known = direction < 0 ? interval.low : interval.high;
     if (!is_first && !known) return;  // open already
     if (!end) {
@@ -318,7 +318,7 @@ class Fit {
     for (const Direction& direction : covariance_.directions) {
       bool is_open = direction.is_null;
       for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
-        const Interval& interval = result_.parameters[j].interval_68;
+        const FitInterval& interval = result_.parameters[j].interval_68;
         is_open = is_open || (std::abs(direction.along[static_cast<Eigen::Index>(j)]) >= kInDirection &&
                               !interval.low && !interval.high);
       }

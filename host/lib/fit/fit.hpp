@@ -4,37 +4,17 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <dolp/fit.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "base/progress.hpp"
+
 #include "fit/descent.hpp"
 #include "fit/model.hpp"
 #include "model/evaluator.hpp"
 
 namespace dolp::fit {
-
-struct FitOptions {
-  std::size_t starts = 24;  ///< descents of the search for minima
-  std::uint64_t seed = 1;   ///< of where they begin
-  Loss loss = Loss::kSquares;
-  Progress progress = {};  ///< counts descents and sides of profiles
-};
-
-/// A profile-likelihood interval, from the least to the largest value that the data do not rule out, over all minima;
-/// an end is none where the parameter's range ends before the data say no.
-struct Interval {
-  std::optional<double> low, high;
-};
-
-struct FittedParameter {
-  std::string key;
-  double value = 0.0;
-  std::optional<double> standard_error;  ///< from the covariance; none at a bound or where the data say nothing
-  Interval interval_68, interval_95;     ///< 68.27 % and 95 %; both ends none without a scale of the residuals
-  bool is_at_bound = false;
-};
 
 /// A local minimum above the best.
 struct OtherMinimum {
@@ -44,7 +24,7 @@ struct OtherMinimum {
 
 /// What a fit found. Lists over observations are in the order of the data.
 struct FitResult {
-  std::vector<FittedParameter> parameters;
+  std::vector<FitParameter> parameters;
   Eigen::MatrixXd correlation;  ///< NaN of a parameter without a standard error
   double chi_square = 0.0;      ///< sum of the squares of `residuals`, or of their loss
   std::size_t degrees_of_freedom = 0;

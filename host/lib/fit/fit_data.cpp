@@ -1,18 +1,16 @@
-#include "fit/fit_data.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <dolp/fit.hpp>
 #include <limits>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "scene/csv.hpp"
 #include "scene/number_range.hpp"
 #include "scene/scene_reader.hpp"
 
-namespace dolp::fit {
+namespace dolp {
 namespace {
 
 constexpr NumberRange kFractionOfOneRange{-1.0, 1.0};
@@ -72,12 +70,12 @@ void check_columns(const CsvReader& header, const std::vector<ColumnRule>& colum
   }
 }
 
-void add_row(FitData& data, const CsvReader& row, const std::vector<ColumnRule>& columns) {
+void add_row(MeasuredData& data, const CsvReader& row, const std::vector<ColumnRule>& columns) {
   if (row.cells().size() > columns.size()) {
     row.fail(fmt::format("{}: one value too many; the header has {}", one_line(row.cells()[columns.size()]),
                          columns.size()));
   }
-  Observation observation;
+  Measurement observation;
   const auto number = [&](const char* name) -> std::optional<double> {
     const std::optional<std::size_t> cell = position_of(columns, name);
     if (!cell) return std::nullopt;
@@ -90,7 +88,7 @@ void add_row(FitData& data, const CsvReader& row, const std::vector<ColumnRule>&
     if (!column.observable) continue;
     observation.observable = *column.observable;
     observation.value = *number(column.name);
-    data.observations.push_back(observation);
+    data.measurements.push_back(observation);
   }
 }
 
@@ -105,8 +103,8 @@ std::size_t keys_begin(const std::string& argument) {
 }
 
 /// The pieces of "KEY=VALUE,KEY=VALUE"; a comma inside of brackets or quotes separates nothing.
-std::vector<std::string> overrides_of(std::string_view text) {
-  std::vector<std::string> overrides(1);
+std::vector<std::string> pieces_of(std::string_view text) {
+  std::vector<std::string> pieces(1);
   int depth = 0;
   bool is_quoted = false;
   for (const char c : text) {
@@ -114,12 +112,12 @@ std::vector<std::string> overrides_of(std::string_view text) {
     if (!is_quoted && (c == '[' || c == '{')) ++depth;
     if (!is_quoted && (c == ']' || c == '}')) --depth;
     if (c == ',' && depth == 0 && !is_quoted) {
-      overrides.emplace_back();
+      pieces.emplace_back();
     } else {
-      overrides.back() += c;
+      pieces.back() += c;
     }
   }
-  return overrides;
+  return pieces;
 }
 
 }  // namespace
@@ -128,29 +126,30 @@ const char* name_of(Observable observable) {
   return std::ranges::find(kColumns, std::optional(observable), &ColumnRule::observable)->name;
 }
 
-FitData parse_fit_data(const std::string& text, const std::string& path_name) {
-  FitData data;
-  data.name = input_name(path_name);
-  CsvReader row(text, data.name);
+MeasuredData MeasuredData::from_csv(const std::string& csv, const std::string& name, std::vector<Setting> settings) {
+  MeasuredData data;
+  data.name = input_name(name);
+  data.settings = std::move(settings);
+  CsvReader row(csv, data.name);
   if (!row.next()) row.fail("the file is empty; a line of column names is expected, as theta_deg,dolp,uncertainty");
   const std::vector<ColumnRule> columns = columns_of(row);
   check_columns(row, columns);
   data.zenith_column = position_of(columns, "theta_deg") ? "theta_deg" : "theta_i_deg";
   data.has_uncertainties = position_of(columns, "uncertainty").has_value();
   while (row.next()) add_row(data, row, columns);
-  if (data.observations.empty()) row.fail("no points; at least one row is expected below the column names");
+  if (data.measurements.empty()) row.fail("no points; at least one row is expected below the column names");
   return data;
 }
 
-DataArgument parse_data_argument(const std::string& argument) {
+MeasuredData MeasuredData::read(const std::string& argument) {
   const std::size_t colon = keys_begin(argument);
-  DataArgument parts;
-  parts.path = argument.substr(0, colon);
-  if (parts.path.empty()) {
-    throw InputError(fmt::format("--data {}: must be FILE or FILE:KEY=VALUE,...", one_line(argument)));
+  const std::string path = argument.substr(0, colon);
+  if (path.empty()) throw InputError(fmt::format("--data {}: must be FILE or FILE:KEY=VALUE,...", one_line(argument)));
+  std::vector<Setting> settings;
+  if (colon != std::string::npos) {
+    settings = settings_from_text(pieces_of(std::string_view(argument).substr(colon + 1)), "--data " + path + ':');
   }
-  if (colon != std::string::npos) parts.overrides = overrides_of(std::string_view(argument).substr(colon + 1));
-  return parts;
+  return from_csv(read_text(path, input_name(path) + ": "), path, std::move(settings));
 }
 
-}  // namespace dolp::fit
+}  // namespace dolp

@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <dolp/errors.hpp>
 #include <map>
 #include <string_view>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "model/moments.hpp"
 #include "run/scene_run.hpp"
+#include "fit/fit_range.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_reader.hpp"
 
@@ -24,17 +25,13 @@ constexpr std::array<std::string_view, 4> kPointKeys = {"surface.n", "surface.k"
 
 bool is_point_key(const std::string& key) { return std::ranges::find(kPointKeys, key) != kPointKeys.end(); }
 
-std::string key_of(const std::string& override_text) {
-  return std::string(trim(std::string_view(override_text).substr(0, override_text.find('='))));
-}
-
-Eigen::VectorXd values_of(const std::vector<Parameter>& parameters, double Parameter::*value) {
+Eigen::VectorXd values_of(const std::vector<FitRange>& parameters, double FitRange::*value) {
   Eigen::VectorXd values(static_cast<Eigen::Index>(parameters.size()));
   for (std::size_t j = 0; j < parameters.size(); ++j) values[static_cast<Eigen::Index>(j)] = parameters[j].*value;
   return values;
 }
 
-Eigen::VectorXd starts_of(const std::vector<Parameter>& parameters) {
+Eigen::VectorXd starts_of(const std::vector<FitRange>& parameters) {
   Eigen::VectorXd values(static_cast<Eigen::Index>(parameters.size()));
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     values[static_cast<Eigen::Index>(j)] = parameters[j].start.value_or(parameters[j].at(0.5));
@@ -65,104 +62,96 @@ double error_of(Observable observable, const PointResult& point) {
 
 }  // namespace
 
-Model::Model(const SceneText& scene, std::vector<FitData> data, std::vector<Parameter> parameters)
+Model::Model(const Scene& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters)
     : data_(std::move(data)), parameters_(std::move(parameters)) {
-  for (const FitData& one : data_) count_ += one.observations.size();
+  for (const MeasuredData& one : data_) count_ += one.measurements.size();
   check();
   for (const Eigen::VectorXd& ends :
-       {values_of(parameters_, &Parameter::low), values_of(parameters_, &Parameter::high)}) {
-    parse(scene, data_.front(), {}, ends);
+       {values_of(parameters_, &FitRange::low), values_of(parameters_, &FitRange::high)}) {
+    scene_of(scene, data_.front(), {}, ends);
   }
   Eigen::Index first_row = 0;
-  for (const FitData& one : data_) {
+  for (const MeasuredData& one : data_) {
     add_groups(scene, one, first_row);
-    first_row += static_cast<Eigen::Index>(one.observations.size());
+    first_row += static_cast<Eigen::Index>(one.measurements.size());
   }
 }
 
 void Model::check() const {
-  if (data_.empty()) throw InputError("--data: at least one file is needed");
-  if (parameters_.empty()) throw InputError("--vary: at least one parameter is needed");
+  if (data_.empty()) throw InputError("fit: no data; at least one set is needed");
+  if (parameters_.empty()) throw InputError("fit: nothing varies; at least one parameter is needed");
   for (std::size_t j = 0; j < parameters_.size(); ++j) {
     const std::string& key = parameters_[j].key;
+    check_range(parameters_[j], key);
     if (std::ranges::find(parameters_.begin(), parameters_.begin() + static_cast<std::ptrdiff_t>(j), key,
-                          &Parameter::key) != parameters_.begin() + static_cast<std::ptrdiff_t>(j)) {
-      throw InputError(fmt::format("--vary {}: appears twice", key));
+                          &FitRange::key) != parameters_.begin() + static_cast<std::ptrdiff_t>(j)) {
+      throw InputError(fmt::format("{}: varies twice", key));
     }
-    for (const FitData& one : data_) {
-      if (std::ranges::find(one.overrides, key, key_of) != one.overrides.end()) {
-        throw InputError(fmt::format("--data {}: {} is varied and cannot be fixed too", one.name, key));
+    for (const MeasuredData& one : data_) {
+      if (std::ranges::find(one.settings, key, &Setting::key) != one.settings.end()) {
+        throw InputError(fmt::format("{}: {} is varied and cannot be fixed too", one.name, key));
       }
     }
   }
-  for (const FitData& one : data_) {
+  for (const MeasuredData& one : data_) {
     if (one.has_uncertainties == has_uncertainties()) continue;
     throw InputError(fmt::format("{}: column \"uncertainty\" is {}; all data sets have it, or none", one.name,
                                  one.has_uncertainties ? "there, and not in " + data_.front().name
                                                        : "missing, and " + data_.front().name + " has it"));
   }
   if (parameters_.size() > count_) {
-    throw InputError(fmt::format("--vary: {} parameters and {} measured points; at most as many parameters as points",
+    throw InputError(fmt::format("fit: {} parameters and {} measured points; at most as many parameters as points",
                                  parameters_.size(), count_));
   }
 }
 
-std::vector<std::string> Model::overrides(const Eigen::VectorXd& values) const {
-  std::vector<std::string> overrides;
+std::vector<Setting> Model::settings(const Eigen::VectorXd& values) const {
+  std::vector<Setting> settings;
   for (std::size_t j = 0; j < parameters_.size(); ++j) {
-    overrides.push_back(parameters_[j].key + '=' + format_number(values[static_cast<Eigen::Index>(j)]));
+    const FitRange& range = parameters_[j];
+    const double value = values[static_cast<Eigen::Index>(j)];
+    settings.push_back({range.key, value, fmt::format("{} = {}, which varies", range.key, format_number(value))});
   }
-  return overrides;
+  return settings;
 }
 
-Scene Model::parse(const SceneText& scene, const FitData& data, const std::vector<std::string>& own,
-                   const Eigen::VectorXd& values) const {
-  const std::vector<std::string> varied = overrides(values);
-  std::vector<std::string> all = scene.overrides;
-  for (const auto* more : {&data.overrides, &own, &varied}) all.insert(all.end(), more->begin(), more->end());
-  try {
-    return parse_scene(scene.text, scene.path_name, all);
-  } catch (const InputError& error) {
-    // Who typed --vary or --data is told of that.
-    const std::string message = error.what();
-    const auto is_about = [&](const std::string& one) { return message.starts_with("--set " + one + ":"); };
-    if (std::ranges::any_of(varied, is_about)) throw InputError("--vary " + message.substr(6));
-    if (std::ranges::any_of(data.overrides, is_about) || std::ranges::any_of(own, is_about)) {
-      throw InputError(fmt::format("--data {}: {}", data.name, message.substr(6)));
-    }
-    throw;
-  }
+Scene Model::scene_of(const Scene& scene, const MeasuredData& data, const std::vector<Setting>& own,
+                      const Eigen::VectorXd& values) const {
+  std::vector<Setting> all = data.settings;
+  for (const auto& more : {own, settings(values)}) all.insert(all.end(), more.begin(), more.end());
+  return with_settings(scene, all);
 }
 
-void Model::add_groups(const SceneText& scene, const FitData& data, Eigen::Index first_row) {
+void Model::add_groups(const Scene& scene, const MeasuredData& data, Eigen::Index first_row) {
   std::map<std::optional<double>, Group> of_wavelength;
-  for (std::size_t i = 0; i < data.observations.size(); ++i) {
-    Group& group = of_wavelength[data.observations[i].wavelength_um];
-    group.observations.push_back(&data.observations[i]);
+  for (std::size_t i = 0; i < data.measurements.size(); ++i) {
+    Group& group = of_wavelength[data.measurements[i].wavelength_um];
+    group.measurements.push_back(&data.measurements[i]);
     group.rows.push_back(first_row + static_cast<Eigen::Index>(i));
   }
   for (auto& [wavelength_um, group] : of_wavelength) {
-    std::vector<std::string> own;
+    std::vector<Setting> own;
     if (wavelength_um) {
-      const auto sets_spectrum = [](const std::string& one) { return key_of(one).starts_with("spectrum."); };
-      if (std::ranges::any_of(data.overrides, sets_spectrum) ||
-          std::ranges::find(parameters_, "spectrum.wavelength_um", &Parameter::key) != parameters_.end()) {
+      const auto sets_spectrum = [](const Setting& one) { return one.key.starts_with("spectrum."); };
+      if (std::ranges::any_of(data.settings, sets_spectrum) ||
+          std::ranges::find(parameters_, "spectrum.wavelength_um", &FitRange::key) != parameters_.end()) {
         throw InputError(data.name + ": column \"wavelength_um\" and a spectrum key contradict each other");
       }
-      own.push_back("spectrum.wavelength_um=" + format_number(*wavelength_um));
+      own.push_back({"spectrum.wavelength_um", *wavelength_um,
+                     fmt::format("{}: wavelength_um = {}", data.name, format_number(*wavelength_um))});
     }
-    group.scene = parse(scene, data, own, starts_of(parameters_));
+    group.scene = scene_of(scene, data, own, starts_of(parameters_));
     const Surface& surface = group.scene.surface;
     const bool is_tabulated = group.scene.source && group.scene.source->kind == Source::Kind::kTabulated;
-    if (std::ranges::find(parameters_, "spectrum.wavelength_um", &Parameter::key) != parameters_.end() &&
+    if (std::ranges::find(parameters_, "spectrum.wavelength_um", &FitRange::key) != parameters_.end() &&
         (!surface.material.is_constant() || is_tabulated)) {
-      throw InputError("--vary spectrum.wavelength_um: needs n, k and a source that are constants of the scene");
+      throw InputError("spectrum.wavelength_um: to vary it needs n, k and a source that are constants of the scene");
     }
     if (data.zenith_column == "theta_i_deg" && group.scene.geometry.mode != Mode::kBistatic) {
       throw InputError(data.name + ": column \"theta_i_deg\" needs geometry.mode = \"bistatic\"");
     }
-    const bool is_emissivity = group.observations.front()->observable == Observable::kEmissivityS ||
-                               group.observations.front()->observable == Observable::kEmissivityP;
+    const bool is_emissivity = group.measurements.front()->observable == Observable::kEmissivityS ||
+                               group.measurements.front()->observable == Observable::kEmissivityP;
     if (is_emissivity && !group.scene.emission) {
       throw InputError(data.name + ": emissivities need the table [emission] in the scene");
     }
@@ -202,12 +191,12 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
   }
   for (const auto& [common, sets] : calls) {
     std::vector<SceneEntry> entries;
-    entries.reserve(sets.size() * group.observations.size());
+    entries.reserve(sets.size() * group.measurements.size());
     Scene scene;
     for (const std::size_t set : sets) {
       scene = with(group.scene, values[set]);
       const Surface& surface = scene.surface;
-      for (const Observation* observation : group.observations) {
+      for (const Measurement* observation : group.measurements) {
         SceneEntry entry{observation->theta_deg, {surface.sigma, surface.q}, {}};
         if (surface.material.is_constant()) entry.index = surface.material.constant;
         entries.push_back(entry);
@@ -216,9 +205,9 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
     scene.accuracy.tolerance = tolerance;
     const std::vector<PointResult> results = evaluate_scene(scene, entries, evaluator, progress);
     for (std::size_t i = 0; i < results.size(); ++i) {
-      const std::size_t member = i % group.observations.size();
-      Prediction& prediction = predictions[sets[i / group.observations.size()]];
-      const Observable observable = group.observations[member]->observable;
+      const std::size_t member = i % group.measurements.size();
+      Prediction& prediction = predictions[sets[i / group.measurements.size()]];
+      const Observable observable = group.measurements[member]->observable;
       prediction.components.row(group.rows[member]) = components_of(observable, results[i]);
       prediction.error[group.rows[member]] = error_of(observable, results[i]);
       prediction.status |= results[i].status;

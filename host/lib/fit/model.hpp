@@ -3,23 +3,15 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <dolp/errors.hpp>
 #include <string>
 #include <vector>
 
-#include "base/progress.hpp"
-#include "fit/fit_data.hpp"
-#include "fit/parameter.hpp"
 #include "model/evaluator.hpp"
+#include <dolp/fit.hpp>
 #include "scene/scene.hpp"
 
 namespace dolp::fit {
-
-/// A scene before it is read.
-struct SceneText {
-  std::string text;
-  std::string path_name;
-  std::vector<std::string> overrides;  ///< KEY=VALUE
-};
 
 /// What the model says to all observations, in their order.
 struct Prediction {
@@ -34,14 +26,14 @@ class Model {
  public:
   /// Errors: InputError, one line, where scene, data and parameters do not fit together: more parameters than
   /// observations, a key twice, a data set that fixes a varied key, data with and without uncertainties, what
-  /// parse_scene refuses at either end of the ranges.
-  Model(const SceneText& scene, std::vector<FitData> data, std::vector<Parameter> parameters);
+  /// the scene refuses at either end of the ranges.
+  Model(const Scene& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters);
 
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
 
-  const std::vector<FitData>& data() const { return data_; }
-  const std::vector<Parameter>& parameters() const { return parameters_; }
+  const std::vector<MeasuredData>& data() const { return data_; }
+  const std::vector<FitRange>& parameters() const { return parameters_; }
   /// The scene of the first data set at the start of the parameters.
   const Scene& scene() const { return groups_.front().scene; }
   std::size_t observation_count() const { return count_; }
@@ -52,27 +44,28 @@ class Model {
   std::vector<Prediction> predict(const std::vector<Eigen::VectorXd>& values, double tolerance,
                                   MomentsEvaluator& evaluator, const Progress& progress) const;
 
-  /// KEY=VALUE of each parameter.
-  std::vector<std::string> overrides(const Eigen::VectorXd& values) const;
+  /// Each parameter with its value.
+  std::vector<Setting> settings(const Eigen::VectorXd& values) const;
 
  private:
   /// Observations of one data set at one wavelength.
   struct Group {
     Scene scene;
-    std::vector<const Observation*> observations;
+    std::vector<const Measurement*> measurements;
     std::vector<Eigen::Index> rows;  ///< of the predictions
   };
 
   void check() const;
-  void add_groups(const SceneText& scene, const FitData& data, Eigen::Index first_row);
-  Scene parse(const SceneText& scene, const FitData& data, const std::vector<std::string>& own,
-              const Eigen::VectorXd& values) const;
+  void add_groups(const Scene& scene, const MeasuredData& data, Eigen::Index first_row);
+  /// The scene of some data. Errors: InputError that says whose setting is refused.
+  Scene scene_of(const Scene& scene, const MeasuredData& data, const std::vector<Setting>& own,
+                 const Eigen::VectorXd& values) const;
   Scene with(const Scene& scene, const Eigen::VectorXd& values) const;
   void predict_group(const Group& group, const std::vector<Eigen::VectorXd>& values, double tolerance,
                      MomentsEvaluator& evaluator, const Progress& progress, std::vector<Prediction>& predictions) const;
 
-  std::vector<FitData> data_;
-  std::vector<Parameter> parameters_;
+  std::vector<MeasuredData> data_;
+  std::vector<FitRange> parameters_;
   std::vector<Group> groups_;
   std::size_t count_ = 0;
 };

@@ -54,8 +54,8 @@ Residuals::Residuals(const Model& model, double tolerance, Differences differenc
       measured_(static_cast<Eigen::Index>(model.observation_count())),
       weights_(measured_.size()) {
   Eigen::Index row = 0;
-  for (const FitData& data : model.data()) {
-    for (const Observation& observation : data.observations) {
+  for (const MeasuredData& data : model.data()) {
+    for (const Measurement& observation : data.measurements) {
       measured_[row] = observation.value;
       weights_[row++] = 1.0 / observation.uncertainty.value_or(1.0);
       is_length_.push_back(observation.observable == Observable::kDolp);

@@ -44,11 +44,11 @@ std::vector<Eigen::VectorXd> sobol_points(std::size_t count, Eigen::Index dimens
 
 /// Where the descents begin: the best points, no two of them close together.
 std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& options) {
-  const std::vector<Parameter>& parameters = residuals.model().parameters();
+  const std::vector<FitRange>& parameters = residuals.model().parameters();
   const auto dimensions = static_cast<Eigen::Index>(parameters.size());
   std::vector<Eigen::VectorXd> points = sobol_points(kPointsOfAStart * options.starts, dimensions, options.seed);
   const bool has_start =
-      std::ranges::any_of(parameters, [](const Parameter& parameter) { return parameter.start.has_value(); });
+      std::ranges::any_of(parameters, [](const FitRange& parameter) { return parameter.start.has_value(); });
   if (has_start) {
     Eigen::VectorXd given = Eigen::VectorXd::Constant(dimensions, 0.5);
     for (std::size_t j = 0; j < parameters.size(); ++j) {

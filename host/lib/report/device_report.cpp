@@ -1,10 +1,10 @@
 #include "report/device_report.hpp"
 
+#include <dolp/errors.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/choices.hpp"
 #include "verify/qualification.hpp"

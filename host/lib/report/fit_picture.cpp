@@ -5,10 +5,10 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <dolp/errors.hpp>
 #include <memory>
 #include <vector>
 
-#include "base/error.hpp"
 
 namespace dolp {
 

@@ -11,7 +11,7 @@ namespace dolp {
 namespace {
 
 using fit::FitResult;
-using fit::FittedParameter;
+
 using Json = Report::Json;
 
 constexpr double kStrongCorrelation = 0.9;
@@ -21,17 +21,17 @@ Json json_of(const std::optional<double>& value) { return value ? Json(*value) :
 
 Json json_of(const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); }
 
-Json json_of(const fit::Interval& interval) { return Json::array({json_of(interval.low), json_of(interval.high)}); }
+Json json_of(const FitInterval& interval) { return Json::array({json_of(interval.low), json_of(interval.high)}); }
 
 std::string text_of(const std::optional<double>& value, const char* none) {
   return value ? fmt::format("{:.6g}", *value) : none;
 }
 
-std::string text_of(const fit::Interval& interval) {
+std::string text_of(const FitInterval& interval) {
   return fmt::format("{} .. {}", text_of(interval.low, "open"), text_of(interval.high, "open"));
 }
 
-Json parameter_json(const FittedParameter& one) {
+Json parameter_json(const FitParameter& one) {
   return {{"key", one.key},
           {"value", one.value},
           {"standard_error", json_of(one.standard_error)},
@@ -43,20 +43,20 @@ Json parameter_json(const FittedParameter& one) {
 /// A line for each parameter, and one for each end that its range has before the data say no.
 void add_parameters(Report& report, const fit::Model& model, const FitResult& result) {
   Json list = Json::array();
-  for (const FittedParameter& one : result.parameters) list.push_back(parameter_json(one));
+  for (const FitParameter& one : result.parameters) list.push_back(parameter_json(one));
   report.value("parameters", list);
   std::size_t width = 9;
-  for (const FittedParameter& one : result.parameters) width = std::max(width, one.key.size());
+  for (const FitParameter& one : result.parameters) width = std::max(width, one.key.size());
   report.line("  {:<{}}  {:>11}  {:>11}  {:^25}  {:^25}", "parameter", width, "value", "std. error", "68 %", "95 %");
-  for (const FittedParameter& one : result.parameters) {
+  for (const FitParameter& one : result.parameters) {
     report.line("  {:<{}}  {:>11.6g}  {:>11}  {:^25}  {:^25}{}", one.key, width, one.value,
                 one.standard_error ? fmt::format("{:.2g}", *one.standard_error) : "none", text_of(one.interval_68),
                 text_of(one.interval_95), one.is_at_bound ? "  at its bound" : "");
   }
   const bool has_intervals = model.has_uncertainties() || result.degrees_of_freedom > 0;
   for (std::size_t j = 0; has_intervals && j < result.parameters.size(); ++j) {
-    const FittedParameter& one = result.parameters[j];
-    const fit::Parameter& range = model.parameters()[j];
+    const FitParameter& one = result.parameters[j];
+    const FitRange& range = model.parameters()[j];
     const auto is_open = [](const auto& low, const auto& high) { return !low || !high; };
     if (!is_open(one.interval_95.low, one.interval_95.high)) continue;
     const bool is_both = !one.interval_95.low && !one.interval_95.high;
@@ -127,8 +127,8 @@ void add_points(Report& report, const fit::Model& model, const FitResult& result
   report.value("residuals", json_of(result.residuals));
   Json points = Json::array();
   Eigen::Index row = 0;
-  for (const fit::FitData& data : model.data()) {
-    for (const fit::Observation& one : data.observations) {
+  for (const MeasuredData& data : model.data()) {
+    for (const Measurement& one : data.measurements) {
       points.push_back({{"data", data.name},
                         {"quantity", name_of(one.observable)},
                         {"theta_deg", one.theta_deg},
@@ -143,7 +143,13 @@ void add_points(Report& report, const fit::Model& model, const FitResult& result
   report.value("points", points);
 }
 
-std::string model_text(const ComparedModel& model) { return fmt::format("{}", fmt::join(model.overrides, " ")); }
+std::vector<std::string> settings_of(const ComparedModel& model) {
+  std::vector<std::string> texts;
+  for (const Setting& setting : model.settings) texts.push_back(setting.text());
+  return texts;
+}
+
+std::string model_text(const ComparedModel& model) { return fmt::format("{}", fmt::join(settings_of(model), " ")); }
 
 }  // namespace
 
@@ -191,13 +197,13 @@ void add_comparison(Report& report, const std::vector<ComparedModel>& models) {
   }
   report.line("  {:<{}}  {:>10}  {:>9}  {:>9}", "model", width, "chi_square", "delta AIC", "delta BIC");
   for (const ComparedModel& model : models) {
-    Json one = {{"overrides", model.overrides}};
+    Json one = {{"overrides", settings_of(model)}};
     if (model.result) {
       const FitResult& result = *model.result;
       report.line("  {:<{}}  {:>10.5g}  {:>9.2f}  {:>9.2f}", model_text(model), width, result.chi_square,
                   result.aic - least_aic, result.bic - least_bic);
       one.update({{"chi_square", result.chi_square}, {"aic", result.aic}, {"bic", result.bic}});
-      for (const FittedParameter& parameter : result.parameters) {
+      for (const FitParameter& parameter : result.parameters) {
         one["parameters"].push_back(parameter_json(parameter));
       }
     } else {

@@ -11,9 +11,9 @@
 
 namespace dolp {
 
-/// One of the models that --compare asks for.
+/// One of the models that are compared.
 struct ComparedModel {
-  std::vector<std::string> overrides;    ///< KEY=VALUE, those of --compare
+  std::vector<Setting> settings;         ///< that tell it from the others
   std::optional<fit::FitResult> result;  ///< none where no minimum was found
   std::string refusal;                   ///< why the scene does not have this combination; empty where it does
 };

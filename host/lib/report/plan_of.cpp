@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <dolp/errors.hpp>
 
-#include "base/error.hpp"
 #include "base/processor.hpp"
 #include "evaluate/text/profile.hpp"
 #include "model/choices.hpp"

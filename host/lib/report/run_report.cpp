@@ -38,7 +38,7 @@ void add_energy(Report& report, const RunSummary& summary, bool is_computed) {
 }
 
 /// What is kept, and a line for each effect that is dropped.
-void add_effects(Report& report, const SceneRun& run) {
+void add_effects(Report& report, const RunOutcome& run) {
   std::string kept;
   for (const EffectRow& row : run.effects) {
     if (row.state == EffectState::kKept) kept += (kept.empty() ? "" : ", ") + std::string(row.name);
@@ -61,7 +61,7 @@ void add_work(Report& report, const EvaluationReport& e, std::size_t entries) {
                 key("interpolated_moments", e.interpolated), key("interpolation_nodes", e.interpolation_nodes));
 }
 
-void add_errors(Report& report, const SceneRun& run, double tolerance) {
+void add_errors(Report& report, const RunOutcome& run, double tolerance) {
   const std::optional<double> dolp = run.summary.worst_error;
   std::optional<double> rho;
   if (run.plan.gives_rho) rho = run.summary.worst_rho_error;
@@ -88,15 +88,8 @@ void add_status(Report& report, const RunSummary& summary) {
 
 }  // namespace
 
-EvaluationReport evaluation_of(const MomentsEvaluator* evaluator, const std::string& name) {
-  if (evaluator) return evaluator->report();
-  EvaluationReport nothing;
-  nothing.evaluator = name;
-  nothing.device = nothing.precision = "none";
-  return nothing;
-}
-
-Report run_report(const Scene& scene, const SceneRun& run, const std::string& shape, const std::string& path) {
+Report run_report(const Scene& scene, const RunOutcome& run, std::optional<double> gap, const std::string& shape,
+                  const std::string& path) {
   const RunSummary& summary = run.summary;
   Report report;
   report.line("{}", key("title", scene.title));
@@ -112,11 +105,11 @@ Report run_report(const Scene& scene, const SceneRun& run, const std::string& sh
                 key("self_check/entries", summary.check.entries),
                 key("self_check/worst_ratio", summary.check.worst_ratio),
                 summary.check.worst_ratio > 1.0 ? "; a bound failed, see status 2" : "");
-  report.row_if(run.scattering_gap.has_value(), "scattering",
+  report.row_if(gap.has_value(), "scattering",
                 "single: the direct emission, the other end of what all bounces may give, changes DOLP by up to {:.1f} "
                 "points",
-                kPoints * run.scattering_gap.value_or(0.0));
-  report.value("scattering_gap", run.scattering_gap);
+                kPoints * gap.value_or(0.0));
+  report.value("scattering_gap", gap);
   add_status(report, summary);
   add_energy(report, summary, run.plan.needs_moments);
   const EvaluationReport& evaluation = run.evaluation;

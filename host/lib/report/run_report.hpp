@@ -11,26 +11,15 @@
 #include "plan/effects.hpp"
 #include "report/plan_report.hpp"
 #include "report/report.hpp"
-#include "run/run_summary.hpp"
+#include "run/scene_run.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {
 
-/// A finished run, for its report.
-struct SceneRun {
-  EffectPlan plan;
-  std::vector<EffectRow> effects;
-  RunSummary summary;
-  std::optional<double> scattering_gap;  ///< none where it does not apply
-  EvaluationReport evaluation;
-  double wall_s = 0.0;
-};
-
-/// What ran: nothing, where no evaluator was needed; `name` is the one that was asked for.
-EvaluationReport evaluation_of(const MomentsEvaluator* evaluator, const std::string& name);
-
-/// The report of a run. `shape`: that of the grid, or "200 points"; `path`: what was written.
-Report run_report(const Scene& scene, const SceneRun& run, const std::string& shape, const std::string& path);
+/// The report of a run. `shape`: that of the grid, or "200 points"; `path`: what was written; `gap`: of single scattering,
+/// none where it does not apply.
+Report run_report(const Scene& scene, const RunOutcome& run, std::optional<double> gap, const std::string& shape,
+                  const std::string& path);
 
 /// Where a run was evaluated, and how long it took.
 void add_evaluation(Report& report, const EvaluationReport& evaluation, double wall_s);

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <dolp/errors.hpp>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "run/scene_run.hpp"
 #include "scene/number_range.hpp"

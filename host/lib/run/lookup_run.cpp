@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <dolp/errors.hpp>
 #include <optional>
 #include <string>
 
-#include "base/error.hpp"
 #include "base/parallel_ranges.hpp"
 #include "base/text.hpp"
 

@@ -1,9 +1,9 @@
 // A table read between its entries at scattered points.
 #pragma once
 
+#include <dolp/errors.hpp>
 #include <vector>
 
-#include "base/progress.hpp"
 #include "model/point_result.hpp"
 #include "scene/points.hpp"
 #include "scene/scene.hpp"

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <boost/math/constants/constants.hpp>
 #include <cmath>
+#include <dolp/errors.hpp>
 #include <limits>
 #include <span>
 #include <stdexcept>
 
-#include "base/error.hpp"
 #include "model/angles.hpp"
 #include "model/direction.hpp"
 #include "run/scene_run.hpp"
@@ -65,8 +65,8 @@ double diffuse_brdf(const Surface& surface, const BeamAngles& angles) {
 }
 
 /// `specular` is null for a point that the evaluator is not asked for.
-MuellerElements elements(const Surface& surface, const MuellerPoint& point, const ScatteringMatrix* specular) {
-  MuellerElements f{};
+MuellerMatrix elements(const Surface& surface, const MuellerPoint& point, const ScatteringMatrix* specular) {
+  MuellerMatrix f{};
   if (is_undefined(surface, point)) {
     f.fill(std::numeric_limits<double>::quiet_NaN());
     return f;
@@ -113,11 +113,11 @@ Precision mueller_precision(const Accuracy& accuracy, bool has_double) {
   return accuracy.tolerance < kScatteringErrorFloat && has_double ? Precision::kDouble : Precision::kFloat;
 }
 
-std::vector<MuellerElements> evaluate_mueller(const Scene& scene, const std::vector<MuellerPoint>& points,
+std::vector<MuellerMatrix> evaluate_mueller(const Scene& scene, const std::vector<MuellerPoint>& points,
                                               MomentsEvaluator& evaluator, const Progress& progress) {
   if (evaluator.scattering() == nullptr) throw std::logic_error("Mueller matrices need an evaluator of pBRDFs");
   const Precision precision = mueller_precision(scene.accuracy, evaluator.has_double());
-  std::vector<MuellerElements> results;
+  std::vector<MuellerMatrix> results;
   results.reserve(points.size());
   for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce) {
     const auto block = std::span(points).subspan(first, std::min(kPointsAtOnce, points.size() - first));

@@ -18,9 +18,6 @@ struct MuellerPoint {
   OpticalConstants index;
 };
 
-/// f of eq. (15), row by row, with k_s and the diffuse part. Units: sr-1.
-using MuellerElements = std::array<double, 16>;
-
 /// Scattered geometries; what they do not say comes from the scene, n and k at its wavelength.
 /// Errors: InputError that names file, key or line and column, and what is allowed: a band with a material that depends
 /// on the wavelength, unless the points have n and k both; q <= 3/2 with smith masking and the cauchy distribution.
@@ -30,14 +27,14 @@ std::vector<MuellerPoint> mueller_points(const Scene& scene, const Points& point
 /// (or the evaluator has nothing better), double elsewhere.
 Precision mueller_precision(const Accuracy& accuracy, bool has_double);
 
-/// pBRDFs in the order of `points`.
+/// f of eq. (15) with k_s and the diffuse part, in the order of `points`.
 ///
 /// Accuracy: each element to kScatteringErrorFloat or kScatteringErrorDouble of m00.
 /// Domain: at 90 degrees the limits, which v-cavity and smith have with one beam there. Where f has no finite value all
 /// 16 are NaN: at 90 degrees otherwise, and for a mirror (sigma = 0) in its specular direction; in others its f is the
 /// diffuse part.
 /// Errors: those of the evaluator.
-std::vector<MuellerElements> evaluate_mueller(const Scene& scene, const std::vector<MuellerPoint>& points,
+std::vector<MuellerMatrix> evaluate_mueller(const Scene& scene, const std::vector<MuellerPoint>& points,
                                               MomentsEvaluator& evaluator, const Progress& progress);
 
 }  // namespace dolp

@@ -1,6 +1,7 @@
 #include "run/scene_run.hpp"
 
 #include <algorithm>
+#include <dolp/errors.hpp>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -8,10 +9,10 @@
 #include <stdexcept>
 
 #include "base/parallel_ranges.hpp"
+#include "base/stopwatch.hpp"
 #include "model/angles.hpp"
 #include "model/status.hpp"
 #include "plan/refinement.hpp"
-#include "plan/shape_plan.hpp"
 #include "run/closed_forms.hpp"
 #include "run/index_bases.hpp"
 #include "run/part_requests.hpp"
@@ -221,10 +222,10 @@ FirstResults first_results(const Way& way, const SceneEntries& part, const Progr
   first.level.run_size = way.run_size;
   first.level.basis = way.bases.of(first.level);
   const PartRequests requests(way.scene, way.spectra.indices, way.plan, {part}, first.level);
-  const std::uint64_t nodes = way.evaluator->report().interpolation_nodes;
   first.results = results_of(way, {part}, requests, progress);
-  if (!part.is_grid() || way.evaluator->report().interpolation_nodes == nodes) return first;
-  const std::vector<char> of_request = interpolated_directions(requests.moments());
+  if (!part.is_grid()) return first;
+  const std::vector<char> of_request = way.evaluator->interpolated_directions(requests.moments());
+  if (of_request.empty()) return first;
   for (std::size_t i = 0; i < part.size(); i += part.of_direction())
     first.is_interpolated.push_back(of_request[requests.direction_of(i)]);
   return first;
@@ -294,7 +295,7 @@ std::vector<PointResult> part_results(const Way& way, const SceneEntries& part, 
                                       SelfCheck& check, const Progress& progress) {
   if (!wants_evaluator(way.scene, part, way.plan)) {
     std::vector<PointResult> results = computed_at(way, {part}, {}, progress);
-    if (!progress(1, 1)) throw Cancelled{};
+    if (!progress(1, 1)) throw Cancelled();
     return results;
   }
   FirstResults first = first_results(way, part, progress);
@@ -316,7 +317,7 @@ std::vector<PointResult> part_results(const Way& way, const SceneEntries& part, 
 
 }  // namespace
 
-void CollectedResults::write(const SceneEntries& part, std::vector<PointResult> results, const SelfCheck&) {
+void CollectedResults::write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary&) {
   if (part.size() == entries_.size()) {
     results_ = std::move(results);
   } else if (part.is_grid()) {
@@ -343,8 +344,36 @@ bool wants_evaluator(const Scene& scene, const SceneEntries& entries, const Effe
   });
 }
 
-SelfCheck run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
-                    MomentsEvaluator* evaluator, Sink& sink, const Progress& progress) {
+void begin(const Progress& progress, std::size_t total) {
+  if (progress && !progress(0, total)) throw Cancelled();
+}
+
+Run::Run(const Scene& scene, SceneEntries entries, const RunOptions& options, const EvaluatorMaker& make_evaluator)
+    : scene_(scene), entries_(std::move(entries)), progress_(options.progress) {
+  const SceneEntries whole =
+      entries_.is_grid() ? SceneEntries::of_grid(entries_.whole_axes(), entries_.index()) : entries_;
+  outcome_.plan = plan_effects(scene, whole, options.keep_all);
+  outcome_.effects = effect_rows(scene, whole, outcome_.plan);
+  begin(progress_, entries_.size());
+  if (wants_evaluator(scene, entries_, outcome_.plan)) evaluator_ = make_evaluator();
+  if (evaluator_) {
+    outcome_.evaluation = evaluator_->report();
+  } else {
+    outcome_.evaluation.evaluator = outcome_.evaluation.device = outcome_.evaluation.precision = "none";
+  }
+}
+
+std::vector<SceneEntries> Run::parts() const { return run_parts(entries_, spectral_rule(scene_).samples.size()); }
+
+RunOutcome Run::compute(Sink& sink) {
+  outcome_.summary = run_scene(scene_, entries_, outcome_.plan, evaluator_, sink, progress_);
+  if (evaluator_) outcome_.evaluation = outcome_.summary.totals(evaluator_->report());
+  outcome_.wall_s = seconds_since(start_);
+  return outcome_;
+}
+
+RunSummary run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
+                     MomentsEvaluator* evaluator, Sink& sink, const Progress& progress) {
   const std::size_t samples = spectral_rule(scene).samples.size();
   Accuracy accuracy = scene.accuracy;
   if (evaluator && accuracy.precision == Precision::kAuto) accuracy.precision = evaluator->precision();
@@ -353,23 +382,30 @@ SelfCheck run_scene(const Scene& scene, const SceneEntries& entries, const Effec
   if (entries.is_grid() && plan.needs_moments)
     checked = checked_positions(whole, checked_count(whole * samples), scene_seed(scene));
   IndexBases bases(scene, entries, plan);
-  SelfCheck check;
+  RunSummary summary = sink.summary_of_done();
+  const auto with_evaluation = [&] {
+    RunSummary all = summary;
+    if (evaluator) all.add(evaluator->report());
+    return all;
+  };
+  std::size_t left = sink.parts_done();
   std::size_t before = 0;
   for (const SceneEntries& part : run_parts(entries, samples)) {
     const Progress part_progress = [&](std::size_t done, std::size_t total) {
       return !progress || progress(before + part.size() * done / total, entries.size());
     };
-    if (!sink.has(part)) {
+    if (left > 0) {
+      --left;
+    } else {
       const Spectra spectra(scene, plan, part.wavelength_um());
       const Way way{scene, plan, spectra, evaluator, accuracy, bases, whole};
-      SelfCheck of_part;
-      std::vector<PointResult> results = part_results(way, part, checked, of_part, part_progress);
-      sink.write(part, std::move(results), of_part);
-      check.add(of_part);
+      std::vector<PointResult> results = part_results(way, part, checked, summary.check, part_progress);
+      summary.add(scene, part, results);
+      sink.write(part, std::move(results), with_evaluation());
     }
     before += part.size();
   }
-  return check;
+  return with_evaluation();
 }
 
 std::vector<PointResult> evaluate_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,

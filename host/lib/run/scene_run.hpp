@@ -1,6 +1,9 @@
-// The one way of every front end: entries of a scene -> moments and beams -> radiometry -> sink.
+// The way of every front end: entries of a scene -> moments and beams -> radiometry -> sink.
 #pragma once
 
+#include <chrono>
+#include <dolp/options.hpp>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -8,7 +11,7 @@
 #include "model/point_result.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/effects.hpp"
-#include "run/self_check.hpp"
+#include "run/run_summary.hpp"
 #include "scene/points.hpp"
 #include "scene/scene.hpp"
 
@@ -33,11 +36,12 @@ void check_smith(const Scene& scene, const Points& points);
 class Sink {
  public:
   virtual ~Sink() = default;
-  /// Whether the results of a part are there already, so that it need not be computed.
-  virtual bool has(const SceneEntries& /*part*/) { return false; }
-  /// Results of `part`: points follow those of the part before, the part of a grid says where it belongs. `check`: of
-  /// its entries.
-  virtual void write(const SceneEntries& part, std::vector<PointResult> results, const SelfCheck& check) = 0;
+  /// The parts that an earlier run left, which come first and are not computed again, and what that run said of them.
+  virtual std::size_t parts_done() const { return 0; }
+  virtual RunSummary summary_of_done() const { return {}; }
+  /// Results of `part`: points follow those of the part before, the part of a grid says where it belongs. `so_far`: of
+  /// all parts up to this one.
+  virtual void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) = 0;
 };
 
 /// All results in memory, in the order of the entries.
@@ -45,7 +49,7 @@ class CollectedResults final : public Sink {
  public:
   /// `entries` must outlive the object.
   explicit CollectedResults(const SceneEntries& entries) : entries_(entries) {}
-  void write(const SceneEntries& part, std::vector<PointResult> results, const SelfCheck& check) override;
+  void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) override;
   std::vector<PointResult> take() { return std::move(results_); }
 
  private:
@@ -53,20 +57,75 @@ class CollectedResults final : public Sink {
   std::vector<PointResult> results_;
 };
 
-/// The parts in which a run goes through its entries, which bounds its memory: whole directions of a grid where they
-/// fit.
+/// Calls a function with the results of each part.
+class PassedResults final : public Sink {
+ public:
+  using Take = std::function<void(const SceneEntries& part, const std::vector<PointResult>& results)>;
+  explicit PassedResults(Take take) : take_(std::move(take)) {}
+  void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary&) override {
+    take_(part, results);
+  }
+
+ private:
+  Take take_;
+};
+
+/// Makes the evaluator, when it is needed.
+using EvaluatorMaker = std::function<MomentsEvaluator*()>;
+
+/// What came of a run.
+struct RunOutcome {
+  EffectPlan plan;
+  std::vector<EffectRow> effects;
+  RunSummary summary;           ///< of all parts, also of those that were there already
+  EvaluationReport evaluation;  ///< likewise
+  double wall_s = 0.0;
+};
+
+/// A run of a scene over a grid, a part of one, or points: the way of every front end. What will be computed is decided
+/// when the object is made; what a part of a grid gets follows from its whole.
+class Run {
+ public:
+  /// `scene` must outlive the object. Tells `options.progress` that all inputs are read, then makes the evaluator if one
+  /// is needed. Errors: those of make_evaluator; Cancelled.
+  Run(const Scene& scene, SceneEntries entries, const RunOptions& options, const EvaluatorMaker& make_evaluator);
+
+  const SceneEntries& entries() const { return entries_; }
+  const EffectPlan& plan() const { return outcome_.plan; }
+  /// What computes it; "none" where nothing is left for an evaluator.
+  const EvaluationReport& evaluation() const { return outcome_.evaluation; }
+  /// The parts in which it goes through its entries, which bounds its memory: whole directions of a grid where they fit.
+  std::vector<SceneEntries> parts() const;
+
+  /// Goes all the way, part by part: what the plan keeps, computed again where it misses the tolerance; what the plan
+  /// does not give is NaN. Progress counts entries. Of grids some entries are checked; a direction in which a bound
+  /// fails gets the status of a missed tolerance. What an entry of a grid gets depends on its direction and index alone,
+  /// and on the slope distributions of the grid, not on the parts.
+  /// Errors: those of the evaluator, of Radiometry and of the sink; Cancelled.
+  RunOutcome compute(Sink& sink);
+
+ private:
+  const Scene& scene_;
+  SceneEntries entries_;
+  Progress progress_;
+  MomentsEvaluator* evaluator_ = nullptr;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  RunOutcome outcome_;
+};
+
+/// The parts in which a run goes through its entries.
 std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples);
 
-/// Whether anything is left for an evaluator: the plan needs moments or beams, and not all entries have closed forms.
+/// True where anything is left for an evaluator: the plan needs moments or beams, and not all entries have closed forms.
 bool wants_evaluator(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan);
 
-/// Goes all the way, part by part: what the plan keeps, computed again where it misses the tolerance; what the plan
-/// does not give is NaN. Progress counts entries. The evaluator may be null where wants_evaluator says so. Of grids
-/// some entries are checked; a direction in which a bound fails gets the status of a missed tolerance. What an entry of
-/// a grid gets depends on its direction and index alone, and on the slope distributions of the grid, not on the parts.
-/// Errors: those of the evaluator, of Radiometry and of the sink; Cancelled when `progress` returns false.
-SelfCheck run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
-                    MomentsEvaluator* evaluator, Sink& sink, const Progress& progress);
+/// Calls `progress`, if there is one, with nothing done yet: all inputs are read. Errors: Cancelled.
+void begin(const Progress& progress, std::size_t total);
+
+/// The same as Run::compute for a plan and an evaluator that are there already; the evaluator may be null where the
+/// plan leaves nothing for it.
+RunSummary run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
+                     MomentsEvaluator* evaluator, Sink& sink, const Progress& progress);
 
 /// The same into memory: results in the order of `entries`.
 std::vector<PointResult> evaluate_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,

@@ -75,17 +75,17 @@ std::string history_text(const std::string& command_line) {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ} {}", fmt::gmtime(now), command_line);
 }
 
-std::vector<Attribute> attributes_of(const Scene& scene, const RunFacts& run) {
+std::vector<Attribute> attributes_of(const Scene& scene, const RunOutcome& run, const std::string& command_line) {
   const EvaluationReport& evaluation = run.evaluation;
-  return {{"history", history_text(run.command_line)},
+  return {{"history", history_text(command_line)},
           {"device", evaluation.device},
           {"driver", evaluation.driver},
           {"evaluator", evaluation.evaluator},
           {"precision", evaluation.precision},
           {"effects", effects_text(run.effects, run.plan)},
           {"rule", rule_text(scene.accuracy.tolerance, evaluation)},
-          {"self_check_entries", static_cast<double>(run.check.entries)},
-          {"self_check_worst_ratio", run.check.worst_ratio},
+          {"self_check_entries", static_cast<double>(run.summary.check.entries)},
+          {"self_check_worst_ratio", run.summary.check.worst_ratio},
           {"wall_time_s", run.wall_s}};
 }
 
@@ -117,7 +117,7 @@ TableLayout table_layout(const Scene& scene, const EffectPlan& plan, const Grid&
                       "Distribution, Infrared 46(8), 2025, doi:10.3969/j.issn.1672-8785.2025.08.004"},
                      {"scene", scene.text},
                      {"scene_path", scene.path_name},
-                     {"scene_overrides", overrides_text(scene.overrides)},
+                     {"scene_overrides", settings_text(scene.settings)},
                      {"scene_hash", scene_hash(scene)},
                      {"tolerance", scene.accuracy.tolerance}};
   const Dispersion& formula = scene.surface.material.n.formula;

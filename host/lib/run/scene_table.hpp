@@ -8,7 +8,7 @@
 #include "model/point_result.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/effects.hpp"
-#include "run/self_check.hpp"
+#include "run/scene_run.hpp"
 #include "scene/scene.hpp"
 #include "table/result_csv.hpp"
 #include "table/table.hpp"
@@ -25,17 +25,9 @@ TableLayout table_layout(const Scene& scene, const EffectPlan& plan, const Grid&
 /// The values of a part of the grid.
 Table table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results);
 
-/// What is known after a run.
-struct RunFacts {
-  const EffectPlan& plan;
-  const std::vector<EffectRow>& effects;  ///< effect_rows of the run
-  EvaluationReport evaluation;
-  SelfCheck check;
-  double wall_s = 0.0;
-  std::string command_line;  ///< for the history
-};
 std::string history_text(const std::string& command_line);
-std::vector<Attribute> attributes_of(const Scene& scene, const RunFacts& run);
+/// What is known after a run.
+std::vector<Attribute> attributes_of(const Scene& scene, const RunOutcome& run, const std::string& command_line);
 
 /// The rule in words, for reports and table attributes.
 std::string rule_text(double tolerance, const EvaluationReport& evaluation);

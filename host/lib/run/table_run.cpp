@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <dolp/errors.hpp>
 #include <future>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/stopwatch.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
@@ -45,18 +45,16 @@ std::string shard_text(const Shard& shard) { return fmt::format("{}/{}", shard.n
 /// What the parts of a file have in common, in one line.
 std::string identity_of(const Scene& scene, const TableJob& job, const EvaluationReport& evaluation) {
   return fmt::format("dolp {}, scene {}, shard {}{}, {}, {}, {}", DOLP_VERSION, scene_hash(scene),
-                     shard_text(job.shard), job.keep_all ? ", everything kept" : "", evaluation.evaluator,
+                     shard_text(job.shard), job.options.keep_all ? ", everything kept" : "", evaluation.evaluator,
                      evaluation.device, evaluation.driver);
 }
 
 /// Writes each part while the next is computed.
 class TableSink final : public Sink {
  public:
-  TableSink(const Scene& scene, const SceneEntries& entries, const TableLayout& layout,
-            const MomentsEvaluator* evaluator, TableOutput& output)
-      : scene_(scene), entries_(entries), layout_(layout), evaluator_(evaluator), output_(output) {
-    if (output.parts_done() > 0) summary_ = RunSummary::from_text(output.note()).value_or(RunSummary{});
-    left_ = output.parts_done();
+  TableSink(const SceneEntries& entries, const TableLayout& layout, TableOutput& output)
+      : entries_(entries), layout_(layout), output_(output), parts_done_(output.parts_done()) {
+    if (parts_done_ > 0) done_ = RunSummary::from_text(output.note()).value_or(RunSummary{});
   }
   TableSink(const TableSink&) = delete;
   TableSink& operator=(const TableSink&) = delete;
@@ -64,20 +62,15 @@ class TableSink final : public Sink {
     if (pending_.valid()) pending_.wait();
   }
 
-  bool has(const SceneEntries&) override {
-    if (left_ == 0) return false;
-    --left_;
-    return true;
-  }
+  std::size_t parts_done() const override { return parts_done_; }
+  RunSummary summary_of_done() const override { return done_; }
 
-  void write(const SceneEntries& part, std::vector<PointResult> results, const SelfCheck& check) override {
-    summary_.add(scene_, part, results);
-    summary_.check.add(check);
+  void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) override {
     PerAxis first = part.first();
     for (std::size_t i = 0; i < first.size(); ++i) first[i] -= entries_.first()[i];
     Table table = table_part(layout_, part, results);
     finish();
-    pending_ = std::async(std::launch::async, [this, first, own = std::move(table), note = summary().text()]() mutable {
+    pending_ = std::async(std::launch::async, [this, first, own = std::move(table), note = so_far.text()]() mutable {
       output_.write(std::move(own), first, note);
     });
   }
@@ -87,21 +80,12 @@ class TableSink final : public Sink {
     if (pending_.valid()) pending_.get();
   }
 
-  /// With what the evaluator has done.
-  RunSummary summary() const {
-    RunSummary all = summary_;
-    if (evaluator_) all.add(evaluator_->report());
-    return all;
-  }
-
  private:
-  const Scene& scene_;
   const SceneEntries& entries_;
   const TableLayout& layout_;
-  const MomentsEvaluator* evaluator_;
   TableOutput& output_;
-  RunSummary summary_;
-  std::size_t left_ = 0;  ///< parts that are there already
+  std::size_t parts_done_;
+  RunSummary done_;
   std::future<void> pending_;
 };
 
@@ -115,7 +99,7 @@ void with_rest(const TableOutput& output, const Body& body) {
   try {
     body();
   } catch (const Cancelled&) {
-    if (const auto rest = output.rest()) throw Cancelled{*rest};
+    if (const auto rest = output.rest()) throw Cancelled(*rest);
     throw;
   } catch (const IoError& error) {
     throw IoError(error.what() + more());
@@ -248,41 +232,23 @@ SceneEntries shard_entries(const Scene& scene, const Shard& shard) {
   return whole.part(first, count);
 }
 
-TableRun run_table_job(const Scene& scene, const TableJob& job, const EvaluatorMaker& make_evaluator,
-                       const Progress& progress) {
-  const SceneEntries entries = shard_entries(scene, job.shard);
-  const SceneEntries whole = grid_entries(scene);
-  TableRun run;
-  run.plan = plan_effects(scene, whole, job.keep_all);
-  run.effects = effect_rows(scene, whole, run.plan);
-  MomentsEvaluator* const evaluator = wants_evaluator(scene, entries, run.plan) ? make_evaluator() : nullptr;
-  if (evaluator) {
-    run.evaluation = evaluator->report();
-  } else {
-    run.evaluation.device = run.evaluation.precision = run.evaluation.evaluator = "none";
-  }
-  TableLayout layout = table_layout(scene, run.plan, entries.axes());
+RunOutcome write_table(const Scene& scene, const TableJob& job, const EvaluatorMaker& make_evaluator) {
+  Run run(scene, shard_entries(scene, job.shard), job.options, make_evaluator);
+  TableLayout layout = table_layout(scene, run.plan(), run.entries().axes());
   if (!job.shard.is_whole()) layout.head.attributes.push_back({kShard, shard_text(job.shard)});
-  run.parts = run_parts(entries, spectral_rule(scene).samples.size()).size();
   TableOutput output({.path = job.path,
                       .layout = layout,
-                      .parts = run.parts,
-                      .is_resumable = job.is_resumable,
-                      .is_resumed = job.is_resumed,
-                      .identity = identity_of(scene, job, run.evaluation)});
-  run.parts_before = output.parts_done();
+                      .parts = run.parts().size(),
+                      .is_resumed = job.options.resume,
+                      .identity = identity_of(scene, job, run.evaluation())});
+  RunOutcome outcome;
   with_rest(output, [&] {
-    TableSink sink(scene, entries, layout, evaluator, output);
-    run_scene(scene, entries, run.plan, evaluator, sink, progress);
+    TableSink sink(run.entries(), layout, output);
+    outcome = run.compute(sink);
     sink.finish();
-    run.summary = sink.summary();
-    if (evaluator) run.evaluation = run.summary.totals(evaluator->report());
-    run.wall_s = seconds_since(job.start);
-    output.finish(
-        attributes_of(scene, {run.plan, run.effects, run.evaluation, run.summary.check, run.wall_s, job.command_line}));
+    output.finish(attributes_of(scene, outcome, job.options.history));
   });
-  run.wall_s = seconds_since(job.start);
-  return run;
+  return outcome;
 }
 
 bool is_there(const Scene& scene, const TableJob& job) {

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <dolp/errors.hpp>
 #include <filesystem>
 #include <string_view>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "scene/number_range.hpp"
 #include "scene/scene_reader.hpp"
@@ -22,8 +22,8 @@ const std::string* find_text(const TableHead& table, std::string_view attribute)
   return found == table.attributes.end() ? nullptr : std::get_if<std::string>(&found->value);
 }
 
-/// Whether a line begins an override: a key, dotted or at the top of a scene, and an equals sign.
-bool begins_override(std::string_view line) {
+/// True for a line that begins a setting: a key, dotted or at the top of a scene, and an equals sign.
+bool begins_setting(std::string_view line) {
   const std::string_view key = trim(line.substr(0, line.find('=')));
   if (line.find('=') == std::string_view::npos) return false;
   return std::ranges::any_of(scene_keys(), [key](const KeyDescription& known) {
@@ -83,23 +83,23 @@ std::string formula_text(const Dispersion& formula) {
   return text;
 }
 
-std::string overrides_text(const std::vector<std::string>& overrides) {
+std::string settings_text(const std::vector<Setting>& settings) {
   std::string text;
-  for (const std::string& change : overrides) text += (text.empty() ? "" : "\n") + change;
+  for (const Setting& setting : settings) text += (text.empty() ? "" : "\n") + setting.text();
   return text;
 }
 
-std::vector<std::string> overrides_of(const std::string& text) {
-  std::vector<std::string> overrides;
-  if (text.empty()) return overrides;
+std::vector<Setting> settings_of(const std::string& text) {
+  std::vector<std::string> arguments;
+  if (text.empty()) return {};
   for (const std::string_view line : split(text, '\n')) {
-    if (overrides.empty() || begins_override(line)) {
-      overrides.emplace_back(line);
+    if (arguments.empty() || begins_setting(line)) {
+      arguments.emplace_back(line);
     } else {
-      (overrides.back() += '\n') += line;
+      (arguments.back() += '\n') += line;
     }
   }
-  return overrides;
+  return settings_from_text(arguments);
 }
 
 std::uint64_t scene_seed(const Scene& scene) {
@@ -108,7 +108,7 @@ std::uint64_t scene_seed(const Scene& scene) {
     for (const char byte : text) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
   };
   add(scene.text);
-  for (const std::string& change : scene.overrides) add("\n" + change);
+  for (const Setting& setting : scene.settings) add("\n" + setting.text());
   return hash;
 }
 
@@ -140,7 +140,7 @@ Scene table_scene(const TableHead& table, const std::string& name, NamedData nam
       named_data == NamedData::kOfTable ? known_data(table, name) : KnownData{.may_open_files = true};
   Scene scene;
   try {
-    scene = parse_scene(*text, path ? *path : name, overrides ? overrides_of(*overrides) : std::vector<std::string>{},
+    scene = parse_scene(*text, path ? *path : name, overrides ? settings_of(*overrides) : std::vector<Setting>{},
                         &known);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: attribute \"scene\": {}", name, error.what()));

@@ -9,12 +9,12 @@
 
 namespace dolp {
 
-/// The attribute "scene_overrides" of a table: one override a line. An override whose value has line ends itself stays
-/// whole, because only a scene key begins one.
-std::string overrides_text(const std::vector<std::string>& overrides);
-std::vector<std::string> overrides_of(const std::string& text);
+/// The attribute "scene_overrides" of a table: one setting a line, KEY=VALUE. A setting whose value has line ends itself
+/// stays whole, because only a scene key begins one.
+std::string settings_text(const std::vector<Setting>& settings);
+std::vector<Setting> settings_of(const std::string& text);
 
-/// The attribute "scene_hash": FNV-1a, 64 bits, over the scene's text and overrides. Says whether two tables come from
+/// The attribute "scene_hash": FNV-1a, 64 bits, over the scene's text and settings. Says whether two tables come from
 /// the same scene, nothing more.
 std::string scene_hash(const Scene& scene);
 std::uint64_t scene_seed(const Scene& scene);  ///< the number itself
@@ -35,7 +35,7 @@ enum class NamedData {
              ///< "scene_path" has it, from the folder where the program runs
 };
 
-/// The scene of a table, whose overrides are applied.
+/// The scene of a table, whose settings are applied.
 ///
 /// Errors: InputError that begins with `name`: no scene in the table, one that is not the one the table was made of, or
 /// one that the reader refuses.

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <dolp/errors.hpp>
 #include <limits>
 #include <random>
 #include <set>
 
-#include "base/error.hpp"
+
 #include "model/point_result.hpp"
 #include "model/status.hpp"
 #include "reference/reference_evaluator.hpp"

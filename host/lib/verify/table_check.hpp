@@ -3,20 +3,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <dolp/options.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "base/progress.hpp"
 #include "scene/scene.hpp"
 #include "table/table.hpp"
 
 namespace dolp {
-
-struct TableCheckOptions {
-  std::size_t samples = 64;  ///< entries, distinct; all of the table when it has no more
-  std::uint64_t seed = 1;    ///< of the choice
-};
 
 /// One stored value beside the reference's.
 struct CheckedValue {

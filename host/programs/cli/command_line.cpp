@@ -136,8 +136,8 @@ void add_fit(CLI::App& command, Options& options) {
       ->check(not_negative, "")
       ->capture_default_str();
   command
-      .add_option("--loss", options.loss, fmt::format("what a residual counts: {}", fmt::join(api::fit_losses(), ", ")))
-      ->check(CLI::IsMember(api::fit_losses()))
+      .add_option("--loss", options.loss, fmt::format("what a residual counts: {}", fmt::join(loss_names(), ", ")))
+      ->check(CLI::IsMember(loss_names()))
       ->capture_default_str();
   add_evaluator(command, options);
 }

@@ -1,10 +1,10 @@
 // What there is: keys, materials, devices; and the plan of a scene.
 #include <fmt/format.h>
 
+#include <dolp/errors.hpp>
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/commands.hpp"
 

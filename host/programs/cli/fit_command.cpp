@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "cli/commands.hpp"
 #include "terminal/exit_status.hpp"
 #include "terminal/progress_bar.hpp"
@@ -6,11 +8,14 @@ namespace dolp::cli {
 
 int run_fit(const Options& options) {
   const api::Scene scene = load_scene(options);
-  std::vector<api::MeasuredData> data;
-  for (const std::string& argument : options.data) data.push_back(api::MeasuredData::read(argument));
-  api::FitOptions fit{options.vary, options.starts, options.seed};
-  fit.loss = options.loss;
-  fit.compare = options.compare;
+  std::vector<MeasuredData> data;
+  for (const std::string& argument : options.data) data.push_back(MeasuredData::read(argument));
+  FitOptions fit;
+  for (const std::string& argument : options.vary) fit.vary.push_back(FitRange::from_text(argument));
+  for (const std::string& argument : options.compare) fit.compare.push_back(Comparison::from_text(argument));
+  fit.starts = options.starts;
+  fit.seed = options.seed;
+  fit.loss = static_cast<Loss>(std::ranges::find(loss_names(), options.loss) - loss_names().begin());
   fit.output = options.output_path;
   fit.plot = options.plot_path;
   api::Report report;

@@ -7,14 +7,12 @@
 #include <csignal>
 #include <cstdio>
 #include <dolp/dolp.hpp>
-#include <functional>
+#include <dolp/errors.hpp>
 #include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
-#include "base/progress.hpp"
 #include "base/text.hpp"
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
@@ -66,23 +64,6 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
                      nearest_name(unknown.front(), commands));
 }
 
-/// What `body` returns; errors of the library become those that have an exit status.
-int of_library(const std::function<int()>& body) {
-  try {
-    return body();
-  } catch (const api::InputError& error) {
-    throw InputError(error.what());
-  } catch (const api::DeviceError& error) {
-    throw DeviceError(error.what());
-  } catch (const api::MemoryError& error) {
-    throw MemoryError(error.what());
-  } catch (const api::IoError& error) {
-    throw IoError(error.what());
-  } catch (const api::Cancelled& error) {
-    throw Cancelled{error.what()};
-  }
-}
-
 int parse_and_run(int argc, char** argv) {
   Options options;
   for (int i = 0; i < argc; ++i) options.command_line += (i > 0 ? " " : "") + std::string(argv[i]);
@@ -95,8 +76,8 @@ int parse_and_run(int argc, char** argv) {
     return fail("dolp", kExitInput, usage_message(app, error));
   }
   check_device(options);
-  const int status = of_library([&] { return run(app, options); });
-  if (std::fflush(stdout) != 0) throw dolp::IoError("standard output: cannot write the report");
+  const int status = run(app, options);
+  if (std::fflush(stdout) != 0) throw IoError("standard output: cannot write the report");
   return status;
 }
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <dolp/errors.hpp>
 
-#include "base/error.hpp"
 #include "terminal/exit_status.hpp"
 
 namespace dolp::cli {
@@ -21,18 +21,18 @@ void check_one_stdin(const Options& options) {
   }
 }
 
-std::vector<std::string> all_overrides(const Options& options) {
+std::vector<Setting> all_settings(const Options& options) {
   std::vector<std::string> overrides = options.overrides;
   if (!options.tolerance.empty()) overrides.push_back("accuracy.tolerance=" + options.tolerance);
   if (!options.precision.empty()) overrides.push_back("accuracy.precision=" + options.precision);
-  return overrides;
+  return settings_from_text(overrides, "--set");
 }
 
 std::string allowed(const std::string& key) { return std::ranges::find(api::keys(), key, &api::Key::key)->allowed; }
 
 api::Scene load_scene(const Options& options) {
   check_one_stdin(options);
-  return api::Scene::from_file(options.scene_path, all_overrides(options));
+  return api::Scene::from_file(options.scene_path, all_settings(options));
 }
 
 api::Evaluator evaluator_of(const Options& options) { return api::Evaluator({options.evaluator, options.device}); }

@@ -48,13 +48,13 @@ struct Options {
 /// Refuses to read two inputs from stdin. Errors: InputError.
 void check_one_stdin(const Options& options);
 
-/// All overrides of the command line: --set first, then --tolerance and --precision.
-std::vector<std::string> all_overrides(const Options& options);
+/// All settings of the command line: --set first, then --tolerance and --precision. Errors: InputError.
+std::vector<Setting> all_settings(const Options& options);
 
 /// What a key of a scene may be: "a number in [0, 10]".
 std::string allowed(const std::string& key);
 
-/// The scene with all_overrides.
+/// The scene with all_settings.
 api::Scene load_scene(const Options& options);
 
 /// The evaluator that --evaluator and --device ask for.

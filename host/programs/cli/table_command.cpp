@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <dolp/errors.hpp>
 #include <optional>
 #include <string>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/commands.hpp"
 #include "terminal/progress_bar.hpp"
@@ -30,9 +30,9 @@ std::size_t slurm_number(const char* variable) {
 }
 
 /// "2/8", or what the Slurm array says for "auto".
-api::Shard shard_of(const std::string& text) {
+Shard shard_of(const std::string& text) {
   if (text.empty()) return {};
-  api::Shard shard;
+  Shard shard;
   if (text == "auto") {
     const std::size_t task = slurm_number("SLURM_ARRAY_TASK_ID");
     const std::size_t first = slurm_number("SLURM_ARRAY_TASK_MIN");
@@ -51,7 +51,7 @@ api::Shard shard_of(const std::string& text) {
 
 int run_table(const Options& options) {
   const api::Scene scene = load_scene(options);
-  const api::Shard shard = shard_of(options.shard);
+  const Shard shard = shard_of(options.shard);
   api::Report report;
   {
     ProgressBar bar(options.quiet);

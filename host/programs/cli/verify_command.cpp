@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
+#include <dolp/errors.hpp>
 #include <optional>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/commands.hpp"
 #include "terminal/exit_status.hpp"
@@ -11,8 +11,8 @@
 namespace dolp::cli {
 namespace {
 
-api::Report verify_device(const Options& options, const api::Progress& progress) {
-  api::DeviceCheck check{options.evaluator, options.device};
+api::Report verify_device(const Options& options, const Progress& progress) {
+  DeviceCheckOptions check{options.evaluator, options.device};
   if (!options.precision.empty()) check.precision = options.precision;
   if (!options.tolerance.empty()) {
     const std::optional<double> tolerance = parse_number(options.tolerance);

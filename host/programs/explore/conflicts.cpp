@@ -10,8 +10,6 @@
 namespace dolp::explore {
 namespace {
 
-using Change = SceneEdits::Change;
-
 /// Words of one key that exclude those of another, and the word that it takes when it gives way.
 struct Side {
   const char* key;
@@ -40,31 +38,31 @@ const std::vector<Conflict>& conflicts() {
   return all;
 }
 
-std::optional<std::string> word_in(const std::vector<Change>& changes, const std::string& key) {
-  const auto found = std::ranges::find(changes, key, &Change::first);
-  return found == changes.end() ? std::nullopt : std::optional(found->second);
+std::optional<std::string> word_in(const std::vector<Setting>& changes, const std::string& key) {
+  const auto found = std::ranges::find(changes, key, &Setting::key);
+  return found == changes.end() ? std::nullopt : std::optional(found->value.text());
 }
 
-std::vector<Change> all_choices(const Scene& scene) {
-  std::vector<Change> words;
+std::vector<Setting> all_choices(const Scene& scene) {
+  std::vector<Setting> words;
   for (const Choice& choice : choices()) {
     const auto word = choice.word(scene);
-    if (word) words.emplace_back(choice.key->key, choice.key->words[*word]);
+    if (word) words.push_back({choice.key->key, TomlText{choice.key->words[*word]}});
   }
   return words;
 }
 
 }  // namespace
 
-std::vector<Change> choices_of(const Scene& scene, const std::string& table) {
-  std::vector<Change> words = all_choices(scene);
-  std::erase_if(words, [&](const Change& choice) { return table_of(choice.first) != table; });
+std::vector<Setting> choices_of(const Scene& scene, const std::string& table) {
+  std::vector<Setting> words = all_choices(scene);
+  std::erase_if(words, [&](const Setting& choice) { return table_of(choice.key) != table; });
   return words;
 }
 
-std::vector<Change> asked_for(const Scene& scene, const std::vector<Change>& chosen) {
-  const std::vector<Change> words = all_choices(scene);
-  std::vector<Change> asked;
+std::vector<Setting> asked_for(const Scene& scene, const std::vector<Setting>& chosen) {
+  const std::vector<Setting> words = all_choices(scene);
+  std::vector<Setting> asked;
   for (const Conflict& conflict : conflicts()) {
     for (const bool is_second : {false, true}) {
       const Side& own = conflict[is_second ? 1 : 0];
@@ -72,7 +70,7 @@ std::vector<Change> asked_for(const Scene& scene, const std::vector<Change>& cho
       const auto word = word_in(chosen, own.key);
       if (!word || !own.excludes(*word) || word_in(chosen, other.key) || word_in(asked, other.key)) continue;
       const auto now = word_in(words, other.key);
-      if (now && other.excludes(*now)) asked.emplace_back(other.key, other.instead);
+      if (now && other.excludes(*now)) asked.push_back({other.key, TomlText{other.instead}});
     }
   }
   return asked;

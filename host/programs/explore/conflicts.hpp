@@ -9,9 +9,9 @@ namespace dolp::explore {
 
 /// The changes that `chosen` asks for elsewhere: each choice of the scene that excludes a chosen one gets a word that
 /// goes with it. Empty where nothing is in the way.
-std::vector<SceneEdits::Change> asked_for(const Scene& scene, const std::vector<SceneEdits::Change>& chosen);
+std::vector<Setting> asked_for(const Scene& scene, const std::vector<Setting>& chosen);
 
 /// The choices of one table as a scene has them: what bringing the table back chooses.
-std::vector<SceneEdits::Change> choices_of(const Scene& scene, const std::string& table);
+std::vector<Setting> choices_of(const Scene& scene, const std::string& table);
 
 }  // namespace dolp::explore

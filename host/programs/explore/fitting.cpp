@@ -9,16 +9,15 @@
 namespace dolp::explore {
 
 FitFound run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress) {
-  api::FitOptions options{.vary = {}, .progress = progress};
+  FitOptions options{.vary = {}, .progress = progress};
   for (const Varied& one : job.varied) {
-    options.vary.push_back(
-        fmt::format("{}={}:{}:{}", one.key, format_number(one.low), format_number(one.high), format_number(one.start)));
+    options.vary.push_back({one.key, one.low, one.high, one.start});
   }
   const api::Fit fit = evaluator.fit(job.scene, {job.data}, options);
   if (!fit.has_minimum) throw InputError("no minimum was found: no descent converged");
   FitFound found;
-  for (const api::FitParameter& one : fit.parameters) {
-    found.values.emplace_back(one.key, fmt::format("{:.6g}", one.value));
+  for (const FitParameter& one : fit.parameters) {
+    found.values.push_back({one.key, TomlText{fmt::format("{:.6g}", one.value)}});
     found.interval_68[one.key] = one.interval_68;
     found.interval_95[one.key] = one.interval_95;
   }
@@ -51,13 +50,13 @@ std::optional<FitJob> Fitting::job(const Scene& scene, const std::optional<Measu
   return job.varied.empty() ? std::nullopt : std::optional(std::move(job));
 }
 
-void Fitting::take(FitFound found, std::vector<std::string> overrides) {
+void Fitting::take(FitFound found, std::vector<Setting> changes) {
   found_ = std::move(found);
-  overrides_ = std::move(overrides);
+  changes_ = std::move(changes);
 }
 
-const FitFound* Fitting::found(const std::vector<std::string>& overrides) const {
-  return found_ && overrides_ == overrides ? &*found_ : nullptr;
+const FitFound* Fitting::found(const std::vector<Setting>& changes) const {
+  return found_ && changes_ == changes ? &*found_ : nullptr;
 }
 
 }  // namespace dolp::explore

@@ -30,7 +30,7 @@ struct FitJob {
 
 /// What a fit found.
 struct FitFound {
-  std::vector<SceneEdits::Change> values;
+  std::vector<Setting> values;
   std::map<std::string, FitInterval> interval_68, interval_95;  ///< by key
   std::string text;                                             ///< one line
 };
@@ -51,14 +51,14 @@ class Fitting {
   /// None without points, or without a marked parameter that the scene has.
   std::optional<FitJob> job(const Scene& scene, const std::optional<MeasuredPoints>& points) const;
 
-  void take(FitFound found, std::vector<std::string> overrides);
-  /// Null once the scene has other overrides than those that the fit left.
-  const FitFound* found(const std::vector<std::string>& overrides) const;
+  void take(FitFound found, std::vector<Setting> changes);
+  /// Null once the scene has other changes than those that the fit left.
+  const FitFound* found(const std::vector<Setting>& changes) const;
 
  private:
   std::set<std::string> marked_;
   std::optional<FitFound> found_;
-  std::vector<std::string> overrides_;  ///< of the scene with what was found
+  std::vector<Setting> changes_;  ///< of the scene with what was found
 };
 
 }  // namespace dolp::explore

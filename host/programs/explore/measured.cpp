@@ -18,12 +18,12 @@ Quantity quantity_of(const std::string& column) {
 }  // namespace
 
 MeasuredPoints points_of(MeasuredData data) {
-  if (!data.overrides.empty()) {
+  if (!data.settings.empty()) {
     throw InputError(data.name + ": measured points take the window's scene; KEY=VALUE beside them is for dolp fit");
   }
   MeasuredPoints all;
-  for (const api::Measurement& one : data.measurements()) {
-    all.points.push_back({quantity_of(one.quantity), one.theta_deg, one.value, one.uncertainty});
+  for (const Measurement& one : data.measurements) {
+    all.points.push_back({quantity_of(name_of(one.observable)), one.theta_deg, one.value, one.uncertainty});
     if (one.wavelength_um) all.wavelength_um.push_back(*one.wavelength_um);
   }
   all.data = std::move(data);

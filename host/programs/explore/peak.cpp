@@ -67,7 +67,7 @@ void Peak::take_away(const SceneEdits& edits) {
   for (const WithoutEffect& away : kAway) {
     if (!has(scene_, away)) continue;
     try {
-      scenes_without_.push_back(edits.variant({away.change}));
+      scenes_without_.push_back(edits.scene().with({Setting::from_text(away.change)}));
       without_.push_back(away);
     } catch (const InputError&) {
       // Nothing else radiates, the source is relative to the emission, or the emission needs the masking.

@@ -23,22 +23,14 @@ std::span<const double> values_of(const Results& results, std::string_view name)
   return found == results.quantities.end() ? std::span<const double>{} : found->values;
 }
 
-/// KEY=[VALUE, ...].
-std::string axis(const char* key, const std::vector<double>& values) {
-  std::string text = std::string(key) + "=[";
-  for (const double value : values) text += format_number(value) + ", ";
-  return text + ']';
-}
-
 /// The scene with the grid of a list; axes that the scene's own has beside these keep the scene's value.
 Scene with_grid(const Scene& scene, const PointList& list) {
-  std::vector<std::string> overrides = {axis("grid.theta_deg", list.theta_deg), axis("grid.sigma", list.sigma),
-                                        axis("grid.q", list.q)};
-  for (const auto& [own, of] :
-       {std::pair{"grid.wavelength_um", "spectrum.wavelength_um"}, {"grid.n", "surface.n"}, {"grid.k", "surface.k"}}) {
-    if (!scene.numbers(own).empty()) overrides.push_back(axis(own, {scene.number(of).value()}));
+  std::vector<Setting> axes = {{"theta_deg", list.theta_deg}, {"sigma", list.sigma}, {"q", list.q}};
+  for (const auto& [axis, of] :
+       {std::pair{"wavelength_um", "spectrum.wavelength_um"}, {"n", "surface.n"}, {"k", "surface.k"}}) {
+    if (!scene.numbers(std::string("grid.") + axis).empty()) axes.push_back({axis, scene.number(of).value()});
   }
-  return scene.with(overrides);
+  return scene.with_grid(axes);
 }
 
 }  // namespace

@@ -9,24 +9,13 @@
 namespace dolp::explore {
 namespace {
 
-using Change = SceneEdits::Change;
-
-std::string argument(const Change& change) { return change.first + '=' + change.second; }
-
-/// KEY=VALUE; without "=" the reader refuses it.
-Change change_of(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos) return {text, {}};
-  return {std::string(trim(text.substr(0, equals))), text.substr(equals + 1)};
-}
-
 bool contains(const std::vector<std::string>& keys, const std::string& key) {
   return std::ranges::find(keys, key) != keys.end();
 }
 
 /// Whether a change makes an older change of `other` void.
-bool replaces(const Change& change, const std::string& other) {
-  const std::string& key = change.first;
+bool replaces(const Setting& change, const std::string& other) {
+  const std::string& key = change.key;
   if (other == key || other == table_of(key)) return true;
   const bool is_table = key.find('.') == std::string::npos && key != "title";
   if (is_table) return table_of(other) == key;
@@ -35,32 +24,26 @@ bool replaces(const Change& change, const std::string& other) {
 
 }  // namespace
 
-SceneEdits::SceneEdits(const Scene& opened) : opened_(opened), scene_(opened) {
-  for (const std::string& override : opened.overrides()) given_.push_back(change_of(override));
-  changes_ = given_;
-}
+SceneEdits::SceneEdits(const Scene& opened)
+    : given_(opened.settings()), changes_(opened.settings()), opened_(opened), scene_(opened) {}
 
-void SceneEdits::become(std::vector<Change> changes) {
-  std::vector<std::string> arguments;
-  for (const Change& change : changes) arguments.push_back(argument(change));
-  scene_ = Scene::from_text(opened_.text(), arguments, opened_.name());
+void SceneEdits::become(std::vector<Setting> changes) {
+  scene_ = Scene::from_text(opened_.text(), changes, opened_.name());
   changes_ = std::move(changes);
 }
 
-void SceneEdits::set(const std::vector<Change>& changes) {
-  std::vector<Change> all = changes_;
-  for (const Change& change : changes) {
-    std::erase_if(all, [&](const Change& old) { return replaces(change, old.first); });
+void SceneEdits::set(const std::vector<Setting>& changes) {
+  std::vector<Setting> all = changes_;
+  for (const Setting& change : changes) {
+    std::erase_if(all, [&](const Setting& old) { return replaces(change, old.key); });
   }
   all.insert(all.end(), changes.begin(), changes.end());
   become(std::move(all));
 }
 
-void SceneEdits::set(const std::string& key, double value) { set(key, format_number(value)); }
-
 void SceneEdits::reset(const std::string& key) {
-  const auto is_of_key = [&](const Change& change) { return change.first == key || table_of(change.first) == key; };
-  std::vector<Change> all = changes_;
+  const auto is_of_key = [&](const Setting& change) { return change.key == key || table_of(change.key) == key; };
+  std::vector<Setting> all = changes_;
   std::erase_if(all, is_of_key);
   std::ranges::copy_if(given_, std::back_inserter(all), is_of_key);
   become(std::move(all));
@@ -68,16 +51,12 @@ void SceneEdits::reset(const std::string& key) {
 
 void SceneEdits::reset_all() { become(given_); }
 
-std::vector<std::string> SceneEdits::overrides() const { return overrides_without({}); }
-
-std::vector<std::string> SceneEdits::overrides_without(const std::vector<std::string>& keys) const {
-  std::vector<std::string> arguments;
-  for (const Change& change : changes_) {
-    if (!contains(keys, change.first)) arguments.push_back(argument(change));
+std::vector<Setting> SceneEdits::changes_without(const std::vector<std::string>& keys) const {
+  std::vector<Setting> left;
+  for (const Setting& change : changes_) {
+    if (!contains(keys, change.key)) left.push_back(change);
   }
-  return arguments;
+  return left;
 }
-
-Scene SceneEdits::variant(const std::vector<std::string>& more) const { return scene_.with(more); }
 
 }  // namespace dolp::explore

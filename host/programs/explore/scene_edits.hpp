@@ -9,20 +9,16 @@
 
 namespace dolp::explore {
 
-/// A scene file with changes, each one a scene key and a value as in `--set KEY=VALUE`: what the window computes is
-/// what `dolp eval` computes with the same overrides.
+/// A scene file with changes: what the window computes is what `dolp eval` computes with the same settings.
 class SceneEdits {
  public:
-  using Change = std::pair<std::string, std::string>;
-
   explicit SceneEdits(const Scene& opened);
 
-  /// Changes keys together; "none" of an effect's table removes it, any key of it brings it back. Alternatives of a key
+  /// Changes keys together; no value of an effect's table removes it, any key of it brings it back. Alternatives of a key
   /// (n and k, material, material file) go.
   /// Errors: InputError; the scene then is as it was.
-  void set(const std::vector<Change>& changes);
-  void set(const std::string& key, const std::string& value) { set({{key, value}}); }
-  void set(const std::string& key, double value);
+  void set(const std::vector<Setting>& changes);
+  void set(const std::string& key, const Value& value) { set({{key, value}}); }
 
   /// Takes changes of a key, or of a whole table, back: the values are those of the scene as opened.
   /// Errors: InputError, as set.
@@ -32,18 +28,16 @@ class SceneEdits {
   const Scene& scene() const { return scene_; }
   const Scene& opened() const { return opened_; }
   bool is_changed() const { return changes_ != given_; }
-  /// All changes, as arguments of --set.
-  std::vector<std::string> overrides() const;
+  /// All changes.
+  const std::vector<Setting>& changes() const { return changes_; }
   /// The same without some keys.
-  std::vector<std::string> overrides_without(const std::vector<std::string>& keys) const;
-  /// The scene with further overrides. Errors: InputError.
-  Scene variant(const std::vector<std::string>& more) const;
+  std::vector<Setting> changes_without(const std::vector<std::string>& keys) const;
 
  private:
-  void become(std::vector<Change> changes);
+  void become(std::vector<Setting> changes);
 
-  std::vector<Change> given_;  ///< of the command line
-  std::vector<Change> changes_;
+  std::vector<Setting> given_;  ///< of the command line
+  std::vector<Setting> changes_;
   Scene opened_;
   Scene scene_;
 };

@@ -11,24 +11,26 @@
 namespace dolp::explore {
 namespace {
 
-std::string content_key(const std::vector<std::string>& overrides, bool keep_all) {
+std::string content_key(const std::vector<Setting>& changes, bool keep_all) {
   std::string key = keep_all ? "all" : "plan";
-  for (const std::string& override : overrides) key += '\n' + override;
+  for (const Setting& change : changes) key += '\n' + change.text();
   return key;
 }
 
 /// The other distribution with the same density of flat facets: sigma_G = sigma / sqrt(q - 1).
-std::vector<std::string> other_distribution(const Scene& scene) {
+std::vector<Setting> other_distribution(const Scene& scene) {
   const double sigma = scene.number("surface.sigma").value();
   const double ratio = std::sqrt(scene.number("surface.q").value() - 1.0);
   const bool is_cauchy = scene.word("surface.distribution") == "cauchy";
-  return {std::string("surface.distribution=") + (is_cauchy ? "gaussian" : "cauchy"),
-          "surface.sigma=" + format_number(is_cauchy ? sigma / ratio : sigma * ratio)};
+  return {{"surface.distribution", is_cauchy ? "gaussian" : "cauchy"},
+          {"surface.sigma", is_cauchy ? sigma / ratio : sigma * ratio}};
 }
 
-std::string text_of(const std::vector<SceneEdits::Change>& changes) {
+std::string text_of(const std::vector<Setting>& changes) {
   std::string text;
-  for (const auto& [key, value] : changes) text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", key, value);
+  for (const Setting& change : changes) {
+    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", change.key, change.value.text());
+  }
   return text;
 }
 
@@ -75,10 +77,10 @@ void Session::set(const std::string& key, double value) {
   attempt([&] { edits_.set(key, value); });
 }
 
-void Session::set(const std::vector<SceneEdits::Change>& changes) {
+void Session::set(const std::vector<Setting>& changes) {
   attempt([&] {
-    const std::vector<SceneEdits::Change> asked = asked_for(scene(), changes);
-    std::vector<SceneEdits::Change> all = changes;
+    const std::vector<Setting> asked = asked_for(scene(), changes);
+    std::vector<Setting> all = changes;
     all.insert(all.end(), asked.begin(), asked.end());
     edits_.set(all);
     tell_asked(changes, asked);
@@ -87,15 +89,15 @@ void Session::set(const std::vector<SceneEdits::Change>& changes) {
 
 void Session::reset(const std::string& key) {
   attempt([&] {
-    const std::vector<SceneEdits::Change> chosen = choices_of(edits_.opened(), key);
-    const std::vector<SceneEdits::Change> asked = asked_for(scene(), chosen);
+    const std::vector<Setting> chosen = choices_of(edits_.opened(), key);
+    const std::vector<Setting> asked = asked_for(scene(), chosen);
     edits_.set(asked);
     edits_.reset(key);
-    tell_asked({{key, "as opened"}}, asked);
+    tell_asked({{key, TomlText{"as opened"}}}, asked);
   });
 }
 
-void Session::tell_asked(const std::vector<SceneEdits::Change>& chosen, const std::vector<SceneEdits::Change>& asked) {
+void Session::tell_asked(const std::vector<Setting>& chosen, const std::vector<Setting>& asked) {
   if (!asked.empty()) tell(fmt::format("With {} goes {}", text_of(chosen), text_of(asked)));
 }
 
@@ -109,7 +111,7 @@ void Session::load_measured(const std::string& path) {
 
 void Session::take_fit(FitFound found) {
   set(found.values);
-  if (!message_.is_error) fitting_.take(std::move(found), edits_.overrides());
+  if (!message_.is_error) fitting_.take(std::move(found), edits_.changes());
 }
 
 void Session::pin() {
@@ -143,7 +145,7 @@ void Session::set_theta(double theta_deg) {
 }
 
 void Session::set_map_cursor(double x, double y) {
-  std::vector<SceneEdits::Change> changes;
+  std::vector<Setting> changes;
   for (const auto& [axis, position] : {std::pair{&map_.x(), x}, std::pair{&map_.y(), y}}) {
     if (axis->kind == AxisKind::kTheta) {
       theta_deg_ = axis->value(position);
@@ -152,7 +154,7 @@ void Session::set_map_cursor(double x, double y) {
     const std::string key = own_key(axis->kind);
     // Not below four digits: what a slider gives too.
     const double value = std::clamp(axis->value(position), axis->from, axis->to);
-    changes.emplace_back(key, fmt::format("{:.4g}", value));
+    changes.push_back({key, TomlText{fmt::format("{:.4g}", value)}});
   }
   set(changes);
 }
@@ -171,7 +173,7 @@ const Point* Session::at_cursor() const {
 
 void Session::follow() {
   const bool keep_all = view_.keeps_all || described(view_.quantity).needs_rho;
-  const std::string content = content_key(edits_.overrides(), keep_all);
+  const std::string content = content_key(edits_.changes(), keep_all);
   curve_.follow(content, scene(), keep_all);
   residuals_.follow(content, scene());
   follow_overlay(content, keep_all);
@@ -207,7 +209,7 @@ void Session::follow_overlay(const std::string& content, bool keep_all) {
     return;
   }
   try {
-    const Scene other = edits_.variant(other_distribution(scene()));
+    const Scene other = scene().with(other_distribution(scene()));
     if (!overlay_) overlay_.emplace(other);
     overlay_->follow("other distribution " + content, other, keep_all);
   } catch (const InputError&) {
@@ -218,7 +220,7 @@ void Session::follow_overlay(const std::string& content, bool keep_all) {
 void Session::follow_map(bool keep_all) {
   const MapAxis x = suggested_axis(view_.map_x, scene(), view_.theta_max_deg);
   const MapAxis y = suggested_axis(view_.map_y, scene(), view_.theta_max_deg);
-  std::string key = content_key(edits_.overrides_without({own_key(x.kind), own_key(y.kind)}), keep_all);
+  std::string key = content_key(edits_.changes_without({own_key(x.kind), own_key(y.kind)}), keep_all);
   const bool has_theta = x.kind == AxisKind::kTheta || y.kind == AxisKind::kTheta;
   if (!has_theta) key += "\ntheta=" + format_number(theta_deg_);
   key += fmt::format("\n{} {} {} {} {} {}", axis_label(x.kind), x.from, x.to, axis_label(y.kind), y.from, y.to);

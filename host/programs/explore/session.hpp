@@ -52,7 +52,7 @@ class Session {
   // ---- Commands. Those that the scene refuses change nothing and leave the reason in message(); so does what had to
   // change with a choice.
   void set(const std::string& key, double value);
-  void set(const std::vector<SceneEdits::Change>& changes);
+  void set(const std::vector<Setting>& changes);
   void reset(const std::string& key);
   void reset_all();
   void pin();
@@ -92,7 +92,7 @@ class Session {
   /// The fit of the marked parameters to the measured points; none where one of them is missing.
   std::optional<FitJob> fit_job() const { return fitting_.job(scene(), residuals_.points()); }
   /// What the last fit found; null once the scene is another one.
-  const FitFound* fit_found() const { return fitting_.found(edits_.overrides()); }
+  const FitFound* fit_found() const { return fitting_.found(edits_.changes()); }
   const Message& message() const { return message_; }
   /// The effects of the last finished curve; bounds of what is kept are those at the cursor's zenith.
   const std::vector<Effect>& effects() const { return effects_; }
@@ -105,7 +105,7 @@ class Session {
  private:
   template <class Command>
   void attempt(const Command& command);
-  void tell_asked(const std::vector<SceneEdits::Change>& chosen, const std::vector<SceneEdits::Change>& asked);
+  void tell_asked(const std::vector<Setting>& chosen, const std::vector<Setting>& asked);
   void follow();
   void follow_overlay(const std::string& content, bool keep_all);
   void follow_map(bool keep_all);

@@ -15,7 +15,7 @@ using Clock = std::chrono::steady_clock;
 
 Job with_tolerance(Job job) {
   if (job.tolerance > job.scene.number("accuracy.tolerance")) {
-    job.scene = job.scene.with({"accuracy.tolerance=" + format_number(job.tolerance)});
+    job.scene = job.scene.with("accuracy.tolerance", job.tolerance);
   }
   return job;
 }

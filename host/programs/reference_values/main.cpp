@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <dolp/errors.hpp>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -15,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
+
 #include "model/choices.hpp"
 #include "reference/hemisphere.hpp"
 #include "reference/reference_evaluator.hpp"

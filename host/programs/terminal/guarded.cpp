@@ -1,5 +1,4 @@
 #include "terminal/guarded.hpp"
-#include "base/progress.hpp"
 #include "terminal/exit_status.hpp"
 
 #include <sys/resource.h>
@@ -7,11 +6,11 @@
 
 #include <array>
 #include <cstdio>
+#include <dolp/errors.hpp>
 #include <exception>
 #include <new>
 #include <system_error>
 
-#include "base/error.hpp"
 #include "base/printable_text.hpp"
 
 namespace dolp {
@@ -45,8 +44,7 @@ int guarded(const std::string& program, const std::function<int()>& body) {
   try {
     return body();
   } catch (const Cancelled& cancelled) {
-    return fail(program, kExitInterrupted,
-                "interrupted; " + (cancelled.left.empty() ? "no file was written" : cancelled.left));
+    return fail(program, kExitInterrupted, std::string("interrupted; ") + cancelled.what());
   } catch (const InputError& error) {
     return fail(program, kExitInput, error.what());
   } catch (const DeviceError& error) {

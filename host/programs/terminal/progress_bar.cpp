@@ -1,6 +1,5 @@
 #include "terminal/progress_bar.hpp"
 #include "base/interrupt.hpp"
-#include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 
 #include <fmt/format.h>
@@ -8,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <dolp/errors.hpp>
 #include <string>
 
 namespace dolp {

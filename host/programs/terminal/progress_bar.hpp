@@ -3,8 +3,8 @@
 
 #include <chrono>
 #include <cstddef>
+#include <dolp/errors.hpp>
 
-#include "base/progress.hpp"
 
 namespace dolp {
 

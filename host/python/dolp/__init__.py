@@ -68,20 +68,36 @@ class Scene:
     'a mirror'
     >>> dolp.Scene(scene, {"surface.sigma": -1})
     Traceback (most recent call last):
-    dolp._native.InputError: --set surface.sigma=-1: -1 is out of range; must be a number in [0, 10]
+    dolp._native.InputError: surface.sigma = -1: -1 is out of range; must be a number in [0, 10]
     """
 
     def __init__(self, path: Path | Scene | None = None, overrides: Mapping[str, Any] | None = None, *,
                  text: str | None = None) -> None:
         if (path is None) == (text is None):
             raise InputError("Scene: needs either a path or text")
-        words = _words(overrides or {})
+        values = _values(overrides or {})
         if isinstance(path, Scene):
-            self._native = path._native.using(words)
+            self._native = path._native.with_(values)
         elif path is not None:
-            self._native = _native.Scene.from_file(path, words)
+            self._native = _native.Scene.from_file(path, values)
         else:
-            self._native = _native.Scene.from_text(text, words, "text")
+            self._native = _native.Scene.from_text(text, values)
+
+    def with_(self, values: Mapping[str, Any]) -> Scene:
+        """The same scene with other values of keys.
+
+        >>> scene.with_({"surface.q": 4, "grid.sigma": {"from": 0.1, "to": 1, "count": 5, "spacing": "log"}}).title
+        ''
+        """
+        return Scene(self, values)
+
+    def without(self, key: str) -> Scene:
+        """The same scene without the table of an effect, or without a key.
+
+        >>> "emission" in scene.with_({"surroundings.temperature_K": 250}).without("emission").toml()
+        False
+        """
+        return Scene(self, {key: None})
 
     @property
     def title(self) -> str:
@@ -220,8 +236,8 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, start
     (1.6, True)
     """
     sets = [one if isinstance(one, tuple) else (one, {}) for one in (data if isinstance(data, list) else [data])]
-    texts = [(_csv(columns), _words(overrides)) for columns, overrides in sets]
-    ranges = [f"{key}={':'.join(repr(float(end)) for end in ends)}" for key, ends in vary.items()]
+    texts = [(_csv(columns), _values(overrides)) for columns, overrides in sets]
+    ranges = {key: [float(end) for end in ends] for key, ends in vary.items()}
     text, values, found = _evaluator(evaluator, device).fit(scene._native, texts, ranges, starts, seed)
     fitted = Scene.__new__(Scene)
     fitted._native = found
@@ -272,9 +288,24 @@ def _evaluator(evaluator: str, device: str) -> _native.Evaluator:
     return _native.Evaluator(evaluator, device)
 
 
-def _words(overrides: Mapping[str, Any]) -> list[str]:
-    """As --set takes them."""
-    return [f"{key}={_toml(value)}" for key, value in overrides.items()]
+def _values(overrides: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: _value(key, value) for key, value in overrides.items()}
+
+
+def _value(key: str, value: Any) -> Any:
+    """A value as the library takes it: None, bool, float, str, a list of floats, or a range as a dictionary."""
+    if value is None or isinstance(value, (bool, np.bool_)):
+        return None if value is None else bool(value)
+    if isinstance(value, (str, os.PathLike)):
+        return os.fspath(value)
+    if isinstance(value, Mapping):
+        return {name: item if isinstance(item, str) else int(item) if name == "count" else float(item)
+                for name, item in value.items()}
+    try:
+        numbers = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"{key}: {value!r} is neither a number, a text, a list of numbers nor a range") from None
+    return float(numbers) if numbers.ndim == 0 else numbers.ravel().tolist()
 
 
 def _csv(data: Any) -> str:
@@ -285,21 +316,6 @@ def _csv(data: Any) -> str:
     columns = np.broadcast_arrays(*(np.asarray(data[name], dtype=float) for name in names))
     rows = zip(*(column.ravel().tolist() for column in columns))
     return "\n".join([",".join(names), *(",".join(map(repr, row)) for row in rows)]) + "\n"
-
-
-def _toml(value: Any) -> str:
-    """A value as a scene file would have it."""
-    if isinstance(value, (bool, np.bool_)):
-        return "true" if value else "false"
-    if isinstance(value, (int, np.integer)):
-        return str(int(value))
-    if isinstance(value, (float, np.floating)):
-        return repr(float(value))
-    if isinstance(value, (str, os.PathLike)):
-        return json.dumps(os.fspath(value), ensure_ascii=False)
-    if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{key} = {_toml(item)}" for key, item in value.items()) + "}"
-    return "[" + ", ".join(_toml(item) for item in np.asarray(value).tolist()) + "]"
 
 
 class _Frame(NamedTuple):

@@ -8,12 +8,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <ctime>
+#include <dolp/errors.hpp>
 #include <system_error>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/interrupt.hpp"
-#include "base/progress.hpp"
 
 namespace dolp {
 namespace {
@@ -63,7 +62,7 @@ bool is_device_or_pipe(const fs::path& path) {
 
 void write_all(int descriptor, const fs::path& path, std::string_view content) {
   while (!content.empty()) {
-    if (interrupted()) throw Cancelled{};
+    if (interrupted()) throw Cancelled();
     const ssize_t written = ::write(descriptor, content.data(), std::min(content.size(), kBytesAtOnce));
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail_errno(path, "cannot write");
@@ -208,7 +207,7 @@ struct AtomicFile::Impl {
   /// All bytes to a device or pipe.
   void copy_to_target() const {
     File file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
-    if (file.get() < 0 && interrupted()) throw Cancelled{};
+    if (file.get() < 0 && interrupted()) throw Cancelled();
     if (file.get() < 0) fail_errno(path, "cannot open for writing");
     std::string bytes;
     for (std::uint64_t done = 0; done < size; done += bytes.size()) {
@@ -251,7 +250,7 @@ AtomicFile::~AtomicFile() = default;
 void AtomicFile::write_at(std::uint64_t offset, const void* bytes, std::size_t size) {
   std::string_view content(static_cast<const char*>(bytes), size);
   while (!content.empty()) {
-    if (interrupted()) throw Cancelled{};
+    if (interrupted()) throw Cancelled();
     const ssize_t written = ::pwrite(impl_->descriptor(), content.data(), std::min(content.size(), kBytesAtOnce),
                                      static_cast<off_t>(offset));
     if (written < 0 && errno == EINTR) continue;
@@ -276,7 +275,7 @@ void AtomicFile::resize(std::uint64_t size) {
 void AtomicFile::commit() {
   if (is_device_or_pipe(impl_->target)) return impl_->copy_to_target();
   NewFile& own = impl_->own;
-  if (interrupted()) throw Cancelled{};
+  if (interrupted()) throw Cancelled();
   if (::fsync(own.file.get()) != 0) fail_errno(impl_->path, "cannot write");
   if (own.name.empty()) impl_->link();
   if (!own.file.close()) fail_errno(impl_->path, "cannot write");

@@ -68,7 +68,7 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
     for (std::size_t i = first; i < last; ++i) body(i);
     const std::lock_guard lock(mutex);
     done += last - first;
-    if (progress && !progress(done, count)) throw Cancelled{};
+    if (progress && !progress(done, count)) throw Cancelled();
   });
 }
 

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <dolp/errors.hpp>
 #include <functional>
 
-#include "base/progress.hpp"
 
 namespace dolp {
 

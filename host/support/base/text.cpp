@@ -8,12 +8,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <dolp/errors.hpp>
 #include <filesystem>
 #include <memory>
 #include <numeric>
 #include <system_error>
 
-#include "base/error.hpp"
 
 namespace dolp {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <vulkan/vulkan.h>
 
+#include <dolp/errors.hpp>
 #include <string>
 
-#include "base/error.hpp"
 
 namespace dolp::vulkan {
 

@@ -135,6 +135,10 @@ void InterpolatingEvaluator::clear_report() {
   interpolation_s_ = 0.0;
 }
 
+std::vector<char> InterpolatingEvaluator::interpolated_directions(const MomentsRequest& request) const {
+  return dolp::interpolated_directions(request);
+}
+
 EvaluationReport InterpolatingEvaluator::report() const {
   EvaluationReport report = evaluator_->report();
   report.interpolated = interpolated_;

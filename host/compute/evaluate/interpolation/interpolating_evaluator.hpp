@@ -19,6 +19,7 @@ class InterpolatingEvaluator final : public MomentsEvaluator {
   Precision precision() const override { return evaluator_->precision(); }
   bool has_double() const override { return evaluator_->has_double(); }
   ScatteringEvaluator* scattering() override { return evaluator_->scattering(); }
+  std::vector<char> interpolated_directions(const MomentsRequest& request) const override;
   EvaluationReport report() const override;
   void clear_report() override;
 

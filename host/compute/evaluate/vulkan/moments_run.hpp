@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <dolp/errors.hpp>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "base/progress.hpp"
 #include "device/buffer.hpp"
 #include "evaluate/vulkan/command_stream.hpp"
 #include "evaluate/vulkan/input_buffer.hpp"

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <dolp/errors.hpp>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "base/progress.hpp"
 #include "evaluate/text/profile.hpp"
 #include "evaluate/vulkan/moments_run.hpp"
 

@@ -56,7 +56,7 @@ class VulkanEvaluator::Impl {
  public:
   explicit Impl(const VulkanOptions& options)
       : options_(options),
-        context_({options.device, options.precision == Precision::kDouble, options.validation}),
+        context_({options.device, options.needs_double || options.precision == Precision::kDouble, options.validation}),
         stream_(context_.device()) {}
 
   /// Whether a request is to be computed in double.
@@ -133,7 +133,7 @@ class VulkanEvaluator::Impl {
     report.kernel_s += run->cost().kernel_s;
     note_precision(report.precision, in_double(requested));
     run.reset();
-    if (!results) throw Cancelled{};
+    if (!results) throw Cancelled();
     context_.check_validation();
     return std::move(*results);
   }

@@ -17,6 +17,7 @@ struct VulkanOptions {
   std::string device;  ///< name or position, see choose_device
   /// Of requests that leave it open: kAuto is float. kDouble also asks for a device that has it.
   Precision precision = Precision::kAuto;
+  bool needs_double = false;  ///< a device that has double precision, whatever the precision of a request
   /// Any message of the layer makes `evaluate` throw DeviceError.
   ValidationMode validation = ValidationMode::kFromEnvironment;
   // The results depend on none of these.

@@ -10,11 +10,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <dolp/errors.hpp>
 #include <filesystem>
 #include <thread>
 
 #include "base/atomic_file.hpp"
-#include "base/error.hpp"
 #include "device/context.hpp"
 #include "device/result.hpp"
 #include "explore/exports.hpp"

@@ -118,7 +118,7 @@ void draw_material(Session& session) {
   }
   if (ImGui::Selectable(kOwn, is_own) && !is_own) {
     const auto [n, k] = scene.refractive_index(spectrum_of(scene).first);
-    session.set({{"surface.n", format_number(n)}, {"surface.k", format_number(k)}});
+    session.set({{"surface.n", n}, {"surface.k", k}});
   }
   draw_built_in_materials(session, current);
   ImGui::EndCombo();
@@ -127,10 +127,10 @@ void draw_material(Session& session) {
 void draw_source_kind(Session& session) {
   struct Kind {
     const char* name;
-    SceneEdits::Change change;
+    Setting change;
   };
-  static const std::array<Kind, 3> kinds = {{{"E0 as below", {"source.irradiance", "1"}},
-                                             {"e = E0/(πB(T)) as below", {"source.relative_irradiance", "0.6"}},
+  static const std::array<Kind, 3> kinds = {{{"E0 as below", {"source.irradiance", 1.0}},
+                                             {"e = E0/(πB(T)) as below", {"source.relative_irradiance", 0.6}},
                                              {"the sun", {"source.preset", "sun"}}}};
   const Scene& scene = session.scene();
   const std::size_t now = scene.number("source.irradiance") ? 0 : scene.number("source.relative_irradiance") ? 1 : 2;
@@ -154,22 +154,22 @@ void draw_effect_box(Session& session, const std::string& table) {
   bool wanted = has_effect(session.scene(), table);
   if (!ImGui::Checkbox(table.c_str(), &wanted)) return;
   if (!wanted) {
-    session.set({{table, "none"}});
+    session.set({{table, Value()}});
     return;
   }
   session.reset(table);
   if (has_effect(session.scene(), table)) return;
-  if (table == "emission") session.set({{"emission.temperature_K", "300"}});
+  if (table == "emission") session.set({{"emission.temperature_K", 300.0}});
   if (table == "source") session.set({{"source.preset", "sun"}});
-  if (table == "surroundings") session.set({{"surroundings.temperature_K", "250"}});
-  if (table == "path") session.set({{"path.transmittance", "0.9"}, {"path.temperature_K", "280"}});
+  if (table == "surroundings") session.set({{"surroundings.temperature_K", 250.0}});
+  if (table == "path") session.set({{"path.transmittance", 0.9}, {"path.temperature_K", 280.0}});
 }
 
 void draw_spectrum(Session& session) {
   bool is_band = !session.scene().numbers("spectrum.band_um").empty();
   if (ImGui::Checkbox("band", &is_band)) {
-    if (is_band) session.set({{"spectrum.band_um", "[8, 14]"}});
-    if (!is_band) session.set({{"spectrum.wavelength_um", "10.6"}});
+    if (is_band) session.set({{"spectrum.band_um", {8.0, 14.0}}});
+    if (!is_band) session.set({{"spectrum.wavelength_um", 10.6}});
   }
   std::vector<double> ends = session.scene().numbers("spectrum.band_um");
   if (ends.empty()) return;
@@ -177,7 +177,7 @@ void draw_spectrum(Session& session) {
   ImGui::SetNextItemWidth(-1.0F);
   constexpr ImGuiInputTextFlags kFlags = ImGuiInputTextFlags_EnterReturnsTrue;
   if (ImGui::InputScalarN("##band", ImGuiDataType_Double, ends.data(), 2, nullptr, nullptr, "%.6g", kFlags)) {
-    session.set({{"spectrum.band_um", fmt::format("[{}, {}]", format_number(ends[0]), format_number(ends[1]))}});
+    session.set({{"spectrum.band_um", ends}});
   }
 }
 
@@ -196,7 +196,7 @@ void ControlsPanel::draw_choice(Session& session, const Choice& choice, std::siz
   const std::string id = "##" + key;
   if (choice.is_flag()) {
     bool is_set = word != 0;
-    if (ImGui::Checkbox(id.c_str(), &is_set)) session.set({{key, words[is_set ? 1 : 0]}});
+    if (ImGui::Checkbox(id.c_str(), &is_set)) session.set({{key, is_set}});
     remember_area(key);
     tooltip(description_of(choice));
     return;
@@ -208,7 +208,7 @@ void ControlsPanel::draw_choice(Session& session, const Choice& choice, std::siz
     return;
   }
   for (std::size_t i = 0; i < words.size(); ++i) {
-    if (ImGui::Selectable(words[i].c_str(), i == word)) session.set({{key, words[i]}});
+    if (ImGui::Selectable(words[i].c_str(), i == word)) session.set({{key, TomlText{words[i]}}});
   }
   ImGui::EndCombo();
 }

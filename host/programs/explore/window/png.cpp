@@ -3,10 +3,10 @@
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
 #define STBI_WRITE_NO_STDIO
+#include <dolp/errors.hpp>
 #include <stb_image_write.h>
 
 #include "base/atomic_file.hpp"
-#include "base/error.hpp"
 
 namespace dolp::explore {
 

@@ -1,0 +1,48 @@
+// Errors that calls of the library throw, each with an exit status of the command line, and the progress that may cancel
+// a call.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#define DOLP_EXPORT __attribute__((visibility("default")))
+
+namespace dolp {
+
+/// A scene, points, a table or an argument is wrong (exit 2). The message is one line: where, value, what is allowed.
+class DOLP_EXPORT InputError : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
+/// There is no usable Vulkan device, it was lost, or this process was forked from one that uses it (exit 3).
+class DOLP_EXPORT DeviceError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A file could not be read or written (exit 4).
+class DOLP_EXPORT IoError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The machine or the device is out of memory (exit 6).
+class DOLP_EXPORT MemoryError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A Progress returned false (exit 130). The message says what is left, and how to go on with it.
+class DOLP_EXPORT Cancelled : public std::runtime_error {
+ public:
+  explicit Cancelled(const std::string& left = "no file was written") : std::runtime_error(left) {}
+};
+
+/// Called with the number of finished items, first with 0 when all inputs are read, from one thread at a time, not
+/// always the caller's; returning false ends the call with Cancelled.
+using Progress = std::function<bool(std::size_t done, std::size_t total)>;
+
+}  // namespace dolp

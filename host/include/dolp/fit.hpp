@@ -1,0 +1,111 @@
+// Measured data, how numbers of a scene are fitted to them, and what comes out.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <dolp/errors.hpp>
+#include <dolp/setting.hpp>
+
+namespace dolp {
+
+/// A measured quantity: a column of the data, and a quantity of the model.
+enum class Observable { kDolp, kQOverI, kEmissivityS, kEmissivityP };
+
+/// "dolp", "q_over_i" (signed), "emissivity_s", "emissivity_p".
+DOLP_EXPORT const char* name_of(Observable observable);
+
+/// A measured number.
+struct Measurement {
+  Observable observable = Observable::kDolp;
+  double theta_deg = 0.0;  ///< in bistatic mode the zenith of the source
+  double value = 0.0;
+  std::optional<double> uncertainty;    ///< one standard deviation
+  std::optional<double> wavelength_um;  ///< none: the scene's
+};
+
+/// A set of measured data, with settings of the scene of its own.
+struct DOLP_EXPORT MeasuredData {
+  std::string name = "data";  ///< of its file, for messages
+  std::vector<Setting> settings = {};
+  std::string zenith_column = "theta_deg";  ///< or theta_i_deg, which asks for the bistatic mode
+  bool has_uncertainties = false;           ///< all measurements have one
+  std::vector<Measurement> measurements = {};
+
+  /// Reads a CSV. Columns: theta_deg or theta_i_deg; dolp, or q_over_i (signed), or emissivity_s and emissivity_p or one
+  /// of them; and any of uncertainty, wavelength_um. Values are fractions, not percent. Lines that begin with # are
+  /// comments.
+  /// Errors: InputError, one line that names file, line, column, value and what is allowed.
+  static MeasuredData from_csv(const std::string& csv, const std::string& name = "data",
+                               std::vector<Setting> settings = {});
+  /// Reads "FILE" or "FILE:KEY=VALUE,KEY=VALUE"; FILE "-" is stdin. Errors: InputError.
+  static MeasuredData read(const std::string& argument);
+};
+
+/// A number of the scene, and the range in which it is looked for.
+///
+/// Its coordinate runs from 0 at `low` to 1 at `high`: along the logarithm where a positive range spans a decade or
+/// more, else along the value.
+struct DOLP_EXPORT FitRange {
+  std::string key;
+  double low = 0.0;
+  double high = 1.0;
+  std::optional<double> start = std::nullopt;
+
+  bool is_logarithmic() const { return low > 0.0 && high >= 10.0 * low; }
+  double at(double coordinate) const;
+  double coordinate(double value) const;
+  /// d value / d coordinate.
+  double slope(double value) const;
+
+  /// Reads "KEY=LOW:HIGH" or "KEY=LOW:HIGH:START". Errors: InputError.
+  static FitRange from_text(const std::string& argument);
+};
+
+/// Values of a key that are fitted one after the other, and ranked.
+struct DOLP_EXPORT Comparison {
+  std::string key;
+  std::vector<std::string> words;
+
+  /// Reads "KEY=WORD,WORD,...". Errors: InputError.
+  static Comparison from_text(const std::string& argument);
+};
+
+/// The part of a residual r in the objective: r^2, or less where a point lies off by more than one uncertainty.
+enum class Loss { kSquares, kHuber, kSoftL1, kCauchy, kTukey };
+
+/// "squares", "huber", "soft-l1", "cauchy", "tukey", in the order of Loss.
+DOLP_EXPORT const std::vector<std::string>& loss_names();
+
+/// How to fit.
+struct FitOptions {
+  std::vector<FitRange> vary;
+  std::size_t starts = 24;                ///< descents that look for minima
+  std::uint64_t seed = 1;                 ///< of where they begin
+  Progress progress = {};                 ///< counts descents and sides of profiles; may be empty
+  Loss loss = Loss::kSquares;             ///< others need uncertainties
+  std::vector<Comparison> compare = {};   ///< all combinations are fitted and ranked
+  std::filesystem::path output = {};      ///< file for the scene with what was found; "-" is stdout; empty: none
+  std::filesystem::path plot = {};        ///< PNG of data, model and residuals, which Matplotlib draws; empty: none
+};
+
+/// A profile-likelihood interval, from the least to the largest value that the data do not rule out, over all minima; an
+/// end is none where the range ends before the data say no.
+struct FitInterval {
+  std::optional<double> low, high;
+};
+
+/// A fitted number.
+struct FitParameter {
+  std::string key;
+  double value = 0.0;
+  std::optional<double> standard_error;   ///< from the covariance; none at a bound or where the data say nothing
+  FitInterval interval_68, interval_95;   ///< 68.27 % and 95 %; both ends none without a scale of the residuals
+  bool is_at_bound = false;
+};
+
+}  // namespace dolp

@@ -1,0 +1,65 @@
+// Where, how and of what to compute.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include <dolp/errors.hpp>
+
+namespace dolp {
+
+/// A column of points by the name that it has in CSV files: theta_deg, sigma, q, n, k, wavelength_um; for Mueller
+/// matrices theta_i_deg, theta_r_deg, delta_phi_deg.
+struct Column {
+  std::string name;
+  std::span<const double> values;  ///< one for each point, or one for all
+};
+
+/// The 4 x 4 Mueller pBRDF of a pair of directions, row by row. Units: 1/sr.
+using MuellerMatrix = std::array<double, 16>;
+
+/// Where and how to compute.
+struct EvaluatorOptions {
+  std::string evaluator = "vulkan";  ///< vulkan; cpu: the shaders' text compiled as C++; reference: adaptive quadrature
+  std::string device = {};           ///< of vulkan: its position in devices(), or a part of its name; empty: the best
+  bool is_interactive = false;       ///< in short dispatches: a call ends soon after its Progress says so, and a window
+                                     ///< on the same device goes on drawing
+};
+
+/// How to compute one table or list of points.
+struct RunOptions {
+  bool keep_all = false;     ///< drop no effect, however little it counts
+  Progress progress = {};    ///< may be empty
+  std::string history = {};  ///< what the attribute "history" of a table says beside the time
+  bool resume = false;       ///< of write_table: go on with what a cancelled or killed call of the same scene left
+};
+
+/// One of `count` equal parts of a table that several processes compute.
+struct Shard {
+  std::size_t number = 1;  ///< from 1 on
+  std::size_t count = 1;
+  bool is_whole() const { return count == 1; }
+};
+
+/// How to check a table.
+struct TableCheckOptions {
+  std::size_t samples = 64;  ///< entries to compute again, distinct; all when the table has no more
+  std::uint64_t seed = 1;    ///< of their choice
+  bool named_files = false;  ///< n, k and E0 from the files that the scene names, not from the table
+  Progress progress = {};    ///< may be empty
+};
+
+/// How to examine a device.
+struct DeviceCheckOptions {
+  std::string evaluator = "vulkan";  ///< vulkan; cpu: the shaders' text compiled as C++
+  std::string device = {};           ///< as in EvaluatorOptions
+  std::string precision = "auto";    ///< float, double; auto is both
+  double tolerance = 1e-4;           ///< what to ask for
+  bool all = false;                  ///< report every case, not only those that fail
+  Progress progress = {};            ///< may be empty
+};
+
+}  // namespace dolp

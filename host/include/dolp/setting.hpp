@@ -1,0 +1,89 @@
+// Keys of a scene with the values that they are to have.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <initializer_list>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <dolp/errors.hpp>
+
+namespace dolp {
+
+/// Values of an axis between two ends, both of which are among them.
+struct AxisRange {
+  double from = 0.0;
+  double to = 0.0;
+  std::size_t count = 1;
+  bool is_logarithmic = false;
+  friend bool operator==(const AxisRange&, const AxisRange&) = default;
+};
+
+/// A value as a scene file writes it: 0.2, [0.1, 0.2], { from = 0, to = 60, count = 7 }. Text that is no TOML is a word:
+/// smith.
+struct TomlText {
+  std::string text;
+  friend bool operator==(const TomlText&, const TomlText&) = default;
+};
+
+/// A value of a key, or none, which removes the key, or the whole table of an effect.
+class DOLP_EXPORT Value {
+ public:
+  using Content = std::variant<std::monostate, bool, double, std::string, std::vector<double>, AxisRange, TomlText>;
+
+  // NOLINTBEGIN(google-explicit-constructor): a value is written as itself
+  Value() = default;
+  template <class Number>
+    requires std::is_arithmetic_v<Number>
+  Value(Number number) {
+    if constexpr (std::same_as<Number, bool>) {
+      content_ = number;
+    } else {
+      content_ = static_cast<double>(number);
+    }
+  }
+  Value(const char* text) : content_(std::string(text)) {}
+  Value(std::string text) : content_(std::move(text)) {}
+  Value(std::vector<double> numbers) : content_(std::move(numbers)) {}
+  Value(std::initializer_list<double> numbers) : content_(std::vector<double>(numbers)) {}
+  Value(AxisRange range) : content_(range) {}
+  Value(TomlText text) : content_(std::move(text)) {}
+  // NOLINTEND(google-explicit-constructor)
+
+  const Content& content() const { return content_; }
+  /// As a scene file writes it; "none" for no value.
+  std::string text() const;
+
+  friend bool operator==(const Value&, const Value&) = default;
+
+ private:
+  Content content_;
+};
+
+/// A key of a scene, dotted ("surface.sigma", "grid.theta_deg"), and its value. A missing table is created. Between
+/// alternatives (surface.n, .material, .material_file; source.irradiance, .relative_irradiance, .preset, .file;
+/// path.temperature_K, .radiance; spectrum.wavelength_um, .band_um) a setting replaces what the scene has.
+struct DOLP_EXPORT Setting {
+  std::string key;
+  Value value;
+  std::string origin = {};  ///< what messages about it begin with; empty: the key and the value
+
+  /// Reads "KEY=VALUE", a value as TomlText. `option`: of a command line, which messages then begin with.
+  /// Errors: InputError for anything else.
+  static Setting from_text(const std::string& argument, const std::string& option = {});
+
+  /// "KEY=VALUE".
+  std::string text() const;
+
+  friend bool operator==(const Setting& a, const Setting& b) { return a.key == b.key && a.value == b.value; }
+};
+
+/// Setting::from_text of each argument.
+DOLP_EXPORT std::vector<Setting> settings_from_text(const std::vector<std::string>& arguments,
+                                                    const std::string& option = {});
+
+}  // namespace dolp

@@ -66,9 +66,13 @@ TEST_F(Library, Tables_InMemoryAndInAFile_AreTheSameBits_AndPointsAgree) {
 }
 
 TEST_F(Library, PartsOfATable_AreTheTable) {
-  const dolp::Scene scene = scene_.with({"surface.masking=none", "surface.distribution=gaussian", "grid.q=[2]",
-                                         "grid.theta_deg={from=0, to=80, count=1200}",
-                                         "grid.sigma={from=0.1, to=1, count=1000}", "accuracy.tolerance=1e-2"});
+  const dolp::Scene scene = scene_
+                                .with({{"surface.masking", "none"},
+                                       {"surface.distribution", "gaussian"},
+                                       {"accuracy.tolerance", 1e-2}})
+                                .with_grid({{"q", {2.0}},
+                                            {"theta_deg", dolp::AxisRange{0, 80, 1200}},
+                                            {"sigma", dolp::AxisRange{0.1, 1, 1000}}});
   const dolp::Table whole = evaluator_.table(scene);
   const auto expected = whole.values("dolp");
   std::size_t entries = 0, parts = 0;
@@ -128,7 +132,7 @@ TEST_F(Library, FilesOfPoints_HaveTheNumbersOfPointsInMemory) {
   ASSERT_EQ(found.size(), 2U);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(found[i], expected.values("dolp")[i]);
 
-  evaluator_.write_table(scene_.with({"grid.sigma=[0.2]", "grid.q=[3]"}), folder_ / "t.nc");
+  evaluator_.write_table(scene_.with_grid({{"sigma", {0.2}}, {"q", {3.0}}}), folder_ / "t.nc");
   dolp::write_lookup(folder_ / "t.nc", folder_ / "points.csv", folder_ / "between.csv");
   const dolp::Results between = dolp::Table::read(folder_ / "t.nc").lookup({{"theta_deg", theta}});
   EXPECT_EQ(dolp_of(folder_ / "between.csv"),
@@ -138,7 +142,7 @@ TEST_F(Library, FilesOfPoints_HaveTheNumbersOfPointsInMemory) {
 
 TEST_F(Library, CsvOfResults_IsTheFileOfThePoints) {
   std::ofstream(folder_ / "points.csv") << "theta_deg,sigma\n10,0.1\n50,0.3\n";
-  const dolp::Scene scene = scene_.with({"emission.bracket=true"});
+  const dolp::Scene scene = scene_.with("emission.bracket", true);
   evaluator_.write_points(scene, folder_ / "points.csv", folder_ / "results.csv");
   std::stringstream file;
   file << std::ifstream(folder_ / "results.csv").rdbuf();
@@ -159,13 +163,13 @@ TEST_F(Library, Scene_SaysItsValues) {
   EXPECT_EQ(scene_.numbers("grid.q"), (std::vector<double>{2, 3.5}));
   EXPECT_TRUE(scene_.numbers("spectrum.band_um").empty());
   EXPECT_EQ(scene_.refractive_index(10.0), std::pair(1.5, 0.05));
-  const dolp::Scene gold = scene_.with({"surface.material=GOLD (ordal)", "spectrum.band_um=[8, 12]"});
+  const dolp::Scene gold = scene_.with({{"surface.material", "GOLD (ordal)"}, {"spectrum.band_um", {8.0, 12.0}}});
   EXPECT_EQ(gold.word("surface.material"), "gold (Ordal)");
   EXPECT_EQ(gold.number("surface.n"), std::nullopt);
   EXPECT_EQ(gold.numbers("spectrum.band_um"), (std::vector<double>{8, 12}));
   EXPECT_GT(gold.refractive_index(10.0).second, 10.0);
   EXPECT_NE(gold.refractive_index(9.0), gold.refractive_index(11.0));
-  const dolp::Scene at_10 = scene_.with({"surface.material=water"});
+  const dolp::Scene at_10 = scene_.with("surface.material", "water");
   EXPECT_NE(at_10.refractive_index(10.0), at_10.refractive_index(11.0));
   EXPECT_THROW(at_10.refractive_index(1e3), dolp::InputError);
   EXPECT_THROW(scene_.number("surface.masking"), dolp::InputError);
@@ -176,7 +180,8 @@ TEST_F(Library, EveryKeyWithADefault_HasIt) {
   for (const dolp::Key& key : dolp::keys()) {
     if (key.fallback.empty() || key.fallback == "required" || key.key.starts_with("grid.")) continue;
     const dolp::Scene scene = scene_.with(
-        {"source.irradiance=1", "path.radiance=1", "surface.masking=integral", key.key + "=" + key.fallback});
+        {{"source.irradiance", 1}, {"path.radiance", 1}, {"surface.masking", "integral"},
+         {key.key, dolp::TomlText{key.fallback}}});
     const std::string value =
         key.words.empty() ? std::to_string(scene.number(key.key).value()) : scene.word(key.key).value();
     const std::string wanted = key.words.empty() ? std::to_string(std::stod(key.fallback)) : key.fallback;
@@ -193,32 +198,33 @@ TEST_F(Library, Keys_NameTheirWordsAndRivals) {
 }
 
 TEST_F(Library, Effects_AreBoundedAtThePoints) {
-  const auto diffuse_at = [&](double theta_deg, const char* factor) {
+  const auto diffuse_at = [&](double theta_deg, double factor) {
     const std::vector<double> theta = {theta_deg};
-    const auto all = dolp::effects(scene_.with({std::string("surface.diffuse=") + factor}), {{"theta_deg", theta}});
+    const auto all = dolp::effects(scene_.with("surface.diffuse", factor), {{"theta_deg", theta}});
     return *std::ranges::find(all, "diffuse", &dolp::Effect::name);
   };
-  EXPECT_EQ(diffuse_at(60, "0").state, "absent");
-  EXPECT_EQ(diffuse_at(60, "1e-9").state, "dropped");
-  EXPECT_LT(diffuse_at(60, "1e-9").bound, 1e-5);
-  EXPECT_EQ(diffuse_at(60, "0.1").state, "kept");
-  EXPECT_GT(diffuse_at(60, "0.1").bound, 1e-3);
+  EXPECT_EQ(diffuse_at(60, 0).state, "absent");
+  EXPECT_EQ(diffuse_at(60, 1e-9).state, "dropped");
+  EXPECT_LT(diffuse_at(60, 1e-9).bound, 1e-5);
+  EXPECT_EQ(diffuse_at(60, 0.1).state, "kept");
+  EXPECT_GT(diffuse_at(60, 0.1).bound, 1e-3);
 }
 
 TEST_F(Library, Fit_GivesValuesWithIntervals) {
   const std::vector<double> theta = {20, 40, 50, 60, 70, 80};
-  const dolp::Results truth = evaluator_.evaluate(scene_.with({"surface.sigma=0.3"}), {{"theta_deg", theta}});
-  dolp::MeasuredData data{.csv = "theta_deg,dolp,uncertainty\n"};
+  const dolp::Results truth = evaluator_.evaluate(scene_.with("surface.sigma", 0.3), {{"theta_deg", theta}});
+  std::string csv = "theta_deg,dolp,uncertainty\n";
   for (std::size_t i = 0; i < theta.size(); ++i) {
-    data.csv += std::to_string(theta[i]) + ',' + std::to_string(truth.values("dolp")[i]) + ",0.002\n";
+    csv += std::to_string(theta[i]) + ',' + std::to_string(truth.values("dolp")[i]) + ",0.002\n";
   }
-  const std::vector<dolp::Measurement> measured = data.measurements();
+  const dolp::MeasuredData data = dolp::MeasuredData::from_csv(csv);
+  const std::vector<dolp::Measurement>& measured = data.measurements;
   ASSERT_EQ(measured.size(), theta.size());
-  EXPECT_EQ(measured[1].quantity, "dolp");
+  EXPECT_EQ(measured[1].observable, dolp::Observable::kDolp);
   EXPECT_EQ(measured[1].theta_deg, 40.0);
   EXPECT_EQ(measured[1].uncertainty, 0.002);
   EXPECT_EQ(measured[1].wavelength_um, std::nullopt);
-  const dolp::Fit fit = evaluator_.fit(scene_, {data}, {.vary = {"surface.sigma=0.05:1"}});
+  const dolp::Fit fit = evaluator_.fit(scene_, {data}, {.vary = {{"surface.sigma", 0.05, 1.0}}});
   ASSERT_EQ(fit.parameters.size(), 1U);
   EXPECT_NEAR(fit.parameters[0].value, 0.3, 1e-3);
   EXPECT_EQ(fit.scene.number("surface.sigma"), fit.parameters[0].value);
@@ -228,8 +234,7 @@ TEST_F(Library, Fit_GivesValuesWithIntervals) {
   EXPECT_LT(fit.chi_square, 1e-3);
   EXPECT_EQ(fit.degrees_of_freedom, 5U);
   EXPECT_GT(fit.p_value, 0.99);
-  data.csv = "theta_deg,dolp\n95,0.1\n";
-  EXPECT_THROW(data.measurements(), dolp::InputError);
+  EXPECT_THROW(dolp::MeasuredData::from_csv("theta_deg,dolp\n95,0.1\n"), dolp::InputError);
 }
 
 TEST_F(Library, Verify_ATableAndADevice_SayWhatIsWrong) {
@@ -243,7 +248,7 @@ TEST_F(Library, Verify_ATableAndADevice_SayWhatIsWrong) {
 
 TEST_F(Library, Lookup_BetweenEntries_StatesItsError) {
   const dolp::Table table =
-      evaluator_.table(scene_.with({"grid.theta_deg={from=0, to=80, count=41}", "grid.sigma=[0.2]", "grid.q=[3]"}));
+      evaluator_.table(scene_.with_grid({{"theta_deg", dolp::AxisRange{0, 80, 41}}, {"sigma", {0.2}}, {"q", {3.0}}}));
   const std::vector<double> theta = {33.3};
   const dolp::Results found = table.lookup({{"theta_deg", theta}});
   const dolp::Results exact = evaluator_.evaluate(scene_, {{"theta_deg", theta}});
@@ -270,7 +275,7 @@ TEST_F(Library, WrongInput_IsAnInputError_OfOneLine) {
   };
   const std::vector<double> theta = {95};
   for (const std::string& line : {line_of([&] { dolp::Scene::from_file(folder_ / "none.toml"); }),
-                                  line_of([&] { scene_.with({"surface.n=0"}); }), line_of([&] {
+                                  line_of([&] { scene_.with("surface.n", 0); }), line_of([&] {
                                     evaluator_.evaluate(scene_, {{"theta_deg", theta}});
                                   }),
                                   line_of([&] {

@@ -75,7 +75,7 @@ Radiance model_radiance(const Scene& scene, double theta_i_deg) {
   const double rho_q = surface.specular * moments.r_q / cos_v;
   const double emitted = planck_radiance(kWavelength_um, scene.emission->temperature_K);
   const double surroundings = planck_radiance(kWavelength_um, scene.surroundings->temperature_K);
-  const MuellerMatrix f = reference_pbrdf(surface, surface.material.constant, theta_i_deg,
+  const ReferenceMueller f = reference_pbrdf(surface, surface.material.constant, theta_i_deg,
                                           scene.geometry.view_zenith_deg, scene.geometry.relative_azimuth_deg);
   const double beam = scene.source->irradiance * cos_i;
   const double diffuse = surface.diffuse / std::numbers::pi * std::pow(cos_i * cos_v, c);

@@ -35,7 +35,7 @@ TEST(ExploreSession, WhatIsShownWhileTheSceneChanges_IsStaleAndKeepsItsParameter
   const std::string cursor = cursor_text(session);
   const double bound = session.effects().front().bound.value();
   EXPECT_FALSE(says_stale(name + overlay + cursor));
-  driver.session.set({{"surface.sigma", "0.4"}, {"surface.n", "1.7"}});
+  driver.session.set({{"surface.sigma", 0.4}, {"surface.n", 1.7}});
   EXPECT_TRUE(session.curve().is_stale());
   EXPECT_TRUE(session.overlay()->is_stale());
   EXPECT_TRUE(session.map().is_stale());
@@ -104,7 +104,7 @@ TEST(ExploreSession, ChoiceThatExcludesAnother_SwitchesItWithAWord) {
 
 TEST(ExploreSession, EmissionThatComesBack_SwitchesWhatExcludesIt) {
   Session session(paint({"emission.model=direct"}));
-  session.set({{"emission", "none"}});
+  session.set({{"emission", Value()}});
   session.set({{"surface.masking", "integral"}});
   session.reset("emission");
   EXPECT_EQ(session.scene().word("emission.model"), "direct");
@@ -116,7 +116,7 @@ TEST(ExploreSession, Bracket_LiesAroundTheCurveAndIsReadAtTheCursor) {
   Driver driver(paint({"surface.sigma=0.4"}));
   for (const Point& r : driver.session.curve().points()) EXPECT_FALSE(has_bracket(r));
   EXPECT_EQ(cursor_text(driver.session).find("all bounces"), std::string::npos);
-  driver.session.set({{"emission.bracket", "true"}});
+  driver.session.set({{"emission.bracket", true}});
   driver.settle();
   for (const Point& r : driver.session.curve().points()) {
     if (!is_good(r)) continue;
@@ -147,7 +147,7 @@ TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
   ASSERT_NE(named("scattering"), without.end());
   const Scene& scene = driver.session.scene();
   const double theta_deg = driver.session.peak().answer()->theta_deg;
-  const Scene single = driver.session.edits().variant({"surface.scattering=single"});
+  const Scene single = scene.with("surface.scattering", "single");
   EXPECT_EQ(named("scattering")->result.dolp, truth(single, points_at(single, {theta_deg}))[0].dolp);
   EXPECT_EQ(surface_name(scene), "cauchy σ 0.4 q 3, v-cavity, all bounces, n 1.5 k 0.1");
   EXPECT_NE(without_text(driver.session, "scattering"), "");
@@ -156,11 +156,11 @@ TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
 /// DOLP of the paint with another sigma and n, as if measured.
 MeasuredPoints as_if_measured(double uncertainty) {
   const Scene scene = paint({"surface.sigma=0.25", "surface.n=1.7", "accuracy.tolerance=1e-6"}).scene();
-  MeasuredData data{.csv = "theta_deg,dolp,uncertainty\n", .name = "synthetic"};
+  std::string csv = "theta_deg,dolp,uncertainty\n";
   for (const Point& point : truth(scene, points_at(scene, zeniths(10.0, 80.0, 15)))) {
-    data.csv += fmt::format("{},{},{}\n", point.theta_deg, point.dolp, uncertainty);
+    csv += fmt::format("{},{},{}\n", point.theta_deg, point.dolp, uncertainty);
   }
-  return points_of(std::move(data));
+  return points_of(MeasuredData::from_csv(csv, "synthetic"));
 }
 
 TEST(ExploreSession, Fit_MovesMarkedParametersToTheTruth_AndItsIntervalsGoWithTheNextChange) {
@@ -200,7 +200,7 @@ TEST(ExploreSession, FitThatIsCancelled_OrHasTooManyParameters_SaysSo) {
   FitJob job{paint().scene(), as_if_measured(1e-3).data, {{"surface.sigma", 0.01, 1.0, 0.15}}};
   Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
   EXPECT_THROW(run_fit(job, evaluator, [](std::size_t, std::size_t) { return false; }), Cancelled);
-  job.data.csv = "theta_deg,dolp,uncertainty\n60,0.05,0.001\n";
+  job.data = MeasuredData::from_csv("theta_deg,dolp,uncertainty\n60,0.05,0.001\n");
   job.varied.push_back({"surface.n", 1.1, 3.0, 1.5});
   EXPECT_THROW(run_fit(job, evaluator, {}), InputError);
 }

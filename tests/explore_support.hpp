@@ -38,7 +38,7 @@ tolerance = 1e-3
 )";
 
 inline SceneEdits paint(const std::vector<std::string>& overrides = {}) {
-  return SceneEdits(Scene::from_text(kPaint, overrides, "paint.toml"));
+  return SceneEdits(Scene::from_text(kPaint, settings_from_text(overrides), "paint.toml"));
 }
 
 inline Evaluate on_the_cpu(Evaluator& evaluator) {

@@ -43,7 +43,7 @@ TEST(Edits, RefusedChange_LeavesTheSceneAsItWas) {
   EXPECT_THROW(edits.set("surface.sigma", -1.0), InputError);
   EXPECT_THROW(edits.set("surface.n", "none"), InputError);
   EXPECT_EQ(edits.scene().number("surface.sigma"), 0.15);
-  EXPECT_TRUE(edits.overrides().empty());
+  EXPECT_TRUE(edits.changes().empty());
 }
 
 TEST(Edits, Reset_GivesTheValueOfTheCommandLineBack) {
@@ -57,16 +57,16 @@ TEST(Edits, Reset_GivesTheValueOfTheCommandLineBack) {
 
 TEST(Edits, Alternatives_ReplaceOneAnother) {
   SceneEdits edits = paint();
-  edits.set("spectrum.wavelength_um", "10.6");
+  edits.set("spectrum.wavelength_um", 10.6);
   edits.set("surface.material", "gold (Ordal)");
   EXPECT_EQ(edits.scene().word("surface.material"), "gold (Ordal)");
   const auto gold = edits.scene().refractive_index(10.6);
-  edits.set("spectrum.band_um", "[8, 12]");
+  edits.set("spectrum.band_um", {8.0, 12.0});
   EXPECT_EQ(edits.scene().refractive_index(10.6), gold);
-  edits.set("spectrum.wavelength_um", "10.6");
-  edits.set({{"surface.n", "1.6"}, {"surface.k", "0.2"}});
+  edits.set("spectrum.wavelength_um", 10.6);
+  edits.set({{"surface.n", 1.6}, {"surface.k", 0.2}});
   EXPECT_EQ(edits.scene().refractive_index(10.6), std::pair(1.6, 0.2));
-  edits.set("spectrum.band_um", "[8, 14]");
+  edits.set("spectrum.band_um", {8.0, 14.0});
   EXPECT_EQ(edits.scene().numbers("spectrum.band_um"), (std::vector<double>{8.0, 14.0}));
   edits.set("source.preset", "sun");
   edits.set("source.irradiance", 2.0);
@@ -76,7 +76,7 @@ TEST(Edits, Alternatives_ReplaceOneAnother) {
 TEST(Edits, Effects_GoAndComeBack) {
   SceneEdits edits = paint();
   edits.set("surroundings.temperature_K", 250.0);
-  edits.set("surroundings", "none");
+  edits.set("surroundings", Value());
   EXPECT_FALSE(edits.scene().number("surroundings.temperature_K"));
   edits.reset("surroundings");
   EXPECT_EQ(edits.scene().number("surroundings.temperature_K"), 240.0);
@@ -84,7 +84,7 @@ TEST(Edits, Effects_GoAndComeBack) {
 
 TEST(Edits, EffectOfTheCommandLine_ComesBackAsOpened) {
   SceneEdits edits = paint({"emission.bracket=true", "emission.temperature_K=310"});
-  edits.set("emission", "none");
+  edits.set("emission", Value());
   edits.reset("emission");
   EXPECT_EQ(edits.scene().number("emission.temperature_K"), 310.0);
   EXPECT_EQ(edits.scene().word("emission.bracket"), "true");
@@ -93,13 +93,11 @@ TEST(Edits, EffectOfTheCommandLine_ComesBackAsOpened) {
 
 // ---- Choices that exclude one another ------------------------------------------------------------------------------
 
-using Changes = std::vector<SceneEdits::Change>;
+using Changes = std::vector<Setting>;
 
 bool is_accepted(const SceneEdits& edits, const Changes& changes) {
-  std::vector<std::string> arguments;
-  for (const auto& [key, word] : changes) arguments.emplace_back(key).append("=").append(word);
   try {
-    edits.variant(arguments);
+    edits.scene().with(changes);
     return true;
   } catch (const InputError&) {
     return false;
@@ -115,7 +113,7 @@ std::vector<Changes> accepted_combinations(const std::vector<std::string>& keys)
     for (const Changes& begun : all) {
       for (const std::string& word : choice.key->words) {
         longer.push_back(begun);
-        longer.back().emplace_back(choice.key->key, word);
+        longer.back().push_back({choice.key->key, TomlText{word}});
       }
     }
     all = std::move(longer);
@@ -133,11 +131,11 @@ TEST(Conflicts, EveryChoiceInEveryScene_IsTakenWithTheLeastThatItAsksFor) {
     edits.set(combination);
     for (const Choice& choice : choices()) {
       for (const std::string& word : choice.key->words) {
-        const SceneEdits::Change chosen = {choice.key->key, word};
+        const Setting chosen = {choice.key->key, TomlText{word}};
         Changes asked = asked_for(edits.scene(), {chosen});
-        EXPECT_EQ(asked.empty(), is_accepted(edits, {chosen})) << chosen.first << " = " << word;
+        EXPECT_EQ(asked.empty(), is_accepted(edits, {chosen})) << chosen.key << " = " << word;
         asked.push_back(chosen);
-        EXPECT_TRUE(is_accepted(edits, asked)) << chosen.first << " = " << word;
+        EXPECT_TRUE(is_accepted(edits, asked)) << chosen.key << " = " << word;
       }
     }
   }
@@ -151,7 +149,7 @@ TEST(Conflicts, BothSidesChosen_AreLeftToTheReader) {
 TEST(SceneToml, ShippedScenesWithChanges_ReadBackAsTheSameScene) {
   for (const auto& file : std::filesystem::directory_iterator(kHostDir + "/scenes")) {
     SCOPED_TRACE(file.path().string());
-    const Scene scene = Scene::from_file(file.path(), {"title=a \"quoted\" title", "surface.sigma=0.1234567890123"});
+    const Scene scene = Scene::from_file(file.path(), {{"title", "a \"quoted\" title"}, {"surface.sigma", 0.1234567890123}});
     const Scene again = Scene::from_text(scene.toml(kHostDir), {}, kHostDir + "/again.toml");
     EXPECT_EQ(again.title(), "a \"quoted\" title");
     for (const char* axis : {"grid.theta_deg", "grid.sigma", "grid.q"}) {
@@ -163,14 +161,14 @@ TEST(SceneToml, ShippedScenesWithChanges_ReadBackAsTheSameScene) {
 }
 
 TEST(SceneToml, WhatGoesBeyondSingleScattering_IsSaved) {
-  const auto saved = [](const SceneEdits::Change& change) {
+  const auto saved = [](const Setting& change) {
     SceneEdits edits = paint();
-    edits.set(change.first, change.second);
-    return Scene::from_text(edits.scene().toml()).word(change.first);
+    edits.set({change});
+    return Scene::from_text(edits.scene().toml()).word(change.key);
   };
   EXPECT_EQ(saved({"surface.scattering", "multiple"}), "multiple");
   EXPECT_EQ(saved({"emission.model", "direct"}), "direct");
-  EXPECT_EQ(saved({"emission.bracket", "true"}), "true");
+  EXPECT_EQ(saved({"emission.bracket", true}), "true");
 }
 
 TEST(SceneToml, NamedFiles_AreFoundFromTheNewFolder) {
@@ -179,7 +177,7 @@ TEST(SceneToml, NamedFiles_AreFoundFromTheNewFolder) {
   std::filesystem::create_directories(folder / "saved");
   std::ofstream(folder / "scenes" / "paint.csv") << "wavelength_um,n,k\n8,1.5,0.1\n14,1.6,0.2\n";
   const std::string path = (folder / "scenes" / "paint.toml").string();
-  const Scene scene = Scene::from_text(kPaint, {"surface.material_file=paint.csv"}, path);
+  const Scene scene = Scene::from_text(kPaint, {{"surface.material_file", "paint.csv"}}, path);
   const Scene again = Scene::from_text(scene.toml(folder / "saved"), {}, (folder / "saved" / "s.toml").string());
   EXPECT_EQ(again.refractive_index(10.0), scene.refractive_index(10.0));
   std::filesystem::remove_all(folder);
@@ -308,25 +306,25 @@ TEST(ExploreWorker, Tolerance_IsTheWiderOfJobAndScene) {
 
 TEST(ExploreWorker, LostDevice_IsThrownToWhoAsksForNews) {
   const auto lost = [](const Scene&, const PointList&, const RunOptions&) -> Results {
-    throw api::DeviceError("lost");
+    throw DeviceError("lost");
   };
   Worker worker(lost, [] {});
   worker.want({job_of("any")});
   while (!worker.is_idle()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  EXPECT_THROW(worker.take_news(), api::DeviceError);
+  EXPECT_THROW(worker.take_news(), DeviceError);
 }
 
 // ---- Measured points, exports --------------------------------------------------------------------------------------
 
 TEST(Measured, Quantities_AreReadAsDolpFitReadsThem) {
-  const MeasuredPoints points = points_of({.csv = "uncertainty,theta_deg,q_over_i\n0.01,60,-0.1\n", .name = "m.csv"});
+  const MeasuredPoints points = points_of(MeasuredData::from_csv("uncertainty,theta_deg,q_over_i\n0.01,60,-0.1\n", "m.csv"));
   ASSERT_EQ(points.points.size(), 1U);
   EXPECT_EQ(points.points[0].quantity, Quantity::kSignedDolp);
   EXPECT_EQ(points.points[0].value, -0.1);
   EXPECT_EQ(points.points[0].uncertainty, 0.01);
-  EXPECT_EQ(points_of({.csv = "theta_deg,emissivity_s,emissivity_p\n60,0.9,0.8\n"}).points.size(), 2U);
-  EXPECT_THROW(points_of({.csv = "theta_deg,dolp\n95,0.1\n"}), InputError);
-  EXPECT_THROW(points_of({.csv = "theta_deg,dolp\n60,0.1\n", .overrides = {"surface.n=2"}}), InputError);
+  EXPECT_EQ(points_of(MeasuredData::from_csv("theta_deg,emissivity_s,emissivity_p\n60,0.9,0.8\n")).points.size(), 2U);
+  EXPECT_THROW(points_of(MeasuredData::from_csv("theta_deg,dolp\n95,0.1\n")), InputError);
+  EXPECT_THROW(points_of(MeasuredData::from_csv("theta_deg,dolp\n60,0.1\n", "data", {{"surface.n", 2.0}})), InputError);
 }
 
 TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredPoints) {

@@ -112,8 +112,8 @@ class Window : public CommandLine {
     }
     put("points.csv", points);
     std::vector<std::string> options;
-    for (const std::string& override : app_->session().edits().overrides()) {
-      options.insert(options.end(), {"--set", override});
+    for (const Setting& change : app_->session().edits().changes()) {
+      options.insert(options.end(), {"--set", change.text()});
     }
     return eval(options);
   }
@@ -164,7 +164,7 @@ TEST_F(Window, BracketBox_Clicked_GivesTheCurveABand) {
   app_->settle();
   EXPECT_EQ(app_->session().scene().word("emission.bracket"), "true");
   EXPECT_TRUE(explore::has_bracket(app_->session().curve().points()[120]));
-  EXPECT_EQ(app_->session().edits().overrides(), std::vector<std::string>{"emission.bracket=true"});
+  EXPECT_EQ(app_->session().edits().changes(), (std::vector<Setting>{{"emission.bracket", true}}));
 }
 
 TEST_F(Window, MaskingList_OtherWord_SwitchesTheBracketOff) {

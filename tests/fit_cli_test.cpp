@@ -174,12 +174,12 @@ TEST_F(FitProgram, BadInput_IsOneLineThatSaysWhatIsAllowed) {
   expect_message(with({"--vary", "surface.n=3:2"}), "LOW must be below HIGH");
   expect_message(with({"--vary", "surface.n=1:2:3"}), "START must lie in LOW:HIGH");
   expect_message(with({"--vary", "surface.n=-1:2"}), "-1 is out of range, surface.n in (0, 1e6]");
-  expect_message(with({"--vary", "surface.sigma=0.1:1"}), "--vary surface.sigma: appears twice");
+  expect_message(with({"--vary", "surface.sigma=0.1:1"}), "surface.sigma: varies twice");
   expect_message(with({"--loss", "least"}), "--loss");
   expect_message({"--data", "data.csv:surface.sigma=1", "--vary", "surface.sigma=0.1:1"}, "cannot be fixed too");
   expect_message(with({"--compare", "surface.masking"}), "must be KEY=WORD,WORD,...");
   expect_message(with({"--compare", "surface.masking=some,other"}), "must be one of none, v-cavity, integral, smith");
-  expect_message(with({"--compare", "surface.sigma=0.1,0.2"}), "surface.sigma is varied and cannot be compared too");
+  expect_message(with({"--compare", "surface.sigma=0.1,0.2"}), "surface.sigma: varies and cannot be compared too");
   expect_message({"--data", "none.csv", "--vary", "surface.sigma=0.1:1"}, "none.csv: cannot be read");
   put("one.csv", "theta_deg,dolp\n30,0.1\n");
   expect_message({"--data", "one.csv", "--vary", "surface.sigma=0.1:1", "--vary", "surface.n=1:2"},

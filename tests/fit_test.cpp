@@ -1,4 +1,5 @@
 // Fits: known truths found again, intervals against closed forms and against synthetic measurements.
+#include "scene/scene_reader.hpp"
 #include "fit/fit.hpp"
 
 #include <gtest/gtest.h>
@@ -44,10 +45,10 @@ class FitTest : public testing::Test {
     data.zenith_column = "theta_deg";
     data.has_uncertainties = has_uncertainties;
     for (int i = 0; i < points; ++i) {
-      data.measurements.push_back({Observable::kQOverI, 80.0 * (i + 1) / points, {}, 0.0, {}});
+      data.measurements.push_back({.observable = Observable::kQOverI, .theta_deg = 80.0 * (i + 1) / points});
       if (has_uncertainties) data.measurements.back().uncertainty = kNoise;
     }
-    const Model model({kScene, "scene", overrides}, {data}, {number("surface.n", 1.6, 2.0)});
+    const Model model(parse_scene(kScene, "scene", settings_from_text(overrides)), {data}, {number("surface.n", 1.6, 2.0)});
     const Eigen::VectorXd truth = Eigen::VectorXd::Constant(1, 1.6);
     const Prediction exact = model.predict({truth}, 1e-8, evaluator_, {}).front();
     std::mt19937_64 engine(seed);
@@ -60,7 +61,7 @@ class FitTest : public testing::Test {
   }
   FitResult fitted(const MeasuredData& data, const std::vector<FitRange>& parameters, const FitOptions& options = {},
                    const std::vector<std::string>& overrides = {}) {
-    const Model model({kScene, "scene", overrides}, {data}, parameters);
+    const Model model(parse_scene(kScene, "scene", settings_from_text(overrides)), {data}, parameters);
     const std::optional<FitResult> result = fit::fit(model, evaluator_, options);
     EXPECT_TRUE(result.has_value());
     return result.value_or(FitResult{});
@@ -103,7 +104,7 @@ TEST_F(FitTest, IntervalEnds_LieWhereTheBestOfTheOthersHasGrownSo) {
   const FitRange sigma = number("surface.sigma", 0.02, 1.0);
   const FitResult result = fitted(data, {number("surface.n", 1.1, 4.0), sigma});
   for (const bool is_95 : {false, true}) {
-    const Interval& interval = is_95 ? result.parameters[1].interval_95 : result.parameters[1].interval_68;
+    const FitInterval& interval = is_95 ? result.parameters[1].interval_95 : result.parameters[1].interval_68;
     for (const std::optional<double>& end : {interval.low, interval.high}) {
       ASSERT_TRUE(end.has_value());
       const FitResult held =
@@ -117,7 +118,7 @@ TEST_F(FitTest, IntervalEnds_LieWhereTheBestOfTheOthersHasGrownSo) {
 TEST_F(FitTest, Contours_AreTheGrowthOverAllOthers) {
   const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0),
                                              number("surface.sigma", 0.02, 1.0)};
-  const Model model({kScene, "scene", {}}, {measured(kNoise, {}, true, 8)}, parameters);
+  const Model model(parse_scene(kScene, "scene"), {measured(kNoise, {}, true, 8)}, parameters);
   const FitResult result = fit::fit(model, evaluator_, {}).value();
   const Contours contours = contours_of(model, evaluator_, result, {}).value();
   const auto [first, second] = contours.parameters;
@@ -220,8 +221,8 @@ TEST_F(FitTest, Outlier_MovesSquaresMoreThanARobustLoss) {
 TEST_F(FitTest, TwoDataSets_ShareParametersAndKeepKeysOfTheirOwn) {
   MeasuredData warm = measured(0.0);
   MeasuredData cold = measured(0.0, {"emission.temperature_K=250"});
-  cold.overrides = {"emission.temperature_K=250"};
-  const Model model({kScene, "scene", {}}, {warm, cold}, {number("surface.n", 1.1, 4.0)});
+  cold.settings = {{"emission.temperature_K", 250.0}};
+  const Model model(parse_scene(kScene, "scene"), {warm, cold}, {number("surface.n", 1.1, 4.0)});
   const std::optional<FitResult> result = fit::fit(model, evaluator_, {});
   ASSERT_TRUE(result.has_value());
   EXPECT_NEAR(result->parameters.front().value, 1.6, 1e-4);
@@ -242,7 +243,7 @@ TEST_F(FitTest, Intervals_HoldTheTruthAsOftenAsTheySay) {
       const FitResult result =
           fitted(measured(kNoise, {}, has_uncertainties, 5, static_cast<std::uint64_t>(draw)), parameters, options);
       const std::size_t j = static_cast<std::size_t>(draw) % 2;  // one a draw: those of a draw are correlated
-      const auto holds = [&](const Interval& interval) {
+      const auto holds = [&](const FitInterval& interval) {
         return interval.low.value_or(0.0) <= truth[j] && truth[j] <= interval.high.value_or(10.0);
       };
       held_68 += holds(result.parameters[j].interval_68) ? 1 : 0;
@@ -270,7 +271,7 @@ TEST_F(FitTest, SameSeed_GivesTheSameDigits) {
 }
 
 TEST_F(FitTest, Jacobian_IsThatOfFinerDifferences) {
-  const Model model({kScene, "scene", {}}, {measured(kNoise)},
+  const Model model(parse_scene(kScene, "scene"), {measured(kNoise)},
                     {number("surface.n", 1.1, 4.0), number("surface.sigma", 0.02, 1.0)});
   Residuals residuals(model, 2e-5, Differences::kCentral, evaluator_, {});
   Residuals exact(model, 1e-10, Differences::kCentral, evaluator_, {});

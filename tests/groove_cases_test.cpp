@@ -141,7 +141,7 @@ wavelength_um = 10
 )";
   std::vector<std::string> overrides = {std::string("surface.distribution=") + name_of(distribution)};
   overrides.insert(overrides.end(), more.begin(), more.end());
-  return parse_scene(kScene, "s.toml", overrides);
+  return parse_scene(kScene, "s.toml", settings_from_text(overrides));
 }
 
 PointResult result_at(const Scene& scene, const Point& point) {

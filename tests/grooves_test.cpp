@@ -182,7 +182,7 @@ wavelength_um = 10
 )";
 
 std::vector<PointResult> results_of(const std::vector<std::string>& overrides) {
-  const Scene scene = parse_scene(kScene, "s.toml", overrides);
+  const Scene scene = parse_scene(kScene, "s.toml", settings_from_text(overrides));
   CpuEvaluator evaluator(Precision::kDouble);
   return evaluate_scene(scene, grid_entries(scene), evaluator, {});
 }
@@ -207,7 +207,7 @@ TEST(GroovesScene, AllBounces_LieInTheBracket) {
     more.insert(more.end(), grid.begin(), grid.end());
     return results_of(more);
   };
-  const std::vector<PointResult> all = with({"surface.scattering=multiple"});
+  const std::vector<PointResult> all = with({{"surface.scattering", "multiple"}});
   for (const char* model : {"emission.model=moments", "emission.model=direct"}) {
     const std::vector<PointResult> between = with({"emission.bracket=true", model});
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -241,11 +241,11 @@ TEST(GroovesScene, Bracket_IsWhatItsEndsSay) {
 TEST(GroovesScene, SmoothSurface_PlanLeavesTheBouncesOut) {
   const std::vector<std::string> smooth = {"surface.scattering=multiple", "surface.sigma=0.02",
                                            "grid.theta_deg=[0, 45]"};
-  const Scene scene = parse_scene(kScene, "s.toml", smooth);
+  const Scene scene = parse_scene(kScene, "s.toml", settings_from_text(smooth));
   const EffectPlan plan = plan_effects(scene, grid_entries(scene), false);
   EXPECT_FALSE(plan.kept.further_bounces);
   EXPECT_TRUE(plan.kept.moments);
-  const Scene rough = parse_scene(kScene, "s.toml", {"surface.scattering=multiple"});
+  const Scene rough = parse_scene(kScene, "s.toml", {{"surface.scattering", "multiple"}});
   EXPECT_TRUE(plan_effects(rough, grid_entries(rough), false).kept.further_bounces);
 }
 

@@ -27,7 +27,7 @@ const std::string kScene =
 
 std::string error_of(const std::string& text, const std::vector<std::string>& overrides) {
   try {
-    parse_scene(text, "s.toml", overrides);
+    parse_scene(text, "s.toml", settings_from_text(overrides, "--set"));
   } catch (const InputError& error) {
     return error.what();
   }

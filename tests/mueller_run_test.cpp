@@ -47,7 +47,7 @@ TEST(MuellerRun, SpecularAndDiffuse_AreAddedAsInEquation15) {
   scene.surface.diffuse_exponent = -0.4;
   const BeamAngles angles{30.0, 55.0, 140.0};
   const MuellerMatrix f = elements(scene, angles);
-  const MuellerMatrix specular = reference_pbrdf(scene.surface, kPaint, 30.0, 55.0, 140.0);
+  const ReferenceMueller specular = reference_pbrdf(scene.surface, kPaint, 30.0, 55.0, 140.0);
   const double cosines = std::cos(std::numbers::pi / 6.0) * std::cos(55.0 * std::numbers::pi / 180.0);
   const double diffuse = 0.2 / std::numbers::pi * std::pow(cosines, -0.4);
   for (std::size_t i = 0; i < 16; ++i) {

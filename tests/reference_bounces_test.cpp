@@ -48,9 +48,9 @@ TEST(ReferenceBounces, FirstBounce_IsSingleScattering) {
   constexpr double kTolerance = 1e-12;
   Surface surface = grooves(Distribution::kCauchy, 0.4, 2.0);
   for (const BeamAngles& a : kPairs) {
-    const MuellerMatrix once = reference_bounces(surface, kMetal, a.theta_i_deg, a.theta_r_deg, a.delta_phi_deg, 1);
+    const ReferenceMueller once = reference_bounces(surface, kMetal, a.theta_i_deg, a.theta_r_deg, a.delta_phi_deg, 1);
     surface.scattering = Scattering::kSingle;
-    const MuellerMatrix single = reference_scattering(surface, kMetal, a.theta_i_deg, a.theta_r_deg, a.delta_phi_deg);
+    const ReferenceMueller single = reference_scattering(surface, kMetal, a.theta_i_deg, a.theta_r_deg, a.delta_phi_deg);
     ASSERT_GT(single[0][0], 0.0);
     for (std::size_t e = 0; e < 16; ++e) {
       EXPECT_NEAR(once[e / 4][e % 4], single[e / 4][e % 4], kTolerance * single[0][0]) << a.theta_i_deg << " " << e;
@@ -65,9 +65,9 @@ TEST(ReferenceBounces, EachNumber_IsReciprocal) {
   std::array<double, 6> largest{};
   for (const BeamAngles& a : kPairs) {
     for (const int bounces : {1, 2, 3, 4, 5}) {
-      const MuellerMatrix f =
+      const ReferenceMueller f =
           reference_bounces(surface, kMetal, a.theta_i_deg, a.theta_r_deg, a.delta_phi_deg, bounces);
-      const MuellerMatrix back =
+      const ReferenceMueller back =
           reference_bounces(surface, kMetal, a.theta_r_deg, a.theta_i_deg, -a.delta_phi_deg, bounces);
       for (std::size_t e = 0; e < 16; ++e) {
         const std::size_t row = e / 4, column = e % 4;
@@ -81,7 +81,7 @@ TEST(ReferenceBounces, EachNumber_IsReciprocal) {
 }
 
 // The smallest of the eigenvalues of Cloude's coherency matrix over the largest.
-double smallest_eigenvalue(const MuellerMatrix& m) {
+double smallest_eigenvalue(const ReferenceMueller& m) {
   using Complex = std::complex<double>;
   const Complex i(0.0, 1.0);
   std::array<Eigen::Matrix2cd, 4> pauli;
@@ -136,7 +136,7 @@ TEST(ReferenceBounces, ScatterOfTheEvaluator_IsTheSum) {
   request.indices = {kMetal};
   request.entries = {{}};
   const ScatteringMatrix matrix = ReferenceEvaluator().scatter(request, {}).at(0);
-  const MuellerMatrix f = reference_scattering(grooves(Distribution::kCauchy, 0.4, 2.0), kMetal, 60.0, 60.0, 0.0);
+  const ReferenceMueller f = reference_scattering(grooves(Distribution::kCauchy, 0.4, 2.0), kMetal, 60.0, 60.0, 0.0);
   for (std::size_t e = 0; e < 16; ++e) EXPECT_EQ(matrix.m[e], f[e / 4][e % 4]);
 }
 
@@ -155,7 +155,7 @@ std::array<double, 2> hemispherical(const Surface& surface, const OpticalConstan
           const double x = centre + distance * std::cos(chi), across = distance * std::sin(chi);
           const double sine = std::hypot(x, across);
           const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
-          const MuellerMatrix f = reference_scattering(surface, index, theta_deg, std::atan2(sine, cosine) / kRadPerDeg,
+          const ReferenceMueller f = reference_scattering(surface, index, theta_deg, std::atan2(sine, cosine) / kRadPerDeg,
                                                        std::atan2(across, x) / kRadPerDeg);
           return f[0][column] / cosine * distance * reach * 2.0 * (1.0 - y);
         };

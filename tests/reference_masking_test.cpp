@@ -198,9 +198,9 @@ TEST(ReferenceMueller, Reciprocity_HoldsInBothForms) {
   const OpticalConstants index{1.6, 0.8};
   for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
     for (const double delta_phi_deg : {20.0, 110.0, 179.0}) {
-      const MuellerMatrix f = reference_pbrdf(surface_of(masking), index, 35.0, 72.0, delta_phi_deg);
-      const MuellerMatrix opposite = reference_pbrdf(surface_of(masking), index, 72.0, 35.0, -delta_phi_deg);
-      const MuellerMatrix same = reference_pbrdf(surface_of(masking), index, 72.0, 35.0, delta_phi_deg);
+      const ReferenceMueller f = reference_pbrdf(surface_of(masking), index, 35.0, 72.0, delta_phi_deg);
+      const ReferenceMueller opposite = reference_pbrdf(surface_of(masking), index, 72.0, 35.0, -delta_phi_deg);
+      const ReferenceMueller same = reference_pbrdf(surface_of(masking), index, 72.0, 35.0, delta_phi_deg);
       for (std::size_t a = 0; a < 4; ++a) {
         for (std::size_t b = 0; b < 4; ++b) {
           EXPECT_NEAR(f[a][b], kSignsOpposite[a] * opposite[b][a] * kSignsOpposite[b], kRounding * f[0][0]);
@@ -217,7 +217,7 @@ TEST(ReferenceMueller, FirstRowAndColumn_MatchEquation7) {
   const double ci = std::cos(kThetaI_deg * kRadPerDeg), si = std::sin(kThetaI_deg * kRadPerDeg);
   const double cr = std::cos(kThetaR_deg * kRadPerDeg), sr = std::sin(kThetaR_deg * kRadPerDeg);
   for (const double delta_phi_deg : {15.0, 90.0, 150.0, 180.0}) {
-    const MuellerMatrix f =
+    const ReferenceMueller f =
         reference_pbrdf(surface_of(Masking::kNone), kSteel, kThetaI_deg, kThetaR_deg, delta_phi_deg);
     const double beta = 0.5 * std::acos(ci * cr + si * sr * std::cos(delta_phi_deg * kRadPerDeg));
     const double cos_alpha = (ci + cr) / (2.0 * std::cos(beta));
@@ -245,7 +245,7 @@ TEST(ReferenceMueller, Specular_IsTheMatrixOfSmoothReflection) {
   const std::complex<double> w = std::sqrt(n * n - (1.0 - c * c));
   const std::complex<double> product = std::conj((c - w) / (c + w)) * (n * n * c - w) / (n * n * c + w);
   const double sum = std::norm((c - w) / (c + w)) + std::norm((n * n * c - w) / (n * n * c + w));
-  const MuellerMatrix f = reference_pbrdf(surface_of(Masking::kNone), index, kTheta_deg, kTheta_deg, 180.0);
+  const ReferenceMueller f = reference_pbrdf(surface_of(Masking::kNone), index, kTheta_deg, kTheta_deg, 180.0);
   const double scale = 0.5 * sum / f[0][0];
   EXPECT_NEAR(f[2][2] * scale, product.real(), kRounding);
   EXPECT_NEAR(f[3][3] * scale, product.real(), kRounding);

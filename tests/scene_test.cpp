@@ -51,7 +51,7 @@ TEST(Scene_Minimal, GetsEveryDefault) {
   EXPECT_EQ(scene.spectrum.min_um, 10.6);
   EXPECT_EQ(scene.text, kMinimal);
   EXPECT_EQ(scene.path_name, "s.toml");
-  EXPECT_TRUE(scene.overrides.empty());
+  EXPECT_TRUE(scene.settings.empty());
 }
 
 TEST(Scene_Described, DefaultsAreTheRealOnes) {
@@ -165,7 +165,7 @@ TEST(Scene_EveryKey, CanBeSetByAnOverride) {
     }
     const Scene scene = parse(kMinimal, overrides);
     EXPECT_TRUE(row.arrived(scene)) << key;
-    EXPECT_EQ(scene.overrides, overrides) << key;
+    EXPECT_EQ(scene.settings, settings_from_text(overrides)) << key;
   }
 }
 
@@ -242,10 +242,11 @@ TEST(Scene_EveryWord, NamesTheAllowedWords) {
 }
 
 TEST(SceneScattering, WhatTheModelHas_Arrives) {
-  const Scene multiple = parse_scene(kMinimal, "s.toml", {"surface.masking=v-cavity", "surface.scattering=multiple"});
+  const Scene multiple = parse_scene(kMinimal, "s.toml", {{"surface.masking", "v-cavity"}, {"surface.scattering", "multiple"}});
   EXPECT_EQ(multiple.surface.scattering, Scattering::kMultiple);
   const Scene direct =
-      parse_scene(kMinimal, "s.toml", {"surface.masking=v-cavity", "emission.model=direct", "emission.bracket=true"});
+      parse_scene(kMinimal, "s.toml",
+                  {{"surface.masking", "v-cavity"}, {"emission.model", "direct"}, {"emission.bracket", true}});
   EXPECT_EQ(direct.emission->model, EmissionModel::kDirect);
   EXPECT_TRUE(direct.emission->has_bracket);
 }
@@ -314,7 +315,7 @@ TEST(ShippedScenes, AllParse) {
     EXPECT_FALSE(scene.title.empty()) << entry.path();
     const auto& theta = scene.grid.theta_deg;
     EXPECT_NE(std::find(theta.begin(), theta.end(), 60.0), theta.end()) << entry.path();
-    EXPECT_NO_THROW(read_scene(entry.path().string(), {"surface.masking=smith", "surface.scattering=single"}))
+    EXPECT_NO_THROW(read_scene(entry.path().string(), {{"surface.masking", "smith"}, {"surface.scattering", "single"}}))
         << entry.path();
     ++count;
   }

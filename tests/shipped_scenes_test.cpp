@@ -60,7 +60,7 @@ std::vector<Statement> statements_of(const std::string& name) {
 
 PointResult result_at(const std::string& name, double theta_deg, std::vector<std::string> overrides) {
   overrides.push_back("accuracy.tolerance=1e-6");
-  const Scene scene = read_scene(scene_path(name), overrides);
+  const Scene scene = read_scene(scene_path(name), settings_from_text(overrides));
   return run_one(scene, theta_deg, {scene.surface.sigma, scene.surface.q}, Evaluator::kDouble);
 }
 
@@ -118,7 +118,7 @@ std::optional<Part> part_of(const std::string& effect) {
 TEST_P(ShippedScene, Plan_BoundsTheChangesThatTheCommentStates) {
   const auto [name, statement_count] = GetParam();
   for (const Statement& statement : statements_of(name)) {
-    const Scene scene = read_scene(scene_path(name), statement.overrides);
+    const Scene scene = read_scene(scene_path(name), settings_from_text(statement.overrides));
     const SpectralRule rule = spectral_rule(scene);
     const InfluenceBounds bounds(scene, rule);
     const SceneEntry entry{statement.theta_deg, {scene.surface.sigma, scene.surface.q}, {}};

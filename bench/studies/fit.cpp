@@ -89,7 +89,7 @@ ordered_json scipy_json(const FitSet& set, const MeasuredData& data, const fit::
     question["high"].push_back(one.high);
     question["start"].push_back(one.at(0.5));
   }
-  for (const Measurement& one : data.measurements) {
+  for (const dolp::Measurement& one : data.measurements) {
     question["theta_deg"].push_back(one.theta_deg);
     question["measured"].push_back(one.value);
   }

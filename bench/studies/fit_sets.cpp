@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include <random>
 
 #include "base/stopwatch.hpp"
+#include "scene/scene_reader.hpp"
 
 namespace dolp::bench {
 namespace {
@@ -83,10 +85,9 @@ FitSet fit_set(std::size_t number) {
   const std::size_t distribution = random.below(kDistributions.size());
   std::size_t varied = random.below(varied_choices.size());
   if (distribution == 1 && varied == 3) varied = 2;  // Gaussian slopes have no q
-  set.scene = {kSceneText,
-               "synthetic",
-               {fmt::format("surface.masking={}", kMaskings[random.below(kMaskings.size())]),
-                fmt::format("surface.distribution={}", kDistributions[distribution])}};
+  set.scene = parse_scene(kSceneText, "synthetic",
+                          {{"surface.masking", kMaskings[random.below(kMaskings.size())]},
+                           {"surface.distribution", kDistributions[distribution]}});
   set.truth.resize(static_cast<Eigen::Index>(varied_choices[varied].size()));
   for (std::size_t j = 0; j < varied_choices[varied].size(); ++j) {
     const Choice& choice = varied_choices[varied][j];
@@ -101,7 +102,7 @@ FitSet fit_set(std::size_t number) {
 
 FitSet timed_set() {
   FitSet set;
-  set.scene = {kSceneText, "synthetic", {"surface.masking=smith"}};
+  set.scene = parse_scene(kSceneText, "synthetic", {{"surface.masking", "smith"}});
   set.truth = Eigen::Vector3d(1.6, 0.5, 0.2);
   set.parameters = {kN.parameter, kK.parameter, kSigma.parameter};
   set.points = 40;
@@ -116,7 +117,9 @@ MeasuredData synthetic_data(const FitSet& set, std::size_t number, MomentsEvalua
   data.has_uncertainties = true;
   for (std::size_t i = 0; i < set.points; ++i) {
     const double share = static_cast<double>(i) / (static_cast<double>(set.points) - 1.0);
-    data.measurements.push_back({set.observable, kFirstDeg + share * (kLastDeg - kFirstDeg), {}, 0.0, set.noise});
+    data.measurements.push_back({.observable = set.observable,
+                                 .theta_deg = kFirstDeg + share * (kLastDeg - kFirstDeg),
+                                 .uncertainty = set.noise});
   }
   const fit::Model model(set.scene, {data}, set.parameters);
   const Eigen::MatrixX2d exact = model.predict({set.truth}, kExactTolerance, evaluator, {}).front().components;

@@ -106,12 +106,12 @@ Jones<Complex> jones_matrix(const BeamFrame& in, const BeamFrame& out, const ref
 // Element (a, b) is half the trace of sigma_a J sigma_b J^+, the sigma being the matrices that turn the coherency
 // matrix <E E^+> into the Stokes parameters I, Q, U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p).
 template <class Number>
-MuellerMatrix mueller_from_jones(const Jones<Number>& jones) {
+ReferenceMueller mueller_from_jones(const Jones<Number>& jones) {
   using Matrix = Jones<Number>;
   const Number zero(0), one(1), i(0, 1);
   const std::array<Matrix, 4> basis{Matrix{{{one, zero}, {zero, one}}}, Matrix{{{one, zero}, {zero, -one}}},
                                     Matrix{{{zero, one}, {one, zero}}}, Matrix{{{zero, -i}, {i, zero}}}};
-  MuellerMatrix mueller{};
+  ReferenceMueller mueller{};
   for (std::size_t a = 0; a < 4; ++a) {
     for (std::size_t b = 0; b < 4; ++b) {
       Number trace = zero;
@@ -125,14 +125,14 @@ MuellerMatrix mueller_from_jones(const Jones<Number>& jones) {
   return mueller;
 }
 
-MuellerMatrix scaled_matrix(MuellerMatrix mueller, double factor) {
+ReferenceMueller scaled_matrix(ReferenceMueller mueller, double factor) {
   for (auto& row : mueller) {
     for (double& element : row) element *= factor;
   }
   return mueller;
 }
 
-void add(MuellerMatrix& total, const MuellerMatrix& term) {
+void add(ReferenceMueller& total, const ReferenceMueller& term) {
   for (std::size_t i = 0; i < 16; ++i) total[i / 4][i % 4] += term[i / 4][i % 4];
 }
 
@@ -181,7 +181,7 @@ Number along(const RealVector<Number>& a, const std::array<Number, 3>& e) {
 
 // f^(k) cos(theta_i) cos(theta_r) of the beams that meet A of one groove plane first, `Number` being complex.
 template <class Number>
-MuellerMatrix bounces_in_plane(const reference::Slopes& slopes, const OpticalConstants& constants, const BeamFrame& in,
+ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const OpticalConstants& constants, const BeamFrame& in,
                                const BeamFrame& out, const GroovePlane& plane, int bounces) {
   using Part = typename Number::value_type;
   const Real gamma = plane.gamma(bounces);
@@ -219,9 +219,9 @@ struct GroovePair {
         toward(in, out, 1),
         against(in, out, -1) {}
   bool is_mirrored() const { return toward.across * toward.across < kMirrored; }
-  MuellerMatrix term(const reference::Slopes& slopes, const OpticalConstants& constants, int bounces) const {
+  ReferenceMueller term(const reference::Slopes& slopes, const OpticalConstants& constants, int bounces) const {
     const auto& in_plane = bounces > kMostInQuad ? bounces_in_plane<std::complex<double>> : bounces_in_plane<Complex>;
-    MuellerMatrix total = in_plane(slopes, constants, in, out, toward, bounces);
+    ReferenceMueller total = in_plane(slopes, constants, in, out, toward, bounces);
     add(total, in_plane(slopes, constants, in, out, against, bounces));
     return total;
   }
@@ -233,15 +233,15 @@ struct GroovePair {
   }
 };
 
-MuellerMatrix not_a_number() {
-  MuellerMatrix mueller;
+ReferenceMueller not_a_number() {
+  ReferenceMueller mueller;
   for (auto& row : mueller) row.fill(std::numeric_limits<double>::quiet_NaN());
   return mueller;
 }
 
 }  // namespace
 
-MuellerMatrix reference_bounces(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+ReferenceMueller reference_bounces(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
                                 double theta_r_deg, double delta_phi_deg, int bounces) {
   const GroovePair pair(theta_i_deg, theta_r_deg, delta_phi_deg);
   if (pair.is_mirrored()) return not_a_number();
@@ -258,7 +258,7 @@ BouncesSum reference_all_bounces(const Surface& surface, const OpticalConstants&
   double recent = 0.0;
   for (int k = 1; k <= kMostBounces; ++k) {
     if (pair.is_beyond(k)) return sum;
-    const MuellerMatrix term = pair.term(slopes, constants, k);
+    const ReferenceMueller term = pair.term(slopes, constants, k);
     add(sum.matrix, term);
     latest[static_cast<std::size_t>(k % kIdleBounces)] = term[0][0];
     recent = 0.0;
@@ -270,7 +270,7 @@ BouncesSum reference_all_bounces(const Surface& surface, const OpticalConstants&
   return sum;
 }
 
-MuellerMatrix reference_scattering(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+ReferenceMueller reference_scattering(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
                                    double theta_r_deg, double delta_phi_deg) {
   if (surface.scattering == Scattering::kMultiple) {
     return reference_all_bounces(surface, constants, theta_i_deg, theta_r_deg, delta_phi_deg).matrix;
@@ -290,7 +290,7 @@ MuellerMatrix reference_scattering(const Surface& surface, const OpticalConstant
   return scaled_matrix(mueller_from_jones(jones_matrix(in, out, r)), factor);
 }
 
-MuellerMatrix reference_pbrdf(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
+ReferenceMueller reference_pbrdf(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
                               double theta_r_deg, double delta_phi_deg) {
   const double cosines = reference::zenith_from_deg(theta_i_deg).cos * reference::zenith_from_deg(theta_r_deg).cos;
   return scaled_matrix(reference_scattering(surface, constants, theta_i_deg, theta_r_deg, delta_phi_deg),

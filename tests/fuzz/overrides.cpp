@@ -12,5 +12,5 @@ void dolp::fuzz::read(const std::string& text) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) overrides.push_back(line);
   const char* scene = "[surface]\nn = 1.5\nk = 0.1\n[emission]\n[spectrum]\nwavelength_um = 10.0\n";
-  refused([&] { dolp::parse_scene(scene, "scene.toml", overrides, &nothing); });
+  refused([&] { dolp::parse_scene(scene, "scene.toml", dolp::settings_from_text(overrides), &nothing); });
 }

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "api/named_evaluator.hpp"
-#include "api/translated.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene.hpp"
 

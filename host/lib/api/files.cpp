@@ -111,9 +111,10 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
     Run run(own, std::move(entries), options, impl_->maker(own));
     PointsCsv csv(path, points, extra_columns(own));
     PassedResults rows([&](const SceneEntries&, const std::vector<PointResult>& results) { csv.append(results); });
-    const RunOutcome outcome = run.compute(rows);
+    RunOutcome outcome = run.compute(rows);
     const std::optional<double> gap = scattering_gap(own, run.entries(), outcome.plan);
     csv.commit();
+    outcome.wall_s = run.wall_s();
     dolp::Report report =
         run_report(own, outcome, gap, fmt::format("{} points", points.size()), path.string());
     add_left_out(report, points);

@@ -123,7 +123,7 @@ void add_numbers(Fit& found, const fit::FitResult& result) {
 }
 
 void write_fitted(const std::filesystem::path& path, const Scene& fitted) {
-  write_text_atomically(path, fitted.toml(path.parent_path()));
+  write_text_atomically(path, fitted.toml(path.has_parent_path() ? path.parent_path() : "."));
 }
 
 }  // namespace

@@ -368,9 +368,11 @@ std::vector<SceneEntries> Run::parts() const { return run_parts(entries_, spectr
 RunOutcome Run::compute(Sink& sink) {
   outcome_.summary = run_scene(scene_, entries_, outcome_.plan, evaluator_, sink, progress_);
   if (evaluator_) outcome_.evaluation = outcome_.summary.totals(evaluator_->report());
-  outcome_.wall_s = seconds_since(start_);
+  outcome_.wall_s = wall_s();
   return outcome_;
 }
+
+double Run::wall_s() const { return seconds_since(start_); }
 
 RunSummary run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
                      MomentsEvaluator* evaluator, Sink& sink, const Progress& progress) {

@@ -104,6 +104,9 @@ class Run {
   /// Errors: those of the evaluator, of Radiometry and of the sink; Cancelled.
   RunOutcome compute(Sink& sink);
 
+  /// Since the object was made.
+  double wall_s() const;
+
  private:
   const Scene& scene_;
   SceneEntries entries_;

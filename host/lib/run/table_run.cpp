@@ -248,6 +248,7 @@ RunOutcome write_table(const Scene& scene, const TableJob& job, const EvaluatorM
     sink.finish();
     output.finish(attributes_of(scene, outcome, job.options.history));
   });
+  outcome.wall_s = run.wall_s();
   return outcome;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <string_view>
+#include <variant>
 
 #include "explore/parameters.hpp"
 
@@ -40,7 +41,7 @@ const std::vector<Conflict>& conflicts() {
 
 std::optional<std::string> word_in(const std::vector<Setting>& changes, const std::string& key) {
   const auto found = std::ranges::find(changes, key, &Setting::key);
-  return found == changes.end() ? std::nullopt : std::optional(found->value.text());
+  return found == changes.end() ? std::nullopt : std::optional(word_of(found->value));
 }
 
 std::vector<Setting> all_choices(const Scene& scene) {
@@ -53,6 +54,11 @@ std::vector<Setting> all_choices(const Scene& scene) {
 }
 
 }  // namespace
+
+std::string word_of(const Value& value) {
+  const auto* word = std::get_if<std::string>(&value.content());
+  return word ? *word : value.text();
+}
 
 std::vector<Setting> choices_of(const Scene& scene, const std::string& table) {
   std::vector<Setting> words = all_choices(scene);

@@ -1,11 +1,15 @@
 // Which choices of a scene exclude one another, and what becomes of the others when one is chosen.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "explore/scene_edits.hpp"
 
 namespace dolp::explore {
+
+/// The word of a value, without quotes.
+std::string word_of(const Value& value);
 
 /// The changes that `chosen` asks for elsewhere: each choice of the scene that excludes a chosen one gets a word that
 /// goes with it. Empty where nothing is in the way.

@@ -29,7 +29,7 @@ std::vector<Setting> other_distribution(const Scene& scene) {
 std::string text_of(const std::vector<Setting>& changes) {
   std::string text;
   for (const Setting& change : changes) {
-    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", change.key, change.value.text());
+    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", change.key, word_of(change.value));
   }
   return text;
 }

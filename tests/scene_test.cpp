@@ -57,7 +57,7 @@ TEST(Scene_Minimal, GetsEveryDefault) {
 TEST(Scene_Described, DefaultsAreTheRealOnes) {
   const std::vector<std::string> base = {"source.irradiance=1", "path.radiance=1"};
   expect_defaults(parse(kMinimal, base));
-  for (const KeyDescription& key : scene_keys()) {
+  for (const Key& key : dolp::keys()) {
     const bool is_value = !key.fallback.empty() && key.fallback != "required" && !key.fallback.starts_with("surface.");
     if (!is_value) continue;
     SCOPED_TRACE(key.key);
@@ -137,15 +137,15 @@ const std::vector<KeyCase>& key_cases() {
 }
 
 TEST(Scene_EveryKey, HasACaseBelow) {
-  ASSERT_EQ(key_cases().size(), scene_keys().size());
-  for (std::size_t i = 0; i < scene_keys().size(); ++i) EXPECT_EQ(scene_keys()[i].key, key_cases()[i].key);
+  ASSERT_EQ(key_cases().size(), dolp::keys().size());
+  for (std::size_t i = 0; i < dolp::keys().size(); ++i) EXPECT_EQ(dolp::keys()[i].key, key_cases()[i].key);
 }
 
 TEST(Scene_EveryKey, IsDescribed) {
-  for (const KeyDescription& key : scene_keys()) {
+  for (const Key& key : dolp::keys()) {
     EXPECT_FALSE(key.meaning.empty()) << key.key;
     EXPECT_FALSE(key.allowed().empty()) << key.key;
-    EXPECT_EQ(key.type == KeyDescription::Type::kWord, !key.words.empty()) << key.key;
+    EXPECT_EQ(key.type == Key::Type::kWord || key.type == Key::Type::kFlag, !key.words.empty()) << key.key;
   }
 }
 
@@ -189,8 +189,8 @@ TEST(Scene_EveryKey, CanBeWrittenInTheFile) {
 }
 
 TEST(Scene_EveryNumber, AcceptsItsClosedEndsAndRefusesItsOpenOnes) {
-  for (const KeyDescription& key : scene_keys()) {
-    if (key.type != KeyDescription::Type::kNumber) continue;
+  for (const Key& key : dolp::keys()) {
+    if (key.type != Key::Type::kNumber) continue;
     std::vector<std::string> base;
     if (key.key == "source.scale") base.emplace_back("source.irradiance=1");
     for (const double end : {key.range.min, key.range.max}) {
@@ -204,8 +204,8 @@ TEST(Scene_EveryNumber, AcceptsItsClosedEndsAndRefusesItsOpenOnes) {
 }
 
 TEST(Scene_EveryNumber, RefusesWhatIsOutOfRangeNotFiniteOrNoNumber) {
-  for (const KeyDescription& key : scene_keys()) {
-    if (key.type != KeyDescription::Type::kNumber && key.type != KeyDescription::Type::kAxis) continue;
+  for (const Key& key : dolp::keys()) {
+    if (key.type != Key::Type::kNumber && key.type != Key::Type::kAxis) continue;
     std::vector<std::string> values = {"nan", "inf", "-inf", "true", "many", "2020-01-01", ""};
     if (std::isfinite(key.range.min)) values.push_back(format_number(key.range.min - 1.0));
     if (std::isfinite(key.range.max)) values.push_back(format_number(key.range.max * 2.0 + 1.0));
@@ -220,8 +220,8 @@ TEST(Scene_EveryNumber, RefusesWhatIsOutOfRangeNotFiniteOrNoNumber) {
 
 TEST(Scene_EveryNumber, TakesIntegersThatNoDoubleHolds) {
   const std::string integer = "9007199254740993";  // 2^53 + 1
-  for (const KeyDescription& key : scene_keys()) {
-    if (key.type != KeyDescription::Type::kNumber && key.type != KeyDescription::Type::kAxis) continue;
+  for (const Key& key : dolp::keys()) {
+    if (key.type != Key::Type::kNumber && key.type != Key::Type::kAxis) continue;
     if (std::isinf(key.range.max)) continue;
     const std::string error = error_of(kMinimal, {key.key + "=" + integer});
     EXPECT_TRUE(contains(error, "out of range")) << error;
@@ -230,8 +230,8 @@ TEST(Scene_EveryNumber, TakesIntegersThatNoDoubleHolds) {
 }
 
 TEST(Scene_EveryWord, NamesTheAllowedWords) {
-  for (const KeyDescription& key : scene_keys()) {
-    if (key.type != KeyDescription::Type::kWord) continue;
+  for (const Key& key : dolp::keys()) {
+    if (key.type != Key::Type::kWord) continue;
     const std::string error = error_of(kMinimal, {key.key + "=nonsense"});
     for (const std::string& word : key.words) EXPECT_TRUE(contains(error, word)) << error;
     // All bounces and the direct emission need this masking.

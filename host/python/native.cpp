@@ -215,7 +215,7 @@ PYBIND11_MODULE(_native, module) {
   module.def("keys", [] {
     py::list all;
     for (const dolp::Key& key : dolp::keys()) {
-      all.append(py::make_tuple(key.key, key.unit, key.allowed, key.fallback, key.meaning));
+      all.append(py::make_tuple(key.key, key.unit, key.allowed(), key.fallback, key.meaning));
     }
     return all;
   });

@@ -1,23 +1,10 @@
 // Allowed ranges of the numbers a user can give, shared by scene keys and point columns.
 #pragma once
 
+#include <dolp/key.hpp>
 #include <limits>
-#include <string>
 
 namespace dolp {
-
-/// An interval of finite numbers; each end open or closed.
-struct NumberRange {
-  enum class Ends { kClosed, kOpenBelow, kOpenAbove };
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  Ends ends = Ends::kClosed;
-
-  /// False for NaN and infinities.
-  bool contains(double value) const;
-  /// For messages, e.g. "(0, 1e6]"; an infinite end is written "inf)".
-  std::string text() const;
-};
 
 inline constexpr NumberRange kZenithDegRange{0.0, 90.0};
 inline constexpr NumberRange kAzimuthDegRange{-360.0, 360.0};

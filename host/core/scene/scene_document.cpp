@@ -162,7 +162,7 @@ void SceneDocument::apply(const Setting& setting) {
   drop_other_alternatives(key);
   const SceneKey* known = find_scene_key(key);
   const auto insert = [&](const auto& v) { table.insert_or_assign(leaf, v); };
-  const bool is_text_key = known && known->description.type == KeyDescription::Type::kText;
+  const bool is_text_key = known && known->description.type == Key::Type::kText;
   std::visit(ValueInserter<decltype(insert)>{insert, is_text_key}, setting.value.content());
   origins_[key] = origin;
 }

@@ -10,7 +10,7 @@
 namespace dolp {
 namespace {
 
-using Type = KeyDescription::Type;
+using Type = Key::Type;
 using Value = KeyValue;
 
 // What a place of a scene holds; a null pointer is a place that the scene does not have.
@@ -59,7 +59,7 @@ SceneKey choice(const char* key, Choice fallback, const char* meaning, Place pla
 
 template <class Place>
 SceneKey flag(const char* key, const char* meaning, Place place) {
-  return {{key, Type::kFlag, "", {}, {}, "false", meaning},
+  return {{key, Type::kFlag, "", {}, {"false", "true"}, "false", meaning},
           [place](Scene& s, const Value& v) { *place(s) = v.is_set; },
           [place](const Scene& s) { return value_at(place(s)); }};
 }
@@ -254,15 +254,6 @@ const std::vector<SceneKey>& scene_key_table() {
   return keys;
 }
 
-const std::vector<KeyDescription>& scene_keys() {
-  static const std::vector<KeyDescription> descriptions = [] {
-    std::vector<KeyDescription> all;
-    for (const SceneKey& key : scene_key_table()) all.push_back(key.description);
-    return all;
-  }();
-  return descriptions;
-}
-
 const std::vector<KeyChoice>& key_choices() {
   static const std::vector<KeyChoice> choices = {
       {"surface", {{"surface.n", "surface.k"}, {"surface.material"}, {"surface.material_file"}}, true, "grid.n"},
@@ -271,6 +262,34 @@ const std::vector<KeyChoice>& key_choices() {
       {"spectrum", {{"spectrum.wavelength_um"}, {"spectrum.band_um"}}, true, "grid.wavelength_um"},
   };
   return choices;
+}
+
+namespace {
+
+std::vector<std::string> rivals_of(const std::string& key) {
+  std::vector<std::string> rivals;
+  for (const KeyChoice& choice : key_choices()) {
+    const auto own = std::ranges::find_if(choice.alternatives, [&](const std::vector<std::string>& alternative) {
+      return std::ranges::find(alternative, key) != alternative.end();
+    });
+    if (own == choice.alternatives.end()) continue;
+    for (auto other = choice.alternatives.begin(); other != choice.alternatives.end(); ++other) {
+      if (other != own) rivals.insert(rivals.end(), other->begin(), other->end());
+    }
+  }
+  return rivals;
+}
+
+}  // namespace
+
+const std::vector<Key>& keys() {
+  static const std::vector<Key> descriptions = [] {
+    std::vector<Key> all;
+    for (const SceneKey& key : scene_key_table()) all.push_back(key.description);
+    for (Key& key : all) key.rivals = rivals_of(key.key);
+    return all;
+  }();
+  return descriptions;
 }
 
 const SceneKey* find_scene_key(std::string_view key) {
@@ -302,7 +321,7 @@ void add_effect(Scene& scene, std::string_view table) {
   if (table == "path") scene.path.emplace();
 }
 
-std::string KeyDescription::allowed() const {
+std::string Key::allowed() const {
   switch (type) {
     case Type::kNumber:
       return "a number in " + range.text();

@@ -11,17 +11,17 @@
 
 namespace dolp {
 
-/// A value that is what its KeyDescription allows.
+/// A value that is what its Key allows.
 struct KeyValue {
   double number = 0.0;
-  std::size_t word = 0;  ///< position in KeyDescription::words
+  std::size_t word = 0;  ///< position in Key::words
   std::string text = {};
   bool is_set = false;               ///< flag
   std::vector<double> numbers = {};  ///< pair, axis
 };
 
 struct SceneKey {
-  KeyDescription description;
+  Key description;
   std::function<void(Scene& scene, const KeyValue& value)> set;
   /// None where the scene has no such thing: n with a material, the temperature of an emission that is not there.
   std::function<std::optional<KeyValue>(const Scene& scene)> value;

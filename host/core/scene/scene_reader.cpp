@@ -21,7 +21,7 @@ namespace {
 /// The nearest known key or table. A known name in another table, or a name without its table, counts as near.
 std::string key_hint(const std::string& key) {
   std::vector<std::string> known = scene_tables();
-  for (const KeyDescription& description : scene_keys()) known.push_back(description.key);
+  for (const Key& description : dolp::keys()) known.push_back(description.key);
   const auto last_part = [](const std::string& name) { return name.substr(name.find_last_of('.') + 1); };
   const auto distance = [&](const std::string& name) {
     return std::min(edit_distance(key, name), edit_distance(last_part(key), last_part(name)) + 1);
@@ -81,7 +81,7 @@ void check_choices(const SceneDocument& document) {
 }
 
 void check_required(const SceneDocument& document) {
-  for (const KeyDescription& description : scene_keys()) {
+  for (const Key& description : dolp::keys()) {
     if (description.fallback != "required" || document.find(description.key)) continue;
     const std::string table = description.key.substr(0, description.key.find('.'));
     const bool is_wanted = document.find(table) || !is_effect_table(table);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <dolp/key.hpp>
 #include <string>
 #include <vector>
 
@@ -31,23 +32,5 @@ struct KnownData {
 /// where it lacks what the scene takes from one.
 Scene parse_scene(const std::string& text, const std::string& path_name, const std::vector<Setting>& settings = {},
                   const KnownData* known = nullptr);
-
-/// One scene key, for help texts, documentation and widgets.
-struct KeyDescription {
-  enum class Type { kNumber, kWord, kFlag, kText, kPair, kAxis };
-  std::string key;  ///< dotted, e.g. "surface.n"
-  Type type = Type::kNumber;
-  std::string unit;                ///< "1" for numbers without one, empty for words and texts
-  NumberRange range;               ///< of a number and of each value of a pair or an axis
-  std::vector<std::string> words;  ///< allowed words of kWord
-  std::string fallback;            ///< default as one would write it; "required"; empty when the key is simply absent
-  std::string meaning;             ///< one line, with the symbol
-
-  /// What is allowed, for messages and help: "a number in [0, 90]", "one of cauchy, gaussian", …
-  std::string allowed() const;
-};
-
-/// Every key a scene can have, in the order of a scene file: the reader accepts exactly these.
-const std::vector<KeyDescription>& scene_keys();
 
 }  // namespace dolp

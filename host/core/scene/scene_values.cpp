@@ -12,7 +12,7 @@
 namespace dolp {
 namespace {
 
-using Type = KeyDescription::Type;
+using Type = Key::Type;
 
 constexpr auto kMostListed = static_cast<std::size_t>(kAxisCountRange.max);
 
@@ -35,7 +35,7 @@ double read_number(const SceneDocument& document, std::string_view key, const to
   return number;
 }
 
-std::vector<double> read_list(const SceneDocument& document, const KeyDescription& description,
+std::vector<double> read_list(const SceneDocument& document, const Key& description,
                               const toml::array& array) {
   if (array.size() > kMostListed) {
     document.fail(description.key, fmt::format("{} values; must be at most {}", array.size(), kMostListed));
@@ -54,7 +54,7 @@ double read_axis_number(const SceneDocument& document, const std::string& key, c
   return read_number(document, key, *node, range, allowed);
 }
 
-AxisRule read_axis_rule(const SceneDocument& document, const KeyDescription& description, const toml::table& table) {
+AxisRule read_axis_rule(const SceneDocument& document, const Key& description, const toml::table& table) {
   const std::string begin = description.key + '.';
   const std::vector<std::string> known = {"from", "to", "count", "spacing"};
   for (const auto& [name, node] : table) {
@@ -95,7 +95,7 @@ std::vector<double> axis_values(const AxisRule& rule) {
   return values;
 }
 
-std::vector<double> read_axis(const SceneDocument& document, const KeyDescription& description,
+std::vector<double> read_axis(const SceneDocument& document, const Key& description,
                               const toml::node& node) {
   std::vector<double> values;
   if (const toml::array* array = node.as_array()) {
@@ -113,7 +113,7 @@ std::vector<double> read_axis(const SceneDocument& document, const KeyDescriptio
   return values;
 }
 
-std::vector<double> read_pair(const SceneDocument& document, const KeyDescription& description,
+std::vector<double> read_pair(const SceneDocument& document, const Key& description,
                               const toml::node& node) {
   const toml::array* array = node.as_array();
   const std::string what = "must be " + description.allowed();
@@ -123,7 +123,7 @@ std::vector<double> read_pair(const SceneDocument& document, const KeyDescriptio
   return pair;
 }
 
-KeyValue read_word(const SceneDocument& document, const KeyDescription& description, const toml::node& node) {
+KeyValue read_word(const SceneDocument& document, const Key& description, const toml::node& node) {
   KeyValue value;
   value.text = node.value_or(std::string());
   const auto found = std::find(description.words.begin(), description.words.end(), value.text);
@@ -134,7 +134,7 @@ KeyValue read_word(const SceneDocument& document, const KeyDescription& descript
 
 }  // namespace
 
-KeyValue read_value(const SceneDocument& document, const KeyDescription& description) {
+KeyValue read_value(const SceneDocument& document, const Key& description) {
   const toml::node& node = *document.find(description.key);
   KeyValue value;
   switch (description.type) {

@@ -10,6 +10,6 @@
 namespace dolp {
 
 /// The value of a key that the document has. Errors: InputError through SceneDocument::fail.
-KeyValue read_value(const SceneDocument& document, const KeyDescription& description);
+KeyValue read_value(const SceneDocument& document, const Key& description);
 
 }  // namespace dolp

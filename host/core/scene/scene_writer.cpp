@@ -53,7 +53,7 @@ std::string path_from(const std::filesystem::path& folder, const std::string& fi
 std::string scene_toml(const Scene& scene, const std::filesystem::path& folder) {
   const SceneDocument& document = *scene.document;
   std::string written;
-  for (const KeyDescription& description : scene_keys()) {
+  for (const Key& description : dolp::keys()) {
     if (description.key.find('.') != std::string::npos) continue;
     if (const toml::node* node = document.find(description.key)) {
       written += description.key + " = " + value_text(*node) + '\n';
@@ -62,7 +62,7 @@ std::string scene_toml(const Scene& scene, const std::filesystem::path& folder) 
   for (const std::string& table : scene_tables()) {
     if (!document.find(table)) continue;
     written += "\n[" + table + "]\n";
-    for (const KeyDescription& description : scene_keys()) {
+    for (const Key& description : dolp::keys()) {
       const toml::node* node = description.key.starts_with(table + '.') ? document.find(description.key) : nullptr;
       if (!node) continue;
       const std::string value =

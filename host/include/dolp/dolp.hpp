@@ -35,6 +35,7 @@
 
 #include <dolp/errors.hpp>
 #include <dolp/fit.hpp>
+#include <dolp/key.hpp>
 #include <dolp/options.hpp>
 #include <dolp/setting.hpp>
 
@@ -99,18 +100,6 @@ class DOLP_EXPORT Scene {
 
 /// The text of a scene to begin with: bare stainless steel at 10.6 um.
 DOLP_EXPORT std::string example_scene();
-
-/// A key that scenes have.
-struct Key {
-  std::string key;       ///< "surface.sigma"
-  std::string unit;      ///< "1" for numbers without one, empty for words and texts
-  std::string allowed;   ///< "a number in [0, 10]"
-  std::string fallback;  ///< the default; "required"; empty when the key is simply absent
-  std::string meaning;
-  std::vector<std::string> words;   ///< of a word what it may be, of a flag "false" and "true"
-  std::vector<std::string> rivals;  ///< keys in whose place it can be; a setting of one takes the other away
-};
-DOLP_EXPORT const std::vector<Key>& keys();
 
 /// A built-in material.
 struct Material {

@@ -13,7 +13,7 @@
 namespace dolp::api {
 namespace {
 
-using Type = KeyDescription::Type;
+using Type = Key::Type;
 
 /// The value of a key that is of one of these types. Errors: InputError.
 std::optional<KeyValue> value_of(const dolp::Scene& scene, std::string_view key, std::initializer_list<Type> types) {
@@ -23,25 +23,6 @@ std::optional<KeyValue> value_of(const dolp::Scene& scene, std::string_view key,
     throw InputError(fmt::format("{}: is {}", known->description.key, known->description.allowed()));
   }
   return known->value(scene);
-}
-
-std::vector<std::string> words_of(const KeyDescription& key) {
-  if (key.type == Type::kFlag) return {"false", "true"};
-  return key.words;
-}
-
-std::vector<std::string> rivals_of(const std::string& key) {
-  std::vector<std::string> rivals;
-  for (const KeyChoice& choice : key_choices()) {
-    const auto own = std::ranges::find_if(choice.alternatives, [&](const std::vector<std::string>& alternative) {
-      return std::ranges::find(alternative, key) != alternative.end();
-    });
-    if (own == choice.alternatives.end()) continue;
-    for (auto other = choice.alternatives.begin(); other != choice.alternatives.end(); ++other) {
-      if (other != own) rivals.insert(rivals.end(), other->begin(), other->end());
-    }
-  }
-  return rivals;
 }
 
 }  // namespace
@@ -105,16 +86,5 @@ std::pair<double, double> Scene::refractive_index(double wavelength_um) const {
 }
 
 std::string example_scene() { return std::string(embedded_stainless_steel_toml()); }
-
-const std::vector<Key>& keys() {
-  static const std::vector<Key> all = [] {
-    std::vector<Key> list;
-    for (const KeyDescription& key : scene_keys()) {
-      list.push_back({key.key, key.unit, key.allowed(), key.fallback, key.meaning, words_of(key), rivals_of(key.key)});
-    }
-    return list;
-  }();
-  return all;
-}
 
 }  // namespace dolp::api

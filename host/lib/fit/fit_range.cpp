@@ -17,9 +17,9 @@ constexpr const char* kForm = "must be KEY=LOW:HIGH or KEY=LOW:HIGH:START";
 /// The scene's keys that are numbers, but for the accuracy of the model itself.
 std::vector<std::string> number_keys() {
   std::vector<std::string> keys;
-  for (const KeyDescription& description : scene_keys()) {
+  for (const Key& description : dolp::keys()) {
     const bool is_model = !description.key.starts_with("accuracy.");
-    if (description.type == KeyDescription::Type::kNumber && is_model) keys.push_back(description.key);
+    if (description.type == Key::Type::kNumber && is_model) keys.push_back(description.key);
   }
   return keys;
 }
@@ -86,7 +86,7 @@ FitRange FitRange::from_text(const std::string& argument) {
 
 void fit::check_range(const FitRange& range, const std::string& origin) {
   check_key(range.key, origin);
-  const KeyDescription& description = *std::ranges::find(scene_keys(), range.key, &KeyDescription::key);
+  const Key& description = *std::ranges::find(dolp::keys(), range.key, &Key::key);
   for (const double number : {range.low, range.high, range.start.value_or(range.low)}) {
     if (description.range.contains(number)) continue;
     throw InputError(fmt::format("{}: {} is out of range, {} in {}", origin, format_number(number), range.key,

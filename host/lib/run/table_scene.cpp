@@ -26,7 +26,7 @@ const std::string* find_text(const TableHead& table, std::string_view attribute)
 bool begins_setting(std::string_view line) {
   const std::string_view key = trim(line.substr(0, line.find('=')));
   if (line.find('=') == std::string_view::npos) return false;
-  return std::ranges::any_of(scene_keys(), [key](const KeyDescription& known) {
+  return std::ranges::any_of(dolp::keys(), [key](const Key& known) {
     return known.key == key || known.key.starts_with(std::string(key) + '.') || key.starts_with(known.key + '.');
   });
 }

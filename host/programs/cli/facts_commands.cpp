@@ -13,19 +13,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string default_text(const api::Key& key) {
+std::string default_text(const Key& key) {
   if (key.fallback.empty()) return "absent when not given";
   return key.fallback == "required" ? "required" : "default " + key.fallback;
 }
 
-void add_key(api::Report& report, Json& list, const api::Key& key) {
+void add_key(api::Report& report, Json& list, const Key& key) {
   const bool has_unit = !key.unit.empty() && key.unit != "1";
-  report.text += fmt::format("{}\n    {}\n    {}{}; {}\n", key.key, key.meaning, key.allowed,
+  report.text += fmt::format("{}\n    {}\n    {}{}; {}\n", key.key, key.meaning, key.allowed(),
                              has_unit ? ", " + key.unit : "", default_text(key));
   list.push_back({{"key", key.key},
                   {"meaning", key.meaning},
                   {"unit", key.unit},
-                  {"allowed", key.allowed},
+                  {"allowed", key.allowed()},
                   {"default", key.fallback}});
 }
 
@@ -40,7 +40,7 @@ int run_keys(const Options& options) {
   api::Report report;
   Json list = Json::array();
   std::vector<std::string> names;
-  for (const api::Key& key : api::keys()) {
+  for (const Key& key : dolp::keys()) {
     names.push_back(key.key);
     const bool is_wanted = options.key.empty() || key.key == options.key || key.key.starts_with(options.key + ".");
     if (is_wanted) add_key(report, list, key);

@@ -28,7 +28,7 @@ std::vector<Setting> all_settings(const Options& options) {
   return settings_from_text(overrides, "--set");
 }
 
-std::string allowed(const std::string& key) { return std::ranges::find(api::keys(), key, &api::Key::key)->allowed; }
+std::string allowed(const std::string& key) { return std::ranges::find(dolp::keys(), key, &Key::key)->allowed(); }
 
 api::Scene load_scene(const Options& options) {
   check_one_stdin(options);

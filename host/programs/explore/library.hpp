@@ -7,7 +7,6 @@ namespace dolp::explore {
 
 using api::Effect;
 using api::Evaluator;
-using api::Key;
 using api::Results;
 using api::Scene;
 

@@ -24,8 +24,8 @@ Parameter log_slider(const char* key, const char* symbol, SliderRange range, con
 }  // namespace
 
 const Key& described(const std::string& key) {
-  const auto found = std::ranges::find(api::keys(), key, &Key::key);
-  if (found == api::keys().end()) throw std::logic_error("no scene key " + key);
+  const auto found = std::ranges::find(dolp::keys(), key, &Key::key);
+  if (found == dolp::keys().end()) throw std::logic_error("no scene key " + key);
   return *found;
 }
 

@@ -7,21 +7,21 @@
 
 namespace {
 
-using dolp::KeyDescription;
+using dolp::Key;
 
-std::string values(const KeyDescription& key) {
+std::string values(const Key& key) {
   switch (key.type) {
-    case KeyDescription::Type::kNumber:
+    case Key::Type::kNumber:
       return key.range.text();
-    case KeyDescription::Type::kWord:
+    case Key::Type::kWord:
       return fmt::format("`{}`", fmt::join(key.words, "`, `"));
-    case KeyDescription::Type::kFlag:
+    case Key::Type::kFlag:
       return "`true`, `false`";
-    case KeyDescription::Type::kText:
+    case Key::Type::kText:
       return "text";
-    case KeyDescription::Type::kPair:
+    case Key::Type::kPair:
       return "two of " + key.range.text();
-    case KeyDescription::Type::kAxis:
+    case Key::Type::kAxis:
       return "axis in " + key.range.text();
   }
   return {};
@@ -33,7 +33,7 @@ std::string code_or_dash(const std::string& text) { return text.empty() ? "—" 
 
 int main() {
   fmt::print("| key | unit | values | default | meaning |\n|---|---|---|---|---|\n");
-  for (const KeyDescription& key : dolp::scene_keys()) {
+  for (const Key& key : dolp::keys()) {
     const std::string fallback = key.fallback == "required" ? key.fallback : code_or_dash(key.fallback);
     fmt::print("| `{}` | {} | {} | {} | {} |\n", key.key, key.unit, values(key), fallback, key.meaning);
   }

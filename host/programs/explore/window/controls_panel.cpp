@@ -75,7 +75,7 @@ void draw_interval(const Parameter& parameter, const FitInterval& interval) {
 
 std::string description_of(const Parameter& p, const Session& session) {
   const Key& key = *p.key;
-  return fmt::format("{} = {}\n{}\nallowed: {} {}{}{}", key.key, key.meaning, p.equation, key.allowed, unit_text(key),
+  return fmt::format("{} = {}\n{}\nallowed: {} {}{}{}", key.key, key.meaning, p.equation, key.allowed(), unit_text(key),
                      fallback_text(p, session), intervals_text(p, session));
 }
 

@@ -1,0 +1,44 @@
+// Keys that scenes have.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <dolp/errors.hpp>
+
+namespace dolp {
+
+/// An interval of finite numbers; each end open or closed.
+struct DOLP_EXPORT NumberRange {
+  enum class Ends { kClosed, kOpenBelow, kOpenAbove };
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  Ends ends = Ends::kClosed;
+
+  /// False for NaN and infinities.
+  bool contains(double value) const;
+  /// For messages, e.g. "(0, 1e6]"; an infinite end is written "inf)".
+  std::string text() const;
+};
+
+/// A key of a scene.
+struct DOLP_EXPORT Key {
+  enum class Type { kNumber, kWord, kFlag, kText, kPair, kAxis };
+  std::string key;  ///< dotted: "surface.sigma"
+  Type type = Type::kNumber;
+  std::string unit;                ///< "1" for numbers without one, empty for words and texts
+  NumberRange range;               ///< of a number and of each value of a pair or an axis
+  std::vector<std::string> words;  ///< that a word may be
+  std::string fallback;            ///< default as a scene file writes it; "required"; empty when the key is simply absent
+  std::string meaning;             ///< one line, with the symbol
+  std::vector<std::string> rivals = {};  ///< keys in whose place it can be; a setting of one takes the other away
+
+  /// "a number in [0, 90]", "one of cauchy, gaussian", …
+  std::string allowed() const;
+};
+
+/// Every key a scene can have, in the order of a scene file: the reader accepts exactly these.
+DOLP_EXPORT const std::vector<Key>& keys();
+
+}  // namespace dolp

@@ -7,12 +7,12 @@
 namespace dolp {
 namespace {
 
-const DeviceWish kWatched{.validation = ValidationMode::kOn};
+const DeviceSelector kWatched{.validation = ValidationMode::kOn};
 
 TEST(VulkanContext, WorkgroupOnAProcessor_IsAVector) {
   const vulkan::Context context(kWatched);
-  const DeviceDescription& device = context.description();
-  const bool is_processor = device.type == DeviceDescription::Type::kCpu;
+  const dolp::Device& device = context.description();
+  const bool is_processor = device.type == dolp::Device::Type::kCpu;
   EXPECT_EQ(device.local_size, is_processor ? device.subgroup_size : 64U);
   EXPECT_EQ(context.device().local_size(), device.local_size);
   EXPECT_TRUE(context.validation_messages().empty()) << context.validation_messages().front();

@@ -13,18 +13,18 @@
 namespace dolp {
 namespace {
 
-DeviceDescription described(std::string name, DeviceDescription::Type type, bool usable, bool float64) {
-  DeviceDescription device;
+dolp::Device described(std::string name, dolp::Device::Type type, bool usable, bool float64) {
+  dolp::Device device;
   device.name = std::move(name);
   device.type = type;
   device.usable = usable;
   device.why_not = usable ? "" : "Vulkan 1.1.0 < 1.2";
-  device.float64 = float64;
+  device.has_double = float64;
   return device;
 }
 
-std::vector<DeviceDescription> five_devices() {
-  using enum DeviceDescription::Type;
+std::vector<dolp::Device> five_devices() {
+  using enum dolp::Device::Type;
   return {described("llvmpipe (LLVM 15)", kCpu, true, true), described("Iris Xe", kIntegrated, true, false),
           described("Old Radeon", kDiscrete, false, true), described("GeForce RTX 4090", kDiscrete, true, true),
           described("Radeon RX 7900", kDiscrete, true, true)};
@@ -32,7 +32,7 @@ std::vector<DeviceDescription> five_devices() {
 
 TEST(ChooseDevice, Default_IsTheFirstUsableDiscreteGpu) {
   EXPECT_EQ(choose_device(five_devices(), "", false), 3U);
-  std::vector<DeviceDescription> devices = five_devices();
+  std::vector<dolp::Device> devices = five_devices();
   devices.resize(3);
   EXPECT_EQ(choose_device(devices, "", false), 1U);
   EXPECT_EQ(choose_device(devices, "", true), 0U);

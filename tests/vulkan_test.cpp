@@ -67,13 +67,13 @@ TEST(ListDevices, ThisMachine_HasAUsableDeviceWithItsLimits) {
   const DeviceList list = list_devices();
   ASSERT_FALSE(list.devices.empty()) << list.why_empty;
   EXPECT_TRUE(list.why_empty.empty());
-  const DeviceDescription& device = list.devices[choose_device(list.devices, "", false)];
+  const dolp::Device& device = list.devices[choose_device(list.devices, "", false)];
   std::printf("%s, %s, Vulkan %s\n", device.name.c_str(), device.driver.c_str(), device.api_version.c_str());
   EXPECT_FALSE(device.driver.empty());
   // What the Vulkan specification guarantees at least.
   EXPECT_GE(device.max_storage_buffer_bytes, std::uint64_t{1} << 27U);
   EXPECT_GE(device.max_workgroups, 65'535U);
-  EXPECT_GT(device.heap_bytes, 0U);
+  EXPECT_GT(device.memory_bytes, 0U);
   EXPECT_GE(device.subgroup_size, 1U);
 }
 

@@ -16,7 +16,7 @@ bool wants_validation() {
 
 VkPhysicalDevice chosen_device(const vulkan::Instance& instance, const std::string& choice) {
   const std::vector<VkPhysicalDevice> all = instance.physical_devices();
-  std::vector<DeviceDescription> descriptions;
+  std::vector<dolp::Device> descriptions;
   for (VkPhysicalDevice device : all) descriptions.push_back(vulkan::describe(device));
   return all[choose_device(descriptions, choice, false)];
 }
@@ -30,7 +30,7 @@ BenchDevice::BenchDevice(const std::string& choice)
       stream(device) {}
 
 std::string BenchDevice::where() const {
-  const DeviceDescription description = vulkan::describe(physical);
+  const dolp::Device description = vulkan::describe(physical);
   return description.name + ", " + description.driver;
 }
 

@@ -41,7 +41,7 @@ double load() {
 ordered_json device_json(const std::string& choice) {
   try {
     const DeviceList list = list_devices();
-    const DeviceDescription& device = list.devices[choose_device(list.devices, choice, false)];
+    const dolp::Device& device = list.devices[choose_device(list.devices, choice, false)];
     return {{"name", device.name},
             {"type", type_name(device.type)},
             {"driver", device.driver},

@@ -76,7 +76,7 @@ std::vector<GridSize> grids_up_to(std::size_t entries) {
 }
 
 /// Errors: DeviceError without a usable device.
-DeviceDescription device_of(const StudyOptions& options) {
+dolp::Device device_of(const StudyOptions& options) {
   const DeviceList list = list_devices();
   if (list.devices.empty()) throw DeviceError(list.why_empty);
   return list.devices[choose_device(list.devices, options.device, false)];
@@ -163,7 +163,7 @@ class Study {
   void run_with(const char* part, const DriverVariable& variable);
 
   StudyRun& run_;
-  DeviceDescription device_;
+  dolp::Device device_;
   std::vector<Part> parts_;
   std::vector<GridSize> grids_;
   std::unique_ptr<Solver> float_solver_;

@@ -117,7 +117,7 @@ py::tuple parts_of(dolp::Results results) {
 
 py::dict description(const dolp::Device& device) {
   using py::literals::operator""_a;
-  return py::dict("name"_a = device.name, "type"_a = device.type, "driver"_a = device.driver,
+  return py::dict("name"_a = device.name, "type"_a = dolp::type_name(device.type), "driver"_a = device.driver,
                   "api_version"_a = device.api_version, "usable"_a = device.usable, "why_not"_a = device.why_not,
                   "has_double"_a = device.has_double, "memory_bytes"_a = device.memory_bytes);
 }

@@ -33,6 +33,7 @@
 #include <variant>
 #include <vector>
 
+#include <dolp/device.hpp>
 #include <dolp/errors.hpp>
 #include <dolp/fit.hpp>
 #include <dolp/key.hpp>
@@ -275,21 +276,6 @@ DOLP_EXPORT Report verify(const std::filesystem::path& table, const TableCheckOp
 /// Computes the model's hard cases and compares them with stored references. Errors: InputError, DeviceError.
 DOLP_EXPORT Report verify_device(const DeviceCheckOptions& options = {});
 
-/// A Vulkan device of this machine.
-struct Device {
-  std::string name;
-  std::string type;  ///< "discrete GPU", "integrated GPU", "virtual GPU", "CPU" or "other"
-  std::string driver;
-  std::string api_version;
-  bool usable = false;
-  std::string why_not;             ///< empty when usable
-  bool has_double = false;         ///< double precision in kernels
-  std::uint64_t memory_bytes = 0;  ///< the largest heap of its own
-};
-/// All of them in the order of the Vulkan loader; EvaluatorOptions::device may be a position in it.
-DOLP_EXPORT std::vector<Device> devices();
-/// Refuses a device that cannot be used. Errors: DeviceError with the reason; with no name, where none can be used.
-DOLP_EXPORT void require_device(const std::string& device = {});
 /// The limits of all devices, and how well each computes a few ordinary cases.
 DOLP_EXPORT Report device_report();
 

@@ -38,8 +38,8 @@ std::vector<Precision> precisions_of(const DeviceCheckOptions& options, std::str
   if (options.evaluator == "cpu") return {Precision::kFloat, Precision::kDouble};
   const DeviceList list = list_devices();
   if (list.devices.empty()) throw DeviceError(list.why_empty);
-  const DeviceDescription& device = list.devices[choose_device(list.devices, options.device, false)];
-  if (device.float64) return {Precision::kFloat, Precision::kDouble};
+  const Device& device = list.devices[choose_device(list.devices, options.device, false)];
+  if (device.has_double) return {Precision::kFloat, Precision::kDouble};
   left_out = "double is left out: " + device.name + " has no double precision (shaderFloat64)";
   return {Precision::kFloat};
 }
@@ -82,21 +82,6 @@ Report verify_device(const DeviceCheckOptions& options) {
     of_precision.evaluation = evaluator->report();
   }
   return public_report(hard_case_report(report, options.all), report.failures() == 0);
-}
-
-std::vector<Device> devices() {
-  std::vector<Device> all;
-  for (const DeviceDescription& device : list_devices().devices) {
-    all.push_back({device.name, type_name(device.type), device.driver, device.api_version, device.usable,
-                   device.why_not, device.float64, device.heap_bytes});
-  }
-  return all;
-}
-
-void require_device(const std::string& device) {
-  const DeviceList list = list_devices();
-  if (list.devices.empty()) throw DeviceError(list.why_empty);
-  choose_device(list.devices, device, false);  // says why when none can be used
 }
 
 Report device_report() {

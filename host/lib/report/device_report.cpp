@@ -24,11 +24,11 @@ struct Quality {
   std::string why_not;
 };
 
-Quality quality_in(const DeviceDescription& device, std::size_t position, Precision precision) {
+Quality quality_in(const Device& device, std::size_t position, Precision precision) {
   const bool in_double = precision == Precision::kDouble;
   Quality quality{name_of(precision), {}, {}};
   if (!device.usable) quality.why_not = "the device is not usable";
-  if (in_double && !device.float64) quality.why_not = "the device has no double precision (shaderFloat64)";
+  if (in_double && !device.has_double) quality.why_not = "the device has no double precision (shaderFloat64)";
   if (!quality.why_not.empty()) return quality;
   try {
     VulkanOptions options;
@@ -57,21 +57,21 @@ Report quality_report(const Quality& quality) {
   return report;
 }
 
-Report device_report(const DeviceDescription& device, std::size_t position) {
+Report device_report(const Device& device, std::size_t position) {
   Report report;
   report.line("{}: {} ({})", key("index", position), key("name", device.name), type_name(device.type));
   report.line("   {}, Vulkan {}", key("driver", device.driver), key("api_version", device.api_version));
   report.line("   {}{}", device.usable ? "usable" : "not usable: ", key("why_not", device.why_not));
   report.line(
       "   double precision {}, storage buffer {:.0f} MiB, heap {:.0f} MiB, {} workgroups, subgroup {}, timestamps {}",
-      device.float64 ? "yes" : "no", static_cast<double>(device.max_storage_buffer_bytes) / kMebibyte,
-      static_cast<double>(device.heap_bytes) / kMebibyte, key("max_workgroups", device.max_workgroups),
+      device.has_double ? "yes" : "no", static_cast<double>(device.max_storage_buffer_bytes) / kMebibyte,
+      static_cast<double>(device.memory_bytes) / kMebibyte, key("max_workgroups", device.max_workgroups),
       key("subgroup_size", device.subgroup_size), device.timestamps ? "yes" : "no");
   report.values({{"type", type_name(device.type)},
                  {"usable", device.usable},
-                 {"float64", device.float64},
+                 {"float64", device.has_double},
                  {"max_storage_buffer_bytes", device.max_storage_buffer_bytes},
-                 {"heap_bytes", device.heap_bytes},
+                 {"heap_bytes", device.memory_bytes},
                  {"timestamps", device.timestamps}});
   for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
     const Quality quality = quality_in(device, position, precision);

@@ -17,19 +17,19 @@ namespace {
 constexpr std::size_t kLookedAt = 16384;  // entries that influences are bounded at; of more these stand for all
 
 /// The device that a run would take; without one, limits that every device keeps.
-DeviceDescription device_of(const std::string& choice, const Scene& scene, PlanReport& report) {
+Device device_of(const std::string& choice, const Scene& scene, PlanReport& report) {
   const bool in_double = scene.accuracy.precision == Precision::kDouble;
   const DeviceList list = list_devices();
   try {
     if (list.devices.empty()) throw DeviceError(list.why_empty);
-    const DeviceDescription& device = list.devices[choose_device(list.devices, choice, in_double)];
+    const Device& device = list.devices[choose_device(list.devices, choice, in_double)];
     report.device = device.name;
     return device;
   } catch (const DeviceError& error) {
     if (!choice.empty()) throw;
     report.why_no_device = error.what();
-    DeviceDescription least = least_device();
-    least.float64 = true;
+    Device least = least_device();
+    least.has_double = true;
     return least;
   }
 }
@@ -52,7 +52,7 @@ void add_pipeline(PlanReport& report, const char* kernel, Precision precision, c
   if (std::ranges::find(report.pipelines, text) == report.pipelines.end()) report.pipelines.push_back(text);
 }
 
-void add_request(PlanReport& report, const MomentsRequest& request, const DeviceDescription& device) {
+void add_request(PlanReport& report, const MomentsRequest& request, const Device& device) {
   add_dispatches(report, dispatch_forecast(request, device));
   const KernelData data = kernel_data(request);
   report.rule = {data.rule.digits, data.rule_order};
@@ -63,7 +63,7 @@ void add_request(PlanReport& report, const MomentsRequest& request, const Device
   if (data.needs_masking_table()) add_pipeline(report, "masking_table", request.precision);
 }
 
-void add_request(PlanReport& report, const ScatteringRequest& request, const DeviceDescription& device) {
+void add_request(PlanReport& report, const ScatteringRequest& request, const Device& device) {
   add_dispatches(report, dispatch_forecast(request, device));
   add_pipeline(report, "mueller", request.precision);
 }
@@ -76,8 +76,8 @@ void share_evaluations(PlanReport& report) {
   report.run.is_exact = false;
 }
 
-void add_forecast(PlanReport& report, const SceneEntries& entries, const DeviceDescription& device) {
-  report.run = predict_run(report.scene, entries, report.plan, device.float64,
+void add_forecast(PlanReport& report, const SceneEntries& entries, const Device& device) {
+  report.run = predict_run(report.scene, entries, report.plan, device.has_double,
                            {[&](const MomentsRequest& request) { add_request(report, request, device); },
                             [&](const ScatteringRequest& request) { add_request(report, request, device); }});
   share_evaluations(report);
@@ -95,7 +95,7 @@ Work work_of(const RunPrediction& run) {
 }
 
 /// The work of the run if one more part were not there.
-Work work_without(const PlanReport& report, Part part, const SceneEntries& entries, const DeviceDescription& device) {
+Work work_without(const PlanReport& report, Part part, const SceneEntries& entries, const Device& device) {
   if (part == Part::kFurtherBounces) {  // the moments stay, but of another kernel
     PlanReport single;
     single.scene = report.scene;
@@ -111,7 +111,7 @@ Work work_without(const PlanReport& report, Part part, const SceneEntries& entri
 
 /// For each effect the share of the evaluations that would not be made without it.
 std::vector<double> work_shares(const PlanReport& report, const SceneEntries& entries,
-                                const DeviceDescription& device) {
+                                const Device& device) {
   const double total = work_of(report.run).total();
   std::vector<double> shares;
   for (const EffectRow& row : report.effects) {
@@ -129,7 +129,7 @@ std::vector<double> work_shares(const PlanReport& report, const SceneEntries& en
 PlanReport plan_of(const Scene& scene, const std::string& device, bool keep_all) {
   PlanReport report;
   report.scene = scene;
-  const DeviceDescription limits = device_of(device, scene, report);
+  const Device limits = device_of(device, scene, report);
   const std::size_t without_a_run = peak_resident_bytes();  // with the scene and the driver
   const SceneEntries entries = grid_entries(scene);
   report.plan = plan_effects(scene, entries, keep_all);

@@ -68,7 +68,7 @@ int run_materials(const Options& options) {
 
 int run_devices(const Options& options) {
   const int status = finish(api::device_report(), options);
-  api::require_device(options.device);
+  require_device(options.device);
   return status;
 }
 

@@ -16,21 +16,21 @@ bool wants_validation(ValidationMode mode) {
 
 }  // namespace
 
-Context::Context(const DeviceWish& wish, const Presentation* presentation) {
+Context::Context(const DeviceSelector& wish, const Presentation* presentation) {
   const std::vector<const char*> extensions =
       presentation ? presentation->instance_extensions : std::vector<const char*>{};
   instance_ = std::make_unique<Instance>(wants_validation(wish.validation) ? &log_ : nullptr, extensions);
   choose(wish, presentation);
   const std::optional<std::uint32_t> window_family =
       presentation ? presenting_family(instance(), physical_, *presentation) : std::nullopt;
-  device_ = std::make_unique<Device>(physical_, description_.float64, window_family);
+  device_ = std::make_unique<Device>(physical_, description_.has_double, window_family);
 }
 
-void Context::choose(const DeviceWish& wish, const Presentation* presentation) {
+void Context::choose(const DeviceSelector& wish, const Presentation* presentation) {
   const std::vector<VkPhysicalDevice> physical = instance_->physical_devices();
-  std::vector<DeviceDescription> descriptions;
+  std::vector<dolp::Device> descriptions;
   for (VkPhysicalDevice device : physical) {
-    DeviceDescription description = describe(device);
+    dolp::Device description = describe(device);
     if (description.usable && presentation && !presenting_family(instance(), device, *presentation)) {
       description.usable = false;
       description.why_not = "cannot show a window on this display";

@@ -24,11 +24,11 @@ class Context {
  public:
   /// Errors: DeviceError when no usable device matches, it has no double precision and that is needed, or the
   /// validation layer is wanted and missing.
-  explicit Context(const DeviceWish& wish, const Presentation* presentation = nullptr);
+  explicit Context(const DeviceSelector& wish, const Presentation* presentation = nullptr);
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
-  const DeviceDescription& description() const { return description_; }
+  const dolp::Device& description() const { return description_; }
   VkInstance instance() const { return instance_->get(); }
   VkPhysicalDevice physical_device() const { return physical_; }
   const Device& device() const { return *device_; }
@@ -38,12 +38,12 @@ class Context {
   void check_validation() const;
 
  private:
-  void choose(const DeviceWish& wish, const Presentation* presentation);
+  void choose(const DeviceSelector& wish, const Presentation* presentation);
 
   ValidationLog log_;
   std::unique_ptr<Instance> instance_;
   VkPhysicalDevice physical_ = VK_NULL_HANDLE;
-  DeviceDescription description_;
+  dolp::Device description_;
   std::unique_ptr<Device> device_;
 };
 

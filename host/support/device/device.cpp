@@ -43,8 +43,8 @@ VkDeviceSize largest_device_heap(const VkPhysicalDeviceMemoryProperties& memory)
   return largest;
 }
 
-DeviceDescription::Type type_of(VkPhysicalDeviceType type) {
-  using enum DeviceDescription::Type;
+dolp::Device::Type type_of(VkPhysicalDeviceType type) {
+  using enum dolp::Device::Type;
   switch (type) {
     case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
       return kDiscrete;
@@ -75,7 +75,7 @@ std::string why_not_usable(const VkPhysicalDeviceProperties& properties, bool ha
 }
 
 // What Vulkan 1.2 tells beyond VkPhysicalDeviceProperties.
-void add_properties_1_2(VkPhysicalDevice physical, DeviceDescription& description) {
+void add_properties_1_2(VkPhysicalDevice physical, dolp::Device& description) {
   VkPhysicalDeviceDriverProperties driver{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
   VkPhysicalDeviceSubgroupProperties subgroup{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES,
                                               .pNext = &driver};
@@ -86,14 +86,14 @@ void add_properties_1_2(VkPhysicalDevice physical, DeviceDescription& descriptio
 }
 
 // On a processor those that share a vector, because a dispatch of few would do the rest for nothing.
-std::uint32_t local_size_of(const DeviceDescription& device) {
-  if (device.type != DeviceDescription::Type::kCpu || device.subgroup_size == 0) return kLocalSize;
+std::uint32_t local_size_of(const dolp::Device& device) {
+  if (device.type != dolp::Device::Type::kCpu || device.subgroup_size == 0) return kLocalSize;
   return std::min(device.subgroup_size, kLocalSize);
 }
 
 }  // namespace
 
-DeviceDescription describe(VkPhysicalDevice physical) {
+dolp::Device describe(VkPhysicalDevice physical) {
   VkPhysicalDeviceProperties properties{};
   vkGetPhysicalDeviceProperties(physical, &properties);
   VkPhysicalDeviceFeatures features{};
@@ -102,17 +102,17 @@ DeviceDescription describe(VkPhysicalDevice physical) {
   vkGetPhysicalDeviceMemoryProperties(physical, &memory);
   const std::optional<QueueFamily> family = compute_family(physical);
 
-  DeviceDescription description;
+  dolp::Device description;
   description.name = properties.deviceName;
   description.type = type_of(properties.deviceType);
   description.driver = version_text(properties.driverVersion);
   description.api_version = version_text(properties.apiVersion);
   description.why_not = why_not_usable(properties, family.has_value());
   description.usable = description.why_not.empty();
-  description.float64 = features.shaderFloat64 == VK_TRUE;
+  description.has_double = features.shaderFloat64 == VK_TRUE;
   description.max_storage_buffer_bytes = properties.limits.maxStorageBufferRange;
   description.max_workgroups = properties.limits.maxComputeWorkGroupCount[0];
-  description.heap_bytes = largest_device_heap(memory);
+  description.memory_bytes = largest_device_heap(memory);
   description.timestamps = family && family->timestamp_bits > 0;
   if (properties.apiVersion >= VK_API_VERSION_1_2) add_properties_1_2(physical, description);
   description.local_size = local_size_of(description);

@@ -16,7 +16,7 @@ constexpr std::uint32_t kBindingCount = 8;
 constexpr std::uint32_t kLocalSize = 64;
 
 /// What the device offers, and whether dolp can run on it.
-DeviceDescription describe(VkPhysicalDevice physical);
+dolp::Device describe(VkPhysicalDevice physical);
 
 /// How the host shares a buffer with the device.
 enum class MemoryUse {

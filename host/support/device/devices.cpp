@@ -25,7 +25,7 @@ std::optional<std::size_t> position(const std::string& choice, std::size_t count
   return index;
 }
 
-std::string listing(const std::vector<DeviceDescription>& devices) {
+std::string listing(const std::vector<Device>& devices) {
   if (devices.empty()) return "there is no device";
   std::string text = "devices:";
   for (std::size_t i = 0; i < devices.size(); ++i) {
@@ -37,8 +37,8 @@ std::string listing(const std::vector<DeviceDescription>& devices) {
 
 }  // namespace
 
-std::string type_name(DeviceDescription::Type type) {
-  using enum DeviceDescription::Type;
+std::string type_name(Device::Type type) {
+  using enum Device::Type;
   switch (type) {
     case kDiscrete:
       return "discrete GPU";
@@ -65,7 +65,7 @@ DeviceList list_devices() {
   return list;
 }
 
-std::size_t choose_device(const std::vector<DeviceDescription>& devices, const std::string& choice, bool float64) {
+std::size_t choose_device(const std::vector<Device>& devices, const std::string& choice, bool float64) {
   std::vector<std::size_t> candidates;
   if (const auto index = position(choice, devices.size())) {
     candidates.push_back(*index);
@@ -77,11 +77,19 @@ std::size_t choose_device(const std::vector<DeviceDescription>& devices, const s
   if (candidates.empty()) throw DeviceError("no Vulkan device matches '" + choice + "'; " + listing(devices));
   std::erase_if(candidates, [&](std::size_t i) { return !devices[i].usable; });
   if (candidates.empty()) throw DeviceError("the Vulkan device is not usable; " + listing(devices));
-  std::erase_if(candidates, [&](std::size_t i) { return float64 && !devices[i].float64; });
+  std::erase_if(candidates, [&](std::size_t i) { return float64 && !devices[i].has_double; });
   if (candidates.empty()) {
     throw DeviceError("the Vulkan device has no double precision (shaderFloat64), use float; " + listing(devices));
   }
   return *std::ranges::min_element(candidates, {}, [&](std::size_t i) { return devices[i].type; });
+}
+
+std::vector<Device> devices() { return list_devices().devices; }
+
+void require_device(const std::string& device) {
+  const DeviceList list = list_devices();
+  if (list.devices.empty()) throw DeviceError(list.why_empty);
+  choose_device(list.devices, device, false);  // says why when none can be used
 }
 
 }  // namespace dolp

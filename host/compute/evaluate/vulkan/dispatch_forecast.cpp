@@ -11,10 +11,10 @@
 namespace dolp {
 namespace {
 
-vulkan::TileLimits tile_limits(const DeviceDescription& device, std::uint64_t tile_invocations,
+vulkan::TileLimits tile_limits(const dolp::Device& device, std::uint64_t tile_invocations,
                                std::uint64_t block_shapes) {
   return {.buffer_bytes = device.max_storage_buffer_bytes,
-          .heap_bytes = device.heap_bytes,
+          .heap_bytes = device.memory_bytes,
           .dispatch_count = std::uint64_t{device.max_workgroups} * device.local_size,
           .tile_invocations = tile_invocations,
           .block_shapes = block_shapes};
@@ -25,7 +25,7 @@ std::uint64_t node_bytes(const vulkan::Packing& packing, const KernelData& data)
 }
 
 DispatchForecast profile_forecast(const MomentsRequest& request, const vulkan::Packing& packing,
-                                  const DeviceDescription& device, const VulkanOptions& options) {
+                                  const dolp::Device& device, const VulkanOptions& options) {
   const KernelData data = kernel_data(request);
   const Profiles profiles(data);
   const std::size_t at_once = vulkan::batch_directions(data);
@@ -47,7 +47,7 @@ DispatchForecast profile_forecast(const MomentsRequest& request, const vulkan::P
 
 }  // namespace
 
-DispatchForecast dispatch_forecast(const MomentsRequest& request, const DeviceDescription& device,
+DispatchForecast dispatch_forecast(const MomentsRequest& request, const dolp::Device& device,
                                    const VulkanOptions& options) {
   if (request.wanted_count() == 0) return {};
   const vulkan::Packing packing(request.precision == Precision::kDouble);
@@ -73,7 +73,7 @@ DispatchForecast dispatch_forecast(const MomentsRequest& request, const DeviceDe
   return forecast;
 }
 
-DispatchForecast dispatch_forecast(const ScatteringRequest& request, const DeviceDescription& device,
+DispatchForecast dispatch_forecast(const ScatteringRequest& request, const dolp::Device& device,
                                    const VulkanOptions& options) {
   if (request.entries.empty()) return {};
   const vulkan::Packing packing(request.precision == Precision::kDouble);
@@ -86,11 +86,11 @@ DispatchForecast dispatch_forecast(const ScatteringRequest& request, const Devic
           .device_bytes = beams * costs.invocation_bytes + node_bytes(packing, BeamPlan(request).data())};
 }
 
-DeviceDescription least_device() {
-  DeviceDescription least;
+dolp::Device least_device() {
+  dolp::Device least;
   least.max_storage_buffer_bytes = std::uint64_t{1} << 27U;
   least.max_workgroups = 65535;
-  least.heap_bytes = std::uint64_t{1} << 30U;
+  least.memory_bytes = std::uint64_t{1} << 30U;
   return least;
 }
 

@@ -21,12 +21,12 @@ struct DispatchForecast {
 };
 
 /// What VulkanEvaluator does with a request on a device, by the code that it uses itself.
-DispatchForecast dispatch_forecast(const MomentsRequest& request, const DeviceDescription& device,
+DispatchForecast dispatch_forecast(const MomentsRequest& request, const dolp::Device& device,
                                    const VulkanOptions& options = {});
-DispatchForecast dispatch_forecast(const ScatteringRequest& request, const DeviceDescription& device,
+DispatchForecast dispatch_forecast(const ScatteringRequest& request, const dolp::Device& device,
                                    const VulkanOptions& options = {});
 
 /// The limits that every Vulkan device keeps, for plans without one. The heap is a guess.
-DeviceDescription least_device();
+dolp::Device least_device();
 
 }  // namespace dolp

@@ -63,7 +63,7 @@ class VulkanEvaluator::Impl {
   bool in_double(Precision requested) const {
     return (requested == Precision::kAuto ? options_.precision : requested) == Precision::kDouble;
   }
-  const DeviceDescription& description() const { return context_.description(); }
+  const dolp::Device& description() const { return context_.description(); }
   std::vector<std::string> validation_messages() const { return context_.validation_messages(); }
   const VulkanOptions& options() const { return options_; }
 
@@ -140,7 +140,7 @@ class VulkanEvaluator::Impl {
 
   vulkan::Kernels& kernels_for(Precision requested) {
     const bool float64 = in_double(requested);
-    if (float64 && !description().float64) {
+    if (float64 && !description().has_double) {
       throw DeviceError(description().name + " has no double precision (shaderFloat64): use float");
     }
     std::optional<vulkan::Kernels>& kernels = float64 ? double_kernels_ : float_kernels_;
@@ -214,7 +214,7 @@ std::vector<ScatteringMatrix> VulkanEvaluator::scatter(const ScatteringRequest& 
   return compute<ScatteringMatrix>(request, progress);
 }
 
-bool VulkanEvaluator::has_double() const { return impl_ && impl_->description().float64; }
+bool VulkanEvaluator::has_double() const { return impl_ && impl_->description().has_double; }
 
 EvaluationReport VulkanEvaluator::report() const { return report_; }
 

@@ -1,0 +1,39 @@
+// Vulkan devices of this machine.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <dolp/errors.hpp>
+
+namespace dolp {
+
+/// A Vulkan device and its limits.
+struct Device {
+  enum class Type { kDiscrete, kIntegrated, kVirtual, kCpu, kOther };
+  std::string name;
+  Type type = Type::kOther;
+  std::string driver;  ///< name and version
+  std::string api_version;
+  bool usable = false;
+  std::string why_not;                         ///< empty when usable
+  bool has_double = false;                     ///< double precision in kernels
+  std::uint64_t memory_bytes = 0;              ///< the largest heap of the device's own memory
+  std::uint64_t max_storage_buffer_bytes = 0;  ///< maxStorageBufferRange
+  std::uint32_t max_workgroups = 0;            ///< maxComputeWorkGroupCount[0]
+  std::uint32_t subgroup_size = 0;             ///< 0 when unknown (Vulkan 1.0)
+  std::uint32_t local_size = 64;               ///< invocations of a workgroup, as dolp wants them
+  bool timestamps = false;                     ///< the compute queue has a clock
+};
+
+/// "discrete GPU", "integrated GPU", "virtual GPU", "CPU" or "other".
+DOLP_EXPORT std::string type_name(Device::Type type);
+
+/// All devices in the order of the Vulkan loader; EvaluatorOptions::device may be a position in it.
+DOLP_EXPORT std::vector<Device> devices();
+
+/// Refuses a device that cannot be used. Errors: DeviceError with the reason; with no name, where none can be used.
+DOLP_EXPORT void require_device(const std::string& device = {});
+
+}  // namespace dolp

@@ -124,9 +124,9 @@ double relative_tolerance(const ReferenceOptions& options, double requested) {
 
 // Shares the entries between threads; the calling thread alone talks to `progress`.
 template <class Result>
-class Crew {
+class ThreadPool {
  public:
-  Crew(std::size_t entries, std::function<Result(std::size_t)> work_on)
+  ThreadPool(std::size_t entries, std::function<Result(std::size_t)> work_on)
       : work_on_(std::move(work_on)), results_(entries) {}
 
   std::vector<Result> run(unsigned threads, const Progress& progress) {
@@ -204,10 +204,10 @@ std::vector<Moments> ReferenceEvaluator::evaluate(const MomentsRequest& request,
   check(request);
   const auto start = std::chrono::steady_clock::now();
   const reference::Refinement refinement{relative_tolerance(options_, request.tolerance), options_.subdivisions};
-  Crew<Moments> crew(request.size(), [&](std::size_t i) {
+  ThreadPool<Moments> pool(request.size(), [&](std::size_t i) {
     return request.is_wanted(i) ? moments_of(request, request[i], refinement) : Moments{};
   });
-  std::vector<Moments> results = crew.run(thread_count(options_, request.size()), progress);
+  std::vector<Moments> results = pool.run(thread_count(options_, request.size()), progress);
   for (const Moments& moments : results) report_.evaluations += moments.evaluations;
   note(seconds_since(start));
   return results;
@@ -216,9 +216,9 @@ std::vector<Moments> ReferenceEvaluator::evaluate(const MomentsRequest& request,
 std::vector<ScatteringMatrix> ReferenceEvaluator::scatter(const ScatteringRequest& request, const Progress& progress) {
   check(request);
   const auto start = std::chrono::steady_clock::now();
-  Crew<ScatteringMatrix> crew(request.entries.size(),
+  ThreadPool<ScatteringMatrix> pool(request.entries.size(),
                               [&](std::size_t i) { return matrix_of(request, request.entries[i]); });
-  std::vector<ScatteringMatrix> results = crew.run(thread_count(options_, request.entries.size()), progress);
+  std::vector<ScatteringMatrix> results = pool.run(thread_count(options_, request.entries.size()), progress);
   note(seconds_since(start));
   return results;
 }

@@ -25,7 +25,7 @@ need build pybind11-dev python3-dev python3-numpy python3-xarray python3-netcdf4
 need picture python3 python3-matplotlib python3-netcdf4 python3-numpy
 need bench libcubature-dev libgsl-dev python3-scipy  # methods to compare with
 need bench python3 python3-matplotlib python3-numpy
-need test libgtest-dev libclang-rt-14-dev            # framework, fuzzing
+need test libgtest-dev libclang-rt-14-dev clang-format-14  # framework, fuzzing, format
 need test vulkan-validationlayers                    # misuse of Vulkan
 need test libnetcdf-dev netcdf-bin octave octave-netcdf python3 python3-netcdf4 python3-numpy  # second readers of tables
 need test x11-utils xvfb xauth xdotool               # a display with mouse and keyboard

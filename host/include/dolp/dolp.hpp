@@ -42,7 +42,7 @@
 
 namespace dolp::api {
 
-/// "0.1.0".
+/// "0.2.0".
 DOLP_EXPORT std::string version();
 /// The commit that the library was built from; "unknown" outside of a repository.
 DOLP_EXPORT std::string commit();

@@ -41,7 +41,7 @@ struct Spectra {
 };
 
 /// What the steps of a part share.
-struct Way {
+struct RunContext {
   const Scene& scene;
   const EffectPlan& plan;
   const Spectra& spectra;
@@ -65,23 +65,23 @@ Scattered scattered(const ScatteringMatrix& f) { return {f.m[0], f.m[4], f.m[8],
 /// Results of the members of a selection, one by one; the object keeps its memory between them.
 class MemberResults {
  public:
-  MemberResults(const Way& way, const Selection& selection, const PartRequests& requests, const Answer& answer)
-      : way_(way),
+  MemberResults(const RunContext& context, const Selection& selection, const PartRequests& requests, const Answer& answer)
+      : context_(context),
         selection_(selection),
         requests_(requests),
         answer_(answer),
-        moments_(way.samples()),
-        indices_(way.samples()),
-        beams_(way.samples()) {}
+        moments_(context.samples()),
+        indices_(context.samples()),
+        beams_(context.samples()) {}
 
   PointResult operator()(std::size_t member) {
     const SceneEntry entry = selection_[member];
     const Direction direction = seen(entry);
     if (entry.index) std::ranges::fill(indices_, *entry.index);
-    const std::span<const OpticalConstants> indices = entry.index ? indices_ : way_.spectra.indices[entry.wavelength];
+    const std::span<const OpticalConstants> indices = entry.index ? indices_ : context_.spectra.indices[entry.wavelength];
     const std::span<const Moments> moments = moments_of(member, entry, direction, indices);
-    const Radiometry& radiometry = way_.spectra.radiometries[entry.wavelength];
-    if (way_.scene.geometry.mode != Mode::kBistatic) return radiometry.point(direction, moments, indices);
+    const Radiometry& radiometry = context_.spectra.radiometries[entry.wavelength];
+    if (context_.scene.geometry.mode != Mode::kBistatic) return radiometry.point(direction, moments, indices);
     fill_beams(member, entry);
     return radiometry.bistatic_point(direction, cos_sin_deg(entry.theta_deg).cos, moments, indices, beams_);
   }
@@ -89,8 +89,8 @@ class MemberResults {
  private:
   /// Neighbours in a grid mostly have one direction, and all of them one way to treat it.
   const Direction& seen(const SceneEntry& entry) {
-    const Surface& surface = way_.scene.surface;
-    const double theta_deg = seen_deg(way_.scene, entry.theta_deg);
+    const Surface& surface = context_.scene.surface;
+    const double theta_deg = seen_deg(context_.scene, entry.theta_deg);
     const Treatment treatment = treatment_of(surface.distribution, surface.masking, theta_deg, entry.shape);
     if (!has_direction_ || theta_deg != direction_.theta_deg || treatment != direction_.treatment) {
       direction_ = direction_of(surface.distribution, surface.masking, theta_deg, entry.shape);
@@ -102,10 +102,10 @@ class MemberResults {
   /// The answer, or closed forms, or zeros where the plan needs none.
   std::span<const Moments> moments_of(std::size_t member, const SceneEntry& entry, const Direction& direction,
                                       std::span<const OpticalConstants> indices) {
-    if (!way_.plan.needs_moments) return moments_;  // never written to
+    if (!context_.plan.needs_moments) return moments_;  // never written to
     if (direction.treatment != Treatment::kIntegrated) {
       for (std::size_t j = 0; j < moments_.size(); ++j) {
-        moments_[j] = closed_form(way_.scene.surface, direction, entry.shape, indices[j]);
+        moments_[j] = closed_form(context_.scene.surface, direction, entry.shape, indices[j]);
       }
       return moments_;
     }
@@ -118,16 +118,16 @@ class MemberResults {
   }
 
   void fill_beams(std::size_t member, const SceneEntry& entry) {
-    if (!way_.plan.needs_beams) return;
-    if (!wants_beam(way_.scene, entry, way_.plan)) {
-      std::ranges::fill(beams_, beam_without_evaluator(way_.scene, entry.theta_deg));
+    if (!context_.plan.needs_beams) return;
+    if (!wants_beam(context_.scene, entry, context_.plan)) {
+      std::ranges::fill(beams_, beam_without_evaluator(context_.scene, entry.theta_deg));
       return;
     }
     const std::size_t first = requests_.beams_of(member);
     for (std::size_t j = 0; j < beams_.size(); ++j) beams_[j] = scattered(answer_.beams[first + j]);
   }
 
-  const Way& way_;
+  const RunContext& context_;
   const Selection& selection_;
   const PartRequests& requests_;
   const Answer& answer_;
@@ -144,34 +144,34 @@ Progress part_of(const Progress& progress, std::size_t before, std::size_t total
 }
 
 /// Moments and beams of one level, in the same precision.
-Answer asked(const Way& way, const PartRequests& requests, const Progress& progress) {
+Answer asked(const RunContext& context, const PartRequests& requests, const Progress& progress) {
   const std::size_t moments = requests.moments().wanted_count();
   const std::size_t beams = requests.beams().entries.size();
   const std::size_t total = moments + beams;
   if (total == 0) return {};
-  ScatteringEvaluator* const scattering = way.evaluator->scattering();
+  ScatteringEvaluator* const scattering = context.evaluator->scattering();
   if (beams > 0 && scattering == nullptr) throw std::logic_error("the bistatic mode needs an evaluator of pBRDFs");
   Answer answer;
   if (beams > 0 && moments > 0) scattering->prepare(requests.beams());
-  if (moments > 0) answer.moments = way.evaluator->evaluate(requests.moments(), part_of(progress, 0, total));
+  if (moments > 0) answer.moments = context.evaluator->evaluate(requests.moments(), part_of(progress, 0, total));
   if (beams > 0) answer.beams = scattering->scatter(requests.beams(), part_of(progress, moments, total));
   return answer;
 }
 
-std::vector<PointResult> results_of(const Way& way, const Selection& selection, const PartRequests& requests,
+std::vector<PointResult> results_of(const RunContext& context, const Selection& selection, const PartRequests& requests,
                                     const Progress& progress) {
-  const Answer answer = asked(way, requests, progress);
+  const Answer answer = asked(context, requests, progress);
   std::vector<PointResult> results(selection.size());
   parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
-    MemberResults result_of(way, selection, requests, answer);
+    MemberResults result_of(context, selection, requests, answer);
     for (std::size_t i = first; i < last; ++i) results[i] = result_of(i);
   });
   return results;
 }
 
-std::vector<PointResult> computed_at(const Way& way, const Selection& selection, const RefinementLevel& level,
+std::vector<PointResult> computed_at(const RunContext& context, const Selection& selection, const RefinementLevel& level,
                                      const Progress& progress) {
-  return results_of(way, selection, {way.scene, way.spectra.indices, way.plan, selection, level}, progress);
+  return results_of(context, selection, {context.scene, context.spectra.indices, context.plan, selection, level}, progress);
 }
 
 bool is_better(const PointResult& a, const PointResult& b) {
@@ -180,9 +180,9 @@ bool is_better(const PointResult& a, const PointResult& b) {
 }
 
 /// Whether a level at an entry finds more than the last one: f has no rule that a tolerance would make finer.
-bool finds_more(const Way& way, const RefinementLevel& level, const RefinementLevel& last, const SceneEntry& entry) {
-  return wants_moments(way.scene, entry, way.plan) ||
-         (wants_beam(way.scene, entry, way.plan) && level.precision != last.precision);
+bool finds_more(const RunContext& context, const RefinementLevel& level, const RefinementLevel& last, const SceneEntry& entry) {
+  return wants_moments(context.scene, entry, context.plan) ||
+         (wants_beam(context.scene, entry, context.plan) && level.precision != last.precision);
 }
 
 /// Entries waiting for the same level are computed together.
@@ -190,12 +190,12 @@ using Waiting = std::map<RefinementLevel, std::vector<std::size_t>>;
 
 /// The next level of one direction whose `members` were computed at `last`: of all of it, between nodes again, where
 /// many miss the tolerance; else of each of these by itself. What follows for an entry depends on its direction alone.
-void plan_next(const Way& way, const SceneEntries& part, const RefinementLevel& last,
+void plan_next(const RunContext& context, const SceneEntries& part, const RefinementLevel& last,
                std::span<const std::size_t> members, std::span<const PointResult> results, Waiting& waiting) {
   std::vector<std::pair<RefinementLevel, std::size_t>> missed;
   for (std::size_t j = 0; j < members.size(); ++j) {
-    const auto next = next_level(last, results[j], way.accuracy, way.evaluator->has_double());
-    if (next && finds_more(way, *next, last, part[members[j]])) missed.emplace_back(*next, members[j]);
+    const auto next = next_level(last, results[j], context.accuracy, context.evaluator->has_double());
+    if (next && finds_more(context, *next, last, part[members[j]])) missed.emplace_back(*next, members[j]);
   }
   if (last.may_interpolate && missed.size() * kManyMisses > members.size()) {
     const auto middle = missed.begin() + static_cast<std::ptrdiff_t>(missed.size() / 2);
@@ -216,15 +216,15 @@ struct FirstResults {
   std::vector<char> is_interpolated;  ///< of each run of part.of_direction() entries
 };
 
-FirstResults first_results(const Way& way, const SceneEntries& part, const Progress& progress) {
+FirstResults first_results(const RunContext& context, const SceneEntries& part, const Progress& progress) {
   FirstResults first;
-  first.level = first_level(way.accuracy, way.evaluator->has_double());
-  first.level.run_size = way.run_size;
-  first.level.basis = way.bases.of(first.level);
-  const PartRequests requests(way.scene, way.spectra.indices, way.plan, {part}, first.level);
-  first.results = results_of(way, {part}, requests, progress);
+  first.level = first_level(context.accuracy, context.evaluator->has_double());
+  first.level.run_size = context.run_size;
+  first.level.basis = context.bases.of(first.level);
+  const PartRequests requests(context.scene, context.spectra.indices, context.plan, {part}, first.level);
+  first.results = results_of(context, {part}, requests, progress);
   if (!part.is_grid()) return first;
-  const std::vector<char> of_request = way.evaluator->interpolated_directions(requests.moments());
+  const std::vector<char> of_request = context.evaluator->interpolated_directions(requests.moments());
   if (of_request.empty()) return first;
   for (std::size_t i = 0; i < part.size(); i += part.of_direction())
     first.is_interpolated.push_back(of_request[requests.direction_of(i)]);
@@ -233,10 +233,10 @@ FirstResults first_results(const Way& way, const SceneEntries& part, const Progr
 
 /// Computes entries of a part that miss the tolerance again. To `progress` the part is done already; it may still
 /// cancel.
-void refine(const Way& way, const SceneEntries& part, FirstResults& first, const Progress& progress) {
+void refine(const RunContext& context, const SceneEntries& part, FirstResults& first, const Progress& progress) {
   const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
   const std::size_t of_direction = part.is_grid() ? part.of_direction() : 1;
-  const std::uint32_t row_width = way.evaluator->report().row_width;
+  const std::uint32_t row_width = context.evaluator->report().row_width;
   std::vector<PointResult>& results = first.results;
   Waiting waiting;
   // Members of one direction follow each other.
@@ -246,7 +246,7 @@ void refine(const Way& way, const SceneEntries& part, FirstResults& first, const
       const std::size_t direction = members[i] / of_direction;
       while (end < members.size() && members[end] / of_direction == direction) ++end;
       if (!is_interpolated.empty()) last.may_interpolate = is_interpolated[direction] != 0;
-      plan_next(way, part, last, members.subspan(i, end - i), found.subspan(i, end - i), waiting);
+      plan_next(context, part, last, members.subspan(i, end - i), found.subspan(i, end - i), waiting);
     }
   };
   std::vector<std::size_t> all(results.size());
@@ -259,12 +259,12 @@ void refine(const Way& way, const SceneEntries& part, FirstResults& first, const
     const std::vector<std::size_t> members = std::move(waiting.begin()->second);
     waiting.erase(waiting.begin());
     if (level.may_interpolate) {
-      level.run_size = way.run_size;
-      level.basis = way.bases.of(level);
+      level.run_size = context.run_size;
+      level.basis = context.bases.of(level);
     } else {
       level.row_width = row_width;
     }
-    const std::vector<PointResult> better = computed_at(way, {part, members}, level, is_wanted);
+    const std::vector<PointResult> better = computed_at(context, {part, members}, level, is_wanted);
     for (std::size_t j = 0; j < members.size(); ++j) {
       if (is_better(better[j], results[members[j]])) results[members[j]] = better[j];
     }
@@ -273,36 +273,36 @@ void refine(const Way& way, const SceneEntries& part, FirstResults& first, const
 }
 
 /// Computes some entries of a grid again, after its first level, by a rule of another kind.
-std::vector<PointResult> computed_again(const Way& way, const SceneEntries& part, const RefinementLevel& first,
+std::vector<PointResult> computed_again(const RunContext& context, const SceneEntries& part, const RefinementLevel& first,
                                         std::span<const std::size_t> positions) {
   if (positions.empty()) return {};
   const Progress none = [](std::size_t, std::size_t) { return true; };
-  return computed_at(way, {part, positions}, check_level(first, way.evaluator->report().row_width), none);
+  return computed_at(context, {part, positions}, check_level(first, context.evaluator->report().row_width), none);
 }
 
 /// Those of the table's entries to check that are in a part, as positions in it.
-std::vector<std::size_t> positions_in(const Way& way, const SceneEntries& part, std::span<const std::size_t> checked) {
+std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntries& part, std::span<const std::size_t> checked) {
   std::vector<std::size_t> positions;
   for (const std::size_t in_whole : checked) {
     const std::optional<std::size_t> position = part.position_of(in_whole);
-    if (position && wants_moments(way.scene, part[*position], way.plan)) positions.push_back(*position);
+    if (position && wants_moments(context.scene, part[*position], context.plan)) positions.push_back(*position);
   }
   return positions;
 }
 
 /// Results of a part: all levels, or what needs none. `checked`: positions in the whole grid; of points none.
-std::vector<PointResult> part_results(const Way& way, const SceneEntries& part, std::span<const std::size_t> checked,
+std::vector<PointResult> part_results(const RunContext& context, const SceneEntries& part, std::span<const std::size_t> checked,
                                       SelfCheck& check, const Progress& progress) {
-  if (!wants_evaluator(way.scene, part, way.plan)) {
-    std::vector<PointResult> results = computed_at(way, {part}, {}, progress);
+  if (!wants_evaluator(context.scene, part, context.plan)) {
+    std::vector<PointResult> results = computed_at(context, {part}, {}, progress);
     if (!progress(1, 1)) throw Cancelled();
     return results;
   }
-  FirstResults first = first_results(way, part, progress);
+  FirstResults first = first_results(context, part, progress);
   std::vector<PointResult>& results = first.results;
-  const std::vector<std::size_t> positions = positions_in(way, part, checked);
-  const std::vector<PointResult> again = computed_again(way, part, first.level, positions);
-  refine(way, part, first, progress);
+  const std::vector<std::size_t> positions = positions_in(context, part, checked);
+  const std::vector<PointResult> again = computed_again(context, part, first.level, positions);
+  refine(context, part, first, progress);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     SelfCheck of_entry;
     of_entry.add(results[positions[i]], again[i]);
@@ -400,8 +400,8 @@ RunSummary run_scene(const Scene& scene, const SceneEntries& entries, const Effe
       --left;
     } else {
       const Spectra spectra(scene, plan, part.wavelength_um());
-      const Way way{scene, plan, spectra, evaluator, accuracy, bases, whole};
-      std::vector<PointResult> results = part_results(way, part, checked, summary.check, part_progress);
+      const RunContext context{scene, plan, spectra, evaluator, accuracy, bases, whole};
+      std::vector<PointResult> results = part_results(context, part, checked, summary.check, part_progress);
       summary.add(scene, part, results);
       sink.write(part, std::move(results), with_evaluation());
     }

@@ -3,7 +3,7 @@
 
 namespace dolp {
 
-/// "0.1.0".
+/// "0.2.0".
 const char* program_version();
 
 /// The commit that it was built from, with "-changed" where files differ from it; "unknown" outside of a repository.

@@ -34,7 +34,7 @@ constexpr double kAskedStep = 0.4;
 constexpr double kNoFacets = 80.0;
 
 // What a corner asks of a piece.
-struct Want {
+struct SampleRequest {
   double all = 0.0;     // weight_of_shape of orders.glsl
   double digits = 0.0;  // of the piece
 };
@@ -134,23 +134,23 @@ struct Profiles::Impl {
     return task;
   }
 
-  // The piece as the hardest corner wants it, and how many digits each wants.
+  // The piece as the hardest corner requests it, and how many digits each requests.
   Text::Piece hardest_piece(const Text::ThetaNode& theta, const Text::IndexNode& index,
                             std::span<const kernel::ShapeNode> corners, const Text::Task& task,
-                            std::vector<Want>& wants) {
+                            std::vector<SampleRequest>& requests) {
     Text::Piece hardest{};
     for (std::size_t i = 0; i < corners.size(); ++i) {
       Text::Row row{};
       row.shape[0] = std::bit_cast<Text::ShapeNode>(corners[i]);
       const Text::Piece own = text.make_piece(rule, theta, row, index, task);
-      wants[i].digits = own.digits;
+      requests[i].digits = own.digits;
       if (own.order > hardest.order) hardest = own;
     }
     return hardest;
   }
 
   void add_rule(Profile& profile, const Text::ThetaNode& theta, std::span<const kernel::ShapeNode> corners,
-                const Text::Piece& piece, const std::vector<Want>& wants, int order) {
+                const Text::Piece& piece, const std::vector<SampleRequest>& requests, int order) {
     const int first = text.rule_offset(Text::kSectionGauss, order);
     for (int i = 0; i < order; ++i) {
       const auto node = text.rule_node(first + i);
@@ -161,12 +161,12 @@ struct Profiles::Impl {
       slope.t = scale * hyperbolic.x;
       slope.dt = 2.0 * node.y * scale * hyperbolic.y * piece.extent * place.y;
       for (std::size_t j = 0; j < corners.size(); ++j) {
-        if (wants[j].digits <= slope.digits) continue;  // it wants no more than that
+        if (requests[j].digits <= slope.digits) continue;  // it requests no more than that
         const auto shape = std::bit_cast<Text::ShapeNode>(corners[j]);
         const double u = slope.t / shape.m;
         const double mass = Text::kPi * text.slope_density(shape, u, text.common_exponent(u)) * slope.dt / shape.m;
         slope.digits = std::max(slope.digits,
-                                text.digits_of_slope(rule, theta, wants[j].all, wants[j].digits, order, slope.t, mass));
+                                text.digits_of_slope(rule, theta, requests[j].all, requests[j].digits, order, slope.t, mass));
       }
       profile.slopes.push_back(slope);
     }
@@ -239,19 +239,19 @@ Profile Profiles::plan(ProfileEntries entries) const {
   const auto index = std::bit_cast<Text::IndexNode>(impl_->data.indices[entries.index]);
   Profile profile;
   profile.cut = std::min(corners.front().cut, ends.back().slope);
-  std::vector<Want> wants;
+  std::vector<SampleRequest> requests;
   for (const kernel::ShapeNode& corner : corners) {
-    wants.push_back({.all = impl_->text.weight_of_shape(theta, std::bit_cast<Text::ShapeNode>(corner))});
+    requests.push_back({.all = impl_->text.weight_of_shape(theta, std::bit_cast<Text::ShapeNode>(corner))});
   }
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     const Text::Piece piece =
-        impl_->hardest_piece(theta, index, corners, impl_->task_of(entries.theta, ends, i), wants);
+        impl_->hardest_piece(theta, index, corners, impl_->task_of(entries.theta, ends, i), requests);
     const int coarse = std::min(impl_->text.coarse_order(piece.order), impl_->data.rule_order);
     profile.pieces.push_back(
         {ends[i].slope, std::min(ends[i + 1].slope, profile.cut), static_cast<std::uint32_t>(profile.slopes.size()),
          static_cast<std::uint32_t>(piece.order), static_cast<std::uint32_t>(coarse), ends[i].of_direction});
-    impl_->add_rule(profile, theta, corners, piece, wants, piece.order);
-    impl_->add_rule(profile, theta, corners, piece, wants, coarse);
+    impl_->add_rule(profile, theta, corners, piece, requests, piece.order);
+    impl_->add_rule(profile, theta, corners, piece, requests, coarse);
   }
   profile.entries = std::move(entries);
   return profile;

@@ -18,7 +18,7 @@ constexpr std::size_t kRowsAtOnce = 512;
 
 }  // namespace
 
-MomentsRun::MomentsRun(const RunContext& context, const MomentsRequest& request, std::uint32_t tile_invocations,
+MomentsRun::MomentsRun(const KernelContext& context, const MomentsRequest& request, std::uint32_t tile_invocations,
                        std::uint32_t block_shapes)
     : context_(context),
       request_(request),

@@ -17,7 +17,7 @@
 namespace dolp::vulkan {
 
 /// What a run works with; it outlives the run.
-struct RunContext {
+struct KernelContext {
   const Device& device;
   Kernels& kernels;
   CommandStream& stream;
@@ -37,7 +37,7 @@ struct RunCost {
 class MomentsRun {
  public:
   /// `tile_invocations` and `block_shapes` bound the sizes of TileSizes from above.
-  MomentsRun(const RunContext& context, const MomentsRequest& request, std::uint32_t tile_invocations,
+  MomentsRun(const KernelContext& context, const MomentsRequest& request, std::uint32_t tile_invocations,
              std::uint32_t block_shapes);
 
   /// Before the computation, so that its time is known apart.
@@ -60,7 +60,7 @@ class MomentsRun {
   template <class NodeOf>
   void upload(InputBuffer& buffer, std::size_t count, const NodeOf& node_of);
 
-  RunContext context_;
+  KernelContext context_;
   const MomentsRequest& request_;
   KernelData data_;
   Rows rows_;

@@ -57,7 +57,7 @@ ProfileBatch profile_batch(const MomentsRequest& request, const KernelData& data
   return batch;
 }
 
-ProfileRun::ProfileRun(const RunContext& context, const MomentsRequest& request, std::uint32_t tile_slopes)
+ProfileRun::ProfileRun(const KernelContext& context, const MomentsRequest& request, std::uint32_t tile_slopes)
     : context_(context),
       request_(request),
       data_(kernel_data(request)),

@@ -31,7 +31,7 @@ std::size_t batch_directions(const KernelData& data);
 class ProfileRun {
  public:
   /// `tile_slopes` bounds the invocations of a dispatch from above.
-  ProfileRun(const RunContext& context, const MomentsRequest& request, std::uint32_t tile_slopes);
+  ProfileRun(const KernelContext& context, const MomentsRequest& request, std::uint32_t tile_slopes);
 
   /// Before the computation, so that its time is known apart.
   void create_pipelines() { context_.kernels.pipeline(slopes_variant(data_)); }
@@ -50,7 +50,7 @@ class ProfileRun {
   void run_tile(const ProfileBatch& batch, std::span<const std::uint32_t> slopes,
                 std::span<kernel::AzimuthNode> samples);
 
-  RunContext context_;
+  KernelContext context_;
   const MomentsRequest& request_;
   KernelData data_;
   Profiles profiles_;

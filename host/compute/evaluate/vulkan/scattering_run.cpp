@@ -8,7 +8,7 @@ KernelVariant mueller_variant(const ScatteringRequest& request) {
   return {EntryPoint::kMueller, request.distribution, request.masking};
 }
 
-ScatteringRun::ScatteringRun(const RunContext& context, const ScatteringRequest& request, std::uint32_t tile_entries)
+ScatteringRun::ScatteringRun(const KernelContext& context, const ScatteringRequest& request, std::uint32_t tile_entries)
     : context_(context), request_(request), plan_(request), tile_size_(tile_size(tile_entries)) {
   create_buffers();
 }

@@ -18,7 +18,7 @@ KernelVariant mueller_variant(const ScatteringRequest& request);
 class ScatteringRun {
  public:
   /// `tile_entries` bounds the size of a tile from above.
-  ScatteringRun(const RunContext& context, const ScatteringRequest& request, std::uint32_t tile_entries);
+  ScatteringRun(const KernelContext& context, const ScatteringRequest& request, std::uint32_t tile_entries);
 
   /// All pBRDFs in the order of the request; nothing when `progress` returned false. Errors: DeviceError.
   std::optional<std::vector<ScatteringMatrix>> compute(const Progress& progress);
@@ -31,7 +31,7 @@ class ScatteringRun {
   void upload_rule_nodes();
   void run_tile(std::span<const ScatteringEntry> entries, std::span<ScatteringMatrix> matrices);
 
-  RunContext context_;
+  KernelContext context_;
   const ScatteringRequest& request_;
   BeamPlan plan_;
   std::uint32_t tile_size_;

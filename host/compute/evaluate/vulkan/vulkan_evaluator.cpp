@@ -81,7 +81,7 @@ class VulkanEvaluator::Impl {
 
   /// Computes a request and adds what it cost to `report`. After a DeviceTimeout this object must not be destroyed.
   std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
-    const vulkan::RunContext context = context_for(request.precision);
+    const vulkan::KernelContext context = context_for(request.precision);
     if (has_profiles(request)) {
       profile_run_.emplace(context, request, options_.max_tile_invocations);
       prepare_pipelines(*profile_run_, report);
@@ -108,7 +108,7 @@ class VulkanEvaluator::Impl {
   }
 
  private:
-  vulkan::RunContext context_for(Precision requested) {
+  vulkan::KernelContext context_for(Precision requested) {
     return {.device = context_.device(),
             .kernels = kernels_for(requested),
             .stream = stream_,

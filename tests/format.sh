@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# clang-format of the C++ files that differ from a commit: format.sh [--fix] [COMMIT]
+#
+# COMMIT, origin/main when not given, else the last commit, is where the change began. With --fix the files are formatted;
+# otherwise those that are not are listed, and the exit status is 1 if there are any.
+set -euo pipefail
+
+mode=(--dry-run -Werror)
+if [[ ${1:-} == --fix ]]; then
+  mode=(-i)
+  shift
+fi
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+commit=${1:-$(git rev-parse -q --verify origin/main || git rev-parse HEAD)}
+base=$(git merge-base "$commit" HEAD)
+[[ $base != "$(git rev-parse HEAD)" || -n $(git status --porcelain) ]] || base=$(git rev-parse -q --verify HEAD~1 || echo "$base")
+git diff --name-only --diff-filter=d "$base" -- '*.cpp' '*.hpp' | xargs -r clang-format-14 "${mode[@]}"

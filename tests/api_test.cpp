@@ -14,6 +14,8 @@
 
 namespace {
 
+using dolp::Quantity;
+
 const std::string kScene = R"([surface]
 n = 1.5
 k = 0.05
@@ -46,40 +48,38 @@ class Library : public testing::Test {
 
 TEST_F(Library, Tables_InMemoryAndInAFile_AreTheSameBits_AndPointsAgree) {
   const dolp::Table table = evaluator_.table(scene_);
-  EXPECT_EQ(table.axes(), (std::vector<std::string>{"theta", "sigma", "q"}));
+  for (const dolp::Axis axis : dolp::kAllAxes)
+    EXPECT_EQ(table.axes()[axis].empty(), !dolp::description_of(axis).is_required);
   const auto path = evaluator_.write_table(scene_, folder_ / "t.nc").output;
   const dolp::Table read = dolp::Table::read(path);
   const std::vector<double> theta = {60, 60}, sigma = {0.1, 0.4}, q = {3.5};
   const dolp::Results points = evaluator_.evaluate(scene_, {{"theta_deg", theta}, {"sigma", sigma}, {"q", q}});
-  for (const dolp::Variable& variable : table.variables()) {
-    const auto values = table.values(variable.name);
-    ASSERT_EQ(values.size(), 12U);
-    const auto of_file = read.values(variable.name);
-    for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(values[i], of_file[i]) << variable.name << i;
+  EXPECT_EQ(table.results().quantities(), read.results().quantities());
+  for (const dolp::Quantity quantity : table.results().quantities()) {
+    ASSERT_EQ(table.results()[quantity].size(), 12U);
+    EXPECT_EQ(table.results()[quantity], read.results()[quantity]) << dolp::description_of(quantity).name;
   }
   const auto agree = [&](std::size_t point, std::size_t entry) {
-    const double error = table.values("error_estimate")[entry] + points.values("error_estimate")[point];
-    EXPECT_LE(std::abs(points.values("dolp")[point] - table.values("dolp")[entry]), error);
+    const dolp::PointResult a = points.at(point), b = table.results().at(entry);
+    EXPECT_LE(std::abs(a[Quantity::kDolp] - b[Quantity::kDolp]),
+              a[Quantity::kErrorEstimate] + b[Quantity::kErrorEstimate]);
   };
   agree(0, 9);
   agree(1, 11);
 }
 
 TEST_F(Library, PartsOfATable_AreTheTable) {
-  const dolp::Scene scene = scene_
-                                .with({{"surface.masking", "none"},
-                                       {"surface.distribution", "gaussian"},
-                                       {"accuracy.tolerance", 1e-2}})
-                                .with_grid({{"q", {2.0}},
-                                            {"theta_deg", dolp::AxisRange{0, 80, 1200}},
-                                            {"sigma", dolp::AxisRange{0.1, 1, 1000}}});
+  const dolp::Scene scene =
+      scene_.with({{"surface.masking", "none"}, {"surface.distribution", "gaussian"}, {"accuracy.tolerance", 1e-2}})
+          .with_grid(
+              {{"q", {2.0}}, {"theta_deg", dolp::AxisRange{0, 80, 1200}}, {"sigma", dolp::AxisRange{0.1, 1, 1000}}});
   const dolp::Table whole = evaluator_.table(scene);
-  const auto expected = whole.values("dolp");
+  const std::vector<double>& expected = whole.results()[Quantity::kDolp];
   std::size_t entries = 0, parts = 0;
   evaluator_.table_parts(scene, [&](const dolp::Table& part) {
     ++parts;
-    EXPECT_EQ(part.axis("theta")[0], whole.axis("theta")[entries / 1000]);
-    for (const double value : part.values("dolp")) EXPECT_EQ(value, expected[entries++]);
+    EXPECT_EQ(part.axes()[dolp::Axis::kTheta][0], whole.axes()[dolp::Axis::kTheta][entries / 1000]);
+    for (const double value : part.results()[Quantity::kDolp]) EXPECT_EQ(value, expected[entries++]);
   });
   EXPECT_EQ(entries, 1'200'000U);
   EXPECT_GT(parts, 1U);
@@ -99,10 +99,8 @@ TEST_F(Library, MergedShards_AreTheTable_AndOneThatIsThereIsKept) {
             std::string::npos);
   EXPECT_EQ(dolp::merge(shards, folder_ / "merged.nc").output, folder_ / "merged.nc");
   const dolp::Table whole = dolp::Table::read(folder_ / "whole.nc"), merged = dolp::Table::read(folder_ / "merged.nc");
-  for (const dolp::Variable& variable : whole.variables()) {
-    const auto expected = whole.values(variable.name), found = merged.values(variable.name);
-    EXPECT_TRUE(std::equal(expected.begin(), expected.end(), found.begin(), found.end())) << variable.name;
-  }
+  for (const dolp::Quantity quantity : whole.results().quantities())
+    EXPECT_EQ(whole.results()[quantity], merged.results()[quantity]) << dolp::description_of(quantity).name;
   EXPECT_THROW(dolp::merge({shards[0]}, folder_ / "half.nc"), dolp::InputError);
 }
 
@@ -130,13 +128,12 @@ TEST_F(Library, FilesOfPoints_HaveTheNumbersOfPointsInMemory) {
   const auto expected = evaluator_.evaluate(scene_, {{"theta_deg", theta}});
   const std::vector<double> found = dolp_of(folder_ / "results.csv");
   ASSERT_EQ(found.size(), 2U);
-  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(found[i], expected.values("dolp")[i]);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(found[i], expected[Quantity::kDolp][i]);
 
   evaluator_.write_table(scene_.with_grid({{"sigma", {0.2}}, {"q", {3.0}}}), folder_ / "t.nc");
   dolp::write_lookup(folder_ / "t.nc", folder_ / "points.csv", folder_ / "between.csv");
   const dolp::Results between = dolp::Table::read(folder_ / "t.nc").lookup({{"theta_deg", theta}});
-  EXPECT_EQ(dolp_of(folder_ / "between.csv"),
-            std::vector<double>(between.values("dolp").begin(), between.values("dolp").end()));
+  EXPECT_EQ(dolp_of(folder_ / "between.csv"), between[Quantity::kDolp]);
   EXPECT_THROW(evaluator_.write_points(scene_, folder_ / "points.csv", folder_ / "points.csv"), dolp::InputError);
 }
 
@@ -179,9 +176,10 @@ TEST_F(Library, Scene_SaysItsValues) {
 TEST_F(Library, EveryKeyWithADefault_HasIt) {
   for (const dolp::Key& key : dolp::keys()) {
     if (key.fallback.empty() || key.fallback == "required" || key.key.starts_with("grid.")) continue;
-    const dolp::Scene scene = scene_.with(
-        {{"source.irradiance", 1}, {"path.radiance", 1}, {"surface.masking", "integral"},
-         {key.key, dolp::TomlText{key.fallback}}});
+    const dolp::Scene scene = scene_.with({{"source.irradiance", 1},
+                                           {"path.radiance", 1},
+                                           {"surface.masking", "integral"},
+                                           {key.key, dolp::TomlText{key.fallback}}});
     const std::string value =
         key.words.empty() ? std::to_string(scene.number(key.key).value()) : scene.word(key.key).value();
     const std::string wanted = key.words.empty() ? std::to_string(std::stod(key.fallback)) : key.fallback;
@@ -215,7 +213,7 @@ TEST_F(Library, Fit_GivesValuesWithIntervals) {
   const dolp::Results truth = evaluator_.evaluate(scene_.with("surface.sigma", 0.3), {{"theta_deg", theta}});
   std::string csv = "theta_deg,dolp,uncertainty\n";
   for (std::size_t i = 0; i < theta.size(); ++i) {
-    csv += std::to_string(theta[i]) + ',' + std::to_string(truth.values("dolp")[i]) + ",0.002\n";
+    csv += std::to_string(theta[i]) + ',' + std::to_string(truth[Quantity::kDolp][i]) + ",0.002\n";
   }
   const dolp::MeasuredData data = dolp::MeasuredData::from_csv(csv);
   const std::vector<dolp::Measurement>& measured = data.measurements;
@@ -252,8 +250,8 @@ TEST_F(Library, Lookup_BetweenEntries_StatesItsError) {
   const std::vector<double> theta = {33.3};
   const dolp::Results found = table.lookup({{"theta_deg", theta}});
   const dolp::Results exact = evaluator_.evaluate(scene_, {{"theta_deg", theta}});
-  EXPECT_LE(std::abs(found.values("dolp")[0] - exact.values("dolp")[0]),
-            found.values("error_estimate")[0] + exact.values("error_estimate")[0]);
+  EXPECT_LE(std::abs(found[Quantity::kDolp][0] - exact[Quantity::kDolp][0]),
+            found[Quantity::kErrorEstimate][0] + exact[Quantity::kErrorEstimate][0]);
 }
 
 TEST_F(Library, Mueller_OfSpecularPair_Reflects) {
@@ -281,8 +279,7 @@ TEST_F(Library, WrongInput_IsAnInputError_OfOneLine) {
                                   line_of([&] {
                                     evaluator_.evaluate(scene_, {{"zenith", theta}});
                                   }),
-                                  line_of([&] { dolp::Evaluator({.evaluator = "abacus"}).table(scene_); }),
-                                  line_of([&] { evaluator_.table(scene_).values("colour"); })}) {
+                                  line_of([&] { dolp::Evaluator({.evaluator = "abacus"}).table(scene_); })}) {
     EXPECT_NE(line, "no error");
     EXPECT_EQ(line.find('\n'), std::string::npos) << line;
   }
@@ -305,7 +302,7 @@ TEST_F(Library, AnEvaluator_ServesSeveralThreads) {
   }
   for (std::thread& thread : threads) thread.join();
   for (const dolp::Results& results : found) {
-    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(results.values("dolp")[i], expected.values("dolp")[i]);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(results[Quantity::kDolp][i], expected[Quantity::kDolp][i]);
   }
 }
 

@@ -76,7 +76,7 @@ Radiance model_radiance(const Scene& scene, double theta_i_deg) {
   const double emitted = planck_radiance(kWavelength_um, scene.emission->temperature_K);
   const double surroundings = planck_radiance(kWavelength_um, scene.surroundings->temperature_K);
   const ReferenceMueller f = reference_pbrdf(surface, surface.material.constant, theta_i_deg,
-                                          scene.geometry.view_zenith_deg, scene.geometry.relative_azimuth_deg);
+                                             scene.geometry.view_zenith_deg, scene.geometry.relative_azimuth_deg);
   const double beam = scene.source->irradiance * cos_i;
   const double diffuse = surface.diffuse / std::numbers::pi * std::pow(cos_i * cos_v, c);
   const double k_s = surface.specular;
@@ -125,16 +125,16 @@ TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
     const PointResult r = evaluate_scene(scene, {{theta_i_deg, shape, {}}}, *evaluator, {}).front();
     const Radiance l = model_radiance(scene, theta_i_deg);
     // The stated error of DOLP is relative to I and covers Q and U; I itself is good to the same order.
-    const double bound = 2.0 * r.error_estimate + 1e-9;
-    EXPECT_NEAR(r.stokes_q / l.i, l.q / l.i, bound) << n;
-    EXPECT_NEAR(r.stokes_u / l.i, l.u / l.i, bound) << n;
-    EXPECT_NEAR(r.stokes_v / l.i, l.v / l.i, bound) << n;
-    EXPECT_NEAR(r.stokes_i / l.i, 1.0, 2.0 * scene.accuracy.tolerance) << n;
-    EXPECT_NEAR(r.dolp, std::hypot(l.q, l.u) / l.i, r.error_estimate + 1e-9) << n;
+    const double bound = 2.0 * r[Quantity::kErrorEstimate] + 1e-9;
+    EXPECT_NEAR(r[Quantity::kStokesQ] / l.i, l.q / l.i, bound) << n;
+    EXPECT_NEAR(r[Quantity::kStokesU] / l.i, l.u / l.i, bound) << n;
+    EXPECT_NEAR(r[Quantity::kStokesV] / l.i, l.v / l.i, bound) << n;
+    EXPECT_NEAR(r[Quantity::kStokesI] / l.i, 1.0, 2.0 * scene.accuracy.tolerance) << n;
+    EXPECT_NEAR(r[Quantity::kDolp], std::hypot(l.q, l.u) / l.i, r[Quantity::kErrorEstimate] + 1e-9) << n;
     if (promises_dolp(r.status)) {
-      EXPECT_LE(r.error_estimate, scene.accuracy.tolerance) << n;
+      EXPECT_LE(r[Quantity::kErrorEstimate], scene.accuracy.tolerance) << n;
     }
-    worst = std::max(worst, std::abs(r.dolp - std::hypot(l.q, l.u) / l.i));
+    worst = std::max(worst, std::abs(r[Quantity::kDolp] - std::hypot(l.q, l.u) / l.i));
   }
   std::printf("worst DOLP difference %.1e\n", worst);
 }
@@ -173,10 +173,10 @@ TEST(Bistatic, BeamWithALargeError_IsTriedAgainInDouble) {
   const PointResult r = evaluate_scene(scene, {{theta_deg, shape, {}}}, evaluator, {}).front();
   EXPECT_EQ(evaluator.precisions.front(), Precision::kFloat);
   EXPECT_EQ(evaluator.precisions.back(), Precision::kDouble);
-  EXPECT_LE(r.error_estimate, scene.accuracy.tolerance);
+  EXPECT_LE(r[Quantity::kErrorEstimate], scene.accuracy.tolerance);
   scene.accuracy.precision = Precision::kFloat;
   const PointResult in_float = evaluate_scene(scene, {{theta_deg, shape, {}}}, evaluator, {}).front();
-  EXPECT_GT(in_float.error_estimate, scene.accuracy.tolerance);
+  EXPECT_GT(in_float[Quantity::kErrorEstimate], scene.accuracy.tolerance);
   EXPECT_NE(in_float.status & kStatusToleranceMissed, 0U);
 }
 
@@ -187,7 +187,7 @@ TEST(Bistatic, Mirror_HasNoBeamButInItsSpecularDirection) {
   CpuEvaluator evaluator(Precision::kDouble);
   const auto dolp_at = [&](double theta_i_deg, double view_deg, double azimuth_deg) {
     scene.geometry = {Mode::kBistatic, view_deg, azimuth_deg};
-    return evaluate_scene(scene, {{theta_i_deg, {0.0, 2.0}, {}}}, evaluator, {}).front().dolp;
+    return evaluate_scene(scene, {{theta_i_deg, {0.0, 2.0}, {}}}, evaluator, {}).front()[Quantity::kDolp];
   };
   EXPECT_TRUE(std::isnan(dolp_at(40.0, 40.0, 180.0)));
   EXPECT_TRUE(std::isnan(dolp_at(0.0, 0.0, 70.0)));
@@ -204,7 +204,7 @@ TEST(Bistatic, BothBeamsAtNinetyDegrees_AreOutsideTheDomain) {
   for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
     scene.surface.masking = masking;
     const SlopeShape shape{scene.surface.sigma, scene.surface.q};
-    EXPECT_TRUE(std::isnan(evaluate_scene(scene, {{90.0, shape, {}}}, evaluator, {}).front().dolp));
+    EXPECT_TRUE(std::isnan(evaluate_scene(scene, {{90.0, shape, {}}}, evaluator, {}).front()[Quantity::kDolp]));
   }
 }
 
@@ -217,10 +217,10 @@ TEST(Bistatic, OppositeAzimuth_TurnsTheSignOfU) {
   const PointResult left = evaluate_scene(scene, {entry}, evaluator, {}).front();
   scene.geometry.relative_azimuth_deg = -130.0;
   const PointResult right = evaluate_scene(scene, {entry}, evaluator, {}).front();
-  EXPECT_NE(left.stokes_u, 0.0);
-  EXPECT_EQ(left.stokes_u, -right.stokes_u);
-  EXPECT_EQ(left.stokes_q, right.stokes_q);
-  EXPECT_EQ(left.dolp, right.dolp);
+  EXPECT_NE(left[Quantity::kStokesU], 0.0);
+  EXPECT_EQ(left[Quantity::kStokesU], -right[Quantity::kStokesU]);
+  EXPECT_EQ(left[Quantity::kStokesQ], right[Quantity::kStokesQ]);
+  EXPECT_EQ(left[Quantity::kDolp], right[Quantity::kDolp]);
 }
 
 TEST(Bistatic, SourceAngles_ShareTheMomentsOfTheView) {
@@ -234,7 +234,7 @@ TEST(Bistatic, SourceAngles_ShareTheMomentsOfTheView) {
   evaluate_scene(scene, {{10.0, shape, {}}}, evaluator, {});
   EXPECT_GT(three, 0.0);
   EXPECT_EQ(2.0 * three, evaluator.report().evaluations);  // of both calls
-  EXPECT_EQ(results[0].rho_i, results[2].rho_i);
+  EXPECT_EQ(results[0][Quantity::kRhoI], results[2][Quantity::kRhoI]);
   EXPECT_EQ(results[2].status, 0U);  // a source at 90 degrees adds nothing
 }
 
@@ -255,9 +255,10 @@ TEST(Bistatic, ViewAtNinetyDegrees_IsTheLimitWhereThereIsOne) {
     const PointResult at = seen_at(scene, 90.0);
     const PointResult near = seen_at(scene, 90.0 - 1e-4);
     EXPECT_EQ(at.status, 0U);
-    EXPECT_NEAR(at.stokes_i / near.stokes_i, 1.0, kStep);
-    EXPECT_NEAR(at.stokes_q / near.stokes_i, near.stokes_q / near.stokes_i, kStep);
-    EXPECT_NEAR(at.rho_i, near.rho_i, kStep);
+    EXPECT_NEAR(at[Quantity::kStokesI] / near[Quantity::kStokesI], 1.0, kStep);
+    EXPECT_NEAR(at[Quantity::kStokesQ] / near[Quantity::kStokesI], near[Quantity::kStokesQ] / near[Quantity::kStokesI],
+                kStep);
+    EXPECT_NEAR(at[Quantity::kRhoI], near[Quantity::kRhoI], kStep);
   }
 }
 
@@ -266,7 +267,7 @@ TEST(Bistatic, ViewAtNinetyDegreesOfADivergingReflectance_IsOutsideTheDomain) {
   Scene scene = random.scene();
   scene.surface.masking = Masking::kNone;
   const PointResult r = seen_at(scene, 90.0);
-  EXPECT_TRUE(std::isnan(r.dolp));
+  EXPECT_TRUE(std::isnan(r[Quantity::kDolp]));
   EXPECT_EQ(r.status, kStatusUnphysicalReflectance | kStatusOutsideDomain);
 }
 

@@ -85,9 +85,9 @@ TEST_F(CommandLine, TableNetcdf_EvalAtItsEntries_EqualBitForBit) {
   const Table table = read_table(at("t.nc"));
   const Columns columns = parse_csv(content("e.csv"));
   ASSERT_EQ(table.size(), kSceneEntries);
-  for (const TableVariable& variable : table_variables()) {
-    if (!columns.contains(variable.name)) continue;
-    EXPECT_TRUE(same_bits(table.*variable.values, columns.at(variable.name))) << variable.name;
+  for (const Quantity quantity : kAllQuantities) {
+    if (!columns.contains(description_of(quantity).name)) continue;
+    EXPECT_TRUE(same_bits(table[quantity], columns.at(description_of(quantity).name))) << description_of(quantity).name;
   }
   EXPECT_TRUE(columns.contains("emissivity_s"));
   const Outcome other = run({.arguments = {kPython, DOLP_READ_TABLE, "t.nc", "e.csv"}, .folder = at("")});
@@ -126,10 +126,11 @@ TEST_F(CommandLine, TableFormats_SameScene_HoldTheSameNumbers) {
   const Outcome npy = run({.arguments = {kPython, "-c", script}, .folder = at("")});
   ASSERT_EQ(npy.status, 0) << npy.err;
   const Columns npy_columns = parse_csv(npy.out);
-  for (const TableVariable& variable : table_variables()) {
-    if ((table.*variable.values).empty()) continue;
-    EXPECT_TRUE(same_bits(table.*variable.values, columns.at(variable.name))) << variable.name;
-    EXPECT_TRUE(same_bits(table.*variable.values, npy_columns.at(variable.name))) << variable.name;
+  for (const Quantity quantity : kAllQuantities) {
+    if (!table.has(quantity)) continue;
+    EXPECT_TRUE(same_bits(table[quantity], columns.at(description_of(quantity).name))) << description_of(quantity).name;
+    EXPECT_TRUE(same_bits(table[quantity], npy_columns.at(description_of(quantity).name)))
+        << description_of(quantity).name;
   }
 }
 
@@ -178,17 +179,17 @@ TEST_F(CommandLine, Table_OneEntryGrid_EqualsEval) {
   ASSERT_EQ(made.status, 0) << made.err;
   const Table table = read_table(at("t.nc"));
   ASSERT_EQ(table.size(), 1U);
-  EXPECT_TRUE(same_bits(table.dolp, {eval({}).at("dolp").at(1)}));
+  EXPECT_TRUE(same_bits(table[Quantity::kDolp], {eval({}).at("dolp").at(1)}));
 }
 
 TEST_F(CommandLine, Table_DescendingRange_KeepsTheOrder) {
   const Outcome made = dolp({"table", "scene.toml", "-o", "t.nc", "--set", "grid.theta_deg={from=60, to=0, count=3}"});
   ASSERT_EQ(made.status, 0) << made.err;
   const Table table = read_table(at("t.nc"));
-  EXPECT_EQ(table.theta_deg, (std::vector<double>{60.0, 30.0, 0.0}));
+  EXPECT_EQ(table.axes[Axis::kTheta], (std::vector<double>{60.0, 30.0, 0.0}));
   const Columns points = eval({});
-  EXPECT_TRUE(same_bits({table.dolp.at(table.position(0, 1, 1))}, {points.at("dolp").at(1)}));
-  EXPECT_TRUE(same_bits({table.rho_i.at(table.position(2, 0, 0))}, {points.at("rho_i").at(0)}));
+  EXPECT_TRUE(same_bits({table[Quantity::kDolp].at(table.position(0, 1, 1))}, {points.at("dolp").at(1)}));
+  EXPECT_TRUE(same_bits({table[Quantity::kRhoI].at(table.position(2, 0, 0))}, {points.at("rho_i").at(0)}));
 }
 
 TEST_F(CommandLine, Eval_StdinToStdout_ReportOnStderr) {

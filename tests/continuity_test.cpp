@@ -104,7 +104,7 @@ void Switches::expect_no_jump(const std::vector<Pair>& pairs) const {
   const std::vector<Moments> b = evaluator->evaluate(request_of(model(), above, tolerance()), {});
   double worst = 0.0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    for (const Quantity& quantity : kQuantities) {
+    for (const MomentField& quantity : kMomentFields) {
       const double jump = std::abs(a[i].*quantity.value - b[i].*quantity.value);
       const double scale = std::max(std::abs(a[i].*quantity.value), a[i].r_i);
       const double change = 2.0 * step() * kSteepest * scale;

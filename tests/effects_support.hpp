@@ -138,8 +138,8 @@ inline EffectPlan plan_without(const Scene& scene, Part part) {
 
 /// Length of the difference of (Q, U) / I.
 inline double polarisation_change(const PointResult& a, const PointResult& b) {
-  return std::hypot(a.stokes_q / a.stokes_i - b.stokes_q / b.stokes_i,
-                    a.stokes_u / a.stokes_i - b.stokes_u / b.stokes_i);
+  return std::hypot(a[Quantity::kStokesQ] / a[Quantity::kStokesI] - b[Quantity::kStokesQ] / b[Quantity::kStokesI],
+                    a[Quantity::kStokesU] / a[Quantity::kStokesI] - b[Quantity::kStokesU] / b[Quantity::kStokesI]);
 }
 
 }  // namespace effects_support

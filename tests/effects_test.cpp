@@ -50,20 +50,23 @@ TEST(Dropping, RandomScenes_TheAnswerWithEverythingIsWithinTheEstimates) {
       const std::string name =
           describe(scene, entries[j]) + "; " + effects_text(effect_rows(scene, entries, plan), plan);
       if ((a.status & kStatusOutsideDomain) != 0) {
-        EXPECT_EQ(std::isnan(a.stokes_i), std::isnan(b.stokes_i)) << name;
+        EXPECT_EQ(std::isnan(a[Quantity::kStokesI]), std::isnan(b[Quantity::kStokesI])) << name;
         continue;
       }
       if (!promises_dolp(a.status)) continue;
       EXPECT_EQ(b.status & kStatusNoDolpPromised, 0U) << name;
-      EXPECT_LE(std::abs(a.dolp - b.dolp), a.error_estimate + b.error_estimate) << name;
-      EXPECT_GE(b.error_estimate, plan.bound.dolp) << name;
+      EXPECT_LE(std::abs(a[Quantity::kDolp] - b[Quantity::kDolp]),
+                a[Quantity::kErrorEstimate] + b[Quantity::kErrorEstimate])
+          << name;
+      EXPECT_GE(b[Quantity::kErrorEstimate], plan.bound.dolp) << name;
       const bool is_missed = (b.status & kStatusToleranceMissed) != 0;
-      EXPECT_TRUE(is_missed || b.error_estimate <= scene.accuracy.tolerance) << name;
-      EXPECT_EQ(std::isnan(b.rho_i), !plan.gives_rho) << name;
+      EXPECT_TRUE(is_missed || b[Quantity::kErrorEstimate] <= scene.accuracy.tolerance) << name;
+      EXPECT_EQ(std::isnan(b[Quantity::kRhoI]), !plan.gives_rho) << name;
       if (!plan.gives_rho) continue;
-      const double allowed = (a.rho_error_estimate + b.rho_error_estimate) * std::max(a.rho_i, b.rho_i);
-      EXPECT_LE(std::abs(a.rho_i - b.rho_i), allowed) << name;
-      EXPECT_LE(std::abs(a.rho_q - b.rho_q), allowed) << name;
+      const double allowed = (a[Quantity::kRhoErrorEstimate] + b[Quantity::kRhoErrorEstimate]) *
+                             std::max(a[Quantity::kRhoI], b[Quantity::kRhoI]);
+      EXPECT_LE(std::abs(a[Quantity::kRhoI] - b[Quantity::kRhoI]), allowed) << name;
+      EXPECT_LE(std::abs(a[Quantity::kRhoQ] - b[Quantity::kRhoQ]), allowed) << name;
     }
   }
   // The test is about something only if all of this happens.
@@ -89,14 +92,14 @@ TEST(Influence, RandomScenes_BoundsWhatEachPartChanges) {
         const PointResult& a = whole[j];
         const PointResult& b = left[j];
         const DropBound bound = bounds.bound(part, {}, entries[j]);
-        if (!(std::abs(a.stokes_i) > 0.0) || !(std::abs(b.stokes_i) > 0.0)) continue;
+        if (!(std::abs(a[Quantity::kStokesI]) > 0.0) || !(std::abs(b[Quantity::kStokesI]) > 0.0)) continue;
         const double change = polarisation_change(a, b);
         if (bound.dolp == 0.0) {
-          EXPECT_LE(change, a.error_estimate + b.error_estimate) << describe(scene, entries[j]);
+          EXPECT_LE(change, a[Quantity::kErrorEstimate] + b[Quantity::kErrorEstimate]) << describe(scene, entries[j]);
           continue;
         }
         ++compared[part];
-        EXPECT_LE(change, bound.dolp + a.error_estimate + b.error_estimate + kRounding)
+        EXPECT_LE(change, bound.dolp + a[Quantity::kErrorEstimate] + b[Quantity::kErrorEstimate] + kRounding)
             << "part " << static_cast<int>(part) << " " << describe(scene, entries[j]);
       }
     }

@@ -244,7 +244,7 @@ TEST(ExploreSession, Map_FinishesAt128WithTheValuesOfTheScene) {
   Driver driver(paint());
   const HeatMap& map = driver.session.map();
   ASSERT_TRUE(map.is_finished());
-  const MapField field = map.field(Quantity::kDolp);
+  const MapField field = map.field(Plotted::kDolp);
   ASSERT_EQ(field.count, 128U);
   PointList list;
   for (const auto& [column, row] : {std::pair{0.0, 0.0}, {80.0, 3.0}, {5.0, 127.0}, {100.0, 64.0}}) {
@@ -316,7 +316,7 @@ TEST(ExploreSession, RhoOfADroppingPlan_IsComputedWhenItIsShown) {
   Driver driver(paint({"surroundings.temperature_K=290"}));
   EXPECT_TRUE(std::isnan(driver.session.curve().points()[50].rho_i));
   View view = driver.session.view();
-  view.quantity = Quantity::kRhoS;
+  view.quantity = Plotted::kRhoS;
   driver.session.set_view(view);
   driver.settle();
   EXPECT_TRUE(std::isfinite(driver.session.curve().points()[50].rho_i));

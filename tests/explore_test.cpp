@@ -149,7 +149,8 @@ TEST(Conflicts, BothSidesChosen_AreLeftToTheReader) {
 TEST(SceneToml, ShippedScenesWithChanges_ReadBackAsTheSameScene) {
   for (const auto& file : std::filesystem::directory_iterator(kHostDir + "/scenes")) {
     SCOPED_TRACE(file.path().string());
-    const Scene scene = Scene::from_file(file.path(), {{"title", "a \"quoted\" title"}, {"surface.sigma", 0.1234567890123}});
+    const Scene scene =
+        Scene::from_file(file.path(), {{"title", "a \"quoted\" title"}, {"surface.sigma", 0.1234567890123}});
     const Scene again = Scene::from_text(scene.toml(kHostDir), {}, kHostDir + "/again.toml");
     EXPECT_EQ(again.title(), "a \"quoted\" title");
     for (const char* axis : {"grid.theta_deg", "grid.sigma", "grid.q"}) {
@@ -305,9 +306,7 @@ TEST(ExploreWorker, Tolerance_IsTheWiderOfJobAndScene) {
 }
 
 TEST(ExploreWorker, LostDevice_IsThrownToWhoAsksForNews) {
-  const auto lost = [](const Scene&, const PointList&, const RunOptions&) -> Results {
-    throw DeviceError("lost");
-  };
+  const auto lost = [](const Scene&, const PointList&, const RunOptions&) -> Results { throw DeviceError("lost"); };
   Worker worker(lost, [] {});
   worker.want({job_of("any")});
   while (!worker.is_idle()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -317,9 +316,10 @@ TEST(ExploreWorker, LostDevice_IsThrownToWhoAsksForNews) {
 // ---- Measured points, exports --------------------------------------------------------------------------------------
 
 TEST(Measured, Quantities_AreReadAsDolpFitReadsThem) {
-  const MeasuredPoints points = points_of(MeasuredData::from_csv("uncertainty,theta_deg,q_over_i\n0.01,60,-0.1\n", "m.csv"));
+  const MeasuredPoints points =
+      points_of(MeasuredData::from_csv("uncertainty,theta_deg,q_over_i\n0.01,60,-0.1\n", "m.csv"));
   ASSERT_EQ(points.points.size(), 1U);
-  EXPECT_EQ(points.points[0].quantity, Quantity::kSignedDolp);
+  EXPECT_EQ(points.points[0].quantity, Plotted::kSignedDolp);
   EXPECT_EQ(points.points[0].value, -0.1);
   EXPECT_EQ(points.points[0].uncertainty, 0.01);
   EXPECT_EQ(points_of(MeasuredData::from_csv("theta_deg,emissivity_s,emissivity_p\n60,0.9,0.8\n")).points.size(), 2U);
@@ -341,10 +341,10 @@ TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredPoints) {
     ASSERT_EQ(residuals.size(), 2U);
     EXPECT_EQ(residuals[0], 0.05 - value(0));
     EXPECT_EQ(residuals[1], 0.06 - value(1));
-    const Quantity quantity = is_signed ? Quantity::kSignedDolp : Quantity::kDolp;
+    const Plotted quantity = is_signed ? Plotted::kSignedDolp : Plotted::kDolp;
     EXPECT_DOUBLE_EQ(*driver.session.residuals().rms(quantity),
                      std::sqrt((residuals[0] * residuals[0] + residuals[1] * residuals[1]) / 2.0));
-    EXPECT_FALSE(driver.session.residuals().rms(Quantity::kAlbedo));
+    EXPECT_FALSE(driver.session.residuals().rms(Plotted::kAlbedo));
   }
   std::filesystem::remove(path);
 }

@@ -9,7 +9,7 @@
 #include "cli_support.hpp"
 #include "explore/exports.hpp"
 #include "explore/parameters.hpp"
-#include "explore/quantity.hpp"
+#include "explore/plotted.hpp"
 #include "explore/window/app.hpp"
 #include "explore/window/text.hpp"
 #include "table/table_file.hpp"
@@ -258,8 +258,8 @@ TEST_F(Window, Table_ByShortcut_EqualsThatOfTheCommand) {
   keys("Return");
   for (int i = 0; i < 2000 && !std::filesystem::exists(at("made_table.nc")); ++i) app_->frame();
   const Table made = read_table(at("made_table.nc"));
-  EXPECT_EQ(made.dolp, wanted.dolp);
-  EXPECT_EQ(made.theta_deg, wanted.theta_deg);
+  EXPECT_EQ(made[Quantity::kDolp], wanted[Quantity::kDolp]);
+  EXPECT_EQ(made.axes[Axis::kTheta], wanted.axes[Axis::kTheta]);
   EXPECT_EQ(dolp({"verify", "made_table.nc"}).status, 0);
 }
 
@@ -359,7 +359,7 @@ TEST(WindowText, WithoutAGreekFont_AllIsSaidInAscii) {
   for (const explore::Choice& choice : explore::choices()) {
     EXPECT_TRUE(is_ascii(explore::ascii(choice.equation))) << choice.equation;
   }
-  for (const explore::QuantityDescription& quantity : explore::quantities()) {
+  for (const explore::PlottedDescription& quantity : explore::all_plotted()) {
     EXPECT_TRUE(is_ascii(explore::ascii(std::string(quantity.name) + quantity.meaning))) << quantity.name;
   }
 }

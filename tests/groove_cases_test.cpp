@@ -55,7 +55,7 @@ TEST_P(GrooveCasesOn, Stored_AreWithinTheBounds) {
       const std::vector<Moments> moments = evaluator->evaluate(all_bounces(distribution, points, tolerance), {});
       double worst = 0.0;
       for (std::size_t i = 0; i < cases.size(); ++i) {
-        for (const Quantity& quantity : kQuantities) {
+        for (const MomentField& quantity : kMomentFields) {
           const Moments& known = cases[i].moments;
           const double distance = std::abs(moments[i].*quantity.value - known.*quantity.value);
           const double bound = moments[i].*quantity.error + known.*quantity.error;
@@ -161,15 +161,17 @@ TEST(GrooveScenes, RandomEntriesUpToTheHorizon_ArePhysical) {
         const std::string where = text_of(point);
         EXPECT_EQ(r.status & (kStatusUnphysicalReflectance | kStatusNonPositiveIntensity | kStatusOutsideDomain), 0U)
             << where;
-        EXPECT_NEAR(r.albedo, 1.0, kRounding) << where;
-        EXPECT_TRUE(r.rho_i >= 0.0 && r.rho_i <= 1.0 + kRounding) << where << " rho_I " << r.rho_i;
-        EXPECT_LE(std::abs(r.rho_q), r.rho_i * (1.0 + kRounding)) << where;
-        EXPECT_LE(std::abs(r.stokes_q), r.stokes_i) << where;
-        EXPECT_GT(r.stokes_i, 0.0) << where;
-        for (const double emissivity : {r.emissivity_s, r.emissivity_p}) {
+        EXPECT_NEAR(r[Quantity::kAlbedo], 1.0, kRounding) << where;
+        EXPECT_TRUE(r[Quantity::kRhoI] >= 0.0 && r[Quantity::kRhoI] <= 1.0 + kRounding)
+            << where << " rho_I " << r[Quantity::kRhoI];
+        EXPECT_LE(std::abs(r[Quantity::kRhoQ]), r[Quantity::kRhoI] * (1.0 + kRounding)) << where;
+        EXPECT_LE(std::abs(r[Quantity::kStokesQ]), r[Quantity::kStokesI]) << where;
+        EXPECT_GT(r[Quantity::kStokesI], 0.0) << where;
+        for (const double emissivity : {r[Quantity::kEmissivityS], r[Quantity::kEmissivityP]}) {
           EXPECT_TRUE(emissivity >= -kRounding && emissivity <= 1.0 + kRounding) << where << " eps " << emissivity;
         }
-        EXPECT_NEAR(0.5 * (r.emissivity_s + r.emissivity_p) + r.rho_i, 1.0, kRounding) << where;
+        EXPECT_NEAR(0.5 * (r[Quantity::kEmissivityS] + r[Quantity::kEmissivityP]) + r[Quantity::kRhoI], 1.0, kRounding)
+            << where;
       }
     }
   }
@@ -183,8 +185,8 @@ TEST(GrooveScenes, RightAngle_IsTheLimitOfTheStoredValue) {
     const PointResult at_90 = result_at(scene_of(c.distribution), {90.0, c.shape, c.index});
     const double rho_i = c.moments.r_i / cos_sin_deg(c.theta_deg).cos;
     const double rho_q = c.moments.r_q / cos_sin_deg(c.theta_deg).cos;
-    EXPECT_NEAR(at_90.rho_i, rho_i, (at_90.rho_error_estimate + kApproach) * rho_i) << c.name;
-    EXPECT_NEAR(at_90.rho_q, rho_q, (at_90.rho_error_estimate + kApproach) * rho_i) << c.name;
+    EXPECT_NEAR(at_90[Quantity::kRhoI], rho_i, (at_90[Quantity::kRhoErrorEstimate] + kApproach) * rho_i) << c.name;
+    EXPECT_NEAR(at_90[Quantity::kRhoQ], rho_q, (at_90[Quantity::kRhoErrorEstimate] + kApproach) * rho_i) << c.name;
   }
 }
 
@@ -196,14 +198,15 @@ TEST(GrooveScenes, SigmaToZero_IsTheSmoothSurface) {
     for (const OpticalConstants index : {OpticalConstants{1.5, 0.0}, {10.0, 60.0}, {0.7, 0.0}}) {
       const PointResult smooth = result_at(multiple, {theta_deg, {0.0, 2.0}, index});
       const PointResult by_single = result_at(single, {theta_deg, {0.0, 2.0}, index});
-      EXPECT_EQ(smooth.rho_i, by_single.rho_i);
-      EXPECT_EQ(smooth.rho_q, by_single.rho_q);
+      EXPECT_EQ(smooth[Quantity::kRhoI], by_single[Quantity::kRhoI]);
+      EXPECT_EQ(smooth[Quantity::kRhoQ], by_single[Quantity::kRhoQ]);
       const PointResult rough = result_at(multiple, {theta_deg, {1e-5, 2.0}, index});
-      const double allowed = rough.rho_error_estimate * rough.rho_i + kApproach;
-      EXPECT_NEAR(rough.rho_i, smooth.rho_i, allowed) << theta_deg << " " << index.n;
-      EXPECT_NEAR(rough.rho_q, smooth.rho_q, allowed) << theta_deg << " " << index.n;
-      if (smooth.rho_i == 1.0) continue;  // total reflection: nothing is emitted
-      EXPECT_NEAR(rough.dolp, smooth.dolp, rough.error_estimate + smooth.error_estimate + 100.0 * kApproach)
+      const double allowed = rough[Quantity::kRhoErrorEstimate] * rough[Quantity::kRhoI] + kApproach;
+      EXPECT_NEAR(rough[Quantity::kRhoI], smooth[Quantity::kRhoI], allowed) << theta_deg << " " << index.n;
+      EXPECT_NEAR(rough[Quantity::kRhoQ], smooth[Quantity::kRhoQ], allowed) << theta_deg << " " << index.n;
+      if (smooth[Quantity::kRhoI] == 1.0) continue;  // total reflection: nothing is emitted
+      EXPECT_NEAR(rough[Quantity::kDolp], smooth[Quantity::kDolp],
+                  rough[Quantity::kErrorEstimate] + smooth[Quantity::kErrorEstimate] + 100.0 * kApproach)
           << theta_deg << " " << index.n;
     }
   }

@@ -192,13 +192,14 @@ TEST(GroovesScene, UpToTheHorizon_NothingIsUnphysical) {
       results_of({"surface.scattering=multiple", "grid.theta_deg=[0, 30, 60, 80, 89, 89.99, 90]"});
   for (const PointResult& r : results) {
     EXPECT_EQ(r.status & (kStatusUnphysicalReflectance | kStatusNonPositiveIntensity | kStatusOutsideDomain), 0U);
-    EXPECT_EQ(r.albedo, 1.0);
-    EXPECT_TRUE(r.emissivity_s > 0.0 && r.emissivity_s <= r.emissivity_p + 1e-9 && r.emissivity_p < 1.0);
-    EXPECT_NEAR(0.5 * (r.emissivity_s + r.emissivity_p) + r.rho_i, 1.0, 1e-12);
+    EXPECT_EQ(r[Quantity::kAlbedo], 1.0);
+    EXPECT_TRUE(r[Quantity::kEmissivityS] > 0.0 && r[Quantity::kEmissivityS] <= r[Quantity::kEmissivityP] + 1e-9 &&
+                r[Quantity::kEmissivityP] < 1.0);
+    EXPECT_NEAR(0.5 * (r[Quantity::kEmissivityS] + r[Quantity::kEmissivityP]) + r[Quantity::kRhoI], 1.0, 1e-12);
   }
   // The emissivity of the metal is a seventh of what single scattering says, the DOLP ten times as large.
-  EXPECT_NEAR(0.5 * (results[2].emissivity_s + results[2].emissivity_p), 0.01635, 1e-5);
-  EXPECT_NEAR(results[2].dolp, 0.3892, 1e-4);
+  EXPECT_NEAR(0.5 * (results[2][Quantity::kEmissivityS] + results[2][Quantity::kEmissivityP]), 0.01635, 1e-5);
+  EXPECT_NEAR(results[2][Quantity::kDolp], 0.3892, 1e-4);
 }
 
 TEST(GroovesScene, AllBounces_LieInTheBracket) {
@@ -211,10 +212,10 @@ TEST(GroovesScene, AllBounces_LieInTheBracket) {
   for (const char* model : {"emission.model=moments", "emission.model=direct"}) {
     const std::vector<PointResult> between = with({"emission.bracket=true", model});
     for (std::size_t i = 0; i < all.size(); ++i) {
-      EXPECT_LE(between[i].dolp_low, all[i].dolp + 1e-4);
-      EXPECT_GE(between[i].dolp_high, all[i].dolp - 1e-4);
-      EXPECT_LE(between[i].dolp_low, between[i].dolp + 1e-4);
-      EXPECT_GE(between[i].dolp_high, between[i].dolp - 1e-4);
+      EXPECT_LE(between[i][Quantity::kDolpLow], all[i][Quantity::kDolp] + 1e-4);
+      EXPECT_GE(between[i][Quantity::kDolpHigh], all[i][Quantity::kDolp] - 1e-4);
+      EXPECT_LE(between[i][Quantity::kDolpLow], between[i][Quantity::kDolp] + 1e-4);
+      EXPECT_GE(between[i][Quantity::kDolpHigh], between[i][Quantity::kDolp] - 1e-4);
     }
   }
 }
@@ -228,14 +229,16 @@ TEST(GroovesScene, Bracket_IsWhatItsEndsSay) {
   };
   const PointResult single = with({"emission.bracket=true"});
   const PointResult direct = with({"emission.model=direct"});
-  const double single_i = 0.5 * (single.emissivity_s + single.emissivity_p);
-  const double direct_i = 0.5 * (direct.emissivity_s + direct.emissivity_p);
-  const double direct_q = 0.5 * (direct.emissivity_s - direct.emissivity_p);
+  const double single_i = 0.5 * (single[Quantity::kEmissivityS] + single[Quantity::kEmissivityP]);
+  const double direct_i = 0.5 * (direct[Quantity::kEmissivityS] + direct[Quantity::kEmissivityP]);
+  const double direct_q = 0.5 * (direct[Quantity::kEmissivityS] - direct[Quantity::kEmissivityP]);
   const double slack = single_i - direct_i;
   // Q = N eps_Q with the same N for all: that of single scattering gives it.
-  const double net = single.stokes_q / (-single.rho_q);
-  EXPECT_NEAR(single.dolp_high, std::abs(net) * (std::abs(direct_q) + slack) / single.stokes_i, 1e-4);
-  EXPECT_NEAR(single.dolp_low, std::abs(net) * std::max(std::abs(direct_q) - slack, 0.0) / single.stokes_i, 1e-4);
+  const double net = single[Quantity::kStokesQ] / (-single[Quantity::kRhoQ]);
+  EXPECT_NEAR(single[Quantity::kDolpHigh], std::abs(net) * (std::abs(direct_q) + slack) / single[Quantity::kStokesI],
+              1e-4);
+  EXPECT_NEAR(single[Quantity::kDolpLow],
+              std::abs(net) * std::max(std::abs(direct_q) - slack, 0.0) / single[Quantity::kStokesI], 1e-4);
 }
 
 TEST(GroovesScene, SmoothSurface_PlanLeavesTheBouncesOut) {

@@ -12,8 +12,8 @@
 #include <tuple>
 #include <vector>
 
+#include <dolp/results.hpp>
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "model/point_result.hpp"
 #include "properties_support.hpp"
 #include "reference/hemisphere.hpp"
 #include "reference/reference_evaluator.hpp"
@@ -207,8 +207,10 @@ TEST(HardCases, RightAngle_IsTheLimitOfTheStoredValue) {
     const PointResult result = evaluate_scene(scene, {{90.0, c.shape, c.index}}, evaluator, {}).at(0);
     const double cosine = reference::zenith_from_deg(c.theta_deg).cos;
     const double rho_i = c.moments.r_i / cosine;
-    EXPECT_NEAR(result.rho_i, rho_i, (result.rho_error_estimate + kApproach) * rho_i) << label(c);
-    EXPECT_NEAR(result.rho_q, c.moments.r_q / cosine, (result.rho_error_estimate + kApproach) * rho_i) << label(c);
+    EXPECT_NEAR(result[Quantity::kRhoI], rho_i, (result[Quantity::kRhoErrorEstimate] + kApproach) * rho_i) << label(c);
+    EXPECT_NEAR(result[Quantity::kRhoQ], c.moments.r_q / cosine,
+                (result[Quantity::kRhoErrorEstimate] + kApproach) * rho_i)
+        << label(c);
   }
 }
 

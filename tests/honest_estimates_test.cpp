@@ -44,7 +44,7 @@ TEST_P(RandomPoints, CoarseAndFineRule_DifferByNoMoreThanTheyState) {
   const std::vector<Moments> fine = make_evaluator(Kernel::kCpuDouble)->evaluate(request_of(model, points, kFine), {});
   double worst = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    for (const Quantity& quantity : kQuantities) {
+    for (const MomentField& quantity : kMomentFields) {
       const double difference = std::abs(coarse[i].*quantity.value - fine[i].*quantity.value);
       const double stated = coarse[i].*quantity.error + fine[i].*quantity.error + kNothing;
       EXPECT_TRUE(difference <= stated) << quantity.name << " at " << text_of(points[i]) << ": "
@@ -86,7 +86,7 @@ constexpr std::array<HardEntry, 4> kHardEntries{{
 constexpr double kFinest = 1e-10;
 
 void expect_within_bounds(const Moments& stated, const Moments& exact, const std::string& where) {
-  for (const Quantity& quantity : kQuantities) {
+  for (const MomentField& quantity : kMomentFields) {
     const double difference = std::abs(stated.*quantity.value - exact.*quantity.value);
     const double allowed = stated.*quantity.error + exact.*quantity.error;
     std::printf("%s of %s: %.2g of its bound\n", quantity.name, where.c_str(), difference / allowed);

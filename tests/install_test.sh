@@ -49,7 +49,7 @@ cat > "$work/outside/outside.cpp" <<'PROGRAM'
 int main(int, char** arguments) {
   const double theta_deg = 60;
   const auto results = dolp::Evaluator().evaluate(dolp::Scene::from_file(arguments[1]), {{"theta_deg", {&theta_deg, 1}}});
-  std::printf("%.17g\n", results.values("dolp")[0]);
+  std::printf("%.17g\n", results[dolp::Quantity::kDolp][0]);
 }
 PROGRAM
 cmake -S "$work/outside" -B "$work/outside/build" -DCMAKE_PREFIX_PATH="$prefix" > "$work/log"

@@ -51,10 +51,16 @@ TEST_F(DenseTable, Interpolated_AgreesWithEveryEntryByItself) {
     ASSERT_EQ(a.size(), kDenseEntries);
     for (std::size_t i = 0; i < a.size(); ++i) {
       EXPECT_EQ(a.status[i], b.status[i]) << i;
-      EXPECT_LE(a.rho_error_estimate[i], 1e-4);
-      EXPECT_NEAR(a.rho_i[i], b.rho_i[i], (a.rho_error_estimate[i] + b.rho_error_estimate[i]) * b.rho_i[i]) << i;
-      EXPECT_NEAR(a.rho_q[i], b.rho_q[i], (a.rho_error_estimate[i] + b.rho_error_estimate[i]) * b.rho_i[i]) << i;
-      EXPECT_NEAR(a.dolp[i], b.dolp[i], a.error_estimate[i] + b.error_estimate[i]) << i;
+      EXPECT_LE(a[Quantity::kRhoErrorEstimate][i], 1e-4);
+      EXPECT_NEAR(a[Quantity::kRhoI][i], b[Quantity::kRhoI][i],
+                  (a[Quantity::kRhoErrorEstimate][i] + b[Quantity::kRhoErrorEstimate][i]) * b[Quantity::kRhoI][i])
+          << i;
+      EXPECT_NEAR(a[Quantity::kRhoQ][i], b[Quantity::kRhoQ][i],
+                  (a[Quantity::kRhoErrorEstimate][i] + b[Quantity::kRhoErrorEstimate][i]) * b[Quantity::kRhoI][i])
+          << i;
+      EXPECT_NEAR(a[Quantity::kDolp][i], b[Quantity::kDolp][i],
+                  a[Quantity::kErrorEstimate][i] + b[Quantity::kErrorEstimate][i])
+          << i;
     }
   }
 }
@@ -67,8 +73,7 @@ TEST_F(DenseTable, Verify_FindsNothing) {
 
 TEST_F(DenseTable, RuleAttributeAndSummary_SayWhatIsInterpolated) {
   const Outcome outcome = dolp(joined({"table", "scene.toml", "-o", "t.nc"}, kDense));
-  EXPECT_NE(outcome.out.find(" moments interpolated or combined, from "), std::string::npos)
-      << outcome.out;
+  EXPECT_NE(outcome.out.find(" moments interpolated or combined, from "), std::string::npos) << outcome.out;
   std::string rule;
   for (const Attribute& attribute : read_table(at("t.nc")).attributes) {
     if (attribute.name == "rule") rule = std::get<std::string>(attribute.value);
@@ -81,9 +86,9 @@ TEST_F(DenseTable, Twice_GivesTheSameNumbers) {
   const Table once = read_table(at("t.nc"));
   table(kDense);
   const Table again = read_table(at("t.nc"));
-  EXPECT_EQ(once.dolp, again.dolp);
-  EXPECT_EQ(once.rho_i, again.rho_i);
-  EXPECT_EQ(once.rho_error_estimate, again.rho_error_estimate);
+  EXPECT_EQ(once[Quantity::kDolp], again[Quantity::kDolp]);
+  EXPECT_EQ(once[Quantity::kRhoI], again[Quantity::kRhoI]);
+  EXPECT_EQ(once[Quantity::kRhoErrorEstimate], again[Quantity::kRhoErrorEstimate]);
 }
 
 TEST_F(DenseTable, SmallTable_IsIntegratedEntryByEntry) { EXPECT_EQ(table()["interpolated_moments"], 0); }

@@ -277,7 +277,7 @@ TEST_P(RandomGrids, StatedErrors_HoldAgainstEveryEntryByItself) {
       const std::vector<Moments> truth = exact->evaluate(some, {});
       for (std::size_t i = 0; i < kChecked; ++i) {
         const Moments& m = moments[positions[i]];
-        for (const Quantity& quantity : kQuantities) {
+        for (const MomentField& quantity : kMomentFields) {
           EXPECT_LE(std::abs(m.*quantity.value - truth[i].*quantity.value),
                     m.*quantity.error + truth[i].*quantity.error)
               << quantity.name << " at " << positions[i] << ", tolerance " << request.tolerance << ": theta "

@@ -70,19 +70,19 @@ Scene random_scene(Draw& draw) {
   };
   const double sigma = draw.in_ratio(0.01, 0.3);
   const double q = draw.uniform(1.6, 2.5);
-  scene.grid.theta_deg = axis(0.0, draw.chance(0.3) ? 90.0 : draw.uniform(60.0, 90.0), values(11, 60), 0.0, false);
-  scene.grid.sigma = axis(sigma, sigma * draw.in_ratio(3.0, 30.0), values(7, 24), 0.0, draw.chance(0.5));
-  scene.grid.q = axis(q, q + draw.uniform(1.0, 8.0), values(6, 12), 1.0, draw.chance(0.5));
-  if (distribution == Distribution::kGaussian) scene.grid.q = {2.0};
+  scene.grid[Axis::kTheta] = axis(0.0, draw.chance(0.3) ? 90.0 : draw.uniform(60.0, 90.0), values(11, 60), 0.0, false);
+  scene.grid[Axis::kSigma] = axis(sigma, sigma * draw.in_ratio(3.0, 30.0), values(7, 24), 0.0, draw.chance(0.5));
+  scene.grid[Axis::kQ] = axis(q, q + draw.uniform(1.0, 8.0), values(6, 12), 1.0, draw.chance(0.5));
+  if (distribution == Distribution::kGaussian) scene.grid[Axis::kQ] = {2.0};
   if (draw.chance(0.15)) {
-    scene.grid.sigma.resize(4);
-    scene.grid.q.resize(1);
+    scene.grid[Axis::kSigma].resize(4);
+    scene.grid[Axis::kQ].resize(1);
     OpticalConstants& index = scene.surface.material.constant;
-    scene.grid.n = axis(index.n, index.n * draw.uniform(1.1, 2.0), draw.count(4, 7), 0.0, draw.chance(0.5));
-    if (index.k > 0.0) scene.grid.k = axis(index.k, index.k * draw.uniform(1.1, 3.0), 4, 0.0, draw.chance(0.5));
+    scene.grid[Axis::kN] = axis(index.n, index.n * draw.uniform(1.1, 2.0), draw.count(4, 7), 0.0, draw.chance(0.5));
+    if (index.k > 0.0) scene.grid[Axis::kK] = axis(index.k, index.k * draw.uniform(1.1, 3.0), 4, 0.0, draw.chance(0.5));
   } else if (draw.chance(0.15)) {
-    scene.grid.q.resize(1);
-    scene.grid.wavelength_um = axis(8.0, draw.uniform(9.0, 14.0), draw.count(4, 8), 0.0, false);
+    scene.grid[Axis::kQ].resize(1);
+    scene.grid[Axis::kWavelength] = axis(8.0, draw.uniform(9.0, 14.0), draw.count(4, 8), 0.0, false);
   }
   scene.accuracy.tolerance = draw.in_ratio(1e-5, 1e-3);
   return scene;
@@ -95,18 +95,17 @@ Table table_of(const Scene& scene) {
 }
 
 /// Points within the grid, even in the coordinates of a lookup.
-std::vector<TableLookup::Point> random_points(const Grid& grid, Draw& draw) {
+std::vector<TableLookup::Point> random_points(const Axes& grid, Draw& draw) {
   std::vector<TableLookup::Point> points(kPoints);
   for (TableLookup::Point& point : points) {
-    for (std::size_t i = 0; i < kGridAxes.size(); ++i) {
-      const std::vector<double>& values = grid.*kGridAxes[i];
+    for (const Axis axis : kAllAxes) {
+      const std::vector<double>& values = grid[axis];
       if (values.empty()) continue;
-      const auto axis = static_cast<Axis>(i);
       const double origin = axis == Axis::kQ ? 1.0 : 0.0;
       const double value = axis == Axis::kTheta || values.size() == 1
                                ? draw.uniform(values.front(), values.back())
                                : origin + draw.in_ratio(values.front() - origin, values.back() - origin);
-      point[i] = std::clamp(value, values.front(), values.back());
+      point[axis] = std::clamp(value, values.front(), values.back());
     }
   }
   return points;
@@ -116,12 +115,13 @@ std::vector<PointResult> exact_at(const Scene& scene, const std::vector<TableLoo
   std::vector<SceneEntry> entries;
   std::vector<double> wavelengths;
   for (const TableLookup::Point& point : points) {
-    SceneEntry entry{point[3], {point[4], point[5]}, std::nullopt, 0};
-    if (!scene.grid.n.empty())
-      entry.index = OpticalConstants{point[1], scene.grid.k.empty() ? scene.surface.material.constant.k : point[2]};
-    if (!scene.grid.wavelength_um.empty()) {
+    SceneEntry entry{point[Axis::kTheta], {point[Axis::kSigma], point[Axis::kQ]}, std::nullopt, 0};
+    if (!scene.grid[Axis::kN].empty())
+      entry.index = OpticalConstants{
+          point[Axis::kN], scene.grid[Axis::kK].empty() ? scene.surface.material.constant.k : point[Axis::kK]};
+    if (!scene.grid[Axis::kWavelength].empty()) {
       entry.wavelength = static_cast<std::uint32_t>(wavelengths.size());
-      wavelengths.push_back(point[0]);
+      wavelengths.push_back(point[Axis::kWavelength]);
     }
     entries.push_back(entry);
   }
@@ -156,16 +156,18 @@ TEST(LookupEstimates, RandomPointsOfRandomTables_ErrorsAreWithinThem) {
       SCOPED_TRACE(testing::Message() << "table " << i << " of seed " << seed << ", theta " << points[j][3]
                                       << ", sigma " << points[j][4] << ", q " << points[j][5] << ", "
                                       << name_of(scene.surface.masking));
-      const double dolp_error = std::abs(found.dolp - exact[j].dolp);
-      EXPECT_LE(dolp_error, found.error_estimate + exact[j].error_estimate);
-      const double rho_error =
-          std::max(std::abs(found.rho_i - exact[j].rho_i), std::abs(found.rho_q - exact[j].rho_q)) / exact[j].rho_i;
-      EXPECT_LE(rho_error, found.rho_error_estimate + exact[j].rho_error_estimate);
+      const double dolp_error = std::abs(found[Quantity::kDolp] - exact[j][Quantity::kDolp]);
+      EXPECT_LE(dolp_error, found[Quantity::kErrorEstimate] + exact[j][Quantity::kErrorEstimate]);
+      const double rho_error = std::max(std::abs(found[Quantity::kRhoI] - exact[j][Quantity::kRhoI]),
+                                        std::abs(found[Quantity::kRhoQ] - exact[j][Quantity::kRhoQ])) /
+                               exact[j][Quantity::kRhoI];
+      EXPECT_LE(rho_error, found[Quantity::kRhoErrorEstimate] + exact[j][Quantity::kRhoErrorEstimate]);
       ++tally.points;
       tally.flagged += (found.status & kStatusToleranceMissed) != 0 ? 1 : 0;
       tally.missed += std::max(dolp_error, rho_error) > scene.accuracy.tolerance ? 1 : 0;
-      tally.worst = std::max({tally.worst, dolp_error / (found.error_estimate + exact[j].error_estimate),
-                              rho_error / (found.rho_error_estimate + exact[j].rho_error_estimate)});
+      tally.worst =
+          std::max({tally.worst, dolp_error / (found[Quantity::kErrorEstimate] + exact[j][Quantity::kErrorEstimate]),
+                    rho_error / (found[Quantity::kRhoErrorEstimate] + exact[j][Quantity::kRhoErrorEstimate])});
     }
   }
   EXPECT_GT(tally.points, 40 * tables);

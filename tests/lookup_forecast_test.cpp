@@ -29,9 +29,9 @@ std::vector<double> spaced(double first, double last, std::size_t count) {
 
 Scene scene_with(Masking masking, std::size_t thetas, std::size_t sigmas, std::size_t qs) {
   Scene scene = make_scene(Distribution::kCauchy, masking, {1.5, 0.1});
-  scene.grid.theta_deg = spaced(5.0, 80.0, thetas);
-  scene.grid.sigma = spaced(0.1, 0.5, sigmas);
-  scene.grid.q = spaced(1.8, 6.0, qs);
+  scene.grid[Axis::kTheta] = spaced(5.0, 80.0, thetas);
+  scene.grid[Axis::kSigma] = spaced(0.1, 0.5, sigmas);
+  scene.grid[Axis::kQ] = spaced(1.8, 6.0, qs);
   scene.accuracy.tolerance = kTolerance;
   return scene;
 }
@@ -49,7 +49,8 @@ double flagged_share(const Scene& scene) {
   };
   int flagged = 0;
   for (int i = 0; i < kPoints; ++i) {
-    const double theta_deg = within(scene.grid.theta_deg), sigma = within(scene.grid.sigma), q = within(scene.grid.q);
+    const double theta_deg = within(scene.grid[Axis::kTheta]), sigma = within(scene.grid[Axis::kSigma]),
+                 q = within(scene.grid[Axis::kQ]);
     flagged += (lookup.at(theta_deg, sigma, q).status & kStatusToleranceMissed) != 0 ? 1 : 0;
   }
   return static_cast<double>(flagged) / kPoints;
@@ -73,7 +74,7 @@ TEST(LookupForecast, TablesOfTheAdvisedDensity_AnswerMostPoints_AndHalfOfItTooFe
 
 TEST(LookupForecast, DenseAxis_NeedsFewerValues_AndOneOfThreeHasNoError) {
   Scene scene = scene_with(Masking::kVCavity, 200, 3, 1);
-  scene.grid.q = {3.0};
+  scene.grid[Axis::kQ] = {3.0};
   const std::vector<AxisForecast> axes = lookup_forecast(scene, keep_everything(scene));
   ASSERT_EQ(axes.size(), 2U);
   EXPECT_EQ(axes[0].axis, Axis::kTheta);
@@ -86,9 +87,9 @@ TEST(LookupForecast, DenseAxis_NeedsFewerValues_AndOneOfThreeHasNoError) {
 
 TEST(LookupForecast, FurtherAxes_AreLookedAtToo) {
   Scene scene = scene_with(Masking::kVCavity, 10, 5, 1);
-  scene.grid.q = {3.0};
-  scene.grid.n = spaced(1.3, 2.0, 6);
-  scene.grid.wavelength_um = spaced(9.0, 11.0, 5);
+  scene.grid[Axis::kQ] = {3.0};
+  scene.grid[Axis::kN] = spaced(1.3, 2.0, 6);
+  scene.grid[Axis::kWavelength] = spaced(9.0, 11.0, 5);
   const std::vector<AxisForecast> axes = lookup_forecast(scene, keep_everything(scene));
   ASSERT_EQ(axes.size(), 4U);
   for (const AxisForecast& axis : axes) EXPECT_TRUE(std::isfinite(axis.error));

@@ -36,23 +36,23 @@ std::vector<double> range(double first, double last, std::size_t count) {
 
 Table made_up(const std::vector<double>& theta, const std::vector<double>& sigma, const std::vector<double>& q) {
   Table table;
-  table.theta_deg = theta;
-  table.sigma = sigma;
-  table.q = q;
+  table.axes[Axis::kTheta] = theta;
+  table.axes[Axis::kSigma] = sigma;
+  table.axes[Axis::kQ] = q;
   for (const double a : theta) {
     for (const double b : sigma) {
       for (const double c : q) {
         const Truth t = truth(a, b, c);
-        table.stokes_i.push_back(t.i);
-        table.stokes_q.push_back(t.q);
-        table.stokes_u.push_back(0.0);
-        table.stokes_v.push_back(0.0);
-        table.rho_i.push_back(t.rho_i);
-        table.rho_q.push_back(t.rho_q);
-        table.albedo.push_back(t.albedo);
-        table.dolp.push_back(std::abs(t.q) / t.i);
-        table.error_estimate.push_back(kEntryError);
-        table.rho_error_estimate.push_back(kEntryError);
+        table[Quantity::kStokesI].push_back(t.i);
+        table[Quantity::kStokesQ].push_back(t.q);
+        table[Quantity::kStokesU].push_back(0.0);
+        table[Quantity::kStokesV].push_back(0.0);
+        table[Quantity::kRhoI].push_back(t.rho_i);
+        table[Quantity::kRhoQ].push_back(t.rho_q);
+        table[Quantity::kAlbedo].push_back(t.albedo);
+        table[Quantity::kDolp].push_back(std::abs(t.q) / t.i);
+        table[Quantity::kErrorEstimate].push_back(kEntryError);
+        table[Quantity::kRhoErrorEstimate].push_back(kEntryError);
         table.status.push_back(0);
       }
     }
@@ -62,9 +62,12 @@ Table made_up(const std::vector<double>& theta, const std::vector<double>& sigma
 
 void expect_holds(const PointResult& result, double theta_deg, double sigma, double q) {
   const Truth t = truth(theta_deg, sigma, q);
-  EXPECT_NEAR(result.dolp, std::abs(t.q) / t.i, result.error_estimate) << theta_deg << " " << sigma << " " << q;
-  EXPECT_NEAR(result.rho_i, t.rho_i, result.rho_error_estimate * t.rho_i) << theta_deg << " " << sigma << " " << q;
-  EXPECT_NEAR(result.rho_q, t.rho_q, result.rho_error_estimate * t.rho_i) << theta_deg << " " << sigma << " " << q;
+  EXPECT_NEAR(result[Quantity::kDolp], std::abs(t.q) / t.i, result[Quantity::kErrorEstimate])
+      << theta_deg << " " << sigma << " " << q;
+  EXPECT_NEAR(result[Quantity::kRhoI], t.rho_i, result[Quantity::kRhoErrorEstimate] * t.rho_i)
+      << theta_deg << " " << sigma << " " << q;
+  EXPECT_NEAR(result[Quantity::kRhoQ], t.rho_q, result[Quantity::kRhoErrorEstimate] * t.rho_i)
+      << theta_deg << " " << sigma << " " << q;
 }
 
 TEST(TableLookup, BetweenEntries_ErrorIsWithinWhatIsStated) {
@@ -77,9 +80,9 @@ TEST(TableLookup, BetweenEntries_ErrorIsWithinWhatIsStated) {
         for (const double q : {1.51, 2.2, 5.7}) {
           const PointResult result = lookup.at(theta, sigma, q);
           expect_holds(result, theta, sigma, q);
-          worst = std::max(worst, result.error_estimate);
+          worst = std::max(worst, result[Quantity::kErrorEstimate]);
           EXPECT_EQ((result.status & kStatusToleranceMissed) != 0,
-                    result.error_estimate > 1e-4 || result.rho_error_estimate > 1e-4);
+                    result[Quantity::kErrorEstimate] > 1e-4 || result[Quantity::kRhoErrorEstimate] > 1e-4);
         }
       }
     }
@@ -97,10 +100,10 @@ TEST(TableLookup, AtAnEntry_ItsValuesAndItsErrors) {
   const TableLookup lookup(table, 1e-4, "t.nc");
   const std::size_t position = table.position(4, 1, 1);
   const PointResult result = lookup.at(40.0, 0.3, 3.0);
-  EXPECT_EQ(result.stokes_q, table.stokes_q[position]);
-  EXPECT_EQ(result.rho_i, table.rho_i[position]);
-  EXPECT_NEAR(result.error_estimate, kEntryError, 1e-15);
-  EXPECT_NEAR(result.rho_error_estimate, kEntryError, 1e-15);
+  EXPECT_EQ(result[Quantity::kStokesQ], table[Quantity::kStokesQ][position]);
+  EXPECT_EQ(result[Quantity::kRhoI], table[Quantity::kRhoI][position]);
+  EXPECT_NEAR(result[Quantity::kErrorEstimate], kEntryError, 1e-15);
+  EXPECT_NEAR(result[Quantity::kRhoErrorEstimate], kEntryError, 1e-15);
   EXPECT_EQ(result.status, 0U);
 }
 
@@ -108,9 +111,9 @@ TEST(TableLookup, AxisWithTwoOrThreeValues_StatesNoErrorBetweenThem) {
   const Table table = made_up(range(0, 80, 9), {0.1, 0.3, 0.9}, {2.0});
   const TableLookup lookup(table, 1e-4, "t.nc");
   const PointResult between = lookup.at(41.0, 0.2, 2.0);
-  EXPECT_TRUE(std::isinf(between.error_estimate) && std::isinf(between.rho_error_estimate));
+  EXPECT_TRUE(std::isinf(between[Quantity::kErrorEstimate]) && std::isinf(between[Quantity::kRhoErrorEstimate]));
   EXPECT_EQ(between.status, kStatusToleranceMissed);
-  EXPECT_TRUE(std::isfinite(lookup.at(41.0, 0.3, 2.0).error_estimate));
+  EXPECT_TRUE(std::isfinite(lookup.at(41.0, 0.3, 2.0)[Quantity::kErrorEstimate]));
 }
 
 TEST(TableLookup, AxesWithOneValue_AreNotInterpolated) {
@@ -118,7 +121,7 @@ TEST(TableLookup, AxesWithOneValue_AreNotInterpolated) {
   const TableLookup lookup(table, 1e-4, "t.nc");
   const PointResult result = lookup.at(41.3, 0.3, 2.0);
   expect_holds(result, 41.3, 0.3, 2.0);
-  EXPECT_LT(result.error_estimate, 1e-5);
+  EXPECT_LT(result[Quantity::kErrorEstimate], 1e-5);
 }
 
 TEST(TableLookup, DescendingAxes_TheSameResult) {
@@ -126,38 +129,38 @@ TEST(TableLookup, DescendingAxes_TheSameResult) {
   const Table down = made_up(range(80, 0, 9), range(1.0, 0.1, 7), {5.0, 4.0, 3.0, 2.0});
   const PointResult a = TableLookup(up, 1e-4, "").at(33.0, 0.42, 2.7);
   const PointResult b = TableLookup(down, 1e-4, "").at(33.0, 0.42, 2.7);
-  EXPECT_NEAR(a.dolp, b.dolp, 1e-12);
-  EXPECT_NEAR(a.error_estimate, b.error_estimate, 1e-12);
+  EXPECT_NEAR(a[Quantity::kDolp], b[Quantity::kDolp], 1e-12);
+  EXPECT_NEAR(a[Quantity::kErrorEstimate], b[Quantity::kErrorEstimate], 1e-12);
 }
 
 TEST(TableLookup, NextToUnknownEntries_ReadsThoseItKnows) {
   Table table = made_up(range(0, 90, 19), {0.3}, {2.0});
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::size_t last = table.size() - 1;  // 90 degrees
-  for (auto column : {&Table::stokes_i, &Table::stokes_q, &Table::stokes_u, &Table::stokes_v, &Table::rho_i,
-                      &Table::rho_q, &Table::error_estimate}) {
-    (table.*column)[last] = nan;
+  for (const Quantity quantity : {Quantity::kStokesI, Quantity::kStokesQ, Quantity::kStokesU, Quantity::kStokesV,
+                                  Quantity::kRhoI, Quantity::kRhoQ, Quantity::kErrorEstimate}) {
+    table[quantity][last] = nan;
   }
   table.status[last] = kStatusOutsideDomain | kStatusUnphysicalReflectance;
   const TableLookup lookup(table, 1e-3, "t.nc");
   const PointResult before = lookup.at(84.0, 0.3, 2.0);
   expect_holds(before, 84.0, 0.3, 2.0);
   EXPECT_EQ(before.status, 0U);
-  table.dolp[last] = 0.25;  // a limit
-  table.error_estimate[last] = 1e-5;
+  table[Quantity::kDolp][last] = 0.25;  // a limit
+  table[Quantity::kErrorEstimate][last] = 1e-5;
   const PointResult at_horizon = lookup.at(90.0, 0.3, 2.0);
-  EXPECT_EQ(at_horizon.dolp, 0.25);
-  EXPECT_EQ(at_horizon.error_estimate, 1e-5);
+  EXPECT_EQ(at_horizon[Quantity::kDolp], 0.25);
+  EXPECT_EQ(at_horizon[Quantity::kErrorEstimate], 1e-5);
   EXPECT_EQ(at_horizon.status, table.status[last]);
   const PointResult between = lookup.at(87.0, 0.3, 2.0);
-  EXPECT_TRUE(std::isnan(between.dolp));
+  EXPECT_TRUE(std::isnan(between[Quantity::kDolp]));
   EXPECT_EQ(between.status, kStatusOutsideDomain);
 }
 
 TEST(TableLookup, StatusOfTheCell_IsKept_AndNegativeIntensityIsFound) {
   Table table = made_up(range(0, 80, 9), {0.3}, {2.0});
   table.status[5] = kStatusUnphysicalReflectance;
-  for (std::size_t i = 6; i < table.size(); ++i) table.stokes_i[i] = -1.0;
+  for (std::size_t i = 6; i < table.size(); ++i) table[Quantity::kStokesI][i] = -1.0;
   const TableLookup lookup(table, 1e-3, "t.nc");
   EXPECT_EQ(lookup.at(12.0, 0.3, 2.0).status & kStatusUnphysicalReflectance, 0U);
   EXPECT_NE(lookup.at(45.0, 0.3, 2.0).status & kStatusUnphysicalReflectance, 0U);
@@ -166,22 +169,23 @@ TEST(TableLookup, StatusOfTheCell_IsKept_AndNegativeIntensityIsFound) {
 
 TEST(TableLookup, EntryWithoutABound_IsReadWithoutABound) {
   Table table = made_up(range(0, 80, 9), {0.3}, {2.0});
-  table.error_estimate[4] = std::numeric_limits<double>::infinity();
+  table[Quantity::kErrorEstimate][4] = std::numeric_limits<double>::infinity();
   const PointResult result = TableLookup(table, 1e-3, "t.nc").at(42.0, 0.3, 2.0);
-  EXPECT_TRUE(std::isinf(result.error_estimate));
+  EXPECT_TRUE(std::isinf(result[Quantity::kErrorEstimate]));
   EXPECT_EQ(result.status, kStatusToleranceMissed);
-  EXPECT_TRUE(std::isfinite(result.dolp));
+  EXPECT_TRUE(std::isfinite(result[Quantity::kDolp]));
 }
 
 TEST(TableLookup, QuantitiesThatTheTableLacks_AreNan) {
   Table table = made_up(range(0, 80, 9), {0.3}, {2.0});
-  table.rho_i.clear();
-  table.rho_q.clear();
-  table.albedo.clear();
-  table.rho_error_estimate.clear();
+  table[Quantity::kRhoI].clear();
+  table[Quantity::kRhoQ].clear();
+  table[Quantity::kAlbedo].clear();
+  table[Quantity::kRhoErrorEstimate].clear();
   const PointResult result = TableLookup(table, 1e-2, "t.nc").at(42.0, 0.3, 2.0);
-  EXPECT_TRUE(std::isnan(result.rho_i) && std::isnan(result.albedo) && std::isnan(result.rho_error_estimate));
-  EXPECT_GT(result.dolp, 0.0);
+  EXPECT_TRUE(std::isnan(result[Quantity::kRhoI]) && std::isnan(result[Quantity::kAlbedo]) &&
+              std::isnan(result[Quantity::kRhoErrorEstimate]));
+  EXPECT_GT(result[Quantity::kDolp], 0.0);
   EXPECT_EQ(result.status, 0U);
 }
 
@@ -195,10 +199,11 @@ TEST(TableLookup, VariablesThatEveryResultNeeds_AreNamedWhereTheyAreMissing) {
     }
   };
   const Table whole = made_up(range(0, 80, 9), {0.3}, {2.0});
-  for (const char* needed : {"dolp", "stokes_i", "stokes_q", "stokes_u", "stokes_v", "error_estimate", "rho_i"}) {
+  for (const Quantity needed : {Quantity::kDolp, Quantity::kStokesI, Quantity::kStokesQ, Quantity::kStokesU,
+                                Quantity::kStokesV, Quantity::kErrorEstimate, Quantity::kRhoI}) {
     Table table = whole;
-    (table.*std::ranges::find(table_variables(), std::string_view(needed), &TableVariable::name)->values).clear();
-    expect_named(table, needed);
+    table[needed].clear();
+    expect_named(table, description_of(needed).name);
   }
   Table table = whole;
   table.status.clear();
@@ -213,12 +218,12 @@ TEST(TableLookup, AValueTwice_IsRefused) {
 // As the lower end of a bracket often is.
 TEST(TableLookup, QuantityThatIs0Everywhere_Is0) {
   Table table = made_up(range(0.0, 60.0, 8), range(0.1, 0.5, 6), range(1.5, 4.0, 6));
-  table.dolp_low.assign(table.dolp.size(), 0.0);
-  table.dolp_high = table.dolp;
+  table[Quantity::kDolpLow].assign(table[Quantity::kDolp].size(), 0.0);
+  table[Quantity::kDolpHigh] = table[Quantity::kDolp];
   const PointResult result = TableLookup(table, 1e-4, "t").at(31.0, 0.22, 2.3);
-  EXPECT_EQ(result.dolp_low, 0.0);
-  EXPECT_GT(result.dolp_high, 0.0);
-  EXPECT_TRUE(std::isnan(result.emissivity_s));
+  EXPECT_EQ(result[Quantity::kDolpLow], 0.0);
+  EXPECT_GT(result[Quantity::kDolpHigh], 0.0);
+  EXPECT_TRUE(std::isnan(result[Quantity::kEmissivityS]));
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ class StoredValues : public testing::TestWithParam<Case> {
 
 TEST_P(StoredValues, EveryEntry_ErrorIsBelowItsEstimate) {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
-    for (const Quantity& q : kQuantities) {
+    for (const MomentField& q : kMomentFields) {
       const double value = moments_[i].*q.value;
       const double reference = rows_[i].moments.*q.value;
       EXPECT_LE(std::abs(value - reference), moments_[i].*q.error + rows_[i].moments.*q.error)
@@ -124,7 +124,7 @@ TEST(NearCoincidences, EveryEntry_ErrorIsBelowItsEstimate) {
       const std::vector<Moments> moments =
           make_evaluator(Kernel::kCpuDouble)->evaluate(request_of(model, points, tolerance), {});
       for (std::size_t i = 0; i < moments.size(); ++i) {
-        for (const Quantity& q : kQuantities) {
+        for (const MomentField& q : kMomentFields) {
           EXPECT_LE(std::abs(moments[i].*q.value - references[i].*q.value),
                     moments[i].*q.error + references[i].*q.error)
               << q.name << " " << name_of(model) << " at " << text_of(points[i]) << ", tolerance " << tolerance;

@@ -27,9 +27,9 @@ std::string error_of(const std::string& text, PointsKind kind = PointsKind::kDir
 TEST(Points_Directions, HaveTheColumnsOfTheHeader) {
   const Points points = directions("q,theta_deg\n2,0\n1.5,90\n");
   EXPECT_EQ(points.size(), 2U);
-  EXPECT_EQ(*points.theta_deg, (std::vector<double>{0.0, 90.0}));
-  EXPECT_EQ(*points.q, (std::vector<double>{2.0, 1.5}));
-  EXPECT_FALSE(points.sigma || points.n || points.k);
+  EXPECT_EQ(*points[Axis::kTheta], (std::vector<double>{0.0, 90.0}));
+  EXPECT_EQ(*points[Axis::kQ], (std::vector<double>{2.0, 1.5}));
+  EXPECT_FALSE(points[Axis::kSigma] || points[Axis::kN] || points[Axis::kK]);
   EXPECT_FALSE(points.theta_i_deg || points.theta_r_deg || points.delta_phi_deg);
 }
 
@@ -39,18 +39,18 @@ TEST(Points_Geometries, HaveThreeAnglesAndAnyOfTheRest) {
   EXPECT_EQ(*points.theta_i_deg, std::vector<double>{1.0});
   EXPECT_EQ(*points.theta_r_deg, std::vector<double>{2.0});
   EXPECT_EQ(*points.delta_phi_deg, std::vector<double>{-180.0});
-  EXPECT_EQ(*points.sigma, std::vector<double>{0.0});
-  EXPECT_EQ(*points.n, std::vector<double>{1.5});
-  EXPECT_EQ(*points.k, std::vector<double>{0.0});
-  EXPECT_FALSE(points.q || points.theta_deg);
+  EXPECT_EQ(*points[Axis::kSigma], std::vector<double>{0.0});
+  EXPECT_EQ(*points[Axis::kN], std::vector<double>{1.5});
+  EXPECT_EQ(*points[Axis::kK], std::vector<double>{0.0});
+  EXPECT_FALSE(points[Axis::kQ] || points[Axis::kTheta]);
 }
 
 TEST(Points_Cells, KeepTheirSpelling) {
   const Points points = directions("\xEF\xBB\xBF theta_deg , sigma\r\n 3.00e1 ,\t+0.10\r\n030,1E-1\r\n\r\n");
   EXPECT_EQ(points.header, "theta_deg,sigma");
   EXPECT_EQ(points.rows, (std::vector<std::string>{"3.00e1,+0.10", "030,1E-1"}));
-  EXPECT_EQ(*points.theta_deg, (std::vector<double>{30.0, 30.0}));
-  EXPECT_EQ(*points.sigma, (std::vector<double>{0.1, 0.1}));
+  EXPECT_EQ(*points[Axis::kTheta], (std::vector<double>{30.0, 30.0}));
+  EXPECT_EQ(*points[Axis::kSigma], (std::vector<double>{0.1, 0.1}));
 }
 
 TEST(Points_Results, AreLeftOut_AndNamed) {
@@ -59,15 +59,15 @@ TEST(Points_Results, AreLeftOut_AndNamed) {
   EXPECT_EQ(points.left_out, (std::vector<std::string>{"dolp", "status"}));
   EXPECT_EQ(points.header, "theta_deg,sigma");
   EXPECT_EQ(points.rows, std::vector<std::string>{"30,0.2"});
-  EXPECT_EQ(*points.sigma, std::vector<double>{0.2});
+  EXPECT_EQ(*points[Axis::kSigma], std::vector<double>{0.2});
 }
 
 TEST(Points_HeaderAlone, IsAnEmptyList) {
   for (const char* text : {"theta_deg", "theta_deg\n", "theta_deg\r\n\r\n"}) {
     const Points points = directions(text);
     EXPECT_EQ(points.size(), 0U);
-    ASSERT_TRUE(points.theta_deg);
-    EXPECT_TRUE(points.theta_deg->empty());
+    ASSERT_TRUE(points[Axis::kTheta]);
+    EXPECT_TRUE(points[Axis::kTheta]->empty());
   }
 }
 
@@ -144,7 +144,7 @@ TEST(Points_RandomNumbers, ArriveBitForBit) {
     values.push_back(std::pow(10.0, exponent(random)));
     text += format_number(values.back()) + '\n';
   }
-  EXPECT_EQ(*directions(text).k, values);
+  EXPECT_EQ(*directions(text)[Axis::kK], values);
 }
 
 }  // namespace

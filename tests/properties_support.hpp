@@ -142,15 +142,15 @@ inline std::unique_ptr<MomentsEvaluator> make_evaluator(Kernel kernel, VulkanOpt
 }
 
 /// One of the four results beside its stated error.
-struct Quantity {
+struct MomentField {
   const char* name;
   double Moments::*value;
   double Moments::*error;
 };
 
-inline constexpr std::array<Quantity, 4> kQuantities{{{"r_i", &Moments::r_i, &Moments::r_i_error},
-                                                      {"r_q", &Moments::r_q, &Moments::r_q_error},
-                                                      {"albedo", &Moments::albedo, &Moments::albedo_error},
-                                                      {"deficit", &Moments::deficit, &Moments::deficit_error}}};
+inline constexpr std::array<MomentField, 4> kMomentFields{{{"r_i", &Moments::r_i, &Moments::r_i_error},
+                                                           {"r_q", &Moments::r_q, &Moments::r_q_error},
+                                                           {"albedo", &Moments::albedo, &Moments::albedo_error},
+                                                           {"deficit", &Moments::deficit, &Moments::deficit_error}}};
 
 }  // namespace dolp

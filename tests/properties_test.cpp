@@ -58,7 +58,7 @@ TEST_P(EveryKernel, RandomPoints_KeepTheEnergy) {
   for (const double tolerance : kTolerances) {
     const std::vector<Moments> moments = make_evaluator(kernel)->evaluate(request_of(model, points, tolerance), {});
     for (std::size_t i = 0; i < points.size(); ++i) {
-      for (const Quantity& quantity : kQuantities) {
+      for (const MomentField& quantity : kMomentFields) {
         EXPECT_TRUE(std::isfinite(moments[i].*quantity.value)) << quantity.name << " at " << text_of(points[i]);
         EXPECT_GE(moments[i].*quantity.error, 0.0) << quantity.name << " at " << text_of(points[i]);
       }
@@ -71,8 +71,9 @@ TEST_P(EveryKernel, RandomPoints_KeepTheEnergy) {
 
 bool same(const Moments& a, const Moments& b) {
   const bool same_work = a.evaluations == b.evaluations;
-  return std::ranges::all_of(kQuantities,
-                             [&](const Quantity& q) { return a.*q.value == b.*q.value && a.*q.error == b.*q.error; }) &&
+  return std::ranges::all_of(
+             kMomentFields,
+             [&](const MomentField& q) { return a.*q.value == b.*q.value && a.*q.error == b.*q.error; }) &&
          same_work;
 }
 

@@ -34,21 +34,24 @@ TEST(Radiometry, RandomScenes_AgreeWithPrintedFormulas) {
     // Terms of either sign: the scale is their sum without signs, which |rho| <= 3 next to a positive I bounds.
     const double scale = std::abs(static_cast<double>(expected.i)) + std::abs(static_cast<double>(expected.q));
     const double cancelled = 10.0 * kAgreement * Radiometry(scene).rule().samples[0].emitted;
-    ASSERT_NEAR(actual.stokes_i, static_cast<double>(expected.i), kAgreement * scale + cancelled) << "scene " << i;
-    ASSERT_NEAR(actual.stokes_q, static_cast<double>(expected.q), kAgreement * scale + cancelled) << "scene " << i;
-    ASSERT_EQ(actual.stokes_u, 0.0);
-    ASSERT_EQ(actual.stokes_v, 0.0);
-    if (actual.stokes_i == 0.0) {  // total reflection of nothing, next to a smooth surface that does not emit
-      ASSERT_TRUE(std::isnan(actual.dolp));
+    ASSERT_NEAR(actual[Quantity::kStokesI], static_cast<double>(expected.i), kAgreement * scale + cancelled)
+        << "scene " << i;
+    ASSERT_NEAR(actual[Quantity::kStokesQ], static_cast<double>(expected.q), kAgreement * scale + cancelled)
+        << "scene " << i;
+    ASSERT_EQ(actual[Quantity::kStokesU], 0.0);
+    ASSERT_EQ(actual[Quantity::kStokesV], 0.0);
+    if (actual[Quantity::kStokesI] ==
+        0.0) {  // total reflection of nothing, next to a smooth surface that does not emit
+      ASSERT_TRUE(std::isnan(actual[Quantity::kDolp]));
       continue;
     }
     const auto expected_dolp = static_cast<double>(std::abs(expected.q) / expected.i);
     // The printed 1 - R of total reflection leaves a rounding error of the emission where the program has 0.
     const double printed_rounding = 16.0 * static_cast<double>(std::numeric_limits<Real>::epsilon()) *
-                                    Radiometry(scene).rule().samples[0].emitted / std::abs(actual.stokes_i);
-    ASSERT_LE(std::abs(actual.dolp - expected_dolp),
-              actual.error_estimate + printed_rounding + kEpsilon * std::abs(actual.dolp));
-    ASSERT_EQ(actual.albedo, 0.9 * direction.cos_theta / direction.cos_theta);
+                                    Radiometry(scene).rule().samples[0].emitted / std::abs(actual[Quantity::kStokesI]);
+    ASSERT_LE(std::abs(actual[Quantity::kDolp] - expected_dolp),
+              actual[Quantity::kErrorEstimate] + printed_rounding + kEpsilon * std::abs(actual[Quantity::kDolp]));
+    ASSERT_EQ(actual[Quantity::kAlbedo], 0.9 * direction.cos_theta / direction.cos_theta);
   }
 }
 
@@ -74,9 +77,10 @@ TEST(Radiometry, TabulatedMaterialBand_AgreesWithPrintedFormulas) {
       };
       const Real i = integral(corners(scene), [&](Real um) { return at(um).i; });
       const Real q = integral(corners(scene), [&](Real um) { return at(um).q; });
-      EXPECT_NEAR(actual.stokes_i, static_cast<double>(i), kBandAgreement * static_cast<double>(i));
-      EXPECT_NEAR(actual.stokes_q, static_cast<double>(q), kBandAgreement * static_cast<double>(i));
-      EXPECT_LE(std::abs(actual.dolp - static_cast<double>(std::abs(q) / i)), actual.error_estimate + kBandAgreement);
+      EXPECT_NEAR(actual[Quantity::kStokesI], static_cast<double>(i), kBandAgreement * static_cast<double>(i));
+      EXPECT_NEAR(actual[Quantity::kStokesQ], static_cast<double>(q), kBandAgreement * static_cast<double>(i));
+      EXPECT_LE(std::abs(actual[Quantity::kDolp] - static_cast<double>(std::abs(q) / i)),
+                actual[Quantity::kErrorEstimate] + kBandAgreement);
     }
   }
 }
@@ -91,8 +95,8 @@ TEST(Radiometry, IndicesOfThePoint_ReplaceThoseOfTheRule) {
   const PointResult own = evaluate(scene, direction, moments);
   scene.surface.material.constant = indices[0];
   const PointResult other = evaluate(scene, direction, moments);
-  EXPECT_EQ(replaced.stokes_q, other.stokes_q);
-  EXPECT_NE(replaced.stokes_q, own.stokes_q);
+  EXPECT_EQ(replaced[Quantity::kStokesQ], other[Quantity::kStokesQ]);
+  EXPECT_NE(replaced[Quantity::kStokesQ], own[Quantity::kStokesQ]);
 }
 
 // ---- What must hold exactly -----------------------------------------------------------------------------------------
@@ -106,10 +110,10 @@ TEST(Radiometry, IsothermalSurroundingsWithoutSource_HaveNoPolarisation) {
     scene.surroundings = Surroundings{scene.emission->temperature_K};
     const Direction direction = direction_of(random.uniform(0.0, 89.9));
     const PointResult result = evaluate(scene, direction, moments_of(random.reflectance(), direction.cos_theta));
-    if (result.stokes_i == 0.0) continue;  // radiances below the range of double
-    ASSERT_EQ(result.stokes_q, 0.0);
-    ASSERT_FALSE(std::signbit(result.stokes_q));
-    ASSERT_EQ(result.dolp, 0.0);
+    if (result[Quantity::kStokesI] == 0.0) continue;  // radiances below the range of double
+    ASSERT_EQ(result[Quantity::kStokesQ], 0.0);
+    ASSERT_FALSE(std::signbit(result[Quantity::kStokesQ]));
+    ASSERT_EQ(result[Quantity::kDolp], 0.0);
   }
 }
 
@@ -125,11 +129,12 @@ TEST(Radiometry, SpecularWeight_EntersLinearlyInRhoAndStokes) {
   const PointResult half = at(0.5);
   const PointResult full = at(1.0);
   constexpr double kTolerance = 10.0 * kEpsilon;  // a few roundings
-  EXPECT_NEAR(half.rho_i, 0.5 * (none.rho_i + full.rho_i), kTolerance);
-  EXPECT_NEAR(half.rho_q, 0.5 * full.rho_q, kTolerance);
-  EXPECT_NEAR(half.stokes_i, 0.5 * (none.stokes_i + full.stokes_i), kTolerance * full.stokes_i);
-  EXPECT_NEAR(half.stokes_q, 0.5 * full.stokes_q, kTolerance * full.stokes_i);
-  EXPECT_EQ(none.rho_q, 0.0);
+  EXPECT_NEAR(half[Quantity::kRhoI], 0.5 * (none[Quantity::kRhoI] + full[Quantity::kRhoI]), kTolerance);
+  EXPECT_NEAR(half[Quantity::kRhoQ], 0.5 * full[Quantity::kRhoQ], kTolerance);
+  EXPECT_NEAR(half[Quantity::kStokesI], 0.5 * (none[Quantity::kStokesI] + full[Quantity::kStokesI]),
+              kTolerance * full[Quantity::kStokesI]);
+  EXPECT_NEAR(half[Quantity::kStokesQ], 0.5 * full[Quantity::kStokesQ], kTolerance * full[Quantity::kStokesI]);
+  EXPECT_EQ(none[Quantity::kRhoQ], 0.0);
 }
 
 TEST(Radiometry, Path_ScalesQAndAddsItsExitanceToI) {
@@ -139,8 +144,8 @@ TEST(Radiometry, Path_ScalesQAndAddsItsExitanceToI) {
   const PointResult clear = evaluate(scene, direction, moments);
   scene.path = Path{0.5, std::nullopt, 2.0};
   const PointResult seen = evaluate(scene, direction, moments);
-  EXPECT_EQ(seen.stokes_q, 0.5 * clear.stokes_q);
-  EXPECT_DOUBLE_EQ(seen.stokes_i, 0.5 * clear.stokes_i + 2.0 * std::numbers::pi);
+  EXPECT_EQ(seen[Quantity::kStokesQ], 0.5 * clear[Quantity::kStokesQ]);
+  EXPECT_DOUBLE_EQ(seen[Quantity::kStokesI], 0.5 * clear[Quantity::kStokesI] + 2.0 * std::numbers::pi);
 }
 
 TEST(Radiometry, GreyBand_IsTheSumOfItsPartsInStokes) {
@@ -157,11 +162,11 @@ TEST(Radiometry, GreyBand_IsTheSumOfItsPartsInStokes) {
   for (int part = 0; part < 12; ++part) {
     scene.spectrum = {8.0 + 0.5 * part, 8.5 + 0.5 * part};
     const PointResult result = evaluate(scene, direction, moments);
-    i += result.stokes_i;
-    q += result.stokes_q;
+    i += result[Quantity::kStokesI];
+    q += result[Quantity::kStokesQ];
   }
-  EXPECT_NEAR(whole.stokes_i, i, kAgreement * i);
-  EXPECT_NEAR(whole.stokes_q, q, kAgreement * i);
+  EXPECT_NEAR(whole[Quantity::kStokesI], i, kAgreement * i);
+  EXPECT_NEAR(whole[Quantity::kStokesQ], q, kAgreement * i);
 }
 
 TEST(Radiometry, SourceThatCancelsEmission_LeavesNoQ) {
@@ -171,8 +176,8 @@ TEST(Radiometry, SourceThatCancelsEmission_LeavesNoQ) {
   scene.source = Source{};
   scene.source->irradiance = std::numbers::pi * planck_radiance(10.6, 290.0) / direction.cos_theta;
   const PointResult result = evaluate(scene, direction, moments_of({0.3, 0.1}, direction.cos_theta));
-  EXPECT_LE(result.dolp, 2.0 * kEpsilon);
-  EXPECT_LE(result.dolp, result.error_estimate);
+  EXPECT_LE(result[Quantity::kDolp], 2.0 * kEpsilon);
+  EXPECT_LE(result[Quantity::kDolp], result[Quantity::kErrorEstimate]);
 }
 
 TEST(Radiometry, ErrorOfTheDirectEmission_IsInTheEstimateWhereTheBracketIs) {
@@ -182,14 +187,16 @@ TEST(Radiometry, ErrorOfTheDirectEmission_IsInTheEstimateWhereTheBracketIs) {
   moments.direct_q = -0.05 * direction.cos_theta;
   moments.direct_q_error = 1e-3 * direction.cos_theta;
   Scene scene = night_scene();
-  EXPECT_LT(evaluate(scene, direction, moments).error_estimate, 1e-6);
+  EXPECT_LT(evaluate(scene, direction, moments)[Quantity::kErrorEstimate], 1e-6);
   scene.emission->has_bracket = true;
   const PointResult bounded = evaluate(scene, direction, moments);
   moments.direct_q += moments.direct_q_error;
   const PointResult other = evaluate(scene, direction, moments);
-  EXPECT_NE(other.dolp_high, bounded.dolp_high);
-  EXPECT_LE(std::abs(other.dolp_high - bounded.dolp_high), bounded.error_estimate * (1.0 + kAgreement));
-  EXPECT_LE(std::abs(other.dolp_low - bounded.dolp_low), bounded.error_estimate * (1.0 + kAgreement));
+  EXPECT_NE(other[Quantity::kDolpHigh], bounded[Quantity::kDolpHigh]);
+  EXPECT_LE(std::abs(other[Quantity::kDolpHigh] - bounded[Quantity::kDolpHigh]),
+            bounded[Quantity::kErrorEstimate] * (1.0 + kAgreement));
+  EXPECT_LE(std::abs(other[Quantity::kDolpLow] - bounded[Quantity::kDolpLow]),
+            bounded[Quantity::kErrorEstimate] * (1.0 + kAgreement));
 }
 
 TEST(Radiometry, TemperaturesFromOneTo6000K_GiveFiniteStokes) {
@@ -200,8 +207,10 @@ TEST(Radiometry, TemperaturesFromOneTo6000K_GiveFiniteStokes) {
       scene.spectrum = {wavelength_um, wavelength_um};
       const Direction direction = direction_of(60.0);
       const PointResult result = evaluate(scene, direction, moments_of({0.3, 0.1}, direction.cos_theta));
-      EXPECT_TRUE(std::isfinite(result.stokes_i) && std::isfinite(result.stokes_q)) << temperature_K << wavelength_um;
-      EXPECT_EQ(std::isfinite(result.dolp), result.stokes_i > 0.0) << temperature_K << " " << wavelength_um;
+      EXPECT_TRUE(std::isfinite(result[Quantity::kStokesI]) && std::isfinite(result[Quantity::kStokesQ]))
+          << temperature_K << wavelength_um;
+      EXPECT_EQ(std::isfinite(result[Quantity::kDolp]), result[Quantity::kStokesI] > 0.0)
+          << temperature_K << " " << wavelength_um;
     }
   }
 }
@@ -217,7 +226,7 @@ TEST(Radiometry, MetalWithoutSurroundings_KeepsTheDigitsOfItsEmission) {
   moments.r_i = 1.0 - moments.deficit;
   moments.r_q = 1e-12;
   const PointResult result = evaluate(scene, direction, moments);
-  EXPECT_NEAR(result.dolp, 1.0 / 3.0, kAgreement);
+  EXPECT_NEAR(result[Quantity::kDolp], 1.0 / 3.0, kAgreement);
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ TEST(EvaluateScene_Levels, OnlyTheEntriesThatMiss_AreComputedAgain) {
     EXPECT_EQ(results[i].status & kStatusToleranceMissed, 0U) << i;
     // in its own place, from the level that met the tolerance
     const double rho_q = kEntries[i].theta_deg > kWorsensFrom_deg ? 0.1 * (1.0 + evaluator.shift) : 0.1;
-    EXPECT_NEAR(results[i].rho_q, rho_q, 1e-12) << i;
+    EXPECT_NEAR(results[i][Quantity::kRhoQ], rho_q, 1e-12) << i;
   }
 }
 
@@ -99,7 +99,7 @@ TEST(EvaluateScene_Levels, ThatAllMiss_KeepTheBest) {
   const std::vector<PointResult> results = evaluate_scene(scene(), kEntries, evaluator, {});
   EXPECT_GT(evaluator.requests.size(), 2U);
   EXPECT_NE(results[1].status & kStatusToleranceMissed, 0U);
-  EXPECT_NEAR(results[1].rho_q, 0.1, 1e-12);  // of the first level
+  EXPECT_NEAR(results[1][Quantity::kRhoQ], 0.1, 1e-12);  // of the first level
 }
 
 // Entries that miss by more than others want a tighter rule, and are not held back by them.

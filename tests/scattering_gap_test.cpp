@@ -51,7 +51,7 @@ TEST(ScatteringGap, FewEntries_IsTheLargestDifferenceOfDolp) {
     const std::vector<PointResult> direct = results_of({masking, "emission.model=direct"});
     double largest = 0.0;
     for (std::size_t i = 0; i < direct.size(); ++i) {
-      largest = std::fmax(largest, std::abs(direct[i].dolp - kirchhoff[i].dolp));
+      largest = std::fmax(largest, std::abs(direct[i][Quantity::kDolp] - kirchhoff[i][Quantity::kDolp]));
     }
     EXPECT_GT(largest, 0.05);
     for (const char* model : {"emission.model=moments", "emission.model=direct"}) {

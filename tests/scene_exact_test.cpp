@@ -83,11 +83,11 @@ TEST(SceneExact_QOfTwo, IsGgx) {
         for (const Evaluator evaluator : {Evaluator::kFloat, Evaluator::kDouble, Evaluator::kReference}) {
           const Scene scene = make_scene(Distribution::kCauchy, masking, index);
           const PointResult r = run_one(scene, theta_deg, {kSigma, 2.0}, evaluator);
-          const double bound = (r.rho_error_estimate + kGgxAccuracy) * ggx.rho_i;
-          EXPECT_LE(r.rho_error_estimate, scene.accuracy.tolerance);
-          EXPECT_NEAR(r.rho_i, ggx.rho_i, bound) << name_of(masking) << " " << theta_deg;
-          EXPECT_NEAR(r.rho_q, ggx.rho_q, bound) << name_of(masking) << " " << theta_deg;
-          EXPECT_NEAR(r.albedo, ggx.albedo, scene.accuracy.tolerance * ggx.albedo);
+          const double bound = (r[Quantity::kRhoErrorEstimate] + kGgxAccuracy) * ggx.rho_i;
+          EXPECT_LE(r[Quantity::kRhoErrorEstimate], scene.accuracy.tolerance);
+          EXPECT_NEAR(r[Quantity::kRhoI], ggx.rho_i, bound) << name_of(masking) << " " << theta_deg;
+          EXPECT_NEAR(r[Quantity::kRhoQ], ggx.rho_q, bound) << name_of(masking) << " " << theta_deg;
+          EXPECT_NEAR(r[Quantity::kAlbedo], ggx.albedo, scene.accuracy.tolerance * ggx.albedo);
         }
       }
     }
@@ -100,11 +100,13 @@ TEST(SceneExact_AlbedoWithoutMasking, AtTheNormalIsTheShareOfSlopesBelowOne) {
       const double m2 = 2.0 * sigma * sigma;
       const Scene gaussian = make_scene(Distribution::kGaussian, Masking::kNone, kDielectric);
       const double exact = -std::expm1(-1.0 / m2);
-      EXPECT_NEAR(run_one(gaussian, 0.0, {sigma, 2.0}, evaluator).albedo, exact, gaussian.accuracy.tolerance * exact);
+      EXPECT_NEAR(run_one(gaussian, 0.0, {sigma, 2.0}, evaluator)[Quantity::kAlbedo], exact,
+                  gaussian.accuracy.tolerance * exact);
       for (const double q : {1.2, 2.0, 5.0}) {
         const Scene cauchy = make_scene(Distribution::kCauchy, Masking::kNone, kDielectric);
         const double share = 1.0 - std::pow(m2 / (1.0 + m2), q - 1.0);
-        EXPECT_NEAR(run_one(cauchy, 0.0, {sigma, q}, evaluator).albedo, share, cauchy.accuracy.tolerance * share);
+        EXPECT_NEAR(run_one(cauchy, 0.0, {sigma, q}, evaluator)[Quantity::kAlbedo], share,
+                    cauchy.accuracy.tolerance * share);
       }
     }
   }
@@ -114,7 +116,7 @@ TEST(SceneExact_SmithAlbedoAtTheNormal, IsOneMinusLogTwo) {
   const Scene scene = make_scene(Distribution::kCauchy, Masking::kSmith, kMetal);
   const double exact = 1.0 - std::numbers::ln2;
   for (const Evaluator evaluator : {Evaluator::kFloat, Evaluator::kDouble, Evaluator::kReference}) {
-    const double albedo = run_one(scene, 0.0, {std::sqrt(0.5), 2.0}, evaluator).albedo;
+    const double albedo = run_one(scene, 0.0, {std::sqrt(0.5), 2.0}, evaluator)[Quantity::kAlbedo];
     EXPECT_NEAR(albedo, exact, scene.accuracy.tolerance * exact);
   }
 }
@@ -129,9 +131,9 @@ TEST(SceneExact_SmoothSurface, HasFresnelReflectanceForEveryMaterial) {
       const SmoothReflectance smooth = smooth_reflectance(
           index, std::cos(std::numbers::pi_v<long double> * static_cast<long double>(theta_deg) / 180.0L));
       const PointResult r = run_one(scene, theta_deg, {0.0, 2.0}, Evaluator::kFloat);
-      EXPECT_NEAR(r.rho_i, smooth.rho_i(), kFresnelRounding) << name << " " << theta_deg;
-      EXPECT_NEAR(r.rho_q, smooth.rho_q(), kFresnelRounding) << name << " " << theta_deg;
-      EXPECT_DOUBLE_EQ(r.albedo, 1.0);
+      EXPECT_NEAR(r[Quantity::kRhoI], smooth.rho_i(), kFresnelRounding) << name << " " << theta_deg;
+      EXPECT_NEAR(r[Quantity::kRhoQ], smooth.rho_q(), kFresnelRounding) << name << " " << theta_deg;
+      EXPECT_DOUBLE_EQ(r[Quantity::kAlbedo], 1.0);
       EXPECT_EQ(r.status, 0U);
     }
   }
@@ -150,13 +152,13 @@ TEST(SceneExact_SmallSlopes, TendToFresnelForEveryMaterial) {
       const Scene scene = make_scene(distribution, masking, index);
       for (const Evaluator evaluator : kPrecisions) {
         const PointResult r = run_one(scene, 60.0, {kSigma, 3.0}, evaluator);
-        const double bound = r.rho_error_estimate * smooth.rho_i() + kSecondOrder;
+        const double bound = r[Quantity::kRhoErrorEstimate] * smooth.rho_i() + kSecondOrder;
         // Bounds are wide beside the critical line of total reflection (sapphire), in float above all.
         const double reflecting = evaluator == Evaluator::kFloat ? 0.02 : 1e-3;
         const double allowed = index.n < 1.0 ? reflecting : scene.accuracy.tolerance;
-        EXPECT_LE(r.rho_error_estimate, allowed) << name;
-        EXPECT_NEAR(r.rho_i, smooth.rho_i(), bound) << name << " " << name_of(masking);
-        EXPECT_NEAR(r.rho_q, smooth.rho_q(), bound) << name << " " << name_of(masking);
+        EXPECT_LE(r[Quantity::kRhoErrorEstimate], allowed) << name;
+        EXPECT_NEAR(r[Quantity::kRhoI], smooth.rho_i(), bound) << name << " " << name_of(masking);
+        EXPECT_NEAR(r[Quantity::kRhoQ], smooth.rho_q(), bound) << name << " " << name_of(masking);
       }
     });
   }
@@ -168,11 +170,14 @@ TEST(SceneExact_Normal, HasNoPolarisation) {
       const Scene scene = make_scene(distribution, masking, index);
       for (const Evaluator evaluator : kPrecisions) {
         const PointResult normal = run_one(scene, 0.0, {0.3, 2.0}, evaluator);
-        EXPECT_LE(std::abs(normal.rho_q), normal.rho_error_estimate * normal.rho_i) << name_of(masking);
+        EXPECT_LE(std::abs(normal[Quantity::kRhoQ]), normal[Quantity::kRhoErrorEstimate] * normal[Quantity::kRhoI])
+            << name_of(masking);
         // Q grows like theta^2, with theta = 1.7e-8.
         const PointResult near_normal = run_one(scene, 1e-6, {0.3, 2.0}, evaluator);
-        EXPECT_LE(std::abs(near_normal.rho_q), near_normal.rho_error_estimate * near_normal.rho_i);
-        EXPECT_NEAR(near_normal.rho_i, normal.rho_i, 2.0 * normal.rho_error_estimate * normal.rho_i);
+        EXPECT_LE(std::abs(near_normal[Quantity::kRhoQ]),
+                  near_normal[Quantity::kRhoErrorEstimate] * near_normal[Quantity::kRhoI]);
+        EXPECT_NEAR(near_normal[Quantity::kRhoI], normal[Quantity::kRhoI],
+                    2.0 * normal[Quantity::kRhoErrorEstimate] * normal[Quantity::kRhoI]);
       }
     }
   });
@@ -185,9 +190,9 @@ TEST(SceneExact_IndexOfOne, ReflectsNothing) {
       for (const double theta_deg : {0.0, 45.0, 89.0}) {
         for (const double sigma : {0.0, 0.3}) {
           const PointResult r = run_one(scene, theta_deg, {sigma, 2.0}, evaluator);
-          EXPECT_NEAR(r.rho_i, 0.0, kRounding) << name_of(masking);
-          EXPECT_NEAR(r.rho_q, 0.0, kRounding);
-          EXPECT_NEAR(r.dolp, 0.0, kRounding);
+          EXPECT_NEAR(r[Quantity::kRhoI], 0.0, kRounding) << name_of(masking);
+          EXPECT_NEAR(r[Quantity::kRhoQ], 0.0, kRounding);
+          EXPECT_NEAR(r[Quantity::kDolp], 0.0, kRounding);
           EXPECT_EQ(r.status & kStatusNoDolpPromised, 0U);
         }
       }
@@ -208,9 +213,9 @@ TEST(SceneExact_IsothermalSurroundings, LeaveExactlyNoPolarisation) {
         for (const double theta_deg : {0.0, 45.0, 80.0, 89.9}) {
           for (const double sigma : {0.0, 0.01, 0.445}) {
             const PointResult r = run_one(scene, theta_deg, {sigma, 2.0}, Evaluator::kFloat);
-            EXPECT_EQ(r.dolp, 0.0) << name_of(masking) << " " << theta_deg << " " << sigma;
-            EXPECT_EQ(r.stokes_q, 0.0);
-            EXPECT_FALSE(std::signbit(r.dolp) || std::signbit(r.stokes_q));
+            EXPECT_EQ(r[Quantity::kDolp], 0.0) << name_of(masking) << " " << theta_deg << " " << sigma;
+            EXPECT_EQ(r[Quantity::kStokesQ], 0.0);
+            EXPECT_FALSE(std::signbit(r[Quantity::kDolp]) || std::signbit(r[Quantity::kStokesQ]));
           }
         }
       }
@@ -230,15 +235,16 @@ TEST(SceneExact_Reflectance, IsLinearInTheSpecularShare) {
       for (const double specular : {0.0, 0.25, 0.7}) {
         scene.surface.specular = specular;
         const PointResult part = run_one(scene, theta_deg, {0.3, 2.0}, Evaluator::kFloat);
-        const bool is_same = part.albedo == whole.albedo;
+        const bool is_same = part[Quantity::kAlbedo] == whole[Quantity::kAlbedo];
         same_level += is_same ? 1 : 0;
         ++all;
-        const double estimates =
-            whole.rho_error_estimate * specular * whole.rho_i + part.rho_error_estimate * part.rho_i;
-        const double bound = is_same ? kFloatStep * whole.rho_i : estimates;
-        EXPECT_NEAR(part.rho_i, specular * whole.rho_i, bound);
-        EXPECT_NEAR(part.rho_q, specular * whole.rho_q, bound);
-        EXPECT_NEAR(part.albedo, whole.albedo, scene.accuracy.tolerance * whole.albedo);
+        const double estimates = whole[Quantity::kRhoErrorEstimate] * specular * whole[Quantity::kRhoI] +
+                                 part[Quantity::kRhoErrorEstimate] * part[Quantity::kRhoI];
+        const double bound = is_same ? kFloatStep * whole[Quantity::kRhoI] : estimates;
+        EXPECT_NEAR(part[Quantity::kRhoI], specular * whole[Quantity::kRhoI], bound);
+        EXPECT_NEAR(part[Quantity::kRhoQ], specular * whole[Quantity::kRhoQ], bound);
+        EXPECT_NEAR(part[Quantity::kAlbedo], whole[Quantity::kAlbedo],
+                    scene.accuracy.tolerance * whole[Quantity::kAlbedo]);
       }
     }
   });
@@ -266,9 +272,10 @@ TEST(SceneExact_VCavityAndSmith, NeverGiveBackMoreThanTheyReceive) {
         const std::vector<PointResult> results = run(scene, entries, evaluator);
         for (std::size_t i = 0; i < entries.size(); ++i) {
           // With R = 1 to 1e-8, albedo and rho_I share the error estimate.
-          const double most = 1.0 + results[i].rho_error_estimate;
-          EXPECT_LE(results[i].albedo, most) << text_of(scene, entries[i]);
-          EXPECT_LE(results[i].rho_i + std::abs(results[i].rho_q), most) << text_of(scene, entries[i]);
+          const double most = 1.0 + results[i][Quantity::kRhoErrorEstimate];
+          EXPECT_LE(results[i][Quantity::kAlbedo], most) << text_of(scene, entries[i]);
+          EXPECT_LE(results[i][Quantity::kRhoI] + std::abs(results[i][Quantity::kRhoQ]), most)
+              << text_of(scene, entries[i]);
           EXPECT_EQ(results[i].status & kStatusUnphysicalReflectance, 0U) << text_of(scene, entries[i]);
         }
       }
@@ -285,9 +292,11 @@ TEST(SceneExact_EmissionAndReflectance, AddUpToOne) {
       for (const Evaluator evaluator : kPrecisions) {
         for (const double theta_deg : {0.0, 60.0, 85.0}) {
           const PointResult r = run_one(scene, theta_deg, {0.3, 2.0}, evaluator);
-          const double bound = r.rho_error_estimate * std::abs(r.rho_i) + 4.0 * kRounding;
-          EXPECT_NEAR(r.stokes_i / black + r.rho_i, 1.0, bound) << name_of(masking) << " " << theta_deg;
-          EXPECT_NEAR(r.stokes_q / black + r.rho_q, 0.0, bound) << name_of(masking) << " " << theta_deg;
+          const double bound = r[Quantity::kRhoErrorEstimate] * std::abs(r[Quantity::kRhoI]) + 4.0 * kRounding;
+          EXPECT_NEAR(r[Quantity::kStokesI] / black + r[Quantity::kRhoI], 1.0, bound)
+              << name_of(masking) << " " << theta_deg;
+          EXPECT_NEAR(r[Quantity::kStokesQ] / black + r[Quantity::kRhoQ], 0.0, bound)
+              << name_of(masking) << " " << theta_deg;
         }
       }
     }

@@ -24,9 +24,9 @@ bool has_limit(Masking masking) { return masking == Masking::kVCavity || masking
 TEST(Limits_RightAngle, VCavityAndSmithHaveTheDocumentedReflectance) {
   for (const Evaluator evaluator : kPrecisions) {
     const Scene v_cavity = make_scene(Distribution::kCauchy, Masking::kVCavity, kDielectric);
-    EXPECT_NEAR(run_one(v_cavity, 90.0, kPaperShape, evaluator).rho_i, 0.3717, kFourDigits);
+    EXPECT_NEAR(run_one(v_cavity, 90.0, kPaperShape, evaluator)[Quantity::kRhoI], 0.3717, kFourDigits);
     const Scene smith = make_scene(Distribution::kCauchy, Masking::kSmith, kDielectric);
-    EXPECT_NEAR(run_one(smith, 90.0, kPaperShape, evaluator).rho_i, 0.1538, kFourDigits);
+    EXPECT_NEAR(run_one(smith, 90.0, kPaperShape, evaluator)[Quantity::kRhoI], 0.1538, kFourDigits);
   }
 }
 
@@ -41,11 +41,11 @@ TEST(Limits_RightAngle, FiniteReflectanceContinuesThatJustBefore) {
           const PointResult limit = run_one(scene, 90.0, kPaperShape, evaluator);
           const PointResult before = run_one(scene, 89.9999, kPaperShape, evaluator);
           EXPECT_EQ(limit.status & ~kStatusToleranceMissed, 0U);
-          EXPECT_NEAR(limit.rho_i, before.rho_i, kChange);
-          EXPECT_NEAR(limit.rho_q, before.rho_q, kChange);
-          EXPECT_NEAR(limit.albedo, before.albedo, kChange);
-          EXPECT_NEAR(limit.stokes_i, before.stokes_i, kChange * before.stokes_i);
-          EXPECT_NEAR(limit.dolp, before.dolp, kChange);
+          EXPECT_NEAR(limit[Quantity::kRhoI], before[Quantity::kRhoI], kChange);
+          EXPECT_NEAR(limit[Quantity::kRhoQ], before[Quantity::kRhoQ], kChange);
+          EXPECT_NEAR(limit[Quantity::kAlbedo], before[Quantity::kAlbedo], kChange);
+          EXPECT_NEAR(limit[Quantity::kStokesI], before[Quantity::kStokesI], kChange * before[Quantity::kStokesI]);
+          EXPECT_NEAR(limit[Quantity::kDolp], before[Quantity::kDolp], kChange);
         }
       }
     }
@@ -63,13 +63,17 @@ TEST(Limits_RightAngle, DivergingReflectanceLeavesOnlyTheDolp) {
         for (const Evaluator evaluator : kPrecisions) {
           const PointResult r = run_one(scene, 90.0, {0.3, q}, evaluator);
           const std::string name = text_of(scene, {90.0, {0.3, q}, {}});
-          EXPECT_TRUE(std::isnan(r.rho_i) && std::isnan(r.rho_q) && std::isnan(r.stokes_i)) << name;
-          EXPECT_TRUE(std::isnan(r.stokes_q) && std::isnan(r.stokes_u) && std::isnan(r.stokes_v)) << name;
+          EXPECT_TRUE(std::isnan(r[Quantity::kRhoI]) && std::isnan(r[Quantity::kRhoQ]) &&
+                      std::isnan(r[Quantity::kStokesI]))
+              << name;
+          EXPECT_TRUE(std::isnan(r[Quantity::kStokesQ]) && std::isnan(r[Quantity::kStokesU]) &&
+                      std::isnan(r[Quantity::kStokesV]))
+              << name;
           const std::uint32_t missed = r.status & kStatusToleranceMissed;
           EXPECT_EQ(r.status ^ missed, kStatusUnphysicalReflectance | kStatusOutsideDomain) << name;
-          EXPECT_EQ(missed != 0, !(r.error_estimate <= scene.accuracy.tolerance)) << name;
-          EXPECT_TRUE(r.dolp >= 0.0 && r.dolp <= 1.0) << name << " " << r.dolp;
-          EXPECT_LE(r.error_estimate, 10.0 * scene.accuracy.tolerance) << name;
+          EXPECT_EQ(missed != 0, !(r[Quantity::kErrorEstimate] <= scene.accuracy.tolerance)) << name;
+          EXPECT_TRUE(r[Quantity::kDolp] >= 0.0 && r[Quantity::kDolp] <= 1.0) << name << " " << r[Quantity::kDolp];
+          EXPECT_LE(r[Quantity::kErrorEstimate], 10.0 * scene.accuracy.tolerance) << name;
         }
       }
     }
@@ -84,10 +88,11 @@ TEST(Limits_RightAngle, DivergingSpecularDolpIsTheQuotientJustBefore) {
       for (const OpticalConstants& index : kIndices) {
         const Scene scene = make_scene(distribution, masking, index);
         const PointResult before = run_one(scene, 90.0 - 1e-6, kPaperShape, Evaluator::kDouble);
-        const double quotient = std::abs(before.rho_q / before.rho_i);
+        const double quotient = std::abs(before[Quantity::kRhoQ] / before[Quantity::kRhoI]);
         for (const Evaluator evaluator : kPrecisions) {
           const PointResult limit = run_one(scene, 90.0, kPaperShape, evaluator);
-          EXPECT_NEAR(limit.dolp, quotient, kChange) << name_of(masking) << " N " << index.n << " + " << index.k << "i";
+          EXPECT_NEAR(limit[Quantity::kDolp], quotient, kChange)
+              << name_of(masking) << " N " << index.n << " + " << index.k << "i";
         }
       }
     }
@@ -100,7 +105,7 @@ TEST(Limits_RightAngle, DivergingDiffusePartOfAFlatPatternDoesNotCount) {
   scene.surface.diffuse_exponent = 0.0;
   const PointResult r = run_one(scene, 90.0, kPaperShape, Evaluator::kDouble);
   EXPECT_EQ(r.status, 0U);
-  EXPECT_NEAR(r.rho_i, 0.1538 + 0.1, kFourDigits);
+  EXPECT_NEAR(r[Quantity::kRhoI], 0.1538 + 0.1, kFourDigits);
 }
 
 TEST(Limits_RightAngle, MirrorReflectsAllWithoutPolarisation) {
@@ -108,9 +113,9 @@ TEST(Limits_RightAngle, MirrorReflectsAllWithoutPolarisation) {
     for (const OpticalConstants& index : {kDielectric, kMetal, OpticalConstants{1e6, 1e6}}) {
       const Scene scene = make_scene(distribution, masking, index);
       const PointResult r = run_one(scene, 90.0, {0.0, 2.0}, Evaluator::kFloat);
-      EXPECT_EQ(r.rho_i, 1.0);
+      EXPECT_EQ(r[Quantity::kRhoI], 1.0);
       EXPECT_EQ(r.status, 0U);
-      EXPECT_LE(r.dolp, r.error_estimate);
+      EXPECT_LE(r[Quantity::kDolp], r[Quantity::kErrorEstimate]);
     }
   });
 }
@@ -126,7 +131,7 @@ TEST(Limits_RightAngle, MirrorsOwnEmissionHasThePolarisationOfItsLimit) {
     Scene scene = make_scene(Distribution::kCauchy, Masking::kSmith, index);
     scene.surroundings.reset();
     const PointResult r = run_one(scene, 90.0, {0.0, 2.0}, Evaluator::kFloat);
-    EXPECT_NEAR(r.dolp, (p - s) / (p + s), kRelativeRounding) << index.n;
+    EXPECT_NEAR(r[Quantity::kDolp], (p - s) / (p + s), kRelativeRounding) << index.n;
   }
 }
 
@@ -139,8 +144,10 @@ TEST(Limits_TinySlopes, AreThoseOfTheMirror) {
           const PointResult mirror = run_one(scene, theta_deg, {0.0, 2.0}, evaluator);
           for (const double sigma : {1e-30, 1e-29, 1e-28, 1e-27, 1e-25, 1e-20}) {
             const PointResult r = run_one(scene, theta_deg, {sigma, 2.0}, evaluator);
-            EXPECT_NEAR(r.rho_i, mirror.rho_i, r.rho_error_estimate * r.rho_i + 1e-15);
-            EXPECT_NEAR(r.dolp, mirror.dolp, r.error_estimate + mirror.error_estimate)
+            EXPECT_NEAR(r[Quantity::kRhoI], mirror[Quantity::kRhoI],
+                        r[Quantity::kRhoErrorEstimate] * r[Quantity::kRhoI] + 1e-15);
+            EXPECT_NEAR(r[Quantity::kDolp], mirror[Quantity::kDolp],
+                        r[Quantity::kErrorEstimate] + mirror[Quantity::kErrorEstimate])
                 << text_of(scene, {theta_deg, {sigma, 2.0}, {}});
             EXPECT_EQ(r.status, 0U) << text_of(scene, {theta_deg, {sigma, 2.0}, {}});
           }
@@ -170,18 +177,18 @@ std::vector<SceneEntry> hard_entries(Distribution distribution, Masking masking)
 /// What a result may look like: numbers, or the status that takes them back.
 void expect_sound(const PointResult& r, double tolerance, const std::string& name) {
   const bool outside = (r.status & kStatusOutsideDomain) != 0;
-  EXPECT_EQ(outside, std::isnan(r.stokes_i)) << name;
-  EXPECT_EQ(outside, std::isnan(r.rho_i)) << name;
-  EXPECT_TRUE(std::isfinite(r.dolp)) << name;
+  EXPECT_EQ(outside, std::isnan(r[Quantity::kStokesI])) << name;
+  EXPECT_EQ(outside, std::isnan(r[Quantity::kRhoI])) << name;
+  EXPECT_TRUE(std::isfinite(r[Quantity::kDolp])) << name;
   if (!outside) {
-    EXPECT_TRUE(std::isfinite(r.stokes_q) && std::isfinite(r.albedo)) << name;
-    EXPECT_EQ((r.status & kStatusNonPositiveIntensity) != 0, r.stokes_i <= 0.0) << name;
+    EXPECT_TRUE(std::isfinite(r[Quantity::kStokesQ]) && std::isfinite(r[Quantity::kAlbedo])) << name;
+    EXPECT_EQ((r.status & kStatusNonPositiveIntensity) != 0, r[Quantity::kStokesI] <= 0.0) << name;
   }
-  const bool dolp_missed = r.error_estimate > tolerance;
+  const bool dolp_missed = r[Quantity::kErrorEstimate] > tolerance;
   const bool is_missed =
-      outside ? dolp_missed : r.rho_error_estimate > tolerance || (promises_dolp(r.status) && dolp_missed);
+      outside ? dolp_missed : r[Quantity::kRhoErrorEstimate] > tolerance || (promises_dolp(r.status) && dolp_missed);
   EXPECT_EQ((r.status & kStatusToleranceMissed) != 0, is_missed) << name;
-  EXPECT_TRUE(r.error_estimate >= 0.0 && r.rho_error_estimate >= 0.0) << name;
+  EXPECT_TRUE(r[Quantity::kErrorEstimate] >= 0.0 && r[Quantity::kRhoErrorEstimate] >= 0.0) << name;
 }
 
 TEST(Limits_HardEntries, AreFiniteOrSayWhyNot) {
@@ -231,10 +238,12 @@ TEST(Limits_Metals, DolpIsThatOfTheReferenceOrSaysThatItIsNot) {
         const PointResult& r = results[i];
         EXPECT_EQ(r.status & kStatusNoDolpPromised, reference[i].status & kStatusNoDolpPromised)
             << text_of(scene, entries[i]);
-        EXPECT_LE(std::abs(r.dolp - reference[i].dolp), r.error_estimate + reference[i].error_estimate)
+        EXPECT_LE(std::abs(r[Quantity::kDolp] - reference[i][Quantity::kDolp]),
+                  r[Quantity::kErrorEstimate] + reference[i][Quantity::kErrorEstimate])
             << text_of(scene, entries[i]);
         if ((r.status & (kStatusNoDolpPromised | kStatusToleranceMissed)) != 0) continue;
-        EXPECT_NEAR(r.dolp, reference[i].dolp, scene.accuracy.tolerance) << text_of(scene, entries[i]);
+        EXPECT_NEAR(r[Quantity::kDolp], reference[i][Quantity::kDolp], scene.accuracy.tolerance)
+            << text_of(scene, entries[i]);
       }
     }
   });
@@ -243,12 +252,12 @@ TEST(Limits_Metals, DolpIsThatOfTheReferenceOrSaysThatItIsNot) {
 /// The first zenith angle from which the reflectance is unphysical up to 90 degrees.
 double unphysical_from_deg(Masking masking, const OpticalConstants& index, double sigma, Evaluator evaluator) {
   Scene scene = make_scene(Distribution::kCauchy, masking, index);
-  scene.grid = {{}, {sigma}, {2.0}};
-  for (double theta_deg = 45.0; theta_deg < 90.0; theta_deg += 0.25) scene.grid.theta_deg.push_back(theta_deg);
+  scene.grid = axes_of({}, {sigma}, {2.0});
+  for (double theta_deg = 45.0; theta_deg < 90.0; theta_deg += 0.25) scene.grid[Axis::kTheta].push_back(theta_deg);
   const std::vector<PointResult> results = run(scene, grid_entries(scene), evaluator);
   std::size_t first = results.size();
   while (first > 0 && (results[first - 1].status & kStatusUnphysicalReflectance) != 0) --first;
-  return first < results.size() ? scene.grid.theta_deg[first] : 90.0;
+  return first < results.size() ? scene.grid[Axis::kTheta][first] : 90.0;
 }
 
 TEST(Limits_IntegralMasking, LeavesPhysicsWhereDocumented) {

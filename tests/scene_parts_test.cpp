@@ -22,8 +22,7 @@ using namespace scene_run_support;
 /// All numbers of a result, so that NaNs compare too.
 std::vector<std::uint64_t> bits_of(const PointResult& result) {
   std::vector<std::uint64_t> bits = {result.status};
-  for (const TableVariable& variable : table_variables())
-    bits.push_back(std::bit_cast<std::uint64_t>(result.*variable.member));
+  for (const Quantity quantity : kAllQuantities) bits.push_back(std::bit_cast<std::uint64_t>(result[quantity]));
   return bits;
 }
 
@@ -81,20 +80,22 @@ class EveryModel : public testing::TestWithParam<std::tuple<Distribution, Maskin
 // Grazing directions, where other nodes are wanted than elsewhere, and tails so heavy that many entries are refined.
 TEST_P(EveryModel, InterpolatedGrid_KeepsItsBitsInParts) {
   Scene dense = scene();
-  dense.grid = {{90.0, 0.0, 85.0, 12.0, 89.95, 60.0, 30.0, 89.0}, spaced(1.0, 0.05, 30), spaced(least_q(), 6.0, 24)};
+  dense.grid =
+      axes_of({90.0, 0.0, 85.0, 12.0, 89.95, 60.0, 30.0, 89.0}, spaced(1.0, 0.05, 30), spaced(least_q(), 6.0, 24));
   expect_same_bits(dense, true);
 }
 
 TEST_P(EveryModel, ScatteredAxes_KeepTheirBitsInParts) {
   Scene sparse = scene();
-  sparse.grid = {{70.0, 90.0, 20.0, 0.0, 89.999, 45.0, 88.0}, {0.3, 0.0, 2.0, 0.02}, {2.0, 8.0, least_q(), 1.9, 3.0}};
+  sparse.grid =
+      axes_of({70.0, 90.0, 20.0, 0.0, 89.999, 45.0, 88.0}, {0.3, 0.0, 2.0, 0.02}, {2.0, 8.0, least_q(), 1.9, 3.0});
   expect_same_bits(sparse, true);
   expect_same_bits(sparse, false);
 }
 
 TEST_P(EveryModel, AxesOfIndexAndWavelength_KeepTheirBitsInParts) {
   Scene own = scene();
-  own.grid = {{80.0, 30.0, 90.0}, {0.1, 0.4}, {2.0, 1.8, 5.0}, {8.0, 10.0}, {1.4, 4.0}, {0.0, 3.0}};
+  own.grid = axes_of({80.0, 30.0, 90.0}, {0.1, 0.4}, {2.0, 1.8, 5.0}, {8.0, 10.0}, {1.4, 4.0}, {0.0, 3.0});
   expect_same_bits(own, true);
 }
 
@@ -106,7 +107,7 @@ TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
   for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
     Scene scene = make_scene(Distribution::kCauchy, masking, kAbsorbing);
     scene.accuracy.tolerance = 1e-3;
-    scene.grid = {{80.0}, spaced(0.1, 0.4, 5), spaced(2.0, 5.0, 5), {}, spaced(1.3, 3.0, 10), {0.1, 0.3, 0.9}};
+    scene.grid = axes_of({80.0}, spaced(0.1, 0.4, 5), spaced(2.0, 5.0, 5), {}, spaced(1.3, 3.0, 10), {0.1, 0.3, 0.9});
     const auto evaluator = evaluator_on(true);
     evaluate_scene(scene, grid_entries(scene), *evaluator, {});
     EXPECT_LT(2 * evaluator->report().interpolation_nodes, evaluator->report().interpolated);
@@ -117,7 +118,7 @@ TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
 TEST(SceneParts, AllBounces_KeepTheirBitsInParts) {
   Scene scene = make_scene(Distribution::kCauchy, Masking::kVCavity, kMetal);
   scene.surface.scattering = Scattering::kMultiple;
-  scene.grid = {{90.0, 0.0, 85.0, 60.0, 30.0}, spaced(0.05, 1.0, 12), spaced(1.3, 6.0, 10)};
+  scene.grid = axes_of({90.0, 0.0, 85.0, 60.0, 30.0}, spaced(0.05, 1.0, 12), spaced(1.3, 6.0, 10));
   expect_same_bits(scene, true);
 }
 
@@ -127,7 +128,7 @@ TEST(SceneParts, ADenseBand_KeepsItsBitsInParts) {
   scene.surface.material.n = {{8.0, 14.0}, {1.4, 1.9}, SpectralTable::Interpolation::kLinear};
   scene.surface.material.k = {{8.0, 14.0}, {0.1, 0.8}, SpectralTable::Interpolation::kLinear};
   scene.spectrum = {8.0, 14.0};
-  scene.grid = {{90.0, 0.0, 85.0, 60.0, 30.0}, spaced(0.05, 1.0, 20), spaced(1.6, 6.0, 16)};
+  scene.grid = axes_of({90.0, 0.0, 85.0, 60.0, 30.0}, spaced(0.05, 1.0, 20), spaced(1.6, 6.0, 16));
   expect_same_bits(scene, true);
 }
 

@@ -39,7 +39,7 @@ inline Scene make_scene(Distribution distribution, Masking masking, const Optica
   scene.emission = Emission{300.0, EmissionModel::kMoments};
   scene.surroundings = Surroundings{240.0};
   scene.spectrum = {10.6, 10.6};
-  scene.grid = {{60.0}, {0.3}, {2.0}};
+  scene.grid = axes_of({60.0}, {0.3}, {2.0});
   return scene;
 }
 

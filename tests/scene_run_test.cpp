@@ -43,22 +43,22 @@ class Recorder final : public MomentsEvaluator {
 
 /// All numbers of a result, so that NaNs compare too.
 std::array<std::uint64_t, 11> bits_of(const PointResult& r) {
-  return {std::bit_cast<std::uint64_t>(r.dolp),
-          std::bit_cast<std::uint64_t>(r.stokes_i),
-          std::bit_cast<std::uint64_t>(r.stokes_q),
-          std::bit_cast<std::uint64_t>(r.stokes_u),
-          std::bit_cast<std::uint64_t>(r.stokes_v),
-          std::bit_cast<std::uint64_t>(r.rho_i),
-          std::bit_cast<std::uint64_t>(r.rho_q),
-          std::bit_cast<std::uint64_t>(r.albedo),
-          std::bit_cast<std::uint64_t>(r.error_estimate),
-          std::bit_cast<std::uint64_t>(r.rho_error_estimate),
+  return {std::bit_cast<std::uint64_t>(r[Quantity::kDolp]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kStokesI]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kStokesQ]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kStokesU]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kStokesV]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kRhoI]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kRhoQ]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kAlbedo]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kErrorEstimate]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kRhoErrorEstimate]),
           r.status};
 }
 
 Scene small_grid(Distribution distribution, Masking masking) {
   Scene scene = make_scene(distribution, masking, kAbsorbing);
-  scene.grid = {{90.0, 0.0, 30.0, 75.0, 89.9}, {0.4, 0.0, 0.1}, {3.0, 1.6, 2.0}};
+  scene.grid = axes_of({90.0, 0.0, 30.0, 75.0, 89.9}, {0.4, 0.0, 0.1}, {3.0, 1.6, 2.0});
   return scene;
 }
 
@@ -100,7 +100,7 @@ TEST(PointEntries_MissingTheta, NamesTheFileUnlessTheSceneHasOneTheta) {
   const SceneEntries entries = point_entries(scene, parse_points("sigma\n0.2\n", "p.csv", PointsKind::kDirections));
   ASSERT_EQ(entries.size(), 1U);
   EXPECT_EQ(entries[0].theta_deg, 60.0);
-  scene.grid.theta_deg = {0.0, 60.0};
+  scene.grid[Axis::kTheta] = {0.0, 60.0};
   EXPECT_EQ(error_of(scene, "sigma\n0.2\n"),
             "p.csv:1: column \"theta_deg\" is missing, a number in [0, 90]; only a scene with a single grid.theta_deg "
             "does without");
@@ -131,8 +131,9 @@ TEST(EvaluateScene_OwnIndexOfTheMaterial_GivesTheSameAsTheMaterial, OverABand) {
   const Scene dispersive = band_scene();
   const PointResult of_point = run(dispersive, {{50.0, {0.3, 2.0}, kAbsorbing}}, Evaluator::kDouble).front();
   constexpr double kBandAgreement = 1e-9;  // the band rule's accuracy
-  EXPECT_NEAR(of_point.dolp, of_material.dolp, kBandAgreement);
-  EXPECT_NEAR(of_point.stokes_i, of_material.stokes_i, kBandAgreement * of_material.stokes_i);
+  EXPECT_NEAR(of_point[Quantity::kDolp], of_material[Quantity::kDolp], kBandAgreement);
+  EXPECT_NEAR(of_point[Quantity::kStokesI], of_material[Quantity::kStokesI],
+              kBandAgreement * of_material[Quantity::kStokesI]);
 }
 
 TEST(EvaluateScene_Progress, CountsEntriesUpToAllOfThem) {
@@ -178,9 +179,9 @@ TEST_P(EveryModel, ReversedAxes_KeepTheBitsOfEveryEntry) {
   const auto [evaluator, distribution, masking] = GetParam();
   Scene scene = small_grid(distribution, masking);
   const std::vector<PointResult> results = run(scene, grid_entries(scene), evaluator);
-  std::ranges::reverse(scene.grid.theta_deg);
-  std::ranges::reverse(scene.grid.sigma);
-  std::ranges::reverse(scene.grid.q);
+  std::ranges::reverse(scene.grid[Axis::kTheta]);
+  std::ranges::reverse(scene.grid[Axis::kSigma]);
+  std::ranges::reverse(scene.grid[Axis::kQ]);
   const std::vector<PointResult> reversed = run(scene, grid_entries(scene), evaluator);
   ASSERT_EQ(reversed.size(), results.size());
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -199,7 +200,8 @@ TEST_P(EveryModel, Grid_EqualsThePointsOneByOne) {
     const PointResult alone = run(scene, {entries[i]}, evaluator).front();
     SCOPED_TRACE(text_of(scene, entries[i]));
     if (has_profiles) {
-      EXPECT_NEAR(alone.dolp, results[i].dolp, alone.error_estimate + results[i].error_estimate);
+      EXPECT_NEAR(alone[Quantity::kDolp], results[i][Quantity::kDolp],
+                  alone[Quantity::kErrorEstimate] + results[i][Quantity::kErrorEstimate]);
       EXPECT_EQ(alone.status, results[i].status);
     } else {
       EXPECT_EQ(bits_of(alone), bits_of(results[i]));

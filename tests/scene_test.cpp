@@ -34,10 +34,10 @@ void expect_defaults(const Scene& scene) {
   EXPECT_EQ(scene.geometry.mode, Mode::kHemispherical);
   EXPECT_EQ(scene.geometry.view_zenith_deg, 60.0);
   EXPECT_EQ(scene.geometry.relative_azimuth_deg, 180.0);
-  ASSERT_EQ(scene.grid.theta_deg.size(), 91U);
-  for (std::size_t i = 0; i < 91; ++i) EXPECT_EQ(scene.grid.theta_deg[i], static_cast<double>(i));
-  EXPECT_EQ(scene.grid.sigma, std::vector<double>{0.3});
-  EXPECT_EQ(scene.grid.q, std::vector<double>{2.0});
+  ASSERT_EQ(scene.grid[Axis::kTheta].size(), 91U);
+  for (std::size_t i = 0; i < 91; ++i) EXPECT_EQ(scene.grid[Axis::kTheta][i], static_cast<double>(i));
+  EXPECT_EQ(scene.grid[Axis::kSigma], std::vector<double>{0.3});
+  EXPECT_EQ(scene.grid[Axis::kQ], std::vector<double>{2.0});
   EXPECT_EQ(scene.accuracy.tolerance, 1e-4);
   EXPECT_EQ(scene.accuracy.precision, Precision::kAuto);
 }
@@ -83,8 +83,8 @@ const std::vector<KeyCase>& key_cases() {
       {"surface.material_file", "\"index.csv\"", [](const Scene& s) { return s.surface.material.at(10.0).n == 2.0; }},
       {"surface.distribution", "\"gaussian\"",
        [](const Scene& s) { return s.surface.distribution == Distribution::kGaussian; }},
-      {"surface.sigma", "0.5", [](const Scene& s) { return s.surface.sigma == 0.5 && s.grid.sigma[0] == 0.5; }},
-      {"surface.q", "3", [](const Scene& s) { return s.surface.q == 3.0 && s.grid.q[0] == 3.0; }},
+      {"surface.sigma", "0.5", [](const Scene& s) { return s.surface.sigma == 0.5 && s.grid[Axis::kSigma][0] == 0.5; }},
+      {"surface.q", "3", [](const Scene& s) { return s.surface.q == 3.0 && s.grid[Axis::kQ][0] == 3.0; }},
       {"surface.masking", "\"v-cavity\"", [](const Scene& s) { return s.surface.masking == Masking::kVCavity; }},
       {"surface.scattering", "\"single\"", [](const Scene& s) { return s.surface.scattering == Scattering::kSingle; }},
       {"surface.specular", "0.5", [](const Scene& s) { return s.surface.specular == 0.5; }},
@@ -113,22 +113,22 @@ const std::vector<KeyCase>& key_cases() {
       {"geometry.relative_azimuth_deg", "-90", [](const Scene& s) { return s.geometry.relative_azimuth_deg == -90.0; }},
       {"grid.theta_deg", "[90, 0]",
        [](const Scene& s) {
-         return s.grid.theta_deg == std::vector<double>{90.0, 0.0};
+         return s.grid[Axis::kTheta] == std::vector<double>{90.0, 0.0};
        }},
-      {"grid.sigma", "0.7", [](const Scene& s) { return s.grid.sigma == std::vector<double>{0.7}; }},
+      {"grid.sigma", "0.7", [](const Scene& s) { return s.grid[Axis::kSigma] == std::vector<double>{0.7}; }},
       {"grid.q", "[1.5, 2]",
        [](const Scene& s) {
-         return s.grid.q == std::vector<double>{1.5, 2.0};
+         return s.grid[Axis::kQ] == std::vector<double>{1.5, 2.0};
        }},
       {"grid.wavelength_um", "[8, 10]",
        [](const Scene& s) {
-         return s.grid.wavelength_um == std::vector<double>{8.0, 10.0};
+         return s.grid[Axis::kWavelength] == std::vector<double>{8.0, 10.0};
        }},
       {"grid.n", "[1.3, 2]",
        [](const Scene& s) {
-         return s.grid.n == std::vector<double>{1.3, 2.0};
+         return s.grid[Axis::kN] == std::vector<double>{1.3, 2.0};
        }},
-      {"grid.k", "0.5", [](const Scene& s) { return s.grid.k == std::vector<double>{0.5}; }},
+      {"grid.k", "0.5", [](const Scene& s) { return s.grid[Axis::kK] == std::vector<double>{0.5}; }},
       {"accuracy.tolerance", "1e-6", [](const Scene& s) { return s.accuracy.tolerance == 1e-6; }},
       {"accuracy.precision", "\"double\"", [](const Scene& s) { return s.accuracy.precision == Precision::kDouble; }},
       {"accuracy.interpolation", "\"off\"", [](const Scene& s) { return !s.accuracy.may_interpolate; }},
@@ -242,11 +242,11 @@ TEST(Scene_EveryWord, NamesTheAllowedWords) {
 }
 
 TEST(SceneScattering, WhatTheModelHas_Arrives) {
-  const Scene multiple = parse_scene(kMinimal, "s.toml", {{"surface.masking", "v-cavity"}, {"surface.scattering", "multiple"}});
+  const Scene multiple =
+      parse_scene(kMinimal, "s.toml", {{"surface.masking", "v-cavity"}, {"surface.scattering", "multiple"}});
   EXPECT_EQ(multiple.surface.scattering, Scattering::kMultiple);
-  const Scene direct =
-      parse_scene(kMinimal, "s.toml",
-                  {{"surface.masking", "v-cavity"}, {"emission.model", "direct"}, {"emission.bracket", true}});
+  const Scene direct = parse_scene(
+      kMinimal, "s.toml", {{"surface.masking", "v-cavity"}, {"emission.model", "direct"}, {"emission.bracket", true}});
   EXPECT_EQ(direct.emission->model, EmissionModel::kDirect);
   EXPECT_TRUE(direct.emission->has_bracket);
 }
@@ -275,29 +275,29 @@ TEST(SceneScattering, WhatTheModelLacks_NamesTheKeys) {
 
 TEST(SceneAxis_Linear, IsExactForWholeDegreesAndDescends) {
   const Scene scene = parse(kMinimal + "[grid]\ntheta_deg = { from = 80, to = 10, count = 8 }\n");
-  EXPECT_EQ(scene.grid.theta_deg, (std::vector<double>{80, 70, 60, 50, 40, 30, 20, 10}));
+  EXPECT_EQ(scene.grid[Axis::kTheta], (std::vector<double>{80, 70, 60, 50, 40, 30, 20, 10}));
 }
 
 TEST(SceneAxis_Log, HasExactEndsAndEqualRatios) {
   const Scene scene = parse(kMinimal + "[grid]\nsigma = { from = 0.01, to = 1, count = 3, spacing = \"log\" }\n");
   // pow is correct to 1 ulp, and two of them are multiplied.
   constexpr double kTwoPowers = 3.0 * 2.3e-16;
-  ASSERT_EQ(scene.grid.sigma.size(), 3U);
-  EXPECT_EQ(scene.grid.sigma[0], 0.01);
-  EXPECT_NEAR(scene.grid.sigma[1], 0.1, 0.1 * kTwoPowers);
-  EXPECT_EQ(scene.grid.sigma[2], 1.0);
+  ASSERT_EQ(scene.grid[Axis::kSigma].size(), 3U);
+  EXPECT_EQ(scene.grid[Axis::kSigma][0], 0.01);
+  EXPECT_NEAR(scene.grid[Axis::kSigma][1], 0.1, 0.1 * kTwoPowers);
+  EXPECT_EQ(scene.grid[Axis::kSigma][2], 1.0);
 }
 
 TEST(SceneAxis_OnePoint, IsANumberAListOrARule) {
   for (const char* axis : {"30", "[30]", "{ from = 30, to = 30, count = 1 }"}) {
     const Scene scene = parse(kMinimal + "[grid]\ntheta_deg = " + axis + "\n");
-    EXPECT_EQ(scene.grid.theta_deg, std::vector<double>{30.0}) << axis;
+    EXPECT_EQ(scene.grid[Axis::kTheta], std::vector<double>{30.0}) << axis;
   }
 }
 
 TEST(SceneAxis_OfItsOwnTable, IsRead) {
   const Scene scene = parse(kMinimal + "[grid.q]\nfrom = 2\nto = 4\ncount = 3\n", {"grid.q.count=2"});
-  EXPECT_EQ(scene.grid.q, (std::vector<double>{2.0, 4.0}));
+  EXPECT_EQ(scene.grid[Axis::kQ], (std::vector<double>{2.0, 4.0}));
 }
 
 TEST(SceneGrid_SigmaWithoutSurfaceSigma, GivesTheSurfaceItsFirstValue) {
@@ -313,7 +313,7 @@ TEST(ShippedScenes, AllParse) {
   for (const auto& entry : std::filesystem::directory_iterator(kHostDir + "/scenes")) {
     const Scene scene = read_scene(entry.path().string(), {});
     EXPECT_FALSE(scene.title.empty()) << entry.path();
-    const auto& theta = scene.grid.theta_deg;
+    const auto& theta = scene.grid[Axis::kTheta];
     EXPECT_NE(std::find(theta.begin(), theta.end(), 60.0), theta.end()) << entry.path();
     EXPECT_NO_THROW(read_scene(entry.path().string(), {{"surface.masking", "smith"}, {"surface.scattering", "single"}}))
         << entry.path();

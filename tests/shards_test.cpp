@@ -63,14 +63,15 @@ class Shards : public CommandLine {
   void expect_same(const std::string& a, const std::string& b) {
     const Table one = read_table(at(a));
     const Table other = read_table(at(b));
-    for (const auto axis : kTableAxes) EXPECT_EQ(one.*axis, other.*axis);
+    EXPECT_EQ(one.axes, other.axes);
     EXPECT_EQ(one.status, other.status);
-    for (const TableVariable& variable : table_variables()) {
-      const std::vector<double>& x = one.*variable.values;
-      const std::vector<double>& y = other.*variable.values;
-      ASSERT_EQ(x.size(), y.size()) << variable.name;
+    for (const Quantity quantity : kAllQuantities) {
+      const std::vector<double>& x = one[quantity];
+      const std::vector<double>& y = other[quantity];
+      ASSERT_EQ(x.size(), y.size()) << description_of(quantity).name;
       for (std::size_t i = 0; i < x.size(); ++i)
-        ASSERT_EQ(std::bit_cast<std::uint64_t>(x[i]), std::bit_cast<std::uint64_t>(y[i])) << variable.name << ' ' << i;
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(x[i]), std::bit_cast<std::uint64_t>(y[i]))
+            << description_of(quantity).name << ' ' << i;
     }
   }
 };

@@ -83,14 +83,15 @@ TEST_P(ShippedScene, Comment_StatesTheDolpToItsDigits) {
   ASSERT_EQ(statements.size(), statement_count) << comment_of(name);
   for (const Statement& statement : statements) {
     const PointResult whole = result_at(name, statement.theta_deg, statement.overrides);
-    EXPECT_EQ(fmt::format("{:.{}f}", 100.0 * whole.dolp, decimals(statement.dolp)), statement.dolp);
-    EXPECT_EQ(whole.stokes_q < 0.0 ? "p" : "s", statement.side);
+    EXPECT_EQ(fmt::format("{:.{}f}", 100.0 * whole[Quantity::kDolp], decimals(statement.dolp)), statement.dolp);
+    EXPECT_EQ(whole[Quantity::kStokesQ] < 0.0 ? "p" : "s", statement.side);
     EXPECT_GE(statement.changes.size(), 2U);
     for (const auto& [effect, change] : statement.changes) {
       std::vector<std::string> overrides = statement.overrides;
       overrides.push_back(without(effect));
-      const double dropped = result_at(name, statement.theta_deg, overrides).dolp;
-      EXPECT_EQ(fmt::format("{:+.{}f}", 100.0 * (dropped - whole.dolp), decimals(change)), change) << effect;
+      const double dropped = result_at(name, statement.theta_deg, overrides)[Quantity::kDolp];
+      EXPECT_EQ(fmt::format("{:+.{}f}", 100.0 * (dropped - whole[Quantity::kDolp]), decimals(change)), change)
+          << effect;
     }
   }
 }
@@ -98,7 +99,7 @@ TEST_P(ShippedScene, Comment_StatesTheDolpToItsDigits) {
 TEST(RoughMetalScene, Comment_StatesTheEmissivities) {
   const auto emissivity = [](const std::vector<std::string>& overrides) {
     const PointResult result = result_at("rough_metal", 75.0, overrides);
-    return fmt::format("{:.3f}", 0.5 * (result.emissivity_s + result.emissivity_p));
+    return fmt::format("{:.3f}", 0.5 * (result[Quantity::kEmissivityS] + result[Quantity::kEmissivityP]));
   };
   const std::string statement = fmt::format("Emissivity at 75 degrees: {}, with scattering = \"single\" {}.",
                                             emissivity({}), emissivity({"surface.scattering=single"}));

@@ -72,16 +72,16 @@ void put(const fs::path& path, const std::string& text) { std::ofstream(path) <<
 Table sample_table(std::size_t thetas, std::size_t sigmas, std::size_t qs) {
   Table table;
   for (std::size_t i = 0; i < thetas; ++i)
-    table.theta_deg.push_back(90.0 - static_cast<double>(i) / 3.0);  // descending
-  for (std::size_t i = 0; i < sigmas; ++i) table.sigma.push_back(0.05 * static_cast<double>(i + 1));
-  for (std::size_t i = 0; i < qs; ++i) table.q.push_back(1.5 + static_cast<double>(i) / 7.0);
+    table.axes[Axis::kTheta].push_back(90.0 - static_cast<double>(i) / 3.0);  // descending
+  for (std::size_t i = 0; i < sigmas; ++i) table.axes[Axis::kSigma].push_back(0.05 * static_cast<double>(i + 1));
+  for (std::size_t i = 0; i < qs; ++i) table.axes[Axis::kQ].push_back(1.5 + static_cast<double>(i) / 7.0);
   double seed = 0.0;
-  for (const TableVariable& variable : table_variables()) {
-    std::vector<double>& values = table.*variable.values;
+  for (const Quantity quantity : kAllQuantities) {
+    std::vector<double>& values = table[quantity];
     for (std::size_t i = 0; i < table.size(); ++i) values.push_back(std::sin(seed += 1.0) * 1e-3);
     values.back() = kNan;
   }
-  table.error_estimate.front() = std::numeric_limits<double>::infinity();
+  table[Quantity::kErrorEstimate].front() = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < table.size(); ++i) table.status.push_back(static_cast<std::uint32_t>(i % 16));
   table.index_n = {{8.0, 10.0}, {1.5, 1.6}};
   table.index_k = {{9.0}, {0.1}};
@@ -99,11 +99,9 @@ void expect_same(const std::vector<double>& actual, const std::vector<double>& e
 }
 
 void expect_same(const Table& actual, const Table& expected) {
-  EXPECT_EQ(actual.theta_deg, expected.theta_deg);
-  EXPECT_EQ(actual.sigma, expected.sigma);
-  EXPECT_EQ(actual.q, expected.q);
-  for (const TableVariable& variable : table_variables()) {
-    expect_same(actual.*variable.values, expected.*variable.values, variable.name);
+  EXPECT_EQ(actual.axes, expected.axes);
+  for (const Quantity quantity : kAllQuantities) {
+    expect_same(actual[quantity], expected[quantity], description_of(quantity).name);
   }
   EXPECT_EQ(actual.status, expected.status);
   for (const TableCurve& described : kTableCurves) EXPECT_EQ(actual.*described.curve, expected.*described.curve);
@@ -154,8 +152,8 @@ TEST_F(TableFiles, NetcdfRoundTrip_AnyShape_GivesTheSameTable) {
 
 TEST_F(TableFiles, NetcdfRoundTrip_AbsentVariables_StayAbsent) {
   Table table = sample_table(3, 2, 2);
-  table.stokes_v.clear();
-  table.albedo.clear();
+  table[Quantity::kStokesV].clear();
+  table[Quantity::kAlbedo].clear();
   table.status.clear();
   table.stokes_units = "W m-2";
   write_table(table, at("t.nc"));
@@ -187,7 +185,7 @@ TEST_F(TableFiles, Netcdf_Metadata_FollowsCf) {
   EXPECT_EQ(text_attribute(file, variable("sigma"), "units"), "1");
   EXPECT_EQ(text_attribute(file, variable("q"), "units"), "1");
   EXPECT_EQ(text_attribute(file, variable("stokes_i"), "units"), "W m-2 um-1");
-  for (const TableVariable& described : table_variables()) {
+  for (const QuantityDescription& described : kQuantities) {
     EXPECT_EQ(text_attribute(file, variable(described.name), "long_name"), described.long_name);
     double fill = 0.0;
     EXPECT_EQ(nc_get_att_double(file, variable(described.name), "_FillValue", &fill), NC_NOERR);
@@ -409,11 +407,11 @@ TEST_F(TableFiles, Csv_Rows_ReadBackAsTheSameDoubles) {
       std::getline(cells, cell, ',');
       return std::stod(cell);
     };
-    EXPECT_EQ(number(), table.theta_deg[i / 4]);
-    EXPECT_EQ(number(), table.sigma[i / 2 % 2]);
-    EXPECT_EQ(number(), table.q[i % 2]);
-    for (const TableVariable& variable : table_variables()) {
-      expect_same({number()}, {(table.*variable.values)[i]}, variable.name);
+    EXPECT_EQ(number(), table.axes[Axis::kTheta][i / 4]);
+    EXPECT_EQ(number(), table.axes[Axis::kSigma][i / 2 % 2]);
+    EXPECT_EQ(number(), table.axes[Axis::kQ][i % 2]);
+    for (const Quantity quantity : kAllQuantities) {
+      expect_same({number()}, {table[quantity][i]}, description_of(quantity).name);
     }
     EXPECT_EQ(number(), table.status[i]);
   }
@@ -422,7 +420,7 @@ TEST_F(TableFiles, Csv_Rows_ReadBackAsTheSameDoubles) {
 
 TEST_F(TableFiles, Npy_Bytes_AreAStructuredArray) {
   Table table = sample_table(3, 1, 2);
-  table.stokes_u.clear();
+  table[Quantity::kStokesU].clear();
   write_table(table, at("t.npy"));
   const std::string bytes = content(at("t.npy"));
   ASSERT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
@@ -440,7 +438,9 @@ TEST_F(TableFiles, Npy_Bytes_AreAStructuredArray) {
     std::array<double, kReals> record{};
     std::memcpy(record.data(), bytes.data() + start + i * kRecord, sizeof record);
     expect_same({record[0], record[1], record[2], record[3], record[4]},
-                {table.theta_deg[i / 2], table.sigma[0], table.q[i % 2], table.dolp[i], table.stokes_i[i]}, "record");
+                {table.axes[Axis::kTheta][i / 2], table.axes[Axis::kSigma][0], table.axes[Axis::kQ][i % 2],
+                 table[Quantity::kDolp][i], table[Quantity::kStokesI][i]},
+                "record");
   }
 }
 

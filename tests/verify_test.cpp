@@ -30,16 +30,17 @@ TEST(Overrides, AnyValues_SurviveTheAttribute) {
         {"title=a = b", "emission=none", "grid.q=[2,\n3]"},
         {"grid.theta_deg={from=0,\nto=80,\ncount=3}", "grid.theta_deg.count=5", "surface.n=2"}}) {
     std::vector<std::string> again;
-    for (const Setting& setting : settings_of(settings_text(settings_from_text(overrides)))) again.push_back(setting.text());
+    for (const Setting& setting : settings_of(settings_text(settings_from_text(overrides))))
+      again.push_back(setting.text());
     EXPECT_EQ(again, overrides);
   }
 }
 
 Table small_table() {
   Table table;
-  table.theta_deg = {60.0};
-  table.sigma = {0.3};
-  table.q = {2.0};
+  table.axes[Axis::kTheta] = {60.0};
+  table.axes[Axis::kSigma] = {0.3};
+  table.axes[Axis::kQ] = {2.0};
   return table;
 }
 
@@ -54,24 +55,24 @@ std::string refusal(const Table& table, const std::string& scene_text) {
 
 TEST(CheckTable, NothingToCompare_IsRefused) {
   Table table = small_table();
-  table.albedo = {1.0};
-  table.dolp = {0.1};  // without its estimate
+  table[Quantity::kAlbedo] = {1.0};
+  table[Quantity::kDolp] = {0.1};  // without its estimate
   EXPECT_NE(refusal(table, kScene).find("t.nc: has nothing to compare"), std::string::npos);
 }
 
 TEST(CheckTable, AxisOutOfRange_IsRefused) {
   Table table = small_table();
-  table.dolp = table.error_estimate = {0.1};
-  table.theta_deg = {90.5};
+  table[Quantity::kDolp] = table[Quantity::kErrorEstimate] = {0.1};
+  table.axes[Axis::kTheta] = {90.5};
   EXPECT_NE(refusal(table, kScene).find("t.nc: axis theta: 90.5 is out of range"), std::string::npos);
-  table.theta_deg = {std::numeric_limits<double>::quiet_NaN()};
+  table.axes[Axis::kTheta] = {std::numeric_limits<double>::quiet_NaN()};
   EXPECT_NE(refusal(table, kScene).find("axis theta: nan"), std::string::npos);
 }
 
 TEST(CheckTable, EmptyStatusAndNoEstimates_PromiseNothing) {
   Table table = small_table();
-  table.rho_i = {0.3};
-  table.rho_error_estimate = {std::numeric_limits<double>::infinity()};
+  table[Quantity::kRhoI] = {0.3};
+  table[Quantity::kRhoErrorEstimate] = {std::numeric_limits<double>::infinity()};
   const TableCheck check = check_table({table, {0}}, parse_scene(kScene, "scene.toml", {}), "t.nc", {});
   EXPECT_TRUE(check.passed());
   ASSERT_EQ(check.quantities.size(), 1U);
@@ -81,10 +82,9 @@ TEST(CheckTable, EmptyStatusAndNoEstimates_PromiseNothing) {
 // ---- The program ---------------------------------------------------------------------------------------------------
 
 /// Writes a table file anew with one value changed.
-void put_value(const std::filesystem::path& path, std::vector<double> Table::*variable, std::size_t position,
-               double value) {
+void put_value(const std::filesystem::path& path, Quantity quantity, std::size_t position, double value) {
   Table table = read_table(path);
-  (table.*variable).at(position) = value;
+  table[quantity].at(position) = value;
   write_table(table, path);
 }
 
@@ -172,34 +172,34 @@ TEST_F(Verify, RightAngle_IsTheReferencesLimit) {
 
 TEST_F(Verify, OneCorruptedValue_Exit1AndIsNamed) {
   struct Corruption {
-    const char* name;
-    std::vector<double> Table::*values;
+    Quantity quantity;
     bool is_dolp;
   };
-  for (const Corruption& corruption : {Corruption{"dolp", &Table::dolp, true},
-                                       {"rho_i", &Table::rho_i, false},
-                                       {"rho_q", &Table::rho_q, false},
-                                       {"stokes_q", &Table::stokes_q, true},
-                                       {"stokes_i", &Table::stokes_i, true}}) {
+  for (const Corruption& corruption : {Corruption{Quantity::kDolp, true},
+                                       {Quantity::kRhoI, false},
+                                       {Quantity::kRhoQ, false},
+                                       {Quantity::kStokesQ, true},
+                                       {Quantity::kStokesI, true}}) {
+    const std::string name = description_of(corruption.quantity).name;
     const Table table = make_table({"--set", "surface.masking=v-cavity"});
     const std::size_t at_entry = table.position(1, 0, 1);  // theta 60, sigma 0.1, q 3.5
-    double bound = corruption.is_dolp ? table.error_estimate[at_entry]
-                                      : table.rho_error_estimate[at_entry] * table.rho_i[at_entry];
-    if (std::string(corruption.name).starts_with("stokes")) bound *= table.stokes_i[at_entry];
-    if (corruption.values == &Table::stokes_i) bound /= table.dolp[at_entry];
+    double bound = corruption.is_dolp ? table[Quantity::kErrorEstimate][at_entry]
+                                      : table[Quantity::kRhoErrorEstimate][at_entry] * table[Quantity::kRhoI][at_entry];
+    if (name.starts_with("stokes")) bound *= table[Quantity::kStokesI][at_entry];
+    if (corruption.quantity == Quantity::kStokesI) bound /= table[Quantity::kDolp][at_entry];
     // Three bounds: the true error is at most one, so that two are left.
-    put_value(at("t.nc"), corruption.values, at_entry, (table.*corruption.values)[at_entry] + 3.0 * bound);
+    put_value(at("t.nc"), corruption.quantity, at_entry, table[corruption.quantity][at_entry] + 3.0 * bound);
     const nlohmann::json json = verify_json(kAccuracy);
     EXPECT_EQ(json["passed"], false);
     ASSERT_EQ(json["failures"].size(), 1U) << json["failures"];
     const nlohmann::json& failure = json["failures"][0];
-    EXPECT_EQ(failure["quantity"], corruption.name);
+    EXPECT_EQ(failure["quantity"], name);
     EXPECT_EQ(failure["theta_deg"], 60.0);
     EXPECT_EQ(failure["sigma"], 0.1);
     EXPECT_EQ(failure["q"], 3.5);
     const Outcome text = dolp({"verify", "t.nc"});
     EXPECT_EQ(text.status, kAccuracy);
-    EXPECT_NE(text.out.find(std::string(corruption.name) + " at theta 60, sigma 0.1, q 3.5"), std::string::npos);
+    EXPECT_NE(text.out.find(std::string(name) + " at theta 60, sigma 0.1, q 3.5"), std::string::npos);
     EXPECT_NE(text.out.find("verdict    failed: 1 values"), std::string::npos) << text.out;
   }
 }
@@ -207,8 +207,8 @@ TEST_F(Verify, OneCorruptedValue_Exit1AndIsNamed) {
 TEST_F(Verify, EstimateBeyondTheToleranceWithoutStatus2_IsFoundByTheTolerance) {
   const Table table = make_table();
   const std::size_t at_entry = table.position(1, 0, 1);
-  put_value(at("t.nc"), &Table::error_estimate, at_entry, 1.0);
-  put_value(at("t.nc"), &Table::dolp, at_entry, table.dolp[at_entry] + 2e-4);  // twice the tolerance
+  put_value(at("t.nc"), Quantity::kErrorEstimate, at_entry, 1.0);
+  put_value(at("t.nc"), Quantity::kDolp, at_entry, table[Quantity::kDolp][at_entry] + 2e-4);  // twice the tolerance
   const nlohmann::json json = verify_json(kAccuracy);
   ASSERT_EQ(json["failures"].size(), 1U) << json["failures"];
   EXPECT_EQ(json["failures"][0]["complaint"], "misses the tolerance without status 2");
@@ -222,12 +222,12 @@ TEST_F(Verify, EntriesThatAreNan_AreComparedAsSuch) {
   // Without masking rho diverges at 90 degrees: NaN with status 1 and 4.
   const Table table = make_table({"--set", "surface.masking=none", "--set", "grid.theta_deg=[30, 90]"});
   const std::size_t diverges = table.position(1, 0, 0);
-  ASSERT_TRUE(std::isnan(table.rho_i[diverges]));
+  ASSERT_TRUE(std::isnan(table[Quantity::kRhoI][diverges]));
   verify_json(kDone);
-  put_value(at("t.nc"), &Table::rho_i, diverges, 0.5);
+  put_value(at("t.nc"), Quantity::kRhoI, diverges, 0.5);
   EXPECT_EQ(verify_json(kAccuracy)["failures"].size(), 1U);
-  put_value(at("t.nc"), &Table::rho_i, diverges, std::nan(""));
-  put_value(at("t.nc"), &Table::rho_q, 0, std::nan(""));
+  put_value(at("t.nc"), Quantity::kRhoI, diverges, std::nan(""));
+  put_value(at("t.nc"), Quantity::kRhoQ, 0, std::nan(""));
   const nlohmann::json failures = verify_json(kAccuracy)["failures"];
   ASSERT_EQ(failures.size(), 1U);
   EXPECT_EQ(failures[0]["complaint"], "is NaN in the table");
@@ -236,8 +236,9 @@ TEST_F(Verify, EntriesThatAreNan_AreComparedAsSuch) {
 
 TEST_F(Verify, ReducedVariables_AreComparedAsFarAsTheyAreThere) {
   Table table = make_table();
-  for (auto values : {&Table::rho_i, &Table::rho_q, &Table::rho_error_estimate, &Table::stokes_u, &Table::stokes_v}) {
-    (table.*values).clear();
+  for (const Quantity quantity :
+       {Quantity::kRhoI, Quantity::kRhoQ, Quantity::kRhoErrorEstimate, Quantity::kStokesU, Quantity::kStokesV}) {
+    table[quantity].clear();
   }
   write_table(table, at("t.nc"));
   const nlohmann::json json = verify_json(kDone);
@@ -327,7 +328,7 @@ TEST_F(Verify, FilesThatATableNames_AreNotQuoted) {
 TEST_F(Verify, WrongFiles_Exit2InOneLine) {
   make_table();
   Table foreign = small_table();
-  foreign.dolp = {0.1};
+  foreign[Quantity::kDolp] = {0.1};
   write_table(foreign, at("foreign.nc"));
   put("table.csv", "theta_deg,sigma,q\n");
   const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes = {

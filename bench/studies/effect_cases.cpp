@@ -19,24 +19,24 @@ constexpr double kIrradiance = 20.0;  // W m-2 um-1, somewhat below what the sur
 constexpr double kFaint = 1e-9;       // of it
 constexpr double kSmooth = 5e-3;      // of the sigmas
 
-Grid grid_of(std::size_t entries) {
+Axes grid_of(std::size_t entries) {
   const auto side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(entries))));
   const std::size_t thetas = std::max<std::size_t>(2, side);
   const std::size_t sigmas = std::max<std::size_t>(2, entries / thetas);
-  Grid grid;
+  Axes grid;
   for (std::size_t i = 0; i < thetas; ++i) {
-    grid.theta_deg.push_back(kLastTheta * static_cast<double>(i) / static_cast<double>(thetas - 1));
+    grid[Axis::kTheta].push_back(kLastTheta * static_cast<double>(i) / static_cast<double>(thetas - 1));
   }
   for (std::size_t i = 0; i < sigmas; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(sigmas - 1);
-    grid.sigma.push_back(kFirstSigma * std::pow(kLastSigma / kFirstSigma, share));
+    grid[Axis::kSigma].push_back(kFirstSigma * std::pow(kLastSigma / kFirstSigma, share));
   }
-  grid.q = {3.0};
+  grid[Axis::kQ] = {3.0};
   return grid;
 }
 
 /// The stainless steel of the paper, that emits and nothing else.
-Scene emitting(const Grid& grid) {
+Scene emitting(const Axes& grid) {
   Scene scene;
   scene.surface.material.constant = {1.508, 0.0};
   scene.emission = Emission{kTemperature, EmissionModel::kMoments};
@@ -46,7 +46,7 @@ Scene emitting(const Grid& grid) {
 }
 
 /// The same, seen from one direction beside the plane of the source.
-Scene seen_from_one_side(const Grid& grid) {
+Scene seen_from_one_side(const Axes& grid) {
   Scene scene = emitting(grid);
   scene.geometry = {Mode::kBistatic, 60.0, 90.0};
   return scene;
@@ -123,19 +123,19 @@ std::vector<EffectGroup> surface_groups(const Scene& base) {
           group("complex index", base,
                 {{"k = 0"}, {"k = 0.5", [](Scene& scene) { scene.surface.material.constant.k = 0.5; }}}),
           group("axes of index", base, {{"one n and k"}, {"20 n x 20 k", [](Scene& scene) {
-                                                            scene.grid.n = spaced(1.3, 2.5, 20);
-                                                            scene.grid.k = spaced(0.01, 1.0, 20);
+                                                            scene.grid[Axis::kN] = spaced(1.3, 2.5, 20);
+                                                            scene.grid[Axis::kK] = spaced(0.01, 1.0, 20);
                                                           }}})};
 }
 
 /// What goes beyond single scattering, with the one masking that has all of it.
-std::vector<EffectGroup> scattering_groups(const Grid& grid) {
+std::vector<EffectGroup> scattering_groups(const Axes& grid) {
   Scene rough = emitting(grid);
   rough.surface.masking = Masking::kVCavity;
   // No slope that counts is hit twice, so that the plan leaves further bounces out.
   Scene smooth = rough;
   smooth.surface.distribution = Distribution::kGaussian;
-  for (double& sigma : smooth.grid.sigma) sigma *= kSmooth;
+  for (double& sigma : smooth.grid[Axis::kSigma]) sigma *= kSmooth;
   return {group("scattering", rough, {scattering(Scattering::kSingle), scattering(Scattering::kMultiple)}),
           group("smooth surface", smooth, {scattering(Scattering::kSingle), scattering(Scattering::kMultiple)}),
           group("direct emission", rough,
@@ -168,7 +168,7 @@ std::vector<EffectGroup> radiation_groups(const Scene& base, const Scene& bistat
 }  // namespace
 
 std::vector<EffectGroup> effect_groups(std::size_t entries) {
-  const Grid grid = grid_of(entries);
+  const Axes grid = grid_of(entries);
   const Scene base = emitting(grid);
   std::vector<EffectGroup> groups = surface_groups(base);
   for (std::vector<EffectGroup>& more :

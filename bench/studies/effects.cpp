@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/choices.hpp"
@@ -39,7 +38,7 @@ Change change_of(const std::vector<PointResult>& planned, const std::vector<Poin
   Change change;
   for (std::size_t i = 0; i < planned.size(); ++i) {
     if (((planned[i].status | all[i].status) & kStatusNoDolpPromised) != 0) continue;
-    change.dolp = std::max(change.dolp, std::abs(planned[i].dolp - all[i].dolp));
+    change.dolp = std::max(change.dolp, std::abs(planned[i][Quantity::kDolp] - all[i][Quantity::kDolp]));
     ++change.compared;
   }
   return change;
@@ -140,11 +139,11 @@ Study::Study(StudyRun& run)
 
 void Study::describe() {
   const Scene& base = groups_.front().settings.front().scene;
-  run_.describe("effects",
-                "largest |change of DOLP| by what the plan drops, entries with status 1, 4 or 8 left out",
+  run_.describe("effects", "largest |change of DOLP| by what the plan drops, entries with status 1, 4 or 8 left out",
                 "seconds an entry, median: plan and evaluation on the Vulkan device, whose creation is not counted");
   run_.json()["tolerance"] = base.accuracy.tolerance;
-  run_.json()["grid"] = {{"theta_deg", base.grid.theta_deg}, {"sigma", base.grid.sigma}, {"q", base.grid.q}};
+  run_.json()["grid"] = {
+      {"theta_deg", base.grid[Axis::kTheta]}, {"sigma", base.grid[Axis::kSigma]}, {"q", base.grid[Axis::kQ]}};
 }
 
 void Study::measure_all() {

@@ -26,14 +26,14 @@ double in_equal_ratios(double first, double last, double share) { return first *
 
 std::string GridSize::text() const { return fmt::format("{} x {} x {}", thetas, sigmas, qs); }
 
-Grid steel_grid(const GridSize& size) {
-  Grid grid;
-  for (std::size_t i = 0; i < size.thetas; ++i) grid.theta_deg.push_back(kRightAngle * share(i, size.thetas));
+Axes steel_grid(const GridSize& size) {
+  Axes grid;
+  for (std::size_t i = 0; i < size.thetas; ++i) grid[Axis::kTheta].push_back(kRightAngle * share(i, size.thetas));
   for (std::size_t i = 0; i < size.sigmas; ++i) {
-    grid.sigma.push_back(in_equal_ratios(kFirstSigma, kLastSigma, share(i, size.sigmas)));
+    grid[Axis::kSigma].push_back(in_equal_ratios(kFirstSigma, kLastSigma, share(i, size.sigmas)));
   }
   for (std::size_t i = 0; i < size.qs; ++i) {
-    grid.q.push_back(1.0 + in_equal_ratios(kFirstQMinus1, kLastQMinus1, share(i, size.qs)));
+    grid[Axis::kQ].push_back(1.0 + in_equal_ratios(kFirstQMinus1, kLastQMinus1, share(i, size.qs)));
   }
   return grid;
 }
@@ -57,23 +57,23 @@ Scene steel_scene(Masking masking, const GridSize& size) {
   return scene;
 }
 
-MomentsRequest steel_request(Masking masking, const Grid& grid) {
+MomentsRequest steel_request(Masking masking, const Axes& grid) {
   MomentsRequest request;
   request.masking = masking;
-  request.theta_deg = grid.theta_deg;
+  request.theta_deg = grid[Axis::kTheta];
   request.indices = {{kIndex, 0.0}};
-  request.sigma = grid.sigma;
-  request.q = grid.q;
+  request.sigma = grid[Axis::kSigma];
+  request.q = grid[Axis::kQ];
   return request;
 }
 
-Grid NestedGrid::with_stride(std::size_t stride) {
-  const Grid all = steel_grid({kSide, kSide, kSide});
-  Grid grid;
+Axes NestedGrid::with_stride(std::size_t stride) {
+  const Axes all = steel_grid({kSide, kSide, kSide});
+  Axes grid;
   for (std::size_t i = 0; i < kSide; i += stride) {
-    grid.theta_deg.push_back(kRightAngle * (static_cast<double>(i) + 0.5) / static_cast<double>(kSide));
-    grid.sigma.push_back(all.sigma[i]);
-    grid.q.push_back(all.q[i]);
+    grid[Axis::kTheta].push_back(kRightAngle * (static_cast<double>(i) + 0.5) / static_cast<double>(kSide));
+    grid[Axis::kSigma].push_back(all[Axis::kSigma][i]);
+    grid[Axis::kQ].push_back(all[Axis::kQ][i]);
   }
   return grid;
 }
@@ -99,11 +99,12 @@ std::vector<NestedGrid::Place> NestedGrid::sample(std::size_t count) {
 }
 
 MomentsRequest sample_request(Masking masking, const std::vector<NestedGrid::Place>& sample) {
-  const Grid grid = NestedGrid::with_stride(NestedGrid::kLargestStride);
+  const Axes grid = NestedGrid::with_stride(NestedGrid::kLargestStride);
   MomentsRequest request;
   request.masking = masking;
   for (const NestedGrid::Place& place : sample) {
-    request.append({grid.theta_deg[place.theta], {grid.sigma[place.sigma], grid.q[place.q]}, {kIndex, 0.0}});
+    request.append(
+        {grid[Axis::kTheta][place.theta], {grid[Axis::kSigma][place.sigma], grid[Axis::kQ][place.q]}, {kIndex, 0.0}});
   }
   return request;
 }

@@ -21,13 +21,13 @@ struct GridSize {
 };
 
 /// theta: 0 to 90 degrees; sigma: 0.05 to 1, q - 1: 0.75 to 7, both in equal ratios.
-Grid steel_grid(const GridSize& size);
+Axes steel_grid(const GridSize& size);
 
 /// The surface of the scene as it stands, with this grid.
 Scene steel_scene(Masking masking, const GridSize& size);
 
 /// The moments of the steel for every entry of a grid, in C order, q fastest.
-MomentsRequest steel_request(Masking masking, const Grid& grid);
+MomentsRequest steel_request(Masking masking, const Axes& grid);
 
 /// A grid of 64 x 64 x 64 entries that others can be compared on: no direction lies at 0 or 90 degrees, which not
 /// everybody can do, and it holds smaller grids of the same extent, so that a slow method may do fewer of its entries.
@@ -36,7 +36,7 @@ struct NestedGrid {
   static constexpr std::size_t kLargestStride = 8;
 
   /// Every `stride`-th value of each axis, a power of two up to kLargestStride.
-  static Grid with_stride(std::size_t stride);
+  static Axes with_stride(std::size_t stride);
 
   /// An entry that all of them have.
   struct Place {

@@ -86,7 +86,7 @@ dolp::Device device_of(const StudyOptions& options) {
 double stated_error(const std::vector<PointResult>& results) {
   double largest = 0.0;
   for (const PointResult& result : results) {
-    if (result.status == 0) largest = std::max(largest, result.rho_error_estimate);
+    if (result.status == 0) largest = std::max(largest, result[Quantity::kRhoErrorEstimate]);
   }
   return largest;
 }

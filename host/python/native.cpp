@@ -88,7 +88,8 @@ std::vector<dolp::Column> views(const Columns& columns) {
 std::vector<dolp::FitRange> ranges_of(const std::map<std::string, std::vector<double>>& vary) {
   std::vector<dolp::FitRange> ranges;
   for (const auto& [key, ends] : vary) {
-    if (ends.size() < 2 || ends.size() > 3) throw dolp::InputError(key + ": must vary over (low, high) or (low, high, start)");
+    if (ends.size() < 2 || ends.size() > 3)
+      throw dolp::InputError(key + ": must vary over (low, high) or (low, high, start)");
     ranges.push_back({key, ends[0], ends[1], ends.size() == 3 ? std::optional(ends[2]) : std::nullopt});
   }
   return ranges;
@@ -105,10 +106,10 @@ py::array_t<Value> array_of(std::vector<Value> values) {
 /// (quantities: [(name, long_name, units, ancillary, values)], status, attributes).
 py::tuple parts_of(dolp::Results results) {
   py::list quantities;
-  for (dolp::Results::Quantity& quantity : results.quantities) {
-    const dolp::Variable& known = quantity.variable;
-    quantities.append(py::make_tuple(known.name, known.long_name, known.units, known.ancillary,
-                                     array_of(std::move(quantity.values))));
+  for (const dolp::Quantity quantity : results.given) {
+    const dolp::QuantityDescription& known = dolp::description_of(quantity);
+    quantities.append(py::make_tuple(known.name, known.long_name, dolp::units_of(quantity, results.stokes_units),
+                                     known.ancillary, array_of(std::move(results[quantity]))));
   }
   py::dict attributes;
   for (const auto& [name, value] : results.attributes) attributes[py::str(name)] = value;
@@ -132,12 +133,12 @@ PYBIND11_MODULE(_native, module) {
   py::register_exception<dolp::MemoryError>(module, "MemoryError", PyExc_MemoryError);
 
   py::class_<dolp::Scene>(module, "Scene")
-      .def_static("from_file", [](const std::filesystem::path& path, const py::dict& values) {
-        return dolp::Scene::from_file(path, settings_of(values));
-      })
-      .def_static("from_text", [](const std::string& text, const py::dict& values) {
-        return dolp::Scene::from_text(text, settings_of(values), "text");
-      })
+      .def_static("from_file", [](const std::filesystem::path& path,
+                                  const py::dict& values) { return dolp::Scene::from_file(path, settings_of(values)); })
+      .def_static("from_text",
+                  [](const std::string& text, const py::dict& values) {
+                    return dolp::Scene::from_text(text, settings_of(values), "text");
+                  })
       .def("with_", [](const dolp::Scene& scene, const py::dict& values) { return scene.with(settings_of(values)); })
       .def("toml", [](const dolp::Scene& scene) { return scene.toml(); })
       .def_property_readonly("title", &dolp::Scene::title);
@@ -216,6 +217,14 @@ PYBIND11_MODULE(_native, module) {
     py::list all;
     for (const dolp::Key& key : dolp::keys()) {
       all.append(py::make_tuple(key.key, key.unit, key.allowed(), key.fallback, key.meaning));
+    }
+    return all;
+  });
+  module.def("axes", [] {
+    py::list all;
+    for (const dolp::Axis axis : dolp::kColumnOrder) {
+      const dolp::AxisDescription& known = dolp::description_of(axis);
+      all.append(py::make_tuple(known.column, known.name, known.long_name, known.units));
     }
     return all;
   });

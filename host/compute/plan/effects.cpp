@@ -285,7 +285,7 @@ EffectRow complex_index_row(const Scene& scene, const EffectPlan& plan, const Sc
   const auto is_complex = [](const OpticalConstants& index) { return index.k > 0.0; };
   const bool own =
       entries.is_grid()
-          ? std::ranges::any_of(entries.axes().k, [](double k) { return k > 0.0; })
+          ? std::ranges::any_of(entries.axes()[Axis::kK], [](double k) { return k > 0.0; })
           : std::ranges::any_of(entries.all(), [&](const SceneEntry& e) { return e.index && is_complex(*e.index); });
   if (!own && std::ranges::none_of(indices, is_complex)) return absent(kName, "k is 0");
   EffectRow row{kName, EffectState::kKept, "costs nothing: the kernel treats real indices alike"};

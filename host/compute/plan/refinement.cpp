@@ -56,10 +56,10 @@ std::optional<RefinementLevel> next_level(const RefinementLevel& last, const Poi
   if ((result.status & kStatusToleranceMissed) == 0) return std::nullopt;
   // Outside the domain the DOLP may still have a limit; where it has none, nothing can be done.
   const bool is_outside = (result.status & kStatusOutsideDomain) != 0;
-  if (is_outside && std::isnan(result.error_estimate)) return std::nullopt;
-  const double rho_error = is_outside ? 0.0 : result.rho_error_estimate;
+  if (is_outside && std::isnan(result[Quantity::kErrorEstimate])) return std::nullopt;
+  const double rho_error = is_outside ? 0.0 : result[Quantity::kRhoErrorEstimate];
   const double excess =
-      std::isnan(rho_error) ? rho_error : std::max(result.error_estimate, rho_error) / accuracy.tolerance;
+      std::isnan(rho_error) ? rho_error : std::max(result[Quantity::kErrorEstimate], rho_error) / accuracy.tolerance;
   // The tighter the last level was already, the larger the step, or an entry that never meets it takes for ever.
   const double so_far = std::log10(accuracy.tolerance / last.tolerance);
   const double least = std::max(kLeastDecades, half_decades(0.5 * so_far));

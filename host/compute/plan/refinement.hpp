@@ -6,8 +6,8 @@
 #include <optional>
 #include <tuple>
 
+#include <dolp/results.hpp>
 #include "model/moments.hpp"
-#include "model/point_result.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {

@@ -39,54 +39,37 @@ constexpr std::array kCuttingOrder = {Axis::kTheta, Axis::kWavelength, Axis::kN,
 
 }  // namespace
 
-PerAxis counts_of(const Grid& grid) {
-  PerAxis counts;
-  for (std::size_t i = 0; i < kGridAxes.size(); ++i) counts[i] = std::max<std::size_t>((grid.*kGridAxes[i]).size(), 1);
-  return counts;
-}
-
-std::size_t size_of(const PerAxis& counts) {
-  return std::accumulate(counts.begin(), counts.end(), std::size_t{1}, std::multiplies<>());
-}
-
-SceneEntries SceneEntries::of_grid(Grid grid, const OpticalConstants& index) {
+SceneEntries SceneEntries::of_grid(Axes axes, const OpticalConstants& index) {
   SceneEntries entries;
   entries.is_grid_ = true;
-  entries.counts_ = counts_of(grid);
-  if (grid.theta_deg.empty() || grid.sigma.empty() || grid.q.empty()) entries.counts_ = {};
+  entries.counts_ = counts_of(axes);
+  for (const Axis axis : kAllAxes) {
+    if (description_of(axis).is_required && axes[axis].empty()) entries.counts_ = {};
+  }
   entries.whole_ = entries.counts_;
-  entries.whole_axes_ = std::make_shared<const Grid>(grid);
-  entries.grid_ = std::move(grid);
+  entries.whole_axes_ = std::make_shared<const Axes>(axes);
+  entries.axes_ = std::move(axes);
   entries.index_ = index;
   return entries;
 }
 
 SceneEntries SceneEntries::grid(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q) {
-  return of_grid({std::move(theta_deg), std::move(sigma), std::move(q), {}, {}, {}}, {});
-}
-
-PerAxis SceneEntries::place(std::size_t entry) const {
-  PerAxis place = {};
-  for (std::size_t i = counts_.size(); i-- > 0 && entry > 0;) {
-    place[i] = entry % counts_[i];
-    entry /= counts_[i];
-  }
-  return place;
+  return of_grid(axes_of(std::move(theta_deg), std::move(sigma), std::move(q)), {});
 }
 
 OpticalConstants SceneEntries::index_at(const PerAxis& place) const {
-  return {grid_.n.empty() ? index_.n : grid_.n[dolp::at(place, Axis::kN)],
-          grid_.k.empty() ? index_.k : grid_.k[dolp::at(place, Axis::kK)]};
+  const auto at = [&](Axis axis, double own) { return axes_[axis].empty() ? own : axes_[axis][place[axis]]; };
+  return {at(Axis::kN, index_.n), at(Axis::kK, index_.k)};
 }
 
 SceneEntry SceneEntries::operator[](std::size_t entry) const {
   if (!is_grid_) return points_[entry];
   const PerAxis at = place(entry);
   SceneEntry result;
-  result.theta_deg = grid_.theta_deg[dolp::at(at, Axis::kTheta)];
-  result.shape = {grid_.sigma[dolp::at(at, Axis::kSigma)], grid_.q[dolp::at(at, Axis::kQ)]};
+  result.theta_deg = theta_deg()[at[Axis::kTheta]];
+  result.shape = {sigma()[at[Axis::kSigma]], q()[at[Axis::kQ]]};
   if (has_own_index()) result.index = index_at(at);
-  result.wavelength = static_cast<std::uint32_t>(dolp::at(at, Axis::kWavelength));
+  result.wavelength = static_cast<std::uint32_t>(at[Axis::kWavelength]);
   return result;
 }
 
@@ -97,18 +80,13 @@ SceneEntries SceneEntries::part(const PerAxis& first, const PerAxis& count) cons
   part.counts_ = count;
   part.whole_ = whole_;
   part.whole_axes_ = whole_axes_;
-  for (std::size_t i = 0; i < kGridAxes.size(); ++i) {
-    part.first_[i] = first_[i] + first[i];
-    const std::vector<double>& values = grid_.*kGridAxes[i];
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first[i]);
-    if (!values.empty()) part.grid_.*kGridAxes[i] = {begin, begin + static_cast<std::ptrdiff_t>(count[i])};
-  }
+  for (const Axis axis : kAllAxes) part.first_[axis] = first_[axis] + first[axis];
+  part.axes_ = part_of(axes_, first, count);
   return part;
 }
 
 std::optional<std::size_t> SceneEntries::position_of(std::size_t in_whole) const {
-  PerAxis place = {};
-  for (std::size_t i = whole_.size(); i-- > 0; in_whole /= whole_[i]) place[i] = in_whole % whole_[i];
+  const PerAxis place = place_of(in_whole, whole_);
   std::size_t position = 0;
   for (std::size_t i = 0; i < place.size(); ++i) {
     if (place[i] < first_[i] || place[i] >= first_[i] + counts_[i]) return std::nullopt;
@@ -128,7 +106,7 @@ std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
   }
   const std::function<void(PerAxis, PerAxis, std::size_t)> cut_along = [&](PerAxis first, PerAxis count,
                                                                            std::size_t number) {
-    const auto axis = static_cast<std::size_t>(kCuttingOrder[number]);
+    const Axis axis = kCuttingOrder[number];
     const std::size_t of_one = size_of(count) / count[axis];
     const std::size_t fit = std::clamp<std::size_t>(most / of_one, 1, count[axis]);
     const std::size_t all = count[axis];

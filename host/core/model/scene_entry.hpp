@@ -1,7 +1,6 @@
 // Where a scene is looked at: a grid or scattered points.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -12,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/axes.hpp"
 #include "model/optical_constants.hpp"
 #include "model/slopes.hpp"
 
@@ -24,29 +24,6 @@ struct SceneEntry {
   std::optional<OpticalConstants> index;
   std::uint32_t wavelength = 0;  ///< position in SceneEntries::wavelength_um
 };
-
-/// Axis values in any order, each once; theta, sigma and q have one value at least, the others are the scene's where
-/// they are empty.
-struct Grid {
-  std::vector<double> theta_deg = {};
-  std::vector<double> sigma = {};
-  std::vector<double> q = {};
-  std::vector<double> wavelength_um = {};
-  std::vector<double> n = {};
-  std::vector<double> k = {};
-};
-
-/// The axes in the order of a table, the last one fastest.
-enum class Axis : std::uint8_t { kWavelength, kN, kK, kTheta, kSigma, kQ };
-inline constexpr std::array<std::vector<double> Grid::*, 6> kGridAxes = {&Grid::wavelength_um, &Grid::n,     &Grid::k,
-                                                                         &Grid::theta_deg,     &Grid::sigma, &Grid::q};
-/// A number for each axis: positions, or counts.
-using PerAxis = std::array<std::size_t, kGridAxes.size()>;
-inline std::size_t at(const PerAxis& numbers, Axis axis) { return numbers[static_cast<std::size_t>(axis)]; }
-
-/// Values on each axis, of one that is empty 1; and their product.
-PerAxis counts_of(const Grid& grid);
-std::size_t size_of(const PerAxis& counts);
 
 /// Neighbours of a part of a grid that are neighbours in the whole as well.
 struct GridRun {
@@ -61,11 +38,11 @@ class SceneEntries {
   SceneEntries() = default;
   SceneEntries(std::vector<SceneEntry> points, std::vector<double> wavelength_um = {})  // NOLINT: a list is entries
       : points_(std::move(points)) {
-    grid_.wavelength_um = std::move(wavelength_um);
+    axes_[Axis::kWavelength] = std::move(wavelength_um);
   }
   SceneEntries(std::initializer_list<SceneEntry> points) : points_(points) {}
   /// `index`: of the surface, where a grid has an axis of n or of k alone.
-  static SceneEntries of_grid(Grid grid, const OpticalConstants& index);
+  static SceneEntries of_grid(Axes axes, const OpticalConstants& index);
   static SceneEntries grid(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q);
 
   bool is_grid() const { return is_grid_; }
@@ -77,19 +54,19 @@ class SceneEntries {
            std::views::transform([this](std::size_t i) { return (*this)[i]; });
   }
   /// Of a grid its axis; of points those that are among them. Empty: the scene's spectrum.
-  const std::vector<double>& wavelength_um() const { return grid_.wavelength_um; }
+  const std::vector<double>& wavelength_um() const { return axes_[Axis::kWavelength]; }
 
   // Of a grid.
-  const Grid& axes() const { return grid_; }
+  const Axes& axes() const { return axes_; }
   const PerAxis& counts() const { return counts_; }
-  const std::vector<double>& theta_deg() const { return grid_.theta_deg; }
-  const std::vector<double>& sigma() const { return grid_.sigma; }
-  const std::vector<double>& q() const { return grid_.q; }
-  PerAxis place(std::size_t entry) const;
+  const std::vector<double>& theta_deg() const { return axes_[Axis::kTheta]; }
+  const std::vector<double>& sigma() const { return axes_[Axis::kSigma]; }
+  const std::vector<double>& q() const { return axes_[Axis::kQ]; }
+  PerAxis place(std::size_t entry) const { return place_of(entry, counts_); }
   /// Entries that differ in sigma and q alone.
-  std::size_t of_direction() const { return grid_.sigma.size() * grid_.q.size(); }
+  std::size_t of_direction() const { return sigma().size() * q().size(); }
   const OpticalConstants& index() const { return index_; }
-  bool has_own_index() const { return !grid_.n.empty() || !grid_.k.empty(); }
+  bool has_own_index() const { return !axes_[Axis::kN].empty() || !axes_[Axis::kK].empty(); }
   /// The index of an entry, of a grid with an axis of n or k.
   OpticalConstants index_at(const PerAxis& place) const;
 
@@ -101,18 +78,18 @@ class SceneEntries {
   /// Of a part: where its axes begin in the whole, and how many values they have there.
   const PerAxis& first() const { return first_; }
   const PerAxis& whole() const { return whole_; }
-  const Grid& whole_axes() const { return *whole_axes_; }
+  const Axes& whole_axes() const { return *whole_axes_; }
   /// The position of an entry of the whole, if the part has it.
   std::optional<std::size_t> position_of(std::size_t in_whole) const;
 
  private:
   bool is_grid_ = false;
-  Grid grid_;
+  Axes axes_;
   OpticalConstants index_;
   PerAxis counts_ = {};
   PerAxis first_ = {};
   PerAxis whole_ = {};
-  std::shared_ptr<const Grid> whole_axes_;
+  std::shared_ptr<const Axes> whole_axes_;
   std::vector<SceneEntry> points_;
 };
 

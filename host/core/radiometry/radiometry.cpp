@@ -20,20 +20,22 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRightAngle_deg = 90.0;
 
+using enum Quantity;
+
 EmissionModel emission_model(const Scene& scene) {
   return scene.emission ? scene.emission->model : EmissionModel::kMoments;
 }
 
 void set_dolp(PointResult& result, const Stokes& sum) {
-  result.dolp = std::hypot(sum.q, sum.u) / sum.i;
+  result[kDolp] = std::hypot(sum.q, sum.u) / sum.i;
   const double i = std::abs(sum.i);
   const double margin = i - sum.i_error;
-  if (std::isnan(result.dolp)) {
-    result.error_estimate = kNan;
+  if (std::isnan(result[kDolp])) {
+    result[kErrorEstimate] = kNan;
   } else if (margin > 0.0) {
-    result.error_estimate = (std::hypot(sum.q_error, sum.u_error) + std::abs(result.dolp) * sum.i_error) / margin;
+    result[kErrorEstimate] = (std::hypot(sum.q_error, sum.u_error) + std::abs(result[kDolp]) * sum.i_error) / margin;
   } else {
-    result.error_estimate = kInfinity;
+    result[kErrorEstimate] = kInfinity;
   }
 }
 
@@ -47,21 +49,19 @@ void add_emissivity(PointResult& result, const SpectralRule& rule, std::span<con
     i += weight * emissivities[j].i;
     q += weight * emissivities[j].q;
   }
-  result.emissivity_s = (i + q) / total;
-  result.emissivity_p = (i - q) / total;
+  result[kEmissivityS] = (i + q) / total;
+  result[kEmissivityP] = (i - q) / total;
 }
 
 std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
   const bool is_outside = (result.status & kStatusOutsideDomain) != 0;  // rho diverges; the DOLP is a limit, or NaN
-  const bool dolp_missed = (is_outside || promises_dolp(result.status)) && result.error_estimate > tolerance;
-  const bool rho_missed = !is_outside && result.rho_error_estimate > tolerance;
+  const bool dolp_missed = (is_outside || promises_dolp(result.status)) && result[kErrorEstimate] > tolerance;
+  const bool rho_missed = !is_outside && result[kRhoErrorEstimate] > tolerance;
   return dolp_missed || rho_missed ? kStatusToleranceMissed : 0;
 }
 
 PointResult outside_domain() {
   PointResult result;
-  result.dolp = result.stokes_i = result.stokes_q = result.stokes_u = result.stokes_v = kNan;
-  result.rho_i = result.rho_q = result.albedo = result.error_estimate = result.rho_error_estimate = kNan;
   result.status = kStatusOutsideDomain;
   return result;
 }
@@ -115,21 +115,21 @@ PointResult grazing_limit(const Scene& scene, const SpectralRule& rule, const Di
   const Surface& surface = scene.surface;
   PointResult result = outside_domain();
   result.status = kStatusUnphysicalReflectance | kStatusOutsideDomain;
-  result.rho_error_estimate = 0.0;
+  result[kRhoErrorEstimate] = 0.0;
   if (!specular_diverges(surface)) {
-    if (direction.cos_theta > 0.0) result.albedo = moments.front().albedo / direction.cos_theta;
+    if (direction.cos_theta > 0.0) result[kAlbedo] = moments.front().albedo / direction.cos_theta;
     // A diverging diffuse part is unpolarised. Only next to a fresnel emission of the same temperature does it cancel,
     // and what would be left then is not worth a formula of its own.
     const bool cancels = emission_model(scene) == EmissionModel::kFresnel && is_isothermal(rule);
-    if (diffuse_diverges(surface) && !cancels) result.dolp = result.error_estimate = 0.0;
+    if (diffuse_diverges(surface) && !cancels) result[kDolp] = result[kErrorEstimate] = 0.0;
     return result;
   }
   for (const Moments& m : moments) {
     const double bound = surface.specular == 0.0 ? 0.0 : relative_bound(std::max(m.r_i_error, m.r_q_error), m.r_i);
-    result.rho_error_estimate = std::max(result.rho_error_estimate, bound);
+    result[kRhoErrorEstimate] = std::max(result[kRhoErrorEstimate], bound);
   }
   set_dolp(result, grazing_stokes(scene, rule, moments));
-  result.dolp = std::abs(result.dolp);
+  result[kDolp] = std::abs(result[kDolp]);
   return result;
 }
 
@@ -149,12 +149,12 @@ Radiometry::Radiometry(const Scene& scene, const KeptEffects& kept, const DropBo
 }
 
 PointResult Radiometry::finished(PointResult result) const {
-  if (!kept_.moments) result.albedo = kNan;
+  if (!kept_.moments) result[kAlbedo] = kNan;
   if (!knows_rho_ && emission_model(scene_) != EmissionModel::kFresnel)
-    result.emissivity_s = result.emissivity_p = kNan;
-  if (!knows_rho_) result.rho_i = result.rho_q = result.rho_error_estimate = kNan;
-  result.error_estimate += dropped_.dolp;
-  result.rho_error_estimate += dropped_.rho;
+    result[kEmissivityS] = result[kEmissivityP] = kNan;
+  if (!knows_rho_) result[kRhoI] = result[kRhoQ] = result[kRhoErrorEstimate] = kNan;
+  result[kErrorEstimate] += dropped_.dolp;
+  result[kRhoErrorEstimate] += dropped_.rho;
   result.status |= tolerance_status(result, scene_.accuracy.tolerance);
   return result;
 }
@@ -214,25 +214,25 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   add_path(sum, scene_.path, kept_rule_.path_exitance);
   const double unit = bistatic ? 1.0 / pi<double>() : 1.0;  // an exitance, or the radiance that it is the integral of
   const MeanReflectance mean = mean_reflectance(rule_, reflectances, cos_theta);
-  result.stokes_i = unit * sum.i;
-  result.stokes_q = unit * sum.q + 0.0;  // without the sign of a zero
-  result.stokes_u = unit * sum.u + 0.0;
-  result.stokes_v = unit * sum.v + 0.0;
-  result.rho_i = mean.rho_i;
-  result.rho_q = mean.rho_q;
-  result.albedo = moments.front().albedo / cos_theta;
-  result.rho_error_estimate = relative_bound(mean.error, mean.rho_i);
+  result[kStokesI] = unit * sum.i;
+  result[kStokesQ] = unit * sum.q + 0.0;  // without the sign of a zero
+  result[kStokesU] = unit * sum.u + 0.0;
+  result[kStokesV] = unit * sum.v + 0.0;
+  result[kRhoI] = mean.rho_i;
+  result[kRhoQ] = mean.rho_q;
+  result[kAlbedo] = moments.front().albedo / cos_theta;
+  result[kRhoErrorEstimate] = relative_bound(mean.error, mean.rho_i);
   set_dolp(result, sum);
   if (scene_.emission) add_emissivity(result, rule_, emissivities);
   if (scene_.emission && scene_.emission->has_bracket) {
     const auto direct = emissivities_of(EmissionModel::kDirect);
     const Bracket between = bracket(scene_, kept_rule_, reflectances, {direct.data(), direct.size()}, cos_theta);
-    result.dolp_low = between.low;
-    result.dolp_high = between.high;
-    result.error_estimate = std::max(result.error_estimate, between.error);
+    result[kDolpLow] = between.low;
+    result[kDolpHigh] = between.high;
+    result[kErrorEstimate] = std::max(result[kErrorEstimate], between.error);
   }
   if (sum.i <= 0.0) result.status |= kStatusNonPositiveIntensity;
-  if (std::isnan(result.dolp)) result.status |= kStatusOutsideDomain;
+  if (std::isnan(result[kDolp])) result.status |= kStatusOutsideDomain;
   return result;
 }
 

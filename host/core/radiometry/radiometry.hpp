@@ -3,10 +3,10 @@
 
 #include <span>
 
+#include <dolp/results.hpp>
 #include "model/direction.hpp"
 #include "model/kept_effects.hpp"
 #include "model/moments.hpp"
-#include "model/point_result.hpp"
 #include "radiometry/scattered.hpp"
 #include "scene/scene.hpp"
 #include "spectrum/spectral_rule.hpp"

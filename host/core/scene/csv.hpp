@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/number_range.hpp"
+#include <dolp/number_range.hpp>
 
 namespace dolp {
 

@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <dolp/errors.hpp>
 
+#include <dolp/number_range.hpp>
 #include "base/text.hpp"
 #include "scene/csv.hpp"
 #include "scene/embedded_data.hpp"
-#include "scene/number_range.hpp"
 #include "scene/spectral_data.hpp"
 
 namespace dolp {

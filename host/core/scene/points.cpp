@@ -5,41 +5,43 @@
 #include <algorithm>
 #include <dolp/errors.hpp>
 #include <string_view>
+#include <variant>
 
+#include <dolp/number_range.hpp>
 #include "base/text.hpp"
 #include "scene/csv.hpp"
-#include "scene/number_range.hpp"
 
 namespace dolp {
 namespace {
 
 constexpr std::size_t kMostPointsBytes = 1U << 30U;
 
-using Member = std::optional<std::vector<double>> Points::*;
-
-/// A column that a file may have.
+/// A column that a file may have: a coordinate, or one of a pair of directions, which has to be there.
 struct ColumnRule {
   const char* name;
   NumberRange range;
-  Member column;
-  bool is_required;
+  std::variant<Axis, Points::Column Points::*> column;
+
+  bool is_required() const { return column.index() == 1; }
+  template <class AnyPoints>
+  auto& of(AnyPoints& points) const {
+    const Axis* axis = std::get_if<Axis>(&column);
+    return axis ? points[*axis] : points.*std::get<1>(column);
+  }
 };
 
 std::vector<ColumnRule> column_rules(PointsKind kind) {
   std::vector<ColumnRule> rules;
-  if (kind == PointsKind::kDirections) {
-    rules.push_back({"theta_deg", kZenithDegRange, &Points::theta_deg, false});
-  } else {
-    rules.push_back({"theta_i_deg", kZenithDegRange, &Points::theta_i_deg, true});
-    rules.push_back({"theta_r_deg", kZenithDegRange, &Points::theta_r_deg, true});
-    rules.push_back({"delta_phi_deg", kAzimuthDegRange, &Points::delta_phi_deg, true});
+  const bool has_pairs = kind == PointsKind::kGeometries;
+  if (has_pairs) {
+    rules.push_back({"theta_i_deg", kZenithDegRange, &Points::theta_i_deg});
+    rules.push_back({"theta_r_deg", kZenithDegRange, &Points::theta_r_deg});
+    rules.push_back({"delta_phi_deg", kAzimuthDegRange, &Points::delta_phi_deg});
   }
-  rules.push_back({"sigma", kSigmaRange, &Points::sigma, false});
-  rules.push_back({"q", kQRange, &Points::q, false});
-  rules.push_back({"n", kNRange, &Points::n, false});
-  rules.push_back({"k", kKRange, &Points::k, false});
-  if (kind == PointsKind::kDirections)
-    rules.push_back({"wavelength_um", kWavelengthUmRange, &Points::wavelength_um, false});
+  for (const Axis axis : kColumnOrder) {
+    if (has_pairs && (axis == Axis::kTheta || axis == Axis::kWavelength)) continue;
+    rules.push_back({description_of(axis).column, description_of(axis).range, axis});
+  }
   return rules;
 }
 
@@ -64,14 +66,14 @@ const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_vi
 
 /// Makes a column present.
 std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
-  if (points.*rule.column) throw InputError(fmt::format("{}: column \"{}\" appears twice", points.where(), rule.name));
-  return (points.*rule.column).emplace();
+  if (rule.of(points)) throw InputError(fmt::format("{}: column \"{}\" appears twice", points.where(), rule.name));
+  return rule.of(points).emplace();
 }
 
 /// Refuses points that lack a column.
 void check_required(const Points& points, const std::vector<ColumnRule>& rules) {
   for (const ColumnRule& rule : rules) {
-    if (!rule.is_required || points.*rule.column) continue;
+    if (!rule.is_required() || rule.of(points)) continue;
     throw InputError(
         fmt::format("{}: column \"{}\" is missing, a number in {}", points.where(), rule.name, rule.range.text()));
   }
@@ -102,7 +104,7 @@ void parse_row(const CsvReader& row, const FileColumns& columns, Points& points)
   std::vector<std::string_view> own;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (columns[i] == nullptr) continue;
-    (points.*columns[i]->column)->push_back(row.number(i, columns[i]->name, &columns[i]->range));
+    columns[i]->of(points)->push_back(row.number(i, columns[i]->name, &columns[i]->range));
     own.push_back(row.cells()[i]);
   }
   if (row.cells().size() > columns.size()) {

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "model/axes.hpp"
+
 namespace dolp {
 
 enum class PointsKind {
@@ -23,11 +25,14 @@ struct Points {
   std::string header;             ///< column names as given, joined by commas, no blanks around them
   std::vector<std::string> rows;  ///< the input cells as typed, joined by commas, no blanks around them; none of arrays
   std::vector<std::string> left_out;  ///< columns of the file that are results
-  std::optional<std::vector<double>> theta_deg, theta_i_deg, theta_r_deg, delta_phi_deg;
-  std::optional<std::vector<double>> sigma, q, n, k, wavelength_um;
-  std::size_t header_line = 0;           ///< 0 of arrays
-  std::vector<std::uint32_t> row_lines;  ///< the line of each row; empty of arrays
+  using Column = std::optional<std::vector<double>>;
+  AxisArray<Column> coordinates;
+  Column theta_i_deg, theta_r_deg, delta_phi_deg;  ///< of kGeometries, in the place of theta_deg and wavelength_um
+  std::size_t header_line = 0;                     ///< 0 of arrays
+  std::vector<std::uint32_t> row_lines;            ///< the line of each row; empty of arrays
   std::size_t size() const { return count; }
+  Column& operator[](Axis axis) { return coordinates[axis]; }
+  const Column& operator[](Axis axis) const { return coordinates[axis]; }
   /// The beginning of a message about a row, "file:line" or "points[row]", and about the columns.
   std::string where(std::size_t row) const;
   std::string where() const;

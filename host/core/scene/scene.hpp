@@ -116,12 +116,12 @@ struct Scene {
   std::optional<Path> path;
   Spectrum spectrum;
   Geometry geometry;
-  Grid grid;  ///< in the user's order; sigma and q fall back to [surface]
+  Axes grid;  ///< in the user's order; sigma and q fall back to [surface]
   Accuracy accuracy;
-  std::string path_name;               ///< as given on the command line, for messages
-  std::string text;                    ///< the file, verbatim
-  std::vector<std::string> files;      ///< that the scene names, as the process finds them
-  std::vector<Setting> settings;       ///< that were applied to the text
+  std::string path_name;                          ///< as given on the command line, for messages
+  std::string text;                               ///< the file, verbatim
+  std::vector<std::string> files;                 ///< that the scene names, as the process finds them
+  std::vector<Setting> settings;                  ///< that were applied to the text
   std::shared_ptr<const SceneDocument> document;  ///< text and settings as TOML; none of a scene that was not read
 };
 

@@ -71,12 +71,12 @@ SceneKey text(const char* key, const char* meaning, Place place) {
           [place](const Scene& s) { return value_at(place(s)); }};
 }
 
-template <class Place>
-SceneKey axis(const char* key, const char* unit, const NumberRange& range, const char* fallback, const char* meaning,
-              Place place) {
-  return {{key, Type::kAxis, unit, range, {}, fallback, meaning},
-          [place](Scene& s, const Value& v) { *place(s) = v.numbers; },
-          [place](const Scene& s) { return value_at(place(s)); }};
+SceneKey grid_axis(Axis axis, const char* fallback, const char* meaning) {
+  const AxisDescription& described = description_of(axis);
+  const std::string key = std::string("grid.") + described.column;
+  return {{key, Type::kAxis, described.units, described.range, {}, fallback, meaning},
+          [axis](Scene& s, const Value& v) { s.grid[axis] = v.numbers; },
+          [axis](const Scene& s) { return value_at(&s.grid[axis]); }};
 }
 
 void append(std::vector<SceneKey>& keys, std::vector<SceneKey> more) {
@@ -209,18 +209,15 @@ std::vector<SceneKey> geometry_keys() {
       number("geometry.relative_azimuth_deg", "degree", kAzimuthDegRange, "180",
              "bistatic: azimuth Delta phi between source and view; 180 is the specular side",
              [](auto& s) { return &s.geometry.relative_azimuth_deg; }),
-      axis("grid.theta_deg", "degree", kZenithDegRange, "{ from = 0, to = 90, count = 91 }",
-           "zenith theta: of the view (hemispherical) or of the source (bistatic)",
-           [](auto& s) { return &s.grid.theta_deg; }),
-      axis("grid.sigma", "1", kSigmaRange, "surface.sigma", "slope widths sigma of the table",
-           [](auto& s) { return &s.grid.sigma; }),
-      axis("grid.q", "1", kQRange, "surface.q", "tail exponents q of the table", [](auto& s) { return &s.grid.q; }),
-      axis("grid.wavelength_um", "um", kWavelengthUmRange, "",
-           "wavelengths of the table, without a band; spectrum.wavelength_um may then be absent, and is the first",
-           [](auto& s) { return &s.grid.wavelength_um; }),
-      axis("grid.n", "1", kNRange, "", "n of the table, without a material; surface.n may then be absent",
-           [](auto& s) { return &s.grid.n; }),
-      axis("grid.k", "1", kKRange, "", "k of the table, without a material", [](auto& s) { return &s.grid.k; }),
+      grid_axis(Axis::kTheta, "{ from = 0, to = 90, count = 91 }",
+                "zenith theta: of the view (hemispherical) or of the source (bistatic)"),
+      grid_axis(Axis::kSigma, "surface.sigma", "slope widths sigma of the table"),
+      grid_axis(Axis::kQ, "surface.q", "tail exponents q of the table"),
+      grid_axis(
+          Axis::kWavelength, "",
+          "wavelengths of the table, without a band; spectrum.wavelength_um may then be absent, and is the first"),
+      grid_axis(Axis::kN, "", "n of the table, without a material; surface.n may then be absent"),
+      grid_axis(Axis::kK, "", "k of the table, without a material"),
       number("accuracy.tolerance", "1", kToleranceRange, "1e-4",
              "largest error of rho, relative to rho_I, and of DOLP, absolute",
              [](auto& s) { return &s.accuracy.tolerance; }),

@@ -135,7 +135,7 @@ auto read_file_of(Scene& scene, const std::string& file, const std::string& scen
 /// From the shortest wavelength that a table or its scene has to the longest.
 Spectrum all_wavelengths(const Scene& scene) {
   Spectrum all = scene.spectrum;
-  for (const double wavelength_um : scene.grid.wavelength_um) {
+  for (const double wavelength_um : scene.grid[Axis::kWavelength]) {
     all.min_um = std::min(all.min_um, wavelength_um);
     all.max_um = std::max(all.max_um, wavelength_um);
   }
@@ -182,13 +182,13 @@ void load_source(Scene& scene, const SceneDocument& document, const std::string&
 
 /// What a scene need not say beside an axis of it, whose first value it then is.
 void fill_from_grid(Scene& scene, const SceneDocument& document) {
-  const Grid& grid = scene.grid;
+  const Axes& grid = scene.grid;
   OpticalConstants& index = scene.surface.material.constant;
-  if (!grid.wavelength_um.empty()) {
+  if (!grid[Axis::kWavelength].empty()) {
     if (document.find("spectrum.band_um"))
       document.fail("grid.wavelength_um", "cannot be combined with spectrum.band_um");
     if (!document.find("spectrum.wavelength_um"))
-      scene.spectrum = {grid.wavelength_um.front(), grid.wavelength_um.front()};
+      scene.spectrum = {grid[Axis::kWavelength].front(), grid[Axis::kWavelength].front()};
   }
   for (const char* axis : {"grid.n", "grid.k"}) {
     for (const char* material : {"surface.material", "surface.material_file"}) {
@@ -196,20 +196,21 @@ void fill_from_grid(Scene& scene, const SceneDocument& document) {
         document.fail(axis, fmt::format("cannot be combined with {}", material));
     }
   }
-  if (!grid.n.empty() && !document.find("surface.n")) index.n = grid.n.front();
-  if (!grid.k.empty() && !document.find("surface.k")) index.k = grid.k.front();
+  if (!grid[Axis::kN].empty() && !document.find("surface.n")) index.n = grid[Axis::kN].front();
+  if (!grid[Axis::kK].empty() && !document.find("surface.k")) index.k = grid[Axis::kK].front();
 }
 
 void fill_grid(Scene& scene, const SceneDocument& document) {
   constexpr std::size_t kDefaultThetaCount = 91;
-  Grid& grid = scene.grid;
-  if (grid.theta_deg.empty()) {
-    grid.theta_deg.resize(kDefaultThetaCount);
-    std::iota(grid.theta_deg.begin(), grid.theta_deg.end(), 0.0);
+  Axes& grid = scene.grid;
+  std::vector<double>& theta_deg = grid[Axis::kTheta];
+  if (theta_deg.empty()) {
+    theta_deg.resize(kDefaultThetaCount);
+    std::iota(theta_deg.begin(), theta_deg.end(), 0.0);
   }
-  if (!document.find("surface.sigma")) scene.surface.sigma = grid.sigma.front();
-  if (grid.sigma.empty()) grid.sigma = {scene.surface.sigma};
-  if (grid.q.empty()) grid.q = {scene.surface.q};
+  if (!document.find("surface.sigma")) scene.surface.sigma = grid[Axis::kSigma].front();
+  if (grid[Axis::kSigma].empty()) grid[Axis::kSigma] = {scene.surface.sigma};
+  if (grid[Axis::kQ].empty()) grid[Axis::kQ] = {scene.surface.q};
 }
 
 /// Where the masking has no finite mean slope to work with, the scene is refused.
@@ -217,7 +218,7 @@ void check_smith(const Scene& scene, const SceneDocument& document) {
   if (!scene.surface.needs_mean_slope()) return;
   const std::string what = "masking = \"smith\" with distribution = \"cauchy\" needs q in " + kSmithCauchyQRange.text();
   if (!kSmithCauchyQRange.contains(scene.surface.q)) document.fail("surface.q", what);
-  for (const double q : scene.grid.q) {
+  for (const double q : scene.grid[Axis::kQ]) {
     if (!kSmithCauchyQRange.contains(q)) document.fail("grid.q", fmt::format("{} is out of range; {}", q, what));
   }
 }

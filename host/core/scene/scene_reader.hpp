@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/number_range.hpp"
+#include <dolp/number_range.hpp>
 #include "scene/scene.hpp"
 
 namespace dolp {
@@ -28,8 +28,8 @@ struct KnownData {
 };
 
 /// The same for a text that is already in memory (the scene that a table file carries); `path_name` is for messages and
-/// gives the folder of the files the scene names. With `known` none of these is opened, unless it says so: an InputError
-/// where it lacks what the scene takes from one.
+/// gives the folder of the files the scene names. With `known` none of these is opened, unless it says so: an
+/// InputError where it lacks what the scene takes from one.
 Scene parse_scene(const std::string& text, const std::string& path_name, const std::vector<Setting>& settings = {},
                   const KnownData* known = nullptr);
 

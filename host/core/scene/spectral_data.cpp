@@ -7,11 +7,11 @@
 #include <cstddef>
 #include <dolp/errors.hpp>
 
+#include <dolp/number_range.hpp>
 #include "base/text.hpp"
 #include "scene/csv.hpp"
 #include "scene/embedded_data.hpp"
 #include "scene/material_data.hpp"
-#include "scene/number_range.hpp"
 
 namespace dolp {
 namespace {

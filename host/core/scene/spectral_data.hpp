@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "scene/number_range.hpp"
+#include <dolp/number_range.hpp>
 #include "scene/scene.hpp"
 
 namespace dolp {

@@ -1,26 +1,50 @@
-// The columns that a result has in CSV files of points and curves.
+// Results as CSV: of points and of tables.
 #pragma once
 
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
 #include <string>
-#include <vector>
 
-#include "model/point_result.hpp"
+#include <dolp/results.hpp>
+#include "base/atomic_file.hpp"
 
 namespace dolp {
 
-/// Columns that not every scene has.
-struct ExtraColumns {
-  bool emissivity = false;  ///< emissivity_s, emissivity_p
-  bool bracket = false;     ///< dolp_low, dolp_high
+/// Appends the cells of a row before those of its results, a comma after each.
+using RowStart = std::function<void(std::string& text, std::size_t row)>;
+
+/// The names of quantities and of the status, with commas between them.
+std::string result_header(const Quantities& quantities, bool has_status = true);
+
+/// A row for each result: its start, the quantities in the order given, the status.
+std::string result_rows(const ResultColumns& results, std::size_t rows, const Quantities& quantities,
+                        const RowStart& start);
+
+/// Some quantities in the order of CSV files of points.
+Quantities in_csv_order(const Quantities& quantities);
+
+/// The CSV of points and of what was found there. The file is whole or not there; into a file rows go as they come, to
+/// "-", standard output, when all are there.
+class ResultCsv {
+ public:
+  /// `columns`: the names of the cells that `start` appends. Errors: IoError.
+  ResultCsv(const std::filesystem::path& path, const std::string& columns, const Quantities& quantities,
+            RowStart start);
+  /// Results of the points after those before. Errors: IoError; Cancelled when interrupted().
+  void append(std::span<const PointResult> results);
+  /// Errors: likewise.
+  void commit();
+
+ private:
+  void write(const std::string& text);
+
+  Quantities quantities_;
+  RowStart start_;
+  std::optional<AtomicFile> file_;  ///< none for standard output
+  std::string text_;                ///< for standard output
+  std::size_t done_ = 0;
 };
-
-/// The names of the columns, with commas between them.
-std::string result_header(const ExtraColumns& extra);
-
-/// All columns that a result may have.
-std::vector<std::string> result_columns();
-
-/// Appends the cells of a row in the order of the header.
-void append_result_cells(std::string& text, const PointResult& result, const ExtraColumns& extra);
 
 }  // namespace dolp

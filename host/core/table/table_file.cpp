@@ -1,17 +1,19 @@
 #include "table/table_file.hpp"
 
+#include <dolp/errors.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
-#include <dolp/errors.hpp>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/atomic_file.hpp"
 #include "base/number_text.hpp"
-#include "base/parallel_ranges.hpp"
 #include "base/printable_text.hpp"
+#include "table/result_csv.hpp"
 #include "table/table_store.hpp"
 
 namespace dolp {
@@ -19,38 +21,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kRowsAtOnce = 4096;  // of a thread
-
-/// The axes of a .csv or .npy, in the order of kTableAxes.
-constexpr std::array<const char*, kTableAxes.size()> kAxisColumns = {"wavelength_um", "n",     "k",
-                                                                     "theta_deg",     "sigma", "q"};
-
-/// Those that the table has.
-struct AxisColumn {
-  const char* name;
-  std::size_t axis;
-};
-std::vector<AxisColumn> axis_columns(const TableHead& head) {
-  std::vector<AxisColumn> columns;
-  for (std::size_t i = 0; i < kTableAxes.size(); ++i) {
-    if (!(head.*kTableAxes[i]).empty()) columns.push_back({kAxisColumns[i], i});
-  }
-  return columns;
+/// Those that a table has.
+std::vector<Axis> present_axes(const Axes& axes) {
+  std::vector<Axis> present;
+  std::ranges::copy_if(kAllAxes, std::back_inserter(present), [&](Axis axis) { return !axes[axis].empty(); });
+  return present;
 }
 
-/// Calls row(position, values of the axes) for positions first, first + 1, ... of a table.
-template <class Row>
-void each_row(const TableHead& head, const std::vector<AxisColumn>& axes, std::size_t first, std::size_t last,
-              const Row& row) {
-  std::vector<double> values(axes.size());
-  for (std::size_t position = first; position < last; ++position) {
-    std::size_t rest = position;
-    for (std::size_t i = axes.size(); i-- > 0;) {
-      const std::vector<double>& axis = head.*kTableAxes[axes[i].axis];
-      values[i] = axis[rest % axis.size()];
-      rest /= axis.size();
-    }
-    row(position, values);
+/// Calls use(value) for the coordinates of an entry on the axes that are there.
+template <class Use>
+void each_coordinate(const Axes& axes, std::size_t position, const Use& use) {
+  const PerAxis place = place_of(position, counts_of(axes));
+  for (const Axis axis : kAllAxes) {
+    if (!axes[axis].empty()) use(axes[axis][place[axis]]);
   }
 }
 
@@ -75,32 +58,17 @@ std::string csv_header(const TableLayout& layout) {
   for (const Attribute& attribute : layout.head.attributes)
     text += "# " + attribute.name + ": " + value_text(attribute) + "\n";
   text += "# units of stokes: " + layout.head.stokes_units + "\n";
-  std::string names;
-  for (const AxisColumn& axis : axis_columns(layout.head)) (names += ',') += axis.name;
-  for (const TableVariable* variable : layout.variables) (names += ',') += variable->name;
-  if (layout.has_status) names += ",status";
-  return text + names.substr(1) + "\n";
+  for (const Axis axis : present_axes(layout.head.axes)) (text += description_of(axis).column) += ',';
+  return text + result_header(layout.quantities, layout.has_status) + "\n";
 }
 
-std::string csv_rows(const Table& part, const TableVariables& variables) {
-  const std::vector<AxisColumn> axes = axis_columns(part);
-  std::vector<std::string> pieces((part.size() + kRowsAtOnce - 1) / kRowsAtOnce);
-  parallel_ranges(part.size(), kRowsAtOnce, [&](std::size_t first, std::size_t last) {
-    std::string& text = pieces[first / kRowsAtOnce];
-    each_row(part, axes, first, last, [&](std::size_t position, const std::vector<double>& values) {
-      std::string_view separator;
-      for (const double value : values) {
-        (text += separator) += number_text(value);
-        separator = ",";
-      }
-      for (const TableVariable* variable : variables) (text += ',') += number_text((part.*variable->values)[position]);
-      if (!part.status.empty()) (text += ',') += std::to_string(part.status[position]);
-      text += '\n';
+std::string csv_rows(const Table& part, const Quantities& quantities) {
+  return result_rows(part, part.size(), quantities, [&](std::string& text, std::size_t position) {
+    each_coordinate(part.axes, position, [&](double value) {
+      append_number(text, value);
+      text += ',';
     });
   });
-  std::string text;
-  for (const std::string& piece : pieces) text += piece;
-  return text;
 }
 
 /// Source: the NumPy enhancement proposal "A Simple File Format for NumPy Arrays", version 1.0.
@@ -108,11 +76,12 @@ std::string npy_header(const TableLayout& layout) {
   constexpr std::size_t kAlignment = 64;
   constexpr std::size_t kPreambleSize = 10;
   std::string fields, shape;
-  for (const AxisColumn& axis : axis_columns(layout.head)) {
-    fields += fmt::format("('{}', '<f8'), ", axis.name);
-    shape += fmt::format("{}{}", shape.empty() ? "" : ", ", (layout.head.*kTableAxes[axis.axis]).size());
+  for (const Axis axis : present_axes(layout.head.axes)) {
+    fields += fmt::format("('{}', '<f8'), ", description_of(axis).column);
+    shape += fmt::format("{}{}", shape.empty() ? "" : ", ", layout.head.axes[axis].size());
   }
-  for (const TableVariable* variable : layout.variables) fields += fmt::format("('{}', '<f8'), ", variable->name);
+  for (const Quantity quantity : layout.quantities)
+    fields += fmt::format("('{}', '<f8'), ", description_of(quantity).name);
   if (layout.has_status) fields += "('status', '<u4'), ";
   std::string header = "{'descr': [" + fields + "], 'fortran_order': False, 'shape': (" + shape + "), }";
   const std::size_t unpadded = kPreambleSize + header.size() + 1;
@@ -130,13 +99,13 @@ void append_bytes(std::string& bytes, Number value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-std::string npy_rows(const Table& part, const TableVariables& variables) {
+std::string npy_rows(const Table& part, const Quantities& quantities) {
   std::string bytes;
-  each_row(part, axis_columns(part), 0, part.size(), [&](std::size_t position, const std::vector<double>& axes) {
-    for (const double value : axes) append_bytes(bytes, value);
-    for (const TableVariable* variable : variables) append_bytes(bytes, (part.*variable->values)[position]);
+  for (std::size_t position = 0; position < part.size(); ++position) {
+    each_coordinate(part.axes, position, [&](double value) { append_bytes(bytes, value); });
+    for (const Quantity quantity : quantities) append_bytes(bytes, part[quantity][position]);
     if (!part.status.empty()) append_bytes(bytes, part.status[position]);
-  });
+  }
   return bytes;
 }
 
@@ -160,12 +129,12 @@ std::string table_start(const TableLayout& layout, TableFormat format) {
 }
 
 std::string table_rows(const Table& part, const TableLayout& layout, TableFormat format) {
-  return format == TableFormat::kCsv ? csv_rows(part, layout.variables) : npy_rows(part, layout.variables);
+  return format == TableFormat::kCsv ? csv_rows(part, layout.quantities) : npy_rows(part, layout.quantities);
 }
 
 void write_table(const Table& table, const fs::path& path) {
   const TableFormat format = format_of(path);
-  const TableLayout layout{static_cast<const TableHead&>(table), present_variables(table), !table.status.empty()};
+  const TableLayout layout{static_cast<const TableHead&>(table), table.quantities(), !table.status.empty()};
   if (format != TableFormat::kNetcdf)
     return write_text_atomically(path, table_start(layout, format) + table_rows(table, layout, format));
   AtomicFile file(path);

@@ -15,42 +15,33 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kAxes = kGridAxes.size();
 constexpr auto kTheta = static_cast<std::size_t>(Axis::kTheta);
 constexpr auto kQ = static_cast<std::size_t>(Axis::kQ);
-constexpr std::array<std::size_t, kAxes> kWindow = {4, 4, 4, 6, 6, 6};  // values of each axis
-constexpr std::size_t kMostRows = std::size_t{4} * 4 * 4 * 6 * 6;       // of values along q
-constexpr int kMostShift = 3;                                           // of a window away from unknown entries
+constexpr std::array<std::size_t, kAxisCount> kWindow = {4, 4, 4, 6, 6, 6};  // values of each axis
+constexpr std::size_t kMostRows = std::size_t{4} * 4 * 4 * 6 * 6;            // of values along q
+constexpr int kMostShift = 3;                                                // of a window away from unknown entries
 constexpr std::size_t kLeastValues = 4;  // of an axis: how the changes of fewer fall says nothing
 constexpr std::size_t kLevels = 3;       // changes that are compared
 // Error over the sum of the changes: where the window has a value to add on both sides, and elsewhere.
 constexpr double kInside = 10.0;
 constexpr double kAtEnds = 20.0;
 constexpr double kSlowestFall = 0.9;  // of the changes
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// What is interpolated: the quantities of a table that are smooth.
-struct SmoothColumn {
-  std::vector<double> Table::*values;
-  double PointResult::*member;
-  bool has_error;  ///< a stated error depends on it
-};
-constexpr std::array<SmoothColumn, 11> kColumns = {{{&Table::stokes_i, &PointResult::stokes_i, true},
-                                                    {&Table::stokes_q, &PointResult::stokes_q, true},
-                                                    {&Table::stokes_u, &PointResult::stokes_u, true},
-                                                    {&Table::stokes_v, &PointResult::stokes_v, false},
-                                                    {&Table::rho_i, &PointResult::rho_i, true},
-                                                    {&Table::rho_q, &PointResult::rho_q, true},
-                                                    {&Table::albedo, &PointResult::albedo, false},
-                                                    {&Table::emissivity_s, &PointResult::emissivity_s, false},
-                                                    {&Table::emissivity_p, &PointResult::emissivity_p, false},
-                                                    {&Table::dolp_low, &PointResult::dolp_low, true},
-                                                    {&Table::dolp_high, &PointResult::dolp_high, true}}};
+using enum Quantity;
+
+// Smooth over the axes, so that they are interpolated.
+constexpr std::array kSmooth = {kStokesI, kStokesQ,     kStokesU,     kStokesV, kRhoI,    kRhoQ,
+                                kAlbedo,  kEmissivityS, kEmissivityP, kDolpLow, kDolpHigh};
+
+/// A stated error depends on it.
+bool has_error(Quantity quantity) {
+  constexpr std::array kWithout = {kStokesV, kAlbedo, kEmissivityS, kEmissivityP};
+  return std::ranges::find(kWithout, quantity) == kWithout.end();
+}
+
 /// What every table has, besides the status.
-constexpr std::array<double PointResult::*, 6> kNeeded = {&PointResult::dolp,     &PointResult::stokes_i,
-                                                          &PointResult::stokes_q, &PointResult::stokes_u,
-                                                          &PointResult::stokes_v, &PointResult::error_estimate};
+constexpr std::array kNeeded = {kDolp, kStokesI, kStokesQ, kStokesU, kStokesV, kErrorEstimate};
 
 const std::vector<double>& checked(const std::vector<double>& values, const char* axis, const std::string& name) {
   if (std::set(values.begin(), values.end()).size() != values.size()) {
@@ -61,19 +52,18 @@ const std::vector<double>& checked(const std::vector<double>& values, const char
 
 /// Those of a table, one value of one that it lacks.
 std::vector<LookupAxis> axes_of(const Table& table, const std::string& name) {
-  constexpr std::array<const char*, kAxes> kNames = {"wavelength", "n", "k", "theta", "sigma", "q"};
   std::vector<LookupAxis> axes;
-  for (std::size_t i = 0; i < kAxes; ++i) {
-    const std::vector<double>& values = table.*kTableAxes[i];
-    axes.emplace_back(values.empty() ? std::vector<double>{1.0} : checked(values, kNames[i], name),
-                      i == kTheta ? LookupAxis::Scale::kLinear : LookupAxis::Scale::kLogarithm, i == kQ ? 1.0 : 0.0);
+  for (const Axis axis : kAllAxes) {
+    const std::vector<double>& values = table.axes[axis];
+    axes.emplace_back(values.empty() ? std::vector<double>{1.0} : checked(values, description_of(axis).name, name),
+                      axis == Axis::kTheta ? LookupAxis::Scale::kLinear : LookupAxis::Scale::kLogarithm,
+                      axis == Axis::kQ ? 1.0 : 0.0);
   }
   return axes;
 }
 
 PointResult unknown() {
   PointResult result;
-  for (const TableVariable& variable : table_variables()) result.*variable.member = kNan;
   result.status = kStatusOutsideDomain;
   return result;
 }
@@ -83,10 +73,10 @@ void check_variables(const Table& table, const std::string& name) {
   const auto require = [&](bool is_there, std::string_view variable) {
     if (!is_there) throw InputError(fmt::format("{}: the variable {} is missing; lookup needs it", name, variable));
   };
-  for (const TableVariable& variable : table_variables()) {
-    const bool is_needed = std::ranges::find(kNeeded, variable.member) != kNeeded.end() ||
-                           (variable.member == &PointResult::rho_i && !table.rho_error_estimate.empty());
-    require(!is_needed || !(table.*variable.values).empty(), variable.name);
+  for (const Quantity quantity : kAllQuantities) {
+    const bool is_needed =
+        std::ranges::find(kNeeded, quantity) != kNeeded.end() || (quantity == kRhoI && table.has(kRhoErrorEstimate));
+    require(!is_needed || table.has(quantity), description_of(quantity).name);
   }
   require(!table.status.empty(), "status");
 }
@@ -95,11 +85,11 @@ void check_variables(const Table& table, const std::string& name) {
 
 /// The entries that are read: a product of stencils.
 struct TableLookup::Window {
-  std::array<LookupAxis::Place, kAxes> places;
-  std::array<Stencil, kAxes> own;
+  std::array<LookupAxis::Place, kAxisCount> places;
+  std::array<Stencil, kAxisCount> own;
 
   Window(const TableLookup& lookup, const Point& point) {
-    for (std::size_t i = 0; i < kAxes; ++i) {
+    for (std::size_t i = 0; i < kAxisCount; ++i) {
       const LookupAxis& axis = lookup.axes_[i];
       places[i] = axis.size() == 1 ? LookupAxis::Place{.is_value = true} : axis.place(point[i]);
       own[i] = axis.stencil(places[i], kWindow[i]);
@@ -115,10 +105,10 @@ struct TableLookup::Window {
   }
 
   /// The positions of the corners of the point's cell, but for the part of one axis.
-  using Corners = boost::container::static_vector<std::size_t, std::size_t{1} << kAxes>;
+  using Corners = boost::container::static_vector<std::size_t, std::size_t{1} << kAxisCount>;
   Corners corners(const TableLookup& lookup, std::size_t without) const {
     Corners corners = {0};
-    for (std::size_t axis = 0; axis < kAxes; ++axis) {
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
       if (axis == without) continue;
       const std::size_t before = corners.size();
       if (!places[axis].is_value) {
@@ -255,7 +245,7 @@ struct TableLookup::Lines {
     begin = window.corners(lookup, number);
     const bool is_at_end = most <= own.count || below == 0 || below + 2 == axis.size();
     factor = is_at_end ? kAtEnds : kInside;
-    for (std::size_t i = 0; i < kAxes; ++i) {
+    for (std::size_t i = 0; i < kAxisCount; ++i) {
       if (i == number) continue;
       double sizes = 0.0;
       for (std::size_t k = 0; k < window.own[i].count; ++k) sizes += std::abs(window.own[i].weights[k]);
@@ -314,16 +304,15 @@ TableLookup::TableLookup(const Table& table, double tolerance, const std::string
     : table_(table), tolerance_(tolerance), axes_(axes_of(table, name)) {
   check_variables(table, name);
   std::size_t stride = 1;
-  for (std::size_t i = kAxes; i-- > 0; stride *= axes_[i].size()) strides_[i] = stride;
-  for (const SmoothColumn& column : kColumns) {
-    const std::vector<double>& values = table.*column.values;
-    if (std::ranges::any_of(values, [](double value) { return value != 0.0; })) {
-      columns_.push_back({&values, column.member, column.has_error});
-    }
+  for (std::size_t i = kAxisCount; i-- > 0; stride *= axes_[i].size()) strides_[i] = stride;
+  for (const Quantity quantity : kSmooth) {
+    if (std::ranges::any_of(table[quantity], [](double value) { return value != 0.0; }))
+      interpolated_.push_back(quantity);
   }
   std::vector<char> known(axes_[kTheta].size(), 1);
-  for (std::size_t i = 0; i < table.stokes_i.size(); ++i) {
-    if (!std::isfinite(table.stokes_i[i])) known[i / strides_[kTheta] % known.size()] = 0;
+  const std::vector<double>& stokes_i = table[kStokesI];
+  for (std::size_t i = 0; i < stokes_i.size(); ++i) {
+    if (!std::isfinite(stokes_i[i])) known[i / strides_[kTheta] % known.size()] = 0;
   }
   for (std::size_t i = 0; i < known.size(); ++i) is_known_.push_back(known[axes_[kTheta].position(i)]);
 }
@@ -334,7 +323,8 @@ bool TableLookup::is_known(const Window& window) const {
   if (std::all_of(first, first + static_cast<std::ptrdiff_t>(theta.count), [](char known) { return known != 0; })) {
     return true;
   }
-  return std::isfinite(Rows(*this, window).sum([this](std::size_t position) { return table_.stokes_i[position]; }));
+  const std::vector<double>& stokes_i = table_[kStokesI];
+  return std::isfinite(Rows(*this, window).sum([&](std::size_t position) { return stokes_i[position]; }));
 }
 
 bool TableLookup::make_known(Window& window, double theta_deg) const {
@@ -352,50 +342,40 @@ bool TableLookup::make_known(Window& window, double theta_deg) const {
   return true;
 }
 
-PointResult TableLookup::entry(std::size_t position) const {
-  PointResult result;
-  for (const TableVariable& variable : table_variables()) {
-    const std::vector<double>& column = table_.*variable.values;
-    result.*variable.member = column.empty() ? kNan : column[position];
-  }
-  result.status = table_.status[position];
-  return result;
-}
-
 std::uint32_t TableLookup::cell_status(const Window& window) const {
   std::uint32_t status = 0;
-  for (const std::size_t position : window.corners(*this, kAxes)) status |= table_.status[position];
+  for (const std::size_t position : window.corners(*this, kAxisCount)) status |= table_.status[position];
   return status;
 }
 
 PointResult TableLookup::at(const Point& point) const {
   Window window(*this, point);
-  if (window.is_entry()) return entry(Rows(*this, window).rows.front().begin + position(kQ, window.own[kQ].first));
+  if (window.is_entry()) return table_.at(Rows(*this, window).rows.front().begin + position(kQ, window.own[kQ].first));
   if (!make_known(window, point[kTheta])) return unknown();
   const Rows rows(*this, window);
   PointResult result;
   PointResult change;
-  for (const SmoothColumn& column : kColumns) {
-    result.*column.member = (table_.*column.values).empty() ? kNan : 0.0;
-    change.*column.member = 0.0;
+  for (const Quantity quantity : kSmooth) {
+    if (table_.has(quantity)) result[quantity] = 0.0;
+    change[quantity] = 0.0;
   }
-  for (const Column& column : columns_) {
-    result.*column.member =
-        rows.sum([values = column.values->data()](std::size_t position) { return values[position]; });
+  for (const Quantity quantity : interpolated_) {
+    result[quantity] = rows.sum([values = table_[quantity].data()](std::size_t position) { return values[position]; });
   }
-  for (std::size_t axis = 0; axis < kAxes; ++axis) {
+  for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
     if (window.own[axis].count == 1) continue;
     const Lines lines(*this, window, axis);
-    for (const Column& column : columns_) {
-      if (column.has_error) change.*column.member += lines.error(*column.values);
+    for (const Quantity quantity : interpolated_) {
+      if (has_error(quantity)) change[quantity] += lines.error(table_[quantity]);
     }
   }
   const double error =
-      rows.sum_of_sizes([bounds = table_.error_estimate.data()](std::size_t position) { return bounds[position]; });
+      rows.sum_of_sizes([bounds = table_[kErrorEstimate].data()](std::size_t position) { return bounds[position]; });
   double rho_error = 0.0;  // absolute
-  if (!table_.rho_error_estimate.empty()) {
-    rho_error = rows.sum_of_sizes(
-        [&](std::size_t position) { return std::abs(table_.rho_i[position]) * table_.rho_error_estimate[position]; });
+  if (table_.has(kRhoErrorEstimate)) {
+    const std::vector<double>& rho = table_[kRhoI];
+    const std::vector<double>& bounds = table_[kRhoErrorEstimate];
+    rho_error = rows.sum_of_sizes([&](std::size_t position) { return std::abs(rho[position]) * bounds[position]; });
   }
   result.status = cell_status(window) & kStatusUnphysicalReflectance;
   finish(result, change, error, rho_error);
@@ -410,28 +390,36 @@ void TableLookup::finish(PointResult& result, const PointResult& change, double 
     const double of_below = quotient == 0.0 ? 0.0 : std::abs(quotient) * below_error;
     return above_error + of_below == 0.0 ? 0.0 : least > 0.0 ? (above_error + of_below) / least : kInfinity;
   };
-  result.dolp = std::hypot(result.stokes_q, result.stokes_u) / result.stokes_i;
-  double dolp_error = over(result.stokes_i, change.stokes_i, result.dolp, std::hypot(change.stokes_q, change.stokes_u));
-  if (!table_.dolp_low.empty()) dolp_error = std::max({dolp_error, change.dolp_low, change.dolp_high});
-  result.error_estimate = error + dolp_error;
-  result.rho_error_estimate =
-      table_.rho_error_estimate.empty()
-          ? kNan
-          : over(result.rho_i, rho_error + change.rho_i, 0.0, rho_error + std::max(change.rho_i, change.rho_q));
+  result[kDolp] = std::hypot(result[kStokesQ], result[kStokesU]) / result[kStokesI];
+  double dolp_error =
+      over(result[kStokesI], change[kStokesI], result[kDolp], std::hypot(change[kStokesQ], change[kStokesU]));
+  if (table_.has(kDolpLow)) dolp_error = std::max({dolp_error, change[kDolpLow], change[kDolpHigh]});
+  result[kErrorEstimate] = error + dolp_error;
+  if (table_.has(kRhoErrorEstimate)) {
+    result[kRhoErrorEstimate] =
+        over(result[kRhoI], rho_error + change[kRhoI], 0.0, rho_error + std::max(change[kRhoI], change[kRhoQ]));
+  }
   add_status(result);
 }
 
 void TableLookup::add_status(PointResult& result) const {
-  if (result.stokes_i <= 0.0) result.status |= kStatusNonPositiveIntensity;
+  if (result[kStokesI] <= 0.0) result.status |= kStatusNonPositiveIntensity;
   const bool states_dolp = promises_dolp(result.status);
-  if ((states_dolp && !(result.error_estimate <= tolerance_)) || result.rho_error_estimate > tolerance_) {
+  if ((states_dolp && !(result[kErrorEstimate] <= tolerance_)) || result[kRhoErrorEstimate] > tolerance_) {
     result.status |= kStatusToleranceMissed;
   }
 }
 
+Quantities TableLookup::quantities() const {
+  Quantities own;
+  for (const Quantity quantity : kAllQuantities) {
+    if (!description_of(quantity).is_optional() || table_.has(quantity)) own.push_back(quantity);
+  }
+  return own;
+}
+
 const LookupAxis* TableLookup::axis(Axis axis) const {
-  const auto number = static_cast<std::size_t>(axis);
-  return (table_.*kTableAxes[number]).empty() ? nullptr : &axes_[number];
+  return table_.axes[axis].empty() ? nullptr : &axes_[static_cast<std::size_t>(axis)];
 }
 
 }  // namespace dolp

@@ -1,13 +1,12 @@
 // Interpolation in a lookup table, with its error.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
-#include "model/point_result.hpp"
+#include <dolp/results.hpp>
+#include "model/axes.hpp"
 #include "table/axis_stencil.hpp"
-#include "table/result_csv.hpp"
 #include "table/table.hpp"
 
 namespace dolp {
@@ -33,13 +32,11 @@ class TableLookup {
 
   /// Nothing of an axis that the table lacks.
   const LookupAxis* axis(Axis axis) const;
-  /// Those that the table has.
-  ExtraColumns extra_columns() const {
-    return {.emissivity = !table_.emissivity_s.empty(), .bracket = !table_.dolp_low.empty()};
-  }
+  /// Those of every scene, and of the optional ones those that the table has.
+  Quantities quantities() const;
 
   /// A value on each axis; of those that the table lacks nothing is looked at.
-  using Point = std::array<double, kGridAxes.size()>;
+  using Point = AxisArray<double>;
   /// What the table says at a point within its axes, at an entry just that; quantities that it does not have are NaN.
   /// Domain: next to entries outside the model's domain the window moves away from them; between such entries the
   /// result is NaN with status 4.
@@ -50,11 +47,6 @@ class TableLookup {
   struct Window;
   struct Rows;
   struct Lines;
-  struct Column {
-    const std::vector<double>* values = nullptr;
-    double PointResult::*member = nullptr;
-    bool has_error = false;  ///< the stated errors depend on it
-  };
 
   std::size_t position(std::size_t axis, std::size_t place) const {
     return axes_[axis].position(place) * strides_[axis];
@@ -62,7 +54,6 @@ class TableLookup {
   bool is_known(const Window& window) const;
   /// Moves a window away from entries that are not known; false where that is not possible.
   bool make_known(Window& window, double theta_deg) const;
-  PointResult entry(std::size_t position) const;
   std::uint32_t cell_status(const Window& window) const;
   void finish(PointResult& result, const PointResult& change, double error, double rho_error) const;
   void add_status(PointResult& result) const;
@@ -71,7 +62,7 @@ class TableLookup {
   double tolerance_;
   std::vector<LookupAxis> axes_;  ///< in the table's order; one value of those that it lacks
   PerAxis strides_ = {};          ///< between the entries of an axis
-  std::vector<Column> columns_;   ///< what is interpolated: what is smooth, and not 0 everywhere
+  Quantities interpolated_;       ///< those that are smooth, and not 0 everywhere
   std::vector<char> is_known_;    ///< of each theta in ascending order: every entry is finite
 };
 

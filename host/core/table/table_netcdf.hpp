@@ -1,7 +1,6 @@
 // How a table lies in a NetCDF-4 file.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -12,22 +11,6 @@
 
 namespace dolp {
 
-/// A coordinate of a table in a file, in the order of kTableAxes.
-struct NetcdfAxis {
-  const char* name;
-  const char* long_name;
-  const char* units;
-  bool is_required;
-};
-inline constexpr std::array<NetcdfAxis, kTableAxes.size()> kNetcdfAxes = {{
-    {"wavelength", "wavelength", "um", false},
-    {"n", "refractive index n of the surface", "1", false},
-    {"k", "refractive index k of the surface", "1", false},
-    {"theta", "zenith angle", "degree", true},
-    {"sigma", "roughness sigma of the slope distribution", "1", true},
-    {"q", "exponent q of the slope distribution", "1", true},
-}};
-
 /// The attribute that holds the hash of ValuesHash.
 inline constexpr const char* kValuesHash = "values_hash";
 
@@ -37,11 +20,11 @@ class ValuesHash {
  public:
   /// With the axes and curves of the head.
   explicit ValuesHash(const TableHead& head);
-  /// One number for each of the variables and status.
+  /// One number for each of the quantities and status.
   using Sums = std::vector<std::uint64_t>;
   static std::uint64_t sum(std::span<const double> values, std::size_t first_place);
   static std::uint64_t sum(std::span<const std::uint32_t> values, std::size_t first_place);
-  std::string text(const TableVariables& variables, const Sums& sums) const;
+  std::string text(const Quantities& quantities, const Sums& sums) const;
 
  private:
   std::uint64_t hash_;
@@ -58,7 +41,7 @@ class NetcdfSkeleton {
   NetcdfSkeleton& operator=(const NetcdfSkeleton&) = delete;
   ~NetcdfSkeleton();
 
-  /// Where the values of each of the variables, and last of status (32 bits each) if it is there, begin in the file.
+  /// Where the values of each of the quantities, and last of status (32 bits each) if it is there, begin in the file.
   const std::vector<std::uint64_t>& offsets() const;
 
   /// More attributes of the file, after those of the head.

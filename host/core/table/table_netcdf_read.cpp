@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "model/scene_entry.hpp"
 #include "table/hdf5_handle.hpp"
 #include "table/table_file.hpp"
 #include "table/table_netcdf.hpp"
@@ -210,18 +211,18 @@ void append_long_texts(const Reader& reader, std::vector<Attribute>& attributes)
 struct TableReader::Impl {
   Reader reader;
   TableHead head;
-  TableVariables variables;
+  Quantities quantities;
   bool has_status = false;
-  std::vector<std::pair<std::string, Hdf5Handle>> open;  // the variables and status
+  std::vector<std::pair<std::string, Hdf5Handle>> open;  // the quantities and status
 
   explicit Impl(const fs::path& path) : reader(path) {}
 
   void read_axes() {
     std::size_t most = kMostTableEntries;
-    for (std::size_t i = 0; i < kNetcdfAxes.size(); ++i) {
-      std::vector<double>& values = head.*kTableAxes[i];
-      values = read_list(reader, kNetcdfAxes[i].name, most);
-      if (values.empty() && kNetcdfAxes[i].is_required)
+    for (const Axis axis : kAllAxes) {
+      std::vector<double>& values = head.axes[axis];
+      values = read_list(reader, description_of(axis).name, most);
+      if (values.empty() && description_of(axis).is_required)
         reader.fail("is not a table of dolp (no axis theta, sigma or q)");
       most /= std::max<std::size_t>(values.size(), 1);
     }
@@ -231,8 +232,8 @@ struct TableReader::Impl {
     Hdf5Handle variable = reader.find(name);
     if (!variable) return false;
     std::vector<hsize_t> shape;
-    for (const auto axis : kTableAxes) {
-      if (!(head.*axis).empty()) shape.push_back((head.*axis).size());
+    for (const std::vector<double>& values : head.axes) {
+      if (!values.empty()) shape.push_back(values.size());
     }
     if (reader.shape_of(variable, name) != shape)
       reader.fail(fmt::format("is not a table of dolp ({} is not over its axes)", name));
@@ -242,14 +243,15 @@ struct TableReader::Impl {
   }
 
   void find_variables() {
-    for (const TableVariable& variable : table_variables()) {
-      if (!find(variable.name, sizeof(double))) continue;
-      variables.push_back(&variable);
-      if (variable.has_stokes_units)
+    for (const Quantity quantity : kAllQuantities) {
+      const QuantityDescription& described = description_of(quantity);
+      if (!find(described.name, sizeof(double))) continue;
+      quantities.push_back(quantity);
+      if (described.has_stokes_units)
         head.stokes_units = find_text(reader, open.back().second, "units").value_or(head.stokes_units);
     }
     has_status = find("status", sizeof(std::uint32_t));
-    if (variables.empty()) reader.fail("is not a table of dolp (none of its variables is there)");
+    if (quantities.empty()) reader.fail("is not a table of dolp (none of its variables is there)");
   }
 
   void read_curves() {
@@ -266,10 +268,10 @@ struct TableReader::Impl {
   void read(std::size_t number, const TableBox& box, hid_t type, std::vector<Value>& values) const {
     const auto& [name, variable] = open[number];
     std::vector<hsize_t> first, count;
-    for (std::size_t i = 0; i < kTableAxes.size(); ++i) {
-      if ((head.*kTableAxes[i]).empty()) continue;
-      first.push_back(box.first[i]);
-      count.push_back(box.count[i]);
+    for (const Axis axis : kAllAxes) {
+      if (head.axes[axis].empty()) continue;
+      first.push_back(box.first[axis]);
+      count.push_back(box.count[axis]);
     }
     values.resize(size_of(box.count));
     const Hdf5Handle in_file(H5Dget_space(variable.id()), H5Sclose);
@@ -291,21 +293,21 @@ TableReader::TableReader(const fs::path& path) : impl_(std::make_unique<Impl>(pa
 TableReader::~TableReader() = default;
 
 const TableHead& TableReader::head() const { return impl_->head; }
-const TableVariables& TableReader::variables() const { return impl_->variables; }
+const Quantities& TableReader::quantities() const { return impl_->quantities; }
 bool TableReader::has_status() const { return impl_->has_status; }
 
 Table TableReader::read(const TableBox& box) const {
   Table part;
   static_cast<TableHead&>(part) = head_of(impl_->head, box);
-  const TableVariables& variables = impl_->variables;
-  for (std::size_t i = 0; i < variables.size(); ++i) impl_->read(i, box, H5T_NATIVE_DOUBLE, part.*variables[i]->values);
-  if (impl_->has_status) impl_->read(variables.size(), box, H5T_NATIVE_UINT, part.status);
+  const Quantities& quantities = impl_->quantities;
+  for (std::size_t i = 0; i < quantities.size(); ++i) impl_->read(i, box, H5T_NATIVE_DOUBLE, part[quantities[i]]);
+  if (impl_->has_status) impl_->read(quantities.size(), box, H5T_NATIVE_UINT, part.status);
   return part;
 }
 
 void TableReader::check_hash(const ValuesHash::Sums& sums) const {
   const std::optional<std::string> hash = find_text(impl_->reader, impl_->reader.file(), kValuesHash);
-  if (!hash || *hash == ValuesHash(impl_->head).text(impl_->variables, sums)) return;
+  if (!hash || *hash == ValuesHash(impl_->head).text(impl_->quantities, sums)) return;
   impl_->reader.fail(
       "the values are not those that dolp wrote (attribute values_hash): the file was changed or is damaged");
 }
@@ -318,7 +320,7 @@ ValuesHash::Sums TableReader::sums_of(const Table& part, const TableBox& box) co
       sum += ValuesHash::sum(std::span(values).subspan(run.in_part, run.count), run.in_whole);
     });
   };
-  for (const TableVariable* variable : impl_->variables) add(part.*variable->values);
+  for (const Quantity quantity : impl_->quantities) add(part[quantity]);
   if (impl_->has_status) add(part.status);
   return sums;
 }
@@ -336,9 +338,7 @@ Table TableReader::read_entries(std::span<const std::size_t> positions) const {
     const std::size_t end = before + size_of(box.count);
     for (; !positions.empty() && positions.front() < end; positions = positions.subspan(1)) {
       const std::size_t position = positions.front() - before;
-      for (const TableVariable* variable : impl_->variables) {
-        (entries.*variable->values).push_back((part.*variable->values)[position]);
-      }
+      for (const Quantity quantity : impl_->quantities) entries[quantity].push_back(part[quantity][position]);
       if (impl_->has_status) entries.status.push_back(part.status[position]);
     }
     before = end;

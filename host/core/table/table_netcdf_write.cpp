@@ -133,19 +133,19 @@ void put_attributes(const Writer& writer, const std::vector<Attribute>& attribut
 }
 
 /// The coordinate variables, of an axis that the table lacks none.
-using AxisVariables = std::array<Hdf5Handle, kNetcdfAxes.size()>;
+using AxisVariables = AxisArray<Hdf5Handle>;
 
 AxisVariables put_axes(const Writer& writer, const TableHead& head) {
   AxisVariables axes;
-  for (std::size_t i = 0; i < kNetcdfAxes.size(); ++i) {
-    const NetcdfAxis& axis = kNetcdfAxes[i];
-    const std::vector<double>& values = head.*kTableAxes[i];
+  for (const Axis axis : kAllAxes) {
+    const AxisDescription& described = description_of(axis);
+    const std::vector<double>& values = head.axes[axis];
     if (values.empty()) continue;
-    axes[i] = writer.define(axis.name, H5T_IEEE_F64LE, {values.size()}, nullptr);
-    writer.check(H5DSset_scale(axes[i].id(), axis.name));
-    writer.put_text(axes[i], "long_name", axis.long_name);
-    writer.put_text(axes[i], "units", axis.units);
-    writer.write(axes[i], H5T_NATIVE_DOUBLE, values.data());
+    axes[axis] = writer.define(described.name, H5T_IEEE_F64LE, {values.size()}, nullptr);
+    writer.check(H5DSset_scale(axes[axis].id(), described.name));
+    writer.put_text(axes[axis], "long_name", described.long_name);
+    writer.put_text(axes[axis], "units", described.units);
+    writer.write(axes[axis], H5T_NATIVE_DOUBLE, values.data());
   }
   return axes;
 }
@@ -153,8 +153,8 @@ AxisVariables put_axes(const Writer& writer, const TableHead& head) {
 Hdf5Handle define_over_axes(const Writer& writer, const TableHead& head, const AxisVariables& axes, const char* name,
                             hid_t type, const void* fill) {
   std::vector<hsize_t> shape;
-  for (const auto axis : kTableAxes) {
-    if (!(head.*axis).empty()) shape.push_back((head.*axis).size());
+  for (const std::vector<double>& values : head.axes) {
+    if (!values.empty()) shape.push_back(values.size());
   }
   Hdf5Handle variable = writer.define(name, type, shape, fill);
   unsigned dimension = 0;
@@ -171,13 +171,13 @@ std::uint64_t offset_of(const Hdf5Handle& variable) {
   return offset;
 }
 
-std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes,
-                           const TableVariable& described) {
+std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes, Quantity quantity) {
+  const QuantityDescription& described = description_of(quantity);
   constexpr double kFill = std::numeric_limits<double>::quiet_NaN();
   const Hdf5Handle variable = define_over_axes(writer, head, axes, described.name, H5T_IEEE_F64LE, &kFill);
   writer.put_number(variable, "_FillValue", kFill);
   writer.put_text(variable, "long_name", described.long_name);
-  writer.put_text(variable, "units", described.has_stokes_units ? head.stokes_units : "1");
+  writer.put_text(variable, "units", units_of(quantity, head.stokes_units));
   if (*described.ancillary != '\0') writer.put_text(variable, "ancillary_variables", described.ancillary);
   return offset_of(variable);
 }
@@ -234,7 +234,7 @@ std::uint64_t sum_of(std::span<const Value> values, std::size_t first_place, con
 }  // namespace
 
 ValuesHash::ValuesHash(const TableHead& head) : hash_(0xcbf29ce484222325U) {
-  for (const auto axis : kTableAxes) hash_ = with_all(hash_, head.*axis);
+  for (const std::vector<double>& values : head.axes) hash_ = with_all(hash_, values);
   for (const TableCurve& described : kTableCurves) {
     if ((head.*described.curve).values.empty()) continue;
     hash_ = with_all(hash_, (head.*described.curve).wavelength_um);
@@ -250,10 +250,10 @@ std::uint64_t ValuesHash::sum(std::span<const std::uint32_t> values, std::size_t
   return sum_of(values, first_place, [](std::uint32_t value) { return std::uint64_t{value} + 1U; });
 }
 
-std::string ValuesHash::text(const TableVariables& variables, const Sums& sums) const {
+std::string ValuesHash::text(const Quantities& quantities, const Sums& sums) const {
   std::uint64_t hash = hash_;
   for (std::size_t i = 0; i < sums.size(); ++i) {
-    for (const char byte : std::string(i < variables.size() ? variables[i]->name : "status"))
+    for (const char byte : std::string(i < quantities.size() ? description_of(quantities[i]).name : "status"))
       hash = with_word(hash, static_cast<unsigned char>(byte));
     hash = with_word(hash, sums[i]);
   }
@@ -277,7 +277,7 @@ NetcdfSkeleton::NetcdfSkeleton(const TableLayout& layout) : impl_(std::make_uniq
   const AxisVariables axes = put_axes(writer, head);
   put_curves(writer, head);
   std::vector<std::uint64_t>& offsets = impl_->offsets;
-  for (const TableVariable* variable : layout.variables) offsets.push_back(put_variable(writer, head, axes, *variable));
+  for (const Quantity quantity : layout.quantities) offsets.push_back(put_variable(writer, head, axes, quantity));
   if (layout.has_status) offsets.push_back(put_status(writer, head, axes));
 }
 

@@ -22,11 +22,11 @@ class TableReader {
 
   const TableHead& head() const;
   /// Those that the table has.
-  const TableVariables& variables() const;
+  const Quantities& quantities() const;
   bool has_status() const;
 
   Table read(const TableBox& box) const;
-  /// The values of some entries, at ascending positions: each variable has one for each of them. All are read, part by
+  /// The values of some entries, at ascending positions: each quantity has one for each of them. All are read, part by
   /// part, and refused as by check_hash.
   Table read_entries(std::span<const std::size_t> positions) const;
 

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <span>
 
+#include "model/scene_entry.hpp"
+
 namespace dolp {
 
 std::vector<TableBox> boxes_in_order(const PerAxis& counts, std::size_t most) {
@@ -34,11 +36,7 @@ std::vector<TableBox> boxes_in_order(const PerAxis& counts, std::size_t most) {
 
 TableHead head_of(const TableHead& whole, const TableBox& box) {
   TableHead head = whole;
-  for (std::size_t i = 0; i < kTableAxes.size(); ++i) {
-    std::vector<double>& values = head.*kTableAxes[i];
-    const auto first = values.begin() + static_cast<std::ptrdiff_t>(box.first[i]);
-    if (!values.empty()) values = {first, first + static_cast<std::ptrdiff_t>(box.count[i])};
-  }
+  head.axes = part_of(whole.axes, box.first, box.count);
   return head;
 }
 
@@ -54,8 +52,8 @@ void TableStore::write(const Table& part, const PerAxis& first) {
       file_.write_at(skeleton_.offsets()[variable] + run.in_whole * sizeof(own[0]), own.data(), own.size_bytes());
     });
   };
-  for (std::size_t i = 0; i < layout_.variables.size(); ++i) put(i, part.*layout_.variables[i]->values);
-  if (layout_.has_status) put(layout_.variables.size(), part.status);
+  for (std::size_t i = 0; i < layout_.quantities.size(); ++i) put(i, part[layout_.quantities[i]]);
+  if (layout_.has_status) put(layout_.quantities.size(), part.status);
 }
 
 Table TableStore::read(const TableBox& box) const {
@@ -69,14 +67,14 @@ Table TableStore::read(const TableBox& box) const {
       file_.read_at(skeleton_.offsets()[variable] + run.in_whole * sizeof(own[0]), own.data(), own.size_bytes());
     });
   };
-  for (std::size_t i = 0; i < layout_.variables.size(); ++i) get(i, part.*layout_.variables[i]->values);
-  if (layout_.has_status) get(layout_.variables.size(), part.status);
+  for (std::size_t i = 0; i < layout_.quantities.size(); ++i) get(i, part[layout_.quantities[i]]);
+  if (layout_.has_status) get(layout_.quantities.size(), part.status);
   return part;
 }
 
 void TableStore::finish(const std::vector<Attribute>& more) {
   std::vector<Attribute> attributes = more;
-  attributes.push_back({kValuesHash, ValuesHash(layout_.head).text(layout_.variables, sums_)});
+  attributes.push_back({kValuesHash, ValuesHash(layout_.head).text(layout_.quantities, sums_)});
   skeleton_.add(attributes);
   for (const NetcdfSkeleton::Piece& piece : skeleton_.pieces())
     file_.write_at(piece.offset, piece.bytes.data(), piece.bytes.size());

@@ -27,7 +27,7 @@ class TableStore {
   /// `file` must outlive the object; nothing is written to it yet. Errors: std::bad_alloc.
   TableStore(const TableLayout& layout, AtomicFile& file);
 
-  /// Puts the values of a part, which has the layout's variables, in their places. Errors: IoError, Cancelled.
+  /// Puts the values of a part, which has the layout's quantities, in their places. Errors: IoError, Cancelled.
   void write(const Table& part, const PerAxis& first);
   /// Reads a part back. Errors: IoError.
   Table read(const TableBox& box) const;

@@ -6,7 +6,7 @@
 //   dolp::Evaluator evaluator;                                     // keeps the device and its kernels
 //   const std::vector<double> theta_deg = {0, 30, 60};
 //   const dolp::Results results = evaluator.evaluate(scene, {{"theta_deg", theta_deg}});
-//   std::cout << results.values("dolp")[2] << '\n';
+//   std::cout << results[dolp::Quantity::kDolp][2] << '\n';
 //   evaluator.write_table(scene, "table.nc");                      // over the scene's [grid]
 //
 // CMake: find_package(dolp CONFIG REQUIRED), target_link_libraries(program PRIVATE dolp::dolp). C++20.
@@ -33,11 +33,13 @@
 #include <variant>
 #include <vector>
 
+#include <dolp/axis.hpp>
 #include <dolp/device.hpp>
 #include <dolp/errors.hpp>
 #include <dolp/fit.hpp>
 #include <dolp/key.hpp>
 #include <dolp/options.hpp>
+#include <dolp/results.hpp>
 #include <dolp/setting.hpp>
 
 namespace dolp::api {
@@ -111,14 +113,6 @@ struct Material {
 };
 DOLP_EXPORT std::vector<Material> materials();
 
-/// What is known of a variable beside its values, as in table files.
-struct Variable {
-  std::string name;  ///< "dolp"
-  std::string long_name;
-  std::string units;      ///< UDUNITS: "1", "W m-2 um-1"
-  std::string ancillary;  ///< names of the variables that qualify it, or nothing
-};
-
 /// Status bits of an entry or point; 0 where nothing is wrong.
 enum Status : std::uint32_t {
   kReflectanceOutsideZeroToOne = 1,
@@ -135,24 +129,12 @@ struct StatusBit {
 DOLP_EXPORT std::vector<StatusBit> status_bits();
 
 /// What was computed or read at points, in their order.
-struct Results {
-  struct Quantity {
-    Variable variable;
-    std::vector<double> values;  ///< NaN where the quantity was not computed
-  };
-  std::vector<Quantity> quantities;
-  std::vector<std::uint32_t> status;  ///< sums of Status
+struct Results : ResultColumns {
+  Quantities given;          ///< that results of the scene have; NaN where one was not computed
+  std::string stokes_units;  ///< UDUNITS: "W m-2 um-1"
   /// Global attributes as in table files: device, precision, effects, rule, ...
   std::vector<std::pair<std::string, std::variant<std::string, double>>> attributes;
   double integrand_evaluations = 0.0;  ///< that they took
-
-  /// Errors: InputError for a name that is not there.
-  std::span<const double> values(std::string_view name) const {
-    for (const Quantity& quantity : quantities) {
-      if (quantity.variable.name == name) return quantity.values;
-    }
-    throw InputError("results have no " + std::string(name));
-  }
 };
 
 /// Points and their results as CSV, as write_points writes it.
@@ -164,15 +146,11 @@ class DOLP_EXPORT Table {
   /// Reads a table that dolp wrote as .nc. Errors: InputError.
   static Table read(const std::filesystem::path& path);
 
-  /// Names of the axes in their order, the last one fastest: theta, sigma, q, before them wavelength, n, k where the
-  /// table has them.
-  std::vector<std::string> axes() const;
-  /// Values of an axis, in its unit (degree for theta, um for wavelength). Errors: InputError for another name.
-  std::span<const double> axis(std::string_view name) const;
-  std::vector<Variable> variables() const;
-  /// Values of a variable over all axes, in C order. Errors: InputError for a variable that the table lacks.
-  std::span<const double> values(std::string_view name) const;
-  std::span<const std::uint32_t> status() const;  ///< likewise
+  /// Empty where the table has no such axis.
+  const Axes& axes() const;
+  /// Over all axes, in C order.
+  const ResultColumns& results() const;
+  const std::string& stokes_units() const;  ///< UDUNITS
 
   /// The table between its entries. An axis of one value needs no column; what else the columns lack is the scene's.
   /// Its error estimates contain the interpolation.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include <dolp/number_range.hpp>
 #include "api/reports.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
@@ -14,9 +15,8 @@
 #include "model/choices.hpp"
 #include "report/device_report.hpp"
 #include "report/verify_report.hpp"
-#include "run/table_scene.hpp"
-#include "scene/number_range.hpp"
 #include "run/scene_run.hpp"
+#include "run/table_scene.hpp"
 #include "table/table_reader.hpp"
 
 namespace dolp::api {
@@ -68,8 +68,7 @@ Report verify(const std::filesystem::path& path, const TableCheckOptions& option
 
 Report verify_device(const DeviceCheckOptions& options) {
   if (!kToleranceRange.contains(options.tolerance)) {
-    throw InputError(
-        fmt::format("tolerance {:g}: must be a number in {}", options.tolerance, kToleranceRange.text()));
+    throw InputError(fmt::format("tolerance {:g}: must be a number in {}", options.tolerance, kToleranceRange.text()));
   }
   dolp::begin(options.progress, 1);
   HardCaseReport report;

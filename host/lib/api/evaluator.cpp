@@ -85,7 +85,7 @@ Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& point
     const RunOutcome outcome = run.compute(collected);
     TableLayout layout = table_layout(own, outcome.plan, run.entries().axes());
     layout.head.attributes = all_attributes(own, layout, outcome, options.history);
-    Results results = results_of(collected.take(), extra_columns(own), layout.head);
+    Results results = results_of(collected.take(), quantities_of(own), layout.head);
     results.integrand_evaluations = outcome.evaluation.evaluations;
     return results;
   });

@@ -17,7 +17,6 @@
 #include "report/run_report.hpp"
 #include "run/lookup_run.hpp"
 #include "run/mueller_run.hpp"
-#include "run/points_csv.hpp"
 #include "run/scattering_gap.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
@@ -38,11 +37,19 @@ Points load_points(const std::filesystem::path& path, PointsKind kind, std::vect
                    const std::filesystem::path& output) {
   inputs.push_back(path.string());
   check_output_is_no_input(output, inputs);
-  return read_points(path.string(), kind, result_columns());
+  std::vector<std::string> results = {"status"};
+  for (const QuantityDescription& quantity : kQuantities) results.emplace_back(quantity.name);
+  return read_points(path.string(), kind, results);
 }
 
 void add_left_out(dolp::Report& report, const Points& points) {
   report.row_if(!points.left_out.empty(), "left out", "{}, because they are results", join(points.left_out));
+}
+
+/// The CSV of points of a file, whose cells it has as they were given.
+ResultCsv csv_of(const std::filesystem::path& path, const Points& points, const Quantities& quantities) {
+  return {path, points.header, quantities,
+          [&points](std::string& text, std::size_t row) { (text += points.rows[row]) += ','; }};
 }
 
 std::string mueller_csv(const Points& points, const std::vector<MuellerMatrix>& results) {
@@ -109,14 +116,13 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
     SceneEntries entries = point_entries(own, points);
     check_writable(path);
     Run run(own, std::move(entries), options, impl_->maker(own));
-    PointsCsv csv(path, points, extra_columns(own));
+    ResultCsv csv = csv_of(path, points, quantities_of(own));
     PassedResults rows([&](const SceneEntries&, const std::vector<PointResult>& results) { csv.append(results); });
     RunOutcome outcome = run.compute(rows);
     const std::optional<double> gap = scattering_gap(own, run.entries(), outcome.plan);
     csv.commit();
     outcome.wall_s = run.wall_s();
-    dolp::Report report =
-        run_report(own, outcome, gap, fmt::format("{} points", points.size()), path.string());
+    dolp::Report report = run_report(own, outcome, gap, fmt::format("{} points", points.size()), path.string());
     add_left_out(report, points);
     return public_report(report, outcome.summary.count(kStatusToleranceMissed) == 0, path);
   });
@@ -163,12 +169,12 @@ Report write_lookup(const std::filesystem::path& table_path, const std::filesyst
   check_writable(path);
   dolp::begin(progress, points.size());
   const std::vector<PointResult> results = lookup_points(lookup, scene, points, progress);
-  PointsCsv csv(path, points, lookup.extra_columns());
+  ResultCsv csv = csv_of(path, points, lookup.quantities());
   csv.append(results);
   csv.commit();
 
   const std::size_t missed = count_status(results, kStatusToleranceMissed);
-  const std::optional<double> worst = worst_of(results, &PointResult::error_estimate, kStatusNoDolpPromised);
+  const std::optional<double> worst = worst_of(results, Quantity::kErrorEstimate, kStatusNoDolpPromised);
   dolp::Report report;
   report.line("{}", key("table", table_path.string()));
   report.row("points", "{}", key("points", results.size()));
@@ -179,8 +185,7 @@ Report write_lookup(const std::filesystem::path& table_path, const std::filesyst
   add_left_out(report, points);
   report.row("written", "{}", key("output", path.string()));
   report.value("worst_error_estimate", worst);
-  report.value("worst_rho_error_estimate",
-               worst_of(results, &PointResult::rho_error_estimate, kStatusNoDolpPromised));
+  report.value("worst_rho_error_estimate", worst_of(results, Quantity::kRhoErrorEstimate, kStatusNoDolpPromised));
   report.value("wall_s", seconds_since(start));
   return public_report(report, missed == 0, path);
 }

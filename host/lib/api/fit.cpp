@@ -8,13 +8,13 @@
 #include <iterator>
 #include <limits>
 
+#include <dolp/fit.hpp>
 #include "api/evaluator_impl.hpp"
 #include "api/reports.hpp"
 #include "api/scene_impl.hpp"
 #include "base/atomic_file.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
-#include <dolp/fit.hpp>
 #include "model/status.hpp"
 #include "report/fit_picture.hpp"
 #include "report/fit_report.hpp"
@@ -89,8 +89,8 @@ dolp::Report::Json brackets(const Scene& fitted, const std::vector<MeasuredData>
   dolp::Report::Json all = dolp::Report::Json::array();
   for (const MeasuredData& data : sets) {
     dolp::Report::Json& one = all.emplace_back(nullptr);
-    const bool has_dolp = std::ranges::any_of(
-        data.measurements, [](const Measurement& o) { return o.observable == Observable::kDolp; });
+    const bool has_dolp =
+        std::ranges::any_of(data.measurements, [](const Measurement& o) { return o.observable == Observable::kDolp; });
     if (!has_dolp) continue;
     Settings settings = data.settings;
     settings.push_back({"emission.bracket", true});
@@ -103,8 +103,8 @@ dolp::Report::Json brackets(const Scene& fitted, const std::vector<MeasuredData>
       const Points points = points_of(std::span(&zeniths, 1), theta_deg.size(), PointsKind::kDirections);
       one["theta_deg"] = theta_deg;
       for (const PointResult& result : evaluate_scene(scene, point_entries(scene, points), evaluator, {})) {
-        one["low"].push_back(result.dolp_low);
-        one["high"].push_back(result.dolp_high);
+        one["low"].push_back(result[Quantity::kDolpLow]);
+        one["high"].push_back(result[Quantity::kDolpHigh]);
       }
     } catch (const InputError&) {
       continue;  // a scene without a bracket

@@ -3,18 +3,14 @@
 
 #include <dolp/dolp.hpp>
 
-#include "model/point_result.hpp"
+#include <dolp/results.hpp>
 #include "scene/points.hpp"
-#include "table/result_csv.hpp"
 #include "table/table.hpp"
 
 namespace dolp::api {
 
-/// The description of a variable of a table.
-Variable variable_of(const TableVariable& variable, const std::string& stokes_units);
-
 /// `head`: of the table that a run over the points would have, or that was read.
-Results results_of(const std::vector<PointResult>& points, const ExtraColumns& extra, const TableHead& head);
+Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head);
 
 /// Points of columns, as many as the columns that have not one value for all; one where there is none.
 /// Errors: InputError of the rooms.

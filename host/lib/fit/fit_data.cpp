@@ -5,9 +5,9 @@
 #include <dolp/fit.hpp>
 #include <limits>
 
+#include <dolp/number_range.hpp>
 #include "base/text.hpp"
 #include "scene/csv.hpp"
-#include "scene/number_range.hpp"
 #include "scene/scene_reader.hpp"
 
 namespace dolp {

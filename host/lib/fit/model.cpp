@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "base/text.hpp"
+#include "fit/fit_range.hpp"
 #include "model/moments.hpp"
 #include "run/scene_run.hpp"
-#include "fit/fit_range.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_reader.hpp"
 
@@ -41,23 +41,24 @@ Eigen::VectorXd starts_of(const std::vector<FitRange>& parameters) {
 
 /// What an observable is at a point.
 Eigen::RowVector2d components_of(Observable observable, const PointResult& point) {
-  const Eigen::RowVector2d q_u(point.stokes_q / point.stokes_i, point.stokes_u / point.stokes_i);
+  const Eigen::RowVector2d q_u(point[Quantity::kStokesQ] / point[Quantity::kStokesI],
+                               point[Quantity::kStokesU] / point[Quantity::kStokesI]);
   switch (observable) {
     case Observable::kDolp:  // at 90 degrees it may have a limit where the Stokes parameters have none
-      return q_u.allFinite() ? q_u : Eigen::RowVector2d(point.dolp, 0.0);
+      return q_u.allFinite() ? q_u : Eigen::RowVector2d(point[Quantity::kDolp], 0.0);
     case Observable::kQOverI:
       return {q_u[0], 0.0};
     case Observable::kEmissivityS:
-      return {point.emissivity_s, 0.0};
+      return {point[Quantity::kEmissivityS], 0.0};
     case Observable::kEmissivityP:
-      return {point.emissivity_p, 0.0};
+      return {point[Quantity::kEmissivityP], 0.0};
   }
   return {};
 }
 
 double error_of(Observable observable, const PointResult& point) {
   const bool is_dolp = observable == Observable::kDolp || observable == Observable::kQOverI;
-  return is_dolp ? point.error_estimate : 2.0 * point.rho_error_estimate * point.rho_i;
+  return is_dolp ? point[Quantity::kErrorEstimate] : 2.0 * point[Quantity::kRhoErrorEstimate] * point[Quantity::kRhoI];
 }
 
 }  // namespace

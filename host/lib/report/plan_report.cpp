@@ -1,7 +1,6 @@
 #include "report/plan_report.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "model/choices.hpp"
 
@@ -147,11 +146,6 @@ void add_cost(Report& report, const PlanReport& plan) {
              key("estimated_cpu_s", run.moments_s + run.beams_s));
 }
 
-const char* axis_name(std::size_t axis) {
-  constexpr std::array kNames = {"wavelength", "n", "k", "theta", "sigma", "q"};
-  return kNames[axis];
-}
-
 std::string needed_text(const AxisForecast& axis) {
   if (axis.needed_values == 0) return fmt::format("no number of values up to {} is enough", kMostForecastValues);
   return fmt::format("{} values are about enough for {:.1g}", axis.needed_values, axis.wanted);
@@ -162,7 +156,7 @@ void add_lookup(Report& report, const PlanReport& plan) {
   std::vector<Report> axes;
   for (const AxisForecast& axis : plan.lookup) {
     Report& row = axes.emplace_back(kLabelWidth);
-    row.row("lookup", "along {}: {} between {} values; {}", key("axis", axis_name(static_cast<std::size_t>(axis.axis))),
+    row.row("lookup", "along {}: {} between {} values; {}", key("axis", description_of(axis.axis).name),
             std::isfinite(axis.error) ? fmt::format("error about {:.1g}", axis.error) : "no error can be stated",
             key("values", axis.values), needed_text(axis));
     row.value("error", axis.error);
@@ -174,13 +168,12 @@ void add_lookup(Report& report, const PlanReport& plan) {
 
 }  // namespace
 
-std::string grid_text(const Grid& grid) {
+std::string grid_text(const Axes& grid) {
   std::string counts, names;
-  for (std::size_t i = 0; i < kGridAxes.size(); ++i) {
-    const std::vector<double>& values = grid.*kGridAxes[i];
-    if (values.empty()) continue;
-    counts += fmt::format("{}{}", counts.empty() ? "" : " x ", values.size());
-    names += fmt::format("{}{}", names.empty() ? "" : " x ", axis_name(i));
+  for (const Axis axis : kAllAxes) {
+    if (grid[axis].empty()) continue;
+    counts += fmt::format("{}{}", counts.empty() ? "" : " x ", grid[axis].size());
+    names += fmt::format("{}{}", names.empty() ? "" : " x ", description_of(axis).name);
   }
   return fmt::format("{} ({})", counts, names);
 }

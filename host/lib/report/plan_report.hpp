@@ -43,7 +43,7 @@ PlanReport plan_of(const Scene& scene, const std::string& device, bool keep_all)
 Report plan_report(const PlanReport& plan);
 
 /// "91 x 32 x 5 (theta x sigma x q)"; an axis that the grid lacks is left out.
-std::string grid_text(const Grid& grid);
+std::string grid_text(const Axes& grid);
 
 /// Names and reasons of what is kept, dropped, not needed and absent.
 Report::Json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan);

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <dolp/results.hpp>
 #include "model/evaluator.hpp"
-#include "model/point_result.hpp"
 #include "plan/effects.hpp"
 #include "report/plan_report.hpp"
 #include "report/report.hpp"
@@ -16,8 +16,8 @@
 
 namespace dolp {
 
-/// The report of a run. `shape`: that of the grid, or "200 points"; `path`: what was written; `gap`: of single scattering,
-/// none where it does not apply.
+/// The report of a run. `shape`: that of the grid, or "200 points"; `path`: what was written; `gap`: of single
+/// scattering, none where it does not apply.
 Report run_report(const Scene& scene, const RunOutcome& run, std::optional<double> gap, const std::string& shape,
                   const std::string& path);
 
@@ -28,7 +28,6 @@ void add_evaluation(Report& report, const EvaluationReport& evaluation, double w
 std::size_t count_status(const std::vector<PointResult>& results, std::uint32_t bit);
 
 /// The largest of an error that results state, of those whose status has none of `refused`; none without any.
-std::optional<double> worst_of(const std::vector<PointResult>& results, double PointResult::*error,
-                               std::uint32_t refused);
+std::optional<double> worst_of(const std::vector<PointResult>& results, Quantity error, std::uint32_t refused);
 
 }  // namespace dolp

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <dolp/errors.hpp>
 
+#include <dolp/number_range.hpp>
 #include "base/text.hpp"
 #include "run/scene_run.hpp"
-#include "scene/number_range.hpp"
 #include "table/table.hpp"
 
 namespace dolp {
@@ -15,17 +15,18 @@ namespace {
 
 /// Refuses points that lack what the scene does not say.
 void check_columns(const Scene& scene, const Points& points) {
-  if (!points.theta_deg && scene.grid.theta_deg.size() != 1) {
+  if (!points[Axis::kTheta] && scene.grid[Axis::kTheta].size() != 1) {
     throw InputError(
         fmt::format("{}: column \"theta_deg\" is missing, a number in {}; only a scene with a single grid.theta_deg "
                     "does without",
                     points.where(), kZenithDegRange.text()));
   }
   const Material& material = scene.surface.material;
-  const bool is_dispersive = !material.is_constant() || (points.wavelength_um && material.tabulated);
-  if (points.n.has_value() != points.k.has_value() && is_dispersive) {
-    const char* given = points.n ? "n" : "k";
-    const char* missing = points.n ? "k" : "n";
+  const bool is_dispersive = !material.is_constant() || (points[Axis::kWavelength] && material.tabulated);
+  const bool has_n = points[Axis::kN].has_value();
+  if (has_n != points[Axis::kK].has_value() && is_dispersive) {
+    const char* given = has_n ? "n" : "k";
+    const char* missing = has_n ? "k" : "n";
     throw InputError(
         fmt::format("{}: column \"{}\" needs column \"{}\" beside it, because the scene's material \"{}\" "
                     "depends on the wavelength",
@@ -39,7 +40,8 @@ std::vector<double> wavelengths_of(const Scene& scene, const Points& points) {
     throw InputError(
         fmt::format("{}: column \"wavelength_um\" cannot be combined with spectrum.band_um", points.where()));
   }
-  std::vector<double> wavelengths = *points.wavelength_um;
+  const std::vector<double>& all = *points[Axis::kWavelength];
+  std::vector<double> wavelengths = all;
   std::ranges::sort(wavelengths);
   const auto twice = std::ranges::unique(wavelengths);
   wavelengths.erase(twice.begin(), twice.end());
@@ -47,8 +49,7 @@ std::vector<double> wavelengths_of(const Scene& scene, const Points& points) {
     try {
       at_wavelength(scene, wavelength_um);
     } catch (const InputError& error) {
-      const auto row = static_cast<std::size_t>(std::ranges::find(*points.wavelength_um, wavelength_um) -
-                                                points.wavelength_um->begin());
+      const auto row = static_cast<std::size_t>(std::ranges::find(all, wavelength_um) - all.begin());
       throw InputError(
           fmt::format("{}: wavelength_um = {}: {}", points.where(row), format_number(wavelength_um), error.what()));
     }
@@ -56,7 +57,7 @@ std::vector<double> wavelengths_of(const Scene& scene, const Points& points) {
   return wavelengths;
 }
 
-double value_or(const std::optional<std::vector<double>>& column, std::size_t row, double fallback) {
+double value_or(const Points::Column& column, std::size_t row, double fallback) {
   return column ? (*column)[row] : fallback;
 }
 
@@ -64,9 +65,9 @@ double value_or(const std::optional<std::vector<double>>& column, std::size_t ro
 
 void check_smith(const Scene& scene, const Points& points) {
   const Surface& surface = scene.surface;
-  if (surface.masking != Masking::kSmith || surface.distribution != Distribution::kCauchy || !points.q) return;
+  if (surface.masking != Masking::kSmith || surface.distribution != Distribution::kCauchy || !points[Axis::kQ]) return;
   for (std::size_t row = 0; row < points.size(); ++row) {
-    const double q = (*points.q)[row];
+    const double q = (*points[Axis::kQ])[row];
     if (kSmithCauchyQRange.contains(q)) continue;
     throw InputError(
         fmt::format("{}: q = {}: out of range, a number in {} with masking = \"smith\" and distribution = "
@@ -90,23 +91,24 @@ SceneEntries point_entries(const Scene& scene, const Points& points) {
   check_columns(scene, points);
   check_smith(scene, points);
   const Surface& surface = scene.surface;
-  const bool has_own_index = points.n || points.k;
-  const bool has_wavelength = points.wavelength_um && points.size() > 0;
-  if (points.theta_deg && !points.sigma && !points.q && !has_own_index && !has_wavelength) {
-    return SceneEntries::grid(*points.theta_deg, {surface.sigma}, {surface.q});
+  const bool has_own_index = points[Axis::kN] || points[Axis::kK];
+  const bool has_wavelength = points[Axis::kWavelength] && points.size() > 0;
+  if (points[Axis::kTheta] && !points[Axis::kSigma] && !points[Axis::kQ] && !has_own_index && !has_wavelength) {
+    return SceneEntries::grid(*points[Axis::kTheta], {surface.sigma}, {surface.q});
   }
   const std::vector<double> wavelengths = has_wavelength ? wavelengths_of(scene, points) : std::vector<double>{};
   std::vector<SceneEntry> entries;
   entries.reserve(points.size());
   for (std::size_t row = 0; row < points.size(); ++row) {
     SceneEntry entry;
-    entry.theta_deg = value_or(points.theta_deg, row, scene.grid.theta_deg.front());
-    entry.shape = {value_or(points.sigma, row, surface.sigma), value_or(points.q, row, surface.q)};
+    entry.theta_deg = value_or(points[Axis::kTheta], row, scene.grid[Axis::kTheta].front());
+    entry.shape = {value_or(points[Axis::kSigma], row, surface.sigma), value_or(points[Axis::kQ], row, surface.q)};
     const OpticalConstants& index = surface.material.constant;
     if (has_own_index)
-      entry.index = OpticalConstants{value_or(points.n, row, index.n), value_or(points.k, row, index.k)};
+      entry.index =
+          OpticalConstants{value_or(points[Axis::kN], row, index.n), value_or(points[Axis::kK], row, index.k)};
     if (has_wavelength) {
-      const auto found = std::ranges::lower_bound(wavelengths, (*points.wavelength_um)[row]);
+      const auto found = std::ranges::lower_bound(wavelengths, (*points[Axis::kWavelength])[row]);
       entry.wavelength = static_cast<std::uint32_t>(found - wavelengths.begin());
     }
     entries.push_back(entry);

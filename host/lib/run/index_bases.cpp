@@ -14,9 +14,9 @@ std::vector<OpticalConstants> indices_of(const Scene& scene, const SceneEntries&
   std::vector<OpticalConstants> indices;
   if (whole.has_own_index()) {
     PerAxis place{};
-    for (std::size_t& n = place[static_cast<std::size_t>(Axis::kN)]; n < at(whole.counts(), Axis::kN); ++n) {
-      std::size_t& k = place[static_cast<std::size_t>(Axis::kK)];
-      for (k = 0; k < at(whole.counts(), Axis::kK); ++k) indices.push_back(whole.index_at(place));
+    for (std::size_t& n = place[Axis::kN]; n < whole.counts()[Axis::kN]; ++n) {
+      std::size_t& k = place[Axis::kK];
+      for (k = 0; k < whole.counts()[Axis::kK]; ++k) indices.push_back(whole.index_at(place));
     }
     return indices;
   }
@@ -32,7 +32,7 @@ std::vector<OpticalConstants> indices_of(const Scene& scene, const SceneEntries&
 IndexBases::IndexBases(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan) {
   const bool has_bounces = plan.kept.further_bounces && scene.surface.scattering == Scattering::kMultiple;
   const PerAxis& counts = entries.whole();
-  const bool pays = at(counts, Axis::kTheta) * at(counts, Axis::kSigma) * at(counts, Axis::kQ) >= kLeastEntries;
+  const bool pays = counts[Axis::kTheta] * counts[Axis::kSigma] * counts[Axis::kQ] >= kLeastEntries;
   if (entries.is_grid() && pays && plan.needs_moments && !has_bounces) indices_ = indices_of(scene, entries);
 }
 

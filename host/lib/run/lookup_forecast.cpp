@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <set>
@@ -41,16 +42,14 @@ double value_at(const std::vector<double>& values, double position) {
 
 /// A short part of an axis at one value of each other axis, and a place between its values.
 struct Stretch {
-  Grid grid;
+  Axes axes;
   TableLookup::Point point{};
 };
 
 class Forecast {
  public:
   Forecast(const Scene& scene, const EffectPlan& plan) : scene_(scene), plan_(plan), evaluator_(Precision::kAuto) {
-    for (std::size_t i = 0; i < kGridAxes.size(); ++i) {
-      if ((scene.grid.*kGridAxes[i]).size() > 1) axes_.push_back(static_cast<Axis>(i));
-    }
+    std::ranges::copy_if(kAllAxes, std::back_inserter(axes_), [&](Axis axis) { return scene.grid[axis].size() > 1; });
     lines_ = axes_.size() > 1 ? kLines : 1;
   }
 
@@ -61,7 +60,7 @@ class Forecast {
       for (const Axis other : axes_) {
         if (other != axis) wanted /= is_read_with_four(other) ? kWeightsOfFour : kWeightsOfSix;
       }
-      const std::size_t values = values_of(axis).size();
+      const std::size_t values = scene_.grid[axis].size();
       const double error = error_with(axis, values);
       forecasts.push_back({axis, values, error, wanted, needed(axis, values, error, wanted)});
     }
@@ -69,10 +68,6 @@ class Forecast {
   }
 
  private:
-  const std::vector<double>& values_of(Axis axis) const {
-    return scene_.grid.*kGridAxes[static_cast<std::size_t>(axis)];
-  }
-
   /// The least number of values, of those tried, that gives the error that is wanted; 0 without one.
   std::size_t needed(Axis axis, std::size_t values, double error, double wanted) {
     const double order = is_read_with_four(axis) ? kOrderOfFour : kOrderOfSix;
@@ -117,20 +112,21 @@ class Forecast {
     const std::size_t centred = std::max(cell, kStretch / 2 - 1) - (kStretch / 2 - 1);
     const std::size_t first = std::min(centred, values - length);
     Stretch stretch;
-    for (std::size_t i = 0; i < kGridAxes.size(); ++i) {
-      const std::vector<double>& whole = scene_.grid.*kGridAxes[i];
-      std::vector<double>& own = stretch.grid.*kGridAxes[i];
+    for (const Axis each : kAllAxes) {
+      const std::vector<double>& whole = scene_.grid[each];
+      std::vector<double>& own = stretch.axes[each];
       if (whole.empty()) continue;
-      if (i != static_cast<std::size_t>(axis)) {
-        own = {whole[(2 * ((line + i) % kLines) + 1) * whole.size() / (2 * kLines)]};
-        stretch.point[i] = own.front();
+      if (each != axis) {
+        const std::size_t part = (line + static_cast<std::size_t>(each)) % kLines;
+        own = {whole[(2 * part + 1) * whole.size() / (2 * kLines)]};
+        stretch.point[each] = own.front();
         continue;
       }
       const double step = static_cast<double>(whole.size() - 1) / static_cast<double>(values - 1);
       for (std::size_t k = first; k < first + length; ++k) {
         own.push_back(k + 1 == values ? whole.back() : value_at(whole, static_cast<double>(k) * step));
       }
-      stretch.point[i] = std::midpoint(own[cell - first], own[cell - first + 1]);
+      stretch.point[each] = std::midpoint(own[cell - first], own[cell - first + 1]);
     }
     return stretch;
   }
@@ -142,7 +138,7 @@ class Forecast {
     std::vector<SceneEntries> grids;
     for (const Stretch& stretch : stretches) {
       Scene scene = scene_;
-      scene.grid = stretch.grid;
+      scene.grid = stretch.axes;
       const SceneEntries& own = grids.emplace_back(grid_entries(scene));
       for (std::size_t i = 0; i < own.size(); ++i) {
         all.push_back(own[i]);
@@ -155,12 +151,12 @@ class Forecast {
     auto next = results.begin();
     for (std::size_t i = 0; i < stretches.size(); ++i) {
       const auto end = next + static_cast<std::ptrdiff_t>(grids[i].size());
-      Table table = table_part(table_layout(scene_, plan_, stretches[i].grid), grids[i], {next, end});
+      Table table = table_part(table_layout(scene_, plan_, stretches[i].axes), grids[i], {next, end});
       next = end;
-      std::ranges::fill(table.error_estimate, 0.0);  // what remains is the interpolation's
-      std::ranges::fill(table.rho_error_estimate, 0.0);
+      std::ranges::fill(table[Quantity::kErrorEstimate], 0.0);  // what remains is the interpolation's
+      std::ranges::fill(table[Quantity::kRhoErrorEstimate], 0.0);
       const TableLookup lookup(table, scene_.accuracy.tolerance, "forecast");
-      errors.push_back(lookup.at(stretches[i].point).error_estimate);
+      errors.push_back(lookup.at(stretches[i].point)[Quantity::kErrorEstimate]);
     }
     return errors;
   }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <dolp/errors.hpp>
 #include <optional>
 #include <string>
@@ -13,15 +12,17 @@
 namespace dolp {
 namespace {
 
-using OptionalColumn = std::optional<std::vector<double>>;
-
-/// One coordinate of all points.
-struct Coordinate {
-  const char* name;
-  Axis axis;
-  const OptionalColumn& given;
-  std::optional<double> of_scene;
-};
+/// The coordinate that points without a column of it have.
+std::optional<double> value_of(const Scene& scene, Axis axis) {
+  const Surface& surface = scene.surface;
+  const AxisArray<std::optional<double>> values = {scene.spectrum.min_um,
+                                                   surface.material.constant.n,
+                                                   surface.material.constant.k,
+                                                   std::nullopt,
+                                                   surface.sigma,
+                                                   surface.q};
+  return values[axis];
+}
 
 std::string range_text(const LookupAxis& axis) {
   if (axis.size() == 1) return format_number(axis.min());
@@ -29,41 +30,32 @@ std::string range_text(const LookupAxis& axis) {
 }
 
 /// The coordinate of each point: as given, or the only one that the table has, or that of its scene.
-std::vector<double> values_of(const Coordinate& coordinate, const LookupAxis& axis, const Points& points) {
-  if (coordinate.given) {
+std::vector<double> values_of(Axis number, const LookupAxis& axis, const Scene& scene, const Points& points) {
+  const char* const name = description_of(number).column;
+  if (const auto& given = points[number]) {
     for (std::size_t row = 0; row < points.size(); ++row) {
-      if (axis.contains((*coordinate.given)[row])) continue;
-      throw InputError(fmt::format("{}: {} = {}: outside the table, which has {}", points.where(row), coordinate.name,
-                                   format_number((*coordinate.given)[row]), range_text(axis)));
+      if (axis.contains((*given)[row])) continue;
+      throw InputError(fmt::format("{}: {} = {}: outside the table, which has {}", points.where(row), name,
+                                   format_number((*given)[row]), range_text(axis)));
     }
-    return *coordinate.given;
+    return *given;
   }
-  std::optional<double> value = coordinate.of_scene;
-  if (axis.size() == 1) value = axis.min();
+  const std::optional<double> value = axis.size() == 1 ? axis.min() : value_of(scene, number);
   if (!value || !axis.contains(*value)) {
     throw InputError(
-        fmt::format("{}: column \"{}\" is missing, a number in {}", points.where(), coordinate.name, range_text(axis)));
+        fmt::format("{}: column \"{}\" is missing, a number in {}", points.where(), name, range_text(axis)));
   }
   return std::vector<double>(points.size(), *value);
 }
 
 /// All coordinates of all points.
 std::vector<TableLookup::Point> coordinates(const TableLookup& lookup, const Scene& scene, const Points& points) {
-  const Surface& surface = scene.surface;
-  const std::optional<double> none;
-  const std::array<Coordinate, kGridAxes.size()> all = {
-      {{"wavelength_um", Axis::kWavelength, points.wavelength_um, scene.spectrum.min_um},
-       {"n", Axis::kN, points.n, surface.material.constant.n},
-       {"k", Axis::kK, points.k, surface.material.constant.k},
-       {"theta_deg", Axis::kTheta, points.theta_deg, none},
-       {"sigma", Axis::kSigma, points.sigma, surface.sigma},
-       {"q", Axis::kQ, points.q, surface.q}}};
   std::vector<TableLookup::Point> result(points.size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const LookupAxis* axis = lookup.axis(all[i].axis);
-    if (axis == nullptr) continue;
-    const std::vector<double> values = values_of(all[i], *axis, points);
-    for (std::size_t row = 0; row < points.size(); ++row) result[row][i] = values[row];
+  for (const Axis axis : kAllAxes) {
+    const LookupAxis* of_table = lookup.axis(axis);
+    if (of_table == nullptr) continue;
+    const std::vector<double> values = values_of(axis, *of_table, scene, points);
+    for (std::size_t row = 0; row < points.size(); ++row) result[row][axis] = values[row];
   }
   return result;
 }
@@ -71,8 +63,11 @@ std::vector<TableLookup::Point> coordinates(const TableLookup& lookup, const Sce
 /// Refuses another index or wavelength than the table's, where it has no axis of these.
 void check_index(const TableLookup& lookup, const Scene& scene, const Points& points) {
   const Material& material = scene.surface.material;
-  const auto check = [&](const char* name, Axis axis, const OptionalColumn& given, double own) {
-    if (!given || lookup.axis(axis)) return;
+  for (const Axis axis : {Axis::kN, Axis::kK, Axis::kWavelength}) {
+    const auto& given = points[axis];
+    if (!given || lookup.axis(axis)) continue;
+    const char* const name = description_of(axis).column;
+    const double own = value_of(scene, axis).value();
     for (std::size_t row = 0; row < points.size(); ++row) {
       if ((material.is_constant() || axis == Axis::kWavelength) && (*given)[row] == own) continue;
       throw InputError(fmt::format("{}: {} = {}: the table is of {}; dolp eval computes other indices",
@@ -81,10 +76,7 @@ void check_index(const TableLookup& lookup, const Scene& scene, const Points& po
                                        ? fmt::format("{} = {}", name, format_number(own))
                                        : "a material that depends on the wavelength"));
     }
-  };
-  check("n", Axis::kN, points.n, material.constant.n);
-  check("k", Axis::kK, points.k, material.constant.k);
-  check("wavelength_um", Axis::kWavelength, points.wavelength_um, scene.spectrum.min_um);
+  }
 }
 
 }  // namespace

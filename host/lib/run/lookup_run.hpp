@@ -4,7 +4,7 @@
 #include <dolp/errors.hpp>
 #include <vector>
 
-#include "model/point_result.hpp"
+#include <dolp/results.hpp>
 #include "scene/points.hpp"
 #include "scene/scene.hpp"
 #include "table/table_lookup.hpp"

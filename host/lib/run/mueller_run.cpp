@@ -90,7 +90,7 @@ double value_or(const std::optional<std::vector<double>>& column, std::size_t ro
 std::vector<MuellerPoint> mueller_points(const Scene& scene, const Points& points) {
   check_smith(scene, points);
   const Surface& surface = scene.surface;
-  const bool has_own_index = points.n && points.k;
+  const bool has_own_index = points[Axis::kN] && points[Axis::kK];
   if (scene.spectrum.is_band() && !surface.material.is_constant() && !has_own_index) {
     throw InputError(fmt::format(
         "{}: spectrum.band_um: the Mueller matrix is that of one wavelength and the material \"{}\" depends on "
@@ -102,8 +102,8 @@ std::vector<MuellerPoint> mueller_points(const Scene& scene, const Points& point
   result.reserve(points.size());
   for (std::size_t row = 0; row < points.size(); ++row) {
     result.push_back({{(*points.theta_i_deg)[row], (*points.theta_r_deg)[row], (*points.delta_phi_deg)[row]},
-                      {value_or(points.sigma, row, surface.sigma), value_or(points.q, row, surface.q)},
-                      {value_or(points.n, row, index.n), value_or(points.k, row, index.k)}});
+                      {value_or(points[Axis::kSigma], row, surface.sigma), value_or(points[Axis::kQ], row, surface.q)},
+                      {value_or(points[Axis::kN], row, index.n), value_or(points[Axis::kK], row, index.k)}});
   }
   return result;
 }
@@ -114,7 +114,7 @@ Precision mueller_precision(const Accuracy& accuracy, bool has_double) {
 }
 
 std::vector<MuellerMatrix> evaluate_mueller(const Scene& scene, const std::vector<MuellerPoint>& points,
-                                              MomentsEvaluator& evaluator, const Progress& progress) {
+                                            MomentsEvaluator& evaluator, const Progress& progress) {
   if (evaluator.scattering() == nullptr) throw std::logic_error("Mueller matrices need an evaluator of pBRDFs");
   const Precision precision = mueller_precision(scene.accuracy, evaluator.has_double());
   std::vector<MuellerMatrix> results;

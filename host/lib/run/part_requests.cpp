@@ -81,22 +81,21 @@ PartRequests::PartRequests(const Scene& scene, const SpectralIndices& samples, c
 }
 
 std::size_t PartRequests::set_of(const SceneEntries& grid, const PerAxis& place) const {
-  if (!grid.has_own_index()) return at(place, Axis::kWavelength);
-  return at(place, Axis::kN) * at(grid.counts(), Axis::kK) + at(place, Axis::kK);
+  if (!grid.has_own_index()) return place[Axis::kWavelength];
+  return place[Axis::kN] * grid.counts()[Axis::kK] + place[Axis::kK];
 }
 
 void PartRequests::ask_grid(const Selection& selection) {
   const SceneEntries& grid = selection.part;
   const PerAxis& counts = grid.counts();
   const bool is_whole = selection.chosen.empty();
-  const std::size_t sets =
-      grid.has_own_index() ? at(counts, Axis::kN) * at(counts, Axis::kK) : at(counts, Axis::kWavelength);
+  const std::size_t sets = grid.has_own_index() ? counts[Axis::kN] * counts[Axis::kK] : counts[Axis::kWavelength];
   std::vector<char> theta(grid.theta_deg().size(), 0), sigma(grid.sigma().size(), 0), q(grid.q().size(), 0);
   std::vector<char> set(sets, is_whole ? 1 : 0);
   for (const std::size_t i : selection.chosen) {
     if (!wants_moments(scene_, grid[i], plan_)) continue;
     const PerAxis place = grid.place(i);
-    theta[at(place, Axis::kTheta)] = set[set_of(grid, place)] = 1;
+    theta[place[Axis::kTheta]] = set[set_of(grid, place)] = 1;
   }
   for (std::size_t i = 0; i < sigma.size(); ++i) {
     for (std::size_t j = 0; j < q.size(); ++j) {
@@ -139,8 +138,8 @@ void PartRequests::ask_indices(const SceneEntries& grid, const std::vector<char>
     std::vector<OpticalConstants> own;
     if (grid.has_own_index()) {
       PerAxis place = {};
-      place[static_cast<std::size_t>(Axis::kN)] = set / at(grid.counts(), Axis::kK);
-      place[static_cast<std::size_t>(Axis::kK)] = set % at(grid.counts(), Axis::kK);
+      place[Axis::kN] = set / grid.counts()[Axis::kK];
+      place[Axis::kK] = set % grid.counts()[Axis::kK];
       own = {grid.index_at(place)};
     } else {
       own = samples_[set];
@@ -171,14 +170,14 @@ PartRequests::Place PartRequests::moments_of(std::size_t member) const {
   const SceneEntries& grid = selection_.part;
   const PerAxis place = grid.place(selection_.position(member));
   const std::size_t shapes = moments_.sigma.size() * moments_.q.size();
-  const std::size_t shape = sigma_at_[at(place, Axis::kSigma)] * moments_.q.size() + q_at_[at(place, Axis::kQ)];
-  const std::size_t theta = theta_at_[at(place, Axis::kTheta)];
+  const std::size_t shape = sigma_at_[place[Axis::kSigma]] * moments_.q.size() + q_at_[place[Axis::kQ]];
+  const std::size_t theta = theta_at_[place[Axis::kTheta]];
   return {(theta * moments_.indices.size() + set_at_[set_of(grid, place)]) * shapes + shape,
           grid.has_own_index() ? std::size_t{0} : shapes};
 }
 
 std::size_t PartRequests::direction_of(std::size_t member) const {
-  return theta_at_[at(selection_.part.place(selection_.position(member)), Axis::kTheta)];
+  return theta_at_[selection_.part.place(selection_.position(member))[Axis::kTheta]];
 }
 
 void PartRequests::ask_points(const Selection& selection) {
@@ -228,9 +227,9 @@ void PartRequests::ask_beams(const Selection& selection) {
     ScatteringEntry wanted;
     if (is_grid) {
       const PerAxis place = selection.part.place(selection.position(i));
-      wanted.angles = static_cast<std::uint32_t>(at(place, Axis::kTheta));
-      wanted.shape = static_cast<std::uint32_t>(at(place, Axis::kSigma)) * q_count +
-                     static_cast<std::uint32_t>(at(place, Axis::kQ));
+      wanted.angles = static_cast<std::uint32_t>(place[Axis::kTheta]);
+      wanted.shape =
+          static_cast<std::uint32_t>(place[Axis::kSigma]) * q_count + static_cast<std::uint32_t>(place[Axis::kQ]);
     } else {
       wanted.angles = wanted.shape = static_cast<std::uint32_t>(beams_.angles.size());
       beams_.angles.push_back(angles_of(scene_, entry.theta_deg));

@@ -23,15 +23,15 @@ namespace {
 /// All slope distributions of some directions of a grid, the middles of equal parts of them, at one wavelength and
 /// index.
 SceneEntries entries_of_drawn_directions(const SceneEntries& grid) {
-  Grid axes = grid.axes();
-  std::vector<double>& theta_deg = axes.theta_deg;
+  Axes axes = grid.axes();
+  std::vector<double>& theta_deg = axes[Axis::kTheta];
   std::ranges::sort(theta_deg);
   std::vector<double> drawn;
   const std::size_t count = std::min(theta_deg.size(), kCountedDirections);
   for (std::size_t i = 0; i < count; ++i) drawn.push_back(theta_deg[(2 * i + 1) * theta_deg.size() / (2 * count)]);
   theta_deg = drawn;
-  for (std::vector<double>* axis : {&axes.wavelength_um, &axes.n, &axes.k}) {
-    if (!axis->empty()) *axis = {(*axis)[axis->size() / 2]};
+  for (const Axis axis : {Axis::kWavelength, Axis::kN, Axis::kK}) {
+    if (!axes[axis].empty()) axes[axis] = {axes[axis][axes[axis].size() / 2]};
   }
   return SceneEntries::of_grid(axes, grid.index());
 }
@@ -144,7 +144,7 @@ RunPrediction predict_run(const Scene& scene, const SceneEntries& entries, const
     run.beams += beams;
     if (beams > 0) visit.beams(requests.beams());
     // Results, the columns made of them, and those of the part before, which are being written.
-    const std::size_t columns = part.size() * (table_variables().size() * sizeof(double) + sizeof(std::uint32_t));
+    const std::size_t columns = part.size() * (kQuantityCount * sizeof(double) + sizeof(std::uint32_t));
     largest =
         std::max(largest, part.size() * sizeof(PointResult) + columns + columns_before + moments * sizeof(Moments) +
                               beams * (sizeof(ScatteringEntry) + sizeof(ScatteringMatrix)));

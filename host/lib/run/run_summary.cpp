@@ -36,13 +36,13 @@ void raise(std::optional<double>& worst, const std::optional<double>& error) {
 void add_result(RunSummary& summary, double theta_deg, double sigma, const PointResult& result) {
   for (std::size_t bit = 0; bit < kStatusBits.size(); ++bit)
     summary.status[bit] += (result.status & kStatusBits[bit].mask) != 0 ? 1 : 0;
-  if ((result.status & kStatusNoDolpPromised) == 0) raise(summary.worst_error, result.error_estimate);
-  if ((result.status & kStatusOutsideDomain) == 0) raise(summary.worst_rho_error, result.rho_error_estimate);
-  if (std::isnan(result.albedo)) return;
-  widen(summary.albedo, summary.albedos++ == 0, {result.albedo, result.albedo});
+  if ((result.status & kStatusNoDolpPromised) == 0) raise(summary.worst_error, result[Quantity::kErrorEstimate]);
+  if ((result.status & kStatusOutsideDomain) == 0) raise(summary.worst_rho_error, result[Quantity::kRhoErrorEstimate]);
+  if (std::isnan(result[Quantity::kAlbedo])) return;
+  widen(summary.albedo, summary.albedos++ == 0, {result[Quantity::kAlbedo], result[Quantity::kAlbedo]});
   const EnergyRange here{1, {theta_deg, theta_deg}, {sigma, sigma}};
-  if (result.albedo < kAlbedoMin) add_range(summary.loses, here);
-  if (result.albedo > kAlbedoMax) add_range(summary.gains, here);
+  if (result[Quantity::kAlbedo] < kAlbedoMin) add_range(summary.loses, here);
+  if (result[Quantity::kAlbedo] > kAlbedoMax) add_range(summary.gains, here);
 }
 
 }  // namespace

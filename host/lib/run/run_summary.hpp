@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
+#include <dolp/results.hpp>
 #include "model/evaluator.hpp"
-#include "model/point_result.hpp"
 #include "model/scene_entry.hpp"
 #include "model/status.hpp"
 #include "run/self_check.hpp"

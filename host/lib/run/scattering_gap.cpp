@@ -42,7 +42,7 @@ std::optional<double> scattering_gap(const Scene& scene, const SceneEntries& ent
   std::optional<double> gap;
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     if (!promises_dolp(kirchhoff[i].status) || !promises_dolp(direct[i].status)) continue;
-    gap = std::max(gap.value_or(0.0), std::abs(kirchhoff[i].dolp - direct[i].dolp));
+    gap = std::max(gap.value_or(0.0), std::abs(kirchhoff[i][Quantity::kDolp] - direct[i][Quantity::kDolp]));
   }
   return gap;
 }

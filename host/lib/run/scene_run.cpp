@@ -176,7 +176,8 @@ std::vector<PointResult> computed_at(const RunContext& context, const Selection&
 
 bool is_better(const PointResult& a, const PointResult& b) {
   return (a.status & kStatusToleranceMissed) < (b.status & kStatusToleranceMissed) ||
-         std::max(a.error_estimate, a.rho_error_estimate) < std::max(b.error_estimate, b.rho_error_estimate);
+         std::max(a[Quantity::kErrorEstimate], a[Quantity::kRhoErrorEstimate]) <
+             std::max(b[Quantity::kErrorEstimate], b[Quantity::kRhoErrorEstimate]);
 }
 
 /// Whether a level at an entry finds more than the last one: f has no rule that a tolerance would make finer.

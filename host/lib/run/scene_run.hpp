@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include <dolp/results.hpp>
 #include "model/evaluator.hpp"
-#include "model/point_result.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/effects.hpp"
 #include "run/run_summary.hpp"
@@ -86,22 +86,23 @@ struct RunOutcome {
 /// when the object is made; what a part of a grid gets follows from its whole.
 class Run {
  public:
-  /// `scene` must outlive the object. Tells `options.progress` that all inputs are read, then makes the evaluator if one
-  /// is needed. Errors: those of make_evaluator; Cancelled.
+  /// `scene` must outlive the object. Tells `options.progress` that all inputs are read, then makes the evaluator if
+  /// one is needed. Errors: those of make_evaluator; Cancelled.
   Run(const Scene& scene, SceneEntries entries, const RunOptions& options, const EvaluatorMaker& make_evaluator);
 
   const SceneEntries& entries() const { return entries_; }
   const EffectPlan& plan() const { return outcome_.plan; }
   /// What computes it; "none" where nothing is left for an evaluator.
   const EvaluationReport& evaluation() const { return outcome_.evaluation; }
-  /// The parts in which it goes through its entries, which bounds its memory: whole directions of a grid where they fit.
+  /// The parts in which it goes through its entries, which bounds its memory: whole directions of a grid where they
+  /// fit.
   std::vector<SceneEntries> parts() const;
 
   /// Goes all the way, part by part: what the plan keeps, computed again where it misses the tolerance; what the plan
   /// does not give is NaN. Progress counts entries. Of grids some entries are checked; a direction in which a bound
-  /// fails gets the status of a missed tolerance. What an entry of a grid gets depends on its direction and index alone,
-  /// and on the slope distributions of the grid, not on the parts.
-  /// Errors: those of the evaluator, of Radiometry and of the sink; Cancelled.
+  /// fails gets the status of a missed tolerance. What an entry of a grid gets depends on its direction and index
+  /// alone, and on the slope distributions of the grid, not on the parts. Errors: those of the evaluator, of Radiometry
+  /// and of the sink; Cancelled.
   RunOutcome compute(Sink& sink);
 
   /// Since the object was made.
@@ -119,7 +120,8 @@ class Run {
 /// The parts in which a run goes through its entries.
 std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples);
 
-/// True where anything is left for an evaluator: the plan needs moments or beams, and not all entries have closed forms.
+/// True where anything is left for an evaluator: the plan needs moments or beams, and not all entries have closed
+/// forms.
 bool wants_evaluator(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan);
 
 /// Calls `progress`, if there is one, with nothing done yet: all inputs are read. Errors: Cancelled.

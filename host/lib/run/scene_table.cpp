@@ -7,32 +7,18 @@
 #include <chrono>
 #include <ctime>
 
-#include "base/parallel_ranges.hpp"
 #include "run/table_scene.hpp"
 
 namespace dolp {
 namespace {
 
-/// Whether a run gives a variable at all.
-bool is_given(const TableVariable& variable, const Scene& scene, const EffectPlan& plan) {
-  const auto is_one_of = [&](std::initializer_list<double PointResult::*> members) {
-    return std::ranges::find(members, variable.member) != members.end();
-  };
-  if (is_one_of({&PointResult::albedo})) return plan.needs_moments;
-  if (is_one_of({&PointResult::rho_i, &PointResult::rho_q, &PointResult::rho_error_estimate})) return plan.gives_rho;
-  if (is_one_of({&PointResult::emissivity_s, &PointResult::emissivity_p})) return gives_emissivity(scene, plan);
-  if (is_one_of({&PointResult::dolp_low, &PointResult::dolp_high}))
-    return scene.emission && scene.emission->has_bracket;
-  return true;
-}
-
 /// n, k and E0 as they are used: at the axis of wavelengths, else as the scene has them.
 void fill_curves(TableHead& head, const Scene& scene) {
   const Material& material = scene.surface.material;
-  if (!head.wavelength_um.empty()) {
-    std::vector<double> wavelengths = scene.grid.wavelength_um;
+  const bool has_index_axis = !head.axes[Axis::kN].empty() || !head.axes[Axis::kK].empty();
+  if (!head.axes[Axis::kWavelength].empty()) {
+    std::vector<double> wavelengths = scene.grid[Axis::kWavelength];
     std::ranges::sort(wavelengths);
-    const bool is_axis = !head.n.empty() || !head.k.empty();
     for (const double wavelength_um : wavelengths) {
       const Scene at = at_wavelength(scene, wavelength_um);
       const OpticalConstants& index = at.surface.material.constant;
@@ -40,8 +26,8 @@ void fill_curves(TableHead& head, const Scene& scene) {
         curve.wavelength_um.push_back(wavelength_um);
         curve.values.push_back(value);
       };
-      if (!is_axis) add(head.index_n, index.n);
-      if (!is_axis) add(head.index_k, index.k);
+      if (!has_index_axis) add(head.index_n, index.n);
+      if (!has_index_axis) add(head.index_k, index.k);
       if (at.source && at.source->kind == Source::Kind::kFlat) add(head.irradiance, at.source->irradiance);
     }
     return;
@@ -51,7 +37,7 @@ void fill_curves(TableHead& head, const Scene& scene) {
     if (tabulated.wavelength_um.empty()) return {one_um, {constant}};
     return {tabulated.wavelength_um, tabulated.value};
   };
-  if (head.n.empty() && head.k.empty()) {
+  if (!has_index_axis) {
     head.index_n = curve_of(material.n, material.constant.n);
     head.index_k = curve_of(material.k, material.constant.k);
   }
@@ -100,14 +86,33 @@ std::string rule_text(double tolerance, const EvaluationReport& evaluation) {
   return text;
 }
 
-ExtraColumns extra_columns(const Scene& scene) {
-  return {.emissivity = scene.emission.has_value(), .bracket = scene.emission && scene.emission->has_bracket};
+Quantities quantities_of(const Scene& scene, const EffectPlan* plan) {
+  const auto is_given = [&](QuantityNeeds needs) {
+    switch (needs) {
+      case QuantityNeeds::kNothing:
+        return true;
+      case QuantityNeeds::kReflectance:
+        return plan == nullptr || plan->gives_rho;
+      case QuantityNeeds::kMoments:
+        return plan == nullptr || plan->needs_moments;
+      case QuantityNeeds::kEmission:
+        return plan == nullptr ? scene.emission.has_value() : gives_emissivity(scene, *plan);
+      case QuantityNeeds::kBracket:
+        return scene.emission && scene.emission->has_bracket;
+    }
+    return false;
+  };
+  Quantities given;
+  for (const Quantity quantity : kAllQuantities) {
+    if (is_given(description_of(quantity).needs)) given.push_back(quantity);
+  }
+  return given;
 }
 
-TableLayout table_layout(const Scene& scene, const EffectPlan& plan, const Grid& axes) {
+TableLayout table_layout(const Scene& scene, const EffectPlan& plan, const Axes& axes) {
   TableLayout layout;
   TableHead& head = layout.head;
-  for (std::size_t i = 0; i < kTableAxes.size(); ++i) head.*kTableAxes[i] = axes.*kGridAxes[i];
+  head.axes = axes;
   head.stokes_units = stokes_units(scene);
   fill_curves(head, scene);
   head.attributes = {{"title", scene.title},
@@ -122,24 +127,14 @@ TableLayout table_layout(const Scene& scene, const EffectPlan& plan, const Grid&
                      {"tolerance", scene.accuracy.tolerance}};
   const Dispersion& formula = scene.surface.material.n.formula;
   if (formula.number != 0) head.attributes.push_back({"index_n_formula", formula_text(formula)});
-  for (const TableVariable& variable : table_variables()) {
-    if (is_given(variable, scene, plan)) layout.variables.push_back(&variable);
-  }
+  layout.quantities = quantities_of(scene, &plan);
   return layout;
 }
 
 Table table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results) {
   Table table;
-  for (std::size_t i = 0; i < kTableAxes.size(); ++i) table.*kTableAxes[i] = part.axes().*kGridAxes[i];
-  for (const TableVariable* column : layout.variables) (table.*column->values).resize(results.size());
-  table.status.resize(results.size());
-  constexpr std::size_t kEntriesAtOnce = 16384;
-  parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      for (const TableVariable* column : layout.variables) (table.*column->values)[i] = results[i].*column->member;
-      table.status[i] = results[i].status;
-    }
-  });
+  table.axes = part.axes();
+  static_cast<ResultColumns&>(table) = columns_of(results, layout.quantities);
   return table;
 }
 

@@ -4,23 +4,23 @@
 #include <string>
 #include <vector>
 
+#include <dolp/results.hpp>
 #include "model/evaluator.hpp"
-#include "model/point_result.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/effects.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene.hpp"
-#include "table/result_csv.hpp"
 #include "table/table.hpp"
 
 namespace dolp {
 
-/// The columns that a scene's results have beside those of every scene.
-ExtraColumns extra_columns(const Scene& scene);
+/// The quantities that results of a scene have: of points, where those that a run leaves out are NaN; of a table that a
+/// run by `plan` makes, without these.
+Quantities quantities_of(const Scene& scene, const EffectPlan* plan = nullptr);
 
 /// The table of a grid of the scene before anything is computed, with the attributes that are known by then. `axes` may
 /// be a part of the scene's grid.
-TableLayout table_layout(const Scene& scene, const EffectPlan& plan, const Grid& axes);
+TableLayout table_layout(const Scene& scene, const EffectPlan& plan, const Axes& axes);
 
 /// The values of a part of the grid.
 Table table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results);

@@ -22,16 +22,22 @@ double ratio(double difference, double bounds) {
   return std::abs(difference) / bounds;
 }
 
+double rho_bound(const PointResult& result) {
+  return result[Quantity::kRhoErrorEstimate] * std::abs(result[Quantity::kRhoI]);
+}
+
 }  // namespace
 
 void SelfCheck::add(const PointResult& result, const PointResult& again) {
   ++entries;
+  const auto difference = [&](Quantity quantity) { return result[quantity] - again[quantity]; };
   if (promises_dolp(result.status)) {
-    worst_ratio = std::max(worst_ratio, ratio(result.dolp - again.dolp, result.error_estimate + again.error_estimate));
+    worst_ratio = std::max(worst_ratio, ratio(difference(Quantity::kDolp),
+                                              result[Quantity::kErrorEstimate] + again[Quantity::kErrorEstimate]));
   }
-  const double rho =
-      result.rho_error_estimate * std::abs(result.rho_i) + again.rho_error_estimate * std::abs(again.rho_i);
-  worst_ratio = std::max({worst_ratio, ratio(result.rho_i - again.rho_i, rho), ratio(result.rho_q - again.rho_q, rho)});
+  const double rho = rho_bound(result) + rho_bound(again);
+  for (const Quantity quantity : {Quantity::kRhoI, Quantity::kRhoQ})
+    worst_ratio = std::max(worst_ratio, ratio(difference(quantity), rho));
 }
 
 void SelfCheck::add(const SelfCheck& other) {

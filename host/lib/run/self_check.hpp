@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "model/point_result.hpp"
+#include <dolp/results.hpp>
 
 namespace dolp {
 

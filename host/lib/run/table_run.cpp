@@ -32,7 +32,7 @@ using Cuts = std::array<std::size_t, kCutAxes.size()>;
 /// Parts of each axis whose product is `count`, most of the first axes; false where there are none.
 bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cuts& cuts) {
   if (number == kCutAxes.size()) return count == 1;
-  for (std::size_t parts = std::min(count, at(counts, kCutAxes[number])); parts > 0; --parts) {
+  for (std::size_t parts = std::min(count, counts[kCutAxes[number]]); parts > 0; --parts) {
     if (count % parts != 0) continue;
     cuts[number] = parts;
     if (find_cuts(counts, count / parts, number + 1, cuts)) return true;
@@ -129,13 +129,6 @@ std::optional<Shard> shard_of(const TableHead& head) {
   return is_shard ? std::optional(shard) : std::nullopt;
 }
 
-bool has_axes(const TableHead& head, const Grid& axes) {
-  for (std::size_t i = 0; i < kTableAxes.size(); ++i) {
-    if (head.*kTableAxes[i] != axes.*kGridAxes[i]) return false;
-  }
-  return true;
-}
-
 /// The shards of one table, which are all there.
 struct ShardSet {
   Scene scene;
@@ -153,9 +146,9 @@ void add_shard(ShardSet& set, const std::string& path) {
   if (!shard) throw InputError(path + ": is no shard of a table (attribute shard)");
   if (set.paths.empty()) {
     set.scene = table_scene(head, path);
-    set.layout = {head, reader.variables(), reader.has_status()};
+    set.layout = {head, reader.quantities(), reader.has_status()};
     set.paths.resize(shard->count);
-    for (std::size_t i = 0; i < kTableAxes.size(); ++i) set.layout.head.*kTableAxes[i] = set.scene.grid.*kGridAxes[i];
+    set.layout.head.axes = set.scene.grid;
   }
   const TableHead& first = set.layout.head;
   for (const char* name : {"scene_hash", "source"}) {
@@ -163,11 +156,11 @@ void add_shard(ShardSet& set, const std::string& path) {
     throw InputError(fmt::format("{}: is a shard of another table: its {} is {}, not {}", path, name,
                                  text_of(head, name), text_of(first, name)));
   }
-  if (shard->count != set.paths.size() || reader.variables() != set.layout.variables) {
+  if (shard->count != set.paths.size() || reader.quantities() != set.layout.quantities) {
     throw InputError(fmt::format("{}: is shard {}, of another table than the {} shards before", path,
                                  shard_text(*shard), set.paths.size()));
   }
-  if (!has_axes(head, shard_entries(set.scene, *shard).axes()))
+  if (head.axes != shard_entries(set.scene, *shard).axes())
     throw InputError(fmt::format("{}: does not have the axes of shard {}", path, shard_text(*shard)));
   std::string& place = set.paths[shard->number - 1];
   if (!place.empty()) throw InputError(fmt::format("{}: is shard {}, as {} is", path, shard_text(*shard), place));
@@ -216,13 +209,13 @@ SceneEntries shard_entries(const Scene& scene, const Shard& shard) {
     throw InputError(
         fmt::format("--shard {}: {} values of theta, {} of wavelength, {} of n and {} of k cannot be cut "
                     "into {} parts",
-                    shard_text(shard), at(count, Axis::kTheta), at(count, Axis::kWavelength), at(count, Axis::kN),
-                    at(count, Axis::kK), shard.count));
+                    shard_text(shard), count[Axis::kTheta], count[Axis::kWavelength], count[Axis::kN], count[Axis::kK],
+                    shard.count));
   }
   PerAxis first{};
   std::size_t rest = shard.number - 1;
   for (std::size_t i = 0; i < cuts.size(); ++i) {
-    const auto axis = static_cast<std::size_t>(kCutAxes[i]);
+    const Axis axis = kCutAxes[i];
     const std::size_t all = count[axis];
     const std::size_t part = rest % cuts[i];
     rest /= cuts[i];
@@ -260,7 +253,7 @@ bool is_there(const Scene& scene, const TableJob& job) {
     const TableReader reader(job.path);
     const TableHead& head = reader.head();
     return text_of(head, "scene_hash") == scene_hash(scene) && text_of(head, "source") == "dolp " DOLP_VERSION &&
-           text_of(head, kShard) == shard_text(job.shard) && has_axes(head, shard_entries(scene, job.shard).axes());
+           text_of(head, kShard) == shard_text(job.shard) && head.axes == shard_entries(scene, job.shard).axes();
   } catch (const InputError&) {
     return false;
   }

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <string_view>
 
+#include <dolp/number_range.hpp>
 #include "base/text.hpp"
-#include "scene/number_range.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene/spectral_data.hpp"
 #include "table/table_file.hpp"
@@ -140,8 +140,8 @@ Scene table_scene(const TableHead& table, const std::string& name, NamedData nam
       named_data == NamedData::kOfTable ? known_data(table, name) : KnownData{.may_open_files = true};
   Scene scene;
   try {
-    scene = parse_scene(*text, path ? *path : name, overrides ? settings_of(*overrides) : std::vector<Setting>{},
-                        &known);
+    scene =
+        parse_scene(*text, path ? *path : name, overrides ? settings_of(*overrides) : std::vector<Setting>{}, &known);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: attribute \"scene\": {}", name, error.what()));
   }

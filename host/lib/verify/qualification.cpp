@@ -9,8 +9,8 @@
 #include <map>
 #include <utility>
 
+#include <dolp/results.hpp>
 #include "model/choices.hpp"
-#include "model/point_result.hpp"
 #include "reference/hemisphere.hpp"
 #include "run/scene_run.hpp"
 
@@ -84,7 +84,8 @@ CaseOutcome outcome_of(const StoredCase& stored, const PointResult& result, doub
   outcome.status = result.status;
   outcome.promises_dolp = promises_dolp(result.status);
   const bool is_promised = (result.status & kStatusToleranceMissed) == 0;
-  outcome.dolp = {std::abs(result.dolp - expected.dolp), result.error_estimate, expected.dolp_error};
+  outcome.dolp = {std::abs(result[Quantity::kDolp] - expected.dolp), result[Quantity::kErrorEstimate],
+                  expected.dolp_error};
   // At I = 0 neither side has a DOLP.
   const bool has_dolp = std::isfinite(expected.dolp) && std::isfinite(expected.dolp_error);
   if (!has_dolp) outcome.dolp = {0.0, kInfinity, 0.0};
@@ -93,9 +94,10 @@ CaseOutcome outcome_of(const StoredCase& stored, const PointResult& result, doub
     outcome.rho.estimate = kInfinity;
     return outcome;
   }
-  const double distance = std::max(std::abs(result.rho_i - expected.rho_i), std::abs(result.rho_q - expected.rho_q));
-  const bool has_rho = !std::isnan(result.rho_i) && !std::isnan(result.rho_q);
-  outcome.rho = {has_rho ? relative(distance, expected.rho_i) : distance, result.rho_error_estimate,
+  const double distance =
+      std::max(std::abs(result[Quantity::kRhoI] - expected.rho_i), std::abs(result[Quantity::kRhoQ] - expected.rho_q));
+  const bool has_rho = !std::isnan(result[Quantity::kRhoI]) && !std::isnan(result[Quantity::kRhoQ]);
+  outcome.rho = {has_rho ? relative(distance, expected.rho_i) : distance, result[Quantity::kRhoErrorEstimate],
                  expected.rho_error};
   const std::string complaint = complaint_about("rho", outcome.rho, is_promised, tolerance);
   if (!complaint.empty()) outcome.complaint = complaint;
@@ -121,7 +123,7 @@ Scene emission_scene(Distribution distribution, Masking masking, double toleranc
   scene.surface.sigma = 0.3;
   scene.emission = Emission{300.0, EmissionModel::kMoments};
   scene.spectrum = {10.6, 10.6};
-  scene.grid = {{60.0}, {0.3}, {2.0}};
+  scene.grid = axes_of({60.0}, {0.3}, {2.0});
   scene.accuracy.tolerance = tolerance;
   return scene;
 }

@@ -10,12 +10,11 @@
 #include <random>
 #include <set>
 
-
-#include "model/point_result.hpp"
+#include <dolp/number_range.hpp>
+#include <dolp/results.hpp>
 #include "model/status.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
-#include "scene/number_range.hpp"
 
 namespace dolp {
 namespace {
@@ -27,39 +26,35 @@ constexpr double kReferenceTolerance = 1e-11;
 /// How the bound of a quantity follows from the two estimates.
 enum class Bound { kDolp, kReflectance, kPolarisedRadiation, kRadiation };
 
-struct Quantity {
-  const char* name;
-  std::vector<double> Table::*stored;
-  double PointResult::*recomputed;
+struct Compared {
+  Quantity quantity;
   Bound bound;
 };
-constexpr std::array<Quantity, 7> kQuantities{{
-    {"dolp", &Table::dolp, &PointResult::dolp, Bound::kDolp},
-    {"rho_i", &Table::rho_i, &PointResult::rho_i, Bound::kReflectance},
-    {"rho_q", &Table::rho_q, &PointResult::rho_q, Bound::kReflectance},
-    {"stokes_i", &Table::stokes_i, &PointResult::stokes_i, Bound::kRadiation},
-    {"stokes_q", &Table::stokes_q, &PointResult::stokes_q, Bound::kPolarisedRadiation},
-    {"stokes_u", &Table::stokes_u, &PointResult::stokes_u, Bound::kPolarisedRadiation},
-    {"stokes_v", &Table::stokes_v, &PointResult::stokes_v, Bound::kPolarisedRadiation},
+constexpr std::array<Compared, 7> kCompared{{
+    {Quantity::kDolp, Bound::kDolp},
+    {Quantity::kRhoI, Bound::kReflectance},
+    {Quantity::kRhoQ, Bound::kReflectance},
+    {Quantity::kStokesI, Bound::kRadiation},
+    {Quantity::kStokesQ, Bound::kPolarisedRadiation},
+    {Quantity::kStokesU, Bound::kPolarisedRadiation},
+    {Quantity::kStokesV, Bound::kPolarisedRadiation},
 }};
 
 /// The bound in the quantity's own units, from the estimates of one side and the magnitudes of the reference.
 double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const PointResult& reference) {
-  const double radiation = dolp_estimate * std::abs(reference.stokes_i);
+  const double radiation = dolp_estimate * std::abs(reference[Quantity::kStokesI]);
   switch (bound) {
     case Bound::kDolp:
       return dolp_estimate;
     case Bound::kReflectance:
-      return rho_estimate * std::abs(reference.rho_i);
+      return rho_estimate * std::abs(reference[Quantity::kRhoI]);
     case Bound::kPolarisedRadiation:
       return radiation;
     case Bound::kRadiation:
-      return reference.dolp != 0.0 ? radiation / std::abs(reference.dolp) : kInfinity;
+      return reference[Quantity::kDolp] != 0.0 ? radiation / std::abs(reference[Quantity::kDolp]) : kInfinity;
   }
   return kInfinity;
 }
-
-bool is_reflectance(Bound bound) { return bound == Bound::kReflectance; }
 
 /// What is wrong with a value, or nothing. `allowed` is what the tolerance allows; infinite when nothing is promised.
 std::string complaint_about(const CheckedValue& value, double allowed) {
@@ -78,10 +73,10 @@ double estimate_at(const std::vector<double>& estimates, std::size_t i) {
   return estimates[i];
 }
 
-double allowed_error(const Quantity& quantity, std::uint32_t status, double tolerance, const PointResult& reference) {
+double allowed_error(Bound bound, std::uint32_t status, double tolerance, const PointResult& reference) {
   const bool is_promised = (status & kStatusToleranceMissed) == 0;
-  if (is_promised && is_reflectance(quantity.bound)) return tolerance * std::abs(reference.rho_i);
-  const bool is_dolp = quantity.bound == Bound::kDolp && promises_dolp(status);
+  if (is_promised && bound == Bound::kReflectance) return tolerance * std::abs(reference[Quantity::kRhoI]);
+  const bool is_dolp = bound == Bound::kDolp && promises_dolp(status);
   if (is_promised && is_dolp) return tolerance;
   return kInfinity;
 }
@@ -92,48 +87,46 @@ void add(QuantityCheck& check, const CheckedValue& value) {
   if (check.compared == 1 || value.ratio() > check.worst.ratio()) check.worst = value;
 }
 
-CheckedValue compare(const Table& table, const Quantity& quantity, std::size_t i, const SceneEntry& entry,
+CheckedValue compare(const Table& table, const Compared& compared, std::size_t i, const SceneEntry& entry,
                      const PointResult& reference, double tolerance) {
   CheckedValue value;
-  value.quantity = quantity.name;
+  value.quantity = description_of(compared.quantity).name;
   value.theta_deg = entry.theta_deg;
   value.sigma = entry.shape.sigma;
   value.q = entry.shape.q;
-  if (!table.wavelength_um.empty()) value.wavelength_um = table.wavelength_um[entry.wavelength];
-  if (!table.n.empty()) value.n = entry.index->n;
-  if (!table.k.empty()) value.k = entry.index->k;
-  value.stored = (table.*quantity.stored)[i];
-  value.reference = reference.*quantity.recomputed;
-  const double dolp_estimate = estimate_at(table.error_estimate, i);
-  const double rho_estimate = estimate_at(table.rho_error_estimate, i);
-  value.stated = bound_of(quantity.bound, dolp_estimate, rho_estimate, reference);
-  value.reference_error = bound_of(quantity.bound, reference.error_estimate, reference.rho_error_estimate, reference);
+  const std::vector<double>& wavelengths = table.axes[Axis::kWavelength];
+  if (!wavelengths.empty()) value.wavelength_um = wavelengths[entry.wavelength];
+  if (!table.axes[Axis::kN].empty()) value.n = entry.index->n;
+  if (!table.axes[Axis::kK].empty()) value.k = entry.index->k;
+  value.stored = table[compared.quantity][i];
+  value.reference = reference[compared.quantity];
+  const double dolp_estimate = estimate_at(table[Quantity::kErrorEstimate], i);
+  const double rho_estimate = estimate_at(table[Quantity::kRhoErrorEstimate], i);
+  value.stated = bound_of(compared.bound, dolp_estimate, rho_estimate, reference);
+  value.reference_error =
+      bound_of(compared.bound, reference[Quantity::kErrorEstimate], reference[Quantity::kRhoErrorEstimate], reference);
   const std::uint32_t status = table.status.empty() ? kStatusToleranceMissed : table.status[i];
-  value.complaint = complaint_about(value, allowed_error(quantity, status, tolerance, reference));
+  value.complaint = complaint_about(value, allowed_error(compared.bound, status, tolerance, reference));
   return value;
 }
 
-void check_axis(const std::vector<double>& values, const NumberRange& range, const char* axis,
-                const std::string& name) {
-  for (const double value : values) {
-    if (range.contains(value)) continue;
-    throw InputError(fmt::format("{}: axis {}: {} is out of range, a number in {}", name, axis, value, range.text()));
+void check_axes(const Table& table, const Scene& scene, const std::string& name) {
+  for (const Axis axis : kAllAxes) {
+    const AxisDescription& known = description_of(axis);
+    const bool has_finite_mean_slope = axis == Axis::kQ && scene.surface.needs_mean_slope();
+    const NumberRange& range = has_finite_mean_slope ? kSmithCauchyQRange : known.range;
+    for (const double value : table.axes[axis]) {
+      if (range.contains(value)) continue;
+      throw InputError(
+          fmt::format("{}: axis {}: {} is out of range, a number in {}", name, known.name, value, range.text()));
+    }
   }
 }
 
-void check_axes(const Table& table, const Scene& scene, const std::string& name) {
-  check_axis(table.wavelength_um, kWavelengthUmRange, "wavelength", name);
-  check_axis(table.n, kNRange, "n", name);
-  check_axis(table.k, kKRange, "k", name);
-  check_axis(table.theta_deg, kZenithDegRange, "theta", name);
-  check_axis(table.sigma, kSigmaRange, "sigma", name);
-  check_axis(table.q, scene.surface.needs_mean_slope() ? kSmithCauchyQRange : kQRange, "q", name);
-}
-
-bool has_dolp(const Table& table) { return !table.dolp.empty() && !table.error_estimate.empty(); }
+bool has_dolp(const Table& table) { return table.has(Quantity::kDolp) && table.has(Quantity::kErrorEstimate); }
 
 bool has_rho(const Table& table) {
-  return !table.rho_error_estimate.empty() && (!table.rho_i.empty() || !table.rho_q.empty());
+  return table.has(Quantity::kRhoErrorEstimate) && (table.has(Quantity::kRhoI) || table.has(Quantity::kRhoQ));
 }
 
 }  // namespace
@@ -173,12 +166,11 @@ TableCheck check_table(const TableSample& sample, const Scene& scene, const std:
   }
   check_axes(table, scene, name);
   std::vector<SceneEntry> entries;
-  Grid axes;
-  for (std::size_t i = 0; i < kTableAxes.size(); ++i) axes.*kGridAxes[i] = table.*kTableAxes[i];
-  const SceneEntries grid = SceneEntries::of_grid(axes, scene.surface.material.constant);
+  const SceneEntries grid = SceneEntries::of_grid(table.axes, scene.surface.material.constant);
   for (const std::size_t position : sample.positions) entries.push_back(grid[position]);
   ReferenceEvaluator reference({.relative_tolerance = kReferenceTolerance});
-  const std::vector<PointResult> results = evaluate_scene(scene, {entries, table.wavelength_um}, reference, progress);
+  const std::vector<PointResult> results =
+      evaluate_scene(scene, {entries, table.axes[Axis::kWavelength]}, reference, progress);
 
   TableCheck check;
   check.entries = table.size();
@@ -188,12 +180,12 @@ TableCheck check_table(const TableSample& sample, const Scene& scene, const std:
     const std::uint32_t status = table.status.empty() ? 0 : table.status[i];
     check.missed += (status & kStatusToleranceMissed) != 0 ? 1 : 0;
   }
-  for (const Quantity& quantity : kQuantities) {
-    if ((table.*quantity.stored).empty()) continue;
+  for (const Compared& compared : kCompared) {
+    if (!table.has(compared.quantity)) continue;
     QuantityCheck& of_quantity = check.quantities.emplace_back();
-    of_quantity.name = quantity.name;
+    of_quantity.name = description_of(compared.quantity).name;
     for (std::size_t i = 0; i < entries.size(); ++i) {
-      const CheckedValue value = compare(table, quantity, i, entries[i], results[i], check.tolerance);
+      const CheckedValue value = compare(table, compared, i, entries[i], results[i], check.tolerance);
       add(of_quantity, value);
       if (!value.complaint.empty()) check.failures.push_back(value);
     }

@@ -140,7 +140,7 @@ double HeatMap::progress() const {
   return done / all;
 }
 
-MapField HeatMap::field(Quantity quantity) const {
+MapField HeatMap::field(Plotted quantity) const {
   MapField field;
   std::size_t finest = 0;
   for (std::size_t level = 0; level < kLevels.size(); ++level) {

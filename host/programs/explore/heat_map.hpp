@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "explore/quantity.hpp"
+#include "explore/plotted.hpp"
 #include "explore/worker.hpp"
 
 namespace dolp::explore {
@@ -76,7 +76,7 @@ class HeatMap {
   std::size_t version() const { return version_; }
 
   /// The finest that there is; rows that a level lacks come from the coarser one.
-  MapField field(Quantity quantity) const;
+  MapField field(Plotted quantity) const;
 
  private:
   std::string key_of(std::size_t level) const;

@@ -8,11 +8,11 @@
 namespace dolp::explore {
 namespace {
 
-Quantity quantity_of(const std::string& column) {
-  if (column == "q_over_i") return Quantity::kSignedDolp;
-  if (column == "emissivity_s") return Quantity::kEmissivityS;
-  if (column == "emissivity_p") return Quantity::kEmissivityP;
-  return Quantity::kDolp;
+Plotted quantity_of(const std::string& column) {
+  if (column == "q_over_i") return Plotted::kSignedDolp;
+  if (column == "emissivity_s") return Plotted::kEmissivityS;
+  if (column == "emissivity_p") return Plotted::kEmissivityP;
+  return Plotted::kDolp;
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ std::vector<double> Residuals::residuals() const {
   return residuals;
 }
 
-std::optional<double> Residuals::rms(Quantity quantity) const {
+std::optional<double> Residuals::rms(Plotted quantity) const {
   const std::vector<double> all = residuals();
   double sum = 0.0;
   double count = 0.0;

@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "explore/quantity.hpp"
+#include "explore/plotted.hpp"
 #include "explore/worker.hpp"
 
 namespace dolp::explore {
 
 /// One value, as measured.
 struct MeasuredPoint {
-  Quantity quantity = Quantity::kDolp;
+  Plotted quantity = Plotted::kDolp;
   double theta_deg = 0.0;
   double value = 0.0;
   std::optional<double> uncertainty;  ///< one standard deviation
@@ -44,7 +44,7 @@ class Residuals {
   /// Measured minus model of each point, NaN where the model gives none; empty until it is known.
   std::vector<double> residuals() const;
   /// Root mean square of a quantity's residuals that are numbers; none without any.
-  std::optional<double> rms(Quantity quantity) const;
+  std::optional<double> rms(Plotted quantity) const;
 
  private:
   std::string job_key() const;

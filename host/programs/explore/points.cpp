@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "base/text.hpp"
@@ -15,13 +12,6 @@ namespace {
 
 constexpr std::uint32_t kNoDolpPromised =
     api::kReflectanceOutsideZeroToOne | api::kOutsideModelDomain | api::kIntensityNotPositive;
-
-/// A quantity; empty where the results do not have it.
-std::span<const double> values_of(const Results& results, std::string_view name) {
-  const auto found = std::ranges::find_if(
-      results.quantities, [&](const Results::Quantity& quantity) { return quantity.variable.name == name; });
-  return found == results.quantities.end() ? std::span<const double>{} : found->values;
-}
 
 /// The scene with the grid of a list; axes that the scene's own has beside these keep the scene's value.
 Scene with_grid(const Scene& scene, const PointList& list) {
@@ -40,13 +30,7 @@ std::size_t PointList::size() const { return is_grid ? theta_deg.size() * sigma.
 Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options) {
   if (!list.is_grid) return evaluator.evaluate(scene, list.columns(), options);
   const api::Table table = evaluator.table(with_grid(scene, list), options);
-  Results results;
-  for (const api::Variable& variable : table.variables()) {
-    const std::span<const double> values = table.values(variable.name);
-    results.quantities.push_back({variable, {values.begin(), values.end()}});
-  }
-  results.status.assign(table.status().begin(), table.status().end());
-  return results;
+  return {{table.results()}, table.results().quantities(), table.stokes_units()};
 }
 
 std::vector<Column> PointList::columns() const {
@@ -56,29 +40,27 @@ std::vector<Column> PointList::columns() const {
 }
 
 std::vector<Point> points_of(const PointList& list, const Results& results) {
-  const std::pair<double Point::*, const char*> members[] = {{&Point::dolp, "dolp"},
-                                                             {&Point::dolp_low, "dolp_low"},
-                                                             {&Point::dolp_high, "dolp_high"},
-                                                             {&Point::error_estimate, "error_estimate"},
-                                                             {&Point::stokes_i, "stokes_i"},
-                                                             {&Point::stokes_q, "stokes_q"},
-                                                             {&Point::rho_i, "rho_i"},
-                                                             {&Point::rho_q, "rho_q"},
-                                                             {&Point::rho_error_estimate, "rho_error_estimate"},
-                                                             {&Point::albedo, "albedo"}};
+  const std::pair<double Point::*, Quantity> members[] = {{&Point::dolp, Quantity::kDolp},
+                                                          {&Point::dolp_low, Quantity::kDolpLow},
+                                                          {&Point::dolp_high, Quantity::kDolpHigh},
+                                                          {&Point::error_estimate, Quantity::kErrorEstimate},
+                                                          {&Point::stokes_i, Quantity::kStokesI},
+                                                          {&Point::stokes_q, Quantity::kStokesQ},
+                                                          {&Point::rho_i, Quantity::kRhoI},
+                                                          {&Point::rho_q, Quantity::kRhoQ},
+                                                          {&Point::rho_error_estimate, Quantity::kRhoErrorEstimate},
+                                                          {&Point::albedo, Quantity::kAlbedo}};
   std::vector<Point> points(list.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::size_t shapes = list.is_grid ? list.sigma.size() * list.q.size() : 1;
     points[i].theta_deg = list.theta_deg[i / shapes];
     points[i].sigma = list.sigma[list.is_grid ? i / list.q.size() % list.sigma.size() : i];
     points[i].q = list.q[list.is_grid ? i % list.q.size() : i];
-    points[i].status = results.status[i];
   }
-  for (const auto& [member, name] : members) {
-    const std::span<const double> values = values_of(results, name);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      points[i].*member = values.empty() ? std::numeric_limits<double>::quiet_NaN() : values[i];
-    }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const PointResult result = results.at(i);
+    for (const auto& [member, quantity] : members) points[i].*member = result[quantity];
+    points[i].status = result.status;
   }
   return points;
 }

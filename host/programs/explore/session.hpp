@@ -11,7 +11,7 @@
 #include "explore/heat_map.hpp"
 #include "explore/measured.hpp"
 #include "explore/peak.hpp"
-#include "explore/quantity.hpp"
+#include "explore/plotted.hpp"
 #include "explore/scene_edits.hpp"
 
 namespace dolp::explore {
@@ -26,7 +26,7 @@ struct Pin {
 
 /// What is shown, and how.
 struct View {
-  Quantity quantity = Quantity::kDolp;
+  Plotted quantity = Plotted::kDolp;
   bool is_log = false;
   bool has_overlay = true;      ///< the other slope distribution with the same D(0)
   bool keeps_all = false;       ///< compute what the plan would drop, too

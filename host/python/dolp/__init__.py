@@ -50,12 +50,13 @@ __version__ = _native.version()
 Path = Union[str, "os.PathLike[str]"]
 Array = Union[float, "np.ndarray", "xr.DataArray", "list[float]"]
 
-_COORDINATES = {
-    "theta_deg": ("zenith angle", "degree"), "sigma": ("width sigma of the slope distribution", "1"),
-    "q": ("exponent q of the slope distribution", "1"), "n": ("refractive index n", "1"),
-    "k": ("refractive index k", "1"), "wavelength_um": ("wavelength", "um"),
-    "theta_i_deg": ("zenith angle of incidence", "degree"), "theta_r_deg": ("zenith angle of the view", "degree"),
-    "delta_phi_deg": ("azimuth between the directions, 180 on the specular side", "degree")}
+# Of each column of points the name of its coordinate, which is that of table files, with its attributes.
+_COORDINATES = {column: (name, {"long_name": long_name, "units": units})
+                for column, name, long_name, units in _native.axes()}
+_COORDINATES |= {name: (name, {"long_name": long_name, "units": "degree"}) for name, long_name in (
+    ("theta_i_deg", "zenith angle of incidence"), ("theta_r_deg", "zenith angle of the view"),
+    ("delta_phi_deg", "azimuth between the directions, 180 on the specular side"))}
+
 
 
 class Scene:
@@ -177,13 +178,14 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
     """The quantities of a table at points: a Dataset of the shape to which the arrays broadcast.
 
     `points` (theta_deg, sigma, q, wavelength_um, n, k): what they do not say comes from the scene. DataArrays keep their
-    dimensions. Of other arrays, one that has a dimension to itself gives that its name and coordinate.
+    dimensions. Of other arrays, one that has a dimension to itself gives that its coordinate, theta, sigma, q, n, k or
+    wavelength as in a table.
 
     >>> float(dolp.evaluate(scene, theta_deg=40).dolp.round(4))
     0.0295
     >>> d = dolp.evaluate(scene, theta_deg=np.array([[0], [40]]), sigma=[0.1, 0.2, 0.3])
     >>> d.dolp.dims, d.dolp.shape
-    (('theta_deg', 'sigma'), (2, 3))
+    (('theta', 'sigma'), (2, 3))
     """
     frame, columns = _columns(points)
     return _dataset(_evaluator(evaluator, device).evaluate(scene._native, columns, keep_all), frame)
@@ -230,7 +232,7 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, start
     several sets, each alone or as a pair (data, overrides). `vary`: (low, high) or (low, high, start) of each key.
 
     >>> truth = dolp.evaluate(scene, theta_deg=np.arange(5, 85, 5), n=1.6)
-    >>> data = {"theta_deg": truth.theta_deg, "dolp": truth.dolp, "uncertainty": np.full(16, 0.001)}
+    >>> data = {"theta_deg": truth.theta, "dolp": truth.dolp, "uncertainty": np.full(16, 0.001)}
     >>> found = dolp.fit(scene, data, {"surface.n": (1.1, 3)})
     >>> round(found["surface.n"], 4), found.values["parameters"][0]["interval_95"][0] < 1.6
     (1.6, True)
@@ -312,6 +314,8 @@ def _csv(data: Any) -> str:
     """The text of a file, or columns as one."""
     if isinstance(data, (str, os.PathLike)):
         return pathlib.Path(data).read_text(encoding="utf-8")
+    if isinstance(data, xr.Dataset):  # with the coordinates of a result, whose columns have other names
+        data = data.rename({name: column for column, (name, _) in _COORDINATES.items() if name in data.variables})
     names = list(data.variables) if isinstance(data, xr.Dataset) else list(data.keys())
     columns = np.broadcast_arrays(*(np.asarray(data[name], dtype=float) for name in names))
     rows = zip(*(column.ravel().tolist() for column in columns))
@@ -346,8 +350,8 @@ def _columns(points: Mapping[str, Array]) -> tuple[_Frame, dict[str, np.ndarray]
             shapes = ", ".join(f"{name} {values.shape}" for name, values in points.items())
             raise InputError(f"points: shapes do not broadcast: {shapes}") from None
         dims, coordinates = _dimensions(points, shape)
-    for name, values in points.items():
-        known = dict(zip(("long_name", "units"), _COORDINATES[name]))
+    for column, values in points.items():
+        name, known = _COORDINATES[column]
         if name in coordinates:
             coordinates[name].attrs.update(known)
         else:
@@ -363,11 +367,12 @@ def _dimensions(points: Mapping[str, np.ndarray],
     """Names of the dimensions and the coordinates along one of them."""
     dims, coordinates = [], {}
     for axis, size in enumerate(shape):
-        along = [name for name, values in points.items()
+        along = [column for column, values in points.items()
                  if values.ndim >= len(shape) - axis and values.shape[axis - len(shape)] == size]
-        if len(along) == 1 and points[along[0]].size == size and along[0] not in coordinates:
-            dims.append(along[0])
-            coordinates[along[0]] = xr.Variable(along[0], points[along[0]].ravel())
+        name = _COORDINATES[along[0]][0] if len(along) == 1 else None
+        if name and points[along[0]].size == size and name not in coordinates:
+            dims.append(name)
+            coordinates[name] = xr.Variable(name, points[along[0]].ravel())
         else:
             dims.append("point" if len(shape) == 1 else f"point_{axis}")
     return tuple(dims), coordinates

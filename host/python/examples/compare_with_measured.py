@@ -42,7 +42,7 @@ print(f"chi^2 of {theta.size} points: {np.sum(residuals ** 2):.1f}")
 figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(6, 4.5), layout="constrained",
                                       gridspec_kw={"height_ratios": [3, 1]})
 curve = dolp.evaluate(scene, theta_deg=np.linspace(0, 89, 90))
-above.plot(curve.theta_deg, 100 * curve.dolp, label="scene")
+above.plot(curve.theta, 100 * curve.dolp, label="scene")
 above.errorbar(theta, 100 * values, 100 * uncertainty, fmt="o", label="measured" if len(sys.argv) > 1 else "synthetic")
 above.set_ylabel("DOLP [%]")
 above.legend()

@@ -36,10 +36,10 @@ std::vector<Shown> shown_curves(const Session& session) {
   return curves;
 }
 
-double scale_of(Quantity quantity) { return described(quantity).in_percent ? 100.0 : 1.0; }
+double scale_of(Plotted quantity) { return described(quantity).in_percent ? 100.0 : 1.0; }
 
 /// What was measured of a quantity.
-std::vector<MeasuredPoint> measured_of(const Session& session, Quantity quantity) {
+std::vector<MeasuredPoint> measured_of(const Session& session, Plotted quantity) {
   if (!session.residuals().points()) return {};
   std::vector<MeasuredPoint> points = session.residuals().points()->points;
   std::erase_if(points, [&](const MeasuredPoint& point) { return point.quantity != quantity; });
@@ -60,7 +60,7 @@ struct Range {
 };
 
 Range range_of(const Session& session, const std::vector<Shown>& curves, bool is_log) {
-  const Quantity quantity = session.view().quantity;
+  const Plotted quantity = session.view().quantity;
   Range range;
   const auto add = [&](double value) {
     if (!is_log || value > 0.0) range.add(value);
@@ -70,14 +70,14 @@ Range range_of(const Session& session, const std::vector<Shown>& curves, bool is
       if (point.theta_deg > session.view().theta_max_deg) break;
       if (!is_good(point)) continue;
       add(scale_of(quantity) * value_of(quantity, point));
-      if (shown.curve != &session.curve() || quantity != Quantity::kDolp) continue;
+      if (shown.curve != &session.curve() || quantity != Plotted::kDolp) continue;
       add(scale_of(quantity) * point.dolp_low);
       add(scale_of(quantity) * point.dolp_high);
     }
   }
   const std::optional<PeakAnswer>& peak = session.peak().answer();
-  if (peak && session.curve().is_finished() && quantity == Quantity::kDolp) add(scale_of(quantity) * peak->dolp);
-  if (peak && session.curve().is_finished() && quantity == Quantity::kSignedDolp) {
+  if (peak && session.curve().is_finished() && quantity == Plotted::kDolp) add(scale_of(quantity) * peak->dolp);
+  if (peak && session.curve().is_finished() && quantity == Plotted::kSignedDolp) {
     add(scale_of(quantity) * peak->q_over_i);
   }
   for (const MeasuredPoint& point : measured_of(session, quantity)) add(scale_of(quantity) * point.value);
@@ -86,7 +86,7 @@ Range range_of(const Session& session, const std::vector<Shown>& curves, bool is
 
 PlotAxis value_axis(const Session& session, const std::vector<Shown>& curves) {
   const bool is_log = session.view().is_log;
-  const QuantityDescription& of = described(session.view().quantity);
+  const PlottedDescription& of = described(session.view().quantity);
   PlotAxis axis{of.in_percent ? fmt::format("{} [%]", of.name) : of.name, 0.0, 1.0, is_log};
   Range range = range_of(session, curves, is_log);
   if (range.is_empty()) range = {is_log ? 0.01 : 0.0, 1.0};
@@ -110,7 +110,7 @@ void draw_bracket(const Plot& plot, const Shown& shown) {
   const std::vector<Point>& points = shown.curve->points();
   const ImU32 colour = band_colour(shown.style);
   const auto at = [&](std::size_t i, double dolp) {
-    const double value = std::max(scale_of(Quantity::kDolp) * dolp, plot.y().from);
+    const double value = std::max(scale_of(Plotted::kDolp) * dolp, plot.y().from);
     return plot.at(points[i].theta_deg, value);
   };
   // Without smooth edges, which would show as seams.
@@ -126,7 +126,7 @@ void draw_bracket(const Plot& plot, const Shown& shown) {
 }
 
 /// Draws the good parts in the curve's style, the others thin and grey.
-void draw_curve(const Plot& plot, const Shown& shown, Quantity quantity) {
+void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
   std::vector<ImVec2> line;
   bool is_good_part = true;
   const auto finish = [&] {
@@ -173,7 +173,7 @@ void draw_legend(const Plot& plot, const std::vector<Shown>& curves, const Sessi
   curve(curves.back());
   for (std::size_t i = 0; i + 1 < curves.size(); ++i) curve(curves[i]);
   const bool has_band =
-      session.view().quantity == Quantity::kDolp &&
+      session.view().quantity == Plotted::kDolp &&
       std::ranges::any_of(session.curve().points(), [](const Point& point) { return has_bracket(point); });
   if (has_band) {
     const ImVec2 end{at.x + 2.2F * line, at.y + 0.9F * line};
@@ -191,7 +191,7 @@ void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& sty
   plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour);
   const Point* const shown = session.at_cursor();
   if (!shown) return;
-  const Quantity quantity = session.view().quantity;
+  const Plotted quantity = session.view().quantity;
   const double value = scale_of(quantity) * value_of(quantity, *shown);
   if (!std::isfinite(value) || (plot.y().is_log && value <= 0.0)) return;
   const ImVec2 at = plot.at(shown->theta_deg, value);
@@ -201,10 +201,10 @@ void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& sty
 
 void draw_peak(const Plot& plot, const Session& session) {
   const std::optional<PeakAnswer>& peak = session.peak().answer();
-  const Quantity quantity = session.view().quantity;
+  const Plotted quantity = session.view().quantity;
   if (!peak || !session.curve().is_finished()) return;
-  if (quantity != Quantity::kDolp && quantity != Quantity::kSignedDolp) return;
-  const double value = scale_of(quantity) * (quantity == Quantity::kDolp ? peak->dolp : peak->q_over_i);
+  if (quantity != Plotted::kDolp && quantity != Plotted::kSignedDolp) return;
+  const double value = scale_of(quantity) * (quantity == Plotted::kDolp ? peak->dolp : peak->q_over_i);
   if (plot.y().is_log && value <= 0.0) return;
   const bool is_low = value < 0.0;
   const ImVec2 at = plot.at(peak->theta_deg, value);
@@ -230,7 +230,7 @@ void draw_measured(const Plot& plot, const std::vector<MeasuredPoint>& points) {
 }
 
 void draw_residuals(const Session& session, ImVec2 size) {
-  const Quantity quantity = session.view().quantity;
+  const Plotted quantity = session.view().quantity;
   const double scale = scale_of(quantity);
   const std::vector<double> residuals = session.residuals().residuals();
   std::vector<std::pair<double, double>> shown;  // zenith and residual
@@ -260,7 +260,7 @@ void draw_residuals(const Session& session, ImVec2 size) {
 
 Area draw_curve_view(Session& session, ImVec2 size) {
   const std::vector<Shown> curves = shown_curves(session);
-  const Quantity quantity = session.view().quantity;
+  const Plotted quantity = session.view().quantity;
   const std::vector<MeasuredPoint> measured = measured_of(session, quantity);
   const bool has_measured = !measured.empty();
   const float gap = ImGui::GetStyle().ItemSpacing.y;
@@ -273,7 +273,7 @@ Area draw_curve_view(Session& session, ImVec2 size) {
   if (plot.is_dragged()) session.set_theta(plot.mouse_x());
   plot.clip();
   if (!plot.y().is_log) plot.list()->AddLine(plot.at(0.0, 0.0), plot.at(theta_max, 0.0), kDimColour);
-  if (quantity == Quantity::kDolp) draw_bracket(plot, curves.back());
+  if (quantity == Plotted::kDolp) draw_bracket(plot, curves.back());
   for (const Shown& shown : curves) draw_curve(plot, shown, quantity);
   draw_measured(plot, measured);
   draw_cursor(plot, session, curves.back().style);

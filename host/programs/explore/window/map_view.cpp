@@ -19,11 +19,11 @@ constexpr float kBarRoom = 5.4F;       // right of the map, in lines of text
 
 PlotAxis axis_of(const MapAxis& axis) { return {axis_label(axis.kind), axis.from, axis.to, axis.is_log}; }
 
-double scale_of(const QuantityDescription& quantity) { return quantity.in_percent ? 100.0 : 1.0; }
+double scale_of(const PlottedDescription& quantity) { return quantity.in_percent ? 100.0 : 1.0; }
 
 std::string title_of(const Session& session) {
   const HeatMap& map = session.map();
-  const QuantityDescription& of = described(session.view().quantity);
+  const PlottedDescription& of = described(session.view().quantity);
   const std::string state = map.is_finished() ? "" : fmt::format(", refining {:.0f} %", 100.0 * map.progress());
   return fmt::format("{}; {} × {}{}{}", of.in_percent ? fmt::format("{} [%]", of.name) : of.name, map.finished_count(),
                      map.finished_count(), stale_text(map.is_stale()), state);
@@ -49,7 +49,7 @@ double MapView::colour_position(double value) const {
 }
 
 void MapView::update(const Session& session) {
-  const Quantity quantity = session.view().quantity;
+  const Plotted quantity = session.view().quantity;
   const bool is_log = session.view().is_log;
   if (version_ == session.map().version() && quantity_ == quantity && is_log_ == is_log) return;
   version_ = session.map().version();
@@ -123,7 +123,7 @@ void MapView::draw_lines(const Plot& plot, double scale) const {
   }
 }
 
-void MapView::draw_bar(const Plot& plot, const QuantityDescription& quantity) const {
+void MapView::draw_bar(const Plot& plot, const PlottedDescription& quantity) const {
   if (!(field_.min <= field_.max)) return;
   constexpr int kSteps = 64;
   const float line = ImGui::GetTextLineHeight();
@@ -149,7 +149,7 @@ void MapView::draw_bar(const Plot& plot, const QuantityDescription& quantity) co
 
 void MapView::draw(Session& session, ImVec2 size) {
   update(session);
-  const QuantityDescription& quantity = described(session.view().quantity);
+  const PlottedDescription& quantity = described(session.view().quantity);
   const float line = ImGui::GetTextLineHeight();
   const Plot plot("map", size, axis_of(session.map().x()), axis_of(session.map().y()), kBarRoom * line, false);
   move_cursor(session, plot);

@@ -34,11 +34,11 @@ class MapView {
   std::vector<Run> runs_along(bool rows) const;
   void draw_cells(const class Plot& plot) const;
   void draw_lines(const class Plot& plot, double scale) const;
-  void draw_bar(const class Plot& plot, const QuantityDescription& quantity) const;
+  void draw_bar(const class Plot& plot, const PlottedDescription& quantity) const;
 
   // Made anew when the map or the quantity changes.
   std::size_t version_ = 0;
-  Quantity quantity_ = Quantity::kDolp;
+  Plotted quantity_ = Plotted::kDolp;
   bool is_log_ = false;
   double low_ = 0.0;  ///< value of the first colour
   MapField field_;

@@ -187,7 +187,7 @@ void Ui::draw_help() {
   ImGui::End();
 }
 
-void Ui::show_quantity(Quantity quantity) {
+void Ui::show_quantity(Plotted quantity) {
   View view = session_.view();
   view.quantity = quantity;
   session_.set_view(view);
@@ -204,7 +204,7 @@ void Ui::draw_view_controls() {
   label("show");
   ImGui::SetNextItemWidth(width);
   if (ImGui::BeginCombo("##quantity", shown(described(view.quantity).name).c_str())) {
-    for (const QuantityDescription& of : quantities()) {
+    for (const PlottedDescription& of : all_plotted()) {
       const std::string text = shown(fmt::format("{}: {}", of.name, of.meaning));
       if (ImGui::Selectable(text.c_str(), of.quantity == view.quantity)) show_quantity(of.quantity);
     }

@@ -75,7 +75,7 @@ class Ui {
   void draw_readout();
   void draw_plots(ImVec2 size);
   void draw_price();
-  void show_quantity(Quantity quantity);
+  void show_quantity(Plotted quantity);
 
   Session& session_;
   BackgroundTask& table_export_;

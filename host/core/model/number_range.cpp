@@ -1,4 +1,4 @@
-#include "scene/number_range.hpp"
+#include <dolp/number_range.hpp>
 
 #include <fmt/format.h>
 

@@ -1,0 +1,54 @@
+// The axes of a table: the only place that names and orders them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <dolp/enum_array.hpp>
+#include <dolp/number_range.hpp>
+
+namespace dolp {
+
+/// In the order of a table, the last one fastest.
+enum class Axis : std::uint8_t { kWavelength, kN, kK, kTheta, kSigma, kQ };
+inline constexpr std::size_t kAxisCount = static_cast<std::size_t>(Axis::kQ) + 1;
+
+template <class Value>
+using AxisArray = EnumArray<Axis, Value, kAxisCount>;
+
+inline constexpr std::array<Axis, kAxisCount> kAllAxes = enumerators<Axis, kAxisCount>();
+
+struct AxisDescription {
+  const char* name;    ///< of the coordinate in table files and Datasets
+  const char* column;  ///< of points, of .csv and .npy tables, in [grid] and of keywords
+  const char* units;
+  const char* long_name;
+  NumberRange range;
+  bool is_required;  ///< every table has it; the others are the scene's where a table lacks them
+};
+
+inline constexpr std::array<AxisDescription, kAxisCount> kAxes = {{
+    {"wavelength", "wavelength_um", "um", "wavelength", kWavelengthUmRange, false},
+    {"n", "n", "1", "refractive index n of the surface", kNRange, false},
+    {"k", "k", "1", "refractive index k of the surface", kKRange, false},
+    {"theta", "theta_deg", "degree", "zenith angle", kZenithDegRange, true},
+    {"sigma", "sigma", "1", "roughness sigma of the slope distribution", kSigmaRange, true},
+    {"q", "q", "1", "exponent q of the slope distribution", kQRange, true},
+}};
+
+static_assert(kAxes.back().name != nullptr, "each axis has a row");
+
+constexpr const AxisDescription& description_of(Axis axis) { return kAxes[static_cast<std::size_t>(axis)]; }
+
+/// In the order in which messages list the columns of points.
+inline constexpr std::array<Axis, kAxisCount> kColumnOrder = {Axis::kTheta, Axis::kSigma, Axis::kQ,
+                                                              Axis::kN,     Axis::kK,     Axis::kWavelength};
+
+/// The values of each axis in any order, each once. A grid has one value at least of those that every table has.
+using Axes = AxisArray<std::vector<double>>;
+/// A number of each axis: positions, or counts.
+using PerAxis = AxisArray<std::size_t>;
+
+}  // namespace dolp

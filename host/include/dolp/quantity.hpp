@@ -1,0 +1,113 @@
+// The quantities of results: the only place that names and orders them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <dolp/enum_array.hpp>
+
+namespace dolp {
+
+/// A number that results have of each entry or point, in the order of table files; the status comes after the last.
+///
+/// Units: Stokes parameters are exitances, W m-2 um-1 at a single wavelength and W m-2 over a band; in bistatic mode
+/// radiances, W m-2 sr-1 um-1 and W m-2 sr-1; the others are 1.
+/// Conventions: Q = I_s - I_p keeps its sign; U = V = 0 in hemispherical mode. Over a band rho is the mean weighted by
+/// the emission pi B(T), without emission by the incident radiation, without either by the wavelength.
+enum class Quantity : std::uint8_t {
+  kDolp,  ///< sqrt(Q^2 + U^2) / I; negative with a negative I, NaN with I = 0
+  kStokesI,
+  kStokesQ,
+  kStokesU,
+  kStokesV,
+  kRhoI,         ///< with k_s and the diffuse part
+  kRhoQ,         ///< with k_s
+  kAlbedo,       ///< A(theta): R = 1, without k_s and the diffuse part
+  kEmissivityS,  ///< the emission uses it; over a band weighted with pi B(T)
+  kEmissivityP,
+  kDolpLow,  ///< between it and the next lies DOLP of a surface with these facets and all its bounces
+  kDolpHigh,
+  kErrorEstimate,     ///< bound of |d DOLP|, dolp_low and dolp_high included; infinite when there is none
+  kRhoErrorEstimate,  ///< bound of max(|d rho_I|, |d rho_Q|) / rho_I; infinite when there is none
+};
+inline constexpr std::size_t kQuantityCount = static_cast<std::size_t>(Quantity::kRhoErrorEstimate) + 1;
+
+template <class Value>
+using QuantityArray = EnumArray<Quantity, Value, kQuantityCount>;
+
+inline constexpr std::array<Quantity, kQuantityCount> kAllQuantities = enumerators<Quantity, kQuantityCount>();
+
+/// Some of them, in their order.
+using Quantities = std::vector<Quantity>;
+
+/// What a scene must have for a quantity.
+enum class QuantityNeeds : std::uint8_t { kNothing, kReflectance, kMoments, kEmission, kBracket };
+
+struct QuantityDescription {
+  const char* name;
+  const char* long_name;
+  bool has_stokes_units;  ///< otherwise the unit is 1
+  const char* ancillary;  ///< names of the variables that qualify it, or ""
+  QuantityNeeds needs;
+
+  /// Points have a column of it only where the scene asks for it.
+  constexpr bool is_optional() const { return needs == QuantityNeeds::kEmission || needs == QuantityNeeds::kBracket; }
+};
+
+inline constexpr const char* kDolpQualifiers = "error_estimate status";
+inline constexpr const char* kRhoQualifiers = "rho_error_estimate status";
+inline constexpr const char* kStatusQualifier = "status";
+
+inline constexpr std::array<QuantityDescription, kQuantityCount> kQuantities = {{
+    {"dolp", "degree of linear polarisation", false, kDolpQualifiers, QuantityNeeds::kNothing},
+    {"stokes_i", "Stokes parameter I of the radiation that leaves the surface and reaches the sensor", true,
+     kStatusQualifier, QuantityNeeds::kNothing},
+    {"stokes_q", "Stokes parameter Q = I_s - I_p", true, kStatusQualifier, QuantityNeeds::kNothing},
+    {"stokes_u", "Stokes parameter U", true, kStatusQualifier, QuantityNeeds::kNothing},
+    {"stokes_v", "Stokes parameter V", true, kStatusQualifier, QuantityNeeds::kNothing},
+    {"rho_i", "hemispherical-directional reflectance, mean of s and p", false, kRhoQualifiers,
+     QuantityNeeds::kReflectance},
+    {"rho_q", "hemispherical-directional reflectance, half the difference of s and p", false, kRhoQualifiers,
+     QuantityNeeds::kReflectance},
+    {"albedo", "albedo of the surface model with perfectly reflecting facets", false, kStatusQualifier,
+     QuantityNeeds::kMoments},
+    {"emissivity_s", "emissivity of s-polarised radiation that the emission uses", false, kStatusQualifier,
+     QuantityNeeds::kEmission},
+    {"emissivity_p", "emissivity of p-polarised radiation that the emission uses", false, kStatusQualifier,
+     QuantityNeeds::kEmission},
+    {"dolp_low", "least degree of linear polarisation with all bounces", false, kDolpQualifiers,
+     QuantityNeeds::kBracket},
+    {"dolp_high", "largest degree of linear polarisation with all bounces", false, kDolpQualifiers,
+     QuantityNeeds::kBracket},
+    {"error_estimate", "bound of the absolute error of dolp", false, "", QuantityNeeds::kNothing},
+    {"rho_error_estimate", "bound of the errors of rho_i and rho_q relative to rho_i", false, "",
+     QuantityNeeds::kReflectance},
+}};
+
+static_assert(kQuantities.back().name != nullptr, "each quantity has a row");
+
+constexpr const QuantityDescription& description_of(Quantity quantity) {
+  return kQuantities[static_cast<std::size_t>(quantity)];
+}
+
+/// `stokes_units`: of the Stokes parameters of these results.
+inline std::string units_of(Quantity quantity, const std::string& stokes_units) {
+  return description_of(quantity).has_stokes_units ? stokes_units : "1";
+}
+
+/// In the order of CSV files of points.
+inline constexpr std::array<Quantity, kQuantityCount> kCsvOrder = {
+    Quantity::kRhoI,          Quantity::kRhoQ,
+    Quantity::kAlbedo,        Quantity::kStokesI,
+    Quantity::kStokesQ,       Quantity::kStokesU,
+    Quantity::kStokesV,       Quantity::kDolp,
+    Quantity::kErrorEstimate, Quantity::kRhoErrorEstimate,
+    Quantity::kEmissivityS,   Quantity::kEmissivityP,
+    Quantity::kDolpLow,       Quantity::kDolpHigh};
+static_assert(std::ranges::is_permutation(kCsvOrder, kAllQuantities), "each quantity is in it once");
+
+}  // namespace dolp

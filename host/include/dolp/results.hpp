@@ -1,0 +1,50 @@
+// Results of one entry, and of many.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <dolp/quantity.hpp>
+
+namespace dolp {
+
+/// Results of one entry of a grid or one scattered point.
+struct PointResult {
+  QuantityArray<double> values;  ///< NaN where there is none
+  std::uint32_t status = 0;      ///< bits of status.hpp
+
+  PointResult() { values.fill(std::numeric_limits<double>::quiet_NaN()); }
+  double& operator[](Quantity quantity) { return values[quantity]; }
+  double operator[](Quantity quantity) const { return values[quantity]; }
+};
+
+/// Results of many entries: a column of each quantity, and the status.
+struct ResultColumns {
+  QuantityArray<std::vector<double>> columns;  ///< empty where a quantity was not computed
+  std::vector<std::uint32_t> status;           ///< likewise
+
+  std::vector<double>& operator[](Quantity quantity) { return columns[quantity]; }
+  const std::vector<double>& operator[](Quantity quantity) const { return columns[quantity]; }
+  bool has(Quantity quantity) const { return !columns[quantity].empty(); }
+
+  /// Those that have a column.
+  Quantities quantities() const {
+    Quantities own;
+    for (const Quantity quantity : kAllQuantities) {
+      if (has(quantity)) own.push_back(quantity);
+    }
+    return own;
+  }
+  PointResult at(std::size_t position) const {
+    PointResult result;
+    for (const Quantity quantity : kAllQuantities) {
+      if (has(quantity)) result[quantity] = columns[quantity][position];
+    }
+    if (!status.empty()) result.status = status[position];
+    return result;
+  }
+};
+
+}  // namespace dolp

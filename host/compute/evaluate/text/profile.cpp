@@ -134,7 +134,7 @@ struct Profiles::Impl {
     return task;
   }
 
-  // The piece as the hardest corner requests it, and how many digits each requests.
+  // The piece as the hardest corner wants it, and how many digits each wants.
   Text::Piece hardest_piece(const Text::ThetaNode& theta, const Text::IndexNode& index,
                             std::span<const kernel::ShapeNode> corners, const Text::Task& task,
                             std::vector<SampleRequest>& requests) {
@@ -161,7 +161,7 @@ struct Profiles::Impl {
       slope.t = scale * hyperbolic.x;
       slope.dt = 2.0 * node.y * scale * hyperbolic.y * piece.extent * place.y;
       for (std::size_t j = 0; j < corners.size(); ++j) {
-        if (requests[j].digits <= slope.digits) continue;  // it requests no more than that
+        if (requests[j].digits <= slope.digits) continue;  // it wants no more than that
         const auto shape = std::bit_cast<Text::ShapeNode>(corners[j]);
         const double u = slope.t / shape.m;
         const double mass = Text::kPi * text.slope_density(shape, u, text.common_exponent(u)) * slope.dt / shape.m;

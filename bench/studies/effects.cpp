@@ -75,6 +75,7 @@ ordered_json effect_row(const EffectGroup& group, const Pair& pair, const Pair& 
   row["base"] = base.name;
   row["error"] = change.dolp;
   row["compared"] = change.compared;
+  row["tolerance"] = pair.planned.scene().accuracy.tolerance;
   row["bound"] = pair.planned.plan().bound.dolp;
   row["time_s"] = time_s;
   row["kernel_time_s"] = median(pair.planned.kernel_times_s());
@@ -140,8 +141,7 @@ Study::Study(StudyRun& run)
 
 void Study::describe() {
   const Scene& base = groups_.front().settings.front().scene;
-  run_.describe("effects",
-                "largest |change of DOLP| by what the plan drops, entries with status 1, 4 or 8 left out",
+  run_.describe("effects", "largest |change of DOLP| by what the plan drops, entries with status 1, 4 or 8 left out",
                 "seconds an entry, median: plan and evaluation on the Vulkan device, whose creation is not counted");
   run_.json()["tolerance"] = base.accuracy.tolerance;
   run_.json()["grid"] = {{"theta_deg", base.grid.theta_deg}, {"sigma", base.grid.sigma}, {"q", base.grid.q}};
@@ -199,8 +199,8 @@ std::string table_text(const ordered_json& result) {
 
 /// Says where dropping changed more than the tolerance.
 void add_tolerance_warnings(ordered_json& result) {
-  const double tolerance = result["tolerance"].get<double>();
   for (const ordered_json& row : result["results"]) {
+    const double tolerance = row["tolerance"].get<double>();
     if (row["error"].get<double>() <= tolerance) continue;
     result["warnings"].push_back(fmt::format("{} {} {}: error {:.2g} exceeds the tolerance {:g}",
                                              row["effect"].get<std::string>(), row["case"].get<std::string>(),

@@ -195,17 +195,22 @@ TEST_F(Library, Keys_NameTheirWordsAndRivals) {
   EXPECT_TRUE(named("surface.sigma").rivals.empty());
 }
 
-TEST_F(Library, Effects_AreBoundedAtThePoints) {
-  const auto diffuse_at = [&](double theta_deg, double factor) {
-    const std::vector<double> theta = {theta_deg};
-    const auto all = dolp::effects(scene_.with("surface.diffuse", factor), {{"theta_deg", theta}});
-    return *std::ranges::find(all, "diffuse", &dolp::Effect::name);
+TEST_F(Library, Effects_OfWhatIsDroppedABound_OfWhatIsKeptAnEstimate) {
+  const std::vector<double> theta = {60};
+  const dolp::Scene warm = scene_.with("surroundings.temperature_K", 280.0);
+  const auto path_of = [&](const dolp::Scene& scene) {
+    const auto all = dolp::effects(scene, {{"theta_deg", theta}});
+    return *std::ranges::find(all, "path", &dolp::Effect::name);
   };
-  EXPECT_EQ(diffuse_at(60, 0).state, "absent");
-  EXPECT_EQ(diffuse_at(60, 1e-9).state, "dropped");
-  EXPECT_LT(diffuse_at(60, 1e-9).bound, 1e-5);
-  EXPECT_EQ(diffuse_at(60, 0.1).state, "kept");
-  EXPECT_GT(diffuse_at(60, 0.1).bound, 1e-3);
+  EXPECT_EQ(path_of(warm).state, "absent");
+  const dolp::Effect faint = path_of(warm.with("path.transmittance", 0.9).with("path.radiance", 1e-6));
+  EXPECT_EQ(faint.state, "dropped");
+  EXPECT_LT(faint.bound, 1e-5);
+  EXPECT_FALSE(faint.influence);
+  const dolp::Effect strong = path_of(warm.with("path.transmittance", 0.5).with("path.temperature_K", 300.0));
+  EXPECT_EQ(strong.state, "kept");
+  EXPECT_GT(strong.influence, 1e-3);
+  EXPECT_FALSE(strong.bound);
 }
 
 TEST_F(Library, Fit_GivesValuesWithIntervals) {

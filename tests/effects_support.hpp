@@ -43,6 +43,8 @@ class RandomScenes {
     scene.accuracy.precision = Precision::kDouble;
     add_radiation(scene);
     if (random_.chance(0.1)) scene.surface.material = resonance(scene.spectrum);
+    const bool is_direct = scene.emission && scene.emission->model == EmissionModel::kDirect;
+    if (model.masking == Masking::kVCavity && !is_direct && coin()) scene.surface.scattering = Scattering::kMultiple;
     return scene;
   }
 
@@ -53,8 +55,11 @@ class RandomScenes {
     SlopeShape shape = random_.shape(model);
     if (coin()) shape = {random_.log_uniform(0.02, 1.0), random_.uniform(1.6, 6.0)};
     if (random_.chance(0.05)) shape.sigma = 0.0;
+    if (scene.surface.scattering == Scattering::kMultiple && coin()) shape.sigma *= random_.log_uniform(1e-3, 1e-1);
+    const double spread = coin() ? 1.0 : random_.uniform(1.0, 2.0);
     for (int i = 0; i < 5; ++i) {
       drawn.push_back({has_grazing ? random_.theta_deg() : random_.uniform(0.0, 85.0), shape, {}});
+      shape = {shape.sigma * spread, shape.q * std::sqrt(spread)};
     }
     return drawn;
   }
@@ -125,15 +130,6 @@ inline std::string describe(const Scene& scene, const SceneEntry& entry) {
 inline std::vector<PointResult> run(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan) {
   CpuEvaluator evaluator(Precision::kDouble);
   return evaluate_scene(scene, entries, plan, &evaluator, {});
-}
-
-/// The plan that keeps everything but one part.
-inline EffectPlan plan_without(const Scene& scene, Part part) {
-  EffectPlan plan = keep_everything(scene);
-  plan.kept = without(plan.kept, part);
-  if (part == Part::kMoments) plan.needs_moments = false;
-  if (part == Part::kSource) plan.needs_beams = false;
-  return plan;
 }
 
 /// Length of the difference of (Q, U) / I.

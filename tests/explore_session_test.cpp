@@ -33,7 +33,7 @@ TEST(ExploreSession, WhatIsShownWhileTheSceneChanges_IsStaleAndKeepsItsParameter
   const std::string name = curve_name(session.curve());
   const std::string overlay = session.overlay_name();
   const std::string cursor = cursor_text(session);
-  const double bound = session.effects().front().bound.value();
+  const double influence = session.effects().front().influence.value();
   EXPECT_FALSE(says_stale(name + overlay + cursor));
   driver.session.set({{"surface.sigma", 0.4}, {"surface.n", 1.7}});
   EXPECT_TRUE(session.curve().is_stale());
@@ -43,7 +43,7 @@ TEST(ExploreSession, WhatIsShownWhileTheSceneChanges_IsStaleAndKeepsItsParameter
   EXPECT_EQ(curve_name(session.curve()), name + ", the scene before");
   EXPECT_EQ(session.overlay_name(), overlay + ", the scene before");
   EXPECT_EQ(cursor_text(session), "Cursor, the scene before" + cursor.substr(std::string("Cursor").size()));
-  EXPECT_EQ(session.effects().front().bound, bound);
+  EXPECT_EQ(session.effects().front().influence, influence);
   EXPECT_EQ(cost_lines(session).front(), "time …");
   driver.settle();
   EXPECT_FALSE(session.curve().is_stale() || session.overlay()->is_stale() || session.map().is_stale());
@@ -297,19 +297,19 @@ TEST(ExploreSession, FlatCurve_HasARival) {
   EXPECT_NE(peak_text(driver.session).find("may as well be elsewhere"), std::string::npos) << peak_text(driver.session);
 }
 
-TEST(ExploreSession, Effects_AreThoseOfThePlanWithBoundsAtTheCursor) {
+TEST(ExploreSession, Effects_AreThoseOfThePlanWithInfluencesAtTheCursor) {
   Driver driver(paint());
   driver.session.set_theta(60.0);
-  const auto bound_of = [&](const std::string& name) {
+  const auto influence_of = [&](const std::string& name) {
     for (const Effect& row : driver.session.effects()) {
-      if (row.name == name) return row.bound.value_or(-1.0);
+      if (row.name == name) return row.influence.value_or(-1.0);
     }
     return -2.0;
   };
-  const double at_60 = bound_of("surroundings");
+  const double at_60 = influence_of("surroundings");
   EXPECT_GT(at_60, 0.0);
   driver.session.set_theta(20.0);
-  EXPECT_LT(bound_of("surroundings"), at_60);
+  EXPECT_LT(influence_of("surroundings"), at_60);
 }
 
 TEST(ExploreSession, RhoOfADroppingPlan_IsComputedWhenItIsShown) {

@@ -16,7 +16,11 @@ constexpr double kLastTheta = 85.0;
 constexpr double kFirstSigma = 0.05;
 constexpr double kLastSigma = 1.0;
 constexpr double kIrradiance = 20.0;  // W m-2 um-1, somewhat below what the surface emits
-constexpr double kFaint = 1e-9;       // of it
+constexpr double kSunAtTenUm = 0.18;  // the same, at 10.6 um above the atmosphere
+constexpr double kSunInVisible = 1800.0;
+constexpr double kVisible_um = 0.55;
+constexpr double kColdSky = 250.0;    // K
+constexpr double kOnePercent = 1e-2;  // of DOLP: what a thermal camera sees
 constexpr double kSmooth = 5e-3;      // of the sigmas
 
 Axes grid_of(std::size_t entries) {
@@ -49,6 +53,14 @@ Scene emitting(const Axes& grid) {
 Scene seen_from_one_side(const Axes& grid) {
   Scene scene = emitting(grid);
   scene.geometry = {Mode::kBistatic, 60.0, 90.0};
+  return scene;
+}
+
+/// A day: the same under a clear sky, with one masking that keeps energy.
+Scene under_the_sky(const Grid& grid) {
+  Scene scene = seen_from_one_side(grid);
+  scene.surface.masking = Masking::kSmith;
+  scene.surroundings = Surroundings{kColdSky};
   return scene;
 }
 
@@ -149,9 +161,9 @@ std::vector<EffectGroup> radiation_groups(const Scene& base, const Scene& bistat
   return {group("emission", base, {emission_model(EmissionModel::kMoments), emission_model(EmissionModel::kFresnel)}),
           group("emission", lit, {{"on"}, {"off", [](Scene& scene) { scene.emission.reset(); }}}),
           group("source", base, {{"off"}, source("on", kIrradiance)}),
-          group("source", bistatic, {{"off"}, source("on", kIrradiance), source("faint", kFaint * kIrradiance)}),
+          group("source", bistatic, {{"off"}, source("on", kIrradiance)}),
           group("surroundings", base,
-                {{"off"}, surroundings("250 K", 250.0), surroundings("as warm as the surface", kTemperature)}),
+                {{"off"}, surroundings("250 K", kColdSky), surroundings("as warm as the surface", kTemperature)}),
           group("path", base,
                 {{"off"},
                  {"on",
@@ -165,6 +177,21 @@ std::vector<EffectGroup> radiation_groups(const Scene& base, const Scene& bistat
                                                                          }}})};
 }
 
+/// Radiation that hardly counts beside another one.
+std::vector<EffectGroup> daylight_groups(const Grid& grid) {
+  Scene thermal = under_the_sky(grid);
+  thermal.accuracy.tolerance = kOnePercent;
+  Scene visible = under_the_sky(grid);
+  visible.spectrum.min_um = visible.spectrum.max_um = kVisible_um;
+  visible.source = flat_source(kSunInVisible);
+  const auto without_emission = [](Scene& scene) {
+    scene.emission.reset();
+    scene.surroundings.reset();
+  };
+  return {group("sun at 10.6 um", thermal, {{"off"}, source("on", kSunAtTenUm)}),
+          group("emission at 0.55 um", visible, {{"off", without_emission}, {"on"}})};
+}
+
 }  // namespace
 
 std::vector<EffectGroup> effect_groups(std::size_t entries) {
@@ -172,7 +199,7 @@ std::vector<EffectGroup> effect_groups(std::size_t entries) {
   const Scene base = emitting(grid);
   std::vector<EffectGroup> groups = surface_groups(base);
   for (std::vector<EffectGroup>& more :
-       std::array{scattering_groups(grid), radiation_groups(base, seen_from_one_side(grid))}) {
+       std::array{scattering_groups(grid), radiation_groups(base, seen_from_one_side(grid)), daylight_groups(grid)}) {
     std::ranges::move(more, std::back_inserter(groups));
   }
   return groups;

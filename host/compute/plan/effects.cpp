@@ -3,160 +3,43 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <deque>
-#include <mutex>
-#include <tuple>
+#include <array>
 
-#include "base/parallel_ranges.hpp"
 #include "model/choices.hpp"
-#include "model/direction.hpp"
-#include "spectrum/spectral_rule.hpp"
 
 namespace dolp {
 namespace {
 
-constexpr std::array kDroppingOrder = {Part::kMoments,      Part::kSource,  Part::kSurroundings, Part::kEmission,
-                                       Part::kPathRadiance, Part::kDiffuse, Part::kMoments,      Part::kFurtherBounces};
+constexpr std::array kDroppingOrder = {Part::kMoments,      Part::kSource,  Part::kSurroundings,  Part::kEmission,
+                                       Part::kPathRadiance, Part::kMoments, Part::kFurtherBounces};
 
-constexpr double kFarBelow = 0.1;
+/// The bounds of a scene at each wavelength of its entries.
+std::vector<EffectBounds> bounds_of(const Scene& scene, const SceneEntries& entries) {
+  std::vector<EffectBounds> bounds;
+  const std::vector<double>& wavelength_um = entries.wavelength_um();
+  const std::vector<EntriesExtent> extents = extents_of(entries);
+  for (std::size_t i = 0; i < extents.size(); ++i) {
+    if (extents[i].theta_deg.empty() && !entries.empty()) continue;  // a wavelength that no entry has
+    bounds.emplace_back(wavelength_um.empty() ? scene : at_wavelength(scene, wavelength_um[i]), extents[i]);
+  }
+  return bounds;
+}
 
-constexpr std::size_t kEntriesAtOnce = 256;  // of a thread; some microseconds each
+bool add_nothing(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
+  return std::ranges::all_of(bounds, [&](const EffectBounds& of_one) { return of_one.adds_nothing(part, kept); });
+}
 
 DropBound worst_of(const DropBound& a, const DropBound& b) {
   return {std::max(a.dolp, b.dolp), std::max(a.rho, b.rho)};
 }
 
-bool is_within(const DropBound& bound, double limit) { return bound.dolp <= limit && bound.rho <= limit; }
-
-/// Which part may go, and what it may change.
-struct Candidate {
-  Part part;
-  KeptEffects kept;
-  double limit = 0.0;
-};
-
-/// The bounds of a scene at each wavelength of its entries.
-class BoundsOfEntries {
- public:
-  BoundsOfEntries(const Scene& scene, const SceneEntries& entries) {
-    if (entries.wavelength_um().empty()) scenes_.push_back(scene);
-    for (const double wavelength_um : entries.wavelength_um()) scenes_.push_back(at_wavelength(scene, wavelength_um));
-    for (const Scene& at : scenes_) bounds_.emplace_back(at, spectral_rule(at));
-  }
-  const InfluenceBounds& operator[](const SceneEntry& entry) const { return bounds_[entry.wavelength]; }
-  bool add_nothing(Part part, const KeptEffects& kept) const {
-    return std::ranges::all_of(bounds_, [&](const InfluenceBounds& b) { return b.adds_nothing(part, kept); });
-  }
-
- private:
-  std::deque<Scene> scenes_;  // the bounds refer to them
-  std::vector<InfluenceBounds> bounds_;
-};
-
-/// One for the entries of one wavelength after the other.
-class MemoryOfEntries {
- public:
-  ReflectanceMemory& operator[](const SceneEntry& entry) {
-    if (entry.wavelength != wavelength_) memory_ = {};
-    wavelength_ = entry.wavelength;
-    return memory_;
-  }
-
- private:
-  ReflectanceMemory memory_;
-  std::uint32_t wavelength_ = 0;
-};
-
-/// The bound at one entry, no closer than it takes to see that it is far below the limit.
-DropBound entry_bound(const BoundsOfEntries& bounds, const Candidate& candidate, const KeptEffects& kept,
-                      const SceneEntry& entry, MemoryOfEntries& memory) {
-  for (const Detail detail : {Detail::kCoarse, Detail::kMiddle}) {
-    const DropBound bound = bounds[entry].bound(candidate.part, kept, entry, detail, memory[entry]);
-    if (is_within(bound, kFarBelow * candidate.limit)) return bound;
-  }
-  return bounds[entry].bound(candidate.part, kept, entry, Detail::kFine, memory[entry]);
-}
-
-/// The bound of what a part adds at one entry, no closer than it takes to see that it is not above `most`.
-double bound_above(const BoundsOfEntries& bounds, Part part, const SceneEntry& entry, double most,
-                   MemoryOfEntries& memory) {
-  for (const Detail detail : {Detail::kCoarse, Detail::kMiddle}) {
-    const double bound = bounds[entry].bound(part, {}, entry, detail, memory[entry]).dolp;
-    if (bound <= most) return bound;
-  }
-  return bounds[entry].bound(part, {}, entry, Detail::kFine, memory[entry]).dolp;
-}
-
-/// Entries in the order in which their bounds are looked at: in bistatic mode, where those of one shape share the
-/// reflectance, one shape after the other.
-class OrderedEntries {
- public:
-  OrderedEntries(const Scene& scene, const SceneEntries& entries)
-      : entries_(entries), is_by_shape_(scene.geometry.mode == Mode::kBistatic && entries.is_grid()) {}
-
-  std::size_t size() const { return entries_.size(); }
-  SceneEntry operator[](std::size_t i) const {
-    if (!is_by_shape_) return entries_[i];
-    const std::size_t of_shape = size() / entries_.of_direction();
-    return entries_[i % of_shape * entries_.of_direction() + i / of_shape];
-  }
-
- private:
-  const SceneEntries& entries_;
-  bool is_by_shape_;
-};
-
-/// The worst bound of some entries; stops, above the limit, as soon as it is there.
-DropBound worst_of_entries(const BoundsOfEntries& bounds, const Candidate& candidate, const OrderedEntries& entries,
-                           std::size_t first, std::size_t last) {
-  MemoryOfEntries memory;
+/// What counts in the whole scene is not dropped for want of what it acts on.
+DropBound worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
   DropBound worst;
-  for (std::size_t i = first; i < last; ++i) {
-    const SceneEntry entry = entries[i];
-    worst = worst_of(worst, entry_bound(bounds, candidate, candidate.kept, entry, memory));
-    // What counts in the whole scene is not dropped for want of what it acts on.
-    if (candidate.part != Part::kMoments && candidate.kept != KeptEffects{})
-      worst = worst_of(worst, entry_bound(bounds, candidate, {}, entry, memory));
-    if (!is_within(worst, candidate.limit)) break;
+  for (const EffectBounds& of_one : bounds) {
+    worst = worst_of(worst, of_one.bound(part, kept));
+    if (part != Part::kMoments) worst = worst_of(worst, of_one.bound(part, {}));
   }
-  return worst;
-}
-
-/// The position whose bound is the worst most often: the last one of a grid, which is grazing; for further bounces the
-/// roughest of those.
-std::size_t likely_worst(Part part, const OrderedEntries& entries) {
-  const std::size_t last = entries.size() - 1;
-  if (part != Part::kFurtherBounces) return last;
-  const auto key = [&](std::size_t i) {
-    const SceneEntry entry = entries[i];
-    return std::tuple(entry.theta_deg, entry.shape.sigma, -entry.shape.q);
-  };
-  std::size_t worst = last;
-  for (std::size_t i = 0; i < last; ++i) {
-    if (key(i) > key(worst)) worst = i;
-  }
-  return worst;
-}
-
-/// The worst entry's bound, or one above the limit where there is such an entry.
-DropBound worst_bound(const BoundsOfEntries& bounds, const Candidate& candidate, const OrderedEntries& entries) {
-  const bool adds_now = is_kept(candidate.kept, candidate.part) && !bounds.add_nothing(candidate.part, candidate.kept);
-  const bool adds_in_all = candidate.part != Part::kMoments && !bounds.add_nothing(candidate.part, {});
-  if (entries.size() == 0 || (!adds_now && !adds_in_all)) return {};
-  const std::size_t likely = likely_worst(candidate.part, entries);
-  DropBound worst = worst_of_entries(bounds, candidate, entries, likely, likely + 1);
-  if (!is_within(worst, candidate.limit)) return worst;
-  std::mutex mutex;
-  std::atomic<bool> is_over = false;
-  parallel_ranges(entries.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t end) {
-    if (is_over) return;
-    const DropBound of_range = worst_of_entries(bounds, candidate, entries, first, end);
-    const std::lock_guard lock(mutex);
-    worst = worst_of(worst, of_range);
-    is_over = !is_within(worst, candidate.limit);
-  });
   return worst;
 }
 
@@ -186,8 +69,29 @@ bool emits_as(const Scene& scene, EmissionModel model) { return scene.emission &
 
 bool is_fresnel(const Scene& scene) { return emits_as(scene, EmissionModel::kFresnel); }
 
-bool needs_beams(const Scene& scene, const BoundsOfEntries& bounds, const KeptEffects& kept) {
-  return is_bistatic(scene) && kept.source && !bounds.add_nothing(Part::kSource, kept) && scene.surface.specular > 0.0;
+bool needs_beams(const Scene& scene, const std::vector<EffectBounds>& bounds, const KeptEffects& kept) {
+  return is_bistatic(scene) && kept.source && !add_nothing(bounds, Part::kSource, kept) && scene.surface.specular > 0.0;
+}
+
+void drop_effects(EffectPlan& plan, const Scene& scene, const std::vector<EffectBounds>& bounds) {
+  const double allowed = kDroppedShare * scene.accuracy.tolerance;
+  for (const Part part : kDroppingOrder) {
+    if (!is_kept(plan.kept, part)) continue;
+    if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // it is made of them
+    const DropBound bound = worst_bound(bounds, part, plan.kept);
+    if (std::max(bound.dolp, bound.rho) > allowed - std::max(plan.bound.dolp, plan.bound.rho)) continue;
+    plan.kept = without(plan.kept, part);
+    plan.bound = {plan.bound.dolp + bound.dolp, plan.bound.rho + bound.rho};
+    if (is_asked_for(scene, part)) plan.dropped.push_back({part, bound});
+  }
+}
+
+void set_needs(EffectPlan& plan, const Scene& scene, const std::vector<EffectBounds>& bounds) {
+  plan.needs_moments = plan.kept.moments;
+  plan.needs_direct = plan.needs_moments && scene.emission &&
+                      (scene.emission->has_bracket || (emits_as(scene, EmissionModel::kDirect) && plan.kept.emission));
+  plan.needs_beams = needs_beams(scene, bounds, plan.kept);
+  plan.gives_rho = plan.needs_moments || scene.surface.specular == 0.0;
 }
 
 const DroppedPart* find_dropped(const EffectPlan& plan, Part part) {
@@ -234,7 +138,7 @@ std::string moments_needs(const Scene& scene) {
 EffectRow specular_row(const Scene& scene, const EffectPlan& plan) {
   constexpr const char* kName = "specular";
   if (scene.surface.specular == 0.0) return absent(kName, "surface.specular is 0");
-  EffectRow row{kName, EffectState::kKept, {}, {}, {}, Part::kMoments};
+  EffectRow row{kName, EffectState::kKept, {}, {}, Part::kMoments};
   if (plan.needs_moments) {
     row.reason = "what is emitted or reflected depends on it";
     row.needs = moments_needs(scene) + (plan.needs_beams ? ", f at each theta" : "");
@@ -333,7 +237,7 @@ EffectRow path_row(const Scene& scene, const EffectPlan& plan) {
   EffectRow row{kName, EffectState::kKept, {}, "closed form"};
   if (!is_asked_for(scene, Part::kPathRadiance)) {
     row.reason = "its transmittance alone, which DOLP does not see";
-    row.bound = 0.0;
+    row.influence = 0.0;
     return row;
   }
   row.reason = "its radiance adds to I";
@@ -371,35 +275,27 @@ bool gives_emissivity(const Scene& scene, const EffectPlan& plan) {
 }
 
 EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool keep_all) {
-  const BoundsOfEntries bounds(scene, entries);
-  const double allowed = kDroppedShare * scene.accuracy.tolerance;
-  const OrderedEntries ordered(scene, entries);
+  const std::vector<EffectBounds> bounds = bounds_of(scene, entries);
   EffectPlan plan;
   plan.keep_all = keep_all;
-  if (!keep_all) {
-    for (const Part part : kDroppingOrder) {
-      if (!is_kept(plan.kept, part)) continue;
-      if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // it is made of them
-      const double left = allowed - std::max(plan.bound.dolp, plan.bound.rho);
-      const DropBound bound = worst_bound(bounds, {part, plan.kept, left}, ordered);
-      if (!is_within(bound, left)) continue;
-      plan.kept = without(plan.kept, part);
-      plan.bound = {plan.bound.dolp + bound.dolp, plan.bound.rho + bound.rho};
-      if (is_asked_for(scene, part)) plan.dropped.push_back({part, bound});
-    }
-  }
-  plan.needs_moments = plan.kept.moments;
-  plan.needs_direct = plan.needs_moments && scene.emission &&
-                      (scene.emission->has_bracket || (emits_as(scene, EmissionModel::kDirect) && plan.kept.emission));
-  plan.needs_beams = needs_beams(scene, bounds, plan.kept);
-  plan.gives_rho = plan.needs_moments || scene.surface.specular == 0.0;
+  if (!keep_all && !entries.empty()) drop_effects(plan, scene, bounds);
+  set_needs(plan, scene, bounds);
   return plan;
 }
 
+EffectPlan plan_to_keep(const Scene& scene, const KeptEffects& kept) {
+  EffectPlan plan;
+  plan.kept = kept;
+  set_needs(plan, scene, bounds_of(scene, {}));
+  return plan;
+}
+
+EffectPlan keep_everything(const Scene& scene) { return plan_effects(scene, {}, true); }
+
 Needs needs_without(const Scene& scene, const EffectPlan& plan, Part part) {
-  const BoundsOfEntries bounds(scene, {});
+  const std::vector<EffectBounds> bounds = bounds_of(scene, {});
   const KeptEffects kept = without(plan.kept, part);
-  return {kept.moments && !bounds.add_nothing(Part::kMoments, kept),
+  return {kept.moments && !add_nothing(bounds, Part::kMoments, kept),
           part != Part::kMoments && needs_beams(scene, bounds, kept)};
 }
 
@@ -415,42 +311,6 @@ std::vector<EffectRow> effect_rows(const Scene& scene, const SceneEntries& entri
           surroundings_row(scene, plan),
           path_row(scene, plan),
           band_row(scene)};
-}
-
-void add_influences(std::vector<EffectRow>& rows, const Scene& scene, const SceneEntries& entries) {
-  const BoundsOfEntries bounds(scene, entries);
-  std::vector<EffectRow*> open;
-  for (EffectRow& row : rows) {
-    if (row.state == EffectState::kKept && row.part && !row.bound) open.push_back(&row);
-  }
-  for (EffectRow* row : open) row->bound = 0.0;
-  if (open.empty() || entries.empty()) return;
-  const OrderedEntries ordered(scene, entries);
-  std::mutex mutex;
-  const auto look_at = [&](std::size_t first, std::size_t last) {
-    MemoryOfEntries memory;
-    std::vector<double> most;
-    std::vector<std::size_t> unbounded(open.size(), 0);
-    {
-      const std::lock_guard lock(mutex);
-      for (const EffectRow* row : open) most.push_back(*row->bound);
-    }
-    for (std::size_t i = first; i < last; ++i) {
-      for (std::size_t r = 0; r < open.size(); ++r) {
-        const double bound = bound_above(bounds, *open[r]->part, ordered[i], most[r], memory);
-        if (std::isinf(bound)) ++unbounded[r];
-        if (!std::isinf(bound)) most[r] = std::max(most[r], bound);
-      }
-    }
-    const std::lock_guard lock(mutex);
-    for (std::size_t r = 0; r < open.size(); ++r) {
-      open[r]->bound = std::max(*open[r]->bound, most[r]);
-      open[r]->unbounded += unbounded[r];
-    }
-  };
-  // The last entry of a grid, which is grazing, is the worst most often: it spares the others a close look.
-  look_at(ordered.size() - 1, ordered.size());
-  parallel_ranges(ordered.size() - 1, kEntriesAtOnce, look_at);
 }
 
 const char* state_name(EffectState state) {

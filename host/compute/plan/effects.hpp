@@ -1,15 +1,13 @@
 // What a scene asks for, effect by effect, and which of it a run leaves out because it cannot be seen.
 #pragma once
 
-#include <array>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "model/kept_effects.hpp"
 #include "model/scene_entry.hpp"
-#include "plan/influence.hpp"
+#include "plan/effect_bounds.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {
@@ -37,20 +35,22 @@ struct EffectPlan {
 
 /// The effects that the scene's output needs at these entries.
 ///
-/// A part goes, in the order of Part and the moments once more at the end, if the bound of InfluenceBounds, worst
-/// entry, leaves the sum of all that is dropped at kDroppedShare of the tolerance or below; each bound is that of the
-/// scene without what was dropped before, so that the sum bounds the whole change; but for the moments a part's bound
-/// in the whole scene counts too. A part that adds exactly nothing goes at no cost: the moments where emission and
-/// surroundings have one temperature, for instance. Model choices (distribution, masking, k) never go. `keep_all` keeps
-/// everything that the scene has. Host only: some microseconds an entry and part, none where the last entries tell that
-/// a part counts.
+/// A part goes, in the order of Part but for the moments first and once more before further bounces, if the bound of
+/// EffectBounds leaves the sum of all that is dropped at kDroppedShare of the tolerance or below; each bound is that of
+/// the scene without what was dropped before, so that the sum bounds the whole change; but for the moments a part's
+/// bound in the whole scene counts too. A part that adds exactly nothing goes at no cost: the moments where emission
+/// and surroundings have one temperature, for instance. Model choices (distribution, masking, k) and the diffuse part
+/// never go. `keep_all` keeps everything that the scene has.
 EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool keep_all);
+
+/// What a run that computes `kept` needs and gives.
+EffectPlan plan_to_keep(const Scene& scene, const KeptEffects& kept);
+
+/// Nothing left out: what `plan_effects` says with `keep_all`.
+EffectPlan keep_everything(const Scene& scene);
 
 /// Whether a run knows the emissivities: with an emission, unless they need moments that are left out.
 bool gives_emissivity(const Scene& scene, const EffectPlan& plan);
-
-/// Nothing left out: what `plan_effects` says with `keep_all`.
-inline EffectPlan keep_everything(const Scene& scene) { return plan_effects(scene, SceneEntries(), true); }
 
 /// What a run has to compute.
 struct Needs {
@@ -73,17 +73,14 @@ struct EffectRow {
   const char* name = "";
   EffectState state = EffectState::kKept;
   std::string reason = {};
-  std::string needs = {};            ///< what computing it takes; empty when it is not kept
-  std::optional<double> bound = {};  ///< of its influence on (Q/I, U/I); of a dropped one, what dropping it changes
-  std::optional<Part> part = {};     ///< what the sums lose with it; none for model choices
-  std::size_t unbounded = 0;         ///< entries without a bound, which `bound` leaves out
+  std::string needs = {};                ///< what computing it takes; empty when it is not kept
+  std::optional<Part> part = {};         ///< what the sums lose with it; none for model choices
+  std::optional<double> bound = {};      ///< of a dropped one: of the change of (Q/I, U/I) without it
+  std::optional<double> influence = {};  ///< of a kept one: estimate of that change
 };
 
 /// All effects that there are, in the order of the scene file.
 std::vector<EffectRow> effect_rows(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan);
-
-/// Bounds of what each kept part changes in the scene with everything kept, worst entry of those that have one.
-void add_influences(std::vector<EffectRow>& rows, const Scene& scene, const SceneEntries& entries);
 
 const char* state_name(EffectState state);
 

@@ -236,11 +236,11 @@ struct Effect {
   std::string name;
   std::string state;  ///< absent, kept, dropped (it cannot be seen), not_needed (nothing kept depends on it)
   std::string reason;
-  std::string needs;            ///< what computing it takes; empty when it is not kept
-  std::optional<double> bound;  ///< of its influence on Q/I and U/I, worst point; none of what nothing bounds
-  std::size_t unbounded = 0;    ///< points without a bound, which `bound` leaves out
+  std::string needs;                ///< what computing it takes; empty when it is not kept
+  std::optional<double> bound;      ///< of a dropped one: of the change of (Q/I, U/I) without it, worst point
+  std::optional<double> influence;  ///< of a kept one: estimate of that change, the largest of up to 12 of the points
 };
-/// All effects that there are, in the order of a scene file. Nothing is integrated.
+/// All effects that there are, in the order of a scene file. Influences are evaluated on the CPU, to 1e-3.
 DOLP_EXPORT std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& points, bool keep_all = false);
 
 /// What a table over the scene's grid would compute and leave out, why, and what it would cost; nothing is run but

@@ -5,6 +5,7 @@
 #include "model/status.hpp"
 #include "plan/effects.hpp"
 #include "report/plan_report.hpp"
+#include "run/influences.hpp"
 #include "run/scene_run.hpp"
 #include "scene/embedded_data.hpp"
 #include "scene/material_data.hpp"
@@ -16,7 +17,8 @@ std::string commit() { return program_commit(); }
 std::string citation() { return std::string(embedded_citation_cff()); }
 
 Report plan(const Scene& scene, const std::string& device, bool keep_all) {
-  return public_report(plan_report(plan_of(scene.impl().scene, device, keep_all)));
+  const dolp::Scene& own = scene.impl().scene;
+  return public_report(plan_report(plan_of(own, device, plan_effects(own, grid_entries(own), keep_all))));
 }
 
 std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& points, bool keep_all) {
@@ -26,7 +28,7 @@ std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& point
   add_influences(rows, own, entries);
   std::vector<Effect> all;
   for (const EffectRow& row : rows) {
-    all.push_back({row.name, state_name(row.state), row.reason, row.needs, row.bound, row.unbounded});
+    all.push_back({row.name, state_name(row.state), row.reason, row.needs, row.bound, row.influence});
   }
   return all;
 }

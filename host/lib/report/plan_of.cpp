@@ -8,13 +8,11 @@
 #include "model/choices.hpp"
 #include "plan/kernel_data.hpp"
 #include "report/plan_report.hpp"
-#include "run/drawn_entries.hpp"
+#include "run/influences.hpp"
 #include "run/scene_run.hpp"
 
 namespace dolp {
 namespace {
-
-constexpr std::size_t kLookedAt = 16384;  // entries that influences are bounded at; of more these stand for all
 
 /// The device that a run would take; without one, limits that every device keeps.
 Device device_of(const std::string& choice, const Scene& scene, PlanReport& report) {
@@ -126,15 +124,15 @@ std::vector<double> work_shares(const PlanReport& report, const SceneEntries& en
 
 }  // namespace
 
-PlanReport plan_of(const Scene& scene, const std::string& device, bool keep_all) {
+PlanReport plan_of(const Scene& scene, const std::string& device, EffectPlan plan) {
   PlanReport report;
   report.scene = scene;
   const Device limits = device_of(device, scene, report);
   const std::size_t without_a_run = peak_resident_bytes();  // with the scene and the driver
   const SceneEntries entries = grid_entries(scene);
-  report.plan = plan_effects(scene, entries, keep_all);
+  report.plan = std::move(plan);
   report.effects = effect_rows(scene, entries, report.plan);
-  add_influences(report.effects, scene, drawn_entries(entries, kLookedAt));
+  add_influences(report.effects, scene, entries);
   add_forecast(report, entries, limits);
   report.work_shares = work_shares(report, entries, limits);
   report.lookup = lookup_forecast(scene, report.plan);

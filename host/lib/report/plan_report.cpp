@@ -3,26 +3,25 @@
 #include <algorithm>
 
 #include "model/choices.hpp"
+#include "run/influences.hpp"
 
 namespace dolp {
 namespace {
 
 constexpr int kLabelWidth = 11;
 constexpr double kMebibyte = 1048576.0;
-constexpr double kPoints = 100.0;      // of DOLP
-constexpr double kMostPoints = 200.0;  // from all s to all p; what a bound beyond says is nothing
+constexpr double kPoints = 100.0;  // of DOLP
 
 std::string state_text(EffectState state) {
   return state == EffectState::kNotNeeded ? "not needed" : state_name(state);
 }
 
 std::string influence_text(const EffectRow& row) {
-  if (!row.bound) return "-";
-  const char* mark = row.unbounded > 0 ? " *" : "";
-  const double points = kPoints * *row.bound;
-  if (points == 0.0 && row.unbounded == 0) return "0";
-  if (points >= kMostPoints) return fmt::format("> {:g}{}", kMostPoints, mark);
-  return points >= 10.0 ? fmt::format("<= {:.0f}{}", points, mark) : fmt::format("<= {:.2g}{}", points, mark);
+  if (!row.bound && !row.influence) return "-";
+  const double points = kPoints * row.bound.value_or(row.influence.value_or(0.0));
+  if (points == 0.0) return "0";
+  const char* relation = row.bound ? "<=" : "about";
+  return points >= 10.0 ? fmt::format("{} {:.0f}", relation, points) : fmt::format("{} {:.2g}", relation, points);
 }
 
 std::string work_text(const EffectRow& row, double share) {
@@ -38,7 +37,8 @@ Report effect_report(const EffectRow& row, double share) {
   report.values(
       {{"asked_for", row.state != EffectState::kAbsent}, {"state", state_name(row.state)}, {"needs", row.needs}});
   report.value("bound", row.bound);
-  report.values({{"entries_without_bound", row.unbounded}, {"work_share", share}});
+  report.value("influence_estimate", row.influence);
+  report.value("work_share", share);
   return report;
 }
 
@@ -51,12 +51,9 @@ void add_effects(Report& report, const PlanReport& plan) {
   }
   report.add("rows", rows);
   report.line(
-      "  influence: bound of the change of (Q/I, U/I) without the effect, in points of DOLP (0.01), worst entry");
-  const auto marked = std::ranges::find_if(plan.effects, [](const EffectRow& row) { return row.unbounded > 0; });
-  if (marked != plan.effects.end()) {
-    report.line("  *: none is known for {} of {} entries, so that nothing marked can be dropped", marked->unbounded,
-                plan.run.entries);
-  }
+      "  influence: change of (Q/I, U/I) without the effect, in points of DOLP (0.01): a bound of what is dropped, an "
+      "estimate from up to {} entries of what is kept",
+      kInfluenceEntries);
   report.line(
       "  work: share of the evaluations, f among them, that would go with the effect; those that share theirs have "
       "none alone");

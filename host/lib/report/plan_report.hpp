@@ -35,10 +35,10 @@ struct PlanReport {
   std::string why_no_device;
 };
 
-/// The plan of a run over the scene's grid. `device`: a position or a part of a name; empty is the default, and where
+/// A run of `plan` over the scene's grid. `device`: a position or a part of a name; empty is the default, and where
 /// there is none the limits that every device keeps.
 /// Errors: InputError of grid_entries; DeviceError where a named device is not usable.
-PlanReport plan_of(const Scene& scene, const std::string& device, bool keep_all);
+PlanReport plan_of(const Scene& scene, const std::string& device, EffectPlan plan);
 
 Report plan_report(const PlanReport& plan);
 

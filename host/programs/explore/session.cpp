@@ -178,21 +178,19 @@ void Session::follow() {
   residuals_.follow(content, scene());
   follow_overlay(content, keep_all);
   follow_map(keep_all);
-  bound_effects();
+  estimate_influences();
   follow_peak();
   is_changed_ = true;
 }
 
-void Session::bound_effects() {
+void Session::estimate_influences() {
   const CurveReport& report = curve_.report();
   effects_ = report.effects;
   if (effects_.empty()) return;
   const std::vector<Effect> at_cursor =
       api::effects(report.scene, points_at(report.scene, {theta_deg_}).columns(), true);
   for (std::size_t i = 0; i < effects_.size(); ++i) {
-    if (effects_[i].state != "kept") continue;
-    effects_[i].bound = at_cursor[i].bound;
-    effects_[i].unbounded = at_cursor[i].unbounded;
+    if (effects_[i].state == "kept") effects_[i].influence = at_cursor[i].influence;
   }
 }
 
@@ -257,7 +255,7 @@ void Session::take(const std::vector<JobPart>& news) {
     is_changed_ = is_changed_ || part.is_last;
   }
   follow_peak();
-  if (curve_.is_finished() && !news.empty()) bound_effects();
+  if (curve_.is_finished() && !news.empty()) estimate_influences();
 }
 
 void Session::follow_peak() {

@@ -94,7 +94,7 @@ class Session {
   /// What the last fit found; null once the scene is another one.
   const FitFound* fit_found() const { return fitting_.found(edits_.changes()); }
   const Message& message() const { return message_; }
-  /// The effects of the last finished curve; bounds of what is kept are those at the cursor's zenith.
+  /// The effects of the last finished curve; influences of what is kept are those at the cursor's zenith.
   const std::vector<Effect>& effects() const { return effects_; }
   /// The position of the scene's own values on the map.
   double map_cursor_x() const { return cursor_position(map_.x()); }
@@ -109,7 +109,7 @@ class Session {
   void follow();
   void follow_overlay(const std::string& content, bool keep_all);
   void follow_map(bool keep_all);
-  void bound_effects();
+  void estimate_influences();
   void follow_peak();
   double cursor_position(const MapAxis& axis) const;
 

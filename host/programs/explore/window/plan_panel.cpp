@@ -19,13 +19,13 @@ void cell(const std::string& text, ImU32 colour = kTextColour) {
   ImGui::PopStyleColor();
 }
 
-std::string bound_text(const Effect& row) {
-  if (!row.bound) return "";
-  const double points = 100.0 * *row.bound;
-  if (row.unbounded > 0) return "none is known";
-  return points == 0.0    ? "0"
-         : points >= 10.0 ? fmt::format("≤ {:.0f} points", points)
-                          : fmt::format("≤ {:.2g} points", points);
+/// In points of DOLP: a bound of what is dropped, an estimate of what is kept.
+std::string influence_text(const Effect& row) {
+  if (!row.bound && !row.influence) return "";
+  const double points = 100.0 * row.bound.value_or(row.influence.value_or(0.0));
+  if (points == 0.0) return "0";
+  return fmt::format("{} {} points", row.bound ? "≤" : "≈",
+                     points >= 10.0 ? fmt::format("{:.0f}", points) : fmt::format("{:.2g}", points));
 }
 
 /// What the maximum would be without the effect; a surface without slopes is a smooth one.
@@ -43,7 +43,7 @@ void draw_row(const Session& session, const Effect& row) {
   const ImU32 colour = is_absent || is_stale(session) ? kDimColour : kTextColour;
   cell(row.name, colour);
   cell(row.state == "not_needed" ? "not needed" : row.state, colour);
-  cell(bound_text(row), colour);
+  cell(influence_text(row), colour);
   cell(is_absent ? "" : taken_away_text(session, row), colour);
   cell(row.reason, colour);
   if (!ImGui::IsItemHovered()) return;
@@ -65,7 +65,7 @@ void draw_effects(const Session& session) {
   const char* name = is_stale(session) ? "the scene before" : "effect";
   ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthFixed, 8.0F * em);
   ImGui::TableSetupColumn("plan", ImGuiTableColumnFlags_WidthFixed, 5.2F * em);
-  ImGui::TableSetupColumn("bound at cursor");
+  ImGui::TableSetupColumn("influence at cursor");
   ImGui::TableSetupColumn("maximum without it");
   ImGui::TableSetupColumn("why", is_narrow ? ImGuiTableColumnFlags_WidthFixed : ImGuiTableColumnFlags_WidthStretch);
   ImGui::TableHeadersRow();

@@ -1,0 +1,382 @@
+#include "plan/effect_bounds.hpp"
+
+#include <algorithm>
+#include <boost/math/constants/constants.hpp>
+#include <cmath>
+#include <limits>
+
+#include "model/angles.hpp"
+#include "model/direction.hpp"
+#include "model/gamma_ratio.hpp"
+#include "model/scattering.hpp"
+#include "model/smooth_surface.hpp"
+#include "plan/geometry.hpp"
+
+namespace dolp {
+namespace {
+
+using boost::math::constants::pi;
+using boost::math::constants::root_pi;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kRounding = 1e-8;  // of the sums here, and of the band sums that they stand for
+constexpr double kRoundingOfOne = 1e-13;
+constexpr double kSmallestCosine = 1e-300;  // that may be divided by
+
+bool KeptEffects::*flag(Part part) {
+  switch (part) {
+    case Part::kFurtherBounces:
+      return &KeptEffects::further_bounces;
+    case Part::kMoments:
+      return &KeptEffects::moments;
+    case Part::kSource:
+      return &KeptEffects::source;
+    case Part::kSurroundings:
+      return &KeptEffects::surroundings;
+    case Part::kEmission:
+      return &KeptEffects::emission;
+    case Part::kPathRadiance:
+      return &KeptEffects::path_radiance;
+    case Part::kDiffuse:
+      return &KeptEffects::diffuse;
+  }
+  return nullptr;
+}
+
+double or_infinite(double bound) { return std::isnan(bound) ? kInfinity : bound; }
+
+/// R_s of the best reflecting index, and the mean of R_s and R_p of the worst and the best one.
+struct Fresnel {
+  double most_s = 0.0;
+  double least = 1.0;
+  double most = 0.0;
+};
+
+Fresnel fresnel(const std::vector<OpticalConstants>& indices, double cosine) {
+  Fresnel all;
+  for (const OpticalConstants& index : indices) {
+    const SmoothAbsorptance absorbed = smooth_absorptance(index, std::max(cosine, kSmallestCosine));
+    const double mean = 1.0 - 0.5 * (absorbed.s + absorbed.p);
+    all.most_s = std::max(all.most_s, std::min(1.0, 1.0 - absorbed.s + kRoundingOfOne));
+    all.least = std::min(all.least, std::max(0.0, mean - kRoundingOfOne));
+    all.most = std::max(all.most, mean + kRoundingOfOne);
+  }
+  return all;
+}
+
+/// Most of smith's L(theta) = E[(t_x - mu)+] / mu, mu = cot(theta): E|t_x| / (2 mu).
+double most_lambda(Distribution distribution, const SlopeShape& shape, const CosSin& a) {
+  if (shape.sigma == 0.0 || a.sin == 0.0) return 0.0;
+  double mean = slope_width(shape) / root_pi<double>();
+  if (distribution == Distribution::kCauchy) mean = shape.q > 1.5 ? mean / gamma_ratio(shape.q - 1.5) : kInfinity;
+  return a.cos > 0.0 ? 0.5 * mean * a.sin / a.cos : kInfinity;
+}
+
+/// Half of the slope c / (1 + s) up to which every facet sends its ray up.
+double gentle_slope(const CosSin& a) { return 0.5 * a.cos / (1.0 + a.sin); }
+
+/// Equation: rho c = E[e G M], e <= max(c + s t cos(phi), 0), G <= 1. `none` and `integral`: the mean of e over the
+/// azimuths is at most c + s t / pi, that of t is pi E|t_x| / 2. `v-cavity` and `smith` reflect at most all that
+/// arrives; with `v-cavity` e G <= 2 c, and gentle facets see at most theta + their slope.
+double most_specular(const Surface& surface, const CosSin& a, const SlopeShape& roughest,
+                     const std::vector<OpticalConstants>& indices) {
+  const bool keeps_energy = surface.masking == Masking::kVCavity || surface.masking == Masking::kSmith;
+  if (!keeps_energy) return 1.0 + most_lambda(surface.distribution, roughest, a);
+  if (surface.masking == Masking::kSmith) return 1.0;
+  const double slope = gentle_slope(a);
+  const double steep = 2.0 * steeper_share(surface.distribution, roughest, slope);
+  return std::min(1.0, steep + fresnel(indices, (a.cos - a.sin * slope) / std::hypot(1.0, slope)).most_s);
+}
+
+/// Equation: with `v-cavity` e G >= 3/4 c for gentle facets, and M00 >= R_s / 2 >= R(normal) / 2.
+double least_specular(const Surface& surface, const CosSin& a, const SlopeShape& roughest,
+                      const std::vector<OpticalConstants>& indices) {
+  if (surface.masking != Masking::kVCavity) return 0.0;
+  const double gentle = 1.0 - steeper_share(surface.distribution, roughest, gentle_slope(a));
+  return 0.75 * gentle * 0.5 * fresnel(indices, 1.0).least;
+}
+
+/// Ends of what a quantity can be.
+struct Range {
+  double least = 0.0;
+  double most = kInfinity;
+};
+
+/// Slope density of facets at `slope` for all sigma and q of an extent.
+///
+/// Equation: in m^2 it rises to a maximum at t^2 (gaussian) or (q - 1) t^2 (cauchy), and then falls; (q - 1) and
+/// (1 + t^2 / m^2)^-q are monotonic in q.
+Range slope_density(Distribution distribution, const EntriesExtent& extent, double slope) {
+  const bool is_gaussian = distribution == Distribution::kGaussian;
+  const double m2_low = std::pow(slope_width(extent.smoothest), 2);
+  const double m2_high = std::pow(slope_width(extent.roughest), 2);
+  const double q_low = extent.roughest.q;
+  const double q_high = extent.smoothest.q;
+  if (m2_low == 0.0) return {};  // a mirror
+  const double t2 = slope * slope;
+  const auto density = [&](double m2, double q) {
+    return (is_gaussian ? std::exp(-t2 / m2) : std::exp(-q * std::log1p(t2 / m2))) / (pi<double>() * m2);
+  };
+  const double peak = is_gaussian ? t2 : (q_low - 1.0) * t2;
+  return {(is_gaussian ? 1.0 : q_low - 1.0) * std::min(density(m2_low, q_high), density(m2_high, q_high)),
+          (is_gaussian ? 1.0 : q_high - 1.0) * density(std::clamp(peak, m2_low, m2_high), q_low)};
+}
+
+/// f cos(theta_i) cos(theta_r) for k_s = 1, in 1/sr: the closed form p (1 + t^2)^2 G M / 4 but for G, which is exact
+/// for `none` and `v-cavity`, in [1/2, 1] for `integral`, in [1 / (1 + L + L_r), 1] for `smith`.
+Range beam_range(const Surface& surface, const BeamAngles& angles, const EntriesExtent& extent,
+                 const std::vector<OpticalConstants>& indices) {
+  if (!has_facet(angles)) return {};
+  const kernel::GeometryNode g = geometry_node(angles.theta_i_deg, angles.theta_r_deg, angles.delta_phi_deg);
+  const double sec2 = 1.0 + g.slope * g.slope;
+  Range masking{1.0, 1.0};
+  if (surface.masking == Masking::kIntegral) masking.least = 0.5;
+  if (surface.masking == Masking::kVCavity)
+    masking.least = masking.most = std::min(1.0, 2.0 * std::min(g.c_i, g.c_r) / (std::sqrt(sec2) * g.cos_beta));
+  if (surface.masking == Masking::kSmith)
+    masking.least = 1.0 / (1.0 + most_lambda(surface.distribution, extent.roughest, {g.c_i, g.s_i}) +
+                           most_lambda(surface.distribution, extent.roughest, {g.c_r, g.s_r}));
+  const Range density = slope_density(surface.distribution, extent, g.slope);
+  const Fresnel reflected = fresnel(indices, g.cos_beta);
+  const double jacobian = 0.25 * sec2 * sec2;
+  return {jacobian * density.least * masking.least * reflected.least,
+          jacobian * density.most * masking.most * reflected.most};
+}
+
+void add(EntriesExtent& extent, const SceneEntry& entry) {
+  const bool is_first = extent.theta_deg.empty();
+  extent.theta_deg.push_back(entry.theta_deg);
+  if (is_first) extent.roughest = extent.smoothest = entry.shape;
+  extent.roughest.sigma = std::max(extent.roughest.sigma, entry.shape.sigma);
+  extent.roughest.q = std::min(extent.roughest.q, entry.shape.q);
+  extent.smoothest.sigma = std::min(extent.smoothest.sigma, entry.shape.sigma);
+  extent.smoothest.q = std::max(extent.smoothest.q, entry.shape.q);
+  if (entry.index) extent.indices.push_back(*entry.index);
+}
+
+EntriesExtent extent_of_grid(const SceneEntries& entries) {
+  const auto [sigma_low, sigma_high] = std::ranges::minmax(entries.sigma());
+  const auto [q_low, q_high] = std::ranges::minmax(entries.q());
+  EntriesExtent extent{entries.theta_deg(), {sigma_high, q_low}, {sigma_low, q_high}, {}};
+  if (!entries.has_own_index()) return extent;
+  PerAxis place{};
+  for (std::size_t n = 0; n < at(entries.counts(), Axis::kN); ++n) {
+    for (std::size_t k = 0; k < at(entries.counts(), Axis::kK); ++k) {
+      place[static_cast<std::size_t>(Axis::kN)] = n;
+      place[static_cast<std::size_t>(Axis::kK)] = k;
+      extent.indices.push_back(entries.index_at(place));
+    }
+  }
+  return extent;
+}
+
+}  // namespace
+
+bool is_kept(const KeptEffects& kept, Part part) { return kept.*flag(part); }
+
+KeptEffects without(KeptEffects kept, Part part) {
+  kept.*flag(part) = false;
+  return kept;
+}
+
+std::vector<EntriesExtent> extents_of(const SceneEntries& entries) {
+  const std::size_t wavelengths = std::max<std::size_t>(1, entries.wavelength_um().size());
+  if (entries.is_grid()) return {wavelengths, extent_of_grid(entries)};
+  std::vector<EntriesExtent> extents(wavelengths);
+  for (const SceneEntry& entry : entries.all()) add(extents[entry.wavelength], entry);
+  return extents;
+}
+
+/// Bounds of Stokes sums.
+struct EffectBounds::Sums {
+  double least_i = 0.0;
+  double most_i = 0.0;   ///< of |I|; only of what a part adds
+  double most_qu = 0.0;  ///< of the length of (Q, U)
+  double most_polarisation = kInfinity;
+};
+
+EffectBounds::EffectBounds(const Scene& scene, const EntriesExtent& extent)
+    : scene_(scene), is_bistatic_(scene.geometry.mode == Mode::kBistatic) {
+  const SpectralRule rule = spectral_rule(scene);
+  for (const SpectralSample& sample : rule.samples) {
+    total_.emitted += sample.emitted;
+    total_.surroundings += std::abs(sample.surroundings);
+    total_.excess += std::abs(sample.excess);
+    total_.irradiance += std::abs(sample.irradiance);
+    has_negative_ |= sample.emitted < 0.0 || sample.surroundings < 0.0 || sample.irradiance < 0.0;
+  }
+  path_ = rule.path_exitance;
+  if (extent.theta_deg.empty()) return;
+  std::vector<OpticalConstants> indices = rule.indices();
+  indices.insert(indices.end(), extent.indices.begin(), extent.indices.end());
+  add_reflectances(extent, indices);
+  if (is_bistatic_ && total_.irradiance > 0.0) add_beams(extent, indices);
+}
+
+void EffectBounds::add_reflectances(const EntriesExtent& extent, const std::vector<OpticalConstants>& indices) {
+  const Surface& surface = scene_.surface;
+  const double seen_deg = is_bistatic_ ? scene_.geometry.view_zenith_deg : *std::ranges::max_element(extent.theta_deg);
+  const double theta_deg = zenith_before_limit_deg(surface.masking, seen_deg);
+  const CosSin a = cos_sin_deg(theta_deg);
+  const double cosine = std::max(a.cos, kSmallestCosine);
+  most_specular_ = surface.specular * most_specular(surface, a, extent.roughest, indices);
+  least_rho_ = surface.specular * least_specular(surface, a, extent.roughest, indices) + 0.0;
+  if (surface.scattering == Scattering::kMultiple) {
+    // A second facet meets the light where the first is steeper than 30 degrees - theta / 3.
+    const double slope = std::tan((30.0 - theta_deg / 3.0) * pi<double>() / 180.0);
+    further_ = surface.specular * steeper_share(surface.distribution, extent.roughest, slope);
+  }
+  const double c = surface.diffuse_exponent;
+  if (surface.diffuse > 0.0) {
+    const bool diverges = c < 0.0 && seen_deg == 90.0;
+    most_diffuse_ = diverges ? kInfinity : 2.0 * surface.diffuse * std::pow(cosine, c) / (c + 2.0);
+    least_rho_ += 2.0 * surface.diffuse / (c + 2.0);
+  }
+  least_smooth_ = 0.5 * (1.0 - fresnel(indices, cosine).most_s);
+}
+
+void EffectBounds::add_beams(const EntriesExtent& extent, const std::vector<OpticalConstants>& indices) {
+  const Surface& surface = scene_.surface;
+  const double view_deg = zenith_before_limit_deg(surface.masking, scene_.geometry.view_zenith_deg);
+  const double cosine = std::max(cos_sin_deg(view_deg).cos, kSmallestCosine);
+  const double c = surface.diffuse_exponent;
+  least_beam_ = kInfinity;
+  for (const double theta_deg : extent.theta_deg) {
+    const Range f = beam_range(surface, {theta_deg, view_deg, scene_.geometry.relative_azimuth_deg}, extent, indices);
+    const double to_exitance = pi<double>() * surface.specular / cosine;
+    const double diffuse = surface.diffuse * std::pow(cos_sin_deg(theta_deg).cos, c + 1.0) * std::pow(cosine, c);
+    const double most = surface.specular == 0.0 ? diffuse : to_exitance * f.most + diffuse;
+    most_beam_ = std::max(most_beam_, most);
+    least_beam_ = std::min(least_beam_, to_exitance * f.least + diffuse);
+  }
+  if (surface.scattering == Scattering::kMultiple) most_beam_ = kInfinity;  // further bounces have no closed form
+}
+
+/// The exitance of emission and surroundings that rho is multiplied by, at most.
+double EffectBounds::weight(const KeptEffects& kept) const {
+  const bool is_kirchhoff = scene_.emission && scene_.emission->model == EmissionModel::kMoments;
+  const double emitted = kept.emission && is_kirchhoff ? total_.emitted : 0.0;
+  const double surroundings = kept.surroundings ? total_.surroundings : 0.0;
+  const bool has_both = emitted != 0.0 && kept.surroundings && scene_.surroundings;
+  return has_both ? total_.excess : std::max(emitted, surroundings);
+}
+
+/// That of a source which shines into the hemisphere.
+double EffectBounds::incident(const KeptEffects& kept) const {
+  return is_bistatic_ || !kept.source ? 0.0 : total_.irradiance;
+}
+
+/// A of the specular part.
+double EffectBounds::most_rho(const KeptEffects& kept) const {
+  if (!kept.moments) return 0.0;
+  const double further = kept.further_bounces ? further_ : 0.0;
+  return std::min(most_specular_ + further, std::max(most_specular_, scene_.surface.specular));
+}
+
+EffectBounds::Sums EffectBounds::sums(const KeptEffects& kept) const {
+  const EmissionModel model = scene_.emission ? scene_.emission->model : EmissionModel::kMoments;
+  const bool emits = kept.emission && total_.emitted > 0.0;
+  const double gap = weight(kept);
+  const double most = most_rho(kept) + most_diffuse_;
+  const double beam = is_bistatic_ && kept.source ? total_.irradiance : 0.0;
+  const bool takes = has_negative_ || !kept.surroundings || total_.surroundings < total_.emitted;
+  Sums sum;
+  sum.most_qu = (gap + incident(kept)) * 0.5 * most_rho(kept);
+  if (beam > 0.0) sum.most_qu += beam * most_beam_;
+  if (beam > 0.0 && !has_negative_) sum.least_i += beam * least_beam_;
+  bool is_physical = !has_negative_;
+  if (emits && model == EmissionModel::kMoments) {
+    const bool is_unpolarised = gap == 0.0;
+    sum.least_i += total_.emitted - (takes && !is_unpolarised ? gap * most : 0.0);
+    is_physical &= is_unpolarised || most <= 1.0;
+  } else if (emits) {
+    if (model == EmissionModel::kFresnel) sum.least_i += total_.emitted * least_smooth_;
+    sum.most_qu += 0.5 * total_.emitted;
+  }
+  if (scene_.path) {
+    sum.least_i = scene_.path->transmittance * sum.least_i + (kept.path_radiance ? path_ : 0.0);
+    sum.most_qu *= scene_.path->transmittance;
+  }
+  if (sum.least_i > 0.0) sum.most_polarisation = or_infinite(sum.most_qu / sum.least_i);
+  if (is_physical) sum.most_polarisation = std::min(1.0, sum.most_polarisation);
+  return sum;
+}
+
+EffectBounds::Sums EffectBounds::added_by(Part part, const KeptEffects& kept) const {
+  const double rho = most_rho(kept);
+  const double all_rho = rho + most_diffuse_;
+  const bool emits_directly = kept.emission && scene_.emission && scene_.emission->model == EmissionModel::kDirect;
+  const bool has_beam = is_bistatic_ && kept.source && total_.irradiance > 0.0;
+  Sums sum;
+  switch (part) {
+    case Part::kFurtherBounces:
+      sum.most_i = sum.most_qu = has_beam ? kInfinity : (weight(kept) + incident(kept)) * further_;
+      break;
+    case Part::kMoments:
+      sum.most_i = emits_directly ? kInfinity : (weight(kept) + incident(kept)) * rho;
+      sum.most_qu = 0.5 * sum.most_i;
+      break;
+    case Part::kSource:
+      sum.most_i = total_.irradiance * (is_bistatic_ ? most_beam_ : all_rho);
+      sum.most_qu = total_.irradiance * (is_bistatic_ ? most_beam_ : 0.5 * rho);
+      break;
+    case Part::kSurroundings:
+      sum.most_i = total_.surroundings * all_rho;
+      sum.most_qu = total_.surroundings * 0.5 * rho;
+      break;
+    case Part::kEmission:
+      sum.most_i = total_.emitted * std::max(1.0, all_rho - 1.0);
+      sum.most_qu = total_.emitted * 0.5 * std::max(1.0, rho);
+      break;
+    case Part::kPathRadiance:
+      sum.most_i = path_;
+      return sum;
+    case Part::kDiffuse:
+      sum.most_i = kInfinity;
+      break;
+  }
+  if (scene_.path) sum.most_i *= scene_.path->transmittance;
+  if (scene_.path) sum.most_qu *= scene_.path->transmittance;
+  return sum;
+}
+
+bool EffectBounds::adds_nothing(Part part, const KeptEffects& kept) const {
+  const Surface& surface = scene_.surface;
+  const bool emits_directly = kept.emission && scene_.emission && scene_.emission->model == EmissionModel::kDirect;
+  switch (part) {
+    case Part::kFurtherBounces:
+      return surface.scattering == Scattering::kSingle || (!emits_directly && adds_nothing(Part::kMoments, kept));
+    case Part::kMoments:
+      if (emits_directly && surface.specular > 0.0) return false;
+      return surface.specular == 0.0 || (weight(kept) == 0.0 && incident(kept) == 0.0);
+    case Part::kSource:
+      return total_.irradiance == 0.0;
+    case Part::kSurroundings:
+      return total_.surroundings == 0.0;
+    case Part::kEmission:
+      return total_.emitted == 0.0;
+    case Part::kPathRadiance:
+      return path_ == 0.0;
+    case Part::kDiffuse:
+      return surface.diffuse == 0.0;
+  }
+  return false;
+}
+
+DropBound EffectBounds::bound(Part part, const KeptEffects& kept) const {
+  if (!is_kept(kept, part) || adds_nothing(part, kept)) return {};
+  const Sums added = added_by(part, kept);
+  const Sums whole = sums(kept);
+  const Sums left = sums(without(kept, part));
+  DropBound bound;
+  bound.dolp = kInfinity;
+  if (left.least_i > 0.0) {
+    const double both = added.most_qu + (added.most_i > 0.0 ? whole.most_polarisation * added.most_i : 0.0);
+    bound.dolp = or_infinite(both / left.least_i) * (1.0 + kRounding);
+  }
+  const bool gives_rho = kept.moments || scene_.surface.specular == 0.0;
+  if (part == Part::kFurtherBounces && gives_rho) bound.rho = or_infinite(further_ / least_rho_) * (1.0 + kRounding);
+  return bound;
+}
+
+}  // namespace dolp

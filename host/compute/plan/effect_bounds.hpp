@@ -1,0 +1,78 @@
+// Closed forms of how much of the polarisation an effect can be.
+#pragma once
+
+#include <vector>
+
+#include "model/kept_effects.hpp"
+#include "model/scene_entry.hpp"
+#include "scene/scene.hpp"
+#include "spectrum/spectral_rule.hpp"
+
+namespace dolp {
+
+/// The parts of the sum that a run may leave out, each a flag of KeptEffects.
+enum class Part { kFurtherBounces, kMoments, kSource, kSurroundings, kEmission, kPathRadiance, kDiffuse };
+
+bool is_kept(const KeptEffects& kept, Part part);
+KeptEffects without(KeptEffects kept, Part part);
+
+/// Ends of what the entries of one wavelength are.
+struct EntriesExtent {
+  std::vector<double> theta_deg;
+  SlopeShape roughest;                    ///< the largest sigma and the smallest q
+  SlopeShape smoothest;                   ///< the smallest sigma and the largest q
+  std::vector<OpticalConstants> indices;  ///< of the entries' own
+};
+
+/// For each wavelength of the entries, or for the scene's.
+std::vector<EntriesExtent> extents_of(const SceneEntries& entries);
+
+/// Bounds of what the parts of a scene change at any of the entries.
+///
+/// Derivation: a part adds (dI, dQ, dU) to the Stokes sums, so that with q = (Q, U) / I and ' for the sums without it
+///   q - q' = (dQ - q dI) / I'.
+/// |dI| and |dQ, dU| are factors of the scene times the bounds 0 <= rho_I <= A, |rho_Q| <= A / 2 (least_rho from below)
+/// and those of the beam. With E, S, X the exitances of emission, surroundings and source (X only in hemispherical
+/// mode), Kirchhoff's emission gives I = E + (S - E + X) rho >= E - max(0, E - S) A and Q = (S - E + X) rho_Q, because
+/// S - E has one sign at all wavelengths: the moments weigh |S - E| + X, nothing at all where emission and surroundings
+/// have one temperature and no source shines into the hemisphere. The fresnel emission is at least E (1 - R_s) / 2; of
+/// the direct one nothing is known from below. A path multiplies all by its transmittance and adds to I. |q| <= 1 where
+/// A <= 1, which bounds rho_s and rho_p: then every part has a degree of polarisation of at most 1. All Stokes
+/// parameters are in the units of the exitances, bistatic ones times pi; sums over a band are those of the spectral
+/// rule's samples.
+class EffectBounds {
+ public:
+  EffectBounds(const Scene& scene, const EntriesExtent& extent);
+
+  /// Bound of what dropping `part` changes where `kept` is kept, at any entry; infinite where none is known, and always
+  /// for the diffuse part. Exactly 0 where the part adds nothing.
+  DropBound bound(Part part, const KeptEffects& kept) const;
+
+  /// Whether a part adds exactly nothing, at any entry.
+  bool adds_nothing(Part part, const KeptEffects& kept) const;
+
+ private:
+  struct Sums;
+  void add_reflectances(const EntriesExtent& extent, const std::vector<OpticalConstants>& indices);
+  void add_beams(const EntriesExtent& extent, const std::vector<OpticalConstants>& indices);
+  double weight(const KeptEffects& kept) const;
+  double incident(const KeptEffects& kept) const;
+  double most_rho(const KeptEffects& kept) const;
+  Sums sums(const KeptEffects& kept) const;
+  Sums added_by(Part part, const KeptEffects& kept) const;
+
+  Scene scene_;
+  bool is_bistatic_;
+  SpectralSample total_;       ///< sums of the samples' factors, of their sizes but for what is emitted
+  bool has_negative_ = false;  ///< weights of both signs, as the interpolation of a steep factor may have
+  double path_;
+  double most_specular_ = 0.0;  ///< of rho_I of the first bounce
+  double least_rho_ = 0.0;
+  double further_ = 0.0;       ///< of rho_I and rho_Q by bounces after the first, at most
+  double most_diffuse_ = 0.0;  ///< of rho
+  double least_smooth_ = 0.0;  ///< emissivity of the smooth surface
+  double most_beam_ = 0.0;     ///< exitance for E0 = 1 that is reflected into the view
+  double least_beam_ = 0.0;
+};
+
+}  // namespace dolp

@@ -6,14 +6,13 @@
 #include <cstdio>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <random>
-#include <string_view>
 
-#include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/vulkan/vulkan_evaluator.hpp"
-#include "model/status.hpp"
 #include "reference/mueller.hpp"
 #include "reference/reference_evaluator.hpp"
+#include "model/status.hpp"
+#include "properties_support.hpp"
 #include "run/scene_run.hpp"
 #include "spectrum/planck.hpp"
 
@@ -24,7 +23,7 @@ constexpr std::uint64_t kSeed = 20260212;
 constexpr int kScenes = 40;
 constexpr double kWavelength_um = 10.6;
 
-class Random {
+class RandomScenes {
  public:
   double uniform(double low, double high) { return low + (high - low) * std::generate_canonical<double, 53>(engine_); }
 
@@ -90,33 +89,18 @@ Radiance model_radiance(const Scene& scene, double theta_i_deg) {
   return l;
 }
 
-struct Choice {
-  const char* name;
-  Precision precision;
-};
-
-std::unique_ptr<MomentsEvaluator> make(const Choice& choice) {
-  if (std::string_view(choice.name).starts_with("Cpu")) return std::make_unique<CpuEvaluator>(choice.precision);
-  if (std::string_view(choice.name) == "Reference") return std::make_unique<ReferenceEvaluator>();
-  VulkanOptions options;
-  options.precision = choice.precision;
-  options.validation = ValidationMode::kOn;
-  return std::make_unique<VulkanEvaluator>(options);
-}
-
-class BistaticByEvaluator : public testing::TestWithParam<Choice> {};
+/// The kernels, and the reference.
+class BistaticByEvaluator : public testing::TestWithParam<std::optional<Kernel>> {};
 
 INSTANTIATE_TEST_SUITE_P(Bistatic, BistaticByEvaluator,
-                         testing::Values(Choice{"VulkanFloat", Precision::kFloat},
-                                         Choice{"VulkanDouble", Precision::kDouble},
-                                         Choice{"CpuDouble", Precision::kDouble},
-                                         Choice{"Reference", Precision::kAuto}),
-                         [](const testing::TestParamInfo<Choice>& test) { return test.param.name; });
+                         testing::Values(Kernel::kVulkanFloat, Kernel::kVulkanDouble, Kernel::kCpuDouble, std::nullopt),
+                         [](const auto& test) { return test.param ? name_of(*test.param) : "Reference"; });
 
 TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
   std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
-  Random random;
-  const std::unique_ptr<MomentsEvaluator> evaluator = make(GetParam());
+  RandomScenes random;
+  const std::unique_ptr<MomentsEvaluator> evaluator =
+      GetParam() ? make_evaluator(*GetParam()) : std::make_unique<ReferenceEvaluator>();
   double worst = 0.0;
   for (int n = 0; n < kScenes; ++n) {
     const Scene scene = random.scene();
@@ -163,7 +147,7 @@ class BiasedBeams final : public MomentsEvaluator, public ScatteringEvaluator {
 
 // The bound of the beam is part of the stated error, and a level in double computes the beam in double too.
 TEST(Bistatic, BeamWithALargeError_IsTriedAgainInDouble) {
-  Random random;
+  RandomScenes random;
   Scene scene = random.scene();
   scene.source->irradiance = 20.0;
   BiasedBeams evaluator;
@@ -181,7 +165,7 @@ TEST(Bistatic, BeamWithALargeError_IsTriedAgainInDouble) {
 }
 
 TEST(Bistatic, Mirror_HasNoBeamButInItsSpecularDirection) {
-  Random random;
+  RandomScenes random;
   Scene scene = random.scene();
   scene.surface.diffuse = 0.0;
   CpuEvaluator evaluator(Precision::kDouble);
@@ -196,7 +180,7 @@ TEST(Bistatic, Mirror_HasNoBeamButInItsSpecularDirection) {
 }
 
 TEST(Bistatic, BothBeamsAtNinetyDegrees_AreOutsideTheDomain) {
-  Random random;
+  RandomScenes random;
   Scene scene = random.scene();
   scene.surface.diffuse = 0.0;
   scene.geometry.view_zenith_deg = 90.0;
@@ -209,7 +193,7 @@ TEST(Bistatic, BothBeamsAtNinetyDegrees_AreOutsideTheDomain) {
 }
 
 TEST(Bistatic, OppositeAzimuth_TurnsTheSignOfU) {
-  Random random;
+  RandomScenes random;
   CpuEvaluator evaluator(Precision::kFloat);
   Scene scene = random.scene();
   const SceneEntry entry{40.0, {scene.surface.sigma, scene.surface.q}, {}};
@@ -224,7 +208,7 @@ TEST(Bistatic, OppositeAzimuth_TurnsTheSignOfU) {
 }
 
 TEST(Bistatic, SourceAngles_ShareTheMomentsOfTheView) {
-  Random random;
+  RandomScenes random;
   const Scene scene = random.scene();
   CpuEvaluator evaluator(Precision::kFloat);
   const SlopeShape shape{scene.surface.sigma, scene.surface.q};
@@ -246,7 +230,7 @@ PointResult seen_at(Scene scene, double view_zenith_deg) {
 
 TEST(Bistatic, ViewAtNinetyDegrees_IsTheLimitWhereThereIsOne) {
   constexpr double kStep = 1e-5;  // the change over 1e-4 degrees
-  Random random;
+  RandomScenes random;
   for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
     Scene scene = random.scene();
     scene.surface.masking = masking;
@@ -262,7 +246,7 @@ TEST(Bistatic, ViewAtNinetyDegrees_IsTheLimitWhereThereIsOne) {
 }
 
 TEST(Bistatic, ViewAtNinetyDegreesOfADivergingReflectance_IsOutsideTheDomain) {
-  Random random;
+  RandomScenes random;
   Scene scene = random.scene();
   scene.surface.masking = Masking::kNone;
   const PointResult r = seen_at(scene, 90.0);

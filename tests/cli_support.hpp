@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -40,6 +41,29 @@ inline const std::vector<std::string> kResultColumns = {
     "rho_i",        "rho_q",        "albedo", "stokes_i",       "stokes_q",
     "stokes_u",     "stokes_v",     "dolp",   "error_estimate", "rho_error_estimate",
     "emissivity_s", "emissivity_p", "status"};
+
+/// Neither variable may name a driver, so that the loader finds none.
+inline const std::vector<std::pair<std::string, std::string>> kNoDriver = {{"VK_DRIVER_FILES", "/nonexistent.json"},
+                                                                           {"VK_ICD_FILENAMES", "/nonexistent.json"}};
+
+inline std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+/// A message of one line that says `part`.
+inline void expect_one_line(const std::string& err, const std::string& part = "") {
+  EXPECT_EQ(std::ranges::count(err, '\n'), 1) << err;
+  EXPECT_TRUE(err.starts_with("dolp: ") && err.ends_with('\n')) << err;
+  EXPECT_NE(err.find(part), std::string::npos) << err;
+}
+
+/// Wrong input: nothing but such a message.
+inline void expect_refused(const Outcome& outcome, const std::string& part, int status = 2) {
+  EXPECT_EQ(outcome.status, status);
+  EXPECT_EQ(outcome.out, "");
+  expect_one_line(outcome.err, part);
+}
 
 /// Columns of a CSV file by name; lines that begin with # are left out.
 using Columns = std::map<std::string, std::vector<double>>;
@@ -106,11 +130,16 @@ class CommandLine : public testing::Test {
     wanted.input = input;
     return run(wanted);
   }
+  /// The report of a command that succeeds.
+  nlohmann::json report(const std::vector<std::string>& arguments) const {
+    const Outcome outcome = dolp(joined(arguments, {"--json"}));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  }
   /// What `dolp eval` finds at points.csv.
   Columns eval(const std::vector<std::string>& options) const {
-    std::vector<std::string> arguments = {"eval", "scene.toml", "--points", "points.csv", "-o", "-", "--quiet"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const Outcome outcome = dolp(arguments);
+    const Outcome outcome =
+        dolp(joined({"eval", "scene.toml", "--points", "points.csv", "-o", "-", "--quiet"}, options));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return parse_csv(outcome.out);
   }

@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <thread>
 
@@ -482,28 +481,10 @@ TEST_F(CommandLine, Materials_List_HasNameRangeAndSource) {
   EXPECT_LT(text.out.find("2 to 12.5 ", line), text.out.find("Querry 1985\n", line)) << text.out;
 }
 
-TEST_F(CommandLine, Devices_List_NamesAUsableDevice) {
-  const Outcome text = dolp({"devices"});
-  const Outcome report = dolp({"devices", "--json"});
-  ASSERT_EQ(report.status, 0) << report.err;
-  const json devices = json::parse(report.out)["devices"];
-  ASSERT_FALSE(devices.empty());
-  EXPECT_TRUE(std::ranges::any_of(devices, [](const json& device) { return device["usable"].get<bool>(); }));
-  EXPECT_EQ(text.status, 0) << text.err;
-  for (const json& device : devices) {
-    EXPECT_NE(text.out.find(device["name"].get<std::string>()), std::string::npos) << text.out;
-  }
-}
-
 TEST_F(CommandLine, Device_ByPositionAndName_ReportedAsTheDevice) {
-  const json devices = json::parse(dolp({"devices", "--json"}).out)["devices"];
-  ASSERT_FALSE(devices.empty());
-  const std::string name = devices[0]["name"];
-  for (const std::string& choice : {std::string("0"), name.substr(0, 6)}) {
-    const Outcome outcome = dolp({"table", "scene.toml", "-o", "t.nc", "--json", "--device", choice});
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_EQ(json::parse(outcome.out)["device"], name);
-  }
+  const std::vector<std::string> start = {"table", "scene.toml", "-o", "t.nc", "--device"};
+  const std::string name = report(joined(start, {"0"}))["device"];
+  EXPECT_EQ(report(joined(start, {name.substr(0, 6)}))["device"], name);
 }
 
 TEST_F(CommandLine, HelpAndVersion_OnStdout_Exit0) {

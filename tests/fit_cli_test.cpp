@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "cli_support.hpp"
 
@@ -52,16 +51,10 @@ class FitProgram : public CommandLine {
     EXPECT_LT(report["chi_square"].get<double>(), 0.01);
   }
   Outcome fit(const std::vector<std::string>& options) const {
-    std::vector<std::string> arguments = {"fit", "scene.toml", "--evaluator", "cpu"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    return dolp(arguments);
+    return dolp(joined({"fit", "scene.toml", "--evaluator", "cpu"}, options));
   }
   void expect_message(const std::vector<std::string>& options, const std::string& message) const {
-    const Outcome outcome = fit(options);
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
-    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+    expect_refused(fit(options), message);
   }
 };
 
@@ -166,10 +159,7 @@ TEST_F(FitProgram, Plot_IsAPng) {
 
 TEST_F(FitProgram, BadInput_IsOneLineThatSaysWhatIsAllowed) {
   const std::vector<std::string> good = {"--data", "data.csv", "--vary", "surface.sigma=0.02:1"};
-  const auto with = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), good.begin(), good.end());
-    return more;
-  };
+  const auto with = [&](const std::vector<std::string>& more) { return joined(good, more); };
   expect_message(with({"--vary", "surface.m=1:2"}), "surface.m is no number of a scene that can vary");
   expect_message(with({"--vary", "surface.n=3:2"}), "LOW must be below HIGH");
   expect_message(with({"--vary", "surface.n=1:2:3"}), "START must lie in LOW:HIGH");

@@ -96,15 +96,6 @@ TEST(GrazingLimit_EveryIndex, AgreesWithAnotherQuadrature) {
   }
 }
 
-TEST(GrazingLimit_Albedo, IsABetaFunction) {
-  for (const double q : kQs) {
-    const double power = 4.0 - 2.0 * q;
-    const double exact =
-        0.5 * std::sqrt(std::numbers::pi) * std::tgamma(0.5 * (power + 1.0)) / std::tgamma(0.5 * power + 1.0);
-    EXPECT_NEAR(grazing_limit_moments(kDielectric, q).albedo, exact, kRelativeAccuracy * exact);
-  }
-}
-
 /// r_q / r_i of the kernel in double at an angle short of 90 degrees.
 double quotient_before(Masking masking, const OpticalConstants& index, double q, double short_deg) {
   MomentsRequest request;

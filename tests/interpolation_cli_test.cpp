@@ -2,8 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
-
 #include "cli_support.hpp"
 #include "table/table_file.hpp"
 
@@ -20,18 +18,8 @@ const std::vector<std::string> kOff = {"--set", "accuracy.interpolation=off"};
 // Of what some directions say about all.
 constexpr double kSampling = 0.2;
 
-std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
 class DenseTable : public CommandLine {
  protected:
-  json report(const std::vector<std::string>& arguments) const {
-    const Outcome outcome = dolp(joined(arguments, {"--json"}));
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return json::parse(outcome.out);
-  }
   json table(const std::vector<std::string>& options = {}, const std::string& file = "t.nc") const {
     return report(joined({"table", "scene.toml", "-o", file}, options));
   }
@@ -67,8 +55,7 @@ TEST_F(DenseTable, Verify_FindsNothing) {
 
 TEST_F(DenseTable, RuleAttributeAndSummary_SayWhatIsInterpolated) {
   const Outcome outcome = dolp(joined({"table", "scene.toml", "-o", "t.nc"}, kDense));
-  EXPECT_NE(outcome.out.find(" moments interpolated or combined, from "), std::string::npos)
-      << outcome.out;
+  EXPECT_NE(outcome.out.find(" moments interpolated or combined, from "), std::string::npos) << outcome.out;
   std::string rule;
   for (const Attribute& attribute : read_table(at("t.nc")).attributes) {
     if (attribute.name == "rule") rule = std::get<std::string>(attribute.value);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <span>
 
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "model/index_basis.hpp"
@@ -161,60 +160,6 @@ TEST(InterpolatingEvaluator, NodeWithoutABound_ItsDirectionIsComputedEntryByEntr
   }
 }
 
-// What has no bound at one direction does not hold up the others.
-TEST(InterpolatingEvaluator, DirectionWithoutABound_IsComputedByItselfInItsPlace) {
-  class InfiniteAt40 final : public MomentsEvaluator {
-   public:
-    std::vector<Moments> evaluate(const MomentsRequest& request, const Progress&) override {
-      sizes.push_back(request.size());
-      std::vector<Moments> moments;
-      for (std::size_t i = 0; i < request.size(); ++i) {
-        const MomentsPoint point = request[i];
-        const bool is_infinite = point.theta_deg == 40.0 && point.shape.q == 8.0;
-        const double r = is_infinite ? std::numeric_limits<double>::infinity()
-                                     : smooth(point.shape) * point.theta_deg * point.index.n;
-        moments.push_back({r, r, r, r, 0.0, 0.0, 0.0, 0.0, 1.0});
-      }
-      return moments;
-    }
-    EvaluationReport report() const override { return {}; }
-    std::vector<std::size_t> sizes;
-  };
-  auto inner = std::make_unique<InfiniteAt40>();
-  const InfiniteAt40& known = *inner;
-  InterpolatingEvaluator evaluator(std::move(inner));
-  MomentsRequest request = grid_request(kModel, {10.0, 40.0, 50.0}, spaced(0.05, 1.0, 48), spaced(1.75, 8.0, 40));
-  request.indices = {{1.5, 0.0}, {3.0, 0.0}};
-  const std::vector<Moments> moments = evaluator.evaluate(request, {});
-  EXPECT_EQ(known.sizes.at(1), request.size() / 3);
-  EXPECT_EQ(evaluator.report().interpolated, 2 * request.size() / 3);
-  for (std::size_t i = 0; i < moments.size(); ++i) {
-    const MomentsPoint point = request[i];
-    const double r = smooth(point.shape) * point.theta_deg * point.index.n;
-    if (point.theta_deg == 40.0 && point.shape.q == 8.0) continue;
-    ASSERT_NEAR(moments[i].r_i, r, moments[i].r_i_error + 1e-12 * r) << i;
-  }
-}
-
-TEST(InterpolatingEvaluator, PointsGrazingAndNot_AreThoseOfEachByItself) {
-  MomentsRequest request = grid_request(kModel, {}, {}, {});
-  request.indices.clear();
-  request.append({70.0, {0.1, 2.0}, {1.5, 0.1}});
-  request.append({89.99, {0.2, 3.0}, {1.4, 0.0}});
-  request.append({60.0, {0.3, 2.5}, {10.0, 60.0}});
-  InterpolatingEvaluator evaluator(std::make_unique<CpuEvaluator>(Precision::kDouble));
-  const std::vector<Moments> together = evaluator.evaluate(request, {});
-  ASSERT_EQ(together.size(), 3U);
-  for (std::size_t i = 0; i < together.size(); ++i) {
-    MomentsRequest alone = grid_request(kModel, {}, {}, {});
-    alone.indices.clear();
-    alone.append(request[i]);
-    const Moments exact = evaluator.evaluate(alone, {}).front();
-    EXPECT_NEAR(together[i].r_i, exact.r_i, together[i].r_i_error + exact.r_i_error) << i;
-    EXPECT_NEAR(together[i].albedo, exact.albedo, together[i].albedo_error + exact.albedo_error) << i;
-  }
-}
-
 TEST(InterpolatingEvaluator, Progress_RisesToAll_AndCancels) {
   Interpolated one = interpolated(smooth);
   std::vector<std::size_t> done;
@@ -276,14 +221,8 @@ TEST_P(RandomGrids, StatedErrors_HoldAgainstEveryEntryByItself) {
       }
       const std::vector<Moments> truth = exact->evaluate(some, {});
       for (std::size_t i = 0; i < kChecked; ++i) {
-        const Moments& m = moments[positions[i]];
-        for (const Quantity& quantity : kQuantities) {
-          EXPECT_LE(std::abs(m.*quantity.value - truth[i].*quantity.value),
-                    m.*quantity.error + truth[i].*quantity.error)
-              << quantity.name << " at " << positions[i] << ", tolerance " << request.tolerance << ": theta "
-              << some[i].theta_deg << " sigma " << some[i].shape.sigma << " q " << some[i].shape.q << " n "
-              << request.indices[0].n << " k " << request.indices[0].k;
-        }
+        const Point point{some[i].theta_deg, some[i].shape, some[i].index};
+        expect_within_bounds(moments[positions[i]], truth[i], text_of(point));
       }
     }
   }
@@ -325,11 +264,8 @@ TEST_P(RandomGrids, StatedErrors_HoldAgainstEveryIndexByItself) {
     alone.tolerance = std::max(1e-2 * request.tolerance, 1e-10);
     const std::vector<Moments> truth = exact->evaluate(alone, {});
     for (std::size_t i = 0; i < truth.size(); ++i) {
-      for (const auto& [value, error] : std::span(kMomentMembers).first(request.wants_direct ? 6 : 4)) {
-        ASSERT_LE(std::abs(moments[i].*value - truth[i].*value), moments[i].*error + truth[i].*error)
-            << "entry " << i << " member " << moments[i].*value << " tolerance " << request.tolerance << " theta "
-            << request[i].theta_deg << " n " << request[i].index.n << " k " << request[i].index.k;
-      }
+      const Point point{request[i].theta_deg, request[i].shape, request[i].index};
+      expect_within_bounds(moments[i], truth[i], text_of(point));
     }
   }
   EXPECT_GT(combined, 0U);

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "cli_support.hpp"
@@ -30,9 +29,7 @@ std::string random_points(std::size_t count) {
 class Lookup : public CommandLine {
  protected:
   void make_table(const std::vector<std::string>& options) const {
-    std::vector<std::string> arguments = {"table", "scene.toml", "-o", "t.nc", "--quiet"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const Outcome outcome = dolp(arguments);
+    const Outcome outcome = dolp(joined({"table", "scene.toml", "-o", "t.nc", "--quiet"}, options));
     ASSERT_EQ(outcome.status, 0) << outcome.err;
   }
   /// 18 x 12 x 7 entries.
@@ -49,12 +46,6 @@ class Lookup : public CommandLine {
     const Outcome outcome = lookup(options);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return parse_csv(outcome.out);
-  }
-  void expect_message(const Outcome& outcome, const std::string& message) const {
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
-    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
   }
 };
 
@@ -135,27 +126,27 @@ TEST_F(Lookup, QuantitiesThatTheTableLacks_AreNan) {
 TEST_F(Lookup, BadPoints_NameLineColumnAndRange) {
   make_table({});
   put("points.csv", "theta_deg,sigma,q\n30,0.2,2\n81,0.2,2\n");
-  expect_message(lookup(), "points.csv:3: theta_deg = 81: outside the table, which has [0, 80.5]");
+  expect_refused(lookup(), "points.csv:3: theta_deg = 81: outside the table, which has [0, 80.5]");
   put("points.csv", "theta_deg,sigma\n30,0.5\n");
-  expect_message(lookup(), "points.csv:2: sigma = 0.5: outside the table, which has [0.1, 0.4]");
+  expect_refused(lookup(), "points.csv:2: sigma = 0.5: outside the table, which has [0.1, 0.4]");
   put("points.csv", "sigma,q\n0.2,2\n");
-  expect_message(lookup(), "points.csv:1: column \"theta_deg\" is missing, a number in [0, 80.5]");
+  expect_refused(lookup(), "points.csv:1: column \"theta_deg\" is missing, a number in [0, 80.5]");
   put("points.csv", "theta_deg,n\n30,1.6\n");
-  expect_message(lookup(), "points.csv:2: n = 1.6: the table is of n = 1.5; dolp eval computes other indices");
+  expect_refused(lookup(), "points.csv:2: n = 1.6: the table is of n = 1.5; dolp eval computes other indices");
   put("points.csv", "theta_deg,n,k\n30,1.5,0.1\n");
   EXPECT_EQ(lookup().status, 0);
 }
 
 TEST_F(Lookup, BadTable_IsRefused) {
-  expect_message(lookup(), "t.nc: there is no such file");
+  expect_refused(lookup(), "t.nc: there is no such file");
   ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.csv", "--quiet"}).status, 0);
-  expect_message(dolp({"lookup", "t.csv", "--points", "points.csv", "-o", "-"}), "t.csv: only a table written as .nc");
+  expect_refused(dolp({"lookup", "t.csv", "--points", "points.csv", "-o", "-"}), "t.csv: only a table written as .nc");
 }
 
 TEST_F(Lookup, OutputOverAnInput_IsRefused) {
   make_table({});
   const std::string before = content("t.nc");
-  expect_message(dolp({"lookup", "t.nc", "--points", "points.csv", "-o", "t.nc"}), "would overwrite an input");
+  expect_refused(dolp({"lookup", "t.nc", "--points", "points.csv", "-o", "t.nc"}), "would overwrite an input");
   EXPECT_EQ(content("t.nc"), before);
 }
 

@@ -73,13 +73,7 @@ class StoredValues : public testing::TestWithParam<Case> {
 
 TEST_P(StoredValues, EveryEntry_ErrorIsBelowItsEstimate) {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
-    for (const Quantity& q : kQuantities) {
-      const double value = moments_[i].*q.value;
-      const double reference = rows_[i].moments.*q.value;
-      EXPECT_LE(std::abs(value - reference), moments_[i].*q.error + rows_[i].moments.*q.error)
-          << q.name << " of " << rows_[i].name << " at " << text_of(points_of(rows_)[i]) << ": " << value
-          << " instead of " << reference;
-    }
+    expect_within_bounds(rows_[i].moments, moments_[i], rows_[i].name + " at " + text_of(points_of(rows_)[i]));
   }
 }
 
@@ -124,11 +118,7 @@ TEST(NearCoincidences, EveryEntry_ErrorIsBelowItsEstimate) {
       const std::vector<Moments> moments =
           make_evaluator(Kernel::kCpuDouble)->evaluate(request_of(model, points, tolerance), {});
       for (std::size_t i = 0; i < moments.size(); ++i) {
-        for (const Quantity& q : kQuantities) {
-          EXPECT_LE(std::abs(moments[i].*q.value - references[i].*q.value),
-                    moments[i].*q.error + references[i].*q.error)
-              << q.name << " " << name_of(model) << " at " << text_of(points[i]) << ", tolerance " << tolerance;
-        }
+        expect_within_bounds(moments[i], references[i], name_of(model) + " at " + text_of(points[i]));
       }
     }
   }

@@ -9,7 +9,6 @@
 #include <complex>
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -17,7 +16,7 @@
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/angles.hpp"
 #include "mueller_support.hpp"
-#include "reference/reference_evaluator.hpp"
+#include "properties_support.hpp"
 
 namespace dolp {
 namespace {
@@ -36,48 +35,26 @@ const std::size_t kPoints = points_per_model();
 // nothing has a relative accuracy.
 constexpr double kSmallest = 1e-280;
 
-struct Kernel {
-  const char* name;
-  bool on_device;
-  Precision precision;
-  double tolerance() const { return precision == Precision::kDouble ? kScatteringErrorDouble : kScatteringErrorFloat; }
-};
-constexpr std::array kKernels = {
-    Kernel{"VulkanFloat", true, Precision::kFloat}, Kernel{"VulkanDouble", true, Precision::kDouble},
-    Kernel{"CpuFloat", false, Precision::kFloat}, Kernel{"CpuDouble", false, Precision::kDouble}};
-
-using Case = std::tuple<Kernel, Distribution, Masking>;
-
-class EveryKernel : public testing::TestWithParam<Case> {
+class MuellerKernel : public testing::TestWithParam<std::tuple<Kernel, Model>> {
  protected:
   Kernel kernel() const { return std::get<0>(GetParam()); }
-  Distribution distribution() const { return std::get<1>(GetParam()); }
-  Masking masking() const { return std::get<2>(GetParam()); }
-  RandomPoints random() const { return {kSeed, masking()}; }
-  double tolerance() const { return kernel().tolerance(); }
+  RandomPoints random() const { return {kSeed, std::get<1>(GetParam()).masking}; }
+  double tolerance() const { return is_double(kernel()) ? kScatteringErrorDouble : kScatteringErrorFloat; }
 
   std::vector<Matrix> scatter(ScatteringEvaluator& evaluator, const std::vector<ScatteringPoint>& points) const {
+    const Model model = std::get<1>(GetParam());
     std::vector<Matrix> matrices;
-    for (const ScatteringMatrix& f : evaluator.scatter(request_of(distribution(), masking(), points), {})) {
+    for (const ScatteringMatrix& f : evaluator.scatter(request_of(model.distribution, model.masking, points), {})) {
       matrices.emplace_back(Eigen::Map<const Matrix>(f.m.data()));
     }
     return matrices;
   }
-
   std::vector<Matrix> scatter(const std::vector<ScatteringPoint>& points) const {
-    if (!kernel().on_device) {
-      CpuEvaluator evaluator(kernel().precision);
-      return scatter(evaluator, points);
-    }
-    VulkanOptions options;
-    options.precision = kernel().precision;
-    options.validation = ValidationMode::kOn;
-    VulkanEvaluator evaluator(options);
-    return scatter(evaluator, points);
+    return scatter(*make_evaluator(kernel())->scattering(), points);
   }
 };
 
-TEST_P(EveryKernel, AllElements_AgreeWithExplicitVectors) {
+TEST_P(MuellerKernel, AllElements_AgreeWithExplicitVectors) {
   const std::vector<ScatteringPoint> points = random().draw(kPoints);
   const std::vector<Matrix> matrices = scatter(points);
   ReferenceEvaluator reference_evaluator;
@@ -107,7 +84,7 @@ std::vector<ScatteringPoint> exchanged(std::vector<ScatteringPoint> points, doub
 }
 
 // f(i, r, dphi) = S f(r, i, -dphi)^T S with S = diag(1, 1, -1, 1); with dphi unchanged S = diag(1, 1, 1, -1).
-TEST_P(EveryKernel, ExchangedBeams_GiveTheTransposedMatrix) {
+TEST_P(MuellerKernel, ExchangedBeams_GiveTheTransposedMatrix) {
   const Matrix mirrored = Eigen::Vector4d(1.0, 1.0, -1.0, 1.0).asDiagonal();
   const Matrix kept = Eigen::Vector4d(1.0, 1.0, 1.0, -1.0).asDiagonal();
   const std::vector<ScatteringPoint> points = random().draw(kPoints);
@@ -124,7 +101,7 @@ TEST_P(EveryKernel, ExchangedBeams_GiveTheTransposedMatrix) {
 }
 
 // The surface has a mirror plane: f(-dphi) = T f(dphi) T with T = diag(1, 1, -1, -1), to the last bit.
-TEST_P(EveryKernel, OppositeAzimuth_TurnsTheSignsOfUAndV) {
+TEST_P(MuellerKernel, OppositeAzimuth_TurnsTheSignsOfUAndV) {
   const Matrix mirror = Eigen::Vector4d(1.0, 1.0, -1.0, -1.0).asDiagonal();
   std::vector<ScatteringPoint> points = random().draw(kPoints);
   const std::vector<Matrix> f = scatter(points);
@@ -156,7 +133,7 @@ Eigen::Matrix4cd coherency(const Matrix& f) {
 
 // A pure (Mueller-Jones) matrix: one eigenvalue above rounding, none below, so that no Stokes vector becomes
 // unphysical.
-TEST_P(EveryKernel, EveryMatrix_IsRealisable) {
+TEST_P(MuellerKernel, EveryMatrix_IsRealisable) {
   const std::vector<ScatteringPoint> points = random().draw(kPoints);
   const std::vector<Matrix> matrices = scatter(points);
   for (std::size_t i = 0; i < kPoints; ++i) {
@@ -169,21 +146,13 @@ TEST_P(EveryKernel, EveryMatrix_IsRealisable) {
   }
 }
 
-std::string name_of(const testing::TestParamInfo<Case>& test) {
-  constexpr std::array kMaskings = {"None", "VCavity", "Integral", "Smith"};
-  const auto [kernel, distribution, masking] = test.param;
-  return std::string(kernel.name) + (distribution == Distribution::kCauchy ? "Cauchy" : "Gaussian") +
-         kMaskings[static_cast<std::size_t>(masking)];
-}
+INSTANTIATE_TEST_SUITE_P(Mueller, MuellerKernel,
+                         testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)),
+                         [](const testing::TestParamInfo<std::tuple<Kernel, Model>>& test) {
+                           return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
+                         });
 
-INSTANTIATE_TEST_SUITE_P(
-    Mueller, EveryKernel,
-    testing::Combine(testing::ValuesIn(kKernels), testing::Values(Distribution::kCauchy, Distribution::kGaussian),
-                     testing::Values(Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith)),
-    name_of);
-
-// ---- Limits and extremes
-// ---------------------------------------------------------------------------------------------
+// ---- Limits and extremes -------------------------------------------------------------------------------------------
 
 Matrix plain_mueller(const BeamAngles& angles, const OpticalConstants& index = {1.5, 0.2}) {
   CpuEvaluator evaluator(Precision::kDouble);
@@ -304,8 +273,7 @@ TEST(Mueller, HemisphericalSum_GivesTheMoments) {
   EXPECT_NEAR(r_q, moments.r_q, kMidpointError * moments.r_i);
 }
 
-// ---- The device's tiles
-// ----------------------------------------------------------------------------------------------
+// ---- The device's tiles --------------------------------------------------------------------------------------------
 
 TEST(MuellerOnTheDevice, TilesAndStaging_ChangeNoBit) {
   const std::vector<ScatteringPoint> points = RandomPoints(kSeed, Masking::kIntegral).draw(300);

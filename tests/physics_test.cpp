@@ -1,4 +1,4 @@
-// The shaders' elementary functions, Fresnel reflection and facets, in float and in double, against
+// The shaders' elementary functions and Fresnel reflection, in float and in double, against
 // evaluations in higher precision. Each row prints its worst error, also when it passes.
 #include <gtest/gtest.h>
 
@@ -348,90 +348,6 @@ TYPED_TEST(FresnelText, TotalReflection_AbsorbsExactlyNothing) {
     EXPECT_LE(relative_error(f.absorbed_s, 1 - exact.r_s), 3.0 * kFresnelUlps * kEpsilon<TypeParam>) << n;
     EXPECT_GT(f.absorbed_s, Real(0));
   }
-}
-
-// ---- Facets --------------------------------------------------------------------------------------------------------
-
-using Vector = std::array<Wide, 3>;
-
-Wide dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-// Reflection off a facet from vectors: theta in the plane y = 0, the facet's normal tilted toward its azimuth.
-struct ExactFacet {
-  Wide e;
-  Wide cos_r;
-  Wide r_s;
-  Wide m00;
-  Wide m01;
-};
-
-ExactFacet exact_facet(const kernel::IndexNode& index, const std::array<double, 2>& theta, double t,
-                       const std::array<double, 2>& azimuth) {
-  const Wide length = sqrt(Wide(theta[0]) * theta[0] + Wide(theta[1]) * theta[1]);
-  const Wide around = sqrt(Wide(azimuth[0]) * azimuth[0] + Wide(azimuth[1]) * azimuth[1]);
-  const Vector view = {theta[1] / length, Wide(0), theta[0] / length};
-  const Wide r = 1 / sqrt(1 + Wide(t) * t);
-  const Vector normal = {r * t * azimuth[0] / around, r * t * azimuth[1] / around, r};
-  const Wide cos_beta = dot(normal, view);
-  const Vector s_local = cross(normal, view);  // sin(beta) long, as s of the facet
-  const Vector s_global = {Wide(0), Wide(1), Wide(0)};
-  const Wide sin2 = dot(s_local, s_local);
-  const Wide along = dot(s_local, s_global);
-  const WideComplex n2(Wide(index.n2m1_re) + 1, Wide(index.n2m1_im));
-  const WideComplex w = sqrt(WideComplex(n2 - sin2));
-  const Wide r_s = norm(WideComplex((cos_beta - w) / (cos_beta + w))).real();
-  const Wide r_p = norm(WideComplex((n2 * cos_beta - w) / (n2 * cos_beta + w))).real();
-  const Wide cos_2eta = sin2 > 0 ? Wide(2 * along * along / sin2 - 1) : Wide(1);
-  return {cos_beta / r, 2 * cos_beta * normal[2] - view[2], r_s, (r_s + r_p) / 2, (r_s - r_p) / 2 * cos_2eta};
-}
-
-TYPED_TEST(FresnelText, RandomFacets_ReflectAsTheirVectorsSay) {
-  using Real = RealOf<TypeParam>;
-  // Fresnel's roundings and those of the rotation; what rounding does to cos(beta) where e = c + s t x cancels is
-  // felt up to fourfold.
-  constexpr double kFacetUlps = kFresnelUlps + 12.0;
-  constexpr double kFeltUlps = 8.0;
-  std::mt19937 random(kSeed);
-  std::uniform_real_distribution<double> unit(0.0, 1.0);
-  Worst worst;
-  TypeParam text;
-  for (const OpticalConstants& optical : {OpticalConstants{1.508, 0.0}, OpticalConstants{27.0, 90.0},
-                                          OpticalConstants{0.2, 3.0}, OpticalConstants{1.5, 1e-3}}) {
-    const kernel::IndexNode index = rounded_index<TypeParam>(optical);
-    for (int i = 0; i < kSamples / 10; ++i) {
-      const double angle = 0.5 * pi * (i % 10 == 0 ? 1.0 - 1e-3 * unit(random) : unit(random));
-      const double phi = pi * (i % 10 == 1 ? 1e-3 * unit(random) : unit(random));
-      const Real t = static_cast<Real>(i % 10 == 1 ? std::tan(angle) : std::pow(10.0, 6.0 * unit(random) - 4.0));
-      typename TypeParam::ThetaNode theta{};
-      theta.c = static_cast<Real>(std::cos(angle));
-      theta.s = static_cast<Real>(std::sin(angle));
-      const Real x = static_cast<Real>(std::cos(phi));
-      const Real sin_phi = static_cast<Real>(std::sin(phi));
-      const ExactFacet exact =
-          exact_facet(index, {static_cast<double>(theta.c), static_cast<double>(theta.s)}, static_cast<double>(t),
-                      {static_cast<double>(x), static_cast<double>(sin_phi)});
-      if (exact.cos_r <= 0) continue;
-      const double scale = static_cast<double>(theta.c + theta.s * t * abs(x));
-      const double allowed = kEpsilon<TypeParam> * (kFacetUlps + kFeltUlps * scale / static_cast<double>(exact.e));
-      const auto f = text.facet(theta, index_in<TypeParam>(index), t, x, sin_phi);
-      const std::string where = std::to_string(optical.n) + " theta " + std::to_string(angle) + " phi " +
-                                std::to_string(phi) + " t " + std::to_string(static_cast<double>(t));
-      const auto check = [&](const char* name, Real value, const Wide& of, const Wide& size) {
-        const double error = static_cast<double>(abs(Wide(static_cast<double>(value)) - of) / size);
-        worst.update(error / allowed, std::string(name) + " " + where);
-      };
-      check("e", f.e, exact.e, exact.e);
-      check("cos_r", f.cos_r, exact.cos_r, Wide(1));
-      check("m00", f.m00, exact.m00, exact.r_s);
-      check("m01", f.m01, exact.m01, exact.r_s);
-      check("absorbed", f.absorbed, 1 - exact.m00, 1 - exact.m00);
-    }
-  }
-  std::printf("seed %u: worst error over tolerance %.2f at %s\n", kSeed, worst.value, worst.where.c_str());
-  EXPECT_LE(worst.value, 1.0) << worst.where;
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "cli_support.hpp"
 #include "table/table_file.hpp"
@@ -13,8 +12,6 @@ namespace {
 using namespace dolp;
 using nlohmann::json;
 
-const std::vector<std::pair<std::string, std::string>> kNoDriver = {{"VK_DRIVER_FILES", "/nonexistent.json"},
-                                                                    {"VK_ICD_FILENAMES", "/nonexistent.json"}};
 const std::vector<std::string> kIsothermal = {"--set", "surroundings.temperature_K=300"};
 const std::vector<std::string> kBistatic = {"--set", "geometry.mode=bistatic", "--set",
                                             "source.relative_irradiance=0.5"};
@@ -26,11 +23,6 @@ const std::vector<std::string> kBeamAlone = {"--set", "surroundings.temperature_
 constexpr double kOrderRounding = 0.05;
 // Of what 256 of many entries say about all.
 constexpr double kSampling = 0.1;
-
-std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
 
 std::vector<std::string> names_in(const json& rows) {
   std::vector<std::string> names;
@@ -45,11 +37,6 @@ bool has(const json& rows, const std::string& name) {
 
 class Plan : public CommandLine {
  protected:
-  json report(const std::vector<std::string>& arguments) const {
-    const Outcome outcome = dolp(joined(arguments, {"--json"}));
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return json::parse(outcome.out);
-  }
   json plan(const std::vector<std::string>& options = {}) const {
     return report(joined({"plan", "scene.toml"}, options));
   }

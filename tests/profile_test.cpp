@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <span>
 
-#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "properties_support.hpp"
 
 namespace dolp {
 namespace {
@@ -68,18 +67,13 @@ TEST(Profiles, SharedByManyShapes_StatedErrorsHoldAgainstEveryEntryByItself) {
         for (std::size_t i = 0; i < request.size(); i += kEvery) alone.append(request[i]);
         const std::vector<Moments> exact = cpu.evaluate(alone, {});
         for (std::size_t i = 0; i < exact.size(); ++i) {
-          const Moments& own = shared[i * kEvery];
-          for (const auto& [value, error] : kMomentMembers) {
-            if (!(own.*error < 1.0) || std::isnan(own.*value)) continue;  // no bound, or a moment not asked for
-            EXPECT_LE(std::abs(own.*value - exact[i].*value), own.*error + exact[i].*error)
-                << name_of(masking) << ", tolerance " << tolerance << ", entry " << i * kEvery;
-            ++compared;
-          }
+          expect_within_bounds(shared[i * kEvery], exact[i], name_of(masking));
+          compared += shared[i * kEvery].r_i_error < 1.0 ? 1 : 0;
         }
       }
     }
   }
-  EXPECT_GT(compared, 1000U);
+  EXPECT_GT(compared, 250U);
 }
 
 // As when some entries of a grid are computed again: among light tails one heavy one, of a width between theirs.
@@ -102,32 +96,8 @@ TEST(Profiles, SomeShapesOfAGrid_HeaviestTailIsNotLost) {
     alone.q = {1.2};
     alone.tolerance = 1e-9;
     const Moments exact = CpuEvaluator(Precision::kDouble).evaluate(alone, {}).front();
-    for (const auto& [value, error] : std::span(kMomentMembers).first(kMomentMembers.size() - kDirectMembers)) {
-      EXPECT_LE(std::abs(own.*value - exact.*value), own.*error + exact.*error) << name_of(masking);
-    }
+    expect_within_bounds(own, exact, name_of(masking));
     EXPECT_LE(own.r_i_error, request.tolerance * own.r_i) << name_of(masking);
-  }
-}
-
-TEST(Profiles, DirectionsAndIndices_KeepTheirBitsAlone) {
-  RandomGrid grid(3);
-  CpuEvaluator cpu(Precision::kFloat);
-  for (const auto& [masking, scattering] : kModels) {
-    const MomentsRequest all = grid(masking, scattering, 1e-3);
-    const std::vector<Moments> expected = cpu.evaluate(all, {});
-    for (std::size_t theta = 0; theta < all.theta_deg.size(); ++theta) {
-      for (std::size_t index = 0; index < all.indices.size(); ++index) {
-        MomentsRequest one = all;
-        one.theta_deg = {all.theta_deg[theta]};
-        one.indices = {all.indices[index]};
-        const std::vector<Moments> moments = cpu.evaluate(one, {});
-        for (std::size_t i = 0; i < moments.size(); ++i) {
-          const Moments& other = expected[(theta * all.indices.size() + index) * moments.size() + i];
-          EXPECT_EQ(moments[i].r_i, other.r_i);
-          EXPECT_EQ(moments[i].deficit_error, other.deficit_error);
-        }
-      }
-    }
   }
 }
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -152,5 +154,20 @@ inline constexpr std::array<Quantity, 4> kQuantities{{{"r_i", &Moments::r_i, &Mo
                                                       {"r_q", &Moments::r_q, &Moments::r_q_error},
                                                       {"albedo", &Moments::albedo, &Moments::albedo_error},
                                                       {"deficit", &Moments::deficit, &Moments::deficit_error}}};
+
+/// The largest distance of two results over the bounds of both; beyond 1 it is a failure.
+inline double expect_within_bounds(const Moments& a, const Moments& b, const std::string& where, double slack = 0.0) {
+  double worst = 0.0;
+  for (const auto& [value, error] : kMomentMembers) {
+    const bool is_direct = value == &Moments::direct_i || value == &Moments::direct_q;
+    if (is_direct && std::isnan(b.*value)) continue;  // not asked for
+    const double distance = std::abs(a.*value - b.*value);
+    const double bound = a.*error + b.*error + slack;
+    EXPECT_TRUE(distance <= bound) << where << ": " << a.*value << " states " << a.*error << ", " << b.*value
+                                   << " states " << b.*error;
+    if (distance > 0.0) worst = std::max(worst, distance / bound);
+  }
+  return worst;
+}
 
 }  // namespace dolp

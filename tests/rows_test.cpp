@@ -6,7 +6,7 @@
 #include <random>
 #include <tuple>
 
-#include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "properties_support.hpp"
 
 namespace dolp {
 namespace {
@@ -71,10 +71,7 @@ TEST_P(RowKernel, Members_AgreeWithEachAloneWithinTheBounds) {
   for (std::size_t k = 0; k < alone.size(); ++k) {
     const Moments& a = alone[k];
     const Moments& b = together[positions[k]];
-    EXPECT_LE(std::abs(a.r_i - b.r_i), a.r_i_error + b.r_i_error) << positions[k];
-    EXPECT_LE(std::abs(a.r_q - b.r_q), a.r_q_error + b.r_q_error) << positions[k];
-    EXPECT_LE(std::abs(a.albedo - b.albedo), a.albedo_error + b.albedo_error) << positions[k];
-    EXPECT_LE(std::abs(a.deficit - b.deficit), a.deficit_error + b.deficit_error) << positions[k];
+    expect_within_bounds(a, b, std::to_string(positions[k]));
     shared += b.evaluations;
     alone_evaluations += a.evaluations;
   }

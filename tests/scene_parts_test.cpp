@@ -68,7 +68,7 @@ void expect_same_bits(const Scene& scene, bool device) {
   }
 }
 
-class EveryModel : public testing::TestWithParam<std::tuple<Distribution, Masking>> {
+class PartsOfModel : public testing::TestWithParam<std::tuple<Distribution, Masking>> {
  protected:
   Scene scene() const {
     Scene scene = make_scene(std::get<0>(GetParam()), std::get<1>(GetParam()), kAbsorbing);
@@ -79,26 +79,26 @@ class EveryModel : public testing::TestWithParam<std::tuple<Distribution, Maskin
 };
 
 // Grazing directions, where other nodes are wanted than elsewhere, and tails so heavy that many entries are refined.
-TEST_P(EveryModel, InterpolatedGrid_KeepsItsBitsInParts) {
+TEST_P(PartsOfModel, InterpolatedGrid_KeepsItsBitsInParts) {
   Scene dense = scene();
   dense.grid = {{90.0, 0.0, 85.0, 12.0, 89.95, 60.0, 30.0, 89.0}, spaced(1.0, 0.05, 30), spaced(least_q(), 6.0, 24)};
   expect_same_bits(dense, true);
 }
 
-TEST_P(EveryModel, ScatteredAxes_KeepTheirBitsInParts) {
+TEST_P(PartsOfModel, ScatteredAxes_KeepTheirBitsInParts) {
   Scene sparse = scene();
   sparse.grid = {{70.0, 90.0, 20.0, 0.0, 89.999, 45.0, 88.0}, {0.3, 0.0, 2.0, 0.02}, {2.0, 8.0, least_q(), 1.9, 3.0}};
   expect_same_bits(sparse, true);
   expect_same_bits(sparse, false);
 }
 
-TEST_P(EveryModel, AxesOfIndexAndWavelength_KeepTheirBitsInParts) {
+TEST_P(PartsOfModel, AxesOfIndexAndWavelength_KeepTheirBitsInParts) {
   Scene own = scene();
   own.grid = {{80.0, 30.0, 90.0}, {0.1, 0.4}, {2.0, 1.8, 5.0}, {8.0, 10.0}, {1.4, 4.0}, {0.0, 3.0}};
   expect_same_bits(own, true);
 }
 
-INSTANTIATE_TEST_SUITE_P(SceneParts, EveryModel,
+INSTANTIATE_TEST_SUITE_P(SceneParts, PartsOfModel,
                          testing::Combine(testing::ValuesIn(kDistributions), testing::ValuesIn(kMaskings)));
 
 // Many indices, which are combined from a few of all of the grid.

@@ -154,9 +154,9 @@ TEST(EvaluateScene_NoEntries, GivesNoResults) {
   EXPECT_TRUE(run(scene, {}, Evaluator::kFloat).empty());
 }
 
-class EveryModel : public testing::TestWithParam<std::tuple<Evaluator, Distribution, Masking>> {};
+class RunsOfModel : public testing::TestWithParam<std::tuple<Evaluator, Distribution, Masking>> {};
 
-TEST_P(EveryModel, PermutedEntries_KeepTheirBits) {
+TEST_P(RunsOfModel, PermutedEntries_KeepTheirBits) {
   const auto [evaluator, distribution, masking] = GetParam();
   const Scene scene = small_grid(distribution, masking);
   std::vector<SceneEntry> entries = list_of(grid_entries(scene));
@@ -174,7 +174,7 @@ TEST_P(EveryModel, PermutedEntries_KeepTheirBits) {
   }
 }
 
-TEST_P(EveryModel, ReversedAxes_KeepTheBitsOfEveryEntry) {
+TEST_P(RunsOfModel, ReversedAxes_KeepTheBitsOfEveryEntry) {
   const auto [evaluator, distribution, masking] = GetParam();
   Scene scene = small_grid(distribution, masking);
   const std::vector<PointResult> results = run(scene, grid_entries(scene), evaluator);
@@ -189,7 +189,7 @@ TEST_P(EveryModel, ReversedAxes_KeepTheBitsOfEveryEntry) {
 }
 
 // Where a profile serves all slope distributions it takes the slopes that they want together.
-TEST_P(EveryModel, Grid_EqualsThePointsOneByOne) {
+TEST_P(RunsOfModel, Grid_EqualsThePointsOneByOne) {
   const auto [evaluator, distribution, masking] = GetParam();
   const bool has_profiles = masking == Masking::kNone || masking == Masking::kVCavity;
   const Scene scene = small_grid(distribution, masking);
@@ -207,7 +207,7 @@ TEST_P(EveryModel, Grid_EqualsThePointsOneByOne) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(SceneRun, EveryModel,
+INSTANTIATE_TEST_SUITE_P(SceneRun, RunsOfModel,
                          testing::Combine(testing::ValuesIn(kPrecisions), testing::ValuesIn(kDistributions),
                                           testing::ValuesIn(kMaskings)));
 

@@ -41,11 +41,6 @@ const std::vector<std::string> kLarge = {"--set",       "grid.theta_deg={from=0,
                                          "--set",       "grid.n=[1.5]",
                                          "--tolerance", "1e-2"};
 
-std::vector<std::string> operator+(std::vector<std::string> a, const std::vector<std::string>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
 class Shards : public CommandLine {
  protected:
   void SetUp() override {
@@ -78,16 +73,14 @@ class Shards : public CommandLine {
 TEST_F(Shards, MergedAgain_AreTheTableOfOneRun_WithEveryMasking) {
   for (const std::string masking : {"none", "v-cavity", "integral", "smith"}) {
     const std::vector<std::string> set = {"--set", "surface.masking=" + masking};
-    ASSERT_EQ(dolp(std::vector<std::string>{"table", "grid.toml", "-o", "one.nc"} + set).status, 0);
+    ASSERT_EQ(dolp(joined({"table", "grid.toml", "-o", "one.nc"}, set)).status, 0);
     const std::size_t count = masking == "integral" ? 7 : 2;
     for (std::size_t i = 1; i <= count; ++i) {
-      const Outcome made = dolp(std::vector<std::string>{"table", "grid.toml", "-o", "t.nc", "--shard",
-                                                         std::to_string(i) + "/" + std::to_string(count)} +
-                                set);
+      const Outcome made = dolp(joined(
+          {"table", "grid.toml", "-o", "t.nc", "--shard", std::to_string(i) + "/" + std::to_string(count)}, set));
       ASSERT_EQ(made.status, 0) << made.err;
     }
-    const Outcome merged =
-        dolp(std::vector<std::string>{"merge"} + shard_names(count) + std::vector<std::string>{"-o", "merged.nc"});
+    const Outcome merged = dolp(joined(joined({"merge"}, shard_names(count)), {"-o", "merged.nc"}));
     ASSERT_EQ(merged.status, 0) << merged.err;
     expect_same("one.nc", "merged.nc");
     for (const std::string& name : shard_names(count)) fs::remove(at(name));
@@ -100,8 +93,7 @@ TEST_F(Shards, OfSeveralAxes_MergeIntoTheTableAndItsCsv) {
   for (int i = 1; i <= 14; ++i) {
     ASSERT_EQ(dolp({"table", "grid.toml", "-o", "t.nc", "--shard", std::to_string(i) + "/14"}).status, 0);
   }
-  ASSERT_EQ(dolp(std::vector<std::string>{"merge"} + shard_names(14) + std::vector<std::string>{"-o", "m.csv"}).status,
-            0);
+  ASSERT_EQ(dolp(joined(joined({"merge"}, shard_names(14)), {"-o", "m.csv"})).status, 0);
   EXPECT_EQ(data_lines(read_file(at("m.csv"))), data_lines(read_file(at("one.csv"))));
   const Outcome refused = dolp({"table", "grid.toml", "-o", "t.nc", "--shard", "1/11"});
   EXPECT_EQ(refused.status, 2);
@@ -116,7 +108,7 @@ TEST_F(Shards, MissingForeignOrDoubled_AreNamed) {
   ASSERT_EQ(dolp({"table", "grid.toml", "-o", "f.nc", "--shard", "2/2", "--set", "surface.k=0.3"}).status, 0);
   ASSERT_EQ(dolp({"table", "scene.toml", "-o", "whole.nc"}).status, 0);
   const auto error = [&](const std::vector<std::string>& names) {
-    const Outcome outcome = dolp(std::vector<std::string>{"merge"} + names + std::vector<std::string>{"-o", "m.nc"});
+    const Outcome outcome = dolp(joined(joined({"merge"}, names), {"-o", "m.nc"}));
     EXPECT_EQ(outcome.status, 2);
     EXPECT_FALSE(fs::exists(at("m.nc")));
     return outcome.err;
@@ -136,7 +128,7 @@ TEST_F(Shards, ThereAlready_IsKept_AndOneOfAnotherSceneIsNot) {
   EXPECT_EQ(again.status, 0);
   EXPECT_NE(again.out.find("the whole shard is there already"), std::string::npos) << again.out;
   EXPECT_EQ(fs::last_write_time(at("t.1-of-2.nc")), written);
-  ASSERT_EQ(dolp(wanted + std::vector<std::string>{"--set", "surface.k=0.3"}).status, 0);
+  ASSERT_EQ(dolp(joined(wanted, {"--set", "surface.k=0.3"})).status, 0);
   EXPECT_NE(fs::last_write_time(at("t.1-of-2.nc")), written);
 }
 
@@ -155,21 +147,15 @@ TEST_F(Shards, Auto_TakesTheTaskOfTheSlurmArray) {
 
 TEST_F(Shards, BadNumbers_OneLineEach) {
   for (const std::string text : {"0/2", "3/2", "1", "a/b", "1/0", "-1/2", "1.5/2"}) {
-    const Outcome outcome = dolp({"table", "grid.toml", "-o", "t.nc", "--shard=" + text});
-    EXPECT_EQ(outcome.status, 2) << text;
-    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
-    EXPECT_NE(outcome.err.find("--shard"), std::string::npos) << outcome.err;
+    expect_refused(dolp({"table", "grid.toml", "-o", "t.nc", "--shard=" + text}), "--shard");
   }
 }
 
 class Resume : public Shards {
  protected:
-  const std::vector<std::string> command_ =
-      std::vector<std::string>{"table", "grid.toml", "-o", "t.nc", "--resume"} + kLarge;
+  const std::vector<std::string> command_ = joined({"table", "grid.toml", "-o", "t.nc", "--resume"}, kLarge);
 
-  void make_whole() {
-    ASSERT_EQ(dolp(std::vector<std::string>{"table", "grid.toml", "-o", "one.nc"} + kLarge).status, 0);
-  }
+  void make_whole() { ASSERT_EQ(dolp(joined({"table", "grid.toml", "-o", "one.nc"}, kLarge)).status, 0); }
 
   /// Runs until a first part is there, then sends the signal.
   Outcome interrupted(int signal) {
@@ -188,7 +174,7 @@ TEST_F(Resume, AfterCtrlC_SaysHowToGoOn_AndGivesTheSameBits) {
             std::string::npos)
       << stopped.err;
   EXPECT_FALSE(fs::exists(at("t.nc")));
-  const Outcome foreign = dolp(command_ + std::vector<std::string>{"--set", "surface.k=0.3"});
+  const Outcome foreign = dolp(joined(command_, {"--set", "surface.k=0.3"}));
   EXPECT_EQ(foreign.status, 2);
   EXPECT_NE(foreign.err.find("t.nc.partial: is of another run"), std::string::npos) << foreign.err;
   const Outcome resumed = dolp(command_);
@@ -217,8 +203,8 @@ TEST_F(Resume, KilledAtRandomMoments_GivesTheSameBits) {
 
 TEST_F(Resume, OfACsv_IsTheCsvOfOneRun) {
   const std::vector<std::string> small = {"--set", "grid.sigma=[0.1]", "--set", "grid.q=[2]"};
-  ASSERT_EQ(dolp(std::vector<std::string>{"table", "grid.toml", "-o", "a.csv"} + small).status, 0);
-  ASSERT_EQ(dolp(std::vector<std::string>{"table", "grid.toml", "-o", "b.csv", "--resume"} + small).status, 0);
+  ASSERT_EQ(dolp(joined({"table", "grid.toml", "-o", "a.csv"}, small)).status, 0);
+  ASSERT_EQ(dolp(joined({"table", "grid.toml", "-o", "b.csv", "--resume"}, small)).status, 0);
   EXPECT_EQ(data_lines(read_file(at("a.csv"))), data_lines(read_file(at("b.csv"))));
 }
 

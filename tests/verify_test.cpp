@@ -5,7 +5,6 @@
 #include <cmath>
 #include <dolp/errors.hpp>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
@@ -101,16 +100,13 @@ class Verify : public CommandLine {
  protected:
   /// A table of four by two by two entries on the CPU.
   Table make_table(const std::vector<std::string>& options = {}) const {
-    std::vector<std::string> arguments = {"table", "scene.toml", "-o", "t.nc", "--quiet", "--evaluator", "cpu"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const Outcome outcome = dolp(arguments);
+    const Outcome outcome =
+        dolp(joined({"table", "scene.toml", "-o", "t.nc", "--quiet", "--evaluator", "cpu"}, options));
     EXPECT_EQ(outcome.status, kDone) << outcome.err;
     return read_table(at("t.nc"));
   }
   nlohmann::json verify_json(Status expected, const std::vector<std::string>& options = {}) const {
-    std::vector<std::string> arguments = {"verify", "t.nc", "--json"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const Outcome outcome = dolp(arguments);
+    const Outcome outcome = dolp(joined({"verify", "t.nc", "--json"}, options));
     EXPECT_EQ(outcome.status, expected) << outcome.out << outcome.err;
     return nlohmann::json::parse(outcome.out);
   }
@@ -383,10 +379,13 @@ TEST_F(Verify, HardCases_NoDevice_Exit3) {
   EXPECT_EQ(run(wanted).status, kDevice);
 }
 
-TEST_F(Verify, Devices_AreMeasuredInEachPrecision) {
-  const Outcome outcome = dolp({"devices", "--json"});
-  ASSERT_EQ(outcome.status, kDone) << outcome.err;
-  for (const auto& device : nlohmann::json::parse(outcome.out)["devices"]) {
+TEST_F(Verify, Devices_AreNamedAndMeasuredInEachPrecision) {
+  const Outcome text = dolp({"devices"});
+  EXPECT_EQ(text.status, kDone) << text.err;
+  const nlohmann::json devices = report({"devices"})["devices"];
+  EXPECT_TRUE(std::ranges::any_of(devices, [](const auto& device) { return device["usable"] == true; })) << devices;
+  for (const nlohmann::json& device : devices) {
+    EXPECT_NE(text.out.find(device["name"].get<std::string>()), std::string::npos) << text.out;
     const nlohmann::json& in_float = device["quality"]["float"];
     if (device["usable"] == false) {
       EXPECT_TRUE(in_float.contains("why_not"));

@@ -40,7 +40,7 @@ SCENE
 bash "$tests/slurm_one_node.sh" "$dir/slurm" || fail "no Slurm"
 export SLURM_CONF=$dir/slurm/slurm.conf
 shards=2
-read -r tasks merge < <(bash "$tests/../host/cluster/submit.sh" scene.toml t.nc $shards)
+read -r tasks merge < <(bash "$tests/../../host/cluster/submit.sh" scene.toml t.nc $shards)
 
 # The first part of a task is there; the second is not.
 for _ in $(seq 600); do

@@ -17,6 +17,7 @@
 #include "model/angles.hpp"
 #include "mueller_support.hpp"
 #include "properties_support.hpp"
+#include "reference/reference_evaluator.hpp"
 
 namespace dolp {
 namespace {

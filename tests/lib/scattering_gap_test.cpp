@@ -8,26 +8,14 @@
 #include <vector>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
+#include "rough_metal.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene_reader.hpp"
 
 namespace dolp {
 namespace {
 
-constexpr const char* kScene = R"(
-[surface]
-n = 10
-k = 60
-distribution = "gaussian"
-sigma = 0.3
-masking = "v-cavity"
-[emission]
-temperature_K = 300
-[spectrum]
-wavelength_um = 10
-[grid]
-theta_deg = [30, 60]
-)";
+const std::string kScene = kRoughMetal + "[grid]\ntheta_deg = [30, 60]\n";
 // Both models to 1e-3 each, against results that are better.
 constexpr double kAccuracy = 2e-3;
 

@@ -215,7 +215,7 @@ TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
     const std::complex<double> mean = [&] {
       const auto over_azimuth = [&](double theta_r_deg) {
         const auto elements = [&](double delta_phi_deg) {
-          const MuellerMatrix f = reference_pbrdf(surface, index, kTheta_deg, theta_r_deg, delta_phi_deg);
+          const auto f = reference_pbrdf(surface, index, kTheta_deg, theta_r_deg, delta_phi_deg);
           return std::complex(f[0][0], f[0][1]);
         };
         const double theta_r = theta_r_deg * kRadPerDeg;

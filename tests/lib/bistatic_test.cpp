@@ -9,10 +9,10 @@
 #include <optional>
 #include <random>
 
-#include "reference/mueller.hpp"
-#include "reference/reference_evaluator.hpp"
 #include "model/status.hpp"
 #include "properties_support.hpp"
+#include "reference/mueller.hpp"
+#include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
 #include "spectrum/planck.hpp"
 

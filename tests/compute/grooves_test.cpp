@@ -14,6 +14,7 @@
 #include "mueller_support.hpp"
 #include "properties_support.hpp"
 #include "reference/reference_evaluator.hpp"
+#include "rough_metal.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene_reader.hpp"
 
@@ -162,21 +163,8 @@ TEST(GroovesMueller, TowardTheMirrorDirection_IsNotDefined) {
 
 // ---- Scenes --------------------------------------------------------------------------------------------------------
 
-constexpr const char* kScene = R"(
-[surface]
-n = 10
-k = 60
-distribution = "gaussian"
-sigma = 0.3
-masking = "v-cavity"
-[emission]
-temperature_K = 300
-[spectrum]
-wavelength_um = 10
-)";
-
 std::vector<PointResult> results_of(const std::vector<std::string>& overrides) {
-  const Scene scene = parse_scene(kScene, "s.toml", settings_from_text(overrides));
+  const Scene scene = parse_scene(kRoughMetal, "s.toml", settings_from_text(overrides));
   CpuEvaluator evaluator(Precision::kDouble);
   return evaluate_scene(scene, grid_entries(scene), evaluator, {});
 }
@@ -235,11 +223,11 @@ TEST(GroovesScene, Bracket_IsWhatItsEndsSay) {
 TEST(GroovesScene, SmoothSurface_PlanLeavesTheBouncesOut) {
   const std::vector<std::string> smooth = {"surface.scattering=multiple", "surface.sigma=0.02",
                                            "grid.theta_deg=[0, 45]"};
-  const Scene scene = parse_scene(kScene, "s.toml", settings_from_text(smooth));
+  const Scene scene = parse_scene(kRoughMetal, "s.toml", settings_from_text(smooth));
   const EffectPlan plan = plan_effects(scene, grid_entries(scene), false);
   EXPECT_FALSE(plan.kept.further_bounces);
   EXPECT_TRUE(plan.kept.moments);
-  const Scene rough = parse_scene(kScene, "s.toml", {{"surface.scattering", "multiple"}});
+  const Scene rough = parse_scene(kRoughMetal, "s.toml", {{"surface.scattering", "multiple"}});
   EXPECT_TRUE(plan_effects(rough, grid_entries(rough), false).kept.further_bounces);
 }
 

@@ -16,24 +16,7 @@
 
 namespace dolp {
 
-inline const std::string kScene = R"(title = "Sixteen entries"
-[surface]
-n = 1.5
-k = 0.1
-sigma = 0.3
-q = 3.0
-masking = "integral"
-[emission]
-temperature_K = 300.0
-[surroundings]
-temperature_K = 250.0
-[spectrum]
-wavelength_um = 10.0
-[grid]
-theta_deg = [80.5, 60, 30, 0]
-sigma = [0.1, 0.4]
-q = [2, 3.5]
-)";
+inline const std::string kScene = read_file(DOLP_TEST_DATA_DIR "/scene.toml");
 
 inline const std::string kPoints = "theta_deg,sigma,q\n0,0.1,2\n60.0,0.4,3.5\n 80.5,0.1 ,2\n";
 

@@ -15,7 +15,7 @@ import unittest
 
 sys.dont_write_bytecode = True  # no folder of caches in the source tree
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path("build/release")
 FILES_WITH_COMMANDS = ("README.md", "host/programs/cli/README.md", "host/lib/fit/README.md", "host/core/scene/README.md")
 BLOCK_TIMEOUT_S = 300  # a sanitizer build on two busy cores; each block takes seconds in a release build

@@ -10,6 +10,7 @@
 #include "model/angles.hpp"
 #include "plan/kernel_data.hpp"
 #include "plan/rule.hpp"
+#include "plan/rule_nodes.hpp"
 
 namespace dolp {
 namespace {
@@ -97,6 +98,19 @@ TEST(KernelDataOrders, AllBounces_StayBelowTheDriversLoopLimit) {
 TEST(MaskingTable, ItsLoops_StayBelowTheDriversLimit) {
   constexpr int kTableOrderAtMost = 8;
   EXPECT_LT(DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE) * (1.0 + kTableOrderAtMost), kDriverLimit);
+}
+
+// Chebyshev polynomials are of size 1, so that no degree hides behind another.
+TEST(GaussLegendre, Orders_IntegratePolynomialsOfDegree2nMinus1AndNoMore) {
+  for (const int order : {1, 2, 3, 7, 20, DOLP_MAX_ORDER}) {
+    for (int degree = 0; degree <= 2 * order; degree += 2) {
+      double sum = 0.0;
+      for (const auto& [x, weight] : gauss_legendre(order)) sum += weight * std::cos(degree * std::acos(x));
+      const double error = std::abs(sum - 2.0 / (1.0 - static_cast<double>(degree) * degree));
+      const double rounding = 1e-15 * (2.0 + 0.2 * degree);
+      EXPECT_EQ(error <= rounding, degree < 2 * order) << order << " " << degree;
+    }
+  }
 }
 
 }  // namespace

@@ -118,8 +118,8 @@ TEST_F(BenchEffects, Json_EveryEffect_HasTimesAndRatio) {
     }
   }
   EXPECT_EQ(effects, (std::set<std::string>{"specular", "diffuse", "distribution", "masking", "complex index",
-                                            "axes of index", "scattering", "smooth surface", "direct emission", "bracket", "emission",
-                                            "source", "surroundings", "path", "band"}));
+                                            "axes of index", "scattering", "smooth surface", "direct emission",
+                                            "bracket", "emission", "source", "surroundings", "path", "band"}));
 }
 
 TEST_F(BenchEffects, Json_BouncesOfASmoothSurface_AreLeftOutAndDoMoreWhenKept) {

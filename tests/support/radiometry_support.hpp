@@ -1,5 +1,5 @@
-// The formulas of radiometry as shaders/physics/README.md, section 4, prints them, written out again in long double, and
-// scenes and moments to try them on.
+// The formulas of radiometry as shaders/physics/README.md, section 4, prints them, written out again in long double,
+// and scenes and moments to try them on.
 #pragma once
 
 #include <algorithm>

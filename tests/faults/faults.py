@@ -30,24 +30,7 @@ SEED = 19
 TIMEOUT_S = 120
 OLD = b"kept\n"
 DONE, DEVICE, IO, MEMORY, INTERRUPTED = 0, 3, 4, 6, 130
-SCENE = """title = "Sixteen entries"
-[surface]
-n = 1.5
-k = 0.1
-sigma = 0.3
-q = 3.0
-masking = "integral"
-[emission]
-temperature_K = 300.0
-[surroundings]
-temperature_K = 250.0
-[spectrum]
-wavelength_um = 10.0
-[grid]
-theta_deg = [80.5, 60, 30, 0]
-sigma = [0.1, 0.4]
-q = [2, 3.5]
-"""
+SCENE = (pathlib.Path(__file__).resolve().parents[1] / "data/scene.toml").read_text(encoding="utf-8")
 POINTS = "theta_deg,sigma,q\n0,0.1,2\n60.0,0.4,3.5\n80.5,0.1,2\n"
 COMMANDS = {"table": (["table", "scene.toml"], "out.nc"),
             "eval": (["eval", "scene.toml", "--points", "points.csv"], "out.csv"),

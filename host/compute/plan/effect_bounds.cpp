@@ -160,10 +160,10 @@ EntriesExtent extent_of_grid(const SceneEntries& entries) {
   EntriesExtent extent{entries.theta_deg(), {sigma_high, q_low}, {sigma_low, q_high}, {}};
   if (!entries.has_own_index()) return extent;
   PerAxis place{};
-  for (std::size_t n = 0; n < at(entries.counts(), Axis::kN); ++n) {
-    for (std::size_t k = 0; k < at(entries.counts(), Axis::kK); ++k) {
-      place[static_cast<std::size_t>(Axis::kN)] = n;
-      place[static_cast<std::size_t>(Axis::kK)] = k;
+  for (std::size_t n = 0; n < entries.counts()[Axis::kN]; ++n) {
+    for (std::size_t k = 0; k < entries.counts()[Axis::kK]; ++k) {
+      place[Axis::kN] = n;
+      place[Axis::kK] = k;
       extent.indices.push_back(entries.index_at(place));
     }
   }

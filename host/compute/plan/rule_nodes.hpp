@@ -7,7 +7,7 @@
 namespace dolp {
 
 /// Gauss-Legendre rule on [-1, 1], abscissae ascending.
-/// Accuracy: 1e-15 (tests/rule_nodes_test.cpp integrates polynomials of degree 2 * order - 1).
+/// Accuracy: 1e-15 (tests/compute/plan_test.cpp integrates polynomials of degree 2 * order - 1).
 std::vector<std::array<double, 2>> gauss_legendre(int order);
 
 /// The sections of shaders/physics/quadrature.glsl, orders 1 to `largest_order` each, as (abscissa, weight). Computed

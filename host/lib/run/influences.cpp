@@ -16,8 +16,9 @@ constexpr double kTolerance = 1e-3;
 constexpr std::size_t kInfluenceMoments = 48;  // at most, but of two entries
 
 double polarisation_change(const PointResult& a, const PointResult& b) {
-  return std::hypot(a.stokes_q / a.stokes_i - b.stokes_q / b.stokes_i,
-                    a.stokes_u / a.stokes_i - b.stokes_u / b.stokes_i);
+  using enum Quantity;
+  return std::hypot(a[kStokesQ] / a[kStokesI] - b[kStokesQ] / b[kStokesI],
+                    a[kStokesU] / a[kStokesI] - b[kStokesU] / b[kStokesI]);
 }
 
 std::optional<double> largest_change(const std::vector<PointResult>& a, const std::vector<PointResult>& b) {

@@ -1,0 +1,354 @@
+// The shaders' elementary functions and Fresnel reflection, in float and in double, against
+// evaluations in higher precision. Each row prints its worst error, also when it passes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/multiprecision/cpp_complex.hpp>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace dolp::tested_float {
+using real = float;
+using real2 = glm::vec2;
+using real4 = glm::vec4;
+}  // namespace dolp::tested_float
+
+#define DOLP_TEXT_NAMESPACE tested_float
+#include "evaluate/text/text_body.hpp"
+#undef DOLP_TEXT_NAMESPACE
+
+namespace dolp::tested_double {
+using real = double;
+using real2 = glm::dvec2;
+using real4 = glm::dvec4;
+}  // namespace dolp::tested_double
+
+#define DOLP_TEXT_NAMESPACE tested_double
+#define DOLP_DOUBLE
+#include "evaluate/text/text_body.hpp"
+#undef DOLP_DOUBLE
+#undef DOLP_TEXT_NAMESPACE
+
+namespace dolp {
+namespace {
+
+/// The number that a text computes with.
+template <class Text>
+using RealOf = std::remove_const_t<decltype(Text::kPi)>;
+
+/// Spacing of its numbers at 1.
+template <class Text>
+constexpr double kEpsilon = static_cast<double>(std::numeric_limits<RealOf<Text>>::epsilon());
+
+/// Both texts, for typed test suites.
+using Texts = ::testing::Types<tested_float::Text, tested_double::Text>;
+
+struct TextNames {
+  template <class Text>
+  static std::string GetName(int) {
+    return std::is_same_v<RealOf<Text>, float> ? "Float" : "Double";
+  }
+};
+
+/// An index in the text's precision.
+template <class Text>
+typename Text::IndexNode index_in(const kernel::IndexNode& node) {
+  return convert_reals<RealOf<Text>, typename Text::IndexNode, double>(node);
+}
+
+/// The largest value of what a test measures, and where.
+struct Worst {
+  double value = 0.0;
+  std::string where;
+  void update(double candidate, const std::string& here) {
+    if (candidate <= value) return;
+    value = candidate;
+    where = here;
+  }
+};
+
+using std::numbers::pi;
+
+constexpr unsigned kSeed = 20250801;
+constexpr int kSamples = 20000;
+
+// ---- Elementary functions ------------------------------------------------------------------------------------------
+
+// Distance of `value` from `exact` in units of the last place that `exact` has in the precision Real.
+template <class Real>
+double ulps(Real value, long double exact) {
+  using Limits = std::numeric_limits<Real>;
+  const int exponent = exact == 0.0L ? Limits::min_exponent : std::max(std::ilogb(exact) + 1, Limits::min_exponent);
+  const long double ulp = std::ldexp(1.0L, exponent - Limits::digits);
+  return static_cast<double>(std::fabs(static_cast<long double>(value) - exact) / ulp);
+}
+
+enum class Spacing { kUniform, kLogarithmic };
+
+struct Range {
+  double low;
+  double high;
+  Spacing spacing;
+};
+
+// One function: its text, its reference, the ranges of its argument, and the largest error allowed, in ulps.
+template <class Text>
+struct Row {
+  using Real = RealOf<Text>;
+  const char* name;
+  std::function<Real(Text&, Real)> text;
+  std::function<long double(long double)> reference;
+  std::vector<Range> ranges;
+  double allowed_ulps;
+};
+
+template <class Text>
+void expect_few_ulps(const Row<Text>& row, const Range& range) {
+  using Real = RealOf<Text>;
+  std::mt19937 random(kSeed);
+  const bool is_log = range.spacing == Spacing::kLogarithmic;
+  std::uniform_real_distribution<double> position(is_log ? std::log(range.low) : range.low,
+                                                  is_log ? std::log(range.high) : range.high);
+  Text text;
+  Worst worst;
+  for (int i = 0; i < kSamples + 2; ++i) {
+    const double drawn = position(random);
+    double x = is_log ? std::exp(drawn) : drawn;
+    if (i >= kSamples) x = i == kSamples ? range.low : range.high;
+    const Real argument = static_cast<Real>(x);
+    const double error = ulps(row.text(text, argument), row.reference(static_cast<long double>(argument)));
+    EXPECT_TRUE(std::isfinite(error)) << row.name << " at " << x;
+    worst.update(error, std::to_string(x));
+  }
+  std::printf("seed %u: %-16s %9.3g .. %-9.3g worst %.2f ulp at %s (allowed %.1f)\n", kSeed, row.name, range.low,
+              range.high, worst.value, worst.where.c_str(), row.allowed_ulps);
+  EXPECT_LE(worst.value, row.allowed_ulps) << row.name;
+}
+
+template <class Text>
+class Elementary : public ::testing::Test {};
+TYPED_TEST_SUITE(Elementary, Texts, TextNames);
+
+// Allowed: half an ulp for each of the last two or three roundings, and what reducing the argument adds; the text
+// promises "a few units in the last place".
+constexpr double kFewUlps = 3.0;
+constexpr double kRootUlps = 6.0;  // up to three roots and quotients on the way to the series, a rounding each
+
+TYPED_TEST(Elementary, Functions_OverTheirDomain_AreAFewUlpsFromExact) {
+  using enum Spacing;
+  const double lowest = static_cast<double>(TypeParam::kLowestExponent);
+  const std::vector<Row<TypeParam>> rows = {
+      {"expm1_real",
+       [](auto& text, auto x) { return text.expm1_real(x); },
+       [](auto x) { return std::expm1(x); },
+       {{-80.0, 80.0, kUniform}, {1e-30, 80.0, kLogarithmic}},
+       kFewUlps},
+      {"expm1_real(-x)",
+       [](auto& text, auto x) { return -text.expm1_real(-x); },
+       [](auto x) { return -std::expm1(-x); },
+       {{1e-30, 80.0, kLogarithmic}},
+       kFewUlps},
+      {"exp_real",
+       [](auto& text, auto x) { return text.exp_real(x); },
+       [](auto x) { return std::exp(x); },
+       {{lowest, 80.0, kUniform}, {-1.0, 1.0, kUniform}},
+       kFewUlps},
+      {"sinh_cosh.x",
+       [](auto& text, auto x) { return text.sinh_cosh(x).x; },
+       [](auto x) { return std::sinh(x); },
+       {{1e-30, 80.0, kLogarithmic}},
+       kFewUlps},
+      {"sinh_cosh.y",
+       [](auto& text, auto x) { return text.sinh_cosh(x).y; },
+       [](auto x) { return std::cosh(x); },
+       {{1e-30, 80.0, kLogarithmic}},
+       kFewUlps},
+      {"log1p_real",
+       [](auto& text, auto x) { return text.log1p_real(x); },
+       [](auto x) { return std::log1p(x); },
+       {{1e-30, 1e30, kLogarithmic}, {0.0, 4.0, kUniform}},
+       kFewUlps},
+      {"log1p_square",
+       [](auto& text, auto x) { return text.log1p_square(x); },
+       [](auto x) { return std::log1p(x * x); },
+       {{1e-15, 1e30, kLogarithmic}},
+       kFewUlps},
+      {"asinh_real",
+       [](auto& text, auto x) { return text.asinh_real(x); },
+       [](auto x) { return std::asinh(x); },
+       {{1e-30, 1e30, kLogarithmic}, {0.0, 4.0, kUniform}},
+       kFewUlps},
+      {"acosh_above_1",
+       [](auto& text, auto x) { return text.acosh_above_1(x); },
+       [](auto x) { return std::log1p(x + std::sqrt(x * (x + 2.0L))); },
+       {{1e-30, 1e15, kLogarithmic}},
+       kRootUlps},
+      {"arc_tangent",
+       [](auto& text, auto x) { return text.arc_tangent(x); },
+       [](auto x) { return std::atan(x); },
+       {{1e-30, 1e30, kLogarithmic}, {0.0, 2.0, kUniform}},
+       kRootUlps},
+      {"arc_cosine",
+       [](auto& text, auto x) { return text.arc_cosine(x); },
+       [](auto x) { return std::acos(x); },
+       {{-1.0, 1.0, kUniform}},
+       kRootUlps},
+  };
+  for (const Row<TypeParam>& row : rows) {
+    for (const Range& range : row.ranges) expect_few_ulps(row, range);
+  }
+}
+
+TYPED_TEST(Elementary, EndsOfTheDomains_AreExact) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  EXPECT_EQ(text.expm1_real(Real(0)), Real(0));
+  EXPECT_EQ(text.expm1_real(Real(-1e4)), Real(-1));
+  EXPECT_EQ(text.exp_real(Real(0)), Real(1));
+  EXPECT_EQ(text.exp_real(TypeParam::kLowestExponent - Real(1)), Real(0));
+  EXPECT_GE(text.exp_real(TypeParam::kLowestExponent), std::numeric_limits<Real>::min());
+  EXPECT_EQ(text.exp_real(Real(-1e30)), Real(0));
+  EXPECT_EQ(text.log1p_real(Real(0)), Real(0));
+  EXPECT_EQ(text.log1p_square(Real(0)), Real(0));
+  EXPECT_EQ(text.asinh_real(Real(0)), Real(0));
+  EXPECT_EQ(text.sinh_cosh(Real(0)).x, Real(0));
+  EXPECT_EQ(text.sinh_cosh(Real(0)).y, Real(1));
+  EXPECT_EQ(text.atan_unit(Real(0)), Real(0));
+}
+
+// ---- Fresnel reflection --------------------------------------------------------------------------------------------
+
+using Wide = boost::multiprecision::cpp_bin_float_50;
+using WideComplex = boost::multiprecision::cpp_complex_50;
+
+// The textbook form in 50 digits, whose cancellations (27 digits at the worst here) leave more than a double has.
+struct ExactFresnel {
+  Wide r_s;
+  Wide r_p;
+  Wide sin2_beta;
+};
+
+ExactFresnel exact_fresnel(const kernel::IndexNode& index, double cos_beta) {
+  const Wide c = cos_beta;
+  const Wide sin2 = 1 - c * c;
+  const WideComplex n2(Wide(index.n2m1_re) + 1, Wide(index.n2m1_im));
+  const WideComplex w = sqrt(WideComplex(n2 - sin2));
+  const WideComplex r_s = (c - w) / (c + w);
+  const WideComplex r_p = (n2 * c - w) / (n2 * c + w);
+  return {norm(r_s).real(), norm(r_p).real(), sin2};
+}
+
+double relative_error(double value, const Wide& exact) {
+  return static_cast<double>(abs(Wide(value) - exact) / abs(exact));
+}
+
+// The index as the text's precision holds it: the text is not to blame for the rounding of its input.
+template <class Text>
+kernel::IndexNode rounded_index(const OpticalConstants& index) {
+  MomentsRequest request;
+  request.indices = {index};
+  return convert_reals<double, kernel::IndexNode, RealOf<Text>>(index_in<Text>(kernel_data(request).indices[0]));
+}
+
+std::vector<double> cosines_of_incidence() {
+  std::vector<double> cosines;
+  for (double beta_deg = 0.5; beta_deg < 90.0; beta_deg += 0.5) cosines.push_back(std::cos(beta_deg * pi / 180.0));
+  for (const double beta_deg : {1e-3, 0.02, 0.1, 89.9, 89.99, 89.999}) {
+    cosines.push_back(std::cos(beta_deg * pi / 180.0));
+  }
+  return cosines;
+}
+
+template <class Text>
+class FresnelText : public ::testing::Test {};
+TYPED_TEST_SUITE(FresnelText, Texts, TextNames);
+
+// About twenty roundings in a row, none of them amplified.
+constexpr double kFresnelUlps = 12.0;
+
+TYPED_TEST(FresnelText, AllIndices_AgreeWithTheTextbookFormIn50Digits) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  const std::vector<OpticalConstants> indices = {{1.01, 0.0}, {1.508, 0.0}, {4.0, 0.0},       {0.9, 0.3}, {0.2, 3.0},
+                                                 {1.5, 1e-3}, {27.0, 90.0}, {1000.0, 1000.0}, {1e6, 1e6}};
+  for (const OpticalConstants& optical : indices) {
+    const kernel::IndexNode index = rounded_index<TypeParam>(optical);
+    Worst r_s;
+    Worst absorbed;
+    Worst split;
+    Worst r_p;
+    for (const double exact_cos : cosines_of_incidence()) {
+      const Real cos_beta = static_cast<Real>(exact_cos);
+      if (cos_beta == Real(1)) continue;  // the quotient by sin^2(beta) is 0/0 in the reference
+      const auto f = text.fresnel(index_in<TypeParam>(index), cos_beta);
+      const ExactFresnel exact = exact_fresnel(index, static_cast<double>(cos_beta));
+      const std::string where = "cos(beta) = " + std::to_string(exact_cos);
+      r_s.update(relative_error(f.r_s, exact.r_s), where);
+      absorbed.update(relative_error(f.absorbed_s, 1 - exact.r_s), where);
+      split.update(relative_error(f.split_over_sin2, (exact.r_s - exact.r_p) / exact.sin2_beta), where);
+      const Wide recovered = Wide(f.r_s) - Wide(f.split_over_sin2) * exact.sin2_beta;
+      r_p.update(static_cast<double>(abs(recovered - exact.r_p) / exact.r_s), where);
+    }
+    const double unit = kEpsilon<TypeParam>;
+    std::printf("%g + %gi: worst relative errors in ulp: R_s %.1f, 1 - R_s %.1f, R_s - R_p %.1f, R_p/R_s %.1f\n",
+                optical.n, optical.k, r_s.value / unit, absorbed.value / unit, split.value / unit, r_p.value / unit);
+    EXPECT_LE(r_s.value, kFresnelUlps * unit) << r_s.where;
+    EXPECT_LE(absorbed.value, kFresnelUlps * unit) << absorbed.where;
+    EXPECT_LE(split.value, kFresnelUlps * unit) << split.where;
+    EXPECT_LE(r_p.value, kFresnelUlps * unit) << r_p.where;
+  }
+}
+
+TYPED_TEST(FresnelText, NormalIncidence_HasTheLimitOfTheQuotient) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  for (const OpticalConstants& optical : {OpticalConstants{1.508, 0.0}, OpticalConstants{27.0, 90.0}}) {
+    const kernel::IndexNode index = rounded_index<TypeParam>(optical);
+    const auto f = text.fresnel(index_in<TypeParam>(index), Real(1));
+    // 1e-20 from normal incidence the quotient differs from its limit by as little, and 50 digits leave 30 of it.
+    const Wide c = 1 - Wide(1e-20);
+    const Wide sin2 = 1 - c * c;
+    const WideComplex n2(Wide(index.n2m1_re) + 1, Wide(index.n2m1_im));
+    const WideComplex w = sqrt(WideComplex(n2 - sin2));
+    const Wide r_s = norm(WideComplex((c - w) / (c + w))).real();
+    const Wide r_p = norm(WideComplex((n2 * c - w) / (n2 * c + w))).real();
+    EXPECT_LE(relative_error(f.r_s, r_s), kFresnelUlps * kEpsilon<TypeParam>);
+    EXPECT_LE(relative_error(f.split_over_sin2, (r_s - r_p) / sin2), kFresnelUlps * kEpsilon<TypeParam>);
+  }
+}
+
+TYPED_TEST(FresnelText, TotalReflection_AbsorbsExactlyNothing) {
+  using Real = RealOf<TypeParam>;
+  TypeParam text;
+  for (const double n : {0.1, 0.5, 0.9, 0.999}) {
+    const kernel::IndexNode index = rounded_index<TypeParam>({n, 0.0});
+    ASSERT_GT(index.critical_cos, 0.0);
+    const double roundoff = 8.0 * kEpsilon<TypeParam>;  // of re = n^2 - 1 + cos^2(beta), which must be below 0
+    for (int i = 0; i < 100; ++i) {
+      const Real cos_beta = static_cast<Real>(index.critical_cos * (1.0 - roundoff) * (i + 0.5) / 100.0);
+      const auto f = text.fresnel(index_in<TypeParam>(index), cos_beta);
+      EXPECT_EQ(f.absorbed_s, Real(0));
+      EXPECT_EQ(f.split_over_sin2, Real(0));
+      EXPECT_NEAR(static_cast<double>(f.r_s), 1.0, kFresnelUlps * kEpsilon<TypeParam>);
+    }
+    const Real above = static_cast<Real>(index.critical_cos + 0.5 * (1.0 - index.critical_cos));
+    const auto f = text.fresnel(index_in<TypeParam>(index), above);
+    const ExactFresnel exact = exact_fresnel(index, static_cast<double>(above));
+    // n^2 - 1 + cos^2(beta) cancels, half way to normal incidence by a factor of 2 to 3.
+    EXPECT_LE(relative_error(f.absorbed_s, 1 - exact.r_s), 3.0 * kFresnelUlps * kEpsilon<TypeParam>) << n;
+    EXPECT_GT(f.absorbed_s, Real(0));
+  }
+}
+
+}  // namespace
+}  // namespace dolp

@@ -1,0 +1,321 @@
+// The Mueller pBRDF of every evaluator, on the device and on the CPU, in float and in double: against explicit vectors
+// in quadruple precision, and the symmetries that hold without a reference. DOLP_PROPERTY_DRAWS in the environment sets
+// the number of points per model.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstdio>
+#include <cstdlib>
+#include <numbers>
+#include <vector>
+
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "model/angles.hpp"
+#include "mueller_support.hpp"
+#include "properties_support.hpp"
+#include "reference/reference_evaluator.hpp"
+
+namespace dolp {
+namespace {
+
+using Matrix = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+
+constexpr std::uint64_t kSeed = 20260110;
+
+std::size_t points_per_model() {
+  const char* text = std::getenv("DOLP_PROPERTY_DRAWS");
+  return text != nullptr ? std::strtoul(text, nullptr, 10) : 400;
+}
+const std::size_t kPoints = points_per_model();
+
+// The reference multiplies its density by powers of up to 1e16 and 1e6, and below the normal numbers of a double
+// nothing has a relative accuracy.
+constexpr double kSmallest = 1e-280;
+
+class MuellerKernel : public testing::TestWithParam<std::tuple<Kernel, Model>> {
+ protected:
+  Kernel kernel() const { return std::get<0>(GetParam()); }
+  RandomPoints random() const { return {kSeed, std::get<1>(GetParam()).masking}; }
+  double tolerance() const { return is_double(kernel()) ? kScatteringErrorDouble : kScatteringErrorFloat; }
+
+  std::vector<Matrix> scatter(ScatteringEvaluator& evaluator, const std::vector<ScatteringPoint>& points) const {
+    const Model model = std::get<1>(GetParam());
+    std::vector<Matrix> matrices;
+    for (const ScatteringMatrix& f : evaluator.scatter(request_of(model.distribution, model.masking, points), {})) {
+      matrices.emplace_back(Eigen::Map<const Matrix>(f.m.data()));
+    }
+    return matrices;
+  }
+  std::vector<Matrix> scatter(const std::vector<ScatteringPoint>& points) const {
+    return scatter(*make_evaluator(kernel())->scattering(), points);
+  }
+};
+
+TEST_P(MuellerKernel, AllElements_AgreeWithExplicitVectors) {
+  const std::vector<ScatteringPoint> points = random().draw(kPoints);
+  const std::vector<Matrix> matrices = scatter(points);
+  ReferenceEvaluator reference_evaluator;
+  const std::vector<Matrix> references = scatter(reference_evaluator, points);
+  double worst = 0.0;
+  std::size_t where = 0, compared = 0;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const double m00 = references[i](0, 0);
+    if (m00 < kSmallest) continue;
+    const double error = (matrices[i] - references[i]).cwiseAbs().maxCoeff() / m00;
+    ++compared;
+    if (error <= worst) continue;
+    worst = error;
+    where = i;
+  }
+  std::printf("worst error over m00 of %zu: %.1e at %s\n", compared, worst, text_of(points[where]).c_str());
+  EXPECT_GT(compared, kPoints / 3);
+  EXPECT_LE(worst, tolerance()) << text_of(points[where]);
+}
+
+/// The same surfaces with the beams exchanged, the azimuth turned by a sign.
+std::vector<ScatteringPoint> exchanged(std::vector<ScatteringPoint> points, double sign) {
+  for (ScatteringPoint& p : points) {
+    p.angles = {p.angles.theta_r_deg, p.angles.theta_i_deg, sign * p.angles.delta_phi_deg};
+  }
+  return points;
+}
+
+// f(i, r, dphi) = S f(r, i, -dphi)^T S with S = diag(1, 1, -1, 1); with dphi unchanged S = diag(1, 1, 1, -1).
+TEST_P(MuellerKernel, ExchangedBeams_GiveTheTransposedMatrix) {
+  const Matrix mirrored = Eigen::Vector4d(1.0, 1.0, -1.0, 1.0).asDiagonal();
+  const Matrix kept = Eigen::Vector4d(1.0, 1.0, 1.0, -1.0).asDiagonal();
+  const std::vector<ScatteringPoint> points = random().draw(kPoints);
+  const std::vector<Matrix> f = scatter(points);
+  const std::vector<Matrix> minus = scatter(exchanged(points, -1.0));
+  const std::vector<Matrix> same = scatter(exchanged(points, 1.0));
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    if (f[i](0, 0) < kSmallest) continue;
+    const Matrix of_minus = mirrored * minus[i].transpose() * mirrored;
+    const Matrix of_same = kept * same[i].transpose() * kept;
+    EXPECT_LE((f[i] - of_minus).cwiseAbs().maxCoeff(), 2.0 * tolerance() * f[i](0, 0)) << text_of(points[i]);
+    EXPECT_LE((f[i] - of_same).cwiseAbs().maxCoeff(), 2.0 * tolerance() * f[i](0, 0)) << text_of(points[i]);
+  }
+}
+
+// The surface has a mirror plane: f(-dphi) = T f(dphi) T with T = diag(1, 1, -1, -1), to the last bit.
+TEST_P(MuellerKernel, OppositeAzimuth_TurnsTheSignsOfUAndV) {
+  const Matrix mirror = Eigen::Vector4d(1.0, 1.0, -1.0, -1.0).asDiagonal();
+  std::vector<ScatteringPoint> points = random().draw(kPoints);
+  const std::vector<Matrix> f = scatter(points);
+  for (ScatteringPoint& point : points) point.angles.delta_phi_deg *= -1.0;
+  const std::vector<Matrix> opposite = scatter(points);
+  for (std::size_t i = 0; i < kPoints; ++i) EXPECT_EQ(f[i], mirror * opposite[i] * mirror) << text_of(points[i]);
+}
+
+/// Cloude's coherency matrix of a Mueller matrix. Source: Cloude 1986; its eigenvalues add up to m00 (here, halved
+/// twice).
+Eigen::Matrix4cd coherency(const Matrix& f) {
+  using Complex = std::complex<double>;
+  const Complex i(0.0, 1.0);
+  const std::array<Eigen::Matrix2cd, 4> pauli = {
+      Eigen::Matrix2cd{{1.0, 0.0}, {0.0, 1.0}}, Eigen::Matrix2cd{{1.0, 0.0}, {0.0, -1.0}},
+      Eigen::Matrix2cd{{0.0, 1.0}, {1.0, 0.0}}, Eigen::Matrix2cd{{0.0, -i}, {i, 0.0}}};
+  Eigen::Matrix4cd result = Eigen::Matrix4cd::Zero();
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      const Eigen::Matrix2cd& a = pauli[static_cast<std::size_t>(row)];
+      const Eigen::Matrix2cd b = pauli[static_cast<std::size_t>(column)].conjugate();
+      for (Eigen::Index block = 0; block < 4; ++block) {
+        result.block<2, 2>(2 * (block / 2), 2 * (block % 2)) += 0.25 * f(row, column) * a(block / 2, block % 2) * b;
+      }
+    }
+  }
+  return result;
+}
+
+// A pure (Mueller-Jones) matrix: one eigenvalue above rounding, none below, so that no Stokes vector becomes
+// unphysical.
+TEST_P(MuellerKernel, EveryMatrix_IsRealisable) {
+  const std::vector<ScatteringPoint> points = random().draw(kPoints);
+  const std::vector<Matrix> matrices = scatter(points);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    if (matrices[i](0, 0) < kSmallest) continue;
+    const Matrix f = matrices[i] / matrices[i](0, 0);
+    const Eigen::Vector4d values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix4cd>(coherency(f)).eigenvalues();
+    // Each eigenvalue moves by at most the norm of an error of the matrix, four times its largest element.
+    EXPECT_GE(values(0), -4.0 * tolerance()) << text_of(points[i]);
+    EXPECT_LE(values(2), 4.0 * tolerance()) << text_of(points[i]);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Mueller, MuellerKernel,
+                         testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)),
+                         [](const testing::TestParamInfo<std::tuple<Kernel, Model>>& test) {
+                           return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
+                         });
+
+// ---- Limits and extremes -------------------------------------------------------------------------------------------
+
+Matrix plain_mueller(const BeamAngles& angles, const OpticalConstants& index = {1.5, 0.2}) {
+  CpuEvaluator evaluator(Precision::kDouble);
+  const ScatteringPoint point{angles, {0.3, 2.0}, index};
+  const ScatteringMatrix f = evaluator.scatter(request_of(Distribution::kCauchy, Masking::kNone, {point}), {}).front();
+  return Matrix(Eigen::Map<const Matrix>(f.m.data()));
+}
+
+TEST(MuellerLimits, NormalIncidence_TurnsWithTheAzimuthOfTheView) {
+  for (const double azimuth_deg : {0.0, 37.0, 90.0, -120.0, 180.0, 360.0}) {
+    const Matrix at = plain_mueller({0.0, 0.0, azimuth_deg});
+    for (const BeamAngles& near : {BeamAngles{1e-6, 1e-6, azimuth_deg}, BeamAngles{0.0, 1e-6, azimuth_deg},
+                                   BeamAngles{1e-200, 0.0, azimuth_deg}}) {
+      EXPECT_LE((plain_mueller(near) - at).cwiseAbs().maxCoeff(), 1e-9 * at(0, 0)) << azimuth_deg;  // 2e-8 rad
+    }
+    const double cosine = std::cos(2.0 * azimuth_deg * std::numbers::pi / 180.0);
+    EXPECT_NEAR(at(1, 1) / at(0, 0), cosine, kScatteringErrorDouble);
+    EXPECT_NEAR(at(2, 2) / at(0, 0), -cosine, kScatteringErrorDouble);
+    EXPECT_NEAR(at(3, 3) / at(0, 0), -1.0, kScatteringErrorDouble);  // r_p = -r_s
+  }
+}
+
+TEST(MuellerLimits, Retro_IsTheSameFromEverySide) {
+  const Matrix at = plain_mueller({40.0, 40.0, 0.0});
+  for (const BeamAngles& angles : {BeamAngles{40.0 + 1e-6, 40.0, 0.0}, BeamAngles{40.0, 40.0 + 1e-6, 0.0},
+                                   BeamAngles{40.0, 40.0, 1e-6}, BeamAngles{40.0, 40.0, -1e-6}}) {
+    EXPECT_LE((plain_mueller(angles) - at).cwiseAbs().maxCoeff(), 1e-6 * at(0, 0));
+  }
+  EXPECT_EQ(plain_mueller({40.0, 40.0, 360.0}), at);
+}
+
+// There w, a root of nearly 0, amplifies every rounding of the angles.
+TEST(MuellerLimits, CriticalAngle_AgreesWithExplicitVectors) {
+  std::vector<ScatteringPoint> points;
+  for (double n = 0.1; n < 0.96; n += 0.05) {
+    for (const double offset_deg : {-1e-9, -1e-12, 0.0, 1e-12, 1e-9}) {
+      const double theta_deg = std::asin(n) * 180.0 / std::numbers::pi + offset_deg;
+      points.push_back({{theta_deg, theta_deg, 180.0}, {0.3, 2.0}, {n, 0.0}});
+    }
+  }
+  const ScatteringRequest request = request_of(Distribution::kCauchy, Masking::kNone, points);
+  const auto references = ReferenceEvaluator().scatter(request, {});
+  for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
+    const auto f = CpuEvaluator(precision).scatter(request, {});
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (std::size_t j = 0; j < 16; ++j) EXPECT_NEAR(f[i].m[j], references[i].m[j], f[i].error) << text_of(points[i]);
+    }
+  }
+}
+
+// The corners of what scenes and points may say: float and double are two computations of one number.
+TEST(MuellerLimits, CornersOfTheDomain_AreFiniteAndTheSameInBothPrecisions) {
+  std::vector<ScatteringPoint> points;
+  for (const double sigma : {1e-20, 1e-9, 1e-3, 0.3, 10.0}) {
+    for (const double q : {1.000001, 1.6, 30.0, 1e4}) {
+      for (const OpticalConstants& index :
+           {OpticalConstants{1e6, 1e6}, {1e-6, 0.0}, {1e-3, 1e6}, {1.0, 0.0}, {1e-6, 1e-6}, {1.0 + 1e-12, 0.0}}) {
+        for (const BeamAngles& angles : {BeamAngles{0.0, 0.0, 0.0},
+                                         {40.0, 40.0, 180.0},
+                                         {40.0, 40.0, 1e-9},
+                                         {89.999999, 90.0, 180.0},
+                                         {89.9999, 89.9999, 1.0},
+                                         {1e-9, 60.0, 77.0}}) {
+          points.push_back({angles, {sigma, q}, index});
+        }
+      }
+    }
+  }
+  CpuEvaluator in_float(Precision::kFloat), in_double(Precision::kDouble);
+  for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
+    for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
+      std::vector<ScatteringPoint> own = points;
+      const bool needs_mean = masking == Masking::kSmith && distribution == Distribution::kCauchy;
+      if (needs_mean) std::erase_if(own, [](const ScatteringPoint& p) { return p.shape.q <= 1.5; });
+      const std::vector<ScatteringMatrix> f = in_float.scatter(request_of(distribution, masking, own), {});
+      const std::vector<ScatteringMatrix> g = in_double.scatter(request_of(distribution, masking, own), {});
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        for (std::size_t j = 0; j < 16; ++j) {
+          EXPECT_TRUE(std::isfinite(g[i].m[j])) << text_of(own[i]);
+          EXPECT_NEAR(f[i].m[j], g[i].m[j], f[i].error + g[i].error) << static_cast<int>(masking) << text_of(own[i]);
+        }
+      }
+    }
+  }
+}
+
+// The moments are the integrals of the first row of f: the check that kernel and pBRDF are one model.
+TEST(Mueller, HemisphericalSum_GivesTheMoments) {
+  constexpr int kZeniths = 400;
+  constexpr int kAzimuths = 400;
+  constexpr double kMidpointError = 2e-4;  // of the midpoint rule, with the kink of the horizon; halves with the step
+  const ScatteringPoint surface{{50.0, 0.0, 0.0}, {0.3, 2.0}, {1.5, 0.2}};
+  std::vector<ScatteringPoint> points;
+  for (int zenith = 0; zenith < kZeniths; ++zenith) {
+    for (int azimuth = 0; azimuth < kAzimuths; ++azimuth) {
+      points.push_back(surface);
+      points.back().angles = {50.0, 90.0 * (zenith + 0.5) / kZeniths, 180.0 * (azimuth + 0.5) / kAzimuths};
+    }
+  }
+  CpuEvaluator evaluator(Precision::kDouble);
+  const auto f = evaluator.scatter(request_of(Distribution::kCauchy, Masking::kNone, points), {});
+  MomentsRequest request;
+  request.masking = Masking::kNone;
+  request.theta_deg = {50.0};
+  request.sigma = {surface.shape.sigma};
+  request.q = {surface.shape.q};
+  request.indices = {surface.index};
+  const Moments moments = evaluator.evaluate(request, {}).front();
+  double r_i = 0.0;
+  double r_q = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double sine = cos_sin_deg(points[i].angles.theta_r_deg).sin;
+    const double weight = 2.0 * sine * (0.5 * std::numbers::pi / kZeniths) * (std::numbers::pi / kAzimuths);
+    r_i += weight * f[i].m[0];
+    r_q += weight * f[i].m[1];
+  }
+  EXPECT_NEAR(r_i, moments.r_i, kMidpointError * moments.r_i);
+  EXPECT_NEAR(r_q, moments.r_q, kMidpointError * moments.r_i);
+}
+
+// ---- The device's tiles --------------------------------------------------------------------------------------------
+
+TEST(MuellerOnTheDevice, TilesAndStaging_ChangeNoBit) {
+  const std::vector<ScatteringPoint> points = RandomPoints(kSeed, Masking::kIntegral).draw(300);
+  const ScatteringRequest request = request_of(Distribution::kCauchy, Masking::kIntegral, points);
+  VulkanOptions options;
+  options.validation = ValidationMode::kOn;
+  VulkanEvaluator whole(options);
+  options.max_tile_invocations = 7;
+  options.staged_uploads = true;
+  VulkanEvaluator tiled(options);
+  const auto a = whole.scatter(request, {});
+  const auto b = tiled.scatter(request, {});
+  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(a[i].m, b[i].m) << text_of(points[i]);
+  EXPECT_EQ(whole.report().dispatches, 1U);
+  EXPECT_EQ(tiled.report().dispatches, 43U);
+  EXPECT_EQ(tiled.report().precision, "float");
+}
+
+// Moments and pBRDFs share the descriptor set.
+TEST(MuellerOnTheDevice, MomentsBetween_ChangeNothing) {
+  const std::vector<ScatteringPoint> points = RandomPoints(kSeed, Masking::kIntegral).draw(100);
+  const ScatteringRequest request = request_of(Distribution::kCauchy, Masking::kIntegral, points);
+  MomentsRequest moments;
+  moments.append({30.0, {0.3, 2.0}, {1.5, 0.0}});
+  VulkanOptions options;
+  options.validation = ValidationMode::kOn;
+  VulkanEvaluator evaluator(options);
+  const auto before = evaluator.scatter(request, {});
+  evaluator.evaluate(moments, {});
+  const auto after = evaluator.scatter(request, {});
+  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(before[i].m, after[i].m);
+}
+
+TEST(MuellerOnTheDevice, ProgressThatSaysNo_Cancels) {
+  const std::vector<ScatteringPoint> points = RandomPoints(kSeed, Masking::kNone).draw(10);
+  VulkanEvaluator evaluator({});
+  EXPECT_THROW(evaluator.scatter(request_of(Distribution::kCauchy, Masking::kNone, points),
+                                 [](std::size_t, std::size_t) { return false; }),
+               Cancelled);
+  EXPECT_TRUE(evaluator.scatter({}, {}).empty());
+}
+
+}  // namespace
+}  // namespace dolp

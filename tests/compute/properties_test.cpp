@@ -1,0 +1,164 @@
+// What must hold whatever the inputs, on seeded random draws of the whole range that scenes allow: energy, and
+// independence of how a request is laid out.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "model/angles.hpp"
+#include "properties_support.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr std::uint64_t kSeed = 20260403;
+
+std::uint64_t printed_seed(std::uint64_t offset) {
+  std::printf("seed %s\n", std::to_string(kSeed + offset).c_str());
+  return kSeed + offset;
+}
+
+std::uint64_t number_of(const Model& model) {
+  return 2 * static_cast<std::uint64_t>(model.masking) + static_cast<std::uint64_t>(model.distribution);
+}
+
+// ---- Moments -------------------------------------------------------------------------------------------------------
+
+constexpr std::size_t kPoints = 80;
+constexpr std::array kTolerances{1e-2, 1e-4};
+
+using Case = std::tuple<Kernel, Model>;
+
+std::string case_name(const testing::TestParamInfo<Case>& test) {
+  return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
+}
+
+class KernelProperties : public testing::TestWithParam<Case> {};
+
+void expect_energy_is_kept(const Moments& m, const Point& point, Masking masking) {
+  const double cosine = cos_sin_deg(point.theta_deg).cos;
+  EXPECT_GE(m.r_i, -m.r_i_error) << text_of(point);
+  EXPECT_LE(std::abs(m.r_q), m.r_i + m.r_i_error + m.r_q_error) << text_of(point);
+  EXPECT_LE(m.r_i, m.albedo + m.r_i_error + m.albedo_error) << text_of(point);
+  EXPECT_LE(std::abs(m.r_i + m.deficit - cosine), m.r_i_error + m.deficit_error) << text_of(point);
+  if (masking != Masking::kVCavity && masking != Masking::kSmith) return;
+  EXPECT_LE(m.albedo, cosine + m.albedo_error) << text_of(point);
+  EXPECT_LE(m.r_i, cosine + m.r_i_error) << text_of(point);
+  EXPECT_GE(m.deficit, -m.deficit_error) << text_of(point);
+}
+
+TEST_P(KernelProperties, RandomPoints_KeepTheEnergy) {
+  const auto [kernel, model] = GetParam();
+  const std::vector<Point> points = Random(printed_seed(300 + number_of(model))).points(model, kPoints);
+  for (const double tolerance : kTolerances) {
+    const std::vector<Moments> moments = make_evaluator(kernel)->evaluate(request_of(model, points, tolerance), {});
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (const MomentField& quantity : kMomentFields) {
+        EXPECT_TRUE(std::isfinite(moments[i].*quantity.value)) << quantity.name << " at " << text_of(points[i]);
+        EXPECT_GE(moments[i].*quantity.error, 0.0) << quantity.name << " at " << text_of(points[i]);
+      }
+      expect_energy_is_kept(moments[i], points[i], model.masking);
+    }
+  }
+}
+
+// ---- Layout of a request -------------------------------------------------------------------------------------------
+
+bool same(const Moments& a, const Moments& b) {
+  const bool same_work = a.evaluations == b.evaluations;
+  return std::ranges::all_of(
+             kMomentFields,
+             [&](const MomentField& q) { return a.*q.value == b.*q.value && a.*q.error == b.*q.error; }) &&
+         same_work;
+}
+
+/// A grid of random axes, of which a third is wanted.
+MomentsRequest random_grid(const Model& model, Random& random) {
+  MomentsRequest request = request_of(model, {}, 1e-3);
+  for (int i = 0; i < 6; ++i) request.theta_deg.push_back(random.theta_deg());
+  for (int i = 0; i < 4; ++i) request.indices.push_back(random.index());
+  for (int i = 0; i < 3; ++i) {
+    request.sigma.push_back(random.shape(model).sigma);
+    request.q.push_back(random.shape(model).q);
+  }
+  for (std::size_t i = 0; i < request.size(); ++i) request.wanted.push_back(random.chance(1.0 / 3.0) ? 1 : 0);
+  return request;
+}
+
+/// Numbers 0 to count - 1 in random order.
+std::vector<std::size_t> permutation(std::size_t count, Random& random) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t i = count; i > 1; --i) {
+    std::swap(order[i - 1], order[static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(i)))]);
+  }
+  return order;
+}
+
+template <class Value>
+std::vector<Value> permuted(const std::vector<Value>& values, const std::vector<std::size_t>& order) {
+  std::vector<Value> result(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) result[order[i]] = values[i];
+  return result;
+}
+
+/// Axes in another order, and where each entry of the request then is.
+struct Reordered {
+  MomentsRequest request;
+  std::vector<std::size_t> place_of;
+};
+
+Reordered reordered(const MomentsRequest& request, Random& random) {
+  const auto thetas = permutation(request.theta_deg.size(), random);
+  const auto indices = permutation(request.indices.size(), random);
+  const auto sigmas = permutation(request.sigma.size(), random);
+  const auto qs = permutation(request.q.size(), random);
+  Reordered other{request, {}};
+  other.request.theta_deg = permuted(request.theta_deg, thetas);
+  other.request.indices = permuted(request.indices, indices);
+  other.request.sigma = permuted(request.sigma, sigmas);
+  other.request.q = permuted(request.q, qs);
+  for (const std::size_t theta : thetas) {
+    for (const std::size_t index : indices) {
+      for (const std::size_t sigma : sigmas) {
+        for (const std::size_t q : qs) {
+          other.place_of.push_back(((theta * indices.size() + index) * sigmas.size() + sigma) * qs.size() + q);
+        }
+      }
+    }
+  }
+  for (std::size_t i = 0; i < request.size(); ++i) other.request.wanted[other.place_of[i]] = request.wanted[i];
+  return other;
+}
+
+TEST_P(KernelProperties, OrderOfAxes_TilesAndBlocks_ChangeNoBit) {
+  const auto [kernel, model] = GetParam();
+  Random random(printed_seed(600 + number_of(model)));
+  const MomentsRequest request = random_grid(model, random);
+  const std::vector<Moments> expected = make_evaluator(kernel)->evaluate(request, {});
+  ASSERT_GT(request.wanted_count(), 10U);
+  for (int round = 0; round < 3; ++round) {
+    const Reordered other = reordered(request, random);
+    VulkanOptions options;
+    options.max_tile_invocations = static_cast<std::uint32_t>(random.uniform(1.0, 20.0));
+    options.max_block_shapes = static_cast<std::uint32_t>(random.uniform(1.0, 6.0));
+    options.staged_uploads = random.chance(0.5);
+    const std::vector<Moments> actual = make_evaluator(kernel, options)->evaluate(other.request, {});
+    ASSERT_EQ(actual.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      if (!request.is_wanted(i)) continue;
+      EXPECT_TRUE(same(expected[i], actual[other.place_of[i]])) << "entry " << i << " in round " << round;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, KernelProperties,
+                         testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)), case_name);
+
+}  // namespace
+}  // namespace dolp

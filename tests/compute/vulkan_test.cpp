@@ -1,0 +1,395 @@
+// The Vulkan evaluator on a real device (lavapipe where there is no GPU), under the validation layer: a machine without
+// a device or without the layer fails these tests.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <dolp/errors.hpp>
+#include <random>
+
+#include "device/devices.hpp"
+#include "device/instance.hpp"
+#include "device/result.hpp"
+#include "evaluate/vulkan/moments_run.hpp"
+#include "evaluate/vulkan/tiles.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr unsigned kSeed = 20240817;
+
+// Every distinct exit of a child process, so that a crash is not taken for success.
+constexpr int kChildPassed = 42;
+constexpr int kChildFailed = 43;
+
+VulkanOptions validated(Precision precision = Precision::kFloat) {
+  VulkanOptions options;
+  options.precision = precision;
+  options.validation = ValidationMode::kOn;
+  return options;
+}
+
+// All combinations of a few directions, shapes and indices, in an order that is none.
+MomentsRequest small_request(Distribution distribution, Masking masking) {
+  MomentsRequest request;
+  request.distribution = distribution;
+  request.masking = masking;
+  request.theta_deg = {0.0, 17.0, 45.0, 60.0, 75.5, 89.0, 90.0};
+  request.sigma = {0.05, 0.2, 0.445, 0.7, 1.1};
+  request.q = {2.0, 1.6};
+  request.indices = {{1.508, 0.0}, {2.5, 3.0}};
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  std::ranges::shuffle(request.theta_deg, random);
+  std::ranges::shuffle(request.sigma, random);
+  return request;
+}
+
+bool same(const Moments& a, const Moments& b) {
+  return a.r_i == b.r_i && a.r_q == b.r_q && a.albedo == b.albedo && a.deficit == b.deficit &&
+         a.r_i_error == b.r_i_error && a.r_q_error == b.r_q_error && a.albedo_error == b.albedo_error &&
+         a.deficit_error == b.deficit_error && a.evaluations == b.evaluations;
+}
+
+std::string message_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const DeviceError& error) {
+    return error.what();
+  }
+  return "no DeviceError";
+}
+
+TEST(ListDevices, ThisMachine_HasAUsableDeviceWithItsLimits) {
+  const DeviceList list = list_devices();
+  ASSERT_FALSE(list.devices.empty()) << list.why_empty;
+  EXPECT_TRUE(list.why_empty.empty());
+  const dolp::Device& device = list.devices[choose_device(list.devices, "", false)];
+  std::printf("%s, %s, Vulkan %s\n", device.name.c_str(), device.driver.c_str(), device.api_version.c_str());
+  EXPECT_FALSE(device.driver.empty());
+  // What the Vulkan specification guarantees at least.
+  EXPECT_GE(device.max_storage_buffer_bytes, std::uint64_t{1} << 27U);
+  EXPECT_GE(device.max_workgroups, 65'535U);
+  EXPECT_GT(device.memory_bytes, 0U);
+  EXPECT_GE(device.subgroup_size, 1U);
+}
+
+TEST(VulkanDeathTest, NoDriver_IsADeviceErrorAndAnEmptyListWithAReason) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        setenv("VK_DRIVER_FILES", "/nonexistent/driver.json", 1);
+        setenv("VK_ICD_FILENAMES", "/nonexistent/driver.json", 1);
+        const DeviceList list = list_devices();
+        const std::string message = message_of([] { VulkanEvaluator evaluator(VulkanOptions{}); });
+        const bool passed =
+            list.devices.empty() && list.why_empty == message && message.starts_with("no Vulkan driver");
+        std::_Exit(passed ? kChildPassed : kChildFailed);
+      },
+      testing::ExitedWithCode(kChildPassed), "");
+}
+
+TEST(VulkanDeathTest, ValidationWantedByTheEnvironmentButMissing_IsADeviceError) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        setenv("DOLP_VALIDATION", "1", 1);
+        setenv("VK_LAYER_PATH", "/nonexistent", 1);
+        const std::string message = message_of([] { VulkanEvaluator evaluator(VulkanOptions{}); });
+        const bool passed = message.find("VK_LAYER_KHRONOS_validation is not installed") != std::string::npos;
+        std::_Exit(passed ? kChildPassed : kChildFailed);
+      },
+      testing::ExitedWithCode(kChildPassed), "");
+}
+
+TEST(VulkanDeathTest, TileThatExceedsItsTime_IsADeviceErrorAndNoCrash) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        VulkanOptions options;
+        options.tile_timeout_s = 1e-9;
+        VulkanEvaluator evaluator(options);
+        const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
+        const std::string late = message_of([&] { evaluator.evaluate(request, {}); });
+        const std::string after = message_of([&] { evaluator.evaluate(request, {}); });
+        const bool passed =
+            late.find("did not finish") != std::string::npos && after.find("given up") != std::string::npos;
+        std::_Exit(passed ? kChildPassed : kChildFailed);
+      },
+      testing::ExitedWithCode(kChildPassed), "");
+}
+
+TEST(VulkanEvaluator, UnknownDevice_ThrowsTheListOfDevices) {
+  VulkanOptions options = validated();
+  options.device = "no such device";
+  const std::string message = message_of([&] { VulkanEvaluator evaluator(options); });
+  EXPECT_NE(message.find(list_devices().devices.at(0).name), std::string::npos) << message;
+}
+
+TEST(VulkanEvaluator, EmptyRequest_ReturnsNothing) {
+  VulkanEvaluator evaluator(validated());
+  EXPECT_TRUE(evaluator.evaluate(MomentsRequest{}, {}).empty());
+  EXPECT_EQ(evaluator.report().dispatches, 0U);
+}
+
+TEST(VulkanEvaluator, ListsThatDoNotFitTheLayout_ThrowInputError) {
+  VulkanEvaluator evaluator(validated());
+  MomentsRequest request = small_request(Distribution::kCauchy, Masking::kNone);
+  request.wanted.assign(request.size() - 1, 1);
+  EXPECT_THROW(evaluator.evaluate(request, {}), InputError);
+  MomentsRequest points;
+  points.append({10.0, {0.3, 2.0}, {1.5, 0.0}});
+  points.sigma.push_back(0.4);
+  EXPECT_THROW(evaluator.evaluate(points, {}), InputError);
+}
+
+TEST(VulkanEvaluator, PointsAndMasks_SayTheSameAsTheGrid) {
+  VulkanEvaluator evaluator(validated(Precision::kDouble));
+  const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
+  const std::vector<Moments> expected = evaluator.evaluate(request, {});
+  MomentsRequest masked = request;
+  MomentsRequest points;
+  points.masking = request.masking;
+  std::vector<std::size_t> positions;
+  masked.wanted.assign(request.size(), 0);
+  for (std::size_t i = 0; i < request.size(); i += 3) {
+    masked.wanted[i] = 1;
+    points.append(request[i]);
+    positions.push_back(i);
+  }
+  const std::vector<Moments> of_mask = evaluator.evaluate(masked, {});
+  const std::vector<Moments> of_points = evaluator.evaluate(points, {});
+  ASSERT_EQ(of_mask.size(), request.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    EXPECT_TRUE(same(of_mask[positions[i]], expected[positions[i]])) << i;
+    EXPECT_TRUE(same(of_points[i], expected[positions[i]])) << i;
+  }
+}
+
+using Variant = std::tuple<Distribution, Masking, Precision>;
+
+class VulkanKernel : public testing::TestWithParam<Variant> {};
+
+// The request says in which precision, and one evaluator computes both; what the one leaves behind does not reach the
+// other.
+TEST_P(VulkanKernel, RequestsInBothPrecisions_AreThoseOfEvaluatorsOfTheirOwn) {
+  const Precision own = std::get<Precision>(GetParam());
+  MomentsRequest request = small_request(std::get<Distribution>(GetParam()), std::get<Masking>(GetParam()));
+  std::array<std::vector<Moments>, 2> expected;
+  constexpr std::array kPrecisions = {Precision::kFloat, Precision::kDouble};
+  for (std::size_t i = 0; i < kPrecisions.size(); ++i) {
+    expected[i] = VulkanEvaluator(validated(kPrecisions[i])).evaluate(request, {});
+  }
+  VulkanEvaluator both(validated(own));
+  EXPECT_TRUE(both.has_double());
+  for (const std::size_t i : {std::size_t{0}, std::size_t{1}, std::size_t{0}}) {
+    request.precision = kPrecisions[i];
+    EXPECT_TRUE(std::ranges::equal(both.evaluate(request, {}), expected[i], same)) << i;
+    if (i == 0 && both.report().precision != "float and double") {
+      EXPECT_EQ(both.report().precision, "float");
+    }
+  }
+  EXPECT_EQ(both.report().precision, "float and double");
+  EXPECT_FALSE(std::ranges::equal(expected[0], expected[1], same));
+  // left open, it is the evaluator's own
+  request.precision = Precision::kAuto;
+  EXPECT_TRUE(std::ranges::equal(both.evaluate(request, {}), expected[own == Precision::kDouble ? 1 : 0], same));
+  EXPECT_TRUE(both.validation_messages().empty());
+}
+
+// An invocation of lavapipe stops without notice after this many loop iterations.
+constexpr double kIterationLimit = 65'535.0;
+
+TEST_P(VulkanKernel, TightestTolerance_StaysBelowTheIterationLimit) {
+  MomentsRequest request = small_request(std::get<Distribution>(GetParam()), std::get<Masking>(GetParam()));
+  request.tolerance = 1e-15;  // of the last level at an entry
+  const double bound = worst_iterations(kernel_data(request));
+  EXPECT_LT(bound, kIterationLimit);
+  VulkanEvaluator evaluator(validated(std::get<Precision>(GetParam())));
+  double most = 0.0;
+  for (const Moments& moments : evaluator.evaluate(request, {})) most = std::max(most, moments.evaluations);
+  std::printf("most evaluations of an entry: %.0f, bound of the iterations of a piece: %.0f\n", most, bound);
+  EXPECT_GT(most, 0.0);
+  EXPECT_LE(most, bound * DOLP_MAX_PIECES);
+}
+
+std::string variant_name(const testing::TestParamInfo<Variant>& test) {
+  const auto [distribution, masking, precision] = test.param;
+  constexpr std::array kMaskings = {"None", "VCavity", "Integral", "Smith"};
+  return std::string(distribution == Distribution::kCauchy ? "Cauchy" : "Gaussian") +
+         kMaskings[static_cast<std::size_t>(masking)] + (precision == Precision::kFloat ? "Float" : "Double");
+}
+
+INSTANTIATE_TEST_SUITE_P(Vulkan, VulkanKernel,
+                         testing::Combine(testing::Values(Distribution::kCauchy, Distribution::kGaussian),
+                                          testing::Values(Masking::kNone, Masking::kVCavity, Masking::kIntegral,
+                                                          Masking::kSmith),
+                                          testing::Values(Precision::kFloat, Precision::kDouble)),
+                         variant_name);
+
+TEST(VulkanEvaluator, Progress_CountsEveryTileAndTheReportEveryDispatch) {
+  VulkanOptions options = validated();
+  options.max_tile_invocations = 10;
+  options.max_block_shapes = 2;
+  VulkanEvaluator evaluator(options);
+  const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
+  std::vector<std::size_t> done;
+  evaluator.evaluate(request, [&](std::size_t count, std::size_t total) {
+    EXPECT_EQ(total, request.size());
+    done.push_back(count);
+    return true;
+  });
+  EXPECT_TRUE(std::ranges::is_sorted(done));
+  EXPECT_EQ(done.back(), request.size());
+  EXPECT_GE(done.size(), request.size() / 10);
+  const EvaluationReport report = evaluator.report();
+  EXPECT_GE(report.dispatches, done.size());
+  EXPECT_GT(report.evaluations, static_cast<double>(request.size()));
+  EXPECT_GT(report.kernel_s, 0.0);
+  EXPECT_GT(report.setup_s, 0.0);
+}
+
+TEST(VulkanEvaluator, CancelledRequest_LeavesTheEvaluatorUsable) {
+  VulkanOptions options = validated();
+  options.max_tile_invocations = 20;
+  VulkanEvaluator evaluator(options);
+  const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
+  const std::vector<Moments> expected = evaluator.evaluate(request, {});
+  int tiles = 0;
+  const auto stop_at_second = [&](std::size_t, std::size_t) { return ++tiles < 2; };
+  EXPECT_THROW(evaluator.evaluate(request, stop_at_second), Cancelled);
+  EXPECT_EQ(tiles, 2);
+  const std::vector<Moments> actual = evaluator.evaluate(request, {});
+  EXPECT_TRUE(std::ranges::equal(expected, actual, same));
+}
+
+}  // namespace
+
+namespace vulkan {
+namespace {
+
+// An instance, a device and what runs on it, under validation until the test looks at the log.
+struct Session {
+  explicit Session(ValidationLog& log)
+      : instance(&log), device(instance.physical_devices().at(0), false), kernels(device, false), stream(device) {}
+  Instance instance;
+  Device device;
+  Kernels kernels;
+  CommandStream stream;
+};
+
+constexpr double kTimeout_s = 100.0;
+
+TEST(Validation, CopyBeyondABuffer_IsReported) {
+  ValidationLog log;
+  {
+    Session session(log);
+    const Buffer from(session.device, 1'000, MemoryUse::kUpload);
+    const Buffer to(session.device, 1'000, MemoryUse::kDeviceOnly);
+    session.stream.begin();
+    session.stream.copy(from, to.get(), 2'000);
+  }
+  EXPECT_FALSE(log.messages().empty());
+}
+
+constexpr double kSentinel = -12'345.0;
+constexpr std::uint32_t kFirst = 3;   // entries left out at the start
+constexpr std::uint32_t kCount = 70;  // more than one workgroup, and not a multiple of its size
+
+// The buffers of a request, with room for one more workgroup of sentinels after each output.
+class SentinelRun {
+ public:
+  SentinelRun(Session& session, const MomentsRequest& request) : session_(session), data_(kernel_data(request)) {
+    add(data_.thetas, 0);
+    add(data_.shapes, 0);
+    add(data_.indices, 0);
+    buffers_.emplace_back(session.device, request.size() * sizeof(Words), MemoryUse::kUpload);
+    std::vector<Words> words;
+    for (std::size_t i = 0; i < request.size(); ++i) {
+      const MomentsEntry entry = data_[i];
+      words.push_back({entry.theta, entry.shape, entry.index, task_word(data_.pieces[entry.theta], 0, 1)});
+    }
+    buffers_.back().write(std::as_bytes(std::span(words)));
+    add(data_.rule_nodes, 0);
+    using MaskingTable = std::array<double, std::size_t{4} * DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT)>;
+    add(std::vector<MaskingTable>{}, data_.shapes.size() + 1);
+    add(std::vector<kernel::MomentsNode>{}, request.size() + kLocalSize);
+    add(std::vector{data_.rule}, 0);
+    std::array<VkBuffer, kBindingCount> handles{};
+    for (std::uint32_t i = 0; i < kBindingCount; ++i) handles[i] = buffers_[i].get();
+    session.kernels.bind(handles);
+  }
+
+  /// The first pieces of `count` entries from `first` on.
+  void run(std::uint32_t first, std::uint32_t count) {
+    CommandStream& stream = session_.stream;
+    stream.begin();
+    Kernels& kernels = session_.kernels;
+    stream.dispatch(kernels, kernels.pipeline(masking_table_variant(data_)), 0,
+                    static_cast<std::uint32_t>(data_.shapes.size()), data_.rule_order);
+    stream.barrier(Barrier::kKernelToKernel);
+    stream.dispatch(kernels, kernels.pipeline(moments_variant(data_, 1)), first, count, data_.rule_order);
+    stream.barrier(Barrier::kKernelToHost);
+    stream.submit_and_wait(kTimeout_s);
+  }
+
+  /// The numbers of an output buffer.
+  std::vector<float> numbers(std::uint32_t binding, std::size_t count) const {
+    std::vector<float> values(count);
+    buffers_[binding].read(std::as_writable_bytes(std::span(values)));
+    return values;
+  }
+
+ private:
+  using Words = std::array<std::uint32_t, 4>;
+
+  template <class Node>
+  void add(const std::vector<Node>& list, std::size_t sentinels) {
+    std::vector<std::byte> bytes;
+    for (const Node& node : list) packing_.append(node, bytes);
+    for (std::size_t i = 0; i < sentinels * real_count<Node>(); ++i) packing_.append(kSentinel, bytes);
+    buffers_.emplace_back(session_.device, bytes.size(), MemoryUse::kReadback);
+    buffers_.back().write(bytes);
+  }
+
+  Session& session_;
+  KernelData data_;
+  Packing packing_{false};
+  std::vector<Buffer> buffers_;
+};
+
+TEST(Kernels, LastWorkgroup_WritesNothingBeyondItsCount) {
+  constexpr auto kIsSentinel = [](float value) { return value == static_cast<float>(kSentinel); };
+  constexpr std::size_t kNode = real_count<kernel::MomentsNode>();
+  constexpr std::size_t kTable = std::size_t{4} * DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT);
+  ValidationLog log;
+  {
+    Session session(log);
+    const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
+    SentinelRun run(session, request);
+    run.run(kFirst, kCount);
+    const std::size_t room = request.size() + kLocalSize;
+    const std::vector<float> moments = run.numbers(DOLP_BINDING_MOMENTS, kNode * room);
+    EXPECT_EQ(std::count_if(moments.begin(), moments.begin() + kNode * kCount, kIsSentinel), 0);
+    EXPECT_TRUE(std::all_of(moments.begin() + kNode * kCount, moments.end(), kIsSentinel));
+    const std::size_t shapes = request.sigma.size() * request.q.size();
+    const std::vector<float> tables = run.numbers(DOLP_BINDING_MASKING_TABLE, kTable * (shapes + 1));
+    const auto end = tables.begin() + static_cast<std::ptrdiff_t>(kTable * shapes);
+    EXPECT_EQ(std::count_if(tables.begin(), end, kIsSentinel), 0);
+    EXPECT_TRUE(std::all_of(end, tables.end(), kIsSentinel));
+
+    // Output i belongs to entry kFirst + i.
+    SentinelRun whole(session, request);
+    whole.run(0, static_cast<std::uint32_t>(request.size()));
+    const std::vector<float> expected = whole.numbers(DOLP_BINDING_MOMENTS, kNode * request.size());
+    EXPECT_TRUE(std::equal(moments.begin(), moments.begin() + kNode * kCount, expected.begin() + kNode * kFirst));
+  }
+  EXPECT_EQ(log.messages(), std::vector<std::string>{});
+}
+
+}  // namespace
+}  // namespace vulkan
+}  // namespace dolp

@@ -1,0 +1,259 @@
+// The bistatic mode against the formula of shaders/physics/README.md, section 4, written out once more, with f from
+// explicit vectors and the moments of the independent reference.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <random>
+
+#include "model/status.hpp"
+#include "properties_support.hpp"
+#include "reference/mueller.hpp"
+#include "reference/reference_evaluator.hpp"
+#include "run/scene_run.hpp"
+#include "spectrum/planck.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr std::uint64_t kSeed = 20260212;
+constexpr int kScenes = 40;
+constexpr double kWavelength_um = 10.6;
+
+class RandomScenes {
+ public:
+  double uniform(double low, double high) { return low + (high - low) * std::generate_canonical<double, 53>(engine_); }
+
+  Scene scene() {
+    Scene scene;
+    const bool metal = uniform(0.0, 1.0) < 0.3;
+    scene.surface.material.constant = metal ? OpticalConstants{uniform(2.0, 27.0), uniform(20.0, 90.0)}
+                                            : OpticalConstants{uniform(1.3, 3.0), uniform(0.0, 0.5)};
+    scene.surface.distribution = uniform(0.0, 1.0) < 0.5 ? Distribution::kCauchy : Distribution::kGaussian;
+    scene.surface.masking = static_cast<Masking>(static_cast<int>(uniform(0.0, 3.999)));
+    scene.surface.sigma = uniform(0.1, 0.6);
+    scene.surface.q = uniform(1.7, 6.0);
+    scene.surface.specular = uniform(0.3, 1.0);
+    scene.surface.diffuse = uniform(0.0, 0.3);
+    scene.surface.diffuse_exponent = uniform(-0.5, 0.0);
+    scene.emission = Emission{uniform(280.0, 320.0), EmissionModel::kMoments};
+    scene.source.emplace().irradiance = uniform(0.0, 20.0);
+    scene.surroundings = Surroundings{uniform(0.0, 300.0)};
+    if (uniform(0.0, 1.0) < 0.5)
+      scene.path = Path{.transmittance = uniform(0.3, 1.0), .temperature_K = {}, .radiance = 0.4};
+    scene.spectrum = {kWavelength_um, kWavelength_um};
+    scene.geometry = {Mode::kBistatic, uniform(5.0, 80.0), uniform(-180.0, 180.0)};
+    return scene;
+  }
+
+ private:
+  std::mt19937_64 engine_{kSeed};
+};
+
+struct Radiance {
+  double i, q, u, v;
+};
+
+Radiance model_radiance(const Scene& scene, double theta_i_deg) {
+  const Surface& surface = scene.surface;
+  MomentsRequest request;
+  request.distribution = surface.distribution;
+  request.masking = surface.masking;
+  request.theta_deg = {scene.geometry.view_zenith_deg};
+  request.sigma = {surface.sigma};
+  request.q = {surface.q};
+  request.indices = {surface.material.constant};
+  const Moments moments = ReferenceEvaluator().evaluate(request, {}).front();
+  const double cos_i = std::cos(theta_i_deg * std::numbers::pi / 180.0);
+  const double cos_v = std::cos(scene.geometry.view_zenith_deg * std::numbers::pi / 180.0);
+  const double c = surface.diffuse_exponent;
+  const double rho_i = surface.specular * moments.r_i / cos_v + 2.0 * surface.diffuse * std::pow(cos_v, c) / (c + 2.0);
+  const double rho_q = surface.specular * moments.r_q / cos_v;
+  const double emitted = planck_radiance(kWavelength_um, scene.emission->temperature_K);
+  const double surroundings = planck_radiance(kWavelength_um, scene.surroundings->temperature_K);
+  const ReferenceMueller f = reference_pbrdf(surface, surface.material.constant, theta_i_deg,
+                                             scene.geometry.view_zenith_deg, scene.geometry.relative_azimuth_deg);
+  const double beam = scene.source->irradiance * cos_i;
+  const double diffuse = surface.diffuse / std::numbers::pi * std::pow(cos_i * cos_v, c);
+  const double k_s = surface.specular;
+  Radiance l = {emitted * (1.0 - rho_i) + surroundings * rho_i + beam * (k_s * f[0][0] + diffuse),
+                -emitted * rho_q + surroundings * rho_q + beam * k_s * f[1][0], beam * k_s * f[2][0],
+                beam * k_s * f[3][0]};
+  if (scene.path) {
+    const double tau = scene.path->transmittance;
+    l = {tau * l.i + *scene.path->radiance, tau * l.q, tau * l.u, tau * l.v};
+  }
+  return l;
+}
+
+/// The kernels, and the reference.
+class BistaticByEvaluator : public testing::TestWithParam<std::optional<Kernel>> {};
+
+INSTANTIATE_TEST_SUITE_P(Bistatic, BistaticByEvaluator,
+                         testing::Values(Kernel::kVulkanFloat, Kernel::kVulkanDouble, Kernel::kCpuDouble, std::nullopt),
+                         [](const auto& test) { return test.param ? name_of(*test.param) : "Reference"; });
+
+TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
+  std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
+  RandomScenes random;
+  const std::unique_ptr<MomentsEvaluator> evaluator =
+      GetParam() ? make_evaluator(*GetParam()) : std::make_unique<ReferenceEvaluator>();
+  double worst = 0.0;
+  for (int n = 0; n < kScenes; ++n) {
+    const Scene scene = random.scene();
+    const double theta_i_deg = random.uniform(1.0, 85.0);
+    const SlopeShape shape{scene.surface.sigma, scene.surface.q};
+    const PointResult r = evaluate_scene(scene, {{theta_i_deg, shape, {}}}, *evaluator, {}).front();
+    const Radiance l = model_radiance(scene, theta_i_deg);
+    // The stated error of DOLP is relative to I and covers Q and U; I itself is good to the same order.
+    const double bound = 2.0 * r[Quantity::kErrorEstimate] + 1e-9;
+    EXPECT_NEAR(r[Quantity::kStokesQ] / l.i, l.q / l.i, bound) << n;
+    EXPECT_NEAR(r[Quantity::kStokesU] / l.i, l.u / l.i, bound) << n;
+    EXPECT_NEAR(r[Quantity::kStokesV] / l.i, l.v / l.i, bound) << n;
+    EXPECT_NEAR(r[Quantity::kStokesI] / l.i, 1.0, 2.0 * scene.accuracy.tolerance) << n;
+    EXPECT_NEAR(r[Quantity::kDolp], std::hypot(l.q, l.u) / l.i, r[Quantity::kErrorEstimate] + 1e-9) << n;
+    if (promises_dolp(r.status)) {
+      EXPECT_LE(r[Quantity::kErrorEstimate], scene.accuracy.tolerance) << n;
+    }
+    worst = std::max(worst, std::abs(r[Quantity::kDolp] - std::hypot(l.q, l.u) / l.i));
+  }
+  std::printf("worst DOLP difference %.1e\n", worst);
+}
+
+/// Says that every beam is off by a little more than the text's own bound.
+class BiasedBeams final : public MomentsEvaluator, public ScatteringEvaluator {
+ public:
+  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
+    return own_.evaluate(request, progress);
+  }
+  std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override {
+    precisions.push_back(request.precision);
+    std::vector<ScatteringMatrix> matrices = own_.scatter(request, progress);
+    if (request.precision == Precision::kDouble) return matrices;
+    for (ScatteringMatrix& f : matrices) f.error = 1e-2 * f.m[0];
+    return matrices;
+  }
+  ScatteringEvaluator* scattering() override { return this; }
+  EvaluationReport report() const override { return own_.report(); }
+
+  std::vector<Precision> precisions;
+
+ private:
+  CpuEvaluator own_{Precision::kAuto};
+};
+
+// The bound of the beam is part of the stated error, and a level in double computes the beam in double too.
+TEST(Bistatic, BeamWithALargeError_IsTriedAgainInDouble) {
+  RandomScenes random;
+  Scene scene = random.scene();
+  scene.source->irradiance = 20.0;
+  BiasedBeams evaluator;
+  const SlopeShape shape{scene.surface.sigma, scene.surface.q};
+  const double theta_deg = scene.geometry.view_zenith_deg;
+  scene.geometry.relative_azimuth_deg = 180.0;
+  const PointResult r = evaluate_scene(scene, {{theta_deg, shape, {}}}, evaluator, {}).front();
+  EXPECT_EQ(evaluator.precisions.front(), Precision::kFloat);
+  EXPECT_EQ(evaluator.precisions.back(), Precision::kDouble);
+  EXPECT_LE(r[Quantity::kErrorEstimate], scene.accuracy.tolerance);
+  scene.accuracy.precision = Precision::kFloat;
+  const PointResult in_float = evaluate_scene(scene, {{theta_deg, shape, {}}}, evaluator, {}).front();
+  EXPECT_GT(in_float[Quantity::kErrorEstimate], scene.accuracy.tolerance);
+  EXPECT_NE(in_float.status & kStatusToleranceMissed, 0U);
+}
+
+TEST(Bistatic, Mirror_HasNoBeamButInItsSpecularDirection) {
+  RandomScenes random;
+  Scene scene = random.scene();
+  scene.surface.diffuse = 0.0;
+  CpuEvaluator evaluator(Precision::kDouble);
+  const auto dolp_at = [&](double theta_i_deg, double view_deg, double azimuth_deg) {
+    scene.geometry = {Mode::kBistatic, view_deg, azimuth_deg};
+    return evaluate_scene(scene, {{theta_i_deg, {0.0, 2.0}, {}}}, evaluator, {}).front()[Quantity::kDolp];
+  };
+  EXPECT_TRUE(std::isnan(dolp_at(40.0, 40.0, 180.0)));
+  EXPECT_TRUE(std::isnan(dolp_at(0.0, 0.0, 70.0)));
+  EXPECT_TRUE(std::isfinite(dolp_at(40.0, 40.0, 179.0)));
+  EXPECT_TRUE(std::isfinite(dolp_at(40.0, 41.0, 180.0)));
+}
+
+TEST(Bistatic, BothBeamsAtNinetyDegrees_AreOutsideTheDomain) {
+  RandomScenes random;
+  Scene scene = random.scene();
+  scene.surface.diffuse = 0.0;
+  scene.geometry.view_zenith_deg = 90.0;
+  CpuEvaluator evaluator(Precision::kFloat);
+  for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
+    scene.surface.masking = masking;
+    const SlopeShape shape{scene.surface.sigma, scene.surface.q};
+    EXPECT_TRUE(std::isnan(evaluate_scene(scene, {{90.0, shape, {}}}, evaluator, {}).front()[Quantity::kDolp]));
+  }
+}
+
+TEST(Bistatic, OppositeAzimuth_TurnsTheSignOfU) {
+  RandomScenes random;
+  CpuEvaluator evaluator(Precision::kFloat);
+  Scene scene = random.scene();
+  const SceneEntry entry{40.0, {scene.surface.sigma, scene.surface.q}, {}};
+  scene.geometry.relative_azimuth_deg = 130.0;
+  const PointResult left = evaluate_scene(scene, {entry}, evaluator, {}).front();
+  scene.geometry.relative_azimuth_deg = -130.0;
+  const PointResult right = evaluate_scene(scene, {entry}, evaluator, {}).front();
+  EXPECT_NE(left[Quantity::kStokesU], 0.0);
+  EXPECT_EQ(left[Quantity::kStokesU], -right[Quantity::kStokesU]);
+  EXPECT_EQ(left[Quantity::kStokesQ], right[Quantity::kStokesQ]);
+  EXPECT_EQ(left[Quantity::kDolp], right[Quantity::kDolp]);
+}
+
+TEST(Bistatic, SourceAngles_ShareTheMomentsOfTheView) {
+  RandomScenes random;
+  const Scene scene = random.scene();
+  CpuEvaluator evaluator(Precision::kFloat);
+  const SlopeShape shape{scene.surface.sigma, scene.surface.q};
+  const std::vector<PointResult> results =
+      evaluate_scene(scene, {{0.0, shape, {}}, {30.0, shape, {}}, {90.0, shape, {}}}, evaluator, {});
+  const double three = evaluator.report().evaluations;
+  evaluate_scene(scene, {{10.0, shape, {}}}, evaluator, {});
+  EXPECT_GT(three, 0.0);
+  EXPECT_EQ(2.0 * three, evaluator.report().evaluations);  // of both calls
+  EXPECT_EQ(results[0][Quantity::kRhoI], results[2][Quantity::kRhoI]);
+  EXPECT_EQ(results[2].status, 0U);  // a source at 90 degrees adds nothing
+}
+
+PointResult seen_at(Scene scene, double view_zenith_deg) {
+  scene.geometry.view_zenith_deg = view_zenith_deg;
+  CpuEvaluator evaluator(Precision::kDouble);
+  return evaluate_scene(scene, {{60.0, {scene.surface.sigma, scene.surface.q}, {}}}, evaluator, {}).front();
+}
+
+TEST(Bistatic, ViewAtNinetyDegrees_IsTheLimitWhereThereIsOne) {
+  constexpr double kStep = 1e-5;  // the change over 1e-4 degrees
+  RandomScenes random;
+  for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
+    Scene scene = random.scene();
+    scene.surface.masking = masking;
+    scene.surface.diffuse = 0.0;
+    scene.surface.sigma = 0.3;
+    const PointResult at = seen_at(scene, 90.0);
+    const PointResult near = seen_at(scene, 90.0 - 1e-4);
+    EXPECT_EQ(at.status, 0U);
+    EXPECT_NEAR(at[Quantity::kStokesI] / near[Quantity::kStokesI], 1.0, kStep);
+    EXPECT_NEAR(at[Quantity::kStokesQ] / near[Quantity::kStokesI], near[Quantity::kStokesQ] / near[Quantity::kStokesI],
+                kStep);
+    EXPECT_NEAR(at[Quantity::kRhoI], near[Quantity::kRhoI], kStep);
+  }
+}
+
+TEST(Bistatic, ViewAtNinetyDegreesOfADivergingReflectance_IsOutsideTheDomain) {
+  RandomScenes random;
+  Scene scene = random.scene();
+  scene.surface.masking = Masking::kNone;
+  const PointResult r = seen_at(scene, 90.0);
+  EXPECT_TRUE(std::isnan(r[Quantity::kDolp]));
+  EXPECT_EQ(r.status, kStatusUnphysicalReflectance | kStatusOutsideDomain);
+}
+
+}  // namespace
+}  // namespace dolp

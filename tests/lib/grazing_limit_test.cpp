@@ -1,0 +1,132 @@
+// The quotients of diverging moments at 90 degrees: against an integral of its own, and against the kernel just before.
+#include "run/grazing_limit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "scene_run_support.hpp"
+
+namespace dolp {
+namespace {
+
+using namespace scene_run_support;
+using Real = long double;
+
+constexpr std::array kQs = {1.0001, 1.1, 1.2, 1.3, 1.45, 1.5};
+constexpr std::array kAllIndices = {
+    OpticalConstants{1.508, 0.0}, OpticalConstants{1.0, 0.0},   OpticalConstants{1.0001, 0.0},
+    OpticalConstants{2.0, 0.7},   OpticalConstants{27.0, 90.0}, OpticalConstants{1000.0, 1000.0},
+    OpticalConstants{1e6, 1e6},   OpticalConstants{0.2, 3.0},   OpticalConstants{0.6, 0.0},
+    OpticalConstants{0.6, 1e-4},  OpticalConstants{0.01, 0.0},  OpticalConstants{0.51444802339652151, 4.4e-12}};
+
+// What the header promises.
+constexpr double kRelativeAccuracy = 1e-12;
+constexpr double kAlbedoAccuracy = 2e-15;
+// Just before 90 degrees the quotients differ from their limit by a series in c^(3 - 2q). Its first term, at most 2% of
+// the quotient at q = 1.3, is extrapolated away; the second is its square.
+constexpr double kExtrapolationAccuracy = 4e-4;
+
+/// Ends of panels that shrink by half toward both ends of [from, to].
+std::vector<Real> graded_panels(Real from, Real to) {
+  constexpr int kHalvings = 60;
+  const Real middle = 0.5L * (from + to);
+  std::vector<Real> ends = {from};
+  for (int i = kHalvings; i > 0; --i) ends.push_back(from + (middle - from) * std::ldexp(1.0L, -i));
+  ends.push_back(middle);
+  for (int i = 1; i <= kHalvings; ++i) ends.push_back(to - (to - middle) * std::ldexp(1.0L, -i));
+  ends.push_back(to);
+  return ends;
+}
+
+/// Integral of cos(phi)^(4-2q) M over a quarter turn, in Gauss panels that shrink toward grazing incidence and toward
+/// the angle of total reflection.
+Real integral(double q, const OpticalConstants& index, const std::function<Real(const SmoothReflectance&)>& part) {
+  const Real quarter = 0.5L * std::numbers::pi_v<Real>;
+  const Real squared = 1.0L - (Real(index.n) * index.n - Real(index.k) * index.k);
+  std::vector<Real> ends = {0.0L, quarter};
+  if (squared > 0.0L && squared < 1.0L) ends = {0.0L, std::asin(std::sqrt(squared)), quarter};
+  Real sum = 0.0L;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    const std::vector<Real> panels = graded_panels(ends[i], ends[i + 1]);
+    for (std::size_t j = 0; j + 1 < panels.size(); ++j) {
+      const auto integrand = [&](Real psi) {
+        const Real x = std::sin(psi);
+        return std::pow(x, 4.0L - 2.0L * Real(q)) * part(smooth_reflectance(index, x));
+      };
+      sum += boost::math::quadrature::gauss<Real, 30>::integrate(integrand, panels[j], panels[j + 1]);
+    }
+  }
+  return sum;
+}
+
+TEST(GrazingLimit, TinyIndex_ReflectsAllButAsMuch) {
+  for (const double n : {1e-8, 1e-9, 1e-10, 1e-16, 1e-75, 1e-100, 1e-300, 5e-324}) {
+    for (const double k : {0.0, 1e-12, 1e-100, 5e-324}) {
+      for (const double q : kQs) {
+        const Moments moments = grazing_limit_moments({n, k}, q);
+        EXPECT_NEAR(moments.r_i, moments.albedo, 4.0 * n + kAlbedoAccuracy * moments.albedo)
+            << n << " " << k << " " << q;
+        EXPECT_NEAR(moments.r_q, 0.0, 4.0 * n + kAlbedoAccuracy * moments.albedo) << n << " " << k << " " << q;
+      }
+    }
+  }
+}
+
+TEST(GrazingLimit_EveryIndex, AgreesWithAnotherQuadrature) {
+  for (const OpticalConstants& index : kAllIndices) {
+    for (const double q : kQs) {
+      const Moments limit = grazing_limit_moments(index, q);
+      const Real albedo = integral(q, index, [](const auto&) { return 1.0L; });
+      const Real r_i = integral(q, index, [](const SmoothReflectance& r) { return 0.5L * (r.s + r.p); });
+      // cos(2 eta) = -1: the facets stand upright.
+      const Real r_q = integral(q, index, [](const SmoothReflectance& r) { return -0.5L * (r.s - r.p); });
+      const double bound = kRelativeAccuracy * limit.r_i + kAlbedoAccuracy * limit.albedo;
+      EXPECT_NEAR(limit.albedo, static_cast<double>(albedo), kRelativeAccuracy * limit.albedo);
+      EXPECT_NEAR(limit.r_i, static_cast<double>(r_i), bound) << index.n << " " << index.k << " q " << q;
+      EXPECT_NEAR(limit.r_q, static_cast<double>(r_q), bound) << index.n << " " << index.k << " q " << q;
+      EXPECT_GE(limit.r_i_error, std::abs(limit.r_i - static_cast<double>(r_i)));
+      EXPECT_GE(limit.r_q_error, std::abs(limit.r_q - static_cast<double>(r_q)));
+      EXPECT_EQ(limit.deficit, -limit.r_i);
+    }
+  }
+}
+
+/// r_q / r_i of the kernel in double at an angle short of 90 degrees.
+double quotient_before(Masking masking, const OpticalConstants& index, double q, double short_deg) {
+  MomentsRequest request;
+  request.masking = masking;
+  request.tolerance = 1e-8;
+  request.theta_deg = {90.0 - short_deg};
+  request.sigma = {0.3};
+  request.q = {q};
+  request.indices = {index};
+  const Moments moments = CpuEvaluator(Precision::kDouble).evaluate(request, {}).front();
+  return moments.r_q / moments.r_i;
+}
+
+TEST(GrazingLimit_Quotient, IsWhatTheKernelTendsTo) {
+  constexpr double kShort_deg = 1e-3;
+  constexpr double kShorter_deg = 1e-4;
+  for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
+    for (const OpticalConstants& index : kIndices) {
+      for (const double q : {1.1, 1.2, 1.3}) {
+        const double far = quotient_before(masking, index, q, kShort_deg);
+        const double near = quotient_before(masking, index, q, kShorter_deg);
+        const double shrinks_by = std::pow(kShort_deg / kShorter_deg, 3.0 - 2.0 * q);
+        const double extrapolated = near + (near - far) / (shrinks_by - 1.0);
+        const Moments limit = grazing_limit_moments(index, q);
+        const double quotient = limit.r_q / limit.r_i;
+        EXPECT_NEAR(extrapolated, quotient, kExtrapolationAccuracy * std::abs(quotient))
+            << name_of(masking) << " N " << index.n << " + " << index.k << "i q " << q;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dolp

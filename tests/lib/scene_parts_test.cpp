@@ -1,0 +1,136 @@
+// Parts of a grid: an entry keeps its bits, however the grid is cut along directions, wavelengths and indices.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <memory>
+#include <tuple>
+
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/interpolation/interpolating_evaluator.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "run/scene_run.hpp"
+#include "scene_run_support.hpp"
+#include "table/table.hpp"
+
+namespace dolp {
+namespace {
+
+using namespace scene_run_support;
+
+/// All numbers of a result, so that NaNs compare too.
+std::vector<std::uint64_t> bits_of(const PointResult& result) {
+  std::vector<std::uint64_t> bits = {result.status};
+  for (const Quantity quantity : kAllQuantities) bits.push_back(std::bit_cast<std::uint64_t>(result[quantity]));
+  return bits;
+}
+
+std::vector<double> spaced(double from, double to, std::size_t count) {
+  std::vector<double> values(count);
+  for (std::size_t i = 0; i < count; ++i)
+    values[i] = from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1);
+  return values;
+}
+
+std::unique_ptr<MomentsEvaluator> evaluator_on(bool device) {
+  std::unique_ptr<MomentsEvaluator> inner;
+  if (device) inner = std::make_unique<VulkanEvaluator>(VulkanOptions{});
+  if (!device) inner = std::make_unique<CpuEvaluator>(Precision::kAuto);
+  return std::make_unique<InterpolatingEvaluator>(std::move(inner));
+}
+
+constexpr std::size_t kFewParts = 4;  // making an evaluator takes longer than a part
+
+/// Results of the grid, each part without knowledge of the others; few parts have an evaluator of their own each.
+std::vector<PointResult> in_parts(const Scene& scene, const std::vector<SceneEntries>& parts, bool device) {
+  const EffectPlan plan = keep_everything(scene);
+  const SceneEntries whole = grid_entries(scene);
+  CollectedResults results(whole);
+  auto evaluator = evaluator_on(device);
+  for (const SceneEntries& part : parts) {
+    if (parts.size() <= kFewParts) evaluator = evaluator_on(device);
+    run_scene(scene, part, plan, evaluator.get(), results, {});
+  }
+  return results.take();
+}
+
+void expect_same_bits(const Scene& scene, bool device) {
+  const SceneEntries grid = grid_entries(scene);
+  const std::vector<PointResult> whole = in_parts(scene, {grid}, device);
+  ASSERT_EQ(whole.size(), grid.size());
+  for (const std::size_t most : {std::max(grid.size() / 3 + 1, grid.of_direction()), grid.of_direction()}) {
+    const std::vector<PointResult> parts = in_parts(scene, grid.parts(most), device);
+    ASSERT_EQ(parts.size(), whole.size());
+    for (std::size_t i = 0; i < whole.size(); ++i)
+      ASSERT_EQ(bits_of(parts[i]), bits_of(whole[i])) << most << " at once: " << text_of(scene, grid[i]);
+  }
+}
+
+class PartsOfModel : public testing::TestWithParam<std::tuple<Distribution, Masking>> {
+ protected:
+  Scene scene() const {
+    Scene scene = make_scene(std::get<0>(GetParam()), std::get<1>(GetParam()), kAbsorbing);
+    scene.accuracy.tolerance = 1e-4;
+    return scene;
+  }
+  double least_q() const { return scene().surface.needs_mean_slope() ? 1.51 : 1.2; }
+};
+
+// Grazing directions, where other nodes are wanted than elsewhere, and tails so heavy that many entries are refined.
+TEST_P(PartsOfModel, InterpolatedGrid_KeepsItsBitsInParts) {
+  Scene dense = scene();
+  dense.grid =
+      axes_of({90.0, 0.0, 85.0, 12.0, 89.95, 60.0, 30.0, 89.0}, spaced(1.0, 0.05, 30), spaced(least_q(), 6.0, 24));
+  expect_same_bits(dense, true);
+}
+
+TEST_P(PartsOfModel, ScatteredAxes_KeepTheirBitsInParts) {
+  Scene sparse = scene();
+  sparse.grid =
+      axes_of({70.0, 90.0, 20.0, 0.0, 89.999, 45.0, 88.0}, {0.3, 0.0, 2.0, 0.02}, {2.0, 8.0, least_q(), 1.9, 3.0});
+  expect_same_bits(sparse, true);
+  expect_same_bits(sparse, false);
+}
+
+TEST_P(PartsOfModel, AxesOfIndexAndWavelength_KeepTheirBitsInParts) {
+  Scene own = scene();
+  own.grid = axes_of({80.0, 30.0, 90.0}, {0.1, 0.4}, {2.0, 1.8, 5.0}, {8.0, 10.0}, {1.4, 4.0}, {0.0, 3.0});
+  expect_same_bits(own, true);
+}
+
+INSTANTIATE_TEST_SUITE_P(SceneParts, PartsOfModel,
+                         testing::Combine(testing::ValuesIn(kDistributions), testing::ValuesIn(kMaskings)));
+
+// Many indices, which are combined from a few of all of the grid.
+TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
+  for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
+    Scene scene = make_scene(Distribution::kCauchy, masking, kAbsorbing);
+    scene.accuracy.tolerance = 1e-3;
+    scene.grid = axes_of({80.0}, spaced(0.1, 0.4, 5), spaced(2.0, 5.0, 5), {}, spaced(1.3, 3.0, 10), {0.1, 0.3, 0.9});
+    const auto evaluator = evaluator_on(true);
+    evaluate_scene(scene, grid_entries(scene), *evaluator, {});
+    EXPECT_LT(2 * evaluator->report().interpolation_nodes, evaluator->report().interpolated);
+    expect_same_bits(scene, true);
+  }
+}
+
+TEST(SceneParts, AllBounces_KeepTheirBitsInParts) {
+  Scene scene = make_scene(Distribution::kCauchy, Masking::kVCavity, kMetal);
+  scene.surface.scattering = Scattering::kMultiple;
+  scene.grid = axes_of({90.0, 0.0, 85.0, 60.0, 30.0}, spaced(0.05, 1.0, 12), spaced(1.3, 6.0, 10));
+  expect_same_bits(scene, true);
+}
+
+TEST(SceneParts, ADenseBand_KeepsItsBitsInParts) {
+  Scene scene = make_scene(Distribution::kCauchy, Masking::kVCavity, kAbsorbing);
+  scene.surface.material.name = "made up";
+  scene.surface.material.n = {{8.0, 14.0}, {1.4, 1.9}, SpectralTable::Interpolation::kLinear};
+  scene.surface.material.k = {{8.0, 14.0}, {0.1, 0.8}, SpectralTable::Interpolation::kLinear};
+  scene.spectrum = {8.0, 14.0};
+  scene.grid = axes_of({90.0, 0.0, 85.0, 60.0, 30.0}, spaced(0.05, 1.0, 20), spaced(1.6, 6.0, 16));
+  expect_same_bits(scene, true);
+}
+
+}  // namespace
+}  // namespace dolp

@@ -1,0 +1,217 @@
+// Whole runs: points and their errors, what is asked of the evaluator, and that neither order nor grouping changes a
+// bit.
+#include "run/scene_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <dolp/errors.hpp>
+#include <iostream>
+#include <numeric>
+#include <random>
+
+#include "radiometry/radiometry.hpp"
+#include "scene_run_support.hpp"
+
+namespace dolp {
+namespace {
+
+using namespace scene_run_support;
+
+constexpr unsigned kSeed = 20250811;
+
+/// Answers every request with the same moments and keeps what it was asked.
+class Recorder final : public MomentsEvaluator {
+ public:
+  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
+    requests.push_back(request);
+    const std::size_t count = request.size();
+    for (std::size_t i = 0; i < count; ++i) progress(i + 1, count);
+    Moments moments;
+    moments.r_i = 0.02;
+    moments.r_q = 0.01;
+    moments.albedo = 0.1;
+    moments.deficit = 0.08;
+    return std::vector<Moments>(count, moments);
+  }
+  EvaluationReport report() const override { return {}; }
+
+  std::vector<MomentsRequest> requests;
+};
+
+/// All numbers of a result, so that NaNs compare too.
+std::array<std::uint64_t, 11> bits_of(const PointResult& r) {
+  return {std::bit_cast<std::uint64_t>(r[Quantity::kDolp]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kStokesI]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kStokesQ]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kStokesU]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kStokesV]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kRhoI]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kRhoQ]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kAlbedo]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kErrorEstimate]),
+          std::bit_cast<std::uint64_t>(r[Quantity::kRhoErrorEstimate]),
+          r.status};
+}
+
+Scene small_grid(Distribution distribution, Masking masking) {
+  Scene scene = make_scene(distribution, masking, kAbsorbing);
+  scene.grid = axes_of({90.0, 0.0, 30.0, 75.0, 89.9}, {0.4, 0.0, 0.1}, {3.0, 1.6, 2.0});
+  return scene;
+}
+
+/// A material with an index for each of several wavelengths, and a band over them.
+Scene band_scene() {
+  Scene scene = make_scene(Distribution::kCauchy, Masking::kNone, {});
+  scene.surface.material.name = "made up";
+  scene.surface.material.n = {{8.0, 11.0, 14.0}, {1.4, 1.9, 1.5}, SpectralTable::Interpolation::kLinear};
+  scene.surface.material.k = {{8.0, 11.0, 14.0}, {0.1, 0.8, 0.2}, SpectralTable::Interpolation::kLinear};
+  scene.spectrum = {8.0, 14.0};
+  return scene;
+}
+
+std::string error_of(const Scene& scene, const std::string& csv) {
+  try {
+    point_entries(scene, parse_points(csv, "p.csv", PointsKind::kDirections));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(PointEntries_Smith, RefusesSmallQWithFileLineColumnValueAndRange) {
+  const Scene scene = make_scene(Distribution::kCauchy, Masking::kSmith, kDielectric);
+  EXPECT_EQ(error_of(scene, "theta_deg,q\n10,1.501\n20,1.5\n30,1.2\n"),
+            "p.csv:3: q = 1.5: out of range, a number in (1.5, 1e4] with masking = \"smith\" and distribution = "
+            "\"cauchy\"");
+  EXPECT_EQ(error_of(scene, "theta_deg,q\n10,1.501\n"), "no error");
+}
+
+TEST(PointEntries_SmallQ, IsAllowedWhereItHasAMeaning) {
+  const std::string csv = "theta_deg,q\n10,1.2\n";
+  EXPECT_EQ(error_of(make_scene(Distribution::kGaussian, Masking::kSmith, kDielectric), csv), "no error");
+  EXPECT_EQ(error_of(make_scene(Distribution::kCauchy, Masking::kIntegral, kDielectric), csv), "no error");
+}
+
+TEST(PointEntries_MissingTheta, NamesTheFileUnlessTheSceneHasOneTheta) {
+  Scene scene = make_scene(Distribution::kCauchy, Masking::kNone, kDielectric);
+  const SceneEntries entries = point_entries(scene, parse_points("sigma\n0.2\n", "p.csv", PointsKind::kDirections));
+  ASSERT_EQ(entries.size(), 1U);
+  EXPECT_EQ(entries[0].theta_deg, 60.0);
+  scene.grid[Axis::kTheta] = {0.0, 60.0};
+  EXPECT_EQ(error_of(scene, "sigma\n0.2\n"),
+            "p.csv:1: column \"theta_deg\" is missing, a number in [0, 90]; only a scene with a single grid.theta_deg "
+            "does without");
+}
+
+TEST(PointEntries_HalfAnIndex, IsRefusedBesideAMaterialThatDependsOnTheWavelength) {
+  EXPECT_EQ(error_of(band_scene(), "n\n1.5\n"),
+            "p.csv:1: column \"n\" needs column \"k\" beside it, because the scene's material \"made up\" depends on "
+            "the wavelength");
+  EXPECT_EQ(error_of(band_scene(), "k\n0.1\n").find("p.csv:1: column \"k\" needs column \"n\""), 0U);
+  EXPECT_EQ(error_of(band_scene(), "n,k\n1.5,0\n"), "no error");
+  EXPECT_EQ(error_of(make_scene(Distribution::kCauchy, Masking::kNone, kDielectric), "n\n1.7\n"), "no error");
+}
+
+TEST(PointEntries_AbsentColumns, ComeFromTheScene) {
+  const Scene scene = make_scene(Distribution::kCauchy, Masking::kNone, kAbsorbing);
+  const auto entries = point_entries(scene, parse_points("k,q\n0.25,4\n", "p.csv", PointsKind::kDirections));
+  ASSERT_EQ(entries.size(), 1U);
+  EXPECT_EQ(entries[0].shape, (SlopeShape{0.3, 4.0}));
+  EXPECT_EQ(entries[0].index, (OpticalConstants{kAbsorbing.n, 0.25}));
+}
+
+TEST(EvaluateScene_OwnIndexOfTheMaterial_GivesTheSameAsTheMaterial, OverABand) {
+  Scene scene = band_scene();
+  scene.surface.material = {};
+  scene.surface.material.constant = kAbsorbing;
+  const PointResult of_material = run_one(scene, 50.0, {0.3, 2.0}, Evaluator::kDouble);
+  const Scene dispersive = band_scene();
+  const PointResult of_point = run(dispersive, {{50.0, {0.3, 2.0}, kAbsorbing}}, Evaluator::kDouble).front();
+  constexpr double kBandAgreement = 1e-9;  // the band rule's accuracy
+  EXPECT_NEAR(of_point[Quantity::kDolp], of_material[Quantity::kDolp], kBandAgreement);
+  EXPECT_NEAR(of_point[Quantity::kStokesI], of_material[Quantity::kStokesI],
+              kBandAgreement * of_material[Quantity::kStokesI]);
+}
+
+TEST(EvaluateScene_Progress, CountsEntriesUpToAllOfThem) {
+  const Scene scene = small_grid(Distribution::kGaussian, Masking::kNone);
+  std::vector<std::size_t> seen;
+  Recorder recorder;
+  evaluate_scene(scene, grid_entries(scene), recorder, [&](std::size_t done, std::size_t total) {
+    EXPECT_EQ(total, 45U);
+    seen.push_back(done);
+    return true;
+  });
+  ASSERT_EQ(seen.size(), 10U);
+  EXPECT_TRUE(std::ranges::is_sorted(seen));
+  EXPECT_EQ(seen.back(), 45U);
+}
+
+TEST(EvaluateScene_NoEntries, GivesNoResults) {
+  const Scene scene = make_scene(Distribution::kCauchy, Masking::kSmith, kDielectric);
+  EXPECT_TRUE(run(scene, {}, Evaluator::kFloat).empty());
+}
+
+class RunsOfModel : public testing::TestWithParam<std::tuple<Evaluator, Distribution, Masking>> {};
+
+TEST_P(RunsOfModel, PermutedEntries_KeepTheirBits) {
+  const auto [evaluator, distribution, masking] = GetParam();
+  const Scene scene = small_grid(distribution, masking);
+  std::vector<SceneEntry> entries = list_of(grid_entries(scene));
+  for (const OpticalConstants& index : kIndices) entries.push_back({45.0, {0.2, 2.0}, index});
+  const std::vector<PointResult> results = run(scene, entries, evaluator);
+  std::vector<std::size_t> order(entries.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::cout << "seed " << kSeed << '\n';
+  std::shuffle(order.begin(), order.end(), std::mt19937_64(kSeed));
+  std::vector<SceneEntry> permuted;
+  for (const std::size_t i : order) permuted.push_back(entries[i]);
+  const std::vector<PointResult> again = run(scene, permuted, evaluator);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    EXPECT_EQ(bits_of(again[i]), bits_of(results[order[i]])) << text_of(scene, permuted[i]);
+  }
+}
+
+TEST_P(RunsOfModel, ReversedAxes_KeepTheBitsOfEveryEntry) {
+  const auto [evaluator, distribution, masking] = GetParam();
+  Scene scene = small_grid(distribution, masking);
+  const std::vector<PointResult> results = run(scene, grid_entries(scene), evaluator);
+  std::ranges::reverse(scene.grid[Axis::kTheta]);
+  std::ranges::reverse(scene.grid[Axis::kSigma]);
+  std::ranges::reverse(scene.grid[Axis::kQ]);
+  const std::vector<PointResult> reversed = run(scene, grid_entries(scene), evaluator);
+  ASSERT_EQ(reversed.size(), results.size());
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    EXPECT_EQ(bits_of(reversed[i]), bits_of(results[results.size() - 1 - i])) << i;
+  }
+}
+
+// Where a profile serves all slope distributions it takes the slopes that they want together.
+TEST_P(RunsOfModel, Grid_EqualsThePointsOneByOne) {
+  const auto [evaluator, distribution, masking] = GetParam();
+  const bool has_profiles = masking == Masking::kNone || masking == Masking::kVCavity;
+  const Scene scene = small_grid(distribution, masking);
+  const SceneEntries entries = grid_entries(scene);
+  const std::vector<PointResult> results = run(scene, entries, evaluator);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const PointResult alone = run(scene, {entries[i]}, evaluator).front();
+    SCOPED_TRACE(text_of(scene, entries[i]));
+    if (has_profiles) {
+      EXPECT_NEAR(alone[Quantity::kDolp], results[i][Quantity::kDolp],
+                  alone[Quantity::kErrorEstimate] + results[i][Quantity::kErrorEstimate]);
+      EXPECT_EQ(alone.status, results[i].status);
+    } else {
+      EXPECT_EQ(bits_of(alone), bits_of(results[i]));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(SceneRun, RunsOfModel,
+                         testing::Combine(testing::ValuesIn(kPrecisions), testing::ValuesIn(kDistributions),
+                                          testing::ValuesIn(kMaskings)));
+
+}  // namespace
+}  // namespace dolp

@@ -1,0 +1,508 @@
+// The program from outside: what its commands write and report.
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/stat.h>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <regex>
+#include <thread>
+
+#include "cli_support.hpp"
+#include "table/table_file.hpp"
+
+namespace {
+
+using namespace dolp;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr std::size_t kSceneEntries = 16;
+// Debian's own Python, to which python3-netcdf4 and python3-numpy belong.
+const std::string kPython = "/usr/bin/python3";
+
+/// NaN equals NaN here, and 0 is not -0.
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
+}
+
+/// The grid of kScene as points, in the order of the table.
+std::string grid_points() {
+  std::string csv = "theta_deg,sigma,q\n";
+  for (const char* theta : {"80.5", "60", "30", "0"}) {
+    for (const char* sigma : {"0.1", "0.4"}) {
+      for (const char* q : {"2", "3.5"}) csv += std::string(theta) + "," + sigma + "," + q + "\n";
+    }
+  }
+  return csv;
+}
+
+TEST_F(CommandLine, TableNetcdf_OtherReader_HasAxesVariablesAndAttributes) {
+  const Outcome made = dolp({"table", "scene.toml", "-o", "t.nc", "--set", "surface.k=0.2"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const Outcome dump = run({.arguments = {"ncdump", "-h", at("t.nc").string()}, .folder = at("")});
+  ASSERT_EQ(dump.status, 0) << dump.err;
+  std::vector<std::string> expected = {"theta = 4 ;",
+                                       "sigma = 2 ;",
+                                       "q = 2 ;",
+                                       "double theta(theta) ;",
+                                       "theta:units = \"degree\" ;",
+                                       ":Conventions = \"CF-",
+                                       "flag_masks",
+                                       "flag_meanings",
+                                       ":title = \"Sixteen entries\"",
+                                       ":source = \"dolp ",
+                                       "table scene.toml -o t.nc --set surface.k=0.2",
+                                       ":references = ",
+                                       ":scene_overrides = \"surface.k=0.2\"",
+                                       ":scene_hash = \"fnv1a64:",
+                                       ":device = \"",
+                                       ":driver = \"",
+                                       ":tolerance = 0.0001",
+                                       ":rule = ",
+                                       ":wall_time_s = ",
+                                       "stokes_i:units = \"W m-2 um-1\""};
+  for (const std::string& column : kResultColumns) expected.push_back(" " + column + "(theta, sigma, q) ;");
+  for (const std::string& text : expected)
+    EXPECT_NE(dump.out.find(text), std::string::npos) << text << "\n" << dump.out;
+}
+
+TEST_F(CommandLine, TableNetcdf_SceneAttribute_IsTheFileVerbatim) {
+  ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc"}).status, 0);
+  const Table table = read_table(at("t.nc"));
+  const Attribute expected{"scene", kScene};
+  EXPECT_NE(std::ranges::find(table.attributes, expected), table.attributes.end());
+}
+
+TEST_F(CommandLine, TableNetcdf_EvalAtItsEntries_EqualBitForBit) {
+  put("grid.csv", grid_points());
+  ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc"}).status, 0);
+  ASSERT_EQ(dolp({"eval", "scene.toml", "--points", "grid.csv", "-o", "e.csv"}).status, 0);
+  const Table table = read_table(at("t.nc"));
+  const Columns columns = parse_csv(content("e.csv"));
+  ASSERT_EQ(table.size(), kSceneEntries);
+  for (const Quantity quantity : kAllQuantities) {
+    if (!columns.contains(description_of(quantity).name)) continue;
+    EXPECT_TRUE(same_bits(table[quantity], columns.at(description_of(quantity).name))) << description_of(quantity).name;
+  }
+  EXPECT_TRUE(columns.contains("emissivity_s"));
+  const Outcome other = run({.arguments = {kPython, DOLP_READ_TABLE, "t.nc", "e.csv"}, .folder = at("")});
+  EXPECT_EQ(other.status, 0) << other.out << other.err;
+  EXPECT_NE(other.out.find("16 rows, 13 columns"), std::string::npos) << other.out;
+}
+
+TEST_F(CommandLine, PlotTable_OfFurtherAxes_DrawsTheNearestAndNamesThoseThatThereAre) {
+  ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc", "--set", "grid.n=[1.4,1.6]", "--set", "grid.k=[0.1]"}).status,
+            0);
+  const auto plot = [&](const std::string& option, const std::string& value) {
+    return run(
+        {.arguments = {kPython, DOLP_HOST_DIR "/plot_table.py", "t.nc", "t.png", option, value}, .folder = at("")});
+  };
+  const Outcome drawn = plot("--n", "1.55");
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_TRUE(content("t.png").starts_with("\x89PNG"));
+  const Outcome refused = plot("--wavelength", "9");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.err, "t.nc: has no axis wavelength; its axes are n, k, theta, sigma, q\n");
+}
+
+TEST_F(CommandLine, TableFormats_SameScene_HoldTheSameNumbers) {
+  for (const char* name : {"t.nc", "t.csv", "t.npy"}) {
+    ASSERT_EQ(dolp({"table", "scene.toml", "-o", name}).status, 0) << name;
+  }
+  const Table table = read_table(at("t.nc"));
+  const Columns columns = parse_csv(content("t.csv"));
+  ASSERT_EQ(columns.at("status").size(), kSceneEntries);
+  EXPECT_EQ(columns.at("theta_deg").front(), 80.5);
+  EXPECT_EQ(columns.at("q").at(1), 3.5);
+  const std::string script =
+      "import numpy, sys\nt = numpy.load('t.npy')\nassert t.shape == (4, 2, 2), t.shape\n"
+      "assert t['theta_deg'][:, 0, 0].tolist() == [80.5, 60, 30, 0]\n"
+      "print(','.join(t.dtype.names))\nfor row in t.ravel(): print(','.join(repr(x) for x in row.tolist()))\n";
+  const Outcome npy = run({.arguments = {kPython, "-c", script}, .folder = at("")});
+  ASSERT_EQ(npy.status, 0) << npy.err;
+  const Columns npy_columns = parse_csv(npy.out);
+  for (const Quantity quantity : kAllQuantities) {
+    if (!table.has(quantity)) continue;
+    EXPECT_TRUE(same_bits(table[quantity], columns.at(description_of(quantity).name))) << description_of(quantity).name;
+    EXPECT_TRUE(same_bits(table[quantity], npy_columns.at(description_of(quantity).name)))
+        << description_of(quantity).name;
+  }
+}
+
+TEST_F(CommandLine, Table_SameSceneTwice_SameBytes) {
+  const Outcome first = dolp({"table", "scene.toml", "-o", "-", "--quiet"});
+  const Outcome second = dolp({"table", "scene.toml", "-o", "-", "--quiet"});
+  ASSERT_EQ(first.status, 0) << first.err;
+  EXPECT_EQ(data_lines(first.out).size(), 1 + kSceneEntries);
+  EXPECT_EQ(data_lines(first.out), data_lines(second.out));
+}
+
+/// The first core that this process may run on.
+int an_allowed_core() {
+  cpu_set_t allowed;
+  EXPECT_EQ(sched_getaffinity(0, sizeof allowed, &allowed), 0);
+  for (int core = 0; core < CPU_SETSIZE; ++core) {
+    if (CPU_ISSET(core, &allowed)) return core;
+  }
+  return 0;
+}
+
+TEST_F(CommandLine, Table_OneCoreOrAll_SameNumbers) {
+  // Enough entries and groups for several threads in every loop over them.
+  const std::vector<std::string> arguments = {"table",   "scene.toml",
+                                              "-o",      "-",
+                                              "--quiet", "--tolerance=1e-2",
+                                              "--set",   "grid.theta_deg={ from = 0, to = 90, count = 24 }",
+                                              "--set",   "grid.sigma={ from = 0.05, to = 1.0, count = 16 }",
+                                              "--set",   "grid.q={ from = 1.6, to = 8, count = 24 }"};
+  const Command on_all = command(arguments);
+  Command on_one = on_all;
+  const std::vector<std::string> pinned = {"taskset", "--cpu-list", std::to_string(an_allowed_core())};
+  on_one.arguments.insert(on_one.arguments.begin(), pinned.begin(), pinned.end());
+  const Outcome all = run(on_all);
+  const Outcome one = run(on_one);
+  ASSERT_EQ(all.status, 0) << all.err;
+  ASSERT_EQ(one.status, 0) << one.err;
+  const std::vector<std::string> lines = data_lines(all.out);
+  EXPECT_EQ(lines.size(), 24U * 16U * 24U + 1U);
+  EXPECT_EQ(data_lines(one.out), lines);
+}
+
+TEST_F(CommandLine, Table_OneEntryGrid_EqualsEval) {
+  const Outcome made = dolp({"table", "scene.toml", "-o", "t.nc", "--set", "grid.theta_deg=60", "--set",
+                             "grid.sigma=[0.4]", "--set", "grid.q=3.5"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const Table table = read_table(at("t.nc"));
+  ASSERT_EQ(table.size(), 1U);
+  EXPECT_TRUE(same_bits(table[Quantity::kDolp], {eval({}).at("dolp").at(1)}));
+}
+
+TEST_F(CommandLine, Table_DescendingRange_KeepsTheOrder) {
+  const Outcome made = dolp({"table", "scene.toml", "-o", "t.nc", "--set", "grid.theta_deg={from=60, to=0, count=3}"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const Table table = read_table(at("t.nc"));
+  EXPECT_EQ(table.axes[Axis::kTheta], (std::vector<double>{60.0, 30.0, 0.0}));
+  const Columns points = eval({});
+  EXPECT_TRUE(same_bits({table[Quantity::kDolp].at(table.position(0, 1, 1))}, {points.at("dolp").at(1)}));
+  EXPECT_TRUE(same_bits({table[Quantity::kRhoI].at(table.position(2, 0, 0))}, {points.at("rho_i").at(0)}));
+}
+
+TEST_F(CommandLine, Eval_StdinToStdout_ReportOnStderr) {
+  const Outcome outcome = dolp({"eval", "scene.toml", "--points", "-", "-o", "-"}, kPoints);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::vector<std::string> lines = split_at(outcome.out, '\n');
+  ASSERT_EQ(lines.size(), 4U);
+  std::string header = "theta_deg,sigma,q";
+  for (const std::string& column : kResultColumns) header += "," + column;
+  EXPECT_EQ(lines[0], header);
+  EXPECT_TRUE(lines[2].starts_with("60.0,0.4,3.5,0.")) << lines[2];
+  EXPECT_TRUE(lines[3].starts_with("80.5,0.1,2,0.")) << lines[3];
+  EXPECT_NE(outcome.err.find("3 points"), std::string::npos) << outcome.err;
+}
+
+TEST_F(CommandLine, Eval_SceneFromStdin_SameAsFromFile) {
+  const Outcome outcome = dolp({"eval", "-", "--points", "points.csv", "-o", "-", "--quiet"}, kScene);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(same_bits(parse_csv(outcome.out).at("dolp"), eval({}).at("dolp")));
+}
+
+TEST_F(CommandLine, Eval_HeaderWithoutRows_HeaderWithoutRows) {
+  const Outcome outcome = dolp({"eval", "scene.toml", "--points", "-", "-o", "-", "--quiet"}, "q,theta_deg\n");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(outcome.out.starts_with("q,theta_deg,rho_i,")) << outcome.out;
+  EXPECT_EQ(data_lines(outcome.out).size(), 1U);
+}
+
+TEST_F(CommandLine, Eval_AbsentColumns_ComeFromTheScene) {
+  put("points.csv", "theta_deg,sigma,q,n,k\n60,0.3,3,1.5,0.1\n");
+  const Columns all = eval({});
+  put("points.csv", "theta_deg\n60\n");
+  const Columns few = eval({});
+  put("points.csv", "theta_deg,n\n60,4\n");
+  const Columns other_n = eval({});
+  EXPECT_TRUE(same_bits(all.at("dolp"), few.at("dolp")));
+  // R of a facet at normal incidence grows from 0.04 (n = 1.5) to 0.36 (n = 4).
+  EXPECT_GT(other_n.at("rho_i").at(0), 3.0 * few.at("rho_i").at(0));
+}
+
+TEST_F(CommandLine, Set_SceneKeys_SameAsInTheFile) {
+  const Columns set = eval({"--set", "surface.masking=none", "--set", "emission.temperature_K=400"});
+  std::string scene = kScene;
+  scene.replace(scene.find("\"integral\""), 10, "\"none\"");
+  scene.replace(scene.find("300.0"), 5, "400.0");
+  put("scene.toml", scene);
+  const Columns in_file = eval({});
+  for (const std::string& column : kResultColumns) {
+    EXPECT_TRUE(same_bits(set.at(column), in_file.at(column))) << column;
+  }
+  put("scene.toml", kScene);
+  EXPECT_FALSE(same_bits(set.at("rho_i"), eval({}).at("rho_i")));
+}
+
+TEST_F(CommandLine, ToleranceAndPrecision_Tight_MetAndReported) {
+  const std::vector<std::string> start = {
+      "eval", "scene.toml", "--points", "points.csv", "-o", "e.csv", "--json", "--set", "surface.masking=v-cavity"};
+  const auto report = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), start.begin(), start.end());
+    const Outcome outcome = dolp(options);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out);
+  };
+  const json loose = report({"--tolerance", "1e-2", "--precision", "float"});
+  const json tight = report({"--tolerance", "1e-8", "--precision", "double", "--strict"});
+  EXPECT_EQ(loose["precision"], "float");
+  EXPECT_EQ(tight["precision"], "double");
+  EXPECT_EQ(tight["tolerance"], 1e-8);
+  EXPECT_LE(tight["worst_error_estimate"], 1e-8);
+  EXPECT_LE(tight["worst_rho_error_estimate"], 1e-8);
+  EXPECT_GT(tight["evaluations"], loose["evaluations"]);
+  const Columns columns = parse_csv(content("e.csv"));
+  ASSERT_EQ(columns.at("error_estimate").size(), 3U);
+  for (const double error : columns.at("error_estimate")) EXPECT_LE(error, 1e-8);
+}
+
+TEST_F(CommandLine, Evaluators_SamePoints_AgreeWithinTheirStatedErrors) {
+  const Columns vulkan = eval({"--evaluator", "vulkan"});
+  const Columns cpu = eval({"--evaluator", "cpu"});
+  const Columns reference = eval({"--evaluator", "reference"});
+  for (const Columns* other : {&cpu, &reference}) {
+    ASSERT_EQ(vulkan.at("dolp").size(), 3U);
+    for (std::size_t i = 0; i < vulkan.at("dolp").size(); ++i) {
+      const auto sum = [&](const char* name) { return vulkan.at(name)[i] + other->at(name)[i]; };
+      const auto difference = [&](const char* name) { return std::abs(vulkan.at(name)[i] - other->at(name)[i]); };
+      EXPECT_LE(difference("dolp"), sum("error_estimate")) << i;
+      // Each error is relative to its own rho_i; the two differ by less than their mean error.
+      EXPECT_LE(difference("rho_i"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
+      EXPECT_LE(difference("rho_q"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
+    }
+  }
+  EXPECT_FALSE(same_bits(vulkan.at("rho_i"), reference.at("rho_i")));
+}
+
+TEST_F(CommandLine, Json_EachEvaluator_HasTheContractsKeys) {
+  for (const char* evaluator : {"vulkan", "cpu", "reference"}) {
+    SCOPED_TRACE(evaluator);
+    const Outcome outcome = dolp({"table", "scene.toml", "-o", "t.nc", "--json", "--evaluator", evaluator});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const json report = json::parse(outcome.out);
+    for (const char* key :
+         {"title", "output", "device", "driver", "dispatches", "evaluations", "wall_s", "kernel_s",
+          "worst_error_estimate", "worst_rho_error_estimate", "status", "tolerance", "rule", "precision"}) {
+      EXPECT_TRUE(report.contains(key)) << key;
+    }
+    EXPECT_EQ(report["evaluator"], evaluator);
+    EXPECT_EQ(report["entries"], kSceneEntries);
+    EXPECT_GT(report["wall_s"], 0.0);
+    EXPECT_EQ(report["dispatches"] > 0, std::string(evaluator) == "vulkan");
+    EXPECT_NE(report["device"], "");
+  }
+}
+
+// A rough metal, of few entries: the summary says how much DOLP single scattering may be off.
+TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringLeavesOpen) {
+  const std::vector<std::string> metal = {"--set", "surface.masking=smith", "--set", "surface.n=10",
+                                          "--set", "surface.k=60"};
+  for (const std::vector<std::string>& start :
+       {std::vector<std::string>{"table", "scene.toml", "-o", "t.nc"},
+        std::vector<std::string>{"eval", "scene.toml", "--points", "points.csv", "-o", "e.csv"}}) {
+    const auto with = [&](std::vector<std::string> more) {
+      more.insert(more.begin(), start.begin(), start.end());
+      return dolp(more);
+    };
+    std::vector<std::string> options = metal;
+    const Outcome text = with(options);
+    ASSERT_EQ(text.status, 0) << text.err;
+    EXPECT_NE(text.out.find("changes DOLP by up to "), std::string::npos) << text.out;
+    options.push_back("--json");
+    EXPECT_GT(json::parse(with(options).out)["scattering_gap"], 0.01);
+    EXPECT_TRUE(json::parse(with({"--json"}).out)["scattering_gap"].is_null());  // masking integral
+    EXPECT_EQ(with({}).out.find("scattering"), std::string::npos);
+  }
+}
+
+TEST_F(CommandLine, Json_WallTime_CountsTheWriting) {
+  ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
+  // Until somebody reads the pipe, nobody can write to it.
+  const std::jthread reader([this] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    content("pipe");
+  });
+  const Outcome outcome =
+      dolp({"eval", "scene.toml", "--points", "points.csv", "-o", "pipe", "--json", "--evaluator", "cpu"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_GT(json::parse(outcome.out)["wall_s"], 1.0);
+}
+
+TEST_F(CommandLine, Json_StatusCounts_AreThoseOfTheEntries) {
+  const Outcome outcome =
+      dolp({"table", "scene.toml", "-o", "t.nc", "--json", "--set", "grid.theta_deg=[0, 89.9, 90]"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json counts = json::parse(outcome.out)["status"];
+  const Table table = read_table(at("t.nc"));
+  ASSERT_EQ(counts.size(), 4U);
+  std::size_t all = 0;
+  for (const json& count : counts) {
+    const auto bit = count["bit"].get<std::uint32_t>();
+    const auto with_bit = std::ranges::count_if(table.status, [bit](std::uint32_t s) { return (s & bit) != 0; });
+    EXPECT_EQ(count["count"], with_bit) << bit;
+    all += count["count"].get<std::size_t>();
+  }
+  EXPECT_GT(all, 0U) << "at 90 degrees rho diverges, so some entry must have a status";
+}
+
+TEST_F(CommandLine, Quiet_Success_PrintsNothing) {
+  const Outcome outcome = dolp({"table", "scene.toml", "-o", "t.nc", "--quiet"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_TRUE(fs::exists(at("t.nc")));
+}
+
+TEST_F(CommandLine, Summary_NoTerminal_OnStdoutWithoutProgress) {
+  const Outcome outcome = dolp({"table", "scene.toml", "-o", "t.nc"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.err, "");
+  for (const char* text : {"Sixteen entries\n", "4 x 2 x 2", "device", "time", "error", "status", "albedo", "t.nc\n"}) {
+    EXPECT_NE(outcome.out.find(text), std::string::npos) << text << "\n" << outcome.out;
+  }
+}
+
+TEST_F(CommandLine, Progress_OnATerminal_ShownAndCleared) {
+  const std::vector<std::string> arguments = {"table", "scene.toml", "-o", "t.nc", "--evaluator", "cpu"};
+  TerminalProcess process(command(arguments));
+  const Outcome shown = process.finish();
+  EXPECT_EQ(shown.status, 0);
+  EXPECT_NE(shown.err.find("/16 entries, "), std::string::npos) << shown.err;
+  EXPECT_NE(shown.err.find(" s left"), std::string::npos) << shown.err;
+  EXPECT_TRUE(shown.err.ends_with("\r\033[K")) << shown.err;
+}
+
+TEST_F(CommandLine, Progress_QuietOnATerminal_Nothing) {
+  TerminalProcess process(command({"table", "scene.toml", "-o", "t.nc", "--evaluator", "cpu", "--quiet"}));
+  const Outcome outcome = process.finish();
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.err, "");
+}
+
+TEST_F(CommandLine, Folders_RelativePathsFromElsewhere_AreTheCallers) {
+  fs::create_directory(at("elsewhere"));
+  Command wanted = command({"table", "../scene.toml", "-o", "sub.nc"});
+  wanted.folder = at("elsewhere");
+  const Outcome outcome = run(wanted);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(read_table(at("elsewhere/sub.nc")).size(), kSceneEntries);
+  EXPECT_EQ(names(), (std::vector<std::string>{"elsewhere", "points.csv", "scene.toml"}));
+}
+
+TEST_F(CommandLine, Folders_MaterialByName_FoundFromAnywhere) {
+  std::string scene = kScene;
+  scene.replace(scene.find("n = 1.5\nk = 0.1"), 15, "material = \"iron\"");
+  put("scene.toml", scene);
+  const auto rho_of = [&](const std::string& spectrum) {
+    return eval({"--set", "spectrum." + spectrum}).at("rho_i").at(0);
+  };
+  const double at_8_um = rho_of("wavelength_um=8");
+  const double at_12_um = rho_of("wavelength_um=12");
+  const double over_the_band = rho_of("band_um=[8, 12]");
+  // Iron is a good reflector in the long-wave infrared, and the better the longer the wave.
+  EXPECT_GT(at_8_um, 0.5);
+  EXPECT_GT(over_the_band, at_8_um);
+  EXPECT_GT(at_12_um, over_the_band);
+}
+
+TEST_F(CommandLine, Eval_OwnOutputAsPoints_GivesTheSameAgain) {
+  put("p.csv", "theta_deg,sigma\n30,0.1\n60,0.2\n");
+  ASSERT_EQ(dolp({"eval", "scene.toml", "--points", "p.csv", "-o", "a.csv"}).status, 0);
+  const Outcome again = dolp({"eval", "scene.toml", "--points", "a.csv", "-o", "b.csv"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(read_file(at("a.csv")), read_file(at("b.csv")));
+  EXPECT_NE(again.out.find("left out   rho_i"), std::string::npos) << again.out;
+}
+
+TEST_F(CommandLine, Eval_MoreThanAPart_RowsAreThoseOfEachPoint) {
+  constexpr int kRows = 140'000;
+  std::string points = "theta_deg,sigma\n";
+  for (int i = 0; i < kRows; ++i) points += fmt::format("{},0\n", i * 6e-4);
+  put("p.csv", points);
+  ASSERT_EQ(dolp({"eval", "scene.toml", "--points", "p.csv", "-o", "all.csv"}).status, 0);
+  const std::vector<std::string> all = data_lines(read_file(at("all.csv")));
+  ASSERT_EQ(all.size(), kRows + 1U);
+  for (const int row : {0, 65'535, 65'536, 131'071, 131'072, kRows - 1}) {
+    put("one.csv", fmt::format("theta_deg,sigma\n{},0\n", row * 6e-4));
+    ASSERT_EQ(dolp({"eval", "scene.toml", "--points", "one.csv", "-o", "r.csv"}).status, 0);
+    EXPECT_EQ(all[static_cast<std::size_t>(row) + 1], data_lines(read_file(at("r.csv")))[1]);
+  }
+}
+
+TEST_F(CommandLine, Keys_OneOrATable_SayWhatIsAllowed) {
+  const Outcome one = dolp({"keys", "surface.sigma"});
+  EXPECT_EQ(one.status, 0);
+  EXPECT_NE(one.out.find("a number in [0, 10]; required"), std::string::npos) << one.out;
+  const auto table = nlohmann::json::parse(dolp({"keys", "surface", "--json"}).out);
+  EXPECT_GT(table["keys"].size(), 5U);
+  const Outcome unknown = dolp({"keys", "surface.sgma"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("the nearest is surface.sigma"), std::string::npos) << unknown.err;
+}
+
+TEST_F(CommandLine, Help_OfEveryCommand_HasTwoExamples) {
+  const std::string help = dolp({"--help"}).out;
+  std::istringstream lines(help.substr(help.find("Subcommands:")));
+  std::string line;
+  std::getline(lines, line);
+  for (std::string name; std::getline(lines, line) && std::istringstream(line) >> name;) {
+    const std::string own = dolp({name, "--help"}).out;
+    const std::size_t examples = own.find("Examples:\n  dolp " + name);
+    ASSERT_NE(examples, std::string::npos) << own;
+    EXPECT_NE(own.find("\n  dolp " + name, examples + 12), std::string::npos) << own;
+  }
+}
+
+TEST_F(CommandLine, Materials_List_HasNameRangeAndSource) {
+  const Outcome text = dolp({"materials"});
+  const Outcome report = dolp({"materials", "--json"});
+  ASSERT_EQ(report.status, 0) << report.err;
+  EXPECT_EQ(text.status, 0) << text.err;
+  const json materials = json::parse(report.out)["materials"];
+  EXPECT_EQ(materials.size(), 34U);
+  EXPECT_EQ(std::ranges::count(text.out, '\n'), 34);
+  EXPECT_EQ(materials.at(0), json({{"name", "iron"},
+                                   {"from_um", 2.0},
+                                   {"to_um", 20.0},
+                                   {"source", "Ordal et al. 1988, Appl. Opt. 27, 1203 (Al,Fe,Ti,Ta,W,Mo)"}}));
+  const auto mirror = std::ranges::find(materials, "oxidised Al mirror", [](const json& m) { return m["name"]; });
+  ASSERT_NE(mirror, materials.end());
+  EXPECT_EQ((*mirror)["to_um"], 12.5);
+  const std::size_t line = text.out.find("oxidised Al mirror ");
+  ASSERT_NE(line, std::string::npos);
+  EXPECT_LT(text.out.find("2 to 12.5 ", line), text.out.find("Querry 1985\n", line)) << text.out;
+}
+
+TEST_F(CommandLine, Device_ByPositionAndName_ReportedAsTheDevice) {
+  const std::vector<std::string> start = {"table", "scene.toml", "-o", "t.nc", "--device"};
+  const std::string name = report(joined(start, {"0"}))["device"];
+  EXPECT_EQ(report(joined(start, {name.substr(0, 6)}))["device"], name);
+}
+
+TEST_F(CommandLine, HelpAndVersion_OnStdout_Exit0) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
+                                                    {"table", "--help"},
+                                                    {"eval", "--help"},
+                                                    {"materials", "--help"},
+                                                    {"devices", "--help"},
+                                                    {}}) {
+    const Outcome outcome = dolp(arguments);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_NE(outcome.out.find("Usage: dolp"), std::string::npos) << outcome.out;
+    EXPECT_EQ(outcome.err, "");
+  }
+  const Outcome version = dolp({"--version"});
+  EXPECT_EQ(version.status, 0);
+  EXPECT_TRUE(std::regex_match(version.out, std::regex("dolp " DOLP_VERSION " \\([-0-9a-z]+\\)\n"))) << version.out;
+}
+
+}  // namespace

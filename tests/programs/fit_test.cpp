@@ -1,0 +1,181 @@
+// `dolp fit` from outside: report, fitted scene, comparison and messages.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cli_support.hpp"
+
+namespace {
+
+using namespace dolp;
+using nlohmann::json;
+
+class FitProgram : public CommandLine {
+ protected:
+  void SetUp() override {
+    CommandLine::SetUp();
+    std::string points = "theta_deg\n";
+    for (int theta = 20; theta <= 75; theta += 5) points += std::to_string(theta) + '\n';
+    put("points.csv", points);
+    measure("data.csv", "theta_deg", {"dolp"}, {});
+  }
+  /// Writes columns of the scene with sigma = 0.2 and `keys`, exact, with an uncertainty of 0.001.
+  void measure(const std::string& name, const std::string& zenith, const std::vector<std::string>& columns,
+               const std::vector<std::string>& keys) const {
+    std::vector<std::string> options = {"--set", "surface.sigma=0.2", "--tolerance", "1e-7", "--evaluator", "cpu"};
+    for (const std::string& one : keys) options.insert(options.end(), {"--set", one});
+    const Columns exact = eval(options);
+    std::ostringstream data;
+    data.precision(12);
+    data << zenith;
+    for (const std::string& column : columns) data << ',' << column;
+    data << ",uncertainty\n";
+    for (std::size_t i = 0; i < exact.at("theta_deg").size(); ++i) {
+      data << exact.at("theta_deg")[i];
+      for (const std::string& column : columns) data << ',' << exact.at(column)[i];
+      data << ",0.001\n";
+    }
+    put(name, data.str());
+  }
+  /// Fits sigma and n with further options, and expects the truth.
+  void expect_truth(std::vector<std::string> options) const {
+    options.insert(options.end(), {"--vary", "surface.sigma=0.02:1", "--vary", "surface.n=1.1:3", "--json"});
+    const Outcome outcome = fit(options);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const json report = json::parse(outcome.out);
+    const double truth[] = {0.2, 1.5};
+    for (std::size_t j = 0; j < 2; ++j) {
+      const json& one = report["parameters"][j];
+      EXPECT_NEAR(one["value"].get<double>(), truth[j], 0.05 * one["standard_error"].get<double>());
+    }
+    EXPECT_LT(report["chi_square"].get<double>(), 0.01);
+  }
+  Outcome fit(const std::vector<std::string>& options) const {
+    return dolp(joined({"fit", "scene.toml", "--evaluator", "cpu"}, options));
+  }
+  void expect_message(const std::vector<std::string>& options, const std::string& message) const {
+    expect_refused(fit(options), message);
+  }
+};
+
+TEST_F(FitProgram, Json_HasAllNames_AndTheFittedSceneRuns) {
+  const Outcome outcome = fit({"--data", "data.csv", "--vary", "surface.sigma=0.02:1", "--json", "-o", "fitted.toml"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json report = json::parse(outcome.out);
+  for (const char* name : {"parameters", "correlation", "chi_square", "degrees_of_freedom", "reduced_chi_square",
+                           "p_value", "evaluations", "starts", "minima", "numerical_error", "residuals"}) {
+    EXPECT_TRUE(report.contains(name)) << name;
+  }
+  const json& sigma = report["parameters"][0];
+  EXPECT_EQ(sigma["key"], "surface.sigma");
+  EXPECT_NEAR(sigma["value"].get<double>(), 0.2, 0.02 * sigma["standard_error"].get<double>());
+  for (const char* interval : {"interval_68", "interval_95"}) {
+    EXPECT_LT(sigma[interval][0].get<double>(), 0.2);
+    EXPECT_GT(sigma[interval][1].get<double>(), 0.2);
+  }
+  EXPECT_EQ(sigma["at_bound"], false);
+  EXPECT_EQ(report["degrees_of_freedom"], 11);
+  EXPECT_EQ(report["residuals"].size(), 12U);
+  double sum = 0.0;
+  for (const json& residual : report["residuals"]) sum += std::pow(residual.get<double>(), 2);
+  EXPECT_NEAR(sum, report["chi_square"].get<double>(), 1e-9);
+  EXPECT_EQ(dolp({"table", "fitted.toml", "-o", "t.csv", "--quiet", "--evaluator", "cpu"}).status, 0);
+}
+
+TEST_F(FitProgram, Compare_RanksTheTrueModelFirst) {
+  const Outcome outcome = fit({"--data", "data.csv", "--vary", "surface.sigma=0.02:1", "--compare",
+                               "surface.masking=v-cavity,integral,smith", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json models = json::parse(outcome.out)["models"];
+  ASSERT_EQ(models.size(), 3U);
+  EXPECT_EQ(models[0]["overrides"][0], "surface.masking=integral");
+  EXPECT_LT(models[0]["aic"].get<double>(), models[1]["aic"].get<double>());
+}
+
+TEST_F(FitProgram, ZenithOfTheSource_IsFittedInBistaticScenes) {
+  const std::vector<std::string> keys = {"geometry.mode=bistatic", "geometry.view_zenith_deg=40",
+                                         "source.relative_irradiance=20"};
+  measure("bistatic.csv", "theta_i_deg", {"dolp"}, keys);
+  expect_truth({"--data", "bistatic.csv", "--set", keys[0], "--set", keys[1], "--set", keys[2]});
+  expect_message({"--data", "bistatic.csv", "--vary", "surface.sigma=0.1:1"},
+                 "\"theta_i_deg\" needs geometry.mode = \"bistatic\"");
+}
+
+TEST_F(FitProgram, DataSets_HaveKeysOfTheirOwn) {
+  measure("cold.csv", "theta_deg", {"dolp"}, {"emission.temperature_K=260", "spectrum.wavelength_um=4"});
+  expect_truth({"--data", "data.csv", "--data", "cold.csv:emission.temperature_K=260,spectrum.wavelength_um=4"});
+}
+
+TEST_F(FitProgram, Emissivities_AreFittedTogether) {
+  measure("emissivity.csv", "theta_deg", {"emissivity_s", "emissivity_p"}, {});
+  expect_truth({"--data", "emissivity.csv"});
+}
+
+TEST_F(FitProgram, DataOfNoMeaning_AreFittedAndSaidToBeSo) {
+  put("same.csv", "theta_deg,dolp,uncertainty\n0,0,0.01\n0,0,0.01\n0,0,0.01\n");
+  Outcome outcome = fit({"--data", "same.csv", "--vary", "surface.sigma=0.1:1", "--vary", "surface.n=1.1:3"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.out.find("the data do not determine surface.sigma at all"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("the data do not determine surface.n at all"), std::string::npos) << outcome.out;
+  put("contradiction.csv", "theta_deg,dolp,uncertainty\n60,0.1,0.001\n60,0.2,0.001\n60,0.3,0.001\n");
+  outcome = fit({"--data", "contradiction.csv", "--vary", "surface.n=1.1:3"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.out.find("the model does not fit"), std::string::npos) << outcome.out;
+}
+
+TEST_F(FitProgram, BadData_AreOneLineThatNamesThePlace) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"", "bad.csv:1: the file is empty"},
+      {"# nothing\n", "bad.csv:1: the file is empty"},
+      {"theta_deg,dolp\n", "bad.csv:1: no points"},
+      {"theta_deg,dolp\n20,nan\n", "bad.csv:2: dolp = nan: not a number"},
+      {"theta_deg,dolp\n20\n", "bad.csv:2: dolp: the value is missing"},
+      {"theta_deg,dolp\n20,0.1,0.2\n", "bad.csv:2: 0.2: one value too many"},
+      {"theta_deg,dolp\n95,0.1\n", "bad.csv:2: theta_deg = 95: out of range"},
+      {"theta_deg,dolp,uncertainty\n20,0.1,-0.1\n", "bad.csv:2: uncertainty = -0.1: out of range"},
+      {"theta_deg,dolp,error\n20,0.1,0.1\n", "bad.csv:1: column \"error\" is unknown"},
+      {"theta_deg,dolp,dolp\n20,0.1,0.1\n", "bad.csv:1: column \"dolp\" appears twice"},
+      {"theta_deg,theta_i_deg,dolp\n20,20,0.1\n", "give one of them"},
+      {"theta_deg,dolp,emissivity_s\n20,0.1,0.9\n", "bad.csv:1: several measured quantities"},
+      {std::string("\0\1", 2), "bad.csv: is not a text"}};
+  for (const auto& [text, message] : cases) {
+    put("bad.csv", text);
+    expect_message({"--data", "bad.csv", "--vary", "surface.sigma=0.1:1"}, message);
+  }
+  put("bad.csv", "theta_deg,emissivity_s\n20,0.9\n30,0.9\n");
+  expect_message({"--data", "bad.csv", "--vary", "surface.sigma=0.1:1", "--set", "emission=none"},
+                 "emissivities need the table [emission]");
+}
+
+TEST_F(FitProgram, Plot_IsAPng) {
+  const Outcome outcome = fit({"--data", "data.csv", "--vary", "surface.sigma=0.02:1", "--vary", "surface.n=1.1:3",
+                               "--plot", "fit.png", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json report = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(report["contours"]["growth"].size(), report["contours"]["first"].size());
+  EXPECT_EQ(report["brackets"].size(), 1U);
+  EXPECT_TRUE(content("fit.png").starts_with("\x89PNG"));
+}
+
+TEST_F(FitProgram, BadInput_IsOneLineThatSaysWhatIsAllowed) {
+  const std::vector<std::string> good = {"--data", "data.csv", "--vary", "surface.sigma=0.02:1"};
+  const auto with = [&](const std::vector<std::string>& more) { return joined(good, more); };
+  expect_message(with({"--vary", "surface.m=1:2"}), "surface.m is no number of a scene that can vary");
+  expect_message(with({"--vary", "surface.n=3:2"}), "LOW must be below HIGH");
+  expect_message(with({"--vary", "surface.n=1:2:3"}), "START must lie in LOW:HIGH");
+  expect_message(with({"--vary", "surface.n=-1:2"}), "-1 is out of range, surface.n in (0, 1e6]");
+  expect_message(with({"--vary", "surface.sigma=0.1:1"}), "surface.sigma: varies twice");
+  expect_message(with({"--loss", "least"}), "--loss");
+  expect_message({"--data", "data.csv:surface.sigma=1", "--vary", "surface.sigma=0.1:1"}, "cannot be fixed too");
+  expect_message(with({"--compare", "surface.masking"}), "must be KEY=WORD,WORD,...");
+  expect_message(with({"--compare", "surface.masking=some,other"}), "must be one of none, v-cavity, integral, smith");
+  expect_message(with({"--compare", "surface.sigma=0.1,0.2"}), "surface.sigma: varies and cannot be compared too");
+  expect_message({"--data", "none.csv", "--vary", "surface.sigma=0.1:1"}, "none.csv: cannot be read");
+  put("one.csv", "theta_deg,dolp\n30,0.1\n");
+  expect_message({"--data", "one.csv", "--vary", "surface.sigma=0.1:1", "--vary", "surface.n=1:2"},
+                 "2 parameters and 1 measured points");
+  expect_message({"--data", "one.csv", "--data", "data.csv", "--vary", "surface.n=1:2"},
+                 "all data sets have it, or none");
+}
+
+}  // namespace

@@ -1,0 +1,120 @@
+// Dense tables from outside: what is interpolated, what the report says of it, and that its promises hold.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include "cli_support.hpp"
+#include "table/table_file.hpp"
+
+namespace {
+
+using namespace dolp;
+using nlohmann::json;
+
+const std::vector<std::string> kDense = {"--set", "grid.theta_deg=[75,20]",
+                                         "--set", "grid.sigma={from=0.05,to=1,count=40}",
+                                         "--set", "grid.q={from=1.75,to=8,count=36}"};
+constexpr std::size_t kDenseEntries = std::size_t{2} * 40 * 36;
+const std::vector<std::string> kOff = {"--set", "accuracy.interpolation=off"};
+// Of what some directions say about all.
+constexpr double kSampling = 0.2;
+
+class DenseTable : public CommandLine {
+ protected:
+  json table(const std::vector<std::string>& options = {}, const std::string& file = "t.nc") const {
+    return report(joined({"table", "scene.toml", "-o", file}, options));
+  }
+};
+
+TEST_F(DenseTable, Interpolated_AgreesWithEveryEntryByItself) {
+  for (const char* masking : {"none", "v-cavity", "integral", "smith"}) {
+    SCOPED_TRACE(masking);
+    const std::vector<std::string> options = joined(kDense, {"--set", "surface.masking=" + std::string(masking)});
+    const json few = table(options);
+    EXPECT_GE(few["interpolated_moments"], kDenseEntries);
+    EXPECT_LT(3.0 * few["interpolation_nodes"].get<double>(), few["interpolated_moments"].get<double>());
+    const json all = table(joined(options, joined(kOff, {"--tolerance", "1e-6"})), "all.nc");
+    EXPECT_EQ(all["interpolated_moments"], 0);
+    const Table a = read_table(at("t.nc"));
+    const Table b = read_table(at("all.nc"));
+    ASSERT_EQ(a.size(), kDenseEntries);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a.status[i], b.status[i]) << i;
+      EXPECT_LE(a[Quantity::kRhoErrorEstimate][i], 1e-4);
+      EXPECT_NEAR(a[Quantity::kRhoI][i], b[Quantity::kRhoI][i],
+                  (a[Quantity::kRhoErrorEstimate][i] + b[Quantity::kRhoErrorEstimate][i]) * b[Quantity::kRhoI][i])
+          << i;
+      EXPECT_NEAR(a[Quantity::kRhoQ][i], b[Quantity::kRhoQ][i],
+                  (a[Quantity::kRhoErrorEstimate][i] + b[Quantity::kRhoErrorEstimate][i]) * b[Quantity::kRhoI][i])
+          << i;
+      EXPECT_NEAR(a[Quantity::kDolp][i], b[Quantity::kDolp][i],
+                  a[Quantity::kErrorEstimate][i] + b[Quantity::kErrorEstimate][i])
+          << i;
+    }
+  }
+}
+
+TEST_F(DenseTable, Verify_FindsNothing) {
+  table(kDense);
+  const Outcome outcome = dolp({"verify", "t.nc", "--samples", "40"});
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+}
+
+TEST_F(DenseTable, RuleAttributeAndSummary_SayWhatIsInterpolated) {
+  const Outcome outcome = dolp(joined({"table", "scene.toml", "-o", "t.nc"}, kDense));
+  EXPECT_NE(outcome.out.find(" moments interpolated or combined, from "), std::string::npos) << outcome.out;
+  std::string rule;
+  for (const Attribute& attribute : read_table(at("t.nc")).attributes) {
+    if (attribute.name == "rule") rule = std::get<std::string>(attribute.value);
+  }
+  EXPECT_NE(rule.find("interpolated in ln(sigma) and ln(q - q0)"), std::string::npos) << rule;
+}
+
+TEST_F(DenseTable, Twice_GivesTheSameNumbers) {
+  table(kDense);
+  const Table once = read_table(at("t.nc"));
+  table(kDense);
+  const Table again = read_table(at("t.nc"));
+  EXPECT_EQ(once[Quantity::kDolp], again[Quantity::kDolp]);
+  EXPECT_EQ(once[Quantity::kRhoI], again[Quantity::kRhoI]);
+  EXPECT_EQ(once[Quantity::kRhoErrorEstimate], again[Quantity::kRhoErrorEstimate]);
+}
+
+TEST_F(DenseTable, SmallTable_IsIntegratedEntryByEntry) { EXPECT_EQ(table()["interpolated_moments"], 0); }
+
+TEST_F(DenseTable, Reference_NeverInterpolates) {
+  const json report = table({"--evaluator", "reference", "--set", "surface.masking=none", "--set", "grid.theta_deg=60",
+                             "--set", "grid.sigma={from=0.1,to=1,count=40}", "--set", "grid.q=2"});
+  EXPECT_EQ(report["interpolated_moments"], 0);
+}
+
+TEST_F(DenseTable, Bistatic_OneSlabServesAllDirections) {
+  const json report = table(joined(
+      kDense, {"--set", "geometry.mode=bistatic", "--set", "source.relative_irradiance=0.5", "--tolerance", "1e-3"}));
+  EXPECT_GE(report["interpolated_moments"], kDenseEntries / 2);
+  const Outcome outcome = dolp({"verify", "t.nc", "--samples", "20"});
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+}
+
+TEST_F(DenseTable, UnknownWord_IsAnErrorThatNamesWhatIsAllowed) {
+  const Outcome outcome = dolp({"table", "scene.toml", "-o", "t.nc", "--set", "accuracy.interpolation=on"});
+  EXPECT_EQ(outcome.status, 2);
+  for (const char* part : {"accuracy.interpolation", "on", "auto", "off"}) {
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(DenseTable, Plan_SaysWhatTheRunInterpolates) {
+  const std::vector<std::string> options =
+      joined(kDense, {"--set", "grid.theta_deg={from=5,to=80,count=12}", "--set", "surface.masking=none"});
+  const json predicted = report(joined({"plan", "scene.toml"}, options));
+  const json spent = table(joined(options, {"--evaluator", "cpu"}));
+  EXPECT_EQ(predicted["interpolated_moments"], 12U * 40U * 36U);
+  EXPECT_LE(predicted["moments"], spent["interpolation_nodes"]);
+  const double evaluations = spent["evaluations"];
+  EXPECT_NEAR(predicted["evaluations"], evaluations, kSampling * evaluations);
+  const json off = report(joined({"plan", "scene.toml"}, joined(options, kOff)));
+  EXPECT_EQ(off["interpolated_moments"], 0);
+  EXPECT_EQ(off["moments"], 12U * 40U * 36U);
+}
+
+}  // namespace

@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""The manual: what it says to type works, what is generated is current, and its links lead somewhere.
+
+Usage: manual_test.py BUILD [TEST...]    BUILD is the folder that has dolp; ctest runs each test by itself
+The blocks that are marked ```sh in FILES_WITH_COMMANDS run as they stand, in order, one folder for each file: a copy of a
+user's checkout with host, bench and the build folder in it. NOT_RUN names those that do not, with the reason.
+"""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True  # no folder of caches in the source tree
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path("build/release")
+FILES_WITH_COMMANDS = ("README.md", "host/programs/cli/README.md", "host/lib/fit/README.md", "host/core/scene/README.md")
+BLOCK_TIMEOUT_S = 300  # a sanitizer build on two busy cores; each block takes seconds in a release build
+
+# What a block contains, and why it is not run.
+NOT_RUN = {
+    "quickstart.sh": "builds the program",
+    "tests/run.sh": "runs this test",
+    "dolp explore": "needs a display; explore_window_test covers it",
+    "export PATH": "has no effect beyond its own shell; the test sets PATH likewise",
+}
+
+SHELL_BLOCK = re.compile(r"^```sh\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+ANY_BLOCK = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
+COMMAND = re.compile(r"^ *(build/release/)?dolp (table|eval|mueller|plan|verify|lookup|fit|materials|devices|explore)\b", re.MULTILINE)
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+HEADING = re.compile(r"^#+ +(.*)$", re.MULTILINE)
+
+
+def markdown_files():
+    return sorted(path for path in ROOT.rglob("*.md")
+                  if not any(part == "build" or part.startswith(".") for part in path.relative_to(ROOT).parts))
+
+
+def anchors(text):
+    """Those that GitHub makes of the headings."""
+    names = (re.sub(r"[^\w\- ]", "", heading.replace("`", "").lower()) for heading in HEADING.findall(text))
+    return {name.strip().replace(" ", "-") for name in names}
+
+
+class Manual(unittest.TestCase):
+    def test_commands_run(self):
+        for name in FILES_WITH_COMMANDS:
+            with tempfile.TemporaryDirectory() as folder:
+                self.run_blocks(name, pathlib.Path(folder))
+
+    def run_blocks(self, name, folder):
+        for source in ("host", "bench"):
+            (folder / source).symlink_to(ROOT / source)
+        (folder / BUILD.parent).mkdir()
+        (folder / BUILD).symlink_to(BUILD_FOLDER)
+        environment = dict(os.environ, PATH=f"{BUILD_FOLDER}:{os.environ['PATH']}", PYTHONDONTWRITEBYTECODE="1")
+        blocks = SHELL_BLOCK.findall((ROOT / name).read_text(encoding="utf-8"))
+        self.assertTrue(blocks, f"{name} has no command")
+        for block in blocks:
+            if any(text in block for text in NOT_RUN):
+                continue
+            with self.subTest(file=name, block=block):
+                done = subprocess.run(["bash", "-eu", "-c", block], cwd=folder, env=environment, text=True, check=False,
+                                      stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                      timeout=BLOCK_TIMEOUT_S)
+                self.assertEqual(done.returncode, 0, done.stdout)
+
+    def test_commands_are_in_blocks_that_run(self):
+        for name in FILES_WITH_COMMANDS:
+            text = (ROOT / name).read_text(encoding="utf-8")
+            others = [block for block in ANY_BLOCK.findall(text) if not block.startswith("```sh\n")]
+            others.append(ANY_BLOCK.sub("", text))
+            for other in others:
+                found = COMMAND.search(other) if not other.startswith("```bash") else None
+                self.assertIsNone(found, f"{name}: a command outside of a block marked ```sh: {found}")
+
+    def test_reasons_are_needed(self):
+        text = "".join((ROOT / name).read_text(encoding="utf-8") for name in FILES_WITH_COMMANDS)
+        for part in NOT_RUN:
+            self.assertTrue(any(part in block for block in SHELL_BLOCK.findall(text)), f"no block contains {part}")
+
+    def test_generated_parts_are_current(self):
+        done = subprocess.run([sys.executable, ROOT / "host/tools/write_manual.py", "--check", "--build", BUILD_FOLDER],
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr + "host/tools/write_manual.py rewrites them")
+
+    def test_links_resolve(self):
+        for path in markdown_files():
+            text = path.read_text(encoding="utf-8")
+            for link in LINK.findall(ANY_BLOCK.sub("", text)):
+                if re.match(r"[a-z]+:", link):
+                    continue
+                file_name, _, anchor = link.partition("#")
+                target = (path.parent / file_name).resolve() if file_name else path
+                with self.subTest(file=str(path.relative_to(ROOT)), link=link):
+                    self.assertTrue(target.exists(), "leads nowhere")
+                    if anchor:
+                        self.assertIn(anchor, anchors(target.read_text(encoding="utf-8")))
+
+    def test_model_has_one_place(self):
+        """The model is shaders/physics/README.md."""
+        former = "MODEL" + ".md"
+        for path in ROOT.rglob("*"):
+            parts = path.relative_to(ROOT).parts
+            if not path.is_file() or "build" in parts or ".git" in parts or path.suffix in (".png", ".json"):
+                continue
+            self.assertFalse(former in path.read_text(encoding="utf-8", errors="replace"), f"{path} mentions {former}")
+
+
+if __name__ == "__main__":
+    BUILD_FOLDER = pathlib.Path(sys.argv.pop(1)).resolve()
+    unittest.main()

@@ -1,0 +1,156 @@
+// `dolp mueller` from outside: columns, row order, evaluators, report, and what mistakes leave behind.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cli_support.hpp"
+
+namespace {
+
+using namespace dolp;
+using nlohmann::json;
+
+const std::string kGeometries =
+    "delta_phi_deg,theta_i_deg , theta_r_deg,sigma\n150,30,40,0.2\n-150.0,30,40,0.2\n0,1e-3,40,0.3\n180,20,20.5,0.1\n";
+const std::string kElements = "m00,m01,m02,m03,m10,m11,m12,m13,m20,m21,m22,m23,m30,m31,m32,m33";
+
+class Mueller : public CommandLine {
+ protected:
+  void SetUp() override {
+    CommandLine::SetUp();
+    put("points.csv", kGeometries);
+  }
+  Outcome mueller(const std::vector<std::string>& options, const std::string& output = "out.csv") const {
+    return dolp(joined({"mueller", "scene.toml", "--points", "points.csv", "-o", output}, options));
+  }
+  Columns columns(const std::vector<std::string>& options) const {
+    std::vector<std::string> arguments = options;
+    arguments.emplace_back("--quiet");
+    const Outcome outcome = mueller(arguments, "-");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return parse_csv(outcome.out);
+  }
+};
+
+std::vector<std::string> element_names() { return split_at(kElements, ','); }
+
+TEST_F(Mueller, Points_RepeatedInOrderWithAllElements) {
+  const Outcome outcome = mueller({"--quiet"}, "-");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const std::vector<std::string> lines = data_lines(outcome.out);
+  ASSERT_EQ(lines.size(), 5U);
+  EXPECT_EQ(lines[0], "delta_phi_deg,theta_i_deg,theta_r_deg,sigma," + kElements);
+  EXPECT_TRUE(lines[1].starts_with("150,30,40,0.2,"));
+  EXPECT_TRUE(lines[2].starts_with("-150.0,30,40,0.2,"));
+  EXPECT_TRUE(lines[3].starts_with("0,1e-3,40,0.3,"));
+  EXPECT_TRUE(lines[4].starts_with("180,20,20.5,0.1,"));
+  const Columns f = parse_csv(outcome.out);
+  EXPECT_EQ(f.at("m00")[0], f.at("m00")[1]);
+  EXPECT_EQ(f.at("m02")[0], -f.at("m02")[1]);
+  EXPECT_NE(f.at("m02")[0], 0.0);
+  EXPECT_GT(f.at("m00")[3], f.at("m00")[2]);  // near the specular direction
+}
+
+TEST_F(Mueller, Evaluators_AgreeWithinTheirStatedErrors) {
+  const Columns reference = columns({"--evaluator", "reference"});
+  const auto worst = [&](const std::vector<std::string>& options) {
+    const Columns f = columns(options);
+    double error = 0.0;
+    for (const std::string& name : element_names()) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        error = std::max(error, std::abs(f.at(name)[i] - reference.at(name)[i]) / reference.at("m00")[i]);
+      }
+    }
+    return error;
+  };
+  for (const char* evaluator : {"vulkan", "cpu"}) {
+    const double in_float = worst({"--evaluator", evaluator});
+    EXPECT_LE(in_float, 1e-5);
+    EXPECT_GT(in_float, 1e-11);  // the reference is another computation
+    EXPECT_LE(worst({"--evaluator", evaluator, "--precision", "double"}), 1e-11);
+    EXPECT_LE(worst({"--evaluator", evaluator, "--tolerance", "1e-8"}), 1e-11);  // auto is double there
+  }
+}
+
+TEST_F(Mueller, SetAndColumns_SayTheSame) {
+  put("points.csv", "theta_i_deg,theta_r_deg,delta_phi_deg,sigma,q,n,k\n30,40,100,0.4,2.5,3,1\n");
+  const Columns by_columns = columns({});
+  put("points.csv", "theta_i_deg,theta_r_deg,delta_phi_deg\n30,40,100\n");
+  const Columns by_scene = columns({"--set", "surface.sigma=0.4", "--set", "surface.q=2.5", "--set", "surface.n=3",
+                                    "--set", "surface.k=1", "--set", "grid.sigma=[0.1]"});
+  for (const std::string& name : element_names()) EXPECT_EQ(by_columns.at(name), by_scene.at(name)) << name;
+  EXPECT_NE(by_scene.at("m00"), columns({}).at("m00"));
+}
+
+TEST_F(Mueller, Json_SaysWhatRan) {
+  put("points.csv", "theta_i_deg,theta_r_deg,delta_phi_deg\n30,40,100\n90,40,100\n");
+  const Outcome outcome = mueller({"--json", "--precision", "double"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json report = json::parse(outcome.out);
+  EXPECT_EQ(report["title"], "Sixteen entries");
+  EXPECT_EQ(report["output"], "out.csv");
+  EXPECT_EQ(report["entries"], 2);
+  EXPECT_EQ(report["without_value"], 1);
+  EXPECT_EQ(report["evaluator"], "vulkan");
+  EXPECT_EQ(report["precision"], "double");
+  EXPECT_EQ(report["worst_error_estimate"], 1e-11);
+  EXPECT_EQ(report["dispatches"], 1);
+  for (const char* key : {"device", "driver", "wall_s", "kernel_s", "setup_s", "tolerance"}) {
+    EXPECT_TRUE(report.contains(key)) << key;
+  }
+  EXPECT_TRUE(std::isnan(parse_csv(content("out.csv")).at("m33").at(1)));
+}
+
+TEST_F(Mueller, HeaderWithoutRows_HeaderWithoutRows) {
+  put("points.csv", "theta_i_deg,theta_r_deg,delta_phi_deg\n");
+  const Outcome outcome = mueller({});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(content("out.csv"), "theta_i_deg,theta_r_deg,delta_phi_deg," + kElements + "\n");
+}
+
+TEST_F(Mueller, Strict_FloatBelowItsAccuracy_Exit1WithTheResults) {
+  EXPECT_EQ(mueller({"--quiet", "--tolerance", "1e-6", "--precision", "float", "--strict"}).status, 1);
+  EXPECT_EQ(parse_csv(content("out.csv")).at("m00").size(), 4U);
+  EXPECT_EQ(mueller({"--quiet", "--tolerance", "1e-6", "--strict"}).status, 0);
+}
+
+struct Mistake {
+  const char* name;
+  std::string points;
+  std::vector<std::string> options;
+  int status;
+  std::vector<std::string> message;  ///< parts of the line
+};
+void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
+
+class MuellerMistake : public Mueller, public testing::WithParamInterface<Mistake> {};
+
+const std::string kHeader = "theta_i_deg,theta_r_deg,delta_phi_deg";
+
+TEST_P(MuellerMistake, Run_OneLineAndNothingWritten) {
+  put("points.csv", GetParam().points);
+  const Outcome outcome = mueller(GetParam().options);
+  for (const std::string& part : GetParam().message) expect_refused(outcome, part, GetParam().status);
+  EXPECT_EQ(names(), (std::vector<std::string>{"points.csv", "scene.toml"}));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Points, MuellerMistake,
+    testing::Values(Mistake{"SmithBelowItsExponent",
+                            kHeader + ",q\n1,2,3,1.4\n",
+                            {"--set", "surface.masking=smith"},
+                            2,
+                            {"points.csv:2", "q = 1.4", "smith"}},
+                    Mistake{"KeepAll", kHeader + "\n1,2,3\n", {"--keep-all"}, 2, {"--keep-all"}},
+                    Mistake{
+                        "UnknownDevice", kHeader + "\n1,2,3\n", {"--device", "no such device"}, 3, {"no such device"}}),
+    [](const testing::TestParamInfo<Mistake>& test) { return std::string(test.param.name); });
+
+TEST_F(Mueller, OutputThatIsAnInput_Refused) {
+  const Outcome outcome = mueller({}, "points.csv");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(content("points.csv"), kGeometries);
+}
+
+}  // namespace

@@ -1,0 +1,359 @@
+// Dropped effects and `dolp plan`, from outside.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cli_support.hpp"
+#include "table/table_file.hpp"
+
+namespace {
+
+using namespace dolp;
+using nlohmann::json;
+
+const std::vector<std::string> kIsothermal = {"--set", "surroundings.temperature_K=300"};
+const std::vector<std::string> kBistatic = {"--set", "geometry.mode=bistatic", "--set",
+                                            "source.relative_irradiance=0.5"};
+// Emission and surroundings of one temperature are unpolarised whatever the moments are.
+const std::vector<std::string> kBeamAlone = {"--set", "surroundings.temperature_K=300",
+                                             "--set", "geometry.mode=bistatic",
+                                             "--set", "source.relative_irradiance=0.5"};
+// A float on the device may round an order the other way than on the CPU, which changes a circle of nodes or two.
+constexpr double kOrderRounding = 0.05;
+// Of what 256 of many entries say about all.
+constexpr double kSampling = 0.1;
+
+std::vector<std::string> names_in(const json& rows) {
+  std::vector<std::string> names;
+  for (const json& row : rows) names.push_back(row["name"]);
+  return names;
+}
+
+bool has(const json& rows, const std::string& name) {
+  const std::vector<std::string> names = names_in(rows);
+  return std::ranges::find(names, name) != names.end();
+}
+
+class Plan : public CommandLine {
+ protected:
+  json plan(const std::vector<std::string>& options = {}) const {
+    return report(joined({"plan", "scene.toml"}, options));
+  }
+  json table(const std::vector<std::string>& options = {}) const {
+    return report(joined({"table", "scene.toml", "-o", "t.nc"}, options));
+  }
+};
+
+TEST_F(Plan, IsothermalSurroundings_NothingRunsAndDolpIsZero) {
+  Command wanted = command(joined({"table", "scene.toml", "-o", "t.nc", "--json"}, kIsothermal));
+  wanted.environment = kNoDriver;
+  const Outcome outcome = run(wanted);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json report = json::parse(outcome.out);
+  EXPECT_EQ(report["dispatches"], 0);
+  EXPECT_EQ(report["evaluations"], 0.0);
+  EXPECT_EQ(report["device"], "none");
+  EXPECT_TRUE(has(report["effects"]["dropped"], "specular"));
+  EXPECT_TRUE(has(report["effects"]["not_needed"], "masking"));
+  const Table made = read_table(at("t.nc"));
+  EXPECT_TRUE(made[Quantity::kRhoI].empty() && made[Quantity::kRhoQ].empty() && made[Quantity::kAlbedo].empty() &&
+              made[Quantity::kRhoErrorEstimate].empty());
+  ASSERT_EQ(made[Quantity::kDolp].size(), made.size());
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    EXPECT_EQ(made[Quantity::kDolp][i], 0.0);
+    EXPECT_EQ(made.status[i], 0U);
+    EXPECT_EQ(made[Quantity::kStokesI][i], made[Quantity::kStokesI][0]);
+  }
+  EXPECT_EQ(dolp({"verify", "t.nc"}).status, 0);
+}
+
+TEST_F(Plan, Memory_IsAboutThatOfTheTable) {
+  const std::string peak =
+      "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
+      "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)";
+  for (const char* count : {"200", "1200"}) {  // a part of a table, and two
+    const std::vector<std::string> grid = {"scene.toml",
+                                           "--tolerance",
+                                           "1e-2",
+                                           "--set",
+                                           "surface.masking=none",
+                                           "--set",
+                                           fmt::format("grid={{theta_deg={{from=0,to=80,count={}}},"
+                                                       "sigma={{from=0.1,to=0.5,count=1000}},q=[2]}}",
+                                                       count)};
+    std::vector<std::string> plan = {"plan", "--json"},
+                             table = {"/usr/bin/python3", "-c", peak, DOLP_PROGRAM, "table", "-o", "t.nc", "--quiet"};
+    plan.insert(plan.end(), grid.begin(), grid.end());
+    table.insert(table.end(), grid.begin(), grid.end());
+    const double said = nlohmann::json::parse(dolp(plan).out)["host_bytes"].get<double>();
+    const Outcome outcome = run({.arguments = table, .folder = at("")});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const double taken = 1024.0 * std::stod(outcome.out);
+    EXPECT_GT(said, 0.7 * taken) << count;
+    EXPECT_LT(said, 1.4 * taken) << count;
+  }
+}
+
+TEST_F(Plan, KeepAll_EverythingIsComputedAndTheAnswerIsTheSame) {
+  const json kept = table(joined(kIsothermal, {"--keep-all"}));
+  EXPECT_GT(kept["evaluations"], 0.0);
+  EXPECT_TRUE(kept["effects"]["keep_all"]);
+  EXPECT_TRUE(kept["effects"]["dropped"].empty());
+  const Table all = read_table(at("t.nc"));
+  for (const Quantity quantity : kAllQuantities) {
+    const bool is_of_bracket = std::string(description_of(quantity).name).starts_with("dolp_");  // not asked for
+    EXPECT_EQ(all[quantity].size(), is_of_bracket ? 0U : all.size()) << description_of(quantity).name;
+  }
+  table(kIsothermal);
+  const Table few = read_table(at("t.nc"));
+  EXPECT_EQ(all[Quantity::kDolp], few[Quantity::kDolp]);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    EXPECT_NEAR(few[Quantity::kStokesI][i], all[Quantity::kStokesI][i], 1e-12 * all[Quantity::kStokesI][i]);
+}
+
+TEST_F(Plan, EffectsAttribute_SaysWhatWasDroppedAndWhy) {
+  table(kIsothermal);
+  const auto text_in = [&](const char* name) {
+    for (const Attribute& attribute : read_table(at("t.nc")).attributes) {
+      if (attribute.name == name) return std::get<std::string>(attribute.value);
+    }
+    return std::string();
+  };
+  EXPECT_TRUE(text_in("effects").starts_with("kept: emission, surroundings; dropped: specular ("))
+      << text_in("effects");
+  table();
+  EXPECT_TRUE(text_in("effects").ends_with("dropped: nothing")) << text_in("effects");
+}
+
+TEST_F(Plan, Eval_QuantitiesNotNeeded_AreNan) {
+  const Columns columns = eval(kIsothermal);
+  ASSERT_EQ(columns.at("dolp").size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (const char* name : {"rho_i", "rho_q", "albedo", "rho_error_estimate"}) {
+      EXPECT_TRUE(std::isnan(columns.at(name)[i])) << name;
+    }
+    EXPECT_EQ(columns.at("dolp")[i], 0.0);
+    EXPECT_EQ(columns.at("status")[i], 0.0);
+  }
+  const Columns all = eval(joined(kIsothermal, {"--keep-all"}));
+  for (const double rho : all.at("rho_i")) EXPECT_GT(rho, 0.0);
+}
+
+TEST_F(Plan, NoSpecularPart_OnlyClosedForms) {
+  const std::vector<std::string> matt = {"--set", "surface.specular=0", "--set", "surface.diffuse=0.2"};
+  const json report = table(matt);
+  EXPECT_EQ(report["evaluations"], 0.0);
+  const Table made = read_table(at("t.nc"));
+  EXPECT_EQ(made[Quantity::kRhoI].size(), made.size());
+  EXPECT_TRUE(made[Quantity::kAlbedo].empty());
+  table(joined(matt, {"--keep-all"}));
+  const Table all = read_table(at("t.nc"));
+  EXPECT_EQ(made[Quantity::kRhoI], all[Quantity::kRhoI]);
+  EXPECT_EQ(made[Quantity::kDolp], all[Quantity::kDolp]);
+}
+
+TEST_F(Plan, SunInTheVisible_ThermalRadiationIsDropped) {
+  const std::vector<std::string> visible = {"--set", "geometry.mode=bistatic", "--set", "spectrum.wavelength_um=0.55",
+                                            "--set", "source.irradiance=1800"};
+  const json report = table(visible);
+  EXPECT_EQ(report["evaluations"], 0.0);
+  EXPECT_TRUE(has(report["effects"]["dropped"], "emission"));
+  EXPECT_TRUE(has(report["effects"]["dropped"], "surroundings"));
+  EXPECT_TRUE(has(report["effects"]["kept"], "specular"));
+  const Table few = read_table(at("t.nc"));
+  table(joined(visible, {"--keep-all"}));
+  const Table all = read_table(at("t.nc"));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_NEAR(few[Quantity::kDolp][i], all[Quantity::kDolp][i],
+                few[Quantity::kErrorEstimate][i] + all[Quantity::kErrorEstimate][i]);
+    EXPECT_GT(few[Quantity::kDolp][i], 0.0);
+  }
+}
+
+TEST_F(Plan, BeamOnAnIsothermalSurface_NeedsTheBeamAlone) {
+  const json report = table(kBeamAlone);
+  EXPECT_EQ(report["evaluations"], 0.0);
+  EXPECT_EQ(report["dispatches"], 1);
+  const Table few = read_table(at("t.nc"));
+  table(joined(kBeamAlone, {"--keep-all"}));
+  const Table all = read_table(at("t.nc"));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_NEAR(few[Quantity::kDolp][i], all[Quantity::kDolp][i],
+                few[Quantity::kErrorEstimate][i] + all[Quantity::kErrorEstimate][i]);
+  }
+  EXPECT_GT(*std::ranges::max_element(few[Quantity::kDolp]), 1e-3);
+}
+
+TEST_F(Plan, BeamAlone_IsComputedInThePrecisionThatTheToleranceAsksFor) {
+  for (const auto& [tolerance, precision] :
+       {std::pair{"1e-3", "float"}, std::pair{"1e-5", "float and double"}, std::pair{"1e-8", "double"}}) {
+    const json report = this->table(joined(kBeamAlone, {"--tolerance", tolerance}));
+    EXPECT_EQ(report["precision"], precision) << tolerance;
+    EXPECT_LE(report["worst_error_estimate"], std::strtod(tolerance, nullptr));
+  }
+}
+
+TEST_F(Plan, Mirrors_NeedNoDevice) {
+  for (const char* mode : {"hemispherical", "bistatic"}) {
+    Command wanted = command({"table", "scene.toml", "-o", "t.nc", "--set", "grid.sigma=0", "--json", "--set",
+                              "source.relative_irradiance=0.5", "--set", "geometry.mode=" + std::string(mode)});
+    wanted.environment = kNoDriver;
+    const Outcome outcome = run(wanted);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(json::parse(outcome.out)["device"], "none");
+    EXPECT_EQ(read_table(at("t.nc"))[Quantity::kRhoI].size(), 8U);
+  }
+}
+
+TEST_F(Plan, BeamWithoutADevice_IsNoSilentSwitchToTheCpu) {
+  Command wanted = command(joined({"table", "scene.toml", "-o", "t.nc"}, kBeamAlone));
+  wanted.environment = kNoDriver;
+  EXPECT_EQ(run(wanted).status, 3);
+}
+
+TEST_F(Plan, FresnelEmissionAlone_NeedsNoMoments) {
+  const std::vector<std::string> alone = {"--set", "emission.model=fresnel", "--set", "surroundings=none"};
+  EXPECT_EQ(table(alone)["evaluations"], 0.0);
+  const std::vector<double> few = read_table(at("t.nc"))[Quantity::kDolp];
+  table(joined(alone, {"--keep-all"}));
+  EXPECT_EQ(few, read_table(at("t.nc"))[Quantity::kDolp]);
+}
+
+TEST_F(Plan, FewEntries_PredictsTheCpuRunExactly) {
+  for (const char* tolerance : {"1e-2", "1e-4", "1e-7"}) {
+    const json predicted = plan({"--tolerance", tolerance});
+    const json spent = table({"--tolerance", tolerance, "--evaluator", "cpu"});
+    EXPECT_TRUE(predicted["first_attempt"]["is_exact"]);
+    EXPECT_EQ(predicted["evaluations"], spent["evaluations"]) << tolerance;
+  }
+}
+
+TEST_F(Plan, Bistatic_PredictsMomentsAndBeams) {
+  const json predicted = plan(kBistatic);
+  EXPECT_EQ(predicted["moments"], 4);  // of one view and four surfaces
+  EXPECT_EQ(predicted["beams"], 16);
+  EXPECT_TRUE(predicted["first_attempt"]["is_exact"]);
+  EXPECT_EQ(predicted["evaluations"], table(joined(kBistatic, {"--evaluator", "cpu"}))["evaluations"]);
+  EXPECT_EQ(predicted["pipelines"].size(), 3U);
+  ASSERT_EQ(predicted["further_attempts"]["share"], 0.0);
+  EXPECT_EQ(predicted["first_attempt"]["dispatches"], table(kBistatic)["dispatches"]);
+  const json alone = plan(joined(kBeamAlone, {"--tolerance", "1e-5"}));
+  EXPECT_EQ(alone["moments"], 0);
+  EXPECT_EQ(alone["beams"], 16);
+  EXPECT_TRUE(alone["rule"].is_null());
+  EXPECT_GT(alone["further_attempts"]["beams"], 0.0);
+  EXPECT_GT(alone["device_bytes"], 0);
+  EXPECT_GT(alone["estimated_cpu_s"], 0.0);
+}
+
+TEST_F(Plan, Device_PredictsEvaluationsAndDispatches) {
+  // Cases that need no second attempt.
+  for (const auto& [tolerance, masking] :
+       {std::pair{"1e-4", "none"}, std::pair{"1e-4", "v-cavity"}, std::pair{"1e-4", "smith"}}) {
+    const std::vector<std::string> easy = {"--tolerance", tolerance,
+                                           "--set",       "surface.masking=" + std::string(masking),
+                                           "--set",       "grid.theta_deg=[65,40,10]",
+                                           "--set",       "grid.sigma=0.4",
+                                           "--set",       "grid.q=3",
+                                           "--set",       "surface.n=1.5",
+                                           "--set",       "surface.diffuse=0.5"};
+    const json predicted = plan(easy);
+    const json spent = table(easy);
+    const double evaluations = spent["evaluations"];
+    ASSERT_EQ(predicted["further_attempts"]["evaluations"], 0.0) << masking;
+    EXPECT_NEAR(predicted["evaluations"], evaluations, kOrderRounding * evaluations);
+    EXPECT_EQ(predicted["first_attempt"]["dispatches"], spent["dispatches"]);
+  }
+}
+
+TEST_F(Plan, ManyEntries_PredictionFromSomeIsNearly) {
+  const std::vector<std::string> grid = {"--set", "grid.theta_deg={from=0,to=85,count=30}",
+                                         "--set", "grid.sigma={from=0.05,to=1,count=16}",
+                                         "--set", "surface.masking=none"};
+  const json predicted = plan(grid);
+  const json spent = table(joined(grid, {"--evaluator", "cpu"}));
+  EXPECT_FALSE(predicted["first_attempt"]["is_exact"]);
+  const double evaluations = spent["evaluations"];
+  EXPECT_NEAR(predicted["evaluations"], evaluations, 2.0 * kSampling * evaluations);  // directions differ
+}
+
+TEST_F(Plan, Mirrors_NothingIsPlanned) {
+  const json predicted = plan({"--set", "grid.sigma=0"});
+  EXPECT_EQ(predicted["moments"], 0);
+  EXPECT_EQ(predicted["evaluations"], 0.0);
+}
+
+TEST_F(Plan, NoDevice_PlansAllTheSame) {
+  Command wanted = command({"plan", "scene.toml", "--json"});
+  wanted.environment = kNoDriver;
+  const Outcome outcome = run(wanted);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json report = json::parse(outcome.out);
+  EXPECT_TRUE(report["device"].is_null());
+  EXPECT_NE(report["why_no_device"], "");
+  EXPECT_GT(report["first_attempt"]["dispatches"], 0);
+  EXPECT_EQ(report["evaluations"], plan()["evaluations"]);
+  wanted.arguments.insert(wanted.arguments.end(), {"--device", "nosuch"});
+  EXPECT_EQ(run(wanted).status, 3);
+}
+
+TEST_F(Plan, ShippedScenes_NameEachEffectOnceAndReadWell) {
+  for (const char* name : {"aviation_aluminium", "bare_aluminium", "day", "far", "glint", "mwir_glint", "night_paint",
+                           "overcast", "rough_metal", "sea_wind", "stainless_steel", "water"}) {
+    const std::string scene = std::string(DOLP_HOST_DIR "/scenes/") + name + ".toml";
+    const json json_plan = report({"plan", scene});
+    EXPECT_EQ(names_in(json_plan["rows"]),
+              (std::vector<std::string>{"specular", "diffuse", "distribution", "masking", "scattering", "complex index",
+                                        "emission", "source", "surroundings", "path", "band"}));
+    const Outcome outcome = dolp({"plan", scene});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    for (const json& row : json_plan["rows"]) {
+      EXPECT_NE(row["reason"], "") << name << " " << row["name"];
+      EXPECT_NE(outcome.out.find(row["reason"].get<std::string>()), std::string::npos) << name;
+    }
+    for (const char* text : {"dropped", "attempts", "dispatches", "memory", "estimate"}) {
+      EXPECT_NE(outcome.out.find(text), std::string::npos) << name << " " << text;
+    }
+  }
+}
+
+TEST_F(Plan, AllBounces_WorkOfTheirRowAndPipeline) {
+  const std::vector<std::string> single = {"--set", "surface.masking=v-cavity"};
+  const std::vector<std::string> multiple = joined(single, {"--set", "surface.scattering=multiple"});
+  const json all = plan(multiple);
+  const json once = plan(single);
+  const json row = *std::ranges::find(all["rows"], "scattering", [](const json& r) { return r["name"]; });
+  const double work = all["evaluations"];
+  EXPECT_NEAR(row["work_share"], 1.0 - once["evaluations"].get<double>() / work, 1e-12);
+  EXPECT_GT(row["work_share"], 0.5);
+  EXPECT_EQ(all["pipelines"], json({"slopes, float: distribution cauchy, masking v-cavity, all bounces"}));
+  EXPECT_EQ(once["pipelines"], json({"slopes, float: distribution cauchy, masking v-cavity"}));
+}
+
+TEST_F(Plan, DirectEmission_PipelineAndOutputSaySo) {
+  const std::vector<std::string> direct = {"--set", "surface.masking=v-cavity", "--set", "emission.bracket=true"};
+  EXPECT_EQ(plan(direct)["pipelines"], json({"slopes, float: distribution cauchy, masking v-cavity, direct emission"}));
+  const auto output = [&](const std::vector<std::string>& options) {
+    const std::string text = dolp(joined({"plan", "scene.toml"}, options)).out;
+    const std::size_t start = text.find("  output");
+    return text.substr(start, text.find('\n', start) - start);
+  };
+  EXPECT_TRUE(output(direct).ends_with(" Stokes parameters, DOLP, its bracket, emissivity, rho, albedo"));
+  EXPECT_TRUE(output({"--set", "emission.model=fresnel", "--set", "surroundings=none"})
+                  .ends_with(" Stokes parameters, DOLP, emissivity; without rho_i, rho_q and albedo"));
+  EXPECT_TRUE(output(kIsothermal).ends_with(" Stokes parameters, DOLP; without rho_i, rho_q and albedo"));
+  EXPECT_TRUE(plan()["gives_emissivity"]);
+  EXPECT_FALSE(plan(kIsothermal)["gives_emissivity"]);
+}
+
+TEST_F(Plan, DaySceneAtOnePercent_DropsTheSun) {
+  const std::string scene = DOLP_HOST_DIR "/scenes/day.toml";
+  const json rows = report({"plan", scene, "--tolerance", "1e-2"})["effects"];
+  ASSERT_TRUE(has(rows["dropped"], "source"));
+  EXPECT_LE(rows["dolp_bound"], 1e-3);
+  EXPECT_FALSE(has(report({"plan", scene, "--tolerance", "1e-2", "--keep-all"})["effects"]["dropped"], "source"));
+  EXPECT_FALSE(has(report({"plan", scene})["effects"]["dropped"], "source"));
+}
+
+}  // namespace

@@ -1,0 +1,238 @@
+// Tables in parts: shards and their merge, runs that are killed and go on, and axes of wavelength, n and k.
+#include <signal.h>
+
+#include <bit>
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <random>
+#include <thread>
+
+#include "cli_support.hpp"
+#include "table/table_file.hpp"
+
+namespace dolp {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Sigma and q dense enough to be interpolated, axes scattered and descending.
+const std::string kGrid = R"(title = "in parts"
+[surface]
+k = 0.2
+masking = "v-cavity"
+[emission]
+temperature_K = 300.0
+[surroundings]
+temperature_K = 250.0
+[grid]
+wavelength_um = [12.0, 8.0]
+n = [1.4, 3.0]
+theta_deg = [0, 90, 85, 12, 60, 30, 89.95]
+sigma = { from = 0.8, to = 0.05, count = 20 }
+q = { from = 1.6, to = 6, count = 20 }
+)";
+
+// More than one part of a run.
+const std::vector<std::string> kLarge = {"--set",       "grid.theta_deg={from=0, to=89, count=320}",
+                                         "--set",       "grid.sigma={from=0.1, to=0.8, count=64}",
+                                         "--set",       "grid.q={from=1.8, to=6, count=64}",
+                                         "--set",       "grid.wavelength_um=[10.0, 8.0]",
+                                         "--set",       "grid.n=[1.5]",
+                                         "--tolerance", "1e-2"};
+
+class Shards : public CommandLine {
+ protected:
+  void SetUp() override {
+    CommandLine::SetUp();
+    put("grid.toml", kGrid);
+  }
+
+  std::vector<std::string> shard_names(std::size_t count) const {
+    std::vector<std::string> names;
+    for (std::size_t i = 1; i <= count; ++i)
+      names.push_back("t." + std::to_string(i) + "-of-" + std::to_string(count) + ".nc");
+    return names;
+  }
+
+  void expect_same(const std::string& a, const std::string& b) {
+    const Table one = read_table(at(a));
+    const Table other = read_table(at(b));
+    EXPECT_EQ(one.axes, other.axes);
+    EXPECT_EQ(one.status, other.status);
+    for (const Quantity quantity : kAllQuantities) {
+      const std::vector<double>& x = one[quantity];
+      const std::vector<double>& y = other[quantity];
+      ASSERT_EQ(x.size(), y.size()) << description_of(quantity).name;
+      for (std::size_t i = 0; i < x.size(); ++i)
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(x[i]), std::bit_cast<std::uint64_t>(y[i]))
+            << description_of(quantity).name << ' ' << i;
+    }
+  }
+};
+
+TEST_F(Shards, MergedAgain_AreTheTableOfOneRun_WithEveryMasking) {
+  for (const std::string masking : {"none", "v-cavity", "integral", "smith"}) {
+    const std::vector<std::string> set = {"--set", "surface.masking=" + masking};
+    ASSERT_EQ(dolp(joined({"table", "grid.toml", "-o", "one.nc"}, set)).status, 0);
+    const std::size_t count = masking == "integral" ? 7 : 2;
+    for (std::size_t i = 1; i <= count; ++i) {
+      const Outcome made = dolp(joined(
+          {"table", "grid.toml", "-o", "t.nc", "--shard", std::to_string(i) + "/" + std::to_string(count)}, set));
+      ASSERT_EQ(made.status, 0) << made.err;
+    }
+    const Outcome merged = dolp(joined(joined({"merge"}, shard_names(count)), {"-o", "merged.nc"}));
+    ASSERT_EQ(merged.status, 0) << merged.err;
+    expect_same("one.nc", "merged.nc");
+    for (const std::string& name : shard_names(count)) fs::remove(at(name));
+  }
+}
+
+// More shards than directions: wavelengths and n are cut too.
+TEST_F(Shards, OfSeveralAxes_MergeIntoTheTableAndItsCsv) {
+  ASSERT_EQ(dolp({"table", "grid.toml", "-o", "one.csv"}).status, 0);
+  for (int i = 1; i <= 14; ++i) {
+    ASSERT_EQ(dolp({"table", "grid.toml", "-o", "t.nc", "--shard", std::to_string(i) + "/14"}).status, 0);
+  }
+  ASSERT_EQ(dolp(joined(joined({"merge"}, shard_names(14)), {"-o", "m.csv"})).status, 0);
+  EXPECT_EQ(data_lines(read_file(at("m.csv"))), data_lines(read_file(at("one.csv"))));
+  const Outcome refused = dolp({"table", "grid.toml", "-o", "t.nc", "--shard", "1/11"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("7 values of theta, 2 of wavelength, 2 of n and 1 of k cannot be cut into 11 parts"),
+            std::string::npos)
+      << refused.err;
+}
+
+TEST_F(Shards, MissingForeignOrDoubled_AreNamed) {
+  for (int i = 1; i <= 2; ++i)
+    ASSERT_EQ(dolp({"table", "grid.toml", "-o", "t.nc", "--shard", std::to_string(i) + "/2"}).status, 0);
+  ASSERT_EQ(dolp({"table", "grid.toml", "-o", "f.nc", "--shard", "2/2", "--set", "surface.k=0.3"}).status, 0);
+  ASSERT_EQ(dolp({"table", "scene.toml", "-o", "whole.nc"}).status, 0);
+  const auto error = [&](const std::vector<std::string>& names) {
+    const Outcome outcome = dolp(joined(joined({"merge"}, names), {"-o", "m.nc"}));
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_FALSE(fs::exists(at("m.nc")));
+    return outcome.err;
+  };
+  EXPECT_EQ(error({"t.1-of-2.nc"}), "dolp: missing shards: 2/2\n");
+  EXPECT_EQ(error({"t.1-of-2.nc", "t.1-of-2.nc"}), "dolp: t.1-of-2.nc: is shard 1/2, as t.1-of-2.nc is\n");
+  EXPECT_EQ(error({"t.1-of-2.nc", "f.2-of-2.nc"}).find("dolp: f.2-of-2.nc: is a shard of another table"), 0U);
+  EXPECT_EQ(error({"t.1-of-2.nc", "whole.nc"}), "dolp: whole.nc: is no shard of a table (attribute shard)\n");
+  EXPECT_EQ(error({"t.1-of-2.nc", "none.nc"}), "dolp: none.nc: there is no such file\n");
+}
+
+TEST_F(Shards, ThereAlready_IsKept_AndOneOfAnotherSceneIsNot) {
+  const std::vector<std::string> wanted = {"table", "grid.toml", "-o", "t.nc", "--shard", "1/2"};
+  ASSERT_EQ(dolp(wanted).status, 0);
+  const auto written = fs::last_write_time(at("t.1-of-2.nc"));
+  const Outcome again = dolp(wanted);
+  EXPECT_EQ(again.status, 0);
+  EXPECT_NE(again.out.find("the whole shard is there already"), std::string::npos) << again.out;
+  EXPECT_EQ(fs::last_write_time(at("t.1-of-2.nc")), written);
+  ASSERT_EQ(dolp(joined(wanted, {"--set", "surface.k=0.3"})).status, 0);
+  EXPECT_NE(fs::last_write_time(at("t.1-of-2.nc")), written);
+}
+
+TEST_F(Shards, Auto_TakesTheTaskOfTheSlurmArray) {
+  const std::vector<std::string> wanted = {"table", "grid.toml", "-o", "t.nc", "--shard", "auto"};
+  const Outcome alone = dolp(wanted);
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_NE(alone.err.find("SLURM_ARRAY_TASK_ID is not set"), std::string::npos) << alone.err;
+  Command in_array = command(wanted);
+  in_array.environment = {
+      {"SLURM_ARRAY_TASK_ID", "12"}, {"SLURM_ARRAY_TASK_MIN", "10"}, {"SLURM_ARRAY_TASK_COUNT", "4"}};
+  const Outcome made = run(in_array);
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_TRUE(fs::exists(at("t.3-of-4.nc")));
+}
+
+TEST_F(Shards, BadNumbers_OneLineEach) {
+  for (const std::string text : {"0/2", "3/2", "1", "a/b", "1/0", "-1/2", "1.5/2"}) {
+    expect_refused(dolp({"table", "grid.toml", "-o", "t.nc", "--shard=" + text}), "--shard");
+  }
+}
+
+class Resume : public Shards {
+ protected:
+  const std::vector<std::string> command_ = joined({"table", "grid.toml", "-o", "t.nc", "--resume"}, kLarge);
+
+  void make_whole() { ASSERT_EQ(dolp(joined({"table", "grid.toml", "-o", "one.nc"}, kLarge)).status, 0); }
+
+  /// Runs until a first part is there, then sends the signal.
+  Outcome interrupted(int signal) {
+    TerminalProcess process(command(command_));
+    while (!fs::exists(at("t.nc.partial.txt"))) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    process.send_signal(signal);
+    return process.finish();
+  }
+};
+
+TEST_F(Resume, AfterCtrlC_SaysHowToGoOn_AndGivesTheSameBits) {
+  make_whole();
+  const Outcome stopped = interrupted(SIGINT);
+  EXPECT_EQ(stopped.status, 130);
+  EXPECT_NE(stopped.err.find("interrupted; 1 of 3 parts are in t.nc.partial: the same command with --resume goes on"),
+            std::string::npos)
+      << stopped.err;
+  EXPECT_FALSE(fs::exists(at("t.nc")));
+  const Outcome foreign = dolp(joined(command_, {"--set", "surface.k=0.3"}));
+  EXPECT_EQ(foreign.status, 2);
+  EXPECT_NE(foreign.err.find("t.nc.partial: is of another run"), std::string::npos) << foreign.err;
+  const Outcome resumed = dolp(command_);
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  expect_same("t.nc", "one.nc");
+  EXPECT_FALSE(fs::exists(at("t.nc.partial")));
+  EXPECT_FALSE(fs::exists(at("t.nc.partial.txt")));
+  EXPECT_NE(resumed.out.find("2621440"), std::string::npos) << resumed.out;
+}
+
+TEST_F(Resume, KilledAtRandomMoments_GivesTheSameBits) {
+  make_whole();
+  const unsigned seed = std::random_device{}();
+  std::cout << "seed " << seed << '\n';
+  std::mt19937 random(seed);
+  for (int kill = 0; kill < 6 && !fs::exists(at("t.nc")); ++kill) {
+    TerminalProcess process(command(command_));
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 1000));
+    process.send_signal(SIGKILL);
+    process.finish();
+  }
+  const Outcome resumed = dolp(command_);
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  expect_same("t.nc", "one.nc");
+}
+
+TEST_F(Resume, OfACsv_IsTheCsvOfOneRun) {
+  const std::vector<std::string> small = {"--set", "grid.sigma=[0.1]", "--set", "grid.q=[2]"};
+  ASSERT_EQ(dolp(joined({"table", "grid.toml", "-o", "a.csv"}, small)).status, 0);
+  ASSERT_EQ(dolp(joined({"table", "grid.toml", "-o", "b.csv", "--resume"}, small)).status, 0);
+  EXPECT_EQ(data_lines(read_file(at("a.csv"))), data_lines(read_file(at("b.csv"))));
+}
+
+TEST_F(Shards, WavelengthAndIndex_LookupAndEvalAgreeWithTheTable) {
+  ASSERT_EQ(dolp({"table", "grid.toml", "-o", "t.nc", "--set", "grid.n={from=1.3, to=2, count=8}", "--set",
+                  "grid.wavelength_um={from=8, to=12, count=6}"})
+                .status,
+            0);
+  put("p.csv", "wavelength_um,n,theta_deg,sigma,q\n10,1.5,60,0.3,2\n8,1.3,30,0.05,6\n11.3,1.9,12,0.5,3\n");
+  ASSERT_EQ(dolp({"lookup", "t.nc", "--points", "p.csv", "-o", "l.csv"}).status, 0);
+  const Outcome computed = dolp({"eval", "grid.toml", "--points", "p.csv", "-o", "e.csv"});
+  ASSERT_EQ(computed.status, 0) << computed.err;
+  const Columns looked_up = parse_csv(read_file(at("l.csv")));
+  const Columns exact = parse_csv(read_file(at("e.csv")));
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(looked_up.at("dolp")[i], exact.at("dolp")[i],
+                looked_up.at("error_estimate")[i] + exact.at("error_estimate")[i]);
+    EXPECT_NEAR(looked_up.at("rho_i")[i], exact.at("rho_i")[i],
+                (looked_up.at("rho_error_estimate")[i] + exact.at("rho_error_estimate")[i]) * exact.at("rho_i")[i]);
+  }
+  EXPECT_LT(looked_up.at("error_estimate")[0], 0.05);
+  const Outcome outside =
+      dolp({"lookup", "t.nc", "--points", "-", "-o", "-"}, "wavelength_um,n,theta_deg,sigma,q\n13,1.5,60,0.3,2\n");
+  EXPECT_EQ(outside.status, 2);
+  EXPECT_NE(outside.err.find("wavelength_um = 13: outside the table, which has [8, 12]"), std::string::npos)
+      << outside.err;
+}
+
+}  // namespace
+}  // namespace dolp

@@ -1,0 +1,403 @@
+// Checking tables: what is drawn, what is compared, and what `dolp verify` says from outside.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <dolp/errors.hpp>
+#include <limits>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cli_support.hpp"
+#include "run/table_scene.hpp"
+#include "scene/scene_reader.hpp"
+#include "table/table_file.hpp"
+#include "verify/table_check.hpp"
+
+namespace dolp {
+namespace {
+
+enum Status { kDone = 0, kAccuracy = 1, kInput = 2, kDevice = 3 };
+
+// ---- Parts ---------------------------------------------------------------------------------------------------------
+
+TEST(Overrides, AnyValues_SurviveTheAttribute) {
+  for (const std::vector<std::string>& overrides :
+       {std::vector<std::string>{},
+        {"surface.masking=smith"},
+        {"title=a = b", "emission=none", "grid.q=[2,\n3]"},
+        {"grid.theta_deg={from=0,\nto=80,\ncount=3}", "grid.theta_deg.count=5", "surface.n=2"}}) {
+    std::vector<std::string> again;
+    for (const Setting& setting : settings_of(settings_text(settings_from_text(overrides))))
+      again.push_back(setting.text());
+    EXPECT_EQ(again, overrides);
+  }
+}
+
+Table small_table() {
+  Table table;
+  table.axes[Axis::kTheta] = {60.0};
+  table.axes[Axis::kSigma] = {0.3};
+  table.axes[Axis::kQ] = {2.0};
+  return table;
+}
+
+std::string refusal(const Table& table, const std::string& scene_text) {
+  try {
+    check_table({table, {0}}, parse_scene(scene_text, "scene.toml", {}), "t.nc", {});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(CheckTable, NothingToCompare_IsRefused) {
+  Table table = small_table();
+  table[Quantity::kAlbedo] = {1.0};
+  table[Quantity::kDolp] = {0.1};  // without its estimate
+  EXPECT_NE(refusal(table, kScene).find("t.nc: has nothing to compare"), std::string::npos);
+}
+
+TEST(CheckTable, AxisOutOfRange_IsRefused) {
+  Table table = small_table();
+  table[Quantity::kDolp] = table[Quantity::kErrorEstimate] = {0.1};
+  table.axes[Axis::kTheta] = {90.5};
+  EXPECT_NE(refusal(table, kScene).find("t.nc: axis theta: 90.5 is out of range"), std::string::npos);
+  table.axes[Axis::kTheta] = {std::numeric_limits<double>::quiet_NaN()};
+  EXPECT_NE(refusal(table, kScene).find("axis theta: nan"), std::string::npos);
+}
+
+TEST(CheckTable, EmptyStatusAndNoEstimates_PromiseNothing) {
+  Table table = small_table();
+  table[Quantity::kRhoI] = {0.3};
+  table[Quantity::kRhoErrorEstimate] = {std::numeric_limits<double>::infinity()};
+  const TableCheck check = check_table({table, {0}}, parse_scene(kScene, "scene.toml", {}), "t.nc", {});
+  EXPECT_TRUE(check.passed());
+  ASSERT_EQ(check.quantities.size(), 1U);
+  EXPECT_EQ(check.quantities.front().unstated, 1U);
+}
+
+// ---- The program ---------------------------------------------------------------------------------------------------
+
+/// Writes a table file anew with one value changed.
+void put_value(const std::filesystem::path& path, Quantity quantity, std::size_t position, double value) {
+  Table table = read_table(path);
+  table[quantity].at(position) = value;
+  write_table(table, path);
+}
+
+/// The same with one attribute changed.
+void put_attribute(const std::filesystem::path& path, const std::string& name, const std::string& text) {
+  Table table = read_table(path);
+  const auto found = std::ranges::find(table.attributes, name, &Attribute::name);
+  ASSERT_NE(found, table.attributes.end()) << name;
+  found->value = text;
+  write_table(table, path);
+}
+
+class Verify : public CommandLine {
+ protected:
+  /// A table of four by two by two entries on the CPU.
+  Table make_table(const std::vector<std::string>& options = {}) const {
+    const Outcome outcome =
+        dolp(joined({"table", "scene.toml", "-o", "t.nc", "--quiet", "--evaluator", "cpu"}, options));
+    EXPECT_EQ(outcome.status, kDone) << outcome.err;
+    return read_table(at("t.nc"));
+  }
+  nlohmann::json verify_json(Status expected, const std::vector<std::string>& options = {}) const {
+    const Outcome outcome = dolp(joined({"verify", "t.nc", "--json"}, options));
+    EXPECT_EQ(outcome.status, expected) << outcome.out << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  }
+};
+
+TEST_F(Verify, GoodTable_Exit0AndEveryQuantityIsCompared) {
+  make_table();
+  const nlohmann::json json = verify_json(kDone);
+  EXPECT_EQ(json["entries"], 16);
+  EXPECT_EQ(json["checked"], 16);
+  EXPECT_EQ(json["passed"], true);
+  std::set<std::string> names;
+  for (const auto& quantity : json["quantities"]) {
+    names.insert(quantity["name"]);
+    EXPECT_EQ(quantity["compared"], 16) << quantity;
+  }
+  EXPECT_EQ(names, (std::set<std::string>{"dolp", "rho_i", "rho_q", "stokes_i", "stokes_q", "stokes_u", "stokes_v"}));
+  const Outcome text = dolp({"verify", "t.nc"});
+  EXPECT_EQ(text.status, kDone);
+  EXPECT_NE(text.out.find("verdict    passed: 16 of 16 entries"), std::string::npos) << text.out;
+  EXPECT_EQ(dolp({"verify", "t.nc", "--quiet"}).out, "");
+}
+
+TEST_F(Verify, Samples_AreThoseOfTheSeed) {
+  make_table();
+  EXPECT_EQ(verify_json(kDone, {"--samples", "3"})["checked"], 3);
+  nlohmann::json first = verify_json(kDone, {"--samples", "3", "--seed", "5"});
+  nlohmann::json again = verify_json(kDone, {"--samples", "3", "--seed", "5"});
+  first.erase("wall_s");
+  again.erase("wall_s");
+  EXPECT_EQ(first, again);
+}
+
+TEST_F(Verify, Overrides_BelongToTheScene) {
+  make_table({"--set", "surface.masking=smith", "--set", "grid.q=[2.5,\n 4]", "--set", "surroundings=none",
+              "--tolerance", "1e-3"});
+  const nlohmann::json json = verify_json(kDone);
+  EXPECT_EQ(json["checked"], 16);
+  EXPECT_EQ(json["tolerance"], 1e-3);
+}
+
+TEST_F(Verify, EveryKindOfScene_Passes) {
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--set", "geometry.mode=bistatic", "--set", "source.irradiance=1"},
+        {"--set", "spectrum.band_um=[8, 12]", "--set", "emission.model=fresnel"},
+        {"--set", "surface.distribution=gaussian", "--set", "surface.diffuse=0.1", "--set", "path.transmittance=0.5"},
+        {"--set", "grid.sigma=[0, 0.4]"}}) {
+    make_table(options);
+    EXPECT_EQ(verify_json(kDone)["passed"], true) << options[1];
+  }
+}
+
+TEST_F(Verify, RightAngle_IsTheReferencesLimit) {
+  for (const char* masking : {"smith", "v-cavity"}) {
+    make_table({"--set", std::string("surface.masking=") + masking, "--set", "grid.theta_deg=[89.99, 90]"});
+    EXPECT_EQ(verify_json(kDone)["checked"], 8) << masking;
+  }
+}
+
+TEST_F(Verify, OneCorruptedValue_Exit1AndIsNamed) {
+  struct Corruption {
+    Quantity quantity;
+    bool is_dolp;
+  };
+  for (const Corruption& corruption : {Corruption{Quantity::kDolp, true},
+                                       {Quantity::kRhoI, false},
+                                       {Quantity::kRhoQ, false},
+                                       {Quantity::kStokesQ, true},
+                                       {Quantity::kStokesI, true}}) {
+    const std::string name = description_of(corruption.quantity).name;
+    const Table table = make_table({"--set", "surface.masking=v-cavity"});
+    const std::size_t at_entry = table.position(1, 0, 1);  // theta 60, sigma 0.1, q 3.5
+    double bound = corruption.is_dolp ? table[Quantity::kErrorEstimate][at_entry]
+                                      : table[Quantity::kRhoErrorEstimate][at_entry] * table[Quantity::kRhoI][at_entry];
+    if (name.starts_with("stokes")) bound *= table[Quantity::kStokesI][at_entry];
+    if (corruption.quantity == Quantity::kStokesI) bound /= table[Quantity::kDolp][at_entry];
+    // Three bounds: the true error is at most one, so that two are left.
+    put_value(at("t.nc"), corruption.quantity, at_entry, table[corruption.quantity][at_entry] + 3.0 * bound);
+    const nlohmann::json json = verify_json(kAccuracy);
+    EXPECT_EQ(json["passed"], false);
+    ASSERT_EQ(json["failures"].size(), 1U) << json["failures"];
+    const nlohmann::json& failure = json["failures"][0];
+    EXPECT_EQ(failure["quantity"], name);
+    EXPECT_EQ(failure["theta_deg"], 60.0);
+    EXPECT_EQ(failure["sigma"], 0.1);
+    EXPECT_EQ(failure["q"], 3.5);
+    const Outcome text = dolp({"verify", "t.nc"});
+    EXPECT_EQ(text.status, kAccuracy);
+    EXPECT_NE(text.out.find(std::string(name) + " at theta 60, sigma 0.1, q 3.5"), std::string::npos);
+    EXPECT_NE(text.out.find("verdict    failed: 1 values"), std::string::npos) << text.out;
+  }
+}
+
+TEST_F(Verify, EstimateBeyondTheToleranceWithoutStatus2_IsFoundByTheTolerance) {
+  const Table table = make_table();
+  const std::size_t at_entry = table.position(1, 0, 1);
+  put_value(at("t.nc"), Quantity::kErrorEstimate, at_entry, 1.0);
+  put_value(at("t.nc"), Quantity::kDolp, at_entry, table[Quantity::kDolp][at_entry] + 2e-4);  // twice the tolerance
+  const nlohmann::json json = verify_json(kAccuracy);
+  ASSERT_EQ(json["failures"].size(), 1U) << json["failures"];
+  EXPECT_EQ(json["failures"][0]["complaint"], "misses the tolerance without status 2");
+  Table honest = read_table(at("t.nc"));
+  honest.status[at_entry] = 2;
+  write_table(honest, at("t.nc"));
+  EXPECT_EQ(verify_json(kDone)["missed_tolerance"], 1);
+}
+
+TEST_F(Verify, EntriesThatAreNan_AreComparedAsSuch) {
+  // Without masking rho diverges at 90 degrees: NaN with status 1 and 4.
+  const Table table = make_table({"--set", "surface.masking=none", "--set", "grid.theta_deg=[30, 90]"});
+  const std::size_t diverges = table.position(1, 0, 0);
+  ASSERT_TRUE(std::isnan(table[Quantity::kRhoI][diverges]));
+  verify_json(kDone);
+  put_value(at("t.nc"), Quantity::kRhoI, diverges, 0.5);
+  EXPECT_EQ(verify_json(kAccuracy)["failures"].size(), 1U);
+  put_value(at("t.nc"), Quantity::kRhoI, diverges, std::nan(""));
+  put_value(at("t.nc"), Quantity::kRhoQ, 0, std::nan(""));
+  const nlohmann::json failures = verify_json(kAccuracy)["failures"];
+  ASSERT_EQ(failures.size(), 1U);
+  EXPECT_EQ(failures[0]["complaint"], "is NaN in the table");
+  EXPECT_TRUE(failures[0]["stored"].is_null());
+}
+
+TEST_F(Verify, ReducedVariables_AreComparedAsFarAsTheyAreThere) {
+  Table table = make_table();
+  for (const Quantity quantity :
+       {Quantity::kRhoI, Quantity::kRhoQ, Quantity::kRhoErrorEstimate, Quantity::kStokesU, Quantity::kStokesV}) {
+    table[quantity].clear();
+  }
+  write_table(table, at("t.nc"));
+  const nlohmann::json json = verify_json(kDone);
+  EXPECT_EQ(json["quantities"].size(), 3U);
+}
+
+TEST_F(Verify, ChangedScene_IsRefused) {
+  make_table();
+  std::string scene = kScene;
+  put_attribute(at("t.nc"), "scene", scene.replace(scene.find("sigma = 0.3"), 11, "sigma = 0.4"));
+  const Outcome outcome = dolp({"verify", "t.nc"});
+  EXPECT_EQ(outcome.status, kInput);
+  EXPECT_NE(outcome.err.find("t.nc: attribute \"scene_hash\""), std::string::npos) << outcome.err;
+  put_attribute(at("t.nc"), "scene", "[surface");
+  EXPECT_NE(dolp({"verify", "t.nc"}).err.find("t.nc: attribute \"scene\": scene.toml:1: not valid TOML"),
+            std::string::npos);
+}
+
+TEST_F(Verify, FilesOfTheScene_AreFoundFromWhereTheTableWasMade) {
+  std::filesystem::create_directory(at("folder"));
+  put("folder/index.csv", "wavelength_um,n,k\n9,1.4,0.1\n11,1.6,0.1\n");
+  std::string scene = kScene;
+  scene.replace(scene.find("n = 1.5\nk = 0.1"), 15, "material_file = \"index.csv\"");
+  put("folder/scene.toml", scene);
+  const Outcome made = dolp({"table", "folder/scene.toml", "-o", "t.nc", "--quiet", "--evaluator", "cpu"});
+  ASSERT_EQ(made.status, kDone) << made.err;
+  verify_json(kDone, {"--named-files"});
+  std::filesystem::remove(at("folder/index.csv"));
+  const Outcome outcome = dolp({"verify", "t.nc", "--named-files"});
+  EXPECT_EQ(outcome.status, kInput);
+  EXPECT_NE(outcome.err.find("surface.material_file = \"index.csv\": cannot be read"), std::string::npos)
+      << outcome.err;
+}
+
+TEST_F(Verify, TheTableAlone_IsSufficient) {
+  put("index.csv", "wavelength_um,n,k\n7,1.4,0.1\n9,1.5,0.1\n13,1.6,0.1\n");
+  put("formula.yml", "DATA:\n  - type: formula 5\n    wavelength_range: 7 13\n    coefficients: 1.5 0.01 1\n");
+  put("light.csv", "7,1\n9,3\n13,2\n");
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--set", "surface.material_file=index.csv"},
+        {"--set", "surface.material_file=index.csv", "--set", "spectrum.band_um=[8, 12]"},
+        {"--set", "surface.material_file=formula.yml", "--set", "spectrum.band_um=[8, 12]", "--set",
+         "source.file=light.csv"},
+        {"--set", "surface.material=iron", "--set", "source.preset=sun"}}) {
+    put("index.csv", "wavelength_um,n,k\n7,1.4,0.1\n9,1.5,0.1\n13,1.6,0.1\n");
+    const Table table = make_table(options);
+    EXPECT_FALSE(table.index_n.values.empty());
+    const nlohmann::json before = verify_json(kDone, {"--named-files", "--samples", "3"})["quantities"];
+    // What the file says now is of no interest.
+    put("index.csv", "wavelength_um,n,k\n7,2.4,0.1\n13,2.6,0.1\n");
+    EXPECT_EQ(verify_json(kDone, {"--samples", "3"})["quantities"], before) << options[1];
+  }
+  Table old = make_table({"--set", "surface.material_file=index.csv"});
+  old.index_n = {};
+  write_table(old, at("t.nc"));
+  const Outcome outcome = dolp({"verify", "t.nc"});
+  EXPECT_EQ(outcome.status, kInput);
+  EXPECT_NE(outcome.err.find("is not in the table; dolp verify --named-files"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Verify, FilesThatATableNames_AreNotQuoted) {
+  const std::string index = "wavelength_um,n,k\n7,1.4,0.1\n13,1.6,0.1\n";
+  const std::string light = "7,1\n13,2\n";
+  const std::string record = "DATA:\n  - type: formula 5\n    wavelength_range: 7 13\n    coefficients: 1.5 0.01 1\n";
+  for (const auto& [name, secrets] : std::map<std::string, std::vector<std::string>>{
+           {"index.csv", {"secret\n", "wavelength_um,n,k\nsecret,1,2\n", "wavelength_um,n,k\n7,secret\n"}},
+           {"light.csv", {"secret\n", "secret,1\n7,secret\n", "7,secret\n"}},
+           {"record.yml",
+            {"secret: [", "DATA: secret\n", "DATA:\n  - type: secret\n    data: 1\n",
+             "DATA:\n  - type: tabulated nk\n    data: secret\n",
+             "DATA:\n  - secret: secret\n    type: tabulated n\n    data: 7 1\n"}}}) {
+    put("index.csv", index);
+    put("light.csv", light);
+    put("record.yml", record);
+    make_table(name == "light.csv" ? std::vector<std::string>{"--set", "source.file=light.csv"}
+                                   : std::vector<std::string>{"--set", "surface.material_file=" + name});
+    for (const std::string& secret : secrets) {
+      put(name, secret);
+      const Outcome outcome = dolp({"verify", "t.nc", "--named-files"});
+      EXPECT_EQ(outcome.status, kInput) << secret;
+      EXPECT_EQ(outcome.err.find("secret"), std::string::npos) << outcome.err;
+      EXPECT_NE(outcome.err.find(name), std::string::npos) << outcome.err;
+    }
+  }
+}
+
+TEST_F(Verify, WrongFiles_Exit2InOneLine) {
+  make_table();
+  Table foreign = small_table();
+  foreign[Quantity::kDolp] = {0.1};
+  write_table(foreign, at("foreign.nc"));
+  put("table.csv", "theta_deg,sigma,q\n");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes = {
+      {{"verify"}, "name a TABLE, or --hard-cases"},
+      {{"verify", "none.nc"}, "none.nc: there is no such file"},
+      {{"verify", "scene.toml"}, "scene.toml: is not a NetCDF table of dolp"},
+      {{"verify", "table.csv"}, "table.csv: only a table written as .nc"},
+      {{"verify", "foreign.nc"}, "foreign.nc: has no attribute \"scene\""},
+      {{"verify", "t.nc", "--hard-cases"}, "--hard-cases"},
+      {{"verify", "t.nc", "--samples", "0"}, "--samples"},
+      {{"verify", "t.nc", "--tolerance", "1e-3"}, "--tolerance"},
+      {{"verify", "--hard-cases", "--samples", "3"}, "--samples"},
+      {{"verify", "--hard-cases", "--tolerance", "much"}, "--tolerance much: must be a number in [1e-10, 0.01]"},
+      {{"verify", "--hard-cases", "--tolerance", "1"}, "tolerance 1: must be a number in [1e-10, 0.01]"},
+      {{"verify", "--hard-cases", "--evaluator", "reference"}, "reference"},
+      {{"verify", "--hard-cases", "--precision", "half"}, "half"}};
+  for (const auto& [arguments, message] : mistakes) {
+    const Outcome outcome = dolp(arguments);
+    EXPECT_EQ(outcome.status, kInput) << message;
+    EXPECT_EQ(outcome.out, "") << message;
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(Verify, HardCases_OneLinePerModelAndAllRowsOnRequest) {
+  const std::vector<std::string> command = {"verify", "--hard-cases", "--evaluator", "cpu", "--precision", "double"};
+  std::vector<std::string> with_json = command;
+  with_json.push_back("--json");
+  const Outcome outcome = dolp(with_json);
+  const nlohmann::json json = nlohmann::json::parse(outcome.out);
+  ASSERT_EQ(json["precisions"].size(), 1U);
+  const nlohmann::json& rows = json["precisions"][0]["cases"];
+  EXPECT_EQ(rows.size(), json["cases"]);
+  EXPECT_GT(rows.size(), 500U);
+  EXPECT_EQ(outcome.status, json["failures"] == 0 ? kDone : kAccuracy);
+  const auto failed = std::ranges::count_if(rows, [](const nlohmann::json& row) { return row["ok"] == false; });
+  EXPECT_EQ(json["failures"], failed);
+  const auto lines = [&](const std::vector<std::string>& arguments) {
+    const std::string out = dolp(arguments).out;
+    return static_cast<std::size_t>(std::ranges::count(out, '\n'));
+  };
+  constexpr std::size_t kFrame = 3 + 8;  // title, device, verdict, and one for each distribution and masking
+  EXPECT_EQ(lines(command), kFrame + static_cast<std::size_t>(failed));
+  std::vector<std::string> with_all = command;
+  with_all.push_back("--all");
+  EXPECT_EQ(lines(with_all), kFrame + rows.size());
+}
+
+TEST_F(Verify, HardCases_NoDevice_Exit3) {
+  Command wanted = command({"verify", "--hard-cases"});
+  wanted.environment = {{"VK_DRIVER_FILES", "/nonexistent.json"}, {"VK_ICD_FILENAMES", "/nonexistent.json"}};
+  EXPECT_EQ(run(wanted).status, kDevice);
+}
+
+TEST_F(Verify, Devices_AreNamedAndMeasuredInEachPrecision) {
+  const Outcome text = dolp({"devices"});
+  EXPECT_EQ(text.status, kDone) << text.err;
+  const nlohmann::json devices = report({"devices"})["devices"];
+  EXPECT_TRUE(std::ranges::any_of(devices, [](const auto& device) { return device["usable"] == true; })) << devices;
+  for (const nlohmann::json& device : devices) {
+    EXPECT_NE(text.out.find(device["name"].get<std::string>()), std::string::npos) << text.out;
+    const nlohmann::json& in_float = device["quality"]["float"];
+    if (device["usable"] == false) {
+      EXPECT_TRUE(in_float.contains("why_not"));
+      continue;
+    }
+    EXPECT_EQ(in_float["cases"], 56) << device;
+    EXPECT_LE(in_float["worst_rho_error"], 1e-4) << device;
+    const nlohmann::json& in_double = device["quality"]["double"];
+    EXPECT_EQ(in_double.contains("worst_rho_error"), device["float64"] == true) << device;
+  }
+}
+
+}  // namespace
+}  // namespace dolp

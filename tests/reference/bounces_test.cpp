@@ -1,0 +1,188 @@
+// The reference's pBRDF of several bounces in V-grooves.
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
+
+#include "reference/grooves.hpp"
+#include "reference/hemisphere.hpp"
+#include "reference/mueller.hpp"
+#include "reference/reference_evaluator.hpp"
+
+namespace dolp {
+namespace {
+
+using boost::math::quadrature::gauss;
+using std::numbers::pi;
+
+constexpr double kRadPerDeg = pi / 180.0;
+constexpr double kTheta_deg = 40.0;
+constexpr OpticalConstants kPaint{1.5, 0.0};
+constexpr OpticalConstants kMetal{10.0, 60.0};
+
+Surface grooves(Distribution distribution, double sigma, double q) {
+  Surface surface;
+  surface.distribution = distribution;
+  surface.masking = Masking::kVCavity;
+  surface.scattering = Scattering::kMultiple;
+  surface.sigma = sigma;
+  surface.q = q;
+  return surface;
+}
+
+constexpr std::array<BeamAngles, 7> kPairs{{{0.0, 40.0, 20.0},
+                                            {10.0, 62.0, 100.0},
+                                            {40.0, 41.0, 179.0},
+                                            {60.0, 60.0, 0.0},
+                                            {75.0, 20.0, 150.0},
+                                            {85.0, 80.0, 181.0},
+                                            {89.0, 89.5, 30.0}}};
+
+TEST(ReferenceBounces, FirstBounce_IsSingleScattering) {
+  constexpr double kTolerance = 1e-12;
+  Surface surface = grooves(Distribution::kCauchy, 0.4, 2.0);
+  for (const BeamAngles& a : kPairs) {
+    const ReferenceMueller once = reference_bounces(surface, kMetal, a.theta_i_deg, a.theta_r_deg, a.delta_phi_deg, 1);
+    surface.scattering = Scattering::kSingle;
+    const ReferenceMueller single = reference_scattering(surface, kMetal, a.theta_i_deg, a.theta_r_deg, a.delta_phi_deg);
+    ASSERT_GT(single[0][0], 0.0);
+    for (std::size_t e = 0; e < 16; ++e) {
+      EXPECT_NEAR(once[e / 4][e % 4], single[e / 4][e % 4], kTolerance * single[0][0]) << a.theta_i_deg << " " << e;
+    }
+  }
+}
+
+TEST(ReferenceBounces, EachNumber_IsReciprocal) {
+  constexpr double kTolerance = 1e-12;
+  constexpr std::array<double, 4> kSign{1.0, 1.0, -1.0, 1.0};
+  const Surface surface = grooves(Distribution::kCauchy, 0.4, 2.0);
+  std::array<double, 6> largest{};
+  for (const BeamAngles& a : kPairs) {
+    for (const int bounces : {1, 2, 3, 4, 5}) {
+      const ReferenceMueller f =
+          reference_bounces(surface, kMetal, a.theta_i_deg, a.theta_r_deg, a.delta_phi_deg, bounces);
+      const ReferenceMueller back =
+          reference_bounces(surface, kMetal, a.theta_r_deg, a.theta_i_deg, -a.delta_phi_deg, bounces);
+      for (std::size_t e = 0; e < 16; ++e) {
+        const std::size_t row = e / 4, column = e % 4;
+        EXPECT_NEAR(f[row][column], kSign[row] * back[column][row] * kSign[column], kTolerance * f[0][0] + 1e-30);
+      }
+      double& most = largest.at(static_cast<std::size_t>(bounces));
+      most = std::max(most, f[0][0]);
+    }
+  }
+  for (const int bounces : {1, 2, 3, 4, 5}) EXPECT_GT(largest.at(static_cast<std::size_t>(bounces)), 0.0) << bounces;
+}
+
+// The smallest of the eigenvalues of Cloude's coherency matrix over the largest.
+double smallest_eigenvalue(const ReferenceMueller& m) {
+  using Complex = std::complex<double>;
+  const Complex i(0.0, 1.0);
+  std::array<Eigen::Matrix2cd, 4> pauli;
+  pauli[0] << 1.0, 0.0, 0.0, 1.0;
+  pauli[1] << 1.0, 0.0, 0.0, -1.0;
+  pauli[2] << 0.0, 1.0, 1.0, 0.0;
+  pauli[3] << 0.0, -i, i, 0.0;
+  Eigen::Matrix4cd coherency = Eigen::Matrix4cd::Zero();
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = 0; b < 4; ++b) {
+      for (int e = 0; e < 16; ++e) {
+        coherency(e / 4, e % 4) += m[a][b] * pauli[a](e / 8, e / 2 % 2) * std::conj(pauli[b](e / 4 % 2, e % 2));
+      }
+    }
+  }
+  const Eigen::Vector4d values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix4cd>(coherency).eigenvalues();
+  return values[0] / values[3];
+}
+
+TEST(ReferenceBounces, Sum_IsPhysical) {
+  constexpr double kRounding = 1e-13;
+  const Surface surface = grooves(Distribution::kCauchy, 0.9, 1.7);
+  for (const OpticalConstants index : {kPaint, kMetal}) {
+    for (const BeamAngles& a : kPairs) {
+      const BouncesSum sum = reference_all_bounces(surface, index, a.theta_i_deg, a.theta_r_deg, a.delta_phi_deg);
+      EXPECT_GE(smallest_eigenvalue(sum.matrix), -kRounding) << a.theta_i_deg << " " << a.theta_r_deg;
+      EXPECT_LE(sum.error, 1e-6 * sum.matrix[0][0]);
+    }
+  }
+}
+
+// Grooves of every azimuth reflect twice into a mirror's direction, right-angled ones back to the source at 0 alone.
+TEST(ReferenceBounces, MirrorDirection_IsWhereTwoBouncesDiverge) {
+  const Surface surface = grooves(Distribution::kCauchy, 0.4, 2.0);
+  const auto twice = [&](double theta_r_deg, double delta_phi_deg) {
+    return reference_bounces(surface, kPaint, kTheta_deg, theta_r_deg, delta_phi_deg, 2)[0][0];
+  };
+  EXPECT_TRUE(std::isnan(twice(kTheta_deg, 180.0)));
+  EXPECT_TRUE(std::isnan(reference_scattering(surface, kPaint, kTheta_deg, kTheta_deg, 180.0)[0][0]));
+  EXPECT_TRUE(std::isnan(reference_scattering(surface, kPaint, 0.0, 0.0, 90.0)[0][0]));
+  EXPECT_NEAR(twice(kTheta_deg + 1e-4, 180.0) / twice(kTheta_deg + 1e-3, 180.0), 10.0, 1e-2);
+  EXPECT_NEAR(twice(kTheta_deg + 1e-3, 0.0) / twice(kTheta_deg, 0.0), 1.0, 1e-3);
+  EXPECT_GT(twice(kTheta_deg, 0.0), 0.0);
+}
+
+TEST(ReferenceBounces, ScatterOfTheEvaluator_IsTheSum) {
+  ScatteringRequest request;
+  request.masking = Masking::kVCavity;
+  request.scattering = Scattering::kMultiple;
+  request.angles = {kPairs[3]};
+  request.shapes = {{0.4, 2.0}};
+  request.indices = {kMetal};
+  request.entries = {{}};
+  const ScatteringMatrix matrix = ReferenceEvaluator().scatter(request, {}).at(0);
+  const ReferenceMueller f = reference_scattering(grooves(Distribution::kCauchy, 0.4, 2.0), kMetal, 60.0, 60.0, 0.0);
+  for (std::size_t e = 0; e < 16; ++e) EXPECT_EQ(matrix.m[e], f[e / 4][e % 4]);
+}
+
+// Over the horizontal projection of omega_r, d Omega cos(theta_r) = dx dy, in polar coordinates about the mirror's
+// direction, which take away what diverges there.
+std::complex<double> hemispherical(const Surface& surface, const OpticalConstants& index, double theta_deg) {
+  constexpr int kSectors = 12, kRings = 3;
+  const double centre = -std::sin(theta_deg * kRadPerDeg);
+  std::complex<double> total;  // of both columns
+  for (int sector = 0; sector < kSectors; ++sector) {
+    for (int ring = 0; ring < kRings; ++ring) {
+      const auto in_sector = [&](double chi) {
+        const double reach = std::sqrt(1.0 - std::pow(centre * std::sin(chi), 2)) - centre * std::cos(chi);
+        const auto at = [&](double y) {  // the distance is reach (1 - (1 - y)^2), which takes away 1/cos(theta_r)
+          const double distance = reach * y * (2.0 - y);
+          const double x = centre + distance * std::cos(chi), across = distance * std::sin(chi);
+          const double sine = std::hypot(x, across);
+          const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
+          const ReferenceMueller f = reference_scattering(surface, index, theta_deg, std::atan2(sine, cosine) / kRadPerDeg,
+                                                       std::atan2(across, x) / kRadPerDeg);
+          return std::complex(f[0][0], f[0][1]) / cosine * distance * reach * 2.0 * (1.0 - y);
+        };
+        return gauss<double, 7>::integrate(at, static_cast<double>(ring) / kRings, (ring + 1.0) / kRings);
+      };
+      total += 2.0 * gauss<double, 3>::integrate(in_sector, pi * sector / kSectors, pi * (sector + 1) / kSectors);
+    }
+  }
+  return total;
+}
+
+TEST(ReferenceBounces, HemisphericalIntegral_IsTheMoments) {
+  constexpr double kPlainTolerance = 1e-4;
+  struct Row {
+    Surface surface;
+    double theta_deg;
+    OpticalConstants index;
+  };
+  for (const Row& row : {Row{grooves(Distribution::kCauchy, 0.3, 2.0), 60.0, kPaint},
+                         Row{grooves(Distribution::kGaussian, 0.5, 2.0), 30.0, kMetal}}) {
+    const reference::Slopes slopes(row.surface.distribution, row.surface.sigma, row.surface.q);
+    const Moments m = reference::groove_moments(slopes, row.theta_deg, row.index, {.relative_tolerance = 1e-7});
+    const std::complex<double> plain = hemispherical(row.surface, row.index, row.theta_deg);
+    EXPECT_NEAR(plain.real(), m.r_i, kPlainTolerance * m.r_i);
+    EXPECT_NEAR(plain.imag(), m.r_q, kPlainTolerance * m.r_i);
+  }
+}
+
+}  // namespace
+}  // namespace dolp

@@ -1,0 +1,343 @@
+// The independent reference: exact results of the model, and its own quadratures against plainer ones.
+#include "reference/hemisphere.hpp"
+#include "reference/reference_evaluator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <cmath>
+#include <complex>
+#include <dolp/errors.hpp>
+#include <iostream>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+
+#include "model/choices.hpp"
+#include "reference/adaptive.hpp"
+#include "reference/mueller.hpp"
+#include "verify/stored_cases.hpp"
+
+namespace dolp {
+namespace {
+
+using boost::math::quadrature::gauss_kronrod;
+using std::numbers::pi;
+
+constexpr double kRadPerDeg = pi / 180.0;
+constexpr OpticalConstants kSteel{1.508, 0.0};
+constexpr std::array kMaskings{Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith};
+constexpr std::array kDistributions{Distribution::kCauchy, Distribution::kGaussian};
+// The reference is asked for 1e-9 of each moment; exact results are compared with ten times that.
+constexpr double kExact = 1e-8;
+
+Moments moments(Distribution distribution, Masking masking, double theta_deg, SlopeShape shape, OpticalConstants index,
+                ReferenceOptions options = {}) {
+  MomentsRequest request;
+  request.distribution = distribution;
+  request.masking = masking;
+  request.tolerance = 0.0;
+  request.theta_deg = {theta_deg};
+  request.sigma = {shape.sigma};
+  request.q = {shape.q};
+  request.indices = {index};
+  return ReferenceEvaluator(options).evaluate(request, {}).at(0);
+}
+
+struct Reflectances {
+  double s;
+  double p;
+};
+// Smooth-surface Fresnel reflectances by Snell's law, in the form of the textbooks.
+Reflectances fresnel_reflectances(OpticalConstants constants, double theta_deg) {
+  const std::complex<double> n{constants.n, constants.k};
+  const double cos_i = std::cos(theta_deg * kRadPerDeg);
+  const std::complex<double> sin_t = std::sin(theta_deg * kRadPerDeg) / n;
+  const std::complex<double> cos_t = std::sqrt(1.0 - sin_t * sin_t);
+  return {std::norm((cos_i - n * cos_t) / (cos_i + n * cos_t)), std::norm((n * cos_i - cos_t) / (n * cos_i + cos_t))};
+}
+
+TEST(Adaptive, KronrodPanel_Polynomials_AreExactUpToTheOrdersOfBothRules) {
+  // 21 Kronrod points are exact to degree 31, the 10 Gauss points to degree 19.
+  constexpr double kRounding = 1e-15;
+  for (int degree = 0; degree <= 30; degree += 2) {
+    const auto panel =
+        reference::kronrod_panel<1>([&](double x) { return reference::Values<1>{std::pow(x, degree)}; }, -1.0, 1.0);
+    EXPECT_NEAR(panel.value[0], 2.0 / (degree + 1), 4.0 * kRounding) << degree;
+    const bool is_gauss_exact = panel.error[0] < 4.0 * kRounding;
+    EXPECT_EQ(is_gauss_exact, degree <= 18) << degree;
+  }
+}
+
+TEST(Adaptive, Integrate_BendsAtBreakPoints_StaysWithinItsError) {
+  constexpr double kTolerance = 1e-12;
+  reference::Breaks breaks(0.0, 1.0);
+  breaks.add(0.3);
+  const auto integrand = [](double x) {
+    return reference::Values<2>{std::sqrt(std::abs(x - 0.3)), std::pow(std::abs(x - 0.3), 1.5)};
+  };
+  const auto result = reference::integrate<2>(integrand, breaks, {.relative = kTolerance},
+                                              [](const reference::Values<2>& value) { return value; });
+  const double half = (std::pow(0.3, 1.5) + std::pow(0.7, 1.5)) / 1.5;
+  const double three_halves = (std::pow(0.3, 2.5) + std::pow(0.7, 2.5)) / 2.5;
+  EXPECT_NEAR(result.value[0], half, kTolerance);
+  EXPECT_NEAR(result.value[1], three_halves, kTolerance);
+  EXPECT_LE(std::abs(result.value[0] - half), result.error[0]);
+  EXPECT_LE(std::abs(result.value[1] - three_halves), result.error[1]);
+}
+
+TEST(ReferenceMoments, NoMaskingNormalIncidence_MatchesClosedForm) {
+  for (const double sigma : {0.01, 0.3, 1.2, 5.0}) {
+    const double m2 = 2.0 * sigma * sigma;
+    for (const double q : {1.001, 1.07, 1.5, 2.0, 13.0, 1000.0}) {
+      const double exact = -std::expm1((q - 1.0) * std::log(m2 / (1.0 + m2)));
+      const Moments cauchy = moments(Distribution::kCauchy, Masking::kNone, 0.0, {sigma, q}, kSteel);
+      EXPECT_NEAR(cauchy.albedo, exact, kExact * exact) << sigma << " " << q;
+    }
+    const double exact = -std::expm1(-1.0 / m2);
+    const Moments gaussian = moments(Distribution::kGaussian, Masking::kNone, 0.0, {sigma, 2.0}, kSteel);
+    EXPECT_NEAR(gaussian.albedo, exact, kExact * exact) << sigma;
+  }
+}
+
+TEST(ReferenceMoments, SigmaToZero_ApproachFresnel) {
+  // Slopes of variance 2 sigma^2 times a logarithm for q = 2 bend the reflectance by 2e-6 ln(1/sigma) times a slope and
+  // a curvature below 10.
+  constexpr double kSigma = 1e-3;
+  constexpr double kTolerance = 2e-4;
+  for (const OpticalConstants index : {kSteel, OpticalConstants{27.0, 90.0}}) {
+    for (const double theta_deg : {0.0, 30.0, 60.0}) {
+      const double cos_theta = std::cos(theta_deg * kRadPerDeg);
+      const Reflectances r = fresnel_reflectances(index, theta_deg);
+      for (const Masking masking : kMaskings) {
+        for (const Distribution distribution : kDistributions) {
+          const Moments m = moments(distribution, masking, theta_deg, {kSigma, 2.0}, index);
+          EXPECT_NEAR(m.r_i, 0.5 * (r.s + r.p) * cos_theta, kTolerance);
+          EXPECT_NEAR(m.r_q, 0.5 * (r.s - r.p) * cos_theta, kTolerance);
+        }
+      }
+    }
+  }
+}
+
+TEST(ReferenceMoments, Mirror_IsFresnelToRounding) {
+  constexpr double kRounding = 1e-15;
+  const OpticalConstants metal{27.0, 90.0};
+  const Reflectances r = fresnel_reflectances(metal, 60.0);
+  const Moments m = moments(Distribution::kCauchy, Masking::kSmith, 60.0, {0.0, 2.0}, metal);
+  EXPECT_NEAR(m.r_i, 0.25 * (r.s + r.p), kRounding);
+  EXPECT_NEAR(m.r_q, 0.25 * (r.s - r.p), kRounding);
+  EXPECT_NEAR(m.deficit, 0.25 * (2.0 - r.s - r.p), kRounding);
+  EXPECT_NEAR(m.albedo, 0.5, kRounding);
+}
+
+TEST(ReferenceMoments, SmithAlbedoAt60Degrees_MatchesTheModelDocument) {
+  constexpr double kTwoDigits = 0.005;
+  EXPECT_NEAR(moments(Distribution::kCauchy, Masking::kSmith, 60.0, {0.3, 2.0}, kSteel).albedo / 0.5, 0.74, kTwoDigits);
+  EXPECT_NEAR(moments(Distribution::kCauchy, Masking::kSmith, 60.0, {0.905, 2.0}, kSteel).albedo / 0.5, 0.35,
+              kTwoDigits);
+}
+
+TEST(ReferenceMoments, TowardsGrazing_RhoHasTheLimitsOfTheModelDocument) {
+  // Four printed digits; rho still changes by some 0.4 per radian, that is 1e-5 over the last 0.001 degrees.
+  constexpr double kFourDigits = 7e-5;
+  const double cos_theta = std::cos(89.999 * kRadPerDeg);
+  const auto rho = [&](Masking masking) {
+    return moments(Distribution::kCauchy, masking, 89.999, {0.3, 2.0}, kSteel).r_i / cos_theta;
+  };
+  EXPECT_NEAR(rho(Masking::kVCavity), 0.3717, kFourDigits);
+  EXPECT_NEAR(rho(Masking::kSmith), 0.1538, kFourDigits);
+}
+
+TEST(ReferenceMoments, Grazing_IsTheLimit) {
+  // r is linear in cos(theta), to logarithms, with a slope below 100.
+  constexpr double kOffset_deg = 1e-4;
+  const double tolerance = 100.0 * kOffset_deg * kRadPerDeg;
+  for (const Masking masking : kMaskings) {
+    const Moments at = moments(Distribution::kCauchy, masking, 90.0, {0.3, 2.0}, kSteel);
+    const Moments near = moments(Distribution::kCauchy, masking, 90.0 - kOffset_deg, {0.3, 2.0}, kSteel);
+    EXPECT_NEAR(at.r_i, near.r_i, tolerance);
+    EXPECT_NEAR(at.r_q, near.r_q, tolerance);
+    EXPECT_EQ(at.deficit, -at.r_i);
+    const bool is_dark = masking == Masking::kVCavity || masking == Masking::kSmith;
+    EXPECT_EQ(at.r_i == 0.0, is_dark);
+  }
+}
+
+TEST(ReferenceMoments, GrazingWithHeavyTails_DivergesBelowThreeHalves) {
+  for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
+    const Moments heavy = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5}, kSteel);
+    EXPECT_EQ(heavy.r_i, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(heavy.r_q, -std::numeric_limits<double>::infinity());
+    // Just above 3/2 it grows as 1/(2q - 3): twice the distance, half the moment, to the distance itself times a factor
+    // below 100.
+    constexpr double kDistance = 1e-5;
+    const double near = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5 + kDistance}, kSteel).r_i;
+    const double far = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5 + 2.0 * kDistance}, kSteel).r_i;
+    EXPECT_NEAR(near / far, 2.0, 100.0 * kDistance);
+  }
+  EXPECT_EQ(moments(Distribution::kCauchy, Masking::kVCavity, 90.0, {0.3, 1.2}, kSteel).r_i, 0.0);
+}
+
+TEST(ReferenceMoments, Deficit_IsTheAbsorbedPartOfASmoothMetal) {
+  // Here the deficit is 5e-3 of cos(theta); sharp slopes leave the absorbed part of the smooth metal to 1e-5 of it.
+  constexpr double kRelative = 1e-3;
+  const OpticalConstants metal{27.0, 90.0};
+  const Moments rough = moments(Distribution::kGaussian, Masking::kSmith, 30.0, {1e-3, 2.0}, metal);
+  const Moments mirror = moments(Distribution::kGaussian, Masking::kSmith, 30.0, {0.0, 2.0}, metal);
+  EXPECT_NEAR(rough.deficit, mirror.deficit, kRelative * mirror.deficit);
+  EXPECT_NEAR(rough.deficit, std::cos(30.0 * kRadPerDeg) - rough.r_i, rough.deficit_error + rough.r_i_error);
+}
+
+Surface surface_of(Distribution distribution, Masking masking, double sigma, double q) {
+  Surface surface;
+  surface.distribution = distribution;
+  surface.masking = masking;
+  surface.sigma = sigma;
+  surface.q = q;
+  return surface;
+}
+
+TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
+  // The masking bends inside the plain quadrature, which limits it to about its own tolerance.
+  constexpr double kPlainTolerance = 1e-6;
+  constexpr double kOuterTolerance = 5e-6;  // above what the inner integrals leave
+  constexpr unsigned kDepth = 8;
+  constexpr double kTheta_deg = 65.0;
+  const OpticalConstants index{1.6, 0.4};
+  for (const Masking masking : kMaskings) {
+    const Surface surface = surface_of(Distribution::kCauchy, masking, 0.5, 1.8);
+    const std::complex<double> mean = [&] {
+      const auto over_azimuth = [&](double theta_r_deg) {
+        const auto elements = [&](double delta_phi_deg) {
+          const auto f = reference_pbrdf(surface, index, kTheta_deg, theta_r_deg, delta_phi_deg);
+          return std::complex(f[0][0], f[0][1]);
+        };
+        const double theta_r = theta_r_deg * kRadPerDeg;
+        return 2.0 * std::cos(theta_r) * std::sin(theta_r) *
+               gauss_kronrod<double, 21>::integrate(elements, 0.0, 180.0, kDepth, kPlainTolerance);
+      };
+      const std::complex<double> sum =
+          gauss_kronrod<double, 21>::integrate(over_azimuth, 0.0, kTheta_deg, kDepth, kOuterTolerance) +
+          gauss_kronrod<double, 21>::integrate(over_azimuth, kTheta_deg, 90.0, kDepth, kOuterTolerance);
+      return sum * kRadPerDeg * kRadPerDeg * std::cos(kTheta_deg * kRadPerDeg);
+    }();
+    const Moments m = moments(Distribution::kCauchy, masking, kTheta_deg, {0.5, 1.8}, index);
+    EXPECT_NEAR(m.r_i, mean.real(), 20.0 * kPlainTolerance * m.r_i);
+    EXPECT_NEAR(m.r_q, mean.imag(), 20.0 * kPlainTolerance * m.r_i);
+  }
+}
+
+// Under v-cavity and smith masking rho tends to a limit like c = cos(theta), smith, or c log c, so that rho at 4c, 2c
+// and c below 1e-11 lies on a line but for 1e-13; a loss of digits would show as noise.
+TEST(ReferenceMoments, NextToGrazing_KeepTheirDigits) {
+  constexpr double kTolerance = 1e-13;
+  const ReferenceOptions options{.relative_tolerance = kTolerance, .subdivisions = 2};
+  for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
+    for (const SlopeShape shape : {SlopeShape{0.3, 2.0}, SlopeShape{0.01, 3.0}}) {
+      for (const double gap_deg : {1e-11, 1e-12}) {
+        const auto rho = [&](double factor) {
+          const double theta_deg = 90.0 - factor * gap_deg;
+          const Moments m = moments(Distribution::kCauchy, masking, theta_deg, shape, kSteel, options);
+          EXPECT_LE(m.r_i_error, 2.0 * kTolerance * m.r_i);
+          return std::array{m.r_i / reference::zenith_from_deg(theta_deg).cos,
+                            m.r_q / reference::zenith_from_deg(theta_deg).cos};
+        };
+        const auto far = rho(4.0);
+        const auto middle = rho(2.0);
+        const auto near = rho(1.0);
+        // From c to 2c as from 2c to 4c, half as much.
+        for (const std::size_t k : {0U, 1U}) {
+          EXPECT_NEAR(near[k] - middle[k], 0.5 * (middle[k] - far[k]), 2.0 * kTolerance * near[0])
+              << "gap " << gap_deg << " sigma " << shape.sigma;
+        }
+      }
+    }
+  }
+}
+
+Moments recomputed(const StoredCase& c, const ReferenceOptions& options) {
+  return moments(c.distribution, c.masking, c.theta_deg, c.shape, c.index, options);
+}
+
+// The hard cases, against which hard_cases_test holds the finer settings.
+TEST(ReferenceMoments, CoarseQuadrature_StaysWithinItsErrors) {
+  constexpr std::uint64_t kSeed = 4711;
+  constexpr std::size_t kSampleSize = 60;
+  std::cout << "seed " << kSeed << "\n";
+  std::vector<StoredCase> sample = hard_cases();
+  std::mt19937_64 engine(kSeed);
+  std::shuffle(sample.begin(), sample.end(), engine);
+  sample.resize(kSampleSize);
+  double worst = 0.0;
+  for (const StoredCase& c : sample) {
+    const Moments m = recomputed(c, {.relative_tolerance = 1e-5});
+    const double distance = std::abs(m.r_i - c.moments.r_i);
+    EXPECT_LE(distance, m.r_i_error + c.moments.r_i_error) << c.name << " " << name_of(c.masking);
+    EXPECT_LE(std::abs(m.r_q - c.moments.r_q), m.r_q_error + c.moments.r_q_error) << c.name;
+    EXPECT_LE(m.r_i_error, 2e-5 * std::max(m.r_i, 1e-12)) << c.name;
+    if (m.r_i_error > 0.0) worst = std::max(worst, distance / m.r_i_error);
+  }
+  std::cout << "largest distance over error: " << worst << "\n";
+}
+
+TEST(ReferenceEvaluator, SeveralEntries_KeepTheOrderOfTheRequest) {
+  MomentsRequest request;
+  request.masking = Masking::kSmith;
+  request.append({70.0, {0.2, 2.0}, {27.0, 90.0}});
+  request.append({10.0, {0.5, 3.0}, kSteel});
+  request.append({70.0, {0.5, 3.0}, {27.0, 90.0}});
+  request.append({10.0, {0.2, 2.0}, kSteel});
+  ReferenceEvaluator evaluator({.threads = 3});
+  std::size_t told = 0;
+  const std::vector<Moments> together = evaluator.evaluate(request, [&](std::size_t done, std::size_t total) {
+    EXPECT_GT(done, told);
+    EXPECT_EQ(total, 4U);
+    told = done;
+    return true;
+  });
+  EXPECT_EQ(told, 4U);
+  ASSERT_EQ(together.size(), request.size());
+  for (std::size_t i = 0; i < request.size(); ++i) {
+    MomentsRequest one;
+    one.masking = request.masking;
+    one.append(request[i]);
+    EXPECT_EQ(evaluator.evaluate(one, {}).at(0).r_i, together[i].r_i) << i;
+  }
+  EXPECT_EQ(evaluator.report().evaluator, "reference");
+  EXPECT_EQ(evaluator.report().precision, "double");
+  EXPECT_FALSE(evaluator.report().device.empty());
+  EXPECT_GT(evaluator.report().evaluations, 0.0);
+}
+
+TEST(ReferenceEvaluator, ProgressReturnsFalse_ThrowsCancelled) {
+  MomentsRequest request;
+  request.theta_deg.assign(8, 10.0);
+  request.indices = {kSteel};
+  request.sigma = {0.2};
+  request.q = {2.0};
+  EXPECT_THROW(ReferenceEvaluator().evaluate(request, [](std::size_t, std::size_t) { return false; }), Cancelled);
+}
+
+TEST(ReferenceEvaluator, OutsideTheDomain_ThrowsInputError) {
+  const auto evaluate = [](Masking masking, double theta_deg, SlopeShape shape, OpticalConstants index) {
+    return moments(Distribution::kCauchy, masking, theta_deg, shape, index);
+  };
+  EXPECT_THROW(evaluate(Masking::kSmith, 10.0, {0.2, 1.5}, kSteel), InputError);
+  EXPECT_NO_THROW(evaluate(Masking::kSmith, 10.0, {0.2, 1.51}, kSteel));
+  EXPECT_THROW(evaluate(Masking::kNone, 10.0, {0.2, 1.0}, kSteel), InputError);
+  EXPECT_THROW(evaluate(Masking::kNone, -1.0, {0.2, 2.0}, kSteel), InputError);
+  EXPECT_THROW(evaluate(Masking::kNone, 90.5, {0.2, 2.0}, kSteel), InputError);
+  EXPECT_THROW(evaluate(Masking::kNone, 10.0, {-0.2, 2.0}, kSteel), InputError);
+  EXPECT_THROW(evaluate(Masking::kNone, 10.0, {std::nan(""), 2.0}, kSteel), InputError);
+  EXPECT_THROW(evaluate(Masking::kNone, 10.0, {0.2, 2.0}, {0.0, 1.0}), InputError);
+  EXPECT_THROW(evaluate(Masking::kNone, 10.0, {0.2, 2.0}, {1.5, -1.0}), InputError);
+}
+
+}  // namespace
+}  // namespace dolp

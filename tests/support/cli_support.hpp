@@ -1,0 +1,134 @@
+// A scene, points and a folder for the tests that run the program itself.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace dolp {
+
+inline const std::string kScene = read_file(DOLP_TEST_DATA_DIR "/scene.toml");
+
+inline const std::string kPoints = "theta_deg,sigma,q\n0,0.1,2\n60.0,0.4,3.5\n 80.5,0.1 ,2\n";
+
+inline const std::vector<std::string> kResultColumns = {
+    "rho_i",        "rho_q",        "albedo", "stokes_i",       "stokes_q",
+    "stokes_u",     "stokes_v",     "dolp",   "error_estimate", "rho_error_estimate",
+    "emissivity_s", "emissivity_p", "status"};
+
+/// Neither variable may name a driver, so that the loader finds none.
+inline const std::vector<std::pair<std::string, std::string>> kNoDriver = {{"VK_DRIVER_FILES", "/nonexistent.json"},
+                                                                           {"VK_ICD_FILENAMES", "/nonexistent.json"}};
+
+inline std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+/// A message of one line that says `part`.
+inline void expect_one_line(const std::string& err, const std::string& part = "") {
+  EXPECT_EQ(std::ranges::count(err, '\n'), 1) << err;
+  EXPECT_TRUE(err.starts_with("dolp: ") && err.ends_with('\n')) << err;
+  EXPECT_NE(err.find(part), std::string::npos) << err;
+}
+
+/// Wrong input: nothing but such a message.
+inline void expect_refused(const Outcome& outcome, const std::string& part, int status = 2) {
+  EXPECT_EQ(outcome.status, status);
+  EXPECT_EQ(outcome.out, "");
+  expect_one_line(outcome.err, part);
+}
+
+/// Columns of a CSV file by name; lines that begin with # are left out.
+using Columns = std::map<std::string, std::vector<double>>;
+
+inline std::vector<std::string> split_at(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+/// The lines that hold data: a table's attributes, with its time and command line, are left out.
+inline std::vector<std::string> data_lines(const std::string& csv) {
+  std::vector<std::string> lines = split_at(csv, '\n');
+  std::erase_if(lines, [](const std::string& line) { return line.starts_with('#'); });
+  return lines;
+}
+
+inline Columns parse_csv(const std::string& csv) {
+  const std::vector<std::string> lines = data_lines(csv);
+  Columns columns;
+  if (lines.empty()) return columns;
+  const std::vector<std::string> names = split_at(lines.front(), ',');
+  for (const std::string& name : names) columns[name] = {};
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const std::vector<std::string> cells = split_at(lines[i], ',');
+    if (cells.size() != names.size())
+      ADD_FAILURE() << "line " << i << " has " << cells.size() << " cells: " << lines[i];
+    for (std::size_t j = 0; j < std::min(cells.size(), names.size()); ++j) {
+      columns[names[j]].push_back(std::strtod(cells[j].c_str(), nullptr));
+    }
+  }
+  return columns;
+}
+
+/// Each test has a folder with scene.toml and points.csv, in which the program runs.
+class CommandLine : public testing::Test {
+ protected:
+  void SetUp() override {
+    put("scene.toml", kScene);
+    put("points.csv", kPoints);
+  }
+
+  std::filesystem::path at(const std::string& name) const { return folder_.path() / name; }
+  void put(const std::string& name, const std::string& text) const {
+    std::ofstream(at(name), std::ios::binary) << text;
+  }
+  std::string content(const std::string& name) const { return read_file(at(name)); }
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::ranges::sort(names);
+    return names;
+  }
+
+  Command command(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), DOLP_PROGRAM);
+    return {.arguments = std::move(arguments), .folder = folder_.path()};
+  }
+  Outcome dolp(const std::vector<std::string>& arguments, const std::string& input = "") const {
+    Command wanted = command(arguments);
+    wanted.input = input;
+    return run(wanted);
+  }
+  /// The report of a command that succeeds.
+  nlohmann::json report(const std::vector<std::string>& arguments) const {
+    const Outcome outcome = dolp(joined(arguments, {"--json"}));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  }
+  /// What `dolp eval` finds at points.csv.
+  Columns eval(const std::vector<std::string>& options) const {
+    const Outcome outcome =
+        dolp(joined({"eval", "scene.toml", "--points", "points.csv", "-o", "-", "--quiet"}, options));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return parse_csv(outcome.out);
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+}  // namespace dolp

@@ -1,0 +1,173 @@
+// Random points of the whole range that scenes allow, and evaluators to compute them, for tests of properties.
+#pragma once
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
+
+namespace dolp {
+
+/// A distribution and a masking.
+struct Model {
+  Distribution distribution;
+  Masking masking;
+};
+
+inline constexpr std::array<Model, 8> kModels{{{Distribution::kCauchy, Masking::kNone},
+                                               {Distribution::kCauchy, Masking::kVCavity},
+                                               {Distribution::kCauchy, Masking::kIntegral},
+                                               {Distribution::kCauchy, Masking::kSmith},
+                                               {Distribution::kGaussian, Masking::kNone},
+                                               {Distribution::kGaussian, Masking::kVCavity},
+                                               {Distribution::kGaussian, Masking::kIntegral},
+                                               {Distribution::kGaussian, Masking::kSmith}}};
+
+inline std::string name_of(const Model& model) {
+  constexpr std::array kMaskings = {"None", "VCavity", "Integral", "Smith"};
+  return std::string(model.distribution == Distribution::kCauchy ? "Cauchy" : "Gaussian") +
+         kMaskings[static_cast<std::size_t>(model.masking)];
+}
+
+/// Where moments are wanted.
+struct Point {
+  double theta_deg = 60.0;
+  SlopeShape shape{0.3, 2.0};
+  OpticalConstants index{1.508, 0.0};
+};
+
+inline std::string text_of(const Point& p) {
+  return fmt::format("theta {:.17g} sigma {:.17g} q {:.17g} n {:.17g} k {:.17g}", p.theta_deg, p.shape.sigma, p.shape.q,
+                     p.index.n, p.index.k);
+}
+
+/// Directions of the two beams of a pBRDF.
+struct Beams {
+  double theta_i_deg, theta_r_deg, delta_phi_deg;
+};
+
+inline std::string text_of(const Beams& beams) {
+  return fmt::format("theta_i {:.17g} theta_r {:.17g} delta_phi {:.17g}", beams.theta_i_deg, beams.theta_r_deg,
+                     beams.delta_phi_deg);
+}
+
+/// Draws that are the same on every machine.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+  double uniform(double low, double high) { return low + (high - low) * std::generate_canonical<double, 53>(engine_); }
+  double log_uniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
+  bool chance(double probability) { return uniform(0.0, 1.0) < probability; }
+
+  /// A direction; one in five each next to the normal and next to grazing incidence, a few exactly there.
+  double theta_deg() {
+    const double kind = uniform(0.0, 1.0);
+    if (kind < 0.02) return 0.0;
+    if (kind > 0.98) return 90.0;
+    if (kind < 0.2) return log_uniform(1e-8, 10.0);
+    if (kind < 0.4) return 90.0 - log_uniform(1e-6, 10.0);
+    return uniform(0.0, 90.0);
+  }
+
+  /// sigma 1e-4 to 10; q from 1e-3 above its lower end to 1e4.
+  SlopeShape shape(const Model& model) {
+    const bool is_smith_cauchy = model.masking == Masking::kSmith && model.distribution == Distribution::kCauchy;
+    return {log_uniform(1e-4, 10.0), (is_smith_cauchy ? 1.5 : 1.0) + log_uniform(1e-3, 9998.0)};
+  }
+
+  /// Dielectrics, absorbers and metals: n 1e-3 to 1000, one in four near 1; k = 0 or 1e-4 to 1000.
+  OpticalConstants index() {
+    const double n = chance(0.25) ? uniform(0.7, 1.5) : log_uniform(1e-3, 1000.0);
+    return {n, chance(0.4) ? 0.0 : log_uniform(1e-4, 1000.0)};
+  }
+
+  Point point(const Model& model) {
+    Point p;
+    p.theta_deg = theta_deg();
+    p.shape = shape(model);
+    p.index = index();
+    return p;
+  }
+
+  Beams beams() { return {uniform(0.5, 89.5), uniform(0.5, 89.5), uniform(-180.0, 180.0)}; }
+
+  std::vector<Point> points(const Model& model, std::size_t count) {
+    std::vector<Point> drawn;
+    for (std::size_t i = 0; i < count; ++i) drawn.push_back(point(model));
+    return drawn;
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// Each point as an entry of its own, in order.
+inline MomentsRequest request_of(const Model& model, const std::vector<Point>& points, double tolerance) {
+  MomentsRequest request;
+  request.distribution = model.distribution;
+  request.masking = model.masking;
+  request.tolerance = tolerance;
+  for (const Point& p : points) request.append({p.theta_deg, p.shape, p.index});
+  return request;
+}
+
+/// The kernel's text in one of its four forms.
+enum class Kernel { kCpuFloat, kCpuDouble, kVulkanFloat, kVulkanDouble };
+
+inline constexpr std::array kKernels{Kernel::kCpuFloat, Kernel::kCpuDouble, Kernel::kVulkanFloat,
+                                     Kernel::kVulkanDouble};
+
+inline std::string name_of(Kernel kernel) {
+  constexpr std::array kNames = {"CpuFloat", "CpuDouble", "VulkanFloat", "VulkanDouble"};
+  return kNames[static_cast<std::size_t>(kernel)];
+}
+
+inline bool is_double(Kernel kernel) { return kernel == Kernel::kCpuDouble || kernel == Kernel::kVulkanDouble; }
+
+inline std::unique_ptr<MomentsEvaluator> make_evaluator(Kernel kernel, VulkanOptions options = {}) {
+  const Precision precision = is_double(kernel) ? Precision::kDouble : Precision::kFloat;
+  if (kernel == Kernel::kCpuFloat || kernel == Kernel::kCpuDouble) return std::make_unique<CpuEvaluator>(precision);
+  options.precision = precision;
+  options.validation = ValidationMode::kOn;
+  return std::make_unique<VulkanEvaluator>(options);
+}
+
+/// One of the four results beside its stated error.
+struct MomentField {
+  const char* name;
+  double Moments::*value;
+  double Moments::*error;
+};
+
+inline constexpr std::array<MomentField, 4> kMomentFields{{{"r_i", &Moments::r_i, &Moments::r_i_error},
+                                                           {"r_q", &Moments::r_q, &Moments::r_q_error},
+                                                           {"albedo", &Moments::albedo, &Moments::albedo_error},
+                                                           {"deficit", &Moments::deficit, &Moments::deficit_error}}};
+
+/// The largest distance of two results over the bounds of both; beyond 1 it is a failure.
+inline double expect_within_bounds(const Moments& a, const Moments& b, const std::string& where, double slack = 0.0) {
+  double worst = 0.0;
+  for (const auto& [value, error] : kMomentMembers) {
+    const bool is_direct = value == &Moments::direct_i || value == &Moments::direct_q;
+    if (is_direct && std::isnan(b.*value)) continue;  // not asked for
+    const double distance = std::abs(a.*value - b.*value);
+    const double bound = a.*error + b.*error + slack;
+    EXPECT_TRUE(distance <= bound) << where << ": " << a.*value << " states " << a.*error << ", " << b.*value
+                                   << " states " << b.*error;
+    if (distance > 0.0) worst = std::max(worst, distance / bound);
+  }
+  return worst;
+}
+
+}  // namespace dolp

@@ -72,27 +72,41 @@ double most_lambda(Distribution distribution, const SlopeShape& shape, const Cos
   return a.cos > 0.0 ? 0.5 * mean * a.sin / a.cos : kInfinity;
 }
 
-/// Half of the slope c / (1 + s) up to which every facet sends its ray up.
-double gentle_slope(const CosSin& a) { return 0.5 * a.cos / (1.0 + a.sin); }
+/// The slope up to which every facet sends its ray up.
+double edge_slope(const CosSin& a) { return a.cos / (1.0 + a.sin); }
 
-/// Equation: rho c = E[e G M], e <= max(c + s t cos(phi), 0), G <= 1. `none` and `integral`: the mean of e over the
-/// azimuths is at most c + s t / pi, that of t is pi E|t_x| / 2. `v-cavity` and `smith` reflect at most all that
-/// arrives; with `v-cavity` e G <= 2 c, and gentle facets see at most theta + their slope.
+/// Most of rho that facets steeper than `slope` can give: the mean of e over the azimuths is at most c + s t / pi, and
+/// (1 + u^2)^(1 - q) <= u^(2 - 2 q) bounds the mean slope of the cauchy distribution; with `v-cavity` e G <= 2 c.
+double most_of_steep(const Surface& surface, const CosSin& a, const SlopeShape& shape, double slope) {
+  const double share = steeper_share(surface.distribution, shape, slope);
+  if (surface.masking == Masking::kVCavity) return 2.0 * share;
+  const double m = slope_width(shape);
+  const double beyond = surface.distribution == Distribution::kGaussian
+                            ? 0.5 * root_pi<double>() * m * std::erfc(slope / m)
+                            : m * std::pow(slope / m, 3.0 - 2.0 * shape.q) / (2.0 * shape.q - 3.0);
+  return share + a.sin / a.cos * (slope * share + beyond) / pi<double>();
+}
+
+/// Equation: rho c = E[e G M], e <= max(c + s t cos(phi), 0), G <= 1. `v-cavity` and `smith` reflect at most all that
+/// arrives, and what is not steep at most R_s at theta plus its slope; else 1 + tan(theta) E|t_x| / 2, because the mean
+/// of t is pi E|t_x| / 2.
 double most_specular(const Surface& surface, const CosSin& a, const SlopeShape& roughest,
                      const std::vector<OpticalConstants>& indices) {
   const bool keeps_energy = surface.masking == Masking::kVCavity || surface.masking == Masking::kSmith;
   if (!keeps_energy) return 1.0 + most_lambda(surface.distribution, roughest, a);
-  if (surface.masking == Masking::kSmith) return 1.0;
-  const double slope = gentle_slope(a);
-  const double steep = 2.0 * steeper_share(surface.distribution, roughest, slope);
-  return std::min(1.0, steep + fresnel(indices, (a.cos - a.sin * slope) / std::hypot(1.0, slope)).most_s);
+  double most = 1.0;
+  for (const double slope : {0.5 * edge_slope(a), edge_slope(a)}) {
+    const double gentle = fresnel(indices, (a.cos - a.sin * slope) / std::hypot(1.0, slope)).most_s;
+    most = std::min(most, gentle + most_of_steep(surface, a, roughest, slope));  // of NaN, with all facets steep, 1
+  }
+  return most;
 }
 
-/// Equation: with `v-cavity` e G >= 3/4 c for gentle facets, and M00 >= R_s / 2 >= R(normal) / 2.
+/// Equation: with `v-cavity` e G >= 3/4 c up to half of the edge, and M00 >= R_s / 2 >= R(normal) / 2.
 double least_specular(const Surface& surface, const CosSin& a, const SlopeShape& roughest,
                       const std::vector<OpticalConstants>& indices) {
   if (surface.masking != Masking::kVCavity) return 0.0;
-  const double gentle = 1.0 - steeper_share(surface.distribution, roughest, gentle_slope(a));
+  const double gentle = 1.0 - steeper_share(surface.distribution, roughest, 0.5 * edge_slope(a));
   return 0.75 * gentle * 0.5 * fresnel(indices, 1.0).least;
 }
 
@@ -245,11 +259,12 @@ void EffectBounds::add_beams(const EntriesExtent& extent, const std::vector<Opti
     const Range f = beam_range(surface, {theta_deg, view_deg, scene_.geometry.relative_azimuth_deg}, extent, indices);
     const double to_exitance = pi<double>() * surface.specular / cosine;
     const double diffuse = surface.diffuse * std::pow(cos_sin_deg(theta_deg).cos, c + 1.0) * std::pow(cosine, c);
-    const double most = surface.specular == 0.0 ? diffuse : to_exitance * f.most + diffuse;
-    most_beam_ = std::max(most_beam_, most);
+    if (surface.specular > 0.0) most_beam_qu_ = std::max(most_beam_qu_, to_exitance * f.most);
+    most_beam_ = std::max(most_beam_, most_beam_qu_ + diffuse);
     least_beam_ = std::min(least_beam_, to_exitance * f.least + diffuse);
   }
-  if (surface.scattering == Scattering::kMultiple) most_beam_ = kInfinity;  // further bounces have no closed form
+  if (surface.scattering == Scattering::kMultiple)
+    most_beam_ = most_beam_qu_ = kInfinity;  // further bounces have no closed form
 }
 
 /// The exitance of emission and surroundings that rho is multiplied by, at most.
@@ -282,7 +297,7 @@ EffectBounds::Sums EffectBounds::sums(const KeptEffects& kept) const {
   const bool takes = has_negative_ || !kept.surroundings || total_.surroundings < total_.emitted;
   Sums sum;
   sum.most_qu = (gap + incident(kept)) * 0.5 * most_rho(kept);
-  if (beam > 0.0) sum.most_qu += beam * most_beam_;
+  if (beam > 0.0) sum.most_qu += beam * most_beam_qu_;
   if (beam > 0.0 && !has_negative_) sum.least_i += beam * least_beam_;
   bool is_physical = !has_negative_;
   if (emits && model == EmissionModel::kMoments) {
@@ -318,7 +333,7 @@ EffectBounds::Sums EffectBounds::added_by(Part part, const KeptEffects& kept) co
       break;
     case Part::kSource:
       sum.most_i = total_.irradiance * (is_bistatic_ ? most_beam_ : all_rho);
-      sum.most_qu = total_.irradiance * (is_bistatic_ ? most_beam_ : 0.5 * rho);
+      sum.most_qu = total_.irradiance * (is_bistatic_ ? most_beam_qu_ : 0.5 * rho);
       break;
     case Part::kSurroundings:
       sum.most_i = total_.surroundings * all_rho;

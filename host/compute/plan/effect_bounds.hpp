@@ -72,6 +72,7 @@ class EffectBounds {
   double most_diffuse_ = 0.0;  ///< of rho
   double least_smooth_ = 0.0;  ///< emissivity of the smooth surface
   double most_beam_ = 0.0;     ///< exitance for E0 = 1 that is reflected into the view
+  double most_beam_qu_ = 0.0;  ///< of its length of (Q, U)
   double least_beam_ = 0.0;
 };
 

@@ -57,7 +57,7 @@ Scene seen_from_one_side(const Axes& grid) {
 }
 
 /// A day: the same under a clear sky, with one masking that keeps energy.
-Scene under_the_sky(const Grid& grid) {
+Scene under_the_sky(const Axes& grid) {
   Scene scene = seen_from_one_side(grid);
   scene.surface.masking = Masking::kSmith;
   scene.surroundings = Surroundings{kColdSky};
@@ -178,7 +178,7 @@ std::vector<EffectGroup> radiation_groups(const Scene& base, const Scene& bistat
 }
 
 /// Radiation that hardly counts beside another one.
-std::vector<EffectGroup> daylight_groups(const Grid& grid) {
+std::vector<EffectGroup> daylight_groups(const Axes& grid) {
   Scene thermal = under_the_sky(grid);
   thermal.accuracy.tolerance = kOnePercent;
   Scene visible = under_the_sky(grid);

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <boost/container/static_vector.hpp>
-#include <boost/math/constants/constants.hpp>
 #include <cmath>
 #include <functional>
-#include <limits>
+#include <numbers>
 
+#include "base/numbers.hpp"
 #include "model/angles.hpp"
 #include "model/gamma_ratio.hpp"
 #include "model/scattering.hpp"
@@ -17,10 +17,7 @@
 namespace dolp {
 namespace {
 
-using boost::math::constants::pi;
-using boost::math::constants::root_pi;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using std::numbers::pi;
 
 // Shells of slopes: the first ends at this share of the width, the last but one where so few facets are left.
 constexpr std::size_t kMostShells = 40;
@@ -30,7 +27,7 @@ constexpr double kLeftOver = 1e-12;
 constexpr double kWidest = 1e8;  // in widths
 
 // Of 1 - absorptance, and of the sums of positive terms.
-constexpr double kRounding = 1e-13;
+constexpr double kFacetRounding = 1e-13;
 
 bool keeps_energy(Masking masking) { return masking == Masking::kVCavity || masking == Masking::kSmith; }
 
@@ -45,7 +42,7 @@ double most_r_s(std::span<const OpticalConstants> indices, double cosine) {
   double most = 0.0;
   if (cosine <= 0.0) return 1.0;
   for (const OpticalConstants& index : indices) most = std::max(most, 1.0 - smooth_absorptance(index, cosine).s);
-  return std::clamp(most + kRounding * (most > 0.0 ? 1.0 : 0.0), 0.0, 1.0);
+  return std::clamp(most + kFacetRounding * (most > 0.0 ? 1.0 : 0.0), 0.0, 1.0);
 }
 
 /// Azimuthal mean of max(e, 0).
@@ -53,7 +50,7 @@ double mean_projection(const CosSin& a, double slope) {
   const double st = a.sin * slope;
   if (st <= a.cos) return a.cos;
   const double z = a.cos / st;
-  return (a.cos * std::acos(-z) + st * std::sqrt((1.0 - z) * (1.0 + z))) / pi<double>();
+  return (a.cos * std::acos(-z) + st * std::sqrt((1.0 - z) * (1.0 + z))) / pi;
 }
 
 struct Shell {
@@ -79,7 +76,7 @@ boost::container::static_vector<Shell, kMostShells> shells_of(std::size_t count,
     if (surface.masking == Masking::kVCavity) projection = std::min(projection, 2.0 * a.cos);
     const double low_facet = (a.cos - a.sin * to) / std::hypot(1.0, to);
     const double leaving = 0.5 * a.cos * std::hypot(1.0, from);
-    shells[k].albedo = std::max(left - left_after, 0.0) * projection * (1.0 + kRounding) + kRounding * a.cos;
+    shells[k].albedo = std::max(left - left_after, 0.0) * projection * (1.0 + kFacetRounding) + kFacetRounding * a.cos;
     shells[k].r_s = most_r_s(indices, std::clamp(std::max(low_facet, leaving), 0.0, 1.0));
     from = to;
     left = left_after;
@@ -88,7 +85,7 @@ boost::container::static_vector<Shell, kMostShells> shells_of(std::size_t count,
 }
 
 double mean_slope(Distribution distribution, const SlopeShape& shape) {
-  const double w = slope_width(shape) / root_pi<double>();
+  const double w = slope_width(shape) / kRootPi;
   if (distribution == Distribution::kGaussian) return w;
   return shape.q > 1.5 ? w / gamma_ratio(shape.q - 1.5) : kInfinity;
 }
@@ -138,7 +135,7 @@ double least_albedo(const Surface& surface, const CosSin& a, const SlopeShape& s
     const double facets = 1.0 - steeper_share(surface.distribution, shape, share * edge);
     least = std::max(least, facets * least_projection(surface, a, shape, share * edge));
   }
-  return least * (1.0 - kRounding);
+  return least * (1.0 - kFacetRounding);
 }
 
 }  // namespace
@@ -163,7 +160,7 @@ ReflectanceBounds reflectance_bounds(const Surface& surface, double theta_deg, c
     room -= albedo;
     reflected += albedo * shell.r_s / a.cos;
   }
-  bounds.most_i = reflected * (1.0 + kRounding);
+  bounds.most_i = reflected * (1.0 + kFacetRounding);
   if (conserves) bounds.most_i = std::min(bounds.most_i, 1.0);
   bounds.most_q = 0.5 * bounds.most_i;
   bounds.least_i = 0.5 * least_normal_reflectance(indices) * least_albedo(surface, a, shape) / a.cos;
@@ -173,7 +170,7 @@ ReflectanceBounds reflectance_bounds(const Surface& surface, double theta_deg, c
 ReflectanceBounds coarse_reflectance_bounds(const Surface& surface, double theta_deg, const SlopeShape& shape) {
   const double excess =
       keeps_energy(surface.masking) ? 0.0 : most_lambda(surface.distribution, shape, cos_sin_deg(theta_deg));
-  return {(1.0 + excess) * (1.0 + kRounding), 0.5 * (1.0 + excess) * (1.0 + kRounding), 0.0};
+  return {(1.0 + excess) * (1.0 + kFacetRounding), 0.5 * (1.0 + excess) * (1.0 + kFacetRounding), 0.0};
 }
 
 BeamBounds beam_bounds(const Surface& surface, double theta_i_deg, double theta_r_deg, double delta_phi_deg,
@@ -189,7 +186,7 @@ BeamBounds beam_bounds(const Surface& surface, double theta_i_deg, double theta_
   const double profile = surface.distribution == Distribution::kGaussian
                              ? std::exp(-u2)
                              : (shape.q - 1.0) * std::exp(-shape.q * std::log1p(u2));
-  const double scale = 0.25 * profile * sec2 * sec2 / (pi<double>() * w * w);
+  const double scale = 0.25 * profile * sec2 * sec2 / (pi * w * w);
   double least_g = 1.0;
   double most_g = 1.0;
   const double lower_cos = std::min(g.c_i, g.c_r);
@@ -206,9 +203,10 @@ BeamBounds beam_bounds(const Surface& surface, double theta_i_deg, double theta_
   for (const OpticalConstants& index : indices) {
     const SmoothAbsorptance absorbed = smooth_absorptance(index, std::max(g.cos_beta, 1e-300));
     const double mean = std::max(0.0, 1.0 - 0.5 * (absorbed.s + absorbed.p));
-    bounds.most_i = std::max(bounds.most_i, scale * most_g * (mean + kRounding));
-    bounds.most_qu = std::max(bounds.most_qu, scale * most_g * (0.5 * std::abs(absorbed.p - absorbed.s) + kRounding));
-    least = std::min(least, scale * least_g * std::max(0.0, mean - kRounding));
+    bounds.most_i = std::max(bounds.most_i, scale * most_g * (mean + kFacetRounding));
+    bounds.most_qu =
+        std::max(bounds.most_qu, scale * most_g * (0.5 * std::abs(absorbed.p - absorbed.s) + kFacetRounding));
+    least = std::min(least, scale * least_g * std::max(0.0, mean - kFacetRounding));
   }
   bounds.least_i = least;
   return bounds;

@@ -1,10 +1,10 @@
 #include "plan/influence.hpp"
 
 #include <algorithm>
-#include <boost/math/constants/constants.hpp>
 #include <cmath>
-#include <limits>
+#include <numbers>
 
+#include "base/numbers.hpp"
 #include "model/angles.hpp"
 #include "model/direction.hpp"
 #include "model/smooth_surface.hpp"
@@ -12,9 +12,8 @@
 namespace dolp {
 namespace {
 
-using boost::math::constants::pi;
+using std::numbers::pi;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Rounding of the sums here, and of the band sums that they stand for.
 constexpr double kRounding = 1e-8;
 // A cosine that may be divided by.
@@ -128,7 +127,7 @@ InfluenceBounds::AtEntry InfluenceBounds::at_entry(const KeptEffects& kept, cons
     at.specular = memory.bounds(surface, theta_deg, entry, own, detail);
     for (double* value : {&at.specular.most_i, &at.specular.most_q, &at.specular.least_i}) *value *= surface.specular;
     if (kept.further_bounces && surface.scattering == Scattering::kMultiple) {
-      const double slope = std::tan((30.0 - theta_deg / 3.0) * pi<double>() / 180.0);
+      const double slope = std::tan((30.0 - theta_deg / 3.0) * pi / 180.0);
       at.further = surface.specular * steeper_share(surface.distribution, entry.shape, slope);
       at.specular.most_i = std::min(at.specular.most_i + at.further, surface.specular);
       at.specular.most_q += at.further;
@@ -142,7 +141,7 @@ InfluenceBounds::AtEntry InfluenceBounds::at_entry(const KeptEffects& kept, cons
     const Geometry& geometry = scene_.geometry;
     at.beam = beam_bounds(surface, entry.theta_deg, theta_deg, geometry.relative_azimuth_deg, entry.shape, own);
     for (double* value : {&at.beam.most_i, &at.beam.least_i, &at.beam.most_qu}) {
-      *value *= pi<double>() * surface.specular / cosine;
+      *value *= pi * surface.specular / cosine;
     }
     if (kept.further_bounces && surface.scattering == Scattering::kMultiple) {
       at.beam.most_i = at.beam.most_qu = kInfinity;  // they are not known before they are computed

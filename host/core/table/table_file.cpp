@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kRowsAtOnce = 4096;  // of a thread
+constexpr std::size_t kRowsOfAThread = 4096;  // of a thread
 
 /// The axes of a .csv or .npy, in the order of kTableAxes.
 constexpr std::array<const char*, kTableAxes.size()> kAxisColumns = {"wavelength_um", "n",     "k",
@@ -84,9 +84,9 @@ std::string csv_header(const TableLayout& layout) {
 
 std::string csv_rows(const Table& part, const TableVariables& variables) {
   const std::vector<AxisColumn> axes = axis_columns(part);
-  std::vector<std::string> pieces((part.size() + kRowsAtOnce - 1) / kRowsAtOnce);
-  parallel_ranges(part.size(), kRowsAtOnce, [&](std::size_t first, std::size_t last) {
-    std::string& text = pieces[first / kRowsAtOnce];
+  std::vector<std::string> pieces((part.size() + kRowsOfAThread - 1) / kRowsOfAThread);
+  parallel_ranges(part.size(), kRowsOfAThread, [&](std::size_t first, std::size_t last) {
+    std::string& text = pieces[first / kRowsOfAThread];
     each_row(part, axes, first, last, [&](std::size_t position, const std::vector<double>& values) {
       std::string_view separator;
       for (const double value : values) {

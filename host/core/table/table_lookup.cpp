@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <dolp/errors.hpp>
-#include <limits>
 #include <set>
 
+#include "base/numbers.hpp"
 #include "model/status.hpp"
 
 namespace dolp {
@@ -27,8 +27,6 @@ constexpr std::size_t kLevels = 3;       // changes that are compared
 constexpr double kInside = 10.0;
 constexpr double kAtEnds = 20.0;
 constexpr double kSlowestFall = 0.9;  // of the changes
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What is interpolated: the quantities of a table that are smooth.
 struct SmoothColumn {

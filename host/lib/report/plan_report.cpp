@@ -9,9 +9,7 @@ namespace dolp {
 namespace {
 
 constexpr int kLabelWidth = 11;
-constexpr double kMebibyte = 1048576.0;
-constexpr double kPoints = 100.0;      // of DOLP
-constexpr double kMostPoints = 200.0;  // from all s to all p; what a bound beyond says is nothing
+constexpr double kMostDolpPoints = 200.0;  // from all s to all p; what a bound beyond says is nothing
 
 std::string state_text(EffectState state) {
   return state == EffectState::kNotNeeded ? "not needed" : state_name(state);
@@ -22,7 +20,7 @@ std::string influence_text(const EffectRow& row) {
   const char* mark = row.unbounded > 0 ? " *" : "";
   const double points = kPoints * *row.bound;
   if (points == 0.0 && row.unbounded == 0) return "0";
-  if (points >= kMostPoints) return fmt::format("> {:g}{}", kMostPoints, mark);
+  if (points >= kMostDolpPoints) return fmt::format("> {:g}{}", kMostDolpPoints, mark);
   return points >= 10.0 ? fmt::format("<= {:.0f}{}", points, mark) : fmt::format("<= {:.2g}{}", points, mark);
 }
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "base/numbers.hpp"
 #include "model/choices.hpp"
 #include "model/point_result.hpp"
 #include "reference/hemisphere.hpp"
@@ -17,7 +18,6 @@
 namespace dolp {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Rounding of r / cos(theta) and of the quotients of stored values.
 constexpr double kQuotientRounding = 8.0 * std::numeric_limits<double>::epsilon();
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # From a fresh Debian 12 machine to a lookup table: quickstart.sh [SCENE] [OUT]
 #
-# Installs the packages that are missing, builds into build/release, writes the table of SCENE (default: the
-# stainless-steel scene) to OUT (default: dolp.nc in the current folder), prints the summary and draws OUT with the
-# suffix .png. Any other suffix than .nc gives the table alone.
+# Installs the packages that are missing, builds the program, its Python package and its pages into build/release, from
+# which `cmake --install` works, writes the table of SCENE (default: the stainless-steel scene) to OUT (default: dolp.nc
+# in the current folder), prints the summary and draws OUT with the suffix .png. Any other suffix than .nc gives the
+# table alone.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -13,7 +14,7 @@ build=$root/build/release
 
 bash "$root/host/tools/install_packages.sh" build picture
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF -DDOLP_BENCH=OFF
-cmake --build "$build" --target dolp dolp_python
+cmake --build "$build" --target dolp dolp_python dolp_pages
 
 echo
 "$build/dolp" table "$scene" -o "$table"

@@ -6,8 +6,8 @@ file(WRITE ${OUTPUT} "#include \"spirv.hpp\"
 
 namespace dolp::spirv {
 namespace {
-constexpr std::uint32_t kWords[] = {${words}};
+constexpr std::uint32_t ${SYMBOL}_words[] = {${words}};
 }
-constinit const std::span<const std::uint32_t> ${SYMBOL}{kWords};
+constinit const std::span<const std::uint32_t> ${SYMBOL}{${SYMBOL}_words};
 }  // namespace dolp::spirv
 ")

@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# Static analysis: cppcheck of host/, clang-tidy of all C++ sources: analyse.sh [BUILD]
+# Static analysis: cppcheck of host/, clang-tidy of all C++ sources: analyse.sh
 #
-# BUILD, build/release when not given, is a configured build folder with its generated headers. Prints what is found; the
-# exit status is not 0 then. The checks of clang-tidy are in .clang-tidy. Needs the packages clang-tidy-16 and cppcheck.
+# Configures build/analysis, where each source has a compile command of its own. Prints what is found; the exit status is
+# not 0 then. The checks of clang-tidy are in .clang-tidy. Needs the packages clang-tidy-16 and cppcheck.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-build=$(cd "${1:-$root/build/release}" && pwd)
+build=$root/build/analysis
 cd "$root"
+cmake -S . -B "$build" -G Ninja -DCMAKE_UNITY_BUILD=OFF >/dev/null
 # Neither can read the text of the shaders: aggregates initialised with parentheses. Fuzzers are not in this build.
 sources=$(git ls-files 'host/*.cpp' 'bench/*.cpp' 'tests/*.cpp' | grep -vE '/text/|text_[a-z]*\.cpp$|/fuzz/')
 

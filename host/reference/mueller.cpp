@@ -31,7 +31,7 @@ constexpr double kRetro = 1e-50;  // sin^2(2 beta) below which there is no plane
 // Squared horizontal part of omega_i + omega_r below which the two mirror each other, so that grooves of every azimuth
 // bring light from the one into the other.
 constexpr double kMirrored = 1e-50;
-constexpr int kMostBounces = 2000;
+constexpr int kMostMuellerBounces = 2000;
 // More bounces are a correction, for which double will do.
 constexpr int kMostInQuad = 24;
 // So many bounces in a row without a contribution end the sum over them.
@@ -256,7 +256,7 @@ BouncesSum reference_all_bounces(const Surface& surface, const OpticalConstants&
   BouncesSum sum;
   std::array<double, kIdleBounces> latest{};
   double recent = 0.0;
-  for (int k = 1; k <= kMostBounces; ++k) {
+  for (int k = 1; k <= kMostMuellerBounces; ++k) {
     if (pair.is_beyond(k)) return sum;
     const ReferenceMueller term = pair.term(slopes, constants, k);
     add(sum.matrix, term);
@@ -266,7 +266,7 @@ BouncesSum reference_all_bounces(const Surface& surface, const OpticalConstants&
     if (k >= kIdleBounces && recent <= kIdleShare * sum.matrix[0][0]) return sum;
   }
   // Enough for what falls at least like the power -9/8 of the bounces, or by a share of 1e-4 from each to the next.
-  sum.error = recent * kMostBounces;
+  sum.error = recent * kMostMuellerBounces;
   return sum;
 }
 

@@ -19,7 +19,7 @@ constexpr int kStepsPerDecade = 16;
 constexpr double kSmallestShare = 1e-7;
 // A layer thinner than this needs break points of its own, each so many times farther out.
 constexpr double kThinLayer = 0.05;
-constexpr double kLayerGrowth = 8.0;
+constexpr double kPlaneLayerGrowth = 8.0;
 
 // Where `regime` changes between sorted points: each change once, to the last bits.
 std::vector<double> changes(const std::vector<double>& points, const std::function<std::uint64_t(double)>& regime) {
@@ -58,7 +58,7 @@ std::vector<double> changes(const std::vector<double>& points, const std::functi
 std::vector<double> RegimeScan::chi_breaks(double t) const {
   std::vector<double> layers;
   const double layer = view_.cos / std::max(view_.sin, 1e-300);
-  for (double x = layer; x < kThinLayer; x *= kLayerGrowth) layers.push_back(std::asin(x));
+  for (double x = layer; x < kThinLayer; x *= kPlaneLayerGrowth) layers.push_back(std::asin(x));
   const double gamma = std::atan2(1.0, t);
   const double exact_steps = steps_.per_gamma * theta_rad_ / gamma;
   if (exact_steps > kMostSteps) return layers;
@@ -95,7 +95,7 @@ std::vector<double> RegimeScan::t_breaks(double width, double end) const {
     found.insert(found.end(), more.begin(), more.end());
   }
   const double layer = view_.cos / std::max(view_.sin, 1e-300);
-  for (double t = std::max(layer, points.front()); t < kThinLayer * width; t *= kLayerGrowth) found.push_back(t);
+  for (double t = std::max(layer, points.front()); t < kThinLayer * width; t *= kPlaneLayerGrowth) found.push_back(t);
   return found;
 }
 

@@ -1,13 +1,14 @@
 #include "plan/beam.hpp"
 
 #include <algorithm>
-#include <boost/math/constants/constants.hpp>
 #include <boost/math/special_functions/cos_pi.hpp>
 #include <boost/math/special_functions/sin_pi.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
+#include "base/numbers.hpp"
 #include "model/gamma_ratio.hpp"
 #include "plan/further_bounces.hpp"
 #include "plan/geometry.hpp"
@@ -16,9 +17,8 @@
 namespace dolp {
 namespace {
 
-using boost::math::constants::ln_two;
-using boost::math::constants::pi;
-using boost::math::constants::root_pi;
+using std::numbers::ln2;
+using std::numbers::pi;
 
 constexpr int kLargestOrder = 16;  // kInPlaneOrder of physics/in_plane.glsl
 
@@ -32,8 +32,6 @@ constexpr double kSmallestMaskingSigma = 1e-15;
 // Share of N^2 and sin^2(beta) below which their difference has lost digits that the root of it needs.
 constexpr double kCritical = 1e-6;
 
-constexpr double kDoubleRoundoff = 0x1p-53;
-
 // ln(1 + x^2), where x^2 may overflow.
 double log1p_square(double x) { return x > 1e8 ? 2.0 * std::log(x) : std::log1p(x * x); }
 
@@ -43,7 +41,7 @@ kernel::ShapeNode masking_shape(Distribution distribution, const SlopeShape& sha
   node.m = std::sqrt(2.0) * std::max(shape.sigma, kSmallestMaskingSigma);
   node.q_minus_1 = shape.q - 1.0;
   node.two_q_minus_3 = 2.0 * shape.q - 3.0;
-  node.marginal_norm = (is_cauchy ? gamma_ratio(node.q_minus_1) : 1.0) / (root_pi<double>() * node.m);
+  node.marginal_norm = (is_cauchy ? gamma_ratio(node.q_minus_1) : 1.0) / (kRootPi * node.m);
   node.scale = std::min(is_cauchy ? node.m / std::sqrt(shape.q) : node.m, 1.0);
   node.cut = node.m * std::sqrt(is_cauchy ? std::expm1(kCutExponent / (shape.q - 0.5)) : kCutExponent);
   return node;
@@ -74,7 +72,7 @@ KernelData model_data(const ScatteringRequest& request) {
 
 double log_density(Distribution distribution, const SlopeShape& shape, double slope) {
   const double m = std::sqrt(2.0) * shape.sigma;
-  const double front = 2.0 * log1p_square(slope) - std::log(4.0 * pi<double>()) - 2.0 * std::log(m);
+  const double front = 2.0 * log1p_square(slope) - std::log(4.0 * pi) - 2.0 * std::log(m);
   const double u = slope / m;
   if (distribution == Distribution::kGaussian) return front - u * u;
   return front + std::log(shape.q - 1.0) - shape.q * log1p_square(u);
@@ -108,8 +106,8 @@ Beam BeamPlan::operator()(const ScatteringEntry& entry) const {
   node.w2_re = w_squared(entry, node);
   const double exponent = log_density(request_.distribution, request_.shapes[entry.shape], node.g.slope);
   if (!(exponent > std::log(std::numeric_limits<double>::denorm_min()))) return beam;
-  const double power = std::floor(exponent / ln_two<double>()) + 1.0;
-  node.density = std::exp(exponent - power * ln_two<double>());
+  const double power = std::floor(exponent / ln2) + 1.0;
+  node.density = std::exp(exponent - power * ln2);
   beam.power = static_cast<int>(power);
   return beam;
 }

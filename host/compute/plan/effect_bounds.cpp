@@ -1,10 +1,11 @@
 #include "plan/effect_bounds.hpp"
 
 #include <algorithm>
-#include <boost/math/constants/constants.hpp>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
+#include "base/numbers.hpp"
 #include "model/angles.hpp"
 #include "model/direction.hpp"
 #include "model/gamma_ratio.hpp"
@@ -15,10 +16,7 @@
 namespace dolp {
 namespace {
 
-using boost::math::constants::pi;
-using boost::math::constants::root_pi;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-8;  // of the sums here, and of the band sums that they stand for
 constexpr double kRoundingOfOne = 1e-13;
 constexpr double kSmallestCosine = 1e-300;  // that may be divided by
@@ -67,7 +65,7 @@ Fresnel fresnel(const std::vector<OpticalConstants>& indices, double cosine) {
 /// Most of smith's L(theta) = E[(t_x - mu)+] / mu, mu = cot(theta): E|t_x| / (2 mu).
 double most_lambda(Distribution distribution, const SlopeShape& shape, const CosSin& a) {
   if (shape.sigma == 0.0 || a.sin == 0.0) return 0.0;
-  double mean = slope_width(shape) / root_pi<double>();
+  double mean = slope_width(shape) / kRootPi;
   if (distribution == Distribution::kCauchy) mean = shape.q > 1.5 ? mean / gamma_ratio(shape.q - 1.5) : kInfinity;
   return a.cos > 0.0 ? 0.5 * mean * a.sin / a.cos : kInfinity;
 }
@@ -82,9 +80,9 @@ double most_of_steep(const Surface& surface, const CosSin& a, const SlopeShape& 
   if (surface.masking == Masking::kVCavity) return 2.0 * share;
   const double m = slope_width(shape);
   const double beyond = surface.distribution == Distribution::kGaussian
-                            ? 0.5 * root_pi<double>() * m * std::erfc(slope / m)
+                            ? 0.5 * kRootPi * m * std::erfc(slope / m)
                             : m * std::pow(slope / m, 3.0 - 2.0 * shape.q) / (2.0 * shape.q - 3.0);
-  return share + a.sin / a.cos * (slope * share + beyond) / pi<double>();
+  return share + a.sin / a.cos * (slope * share + beyond) / std::numbers::pi;
 }
 
 /// Equation: rho c = E[e G M], e <= max(c + s t cos(phi), 0), G <= 1. `v-cavity` and `smith` reflect at most all that
@@ -129,7 +127,7 @@ Range slope_density(Distribution distribution, const EntriesExtent& extent, doub
   if (m2_low == 0.0) return {};  // a mirror
   const double t2 = slope * slope;
   const auto density = [&](double m2, double q) {
-    return (is_gaussian ? std::exp(-t2 / m2) : std::exp(-q * std::log1p(t2 / m2))) / (pi<double>() * m2);
+    return (is_gaussian ? std::exp(-t2 / m2) : std::exp(-q * std::log1p(t2 / m2))) / (std::numbers::pi * m2);
   };
   const double peak = is_gaussian ? t2 : (q_low - 1.0) * t2;
   return {(is_gaussian ? 1.0 : q_low - 1.0) * std::min(density(m2_low, q_high), density(m2_high, q_high)),
@@ -237,7 +235,7 @@ void EffectBounds::add_reflectances(const EntriesExtent& extent, const std::vect
   least_rho_ = surface.specular * least_specular(surface, a, extent.roughest, indices) + 0.0;
   if (surface.scattering == Scattering::kMultiple) {
     // A second facet meets the light where the first is steeper than 30 degrees - theta / 3.
-    const double slope = std::tan((30.0 - theta_deg / 3.0) * pi<double>() / 180.0);
+    const double slope = std::tan((30.0 - theta_deg / 3.0) * std::numbers::pi / 180.0);
     further_ = surface.specular * steeper_share(surface.distribution, extent.roughest, slope);
   }
   const double c = surface.diffuse_exponent;
@@ -257,7 +255,7 @@ void EffectBounds::add_beams(const EntriesExtent& extent, const std::vector<Opti
   least_beam_ = kInfinity;
   for (const double theta_deg : extent.theta_deg) {
     const Range f = beam_range(surface, {theta_deg, view_deg, scene_.geometry.relative_azimuth_deg}, extent, indices);
-    const double to_exitance = pi<double>() * surface.specular / cosine;
+    const double to_exitance = std::numbers::pi * surface.specular / cosine;
     const double diffuse = surface.diffuse * std::pow(cos_sin_deg(theta_deg).cos, c + 1.0) * std::pow(cosine, c);
     if (surface.specular > 0.0) most_beam_qu_ = std::max(most_beam_qu_, to_exitance * f.most);
     most_beam_ = std::max(most_beam_, most_beam_qu_ + diffuse);

@@ -1,24 +1,23 @@
 #include <algorithm>
-#include <boost/math/constants/constants.hpp>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <numbers>
 
+#include "base/numbers.hpp"
 #include "model/slopes.hpp"
 #include "plan/kernel_data.hpp"
 
 namespace dolp {
 namespace {
 
-using boost::math::constants::pi;
+using std::numbers::pi;
 
 constexpr double kCosineRounding = 2.0 * std::numeric_limits<double>::epsilon();
 
 // Bounds of the interpolation error of G relative to the albedo (quintic Hermite, 8 and 64 cells an octave).
 constexpr double kMaskingTableErrorFloat = 3e-8;
 constexpr double kMaskingTableErrorDouble = 1e-12;
-constexpr double kDoubleRoundoff = 0x1p-53;
 
 // Rounding error in units of the precision's roundoff, relative to the integral of absolute values. The masking tables
 // of `integral` with q near 1 and of smith with q near 3/2 are sums of hundreds of nearly equal terms.
@@ -33,7 +32,7 @@ constexpr double kExtremeTailQ = 1.01;
 // surface and the nearer the horizon.
 constexpr double kCriticalRoundings = 300.0;
 constexpr double kMostCriticalRoundings = 3000.0;
-constexpr double kSmallestCosine = 1e-9;
+constexpr double kGrazingCosine = 1e-9;
 constexpr double kSmoothM = 0.05;
 
 // Where the mean slope is about to diverge (smith, q near 3/2), G falls within 2q - 3 of the normal, which no rule
@@ -43,7 +42,7 @@ constexpr double kDivergingSlope = 0.06;
 double roundings(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape,
                  const kernel::IndexNode& index) {
   if (index.critical_cos > 0.0) {
-    const double grazing = 1.0 - std::log10(std::max(theta.c, kSmallestCosine));
+    const double grazing = 1.0 - std::log10(std::max(theta.c, kGrazingCosine));
     const double smooth = std::max(1.0, kSmoothM / shape.m);
     return std::min(kCriticalRoundings * smooth * grazing, kMostCriticalRoundings);
   }
@@ -83,8 +82,8 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
   const double log_square = std::log1p(u * u);
   if (data.masking == Masking::kVCavity) return 2.0 * theta.c * tail;
   if (!gaussian && shape.q_minus_1 <= 0.5) return std::numeric_limits<double>::infinity();
-  const double slopes = gaussian ? shape.m / pi<double>() * (u + 0.5 / u) * tail
-                                 : 2.0 * shape.q_minus_1 * shape.m / pi<double>() *
+  const double slopes = gaussian ? shape.m / pi * (u + 0.5 / u) * tail
+                                 : 2.0 * shape.q_minus_1 * shape.m / pi *
                                        std::exp((0.5 - shape.q_minus_1) * log_square) / (2.0 * shape.q_minus_1 - 1.0);
   return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
 }
@@ -113,7 +112,7 @@ double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
 constexpr double kPairFactor = 4.0;
 constexpr double kTablePairFactor = 8.0;
 constexpr double kGroovePairFactor = 10.0;  // beams of many bounces end at kinks that are not split
-constexpr double kCriticalFactor = 2.0;    // roots beside the critical line, which lies where rounding leaves it
+constexpr double kCriticalFactor = 2.0;     // roots beside the critical line, which lies where rounding leaves it
 
 // Two rules of few nodes may agree by chance: none is taken to be better than this share of the tolerance it is made
 // for.
@@ -126,7 +125,7 @@ double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index
   double least = most;
   for (double level = 1.0; level > 1e-6; level *= 0.5) {
     const double along = std::sqrt(std::max((level - theta.c) * (level + theta.c), 0.0));
-    const double missed = along <= 0.0 ? 0.0 : along < theta.s ? 4.0 / pi<double>() * std::asin(along / theta.s) : 1.0;
+    const double missed = along <= 0.0 ? 0.0 : along < theta.s ? 4.0 / pi * std::asin(along / theta.s) : 1.0;
     const double reflected = std::pow(reflectance_s(index, 0.5 * std::max(level, theta.c)), bounces);
     least = std::min(least, most * missed + reflected);
     if (reflected >= least) break;  // and the more so at lower levels
@@ -145,7 +144,7 @@ double steep_reflectance(const KernelData& data, const kernel::IndexNode& index,
   }
   const double slope = std::min(shape.cut, theta.end[DOLP_MAX_PIECES]);
   const double elevation = std::atan2(theta.c, theta.s);
-  return left_after(theta, index, std::max(std::min(pi<double>() / 3.0, elevation) * slope - 1.0, 0.0), 1.0);
+  return left_after(theta, index, std::max(std::min(pi / 3.0, elevation) * slope - 1.0, 0.0), 1.0);
 }
 
 // Rounding in grooves, in units of the roundoff and of the cosine: the last bounces may be grazing, where all that

@@ -2,10 +2,10 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <boost/math/constants/constants.hpp>
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <numbers>
 
 #include "model/angles.hpp"
 #include "plan/beam.hpp"
@@ -13,12 +13,12 @@
 namespace dolp {
 namespace {
 
-using boost::math::constants::pi;
+using std::numbers::pi;
 using Complex = std::complex<double>;
 
 constexpr int kMostBounces = 2000;
-constexpr double kNothing = 1e-14;   // of what the bounces before added
-constexpr double kRoundings = 16.0;  // of the angles, relative to |h|
+constexpr double kNothing = 1e-14;        // of what the bounces before added
+constexpr double kAngleRoundings = 16.0;  // of the angles, relative to |h|
 
 /// Two beams as a groove sees them.
 struct Across {
@@ -81,7 +81,7 @@ double beam_width(const Across& at, double gamma, int bounces) {
   if (at.psi_i <= -gamma) return 0.0;
   const auto edge = [&](int k) { return at.a * std::sin(at.psi_i + (2 * k + 1) * gamma); };
   const double least = std::max(at.a * std::sin(at.psi_i - gamma), 0.0);
-  const bool is_behind = at.psi_i + (2 * bounces + 1) * gamma >= pi<double>();
+  const bool is_behind = at.psi_i + (2 * bounces + 1) * gamma >= pi;
   const double low = is_behind ? least : std::max(least, edge(bounces));
   return std::max(std::min(edge(0), edge(bounces - 1)) - low, 0.0);
 }
@@ -119,9 +119,9 @@ void add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, 
     const double least_gamma = 0.49 * std::abs(std::abs(at.psi_i) - std::abs(at.psi_r));
     double last = 0.0;
     for (int k = 2; k <= kMostBounces; ++k) {
-      const double gamma = (pi<double>() - at.psi_i + (k % 2 == 1 ? -at.psi_r : at.psi_r)) / (2.0 * k);
+      const double gamma = (pi - at.psi_i + (k % 2 == 1 ? -at.psi_r : at.psi_r)) / (2.0 * k);
       if (gamma < least_gamma) break;
-      if (gamma <= 0.0 || gamma >= 0.5 * pi<double>()) continue;
+      if (gamma <= 0.0 || gamma >= 0.5 * pi) continue;
       const double width = beam_width(at, gamma, k);
       if (width == 0.0) continue;
       const double density = 4.0 * std::exp(log_density(request.distribution, shape, 1.0 / std::tan(gamma)));
@@ -135,7 +135,7 @@ void add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, 
   for (std::size_t j = 0; j < f.m.size(); ++j) {
     f.m[j] += sum(static_cast<Eigen::Index>(j / 4), static_cast<Eigen::Index>(j % 4));
   }
-  f.error += (kScatteringErrorDouble + kRoundings * std::numeric_limits<double>::epsilon() / h) * sum(0, 0) + rest;
+  f.error += (kScatteringErrorDouble + kAngleRoundings * std::numeric_limits<double>::epsilon() / h) * sum(0, 0) + rest;
 }
 
 }  // namespace dolp

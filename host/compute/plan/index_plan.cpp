@@ -7,7 +7,7 @@
 namespace dolp {
 namespace {
 
-constexpr double kNodeTolerance = 0.5;  // of the request's tolerance: bounds grow by the weights
+constexpr double kIndexNodeTolerance = 0.5;  // of the request's tolerance: bounds grow by the weights
 
 /// What is wanted of the nodes: of the basis what any index that it reaches wants.
 std::vector<char> wanted_of_nodes(const MomentsRequest& request, const IndexPlan& plan) {
@@ -36,7 +36,7 @@ IndexPlan index_plan(const MomentsRequest& request) {
   IndexPlan plan;
   plan.nodes = request;
   plan.nodes.basis = nullptr;
-  plan.nodes.tolerance = request.finer_tolerance(kNodeTolerance);
+  plan.nodes.tolerance = request.finer_tolerance(kIndexNodeTolerance);
   plan.nodes.run_size =
       static_cast<std::size_t>(std::ceil(static_cast<double>(request.run_size) * basis.computed_share()));
   plan.nodes.indices = basis.indices();

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <boost/math/constants/constants.hpp>
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
+#include "base/numbers.hpp"
 #include "model/angles.hpp"
 #include "model/gamma_ratio.hpp"
 #include "plan/rule.hpp"
@@ -17,8 +18,7 @@
 namespace dolp {
 namespace {
 
-using boost::math::constants::pi;
-using boost::math::constants::root_pi;
+using std::numbers::pi;
 
 constexpr unsigned kRoots = kRootAbove | kRootBelow;
 constexpr double kNoEnd = 1e30;  // a slope beyond every cut, in place of infinity
@@ -73,7 +73,7 @@ double critical_cos(const OpticalConstants& index) {
 // lines of v-cavity, e = 2 c and e = 2 cos(theta_r).
 void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking,
                               double critical) {
-  const double critical_deg = std::acos(critical) * 180.0 / pi<double>();
+  const double critical_deg = std::acos(critical) * 180.0 / pi;
   points.push_back({tan_deg(std::abs(theta_deg - critical_deg)), kRoots});
   if (theta_deg + critical_deg < 90.0) points.push_back({tan_deg(theta_deg + critical_deg), kRoots});
   const auto add = [&](double facet_cos, double least_cos) {
@@ -125,7 +125,7 @@ void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
 // Slopes at which a bounce after the first meets the critical line at phi = 0 or pi, where its cos(beta) is the sine of
 // its angle in the fan (groove.glsl): where theta is 0 that is everywhere.
 void add_critical_bounces(std::vector<Breakpoint>& points, double theta_deg, double critical) {
-  const double critical_deg = std::asin(critical) * 180.0 / pi<double>();
+  const double critical_deg = std::asin(critical) * 180.0 / pi;
   for (int k = 2; k <= kCriticalBounces; ++k) {
     for (const double angle_deg : {critical_deg, 180.0 - critical_deg}) {
       for (const double turned_deg : {angle_deg - theta_deg, angle_deg + theta_deg}) {
@@ -259,7 +259,7 @@ double turns_of(double bounces) {
 
 // Of a piece from slope `start` to `end`, to pi / (2 gamma) bounces and more. Steep grooves have no lines below gamma.
 Loops groove_loops(const KernelData& data, double start, double end) {
-  const double most = pi<double>() / (2.0 * std::atan(1.0 / end));
+  const double most = pi / (2.0 * std::atan(1.0 / end));
   const double splits = data.rule.split_bounces;
   Loops loops;
   loops.arcs = start >= slope_with_bounces(splits + 2.0) ? 2.0 : 5.0;
@@ -338,7 +338,7 @@ kernel::ShapeNode shape_node(const MomentsRequest& request, const SlopeShape& sh
   node.m = slope_width(shape);
   node.q_minus_1 = shape.q - 1.0;
   const bool cauchy = request.distribution == Distribution::kCauchy;
-  node.marginal_norm = (cauchy ? gamma_ratio(node.q_minus_1) : 1.0) / (root_pi<double>() * node.m);
+  node.marginal_norm = (cauchy ? gamma_ratio(node.q_minus_1) : 1.0) / (kRootPi * node.m);
   node.two_q_minus_3 = 2.0 * shape.q - 3.0;
   node.scale = std::min(cauchy ? node.m / std::sqrt(std::max(1.0, 0.25 * shape.q)) : node.m, 1.0);
   node.cut = slope_cut(request, shape, kCutShare * request.tolerance);
@@ -411,7 +411,7 @@ void add_points(KernelData& data, const MomentsRequest& request) {
 
 }  // namespace
 
-double slope_with_bounces(double bounces) { return 1.0 / std::tan(0.5 * pi<double>() / bounces); }
+double slope_with_bounces(double bounces) { return 1.0 / std::tan(0.5 * pi / bounces); }
 
 std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t members) {
   const auto bit = [](bool is_set, unsigned position) { return static_cast<std::uint32_t>(is_set) << position; };

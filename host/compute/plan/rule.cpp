@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/constants/constants.hpp>
 #include <cmath>
 #include <numbers>
 
+#include "base/numbers.hpp"
 #include "model/gamma_ratio.hpp"
 
 namespace dolp {
@@ -82,8 +82,7 @@ double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double d
   }
   const double from_integer = std::abs(shape.q - std::round(shape.q));
   if (from_integer == 0.0) return kNone;
-  const double coefficient = gamma_ratio(shape.q - 1.0) / (boost::math::constants::root_pi<double>() *
-                                                           (2.0 * shape.q - 3.0) * (2.0 * shape.q - 2.0));
+  const double coefficient = gamma_ratio(shape.q - 1.0) / (kRootPi * (2.0 * shape.q - 3.0) * (2.0 * shape.q - 2.0));
   const double size = (2.0 * shape.q - 2.0) * std::log10(std::min(1.0, std::numbers::sqrt2 * shape.sigma)) +
                       std::log10(std::min(coefficient, 1.0) * std::min(1.0, 4.0 * from_integer));
   return size - 2.0 * shape.q * per_node;

@@ -1,11 +1,11 @@
 #include "plan/rule_nodes.hpp"
 
 #include <algorithm>
-#include <boost/math/constants/constants.hpp>
 #include <boost/math/special_functions/legendre.hpp>
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <numbers>
 #include <utility>
 
 #include "base/parallel_ranges.hpp"
@@ -53,7 +53,7 @@ void append_half(Nodes& nodes, const Rules& rules, int order) {
 
 // Midpoints psi of [0, pi] as tau = tan(psi/4), the weight chosen so that 4 / (1 + tau^2) * weight = pi / order.
 void append_circle(Nodes& nodes, const Rules& /*rules*/, int order) {
-  const double part = boost::math::constants::pi<double>() / order;
+  const double part = std::numbers::pi / order;
   for (int i = 0; i < order; ++i) {
     const double tau = std::tan(0.25 * part * (i + 0.5));
     nodes.push_back({tau, 0.25 * part * (1.0 + tau * tau)});

@@ -10,9 +10,9 @@
 namespace dolp {
 namespace {
 
-constexpr double kLeastNodes = 6.0;  // how the coefficients of fewer fall says nothing
-constexpr double kFirstNodes = 3.0;  // whatever the digits
-constexpr double kLeastGain = 1.25;  // values for each node
+constexpr double kLeastNodes = 6.0;      // how the coefficients of fewer fall says nothing
+constexpr double kFirstNodes = 3.0;      // whatever the digits
+constexpr double kLeastAxisGain = 1.25;  // values for each node
 constexpr double kGrazing_deg = 89.9;
 
 bool is_grazing(double theta_deg) { return theta_deg > kGrazing_deg; }
@@ -71,7 +71,7 @@ ShapeAxis shape_axis(const ShapeParameter& parameter, const std::vector<double>&
   const double half_length = 0.5 * (end - start);
   if (half_length <= 0.0) return without_interpolation(values);
   const double count = nodes_needed(parameter, half_length, digits);
-  if (!(count * kLeastGain <= static_cast<double>(values.size()))) return without_interpolation(values);
+  if (!(count * kLeastAxisGain <= static_cast<double>(values.size()))) return without_interpolation(values);
 
   ShapeAxis axis;
   const auto nodes = static_cast<Eigen::Index>(count);

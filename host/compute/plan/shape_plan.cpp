@@ -8,9 +8,9 @@
 namespace dolp {
 namespace {
 
-constexpr double kNodeTolerance = 0.125;  // of the request's tolerance: bounds grow by the interpolant's weights
-constexpr double kExtraDigits = 1.0;      // of the interpolation
-constexpr std::size_t kLeastGain = 2;     // entries of a direction and index for each node
+constexpr double kShapeNodeTolerance = 0.125;  // of the request's tolerance: bounds grow by the interpolant's weights
+constexpr double kExtraDigits = 1.0;           // of the interpolation
+constexpr std::size_t kLeastShapeGain = 2;     // entries of a direction and index for each node
 constexpr double kTail = 3.0;         // error bound over the largest of the last coefficients, where these fall fast
 constexpr double kSlowestFall = 0.9;  // of the last coefficients over those before them
 constexpr Eigen::Index kLastCoefficients = 3;
@@ -61,9 +61,9 @@ std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
   ShapePlan plan;
   plan.sigma = shape_axis(sigma_parameter(request.distribution), request.sigma, digits);
   plan.q = shape_axis(q_parameter(request), request.q, digits);
-  if (request.sigma.size() * request.q.size() < kLeastGain * plan.nodes_of_a_direction()) return std::nullopt;
+  if (request.sigma.size() * request.q.size() < kLeastShapeGain * plan.nodes_of_a_direction()) return std::nullopt;
   plan.nodes = request;
-  plan.nodes.tolerance = request.finer_tolerance(kNodeTolerance);
+  plan.nodes.tolerance = request.finer_tolerance(kShapeNodeTolerance);
   plan.nodes.sigma = plan.sigma.nodes;
   plan.nodes.q = plan.q.nodes;
   const std::size_t shapes = request.sigma.size() * request.q.size();

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <boost/container/small_vector.hpp>
-#include <boost/math/constants/constants.hpp>
 #include <cassert>
 #include <cmath>
-#include <limits>
+#include <numbers>
 
+#include "base/numbers.hpp"
 #include "model/status.hpp"
 #include "radiometry/reflectance.hpp"
 #include "radiometry/stokes.hpp"
@@ -14,10 +14,8 @@
 namespace dolp {
 namespace {
 
-using boost::math::constants::pi;
+using std::numbers::pi;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRightAngle_deg = 90.0;
 
 using enum Quantity;
@@ -212,7 +210,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   Stokes sum = stokes_sum(kept_rule_, reflectances, emissivities, model, cos_theta, !bistatic);
   if (bistatic) add_beam(sum, scene_.surface, beam_specular_, kept_rule_, scattered, cos_theta_i, cos_theta);
   add_path(sum, scene_.path, kept_rule_.path_exitance);
-  const double unit = bistatic ? 1.0 / pi<double>() : 1.0;  // an exitance, or the radiance that it is the integral of
+  const double unit = bistatic ? 1.0 / pi : 1.0;  // an exitance, or the radiance that it is the integral of
   const MeanReflectance mean = mean_reflectance(rule_, reflectances, cos_theta);
   result[kStokesI] = unit * sum.i;
   result[kStokesQ] = unit * sum.q + 0.0;  // without the sign of a zero

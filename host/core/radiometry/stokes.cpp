@@ -1,14 +1,14 @@
 #include "radiometry/stokes.hpp"
 
 #include <algorithm>
-#include <boost/math/constants/constants.hpp>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace dolp {
 namespace {
 
-using boost::math::constants::pi;
+using std::numbers::pi;
 
 // Rounding of the Stokes sums, each relative to its terms: Planck's exponent, at most 745, times an ulp or two.
 constexpr double kRadianceRounding = 1e-12;
@@ -97,7 +97,7 @@ void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRul
   const double rounding = kRadianceRounding + rule.relative_error;
   for (std::size_t j = 0; j < scattered.size(); ++j) {
     if (rule.samples[j].irradiance == 0.0) continue;
-    const double specular = pi<double>() * k_s * rule.samples[j].irradiance / cos_theta_r;
+    const double specular = pi * k_s * rule.samples[j].irradiance / cos_theta_r;
     const double unpolarised = rule.samples[j].irradiance * diffuse;
     const double error = std::abs(specular) * (scattered[j].error + rounding * std::abs(scattered[j].i));
     sum.i += specular * scattered[j].i + unpolarised;

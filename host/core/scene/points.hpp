@@ -38,6 +38,11 @@ struct Points {
   std::string where() const;
 };
 
+/// The value of a row, or `fallback` without such a column.
+inline double value_or(const Points::Column& column, std::size_t row, double fallback) {
+  return column ? (*column)[row] : fallback;
+}
+
 /// Points in memory: `count` of them.
 /// Errors: InputError as for a file, and for a column of another length.
 Points points_of(std::span<const Column> columns, std::size_t count, PointsKind kind);

@@ -11,18 +11,19 @@ namespace dolp {
 namespace {
 
 using Type = Key::Type;
-using Value = KeyValue;
 
 // What a place of a scene holds; a null pointer is a place that the scene does not have.
-std::optional<Value> value_at(const double* at) { return at ? std::optional(Value{.number = *at}) : std::nullopt; }
-std::optional<Value> value_at(const bool* at) {
-  return at ? std::optional(Value{.word = *at ? std::size_t{1} : 0, .is_set = *at}) : std::nullopt;
+std::optional<KeyValue> value_at(const double* at) {
+  return at ? std::optional(KeyValue{.number = *at}) : std::nullopt;
 }
-std::optional<Value> value_at(const std::string* at) {
-  return at && !at->empty() ? std::optional(Value{.text = *at}) : std::nullopt;
+std::optional<KeyValue> value_at(const bool* at) {
+  return at ? std::optional(KeyValue{.word = *at ? std::size_t{1} : 0, .is_set = *at}) : std::nullopt;
 }
-std::optional<Value> value_at(const std::vector<double>* at) {
-  return at && !at->empty() ? std::optional(Value{.numbers = *at}) : std::nullopt;
+std::optional<KeyValue> value_at(const std::string* at) {
+  return at && !at->empty() ? std::optional(KeyValue{.text = *at}) : std::nullopt;
+}
+std::optional<KeyValue> value_at(const std::vector<double>* at) {
+  return at && !at->empty() ? std::optional(KeyValue{.numbers = *at}) : std::nullopt;
 }
 
 // In all of these `place` gives the address in a Scene that the key stands for.
@@ -31,7 +32,7 @@ template <class Place>
 SceneKey number(const char* key, const char* unit, const NumberRange& range, const char* fallback, const char* meaning,
                 Place place) {
   return {{key, Type::kNumber, unit, range, {}, fallback, meaning},
-          [place](Scene& s, const Value& v) { *place(s) = v.number; },
+          [place](Scene& s, const KeyValue& v) { *place(s) = v.number; },
           [place](const Scene& s) { return value_at(place(s)); }};
 }
 
@@ -49,25 +50,25 @@ template <class Choice, class Place>
 SceneKey choice(const char* key, Choice fallback, const char* meaning, Place place) {
   const auto& words = Names<Choice>::kAll;
   return {{key, Type::kWord, "", {}, {words.begin(), words.end()}, name_of(fallback), meaning},
-          [place](Scene& s, const Value& v) { *place(s) = static_cast<Choice>(v.word); },
-          [place](const Scene& s) -> std::optional<Value> {
+          [place](Scene& s, const KeyValue& v) { *place(s) = static_cast<Choice>(v.word); },
+          [place](const Scene& s) -> std::optional<KeyValue> {
             const auto* at = place(s);
             if (!at) return std::nullopt;
-            return Value{.word = static_cast<std::size_t>(*at), .text = name_of(*at)};
+            return KeyValue{.word = static_cast<std::size_t>(*at), .text = name_of(*at)};
           }};
 }
 
 template <class Place>
 SceneKey flag(const char* key, const char* meaning, Place place) {
   return {{key, Type::kFlag, "", {}, {"false", "true"}, "false", meaning},
-          [place](Scene& s, const Value& v) { *place(s) = v.is_set; },
+          [place](Scene& s, const KeyValue& v) { *place(s) = v.is_set; },
           [place](const Scene& s) { return value_at(place(s)); }};
 }
 
 template <class Place>
 SceneKey text(const char* key, const char* meaning, Place place) {
   return {{key, Type::kText, "", {}, {}, "", meaning},
-          [place](Scene& s, const Value& v) { *place(s) = v.text; },
+          [place](Scene& s, const KeyValue& v) { *place(s) = v.text; },
           [place](const Scene& s) { return value_at(place(s)); }};
 }
 
@@ -75,7 +76,7 @@ SceneKey grid_axis(Axis axis, const char* fallback, const char* meaning) {
   const AxisDescription& described = description_of(axis);
   const std::string key = std::string("grid.") + described.column;
   return {{key, Type::kAxis, described.units, described.range, {}, fallback, meaning},
-          [axis](Scene& s, const Value& v) { s.grid[axis] = v.numbers; },
+          [axis](Scene& s, const KeyValue& v) { s.grid[axis] = v.numbers; },
           [axis](const Scene& s) { return value_at(&s.grid[axis]); }};
 }
 
@@ -93,11 +94,11 @@ std::vector<SceneKey> surface_keys() {
       number(
           "surface.n", "1", kNRange, "", "real part n of the refractive index n + ik; or material, or material_file",
           [](const Scene& s) { return has_own_index(s) ? &s.surface.material.constant.n : nullptr; },
-          [](Scene& s, const Value& v) { s.surface.material.constant.n = v.number; }),
+          [](Scene& s, const KeyValue& v) { s.surface.material.constant.n = v.number; }),
       number(
           "surface.k", "1", kKRange, "0", "imaginary part k of the refractive index n + ik, with surface.n",
           [](const Scene& s) { return has_own_index(s) ? &s.surface.material.constant.k : nullptr; },
-          [](Scene& s, const Value& v) { s.surface.material.constant.k = v.number; }),
+          [](Scene& s, const KeyValue& v) { s.surface.material.constant.k = v.number; }),
       text("surface.material", "a built-in material by name (dolp materials lists them), instead of n and k",
            [](auto& s) { return &s.names.material; }),
       text("surface.material_file", "your own n and k: refractiveindex.info YAML or CSV, instead of n and k",
@@ -139,7 +140,7 @@ std::vector<SceneKey> radiation_keys() {
       number(
           "source.irradiance", "W m-2 um-1", kNonNegativeRange, "", "E0 at normal incidence, flat over a band",
           [](const Scene& s) { return is_of_kind(s, Source::Kind::kFlat) ? &s.source->irradiance : nullptr; },
-          [](Scene& s, const Value& v) {
+          [](Scene& s, const KeyValue& v) {
             s.source->kind = Source::Kind::kFlat;
             s.source->irradiance = v.number;
           }),
@@ -149,7 +150,7 @@ std::vector<SceneKey> radiation_keys() {
           [](const Scene& s) {
             return is_of_kind(s, Source::Kind::kRelative) ? &s.source->relative_irradiance : nullptr;
           },
-          [](Scene& s, const Value& v) {
+          [](Scene& s, const KeyValue& v) {
             s.source->kind = Source::Kind::kRelative;
             s.source->relative_irradiance = v.number;
           }),
@@ -160,7 +161,7 @@ std::vector<SceneKey> radiation_keys() {
         {"sun"},
         "",
         "E0 of the sun at the top of the atmosphere; instead of irradiance"},
-       [](Scene& s, const Value& v) { s.names.source_preset = v.text; },
+       [](Scene& s, const KeyValue& v) { s.names.source_preset = v.text; },
        [](const Scene& s) { return value_at(&s.names.source_preset); }},
       text("source.file", "your own E0: CSV of wavelength_um, irradiance; instead of irradiance",
            [](auto& s) { return &s.names.source_file; }),
@@ -175,12 +176,12 @@ std::vector<SceneKey> radiation_keys() {
           "path.temperature_K", "K", kBackgroundTemperatureRange, "",
           "temperature of the path, whose radiance is (1 - tau) B(T); without it and radiance, none",
           [](const Scene& s) { return s.path && s.path->temperature_K ? &*s.path->temperature_K : nullptr; },
-          [](Scene& s, const Value& v) { s.path->temperature_K = v.number; }),
+          [](Scene& s, const KeyValue& v) { s.path->temperature_K = v.number; }),
       number(
           "path.radiance", "W m-2 sr-1 um-1", kNonNegativeRange, "",
           "path radiance L_path; instead of path.temperature_K",
           [](const Scene& s) { return s.path && s.path->radiance ? &*s.path->radiance : nullptr; },
-          [](Scene& s, const Value& v) { s.path->radiance = v.number; }),
+          [](Scene& s, const KeyValue& v) { s.path->radiance = v.number; }),
   };
 }
 
@@ -189,16 +190,16 @@ std::vector<SceneKey> geometry_keys() {
       number(
           "spectrum.wavelength_um", "um", kWavelengthUmRange, "", "wavelength lambda; or band_um",
           [](const Scene& s) { return s.spectrum.is_band() ? nullptr : &s.spectrum.min_um; },
-          [](Scene& s, const Value& v) {
+          [](Scene& s, const KeyValue& v) {
             s.spectrum = {v.number, v.number};
           }),
       {{"spectrum.band_um", Type::kPair, "um", kWavelengthUmRange, {}, "", "band [lambda1, lambda2] to integrate over"},
-       [](Scene& s, const Value& v) {
+       [](Scene& s, const KeyValue& v) {
          s.spectrum = {v.numbers[0], v.numbers[1]};
        },
-       [](const Scene& s) -> std::optional<Value> {
+       [](const Scene& s) -> std::optional<KeyValue> {
          if (!s.spectrum.is_band()) return std::nullopt;
-         return Value{.numbers = {s.spectrum.min_um, s.spectrum.max_um}};
+         return KeyValue{.numbers = {s.spectrum.min_um, s.spectrum.max_um}};
        }},
       choice("geometry.mode", Geometry().mode,
              "exitances, with rho(theta) for emission, surroundings and a source at zenith theta; or radiances in a "
@@ -231,10 +232,10 @@ std::vector<SceneKey> geometry_keys() {
         "auto",
         "between slope distributions of a dense grid and from some of many indices to all, within the tolerance; off: "
         "every entry is integrated by itself"},
-       [](Scene& s, const Value& v) { s.accuracy.may_interpolate = v.word == 0; },
-       [](const Scene& s) -> std::optional<Value> {
+       [](Scene& s, const KeyValue& v) { s.accuracy.may_interpolate = v.word == 0; },
+       [](const Scene& s) -> std::optional<KeyValue> {
          const bool is_auto = s.accuracy.may_interpolate;
-         return Value{.word = is_auto ? std::size_t{0} : 1, .text = is_auto ? "auto" : "off"};
+         return KeyValue{.word = is_auto ? std::size_t{0} : 1, .text = is_auto ? "auto" : "off"};
        }},
   };
 }

@@ -24,7 +24,7 @@ constexpr double kPieceExponentChange = 4.0;
 constexpr double kPieceWavelengthRatio = 1.5;
 // h c / k_B in um K, to choose pieces with, and the exponent beyond which Planck's function underflows.
 constexpr double kExponentScale_umK = 14388.0;
-constexpr double kLargestExponent = 750.0;
+constexpr double kLargestPlanckExponent = 750.0;
 // Pieces are good to rounding; this bounds what is left in their sums.
 constexpr double kPieceRelativeError = 1e-12;
 
@@ -96,7 +96,7 @@ bool is_one_piece(const Scene& scene, double from_um, double to_um) {
   return std::ranges::all_of(temperatures(scene), [&](double temperature_K) {
     if (temperature_K == 0.0) return true;
     const auto exponent = [&](double wavelength_um) {
-      return std::min(kExponentScale_umK / (wavelength_um * temperature_K), kLargestExponent);
+      return std::min(kExponentScale_umK / (wavelength_um * temperature_K), kLargestPlanckExponent);
     };
     return exponent(from_um) - exponent(to_um) <= kPieceExponentChange;
   });

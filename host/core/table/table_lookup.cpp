@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <dolp/errors.hpp>
-#include <limits>
 #include <set>
 
+#include "base/numbers.hpp"
 #include "model/status.hpp"
 
 namespace dolp {
@@ -26,7 +26,6 @@ constexpr std::size_t kLevels = 3;       // changes that are compared
 constexpr double kInside = 10.0;
 constexpr double kAtEnds = 20.0;
 constexpr double kSlowestFall = 0.9;  // of the changes
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using enum Quantity;
 

@@ -12,12 +12,12 @@
 namespace dolp::fit {
 namespace {
 
-constexpr std::size_t kValues = 21;   // of each parameter
-constexpr double kWider = 1.4;        // than the 95 % interval of one parameter, which is 0.8 of that of two
-constexpr double kFirstWidth = 2e-3;  // from the bottom of a valley to its side, in coordinates
-constexpr int kMostDoublings = 10;    // of it
-constexpr double kSide = 7.0;         // growth at a side: above the highest contour
-constexpr double kLeastGain = 1e-3;   // of the scale: far below what a contour shows
+constexpr std::size_t kValues = 21;         // of each parameter
+constexpr double kWider = 1.4;              // than the 95 % interval of one parameter, which is 0.8 of that of two
+constexpr double kFirstWidth = 2e-3;        // from the bottom of a valley to its side, in coordinates
+constexpr int kMostDoublings = 10;          // of it
+constexpr double kSide = 7.0;               // growth at a side: above the highest contour
+constexpr double kLeastContourGain = 1e-3;  // of the scale: far below what a contour shows
 
 double share_of(std::size_t value) { return static_cast<double>(value) / static_cast<double>(kValues - 1); }
 
@@ -66,7 +66,7 @@ class Map {
     minimum_ = residuals_.linearised(best);
     descent_.loss = options.loss;
     descent_.scale = result.scale;
-    descent_.least_gain = kLeastGain;
+    descent_.least_gain = kLeastContourGain;
   }
 
   Contours contours() {

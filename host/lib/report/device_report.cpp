@@ -12,7 +12,6 @@
 namespace dolp {
 namespace {
 
-constexpr double kMebibyte = 1048576.0;
 // What each arithmetic is asked for: near the best that it can do.
 constexpr double kFloatTolerance = 1e-6;
 constexpr double kDoubleTolerance = 1e-9;

@@ -9,8 +9,6 @@ namespace dolp {
 namespace {
 
 constexpr int kLabelWidth = 11;
-constexpr double kMebibyte = 1048576.0;
-constexpr double kPoints = 100.0;  // of DOLP
 
 std::string state_text(EffectState state) {
   return state == EffectState::kNotNeeded ? "not needed" : state_name(state);

@@ -10,7 +10,6 @@
 namespace dolp {
 namespace {
 
-constexpr double kPoints = 100.0;        // of DOLP
 constexpr double kFewEvaluations = 1e6;  // a tenth of a second of one core
 
 Report range_report(const char* what, double limit, const EnergyRange& range) {

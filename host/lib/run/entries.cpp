@@ -57,10 +57,6 @@ std::vector<double> wavelengths_of(const Scene& scene, const Points& points) {
   return wavelengths;
 }
 
-double value_or(const Points::Column& column, std::size_t row, double fallback) {
-  return column ? (*column)[row] : fallback;
-}
-
 }  // namespace
 
 void check_smith(const Scene& scene, const Points& points) {

@@ -1,9 +1,9 @@
 #include "run/grazing_limit.hpp"
 
-#include <boost/math/constants/constants.hpp>
 #include <boost/math/quadrature/tanh_sinh.hpp>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "model/smooth_surface.hpp"
 
@@ -39,7 +39,7 @@ Moments grazing_limit_moments(const OpticalConstants& index, double q) {
       const double x = std::sin(psi);
       return x > kSmallestCosine ? std::pow(x, 4.0 - 2.0 * q) * of_cosine(x) : 0.0;
     };
-    constexpr double kEnd = boost::math::constants::half_pi<double>();
+    constexpr double kEnd = 0.5 * std::numbers::pi;
     const double above = critical < kEnd ? integrator.integrate(integrand, critical, kEnd, kAgreement) : 0.0;
     return critical > 0.0 ? integrator.integrate(integrand, 0.0, critical, kAgreement) + above : above;
   };

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "base/numbers.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
@@ -15,13 +16,13 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kLines = 3;        // along an axis, at different values of the others
-constexpr std::size_t kParts = 4;        // of an axis, at whose ends the stretches lie
-constexpr std::size_t kStretch = 8;      // values: all that the error of a lookup in the middle depends on
-constexpr std::size_t kLeastValues = 4;  // for which a lookup states an error
-constexpr int kMostAttempts = 4;         // to find how many values are needed
-constexpr double kMostGrowth = 8.0;      // of the number of values in one attempt
-constexpr double kMargin = 1.5;          // of the error that an attempt aims at
+constexpr std::size_t kLines = 3;         // along an axis, at different values of the others
+constexpr std::size_t kParts = 4;         // of an axis, at whose ends the stretches lie
+constexpr std::size_t kStretch = 8;       // values: all that the error of a lookup in the middle depends on
+constexpr std::size_t kLeastValues = 4;   // for which a lookup states an error
+constexpr int kMostAttempts = 4;          // to find how many values are needed
+constexpr double kMostValueGrowth = 8.0;  // of the number of values in one attempt
+constexpr double kMargin = 1.5;           // of the error that an attempt aims at
 // A lookup reads six values of theta, sigma and q, and four of wavelength, n and k. The error falls with this power of
 // the spacing; the sizes of the weights in the middle of a cell add up to so much, which multiplies the errors along
 // the other axes.
@@ -29,7 +30,6 @@ constexpr double kOrderOfSix = 6.0;
 constexpr double kOrderOfFour = 4.0;
 constexpr double kWeightsOfSix = 356.0 / 256.0;
 constexpr double kWeightsOfFour = 20.0 / 16.0;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool is_read_with_four(Axis axis) { return axis < Axis::kTheta; }
 
@@ -80,7 +80,8 @@ class Forecast {
       }
       if (attempt == kMostAttempts) return enough;
       const double growth = std::isfinite(error) ? std::pow(kMargin * error / wanted, 1.0 / order) : 2.0;
-      const double steps = static_cast<double>(values - 1) * std::clamp(growth, 1.0 / kMostGrowth, kMostGrowth);
+      const double steps =
+          static_cast<double>(values - 1) * std::clamp(growth, 1.0 / kMostValueGrowth, kMostValueGrowth);
       std::size_t next = std::max(kLeastValues, static_cast<std::size_t>(std::ceil(steps)) + 1);
       if (enough > 0) next = std::min(next, enough);
       if (enough > 0 && next <= too_few) next = (enough + too_few) / 2;

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/constants/constants.hpp>
 #include <cmath>
 #include <dolp/errors.hpp>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <stdexcept>
 
@@ -17,7 +17,7 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kPointsAtOnce = 1U << 20U;  // bounds the memory of the requests
+constexpr std::size_t kGeometriesAtOnce = 1U << 20U;  // bounds the memory of the requests
 
 bool is_grazing(const BeamAngles& angles) { return angles.theta_i_deg == 90.0 || angles.theta_r_deg == 90.0; }
 
@@ -61,7 +61,7 @@ ScatteringRequest request_for(const Scene& scene, std::span<const MuellerPoint> 
 double diffuse_brdf(const Surface& surface, const BeamAngles& angles) {
   if (surface.diffuse == 0.0) return 0.0;
   const double cosines = cos_sin_deg(angles.theta_i_deg).cos * cos_sin_deg(angles.theta_r_deg).cos;
-  return surface.diffuse / boost::math::constants::pi<double>() * std::pow(cosines, surface.diffuse_exponent);
+  return surface.diffuse / std::numbers::pi * std::pow(cosines, surface.diffuse_exponent);
 }
 
 /// `specular` is null for a point that the evaluator is not asked for.
@@ -79,10 +79,6 @@ MuellerMatrix elements(const Surface& surface, const MuellerPoint& point, const 
   }
   f[0] += diffuse_brdf(surface, point.angles);
   return f;
-}
-
-double value_or(const std::optional<std::vector<double>>& column, std::size_t row, double fallback) {
-  return column ? (*column)[row] : fallback;
 }
 
 }  // namespace
@@ -119,8 +115,8 @@ std::vector<MuellerMatrix> evaluate_mueller(const Scene& scene, const std::vecto
   const Precision precision = mueller_precision(scene.accuracy, evaluator.has_double());
   std::vector<MuellerMatrix> results;
   results.reserve(points.size());
-  for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce) {
-    const auto block = std::span(points).subspan(first, std::min(kPointsAtOnce, points.size() - first));
+  for (std::size_t first = 0; first < points.size(); first += kGeometriesAtOnce) {
+    const auto block = std::span(points).subspan(first, std::min(kGeometriesAtOnce, points.size() - first));
     const Progress block_progress = [&](std::size_t done, std::size_t total) {
       return !progress || progress(first + block.size() * done / total, points.size());
     };

@@ -13,7 +13,7 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kEntriesAtOnce = 65536;  // of a thread
+constexpr std::size_t kSummaryEntriesAtOnce = 65536;  // of a thread
 
 using Range = std::pair<double, double>;
 
@@ -49,9 +49,9 @@ void add_result(RunSummary& summary, double theta_deg, double sigma, const Point
 
 void RunSummary::add(const Scene& scene, const SceneEntries& part, std::span<const PointResult> results) {
   const bool bistatic = scene.geometry.mode == Mode::kBistatic;
-  std::vector<RunSummary> of_ranges((results.size() + kEntriesAtOnce - 1) / kEntriesAtOnce);
-  parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
-    RunSummary& own = of_ranges[first / kEntriesAtOnce];
+  std::vector<RunSummary> of_ranges((results.size() + kSummaryEntriesAtOnce - 1) / kSummaryEntriesAtOnce);
+  parallel_ranges(results.size(), kSummaryEntriesAtOnce, [&](std::size_t first, std::size_t last) {
+    RunSummary& own = of_ranges[first / kSummaryEntriesAtOnce];
     own.entries = last - first;
     for (std::size_t i = first; i < last; ++i) {
       const SceneEntry entry = part[i];

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <dolp/results.hpp>
+#include "base/numbers.hpp"
 #include "model/choices.hpp"
 #include "reference/hemisphere.hpp"
 #include "run/scene_run.hpp"
@@ -17,7 +18,6 @@
 namespace dolp {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Rounding of r / cos(theta) and of the quotients of stored values.
 constexpr double kQuotientRounding = 8.0 * std::numeric_limits<double>::epsilon();
 

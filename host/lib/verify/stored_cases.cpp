@@ -14,7 +14,7 @@
 namespace dolp {
 namespace {
 
-constexpr std::array<std::string_view, 17> kColumns{
+constexpr std::array<std::string_view, 17> kCaseColumns{
     "distribution",  "masking", "theta_deg", "sigma",   "q",         "n",         "k",
     "r_i",           "r_q",     "albedo",    "deficit", "r_i_error", "r_q_error", "albedo_error",
     "deficit_error", "case",    "origin"};
@@ -24,7 +24,7 @@ Choice choice(const CsvReader& row, std::size_t column) {
   const std::string_view word = row.cells()[column];
   const std::optional<Choice> found = named<Choice>(word);
   if (!found) {
-    row.fail(fmt::format("{} = {}: must be one of {}", kColumns[column], one_line(word),
+    row.fail(fmt::format("{} = {}: must be one of {}", kCaseColumns[column], one_line(word),
                          fmt::join(Names<Choice>::kAll, ", ")));
   }
   return *found;
@@ -32,8 +32,8 @@ Choice choice(const CsvReader& row, std::size_t column) {
 
 StoredCase parse_case(const CsvReader& row) {
   const std::size_t cells = row.cells().size();
-  if (cells != kColumns.size()) row.fail(fmt::format("{} cells, {} are expected", cells, kColumns.size()));
-  const auto number = [&row](std::size_t column) { return row.number(column, kColumns[column]); };
+  if (cells != kCaseColumns.size()) row.fail(fmt::format("{} cells, {} are expected", cells, kCaseColumns.size()));
+  const auto number = [&row](std::size_t column) { return row.number(column, kCaseColumns[column]); };
   StoredCase stored;
   stored.distribution = choice<Distribution>(row, 0);
   stored.masking = choice<Masking>(row, 1);
@@ -54,8 +54,8 @@ StoredCase parse_case(const CsvReader& row) {
 std::vector<StoredCase> parse_stored_cases(std::string_view text, const std::string& name) {
   std::vector<StoredCase> cases;
   CsvReader row(text, name);
-  const bool is_header = row.next() && std::ranges::equal(row.cells(), kColumns);
-  if (!is_header) row.fail(fmt::format("the columns must be {}", fmt::join(kColumns, ",")));
+  const bool is_header = row.next() && std::ranges::equal(row.cells(), kCaseColumns);
+  if (!is_header) row.fail(fmt::format("the columns must be {}", fmt::join(kCaseColumns, ",")));
   while (row.next()) cases.push_back(parse_case(row));
   return cases;
 }

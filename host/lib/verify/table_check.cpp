@@ -6,12 +6,12 @@
 #include <array>
 #include <cmath>
 #include <dolp/errors.hpp>
-#include <limits>
 #include <random>
 #include <set>
 
 #include <dolp/number_range.hpp>
 #include <dolp/results.hpp>
+#include "base/numbers.hpp"
 #include "model/status.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
@@ -19,7 +19,6 @@
 namespace dolp {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The reference is a hundred times better than the table if it can, and this good at least.
 constexpr double kReferenceTolerance = 1e-11;
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "base/parallel_ranges.hpp"
 #include "calibrate/random_entries.hpp"
 #include "evaluate/text/profile.hpp"
@@ -18,7 +19,6 @@ namespace dolp {
 namespace {
 
 constexpr std::array kTolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8};
-constexpr double kDoubleRoundoff = 0x1p-53;
 constexpr double kCornerShare = 0.25;
 // Between 1, what computing a scattered point again costs, and 30, what it costs in a dense table: interpolation spares
 // all but a thirtieth of the entries, and none of those that are computed again by themselves.

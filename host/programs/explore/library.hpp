@@ -1,7 +1,10 @@
 // The public header, and what the window uses of it.
 #pragma once
 
+#include <algorithm>
 #include <dolp/dolp.hpp>
+#include <string>
+#include <vector>
 
 namespace dolp::explore {
 
@@ -9,5 +12,11 @@ using api::Effect;
 using api::Evaluator;
 using api::Results;
 using api::Scene;
+
+inline bool is_bistatic(const Scene& scene) { return scene.word("geometry.mode") == "bistatic"; }
+
+inline bool contains(const std::vector<std::string>& keys, const std::string& key) {
+  return std::ranges::find(keys, key) != keys.end();
+}
 
 }  // namespace dolp::explore

@@ -9,7 +9,6 @@ namespace {
 
 bool is_cauchy(const Scene& s) { return s.word("surface.distribution") == "cauchy"; }
 bool is_diffuse(const Scene& s) { return s.number("surface.diffuse") > 0.0; }
-bool is_bistatic(const Scene& s) { return s.word("geometry.mode") == "bistatic"; }
 
 Parameter slider(const char* key, const char* symbol, SliderRange range, const char* equation,
                  bool (*is_used)(const Scene&) = nullptr) {

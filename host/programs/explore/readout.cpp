@@ -43,8 +43,6 @@ std::vector<Part> radiating_parts(const Session& session) {
   return parts;
 }
 
-bool is_bistatic(const Scene& scene) { return scene.word("geometry.mode") == "bistatic"; }
-
 }  // namespace
 
 std::string peak_text(const Session& session) {

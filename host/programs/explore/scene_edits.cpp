@@ -9,10 +9,6 @@
 namespace dolp::explore {
 namespace {
 
-bool contains(const std::vector<std::string>& keys, const std::string& key) {
-  return std::ranges::find(keys, key) != keys.end();
-}
-
 /// Whether a change makes an older change of `other` void.
 bool replaces(const Setting& change, const std::string& other) {
   const std::string& key = change.key;

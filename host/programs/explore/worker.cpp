@@ -20,10 +20,6 @@ Job with_tolerance(Job job) {
   return job;
 }
 
-bool contains(const std::vector<std::string>& keys, const std::string& key) {
-  return std::ranges::find(keys, key) != keys.end();
-}
-
 }  // namespace
 
 Worker::Worker(Evaluate evaluate, std::function<void()> on_news)

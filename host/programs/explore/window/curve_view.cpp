@@ -13,7 +13,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr float kWidth = 2.0F;
+constexpr float kCurveWidth = 2.0F;
 
 /// A curve as it is drawn.
 struct Shown {
@@ -131,7 +131,7 @@ void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
   bool is_good_part = true;
   const auto finish = [&] {
     const CurveStyle bad{kBadColour, 4.0F, 4.0F};
-    draw_line(plot.list(), line, is_good_part ? shown.style : bad, is_good_part ? kWidth : 1.0F);
+    draw_line(plot.list(), line, is_good_part ? shown.style : bad, is_good_part ? kCurveWidth : 1.0F);
     line.clear();
   };
   for (const Point& point : shown.curve->points()) {
@@ -164,7 +164,7 @@ void draw_legend(const Plot& plot, const std::vector<Shown>& curves, const Sessi
   const auto entry = [&](const CurveStyle& style, const std::string& name, ImU32 colour = kTextColour) {
     const float middle = at.y + 0.5F * line;
     draw_label(plot.list(), {at.x + 2.6F * line, at.y}, {0.0F, 0.0F}, colour, name);
-    draw_line(plot.list(), {{at.x, middle}, {at.x + 2.2F * line, middle}}, style, kWidth);
+    draw_line(plot.list(), {{at.x, middle}, {at.x + 2.2F * line, middle}}, style, kCurveWidth);
     at.y += 1.25F * line;
   };
   const auto curve = [&](const Shown& of) {

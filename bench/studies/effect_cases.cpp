@@ -40,8 +40,8 @@ Axes grid_of(std::size_t entries) {
 }
 
 /// The stainless steel of the paper, that emits and nothing else.
-Scene emitting(const Axes& grid) {
-  Scene scene;
+SceneValues emitting(const Axes& grid) {
+  SceneValues scene;
   scene.surface.material.constant = {1.508, 0.0};
   scene.emission = Emission{kTemperature, EmissionModel::kMoments};
   scene.spectrum.min_um = scene.spectrum.max_um = 10.6;
@@ -50,15 +50,15 @@ Scene emitting(const Axes& grid) {
 }
 
 /// The same, seen from one direction beside the plane of the source.
-Scene seen_from_one_side(const Axes& grid) {
-  Scene scene = emitting(grid);
+SceneValues seen_from_one_side(const Axes& grid) {
+  SceneValues scene = emitting(grid);
   scene.geometry = {Mode::kBistatic, 60.0, 90.0};
   return scene;
 }
 
 /// A day: the same under a clear sky, with one masking that keeps energy.
-Scene under_the_sky(const Axes& grid) {
-  Scene scene = seen_from_one_side(grid);
+SceneValues under_the_sky(const Axes& grid) {
+  SceneValues scene = seen_from_one_side(grid);
   scene.surface.masking = Masking::kSmith;
   scene.surroundings = Surroundings{kColdSky};
   return scene;
@@ -90,10 +90,10 @@ std::vector<double> spaced(double first, double last, std::size_t count) {
 /// A name and what it makes of the base.
 struct Change {
   std::string name;
-  std::function<void(Scene&)> apply = [](Scene&) {};
+  std::function<void(SceneValues&)> apply = [](SceneValues&) {};
 };
 
-EffectGroup group(const std::string& effect, const Scene& base, const std::vector<Change>& changes) {
+EffectGroup group(const std::string& effect, const SceneValues& base, const std::vector<Change>& changes) {
   EffectGroup made{effect, name_of(base.geometry.mode), {}};
   for (const Change& change : changes) {
     made.settings.push_back({change.name, base});
@@ -103,38 +103,38 @@ EffectGroup group(const std::string& effect, const Scene& base, const std::vecto
 }
 
 Change masking(Masking masking) {
-  return {name_of(masking), [masking](Scene& scene) { scene.surface.masking = masking; }};
+  return {name_of(masking), [masking](SceneValues& scene) { scene.surface.masking = masking; }};
 }
 
 Change scattering(Scattering scattering) {
-  return {name_of(scattering), [scattering](Scene& scene) { scene.surface.scattering = scattering; }};
+  return {name_of(scattering), [scattering](SceneValues& scene) { scene.surface.scattering = scattering; }};
 }
 
 Change emission_model(EmissionModel model) {
-  return {name_of(model), [model](Scene& scene) { scene.emission->model = model; }};
+  return {name_of(model), [model](SceneValues& scene) { scene.emission->model = model; }};
 }
 
 Change source(const std::string& name, double irradiance) {
-  return {name, [irradiance](Scene& scene) { scene.source = flat_source(irradiance); }};
+  return {name, [irradiance](SceneValues& scene) { scene.source = flat_source(irradiance); }};
 }
 
 Change surroundings(const std::string& name, double temperature_K) {
-  return {name, [temperature_K](Scene& scene) { scene.surroundings = Surroundings{temperature_K}; }};
+  return {name, [temperature_K](SceneValues& scene) { scene.surroundings = Surroundings{temperature_K}; }};
 }
 
-void set_band(Scene& scene) { scene.spectrum = {8.0, 14.0}; }
+void set_band(SceneValues& scene) { scene.spectrum = {8.0, 14.0}; }
 
-std::vector<EffectGroup> surface_groups(const Scene& base) {
-  return {group("specular", base, {{"k_s = 1"}, {"k_s = 0", [](Scene& scene) { scene.surface.specular = 0.0; }}}),
-          group("diffuse", base, {{"off"}, {"k_d = 0.3", [](Scene& scene) { scene.surface.diffuse = 0.3; }}}),
+std::vector<EffectGroup> surface_groups(const SceneValues& base) {
+  return {group("specular", base, {{"k_s = 1"}, {"k_s = 0", [](SceneValues& scene) { scene.surface.specular = 0.0; }}}),
+          group("diffuse", base, {{"off"}, {"k_d = 0.3", [](SceneValues& scene) { scene.surface.diffuse = 0.3; }}}),
           group("distribution", base,
-                {{"cauchy"}, {"gaussian", [](Scene& scene) { scene.surface.distribution = Distribution::kGaussian; }}}),
+                {{"cauchy"}, {"gaussian", [](SceneValues& scene) { scene.surface.distribution = Distribution::kGaussian; }}}),
           group("masking", base,
                 {masking(Masking::kNone), masking(Masking::kVCavity), masking(Masking::kIntegral),
                  masking(Masking::kSmith)}),
           group("complex index", base,
-                {{"k = 0"}, {"k = 0.5", [](Scene& scene) { scene.surface.material.constant.k = 0.5; }}}),
-          group("axes of index", base, {{"one n and k"}, {"20 n x 20 k", [](Scene& scene) {
+                {{"k = 0"}, {"k = 0.5", [](SceneValues& scene) { scene.surface.material.constant.k = 0.5; }}}),
+          group("axes of index", base, {{"one n and k"}, {"20 n x 20 k", [](SceneValues& scene) {
                                                             scene.grid[Axis::kN] = spaced(1.3, 2.5, 20);
                                                             scene.grid[Axis::kK] = spaced(0.01, 1.0, 20);
                                                           }}})};
@@ -142,24 +142,24 @@ std::vector<EffectGroup> surface_groups(const Scene& base) {
 
 /// What goes beyond single scattering, with the one masking that has all of it.
 std::vector<EffectGroup> scattering_groups(const Axes& grid) {
-  Scene rough = emitting(grid);
+  SceneValues rough = emitting(grid);
   rough.surface.masking = Masking::kVCavity;
   // No slope that counts is hit twice, so that the plan leaves further bounces out.
-  Scene smooth = rough;
+  SceneValues smooth = rough;
   smooth.surface.distribution = Distribution::kGaussian;
   for (double& sigma : smooth.grid[Axis::kSigma]) sigma *= kSmooth;
   return {group("scattering", rough, {scattering(Scattering::kSingle), scattering(Scattering::kMultiple)}),
           group("smooth surface", smooth, {scattering(Scattering::kSingle), scattering(Scattering::kMultiple)}),
           group("direct emission", rough,
                 {emission_model(EmissionModel::kMoments), emission_model(EmissionModel::kDirect)}),
-          group("bracket", rough, {{"off"}, {"on", [](Scene& scene) { scene.emission->has_bracket = true; }}})};
+          group("bracket", rough, {{"off"}, {"on", [](SceneValues& scene) { scene.emission->has_bracket = true; }}})};
 }
 
-std::vector<EffectGroup> radiation_groups(const Scene& base, const Scene& bistatic) {
-  Scene lit = bistatic;
+std::vector<EffectGroup> radiation_groups(const SceneValues& base, const SceneValues& bistatic) {
+  SceneValues lit = bistatic;
   lit.source = flat_source(kIrradiance);
   return {group("emission", base, {emission_model(EmissionModel::kMoments), emission_model(EmissionModel::kFresnel)}),
-          group("emission", lit, {{"on"}, {"off", [](Scene& scene) { scene.emission.reset(); }}}),
+          group("emission", lit, {{"on"}, {"off", [](SceneValues& scene) { scene.emission.reset(); }}}),
           group("source", base, {{"off"}, source("on", kIrradiance)}),
           group("source", bistatic, {{"off"}, source("on", kIrradiance)}),
           group("surroundings", base,
@@ -167,11 +167,11 @@ std::vector<EffectGroup> radiation_groups(const Scene& base, const Scene& bistat
           group("path", base,
                 {{"off"},
                  {"on",
-                  [](Scene& scene) {
+                  [](SceneValues& scene) {
                     scene.path = Path{0.8, 280.0, std::nullopt};
                   }}}),
           group("band", base,
-                {{"one wavelength"}, {"8-14 um, constant n", set_band}, {"8-14 um, n(lambda)", [](Scene& scene) {
+                {{"one wavelength"}, {"8-14 um, constant n", set_band}, {"8-14 um, n(lambda)", [](SceneValues& scene) {
                                                                            set_band(scene);
                                                                            scene.surface.material = dispersive();
                                                                          }}})};
@@ -179,12 +179,12 @@ std::vector<EffectGroup> radiation_groups(const Scene& base, const Scene& bistat
 
 /// Radiation that hardly counts beside another one.
 std::vector<EffectGroup> daylight_groups(const Axes& grid) {
-  Scene thermal = under_the_sky(grid);
+  SceneValues thermal = under_the_sky(grid);
   thermal.accuracy.tolerance = kOnePercent;
-  Scene visible = under_the_sky(grid);
+  SceneValues visible = under_the_sky(grid);
   visible.spectrum.min_um = visible.spectrum.max_um = kVisible_um;
   visible.source = flat_source(kSunInVisible);
-  const auto without_emission = [](Scene& scene) {
+  const auto without_emission = [](SceneValues& scene) {
     scene.emission.reset();
     scene.surroundings.reset();
   };
@@ -196,7 +196,7 @@ std::vector<EffectGroup> daylight_groups(const Axes& grid) {
 
 std::vector<EffectGroup> effect_groups(std::size_t entries) {
   const Axes grid = grid_of(entries);
-  const Scene base = emitting(grid);
+  const SceneValues base = emitting(grid);
   std::vector<EffectGroup> groups = surface_groups(base);
   for (std::vector<EffectGroup>& more :
        std::array{scattering_groups(grid), radiation_groups(base, seen_from_one_side(grid)), daylight_groups(grid)}) {

@@ -12,7 +12,7 @@ namespace dolp::bench {
 /// One scene of a group.
 struct EffectSetting {
   std::string name;  ///< "smith", "off", ...
-  Scene scene;
+  SceneValues scene;
 };
 
 /// Scenes that differ in one effect alone; the first is the base of the ratios.

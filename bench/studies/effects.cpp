@@ -10,7 +10,7 @@
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/choices.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "plan/effects.hpp"
 #include "run/scene_run.hpp"
 #include "studies/effect_cases.hpp"
@@ -37,7 +37,7 @@ struct Change {
 Change change_of(const std::vector<PointResult>& planned, const std::vector<PointResult>& all) {
   Change change;
   for (std::size_t i = 0; i < planned.size(); ++i) {
-    if (((planned[i].status | all[i].status) & kStatusNoDolpPromised) != 0) continue;
+    if (((planned[i].status | all[i].status) & kNoDolpPromised) != 0) continue;
     change.dolp = std::max(change.dolp, std::abs(planned[i][Quantity::kDolp] - all[i][Quantity::kDolp]));
     ++change.compared;
   }
@@ -139,7 +139,7 @@ Study::Study(StudyRun& run)
 }
 
 void Study::describe() {
-  const Scene& base = groups_.front().settings.front().scene;
+  const SceneValues& base = groups_.front().settings.front().scene;
   run_.describe("effects", "largest |change of DOLP| by what the plan drops, entries with status 1, 4 or 8 left out",
                 "seconds an entry, median: plan and evaluation on the Vulkan device, whose creation is not counted");
   run_.json()["tolerance"] = base.accuracy.tolerance;

@@ -14,7 +14,7 @@ namespace dolp::bench {
 
 /// A scene, what varies in it, and what is true.
 struct FitSet {
-  Scene scene;
+  SceneValues scene;
   std::vector<FitRange> parameters;
   Eigen::VectorXd truth;
   Observable observable = Observable::kQOverI;

@@ -38,8 +38,8 @@ Axes steel_grid(const GridSize& size) {
   return grid;
 }
 
-Scene steel_scene(Masking masking, const GridSize& size) {
-  Scene scene;
+SceneValues steel_scene(Masking masking, const GridSize& size) {
+  SceneValues scene;
   scene.surface.material.constant = {kIndex, 0.0};
   scene.surface.masking = masking;
   scene.surface.sigma = 0.445;

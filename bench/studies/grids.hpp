@@ -24,7 +24,7 @@ struct GridSize {
 Axes steel_grid(const GridSize& size);
 
 /// The surface of the scene as it stands, with this grid.
-Scene steel_scene(Masking masking, const GridSize& size);
+SceneValues steel_scene(Masking masking, const GridSize& size);
 
 /// The moments of the steel for every entry of a grid, in C order, q fastest.
 MomentsRequest steel_request(Masking masking, const Axes& grid);

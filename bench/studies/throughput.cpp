@@ -213,7 +213,7 @@ void Study::run_grids(Masking masking) {
     runs.push_back({main_grid(), tolerance, false});
   }
   for (GridRun& run : runs) {
-    Scene scene = steel_scene(masking, run.size);
+    SceneValues scene = steel_scene(masking, run.size);
     scene.accuracy.tolerance = run.tolerance;
     scene.accuracy.may_interpolate = run.may_interpolate;
     run.timed = std::make_unique<TimedScene>(std::move(scene), false, evaluator);

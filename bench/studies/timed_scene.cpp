@@ -16,7 +16,7 @@ constexpr double kLongTime = 0.5;  // a first call that takes that long says eno
 
 }  // namespace
 
-TimedScene::TimedScene(Scene scene, bool keep_all, MomentsEvaluator& evaluator)
+TimedScene::TimedScene(SceneValues scene, bool keep_all, MomentsEvaluator& evaluator)
     : scene_(std::move(scene)), entries_(grid_entries(scene_)), keep_all_(keep_all), evaluator_(evaluator) {
   const EvaluationReport before = evaluator_.report();
   const Clock::time_point start = Clock::now();

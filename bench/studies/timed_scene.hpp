@@ -12,12 +12,12 @@ namespace dolp::bench {
 class TimedScene {
  public:
   /// Runs it once, which creates the pipelines. The evaluator outlives the object.
-  TimedScene(Scene scene, bool keep_all, MomentsEvaluator& evaluator);
+  TimedScene(SceneValues scene, bool keep_all, MomentsEvaluator& evaluator);
 
   /// Adds a raw time of a call.
   void repeat();
 
-  const Scene& scene() const { return scene_; }
+  const SceneValues& scene() const { return scene_; }
   const SceneEntries& entries() const { return entries_; }
   const EffectPlan& plan() const { return plan_; }
   const std::vector<PointResult>& results() const { return results_; }
@@ -33,7 +33,7 @@ class TimedScene {
   std::vector<PointResult> run();
   std::size_t calls_of_a_raw_time();
 
-  Scene scene_;
+  SceneValues scene_;
   SceneEntries entries_;
   bool keep_all_;
   MomentsEvaluator& evaluator_;

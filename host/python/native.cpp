@@ -208,7 +208,7 @@ PYBIND11_MODULE(_native, module) {
   });
   module.def("materials", [] {
     py::list all;
-    for (const dolp::Material& material : dolp::materials()) {
+    for (const dolp::BuiltInMaterial& material : dolp::materials()) {
       all.append(py::make_tuple(material.name, material.from_um, material.to_um, material.source));
     }
     return all;
@@ -230,7 +230,7 @@ PYBIND11_MODULE(_native, module) {
   });
   module.def("status_bits", [] {
     py::list all;
-    for (const dolp::StatusBit& bit : dolp::status_bits()) all.append(py::make_tuple(bit.mask, bit.meaning));
+    for (const dolp::StatusBit& bit : dolp::kStatusBits) all.append(py::make_tuple(bit.mask, bit.meaning));
     return all;
   });
   module.def("version", &dolp::version);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "model/angles.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "properties_support.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene_reader.hpp"
@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(Kernels, GrooveProperties,
 
 // ---- Scenes --------------------------------------------------------------------------------------------------------
 
-Scene scene_of(Distribution distribution, const std::vector<std::string>& more = {}) {
+SceneValues scene_of(Distribution distribution, const std::vector<std::string>& more = {}) {
   constexpr const char* kScene = R"(
 [surface]
 n = 1.5
@@ -128,7 +128,7 @@ wavelength_um = 10
   return parse_scene(kScene, "s.toml", settings_from_text(overrides));
 }
 
-PointResult result_at(const Scene& scene, const Point& point) {
+PointResult result_at(const SceneValues& scene, const Point& point) {
   CpuEvaluator evaluator(Precision::kAuto);
   return evaluate_scene(scene, {{point.theta_deg, point.shape, point.index}}, evaluator, {}).front();
 }
@@ -139,11 +139,11 @@ TEST(GrooveScenes, RandomEntriesUpToTheHorizon_ArePhysical) {
     std::vector<Point> points = random_points(distribution, 10 + static_cast<std::uint64_t>(distribution));
     for (std::size_t i = 0; i < points.size(); i += 6) points[i].theta_deg = i % 12 == 0 ? 90.0 : kNextToTheHorizon;
     for (const char* surroundings : {"surroundings=none", "surroundings.temperature_K=400"}) {
-      const Scene scene = scene_of(distribution, {surroundings, "accuracy.tolerance=1e-2"});
+      const SceneValues scene = scene_of(distribution, {surroundings, "accuracy.tolerance=1e-2"});
       for (const Point& point : points) {
         const PointResult r = result_at(scene, point);
         const std::string where = text_of(point);
-        EXPECT_EQ(r.status & (kStatusUnphysicalReflectance | kStatusNonPositiveIntensity | kStatusOutsideDomain), 0U)
+        EXPECT_EQ(r.status & (kReflectanceOutsideZeroToOne | kIntensityNotPositive | kOutsideModelDomain), 0U)
             << where;
         EXPECT_NEAR(r[Quantity::kAlbedo], 1.0, kRounding) << where;
         EXPECT_TRUE(r[Quantity::kRhoI] >= 0.0 && r[Quantity::kRhoI] <= 1.0 + kRounding)
@@ -176,8 +176,8 @@ TEST(GrooveScenes, RightAngle_IsTheLimitOfTheStoredValue) {
 
 TEST(GrooveScenes, SigmaToZero_IsTheSmoothSurface) {
   constexpr double kApproach = 1e-6;  // 1/cos^2 times the variance of the slopes, 2e-10
-  const Scene multiple = scene_of(Distribution::kGaussian);
-  const Scene single = scene_of(Distribution::kGaussian, {"surface.scattering=single"});
+  const SceneValues multiple = scene_of(Distribution::kGaussian);
+  const SceneValues single = scene_of(Distribution::kGaussian, {"surface.scattering=single"});
   for (const double theta_deg : {0.0, 60.0, 85.0}) {
     for (const OpticalConstants index : {OpticalConstants{1.5, 0.0}, {10.0, 60.0}, {0.7, 0.0}}) {
       const PointResult smooth = result_at(multiple, {theta_deg, {0.0, 2.0}, index});

@@ -10,7 +10,7 @@
 
 #include "calibrate/random_entries.hpp"
 #include "model/angles.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "mueller_support.hpp"
 #include "properties_support.hpp"
 #include "reference/reference_evaluator.hpp"
@@ -164,7 +164,7 @@ TEST(GroovesMueller, TowardTheMirrorDirection_IsNotDefined) {
 // ---- Scenes --------------------------------------------------------------------------------------------------------
 
 std::vector<PointResult> results_of(const std::vector<std::string>& overrides) {
-  const Scene scene = parse_scene(kRoughMetal, "s.toml", settings_from_text(overrides));
+  const SceneValues scene = parse_scene(kRoughMetal, "s.toml", settings_from_text(overrides));
   CpuEvaluator evaluator(Precision::kDouble);
   return evaluate_scene(scene, grid_entries(scene), evaluator, {});
 }
@@ -173,7 +173,7 @@ TEST(GroovesScene, UpToTheHorizon_NothingIsUnphysical) {
   const std::vector<PointResult> results =
       results_of({"surface.scattering=multiple", "grid.theta_deg=[0, 30, 60, 80, 89, 89.99, 90]"});
   for (const PointResult& r : results) {
-    EXPECT_EQ(r.status & (kStatusUnphysicalReflectance | kStatusNonPositiveIntensity | kStatusOutsideDomain), 0U);
+    EXPECT_EQ(r.status & (kReflectanceOutsideZeroToOne | kIntensityNotPositive | kOutsideModelDomain), 0U);
     EXPECT_EQ(r[Quantity::kAlbedo], 1.0);
     EXPECT_TRUE(r[Quantity::kEmissivityS] > 0.0 && r[Quantity::kEmissivityS] <= r[Quantity::kEmissivityP] + 1e-9 &&
                 r[Quantity::kEmissivityP] < 1.0);
@@ -226,11 +226,11 @@ TEST(GroovesScene, Bracket_IsWhatItsEndsSay) {
 TEST(GroovesScene, SmoothSurface_PlanLeavesTheBouncesOut) {
   const std::vector<std::string> smooth = {"surface.scattering=multiple", "surface.sigma=0.02",
                                            "grid.theta_deg=[0, 45]"};
-  const Scene scene = parse_scene(kRoughMetal, "s.toml", settings_from_text(smooth));
+  const SceneValues scene = parse_scene(kRoughMetal, "s.toml", settings_from_text(smooth));
   const EffectPlan plan = plan_effects(scene, grid_entries(scene), false);
   EXPECT_FALSE(plan.kept.further_bounces);
   EXPECT_TRUE(plan.kept.moments);
-  const Scene rough = parse_scene(kRoughMetal, "s.toml", {{"surface.scattering", "multiple"}});
+  const SceneValues rough = parse_scene(kRoughMetal, "s.toml", {{"surface.scattering", "multiple"}});
   EXPECT_TRUE(plan_effects(rough, grid_entries(rough), false).kept.further_bounces);
 }
 

@@ -6,7 +6,7 @@
 #include <dolp/errors.hpp>
 #include <limits>
 
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "table/table_lookup.hpp"
 
 namespace {
@@ -34,8 +34,8 @@ std::vector<double> range(double first, double last, std::size_t count) {
   return values;
 }
 
-Table made_up(const std::vector<double>& theta, const std::vector<double>& sigma, const std::vector<double>& q) {
-  Table table;
+TableValues made_up(const std::vector<double>& theta, const std::vector<double>& sigma, const std::vector<double>& q) {
+  TableValues table;
   table.axes[Axis::kTheta] = theta;
   table.axes[Axis::kSigma] = sigma;
   table.axes[Axis::kQ] = q;
@@ -72,7 +72,7 @@ void expect_holds(const PointResult& result, double theta_deg, double sigma, dou
 
 TEST(TableLookup, BetweenEntries_ErrorIsWithinWhatIsStated) {
   for (const std::size_t count : {3U, 5U, 9U, 17U, 33U}) {
-    const Table table = made_up(range(0, 80, count), range(0.1, 1.0, count), range(1.5, 6.0, count));
+    const TableValues table = made_up(range(0, 80, count), range(0.1, 1.0, count), range(1.5, 6.0, count));
     const TableLookup lookup(table, 1e-4, "t.nc");
     double worst = 0.0;
     for (const double theta : {1.0, 33.3, 47.0, 79.0}) {
@@ -81,7 +81,7 @@ TEST(TableLookup, BetweenEntries_ErrorIsWithinWhatIsStated) {
           const PointResult result = lookup.at(theta, sigma, q);
           expect_holds(result, theta, sigma, q);
           worst = std::max(worst, result[Quantity::kErrorEstimate]);
-          EXPECT_EQ((result.status & kStatusToleranceMissed) != 0,
+          EXPECT_EQ((result.status & kToleranceNotMet) != 0,
                     result[Quantity::kErrorEstimate] > 1e-4 || result[Quantity::kRhoErrorEstimate] > 1e-4);
         }
       }
@@ -96,7 +96,7 @@ TEST(TableLookup, BetweenEntries_ErrorIsWithinWhatIsStated) {
 }
 
 TEST(TableLookup, AtAnEntry_ItsValuesAndItsErrors) {
-  const Table table = made_up(range(0, 80, 9), {0.1, 0.3, 0.9}, {2.0, 3.0});
+  const TableValues table = made_up(range(0, 80, 9), {0.1, 0.3, 0.9}, {2.0, 3.0});
   const TableLookup lookup(table, 1e-4, "t.nc");
   const std::size_t position = table.position(4, 1, 1);
   const PointResult result = lookup.at(40.0, 0.3, 3.0);
@@ -108,16 +108,16 @@ TEST(TableLookup, AtAnEntry_ItsValuesAndItsErrors) {
 }
 
 TEST(TableLookup, AxisWithTwoOrThreeValues_StatesNoErrorBetweenThem) {
-  const Table table = made_up(range(0, 80, 9), {0.1, 0.3, 0.9}, {2.0});
+  const TableValues table = made_up(range(0, 80, 9), {0.1, 0.3, 0.9}, {2.0});
   const TableLookup lookup(table, 1e-4, "t.nc");
   const PointResult between = lookup.at(41.0, 0.2, 2.0);
   EXPECT_TRUE(std::isinf(between[Quantity::kErrorEstimate]) && std::isinf(between[Quantity::kRhoErrorEstimate]));
-  EXPECT_EQ(between.status, kStatusToleranceMissed);
+  EXPECT_EQ(between.status, kToleranceNotMet);
   EXPECT_TRUE(std::isfinite(lookup.at(41.0, 0.3, 2.0)[Quantity::kErrorEstimate]));
 }
 
 TEST(TableLookup, AxesWithOneValue_AreNotInterpolated) {
-  const Table table = made_up(range(0, 80, 33), {0.3}, {2.0});
+  const TableValues table = made_up(range(0, 80, 33), {0.3}, {2.0});
   const TableLookup lookup(table, 1e-4, "t.nc");
   const PointResult result = lookup.at(41.3, 0.3, 2.0);
   expect_holds(result, 41.3, 0.3, 2.0);
@@ -125,8 +125,8 @@ TEST(TableLookup, AxesWithOneValue_AreNotInterpolated) {
 }
 
 TEST(TableLookup, DescendingAxes_TheSameResult) {
-  const Table up = made_up(range(0, 80, 9), range(0.1, 1.0, 7), {2.0, 3.0, 4.0, 5.0});
-  const Table down = made_up(range(80, 0, 9), range(1.0, 0.1, 7), {5.0, 4.0, 3.0, 2.0});
+  const TableValues up = made_up(range(0, 80, 9), range(0.1, 1.0, 7), {2.0, 3.0, 4.0, 5.0});
+  const TableValues down = made_up(range(80, 0, 9), range(1.0, 0.1, 7), {5.0, 4.0, 3.0, 2.0});
   const PointResult a = TableLookup(up, 1e-4, "").at(33.0, 0.42, 2.7);
   const PointResult b = TableLookup(down, 1e-4, "").at(33.0, 0.42, 2.7);
   EXPECT_NEAR(a[Quantity::kDolp], b[Quantity::kDolp], 1e-12);
@@ -134,14 +134,14 @@ TEST(TableLookup, DescendingAxes_TheSameResult) {
 }
 
 TEST(TableLookup, NextToUnknownEntries_ReadsThoseItKnows) {
-  Table table = made_up(range(0, 90, 19), {0.3}, {2.0});
+  TableValues table = made_up(range(0, 90, 19), {0.3}, {2.0});
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::size_t last = table.size() - 1;  // 90 degrees
   for (const Quantity quantity : {Quantity::kStokesI, Quantity::kStokesQ, Quantity::kStokesU, Quantity::kStokesV,
                                   Quantity::kRhoI, Quantity::kRhoQ, Quantity::kErrorEstimate}) {
     table[quantity][last] = nan;
   }
-  table.status[last] = kStatusOutsideDomain | kStatusUnphysicalReflectance;
+  table.status[last] = kOutsideModelDomain | kReflectanceOutsideZeroToOne;
   const TableLookup lookup(table, 1e-3, "t.nc");
   const PointResult before = lookup.at(84.0, 0.3, 2.0);
   expect_holds(before, 84.0, 0.3, 2.0);
@@ -154,30 +154,30 @@ TEST(TableLookup, NextToUnknownEntries_ReadsThoseItKnows) {
   EXPECT_EQ(at_horizon.status, table.status[last]);
   const PointResult between = lookup.at(87.0, 0.3, 2.0);
   EXPECT_TRUE(std::isnan(between[Quantity::kDolp]));
-  EXPECT_EQ(between.status, kStatusOutsideDomain);
+  EXPECT_EQ(between.status, kOutsideModelDomain);
 }
 
 TEST(TableLookup, StatusOfTheCell_IsKept_AndNegativeIntensityIsFound) {
-  Table table = made_up(range(0, 80, 9), {0.3}, {2.0});
-  table.status[5] = kStatusUnphysicalReflectance;
+  TableValues table = made_up(range(0, 80, 9), {0.3}, {2.0});
+  table.status[5] = kReflectanceOutsideZeroToOne;
   for (std::size_t i = 6; i < table.size(); ++i) table[Quantity::kStokesI][i] = -1.0;
   const TableLookup lookup(table, 1e-3, "t.nc");
-  EXPECT_EQ(lookup.at(12.0, 0.3, 2.0).status & kStatusUnphysicalReflectance, 0U);
-  EXPECT_NE(lookup.at(45.0, 0.3, 2.0).status & kStatusUnphysicalReflectance, 0U);
-  EXPECT_NE(lookup.at(65.0, 0.3, 2.0).status & kStatusNonPositiveIntensity, 0U);
+  EXPECT_EQ(lookup.at(12.0, 0.3, 2.0).status & kReflectanceOutsideZeroToOne, 0U);
+  EXPECT_NE(lookup.at(45.0, 0.3, 2.0).status & kReflectanceOutsideZeroToOne, 0U);
+  EXPECT_NE(lookup.at(65.0, 0.3, 2.0).status & kIntensityNotPositive, 0U);
 }
 
 TEST(TableLookup, EntryWithoutABound_IsReadWithoutABound) {
-  Table table = made_up(range(0, 80, 9), {0.3}, {2.0});
+  TableValues table = made_up(range(0, 80, 9), {0.3}, {2.0});
   table[Quantity::kErrorEstimate][4] = std::numeric_limits<double>::infinity();
   const PointResult result = TableLookup(table, 1e-3, "t.nc").at(42.0, 0.3, 2.0);
   EXPECT_TRUE(std::isinf(result[Quantity::kErrorEstimate]));
-  EXPECT_EQ(result.status, kStatusToleranceMissed);
+  EXPECT_EQ(result.status, kToleranceNotMet);
   EXPECT_TRUE(std::isfinite(result[Quantity::kDolp]));
 }
 
 TEST(TableLookup, QuantitiesThatTheTableLacks_AreNan) {
-  Table table = made_up(range(0, 80, 9), {0.3}, {2.0});
+  TableValues table = made_up(range(0, 80, 9), {0.3}, {2.0});
   table[Quantity::kRhoI].clear();
   table[Quantity::kRhoQ].clear();
   table[Quantity::kAlbedo].clear();
@@ -190,7 +190,7 @@ TEST(TableLookup, QuantitiesThatTheTableLacks_AreNan) {
 }
 
 TEST(TableLookup, VariablesThatEveryResultNeeds_AreNamedWhereTheyAreMissing) {
-  const auto expect_named = [](const Table& table, const std::string& variable) {
+  const auto expect_named = [](const TableValues& table, const std::string& variable) {
     try {
       const TableLookup lookup(table, 1e-4, "t.nc");
       FAIL() << variable;
@@ -198,26 +198,26 @@ TEST(TableLookup, VariablesThatEveryResultNeeds_AreNamedWhereTheyAreMissing) {
       EXPECT_EQ(error.what(), "t.nc: the variable " + variable + " is missing; lookup needs it");
     }
   };
-  const Table whole = made_up(range(0, 80, 9), {0.3}, {2.0});
+  const TableValues whole = made_up(range(0, 80, 9), {0.3}, {2.0});
   for (const Quantity needed : {Quantity::kDolp, Quantity::kStokesI, Quantity::kStokesQ, Quantity::kStokesU,
                                 Quantity::kStokesV, Quantity::kErrorEstimate, Quantity::kRhoI}) {
-    Table table = whole;
+    TableValues table = whole;
     table[needed].clear();
     expect_named(table, description_of(needed).name);
   }
-  Table table = whole;
+  TableValues table = whole;
   table.status.clear();
   expect_named(table, "status");
 }
 
 TEST(TableLookup, AValueTwice_IsRefused) {
-  const Table table = made_up({0.0, 10.0, 10.0}, {0.3}, {2.0});
+  const TableValues table = made_up({0.0, 10.0, 10.0}, {0.3}, {2.0});
   EXPECT_THROW(TableLookup(table, 1e-4, "t.nc"), InputError);
 }
 
 // As the lower end of a bracket often is.
 TEST(TableLookup, QuantityThatIs0Everywhere_Is0) {
-  Table table = made_up(range(0.0, 60.0, 8), range(0.1, 0.5, 6), range(1.5, 4.0, 6));
+  TableValues table = made_up(range(0.0, 60.0, 8), range(0.1, 0.5, 6), range(1.5, 4.0, 6));
   table[Quantity::kDolpLow].assign(table[Quantity::kDolp].size(), 0.0);
   table[Quantity::kDolpHigh] = table[Quantity::kDolp];
   const PointResult result = TableLookup(table, 1e-4, "t").at(31.0, 0.22, 2.3);

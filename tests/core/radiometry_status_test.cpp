@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "radiometry_support.hpp"
 
 namespace {
@@ -22,7 +22,7 @@ TEST(Radiometry, MomentsOffByTheirErrors_StayWithinTheEstimates) {
   RandomScenes random;
   std::cout << "seed " << kSeed << "\n";
   for (int i = 0; i < kRandomScenes; ++i) {
-    const Scene scene = random.next();
+    const SceneValues scene = random.next();
     const Direction direction = direction_of(random.uniform(0.0, 89.0));
     const Moments exact = moments_of(random.reflectance(), direction.cos_theta);
     const double level = std::pow(10.0, random.uniform(-12.0, -1.0)) * direction.cos_theta;
@@ -46,7 +46,7 @@ TEST(Radiometry, MomentsOffByTheirErrors_StayWithinTheEstimates) {
 }
 
 TEST(Radiometry, ErrorOfTheDeficit_CancelsInIsothermalIntensityWhereItCannotMatter) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.surface.diffuse = 0.0;
   const Direction direction = direction_of(60.0);
   Moments moments = moments_of({0.3, 0.1}, direction.cos_theta);
@@ -60,44 +60,44 @@ TEST(Radiometry, ErrorOfTheDeficit_CancelsInIsothermalIntensityWhereItCannotMatt
 }
 
 TEST(Radiometry, MomentsWithinTolerance_CarryNoStatusAndBeyondItBitTwo) {
-  const Scene scene = night_scene();
+  const SceneValues scene = night_scene();
   const Direction direction = direction_of(60.0);
   Moments moments = moments_of({0.3, 0.1}, direction.cos_theta);
   moments.r_q_error = 0.5 * scene.accuracy.tolerance * moments.r_i;
   EXPECT_EQ(evaluate(scene, direction, moments).status, 0u);
   moments.r_q_error = 2.0 * scene.accuracy.tolerance * moments.r_i;
-  EXPECT_EQ(evaluate(scene, direction, moments).status, kStatusToleranceMissed);
+  EXPECT_EQ(evaluate(scene, direction, moments).status, kToleranceNotMet);
 }
 
 TEST(Radiometry, ReflectanceAboveOneOrBelowZero_CarriesBitOneUnlessWithinItsError) {
-  const Scene scene = night_scene();
+  const SceneValues scene = night_scene();
   const Direction direction = direction_of(80.0);
   for (const PrintedReflectance& specular : {PrintedReflectance{1.2L, 0.3L}, {0.3L, 1.2L}, {0.3L, -0.1L}}) {
     Moments moments = moments_of(specular, direction.cos_theta);
-    EXPECT_EQ(evaluate(scene, direction, moments).status, kStatusUnphysicalReflectance);
+    EXPECT_EQ(evaluate(scene, direction, moments).status, kReflectanceOutsideZeroToOne);
     moments.r_i_error = moments.r_q_error = moments.deficit_error = 0.3 * direction.cos_theta;
-    EXPECT_EQ(evaluate(scene, direction, moments).status, kStatusToleranceMissed);
+    EXPECT_EQ(evaluate(scene, direction, moments).status, kToleranceNotMet);
   }
 }
 
 TEST(Radiometry, NegativeIntensity_CarriesBitEightAndKeepsItsNumbers) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.surroundings.reset();
   const Direction direction = direction_of(89.0);
   const PointResult result = evaluate(scene, direction, moments_of({2.0, 1.5}, direction.cos_theta));
   EXPECT_LT(result[Quantity::kStokesI], 0.0);
   EXPECT_DOUBLE_EQ(result[Quantity::kDolp], std::abs(result[Quantity::kStokesQ]) / result[Quantity::kStokesI]);
-  EXPECT_EQ(result.status, kStatusUnphysicalReflectance | kStatusNonPositiveIntensity);
+  EXPECT_EQ(result.status, kReflectanceOutsideZeroToOne | kIntensityNotPositive);
 }
 
 TEST(Radiometry, NoRadiation_HasNoDolpAndSaysSo) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.emission.reset();
   scene.surroundings->temperature_K = 0.0;
   const Direction direction = direction_of(30.0);
   const PointResult result = evaluate(scene, direction, moments_of({0.3, 0.1}, direction.cos_theta));
   EXPECT_TRUE(std::isnan(result[Quantity::kDolp]));
-  EXPECT_EQ(result.status, kStatusOutsideDomain | kStatusNonPositiveIntensity);
+  EXPECT_EQ(result.status, kOutsideModelDomain | kIntensityNotPositive);
   EXPECT_GT(result[Quantity::kRhoI], 0.0);
 }
 
@@ -111,11 +111,11 @@ TEST(Radiometry, MomentsThatAreNotNumbers_AreOutsideTheDomainEverywhere) {
         result[Quantity::kErrorEstimate], result[Quantity::kRhoErrorEstimate]}) {
     EXPECT_TRUE(std::isnan(value));
   }
-  EXPECT_EQ(result.status, kStatusOutsideDomain);
+  EXPECT_EQ(result.status, kOutsideModelDomain);
 }
 
 TEST(Radiometry, MatchedIndex_ReflectsNothingWithNoError) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.surface.diffuse = 0.0;
   const Direction direction = direction_of(60.0);
   const PointResult result = evaluate(scene, direction, moments_of({0.0L, 0.0L}, direction.cos_theta));
@@ -128,16 +128,16 @@ TEST(Radiometry, MatchedIndex_ReflectsNothingWithNoError) {
 TEST(Radiometry, UnboundedReflectanceError_IsInfiniteNotNanInBothEstimates) {
   Moments moments = moments_of({0.3, 0.1}, 0.5);
   moments.r_i_error = moments.deficit_error = moments.r_q_error = 10.0;
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   const PointResult result = evaluate(scene, direction_of(60.0), moments);
   EXPECT_EQ(result[Quantity::kErrorEstimate], kInfinity);
   EXPECT_EQ(result[Quantity::kRhoErrorEstimate], kInfinity);
-  EXPECT_EQ(result.status, kStatusToleranceMissed);
+  EXPECT_EQ(result.status, kToleranceNotMet);
 }
 
 // ---- 90 degrees -----------------------------------------------------------------------------------------------------
 
-constexpr std::uint32_t kDivergent = kStatusUnphysicalReflectance | kStatusOutsideDomain;
+constexpr std::uint32_t kDivergent = kReflectanceOutsideZeroToOne | kOutsideModelDomain;
 
 Moments grazing_moments() {
   Moments moments;
@@ -149,7 +149,7 @@ Moments grazing_moments() {
 }
 
 TEST(Radiometry, GrazingWithDivergingReflectance_GivesTheLimitOfDolp) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.surface.masking = Masking::kIntegral;
   const PointResult limit = evaluate(scene, {90.0, 0.0}, grazing_moments());
   EXPECT_EQ(limit.status, kDivergent);
@@ -162,7 +162,7 @@ TEST(Radiometry, GrazingWithDivergingReflectance_GivesTheLimitOfDolp) {
 }
 
 TEST(Radiometry, GrazingWithSourceOnly_HasAFiniteLimitOfTheFluxes) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.surface.masking = Masking::kNone;
   scene.surroundings->temperature_K = scene.emission->temperature_K;
   EXPECT_EQ(evaluate(scene, {90.0, 0.0}, grazing_moments())[Quantity::kDolp], 0.0);
@@ -176,7 +176,7 @@ TEST(Radiometry, GrazingWithSourceOnly_HasAFiniteLimitOfTheFluxes) {
 }
 
 TEST(Radiometry, GrazingFresnelEmission_LeavesTheSourceAlone) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.surface.masking = Masking::kNone;
   scene.surface.diffuse = 0.0;
   scene.surroundings.reset();
@@ -190,7 +190,7 @@ TEST(Radiometry, GrazingFresnelEmission_LeavesTheSourceAlone) {
 }
 
 TEST(Radiometry, GrazingSmithWithDiffusePart_IsUnpolarisedInTheLimit) {
-  const Scene scene = night_scene();
+  const SceneValues scene = night_scene();
   const double cos_theta = 1e-18;
   const PointResult limit = evaluate(scene, {90.0, cos_theta}, moments_of({0.5, 0.2}, cos_theta));
   EXPECT_EQ(limit.status, kDivergent);
@@ -199,7 +199,7 @@ TEST(Radiometry, GrazingSmithWithDiffusePart_IsUnpolarisedInTheLimit) {
 }
 
 TEST(Radiometry, GrazingSmithWithIsothermalFresnelEmission_ClaimsNoLimit) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.emission->model = EmissionModel::kFresnel;
   scene.surroundings->temperature_K = scene.emission->temperature_K;
   const double cos_theta = 1e-18;
@@ -209,7 +209,7 @@ TEST(Radiometry, GrazingSmithWithIsothermalFresnelEmission_ClaimsNoLimit) {
 }
 
 TEST(Radiometry, GrazingSmithAtACosineOfZero_ClaimsNoLimit) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.surface.diffuse = 0.0;
   const PointResult limit = evaluate(scene, {90.0, 0.0}, moments_of({0.5, 0.2}, 0.0));
   EXPECT_EQ(limit.status, kDivergent);
@@ -217,7 +217,7 @@ TEST(Radiometry, GrazingSmithAtACosineOfZero_ClaimsNoLimit) {
 }
 
 TEST(Radiometry, GrazingWithFiniteReflectance_UsesTheFormulasAtATinyCosine) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   const double cos_theta = 1e-18;
   const Moments moments = moments_of({0.5, 0.2}, cos_theta);
   scene.surface.diffuse = 0.0;
@@ -234,14 +234,14 @@ TEST(Radiometry, GrazingWithFiniteReflectance_UsesTheFormulasAtATinyCosine) {
 }
 
 TEST(Radiometry, GrazingExponentNearMinusOne_StaysFiniteBelowNinetyDegrees) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.surface.diffuse = 1.0;
   scene.surface.diffuse_exponent = -1.0 + 1e-9;
   const Direction direction = direction_of(89.999999);
   const PointResult result = evaluate(scene, direction, moments_of({0.9, 0.8}, direction.cos_theta));
   EXPECT_TRUE(std::isfinite(result[Quantity::kStokesI]) && std::isfinite(result[Quantity::kDolp]) &&
               std::isfinite(result[Quantity::kRhoI]));
-  EXPECT_EQ(result.status & kStatusUnphysicalReflectance, kStatusUnphysicalReflectance);
+  EXPECT_EQ(result.status & kReflectanceOutsideZeroToOne, kReflectanceOutsideZeroToOne);
 }
 
 }  // namespace

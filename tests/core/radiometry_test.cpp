@@ -20,7 +20,7 @@ TEST(Radiometry, RandomScenes_AgreeWithPrintedFormulas) {
   std::cout << "seed " << kSeed << "\n";
   RandomScenes random;
   for (int i = 0; i < kRandomScenes; ++i) {
-    const Scene scene = random.next();
+    const SceneValues scene = random.next();
     const Direction direction = direction_of(random.uniform(0.0, 89.5));
     const PrintedReflectance specular = random.reflectance();
     const PointResult actual = evaluate(scene, direction, moments_of(specular, direction.cos_theta));
@@ -56,7 +56,7 @@ TEST(Radiometry, RandomScenes_AgreeWithPrintedFormulas) {
 }
 
 TEST(Radiometry, TabulatedMaterialBand_AgreesWithPrintedFormulas) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.surface.material = tabulated_material();
   scene.spectrum = {7.5, 14.5};
   scene.path = Path{0.6, 290.0, std::nullopt};
@@ -86,7 +86,7 @@ TEST(Radiometry, TabulatedMaterialBand_AgreesWithPrintedFormulas) {
 }
 
 TEST(Radiometry, IndicesOfThePoint_ReplaceThoseOfTheRule) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.emission->model = EmissionModel::kFresnel;
   const Direction direction = direction_of(60.0);
   const Moments moments = moments_of({0.3, 0.1}, direction.cos_theta);
@@ -104,7 +104,7 @@ TEST(Radiometry, IndicesOfThePoint_ReplaceThoseOfTheRule) {
 TEST(Radiometry, IsothermalSurroundingsWithoutSource_HaveNoPolarisation) {
   RandomScenes random;
   for (int i = 0; i < kRandomScenes; ++i) {
-    Scene scene = random.next();
+    SceneValues scene = random.next();
     scene.source.reset();
     scene.emission = Emission{random.uniform(1.0, 6000.0), EmissionModel::kMoments};
     scene.surroundings = Surroundings{scene.emission->temperature_K};
@@ -118,7 +118,7 @@ TEST(Radiometry, IsothermalSurroundingsWithoutSource_HaveNoPolarisation) {
 }
 
 TEST(Radiometry, SpecularWeight_EntersLinearlyInRhoAndStokes) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   const Direction direction = direction_of(70.0);
   const Moments moments = moments_of({0.4, 0.05}, direction.cos_theta);
   const auto at = [&](double specular) {
@@ -138,7 +138,7 @@ TEST(Radiometry, SpecularWeight_EntersLinearlyInRhoAndStokes) {
 }
 
 TEST(Radiometry, Path_ScalesQAndAddsItsExitanceToI) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   const Direction direction = direction_of(60.0);
   const Moments moments = moments_of({0.3, 0.1}, direction.cos_theta);
   const PointResult clear = evaluate(scene, direction, moments);
@@ -149,7 +149,7 @@ TEST(Radiometry, Path_ScalesQAndAddsItsExitanceToI) {
 }
 
 TEST(Radiometry, GreyBand_IsTheSumOfItsPartsInStokes) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.source = Source{};
   scene.source->irradiance = 0.2;
   scene.path = Path{0.7, 280.0, std::nullopt};
@@ -170,7 +170,7 @@ TEST(Radiometry, GreyBand_IsTheSumOfItsPartsInStokes) {
 }
 
 TEST(Radiometry, SourceThatCancelsEmission_LeavesNoQ) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.surroundings.reset();
   const Direction direction = direction_of(60.0);
   scene.source = Source{};
@@ -186,7 +186,7 @@ TEST(Radiometry, ErrorOfTheDirectEmission_IsInTheEstimateWhereTheBracketIs) {
   moments.direct_i = 0.7 * direction.cos_theta;
   moments.direct_q = -0.05 * direction.cos_theta;
   moments.direct_q_error = 1e-3 * direction.cos_theta;
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   EXPECT_LT(evaluate(scene, direction, moments)[Quantity::kErrorEstimate], 1e-6);
   scene.emission->has_bracket = true;
   const PointResult bounded = evaluate(scene, direction, moments);
@@ -202,7 +202,7 @@ TEST(Radiometry, ErrorOfTheDirectEmission_IsInTheEstimateWhereTheBracketIs) {
 TEST(Radiometry, TemperaturesFromOneTo6000K_GiveFiniteStokes) {
   for (const double temperature_K : {1.0, 3.0, 77.0, 6000.0}) {
     for (const double wavelength_um : {0.3, 10.6, 1000.0}) {
-      Scene scene = night_scene();
+      SceneValues scene = night_scene();
       scene.emission->temperature_K = temperature_K;
       scene.spectrum = {wavelength_um, wavelength_um};
       const Direction direction = direction_of(60.0);
@@ -216,7 +216,7 @@ TEST(Radiometry, TemperaturesFromOneTo6000K_GiveFiniteStokes) {
 }
 
 TEST(Radiometry, MetalWithoutSurroundings_KeepsTheDigitsOfItsEmission) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.surface.specular = 1.0;
   scene.surface.diffuse = 0.0;
   scene.surroundings.reset();

@@ -196,7 +196,7 @@ TEST(SceneOverride_Malformed, IsRefused) {
 }
 
 TEST(SceneOverride_OfAnAlternative, ReplacesTheFilesChoice) {
-  const Scene iron = parse(kMinimal, {"surface.material=iron"});
+  const SceneValues iron = parse(kMinimal, {"surface.material=iron"});
   EXPECT_EQ(iron.surface.material.name, "iron");
   const std::string with_iron =
       "surface.material = \"iron\"\nsurface.sigma = 0.3\nemission.temperature_K = 1\n"
@@ -233,7 +233,7 @@ TEST(SceneOverride_RandomNumbers, ArriveBitForBit) {
   std::uniform_real_distribution<double> exponent(-300.0, 6.0);
   for (int trial = 0; trial < kTrials; ++trial) {
     const double value = std::pow(10.0, exponent(random));
-    const Scene scene = parse(kMinimal, {"surface.n=" + format_number(value), "surface.k=" + format_number(value)});
+    const SceneValues scene = parse(kMinimal, {"surface.n=" + format_number(value), "surface.k=" + format_number(value)});
     EXPECT_EQ(scene.surface.material.constant.n, value);
     EXPECT_EQ(scene.surface.material.constant.k, value);
   }

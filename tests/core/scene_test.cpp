@@ -16,7 +16,7 @@ const std::string kHostDir = DOLP_HOST_DIR;
 
 // ---- Values --------------------------------------------------------------------------------------------------------
 
-void expect_defaults(const Scene& scene) {
+void expect_defaults(const SceneValues& scene) {
   EXPECT_TRUE(scene.surface.material.is_constant());
   EXPECT_EQ(scene.surface.material.at(10.6), (OpticalConstants{1.5, 0.0}));
   EXPECT_EQ(scene.surface.distribution, Distribution::kCauchy);
@@ -43,7 +43,7 @@ void expect_defaults(const Scene& scene) {
 }
 
 TEST(Scene_Minimal, GetsEveryDefault) {
-  const Scene scene = parse(kMinimal);
+  const SceneValues scene = parse(kMinimal);
   expect_defaults(scene);
   EXPECT_EQ(scene.title, "");
   EXPECT_FALSE(scene.source || scene.surroundings || scene.path);
@@ -71,67 +71,67 @@ TEST(Scene_Described, DefaultsAreTheRealOnes) {
 struct KeyCase {
   const char* key;
   const char* value;
-  bool (*arrived)(const Scene&);
+  bool (*arrived)(const SceneValues&);
 };
 
 const std::vector<KeyCase>& key_cases() {
   static const std::vector<KeyCase> cases = {
-      {"title", "\"Name\"", [](const Scene& s) { return s.title == "Name"; }},
-      {"surface.n", "1.25", [](const Scene& s) { return s.surface.material.constant.n == 1.25; }},
-      {"surface.k", "0.25", [](const Scene& s) { return s.surface.material.constant.k == 0.25; }},
-      {"surface.material", "\"iron\"", [](const Scene& s) { return s.surface.material.name == "iron"; }},
-      {"surface.material_file", "\"index.csv\"", [](const Scene& s) { return s.surface.material.at(10.0).n == 2.0; }},
+      {"title", "\"Name\"", [](const SceneValues& s) { return s.title == "Name"; }},
+      {"surface.n", "1.25", [](const SceneValues& s) { return s.surface.material.constant.n == 1.25; }},
+      {"surface.k", "0.25", [](const SceneValues& s) { return s.surface.material.constant.k == 0.25; }},
+      {"surface.material", "\"iron\"", [](const SceneValues& s) { return s.surface.material.name == "iron"; }},
+      {"surface.material_file", "\"index.csv\"", [](const SceneValues& s) { return s.surface.material.at(10.0).n == 2.0; }},
       {"surface.distribution", "\"gaussian\"",
-       [](const Scene& s) { return s.surface.distribution == Distribution::kGaussian; }},
-      {"surface.sigma", "0.5", [](const Scene& s) { return s.surface.sigma == 0.5 && s.grid[Axis::kSigma][0] == 0.5; }},
-      {"surface.q", "3", [](const Scene& s) { return s.surface.q == 3.0 && s.grid[Axis::kQ][0] == 3.0; }},
-      {"surface.masking", "\"v-cavity\"", [](const Scene& s) { return s.surface.masking == Masking::kVCavity; }},
-      {"surface.scattering", "\"single\"", [](const Scene& s) { return s.surface.scattering == Scattering::kSingle; }},
-      {"surface.specular", "0.5", [](const Scene& s) { return s.surface.specular == 0.5; }},
-      {"surface.diffuse", "0.25", [](const Scene& s) { return s.surface.diffuse == 0.25; }},
-      {"surface.diffuse_exponent", "-0.25", [](const Scene& s) { return s.surface.diffuse_exponent == -0.25; }},
-      {"emission.temperature_K", "290", [](const Scene& s) { return s.emission->temperature_K == 290.0; }},
-      {"emission.model", "\"fresnel\"", [](const Scene& s) { return s.emission->model == EmissionModel::kFresnel; }},
-      {"emission.bracket", "false", [](const Scene& s) { return !s.emission->has_bracket; }},
+       [](const SceneValues& s) { return s.surface.distribution == Distribution::kGaussian; }},
+      {"surface.sigma", "0.5", [](const SceneValues& s) { return s.surface.sigma == 0.5 && s.grid[Axis::kSigma][0] == 0.5; }},
+      {"surface.q", "3", [](const SceneValues& s) { return s.surface.q == 3.0 && s.grid[Axis::kQ][0] == 3.0; }},
+      {"surface.masking", "\"v-cavity\"", [](const SceneValues& s) { return s.surface.masking == Masking::kVCavity; }},
+      {"surface.scattering", "\"single\"", [](const SceneValues& s) { return s.surface.scattering == Scattering::kSingle; }},
+      {"surface.specular", "0.5", [](const SceneValues& s) { return s.surface.specular == 0.5; }},
+      {"surface.diffuse", "0.25", [](const SceneValues& s) { return s.surface.diffuse == 0.25; }},
+      {"surface.diffuse_exponent", "-0.25", [](const SceneValues& s) { return s.surface.diffuse_exponent == -0.25; }},
+      {"emission.temperature_K", "290", [](const SceneValues& s) { return s.emission->temperature_K == 290.0; }},
+      {"emission.model", "\"fresnel\"", [](const SceneValues& s) { return s.emission->model == EmissionModel::kFresnel; }},
+      {"emission.bracket", "false", [](const SceneValues& s) { return !s.emission->has_bracket; }},
       {"source.irradiance", "0.5",
-       [](const Scene& s) { return s.source->kind == Source::Kind::kFlat && s.source->irradiance == 0.5; }},
+       [](const SceneValues& s) { return s.source->kind == Source::Kind::kFlat && s.source->irradiance == 0.5; }},
       {"source.relative_irradiance", "0.5",
-       [](const Scene& s) {
+       [](const SceneValues& s) {
          return s.source->kind == Source::Kind::kRelative && s.source->relative_irradiance == 0.5;
        }},
-      {"source.preset", "\"sun\"", [](const Scene& s) { return s.source->kind == Source::Kind::kTabulated; }},
-      {"source.file", "\"light.csv\"", [](const Scene& s) { return s.source->table.at(10.5) == 1.5; }},
-      {"source.scale", "0.75", [](const Scene& s) { return s.source->scale == 0.75; }},
-      {"surroundings.temperature_K", "0", [](const Scene& s) { return s.surroundings->temperature_K == 0.0; }},
-      {"path.transmittance", "0.5", [](const Scene& s) { return s.path->transmittance == 0.5; }},
-      {"path.temperature_K", "280", [](const Scene& s) { return *s.path->temperature_K == 280.0; }},
-      {"path.radiance", "2.5", [](const Scene& s) { return *s.path->radiance == 2.5; }},
-      {"spectrum.wavelength_um", "10.61", [](const Scene& s) { return s.spectrum.max_um == 10.61; }},
-      {"spectrum.band_um", "[8, 14]", [](const Scene& s) { return s.spectrum.min_um == 8 && s.spectrum.max_um == 14; }},
-      {"geometry.mode", "\"bistatic\"", [](const Scene& s) { return s.geometry.mode == Mode::kBistatic; }},
-      {"geometry.view_zenith_deg", "45", [](const Scene& s) { return s.geometry.view_zenith_deg == 45.0; }},
-      {"geometry.relative_azimuth_deg", "-90", [](const Scene& s) { return s.geometry.relative_azimuth_deg == -90.0; }},
+      {"source.preset", "\"sun\"", [](const SceneValues& s) { return s.source->kind == Source::Kind::kTabulated; }},
+      {"source.file", "\"light.csv\"", [](const SceneValues& s) { return s.source->table.at(10.5) == 1.5; }},
+      {"source.scale", "0.75", [](const SceneValues& s) { return s.source->scale == 0.75; }},
+      {"surroundings.temperature_K", "0", [](const SceneValues& s) { return s.surroundings->temperature_K == 0.0; }},
+      {"path.transmittance", "0.5", [](const SceneValues& s) { return s.path->transmittance == 0.5; }},
+      {"path.temperature_K", "280", [](const SceneValues& s) { return *s.path->temperature_K == 280.0; }},
+      {"path.radiance", "2.5", [](const SceneValues& s) { return *s.path->radiance == 2.5; }},
+      {"spectrum.wavelength_um", "10.61", [](const SceneValues& s) { return s.spectrum.max_um == 10.61; }},
+      {"spectrum.band_um", "[8, 14]", [](const SceneValues& s) { return s.spectrum.min_um == 8 && s.spectrum.max_um == 14; }},
+      {"geometry.mode", "\"bistatic\"", [](const SceneValues& s) { return s.geometry.mode == Mode::kBistatic; }},
+      {"geometry.view_zenith_deg", "45", [](const SceneValues& s) { return s.geometry.view_zenith_deg == 45.0; }},
+      {"geometry.relative_azimuth_deg", "-90", [](const SceneValues& s) { return s.geometry.relative_azimuth_deg == -90.0; }},
       {"grid.theta_deg", "[90, 0]",
-       [](const Scene& s) {
+       [](const SceneValues& s) {
          return s.grid[Axis::kTheta] == std::vector<double>{90.0, 0.0};
        }},
-      {"grid.sigma", "0.7", [](const Scene& s) { return s.grid[Axis::kSigma] == std::vector<double>{0.7}; }},
+      {"grid.sigma", "0.7", [](const SceneValues& s) { return s.grid[Axis::kSigma] == std::vector<double>{0.7}; }},
       {"grid.q", "[1.5, 2]",
-       [](const Scene& s) {
+       [](const SceneValues& s) {
          return s.grid[Axis::kQ] == std::vector<double>{1.5, 2.0};
        }},
       {"grid.wavelength_um", "[8, 10]",
-       [](const Scene& s) {
+       [](const SceneValues& s) {
          return s.grid[Axis::kWavelength] == std::vector<double>{8.0, 10.0};
        }},
       {"grid.n", "[1.3, 2]",
-       [](const Scene& s) {
+       [](const SceneValues& s) {
          return s.grid[Axis::kN] == std::vector<double>{1.3, 2.0};
        }},
-      {"grid.k", "0.5", [](const Scene& s) { return s.grid[Axis::kK] == std::vector<double>{0.5}; }},
-      {"accuracy.tolerance", "1e-6", [](const Scene& s) { return s.accuracy.tolerance == 1e-6; }},
-      {"accuracy.precision", "\"double\"", [](const Scene& s) { return s.accuracy.precision == Precision::kDouble; }},
-      {"accuracy.interpolation", "\"off\"", [](const Scene& s) { return !s.accuracy.may_interpolate; }},
+      {"grid.k", "0.5", [](const SceneValues& s) { return s.grid[Axis::kK] == std::vector<double>{0.5}; }},
+      {"accuracy.tolerance", "1e-6", [](const SceneValues& s) { return s.accuracy.tolerance == 1e-6; }},
+      {"accuracy.precision", "\"double\"", [](const SceneValues& s) { return s.accuracy.precision == Precision::kDouble; }},
+      {"accuracy.interpolation", "\"off\"", [](const SceneValues& s) { return !s.accuracy.may_interpolate; }},
   };
   return cases;
 }
@@ -163,7 +163,7 @@ TEST(Scene_EveryKey, CanBeSetByAnOverride) {
     } else {
       overrides.push_back(key + "=" + row.value);
     }
-    const Scene scene = parse(kMinimal, overrides);
+    const SceneValues scene = parse(kMinimal, overrides);
     EXPECT_TRUE(row.arrived(scene)) << key;
     EXPECT_EQ(scene.settings, settings_from_text(overrides)) << key;
   }
@@ -242,10 +242,10 @@ TEST(Scene_EveryWord, NamesTheAllowedWords) {
 }
 
 TEST(SceneScattering, WhatTheModelHas_Arrives) {
-  const Scene multiple =
+  const SceneValues multiple =
       parse_scene(kMinimal, "s.toml", {{"surface.masking", "v-cavity"}, {"surface.scattering", "multiple"}});
   EXPECT_EQ(multiple.surface.scattering, Scattering::kMultiple);
-  const Scene direct = parse_scene(
+  const SceneValues direct = parse_scene(
       kMinimal, "s.toml", {{"surface.masking", "v-cavity"}, {"emission.model", "direct"}, {"emission.bracket", true}});
   EXPECT_EQ(direct.emission->model, EmissionModel::kDirect);
   EXPECT_TRUE(direct.emission->has_bracket);
@@ -274,12 +274,12 @@ TEST(SceneScattering, WhatTheModelLacks_NamesTheKeys) {
 // ---- Axes ----------------------------------------------------------------------------------------------------------
 
 TEST(SceneAxis_Linear, IsExactForWholeDegreesAndDescends) {
-  const Scene scene = parse(kMinimal + "[grid]\ntheta_deg = { from = 80, to = 10, count = 8 }\n");
+  const SceneValues scene = parse(kMinimal + "[grid]\ntheta_deg = { from = 80, to = 10, count = 8 }\n");
   EXPECT_EQ(scene.grid[Axis::kTheta], (std::vector<double>{80, 70, 60, 50, 40, 30, 20, 10}));
 }
 
 TEST(SceneAxis_Log, HasExactEndsAndEqualRatios) {
-  const Scene scene = parse(kMinimal + "[grid]\nsigma = { from = 0.01, to = 1, count = 3, spacing = \"log\" }\n");
+  const SceneValues scene = parse(kMinimal + "[grid]\nsigma = { from = 0.01, to = 1, count = 3, spacing = \"log\" }\n");
   // pow is correct to 1 ulp, and two of them are multiplied.
   constexpr double kTwoPowers = 3.0 * 2.3e-16;
   ASSERT_EQ(scene.grid[Axis::kSigma].size(), 3U);
@@ -290,18 +290,18 @@ TEST(SceneAxis_Log, HasExactEndsAndEqualRatios) {
 
 TEST(SceneAxis_OnePoint, IsANumberAListOrARule) {
   for (const char* axis : {"30", "[30]", "{ from = 30, to = 30, count = 1 }"}) {
-    const Scene scene = parse(kMinimal + "[grid]\ntheta_deg = " + axis + "\n");
+    const SceneValues scene = parse(kMinimal + "[grid]\ntheta_deg = " + axis + "\n");
     EXPECT_EQ(scene.grid[Axis::kTheta], std::vector<double>{30.0}) << axis;
   }
 }
 
 TEST(SceneAxis_OfItsOwnTable, IsRead) {
-  const Scene scene = parse(kMinimal + "[grid.q]\nfrom = 2\nto = 4\ncount = 3\n", {"grid.q.count=2"});
+  const SceneValues scene = parse(kMinimal + "[grid.q]\nfrom = 2\nto = 4\ncount = 3\n", {"grid.q.count=2"});
   EXPECT_EQ(scene.grid[Axis::kQ], (std::vector<double>{2.0, 4.0}));
 }
 
 TEST(SceneGrid_SigmaWithoutSurfaceSigma, GivesTheSurfaceItsFirstValue) {
-  const Scene scene =
+  const SceneValues scene =
       parse("surface.n = 1.5\nemission.temperature_K = 1\nspectrum.wavelength_um = 5\ngrid.sigma = [0.2, 0.1]");
   EXPECT_EQ(scene.surface.sigma, 0.2);
 }
@@ -311,7 +311,7 @@ TEST(SceneGrid_SigmaWithoutSurfaceSigma, GivesTheSurfaceItsFirstValue) {
 TEST(ShippedScenes, AllParse) {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kHostDir + "/scenes")) {
-    const Scene scene = read_scene(entry.path().string(), {});
+    const SceneValues scene = read_scene(entry.path().string(), {});
     EXPECT_FALSE(scene.title.empty()) << entry.path();
     const auto& theta = scene.grid[Axis::kTheta];
     EXPECT_NE(std::find(theta.begin(), theta.end(), 60.0), theta.end()) << entry.path();
@@ -323,11 +323,11 @@ TEST(ShippedScenes, AllParse) {
 }
 
 TEST(ShippedScenes_OfThePaper, HaveItsSamples) {
-  const Scene steel = read_scene(kHostDir + "/scenes/stainless_steel.toml", {});
+  const SceneValues steel = read_scene(kHostDir + "/scenes/stainless_steel.toml", {});
   EXPECT_EQ(steel.surface.material.constant, (OpticalConstants{1.508, 0.0}));
   EXPECT_EQ(steel.surface.sigma, 0.445);
   EXPECT_EQ(steel.emission->temperature_K, 298.15);
-  const Scene aluminium = read_scene(kHostDir + "/scenes/aviation_aluminium.toml", {});
+  const SceneValues aluminium = read_scene(kHostDir + "/scenes/aviation_aluminium.toml", {});
   EXPECT_EQ(aluminium.surface.material.constant, (OpticalConstants{1.373, 0.0}));
   EXPECT_EQ(aluminium.surface.sigma, 0.905);
   EXPECT_EQ(aluminium.emission->temperature_K, 299.15);

@@ -69,7 +69,7 @@ TEST(SpectralRule, ConstantIndexBands_IntegratePlanckToRounding) {
   // 1 K over the widest band is where Planck's exponent changes most; its sum is dominated by the far end.
   for (const double temperature_K : {1.0, 20.0, 77.0, 300.0, 6000.0}) {
     for (const auto& [from_um, to_um] : {std::pair{0.3, 1000.0}, {8.0, 14.0}, {3.0, 5.0}}) {
-      Scene scene = night_scene();
+      SceneValues scene = night_scene();
       scene.emission->temperature_K = temperature_K;
       scene.spectrum = {from_um, to_um};
       const SpectralRule rule = spectral_rule(scene);
@@ -87,7 +87,7 @@ TEST(SpectralRule, ConstantIndexBands_IntegratePlanckToRounding) {
 }
 
 TEST(SpectralRule, EqualTemperatures_HaveNoExcessAtAnySample) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.surface.material = tabulated_material();
   scene.surroundings->temperature_K = scene.emission->temperature_K;
   scene.spectrum = {8.0, 14.0};
@@ -95,7 +95,7 @@ TEST(SpectralRule, EqualTemperatures_HaveNoExcessAtAnySample) {
 }
 
 TEST(SpectralRule, FlatMaterialSegments_ShareOneSample) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.surface.material.n = {{7.0, 10.0, 15.0}, {1.5, 1.5, 1.5}, SpectralTable::Interpolation::kLinear};
   scene.surface.material.k = {{7.0, 9.0, 15.0}, {0.1, 0.1, 0.1}, SpectralTable::Interpolation::kLinear};
   scene.spectrum = {8.0, 14.0};
@@ -103,7 +103,7 @@ TEST(SpectralRule, FlatMaterialSegments_ShareOneSample) {
 }
 
 void expect_promised_reflectances(const Material& material) {
-  Scene scene = night_scene();
+  SceneValues scene = night_scene();
   scene.surface.material = material;
   scene.spectrum = {7.5, 14.5};
   scene.source = Source{};

@@ -69,8 +69,8 @@ std::string content(const fs::path& path) {
 void put(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
 
 /// A table of numbers that have no short text, NaN and infinity among them.
-Table sample_table(std::size_t thetas, std::size_t sigmas, std::size_t qs) {
-  Table table;
+TableValues sample_table(std::size_t thetas, std::size_t sigmas, std::size_t qs) {
+  TableValues table;
   for (std::size_t i = 0; i < thetas; ++i)
     table.axes[Axis::kTheta].push_back(90.0 - static_cast<double>(i) / 3.0);  // descending
   for (std::size_t i = 0; i < sigmas; ++i) table.axes[Axis::kSigma].push_back(0.05 * static_cast<double>(i + 1));
@@ -98,7 +98,7 @@ void expect_same(const std::vector<double>& actual, const std::vector<double>& e
   }
 }
 
-void expect_same(const Table& actual, const Table& expected) {
+void expect_same(const TableValues& actual, const TableValues& expected) {
   EXPECT_EQ(actual.axes, expected.axes);
   for (const Quantity quantity : kAllQuantities) {
     expect_same(actual[quantity], expected[quantity], description_of(quantity).name);
@@ -143,7 +143,7 @@ class FullDisk {
 
 TEST_F(TableFiles, NetcdfRoundTrip_AnyShape_GivesTheSameTable) {
   for (const auto& shape : {std::array<std::size_t, 3>{1, 1, 1}, {5, 3, 2}, {1, 4, 1}, {20, 16, 16}}) {
-    const Table table = sample_table(shape[0], shape[1], shape[2]);
+    const TableValues table = sample_table(shape[0], shape[1], shape[2]);
     write_table(table, at("t.nc"));
     expect_same(read_table(at("t.nc")), table);
   }
@@ -151,7 +151,7 @@ TEST_F(TableFiles, NetcdfRoundTrip_AnyShape_GivesTheSameTable) {
 }
 
 TEST_F(TableFiles, NetcdfRoundTrip_AbsentVariables_StayAbsent) {
-  Table table = sample_table(3, 2, 2);
+  TableValues table = sample_table(3, 2, 2);
   table[Quantity::kStokesV].clear();
   table[Quantity::kAlbedo].clear();
   table.status.clear();
@@ -270,7 +270,7 @@ TEST_F(TableFiles, ReadTable_SizesThatNoTableHas_AreRefusedByName) {
 }
 
 TEST_F(TableFiles, Netcdf_OtherWriter_CanAppend) {
-  const Table table = sample_table(3, 2, 2);
+  const TableValues table = sample_table(3, 2, 2);
   write_table(table, at("t.nc"));
   int file = 0;
   ASSERT_EQ(nc_open(at("t.nc").c_str(), NC_WRITE, &file), NC_NOERR);
@@ -286,13 +286,13 @@ TEST_F(TableFiles, Netcdf_OtherWriter_CanAppend) {
   EXPECT_EQ(nc_enddef(file), NC_NOERR);
   EXPECT_EQ(nc_put_var_double(file, variable, twice.data()), NC_NOERR);
   EXPECT_EQ(nc_close(file), NC_NOERR);
-  Table expected = table;
+  TableValues expected = table;
   expected.attributes.push_back({"note", note});
   expect_same(read_table(at("t.nc")), expected);
 }
 
 TEST_F(TableFiles, Netcdf_LongTexts_AreKept) {
-  Table table = sample_table(3, 2, 2);
+  TableValues table = sample_table(3, 2, 2);
   for (Attribute& attribute : table.attributes) {
     if (attribute.name == "scene") attribute.value = std::string(100'000, '#') + "\n";
   }
@@ -310,7 +310,7 @@ TEST_F(TableFiles, Netcdf_LongTexts_AreKept) {
 }
 
 TEST_F(TableFiles, Netcdf_FlippedBit_IsFoundOrChangesNothing) {
-  const Table table = sample_table(12, 6, 4);
+  const TableValues table = sample_table(12, 6, 4);
   write_table(table, at("t.nc"));
   const std::string bytes = content(at("t.nc"));
   constexpr std::uint64_t kSeed = 4;
@@ -323,7 +323,7 @@ TEST_F(TableFiles, Netcdf_FlippedBit_IsFoundOrChangesNothing) {
     byte = static_cast<char>(byte ^ (1 << random() % 8));
     put(at("damaged.nc"), damaged);
     try {
-      const Table read = read_table(at("damaged.nc"));
+      const TableValues read = read_table(at("damaged.nc"));
       expect_same(read, table);
       if (HasFailure()) return;
     } catch (const InputError&) {
@@ -388,7 +388,7 @@ TEST_F(TableFiles, ReadTable_AttributeOfTypeString_IsText) {
 }
 
 TEST_F(TableFiles, Csv_Rows_ReadBackAsTheSameDoubles) {
-  const Table table = sample_table(3, 2, 2);
+  const TableValues table = sample_table(3, 2, 2);
   write_table(table, at("t.csv"));
   std::istringstream lines(content(at("t.csv")));
   std::string line;
@@ -419,7 +419,7 @@ TEST_F(TableFiles, Csv_Rows_ReadBackAsTheSameDoubles) {
 }
 
 TEST_F(TableFiles, Npy_Bytes_AreAStructuredArray) {
-  Table table = sample_table(3, 1, 2);
+  TableValues table = sample_table(3, 1, 2);
   table[Quantity::kStokesU].clear();
   write_table(table, at("t.npy"));
   const std::string bytes = content(at("t.npy"));
@@ -505,7 +505,7 @@ TEST_F(TableFiles, WriteText_FullDevice_IsAnErrorAndLeavesTheDevice) {
 // ---- Whole or not there ---------------------------------------------------------------------------------------------
 
 TEST_F(TableFiles, WriteTable_DiskFull_LeavesNothingOrWhatWasThere) {
-  const Table table = sample_table(20, 16, 16);
+  const TableValues table = sample_table(20, 16, 16);
   for (const char* name : {"t.nc", "t.csv", "t.npy"}) {
     for (const rlim_t bytes : {rlim_t{0}, rlim_t{4096}, rlim_t{100000}}) {
       {
@@ -532,7 +532,7 @@ TEST_F(TableFiles, WriteTable_OutOfMemory_LeavesNothing) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "AddressSanitizer takes terabytes of addresses";
 #endif
-  const Table table = sample_table(128, 64, 32);  // 35 MB
+  const TableValues table = sample_table(128, 64, 32);  // 35 MB
   {
     std::size_t pages = 0;
     std::ifstream("/proc/self/statm") >> pages;

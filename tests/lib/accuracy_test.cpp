@@ -46,8 +46,8 @@ struct Setting {
 
 void PrintTo(const Setting& setting, std::ostream* out) { *out << setting.name; }
 
-Scene scene_of(Distribution distribution, Masking masking, const Setting& setting) {
-  Scene scene = emission_scene(distribution, masking, setting.tolerance);
+SceneValues scene_of(Distribution distribution, Masking masking, const Setting& setting) {
+  SceneValues scene = emission_scene(distribution, masking, setting.tolerance);
   scene.accuracy.precision = setting.precision;
   if (setting.light == Light::kEmission) return scene;
   scene.surroundings = Surroundings{250.0};
@@ -68,7 +68,7 @@ struct Compared {
            reference[Quantity::kRhoI];
   }
   double dolp_error() const { return std::abs(result[Quantity::kDolp] - reference[Quantity::kDolp]); }
-  bool is_missed() const { return (result.status & kStatusToleranceMissed) != 0; }
+  bool is_missed() const { return (result.status & kToleranceNotMet) != 0; }
   bool promises_dolp() const { return dolp::promises_dolp(result.status); }
   std::string name() const {
     return std::string(name_of(point.distribution)) + " " + name_of(point.masking) + " theta " +
@@ -86,7 +86,7 @@ struct Sweep {
 
 void add_group(Sweep& sweep, const std::vector<StoredCase>& cases, const Setting& setting,
                MomentsEvaluator& evaluator) {
-  const Scene scene = scene_of(cases.front().distribution, cases.front().masking, setting);
+  const SceneValues scene = scene_of(cases.front().distribution, cases.front().masking, setting);
   std::vector<SceneEntry> entries;
   for (const StoredCase& c : cases) entries.push_back({c.theta_deg, c.shape, c.index});
   const std::vector<PointResult> results = evaluate_scene(scene, entries, evaluator, {});

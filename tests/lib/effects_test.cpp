@@ -6,7 +6,7 @@
 #include <map>
 
 #include "effects_support.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 
 namespace dolp {
 namespace {
@@ -30,7 +30,7 @@ TEST(Dropping, RandomScenes_TheAnswerWithEverythingIsWithinTheEstimates) {
   std::map<Part, int> dropped;
   int without_moments = 0;
   for (int i = 0; i < scene_count(400); ++i) {
-    const Scene scene = scenes.next();
+    const SceneValues scene = scenes.next();
     const std::vector<SceneEntry> entries = scenes.entries(scene);
     const EffectPlan plan = plan_effects(scene, entries, false);
     EXPECT_LE(plan.bound.dolp, kDroppedShare * scene.accuracy.tolerance);
@@ -45,17 +45,17 @@ TEST(Dropping, RandomScenes_TheAnswerWithEverythingIsWithinTheEstimates) {
       const PointResult& b = left[j];
       const std::string name =
           describe(scene, entries[j]) + "; " + effects_text(effect_rows(scene, entries, plan), plan);
-      if ((a.status & kStatusOutsideDomain) != 0) {
+      if ((a.status & kOutsideModelDomain) != 0) {
         EXPECT_EQ(std::isnan(a[Quantity::kStokesI]), std::isnan(b[Quantity::kStokesI])) << name;
         continue;
       }
       if (!promises_dolp(a.status)) continue;
-      EXPECT_EQ(b.status & kStatusNoDolpPromised, 0U) << name;
+      EXPECT_EQ(b.status & kNoDolpPromised, 0U) << name;
       EXPECT_LE(std::abs(a[Quantity::kDolp] - b[Quantity::kDolp]),
                 a[Quantity::kErrorEstimate] + b[Quantity::kErrorEstimate])
           << name;
       EXPECT_GE(b[Quantity::kErrorEstimate], plan.bound.dolp) << name;
-      const bool is_missed = (b.status & kStatusToleranceMissed) != 0;
+      const bool is_missed = (b.status & kToleranceNotMet) != 0;
       EXPECT_TRUE(is_missed || b[Quantity::kErrorEstimate] <= scene.accuracy.tolerance) << name;
       EXPECT_EQ(std::isnan(b[Quantity::kRhoI]), !plan.gives_rho) << name;
       if (!plan.gives_rho) continue;
@@ -76,7 +76,7 @@ TEST(EffectBounds, RandomScenes_HoldWhatEachPartChanges) {
   RandomScenes scenes(kSeed + 1);
   std::map<Part, int> compared;
   for (int i = 0; i < scene_count(150); ++i) {
-    Scene scene = scenes.next();
+    SceneValues scene = scenes.next();
     scene.accuracy.tolerance = 1e-3;
     const std::vector<SceneEntry> entries = scenes.entries(scene);
     const EffectBounds bounds(scene, extents_of(entries).front());

@@ -8,7 +8,7 @@
 #include <iostream>
 #include <random>
 
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "run/scene_table.hpp"
 #include "scene_run_support.hpp"
 #include "table/table_lookup.hpp"
@@ -53,10 +53,10 @@ std::vector<double> axis(double first, double last, std::size_t count, double or
 }
 
 /// A scene with a grid of 4 to some 60 values an axis, sometimes with n and k or the wavelength among the axes.
-Scene random_scene(Draw& draw) {
+SceneValues random_scene(Draw& draw) {
   const Distribution distribution = draw.chance(0.75) ? Distribution::kCauchy : Distribution::kGaussian;
   const bool is_metal = draw.chance(0.3);
-  Scene scene = make_scene(distribution, kMaskings[draw.count(0, 3)],
+  SceneValues scene = make_scene(distribution, kMaskings[draw.count(0, 3)],
                            is_metal ? OpticalConstants{draw.in_ratio(1.0, 10.0), draw.in_ratio(1.0, 60.0)}
                                     : OpticalConstants{draw.uniform(1.1, 3.0), draw.chance(0.5) ? 0.0 : 0.2});
   if (draw.chance(0.5)) scene.surroundings.reset();
@@ -88,7 +88,7 @@ Scene random_scene(Draw& draw) {
   return scene;
 }
 
-Table table_of(const Scene& scene) {
+TableValues table_of(const SceneValues& scene) {
   const SceneEntries grid = grid_entries(scene);
   return table_part(table_layout(scene, keep_everything(scene), scene.grid), grid,
                     evaluate_scene(scene, grid, *make_evaluator(Evaluator::kFloat), {}));
@@ -111,7 +111,7 @@ std::vector<TableLookup::Point> random_points(const Axes& grid, Draw& draw) {
   return points;
 }
 
-std::vector<PointResult> exact_at(const Scene& scene, const std::vector<TableLookup::Point>& points) {
+std::vector<PointResult> exact_at(const SceneValues& scene, const std::vector<TableLookup::Point>& points) {
   std::vector<SceneEntry> entries;
   std::vector<double> wavelengths;
   for (const TableLookup::Point& point : points) {
@@ -125,7 +125,7 @@ std::vector<PointResult> exact_at(const Scene& scene, const std::vector<TableLoo
     }
     entries.push_back(entry);
   }
-  Scene exact = scene;
+  SceneValues exact = scene;
   exact.accuracy.tolerance = kExact;
   return evaluate_scene(exact, {entries, wavelengths}, *make_evaluator(Evaluator::kDouble), {});
 }
@@ -144,8 +144,8 @@ TEST(LookupEstimates, RandomPointsOfRandomTables_ErrorsAreWithinThem) {
   Tally tally;
   for (std::size_t i = 0; i < tables; ++i) {
     Draw draw(seed * 1000003 + i);
-    const Scene scene = random_scene(draw);
-    const Table table = table_of(scene);
+    const SceneValues scene = random_scene(draw);
+    const TableValues table = table_of(scene);
     const TableLookup lookup(table, scene.accuracy.tolerance, "random");
     const std::vector<TableLookup::Point> points = random_points(scene.grid, draw);
     const std::vector<PointResult> exact = exact_at(scene, points);
@@ -163,7 +163,7 @@ TEST(LookupEstimates, RandomPointsOfRandomTables_ErrorsAreWithinThem) {
                                exact[j][Quantity::kRhoI];
       EXPECT_LE(rho_error, found[Quantity::kRhoErrorEstimate] + exact[j][Quantity::kRhoErrorEstimate]);
       ++tally.points;
-      tally.flagged += (found.status & kStatusToleranceMissed) != 0 ? 1 : 0;
+      tally.flagged += (found.status & kToleranceNotMet) != 0 ? 1 : 0;
       tally.missed += std::max(dolp_error, rho_error) > scene.accuracy.tolerance ? 1 : 0;
       tally.worst =
           std::max({tally.worst, dolp_error / (found[Quantity::kErrorEstimate] + exact[j][Quantity::kErrorEstimate]),

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "run/scene_table.hpp"
 #include "scene_run_support.hpp"
 #include "table/table_lookup.hpp"
@@ -27,8 +27,8 @@ std::vector<double> spaced(double first, double last, std::size_t count) {
   return values;
 }
 
-Scene scene_with(Masking masking, std::size_t thetas, std::size_t sigmas, std::size_t qs) {
-  Scene scene = make_scene(Distribution::kCauchy, masking, {1.5, 0.1});
+SceneValues scene_with(Masking masking, std::size_t thetas, std::size_t sigmas, std::size_t qs) {
+  SceneValues scene = make_scene(Distribution::kCauchy, masking, {1.5, 0.1});
   scene.grid[Axis::kTheta] = spaced(5.0, 80.0, thetas);
   scene.grid[Axis::kSigma] = spaced(0.1, 0.5, sigmas);
   scene.grid[Axis::kQ] = spaced(1.8, 6.0, qs);
@@ -37,10 +37,10 @@ Scene scene_with(Masking masking, std::size_t thetas, std::size_t sigmas, std::s
 }
 
 /// Of random points in a table of the scene's grid those that a lookup flags.
-double flagged_share(const Scene& scene) {
+double flagged_share(const SceneValues& scene) {
   const SceneEntries grid = grid_entries(scene);
   const EffectPlan plan = keep_everything(scene);
-  const Table table = table_part(table_layout(scene, plan, scene.grid), grid,
+  const TableValues table = table_part(table_layout(scene, plan, scene.grid), grid,
                                  evaluate_scene(scene, grid, *make_evaluator(Evaluator::kFloat), {}));
   const TableLookup lookup(table, kTolerance, "table");
   std::mt19937_64 engine(3);
@@ -51,14 +51,14 @@ double flagged_share(const Scene& scene) {
   for (int i = 0; i < kPoints; ++i) {
     const double theta_deg = within(scene.grid[Axis::kTheta]), sigma = within(scene.grid[Axis::kSigma]),
                  q = within(scene.grid[Axis::kQ]);
-    flagged += (lookup.at(theta_deg, sigma, q).status & kStatusToleranceMissed) != 0 ? 1 : 0;
+    flagged += (lookup.at(theta_deg, sigma, q).status & kToleranceNotMet) != 0 ? 1 : 0;
   }
   return static_cast<double>(flagged) / kPoints;
 }
 
 TEST(LookupForecast, TablesOfTheAdvisedDensity_AnswerMostPoints_AndHalfOfItTooFew) {
   for (const Masking masking : {Masking::kSmith, Masking::kVCavity, Masking::kIntegral}) {
-    const Scene scene = scene_with(masking, 12, 9, 7);
+    const SceneValues scene = scene_with(masking, 12, 9, 7);
     const std::vector<AxisForecast> axes = lookup_forecast(scene, keep_everything(scene));
     ASSERT_EQ(axes.size(), 3U);
     std::vector<std::size_t> counts;
@@ -73,7 +73,7 @@ TEST(LookupForecast, TablesOfTheAdvisedDensity_AnswerMostPoints_AndHalfOfItTooFe
 }
 
 TEST(LookupForecast, DenseAxis_NeedsFewerValues_AndOneOfThreeHasNoError) {
-  Scene scene = scene_with(Masking::kVCavity, 200, 3, 1);
+  SceneValues scene = scene_with(Masking::kVCavity, 200, 3, 1);
   scene.grid[Axis::kQ] = {3.0};
   const std::vector<AxisForecast> axes = lookup_forecast(scene, keep_everything(scene));
   ASSERT_EQ(axes.size(), 2U);
@@ -86,7 +86,7 @@ TEST(LookupForecast, DenseAxis_NeedsFewerValues_AndOneOfThreeHasNoError) {
 }
 
 TEST(LookupForecast, FurtherAxes_AreLookedAtToo) {
-  Scene scene = scene_with(Masking::kVCavity, 10, 5, 1);
+  SceneValues scene = scene_with(Masking::kVCavity, 10, 5, 1);
   scene.grid[Axis::kQ] = {3.0};
   scene.grid[Axis::kN] = spaced(1.3, 2.0, 6);
   scene.grid[Axis::kWavelength] = spaced(9.0, 11.0, 5);

@@ -17,8 +17,8 @@ namespace {
 
 const OpticalConstants kPaint{1.5, 0.1};
 
-Scene scene_with(Masking masking) {
-  Scene scene;
+SceneValues scene_with(Masking masking) {
+  SceneValues scene;
   scene.surface.masking = masking;
   scene.surface.sigma = 0.3;
   scene.surface.q = 3.0;
@@ -28,7 +28,7 @@ Scene scene_with(Masking masking) {
   return scene;
 }
 
-MuellerMatrix elements(const Scene& scene, const BeamAngles& angles, double sigma = 0.3) {
+MuellerMatrix elements(const SceneValues& scene, const BeamAngles& angles, double sigma = 0.3) {
   CpuEvaluator evaluator(Precision::kAuto);
   return evaluate_mueller(scene, {{angles, {sigma, 3.0}, kPaint}}, evaluator, {}).front();
 }
@@ -41,7 +41,7 @@ bool is_finite(const MuellerMatrix& f) {
 }
 
 TEST(MuellerRun, SpecularAndDiffuse_AreAddedAsInEquation15) {
-  Scene scene = scene_with(Masking::kIntegral);
+  SceneValues scene = scene_with(Masking::kIntegral);
   scene.surface.specular = 0.7;
   scene.surface.diffuse = 0.2;
   scene.surface.diffuse_exponent = -0.4;
@@ -65,7 +65,7 @@ TEST(MuellerRun, NinetyDegrees_IsTheLimitWhereThereIsOneAndNanElsewhere) {
       const MuellerMatrix g = elements(scene_with(masking), near);
       EXPECT_GT(f[0], 0.0);
       for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(f[i], g[i], 1e-6 * f[0]);  // the step is 2e-8 rad
-      Scene diffuse = scene_with(masking);
+      SceneValues diffuse = scene_with(masking);
       diffuse.surface.diffuse = 0.1;
       EXPECT_TRUE(is_all_nan(elements(diffuse, at)));
       diffuse.surface.diffuse_exponent = 0.0;
@@ -80,7 +80,7 @@ TEST(MuellerRun, NinetyDegrees_IsTheLimitWhereThereIsOneAndNanElsewhere) {
 }
 
 TEST(MuellerRun, Mirror_HasTheDiffusePartButInItsSpecularDirection) {
-  Scene scene = scene_with(Masking::kIntegral);
+  SceneValues scene = scene_with(Masking::kIntegral);
   scene.surface.diffuse = 0.3;
   scene.surface.diffuse_exponent = 0.0;
   EXPECT_TRUE(is_all_nan(elements(scene, {40.0, 40.0, 180.0}, 0.0)));
@@ -93,7 +93,7 @@ TEST(MuellerRun, Mirror_HasTheDiffusePartButInItsSpecularDirection) {
 }
 
 TEST(MuellerRun, WithoutASpecularPart_OnlyTheDiffuseIsLeft) {
-  Scene scene = scene_with(Masking::kNone);
+  SceneValues scene = scene_with(Masking::kNone);
   scene.surface.specular = 0.0;
   scene.surface.diffuse = 0.3;
   scene.surface.diffuse_exponent = 0.0;
@@ -112,7 +112,7 @@ TEST(MuellerRun, AutoPrecision_IsFloatWhereItMeetsTheTolerance) {
   EXPECT_EQ(mueller_precision({1e-4, Precision::kDouble}, true), Precision::kDouble);
 }
 
-std::string message_of(const Scene& scene, const std::string& csv) {
+std::string message_of(const SceneValues& scene, const std::string& csv) {
   try {
     mueller_points(scene, parse_points(csv, "p.csv", PointsKind::kGeometries));
   } catch (const InputError& error) {
@@ -122,7 +122,7 @@ std::string message_of(const Scene& scene, const std::string& csv) {
 }
 
 TEST(MuellerPoints, MaterialOfAWavelength_IsThatOfTheScene) {
-  Scene scene = scene_with(Masking::kNone);
+  SceneValues scene = scene_with(Masking::kNone);
   scene.path_name = "s.toml";
   scene.surface.material.name = "measured";
   scene.surface.material.n = {{8.0, 12.0}, {1.0, 3.0}, SpectralTable::Interpolation::kLinear};

@@ -22,13 +22,13 @@ constexpr double kAccuracy = 2e-3;
 using Overrides = std::vector<std::string>;
 
 std::vector<PointResult> results_of(const Overrides& overrides) {
-  const Scene scene = parse_scene(kScene, "s.toml", settings_from_text(overrides));
+  const SceneValues scene = parse_scene(kScene, "s.toml", settings_from_text(overrides));
   CpuEvaluator evaluator(Precision::kDouble);
   return evaluate_scene(scene, grid_entries(scene), evaluator, {});
 }
 
 std::optional<double> gap_of(const Overrides& overrides) {
-  const Scene scene = parse_scene(kScene, "s.toml", settings_from_text(overrides));
+  const SceneValues scene = parse_scene(kScene, "s.toml", settings_from_text(overrides));
   const SceneEntries entries = grid_entries(scene);
   return scattering_gap(scene, entries, plan_effects(scene, entries, false));
 }

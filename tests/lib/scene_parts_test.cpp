@@ -43,7 +43,7 @@ std::unique_ptr<MomentsEvaluator> evaluator_on(bool device) {
 constexpr std::size_t kFewParts = 4;  // making an evaluator takes longer than a part
 
 /// Results of the grid, each part without knowledge of the others; few parts have an evaluator of their own each.
-std::vector<PointResult> in_parts(const Scene& scene, const std::vector<SceneEntries>& parts, bool device) {
+std::vector<PointResult> in_parts(const SceneValues& scene, const std::vector<SceneEntries>& parts, bool device) {
   const EffectPlan plan = keep_everything(scene);
   const SceneEntries whole = grid_entries(scene);
   CollectedResults results(whole);
@@ -55,7 +55,7 @@ std::vector<PointResult> in_parts(const Scene& scene, const std::vector<SceneEnt
   return results.take();
 }
 
-void expect_same_bits(const Scene& scene, bool device) {
+void expect_same_bits(const SceneValues& scene, bool device) {
   const SceneEntries grid = grid_entries(scene);
   const std::vector<PointResult> whole = in_parts(scene, {grid}, device);
   ASSERT_EQ(whole.size(), grid.size());
@@ -69,8 +69,8 @@ void expect_same_bits(const Scene& scene, bool device) {
 
 class PartsOfModel : public testing::TestWithParam<std::tuple<Distribution, Masking>> {
  protected:
-  Scene scene() const {
-    Scene scene = make_scene(std::get<0>(GetParam()), std::get<1>(GetParam()), kAbsorbing);
+  SceneValues scene() const {
+    SceneValues scene = make_scene(std::get<0>(GetParam()), std::get<1>(GetParam()), kAbsorbing);
     scene.accuracy.tolerance = 1e-4;
     return scene;
   }
@@ -79,14 +79,14 @@ class PartsOfModel : public testing::TestWithParam<std::tuple<Distribution, Mask
 
 // Grazing directions, where other nodes are wanted than elsewhere, and tails so heavy that many entries are refined.
 TEST_P(PartsOfModel, InterpolatedGrid_KeepsItsBitsInParts) {
-  Scene dense = scene();
+  SceneValues dense = scene();
   dense.grid =
       axes_of({90.0, 0.0, 85.0, 12.0, 89.95, 60.0, 30.0, 89.0}, spaced(1.0, 0.05, 30), spaced(least_q(), 6.0, 24));
   expect_same_bits(dense, true);
 }
 
 TEST_P(PartsOfModel, ScatteredAxes_KeepTheirBitsInParts) {
-  Scene sparse = scene();
+  SceneValues sparse = scene();
   sparse.grid =
       axes_of({70.0, 90.0, 20.0, 0.0, 89.999, 45.0, 88.0}, {0.3, 0.0, 2.0, 0.02}, {2.0, 8.0, least_q(), 1.9, 3.0});
   expect_same_bits(sparse, true);
@@ -94,7 +94,7 @@ TEST_P(PartsOfModel, ScatteredAxes_KeepTheirBitsInParts) {
 }
 
 TEST_P(PartsOfModel, AxesOfIndexAndWavelength_KeepTheirBitsInParts) {
-  Scene own = scene();
+  SceneValues own = scene();
   own.grid = axes_of({80.0, 30.0, 90.0}, {0.1, 0.4}, {2.0, 1.8, 5.0}, {8.0, 10.0}, {1.4, 4.0}, {0.0, 3.0});
   expect_same_bits(own, true);
 }
@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(SceneParts, PartsOfModel,
 // Many indices, which are combined from a few of all of the grid.
 TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
   for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
-    Scene scene = make_scene(Distribution::kCauchy, masking, kAbsorbing);
+    SceneValues scene = make_scene(Distribution::kCauchy, masking, kAbsorbing);
     scene.accuracy.tolerance = 1e-3;
     scene.grid = axes_of({80.0}, spaced(0.1, 0.4, 5), spaced(2.0, 5.0, 5), {}, spaced(1.3, 3.0, 10), {0.1, 0.3, 0.9});
     const auto evaluator = evaluator_on(true);
@@ -116,14 +116,14 @@ TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
 }
 
 TEST(SceneParts, AllBounces_KeepTheirBitsInParts) {
-  Scene scene = make_scene(Distribution::kCauchy, Masking::kVCavity, kMetal);
+  SceneValues scene = make_scene(Distribution::kCauchy, Masking::kVCavity, kMetal);
   scene.surface.scattering = Scattering::kMultiple;
   scene.grid = axes_of({90.0, 0.0, 85.0, 60.0, 30.0}, spaced(0.05, 1.0, 12), spaced(1.3, 6.0, 10));
   expect_same_bits(scene, true);
 }
 
 TEST(SceneParts, ADenseBand_KeepsItsBitsInParts) {
-  Scene scene = make_scene(Distribution::kCauchy, Masking::kVCavity, kAbsorbing);
+  SceneValues scene = make_scene(Distribution::kCauchy, Masking::kVCavity, kAbsorbing);
   scene.surface.material.name = "made up";
   scene.surface.material.n = {{8.0, 14.0}, {1.4, 1.9}, SpectralTable::Interpolation::kLinear};
   scene.surface.material.k = {{8.0, 14.0}, {0.1, 0.8}, SpectralTable::Interpolation::kLinear};

@@ -56,15 +56,15 @@ std::array<std::uint64_t, 11> bits_of(const PointResult& r) {
           r.status};
 }
 
-Scene small_grid(Distribution distribution, Masking masking) {
-  Scene scene = make_scene(distribution, masking, kAbsorbing);
+SceneValues small_grid(Distribution distribution, Masking masking) {
+  SceneValues scene = make_scene(distribution, masking, kAbsorbing);
   scene.grid = axes_of({90.0, 0.0, 30.0, 75.0, 89.9}, {0.4, 0.0, 0.1}, {3.0, 1.6, 2.0});
   return scene;
 }
 
 /// A material with an index for each of several wavelengths, and a band over them.
-Scene band_scene() {
-  Scene scene = make_scene(Distribution::kCauchy, Masking::kNone, {});
+SceneValues band_scene() {
+  SceneValues scene = make_scene(Distribution::kCauchy, Masking::kNone, {});
   scene.surface.material.name = "made up";
   scene.surface.material.n = {{8.0, 11.0, 14.0}, {1.4, 1.9, 1.5}, SpectralTable::Interpolation::kLinear};
   scene.surface.material.k = {{8.0, 11.0, 14.0}, {0.1, 0.8, 0.2}, SpectralTable::Interpolation::kLinear};
@@ -72,7 +72,7 @@ Scene band_scene() {
   return scene;
 }
 
-std::string error_of(const Scene& scene, const std::string& csv) {
+std::string error_of(const SceneValues& scene, const std::string& csv) {
   try {
     point_entries(scene, parse_points(csv, "p.csv", PointsKind::kDirections));
   } catch (const InputError& error) {
@@ -82,7 +82,7 @@ std::string error_of(const Scene& scene, const std::string& csv) {
 }
 
 TEST(PointEntries_Smith, RefusesSmallQWithFileLineColumnValueAndRange) {
-  const Scene scene = make_scene(Distribution::kCauchy, Masking::kSmith, kDielectric);
+  const SceneValues scene = make_scene(Distribution::kCauchy, Masking::kSmith, kDielectric);
   EXPECT_EQ(error_of(scene, "theta_deg,q\n10,1.501\n20,1.5\n30,1.2\n"),
             "p.csv:3: q = 1.5: out of range, a number in (1.5, 1e4] with masking = \"smith\" and distribution = "
             "\"cauchy\"");
@@ -96,7 +96,7 @@ TEST(PointEntries_SmallQ, IsAllowedWhereItHasAMeaning) {
 }
 
 TEST(PointEntries_MissingTheta, NamesTheFileUnlessTheSceneHasOneTheta) {
-  Scene scene = make_scene(Distribution::kCauchy, Masking::kNone, kDielectric);
+  SceneValues scene = make_scene(Distribution::kCauchy, Masking::kNone, kDielectric);
   const SceneEntries entries = point_entries(scene, parse_points("sigma\n0.2\n", "p.csv", PointsKind::kDirections));
   ASSERT_EQ(entries.size(), 1U);
   EXPECT_EQ(entries[0].theta_deg, 60.0);
@@ -116,7 +116,7 @@ TEST(PointEntries_HalfAnIndex, IsRefusedBesideAMaterialThatDependsOnTheWavelengt
 }
 
 TEST(PointEntries_AbsentColumns, ComeFromTheScene) {
-  const Scene scene = make_scene(Distribution::kCauchy, Masking::kNone, kAbsorbing);
+  const SceneValues scene = make_scene(Distribution::kCauchy, Masking::kNone, kAbsorbing);
   const auto entries = point_entries(scene, parse_points("k,q\n0.25,4\n", "p.csv", PointsKind::kDirections));
   ASSERT_EQ(entries.size(), 1U);
   EXPECT_EQ(entries[0].shape, (SlopeShape{0.3, 4.0}));
@@ -124,11 +124,11 @@ TEST(PointEntries_AbsentColumns, ComeFromTheScene) {
 }
 
 TEST(EvaluateScene_OwnIndexOfTheMaterial_GivesTheSameAsTheMaterial, OverABand) {
-  Scene scene = band_scene();
+  SceneValues scene = band_scene();
   scene.surface.material = {};
   scene.surface.material.constant = kAbsorbing;
   const PointResult of_material = run_one(scene, 50.0, {0.3, 2.0}, Evaluator::kDouble);
-  const Scene dispersive = band_scene();
+  const SceneValues dispersive = band_scene();
   const PointResult of_point = run(dispersive, {{50.0, {0.3, 2.0}, kAbsorbing}}, Evaluator::kDouble).front();
   constexpr double kBandAgreement = 1e-9;  // the band rule's accuracy
   EXPECT_NEAR(of_point[Quantity::kDolp], of_material[Quantity::kDolp], kBandAgreement);
@@ -137,7 +137,7 @@ TEST(EvaluateScene_OwnIndexOfTheMaterial_GivesTheSameAsTheMaterial, OverABand) {
 }
 
 TEST(EvaluateScene_Progress, CountsEntriesUpToAllOfThem) {
-  const Scene scene = small_grid(Distribution::kGaussian, Masking::kNone);
+  const SceneValues scene = small_grid(Distribution::kGaussian, Masking::kNone);
   std::vector<std::size_t> seen;
   Recorder recorder;
   evaluate_scene(scene, grid_entries(scene), recorder, [&](std::size_t done, std::size_t total) {
@@ -151,7 +151,7 @@ TEST(EvaluateScene_Progress, CountsEntriesUpToAllOfThem) {
 }
 
 TEST(EvaluateScene_NoEntries, GivesNoResults) {
-  const Scene scene = make_scene(Distribution::kCauchy, Masking::kSmith, kDielectric);
+  const SceneValues scene = make_scene(Distribution::kCauchy, Masking::kSmith, kDielectric);
   EXPECT_TRUE(run(scene, {}, Evaluator::kFloat).empty());
 }
 
@@ -159,7 +159,7 @@ class RunsOfModel : public testing::TestWithParam<std::tuple<Evaluator, Distribu
 
 TEST_P(RunsOfModel, PermutedEntries_KeepTheirBits) {
   const auto [evaluator, distribution, masking] = GetParam();
-  const Scene scene = small_grid(distribution, masking);
+  const SceneValues scene = small_grid(distribution, masking);
   std::vector<SceneEntry> entries = list_of(grid_entries(scene));
   for (const OpticalConstants& index : kIndices) entries.push_back({45.0, {0.2, 2.0}, index});
   const std::vector<PointResult> results = run(scene, entries, evaluator);
@@ -177,7 +177,7 @@ TEST_P(RunsOfModel, PermutedEntries_KeepTheirBits) {
 
 TEST_P(RunsOfModel, ReversedAxes_KeepTheBitsOfEveryEntry) {
   const auto [evaluator, distribution, masking] = GetParam();
-  Scene scene = small_grid(distribution, masking);
+  SceneValues scene = small_grid(distribution, masking);
   const std::vector<PointResult> results = run(scene, grid_entries(scene), evaluator);
   std::ranges::reverse(scene.grid[Axis::kTheta]);
   std::ranges::reverse(scene.grid[Axis::kSigma]);
@@ -193,7 +193,7 @@ TEST_P(RunsOfModel, ReversedAxes_KeepTheBitsOfEveryEntry) {
 TEST_P(RunsOfModel, Grid_EqualsThePointsOneByOne) {
   const auto [evaluator, distribution, masking] = GetParam();
   const bool has_profiles = masking == Masking::kNone || masking == Masking::kVCavity;
-  const Scene scene = small_grid(distribution, masking);
+  const SceneValues scene = small_grid(distribution, masking);
   const SceneEntries entries = grid_entries(scene);
   const std::vector<PointResult> results = run(scene, entries, evaluator);
   for (std::size_t i = 0; i < entries.size(); ++i) {

@@ -61,7 +61,7 @@ std::vector<Statement> statements_of(const std::string& name) {
 
 PointResult result_at(const std::string& name, double theta_deg, std::vector<std::string> overrides) {
   overrides.push_back("accuracy.tolerance=1e-6");
-  const Scene scene = read_scene(scene_path(name), settings_from_text(overrides));
+  const SceneValues scene = read_scene(scene_path(name), settings_from_text(overrides));
   return run_one(scene, theta_deg, {scene.surface.sigma, scene.surface.q}, Evaluator::kDouble);
 }
 
@@ -122,7 +122,7 @@ TEST_P(ShippedScene, Plan_EstimatesTheChangesThatTheCommentStates) {
   constexpr double kAccuracy = 0.2;  // points: 1e-3 of each of the two
   const auto [name, statement_count] = GetParam();
   for (const Statement& statement : statements_of(name)) {
-    const Scene scene = read_scene(scene_path(name), settings_from_text(statement.overrides));
+    const SceneValues scene = read_scene(scene_path(name), settings_from_text(statement.overrides));
     const SceneEntries entry = {{statement.theta_deg, {scene.surface.sigma, scene.surface.q}, {}}};
     std::vector<EffectRow> rows = effect_rows(scene, entry, keep_everything(scene));
     add_influences(rows, scene, entry);

@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(
-    Scene, CommandLineMistake,
+    SceneValues, CommandLineMistake,
     testing::Values(Mistake{"MissingFile", {"table", "none.toml", "-o", "out.nc"}, kInput, {"none.toml"}},
                     Mistake{"NotToml", kTable, kInput, {"scene.toml:2"}, scene_with("[surface]", "[surface")},
                     Mistake{"UnknownKey",

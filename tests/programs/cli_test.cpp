@@ -72,7 +72,7 @@ TEST_F(CommandLine, TableNetcdf_OtherReader_HasAxesVariablesAndAttributes) {
 
 TEST_F(CommandLine, TableNetcdf_SceneAttribute_IsTheFileVerbatim) {
   ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc"}).status, 0);
-  const Table table = read_table(at("t.nc"));
+  const TableValues table = read_table(at("t.nc"));
   const Attribute expected{"scene", kScene};
   EXPECT_NE(std::ranges::find(table.attributes, expected), table.attributes.end());
 }
@@ -81,7 +81,7 @@ TEST_F(CommandLine, TableNetcdf_EvalAtItsEntries_EqualBitForBit) {
   put("grid.csv", grid_points());
   ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc"}).status, 0);
   ASSERT_EQ(dolp({"eval", "scene.toml", "--points", "grid.csv", "-o", "e.csv"}).status, 0);
-  const Table table = read_table(at("t.nc"));
+  const TableValues table = read_table(at("t.nc"));
   const Columns columns = parse_csv(content("e.csv"));
   ASSERT_EQ(table.size(), kSceneEntries);
   for (const Quantity quantity : kAllQuantities) {
@@ -113,7 +113,7 @@ TEST_F(CommandLine, TableFormats_SameScene_HoldTheSameNumbers) {
   for (const char* name : {"t.nc", "t.csv", "t.npy"}) {
     ASSERT_EQ(dolp({"table", "scene.toml", "-o", name}).status, 0) << name;
   }
-  const Table table = read_table(at("t.nc"));
+  const TableValues table = read_table(at("t.nc"));
   const Columns columns = parse_csv(content("t.csv"));
   ASSERT_EQ(columns.at("status").size(), kSceneEntries);
   EXPECT_EQ(columns.at("theta_deg").front(), 80.5);
@@ -176,7 +176,7 @@ TEST_F(CommandLine, Table_OneEntryGrid_EqualsEval) {
   const Outcome made = dolp({"table", "scene.toml", "-o", "t.nc", "--set", "grid.theta_deg=60", "--set",
                              "grid.sigma=[0.4]", "--set", "grid.q=3.5"});
   ASSERT_EQ(made.status, 0) << made.err;
-  const Table table = read_table(at("t.nc"));
+  const TableValues table = read_table(at("t.nc"));
   ASSERT_EQ(table.size(), 1U);
   EXPECT_TRUE(same_bits(table[Quantity::kDolp], {eval({}).at("dolp").at(1)}));
 }
@@ -184,7 +184,7 @@ TEST_F(CommandLine, Table_OneEntryGrid_EqualsEval) {
 TEST_F(CommandLine, Table_DescendingRange_KeepsTheOrder) {
   const Outcome made = dolp({"table", "scene.toml", "-o", "t.nc", "--set", "grid.theta_deg={from=60, to=0, count=3}"});
   ASSERT_EQ(made.status, 0) << made.err;
-  const Table table = read_table(at("t.nc"));
+  const TableValues table = read_table(at("t.nc"));
   EXPECT_EQ(table.axes[Axis::kTheta], (std::vector<double>{60.0, 30.0, 0.0}));
   const Columns points = eval({});
   EXPECT_TRUE(same_bits({table[Quantity::kDolp].at(table.position(0, 1, 1))}, {points.at("dolp").at(1)}));
@@ -342,7 +342,7 @@ TEST_F(CommandLine, Json_StatusCounts_AreThoseOfTheEntries) {
       dolp({"table", "scene.toml", "-o", "t.nc", "--json", "--set", "grid.theta_deg=[0, 89.9, 90]"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const json counts = json::parse(outcome.out)["status"];
-  const Table table = read_table(at("t.nc"));
+  const TableValues table = read_table(at("t.nc"));
   ASSERT_EQ(counts.size(), 4U);
   std::size_t all = 0;
   for (const json& count : counts) {

@@ -34,8 +34,8 @@ TEST_F(DenseTable, Interpolated_AgreesWithEveryEntryByItself) {
     EXPECT_LT(3.0 * few["interpolation_nodes"].get<double>(), few["interpolated_moments"].get<double>());
     const json all = table(joined(options, joined(kOff, {"--tolerance", "1e-6"})), "all.nc");
     EXPECT_EQ(all["interpolated_moments"], 0);
-    const Table a = read_table(at("t.nc"));
-    const Table b = read_table(at("all.nc"));
+    const TableValues a = read_table(at("t.nc"));
+    const TableValues b = read_table(at("all.nc"));
     ASSERT_EQ(a.size(), kDenseEntries);
     for (std::size_t i = 0; i < a.size(); ++i) {
       EXPECT_EQ(a.status[i], b.status[i]) << i;
@@ -71,9 +71,9 @@ TEST_F(DenseTable, RuleAttributeAndSummary_SayWhatIsInterpolated) {
 
 TEST_F(DenseTable, Twice_GivesTheSameNumbers) {
   table(kDense);
-  const Table once = read_table(at("t.nc"));
+  const TableValues once = read_table(at("t.nc"));
   table(kDense);
-  const Table again = read_table(at("t.nc"));
+  const TableValues again = read_table(at("t.nc"));
   EXPECT_EQ(once[Quantity::kDolp], again[Quantity::kDolp]);
   EXPECT_EQ(once[Quantity::kRhoI], again[Quantity::kRhoI]);
   EXPECT_EQ(once[Quantity::kRhoErrorEstimate], again[Quantity::kRhoErrorEstimate]);

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "cli_support.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 
 namespace {
 

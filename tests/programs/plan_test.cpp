@@ -56,7 +56,7 @@ TEST_F(Plan, IsothermalSurroundings_NothingRunsAndDolpIsZero) {
   EXPECT_EQ(report["device"], "none");
   EXPECT_TRUE(has(report["effects"]["dropped"], "specular"));
   EXPECT_TRUE(has(report["effects"]["not_needed"], "masking"));
-  const Table made = read_table(at("t.nc"));
+  const TableValues made = read_table(at("t.nc"));
   EXPECT_TRUE(made[Quantity::kRhoI].empty() && made[Quantity::kRhoQ].empty() && made[Quantity::kAlbedo].empty() &&
               made[Quantity::kRhoErrorEstimate].empty());
   ASSERT_EQ(made[Quantity::kDolp].size(), made.size());
@@ -100,13 +100,13 @@ TEST_F(Plan, KeepAll_EverythingIsComputedAndTheAnswerIsTheSame) {
   EXPECT_GT(kept["evaluations"], 0.0);
   EXPECT_TRUE(kept["effects"]["keep_all"]);
   EXPECT_TRUE(kept["effects"]["dropped"].empty());
-  const Table all = read_table(at("t.nc"));
+  const TableValues all = read_table(at("t.nc"));
   for (const Quantity quantity : kAllQuantities) {
     const bool is_of_bracket = std::string(description_of(quantity).name).starts_with("dolp_");  // not asked for
     EXPECT_EQ(all[quantity].size(), is_of_bracket ? 0U : all.size()) << description_of(quantity).name;
   }
   table(kIsothermal);
-  const Table few = read_table(at("t.nc"));
+  const TableValues few = read_table(at("t.nc"));
   EXPECT_EQ(all[Quantity::kDolp], few[Quantity::kDolp]);
   for (std::size_t i = 0; i < all.size(); ++i)
     EXPECT_NEAR(few[Quantity::kStokesI][i], all[Quantity::kStokesI][i], 1e-12 * all[Quantity::kStokesI][i]);
@@ -144,11 +144,11 @@ TEST_F(Plan, NoSpecularPart_OnlyClosedForms) {
   const std::vector<std::string> matt = {"--set", "surface.specular=0", "--set", "surface.diffuse=0.2"};
   const json report = table(matt);
   EXPECT_EQ(report["evaluations"], 0.0);
-  const Table made = read_table(at("t.nc"));
+  const TableValues made = read_table(at("t.nc"));
   EXPECT_EQ(made[Quantity::kRhoI].size(), made.size());
   EXPECT_TRUE(made[Quantity::kAlbedo].empty());
   table(joined(matt, {"--keep-all"}));
-  const Table all = read_table(at("t.nc"));
+  const TableValues all = read_table(at("t.nc"));
   EXPECT_EQ(made[Quantity::kRhoI], all[Quantity::kRhoI]);
   EXPECT_EQ(made[Quantity::kDolp], all[Quantity::kDolp]);
 }
@@ -161,9 +161,9 @@ TEST_F(Plan, SunInTheVisible_ThermalRadiationIsDropped) {
   EXPECT_TRUE(has(report["effects"]["dropped"], "emission"));
   EXPECT_TRUE(has(report["effects"]["dropped"], "surroundings"));
   EXPECT_TRUE(has(report["effects"]["kept"], "specular"));
-  const Table few = read_table(at("t.nc"));
+  const TableValues few = read_table(at("t.nc"));
   table(joined(visible, {"--keep-all"}));
-  const Table all = read_table(at("t.nc"));
+  const TableValues all = read_table(at("t.nc"));
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_NEAR(few[Quantity::kDolp][i], all[Quantity::kDolp][i],
                 few[Quantity::kErrorEstimate][i] + all[Quantity::kErrorEstimate][i]);
@@ -175,9 +175,9 @@ TEST_F(Plan, BeamOnAnIsothermalSurface_NeedsTheBeamAlone) {
   const json report = table(kBeamAlone);
   EXPECT_EQ(report["evaluations"], 0.0);
   EXPECT_EQ(report["dispatches"], 1);
-  const Table few = read_table(at("t.nc"));
+  const TableValues few = read_table(at("t.nc"));
   table(joined(kBeamAlone, {"--keep-all"}));
-  const Table all = read_table(at("t.nc"));
+  const TableValues all = read_table(at("t.nc"));
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_NEAR(few[Quantity::kDolp][i], all[Quantity::kDolp][i],
                 few[Quantity::kErrorEstimate][i] + all[Quantity::kErrorEstimate][i]);

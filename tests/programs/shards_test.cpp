@@ -56,8 +56,8 @@ class Shards : public CommandLine {
   }
 
   void expect_same(const std::string& a, const std::string& b) {
-    const Table one = read_table(at(a));
-    const Table other = read_table(at(b));
+    const TableValues one = read_table(at(a));
+    const TableValues other = read_table(at(b));
     EXPECT_EQ(one.axes, other.axes);
     EXPECT_EQ(one.status, other.status);
     for (const Quantity quantity : kAllQuantities) {

@@ -35,15 +35,15 @@ TEST(Overrides, AnyValues_SurviveTheAttribute) {
   }
 }
 
-Table small_table() {
-  Table table;
+TableValues small_table() {
+  TableValues table;
   table.axes[Axis::kTheta] = {60.0};
   table.axes[Axis::kSigma] = {0.3};
   table.axes[Axis::kQ] = {2.0};
   return table;
 }
 
-std::string refusal(const Table& table, const std::string& scene_text) {
+std::string refusal(const TableValues& table, const std::string& scene_text) {
   try {
     check_table({table, {0}}, parse_scene(scene_text, "scene.toml", {}), "t.nc", {});
   } catch (const InputError& error) {
@@ -53,14 +53,14 @@ std::string refusal(const Table& table, const std::string& scene_text) {
 }
 
 TEST(CheckTable, NothingToCompare_IsRefused) {
-  Table table = small_table();
+  TableValues table = small_table();
   table[Quantity::kAlbedo] = {1.0};
   table[Quantity::kDolp] = {0.1};  // without its estimate
   EXPECT_NE(refusal(table, kScene).find("t.nc: has nothing to compare"), std::string::npos);
 }
 
 TEST(CheckTable, AxisOutOfRange_IsRefused) {
-  Table table = small_table();
+  TableValues table = small_table();
   table[Quantity::kDolp] = table[Quantity::kErrorEstimate] = {0.1};
   table.axes[Axis::kTheta] = {90.5};
   EXPECT_NE(refusal(table, kScene).find("t.nc: axis theta: 90.5 is out of range"), std::string::npos);
@@ -69,7 +69,7 @@ TEST(CheckTable, AxisOutOfRange_IsRefused) {
 }
 
 TEST(CheckTable, EmptyStatusAndNoEstimates_PromiseNothing) {
-  Table table = small_table();
+  TableValues table = small_table();
   table[Quantity::kRhoI] = {0.3};
   table[Quantity::kRhoErrorEstimate] = {std::numeric_limits<double>::infinity()};
   const TableCheck check = check_table({table, {0}}, parse_scene(kScene, "scene.toml", {}), "t.nc", {});
@@ -82,14 +82,14 @@ TEST(CheckTable, EmptyStatusAndNoEstimates_PromiseNothing) {
 
 /// Writes a table file anew with one value changed.
 void put_value(const std::filesystem::path& path, Quantity quantity, std::size_t position, double value) {
-  Table table = read_table(path);
+  TableValues table = read_table(path);
   table[quantity].at(position) = value;
   write_table(table, path);
 }
 
 /// The same with one attribute changed.
 void put_attribute(const std::filesystem::path& path, const std::string& name, const std::string& text) {
-  Table table = read_table(path);
+  TableValues table = read_table(path);
   const auto found = std::ranges::find(table.attributes, name, &Attribute::name);
   ASSERT_NE(found, table.attributes.end()) << name;
   found->value = text;
@@ -99,7 +99,7 @@ void put_attribute(const std::filesystem::path& path, const std::string& name, c
 class Verify : public CommandLine {
  protected:
   /// A table of four by two by two entries on the CPU.
-  Table make_table(const std::vector<std::string>& options = {}) const {
+  TableValues make_table(const std::vector<std::string>& options = {}) const {
     const Outcome outcome =
         dolp(joined({"table", "scene.toml", "-o", "t.nc", "--quiet", "--evaluator", "cpu"}, options));
     EXPECT_EQ(outcome.status, kDone) << outcome.err;
@@ -177,7 +177,7 @@ TEST_F(Verify, OneCorruptedValue_Exit1AndIsNamed) {
                                        {Quantity::kStokesQ, true},
                                        {Quantity::kStokesI, true}}) {
     const std::string name = description_of(corruption.quantity).name;
-    const Table table = make_table({"--set", "surface.masking=v-cavity"});
+    const TableValues table = make_table({"--set", "surface.masking=v-cavity"});
     const std::size_t at_entry = table.position(1, 0, 1);  // theta 60, sigma 0.1, q 3.5
     double bound = corruption.is_dolp ? table[Quantity::kErrorEstimate][at_entry]
                                       : table[Quantity::kRhoErrorEstimate][at_entry] * table[Quantity::kRhoI][at_entry];
@@ -201,14 +201,14 @@ TEST_F(Verify, OneCorruptedValue_Exit1AndIsNamed) {
 }
 
 TEST_F(Verify, EstimateBeyondTheToleranceWithoutStatus2_IsFoundByTheTolerance) {
-  const Table table = make_table();
+  const TableValues table = make_table();
   const std::size_t at_entry = table.position(1, 0, 1);
   put_value(at("t.nc"), Quantity::kErrorEstimate, at_entry, 1.0);
   put_value(at("t.nc"), Quantity::kDolp, at_entry, table[Quantity::kDolp][at_entry] + 2e-4);  // twice the tolerance
   const nlohmann::json json = verify_json(kAccuracy);
   ASSERT_EQ(json["failures"].size(), 1U) << json["failures"];
   EXPECT_EQ(json["failures"][0]["complaint"], "misses the tolerance without status 2");
-  Table honest = read_table(at("t.nc"));
+  TableValues honest = read_table(at("t.nc"));
   honest.status[at_entry] = 2;
   write_table(honest, at("t.nc"));
   EXPECT_EQ(verify_json(kDone)["missed_tolerance"], 1);
@@ -216,7 +216,7 @@ TEST_F(Verify, EstimateBeyondTheToleranceWithoutStatus2_IsFoundByTheTolerance) {
 
 TEST_F(Verify, EntriesThatAreNan_AreComparedAsSuch) {
   // Without masking rho diverges at 90 degrees: NaN with status 1 and 4.
-  const Table table = make_table({"--set", "surface.masking=none", "--set", "grid.theta_deg=[30, 90]"});
+  const TableValues table = make_table({"--set", "surface.masking=none", "--set", "grid.theta_deg=[30, 90]"});
   const std::size_t diverges = table.position(1, 0, 0);
   ASSERT_TRUE(std::isnan(table[Quantity::kRhoI][diverges]));
   verify_json(kDone);
@@ -231,7 +231,7 @@ TEST_F(Verify, EntriesThatAreNan_AreComparedAsSuch) {
 }
 
 TEST_F(Verify, ReducedVariables_AreComparedAsFarAsTheyAreThere) {
-  Table table = make_table();
+  TableValues table = make_table();
   for (const Quantity quantity :
        {Quantity::kRhoI, Quantity::kRhoQ, Quantity::kRhoErrorEstimate, Quantity::kStokesU, Quantity::kStokesV}) {
     table[quantity].clear();
@@ -280,14 +280,14 @@ TEST_F(Verify, TheTableAlone_IsSufficient) {
          "source.file=light.csv"},
         {"--set", "surface.material=iron", "--set", "source.preset=sun"}}) {
     put("index.csv", "wavelength_um,n,k\n7,1.4,0.1\n9,1.5,0.1\n13,1.6,0.1\n");
-    const Table table = make_table(options);
+    const TableValues table = make_table(options);
     EXPECT_FALSE(table.index_n.values.empty());
     const nlohmann::json before = verify_json(kDone, {"--named-files", "--samples", "3"})["quantities"];
     // What the file says now is of no interest.
     put("index.csv", "wavelength_um,n,k\n7,2.4,0.1\n13,2.6,0.1\n");
     EXPECT_EQ(verify_json(kDone, {"--samples", "3"})["quantities"], before) << options[1];
   }
-  Table old = make_table({"--set", "surface.material_file=index.csv"});
+  TableValues old = make_table({"--set", "surface.material_file=index.csv"});
   old.index_n = {};
   write_table(old, at("t.nc"));
   const Outcome outcome = dolp({"verify", "t.nc"});
@@ -323,7 +323,7 @@ TEST_F(Verify, FilesThatATableNames_AreNotQuoted) {
 
 TEST_F(Verify, WrongFiles_Exit2InOneLine) {
   make_table();
-  Table foreign = small_table();
+  TableValues foreign = small_table();
   foreign[Quantity::kDolp] = {0.1};
   write_table(foreign, at("foreign.nc"));
   put("table.csv", "theta_deg,sigma,q\n");

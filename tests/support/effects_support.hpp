@@ -23,8 +23,8 @@ class RandomScenes {
  public:
   explicit RandomScenes(std::uint64_t seed) : random_(seed) {}
 
-  Scene next() {
-    Scene scene;
+  SceneValues next() {
+    SceneValues scene;
     const Model& model = kModels[static_cast<std::size_t>(random_.uniform(0.0, 8.0))];
     scene.surface.distribution = model.distribution;
     scene.surface.masking = model.masking;
@@ -48,7 +48,7 @@ class RandomScenes {
     return scene;
   }
 
-  std::vector<SceneEntry> entries(const Scene& scene) {
+  std::vector<SceneEntry> entries(const SceneValues& scene) {
     const Model model{scene.surface.distribution, scene.surface.masking};
     std::vector<SceneEntry> drawn;
     const bool has_grazing = random_.chance(0.3);
@@ -68,7 +68,7 @@ class RandomScenes {
   bool coin() { return random_.chance(0.5); }
   double temperature_K() { return random_.log_uniform(100.0, 6000.0); }
 
-  void add_radiation(Scene& scene) {
+  void add_radiation(SceneValues& scene) {
     if (random_.chance(0.8)) scene.emission = Emission{temperature_K(), EmissionModel::kMoments};
     if (scene.emission && random_.chance(0.3)) scene.emission->model = EmissionModel::kFresnel;
     if (random_.chance(0.6)) scene.surroundings = Surroundings{temperature_K()};
@@ -104,7 +104,7 @@ class RandomScenes {
   Random random_;
 };
 
-inline std::string describe(const Scene& s) {
+inline std::string describe(const SceneValues& s) {
   std::string text = fmt::format(
       "{} N {:.6g}+{:.6g}i k_s {:.4g} k_d {:.4g} c {:.3g}, {:.4g}..{:.4g} um, {} view {:.5g} azimuth {:.5g}, tolerance "
       "{:.2g}",
@@ -122,12 +122,12 @@ inline std::string describe(const Scene& s) {
   return text;
 }
 
-inline std::string describe(const Scene& scene, const SceneEntry& entry) {
+inline std::string describe(const SceneValues& scene, const SceneEntry& entry) {
   return fmt::format("{}; theta {:.9g} sigma {:.6g} q {:.6g}", describe(scene), entry.theta_deg, entry.shape.sigma,
                      entry.shape.q);
 }
 
-inline std::vector<PointResult> run(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan) {
+inline std::vector<PointResult> run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan) {
   CpuEvaluator evaluator(Precision::kDouble);
   return evaluate_scene(scene, entries, plan, &evaluator, {});
 }

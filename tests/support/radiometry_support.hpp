@@ -59,7 +59,7 @@ struct PrintedStokes {
 
 /// Equation (18) in the reading of shaders/physics/README.md, section 4, at one wavelength; `specular` holds rho_s,
 /// rho_p for k_s = 1.
-inline PrintedStokes printed_stokes(const Scene& scene, Real wavelength_um, Real c,
+inline PrintedStokes printed_stokes(const SceneValues& scene, Real wavelength_um, Real c,
                                     const PrintedReflectance& specular) {
   const Real pi = std::numbers::pi_v<Real>;
   const Surface& surface = scene.surface;
@@ -104,8 +104,8 @@ inline Real integral(const std::vector<double>& points, const std::function<Real
 
 // ---- Scenes and moments ---------------------------------------------------------------------------------------------
 
-inline Scene night_scene() {
-  Scene scene;
+inline SceneValues night_scene() {
+  SceneValues scene;
   scene.path_name = "night.toml";
   scene.surface.material.constant = {1.5, 0.1};
   scene.surface.masking = Masking::kSmith;
@@ -130,7 +130,7 @@ inline Moments moments_of(const PrintedReflectance& specular, double cos_theta) 
 
 inline Direction direction_of(double theta_deg) { return {theta_deg, std::cos(theta_deg * std::numbers::pi / 180.0)}; }
 
-inline PointResult evaluate(const Scene& scene, const Direction& direction, const Moments& moments) {
+inline PointResult evaluate(const SceneValues& scene, const Direction& direction, const Moments& moments) {
   return Radiometry(scene).point(direction, std::vector<Moments>{moments});
 }
 
@@ -139,8 +139,8 @@ class RandomScenes {
   RandomScenes() : generator_(kSeed) {}
   double uniform(double from, double to) { return std::uniform_real_distribution<double>(from, to)(generator_); }
   bool coin() { return std::bernoulli_distribution(0.5)(generator_); }
-  Scene next() {
-    Scene scene = night_scene();
+  SceneValues next() {
+    SceneValues scene = night_scene();
     scene.surface.material.constant = {uniform(0.2, 5.0), coin() ? 0.0 : uniform(0.0, 50.0)};
     scene.surface.specular = uniform(0.0, 1.0);
     scene.surface.diffuse = coin() ? 0.0 : uniform(0.0, 0.3);
@@ -167,7 +167,7 @@ class RandomScenes {
   PrintedReflectance reflectance() { return {uniform(0.0, 1.0), uniform(0.0, 1.0)}; }
 
  private:
-  void drop_effects(Scene& scene) {
+  void drop_effects(SceneValues& scene) {
     if (coin()) scene.surroundings.reset();
     if (coin()) scene.path.reset();
     if (coin()) scene.source.reset();
@@ -189,7 +189,7 @@ inline Material tabulated_material() {
 }
 
 /// All wavelengths where something has a corner, for the reference integrals.
-inline std::vector<double> corners(const Scene& scene) {
+inline std::vector<double> corners(const SceneValues& scene) {
   std::vector<double> points = {scene.spectrum.min_um, scene.spectrum.max_um};
   const auto add = [&](const SpectralTable& table) {
     for (const double at : table.wavelength_um)

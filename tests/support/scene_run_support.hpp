@@ -30,8 +30,8 @@ inline constexpr OpticalConstants kTotallyReflecting{0.6, 0.0};
 inline constexpr std::array kIndices = {kDielectric, kAbsorbing, kMetal, kTotallyReflecting};
 
 /// A surface at 300 K under surroundings at 240 K, at 10.6 um, without a diffuse part.
-inline Scene make_scene(Distribution distribution, Masking masking, const OpticalConstants& index) {
-  Scene scene;
+inline SceneValues make_scene(Distribution distribution, Masking masking, const OpticalConstants& index) {
+  SceneValues scene;
   scene.surface.material.constant = index;
   scene.surface.distribution = distribution;
   scene.surface.masking = masking;
@@ -49,8 +49,8 @@ inline std::unique_ptr<MomentsEvaluator> make_evaluator(Evaluator evaluator) {
 }
 
 /// In the evaluator's precision alone: no entry that misses is computed again in the other.
-inline std::vector<PointResult> run(const Scene& scene, const SceneEntries& entries, Evaluator evaluator) {
-  Scene own = scene;
+inline std::vector<PointResult> run(const SceneValues& scene, const SceneEntries& entries, Evaluator evaluator) {
+  SceneValues own = scene;
   if (evaluator == Evaluator::kFloat) own.accuracy.precision = Precision::kFloat;
   if (evaluator == Evaluator::kDouble) own.accuracy.precision = Precision::kDouble;
   return evaluate_scene(own, entries, *make_evaluator(evaluator), {});
@@ -63,7 +63,7 @@ inline std::vector<SceneEntry> list_of(const SceneEntries& entries) {
   return list;
 }
 
-inline PointResult run_one(const Scene& scene, double theta_deg, const SlopeShape& shape, Evaluator evaluator) {
+inline PointResult run_one(const SceneValues& scene, double theta_deg, const SlopeShape& shape, Evaluator evaluator) {
   return run(scene, {{theta_deg, shape, {}}}, evaluator).front();
 }
 
@@ -83,7 +83,7 @@ inline SmoothReflectance smooth_reflectance(const OpticalConstants& index, long 
 }
 
 /// For messages: the scene and the entry that a check is about.
-inline std::string text_of(const Scene& scene, const SceneEntry& entry) {
+inline std::string text_of(const SceneValues& scene, const SceneEntry& entry) {
   const OpticalConstants index = entry.index.value_or(scene.surface.material.constant);
   return std::string(name_of(scene.surface.distribution)) + " " + name_of(scene.surface.masking) + " theta " +
          std::to_string(entry.theta_deg) + " log10 sigma " + std::to_string(std::log10(entry.shape.sigma)) + " q " +

@@ -19,7 +19,7 @@ inline const std::string kMinimal =
     "[spectrum]\n"
     "wavelength_um = 10.6\n";
 
-inline Scene parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
+inline SceneValues parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
   return parse_scene(text, "s.toml", settings_from_text(overrides, "--set"));
 }
 

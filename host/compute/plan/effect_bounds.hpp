@@ -42,7 +42,7 @@ std::vector<EntriesExtent> extents_of(const SceneEntries& entries);
 /// rule's samples.
 class EffectBounds {
  public:
-  EffectBounds(const Scene& scene, const EntriesExtent& extent);
+  EffectBounds(const SceneValues& scene, const EntriesExtent& extent);
 
   /// Bound of what dropping `part` changes where `kept` is kept, at any entry; infinite where none is known, and always
   /// for the diffuse part. Exactly 0 where the part adds nothing.
@@ -61,7 +61,7 @@ class EffectBounds {
   Sums sums(const KeptEffects& kept) const;
   Sums added_by(Part part, const KeptEffects& kept) const;
 
-  Scene scene_;
+  SceneValues scene_;
   bool is_bistatic_;
   SpectralSample total_;       ///< sums of the samples' factors, of their sizes but for what is emitted
   bool has_negative_ = false;  ///< weights of both signs, as the interpolation of a steep factor may have

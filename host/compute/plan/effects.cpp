@@ -14,7 +14,7 @@ constexpr std::array kDroppingOrder = {Part::kMoments,      Part::kSource,  Part
                                        Part::kPathRadiance, Part::kMoments, Part::kFurtherBounces};
 
 /// The bounds of a scene at each wavelength of its entries.
-std::vector<EffectBounds> bounds_of(const Scene& scene, const SceneEntries& entries) {
+std::vector<EffectBounds> bounds_of(const SceneValues& scene, const SceneEntries& entries) {
   std::vector<EffectBounds> bounds;
   const std::vector<double>& wavelength_um = entries.wavelength_um();
   const std::vector<EntriesExtent> extents = extents_of(entries);
@@ -43,7 +43,7 @@ DropBound worst_bound(const std::vector<EffectBounds>& bounds, Part part, const 
   return worst;
 }
 
-bool is_asked_for(const Scene& scene, Part part) {
+bool is_asked_for(const SceneValues& scene, Part part) {
   switch (part) {
     case Part::kFurtherBounces:
       return scene.surface.scattering == Scattering::kMultiple;
@@ -63,17 +63,17 @@ bool is_asked_for(const Scene& scene, Part part) {
   return false;
 }
 
-bool is_bistatic(const Scene& scene) { return scene.geometry.mode == Mode::kBistatic; }
+bool is_bistatic(const SceneValues& scene) { return scene.geometry.mode == Mode::kBistatic; }
 
-bool emits_as(const Scene& scene, EmissionModel model) { return scene.emission && scene.emission->model == model; }
+bool emits_as(const SceneValues& scene, EmissionModel model) { return scene.emission && scene.emission->model == model; }
 
-bool is_fresnel(const Scene& scene) { return emits_as(scene, EmissionModel::kFresnel); }
+bool is_fresnel(const SceneValues& scene) { return emits_as(scene, EmissionModel::kFresnel); }
 
-bool needs_beams(const Scene& scene, const std::vector<EffectBounds>& bounds, const KeptEffects& kept) {
+bool needs_beams(const SceneValues& scene, const std::vector<EffectBounds>& bounds, const KeptEffects& kept) {
   return is_bistatic(scene) && kept.source && !add_nothing(bounds, Part::kSource, kept) && scene.surface.specular > 0.0;
 }
 
-void drop_effects(EffectPlan& plan, const Scene& scene, const std::vector<EffectBounds>& bounds) {
+void drop_effects(EffectPlan& plan, const SceneValues& scene, const std::vector<EffectBounds>& bounds) {
   const double allowed = kDroppedShare * scene.accuracy.tolerance;
   for (const Part part : kDroppingOrder) {
     if (!is_kept(plan.kept, part)) continue;
@@ -86,7 +86,7 @@ void drop_effects(EffectPlan& plan, const Scene& scene, const std::vector<Effect
   }
 }
 
-void set_needs(EffectPlan& plan, const Scene& scene, const std::vector<EffectBounds>& bounds) {
+void set_needs(EffectPlan& plan, const SceneValues& scene, const std::vector<EffectBounds>& bounds) {
   plan.needs_moments = plan.kept.moments;
   plan.needs_direct = plan.needs_moments && scene.emission &&
                       (scene.emission->has_bracket || (emits_as(scene, EmissionModel::kDirect) && plan.kept.emission));
@@ -104,7 +104,7 @@ std::string below_share(double bound, double tolerance) {
 }
 
 /// Why the moments are not needed although nothing is lost.
-std::string why_no_moments(const Scene& scene, const KeptEffects& kept) {
+std::string why_no_moments(const SceneValues& scene, const KeptEffects& kept) {
   const bool has_emission = scene.emission && kept.emission;
   const bool has_surroundings = scene.surroundings && kept.surroundings;
   if (has_emission && has_surroundings && !is_fresnel(scene)) {
@@ -117,7 +117,7 @@ std::string why_no_moments(const Scene& scene, const KeptEffects& kept) {
 EffectRow absent(const char* name, std::string why) { return {name, EffectState::kAbsent, std::move(why)}; }
 
 /// A part as it stands in the plan; `kept` says why and what for.
-EffectRow part_row(const Scene& scene, const EffectPlan& plan, const char* name, Part part, EffectRow row) {
+EffectRow part_row(const SceneValues& scene, const EffectPlan& plan, const char* name, Part part, EffectRow row) {
   row.name = name;
   row.part = part;
   const DroppedPart* dropped = find_dropped(plan, part);
@@ -130,12 +130,12 @@ EffectRow part_row(const Scene& scene, const EffectPlan& plan, const char* name,
   return row;
 }
 
-std::string moments_needs(const Scene& scene) {
+std::string moments_needs(const SceneValues& scene) {
   return is_bistatic(scene) ? fmt::format("moments at {:g} deg", scene.geometry.view_zenith_deg)
                             : "moments at each theta";
 }
 
-EffectRow specular_row(const Scene& scene, const EffectPlan& plan) {
+EffectRow specular_row(const SceneValues& scene, const EffectPlan& plan) {
   constexpr const char* kName = "specular";
   if (scene.surface.specular == 0.0) return absent(kName, "surface.specular is 0");
   EffectRow row{kName, EffectState::kKept, {}, {}, Part::kMoments};
@@ -158,7 +158,7 @@ EffectRow specular_row(const Scene& scene, const EffectPlan& plan) {
   return row;
 }
 
-EffectRow model_row(const Scene& scene, const EffectPlan& plan, const char* name, const std::string& choice,
+EffectRow model_row(const SceneValues& scene, const EffectPlan& plan, const char* name, const std::string& choice,
                     const SceneEntries& entries) {
   const auto is_flat = [](const SceneEntry& entry) { return entry.shape.sigma == 0.0; };
   const bool all_mirrors = !entries.empty() && std::ranges::all_of(entries.all(), is_flat);
@@ -171,7 +171,7 @@ EffectRow model_row(const Scene& scene, const EffectPlan& plan, const char* name
   return row;
 }
 
-EffectRow scattering_row(const Scene& scene, const EffectPlan& plan, const SceneEntries& entries) {
+EffectRow scattering_row(const SceneValues& scene, const EffectPlan& plan, const SceneEntries& entries) {
   constexpr const char* kName = "scattering";
   if (scene.surface.scattering == Scattering::kSingle) {
     return absent(kName, "surface.scattering is single: light is followed to its first facet");
@@ -183,7 +183,7 @@ EffectRow scattering_row(const Scene& scene, const EffectPlan& plan, const Scene
   return part_row(scene, plan, kName, Part::kFurtherBounces, row);
 }
 
-EffectRow complex_index_row(const Scene& scene, const EffectPlan& plan, const SceneEntries& entries) {
+EffectRow complex_index_row(const SceneValues& scene, const EffectPlan& plan, const SceneEntries& entries) {
   constexpr const char* kName = "complex index";
   const std::vector<OpticalConstants> indices = spectral_rule(scene).indices();
   const auto is_complex = [](const OpticalConstants& index) { return index.k > 0.0; };
@@ -200,7 +200,7 @@ EffectRow complex_index_row(const Scene& scene, const EffectPlan& plan, const Sc
   return row;
 }
 
-EffectRow emission_row(const Scene& scene, const EffectPlan& plan) {
+EffectRow emission_row(const SceneValues& scene, const EffectPlan& plan) {
   constexpr const char* kName = "emission";
   if (!scene.emission) return absent(kName, "no [emission]");
   EffectRow row{kName, EffectState::kKept};
@@ -212,7 +212,7 @@ EffectRow emission_row(const Scene& scene, const EffectPlan& plan) {
   return part_row(scene, plan, kName, Part::kEmission, row);
 }
 
-EffectRow source_row(const Scene& scene, const EffectPlan& plan) {
+EffectRow source_row(const SceneValues& scene, const EffectPlan& plan) {
   constexpr const char* kName = "source";
   if (!scene.source) return absent(kName, "no [source]");
   EffectRow row{kName, EffectState::kKept};
@@ -222,7 +222,7 @@ EffectRow source_row(const Scene& scene, const EffectPlan& plan) {
   return part_row(scene, plan, kName, Part::kSource, row);
 }
 
-EffectRow surroundings_row(const Scene& scene, const EffectPlan& plan) {
+EffectRow surroundings_row(const SceneValues& scene, const EffectPlan& plan) {
   constexpr const char* kName = "surroundings";
   if (!scene.surroundings) return absent(kName, "no [surroundings]");
   EffectRow row{kName, EffectState::kKept};
@@ -231,7 +231,7 @@ EffectRow surroundings_row(const Scene& scene, const EffectPlan& plan) {
   return part_row(scene, plan, kName, Part::kSurroundings, row);
 }
 
-EffectRow path_row(const Scene& scene, const EffectPlan& plan) {
+EffectRow path_row(const SceneValues& scene, const EffectPlan& plan) {
   constexpr const char* kName = "path";
   if (!scene.path) return absent(kName, "no [path]");
   EffectRow row{kName, EffectState::kKept, {}, "closed form"};
@@ -246,14 +246,14 @@ EffectRow path_row(const Scene& scene, const EffectPlan& plan) {
   return row;
 }
 
-EffectRow diffuse_row(const Scene& scene, const EffectPlan& plan) {
+EffectRow diffuse_row(const SceneValues& scene, const EffectPlan& plan) {
   constexpr const char* kName = "diffuse";
   if (scene.surface.diffuse == 0.0) return absent(kName, "surface.diffuse is 0");
   EffectRow row{kName, EffectState::kKept, "adds to rho_I", "closed form"};
   return part_row(scene, plan, kName, Part::kDiffuse, row);
 }
 
-EffectRow band_row(const Scene& scene) {
+EffectRow band_row(const SceneValues& scene) {
   constexpr const char* kName = "band";
   if (!scene.spectrum.is_band()) return absent(kName, "a single wavelength");
   const std::size_t count = spectral_rule(scene).samples.size();
@@ -263,18 +263,18 @@ EffectRow band_row(const Scene& scene) {
   return row;
 }
 
-EffectRow masking_row(const Scene& scene, const EffectPlan& plan, const SceneEntries& entries) {
+EffectRow masking_row(const SceneValues& scene, const EffectPlan& plan, const SceneEntries& entries) {
   if (scene.surface.masking == Masking::kNone) return absent("masking", "surface.masking is none");
   return model_row(scene, plan, "masking", name_of(scene.surface.masking), entries);
 }
 
 }  // namespace
 
-bool gives_emissivity(const Scene& scene, const EffectPlan& plan) {
+bool gives_emissivity(const SceneValues& scene, const EffectPlan& plan) {
   return scene.emission && (plan.gives_rho || is_fresnel(scene));
 }
 
-EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool keep_all) {
+EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, bool keep_all) {
   const std::vector<EffectBounds> bounds = bounds_of(scene, entries);
   EffectPlan plan;
   plan.keep_all = keep_all;
@@ -283,23 +283,23 @@ EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool ke
   return plan;
 }
 
-EffectPlan plan_to_keep(const Scene& scene, const KeptEffects& kept) {
+EffectPlan plan_to_keep(const SceneValues& scene, const KeptEffects& kept) {
   EffectPlan plan;
   plan.kept = kept;
   set_needs(plan, scene, bounds_of(scene, {}));
   return plan;
 }
 
-EffectPlan keep_everything(const Scene& scene) { return plan_effects(scene, {}, true); }
+EffectPlan keep_everything(const SceneValues& scene) { return plan_effects(scene, {}, true); }
 
-Needs needs_without(const Scene& scene, const EffectPlan& plan, Part part) {
+Needs needs_without(const SceneValues& scene, const EffectPlan& plan, Part part) {
   const std::vector<EffectBounds> bounds = bounds_of(scene, {});
   const KeptEffects kept = without(plan.kept, part);
   return {kept.moments && !add_nothing(bounds, Part::kMoments, kept),
           part != Part::kMoments && needs_beams(scene, bounds, kept)};
 }
 
-std::vector<EffectRow> effect_rows(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan) {
+std::vector<EffectRow> effect_rows(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan) {
   return {specular_row(scene, plan),
           diffuse_row(scene, plan),
           model_row(scene, plan, "distribution", name_of(scene.surface.distribution), entries),

@@ -41,16 +41,16 @@ struct EffectPlan {
 /// bound in the whole scene counts too. A part that adds exactly nothing goes at no cost: the moments where emission
 /// and surroundings have one temperature, for instance. Model choices (distribution, masking, k) and the diffuse part
 /// never go. `keep_all` keeps everything that the scene has.
-EffectPlan plan_effects(const Scene& scene, const SceneEntries& entries, bool keep_all);
+EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, bool keep_all);
 
 /// What a run that computes `kept` needs and gives.
-EffectPlan plan_to_keep(const Scene& scene, const KeptEffects& kept);
+EffectPlan plan_to_keep(const SceneValues& scene, const KeptEffects& kept);
 
 /// Nothing left out: what `plan_effects` says with `keep_all`.
-EffectPlan keep_everything(const Scene& scene);
+EffectPlan keep_everything(const SceneValues& scene);
 
 /// Whether a run knows the emissivities: with an emission, unless they need moments that are left out.
-bool gives_emissivity(const Scene& scene, const EffectPlan& plan);
+bool gives_emissivity(const SceneValues& scene, const EffectPlan& plan);
 
 /// What a run has to compute.
 struct Needs {
@@ -59,7 +59,7 @@ struct Needs {
 };
 
 /// What the run would have to compute if one more part were not there.
-Needs needs_without(const Scene& scene, const EffectPlan& plan, Part part);
+Needs needs_without(const SceneValues& scene, const EffectPlan& plan, Part part);
 
 enum class EffectState {
   kAbsent,     ///< the scene does not ask for it
@@ -80,7 +80,7 @@ struct EffectRow {
 };
 
 /// All effects that there are, in the order of the scene file.
-std::vector<EffectRow> effect_rows(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan);
+std::vector<EffectRow> effect_rows(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
 
 const char* state_name(EffectState state);
 

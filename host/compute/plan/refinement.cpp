@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "model/moments.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 
 namespace dolp {
 namespace {
@@ -53,9 +53,9 @@ RefinementLevel check_level(const RefinementLevel& first, std::uint32_t row_widt
 
 std::optional<RefinementLevel> next_level(const RefinementLevel& last, const PointResult& result,
                                           const Accuracy& accuracy, bool has_double) {
-  if ((result.status & kStatusToleranceMissed) == 0) return std::nullopt;
+  if ((result.status & kToleranceNotMet) == 0) return std::nullopt;
   // Outside the domain the DOLP may still have a limit; where it has none, nothing can be done.
-  const bool is_outside = (result.status & kStatusOutsideDomain) != 0;
+  const bool is_outside = (result.status & kOutsideModelDomain) != 0;
   if (is_outside && std::isnan(result[Quantity::kErrorEstimate])) return std::nullopt;
   const double rho_error = is_outside ? 0.0 : result[Quantity::kRhoErrorEstimate];
   const double excess =

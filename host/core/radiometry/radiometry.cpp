@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "base/numbers.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "radiometry/reflectance.hpp"
 #include "radiometry/stokes.hpp"
 
@@ -20,7 +20,7 @@ constexpr double kRightAngle_deg = 90.0;
 
 using enum Quantity;
 
-EmissionModel emission_model(const Scene& scene) {
+EmissionModel emission_model(const SceneValues& scene) {
   return scene.emission ? scene.emission->model : EmissionModel::kMoments;
 }
 
@@ -52,15 +52,15 @@ void add_emissivity(PointResult& result, const SpectralRule& rule, std::span<con
 }
 
 std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
-  const bool is_outside = (result.status & kStatusOutsideDomain) != 0;  // rho diverges; the DOLP is a limit, or NaN
+  const bool is_outside = (result.status & kOutsideModelDomain) != 0;  // rho diverges; the DOLP is a limit, or NaN
   const bool dolp_missed = (is_outside || promises_dolp(result.status)) && result[kErrorEstimate] > tolerance;
   const bool rho_missed = !is_outside && result[kRhoErrorEstimate] > tolerance;
-  return dolp_missed || rho_missed ? kStatusToleranceMissed : 0;
+  return dolp_missed || rho_missed ? std::uint32_t{kToleranceNotMet} : 0U;
 }
 
 PointResult outside_domain() {
   PointResult result;
-  result.status = kStatusOutsideDomain;
+  result.status = kOutsideModelDomain;
   return result;
 }
 
@@ -86,7 +86,7 @@ bool reflectance_diverges(const Surface& surface, const Direction& direction, st
 /// Equation: the terms of I and Q that grow fastest as cos(theta) -> 0, times whatever makes them finite: D r, D being
 /// the surroundings without what the moments take off the emission; with D = 0, pi B + E0 r_i and E0 r_q, and the path.
 /// The fresnel emission vanishes there.
-Stokes grazing_stokes(const Scene& scene, const SpectralRule& rule, std::span<const Moments> moments) {
+Stokes grazing_stokes(const SceneValues& scene, const SpectralRule& rule, std::span<const Moments> moments) {
   const Surface& surface = scene.surface;
   const bool fresnel = emission_model(scene) == EmissionModel::kFresnel;
   const double emissivity = fresnel ? 0.0 : 1.0;
@@ -108,11 +108,11 @@ bool is_isothermal(const SpectralRule& rule) {
 }
 
 /// Result at 90 degrees where rho diverges.
-PointResult grazing_limit(const Scene& scene, const SpectralRule& rule, const Direction& direction,
+PointResult grazing_limit(const SceneValues& scene, const SpectralRule& rule, const Direction& direction,
                           std::span<const Moments> moments) {
   const Surface& surface = scene.surface;
   PointResult result = outside_domain();
-  result.status = kStatusUnphysicalReflectance | kStatusOutsideDomain;
+  result.status = kReflectanceOutsideZeroToOne | kOutsideModelDomain;
   result[kRhoErrorEstimate] = 0.0;
   if (!specular_diverges(surface)) {
     if (direction.cos_theta > 0.0) result[kAlbedo] = moments.front().albedo / direction.cos_theta;
@@ -133,7 +133,7 @@ PointResult grazing_limit(const Scene& scene, const SpectralRule& rule, const Di
 
 }  // namespace
 
-Radiometry::Radiometry(const Scene& scene, const KeptEffects& kept, const DropBound& dropped)
+Radiometry::Radiometry(const SceneValues& scene, const KeptEffects& kept, const DropBound& dropped)
     : scene_(scene),
       beam_specular_(scene.surface.specular),
       kept_(kept),
@@ -178,7 +178,7 @@ PointResult Radiometry::bistatic_point(const Direction& view, double cos_theta_i
   if (!std::ranges::all_of(moments, is_known)) return outside_domain();
   if (reflectance_diverges(scene_.surface, view, moments)) {
     PointResult result = outside_domain();
-    result.status |= kStatusUnphysicalReflectance;
+    result.status |= kReflectanceOutsideZeroToOne;
     return result;
   }
   return finished(assemble(moments, view.cos_theta, indices, cos_theta_i, scattered));
@@ -192,7 +192,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   boost::container::small_vector<Reflectance, 1> own;  // most scenes have one sample, and many entries
   for (const Moments& m : moments) {
     own.push_back(reflectance(scene_.surface, m, cos_theta));
-    if (is_unphysical(own.back())) result.status |= kStatusUnphysicalReflectance;
+    if (is_unphysical(own.back())) result.status |= kReflectanceOutsideZeroToOne;
   }
   const std::span<const Reflectance> reflectances(own.data(), own.size());
   const EmissionModel model = emission_model(scene_);
@@ -229,8 +229,8 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
     result[kDolpHigh] = between.high;
     result[kErrorEstimate] = std::max(result[kErrorEstimate], between.error);
   }
-  if (sum.i <= 0.0) result.status |= kStatusNonPositiveIntensity;
-  if (std::isnan(result[kDolp])) result.status |= kStatusOutsideDomain;
+  if (sum.i <= 0.0) result.status |= kIntensityNotPositive;
+  if (std::isnan(result[kDolp])) result.status |= kOutsideModelDomain;
   return result;
 }
 

@@ -25,7 +25,7 @@ class Radiometry {
  public:
   /// Of what is not kept nothing is added; without the moments the specular part of rho counts as 0, `point` looks at
   /// none of the numbers in its Moments, and what would need them is NaN. `dropped` widens the error estimates.
-  explicit Radiometry(const Scene& scene, const KeptEffects& kept = {}, const DropBound& dropped = {});
+  explicit Radiometry(const SceneValues& scene, const KeptEffects& kept = {}, const DropBound& dropped = {});
 
   /// The indices at which `point` wants moments, in its order, and their weights.
   const SpectralRule& rule() const { return rule_; }
@@ -54,7 +54,7 @@ class Radiometry {
 
   PointResult finished(PointResult result) const;
 
-  Scene scene_;  ///< with the surface that the moments' terms see
+  SceneValues scene_;  ///< with the surface that the moments' terms see
   double beam_specular_;
   KeptEffects kept_;
   DropBound dropped_;

@@ -49,7 +49,7 @@ void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRul
 /// What a path leaves of the sums, and what it adds.
 void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance);
 
-Bracket bracket(const Scene& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
+Bracket bracket(const SceneValues& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
                 std::span<const Emissivity> direct, double cos_theta);
 
 /// Bound of the relative error of a value with this bound of its absolute one.

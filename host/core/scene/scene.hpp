@@ -106,7 +106,7 @@ struct SceneNames {
 
 class SceneDocument;
 
-struct Scene {
+struct SceneValues {
   std::string title;
   SceneNames names;
   Surface surface;
@@ -127,6 +127,6 @@ struct Scene {
 
 /// The same scene at one wavelength, without its grid and texts.
 /// Errors: InputError, where n, k or E0 are not known there.
-Scene at_wavelength(const Scene& scene, double wavelength_um);
+SceneValues at_wavelength(const SceneValues& scene, double wavelength_um);
 
 }  // namespace dolp

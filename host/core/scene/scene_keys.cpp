@@ -32,15 +32,15 @@ template <class Place>
 SceneKey number(const char* key, const char* unit, const NumberRange& range, const char* fallback, const char* meaning,
                 Place place) {
   return {{key, Type::kNumber, unit, range, {}, fallback, meaning},
-          [place](Scene& s, const KeyValue& v) { *place(s) = v.number; },
-          [place](const Scene& s) { return value_at(place(s)); }};
+          [place](SceneValues& s, const KeyValue& v) { *place(s) = v.number; },
+          [place](const SceneValues& s) { return value_at(place(s)); }};
 }
 
 /// One of several keys for one thing: its place is there once it was set.
 template <class Place, class Set>
 SceneKey number(const char* key, const char* unit, const NumberRange& range, const char* fallback, const char* meaning,
                 Place place, Set set) {
-  return {{key, Type::kNumber, unit, range, {}, fallback, meaning}, set, [place](const Scene& s) {
+  return {{key, Type::kNumber, unit, range, {}, fallback, meaning}, set, [place](const SceneValues& s) {
             return value_at(place(s));
           }};
 }
@@ -50,8 +50,8 @@ template <class Choice, class Place>
 SceneKey choice(const char* key, Choice fallback, const char* meaning, Place place) {
   const auto& words = Names<Choice>::kAll;
   return {{key, Type::kWord, "", {}, {words.begin(), words.end()}, name_of(fallback), meaning},
-          [place](Scene& s, const KeyValue& v) { *place(s) = static_cast<Choice>(v.word); },
-          [place](const Scene& s) -> std::optional<KeyValue> {
+          [place](SceneValues& s, const KeyValue& v) { *place(s) = static_cast<Choice>(v.word); },
+          [place](const SceneValues& s) -> std::optional<KeyValue> {
             const auto* at = place(s);
             if (!at) return std::nullopt;
             return KeyValue{.word = static_cast<std::size_t>(*at), .text = name_of(*at)};
@@ -61,44 +61,44 @@ SceneKey choice(const char* key, Choice fallback, const char* meaning, Place pla
 template <class Place>
 SceneKey flag(const char* key, const char* meaning, Place place) {
   return {{key, Type::kFlag, "", {}, {"false", "true"}, "false", meaning},
-          [place](Scene& s, const KeyValue& v) { *place(s) = v.is_set; },
-          [place](const Scene& s) { return value_at(place(s)); }};
+          [place](SceneValues& s, const KeyValue& v) { *place(s) = v.is_set; },
+          [place](const SceneValues& s) { return value_at(place(s)); }};
 }
 
 template <class Place>
 SceneKey text(const char* key, const char* meaning, Place place) {
   return {{key, Type::kText, "", {}, {}, "", meaning},
-          [place](Scene& s, const KeyValue& v) { *place(s) = v.text; },
-          [place](const Scene& s) { return value_at(place(s)); }};
+          [place](SceneValues& s, const KeyValue& v) { *place(s) = v.text; },
+          [place](const SceneValues& s) { return value_at(place(s)); }};
 }
 
 SceneKey grid_axis(Axis axis, const char* fallback, const char* meaning) {
   const AxisDescription& described = description_of(axis);
   const std::string key = std::string("grid.") + described.column;
   return {{key, Type::kAxis, described.units, described.range, {}, fallback, meaning},
-          [axis](Scene& s, const KeyValue& v) { s.grid[axis] = v.numbers; },
-          [axis](const Scene& s) { return value_at(&s.grid[axis]); }};
+          [axis](SceneValues& s, const KeyValue& v) { s.grid[axis] = v.numbers; },
+          [axis](const SceneValues& s) { return value_at(&s.grid[axis]); }};
 }
 
 void append(std::vector<SceneKey>& keys, std::vector<SceneKey> more) {
   std::move(more.begin(), more.end(), std::back_inserter(keys));
 }
 
-bool has_own_index(const Scene& s) { return s.names.material.empty() && s.names.material_file.empty(); }
+bool has_own_index(const SceneValues& s) { return s.names.material.empty() && s.names.material_file.empty(); }
 
-bool is_of_kind(const Scene& s, Source::Kind kind) { return s.source && s.source->kind == kind; }
+bool is_of_kind(const SceneValues& s, Source::Kind kind) { return s.source && s.source->kind == kind; }
 
 std::vector<SceneKey> surface_keys() {
   return {
       text("title", "name of the scene, for the table and the window", [](auto& s) { return &s.title; }),
       number(
           "surface.n", "1", kNRange, "", "real part n of the refractive index n + ik; or material, or material_file",
-          [](const Scene& s) { return has_own_index(s) ? &s.surface.material.constant.n : nullptr; },
-          [](Scene& s, const KeyValue& v) { s.surface.material.constant.n = v.number; }),
+          [](const SceneValues& s) { return has_own_index(s) ? &s.surface.material.constant.n : nullptr; },
+          [](SceneValues& s, const KeyValue& v) { s.surface.material.constant.n = v.number; }),
       number(
           "surface.k", "1", kKRange, "0", "imaginary part k of the refractive index n + ik, with surface.n",
-          [](const Scene& s) { return has_own_index(s) ? &s.surface.material.constant.k : nullptr; },
-          [](Scene& s, const KeyValue& v) { s.surface.material.constant.k = v.number; }),
+          [](const SceneValues& s) { return has_own_index(s) ? &s.surface.material.constant.k : nullptr; },
+          [](SceneValues& s, const KeyValue& v) { s.surface.material.constant.k = v.number; }),
       text("surface.material", "a built-in material by name (dolp materials lists them), instead of n and k",
            [](auto& s) { return &s.names.material; }),
       text("surface.material_file", "your own n and k: refractiveindex.info YAML or CSV, instead of n and k",
@@ -139,18 +139,18 @@ std::vector<SceneKey> radiation_keys() {
            [](auto& s) { return s.emission ? &s.emission->has_bracket : nullptr; }),
       number(
           "source.irradiance", "W m-2 um-1", kNonNegativeRange, "", "E0 at normal incidence, flat over a band",
-          [](const Scene& s) { return is_of_kind(s, Source::Kind::kFlat) ? &s.source->irradiance : nullptr; },
-          [](Scene& s, const KeyValue& v) {
+          [](const SceneValues& s) { return is_of_kind(s, Source::Kind::kFlat) ? &s.source->irradiance : nullptr; },
+          [](SceneValues& s, const KeyValue& v) {
             s.source->kind = Source::Kind::kFlat;
             s.source->irradiance = v.number;
           }),
       number(
           "source.relative_irradiance", "1", kNonNegativeRange, "",
           "e = E0/(pi B(T)) at each wavelength, T of the emission; instead of irradiance",
-          [](const Scene& s) {
+          [](const SceneValues& s) {
             return is_of_kind(s, Source::Kind::kRelative) ? &s.source->relative_irradiance : nullptr;
           },
-          [](Scene& s, const KeyValue& v) {
+          [](SceneValues& s, const KeyValue& v) {
             s.source->kind = Source::Kind::kRelative;
             s.source->relative_irradiance = v.number;
           }),
@@ -161,8 +161,8 @@ std::vector<SceneKey> radiation_keys() {
         {"sun"},
         "",
         "E0 of the sun at the top of the atmosphere; instead of irradiance"},
-       [](Scene& s, const KeyValue& v) { s.names.source_preset = v.text; },
-       [](const Scene& s) { return value_at(&s.names.source_preset); }},
+       [](SceneValues& s, const KeyValue& v) { s.names.source_preset = v.text; },
+       [](const SceneValues& s) { return value_at(&s.names.source_preset); }},
       text("source.file", "your own E0: CSV of wavelength_um, irradiance; instead of irradiance",
            [](auto& s) { return &s.names.source_file; }),
       number("source.scale", "1", kNonNegativeRange, "1", "factor on E0, whatever its kind",
@@ -175,13 +175,13 @@ std::vector<SceneKey> radiation_keys() {
       number(
           "path.temperature_K", "K", kBackgroundTemperatureRange, "",
           "temperature of the path, whose radiance is (1 - tau) B(T); without it and radiance, none",
-          [](const Scene& s) { return s.path && s.path->temperature_K ? &*s.path->temperature_K : nullptr; },
-          [](Scene& s, const KeyValue& v) { s.path->temperature_K = v.number; }),
+          [](const SceneValues& s) { return s.path && s.path->temperature_K ? &*s.path->temperature_K : nullptr; },
+          [](SceneValues& s, const KeyValue& v) { s.path->temperature_K = v.number; }),
       number(
           "path.radiance", "W m-2 sr-1 um-1", kNonNegativeRange, "",
           "path radiance L_path; instead of path.temperature_K",
-          [](const Scene& s) { return s.path && s.path->radiance ? &*s.path->radiance : nullptr; },
-          [](Scene& s, const KeyValue& v) { s.path->radiance = v.number; }),
+          [](const SceneValues& s) { return s.path && s.path->radiance ? &*s.path->radiance : nullptr; },
+          [](SceneValues& s, const KeyValue& v) { s.path->radiance = v.number; }),
   };
 }
 
@@ -189,15 +189,15 @@ std::vector<SceneKey> geometry_keys() {
   return {
       number(
           "spectrum.wavelength_um", "um", kWavelengthUmRange, "", "wavelength lambda; or band_um",
-          [](const Scene& s) { return s.spectrum.is_band() ? nullptr : &s.spectrum.min_um; },
-          [](Scene& s, const KeyValue& v) {
+          [](const SceneValues& s) { return s.spectrum.is_band() ? nullptr : &s.spectrum.min_um; },
+          [](SceneValues& s, const KeyValue& v) {
             s.spectrum = {v.number, v.number};
           }),
       {{"spectrum.band_um", Type::kPair, "um", kWavelengthUmRange, {}, "", "band [lambda1, lambda2] to integrate over"},
-       [](Scene& s, const KeyValue& v) {
+       [](SceneValues& s, const KeyValue& v) {
          s.spectrum = {v.numbers[0], v.numbers[1]};
        },
-       [](const Scene& s) -> std::optional<KeyValue> {
+       [](const SceneValues& s) -> std::optional<KeyValue> {
          if (!s.spectrum.is_band()) return std::nullopt;
          return KeyValue{.numbers = {s.spectrum.min_um, s.spectrum.max_um}};
        }},
@@ -232,8 +232,8 @@ std::vector<SceneKey> geometry_keys() {
         "auto",
         "between slope distributions of a dense grid and from some of many indices to all, within the tolerance; off: "
         "every entry is integrated by itself"},
-       [](Scene& s, const KeyValue& v) { s.accuracy.may_interpolate = v.word == 0; },
-       [](const Scene& s) -> std::optional<KeyValue> {
+       [](SceneValues& s, const KeyValue& v) { s.accuracy.may_interpolate = v.word == 0; },
+       [](const SceneValues& s) -> std::optional<KeyValue> {
          const bool is_auto = s.accuracy.may_interpolate;
          return KeyValue{.word = is_auto ? std::size_t{0} : 1, .text = is_auto ? "auto" : "off"};
        }},
@@ -312,7 +312,7 @@ bool is_effect_table(std::string_view table) {
   return table == "emission" || table == "source" || table == "surroundings" || table == "path";
 }
 
-void add_effect(Scene& scene, std::string_view table) {
+void add_effect(SceneValues& scene, std::string_view table) {
   if (table == "emission") scene.emission.emplace();
   if (table == "source") scene.source.emplace();
   if (table == "surroundings") scene.surroundings.emplace();

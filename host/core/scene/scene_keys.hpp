@@ -22,9 +22,9 @@ struct KeyValue {
 
 struct SceneKey {
   Key description;
-  std::function<void(Scene& scene, const KeyValue& value)> set;
+  std::function<void(SceneValues& scene, const KeyValue& value)> set;
   /// None where the scene has no such thing: n with a material, the temperature of an emission that is not there.
-  std::function<std::optional<KeyValue>(const Scene& scene)> value;
+  std::function<std::optional<KeyValue>(const SceneValues& scene)> value;
 };
 
 /// Alternatives of which one is chosen; each is a list of keys that belong together, and its first key chooses it.
@@ -46,6 +46,6 @@ std::vector<std::string> scene_tables();
 bool is_effect_table(std::string_view table);
 
 /// Makes the table's effect present in the scene.
-void add_effect(Scene& scene, std::string_view table);
+void add_effect(SceneValues& scene, std::string_view table);
 
 }  // namespace dolp

@@ -90,8 +90,8 @@ void check_required(const SceneDocument& document) {
   }
 }
 
-Scene read_keys(const SceneDocument& document) {
-  Scene scene;
+SceneValues read_keys(const SceneDocument& document) {
+  SceneValues scene;
   const std::vector<std::string> keys = document_keys(document);
   for (const std::string& key : keys) {
     if (!find_scene_key(key)) document.fail(key, "unknown key; the nearest known key is " + key_hint(key));
@@ -118,7 +118,7 @@ std::string resolve_path(const std::string& file, const std::string& scene_path)
 
 /// What `read` makes of a file that the scene names; an InputError that begins with `prefix` where none may be opened.
 template <class Read>
-auto read_file_of(Scene& scene, const std::string& file, const std::string& scene_path, const std::string& prefix,
+auto read_file_of(SceneValues& scene, const std::string& file, const std::string& scene_path, const std::string& prefix,
                   const KnownData* known, const Read& read) {
   const std::string& path = scene.files.emplace_back(resolve_path(file, scene_path));
   if (!known) return read(path);
@@ -133,7 +133,7 @@ auto read_file_of(Scene& scene, const std::string& file, const std::string& scen
 }
 
 /// From the shortest wavelength that a table or its scene has to the longest.
-Spectrum all_wavelengths(const Scene& scene) {
+Spectrum all_wavelengths(const SceneValues& scene) {
   Spectrum all = scene.spectrum;
   for (const double wavelength_um : scene.grid[Axis::kWavelength]) {
     all.min_um = std::min(all.min_um, wavelength_um);
@@ -142,7 +142,7 @@ Spectrum all_wavelengths(const Scene& scene) {
   return all;
 }
 
-void load_material(Scene& scene, const SceneDocument& document, const std::string& scene_path, const KnownData* known) {
+void load_material(SceneValues& scene, const SceneDocument& document, const std::string& scene_path, const KnownData* known) {
   const bool is_file = document.find("surface.material_file") != nullptr;
   if (!is_file && !document.find("surface.material")) return;
   const std::string prefix = document.prefix(is_file ? "surface.material_file" : "surface.material");
@@ -162,7 +162,7 @@ void load_material(Scene& scene, const SceneDocument& document, const std::strin
   if (!material.is_constant()) material = fit_to_spectrum(material, scene.spectrum, prefix);
 }
 
-void load_source(Scene& scene, const SceneDocument& document, const std::string& scene_path, const KnownData* known) {
+void load_source(SceneValues& scene, const SceneDocument& document, const std::string& scene_path, const KnownData* known) {
   const bool is_preset = document.find("source.preset") != nullptr;
   if (!is_preset && !document.find("source.file")) return;
   const std::string prefix = document.prefix(is_preset ? "source.preset" : "source.file");
@@ -181,7 +181,7 @@ void load_source(Scene& scene, const SceneDocument& document, const std::string&
 }
 
 /// What a scene need not say beside an axis of it, whose first value it then is.
-void fill_from_grid(Scene& scene, const SceneDocument& document) {
+void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
   const Axes& grid = scene.grid;
   OpticalConstants& index = scene.surface.material.constant;
   if (!grid[Axis::kWavelength].empty()) {
@@ -200,7 +200,7 @@ void fill_from_grid(Scene& scene, const SceneDocument& document) {
   if (!grid[Axis::kK].empty() && !document.find("surface.k")) index.k = grid[Axis::kK].front();
 }
 
-void fill_grid(Scene& scene, const SceneDocument& document) {
+void fill_grid(SceneValues& scene, const SceneDocument& document) {
   constexpr std::size_t kDefaultThetaCount = 91;
   Axes& grid = scene.grid;
   std::vector<double>& theta_deg = grid[Axis::kTheta];
@@ -214,7 +214,7 @@ void fill_grid(Scene& scene, const SceneDocument& document) {
 }
 
 /// Where the masking has no finite mean slope to work with, the scene is refused.
-void check_smith(const Scene& scene, const SceneDocument& document) {
+void check_smith(const SceneValues& scene, const SceneDocument& document) {
   if (!scene.surface.needs_mean_slope()) return;
   const std::string what = "masking = \"smith\" with distribution = \"cauchy\" needs q in " + kSmithCauchyQRange.text();
   if (!kSmithCauchyQRange.contains(scene.surface.q)) document.fail("surface.q", what);
@@ -224,7 +224,7 @@ void check_smith(const Scene& scene, const SceneDocument& document) {
 }
 
 /// What goes beyond single scattering needs the masking that it is defined for.
-void check_scattering(const Scene& scene, const SceneDocument& document) {
+void check_scattering(const SceneValues& scene, const SceneDocument& document) {
   const Surface& surface = scene.surface;
   const bool is_multiple = surface.scattering == Scattering::kMultiple;
   const std::string masking = fmt::format("surface.masking is \"{}\"", name_of(surface.masking));
@@ -251,7 +251,7 @@ void check_scattering(const Scene& scene, const SceneDocument& document) {
     document.fail("emission.bracket", "needs geometry.mode = \"hemispherical\"");
 }
 
-void check_radiation(const Scene& scene, const SceneDocument& document) {
+void check_radiation(const SceneValues& scene, const SceneDocument& document) {
   if (!scene.emission && !scene.source && !scene.surroundings) {
     document.fail("emission", "missing; nothing radiates without one of the tables emission, source, surroundings");
   }
@@ -261,8 +261,8 @@ void check_radiation(const Scene& scene, const SceneDocument& document) {
 }
 
 /// The scene of a document, with files found from the folder of `path_name`.
-Scene scene_of(const SceneDocument& document, const std::string& path_name, const KnownData* known) {
-  Scene scene = read_keys(document);
+SceneValues scene_of(const SceneDocument& document, const std::string& path_name, const KnownData* known) {
+  SceneValues scene = read_keys(document);
   fill_from_grid(scene, document);
   load_material(scene, document, path_name, known);
   load_source(scene, document, path_name, known);
@@ -277,24 +277,24 @@ Scene scene_of(const SceneDocument& document, const std::string& path_name, cons
 
 }  // namespace
 
-Scene parse_scene(const std::string& text, const std::string& path_name, const std::vector<Setting>& settings,
+SceneValues parse_scene(const std::string& text, const std::string& path_name, const std::vector<Setting>& settings,
                   const KnownData* known) {
   SceneDocument document(text, path_name);
   for (const Setting& setting : settings) document.apply(setting);
-  Scene scene = scene_of(document, path_name, known);
+  SceneValues scene = scene_of(document, path_name, known);
   scene.text = text;
   scene.settings = settings;
   return scene;
 }
 
-Scene read_scene(const std::string& path, const std::vector<Setting>& settings) {
+SceneValues read_scene(const std::string& path, const std::vector<Setting>& settings) {
   return parse_scene(read_text(path, input_name(path) + ": "), path, settings);
 }
 
-Scene with_settings(const Scene& scene, const std::vector<Setting>& settings) {
+SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& settings) {
   SceneDocument document = *scene.document;
   for (const Setting& setting : settings) document.apply(setting);
-  Scene changed = scene_of(document, scene.path_name, nullptr);
+  SceneValues changed = scene_of(document, scene.path_name, nullptr);
   changed.text = scene.text;
   changed.settings = scene.settings;
   changed.settings.insert(changed.settings.end(), settings.begin(), settings.end());

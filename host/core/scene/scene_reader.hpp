@@ -15,10 +15,10 @@ namespace dolp {
 /// scene are relative to the folder of the scene (of the process for "-").
 /// Errors: InputError, one line: `file:line: key = value: what is wrong and what is allowed`, of a setting its origin
 /// instead; a file that cannot be opened is an InputError too.
-Scene read_scene(const std::string& path, const std::vector<Setting>& settings = {});
+SceneValues read_scene(const std::string& path, const std::vector<Setting>& settings = {});
 
 /// The scene with more settings. Domain: a scene that was read. Errors: InputError, as read_scene.
-Scene with_settings(const Scene& scene, const std::vector<Setting>& settings);
+SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& settings);
 
 /// n, k and E0 that the names in a scene stood for when a table was made of it.
 struct KnownData {
@@ -30,7 +30,7 @@ struct KnownData {
 /// The same for a text that is already in memory (the scene that a table file carries); `path_name` is for messages and
 /// gives the folder of the files the scene names. With `known` none of these is opened, unless it says so: an
 /// InputError where it lacks what the scene takes from one.
-Scene parse_scene(const std::string& text, const std::string& path_name, const std::vector<Setting>& settings = {},
+SceneValues parse_scene(const std::string& text, const std::string& path_name, const std::vector<Setting>& settings = {},
                   const KnownData* known = nullptr);
 
 }  // namespace dolp

@@ -50,7 +50,7 @@ std::string path_from(const std::filesystem::path& folder, const std::string& fi
 
 }  // namespace
 
-std::string scene_toml(const Scene& scene, const std::filesystem::path& folder) {
+std::string scene_toml(const SceneValues& scene, const std::filesystem::path& folder) {
   const SceneDocument& document = *scene.document;
   std::string written;
   for (const Key& description : dolp::keys()) {

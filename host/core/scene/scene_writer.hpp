@@ -13,6 +13,6 @@ namespace dolp {
 ///
 /// Files that the scene names are written as they are found from `folder`, where the text will be saved.
 /// Domain: a scene that was read.
-std::string scene_toml(const Scene& scene, const std::filesystem::path& folder);
+std::string scene_toml(const SceneValues& scene, const std::filesystem::path& folder);
 
 }  // namespace dolp

@@ -91,8 +91,8 @@ std::string wavelength_text(double min_um, double max_um) {
   return min_um == max_um ? fmt::format("{} um", min_um) : fmt::format("{} to {} um", min_um, max_um);
 }
 
-Scene at_wavelength(const Scene& scene, double wavelength_um) {
-  Scene at = scene;
+SceneValues at_wavelength(const SceneValues& scene, double wavelength_um) {
+  SceneValues at = scene;
   at.spectrum = {wavelength_um, wavelength_um};
   at.grid = {};
   at.text.clear();

@@ -48,7 +48,7 @@ struct FineNode {
   double path = 0.0;
 };
 
-double source_irradiance(const Scene& scene, double wavelength_um, double emitted) {
+double source_irradiance(const SceneValues& scene, double wavelength_um, double emitted) {
   const Source& source = *scene.source;
   switch (source.kind) {
     case Source::Kind::kFlat:
@@ -67,7 +67,7 @@ double path_exitance(const Path& path, double wavelength_um) {
   return std::numbers::pi * (1.0 - path.transmittance) * planck_radiance(wavelength_um, *path.temperature_K);
 }
 
-FineNode fine_node(const Scene& scene, double wavelength_um, double weight) {
+FineNode fine_node(const SceneValues& scene, double wavelength_um, double weight) {
   const double emitted =
       scene.emission ? std::numbers::pi * planck_radiance(wavelength_um, scene.emission->temperature_K) : 0.0;
   const double surroundings =
@@ -83,7 +83,7 @@ FineNode fine_node(const Scene& scene, double wavelength_um, double weight) {
   return node;
 }
 
-std::vector<double> temperatures(const Scene& scene) {
+std::vector<double> temperatures(const SceneValues& scene) {
   std::vector<double> result;
   if (scene.emission) result.push_back(scene.emission->temperature_K);
   if (scene.surroundings) result.push_back(scene.surroundings->temperature_K);
@@ -91,7 +91,7 @@ std::vector<double> temperatures(const Scene& scene) {
   return result;
 }
 
-bool is_one_piece(const Scene& scene, double from_um, double to_um) {
+bool is_one_piece(const SceneValues& scene, double from_um, double to_um) {
   if (to_um > kPieceWavelengthRatio * from_um) return false;
   return std::ranges::all_of(temperatures(scene), [&](double temperature_K) {
     if (temperature_K == 0.0) return true;
@@ -102,7 +102,7 @@ bool is_one_piece(const Scene& scene, double from_um, double to_um) {
   });
 }
 
-void append_fine_nodes(const Scene& scene, double from_um, double to_um, std::vector<FineNode>& nodes) {
+void append_fine_nodes(const SceneValues& scene, double from_um, double to_um, std::vector<FineNode>& nodes) {
   const double middle_um = 0.5 * (from_um + to_um);
   if (!is_one_piece(scene, from_um, to_um)) {
     append_fine_nodes(scene, from_um, middle_um, nodes);
@@ -130,7 +130,7 @@ std::vector<double> segment_ends(double from_um, double to_um, std::initializer_
   return ends;
 }
 
-std::vector<FineNode> fine_nodes(const Scene& scene, double from_um, double to_um) {
+std::vector<FineNode> fine_nodes(const SceneValues& scene, double from_um, double to_um) {
   static const SpectralTable kNoTable;
   const bool tabulated = scene.source && scene.source->kind == Source::Kind::kTabulated;
   const std::vector<double> ends = segment_ends(from_um, to_um, {tabulated ? &scene.source->table : &kNoTable});
@@ -166,7 +166,7 @@ void add(SpectralSample& sample, const FineNode& node, double factor) {
   sample.width += factor * node.width;
 }
 
-std::vector<SpectralSample> samples_at(const Scene& scene, const std::vector<double>& nodes_um,
+std::vector<SpectralSample> samples_at(const SceneValues& scene, const std::vector<double>& nodes_um,
                                        const std::vector<FineNode>& fine) {
   std::vector<SpectralSample> samples(nodes_um.size());
   for (std::size_t j = 0; j < nodes_um.size(); ++j) {
@@ -182,7 +182,7 @@ std::vector<SpectralSample> samples_at(const Scene& scene, const std::vector<dou
 
 /// Relative error of the smooth surface's absorptances at one cosine, integrated with one of the factors.
 template <typename Factor>
-double probe_error(const Scene& scene, const std::vector<SpectralSample>& samples, const std::vector<FineNode>& fine,
+double probe_error(const SceneValues& scene, const std::vector<SpectralSample>& samples, const std::vector<FineNode>& fine,
                    double cosine, Factor factor) {
   double whole = 0.0;
   SmoothAbsorptance exact{0.0, 0.0};
@@ -204,7 +204,7 @@ double probe_error(const Scene& scene, const std::vector<SpectralSample>& sample
   return std::max(std::abs(exact.s - approximate.s), std::abs(exact.p - approximate.p)) / part;
 }
 
-double nodes_error(const Scene& scene, const std::vector<SpectralSample>& samples, const std::vector<FineNode>& fine) {
+double nodes_error(const SceneValues& scene, const std::vector<SpectralSample>& samples, const std::vector<FineNode>& fine) {
   double worst = 0.0;
   for (const double cosine : kProbeCosines) {
     worst = std::max({worst, probe_error(scene, samples, fine, cosine, [](const auto& at) { return at.emitted; }),
@@ -228,7 +228,7 @@ void append_merged(std::vector<SpectralSample>& samples, const SpectralSample& s
 }
 
 /// Adds one segment of the material to a rule.
-void append_segment(const Scene& scene, double from_um, double to_um, SpectralRule& rule) {
+void append_segment(const SceneValues& scene, double from_um, double to_um, SpectralRule& rule) {
   const std::vector<FineNode> fine = fine_nodes(scene, from_um, to_um);
   for (const FineNode& node : fine) rule.path_exitance += node.path;
   std::vector<SpectralSample> samples;
@@ -242,7 +242,7 @@ void append_segment(const Scene& scene, double from_um, double to_um, SpectralRu
   for (const SpectralSample& sample : samples) append_merged(rule.samples, sample);
 }
 
-SpectralRule single_wavelength_rule(const Scene& scene, double wavelength_um) {
+SpectralRule single_wavelength_rule(const SceneValues& scene, double wavelength_um) {
   const FineNode node = fine_node(scene, wavelength_um, 1.0);
   SpectralSample sample;
   sample.wavelength_um = wavelength_um;
@@ -259,7 +259,7 @@ std::vector<OpticalConstants> SpectralRule::indices() const {
   return result;
 }
 
-SpectralRule spectral_rule(const Scene& scene) {
+SpectralRule spectral_rule(const SceneValues& scene) {
   if (!scene.spectrum.is_band()) return single_wavelength_rule(scene, scene.spectrum.min_um);
   SpectralRule rule;
   rule.relative_error = kPieceRelativeError;

@@ -36,7 +36,7 @@ struct SpectralRule {
 /// the material otherwise, as many as it takes for the reflectances of the smooth surface.
 ///
 /// Accuracy: band sums to 1e-9 relative (tests SpectralRule_*Band*).
-SpectralRule spectral_rule(const Scene& scene);
+SpectralRule spectral_rule(const SceneValues& scene);
 
 /// The rule with 0 for every factor that is not kept.
 SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept);

@@ -51,7 +51,7 @@ struct TableHead {
 /// A lookup table in memory, or a part of one.
 ///
 /// Shape: columns in C order of the axes.
-struct Table : TableHead, ResultColumns {};
+struct TableValues : TableHead, ResultColumns {};
 
 /// What a table has before any value is there.
 struct TableLayout {

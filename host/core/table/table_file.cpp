@@ -62,7 +62,7 @@ std::string csv_header(const TableLayout& layout) {
   return text + result_header(layout.quantities, layout.has_status) + "\n";
 }
 
-std::string csv_rows(const Table& part, const Quantities& quantities) {
+std::string csv_rows(const TableValues& part, const Quantities& quantities) {
   return result_rows(part, part.size(), quantities, [&](std::string& text, std::size_t position) {
     each_coordinate(part.axes, position, [&](double value) {
       append_number(text, value);
@@ -99,7 +99,7 @@ void append_bytes(std::string& bytes, Number value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-std::string npy_rows(const Table& part, const Quantities& quantities) {
+std::string npy_rows(const TableValues& part, const Quantities& quantities) {
   std::string bytes;
   for (std::size_t position = 0; position < part.size(); ++position) {
     each_coordinate(part.axes, position, [&](double value) { append_bytes(bytes, value); });
@@ -128,11 +128,11 @@ std::string table_start(const TableLayout& layout, TableFormat format) {
   return format == TableFormat::kCsv ? csv_header(layout) : npy_header(layout);
 }
 
-std::string table_rows(const Table& part, const TableLayout& layout, TableFormat format) {
+std::string table_rows(const TableValues& part, const TableLayout& layout, TableFormat format) {
   return format == TableFormat::kCsv ? csv_rows(part, layout.quantities) : npy_rows(part, layout.quantities);
 }
 
-void write_table(const Table& table, const fs::path& path) {
+void write_table(const TableValues& table, const fs::path& path) {
   const TableFormat format = format_of(path);
   const TableLayout layout{static_cast<const TableHead&>(table), table.quantities(), !table.status.empty()};
   if (format != TableFormat::kNetcdf)

@@ -28,13 +28,13 @@ void check_output_path(const std::filesystem::path& path);
 /// a structured array of the shape of the axes with the named fields of the .csv, so that `t["dolp"][i, j, k]` and
 /// `t["theta_deg"][:, 0, 0]` work. The format has no attributes. Errors: those of check_output_path; IoError when
 /// writing fails, after which the target is as it was.
-void write_table(const Table& table, const std::filesystem::path& path);
+void write_table(const TableValues& table, const std::filesystem::path& path);
 
 /// The start of a .csv or .npy, and the rows of a part of the table; the parts follow each other.
 std::string table_start(const TableLayout& layout, TableFormat format);
-std::string table_rows(const Table& part, const TableLayout& layout, TableFormat format);
+std::string table_rows(const TableValues& part, const TableLayout& layout, TableFormat format);
 
 /// Reads a table that was written as .nc, all of it. Errors: those of TableReader.
-Table read_table(const std::filesystem::path& path);
+TableValues read_table(const std::filesystem::path& path);
 
 }  // namespace dolp

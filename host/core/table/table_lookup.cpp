@@ -10,7 +10,7 @@
 #include <set>
 
 #include "base/numbers.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 
 namespace dolp {
 namespace {
@@ -50,7 +50,7 @@ const std::vector<double>& checked(const std::vector<double>& values, const char
 }
 
 /// Those of a table, one value of one that it lacks.
-std::vector<LookupAxis> axes_of(const Table& table, const std::string& name) {
+std::vector<LookupAxis> axes_of(const TableValues& table, const std::string& name) {
   std::vector<LookupAxis> axes;
   for (const Axis axis : kAllAxes) {
     const std::vector<double>& values = table.axes[axis];
@@ -63,12 +63,12 @@ std::vector<LookupAxis> axes_of(const Table& table, const std::string& name) {
 
 PointResult unknown() {
   PointResult result;
-  result.status = kStatusOutsideDomain;
+  result.status = kOutsideModelDomain;
   return result;
 }
 
 /// Refuses a table that lacks what every result needs.
-void check_variables(const Table& table, const std::string& name) {
+void check_variables(const TableValues& table, const std::string& name) {
   const auto require = [&](bool is_there, std::string_view variable) {
     if (!is_there) throw InputError(fmt::format("{}: the variable {} is missing; lookup needs it", name, variable));
   };
@@ -299,7 +299,7 @@ struct TableLookup::Lines {
   }
 };
 
-TableLookup::TableLookup(const Table& table, double tolerance, const std::string& name)
+TableLookup::TableLookup(const TableValues& table, double tolerance, const std::string& name)
     : table_(table), tolerance_(tolerance), axes_(axes_of(table, name)) {
   check_variables(table, name);
   std::size_t stride = 1;
@@ -376,7 +376,7 @@ PointResult TableLookup::at(const Point& point) const {
     const std::vector<double>& bounds = table_[kRhoErrorEstimate];
     rho_error = rows.sum_of_sizes([&](std::size_t position) { return std::abs(rho[position]) * bounds[position]; });
   }
-  result.status = cell_status(window) & kStatusUnphysicalReflectance;
+  result.status = cell_status(window) & kReflectanceOutsideZeroToOne;
   finish(result, change, error, rho_error);
   return result;
 }
@@ -402,10 +402,10 @@ void TableLookup::finish(PointResult& result, const PointResult& change, double 
 }
 
 void TableLookup::add_status(PointResult& result) const {
-  if (result[kStokesI] <= 0.0) result.status |= kStatusNonPositiveIntensity;
+  if (result[kStokesI] <= 0.0) result.status |= kIntensityNotPositive;
   const bool states_dolp = promises_dolp(result.status);
   if ((states_dolp && !(result[kErrorEstimate] <= tolerance_)) || result[kRhoErrorEstimate] > tolerance_) {
-    result.status |= kStatusToleranceMissed;
+    result.status |= kToleranceNotMet;
   }
 }
 

@@ -28,7 +28,7 @@ class TableLookup {
   /// `table` must outlive the object; `tolerance` is its own, for status 2. Errors: InputError, which begins with
   /// `name`, for an axis that has a value twice, and for a table without dolp, its error, Stokes parameters or status,
   /// or with an error of rho but no rho.
-  TableLookup(const Table& table, double tolerance, const std::string& name);
+  TableLookup(const TableValues& table, double tolerance, const std::string& name);
 
   /// Nothing of an axis that the table lacks.
   const LookupAxis* axis(Axis axis) const;
@@ -58,7 +58,7 @@ class TableLookup {
   void finish(PointResult& result, const PointResult& change, double error, double rho_error) const;
   void add_status(PointResult& result) const;
 
-  const Table& table_;
+  const TableValues& table_;
   double tolerance_;
   std::vector<LookupAxis> axes_;  ///< in the table's order; one value of those that it lacks
   PerAxis strides_ = {};          ///< between the entries of an axis

@@ -296,8 +296,8 @@ const TableHead& TableReader::head() const { return impl_->head; }
 const Quantities& TableReader::quantities() const { return impl_->quantities; }
 bool TableReader::has_status() const { return impl_->has_status; }
 
-Table TableReader::read(const TableBox& box) const {
-  Table part;
+TableValues TableReader::read(const TableBox& box) const {
+  TableValues part;
   static_cast<TableHead&>(part) = head_of(impl_->head, box);
   const Quantities& quantities = impl_->quantities;
   for (std::size_t i = 0; i < quantities.size(); ++i) impl_->read(i, box, H5T_NATIVE_DOUBLE, part[quantities[i]]);
@@ -312,7 +312,7 @@ void TableReader::check_hash(const ValuesHash::Sums& sums) const {
       "the values are not those that dolp wrote (attribute values_hash): the file was changed or is damaged");
 }
 
-ValuesHash::Sums TableReader::sums_of(const Table& part, const TableBox& box) const {
+ValuesHash::Sums TableReader::sums_of(const TableValues& part, const TableBox& box) const {
   ValuesHash::Sums sums;
   const auto add = [&](const auto& values) {
     std::uint64_t& sum = sums.emplace_back(0);
@@ -325,13 +325,13 @@ ValuesHash::Sums TableReader::sums_of(const Table& part, const TableBox& box) co
   return sums;
 }
 
-Table TableReader::read_entries(std::span<const std::size_t> positions) const {
-  Table entries;
+TableValues TableReader::read_entries(std::span<const std::size_t> positions) const {
+  TableValues entries;
   static_cast<TableHead&>(entries) = impl_->head;
   ValuesHash::Sums sums;
   std::size_t before = 0;
   for (const TableBox& box : boxes_in_order(impl_->head.counts(), kEntriesAtOnce)) {
-    const Table part = read(box);
+    const TableValues part = read(box);
     const ValuesHash::Sums of_part = sums_of(part, box);
     sums.resize(of_part.size(), 0);
     std::ranges::transform(sums, of_part, sums.begin(), std::plus<>());
@@ -347,10 +347,10 @@ Table TableReader::read_entries(std::span<const std::size_t> positions) const {
   return entries;
 }
 
-Table read_table(const fs::path& path) {
+TableValues read_table(const fs::path& path) {
   const TableReader reader(path);
   const TableBox all{{}, reader.head().counts()};
-  Table table = reader.read(all);
+  TableValues table = reader.read(all);
   reader.check_hash(reader.sums_of(table, all));
   return table;
 }

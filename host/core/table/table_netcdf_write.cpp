@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "table/hdf5_handle.hpp"
 #include "table/hdf5_memory.hpp"
 #include "table/table_netcdf.hpp"

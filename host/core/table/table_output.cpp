@@ -55,7 +55,7 @@ struct TableOutput::Impl {
   TableFormat format;
   std::optional<AtomicFile> file;  // with the values; none of a .csv or .npy of one part
   std::optional<TableStore> store;
-  Table only_part;
+  TableValues only_part;
   std::size_t written = 0;
   ProgressFile progress;
 
@@ -118,7 +118,7 @@ TableOutput::~TableOutput() {
 std::size_t TableOutput::parts_done() const { return impl_->progress.parts; }
 const std::string& TableOutput::note() const { return impl_->progress.note; }
 
-void TableOutput::write(Table part, const PerAxis& first, const std::string& note) {
+void TableOutput::write(TableValues part, const PerAxis& first, const std::string& note) {
   Impl& own = *impl_;
   if (own.store) {
     own.store->write(part, first);

@@ -35,7 +35,7 @@ class TableOutput {
   const std::string& note() const;
 
   /// Writes the next part, which begins at `first`, and a note, one line. Errors: IoError, Cancelled.
-  void write(Table part, const PerAxis& first, const std::string& note);
+  void write(TableValues part, const PerAxis& first, const std::string& note);
   /// Makes the file, with more attributes. Errors: IoError, Cancelled; PATH is as it was then.
   void finish(const std::vector<Attribute>& more);
 

@@ -25,13 +25,13 @@ class TableReader {
   const Quantities& quantities() const;
   bool has_status() const;
 
-  Table read(const TableBox& box) const;
+  TableValues read(const TableBox& box) const;
   /// The values of some entries, at ascending positions: each quantity has one for each of them. All are read, part by
   /// part, and refused as by check_hash.
-  Table read_entries(std::span<const std::size_t> positions) const;
+  TableValues read_entries(std::span<const std::size_t> positions) const;
 
   /// What a part that was read adds to the hash.
-  ValuesHash::Sums sums_of(const Table& part, const TableBox& box) const;
+  ValuesHash::Sums sums_of(const TableValues& part, const TableBox& box) const;
   /// Refuses values that are not those that were written, from the sums over all parts.
   void check_hash(const ValuesHash::Sums& sums) const;
 

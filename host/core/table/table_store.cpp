@@ -43,7 +43,7 @@ TableHead head_of(const TableHead& whole, const TableBox& box) {
 TableStore::TableStore(const TableLayout& layout, AtomicFile& file)
     : layout_(layout), file_(file), skeleton_(layout), sums_(skeleton_.offsets().size(), 0) {}
 
-void TableStore::write(const Table& part, const PerAxis& first) {
+void TableStore::write(const TableValues& part, const PerAxis& first) {
   const auto put = [&](std::size_t variable, const auto& values) {
     const std::span all(values);
     for_each_run(first, part.counts(), layout_.head.counts(), [&](const GridRun& run) {
@@ -56,8 +56,8 @@ void TableStore::write(const Table& part, const PerAxis& first) {
   if (layout_.has_status) put(layout_.quantities.size(), part.status);
 }
 
-Table TableStore::read(const TableBox& box) const {
-  Table part;
+TableValues TableStore::read(const TableBox& box) const {
+  TableValues part;
   static_cast<TableHead&>(part) = head_of(layout_.head, box);
   const auto get = [&](std::size_t variable, auto& values) {
     values.resize(part.size());

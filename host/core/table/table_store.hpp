@@ -28,9 +28,9 @@ class TableStore {
   TableStore(const TableLayout& layout, AtomicFile& file);
 
   /// Puts the values of a part, which has the layout's quantities, in their places. Errors: IoError, Cancelled.
-  void write(const Table& part, const PerAxis& first);
+  void write(const TableValues& part, const PerAxis& first);
   /// Reads a part back. Errors: IoError.
-  Table read(const TableBox& box) const;
+  TableValues read(const TableBox& box) const;
   /// Puts all else in the file, with more attributes, when all values are there. Errors: IoError, Cancelled.
   void finish(const std::vector<Attribute>& more);
 

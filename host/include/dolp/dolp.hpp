@@ -41,8 +41,9 @@
 #include <dolp/options.hpp>
 #include <dolp/results.hpp>
 #include <dolp/setting.hpp>
+#include <dolp/status.hpp>
 
-namespace dolp::api {
+namespace dolp {
 
 /// "0.2.0".
 DOLP_EXPORT std::string version();
@@ -105,28 +106,13 @@ class DOLP_EXPORT Scene {
 DOLP_EXPORT std::string example_scene();
 
 /// A built-in material.
-struct Material {
+struct BuiltInMaterial {
   std::string name;      ///< as surface.material takes it
   double from_um = 0.0;  ///< the wavelengths at which n and k are known
   double to_um = 0.0;
   std::string source;
 };
-DOLP_EXPORT std::vector<Material> materials();
-
-/// Status bits of an entry or point; 0 where nothing is wrong.
-enum Status : std::uint32_t {
-  kReflectanceOutsideZeroToOne = 1,
-  kToleranceNotMet = 2,
-  kOutsideModelDomain = 4,
-  kIntensityNotPositive = 8,
-};
-
-/// A bit of Status with the word that files have for it.
-struct StatusBit {
-  std::uint32_t mask;
-  std::string meaning;
-};
-DOLP_EXPORT std::vector<StatusBit> status_bits();
+DOLP_EXPORT std::vector<BuiltInMaterial> materials();
 
 /// What was computed or read at points, in their order.
 struct Results : ResultColumns {
@@ -257,11 +243,4 @@ DOLP_EXPORT Report verify_device(const DeviceCheckOptions& options = {});
 /// The limits of all devices, and how well each computes a few ordinary cases.
 DOLP_EXPORT Report device_report();
 
-}  // namespace dolp::api
-
-// The library's own sources have other classes of these names in namespace dolp.
-#ifndef DOLP_BUILDS_THE_LIBRARY
-namespace dolp {
-using namespace api;
-}
-#endif
+}  // namespace dolp

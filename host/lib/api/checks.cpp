@@ -19,7 +19,7 @@
 #include "run/table_scene.hpp"
 #include "table/table_reader.hpp"
 
-namespace dolp::api {
+namespace dolp {
 namespace {
 
 std::unique_ptr<MomentsEvaluator> evaluator_in(Precision precision, const DeviceCheckOptions& options) {
@@ -51,13 +51,13 @@ Report verify(const std::filesystem::path& path, const TableCheckOptions& option
   const std::string name = path.string();
   check_may_hold_scene(name);
   const TableReader reader(path);
-  const dolp::Scene scene =
+  const SceneValues scene =
       table_scene(reader.head(), name, options.named_files ? NamedData::kOfFiles : NamedData::kOfTable);
   TableReport report;
   report.path = name;
   report.title = scene.title;
   report.options = options;
-  dolp::begin(options.progress, options.samples);
+  begin(options.progress, options.samples);
   TableSample sample;
   sample.positions = sample_positions(reader.head().size(), report.options);
   sample.table = reader.read_entries(sample.positions);
@@ -70,7 +70,7 @@ Report verify_device(const DeviceCheckOptions& options) {
   if (!kToleranceRange.contains(options.tolerance)) {
     throw InputError(fmt::format("tolerance {:g}: must be a number in {}", options.tolerance, kToleranceRange.text()));
   }
-  dolp::begin(options.progress, 1);
+  begin(options.progress, 1);
   HardCaseReport report;
   report.tolerance = options.tolerance;
   report.cases = hard_cases();
@@ -84,7 +84,7 @@ Report verify_device(const DeviceCheckOptions& options) {
 }
 
 Report device_report() {
-  return public_report(dolp::device_report(list_devices()));
+  return public_report(device_report(list_devices()));
 }
 
-}  // namespace dolp::api
+}  // namespace dolp

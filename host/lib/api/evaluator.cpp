@@ -14,13 +14,13 @@
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
 
-namespace dolp::api {
+namespace dolp {
 namespace {
 
 /// The attributes that a table of a run has.
-std::vector<dolp::Attribute> all_attributes(const dolp::Scene& scene, const TableLayout& layout, const RunOutcome& run,
+std::vector<Attribute> all_attributes(const SceneValues& scene, const TableLayout& layout, const RunOutcome& run,
                                             const std::string& history) {
-  std::vector<dolp::Attribute> attributes = layout.head.attributes;
+  std::vector<Attribute> attributes = layout.head.attributes;
   std::ranges::move(attributes_of(scene, run, history), std::back_inserter(attributes));
   return attributes;
 }
@@ -50,13 +50,13 @@ Evaluator::~Evaluator() {
 
 Table Evaluator::table(const Scene& scene, const RunOptions& options) {
   return impl_->exclusively([&] {
-    const dolp::Scene& own = scene.impl().scene;
+    const SceneValues& own = scene.impl().scene;
     Run run(own, grid_entries(own), options, impl_->maker(own));
     CollectedResults results(run.entries());
     const RunOutcome outcome = run.compute(results);
     TableLayout layout = table_layout(own, outcome.plan, run.entries().axes());
     layout.head.attributes = all_attributes(own, layout, outcome, options.history);
-    dolp::Table table = table_part(layout, run.entries(), results.take());
+    TableValues table = table_part(layout, run.entries(), results.take());
     static_cast<TableHead&>(table) = std::move(layout.head);
     return Table(std::make_shared<const Table::Impl>(std::move(table), "table"));
   });
@@ -65,11 +65,11 @@ Table Evaluator::table(const Scene& scene, const RunOptions& options) {
 void Evaluator::table_parts(const Scene& scene, const std::function<void(const Table&)>& take,
                             const RunOptions& options) {
   impl_->exclusively([&] {
-    const dolp::Scene& own = scene.impl().scene;
+    const SceneValues& own = scene.impl().scene;
     Run run(own, grid_entries(own), options, impl_->maker(own));
     const TableLayout layout = table_layout(own, run.plan(), run.entries().axes());
     PassedResults parts([&](const SceneEntries& part, const std::vector<PointResult>& results) {
-      dolp::Table table = table_part(layout, part, results);
+      TableValues table = table_part(layout, part, results);
       table.stokes_units = layout.head.stokes_units;
       take(Table(std::make_shared<const Table::Impl>(std::move(table), "part")));
     });
@@ -79,7 +79,7 @@ void Evaluator::table_parts(const Scene& scene, const std::function<void(const T
 
 Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& points, const RunOptions& options) {
   return impl_->exclusively([&] {
-    const dolp::Scene& own = scene.impl().scene;
+    const SceneValues& own = scene.impl().scene;
     Run run(own, point_entries(own, points_of_columns(points, PointsKind::kDirections)), options, impl_->maker(own));
     CollectedResults collected(run.entries());
     const RunOutcome outcome = run.compute(collected);
@@ -94,11 +94,11 @@ Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& point
 std::vector<MuellerMatrix> Evaluator::mueller(const Scene& scene, const std::vector<Column>& points,
                                               const RunOptions& options) {
   return impl_->exclusively([&] {
-    const dolp::Scene& own = scene.impl().scene;
+    const SceneValues& own = scene.impl().scene;
     const auto geometries = mueller_points(own, points_of_columns(points, PointsKind::kGeometries));
-    dolp::begin(options.progress, geometries.size());
+    begin(options.progress, geometries.size());
     return evaluate_mueller(own, geometries, *impl_->begin(own), options.progress);
   });
 }
 
-}  // namespace dolp::api
+}  // namespace dolp

@@ -13,7 +13,7 @@
 #include "run/scene_run.hpp"
 #include "scene/scene.hpp"
 
-namespace dolp::api {
+namespace dolp {
 
 /// Refuses Vulkan in a process that was forked from one that has used it: drivers keep threads and locks that a fork
 /// does not copy, so that calls would wait for ever.
@@ -24,13 +24,13 @@ struct Evaluator::Impl {
 
   /// The evaluator for a scene, before a run; a scene in double gets a device that has it. Errors: those of
   /// make_evaluator.
-  MomentsEvaluator* begin(const dolp::Scene& scene) {
+  MomentsEvaluator* begin(const SceneValues& scene) {
     const bool needs_double = scene.accuracy.precision == Precision::kDouble;
     if (!evaluator || (needs_double && !evaluator->has_double())) evaluator = make_evaluator(options, needs_double);
     evaluator->clear_report();
     return evaluator.get();
   }
-  EvaluatorMaker maker(const dolp::Scene& scene) {
+  EvaluatorMaker maker(const SceneValues& scene) {
     return [this, &scene] { return begin(scene); };
   }
 
@@ -53,4 +53,4 @@ struct Evaluator::Impl {
   pid_t owner = getpid();
 };
 
-}  // namespace dolp::api
+}  // namespace dolp

@@ -2,7 +2,7 @@
 #include "api/results.hpp"
 #include "api/scene_impl.hpp"
 #include "base/version.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "plan/effects.hpp"
 #include "report/plan_report.hpp"
 #include "run/influences.hpp"
@@ -10,19 +10,19 @@
 #include "scene/embedded_data.hpp"
 #include "scene/material_data.hpp"
 
-namespace dolp::api {
+namespace dolp {
 
 std::string version() { return program_version(); }
 std::string commit() { return program_commit(); }
 std::string citation() { return std::string(embedded_citation_cff()); }
 
 Report plan(const Scene& scene, const std::string& device, bool keep_all) {
-  const dolp::Scene& own = scene.impl().scene;
+  const SceneValues& own = scene.impl().scene;
   return public_report(plan_report(plan_of(own, device, plan_effects(own, grid_entries(own), keep_all))));
 }
 
 std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& points, bool keep_all) {
-  const dolp::Scene& own = scene.impl().scene;
+  const SceneValues& own = scene.impl().scene;
   const SceneEntries entries = point_entries(own, points_of_columns(points, PointsKind::kDirections));
   std::vector<EffectRow> rows = effect_rows(own, entries, plan_effects(own, entries, keep_all));
   add_influences(rows, own, entries);
@@ -33,19 +33,13 @@ std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& point
   return all;
 }
 
-std::vector<Material> materials() {
-  std::vector<Material> all;
-  for (const dolp::Material& material : built_in_materials()) {
+std::vector<BuiltInMaterial> materials() {
+  std::vector<BuiltInMaterial> all;
+  for (const Material& material : built_in_materials()) {
     const Spectrum range = known_range(material);
     all.push_back({material.name, range.min_um, range.max_um, material.source});
   }
   return all;
 }
 
-std::vector<StatusBit> status_bits() {
-  std::vector<StatusBit> all;
-  for (const dolp::StatusBit& bit : dolp::kStatusBits) all.push_back({bit.mask, bit.meaning});
-  return all;
-}
-
-}  // namespace dolp::api
+}  // namespace dolp

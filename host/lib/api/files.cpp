@@ -13,7 +13,7 @@
 #include "base/number_text.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "report/run_report.hpp"
 #include "run/lookup_run.hpp"
 #include "run/mueller_run.hpp"
@@ -26,7 +26,7 @@
 #include "table/table_file.hpp"
 #include "table/table_lookup.hpp"
 
-namespace dolp::api {
+namespace dolp {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -42,7 +42,7 @@ Points load_points(const std::filesystem::path& path, PointsKind kind, std::vect
   return read_points(path.string(), kind, results);
 }
 
-void add_left_out(dolp::Report& report, const Points& points) {
+void add_left_out(ReportBuilder& report, const Points& points) {
   report.row_if(!points.left_out.empty(), "left out", "{}, because they are results", join(points.left_out));
 }
 
@@ -68,11 +68,11 @@ std::string mueller_csv(const Points& points, const std::vector<MuellerMatrix>& 
 
 }  // namespace
 
-Report public_report(const dolp::Report& report, bool is_good, const std::filesystem::path& output) {
+Report public_report(const ReportBuilder& report, bool is_good, const std::filesystem::path& output) {
   return {report.text(), report.json_text(), is_good, output};
 }
 
-std::vector<std::string> files_of(const dolp::Scene& scene) {
+std::vector<std::string> files_of(const SceneValues& scene) {
   std::vector<std::string> files = scene.files;
   files.push_back(scene.path_name);
   return files;
@@ -90,13 +90,13 @@ void check_output_is_no_input(const std::filesystem::path& output, const std::ve
 Report Evaluator::write_table(const Scene& scene, const std::filesystem::path& path, const RunOptions& options,
                               const Shard& shard) {
   return impl_->exclusively([&] {
-    const dolp::Scene& own = scene.impl().scene;
+    const SceneValues& own = scene.impl().scene;
     const TableJob job{shard_path(path, shard), shard, options};
     check_output_is_no_input(job.path, files_of(own));
     check_output_path(job.path);
     const SceneEntries entries = shard_entries(own, shard);
     if (!shard.is_whole() && is_there(own, job)) {
-      dolp::Report report;
+      ReportBuilder report;
       report.line("{}", key("title", own.title));
       report.row("kept", "{}: the whole shard is there already", key("output", job.path.string()));
       return public_report(report, true, job.path);
@@ -104,14 +104,14 @@ Report Evaluator::write_table(const Scene& scene, const std::filesystem::path& p
     const RunOutcome run = dolp::write_table(own, job, impl_->maker(own));
     const std::optional<double> gap = scattering_gap(own, entries, run.plan);
     return public_report(run_report(own, run, gap, grid_text(entries.axes()), job.path.string()),
-                         run.summary.count(kStatusToleranceMissed) == 0, job.path);
+                         run.summary.count(kToleranceNotMet) == 0, job.path);
   });
 }
 
 Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& points_path,
                                const std::filesystem::path& path, const RunOptions& options) {
   return impl_->exclusively([&] {
-    const dolp::Scene& own = scene.impl().scene;
+    const SceneValues& own = scene.impl().scene;
     const Points points = load_points(points_path, PointsKind::kDirections, files_of(own), path);
     SceneEntries entries = point_entries(own, points);
     check_writable(path);
@@ -122,9 +122,9 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
     const std::optional<double> gap = scattering_gap(own, run.entries(), outcome.plan);
     csv.commit();
     outcome.wall_s = run.wall_s();
-    dolp::Report report = run_report(own, outcome, gap, fmt::format("{} points", points.size()), path.string());
+    ReportBuilder report = run_report(own, outcome, gap, fmt::format("{} points", points.size()), path.string());
     add_left_out(report, points);
-    return public_report(report, outcome.summary.count(kStatusToleranceMissed) == 0, path);
+    return public_report(report, outcome.summary.count(kToleranceNotMet) == 0, path);
   });
 }
 
@@ -132,11 +132,11 @@ Report Evaluator::write_mueller(const Scene& scene, const std::filesystem::path&
                                 const std::filesystem::path& path, const RunOptions& options) {
   return impl_->exclusively([&] {
     const Clock::time_point start = Clock::now();
-    const dolp::Scene& own = scene.impl().scene;
+    const SceneValues& own = scene.impl().scene;
     const Points points = load_points(points_path, PointsKind::kGeometries, files_of(own), path);
     const std::vector<MuellerPoint> geometries = mueller_points(own, points);
     check_writable(path);
-    dolp::begin(options.progress, points.size());
+    begin(options.progress, points.size());
     MomentsEvaluator* const evaluator = impl_->begin(own);
     const std::vector<MuellerMatrix> results = evaluate_mueller(own, geometries, *evaluator, options.progress);
     write_text_atomically(path, mueller_csv(points, results));
@@ -145,7 +145,7 @@ Report Evaluator::write_mueller(const Scene& scene, const std::filesystem::path&
                           mueller_precision(own.accuracy, evaluator->has_double()) == Precision::kFloat;
     const double accuracy = is_float ? kScatteringErrorFloat : kScatteringErrorDouble;
     const auto nans = std::ranges::count_if(results, [](const MuellerMatrix& f) { return std::isnan(f[0]); });
-    dolp::Report report;
+    ReportBuilder report;
     report.line("{}", key("title", own.title));
     report.row("entries", "{} geometries", key("entries", results.size()));
     add_evaluation(report, evaluator->report(), seconds_since(start));
@@ -163,19 +163,19 @@ Report write_lookup(const std::filesystem::path& table_path, const std::filesyst
                     const std::filesystem::path& path, const Progress& progress) {
   const Clock::time_point start = Clock::now();
   const Points points = load_points(points_path, PointsKind::kDirections, {table_path.string()}, path);
-  const dolp::Table table = load_table(table_path.string());
-  const dolp::Scene scene = table_scene(table, table_path.string());
+  const TableValues table = load_table(table_path.string());
+  const SceneValues scene = table_scene(table, table_path.string());
   const TableLookup lookup(table, scene.accuracy.tolerance, table_path.string());
   check_writable(path);
-  dolp::begin(progress, points.size());
+  begin(progress, points.size());
   const std::vector<PointResult> results = lookup_points(lookup, scene, points, progress);
   ResultCsv csv = csv_of(path, points, lookup.quantities());
   csv.append(results);
   csv.commit();
 
-  const std::size_t missed = count_status(results, kStatusToleranceMissed);
-  const std::optional<double> worst = worst_of(results, Quantity::kErrorEstimate, kStatusNoDolpPromised);
-  dolp::Report report;
+  const std::size_t missed = count_status(results, kToleranceNotMet);
+  const std::optional<double> worst = worst_of(results, Quantity::kErrorEstimate, kNoDolpPromised);
+  ReportBuilder report;
   report.line("{}", key("table", table_path.string()));
   report.row("points", "{}", key("points", results.size()));
   report.row("error", "{}, interpolation included; tolerance of the table {:g}",
@@ -185,7 +185,7 @@ Report write_lookup(const std::filesystem::path& table_path, const std::filesyst
   add_left_out(report, points);
   report.row("written", "{}", key("output", path.string()));
   report.value("worst_error_estimate", worst);
-  report.value("worst_rho_error_estimate", worst_of(results, Quantity::kRhoErrorEstimate, kStatusNoDolpPromised));
+  report.value("worst_rho_error_estimate", worst_of(results, Quantity::kRhoErrorEstimate, kNoDolpPromised));
   report.value("wall_s", seconds_since(start));
   return public_report(report, missed == 0, path);
 }
@@ -198,11 +198,11 @@ Report merge(const std::vector<std::filesystem::path>& shards, const std::filesy
   check_output_is_no_input(path, names);
   check_output_path(path);
   const std::size_t entries = merge_shards(names, path, history);
-  dolp::Report report;
+  ReportBuilder report;
   report.line("{} entries of {} shards", key("entries", entries), key("shards", shards.size()));
   report.row("written", "{}", key("output", path.string()));
   report.value("wall_s", seconds_since(start));
   return public_report(report, true, path);
 }
 
-}  // namespace dolp::api
+}  // namespace dolp

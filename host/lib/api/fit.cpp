@@ -15,7 +15,7 @@
 #include "base/atomic_file.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "report/fit_picture.hpp"
 #include "report/fit_report.hpp"
 #include "report/run_report.hpp"
@@ -24,7 +24,7 @@
 #include "scene/scene_reader.hpp"
 #include "scene/scene_writer.hpp"
 
-namespace dolp::api {
+namespace dolp {
 namespace {
 
 using Settings = std::vector<Setting>;
@@ -73,7 +73,7 @@ struct Best {
   }
 };
 
-void check_outputs(const FitOptions& options, const dolp::Scene& scene, const std::vector<MeasuredData>& data) {
+void check_outputs(const FitOptions& options, const SceneValues& scene, const std::vector<MeasuredData>& data) {
   std::vector<std::string> inputs = files_of(scene);
   for (const MeasuredData& one : data) inputs.push_back(one.name);
   for (const std::filesystem::path& path : {options.output, options.plot}) {
@@ -85,17 +85,17 @@ void check_outputs(const FitOptions& options, const dolp::Scene& scene, const st
 
 /// The bracket of the fitted model over zenith for each data set; null where the scene has none, or none of DOLP was
 /// measured.
-dolp::Report::Json brackets(const Scene& fitted, const std::vector<MeasuredData>& sets, MomentsEvaluator& evaluator) {
-  dolp::Report::Json all = dolp::Report::Json::array();
+ReportBuilder::Json brackets(const Scene& fitted, const std::vector<MeasuredData>& sets, MomentsEvaluator& evaluator) {
+  ReportBuilder::Json all = ReportBuilder::Json::array();
   for (const MeasuredData& data : sets) {
-    dolp::Report::Json& one = all.emplace_back(nullptr);
+    ReportBuilder::Json& one = all.emplace_back(nullptr);
     const bool has_dolp =
         std::ranges::any_of(data.measurements, [](const Measurement& o) { return o.observable == Observable::kDolp; });
     if (!has_dolp) continue;
     Settings settings = data.settings;
     settings.push_back({"emission.bracket", true});
     try {
-      const dolp::Scene scene = with_settings(fitted.impl().scene, settings);
+      const SceneValues scene = with_settings(fitted.impl().scene, settings);
       std::vector<double> theta_deg;
       for (const Measurement& o : data.measurements) theta_deg.push_back(o.theta_deg);
       std::ranges::sort(theta_deg);
@@ -131,10 +131,10 @@ void write_fitted(const std::filesystem::path& path, const Scene& fitted) {
 Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, const FitOptions& options) {
   return impl_->exclusively([&] {
     const auto start = std::chrono::steady_clock::now();
-    const dolp::Scene& own = scene.impl().scene;
+    const SceneValues& own = scene.impl().scene;
     check_loss(options.loss, data);
 
-    dolp::begin(options.progress, 1);
+    begin(options.progress, 1);
     std::vector<ComparedModel> models;
     MomentsEvaluator* evaluator = nullptr;
     Best best;
@@ -164,7 +164,7 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
       return one.result ? one.result->aic : std::numeric_limits<double>::infinity();
     });
 
-    dolp::Report report;
+    ReportBuilder report;
     report.line("{}", key("title", own.title));
     if (best.result) {
       report.row("data", "{} measured values of {} file{}", key("observations", best.model->observation_count()),
@@ -193,10 +193,10 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
       draw_fit(report.json_text(), options.plot.string());
       report.row("picture", "{}", key("plot", options.plot.string()));
     }
-    Fit found{public_report(report, (best.result->status & kStatusToleranceMissed) == 0, options.output), true, fitted};
+    Fit found{public_report(report, (best.result->status & kToleranceNotMet) == 0, options.output), true, fitted};
     add_numbers(found, *best.result);
     return found;
   });
 }
 
-}  // namespace dolp::api
+}  // namespace dolp

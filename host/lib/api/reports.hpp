@@ -10,15 +10,15 @@
 #include "report/report.hpp"
 #include "scene/scene.hpp"
 
-namespace dolp::api {
+namespace dolp {
 
 /// `output`: the file that was written.
-Report public_report(const dolp::Report& report, bool is_good = true, const std::filesystem::path& output = {});
+Report public_report(const ReportBuilder& report, bool is_good = true, const std::filesystem::path& output = {});
 
 /// What a scene is read from.
-std::vector<std::string> files_of(const dolp::Scene& scene);
+std::vector<std::string> files_of(const SceneValues& scene);
 
 /// Refuses to write over what is read. "-" is stdin and stdout. Errors: InputError.
 void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
-}  // namespace dolp::api
+}  // namespace dolp

@@ -3,11 +3,11 @@
 #include "base/number_text.hpp"
 #include "table/result_csv.hpp"
 
-namespace dolp::api {
+namespace dolp {
 
 Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head) {
   Results results{{columns_of(points, quantities)}, quantities, head.stokes_units};
-  for (const dolp::Attribute& attribute : head.attributes) {
+  for (const Attribute& attribute : head.attributes) {
     results.attributes.push_back({attribute.name, attribute.value});
   }
   return results;
@@ -34,4 +34,4 @@ Points points_of_columns(const std::vector<Column>& columns, PointsKind kind) {
   return points_of(columns, count, kind);
 }
 
-}  // namespace dolp::api
+}  // namespace dolp

@@ -7,7 +7,7 @@
 #include "scene/points.hpp"
 #include "table/table.hpp"
 
-namespace dolp::api {
+namespace dolp {
 
 /// `head`: of the table that a run over the points would have, or that was read.
 Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head);
@@ -16,4 +16,4 @@ Results results_of(const std::vector<PointResult>& points, const Quantities& qua
 /// Errors: InputError of the rooms.
 Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
 
-}  // namespace dolp::api
+}  // namespace dolp

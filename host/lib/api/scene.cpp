@@ -10,13 +10,13 @@
 #include "scene/scene_reader.hpp"
 #include "scene/scene_writer.hpp"
 
-namespace dolp::api {
+namespace dolp {
 namespace {
 
 using Type = Key::Type;
 
 /// The value of a key that is of one of these types. Errors: InputError.
-std::optional<KeyValue> value_of(const dolp::Scene& scene, std::string_view key, std::initializer_list<Type> types) {
+std::optional<KeyValue> value_of(const SceneValues& scene, std::string_view key, std::initializer_list<Type> types) {
   const SceneKey* const known = find_scene_key(key);
   if (!known) throw InputError(fmt::format("{}: is no key of a scene", one_line(key)));
   if (std::ranges::find(types, known->description.type) == types.end()) {
@@ -72,8 +72,8 @@ std::vector<double> Scene::numbers(std::string_view key) const {
 }
 
 std::pair<double, double> Scene::refractive_index(double wavelength_um) const {
-  const dolp::Material& used = impl_->scene.surface.material;
-  const dolp::Material& material = used.tabulated ? *used.tabulated : used;
+  const Material& used = impl_->scene.surface.material;
+  const Material& material = used.tabulated ? *used.tabulated : used;
   if (!material.is_constant()) {
     const Spectrum range = known_range(material);
     if (wavelength_um < range.min_um || wavelength_um > range.max_um) {
@@ -87,4 +87,4 @@ std::pair<double, double> Scene::refractive_index(double wavelength_um) const {
 
 std::string example_scene() { return std::string(embedded_stainless_steel_toml()); }
 
-}  // namespace dolp::api
+}  // namespace dolp

@@ -5,10 +5,10 @@
 
 #include "scene/scene.hpp"
 
-namespace dolp::api {
+namespace dolp {
 
 struct Scene::Impl {
-  dolp::Scene scene;
+  SceneValues scene;
 };
 
-}  // namespace dolp::api
+}  // namespace dolp

@@ -6,7 +6,7 @@
 #include "run/table_scene.hpp"
 #include "table/table_file.hpp"
 
-namespace dolp::api {
+namespace dolp {
 
 const TableLookup& Table::Impl::lookup() const {
   std::call_once(is_made, [&] {
@@ -27,10 +27,10 @@ const std::string& Table::stokes_units() const { return impl_->table.stokes_unit
 Results Table::lookup(const std::vector<Column>& points, const Progress& progress) const {
   const TableLookup& between = impl_->lookup();
   const Points at = points_of_columns(points, PointsKind::kDirections);
-  dolp::begin(progress, at.size());
+  begin(progress, at.size());
   return results_of(lookup_points(between, *impl_->scene, at, progress), between.quantities(), impl_->table);
 }
 
-void Table::write(const std::filesystem::path& path) const { dolp::write_table(impl_->table, path); }
+void Table::write(const std::filesystem::path& path) const { write_table(impl_->table, path); }
 
-}  // namespace dolp::api
+}  // namespace dolp

@@ -10,19 +10,19 @@
 #include "table/table.hpp"
 #include "table/table_lookup.hpp"
 
-namespace dolp::api {
+namespace dolp {
 
 struct Table::Impl {
-  Impl(dolp::Table own, std::string own_name) : table(std::move(own)), name(std::move(own_name)) {}
+  Impl(TableValues own, std::string own_name) : table(std::move(own)), name(std::move(own_name)) {}
   /// Made when it is first asked for. Errors: those of table_scene and TableLookup.
   const TableLookup& lookup() const;
 
-  const dolp::Table table;
+  const TableValues table;
   const std::string name;  ///< for messages
 
   mutable std::once_flag is_made;
-  mutable std::optional<dolp::Scene> scene;  ///< its own; with `between` from the first lookup on
+  mutable std::optional<SceneValues> scene;  ///< its own; with `between` from the first lookup on
   mutable std::optional<TableLookup> between;
 };
 
-}  // namespace dolp::api
+}  // namespace dolp

@@ -63,7 +63,7 @@ double error_of(Observable observable, const PointResult& point) {
 
 }  // namespace
 
-Model::Model(const Scene& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters)
+Model::Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters)
     : data_(std::move(data)), parameters_(std::move(parameters)) {
   for (const MeasuredData& one : data_) count_ += one.measurements.size();
   check();
@@ -116,14 +116,14 @@ std::vector<Setting> Model::settings(const Eigen::VectorXd& values) const {
   return settings;
 }
 
-Scene Model::scene_of(const Scene& scene, const MeasuredData& data, const std::vector<Setting>& own,
+SceneValues Model::scene_of(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& own,
                       const Eigen::VectorXd& values) const {
   std::vector<Setting> all = data.settings;
   for (const auto& more : {own, settings(values)}) all.insert(all.end(), more.begin(), more.end());
   return with_settings(scene, all);
 }
 
-void Model::add_groups(const Scene& scene, const MeasuredData& data, Eigen::Index first_row) {
+void Model::add_groups(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row) {
   std::map<std::optional<double>, Group> of_wavelength;
   for (std::size_t i = 0; i < data.measurements.size(); ++i) {
     Group& group = of_wavelength[data.measurements[i].wavelength_um];
@@ -160,8 +160,8 @@ void Model::add_groups(const Scene& scene, const MeasuredData& data, Eigen::Inde
   }
 }
 
-Scene Model::with(const Scene& scene, const Eigen::VectorXd& values) const {
-  Scene own = scene;
+SceneValues Model::with(const SceneValues& scene, const Eigen::VectorXd& values) const {
+  SceneValues own = scene;
   for (std::size_t j = 0; j < parameters_.size(); ++j) {
     KeyValue value;
     value.number = values[static_cast<Eigen::Index>(j)];
@@ -193,7 +193,7 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
   for (const auto& [common, sets] : calls) {
     std::vector<SceneEntry> entries;
     entries.reserve(sets.size() * group.measurements.size());
-    Scene scene;
+    SceneValues scene;
     for (const std::size_t set : sets) {
       scene = with(group.scene, values[set]);
       const Surface& surface = scene.surface;

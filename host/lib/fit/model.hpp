@@ -27,7 +27,7 @@ class Model {
   /// Errors: InputError, one line, where scene, data and parameters do not fit together: more parameters than
   /// observations, a key twice, a data set that fixes a varied key, data with and without uncertainties, what
   /// the scene refuses at either end of the ranges.
-  Model(const Scene& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters);
+  Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters);
 
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
@@ -35,7 +35,7 @@ class Model {
   const std::vector<MeasuredData>& data() const { return data_; }
   const std::vector<FitRange>& parameters() const { return parameters_; }
   /// The scene of the first data set at the start of the parameters.
-  const Scene& scene() const { return groups_.front().scene; }
+  const SceneValues& scene() const { return groups_.front().scene; }
   std::size_t observation_count() const { return count_; }
   bool has_uncertainties() const { return data_.front().has_uncertainties; }
 
@@ -50,17 +50,17 @@ class Model {
  private:
   /// Observations of one data set at one wavelength.
   struct Group {
-    Scene scene;
+    SceneValues scene;
     std::vector<const Measurement*> measurements;
     std::vector<Eigen::Index> rows;  ///< of the predictions
   };
 
   void check() const;
-  void add_groups(const Scene& scene, const MeasuredData& data, Eigen::Index first_row);
+  void add_groups(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row);
   /// The scene of some data. Errors: InputError that says whose setting is refused.
-  Scene scene_of(const Scene& scene, const MeasuredData& data, const std::vector<Setting>& own,
+  SceneValues scene_of(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& own,
                  const Eigen::VectorXd& values) const;
-  Scene with(const Scene& scene, const Eigen::VectorXd& values) const;
+  SceneValues with(const SceneValues& scene, const Eigen::VectorXd& values) const;
   void predict_group(const Group& group, const std::vector<Eigen::VectorXd>& values, double tolerance,
                      MomentsEvaluator& evaluator, const Progress& progress, std::vector<Prediction>& predictions) const;
 

@@ -41,8 +41,8 @@ Quality quality_in(const Device& device, std::size_t position, Precision precisi
   return quality;
 }
 
-Report quality_report(const Quality& quality) {
-  Report report;
+ReportBuilder quality_report(const Quality& quality) {
+  ReportBuilder report;
   if (!quality.measured) {
     report.line("   {:<6} not measured: {}", quality.precision, key("why_not", quality.why_not));
     return report;
@@ -56,8 +56,8 @@ Report quality_report(const Quality& quality) {
   return report;
 }
 
-Report device_report(const Device& device, std::size_t position) {
-  Report report;
+ReportBuilder device_report(const Device& device, std::size_t position) {
+  ReportBuilder report;
   report.line("{}: {} ({})", key("index", position), key("name", device.name), type_name(device.type));
   report.line("   {}, Vulkan {}", key("driver", device.driver), key("api_version", device.api_version));
   report.line("   {}{}", device.usable ? "usable" : "not usable: ", key("why_not", device.why_not));
@@ -81,10 +81,10 @@ Report device_report(const Device& device, std::size_t position) {
 
 }  // namespace
 
-Report device_report(const DeviceList& list) {
-  std::vector<Report> devices;
+ReportBuilder device_report(const DeviceList& list) {
+  std::vector<ReportBuilder> devices;
   for (std::size_t i = 0; i < list.devices.size(); ++i) devices.push_back(device_report(list.devices[i], i));
-  Report report;
+  ReportBuilder report;
   report.add("devices", devices);
   report.value("why_empty", list.why_empty);
   return report;

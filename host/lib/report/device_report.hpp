@@ -7,6 +7,6 @@
 namespace dolp {
 
 /// Their limits, and how well each computes a few ordinary cases in float and double.
-Report device_report(const DeviceList& list);
+ReportBuilder device_report(const DeviceList& list);
 
 }  // namespace dolp

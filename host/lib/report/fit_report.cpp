@@ -5,14 +5,14 @@
 #include <cmath>
 #include <limits>
 
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 
 namespace dolp {
 namespace {
 
 using fit::FitResult;
 
-using Json = Report::Json;
+using Json = ReportBuilder::Json;
 
 constexpr double kStrongCorrelation = 0.9;
 constexpr double kUnlikely = 0.001;  // p-value, on either side
@@ -41,7 +41,7 @@ Json parameter_json(const FitParameter& one) {
 }
 
 /// A line for each parameter, and one for each end that its range has before the data say no.
-void add_parameters(Report& report, const fit::Model& model, const FitResult& result) {
+void add_parameters(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   Json list = Json::array();
   for (const FitParameter& one : result.parameters) list.push_back(parameter_json(one));
   report.value("parameters", list);
@@ -68,7 +68,7 @@ void add_parameters(Report& report, const fit::Model& model, const FitResult& re
   }
 }
 
-void add_correlations(Report& report, const FitResult& result) {
+void add_correlations(ReportBuilder& report, const FitResult& result) {
   Json rows = Json::array();
   for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {
     rows.push_back(json_of(Eigen::VectorXd(result.correlation.row(i).transpose())));
@@ -86,7 +86,7 @@ void add_correlations(Report& report, const FitResult& result) {
 }
 
 /// How well the model fits, and what measures it.
-void add_misfit(Report& report, const fit::Model& model, const FitResult& result) {
+void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   report.row("minimum", "chi_square {:.6g}, {} degrees of freedom{}{}", key("chi_square", result.chi_square),
              key("degrees_of_freedom", result.degrees_of_freedom),
              result.reduced_chi_square ? fmt::format(", reduced {:.4g}", *result.reduced_chi_square) : "",
@@ -107,7 +107,7 @@ void add_misfit(Report& report, const fit::Model& model, const FitResult& result
                 "as many parameters as points: no interval can be given");
 }
 
-void add_minima(Report& report, const FitResult& result) {
+void add_minima(ReportBuilder& report, const FitResult& result) {
   Json list = Json::array();
   for (const fit::OtherMinimum& minimum : result.minima) {
     Json values;
@@ -123,7 +123,7 @@ void add_minima(Report& report, const FitResult& result) {
   report.value("minima", list);
 }
 
-void add_points(Report& report, const fit::Model& model, const FitResult& result) {
+void add_points(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   report.value("residuals", json_of(result.residuals));
   Json points = Json::array();
   Eigen::Index row = 0;
@@ -153,7 +153,7 @@ std::string model_text(const ComparedModel& model) { return fmt::format("{}", fm
 
 }  // namespace
 
-void add_fit(Report& report, const fit::Model& model, const FitResult& result) {
+void add_fit(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   add_misfit(report, model, result);
   add_parameters(report, model, result);
   add_correlations(report, result);
@@ -162,15 +162,15 @@ void add_fit(Report& report, const fit::Model& model, const FitResult& result) {
   add_minima(report, result);
   report.row("error", "of the model at most {:.2g} of an uncertainty; its tolerance {:g}",
              key("numerical_error", result.numerical_error), key("tolerance", result.tolerance));
-  const std::uint32_t beyond = result.status & kStatusNoDolpPromised;
+  const std::uint32_t beyond = result.status & kNoDolpPromised;
   report.row_if(beyond != 0, "status", "{} at some point of the best fit: the model fails there",
                 key("status", result.status));
-  report.row_if((result.status & kStatusToleranceMissed) != 0, "status", "2 at some point: the tolerance is not met");
+  report.row_if((result.status & kToleranceNotMet) != 0, "status", "2 at some point: the tolerance is not met");
   report.value("evaluations", result.evaluations);
   add_points(report, model, result);
 }
 
-void add_contours(Report& report, const fit::Model& model, const fit::Contours& contours) {
+void add_contours(ReportBuilder& report, const fit::Model& model, const fit::Contours& contours) {
   const auto [first, second] = contours.parameters;
   const auto rows_of = [](const Eigen::MatrixXd& values) {
     Json rows = Json::array();
@@ -184,7 +184,7 @@ void add_contours(Report& report, const fit::Model& model, const fit::Contours& 
                                 {"levels", fit::kContourLevels}});
 }
 
-void add_comparison(Report& report, const std::vector<ComparedModel>& models) {
+void add_comparison(ReportBuilder& report, const std::vector<ComparedModel>& models) {
   Json list = Json::array();
   double least_aic = std::numeric_limits<double>::infinity();
   double least_bic = least_aic;

@@ -20,12 +20,12 @@ struct ComparedModel {
 
 /// Adds the minimum, the parameters with their intervals, correlations, what the data cannot tell, other minima, and
 /// the list of the data.
-void add_fit(Report& report, const fit::Model& model, const fit::FitResult& result);
+void add_fit(ReportBuilder& report, const fit::Model& model, const fit::FitResult& result);
 
 /// Adds how the objective grows around the minimum.
-void add_contours(Report& report, const fit::Model& model, const fit::Contours& contours);
+void add_contours(ReportBuilder& report, const fit::Model& model, const fit::Contours& contours);
 
 /// Adds the table of compared models, the best first.
-void add_comparison(Report& report, const std::vector<ComparedModel>& models);
+void add_comparison(ReportBuilder& report, const std::vector<ComparedModel>& models);
 
 }  // namespace dolp

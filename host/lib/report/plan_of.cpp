@@ -15,7 +15,7 @@ namespace dolp {
 namespace {
 
 /// The device that a run would take; without one, limits that every device keeps.
-Device device_of(const std::string& choice, const Scene& scene, PlanReport& report) {
+Device device_of(const std::string& choice, const SceneValues& scene, PlanReport& report) {
   const bool in_double = scene.accuracy.precision == Precision::kDouble;
   const DeviceList list = list_devices();
   try {
@@ -124,7 +124,7 @@ std::vector<double> work_shares(const PlanReport& report, const SceneEntries& en
 
 }  // namespace
 
-PlanReport plan_of(const Scene& scene, const std::string& device, EffectPlan plan) {
+PlanReport plan_of(const SceneValues& scene, const std::string& device, EffectPlan plan) {
   PlanReport report;
   report.scene = scene;
   const Device limits = device_of(device, scene, report);

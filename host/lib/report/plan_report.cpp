@@ -27,8 +27,8 @@ std::string work_text(const EffectRow& row, double share) {
   return share == 0.0 ? "0 %" : fmt::format("{:.3g} %", kPoints * share);
 }
 
-Report effect_report(const EffectRow& row, double share) {
-  Report report;
+ReportBuilder effect_report(const EffectRow& row, double share) {
+  ReportBuilder report;
   report.line("  {:<14} {:<11} {:>11} {:>7}  {}{}", key("name", row.name), state_text(row.state), influence_text(row),
               work_text(row, share), key("reason", row.reason),
               row.needs.empty() ? "" : fmt::format(" [{}]", row.needs));
@@ -40,10 +40,10 @@ Report effect_report(const EffectRow& row, double share) {
   return report;
 }
 
-void add_effects(Report& report, const PlanReport& plan) {
+void add_effects(ReportBuilder& report, const PlanReport& plan) {
   report.value("effects", effects_json(plan.effects, plan.plan));
   report.line("  {:<14} {:<11} {:>11} {:>7}  {}", "effect", "plan", "influence", "work", "why [what it takes]");
-  std::vector<Report> rows;
+  std::vector<ReportBuilder> rows;
   for (std::size_t i = 0; i < plan.effects.size(); ++i) {
     rows.push_back(effect_report(plan.effects[i], plan.work_shares[i]));
   }
@@ -68,7 +68,7 @@ std::string dropped_text(const EffectPlan& plan, double tolerance) {
                      plan.bound.dolp, allowed, kDroppedShare, tolerance);
 }
 
-std::string output_text(const Scene& scene, const EffectPlan& plan) {
+std::string output_text(const SceneValues& scene, const EffectPlan& plan) {
   std::string text = "Stokes parameters, DOLP";
   if (scene.emission && scene.emission->has_bracket) text += ", its bracket";
   if (gives_emissivity(scene, plan)) text += ", emissivity";
@@ -83,7 +83,7 @@ std::string how_counted(const RunPrediction& run) {
 }
 
 /// What the first attempt computes, and others again; `is_idle`: nothing.
-void add_attempts(Report& report, const PlanReport& plan, bool is_idle) {
+void add_attempts(ReportBuilder& report, const PlanReport& plan, bool is_idle) {
   const RunPrediction& run = plan.run;
   const DispatchForecast& dispatches = plan.dispatches;
   report.row_if(
@@ -108,7 +108,7 @@ void add_attempts(Report& report, const PlanReport& plan, bool is_idle) {
   report.value("evaluations", run.first_evaluations + run.again_evaluations);
 }
 
-void add_kernels(Report& report, const PlanReport& plan) {
+void add_kernels(ReportBuilder& report, const PlanReport& plan) {
   const bool is_idle = plan.pipelines.empty();
   report.row_if(is_idle, "work", "no integrand evaluations: no device is used");
   for (const std::string& pipeline : plan.pipelines) report.row("pipeline", "{}", pipeline);
@@ -130,7 +130,7 @@ void add_kernels(Report& report, const PlanReport& plan) {
   report.value("device", has_device ? std::optional(plan.device) : std::nullopt);
 }
 
-void add_cost(Report& report, const PlanReport& plan) {
+void add_cost(ReportBuilder& report, const PlanReport& plan) {
   const RunPrediction& run = plan.run;
   report.row("memory", "{:.3g} MiB of the host, {:.3g} MiB of the device", run.host_bytes / kMebibyte,
              static_cast<double>(plan.dispatches.device_bytes) / kMebibyte);
@@ -147,10 +147,10 @@ std::string needed_text(const AxisForecast& axis) {
 }
 
 /// How densely the axes must lie for lookups.
-void add_lookup(Report& report, const PlanReport& plan) {
-  std::vector<Report> axes;
+void add_lookup(ReportBuilder& report, const PlanReport& plan) {
+  std::vector<ReportBuilder> axes;
   for (const AxisForecast& axis : plan.lookup) {
-    Report& row = axes.emplace_back(kLabelWidth);
+    ReportBuilder& row = axes.emplace_back(kLabelWidth);
     row.row("lookup", "along {}: {} between {} values; {}", key("axis", description_of(axis.axis).name),
             std::isfinite(axis.error) ? fmt::format("error about {:.1g}", axis.error) : "no error can be stated",
             key("values", axis.values), needed_text(axis));
@@ -173,14 +173,14 @@ std::string grid_text(const Axes& grid) {
   return fmt::format("{} ({})", counts, names);
 }
 
-Report::Json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan) {
-  Report::Json json;
+ReportBuilder::Json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan) {
+  ReportBuilder::Json json;
   for (const EffectState state :
        {EffectState::kKept, EffectState::kDropped, EffectState::kNotNeeded, EffectState::kAbsent}) {
-    json[state_name(state)] = Report::Json::array();
+    json[state_name(state)] = ReportBuilder::Json::array();
   }
   for (const EffectRow& row : effects) {
-    Report::Json of_row = {{"name", row.name}, {"reason", row.reason}};
+    ReportBuilder::Json of_row = {{"name", row.name}, {"reason", row.reason}};
     if (row.state == EffectState::kDropped) of_row["bound"] = row.bound.value_or(0.0);
     json[state_name(row.state)].push_back(of_row);
   }
@@ -191,9 +191,9 @@ Report::Json effects_json(const std::vector<EffectRow>& effects, const EffectPla
   return json;
 }
 
-Report plan_report(const PlanReport& plan) {
-  const Scene& scene = plan.scene;
-  Report report(kLabelWidth);
+ReportBuilder plan_report(const PlanReport& plan) {
+  const SceneValues& scene = plan.scene;
+  ReportBuilder report(kLabelWidth);
   report.line("{}", key("title", scene.title));
   report.row("scene", "{}, {} = {} entries, spectral samples: {}", name_of(scene.geometry.mode), grid_text(scene.grid),
              key("entries", plan.run.entries), key("spectral_samples", plan.run.spectral_samples));

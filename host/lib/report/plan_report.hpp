@@ -22,7 +22,7 @@ struct RuleSize {
 
 /// Everything that there is to say about a run that has not happened.
 struct PlanReport {
-  Scene scene;
+  SceneValues scene;
   EffectPlan plan;
   std::vector<EffectRow> effects;
   std::vector<double> work_shares;  ///< of each effect: evaluations and f that would go with it, 0 to 1
@@ -38,14 +38,14 @@ struct PlanReport {
 /// A run of `plan` over the scene's grid. `device`: a position or a part of a name; empty is the default, and where
 /// there is none the limits that every device keeps.
 /// Errors: InputError of grid_entries; DeviceError where a named device is not usable.
-PlanReport plan_of(const Scene& scene, const std::string& device, EffectPlan plan);
+PlanReport plan_of(const SceneValues& scene, const std::string& device, EffectPlan plan);
 
-Report plan_report(const PlanReport& plan);
+ReportBuilder plan_report(const PlanReport& plan);
 
 /// "91 x 32 x 5 (theta x sigma x q)"; an axis that the grid lacks is left out.
 std::string grid_text(const Axes& grid);
 
 /// Names and reasons of what is kept, dropped, not needed and absent.
-Report::Json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan);
+ReportBuilder::Json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan);
 
 }  // namespace dolp

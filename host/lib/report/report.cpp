@@ -2,14 +2,14 @@
 
 namespace dolp {
 
-void Report::add(const char* path, const Report& part) {
+void ReportBuilder::add(const char* path, const ReportBuilder& part) {
   text_ += part.text_;
   value(path, part.json_);
 }
 
-void Report::add(const char* path, const std::vector<Report>& parts) {
+void ReportBuilder::add(const char* path, const std::vector<ReportBuilder>& parts) {
   Json list = Json::array();
-  for (const Report& part : parts) {
+  for (const ReportBuilder& part : parts) {
     text_ += part.text_;
     list.push_back(part.json_);
   }

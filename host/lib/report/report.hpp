@@ -29,12 +29,12 @@ Keyed<T> key(const char* path, const T& value) {
 }
 
 /// Lines of text whose arguments are values; those that are Keyed are values of the JSON too.
-class Report {
+class ReportBuilder {
  public:
   using Json = nlohmann::ordered_json;
 
   /// Texts stand behind their labels, in a column of their own.
-  explicit Report(int label_width = 10) : label_width_(label_width) {}
+  explicit ReportBuilder(int label_width = 10) : label_width_(label_width) {}
 
   /// A line that begins as `text` says.
   template <class... Args>
@@ -72,13 +72,13 @@ class Report {
   void values(const Json& object) { json_.update(object); }
 
   /// A part: its lines follow, its values are those of the path.
-  void add(const char* path, const Report& part);
+  void add(const char* path, const ReportBuilder& part);
 
   /// A list of parts, which may be empty.
-  void add(const char* path, const std::vector<Report>& parts);
+  void add(const char* path, const std::vector<ReportBuilder>& parts);
 
   /// The lines of a part, without its values.
-  void show(const Report& part) { text_ += part.text_; }
+  void show(const ReportBuilder& part) { text_ += part.text_; }
 
   const Json& json() const { return json_; }
   /// ASCII alone, so that a terminal shows it safely; names of files need not be UTF-8.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "run/scene_table.hpp"
 
 namespace dolp {
@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kFewEvaluations = 1e6;  // a tenth of a second of one core
 
-Report range_report(const char* what, double limit, const EnergyRange& range) {
-  Report report;
+ReportBuilder range_report(const char* what, double limit, const EnergyRange& range) {
+  ReportBuilder report;
   report.values({{"entries", range.entries}, {"theta_deg", range.theta_deg}, {"sigma", range.sigma}});
   if (range.entries == 0) return report;
   report.line("    {} {}): {} entries, theta {:g}..{:g}, sigma {:.4g}..{:.4g}", what, limit, range.entries,
@@ -22,7 +22,7 @@ Report range_report(const char* what, double limit, const EnergyRange& range) {
 }
 
 /// Over which part of the grid the surface model itself gains or loses energy.
-void add_energy(Report& report, const RunSummary& summary, bool is_computed) {
+void add_energy(ReportBuilder& report, const RunSummary& summary, bool is_computed) {
   if (summary.albedos == 0) {
     report.row("albedo", "{}", is_computed ? "not given for any entry" : "not computed: nothing kept depends on it");
     report.value("albedo", nullptr);
@@ -37,7 +37,7 @@ void add_energy(Report& report, const RunSummary& summary, bool is_computed) {
 }
 
 /// What is kept, and a line for each effect that is dropped.
-void add_effects(Report& report, const RunOutcome& run) {
+void add_effects(ReportBuilder& report, const RunOutcome& run) {
   std::string kept;
   for (const EffectRow& row : run.effects) {
     if (row.state == EffectState::kKept) kept += (kept.empty() ? "" : ", ") + std::string(row.name);
@@ -53,14 +53,14 @@ std::string bound_text(const std::optional<double>& bound) {
   return bound ? fmt::format("<= {:.2g}", *bound) : "not promised for any entry";
 }
 
-void add_work(Report& report, const EvaluationReport& e, std::size_t entries) {
+void add_work(ReportBuilder& report, const EvaluationReport& e, std::size_t entries) {
   const double per_entry = entries > 0 ? e.evaluations / static_cast<double>(entries) : 0.0;
   report.row("work", "{:.4g} integrand evaluations, {:.0f} an entry", key("evaluations", e.evaluations), per_entry);
   report.row_if(e.interpolated > 0, "of these", "{} moments interpolated or combined, from {}",
                 key("interpolated_moments", e.interpolated), key("interpolation_nodes", e.interpolation_nodes));
 }
 
-void add_errors(Report& report, const RunOutcome& run, double tolerance) {
+void add_errors(ReportBuilder& report, const RunOutcome& run, double tolerance) {
   const std::optional<double> dolp = run.summary.worst_error;
   std::optional<double> rho;
   if (run.plan.gives_rho) rho = run.summary.worst_rho_error;
@@ -71,13 +71,13 @@ void add_errors(Report& report, const RunOutcome& run, double tolerance) {
   report.value("worst_rho_error_estimate", rho);
 }
 
-void add_status(Report& report, const RunSummary& summary) {
-  std::vector<Report> parts;
-  for (const auto& [bit, meaning] : {std::pair{kStatusUnphysicalReflectance, "reflectance outside [0, 1]"},
-                                     std::pair{kStatusToleranceMissed, "tolerance not met"},
-                                     std::pair{kStatusOutsideDomain, "outside the model's domain"},
-                                     std::pair{kStatusNonPositiveIntensity, "intensity not positive"}}) {
-    Report& part = parts.emplace_back();
+void add_status(ReportBuilder& report, const RunSummary& summary) {
+  std::vector<ReportBuilder> parts;
+  for (const auto& [bit, meaning] : {std::pair{kReflectanceOutsideZeroToOne, "reflectance outside [0, 1]"},
+                                     std::pair{kToleranceNotMet, "tolerance not met"},
+                                     std::pair{kOutsideModelDomain, "outside the model's domain"},
+                                     std::pair{kIntensityNotPositive, "intensity not positive"}}) {
+    ReportBuilder& part = parts.emplace_back();
     part.value("bit", bit);
     part.row(fmt::format("status {}", bit), "{} of {} entries: {}", key("count", summary.count(bit)), summary.entries,
              key("meaning", meaning));
@@ -87,10 +87,10 @@ void add_status(Report& report, const RunSummary& summary) {
 
 }  // namespace
 
-Report run_report(const Scene& scene, const RunOutcome& run, std::optional<double> gap, const std::string& shape,
+ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, std::optional<double> gap, const std::string& shape,
                   const std::string& path) {
   const RunSummary& summary = run.summary;
-  Report report;
+  ReportBuilder report;
   report.line("{}", key("title", scene.title));
   report.row("entries", "{}", key("shape", shape));
   report.value("entries", summary.entries);
@@ -119,7 +119,7 @@ Report run_report(const Scene& scene, const RunOutcome& run, std::optional<doubl
   return report;
 }
 
-void add_evaluation(Report& report, const EvaluationReport& e, double wall_s) {
+void add_evaluation(ReportBuilder& report, const EvaluationReport& e, double wall_s) {
   const bool is_idle = e.device == "none";
   report.row_if(is_idle, "device", "none: nothing is integrated");
   report.row_if(!is_idle, "device", "{}{}{}, {} precision", key("device", e.device), e.driver.empty() ? "" : ", ",

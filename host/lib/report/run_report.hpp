@@ -18,11 +18,11 @@ namespace dolp {
 
 /// The report of a run. `shape`: that of the grid, or "200 points"; `path`: what was written; `gap`: of single
 /// scattering, none where it does not apply.
-Report run_report(const Scene& scene, const RunOutcome& run, std::optional<double> gap, const std::string& shape,
+ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, std::optional<double> gap, const std::string& shape,
                   const std::string& path);
 
 /// Where a run was evaluated, and how long it took.
-void add_evaluation(Report& report, const EvaluationReport& evaluation, double wall_s);
+void add_evaluation(ReportBuilder& report, const EvaluationReport& evaluation, double wall_s);
 
 /// The results that carry a bit of the status.
 std::size_t count_status(const std::vector<PointResult>& results, std::uint32_t bit);

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "model/choices.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 
 namespace dolp {
 namespace {
@@ -21,8 +21,8 @@ std::string place(const CheckedValue& value) {
   return text + fmt::format("theta {:g}, sigma {:g}, q {:g}", value.theta_deg, value.sigma, value.q);
 }
 
-Report::Json value_json(const CheckedValue& value) {
-  Report::Json json = {{"quantity", value.quantity},
+ReportBuilder::Json value_json(const CheckedValue& value) {
+  ReportBuilder::Json json = {{"quantity", value.quantity},
                        {"theta_deg", value.theta_deg},
                        {"sigma", value.sigma},
                        {"q", value.q},
@@ -38,9 +38,9 @@ Report::Json value_json(const CheckedValue& value) {
   return json;
 }
 
-Report quantity_report(const QuantityCheck& check) {
+ReportBuilder quantity_report(const QuantityCheck& check) {
   const CheckedValue& worst = check.worst;
-  Report report;
+  ReportBuilder report;
   report.row(check.name, "{} compared, worst: error {:.2e} of {:.2e} stated, at {}{}", key("compared", check.compared),
              worst.error(), worst.stated, place(worst),
              check.unstated > 0 ? fmt::format("; nothing stated for {} of them", check.unstated) : "");
@@ -48,8 +48,8 @@ Report quantity_report(const QuantityCheck& check) {
   return report;
 }
 
-void add_failures(Report& report, const std::vector<CheckedValue>& failures) {
-  Report::Json list = Report::Json::array();
+void add_failures(ReportBuilder& report, const std::vector<CheckedValue>& failures) {
+  ReportBuilder::Json list = ReportBuilder::Json::array();
   for (const CheckedValue& value : failures) {
     report.row_if(list.size() < kMostFailureLines, "wrong",
                   "{} at {} {}: {:.10g} is stored, {:.10g} is right, error {:.2e}, stated {:.2e}", value.quantity,
@@ -78,13 +78,13 @@ Worst worst_of(const CaseOutcome& outcome) {
   return is_rho ? Worst{"rho", outcome.rho} : Worst{"dolp", outcome.dolp};
 }
 
-bool is_missed(const CaseOutcome& outcome) { return (outcome.status & kStatusToleranceMissed) != 0; }
+bool is_missed(const CaseOutcome& outcome) { return (outcome.status & kToleranceNotMet) != 0; }
 
-Report case_report(const StoredCase& stored, const CaseOutcome& outcome) {
+ReportBuilder case_report(const StoredCase& stored, const CaseOutcome& outcome) {
   const std::string verdict = !outcome.complaint.empty() ? "WRONG: " + outcome.complaint
                               : is_missed(outcome)       ? "says it misses the tolerance"
                                                          : "ok";
-  Report report;
+  ReportBuilder report;
   report.line("    {:<31} rho {:.1e} of {:.1e}  dolp {:.1e} of {:.1e}  {}", key("case", stored.name),
               key("rho/error", outcome.rho.error), key("rho/estimate", outcome.rho.estimate),
               key("dolp/error", outcome.dolp.error), key("dolp/estimate", outcome.dolp.estimate), verdict);
@@ -105,7 +105,7 @@ Report case_report(const StoredCase& stored, const CaseOutcome& outcome) {
 }
 
 /// A line for the cases of one distribution and masking.
-void add_group(Report& report, const HardCaseReport& all_cases, const PrecisionReport& precision,
+void add_group(ReportBuilder& report, const HardCaseReport& all_cases, const PrecisionReport& precision,
                const std::vector<std::size_t>& positions) {
   const auto outcome_at = [&](std::size_t i) -> const CaseOutcome& { return precision.outcomes[i]; };
   const std::size_t worst =
@@ -118,16 +118,16 @@ void add_group(Report& report, const HardCaseReport& all_cases, const PrecisionR
               missed, part.quantity, all_cases.cases[worst].name, part.check.error, part.check.estimate);
 }
 
-Report precision_report(const HardCaseReport& all_cases, const PrecisionReport& precision, bool shows_all) {
+ReportBuilder precision_report(const HardCaseReport& all_cases, const PrecisionReport& precision, bool shows_all) {
   std::map<std::pair<Distribution, Masking>, std::vector<std::size_t>> groups;
-  std::vector<Report> cases;
-  Report::Json list = Report::Json::array();
+  std::vector<ReportBuilder> cases;
+  ReportBuilder::Json list = ReportBuilder::Json::array();
   for (const CaseOutcome& outcome : precision.outcomes) {
     const StoredCase& stored = all_cases.cases[outcome.position];
     groups[{stored.distribution, stored.masking}].push_back(outcome.position);
     list.push_back(cases.emplace_back(case_report(stored, outcome)).json());
   }
-  Report report;
+  ReportBuilder report;
   for (const auto& [group, positions] : groups) {
     add_group(report, all_cases, precision, positions);
     for (const std::size_t i : positions) {
@@ -153,16 +153,16 @@ std::string hard_case_verdict(const HardCaseReport& report) {
 
 }  // namespace
 
-Report table_report(const TableReport& table) {
+ReportBuilder table_report(const TableReport& table) {
   const TableCheck& check = table.check;
-  Report report;
+  ReportBuilder report;
   report.line("{}: {}", key("table", table.path), key("title", table.title));
   report.row(
       "checked",
       "{} of {} entries (seed {}) against the reference, {:.1f} s; tolerance {:g}, {} of them miss it and say so",
       key("checked", check.checked), key("entries", check.entries), key("seed", table.options.seed),
       key("wall_s", table.wall_s), key("tolerance", check.tolerance), key("missed_tolerance", check.missed));
-  std::vector<Report> quantities;
+  std::vector<ReportBuilder> quantities;
   for (const QuantityCheck& quantity : check.quantities) quantities.push_back(quantity_report(quantity));
   report.add("quantities", quantities);
   add_failures(report, check.failures);
@@ -182,10 +182,10 @@ std::size_t HardCaseReport::failures() const {
   return count;
 }
 
-Report hard_case_report(const HardCaseReport& cases, bool all) {
-  Report report(0);
+ReportBuilder hard_case_report(const HardCaseReport& cases, bool all) {
+  ReportBuilder report(0);
   report.line("{} hard cases, tolerance {:g}", key("cases", cases.cases.size()), key("tolerance", cases.tolerance));
-  std::vector<Report> precisions;
+  std::vector<ReportBuilder> precisions;
   for (const PrecisionReport& precision : cases.precisions) {
     const EvaluationReport& e = precision.evaluation;
     if (precisions.empty()) report.row("device", "{}{}{}", e.device, e.driver.empty() ? "" : ", ", e.driver);

@@ -18,7 +18,7 @@ struct TableReport {
   TableCheck check;
   double wall_s = 0.0;
 };
-Report table_report(const TableReport& table);
+ReportBuilder table_report(const TableReport& table);
 
 /// The hard cases in one precision.
 struct PrecisionReport {
@@ -36,6 +36,6 @@ struct HardCaseReport {
   std::size_t failures() const;
 };
 /// One line for each precision, distribution and masking, and one for each case that fails; `all`: for every case.
-Report hard_case_report(const HardCaseReport& cases, bool all);
+ReportBuilder hard_case_report(const HardCaseReport& cases, bool all);
 
 }  // namespace dolp

@@ -14,7 +14,7 @@ namespace dolp {
 namespace {
 
 /// Refuses points that lack what the scene does not say.
-void check_columns(const Scene& scene, const Points& points) {
+void check_columns(const SceneValues& scene, const Points& points) {
   if (!points[Axis::kTheta] && scene.grid[Axis::kTheta].size() != 1) {
     throw InputError(
         fmt::format("{}: column \"theta_deg\" is missing, a number in {}; only a scene with a single grid.theta_deg "
@@ -35,7 +35,7 @@ void check_columns(const Scene& scene, const Points& points) {
 }
 
 /// The distinct wavelengths of the points, which all must be where n, k and E0 are known.
-std::vector<double> wavelengths_of(const Scene& scene, const Points& points) {
+std::vector<double> wavelengths_of(const SceneValues& scene, const Points& points) {
   if (scene.spectrum.is_band()) {
     throw InputError(
         fmt::format("{}: column \"wavelength_um\" cannot be combined with spectrum.band_um", points.where()));
@@ -59,7 +59,7 @@ std::vector<double> wavelengths_of(const Scene& scene, const Points& points) {
 
 }  // namespace
 
-void check_smith(const Scene& scene, const Points& points) {
+void check_smith(const SceneValues& scene, const Points& points) {
   const Surface& surface = scene.surface;
   if (surface.masking != Masking::kSmith || surface.distribution != Distribution::kCauchy || !points[Axis::kQ]) return;
   for (std::size_t row = 0; row < points.size(); ++row) {
@@ -72,7 +72,7 @@ void check_smith(const Scene& scene, const Points& points) {
   }
 }
 
-SceneEntries grid_entries(const Scene& scene) {
+SceneEntries grid_entries(const SceneValues& scene) {
   const PerAxis counts = counts_of(scene.grid);
   double size = 1.0;
   for (const std::size_t count : counts) size *= static_cast<double>(count);
@@ -83,7 +83,7 @@ SceneEntries grid_entries(const Scene& scene) {
   return SceneEntries::of_grid(scene.grid, scene.surface.material.constant);
 }
 
-SceneEntries point_entries(const Scene& scene, const Points& points) {
+SceneEntries point_entries(const SceneValues& scene, const Points& points) {
   check_columns(scene, points);
   check_smith(scene, points);
   const Surface& surface = scene.surface;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kLeastEntries = 24;  // of an index: its weights take as long as some of them
 
-std::vector<OpticalConstants> indices_of(const Scene& scene, const SceneEntries& entries) {
+std::vector<OpticalConstants> indices_of(const SceneValues& scene, const SceneEntries& entries) {
   const SceneEntries whole = SceneEntries::of_grid(entries.whole_axes(), entries.index());
   std::vector<OpticalConstants> indices;
   if (whole.has_own_index()) {
@@ -29,7 +29,7 @@ std::vector<OpticalConstants> indices_of(const Scene& scene, const SceneEntries&
 
 }  // namespace
 
-IndexBases::IndexBases(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan) {
+IndexBases::IndexBases(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan) {
   const bool has_bounces = plan.kept.further_bounces && scene.surface.scattering == Scattering::kMultiple;
   const PerAxis& counts = entries.whole();
   const bool pays = counts[Axis::kTheta] * counts[Axis::kSigma] * counts[Axis::kQ] >= kLeastEntries;

@@ -16,7 +16,7 @@ namespace dolp {
 /// The bases of a run, one for each tolerance. They follow from the whole grid, of which the entries may be a part.
 class IndexBases {
  public:
-  IndexBases(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan);
+  IndexBases(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
 
   /// Of a level that may interpolate; null where nothing is gained: for points, few entries of each
   /// index, few indices and many bounces.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "run/drawn_entries.hpp"
 #include "run/scene_run.hpp"
 #include "spectrum/spectral_rule.hpp"
@@ -32,11 +32,11 @@ std::optional<double> largest_change(const std::vector<PointResult>& a, const st
 
 }  // namespace
 
-void add_influences(std::vector<EffectRow>& rows, const Scene& scene, const SceneEntries& entries) {
+void add_influences(std::vector<EffectRow>& rows, const SceneValues& scene, const SceneEntries& entries) {
   const std::size_t samples = spectral_rule(scene).samples.size();
   const SceneEntries drawn =
       drawn_entries(entries, std::clamp<std::size_t>(kInfluenceMoments / samples, 2, kInfluenceEntries));
-  Scene rough = scene;
+  SceneValues rough = scene;
   rough.accuracy = {.tolerance = kTolerance};
   if (rough.emission) rough.emission->has_bracket = false;
   CpuEvaluator evaluator(rough.accuracy.precision);

@@ -17,6 +17,6 @@ inline constexpr std::size_t kInfluenceEntries = 12;
 /// its DOLP both ways.
 ///
 /// Accuracy: 1e-3 each.
-void add_influences(std::vector<EffectRow>& rows, const Scene& scene, const SceneEntries& entries);
+void add_influences(std::vector<EffectRow>& rows, const SceneValues& scene, const SceneEntries& entries);
 
 }  // namespace dolp

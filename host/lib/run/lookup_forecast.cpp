@@ -48,7 +48,7 @@ struct Stretch {
 
 class Forecast {
  public:
-  Forecast(const Scene& scene, const EffectPlan& plan) : scene_(scene), plan_(plan), evaluator_(Precision::kAuto) {
+  Forecast(const SceneValues& scene, const EffectPlan& plan) : scene_(scene), plan_(plan), evaluator_(Precision::kAuto) {
     std::ranges::copy_if(kAllAxes, std::back_inserter(axes_), [&](Axis axis) { return scene.grid[axis].size() > 1; });
     lines_ = axes_.size() > 1 ? kLines : 1;
   }
@@ -138,7 +138,7 @@ class Forecast {
     std::vector<double> wavelengths;
     std::vector<SceneEntries> grids;
     for (const Stretch& stretch : stretches) {
-      Scene scene = scene_;
+      SceneValues scene = scene_;
       scene.grid = stretch.axes;
       const SceneEntries& own = grids.emplace_back(grid_entries(scene));
       for (std::size_t i = 0; i < own.size(); ++i) {
@@ -152,7 +152,7 @@ class Forecast {
     auto next = results.begin();
     for (std::size_t i = 0; i < stretches.size(); ++i) {
       const auto end = next + static_cast<std::ptrdiff_t>(grids[i].size());
-      Table table = table_part(table_layout(scene_, plan_, stretches[i].axes), grids[i], {next, end});
+      TableValues table = table_part(table_layout(scene_, plan_, stretches[i].axes), grids[i], {next, end});
       next = end;
       std::ranges::fill(table[Quantity::kErrorEstimate], 0.0);  // what remains is the interpolation's
       std::ranges::fill(table[Quantity::kRhoErrorEstimate], 0.0);
@@ -162,7 +162,7 @@ class Forecast {
     return errors;
   }
 
-  const Scene& scene_;
+  const SceneValues& scene_;
   const EffectPlan& plan_;
   CpuEvaluator evaluator_;
   std::vector<Axis> axes_;
@@ -171,7 +171,7 @@ class Forecast {
 
 }  // namespace
 
-std::vector<AxisForecast> lookup_forecast(const Scene& scene, const EffectPlan& plan) {
+std::vector<AxisForecast> lookup_forecast(const SceneValues& scene, const EffectPlan& plan) {
   return Forecast(scene, plan).all();
 }
 

@@ -25,6 +25,6 @@ inline constexpr std::size_t kMostForecastValues = 10'000;
 /// The axes of the scene's grid that have more than one value. Some short stretches of each axis are computed on the
 /// CPU and looked up between their values, with the grid's values and with others in the same kind of steps until the
 /// error is what is wanted. An estimate: what is narrower than these stretches see stays unseen.
-std::vector<AxisForecast> lookup_forecast(const Scene& scene, const EffectPlan& plan);
+std::vector<AxisForecast> lookup_forecast(const SceneValues& scene, const EffectPlan& plan);
 
 }  // namespace dolp

@@ -13,7 +13,7 @@ namespace dolp {
 namespace {
 
 /// The coordinate that points without a column of it have.
-std::optional<double> value_of(const Scene& scene, Axis axis) {
+std::optional<double> value_of(const SceneValues& scene, Axis axis) {
   const Surface& surface = scene.surface;
   const AxisArray<std::optional<double>> values = {scene.spectrum.min_um,
                                                    surface.material.constant.n,
@@ -30,7 +30,7 @@ std::string range_text(const LookupAxis& axis) {
 }
 
 /// The coordinate of each point: as given, or the only one that the table has, or that of its scene.
-std::vector<double> values_of(Axis number, const LookupAxis& axis, const Scene& scene, const Points& points) {
+std::vector<double> values_of(Axis number, const LookupAxis& axis, const SceneValues& scene, const Points& points) {
   const char* const name = description_of(number).column;
   if (const auto& given = points[number]) {
     for (std::size_t row = 0; row < points.size(); ++row) {
@@ -49,7 +49,7 @@ std::vector<double> values_of(Axis number, const LookupAxis& axis, const Scene& 
 }
 
 /// All coordinates of all points.
-std::vector<TableLookup::Point> coordinates(const TableLookup& lookup, const Scene& scene, const Points& points) {
+std::vector<TableLookup::Point> coordinates(const TableLookup& lookup, const SceneValues& scene, const Points& points) {
   std::vector<TableLookup::Point> result(points.size());
   for (const Axis axis : kAllAxes) {
     const LookupAxis* of_table = lookup.axis(axis);
@@ -61,7 +61,7 @@ std::vector<TableLookup::Point> coordinates(const TableLookup& lookup, const Sce
 }
 
 /// Refuses another index or wavelength than the table's, where it has no axis of these.
-void check_index(const TableLookup& lookup, const Scene& scene, const Points& points) {
+void check_index(const TableLookup& lookup, const SceneValues& scene, const Points& points) {
   const Material& material = scene.surface.material;
   for (const Axis axis : {Axis::kN, Axis::kK, Axis::kWavelength}) {
     const auto& given = points[axis];
@@ -81,7 +81,7 @@ void check_index(const TableLookup& lookup, const Scene& scene, const Points& po
 
 }  // namespace
 
-std::vector<PointResult> lookup_points(const TableLookup& lookup, const Scene& scene, const Points& points,
+std::vector<PointResult> lookup_points(const TableLookup& lookup, const SceneValues& scene, const Points& points,
                                        const Progress& progress) {
   check_index(lookup, scene, points);
   const std::vector<TableLookup::Point> at = coordinates(lookup, scene, points);

@@ -15,7 +15,7 @@ namespace dolp {
 /// of one value needs no column; n, k and wavelength, where the table has no axis of them, must be the table's.
 /// Errors: InputError that names the point, column, value and what the table has; Cancelled when `progress` returns
 /// false.
-std::vector<PointResult> lookup_points(const TableLookup& lookup, const Scene& scene, const Points& points,
+std::vector<PointResult> lookup_points(const TableLookup& lookup, const SceneValues& scene, const Points& points,
                                        const Progress& progress);
 
 }  // namespace dolp

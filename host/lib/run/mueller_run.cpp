@@ -41,7 +41,7 @@ BeamAngles used_angles(const Surface& surface, const BeamAngles& angles) {
           zenith_before_limit_deg(surface.masking, angles.theta_r_deg), angles.delta_phi_deg};
 }
 
-ScatteringRequest request_for(const Scene& scene, std::span<const MuellerPoint> points, Precision precision) {
+ScatteringRequest request_for(const SceneValues& scene, std::span<const MuellerPoint> points, Precision precision) {
   ScatteringRequest request;
   request.distribution = scene.surface.distribution;
   request.masking = scene.surface.masking;
@@ -83,7 +83,7 @@ MuellerMatrix elements(const Surface& surface, const MuellerPoint& point, const 
 
 }  // namespace
 
-std::vector<MuellerPoint> mueller_points(const Scene& scene, const Points& points) {
+std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points& points) {
   check_smith(scene, points);
   const Surface& surface = scene.surface;
   const bool has_own_index = points[Axis::kN] && points[Axis::kK];
@@ -109,7 +109,7 @@ Precision mueller_precision(const Accuracy& accuracy, bool has_double) {
   return accuracy.tolerance < kScatteringErrorFloat && has_double ? Precision::kDouble : Precision::kFloat;
 }
 
-std::vector<MuellerMatrix> evaluate_mueller(const Scene& scene, const std::vector<MuellerPoint>& points,
+std::vector<MuellerMatrix> evaluate_mueller(const SceneValues& scene, const std::vector<MuellerPoint>& points,
                                             MomentsEvaluator& evaluator, const Progress& progress) {
   if (evaluator.scattering() == nullptr) throw std::logic_error("Mueller matrices need an evaluator of pBRDFs");
   const Precision precision = mueller_precision(scene.accuracy, evaluator.has_double());

@@ -21,7 +21,7 @@ struct MuellerPoint {
 /// Scattered geometries; what they do not say comes from the scene, n and k at its wavelength.
 /// Errors: InputError that names file, key or line and column, and what is allowed: a band with a material that depends
 /// on the wavelength, unless the points have n and k both; q <= 3/2 with smith masking and the cauchy distribution.
-std::vector<MuellerPoint> mueller_points(const Scene& scene, const Points& points);
+std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points& points);
 
 /// The precision of a scene's pBRDFs: what it says, and for kAuto float where kScatteringErrorFloat meets the tolerance
 /// (or the evaluator has nothing better), double elsewhere.
@@ -34,7 +34,7 @@ Precision mueller_precision(const Accuracy& accuracy, bool has_double);
 /// 16 are NaN: at 90 degrees otherwise, and for a mirror (sigma = 0) in its specular direction; in others its f is the
 /// diffuse part.
 /// Errors: those of the evaluator.
-std::vector<MuellerMatrix> evaluate_mueller(const Scene& scene, const std::vector<MuellerPoint>& points,
+std::vector<MuellerMatrix> evaluate_mueller(const SceneValues& scene, const std::vector<MuellerPoint>& points,
                                               MomentsEvaluator& evaluator, const Progress& progress);
 
 }  // namespace dolp

@@ -6,18 +6,18 @@
 namespace dolp {
 namespace {
 
-BeamAngles angles_of(const Scene& scene, double theta_deg) {
+BeamAngles angles_of(const SceneValues& scene, double theta_deg) {
   const Geometry& geometry = scene.geometry;
   return {theta_deg, zenith_before_limit_deg(scene.surface.masking, geometry.view_zenith_deg),
           geometry.relative_azimuth_deg};
 }
 
 /// What distinguishes two slope distributions: the gaussian has no q.
-SlopeShape normalised(const Scene& scene, const SlopeShape& shape) {
+SlopeShape normalised(const SceneValues& scene, const SlopeShape& shape) {
   return scene.surface.distribution == Distribution::kGaussian ? SlopeShape{.sigma = shape.sigma} : shape;
 }
 
-Treatment treatment(const Scene& scene, const SceneEntry& entry) {
+Treatment treatment(const SceneValues& scene, const SceneEntry& entry) {
   return treatment_of(scene.surface.distribution, scene.surface.masking, seen_deg(scene, entry.theta_deg), entry.shape);
 }
 
@@ -34,26 +34,26 @@ std::vector<std::uint32_t> numbered(const std::vector<double>& values, const std
 
 }  // namespace
 
-double seen_deg(const Scene& scene, double theta_deg) {
+double seen_deg(const SceneValues& scene, double theta_deg) {
   return scene.geometry.mode == Mode::kBistatic ? scene.geometry.view_zenith_deg : theta_deg;
 }
 
-bool wants_moments(const Scene& scene, const SceneEntry& entry, const EffectPlan& plan) {
+bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan) {
   return plan.needs_moments && treatment(scene, entry) == Treatment::kIntegrated;
 }
 
-bool wants_beam(const Scene& scene, const SceneEntry& entry, const EffectPlan& plan) {
+bool wants_beam(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan) {
   return plan.needs_beams && !is_mirror(entry.shape) && has_facet(angles_of(scene, entry.theta_deg));
 }
 
-Scattered beam_without_evaluator(const Scene& scene, double theta_deg) {
+Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg) {
   const BeamAngles angles = angles_of(scene, theta_deg);
   const bool is_undefined = !has_facet(angles) || is_specular(angles);
   const double glare = is_undefined ? std::numeric_limits<double>::quiet_NaN() : 0.0;
   return {.i = glare, .q = glare};
 }
 
-SpectralIndices spectral_indices(const Scene& scene, const SceneEntries& entries) {
+SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& entries) {
   if (entries.wavelength_um().empty()) return {spectral_rule(scene).indices()};
   SpectralIndices indices;
   for (const double wavelength_um : entries.wavelength_um())
@@ -61,7 +61,7 @@ SpectralIndices spectral_indices(const Scene& scene, const SceneEntries& entries
   return indices;
 }
 
-PartRequests::PartRequests(const Scene& scene, const SpectralIndices& samples, const EffectPlan& plan,
+PartRequests::PartRequests(const SceneValues& scene, const SpectralIndices& samples, const EffectPlan& plan,
                            const Selection& selection, const RefinementLevel& level)
     : scene_(scene), samples_(samples), plan_(plan), selection_(selection) {
   moments_.distribution = beams_.distribution = scene.surface.distribution;

@@ -27,21 +27,21 @@ struct Selection {
 };
 
 /// The direction of an entry as its moments see it: in bistatic mode they are those of the view.
-double seen_deg(const Scene& scene, double theta_deg);
+double seen_deg(const SceneValues& scene, double theta_deg);
 
-bool wants_moments(const Scene& scene, const SceneEntry& entry, const EffectPlan& plan);
+bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
 /// Whether the evaluator has to compute the beam of an entry: not of a mirror, nor with source and view both at
 /// 90 degrees.
-bool wants_beam(const Scene& scene, const SceneEntry& entry, const EffectPlan& plan);
+bool wants_beam(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
 /// The beam of an entry that wants none: a mirror sends nothing but toward its specular direction, where the radiance
 /// is not defined, as it is not with source and view both at 90 degrees.
-Scattered beam_without_evaluator(const Scene& scene, double theta_deg);
+Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg);
 
 /// The indices at which a scene wants moments: of each wavelength of its entries, or of its spectrum.
 using SpectralIndices = std::vector<std::vector<OpticalConstants>>;
-SpectralIndices spectral_indices(const Scene& scene, const SceneEntries& entries);
+SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& entries);
 
 /// The requests of one level at a selection. Of a grid the moments are a grid again: of the directions and indices of
 /// the selection, and of all slope distributions, so that what an entry gets does not depend on which others are
@@ -49,7 +49,7 @@ SpectralIndices spectral_indices(const Scene& scene, const SceneEntries& entries
 /// nothing that the moments see share them.
 class PartRequests {
  public:
-  PartRequests(const Scene& scene, const SpectralIndices& samples, const EffectPlan& plan, const Selection& selection,
+  PartRequests(const SceneValues& scene, const SpectralIndices& samples, const EffectPlan& plan, const Selection& selection,
                const RefinementLevel& level);
 
   const MomentsRequest& moments() const { return moments_; }
@@ -74,7 +74,7 @@ class PartRequests {
   void ask_points(const Selection& selection);
   void ask_beams(const Selection& selection);
 
-  const Scene& scene_;
+  const SceneValues& scene_;
   const SpectralIndices& samples_;
   const EffectPlan& plan_;
   const Selection selection_;

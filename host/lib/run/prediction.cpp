@@ -91,7 +91,7 @@ double scale_of(std::size_t all, const Count& counted) {
   return counted.first == 0 ? 0.0 : static_cast<double>(all) / static_cast<double>(counted.first);
 }
 
-void count_work(RunPrediction& run, const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
+void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                 bool has_double) {
   const SceneEntries drawn =
       run.counts_directions ? entries_of_drawn_directions(entries) : drawn_entries(entries, kCountedEntries);
@@ -115,7 +115,7 @@ void count_work(RunPrediction& run, const Scene& scene, const SceneEntries& entr
 
 }  // namespace
 
-RunPrediction predict_run(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan, bool has_double,
+RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan, bool has_double,
                           const RequestVisitor& visit) {
   RunPrediction run;
   run.entries = entries.size();

@@ -36,8 +36,8 @@ void raise(std::optional<double>& worst, const std::optional<double>& error) {
 void add_result(RunSummary& summary, double theta_deg, double sigma, const PointResult& result) {
   for (std::size_t bit = 0; bit < kStatusBits.size(); ++bit)
     summary.status[bit] += (result.status & kStatusBits[bit].mask) != 0 ? 1 : 0;
-  if ((result.status & kStatusNoDolpPromised) == 0) raise(summary.worst_error, result[Quantity::kErrorEstimate]);
-  if ((result.status & kStatusOutsideDomain) == 0) raise(summary.worst_rho_error, result[Quantity::kRhoErrorEstimate]);
+  if ((result.status & kNoDolpPromised) == 0) raise(summary.worst_error, result[Quantity::kErrorEstimate]);
+  if ((result.status & kOutsideModelDomain) == 0) raise(summary.worst_rho_error, result[Quantity::kRhoErrorEstimate]);
   if (std::isnan(result[Quantity::kAlbedo])) return;
   widen(summary.albedo, summary.albedos++ == 0, {result[Quantity::kAlbedo], result[Quantity::kAlbedo]});
   const EnergyRange here{1, {theta_deg, theta_deg}, {sigma, sigma}};
@@ -47,7 +47,7 @@ void add_result(RunSummary& summary, double theta_deg, double sigma, const Point
 
 }  // namespace
 
-void RunSummary::add(const Scene& scene, const SceneEntries& part, std::span<const PointResult> results) {
+void RunSummary::add(const SceneValues& scene, const SceneEntries& part, std::span<const PointResult> results) {
   const bool bistatic = scene.geometry.mode == Mode::kBistatic;
   std::vector<RunSummary> of_ranges((results.size() + kSummaryEntriesAtOnce - 1) / kSummaryEntriesAtOnce);
   parallel_ranges(results.size(), kSummaryEntriesAtOnce, [&](std::size_t first, std::size_t last) {

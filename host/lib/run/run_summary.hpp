@@ -11,7 +11,7 @@
 #include <dolp/results.hpp>
 #include "model/evaluator.hpp"
 #include "model/scene_entry.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "run/self_check.hpp"
 #include "scene/scene.hpp"
 
@@ -42,7 +42,7 @@ struct RunSummary {
   std::uint64_t dispatches = 0, interpolated = 0, interpolation_nodes = 0;
 
   /// Adds the results of some entries.
-  void add(const Scene& scene, const SceneEntries& part, std::span<const PointResult> results);
+  void add(const SceneValues& scene, const SceneEntries& part, std::span<const PointResult> results);
   void add(const RunSummary& other);
   /// What an evaluator did, beside what is in the summary already.
   void add(const EvaluationReport& report);

@@ -6,7 +6,7 @@
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "model/direction.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "run/drawn_entries.hpp"
 #include "run/scene_run.hpp"
 #include "spectrum/spectral_rule.hpp"
@@ -17,13 +17,13 @@ namespace {
 constexpr double kTolerance = 1e-3;
 constexpr std::size_t kGapMoments = 64;  // at most, but of one entry
 
-bool has_gap(const Scene& scene, const EffectPlan& plan) {
+bool has_gap(const SceneValues& scene, const EffectPlan& plan) {
   return plan.needs_moments && scene.emission && scene.emission->model != EmissionModel::kFresnel &&
          scene.surface.scattering == Scattering::kSingle && has_direct_emission(scene.surface.masking) &&
          scene.geometry.mode == Mode::kHemispherical;
 }
 
-std::vector<PointResult> results_with(Scene scene, EmissionModel model, const SceneEntries& entries) {
+std::vector<PointResult> results_with(SceneValues scene, EmissionModel model, const SceneEntries& entries) {
   scene.emission->model = model;
   scene.emission->has_bracket = false;
   scene.accuracy = {.tolerance = kTolerance};
@@ -33,7 +33,7 @@ std::vector<PointResult> results_with(Scene scene, EmissionModel model, const Sc
 
 }  // namespace
 
-std::optional<double> scattering_gap(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan) {
+std::optional<double> scattering_gap(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan) {
   if (!has_gap(scene, plan)) return {};
   const std::size_t samples = spectral_rule(scene).samples.size();
   const SceneEntries drawn = drawn_entries(entries, std::clamp<std::size_t>(kGapMoments / samples, 1, kGapEntries));

@@ -19,6 +19,6 @@ inline constexpr std::size_t kGapEntries = 16;
 /// entry promises its DOLP.
 ///
 /// Accuracy: 1e-3 each.
-std::optional<double> scattering_gap(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan);
+std::optional<double> scattering_gap(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
 
 }  // namespace dolp

@@ -11,7 +11,7 @@
 #include "base/parallel_ranges.hpp"
 #include "base/stopwatch.hpp"
 #include "model/angles.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "plan/refinement.hpp"
 #include "run/closed_forms.hpp"
 #include "run/index_bases.hpp"
@@ -30,7 +30,7 @@ constexpr std::size_t kEntriesAtOnce = 4096;  // of a thread: their radiometry t
 
 /// What the scene is at each wavelength of a part.
 struct Spectra {
-  Spectra(const Scene& scene, const EffectPlan& plan, const std::vector<double>& wavelength_um) {
+  Spectra(const SceneValues& scene, const EffectPlan& plan, const std::vector<double>& wavelength_um) {
     if (wavelength_um.empty()) radiometries.emplace_back(scene, plan.kept, plan.bound);
     for (const double of_entry : wavelength_um)
       radiometries.emplace_back(at_wavelength(scene, of_entry), plan.kept, plan.bound);
@@ -42,7 +42,7 @@ struct Spectra {
 
 /// What the steps of a part share.
 struct RunContext {
-  const Scene& scene;
+  const SceneValues& scene;
   const EffectPlan& plan;
   const Spectra& spectra;
   MomentsEvaluator* evaluator;
@@ -175,7 +175,7 @@ std::vector<PointResult> computed_at(const RunContext& context, const Selection&
 }
 
 bool is_better(const PointResult& a, const PointResult& b) {
-  return (a.status & kStatusToleranceMissed) < (b.status & kStatusToleranceMissed) ||
+  return (a.status & kToleranceNotMet) < (b.status & kToleranceNotMet) ||
          std::max(a[Quantity::kErrorEstimate], a[Quantity::kRhoErrorEstimate]) <
              std::max(b[Quantity::kErrorEstimate], b[Quantity::kRhoErrorEstimate]);
 }
@@ -311,7 +311,7 @@ std::vector<PointResult> part_results(const RunContext& context, const SceneEntr
     if (of_entry.worst_ratio <= 1.0) continue;
     const std::size_t direction = positions[i] / part.of_direction();
     for (PointResult& result : std::span(results).subspan(direction * part.of_direction(), part.of_direction()))
-      result.status |= kStatusToleranceMissed;
+      result.status |= kToleranceNotMet;
   }
   return results;
 }
@@ -339,7 +339,7 @@ std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spe
   return entries.parts(std::max<std::size_t>(1, moments / spectral_samples));
 }
 
-bool wants_evaluator(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan) {
+bool wants_evaluator(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan) {
   return std::ranges::any_of(entries.all(), [&](const SceneEntry& entry) {
     return wants_moments(scene, entry, plan) || wants_beam(scene, entry, plan);
   });
@@ -349,7 +349,7 @@ void begin(const Progress& progress, std::size_t total) {
   if (progress && !progress(0, total)) throw Cancelled();
 }
 
-Run::Run(const Scene& scene, SceneEntries entries, const RunOptions& options, const EvaluatorMaker& make_evaluator)
+Run::Run(const SceneValues& scene, SceneEntries entries, const RunOptions& options, const EvaluatorMaker& make_evaluator)
     : scene_(scene), entries_(std::move(entries)), progress_(options.progress) {
   const SceneEntries whole =
       entries_.is_grid() ? SceneEntries::of_grid(entries_.whole_axes(), entries_.index()) : entries_;
@@ -375,7 +375,7 @@ RunOutcome Run::compute(Sink& sink) {
 
 double Run::wall_s() const { return seconds_since(start_); }
 
-RunSummary run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
+RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                      MomentsEvaluator* evaluator, Sink& sink, const Progress& progress) {
   const std::size_t samples = spectral_rule(scene).samples.size();
   Accuracy accuracy = scene.accuracy;
@@ -411,14 +411,14 @@ RunSummary run_scene(const Scene& scene, const SceneEntries& entries, const Effe
   return with_evaluation();
 }
 
-std::vector<PointResult> evaluate_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
+std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                                         MomentsEvaluator* evaluator, const Progress& progress) {
   CollectedResults results(entries);
   run_scene(scene, entries, plan, evaluator, results, progress);
   return results.take();
 }
 
-std::vector<PointResult> evaluate_scene(const Scene& scene, const SceneEntries& entries, MomentsEvaluator& evaluator,
+std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEntries& entries, MomentsEvaluator& evaluator,
                                         const Progress& progress) {
   return evaluate_scene(scene, entries, keep_everything(scene), &evaluator, progress);
 }

@@ -19,18 +19,18 @@ namespace dolp {
 
 /// The scene's grid.
 /// Errors: InputError for more than kMostTableEntries.
-SceneEntries grid_entries(const Scene& scene);
+SceneEntries grid_entries(const SceneValues& scene);
 
 /// Scattered points; what they do not say comes from the scene. Points of which only the direction is said are a grid.
 /// Errors: InputError that names the points' file and line, column, value and what is allowed: theta_deg is neither in
 /// the points nor a single value in the grid; n without k, or k without n, beside a material that depends on the
 /// wavelength; q <= 3/2 with smith masking and the cauchy distribution.
-SceneEntries point_entries(const Scene& scene, const Points& points);
+SceneEntries point_entries(const SceneValues& scene, const Points& points);
 
 /// Refuses a q of the points that the scene's masking is not made for: q <= 3/2 with smith and the cauchy distribution;
 /// the scene's own q has passed the same check.
 /// Errors: InputError that names the points' file and line, column, value and what is allowed.
-void check_smith(const Scene& scene, const Points& points);
+void check_smith(const SceneValues& scene, const Points& points);
 
 /// Where results go, part by part.
 class Sink {
@@ -88,7 +88,7 @@ class Run {
  public:
   /// `scene` must outlive the object. Tells `options.progress` that all inputs are read, then makes the evaluator if
   /// one is needed. Errors: those of make_evaluator; Cancelled.
-  Run(const Scene& scene, SceneEntries entries, const RunOptions& options, const EvaluatorMaker& make_evaluator);
+  Run(const SceneValues& scene, SceneEntries entries, const RunOptions& options, const EvaluatorMaker& make_evaluator);
 
   const SceneEntries& entries() const { return entries_; }
   const EffectPlan& plan() const { return outcome_.plan; }
@@ -109,7 +109,7 @@ class Run {
   double wall_s() const;
 
  private:
-  const Scene& scene_;
+  const SceneValues& scene_;
   SceneEntries entries_;
   Progress progress_;
   MomentsEvaluator* evaluator_ = nullptr;
@@ -122,22 +122,22 @@ std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spe
 
 /// True where anything is left for an evaluator: the plan needs moments or beams, and not all entries have closed
 /// forms.
-bool wants_evaluator(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan);
+bool wants_evaluator(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
 
 /// Calls `progress`, if there is one, with nothing done yet: all inputs are read. Errors: Cancelled.
 void begin(const Progress& progress, std::size_t total);
 
 /// The same as Run::compute for a plan and an evaluator that are there already; the evaluator may be null where the
 /// plan leaves nothing for it.
-RunSummary run_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
+RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                      MomentsEvaluator* evaluator, Sink& sink, const Progress& progress);
 
 /// The same into memory: results in the order of `entries`.
-std::vector<PointResult> evaluate_scene(const Scene& scene, const SceneEntries& entries, const EffectPlan& plan,
+std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                                         MomentsEvaluator* evaluator, const Progress& progress);
 
 /// The same with everything kept.
-std::vector<PointResult> evaluate_scene(const Scene& scene, const SceneEntries& entries, MomentsEvaluator& evaluator,
+std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEntries& entries, MomentsEvaluator& evaluator,
                                         const Progress& progress);
 
 }  // namespace dolp

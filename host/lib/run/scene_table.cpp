@@ -13,14 +13,14 @@ namespace dolp {
 namespace {
 
 /// n, k and E0 as they are used: at the axis of wavelengths, else as the scene has them.
-void fill_curves(TableHead& head, const Scene& scene) {
+void fill_curves(TableHead& head, const SceneValues& scene) {
   const Material& material = scene.surface.material;
   const bool has_index_axis = !head.axes[Axis::kN].empty() || !head.axes[Axis::kK].empty();
   if (!head.axes[Axis::kWavelength].empty()) {
     std::vector<double> wavelengths = scene.grid[Axis::kWavelength];
     std::ranges::sort(wavelengths);
     for (const double wavelength_um : wavelengths) {
-      const Scene at = at_wavelength(scene, wavelength_um);
+      const SceneValues at = at_wavelength(scene, wavelength_um);
       const OpticalConstants& index = at.surface.material.constant;
       const auto add = [&](Curve& curve, double value) {
         curve.wavelength_um.push_back(wavelength_um);
@@ -47,7 +47,7 @@ void fill_curves(TableHead& head, const Scene& scene) {
 }
 
 /// An exitance, in bistatic mode a radiance; per um at a single wavelength.
-std::string stokes_units(const Scene& scene) {
+std::string stokes_units(const SceneValues& scene) {
   std::string units = "W m-2";
   if (scene.geometry.mode == Mode::kBistatic) units += " sr-1";
   if (!scene.spectrum.is_band()) units += " um-1";
@@ -61,7 +61,7 @@ std::string history_text(const std::string& command_line) {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ} {}", fmt::gmtime(now), command_line);
 }
 
-std::vector<Attribute> attributes_of(const Scene& scene, const RunOutcome& run, const std::string& command_line) {
+std::vector<Attribute> attributes_of(const SceneValues& scene, const RunOutcome& run, const std::string& command_line) {
   const EvaluationReport& evaluation = run.evaluation;
   return {{"history", history_text(command_line)},
           {"device", evaluation.device},
@@ -86,7 +86,7 @@ std::string rule_text(double tolerance, const EvaluationReport& evaluation) {
   return text;
 }
 
-Quantities quantities_of(const Scene& scene, const EffectPlan* plan) {
+Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan) {
   const auto is_given = [&](QuantityNeeds needs) {
     switch (needs) {
       case QuantityNeeds::kNothing:
@@ -109,7 +109,7 @@ Quantities quantities_of(const Scene& scene, const EffectPlan* plan) {
   return given;
 }
 
-TableLayout table_layout(const Scene& scene, const EffectPlan& plan, const Axes& axes) {
+TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const Axes& axes) {
   TableLayout layout;
   TableHead& head = layout.head;
   head.axes = axes;
@@ -131,8 +131,8 @@ TableLayout table_layout(const Scene& scene, const EffectPlan& plan, const Axes&
   return layout;
 }
 
-Table table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results) {
-  Table table;
+TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results) {
+  TableValues table;
   table.axes = part.axes();
   static_cast<ResultColumns&>(table) = columns_of(results, layout.quantities);
   return table;

@@ -16,18 +16,18 @@ namespace dolp {
 
 /// The quantities that results of a scene have: of points, where those that a run leaves out are NaN; of a table that a
 /// run by `plan` makes, without these.
-Quantities quantities_of(const Scene& scene, const EffectPlan* plan = nullptr);
+Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan = nullptr);
 
 /// The table of a grid of the scene before anything is computed, with the attributes that are known by then. `axes` may
 /// be a part of the scene's grid.
-TableLayout table_layout(const Scene& scene, const EffectPlan& plan, const Axes& axes);
+TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const Axes& axes);
 
 /// The values of a part of the grid.
-Table table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results);
+TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results);
 
 std::string history_text(const std::string& command_line);
 /// What is known after a run.
-std::vector<Attribute> attributes_of(const Scene& scene, const RunOutcome& run, const std::string& command_line);
+std::vector<Attribute> attributes_of(const SceneValues& scene, const RunOutcome& run, const std::string& command_line);
 
 /// The rule in words, for reports and table attributes.
 std::string rule_text(double tolerance, const EvaluationReport& evaluation);

@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 
 namespace dolp {
 namespace {

@@ -43,7 +43,7 @@ bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cut
 std::string shard_text(const Shard& shard) { return fmt::format("{}/{}", shard.number, shard.count); }
 
 /// What the parts of a file have in common, in one line.
-std::string identity_of(const Scene& scene, const TableJob& job, const EvaluationReport& evaluation) {
+std::string identity_of(const SceneValues& scene, const TableJob& job, const EvaluationReport& evaluation) {
   return fmt::format("dolp {}, scene {}, shard {}{}, {}, {}, {}", DOLP_VERSION, scene_hash(scene),
                      shard_text(job.shard), job.options.keep_all ? ", everything kept" : "", evaluation.evaluator,
                      evaluation.device, evaluation.driver);
@@ -68,7 +68,7 @@ class TableSink final : public Sink {
   void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) override {
     PerAxis first = part.first();
     for (std::size_t i = 0; i < first.size(); ++i) first[i] -= entries_.first()[i];
-    Table table = table_part(layout_, part, results);
+    TableValues table = table_part(layout_, part, results);
     finish();
     pending_ = std::async(std::launch::async, [this, first, own = std::move(table), note = so_far.text()]() mutable {
       output_.write(std::move(own), first, note);
@@ -131,7 +131,7 @@ std::optional<Shard> shard_of(const TableHead& head) {
 
 /// The shards of one table, which are all there.
 struct ShardSet {
-  Scene scene;
+  SceneValues scene;
   TableLayout layout;
   std::vector<std::string> paths;  ///< by number
   SelfCheck check;
@@ -200,7 +200,7 @@ fs::path shard_path(const fs::path& path, const Shard& shard) {
   return own.string() + fmt::format(".{}-of-{}", shard.number, shard.count) + suffix;
 }
 
-SceneEntries shard_entries(const Scene& scene, const Shard& shard) {
+SceneEntries shard_entries(const SceneValues& scene, const Shard& shard) {
   if (shard.is_whole()) return grid_entries(scene);
   const SceneEntries whole = grid_entries(scene);
   PerAxis count = whole.counts();
@@ -225,7 +225,7 @@ SceneEntries shard_entries(const Scene& scene, const Shard& shard) {
   return whole.part(first, count);
 }
 
-RunOutcome write_table(const Scene& scene, const TableJob& job, const EvaluatorMaker& make_evaluator) {
+RunOutcome write_table(const SceneValues& scene, const TableJob& job, const EvaluatorMaker& make_evaluator) {
   Run run(scene, shard_entries(scene, job.shard), job.options, make_evaluator);
   TableLayout layout = table_layout(scene, run.plan(), run.entries().axes());
   if (!job.shard.is_whole()) layout.head.attributes.push_back({kShard, shard_text(job.shard)});
@@ -245,7 +245,7 @@ RunOutcome write_table(const Scene& scene, const TableJob& job, const EvaluatorM
   return outcome;
 }
 
-bool is_there(const Scene& scene, const TableJob& job) {
+bool is_there(const SceneValues& scene, const TableJob& job) {
   std::error_code error;
   if (job.path == "-" || format_of(job.path) != TableFormat::kNetcdf || !fs::is_regular_file(job.path, error))
     return false;
@@ -280,7 +280,7 @@ std::size_t merge_shards(const std::vector<std::string>& shards, const fs::path&
     const SceneEntries own = shard_entries(set.scene, {i + 1, set.paths.size()});
     ValuesHash::Sums sums;
     for (const TableBox& box : boxes_in_order(own.counts(), kMergedAtOnce)) {
-      Table part = reader.read(box);
+      TableValues part = reader.read(box);
       const ValuesHash::Sums of_part = reader.sums_of(part, box);
       sums.resize(of_part.size(), 0);
       std::ranges::transform(sums, of_part, sums.begin(), std::plus<>());

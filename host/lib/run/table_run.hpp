@@ -22,7 +22,7 @@ std::filesystem::path shard_path(const std::filesystem::path& path, const Shard&
 /// The entries of a shard: part of the values of theta, or where these are too few of wavelength, n and k too, so that
 /// what entries share stays together.
 /// Errors: InputError where the axes cannot be cut into so many parts.
-SceneEntries shard_entries(const Scene& scene, const Shard& shard);
+SceneEntries shard_entries(const SceneValues& scene, const Shard& shard);
 
 /// A scene's table, or a shard of it, as a file.
 struct TableJob {
@@ -33,10 +33,10 @@ struct TableJob {
 
 /// Computes the job's entries and writes them; a part is written while the next is computed.
 /// Errors: those of Run and of TableOutput, which say what is there already, as Cancelled does.
-RunOutcome write_table(const Scene& scene, const TableJob& job, const EvaluatorMaker& make_evaluator);
+RunOutcome write_table(const SceneValues& scene, const TableJob& job, const EvaluatorMaker& make_evaluator);
 
 /// Whether the job's path is a whole table of its scene, shard and program already.
-bool is_there(const Scene& scene, const TableJob& job);
+bool is_there(const SceneValues& scene, const TableJob& job);
 
 /// Joins all shards of a table into one, which are opened one at a time. Returns the entries.
 /// Errors: InputError that names a shard that is missing, there twice, or of another table; those of TableReader and

@@ -102,7 +102,7 @@ std::vector<Setting> settings_of(const std::string& text) {
   return settings_from_text(arguments);
 }
 
-std::uint64_t scene_seed(const Scene& scene) {
+std::uint64_t scene_seed(const SceneValues& scene) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   const auto add = [&hash](const std::string& text) {
     for (const char byte : text) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
@@ -112,7 +112,7 @@ std::uint64_t scene_seed(const Scene& scene) {
   return hash;
 }
 
-std::string scene_hash(const Scene& scene) { return fmt::format("fnv1a64:{:016x}", scene_seed(scene)); }
+std::string scene_hash(const SceneValues& scene) { return fmt::format("fnv1a64:{:016x}", scene_seed(scene)); }
 
 void check_may_hold_scene(const std::string& path) {
   if (!std::filesystem::exists(path)) throw InputError(path + ": there is no such file");
@@ -123,12 +123,12 @@ void check_may_hold_scene(const std::string& path) {
   }
 }
 
-Table load_table(const std::string& path) {
+TableValues load_table(const std::string& path) {
   check_may_hold_scene(path);
   return read_table(path);
 }
 
-Scene table_scene(const TableHead& table, const std::string& name, NamedData named_data) {
+SceneValues table_scene(const TableHead& table, const std::string& name, NamedData named_data) {
   const std::string* text = find_text(table, "scene");
   if (!text) {
     throw InputError(
@@ -138,7 +138,7 @@ Scene table_scene(const TableHead& table, const std::string& name, NamedData nam
   const std::string* path = find_text(table, "scene_path");
   const KnownData known =
       named_data == NamedData::kOfTable ? known_data(table, name) : KnownData{.may_open_files = true};
-  Scene scene;
+  SceneValues scene;
   try {
     scene =
         parse_scene(*text, path ? *path : name, overrides ? settings_of(*overrides) : std::vector<Setting>{}, &known);

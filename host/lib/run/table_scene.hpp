@@ -16,14 +16,14 @@ std::vector<Setting> settings_of(const std::string& text);
 
 /// The attribute "scene_hash": FNV-1a, 64 bits, over the scene's text and settings. Says whether two tables come from
 /// the same scene, nothing more.
-std::string scene_hash(const Scene& scene);
-std::uint64_t scene_seed(const Scene& scene);  ///< the number itself
+std::string scene_hash(const SceneValues& scene);
+std::uint64_t scene_seed(const SceneValues& scene);  ///< the number itself
 
 /// Refuses a file that is not there, or is of a format that does not hold its scene. Errors: InputError.
 void check_may_hold_scene(const std::string& path);
 
 /// Reads a table file that holds its scene. Errors: those of check_may_hold_scene and read_table.
-Table load_table(const std::string& path);
+TableValues load_table(const std::string& path);
 
 /// The attribute "index_n_formula": the number of a dispersion formula and its coefficients, with blanks between them.
 std::string formula_text(const Dispersion& formula);
@@ -39,6 +39,6 @@ enum class NamedData {
 ///
 /// Errors: InputError that begins with `name`: no scene in the table, one that is not the one the table was made of, or
 /// one that the reader refuses.
-Scene table_scene(const TableHead& table, const std::string& name, NamedData named_data = NamedData::kOfTable);
+SceneValues table_scene(const TableHead& table, const std::string& name, NamedData named_data = NamedData::kOfTable);
 
 }  // namespace dolp

@@ -83,7 +83,7 @@ CaseOutcome outcome_of(const StoredCase& stored, const PointResult& result, doub
   CaseOutcome outcome;
   outcome.status = result.status;
   outcome.promises_dolp = promises_dolp(result.status);
-  const bool is_promised = (result.status & kStatusToleranceMissed) == 0;
+  const bool is_promised = (result.status & kToleranceNotMet) == 0;
   outcome.dolp = {std::abs(result[Quantity::kDolp] - expected.dolp), result[Quantity::kErrorEstimate],
                   expected.dolp_error};
   // At I = 0 neither side has a DOLP.
@@ -115,8 +115,8 @@ double ErrorCheck::ratio() const {
 
 double CaseOutcome::worst_ratio() const { return std::max(rho.ratio(), dolp.ratio()); }
 
-Scene emission_scene(Distribution distribution, Masking masking, double tolerance) {
-  Scene scene;
+SceneValues emission_scene(Distribution distribution, Masking masking, double tolerance) {
+  SceneValues scene;
   scene.surface.distribution = distribution;
   scene.surface.masking = masking;
   scene.surface.material.constant = {1.508, 0.0};
@@ -137,7 +137,7 @@ std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, MomentsEv
   for (const auto& [group, positions] : groups) {
     std::vector<SceneEntry> entries;
     for (const std::size_t i : positions) entries.push_back({cases[i].theta_deg, cases[i].shape, cases[i].index});
-    const Scene scene = emission_scene(group.first, group.second, tolerance);
+    const SceneValues scene = emission_scene(group.first, group.second, tolerance);
     const Progress group_progress = [&](std::size_t done, std::size_t) {
       return !progress || progress(finished + done, cases.size());
     };
@@ -161,7 +161,7 @@ DeviceQuality measure_quality(MomentsEvaluator& evaluator, double tolerance) {
   quality.tolerance = tolerance;
   for (const CaseOutcome& outcome : qualify(cases, evaluator, tolerance, {})) {
     const StoredCase& stored = cases[outcome.position];
-    quality.missed += (outcome.status & kStatusToleranceMissed) != 0 ? 1 : 0;
+    quality.missed += (outcome.status & kToleranceNotMet) != 0 ? 1 : 0;
     quality.is_sound = quality.is_sound && outcome.complaint.empty();
     // Written so that NaN is the worst, and stays it.
     if (std::isnan(quality.worst_error) || outcome.rho.error <= quality.worst_error) continue;

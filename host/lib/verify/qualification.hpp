@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/evaluator.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "scene/scene.hpp"
 #include "verify/stored_cases.hpp"
 
@@ -38,7 +38,7 @@ struct CaseOutcome {
 
 /// The scene that cases of one distribution and masking are looked at in: a surface that only emits, at 300 K and
 /// 10.6 um, so that DOLP = |rho_Q| / (1 - rho_I).
-Scene emission_scene(Distribution distribution, Masking masking, double tolerance);
+SceneValues emission_scene(Distribution distribution, Masking masking, double tolerance);
 
 /// Evaluates all cases and compares each with its reference, in the order of `cases`.
 ///

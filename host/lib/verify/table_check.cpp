@@ -12,7 +12,7 @@
 #include <dolp/number_range.hpp>
 #include <dolp/results.hpp>
 #include "base/numbers.hpp"
-#include "model/status.hpp"
+#include <dolp/status.hpp>
 #include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
 
@@ -73,7 +73,7 @@ double estimate_at(const std::vector<double>& estimates, std::size_t i) {
 }
 
 double allowed_error(Bound bound, std::uint32_t status, double tolerance, const PointResult& reference) {
-  const bool is_promised = (status & kStatusToleranceMissed) == 0;
+  const bool is_promised = (status & kToleranceNotMet) == 0;
   if (is_promised && bound == Bound::kReflectance) return tolerance * std::abs(reference[Quantity::kRhoI]);
   const bool is_dolp = bound == Bound::kDolp && promises_dolp(status);
   if (is_promised && is_dolp) return tolerance;
@@ -86,7 +86,7 @@ void add(QuantityCheck& check, const CheckedValue& value) {
   if (check.compared == 1 || value.ratio() > check.worst.ratio()) check.worst = value;
 }
 
-CheckedValue compare(const Table& table, const Compared& compared, std::size_t i, const SceneEntry& entry,
+CheckedValue compare(const TableValues& table, const Compared& compared, std::size_t i, const SceneEntry& entry,
                      const PointResult& reference, double tolerance) {
   CheckedValue value;
   value.quantity = description_of(compared.quantity).name;
@@ -104,12 +104,12 @@ CheckedValue compare(const Table& table, const Compared& compared, std::size_t i
   value.stated = bound_of(compared.bound, dolp_estimate, rho_estimate, reference);
   value.reference_error =
       bound_of(compared.bound, reference[Quantity::kErrorEstimate], reference[Quantity::kRhoErrorEstimate], reference);
-  const std::uint32_t status = table.status.empty() ? kStatusToleranceMissed : table.status[i];
+  const std::uint32_t status = table.status.empty() ? kToleranceNotMet : table.status[i];
   value.complaint = complaint_about(value, allowed_error(compared.bound, status, tolerance, reference));
   return value;
 }
 
-void check_axes(const Table& table, const Scene& scene, const std::string& name) {
+void check_axes(const TableValues& table, const SceneValues& scene, const std::string& name) {
   for (const Axis axis : kAllAxes) {
     const AxisDescription& known = description_of(axis);
     const bool has_finite_mean_slope = axis == Axis::kQ && scene.surface.needs_mean_slope();
@@ -122,9 +122,9 @@ void check_axes(const Table& table, const Scene& scene, const std::string& name)
   }
 }
 
-bool has_dolp(const Table& table) { return table.has(Quantity::kDolp) && table.has(Quantity::kErrorEstimate); }
+bool has_dolp(const TableValues& table) { return table.has(Quantity::kDolp) && table.has(Quantity::kErrorEstimate); }
 
-bool has_rho(const Table& table) {
+bool has_rho(const TableValues& table) {
   return table.has(Quantity::kRhoErrorEstimate) && (table.has(Quantity::kRhoI) || table.has(Quantity::kRhoQ));
 }
 
@@ -154,9 +154,9 @@ std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckO
   return {chosen.begin(), chosen.end()};
 }
 
-TableCheck check_table(const TableSample& sample, const Scene& scene, const std::string& name,
+TableCheck check_table(const TableSample& sample, const SceneValues& scene, const std::string& name,
                        const Progress& progress) {
-  const Table& table = sample.table;
+  const TableValues& table = sample.table;
   if (!has_dolp(table) && !has_rho(table)) {
     throw InputError(
         fmt::format("{}: has nothing to compare: neither dolp with error_estimate nor rho_i or rho_q with "
@@ -177,7 +177,7 @@ TableCheck check_table(const TableSample& sample, const Scene& scene, const std:
   check.tolerance = scene.accuracy.tolerance;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const std::uint32_t status = table.status.empty() ? 0 : table.status[i];
-    check.missed += (status & kStatusToleranceMissed) != 0 ? 1 : 0;
+    check.missed += (status & kToleranceNotMet) != 0 ? 1 : 0;
   }
   for (const Compared& compared : kCompared) {
     if (!table.has(compared.quantity)) continue;

@@ -53,7 +53,7 @@ std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckO
 
 /// Some entries of a table: its variables have one value for each of the ascending positions.
 struct TableSample {
-  Table table;
+  TableValues table;
   std::vector<std::size_t> positions;
 };
 
@@ -67,7 +67,7 @@ struct TableSample {
 /// Not independent: closed forms of mirrors and limits, which come from the same code in every evaluator.
 /// Errors: InputError that begins with `name` for a table without anything to compare or with axes out of range;
 /// Cancelled when `progress` returns false.
-TableCheck check_table(const TableSample& sample, const Scene& scene, const std::string& name,
+TableCheck check_table(const TableSample& sample, const SceneValues& scene, const std::string& name,
                        const Progress& progress);
 
 }  // namespace dolp

@@ -155,9 +155,9 @@ void refuse_empty_values(CLI::App& command) {
 std::unique_ptr<CLI::App> command_line(Options& options) {
   auto program = std::make_unique<CLI::App>(kDescription, "dolp");
   CLI::App& app = *program;
-  app.set_version_flag("--version", fmt::format("dolp {} ({})", api::version(), api::commit()));
+  app.set_version_flag("--version", fmt::format("dolp {} ({})", version(), commit()));
   app.add_flag_callback(
-      "--cite", [] { throw CLI::CallForVersion(api::citation(), 0); }, "how to cite the program and its model");
+      "--cite", [] { throw CLI::CallForVersion(citation(), 0); }, "how to cite the program and its model");
   app.require_subcommand(0, 1);
 
   CLI::App* table = app.add_subcommand("table", "lookup table over the scene's grid (.nc, .csv, .npy)");

@@ -191,7 +191,7 @@ std::string manual_page(const CLI::App& app) {
       "surfaces\n.SH SYNOPSIS\n.B dolp\n.I COMMAND\n[\\fIARGUMENTS\\fR]\n.SH COMMANDS\n{}"
       ".SH EXIT STATUS\n0 done; 1 an accuracy was missed that was asked for; 2 bad input; 3 no usable device; 4 a file "
       "could not be read or written; 5 an internal error; 6 out of memory; 130 interrupted.\n",
-      api::version(), commands);
+      version(), commands);
 }
 
 }  // namespace

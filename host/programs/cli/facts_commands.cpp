@@ -18,7 +18,7 @@ std::string default_text(const Key& key) {
   return key.fallback == "required" ? "required" : "default " + key.fallback;
 }
 
-void add_key(api::Report& report, Json& list, const Key& key) {
+void add_key(Report& report, Json& list, const Key& key) {
   const bool has_unit = !key.unit.empty() && key.unit != "1";
   report.text += fmt::format("{}\n    {}\n    {}{}; {}\n", key.key, key.meaning, key.allowed(),
                              has_unit ? ", " + key.unit : "", default_text(key));
@@ -29,7 +29,7 @@ void add_key(api::Report& report, Json& list, const Key& key) {
                   {"default", key.fallback}});
 }
 
-int finish_list(api::Report report, const char* name, const Json& list, const Options& options) {
+int finish_list(Report report, const char* name, const Json& list, const Options& options) {
   report.json = Json{{name, list}}.dump(2, ' ', true);
   return finish(report, options);
 }
@@ -37,7 +37,7 @@ int finish_list(api::Report report, const char* name, const Json& list, const Op
 }  // namespace
 
 int run_keys(const Options& options) {
-  api::Report report;
+  Report report;
   Json list = Json::array();
   std::vector<std::string> names;
   for (const Key& key : dolp::keys()) {
@@ -53,9 +53,9 @@ int run_keys(const Options& options) {
 }
 
 int run_materials(const Options& options) {
-  api::Report report;
+  Report report;
   Json list = Json::array();
-  for (const api::Material& material : api::materials()) {
+  for (const BuiltInMaterial& material : materials()) {
     report.text += fmt::format("{:<46}  {:>7} to {:<8} um  {}\n", material.name, material.from_um, material.to_um,
                                material.source);
     list.push_back({{"name", material.name},
@@ -67,13 +67,13 @@ int run_materials(const Options& options) {
 }
 
 int run_devices(const Options& options) {
-  const int status = finish(api::device_report(), options);
+  const int status = finish(device_report(), options);
   require_device(options.device);
   return status;
 }
 
 int run_plan(const Options& options) {
-  return finish(api::plan(load_scene(options), options.device, options.keep_all), options);
+  return finish(plan(load_scene(options), options.device, options.keep_all), options);
 }
 
 }  // namespace dolp::cli

@@ -7,7 +7,7 @@
 namespace dolp::cli {
 
 int run_fit(const Options& options) {
-  const api::Scene scene = load_scene(options);
+  const Scene scene = load_scene(options);
   std::vector<MeasuredData> data;
   for (const std::string& argument : options.data) data.push_back(MeasuredData::read(argument));
   FitOptions fit;
@@ -18,12 +18,12 @@ int run_fit(const Options& options) {
   fit.loss = static_cast<Loss>(std::ranges::find(loss_names(), options.loss) - loss_names().begin());
   fit.output = options.output_path;
   fit.plot = options.plot_path;
-  api::Report report;
+  Report report;
   bool has_minimum = false;
   {
     ProgressBar bar(options.quiet);
     fit.progress = bar.callback();
-    const api::Fit found = evaluator_of(options).fit(scene, data, fit);
+    const Fit found = evaluator_of(options).fit(scene, data, fit);
     report = found.report;
     has_minimum = found.has_minimum;
   }

@@ -30,14 +30,14 @@ std::vector<Setting> all_settings(const Options& options) {
 
 std::string allowed(const std::string& key) { return std::ranges::find(dolp::keys(), key, &Key::key)->allowed(); }
 
-api::Scene load_scene(const Options& options) {
+Scene load_scene(const Options& options) {
   check_one_stdin(options);
-  return api::Scene::from_file(options.scene_path, all_settings(options));
+  return Scene::from_file(options.scene_path, all_settings(options));
 }
 
-api::Evaluator evaluator_of(const Options& options) { return api::Evaluator({options.evaluator, options.device}); }
+Evaluator evaluator_of(const Options& options) { return Evaluator({options.evaluator, options.device}); }
 
-void print(const api::Report& report, const Options& options) {
+void print(const Report& report, const Options& options) {
   std::FILE* const out = options.output_path == "-" ? stderr : stdout;
   if (options.json) {
     fmt::print(out, "{}\n", report.json);
@@ -46,7 +46,7 @@ void print(const api::Report& report, const Options& options) {
   }
 }
 
-int finish(const api::Report& report, const Options& options) {
+int finish(const Report& report, const Options& options) {
   print(report, options);
   return options.strict && !report.is_good ? kExitAccuracy : kExitDone;
 }

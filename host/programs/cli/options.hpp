@@ -55,15 +55,15 @@ std::vector<Setting> all_settings(const Options& options);
 std::string allowed(const std::string& key);
 
 /// The scene with all_settings.
-api::Scene load_scene(const Options& options);
+Scene load_scene(const Options& options);
 
 /// The evaluator that --evaluator and --device ask for.
-api::Evaluator evaluator_of(const Options& options);
+Evaluator evaluator_of(const Options& options);
 
 /// Prints a report as --json and --quiet ask for: to stdout, or to stderr when the results themselves go to stdout.
-void print(const api::Report& report, const Options& options);
+void print(const Report& report, const Options& options);
 
 /// Prints a report; returns the exit status that --strict asks for.
-int finish(const api::Report& report, const Options& options);
+int finish(const Report& report, const Options& options);
 
 }  // namespace dolp::cli

@@ -4,8 +4,8 @@
 namespace dolp::cli {
 
 int run_eval(const Options& options) {
-  const api::Scene scene = load_scene(options);
-  api::Report report;
+  const Scene scene = load_scene(options);
+  Report report;
   {
     ProgressBar bar(options.quiet);
     report = evaluator_of(options).write_points(scene, options.points_path, options.output_path,
@@ -15,8 +15,8 @@ int run_eval(const Options& options) {
 }
 
 int run_mueller(const Options& options) {
-  const api::Scene scene = load_scene(options);
-  api::Report report;
+  const Scene scene = load_scene(options);
+  Report report;
   {
     ProgressBar bar(options.quiet);
     report = evaluator_of(options).write_mueller(scene, options.points_path, options.output_path,
@@ -26,10 +26,10 @@ int run_mueller(const Options& options) {
 }
 
 int run_lookup(const Options& options) {
-  api::Report report;
+  Report report;
   {
     ProgressBar bar(options.quiet);
-    report = api::write_lookup(options.table_path, options.points_path, options.output_path, bar.callback());
+    report = write_lookup(options.table_path, options.points_path, options.output_path, bar.callback());
   }
   return finish(report, options);
 }

@@ -50,9 +50,9 @@ Shard shard_of(const std::string& text) {
 }  // namespace
 
 int run_table(const Options& options) {
-  const api::Scene scene = load_scene(options);
+  const Scene scene = load_scene(options);
   const Shard shard = shard_of(options.shard);
-  api::Report report;
+  Report report;
   {
     ProgressBar bar(options.quiet);
     report = evaluator_of(options).write_table(
@@ -62,7 +62,7 @@ int run_table(const Options& options) {
 }
 
 int run_merge(const Options& options) {
-  return finish(api::merge({options.shards.begin(), options.shards.end()}, options.output_path, options.command_line),
+  return finish(merge({options.shards.begin(), options.shards.end()}, options.output_path, options.command_line),
                 options);
 }
 

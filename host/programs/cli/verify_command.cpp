@@ -11,7 +11,7 @@
 namespace dolp::cli {
 namespace {
 
-api::Report verify_device(const Options& options, const Progress& progress) {
+Report verify_device(const Options& options, const Progress& progress) {
   DeviceCheckOptions check{options.evaluator, options.device};
   if (!options.precision.empty()) check.precision = options.precision;
   if (!options.tolerance.empty()) {
@@ -24,7 +24,7 @@ api::Report verify_device(const Options& options, const Progress& progress) {
   }
   check.all = options.all;
   check.progress = progress;
-  return api::verify_device(check);
+  return verify_device(check);
 }
 
 }  // namespace
@@ -33,11 +33,11 @@ int run_verify(const Options& options) {
   if (!options.hard_cases && options.table_path.empty()) {
     throw InputError("verify: name a TABLE, or --hard-cases to examine a device (see dolp verify --help)");
   }
-  api::Report report;
+  Report report;
   {
     ProgressBar bar(options.quiet);
     report = options.hard_cases ? verify_device(options, bar.callback())
-                                : api::verify(options.table_path,
+                                : verify(options.table_path,
                                               {options.samples, options.seed, options.named_files, bar.callback()});
   }
   print(report, options);

@@ -13,7 +13,7 @@ FitFound run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progre
   for (const Varied& one : job.varied) {
     options.vary.push_back({one.key, one.low, one.high, one.start});
   }
-  const api::Fit fit = evaluator.fit(job.scene, {job.data}, options);
+  const Fit fit = evaluator.fit(job.scene, {job.data}, options);
   if (!fit.has_minimum) throw InputError("no minimum was found: no descent converged");
   FitFound found;
   for (const FitParameter& one : fit.parameters) {

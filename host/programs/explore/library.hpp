@@ -8,10 +8,6 @@
 
 namespace dolp::explore {
 
-using api::Effect;
-using api::Evaluator;
-using api::Results;
-using api::Scene;
 
 inline bool is_bistatic(const Scene& scene) { return scene.word("geometry.mode") == "bistatic"; }
 

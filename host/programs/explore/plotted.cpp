@@ -60,10 +60,10 @@ std::string status_text(std::uint32_t status) {
   const auto add = [&](std::uint32_t bit, const char* meaning) {
     if (status & bit) text += (text.empty() ? "" : ", ") + std::string(meaning);
   };
-  add(api::kReflectanceOutsideZeroToOne, "ρ outside [0, 1]");
-  add(api::kToleranceNotMet, "tolerance missed");
-  add(api::kOutsideModelDomain, "outside the model's domain");
-  add(api::kIntensityNotPositive, "I ≤ 0");
+  add(kReflectanceOutsideZeroToOne, "ρ outside [0, 1]");
+  add(kToleranceNotMet, "tolerance missed");
+  add(kOutsideModelDomain, "outside the model's domain");
+  add(kIntensityNotPositive, "I ≤ 0");
   return text.empty() ? "good" : text;
 }
 

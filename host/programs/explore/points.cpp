@@ -11,7 +11,7 @@ namespace dolp::explore {
 namespace {
 
 constexpr std::uint32_t kNoDolpPromised =
-    api::kReflectanceOutsideZeroToOne | api::kOutsideModelDomain | api::kIntensityNotPositive;
+    kReflectanceOutsideZeroToOne | kOutsideModelDomain | kIntensityNotPositive;
 
 /// The scene with the grid of a list; axes that the scene's own has beside these keep the scene's value.
 Scene with_grid(const Scene& scene, const PointList& list) {
@@ -29,7 +29,7 @@ std::size_t PointList::size() const { return is_grid ? theta_deg.size() * sigma.
 
 Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options) {
   if (!list.is_grid) return evaluator.evaluate(scene, list.columns(), options);
-  const api::Table table = evaluator.table(with_grid(scene, list), options);
+  const Table table = evaluator.table(with_grid(scene, list), options);
   return {{table.results()}, table.results().quantities(), table.stokes_units()};
 }
 

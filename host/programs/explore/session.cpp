@@ -188,7 +188,7 @@ void Session::estimate_influences() {
   effects_ = report.effects;
   if (effects_.empty()) return;
   const std::vector<Effect> at_cursor =
-      api::effects(report.scene, points_at(report.scene, {theta_deg_}).columns(), true);
+      dolp::effects(report.scene, points_at(report.scene, {theta_deg_}).columns(), true);
   for (std::size_t i = 0; i < effects_.size(); ++i) {
     if (effects_[i].state == "kept") effects_[i].influence = at_cursor[i].influence;
   }

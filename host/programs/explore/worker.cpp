@@ -139,8 +139,8 @@ JobPart Worker::advance(Task& task) {
   news.wall_s = task.wall_s;
   news.evaluations = task.evaluations;
   if (!job.wants_effects) return news;
-  news.csv = api::to_csv(list.columns(), results);
-  news.effects = api::effects(job.scene, list.columns(), job.keep_all);
+  news.csv = to_csv(list.columns(), results);
+  news.effects = effects(job.scene, list.columns(), job.keep_all);
   return news;
 }
 

@@ -315,7 +315,7 @@ TEST_F(Library, Facts_AreThere) {
   EXPECT_FALSE(dolp::keys().empty());
   EXPECT_NE(dolp::citation().find("cff-version"), std::string::npos);
   EXPECT_NE(dolp::plan(scene_).text.find("12"), std::string::npos);
-  EXPECT_EQ(dolp::status_bits().size(), 4U);
+  EXPECT_EQ(dolp::kStatusBits.size(), 4U);
 }
 
 }  // namespace

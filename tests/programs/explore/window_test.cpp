@@ -59,7 +59,7 @@ class Window : public CommandLine {
     explore::AppOptions options;
     options.file_name = at("made").string();
     options.command_line = "dolp explore";
-    const auto scene = api::Scene::from_file(at("scene.toml"));
+    const auto scene = Scene::from_file(at("scene.toml"));
     app_ = std::make_unique<App>(explore::SceneEdits(scene), options);
     app_->settle();
     frames();
@@ -253,11 +253,11 @@ TEST_F(Window, CurveCsv_ByShortcut_HasThePlottedValues) {
 
 TEST_F(Window, Table_ByShortcut_EqualsThatOfTheCommand) {
   ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc", "--quiet"}).status, 0);
-  const Table wanted = read_table(at("t.nc"));
+  const TableValues wanted = read_table(at("t.nc"));
   keys("ctrl+t");
   keys("Return");
   for (int i = 0; i < 2000 && !std::filesystem::exists(at("made_table.nc")); ++i) app_->frame();
-  const Table made = read_table(at("made_table.nc"));
+  const TableValues made = read_table(at("made_table.nc"));
   EXPECT_EQ(made[Quantity::kDolp], wanted[Quantity::kDolp]);
   EXPECT_EQ(made.axes[Axis::kTheta], wanted.axes[Axis::kTheta]);
   EXPECT_EQ(dolp({"verify", "made_table.nc"}).status, 0);
@@ -325,7 +325,7 @@ Area plot_on(const std::string& size, const std::string& dots_per_inch) {
   Command scale{.arguments = xprop, .folder = "/"};
   scale.arguments.push_back("Xft.dpi: " + dots_per_inch);
   EXPECT_EQ(run(scale).status, 0);
-  App app(explore::SceneEdits(api::Scene::from_text(kEdited)), {});
+  App app(explore::SceneEdits(Scene::from_text(kEdited)), {});
   for (int i = 0; i < kFrames; ++i) app.frame();
   return app.plot_area();
 }

@@ -18,6 +18,6 @@ struct ProgramOptions {
 
 /// Shows the window. Prints how long frames took, where their number is given.
 /// Errors: those of the public header; DeviceError, IoError.
-void run_program(const api::Scene& scene, const ProgramOptions& options);
+void run_program(const Scene& scene, const ProgramOptions& options);
 
 }  // namespace dolp::explore

@@ -94,7 +94,7 @@ std::pair<double, double> spectrum_of(const Scene& scene) {
 /// A line for each built-in material; those without n and k over the spectrum are grey.
 void draw_built_in_materials(Session& session, const std::string& current) {
   const auto [from_um, to_um] = spectrum_of(session.scene());
-  for (const api::Material& known : api::materials()) {
+  for (const BuiltInMaterial& known : materials()) {
     const bool is_known = known.from_um <= from_um && to_um <= known.to_um;
     const std::string text = fmt::format("{}, {:g} to {:g} µm", known.name, known.from_um, known.to_um);
     const auto flags = is_known ? ImGuiSelectableFlags_None : ImGuiSelectableFlags_Disabled;

@@ -1,0 +1,41 @@
+// Status bits of an entry or point; 0 where nothing is wrong. This is the only place that numbers them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace dolp {
+
+enum Status : std::uint32_t {
+  /// rho_s or rho_p outside [0, 1] by more than its error bound: Kirchhoff's law does not hold there.
+  kReflectanceOutsideZeroToOne = 1,
+  /// The scene's tolerance is not met, for rho or for DOLP.
+  kToleranceNotMet = 2,
+  /// Outside the model's domain; what cannot be given is NaN.
+  kOutsideModelDomain = 4,
+  /// I <= 0: the sum of what is emitted and reflected is not a radiation that exists.
+  kIntensityNotPositive = 8,
+};
+
+/// A bit of Status with the word that files have for it.
+struct StatusBit {
+  std::uint32_t mask;
+  const char* meaning;
+};
+
+/// In the order in which files list them.
+inline constexpr std::array<StatusBit, 4> kStatusBits = {{
+    {kReflectanceOutsideZeroToOne, "reflectance_outside_zero_to_one"},
+    {kToleranceNotMet, "tolerance_not_met"},
+    {kOutsideModelDomain, "outside_model_domain"},
+    {kIntensityNotPositive, "intensity_not_positive"},
+}};
+
+/// With any of these nothing is promised of the DOLP.
+inline constexpr std::uint32_t kNoDolpPromised =
+    kReflectanceOutsideZeroToOne | kOutsideModelDomain | kIntensityNotPositive;
+
+/// Whether the tolerance, or else kToleranceNotMet, is promised for the DOLP.
+inline bool promises_dolp(std::uint32_t status) { return (status & kNoDolpPromised) == 0; }
+
+}  // namespace dolp

@@ -190,7 +190,7 @@ TEST(GroovesScene, AllBounces_LieInTheBracket) {
     more.insert(more.end(), grid.begin(), grid.end());
     return results_of(more);
   };
-  const std::vector<PointResult> all = with({{"surface.scattering", "multiple"}});
+  const std::vector<PointResult> all = with({"surface.scattering=multiple"});
   for (const char* model : {"emission.model=moments", "emission.model=direct"}) {
     const std::vector<PointResult> between = with({"emission.bracket=true", model});
     for (std::size_t i = 0; i < all.size(); ++i) {

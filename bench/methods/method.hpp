@@ -1,4 +1,4 @@
-// What a method of the benchmark is: one way to compute the moments r_i and r_q of entries, at a setting of its own.
+// A method of the benchmark: one way to compute the moments r_i and r_q of entries, at a setting of its own.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@ struct Answer {
   std::optional<double> stated_error;  ///< bound or estimate of max(|d r_i|, |d r_q|)/r_i, where the method gives one
 };
 
-/// What one call of a solver gives.
+/// The result of one call of a solver.
 struct Solution {
   std::vector<Answer> answers = {};        ///< one for each entry of the request, in its order
   std::optional<double> evaluations = {};  ///< integrand evaluations of the whole call

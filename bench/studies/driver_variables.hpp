@@ -1,4 +1,4 @@
-// What an environment variable of the Vulkan driver does to the kernels' time.
+// Effect of an environment variable of the Vulkan driver on the kernels' time.
 #pragma once
 
 #include <cstddef>

@@ -59,7 +59,7 @@ struct Pair {
   TimedScene planned;
   TimedScene all;
 
-  /// Whether the plan saves anything; otherwise both are the same run.
+  /// True where the plan saves work; otherwise both runs are the same.
   bool saves() const {
     const EffectPlan& own = planned.plan();
     const EffectPlan& whole = all.plan();

@@ -36,7 +36,7 @@ PeerBatch whole_sample(const PeerSample& sample);
 /// The nested grid of a stride.
 PeerBatch nested_grid(const PeerSample& sample, std::size_t stride);
 
-/// What a setting gives each entry of the sample.
+/// Errors and times of one setting on each entry of the sample.
 struct TriedSetting {
   double setting = 0.0;
   std::vector<double> errors = {};

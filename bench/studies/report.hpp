@@ -1,4 +1,4 @@
-// What all studies do with their results.
+// Output of results, common to all studies.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// What the plan says of the density of axes, against tables that follow its advice.
+// Compares the plan's advice on the density of axes with tables that follow it.
 #include "run/lookup_forecast.hpp"
 
 #include <gtest/gtest.h>

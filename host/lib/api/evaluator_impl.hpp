@@ -1,4 +1,4 @@
-// What a public evaluator holds.
+// Implementation of the public evaluator.
 #pragma once
 
 #include <unistd.h>

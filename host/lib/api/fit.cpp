@@ -62,7 +62,7 @@ struct Best {
   std::optional<fit::FitResult> result;
   Settings compared;
 
-  /// What was compared, and the values that were found.
+  /// The compared settings, with the fitted values.
   Settings settings() const {
     const std::vector<FitParameter>& found = result.value().parameters;
     Eigen::VectorXd values(static_cast<Eigen::Index>(found.size()));

@@ -1,4 +1,4 @@
-// What a public table holds.
+// Implementation of the public table.
 #pragma once
 
 #include <dolp/dolp.hpp>

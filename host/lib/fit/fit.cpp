@@ -68,7 +68,7 @@ struct Direction {
   bool is_null = false;  ///< the data do not see it at all; else the whole range changes less than they can tell
 };
 
-/// What the Jacobian at a minimum says.
+/// Covariance of the parameters, from the Jacobian at a minimum.
 struct Covariance {
   Eigen::MatrixXd of_coordinates;     ///< infinite variance where a null direction points; NaN at a bound
   std::vector<Direction> directions;  ///< that the data do not see
@@ -177,7 +177,7 @@ class Fit {
  private:
   std::size_t freedom() const { return model_.observation_count() - model_.parameters().size(); }
 
-  /// Whether there is anything to measure the growth of the objective with.
+  /// True where the growth of the objective has a scale to be measured with.
   bool has_scale() const { return model_.has_uncertainties() || freedom() > 0; }
 
   /// 1, or the square of a hundredth of what was measured.

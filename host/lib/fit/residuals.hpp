@@ -54,7 +54,7 @@ class Residuals {
   Prediction predicted(const Eigen::VectorXd& point);
   /// The observables of a prediction.
   Eigen::VectorXd observed(const Prediction& prediction) const;
-  /// What differences are multiplied with: 1 / uncertainty, or 1.
+  /// The factors of the differences: 1 / uncertainty, or 1.
   const Eigen::VectorXd& weights() const { return weights_; }
 
  private:

@@ -42,7 +42,7 @@ std::vector<Eigen::VectorXd> sobol_points(std::size_t count, Eigen::Index dimens
   return points;
 }
 
-/// Where the descents begin: the best points, no two of them close together.
+/// The starting points of the descents: the best points, no two of them close together.
 std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& options) {
   const std::vector<FitRange>& parameters = residuals.model().parameters();
   const auto dimensions = static_cast<Eigen::Index>(parameters.size());
@@ -92,7 +92,7 @@ Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& re
   return moved.cwiseMax(0.0).cwiseMin(1.0);
 }
 
-/// Whether the objective falls from point to point, or rises nowhere by more than `scale`.
+/// True where the objective falls from point to point, or never rises by more than `scale`.
 bool falls(double from, const std::vector<Eigen::VectorXd>& residuals, Loss loss, double scale) {
   double least = from;
   return std::ranges::all_of(residuals, [&](const Eigen::VectorXd& one) {
@@ -103,7 +103,7 @@ bool falls(double from, const std::vector<Eigen::VectorXd>& residuals, Loss loss
   });
 }
 
-/// Whether derivatives at a point foretell the residuals at a minimum: nothing parts the two then.
+/// True where the derivatives at a point predict the residuals at a minimum: then nothing separates the two.
 bool is_straight(const Linearisation& from, const Linearisation& to, double scale) {
   const Eigen::VectorXd foretold = from.residuals + from.jacobian * (to.at - from.at);
   return (foretold - to.residuals).squaredNorm() < kBent * ((from.residuals - to.residuals).squaredNorm() + scale);
@@ -117,8 +117,8 @@ std::vector<Eigen::VectorXd> points_between(const Linearisation& from, const Min
   return points;
 }
 
-/// Whether the objective falls from a point along the straight line to one of several minima or along the floor of the
-/// valley beside it, but for rises of less than one standard deviation.
+/// True where the objective falls from a point along the straight line to one of several minima, or along the floor of
+/// the valley beside it, except for rises of less than one standard deviation.
 bool leads_down(Residuals& residuals, const Minimum& from, const std::vector<Minimum>& to,
                 const SearchOptions& options) {
   const auto is_near = [&](const Minimum& one) { return is_straight(from.where, one.where, scale_of(options, one)); };

@@ -1,4 +1,4 @@
-// Where a fit begins, and which minima it finds.
+// The starting points of a fit, and the minima that it finds.
 #pragma once
 
 #include <cstddef>

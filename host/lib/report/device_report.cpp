@@ -12,7 +12,7 @@
 namespace dolp {
 namespace {
 
-// What each arithmetic is asked for: near the best that it can do.
+// Requested tolerance of each arithmetic: near the best that it can reach.
 constexpr double kFloatTolerance = 1e-6;
 constexpr double kDoubleTolerance = 1e-9;
 

@@ -1,4 +1,4 @@
-// What there is to say of the Vulkan devices.
+// Report on the Vulkan devices.
 #pragma once
 
 #include "device/devices.hpp"

@@ -1,4 +1,4 @@
-// What there is to say of a fit.
+// Report on a fit.
 #pragma once
 
 #include <cstddef>

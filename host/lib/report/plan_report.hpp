@@ -1,4 +1,4 @@
-// What there is to say about a run that has not happened: for people, and as JSON.
+// Report on a planned run that has not started: for people, and as JSON.
 #pragma once
 
 #include <optional>

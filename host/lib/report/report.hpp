@@ -1,4 +1,4 @@
-// What a command reports: one list of values, rendered for people or for programs.
+// A command's report: one list of values, rendered for people or for programs.
 #pragma once
 
 #include <fmt/format.h>

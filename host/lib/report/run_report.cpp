@@ -36,7 +36,7 @@ void add_energy(ReportBuilder& report, const RunSummary& summary, bool is_comput
   report.add("albedo/gains_energy", range_report("gains it (above", kAlbedoMax, summary.gains));
 }
 
-/// What is kept, and a line for each effect that is dropped.
+/// Adds the effects that are kept, and a line for each effect that is dropped.
 void add_effects(ReportBuilder& report, const RunOutcome& run) {
   std::string kept;
   for (const EffectRow& row : run.effects) {

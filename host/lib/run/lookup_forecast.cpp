@@ -132,7 +132,7 @@ class Forecast {
     return stretch;
   }
 
-  /// What a lookup leaves out in each stretch; NaN where the model has no value. All are computed together.
+  /// The error of a lookup in each stretch; NaN where the model has no value. All stretches are computed together.
   std::vector<double> errors_in(const std::vector<Stretch>& stretches) {
     std::vector<SceneEntry> all;
     std::vector<double> wavelengths;

@@ -12,7 +12,7 @@ BeamAngles angles_of(const SceneValues& scene, double theta_deg) {
           geometry.relative_azimuth_deg};
 }
 
-/// What distinguishes two slope distributions: the gaussian has no q.
+/// The parameters that distinguish two slope distributions: the gaussian has no q.
 SlopeShape normalised(const SceneValues& scene, const SlopeShape& shape) {
   return scene.surface.distribution == Distribution::kGaussian ? SlopeShape{.sigma = shape.sigma} : shape;
 }

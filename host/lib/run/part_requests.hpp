@@ -1,4 +1,4 @@
-// What a run asks of the evaluator for a part of its entries, and where each entry finds its answer.
+// A run's requests to the evaluator for a part of its entries, and the position of each entry's answer.
 #pragma once
 
 #include <cstddef>
@@ -31,8 +31,8 @@ double seen_deg(const SceneValues& scene, double theta_deg);
 
 bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
-/// Whether the evaluator has to compute the beam of an entry: not of a mirror, nor with source and view both at
-/// 90 degrees.
+/// True where the evaluator must compute the beam of an entry: not for a mirror, nor with source and view both at 90
+/// degrees.
 bool wants_beam(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
 /// The beam of an entry that wants none: a mirror sends nothing but toward its specular direction, where the radiance

@@ -1,4 +1,4 @@
-// What a run will cost, before it runs.
+// Prediction of a run's cost before it starts.
 #pragma once
 
 #include <functional>

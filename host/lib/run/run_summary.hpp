@@ -1,4 +1,4 @@
-// What a report says of results, gathered part by part.
+// Summary of results for reports, gathered part by part.
 #pragma once
 
 #include <array>
@@ -44,7 +44,7 @@ struct RunSummary {
   /// Adds the results of some entries.
   void add(const SceneValues& scene, const SceneEntries& part, std::span<const PointResult> results);
   void add(const RunSummary& other);
-  /// What an evaluator did, beside what is in the summary already.
+  /// Adds an evaluator's counts and kernel time to those of the summary.
   void add(const EvaluationReport& report);
   /// The report of an evaluator with the totals of the summary.
   EvaluationReport totals(EvaluationReport report) const;

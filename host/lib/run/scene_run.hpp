@@ -32,7 +32,7 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points);
 /// Errors: InputError that names the points' file and line, column, value and what is allowed.
 void check_smith(const SceneValues& scene, const Points& points);
 
-/// Where results go, part by part.
+/// Destination of results, part by part.
 class Sink {
  public:
   virtual ~Sink() = default;
@@ -73,7 +73,7 @@ class PassedResults final : public Sink {
 /// Makes the evaluator, when it is needed.
 using EvaluatorMaker = std::function<MomentsEvaluator*()>;
 
-/// What came of a run.
+/// The outcome of a run.
 struct RunOutcome {
   EffectPlan plan;
   std::vector<EffectRow> effects;
@@ -92,7 +92,7 @@ class Run {
 
   const SceneEntries& entries() const { return entries_; }
   const EffectPlan& plan() const { return outcome_.plan; }
-  /// What computes it; "none" where nothing is left for an evaluator.
+  /// The evaluator in use; "none" where no work is left for one.
   const EvaluationReport& evaluation() const { return outcome_.evaluation; }
   /// The parts in which it goes through its entries, which bounds its memory: whole directions of a grid where they
   /// fit.

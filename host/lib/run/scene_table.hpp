@@ -26,7 +26,7 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
 TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results);
 
 std::string history_text(const std::string& command_line);
-/// What is known after a run.
+/// The attributes that are known after a run.
 std::vector<Attribute> attributes_of(const SceneValues& scene, const RunOutcome& run, const std::string& command_line);
 
 /// The rule in words, for reports and table attributes.

@@ -10,7 +10,7 @@
 
 namespace dolp {
 
-/// What the entries that were computed again say of the bounds of all.
+/// Check of all error bounds by the entries that were computed again.
 struct SelfCheck {
   std::size_t entries = 0;
   double worst_ratio = 0.0;  ///< largest difference over the sum of the bounds of both results; above 1 a bound failed

@@ -35,7 +35,7 @@ struct TableJob {
 /// Errors: those of Run and of TableOutput, which say what is there already, as Cancelled does.
 RunOutcome write_table(const SceneValues& scene, const TableJob& job, const EvaluatorMaker& make_evaluator);
 
-/// Whether the job's path is a whole table of its scene, shard and program already.
+/// True where the job's path already holds a complete table of its scene, shard and program.
 bool is_there(const SceneValues& scene, const TableJob& job);
 
 /// Joins all shards of a table into one, which are opened one at a time. Returns the entries.

@@ -21,11 +21,11 @@ struct ErrorCheck {
   /// error / estimate, less what the reference may err itself: above 1 the estimate is wrong.
   double ratio() const;
   bool is_within_estimate() const { return ratio() <= 1.0; }
-  /// Whether the error is beyond doubt above a tolerance.
+  /// True where the error certainly exceeds a tolerance.
   bool is_above(double tolerance) const { return error > tolerance + reference; }
 };
 
-/// What came of one case.
+/// The result of one case.
 struct CaseOutcome {
   std::size_t position = 0;    ///< in the list of cases
   ErrorCheck rho;              ///< max(|d rho_I|, |d rho_Q|) / rho_I

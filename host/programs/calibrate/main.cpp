@@ -25,7 +25,7 @@ dolp::MomentsRequest integrand(dolp::Masking masking, dolp::Scattering scatterin
   return request;
 }
 
-/// What rules are made for: a masking, or all bounces in its grooves.
+/// The integrands that rules are made for: a masking, or all bounces in its grooves.
 const std::map<std::string, dolp::MomentsRequest> kIntegrands = {
     {"none", integrand(dolp::Masking::kNone)},
     {"v-cavity", integrand(dolp::Masking::kVCavity)},

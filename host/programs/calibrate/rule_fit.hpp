@@ -21,7 +21,7 @@ struct RuleFitOptions {
 /// `integrand` is a request without entries.
 double mean_log_work(const MomentsRequest& integrand, const RuleModel& model, const RuleFitOptions& options);
 
-/// Where every search starts.
+/// The starting point of every search.
 inline constexpr RuleModel kFitStart = {.margin_digits = 2.0,
                                         .t_nodes = 2.0,
                                         .t_digits = 0.0,

@@ -28,7 +28,7 @@ struct FitJob {
   std::vector<Varied> varied;
 };
 
-/// What a fit found.
+/// The result of a fit.
 struct FitFound {
   std::vector<Setting> values;
   std::map<std::string, FitInterval> interval_68, interval_95;  ///< by key
@@ -42,7 +42,7 @@ FitFound run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progre
 /// Which parameters vary, and what the last fit found, as long as the scene is the one that it left.
 class Fitting {
  public:
-  /// Whether a parameter can vary at all.
+  /// True where a parameter can vary at all.
   static bool can_vary(const Parameter& parameter);
 
   bool varies(const std::string& key) const { return marked_.contains(key); }

@@ -1,4 +1,4 @@
-// Where a curve polarises most, how sure that is, and what does it.
+// The maximum of a curve's polarisation, its uncertainty, and the effects behind it.
 #pragma once
 
 #include <optional>
@@ -24,7 +24,7 @@ struct PeakAnswer {
   bool is_at_end = false;           ///< the largest is beside entries that are not good, or at the end of the range
 };
 
-/// What the peak would be without one effect.
+/// The peak without one effect.
 struct WithoutEffect {
   const char* effect;     ///< as in Effect::name, or "roughness"
   const char* change;  ///< what takes it away
@@ -44,7 +44,7 @@ class Peak {
   /// The peak of this curve, which is finished, up to a zenith; the scene behind it is that of `edits`.
   void follow(const Curve& curve, const SceneEdits& edits, double theta_max_deg);
 
-  /// What is still to be computed.
+  /// The work still to be done.
   std::vector<Job> wanted() const;
   bool take(const JobPart& news);
 

@@ -1,4 +1,4 @@
-// What a curve or a map can show of an entry.
+// Quantities that a curve or a map can show.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What is behind the window: the scene under the hand, its curves, its map, pins and cursor.
+// The state behind the window: the edited scene, its curves, its map, pins and cursor.
 #pragma once
 
 #include <deque>
@@ -24,7 +24,7 @@ struct Pin {
   Curve curve;
 };
 
-/// What is shown, and how.
+/// The displayed quantity, and how it is drawn.
 struct View {
   Plotted quantity = Plotted::kDolp;
   bool is_log = false;
@@ -72,7 +72,7 @@ class Session {
   // ---- Computing.
   /// The most wanted first.
   std::vector<Job> wanted() const;
-  /// Whether wanted() may have changed since the last call.
+  /// True where wanted() may have changed since the last call.
   bool take_changed();
   void take(const std::vector<JobPart>& news);
 
@@ -91,7 +91,7 @@ class Session {
   bool varies(const std::string& key) const { return fitting_.varies(key); }
   /// The fit of the marked parameters to the measured points; none where one of them is missing.
   std::optional<FitJob> fit_job() const { return fitting_.job(scene(), residuals_.points()); }
-  /// What the last fit found; null once the scene is another one.
+  /// The result of the last fit; null once the scene has changed.
   const FitFound* fit_found() const { return fitting_.found(edits_.changes()); }
   const Message& message() const { return message_; }
   /// The effects of the last finished curve; influences of what is kept are those at the cursor's zenith.
@@ -99,7 +99,7 @@ class Session {
   /// The position of the scene's own values on the map.
   double map_cursor_x() const { return cursor_position(map_.x()); }
   double map_cursor_y() const { return cursor_position(map_.y()); }
-  /// What is shown at the zenith nearest to the cursor's; null before there is something.
+  /// The point on display at the zenith nearest to the cursor's; null before there is one.
   const Point* at_cursor() const;
 
  private:

@@ -97,7 +97,7 @@ bool put_normal_albedo(const Row& row, Moments& moments) {
   return is_ln2;
 }
 
-/// Puts closed forms in the place of quadratures where there are any, and says so.
+/// Replaces quadratures by closed forms where there are any, and says so.
 void put_closed_forms(Row& row) {
   Moments& moments = row.moments;
   if (row.input.shape.sigma == 0.0) {

@@ -184,7 +184,7 @@ class App::Impl {
     glfwSetWindowShouldClose(window_.get(), GLFW_TRUE);
     glfwPostEmptyEvent();
   }
-  /// Whether there was input since the last call.
+  /// True where there was input since the last call.
   bool take_input() { return std::exchange(has_input_, false); }
   bool is_idle() const {
     const std::scoped_lock lock(found_mutex_);
@@ -311,7 +311,7 @@ class App::Impl {
     });
   }
 
-  /// What a fit has found since the last call.
+  /// The result of a fit that finished since the last call.
   std::optional<FitFound> take_found() {
     const std::scoped_lock lock(found_mutex_);
     return std::exchange(found_, std::nullopt);

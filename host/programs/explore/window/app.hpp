@@ -38,9 +38,9 @@ class App {
   ~App();
 
   Session& session();
-  /// Where the slider of a scene key was drawn last. Errors: std::out_of_range when it was not.
+  /// The last drawn position of a scene key's slider. Errors: std::out_of_range when it was not drawn.
   Area control_area(const std::string& key) const;
-  /// Where the curve was drawn last, without its axes.
+  /// The last drawn area of the curve, without its axes.
   Area plot_area() const;
 
   /// Takes input and news, and draws one frame. False when the user has closed the window.

@@ -24,10 +24,10 @@ CurveStyle current_style();
 CurveStyle overlay_style();
 CurveStyle pin_style(std::size_t pin);
 
-/// The same curve where it is of a scene before the present one.
+/// The style of the same curve when it belongs to an earlier scene.
 CurveStyle stale(const CurveStyle& style);
 
-/// What a band around a curve of that style is filled with.
+/// The fill colour of the band around a curve of that style.
 ImU32 band_colour(const CurveStyle& style);
 
 inline constexpr ImU32 kTextColour = IM_COL32(225, 228, 232, 255);

@@ -51,7 +51,7 @@ std::string interval_text(const FitInterval& interval) {
   return end(interval.low) + " to " + end(interval.high);
 }
 
-/// What the last fit says of a parameter.
+/// The last fit's intervals of a parameter.
 std::string intervals_text(const Parameter& parameter, const Session& session) {
   const FitFound* const found = session.fit_found();
   const std::string& key = parameter.key->key;

@@ -38,7 +38,7 @@ std::vector<Shown> shown_curves(const Session& session) {
 
 double scale_of(Plotted quantity) { return described(quantity).in_percent ? 100.0 : 1.0; }
 
-/// What was measured of a quantity.
+/// The measured points of a quantity.
 std::vector<MeasuredPoint> measured_of(const Session& session, Plotted quantity) {
   if (!session.residuals().points()) return {};
   std::vector<MeasuredPoint> points = session.residuals().points()->points;
@@ -46,7 +46,7 @@ std::vector<MeasuredPoint> measured_of(const Session& session, Plotted quantity)
   return points;
 }
 
-/// What the axis of values has to hold.
+/// The range that the axis of values must cover.
 struct Range {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();

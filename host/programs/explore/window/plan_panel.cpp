@@ -28,7 +28,7 @@ std::string influence_text(const Effect& row) {
                      points >= 10.0 ? fmt::format("{:.0f}", points) : fmt::format("{:.2g}", points));
 }
 
-/// What the maximum would be without the effect; a surface without slopes is a smooth one.
+/// The maximum without the effect; a surface without slopes is a smooth one.
 std::string taken_away_text(const Session& session, const Effect& row) {
   if (row.name != "distribution") return without_text(session, row.name);
   const std::string text = without_text(session, "roughness");

@@ -1,4 +1,4 @@
-// What is computed, what is left out, why, and what that costs.
+// Panel of the plan: effects computed and left out, with reasons and cost.
 #pragma once
 
 #include "explore/background_task.hpp"

@@ -60,7 +60,7 @@ class Swapchain {
 
 UniqueSemaphore make_semaphore(VkDevice device);
 
-/// Whether a surface has a size to draw into: a minimised window has none.
+/// True where a surface has a size to draw into: a minimised window has none.
 bool has_area(VkPhysicalDevice physical, VkSurfaceKHR surface, VkExtent2D wanted);
 
 }  // namespace dolp::explore

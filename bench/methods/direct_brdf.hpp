@@ -44,7 +44,7 @@ struct RunningBeam {
 /// Domain: 0 < theta < 90 degrees, sigma > 0, cauchy q > 1 (smith: q > 3/2).
 class DirectSurface {
  public:
-  /// Where Smith's Lambda comes from: the closed form is best for a few running beams, the table for many.
+  /// The source of Smith's Lambda: the closed form is best for a few running beams, the table for many.
   enum class SmithBy { kClosedForm, kTable };
   DirectSurface(const Entry& entry, SmithBy smith_by);
   DirectSurface(const DirectSurface&) = delete;

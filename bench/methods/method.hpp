@@ -34,7 +34,7 @@ class Solver {
   virtual ~Solver() = default;
   /// Computes every entry of the request, whose tolerance is ignored: `setting` says how finely.
   virtual Solution solve(const MomentsRequest& request, double setting) = 0;
-  /// Where it runs: a device, a processor or an interpreter, with versions.
+  /// The device, processor or interpreter that runs the method, with versions.
   virtual std::string where() const = 0;
 };
 

@@ -1,4 +1,4 @@
-// How much arithmetic the kernel of the moments does for a request.
+// Count of the arithmetic operations of the moments kernel for a request.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// How the study of peers finds out which setting of a method is fine enough.
+// Search for the cheapest setting of a method that is fine enough, for the study of peers.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ struct PeerBatch {
   MomentsRequest request;
   std::vector<std::size_t> positions;
 
-  /// Of the answers to the request; infinite for NaN.
+  /// The largest error of the answers to the request; infinite for NaN.
   double worst_error(const std::vector<Answer>& answers, const PeerSample& sample) const;
 };
 

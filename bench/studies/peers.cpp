@@ -39,7 +39,7 @@ std::vector<PeerCase> peer_cases() {
 constexpr const char* kOwn = "vulkan-float";
 constexpr const char* kOwnTable = "vulkan-table";
 
-/// How much of everything.
+/// The effort of the study.
 struct Effort {
   std::vector<double> tolerances;  ///< from coarse to fine
   std::size_t sample;              ///< entries whose errors count

@@ -123,7 +123,7 @@ class Map {
     return std::isfinite(objective) ? (objective - result_.chi_square) / result_.scale : std::nan("");
   }
 
-  /// Where the others go along the bottom of the valley, as the derivatives at the minimum say.
+  /// Starts the other parameters on the bottom of the valley, as the derivatives at the minimum predict it.
   Linearisation start_at(const std::vector<std::pair<std::size_t, double>>& held) const {
     Linearisation start;
     start.at = minimum_.at;

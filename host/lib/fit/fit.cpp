@@ -53,7 +53,7 @@ double fine_tolerance(const Model& model) {
   return std::min(model.scene().accuracy.tolerance, std::max(wanted, kLeastTolerance));
 }
 
-/// That of the search.
+/// The tolerance of the search.
 double coarse_tolerance(const Model& model) {
   const double wanted =
       model.has_uncertainties() ? kCoarseShare * least_uncertainty(model) : kCoarseToleranceWithoutUncertainties;
@@ -260,7 +260,7 @@ class Fit {
     return false;
   }
 
-  /// Of a side of a profile.
+  /// The direction of a side of a profile.
   static int direction_of(std::size_t side) { return side % 2 == 0 ? -1 : 1; }
 
   void widen(FitInterval& interval, std::size_t parameter, int direction, const IntervalEnd& end, bool is_first) const {

@@ -92,7 +92,8 @@ void add_row(MeasuredData& data, const CsvReader& row, const std::vector<ColumnR
   }
 }
 
-/// Where the keys of "FILE:KEY=VALUE,..." begin: behind the colon before the first dotted key of a scene.
+/// The position at which the keys of "FILE:KEY=VALUE,..." begin: behind the colon before the first dotted key of a
+/// scene.
 std::size_t keys_begin(const std::string& argument) {
   for (std::size_t colon = argument.find(':'); colon != std::string::npos; colon = argument.find(':', colon + 1)) {
     const std::string_view rest = std::string_view(argument).substr(colon + 1);

@@ -55,7 +55,8 @@ class Side {
  private:
   using Place = std::vector<Point>::const_iterator;
 
-  /// Where a straight line through the two points beside `root` meets it; beyond the last point through the last two.
+  /// The intersection of `root` with a straight line through the two points beside it; beyond the last point, through
+  /// the last two.
   double next(Place above, double root) const {
     if (above != points_.end()) {
       const Point& below = *(above - 1);

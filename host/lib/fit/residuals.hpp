@@ -10,7 +10,7 @@
 
 namespace dolp::fit {
 
-/// Residuals at a point of the parameters' coordinates, and how they change with them.
+/// Residuals at a point of the parameters' coordinates, and their derivatives.
 struct Linearisation {
   Eigen::VectorXd at;         ///< coordinates in [0, 1]
   Eigen::VectorXd residuals;  ///< (model - measured) / uncertainty; without uncertainties model - measured

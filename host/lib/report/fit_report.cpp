@@ -85,7 +85,7 @@ void add_correlations(ReportBuilder& report, const FitResult& result) {
   }
 }
 
-/// How well the model fits, and what measures it.
+/// Adds the misfit of the model, and its measure.
 void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   report.row("minimum", "chi_square {:.6g}, {} degrees of freedom{}{}", key("chi_square", result.chi_square),
              key("degrees_of_freedom", result.degrees_of_freedom),

@@ -107,7 +107,7 @@ Work work_without(const PlanReport& report, Part part, const SceneEntries& entri
   return {left.moments ? work.moments : 0.0, left.beams ? work.beams : 0.0};
 }
 
-/// For each effect the share of the evaluations that would not be made without it.
+/// The share of the evaluations that each effect causes.
 std::vector<double> work_shares(const PlanReport& report, const SceneEntries& entries,
                                 const Device& device) {
   const double total = work_of(report.run).total();

@@ -146,7 +146,7 @@ std::string needed_text(const AxisForecast& axis) {
   return fmt::format("{} values are about enough for {:.1g}", axis.needed_values, axis.wanted);
 }
 
-/// How densely the axes must lie for lookups.
+/// Adds the density of axes that lookups need.
 void add_lookup(ReportBuilder& report, const PlanReport& plan) {
   std::vector<ReportBuilder> axes;
   for (const AxisForecast& axis : plan.lookup) {

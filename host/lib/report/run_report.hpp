@@ -27,7 +27,7 @@ void add_evaluation(ReportBuilder& report, const EvaluationReport& evaluation, d
 /// The results that carry a bit of the status.
 std::size_t count_status(const std::vector<PointResult>& results, std::uint32_t bit);
 
-/// The largest of an error that results state, of those whose status has none of `refused`; none without any.
+/// The largest stated error of the results whose status has none of the bits `refused`; none without any.
 std::optional<double> worst_of(const std::vector<PointResult>& results, Quantity error, std::uint32_t refused);
 
 }  // namespace dolp

@@ -1,4 +1,4 @@
-// A table read between its entries at scattered points.
+// Interpolation of a table at scattered points.
 #pragma once
 
 #include <dolp/errors.hpp>

@@ -86,7 +86,7 @@ class CountingEvaluator final : public MomentsEvaluator, public ScatteringEvalua
   Count beams_;
 };
 
-/// How many of all there are for each that was counted.
+/// The number of all entries for each counted one.
 double scale_of(std::size_t all, const Count& counted) {
   return counted.first == 0 ? 0.0 : static_cast<double>(all) / static_cast<double>(counted.first);
 }

@@ -19,8 +19,8 @@ namespace dolp {
 /// "2-of-8" before the suffix of a path; the path itself for a whole table.
 std::filesystem::path shard_path(const std::filesystem::path& path, const Shard& shard);
 
-/// The entries of a shard: part of the values of theta, or where these are too few of wavelength, n and k too, so that
-/// what entries share stays together.
+/// The entries of a shard: part of the values of theta, or, where these are too few, of wavelength, n and k too, so
+/// that entries that share work stay together.
 /// Errors: InputError where the axes cannot be cut into so many parts.
 SceneEntries shard_entries(const SceneValues& scene, const Shard& shard);
 

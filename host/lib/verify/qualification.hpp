@@ -48,7 +48,7 @@ SceneValues emission_scene(Distribution distribution, Masking masking, double to
 std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, MomentsEvaluator& evaluator, double tolerance,
                                  const Progress& progress);
 
-/// How well an evaluator computes a few ordinary cases of every distribution and masking.
+/// Accuracy of an evaluator on a few ordinary cases of every distribution and masking.
 struct DeviceQuality {
   std::size_t cases = 0;
   std::size_t missed = 0;    ///< of them, those that say they miss the tolerance

@@ -22,7 +22,7 @@ namespace {
 // The reference is a hundred times better than the table if it can, and this good at least.
 constexpr double kReferenceTolerance = 1e-11;
 
-/// How the bound of a quantity follows from the two estimates.
+/// The relation of a quantity's bound to the two estimates.
 enum class Bound { kDolp, kReflectance, kPolarisedRadiation, kRadiation };
 
 struct Compared {

@@ -51,7 +51,7 @@ class Curve {
   // The points on display, and the scene that they were computed with.
   const Scene& shown_scene() const { return points_.empty() ? scene_ : shown_scene_; }
   const std::vector<Point>& points() const { return points_; }
-  /// Of the last finished curve.
+  /// The report on the last finished curve.
   const CurveReport& report() const { return report_; }
 
   /// The largest stated error of DOLP where status promises one.

@@ -48,7 +48,7 @@ class Fitting {
   bool varies(const std::string& key) const { return marked_.contains(key); }
   void mark(const std::string& key, bool varies);
 
-  /// None without points, or without a marked parameter that the scene has.
+  /// The job of a fit; none without points, or without a marked parameter that the scene has.
   std::optional<FitJob> job(const Scene& scene, const std::optional<MeasuredPoints>& points) const;
 
   void take(FitFound found, std::vector<Setting> changes);

@@ -12,7 +12,7 @@
 
 namespace dolp::explore {
 
-/// In the order of a grid's axes.
+/// Kinds of axes, in the order of a grid's axes.
 enum class AxisKind { kTheta, kSigma, kQ };
 
 /// One axis of a map. `from` < `to`; with `is_log` both are positive.

@@ -48,9 +48,9 @@ class Peak {
   std::vector<Job> wanted() const;
   bool take(const JobPart& news);
 
-  /// None while it is unknown, or where no entry is good.
+  /// The peak; none while it is unknown, or where no entry is good.
   const std::optional<PeakAnswer>& answer() const { return answer_; }
-  /// Of those that the scene has; complete when all are known.
+  /// The peak without each effect that the scene has; complete when all are known.
   const std::vector<WithoutEffect>& without() const { return without_; }
   bool is_complete() const;
 

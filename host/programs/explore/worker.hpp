@@ -35,13 +35,13 @@ struct JobPart {
   std::vector<Point> points = {};
   std::string csv = {};  ///< of this part, where the job wants effects
   bool is_last = false;
-  // Of the whole job, in the last part.
+  // Totals of the whole job, in the last part.
   std::vector<Effect> effects = {};
   double wall_s = 0.0;
   double evaluations = 0.0;
 };
 
-/// As `evaluate`. Called from one thread.
+/// Has the meaning of `evaluate`. Called from one thread.
 using Evaluate = std::function<Results(const Scene& scene, const PointList& list, const RunOptions& options)>;
 
 /// Computes what is wanted, in order; what is no longer wanted is given up within a tile of the device, unless brief.

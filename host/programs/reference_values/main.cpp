@@ -41,7 +41,7 @@ struct Refinements {
   dolp::ReferenceOptions coarse;
   dolp::ReferenceOptions fine;
 };
-// As fine as rounding in double lets the nested quadratures agree.
+// The finest settings at which rounding in double still lets the nested quadratures agree.
 constexpr Refinements kForHardCases{{.relative_tolerance = 3e-13, .subdivisions = 1},
                                     {.relative_tolerance = 1e-13, .subdivisions = 2}};
 // A thousandth of the tightest tolerance that random points are compared at, 1e-9.

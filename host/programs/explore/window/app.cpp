@@ -70,7 +70,7 @@ struct DestroyWindow {
 };
 using UniqueWindow = std::unique_ptr<GLFWwindow, DestroyWindow>;
 
-/// As large as its content at the display's scale, or as the display.
+/// Opens a window as large as its content at the display's scale, or as the display.
 UniqueWindow open_window() {
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
   int x = 0;
@@ -224,7 +224,7 @@ class App::Impl {
  private:
   static Impl* impl_of(GLFWwindow* window) { return static_cast<Impl*>(glfwGetWindowUserPointer(window)); }
 
-  /// With callbacks of our own, which ImGui calls after its own; until the user pointer is set they do nothing.
+  /// Installs our own callbacks, which ImGui calls after its own; until the user pointer is set they do nothing.
   static GLFWwindow* prepared(GLFWwindow* window) {
     glfwSetKeyCallback(window, [](GLFWwindow* of, int key, int, int action, int modifiers) {
       note_input(of);

@@ -20,7 +20,7 @@ struct AppOptions {
   std::string command_line;  ///< for the history of tables
 };
 
-/// How long frames took.
+/// Durations of frames.
 struct FrameTimes {
   std::vector<double> all_s;   ///< from one frame's start to the next
   std::vector<double> busy_s;  ///< those in which the worker had something to do

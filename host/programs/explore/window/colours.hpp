@@ -11,7 +11,7 @@ namespace dolp::explore {
 /// Source: S. van der Walt, N. Smith, viridis of Matplotlib (CC0), at seventeen equal steps, linear in between.
 ImU32 viridis(double position);
 
-/// How a curve is drawn: colours never tell alone.
+/// Style of a curve: colour is never the only distinction.
 struct CurveStyle {
   ImU32 colour;
   float dash;  ///< length of dashes in pixels, 0 for a full line

@@ -113,7 +113,7 @@ void draw_bracket(const Plot& plot, const Shown& shown) {
     const double value = std::max(scale_of(Plotted::kDolp) * dolp, plot.y().from);
     return plot.at(points[i].theta_deg, value);
   };
-  // Without smooth edges, which would show as seams.
+  // Smooth edges are off: they would show as seams.
   const ImDrawListFlags flags = std::exchange(plot.list()->Flags, ImDrawListFlags_None);
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Point& a = points[i];

@@ -17,7 +17,7 @@ using UniqueFramebuffer = vulkan::Handle<VkFramebuffer, vkDestroyFramebuffer>;
 using UniqueRenderPass = vulkan::Handle<VkRenderPass, vkDestroyRenderPass>;
 using UniqueSemaphore = vulkan::Handle<VkSemaphore, vkDestroySemaphore>;
 
-/// How the images of a surface are stored: eight bits a channel, not sRGB, because ImGui's colours are meant so.
+/// Format of a surface's images: eight bits a channel, not sRGB, because ImGui's colours assume that.
 struct SurfaceFormat {
   VkSurfaceFormatKHR format{};
   bool is_bgr = false;

@@ -1,4 +1,4 @@
-// The plain formulas of the model, as anyone would write them down, for the methods that dolp is compared with.
+// The plain textbook formulas of the model, for the methods that dolp is compared with.
 //
 // Nothing here is shared with the shaders or with the reference. Reflectances are in real arithmetic and the masking of
 // the paper comes from tables of its three primitives, because a user who cares about time would do so too.
@@ -21,7 +21,7 @@ struct Entry {
 };
 Entry entry_of(const MomentsRequest& request, std::size_t position);
 
-/// G M00 and G M01: what one facet reflects.
+/// G M00 and G M01: the reflection of one facet.
 struct Reflected {
   double i = 0.0;
   double q = 0.0;

@@ -27,12 +27,12 @@ struct Solution {
   std::vector<double> own_times_s = {};    ///< repeated times of the call, where only the method can take them
 };
 
-/// A method ready to run. What it needs once (a device, an interpreter) is made with it and is not timed; whatever an
-/// entry needs (nodes, tables of its masking) belongs to `solve`.
+/// A method ready to run. Resources that it needs once (a device, an interpreter) are made with it and are not timed;
+/// data that each entry needs (nodes, tables of its masking) belong to `solve`.
 class Solver {
  public:
   virtual ~Solver() = default;
-  /// Computes every entry of the request, whose tolerance is ignored: `setting` says how finely.
+  /// Computes every entry of the request, whose tolerance is ignored: `setting` controls the accuracy.
   virtual Solution solve(const MomentsRequest& request, double setting) = 0;
   /// The device, processor or interpreter that runs the method, with versions.
   virtual std::string where() const = 0;
@@ -50,7 +50,7 @@ struct TookTooLong : Unavailable {
 
 struct SolverOptions {
   std::string device = {};     ///< Vulkan device: position or part of the name, empty for the default
-  double time_limit_s = 20.0;  ///< for one call of a method that may take for ever
+  double time_limit_s = 20.0;  ///< for one call of a method that may take very long
   std::vector<std::string> pythons = {"/usr/bin/python3", "python3"};  ///< tried in turn for one that has SciPy
 };
 

@@ -12,7 +12,7 @@
 
 namespace dolp::bench {
 
-/// A scene, what varies in it, and what is true.
+/// A scene, its varied parameters, and their true values.
 struct FitSet {
   SceneValues scene;
   std::vector<FitRange> parameters;

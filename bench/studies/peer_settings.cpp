@@ -122,7 +122,7 @@ void PeerSettings::warm_up() {
   try {
     solver_.solve(request, method_.settings.front());
   } catch (const Unavailable&) {
-    // The first try meets it again and says so.
+    // The first try meets the same error again and reports it.
   }
 }
 

@@ -22,7 +22,7 @@ struct PeerSample {
   std::vector<Truth> truths;
 };
 
-/// Entries to solve, and where among them the sample is.
+/// Entries to solve, and the positions of the sample among them.
 struct PeerBatch {
   MomentsRequest request;
   std::vector<std::size_t> positions;
@@ -55,14 +55,14 @@ class PeerSettings {
   /// Tries settings until one gives all entries the tolerance; null when none does.
   const TriedSetting* reaching(double tolerance);
 
-  /// Says that a setting has an error after all, on other entries.
+  /// Records that a setting has a larger error after all, on other entries.
   void reject(const TriedSetting& setting, double error);
 
-  /// Why the last setting was the last.
+  /// The reason why no further setting was tried.
   const std::string& why_not() const { return why_not_; }
 
-  /// Mean time of an entry when each has the cheapest setting that gives it the tolerance: what nobody can choose who
-  /// does not know the truth. Nothing when one entry has none.
+  /// Mean time of an entry when each has the cheapest setting that meets the tolerance: a choice that requires
+  /// knowledge of the truth. Nothing when one entry has none.
   std::optional<double> with_hindsight(double tolerance) const;
 
  private:

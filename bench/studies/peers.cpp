@@ -1,4 +1,4 @@
-// The study of peers: what the same entries cost everybody at the same accuracy.
+// The study of peers: the cost of the same entries with each method at the same accuracy.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ std::vector<PeerCase> peer_cases() {
   return cases;
 }
 
-// Whose kernels the others are compared with: every entry integrated, and as `dolp table` computes a grid.
+// The kernels that the others are compared with: every entry integrated, and as `dolp table` computes a grid.
 constexpr const char* kOwn = "vulkan-float";
 constexpr const char* kOwnTable = "vulkan-table";
 

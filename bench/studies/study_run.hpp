@@ -16,7 +16,7 @@
 
 namespace dolp::bench {
 
-/// A study while it runs: its JSON so far, and how many of its rows are done.
+/// A study while it runs: its JSON so far, and its progress in rows.
 class StudyRun {
  public:
   StudyRun(const StudyOptions& options, Progress progress) : options_(options), progress_(std::move(progress)) {}

@@ -40,7 +40,7 @@ MomentsRequest grid_request(const Model& model, const std::vector<double>& theta
 
 const Model kModel = kModels[2];  // cauchy, integral
 
-/// Moments that a function of the slope distribution says, with a bound of its own.
+/// Moments that are a function of the slope distribution, with a bound of their own.
 class Invented final : public MomentsEvaluator {
  public:
   using Function = double (*)(const SlopeShape&);

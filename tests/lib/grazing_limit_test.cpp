@@ -1,4 +1,5 @@
-// The quotients of diverging moments at 90 degrees: against an integral of its own, and against the kernel just before.
+// The quotients of diverging moments at 90 degrees: against an independent integral, and against the kernel just
+// before.
 #include "run/grazing_limit.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Dense tables from outside: what is interpolated, what the report says of it, and that its promises hold.
+// Dense tables from outside: the interpolated entries, their report, and a check that its promises hold.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -37,7 +37,7 @@ void check_loss(Loss loss, const std::vector<MeasuredData>& data) {
   }
 }
 
-/// All combinations of what is compared, one list of settings each; one empty list without it.
+/// All combinations of the compared settings, one list each; one empty list where nothing is compared.
 std::vector<Settings> combinations(const FitOptions& options) {
   std::vector<Settings> all = {{}};
   for (const Comparison& comparison : options.compare) {
@@ -56,7 +56,7 @@ std::vector<Settings> combinations(const FitOptions& options) {
   return all;
 }
 
-/// The best of the models that were compared.
+/// The best of the compared models.
 struct Best {
   std::unique_ptr<fit::Model> model;
   std::optional<fit::FitResult> result;

@@ -93,7 +93,7 @@ class Map {
   }
 
  private:
-  /// From where to where the second coordinate goes at one of the first: from the bottom of the valley up its sides.
+  /// The range of the second coordinate at one of the first: from the bottom of the valley up its sides.
   std::array<double, 2> across_the_valley(Residuals& own, double first) {
     const auto other = static_cast<Eigen::Index>(pair_[1]);
     DescentOptions descent = descent_;

@@ -40,8 +40,8 @@ class Residuals {
   /// The residuals alone, at several points in one batch. NaN where the model has no value.
   std::vector<Eigen::VectorXd> at(const std::vector<Eigen::VectorXd>& points);
 
-  /// With derivatives by differences, all in one batch. Their steps follow what the model changed by at the last ones,
-  /// see `follow`.
+  /// Residuals with derivatives by differences, all in one batch. The step sizes follow the model's changes at the last
+  /// ones, see `follow`.
   Linearisation linearised(const Eigen::VectorXd& point);
 
   /// The model at several points in one batch.

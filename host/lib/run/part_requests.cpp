@@ -128,7 +128,7 @@ void PartRequests::ask_grid(const Selection& selection) {
   if (!is_whole) mask(selection);
 }
 
-/// Sets that are alike share their indices.
+/// Equal sets share their indices.
 void PartRequests::ask_indices(const SceneEntries& grid, const std::vector<char>& is_used) {
   set_at_.assign(is_used.size(), 0);
   std::vector<OpticalConstants> last;

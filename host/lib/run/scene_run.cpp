@@ -21,10 +21,10 @@
 namespace dolp {
 namespace {
 
-// Bound the memory of a run. Points take more of it, because nothing is shared between them.
+// Limits on the memory of a run. Points take more of it, because they share nothing.
 constexpr std::size_t kMomentsAtOnce = 1U << 20U;
 constexpr std::size_t kPointsAtOnce = 1U << 17U;
-// A direction of which more than one entry in so many misses the tolerance is refined as a whole.
+// A direction is refined as a whole where more than one entry in so many misses the tolerance.
 constexpr std::size_t kManyMisses = 8;
 constexpr std::size_t kEntriesAtOnce = 4096;  // of a thread: their radiometry takes longer than to start one
 
@@ -190,7 +190,7 @@ bool finds_more(const RunContext& context, const RefinementLevel& level, const R
 using Waiting = std::map<RefinementLevel, std::vector<std::size_t>>;
 
 /// The next level of one direction whose `members` were computed at `last`: of all of it, between nodes again, where
-/// many miss the tolerance; else of each of these by itself. What follows for an entry depends on its direction alone.
+/// many miss the tolerance; else of each of these by itself. The choice for an entry depends on its direction alone.
 void plan_next(const RunContext& context, const SceneEntries& part, const RefinementLevel& last,
                std::span<const std::size_t> members, std::span<const PointResult> results, Waiting& waiting) {
   std::vector<std::pair<RefinementLevel, std::size_t>> missed;
@@ -210,7 +210,7 @@ void plan_next(const RunContext& context, const SceneEntries& part, const Refine
   }
 }
 
-/// The first level's results of a part, and which directions were interpolated to get them.
+/// The first level's results of a part, and the directions that were interpolated.
 struct FirstResults {
   RefinementLevel level;
   std::vector<PointResult> results;
@@ -291,7 +291,7 @@ std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntr
   return positions;
 }
 
-/// Results of a part: all levels, or what needs none. `checked`: positions in the whole grid; of points none.
+/// Results of a part: all levels, or closed forms and zeros. `checked`: positions in the whole grid; none for points.
 std::vector<PointResult> part_results(const RunContext& context, const SceneEntries& part, std::span<const std::size_t> checked,
                                       SelfCheck& check, const Progress& progress) {
   if (!wants_evaluator(context.scene, part, context.plan)) {

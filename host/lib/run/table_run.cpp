@@ -89,7 +89,7 @@ class TableSink final : public Sink {
   std::future<void> pending_;
 };
 
-/// Runs `body`; what goes wrong there says what is there already.
+/// Runs `body`; its errors also state how much of the file is there already.
 template <class Body>
 void with_rest(const TableOutput& output, const Body& body) {
   const auto more = [&] {
@@ -129,7 +129,7 @@ std::optional<Shard> shard_of(const TableHead& head) {
   return is_shard ? std::optional(shard) : std::nullopt;
 }
 
-/// The shards of one table, which are all there.
+/// The complete set of a table's shards.
 struct ShardSet {
   SceneValues scene;
   TableLayout layout;

@@ -34,7 +34,7 @@ struct Expected {
   bool has_rho = true;
 };
 
-/// error / value, and 0 where neither is anything.
+/// error / value, and 0 where the error is 0.
 double relative(double error, double value) {
   if (error == 0.0) return 0.0;
   return value > 0.0 ? error / value : kInfinity;

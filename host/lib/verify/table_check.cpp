@@ -19,7 +19,7 @@
 namespace dolp {
 namespace {
 
-// The reference is a hundred times better than the table if it can, and this good at least.
+// The reference is a hundred times more accurate than the table where it can be, and has at least this accuracy.
 constexpr double kReferenceTolerance = 1e-11;
 
 /// The relation of a quantity's bound to the two estimates.

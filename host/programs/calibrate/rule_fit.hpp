@@ -1,4 +1,4 @@
-// Finds the numbers of plan/rule.hpp: those with which random entries take the least work.
+// Search for the numbers of plan/rule.hpp: those with which random entries take the least work.
 #pragma once
 
 #include <cstddef>

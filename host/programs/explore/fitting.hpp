@@ -39,7 +39,7 @@ struct FitFound {
 /// minimum was found; those of Evaluator::fit; Cancelled.
 FitFound run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress);
 
-/// Which parameters vary, and what the last fit found, as long as the scene is the one that it left.
+/// The varied parameters, and the result of the last fit as long as the scene has not changed since.
 class Fitting {
  public:
   /// True where a parameter can vary at all.

@@ -36,7 +36,7 @@ struct WithoutEffect {
 /// Looks for the peak of a finished curve on a fine grid, then takes each effect away there.
 class Peak {
  public:
-  /// Zeniths are told apart to this.
+  /// Resolution of zeniths.
   static constexpr double kStepDeg = 0.02;
 
   explicit Peak(const Scene& scene) : scene_(scene) {}

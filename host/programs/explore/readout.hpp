@@ -11,7 +11,7 @@ namespace dolp::explore {
 /// The position of the curve's maximum of polarisation, and its uncertainty.
 std::string peak_text(const Session& session);
 
-/// Which radiation makes the polarisation there: parts of Q/I that add up.
+/// The radiation that causes the polarisation there: parts of Q/I that add up.
 std::string cause_text(const Session& session);
 
 /// The values under the cursor.

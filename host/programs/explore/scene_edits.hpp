@@ -1,4 +1,4 @@
-// The scene that the window shows: a file's text and what was changed since.
+// The scene that the window shows: a file's text and the changes since.
 #pragma once
 
 #include <string>

@@ -60,17 +60,17 @@ class Session {
   void show_pin(std::size_t position, bool is_visible) { pins_[position].is_visible = is_visible; }
   void set_view(const View& view);
   void set_theta(double theta_deg);
-  /// Moves the cursor of the map; what its axes are of follows. Positions from 0 to 1.
+  /// Moves the cursor of the map; the parameters of its axes follow. Positions from 0 to 1.
   void set_map_cursor(double x, double y);
   void load_measured(const std::string& path);
   void clear_measured() { residuals_.clear(); }
   void mark(const std::string& key, bool varies) { fitting_.mark(key, varies); }
-  /// Moves the parameters to what a fit found.
+  /// Moves the parameters to the result of a fit.
   void take_fit(FitFound found);
   void tell(std::string text, bool is_error = false) { message_ = {std::move(text), is_error}; }
 
   // ---- Computing.
-  /// The most wanted first.
+  /// The wanted jobs, the most wanted first.
   std::vector<Job> wanted() const;
   /// True where wanted() may have changed since the last call.
   bool take_changed();
@@ -131,10 +131,10 @@ class Session {
 /// The surface of a scene in few words, for a legend: "cauchy σ 0.15 q 3, smith".
 std::string surface_name(const Scene& scene);
 
-/// The surface of what is shown of a curve, and whether that is stale.
+/// The surface of the curve on display, and whether it is outdated.
 std::string curve_name(const Curve& curve);
 
-/// Empty, or what stands beside something stale.
+/// Empty, or the mark of outdated values.
 const char* stale_text(bool is_stale);
 
 }  // namespace dolp::explore

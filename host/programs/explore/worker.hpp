@@ -44,7 +44,7 @@ struct JobPart {
 /// Has the meaning of `evaluate`. Called from one thread.
 using Evaluate = std::function<Results(const Scene& scene, const PointList& list, const RunOptions& options)>;
 
-/// Computes what is wanted, in order; what is no longer wanted is given up within a tile of the device, unless brief.
+/// Computes the wanted jobs in order; a job that is no longer wanted stops within a tile of the device, unless brief.
 class Worker {
  public:
   /// `on_news` is called from the worker's thread after each part and after a failure.
@@ -59,7 +59,7 @@ class Worker {
   /// The results since the last call. Errors: rethrows what ended the worker, a DeviceError for instance.
   std::vector<JobPart> take_news();
 
-  /// Nothing is wanted that is not done; its news may still wait to be taken.
+  /// True where all wanted jobs are done; their results may still wait to be taken.
   bool is_idle() const;
 
  private:

@@ -197,7 +197,7 @@ class App::Impl {
   }
   bool has_picture_to_save() const { return !picture_path_.empty(); }
 
-  /// JobPart in, wishes out.
+  /// Passes results in and wanted jobs out.
   void exchange() {
     if (std::optional<FitFound> found = take_found()) session_.take_fit(std::move(*found));
     is_all_taken_ = worker_.is_idle();
@@ -250,7 +250,7 @@ class App::Impl {
     if (impl_of(window)) impl_of(window)->has_input_ = true;
   }
 
-  /// Runs what may fail for a reason that the user can mend.
+  /// Runs an action that may fail for a reason that the user can fix.
   void attempt(const std::string& done, const std::function<void()>& body) {
     try {
       body();

@@ -46,19 +46,19 @@ class App {
   /// Takes input and news, and draws one frame. False when the user has closed the window.
   /// Errors: DeviceError when the device is lost or the validation layer complains.
   bool frame();
-  /// Draws what follows from the events that there are, and from those that come meanwhile. False as for `frame`.
+  /// Handles the pending events and those that arrive meanwhile, and draws the result. False as for `frame`.
   bool answer();
   /// Ends `run`. May be called from any thread.
   void close();
-  /// Until the window is closed; between events nothing is drawn.
+  /// Draws until the window is closed; nothing is drawn between events.
   void run();
-  /// This many frames one after the other; the last ones wait until everything wanted is computed if there is a path
-  /// for a picture, which is of the last one.
+  /// Draws this many frames one after the other; with a path for a picture, which shows the last frame, the last ones
+  /// wait until everything wanted is computed.
   FrameTimes run_frames(std::size_t count, const std::string& screenshot_path);
 
-  /// Nothing is left to compute, and all of it is in the session.
+  /// True where nothing is left to compute, and all results are in the session.
   bool is_idle() const;
-  /// Draws until that is so.
+  /// Draws until is_idle() returns true.
   void settle();
   void resize(int width, int height);
   /// Writes a picture of the window with its next frame. Errors: IoError.

@@ -105,7 +105,7 @@ PlotAxis value_axis(const Session& session, const std::vector<Shown>& curves) {
   return axis;
 }
 
-/// Fills what DOLP lies between with all bounces; of the current curve alone, because bands over bands say nothing.
+/// Fills the range of DOLP with all bounces; for the current curve alone, because overlapping bands are unreadable.
 void draw_bracket(const Plot& plot, const Shown& shown) {
   const std::vector<Point>& points = shown.curve->points();
   const ImU32 colour = band_colour(shown.style);

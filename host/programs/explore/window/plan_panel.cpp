@@ -35,7 +35,7 @@ std::string taken_away_text(const Session& session, const Effect& row) {
   return text.empty() ? "" : "smooth: " + text;
 }
 
-/// The effects are those of a scene before the present one.
+/// True where the effects belong to an earlier scene.
 bool is_stale(const Session& session) { return !session.effects().empty() && !session.curve().is_finished(); }
 
 void draw_row(const Session& session, const Effect& row) {

@@ -50,7 +50,7 @@ struct TookTooLong : Unavailable {
 
 struct SolverOptions {
   std::string device = {};     ///< Vulkan device: position or part of the name, empty for the default
-  double time_limit_s = 20.0;  ///< for one call of a method that may take very long
+  double time_limit_s = 20.0;  ///< for one call of a method that may not end
   std::vector<std::string> pythons = {"/usr/bin/python3", "python3"};  ///< tried in turn for one that has SciPy
 };
 

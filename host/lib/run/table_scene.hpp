@@ -9,8 +9,8 @@
 
 namespace dolp {
 
-/// The attribute "scene_overrides" of a table: one setting a line, KEY=VALUE. A setting whose value has line ends itself
-/// stays whole, because only a scene key begins one.
+/// The attribute "scene_overrides" of a table: one setting a line, KEY=VALUE. A setting whose value contains line ends
+/// stays whole, because only a scene key begins a new one.
 std::string settings_text(const std::vector<Setting>& settings);
 std::vector<Setting> settings_of(const std::string& text);
 

@@ -119,8 +119,8 @@ int parse_and_run(int argc, char** argv) {
   return kExitDone;
 }
 
-// What a repeat frees the next one finds again. glibc gives large blocks back to the system, so that repeats of large
-// grids would pay for fresh pages, and those of small ones would not.
+// Keeps freed memory for the next repeat. glibc gives large blocks back to the system, so that repeats of large grids
+// would pay for fresh pages, and those of small ones would not.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_MAX, 0);

@@ -1,4 +1,4 @@
-// What a Vulkan device can do in plain arithmetic.
+// Peak float arithmetic rate of a Vulkan device.
 #pragma once
 
 #include <cstddef>

@@ -109,7 +109,7 @@ double MaskingTails::density(double tau) const {
   return norm_ * (is_gaussian_ ? std::exp(-ratio2) : std::pow(1.0 + ratio2, 0.5 - q_));
 }
 
-// Where p is the power tau^(1-2q), and the gaussian nothing.
+// Integrals beyond the table: there the cauchy density follows the power tau^(1-2q), and the gaussian is negligible.
 MaskingTails::Node MaskingTails::end() const {
   const double p = density(end_tau_);
   Node node{.tau = end_tau_, .density = p};

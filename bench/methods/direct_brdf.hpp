@@ -1,4 +1,4 @@
-// The plain formulas of the model, as anyone would write them down, for the methods that dolp is compared with.
+// The plain textbook formulas of the model, for the methods that dolp is compared with.
 //
 // Nothing here is shared with the shaders or with the reference. Reflectances are in real arithmetic and the masking of
 // the paper comes from tables of its three primitives, because a user who cares about time would do so too.
@@ -21,7 +21,7 @@ struct Entry {
 };
 Entry entry_of(const MomentsRequest& request, std::size_t position);
 
-/// G M00 and G M01: what one facet reflects.
+/// G M00 and G M01: the reflection of one facet.
 struct Reflected {
   double i = 0.0;
   double q = 0.0;
@@ -44,7 +44,7 @@ struct RunningBeam {
 /// Domain: 0 < theta < 90 degrees, sigma > 0, cauchy q > 1 (smith: q > 3/2).
 class DirectSurface {
  public:
-  /// Where Smith's Lambda comes from: the closed form is best for a few running beams, the table for many.
+  /// The source of Smith's Lambda: the closed form is best for a few running beams, the table for many.
   enum class SmithBy { kClosedForm, kTable };
   DirectSurface(const Entry& entry, SmithBy smith_by);
   DirectSurface(const DirectSurface&) = delete;

@@ -1,4 +1,4 @@
-// What a method of the benchmark is: one way to compute the moments r_i and r_q of entries, at a setting of its own.
+// A method of the benchmark: one way to compute the moments r_i and r_q of entries, at a setting of its own.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@ struct Answer {
   std::optional<double> stated_error;  ///< bound or estimate of max(|d r_i|, |d r_q|)/r_i, where the method gives one
 };
 
-/// What one call of a solver gives.
+/// The result of one call of a solver.
 struct Solution {
   std::vector<Answer> answers = {};        ///< one for each entry of the request, in its order
   std::optional<double> evaluations = {};  ///< integrand evaluations of the whole call
@@ -27,14 +27,14 @@ struct Solution {
   std::vector<double> own_times_s = {};    ///< repeated times of the call, where only the method can take them
 };
 
-/// A method ready to run. What it needs once (a device, an interpreter) is made with it and is not timed; whatever an
-/// entry needs (nodes, tables of its masking) belongs to `solve`.
+/// A method ready to run. Resources that it needs once (a device, an interpreter) are made with it and are not timed;
+/// data that each entry needs (nodes, tables of its masking) belong to `solve`.
 class Solver {
  public:
   virtual ~Solver() = default;
-  /// Computes every entry of the request, whose tolerance is ignored: `setting` says how finely.
+  /// Computes every entry of the request, whose tolerance is ignored: `setting` controls the accuracy.
   virtual Solution solve(const MomentsRequest& request, double setting) = 0;
-  /// Where it runs: a device, a processor or an interpreter, with versions.
+  /// The device, processor or interpreter that runs the method, with versions.
   virtual std::string where() const = 0;
 };
 
@@ -50,7 +50,7 @@ struct TookTooLong : Unavailable {
 
 struct SolverOptions {
   std::string device = {};     ///< Vulkan device: position or part of the name, empty for the default
-  double time_limit_s = 20.0;  ///< for one call of a method that may take for ever
+  double time_limit_s = 20.0;  ///< for one call of a method that may not end
   std::vector<std::string> pythons = {"/usr/bin/python3", "python3"};  ///< tried in turn for one that has SciPy
 };
 

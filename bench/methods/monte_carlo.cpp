@@ -1,4 +1,5 @@
-// Importance sampling of the facets: half vectors drawn from D cos(alpha), whose density the integrand then lacks.
+// Importance sampling of the facets: half vectors are drawn from D cos(alpha), so that this factor drops out of the
+// integrand.
 #include <cmath>
 #include <cstdint>
 #include <limits>

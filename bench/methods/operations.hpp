@@ -1,4 +1,4 @@
-// How much arithmetic the kernel of the moments does for a request.
+// Count of the arithmetic operations of the moments kernel for a request.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@ namespace dolp::bench {
 struct KernelWork {
   OperationCounts counts;  ///< of all entries, extrapolated from the invocations that were counted
   double evaluations = 0.0;
-  /// Share of the operations that are somebody's own where `lanes` neighbouring invocations run in lockstep and wait
-  /// for the one of them that has most to do: an upper bound, for they also wait within loops.
+  /// Share of the operations that are useful where `lanes` neighbouring invocations run in lockstep and wait for the
+  /// one with the most work: an upper bound, for they also wait within loops.
   double busy_lanes = 1.0;
 };
 

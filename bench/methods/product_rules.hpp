@@ -1,4 +1,4 @@
-// The rules of which product rules are made.
+// One-dimensional rules that product rules are built from.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// What the independent reference says of the entries that methods are judged by.
+// Reference values of the entries that methods are judged by, from the independent reference.
 #pragma once
 
 #include <vector>

@@ -22,7 +22,7 @@ using nlohmann::ordered_json;
 const TimingPolicy kFullTiming{};
 const TimingPolicy kQuickTiming{
     .min_repeats = 3, .max_repeats = 5, .random_repeats = 16, .enough_s = 0.1, .most_s = 1.0};
-constexpr double kFullLimit = 20.0;  // seconds for one call of a method that may take for ever
+constexpr double kFullLimit = 20.0;  // seconds for one call of a method that may not end
 constexpr double kQuickLimit = 1.5;
 constexpr std::size_t kQuickEntries = 512;
 
@@ -56,7 +56,7 @@ ordered_json measured_row(const Method& method, const Case& which, double settin
   return row;
 }
 
-/// Everything that is asked for.
+/// The requested methods, cases and settings.
 class Study {
  public:
   explicit Study(StudyRun& run);

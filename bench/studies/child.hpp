@@ -6,13 +6,13 @@
 
 namespace dolp::bench {
 
-/// What a program printed, and how it ended.
+/// The output and exit status of a program.
 struct ChildOutcome {
   int status = 0;
   std::string out;
 };
 
-/// What becomes of a program's stderr.
+/// Treatment of a program's stderr.
 enum class ChildErrors { kShown, kHidden };
 
 /// Runs a program to its end. Errors: Unavailable when no process can be started.

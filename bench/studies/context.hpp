@@ -1,4 +1,4 @@
-// Where and with what a study ran.
+// The machine and the settings of a study's run.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// A folder of its own, gone at the end.
+/// A temporary folder, removed at the end.
 class CacheFolder {
  public:
   CacheFolder() : path_((std::filesystem::temp_directory_path() / "dolp-bench-XXXXXX").string()) {

@@ -140,7 +140,7 @@ std::vector<EffectGroup> surface_groups(const SceneValues& base) {
                                                           }}})};
 }
 
-/// What goes beyond single scattering, with the one masking that has all of it.
+/// Effects beyond single scattering, with the one masking that supports all of them.
 std::vector<EffectGroup> scattering_groups(const Axes& grid) {
   SceneValues rough = emitting(grid);
   rough.surface.masking = Masking::kVCavity;

@@ -1,4 +1,4 @@
-// The study of effects: what each costs alone, and what the plan saves.
+// The study of effects: the cost of each alone, and the savings of the plan.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ struct Pair {
   TimedScene planned;
   TimedScene all;
 
-  /// Whether the plan saves anything; otherwise both are the same run.
+  /// True where the plan saves work; otherwise both runs are the same.
   bool saves() const {
     const EffectPlan& own = planned.plan();
     const EffectPlan& whole = all.plan();
@@ -90,7 +90,7 @@ ordered_json effect_row(const EffectGroup& group, const Pair& pair, const Pair& 
   return row;
 }
 
-/// Everything that is asked for.
+/// The requested groups and settings.
 class Study {
  public:
   explicit Study(StudyRun& run);
@@ -159,7 +159,7 @@ void Study::run_group(const EffectGroup& group) {
   for (const EffectSetting& setting : group.settings) {
     pairs.push_back({setting.name, {setting.scene, false, evaluator_}, {setting.scene, true, evaluator_}});
   }
-  // In turns, so that what else the machine does is spread over all.
+  // Runs take turns, so that other load on the machine spreads over all of them.
   for (std::size_t i = 0; i < repeats_; ++i) {
     for (Pair& pair : pairs) {
       pair.planned.repeat();
@@ -197,7 +197,7 @@ std::string table_text(const ordered_json& result) {
   return text;
 }
 
-/// Says where dropping changed more than the tolerance.
+/// Names the scenes where dropping changed more than the tolerance.
 void add_tolerance_warnings(ordered_json& result) {
   for (const ordered_json& row : result["results"]) {
     const double tolerance = row["tolerance"].get<double>();

@@ -36,7 +36,7 @@ wavelength_um = 10
 precision = "auto"
 )";
 
-/// Uniform numbers and normal ones that every standard library gives alike.
+/// Uniform and normal random numbers that are the same with every standard library.
 class Random {
  public:
   explicit Random(std::size_t seed) : engine_(seed) {}
@@ -54,7 +54,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// A parameter, where its truth lies, and where it is looked for.
+/// A parameter, the range of its true value, and the range of the search.
 struct Choice {
   FitRange parameter;
   double least, most;

@@ -12,7 +12,7 @@
 
 namespace dolp::bench {
 
-/// A scene, what varies in it, and what is true.
+/// A scene, its varied parameters, and their true values.
 struct FitSet {
   SceneValues scene;
   std::vector<FitRange> parameters;
@@ -43,9 +43,9 @@ struct SetOutcome {
   std::size_t held_68 = 0, held_95 = 0;  ///< intervals that hold the truth
   double time_s = 0.0;
 
-  /// Whether the intervals hold the truth wherever its own chi^2 says that they must.
+  /// True where the intervals contain the truth wherever the truth's own chi^2 requires it.
   bool is_consistent() const;
-  /// Whether no descent from the truth gets lower.
+  /// True where no descent from the truth reaches a lower objective.
   bool is_global() const;
 };
 

@@ -29,8 +29,8 @@ SceneValues steel_scene(Masking masking, const GridSize& size);
 /// The moments of the steel for every entry of a grid, in C order, q fastest.
 MomentsRequest steel_request(Masking masking, const Axes& grid);
 
-/// A grid of 64 x 64 x 64 entries that others can be compared on: no direction lies at 0 or 90 degrees, which not
-/// everybody can do, and it holds smaller grids of the same extent, so that a slow method may do fewer of its entries.
+/// A grid of 64 x 64 x 64 entries for comparisons: no direction lies at 0 or 90 degrees, which not every method
+/// supports, and it contains smaller grids of the same extent, so that a slow method may compute fewer of its entries.
 struct NestedGrid {
   static constexpr std::size_t kSide = 64;
   static constexpr std::size_t kLargestStride = 8;

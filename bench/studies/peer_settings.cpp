@@ -49,7 +49,7 @@ Call undisturbed_call(Solver& solver, const MomentsRequest& request, double sett
   return second.time_s < first.time_s ? second : first;
 }
 
-/// Of the smallest grid that shows what a method can do.
+/// The stride of the smallest grid that shows the performance of a method.
 std::size_t stride_of_tries(const Method& method) { return method.needs_grid ? 1 : NestedGrid::kLargestStride; }
 
 }  // namespace
@@ -122,7 +122,7 @@ void PeerSettings::warm_up() {
   try {
     solver_.solve(request, method_.settings.front());
   } catch (const Unavailable&) {
-    // The first try meets it again and says so.
+    // The first try meets the same error again and reports it.
   }
 }
 

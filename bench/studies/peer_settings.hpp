@@ -1,4 +1,4 @@
-// How the study of peers finds out which setting of a method is fine enough.
+// Search for the cheapest setting of a method that is fine enough, for the study of peers.
 #pragma once
 
 #include <cstddef>
@@ -22,12 +22,12 @@ struct PeerSample {
   std::vector<Truth> truths;
 };
 
-/// Entries to solve, and where among them the sample is.
+/// Entries to solve, and the positions of the sample among them.
 struct PeerBatch {
   MomentsRequest request;
   std::vector<std::size_t> positions;
 
-  /// Of the answers to the request; infinite for NaN.
+  /// The largest error of the answers to the request; infinite for NaN.
   double worst_error(const std::vector<Answer>& answers, const PeerSample& sample) const;
 };
 
@@ -36,7 +36,7 @@ PeerBatch whole_sample(const PeerSample& sample);
 /// The nested grid of a stride.
 PeerBatch nested_grid(const PeerSample& sample, std::size_t stride);
 
-/// What a setting gives each entry of the sample.
+/// Errors and times of one setting on each entry of the sample.
 struct TriedSetting {
   double setting = 0.0;
   std::vector<double> errors = {};
@@ -55,14 +55,14 @@ class PeerSettings {
   /// Tries settings until one gives all entries the tolerance; null when none does.
   const TriedSetting* reaching(double tolerance);
 
-  /// Says that a setting has an error after all, on other entries.
+  /// Records that a setting has a larger error after all, on other entries.
   void reject(const TriedSetting& setting, double error);
 
-  /// Why the last setting was the last.
+  /// The reason why no further setting was tried.
   const std::string& why_not() const { return why_not_; }
 
-  /// Mean time of an entry when each has the cheapest setting that gives it the tolerance: what nobody can choose who
-  /// does not know the truth. Nothing when one entry has none.
+  /// Mean time of an entry when each has the cheapest setting that meets the tolerance: a choice that requires
+  /// knowledge of the truth. Nothing when one entry has none.
   std::optional<double> with_hindsight(double tolerance) const;
 
  private:

@@ -1,4 +1,4 @@
-// The study of peers: what the same entries cost everybody at the same accuracy.
+// The study of peers: the cost of the same entries with each method at the same accuracy.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,11 +35,11 @@ std::vector<PeerCase> peer_cases() {
   return cases;
 }
 
-// Whose kernels the others are compared with: every entry integrated, and as `dolp table` computes a grid.
+// The kernels that the others are compared with: every entry integrated, and as `dolp table` computes a grid.
 constexpr const char* kOwn = "vulkan-float";
 constexpr const char* kOwnTable = "vulkan-table";
 
-/// How much of everything.
+/// The effort of the study.
 struct Effort {
   std::vector<double> tolerances;  ///< from coarse to fine
   std::size_t sample;              ///< entries whose errors count
@@ -58,7 +58,7 @@ const Effort kQuick{.tolerances = {1e-4},
                     .grid_s = 0.1,
                     .timing = {.min_repeats = 3, .max_repeats = 5, .enough_s = 0.05, .most_s = 0.3}};
 
-/// What has to be reached at a tolerance of 1e-4.
+/// A target to reach at a tolerance of 1e-4.
 struct Target {
   const char* what;
   std::vector<std::string> methods;  ///< the fastest of them counts

@@ -1,4 +1,4 @@
-// What all studies do with their results.
+// Output of results, common to all studies.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,17 +8,17 @@
 
 namespace dolp::bench {
 
-/// Fills `warnings` of a study: what is wrong with its times, and what to do about it. Reads `context`, and of
-/// `results` what names a row (method or effect, case, setting) and raw_times_s where there are any.
+/// Fills `warnings` of a study: the problems of its times, and remedies. Reads `context`, and from `results` the fields
+/// that name a row (method or effect, case, setting) and raw_times_s where there are any.
 void add_warnings(nlohmann::ordered_json& result);
 
 /// A method as studies list it in `methods`.
 nlohmann::ordered_json method_json(const Method& method);
 
-/// Adds to `methods` of a study where a method ran.
+/// Adds the device or processor of a method to `methods` of a study.
 void note_where(nlohmann::ordered_json& result, const Method& method, const Solver& solver);
 
-/// A study as a file: indented, but for `results`, which come last and one a line.
+/// A study as a file: indented, except `results`, which come last with one row a line.
 std::string json_text(nlohmann::ordered_json result);
 
 }  // namespace dolp::bench

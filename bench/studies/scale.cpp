@@ -59,7 +59,7 @@ std::vector<std::string> grid_of(const Size& size) {
           axis("k", 0.05, 1.0, size.k)};
 }
 
-/// A folder of its own, gone at the end.
+/// A temporary folder, removed at the end.
 class Folder {
  public:
   Folder() : path_((fs::temp_directory_path() / "dolp-bench-XXXXXX").string()) {

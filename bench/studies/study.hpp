@@ -7,7 +7,7 @@
 
 namespace dolp::bench {
 
-/// What the command line says, after parsing.
+/// The parsed command line.
 struct StudyOptions {
   std::string json_path;             ///< empty: no JSON; - is stdout, the table is then left out
   std::string device;                ///< Vulkan device: position or part of the name, empty for the default

@@ -1,4 +1,4 @@
-// What all studies share: their run, from the check of the output file to the results and their warnings.
+// The run that all studies share, from the check of the output file to the results and their warnings.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 
 namespace dolp::bench {
 
-/// A study while it runs: its JSON so far, and how many of its rows are done.
+/// A study while it runs: its JSON so far, and its progress in rows.
 class StudyRun {
  public:
   StudyRun(const StudyOptions& options, Progress progress) : options_(options), progress_(std::move(progress)) {}
@@ -26,7 +26,7 @@ class StudyRun {
   /// Starts the JSON: the study's name, its context, and what `error` and `time_s` of its rows are.
   void describe(const std::string& study, const std::string& error, const std::string& time_s);
 
-  /// What is not a row.
+  /// The JSON, for everything but rows.
   nlohmann::ordered_json& json() { return json_; }
 
   /// Rows that will come.
@@ -49,7 +49,7 @@ class StudyRun {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// What is a study's own.
+/// The parts that each study supplies.
 struct StudyParts {
   std::function<void(StudyRun&)> measure;
   std::function<std::string(const nlohmann::ordered_json&)> table_text;                ///< the table for people

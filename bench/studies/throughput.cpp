@@ -102,7 +102,7 @@ struct GridRun {
   bool may_interpolate = true;
   std::unique_ptr<TimedScene> timed = {};
 
-  /// Whether it is the other run with one axis twice as long.
+  /// True where this run is `other` with one axis twice as long.
   bool doubles(const GridRun& other) const {
     return tolerance == other.tolerance && may_interpolate == other.may_interpolate &&
            size.entries() == 2 * other.size.entries() && size.thetas % other.size.thetas == 0 &&

@@ -9,7 +9,7 @@
 
 namespace dolp::bench {
 
-/// How often a call is repeated.
+/// The number of repeats of a call.
 struct TimingPolicy {
   std::size_t min_repeats = 5;
   std::size_t max_repeats = 15;
@@ -34,7 +34,7 @@ double minimum(const std::vector<double>& values);
 /// To four digits: raw times have no more.
 double rounded_time(double time_s);
 
-/// Of one entry each, rounded, from times of calls over `entries`.
+/// The times of one entry each, rounded, from times of calls over `entries`.
 std::vector<double> per_entry(std::vector<double> times_s, std::size_t entries);
 
 /// (median - minimum)/minimum: how far a usual time is from an undisturbed one.

@@ -1,4 +1,4 @@
-// The library for Python: arrays and dictionaries in, arrays out; what users see is in dolp/__init__.py.
+// Python binding of the library: arrays and dictionaries in, arrays out; the public interface is in dolp/__init__.py.
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -23,7 +23,7 @@ using Columns = std::map<std::string, Array>;
 
 constexpr auto kSignalsEvery = std::chrono::milliseconds(50);
 
-/// Has another thread call `body(progress)`, while Python's other threads run, and ends it when a signal wants that.
+/// Calls `body(progress)` in another thread, while Python's other threads run, and ends it when a signal asks for that.
 template <class Body>
 auto interruptible(const Body& body) {
   std::atomic<bool> goes_on = true;

@@ -19,7 +19,7 @@ namespace {
 using namespace dolp;
 using namespace dolp::bench;
 
-/// Of the reference, relative to r_i: below every tolerance here, and reached with digits to spare.
+/// Tolerance of the reference, relative to r_i: below every tolerance here, and reached with digits to spare.
 constexpr double kReferenceTolerance = 1e-9;
 
 std::unique_ptr<Solver> solver_of(const std::string& name) {

@@ -1,4 +1,4 @@
-// What the studies of speed rest on: nested grids, the native and the counting build of the text, the device's peak.
+// Foundations of the speed studies: nested grids, the native and the counting build of the text, the device's peak.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -23,8 +23,8 @@ constexpr std::size_t kSteps = 16;  // order steps looked for, for each paramete
 // rounds what it reads of the step itself.
 constexpr double kStep = 1e-7;
 constexpr double kDoubleStep = 1e-10;
-// How fast the moments may truly change: |d ln r / d ln x|; toward grazing and q = 3/2 they grow as the inverse
-// distance.
+// The largest true rate of change of the moments: |d ln r / d ln x|; toward grazing and q = 3/2 they grow as the
+// inverse distance.
 constexpr double kSteepest = 100.0;
 
 enum class Parameter { kTheta, kSigma, kQ, kN, kK };

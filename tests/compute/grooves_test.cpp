@@ -73,7 +73,7 @@ TEST_P(Grooves, WithoutAndWithTheDirectEmission_TheOtherMomentsAgree) {
     EXPECT_NEAR(a.r_i, b.r_i, a.r_i_error + b.r_i_error);
     EXPECT_NEAR(a.deficit, b.deficit, a.deficit_error + b.deficit_error);
     EXPECT_TRUE(std::isnan(b.direct_i));
-    // What a facet emits is all that is emitted at least; what single scattering loses, at most.
+    // The emission of the facets alone is the lower bound; the loss of single scattering is the upper one.
     EXPECT_LE(a.direct_i, a.deficit);
   }
 }
@@ -202,7 +202,7 @@ TEST(GroovesScene, AllBounces_LieInTheBracket) {
   }
 }
 
-// What the bracket is made of, from the emissivities of both ends (section 4 of the model).
+// The bracket follows from the emissivities of both ends (section 4 of the model).
 TEST(GroovesScene, Bracket_IsWhatItsEndsSay) {
   const std::vector<std::string> surroundings = {"grid.theta_deg=[60]", "surroundings.temperature_K=250"};
   const auto with = [&](std::vector<std::string> more) {

@@ -40,7 +40,7 @@ MomentsRequest grid_request(const Model& model, const std::vector<double>& theta
 
 const Model kModel = kModels[2];  // cauchy, integral
 
-/// Moments that a function of the slope distribution says, with a bound of its own.
+/// Moments that are a function of the slope distribution, with a bound of their own.
 class Invented final : public MomentsEvaluator {
  public:
   using Function = double (*)(const SlopeShape&);
@@ -108,7 +108,7 @@ Check check(const MomentsRequest& request, const std::vector<Moments>& moments, 
   return result;
 }
 
-// With the features of real moments: a peak that moves with sigma, a power that q sets.
+// A test function with the features of real moments: a peak that moves with sigma, a power that q sets.
 double smooth(const SlopeShape& shape) {
   const double m2 = 2.0 * shape.sigma * shape.sigma;
   return 0.05 + 1.0 - std::pow(m2 / (0.3 + m2), shape.q - 1.0);

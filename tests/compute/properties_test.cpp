@@ -1,4 +1,4 @@
-// What must hold whatever the inputs, on seeded random draws of the whole range that scenes allow: energy, and
+// Properties that hold for all inputs, on seeded random draws of the whole range that scenes allow: energy, and
 // independence of how a request is laid out.
 #include <gtest/gtest.h>
 

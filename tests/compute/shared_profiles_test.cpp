@@ -76,7 +76,7 @@ TEST(Profiles, SharedByManyShapes_StatedErrorsHoldAgainstEveryEntryByItself) {
   EXPECT_GT(compared, 250U);
 }
 
-// As when some entries of a grid are computed again: among light tails one heavy one, of a width between theirs.
+// Models a second pass over some entries of a grid: among light tails one heavy one, of a width between theirs.
 TEST(Profiles, SomeShapesOfAGrid_HeaviestTailIsNotLost) {
   for (const auto& [masking, scattering] : kModels) {
     MomentsRequest request;

@@ -70,7 +70,7 @@ TEST(ListDevices, ThisMachine_HasAUsableDeviceWithItsLimits) {
   const dolp::Device& device = list.devices[choose_device(list.devices, "", false)];
   std::printf("%s, %s, Vulkan %s\n", device.name.c_str(), device.driver.c_str(), device.api_version.c_str());
   EXPECT_FALSE(device.driver.empty());
-  // What the Vulkan specification guarantees at least.
+  // Minimum limits that the Vulkan specification guarantees.
   EXPECT_GE(device.max_storage_buffer_bytes, std::uint64_t{1} << 27U);
   EXPECT_GE(device.max_workgroups, 65'535U);
   EXPECT_GT(device.memory_bytes, 0U);

@@ -215,7 +215,7 @@ TEST(TableLookup, AValueTwice_IsRefused) {
   EXPECT_THROW(TableLookup(table, 1e-4, "t.nc"), InputError);
 }
 
-// As the lower end of a bracket often is.
+// The lower end of a bracket is often zero everywhere.
 TEST(TableLookup, QuantityThatIs0Everywhere_Is0) {
   TableValues table = made_up(range(0.0, 60.0, 8), range(0.1, 0.5, 6), range(1.5, 4.0, 6));
   table[Quantity::kDolpLow].assign(table[Quantity::kDolp].size(), 0.0);

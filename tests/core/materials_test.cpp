@@ -37,7 +37,7 @@ std::string error_of(const std::string& text, const std::vector<std::string>& ov
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 constexpr Spectrum kCo2Line{10.6, 10.6};
-// Of the digits below, which come from the file by hand.
+// Accuracy of the digits below, which were copied from the file by hand.
 constexpr double kDigits = 1e-9;
 
 void expect_near(const OpticalConstants& index, const OpticalConstants& expected, const std::string& what) {

@@ -19,7 +19,7 @@ using namespace dolp;
 
 // A tenth of the tightest tolerance that the kernels are compared at. With q next to 1 the reference stops before.
 constexpr double kTolerance = 1e-7;
-// Of random entries whose rho the reference knows worse than this nothing is stored.
+// Random entries whose rho the reference knows worse than this are not stored.
 constexpr double kLeastKnown = 1e-3;
 constexpr std::uint64_t kSeed = 20261122;
 constexpr int kOrdinary = 12;  // random entries of each distribution

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-// What malloc is in the C library, under names that nobody replaces.
+// The C library's own allocation functions, under names that nobody replaces.
 // NOLINTBEGIN(bugprone-reserved-identifier)
 extern "C" void* __libc_malloc(std::size_t size);
 extern "C" void* __libc_calloc(std::size_t count, std::size_t size);

@@ -19,7 +19,7 @@ std::string from_environment(const char* name) {
   return value != nullptr ? value : "";
 }
 
-/// What DOLP_FAIL_VULKAN says.
+/// The fault that DOLP_FAIL_VULKAN selects.
 struct Fault {
   Fault() {
     const std::string text = from_environment("DOLP_FAIL_VULKAN");

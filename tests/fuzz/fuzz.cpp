@@ -1,4 +1,4 @@
-// Where libFuzzer enters.
+// Entry point of libFuzzer.
 #include "fuzz.hpp"
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// What the fuzzers share: each gives bytes to a public reader, which takes them or refuses them with an InputError.
+// Common part of the fuzzers: each gives bytes to a public reader, which accepts them or refuses them with an
+// InputError.
 #pragma once
 
 #include <unistd.h>
@@ -19,7 +20,7 @@ void refused(const Reader& reader) {
   try {
     reader();
   } catch (const InputError&) {
-    // What a hostile file deserves.
+    // A hostile file must be refused.
   }
 }
 

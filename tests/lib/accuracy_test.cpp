@@ -23,7 +23,7 @@
 namespace dolp {
 namespace {
 
-// Of the points, those that no level brings to the tolerance: next to rounding and to the most nodes at 1e-9.
+// Share of the points that no level brings to the tolerance: next to rounding and to the most nodes at 1e-9.
 constexpr double kMissedShare = 0.01;
 constexpr double kTightMissedShare = 0.04;
 constexpr double kTight = 1e-8;

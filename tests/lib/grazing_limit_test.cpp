@@ -1,4 +1,5 @@
-// The quotients of diverging moments at 90 degrees: against an integral of its own, and against the kernel just before.
+// The quotients of diverging moments at 90 degrees: against an independent integral, and against the kernel just
+// before.
 #include "run/grazing_limit.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +25,7 @@ constexpr std::array kAllIndices = {
     OpticalConstants{1e6, 1e6},   OpticalConstants{0.2, 3.0},   OpticalConstants{0.6, 0.0},
     OpticalConstants{0.6, 1e-4},  OpticalConstants{0.01, 0.0},  OpticalConstants{0.51444802339652151, 4.4e-12}};
 
-// What the header promises.
+// The accuracy that the header promises.
 constexpr double kRelativeAccuracy = 1e-12;
 constexpr double kAlbedoAccuracy = 2e-15;
 // Just before 90 degrees the quotients differ from their limit by a series in c^(3 - 2q). Its first term, at most 2% of

@@ -130,7 +130,7 @@ std::vector<PointResult> exact_at(const SceneValues& scene, const std::vector<Ta
   return evaluate_scene(exact, {entries, wavelengths}, *make_evaluator(Evaluator::kDouble), {});
 }
 
-/// What all points say together.
+/// Totals over all points.
 struct Tally {
   std::size_t points = 0;
   std::size_t flagged = 0;  ///< status 2

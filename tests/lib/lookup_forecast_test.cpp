@@ -1,4 +1,4 @@
-// What the plan says of the density of axes, against tables that follow its advice.
+// Compares the plan's advice on the density of axes with tables that follow it.
 #include "run/lookup_forecast.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ SceneValues scene_with(Masking masking, std::size_t thetas, std::size_t sigmas, 
   return scene;
 }
 
-/// Of random points in a table of the scene's grid those that a lookup flags.
+/// The share of random points in a table of the scene's grid that a lookup flags.
 double flagged_share(const SceneValues& scene) {
   const SceneEntries grid = grid_entries(scene);
   const EffectPlan plan = keep_everything(scene);

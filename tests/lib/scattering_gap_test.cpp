@@ -1,4 +1,4 @@
-// How far single scattering may be off, as the summary of a run says it.
+// Error bound of single scattering, as the summary of a run states it.
 #include "run/scattering_gap.hpp"
 
 #include <gtest/gtest.h>

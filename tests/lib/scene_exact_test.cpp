@@ -1,4 +1,4 @@
-// What must hold exactly (shaders/physics/README.md, section 6), on results of whole runs.
+// Exact identities (shaders/physics/README.md, section 6), on results of whole runs.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -174,7 +174,7 @@ std::vector<SceneEntry> hard_entries(Distribution distribution, Masking masking)
   return entries;
 }
 
-/// What a result may look like: numbers, or the status that takes them back.
+/// Checks that a result consists of numbers, or has the status that revokes them.
 void expect_sound(const PointResult& r, double tolerance, const std::string& name) {
   const bool outside = (r.status & kOutsideModelDomain) != 0;
   EXPECT_EQ(outside, std::isnan(r[Quantity::kStokesI])) << name;

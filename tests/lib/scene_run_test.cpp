@@ -189,7 +189,7 @@ TEST_P(RunsOfModel, ReversedAxes_KeepTheBitsOfEveryEntry) {
   }
 }
 
-// Where a profile serves all slope distributions it takes the slopes that they want together.
+// A profile that serves all slope distributions takes the slopes that they all want.
 TEST_P(RunsOfModel, Grid_EqualsThePointsOneByOne) {
   const auto [evaluator, distribution, masking] = GetParam();
   const bool has_profiles = masking == Masking::kNone || masking == Masking::kVCavity;

@@ -21,7 +21,7 @@ using namespace scene_run_support;
 
 std::string scene_path(const std::string& name) { return DOLP_HOST_DIR "/scenes/" + name + ".toml"; }
 
-/// What a comment says: the DOLP in percent, the side it is on, and the change in points for each effect dropped.
+/// A comment's statement: the DOLP in percent, the side it is on, and the change in points for each effect dropped.
 struct Statement {
   std::vector<std::string> overrides;  ///< the surface that it is about
   double theta_deg = 0.0;

@@ -1,4 +1,4 @@
-// What finds the numbers of the rules and whether their bounds hold: dolp-calibrate, and its two halves.
+// Tests of dolp-calibrate and its two halves: the search for the numbers of the rules, and the check of their bounds.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Dense tables from outside: what is interpolated, what the report says of it, and that its promises hold.
+// Dense tables from outside: the interpolated entries, their report, and a check that its promises hold.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ const std::vector<std::string> kDense = {"--set", "grid.theta_deg=[75,20]",
                                          "--set", "grid.q={from=1.75,to=8,count=36}"};
 constexpr std::size_t kDenseEntries = std::size_t{2} * 40 * 36;
 const std::vector<std::string> kOff = {"--set", "accuracy.interpolation=off"};
-// Of what some directions say about all.
+// Sampling error of estimates for all directions from some of them.
 constexpr double kSampling = 0.2;
 
 class DenseTable : public CommandLine {

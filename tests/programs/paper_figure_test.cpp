@@ -1,4 +1,5 @@
-// The commands that draw the paper's figures, and what shaders/physics/README.md, section 5, says of their curves.
+// The commands that draw the paper's figures, and the statements of shaders/physics/README.md, section 5, on their
+// curves.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -21,7 +21,7 @@ const std::vector<std::string> kBeamAlone = {"--set", "surroundings.temperature_
                                              "--set", "source.relative_irradiance=0.5"};
 // A float on the device may round an order the other way than on the CPU, which changes a circle of nodes or two.
 constexpr double kOrderRounding = 0.05;
-// Of what 256 of many entries say about all.
+// Sampling error of estimates for all entries from 256 of them.
 constexpr double kSampling = 0.1;
 
 std::vector<std::string> names_in(const json& rows) {

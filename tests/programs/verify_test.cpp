@@ -283,7 +283,7 @@ TEST_F(Verify, TheTableAlone_IsSufficient) {
     const TableValues table = make_table(options);
     EXPECT_FALSE(table.index_n.values.empty());
     const nlohmann::json before = verify_json(kDone, {"--named-files", "--samples", "3"})["quantities"];
-    // What the file says now is of no interest.
+    // The file's present content does not matter.
     put("index.csv", "wavelength_um,n,k\n7,2.4,0.1\n13,2.6,0.1\n");
     EXPECT_EQ(verify_json(kDone, {"--samples", "3"})["quantities"], before) << options[1];
   }

@@ -246,7 +246,7 @@ TEST(ReferenceDirect, BracketsTheEmission) {
     EXPECT_LT(0.0, multiple.direct_i);
     EXPECT_LT(multiple.direct_i, multiple.deficit);
     EXPECT_LT(multiple.deficit, single.deficit);
-    // What bounces again adds no more polarisation than light.
+    // Further bounces add no more polarisation than light.
     EXPECT_LE(std::abs(-multiple.r_q - multiple.direct_q), multiple.deficit - multiple.direct_i);
   }
 }

@@ -119,7 +119,7 @@ class CommandLine : public testing::Test {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return nlohmann::json::parse(outcome.out);
   }
-  /// What `dolp eval` finds at points.csv.
+  /// The result of `dolp eval` at points.csv.
   Columns eval(const std::vector<std::string>& options) const {
     const Outcome outcome =
         dolp(joined({"eval", "scene.toml", "--points", "points.csv", "-o", "-", "--quiet"}, options));

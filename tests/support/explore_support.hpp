@@ -83,7 +83,7 @@ inline std::vector<Point> truth(const Scene& scene, const std::vector<Point>& po
   return truth(scene, points_at(scene, theta_deg));
 }
 
-/// What a worker would say of a job of one part, at its tolerance.
+/// A worker's answer to a job of one part, at its tolerance.
 inline JobPart done(const Job& job) {
   return {.key = job.key, .scene = job.scene, .points = truth(job.scene, job.parts.front()), .is_last = true};
 }

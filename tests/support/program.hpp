@@ -38,7 +38,7 @@ class TemporaryFolder {
 
 std::string read_file(const std::filesystem::path& path);
 
-/// What to run. The program is looked up on PATH.
+/// A command to run. The program is looked up on PATH.
 struct Command {
   std::vector<std::string> arguments;
   std::filesystem::path folder;

@@ -39,7 +39,7 @@ inline std::string name_of(const Model& model) {
          kMaskings[static_cast<std::size_t>(model.masking)];
 }
 
-/// Where moments are wanted.
+/// A point at which moments are wanted.
 struct Point {
   double theta_deg = 60.0;
   SlopeShape shape{0.3, 2.0};

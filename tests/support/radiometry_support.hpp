@@ -25,7 +25,7 @@ inline constexpr unsigned kSeed = 20250811;
 inline constexpr int kRandomScenes = 2000;
 // Double sums of a few terms against long double: Planck's exponent (below 50 in these scenes) times an ulp dominates.
 inline constexpr double kAgreement = 1e-12;
-// What the band rule promises for tabulated materials.
+// The accuracy that the band rule promises for tabulated materials.
 inline constexpr double kBandAgreement = 1e-9;
 
 // ---- The printed formulas -------------------------------------------------------------------------------------------

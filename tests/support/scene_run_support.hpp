@@ -48,7 +48,7 @@ inline std::unique_ptr<MomentsEvaluator> make_evaluator(Evaluator evaluator) {
   return std::make_unique<CpuEvaluator>(evaluator == Evaluator::kFloat ? Precision::kFloat : Precision::kDouble);
 }
 
-/// In the evaluator's precision alone: no entry that misses is computed again in the other.
+/// Runs in the evaluator's precision alone: no entry that misses is computed again in the other.
 inline std::vector<PointResult> run(const SceneValues& scene, const SceneEntries& entries, Evaluator evaluator) {
   SceneValues own = scene;
   if (evaluator == Evaluator::kFloat) own.accuracy.precision = Precision::kFloat;
@@ -82,7 +82,7 @@ inline SmoothReflectance smooth_reflectance(const OpticalConstants& index, long 
   return {std::norm((cosine - w) / (cosine + w)), std::norm((square * cosine - w) / (square * cosine + w))};
 }
 
-/// For messages: the scene and the entry that a check is about.
+/// Text for messages: the scene and the entry that a check is about.
 inline std::string text_of(const SceneValues& scene, const SceneEntry& entry) {
   const OpticalConstants index = entry.index.value_or(scene.surface.material.constant);
   return std::string(name_of(scene.surface.distribution)) + " " + name_of(scene.surface.masking) + " theta " +

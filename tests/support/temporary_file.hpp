@@ -10,7 +10,7 @@
 
 namespace dolp {
 
-/// A file in a folder of its own, gone with the object.
+/// A file in a temporary folder, removed with the object.
 class TemporaryFile {
  public:
   TemporaryFile(const std::string& name, const std::string& content) {

@@ -50,7 +50,7 @@ class VirtualDisplay {
   VirtualDisplay(const VirtualDisplay&) = delete;
   VirtualDisplay& operator=(const VirtualDisplay&) = delete;
 
-  /// What is on the screen inside a rectangle: rows of pixels of four bytes.
+  /// The screen's pixels inside a rectangle: rows of pixels of four bytes.
   std::string pixels(std::size_t left, std::size_t top, std::size_t width, std::size_t height) const {
     // XWD: a header of big-endian numbers, a table of colours of 12 bytes each, the rows.
     std::ifstream file(folder_ / "Xvfb_screen0", std::ios::binary);

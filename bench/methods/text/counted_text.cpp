@@ -1,4 +1,4 @@
-// The text with a number that counts what is done with it: the operations of the kernel, no more and no less.
+// The text with a number type that counts its operations: those of the kernel, no more and no less.
 #define DOLP_TEXT_NAMESPACE counted_text
 
 #include "methods/text/grouped_text.hpp"
@@ -17,7 +17,7 @@ namespace counted_text {
 
 void count(std::uint64_t OperationCounts::*kind) { ++(counts.*kind); }
 
-/// A float whose operations are counted, but for those on constants alone, which a compiler works out.
+/// A float whose operations are counted, except those on constants alone, which a compiler evaluates.
 class Counted {
  public:
   Counted() = default;

@@ -30,15 +30,15 @@ class GroupedText {
   /// Fills the masking table of a shape of the rows; needed before the pieces where the data needs tables.
   virtual void build_masking_table(std::size_t shape) = 0;
 
-  /// What invocations first, first + 1, ... give, a node for each member of each one's row, until `members` is full.
+  /// Runs invocations first, first + 1, ..., which give a node for each member of their row, until `members` is full.
   virtual void run_pieces(std::size_t first, std::span<kernel::MomentsNode> members) = 0;
 };
 
 /// Adds what the pieces gave, row by row, and turns it into moments in the order of the request.
 std::vector<Moments> moments_of(const GroupedWork& work, const std::vector<kernel::MomentsNode>& nodes);
 
-/// Whether the builds below can do this work: they are made for the cauchy distribution without total reflection, and
-/// for the maskings that the device computes by rows.
+/// True where the builds below can do this work: they support the cauchy distribution without total reflection, and the
+/// maskings that the device computes by rows.
 inline bool has_text_for(const KernelData& data) {
   return data.distribution == Distribution::kCauchy && !data.has_total_reflection && data.needs_masking_table();
 }
@@ -61,7 +61,7 @@ struct OperationCounts {
 /// Counts what it does; one thread at a time.
 std::unique_ptr<GroupedText> make_counted_text(const GroupedWork& work);
 
-/// What this thread has counted since the program began.
+/// The operations that this thread has counted since the program began.
 OperationCounts counted_operations();
 
 }  // namespace dolp::bench

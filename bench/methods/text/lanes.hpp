@@ -1,5 +1,5 @@
-// GLSL's types and functions for the shaders' text with a `real` of the includer's own: a plain float that a C++
-// compiler may do with as it likes, or a number that counts what is done with it.
+// GLSL's types and functions for the shaders' text with the includer's own `real`: a plain float that a C++ compiler
+// may optimise freely, or a number that counts its operations.
 #pragma once
 
 #include <bit>

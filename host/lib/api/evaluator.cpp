@@ -44,7 +44,7 @@ Evaluator::Evaluator(Evaluator&&) noexcept = default;
 Evaluator& Evaluator::operator=(Evaluator&&) noexcept = default;
 
 Evaluator::~Evaluator() {
-  // In a forked process the driver's threads, which its end would wait for, are not there.
+  // In a forked process the driver's threads do not exist, so that waiting for their end would block.
   if (impl_ && impl_->owner != getpid()) static_cast<void>(impl_.release());
 }
 

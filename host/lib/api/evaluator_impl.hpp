@@ -1,4 +1,4 @@
-// What a public evaluator holds.
+// Implementation of the public evaluator.
 #pragma once
 
 #include <unistd.h>
@@ -16,7 +16,7 @@
 namespace dolp {
 
 /// Refuses Vulkan in a process that was forked from one that has used it: drivers keep threads and locks that a fork
-/// does not copy, so that calls would wait for ever.
+/// does not copy, so that calls would wait without end.
 void check_no_fork();
 
 struct Evaluator::Impl {
@@ -34,7 +34,7 @@ struct Evaluator::Impl {
     return [this, &scene] { return begin(scene); };
   }
 
-  /// Calls `body` with nobody else using the evaluators; a device that failed is not used again.
+  /// Calls `body` while no other thread uses the evaluators; a device that failed is not used again.
   template <class Body>
   auto exclusively(const Body& body) {
     if (options.evaluator == "vulkan") check_no_fork();

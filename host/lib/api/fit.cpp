@@ -37,7 +37,7 @@ void check_loss(Loss loss, const std::vector<MeasuredData>& data) {
   }
 }
 
-/// All combinations of what is compared, one list of settings each; one empty list without it.
+/// All combinations of the compared settings, one list each; one empty list where nothing is compared.
 std::vector<Settings> combinations(const FitOptions& options) {
   std::vector<Settings> all = {{}};
   for (const Comparison& comparison : options.compare) {
@@ -56,13 +56,13 @@ std::vector<Settings> combinations(const FitOptions& options) {
   return all;
 }
 
-/// The best of the models that were compared.
+/// The best of the compared models.
 struct Best {
   std::unique_ptr<fit::Model> model;
   std::optional<fit::FitResult> result;
   Settings compared;
 
-  /// What was compared, and the values that were found.
+  /// The compared settings, with the fitted values.
   Settings settings() const {
     const std::vector<FitParameter>& found = result.value().parameters;
     Eigen::VectorXd values(static_cast<Eigen::Index>(found.size()));

@@ -11,7 +11,7 @@
 namespace dolp {
 namespace {
 
-// On two cores some milliseconds of the dearest entries.
+// Some milliseconds of the most expensive entries on two cores.
 constexpr std::uint32_t kInteractiveTileInvocations = 2'048;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What calls of the public header say of their work.
+// Reports that calls of the public header give of their work.
 #pragma once
 
 #include <dolp/dolp.hpp>
@@ -15,7 +15,7 @@ namespace dolp {
 /// `output`: the file that was written.
 Report public_report(const ReportBuilder& report, bool is_good = true, const std::filesystem::path& output = {});
 
-/// What a scene is read from.
+/// The files that a scene is read from.
 std::vector<std::string> files_of(const SceneValues& scene);
 
 /// Refuses to write over what is read. "-" is stdin and stdout. Errors: InputError.

@@ -1,4 +1,4 @@
-// Results of points as the public header has them.
+// Results of points, in the types of the public header.
 #pragma once
 
 #include <dolp/dolp.hpp>
@@ -9,7 +9,7 @@
 
 namespace dolp {
 
-/// `head`: of the table that a run over the points would have, or that was read.
+/// `head`: that of the table that a run over the points would write, or of the table that was read.
 Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head);
 
 /// Points of columns, as many as the columns that have not one value for all; one where there is none.

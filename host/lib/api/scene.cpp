@@ -15,7 +15,7 @@ namespace {
 
 using Type = Key::Type;
 
-/// The value of a key that is of one of these types. Errors: InputError.
+/// The value of a key that has one of these types. Errors: InputError.
 std::optional<KeyValue> value_of(const SceneValues& scene, std::string_view key, std::initializer_list<Type> types) {
   const SceneKey* const known = find_scene_key(key);
   if (!known) throw InputError(fmt::format("{}: is no key of a scene", one_line(key)));

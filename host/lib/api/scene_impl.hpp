@@ -1,4 +1,4 @@
-// What a public scene holds.
+// Implementation of the public scene.
 #pragma once
 
 #include <dolp/dolp.hpp>

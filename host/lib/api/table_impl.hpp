@@ -1,4 +1,4 @@
-// What a public table holds.
+// Implementation of the public table.
 #pragma once
 
 #include <dolp/dolp.hpp>
@@ -14,7 +14,7 @@ namespace dolp {
 
 struct Table::Impl {
   Impl(TableValues own, std::string own_name) : table(std::move(own)), name(std::move(own_name)) {}
-  /// Made when it is first asked for. Errors: those of table_scene and TableLookup.
+  /// Made at the first request. Errors: those of table_scene and TableLookup.
   const TableLookup& lookup() const;
 
   const TableValues table;

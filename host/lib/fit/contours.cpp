@@ -93,7 +93,7 @@ class Map {
   }
 
  private:
-  /// From where to where the second coordinate goes at one of the first: from the bottom of the valley up its sides.
+  /// The range of the second coordinate at one of the first: from the bottom of the valley up its sides.
   std::array<double, 2> across_the_valley(Residuals& own, double first) {
     const auto other = static_cast<Eigen::Index>(pair_[1]);
     DescentOptions descent = descent_;
@@ -123,7 +123,7 @@ class Map {
     return std::isfinite(objective) ? (objective - result_.chi_square) / result_.scale : std::nan("");
   }
 
-  /// Where the others go along the bottom of the valley, as the derivatives at the minimum say.
+  /// Starts the other parameters on the bottom of the valley, as the derivatives at the minimum predict it.
   Linearisation start_at(const std::vector<std::pair<std::size_t, double>>& held) const {
     Linearisation start;
     start.at = minimum_.at;

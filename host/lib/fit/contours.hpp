@@ -1,4 +1,4 @@
-// How the objective grows around a minimum, over two parameters.
+// Growth of the objective around a minimum, over two parameters.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,11 +19,11 @@ struct Contours {
   Eigen::MatrixXd second;                   ///< values, ascending along each row
   Eigen::MatrixXd growth;                   ///< over the scale; NaN where the model has no value
 };
-/// Growth inside of which lie 68.27 % and 95 % of all pairs: chi^2 with two degrees of freedom.
+/// The growth whose contours contain 68.27 % and 95 % of all pairs: chi^2 with two degrees of freedom.
 inline constexpr std::array kContourLevels = {2.2957, 5.9915};
 
-/// Of the two parameters of the largest correlation, around the best minimum, wider than their 95 % intervals, within
-/// their ranges. None where no correlation is known. Errors: those of the evaluator; Cancelled.
+/// Contours of the two parameters of the largest correlation, around the best minimum, wider than their 95 % intervals,
+/// within their ranges. None where no correlation is known. Errors: those of the evaluator; Cancelled.
 std::optional<Contours> contours_of(const Model& model, MomentsEvaluator& evaluator, const FitResult& result,
                                     const FitOptions& options);
 

@@ -54,7 +54,7 @@ class Batch final : public ceres::EvaluationCallback {
 
   bool is_valid() const { return is_valid_; }
   const Linearisation& now() const { return now_; }
-  /// The last point at which derivatives were wanted: that of the last step taken.
+  /// The last point at which Ceres asked for derivatives: that of the last step taken.
   const Linearisation& known() const { return known_; }
 
  private:
@@ -96,7 +96,7 @@ class OneResidual final : public ceres::CostFunction {
   Eigen::Index row_;
 };
 
-/// Ends a descent whose evaluation has failed, or to which derivatives promise too little.
+/// Ends a descent whose evaluation has failed, or for which derivatives predict too little gain.
 class Watch final : public ceres::IterationCallback {
  public:
   Watch(const Batch& batch, double least_gain) : batch_(batch), least_cost_(0.5 * least_gain) {}
@@ -119,12 +119,12 @@ ceres::Solver::Options solver_options(const DescentOptions& options) {
   solver.function_tolerance = kLeastDecrease;
   solver.parameter_tolerance = kLeastStepLength;
   solver.gradient_tolerance = 0.0;
-  // A step that leaves the bounds is cut there. A search along it would take what little it gains for a success, and
-  // creep.
+  // A step that leaves the bounds is cut there. A line search along it would accept its small gain as a success, and
+  // progress would stall.
   solver.max_num_line_search_step_size_iterations = 0;
   solver.min_trust_region_radius = 1e-8;
   // Levenberg's damping: with a radius of 1 it costs one standard deviation to move a parameter over its whole range.
-  // Marquardt's would leap along what the data hardly see.
+  // Marquardt's damping would allow leaps along directions that the data hardly constrain.
   solver.jacobi_scaling = false;
   solver.min_lm_diagonal = solver.max_lm_diagonal = options.scale;
   solver.initial_trust_region_radius = options.radius;
@@ -163,7 +163,7 @@ Minimum descend(Residuals& residuals, const Linearisation& start, const DescentO
     minimum.has_converged = std::isfinite(minimum.objective);
     return minimum;
   }
-  // Ceres would report every point without a value.
+  // Silences Ceres, which would report every point without a value.
   [[maybe_unused]] static const int quiet = FLAGS_minloglevel = google::GLOG_FATAL;
   Batch batch(residuals, start);
   ceres::Problem::Options ownership;

@@ -1,4 +1,4 @@
-// From one point of the parameters to the minimum below it.
+// Descent from one point of the parameters to the minimum below it.
 #pragma once
 
 #include <Eigen/Core>

@@ -46,14 +46,14 @@ double least_uncertainty(const Model& model) {
   return least;
 }
 
-/// The tolerance of the model's values; at most what the scene asks for.
+/// The tolerance of the model's values; at most the scene's own.
 double fine_tolerance(const Model& model) {
   const double wanted =
       model.has_uncertainties() ? kFineShare * least_uncertainty(model) : kToleranceWithoutUncertainties;
   return std::min(model.scene().accuracy.tolerance, std::max(wanted, kLeastTolerance));
 }
 
-/// That of the search.
+/// The tolerance of the search.
 double coarse_tolerance(const Model& model) {
   const double wanted =
       model.has_uncertainties() ? kCoarseShare * least_uncertainty(model) : kCoarseToleranceWithoutUncertainties;
@@ -62,13 +62,13 @@ double coarse_tolerance(const Model& model) {
 
 bool is_at_bound(double coordinate) { return coordinate < kAtBound || coordinate > 1.0 - kAtBound; }
 
-/// A direction of coordinates, the largest component 1, and how far it may be followed unseen.
+/// A direction of coordinates, the largest component 1, and the distance over which the data do not constrain it.
 struct Direction {
   Eigen::VectorXd along;
   bool is_null = false;  ///< the data do not see it at all; else the whole range changes less than they can tell
 };
 
-/// What the Jacobian at a minimum says.
+/// Covariance of the parameters, from the Jacobian at a minimum.
 struct Covariance {
   Eigen::MatrixXd of_coordinates;     ///< infinite variance where a null direction points; NaN at a bound
   std::vector<Direction> directions;  ///< that the data do not see
@@ -177,7 +177,7 @@ class Fit {
  private:
   std::size_t freedom() const { return model_.observation_count() - model_.parameters().size(); }
 
-  /// Whether there is anything to measure the growth of the objective with.
+  /// True where the growth of the objective has a scale to be measured with.
   bool has_scale() const { return model_.has_uncertainties() || freedom() > 0; }
 
   /// 1, or the square of a hundredth of what was measured.
@@ -208,8 +208,8 @@ class Fit {
     return {at_68 * at_68, at_95 * at_95};
   }
 
-  /// The intervals: around the best minimum, and around others that the data do not rule out. True when a profile led
-  /// to a lower one, which then is the best.
+  /// The intervals: around the best minimum, and around others that the data do not exclude. True where a profile led
+  /// to a lower minimum, which then is the best.
   bool find_intervals() {
     result_ = {};
     result_.scale = find_scale(minima_.front());
@@ -234,8 +234,8 @@ class Fit {
     return false;
   }
 
-  /// Widens all intervals to those around a minimum that lies higher than the best by `excess`. True when it is the
-  /// best and a profile led lower.
+  /// Widens all intervals to those around a minimum that lies higher than the best by `excess`. True where it is the
+  /// best and a profile led to a lower one.
   bool widen_intervals(const Minimum& minimum, double excess, bool is_best) {
     const Eigen::MatrixXd covariance = covariance_of(minimum, options_.loss, result_.scale).of_coordinates;
     std::vector<ProfileSide> sides(2 * model_.parameters().size());
@@ -260,7 +260,7 @@ class Fit {
     return false;
   }
 
-  /// Of a side of a profile.
+  /// The direction of a side of a profile.
   static int direction_of(std::size_t side) { return side % 2 == 0 ? -1 : 1; }
 
   void widen(FitInterval& interval, std::size_t parameter, int direction, const IntervalEnd& end, bool is_first) const {
@@ -274,7 +274,7 @@ class Fit {
     known = is_first ? value : direction < 0 ? std::min(*known, value) : std::max(*known, value);
   }
 
-  /// Goes to the bottom below a point; whether that is the new best minimum.
+  /// Descends from a point; true where that gives the new best minimum.
   bool take(const Minimum& lower) {
     DescentOptions descent;
     descent.loss = options_.loss;
@@ -312,7 +312,7 @@ class Fit {
     add_criteria();
   }
 
-  /// A direction that is seen a little counts only where a profile confirms that a parameter in it is open.
+  /// A weakly constrained direction counts only where a profile confirms that a parameter in it is open.
   void name_degeneracies() {
     result_.determined = covariance_.rank;
     for (const Direction& direction : covariance_.directions) {

@@ -22,7 +22,7 @@ struct OtherMinimum {
   double chi_square = 0.0;
 };
 
-/// What a fit found. Lists over observations are in the order of the data.
+/// The result of a fit. Lists over observations are in the order of the data.
 struct FitResult {
   std::vector<FitParameter> parameters;
   Eigen::MatrixXd correlation;  ///< NaN of a parameter without a standard error

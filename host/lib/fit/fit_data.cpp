@@ -56,7 +56,7 @@ std::optional<std::size_t> position_of(const std::vector<ColumnRule>& columns, s
   return static_cast<std::size_t>(found - columns.begin());
 }
 
-/// Refuses columns that contradict each other or say nothing.
+/// Refuses columns that contradict each other or carry no information.
 void check_columns(const CsvReader& header, const std::vector<ColumnRule>& columns) {
   const auto has = [&](const char* name) { return position_of(columns, name).has_value(); };
   if (has("theta_deg") == has("theta_i_deg")) {
@@ -92,7 +92,8 @@ void add_row(MeasuredData& data, const CsvReader& row, const std::vector<ColumnR
   }
 }
 
-/// Where the keys of "FILE:KEY=VALUE,..." begin: behind the colon before the first dotted key of a scene.
+/// The position at which the keys of "FILE:KEY=VALUE,..." begin: behind the colon before the first dotted key of a
+/// scene.
 std::size_t keys_begin(const std::string& argument) {
   for (std::size_t colon = argument.find(':'); colon != std::string::npos; colon = argument.find(':', colon + 1)) {
     const std::string_view rest = std::string_view(argument).substr(colon + 1);
@@ -102,7 +103,7 @@ std::size_t keys_begin(const std::string& argument) {
   return std::string::npos;
 }
 
-/// The pieces of "KEY=VALUE,KEY=VALUE"; a comma inside of brackets or quotes separates nothing.
+/// The parts of "KEY=VALUE,KEY=VALUE"; a comma inside of brackets or quotes separates nothing.
 std::vector<std::string> pieces_of(std::string_view text) {
   std::vector<std::string> pieces(1);
   int depth = 0;

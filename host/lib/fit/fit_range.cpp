@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kForm = "must be KEY=LOW:HIGH or KEY=LOW:HIGH:START";
 
-/// The scene's keys that are numbers, but for the accuracy of the model itself.
+/// The scene's numeric keys, except the accuracy of the model itself.
 std::vector<std::string> number_keys() {
   std::vector<std::string> keys;
   for (const Key& description : dolp::keys()) {

@@ -1,4 +1,4 @@
-// Checks of what a fit varies.
+// Checks of the parameters that a fit varies.
 #pragma once
 
 #include <dolp/fit.hpp>

@@ -39,7 +39,7 @@ Eigen::VectorXd starts_of(const std::vector<FitRange>& parameters) {
   return values;
 }
 
-/// What an observable is at a point.
+/// The components of an observable at a point.
 Eigen::RowVector2d components_of(Observable observable, const PointResult& point) {
   const Eigen::RowVector2d q_u(point[Quantity::kStokesQ] / point[Quantity::kStokesI],
                                point[Quantity::kStokesU] / point[Quantity::kStokesI]);

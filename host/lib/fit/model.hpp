@@ -13,7 +13,7 @@
 
 namespace dolp::fit {
 
-/// What the model says to all observations, in their order.
+/// The model's predictions of all observations, in their order.
 struct Prediction {
   /// The observable in the first column; of DOLP the signed Q/I and U/I, whose length it is.
   Eigen::MatrixX2d components;

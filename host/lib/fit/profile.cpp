@@ -55,7 +55,8 @@ class Side {
  private:
   using Place = std::vector<Point>::const_iterator;
 
-  /// Where a straight line through the two points beside `root` meets it; beyond the last point through the last two.
+  /// The intersection of `root` with a straight line through the two points beside it; beyond the last point, through
+  /// the last two.
   double next(Place above, double root) const {
     if (above != points_.end()) {
       const Point& below = *(above - 1);
@@ -80,7 +81,7 @@ class Side {
     return *points_.insert(after, Point{distance, root, found.where});
   }
 
-  /// The others go along the bottom of the valley as the derivatives say; those at a bound stay.
+  /// The other parameters follow the bottom of the valley as the derivatives predict; those at a bound stay.
   Linearisation start(const Linearisation& near, double distance) const {
     Eigen::VectorXd at = near.at;
     at[parameter_] = std::clamp(minimum_.where.at[parameter_] + direction_ * distance, 0.0, 1.0);

@@ -9,10 +9,10 @@
 
 namespace dolp::fit {
 
-/// An end of an interval: none where the parameter's range ends before the data say no.
+/// An end of an interval: none where the parameter's range ends before the data exclude a value.
 using IntervalEnd = std::optional<double>;
 
-/// Where the objective, least over all other parameters, has grown by `rises` on one side of a minimum.
+/// The points on one side of a minimum at which the objective, least over all other parameters, has grown by `rises`.
 struct ProfileSide {
   std::array<IntervalEnd, 2> ends;  ///< coordinates, one for each rise; of one below zero none
   std::optional<Minimum> lower;     ///< a point below the minimum: there is another one

@@ -10,7 +10,7 @@
 
 namespace dolp::fit {
 
-/// Residuals at a point of the parameters' coordinates, and how they change with them.
+/// Residuals at a point of the parameters' coordinates, and their derivatives.
 struct Linearisation {
   Eigen::VectorXd at;         ///< coordinates in [0, 1]
   Eigen::VectorXd residuals;  ///< (model - measured) / uncertainty; without uncertainties model - measured
@@ -40,8 +40,8 @@ class Residuals {
   /// The residuals alone, at several points in one batch. NaN where the model has no value.
   std::vector<Eigen::VectorXd> at(const std::vector<Eigen::VectorXd>& points);
 
-  /// With derivatives by differences, all in one batch. Their steps follow what the model changed by at the last ones,
-  /// see `follow`.
+  /// Residuals with derivatives by differences, all in one batch. The step sizes follow the model's changes at the last
+  /// ones, see `follow`.
   Linearisation linearised(const Eigen::VectorXd& point);
 
   /// The model at several points in one batch.
@@ -54,7 +54,7 @@ class Residuals {
   Prediction predicted(const Eigen::VectorXd& point);
   /// The observables of a prediction.
   Eigen::VectorXd observed(const Prediction& prediction) const;
-  /// What differences are multiplied with: 1 / uncertainty, or 1.
+  /// The factors of the differences: 1 / uncertainty, or 1.
   const Eigen::VectorXd& weights() const { return weights_; }
 
  private:

@@ -42,7 +42,7 @@ std::vector<Eigen::VectorXd> sobol_points(std::size_t count, Eigen::Index dimens
   return points;
 }
 
-/// Where the descents begin: the best points, no two of them close together.
+/// The starting points of the descents: the best points, no two of them close together.
 std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& options) {
   const std::vector<FitRange>& parameters = residuals.model().parameters();
   const auto dimensions = static_cast<Eigen::Index>(parameters.size());
@@ -83,7 +83,7 @@ double scale_of(const SearchOptions& options, const Minimum& minimum) {
   return minimum.objective / std::max(1.0, freedom);
 }
 
-/// A point across a line moved to where the residuals are least, as their derivatives say.
+/// Moves a point across a line to the position where the residuals are least, as their derivatives predict.
 Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& residuals,
                          const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& line) {
   const Eigen::VectorXd along = line.normalized();
@@ -92,7 +92,7 @@ Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& re
   return moved.cwiseMax(0.0).cwiseMin(1.0);
 }
 
-/// Whether the objective falls from point to point, or rises nowhere by more than `scale`.
+/// True where the objective falls from point to point, or never rises by more than `scale`.
 bool falls(double from, const std::vector<Eigen::VectorXd>& residuals, Loss loss, double scale) {
   double least = from;
   return std::ranges::all_of(residuals, [&](const Eigen::VectorXd& one) {
@@ -103,7 +103,7 @@ bool falls(double from, const std::vector<Eigen::VectorXd>& residuals, Loss loss
   });
 }
 
-/// Whether derivatives at a point foretell the residuals at a minimum: nothing parts the two then.
+/// True where the derivatives at a point predict the residuals at a minimum: then nothing separates the two.
 bool is_straight(const Linearisation& from, const Linearisation& to, double scale) {
   const Eigen::VectorXd foretold = from.residuals + from.jacobian * (to.at - from.at);
   return (foretold - to.residuals).squaredNorm() < kBent * ((from.residuals - to.residuals).squaredNorm() + scale);
@@ -117,8 +117,8 @@ std::vector<Eigen::VectorXd> points_between(const Linearisation& from, const Min
   return points;
 }
 
-/// Whether the objective falls from a point along the straight line to one of several minima or along the floor of the
-/// valley beside it, but for rises of less than one standard deviation.
+/// True where the objective falls from a point along the straight line to one of several minima, or along the floor of
+/// the valley beside it, except for rises of less than one standard deviation.
 bool leads_down(Residuals& residuals, const Minimum& from, const std::vector<Minimum>& to,
                 const SearchOptions& options) {
   const auto is_near = [&](const Minimum& one) { return is_straight(from.where, one.where, scale_of(options, one)); };
@@ -149,7 +149,7 @@ bool leads_down(Residuals& residuals, const Minimum& from, const std::vector<Min
   return is_down(residuals.at(points));
 }
 
-/// The lowest first, without those from which the way leads down to a lower one.
+/// The minima, the lowest first, without those from which a path leads down to a lower one.
 std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, const SearchOptions& options) {
   std::erase_if(all, [](const Minimum& one) { return !std::isfinite(one.objective); });
   std::ranges::stable_sort(all, {}, &Minimum::objective);
@@ -160,7 +160,7 @@ std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, co
   return kept;
 }
 
-/// Descents from several points at once; where they end.
+/// Descents from several points at once, and their end points.
 std::vector<Minimum> descend_all(Residuals& residuals, const std::vector<Minimum>& starts,
                                  const DescentOptions& options) {
   std::vector<Minimum> minima(starts.size());
@@ -172,8 +172,8 @@ std::vector<Minimum> descend_all(Residuals& residuals, const std::vector<Minimum
   return minima;
 }
 
-/// The lowest of descents from several points, all in rounds of a few steps. One that derivatives lead to where a lower
-/// one has been ends with its round: it would go the same way.
+/// The lowest of descents from several points, all in rounds of a few steps. A descent that derivatives lead to a place
+/// where a lower one has been ends with its round: it would take the same path.
 std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> starts, const SearchOptions& options,
                                    const DescentOptions& descent) {
   std::vector<Minimum> arrived, passed;
@@ -195,7 +195,7 @@ std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> st
   return arrived;
 }
 
-/// The same places without what is known of them.
+/// The same points without their residuals and derivatives.
 std::vector<Minimum> places_of(const std::vector<Minimum>& minima) {
   std::vector<Minimum> places;
   for (const Minimum& one : minima) places.push_back({.where = {one.where.at, {}, {}}});

@@ -1,4 +1,4 @@
-// Where a fit begins, and which minima it finds.
+// The starting points of a fit, and the minima that it finds.
 #pragma once
 
 #include <cstddef>
@@ -18,12 +18,13 @@ struct SearchOptions {
   double scale = 1.0;             ///< a change of the objective by one standard deviation, or a guess of it
 };
 
-/// All distinct minima that descents from the best of a Sobol sequence end in, the lowest first. Parameters with a
-/// start add one descent from there. All descents go on at once, in rounds of a few steps, after which those end that
-/// come upon the way of a lower one. `coarse` has a wider tolerance than `fine`: it finds the minima, `fine` goes to
-/// the bottom of those that lie less than 30 standard deviations of the objective above the lowest. A point from which
-/// the floor of a valley leads down to a minimum, or that a rise of less than a standard deviation parts from it, is no
-/// minimum of its own. Empty when no descent converged. Errors: those of the evaluator; Cancelled.
+/// Finds all distinct minima in which descents from the best points of a Sobol sequence end, the lowest first.
+/// Parameters with a start add one descent from there. All descents advance together, in rounds of a few steps; after
+/// each round, a descent that has reached the path of a lower one ends. `coarse` has a wider tolerance than `fine`: it
+/// finds the minima, `fine` goes to the bottom of those that lie less than 30 standard deviations of the objective
+/// above the lowest. A point from which the floor of a valley leads down to a minimum, or that only a rise of less than
+/// a standard deviation separates from it, is not a minimum of its own. Empty when no descent converged. Errors: those
+/// of the evaluator; Cancelled.
 std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const SearchOptions& options);
 
 }  // namespace dolp::fit

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostThreads = 64;
 
-/// Where tasks wait until all that still run have asked.
+/// A barrier: tasks wait here until all running tasks have asked.
 class Rendezvous {
  public:
   Rendezvous(Residuals& residuals, std::size_t tasks)

@@ -1,4 +1,4 @@
-// Several descents at once, so that the model is computed for all of them in one batch.
+// Several descents in parallel, so that the model is computed for all of them in one batch.
 #pragma once
 
 #include <cstddef>

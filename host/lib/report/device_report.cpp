@@ -12,11 +12,11 @@
 namespace dolp {
 namespace {
 
-// What each arithmetic is asked for: near the best that it can do.
+// Requested tolerance of each arithmetic: near the best that it can reach.
 constexpr double kFloatTolerance = 1e-6;
 constexpr double kDoubleTolerance = 1e-9;
 
-/// How well a device computes in one precision, or why that is not known.
+/// A device's accuracy in one precision, or the reason why it is unknown.
 struct Quality {
   const char* precision;
   std::optional<DeviceQuality> measured;

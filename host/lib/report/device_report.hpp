@@ -1,4 +1,4 @@
-// What there is to say of the Vulkan devices.
+// Report on the Vulkan devices.
 #pragma once
 
 #include "device/devices.hpp"
@@ -6,7 +6,7 @@
 
 namespace dolp {
 
-/// Their limits, and how well each computes a few ordinary cases in float and double.
+/// Adds the limits of the devices, and the accuracy of each on a few ordinary cases in float and double.
 ReportBuilder device_report(const DeviceList& list);
 
 }  // namespace dolp

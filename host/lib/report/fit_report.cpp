@@ -40,7 +40,7 @@ Json parameter_json(const FitParameter& one) {
           {"at_bound", one.is_at_bound}};
 }
 
-/// A line for each parameter, and one for each end that its range has before the data say no.
+/// A line for each parameter, and one for each end of its range that lies before the data exclude a value.
 void add_parameters(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   Json list = Json::array();
   for (const FitParameter& one : result.parameters) list.push_back(parameter_json(one));
@@ -85,7 +85,7 @@ void add_correlations(ReportBuilder& report, const FitResult& result) {
   }
 }
 
-/// How well the model fits, and what measures it.
+/// Adds the misfit of the model, and its measure.
 void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   report.row("minimum", "chi_square {:.6g}, {} degrees of freedom{}{}", key("chi_square", result.chi_square),
              key("degrees_of_freedom", result.degrees_of_freedom),

@@ -1,4 +1,4 @@
-// What there is to say of a fit.
+// Report on a fit.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ struct ComparedModel {
 /// the list of the data.
 void add_fit(ReportBuilder& report, const fit::Model& model, const fit::FitResult& result);
 
-/// Adds how the objective grows around the minimum.
+/// Adds the growth of the objective around the minimum.
 void add_contours(ReportBuilder& report, const fit::Model& model, const fit::Contours& contours);
 
 /// Adds the table of compared models, the best first.

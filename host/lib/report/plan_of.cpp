@@ -14,7 +14,7 @@
 namespace dolp {
 namespace {
 
-/// The device that a run would take; without one, limits that every device keeps.
+/// The device that a run would use; without one, limits that every device keeps.
 Device device_of(const std::string& choice, const SceneValues& scene, PlanReport& report) {
   const bool in_double = scene.accuracy.precision == Precision::kDouble;
   const DeviceList list = list_devices();
@@ -42,7 +42,7 @@ void add_dispatches(PlanReport& report, const DispatchForecast& of_request) {
   report.dispatches.device_bytes = std::max(report.dispatches.device_bytes, of_request.device_bytes);
 }
 
-/// `more`: what else distinguishes the pipeline.
+/// `more`: further properties that distinguish the pipeline.
 void add_pipeline(PlanReport& report, const char* kernel, Precision precision, const std::string& more = {}) {
   const Surface& surface = report.scene.surface;
   const std::string text = fmt::format("{}, {}: distribution {}, masking {}{}", kernel, name_of(precision),
@@ -67,7 +67,7 @@ void add_request(PlanReport& report, const ScatteringRequest& request, const Dev
 }
 
 /// The evaluations were counted entry by entry; on the device those of a row are made once. Its nodes are those that
-/// its hardest member needs, hence estimated.
+/// its hardest member needs, hence they are estimated.
 void share_evaluations(PlanReport& report) {
   if (report.dispatches.row_width == 1) return;
   report.run.first_evaluations *= static_cast<double>(report.dispatches.rows) / static_cast<double>(report.run.moments);
@@ -92,7 +92,7 @@ Work work_of(const RunPrediction& run) {
   return {run.first_evaluations + run.again_evaluations, static_cast<double>(run.beams) + run.again_beams};
 }
 
-/// The work of the run if one more part were not there.
+/// The work of the run without one more part.
 Work work_without(const PlanReport& report, Part part, const SceneEntries& entries, const Device& device) {
   if (part == Part::kFurtherBounces) {  // the moments stay, but of another kernel
     PlanReport single;
@@ -107,7 +107,7 @@ Work work_without(const PlanReport& report, Part part, const SceneEntries& entri
   return {left.moments ? work.moments : 0.0, left.beams ? work.beams : 0.0};
 }
 
-/// For each effect the share of the evaluations that would not be made without it.
+/// The share of the evaluations that each effect causes.
 std::vector<double> work_shares(const PlanReport& report, const SceneEntries& entries,
                                 const Device& device) {
   const double total = work_of(report.run).total();

@@ -82,7 +82,7 @@ std::string how_counted(const RunPrediction& run) {
                                : fmt::format("estimated from {} entries", kCountedEntries);
 }
 
-/// What the first attempt computes, and others again; `is_idle`: nothing.
+/// Adds the work of the first attempt and of the repeated ones; `is_idle`: there is none.
 void add_attempts(ReportBuilder& report, const PlanReport& plan, bool is_idle) {
   const RunPrediction& run = plan.run;
   const DispatchForecast& dispatches = plan.dispatches;
@@ -146,7 +146,7 @@ std::string needed_text(const AxisForecast& axis) {
   return fmt::format("{} values are about enough for {:.1g}", axis.needed_values, axis.wanted);
 }
 
-/// How densely the axes must lie for lookups.
+/// Adds the density of axes that lookups need.
 void add_lookup(ReportBuilder& report, const PlanReport& plan) {
   std::vector<ReportBuilder> axes;
   for (const AxisForecast& axis : plan.lookup) {

@@ -1,4 +1,4 @@
-// What there is to say about a run that has not happened: for people, and as JSON.
+// Report on a planned run that has not started: for people, and as JSON.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ struct RuleSize {
   int most_nodes = 0;  ///< of a piece of the slope axis or an arc of azimuth
 };
 
-/// Everything that there is to say about a run that has not happened.
+/// All information about a planned run that has not started.
 struct PlanReport {
   SceneValues scene;
   EffectPlan plan;
@@ -35,8 +35,8 @@ struct PlanReport {
   std::string why_no_device;
 };
 
-/// A run of `plan` over the scene's grid. `device`: a position or a part of a name; empty is the default, and where
-/// there is none the limits that every device keeps.
+/// The plan report of a run of `plan` over the scene's grid. `device`: a position or a part of a name; empty is the
+/// default device, or the limits that every device keeps where there is none.
 /// Errors: InputError of grid_entries; DeviceError where a named device is not usable.
 PlanReport plan_of(const SceneValues& scene, const std::string& device, EffectPlan plan);
 

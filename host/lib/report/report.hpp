@@ -1,4 +1,4 @@
-// What a command reports: one list of values, rendered for people or for programs.
+// A command's report: one list of values, rendered for people or for programs.
 #pragma once
 
 #include <fmt/format.h>
@@ -28,15 +28,15 @@ Keyed<T> key(const char* path, const T& value) {
   return {path, value};
 }
 
-/// Lines of text whose arguments are values; those that are Keyed are values of the JSON too.
+/// Lines of text whose arguments are values; Keyed arguments are values of the JSON too.
 class ReportBuilder {
  public:
   using Json = nlohmann::ordered_json;
 
-  /// Texts stand behind their labels, in a column of their own.
+  /// Texts follow their labels, in a column of their own.
   explicit ReportBuilder(int label_width = 10) : label_width_(label_width) {}
 
-  /// A line that begins as `text` says.
+  /// A line that begins with `text`.
   template <class... Args>
   void line(fmt::format_string<const Args&...> text, const Args&... args) {
     text_ += printable_line(fmt::format(text, args...)) + '\n';
@@ -58,7 +58,7 @@ class ReportBuilder {
     (record(args), ...);
   }
 
-  /// A value that the text words otherwise or leaves out. NaN, infinity and no value are null.
+  /// A value that the text words otherwise or leaves out. NaN, infinity and missing values become null.
   template <class T>
   void value(const char* path, const T& value) {
     json_[Json::json_pointer(std::string("/") + path)] = value;

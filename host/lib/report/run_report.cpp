@@ -21,7 +21,7 @@ ReportBuilder range_report(const char* what, double limit, const EnergyRange& ra
   return report;
 }
 
-/// Over which part of the grid the surface model itself gains or loses energy.
+/// The part of the grid over which the surface model itself gains or loses energy.
 void add_energy(ReportBuilder& report, const RunSummary& summary, bool is_computed) {
   if (summary.albedos == 0) {
     report.row("albedo", "{}", is_computed ? "not given for any entry" : "not computed: nothing kept depends on it");
@@ -36,7 +36,7 @@ void add_energy(ReportBuilder& report, const RunSummary& summary, bool is_comput
   report.add("albedo/gains_energy", range_report("gains it (above", kAlbedoMax, summary.gains));
 }
 
-/// What is kept, and a line for each effect that is dropped.
+/// Adds the effects that are kept, and a line for each effect that is dropped.
 void add_effects(ReportBuilder& report, const RunOutcome& run) {
   std::string kept;
   for (const EffectRow& row : run.effects) {

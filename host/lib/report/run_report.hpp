@@ -1,4 +1,4 @@
-// What there is to say of a run over a scene's entries, and of what runs have in common.
+// Report on a run over a scene's entries, and the parts that all run reports share.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +21,13 @@ namespace dolp {
 ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, std::optional<double> gap, const std::string& shape,
                   const std::string& path);
 
-/// Where a run was evaluated, and how long it took.
+/// The evaluator and device of a run, and the time that it took.
 void add_evaluation(ReportBuilder& report, const EvaluationReport& evaluation, double wall_s);
 
 /// The results that carry a bit of the status.
 std::size_t count_status(const std::vector<PointResult>& results, std::uint32_t bit);
 
-/// The largest of an error that results state, of those whose status has none of `refused`; none without any.
+/// The largest stated error of the results whose status has none of the bits `refused`; none without any.
 std::optional<double> worst_of(const std::vector<PointResult>& results, Quantity error, std::uint32_t refused);
 
 }  // namespace dolp

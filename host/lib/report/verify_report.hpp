@@ -1,4 +1,4 @@
-// What `dolp verify` reports: for people, and as JSON.
+// Report of `dolp verify`: for people, and as JSON.
 #pragma once
 
 #include <string>

@@ -6,7 +6,7 @@
 namespace dolp {
 namespace {
 
-// Its multiples modulo 1 fill the interval evenly and keep no step with the axes of a grid.
+// Its multiples modulo 1 fill the interval evenly and do not resonate with the axes of a grid.
 constexpr double kGoldenRatio = 0.6180339887498949;
 
 }  // namespace

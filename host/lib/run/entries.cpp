@@ -13,7 +13,7 @@
 namespace dolp {
 namespace {
 
-/// Refuses points that lack what the scene does not say.
+/// Refuses points that lack a value which the scene does not give either.
 void check_columns(const SceneValues& scene, const Points& points) {
   if (!points[Axis::kTheta] && scene.grid[Axis::kTheta].size() != 1) {
     throw InputError(

@@ -19,7 +19,8 @@ constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsil
 // Cosines below it, whose squares may underflow, weigh nothing: the integrand falls at least like the cosine.
 constexpr double kSmallestCosine = 1e-100;
 
-/// Where total reflection begins, abruptly (k = 0) or nearly so; 0 without one. Units: rad from grazing incidence.
+/// The angle at which total reflection begins, abruptly (k = 0) or nearly so; 0 without one. Units: rad from grazing
+/// incidence.
 double critical_angle(const OpticalConstants& index) {
   const double squared_sine = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
   const double squared_cosine = (index.n - index.k) * (index.n + index.k);

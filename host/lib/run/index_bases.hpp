@@ -1,4 +1,4 @@
-// From which of a run's indices the moments of the others are combined.
+// The indices of a run from which the moments of the others are combined.
 #pragma once
 
 #include <map>
@@ -18,8 +18,8 @@ class IndexBases {
  public:
   IndexBases(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
 
-  /// Of a level that may interpolate; null where nothing is gained: for points, few entries of each
-  /// index, few indices and many bounces.
+  /// The basis of a level that may interpolate; null where it saves nothing: for points, few entries of each index, few
+  /// indices and many bounces.
   std::shared_ptr<const IndexBasis> of(const RefinementLevel& level);
 
  private:

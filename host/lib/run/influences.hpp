@@ -9,7 +9,7 @@
 
 namespace dolp {
 
-/// Entries that influences are looked for at, where one spectral sample is enough.
+/// Number of entries at which influences are estimated; one spectral sample is enough there.
 inline constexpr std::size_t kInfluenceEntries = 12;
 
 /// Estimates what each kept part changes: the largest difference of (Q/I, U/I) between the scene with everything and

@@ -68,7 +68,7 @@ class Forecast {
   }
 
  private:
-  /// The least number of values, of those tried, that gives the error that is wanted; 0 without one.
+  /// The least number of values, of those tried, that gives the wanted error; 0 without one.
   std::size_t needed(Axis axis, std::size_t values, double error, double wanted) {
     const double order = is_read_with_four(axis) ? kOrderOfFour : kOrderOfSix;
     std::size_t enough = 0, too_few = 0;
@@ -92,7 +92,7 @@ class Forecast {
     }
   }
 
-  /// The most that a lookup leaves out along an axis of so many values, at the places looked at.
+  /// The largest error of a lookup along an axis of so many values, at the examined places.
   double error_with(Axis axis, std::size_t values) {
     if (values < kLeastValues) return kInfinity;
     std::vector<Stretch> stretches;
@@ -132,7 +132,7 @@ class Forecast {
     return stretch;
   }
 
-  /// What a lookup leaves out in each stretch; NaN where the model has no value. All are computed together.
+  /// The error of a lookup in each stretch; NaN where the model has no value. All stretches are computed together.
   std::vector<double> errors_in(const std::vector<Stretch>& stretches) {
     std::vector<SceneEntry> all;
     std::vector<double> wavelengths;

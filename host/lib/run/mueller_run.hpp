@@ -18,7 +18,7 @@ struct MuellerPoint {
   OpticalConstants index;
 };
 
-/// Scattered geometries; what they do not say comes from the scene, n and k at its wavelength.
+/// Scattered geometries; values that they lack come from the scene, n and k at its wavelength.
 /// Errors: InputError that names file, key or line and column, and what is allowed: a band with a material that depends
 /// on the wavelength, unless the points have n and k both; q <= 3/2 with smith masking and the cauchy distribution.
 std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points& points);

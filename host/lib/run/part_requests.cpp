@@ -12,7 +12,7 @@ BeamAngles angles_of(const SceneValues& scene, double theta_deg) {
           geometry.relative_azimuth_deg};
 }
 
-/// What distinguishes two slope distributions: the gaussian has no q.
+/// The parameters that distinguish two slope distributions: the gaussian has no q.
 SlopeShape normalised(const SceneValues& scene, const SlopeShape& shape) {
   return scene.surface.distribution == Distribution::kGaussian ? SlopeShape{.sigma = shape.sigma} : shape;
 }
@@ -128,7 +128,7 @@ void PartRequests::ask_grid(const Selection& selection) {
   if (!is_whole) mask(selection);
 }
 
-/// Sets that are alike share their indices.
+/// Equal sets share their indices.
 void PartRequests::ask_indices(const SceneEntries& grid, const std::vector<char>& is_used) {
   set_at_.assign(is_used.size(), 0);
   std::vector<OpticalConstants> last;

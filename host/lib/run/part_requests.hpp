@@ -1,4 +1,4 @@
-// What a run asks of the evaluator for a part of its entries, and where each entry finds its answer.
+// A run's requests to the evaluator for a part of its entries, and the position of each entry's answer.
 #pragma once
 
 #include <cstddef>
@@ -26,27 +26,27 @@ struct Selection {
   SceneEntry operator[](std::size_t member) const { return part[position(member)]; }
 };
 
-/// The direction of an entry as its moments see it: in bistatic mode they are those of the view.
+/// The direction that an entry's moments depend on: in bistatic mode that of the view.
 double seen_deg(const SceneValues& scene, double theta_deg);
 
 bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
-/// Whether the evaluator has to compute the beam of an entry: not of a mirror, nor with source and view both at
-/// 90 degrees.
+/// True where the evaluator must compute the beam of an entry: not for a mirror, nor with source and view both at 90
+/// degrees.
 bool wants_beam(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
-/// The beam of an entry that wants none: a mirror sends nothing but toward its specular direction, where the radiance
-/// is not defined, as it is not with source and view both at 90 degrees.
+/// The beam of an entry that needs no evaluator: a mirror reflects only toward its specular direction, where the
+/// radiance is not defined, as it is not with source and view both at 90 degrees.
 Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg);
 
-/// The indices at which a scene wants moments: of each wavelength of its entries, or of its spectrum.
+/// The indices at which a scene needs moments: of each wavelength of its entries, or of its spectrum.
 using SpectralIndices = std::vector<std::vector<OpticalConstants>>;
 SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& entries);
 
-/// The requests of one level at a selection. Of a grid the moments are a grid again: of the directions and indices of
-/// the selection, and of all slope distributions, so that what an entry gets does not depend on which others are
-/// selected in other directions; in bistatic mode of one direction, the view. Of points neighbours that differ in
-/// nothing that the moments see share them.
+/// The requests of one level for a selection. For a grid the moments form a grid again: of the directions and indices
+/// of the selection, and of all slope distributions, so that the result of an entry does not depend on the entries
+/// selected in other directions; in bistatic mode of one direction, the view. Neighbouring points that differ only in
+/// values that the moments do not depend on share them.
 class PartRequests {
  public:
   PartRequests(const SceneValues& scene, const SpectralIndices& samples, const EffectPlan& plan, const Selection& selection,
@@ -55,13 +55,13 @@ class PartRequests {
   const MomentsRequest& moments() const { return moments_; }
   const ScatteringRequest& beams() const { return beams_; }
 
-  /// Where the moments of a member are in the answer: at `first + j * stride` for spectral sample j.
+  /// The position of a member's moments in the answer: `first + j * stride` for spectral sample j.
   struct Place {
     std::size_t first = 0;
     std::size_t stride = 0;
   };
   Place moments_of(std::size_t member) const;
-  /// Of a grid: the direction of the request that a member has its moments from.
+  /// For a grid: the request's direction from which a member has its moments.
   std::size_t direction_of(std::size_t member) const;
   /// The first of its beams, one for each sample.
   std::size_t beams_of(std::size_t member) const { return first_beam_[member]; }
@@ -80,8 +80,8 @@ class PartRequests {
   const Selection selection_;
   MomentsRequest moments_;
   ScatteringRequest beams_;
-  // Of a grid: the position in the request of each value of the part's axes, and of the first index of each set: those
-  // of a wavelength, or the one of n and k.
+  // For a grid: the position in the request of each value of the part's axes, and of the first index of each set: the
+  // indices of a wavelength, or the one of n and k.
   std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, set_at_;
   std::vector<Place> places_;  ///< of points
   std::vector<std::size_t> first_beam_;

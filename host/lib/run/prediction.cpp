@@ -54,7 +54,7 @@ struct Count {
   }
 };
 
-/// Notes what the levels of a run ask for.
+/// Records the requests of a run's levels.
 class CountingEvaluator final : public MomentsEvaluator, public ScatteringEvaluator {
  public:
   CountingEvaluator(Precision precision, bool has_double) : cpu_(precision), has_double_(has_double) {}
@@ -86,7 +86,7 @@ class CountingEvaluator final : public MomentsEvaluator, public ScatteringEvalua
   Count beams_;
 };
 
-/// How many of all there are for each that was counted.
+/// The number of all entries for each counted one.
 double scale_of(std::size_t all, const Count& counted) {
   return counted.first == 0 ? 0.0 : static_cast<double>(all) / static_cast<double>(counted.first);
 }
@@ -143,7 +143,7 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
     }
     run.beams += beams;
     if (beams > 0) visit.beams(requests.beams());
-    // Results, the columns made of them, and those of the part before, which are being written.
+    // Memory of the results, the columns made of them, and those of the part before, which are being written.
     const std::size_t columns = part.size() * (kQuantityCount * sizeof(double) + sizeof(std::uint32_t));
     largest =
         std::max(largest, part.size() * sizeof(PointResult) + columns + columns_before + moments * sizeof(Moments) +

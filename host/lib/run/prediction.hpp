@@ -1,4 +1,4 @@
-// What a run will cost, before it runs.
+// Prediction of a run's cost before it starts.
 #pragma once
 
 #include <functional>
@@ -11,11 +11,11 @@
 
 namespace dolp {
 
-/// Entries of a run whose nodes are counted; of more entries these stand for all.
+/// Number of a run's entries whose nodes are counted; they represent all entries of a larger run.
 inline constexpr std::size_t kCountedEntries = 256;
 
-/// Where the entries of a direction share their work (profiles, interpolation between slope distributions), the
-/// directions whose entries are counted instead.
+/// Number of directions whose entries are counted instead, where the entries of a direction share their work (profiles,
+/// interpolation between slope distributions).
 inline constexpr std::size_t kCountedDirections = 6;
 
 /// Work of a run.

@@ -1,4 +1,4 @@
-// What a report says of results, gathered part by part.
+// Summary of results for reports, gathered part by part.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ namespace dolp {
 inline constexpr double kAlbedoMin = 0.95;
 inline constexpr double kAlbedoMax = 1.05;
 
-/// Entries whose albedo is off, and the smallest box around them.
+/// Entries whose albedo is out of range, and the smallest box around them.
 struct EnergyRange {
   std::size_t entries = 0;
   std::pair<double, double> theta_deg;  ///< of the view in bistatic mode
@@ -36,7 +36,7 @@ struct RunSummary {
   std::pair<double, double> albedo;
   EnergyRange loses, gains;
   SelfCheck check;
-  // Of the evaluator.
+  // Totals of the evaluator.
   double evaluations = 0.0;
   double kernel_s = 0.0;
   std::uint64_t dispatches = 0, interpolated = 0, interpolation_nodes = 0;
@@ -44,14 +44,14 @@ struct RunSummary {
   /// Adds the results of some entries.
   void add(const SceneValues& scene, const SceneEntries& part, std::span<const PointResult> results);
   void add(const RunSummary& other);
-  /// What an evaluator did, beside what is in the summary already.
+  /// Adds an evaluator's counts and kernel time to those of the summary.
   void add(const EvaluationReport& report);
   /// The report of an evaluator with the totals of the summary.
   EvaluationReport totals(EvaluationReport report) const;
 
   std::size_t count(std::uint32_t bit) const;
 
-  /// In one line, and back. A line of another kind gives nothing.
+  /// Writes the summary in one line, and reads it back. A line of another kind gives nothing.
   std::string text() const;
   static std::optional<RunSummary> from_text(const std::string& text);
 };

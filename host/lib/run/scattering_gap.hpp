@@ -9,7 +9,7 @@
 
 namespace dolp {
 
-/// Entries that the gap is looked for at, where one spectral sample is enough.
+/// Number of entries at which the gap is estimated; one spectral sample is enough there.
 inline constexpr std::size_t kGapEntries = 16;
 
 /// How far single scattering may be off: the largest difference of DOLP between the emission 1 - rho, which counts all

@@ -21,14 +21,14 @@
 namespace dolp {
 namespace {
 
-// Bound the memory of a run. Points take more of it, because nothing is shared between them.
+// Limits on the memory of a run. Points take more of it, because they share nothing.
 constexpr std::size_t kMomentsAtOnce = 1U << 20U;
 constexpr std::size_t kPointsAtOnce = 1U << 17U;
-// A direction of which more than one entry in so many misses the tolerance is refined as a whole.
+// A direction is refined as a whole where more than one entry in so many misses the tolerance.
 constexpr std::size_t kManyMisses = 8;
 constexpr std::size_t kEntriesAtOnce = 4096;  // of a thread: their radiometry takes longer than to start one
 
-/// What the scene is at each wavelength of a part.
+/// The scene's radiometry at each wavelength of a part.
 struct Spectra {
   Spectra(const SceneValues& scene, const EffectPlan& plan, const std::vector<double>& wavelength_um) {
     if (wavelength_um.empty()) radiometries.emplace_back(scene, plan.kept, plan.bound);
@@ -40,7 +40,7 @@ struct Spectra {
   SpectralIndices indices;
 };
 
-/// What the steps of a part share.
+/// Data that the steps of a part share.
 struct RunContext {
   const SceneValues& scene;
   const EffectPlan& plan;
@@ -53,7 +53,7 @@ struct RunContext {
   std::size_t samples() const { return spectra.indices.front().size(); }  ///< of every entry
 };
 
-/// What the evaluator said to the requests of a part.
+/// The evaluator's answers to the requests of a part.
 struct Answer {
   std::vector<Moments> moments;
   std::vector<ScatteringMatrix> beams;
@@ -180,7 +180,7 @@ bool is_better(const PointResult& a, const PointResult& b) {
              std::max(b[Quantity::kErrorEstimate], b[Quantity::kRhoErrorEstimate]);
 }
 
-/// Whether a level at an entry finds more than the last one: f has no rule that a tolerance would make finer.
+/// True where a level improves an entry over the last one: f has no rule that a tolerance would make finer.
 bool finds_more(const RunContext& context, const RefinementLevel& level, const RefinementLevel& last, const SceneEntry& entry) {
   return wants_moments(context.scene, entry, context.plan) ||
          (wants_beam(context.scene, entry, context.plan) && level.precision != last.precision);
@@ -190,7 +190,7 @@ bool finds_more(const RunContext& context, const RefinementLevel& level, const R
 using Waiting = std::map<RefinementLevel, std::vector<std::size_t>>;
 
 /// The next level of one direction whose `members` were computed at `last`: of all of it, between nodes again, where
-/// many miss the tolerance; else of each of these by itself. What follows for an entry depends on its direction alone.
+/// many miss the tolerance; else of each of these by itself. The choice for an entry depends on its direction alone.
 void plan_next(const RunContext& context, const SceneEntries& part, const RefinementLevel& last,
                std::span<const std::size_t> members, std::span<const PointResult> results, Waiting& waiting) {
   std::vector<std::pair<RefinementLevel, std::size_t>> missed;
@@ -210,7 +210,7 @@ void plan_next(const RunContext& context, const SceneEntries& part, const Refine
   }
 }
 
-/// The first level's results of a part, and which directions were interpolated to get them.
+/// The first level's results of a part, and the directions that were interpolated.
 struct FirstResults {
   RefinementLevel level;
   std::vector<PointResult> results;
@@ -281,7 +281,7 @@ std::vector<PointResult> computed_again(const RunContext& context, const SceneEn
   return computed_at(context, {part, positions}, check_level(first, context.evaluator->report().row_width), none);
 }
 
-/// Those of the table's entries to check that are in a part, as positions in it.
+/// The table entries to check that lie in a part, as positions in it.
 std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntries& part, std::span<const std::size_t> checked) {
   std::vector<std::size_t> positions;
   for (const std::size_t in_whole : checked) {
@@ -291,7 +291,7 @@ std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntr
   return positions;
 }
 
-/// Results of a part: all levels, or what needs none. `checked`: positions in the whole grid; of points none.
+/// Results of a part: all levels, or closed forms and zeros. `checked`: positions in the whole grid; none for points.
 std::vector<PointResult> part_results(const RunContext& context, const SceneEntries& part, std::span<const std::size_t> checked,
                                       SelfCheck& check, const Progress& progress) {
   if (!wants_evaluator(context.scene, part, context.plan)) {

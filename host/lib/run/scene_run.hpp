@@ -1,4 +1,4 @@
-// The way of every front end: entries of a scene -> moments and beams -> radiometry -> sink.
+// The pipeline of every front end: entries of a scene -> moments and beams -> radiometry -> sink.
 #pragma once
 
 #include <chrono>
@@ -21,26 +21,26 @@ namespace dolp {
 /// Errors: InputError for more than kMostTableEntries.
 SceneEntries grid_entries(const SceneValues& scene);
 
-/// Scattered points; what they do not say comes from the scene. Points of which only the direction is said are a grid.
+/// Scattered points; values that they lack come from the scene. Points that give only the direction form a grid.
 /// Errors: InputError that names the points' file and line, column, value and what is allowed: theta_deg is neither in
 /// the points nor a single value in the grid; n without k, or k without n, beside a material that depends on the
 /// wavelength; q <= 3/2 with smith masking and the cauchy distribution.
 SceneEntries point_entries(const SceneValues& scene, const Points& points);
 
-/// Refuses a q of the points that the scene's masking is not made for: q <= 3/2 with smith and the cauchy distribution;
+/// Refuses points with a q that the scene's masking does not support: q <= 3/2 with smith and the cauchy distribution;
 /// the scene's own q has passed the same check.
 /// Errors: InputError that names the points' file and line, column, value and what is allowed.
 void check_smith(const SceneValues& scene, const Points& points);
 
-/// Where results go, part by part.
+/// Destination of results, part by part.
 class Sink {
  public:
   virtual ~Sink() = default;
-  /// The parts that an earlier run left, which come first and are not computed again, and what that run said of them.
+  /// The parts that an earlier run left, which come first and are not computed again, and their summary.
   virtual std::size_t parts_done() const { return 0; }
   virtual RunSummary summary_of_done() const { return {}; }
-  /// Results of `part`: points follow those of the part before, the part of a grid says where it belongs. `so_far`: of
-  /// all parts up to this one.
+  /// Takes the results of `part`: points follow those of the part before, the part of a grid states its own position.
+  /// `so_far`: summary of all parts up to this one.
   virtual void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) = 0;
 };
 
@@ -73,7 +73,7 @@ class PassedResults final : public Sink {
 /// Makes the evaluator, when it is needed.
 using EvaluatorMaker = std::function<MomentsEvaluator*()>;
 
-/// What came of a run.
+/// The outcome of a run.
 struct RunOutcome {
   EffectPlan plan;
   std::vector<EffectRow> effects;
@@ -82,8 +82,8 @@ struct RunOutcome {
   double wall_s = 0.0;
 };
 
-/// A run of a scene over a grid, a part of one, or points: the way of every front end. What will be computed is decided
-/// when the object is made; what a part of a grid gets follows from its whole.
+/// A run of a scene over a grid, a part of one, or points: the pipeline of every front end. The constructor decides
+/// what will be computed; the results of a part of a grid follow from the whole grid.
 class Run {
  public:
   /// `scene` must outlive the object. Tells `options.progress` that all inputs are read, then makes the evaluator if
@@ -92,20 +92,19 @@ class Run {
 
   const SceneEntries& entries() const { return entries_; }
   const EffectPlan& plan() const { return outcome_.plan; }
-  /// What computes it; "none" where nothing is left for an evaluator.
+  /// The evaluator in use; "none" where no work is left for one.
   const EvaluationReport& evaluation() const { return outcome_.evaluation; }
-  /// The parts in which it goes through its entries, which bounds its memory: whole directions of a grid where they
-  /// fit.
+  /// The parts that the run processes one by one, which bounds its memory: whole directions of a grid where they fit.
   std::vector<SceneEntries> parts() const;
 
-  /// Goes all the way, part by part: what the plan keeps, computed again where it misses the tolerance; what the plan
-  /// does not give is NaN. Progress counts entries. Of grids some entries are checked; a direction in which a bound
-  /// fails gets the status of a missed tolerance. What an entry of a grid gets depends on its direction and index
-  /// alone, and on the slope distributions of the grid, not on the parts. Errors: those of the evaluator, of Radiometry
-  /// and of the sink; Cancelled.
+  /// Drives the whole pipeline, part by part: it computes what the plan keeps, and computes again where results miss
+  /// the tolerance; quantities outside the plan are NaN. Progress counts entries. Some entries of a grid are checked; a
+  /// direction in which a bound fails gets the status of a missed tolerance. The result of an entry of a grid depends
+  /// on its direction and index, and on the slope distributions of the grid, not on the parts. Errors: those of the
+  /// evaluator, of Radiometry and of the sink; Cancelled.
   RunOutcome compute(Sink& sink);
 
-  /// Since the object was made.
+  /// Time since the object was made.
   double wall_s() const;
 
  private:
@@ -117,18 +116,17 @@ class Run {
   RunOutcome outcome_;
 };
 
-/// The parts in which a run goes through its entries.
+/// The parts that a run processes one by one.
 std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples);
 
-/// True where anything is left for an evaluator: the plan needs moments or beams, and not all entries have closed
-/// forms.
+/// True where an evaluator is needed: the plan needs moments or beams, and not all entries have closed forms.
 bool wants_evaluator(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
 
 /// Calls `progress`, if there is one, with nothing done yet: all inputs are read. Errors: Cancelled.
 void begin(const Progress& progress, std::size_t total);
 
-/// The same as Run::compute for a plan and an evaluator that are there already; the evaluator may be null where the
-/// plan leaves nothing for it.
+/// The same as Run::compute for an existing plan and evaluator; the evaluator may be null where the plan leaves nothing
+/// for it.
 RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                      MomentsEvaluator* evaluator, Sink& sink, const Progress& progress);
 

@@ -1,4 +1,4 @@
-// The table of a scene, for whoever writes it.
+// Layout, values and attributes of a scene's table.
 #pragma once
 
 #include <string>
@@ -18,15 +18,15 @@ namespace dolp {
 /// run by `plan` makes, without these.
 Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan = nullptr);
 
-/// The table of a grid of the scene before anything is computed, with the attributes that are known by then. `axes` may
-/// be a part of the scene's grid.
+/// The table of a grid of the scene before anything is computed, with the attributes that are known at that time.
+/// `axes` may be a part of the scene's grid.
 TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const Axes& axes);
 
 /// The values of a part of the grid.
 TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results);
 
 std::string history_text(const std::string& command_line);
-/// What is known after a run.
+/// The attributes that are known after a run.
 std::vector<Attribute> attributes_of(const SceneValues& scene, const RunOutcome& run, const std::string& command_line);
 
 /// The rule in words, for reports and table attributes.

@@ -1,4 +1,4 @@
-// A run checks itself: some of its entries again, by a rule of another kind.
+// Self-check of a run: computes some of its entries again, by a rule of another kind.
 #pragma once
 
 #include <cstddef>
@@ -10,17 +10,18 @@
 
 namespace dolp {
 
-/// What the entries that were computed again say of the bounds of all.
+/// Check of all error bounds by the entries that were computed again.
 struct SelfCheck {
   std::size_t entries = 0;
   double worst_ratio = 0.0;  ///< largest difference over the sum of the bounds of both results; above 1 a bound failed
 
-  /// Adds what `again` says of `result`.
+  /// Adds the difference between `result` and `again`.
   void add(const PointResult& result, const PointResult& again);
   void add(const SelfCheck& other);
 };
 
-/// How many of a table's moments are worth computing again: what costs a fiftieth of them, at most 64 of four million.
+/// The number of a table's moments that are computed again: those that cost a fiftieth of all, at most 64 of four
+/// million.
 std::size_t checked_count(std::size_t moments);
 
 /// `count` of the positions below `size`, ascending; which ones follows from the seed alone.

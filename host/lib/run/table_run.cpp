@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMergedAtOnce = std::size_t{1} << 19U;  // entries
 constexpr const char* kShard = "shard";                       // attribute of a table that is one
 
-// What entries share along sigma and q is not cut.
+// The axes that are cut. Sigma and q are not cut, because entries share work along them.
 constexpr std::array kCutAxes = {Axis::kTheta, Axis::kWavelength, Axis::kN, Axis::kK};
 using Cuts = std::array<std::size_t, kCutAxes.size()>;
 
@@ -42,7 +42,7 @@ bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cut
 
 std::string shard_text(const Shard& shard) { return fmt::format("{}/{}", shard.number, shard.count); }
 
-/// What the parts of a file have in common, in one line.
+/// The properties that all parts of a file share, in one line.
 std::string identity_of(const SceneValues& scene, const TableJob& job, const EvaluationReport& evaluation) {
   return fmt::format("dolp {}, scene {}, shard {}{}, {}, {}, {}", DOLP_VERSION, scene_hash(scene),
                      shard_text(job.shard), job.options.keep_all ? ", everything kept" : "", evaluation.evaluator,
@@ -89,7 +89,7 @@ class TableSink final : public Sink {
   std::future<void> pending_;
 };
 
-/// Runs `body`; what goes wrong there says what is there already.
+/// Runs `body`; its errors also state how much of the file is there already.
 template <class Body>
 void with_rest(const TableOutput& output, const Body& body) {
   const auto more = [&] {
@@ -129,7 +129,7 @@ std::optional<Shard> shard_of(const TableHead& head) {
   return is_shard ? std::optional(shard) : std::nullopt;
 }
 
-/// The shards of one table, which are all there.
+/// The complete set of a table's shards.
 struct ShardSet {
   SceneValues scene;
   TableLayout layout;
@@ -183,7 +183,7 @@ ShardSet shard_set(const std::vector<std::string>& paths) {
   return set;
 }
 
-/// Those of a shard that hold for the whole table as well; the others are `run`.
+/// The attributes of a shard that also hold for the whole table; the others are those of `run`.
 void keep_attributes(std::vector<Attribute>& attributes, const std::vector<Attribute>& run) {
   std::erase_if(attributes, [&](const Attribute& attribute) {
     return attribute.name == kShard || std::ranges::find(run, attribute.name, &Attribute::name) != run.end();

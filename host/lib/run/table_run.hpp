@@ -19,8 +19,8 @@ namespace dolp {
 /// "2-of-8" before the suffix of a path; the path itself for a whole table.
 std::filesystem::path shard_path(const std::filesystem::path& path, const Shard& shard);
 
-/// The entries of a shard: part of the values of theta, or where these are too few of wavelength, n and k too, so that
-/// what entries share stays together.
+/// The entries of a shard: part of the values of theta, or, where these are too few, of wavelength, n and k too, so
+/// that entries that share work stay together.
 /// Errors: InputError where the axes cannot be cut into so many parts.
 SceneEntries shard_entries(const SceneValues& scene, const Shard& shard);
 
@@ -35,7 +35,7 @@ struct TableJob {
 /// Errors: those of Run and of TableOutput, which say what is there already, as Cancelled does.
 RunOutcome write_table(const SceneValues& scene, const TableJob& job, const EvaluatorMaker& make_evaluator);
 
-/// Whether the job's path is a whole table of its scene, shard and program already.
+/// True where the job's path already holds a complete table of its scene, shard and program.
 bool is_there(const SceneValues& scene, const TableJob& job);
 
 /// Joins all shards of a table into one, which are opened one at a time. Returns the entries.

@@ -9,8 +9,8 @@
 
 namespace dolp {
 
-/// The attribute "scene_overrides" of a table: one setting a line, KEY=VALUE. A setting whose value has line ends itself
-/// stays whole, because only a scene key begins one.
+/// The attribute "scene_overrides" of a table: one setting a line, KEY=VALUE. A setting whose value contains line ends
+/// stays whole, because only a scene key begins a new one.
 std::string settings_text(const std::vector<Setting>& settings);
 std::vector<Setting> settings_of(const std::string& text);
 
@@ -28,7 +28,7 @@ TableValues load_table(const std::string& path);
 /// The attribute "index_n_formula": the number of a dispersion formula and its coefficients, with blanks between them.
 std::string formula_text(const Dispersion& formula);
 
-/// Where n, k and E0 that a scene names come from.
+/// The sources of the n, k and E0 that a scene names.
 enum class NamedData {
   kOfTable,  ///< the table alone; no file is opened
   kOfFiles,  ///< what the names stand for now: files are looked for beside the scene as the table's attribute

@@ -24,7 +24,7 @@ constexpr double kQuotientRounding = 8.0 * std::numeric_limits<double>::epsilon(
 constexpr std::array kOrdinaryCases{"ordinary",    "sigma-1e-2",     "brewster",     "index-27-90",
                                     "index-0.2-3", "split-lines-18", "almost-normal"};
 
-/// What the stored moments of a case say about rho and DOLP.
+/// Expected rho and DOLP, from the stored moments of a case.
 struct Expected {
   double rho_i = 0.0;
   double rho_q = 0.0;
@@ -34,7 +34,7 @@ struct Expected {
   bool has_rho = true;
 };
 
-/// error / value, and 0 where neither is anything.
+/// error / value, and 0 where the error is 0.
 double relative(double error, double value) {
   if (error == 0.0) return 0.0;
   return value > 0.0 ? error / value : kInfinity;
@@ -67,7 +67,7 @@ Expected expected_of(const StoredCase& stored) {
   return expected;
 }
 
-/// What is wrong with a checked error, or nothing.
+/// The fault of a checked error; empty where it has none.
 std::string complaint_about(const char* quantity, const ErrorCheck& check, bool is_promised, double tolerance) {
   if (std::isnan(check.error)) return fmt::format("{} is not a number", quantity);
   if (std::isnan(check.estimate)) return fmt::format("{} has no estimate", quantity);

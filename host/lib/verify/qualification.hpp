@@ -21,11 +21,11 @@ struct ErrorCheck {
   /// error / estimate, less what the reference may err itself: above 1 the estimate is wrong.
   double ratio() const;
   bool is_within_estimate() const { return ratio() <= 1.0; }
-  /// Whether the error is beyond doubt above a tolerance.
+  /// True where the error certainly exceeds a tolerance.
   bool is_above(double tolerance) const { return error > tolerance + reference; }
 };
 
-/// What came of one case.
+/// The result of one case.
 struct CaseOutcome {
   std::size_t position = 0;    ///< in the list of cases
   ErrorCheck rho;              ///< max(|d rho_I|, |d rho_Q|) / rho_I
@@ -48,7 +48,7 @@ SceneValues emission_scene(Distribution distribution, Masking masking, double to
 std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, MomentsEvaluator& evaluator, double tolerance,
                                  const Progress& progress);
 
-/// How well an evaluator computes a few ordinary cases of every distribution and masking.
+/// Accuracy of an evaluator on a few ordinary cases of every distribution and masking.
 struct DeviceQuality {
   std::size_t cases = 0;
   std::size_t missed = 0;    ///< of them, those that say they miss the tolerance

@@ -19,10 +19,10 @@
 namespace dolp {
 namespace {
 
-// The reference is a hundred times better than the table if it can, and this good at least.
+// The reference is a hundred times more accurate than the table where it can be, and has at least this accuracy.
 constexpr double kReferenceTolerance = 1e-11;
 
-/// How the bound of a quantity follows from the two estimates.
+/// The relation of a quantity's bound to the two estimates.
 enum class Bound { kDolp, kReflectance, kPolarisedRadiation, kRadiation };
 
 struct Compared {
@@ -55,7 +55,8 @@ double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const Po
   return kInfinity;
 }
 
-/// What is wrong with a value, or nothing. `allowed` is what the tolerance allows; infinite when nothing is promised.
+/// The fault of a value; empty where it has none. `allowed` is the error that the tolerance allows; infinite when
+/// nothing is promised.
 std::string complaint_about(const CheckedValue& value, double allowed) {
   if (std::isnan(value.stored) && std::isnan(value.reference)) return {};
   if (std::isnan(value.stored)) return "is NaN in the table";

@@ -18,7 +18,7 @@ constexpr std::size_t kAtOnce = 2000;  // entries whose masking tables are in me
 constexpr std::size_t kClimbSteps = 40;
 constexpr std::size_t kNeighbours = 16;  // of each step
 
-/// The entries of a domain with what the rules say of them.
+/// The entries of a domain with the rules' results and stated errors.
 struct Answers {
   std::vector<Moments> stated;
   std::vector<Moments> exact;
@@ -70,7 +70,7 @@ class Check {
   double bound_share_;
 };
 
-/// The largest error of the moments over what is stated of it, by both rules.
+/// The largest ratio of the moments' error to the stated error, over both rules.
 double error_over_bound(const Moments& stated, const Moments& exact) {
   double worst = 0.0;
   for (const auto& [value, error] : kMomentMembers) {
@@ -95,7 +95,7 @@ MomentsPoint neighbour(Draw& draw, const MomentsPoint& entry, Domain domain, dou
   return next;
 }
 
-/// Whether `entry` lies where the domain's entries are drawn.
+/// True where `entry` lies in the region from which the domain's entries are drawn.
 bool is_in(Domain domain, const MomentsPoint& entry, double q_end) {
   if (domain == Domain::kCorners) return entry.shape.sigma <= 10.0 && entry.shape.q <= q_end + 20.0;
   return entry.shape.sigma >= 0.01 && entry.shape.sigma <= 2.0 && entry.shape.q >= q_end + 0.1 &&

@@ -1,5 +1,5 @@
-// Whether error bounds hold: fresh random entries, and a climb from the worst of them, against rules of many more
-// digits or the independent reference.
+// Hold-out test of error bounds: compares fresh random entries, and a climb from the worst of them, with rules of many
+// more digits or the independent reference.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@ struct CheckedEntry {
   double ratio = 0.0;
 };
 
-/// What hold-outs of one model show.
+/// The result of the hold-outs of one model.
 struct HoldOut {
   std::size_t entries = 0;
   std::size_t understated = 0;  ///< of any of the moments

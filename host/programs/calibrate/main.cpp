@@ -1,4 +1,4 @@
-// dolp-calibrate: makes the numbers of plan/rule.cpp again, and shows whether the error bounds hold.
+// dolp-calibrate: recomputes the numbers of plan/rule.cpp, and tests the error bounds.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -25,7 +25,7 @@ dolp::MomentsRequest integrand(dolp::Masking masking, dolp::Scattering scatterin
   return request;
 }
 
-/// What rules are made for: a masking, or all bounces in its grooves.
+/// The integrands that rules are made for: a masking, or all bounces in its grooves.
 const std::map<std::string, dolp::MomentsRequest> kIntegrands = {
     {"none", integrand(dolp::Masking::kNone)},
     {"v-cavity", integrand(dolp::Masking::kVCavity)},
@@ -58,7 +58,7 @@ std::string entry_text(const dolp::CheckedEntry& checked) {
                      e.shape.sigma, e.shape.q, e.index.n, e.index.k);
 }
 
-/// A line for each tolerance, masking and distribution. Returns whether all bounds hold.
+/// A line for each tolerance, masking and distribution. Returns true where all bounds hold.
 bool check(const CheckArguments& arguments) {
   std::size_t understated = 0;
   for (const double tolerance : arguments.tolerances) {

@@ -1,4 +1,4 @@
-// Finds the numbers of plan/rule.hpp: those with which random entries take the least work.
+// Search for the numbers of plan/rule.hpp: those with which random entries take the least work.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ struct RuleFitOptions {
 /// `integrand` is a request without entries.
 double mean_log_work(const MomentsRequest& integrand, const RuleModel& model, const RuleFitOptions& options);
 
-/// Where every search starts.
+/// The starting point of every search.
 inline constexpr RuleModel kFitStart = {.margin_digits = 2.0,
                                         .t_nodes = 2.0,
                                         .t_digits = 0.0,

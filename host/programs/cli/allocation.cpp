@@ -51,7 +51,8 @@ void* block_or_end(void* block, std::size_t size) {
   return block;
 }
 
-/// A driver that finds no addresses left may crash; then it is that. Any other crash goes its way.
+/// Treats a crash as an out-of-memory error where the driver finds no addresses left. Any other crash takes its normal
+/// course.
 void on_crash(int number) {
   constexpr std::size_t kRoom = 256U << 20U;  // what drivers ask for at a time
   void* const room = next_mmap(nullptr, kRoom, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, off_t{0});

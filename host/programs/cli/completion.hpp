@@ -1,4 +1,4 @@
-// What shells and man are told of the command line, from its own description.
+// Shell completions and man pages, generated from the command line's own description.
 #pragma once
 
 #include <CLI/App.hpp>

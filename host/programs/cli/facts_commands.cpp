@@ -1,4 +1,4 @@
-// What there is: keys, materials, devices; and the plan of a scene.
+// Commands that list keys, materials and devices, and print the plan of a scene.
 #include <fmt/format.h>
 
 #include <dolp/errors.hpp>

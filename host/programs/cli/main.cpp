@@ -81,8 +81,8 @@ int parse_and_run(int argc, char** argv) {
   return status;
 }
 
-/// Lets freed memory serve again: lists as long as a table, and what a driver needs for a pipeline, would otherwise go
-/// back to the system and come back page by page.
+/// Reuses freed memory: lists as long as a table, and a driver's memory for a pipeline, would otherwise return to the
+/// system and come back page by page.
 void keep_freed_memory() {
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());

@@ -1,4 +1,4 @@
-// What the command line says, after parsing.
+// The parsed command line.
 #pragma once
 
 #include <cstddef>
@@ -51,7 +51,7 @@ void check_one_stdin(const Options& options);
 /// All settings of the command line: --set first, then --tolerance and --precision. Errors: InputError.
 std::vector<Setting> all_settings(const Options& options);
 
-/// What a key of a scene may be: "a number in [0, 10]".
+/// The allowed values of a scene key: "a number in [0, 10]".
 std::string allowed(const std::string& key);
 
 /// The scene with all_settings.

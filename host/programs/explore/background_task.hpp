@@ -32,7 +32,7 @@ class BackgroundTask {
   State state() const;
   /// From 0 to 1.
   double progress() const { return progress_; }
-  /// What the work returned, or why it failed, in one line.
+  /// The message that the work returned, or the reason why it failed, in one line.
   std::string message() const;
 
  private:

@@ -1,4 +1,4 @@
-// Which choices of a scene exclude one another, and what becomes of the others when one is chosen.
+// Choices of a scene that exclude one another, and the changes that follow when one is chosen.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ std::string word_of(const Value& value);
 /// goes with it. Empty where nothing is in the way.
 std::vector<Setting> asked_for(const Scene& scene, const std::vector<Setting>& chosen);
 
-/// The choices of one table as a scene has them: what bringing the table back chooses.
+/// The choices of one table as a scene has them: restoring the table makes these choices.
 std::vector<Setting> choices_of(const Scene& scene, const std::string& table);
 
 }  // namespace dolp::explore

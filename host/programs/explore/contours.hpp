@@ -16,7 +16,7 @@ struct Segment {
 /// not good have none.
 std::vector<Segment> contour(const MapField& field, double level);
 
-/// Where the lines of a field go: round values, seven at most.
+/// The levels of a field's contour lines: round values, seven at most.
 std::vector<double> contour_levels(double low, double high, bool is_log);
 
 }  // namespace dolp::explore

@@ -9,7 +9,7 @@
 
 namespace dolp::explore {
 
-/// What is said of a finished curve.
+/// Report on a finished curve.
 struct CurveReport {
   Scene scene;
   std::vector<Effect> effects = {};
@@ -31,11 +31,11 @@ class Curve {
 
   explicit Curve(const Scene& scene) : scene_(scene), shown_scene_(scene), report_{scene} {}
 
-  /// From now on the curve of this scene. `key` stands for the scene's content. What is shown stays, as stale, until
-  /// there is something newer.
+  /// Switches to the curve of `scene`. `key` identifies the scene's content. The curve on display stays, marked as
+  /// outdated, until newer points arrive.
   void follow(const std::string& key, const Scene& scene, bool keep_all);
 
-  /// What is still to be computed, a stage at a time.
+  /// The work still to be done, one stage at a time.
   std::optional<Job> wanted(Stage stage) const;
 
   /// Takes what is this curve's; false for the rest.
@@ -46,12 +46,12 @@ class Curve {
   const Scene& scene() const { return scene_; }
   const std::string& key() const { return key_; }
   bool is_finished() const { return shown_ == key_of(Stage::kFine); }
-  /// What is shown is of a scene before this one.
+  /// True where the points on display belong to an earlier scene.
   bool is_stale() const { return !points_.empty() && !is_current(); }
-  // What is shown, and the scene that it was computed with.
+  // The points on display, and the scene that they were computed with.
   const Scene& shown_scene() const { return points_.empty() ? scene_ : shown_scene_; }
   const std::vector<Point>& points() const { return points_; }
-  /// Of the last finished curve.
+  /// The report on the last finished curve.
   const CurveReport& report() const { return report_; }
 
   /// The largest stated error of DOLP where status promises one.

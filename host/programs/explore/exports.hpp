@@ -1,4 +1,4 @@
-// What leaves the window as a file, and what it is worth.
+// Export of tables from the window, and comparison of a curve with the independent reference.
 #pragma once
 
 #include <string>

@@ -28,7 +28,7 @@ struct FitJob {
   std::vector<Varied> varied;
 };
 
-/// What a fit found.
+/// The result of a fit.
 struct FitFound {
   std::vector<Setting> values;
   std::map<std::string, FitInterval> interval_68, interval_95;  ///< by key
@@ -39,16 +39,16 @@ struct FitFound {
 /// minimum was found; those of Evaluator::fit; Cancelled.
 FitFound run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress);
 
-/// Which parameters vary, and what the last fit found, as long as the scene is the one that it left.
+/// The varied parameters, and the result of the last fit as long as the scene has not changed since.
 class Fitting {
  public:
-  /// Whether a parameter can vary at all.
+  /// True where a parameter can vary at all.
   static bool can_vary(const Parameter& parameter);
 
   bool varies(const std::string& key) const { return marked_.contains(key); }
   void mark(const std::string& key, bool varies);
 
-  /// None without points, or without a marked parameter that the scene has.
+  /// The job of a fit; none without points, or without a marked parameter that the scene has.
   std::optional<FitJob> job(const Scene& scene, const std::optional<MeasuredPoints>& points) const;
 
   void take(FitFound found, std::vector<Setting> changes);

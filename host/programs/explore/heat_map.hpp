@@ -12,7 +12,7 @@
 
 namespace dolp::explore {
 
-/// In the order of a grid's axes.
+/// Kinds of axes, in the order of a grid's axes.
 enum class AxisKind { kTheta, kSigma, kQ };
 
 /// One axis of a map. `from` < `to`; with `is_log` both are positive.
@@ -34,7 +34,7 @@ MapAxis suggested_axis(AxisKind kind, const Scene& scene, double theta_max_deg);
 /// "θ [°]", "σ", "q".
 const char* axis_label(AxisKind kind);
 
-/// What a map shows of one quantity.
+/// The values of one quantity on a map.
 /// Shape: count x count in rows, x fastest; y from the bottom up.
 struct MapField {
   std::size_t count = 0;
@@ -56,15 +56,15 @@ class HeatMap {
 
   explicit HeatMap(const Scene& scene) : scene_(scene) {}
 
-  /// From now on this map. `key` stands for the content of the scene but for what the axes vary. The third of theta,
-  /// sigma and q is `theta_deg` or the scene's.
+  /// Switches to this map. `key` identifies the content of the scene except the parameters that the axes vary. The
+  /// third of theta, sigma and q is `theta_deg` or the scene's.
   void follow(const std::string& key, const Scene& scene, bool keep_all, const MapAxis& x, const MapAxis& y,
               double theta_deg);
 
   std::optional<Job> wanted(std::size_t level) const;
   bool take(const JobPart& news);
   bool is_finished() const;
-  /// What is shown is of a scene before this one.
+  /// True where the map on display belongs to an earlier scene.
   bool is_stale() const { return !shown_key_.empty() && shown_key_ != key_; }
 
   const MapAxis& x() const { return x_; }

@@ -1,4 +1,4 @@
-// The public header, and what the window uses of it.
+// The public header, and the names that the window uses of it.
 #pragma once
 
 #include <algorithm>

@@ -18,7 +18,7 @@ struct MeasuredPoint {
   std::optional<double> uncertainty;  ///< one standard deviation
 };
 
-/// What a file of `dolp fit --data` says.
+/// The content of a file of `dolp fit --data`.
 struct MeasuredPoints {
   MeasuredData data;
   std::vector<MeasuredPoint> points;

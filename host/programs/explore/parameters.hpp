@@ -1,4 +1,4 @@
-// What the window's controls are made of: scene keys with symbol, scale and equation.
+// Descriptions of the window's controls: scene keys with symbol, scale and equation.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ struct Parameter {
   SliderRange slider;
   bool is_log;           ///< the slider's scale
   const char* equation;  ///< UTF-8, with its number in the paper where it has one
-  /// Whether the scene makes use of it; null: wherever it has it.
+  /// True where the scene uses the parameter; null: used by every scene that has it.
   bool (*is_used)(const Scene& scene) = nullptr;
 
   /// The scene's value; none where the control is not shown.

@@ -1,4 +1,4 @@
-// Where a curve polarises most, how sure that is, and what does it.
+// The maximum of a curve's polarisation, its uncertainty, and the effects behind it.
 #pragma once
 
 #include <optional>
@@ -24,7 +24,7 @@ struct PeakAnswer {
   bool is_at_end = false;           ///< the largest is beside entries that are not good, or at the end of the range
 };
 
-/// What the peak would be without one effect.
+/// The peak without one effect.
 struct WithoutEffect {
   const char* effect;     ///< as in Effect::name, or "roughness"
   const char* change;  ///< what takes it away
@@ -36,7 +36,7 @@ struct WithoutEffect {
 /// Looks for the peak of a finished curve on a fine grid, then takes each effect away there.
 class Peak {
  public:
-  /// Zeniths are told apart to this.
+  /// Resolution of zeniths.
   static constexpr double kStepDeg = 0.02;
 
   explicit Peak(const Scene& scene) : scene_(scene) {}
@@ -44,13 +44,13 @@ class Peak {
   /// The peak of this curve, which is finished, up to a zenith; the scene behind it is that of `edits`.
   void follow(const Curve& curve, const SceneEdits& edits, double theta_max_deg);
 
-  /// What is still to be computed.
+  /// The work still to be done.
   std::vector<Job> wanted() const;
   bool take(const JobPart& news);
 
-  /// None while it is unknown, or where no entry is good.
+  /// The peak; none while it is unknown, or where no entry is good.
   const std::optional<PeakAnswer>& answer() const { return answer_; }
-  /// Of those that the scene has; complete when all are known.
+  /// The peak without each effect that the scene has; complete when all are known.
   const std::vector<WithoutEffect>& without() const { return without_; }
   bool is_complete() const;
 

@@ -1,4 +1,4 @@
-// What a curve or a map can show of an entry.
+// Quantities that a curve or a map can show.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ double value_of(Plotted quantity, const Point& point);
 /// The bound of its numerical error.
 double error_of(Plotted quantity, const Point& point);
 
-/// "good", or what its status bits say, in few words.
+/// "good", or the meaning of its status bits, in few words.
 std::string status_text(std::uint32_t status);
 
 }  // namespace dolp::explore

@@ -33,10 +33,10 @@ struct Point {
 
 std::vector<Point> points_of(const PointList& list, const Results& results);
 
-/// Whether status has none of the bits with which DOLP means nothing or promises nothing.
+/// True where status has none of the bits that make DOLP meaningless or void its promise.
 bool is_good(const Point& point);
 
-/// Whether it says between what DOLP lies with all bounces.
+/// True where the point has limits between which DOLP lies with all bounces.
 bool has_bracket(const Point& point);
 
 /// Zeniths of a scene's surface.

@@ -8,7 +8,7 @@
 namespace dolp::explore {
 namespace {
 
-// Beyond these the albedo of the surface model is worth a word.
+// Albedos outside these limits are mentioned.
 constexpr double kAlbedoMin = 0.95;
 constexpr double kAlbedoMax = 1.05;
 constexpr double kPercent = 100.0;
@@ -24,7 +24,8 @@ struct Part {
   double q_over_i;
 };
 
-/// Stokes parameters add up, so what no other part explains is the emission's where it cannot be taken away alone.
+/// Stokes parameters add up, so the remainder that no other part explains belongs to the emission where it cannot be
+/// removed alone.
 std::vector<Part> radiating_parts(const Session& session) {
   const Peak& peak = session.peak();
   double rest = peak.answer()->q_over_i;
@@ -62,7 +63,7 @@ std::string peak_text(const Session& session) {
         fmt::format("the maximum is surely between {:.2f}° and {:.2f}°.", peak->theta_low_deg, peak->theta_high_deg);
   }
   if (peak->is_at_end) text += " Beyond it the model fails, or the range ends.";
-  // The bound is of the numbers; what the surface model itself is worth there, the albedo tells.
+  // The bound covers numerical error only; the albedo shows the error of the surface model itself.
   if (std::isfinite(peak->albedo) && peak->albedo < kAlbedoMin) {
     text += fmt::format(" The surface model loses energy there (albedo {:.2f}).", peak->albedo);
   }

@@ -1,4 +1,4 @@
-// What the window says in words.
+// Text that the window shows.
 #pragma once
 
 #include <string>
@@ -8,19 +8,19 @@
 
 namespace dolp::explore {
 
-/// Where the curve polarises most and how sure that is.
+/// The position of the curve's maximum of polarisation, and its uncertainty.
 std::string peak_text(const Session& session);
 
-/// Which radiation makes the polarisation there: parts of Q/I that add up.
+/// The radiation that causes the polarisation there: parts of Q/I that add up.
 std::string cause_text(const Session& session);
 
-/// What is under the cursor.
+/// The values under the cursor.
 std::string cursor_text(const Session& session);
 
-/// What one effect does at the peak: "Q/I +3.61 without it"; empty where that is not known.
+/// The influence of one effect at the peak: "Q/I +3.61 without it"; empty where it is unknown.
 std::string without_text(const Session& session, const std::string& effect);
 
-/// What the finished curve cost, in three lines: time, work, error.
+/// The cost of the finished curve, in three lines: time, work, error.
 std::vector<std::string> cost_lines(const Session& session);
 
 }  // namespace dolp::explore

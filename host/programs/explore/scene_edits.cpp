@@ -9,7 +9,7 @@
 namespace dolp::explore {
 namespace {
 
-/// Whether a change makes an older change of `other` void.
+/// True where a change makes an older change of `other` void.
 bool replaces(const Setting& change, const std::string& other) {
   const std::string& key = change.key;
   if (other == key || other == table_of(key)) return true;

@@ -1,4 +1,4 @@
-// The scene that the window shows: a file's text and what was changed since.
+// The scene that the window shows: a file's text and the changes since.
 #pragma once
 
 #include <string>
@@ -14,8 +14,8 @@ class SceneEdits {
  public:
   explicit SceneEdits(const Scene& opened);
 
-  /// Changes keys together; no value of an effect's table removes it, any key of it brings it back. Alternatives of a key
-  /// (n and k, material, material file) go.
+  /// Changes keys together; setting an effect's table to no value removes the effect, any key of it brings it back.
+  /// Alternatives of a key (n and k, material, material file) are removed.
   /// Errors: InputError; the scene then is as it was.
   void set(const std::vector<Setting>& changes);
   void set(const std::string& key, const Value& value) { set({{key, value}}); }

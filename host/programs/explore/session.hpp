@@ -1,4 +1,4 @@
-// What is behind the window: the scene under the hand, its curves, its map, pins and cursor.
+// The state behind the window: the edited scene, its curves, its map, pins and cursor.
 #pragma once
 
 #include <deque>
@@ -24,7 +24,7 @@ struct Pin {
   Curve curve;
 };
 
-/// What is shown, and how.
+/// The displayed quantity, and how it is drawn.
 struct View {
   Plotted quantity = Plotted::kDolp;
   bool is_log = false;
@@ -60,19 +60,19 @@ class Session {
   void show_pin(std::size_t position, bool is_visible) { pins_[position].is_visible = is_visible; }
   void set_view(const View& view);
   void set_theta(double theta_deg);
-  /// Moves the cursor of the map; what its axes are of follows. Positions from 0 to 1.
+  /// Moves the cursor of the map; the parameters of its axes follow. Positions from 0 to 1.
   void set_map_cursor(double x, double y);
   void load_measured(const std::string& path);
   void clear_measured() { residuals_.clear(); }
   void mark(const std::string& key, bool varies) { fitting_.mark(key, varies); }
-  /// Moves the parameters to what a fit found.
+  /// Moves the parameters to the result of a fit.
   void take_fit(FitFound found);
   void tell(std::string text, bool is_error = false) { message_ = {std::move(text), is_error}; }
 
   // ---- Computing.
-  /// The most wanted first.
+  /// The wanted jobs, the most wanted first.
   std::vector<Job> wanted() const;
-  /// Whether wanted() may have changed since the last call.
+  /// True where wanted() may have changed since the last call.
   bool take_changed();
   void take(const std::vector<JobPart>& news);
 
@@ -91,7 +91,7 @@ class Session {
   bool varies(const std::string& key) const { return fitting_.varies(key); }
   /// The fit of the marked parameters to the measured points; none where one of them is missing.
   std::optional<FitJob> fit_job() const { return fitting_.job(scene(), residuals_.points()); }
-  /// What the last fit found; null once the scene is another one.
+  /// The result of the last fit; null once the scene has changed.
   const FitFound* fit_found() const { return fitting_.found(edits_.changes()); }
   const Message& message() const { return message_; }
   /// The effects of the last finished curve; influences of what is kept are those at the cursor's zenith.
@@ -99,7 +99,7 @@ class Session {
   /// The position of the scene's own values on the map.
   double map_cursor_x() const { return cursor_position(map_.x()); }
   double map_cursor_y() const { return cursor_position(map_.y()); }
-  /// What is shown at the zenith nearest to the cursor's; null before there is something.
+  /// The point on display at the zenith nearest to the cursor's; null before there is one.
   const Point* at_cursor() const;
 
  private:
@@ -131,10 +131,10 @@ class Session {
 /// The surface of a scene in few words, for a legend: "cauchy σ 0.15 q 3, smith".
 std::string surface_name(const Scene& scene);
 
-/// The surface of what is shown of a curve, and whether that is stale.
+/// The surface of the curve on display, and whether it is outdated.
 std::string curve_name(const Curve& curve);
 
-/// Empty, or what stands beside something stale.
+/// Empty, or the mark of outdated values.
 const char* stale_text(bool is_stale);
 
 }  // namespace dolp::explore

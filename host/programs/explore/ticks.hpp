@@ -1,4 +1,4 @@
-// Where the marks of an axis are.
+// Positions of an axis's tick marks.
 #pragma once
 
 #include <cstddef>

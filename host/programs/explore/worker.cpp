@@ -100,7 +100,7 @@ void Worker::run_tasks() {
     try {
       parts.push_back(advance(task));
     } catch (const Cancelled&) {
-      // It was not wanted any more; perhaps it is again by now.
+      // The job was no longer wanted; perhaps it is wanted again by now.
     }
     put_back(std::move(task), std::move(parts));
     on_news_();

@@ -19,7 +19,7 @@ namespace dolp::explore {
 struct Job {
   std::string key;  ///< jobs with one key have one content
   Scene scene;
-  /// What is computed at a time, one after the other; a job of higher rank may come in between.
+  /// The units of work, computed one after the other; a job of higher rank may come in between.
   std::vector<PointList> parts;
   double tolerance = 0.0;  ///< instead of the scene's, where that is less
   bool keep_all = false;
@@ -35,16 +35,16 @@ struct JobPart {
   std::vector<Point> points = {};
   std::string csv = {};  ///< of this part, where the job wants effects
   bool is_last = false;
-  // Of the whole job, in the last part.
+  // Totals of the whole job, in the last part.
   std::vector<Effect> effects = {};
   double wall_s = 0.0;
   double evaluations = 0.0;
 };
 
-/// As `evaluate`. Called from one thread.
+/// Has the meaning of `evaluate`. Called from one thread.
 using Evaluate = std::function<Results(const Scene& scene, const PointList& list, const RunOptions& options)>;
 
-/// Computes what is wanted, in order; what is no longer wanted is given up within a tile of the device, unless brief.
+/// Computes the wanted jobs in order; a job that is no longer wanted stops within a tile of the device, unless brief.
 class Worker {
  public:
   /// `on_news` is called from the worker's thread after each part and after a failure.
@@ -53,13 +53,13 @@ class Worker {
   Worker& operator=(const Worker&) = delete;
   ~Worker();
 
-  /// What is wanted from now on, the most wanted first. A job that is under way goes on if its key is still there.
+  /// Replaces the list of wanted jobs, the most wanted first. A running job continues if its key is still in the list.
   void want(std::vector<Job> jobs);
 
-  /// What is new since the last call. Errors: rethrows what ended the worker, a DeviceError for instance.
+  /// The results since the last call. Errors: rethrows what ended the worker, a DeviceError for instance.
   std::vector<JobPart> take_news();
 
-  /// Nothing is wanted that is not done; its news may still wait to be taken.
+  /// True where all wanted jobs are done; their results may still wait to be taken.
   bool is_idle() const;
 
  private:
@@ -75,7 +75,7 @@ class Worker {
   /// Waits for one; none at the end.
   std::optional<Task> next_task();
   JobPart advance(Task& task);
-  /// What was done of a task is news; the rest of it goes back to its rank among what is wanted now.
+  /// Reports the finished parts of a task; the rest of it goes back to its rank among the wanted jobs.
   void put_back(Task task, std::vector<JobPart> parts);
   bool goes_on(const Job& job) const;
 

@@ -41,7 +41,7 @@ struct Refinements {
   dolp::ReferenceOptions coarse;
   dolp::ReferenceOptions fine;
 };
-// As fine as rounding in double lets the nested quadratures agree.
+// The finest settings at which rounding in double still lets the nested quadratures agree.
 constexpr Refinements kForHardCases{{.relative_tolerance = 3e-13, .subdivisions = 1},
                                     {.relative_tolerance = 1e-13, .subdivisions = 2}};
 // A thousandth of the tightest tolerance that random points are compared at, 1e-9.
@@ -97,7 +97,7 @@ bool put_normal_albedo(const Row& row, Moments& moments) {
   return is_ln2;
 }
 
-/// Puts closed forms in the place of quadratures where there are any, and says so.
+/// Replaces quadratures by closed forms where there are any, and says so.
 void put_closed_forms(Row& row) {
   Moments& moments = row.moments;
   if (row.input.shape.sigma == 0.0) {

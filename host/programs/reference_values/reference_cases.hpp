@@ -21,7 +21,7 @@ struct Case {
   OpticalConstants index{1.508, 0.0};
 };
 
-/// What a list of cases has in common.
+/// The settings that all cases of a list share.
 struct Group {
   Distribution distribution;
   Masking masking;

@@ -12,7 +12,7 @@ int fail(const std::string& program, int status, const std::string& message);
 /// The line of a program that is out of memory, which needs none; returns kExitMemory.
 int fail_out_of_memory(const char* program) noexcept;
 
-/// What `body` returns, or the exit status of the error that it threw, after a message of one line.
+/// Returns the result of `body`, or the exit status of the error that it threw, after a message of one line.
 int guarded(const std::string& program, const std::function<int()>& body);
 
 }  // namespace dolp

@@ -19,7 +19,7 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Draws, and says whether to go on: false after an interrupt. Refers to this object.
+  /// Draws, and returns false after an interrupt. Refers to this object.
   Progress callback();
 
  private:

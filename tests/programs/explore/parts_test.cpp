@@ -1,4 +1,4 @@
-// What is behind the window, piece by piece: parameters, edits, worker, measured points, exports, ticks, lines.
+// Parts behind the window, one by one: parameters, edits, worker, measured points, exports, ticks, lines.
 #include <gtest/gtest.h>
 
 #include <algorithm>

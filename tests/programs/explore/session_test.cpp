@@ -1,4 +1,4 @@
-// What is behind the window as a whole: curve, map, maximum, pins, cursor, effects.
+// The whole session behind the window: curve, map, maximum, pins, cursor, effects.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

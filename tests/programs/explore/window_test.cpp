@@ -104,7 +104,7 @@ class Window : public CommandLine {
     xdotool({"keyup", combination});
     frames();
   }
-  /// What `dolp eval` says at the zeniths of the curve, with the changes of the window.
+  /// The values of `dolp eval` at the zeniths of the curve, with the changes of the window.
   Columns evaluated() const {
     std::string points = "theta_deg\n";
     for (const explore::Point& point : app_->session().curve().points()) {
@@ -318,7 +318,7 @@ TEST_F(Window, Tab_MovesToTheNextField) {
   EXPECT_EQ(app_->session().scene().number("surface.sigma"), 0.15);
 }
 
-/// Where the curve is drawn in a window that opens on a display.
+/// The area of the curve in a window that opens on a display.
 Area plot_on(const std::string& size, const std::string& dots_per_inch) {
   const VirtualDisplay display(size);
   const std::vector<std::string> xprop = {"xprop", "-root", "-f", "RESOURCE_MANAGER", "8s", "-set", "RESOURCE_MANAGER"};

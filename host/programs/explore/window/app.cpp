@@ -70,7 +70,7 @@ struct DestroyWindow {
 };
 using UniqueWindow = std::unique_ptr<GLFWwindow, DestroyWindow>;
 
-/// As large as its content at the display's scale, or as the display.
+/// Opens a window as large as its content at the display's scale, or as the display.
 UniqueWindow open_window() {
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
   int x = 0;
@@ -184,7 +184,7 @@ class App::Impl {
     glfwSetWindowShouldClose(window_.get(), GLFW_TRUE);
     glfwPostEmptyEvent();
   }
-  /// Whether there was input since the last call.
+  /// True where there was input since the last call.
   bool take_input() { return std::exchange(has_input_, false); }
   bool is_idle() const {
     const std::scoped_lock lock(found_mutex_);
@@ -197,7 +197,7 @@ class App::Impl {
   }
   bool has_picture_to_save() const { return !picture_path_.empty(); }
 
-  /// JobPart in, wishes out.
+  /// Passes results in and wanted jobs out.
   void exchange() {
     if (std::optional<FitFound> found = take_found()) session_.take_fit(std::move(*found));
     is_all_taken_ = worker_.is_idle();
@@ -224,7 +224,7 @@ class App::Impl {
  private:
   static Impl* impl_of(GLFWwindow* window) { return static_cast<Impl*>(glfwGetWindowUserPointer(window)); }
 
-  /// With callbacks of our own, which ImGui calls after its own; until the user pointer is set they do nothing.
+  /// Installs our own callbacks, which ImGui calls after its own; until the user pointer is set they do nothing.
   static GLFWwindow* prepared(GLFWwindow* window) {
     glfwSetKeyCallback(window, [](GLFWwindow* of, int key, int, int action, int modifiers) {
       note_input(of);
@@ -250,7 +250,7 @@ class App::Impl {
     if (impl_of(window)) impl_of(window)->has_input_ = true;
   }
 
-  /// Runs what may fail for a reason that the user can mend.
+  /// Runs an action that may fail for a reason that the user can fix.
   void attempt(const std::string& done, const std::function<void()>& body) {
     try {
       body();
@@ -311,7 +311,7 @@ class App::Impl {
     });
   }
 
-  /// What a fit has found since the last call.
+  /// The result of a fit that finished since the last call.
   std::optional<FitFound> take_found() {
     const std::scoped_lock lock(found_mutex_);
     return std::exchange(found_, std::nullopt);

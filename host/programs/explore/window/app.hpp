@@ -20,7 +20,7 @@ struct AppOptions {
   std::string command_line;  ///< for the history of tables
 };
 
-/// How long frames took.
+/// Durations of frames.
 struct FrameTimes {
   std::vector<double> all_s;   ///< from one frame's start to the next
   std::vector<double> busy_s;  ///< those in which the worker had something to do
@@ -38,27 +38,27 @@ class App {
   ~App();
 
   Session& session();
-  /// Where the slider of a scene key was drawn last. Errors: std::out_of_range when it was not.
+  /// The last drawn position of a scene key's slider. Errors: std::out_of_range when it was not drawn.
   Area control_area(const std::string& key) const;
-  /// Where the curve was drawn last, without its axes.
+  /// The last drawn area of the curve, without its axes.
   Area plot_area() const;
 
   /// Takes input and news, and draws one frame. False when the user has closed the window.
   /// Errors: DeviceError when the device is lost or the validation layer complains.
   bool frame();
-  /// Draws what follows from the events that there are, and from those that come meanwhile. False as for `frame`.
+  /// Handles the pending events and those that arrive meanwhile, and draws the result. False as for `frame`.
   bool answer();
   /// Ends `run`. May be called from any thread.
   void close();
-  /// Until the window is closed; between events nothing is drawn.
+  /// Draws until the window is closed; nothing is drawn between events.
   void run();
-  /// This many frames one after the other; the last ones wait until everything wanted is computed if there is a path
-  /// for a picture, which is of the last one.
+  /// Draws this many frames one after the other; with a path for a picture, which shows the last frame, the last ones
+  /// wait until everything wanted is computed.
   FrameTimes run_frames(std::size_t count, const std::string& screenshot_path);
 
-  /// Nothing is left to compute, and all of it is in the session.
+  /// True where nothing is left to compute, and all results are in the session.
   bool is_idle() const;
-  /// Draws until that is so.
+  /// Draws until is_idle() returns true.
   void settle();
   void resize(int width, int height);
   /// Writes a picture of the window with its next frame. Errors: IoError.

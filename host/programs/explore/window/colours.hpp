@@ -11,7 +11,7 @@ namespace dolp::explore {
 /// Source: S. van der Walt, N. Smith, viridis of Matplotlib (CC0), at seventeen equal steps, linear in between.
 ImU32 viridis(double position);
 
-/// How a curve is drawn: colours never tell alone.
+/// Style of a curve: colour is never the only distinction.
 struct CurveStyle {
   ImU32 colour;
   float dash;  ///< length of dashes in pixels, 0 for a full line
@@ -24,10 +24,10 @@ CurveStyle current_style();
 CurveStyle overlay_style();
 CurveStyle pin_style(std::size_t pin);
 
-/// The same curve where it is of a scene before the present one.
+/// The style of the same curve when it belongs to an earlier scene.
 CurveStyle stale(const CurveStyle& style);
 
-/// What a band around a curve of that style is filled with.
+/// The fill colour of the band around a curve of that style.
 ImU32 band_colour(const CurveStyle& style);
 
 inline constexpr ImU32 kTextColour = IM_COL32(225, 228, 232, 255);

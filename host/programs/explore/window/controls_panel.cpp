@@ -27,7 +27,7 @@ void heading(const char* text) {
 void row_label(const std::string& text) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(shown(text).c_str());
-  // As wide as the longest text that is not cut.
+  // The column is as wide as the longest text that is not cut.
   const float longest = ImGui::CalcTextSize(shown("λ1, λ2 [µm]").c_str()).x;
   ImGui::SameLine(std::max(6.2F * ImGui::GetTextLineHeight(), longest + 2.0F * ImGui::GetStyle().ItemSpacing.x));
 }
@@ -51,7 +51,7 @@ std::string interval_text(const FitInterval& interval) {
   return end(interval.low) + " to " + end(interval.high);
 }
 
-/// What the last fit says of a parameter.
+/// The last fit's intervals of a parameter.
 std::string intervals_text(const Parameter& parameter, const Session& session) {
   const FitFound* const found = session.fit_found();
   const std::string& key = parameter.key->key;

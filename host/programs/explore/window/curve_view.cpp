@@ -38,7 +38,7 @@ std::vector<Shown> shown_curves(const Session& session) {
 
 double scale_of(Plotted quantity) { return described(quantity).in_percent ? 100.0 : 1.0; }
 
-/// What was measured of a quantity.
+/// The measured points of a quantity.
 std::vector<MeasuredPoint> measured_of(const Session& session, Plotted quantity) {
   if (!session.residuals().points()) return {};
   std::vector<MeasuredPoint> points = session.residuals().points()->points;
@@ -46,7 +46,7 @@ std::vector<MeasuredPoint> measured_of(const Session& session, Plotted quantity)
   return points;
 }
 
-/// What the axis of values has to hold.
+/// The range that the axis of values must cover.
 struct Range {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -105,7 +105,7 @@ PlotAxis value_axis(const Session& session, const std::vector<Shown>& curves) {
   return axis;
 }
 
-/// Fills what DOLP lies between with all bounces; of the current curve alone, because bands over bands say nothing.
+/// Fills the range of DOLP with all bounces; for the current curve alone, because overlapping bands are unreadable.
 void draw_bracket(const Plot& plot, const Shown& shown) {
   const std::vector<Point>& points = shown.curve->points();
   const ImU32 colour = band_colour(shown.style);
@@ -113,7 +113,7 @@ void draw_bracket(const Plot& plot, const Shown& shown) {
     const double value = std::max(scale_of(Plotted::kDolp) * dolp, plot.y().from);
     return plot.at(points[i].theta_deg, value);
   };
-  // Without smooth edges, which would show as seams.
+  // Smooth edges are off: they would show as seams.
   const ImDrawListFlags flags = std::exchange(plot.list()->Flags, ImDrawListFlags_None);
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Point& a = points[i];

@@ -111,7 +111,7 @@ void MapView::draw_lines(const Plot& plot, double scale) const {
   std::vector<ImVec2> labels;
   for (const Line& line : lines_) {
     if (line.segments.empty()) continue;
-    // Where the line is farthest from the edges.
+    // Puts the label at the point of the line that is farthest from the edges.
     const auto room = [](const Segment& s) { return std::min({s.x0, 1.0 - s.x0, s.y0, 1.0 - s.y0}); };
     const Segment& inner = *std::ranges::max_element(line.segments, {}, room);
     const ImVec2 at = plot.at_position(inner.x0, inner.y0);

@@ -28,14 +28,14 @@ std::string influence_text(const Effect& row) {
                      points >= 10.0 ? fmt::format("{:.0f}", points) : fmt::format("{:.2g}", points));
 }
 
-/// What the maximum would be without the effect; a surface without slopes is a smooth one.
+/// The maximum without the effect; a surface without slopes is a smooth one.
 std::string taken_away_text(const Session& session, const Effect& row) {
   if (row.name != "distribution") return without_text(session, row.name);
   const std::string text = without_text(session, "roughness");
   return text.empty() ? "" : "smooth: " + text;
 }
 
-/// The effects are those of a scene before the present one.
+/// True where the effects belong to an earlier scene.
 bool is_stale(const Session& session) { return !session.effects().empty() && !session.curve().is_finished(); }
 
 void draw_row(const Session& session, const Effect& row) {

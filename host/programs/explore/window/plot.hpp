@@ -37,7 +37,7 @@ class Plot {
 
   ImVec2 at(double x, double y) const { return at_position(x_.position(x), y_.position(y)); }
   ImVec2 at_position(double x, double y) const;
-  /// Whether the mouse holds or clicks inside; then where it is, as values of the axes.
+  /// State of the mouse inside the plot, and its position as values of the axes.
   bool is_dragged() const { return is_active_; }
   bool is_hovered() const { return is_hovered_; }
   double mouse_x() const { return x_.value(mouse_position_x()); }

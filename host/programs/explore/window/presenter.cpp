@@ -83,7 +83,7 @@ void Presenter::start_imgui() {
   info.QueueFamily = context_.device().queue_family();
   info.Queue = context_.device().queue();
   info.DescriptorPool = pool;
-  // What ImGui keeps for each image is free again when the frame in flight is done.
+  // ImGui's resources of each image are free again when the frame in flight is done.
   info.MinImageCount = info.ImageCount = static_cast<std::uint32_t>(kFramesInFlight);
   info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
   info.CheckVkResultFn = check_imgui;

@@ -36,7 +36,7 @@ class Presenter {
   void draw(ImDrawData* data, VkExtent2D size, Picture* picture = nullptr);
 
  private:
-  /// What one frame in flight needs.
+  /// Resources of one frame in flight.
   struct Frame {
     VkCommandBuffer commands = VK_NULL_HANDLE;
     vulkan::UniqueFence done;

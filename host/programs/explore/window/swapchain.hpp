@@ -17,7 +17,7 @@ using UniqueFramebuffer = vulkan::Handle<VkFramebuffer, vkDestroyFramebuffer>;
 using UniqueRenderPass = vulkan::Handle<VkRenderPass, vkDestroyRenderPass>;
 using UniqueSemaphore = vulkan::Handle<VkSemaphore, vkDestroySemaphore>;
 
-/// How the images of a surface are stored: eight bits a channel, not sRGB, because ImGui's colours are meant so.
+/// Format of a surface's images: eight bits a channel, not sRGB, because ImGui's colours assume that.
 struct SurfaceFormat {
   VkSurfaceFormatKHR format{};
   bool is_bgr = false;
@@ -60,7 +60,7 @@ class Swapchain {
 
 UniqueSemaphore make_semaphore(VkDevice device);
 
-/// Whether a surface has a size to draw into: a minimised window has none.
+/// True where a surface has a size to draw into: a minimised window has none.
 bool has_area(VkPhysicalDevice physical, VkSurfaceKHR surface, VkExtent2D wanted);
 
 }  // namespace dolp::explore

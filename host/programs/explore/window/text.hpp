@@ -1,4 +1,4 @@
-// The window's font, and what stands in for letters that it lacks.
+// The window's font, and substitutes for letters that it lacks.
 #pragma once
 
 #include <string>

@@ -224,7 +224,7 @@ void Ui::draw_view_controls() {
     if (ImGui::BeginCombo(ids[i], shown(axis_label(*axes[i])).c_str())) {
       for (const AxisKind kind : {AxisKind::kTheta, AxisKind::kSigma, AxisKind::kQ}) {
         if (!ImGui::Selectable(shown(axis_label(kind)).c_str(), kind == *axes[i])) continue;
-        // What the other axis has changes places with this one's.
+        // The two axes swap if the other one has this kind.
         if (*axes[1 - i] == kind) *axes[1 - i] = *axes[i];
         *axes[i] = kind;
         is_changed = true;

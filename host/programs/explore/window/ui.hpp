@@ -12,7 +12,7 @@
 
 namespace dolp::explore {
 
-/// What the window can do beyond its own state; each takes the path of a file.
+/// Actions of the window beyond its own state; each takes the path of a file.
 struct Actions {
   std::function<void(const std::string&)> save_scene;
   std::function<void(const std::string&)> export_table;
@@ -38,7 +38,7 @@ class Ui {
   void press(int key) { pressed_.push_back(key); }
 
   const ControlsPanel& controls() const { return controls_; }
-  /// Where the curves were drawn last.
+  /// The last drawn area of the curves.
   const Area& plot() const { return plot_; }
 
  private:

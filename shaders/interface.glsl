@@ -1,4 +1,4 @@
-// What host and shaders agree on: bindings, specialization constants, push constants, structures. Read by both: the
+// Interface of host and shaders: bindings, specialization constants, push constants, structures. Read by both: the
 // structures hold nothing but `real` (float or double), so that std430 packs them tightly and the host may treat an
 // array of them as an array of numbers. Counts stored as `real` are small integers.
 
@@ -34,12 +34,12 @@
 #define DOLP_MASKING_SMITH 3u
 
 // ---- Push constants: four uints, used by all entry points -----------------------------------------------------------
-// count: tasks of this dispatch (moments.comp), slopes (slopes.comp), entries (mueller.comp) or shapes bound (masking_table.comp); first: the
-// first of them, as a position in the bound buffers. Output i of a dispatch belongs to entry first + i, outputs
-// i * DOLP_WIDTH and following to task first + i. largest_order: of the rule nodes.
+// count: tasks of this dispatch (moments.comp), slopes (slopes.comp), entries (mueller.comp) or shapes bound
+// (masking_table.comp); first: the first of them, as a position in the bound buffers. Output i of a dispatch belongs to
+// entry first + i, outputs i * DOLP_WIDTH and following to task first + i. largest_order: of the rule nodes.
 #define DOLP_PUSH_CONSTANTS uint first; uint count; uint largest_order; uint unused;
 
-// ---- Task word: what an invocation of moments.comp computes, as bits -------------------------------------------------
+// ---- Task word: task of an invocation of moments.comp, as bits -----------------------------------------------------
 #define DOLP_TASK_MEMBERS_BITS 5u    // from bit 0: members of the row
 #define DOLP_TASK_PIECE_SHIFT 5u     // number of the piece of the slope axis
 #define DOLP_TASK_PIECE_BITS 6u
@@ -62,7 +62,7 @@
 #define DOLP_MOST_BOUNCES 32      // each on its own; of more, 2, 4, 8 ... are taken as one
 #define DOLP_GROUPS_PER_DISTANCE 6 // bounces taken as one at once, over those before or after them
 #define DOLP_MOST_DOUBLINGS 12
-#define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // of more nothing is left
+#define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // after more bounces no light is left
 #define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes
 #define DOLP_MASKING_OCTAVES 29  // of v = 1 + tau/scale
 #define DOLP_MASKING_CELL_BITS_FLOAT 3   // 2^bits cells per octave
@@ -71,9 +71,9 @@
 
 // ---- Structures ----------------------------------------------------------------------------------------------------
 
-// How the orders of the Gauss rules follow from what they are to integrate; physics/orders.glsl has the formulas.
+// Parameters of the orders of the Gauss rules; physics/orders.glsl has the formulas.
 struct RuleNode {
-  real digits;            // decimal digits that the sums are to have
+  real digits;            // decimal digits required of the sums
   real t_nodes;           // slope axis: nodes of a piece whatever its digits,
   real t_digits;          // digits that the size of its singularities asks for,
   real t_fall;            // and nodes for each e-fold by which the density falls over the piece
@@ -86,12 +86,12 @@ struct RuleNode {
 };
 
 // One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. Under total
-// reflection the pieces depend on the index too, so that a direction has a node for each such index; with `integral` and
-// smith masking they depend on the slope distribution, which may need a line more.
+// reflection the pieces depend on the index too, so that a direction has a node for each such index; with `integral`
+// and smith masking they depend on the slope distribution, which may need a line more.
 struct ThetaNode {
   real c;                         // cos(theta)
   real s;                         // sin(theta)
-  real end[DOLP_MAX_PIECES + 1];  // ascending slopes; the last stands for all that follow, and may exceed any cut
+  real end[DOLP_MAX_PIECES + 1];  // ascending slopes; the last also fills all later places, and may exceed any cut
 };
 
 // One slope of a profile (host/compute/evaluate/text/profile.hpp).
@@ -122,7 +122,7 @@ struct IndexNode {
   real n2m1_im;       // Im(N^2 - 1)
   real pole_re;       // R_p's pole in cos(beta), -1 / sqrt(N^2 + 1)
   real pole_im;
-  real branch_re;     // the branch point of w in cos(beta), i sqrt(N^2 - 1), in the quadrant where both parts are positive
+  real branch_re;     // the branch point of w in cos(beta), i sqrt(N^2 - 1), where both parts are positive
   real branch_im;
   real critical_cos;  // sqrt(1 - Re N^2), where total reflection begins, sharply (k = 0) or nearly so; otherwise 0
 };
@@ -142,7 +142,8 @@ struct GeometryNode {
   real sin_2eta_r;
 };
 
-// One pBRDF to evaluate. What cancels or overflows in a float comes from the host: the geometry, w^2 and the density.
+// One pBRDF to evaluate. The host computes the terms that cancel or overflow in a float: the geometry, w^2 and the
+// density.
 struct BeamNode {
   GeometryNode g;
   ShapeNode shape;  // its scale and cut are those of physics/in_plane.glsl
@@ -170,14 +171,14 @@ struct AzimuthNode {
   real evaluations;
 };
 
-// Moments times cos(theta) (shaders/physics/README.md, section 3), from the finer of two rules, and how far the coarser
-// one is off (physics/moments.glsl).
+// Moments times cos(theta) (shaders/physics/README.md, section 3), from the finer of two rules, and their distances
+// from the coarser one (physics/moments.glsl).
 struct MomentsNode {
   real r_i;
   real r_q;
   real albedo;
   real deficit;
-  real behind;               // facets that face away from theta, which the deficit counts twice: once each way
+  real behind;               // back-facing facets of theta, which the absorbed part counts twice: once each way
   real many;                 // the part of r_i of grooves in which rays bounce more often than DOLP_MOST_BOUNCES
   real direct_i;             // direct emission
   real direct_q;

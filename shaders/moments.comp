@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// What one piece of the slope axis adds to the moments of a row of entries, per invocation; the compiler is told the
-// width of a row.
+// Contribution of one piece of the slope axis to the moments of a row of entries, per invocation; the width of a row is
+// a compile-time constant.
 
 #include "physics/prelude.glsl"
 #include "interface.glsl"

@@ -21,10 +21,11 @@ using std::numbers::pi;
 namespace {
 
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
-// Facets so many times steeper than what the view and the widths tell apart are vertical, to a share of its inverse.
+// Facets steeper by this factor than the slopes that the view and the widths resolve count as vertical; the relative
+// error is the inverse.
 constexpr double kVertical = 1e10;
 constexpr double kSmallestSine = 1e-12;
-// Share of the slopes that weighs less than rounding.
+// Share of the slopes that contributes less than rounding.
 constexpr double kNoShare = 1e-19;
 constexpr int kHalvings = 60;
 
@@ -106,7 +107,7 @@ double Facets::end() const {
   return std::min(vertical, axis_.quantile(kNoShare));
 }
 
-// What vertical facets emit: e G_1 grows with t under smith masking, and has a limit under v-cavity.
+// Emission of vertical facets: e G_1 grows with t under smith masking, and has a limit under v-cavity.
 Emitted Facets::tail(double t, const Refinement& refinement) {
   const double share = masking_ == Masking::kVCavity ? axis_.share_above(t) : axis_.length_above(t) / t;
   if (share < kNoShare) return {};

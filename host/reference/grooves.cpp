@@ -26,7 +26,7 @@ using Vector3 = Vector<double>;
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
 // Light of less intensity is taken as absorbed.
 constexpr double kDark = 1e-24;
-// Beams are followed so far; what is left then comes out or does not.
+// Largest number of bounces followed; the rest of the light may or may not leave the groove.
 constexpr int kMostFollowed = 2000;
 constexpr double kSteepest = 1e15;
 constexpr double kSteeper = 1.5;
@@ -55,7 +55,7 @@ constexpr int kLookShares = 16;
 constexpr int kLookAzimuths = 16;
 constexpr double kLookSteepest = 50.0;
 
-// Components of the integrals. The lost light, of which it is not known whether it comes out, counts as reflected.
+// Components of the integrals. Lost light, which may or may not leave the groove, counts as reflected.
 enum Component : std::size_t { kAlbedo, kReflected, kPolarised, kAbsorbed, kLost, kCount };
 using GrooveValues = Values<kCount>;
 
@@ -93,7 +93,7 @@ void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3
   }
 }
 
-// What happens to the beam that meets `first` first: after each bounce none, some or all of it leaves.
+// Code of the history of the beam that meets `first` first: after each bounce none, some or all of it leaves.
 std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first, const SpecialAngles& special) {
   constexpr std::uint64_t kPrime = 1099511628211U;
   std::uint64_t hash = 14695981039346656037U;
@@ -131,7 +131,7 @@ class Surveyor {
         refinement_(refinement),
         may_abandon_(may_abandon) {}
 
-  /// Without meaning where the attempt is abandoned.
+  /// Undefined where the attempt is abandoned.
   Moments moments();
   bool is_abandoned() const { return may_abandon_ && bounces_ > kMostBounces; }
   double evaluations() const { return evaluations_; }
@@ -154,7 +154,7 @@ class Surveyor {
     return mean;
   }
   GrooveValues look_at_all();
-  /// The ends of what is worth an effort.
+  /// Slopes beyond which less work is done.
   struct Ends {
     double bends;  ///< the slope beyond which bends are not looked for
     double all;    ///< the slope beyond which nothing is followed
@@ -181,7 +181,7 @@ GrooveValues Surveyor::look_at_all() {
   return mean;
 }
 
-// Where too little is left to matter, or too many bounces.
+// Slopes beyond which the rest is negligible, or has too many bounces.
 Surveyor::Ends Surveyor::ends(const GrooveValues& expected) {
   const double scale = std::min(expected[kReflected], expected[kAbsorbed]);
   Ends ends{kSteepestBends, kSteepest};

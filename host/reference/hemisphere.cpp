@@ -23,11 +23,11 @@ namespace {
 
 constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// The absorbed part is only ever added to cos(theta) - albedo, so that less of it than this share of the albedo needs
+// The absorbed part is only added to cos(theta) - albedo, so that less of it than this share of the albedo needs
 // no relative accuracy.
 constexpr double kSmallAbsorbed = 1e-2;
-// Directions are elevations above the horizon, known to a few ulps of themselves however small, and so is all that
-// grows with them (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
+// Directions are elevations above the horizon, known to a few ulps of themselves at any size, and so is
+// everything proportional to them (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
 constexpr double kElevationRounding = 32.0 * std::numeric_limits<double>::epsilon();
 // At theta = 90 degrees the running direction is integrated up to this distance from the horizon; the rest is a power.
 constexpr double kHorizonGap = 1e-30;
@@ -37,7 +37,8 @@ constexpr double kNearHorizon_rad = 1e-3;
 constexpr double kLayerGrowth = 10.0;
 // Errors of the nested integrals, relative to the one around them.
 constexpr double kInnerShare = 0.02;
-// Below it an azimuth integral cannot be refined: a Kronrod panel's own rounding is 1e-15 of its magnitude.
+// Smallest relative error to which an azimuth integral can be refined: a Kronrod panel's own rounding is 1e-15 of its
+// magnitude.
 constexpr double kInnerFloor = 4e-15;
 // Integrals below this share of the albedo are not refined for: they are zero but for rounding.
 constexpr double kNegligible = 1e-12;
@@ -81,7 +82,7 @@ MuellerRow mueller_row(const FresnelCoefficients& r, double cos_eta, double sin_
   return {0.5 * (from_s + from_p), 0.5 * (from_s - from_p)};
 }
 
-// The moments of one direction: holds what every nested integrand needs.
+// The moments of one direction: holds the data of all nested integrands.
 class Hemisphere {
  public:
   Hemisphere(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
@@ -121,7 +122,7 @@ class Hemisphere {
   double evaluations_ = 0.0;
 };
 
-// D G M / 4: what is left of cos(theta) f cos(theta_r), and the same with R = 1 and with 1 - R.
+// D G M / 4, the reduced form of cos(theta) f cos(theta_r), and the same with R = 1 and with 1 - R.
 MomentValues Hemisphere::integrand(const Row& row, double delta) const {
   const double sin_half = std::sin(0.5 * delta);
   const double cos_half = std::cos(0.5 * delta);

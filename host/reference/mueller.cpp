@@ -34,7 +34,7 @@ constexpr double kMirrored = 1e-50;
 constexpr int kMostMuellerBounces = 2000;
 // More bounces are a correction, for which double will do.
 constexpr int kMostInQuad = 24;
-// So many bounces in a row without a contribution end the sum over them.
+// This many bounces in a row without a contribution end the sum.
 constexpr int kIdleBounces = 8;
 constexpr double kIdleShare = 1e-14;
 
@@ -225,7 +225,7 @@ struct GroovePair {
     add(total, in_plane(slopes, constants, in, out, against, bounces));
     return total;
   }
-  /// Whether no ray can leave at psi_r after so many bounces or more. Unfolded, a ray passes the apex at a distance
+  /// True if no ray can leave at psi_r after `bounces` or more bounces. Unfolded, a ray passes the apex at a distance
   /// between cos(gamma) sin(|psi| - gamma) and sin(|psi| + gamma), psi being psi_i as well as psi_r.
   bool is_beyond(int bounces) const {
     const Real widest = std::max(toward.gamma(bounces), against.gamma(bounces));
@@ -265,7 +265,8 @@ BouncesSum reference_all_bounces(const Surface& surface, const OpticalConstants&
     for (const double value : latest) recent += value;
     if (k >= kIdleBounces && recent <= kIdleShare * sum.matrix[0][0]) return sum;
   }
-  // Enough for what falls at least like the power -9/8 of the bounces, or by a share of 1e-4 from each to the next.
+  // Sufficient for terms that fall at least like the power -9/8 of the bounces, or by a share of 1e-4 from each to the
+  // next.
   sum.error = recent * kMostMuellerBounces;
   return sum;
 }

@@ -116,7 +116,7 @@ ScatteringMatrix matrix_of(const ScatteringRequest& request, const ScatteringEnt
   return matrix;
 }
 
-// What ReferenceEvaluator promises under "Accuracy".
+// The relative tolerance stated under "Accuracy" of ReferenceEvaluator.
 double relative_tolerance(const ReferenceOptions& options, double requested) {
   if (requested <= 0.0) return options.relative_tolerance;
   return std::min(0.5 * requested, std::max(options.relative_tolerance, 0.01 * requested));

@@ -15,13 +15,13 @@ constexpr std::size_t kMostBends = 40;
 constexpr double kStepInverse = 0.04;
 constexpr double kMostInverse = 10.0;
 constexpr int kStepsPerDecade = 16;
-// Below this share of the width slopes weigh less than rounding.
+// Slopes below this share of the width contribute less than rounding.
 constexpr double kSmallestShare = 1e-7;
 // A layer thinner than this needs break points of its own, each so many times farther out.
 constexpr double kThinLayer = 0.05;
 constexpr double kPlaneLayerGrowth = 8.0;
 
-// Where `regime` changes between sorted points: each change once, to the last bits.
+// The places where `regime` changes between sorted points: each change once, to the last bits.
 std::vector<double> changes(const std::vector<double>& points, const std::function<std::uint64_t(double)>& regime) {
   std::vector<double> found;
   std::uint64_t below = regime(points.front());

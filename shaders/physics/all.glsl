@@ -1,4 +1,4 @@
-// The int text in the order that GLSL needs: every function before its first use.
+// The whole kernel source in the order that GLSL needs: every function before its first use.
 #include "physics/elementary.glsl"
 #include "physics/slope.glsl"
 #include "physics/fresnel.glsl"

@@ -40,7 +40,7 @@ struct Arc {
   real origin;      // phi of its beginning; of the symmetry or singularity at one of its ends where its rule has one
   real span;        // length in phi
   int section;      // of the rule nodes
-  bool is_critical; // whether w vanishes at or beside its centre
+  bool is_critical; // true if w vanishes at or beside its centre
   real resolution;  // of the square root at its centre that absorption has smoothed, see place_on_arc; 0: it is sharp
 };
 
@@ -127,7 +127,7 @@ Azimuth azimuth(Arc arc, real2 node) {
 struct SplitLines {
   real2 end[DOLP_MAX_ARCS];  // of each arc; the first begins at phi = 0
   int arcs;
-  int leaving;     // how many of the arcs have a reflected ray that leaves
+  int leaving;     // number of arcs whose reflected ray leaves
   real2 horizon;   // theta_r = 90 degrees: beyond it the reflected ray does not leave
   real2 critical;  // cos(beta) = critical_cos: a square root on either side
 };
@@ -179,16 +179,16 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
   return lines;
 }
 
-// Of a groove: where the number of bounces or the width of the beam changes its law. With psi the zenith of theta in
-// the plane across the groove, tan(psi) = tan(theta) cos(phi), and gamma = pi/2 - alpha these are psi = pi/2 - j gamma
-// down to gamma, j <= RuleNode::split_bounces; gamma; the three below it unless there are more above; and -gamma,
-// beyond which facets face away.
+// Lines of a groove: where the number of bounces or the width of the beam changes its law. With psi the zenith of theta
+// in the plane across the groove, tan(psi) = tan(theta) cos(phi), and gamma = pi/2 - alpha these are
+// psi = pi/2 - j gamma down to gamma, j <= RuleNode::split_bounces; gamma; the three below it unless there are more
+// above; and -gamma, beyond which facets face away.
 real2 groove_line(ThetaNode theta, real cos_psi, real sin_psi) {
   return line_at(theta.c * sin_psi / max(cos_psi, real(1e-30)), max(theta.s, real(1e-30)));
 }
 
-// Of slopes that carry so little that a few digits do, only what faces the ray is told from what does not; of steep
-// grooves no bounces are, because a line is one of many.
+// Slopes that carry so little that a few digits suffice are split only at the line between facets that face the ray and
+// back-facing ones. Steep grooves are not split at the lines of their bounces, which are too many.
 CONST real kDigitsOfLines = real(3.0);
 
 SplitLines groove_lines(RuleNode rule, ThetaNode theta, real t, real digits, SplitLines lines) {

@@ -13,7 +13,7 @@ struct Slope {
 // A sum over azimuths, for each member of a row.
 struct AzimuthSums {
   real4 member[DOLP_WIDTH];
-  real2 direct;       // what facets emit straight to the viewer, as (I, Q), before smith's masking
+  real2 direct;       // direct emission of the facets, as (I, Q), before smith's masking
   real behind;        // MomentsNode::behind
   real evaluations;
 };
@@ -67,8 +67,8 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
       from = is_second ? middle : from;
       to = is_second ? to : middle;
     }
-    // Devices that run invocations in lockstep compute both sides of an `if`; a loop of one turn they skip where none
-    // of them needs it. It counts as an iteration, see worst_iterations of host/compute/plan/kernel_data.hpp.
+    // Devices that run invocations in lockstep compute both sides of an `if`; they skip a loop of one turn where no
+    // invocation needs it. It counts as an iteration, see worst_iterations of host/compute/plan/kernel_data.hpp.
     for (bool is_due = is_before(from, to); is_due; is_due = false) {
       Arc arc = zone_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits, from, to, zone);
       if (is_critical) arc = critical_arc(theta, index, slope.t, slope.digits, from, to, !is_second, arc);
@@ -84,8 +84,8 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
   return sums;
 }
 
-// Of all facets of a slope. Those whose ray does not leave lack their projection toward theta, which is negative for
-// those that face away; from a groove every ray leaves.
+// Sums over all facets of a slope. Facets whose ray does not leave lose their projection toward theta, which is
+// negative for back-facing ones; from a groove every ray leaves.
 AzimuthSums slope_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope) {
   SplitLines lines = split_lines(rule, theta, index, slope.t, slope.has_split_line, slope.digits);
   AzimuthSums sums = azimuth_sums(rule, theta, row, index, slope, lines);
@@ -97,7 +97,7 @@ AzimuthSums slope_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index,
   return sums;
 }
 
-// The same as slopes.comp returns it: no masking asks for a shape.
+// The same in the form that slopes.comp returns: its maskings do not depend on the shape.
 AzimuthNode azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNode own) {
   Slope slope;
   slope.t = own.t;

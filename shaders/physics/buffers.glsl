@@ -1,4 +1,4 @@
-// The data that the text reads, for the GLSL entry points; the C++ class that includes the text has members instead.
+// The data that the kernel source reads, for the GLSL entry points; the C++ class that includes it has members instead.
 layout(local_size_x_id = DOLP_SPEC_LOCAL_SIZE) in;
 layout(constant_id = DOLP_SPEC_DISTRIBUTION) const uint kDistribution = DOLP_CAUCHY;
 layout(constant_id = DOLP_SPEC_MASKING) const uint kMasking = DOLP_MASKING_NONE;

@@ -1,4 +1,5 @@
-// What one facet does: the integrand of the moments in slope space (sections 1 to 3 of README.md beside this file).
+// Reflection and emission of one facet: the integrand of the moments in slope space (sections 1 to 3 of README.md
+// beside this file).
 //
 // A facet has slope t and azimuth phi from the plane of incidence; x = cos(phi), r2 = cos^2(alpha) = 1 / (1 + t^2),
 // e = c + s t x. Then
@@ -7,7 +8,7 @@
 //   sin^2(beta) cos(2 eta)  = r2 [(c t x - s)^2 - t^2 (1 - x^2)],
 //   M00 = R_s - D sin^2(beta) / 2,   M01 = D sin^2(beta) cos(2 eta) / 2,   D = (R_s - R_p) / sin^2(beta).
 //
-// Moments and their sums are vectors (r_i, r_q, albedo, deficit); the deficit is what keeps the beam from being
+// Moments and their sums are vectors (r_i, r_q, albedo, deficit); the deficit is the part of the beam that is not
 // reflected: masked, absorbed, or sent below the horizon.
 
 struct Facet {
@@ -47,8 +48,8 @@ real4 reflected(Facet f, Projection part) {
   return real4(part.seen * f.m00, part.seen * f.m01, part.seen, part.hidden + part.seen * f.absorbed);
 }
 
-// What a facet emits straight to the viewer per unit of azimuth, as (I, Q): e G1 (1 - M00) and -e G1 M01 with the
-// masking of theta alone; smith's, which no facet changes, is multiplied later.
+// Emission of a facet straight to the viewer per unit of azimuth, as (I, Q): e G1 (1 - M00) and -e G1 M01 with the
+// masking of theta alone; smith's masking, the same for all facets, is multiplied later.
 real2 emitted(ThetaNode theta, Facet f) {
   real seen = (kMasking == DOLP_MASKING_V_CAVITY) ? min(f.e, real(2.0) * theta.c) : f.e;
   return real2(seen * f.absorbed, -seen * f.m01);

@@ -4,7 +4,7 @@
 //   R_s = |c - w|^2 / B = a / B                      because (c - w)(c + w) = 1 - N^2
 //   (R_s - R_p) / sin^2(beta) = 4 c Re(w) a / |N^2 c + w|^2
 //   1 - R_s = 4 c Re(w) / B
-// The quotient by sin^2(beta) is what normal incidence needs: the rotation terms carry the factor sin^2(beta).
+// The quotient by sin^2(beta) keeps its digits at normal incidence: the rotation terms carry the factor sin^2(beta).
 
 CONST real kSmallestSquare = real(1e-37);
 

@@ -10,8 +10,8 @@
 // the beam min(e, 2c) that meets the facet first, (min(X_k, X_1) - X_0) / (X_1 - X_0) goes on to bounce k, X_0 = max(a
 // sin(psi - gamma), 0).
 
-// Of a ray that has many bounces, 2, 4, 8 ... are taken as one at their middle, the fewer the closer they are to its
-// first or last, which may be grazing. What that changes is bounded in host/compute/plan/error_bounds.cpp.
+// For a ray with many bounces, 2, 4, 8 ... are taken as one at their middle, the fewer the closer they are to its
+// first or last, which may be grazing. The error of that is bounded in host/compute/plan/error_bounds.cpp.
 struct Fan {
   real2 turn;    // (cos, sin) of gamma times the bounces taken as one
   real gamma;    // of a ray with many bounces, and what follows
@@ -21,10 +21,10 @@ struct Fan {
   real taken;    // bounces taken as one, 2^doublings
   int doublings;
   bool is_steep;
-  bool is_black;  // so many that nothing leaves
+  bool is_black;  // true after so many bounces that no light leaves
 };
 
-// Of a groove of slope t, for a ray that has the projections c and u on the vertical and across.
+// The fan of a groove of slope t, for a ray with the projections c and u on the vertical and across.
 Fan fan(real t, real c, real u) {
   real r = real(1.0) / sqrt(real(1.0) + t * t);
   Fan f;
@@ -50,13 +50,13 @@ Fan fan(real t, real c, real u) {
   return f;
 }
 
-// What goes on to one bounce more of a ray with many, with the sines of small angles for the angles.
+// Share of a ray with many bounces that goes on to one more bounce, with the sines of small angles for the angles.
 real last_share(Fan f) {
   real sum = max(real(1.0) + f.slant, real(1e-30));
   return (real(2.0) * f.left + f.slant - real(1.0)) / sum;
 }
 
-// The bounces that come next, of a ray with many: as many as one as keep their distance from its first and last.
+// The next bounces of a ray with many: takes as many as one as their distance from its first and last bounce allows.
 Fan next_bounces(Fan f) {
   real distance = min(f.done, f.left) * (real(1.0) / real(DOLP_GROUPS_PER_DISTANCE));
   if (real(2.0) * f.taken <= distance) {
@@ -70,8 +70,8 @@ Fan next_bounces(Fan f) {
   return f;
 }
 
-// What a facet does in its own frame, on (I, Q, U, V): [m00 m01 0 0; m01 m00 0 0; 0 0 cross.x cross.y; 0 0 -cross.y
-// cross.x].
+// Mueller matrix of a facet in its own frame, on (I, Q, U, V):
+// [m00 m01 0 0; m01 m00 0 0; 0 0 cross.x cross.y; 0 0 -cross.y cross.x].
 struct Bounce {
   real m00;
   real m01;

@@ -1,10 +1,10 @@
 // G of `integral` and smith masking at one geometry, by Gauss rules over the in-plane slopes tau; no table, because a
-// pBRDF asks for G once or twice where the moments ask thousands of times. With mu = cot(theta):
+// pBRDF needs G once or twice where the moments need it thousands of times. With mu = cot(theta):
 //   smith, height-correlated:  L(theta) = (1 / mu) int_mu^inf p(tau) (tau - mu) dtau.
-//   `integral`:  1 - G1 = int_mu^inf p(tau) min(1, kappa (tau - mu) / sqrt(1 + tau^2)) dtau, which is eqs. (9)-(12) of the
-//   paper with tau = tan(gamma); kappa and the slope tb at which the minimum switches are those of masking.glsl.
-// In X = asinh(tau / scale), scale = min(m / sqrt(max(1, q)), 1), the singularities lie pi/2 off the real axis or farther.
-// Far out p is a power law (cauchy), and what is left has a closed form. All terms are positive.
+//   `integral`:  1 - G1 = int_mu^inf p(tau) min(1, kappa (tau - mu) / sqrt(1 + tau^2)) dtau, eqs. (9)-(12)
+//   of the paper with tau = tan(gamma); kappa and the slope tb at which the minimum switches are those of masking.glsl.
+// In X = asinh(tau / scale), scale = min(m / sqrt(max(1, q)), 1), the singularities lie pi/2 off the real axis or
+// farther. Far out p is a power law (cauchy), and the rest has a closed form. All terms are positive.
 
 #ifdef DOLP_DOUBLE
 CONST int kInPlaneOrder = 16;  // of a panel of length 1 in X at most
@@ -17,7 +17,7 @@ CONST real kPowerLawSlope = real(1e4);
 CONST real kSmallestSine = real(1e-18);
 CONST real kLargestSwitch = real(1e20);  // tb where the minimum hardly switches at all
 
-// What p is weighted with.
+// Weights of p.
 CONST uint kWeightOne = 0u;
 CONST uint kWeightVisible = 1u;  // tau - mu, over sqrt(1 + tau^2) for `integral`
 
@@ -44,7 +44,7 @@ real in_plane_sum(ShapeNode shape, uint weight, real mu, real from, real to) {
   return sum * length * shape.scale;
 }
 
-// Integral over all slopes beyond `from`, which lies where p ~ tau^(1 - 2q); nothing is left of the gaussian.
+// Integral over all slopes beyond `from`, which lies where p ~ tau^(1 - 2q); that of the gaussian is negligible.
 real power_law_sum(ShapeNode shape, uint weight, real mu, real from) {
   if (kDistribution == DOLP_GAUSSIAN) return real(0.0);
   real a = real(2.0) * shape.q_minus_1;

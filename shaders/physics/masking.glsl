@@ -41,8 +41,8 @@ real weight_decay(real tau) {
   return (kMasking == DOLP_MASKING_SMITH) ? real(0.0) : tau / (real(1.0) + tau * tau);
 }
 
-// Where tau lies in the tables of one scale, and what a quintic Hermite interpolation there multiplies values (f), first
-// (d) and second derivatives (e) at the cell's ends with. Beyond the table's end the value at the end is used: only
+// Place of tau in the tables of one scale, and the weights of values (f), first (d) and second derivatives (e) at the
+// cell's ends in a quintic Hermite interpolation there. Beyond the table's end the value at the end is used: only
 // facets within 1e-5 of the line d = 0 and directions within 2e-5 of the normal look there.
 struct TableCell {
   uint node;  // the one before tau
@@ -88,7 +88,7 @@ real masking_height(TableCell cell, uint table) {
          (cell.e0 * cell.g0 * n0.w + cell.e1 * cell.g1 * n1.w);
 }
 
-// What 1 - G1(theta, alpha) of a direction and a facet slope t looks up, the same for all tables of one scale.
+// Places that 1 - G1(theta, alpha) of a direction and a facet slope t looks up, the same for all tables of one scale.
 struct ShadowPlace {
   real kappa;
   bool is_limited;  // d > 0, with
@@ -115,9 +115,9 @@ ShadowPlace shadow_place(ShapeNode shape, real cos_theta, real sin_theta, real t
   return place;
 }
 
-// What the limit b < pi/2 adds to kappa l(mu), Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)], as a sum over the values at the
-// ends of the cell that tau_b lies in, with C'' = g p (-p'/p - g'/g) and Pt'' = p (-p'/p): only -p'/p knows the shape,
-// and the values.
+// Term that the limit b < pi/2 adds to kappa l(mu): Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)], as a sum over the
+// values at the ends of the cell that tau_b lies in, with C'' = g p (-p'/p - g'/g) and Pt'' = p (-p'/p): only -p'/p and
+// the values depend on the shape.
 struct LimitTerms {
   real l0;
   real l1;

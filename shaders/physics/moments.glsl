@@ -113,7 +113,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
     }
     sums.evaluations += azimuths.evaluations;
   }
-  // The share of the facets is known: the error that the density alone makes cancels.
+  // Normalising by the known share of the facets cancels the error of the density alone.
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     real ratio = mass[g] > real(0.0) ? piece.mass[g] / mass[g] : real(1.0);
     sums.member[g] *= ratio;
@@ -128,14 +128,14 @@ struct RowMoments {
   MomentsNode member[DOLP_WIDTH];
 };
 
-// What one piece adds to the moments of a row; the first also what lies beyond the last.
+// Contribution of one piece to the moments of a row; the first piece also adds the slopes beyond the last one.
 RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task task) {
   real cut = row.shape[0].cut;
   Piece piece = make_piece(rule, theta, row, index, task);
   Masked of_theta = masking_of_direction(row, theta.c, theta.s);
   PieceSums coarse = no_slopes();
   PieceSums fine = no_slopes();
-  int passes = (task.start < cut) ? 2 : 0;  // a piece that none of the row reaches
+  int passes = (task.start < cut) ? 2 : 0;  // no pass for a piece beyond the cut of the row
   for (int pass = 0; pass < passes; ++pass) {
     coarse = fine;
     fine = piece_sums(rule, theta, row, index, task, piece, of_theta, pass == 0);

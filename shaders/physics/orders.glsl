@@ -1,9 +1,9 @@
-// How many nodes a piece of the slope axis or an arc of the azimuth gets: policy, of which the sums know nothing.
+// Number of nodes for a piece of the slope axis or an arc of the azimuth: a policy, independent of the sums.
 //
 // A Gauss rule of n nodes on [0, 1] is wrong by e^(-2 n mu) where the integrand's next singularity y0 lies on the
 // ellipse with the interval's ends as foci and cosh(mu) = |y0| + |y0 - 1| (Trefethen 2013, chapter 19): a decimal digit
 // costs ln(10) / (2 mu) nodes. Where the singularities of the azimuth lie is known exactly; RuleNode scales the law
-// with what is fitted (host/compute/plan/rule.hpp). The less a piece carries, the fewer digits it needs.
+// with fitted numbers (host/compute/plan/rule.hpp). The less a piece carries, the fewer digits it needs.
 
 CONST real kHalfLn10 = real(1.15129254649702284);
 CONST real kLn10 = real(2.30258509299404568402);
@@ -58,7 +58,7 @@ int coarse_order(int order) {
 
 // ---- Slope axis ----------------------------------------------------------------------------------------------------
 
-// What facets of slope t add to the albedo, c + s t without masking. The cavities let through no more than 2 c.
+// Contribution of facets of slope t to the albedo, c + s t without masking. The cavities let through no more than 2 c.
 real weight_of_slope(ThetaNode theta, real t) {
   real bare = theta.c + theta.s * t;
   return kMasking == DOLP_MASKING_V_CAVITY ? min(bare, max(real(2.0) * theta.c, kLeastWeight)) : bare;
@@ -77,7 +77,7 @@ real weight_of_shape(ThetaNode theta, ShapeNode shape) {
              kLeastWeight);
 }
 
-// Digits that are wanted of what carries a share of the albedo: fewer by its logarithm.
+// Digits required of a part that carries a share of the albedo: fewer by the logarithm of the share.
 real digits_of_share(RuleNode rule, real share) {
   return max(rule.digits + kInverseLn10 * log_unit(min(share, real(1.0))), real(0.0));
 }
@@ -88,8 +88,8 @@ real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, re
   return digits_of_share(rule, mass * typical / weight_of_shape(theta, shape));
 }
 
-// The same of the azimuths at slope t, one of `order` slopes of a piece, that stands for `mass` of the facets: less than
-// of the piece where it carries less than its part. `all` is weight_of_shape.
+// The same of the azimuths at slope t, one of `order` slopes of a piece, that represents `mass` of the facets: fewer
+// than those of the piece where it carries less than its part. `all` is weight_of_shape.
 real digits_of_slope(RuleNode rule, ThetaNode theta, real all, real digits, int order, real t, real mass) {
   return min(digits_of_share(rule, real(order) * mass * weight_of_slope(theta, t) / all), digits);
 }
@@ -225,8 +225,8 @@ real fresnel_cost(RuleNode rule, ThetaNode theta, IndexNode index, real t, Arc a
   return cost;
 }
 
-// Those of the masking of the reflected ray: the in-plane slopes' density at cot(theta_r) = +- i m, and for `integral`
-// the pole of kappa at cot(theta_r) = -t.
+// Singularities of the masking of the reflected ray: the in-plane slopes' density at cot(theta_r) = +- i m, and for
+// `integral` the pole of kappa at cot(theta_r) = -t.
 real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   if (kMasking != DOLP_MASKING_SMITH && (kMasking != DOLP_MASKING_INTEGRAL || zone == 0)) return real(0.0);
   real sec2 = real(1.0) + t * t;
@@ -274,10 +274,10 @@ Arc zone_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_lin
   return is_rough_line ? make_root_arc(from, to, false) : arc;
 }
 
-// The arc on one side of the critical line, or the int zone where the line lies beyond. w^2 = cos^2(beta) -
+// The arc on one side of the critical line, or the whole zone where the line lies beyond. w^2 = cos^2(beta) -
 // critical_cos^2 + i Im N^2 vanishes at or beside its end, as far away as w^2 there is of its range on the arc. Where
-// that is far, the arc is like any other; where it is too little to be felt, the root counts as sharp: what it would
-// change is of the order of the resolution to the power 3/2.
+// that is far, the arc is like any other; where it is negligible, the root counts as sharp: the change
+// by it is of the order of the resolution to the power 3/2.
 Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, real2 from, real2 to, bool at_end, Arc otherwise) {
   real level = index.critical_cos * index.critical_cos;
   real r2 = real(1.0) / (real(1.0) + t * t);
@@ -302,7 +302,7 @@ real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
 }
 
 // A smoothed square root has singularities at v = asinh(sqrt(+-i)) / a = (0.76 +- 0.57 i) / a in the abscissa of
-// place_on_arc; what they carry is resolution^(3/2) of the whole.
+// place_on_arc; they carry resolution^(3/2) of the whole.
 real resolution_nodes(real digits, real resolution) {
   if (resolution <= real(0.0)) return real(0.0);
   real wanted = max(digits + real(1.5) * kInverseLn10 * log_unit(resolution), real(0.0));
@@ -310,7 +310,7 @@ real resolution_nodes(real digits, real resolution) {
   return wanted * nodes_per_digit(acosh_above_1(gap_beside_unit(real(0.76) / a, real(0.57) / a)));
 }
 
-// Nodes of an arc. With fewer than two on the int half circle cos(2 phi) would not average out.
+// Nodes of an arc. With fewer than two on the whole half circle cos(2 phi) would not average out.
 real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, real t, real digits,
                Arc arc, int zone) {
   real map = nodes_per_digit(asinh_real(real(1.0) / max(abs(arc.extent), real(1e-9))));  // dphi = 4 dtau / (1 + tau^2)

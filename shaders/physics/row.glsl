@@ -1,13 +1,13 @@
 // Entries that one invocation computes together: they differ in the exponent q alone and share nodes, facets and
-// reflection. What masking says differs from member to member.
+// reflection. The masking differs from member to member.
 
-// In ascending order of q. Scale, cut and cusp of the shapes are the same, those that the hardest of them needs.
+// In ascending order of q. Scale, cut and cusp of the shapes are the same, those that the most demanding of them needs.
 struct Row {
   ShapeNode shape[DOLP_WIDTH];
   uint table[DOLP_WIDTH];  // first node of its masking table
 };
 
-// For maskings that do not ask for the shape.
+// For maskings that do not depend on the shape.
 Row no_row() {
   Row row;
   for (int g = 0; g < DOLP_WIDTH; ++g) {
@@ -18,7 +18,7 @@ Row no_row() {
   return row;
 }
 
-// What masking says of one direction, for each member: the shadow 1 - G1 of the facets of slope t (`integral`) or
+// Masking of one direction, for each member: the shadow 1 - G1 of the facets of slope t (`integral`) or
 // Smith's L.
 struct Masked {
   real value[DOLP_WIDTH];
@@ -30,7 +30,7 @@ Masked unmasked() {
   return masked;
 }
 
-// The part that no slope changes: Smith's L, at 90 degrees a number so large that G is 0, and l of `integral`.
+// The part independent of the slope: Smith's L, at 90 degrees a number so large that G is 0, and l of `integral`.
 Masked masking_of_direction(Row row, real cos_theta, real sin_theta) {
   Masked heights = unmasked();
   if (kMasking == DOLP_MASKING_SMITH) {
@@ -60,7 +60,7 @@ Masked shadows(Row row, Masked heights, real cos_theta, real sin_theta, real t) 
   return masked;
 }
 
-// What masking says of the reflected ray; the first arcs of `integral` ask theta instead.
+// Masking of the reflected ray; on its first arcs `integral` uses theta instead.
 Masked masking_of_ray(Row row, real cos_r, real t, int zone) {
   real sin_r = sqrt((real(1.0) - cos_r) * (real(1.0) + cos_r));
   if (kMasking == DOLP_MASKING_SMITH) return masking_of_direction(row, cos_r, sin_r);
@@ -71,11 +71,11 @@ Masked masking_of_ray(Row row, real cos_r, real t, int zone) {
   return masked;
 }
 
-// The part of a facet's direct emission that smith's masking leaves, by what it says of theta.
+// The part of a facet's direct emission that smith's masking leaves, by its value for theta.
 real viewed(real of_theta) { return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) / (real(1.0) + of_theta) : real(1.0); }
 
-// A facet's projection, by what masking says of theta and of the reflected ray. `zone` numbers the arcs from phi = 0;
-// in the first, theta_r < theta, so that `integral` asks theta.
+// A facet's projection, by the masking of theta and of the reflected ray. `zone` numbers the arcs from phi = 0;
+// in the first, theta_r < theta, so that `integral` uses theta.
 Projection project(ThetaNode theta, Facet f, int zone, real of_theta, real of_ray) {
   if (kMasking == DOLP_MASKING_NONE) return Projection(f.e, real(0.0));
   if (kMasking == DOLP_MASKING_V_CAVITY) {

@@ -1,4 +1,4 @@
-// What an invocation of moments.comp computes, from a task word of interface.glsl.
+// Task of an invocation of moments.comp, decoded from a task word of interface.glsl.
 struct Task {
   int members;
   int piece;
@@ -52,6 +52,6 @@ struct Piece {
   real root_after;        // the same beyond b
   real mass[DOLP_WIDTH];  // share of the facets
   real fall;              // of the share of facets beyond, from a to b, as a logarithm
-  real digits;            // wanted by the member that wants most
+  real digits;            // required by the most demanding member
   int order;
 };

@@ -22,14 +22,14 @@ using std::numbers::pi;
 
 constexpr int kLargestOrder = 16;  // kInPlaneOrder of physics/in_plane.glsl
 
-// -ln of the share of the in-plane slopes that G may leave out: far below the rounding of a double.
+// -ln of the share of the in-plane slopes that G may neglect: far below the rounding of a double.
 constexpr double kCutExponent = 45.0;
 
-// Smoother surfaces have the G of this one: the squares of their slopes overflow a float, and but for q < 1.1 the
-// shadows they cast are the same.
+// Smoother surfaces use the G of this sigma: the squares of their slopes overflow a float, and except for q < 1.1 the
+// shadows are the same.
 constexpr double kSmallestMaskingSigma = 1e-15;
 
-// Share of N^2 and sin^2(beta) below which their difference has lost digits that the root of it needs.
+// Share of N^2 and sin^2(beta) below which their difference has lost digits that its square root needs.
 constexpr double kCritical = 1e-6;
 
 // ln(1 + x^2), where x^2 may overflow.
@@ -87,7 +87,7 @@ BeamPlan::BeamPlan(const ScatteringRequest& request) : request_(request), data_(
 }
 
 double BeamPlan::w_squared(const ScatteringEntry& entry, const kernel::BeamNode& node) const {
-  // Of the two ways the one whose terms are smaller.
+  // Uses the form with the smaller terms.
   const double w2 =
       node.g.sin2_beta < 0.5 ? node.n2_re - node.g.sin2_beta : node.n2m1_re + node.g.cos_beta * node.g.cos_beta;
   if (std::hypot(w2, node.n2m1_im) > kCritical * std::max(std::abs(node.n2_re), node.g.sin2_beta)) return w2;

@@ -1,4 +1,4 @@
-// What the pBRDF kernel reads of one entry, computed in double.
+// Inputs of the pBRDF kernel for one entry, computed in double.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace dolp {
 
-/// Inputs of the kernel for one entry; the pBRDF is what the kernel returns times 2^power.
+/// Inputs of the kernel for one entry; the pBRDF is the kernel's result times 2^power.
 struct Beam {
   kernel::BeamNode node{};
   int power = 0;
@@ -24,12 +24,12 @@ class BeamPlan {
   explicit BeamPlan(const ScatteringRequest& request);
   Beam operator()(const ScatteringEntry& entry) const;
 
-  /// The kernel's result with its power of two put back, its error bound, `unit_roundoff` being that of its precision,
-  /// and the further bounces that the request asks for.
+  /// The kernel's result with its power of two restored, its error bound, and the further bounces that the request asks
+  /// for; `unit_roundoff` is that of the kernel's precision.
   ScatteringMatrix matrix(const kernel::MuellerNode& node, const Beam& beam, const ScatteringEntry& entry,
                           double unit_roundoff) const;
 
-  /// The kernel data that the text needs beside its beams: the model and the rule nodes.
+  /// The kernel data besides the beams: the model and the rule nodes.
   const KernelData& data() const { return data_; }
 
  private:

@@ -10,7 +10,7 @@ namespace dolp {
 /// The points cos(pi i / (count - 1)) on [-1, 1], descending. Domain: count >= 2.
 std::vector<double> lobatto_points(Eigen::Index count);
 
-/// What the interpolant at x in [-1, 1] multiplies the values at `points` with; their sum is 1.
+/// Weights of the values at `points` in the interpolant at x in [-1, 1]; the weights add up to 1.
 Eigen::RowVectorXd cardinal_values(const std::vector<double>& points, double x);
 
 /// Turns the values at lobatto_points(count) into the coefficients of Chebyshev polynomials of degree 0, 1, ...

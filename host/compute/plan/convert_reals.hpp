@@ -1,4 +1,4 @@
-// Between the precisions of the structures of shaders/interface.glsl.
+// Converts the structures of shaders/interface.glsl between precisions.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace dolp {
 
-/// The structure `From`, which holds nothing but FromReal, as the same structure `To` of ToReal.
+/// Converts the structure `From`, which holds only FromReal, to the same structure `To` of ToReal.
 template <class ToReal, class To, class FromReal, class From>
 To convert_reals(const From& from) {
   constexpr std::size_t kCount = sizeof(From) / sizeof(FromReal);

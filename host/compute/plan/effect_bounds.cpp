@@ -17,9 +17,9 @@ namespace dolp {
 namespace {
 
 
-constexpr double kRounding = 1e-8;  // of the sums here, and of the band sums that they stand for
+constexpr double kRounding = 1e-8;  // of the sums here, and of the band sums that they represent
 constexpr double kRoundingOfOne = 1e-13;
-constexpr double kSmallestCosine = 1e-300;  // that may be divided by
+constexpr double kSmallestCosine = 1e-300;  // safe as a divisor
 
 bool KeptEffects::*flag(Part part) {
   switch (part) {
@@ -43,7 +43,7 @@ bool KeptEffects::*flag(Part part) {
 
 double or_infinite(double bound) { return std::isnan(bound) ? kInfinity : bound; }
 
-/// R_s of the best reflecting index, and the mean of R_s and R_p of the worst and the best one.
+/// R_s of the most reflective index, and the mean of R_s and R_p of the least and the most reflective one.
 struct Fresnel {
   double most_s = 0.0;
   double least = 1.0;
@@ -62,7 +62,7 @@ Fresnel fresnel(const std::vector<OpticalConstants>& indices, double cosine) {
   return all;
 }
 
-/// Most of smith's L(theta) = E[(t_x - mu)+] / mu, mu = cot(theta): E|t_x| / (2 mu).
+/// Upper bound of smith's L(theta) = E[(t_x - mu)+] / mu, mu = cot(theta): E|t_x| / (2 mu).
 double most_lambda(Distribution distribution, const SlopeShape& shape, const CosSin& a) {
   if (shape.sigma == 0.0 || a.sin == 0.0) return 0.0;
   double mean = slope_width(shape) / kRootPi;
@@ -73,8 +73,9 @@ double most_lambda(Distribution distribution, const SlopeShape& shape, const Cos
 /// The slope up to which every facet sends its ray up.
 double edge_slope(const CosSin& a) { return a.cos / (1.0 + a.sin); }
 
-/// Most of rho that facets steeper than `slope` can give: the mean of e over the azimuths is at most c + s t / pi, and
-/// (1 + u^2)^(1 - q) <= u^(2 - 2 q) bounds the mean slope of the cauchy distribution; with `v-cavity` e G <= 2 c.
+/// Upper bound of the part of rho from facets steeper than `slope`: the mean of e over the azimuths is at most
+/// c + s t / pi, and (1 + u^2)^(1 - q) <= u^(2 - 2 q) bounds the mean slope of the cauchy distribution; with `v-cavity`
+/// e G <= 2 c.
 double most_of_steep(const Surface& surface, const CosSin& a, const SlopeShape& shape, double slope) {
   const double share = steeper_share(surface.distribution, shape, slope);
   if (surface.masking == Masking::kVCavity) return 2.0 * share;
@@ -85,9 +86,9 @@ double most_of_steep(const Surface& surface, const CosSin& a, const SlopeShape& 
   return share + a.sin / a.cos * (slope * share + beyond) / std::numbers::pi;
 }
 
-/// Equation: rho c = E[e G M], e <= max(c + s t cos(phi), 0), G <= 1. `v-cavity` and `smith` reflect at most all that
-/// arrives, and what is not steep at most R_s at theta plus its slope; else 1 + tan(theta) E|t_x| / 2, because the mean
-/// of t is pi E|t_x| / 2.
+/// Equation: rho c = E[e G M], e <= max(c + s t cos(phi), 0), G <= 1. `v-cavity` and `smith` reflect at most all
+/// incident light, and facets that are not steep at most R_s at theta plus their slope; else 1 + tan(theta) E|t_x| / 2,
+/// because the mean of t is pi E|t_x| / 2.
 double most_specular(const Surface& surface, const CosSin& a, const SlopeShape& roughest,
                      const std::vector<OpticalConstants>& indices) {
   const bool keeps_energy = surface.masking == Masking::kVCavity || surface.masking == Masking::kSmith;
@@ -108,7 +109,7 @@ double least_specular(const Surface& surface, const CosSin& a, const SlopeShape&
   return 0.75 * gentle * 0.5 * fresnel(indices, 1.0).least;
 }
 
-/// Ends of what a quantity can be.
+/// Range of a quantity.
 struct Range {
   double least = 0.0;
   double most = kInfinity;
@@ -202,7 +203,7 @@ std::vector<EntriesExtent> extents_of(const SceneEntries& entries) {
 /// Bounds of Stokes sums.
 struct EffectBounds::Sums {
   double least_i = 0.0;
-  double most_i = 0.0;   ///< of |I|; only of what a part adds
+  double most_i = 0.0;   ///< of |I|; only for the contribution of a part
   double most_qu = 0.0;  ///< of the length of (Q, U)
   double most_polarisation = kInfinity;
 };
@@ -265,7 +266,7 @@ void EffectBounds::add_beams(const EntriesExtent& extent, const std::vector<Opti
     most_beam_ = most_beam_qu_ = kInfinity;  // further bounces have no closed form
 }
 
-/// The exitance of emission and surroundings that rho is multiplied by, at most.
+/// Upper bound of the exitance of emission and surroundings that multiplies rho.
 double EffectBounds::weight(const KeptEffects& kept) const {
   const bool is_kirchhoff = scene_.emission && scene_.emission->model == EmissionModel::kMoments;
   const double emitted = kept.emission && is_kirchhoff ? total_.emitted : 0.0;
@@ -274,12 +275,12 @@ double EffectBounds::weight(const KeptEffects& kept) const {
   return has_both ? total_.excess : std::max(emitted, surroundings);
 }
 
-/// That of a source which shines into the hemisphere.
+/// The exitance of a source that illuminates the hemisphere.
 double EffectBounds::incident(const KeptEffects& kept) const {
   return is_bistatic_ || !kept.source ? 0.0 : total_.irradiance;
 }
 
-/// A of the specular part.
+/// Albedo bound A of the specular part.
 double EffectBounds::most_rho(const KeptEffects& kept) const {
   if (!kept.moments) return 0.0;
   const double further = kept.further_bounces ? further_ : 0.0;

@@ -1,4 +1,4 @@
-// Closed forms of how much of the polarisation an effect can be.
+// Closed-form bounds of the change of the polarisation by an effect.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ enum class Part { kFurtherBounces, kMoments, kSource, kSurroundings, kEmission, 
 bool is_kept(const KeptEffects& kept, Part part);
 KeptEffects without(KeptEffects kept, Part part);
 
-/// Ends of what the entries of one wavelength are.
+/// Ranges of the parameters of the entries of one wavelength.
 struct EntriesExtent {
   std::vector<double> theta_deg;
   SlopeShape roughest;                    ///< the largest sigma and the smallest q
@@ -24,31 +24,31 @@ struct EntriesExtent {
   std::vector<OpticalConstants> indices;  ///< of the entries' own
 };
 
-/// For each wavelength of the entries, or for the scene's.
+/// One extent for each wavelength of the entries, or one for the scene's spectrum.
 std::vector<EntriesExtent> extents_of(const SceneEntries& entries);
 
-/// Bounds of what the parts of a scene change at any of the entries.
+/// Bounds of the change that each part of a scene causes at any of the entries.
 ///
 /// Derivation: a part adds (dI, dQ, dU) to the Stokes sums, so that with q = (Q, U) / I and ' for the sums without it
 ///   q - q' = (dQ - q dI) / I'.
 /// |dI| and |dQ, dU| are factors of the scene times the bounds 0 <= rho_I <= A, |rho_Q| <= A / 2 (least_rho from below)
 /// and those of the beam. With E, S, X the exitances of emission, surroundings and source (X only in hemispherical
 /// mode), Kirchhoff's emission gives I = E + (S - E + X) rho >= E - max(0, E - S) A and Q = (S - E + X) rho_Q, because
-/// S - E has one sign at all wavelengths: the moments weigh |S - E| + X, nothing at all where emission and surroundings
-/// have one temperature and no source shines into the hemisphere. The fresnel emission is at least E (1 - R_s) / 2; of
-/// the direct one nothing is known from below. A path multiplies all by its transmittance and adds to I. |q| <= 1 where
-/// A <= 1, which bounds rho_s and rho_p: then every part has a degree of polarisation of at most 1. All Stokes
-/// parameters are in the units of the exitances, bistatic ones times pi; sums over a band are those of the spectral
-/// rule's samples.
+/// S - E has one sign at all wavelengths: the weight of the moments is |S - E| + X, which is 0 where emission and
+/// surroundings have one temperature and no source illuminates the hemisphere. The fresnel emission is at least
+/// E (1 - R_s) / 2; the direct one has no known lower bound. A path multiplies all by its transmittance and adds to I.
+/// |q| <= 1 where A <= 1, which bounds rho_s and rho_p: then every part has a degree of polarisation of at most 1. All
+/// Stokes parameters are in the units of the exitances, bistatic ones times pi; sums over a band are those of the
+/// spectral rule's samples.
 class EffectBounds {
  public:
   EffectBounds(const SceneValues& scene, const EntriesExtent& extent);
 
-  /// Bound of what dropping `part` changes where `kept` is kept, at any entry; infinite where none is known, and always
-  /// for the diffuse part. Exactly 0 where the part adds nothing.
+  /// Bound of the change, at any entry, if `part` is dropped from `kept`; infinite where no bound is known, and always
+  /// for the diffuse part. Exactly 0 where the part contributes nothing.
   DropBound bound(Part part, const KeptEffects& kept) const;
 
-  /// Whether a part adds exactly nothing, at any entry.
+  /// True if a part contributes exactly nothing at every entry.
   bool adds_nothing(Part part, const KeptEffects& kept) const;
 
  private:
@@ -63,7 +63,7 @@ class EffectBounds {
 
   SceneValues scene_;
   bool is_bistatic_;
-  SpectralSample total_;       ///< sums of the samples' factors, of their sizes but for what is emitted
+  SpectralSample total_;       ///< sums of the absolute values of the samples' factors; the emitted ones are signed
   bool has_negative_ = false;  ///< weights of both signs, as the interpolation of a steep factor may have
   double path_;
   double most_specular_ = 0.0;  ///< of rho_I of the first bounce

@@ -19,7 +19,7 @@ std::vector<EffectBounds> bounds_of(const SceneValues& scene, const SceneEntries
   const std::vector<double>& wavelength_um = entries.wavelength_um();
   const std::vector<EntriesExtent> extents = extents_of(entries);
   for (std::size_t i = 0; i < extents.size(); ++i) {
-    if (extents[i].theta_deg.empty() && !entries.empty()) continue;  // a wavelength that no entry has
+    if (extents[i].theta_deg.empty() && !entries.empty()) continue;  // no entry has this wavelength
     bounds.emplace_back(wavelength_um.empty() ? scene : at_wavelength(scene, wavelength_um[i]), extents[i]);
   }
   return bounds;
@@ -33,7 +33,7 @@ DropBound worst_of(const DropBound& a, const DropBound& b) {
   return {std::max(a.dolp, b.dolp), std::max(a.rho, b.rho)};
 }
 
-/// What counts in the whole scene is not dropped for want of what it acts on.
+/// A part that matters in the whole scene is kept even where the parts that it acts on have been dropped.
 DropBound worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
   DropBound worst;
   for (const EffectBounds& of_one : bounds) {
@@ -77,7 +77,7 @@ void drop_effects(EffectPlan& plan, const SceneValues& scene, const std::vector<
   const double allowed = kDroppedShare * scene.accuracy.tolerance;
   for (const Part part : kDroppingOrder) {
     if (!is_kept(plan.kept, part)) continue;
-    if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // it is made of them
+    if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // it needs them
     const DropBound bound = worst_bound(bounds, part, plan.kept);
     if (std::max(bound.dolp, bound.rho) > allowed - std::max(plan.bound.dolp, plan.bound.rho)) continue;
     plan.kept = without(plan.kept, part);
@@ -103,7 +103,7 @@ std::string below_share(double bound, double tolerance) {
   return fmt::format("changes DOLP by {:.2g} at most, {:.2g} of the tolerance", bound, bound / tolerance);
 }
 
-/// Why the moments are not needed although nothing is lost.
+/// The reason why the moments are not needed although no part is lost.
 std::string why_no_moments(const SceneValues& scene, const KeptEffects& kept) {
   const bool has_emission = scene.emission && kept.emission;
   const bool has_surroundings = scene.surroundings && kept.surroundings;

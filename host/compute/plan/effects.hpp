@@ -1,4 +1,4 @@
-// What a scene asks for, effect by effect, and which of it a run leaves out because it cannot be seen.
+// The effects of a scene, and the selection of those that a run drops because their change is negligible.
 #pragma once
 
 #include <optional>
@@ -12,16 +12,16 @@
 
 namespace dolp {
 
-/// What all dropped effects together may change: this share of the scene's tolerance.
+/// Bound of the change by all dropped effects together, as a share of the scene's tolerance.
 inline constexpr double kDroppedShare = 0.1;
 
-/// A part that is left out, and what that changes at most at any entry.
+/// A part that is dropped, and the bound of the change at any entry.
 struct DroppedPart {
   Part part;
   DropBound bound;
 };
 
-/// Which effects a run computes at its entries.
+/// The effects that a run computes at its entries.
 struct EffectPlan {
   bool keep_all = false;
   KeptEffects kept;
@@ -35,36 +35,37 @@ struct EffectPlan {
 
 /// The effects that the scene's output needs at these entries.
 ///
-/// A part goes, in the order of Part but for the moments first and once more before further bounces, if the bound of
-/// EffectBounds leaves the sum of all that is dropped at kDroppedShare of the tolerance or below; each bound is that of
-/// the scene without what was dropped before, so that the sum bounds the whole change; but for the moments a part's
-/// bound in the whole scene counts too. A part that adds exactly nothing goes at no cost: the moments where emission
-/// and surroundings have one temperature, for instance. Model choices (distribution, masking, k) and the diffuse part
-/// never go. `keep_all` keeps everything that the scene has.
+/// A part is dropped if the bound of EffectBounds leaves the sum of all dropped parts at kDroppedShare of the tolerance
+/// or below. The parts are tried in the order of Part, except the moments, which are tried first and once more before
+/// further bounces. Each bound is that of the scene without the parts dropped before, so that the sum bounds the whole
+/// change; except for the moments, a part's bound in the whole scene counts too. A part that contributes exactly
+/// nothing is dropped at no cost: the moments where emission and surroundings have one temperature, for instance. Model
+/// choices (distribution, masking, k) and the diffuse part are never dropped. `keep_all` keeps everything that the
+/// scene has.
 EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, bool keep_all);
 
-/// What a run that computes `kept` needs and gives.
+/// The plan of a run that computes `kept`: its needs and its results.
 EffectPlan plan_to_keep(const SceneValues& scene, const KeptEffects& kept);
 
-/// Nothing left out: what `plan_effects` says with `keep_all`.
+/// The plan that drops nothing, as `plan_effects` returns it with `keep_all`.
 EffectPlan keep_everything(const SceneValues& scene);
 
-/// Whether a run knows the emissivities: with an emission, unless they need moments that are left out.
+/// True if a run gives the emissivities: with an emission, unless they need moments that are dropped.
 bool gives_emissivity(const SceneValues& scene, const EffectPlan& plan);
 
-/// What a run has to compute.
+/// Quantities that a run has to compute.
 struct Needs {
   bool moments = false;
   bool beams = false;
 };
 
-/// What the run would have to compute if one more part were not there.
+/// Quantities that the run would have to compute without one more part.
 Needs needs_without(const SceneValues& scene, const EffectPlan& plan, Part part);
 
 enum class EffectState {
   kAbsent,     ///< the scene does not ask for it
   kKept,       ///< computed
-  kDropped,    ///< left out: a bound says that it cannot be seen
+  kDropped,    ///< left out: a bound shows that its change is negligible
   kNotNeeded,  ///< a choice of the model that nothing kept depends on
 };
 
@@ -73,18 +74,18 @@ struct EffectRow {
   const char* name = "";
   EffectState state = EffectState::kKept;
   std::string reason = {};
-  std::string needs = {};                ///< what computing it takes; empty when it is not kept
-  std::optional<Part> part = {};         ///< what the sums lose with it; none for model choices
+  std::string needs = {};                ///< quantities that it requires; empty when it is not kept
+  std::optional<Part> part = {};         ///< the part of the sums that it is; none for model choices
   std::optional<double> bound = {};      ///< of a dropped one: of the change of (Q/I, U/I) without it
   std::optional<double> influence = {};  ///< of a kept one: estimate of that change
 };
 
-/// All effects that there are, in the order of the scene file.
+/// All effects, in the order of the scene file.
 std::vector<EffectRow> effect_rows(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
 
 const char* state_name(EffectState state);
 
-/// One line for reports and table attributes: what is kept, what is dropped and why.
+/// One line for reports and table attributes: the effects that are kept, those that are dropped, and the reasons.
 std::string effects_text(const std::vector<EffectRow>& rows, const EffectPlan& plan);
 
 }  // namespace dolp

@@ -36,7 +36,7 @@ constexpr double kGrazingCosine = 1e-9;
 constexpr double kSmoothM = 0.05;
 
 // Where the mean slope is about to diverge (smith, q near 3/2), G falls within 2q - 3 of the normal, which no rule
-// sees.
+// resolves.
 constexpr double kDivergingSlope = 0.06;
 
 double roundings(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape,
@@ -114,12 +114,12 @@ constexpr double kTablePairFactor = 8.0;
 constexpr double kGroovePairFactor = 10.0;  // beams of many bounces end at kinks that are not split
 constexpr double kCriticalFactor = 2.0;     // roots beside the critical line, which lies where rounding leaves it
 
-// Two rules of few nodes may agree by chance: none is taken to be better than this share of the tolerance it is made
+// Two rules of few nodes may agree by chance: no rule counts as better than this share of the tolerance that it is made
 // for.
 constexpr double kLeastShareOfTolerance = 0.1;
 
-// Upper bound of what is left of the light that has so many bounces with cos(beta) >= a/2, a its length across the
-// groove. a is at least `level` but for the azimuths with sin(theta) |cos(phi)| < sqrt(level^2 - c^2), which take at
+// Upper bound of the light left after `bounces` bounces with cos(beta) >= a/2, a the length of its direction across the
+// groove. a is at least `level` except for the azimuths with sin(theta) |cos(phi)| < sqrt(level^2 - c^2), which take at
 // most twice their share. `most` is left in any case.
 double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double bounces, double most) {
   double least = most;
@@ -128,15 +128,15 @@ double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index
     const double missed = along <= 0.0 ? 0.0 : along < theta.s ? 4.0 / pi * std::asin(along / theta.s) : 1.0;
     const double reflected = std::pow(reflectance_s(index, 0.5 * std::max(level, theta.c)), bounces);
     least = std::min(least, most * missed + reflected);
-    if (reflected >= least) break;  // and the more so at lower levels
+    if (reflected >= least) break;  // and lower levels reflect more
   }
   return least;
 }
 
-// Upper bound of what the facets beyond the cut reflect of their light. Those whose ray leaves after one bounce have
-// cos(theta_r) > 0, which means cos(beta) > c sqrt(1 + t^2) / 2, and R_s, which falls with cos(beta), is no less than
-// M00. In grooves the bounces of a ray lie at psi + gamma, psi + 3 gamma ... up to pi - psi, at least slope min(pi/3,
-// pi/2 - theta) - 1 of them with cos(beta) >= a/2.
+// Upper bound of the share of their light that the facets beyond the cut reflect. Those whose ray leaves after one
+// bounce have cos(theta_r) > 0, which means cos(beta) > c sqrt(1 + t^2) / 2, and R_s, which falls with cos(beta), is no
+// less than M00. In grooves the bounces of a ray lie at psi + gamma, psi + 3 gamma ... up to pi - psi, at least slope
+// min(pi/3, pi/2 - theta) - 1 of them with cos(beta) >= a/2.
 double steep_reflectance(const KernelData& data, const kernel::IndexNode& index, const kernel::ThetaNode& theta,
                          const kernel::ShapeNode& shape) {
   if (data.scattering == Scattering::kSingle) {
@@ -147,20 +147,21 @@ double steep_reflectance(const KernelData& data, const kernel::IndexNode& index,
   return left_after(theta, index, std::max(std::min(pi / 3.0, elevation) * slope - 1.0, 0.0), 1.0);
 }
 
-// Rounding in grooves, in units of the roundoff and of the cosine: the last bounces may be grazing, where all that
-// little reflects does.
+// Rounding in grooves, in units of the roundoff and of the cosine: the last bounces may be grazing, where even
+// weak reflectors reflect everything.
 constexpr double kGrooveRoundings = 4.0;
 
-// What taking many bounces in a groove as one changes, over the cosine and the share of the grooves it is done in (test
-// GrooveText): most where the best of conductors reflect very often.
+// Error of taking many bounces in a groove as one, over the cosine and the share of these grooves (test GrooveText). It
+// is largest for the best conductors, where light reflects very often.
 constexpr double kManyBouncesError = 1e-3;
 constexpr double kVeryManyBounces = 1024.0;
 constexpr double kVeryManyBouncesError = 1e-2;
 constexpr double kNotGrazing = 0.6;  // share of a ray's bounces with cos(beta) >= a/2, at least
 
-// `reflected` is what these grooves were found to reflect. Taking bounces as one changes the logarithm of what is left
-// by less than a hundredth: what is found to be little is little. Under total reflection bounces that lose nothing may
-// be taken as one with some that do. `least` is too little to matter. Beyond DOLP_LAST_BOUNCES nothing counts as left.
+// `reflected` is the computed reflection of these grooves. Taking bounces as one changes the logarithm of the light
+// left by less than a hundredth, so that a small computed value is small in truth. Under total reflection, bounces
+// without loss may be taken as one with bounces that lose light. Light below `least` is negligible. Beyond
+// DOLP_LAST_BOUNCES no light counts as left.
 double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
                           const kernel::ShapeNode& shape, double reflected, double least) {
   const auto beyond = [&](double bounces, double most) {
@@ -210,7 +211,7 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   moments.albedo = node.albedo;
   moments.deficit = node.deficit;
   const double pair = pair_factor(data, index);
-  const double r_i_scale = std::abs(node.r_i);  // a rule that fails can make it negative
+  const double r_i_scale = std::abs(node.r_i);  // a rule that does not converge can make it negative
   const double deficit_scale = node.deficit + 2.0 * node.behind;
   const double least = kLeastShareOfTolerance * data.tolerance;
   moments.r_i_error =
@@ -219,7 +220,7 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   const double largest_difference =
       std::max({node.reflected_difference, node.albedo_difference, node.deficit_difference});
   moments.albedo_error = pair * largest_difference + (least + rounding + masking) * std::abs(node.albedo) + cut;
-  // Beyond the critical angle the deficit ends where r_i goes on.
+  // Beyond the critical angle the absorbed part ends while r_i continues.
   const double deficit_terms =
       std::max(std::abs(deficit_scale), index.critical_cos > 0.0 ? std::abs(node.albedo) : 0.0);
   moments.deficit_error = pair * node.deficit_difference + (least + rounding) * deficit_terms +
@@ -235,7 +236,7 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
     moments.direct_i_error = pair * node.direct_difference + (least + rounding + masking) * theta.c + cut;
     moments.direct_q_error = moments.direct_i_error;
   }
-  // r_i + deficit = cos(theta): the better known of the two gives the other. A groove absorbs no less than nothing.
+  // r_i + deficit = cos(theta): the more accurate of the two gives the other. A groove never absorbs less than 0.
   const double cosine = theta.c;
   const bool gives_deficit = !is_multiple || moments.r_i < cosine;
   if (moments.deficit_error > moments.r_i_error && gives_deficit) {

@@ -17,10 +17,10 @@ using std::numbers::pi;
 using Complex = std::complex<double>;
 
 constexpr int kMostBounces = 2000;
-constexpr double kNothing = 1e-14;        // of what the bounces before added
+constexpr double kNothing = 1e-14;        // relative to the contribution of the bounces before
 constexpr double kAngleRoundings = 16.0;  // of the angles, relative to |h|
 
-/// Two beams as a groove sees them.
+/// Two beams in the frame of a groove.
 struct Across {
   double a = 0.0;      ///< length of the ray across the groove
   double psi_i = 0.0;  ///< zeniths there, toward u

@@ -1,4 +1,4 @@
-// What bounces after the first add to the pBRDF of V-grooves, in double.
+// Contribution of the bounces after the first to the pBRDF of V-grooves, in double.
 #pragma once
 
 #include "model/scattering.hpp"
@@ -14,8 +14,8 @@ namespace dolp {
 ///   f^(k) cos(theta_i) cos(theta_r) = D sin(alpha) a ds_k M / (2 k |h|),
 /// a ds_k being the width of the beam of k bounces and M their Mueller matrix (shaders/physics/README.md, section 3).
 /// Domain: masking v-cavity. NaN where h = 0, where the beams mirror each other: there grooves of all azimuths reflect.
-/// Errors: of rounding, and where theta_i is next to theta_r of the bounces beyond the last that is followed, in
-/// `error`.
+/// Errors: `error` contains the rounding and, where theta_i is next to theta_r, the bounces beyond the last one
+/// followed.
 void add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, const ScatteringEntry& entry);
 
 }  // namespace dolp

@@ -13,7 +13,7 @@ struct DoubleAngle {
   double sin = 0.0;
 };
 
-// (cos 2 eta, sin 2 eta) of the direction (x, y); eta = 0 where there is none.
+// (cos 2 eta, sin 2 eta) of the direction (x, y); eta = 0 where it is undefined.
 DoubleAngle double_angle(double x, double y) {
   const double length = std::max(std::abs(x), std::abs(y));
   if (length == 0.0) return {};
@@ -22,7 +22,7 @@ DoubleAngle double_angle(double x, double y) {
   return {(u - v) * (u + v) / (u * u + v * v), 2.0 * u * v / (u * u + v * v)};
 }
 
-// Of the mean of two zeniths; near 90 degrees their sum would lose the digits that the elevations have.
+// Cosine and sine of the mean of two zeniths; near 90 degrees their sum would lose digits of the elevations.
 CosSin mean_zenith(double theta_i_deg, double theta_r_deg) {
   if (theta_i_deg + theta_r_deg <= 90.0) return cos_sin_deg(0.5 * (theta_i_deg + theta_r_deg));
   const CosSin elevation = cos_sin_deg(0.5 * ((90.0 - theta_i_deg) + (90.0 - theta_r_deg)));
@@ -55,7 +55,7 @@ kernel::GeometryNode geometry_node(double theta_i_deg, double theta_r_deg, doubl
   node.cos_beta = 0.5 * std::sqrt(height_sum * height_sum + flat_sum);
   node.sin2_beta = 0.25 * (cos_difference * cos_difference + flat_difference);
 
-  // Of cos(dphi) = 1 - 2 sin^2(dphi/2) = 2 cos^2(dphi/2) - 1 the form that leaves the smaller correction.
+  // Uses the form of cos(dphi) = 1 - 2 sin^2(dphi/2) = 2 cos^2(dphi/2) - 1 with the smaller correction.
   const bool forward = std::abs(half.cos) < std::abs(half.sin);
   const double sin_sum = 2.0 * mean.sin * mean.cos;
   const double sin_of_difference = 2.0 * difference.sin * difference.cos;

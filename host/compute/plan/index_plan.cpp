@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kIndexNodeTolerance = 0.5;  // of the request's tolerance: bounds grow by the weights
 
-/// What is wanted of the nodes: of the basis what any index that it reaches wants.
+/// Flags of the wanted entries of the nodes; a basis node is wanted where any index combined from the basis is wanted.
 std::vector<char> wanted_of_nodes(const MomentsRequest& request, const IndexPlan& plan) {
   const std::size_t shapes = request.sigma.size() * request.q.size();
   const std::size_t of_basis = request.basis->indices().size();
@@ -61,7 +61,7 @@ void combine(const IndexPlan& plan, const IndexPlan::Source& source, double cosi
   const auto& [mean, difference, mean_error, difference_error] = *source.weights;
   const double evaluations_share = 1.0 / static_cast<double>(plan.sources.size());
   for (std::size_t shape = 0; shape < shapes; ++shape) {
-    // The albedo is that of every index.
+    // The albedo is the same for every index.
     Moments sum;
     sum.albedo = nodes[shape].albedo;
     sum.albedo_error = nodes[shape].albedo_error;

@@ -1,4 +1,4 @@
-// Which indices of a grid are computed, and how the moments of the others are combined from theirs
+// Selects the indices of a grid to compute, and combines the moments of the other indices from them
 // (model/index_basis.hpp).
 #pragma once
 
@@ -11,9 +11,9 @@
 
 namespace dolp {
 
-/// How a grid with a basis is computed. Each entry's part of it follows from the basis and the entry alone.
+/// Plan for a grid with a basis. Each entry's part of it follows from the basis and the entry alone.
 struct IndexPlan {
-  /// Of one index of the request.
+  /// Source of the moments of one index of the request.
   struct Source {
     std::optional<IndexWeights> weights;  ///< of the basis; none: the index is computed by itself,
     std::size_t node = 0;                 ///< as this one of the nodes

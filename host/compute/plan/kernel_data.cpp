@@ -23,7 +23,7 @@ using std::numbers::pi;
 constexpr unsigned kRoots = kRootAbove | kRootBelow;
 constexpr double kNoEnd = 1e30;  // a slope beyond every cut, in place of infinity
 
-constexpr double kCoincident = 1e-9;  // relative distance of breakpoints that are the same but for rounding
+constexpr double kCoincident = 1e-9;  // relative distance of breakpoints that differ only by rounding
 
 // Share of the tolerance that the slopes beyond the cut may carry.
 constexpr double kCutShare = 0.01;
@@ -43,12 +43,12 @@ constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // the same of groov
 constexpr double kLongWay = 300.0;  // from a plain breakpoint to a horizon that is worth one, as a factor
 
 // Scale of the masking table, the width of the slope distribution if it can be. The end of the table, 5e8 scales away,
-// must lie far beyond slope 1, where p is a power law, unless the tail there is nothing (q >= kLightTailQ).
+// must lie far beyond slope 1, where p is a power law, unless the tail there is negligible (q >= kLightTailQ).
 constexpr double kSmallestHeavyTableScale = 1e-4;
 constexpr double kLightTailQ = 1.5;
 constexpr double kLargestTableScale = 0.5;
 
-// Bounces of which the critical line splits the slopes.
+// Number of bounces whose critical line splits the slopes.
 constexpr int kCriticalBounces = 3;
 
 struct Breakpoint {
@@ -162,13 +162,13 @@ void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg, i
   for (const double slope : kSteepBreakpoints) points.push_back({slope, 0});
 }
 
-// What makes a direction's pieces, beside the masking.
+// Variant of a direction: determines its pieces together with the masking.
 struct Variant {
   double critical_cos = 0.0;
   bool has_line = false;
 };
 
-// Breakpoints that are one but for rounding, as one with the roots of all.
+// Merges breakpoints that differ only by rounding; the merged one has the roots of all.
 std::vector<Breakpoint> without_coincident(const std::vector<Breakpoint>& points) {
   std::vector<Breakpoint> distinct;
   for (const Breakpoint& point : points) {
@@ -228,7 +228,7 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, const Mom
   return without_coincident(points);
 }
 
-/// What bounds the loops of one piece, beside the orders of its rules.
+/// Loop bounds of one piece, besides the orders of its rules.
 struct Loops {
   double arcs = 1.0;   ///< of a slope
   double turns = 0.0;  ///< all bounces: of an azimuth
@@ -240,8 +240,8 @@ Loops single_loops(const KernelData& data) {
   return {.arcs = arcs};
 }
 
-// Loop turns of a ray that bounces so often: one for each bounce, or for those that next_bounces of groove.glsl takes
-// as one, which have a turn of their own.
+// Loop iterations of a ray with `bounces` bounces: one for each bounce, or for each group of bounces that next_bounces
+// of groove.glsl takes as one.
 double turns_of(double bounces) {
   double turns = 2.0;
   double taken = 1.0;
@@ -257,7 +257,8 @@ double turns_of(double bounces) {
   return turns;
 }
 
-// Of a piece from slope `start` to `end`, to pi / (2 gamma) bounces and more. Steep grooves have no lines below gamma.
+// Loop bounds of a piece from slope `start` to `end`, with pi / (2 gamma) bounces and more. Steep grooves have no lines
+// below gamma.
 Loops groove_loops(const KernelData& data, double start, double end) {
   const double most = pi / (2.0 * std::atan(1.0 / end));
   const double splits = data.rule.split_bounces;
@@ -281,8 +282,8 @@ constexpr double kMostArcs = 2.0 * DOLP_MAX_ARCS;
 constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // of a groove, to find its lines
 
 // Bound of the loop iterations of one invocation with everything at its most nodes: of one piece, two rules, slopes,
-// arcs and azimuths, or of one slope of a profile, arcs, azimuths and bounces. No bound on what an entry does is
-// enough, because invocations that run in lockstep wait for each other.
+// arcs and azimuths, or of one slope of a profile, arcs, azimuths and bounces. A bound for each entry
+// alone would not suffice, because invocations that run in lockstep wait for each other.
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
   if (!data.needs_masking_table()) return kTurnsOfSlope + loops.arcs * (2.0 + most_nodes * (1.0 + loops.turns));
   const auto of_rule = [&](double share) {
@@ -291,7 +292,7 @@ double iterations(const KernelData& data, const Loops& loops, double most_nodes)
   return of_rule(1.0) + of_rule(kCoarseShare + 1.0 / data.rule_order);
 }
 
-// The most nodes of an arc; the error estimate shows what that costs.
+// Upper limit of the nodes of an arc; the error estimate includes the effect of the limit.
 std::uint8_t most_nodes(const KernelData& data, const Loops& loops) {
   int most = data.rule_order;
   while (iterations(data, loops, most) > kMostIterations) --most;

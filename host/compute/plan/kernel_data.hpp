@@ -1,4 +1,4 @@
-// Everything the kernel reads, computed by the host in double; the evaluators narrow it to the precision they run in.
+// All inputs of the kernel, computed by the host in double; the evaluators narrow it to the precision they run in.
 #pragma once
 
 #include <array>
@@ -18,18 +18,18 @@ using real = double;
 inline constexpr unsigned kRootAbove = 1;  ///< a square root just above a breakpoint
 inline constexpr unsigned kRootBelow = 2;  ///< just below
 
-/// The pieces of the slope axis of one direction, beside what ThetaNode says of them.
+/// The pieces of the slope axis of one direction, in addition to the data in ThetaNode.
 struct Pieces {
   std::uint32_t count = 0;
   std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};  ///< of each end: bits kRootAbove, kRootBelow
-  /// Of each piece the most nodes of an arc, which bounds the loop iterations.
+  /// Most nodes of an arc for each piece; they bound the loop iterations.
   std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};
-  /// Of each piece what says whether it may run in lockstep with another within these bounds: equal numbers may.
+  /// Lockstep class of each piece: pieces with equal numbers may run in lockstep within these bounds.
   std::array<std::uint16_t, DOLP_MAX_PIECES> lockstep{};
   bool has_split_line = false;  ///< b = pi/2 of `integral`, or smith's cusp
 };
 
-/// What the kernel reads of one entry: positions in three lists of KernelData.
+/// One entry as the kernel reads it: positions in three lists of KernelData.
 struct MomentsEntry {
   std::uint32_t theta = 0;
   std::uint32_t shape = 0;
@@ -85,22 +85,22 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
 /// The task word of interface.glsl for one piece of a row of `members` entries.
 std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t members);
 
-/// Pieces of the slope axis up to the cut: those that the kernel has to compute, the first always.
+/// Number of pieces of the slope axis up to the cut, which the kernel has to compute; at least the first one.
 std::uint32_t piece_count(const KernelData& data, std::uint32_t theta, const kernel::ShapeNode& shape);
 
-/// The slope of V-grooves in which a vertical ray has so many bounces.
+/// The slope of V-grooves in which a vertical ray has `bounces` bounces.
 double slope_with_bounces(double bounces);
 
-/// Adds what the kernel returned for a piece to what it returned for others.
+/// Adds the kernel's result for a piece to the sum over other pieces.
 void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece);
 
-/// Turns what the kernel returned for one entry into moments with error bounds, `unit_roundoff` being that of the
-/// kernel's precision.
+/// Converts the kernel's result for one entry into moments with error bounds; `unit_roundoff` is that of the kernel's
+/// precision.
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff);
 
-/// Whether the masking table of a shape sees the structure of G at a direction. Where the table is coarser than the
-/// slope distribution, directions whose cot(theta) lies within its first scale see none of it.
+/// True if the masking table of a shape resolves the structure of G at a direction. Where the table is coarser than the
+/// slope distribution, it does not for directions whose cot(theta) lies within its first scale.
 bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta);
 
 /// Upper bound of the loop iterations of one invocation, a piece of any entry of `data`: all its nested loops together.

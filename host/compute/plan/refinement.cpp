@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLeastDoubleTolerance = 1e-15;  // as kLeastFloatTolerance
 
-// A miss by a little asks for more than the little, or the next level may miss too.
+// The next level is tighter than the miss requires; otherwise it may miss the tolerance by a little again.
 constexpr double kSafety = 1.5;
 constexpr double kLeastDecades = 0.5;
 constexpr double kMostDecades = 5.0;
@@ -54,13 +54,13 @@ RefinementLevel check_level(const RefinementLevel& first, std::uint32_t row_widt
 std::optional<RefinementLevel> next_level(const RefinementLevel& last, const PointResult& result,
                                           const Accuracy& accuracy, bool has_double) {
   if ((result.status & kToleranceNotMet) == 0) return std::nullopt;
-  // Outside the domain the DOLP may still have a limit; where it has none, nothing can be done.
+  // Outside the domain the DOLP may still have a limit; where it has none, no level helps.
   const bool is_outside = (result.status & kOutsideModelDomain) != 0;
   if (is_outside && std::isnan(result[Quantity::kErrorEstimate])) return std::nullopt;
   const double rho_error = is_outside ? 0.0 : result[Quantity::kRhoErrorEstimate];
   const double excess =
       std::isnan(rho_error) ? rho_error : std::max(result[Quantity::kErrorEstimate], rho_error) / accuracy.tolerance;
-  // The tighter the last level was already, the larger the step, or an entry that never meets it takes for ever.
+  // The step grows with the tightness of the last level; otherwise entries that do not converge iterate without bound.
   const double so_far = std::log10(accuracy.tolerance / last.tolerance);
   const double least = std::max(kLeastDecades, half_decades(0.5 * so_far));
   const double missed_by = std::isfinite(excess) ? half_decades(std::log10(kSafety * excess)) : kMostDecades;

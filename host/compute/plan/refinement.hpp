@@ -1,4 +1,4 @@
-// With which rule and precision an entry is computed, and with which again where that misses the scene's tolerance.
+// Selects the rule and precision of an entry, and tighter ones where the result misses the scene's tolerance.
 #pragma once
 
 #include <cstdint>
@@ -28,15 +28,15 @@ struct RefinementLevel {
   }
 };
 
-/// The level at which a scene's entries are computed first: float where its rounding leaves room for the tolerance,
-/// unless the scene says otherwise.
+/// The level at which a scene's entries are computed first: float where the tolerance is well above its
+/// rounding, unless the scene sets the precision.
 RefinementLevel first_level(const Accuracy& accuracy, bool has_double);
 
-/// What entries are checked with that `first` computed: a rule of another kind, for a hundredth of the tolerance.
+/// The level that checks entries computed at `first`: a rule of another kind, for a hundredth of the tolerance.
 RefinementLevel check_level(const RefinementLevel& first, std::uint32_t row_width);
 
 /// The next level of an entry, tighter by as many half decades as the result misses the tolerance by, in double once
-/// float cannot do that; none when it meets the tolerance, or nothing better is left. Depends on nothing but its
+/// float cannot do that; none when it meets the tolerance, or no tighter level exists. Depends on nothing but its
 /// arguments.
 std::optional<RefinementLevel> next_level(const RefinementLevel& last, const PointResult& result,
                                           const Accuracy& accuracy, bool has_double);

@@ -9,7 +9,7 @@
 namespace dolp {
 namespace {
 
-// Below it the masking tables of heavy and light tails have scales that no common one serves.
+// Below it the masking tables of heavy and light tails need different scales.
 constexpr double kSmallestSharedM = 1e-3;
 
 // Between the exponents of a chunk, as a factor of q - 1: shapes further apart would want nodes in different places.
@@ -18,23 +18,23 @@ constexpr double kMostSpread = 6.0;
 // Rows are not for requests that would leave this share of the members unused.
 constexpr double kLeastUse = 0.5;
 
-// What a row takes, in units of what each of its members takes at kUsualDigits. Look-ups in masking tables are each
-// member's own.
+// Work of a row, in units of the work of one member at kUsualDigits. Look-ups in masking tables are separate for each
+// member.
 struct RowWork {
   double shared = 16.0;     // by the members
-  double kernel = 40000.0;  // to make the kernel, for each member that it is made for
+  double kernel = 40000.0;  // compilation of the kernel, for each member of its width
 };
 constexpr RowWork kWithTables = {.shared = 5.0, .kernel = 7000.0};
 constexpr double kUsualDigits = 6.0;
 
-// Whether shape `next` may join the chunk that begins with shape `first`.
+// True if shape `next` may join the chunk that begins with shape `first`.
 bool belongs(const KernelData& data, std::uint32_t first, std::uint32_t next) {
   const kernel::ShapeNode& a = data.shapes[first];
   return data.distribution == Distribution::kCauchy && a.m >= kSmallestSharedM &&
          data.shapes[next].q_minus_1 <= kMostSpread * a.q_minus_1 && data.needs_line[first] == data.needs_line[next];
 }
 
-// Gives the shapes of a chunk what the kernel takes from the first of them.
+// Copies the values that the kernel reads from the first shape of a chunk to all its shapes.
 void unite(std::span<kernel::ShapeNode> chunk) {
   kernel::ShapeNode common = chunk.front();
   for (const kernel::ShapeNode& shape : chunk) {
@@ -61,8 +61,8 @@ void add_chunk(Rows& rows, const KernelData& data, std::span<const std::uint32_t
   unite(std::span(rows.shapes).subspan(first));
 }
 
-// The chunks of a grid: sigma by sigma along its ascending q, whatever is wanted of it, so that an entry keeps its
-// neighbours.
+// The chunks of a grid: sigma by sigma along its ascending q, independent of the wanted entries, so that an entry keeps
+// its neighbours.
 void add_grid_chunks(Rows& rows, const MomentsRequest& request, const KernelData& data) {
   std::vector<std::uint32_t> ascending(request.q.size());
   std::iota(ascending.begin(), ascending.end(), 0U);

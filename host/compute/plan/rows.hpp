@@ -1,5 +1,5 @@
-// Which entries one invocation of the kernel computes together: those of a grid that differ in the exponent q alone
-// share the nodes, the facets and their reflection (Row of shaders/physics/row.glsl).
+// Groups the entries that one invocation of the kernel computes together: entries of a grid that differ only in the
+// exponent q share the nodes, the facets and their reflection (Row of shaders/physics/row.glsl).
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace dolp {
 
-/// Members of a row that the kernel is compiled for.
+/// Row widths for which the kernel is compiled.
 inline constexpr std::array<std::uint32_t, 4> kRowWidths = {1, 4, 8, 16};
 
 /// Consecutive shapes of one sigma, in ascending order of q, that share the nodes; or the shape of points.
@@ -34,7 +34,7 @@ struct RowPiece {
   std::uint32_t piece = 0;  ///< of the slope axis
 };
 
-/// The rows of a request, without those of which nothing is wanted.
+/// The rows of a request that have a wanted entry.
 struct Rows {
   std::uint32_t width = 1;                ///< most members of a row
   std::vector<kernel::ShapeNode> shapes;  ///< ordered by chunk; scale, cut and cusp are those of the chunk
@@ -48,13 +48,13 @@ struct Rows {
   }
 };
 
-/// Rows of the request's width; of 0, that which takes the least work, of which making the kernel is a part. The
-/// neighbours of an entry follow from the shapes and the run's size, not from directions, indices and what is wanted.
+/// Rows of the request's width; for width 0, the width with the least work, compilation of the kernel included. The
+/// neighbours of an entry follow from the shapes and the run's size, not from directions, indices and wanted entries.
 Rows rows_of(const MomentsRequest& request, const KernelData& data);
 /// Rows of another width.
 Rows rows_of(const MomentsRequest& request, const KernelData& data, std::uint32_t width);
 
-/// The invocations of rows first, first + 1, ...: neighbours differ in the direction, so that they do the same work.
+/// The invocations of rows first, first + 1, ...: neighbours differ only in the direction, so that their work is equal.
 std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count);
 
 }  // namespace dolp

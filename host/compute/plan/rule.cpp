@@ -53,15 +53,14 @@ constexpr double kTightLineSigma = 0.3;
 constexpr double kTightDigits = 8.0;
 constexpr double kGaussianCuspPower = 4.0;  // of the cauchy with q = 2, which it resembles
 
-// Largest orders: what few digits can use, and what each digit beyond asks for.
+// Largest orders: for few digits, and in addition for each digit beyond.
 constexpr int kPlainOrder = 64;
 constexpr double kOrderPerDigit = 8.0;
 
-// The kinks at which the beams of a groove end matter the less the more bounces they have: each split is worth about so
-// many digits.
+// Kinks where the beams of a groove end matter less after more bounces: each split gains about this many digits.
 constexpr double kDigitsPerSplit = 2.0;
 
-// Over the tolerance: far below what the darkest surfaces reflect.
+// Relative to the tolerance: far below the reflection of the darkest surfaces.
 constexpr double kDimmest = 1e-10;
 
 constexpr double kNone = -1000.0;
@@ -72,8 +71,8 @@ double decades_per_node(const SlopeShape& shape, double digits) {
   return std::log10(std::max(kNodesPerDigit * digits / width, 1.5));
 }
 
-// log10 of what is left of smith's cusp, L = C (m tan(theta_r))^(2q-2) and more beside theta_r = 0, where rules do not
-// split: a point of the slope plane, which n nodes each way see to n^-2q.
+// log10 of the remaining part of smith's cusp, L = C (m tan(theta_r))^(2q-2) and more beside theta_r = 0, where rules
+// do not split: a point of the slope plane, which n nodes in each dimension resolve to n^-2q.
 double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double digits) {
   const double per_node = decades_per_node(shape, digits);
   if (distribution == Distribution::kGaussian) {

@@ -1,4 +1,4 @@
-// How many nodes the rules of the kernel get for a tolerance.
+// Numbers of nodes in the rules of the kernel for a tolerance.
 #pragma once
 
 #include "plan/kernel_data.hpp"
@@ -9,9 +9,9 @@ namespace dolp {
 /// shaders/physics/orders.glsl.
 inline constexpr double kCoarseShare = 0.8;
 
-/// What is fitted of a masking's rules: everything else follows from where the integrand's singularities lie
-/// (shaders/physics/orders.glsl). `dolp-calibrate fit` finds the numbers: the least work on random entries, entries
-/// that have to be computed again included.
+/// Fitted numbers of a masking's rules; all other numbers follow from the places of the integrand's singularities
+/// (shaders/physics/orders.glsl). `dolp-calibrate fit` finds the numbers with the least work on random entries,
+/// repeated computations included.
 struct RuleModel {
   double margin_digits = 0.0;  ///< digits of the coarser rule beyond the tolerance
   double t_nodes = 0.0;        ///< kernel::RuleNode, field by field
@@ -25,7 +25,8 @@ struct RuleModel {
 /// The fitted numbers of a masking, or of all bounces in its grooves.
 const RuleModel& rule_model(Masking masking, Scattering scattering = Scattering::kSingle);
 
-/// Digits that a tolerance asks of the finer rule: the coarser one must meet it, because their distance is the bound.
+/// Digits that a tolerance requires of the finer rule: the coarser one must meet it, because their distance is the
+/// bound.
 double rule_digits(const RuleModel& model, double tolerance);
 
 /// The kernel's rule for a tolerance.
@@ -37,12 +38,12 @@ int split_bounces(double digits);
 /// The largest order of the rules for a number of digits.
 int largest_order(double digits);
 
-/// Whether a slope distribution needs the line b = pi/2 of `integral`, or smith's cusp, as a split: whether without one
-/// rules of so many digits would be wrong by a share of the tolerance.
+/// True if a slope distribution needs the line b = pi/2 of `integral`, or smith's cusp, as a split: without the split,
+/// the error of rules of `digits` digits would be a share of the tolerance.
 bool needs_line(Distribution distribution, Masking masking, const SlopeShape& shape, double digits, double tolerance);
 
-/// log10 of what smith's cusp at theta_r = 0 costs rules that do not split there, as a share of L; below -100 where it
-/// is none.
+/// log10 of the error by smith's cusp at theta_r = 0 in rules that do not split there, as a share of L; below -100
+/// where there is no cusp.
 double cusp_digits(Distribution distribution, Masking masking, const SlopeShape& shape, double digits);
 
 }  // namespace dolp

@@ -17,7 +17,7 @@ using Nodes = std::vector<std::array<double, 2>>;
 
 using Rule = std::vector<std::array<double, 2>>;
 
-// Gauss rules by order; those that are missing are made on all cores.
+// Gauss rules by order; missing rules are computed on all cores.
 class Rules {
  public:
   void require(const std::vector<int>& orders) {

@@ -10,14 +10,14 @@
 namespace dolp {
 namespace {
 
-constexpr double kLeastNodes = 6.0;      // how the coefficients of fewer fall says nothing
-constexpr double kFirstNodes = 3.0;      // whatever the digits
+constexpr double kLeastNodes = 6.0;      // fewer coefficients show no reliable decay
+constexpr double kFirstNodes = 3.0;      // for any number of digits
 constexpr double kLeastAxisGain = 1.25;  // values for each node
 constexpr double kGrazing_deg = 89.9;
 
 bool is_grazing(double theta_deg) { return theta_deg > kGrazing_deg; }
 
-// Without shadows that bound the projection of the facets at grazing incidence.
+// True for maskings without shadows that bound the projection of the facets at grazing incidence.
 bool sees_slopes(Masking masking) { return masking == Masking::kNone || masking == Masking::kIntegral; }
 
 double nodes_needed(const ShapeParameter& parameter, double half_length, double digits) {

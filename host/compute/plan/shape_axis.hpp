@@ -12,7 +12,7 @@ namespace dolp {
 /// The moments are analytic in ln(x - origin) within `strip` of the real axis, x being sigma or q.
 ///
 /// For sigma: with the slope in units of m, sigma enters P(u) = (1 + u^2)^-q alone, analytic where |Im ln m| < pi/2;
-/// toward there a power of q grows, so that less is worth relying on. For q: P is analytic for Re q > 1; the mean
+/// toward there a power of q grows, so that a smaller strip is used. For q: P is analytic for Re q > 1; the mean
 /// slope, on which smith masking depends and, without shadows that bound it, the projection of the facets at grazing
 /// incidence, for Re q > 3/2 (shaders/physics/README.md, section 2). A polynomial of n nodes in the logarithm then is
 /// wrong by rho^-n, rho = exp(asinh(strip / half length)).
@@ -23,14 +23,14 @@ struct ShapeParameter {
 ShapeParameter sigma_parameter(Distribution distribution);
 /// All of the request's directions are grazing, or none is.
 ShapeParameter q_parameter(const MomentsRequest& request);
-/// The request in parts of which each has directions of one parameter, in the order of the request: usually one, and
-/// one of points, between which nothing is interpolated.
+/// Splits the request into parts whose directions have one parameter each, in the order of the request. Usually there
+/// is one part; a request for points, between which nothing is interpolated, is always one part.
 std::vector<MomentsRequest> with_one_parameter(const MomentsRequest& request);
 
-/// Values of a parameter, and the nodes that stand for them.
+/// Values of a parameter, and the nodes from which they are interpolated.
 struct ShapeAxis {
-  std::vector<double> nodes;     ///< the values themselves where nothing is to be gained
-  Eigen::MatrixXd cardinal;      ///< values x nodes: what the moments at the nodes are multiplied with
+  std::vector<double> nodes;     ///< the values themselves where interpolation gains nothing
+  Eigen::MatrixXd cardinal;      ///< values x nodes: weights of the moments at the nodes
   Eigen::MatrixXd coefficients;  ///< nodes x nodes: from values to Chebyshev coefficients; empty without interpolation
   bool is_interpolated() const { return coefficients.size() > 0; }
 };

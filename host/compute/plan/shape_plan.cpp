@@ -43,7 +43,7 @@ void store(const Values& values, double Moments::*quantity, std::span<Moments> m
   for (std::size_t i = 0; i < moments.size(); ++i) moments[i].*quantity = values.data()[i];
 }
 
-/// Whether of each direction and index all is wanted, or nothing.
+/// True if for each direction and index all entries are wanted, or none.
 bool wants_whole_directions(const MomentsRequest& request) {
   if (request.layout != MomentsRequest::Layout::kGrid) return false;
   const std::size_t shapes = request.sigma.size() * request.q.size();

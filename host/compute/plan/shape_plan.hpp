@@ -1,4 +1,4 @@
-// Which moments of a grid are computed, and which are interpolated between them.
+// Selects the moments of a grid to compute; the others are interpolated between them.
 //
 // The moments of one direction and one index are analytic in ln(sigma) and ln(q - 1), so that those of many slope
 // distributions follow from a few Chebyshev nodes, computed to a tolerance of their own.
@@ -14,7 +14,7 @@
 
 namespace dolp {
 
-/// How a grid is computed. Follows from the request alone.
+/// Plan for a grid. It follows from the request alone.
 struct ShapePlan {
   ShapeAxis sigma;
   ShapeAxis q;
@@ -27,12 +27,12 @@ struct ShapePlan {
 /// computed by itself, as where only some entries of a direction and index are wanted.
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request);
 
-/// Which of a grid's directions the plans of its parts interpolate, or its basis of indices combines.
+/// Flags of the grid's directions that the plans of its parts interpolate, or its basis of indices combines.
 std::vector<char> interpolated_directions(const MomentsRequest& request);
 
 /// The moments of one direction and index at the request's sigma x q, from those at its nodes. Bounds are those of the
-/// nodes, weighted with the interpolant's own weights, and what the last Chebyshev coefficients say of the
-/// interpolation.
+/// nodes, weighted with the interpolant's own weights, plus an interpolation error estimated
+/// from the last Chebyshev coefficients.
 void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::span<Moments> moments);
 
 }  // namespace dolp

@@ -14,10 +14,10 @@ Axes axes_of(std::vector<double> theta_deg, std::vector<double> sigma, std::vect
 /// The values first[axis], ..., first[axis] + count[axis] - 1 of each axis that is not empty.
 Axes part_of(const Axes& axes, const PerAxis& first, const PerAxis& count);
 
-/// Where the entry at a position of a table is on each axis.
+/// Index on each axis of the entry at a position of a table.
 PerAxis place_of(std::size_t position, const PerAxis& counts);
 
-/// Values on each axis, of one that is empty 1; and their product.
+/// Number of values on each axis, 1 for an empty axis; and the product of these numbers.
 PerAxis counts_of(const Axes& axes);
 std::size_t size_of(const PerAxis& counts);
 

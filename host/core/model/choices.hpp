@@ -1,4 +1,4 @@
-// What a scene chooses between, and the words for it that scene files, reports and case files write.
+// The choices of a scene, and their names in scene files, reports and case files.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace dolp {
 
 enum class Distribution : std::uint32_t { kCauchy = 0, kGaussian = 1 };
 enum class Masking : std::uint32_t { kNone = 0, kVCavity = 1, kIntegral = 2, kSmith = 3 };
-/// How often light is followed from facet to facet: once, or through all bounces in a V-groove.
+/// Number of bounces that the light is followed for: one, or all bounces in a V-groove.
 enum class Scattering : std::uint32_t { kSingle = 0, kMultiple = 1 };
 enum class EmissionModel { kMoments, kFresnel, kDirect };
 enum class Mode { kHemispherical, kBistatic };

@@ -1,4 +1,4 @@
-// What one direction and one slope distribution need, decided in one place.
+// Treatment of one direction and one slope distribution, decided in one place.
 #pragma once
 
 #include "model/choices.hpp"
@@ -6,18 +6,18 @@
 
 namespace dolp {
 
-/// How moments come about.
+/// Method that gives the moments.
 enum class Treatment {
   kIntegrated,      ///< by an evaluator
   kMirror,          ///< sigma so small that the slopes' density overflows a float: R at the direction itself
   kDivergentLimit,  ///< at 90 degrees those of a heavy tail diverge, and only their quotients have a limit
 };
 
-/// A direction as its moments see it.
+/// A direction with the treatment of its moments.
 struct Direction {
   double theta_deg = 0.0;
   double cos_theta = 1.0;  ///< that the moments are computed with: exact but for limits at 90 degrees
-  double used_deg = 0.0;   ///< what an evaluator is asked for: `theta_deg`, or just before 90 degrees for a limit there
+  double used_deg = 0.0;   ///< passed to an evaluator: `theta_deg`, or just before 90 degrees for a limit there
   Treatment treatment = Treatment::kIntegrated;
 };
 
@@ -27,10 +27,11 @@ Direction direction_of(Distribution distribution, Masking masking, double theta_
 
 bool is_mirror(const SlopeShape& shape);
 
-/// Whether a masking lets each direction see facets of its own projected area in all: direct emission needs it.
+/// True if the facets visible under a masking have the projected area of the surface in every direction: direct
+/// emission needs it.
 inline bool has_direct_emission(Masking masking) { return masking == Masking::kVCavity || masking == Masking::kSmith; }
 
-/// Whether rho and f of the specular part have a limit at 90 degrees.
+/// True if rho and f of the specular part have a limit at 90 degrees.
 inline bool has_grazing_limit(Masking masking) { return masking == Masking::kVCavity || masking == Masking::kSmith; }
 
 /// The zenith itself, or just before 90 degrees for a limit there, which rho and f approach like the cosine.

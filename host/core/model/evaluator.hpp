@@ -1,4 +1,4 @@
-// What computes moments and pBRDFs, whatever it runs on.
+// Interface of the evaluators, which compute moments and pBRDFs on any device.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace dolp {
 
-/// What ran, for the report.
+/// Evaluator, device and cost of a run, for the report.
 struct EvaluationReport {
   std::string evaluator;  ///< vulkan | cpu | reference
   std::string device;     ///< device name, or the processor
   std::string driver;     ///< driver name and version; empty for cpu and reference
   std::string precision;  ///< float | double | float and double, as used
   std::uint64_t dispatches = 0;
-  std::uint32_t devices_lost = 0;  ///< and replaced by a new one
+  std::uint32_t devices_lost = 0;  ///< devices lost and replaced by a new one
   std::uint32_t row_width = 1;  ///< entries that an invocation computed together at last
   double evaluations = 0.0;
   double kernel_s = 0.0;  ///< time on the device (timestamps) and of the host's sums, or of the loop on the CPU
@@ -38,7 +38,8 @@ inline void note_precision(std::string& used, bool in_double) {
 class ScatteringEvaluator {
  public:
   virtual ~ScatteringEvaluator() = default;
-  /// Says that `scatter` is to be called with this request, after another that may take its time meanwhile.
+  /// Announces a later call of `scatter` with this request; preparation may run in parallel with other calls until
+  /// then.
   virtual void prepare(const ScatteringRequest& /*request*/) {}
   virtual std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) = 0;
 };
@@ -48,17 +49,17 @@ class MomentsEvaluator {
  public:
   virtual ~MomentsEvaluator() = default;
   virtual std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) = 0;
-  /// The precision it was made for: that of scenes which leave theirs open. kAuto leaves it open too.
+  /// Default precision, for scenes that leave theirs open. kAuto leaves it open too.
   virtual Precision precision() const { return Precision::kAuto; }
-  /// Whether requests in double are possible.
+  /// True if requests in double are possible.
   virtual bool has_double() const { return true; }
   /// The same evaluator's pBRDFs, which the bistatic mode needs; null when it has none.
   virtual ScatteringEvaluator* scattering() { return nullptr; }
-  /// Of each direction of a grid 1 where evaluate() interpolates between slope distributions; empty where it never does.
+  /// For each direction of a grid 1 where evaluate() interpolates between slope distributions; empty if it never does.
   virtual std::vector<char> interpolated_directions(const MomentsRequest& /*request*/) const { return {}; }
   /// Totals over all calls since clear_report, pBRDFs included.
   virtual EvaluationReport report() const = 0;
-  /// Begins a run of its own: nothing in its report, or in what follows from the report, is of a run before.
+  /// Begins a new run: the report, and all that follows from it, no longer contains earlier runs.
   virtual void clear_report() {}
 };
 

@@ -6,7 +6,7 @@
 namespace dolp {
 
 double gamma_ratio(double x) {
-  // In long double, Boost's own choice, it would be most of what a slope distribution costs the host.
+  // In long double, Boost's default, it would dominate the host's cost of a slope distribution.
   const boost::math::policies::policy<boost::math::policies::promote_double<false>> in_double;
   if (x < 1.0) return boost::math::tgamma_ratio(x + 0.5, x, in_double);
   return boost::math::tgamma_delta_ratio(x + 0.5, -0.5, in_double);

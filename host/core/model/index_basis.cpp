@@ -12,7 +12,7 @@ namespace dolp {
 namespace {
 
 // Curves are compared at cosines that crowd toward grazing incidence, where those of metals bend, and toward normal
-// incidence, as an end needs it between which and the last sample nothing holds the combined curve.
+// incidence, because no sample beyond that end constrains the combined curve.
 constexpr Eigen::Index kSamples = 256;
 constexpr double kFinestCosine = 0.005;
 constexpr double kBetweenSamples = 2.0;  // the largest distance over the largest at the samples
@@ -33,7 +33,7 @@ double cosine_of_sample(Eigen::Index sample) {
   return kFinestCosine * std::sinh(std::sin(0.5 * std::numbers::pi * x) * std::asinh(1.0 / kFinestCosine));
 }
 
-/// Mean and difference of what is absorbed of s and p, which are as far from each other as the reflectances.
+/// Mean and difference of the absorptances of s and p; their distances equal those of the reflectances.
 Curves curves_of(const OpticalConstants& index) {
   Curves curves = {Eigen::VectorXd(kSamples), Eigen::VectorXd(kSamples)};
   for (Eigen::Index i = 0; i < kSamples; ++i) {
@@ -51,13 +51,13 @@ bool is_smooth(const OpticalConstants& index) {
   return std::hypot(std::abs(branch_point.real()) - nearest, branch_point.imag()) >= kNearestBranchPoint;
 }
 
-/// What errors of a curve are relative to.
+/// Reference level of the relative errors of a curve.
 double level_of(const OpticalConstants& index) {
   const SmoothAbsorptance absorbed = smooth_absorptance(index, 1.0);
   return std::min(absorbed.s, 1.0 - absorbed.s);
 }
 
-/// Smooth ones of all over the list, each once.
+/// Indices with smooth curves from the whole list, each once.
 std::vector<OpticalConstants> candidates_of(const std::vector<OpticalConstants>& indices) {
   constexpr double kGoldenRatio = 0.6180339887498949;
   std::vector<OpticalConstants> candidates;
@@ -70,7 +70,8 @@ std::vector<OpticalConstants> candidates_of(const std::vector<OpticalConstants>&
   return candidates;
 }
 
-/// Greedy: each next one is that which those before leave farthest, until all are near or there are `most`.
+/// Greedy selection: each next index is the one farthest from the span of those before, until all are near or there are
+/// `most`.
 std::vector<OpticalConstants> chosen_of(const std::vector<OpticalConstants>& candidates, double tolerance,
                                         std::size_t most) {
   std::vector<OpticalConstants> chosen = {candidates[candidates.size() / 2]};

@@ -18,10 +18,10 @@
 
 namespace dolp {
 
-/// How the moments of an index are combined from those of a basis.
+/// Weights that combine the moments of an index from those of a basis.
 struct IndexWeights {
-  Eigen::VectorXd mean;        ///< of each index of the basis for what follows from (R_s + R_p) / 2; their sum is 1
-  Eigen::VectorXd difference;  ///< for what follows from (R_s - R_p) / 2
+  Eigen::VectorXd mean;        ///< for each basis index, for moments from (R_s + R_p) / 2; their sum is 1
+  Eigen::VectorXd difference;  ///< for moments from (R_s - R_p) / 2
   double mean_error = 0.0;     ///< bound of the distance from the combined (R_s + R_p) / 2, at any angle
   double difference_error = 0.0;
 };
@@ -34,7 +34,7 @@ class IndexBasis {
   static std::shared_ptr<const IndexBasis> of(const std::vector<OpticalConstants>& indices, double tolerance);
 
   const std::vector<OpticalConstants>& indices() const { return indices_; }
-  /// Estimate of how many indices are computed for one of the run: those of the basis, and those beyond its reach.
+  /// Estimate of the share of the run's indices that are computed: those of the basis, and those beyond its reach.
   double computed_share() const { return computed_share_; }
   /// None for an index that the basis does not reach: one whose curve has a kink, as total reflection makes it, or
   /// differs from all of the basis. Follows from the basis and the index alone.

@@ -2,7 +2,7 @@
 
 namespace dolp {
 
-/// Which parts of a scene the radiometry adds up; a part that the scene lacks does not count either way.
+/// The parts of a scene that the radiometry adds up; flags of parts that the scene lacks have no effect.
 struct KeptEffects {
   bool emission = true;
   bool source = true;
@@ -14,7 +14,7 @@ struct KeptEffects {
   friend bool operator==(const KeptEffects&, const KeptEffects&) = default;
 };
 
-/// What dropping effects changes at most, at any entry.
+/// Bound of the change by dropped effects, at any entry.
 struct DropBound {
   double dolp = 0.0;  ///< |change of (Q/I, U/I)|, hence of DOLP
   double rho = 0.0;   ///< |change of rho_I| over rho_I, where rho is given

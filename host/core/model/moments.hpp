@@ -16,10 +16,10 @@ namespace dolp {
 
 class IndexBasis;
 
-/// The tightest tolerance of a rule in float; beyond, rounding drowns it.
+/// The tightest tolerance of a rule in float; rounding dominates tighter ones.
 inline constexpr double kLeastFloatTolerance = 2e-6;
 
-/// What a moment depends on beside the model.
+/// Variables of a moment besides the model.
 struct MomentsPoint {
   double theta_deg = 0.0;
   SlopeShape shape;
@@ -27,8 +27,8 @@ struct MomentsPoint {
   friend bool operator==(const MomentsPoint&, const MomentsPoint&) = default;
 };
 
-/// Where moments are wanted: on the grid theta x index x sigma x q, q fastest, or at points, of which the four lists
-/// have one value each. An entry is its position in that order.
+/// The entries whose moments are wanted: the grid theta x index x sigma x q, q fastest, or points, for which the four
+/// lists have one value each. An entry is its position in that order.
 struct MomentsRequest {
   enum class Layout { kGrid, kList };
 
@@ -48,7 +48,7 @@ struct MomentsRequest {
   std::vector<OpticalConstants> indices;
   std::vector<double> sigma;
   std::vector<double> q;
-  std::vector<char> wanted;  ///< of each entry of a grid; empty: all. The moments of the others mean nothing
+  std::vector<char> wanted;  ///< of each entry of a grid; empty: all. The moments of the others are undefined
 
   std::size_t size() const;
   bool is_wanted(std::size_t entry) const { return wanted.empty() || wanted[entry] != 0; }
@@ -67,7 +67,7 @@ struct Moments {
   double r_q = 0.0;      ///< rho_Q cos(theta), signed
   double albedo = 0.0;   ///< A cos(theta): the same integral with R = 1
   double deficit = 0.0;  ///< cos(theta) - r_i, summed directly: no cancellation where rho_I is near 1
-  /// What facets emit straight to the viewer: eps_I cos(theta) of the direct emission; NaN where it was not wanted.
+  /// Emission of the facets straight to the viewer: eps_I cos(theta) of the direct emission; NaN where not wanted.
   double direct_i = std::numeric_limits<double>::quiet_NaN();
   double direct_q = std::numeric_limits<double>::quiet_NaN();  ///< eps_Q cos(theta); eps_s, eps_p = eps_I +- eps_Q
   // Bounds of the absolute errors of the six, in the same units (quadrature, masking tables and rounding).

@@ -19,10 +19,10 @@ struct BeamAngles {
   double delta_phi_deg = 0.0;
 };
 
-/// Whether there is a facet between the beams: not where both are at 90 degrees.
+/// True if there is a facet between the beams, that is unless both are at 90 degrees.
 inline bool has_facet(const BeamAngles& a) { return a.theta_i_deg < 90.0 || a.theta_r_deg < 90.0; }
 
-/// Whether the facet between the beams lies in the surface's plane, so that a mirror reflects the one into the other.
+/// True if the facet between the beams lies in the surface's plane, so that a mirror reflects one beam into the other.
 inline bool is_specular(const BeamAngles& a) {
   const bool is_forward = std::abs(a.delta_phi_deg) == 180.0;
   return a.theta_i_deg == a.theta_r_deg && (is_forward || a.theta_i_deg == 0.0);

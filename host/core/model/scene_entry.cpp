@@ -34,7 +34,7 @@ SceneEntries with_own_wavelengths(std::vector<SceneEntry> points, const std::vec
   return {std::move(points), std::move(own)};
 }
 
-// A direction of all wavelengths and indices stays together as long as it can: what it shares is computed once.
+// A direction of all wavelengths and indices stays together as long as possible, so that shared work is done once.
 constexpr std::array kCuttingOrder = {Axis::kTheta, Axis::kWavelength, Axis::kN, Axis::kK, Axis::kSigma, Axis::kQ};
 
 }  // namespace
@@ -126,7 +126,7 @@ std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
 
 void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
                   const std::function<void(const GridRun&)>& use) {
-  // A run goes over the fastest axes that the part has in full, and one more.
+  // A run covers the fastest axes that the part has in full, and one more.
   std::size_t slowest = count.size() - 1;
   while (slowest > 0 && count[slowest] == whole[slowest]) --slowest;
   const auto from = static_cast<std::ptrdiff_t>(slowest);

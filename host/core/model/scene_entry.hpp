@@ -1,4 +1,4 @@
-// Where a scene is looked at: a grid or scattered points.
+// The entries of a scene: a grid or scattered points.
 #pragma once
 
 #include <cstddef>
@@ -41,7 +41,7 @@ class SceneEntries {
     axes_[Axis::kWavelength] = std::move(wavelength_um);
   }
   SceneEntries(std::initializer_list<SceneEntry> points) : points_(points) {}
-  /// `index`: of the surface, where a grid has an axis of n or of k alone.
+  /// `index`: that of the surface, for a grid with an axis of only n or only k.
   static SceneEntries of_grid(Axes axes, const OpticalConstants& index);
   static SceneEntries grid(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q);
 
@@ -53,7 +53,7 @@ class SceneEntries {
     return std::views::iota(std::size_t{0}, size()) |
            std::views::transform([this](std::size_t i) { return (*this)[i]; });
   }
-  /// Of a grid its axis; of points those that are among them. Empty: the scene's spectrum.
+  /// For a grid its axis, for points the wavelengths among them. Empty: the scene's spectrum.
   const std::vector<double>& wavelength_um() const { return axes_[Axis::kWavelength]; }
 
   // Of a grid.
@@ -75,7 +75,7 @@ class SceneEntries {
   std::vector<SceneEntries> parts(std::size_t most) const;
   /// The part of a grid that has only the values first[i], ..., first[i] + count[i] - 1 of each axis.
   SceneEntries part(const PerAxis& first, const PerAxis& count) const;
-  /// Of a part: where its axes begin in the whole, and how many values they have there.
+  /// For a part: where its axes begin in the whole, and how many values they have there.
   const PerAxis& first() const { return first_; }
   const PerAxis& whole() const { return whole_; }
   const Axes& whole_axes() const { return *whole_axes_; }

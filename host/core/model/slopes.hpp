@@ -22,7 +22,7 @@ double slope_width(const SlopeShape& shape);
 double steeper_share(Distribution distribution, const SlopeShape& shape, double slope);
 
 /// The slope u in units of m beyond which the power law (1 + u^2)^-exponent is less than `share`.
-/// Domain: share in (0, 1], exponent > 0; finite however heavy the tail.
+/// Domain: share in (0, 1], exponent > 0; finite for any tail.
 double power_law_reach(double share, double exponent);
 
 }  // namespace dolp

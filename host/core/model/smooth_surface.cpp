@@ -15,7 +15,7 @@ SmoothAbsorptance smooth_absorptance(const OpticalConstants& index, double cosin
   const double n = index.k < kLeast ? std::max(index.n, kLeast) : index.n;
   const double k = index.k;
   const Complex square((n - k) * (n + k), 2.0 * n * k);
-  // N^2 - sin^2, with the digits of N^2 where it is small, and of N^2 - 1 where n is close to 1.
+  // N^2 - sin^2, keeping the digits of N^2 where it is small, and of N^2 - 1 where n is close to 1.
   const bool is_small = n < 0.5 && k < 0.5;
   const double real =
       is_small ? square.real() - (1.0 - cosine) * (1.0 + cosine) : (n - 1.0) * (n + 1.0) - k * k + cosine * cosine;

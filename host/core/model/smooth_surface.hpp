@@ -10,7 +10,7 @@ struct SmoothAbsorptance {
   double p = 1.0;
 };
 
-/// What a smooth surface absorbs at an angle of incidence.
+/// Absorptance of a smooth surface at an angle of incidence.
 ///
 /// Equation: 1 - R_s = 4 c Re(w) / |c + w|^2, 1 - R_p = 4 c Re(N^2* w) / |N^2 c + w|^2, w = sqrt(N^2 - 1 + c^2).
 /// Domain: cosine c in (0, 1], n > 0, k >= 0; total reflection (n < 1, k = 0) gives exactly 0.

@@ -74,7 +74,7 @@ bool specular_diverges(const Surface& surface) {
 
 bool diffuse_diverges(const Surface& surface) { return surface.diffuse > 0.0 && surface.diffuse_exponent < 0.0; }
 
-// A specular part that stays below 2 next to a vanishing cosine is that of a mirror or of n = 1: it has a limit.
+// A specular part that stays below 2 as the cosine vanishes belongs to a mirror or to n = 1: it has a limit.
 bool reflectance_diverges(const Surface& surface, const Direction& direction, std::span<const Moments> moments) {
   if (direction.theta_deg != kRightAngle_deg) return false;
   if (direction.cos_theta == 0.0 || diffuse_diverges(surface)) return true;
@@ -83,9 +83,9 @@ bool reflectance_diverges(const Surface& surface, const Direction& direction, st
          });
 }
 
-/// Equation: the terms of I and Q that grow fastest as cos(theta) -> 0, times whatever makes them finite: D r, D being
-/// the surroundings without what the moments take off the emission; with D = 0, pi B + E0 r_i and E0 r_q, and the path.
-/// The fresnel emission vanishes there.
+/// Equation: the terms of I and Q that grow fastest as cos(theta) -> 0, times a factor that makes them finite: D r,
+/// D being the surroundings without the emission that the moments subtract; with D = 0, pi B + E0 r_i and E0 r_q, and
+/// the path. The fresnel emission vanishes there.
 Stokes grazing_stokes(const SceneValues& scene, const SpectralRule& rule, std::span<const Moments> moments) {
   const Surface& surface = scene.surface;
   const bool fresnel = emission_model(scene) == EmissionModel::kFresnel;
@@ -116,8 +116,8 @@ PointResult grazing_limit(const SceneValues& scene, const SpectralRule& rule, co
   result[kRhoErrorEstimate] = 0.0;
   if (!specular_diverges(surface)) {
     if (direction.cos_theta > 0.0) result[kAlbedo] = moments.front().albedo / direction.cos_theta;
-    // A diverging diffuse part is unpolarised. Only next to a fresnel emission of the same temperature does it cancel,
-    // and what would be left then is not worth a formula of its own.
+    // A diverging diffuse part is unpolarised. It cancels only next to a fresnel emission of the same temperature; the
+    // rest is too small to need a formula of its own.
     const bool cancels = emission_model(scene) == EmissionModel::kFresnel && is_isothermal(rule);
     if (diffuse_diverges(surface) && !cancels) result[kDolp] = result[kErrorEstimate] = 0.0;
     return result;
@@ -213,7 +213,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   const double unit = bistatic ? 1.0 / pi : 1.0;  // an exitance, or the radiance that it is the integral of
   const MeanReflectance mean = mean_reflectance(rule_, reflectances, cos_theta);
   result[kStokesI] = unit * sum.i;
-  result[kStokesQ] = unit * sum.q + 0.0;  // without the sign of a zero
+  result[kStokesQ] = unit * sum.q + 0.0;  // turns -0 into 0
   result[kStokesU] = unit * sum.u + 0.0;
   result[kStokesV] = unit * sum.v + 0.0;
   result[kRhoI] = mean.rho_i;

@@ -1,4 +1,5 @@
-// From moments to what a sensor sees: rho, Stokes parameters, DOLP, error bounds and status, in double.
+// From moments to the quantities that a sensor measures: rho, Stokes parameters, DOLP, error bounds and status, in
+// double.
 #pragma once
 
 #include <span>
@@ -23,8 +24,8 @@ namespace dolp {
 /// Source: shaders/physics/README.md, section 4; Wang, Li, Wang 2025, eqs. (16), (18).
 class Radiometry {
  public:
-  /// Of what is not kept nothing is added; without the moments the specular part of rho counts as 0, `point` looks at
-  /// none of the numbers in its Moments, and what would need them is NaN. `dropped` widens the error estimates.
+  /// Disabled terms contribute nothing; without the moments the specular part of rho counts as 0, `point` ignores the
+  /// numbers in its Moments, and quantities that need them are NaN. `dropped` widens the error estimates.
   explicit Radiometry(const SceneValues& scene, const KeptEffects& kept = {}, const DropBound& dropped = {});
 
   /// The indices at which `point` wants moments, in its order, and their weights.
@@ -38,7 +39,7 @@ class Radiometry {
   PointResult point(const Direction& direction, std::span<const Moments> moments) const;
 
   /// The same with other indices than those of rule(), as scattered points with their own n or k have; only the fresnel
-  /// emission looks at them.
+  /// emission uses them.
   PointResult point(const Direction& direction, std::span<const Moments> moments,
                     std::span<const OpticalConstants> indices) const;
 
@@ -54,7 +55,7 @@ class Radiometry {
 
   PointResult finished(PointResult result) const;
 
-  SceneValues scene_;  ///< with the surface that the moments' terms see
+  SceneValues scene_;  ///< with the surface as the terms of the moments use it
   double beam_specular_;
   KeptEffects kept_;
   DropBound dropped_;

@@ -27,7 +27,7 @@ double mean_weight(const SpectralSample& sample, double total_emitted, double to
 
 }  // namespace
 
-// 1 - rho comes from the deficit, never from 1 - rho, which would lose the digits of a metal's emission.
+// 1 - rho comes from the absorbed part; the subtraction 1 - rho would lose the digits of a metal's emission.
 Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta) {
   const double scale = surface.specular / cos_theta;
   const double diffuse = diffuse_reflectance(surface, cos_theta);

@@ -38,21 +38,21 @@ struct MeanReflectance {
 
 Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta);
 
-/// Whether rho_s or rho_p is outside [0, 1] beyond doubt.
+/// True if rho_s or rho_p is outside [0, 1] beyond doubt.
 bool is_unphysical(const Reflectance& r);
 
 /// Weighted with the kind of radiation that the scene has, as PointResult says.
 MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances, double cos_theta);
 
-/// Of the smooth surface.
+/// Emissivity of the smooth surface.
 Emissivity fresnel_emissivity(const OpticalConstants& index, double cos_theta);
 
-/// Of the facets, straight to the viewer.
+/// Emissivity of the facets, straight to the viewer.
 ///
 /// Equation: eps_I = k_s eps_I,direct + 1 - k_s - diffuse, eps_Q = k_s eps_Q,direct.
 Emissivity direct_emissivity(const Surface& surface, const Moments& moments, double cos_theta);
 
-/// 1 - rho of s and of p.
+/// Emissivities 1 - rho of s and of p.
 Emissivity kirchhoff_emissivity(const Reflectance& r);
 
 }  // namespace dolp

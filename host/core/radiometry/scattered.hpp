@@ -2,7 +2,7 @@
 
 namespace dolp {
 
-/// What unpolarised light of one direction becomes in another: the first column of f_s cos(theta_i) cos(theta_r) for
+/// Unpolarised light scattered from one direction into another: the first column of f_s cos(theta_i) cos(theta_r) for
 /// k_s = 1.
 ///
 /// Units: sr-1.

@@ -13,7 +13,7 @@ using std::numbers::pi;
 // Rounding of the Stokes sums, each relative to its terms: Planck's exponent, at most 745, times an ulp or two.
 constexpr double kRadianceRounding = 1e-12;
 
-/// What one sample adds to I under the moments' own emission.
+/// Contribution of one sample to I with Kirchhoff's emission.
 struct Intensity {
   double value = 0.0;
   double terms = 0.0;  ///< sum of the magnitudes that were added, to which rounding is relative
@@ -22,7 +22,7 @@ struct Intensity {
 
 /// Equation: I = pi B (1 - rho_I) + X rho_I = pi B + (X - pi B) rho_I, whichever adds the smaller terms: the first
 /// keeps the digits of a metal, the second those of a reflectance far above 1 and of equal temperatures. The moments
-/// r_i and deficit err together if they err at all, so either may stand for the other at the price of their mismatch.
+/// r_i and the absorbed part have correlated errors, so either may replace the other at the cost of their mismatch.
 Intensity moments_intensity(double emitted, double incident, double net, double net_terms, const Reflectance& r) {
   const double split_terms = std::abs(emitted * r.absorbed) + std::abs(incident * r.rho_i);
   const double whole_terms = std::abs(emitted) + net_terms * std::abs(r.rho_i);

@@ -24,7 +24,7 @@ struct Stokes {
   double u_error = 0.0;
 };
 
-/// What DOLP lies between of a surface with these facets and all its bounces.
+/// Lower and upper bound of the DOLP of a surface with these facets and all bounces.
 ///
 /// Equation: its eps_I is larger than the direct one by d <= D = 1 - rho_I - eps_I,direct, which changes eps_Q by d at
 /// most; I = X + N eps_I, Q = N eps_Q with N = pi B - X, X the exitances of source and surroundings. Both ends lie at
@@ -46,7 +46,7 @@ void add_specular(Stokes& sum, double net, const Moments& moments);
 void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRule& rule,
               std::span<const Scattered> scattered, double cos_theta_i, double cos_theta_r);
 
-/// What a path leaves of the sums, and what it adds.
+/// Applies a path: its transmittance multiplies the sums, its radiance is added.
 void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance);
 
 Bracket bracket(const SceneValues& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kWholeInPercent = 100.0;
 
-/// What is between double quotes; a cell with others in it stays as it is.
+/// The text between double quotes; a cell with further quotes in it stays unchanged.
 std::string_view unquoted(std::string_view cell) {
   const bool is_quoted = cell.size() >= 2 && cell.front() == '"' && cell.back() == '"';
   const std::string_view inner = is_quoted ? cell.substr(1, cell.size() - 2) : cell;

@@ -1,4 +1,4 @@
-// The data files that are part of the program, as built: nothing is looked for at run time.
+// The data files that are part of the program, embedded when it is built: no files are searched at run time.
 #pragma once
 
 #include <string_view>

@@ -39,7 +39,7 @@ void append_index(Material& material, double wavelength_um, std::optional<double
 /// The wavelengths at which a tabulated material has both n and k.
 Spectrum known_range(const Material& material);
 
-/// Whether a tabulated material has n and k over the whole spectrum.
+/// True if a tabulated material has n and k over the whole spectrum.
 bool covers(const Material& material, const Spectrum& spectrum);
 
 /// A tabulated material as a scene uses it: over a band its tables, at a single wavelength the constant index there.

@@ -19,10 +19,10 @@ namespace {
 
 // Ten times the longest records of the database; any text of that size is read within seconds.
 constexpr std::size_t kMostRecordBytes = 2U << 20U;
-// A formula that has poles or roots of n^2 inside its range is wrong, and that many wavelengths tell.
+// A formula that has poles or roots of n^2 inside its range is wrong; this many wavelengths are checked for them.
 constexpr int kFormulaChecks = 1000;
 
-/// What the rows of a table hold after the wavelength.
+/// Contents of the rows of a table after the wavelength.
 struct Columns {
   bool has_n = false;
   bool has_k = false;
@@ -84,7 +84,7 @@ YAML::Node text_of(const Material& material, const YAML::Node& item, const char*
   return text;
 }
 
-/// Goes through the numbers of a text. That of "data: |" begins on the next line.
+/// Reader of the numbers in a text. The text of "data: |" begins on the next line.
 CsvReader rows_of(const Material& material, const YAML::Node& text) {
   const bool is_block = text.Scalar().find('\n') != std::string::npos;
   return {text.Scalar(),
@@ -168,7 +168,7 @@ void read_item(Material& material, const YAML::Node& item) {
   for (CsvReader row = rows_of(material, data); row.next();) append_row(material, *columns, row);
 }
 
-/// Reads the DATA items; everything else in the record is of no interest here.
+/// Reads the DATA items; everything else in the record is ignored.
 void parse_yaml(Material& material, const std::string& text) {
   try {
     const YAML::Node record = YAML::Load(text);

@@ -1,5 +1,5 @@
-// A validated scene: what the TOML file says, in SI units and radians (the grid's theta stays in degrees, because the
-// degrees are what the user typed and what the table's coordinate must repeat).
+// A validated scene: the contents of the TOML file, in SI units and radians (the grid's theta stays in degrees, because
+// the degrees are what the user typed and what the table's coordinate must repeat).
 #pragma once
 
 #include <dolp/setting.hpp>
@@ -15,9 +15,9 @@
 
 namespace dolp {
 
-/// A quantity tabulated over wavelength (strictly ascending), with the interpolation that suits it: where there is a
-/// formula, that between the first wavelength and the last.
-/// Outside the table the scene reader refuses the scene, so `at` is only asked inside.
+/// A quantity tabulated over wavelength (strictly ascending), with its interpolation; where there is a formula,
+/// it applies between the first wavelength and the last.
+/// Outside the table the scene reader refuses the scene, so `at` is only called inside.
 struct SpectralTable {
   enum class Interpolation { kLinear, kLogLog };
   std::vector<double> wavelength_um;
@@ -49,7 +49,7 @@ struct Surface {
   double specular = 1.0;           ///< k_s in [0, 1]
   double diffuse = 0.0;            ///< k_d in [0, 1]
   double diffuse_exponent = -0.5;  ///< c in (-1, 0]
-  /// Whether the masking needs the mean slope, which the distribution does not always have: kSmithCauchyQRange.
+  /// True if the masking needs the mean slope, which the distribution does not always have: kSmithCauchyQRange.
   bool needs_mean_slope() const { return masking == Masking::kSmith && distribution == Distribution::kCauchy; }
 };
 
@@ -98,7 +98,7 @@ struct Accuracy {
   bool may_interpolate = true;  ///< between slope distributions, where the grid is dense
 };
 
-/// What a scene names, the material in full; empty where it names nothing.
+/// Names in a scene, that of the material in full; empty where the scene gives no name.
 struct SceneNames {
   std::string material, material_file;
   std::string source_preset, source_file;

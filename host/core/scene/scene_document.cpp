@@ -81,7 +81,7 @@ std::string_view table_part(std::string_view key) {
   return dot == std::string_view::npos ? std::string_view{} : key.substr(0, dot);
 }
 
-/// Calls `insert` with what a text stands for: TOML, else a number in another notation, else a word.
+/// Calls `insert` with the value of a text: TOML, else a number in another notation, else a word.
 template <class Insert>
 void insert_text(const std::string& text, bool is_text_key, const Insert& insert) {
   try {
@@ -231,7 +231,7 @@ unsigned SceneDocument::line_of(std::string_view key) const {
 
 std::string SceneDocument::prefix(std::string_view key) const {
   const toml::node* node = find(key);
-  // A table that a setting merely created is not where a missing key should be put right.
+  // The message about a missing key does not point to a table that a setting created.
   if (const std::string* origin = node ? origin_of(key) : nullptr; origin) return *origin + ": ";
   const std::string value = node && !node->is_table() ? " = " + one_line(toml_text(*node)) : "";
   return fmt::format("{}:{}: {}{}: ", name_, line_of(key), one_line(key), value);

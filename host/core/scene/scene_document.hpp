@@ -24,8 +24,8 @@ class SceneDocument {
   const toml::node* find(std::string_view key) const;
   bool is_set(std::string_view key) const { return origin_of(key) != nullptr; }
 
-  /// Throws InputError: where the key's value is, the key and its value, and what is wrong. Of an absent key it names
-  /// the line of its table.
+  /// Throws InputError with the place of the key's value, the key, its value and the problem. For an absent key it
+  /// names the line of its table.
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
 
   /// The beginning of such a message.
@@ -42,7 +42,7 @@ class SceneDocument {
 
   std::string name_;
   toml::table root_;
-  std::map<std::string, std::string, std::less<>> origins_;  // of a key that was set: what messages about it begin with
+  std::map<std::string, std::string, std::less<>> origins_;  // for each key that was set: the beginning of its messages
 };
 
 }  // namespace dolp

@@ -12,7 +12,7 @@ namespace {
 
 using Type = Key::Type;
 
-// What a place of a scene holds; a null pointer is a place that the scene does not have.
+// The value at a place of a scene; a null pointer is a place that the scene does not have.
 std::optional<KeyValue> value_at(const double* at) {
   return at ? std::optional(KeyValue{.number = *at}) : std::nullopt;
 }
@@ -26,7 +26,7 @@ std::optional<KeyValue> value_at(const std::vector<double>* at) {
   return at && !at->empty() ? std::optional(KeyValue{.numbers = *at}) : std::nullopt;
 }
 
-// In all of these `place` gives the address in a Scene that the key stands for.
+// In all of these `place` gives the address of the key's value in a Scene.
 
 template <class Place>
 SceneKey number(const char* key, const char* unit, const NumberRange& range, const char* fallback, const char* meaning,

@@ -1,4 +1,4 @@
-// The one list of scene keys: what each may be, and where in the Scene it is.
+// The one list of scene keys: allowed values, and their places in the Scene.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace dolp {
 
-/// A value that is what its Key allows.
+/// A value that its Key allows.
 struct KeyValue {
   double number = 0.0;
   std::size_t word = 0;  ///< position in Key::words
@@ -42,7 +42,7 @@ const SceneKey* find_scene_key(std::string_view key);
 /// The tables in the order of the keys.
 std::vector<std::string> scene_tables();
 
-/// Whether a scene without that table is a scene without that effect.
+/// True if a scene without that table has no such effect.
 bool is_effect_table(std::string_view table);
 
 /// Makes the table's effect present in the scene.

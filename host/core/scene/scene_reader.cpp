@@ -116,7 +116,8 @@ std::string resolve_path(const std::string& file, const std::string& scene_path)
   return is_as_given ? file : scene_path.substr(0, slash + 1) + file;
 }
 
-/// What `read` makes of a file that the scene names; an InputError that begins with `prefix` where none may be opened.
+/// Result of `read` for a file that the scene names; an InputError that begins with `prefix` where no file may be
+/// opened.
 template <class Read>
 auto read_file_of(SceneValues& scene, const std::string& file, const std::string& scene_path, const std::string& prefix,
                   const KnownData* known, const Read& read) {
@@ -127,7 +128,7 @@ auto read_file_of(SceneValues& scene, const std::string& file, const std::string
   }
   try {
     return read(path);
-  } catch (const InputError&) {  // which quotes the file, and a table may name any
+  } catch (const InputError&) {  // its message quotes the file, and a table may name any file
     throw InputError(prefix + "cannot be read, or holds nothing of the kind");
   }
 }
@@ -180,7 +181,7 @@ void load_source(SceneValues& scene, const SceneDocument& document, const std::s
   check_covers(source.table, all_wavelengths(scene), prefix);
 }
 
-/// What a scene need not say beside an axis of it, whose first value it then is.
+/// Fills in quantities that the scene gives only as an axis: each takes the first value of its axis.
 void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
   const Axes& grid = scene.grid;
   OpticalConstants& index = scene.surface.material.constant;
@@ -213,7 +214,7 @@ void fill_grid(SceneValues& scene, const SceneDocument& document) {
   if (grid[Axis::kQ].empty()) grid[Axis::kQ] = {scene.surface.q};
 }
 
-/// Where the masking has no finite mean slope to work with, the scene is refused.
+/// Refuses a scene whose masking needs a finite mean slope that the distribution lacks.
 void check_smith(const SceneValues& scene, const SceneDocument& document) {
   if (!scene.surface.needs_mean_slope()) return;
   const std::string what = "masking = \"smith\" with distribution = \"cauchy\" needs q in " + kSmithCauchyQRange.text();
@@ -223,7 +224,7 @@ void check_smith(const SceneValues& scene, const SceneDocument& document) {
   }
 }
 
-/// What goes beyond single scattering needs the masking that it is defined for.
+/// Refuses effects beyond single scattering for maskings that do not define them.
 void check_scattering(const SceneValues& scene, const SceneDocument& document) {
   const Surface& surface = scene.surface;
   const bool is_multiple = surface.scattering == Scattering::kMultiple;

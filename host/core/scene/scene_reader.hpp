@@ -20,11 +20,11 @@ SceneValues read_scene(const std::string& path, const std::vector<Setting>& sett
 /// The scene with more settings. Domain: a scene that was read. Errors: InputError, as read_scene.
 SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& settings);
 
-/// n, k and E0 that the names in a scene stood for when a table was made of it.
+/// n, k and E0 as they were when the table was computed, in place of the names in its scene.
 struct KnownData {
   std::optional<Material> material = {};
   std::optional<SpectralTable> irradiance = {};
-  bool may_open_files = false;  ///< for what is lacking; what they hold is in no message then
+  bool may_open_files = false;  ///< for missing data; messages then do not quote their contents
 };
 
 /// The same for a text that is already in memory (the scene that a table file carries); `path_name` is for messages and

@@ -40,7 +40,7 @@ std::string value_text(const toml::node& node) {
 
 bool names_file(const std::string& key) { return key == "surface.material_file" || key == "source.file"; }
 
-/// Where a file that a scene names is, seen from `folder`.
+/// Path from `folder` to a file that a scene names.
 std::string path_from(const std::filesystem::path& folder, const std::string& file, const std::string& scene_path) {
   namespace fs = std::filesystem;
   if (fs::path(file).is_absolute()) return file;

@@ -25,11 +25,11 @@ constexpr double kPieceWavelengthRatio = 1.5;
 // h c / k_B in um K, to choose pieces with, and the exponent beyond which Planck's function underflows.
 constexpr double kExponentScale_umK = 14388.0;
 constexpr double kLargestPlanckExponent = 750.0;
-// Pieces are good to rounding; this bounds what is left in their sums.
+// Pieces are good to rounding; this bounds the error of their sums.
 constexpr double kPieceRelativeError = 1e-12;
 
 // Nodes of a segment of the material: enough for the smooth surface's absorptances to this, which is relative to the
-// smaller of what is reflected and absorbed (but not below a small part of the whole: n = 1 reflects nothing).
+// smaller of the reflectance and the absorptance (but not below a small part of the whole: n = 1 reflects nothing).
 constexpr double kNodesRelativeError = 1e-10;
 constexpr double kSmallestPart = 1e-4;
 constexpr int kMostNodes = 24;

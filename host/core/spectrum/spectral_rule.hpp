@@ -7,7 +7,7 @@
 
 namespace dolp {
 
-/// One refractive index at which moments are wanted, and what the radiation at its wavelengths adds up to.
+/// One refractive index at which moments are wanted, and the integrals of the radiation for it.
 ///
 /// The moments rho(lambda) depend on the wavelength only through the index. On each segment between rows of the
 /// material they are the polynomial through the Gauss nodes of that segment, so that a band integral of a factor F
@@ -33,12 +33,12 @@ struct SpectralRule {
 };
 
 /// Spectral rule of a scene: one sample at a single wavelength or for a constant index, Gauss nodes on each segment of
-/// the material otherwise, as many as it takes for the reflectances of the smooth surface.
+/// the material otherwise, as many as the reflectances of the smooth surface require.
 ///
 /// Accuracy: band sums to 1e-9 relative (tests SpectralRule_*Band*).
 SpectralRule spectral_rule(const SceneValues& scene);
 
-/// The rule with 0 for every factor that is not kept.
+/// The rule with the factors of dropped effects set to 0.
 SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept);
 
 }  // namespace dolp

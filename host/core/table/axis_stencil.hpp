@@ -1,4 +1,4 @@
-// Which values of a table's axis an interpolation reads, and with which weights.
+// Selects the values of a table's axis that an interpolation reads, and their weights.
 #pragma once
 
 #include <array>

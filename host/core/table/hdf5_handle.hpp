@@ -1,4 +1,4 @@
-// What an HDF5 file holds, closed with the object. A NetCDF-4 file is an HDF5 file.
+// Handles of objects in an HDF5 file, closed with the object. A NetCDF-4 file is an HDF5 file.
 #pragma once
 
 #include <hdf5.h>

@@ -1,4 +1,4 @@
-// Memory in which HDF5 makes a file, which is as small as what is written to it.
+// Memory file for HDF5 that takes only the memory of the bytes written to it.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace dolp {
 
-/// A file of which only what was written takes memory; the rest reads as zero. HDF5's own files in memory take memory
-/// for values that are nowhere yet, and its files on disk do not survive a disk that fills up.
+/// A file whose written bytes alone take memory; the rest reads as zero. HDF5's own files in memory take memory
+/// for values that have not been written, and its files on disk do not survive a disk that fills up.
 class Hdf5Memory {
  public:
   Hdf5Memory() = default;

@@ -25,8 +25,8 @@ std::string result_rows(const ResultColumns& results, std::size_t rows, const Qu
 /// Some quantities in the order of CSV files of points.
 Quantities in_csv_order(const Quantities& quantities);
 
-/// The CSV of points and of what was found there. The file is whole or not there; into a file rows go as they come, to
-/// "-", standard output, when all are there.
+/// Writer of points and their results as CSV. The file is complete or absent. Rows go to a file as they come, and to
+/// "-", standard output, when all are complete.
 class ResultCsv {
  public:
   /// `columns`: the names of the cells that `start` appends. Errors: IoError.

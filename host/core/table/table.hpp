@@ -30,7 +30,7 @@ struct Curve {
 /// The most entries that a table has.
 inline constexpr std::size_t kMostTableEntries = std::size_t{1} << 36U;
 
-/// Whatever a table has but its values.
+/// All data of a table except its values.
 struct TableHead {
   Axes axes;      ///< in the user's order; wavelength, n and k only where the table has them
   Curve index_n;  ///< n, k and E0 that the table was computed with; empty where there is none
@@ -39,7 +39,7 @@ struct TableHead {
   std::string stokes_units = "W m-2 um-1";  ///< "W m-2" over a band
   std::vector<Attribute> attributes;  ///< in the order they are written; without Conventions, which is the writer's
 
-  /// Values of each axis, of one that it lacks 1.
+  /// Number of values of each axis, 1 for an axis that the table lacks.
   PerAxis counts() const { return counts_of(axes); }
   std::size_t size() const { return size_of(counts()); }
   /// At the first wavelength, n and k.
@@ -53,7 +53,7 @@ struct TableHead {
 /// Shape: columns in C order of the axes.
 struct TableValues : TableHead, ResultColumns {};
 
-/// What a table has before any value is there.
+/// Layout of a table, known before its values.
 struct TableLayout {
   TableHead head;
   Quantities quantities;

@@ -21,14 +21,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Those that a table has.
+/// The axes that a table has.
 std::vector<Axis> present_axes(const Axes& axes) {
   std::vector<Axis> present;
   std::ranges::copy_if(kAllAxes, std::back_inserter(present), [&](Axis axis) { return !axes[axis].empty(); });
   return present;
 }
 
-/// Calls use(value) for the coordinates of an entry on the axes that are there.
+/// Calls use(value) for the coordinates of an entry on the axes of the table.
 template <class Use>
 void each_coordinate(const Axes& axes, std::size_t position, const Use& use) {
   const PerAxis place = place_of(position, counts_of(axes));

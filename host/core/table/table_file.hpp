@@ -1,4 +1,4 @@
-// Tables as files. The suffix chooses the format; every file is whole or not there.
+// Tables as files. The suffix chooses the format; every file is complete or absent.
 #pragma once
 
 #include <filesystem>

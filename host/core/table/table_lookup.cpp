@@ -20,7 +20,7 @@ constexpr auto kQ = static_cast<std::size_t>(Axis::kQ);
 constexpr std::array<std::size_t, kAxisCount> kWindow = {4, 4, 4, 6, 6, 6};  // values of each axis
 constexpr std::size_t kMostRows = std::size_t{4} * 4 * 4 * 6 * 6;            // of values along q
 constexpr int kMostShift = 3;                                                // of a window away from unknown entries
-constexpr std::size_t kLeastValues = 4;  // of an axis: how the changes of fewer fall says nothing
+constexpr std::size_t kLeastValues = 4;  // of an axis: fewer changes show no reliable decay
 constexpr std::size_t kLevels = 3;       // changes that are compared
 // Error over the sum of the changes: where the window has a value to add on both sides, and elsewhere.
 constexpr double kInside = 10.0;
@@ -39,7 +39,7 @@ bool has_error(Quantity quantity) {
   return std::ranges::find(kWithout, quantity) == kWithout.end();
 }
 
-/// What every table has, besides the status.
+/// Quantities that every table has, besides the status.
 constexpr std::array kNeeded = {kDolp, kStokesI, kStokesQ, kStokesU, kStokesV, kErrorEstimate};
 
 const std::vector<double>& checked(const std::vector<double>& values, const char* axis, const std::string& name) {
@@ -49,7 +49,7 @@ const std::vector<double>& checked(const std::vector<double>& values, const char
   return values;
 }
 
-/// Those of a table, one value of one that it lacks.
+/// The axes of a table; an axis that it lacks has one value.
 std::vector<LookupAxis> axes_of(const TableValues& table, const std::string& name) {
   std::vector<LookupAxis> axes;
   for (const Axis axis : kAllAxes) {
@@ -67,7 +67,7 @@ PointResult unknown() {
   return result;
 }
 
-/// Refuses a table that lacks what every result needs.
+/// Refuses a table that lacks a quantity that every result needs.
 void check_variables(const TableValues& table, const std::string& name) {
   const auto require = [&](bool is_there, std::string_view variable) {
     if (!is_there) throw InputError(fmt::format("{}: the variable {} is missing; lookup needs it", name, variable));
@@ -198,7 +198,7 @@ struct TableLookup::Rows {
   }
 };
 
-/// What one value more of an axis changes, on the lines along it through the corners of the point's cell.
+/// Changes by one more value of an axis, on the lines along the axis through the corners of the point's cell.
 struct TableLookup::Lines {
   /// An interpolation with one value more, at one of its ends: by how much it changes the result.
   struct Change {
@@ -213,7 +213,7 @@ struct TableLookup::Lines {
   std::array<std::size_t, kMostValues> along{};                         ///< position along a line
   std::size_t count = 0;
   Window::Corners begin;
-  double factor = 1.0;  ///< of the error, with what the weights of the other axes make of it
+  double factor = 1.0;  ///< of the error, including the weights of the other axes
   bool has_error = false;
   bool is_unknown = false;
 
@@ -252,7 +252,7 @@ struct TableLookup::Lines {
     }
   }
 
-  /// The changes on a line with entries that are not known, from those that each needs.
+  /// The changes on a line with unknown entries, from the entries that each change needs.
   void known_changes(const double* values, double* sums) const {
     for (std::size_t j = 0; j < changes.size(); ++j) {
       sums[j] = 0.0;
@@ -262,7 +262,7 @@ struct TableLookup::Lines {
     }
   }
 
-  /// What the interpolation of a column along the axis leaves out.
+  /// Estimate of the interpolation error of a column along the axis.
   double error(const std::vector<double>& column) const {
     if (!has_error) return 0.0;
     if (is_unknown) return kInfinity;
@@ -293,7 +293,7 @@ struct TableLookup::Lines {
     }
     if (largest[0] < 0.0) return kInfinity;
     if (largest[0] == 0.0) return 0.0;
-    // Of two steps together, as one of them may be small by chance.
+    // Compares two steps together, because one of them may be small by chance.
     const double fall = largest[2] > 0.0 ? std::sqrt(largest[0] / largest[2]) : largest[0] / largest[1];
     return factor * largest[0] / (1.0 - std::min(fall, kSlowestFall));
   }
@@ -382,10 +382,11 @@ PointResult TableLookup::at(const Point& point) const {
 }
 
 void TableLookup::finish(PointResult& result, const PointResult& change, double error, double rho_error) const {
-  // Of a quotient: the error of what is above, and of what is below times the quotient, over the least that is below.
+  // Error of a quotient: that of the numerator, plus that of the denominator times the quotient, over the least
+  // denominator.
   const auto over = [](double below, double below_error, double quotient, double above_error) {
     const double least = std::abs(below) - below_error;
-    // Where nothing is known of what is below, 0 over it is 0 nevertheless.
+    // A quotient of 0 stays 0 even if the error of the denominator is infinite.
     const double of_below = quotient == 0.0 ? 0.0 : std::abs(quotient) * below_error;
     return above_error + of_below == 0.0 ? 0.0 : least > 0.0 ? (above_error + of_below) / least : kInfinity;
   };

@@ -17,11 +17,11 @@ namespace dolp {
 /// ln(q - 1), and of degree three through four values in the logarithm of wavelength, n and k, the axes that a table
 /// may lack; fewer where an axis has fewer. DOLP follows from the interpolated Stokes parameters, which stay smooth
 /// where it has a kink.
-/// Errors stated: the bounds of the entries read, each with the size of its weight, and what the interpolation leaves
-/// out along each axis: the change that one value more makes on the lines through the corners of the point's cell, or
-/// the last one where all values are read; kInside or kAtEnds times its sum with all that would follow, if changes went
-/// on to fall as the last ones do. That part is an estimate: what is narrower than the grid stays unseen. Between the
-/// values of an axis that has fewer than four it is infinite.
+/// Errors stated: the bounds of the entries read, each with the size of its weight, and the error of the
+/// interpolation along each axis: the change that one value more makes on the lines through the corners of the point's
+/// cell, or the last one where all values are read; kInside or kAtEnds times its sum with all that would follow, if
+/// changes went on to fall as the last ones do. That part is an estimate: structure narrower than the grid is missed.
+/// Between the values of an axis that has fewer than four it is infinite.
 /// Accuracy: tests LookupEstimates.
 class TableLookup {
  public:
@@ -30,14 +30,15 @@ class TableLookup {
   /// or with an error of rho but no rho.
   TableLookup(const TableValues& table, double tolerance, const std::string& name);
 
-  /// Nothing of an axis that the table lacks.
+  /// Null for an axis that the table lacks.
   const LookupAxis* axis(Axis axis) const;
-  /// Those of every scene, and of the optional ones those that the table has.
+  /// The quantities of every scene, and the optional ones that the table has.
   Quantities quantities() const;
 
-  /// A value on each axis; of those that the table lacks nothing is looked at.
+  /// A value on each axis; values on axes that the table lacks are ignored.
   using Point = AxisArray<double>;
-  /// What the table says at a point within its axes, at an entry just that; quantities that it does not have are NaN.
+  /// The interpolated result at a point within the axes; at an entry, the entry itself. Quantities that the table lacks
+  /// are NaN.
   /// Domain: next to entries outside the model's domain the window moves away from them; between such entries the
   /// result is NaN with status 4.
   PointResult at(const Point& point) const;

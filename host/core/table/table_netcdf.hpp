@@ -1,4 +1,4 @@
-// How a table lies in a NetCDF-4 file.
+// Layout of a table in a NetCDF-4 file.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace dolp {
 /// The attribute that holds the hash of ValuesHash.
 inline constexpr const char* kValuesHash = "values_hash";
 
-/// A hash over the values of a table, by which damage is found; nothing more. Values may come in any order: a sum of
+/// A hash over the values of a table, only to detect damage. Values may come in any order: a sum of
 /// their bits, each times an odd number that follows from its place, so that another value or place changes it.
 class ValuesHash {
  public:
@@ -47,7 +47,7 @@ class NetcdfSkeleton {
   /// More attributes of the file, after those of the head.
   void add(const std::vector<Attribute>& attributes);
 
-  /// Bytes of the file that are no values.
+  /// Bytes of the file that are not values.
   struct Piece {
     std::uint64_t offset = 0;
     std::vector<char> bytes;

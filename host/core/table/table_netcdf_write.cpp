@@ -40,7 +40,7 @@ class Writer {
   const Hdf5Handle& file() const { return file_; }
 
   void check(herr_t code) const {
-    if (code < 0) throw std::bad_alloc();  // a file in memory can want nothing else
+    if (code < 0) throw std::bad_alloc();  // a file in memory fails only for lack of memory
   }
 
   void put_text(const Hdf5Handle& object, const char* name, const std::string& text) const {

@@ -21,7 +21,7 @@ constexpr std::size_t kRowsAtOnce = std::size_t{1} << 17U;  // that a .csv or .n
 fs::path partial_path(const fs::path& path) { return follow_links(path).string() + ".partial"; }
 fs::path progress_path(const fs::path& path) { return partial_path(path).string() + ".txt"; }
 
-/// How far a partial file is.
+/// Progress of a partial file.
 struct ProgressFile {
   std::string identity;
   std::size_t parts = 0;
@@ -112,7 +112,7 @@ TableOutput::TableOutput(Job job) : impl_(std::make_unique<Impl>(std::move(job))
 
 TableOutput::~TableOutput() {
   if (!impl_->is_named() || impl_->progress.parts > 0 || !impl_->file) return;
-  impl_->file->discard();  // nothing is in it
+  impl_->file->discard();  // it is empty
 }
 
 std::size_t TableOutput::parts_done() const { return impl_->progress.parts; }

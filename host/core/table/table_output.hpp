@@ -1,4 +1,4 @@
-// What a run writes a table to, part by part, so that an interrupted one can go on.
+// Resumable table writer: writes part by part, so that an interrupted run can continue.
 #pragma once
 
 #include <filesystem>
@@ -11,17 +11,17 @@
 
 namespace dolp {
 
-/// A table file under way. One of several parts is in PATH.partial until it is whole, and PATH.partial.txt says how far
-/// it is; one of one part has no name before. A .csv or .npy is made of it at the end.
+/// A table file under way. A table of several parts is in PATH.partial until it is complete, and PATH.partial.txt
+/// states its progress; a table of one part has no name before. A .csv or .npy is converted from it at the end.
 class TableOutput {
  public:
   struct Job {
     std::filesystem::path path;
     TableLayout layout;
     std::size_t parts = 1;
-    bool is_resumable = true;   ///< otherwise what is left of an interrupted run is removed
+    bool is_resumable = true;   ///< otherwise the files of an interrupted run are removed
     bool is_resumed = false;    ///< goes on with PATH.partial, if it is there
-    std::string identity = {};  ///< one line, of scene, program and device: what the parts must have in common
+    std::string identity = {};  ///< one line of scene, program and device that all parts must share
   };
   /// Errors: those of check_output_path; InputError for a partial file of another identity, or that another process
   /// writes.
@@ -30,7 +30,7 @@ class TableOutput {
   TableOutput(const TableOutput&) = delete;
   TableOutput& operator=(const TableOutput&) = delete;
 
-  /// Parts that were there already, and the note that came with the last of them.
+  /// Number of parts that exist already, and the note of the last of them.
   std::size_t parts_done() const;
   const std::string& note() const;
 
@@ -39,7 +39,7 @@ class TableOutput {
   /// Makes the file, with more attributes. Errors: IoError, Cancelled; PATH is as it was then.
   void finish(const std::vector<Attribute>& more);
 
-  /// How to go on with what is there, if it is any: one sentence.
+  /// One sentence on how to continue from the partial file, if there is one.
   std::optional<std::string> rest() const;
 
  private:

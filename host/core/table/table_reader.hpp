@@ -21,7 +21,7 @@ class TableReader {
   ~TableReader();
 
   const TableHead& head() const;
-  /// Those that the table has.
+  /// The quantities that the table has.
   const Quantities& quantities() const;
   bool has_status() const;
 
@@ -30,9 +30,9 @@ class TableReader {
   /// part, and refused as by check_hash.
   TableValues read_entries(std::span<const std::size_t> positions) const;
 
-  /// What a part that was read adds to the hash.
+  /// Contribution of a part that was read to the hash.
   ValuesHash::Sums sums_of(const TableValues& part, const TableBox& box) const;
-  /// Refuses values that are not those that were written, from the sums over all parts.
+  /// Refuses values that differ from the written ones, by the sums over all parts.
   void check_hash(const ValuesHash::Sums& sums) const;
 
  private:

@@ -1,4 +1,4 @@
-// A table on disk, put there part by part.
+// A table on disk, written part by part.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace dolp {
 
-/// Where a part of a table lies in the whole: from `first` on `count` values of each axis.
+/// Place of a part of a table in the whole: from `first` on `count` values of each axis.
 struct TableBox {
   PerAxis first = {};
   PerAxis count = {};
@@ -31,10 +31,10 @@ class TableStore {
   void write(const TableValues& part, const PerAxis& first);
   /// Reads a part back. Errors: IoError.
   TableValues read(const TableBox& box) const;
-  /// Puts all else in the file, with more attributes, when all values are there. Errors: IoError, Cancelled.
+  /// Writes the rest of the file, with more attributes, after all values. Errors: IoError, Cancelled.
   void finish(const std::vector<Attribute>& more);
 
-  /// What the values written so far add to the hash; to be given back before a run goes on.
+  /// Contribution of the values written so far to the hash; restore it before a run continues.
   const ValuesHash::Sums& sums() const { return sums_; }
   void set_sums(ValuesHash::Sums sums) { sums_ = std::move(sums); }
 

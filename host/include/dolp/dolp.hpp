@@ -52,7 +52,7 @@ DOLP_EXPORT std::string commit();
 /// How to cite the program and the model, in the Citation File Format.
 DOLP_EXPORT std::string citation();
 
-/// What a call says of its work.
+/// Report of a call about its work.
 struct Report {
   std::string text;              ///< for people, in lines
   std::string json;              ///< all values, as the command's --json prints them
@@ -114,13 +114,13 @@ struct BuiltInMaterial {
 };
 DOLP_EXPORT std::vector<BuiltInMaterial> materials();
 
-/// What was computed or read at points, in their order.
+/// Results at points, computed or read from a table, in the order of the points.
 struct Results : ResultColumns {
   Quantities given;          ///< that results of the scene have; NaN where one was not computed
   std::string stokes_units;  ///< UDUNITS: "W m-2 um-1"
   /// Global attributes as in table files: device, precision, effects, rule, ...
   std::vector<std::pair<std::string, std::variant<std::string, double>>> attributes;
-  double integrand_evaluations = 0.0;  ///< that they took
+  double integrand_evaluations = 0.0;  ///< evaluations that they took
 };
 
 /// Points and their results as CSV, as write_points writes it.
@@ -138,12 +138,13 @@ class DOLP_EXPORT Table {
   const ResultColumns& results() const;
   const std::string& stokes_units() const;  ///< UDUNITS
 
-  /// The table between its entries. An axis of one value needs no column; what else the columns lack is the scene's.
+  /// The table between its entries. An axis of one value needs no column; other missing columns take the
+  /// scene's values.
   /// Its error estimates contain the interpolation.
   /// Errors: InputError for a point outside of the axes, with its position, value and what is allowed.
   Results lookup(const std::vector<Column>& points, const Progress& progress = {}) const;
 
-  /// Writes .nc, .csv or .npy, by the suffix; the file is whole or not there. Errors: InputError, IoError.
+  /// Writes .nc, .csv or .npy, by the suffix; the file is complete or absent. Errors: InputError, IoError.
   void write(const std::filesystem::path& path) const;
 
  private:
@@ -153,17 +154,17 @@ class DOLP_EXPORT Table {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// A fit, of the best of the compared models.
+/// A fit: the result for the best of the compared models.
 struct Fit {
   Report report;             ///< parameters, intervals, correlation, minima, residuals
-  bool has_minimum = false;  ///< whether any descent converged
+  bool has_minimum = false;  ///< true if any descent converged
   Scene scene;               ///< with what was compared and what was found; without a minimum the scene itself
   std::vector<FitParameter> parameters = {};  ///< in the order of FitOptions::vary
   double chi_square = 0.0;
   std::size_t degrees_of_freedom = 0;
   std::optional<double> p_value = {};          ///< with uncertainties and the loss "squares"
   std::size_t other_minima = 0;                ///< that were found above the best
-  std::vector<std::string> degeneracies = {};  ///< what the data cannot tell, in words
+  std::vector<std::string> degeneracies = {};  ///< combinations that the data do not determine, in words
 };
 
 /// Computes. Device and kernels are made when they are first needed and kept as long as the object lives.
@@ -179,15 +180,15 @@ class DOLP_EXPORT Evaluator {
   /// The table over the scene's [grid], in memory.
   Table table(const Scene& scene, const RunOptions& options = {});
   /// The same part by part, each of which `take` gets with its own axes, which are pieces of the table's. Memory does
-  /// not grow with the table. What `take` throws ends the call.
+  /// not grow with the table. An exception from `take` ends the call.
   void table_parts(const Scene& scene, const std::function<void(const Table&)>& take, const RunOptions& options = {});
   /// The same straight into a file, .nc, .csv or .npy by its suffix, part by part, so that memory does not grow with
-  /// the table. A shard's file has "N-of-M" before its suffix; one that is there already is kept. What a cancelled or
-  /// killed call has finished stays beside the file, for `resume`.
-  /// Errors: InputError, IoError too. The file is whole or not there.
+  /// the table. A shard's file has "N-of-M" before its suffix; one that is there already is kept. The finished
+  /// parts of a cancelled or killed call stay beside the file, for `resume`.
+  /// Errors: InputError, IoError too. The file is complete or absent.
   Report write_table(const Scene& scene, const std::filesystem::path& path, const RunOptions& options = {},
                      const Shard& shard = {});
-  /// The same quantities at scattered points; what the columns do not say comes from the scene.
+  /// The same quantities at scattered points; missing columns take the scene's values.
   Results evaluate(const Scene& scene, const std::vector<Column>& points, const RunOptions& options = {});
   /// The same of a CSV of points into a CSV that has their columns first; "-" is stdin and stdout.
   Report write_points(const Scene& scene, const std::filesystem::path& points, const std::filesystem::path& path,
@@ -213,28 +214,28 @@ DOLP_EXPORT Report write_lookup(const std::filesystem::path& table, const std::f
                                 const std::filesystem::path& path, const Progress& progress = {});
 
 /// Joins all shards of a table into one file; they are opened one at a time. `history`: as in RunOptions.
-/// Errors: InputError that names a shard that is missing, there twice, or of another table; IoError.
+/// Errors: InputError that names a shard that is missing, duplicate, or of another table; IoError.
 DOLP_EXPORT Report merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& path,
                          const std::string& history = {});
 
-/// What a scene can ask for, and what becomes of it at some points.
+/// An effect that a scene can ask for, and its treatment at some points.
 struct Effect {
   std::string name;
-  std::string state;  ///< absent, kept, dropped (it cannot be seen), not_needed (nothing kept depends on it)
+  std::string state;  ///< absent, kept, dropped (negligible change), not_needed (no kept effect uses it)
   std::string reason;
-  std::string needs;                ///< what computing it takes; empty when it is not kept
+  std::string needs;                ///< quantities that it requires; empty when it is not kept
   std::optional<double> bound;      ///< of a dropped one: of the change of (Q/I, U/I) without it, worst point
   std::optional<double> influence;  ///< of a kept one: estimate of that change, the largest of up to 12 of the points
 };
-/// All effects that there are, in the order of a scene file. Influences are evaluated on the CPU, to 1e-3.
+/// All effects, in the order of a scene file. Influences are evaluated on the CPU, to 1e-3.
 DOLP_EXPORT std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& points, bool keep_all = false);
 
-/// What a table over the scene's grid would compute and leave out, why, and what it would cost; nothing is run but
-/// counting on the CPU.
+/// Plan of a table over the scene's grid: computed and dropped effects, the reasons, and the cost. Only counting on the
+/// CPU is run.
 DOLP_EXPORT Report plan(const Scene& scene, const std::string& device = {}, bool keep_all = false);
 
 /// Computes entries of a table file again with adaptive quadrature, which shares no formula with the kernels, and
-/// compares them with what the table states. Errors: InputError.
+/// compares them with the table's values and errors. Errors: InputError.
 DOLP_EXPORT Report verify(const std::filesystem::path& table, const TableCheckOptions& options = {});
 
 /// Computes the model's hard cases and compares them with stored references. Errors: InputError, DeviceError.

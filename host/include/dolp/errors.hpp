@@ -1,5 +1,5 @@
-// Errors that calls of the library throw, each with an exit status of the command line, and the progress that may cancel
-// a call.
+// Errors that calls of the library throw, each with an exit status of the command line, and the progress that may
+// cancel a call.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace dolp {
 
-/// A scene, points, a table or an argument is wrong (exit 2). The message is one line: where, value, what is allowed.
+/// A scene, points, a table or an argument is wrong (exit 2). The message is one line: place, value, allowed range.
 class DOLP_EXPORT InputError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
@@ -35,7 +35,7 @@ class DOLP_EXPORT MemoryError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A Progress returned false (exit 130). The message says what is left, and how to go on with it.
+/// A Progress returned false (exit 130). The message says what remains on disk, and how to continue.
 class DOLP_EXPORT Cancelled : public std::runtime_error {
  public:
   explicit Cancelled(const std::string& left = "no file was written") : std::runtime_error(left) {}

@@ -1,4 +1,4 @@
-// Measured data, how numbers of a scene are fitted to them, and what comes out.
+// Measured data, options of fits of a scene's numbers to them, and results.
 #pragma once
 
 #include <cstddef>
@@ -36,8 +36,8 @@ struct DOLP_EXPORT MeasuredData {
   bool has_uncertainties = false;           ///< all measurements have one
   std::vector<Measurement> measurements = {};
 
-  /// Reads a CSV. Columns: theta_deg or theta_i_deg; dolp, or q_over_i (signed), or emissivity_s and emissivity_p or one
-  /// of them; and any of uncertainty, wavelength_um. Values are fractions, not percent. Lines that begin with # are
+  /// Reads a CSV. Columns: theta_deg or theta_i_deg; dolp, or q_over_i (signed), or emissivity_s and emissivity_p or
+  /// one of them; and any of uncertainty, wavelength_um. Values are fractions, not percent. Lines that begin with # are
   /// comments.
   /// Errors: InputError, one line that names file, line, column, value and what is allowed.
   static MeasuredData from_csv(const std::string& csv, const std::string& name = "data",
@@ -81,7 +81,7 @@ enum class Loss { kSquares, kHuber, kSoftL1, kCauchy, kTukey };
 /// "squares", "huber", "soft-l1", "cauchy", "tukey", in the order of Loss.
 DOLP_EXPORT const std::vector<std::string>& loss_names();
 
-/// How to fit.
+/// Options of a fit.
 struct FitOptions {
   std::vector<FitRange> vary;
   std::size_t starts = 24;                ///< descents that look for minima
@@ -93,8 +93,8 @@ struct FitOptions {
   std::filesystem::path plot = {};        ///< PNG of data, model and residuals, which Matplotlib draws; empty: none
 };
 
-/// A profile-likelihood interval, from the least to the largest value that the data do not rule out, over all minima; an
-/// end is none where the range ends before the data say no.
+/// A profile-likelihood interval, from the least to the largest value that the data do not rule out, over all minima;
+/// an end is none where the range ends before the data rule values out.
 struct FitInterval {
   std::optional<double> low, high;
 };
@@ -103,7 +103,7 @@ struct FitInterval {
 struct FitParameter {
   std::string key;
   double value = 0.0;
-  std::optional<double> standard_error;   ///< from the covariance; none at a bound or where the data say nothing
+  std::optional<double> standard_error;   ///< from the covariance; none at a bound or if undetermined
   FitInterval interval_68, interval_95;   ///< 68.27 % and 95 %; both ends none without a scale of the residuals
   bool is_at_bound = false;
 };

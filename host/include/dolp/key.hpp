@@ -30,9 +30,9 @@ struct DOLP_EXPORT Key {
   std::string unit;                ///< "1" for numbers without one, empty for words and texts
   NumberRange range;               ///< of a number and of each value of a pair or an axis
   std::vector<std::string> words;  ///< that a word may be
-  std::string fallback;            ///< default as a scene file writes it; "required"; empty when the key is simply absent
+  std::string fallback;            ///< default as in a scene file; "required"; empty when the key is simply absent
   std::string meaning;             ///< one line, with the symbol
-  std::vector<std::string> rivals = {};  ///< keys in whose place it can be; a setting of one takes the other away
+  std::vector<std::string> rivals = {};  ///< alternative keys; a setting of one removes the other
 
   /// "a number in [0, 90]", "one of cauchy, gaussian", …
   std::string allowed() const;

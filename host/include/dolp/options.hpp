@@ -1,4 +1,4 @@
-// Where, how and of what to compute.
+// Options of evaluators, runs and checks, and columns of points.
 #pragma once
 
 #include <array>
@@ -21,17 +21,17 @@ struct Column {
 /// The 4 x 4 Mueller pBRDF of a pair of directions, row by row. Units: 1/sr.
 using MuellerMatrix = std::array<double, 16>;
 
-/// Where and how to compute.
+/// Evaluator, device and dispatch options.
 struct EvaluatorOptions {
   std::string evaluator = "vulkan";  ///< vulkan; cpu: the shaders' text compiled as C++; reference: adaptive quadrature
   std::string device = {};           ///< of vulkan: its position in devices(), or a part of its name; empty: the best
-  bool is_interactive = false;       ///< in short dispatches: a call ends soon after its Progress says so, and a window
-                                     ///< on the same device goes on drawing
+  bool is_interactive = false;       ///< in short dispatches: a call ends soon after Progress returns false; a window
+                                     ///< on the same device continues to draw
 };
 
-/// How to compute one table or list of points.
+/// Options for one table or list of points.
 struct RunOptions {
-  bool keep_all = false;     ///< drop no effect, however little it counts
+  bool keep_all = false;     ///< drop no effect, however small
   Progress progress = {};    ///< may be empty
   std::string history = {};  ///< what the attribute "history" of a table says beside the time
   bool resume = false;       ///< of write_table: go on with what a cancelled or killed call of the same scene left
@@ -44,7 +44,7 @@ struct Shard {
   bool is_whole() const { return count == 1; }
 };
 
-/// How to check a table.
+/// Options for the check of a table.
 struct TableCheckOptions {
   std::size_t samples = 64;  ///< entries to compute again, distinct; all when the table has no more
   std::uint64_t seed = 1;    ///< of their choice
@@ -52,12 +52,12 @@ struct TableCheckOptions {
   Progress progress = {};    ///< may be empty
 };
 
-/// How to examine a device.
+/// Options for the check of a device.
 struct DeviceCheckOptions {
   std::string evaluator = "vulkan";  ///< vulkan; cpu: the shaders' text compiled as C++
   std::string device = {};           ///< as in EvaluatorOptions
   std::string precision = "auto";    ///< float, double; auto is both
-  double tolerance = 1e-4;           ///< what to ask for
+  double tolerance = 1e-4;           ///< requested tolerance
   bool all = false;                  ///< report every case, not only those that fail
   Progress progress = {};            ///< may be empty
 };

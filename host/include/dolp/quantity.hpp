@@ -29,7 +29,7 @@ enum class Quantity : std::uint8_t {
   kAlbedo,       ///< A(theta): R = 1, without k_s and the diffuse part
   kEmissivityS,  ///< the emission uses it; over a band weighted with pi B(T)
   kEmissivityP,
-  kDolpLow,  ///< between it and the next lies DOLP of a surface with these facets and all its bounces
+  kDolpLow,  ///< with dolp_high: bounds of the DOLP of a surface with these facets and all bounces
   kDolpHigh,
   kErrorEstimate,     ///< bound of |d DOLP|, dolp_low and dolp_high included; infinite when there is none
   kRhoErrorEstimate,  ///< bound of max(|d rho_I|, |d rho_Q|) / rho_I; infinite when there is none
@@ -44,7 +44,7 @@ inline constexpr std::array<Quantity, kQuantityCount> kAllQuantities = enumerato
 /// Some of them, in their order.
 using Quantities = std::vector<Quantity>;
 
-/// What a scene must have for a quantity.
+/// Requirement of a quantity on the scene.
 enum class QuantityNeeds : std::uint8_t { kNothing, kReflectance, kMoments, kEmission, kBracket };
 
 struct QuantityDescription {

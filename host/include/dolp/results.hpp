@@ -29,7 +29,7 @@ struct ResultColumns {
   const std::vector<double>& operator[](Quantity quantity) const { return columns[quantity]; }
   bool has(Quantity quantity) const { return !columns[quantity].empty(); }
 
-  /// Those that have a column.
+  /// The quantities that have a column.
   Quantities quantities() const {
     Quantities own;
     for (const Quantity quantity : kAllQuantities) {

@@ -1,4 +1,4 @@
-// Keys of a scene with the values that they are to have.
+// Keys of a scene with new values.
 #pragma once
 
 #include <concepts>
@@ -23,8 +23,8 @@ struct AxisRange {
   friend bool operator==(const AxisRange&, const AxisRange&) = default;
 };
 
-/// A value as a scene file writes it: 0.2, [0.1, 0.2], { from = 0, to = 60, count = 7 }. Text that is no TOML is a word:
-/// smith.
+/// A value as a scene file writes it: 0.2, [0.1, 0.2], { from = 0, to = 60, count = 7 }. Text that is no TOML is a
+/// word: smith.
 struct TomlText {
   std::string text;
   friend bool operator==(const TomlText&, const TomlText&) = default;
@@ -70,7 +70,7 @@ class DOLP_EXPORT Value {
 struct DOLP_EXPORT Setting {
   std::string key;
   Value value;
-  std::string origin = {};  ///< what messages about it begin with; empty: the key and the value
+  std::string origin = {};  ///< beginning of messages about it; empty: the key and the value
 
   /// Reads "KEY=VALUE", a value as TomlText. `option`: of a command line, which messages then begin with.
   /// Errors: InputError for anything else.

@@ -11,7 +11,7 @@ enum Status : std::uint32_t {
   kReflectanceOutsideZeroToOne = 1,
   /// The scene's tolerance is not met, for rho or for DOLP.
   kToleranceNotMet = 2,
-  /// Outside the model's domain; what cannot be given is NaN.
+  /// Outside the model's domain; undefined quantities are NaN.
   kOutsideModelDomain = 4,
   /// I <= 0: the sum of what is emitted and reflected is not a radiation that exists.
   kIntensityNotPositive = 8,
@@ -31,11 +31,11 @@ inline constexpr std::array<StatusBit, 4> kStatusBits = {{
     {kIntensityNotPositive, "intensity_not_positive"},
 }};
 
-/// With any of these nothing is promised of the DOLP.
+/// With any of these bits the DOLP has no guaranteed accuracy.
 inline constexpr std::uint32_t kNoDolpPromised =
     kReflectanceOutsideZeroToOne | kOutsideModelDomain | kIntensityNotPositive;
 
-/// Whether the tolerance, or else kToleranceNotMet, is promised for the DOLP.
+/// True if the DOLP either meets the tolerance or carries kToleranceNotMet.
 inline bool promises_dolp(std::uint32_t status) { return (status & kNoDolpPromised) == 0; }
 
 }  // namespace dolp

@@ -99,7 +99,7 @@ std::pair<fs::path, int> with_new_name(const fs::path& target, const Make& make)
   fail(target, "too many temporary files in its folder; remove .dolp-*.tmp");
 }
 
-/// Removes temporary files that nobody writes any more: their writer holds a lock, on network file systems too.
+/// Removes temporary files without a writer: a writer holds a lock, on network file systems too.
 void clear_away_left_ones(const fs::path& folder) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
@@ -128,7 +128,7 @@ NewFile create_temporary(const fs::path& target) {
   auto [name, named] = with_new_name(target, [](const fs::path& path) {
     return ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kNewFileMode);
   });
-  ::flock(named, LOCK_EX | LOCK_NB);  // where there are no locks nothing is cleared away either
+  ::flock(named, LOCK_EX | LOCK_NB);  // without locks no files are removed either
   return {File(named), std::move(name)};
 }
 
@@ -170,7 +170,7 @@ void check_writable(const fs::path& path) {
   }
   if (target.filename().empty()) fail(path, "is not a file name");
   struct stat existing {};
-  // Root may write to what is read-only, but did not say so.
+  // Root may write to read-only files, but did not ask for it.
   if (::stat(target.c_str(), &existing) == 0 && (existing.st_mode & kWriteBits) == 0) {
     fail(path, "is read-only; remove it first, or write to another file");
   }
@@ -181,9 +181,9 @@ void check_writable(const fs::path& path) {
 
 struct AtomicFile::Impl {
   fs::path path;    // for messages
-  fs::path target;  // behind symbolic links
+  fs::path target;  // with symbolic links resolved
   NewFile own;
-  bool is_kept = false;  // under its own name, if it is never whole
+  bool is_kept = false;  // keeps its own name if it is never complete
   std::uint64_t size = 0;
 
   Impl(fs::path of_user, fs::path of_file, NewFile file)

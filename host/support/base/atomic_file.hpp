@@ -1,4 +1,4 @@
-// Files that appear whole or not at all.
+// Files that appear complete or not at all.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace dolp {
 
-/// What a path stands for behind symbolic links; it need not be there. Errors: IoError for too many of them.
+/// The target of a path with symbolic links resolved; it need not exist. Errors: IoError for too many of them.
 std::filesystem::path follow_links(std::filesystem::path path);
 
 /// Refuses an output path of any suffix, before anything is computed for it; "-" is standard output.
@@ -19,8 +19,8 @@ std::filesystem::path follow_links(std::filesystem::path path);
 void check_writable(const std::filesystem::path& path);
 
 /// A file under way to `path`: written in any order, then synced and renamed. Until then it has no name where the file
-/// system allows that; else it is .dolp-*.tmp, and what processes that died left of these is cleared away. A symbolic
-/// link stays, what it points to is replaced; an existing file keeps its permissions. Into a device or pipe the bytes
+/// system allows that; else it is .dolp-*.tmp, and such files of dead processes are removed. A symbolic
+/// link stays, its target is replaced; an existing file keeps its permissions. Into a device or pipe the bytes
 /// go when all are there.
 class AtomicFile {
  public:
@@ -39,7 +39,7 @@ class AtomicFile {
   void append(std::string_view bytes);
   /// Errors: IoError, also for fewer bytes than asked for.
   void read_at(std::uint64_t offset, void* bytes, std::size_t size) const;
-  /// Makes it so long; what is new is zero. Errors: IoError.
+  /// Sets the length; new bytes are zero. Errors: IoError.
   void resize(std::uint64_t size);
   /// Makes the file `path`. Errors: IoError, Cancelled; `path` is as it was then.
   void commit();

@@ -53,7 +53,7 @@ void parallel_ranges(std::size_t count, std::size_t grain,
   try {
     for (std::size_t i = 1; i < std::min(cores, useful); ++i) threads.emplace_back(&Loop::work, &loop);
   } catch (const std::system_error&) {
-    // Where memory is short the threads that there are do the work.
+    // Where memory is short the existing threads do the work.
   }
   loop.work();
   threads.clear();  // waits for them

@@ -6,7 +6,7 @@
 namespace dolp {
 
 /// Text that comes from files and command lines, safe to show: control characters, bytes that are not UTF-8, and
-/// characters that turn the direction of writing become "?". Tabs stay.
+/// characters that change the text direction become "?". Tabs stay.
 std::string printable_line(std::string_view text);
 
 }  // namespace dolp

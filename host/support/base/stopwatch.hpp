@@ -4,7 +4,7 @@
 
 namespace dolp {
 
-/// Seconds that have passed, by the clock that nobody sets.
+/// Seconds since `start`, by the monotonic clock.
 inline double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

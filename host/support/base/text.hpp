@@ -1,4 +1,4 @@
-// Reading text that people wrote: numbers, lines, names that are nearly right.
+// Reads text written by people: numbers, lines, and names with typing errors.
 #pragma once
 
 #include <cstddef>
@@ -49,7 +49,8 @@ inline constexpr std::size_t kMostTextBytes = 16U << 20U;
 /// Errors: InputError, "`prefix`cannot be read: reason", and for more than `most_bytes` or a zero byte among them.
 std::string read_text(const std::string& path, const std::string& prefix, std::size_t most_bytes = kMostTextBytes);
 
-/// The same for a file that an input names: a regular file, so that nobody waits for a pipe or reads a device.
+/// The same for a file that an input names: it must be a regular file, so that no call waits for a pipe or reads a
+/// device.
 /// Errors: likewise, and for anything else.
 std::string read_named_file(const std::string& path, const std::string& prefix,
                             std::size_t most_bytes = kMostTextBytes);

@@ -1,4 +1,4 @@
-// Storage buffers and how the host writes and reads them.
+// Storage buffers that the host writes and reads.
 #pragma once
 
 #include <cstddef>

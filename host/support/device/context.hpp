@@ -12,10 +12,10 @@
 
 namespace dolp::vulkan {
 
-/// What a window asks of instance and device.
+/// Requirements of a window on instance and device.
 struct Presentation {
   std::vector<const char*> instance_extensions;
-  /// Whether a queue family of a device can show images on the display.
+  /// True if a queue family of a device can show images on the display.
   std::function<bool(VkInstance, VkPhysicalDevice, std::uint32_t family)> can_present;
 };
 

@@ -74,7 +74,7 @@ std::string why_not_usable(const VkPhysicalDeviceProperties& properties, bool ha
   return {};
 }
 
-// What Vulkan 1.2 tells beyond VkPhysicalDeviceProperties.
+// Adds properties of Vulkan 1.2 beyond VkPhysicalDeviceProperties.
 void add_properties_1_2(VkPhysicalDevice physical, dolp::Device& description) {
   VkPhysicalDeviceDriverProperties driver{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
   VkPhysicalDeviceSubgroupProperties subgroup{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES,
@@ -85,7 +85,7 @@ void add_properties_1_2(VkPhysicalDevice physical, dolp::Device& description) {
   description.subgroup_size = subgroup.subgroupSize;
 }
 
-// On a processor those that share a vector, because a dispatch of few would do the rest for nothing.
+// On a CPU device a workgroup fills one vector, because a small dispatch would waste the other invocations.
 std::uint32_t local_size_of(const dolp::Device& device) {
   if (device.type != dolp::Device::Type::kCpu || device.subgroup_size == 0) return kLocalSize;
   return std::min(device.subgroup_size, kLocalSize);

@@ -15,10 +15,10 @@ constexpr std::uint32_t kBindingCount = 8;
 /// Most invocations of a workgroup; every device allows 128.
 constexpr std::uint32_t kLocalSize = 64;
 
-/// What the device offers, and whether dolp can run on it.
+/// Description of a device, including the reason if dolp cannot run on it.
 dolp::Device describe(VkPhysicalDevice physical);
 
-/// How the host shares a buffer with the device.
+/// Use of a buffer by host and device.
 enum class MemoryUse {
   kDeviceOnly,  ///< not mapped
   kUpload,      ///< mapped; written by the host

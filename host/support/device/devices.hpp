@@ -1,4 +1,4 @@
-// The Vulkan devices of this machine, and which of them is used.
+// The Vulkan devices of this machine, and the choice of one.
 #pragma once
 
 #include <dolp/device.hpp>
@@ -14,7 +14,7 @@ enum class ValidationMode {
   kOn,
 };
 
-/// Selects a device, and says how it is watched.
+/// Selects a device and its validation mode.
 struct DeviceSelector {
   std::string device = {};    ///< name or position, see choose_device
   bool needs_double = false;  ///< double precision in shaders
@@ -34,7 +34,7 @@ DeviceList list_devices();
 /// digits beyond the list) is a part of the name, in any case.
 /// The default is the first usable one (with double precision if `float64`) in the order discrete GPU, integrated GPU,
 /// virtual GPU, CPU, other; so is the pick among several devices that match a name.
-/// Errors: DeviceError that lists the devices when nothing matches, or says what the matching ones lack.
+/// Errors: DeviceError that lists the devices when nothing matches, or names the features that the matching ones lack.
 std::size_t choose_device(const std::vector<Device>& devices, const std::string& choice, bool float64);
 
 }  // namespace dolp

@@ -15,11 +15,11 @@ constexpr std::array kValidationExtensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
 constexpr const char* kNoDriver =
     "no Vulkan driver was found (on Debian, mesa-vulkan-drivers has one that needs no GPU; VK_DRIVER_FILES and "
     "VK_ICD_FILENAMES override the search)";
-// What the loader calls out of memory; where memory is that short the program ends by itself.
+// Message for a result that the loader calls out of memory; a program that short of memory would end by itself.
 constexpr const char* kDriverNotLoaded =
     "no Vulkan driver could be loaded: its file (VK_DRIVER_FILES, VK_ICD_FILENAMES, vulkan/icd.d) is malformed";
 
-/// The loader passes over a driver for which there are no addresses left.
+/// The loader skips a driver if the process has too little address space for it.
 [[noreturn]] void fail_without_driver() {
   if (lacks_addresses()) throw MemoryError("out of memory: too little is left to load a Vulkan driver");
   throw DeviceError(kNoDriver);

@@ -52,7 +52,7 @@ bool lacks_addresses() {
 void check(VkResult result, const std::string& action) {
   if (result == VK_SUCCESS) return;
   if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost("the Vulkan device was lost while " + action);
-  // Drivers that run out of addresses may call it anything.
+  // Drivers that run out of address space may return any error.
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY || lacks_addresses()) {
     throw MemoryError("out of memory: Vulkan: " + action + " failed: " + result_name(result));
   }

@@ -22,7 +22,7 @@ struct DeviceLost : DeviceError {
 /// The name of a result, e.g. "VK_ERROR_DEVICE_LOST".
 std::string result_name(VkResult result);
 
-/// Whether the process has no addresses left for what a driver takes.
+/// True if the process has too little address space left for a driver.
 bool lacks_addresses();
 
 /// Throws unless `result` is VK_SUCCESS; `action` is a gerund phrase.

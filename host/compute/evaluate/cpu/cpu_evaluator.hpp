@@ -1,4 +1,4 @@
-// Moments and pBRDFs by the shaders' own text on the CPU, on all its cores.
+// Moments and pBRDFs by the shaders' own source on the CPU, on all its cores.
 #pragma once
 
 #include "model/evaluator.hpp"
@@ -7,8 +7,8 @@
 
 namespace dolp {
 
-/// Evaluator "cpu": kernel and rules of the Vulkan evaluator, compiled by the C++ compiler. A request says in which
-/// precision; if it does not, `precision` does, and kAuto is float then.
+/// Evaluator "cpu": kernel and rules of the Vulkan evaluator, compiled by the C++ compiler. The request selects the
+/// precision; if it leaves the precision open, `precision` selects it, and kAuto means float.
 class CpuEvaluator final : public MomentsEvaluator, public ScatteringEvaluator {
  public:
   explicit CpuEvaluator(Precision precision) : precision_(precision) {}

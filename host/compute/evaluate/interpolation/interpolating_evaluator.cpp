@@ -22,7 +22,8 @@ bool is_finite(const Moments& m) {
          std::isfinite(m.r_i_error + m.r_q_error + m.albedo_error + m.deficit_error);
 }
 
-/// Fills in the moments of each direction and index whose nodes are finite. Returns which others are wanted.
+/// Fills in the moments of each direction and index whose nodes are finite. Returns 1 for
+/// each other wanted pair of direction and index, else 0.
 std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments> nodes, const MomentsRequest& request,
                                   std::span<Moments> moments) {
   const std::size_t of_nodes = plan.nodes_of_a_direction();

@@ -9,8 +9,8 @@
 
 namespace dolp {
 
-/// Another evaluator, asked for a basis of the indices (index_plan.hpp) and for the nodes of dense grids
-/// (shape_plan.hpp), and for all that is not dense.
+/// Wraps another evaluator, which computes a basis of the indices (index_plan.hpp), the nodes of dense grids
+/// (shape_plan.hpp) and all requests that are not dense.
 class InterpolatingEvaluator final : public MomentsEvaluator {
  public:
   explicit InterpolatingEvaluator(std::unique_ptr<MomentsEvaluator> evaluator) : evaluator_(std::move(evaluator)) {}

@@ -25,15 +25,15 @@ using profile_text::Text;
 
 namespace {
 
-// Pieces of a profile for distributions of many widths end at slopes that are so far apart, in e-folds.
+// Spacing of the ends of pieces, in e-folds of slope, in a profile for distributions of many widths.
 constexpr double kWidthStep = 1.3;
-// Widths so far apart are asked how many nodes they want.
+// Spacing of the widths, in e-folds, at which the number of nodes is determined.
 constexpr double kAskedStep = 0.4;
 
-// -ln of a share of the facets that is none.
+// -ln of a share of the facets that counts as zero.
 constexpr double kNoFacets = 80.0;
 
-// What a corner asks of a piece.
+// Requirements of one corner for the rule of a piece.
 struct SampleRequest {
   double all = 0.0;     // weight_of_shape of orders.glsl
   double digits = 0.0;  // of the piece
@@ -46,11 +46,11 @@ struct End {
   bool is_own = false;             // it is that breakpoint
 };
 
-// What the weights of a profile's slopes are made of, for all shapes of one width.
+// Factors of the weights of a profile's slopes, shared by all shapes of one width.
 struct SlopeWeights {
   double m = 0.0;
   Eigen::ArrayXd exponent;  // common_exponent of slope.glsl
-  Eigen::ArrayXd common;    // what no tail changes, but for a factor
+  Eigen::ArrayXd common;    // independent of the tail, up to a factor
 };
 
 // Shapes between which all of a profile's lie, with the scale and cut that the hardest of these needs: widths from the
@@ -93,7 +93,7 @@ struct Profiles::Impl {
 
   explicit Impl(const KernelData& of) : data(of), text(Text::of(of)), rule(std::bit_cast<Text::RuleNode>(of.rule)) {}
 
-  // The breakpoints of the direction below the cut, the cut's own, and one here and there among the shapes' widths.
+  // The breakpoints of the direction below the cut, the cut itself, and further ends among the shapes' widths.
   std::vector<End> ends_of(std::uint32_t theta, std::span<const kernel::ShapeNode> corners) {
     const kernel::ThetaNode& node = data.thetas[theta];
     const double cut = corners.front().cut;
@@ -134,7 +134,7 @@ struct Profiles::Impl {
     return task;
   }
 
-  // The piece as the hardest corner wants it, and how many digits each wants.
+  // The piece as the most demanding corner requires it, and the digits that each corner requires.
   Text::Piece hardest_piece(const Text::ThetaNode& theta, const Text::IndexNode& index,
                             std::span<const kernel::ShapeNode> corners, const Text::Task& task,
                             std::vector<SampleRequest>& requests) {
@@ -161,7 +161,7 @@ struct Profiles::Impl {
       slope.t = scale * hyperbolic.x;
       slope.dt = 2.0 * node.y * scale * hyperbolic.y * piece.extent * place.y;
       for (std::size_t j = 0; j < corners.size(); ++j) {
-        if (requests[j].digits <= slope.digits) continue;  // it wants no more than that
+        if (requests[j].digits <= slope.digits) continue;  // satisfied already
         const auto shape = std::bit_cast<Text::ShapeNode>(corners[j]);
         const double u = slope.t / shape.m;
         const double mass = Text::kPi * text.slope_density(shape, u, text.common_exponent(u)) * slope.dt / shape.m;
@@ -173,7 +173,7 @@ struct Profiles::Impl {
   }
 
   SlopeWeights weights_of(const Profile& profile, Text::ShapeNode shape) {
-    shape.q_minus_1 = 1.0;  // so that they do not depend on which shape asks
+    shape.q_minus_1 = 1.0;  // makes the weights independent of the shape
     const auto count = static_cast<Eigen::Index>(profile.slopes.size());
     SlopeWeights weights{shape.m, Eigen::ArrayXd(count), Eigen::ArrayXd(count)};
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -185,8 +185,8 @@ struct Profiles::Impl {
     return weights;
   }
 
-  // What a rule makes of a piece with `share` of the facets. Their share is known, so that the error which the density
-  // alone makes cancels, and with it every factor of the weights.
+  // Sum of a rule over a piece with `share` of the facets. Normalising by the known share cancels the error of the
+  // density alone and every common factor of the weights.
   static kernel::AzimuthNode sum_of(std::uint32_t first, std::uint32_t count, const Eigen::ArrayXd& own, double share,
                                     std::span<const kernel::AzimuthNode> samples) {
     using Samples = Eigen::Matrix<double, sizeof(kernel::AzimuthNode) / sizeof(double), Eigen::Dynamic>;
@@ -198,7 +198,7 @@ struct Profiles::Impl {
     return std::bit_cast<kernel::AzimuthNode>(sums);
   }
 
-  // The moments of one shape but for what lies beyond the cut; `own` is room for the weights.
+  // The moments of one shape without the slopes beyond the cut; `own` is scratch space for the weights.
   kernel::MomentsNode moments_of(const Profile& profile, const Text::ShapeNode& shape, const SlopeWeights& weights,
                                  std::span<const kernel::AzimuthNode> samples, Eigen::ArrayXd& own) {
     const double factor = text.exponent_factor(shape);

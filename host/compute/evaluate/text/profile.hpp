@@ -1,4 +1,4 @@
-// Where masking does not ask for the slope distribution, the sums over the azimuths at a slope serve every
+// Where masking does not depend on the slope distribution, the sums over the azimuths at a slope serve every
 // distribution: the profile of a direction and an index is these sums along the slope axis, and the moments of each
 // distribution are its integral with the distribution's own weights.
 #pragma once
@@ -15,7 +15,7 @@
 
 namespace dolp {
 
-/// Whether the moments of a request are integrals of profiles.
+/// True if the moments of a request are integrals of profiles.
 bool has_profiles(const MomentsRequest& request);
 
 /// A direction of a request and an index, with the shapes of which moments are wanted: positions in KernelData.
@@ -26,7 +26,7 @@ struct ProfileEntries {
   std::vector<std::uint32_t> shapes;
 };
 
-/// One slope of a rule, and the dt that it stands for.
+/// One slope of a rule, and its weight dt.
 struct ProfileSlope {
   double t = 0.0;
   double dt = 0.0;
@@ -58,13 +58,13 @@ class Profiles {
   ~Profiles();
 
   Profile plan(ProfileEntries entries) const;
-  /// Appends what the kernel reads, slope by slope.
+  /// Appends the kernel's input, slope by slope.
   void append(const Profile& profile, std::vector<kernel::SlopeNode>& nodes) const;
-  /// Puts the moments of the profile's shapes at the places of their entries in the request; `samples` has what the
-  /// kernel returned for each of its slopes, `unit_roundoff` is that of its precision.
+  /// Puts the moments of the profile's shapes at the places of their entries in the request; `samples` holds the
+  /// kernel's result for each of its slopes, `unit_roundoff` is that of its precision.
   void integrate(const Profile& profile, std::span<const kernel::AzimuthNode> samples, double unit_roundoff,
                  std::span<Moments> moments) const;
-  /// All three, with the kernel's text on the processor.
+  /// Plans, samples and integrates profiles with the kernel source compiled for the CPU.
   void compute(ProfileEntries entries, KernelText& text, double unit_roundoff, std::span<Moments> moments) const;
 
  private:
@@ -72,7 +72,7 @@ class Profiles {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What is wanted of the directions `first` to `last` - 1 of a request.
+/// The wanted entries of the directions `first` to `last` - 1 of a request.
 std::vector<ProfileEntries> profile_entries(const MomentsRequest& request, const KernelData& data, std::size_t first,
                                             std::size_t last);
 

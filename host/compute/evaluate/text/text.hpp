@@ -1,4 +1,4 @@
-// The shaders' own text compiled as C++, in float and in double: a translation unit for each precision.
+// The shaders' own source compiled as C++, in float and in double: a translation unit for each precision.
 #pragma once
 
 #include <cstddef>

@@ -23,13 +23,13 @@ using glm::sqrt;
 using glm::uint;
 using glm::uintBitsToFloat;
 
-// x 2^k for k of normal numbers, which is all the text asks for; the C library's takes ten times as long.
+// x 2^k where 2^k is a normal number, as the kernel source requires; the C library's ldexp takes ten times as long.
 inline float ldexp(float x, int k) { return x * std::bit_cast<float>((k + 127) << 23); }
 inline double ldexp(double x, int k) { return x * std::bit_cast<double>(static_cast<std::int64_t>(k + 1023) << 52); }
 
 #include "physics/prelude.glsl"
 
-/// The text as the body of a class; buffers and specialization constants are its members.
+/// The kernel source as the body of a class; buffers and specialization constants are its members.
 struct Text {
 #include "interface.glsl"
 #include "physics/all.glsl"

@@ -65,7 +65,7 @@ void CommandStream::create_timestamps() {
 }
 
 void CommandStream::begin() {
-  // An error may have left a recording behind.
+  // An error may have left a recording open.
   check(vkResetCommandBuffer(commands_, 0), "resetting commands");
   has_copies_ = false;
   const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
@@ -120,7 +120,7 @@ double CommandStream::submit_and_wait(double timeout_s) {
     throw DeviceTimeout("the Vulkan device did not finish a tile within " + std::to_string(timeout_s) + " s");
   }
   const double host_s = seconds_since(start);
-  if (result != VK_SUCCESS) vkDeviceWaitIdle(device_.get());  // what failed is the wait: the work may be under way
+  if (result != VK_SUCCESS) vkDeviceWaitIdle(device_.get());  // only the wait failed: the work may still be running
   const VkResult reset = vkResetFences(device_.get(), 1, &fence);
   check(result, "waiting for the device");
   check(reset, "resetting a fence");

@@ -11,7 +11,7 @@ namespace dolp::vulkan {
 class Buffer;
 class Kernels;
 
-/// Which accesses a barrier separates.
+/// The accesses that a barrier separates.
 enum class Barrier {
   kUploadToKernel,  ///< staging copies, then kernels read; without copies there is nothing to wait for
   kKernelToKernel,  ///< a kernel writes, the next ones read

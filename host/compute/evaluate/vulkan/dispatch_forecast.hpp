@@ -9,7 +9,7 @@
 
 namespace dolp {
 
-/// How a request is cut into dispatches.
+/// Division of a request into dispatches.
 struct DispatchForecast {
   std::uint32_t tile_invocations = 0;
   std::uint32_t block_shapes = 0;
@@ -20,13 +20,13 @@ struct DispatchForecast {
   std::uint64_t device_bytes = 0;  ///< bound of the memory of all buffers
 };
 
-/// What VulkanEvaluator does with a request on a device, by the code that it uses itself.
+/// Forecast of the dispatches of VulkanEvaluator for a request on a device, by the code that it uses itself.
 DispatchForecast dispatch_forecast(const MomentsRequest& request, const dolp::Device& device,
                                    const VulkanOptions& options = {});
 DispatchForecast dispatch_forecast(const ScatteringRequest& request, const dolp::Device& device,
                                    const VulkanOptions& options = {});
 
-/// The limits that every Vulkan device keeps, for plans without one. The heap is a guess.
+/// The limits that every Vulkan device guarantees, for plans without a device. The heap size is a guess.
 dolp::Device least_device();
 
 }  // namespace dolp

@@ -1,4 +1,4 @@
-// Buffers of what kernels read.
+// Input buffers of kernels.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ class CommandStream;
 /// copy from a staging buffer elsewhere.
 class InputBuffer {
  public:
-  /// `force_staging` takes the second way on every device.
+  /// `force_staging` uses the staging buffer on every device.
   InputBuffer(const Device& device, VkDeviceSize bytes, bool force_staging);
 
   VkBuffer get() const { return buffer_.get(); }

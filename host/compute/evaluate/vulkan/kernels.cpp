@@ -8,7 +8,7 @@
 namespace dolp::vulkan {
 namespace {
 
-/// The SPIR-V of a variant: every module that there is.
+/// The SPIR-V module of a variant.
 std::span<const std::uint32_t> module_of(const KernelVariant& variant, bool float64) {
   if (variant.entry == EntryPoint::kMaskingTable) {
     return float64 ? spirv::masking_table_double : spirv::masking_table_float;

@@ -22,7 +22,7 @@ constexpr std::uint32_t kPushConstantCount = 4;
 /// The entry points of shaders/*.comp.
 enum class EntryPoint { kMoments, kSlopes, kMaskingTable, kMueller };
 
-/// What a pipeline is compiled for: the specialization constants of interface.glsl, and the width of a row.
+/// Variant of a pipeline: the specialization constants of interface.glsl, and the width of a row.
 struct KernelVariant {
   EntryPoint entry = EntryPoint::kMoments;
   Distribution distribution = Distribution::kCauchy;
@@ -34,7 +34,7 @@ struct KernelVariant {
   auto operator<=>(const KernelVariant&) const = default;
 };
 
-/// The variants that a request's data wants.
+/// The variants that a request's data requires.
 KernelVariant moments_variant(const KernelData& data, std::uint32_t width);
 KernelVariant slopes_variant(const KernelData& data);
 KernelVariant masking_table_variant(const KernelData& data);
@@ -45,17 +45,17 @@ class Kernels {
   Kernels(const Device& device, bool float64);
 
   /// Binds one storage buffer to each binding of interface.glsl, whole. A binding without one, which the pipelines to
-  /// run do not read, gets any of the others, so that none keeps a buffer that is gone.
+  /// run do not read, gets any of the other buffers, so that no binding refers to a destroyed buffer.
   void bind(std::array<VkBuffer, kBindingCount> buffers);
 
   VkPipeline pipeline(const KernelVariant& variant);
-  /// Whether a pipeline is there already.
+  /// True if the pipeline exists already.
   bool has(const KernelVariant& variant) { return known(variant) != VK_NULL_HANDLE; }
   std::uint32_t local_size() const { return device_.local_size(); }
   VkPipelineLayout layout() const { return layout_.get(); }
   VkDescriptorSet descriptor_set() const { return set_; }
 
-  /// A pipeline of any module that keeps to interface.glsl.
+  /// Creates a pipeline of any module with the interface of interface.glsl.
   UniquePipeline create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const;
 
  private:

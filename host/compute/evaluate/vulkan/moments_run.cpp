@@ -13,7 +13,7 @@ using TaskWords = std::array<std::uint32_t, 4>;
 using MaskingNode = std::array<double, 4>;
 using RulePoint = std::array<double, 2>;
 
-// What a thread takes at a time.
+// Rows that a thread processes at a time.
 constexpr std::size_t kRowsAtOnce = 512;
 
 }  // namespace
@@ -158,7 +158,7 @@ void MomentsRun::add_pieces(std::span<const RowPiece> pieces, std::span<kernel::
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     cost_.evaluations += context_.packing.read<kernel::MomentsNode>(scratch_, i * rows_.width).evaluations;
   }
-  // The pieces of a row are summed in their order, whoever does it: each range has its rows.
+  // Each range owns its rows, so that the pieces of a row are summed in their order on any thread.
   const auto [least, most] = std::ranges::minmax(pieces, {}, &RowPiece::row);
   const std::uint32_t first_row = least.row;
   parallel_ranges(most.row - least.row + std::size_t{1}, kRowsAtOnce, [&](std::size_t first, std::size_t last) {

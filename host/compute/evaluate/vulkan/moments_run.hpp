@@ -16,7 +16,7 @@
 
 namespace dolp::vulkan {
 
-/// What a run works with; it outlives the run.
+/// Objects that a run uses; they outlive the run.
 struct KernelContext {
   const Device& device;
   Kernels& kernels;
@@ -26,7 +26,7 @@ struct KernelContext {
   double tile_timeout_s = 0.0;
 };
 
-/// What a run cost so far.
+/// Cost of a run so far.
 struct RunCost {
   std::uint64_t dispatches = 0;
   double evaluations = 0.0;
@@ -40,7 +40,7 @@ class MomentsRun {
   MomentsRun(const KernelContext& context, const MomentsRequest& request, std::uint32_t tile_invocations,
              std::uint32_t block_shapes);
 
-  /// Before the computation, so that its time is known apart.
+  /// Creates the pipelines before the computation, so that their time is measured separately.
   void create_pipelines();
 
   /// The wanted moments at the places of their entries; nothing when `progress` returned false. Errors: DeviceError.
@@ -51,7 +51,7 @@ class MomentsRun {
  private:
   TileSizes sizes(std::uint32_t tile_invocations, std::uint32_t block_shapes) const;
   void create_buffers();
-  /// Begins a submission with what all tiles of a block need; the first tile goes on with it.
+  /// Begins a submission with the inputs that all tiles of a block share; the first tile continues it.
   void begin_block(const Block& block);
   void upload_tile(const Block& block, std::span<const RowPiece> pieces);
   void run_tile(const Block& block, std::span<const RowPiece> pieces, std::span<kernel::MomentsNode> results);

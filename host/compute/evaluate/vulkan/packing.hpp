@@ -37,7 +37,7 @@ class Packing {
     return float64_ ? DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE)
                     : DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT);
   }
-  /// Relative spacing of the numbers, halved.
+  /// Half of the relative spacing of the numbers.
   double unit_roundoff() const { return float64_ ? 0x1p-53 : 0x1p-24; }
 
   /// Appends one structure; numbers beyond the range of float become infinite.
@@ -47,7 +47,7 @@ class Packing {
     write(node, std::span(bytes).last(node_bytes<Node>()));
   }
 
-  /// Makes `bytes` the structures node_of(0), ..., node_of(count - 1), in any order, on all cores.
+  /// Fills `bytes` with the structures node_of(0), ..., node_of(count - 1), on all cores, evaluated in any order.
   template <class NodeOf>
   void pack(std::size_t count, const NodeOf& node_of, std::vector<std::byte>& bytes) const {
     constexpr std::size_t kNodesAtOnce = 8192;

@@ -13,8 +13,8 @@ namespace {
 // Bounds the memory of a batch: some hundred slopes each.
 constexpr std::size_t kProfilesAtOnce = 1024;
 
-// The samples in the order for the device: those that run in lockstep have the same bounds of their loops. The gaps are
-// filled with the sample before, once more.
+// The samples in the order for the device: samples that run in lockstep have the same loop bounds. Copies of the sample
+// before a gap fill the gap.
 std::vector<std::uint32_t> in_lockstep(const ProfileBatch& batch, const KernelData& data) {
   std::map<std::uint16_t, std::vector<std::uint32_t>> by_bound;
   for (std::size_t i = 0; i < batch.profiles.size(); ++i) {

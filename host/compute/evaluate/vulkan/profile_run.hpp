@@ -12,10 +12,10 @@
 
 namespace dolp::vulkan {
 
-/// Profiles that are planned, sampled and integrated together, with what the kernel reads of them.
+/// Profiles that are planned, sampled and integrated together, with the kernel's input for them.
 struct ProfileBatch {
   std::vector<Profile> profiles;
-  std::vector<std::size_t> first;          ///< of each profile its first sample
+  std::vector<std::size_t> first;          ///< first sample of each profile
   std::vector<kernel::SlopeNode> slopes;   ///< in the order of the samples
   std::vector<std::uint32_t> in_lockstep;  ///< the order for the device, with gaps filled: positions of samples
 };
@@ -24,7 +24,7 @@ struct ProfileBatch {
 ProfileBatch profile_batch(const MomentsRequest& request, const KernelData& data, const Profiles& profiles,
                            std::size_t first, std::size_t last);
 
-/// Directions of a batch, such that its samples take little memory.
+/// Number of directions in a batch that keeps the memory of its samples small.
 std::size_t batch_directions(const KernelData& data);
 
 /// Owns the buffers of one request and computes it.
@@ -33,7 +33,7 @@ class ProfileRun {
   /// `tile_slopes` bounds the invocations of a dispatch from above.
   ProfileRun(const KernelContext& context, const MomentsRequest& request, std::uint32_t tile_slopes);
 
-  /// Before the computation, so that its time is known apart.
+  /// Creates the pipeline before the computation, so that its time is measured separately.
   void create_pipelines() { context_.kernels.pipeline(slopes_variant(data_)); }
 
   /// The wanted moments at the places of their entries; nothing when `progress` returned false. Errors: DeviceError.
@@ -45,7 +45,7 @@ class ProfileRun {
   void create_buffers();
   template <class NodeOf>
   void upload(InputBuffer& buffer, std::size_t count, const NodeOf& node_of);
-  /// Records it, for the first tile to go on with.
+  /// Records the upload; the first tile continues the recording.
   void upload_rule();
   void run_tile(const ProfileBatch& batch, std::span<const std::uint32_t> slopes,
                 std::span<kernel::AzimuthNode> samples);

@@ -14,7 +14,7 @@ namespace dolp::vulkan {
 KernelVariant mueller_variant(const ScatteringRequest& request);
 
 /// Owns the buffers of one request and computes it. Entries bring their own shapes and need no tables, so that a tile's
-/// size bounds the memory whatever the shapes are.
+/// size bounds the memory for any shapes.
 class ScatteringRun {
  public:
   /// `tile_entries` bounds the size of a tile from above.
@@ -27,7 +27,7 @@ class ScatteringRun {
  private:
   std::uint32_t tile_size(std::uint32_t tile_entries) const;
   void create_buffers();
-  /// Records them, for the first tile to go on with.
+  /// Records the upload; the first tile continues the recording.
   void upload_rule_nodes();
   void run_tile(std::span<const ScatteringEntry> entries, std::span<ScatteringMatrix> matrices);
 

@@ -1,4 +1,4 @@
-// How a request is cut for the device. Pure: no Vulkan.
+// Division of a request into tiles and blocks for the device. Pure: no Vulkan.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace dolp::vulkan {
 
-/// What the device and the options allow.
+/// Limits set by the device and the options.
 struct TileLimits {
   std::uint64_t buffer_bytes = 0;      ///< of one storage buffer
   std::uint64_t heap_bytes = 0;        ///< of the device's memory
@@ -38,7 +38,7 @@ TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs);
 /// Bytes of a piece of a row, and of a shape, of the moments in a precision.
 TileCosts tile_costs(const Packing& packing, std::uint32_t width);
 
-/// The same of the pBRDFs, whose entries bring their own shapes.
+/// The same costs for pBRDFs, whose entries bring their own shapes.
 TileCosts scattering_tile_costs(const Packing& packing);
 
 /// Invocations that may run in lockstep on a device that bounds their loops, so that each waits for the longest: the

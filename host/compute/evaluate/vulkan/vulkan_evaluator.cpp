@@ -59,7 +59,7 @@ class VulkanEvaluator::Impl {
         context_({options.device, options.needs_double || options.precision == Precision::kDouble, options.validation}),
         stream_(context_.device()) {}
 
-  /// Whether a request is to be computed in double.
+  /// True if a request is to be computed in double.
   bool in_double(Precision requested) const {
     return (requested == Precision::kAuto ? options_.precision : requested) == Precision::kDouble;
   }
@@ -67,8 +67,8 @@ class VulkanEvaluator::Impl {
   std::vector<std::string> validation_messages() const { return context_.validation_messages(); }
   const VulkanOptions& options() const { return options_; }
 
-  /// Gives up what the last request left on the device and takes a part of its tiles from now on; false where they are
-  /// as small as is sensible.
+  /// Releases the buffers of the last request and uses smaller tiles from now on; false where the tiles are already as
+  /// small as is sensible.
   bool shrink_tiles() {
     run_.reset();
     profile_run_.reset();
@@ -79,7 +79,7 @@ class VulkanEvaluator::Impl {
     return true;
   }
 
-  /// Computes a request and adds what it cost to `report`. After a DeviceTimeout this object must not be destroyed.
+  /// Computes a request and adds its cost to `report`. After a DeviceTimeout this object must not be destroyed.
   std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
     const vulkan::KernelContext context = context_for(request.precision);
     if (has_profiles(request)) {
@@ -124,7 +124,7 @@ class VulkanEvaluator::Impl {
     report.setup_s += seconds_since(start);
   }
 
-  /// Ends a run: its cost, its buffers, and what the validation layer had to say.
+  /// Ends a run: adds its cost, frees its buffers and checks the messages of the validation layer.
   template <class Run, class Result>
   std::vector<Result> finish(std::optional<Run>& run, std::optional<std::vector<Result>> results, Precision requested,
                              EvaluationReport& report) {
@@ -188,7 +188,7 @@ std::vector<Result> VulkanEvaluator::compute(const Request& request, const Progr
     try {
       return impl_->compute(request, progress, report_);
     } catch (const vulkan::DeviceTimeout&) {
-      // Vulkan forbids destroying what a submission still uses, so all of it is left to the end of the process.
+      // Vulkan forbids destroying objects that a submission still uses, so they all live until the end of the process.
       static_cast<void>(impl_.release());
       throw;
     } catch (const vulkan::DeviceLost&) {

@@ -15,9 +15,9 @@ namespace dolp {
 
 struct VulkanOptions {
   std::string device;  ///< name or position, see choose_device
-  /// Of requests that leave it open: kAuto is float. kDouble also asks for a device that has it.
+  /// Precision of requests that leave it open: kAuto means float. kDouble also requires a device with double precision.
   Precision precision = Precision::kAuto;
-  bool needs_double = false;  ///< a device that has double precision, whatever the precision of a request
+  bool needs_double = false;  ///< requires double precision of the device, for any precision of a request
   /// Any message of the layer makes `evaluate` throw DeviceError.
   ValidationMode validation = ValidationMode::kFromEnvironment;
   // The results depend on none of these.
@@ -30,8 +30,8 @@ struct VulkanOptions {
 /// Computes moments and pBRDFs with the kernels of shaders/. Device and pipelines live as long as the object.
 class VulkanEvaluator : public MomentsEvaluator, public ScatteringEvaluator {
  public:
-  /// Errors: DeviceError when there is no usable device, `device` matches none, it has no double precision and that
-  /// is wanted, or the validation layer is wanted and missing.
+  /// Errors: DeviceError when there is no usable device, `device` matches none, it lacks a required double
+  /// precision, or the validation layer is requested and missing.
   explicit VulkanEvaluator(const VulkanOptions& options);
   ~VulkanEvaluator() override;
 
@@ -41,7 +41,7 @@ class VulkanEvaluator : public MomentsEvaluator, public ScatteringEvaluator {
   /// small tiles do not fit; Cancelled when `progress`, called after each tile, returns false.
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
 
-  /// Creates the pipeline in the background; what fails there fails again in `scatter`.
+  /// Creates the pipeline in the background; an error there occurs again in `scatter`.
   void prepare(const ScatteringRequest& request) override;
 
   /// Errors: those of evaluate.

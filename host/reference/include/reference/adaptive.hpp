@@ -23,7 +23,7 @@ struct Integral {
   Values<N> error{};
 };
 
-/// Where a quadrature stops.
+/// Stop criterion of a quadrature.
 struct Goal {
   double relative = 1e-9;        ///< of the scale of each integral
   std::size_t max_panels = 400;  ///< beyond it the error reached so far is returned as it is

@@ -24,7 +24,7 @@ double smith_lambda(const Slopes& slopes, const Zenith& zenith);
 /// Accuracy: `tolerance` absolute.
 class IntegralMasking {
  public:
-  /// Fixes the zenith angle and integrates what does not depend on alpha.
+  /// Fixes the zenith angle and integrates the terms that do not depend on alpha.
   IntegralMasking(const Slopes& slopes, const Zenith& zenith, double tolerance);
   double operator()(double alpha_rad) const;
 

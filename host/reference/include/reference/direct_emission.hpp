@@ -1,4 +1,4 @@
-// What facets emit straight to the viewer.
+// Emission of the facets straight to the viewer.
 #pragma once
 
 #include "model/moments.hpp"

@@ -7,7 +7,7 @@
 
 namespace dolp::reference {
 
-/// Amplitude coefficients and what is absorbed, without cancellation.
+/// Amplitude coefficients and absorptances, without cancellation.
 struct FresnelCoefficients {
   std::complex<double> r_s;
   std::complex<double> r_p;

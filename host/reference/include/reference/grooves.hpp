@@ -11,7 +11,7 @@ namespace dolp::reference {
 ///
 /// Equation: r = int P t dt dphi sum_k w_k |E_k|^2 over the facets that are met first, w_k the flux that leaves a
 ///   groove after k bounces over half of its width, |E_k|^2 the intensity then, the mean of that of s and of p light;
-///   the deficit is the sum of what each bounce absorbs.
+///   the absorbed part is the sum over the absorption of all bounces.
 /// Domain: theta in [0, 90] degrees; at 90 all are 0, the limit.
 /// Accuracy: the errors returned, those of `refinement` but where many steep grooves reflect much, which is too much
 ///   work: metals reach 1e-8 to 1e-4 of r_i, total reflection at q close to 1 nothing. Grooves steeper than the last
@@ -20,14 +20,14 @@ namespace dolp::reference {
 Moments groove_moments(const Slopes& slopes, double theta_deg, const OpticalConstants& constants,
                        const Refinement& refinement);
 
-/// What happens to the light that enters one groove, over both facets. All are over the width of the aperture, which
-/// makes the albedo cos(theta).
+/// Balance of the light that enters one groove, over both facets. All values are per width of the aperture, so that the
+/// albedo is cos(theta).
 struct GrooveLight {
   double albedo = 0.0;          ///< flux that leaves if nothing is absorbed
   double reflected = 0.0;       ///< I that leaves, for unpolarised light
-  double polarised = 0.0;       ///< Q: half of what leaves for s light less half of that for p light
+  double polarised = 0.0;       ///< Q: half of the light that leaves for s light less half of that for p light
   double absorbed = 0.0;        ///< by all bounces
-  double lost = 0.0;            ///< I of what has been followed too far, neither reflected nor absorbed
+  double lost = 0.0;            ///< I of light after the last bounce followed, neither reflected nor absorbed
   double once_reflected = 0.0;  ///< I that leaves after one bounce
   double once_absorbed = 0.0;   ///< by first bounces
   double bounces = 0.0;         ///< followed

@@ -9,7 +9,7 @@
 
 namespace dolp::reference {
 
-/// How finely the integrals are done; two different settings give two nearly independent values.
+/// Accuracy of the integrals; two different settings give two nearly independent values.
 struct Refinement {
   double relative_tolerance = 1e-9;  ///< of r_i, albedo and absorbed part; r_q is within this times r_i
   int subdivisions = 1;              ///< equal parts of each first panel
@@ -26,7 +26,7 @@ Zenith zenith_from_deg(double theta_deg);
 Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
                            const Refinement& refinement);
 
-/// The moments of the mirror that sigma = 0 stands for, its direct emission included.
+/// The moments of the mirror, the case sigma = 0, its direct emission included.
 Moments mirror_moments(double theta_deg, const OpticalConstants& constants);
 
 }  // namespace dolp::reference

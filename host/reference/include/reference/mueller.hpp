@@ -32,8 +32,8 @@ ReferenceMueller reference_scattering(const Surface& surface, const OpticalConst
 ReferenceMueller reference_bounces(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
                                 double theta_r_deg, double delta_phi_deg, int bounces);
 
-/// Their sum, and a bound of what is left out of it: nothing but for theta_i close to theta_r, where beams of any
-/// number of bounces contribute.
+/// The sum over all bounces, and a bound of its truncation error: 0 except for theta_i close to theta_r, where beams of
+/// any number of bounces contribute.
 struct BouncesSum {
   ReferenceMueller matrix{};
   double error = 0.0;

@@ -1,5 +1,5 @@
-// Moments and pBRDFs by adaptive quadrature over the other direction: slow, independent of the shaders, and with honest
-// errors.
+// Moments and pBRDFs by adaptive quadrature over the other direction: slow, independent of the shaders, with error
+// bounds.
 #pragma once
 
 #include <vector>
@@ -15,7 +15,7 @@ struct ReferenceOptions {
   double relative_tolerance = 1e-9;
   /// Equal parts of each first panel of the quadratures: 2 recomputes with other nodes.
   int subdivisions = 1;
-  /// 0: as many as the machine runs at once.
+  /// 0: as many as the machine has hardware threads.
   unsigned threads = 0;
 };
 
@@ -30,7 +30,7 @@ struct ReferenceOptions {
 ///   of the quadratures plus rounding (test ReferenceMoments_CoarseQuadrature_StaysWithinItsErrors).
 /// Domain: theta in [0, 90] degrees; sigma >= 0; cauchy q > 1, with smith masking q > 3/2; n > 0, k >= 0. At 90 degrees
 ///   all four moments are the limits: 0 for v-cavity and smith, finite for the others but infinite (with infinite
-///   errors; r_q and deficit negative) for cauchy with q <= 3/2.
+///   errors; r_q and the absorbed part negative) for cauchy with q <= 3/2.
 ///   Multiple scattering is for v-cavity masking, direct emission for v-cavity and smith.
 /// Errors: InputError outside the domain; Cancelled when `progress` returns false.
 class ReferenceEvaluator final : public MomentsEvaluator, public ScatteringEvaluator {

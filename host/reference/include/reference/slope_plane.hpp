@@ -2,8 +2,8 @@
 //
 // A slope has the length t and the angle chi from the normal of the plane of incidence, sin(chi) = cos(phi). What faces
 // A at phi faces B at phi + 180 degrees, and left and right of the plane of incidence are alike, so that chi runs over
-// a quarter of a turn. Where the integrand bends is not computed but watched: its `regime`, a number that stands for
-// the list of what happens to the beams, changes there, and bisection finds the place.
+// a quarter of a turn. The bends of the integrand are not computed but detected: its `regime`, a number that encodes
+// the history of the beams, changes there, and bisection finds the place.
 #pragma once
 
 #include <algorithm>
@@ -36,13 +36,13 @@ inline SlopePoint slope_point(double t, double chi_rad) { return {t, std::sin(ch
 /// Numbers that differ where the integrand is on different sides of a bend.
 using Regime = std::function<std::uint64_t(const SlopePoint&)>;
 
-/// How closely chi is scanned, beside a dozen equal steps.
+/// Steps of the scan of chi, in addition to a dozen equal steps.
 struct ScanSteps {
   double per_gamma = 0.0;  ///< equal steps of the view's angle in the plane across the groove, per its half-angle gamma
   int halvings = 0;        ///< steps toward chi = 0, each half of the one before
 };
 
-/// Where the integrands of a view bend, by scanning and bisecting a regime.
+/// Finds the bends of the integrands of a view, by scanning and bisecting a regime.
 class RegimeScan {
  public:
   RegimeScan(const Zenith& view, double theta_rad, const ScanSteps& steps, Regime regime)
@@ -79,7 +79,7 @@ class SlopeAxis {
   const Slopes& slopes_;
 };
 
-/// What an integral over slopes needs to know of its integrand.
+/// Description of the integrand of an integral over slopes.
 template <std::size_t N>
 struct SlopeTask {
   std::function<Values<N>(const SlopePoint&)> integrand;
@@ -88,7 +88,7 @@ struct SlopeTask {
   double bends_end;                                   ///< t up to which bends are looked for, at most the upper end
   double thin_weight;                                 ///< rows of less weight per v may be as far off as those of it
   std::function<double()> work;                       ///< done so far, in any unit
-  double most_work;                                   ///< beyond it nothing is refined any more
+  double most_work;                                   ///< beyond it no integral is refined
 };
 
 /// int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi of N functions; the errors of the inner integrals follow as N

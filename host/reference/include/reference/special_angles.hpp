@@ -1,4 +1,4 @@
-// Where the Fresnel coefficients bend.
+// Angles at which the Fresnel coefficients bend.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,7 @@ class SpecialAngles {
       : brewster_(1.0 / std::hypot(1.0, constants.n, constants.k)),
         critical_(constants.n < 1.0 ? std::sqrt(1.0 - constants.n * constants.n) : 0.0) {}
 
-  /// Which of them cos(beta) is beyond: 0 to 3.
+  /// Code of the angles that cos(beta) is beyond: 0 to 3.
   std::uint64_t side(double cos_beta) const {
     return (cos_beta < brewster_ ? 1U : 0U) + (cos_beta < critical_ ? 2U : 0U);
   }

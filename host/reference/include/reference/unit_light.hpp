@@ -30,7 +30,7 @@ inline UnitLight unit_light(const SlopePoint& point, const Vector<double>& k) {
   return {{s[0], s[1], s[2]}, {p[0], p[1], p[2]}};
 }
 
-/// Reflects a wave of a beam; returns what is absorbed of it.
+/// Reflects a wave of a beam; returns the absorbed part of it.
 inline double reflect(const Bounce<double>& b, const FresnelCoefficients& r, Electric& e) {
   const Amplitudes<std::complex<double>> incident = components(b, e);
   e = reflected(b, incident, {r.r_s, r.r_p});

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kRowsAtOnce = std::size_t{1} << 17U;  // that a .csv or .npy is made of
+constexpr std::size_t kConvertedRowsAtOnce = std::size_t{1} << 17U;  // that a .csv or .npy is made of
 
 // Beside the file itself, not beside a link to it, which may be on another file system.
 fs::path partial_path(const fs::path& path) { return follow_links(path).string() + ".partial"; }
@@ -101,7 +101,7 @@ struct TableOutput::Impl {
     put(table_start(job.layout, format));
     if (!store) put(table_rows(only_part, job.layout, format));
     if (store) {
-      for (const TableBox& box : boxes_in_order(job.layout.head.counts(), kRowsAtOnce))
+      for (const TableBox& box : boxes_in_order(job.layout.head.counts(), kConvertedRowsAtOnce))
         put(table_rows(store->read(box), job.layout, format));
     }
     if (target) target->commit();

@@ -14,7 +14,7 @@
 namespace dolp {
 namespace {
 
-constexpr double kTolerance = 1e-3;
+constexpr double kGapTolerance = 1e-3;
 constexpr std::size_t kGapMoments = 64;  // at most, but of one entry
 
 bool has_gap(const SceneValues& scene, const EffectPlan& plan) {
@@ -26,7 +26,7 @@ bool has_gap(const SceneValues& scene, const EffectPlan& plan) {
 std::vector<PointResult> results_with(SceneValues scene, EmissionModel model, const SceneEntries& entries) {
   scene.emission->model = model;
   scene.emission->has_bracket = false;
-  scene.accuracy = {.tolerance = kTolerance};
+  scene.accuracy = {.tolerance = kGapTolerance};
   CpuEvaluator evaluator(scene.accuracy.precision);
   return evaluate_scene(scene, entries, evaluator, {});
 }

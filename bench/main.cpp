@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <string>
 #ifdef __GLIBC__
-#include <dolp/errors.hpp>
 #include <malloc.h>
+#include <dolp/errors.hpp>
 #endif
 
 #include "studies/study.hpp"

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <dolp/errors.hpp>
 
-
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"

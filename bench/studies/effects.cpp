@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include <dolp/status.hpp>
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/choices.hpp"
-#include <dolp/status.hpp>
 #include "plan/effects.hpp"
 #include "run/scene_run.hpp"
 #include "studies/effect_cases.hpp"

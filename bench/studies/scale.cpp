@@ -55,8 +55,9 @@ std::vector<std::string> grid_of(const Size& size) {
   const auto axis = [](const char* key, double from, double to, std::size_t count) {
     return fmt::format("grid.{}={{from={}, to={}, count={}}}", key, from, count == 1 ? from : to, count);
   };
-  return {"--set", axis("wavelength_um", 8.0, 12.0, size.wavelengths), "--set", axis("n", 1.3, 4.0, size.n), "--set",
-          axis("k", 0.05, 1.0, size.k)};
+  return {"--set", axis("wavelength_um", 8.0, 12.0, size.wavelengths),
+          "--set", axis("n", 1.3, 4.0, size.n),
+          "--set", axis("k", 0.05, 1.0, size.k)};
 }
 
 /// A temporary folder, removed at the end.
@@ -147,14 +148,10 @@ ordered_json shards_row(const StudyOptions& options, const Size& size, std::size
   const auto join = std::chrono::steady_clock::now();
   merge.insert(merge.end(), {"-o", folder.at("t.nc"), "--quiet"});
   if (count > 1) peak_bytes(start(merge));
-  return {{"method", "dolp table"},
-          {"case", "shards"},
-          {"setting", std::to_string(count)},
-          {"entries", size.entries()},
-          {"time_s", time_s},
-          {"merge_time_s", count > 1 ? seconds_since(join) : 0.0},
-          {"peak_bytes", peak},
-          {"raw_times_s", {time_s}}};
+  return {
+      {"method", "dolp table"},    {"case", "shards"},       {"setting", std::to_string(count)},
+      {"entries", size.entries()}, {"time_s", time_s},       {"merge_time_s", count > 1 ? seconds_since(join) : 0.0},
+      {"peak_bytes", peak},        {"raw_times_s", {time_s}}};
 }
 
 void measure_tables(StudyRun& run) {
@@ -187,8 +184,6 @@ std::string text_of(const ordered_json& result) {
 
 }  // namespace
 
-void run_scale(const StudyOptions& options) {
-  run_study(options, {.measure = measure_tables, .table_text = text_of});
-}
+void run_scale(const StudyOptions& options) { run_study(options, {.measure = measure_tables, .table_text = text_of}); }
 
 }  // namespace dolp::bench

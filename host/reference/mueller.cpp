@@ -181,8 +181,8 @@ Number along(const RealVector<Number>& a, const std::array<Number, 3>& e) {
 
 // f^(k) cos(theta_i) cos(theta_r) of the beams that meet A of one groove plane first, `Number` being complex.
 template <class Number>
-ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const OpticalConstants& constants, const BeamFrame& in,
-                               const BeamFrame& out, const GroovePlane& plane, int bounces) {
+ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const OpticalConstants& constants,
+                                  const BeamFrame& in, const BeamFrame& out, const GroovePlane& plane, int bounces) {
   using Part = typename Number::value_type;
   const Real gamma = plane.gamma(bounces);
   if (gamma <= 0 || 2 * gamma >= boost::math::constants::pi<Real>()) return {};
@@ -242,7 +242,7 @@ ReferenceMueller not_a_number() {
 }  // namespace
 
 ReferenceMueller reference_bounces(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
-                                double theta_r_deg, double delta_phi_deg, int bounces) {
+                                   double theta_r_deg, double delta_phi_deg, int bounces) {
   const GroovePair pair(theta_i_deg, theta_r_deg, delta_phi_deg);
   if (pair.is_mirrored()) return not_a_number();
   return pair.term(reference::Slopes(surface.distribution, surface.sigma, surface.q), constants, bounces);
@@ -272,7 +272,7 @@ BouncesSum reference_all_bounces(const Surface& surface, const OpticalConstants&
 }
 
 ReferenceMueller reference_scattering(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
-                                   double theta_r_deg, double delta_phi_deg) {
+                                      double theta_r_deg, double delta_phi_deg) {
   if (surface.scattering == Scattering::kMultiple) {
     return reference_all_bounces(surface, constants, theta_i_deg, theta_r_deg, delta_phi_deg).matrix;
   }
@@ -292,7 +292,7 @@ ReferenceMueller reference_scattering(const Surface& surface, const OpticalConst
 }
 
 ReferenceMueller reference_pbrdf(const Surface& surface, const OpticalConstants& constants, double theta_i_deg,
-                              double theta_r_deg, double delta_phi_deg) {
+                                 double theta_r_deg, double delta_phi_deg) {
   const double cosines = reference::zenith_from_deg(theta_i_deg).cos * reference::zenith_from_deg(theta_r_deg).cos;
   return scaled_matrix(reference_scattering(surface, constants, theta_i_deg, theta_r_deg, delta_phi_deg),
                        1.0 / cosines);

@@ -217,7 +217,7 @@ std::vector<ScatteringMatrix> ReferenceEvaluator::scatter(const ScatteringReques
   check(request);
   const auto start = std::chrono::steady_clock::now();
   ThreadPool<ScatteringMatrix> pool(request.entries.size(),
-                              [&](std::size_t i) { return matrix_of(request, request.entries[i]); });
+                                    [&](std::size_t i) { return matrix_of(request, request.entries[i]); });
   std::vector<ScatteringMatrix> results = pool.run(thread_count(options_, request.entries.size()), progress);
   note(seconds_since(start));
   return results;

@@ -1,12 +1,12 @@
 // The choice of a device from a list.
 #include <gtest/gtest.h>
 
-#include <string>
-#include <vector>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <dolp/errors.hpp>
+#include <string>
+#include <vector>
 
 #include "device/devices.hpp"
 

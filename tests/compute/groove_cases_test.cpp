@@ -9,8 +9,8 @@
 #include <tuple>
 #include <vector>
 
-#include "model/angles.hpp"
 #include <dolp/status.hpp>
+#include "model/angles.hpp"
 #include "properties_support.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene_reader.hpp"
@@ -143,8 +143,7 @@ TEST(GrooveScenes, RandomEntriesUpToTheHorizon_ArePhysical) {
       for (const Point& point : points) {
         const PointResult r = result_at(scene, point);
         const std::string where = text_of(point);
-        EXPECT_EQ(r.status & (kReflectanceOutsideZeroToOne | kIntensityNotPositive | kOutsideModelDomain), 0U)
-            << where;
+        EXPECT_EQ(r.status & (kReflectanceOutsideZeroToOne | kIntensityNotPositive | kOutsideModelDomain), 0U) << where;
         EXPECT_NEAR(r[Quantity::kAlbedo], 1.0, kRounding) << where;
         EXPECT_TRUE(r[Quantity::kRhoI] >= 0.0 && r[Quantity::kRhoI] <= 1.0 + kRounding)
             << where << " rho_I " << r[Quantity::kRhoI];

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include <dolp/status.hpp>
 #include "calibrate/random_entries.hpp"
 #include "model/angles.hpp"
-#include <dolp/status.hpp>
 #include "mueller_support.hpp"
 #include "properties_support.hpp"
 #include "reference/reference_evaluator.hpp"

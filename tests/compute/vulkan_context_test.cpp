@@ -1,6 +1,6 @@
 // The choice of a device, under the validation layer.
-#include <dolp/errors.hpp>
 #include <gtest/gtest.h>
+#include <dolp/errors.hpp>
 
 #include "device/context.hpp"
 

@@ -233,7 +233,8 @@ TEST(SceneOverride_RandomNumbers, ArriveBitForBit) {
   std::uniform_real_distribution<double> exponent(-300.0, 6.0);
   for (int trial = 0; trial < kTrials; ++trial) {
     const double value = std::pow(10.0, exponent(random));
-    const SceneValues scene = parse(kMinimal, {"surface.n=" + format_number(value), "surface.k=" + format_number(value)});
+    const SceneValues scene =
+        parse(kMinimal, {"surface.n=" + format_number(value), "surface.k=" + format_number(value)});
     EXPECT_EQ(scene.surface.material.constant.n, value);
     EXPECT_EQ(scene.surface.material.constant.k, value);
   }

@@ -9,7 +9,6 @@
 #include <fstream>
 #include <string>
 
-
 namespace dolp::fuzz {
 
 /// The reader of one fuzzer. Anything but a return is a finding.

@@ -5,8 +5,8 @@
 #include <iostream>
 #include <map>
 
-#include "effects_support.hpp"
 #include <dolp/status.hpp>
+#include "effects_support.hpp"
 
 namespace dolp {
 namespace {

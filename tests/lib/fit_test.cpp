@@ -1,6 +1,6 @@
 // Fits: known truths found again, intervals against closed forms and against synthetic measurements.
-#include "scene/scene_reader.hpp"
 #include "fit/fit.hpp"
+#include "scene/scene_reader.hpp"
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ FitRange number(const std::string& key, double low, double high) { return {key, 
 class FitTest : public testing::Test {
  protected:
   MeasuredData measured(double noise, const std::vector<std::string>& overrides = {}, bool has_uncertainties = true,
-                   int points = 20, std::uint64_t seed = 7) {
+                        int points = 20, std::uint64_t seed = 7) {
     MeasuredData data;
     data.name = "synthetic";
     data.zenith_column = "theta_deg";
@@ -48,7 +48,8 @@ class FitTest : public testing::Test {
       data.measurements.push_back({.observable = Observable::kQOverI, .theta_deg = 80.0 * (i + 1) / points});
       if (has_uncertainties) data.measurements.back().uncertainty = kNoise;
     }
-    const Model model(parse_scene(kScene, "scene", settings_from_text(overrides)), {data}, {number("surface.n", 1.6, 2.0)});
+    const Model model(parse_scene(kScene, "scene", settings_from_text(overrides)), {data},
+                      {number("surface.n", 1.6, 2.0)});
     const Eigen::VectorXd truth = Eigen::VectorXd::Constant(1, 1.6);
     const Prediction exact = model.predict({truth}, 1e-8, evaluator_, {}).front();
     std::mt19937_64 engine(seed);
@@ -117,7 +118,7 @@ TEST_F(FitTest, IntervalEnds_LieWhereTheBestOfTheOthersHasGrownSo) {
 
 TEST_F(FitTest, Contours_AreTheGrowthOverAllOthers) {
   const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0),
-                                             number("surface.sigma", 0.02, 1.0)};
+                                            number("surface.sigma", 0.02, 1.0)};
   const Model model(parse_scene(kScene, "scene"), {measured(kNoise, {}, true, 8)}, parameters);
   const FitResult result = fit::fit(model, evaluator_, {}).value();
   const Contours contours = contours_of(model, evaluator_, result, {}).value();

@@ -57,8 +57,8 @@ SceneValues random_scene(Draw& draw) {
   const Distribution distribution = draw.chance(0.75) ? Distribution::kCauchy : Distribution::kGaussian;
   const bool is_metal = draw.chance(0.3);
   SceneValues scene = make_scene(distribution, kMaskings[draw.count(0, 3)],
-                           is_metal ? OpticalConstants{draw.in_ratio(1.0, 10.0), draw.in_ratio(1.0, 60.0)}
-                                    : OpticalConstants{draw.uniform(1.1, 3.0), draw.chance(0.5) ? 0.0 : 0.2});
+                                 is_metal ? OpticalConstants{draw.in_ratio(1.0, 10.0), draw.in_ratio(1.0, 60.0)}
+                                          : OpticalConstants{draw.uniform(1.1, 3.0), draw.chance(0.5) ? 0.0 : 0.2});
   if (draw.chance(0.5)) scene.surroundings.reset();
   if (draw.chance(0.4)) {
     scene.source.emplace().irradiance = draw.uniform(0.1, 5.0);

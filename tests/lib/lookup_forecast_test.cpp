@@ -41,7 +41,7 @@ double flagged_share(const SceneValues& scene) {
   const SceneEntries grid = grid_entries(scene);
   const EffectPlan plan = keep_everything(scene);
   const TableValues table = table_part(table_layout(scene, plan, scene.grid), grid,
-                                 evaluate_scene(scene, grid, *make_evaluator(Evaluator::kFloat), {}));
+                                       evaluate_scene(scene, grid, *make_evaluator(Evaluator::kFloat), {}));
   const TableLookup lookup(table, kTolerance, "table");
   std::mt19937_64 engine(3);
   const auto within = [&](const std::vector<double>& values) {

@@ -1,7 +1,7 @@
 // Runs try entries again that miss the tolerance, in another precision or by a tighter rule, and no others.
 #include "plan/refinement.hpp"
-#include "model/angles.hpp"
 #include <dolp/status.hpp>
+#include "model/angles.hpp"
 
 #include <gtest/gtest.h>
 

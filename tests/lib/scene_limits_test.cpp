@@ -236,8 +236,7 @@ TEST(Limits_Metals, DolpIsThatOfTheReferenceOrSaysThatItIsNot) {
       const std::vector<PointResult> results = run(scene, entries, evaluator);
       for (std::size_t i = 0; i < entries.size(); ++i) {
         const PointResult& r = results[i];
-        EXPECT_EQ(r.status & kNoDolpPromised, reference[i].status & kNoDolpPromised)
-            << text_of(scene, entries[i]);
+        EXPECT_EQ(r.status & kNoDolpPromised, reference[i].status & kNoDolpPromised) << text_of(scene, entries[i]);
         EXPECT_LE(std::abs(r[Quantity::kDolp] - reference[i][Quantity::kDolp]),
                   r[Quantity::kErrorEstimate] + reference[i][Quantity::kErrorEstimate])
             << text_of(scene, entries[i]);

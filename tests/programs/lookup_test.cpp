@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "cli_support.hpp"
 #include <dolp/status.hpp>
+#include "cli_support.hpp"
 
 namespace {
 

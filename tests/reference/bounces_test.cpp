@@ -50,7 +50,8 @@ TEST(ReferenceBounces, FirstBounce_IsSingleScattering) {
   for (const BeamAngles& a : kPairs) {
     const ReferenceMueller once = reference_bounces(surface, kMetal, a.theta_i_deg, a.theta_r_deg, a.delta_phi_deg, 1);
     surface.scattering = Scattering::kSingle;
-    const ReferenceMueller single = reference_scattering(surface, kMetal, a.theta_i_deg, a.theta_r_deg, a.delta_phi_deg);
+    const ReferenceMueller single =
+        reference_scattering(surface, kMetal, a.theta_i_deg, a.theta_r_deg, a.delta_phi_deg);
     ASSERT_GT(single[0][0], 0.0);
     for (std::size_t e = 0; e < 16; ++e) {
       EXPECT_NEAR(once[e / 4][e % 4], single[e / 4][e % 4], kTolerance * single[0][0]) << a.theta_i_deg << " " << e;
@@ -155,8 +156,8 @@ std::complex<double> hemispherical(const Surface& surface, const OpticalConstant
           const double x = centre + distance * std::cos(chi), across = distance * std::sin(chi);
           const double sine = std::hypot(x, across);
           const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
-          const ReferenceMueller f = reference_scattering(surface, index, theta_deg, std::atan2(sine, cosine) / kRadPerDeg,
-                                                       std::atan2(across, x) / kRadPerDeg);
+          const ReferenceMueller f = reference_scattering(
+              surface, index, theta_deg, std::atan2(sine, cosine) / kRadPerDeg, std::atan2(across, x) / kRadPerDeg);
           return std::complex(f[0][0], f[0][1]) / cosine * distance * reach * 2.0 * (1.0 - y);
         };
         return gauss<double, 7>::integrate(at, static_cast<double>(ring) / kRings, (ring + 1.0) / kRings);

@@ -17,7 +17,6 @@
 #include <string>
 #include <vector>
 
-
 #include "model/choices.hpp"
 #include "reference/adaptive.hpp"
 #include "reference/mueller.hpp"

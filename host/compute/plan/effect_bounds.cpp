@@ -16,7 +16,6 @@
 namespace dolp {
 namespace {
 
-
 constexpr double kRounding = 1e-8;  // of the sums here, and of the band sums that they represent
 constexpr double kRoundingOfOne = 1e-13;
 constexpr double kSmallestCosine = 1e-300;  // safe as a divisor

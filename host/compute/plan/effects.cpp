@@ -65,7 +65,9 @@ bool is_asked_for(const SceneValues& scene, Part part) {
 
 bool is_bistatic(const SceneValues& scene) { return scene.geometry.mode == Mode::kBistatic; }
 
-bool emits_as(const SceneValues& scene, EmissionModel model) { return scene.emission && scene.emission->model == model; }
+bool emits_as(const SceneValues& scene, EmissionModel model) {
+  return scene.emission && scene.emission->model == model;
+}
 
 bool is_fresnel(const SceneValues& scene) { return emits_as(scene, EmissionModel::kFresnel); }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/moments.hpp"
 #include <dolp/status.hpp>
+#include "model/moments.hpp"
 
 namespace dolp {
 namespace {

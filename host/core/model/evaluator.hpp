@@ -19,7 +19,7 @@ struct EvaluationReport {
   std::string precision;  ///< float | double | float and double, as used
   std::uint64_t dispatches = 0;
   std::uint32_t devices_lost = 0;  ///< devices lost and replaced by a new one
-  std::uint32_t row_width = 1;  ///< entries that an invocation computed together at last
+  std::uint32_t row_width = 1;     ///< entries that an invocation computed together at last
   double evaluations = 0.0;
   double kernel_s = 0.0;  ///< time on the device (timestamps) and of the host's sums, or of the loop on the CPU
   double setup_s = 0.0;   ///< device and pipeline creation

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/numbers.hpp"
 #include <dolp/status.hpp>
+#include "base/numbers.hpp"
 #include "radiometry/reflectance.hpp"
 #include "radiometry/stokes.hpp"
 

@@ -199,8 +199,7 @@ void SceneDocument::erase(const std::string& key) {
   const std::string_view table_name = table_part(key);
   toml::table* table = table_name.empty() ? &root_ : root_.get_as<toml::table>(table_name);
   if (table) table->erase(last_part(key));
-  std::erase_if(origins_,
-                [&](const auto& entry) { return entry.first == key || entry.first.starts_with(key + '.'); });
+  std::erase_if(origins_, [&](const auto& entry) { return entry.first == key || entry.first.starts_with(key + '.'); });
 }
 
 const toml::node* SceneDocument::find(std::string_view key) const {

@@ -143,7 +143,8 @@ Spectrum all_wavelengths(const SceneValues& scene) {
   return all;
 }
 
-void load_material(SceneValues& scene, const SceneDocument& document, const std::string& scene_path, const KnownData* known) {
+void load_material(SceneValues& scene, const SceneDocument& document, const std::string& scene_path,
+                   const KnownData* known) {
   const bool is_file = document.find("surface.material_file") != nullptr;
   if (!is_file && !document.find("surface.material")) return;
   const std::string prefix = document.prefix(is_file ? "surface.material_file" : "surface.material");
@@ -163,7 +164,8 @@ void load_material(SceneValues& scene, const SceneDocument& document, const std:
   if (!material.is_constant()) material = fit_to_spectrum(material, scene.spectrum, prefix);
 }
 
-void load_source(SceneValues& scene, const SceneDocument& document, const std::string& scene_path, const KnownData* known) {
+void load_source(SceneValues& scene, const SceneDocument& document, const std::string& scene_path,
+                 const KnownData* known) {
   const bool is_preset = document.find("source.preset") != nullptr;
   if (!is_preset && !document.find("source.file")) return;
   const std::string prefix = document.prefix(is_preset ? "source.preset" : "source.file");
@@ -279,7 +281,7 @@ SceneValues scene_of(const SceneDocument& document, const std::string& path_name
 }  // namespace
 
 SceneValues parse_scene(const std::string& text, const std::string& path_name, const std::vector<Setting>& settings,
-                  const KnownData* known) {
+                        const KnownData* known) {
   SceneDocument document(text, path_name);
   for (const Setting& setting : settings) document.apply(setting);
   SceneValues scene = scene_of(document, path_name, known);

@@ -1,8 +1,8 @@
 // Reads a scene file (TOML) into a validated Scene.
 #pragma once
 
-#include <optional>
 #include <dolp/key.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +30,7 @@ struct KnownData {
 /// The same for a text that is already in memory (the scene that a table file carries); `path_name` is for messages and
 /// gives the folder of the files the scene names. With `known` none of these is opened, unless it says so: an
 /// InputError where it lacks what the scene takes from one.
-SceneValues parse_scene(const std::string& text, const std::string& path_name, const std::vector<Setting>& settings = {},
-                  const KnownData* known = nullptr);
+SceneValues parse_scene(const std::string& text, const std::string& path_name,
+                        const std::vector<Setting>& settings = {}, const KnownData* known = nullptr);
 
 }  // namespace dolp

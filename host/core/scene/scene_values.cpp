@@ -35,8 +35,7 @@ double read_number(const SceneDocument& document, std::string_view key, const to
   return number;
 }
 
-std::vector<double> read_list(const SceneDocument& document, const Key& description,
-                              const toml::array& array) {
+std::vector<double> read_list(const SceneDocument& document, const Key& description, const toml::array& array) {
   if (array.size() > kMostListed) {
     document.fail(description.key, fmt::format("{} values; must be at most {}", array.size(), kMostListed));
   }
@@ -95,8 +94,7 @@ std::vector<double> axis_values(const AxisRule& rule) {
   return values;
 }
 
-std::vector<double> read_axis(const SceneDocument& document, const Key& description,
-                              const toml::node& node) {
+std::vector<double> read_axis(const SceneDocument& document, const Key& description, const toml::node& node) {
   std::vector<double> values;
   if (const toml::array* array = node.as_array()) {
     values = read_list(document, description, *array);
@@ -113,8 +111,7 @@ std::vector<double> read_axis(const SceneDocument& document, const Key& descript
   return values;
 }
 
-std::vector<double> read_pair(const SceneDocument& document, const Key& description,
-                              const toml::node& node) {
+std::vector<double> read_pair(const SceneDocument& document, const Key& description, const toml::node& node) {
   const toml::array* array = node.as_array();
   const std::string what = "must be " + description.allowed();
   if (!array || array->size() != 2) document.fail(description.key, what);

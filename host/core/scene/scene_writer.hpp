@@ -8,8 +8,8 @@
 
 namespace dolp {
 
-/// TOML that reads back as the scene: its keys in the order of dolp::keys(), numbers as the shortest text that reads back
-/// as the same double, no comments.
+/// TOML that reads back as the scene: its keys in the order of dolp::keys(), numbers as the shortest text that reads
+/// back as the same double, no comments.
 ///
 /// Files that the scene names are written as they are found from `folder`, where the text will be saved.
 /// Domain: a scene that was read.

@@ -182,8 +182,8 @@ std::vector<SpectralSample> samples_at(const SceneValues& scene, const std::vect
 
 /// Relative error of the smooth surface's absorptances at one cosine, integrated with one of the factors.
 template <typename Factor>
-double probe_error(const SceneValues& scene, const std::vector<SpectralSample>& samples, const std::vector<FineNode>& fine,
-                   double cosine, Factor factor) {
+double probe_error(const SceneValues& scene, const std::vector<SpectralSample>& samples,
+                   const std::vector<FineNode>& fine, double cosine, Factor factor) {
   double whole = 0.0;
   SmoothAbsorptance exact{0.0, 0.0};
   SmoothAbsorptance approximate{0.0, 0.0};
@@ -204,7 +204,8 @@ double probe_error(const SceneValues& scene, const std::vector<SpectralSample>& 
   return std::max(std::abs(exact.s - approximate.s), std::abs(exact.p - approximate.p)) / part;
 }
 
-double nodes_error(const SceneValues& scene, const std::vector<SpectralSample>& samples, const std::vector<FineNode>& fine) {
+double nodes_error(const SceneValues& scene, const std::vector<SpectralSample>& samples,
+                   const std::vector<FineNode>& fine) {
   double worst = 0.0;
   for (const double cosine : kProbeCosines) {
     worst = std::max({worst, probe_error(scene, samples, fine, cosine, [](const auto& at) { return at.emitted; }),

@@ -1,7 +1,7 @@
 #include "table/table_file.hpp"
 
-#include <dolp/errors.hpp>
 #include <fmt/format.h>
+#include <dolp/errors.hpp>
 
 #include <algorithm>
 #include <bit>

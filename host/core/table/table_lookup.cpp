@@ -9,8 +9,8 @@
 #include <dolp/errors.hpp>
 #include <set>
 
-#include "base/numbers.hpp"
 #include <dolp/status.hpp>
+#include "base/numbers.hpp"
 
 namespace dolp {
 namespace {

@@ -84,13 +84,13 @@ DOLP_EXPORT const std::vector<std::string>& loss_names();
 /// Options of a fit.
 struct FitOptions {
   std::vector<FitRange> vary;
-  std::size_t starts = 24;                ///< descents that look for minima
-  std::uint64_t seed = 1;                 ///< of where they begin
-  Progress progress = {};                 ///< counts descents and sides of profiles; may be empty
-  Loss loss = Loss::kSquares;             ///< others need uncertainties
-  std::vector<Comparison> compare = {};   ///< all combinations are fitted and ranked
-  std::filesystem::path output = {};      ///< file for the scene with what was found; "-" is stdout; empty: none
-  std::filesystem::path plot = {};        ///< PNG of data, model and residuals, which Matplotlib draws; empty: none
+  std::size_t starts = 24;               ///< descents that look for minima
+  std::uint64_t seed = 1;                ///< of where they begin
+  Progress progress = {};                ///< counts descents and sides of profiles; may be empty
+  Loss loss = Loss::kSquares;            ///< others need uncertainties
+  std::vector<Comparison> compare = {};  ///< all combinations are fitted and ranked
+  std::filesystem::path output = {};     ///< file for the scene with what was found; "-" is stdout; empty: none
+  std::filesystem::path plot = {};       ///< PNG of data, model and residuals, which Matplotlib draws; empty: none
 };
 
 /// A profile-likelihood interval, from the least to the largest value that the data do not rule out, over all minima;
@@ -103,8 +103,8 @@ struct FitInterval {
 struct FitParameter {
   std::string key;
   double value = 0.0;
-  std::optional<double> standard_error;   ///< from the covariance; none at a bound or if undetermined
-  FitInterval interval_68, interval_95;   ///< 68.27 % and 95 %; both ends none without a scale of the residuals
+  std::optional<double> standard_error;  ///< from the covariance; none at a bound or if undetermined
+  FitInterval interval_68, interval_95;  ///< 68.27 % and 95 %; both ends none without a scale of the residuals
   bool is_at_bound = false;
 };
 

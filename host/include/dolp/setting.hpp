@@ -38,8 +38,7 @@ class DOLP_EXPORT Value {
   // NOLINTBEGIN(google-explicit-constructor): a value is written as itself
   Value() = default;
   template <class Number>
-    requires std::is_arithmetic_v<Number>
-  Value(Number number) {
+  requires std::is_arithmetic_v<Number> Value(Number number) {
     if constexpr (std::same_as<Number, bool>) {
       content_ = number;
     } else {

@@ -83,8 +83,6 @@ Report verify_device(const DeviceCheckOptions& options) {
   return public_report(hard_case_report(report, options.all), report.failures() == 0);
 }
 
-Report device_report() {
-  return public_report(device_report(list_devices()));
-}
+Report device_report() { return public_report(device_report(list_devices())); }
 
 }  // namespace dolp

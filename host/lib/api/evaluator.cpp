@@ -19,7 +19,7 @@ namespace {
 
 /// The attributes that a table of a run has.
 std::vector<Attribute> all_attributes(const SceneValues& scene, const TableLayout& layout, const RunOutcome& run,
-                                            const std::string& history) {
+                                      const std::string& history) {
   std::vector<Attribute> attributes = layout.head.attributes;
   std::ranges::move(attributes_of(scene, run, history), std::back_inserter(attributes));
   return attributes;

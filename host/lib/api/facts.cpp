@@ -1,8 +1,8 @@
+#include <dolp/status.hpp>
 #include "api/reports.hpp"
 #include "api/results.hpp"
 #include "api/scene_impl.hpp"
 #include "base/version.hpp"
-#include <dolp/status.hpp>
 #include "plan/effects.hpp"
 #include "report/plan_report.hpp"
 #include "run/influences.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include <dolp/status.hpp>
 #include "api/evaluator_impl.hpp"
 #include "api/reports.hpp"
 #include "api/scene_impl.hpp"
@@ -13,7 +14,6 @@
 #include "base/number_text.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
-#include <dolp/status.hpp>
 #include "report/run_report.hpp"
 #include "run/lookup_run.hpp"
 #include "run/mueller_run.hpp"

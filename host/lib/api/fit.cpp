@@ -9,13 +9,13 @@
 #include <limits>
 
 #include <dolp/fit.hpp>
+#include <dolp/status.hpp>
 #include "api/evaluator_impl.hpp"
 #include "api/reports.hpp"
 #include "api/scene_impl.hpp"
 #include "base/atomic_file.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
-#include <dolp/status.hpp>
 #include "report/fit_picture.hpp"
 #include "report/fit_report.hpp"
 #include "report/run_report.hpp"

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-
 #include "fit/descent.hpp"
 #include "fit/model.hpp"
 #include "model/evaluator.hpp"

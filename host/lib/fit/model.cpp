@@ -117,7 +117,7 @@ std::vector<Setting> Model::settings(const Eigen::VectorXd& values) const {
 }
 
 SceneValues Model::scene_of(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& own,
-                      const Eigen::VectorXd& values) const {
+                            const Eigen::VectorXd& values) const {
   std::vector<Setting> all = data.settings;
   for (const auto& more : {own, settings(values)}) all.insert(all.end(), more.begin(), more.end());
   return with_settings(scene, all);

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "model/evaluator.hpp"
 #include <dolp/fit.hpp>
+#include "model/evaluator.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp::fit {
@@ -59,7 +59,7 @@ class Model {
   void add_groups(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row);
   /// The scene of some data. Errors: InputError that says whose setting is refused.
   SceneValues scene_of(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& own,
-                 const Eigen::VectorXd& values) const;
+                       const Eigen::VectorXd& values) const;
   SceneValues with(const SceneValues& scene, const Eigen::VectorXd& values) const;
   void predict_group(const Group& group, const std::vector<Eigen::VectorXd>& values, double tolerance,
                      MomentsEvaluator& evaluator, const Progress& progress, std::vector<Prediction>& predictions) const;

@@ -9,7 +9,6 @@
 #include <memory>
 #include <vector>
 
-
 namespace dolp {
 
 void draw_fit(const std::string& json, const std::string& path) {

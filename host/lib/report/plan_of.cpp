@@ -108,8 +108,7 @@ Work work_without(const PlanReport& report, Part part, const SceneEntries& entri
 }
 
 /// The share of the evaluations that each effect causes.
-std::vector<double> work_shares(const PlanReport& report, const SceneEntries& entries,
-                                const Device& device) {
+std::vector<double> work_shares(const PlanReport& report, const SceneEntries& entries, const Device& device) {
   const double total = work_of(report.run).total();
   std::vector<double> shares;
   for (const EffectRow& row : report.effects) {

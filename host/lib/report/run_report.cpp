@@ -73,10 +73,10 @@ void add_errors(ReportBuilder& report, const RunOutcome& run, double tolerance) 
 
 void add_status(ReportBuilder& report, const RunSummary& summary) {
   std::vector<ReportBuilder> parts;
-  for (const auto& [bit, meaning] : {std::pair{kReflectanceOutsideZeroToOne, "reflectance outside [0, 1]"},
-                                     std::pair{kToleranceNotMet, "tolerance not met"},
-                                     std::pair{kOutsideModelDomain, "outside the model's domain"},
-                                     std::pair{kIntensityNotPositive, "intensity not positive"}}) {
+  for (const auto& [bit, meaning] :
+       {std::pair{kReflectanceOutsideZeroToOne, "reflectance outside [0, 1]"},
+        std::pair{kToleranceNotMet, "tolerance not met"}, std::pair{kOutsideModelDomain, "outside the model's domain"},
+        std::pair{kIntensityNotPositive, "intensity not positive"}}) {
     ReportBuilder& part = parts.emplace_back();
     part.value("bit", bit);
     part.row(fmt::format("status {}", bit), "{} of {} entries: {}", key("count", summary.count(bit)), summary.entries,
@@ -87,8 +87,8 @@ void add_status(ReportBuilder& report, const RunSummary& summary) {
 
 }  // namespace
 
-ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, std::optional<double> gap, const std::string& shape,
-                  const std::string& path) {
+ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, std::optional<double> gap,
+                         const std::string& shape, const std::string& path) {
   const RunSummary& summary = run.summary;
   ReportBuilder report;
   report.line("{}", key("title", scene.title));

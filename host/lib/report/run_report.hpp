@@ -18,8 +18,8 @@ namespace dolp {
 
 /// The report of a run. `shape`: that of the grid, or "200 points"; `path`: what was written; `gap`: of single
 /// scattering, none where it does not apply.
-ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, std::optional<double> gap, const std::string& shape,
-                  const std::string& path);
+ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, std::optional<double> gap,
+                         const std::string& shape, const std::string& path);
 
 /// The evaluator and device of a run, and the time that it took.
 void add_evaluation(ReportBuilder& report, const EvaluationReport& evaluation, double wall_s);

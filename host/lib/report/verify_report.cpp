@@ -5,8 +5,8 @@
 #include <map>
 #include <utility>
 
-#include "model/choices.hpp"
 #include <dolp/status.hpp>
+#include "model/choices.hpp"
 
 namespace dolp {
 namespace {
@@ -23,15 +23,15 @@ std::string place(const CheckedValue& value) {
 
 ReportBuilder::Json value_json(const CheckedValue& value) {
   ReportBuilder::Json json = {{"quantity", value.quantity},
-                       {"theta_deg", value.theta_deg},
-                       {"sigma", value.sigma},
-                       {"q", value.q},
-                       {"stored", value.stored},
-                       {"reference", value.reference},
-                       {"error", value.error()},
-                       {"stated", value.stated},
-                       {"reference_error", value.reference_error},
-                       {"complaint", value.complaint}};
+                              {"theta_deg", value.theta_deg},
+                              {"sigma", value.sigma},
+                              {"q", value.q},
+                              {"stored", value.stored},
+                              {"reference", value.reference},
+                              {"error", value.error()},
+                              {"stated", value.stated},
+                              {"reference_error", value.reference_error},
+                              {"complaint", value.complaint}};
   if (value.wavelength_um) json["wavelength_um"] = *value.wavelength_um;
   if (value.n) json["n"] = *value.n;
   if (value.k) json["k"] = *value.k;

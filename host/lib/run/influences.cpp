@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "evaluate/cpu/cpu_evaluator.hpp"
 #include <dolp/status.hpp>
+#include "evaluate/cpu/cpu_evaluator.hpp"
 #include "run/drawn_entries.hpp"
 #include "run/scene_run.hpp"
 #include "spectrum/spectral_rule.hpp"

@@ -48,7 +48,8 @@ struct Stretch {
 
 class Forecast {
  public:
-  Forecast(const SceneValues& scene, const EffectPlan& plan) : scene_(scene), plan_(plan), evaluator_(Precision::kAuto) {
+  Forecast(const SceneValues& scene, const EffectPlan& plan)
+      : scene_(scene), plan_(plan), evaluator_(Precision::kAuto) {
     std::ranges::copy_if(kAllAxes, std::back_inserter(axes_), [&](Axis axis) { return scene.grid[axis].size() > 1; });
     lines_ = axes_.size() > 1 ? kLines : 1;
   }

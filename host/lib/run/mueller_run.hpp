@@ -35,6 +35,6 @@ Precision mueller_precision(const Accuracy& accuracy, bool has_double);
 /// diffuse part.
 /// Errors: those of the evaluator.
 std::vector<MuellerMatrix> evaluate_mueller(const SceneValues& scene, const std::vector<MuellerPoint>& points,
-                                              MomentsEvaluator& evaluator, const Progress& progress);
+                                            MomentsEvaluator& evaluator, const Progress& progress);
 
 }  // namespace dolp

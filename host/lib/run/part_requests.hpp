@@ -49,8 +49,8 @@ SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& e
 /// values that the moments do not depend on share them.
 class PartRequests {
  public:
-  PartRequests(const SceneValues& scene, const SpectralIndices& samples, const EffectPlan& plan, const Selection& selection,
-               const RefinementLevel& level);
+  PartRequests(const SceneValues& scene, const SpectralIndices& samples, const EffectPlan& plan,
+               const Selection& selection, const RefinementLevel& level);
 
   const MomentsRequest& moments() const { return moments_; }
   const ScatteringRequest& beams() const { return beams_; }

@@ -115,8 +115,8 @@ void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries
 
 }  // namespace
 
-RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan, bool has_double,
-                          const RequestVisitor& visit) {
+RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
+                          bool has_double, const RequestVisitor& visit) {
   RunPrediction run;
   run.entries = entries.size();
   run.spectral_samples = spectral_rule(scene).samples.size();

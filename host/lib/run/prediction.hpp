@@ -50,7 +50,7 @@ struct RequestVisitor {
 /// Accuracy: exact for scenes with up to kCountedEntries entries, but for orders that a device's float rounds
 /// otherwise; a few percent beyond, or where directions are counted a fifth (tests Plan.FewEntries_*,
 /// Plan.ManyEntries_*, Plan.Device_*).
-RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan, bool has_double,
-                          const RequestVisitor& visit);
+RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
+                          bool has_double, const RequestVisitor& visit);
 
 }  // namespace dolp

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include <dolp/results.hpp>
+#include <dolp/status.hpp>
 #include "model/evaluator.hpp"
 #include "model/scene_entry.hpp"
-#include <dolp/status.hpp>
 #include "run/self_check.hpp"
 #include "scene/scene.hpp"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
+#include <dolp/status.hpp>
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "model/direction.hpp"
-#include <dolp/status.hpp>
 #include "run/drawn_entries.hpp"
 #include "run/scene_run.hpp"
 #include "spectrum/spectral_rule.hpp"

@@ -8,10 +8,10 @@
 #include <span>
 #include <stdexcept>
 
+#include <dolp/status.hpp>
 #include "base/parallel_ranges.hpp"
 #include "base/stopwatch.hpp"
 #include "model/angles.hpp"
-#include <dolp/status.hpp>
 #include "plan/refinement.hpp"
 #include "run/closed_forms.hpp"
 #include "run/index_bases.hpp"
@@ -65,7 +65,8 @@ Scattered scattered(const ScatteringMatrix& f) { return {f.m[0], f.m[4], f.m[8],
 /// Results of the members of a selection, one by one; the object keeps its memory between them.
 class MemberResults {
  public:
-  MemberResults(const RunContext& context, const Selection& selection, const PartRequests& requests, const Answer& answer)
+  MemberResults(const RunContext& context, const Selection& selection, const PartRequests& requests,
+                const Answer& answer)
       : context_(context),
         selection_(selection),
         requests_(requests),
@@ -78,7 +79,8 @@ class MemberResults {
     const SceneEntry entry = selection_[member];
     const Direction direction = seen(entry);
     if (entry.index) std::ranges::fill(indices_, *entry.index);
-    const std::span<const OpticalConstants> indices = entry.index ? indices_ : context_.spectra.indices[entry.wavelength];
+    const std::span<const OpticalConstants> indices =
+        entry.index ? indices_ : context_.spectra.indices[entry.wavelength];
     const std::span<const Moments> moments = moments_of(member, entry, direction, indices);
     const Radiometry& radiometry = context_.spectra.radiometries[entry.wavelength];
     if (context_.scene.geometry.mode != Mode::kBistatic) return radiometry.point(direction, moments, indices);
@@ -169,9 +171,10 @@ std::vector<PointResult> results_of(const RunContext& context, const Selection& 
   return results;
 }
 
-std::vector<PointResult> computed_at(const RunContext& context, const Selection& selection, const RefinementLevel& level,
-                                     const Progress& progress) {
-  return results_of(context, selection, {context.scene, context.spectra.indices, context.plan, selection, level}, progress);
+std::vector<PointResult> computed_at(const RunContext& context, const Selection& selection,
+                                     const RefinementLevel& level, const Progress& progress) {
+  return results_of(context, selection, {context.scene, context.spectra.indices, context.plan, selection, level},
+                    progress);
 }
 
 bool is_better(const PointResult& a, const PointResult& b) {
@@ -181,7 +184,8 @@ bool is_better(const PointResult& a, const PointResult& b) {
 }
 
 /// True where a level improves an entry over the last one: f has no rule that a tolerance would make finer.
-bool finds_more(const RunContext& context, const RefinementLevel& level, const RefinementLevel& last, const SceneEntry& entry) {
+bool finds_more(const RunContext& context, const RefinementLevel& level, const RefinementLevel& last,
+                const SceneEntry& entry) {
   return wants_moments(context.scene, entry, context.plan) ||
          (wants_beam(context.scene, entry, context.plan) && level.precision != last.precision);
 }
@@ -274,15 +278,16 @@ void refine(const RunContext& context, const SceneEntries& part, FirstResults& f
 }
 
 /// Computes some entries of a grid again, after its first level, by a rule of another kind.
-std::vector<PointResult> computed_again(const RunContext& context, const SceneEntries& part, const RefinementLevel& first,
-                                        std::span<const std::size_t> positions) {
+std::vector<PointResult> computed_again(const RunContext& context, const SceneEntries& part,
+                                        const RefinementLevel& first, std::span<const std::size_t> positions) {
   if (positions.empty()) return {};
   const Progress none = [](std::size_t, std::size_t) { return true; };
   return computed_at(context, {part, positions}, check_level(first, context.evaluator->report().row_width), none);
 }
 
 /// The table entries to check that lie in a part, as positions in it.
-std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntries& part, std::span<const std::size_t> checked) {
+std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntries& part,
+                                      std::span<const std::size_t> checked) {
   std::vector<std::size_t> positions;
   for (const std::size_t in_whole : checked) {
     const std::optional<std::size_t> position = part.position_of(in_whole);
@@ -292,8 +297,9 @@ std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntr
 }
 
 /// Results of a part: all levels, or closed forms and zeros. `checked`: positions in the whole grid; none for points.
-std::vector<PointResult> part_results(const RunContext& context, const SceneEntries& part, std::span<const std::size_t> checked,
-                                      SelfCheck& check, const Progress& progress) {
+std::vector<PointResult> part_results(const RunContext& context, const SceneEntries& part,
+                                      std::span<const std::size_t> checked, SelfCheck& check,
+                                      const Progress& progress) {
   if (!wants_evaluator(context.scene, part, context.plan)) {
     std::vector<PointResult> results = computed_at(context, {part}, {}, progress);
     if (!progress(1, 1)) throw Cancelled();
@@ -349,7 +355,8 @@ void begin(const Progress& progress, std::size_t total) {
   if (progress && !progress(0, total)) throw Cancelled();
 }
 
-Run::Run(const SceneValues& scene, SceneEntries entries, const RunOptions& options, const EvaluatorMaker& make_evaluator)
+Run::Run(const SceneValues& scene, SceneEntries entries, const RunOptions& options,
+         const EvaluatorMaker& make_evaluator)
     : scene_(scene), entries_(std::move(entries)), progress_(options.progress) {
   const SceneEntries whole =
       entries_.is_grid() ? SceneEntries::of_grid(entries_.whole_axes(), entries_.index()) : entries_;
@@ -418,8 +425,8 @@ std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEnt
   return results.take();
 }
 
-std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEntries& entries, MomentsEvaluator& evaluator,
-                                        const Progress& progress) {
+std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEntries& entries,
+                                        MomentsEvaluator& evaluator, const Progress& progress) {
   return evaluate_scene(scene, entries, keep_everything(scene), &evaluator, progress);
 }
 

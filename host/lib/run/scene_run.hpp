@@ -135,7 +135,7 @@ std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEnt
                                         MomentsEvaluator* evaluator, const Progress& progress);
 
 /// The same with everything kept.
-std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEntries& entries, MomentsEvaluator& evaluator,
-                                        const Progress& progress);
+std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEntries& entries,
+                                        MomentsEvaluator& evaluator, const Progress& progress);
 
 }  // namespace dolp

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "model/evaluator.hpp"
 #include <dolp/status.hpp>
+#include "model/evaluator.hpp"
 #include "scene/scene.hpp"
 #include "verify/stored_cases.hpp"
 

@@ -11,8 +11,8 @@
 
 #include <dolp/number_range.hpp>
 #include <dolp/results.hpp>
-#include "base/numbers.hpp"
 #include <dolp/status.hpp>
+#include "base/numbers.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
 

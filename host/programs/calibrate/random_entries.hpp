@@ -11,7 +11,8 @@ namespace dolp {
 
 enum class Domain {
   kOrdinary,  ///< theta < 85 degrees, sigma 0.01 to 2, q 0.1 to 10 above its lower end, dielectrics and metals
-  kCorners,   ///< next to the horizon and the normal, total reflection, indices next to 1, q next to its end, sigma to 10
+  kCorners,   ///< next to the horizon and the normal, total reflection, indices next to 1, q next to its end, sigma to
+              ///< 10
 };
 
 /// Draws that are the same on every machine.

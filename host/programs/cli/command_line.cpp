@@ -135,8 +135,7 @@ void add_fit(CLI::App& command, Options& options) {
   command.add_option("--seed", options.seed, "seed of where they begin")
       ->check(not_negative, "")
       ->capture_default_str();
-  command
-      .add_option("--loss", options.loss, fmt::format("what a residual counts: {}", fmt::join(loss_names(), ", ")))
+  command.add_option("--loss", options.loss, fmt::format("what a residual counts: {}", fmt::join(loss_names(), ", ")))
       ->check(CLI::IsMember(loss_names()))
       ->capture_default_str();
   add_evaluator(command, options);

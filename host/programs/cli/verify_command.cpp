@@ -36,9 +36,9 @@ int run_verify(const Options& options) {
   Report report;
   {
     ProgressBar bar(options.quiet);
-    report = options.hard_cases ? verify_device(options, bar.callback())
-                                : verify(options.table_path,
-                                              {options.samples, options.seed, options.named_files, bar.callback()});
+    report = options.hard_cases
+                 ? verify_device(options, bar.callback())
+                 : verify(options.table_path, {options.samples, options.seed, options.named_files, bar.callback()});
   }
   print(report, options);
   return report.is_good ? kExitDone : kExitAccuracy;

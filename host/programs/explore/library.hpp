@@ -8,7 +8,6 @@
 
 namespace dolp::explore {
 
-
 inline bool is_bistatic(const Scene& scene) { return scene.word("geometry.mode") == "bistatic"; }
 
 inline bool contains(const std::vector<std::string>& keys, const std::string& key) {

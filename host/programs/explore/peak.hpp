@@ -27,7 +27,7 @@ struct PeakAnswer {
 /// The peak without one effect.
 struct WithoutEffect {
   const char* effect;     ///< as in Effect::name, or "roughness"
-  const char* change;  ///< what takes it away
+  const char* change;     ///< what takes it away
   bool radiates;          ///< a part of the sum of radiances
   bool is_known = false;  ///< otherwise the scene cannot be without it
   Point result = {};

@@ -10,8 +10,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr std::uint32_t kNoDolpPromised =
-    kReflectanceOutsideZeroToOne | kOutsideModelDomain | kIntensityNotPositive;
+constexpr std::uint32_t kNoDolpPromised = kReflectanceOutsideZeroToOne | kOutsideModelDomain | kIntensityNotPositive;
 
 /// The scene with the grid of a list; axes that the scene's own has beside these keep the scene's value.
 Scene with_grid(const Scene& scene, const PointList& list) {

@@ -16,7 +16,6 @@
 #include <string>
 #include <vector>
 
-
 #include "model/choices.hpp"
 #include "reference/hemisphere.hpp"
 #include "reference/reference_evaluator.hpp"

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <dolp/errors.hpp>
 
-
 namespace dolp {
 
 /// A bar with rate and time left, drawn on stderr when that is a terminal and `quiet` is off.

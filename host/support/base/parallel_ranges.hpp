@@ -6,7 +6,6 @@
 #include <dolp/errors.hpp>
 #include <functional>
 
-
 namespace dolp {
 
 /// Calls body(first, last) for ranges of at most `grain` items that together cover [0, count) once, in any order. The

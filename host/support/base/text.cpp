@@ -14,7 +14,6 @@
 #include <numeric>
 #include <system_error>
 
-
 namespace dolp {
 namespace {
 

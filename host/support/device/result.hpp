@@ -6,7 +6,6 @@
 #include <dolp/errors.hpp>
 #include <string>
 
-
 namespace dolp::vulkan {
 
 /// A submission did not finish in time. Its command buffer and buffers are still in use: they must not be destroyed.

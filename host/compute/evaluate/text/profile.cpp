@@ -165,8 +165,8 @@ struct Profiles::Impl {
         const auto shape = std::bit_cast<Text::ShapeNode>(corners[j]);
         const double u = slope.t / shape.m;
         const double mass = Text::kPi * text.slope_density(shape, u, text.common_exponent(u)) * slope.dt / shape.m;
-        slope.digits = std::max(slope.digits,
-                                text.digits_of_slope(rule, theta, requests[j].all, requests[j].digits, order, slope.t, mass));
+        slope.digits = std::max(
+            slope.digits, text.digits_of_slope(rule, theta, requests[j].all, requests[j].digits, order, slope.t, mass));
       }
       profile.slopes.push_back(slope);
     }

@@ -11,8 +11,7 @@
 namespace dolp {
 namespace {
 
-vulkan::TileLimits tile_limits(const dolp::Device& device, std::uint64_t tile_invocations,
-                               std::uint64_t block_shapes) {
+vulkan::TileLimits tile_limits(const dolp::Device& device, std::uint64_t tile_invocations, std::uint64_t block_shapes) {
   return {.buffer_bytes = device.max_storage_buffer_bytes,
           .heap_bytes = device.memory_bytes,
           .dispatch_count = std::uint64_t{device.max_workgroups} * device.local_size,

@@ -3,8 +3,8 @@
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
 #define STBI_WRITE_NO_STDIO
-#include <dolp/errors.hpp>
 #include <stb_image_write.h>
+#include <dolp/errors.hpp>
 
 #include "base/atomic_file.hpp"
 

@@ -7,6 +7,7 @@
 
 #include <dolp/status.hpp>
 #include "effects_support.hpp"
+#include "scene/scene_reader.hpp"
 
 namespace dolp {
 namespace {
@@ -71,11 +72,42 @@ TEST(Dropping, RandomScenes_TheAnswerWithEverythingIsWithinTheEstimates) {
   std::cout << without_moments << " scenes without moments\n";
 }
 
+TEST(Dropping, BistaticSourceWhereMomentsWeighNothing_KeepsTheBouncesOfItsBeam) {
+  const SceneValues scene = parse_scene(
+      R"(
+[surface]
+n = 3.7
+k = 5.2
+sigma = 0.5
+q = 3
+masking = "v-cavity"
+scattering = "multiple"
+[emission]
+temperature_K = 245
+[surroundings]
+temperature_K = 245
+[source]
+irradiance = 1
+[spectrum]
+wavelength_um = 10
+[geometry]
+mode = "bistatic"
+[grid]
+theta_deg = [20, 60]
+)",
+      "s.toml");
+  const SceneEntries entries = grid_entries(scene);
+  const EffectPlan plan = plan_effects(scene, entries, false);
+  EXPECT_FALSE(plan.kept.moments);
+  EXPECT_TRUE(plan.kept.further_bounces);
+  EXPECT_TRUE(plan.needs_beams);
+}
+
 TEST(EffectBounds, RandomScenes_HoldWhatEachPartChanges) {
   std::cout << "seed " << kSeed + 1 << '\n';
   RandomScenes scenes(kSeed + 1);
   std::map<Part, int> compared;
-  for (int i = 0; i < scene_count(150); ++i) {
+  for (int i = 0; i < scene_count(400); ++i) {
     SceneValues scene = scenes.next();
     scene.accuracy.tolerance = 1e-3;
     const std::vector<SceneEntry> entries = scenes.entries(scene);

@@ -356,9 +356,12 @@ EffectBounds::Sums EffectBounds::added_by(Part part, const KeptEffects& kept) co
 bool EffectBounds::adds_nothing(Part part, const KeptEffects& kept) const {
   const Surface& surface = scene_.surface;
   const bool emits_directly = kept.emission && scene_.emission && scene_.emission->model == EmissionModel::kDirect;
+  // The beam of a bistatic source has further bounces too, whatever the moments weigh.
+  const bool has_beam = is_bistatic_ && kept.source && total_.irradiance > 0.0 && surface.specular > 0.0;
   switch (part) {
     case Part::kFurtherBounces:
-      return surface.scattering == Scattering::kSingle || (!emits_directly && adds_nothing(Part::kMoments, kept));
+      return surface.scattering == Scattering::kSingle ||
+             (!has_beam && !emits_directly && adds_nothing(Part::kMoments, kept));
     case Part::kMoments:
       if (emits_directly && surface.specular > 0.0) return false;
       return surface.specular == 0.0 || (weight(kept) == 0.0 && incident(kept) == 0.0);

@@ -1,13 +1,19 @@
-# Writes the SPIR-V file MODULE to the C++ source OUTPUT as the span dolp::spirv::SYMBOL declared in spirv.hpp.
-file(READ ${MODULE} hex HEX)
-# SPIR-V is a stream of 32-bit words, which glslang writes in little-endian order.
-string(REGEX REPLACE "(..)(..)(..)(..)" "0x\\4\\3\\2\\1," words "${hex}")
+# Writes the C++ source OUTPUT, in which the assembler puts the SPIR-V file MODULE as the span dolp::spirv::SYMBOL that
+# spirv.hpp declares. A compiler takes seconds to read the same words as numbers.
+file(SIZE ${MODULE} size)
+math(EXPR count "${size} / 4")  # SPIR-V is a stream of 32-bit words
 file(WRITE ${OUTPUT} "#include \"spirv.hpp\"
 
+asm(R\"(
+  .pushsection .rodata
+  .balign 4
+dolp_spirv_${SYMBOL}:
+  .incbin \"${MODULE}\"
+  .popsection
+)\");
+extern \"C\" const std::uint32_t dolp_spirv_${SYMBOL}[${count}];
+
 namespace dolp::spirv {
-namespace {
-constexpr std::uint32_t ${SYMBOL}_words[] = {${words}};
-}
-constinit const std::span<const std::uint32_t> ${SYMBOL}{${SYMBOL}_words};
+constinit const std::span<const std::uint32_t> ${SYMBOL}{dolp_spirv_${SYMBOL}};
 }  // namespace dolp::spirv
 ")

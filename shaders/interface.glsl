@@ -2,15 +2,16 @@
 // structures hold nothing but `real` (float or double), so that std430 packs them tightly and the host may treat an
 // array of them as an array of numbers. Counts stored as `real` are small integers.
 
-// ---- Bindings of descriptor set 0 (all storage buffers) -------------------------------------------------------------
+// ---- Bindings of descriptor set 0: storage buffers, and texel buffers from DOLP_BINDING_RULE_NODES on ----------------
 #define DOLP_BINDING_THETAS 0         // ThetaNode[]
 #define DOLP_BINDING_SHAPES 1         // ShapeNode[]
 #define DOLP_BINDING_INDICES 2        // IndexNode[]
 #define DOLP_BINDING_TASKS 3          // uvec4[]: theta, first shape (of those bound), index, task word
-#define DOLP_BINDING_RULE_NODES 4     // real2[]: see physics/quadrature.glsl
-#define DOLP_BINDING_MASKING_TABLE 5  // real4[]: one table for each shape bound, see physics/masking.glsl
-#define DOLP_BINDING_MOMENTS 6        // MomentsNode[]: one for each member of each task of the dispatch
-#define DOLP_BINDING_RULE 7           // RuleNode: one for all tasks
+#define DOLP_BINDING_MASKING_TABLE 4  // real4[]: one table for each shape bound, see physics/masking.glsl
+#define DOLP_BINDING_MOMENTS 5        // MomentsNode[]: one for each member of each task of the dispatch
+#define DOLP_BINDING_RULE 6           // RuleNode: one for all tasks
+#define DOLP_BINDING_RULE_NODES 7     // real2[]: see physics/quadrature.glsl
+#define DOLP_BINDING_MASKING_NODES 8  // the masking table once more, for whoever reads it
 // slopes.comp reads directions, indices, rule and rule nodes, and in place of the tasks and the moments:
 #define DOLP_BINDING_SLOPES DOLP_BINDING_TASKS      // SlopeNode[]: one for each invocation
 #define DOLP_BINDING_AZIMUTHS DOLP_BINDING_MOMENTS  // AzimuthNode[]: likewise
@@ -54,6 +55,7 @@
 #ifndef DOLP_WIDTH
 #define DOLP_WIDTH 1             // entries of one invocation, see Row of physics/row.glsl
 #endif
+#define DOLP_ROW_WIDTH 4         // the larger of the two values of DOLP_WIDTH
 #define DOLP_MAX_PIECES 63       // pieces of the slope axis for one direction
 #define DOLP_MAX_ARCS 13        // arcs of the azimuth for one slope, but for those of total reflection
 // Of V-grooves, see physics/groove.glsl
@@ -94,7 +96,7 @@ struct ThetaNode {
   real end[DOLP_MAX_PIECES + 1];  // ascending slopes; the last also fills all later places, and may exceed any cut
 };
 
-// One slope of a profile (host/compute/evaluate/text/profile.hpp).
+// One slope sample (host/compute/evaluate/kernel/slope_samples.hpp).
 struct SlopeNode {
   real t;
   real digits;         // wanted of the sum over the azimuths

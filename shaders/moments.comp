@@ -3,6 +3,8 @@
 // Contribution of one piece of the slope axis to the moments of a row of entries, per invocation; the width of a row is
 // a compile-time constant.
 
+// Grooves have slope samples; without them drivers have less to read.
+#define DOLP_SINGLE_SCATTERING
 #include "physics/prelude.glsl"
 #include "interface.glsl"
 #include "physics/buffers.glsl"

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Sums over the azimuths at one slope per invocation, of maskings that do not depend on the slope distribution: they
-// serve every distribution (host/compute/evaluate/text/profile.hpp).
+// serve every distribution (host/compute/evaluate/kernel/slope_samples.hpp).
 
 #include "physics/prelude.glsl"
 #include "interface.glsl"

@@ -9,12 +9,8 @@ namespace dolp::spirv {
 // NOLINTBEGIN(readability-identifier-naming): named as their files.
 extern const std::span<const std::uint32_t> moments_float;
 extern const std::span<const std::uint32_t> moments_double;
-extern const std::span<const std::uint32_t> moments_row4_float;  // rows of 4, 8 and 16
-extern const std::span<const std::uint32_t> moments_row4_double;
-extern const std::span<const std::uint32_t> moments_row8_float;
-extern const std::span<const std::uint32_t> moments_row8_double;
-extern const std::span<const std::uint32_t> moments_row16_float;
-extern const std::span<const std::uint32_t> moments_row16_double;
+extern const std::span<const std::uint32_t> moments_rows_float;
+extern const std::span<const std::uint32_t> moments_rows_double;
 extern const std::span<const std::uint32_t> slopes_float;
 extern const std::span<const std::uint32_t> slopes_double;
 extern const std::span<const std::uint32_t> masking_table_float;

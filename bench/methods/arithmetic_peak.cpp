@@ -27,9 +27,9 @@ std::vector<double> arithmetic_peak(const std::string& device, std::size_t repea
   vulkan::Kernels kernels(bench.device, false);
   const vulkan::UniquePipeline pipeline = kernels.create(spirv::arithmetic_peak_float, vulkan::KernelVariant{});
   const vulkan::Buffer results(bench.device, kInvocations * sizeof(float), vulkan::MemoryUse::kDeviceOnly);
-  std::array<VkBuffer, vulkan::kBindingCount> buffers{};
-  buffers[DOLP_BINDING_MOMENTS] = results.get();
-  kernels.bind(buffers);
+  vulkan::Kernels::Bindings bindings;
+  bindings.buffers[DOLP_BINDING_MOMENTS] = results.get();
+  kernels.bind(bindings);
   const auto run = [&](std::size_t dispatches) {
     bench.stream.begin();
     for (std::size_t i = 0; i < dispatches; ++i) {

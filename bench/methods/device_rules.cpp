@@ -85,13 +85,15 @@ class DeviceRule final : public Solver {
   }
 
   template <class List>
-  vulkan::InputBuffer& upload(std::optional<vulkan::InputBuffer>& buffer, const List& list) {
+  vulkan::InputBuffer& upload(std::optional<vulkan::InputBuffer>& buffer, const List& list,
+                              VkFormat texels = VK_FORMAT_UNDEFINED) {
     std::vector<std::byte> bytes;
     for (const auto& node : list) packing_.append(node, bytes);
-    return upload_bytes(buffer, bytes);
+    return upload_bytes(buffer, bytes, texels);
   }
-  vulkan::InputBuffer& upload_bytes(std::optional<vulkan::InputBuffer>& buffer, std::span<const std::byte> bytes) {
-    buffer.emplace(bench_.device, bytes.size(), false);
+  vulkan::InputBuffer& upload_bytes(std::optional<vulkan::InputBuffer>& buffer, std::span<const std::byte> bytes,
+                                    VkFormat texels = VK_FORMAT_UNDEFINED) {
+    buffer.emplace(bench_.device, bytes.size(), false, texels);
     buffer->write(bytes, bench_.stream);
     return *buffer;
   }
@@ -104,19 +106,23 @@ class DeviceRule final : public Solver {
       thetas.push_back({beam.cos, beam.sin});
     }
     const std::size_t tables = data.needs_masking_table() ? data.shapes.size() * packing_.masking_nodes() : 0;
-    masking_.emplace(bench_.device, tables * sizeof(float) * 4, vulkan::MemoryUse::kDeviceOnly);
+    masking_.emplace(bench_.device, tables * sizeof(float) * 4, vulkan::MemoryUse::kDeviceOnly,
+                     packing_.masking_texels());
     sums_.emplace(bench_.device, words_.size() * sizeof(float) * 2, vulkan::MemoryUse::kReadback);
-    std::array<VkBuffer, vulkan::kBindingCount> buffers{};
+    vulkan::Kernels::Bindings bindings;
+    auto& [buffers, texels] = bindings;
     buffers[DOLP_BINDING_MASKING_TABLE] = masking_->get();
+    texels[DOLP_BINDING_MASKING_NODES - vulkan::kStorageCount] = masking_->texels();
     buffers[DOLP_BINDING_MOMENTS] = sums_->get();
     bench_.stream.begin();
     buffers[DOLP_BINDING_THETAS] = upload(theta_buffer_, thetas).get();
     buffers[DOLP_BINDING_SHAPES] = upload(shape_buffer_, data.shapes).get();
     buffers[DOLP_BINDING_INDICES] = upload(index_buffer_, data.indices).get();
-    buffers[DOLP_BINDING_RULE_NODES] = upload(rule_node_buffer_, data.rule_nodes).get();
+    texels[DOLP_BINDING_RULE_NODES - vulkan::kStorageCount] =
+        upload(rule_node_buffer_, data.rule_nodes, packing_.rule_texels()).texels();
     buffers[DOLP_BINDING_RULE] = upload(product_buffer_, product_nodes(rule)).get();
     buffers[DOLP_BINDING_TASKS] = upload_bytes(entry_buffer_, std::as_bytes(std::span(words_))).get();
-    kernels_.bind(buffers);
+    kernels_.bind(bindings);
     bench_.stream.barrier(vulkan::Barrier::kUploadToKernel);
     if (tables > 0) {
       bench_.stream.dispatch(kernels_, kernels_.pipeline(vulkan::masking_table_variant(data)), 0,

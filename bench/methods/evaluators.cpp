@@ -13,8 +13,8 @@ namespace {
 
 class EvaluatorSolver final : public Solver {
  public:
-  explicit EvaluatorSolver(std::unique_ptr<MomentsEvaluator> evaluator)
-      : precision_(evaluator->precision()), evaluator_(std::move(evaluator)) {}
+  EvaluatorSolver(std::unique_ptr<ModelEvaluator> evaluator, Precision precision)
+      : precision_(precision), evaluator_(std::move(evaluator)) {}
 
   Solution solve(const MomentsRequest& request, double setting) override {
     MomentsRequest wanted = request;
@@ -39,13 +39,13 @@ class EvaluatorSolver final : public Solver {
 
  private:
   Precision precision_;
-  std::unique_ptr<MomentsEvaluator> evaluator_;
+  std::unique_ptr<ModelEvaluator> evaluator_;
 };
 
-std::unique_ptr<MomentsEvaluator> vulkan_evaluator(const SolverOptions& options, Precision precision) {
+std::unique_ptr<ModelEvaluator> vulkan_evaluator(const SolverOptions& options, Precision precision) {
   VulkanOptions vulkan;
   vulkan.device = options.device;
-  vulkan.precision = precision;
+  vulkan.needs_double = precision == Precision::kDouble;
   try {
     return std::make_unique<VulkanEvaluator>(vulkan);
   } catch (const DeviceError& error) {
@@ -56,16 +56,16 @@ std::unique_ptr<MomentsEvaluator> vulkan_evaluator(const SolverOptions& options,
 }  // namespace
 
 std::unique_ptr<Solver> make_vulkan(const SolverOptions& options, Precision precision) {
-  return std::make_unique<EvaluatorSolver>(vulkan_evaluator(options, precision));
+  return std::make_unique<EvaluatorSolver>(vulkan_evaluator(options, precision), precision);
 }
 
 std::unique_ptr<Solver> make_vulkan_table(const SolverOptions& options) {
   return std::make_unique<EvaluatorSolver>(
-      std::make_unique<InterpolatingEvaluator>(vulkan_evaluator(options, Precision::kFloat)));
+      std::make_unique<InterpolatingEvaluator>(vulkan_evaluator(options, Precision::kFloat)), Precision::kFloat);
 }
 
 std::unique_ptr<Solver> make_cpu(Precision precision) {
-  return std::make_unique<EvaluatorSolver>(std::make_unique<CpuEvaluator>(precision));
+  return std::make_unique<EvaluatorSolver>(std::make_unique<CpuEvaluator>(), precision);
 }
 
 }  // namespace dolp::bench

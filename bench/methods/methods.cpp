@@ -89,9 +89,9 @@ Method evaluator(const std::string& name, Precision precision,
   const std::string suffix = name_of(precision);
   const bool on_device = name == "vulkan";
   return {.name = name + "-" + suffix,
-          .label = (on_device ? "dolp Vulkan " : "dolp CPU text ") + suffix,
+          .label = (on_device ? "dolp Vulkan " : "dolp CPU kernel ") + suffix,
           .what = on_device ? "the kernel of dolp on the Vulkan device, " + suffix
-                            : "the same text compiled as C++, " + suffix,
+                            : "the same source compiled as C++, " + suffix,
           .cores = "all",
           .setting_name = "tolerance",
           .settings = in_double ? std::vector<double>{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}
@@ -124,15 +124,16 @@ std::vector<Method> all() {
   for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
     list.push_back(evaluator("cpu", precision, [precision](const SolverOptions&) { return make_cpu(precision); }));
   }
-  list.push_back({.name = "native-float",
-                  .label = "native C++ float",
-                  .what = "the same text in the same groups and pieces, compiled for this processor, all cores, float",
-                  .cores = "all",
-                  .setting_name = "tolerance",
-                  .settings = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6},
-                  .quick_settings = {1e-3, 1e-5},
-                  .is_batched = true,
-                  .make = [](const SolverOptions&) { return make_native(); }});
+  list.push_back(
+      {.name = "native-float",
+       .label = "native C++ float",
+       .what = "the same source in the same groups and pieces, compiled for this processor, all cores, float",
+       .cores = "all",
+       .setting_name = "tolerance",
+       .settings = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6},
+       .quick_settings = {1e-3, 1e-5},
+       .is_batched = true,
+       .make = [](const SolverOptions&) { return make_native(); }});
   return list;
 }
 

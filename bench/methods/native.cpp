@@ -1,4 +1,4 @@
-// The shaders' own text, compiled for this very processor: the same algorithm, rows and pieces as on the device.
+// The kernel source, compiled for this very processor: the same algorithm, rows and pieces as on the device.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -7,8 +7,8 @@
 
 #include "base/processor.hpp"
 #include "base/stopwatch.hpp"
+#include "methods/kernel/grouped_kernel.hpp"
 #include "methods/method.hpp"
-#include "methods/text/grouped_text.hpp"
 
 namespace dolp::bench {
 namespace {
@@ -34,13 +34,13 @@ class NativeText final : public Solver {
     MomentsRequest wanted = request;
     wanted.tolerance = setting;
     const GroupedWork work(wanted);
-    if (!has_text_for(work.data)) {
+    if (!has_kernel_for(work.data)) {
       throw Unavailable("it is compiled for the cauchy with integral or smith and without total reflection alone");
     }
-    const std::unique_ptr<GroupedText> text = make_native_text(work);
+    const std::unique_ptr<GroupedKernel> kernel = make_native_kernel(work);
     std::vector<kernel::MomentsNode> nodes(work.pieces.size() * work.rows.width);
     Solution solution;
-    solution.kernel_s = run(work, *text, nodes);
+    solution.kernel_s = run(work, *kernel, nodes);
     solution.evaluations = 0.0;
     for (std::size_t i = 0; i < nodes.size(); i += work.rows.width) *solution.evaluations += nodes[i].evaluations;
     for (const Moments& entry : moments_of(work, nodes)) {
@@ -51,14 +51,14 @@ class NativeText final : public Solver {
   std::string where() const override { return processor_name() + ", " DOLP_NATIVE_FLAGS; }
 
  private:
-  static double run(const GroupedWork& work, GroupedText& text, std::vector<kernel::MomentsNode>& nodes) {
+  static double run(const GroupedWork& work, GroupedKernel& kernel, std::vector<kernel::MomentsNode>& nodes) {
     const auto start = std::chrono::steady_clock::now();
     const std::size_t size = work.rows.width;
-    on_all_cores(work.rows.shapes.size(), [&](std::size_t shape) { text.build_masking_table(shape); });
+    on_all_cores(work.rows.shapes.size(), [&](std::size_t shape) { kernel.build_masking_table(shape); });
     on_all_cores((work.pieces.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
       const std::size_t first = block * kBlock;
       const std::size_t count = std::min(kBlock, work.pieces.size() - first);
-      text.run_pieces(first, std::span(nodes).subspan(first * size, count * size));
+      kernel.run_pieces(first, std::span(nodes).subspan(first * size, count * size));
     });
     return seconds_since(start);
   }

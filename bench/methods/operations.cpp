@@ -30,10 +30,10 @@ void add_scaled(OperationCounts& sum, const OperationCounts& counts, double fact
 
 KernelWork count_operations(const MomentsRequest& request, std::size_t workgroups, std::size_t lanes) {
   const GroupedWork work(request);
-  const std::unique_ptr<GroupedText> text = make_counted_text(work);
+  const std::unique_ptr<GroupedKernel> kernel = make_counted_kernel(work);
   KernelWork result;
   const OperationCounts before_tables = counted_operations();
-  for (std::size_t shape = 0; shape < work.rows.shapes.size(); ++shape) text->build_masking_table(shape);
+  for (std::size_t shape = 0; shape < work.rows.shapes.size(); ++shape) kernel->build_masking_table(shape);
   add_scaled(result.counts, since(before_tables), 1.0);
   const std::size_t all = (work.pieces.size() + vulkan::kLocalSize - 1) / vulkan::kLocalSize;
   const std::size_t count = std::min(workgroups, all);
@@ -48,7 +48,7 @@ KernelWork count_operations(const MomentsRequest& request, std::size_t workgroup
     const std::size_t last = std::min(first + vulkan::kLocalSize, work.pieces.size());
     for (std::size_t piece = first; piece < last; ++piece) {
       const std::uint64_t flops = counted_operations().flops();
-      text->run_pieces(piece, members);
+      kernel->run_pieces(piece, members);
       most = std::max(most, static_cast<double>(counted_operations().flops() - flops));
       evaluations += members.front().evaluations;
       ++pieces;

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "methods/text/grouped_text.hpp"
+#include "methods/kernel/grouped_kernel.hpp"
 
 namespace dolp::bench {
 
@@ -17,7 +17,7 @@ struct KernelWork {
 };
 
 /// Runs `workgroups` workgroups of the kernel, evenly spread, in arithmetic that counts.
-/// Accuracy: a few percent, for the rest is like the sample. Domain: has_text_for.
+/// Accuracy: a few percent, for the rest is like the sample. Domain: has_kernel_for.
 KernelWork count_operations(const MomentsRequest& request, std::size_t workgroups, std::size_t lanes);
 
 }  // namespace dolp::bench

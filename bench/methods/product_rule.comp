@@ -78,11 +78,11 @@ void main() {
       Bisector facet = facet_between(fixed_beam, running, azimuth.x);
       real cos2_alpha = real(1.0) / (real(1.0) + facet.slope2);
       real u2 = facet.slope2 / m2;
-      real profile = (kDistribution == DOLP_CAUCHY) ? (q - real(1.0)) * pow(real(1.0) + u2, -q) : exp(-u2);
+      real density = (kDistribution == DOLP_CAUCHY) ? (q - real(1.0)) * pow(real(1.0) + u2, -q) : exp(-u2);
       Fresnel f = fresnel(index, facet.cos_beta);
       real half_split = real(0.5) * f.split_over_sin2 * cos2_alpha;
       real along2 = facet.along * facet.along;
-      real weight = azimuth.y * profile / (cos2_alpha * cos2_alpha) *
+      real weight = azimuth.y * density / (cos2_alpha * cos2_alpha) *
                     attenuation(row, lower, of_lower, of_higher, facet, sqrt(cos2_alpha));
       azimuth_sum.x += weight * (f.r_s - half_split * (along2 + facet.across2));
       azimuth_sum.y += weight * (half_split * (along2 - facet.across2));

@@ -21,7 +21,6 @@ constexpr double kSunInVisible = 1800.0;
 constexpr double kVisible_um = 0.55;
 constexpr double kColdSky = 250.0;    // K
 constexpr double kOnePercent = 1e-2;  // of DOLP: what a thermal camera sees
-constexpr double kSmooth = 5e-3;      // of the sigmas
 
 Axes grid_of(std::size_t entries) {
   const auto side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(entries))));
@@ -145,12 +144,7 @@ std::vector<EffectGroup> surface_groups(const SceneValues& base) {
 std::vector<EffectGroup> scattering_groups(const Axes& grid) {
   SceneValues rough = emitting(grid);
   rough.surface.masking = Masking::kVCavity;
-  // No slope that counts is hit twice, so that the plan leaves further bounces out.
-  SceneValues smooth = rough;
-  smooth.surface.distribution = Distribution::kGaussian;
-  for (double& sigma : smooth.grid[Axis::kSigma]) sigma *= kSmooth;
   return {group("scattering", rough, {scattering(Scattering::kSingle), scattering(Scattering::kMultiple)}),
-          group("smooth surface", smooth, {scattering(Scattering::kSingle), scattering(Scattering::kMultiple)}),
           group("direct emission", rough,
                 {emission_model(EmissionModel::kMoments), emission_model(EmissionModel::kDirect)}),
           group("bracket", rough, {{"off"}, {"on", [](SceneValues& scene) { scene.emission->has_bracket = true; }}})};

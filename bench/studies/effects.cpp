@@ -47,7 +47,7 @@ Change change_of(const std::vector<PointResult>& planned, const std::vector<Poin
 /// Names of the effects that the plan drops or does not need.
 std::vector<std::string> left_out(const TimedScene& timed) {
   std::vector<std::string> names;
-  for (const EffectRow& row : effect_rows(timed.scene(), timed.entries(), timed.plan())) {
+  for (const Effect& row : effects_of(timed.scene(), timed.entries(), timed.plan())) {
     if (row.state == EffectState::kDropped || row.state == EffectState::kNotNeeded) names.emplace_back(row.name);
   }
   return names;
@@ -75,7 +75,7 @@ ordered_json effect_row(const EffectGroup& group, const Pair& pair, const Pair& 
   row["error"] = change.dolp;
   row["compared"] = change.compared;
   row["tolerance"] = pair.planned.scene().accuracy.tolerance;
-  row["bound"] = pair.planned.plan().bound.dolp;
+  row["bound"] = pair.planned.plan().bound;
   row["time_s"] = time_s;
   row["kernel_time_s"] = median(pair.planned.kernel_times_s());
   row["ratio"] = time_s / median(base.planned.times_s());

@@ -106,7 +106,7 @@ ordered_json scipy_json(const FitSet& set, const MeasuredData& data, const fit::
 }
 
 /// A whole fit, search and intervals, with device and kernels ready.
-ordered_json time_json(MomentsEvaluator& evaluator) {
+ordered_json time_json(ModelEvaluator& evaluator) {
   const FitSet set = timed_set();
   const MeasuredData data = synthetic_data(set, 0, evaluator);
   const fit::Model model(set.scene, {data}, set.parameters);

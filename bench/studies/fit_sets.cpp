@@ -109,7 +109,7 @@ FitSet timed_set() {
   return set;
 }
 
-MeasuredData synthetic_data(const FitSet& set, std::size_t number, MomentsEvaluator& evaluator) {
+MeasuredData synthetic_data(const FitSet& set, std::size_t number, ModelEvaluator& evaluator) {
   MeasuredData data;
   data.name = "synthetic";
   data.zenith_column = "theta_deg";
@@ -141,7 +141,7 @@ bool SetOutcome::is_consistent() const {
   return (growth > kRise68 || held_68 == all) && (growth > kRise95 || held_95 == all);
 }
 
-SetOutcome fit_outcome(std::size_t number, MomentsEvaluator& evaluator) {
+SetOutcome fit_outcome(std::size_t number, ModelEvaluator& evaluator) {
   const FitSet set = fit_set(number);
   const MeasuredData data = synthetic_data(set, number, evaluator);
   const fit::Model model(set.scene, {data}, set.parameters);
@@ -165,8 +165,10 @@ SetOutcome fit_outcome(std::size_t number, MomentsEvaluator& evaluator) {
   for (std::size_t j = 0; j < set.parameters.size(); ++j) {
     truth[static_cast<Eigen::Index>(j)] = set.parameters[j].coordinate(truth[static_cast<Eigen::Index>(j)]);
   }
-  outcome.chi_square_of_truth = residuals.at({truth}).front().squaredNorm();
-  outcome.chi_square_from_truth = fit::descend(residuals, {truth, {}, {}}, {}).objective;
+  std::vector<fit::Minimum> from_truth = {{.where = residuals.at({truth}).front()}};
+  outcome.chi_square_of_truth = from_truth.front().where.residuals.squaredNorm();
+  fit::descend(residuals, from_truth, {});
+  outcome.chi_square_from_truth = from_truth.front().objective;
   return outcome;
 }
 

@@ -33,7 +33,7 @@ FitSet fit_set(std::size_t number);
 FitSet timed_set();
 
 /// The truth with Gaussian noise. `number`: the seed of the noise.
-MeasuredData synthetic_data(const FitSet& set, std::size_t number, MomentsEvaluator& evaluator);
+MeasuredData synthetic_data(const FitSet& set, std::size_t number, ModelEvaluator& evaluator);
 
 /// A fit of a set against its truth.
 struct SetOutcome {
@@ -50,6 +50,6 @@ struct SetOutcome {
 };
 
 /// Makes the data of a set and fits them.
-SetOutcome fit_outcome(std::size_t number, MomentsEvaluator& evaluator);
+SetOutcome fit_outcome(std::size_t number, ModelEvaluator& evaluator);
 
 }  // namespace dolp::bench

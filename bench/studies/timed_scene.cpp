@@ -16,7 +16,7 @@ constexpr double kLongTime = 0.5;  // a first call that takes that long says eno
 
 }  // namespace
 
-TimedScene::TimedScene(SceneValues scene, bool keep_all, MomentsEvaluator& evaluator)
+TimedScene::TimedScene(SceneValues scene, bool keep_all, ModelEvaluator& evaluator)
     : scene_(std::move(scene)), entries_(grid_entries(scene_)), keep_all_(keep_all), evaluator_(evaluator) {
   const EvaluationReport before = evaluator_.report();
   const Clock::time_point start = Clock::now();
@@ -51,8 +51,7 @@ std::size_t TimedScene::calls_of_a_raw_time() {
 
 std::vector<PointResult> TimedScene::run() {
   plan_ = plan_effects(scene_, entries_, keep_all_);
-  const bool integrates = wants_evaluator(scene_, entries_, plan_);
-  return evaluate_scene(scene_, entries_, plan_, integrates ? &evaluator_ : nullptr, nullptr);
+  return evaluate_scene(scene_, entries_, evaluator_, nullptr, plan_);
 }
 
 }  // namespace dolp::bench

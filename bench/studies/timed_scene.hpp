@@ -12,7 +12,7 @@ namespace dolp::bench {
 class TimedScene {
  public:
   /// Runs it once, which creates the pipelines. The evaluator outlives the object.
-  TimedScene(SceneValues scene, bool keep_all, MomentsEvaluator& evaluator);
+  TimedScene(SceneValues scene, bool keep_all, ModelEvaluator& evaluator);
 
   /// Adds a raw time of a call.
   void repeat();
@@ -36,7 +36,7 @@ class TimedScene {
   SceneValues scene_;
   SceneEntries entries_;
   bool keep_all_;
-  MomentsEvaluator& evaluator_;
+  ModelEvaluator& evaluator_;
   EffectPlan plan_;
   std::vector<PointResult> results_;
   std::uint64_t interpolated_ = 0;

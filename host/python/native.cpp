@@ -8,10 +8,13 @@
 
 #include <atomic>
 #include <chrono>
+#include <exception>
 #include <future>
 #include <map>
 #include <string>
+#include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace py = pybind11;
@@ -44,12 +47,53 @@ auto interruptible(const Body& body) {
   return result.get();
 }
 
+// Python's form of bytes that are not UTF-8, as paths may have them.
+constexpr const char* kOtherBytes = "surrogateescape";
+
+py::str text_of(const std::string& text) {
+  PyObject* const decoded = PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), kOtherBytes);
+  if (!decoded) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
+}
+
+std::string bytes_of(const py::handle& text) {
+  PyObject* const encoded = PyUnicode_AsEncodedString(text.ptr(), "utf-8", kOtherBytes);
+  if (!encoded) throw py::error_already_set();
+  return py::reinterpret_steal<py::bytes>(encoded);
+}
+
+/// Raises an exception of the library in Python.
+void raise(const char* type, const std::exception& error) {
+  const py::object raised = py::module_::import("dolp._native").attr(type);
+  PyErr_SetObject(raised.ptr(), text_of(error.what()).ptr());
+}
+
+void translate(std::exception_ptr error) {
+  try {
+    if (error) std::rethrow_exception(error);
+  } catch (const dolp::InputError& input) {
+    raise("InputError", input);
+  } catch (const dolp::DeviceError& device) {
+    raise("DeviceError", device);
+  } catch (const dolp::IoError& io) {
+    raise("IoError", io);
+  } catch (const dolp::MemoryError& memory) {
+    PyErr_SetObject(PyExc_MemoryError, text_of(memory.what()).ptr());
+  }
+}
+
+void add_error(py::module_& module, const std::string& name, PyObject* base, const char* meaning) {
+  PyObject* const type = PyErr_NewExceptionWithDoc(("dolp." + name).c_str(), meaning, base, nullptr);
+  if (!type) throw py::error_already_set();
+  module.attr(name.c_str()) = py::reinterpret_steal<py::object>(type);
+}
+
 /// A value of a key: None, bool, float, str, a list of floats or a dictionary of from, to, count and spacing.
 dolp::Value value_of(const std::string& key, const py::handle& value) {
   if (value.is_none()) return {};
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
   if (py::isinstance<py::float_>(value)) return value.cast<double>();
-  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+  if (py::isinstance<py::str>(value)) return bytes_of(value);
   if (!py::isinstance<py::dict>(value)) return value.cast<std::vector<double>>();
   const auto range = value.cast<std::map<std::string, py::object>>();
   for (const auto& [name, item] : range) {
@@ -66,13 +110,43 @@ dolp::Value value_of(const std::string& key, const py::handle& value) {
                          range.at("count").cast<std::size_t>(), word == "log"};
 }
 
-std::vector<dolp::Setting> settings_of(const py::dict& values) {
+using Values = std::vector<std::pair<py::str, py::object>>;  // of keys
+
+std::vector<dolp::Setting> settings_of(const Values& values) {
   std::vector<dolp::Setting> settings;
   for (const auto& [key, value] : values) {
-    const auto name = key.cast<std::string>();
+    const std::string name = bytes_of(key);
     settings.push_back({name, value_of(name, value)});
   }
   return settings;
+}
+
+/// The reverse of value_of. Text of TOML appears on command lines alone.
+py::object object_of(const dolp::Value& value) {
+  const auto object = [](const auto& content) -> py::object {
+    using Content = std::decay_t<decltype(content)>;
+    if constexpr (std::is_same_v<Content, std::monostate>) {
+      return py::none();
+    } else if constexpr (std::is_same_v<Content, std::string>) {
+      return text_of(content);
+    } else if constexpr (std::is_same_v<Content, dolp::TomlText>) {
+      return text_of(content.text);
+    } else if constexpr (std::is_same_v<Content, dolp::AxisRange>) {
+      using py::literals::operator""_a;
+      return py::dict("from"_a = content.from, "to"_a = content.to, "count"_a = content.count,
+                      "spacing"_a = content.is_logarithmic ? "log" : "linear");
+    } else {
+      return py::cast(content);
+    }
+  };
+  return std::visit(object, value.content());
+}
+
+Values values_of(const dolp::Scene& scene) {
+  Values values;
+  for (const dolp::Setting& setting : scene.settings())
+    values.emplace_back(text_of(setting.key), object_of(setting.value));
+  return values;
 }
 
 /// Views of arrays that outlive the result.
@@ -104,16 +178,70 @@ py::array_t<Value> array_of(std::vector<Value> values) {
 }
 
 /// (quantities: [(name, long_name, units, ancillary, values)], status, attributes).
-py::tuple parts_of(dolp::Results results) {
+py::tuple parts_of(dolp::ResultColumns results, const dolp::Quantities& given, const std::string& stokes_units,
+                   const std::vector<dolp::Attribute>& attributes) {
   py::list quantities;
-  for (const dolp::Quantity quantity : results.given) {
+  for (const dolp::Quantity quantity : given) {
     const dolp::QuantityDescription& known = dolp::description_of(quantity);
-    quantities.append(py::make_tuple(known.name, known.long_name, dolp::units_of(quantity, results.stokes_units),
+    quantities.append(py::make_tuple(known.name, known.long_name, text_of(dolp::units_of(quantity, stokes_units)),
                                      known.ancillary, array_of(std::move(results[quantity]))));
   }
-  py::dict attributes;
-  for (const auto& [name, value] : results.attributes) attributes[py::str(name)] = value;
-  return py::make_tuple(quantities, array_of(std::move(results.status)), attributes);
+  py::dict named;
+  for (const auto& [name, value] : attributes) {
+    if (const auto* number = std::get_if<double>(&value)) named[text_of(name)] = *number;
+    if (const auto* text = std::get_if<std::string>(&value)) named[text_of(name)] = text_of(*text);
+  }
+  return py::make_tuple(quantities, array_of(std::move(results.status)), named);
+}
+
+py::tuple parts_of(dolp::Results results) {
+  return parts_of(std::move(static_cast<dolp::ResultColumns&>(results)), results.given, results.stokes_units,
+                  results.attributes);
+}
+
+/// (axes: [(name, values)], curves: [(name, long_name, units, wavelengths, values)], parts).
+py::tuple contents_of(const dolp::Table& table) {
+  const dolp::TableValues& values = table.values();
+  py::list axes, curves;
+  for (const dolp::Axis axis : dolp::kAllAxes) {
+    if (!values.axes[axis].empty())
+      axes.append(py::make_tuple(dolp::description_of(axis).name, array_of(values.axes[axis])));
+  }
+  for (const dolp::TableCurve& known : dolp::kTableCurves) {
+    const dolp::Curve& curve = values.*known.curve;
+    if (curve.values.empty()) continue;
+    curves.append(py::make_tuple(known.name, known.long_name, known.units, array_of(curve.wavelength_um),
+                                 array_of(curve.values)));
+  }
+  return py::make_tuple(axes, curves,
+                        parts_of(values, values.quantities(), values.stokes_units, table.file_attributes()));
+}
+
+std::vector<double> vector_of(const Array& values) { return {values.data(), values.data() + values.size()}; }
+
+/// A table of the axes, curves, columns and attributes that are there, by name.
+dolp::Table table_of(const Columns& columns, const py::array_t<std::uint32_t, py::array::forcecast>& status,
+                     const std::string& stokes_units, const py::dict& attributes, const std::string& name) {
+  dolp::TableValues table;
+  if (!stokes_units.empty()) table.stokes_units = stokes_units;
+  const auto take = [&](const std::string& variable, std::vector<double>& values) {
+    if (const auto found = columns.find(variable); found != columns.end()) values = vector_of(found->second);
+  };
+  for (const dolp::Axis axis : dolp::kAllAxes) take(dolp::description_of(axis).name, table.axes[axis]);
+  for (const dolp::Quantity quantity : dolp::kAllQuantities) take(dolp::description_of(quantity).name, table[quantity]);
+  for (const dolp::TableCurve& known : dolp::kTableCurves) {
+    take(known.name, (table.*known.curve).values);
+    take(known.name + std::string("_wavelength"), (table.*known.curve).wavelength_um);
+  }
+  table.status.assign(status.data(), status.data() + status.size());
+  for (const auto& [attribute, value] : attributes) {
+    if (py::isinstance<py::str>(value)) {
+      table.attributes.push_back({bytes_of(attribute), bytes_of(value)});
+    } else {
+      table.attributes.push_back({bytes_of(attribute), value.cast<double>()});
+    }
+  }
+  return dolp::Table::of(std::move(table), name);
 }
 
 py::dict description(const dolp::Device& device) {
@@ -126,25 +254,33 @@ py::dict description(const dolp::Device& device) {
 }  // namespace
 
 PYBIND11_MODULE(_native, module) {
-  py::register_exception<dolp::InputError>(module, "InputError", PyExc_ValueError);
-  py::register_exception<dolp::DeviceError>(module, "DeviceError", PyExc_RuntimeError);
-  py::register_exception<dolp::IoError>(module, "IoError", PyExc_OSError);
+  add_error(module, "InputError", PyExc_ValueError, "A scene, points, a table or an argument is wrong.");
+  add_error(module, "DeviceError", PyExc_RuntimeError, "There is no usable Vulkan device, or it was lost.");
+  add_error(module, "IoError", PyExc_OSError, "A file could not be read or written.");
+  py::register_exception_translator(translate);
 
-  py::register_exception<dolp::MemoryError>(module, "MemoryError", PyExc_MemoryError);
-
+  const auto from_text = [](const py::str& text, const Values& values, const py::str& name) {
+    return dolp::Scene::from_text(bytes_of(text), settings_of(values), bytes_of(name));
+  };
   py::class_<dolp::Scene>(module, "Scene")
       .def_static("from_file", [](const std::filesystem::path& path,
-                                  const py::dict& values) { return dolp::Scene::from_file(path, settings_of(values)); })
-      .def_static("from_text",
-                  [](const std::string& text, const py::dict& values) {
-                    return dolp::Scene::from_text(text, settings_of(values), "text");
-                  })
-      .def("with_", [](const dolp::Scene& scene, const py::dict& values) { return scene.with(settings_of(values)); })
-      .def("toml", [](const dolp::Scene& scene) { return scene.toml(); })
-      .def_property_readonly("title", &dolp::Scene::title);
+                                  const Values& values) { return dolp::Scene::from_file(path, settings_of(values)); })
+      .def_static("from_text", from_text)
+      .def("with_", [](const dolp::Scene& scene, const Values& values) { return scene.with(settings_of(values)); })
+      .def("toml", [](const dolp::Scene& scene) { return text_of(scene.toml()); })
+      .def("values", &values_of)
+      .def("__deepcopy__", [](const dolp::Scene& scene, const py::dict&) { return scene; })
+      .def(py::pickle(
+          [](const dolp::Scene& scene) {
+            return py::make_tuple(text_of(scene.text()), values_of(scene), text_of(scene.name()));
+          },
+          [from_text](const py::tuple& state) { return from_text(state[0], state[1].cast<Values>(), state[2]); }))
+      .def_property_readonly("name", [](const dolp::Scene& scene) { return text_of(scene.name()); })
+      .def_property_readonly("title", [](const dolp::Scene& scene) { return text_of(scene.title()); });
 
   py::class_<dolp::Table>(module, "Table")
       .def_static("read", &dolp::Table::read)
+      .def_static("of", &table_of)
       .def("lookup", [](const dolp::Table& table, const Columns& columns) {
         const std::vector<dolp::Column> points = views(columns);
         return parts_of(interruptible([&](const dolp::Progress& progress) { return table.lookup(points, progress); }));
@@ -154,12 +290,18 @@ PYBIND11_MODULE(_native, module) {
       .def(py::init([](const std::string& evaluator, const std::string& device) {
         return dolp::Evaluator({evaluator, device});
       }))
+      .def("table",
+           [](dolp::Evaluator& evaluator, const dolp::Scene& scene, bool keep_all) {
+             return contents_of(interruptible([&](const dolp::Progress& progress) {
+               return evaluator.table(scene, {keep_all, progress, "dolp.table"});
+             }));
+           })
       .def("write_table",
            [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const std::filesystem::path& path, bool keep_all,
               bool resume) {
-             return interruptible([&](const dolp::Progress& progress) {
+             return text_of(interruptible([&](const dolp::Progress& progress) {
                return evaluator.write_table(scene, path, {keep_all, progress, "dolp.table", resume}).text;
-             });
+             }));
            })
       .def("evaluate",
            [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const Columns& columns, bool keep_all) {
@@ -170,7 +312,7 @@ PYBIND11_MODULE(_native, module) {
            })
       .def("fit",
            [](dolp::Evaluator& evaluator, const dolp::Scene& scene,
-              const std::vector<std::pair<std::string, py::dict>>& data,
+              const std::vector<std::pair<std::string, Values>>& data,
               const std::map<std::string, std::vector<double>>& vary, std::size_t starts, std::uint64_t seed) {
              std::vector<dolp::MeasuredData> sets;
              for (const auto& [csv, values] : data) {
@@ -185,7 +327,7 @@ PYBIND11_MODULE(_native, module) {
              if (!fit.has_minimum) {
                throw dolp::InputError("fit: no descent converged; try other ranges, or more starts");
              }
-             return py::make_tuple(fit.report.text, fit.report.json, std::move(fit.scene));
+             return py::make_tuple(text_of(fit.report.text), text_of(fit.report.json), std::move(fit.scene));
            })
       .def("mueller", [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const Columns& columns) {
         const std::vector<dolp::Column> points = views(columns);
@@ -199,7 +341,7 @@ PYBIND11_MODULE(_native, module) {
 
   module.def("plan", [](const dolp::Scene& scene, const std::string& device, bool keep_all) {
     const dolp::Report plan = dolp::plan(scene, device, keep_all);
-    return py::make_tuple(plan.text, plan.json);
+    return py::make_tuple(text_of(plan.text), text_of(plan.json));
   });
   module.def("devices", [] {
     py::list all;
@@ -233,6 +375,7 @@ PYBIND11_MODULE(_native, module) {
     for (const dolp::StatusBit& bit : dolp::kStatusBits) all.append(py::make_tuple(bit.mask, bit.meaning));
     return all;
   });
+  module.attr("most_attribute_bytes") = dolp::kMostAttributeBytes;
   module.def("version", &dolp::version);
   module.def("commit", &dolp::commit);
   module.def("citation", &dolp::citation);

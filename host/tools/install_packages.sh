@@ -16,7 +16,7 @@ need build glslang-tools spirv-tools                # compile, optimise and chec
 need build libvulkan-dev mesa-vulkan-drivers        # run the kernels, on GPUs of all makers and on the processor
 need build libglm-dev                               # GLSL's vector types in C++, for the CPU build of the shaders
 need build libboost-dev                             # special functions, Gauss-Kronrod nodes, short lists
-need build libceres-dev libeigen3-dev               # the descents of dolp fit; small matrices
+need build libeigen3-dev                            # small matrices of dolp fit
 need build libhdf5-dev                              # table files, which are NetCDF-4
 need build libtomlplusplus-dev libyaml-cpp-dev      # scenes, material records
 need build libcli11-dev libfmt-dev nlohmann-json3-dev  # command line, messages, JSON reports

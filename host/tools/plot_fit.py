@@ -12,9 +12,14 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+from matplotlib.collections import LineCollection  # noqa: E402
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-LABELS = {"dolp": "DOLP (%)", "q_over_i": "Q/I (%)", "emissivity_s": "emissivity (%)", "emissivity_p": "emissivity (%)"}
+QUANTITIES = {"dolp": "DOLP", "q_over_i": "Q/I", "emissivity_s": r"$\varepsilon_s$", "emissivity_p": r"$\varepsilon_p$"}
+SYMBOLS = {"surface.n": "n", "surface.k": "k", "surface.sigma": "σ", "surface.q": "q", "surface.specular": r"$k_s$",
+           "surface.diffuse": r"$k_d$", "emission.temperature_K": "T (K)", "surroundings.temperature_K": r"$T_{surr}$ (K)",
+           "spectrum.wavelength_um": "λ (µm)", "geometry.view_zenith_deg": r"$\theta_v$ (degree)",
+           "geometry.delta_phi_deg": "Δφ (degree)"}
 PERCENT = 100.0
 REGIONS = ("68 %", "95 %")  # of all pairs, at the levels of the report
 
@@ -30,33 +35,52 @@ def curves(points):
                     for name in ("theta_deg", "measured", "uncertainty", "model", "residual")}
 
 
+def symbol_of(key):
+    return SYMBOLS.get(key, key)
+
+
 def label_of(key, several):
     data, quantity, wavelength_um = key
     parts = [data] if several else []
-    parts += [quantity] + ([f"{wavelength_um:g} µm"] if wavelength_um is not None else [])
+    parts += [QUANTITIES[quantity]] + ([f"{wavelength_um:g} µm"] if wavelength_um is not None else [])
     return ", ".join(parts)
+
+
+def frame(axes, arrays):
+    """Limits with all values inside of them."""
+    values = np.concatenate([np.ravel(array) for array in arrays])
+    low, high = np.nanmin(values), np.nanmax(values)
+    margin = 0.05 * ((high - low) or 1.0)
+    axes.set_ylim(low - margin, high + margin)
 
 
 def draw_data(upper, lower, report):
     several = len({point["data"] for point in report["points"]}) > 1
     has_uncertainties = report["scale_from"] == "uncertainties"
     factor = 1.0 if has_uncertainties else PERCENT
+    lines = {(one["data"], one["quantity"], one["wavelength_um"]): one for one in report["curves"]}
+    seen = []
     for i, (key, curve) in enumerate(curves(report["points"])):
         colour = COLOURS[i % len(COLOURS)]
-        bars = PERCENT * curve["uncertainty"] if has_uncertainties else None
-        upper.errorbar(curve["theta_deg"], PERCENT * curve["measured"], bars, fmt="o", markersize=3.5, linewidth=1.0,
-                       color=colour, label=label_of(key, several))
-        upper.plot(curve["theta_deg"], PERCENT * curve["model"], color=colour, linewidth=1.6)
+        bars = PERCENT * curve["uncertainty"] if has_uncertainties else np.zeros_like(curve["measured"])
+        measured, line = PERCENT * curve["measured"], PERCENT * np.array(lines[key]["model"], dtype=float)
+        upper.errorbar(curve["theta_deg"], measured, bars if has_uncertainties else None, fmt="o", markersize=3.5,
+                       linewidth=1.0, color=colour, label=label_of(key, several))
+        upper.plot(lines[key]["theta_deg"], line, color=colour, linewidth=1.6)
+        seen += [measured - bars, measured + bars, line]
         lower.errorbar(curve["theta_deg"], factor * curve["residual"], 1.0 if has_uncertainties else None, fmt="o",
                        markersize=3.5, linewidth=1.0, color=colour)
-    for bracket in filter(None, report.get("brackets", [])):
+    for i, bracket in enumerate(filter(None, report["brackets"])):
         low, high = (PERCENT * np.array(bracket[end], dtype=float) for end in ("low", "high"))
         upper.fill_between(bracket["theta_deg"], low, high, color="0.75", alpha=0.5, linewidth=0.0,
-                           label="bracket of all bounces")
+                           label="bracket of all bounces" if i == 0 else None)
+        seen += [low, high]
+    frame(upper, seen)
     lower.axhline(0.0, color="0.4", linewidth=1.0)
     lower.set_xlabel(r"zenith angle $\theta$ (degree)")
     lower.set_ylabel("measured − model\n" + ("(uncertainties)" if has_uncertainties else "(points of 1 %)"))
-    upper.set_ylabel(LABELS[report["points"][0]["quantity"]])
+    names = dict.fromkeys(QUANTITIES[point["quantity"]] for point in report["points"])
+    upper.set_ylabel(", ".join(names) + " (%)")
     upper.legend(frameon=False, fontsize=9)
 
 
@@ -66,12 +90,9 @@ def draw_pair(axes, report):
     if contours is None:
         axes.set_visible(False)
         return
-    y = np.array(contours["second"])
-    x = np.broadcast_to(np.array(contours["first"])[:, np.newaxis], y.shape)
-    growth = np.array([[np.nan if cell is None else cell for cell in row] for row in contours["growth"]], dtype=float)
-    for level, region, width in zip(contours["levels"], REGIONS, (2.0, 1.0)):
-        axes.contour(x, y, growth, levels=[level], colors=COLOURS[0], linewidths=width)
-        axes.plot([], [], color=COLOURS[0], linewidth=width, label=f"{region} of both, $\\Delta\\chi^2$ = {level:.2f}")
+    for level, segments, region, width in zip(contours["levels"], contours["segments"], REGIONS, (2.0, 1.0)):
+        axes.add_collection(LineCollection(np.reshape(segments, (-1, 2, 2)), colors=COLOURS[0], linewidths=width,
+                                           capstyle="round", label=f"{region} of both, $\\Delta\\chi^2$ = {level:.2f}"))
     parameters = {one["key"]: one for one in report["parameters"]}
     first, second = (parameters[key] for key in contours["keys"])
     for one, line in ((first, axes.axvline), (second, axes.axhline)):
@@ -80,8 +101,9 @@ def draw_pair(axes, report):
                 line(end, color="0.5", linestyle="--", linewidth=1.0)
     axes.plot([], [], color="0.5", linestyle="--", linewidth=1.0, label="95 % of each, profile likelihood")
     axes.plot(first["value"], second["value"], "+", color="black", markersize=10)
-    axes.set_xlabel(first["key"])
-    axes.set_ylabel(second["key"])
+    axes.autoscale_view()
+    axes.set_xlabel(symbol_of(first["key"]))
+    axes.set_ylabel(symbol_of(second["key"]))
     positions = [list(parameters).index(key) for key in contours["keys"]]
     axes.set_title(f"correlation {report['correlation'][positions[0]][positions[1]]:+.3f}", fontsize=10)
     axes.legend(frameon=False, fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.12))
@@ -89,7 +111,7 @@ def draw_pair(axes, report):
 
 def caption(report):
     values = "   ".join(
-        f"{one['key']} = {one['value']:.5g}" + (f" ± {one['standard_error']:.2g}" if one["standard_error"] else "")
+        f"{symbol_of(one['key'])} = {one['value']:.5g}" + (f" ± {one['standard_error']:.2g}" if one["standard_error"] else "")
         for one in report["parameters"])
     reduced = report["reduced_chi_square"]
     quality = f"reduced $\\chi^2$ = {reduced:.4g}" if reduced is not None else "no degrees of freedom"

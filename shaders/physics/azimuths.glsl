@@ -27,6 +27,15 @@ AzimuthSums no_azimuths() {
   return sums;
 }
 
+// sin(theta_r). A diverging G changes where 1 - cos(theta_r) has lost its digits: there it is the ray's horizontal part.
+real sine_of_ray(ThetaNode theta, Row row, Facet f, real t, Azimuth at) {
+  if (!is_diverging(row.shape[0])) return sqrt((real(1.0) - f.cos_r) * (real(1.0) + f.cos_r));
+  real turned = real(2.0) * f.e * t / (real(1.0) + t * t);
+  real along = turned * at.x - theta.s;
+  real across = turned * at.sin_phi;
+  return sqrt(along * along + across * across);
+}
+
 AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, Arc arc, int zone,
                      bool leaves, int order) {
   AzimuthSums sums = no_azimuths();
@@ -37,7 +46,7 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, S
       sums.member[0] += at.weight * reflected_in_groove(rule, theta, index, slope.t, at.x, at.sin_phi);
     } else {
       Facet f = facet(theta, index, slope.t, at.x, at.sin_phi);
-      Masked of_ray = masking_of_ray(row, f.cos_r, slope.t, zone);
+      Masked of_ray = masking_of_ray(row, f.cos_r, sine_of_ray(theta, row, f, slope.t, at), slope.t, zone);
       real seen = leaves ? at.weight : real(0.0);
       for (int g = 0; g < DOLP_WIDTH; ++g) {
         Projection part = project(theta, f, zone, slope.of_theta.value[g], of_ray.value[g]);

@@ -3,16 +3,34 @@ layout(local_size_x_id = DOLP_SPEC_LOCAL_SIZE) in;
 layout(constant_id = DOLP_SPEC_DISTRIBUTION) const uint kDistribution = DOLP_CAUCHY;
 layout(constant_id = DOLP_SPEC_MASKING) const uint kMasking = DOLP_MASKING_NONE;
 layout(constant_id = DOLP_SPEC_TOTAL_REFLECTION) const bool kTotalReflection = false;
+#ifdef DOLP_SINGLE_SCATTERING
+const bool kIsMultiple = false;
+#else
 layout(constant_id = DOLP_SPEC_MULTIPLE) const bool kIsMultiple = false;
+#endif
 layout(constant_id = DOLP_SPEC_DIRECT) const bool kHasDirect = false;
 
 layout(push_constant) uniform PushConstants { DOLP_PUSH_CONSTANTS } push;
 
 layout(std430, binding = DOLP_BINDING_SHAPES) readonly buffer Shapes { ShapeNode shapes[]; };
-layout(std430, binding = DOLP_BINDING_RULE_NODES) readonly buffer RuleNodes { real2 rule_nodes[]; };
-layout(std430, binding = DOLP_BINDING_MASKING_TABLE) buffer MaskingTable { real4 masking_table[]; };
+layout(std430, binding = DOLP_BINDING_MASKING_TABLE) writeonly buffer MaskingTable { real4 masking_table[]; };
+
+// Data that each invocation reads at places of its own are texel buffers: processors without AVX-512 read a storage buffer
+// so in a loop over the lanes, each of which waits for a store to the stack.
+#ifdef DOLP_DOUBLE
+layout(binding = DOLP_BINDING_RULE_NODES) uniform usamplerBuffer rule_nodes;
+layout(binding = DOLP_BINDING_MASKING_NODES) uniform usamplerBuffer masking_nodes;
+real2 doubles_of(uvec4 texel) { return real2(packDouble2x32(texel.xy), packDouble2x32(texel.zw)); }
+real2 rule_node(int i) { return doubles_of(texelFetch(rule_nodes, i)); }
+real4 masking_node(uint i) {
+  return real4(doubles_of(texelFetch(masking_nodes, int(2u * i))), doubles_of(texelFetch(masking_nodes, int(2u * i + 1u))));
+}
+#else
+layout(binding = DOLP_BINDING_RULE_NODES) uniform samplerBuffer rule_nodes;
+layout(binding = DOLP_BINDING_MASKING_NODES) uniform samplerBuffer masking_nodes;
+real2 rule_node(int i) { return texelFetch(rule_nodes, i).xy; }
+real4 masking_node(uint i) { return texelFetch(masking_nodes, int(i)); }
+#endif
 
 int largest_order() { return int(push.largest_order); }
-real2 rule_node(int i) { return rule_nodes[i]; }
-real4 masking_node(uint i) { return masking_table[i]; }
 void store_masking_node(uint i, real4 node) { masking_table[i] = node; }

@@ -1,6 +1,6 @@
 // Elementary functions from +, *, / and sqrt. The builtins of GLSL are too coarse (a driver may return sinh with an error
 // of several percent near 0) and do not exist in double.
-// Accuracy: tests/physics_test.cpp, a few units in the last place for the ranges stated here.
+// Accuracy: tests/compute/kernel_source_test.cpp, a few units in the last place for the ranges stated here.
 
 CONST real kPi = real(3.14159265358979323846);
 CONST real kLn2High = real(0.693145751953125);             // exact in a float; times an exponent it stays exact

@@ -134,6 +134,19 @@ real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece pi
   return piece_cost(piece, x.im, x.re - real(0.5) * kPi);
 }
 
+// Where smith's mean slope is about to diverge, L is about m tan(theta) / (pi (2q - 3)): G falls within the width
+// tan(theta) + pi (2q - 3) / m beside theta_r = 0, as from a pole so far beyond the cusp. The pole carries the width's
+// share.
+real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
+  real t = theta.s / (real(1.0) + theta.c);
+  real cusp = asinh_real(t / shape.scale);
+  real width = theta.s / max(theta.c, real(1e-12)) + kPi * shape.two_q_minus_3 / shape.m;
+  real beside = real(0.5) * width / sqrt(shape.scale * shape.scale + t * t);
+  bool is_below = piece.start + real(0.5) * piece.extent < cusp;
+  real cost = piece_cost(piece, is_below ? cusp + beside : cusp - beside, real(0.0));
+  return max(piece.digits + kInverseLn10 * log_unit(min(beside / piece.extent, real(1.0))), real(0.0)) * cost;
+}
+
 // Singularities of the integrand over the slopes: the cauchy's density at t = i m; the geometry at t = i; those of
 // Fresnel's coefficients; and the square roots at the breakpoints beyond the piece's ends that face it. Before a rule
 // converges it must resolve how the density falls over the piece, for which it takes nodes in proportion to the
@@ -163,6 +176,9 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
   // Split at smith's cusp, the gaussian's L has an essential singularity at an end: see line_nodes.
   if (kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_GAUSSIAN && has_split_line) {
     nodes = max(nodes, rule.t_nodes + essential_nodes(shape, piece.digits));
+  }
+  if (is_diverging(shape) && has_split_line) {
+    nodes = max(nodes, rule.t_nodes + roots + diverging_nodes(theta, shape, piece));
   }
   return max(nodes, real(2.0));
 }

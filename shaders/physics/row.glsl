@@ -61,8 +61,7 @@ Masked shadows(Row row, Masked heights, real cos_theta, real sin_theta, real t) 
 }
 
 // Masking of the reflected ray; on its first arcs `integral` uses theta instead.
-Masked masking_of_ray(Row row, real cos_r, real t, int zone) {
-  real sin_r = sqrt((real(1.0) - cos_r) * (real(1.0) + cos_r));
+Masked masking_of_ray(Row row, real cos_r, real sin_r, real t, int zone) {
   if (kMasking == DOLP_MASKING_SMITH) return masking_of_direction(row, cos_r, sin_r);
   Masked masked = unmasked();
   if (kMasking == DOLP_MASKING_INTEGRAL && zone > 0) {

@@ -13,8 +13,8 @@ real slope_tail(ShapeNode shape, real t) { return exp_real(-slope_tail_exponent(
 // P(t) t m: the facets of an interval dt at slope t, per unit of azimuth, are this times dt / m. Neither m^2 nor t^2
 // appears, so that no roughness overflows. `exponent` is common_exponent(u).
 real slope_density(ShapeNode shape, real u, real exponent) {
-  real profile = (kDistribution == DOLP_CAUCHY) ? shape.q_minus_1 / (u + real(1.0) / u) : u;
-  return profile * exp_real(-exponent_factor(shape) * exponent) / kPi;
+  real shape_factor = (kDistribution == DOLP_CAUCHY) ? shape.q_minus_1 / (u + real(1.0) / u) : u;
+  return shape_factor * exp_real(-exponent_factor(shape) * exponent) / kPi;
 }
 
 // p(tau), the density of the slope in one plane: the marginal of P.
@@ -22,4 +22,10 @@ real marginal_density(ShapeNode shape, real tau) {
   real u = tau / shape.m;
   real exponent = (kDistribution == DOLP_CAUCHY) ? (shape.q_minus_1 + real(0.5)) * log1p_square(u) : u * u;
   return shape.marginal_norm * exp_real(-exponent);
+}
+
+// True where smith's masking ends: the mean slope is about to diverge.
+CONST real kDivergingSlope = real(0.2);  // of 2q - 3
+bool is_diverging(ShapeNode shape) {
+  return kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_CAUCHY && shape.two_q_minus_3 < kDivergingSlope;
 }

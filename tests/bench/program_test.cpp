@@ -119,20 +119,8 @@ TEST_F(BenchEffects, Json_EveryEffect_HasTimesAndRatio) {
   }
   EXPECT_EQ(effects,
             (std::set<std::string>{"specular", "diffuse", "distribution", "masking", "complex index", "axes of index",
-                                   "scattering", "smooth surface", "direct emission", "bracket", "emission", "source",
-                                   "surroundings", "path", "band", "sun at 10.6 um", "emission at 0.55 um"}));
-}
-
-TEST_F(BenchEffects, Json_BouncesOfASmoothSurface_AreLeftOutAndDoMoreWhenKept) {
-  const json rough = study({"--case", "scattering"})["results"];
-  ASSERT_EQ(rough.size(), 2U);
-  EXPECT_EQ(rough[1]["setting"], "multiple");
-  EXPECT_FALSE(rough[1].contains("keep_all_time_s")) << rough[1].dump();
-  const json smooth = study({"--case", "smooth surface"})["results"];
-  ASSERT_EQ(smooth.size(), 2U);
-  EXPECT_FALSE(smooth[0].contains("keep_all_time_s")) << smooth[0].dump();
-  EXPECT_EQ(smooth[1]["left_out"], json({"scattering"}));
-  EXPECT_GT(smooth[1]["keep_all_kernel_time_s"].get<double>(), 0.0) << smooth[1].dump();
+                                   "scattering", "direct emission", "bracket", "emission", "source", "surroundings",
+                                   "path", "band", "sun at 10.6 um", "emission at 0.55 um"}));
 }
 
 TEST_F(BenchEffects, Json_RadiationBesideAStrongerOne_IsLeftOut) {

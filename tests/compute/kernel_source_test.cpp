@@ -23,9 +23,9 @@ using real2 = glm::vec2;
 using real4 = glm::vec4;
 }  // namespace dolp::tested_float
 
-#define DOLP_TEXT_NAMESPACE tested_float
-#include "evaluate/text/text_body.hpp"
-#undef DOLP_TEXT_NAMESPACE
+#define DOLP_KERNEL_NAMESPACE tested_float
+#include "evaluate/kernel/kernel_source.hpp"
+#undef DOLP_KERNEL_NAMESPACE
 
 namespace dolp::tested_double {
 using real = double;
@@ -33,37 +33,37 @@ using real2 = glm::dvec2;
 using real4 = glm::dvec4;
 }  // namespace dolp::tested_double
 
-#define DOLP_TEXT_NAMESPACE tested_double
+#define DOLP_KERNEL_NAMESPACE tested_double
 #define DOLP_DOUBLE
-#include "evaluate/text/text_body.hpp"
+#include "evaluate/kernel/kernel_source.hpp"
 #undef DOLP_DOUBLE
-#undef DOLP_TEXT_NAMESPACE
+#undef DOLP_KERNEL_NAMESPACE
 
 namespace dolp {
 namespace {
 
-/// The number that a text computes with.
-template <class Text>
-using RealOf = std::remove_const_t<decltype(Text::kPi)>;
+/// The number that a source computes with.
+template <class Source>
+using RealOf = std::remove_const_t<decltype(Source::kPi)>;
 
 /// Spacing of its numbers at 1.
-template <class Text>
-constexpr double kEpsilon = static_cast<double>(std::numeric_limits<RealOf<Text>>::epsilon());
+template <class Source>
+constexpr double kEpsilon = static_cast<double>(std::numeric_limits<RealOf<Source>>::epsilon());
 
-/// Both texts, for typed test suites.
-using Texts = ::testing::Types<tested_float::Text, tested_double::Text>;
+/// Both sources, for typed test suites.
+using Sources = ::testing::Types<tested_float::KernelSource, tested_double::KernelSource>;
 
-struct TextNames {
-  template <class Text>
+struct SourceNames {
+  template <class Source>
   static std::string GetName(int) {
-    return std::is_same_v<RealOf<Text>, float> ? "Float" : "Double";
+    return std::is_same_v<RealOf<Source>, float> ? "Float" : "Double";
   }
 };
 
-/// An index in the text's precision.
-template <class Text>
-typename Text::IndexNode index_in(const kernel::IndexNode& node) {
-  return convert_reals<RealOf<Text>, typename Text::IndexNode, double>(node);
+/// An index in the source's precision.
+template <class Source>
+typename Source::IndexNode index_in(const kernel::IndexNode& node) {
+  return convert_reals<RealOf<Source>, typename Source::IndexNode, double>(node);
 }
 
 /// The largest value of what a test measures, and where.
@@ -101,32 +101,32 @@ struct Range {
   Spacing spacing;
 };
 
-// One function: its text, its reference, the ranges of its argument, and the largest error allowed, in ulps.
-template <class Text>
+// One function: its source, its reference, the ranges of its argument, and the largest error allowed, in ulps.
+template <class Source>
 struct Row {
-  using Real = RealOf<Text>;
+  using Real = RealOf<Source>;
   const char* name;
-  std::function<Real(Text&, Real)> text;
+  std::function<Real(Source&, Real)> source;
   std::function<long double(long double)> reference;
   std::vector<Range> ranges;
   double allowed_ulps;
 };
 
-template <class Text>
-void expect_few_ulps(const Row<Text>& row, const Range& range) {
-  using Real = RealOf<Text>;
+template <class Source>
+void expect_few_ulps(const Row<Source>& row, const Range& range) {
+  using Real = RealOf<Source>;
   std::mt19937 random(kSeed);
   const bool is_log = range.spacing == Spacing::kLogarithmic;
   std::uniform_real_distribution<double> position(is_log ? std::log(range.low) : range.low,
                                                   is_log ? std::log(range.high) : range.high);
-  Text text;
+  Source source;
   Worst worst;
   for (int i = 0; i < kSamples + 2; ++i) {
     const double drawn = position(random);
     double x = is_log ? std::exp(drawn) : drawn;
     if (i >= kSamples) x = i == kSamples ? range.low : range.high;
     const Real argument = static_cast<Real>(x);
-    const double error = ulps(row.text(text, argument), row.reference(static_cast<long double>(argument)));
+    const double error = ulps(row.source(source, argument), row.reference(static_cast<long double>(argument)));
     EXPECT_TRUE(std::isfinite(error)) << row.name << " at " << x;
     worst.update(error, std::to_string(x));
   }
@@ -135,11 +135,11 @@ void expect_few_ulps(const Row<Text>& row, const Range& range) {
   EXPECT_LE(worst.value, row.allowed_ulps) << row.name;
 }
 
-template <class Text>
+template <class Source>
 class Elementary : public ::testing::Test {};
-TYPED_TEST_SUITE(Elementary, Texts, TextNames);
+TYPED_TEST_SUITE(Elementary, Sources, SourceNames);
 
-// Allowed: half an ulp for each of the last two or three roundings, and what reducing the argument adds; the text
+// Allowed: half an ulp for each of the last two or three roundings, and what reducing the argument adds; the source
 // promises "a few units in the last place".
 constexpr double kFewUlps = 3.0;
 constexpr double kRootUlps = 6.0;  // up to three roots and quotients on the way to the series, a rounding each
@@ -149,57 +149,57 @@ TYPED_TEST(Elementary, Functions_OverTheirDomain_AreAFewUlpsFromExact) {
   const double lowest = static_cast<double>(TypeParam::kLowestExponent);
   const std::vector<Row<TypeParam>> rows = {
       {"expm1_real",
-       [](auto& text, auto x) { return text.expm1_real(x); },
+       [](auto& source, auto x) { return source.expm1_real(x); },
        [](auto x) { return std::expm1(x); },
        {{-80.0, 80.0, kUniform}, {1e-30, 80.0, kLogarithmic}},
        kFewUlps},
       {"expm1_real(-x)",
-       [](auto& text, auto x) { return -text.expm1_real(-x); },
+       [](auto& source, auto x) { return -source.expm1_real(-x); },
        [](auto x) { return -std::expm1(-x); },
        {{1e-30, 80.0, kLogarithmic}},
        kFewUlps},
       {"exp_real",
-       [](auto& text, auto x) { return text.exp_real(x); },
+       [](auto& source, auto x) { return source.exp_real(x); },
        [](auto x) { return std::exp(x); },
        {{lowest, 80.0, kUniform}, {-1.0, 1.0, kUniform}},
        kFewUlps},
       {"sinh_cosh.x",
-       [](auto& text, auto x) { return text.sinh_cosh(x).x; },
+       [](auto& source, auto x) { return source.sinh_cosh(x).x; },
        [](auto x) { return std::sinh(x); },
        {{1e-30, 80.0, kLogarithmic}},
        kFewUlps},
       {"sinh_cosh.y",
-       [](auto& text, auto x) { return text.sinh_cosh(x).y; },
+       [](auto& source, auto x) { return source.sinh_cosh(x).y; },
        [](auto x) { return std::cosh(x); },
        {{1e-30, 80.0, kLogarithmic}},
        kFewUlps},
       {"log1p_real",
-       [](auto& text, auto x) { return text.log1p_real(x); },
+       [](auto& source, auto x) { return source.log1p_real(x); },
        [](auto x) { return std::log1p(x); },
        {{1e-30, 1e30, kLogarithmic}, {0.0, 4.0, kUniform}},
        kFewUlps},
       {"log1p_square",
-       [](auto& text, auto x) { return text.log1p_square(x); },
+       [](auto& source, auto x) { return source.log1p_square(x); },
        [](auto x) { return std::log1p(x * x); },
        {{1e-15, 1e30, kLogarithmic}},
        kFewUlps},
       {"asinh_real",
-       [](auto& text, auto x) { return text.asinh_real(x); },
+       [](auto& source, auto x) { return source.asinh_real(x); },
        [](auto x) { return std::asinh(x); },
        {{1e-30, 1e30, kLogarithmic}, {0.0, 4.0, kUniform}},
        kFewUlps},
       {"acosh_above_1",
-       [](auto& text, auto x) { return text.acosh_above_1(x); },
+       [](auto& source, auto x) { return source.acosh_above_1(x); },
        [](auto x) { return std::log1p(x + std::sqrt(x * (x + 2.0L))); },
        {{1e-30, 1e15, kLogarithmic}},
        kRootUlps},
       {"arc_tangent",
-       [](auto& text, auto x) { return text.arc_tangent(x); },
+       [](auto& source, auto x) { return source.arc_tangent(x); },
        [](auto x) { return std::atan(x); },
        {{1e-30, 1e30, kLogarithmic}, {0.0, 2.0, kUniform}},
        kRootUlps},
       {"arc_cosine",
-       [](auto& text, auto x) { return text.arc_cosine(x); },
+       [](auto& source, auto x) { return source.arc_cosine(x); },
        [](auto x) { return std::acos(x); },
        {{-1.0, 1.0, kUniform}},
        kRootUlps},
@@ -211,19 +211,19 @@ TYPED_TEST(Elementary, Functions_OverTheirDomain_AreAFewUlpsFromExact) {
 
 TYPED_TEST(Elementary, EndsOfTheDomains_AreExact) {
   using Real = RealOf<TypeParam>;
-  TypeParam text;
-  EXPECT_EQ(text.expm1_real(Real(0)), Real(0));
-  EXPECT_EQ(text.expm1_real(Real(-1e4)), Real(-1));
-  EXPECT_EQ(text.exp_real(Real(0)), Real(1));
-  EXPECT_EQ(text.exp_real(TypeParam::kLowestExponent - Real(1)), Real(0));
-  EXPECT_GE(text.exp_real(TypeParam::kLowestExponent), std::numeric_limits<Real>::min());
-  EXPECT_EQ(text.exp_real(Real(-1e30)), Real(0));
-  EXPECT_EQ(text.log1p_real(Real(0)), Real(0));
-  EXPECT_EQ(text.log1p_square(Real(0)), Real(0));
-  EXPECT_EQ(text.asinh_real(Real(0)), Real(0));
-  EXPECT_EQ(text.sinh_cosh(Real(0)).x, Real(0));
-  EXPECT_EQ(text.sinh_cosh(Real(0)).y, Real(1));
-  EXPECT_EQ(text.atan_unit(Real(0)), Real(0));
+  TypeParam source;
+  EXPECT_EQ(source.expm1_real(Real(0)), Real(0));
+  EXPECT_EQ(source.expm1_real(Real(-1e4)), Real(-1));
+  EXPECT_EQ(source.exp_real(Real(0)), Real(1));
+  EXPECT_EQ(source.exp_real(TypeParam::kLowestExponent - Real(1)), Real(0));
+  EXPECT_GE(source.exp_real(TypeParam::kLowestExponent), std::numeric_limits<Real>::min());
+  EXPECT_EQ(source.exp_real(Real(-1e30)), Real(0));
+  EXPECT_EQ(source.log1p_real(Real(0)), Real(0));
+  EXPECT_EQ(source.log1p_square(Real(0)), Real(0));
+  EXPECT_EQ(source.asinh_real(Real(0)), Real(0));
+  EXPECT_EQ(source.sinh_cosh(Real(0)).x, Real(0));
+  EXPECT_EQ(source.sinh_cosh(Real(0)).y, Real(1));
+  EXPECT_EQ(source.atan_unit(Real(0)), Real(0));
 }
 
 // ---- Fresnel reflection --------------------------------------------------------------------------------------------
@@ -252,12 +252,12 @@ double relative_error(double value, const Wide& exact) {
   return static_cast<double>(abs(Wide(value) - exact) / abs(exact));
 }
 
-// The index as the text's precision holds it: the text is not to blame for the rounding of its input.
-template <class Text>
+// The index as the source's precision holds it: the source is not to blame for the rounding of its input.
+template <class Source>
 kernel::IndexNode rounded_index(const OpticalConstants& index) {
   MomentsRequest request;
   request.indices = {index};
-  return convert_reals<double, kernel::IndexNode, RealOf<Text>>(index_in<Text>(kernel_data(request).indices[0]));
+  return convert_reals<double, kernel::IndexNode, RealOf<Source>>(index_in<Source>(kernel_data(request).indices[0]));
 }
 
 std::vector<double> cosines_of_incidence() {
@@ -269,16 +269,16 @@ std::vector<double> cosines_of_incidence() {
   return cosines;
 }
 
-template <class Text>
-class FresnelText : public ::testing::Test {};
-TYPED_TEST_SUITE(FresnelText, Texts, TextNames);
+template <class Source>
+class FresnelSource : public ::testing::Test {};
+TYPED_TEST_SUITE(FresnelSource, Sources, SourceNames);
 
 // About twenty roundings in a row, none of them amplified.
 constexpr double kFresnelUlps = 12.0;
 
-TYPED_TEST(FresnelText, AllIndices_AgreeWithTheTextbookFormIn50Digits) {
+TYPED_TEST(FresnelSource, AllIndices_AgreeWithTheTextbookFormIn50Digits) {
   using Real = RealOf<TypeParam>;
-  TypeParam text;
+  TypeParam source;
   const std::vector<OpticalConstants> indices = {{1.01, 0.0}, {1.508, 0.0}, {4.0, 0.0},       {0.9, 0.3}, {0.2, 3.0},
                                                  {1.5, 1e-3}, {27.0, 90.0}, {1000.0, 1000.0}, {1e6, 1e6}};
   for (const OpticalConstants& optical : indices) {
@@ -290,7 +290,7 @@ TYPED_TEST(FresnelText, AllIndices_AgreeWithTheTextbookFormIn50Digits) {
     for (const double exact_cos : cosines_of_incidence()) {
       const Real cos_beta = static_cast<Real>(exact_cos);
       if (cos_beta == Real(1)) continue;  // the quotient by sin^2(beta) is 0/0 in the reference
-      const auto f = text.fresnel(index_in<TypeParam>(index), cos_beta);
+      const auto f = source.fresnel(index_in<TypeParam>(index), cos_beta);
       const ExactFresnel exact = exact_fresnel(index, static_cast<double>(cos_beta));
       const std::string where = "cos(beta) = " + std::to_string(exact_cos);
       r_s.update(relative_error(f.r_s, exact.r_s), where);
@@ -309,12 +309,12 @@ TYPED_TEST(FresnelText, AllIndices_AgreeWithTheTextbookFormIn50Digits) {
   }
 }
 
-TYPED_TEST(FresnelText, NormalIncidence_HasTheLimitOfTheQuotient) {
+TYPED_TEST(FresnelSource, NormalIncidence_HasTheLimitOfTheQuotient) {
   using Real = RealOf<TypeParam>;
-  TypeParam text;
+  TypeParam source;
   for (const OpticalConstants& optical : {OpticalConstants{1.508, 0.0}, OpticalConstants{27.0, 90.0}}) {
     const kernel::IndexNode index = rounded_index<TypeParam>(optical);
-    const auto f = text.fresnel(index_in<TypeParam>(index), Real(1));
+    const auto f = source.fresnel(index_in<TypeParam>(index), Real(1));
     // 1e-20 from normal incidence the quotient differs from its limit by as little, and 50 digits leave 30 of it.
     const Wide c = 1 - Wide(1e-20);
     const Wide sin2 = 1 - c * c;
@@ -327,22 +327,22 @@ TYPED_TEST(FresnelText, NormalIncidence_HasTheLimitOfTheQuotient) {
   }
 }
 
-TYPED_TEST(FresnelText, TotalReflection_AbsorbsExactlyNothing) {
+TYPED_TEST(FresnelSource, TotalReflection_AbsorbsExactlyNothing) {
   using Real = RealOf<TypeParam>;
-  TypeParam text;
+  TypeParam source;
   for (const double n : {0.1, 0.5, 0.9, 0.999}) {
     const kernel::IndexNode index = rounded_index<TypeParam>({n, 0.0});
     ASSERT_GT(index.critical_cos, 0.0);
     const double roundoff = 8.0 * kEpsilon<TypeParam>;  // of re = n^2 - 1 + cos^2(beta), which must be below 0
     for (int i = 0; i < 100; ++i) {
       const Real cos_beta = static_cast<Real>(index.critical_cos * (1.0 - roundoff) * (i + 0.5) / 100.0);
-      const auto f = text.fresnel(index_in<TypeParam>(index), cos_beta);
+      const auto f = source.fresnel(index_in<TypeParam>(index), cos_beta);
       EXPECT_EQ(f.absorbed_s, Real(0));
       EXPECT_EQ(f.split_over_sin2, Real(0));
       EXPECT_NEAR(static_cast<double>(f.r_s), 1.0, kFresnelUlps * kEpsilon<TypeParam>);
     }
     const Real above = static_cast<Real>(index.critical_cos + 0.5 * (1.0 - index.critical_cos));
-    const auto f = text.fresnel(index_in<TypeParam>(index), above);
+    const auto f = source.fresnel(index_in<TypeParam>(index), above);
     const ExactFresnel exact = exact_fresnel(index, static_cast<double>(above));
     // n^2 - 1 + cos^2(beta) cancels, half way to normal incidence by a factor of 2 to 3.
     EXPECT_LE(relative_error(f.absorbed_s, 1 - exact.r_s), 3.0 * kFresnelUlps * kEpsilon<TypeParam>) << n;

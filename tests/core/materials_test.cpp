@@ -8,33 +8,12 @@
 #include "scene/csv.hpp"
 #include "scene/embedded_data.hpp"
 #include "scene/material_data.hpp"
-#include "scene/scene_reader.hpp"
 #include "scene/spectral_data.hpp"
+#include "scene_support.hpp"
 #include "temporary_file.hpp"
 
 namespace dolp {
 namespace {
-
-/// A valid scene at 10.6 um, for errors that only a scene can give a place to.
-const std::string kScene =
-    "[surface]\n"
-    "n = 1.5\n"
-    "sigma = 0.3\n"
-    "[emission]\n"
-    "temperature_K = 300\n"
-    "[spectrum]\n"
-    "wavelength_um = 10.6\n";
-
-std::string error_of(const std::string& text, const std::vector<std::string>& overrides) {
-  try {
-    parse_scene(text, "s.toml", settings_from_text(overrides, "--set"));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 constexpr Spectrum kCo2Line{10.6, 10.6};
 // Accuracy of the digits below, which were copied from the file by hand.
@@ -119,7 +98,7 @@ TEST(Material_OverABand, HasItsTable) {
   EXPECT_FALSE(iron.is_constant());
   EXPECT_EQ(iron.at(8.0), (OpticalConstants{6.1662033, 22.672232}));
   expect_near(iron.at(9.0), {6.6174306, 25.2869875}, "half way from 8 to 10");
-  EXPECT_EQ(error_of(kScene, {"surface.material=Kapton", "spectrum.band_um=[3, 5]"}), "no error");
+  EXPECT_EQ(error_of(kMinimal, {"surface.material=Kapton", "spectrum.band_um=[3, 5]"}), "no error");
 }
 
 TEST(Material_OutsideItsTable, IsRefusedWithTheRange) {
@@ -139,7 +118,7 @@ TEST(Material_OutsideItsTable, IsRefusedWithTheRange) {
   for (const Case& row : cases) {
     const std::string text = "[surface]\nsigma = 0.3\nmaterial = \"" + std::string(row.name) +
                              "\"\n[emission]\ntemperature_K = 300\n[spectrum]\n" + row.spectrum + "\n";
-    EXPECT_EQ(error_of(text, {}),
+    EXPECT_EQ(error_of(text),
               "s.toml:3: surface.material = \"" + std::string(row.name) + "\": n and k of " + row.expected);
   }
 }
@@ -152,10 +131,10 @@ TEST(Material_Name, IgnoresCaseAndMayBeCutAtABlank) {
 }
 
 TEST(Material_NameUnknown, NamesTheNearest) {
-  EXPECT_TRUE(contains(error_of(kScene, {"surface.material=irom"}), "--set surface.material=irom: unknown material"));
-  EXPECT_TRUE(contains(error_of(kScene, {"surface.material=irom"}), "known: iron"));
-  EXPECT_TRUE(contains(error_of(kScene, {"surface.material=aluminium"}), "aluminium (Rakic), aluminium (Ordal)"));
-  EXPECT_TRUE(contains(error_of(kScene, {"surface.material="}), "unknown material"));
+  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=irom"}), "--set surface.material=irom: unknown material"));
+  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=irom"}), "known: iron"));
+  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=aluminium"}), "aluminium (Rakic), aluminium (Ordal)"));
+  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material="}), "unknown material"));
 }
 
 const std::string kDatabaseRecord =
@@ -209,7 +188,7 @@ TEST(MaterialFile_OfOneRow, HoldsAtItsWavelengthOnly) {
   const TemporaryFile file("paint.csv", "wavelength_um,n,k\n10.6,1.5,0.1\n");
   EXPECT_EQ(read_material_file(file.path(), kCo2Line, "").constant, (OpticalConstants{1.5, 0.1}));
   for (const char* spectrum : {"spectrum.wavelength_um=10.5", "spectrum.band_um=[10.5, 10.7]"}) {
-    EXPECT_TRUE(contains(error_of(kScene, {"surface.material_file=" + file.path(), spectrum}),
+    EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material_file=" + file.path(), spectrum}),
                          "\"paint.csv\" are known at 10.6 um, and the spectrum is 10.5 "))
         << spectrum;
   }
@@ -324,7 +303,7 @@ TEST(MaterialFile_Wrong, NamesFileAndLine) {
   };
   for (const Case& row : cases) {
     const TemporaryFile file(row.name, row.text);
-    const std::string error = error_of(kScene, {"surface.material_file=" + file.path()});
+    const std::string error = error_of(kMinimal, {"surface.material_file=" + file.path()});
     EXPECT_TRUE(contains(error, row.expected)) << error << "\nwithout: " << row.expected;
   }
 }
@@ -350,8 +329,17 @@ TEST(Sun_BetweenNodes, IsAPowerOfWavelength) {
   EXPECT_NEAR(sun.at(middle_um) / std::sqrt(0.2272 * 0.1540), 1.0, kRounding);
 }
 
+TEST(AtWavelength, SourceAndMaterial_AreThoseOfTheirTablesThere) {
+  const SceneValues scene = parse(kMinimal, {"source.preset=sun", "surface.material=iron"});
+  for (const double um : {4.0, 8.3}) {
+    const SceneValues at = at_wavelength(scene, um);
+    EXPECT_EQ(at.source->irradiance, sun_irradiance().at(um));
+    EXPECT_EQ(at.surface.material.constant, find_material("iron", {um, um}, "").constant);
+  }
+}
+
 TEST(Sun_OutsideItsTable, IsRefused) {
-  EXPECT_TRUE(contains(error_of(kScene + "[source]\npreset = \"sun\"\n", {"spectrum.wavelength_um=1"}),
+  EXPECT_TRUE(contains(error_of(kMinimal + "[source]\npreset = \"sun\"\n", {"spectrum.wavelength_um=1"}),
                        "s.toml:9: source.preset = \"sun\": known at 2 to 30 um, and the spectrum is 1 um"));
 }
 
@@ -373,7 +361,7 @@ TEST(IrradianceFile_Wrong, NamesFileAndLine) {
   };
   for (const Case& row : cases) {
     const TemporaryFile file("e.csv", row.text);
-    const std::string error = error_of(kScene, {"source.file=" + file.path()});
+    const std::string error = error_of(kMinimal, {"source.file=" + file.path()});
     EXPECT_TRUE(contains(error, row.expected)) << error << "\nwithout: " << row.expected;
   }
 }
@@ -384,7 +372,7 @@ TEST(NamedFile_ThatIsNoRegularFile, IsRefused) {
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   for (const std::string key : {"surface.material_file", "source.file"}) {
     for (const std::string& path : {pipe, std::string("/dev/zero"), std::string("-")}) {
-      const std::string error = error_of(kScene, {std::string(key).append("=").append(path)});
+      const std::string error = error_of(kMinimal, {std::string(key).append("=").append(path)});
       EXPECT_TRUE(error.ends_with(": is not a regular file")) << error;
     }
   }

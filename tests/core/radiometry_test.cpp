@@ -117,58 +117,6 @@ TEST(Radiometry, IsothermalSurroundingsWithoutSource_HaveNoPolarisation) {
   }
 }
 
-TEST(Radiometry, SpecularWeight_EntersLinearlyInRhoAndStokes) {
-  SceneValues scene = night_scene();
-  const Direction direction = direction_of(70.0);
-  const Moments moments = moments_of({0.4, 0.05}, direction.cos_theta);
-  const auto at = [&](double specular) {
-    scene.surface.specular = specular;
-    return evaluate(scene, direction, moments);
-  };
-  const PointResult none = at(0.0);
-  const PointResult half = at(0.5);
-  const PointResult full = at(1.0);
-  constexpr double kTolerance = 10.0 * kEpsilon;  // a few roundings
-  EXPECT_NEAR(half[Quantity::kRhoI], 0.5 * (none[Quantity::kRhoI] + full[Quantity::kRhoI]), kTolerance);
-  EXPECT_NEAR(half[Quantity::kRhoQ], 0.5 * full[Quantity::kRhoQ], kTolerance);
-  EXPECT_NEAR(half[Quantity::kStokesI], 0.5 * (none[Quantity::kStokesI] + full[Quantity::kStokesI]),
-              kTolerance * full[Quantity::kStokesI]);
-  EXPECT_NEAR(half[Quantity::kStokesQ], 0.5 * full[Quantity::kStokesQ], kTolerance * full[Quantity::kStokesI]);
-  EXPECT_EQ(none[Quantity::kRhoQ], 0.0);
-}
-
-TEST(Radiometry, Path_ScalesQAndAddsItsExitanceToI) {
-  SceneValues scene = night_scene();
-  const Direction direction = direction_of(60.0);
-  const Moments moments = moments_of({0.3, 0.1}, direction.cos_theta);
-  const PointResult clear = evaluate(scene, direction, moments);
-  scene.path = Path{0.5, std::nullopt, 2.0};
-  const PointResult seen = evaluate(scene, direction, moments);
-  EXPECT_EQ(seen[Quantity::kStokesQ], 0.5 * clear[Quantity::kStokesQ]);
-  EXPECT_DOUBLE_EQ(seen[Quantity::kStokesI], 0.5 * clear[Quantity::kStokesI] + 2.0 * std::numbers::pi);
-}
-
-TEST(Radiometry, GreyBand_IsTheSumOfItsPartsInStokes) {
-  SceneValues scene = night_scene();
-  scene.source = Source{};
-  scene.source->irradiance = 0.2;
-  scene.path = Path{0.7, 280.0, std::nullopt};
-  const Direction direction = direction_of(50.0);
-  const Moments moments = moments_of({0.3, 0.1}, direction.cos_theta);
-  scene.spectrum = {8.0, 14.0};
-  const PointResult whole = evaluate(scene, direction, moments);
-  double i = 0.0;
-  double q = 0.0;
-  for (int part = 0; part < 12; ++part) {
-    scene.spectrum = {8.0 + 0.5 * part, 8.5 + 0.5 * part};
-    const PointResult result = evaluate(scene, direction, moments);
-    i += result[Quantity::kStokesI];
-    q += result[Quantity::kStokesQ];
-  }
-  EXPECT_NEAR(whole[Quantity::kStokesI], i, kAgreement * i);
-  EXPECT_NEAR(whole[Quantity::kStokesQ], q, kAgreement * i);
-}
-
 TEST(Radiometry, SourceThatCancelsEmission_LeavesNoQ) {
   SceneValues scene = night_scene();
   scene.surroundings.reset();

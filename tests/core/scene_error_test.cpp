@@ -189,6 +189,7 @@ TEST(SceneOverride_Malformed, IsRefused) {
   }
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.nn=1"}),
                        "--set surface.nn=1: unknown key; the nearest known key is surface.n"));
+  EXPECT_TRUE(contains(error_of(kMinimal, {"grid.thta=1"}), "the nearest known key is grid.theta_deg"));
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.n.x=1"}), "--set surface.n.x=1: surface.n is not a table"));
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface=3"}), "--set surface=3: must be a table, [surface]"));
   // A value may not bring further keys with it.

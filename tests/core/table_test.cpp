@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <netcdf.h>
-#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -14,7 +13,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -32,6 +30,8 @@
 #include "base/atomic_file.hpp"
 #include "base/printable_text.hpp"
 #include "table/table_file.hpp"
+#include "table/table_reader.hpp"
+#include "temporary_file.hpp"
 
 namespace {
 
@@ -40,31 +40,19 @@ namespace fs = std::filesystem;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// A folder of its own for each test, removed with what is in it.
 class TableFiles : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "dolp-table-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  fs::path at(const std::string& name) const { return folder_ / name; }
+  fs::path at(const std::string& name) const { return folder_.path() / name; }
   std::vector<std::string> names() const {
     std::vector<std::string> result;
-    for (const auto& entry : fs::directory_iterator(folder_)) result.push_back(entry.path().filename().string());
+    for (const auto& entry : fs::directory_iterator(folder_.path())) result.push_back(entry.path().filename().string());
     std::ranges::sort(result);
     return result;
   }
 
  private:
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
-
-std::string content(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 void put(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
 
@@ -190,6 +178,17 @@ TEST_F(TableFiles, Netcdf_Metadata_FollowsCf) {
     double fill = 0.0;
     EXPECT_EQ(nc_get_att_double(file, variable(described.name), "_FillValue", &fill), NC_NOERR);
     EXPECT_TRUE(std::isnan(fill));
+    const std::string ancillary = described.ancillary;
+    EXPECT_EQ(text_attribute(file, variable(described.name), "ancillary_variables"),
+              ancillary.empty() ? "(absent)" : ancillary);
+    std::array<int, 3> dimensions{};
+    EXPECT_EQ(nc_inq_vardimid(file, variable(described.name), dimensions.data()), NC_NOERR);
+    const std::array<const char*, 3> axes = {"theta", "sigma", "q"};  // of which two have as many values
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      std::array<char, NC_MAX_NAME + 1> name{};
+      EXPECT_EQ(nc_inq_dimname(file, dimensions[i], name.data()), NC_NOERR);
+      EXPECT_STREQ(name.data(), axes[i]) << described.name;
+    }
   }
   const std::string meanings = text_attribute(file, variable("status"), "flag_meanings");
   EXPECT_EQ(std::count(meanings.begin(), meanings.end(), ' '), 3);
@@ -212,6 +211,21 @@ TEST_F(TableFiles, ReadTable_WhatIsNoTable_IsRefusedByName) {
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()).find(at("other.nc").string()), 0u) << error.what();
     EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(TableFiles, ReadTable_HashOfValuesMissingOrNoText_IsRefused) {
+  for (const bool is_there : {false, true}) {
+    write_table(sample_table(3, 2, 2), at("t.nc"));
+    int file = 0;
+    const double number = 1.0;
+    ASSERT_EQ(nc_open(at("t.nc").c_str(), NC_WRITE, &file), NC_NOERR);
+    ASSERT_EQ(nc_del_att(file, NC_GLOBAL, "values_hash"), NC_NOERR);
+    if (is_there) {
+      ASSERT_EQ(nc_put_att_double(file, NC_GLOBAL, "values_hash", NC_DOUBLE, 1, &number), NC_NOERR);
+    }
+    ASSERT_EQ(nc_close(file), NC_NOERR);
+    EXPECT_THROW(read_table(at("t.nc")), InputError);
   }
 }
 
@@ -312,7 +326,7 @@ TEST_F(TableFiles, Netcdf_LongTexts_AreKept) {
 TEST_F(TableFiles, Netcdf_FlippedBit_IsFoundOrChangesNothing) {
   const TableValues table = sample_table(12, 6, 4);
   write_table(table, at("t.nc"));
-  const std::string bytes = content(at("t.nc"));
+  const std::string bytes = read_file(at("t.nc"));
   constexpr std::uint64_t kSeed = 4;
   std::cout << "seed " << kSeed << '\n';
   std::mt19937_64 random(kSeed);
@@ -384,13 +398,13 @@ TEST_F(TableFiles, ReadTable_AttributeOfTypeString_IsText) {
   ASSERT_EQ(nc_put_var_double(file, variable, &value), NC_NOERR);
   ASSERT_EQ(nc_put_att_string(file, NC_GLOBAL, "scene", 1, &text), NC_NOERR);
   ASSERT_EQ(nc_close(file), NC_NOERR);
-  EXPECT_EQ(read_table(at("string.nc")).attributes, (std::vector<Attribute>{{"scene", std::string(text)}}));
+  EXPECT_EQ(TableReader(at("string.nc")).head().attributes, (std::vector<Attribute>{{"scene", std::string(text)}}));
 }
 
 TEST_F(TableFiles, Csv_Rows_ReadBackAsTheSameDoubles) {
   const TableValues table = sample_table(3, 2, 2);
   write_table(table, at("t.csv"));
-  std::istringstream lines(content(at("t.csv")));
+  std::istringstream lines(read_file(at("t.csv")));
   std::string line;
   std::string comments;
   while (std::getline(lines, line) && line[0] == '#') comments += line + "\n";
@@ -422,7 +436,7 @@ TEST_F(TableFiles, Npy_Bytes_AreAStructuredArray) {
   TableValues table = sample_table(3, 1, 2);
   table[Quantity::kStokesU].clear();
   write_table(table, at("t.npy"));
-  const std::string bytes = content(at("t.npy"));
+  const std::string bytes = read_file(at("t.npy"));
   ASSERT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
   const std::size_t start = 10 + static_cast<unsigned char>(bytes[8]) + 256 * static_cast<unsigned char>(bytes[9]);
   EXPECT_EQ(start % 64, 0u);
@@ -519,7 +533,7 @@ TEST_F(TableFiles, WriteTable_DiskFull_LeavesNothingOrWhatWasThere) {
         EXPECT_THROW(write_table(table, at(name)), IoError) << name << " " << bytes;
       }
       EXPECT_EQ(names(), std::vector<std::string>{name});
-      EXPECT_EQ(content(at(name)), "what was there");
+      EXPECT_EQ(read_file(at(name)), "what was there");
       fs::remove(at(name));
     }
   }
@@ -561,27 +575,20 @@ TEST_F(TableFiles, WriteText_Killed_LeavesNothing) {
   EXPECT_EQ(names(), std::vector<std::string>{});
 }
 
-TEST_F(TableFiles, WriteText_TemporaryFilesOfTheDead_AreClearedAway) {
-  const auto put_old = [this](const std::string& name) {
-    put(at(name), "part");
-    fs::last_write_time(at(name), fs::file_time_type::clock::now() - std::chrono::hours(1));
-  };
-  put_old(".dolp-1-0.tmp");
-  put_old(".dolp-2-0.tmp");
-  put_old(".other.tmp");
-  put(at(".dolp-3-0.tmp"), "young");
-  const int alive = ::open(at(".dolp-2-0.tmp").c_str(), O_WRONLY | O_CLOEXEC);
-  ASSERT_EQ(::flock(alive, LOCK_EX), 0);
-  write_text_atomically(at("t.csv"), "text");
-  ::close(alive);
-  EXPECT_EQ(names(), (std::vector<std::string>{".dolp-2-0.tmp", ".dolp-3-0.tmp", ".other.tmp", "t.csv"}));
+TEST_F(TableFiles, UnderWay_AnotherProcessHasIt_IsRefused) {
+  AtomicFile file(at("t.csv"), at("t.csv.partial"));
+  EXPECT_THROW(AtomicFile(at("t.csv"), at("t.csv.partial")), InputError);
+  file.append("text");
+  file.commit();
+  EXPECT_EQ(read_file(at("t.csv")), "text");
+  EXPECT_EQ(names(), std::vector<std::string>{"t.csv"});
 }
 
 TEST_F(TableFiles, WriteText_ExistingFile_IsReplacedWithItsPermissions) {
   put(at("t.csv"), "a longer text than the new one");
   fs::permissions(at("t.csv"), fs::perms::owner_read | fs::perms::owner_write);
   write_text_atomically(at("t.csv"), "new");
-  EXPECT_EQ(content(at("t.csv")), "new");
+  EXPECT_EQ(read_file(at("t.csv")), "new");
   EXPECT_EQ(fs::status(at("t.csv")).permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
@@ -591,7 +598,7 @@ TEST_F(TableFiles, WriteText_SymbolicLink_ReplacesWhatItPointsTo) {
   for (const char* text : {"dangling before", "replaced"}) {
     write_text_atomically(at("link.csv"), text);
     EXPECT_TRUE(fs::is_symlink(at("link.csv")));
-    EXPECT_EQ(content(at("elsewhere/t.csv")), text);
+    EXPECT_EQ(read_file(at("elsewhere/t.csv")), text);
   }
   fs::create_symlink("loop.csv", at("loop.csv"));
   EXPECT_THROW(write_text_atomically(at("loop.csv"), "text"), IoError);
@@ -602,7 +609,7 @@ TEST_F(TableFiles, WriteText_RelativeName_GoesToTheCurrentFolder) {
   fs::current_path(at("."));
   write_text_atomically("here.csv", "text");
   fs::current_path(before);
-  EXPECT_EQ(content(at("here.csv")), "text");
+  EXPECT_EQ(read_file(at("here.csv")), "text");
 }
 
 }  // namespace

@@ -4,7 +4,8 @@
 Usage: faults.py BUILD [--quick] [--json FILE] [KIND...]    BUILD is the folder that has dolp and tests/faults
        faults.py --table FILE      what is in such a FILE, as a table for the manual
 Each try has a folder of its own with an output from before. After it that output is as it was, or a whole new one is in
-its place, and no other file is left; a run that failed says so in one line and with the exit status of its fault.
+its place, and no other file is left; a run that failed says so in one line and with the exit status of its fault, but
+where a C library ends it for lack of memory.
 With --quick only some of the allocations fail, and less of all else. Exit status: 0, or 1 after a try that broke one of
 these rules.
 The result has the rows of all kinds that were driven into it, in one run or several.
@@ -29,7 +30,9 @@ import time
 SEED = 19
 TIMEOUT_S = 120
 OLD = b"kept\n"
-DONE, DEVICE, IO, MEMORY, INTERRUPTED = 0, 3, 4, 6, 130
+DONE, INPUT, DEVICE, IO, MEMORY, INTERRUPTED = 0, 2, 3, 4, 6, 130
+# A C library without memory ends the program itself, or says that its file or device is no good.
+LIBRARY = (INPUT, DEVICE, IO, 255, -signal.SIGABRT, -signal.SIGSEGV, -signal.SIGBUS)
 SCENE = (pathlib.Path(__file__).resolve().parents[1] / "data/scene.toml").read_text(encoding="utf-8")
 POINTS = "theta_deg,sigma,q\n0,0.1,2\n60.0,0.4,3.5\n80.5,0.1,2\n"
 COMMANDS = {"table": (["table", "scene.toml"], "out.nc"),
@@ -43,7 +46,7 @@ SLOW = (*CPU, "--tolerance", "1e-6", "--precision", "double", *LARGE)
 PARTS = (*CPU, "--tolerance", "1e-2", "--set", "surface.masking=none", "--set", "surface.distribution=gaussian",
          "--set", "grid.theta_deg={from=0, to=89, count=90}", "--set", "grid.sigma={from=0.05, to=1, count=400}",
          "--set", "grid.q={from=2, to=4, count=90}")
-# Of a process that ended while it gave the finished file its name, killed or out of memory; a later run clears it away.
+# Of a process that ended while it gave the finished file its name, killed or out of memory.
 LEFT_BY_THE_KILLED = re.compile(r"\.dolp-\d+-\d+\.tmp")
 VULKAN_CALLS = ("vkCreateInstance", "vkEnumeratePhysicalDevices", "vkCreateDevice", "vkCreateCommandPool",
                 "vkAllocateCommandBuffers", "vkCreateBuffer", "vkAllocateMemory", "vkBindBufferMemory", "vkMapMemory",
@@ -160,12 +163,13 @@ class Attempt:
         what = f"{self.words[1:]}, {fault}, exit status {status}, {err!r}"
         if status not in allowed:
             raise Broken(f"{what}: expected {sorted(allowed)}")
-        if status > 0 and not (err.startswith("dolp: ") and err.count("\n") == 1 and err.endswith("\n")):
+        is_library = status in LIBRARY and set(LIBRARY) <= set(allowed)
+        if status > 0 and not is_library and not (err.startswith("dolp: ") and err.count("\n") == 1 and err.endswith("\n")):
             raise Broken(f"{what}: not one line")
-        if (status == MEMORY) != err.startswith("dolp: out of memory"):
+        if not is_library and (status == MEMORY) != err.startswith("dolp: out of memory"):
             raise Broken(f"{what}: the words of another exit status")
         here = {path.name for path in self.folder.iterdir()} - {path.name for path in self.driver.inputs.iterdir()}
-        may_stay = may_stay or (LEFT_BY_THE_KILLED if status == MEMORY else None)
+        may_stay = may_stay or (LEFT_BY_THE_KILLED if status == MEMORY or is_library else None)
         left = {name for name in here - {self.output.name} if not (may_stay and may_stay.fullmatch(name))}
         if left:
             raise Broken(f"{what}: leaves {sorted(left)}")
@@ -191,7 +195,7 @@ def allocations_of(driver, command, options, quick, step):
 
     def fail(number):
         environment = driver.preload("allocation", DOLP_FAIL_ALLOCATION=number)
-        return driver.try_once(command, options, (DONE, MEMORY), environment=environment)
+        return driver.try_once(command, options, (DONE, MEMORY, *LIBRARY), environment=environment)
 
     # What threads allocate comes in any order, so a try may do without the allocation that was to fail.
     numbers = [f"{n}{after}" for n in driver.numbers(count // step, quick // 2) for after in ("", "+")]
@@ -225,7 +229,7 @@ def memory_limit(driver):
     driver.expect("table", LARGE)
     for megabytes in ((100, 150, 300, 500, 1000) if driver.is_quick else range(100, 2001, 20)):
         limit = (resource.RLIMIT_AS, megabytes * 1_000_000)
-        yield driver.try_once("table", LARGE, (DONE, MEMORY), limit=limit)
+        yield driver.try_once("table", LARGE, (DONE, MEMORY, *LIBRARY), limit=limit)
 
 
 def lost_device(driver):
@@ -405,6 +409,55 @@ def kill_and_resume(driver):
             yield process.returncode
 
 
+def damage(driver, folder, victim):
+    """Damages one of the files that a killed run left, if it left one; the link that it is then, or nothing."""
+    left = sorted(folder.glob("out.nc.partial*"))
+    how = driver.random.choice(("cut", "overwritten", "replaced", "removed", "symbolic link", "hard link"))
+    if not left:
+        return None
+    path = driver.random.choice(left)
+    size = path.stat().st_size
+    if how == "cut":
+        os.truncate(path, driver.random.randrange(size + 1))
+    elif how == "overwritten":
+        with path.open("r+b") as file:
+            file.seek(driver.random.randrange(size + 1))
+            file.write(driver.random.randbytes(64))
+    elif how == "replaced":
+        shutil.copy(driver.inputs / "in.nc", path)
+    else:
+        path.unlink()
+    if "link" not in how:
+        return None
+    os.symlink(victim, path) if how == "symbolic link" else os.link(victim, path)
+    return path
+
+
+def kill_and_damage(driver):
+    """SIGKILL at random moments of a `table` in parts, its files damaged in between; --resume makes it the same bits"""
+    seconds = driver.expect("table", PARTS)
+    may_stay = re.compile(rf"{LEFT_BY_THE_KILLED.pattern}|out\.nc\.partial(\.txt)?")
+    kills, wanted = 0, 3 if driver.is_quick else 120
+    while kills < wanted:
+        with driver.attempt("table", PARTS) as attempt, tempfile.TemporaryDirectory(dir=FOLDERS) as elsewhere:
+            attempt.words.append("--resume")
+            victim = pathlib.Path(elsewhere) / "victim"
+            victim.write_bytes(OLD)
+            for _ in range(driver.random.randint(1, 4)):
+                with attempt.start() as process:
+                    time.sleep(seconds * driver.random.uniform(0.2, 1))
+                    process.kill()
+                kills += 1
+                yield process.returncode
+                link = damage(driver, attempt.folder, victim)
+                if link:
+                    attempt.check(*attempt.run(), (IO,), may_stay)
+                    link.unlink()
+                if victim.read_bytes() != OLD:
+                    raise Broken("kill_and_damage: what a link points to was changed")
+            attempt.check(*attempt.run(), (DONE,), LEFT_BY_THE_KILLED)
+
+
 def kill_and_merge(driver):
     """SIGKILL at a random moment of a `merge`; then another one makes the table of one run"""
     driver.expect("table", PARTS)
@@ -442,7 +495,8 @@ def hang_up(driver):
 
 KINDS = (allocation_in_table, allocation_in_eval, allocation_in_lookup, allocation_with_driver, memory_limit, lost_device,
          lost_devices, device_memory, vulkan_call, lacking_driver, broken_driver_file, file_limit, full_disk, no_inodes,
-         read_only_disk, vanished_folder, two_writers, kill, kill_and_resume, kill_and_merge, terminate, interrupt, hang_up)
+         read_only_disk, vanished_folder, two_writers, kill, kill_and_resume, kill_and_damage, kill_and_merge,
+         terminate, interrupt, hang_up)
 
 
 # --- The command. ---

@@ -84,8 +84,7 @@ struct Sweep {
   double rounding = 0.0;
 };
 
-void add_group(Sweep& sweep, const std::vector<StoredCase>& cases, const Setting& setting,
-               MomentsEvaluator& evaluator) {
+void add_group(Sweep& sweep, const std::vector<StoredCase>& cases, const Setting& setting, ModelEvaluator& evaluator) {
   const SceneValues scene = scene_of(cases.front().distribution, cases.front().masking, setting);
   std::vector<SceneEntry> entries;
   for (const StoredCase& c : cases) entries.push_back({c.theta_deg, c.shape, c.index});
@@ -97,7 +96,7 @@ void add_group(Sweep& sweep, const std::vector<StoredCase>& cases, const Setting
 
 Sweep sweep_of(const Setting& setting) {
   VulkanOptions options;
-  options.precision = setting.precision;
+  options.needs_double = setting.precision == Precision::kDouble;
   VulkanEvaluator evaluator(options);
   const std::vector<StoredCase> cases = read_stored_cases(DOLP_TEST_DATA_DIR "/random_points.csv");
   Sweep sweep;
@@ -110,27 +109,13 @@ Sweep sweep_of(const Setting& setting) {
   return sweep;
 }
 
-class RandomPoints : public testing::TestWithParam<Setting> {
- protected:
-  /// Each setting is run once for all tests.
-  const Sweep& sweep() const {
-    static std::map<std::string, Sweep> runs;
-    const auto found = runs.find(GetParam().name);
-    return found != runs.end() ? found->second : runs.emplace(GetParam().name, sweep_of(GetParam())).first->second;
-  }
-};
-
-TEST_P(RandomPoints, StoredFile_HasTheDomainsAndModels) {
-  std::map<std::string, int> counts;
-  for (const Compared& c : sweep().points) ++counts[c.point.name];
-  EXPECT_EQ(counts, (std::map<std::string, int>{{"random-a", 1504}, {"random-b", 496}}));
-}
-
-TEST_P(RandomPoints, EveryPoint_MeetsTheToleranceOrSaysSo) {
-  const double tolerance = GetParam().tolerance;
+void expect_within_tolerance_and_estimates(const Sweep& sweep, double tolerance) {
   double worst_rho = 0.0;
   double worst_dolp = 0.0;
-  for (const Compared& c : sweep().points) {
+  for (const Compared& c : sweep.points) {
+    EXPECT_LE(c.rho_error(), c.result[Quantity::kRhoErrorEstimate] + c.reference[Quantity::kRhoErrorEstimate])
+        << c.name();
+    EXPECT_LE(c.dolp_error(), c.result[Quantity::kErrorEstimate] + c.reference[Quantity::kErrorEstimate]) << c.name();
     if (c.is_missed()) continue;
     worst_rho = std::max(worst_rho, c.rho_error());
     EXPECT_LE(c.rho_error(), tolerance + c.reference[Quantity::kRhoErrorEstimate]) << c.name();
@@ -141,31 +126,35 @@ TEST_P(RandomPoints, EveryPoint_MeetsTheToleranceOrSaysSo) {
   std::printf("worst error of rho %.1e, of dolp %.1e at tolerance %.0e\n", worst_rho, worst_dolp, tolerance);
 }
 
-TEST_P(RandomPoints, EveryPoint_ErrorIsBelowItsEstimate) {
-  for (const Compared& c : sweep().points) {
-    EXPECT_LE(c.rho_error(), c.result[Quantity::kRhoErrorEstimate] + c.reference[Quantity::kRhoErrorEstimate])
-        << c.name();
-    EXPECT_LE(c.dolp_error(), c.result[Quantity::kErrorEstimate] + c.reference[Quantity::kErrorEstimate]) << c.name();
-  }
-}
-
-TEST_P(RandomPoints, FewPoints_MissTheTolerance) {
-  const std::vector<Compared>& points = sweep().points;
+void expect_few_misses(const std::vector<Compared>& points, double tolerance) {
   const auto missed = std::ranges::count_if(points, &Compared::is_missed);
-  std::printf("%td of %zu points say that they miss %.0e\n", missed, points.size(), GetParam().tolerance);
-  const double share = GetParam().tolerance < kTight ? kTightMissedShare : kMissedShare;
+  std::printf("%td of %zu points say that they miss %.0e\n", missed, points.size(), tolerance);
+  const double share = tolerance < kTight ? kTightMissedShare : kMissedShare;
   EXPECT_LT(static_cast<double>(missed), share * static_cast<double>(points.size()));
 }
 
-TEST_P(RandomPoints, Estimates_AreNotFarAboveTheErrors) {
+void expect_moderate_estimates(const Sweep& sweep) {
   std::vector<double> pessimism;
-  for (const Compared& c : sweep().points) {
-    if (c.rho_error() > sweep().rounding) pessimism.push_back(c.result[Quantity::kRhoErrorEstimate] / c.rho_error());
+  for (const Compared& c : sweep.points) {
+    if (c.rho_error() > sweep.rounding) pessimism.push_back(c.result[Quantity::kRhoErrorEstimate] / c.rho_error());
   }
   std::ranges::sort(pessimism);
   const double median = pessimism.empty() ? 0.0 : pessimism[pessimism.size() / 2];
   std::printf("median of estimate over error %.1f, of %zu points above rounding\n", median, pessimism.size());
   EXPECT_LT(median, kMedianPessimism);
+}
+
+class RandomPoints : public testing::TestWithParam<Setting> {};
+
+// In one test: CTest runs each by itself, and the points take the time.
+TEST_P(RandomPoints, EveryPoint_MeetsItsToleranceOrSaysSo_WithinItsEstimate) {
+  const Sweep sweep = sweep_of(GetParam());
+  std::map<std::string, int> counts;
+  for (const Compared& c : sweep.points) ++counts[c.point.name];
+  EXPECT_EQ(counts, (std::map<std::string, int>{{"random-a", 1504}, {"random-b", 496}}));
+  expect_within_tolerance_and_estimates(sweep, GetParam().tolerance);
+  expect_few_misses(sweep.points, GetParam().tolerance);
+  expect_moderate_estimates(sweep);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -14,6 +14,7 @@
 #include "reference/mueller.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
+#include "run/scene_table.hpp"
 #include "spectrum/planck.hpp"
 
 namespace dolp {
@@ -99,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(Bistatic, BistaticByEvaluator,
 TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
   std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
   RandomScenes random;
-  const std::unique_ptr<MomentsEvaluator> evaluator =
+  const std::unique_ptr<ModelEvaluator> evaluator =
       GetParam() ? make_evaluator(*GetParam()) : std::make_unique<ReferenceEvaluator>();
   double worst = 0.0;
   for (int n = 0; n < kScenes; ++n) {
@@ -124,7 +125,7 @@ TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
 }
 
 /// Says that every beam is off by a little more than the text's own bound.
-class BiasedBeams final : public MomentsEvaluator, public ScatteringEvaluator {
+class BiasedBeams final : public ModelEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
     return own_.evaluate(request, progress);
@@ -136,13 +137,12 @@ class BiasedBeams final : public MomentsEvaluator, public ScatteringEvaluator {
     for (ScatteringMatrix& f : matrices) f.error = 1e-2 * f.m[0];
     return matrices;
   }
-  ScatteringEvaluator* scattering() override { return this; }
   EvaluationReport report() const override { return own_.report(); }
 
   std::vector<Precision> precisions;
 
  private:
-  CpuEvaluator own_{Precision::kAuto};
+  CpuEvaluator own_;
 };
 
 // The bound of the beam is part of the stated error, and a level in double computes the beam in double too.
@@ -168,7 +168,7 @@ TEST(Bistatic, Mirror_HasNoBeamButInItsSpecularDirection) {
   RandomScenes random;
   SceneValues scene = random.scene();
   scene.surface.diffuse = 0.0;
-  CpuEvaluator evaluator(Precision::kDouble);
+  FixedPrecision evaluator(Precision::kDouble);
   const auto dolp_at = [&](double theta_i_deg, double view_deg, double azimuth_deg) {
     scene.geometry = {Mode::kBistatic, view_deg, azimuth_deg};
     return evaluate_scene(scene, {{theta_i_deg, {0.0, 2.0}, {}}}, evaluator, {}).front()[Quantity::kDolp];
@@ -184,7 +184,7 @@ TEST(Bistatic, BothBeamsAtNinetyDegrees_AreOutsideTheDomain) {
   SceneValues scene = random.scene();
   scene.surface.diffuse = 0.0;
   scene.geometry.view_zenith_deg = 90.0;
-  CpuEvaluator evaluator(Precision::kFloat);
+  FixedPrecision evaluator(Precision::kFloat);
   for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
     scene.surface.masking = masking;
     const SlopeShape shape{scene.surface.sigma, scene.surface.q};
@@ -194,7 +194,7 @@ TEST(Bistatic, BothBeamsAtNinetyDegrees_AreOutsideTheDomain) {
 
 TEST(Bistatic, OppositeAzimuth_TurnsTheSignOfU) {
   RandomScenes random;
-  CpuEvaluator evaluator(Precision::kFloat);
+  FixedPrecision evaluator(Precision::kFloat);
   SceneValues scene = random.scene();
   const SceneEntry entry{40.0, {scene.surface.sigma, scene.surface.q}, {}};
   scene.geometry.relative_azimuth_deg = 130.0;
@@ -210,7 +210,7 @@ TEST(Bistatic, OppositeAzimuth_TurnsTheSignOfU) {
 TEST(Bistatic, SourceAngles_ShareTheMomentsOfTheView) {
   RandomScenes random;
   const SceneValues scene = random.scene();
-  CpuEvaluator evaluator(Precision::kFloat);
+  FixedPrecision evaluator(Precision::kFloat);
   const SlopeShape shape{scene.surface.sigma, scene.surface.q};
   const std::vector<PointResult> results =
       evaluate_scene(scene, {{0.0, shape, {}}, {30.0, shape, {}}, {90.0, shape, {}}}, evaluator, {});
@@ -222,9 +222,20 @@ TEST(Bistatic, SourceAngles_ShareTheMomentsOfTheView) {
   EXPECT_EQ(results[2].status, 0U);  // a source at 90 degrees adds nothing
 }
 
+TEST(Bistatic, StokesOfATable_AreRadiances) {
+  RandomScenes random;
+  SceneValues scene = random.scene();
+  const auto units = [&] { return table_layout(scene, keep_everything(scene), scene.grid).head.stokes_units; };
+  EXPECT_EQ(units(), "W m-2 sr-1 um-1");
+  scene.geometry.mode = Mode::kHemispherical;
+  EXPECT_EQ(units(), "W m-2 um-1");
+  scene.spectrum.max_um += 1.0;
+  EXPECT_EQ(units(), "W m-2");
+}
+
 PointResult seen_at(SceneValues scene, double view_zenith_deg) {
   scene.geometry.view_zenith_deg = view_zenith_deg;
-  CpuEvaluator evaluator(Precision::kDouble);
+  FixedPrecision evaluator(Precision::kDouble);
   return evaluate_scene(scene, {{60.0, {scene.surface.sigma, scene.surface.q}, {}}}, evaluator, {}).front();
 }
 

@@ -1,6 +1,6 @@
 // The quotients of diverging moments at 90 degrees: against an independent integral, and against the kernel just
 // before.
-#include "run/grazing_limit.hpp"
+#include "run/closed_forms.hpp"
 
 #include <gtest/gtest.h>
 
@@ -102,11 +102,12 @@ double quotient_before(Masking masking, const OpticalConstants& index, double q,
   MomentsRequest request;
   request.masking = masking;
   request.tolerance = 1e-8;
+  request.precision = Precision::kDouble;
   request.theta_deg = {90.0 - short_deg};
   request.sigma = {0.3};
   request.q = {q};
   request.indices = {index};
-  const Moments moments = CpuEvaluator(Precision::kDouble).evaluate(request, {}).front();
+  const Moments moments = CpuEvaluator().evaluate(request, {}).front();
   return moments.r_q / moments.r_i;
 }
 

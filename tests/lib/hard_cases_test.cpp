@@ -84,47 +84,28 @@ TEST(StoredCases, BadFile_NamesLineAndColumn) {
 
 // ---- Every evaluator against it ------------------------------------------------------------------------------------
 
-/// An evaluator in one precision alone, whatever a request says: scenes ask for float first and for double where that
-/// misses.
-class InOnePrecision final : public MomentsEvaluator {
- public:
-  InOnePrecision(std::unique_ptr<MomentsEvaluator> evaluator, Precision precision)
-      : evaluator_(std::move(evaluator)), precision_(precision) {}
-  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
-    MomentsRequest own = request;
-    own.precision = precision_;
-    return evaluator_->evaluate(own, progress);
-  }
-  bool has_double() const override { return precision_ == Precision::kDouble; }
-  EvaluationReport report() const override { return evaluator_->report(); }
-
- private:
-  std::unique_ptr<MomentsEvaluator> evaluator_;
-  Precision precision_;
-};
-
 using Setting = std::tuple<Kernel, double>;
 
 class HardCasesOn : public testing::TestWithParam<Setting> {};
 
 // `dolp verify --hard-cases --precision double` and `dolp devices` say in which precision they examine a device.
 TEST(Qualify, EvaluatorInDouble_IsExaminedInDouble) {
-  CpuEvaluator evaluator(Precision::kDouble);
-  qualify(cases_of(hard_cases(), Distribution::kCauchy, Masking::kNone), evaluator, 1e-2, {});
+  CpuEvaluator evaluator;
+  qualify(cases_of(hard_cases(), Distribution::kCauchy, Masking::kNone), evaluator, {1e-2, Precision::kDouble}, {});
   EXPECT_EQ(evaluator.report().precision, "double");
 }
 
 TEST(MeasureQuality, EvaluatorInDouble_IsMeasuredInDouble) {
-  CpuEvaluator evaluator(Precision::kDouble);
-  measure_quality(evaluator, 1e-2);
+  CpuEvaluator evaluator;
+  measure_quality(evaluator, {1e-2, Precision::kDouble});
   EXPECT_EQ(evaluator.report().precision, "double");
 }
 
 TEST_P(HardCasesOn, EveryCase_IsWithinItsEstimateAndMeetsTheToleranceOrSaysSo) {
   const auto [kernel, tolerance] = GetParam();
-  InOnePrecision evaluator(make_evaluator(kernel), is_double(kernel) ? Precision::kDouble : Precision::kFloat);
+  const std::unique_ptr<ModelEvaluator> evaluator = make_evaluator(kernel);
   const std::vector<StoredCase> cases = hard_cases();
-  const std::vector<CaseOutcome> outcomes = qualify(cases, evaluator, tolerance, {});
+  const std::vector<CaseOutcome> outcomes = qualify(cases, *evaluator, {tolerance}, {});
   ASSERT_EQ(outcomes.size(), cases.size());
   std::size_t missed = 0;
   for (const CaseOutcome& outcome : outcomes) {
@@ -151,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(Double, HardCasesOn,
                          setting_name);
 
 // An evaluator that is wrong must be found out.
-class BiasedEvaluator final : public MomentsEvaluator {
+class BiasedEvaluator final : public MomentsOnly {
  public:
   explicit BiasedEvaluator(const std::vector<StoredCase>& cases) : stored_(cases) {}
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
@@ -163,7 +144,6 @@ class BiasedEvaluator final : public MomentsEvaluator {
     }
     return results;
   }
-  EvaluationReport report() const override { return {}; }
   double bias = 0.0;
 
  private:
@@ -177,7 +157,7 @@ TEST(Qualify, BiasedEvaluator_IsFoundOutCaseByCase) {
   BiasedEvaluator evaluator(cases);
   for (const double bias : {0.0, 5e-7, 2e-6}) {
     evaluator.bias = bias;
-    for (const CaseOutcome& outcome : qualify(cases, evaluator, 1e-4, {})) {
+    for (const CaseOutcome& outcome : qualify(cases, evaluator, {1e-4}, {})) {
       const StoredCase& stored = cases[outcome.position];
       const bool is_wrong = bias > 1e-6 && stored.moments.r_i > 0.0;
       EXPECT_EQ(!outcome.complaint.empty(), is_wrong) << label(stored) << " " << bias << " " << outcome.complaint;
@@ -186,8 +166,8 @@ TEST(Qualify, BiasedEvaluator_IsFoundOutCaseByCase) {
 }
 
 TEST(MeasureQuality, CpuInDouble_IsSound) {
-  CpuEvaluator evaluator(Precision::kDouble);
-  const DeviceQuality quality = measure_quality(evaluator, 1e-4);
+  CpuEvaluator evaluator;
+  const DeviceQuality quality = measure_quality(evaluator, {1e-4, Precision::kDouble});
   EXPECT_EQ(quality.cases, 56U);
   EXPECT_TRUE(quality.is_sound) << quality.worst_case;
   EXPECT_GT(quality.worst_error, 0.0);
@@ -202,7 +182,7 @@ TEST(HardCases, RightAngle_IsTheLimitOfTheStoredValue) {
   for (const StoredCase& c : hard_cases()) {
     const bool has_limit = c.masking == Masking::kVCavity || c.masking == Masking::kSmith;
     if (!has_limit || !c.name.starts_with("grazing-limit")) continue;
-    CpuEvaluator evaluator(Precision::kDouble);
+    FixedPrecision evaluator(Precision::kDouble);
     const SceneValues scene = emission_scene(c.distribution, c.masking, 1e-4);
     const PointResult result = evaluate_scene(scene, {{90.0, c.shape, c.index}}, evaluator, {}).at(0);
     const double cosine = reference::zenith_from_deg(c.theta_deg).cos;

@@ -29,7 +29,7 @@ SceneValues scene_with(Masking masking) {
 }
 
 MuellerMatrix elements(const SceneValues& scene, const BeamAngles& angles, double sigma = 0.3) {
-  CpuEvaluator evaluator(Precision::kAuto);
+  CpuEvaluator evaluator;
   return evaluate_mueller(scene, {{angles, {sigma, 3.0}, kPaint}}, evaluator, {}).front();
 }
 
@@ -90,6 +90,19 @@ TEST(MuellerRun, Mirror_HasTheDiffusePartButInItsSpecularDirection) {
   expected[0] = 0.3 / std::numbers::pi;
   EXPECT_EQ(elements(scene, {40.0, 41.0, 180.0}, 0.0), expected);
   EXPECT_EQ(elements(scene, {90.0, 40.0, 180.0}, 0.0), expected);
+}
+
+// A perfect conductor reflects after any number of bounces; a paint only after a few.
+TEST(MuellerRun, MoreBouncesThanAreFollowed_AreNan) {
+  SceneValues scene = scene_with(Masking::kVCavity);
+  scene.surface.scattering = Scattering::kMultiple;
+  CpuEvaluator evaluator;
+  const auto at = [&](const BeamAngles& angles, const OpticalConstants& index) {
+    return evaluate_mueller(scene, {{angles, {0.5, 1.6}, index}}, evaluator, {}).front();
+  };
+  EXPECT_TRUE(is_all_nan(at({40.0, 40.0, 100.0}, {1.0, 1e5})));
+  EXPECT_TRUE(is_finite(at({40.0, 43.0, 100.0}, {1.0, 1e5})));
+  EXPECT_TRUE(is_finite(at({40.0, 40.0, 100.0}, kPaint)));
 }
 
 TEST(MuellerRun, WithoutASpecularPart_OnlyTheDiffuseIsLeft) {

@@ -1,5 +1,5 @@
 // Error bound of single scattering, as the summary of a run states it.
-#include "run/scattering_gap.hpp"
+#include "run/estimates.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "fixed_precision.hpp"
 #include "rough_metal.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene_reader.hpp"
@@ -23,7 +23,7 @@ using Overrides = std::vector<std::string>;
 
 std::vector<PointResult> results_of(const Overrides& overrides) {
   const SceneValues scene = parse_scene(kScene, "s.toml", settings_from_text(overrides));
-  CpuEvaluator evaluator(Precision::kDouble);
+  FixedPrecision evaluator(Precision::kDouble);
   return evaluate_scene(scene, grid_entries(scene), evaluator, {});
 }
 

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include <dolp/status.hpp>
-#include "radiometry/radiometry.hpp"
 #include "scene/material_data.hpp"
 #include "scene_run_support.hpp"
 
@@ -18,7 +17,6 @@ using namespace scene_run_support;
 
 // A few roundings of numbers up to 1.
 constexpr double kRounding = 1e-15;
-constexpr double kFloatStep = 0x1p-22;  // levels that round to the same albedo may differ in the last bits
 // A dozen roundings, next to grazing incidence with the cosine's own on top.
 constexpr double kFresnelRounding = 4e-15;
 // The 180 x 180 Gauss points of the independent integral resolve slopes of width 0.3 and more far beyond this.
@@ -194,109 +192,6 @@ TEST(SceneExact_IndexOfOne, ReflectsNothing) {
           EXPECT_NEAR(r[Quantity::kRhoQ], 0.0, kRounding);
           EXPECT_NEAR(r[Quantity::kDolp], 0.0, kRounding);
           EXPECT_EQ(r.status & kNoDolpPromised, 0U);
-        }
-      }
-    }
-  });
-}
-
-TEST(SceneExact_IsothermalSurroundings, LeaveExactlyNoPolarisation) {
-  for_each_model([](Distribution distribution, Masking masking) {
-    for (const OpticalConstants& index : kIndices) {
-      SceneValues scene = make_scene(distribution, masking, index);
-      scene.surroundings->temperature_K = scene.emission->temperature_K;
-      scene.surface.diffuse = 0.1;
-      scene.surface.specular = 0.9;
-      scene.path = Path{0.7, 280.0, {}};
-      for (const double max_um : {10.6, 12.0}) {
-        scene.spectrum.max_um = max_um;
-        for (const double theta_deg : {0.0, 45.0, 80.0, 89.9}) {
-          for (const double sigma : {0.0, 0.01, 0.445}) {
-            const PointResult r = run_one(scene, theta_deg, {sigma, 2.0}, Evaluator::kFloat);
-            EXPECT_EQ(r[Quantity::kDolp], 0.0) << name_of(masking) << " " << theta_deg << " " << sigma;
-            EXPECT_EQ(r[Quantity::kStokesQ], 0.0);
-            EXPECT_FALSE(std::signbit(r[Quantity::kDolp]) || std::signbit(r[Quantity::kStokesQ]));
-          }
-        }
-      }
-    }
-  });
-}
-
-// Exactly so where the same level met the tolerance for both; it is relative to rho, which depends on the share.
-TEST(SceneExact_Reflectance, IsLinearInTheSpecularShare) {
-  int same_level = 0;
-  int all = 0;
-  for_each_model([&](Distribution distribution, Masking masking) {
-    SceneValues scene = make_scene(distribution, masking, kAbsorbing);
-    for (const double theta_deg : {0.0, 60.0, 89.0}) {
-      scene.surface.specular = 1.0;
-      const PointResult whole = run_one(scene, theta_deg, {0.3, 2.0}, Evaluator::kFloat);
-      for (const double specular : {0.0, 0.25, 0.7}) {
-        scene.surface.specular = specular;
-        const PointResult part = run_one(scene, theta_deg, {0.3, 2.0}, Evaluator::kFloat);
-        const bool is_same = part[Quantity::kAlbedo] == whole[Quantity::kAlbedo];
-        same_level += is_same ? 1 : 0;
-        ++all;
-        const double estimates = whole[Quantity::kRhoErrorEstimate] * specular * whole[Quantity::kRhoI] +
-                                 part[Quantity::kRhoErrorEstimate] * part[Quantity::kRhoI];
-        const double bound = is_same ? kFloatStep * whole[Quantity::kRhoI] : estimates;
-        EXPECT_NEAR(part[Quantity::kRhoI], specular * whole[Quantity::kRhoI], bound);
-        EXPECT_NEAR(part[Quantity::kRhoQ], specular * whole[Quantity::kRhoQ], bound);
-        EXPECT_NEAR(part[Quantity::kAlbedo], whole[Quantity::kAlbedo],
-                    scene.accuracy.tolerance * whole[Quantity::kAlbedo]);
-      }
-    }
-  });
-  EXPECT_GT(2 * same_level, all);
-}
-
-/// Entries over everything that changes the energy that a surface gives back.
-std::vector<SceneEntry> energy_entries() {
-  std::vector<SceneEntry> entries;
-  for (const double theta_deg : {0.0, 20.0, 45.0, 60.0, 75.0, 85.0, 89.0, 89.9, 90.0}) {
-    for (const double sigma : {1e-4, 0.05, 0.3, 0.905, 5.0}) {
-      for (const double q : {1.6, 2.0, 5.0, 50.0}) entries.push_back({theta_deg, {sigma, q}, {}});
-    }
-  }
-  return entries;
-}
-
-TEST(SceneExact_VCavityAndSmith, NeverGiveBackMoreThanTheyReceive) {
-  constexpr OpticalConstants kNearlyPerfect{1000.0, 1e6};
-  for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
-    for (const Distribution distribution : kDistributions) {
-      const SceneValues scene = make_scene(distribution, masking, kNearlyPerfect);
-      const std::vector<SceneEntry> entries = energy_entries();
-      for (const Evaluator evaluator : kPrecisions) {
-        const std::vector<PointResult> results = run(scene, entries, evaluator);
-        for (std::size_t i = 0; i < entries.size(); ++i) {
-          // With R = 1 to 1e-8, albedo and rho_I share the error estimate.
-          const double most = 1.0 + results[i][Quantity::kRhoErrorEstimate];
-          EXPECT_LE(results[i][Quantity::kAlbedo], most) << text_of(scene, entries[i]);
-          EXPECT_LE(results[i][Quantity::kRhoI] + std::abs(results[i][Quantity::kRhoQ]), most)
-              << text_of(scene, entries[i]);
-          EXPECT_EQ(results[i].status & kReflectanceOutsideZeroToOne, 0U) << text_of(scene, entries[i]);
-        }
-      }
-    }
-  }
-}
-
-TEST(SceneExact_EmissionAndReflectance, AddUpToOne) {
-  for_each_model([](Distribution distribution, Masking masking) {
-    for (const OpticalConstants& index : kIndices) {
-      SceneValues scene = make_scene(distribution, masking, index);
-      scene.surroundings.reset();
-      const double black = Radiometry(scene).rule().samples.front().emitted;
-      for (const Evaluator evaluator : kPrecisions) {
-        for (const double theta_deg : {0.0, 60.0, 85.0}) {
-          const PointResult r = run_one(scene, theta_deg, {0.3, 2.0}, evaluator);
-          const double bound = r[Quantity::kRhoErrorEstimate] * std::abs(r[Quantity::kRhoI]) + 4.0 * kRounding;
-          EXPECT_NEAR(r[Quantity::kStokesI] / black + r[Quantity::kRhoI], 1.0, bound)
-              << name_of(masking) << " " << theta_deg;
-          EXPECT_NEAR(r[Quantity::kStokesQ] / black + r[Quantity::kRhoQ], 0.0, bound)
-              << name_of(masking) << " " << theta_deg;
         }
       }
     }

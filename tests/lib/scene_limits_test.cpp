@@ -274,16 +274,5 @@ TEST(Limits_IntegralMasking, LeavesPhysicsWhereDocumented) {
   }
 }
 
-TEST(Limits_IntegralMasking, LeavesPhysicsLateOnDielectrics) {
-  for (const double sigma : {0.1, 0.3, 0.445, 0.905}) {
-    for (const double n : {1.373, 1.508}) {
-      const double integral = unphysical_from_deg(Masking::kIntegral, {n, 0.0}, sigma, Evaluator::kFloat);
-      const double none = unphysical_from_deg(Masking::kNone, {n, 0.0}, sigma, Evaluator::kFloat);
-      EXPECT_TRUE(integral >= 86.0 && integral <= 90.0) << n << " " << sigma << " " << integral;
-      EXPECT_TRUE(none <= integral && none >= integral - 1.0) << none << " against " << integral;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace dolp

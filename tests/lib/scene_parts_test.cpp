@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <memory>
 #include <tuple>
 
@@ -19,13 +18,6 @@ namespace {
 
 using namespace scene_run_support;
 
-/// All numbers of a result, so that NaNs compare too.
-std::vector<std::uint64_t> bits_of(const PointResult& result) {
-  std::vector<std::uint64_t> bits = {result.status};
-  for (const Quantity quantity : kAllQuantities) bits.push_back(std::bit_cast<std::uint64_t>(result[quantity]));
-  return bits;
-}
-
 std::vector<double> spaced(double from, double to, std::size_t count) {
   std::vector<double> values(count);
   for (std::size_t i = 0; i < count; ++i)
@@ -33,10 +25,10 @@ std::vector<double> spaced(double from, double to, std::size_t count) {
   return values;
 }
 
-std::unique_ptr<MomentsEvaluator> evaluator_on(bool device) {
-  std::unique_ptr<MomentsEvaluator> inner;
+std::unique_ptr<ModelEvaluator> evaluator_on(bool device) {
+  std::unique_ptr<ModelEvaluator> inner;
   if (device) inner = std::make_unique<VulkanEvaluator>(VulkanOptions{});
-  if (!device) inner = std::make_unique<CpuEvaluator>(Precision::kAuto);
+  if (!device) inner = std::make_unique<CpuEvaluator>();
   return std::make_unique<InterpolatingEvaluator>(std::move(inner));
 }
 

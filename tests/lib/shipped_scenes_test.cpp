@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "plan/effects.hpp"
-#include "run/influences.hpp"
+#include "run/estimates.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene_run_support.hpp"
 
@@ -124,13 +124,13 @@ TEST_P(ShippedScene, Plan_EstimatesTheChangesThatTheCommentStates) {
   for (const Statement& statement : statements_of(name)) {
     const SceneValues scene = read_scene(scene_path(name), settings_from_text(statement.overrides));
     const SceneEntries entry = {{statement.theta_deg, {scene.surface.sigma, scene.surface.q}, {}}};
-    std::vector<EffectRow> rows = effect_rows(scene, entry, keep_everything(scene));
+    std::vector<Effect> rows = effects_of(scene, entry, keep_everything(scene));
     add_influences(rows, scene, entry);
     std::size_t compared = 0;
     for (const auto& [effect, change] : statement.changes) {
       if (!part_of(effect)) continue;
       ++compared;
-      const double influence = 100.0 * std::ranges::find(rows, part_of(effect), &EffectRow::part)->influence.value();
+      const double influence = 100.0 * std::ranges::find(rows, part_of(effect), &Effect::part)->influence.value();
       EXPECT_GE(influence, std::abs(std::stod(change)) - kAccuracy) << effect;
       EXPECT_LE(influence, 200.0) << effect;
     }

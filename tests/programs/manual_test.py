@@ -2,8 +2,9 @@
 """The manual: what it says to type works, what is generated is current, and its links lead somewhere.
 
 Usage: manual_test.py BUILD [TEST...]    BUILD is the folder that has dolp; ctest runs each test by itself
-The blocks that are marked ```sh in FILES_WITH_COMMANDS run as they stand, in order, one folder for each file: a copy of a
-user's checkout with host, bench and the build folder in it. NOT_RUN names those that do not, with the reason.
+The blocks that are marked ```sh or ```python in FILES_WITH_COMMANDS run as they stand, in order, one folder for each file:
+a copy of a user's checkout with host, bench and the programs that quickstart.sh builds. NOT_RUN names those that do not,
+with the reason.
 """
 import os
 import pathlib
@@ -28,7 +29,8 @@ NOT_RUN = {
     "export PATH": "has no effect beyond its own shell; the test sets PATH likewise",
 }
 
-SHELL_BLOCK = re.compile(r"^```sh\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+RUN_BLOCK = re.compile(r"^```(sh|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+SHELLS = {"sh": ("bash", "-eu", "-c"), "python": ("/usr/bin/python3", "-c")}
 ANY_BLOCK = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 COMMAND = re.compile(r"^ *(build/release/)?dolp (table|eval|mueller|plan|verify|lookup|fit|materials|devices|explore)\b", re.MULTILINE)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
@@ -46,28 +48,61 @@ def anchors(text):
     return {name.strip().replace(" ", "-") for name in names}
 
 
+def blocks_of(name):
+    return RUN_BLOCK.findall((ROOT / name).read_text(encoding="utf-8"))
+
+
+def words_of_commands(*targets):
+    """The words of all commands that build the targets; of all targets without any."""
+    done = subprocess.run(["ninja", "-C", BUILD_FOLDER, "-t", "commands", *targets], check=True, text=True,
+                          stdout=subprocess.PIPE)
+    return set(done.stdout.split())
+
+
+def words_of_quickstart():
+    quickstart = (ROOT / "host/quickstart.sh").read_text(encoding="utf-8")
+    return words_of_commands(*re.search(r"--target (.*)", quickstart)[1].split())
+
+
 class Manual(unittest.TestCase):
     def test_commands_run(self):
+        built = words_of_quickstart()
         for name in FILES_WITH_COMMANDS:
             with tempfile.TemporaryDirectory() as folder:
-                self.run_blocks(name, pathlib.Path(folder))
+                self.run_blocks(name, pathlib.Path(folder), built)
 
-    def run_blocks(self, name, folder):
+    def run_blocks(self, name, folder, built):
         for source in ("host", "bench"):
             (folder / source).symlink_to(ROOT / source)
-        (folder / BUILD.parent).mkdir()
-        (folder / BUILD).symlink_to(BUILD_FOLDER)
-        environment = dict(os.environ, PATH=f"{BUILD_FOLDER}:{os.environ['PATH']}", PYTHONDONTWRITEBYTECODE="1")
-        blocks = SHELL_BLOCK.findall((ROOT / name).read_text(encoding="utf-8"))
+        (folder / BUILD).mkdir(parents=True)
+        for entry in BUILD_FOLDER.iterdir():
+            is_program = entry.is_file() and os.access(entry, os.X_OK)
+            if not is_program or entry.name in built:
+                (folder / BUILD / entry.name).symlink_to(entry)
+        environment = dict(os.environ, PATH=f"{folder / BUILD}:{os.environ['PATH']}", PYTHONDONTWRITEBYTECODE="1",
+                           MPLBACKEND="Agg")
+        blocks = blocks_of(name)
         self.assertTrue(blocks, f"{name} has no command")
-        for block in blocks:
+        for shell, block in blocks:
             if any(text in block for text in NOT_RUN):
                 continue
             with self.subTest(file=name, block=block):
-                done = subprocess.run(["bash", "-eu", "-c", block], cwd=folder, env=environment, text=True, check=False,
+                done = subprocess.run([*SHELLS[shell], block], cwd=folder, env=environment, text=True, check=False,
                                       stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                       timeout=BLOCK_TIMEOUT_S)
                 self.assertEqual(done.returncode, 0, done.stdout)
+
+    def test_quickstart_builds_what_is_installed(self):
+        """README runs cmake --install in the build folder that quickstart.sh leaves."""
+        built, everything = words_of_quickstart(), words_of_commands()
+        checked = 0
+        for script in BUILD_FOLDER.rglob("cmake_install.cmake"):
+            for file in re.findall(f'"({re.escape(str(BUILD_FOLDER))}/[^"]+)"', script.read_text(encoding="utf-8")):
+                names = {file, str(pathlib.Path(file).relative_to(BUILD_FOLDER))}
+                if names & everything:  # others are written by cmake itself
+                    self.assertTrue(names & built, f"{file} is installed, and quickstart.sh does not build it")
+                    checked += 1
+        self.assertGreater(checked, 5)
 
     def test_commands_are_in_blocks_that_run(self):
         for name in FILES_WITH_COMMANDS:
@@ -79,9 +114,9 @@ class Manual(unittest.TestCase):
                 self.assertIsNone(found, f"{name}: a command outside of a block marked ```sh: {found}")
 
     def test_reasons_are_needed(self):
-        text = "".join((ROOT / name).read_text(encoding="utf-8") for name in FILES_WITH_COMMANDS)
+        blocks = [block for name in FILES_WITH_COMMANDS for _, block in blocks_of(name)]
         for part in NOT_RUN:
-            self.assertTrue(any(part in block for block in SHELL_BLOCK.findall(text)), f"no block contains {part}")
+            self.assertTrue(any(part in block for block in blocks), f"no block contains {part}")
 
     def test_generated_parts_are_current(self):
         done = subprocess.run([sys.executable, ROOT / "host/tools/write_manual.py", "--check", "--build", BUILD_FOLDER],

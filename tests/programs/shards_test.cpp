@@ -116,7 +116,8 @@ TEST_F(Shards, MissingForeignOrDoubled_AreNamed) {
   };
   EXPECT_EQ(error({"t.1-of-2.nc"}), "dolp: missing shards: 2/2\n");
   EXPECT_EQ(error({"t.1-of-2.nc", "t.1-of-2.nc"}), "dolp: t.1-of-2.nc: is shard 1/2, as t.1-of-2.nc is\n");
-  EXPECT_EQ(error({"t.1-of-2.nc", "f.2-of-2.nc"}).find("dolp: f.2-of-2.nc: is a shard of another table"), 0U);
+  EXPECT_EQ(error({"t.1-of-2.nc", "f.2-of-2.nc"}).find("dolp: f.2-of-2.nc: is a shard of another table: it has scene"),
+            0U);
   EXPECT_EQ(error({"t.1-of-2.nc", "whole.nc"}), "dolp: whole.nc: is no shard of a table (attribute shard)\n");
   EXPECT_EQ(error({"t.1-of-2.nc", "none.nc"}), "dolp: none.nc: there is no such file\n");
 }
@@ -147,9 +148,127 @@ TEST_F(Shards, Auto_TakesTheTaskOfTheSlurmArray) {
 }
 
 TEST_F(Shards, BadNumbers_OneLineEach) {
-  for (const std::string text : {"0/2", "3/2", "1", "a/b", "1/0", "-1/2", "1.5/2"}) {
-    expect_refused(dolp({"table", "grid.toml", "-o", "t.nc", "--shard=" + text}), "--shard");
+  for (const std::string text : {"0/2", "3/2", "1", "a/b", "0/0", "1/0", "-1/2", "1.5/2"}) {
+    expect_refused(dolp({"table", "grid.toml", "-o", "t.nc", "--shard=" + text}), "shard");
   }
+}
+
+// submit.sh of host/cluster relies on the name.
+TEST_F(Shards, OneOfOne_HasTheNameOfAShard_AndMerges) {
+  ASSERT_EQ(dolp({"table", "grid.toml", "-o", "t.nc", "--shard", "1/1"}).status, 0);
+  EXPECT_FALSE(fs::exists(at("t.nc")));
+  ASSERT_EQ(dolp({"table", "grid.toml", "-o", "one.nc"}).status, 0);
+  const Outcome merged = dolp({"merge", "t.1-of-1.nc", "-o", "t.nc"});
+  ASSERT_EQ(merged.status, 0) << merged.err;
+  expect_same("one.nc", "t.nc");
+}
+
+// Files that a scene names, and options, that are not in its text.
+class Inputs : public Shards {
+ protected:
+  void SetUp() override {
+    Shards::SetUp();
+    put("named.toml", R"(title = "named files"
+[surface]
+material_file = "m.csv"
+[source]
+file = "e.csv"
+[spectrum]
+wavelength_um = 10.0
+[grid]
+theta_deg = [0, 30, 60, 80]
+sigma = [0.1, 0.4]
+q = [2.0]
+)");
+    put("m.csv", "wavelength_um,n,k\n8,1.5,0.1\n12,1.5,0.1\n");
+    put("e.csv", "8,1.0\n12,1.0\n");
+  }
+
+  Outcome shard(int number, const std::vector<std::string>& options = {}) {
+    return dolp(
+        joined({"table", "named.toml", "-o", "t.nc", "--shard", std::to_string(number) + "/2", "--evaluator", "cpu"},
+               options));
+  }
+  Outcome merge() { return dolp(joined(joined({"merge"}, shard_names(2)), {"-o", "m.nc"})); }
+};
+
+TEST_F(Inputs, NamedFileChangedBetweenShards_IsNamed_AndTheStaleShardIsComputedAgain) {
+  for (const std::string name : {"m.csv", "e.csv"}) {
+    ASSERT_EQ(shard(1).status, 0);
+    put(name, name == "m.csv" ? "wavelength_um,n,k\n8,3.5,0.1\n12,3.5,0.1\n" : "8,2.0\n12,2.0\n");
+    ASSERT_EQ(shard(2).status, 0);
+    expect_refused(merge(), "t.2-of-2.nc: is a shard of another table: it has data fnv1a64:");
+    EXPECT_FALSE(fs::exists(at("m.nc")));
+    const Outcome again = shard(1);
+    EXPECT_EQ(again.out.find("is there already"), std::string::npos) << again.out;
+    EXPECT_EQ(merge().status, 0);
+    ASSERT_EQ(dolp({"table", "named.toml", "-o", "one.nc", "--evaluator", "cpu"}).status, 0);
+    expect_same("one.nc", "m.nc");
+    fs::remove(at("m.nc"));
+  }
+}
+
+TEST_F(Inputs, OtherEvaluatorOrOptions_AreNamed_AndAShardOfThemIsNotKept) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+      {{"--evaluator", "reference"}, "evaluator reference, not cpu"},
+      {{"--keep-all"}, "keep_all yes, not no"},
+      {{"--precision", "double"}, "precision double, not auto"}};
+  for (const auto& [options, part] : cases) {
+    ASSERT_EQ(shard(1).status, 0);
+    std::vector<std::string> other = {"table", "named.toml", "-o", "t.nc", "--shard", "2/2"};
+    if (options.front() != "--evaluator") other = joined(other, {"--evaluator", "cpu"});
+    ASSERT_EQ(dolp(joined(other, options)).status, 0);
+    expect_refused(merge(), part);
+    const Outcome again = shard(2);
+    EXPECT_EQ(again.out.find("is there already"), std::string::npos) << again.out;
+    EXPECT_EQ(merge().status, 0);
+  }
+}
+
+/// Changes a shard as another program does: `edit` is Python, in which `table` is the open file.
+class Edited : public Inputs {
+ protected:
+  void edit(const std::string& name, const std::string& text) {
+    const std::string script = "import netCDF4; table = netCDF4.Dataset('" + name + "', 'a'); " + text;
+    ASSERT_EQ(run({.arguments = {"/usr/bin/python3", "-c", script}, .folder = at("")}).status, 0);
+  }
+};
+
+TEST_F(Edited, HashOfValuesMissing_IsRefusedByMergeAndLookup) {
+  for (const std::string text : {"table.delncattr('values_hash')", "table.values_hash = 1.0"}) {
+    ASSERT_EQ(shard(1).status, 0);
+    ASSERT_EQ(shard(2).status, 0);
+    edit("t.2-of-2.nc", text);
+    expect_refused(merge(), "t.2-of-2.nc: has no text attribute values_hash");
+    put("p.csv", "theta_deg,sigma,q\n60,0.1,2\n");
+    expect_refused(dolp({"lookup", "t.2-of-2.nc", "--points", "p.csv", "-o", "l.csv"}),
+                   "t.2-of-2.nc: has no text attribute values_hash");
+    // Neither is it kept.
+    EXPECT_EQ(shard(2).out.find("is there already"), std::string::npos);
+    EXPECT_EQ(merge().status, 0);
+  }
+}
+
+TEST_F(Edited, VariableOfOneShardMissing_IsNamed) {
+  for (const std::string name : {"status", "dolp", "stokes_i", "irradiance", "index_n"}) {
+    for (const std::string of : {"t.1-of-2.nc", "t.2-of-2.nc"}) {
+      for (const std::string& shard_file : shard_names(2)) fs::remove(at(shard_file));
+      ASSERT_EQ(shard(1).status, 0);
+      ASSERT_EQ(shard(2).status, 0);
+      edit(of, "table.renameVariable('" + name + "', 'gone')");
+      expect_refused(merge(), "");
+      EXPECT_FALSE(fs::exists(at("m.nc")));
+    }
+  }
+}
+
+TEST_F(Edited, AttributesOfOneShardMissing_AreNamed) {
+  ASSERT_EQ(shard(1).status, 0);
+  ASSERT_EQ(shard(2).status, 0);
+  edit("t.1-of-2.nc", "table.shard = '1/99999999999999'");
+  expect_refused(merge(), "cannot be cut into 99999999999999 parts");
+  edit("t.1-of-2.nc", "table.shard = '1/2'; table.delncattr('identity')");
+  expect_refused(merge(), "t.1-of-2.nc: has no text attribute identity");
 }
 
 class Resume : public Shards {
@@ -159,9 +278,12 @@ class Resume : public Shards {
   void make_whole() { ASSERT_EQ(dolp(joined({"table", "grid.toml", "-o", "one.nc"}, kLarge)).status, 0); }
 
   /// Runs until a first part is there, then sends the signal.
-  Outcome interrupted(int signal) {
-    TerminalProcess process(command(command_));
-    while (!fs::exists(at("t.nc.partial.txt"))) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  Outcome interrupted(int signal) { return interrupted(signal, command_); }
+  Outcome interrupted(int signal, const std::vector<std::string>& words) {
+    TerminalProcess process(command(words));
+    std::error_code missing;
+    while (fs::file_size(at("t.nc.partial.txt"), missing) == 0 || missing)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
     process.send_signal(signal);
     return process.finish();
   }
@@ -177,7 +299,7 @@ TEST_F(Resume, AfterCtrlC_SaysHowToGoOn_AndGivesTheSameBits) {
   EXPECT_FALSE(fs::exists(at("t.nc")));
   const Outcome foreign = dolp(joined(command_, {"--set", "surface.k=0.3"}));
   EXPECT_EQ(foreign.status, 2);
-  EXPECT_NE(foreign.err.find("t.nc.partial: is of another run"), std::string::npos) << foreign.err;
+  expect_one_line(foreign.err, "t.nc.partial: is of another run: it has scene fnv1a64:");
   const Outcome resumed = dolp(command_);
   ASSERT_EQ(resumed.status, 0) << resumed.err;
   expect_same("t.nc", "one.nc");
@@ -200,6 +322,72 @@ TEST_F(Resume, KilledAtRandomMoments_GivesTheSameBits) {
   const Outcome resumed = dolp(command_);
   ASSERT_EQ(resumed.status, 0) << resumed.err;
   expect_same("t.nc", "one.nc");
+}
+
+// What is left of an interrupted run, damaged in several ways.
+TEST_F(Resume, OverADamagedPartialFile_GivesTheSameBits) {
+  make_whole();
+  ASSERT_EQ(interrupted(SIGINT).status, 130);
+  const std::string values = content("t.nc.partial"), progress = content("t.nc.partial.txt");
+  const auto overwritten = [](std::string bytes, std::size_t offset) {
+    return bytes.replace(offset, 64, std::string(64, 'x'));
+  };
+  const std::vector<std::pair<std::string, std::string>> damaged = {
+      {"", progress},                                         // removed
+      {values.substr(0, 1000), progress},                     // cut
+      {values.substr(0, 5'000'000), progress},                //
+      {content("one.nc") + values, progress},                 // another file, longer than it will be
+      {overwritten(values, 400'000), progress},               // inside of its first part
+      {values, overwritten(progress, 30)},                    // the identity
+      {values, overwritten(progress, progress.size() - 80)},  // the summary of the last part
+      {values, progress.substr(0, progress.size() - 3)},
+      {values, ""}};
+  for (std::size_t i = 0; i < damaged.size(); ++i) {
+    SCOPED_TRACE(i);
+    put("t.nc.partial", damaged[i].first);
+    put("t.nc.partial.txt", damaged[i].second);
+    if (i == 0) fs::remove(at("t.nc.partial"));
+    const Outcome resumed = dolp(command_);
+    ASSERT_EQ(resumed.status, 0) << resumed.err;
+    expect_same("t.nc", "one.nc");
+    EXPECT_EQ(fs::file_size(at("t.nc")) / 10'000, fs::file_size(at("one.nc")) / 10'000);  // but for times and the like
+    EXPECT_FALSE(fs::exists(at("t.nc.partial")) || fs::exists(at("t.nc.partial.txt")));
+  }
+}
+
+TEST_F(Resume, PartialFileIsALink_IsRefused_AndWhatItPointsToStays) {
+  for (const std::string name : {"t.nc.partial", "t.nc.partial.txt"}) {
+    for (const bool is_symbolic : {true, false}) {
+      put("precious", "mine");
+      is_symbolic ? fs::create_symlink("precious", at(name)) : fs::create_hard_link(at("precious"), at(name));
+      for (const bool is_resumed : {true, false}) {
+        std::vector<std::string> words = command_;
+        if (!is_resumed) std::erase(words, "--resume");
+        expect_refused(dolp(words), name + ": is a", 4);
+        EXPECT_EQ(content("precious"), "mine");
+      }
+      fs::remove(at(name));
+    }
+  }
+}
+
+TEST_F(Resume, AfterANamedFileChanged_IsRefused) {
+  put("m.csv", "wavelength_um,n\n8,1.5\n12,1.5\n");
+  const std::vector<std::string> words = {"table", "named.toml", "-o", "t.nc", "--resume", "--tolerance", "1e-2"};
+  put("named.toml", R"([surface]
+material_file = "m.csv"
+masking = "v-cavity"
+[emission]
+temperature_K = 300.0
+[grid]
+wavelength_um = [10.0, 8.0]
+theta_deg = { from = 0, to = 89, count = 320 }
+sigma = { from = 0.1, to = 0.8, count = 64 }
+q = { from = 1.8, to = 6, count = 64 }
+)");
+  ASSERT_EQ(interrupted(SIGKILL, words).status, -SIGKILL);
+  put("m.csv", "wavelength_um,n\n8,3.5\n12,3.5\n");
+  expect_refused(dolp(words), "t.nc.partial: is of another run: it has data fnv1a64:");
 }
 
 TEST_F(Resume, OfACsv_IsTheCsvOfOneRun) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "fixed_precision.hpp"
 #include "model/choices.hpp"
 #include "plan/effects.hpp"
 #include "properties_support.hpp"
@@ -128,8 +128,8 @@ inline std::string describe(const SceneValues& scene, const SceneEntry& entry) {
 }
 
 inline std::vector<PointResult> run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan) {
-  CpuEvaluator evaluator(Precision::kDouble);
-  return evaluate_scene(scene, entries, plan, &evaluator, {});
+  FixedPrecision evaluator(Precision::kDouble);
+  return evaluate_scene(scene, entries, evaluator, {}, plan);
 }
 
 /// Length of the difference of (Q, U) / I.

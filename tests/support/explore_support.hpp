@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "explore/session.hpp"
-#include "explore/worker.hpp"
 
 namespace dolp::explore {
 
@@ -91,9 +90,10 @@ inline JobPart done(const Job& job) {
 inline void expect_same(const std::vector<Point>& a, const std::vector<Point>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
-    if (std::isnan(a[i].dolp) && std::isnan(b[i].dolp)) continue;
-    EXPECT_EQ(a[i].dolp, b[i].dolp) << i;
-    EXPECT_EQ(a[i].error_estimate, b[i].error_estimate) << i;
+    if (std::isnan(a[i][Quantity::kDolp]) && std::isnan(b[i][Quantity::kDolp])) continue;
+    for (const Quantity quantity : {Quantity::kDolp, Quantity::kErrorEstimate}) {
+      EXPECT_EQ(a[i][quantity], b[i][quantity]) << i;
+    }
   }
 }
 

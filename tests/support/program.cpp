@@ -90,19 +90,6 @@ Descriptor::Descriptor(int number) : number_(number) { require(number_ >= 0, "ca
 
 Descriptor::~Descriptor() { ::close(number_); }
 
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (fs::temp_directory_path() / "dolp-test-XXXXXX").string();
-  require(::mkdtemp(name.data()) != nullptr, "cannot make a temporary folder");
-  path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() { fs::remove_all(path_); }
-
-std::string read_file(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 Outcome run(const Command& command) {
   // Files, because nobody has to empty them while the program runs.
   const TemporaryFolder folder;

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "temporary_file.hpp"
+
 namespace dolp {
 
 /// An open file, closed with the object.
@@ -22,21 +24,6 @@ class Descriptor {
  private:
   int number_;
 };
-
-/// A folder of its own, removed with all that is in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-std::string read_file(const std::filesystem::path& path);
 
 /// A command to run. The program is looked up on PATH.
 struct Command {

@@ -15,6 +15,7 @@
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "fixed_precision.hpp"
 
 namespace dolp {
 
@@ -122,7 +123,7 @@ inline MomentsRequest request_of(const Model& model, const std::vector<Point>& p
   return request;
 }
 
-/// The kernel's text in one of its four forms.
+/// The kernel source in one of its four forms.
 enum class Kernel { kCpuFloat, kCpuDouble, kVulkanFloat, kVulkanDouble };
 
 inline constexpr std::array kKernels{Kernel::kCpuFloat, Kernel::kCpuDouble, Kernel::kVulkanFloat,
@@ -135,12 +136,12 @@ inline std::string name_of(Kernel kernel) {
 
 inline bool is_double(Kernel kernel) { return kernel == Kernel::kCpuDouble || kernel == Kernel::kVulkanDouble; }
 
-inline std::unique_ptr<MomentsEvaluator> make_evaluator(Kernel kernel, VulkanOptions options = {}) {
+inline std::unique_ptr<ModelEvaluator> make_evaluator(Kernel kernel, VulkanOptions options = {}) {
   const Precision precision = is_double(kernel) ? Precision::kDouble : Precision::kFloat;
-  if (kernel == Kernel::kCpuFloat || kernel == Kernel::kCpuDouble) return std::make_unique<CpuEvaluator>(precision);
-  options.precision = precision;
+  if (kernel == Kernel::kCpuFloat || kernel == Kernel::kCpuDouble) return std::make_unique<FixedPrecision>(precision);
+  options.needs_double = is_double(kernel);
   options.validation = ValidationMode::kOn;
-  return std::make_unique<VulkanEvaluator>(options);
+  return std::make_unique<FixedPrecision>(precision, std::make_unique<VulkanEvaluator>(options));
 }
 
 /// One of the four results beside its stated error.

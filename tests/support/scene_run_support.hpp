@@ -2,13 +2,14 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <complex>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "fixed_precision.hpp"
 #include "model/choices.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
@@ -43,9 +44,9 @@ inline SceneValues make_scene(Distribution distribution, Masking masking, const 
   return scene;
 }
 
-inline std::unique_ptr<MomentsEvaluator> make_evaluator(Evaluator evaluator) {
+inline std::unique_ptr<ModelEvaluator> make_evaluator(Evaluator evaluator) {
   if (evaluator == Evaluator::kReference) return std::make_unique<ReferenceEvaluator>();
-  return std::make_unique<CpuEvaluator>(evaluator == Evaluator::kFloat ? Precision::kFloat : Precision::kDouble);
+  return std::make_unique<FixedPrecision>(evaluator == Evaluator::kFloat ? Precision::kFloat : Precision::kDouble);
 }
 
 /// Runs in the evaluator's precision alone: no entry that misses is computed again in the other.
@@ -80,6 +81,13 @@ inline SmoothReflectance smooth_reflectance(const OpticalConstants& index, long 
   const Complex square = Complex(index.n, index.k) * Complex(index.n, index.k);
   const Complex w = std::sqrt(square - (1.0L - cosine * cosine));
   return {std::norm((cosine - w) / (cosine + w)), std::norm((square * cosine - w) / (square * cosine + w))};
+}
+
+/// All numbers of a result, so that NaNs compare too.
+inline std::vector<std::uint64_t> bits_of(const PointResult& result) {
+  std::vector<std::uint64_t> bits = {result.status};
+  for (const Quantity quantity : kAllQuantities) bits.push_back(std::bit_cast<std::uint64_t>(result[quantity]));
+  return bits;
 }
 
 /// Text for messages: the scene and the entry that a check is about.

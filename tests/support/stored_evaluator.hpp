@@ -8,14 +8,14 @@
 #include <tuple>
 #include <vector>
 
-#include "model/evaluator.hpp"
 #include "model/moments.hpp"
+#include "moments_only.hpp"
 #include "verify/stored_cases.hpp"
 
 namespace dolp {
 
 /// Gives back the moments of stored cases of one distribution and masking; anything else is a failure of the test.
-class StoredEvaluator final : public MomentsEvaluator {
+class StoredEvaluator final : public MomentsOnly {
  public:
   explicit StoredEvaluator(const std::vector<StoredCase>& cases) {
     for (const StoredCase& c : cases) moments_[key(c.theta_deg, c.shape, c.index)] = c.moments;
@@ -31,8 +31,6 @@ class StoredEvaluator final : public MomentsEvaluator {
     }
     return results;
   }
-
-  EvaluationReport report() const override { return {}; }
 
  private:
   using Key = std::tuple<double, double, double, double, double>;

@@ -1,34 +1,47 @@
-// A file that tests write and read.
+// Folders and files that tests write and read.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <stdexcept>
 #include <string>
 
 namespace dolp {
 
-/// A file in a temporary folder, removed with the object.
+/// A folder of its own, removed with all that is in it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "dolp-test-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a temporary folder");
+    path_ = name;
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string read_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A file in a folder of its own.
 class TemporaryFile {
  public:
-  TemporaryFile(const std::string& name, const std::string& content) {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    std::string owner = std::string(test->test_suite_name()) + "_" + test->name() + "_" + name;
-    std::replace(owner.begin(), owner.end(), '/', '_');  // of parametrised suites
-    folder_ = std::filesystem::path(::testing::TempDir()) / ("dolp_" + owner);
-    std::filesystem::create_directories(folder_);
-    path_ = (folder_ / name).string();
+  TemporaryFile(const std::string& name, const std::string& content) : path_((folder_.path() / name).string()) {
     std::ofstream(path_, std::ios::binary) << content;
   }
-  ~TemporaryFile() { std::filesystem::remove_all(folder_); }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
   const std::string& path() const { return path_; }
 
  private:
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
   std::string path_;
 };
 

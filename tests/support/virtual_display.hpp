@@ -7,9 +7,6 @@
 
 #include <csignal>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -22,17 +19,14 @@ namespace dolp {
 class VirtualDisplay {
  public:
   explicit VirtualDisplay(const std::string& size = "1440x900") {
-    std::string folder = (std::filesystem::temp_directory_path() / "dolp-display-XXXXXX").string();
-    if (!::mkdtemp(folder.data())) throw std::runtime_error("cannot make a folder");
-    folder_ = folder;
     int ends[2];
     if (::pipe(ends) != 0) throw std::runtime_error("cannot make a pipe");
     const std::string end = std::to_string(ends[1]);
     const std::string screen = size + "x24";
     process_ = ::fork();
     if (process_ == 0) {
-      ::execlp("Xvfb", "Xvfb", "-displayfd", end.c_str(), "-screen", "0", screen.c_str(), "-fbdir", folder.c_str(),
-               "-noreset", "-nolisten", "tcp", nullptr);
+      ::execlp("Xvfb", "Xvfb", "-displayfd", end.c_str(), "-screen", "0", screen.c_str(), "-fbdir",
+               folder_.path().c_str(), "-noreset", "-nolisten", "tcp", nullptr);
       ::_exit(127);
     }
     ::close(ends[1]);
@@ -45,7 +39,6 @@ class VirtualDisplay {
   ~VirtualDisplay() {
     ::kill(process_, SIGTERM);
     ::waitpid(process_, nullptr, 0);
-    std::filesystem::remove_all(folder_);
   }
   VirtualDisplay(const VirtualDisplay&) = delete;
   VirtualDisplay& operator=(const VirtualDisplay&) = delete;
@@ -53,8 +46,7 @@ class VirtualDisplay {
   /// The screen's pixels inside a rectangle: rows of pixels of four bytes.
   std::string pixels(std::size_t left, std::size_t top, std::size_t width, std::size_t height) const {
     // XWD: a header of big-endian numbers, a table of colours of 12 bytes each, the rows.
-    std::ifstream file(folder_ / "Xvfb_screen0", std::ios::binary);
-    const std::string screen{std::istreambuf_iterator<char>(file), {}};
+    const std::string screen = read_file(folder_.path() / "Xvfb_screen0");
     const auto field = [&](std::size_t position) {
       std::size_t value = 0;
       for (std::size_t i = 0; i < 4; ++i) value = 256 * value + static_cast<unsigned char>(screen.at(4 * position + i));
@@ -68,7 +60,7 @@ class VirtualDisplay {
   }
 
  private:
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
   pid_t process_ = -1;
 };
 

@@ -118,7 +118,7 @@ ScatteringMatrix BeamPlan::matrix(const kernel::MuellerNode& node, const Beam& b
   for (std::size_t i = 0; i < matrix.m.size(); ++i) matrix.m[i] = std::ldexp(node.m[i], beam.power);
   const double relative = unit_roundoff > kDoubleRoundoff ? kScatteringErrorFloat : kScatteringErrorDouble;
   matrix.error = relative * std::abs(matrix.m[0]);
-  if (request_.scattering == Scattering::kMultiple) add_further_bounces(matrix, request_, entry);
+  if (request_.scattering == Scattering::kMultiple) add_further_bounces(matrix, request_, entry, relative);
   return matrix;
 }
 

@@ -1,6 +1,7 @@
 #include "plan/effect_bounds.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -20,25 +21,12 @@ constexpr double kRounding = 1e-8;  // of the sums here, and of the band sums th
 constexpr double kRoundingOfOne = 1e-13;
 constexpr double kSmallestCosine = 1e-300;  // safe as a divisor
 
-bool KeptEffects::*flag(Part part) {
-  switch (part) {
-    case Part::kFurtherBounces:
-      return &KeptEffects::further_bounces;
-    case Part::kMoments:
-      return &KeptEffects::moments;
-    case Part::kSource:
-      return &KeptEffects::source;
-    case Part::kSurroundings:
-      return &KeptEffects::surroundings;
-    case Part::kEmission:
-      return &KeptEffects::emission;
-    case Part::kPathRadiance:
-      return &KeptEffects::path_radiance;
-    case Part::kDiffuse:
-      return &KeptEffects::diffuse;
-  }
-  return nullptr;
-}
+/// In the order of Part.
+constexpr std::array<bool KeptEffects::*, 7> kFlags = {
+    &KeptEffects::further_bounces, &KeptEffects::moments,       &KeptEffects::source, &KeptEffects::surroundings,
+    &KeptEffects::emission,        &KeptEffects::path_radiance, &KeptEffects::diffuse};
+
+bool KeptEffects::*flag(Part part) { return kFlags[static_cast<std::size_t>(part)]; }
 
 double or_infinite(double bound) { return std::isnan(bound) ? kInfinity : bound; }
 
@@ -69,43 +57,11 @@ double most_lambda(Distribution distribution, const SlopeShape& shape, const Cos
   return a.cos > 0.0 ? 0.5 * mean * a.sin / a.cos : kInfinity;
 }
 
-/// The slope up to which every facet sends its ray up.
-double edge_slope(const CosSin& a) { return a.cos / (1.0 + a.sin); }
-
-/// Upper bound of the part of rho from facets steeper than `slope`: the mean of e over the azimuths is at most
-/// c + s t / pi, and (1 + u^2)^(1 - q) <= u^(2 - 2 q) bounds the mean slope of the cauchy distribution; with `v-cavity`
-/// e G <= 2 c.
-double most_of_steep(const Surface& surface, const CosSin& a, const SlopeShape& shape, double slope) {
-  const double share = steeper_share(surface.distribution, shape, slope);
-  if (surface.masking == Masking::kVCavity) return 2.0 * share;
-  const double m = slope_width(shape);
-  const double beyond = surface.distribution == Distribution::kGaussian
-                            ? 0.5 * kRootPi * m * std::erfc(slope / m)
-                            : m * std::pow(slope / m, 3.0 - 2.0 * shape.q) / (2.0 * shape.q - 3.0);
-  return share + a.sin / a.cos * (slope * share + beyond) / std::numbers::pi;
-}
-
 /// Equation: rho c = E[e G M], e <= max(c + s t cos(phi), 0), G <= 1. `v-cavity` and `smith` reflect at most all
-/// incident light, and facets that are not steep at most R_s at theta plus their slope; else 1 + tan(theta) E|t_x| / 2,
-/// because the mean of t is pi E|t_x| / 2.
-double most_specular(const Surface& surface, const CosSin& a, const SlopeShape& roughest,
-                     const std::vector<OpticalConstants>& indices) {
+/// incident light; else 1 + tan(theta) E|t_x| / 2, because the mean of t is pi E|t_x| / 2.
+double most_albedo(const Surface& surface, const CosSin& a, const SlopeShape& roughest) {
   const bool keeps_energy = surface.masking == Masking::kVCavity || surface.masking == Masking::kSmith;
-  if (!keeps_energy) return 1.0 + most_lambda(surface.distribution, roughest, a);
-  double most = 1.0;
-  for (const double slope : {0.5 * edge_slope(a), edge_slope(a)}) {
-    const double gentle = fresnel(indices, (a.cos - a.sin * slope) / std::hypot(1.0, slope)).most_s;
-    most = std::min(most, gentle + most_of_steep(surface, a, roughest, slope));  // of NaN, with all facets steep, 1
-  }
-  return most;
-}
-
-/// Equation: with `v-cavity` e G >= 3/4 c up to half of the edge, and M00 >= R_s / 2 >= R(normal) / 2.
-double least_specular(const Surface& surface, const CosSin& a, const SlopeShape& roughest,
-                      const std::vector<OpticalConstants>& indices) {
-  if (surface.masking != Masking::kVCavity) return 0.0;
-  const double gentle = 1.0 - steeper_share(surface.distribution, roughest, 0.5 * edge_slope(a));
-  return 0.75 * gentle * 0.5 * fresnel(indices, 1.0).least;
+  return keeps_energy ? 1.0 : 1.0 + most_lambda(surface.distribution, roughest, a);
 }
 
 /// Range of a quantity.
@@ -155,27 +111,14 @@ Range beam_range(const Surface& surface, const BeamAngles& angles, const Entries
           jacobian * density.most * masking.most * reflected.most};
 }
 
-void add(EntriesExtent& extent, const SceneEntry& entry) {
-  const bool is_first = extent.theta_deg.empty();
-  extent.theta_deg.push_back(entry.theta_deg);
-  if (is_first) extent.roughest = extent.smoothest = entry.shape;
-  extent.roughest.sigma = std::max(extent.roughest.sigma, entry.shape.sigma);
-  extent.roughest.q = std::min(extent.roughest.q, entry.shape.q);
-  extent.smoothest.sigma = std::min(extent.smoothest.sigma, entry.shape.sigma);
-  extent.smoothest.q = std::max(extent.smoothest.q, entry.shape.q);
-  if (entry.index) extent.indices.push_back(*entry.index);
-}
-
 EntriesExtent extent_of_grid(const SceneEntries& entries) {
   const auto [sigma_low, sigma_high] = std::ranges::minmax(entries.sigma());
   const auto [q_low, q_high] = std::ranges::minmax(entries.q());
   EntriesExtent extent{entries.theta_deg(), {sigma_high, q_low}, {sigma_low, q_high}, {}};
   if (!entries.has_own_index()) return extent;
   PerAxis place{};
-  for (std::size_t n = 0; n < entries.counts()[Axis::kN]; ++n) {
-    for (std::size_t k = 0; k < entries.counts()[Axis::kK]; ++k) {
-      place[Axis::kN] = n;
-      place[Axis::kK] = k;
+  for (place[Axis::kN] = 0; place[Axis::kN] < entries.counts()[Axis::kN]; ++place[Axis::kN]) {
+    for (place[Axis::kK] = 0; place[Axis::kK] < entries.counts()[Axis::kK]; ++place[Axis::kK]) {
       extent.indices.push_back(entries.index_at(place));
     }
   }
@@ -184,19 +127,24 @@ EntriesExtent extent_of_grid(const SceneEntries& entries) {
 
 }  // namespace
 
+EntriesExtent extent_of(const SceneEntries& entries) {
+  if (entries.is_grid()) return extent_of_grid(entries);
+  EntriesExtent extent{{}, {0.0, kInfinity}, {kInfinity, 0.0}, {}};
+  for (const SceneEntry& entry : entries.all()) {
+    extent.theta_deg.push_back(entry.theta_deg);
+    extent.roughest = {std::max(extent.roughest.sigma, entry.shape.sigma), std::min(extent.roughest.q, entry.shape.q)};
+    extent.smoothest = {std::min(extent.smoothest.sigma, entry.shape.sigma),
+                        std::max(extent.smoothest.q, entry.shape.q)};
+    if (entry.index) extent.indices.push_back(*entry.index);
+  }
+  return extent;
+}
+
 bool is_kept(const KeptEffects& kept, Part part) { return kept.*flag(part); }
 
 KeptEffects without(KeptEffects kept, Part part) {
   kept.*flag(part) = false;
   return kept;
-}
-
-std::vector<EntriesExtent> extents_of(const SceneEntries& entries) {
-  const std::size_t wavelengths = std::max<std::size_t>(1, entries.wavelength_um().size());
-  if (entries.is_grid()) return {wavelengths, extent_of_grid(entries)};
-  std::vector<EntriesExtent> extents(wavelengths);
-  for (const SceneEntry& entry : entries.all()) add(extents[entry.wavelength], entry);
-  return extents;
 }
 
 /// Bounds of Stokes sums.
@@ -221,30 +169,17 @@ EffectBounds::EffectBounds(const SceneValues& scene, const EntriesExtent& extent
   if (extent.theta_deg.empty()) return;
   std::vector<OpticalConstants> indices = rule.indices();
   indices.insert(indices.end(), extent.indices.begin(), extent.indices.end());
-  add_reflectances(extent, indices);
-  if (is_bistatic_ && total_.irradiance > 0.0) add_beams(extent, indices);
-}
-
-void EffectBounds::add_reflectances(const EntriesExtent& extent, const std::vector<OpticalConstants>& indices) {
   const Surface& surface = scene_.surface;
   const double seen_deg = is_bistatic_ ? scene_.geometry.view_zenith_deg : *std::ranges::max_element(extent.theta_deg);
-  const double theta_deg = zenith_before_limit_deg(surface.masking, seen_deg);
-  const CosSin a = cos_sin_deg(theta_deg);
+  const CosSin a = cos_sin_deg(zenith_before_limit_deg(surface.masking, seen_deg));
   const double cosine = std::max(a.cos, kSmallestCosine);
-  most_specular_ = surface.specular * most_specular(surface, a, extent.roughest, indices);
-  least_rho_ = surface.specular * least_specular(surface, a, extent.roughest, indices) + 0.0;
-  if (surface.scattering == Scattering::kMultiple) {
-    // A second facet meets the light where the first is steeper than 30 degrees - theta / 3.
-    const double slope = std::tan((30.0 - theta_deg / 3.0) * std::numbers::pi / 180.0);
-    further_ = surface.specular * steeper_share(surface.distribution, extent.roughest, slope);
-  }
+  most_specular_ = surface.specular * most_albedo(surface, a, extent.roughest);
   const double c = surface.diffuse_exponent;
-  if (surface.diffuse > 0.0) {
-    const bool diverges = c < 0.0 && seen_deg == 90.0;
+  const bool diverges = c < 0.0 && seen_deg == 90.0;
+  if (surface.diffuse > 0.0)
     most_diffuse_ = diverges ? kInfinity : 2.0 * surface.diffuse * std::pow(cosine, c) / (c + 2.0);
-    least_rho_ += 2.0 * surface.diffuse / (c + 2.0);
-  }
   least_smooth_ = 0.5 * (1.0 - fresnel(indices, cosine).most_s);
+  if (is_bistatic_ && total_.irradiance > 0.0) add_beams(extent, indices);
 }
 
 void EffectBounds::add_beams(const EntriesExtent& extent, const std::vector<OpticalConstants>& indices) {
@@ -279,12 +214,7 @@ double EffectBounds::incident(const KeptEffects& kept) const {
   return is_bistatic_ || !kept.source ? 0.0 : total_.irradiance;
 }
 
-/// Albedo bound A of the specular part.
-double EffectBounds::most_rho(const KeptEffects& kept) const {
-  if (!kept.moments) return 0.0;
-  const double further = kept.further_bounces ? further_ : 0.0;
-  return std::min(most_specular_ + further, std::max(most_specular_, scene_.surface.specular));
-}
+double EffectBounds::most_rho(const KeptEffects& kept) const { return kept.moments ? most_specular_ : 0.0; }
 
 EffectBounds::Sums EffectBounds::sums(const KeptEffects& kept) const {
   const EmissionModel model = scene_.emission ? scene_.emission->model : EmissionModel::kMoments;
@@ -319,11 +249,11 @@ EffectBounds::Sums EffectBounds::added_by(Part part, const KeptEffects& kept) co
   const double rho = most_rho(kept);
   const double all_rho = rho + most_diffuse_;
   const bool emits_directly = kept.emission && scene_.emission && scene_.emission->model == EmissionModel::kDirect;
-  const bool has_beam = is_bistatic_ && kept.source && total_.irradiance > 0.0;
   Sums sum;
   switch (part) {
     case Part::kFurtherBounces:
-      sum.most_i = sum.most_qu = has_beam ? kInfinity : (weight(kept) + incident(kept)) * further_;
+    case Part::kDiffuse:
+      sum.most_i = kInfinity;
       break;
     case Part::kMoments:
       sum.most_i = emits_directly ? kInfinity : (weight(kept) + incident(kept)) * rho;
@@ -344,9 +274,6 @@ EffectBounds::Sums EffectBounds::added_by(Part part, const KeptEffects& kept) co
     case Part::kPathRadiance:
       sum.most_i = path_;
       return sum;
-    case Part::kDiffuse:
-      sum.most_i = kInfinity;
-      break;
   }
   if (scene_.path) sum.most_i *= scene_.path->transmittance;
   if (scene_.path) sum.most_qu *= scene_.path->transmittance;
@@ -379,20 +306,13 @@ bool EffectBounds::adds_nothing(Part part, const KeptEffects& kept) const {
   return false;
 }
 
-DropBound EffectBounds::bound(Part part, const KeptEffects& kept) const {
-  if (!is_kept(kept, part) || adds_nothing(part, kept)) return {};
+double EffectBounds::bound(Part part, const KeptEffects& kept) const {
+  if (!is_kept(kept, part) || adds_nothing(part, kept)) return 0.0;
   const Sums added = added_by(part, kept);
-  const Sums whole = sums(kept);
   const Sums left = sums(without(kept, part));
-  DropBound bound;
-  bound.dolp = kInfinity;
-  if (left.least_i > 0.0) {
-    const double both = added.most_qu + (added.most_i > 0.0 ? whole.most_polarisation * added.most_i : 0.0);
-    bound.dolp = or_infinite(both / left.least_i) * (1.0 + kRounding);
-  }
-  const bool gives_rho = kept.moments || scene_.surface.specular == 0.0;
-  if (part == Part::kFurtherBounces && gives_rho) bound.rho = or_infinite(further_ / least_rho_) * (1.0 + kRounding);
-  return bound;
+  if (!(left.least_i > 0.0)) return kInfinity;
+  const double both = added.most_qu + (added.most_i > 0.0 ? sums(kept).most_polarisation * added.most_i : 0.0);
+  return or_infinite(both / left.least_i) * (1.0 + kRounding);
 }
 
 }  // namespace dolp

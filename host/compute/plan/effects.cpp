@@ -15,13 +15,12 @@ constexpr std::array kDroppingOrder = {Part::kMoments,      Part::kSource,  Part
 
 /// The bounds of a scene at each wavelength of its entries.
 std::vector<EffectBounds> bounds_of(const SceneValues& scene, const SceneEntries& entries) {
+  const EntriesExtent extent = extent_of(entries);
   std::vector<EffectBounds> bounds;
-  const std::vector<double>& wavelength_um = entries.wavelength_um();
-  const std::vector<EntriesExtent> extents = extents_of(entries);
-  for (std::size_t i = 0; i < extents.size(); ++i) {
-    if (extents[i].theta_deg.empty() && !entries.empty()) continue;  // no entry has this wavelength
-    bounds.emplace_back(wavelength_um.empty() ? scene : at_wavelength(scene, wavelength_um[i]), extents[i]);
+  for (const double wavelength_um : entries.wavelength_um()) {
+    bounds.emplace_back(at_wavelength(scene, wavelength_um), extent);
   }
+  if (bounds.empty()) bounds.emplace_back(scene, extent);
   return bounds;
 }
 
@@ -29,39 +28,27 @@ bool add_nothing(const std::vector<EffectBounds>& bounds, Part part, const KeptE
   return std::ranges::all_of(bounds, [&](const EffectBounds& of_one) { return of_one.adds_nothing(part, kept); });
 }
 
-DropBound worst_of(const DropBound& a, const DropBound& b) {
-  return {std::max(a.dolp, b.dolp), std::max(a.rho, b.rho)};
-}
-
 /// A part that matters in the whole scene is kept even where the parts that it acts on have been dropped.
-DropBound worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
-  DropBound worst;
+double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
+  double worst = 0.0;
   for (const EffectBounds& of_one : bounds) {
-    worst = worst_of(worst, of_one.bound(part, kept));
-    if (part != Part::kMoments) worst = worst_of(worst, of_one.bound(part, {}));
+    worst = std::max(worst, of_one.bound(part, kept));
+    if (part != Part::kMoments) worst = std::max(worst, of_one.bound(part, {}));
   }
   return worst;
 }
 
-bool is_asked_for(const SceneValues& scene, Part part) {
-  switch (part) {
-    case Part::kFurtherBounces:
-      return scene.surface.scattering == Scattering::kMultiple;
-    case Part::kMoments:
-      return scene.surface.specular > 0.0;
-    case Part::kSource:
-      return scene.source.has_value();
-    case Part::kSurroundings:
-      return scene.surroundings.has_value();
-    case Part::kEmission:
-      return scene.emission.has_value();
-    case Part::kPathRadiance:
-      return scene.path && (scene.path->temperature_K || scene.path->radiance);
-    case Part::kDiffuse:
-      return scene.surface.diffuse > 0.0;
-  }
-  return false;
-}
+/// True if the scene has a part, in the order of Part.
+constexpr std::array<bool (*)(const SceneValues&), 7> kIsAskedFor = {
+    [](const SceneValues& scene) { return scene.surface.scattering == Scattering::kMultiple; },
+    [](const SceneValues& scene) { return scene.surface.specular > 0.0; },
+    [](const SceneValues& scene) { return scene.source.has_value(); },
+    [](const SceneValues& scene) { return scene.surroundings.has_value(); },
+    [](const SceneValues& scene) { return scene.emission.has_value(); },
+    [](const SceneValues& scene) { return scene.path && (scene.path->temperature_K || scene.path->radiance); },
+    [](const SceneValues& scene) { return scene.surface.diffuse > 0.0; }};
+
+bool is_asked_for(const SceneValues& scene, Part part) { return kIsAskedFor[static_cast<std::size_t>(part)](scene); }
 
 bool is_bistatic(const SceneValues& scene) { return scene.geometry.mode == Mode::kBistatic; }
 
@@ -80,10 +67,10 @@ void drop_effects(EffectPlan& plan, const SceneValues& scene, const std::vector<
   for (const Part part : kDroppingOrder) {
     if (!is_kept(plan.kept, part)) continue;
     if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // it needs them
-    const DropBound bound = worst_bound(bounds, part, plan.kept);
-    if (std::max(bound.dolp, bound.rho) > allowed - std::max(plan.bound.dolp, plan.bound.rho)) continue;
+    const double bound = worst_bound(bounds, part, plan.kept);
+    if (bound > allowed - plan.bound) continue;
     plan.kept = without(plan.kept, part);
-    plan.bound = {plan.bound.dolp + bound.dolp, plan.bound.rho + bound.rho};
+    plan.bound += bound;
     if (is_asked_for(scene, part)) plan.dropped.push_back({part, bound});
   }
 }
@@ -116,158 +103,136 @@ std::string why_no_moments(const SceneValues& scene, const KeptEffects& kept) {
   return "no emission and no surroundings: f in the one direction is enough";
 }
 
-EffectRow absent(const char* name, std::string why) { return {name, EffectState::kAbsent, std::move(why)}; }
+Effect absent(const char* name, std::string why) { return {name, EffectState::kAbsent, std::move(why)}; }
 
-/// A part as it stands in the plan; `kept` says why and what for.
-EffectRow part_row(const SceneValues& scene, const EffectPlan& plan, const char* name, Part part, EffectRow row) {
-  row.name = name;
+/// A part as it stands in the plan; `row` says why it would be kept and what for.
+Effect part_row(const SceneValues& scene, const EffectPlan& plan, Part part, Effect row) {
   row.part = part;
   const DroppedPart* dropped = find_dropped(plan, part);
   if (dropped == nullptr) return row;
   row.state = EffectState::kDropped;
   row.needs.clear();
-  row.bound = dropped->bound.dolp;
-  row.reason = below_share(dropped->bound.dolp, scene.accuracy.tolerance);
-  if (dropped->bound.dolp == 0.0) row.reason = "adds nothing";
+  row.bound = dropped->bound;
+  row.reason = dropped->bound == 0.0 ? "adds nothing" : below_share(dropped->bound, scene.accuracy.tolerance);
   return row;
 }
 
-std::string moments_needs(const SceneValues& scene) {
+/// The needs of a part that the moments serve while they are kept.
+std::string needs_of_moments(const SceneValues& scene, const EffectPlan& plan) {
+  if (!plan.needs_moments) return "closed form";
   return is_bistatic(scene) ? fmt::format("moments at {:g} deg", scene.geometry.view_zenith_deg)
                             : "moments at each theta";
 }
 
-EffectRow specular_row(const SceneValues& scene, const EffectPlan& plan) {
-  constexpr const char* kName = "specular";
-  if (scene.surface.specular == 0.0) return absent(kName, "surface.specular is 0");
-  EffectRow row{kName, EffectState::kKept, {}, {}, Part::kMoments};
+Effect specular_row(const SceneValues& scene, const EffectPlan& plan) {
+  if (scene.surface.specular == 0.0) return absent("specular", "surface.specular is 0");
+  Effect row{"specular", EffectState::kKept, {}, {}, Part::kMoments};
   if (plan.needs_moments) {
     row.reason = "what is emitted or reflected depends on it";
-    row.needs = moments_needs(scene) + (plan.needs_beams ? ", f at each theta" : "");
+    row.needs = needs_of_moments(scene, plan) + (plan.needs_beams ? ", f at each theta" : "");
     return row;
   }
-  const double bound = find_dropped(plan, Part::kMoments) ? find_dropped(plan, Part::kMoments)->bound.dolp : 0.0;
-  row.bound = bound;
-  const std::string why =
-      bound == 0.0 ? why_no_moments(scene, plan.kept) : below_share(bound, scene.accuracy.tolerance);
+  const DroppedPart* dropped = find_dropped(plan, Part::kMoments);
+  row.bound = dropped ? dropped->bound : 0.0;
+  row.reason = *row.bound == 0.0 ? why_no_moments(scene, plan.kept) : below_share(*row.bound, scene.accuracy.tolerance);
   if (plan.needs_beams) {
     row.needs = "f at each theta";
-    row.reason = "reflects the source; no moments: " + why;
+    row.reason = "reflects the source; no moments: " + row.reason;
   } else {
     row.state = EffectState::kDropped;
-    row.reason = why;
   }
   return row;
 }
 
-EffectRow model_row(const SceneValues& scene, const EffectPlan& plan, const char* name, const std::string& choice,
-                    const SceneEntries& entries) {
+/// A choice of the model; `reason` is that of a kept one.
+Effect model_row(const SceneValues& scene, const EffectPlan& plan, const char* name, const std::string& choice,
+                 const SceneEntries& entries, const char* reason = ", a choice of the model: never swapped") {
   const auto is_flat = [](const SceneEntry& entry) { return entry.shape.sigma == 0.0; };
   const bool all_mirrors = !entries.empty() && std::ranges::all_of(entries.all(), is_flat);
   if (all_mirrors) return absent(name, "sigma is 0 everywhere: a mirror");
   if (scene.surface.specular == 0.0) return absent(name, "surface.specular is 0");
-  EffectRow row{name, EffectState::kKept, choice + ", a choice of the model: never swapped"};
-  if (plan.needs_moments || plan.needs_beams) return row;
-  row.state = EffectState::kNotNeeded;
-  row.reason = choice + ": nothing depends on it without the specular part";
-  return row;
+  if (plan.needs_moments || plan.needs_beams) return {name, EffectState::kKept, choice + reason};
+  return {name, EffectState::kNotNeeded, choice + ": nothing depends on it without the specular part"};
 }
 
-EffectRow scattering_row(const SceneValues& scene, const EffectPlan& plan, const SceneEntries& entries) {
-  constexpr const char* kName = "scattering";
+Effect masking_row(const SceneValues& scene, const EffectPlan& plan, const SceneEntries& entries) {
+  if (scene.surface.masking == Masking::kNone) return absent("masking", "surface.masking is none");
+  return model_row(scene, plan, "masking", name_of(scene.surface.masking), entries);
+}
+
+Effect scattering_row(const SceneValues& scene, const EffectPlan& plan, const SceneEntries& entries) {
   if (scene.surface.scattering == Scattering::kSingle) {
-    return absent(kName, "surface.scattering is single: light is followed to its first facet");
+    return absent("scattering", "surface.scattering is single: light is followed to its first facet");
   }
-  EffectRow row = model_row(scene, plan, kName, "all bounces in V-grooves", entries);
+  Effect row = model_row(scene, plan, "scattering", "all bounces in V-grooves", entries, "");
   if (row.state != EffectState::kKept) return row;
-  row.reason = "all bounces in V-grooves";
-  row.needs = moments_needs(scene);
-  return part_row(scene, plan, kName, Part::kFurtherBounces, row);
+  row.needs = plan.needs_moments ? needs_of_moments(scene, plan) : "f at each theta";
+  return part_row(scene, plan, Part::kFurtherBounces, row);
 }
 
-EffectRow complex_index_row(const SceneValues& scene, const EffectPlan& plan, const SceneEntries& entries) {
+Effect complex_index_row(const SceneValues& scene, const EffectPlan& plan, const SceneEntries& entries) {
   constexpr const char* kName = "complex index";
-  const std::vector<OpticalConstants> indices = spectral_rule(scene).indices();
   const auto is_complex = [](const OpticalConstants& index) { return index.k > 0.0; };
   const bool own =
       entries.is_grid()
           ? std::ranges::any_of(entries.axes()[Axis::kK], [](double k) { return k > 0.0; })
           : std::ranges::any_of(entries.all(), [&](const SceneEntry& e) { return e.index && is_complex(*e.index); });
-  if (!own && std::ranges::none_of(indices, is_complex)) return absent(kName, "k is 0");
-  EffectRow row{kName, EffectState::kKept, "costs nothing: the kernel treats real indices alike"};
+  if (!own && std::ranges::none_of(spectral_rule(scene).indices(), is_complex)) return absent(kName, "k is 0");
   const bool is_used = plan.needs_moments || plan.needs_beams || (is_fresnel(scene) && plan.kept.emission);
-  if (is_used) return row;
-  row.state = EffectState::kNotNeeded;
-  row.reason = "nothing depends on the index";
-  return row;
+  if (!is_used) return {kName, EffectState::kNotNeeded, "nothing depends on the index"};
+  return {kName, EffectState::kKept, "costs nothing: the kernel treats real indices alike"};
 }
 
-EffectRow emission_row(const SceneValues& scene, const EffectPlan& plan) {
-  constexpr const char* kName = "emission";
-  if (!scene.emission) return absent(kName, "no [emission]");
-  EffectRow row{kName, EffectState::kKept};
+Effect emission_row(const SceneValues& scene, const EffectPlan& plan) {
+  if (!scene.emission) return absent("emission", "no [emission]");
   const char* of = is_fresnel(scene)                         ? "of the smooth surface"
                    : emits_as(scene, EmissionModel::kDirect) ? "of the facets, straight to the viewer"
                                                              : "1 - rho of the surface (Kirchhoff)";
-  row.reason = fmt::format("{:g} K, {}", scene.emission->temperature_K, of);
-  row.needs = is_fresnel(scene) || !plan.needs_moments ? "closed form" : moments_needs(scene);
-  return part_row(scene, plan, kName, Part::kEmission, row);
+  return part_row(scene, plan, Part::kEmission,
+                  {"emission", EffectState::kKept, fmt::format("{:g} K, {}", scene.emission->temperature_K, of),
+                   is_fresnel(scene) ? "closed form" : needs_of_moments(scene, plan)});
 }
 
-EffectRow source_row(const SceneValues& scene, const EffectPlan& plan) {
-  constexpr const char* kName = "source";
-  if (!scene.source) return absent(kName, "no [source]");
-  EffectRow row{kName, EffectState::kKept};
-  row.reason = is_bistatic(scene) ? "one beam, one direction of view" : "a beam, reflected into the view";
-  row.needs = is_bistatic(scene) ? (plan.needs_beams ? "f at each theta" : "closed form") : moments_needs(scene);
-  if (!is_bistatic(scene) && !plan.needs_moments) row.needs = "closed form";
-  return part_row(scene, plan, kName, Part::kSource, row);
+Effect source_row(const SceneValues& scene, const EffectPlan& plan) {
+  if (!scene.source) return absent("source", "no [source]");
+  Effect row{"source", EffectState::kKept, "a beam, reflected into the view", needs_of_moments(scene, plan)};
+  if (is_bistatic(scene)) {
+    row.reason = "one beam, one direction of view";
+    row.needs = plan.needs_beams ? "f at each theta" : "closed form";
+  }
+  return part_row(scene, plan, Part::kSource, row);
 }
 
-EffectRow surroundings_row(const SceneValues& scene, const EffectPlan& plan) {
-  constexpr const char* kName = "surroundings";
-  if (!scene.surroundings) return absent(kName, "no [surroundings]");
-  EffectRow row{kName, EffectState::kKept};
-  row.reason = fmt::format("{:g} K, reflected into the view", scene.surroundings->temperature_K);
-  row.needs = plan.needs_moments ? moments_needs(scene) : "closed form";
-  return part_row(scene, plan, kName, Part::kSurroundings, row);
+Effect surroundings_row(const SceneValues& scene, const EffectPlan& plan) {
+  if (!scene.surroundings) return absent("surroundings", "no [surroundings]");
+  const std::string reason = fmt::format("{:g} K, reflected into the view", scene.surroundings->temperature_K);
+  return part_row(scene, plan, Part::kSurroundings,
+                  {"surroundings", EffectState::kKept, reason, needs_of_moments(scene, plan)});
 }
 
-EffectRow path_row(const SceneValues& scene, const EffectPlan& plan) {
-  constexpr const char* kName = "path";
-  if (!scene.path) return absent(kName, "no [path]");
-  EffectRow row{kName, EffectState::kKept, {}, "closed form"};
+Effect path_row(const SceneValues& scene, const EffectPlan& plan) {
+  if (!scene.path) return absent("path", "no [path]");
+  Effect row{"path", EffectState::kKept, "its radiance adds to I", "closed form"};
   if (!is_asked_for(scene, Part::kPathRadiance)) {
     row.reason = "its transmittance alone, which DOLP does not see";
     row.influence = 0.0;
     return row;
   }
-  row.reason = "its radiance adds to I";
-  row = part_row(scene, plan, kName, Part::kPathRadiance, row);
+  row = part_row(scene, plan, Part::kPathRadiance, row);
   if (row.state == EffectState::kDropped) row.reason = "its radiance " + row.reason + "; the transmittance stays";
   return row;
 }
 
-EffectRow diffuse_row(const SceneValues& scene, const EffectPlan& plan) {
-  constexpr const char* kName = "diffuse";
-  if (scene.surface.diffuse == 0.0) return absent(kName, "surface.diffuse is 0");
-  EffectRow row{kName, EffectState::kKept, "adds to rho_I", "closed form"};
-  return part_row(scene, plan, kName, Part::kDiffuse, row);
+Effect diffuse_row(const SceneValues& scene, const EffectPlan& plan) {
+  if (scene.surface.diffuse == 0.0) return absent("diffuse", "surface.diffuse is 0");
+  return part_row(scene, plan, Part::kDiffuse, {"diffuse", EffectState::kKept, "adds to rho_I", "closed form"});
 }
 
-EffectRow band_row(const SceneValues& scene) {
-  constexpr const char* kName = "band";
-  if (!scene.spectrum.is_band()) return absent(kName, "a single wavelength");
+Effect band_row(const SceneValues& scene) {
+  if (!scene.spectrum.is_band()) return absent("band", "a single wavelength");
   const std::size_t count = spectral_rule(scene).samples.size();
-  EffectRow row{kName, EffectState::kKept};
-  row.reason = fmt::format("{:g}..{:g} um", scene.spectrum.min_um, scene.spectrum.max_um);
-  row.needs = count == 1 ? "one index for the whole band" : fmt::format("{} spectral samples", count);
-  return row;
-}
-
-EffectRow masking_row(const SceneValues& scene, const EffectPlan& plan, const SceneEntries& entries) {
-  if (scene.surface.masking == Masking::kNone) return absent("masking", "surface.masking is none");
-  return model_row(scene, plan, "masking", name_of(scene.surface.masking), entries);
+  return {"band", EffectState::kKept, fmt::format("{:g}..{:g} um", scene.spectrum.min_um, scene.spectrum.max_um),
+          count == 1 ? "one index for the whole band" : fmt::format("{} spectral samples", count)};
 }
 
 }  // namespace
@@ -301,7 +266,7 @@ Needs needs_without(const SceneValues& scene, const EffectPlan& plan, Part part)
           part != Part::kMoments && needs_beams(scene, bounds, kept)};
 }
 
-std::vector<EffectRow> effect_rows(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan) {
+std::vector<Effect> effects_of(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan) {
   return {specular_row(scene, plan),
           diffuse_row(scene, plan),
           model_row(scene, plan, "distribution", name_of(scene.surface.distribution), entries),
@@ -315,20 +280,15 @@ std::vector<EffectRow> effect_rows(const SceneValues& scene, const SceneEntries&
           band_row(scene)};
 }
 
-const char* state_name(EffectState state) {
-  constexpr std::array kNames = {"absent", "kept", "dropped", "not_needed"};
-  return kNames[static_cast<std::size_t>(state)];
-}
-
-std::string effects_text(const std::vector<EffectRow>& rows, const EffectPlan& plan) {
+std::string effects_text(const std::vector<Effect>& rows, const EffectPlan& plan) {
   std::string kept;
   std::string dropped;
-  for (const EffectRow& row : rows) {
-    if (row.state == EffectState::kKept) kept += (kept.empty() ? "" : ", ") + std::string(row.name);
+  for (const Effect& row : rows) {
+    if (row.state == EffectState::kKept) kept += (kept.empty() ? "" : ", ") + row.name;
     if (row.state != EffectState::kDropped) continue;
     dropped += fmt::format("{}{} ({})", dropped.empty() ? "" : ", ", row.name, row.reason);
   }
-  const std::string why = plan.keep_all ? " (--keep-all)" : "";
+  const std::string why = plan.keep_all ? " (all are kept)" : "";
   return fmt::format("kept: {}; dropped{}: {}", kept, why, dropped.empty() ? "nothing" : dropped);
 }
 

@@ -1,24 +1,22 @@
 // The effects of a scene, and the selection of those that a run drops because their change is negligible.
 #pragma once
 
-#include <optional>
+#include <dolp/effect.hpp>
 #include <string>
 #include <vector>
 
 #include "model/kept_effects.hpp"
 #include "model/scene_entry.hpp"
+#include "plan/constants.hpp"
 #include "plan/effect_bounds.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {
 
-/// Bound of the change by all dropped effects together, as a share of the scene's tolerance.
-inline constexpr double kDroppedShare = 0.1;
-
 /// A part that is dropped, and the bound of the change at any entry.
 struct DroppedPart {
   Part part;
-  DropBound bound;
+  double bound;  ///< of (Q/I, U/I), hence of DOLP
 };
 
 /// The effects that a run computes at its entries.
@@ -26,7 +24,7 @@ struct EffectPlan {
   bool keep_all = false;
   KeptEffects kept;
   std::vector<DroppedPart> dropped;  ///< in the order of dropping; parts that the scene lacks are not among them
-  DropBound bound;                   ///< of all dropped parts together
+  double bound = 0.0;                ///< of all dropped parts together
   bool needs_moments = true;         ///< the specular moments, at theta or in bistatic mode at the view
   bool needs_direct = false;         ///< those of the direct emission too
   bool needs_beams = false;          ///< f of the source's and the view's direction
@@ -36,12 +34,12 @@ struct EffectPlan {
 /// The effects that the scene's output needs at these entries.
 ///
 /// A part is dropped if the bound of EffectBounds leaves the sum of all dropped parts at kDroppedShare of the tolerance
-/// or below. The parts are tried in the order of Part, except the moments, which are tried first and once more before
-/// further bounces. Each bound is that of the scene without the parts dropped before, so that the sum bounds the whole
-/// change; except for the moments, a part's bound in the whole scene counts too. A part that contributes exactly
-/// nothing is dropped at no cost: the moments where emission and surroundings have one temperature, for instance. Model
-/// choices (distribution, masking, k) and the diffuse part are never dropped. `keep_all` keeps everything that the
-/// scene has.
+/// or below. The parts are tried in the order of Part, except the moments, which are tried first and once more last.
+/// Further bounces go with the moments alone: a bound of what they change costs more than it saves. Each bound is that
+/// of the scene without the parts dropped before, so that the sum bounds the whole change; except for the moments, a
+/// part's bound in the whole scene counts too. A part that contributes exactly nothing is dropped at no cost: the
+/// moments where emission and surroundings have one temperature, for instance. Model choices (distribution, masking, k)
+/// and the diffuse part are never dropped. `keep_all` keeps everything that the scene has.
 EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, bool keep_all);
 
 /// The plan of a run that computes `kept`: its needs and its results.
@@ -62,30 +60,10 @@ struct Needs {
 /// Quantities that the run would have to compute without one more part.
 Needs needs_without(const SceneValues& scene, const EffectPlan& plan, Part part);
 
-enum class EffectState {
-  kAbsent,     ///< the scene does not ask for it
-  kKept,       ///< computed
-  kDropped,    ///< left out: a bound shows that its change is negligible
-  kNotNeeded,  ///< a choice of the model that nothing kept depends on
-};
-
-/// One effect for a reader.
-struct EffectRow {
-  const char* name = "";
-  EffectState state = EffectState::kKept;
-  std::string reason = {};
-  std::string needs = {};                ///< quantities that it requires; empty when it is not kept
-  std::optional<Part> part = {};         ///< the part of the sums that it is; none for model choices
-  std::optional<double> bound = {};      ///< of a dropped one: of the change of (Q/I, U/I) without it
-  std::optional<double> influence = {};  ///< of a kept one: estimate of that change
-};
-
 /// All effects, in the order of the scene file.
-std::vector<EffectRow> effect_rows(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
-
-const char* state_name(EffectState state);
+std::vector<Effect> effects_of(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
 
 /// One line for reports and table attributes: the effects that are kept, those that are dropped, and the reasons.
-std::string effects_text(const std::vector<EffectRow>& rows, const EffectPlan& plan);
+std::string effects_text(const std::vector<Effect>& rows, const EffectPlan& plan);
 
 }  // namespace dolp

@@ -6,6 +6,7 @@
 
 #include "base/numbers.hpp"
 #include "model/slopes.hpp"
+#include "plan/constants.hpp"
 #include "plan/kernel_data.hpp"
 
 namespace dolp {
@@ -15,30 +16,12 @@ using std::numbers::pi;
 
 constexpr double kCosineRounding = 2.0 * std::numeric_limits<double>::epsilon();
 
-// Bounds of the interpolation error of G relative to the albedo (quintic Hermite, 8 and 64 cells an octave).
-constexpr double kMaskingTableErrorFloat = 3e-8;
-constexpr double kMaskingTableErrorDouble = 1e-12;
+constexpr double kGrazingCosine = 1e-9;  // below it a direction is at the horizon
 
 // Rounding error in units of the precision's roundoff, relative to the integral of absolute values. The masking tables
-// of `integral` with q near 1 and of smith with q near 3/2 are sums of hundreds of nearly equal terms.
-constexpr double kRoundings = 20.0;
-constexpr double kHeavyTailRoundings = 80.0;
-constexpr double kHeavyTailQ = 1.1;
-constexpr double kHeavyTailSmithQ = 1.6;
-constexpr double kExtremeTailRoundings = 400.0;
-constexpr double kExtremeTailQ = 1.01;
-
-// The critical line of total reflection lies at a difference of nearly equal angles, the more so the smoother the
-// surface and the nearer the horizon.
-constexpr double kCriticalRoundings = 300.0;
-constexpr double kMostCriticalRoundings = 3000.0;
-constexpr double kGrazingCosine = 1e-9;
-constexpr double kSmoothM = 0.05;
-
-// Where the mean slope is about to diverge (smith, q near 3/2), G falls within 2q - 3 of the normal, which no rule
-// resolves.
-constexpr double kDivergingSlope = 0.06;
-
+// of `integral` with q near 1 and of smith with q near 3/2 are sums of hundreds of nearly equal terms. The critical
+// line of total reflection lies at a difference of nearly equal angles, the more so the smoother the surface and the
+// nearer the horizon.
 double roundings(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape,
                  const kernel::IndexNode& index) {
   if (index.critical_cos > 0.0) {
@@ -88,7 +71,7 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
   return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
 }
 
-// Bound of the error of G relative to the albedo.
+// Bound of the error of G relative to the albedo: smith's, next to the normal, grows as its mean slope.
 double masking_error(const KernelData& data, const MomentsEntry& entry, double unit_roundoff) {
   if (!data.needs_masking_table()) return 0.0;
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
@@ -105,18 +88,6 @@ double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
       std::sqrt(std::complex<double>(index.n2m1_re + cos_beta * cos_beta, std::max(index.n2m1_im, 0.0)));
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
 }
-
-// Error of the finer of two rules over its distance from the coarser one: how much slower than expected the rules may
-// converge. G of the maskings with tables has cusps and lines at which it is not smooth, where they converge
-// algebraically.
-constexpr double kPairFactor = 4.0;
-constexpr double kTablePairFactor = 8.0;
-constexpr double kGroovePairFactor = 10.0;  // beams of many bounces end at kinks that are not split
-constexpr double kCriticalFactor = 2.0;     // roots beside the critical line, which lies where rounding leaves it
-
-// Two rules of few nodes may agree by chance: no rule counts as better than this share of the tolerance that it is made
-// for.
-constexpr double kLeastShareOfTolerance = 0.1;
 
 // Upper bound of the light left after `bounces` bounces with cos(beta) >= a/2, a the length of its direction across the
 // groove. a is at least `level` except for the azimuths with sin(theta) |cos(phi)| < sqrt(level^2 - c^2), which take at
@@ -147,17 +118,6 @@ double steep_reflectance(const KernelData& data, const kernel::IndexNode& index,
   return left_after(theta, index, std::max(std::min(pi / 3.0, elevation) * slope - 1.0, 0.0), 1.0);
 }
 
-// Rounding in grooves, in units of the roundoff and of the cosine: the last bounces may be grazing, where even
-// weak reflectors reflect everything.
-constexpr double kGrooveRoundings = 4.0;
-
-// Error of taking many bounces in a groove as one, over the cosine and the share of these grooves (test GrooveText). It
-// is largest for the best conductors, where light reflects very often.
-constexpr double kManyBouncesError = 1e-3;
-constexpr double kVeryManyBounces = 1024.0;
-constexpr double kVeryManyBouncesError = 1e-2;
-constexpr double kNotGrazing = 0.6;  // share of a ray's bounces with cos(beta) >= a/2, at least
-
 // `reflected` is the computed reflection of these grooves. Taking bounces as one changes the logarithm of the light
 // left by less than a hundredth, so that a small computed value is small in truth. Under total reflection, bounces
 // without loss may be taken as one with bounces that lose light. Light below `least` is negligible. Beyond
@@ -176,6 +136,9 @@ double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta
   return last + std::min(many + very_many, reflected);
 }
 
+// Error of the finer of two rules over its distance from the coarser one: how much slower than expected the rules may
+// converge. G of the maskings with tables has cusps and lines at which it is not smooth, where they converge
+// algebraically.
 double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   const bool is_multiple = data.scattering == Scattering::kMultiple;
   const double smooth = is_multiple ? kGroovePairFactor : data.needs_masking_table() ? kTablePairFactor : kPairFactor;
@@ -196,11 +159,15 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   const double cut = cut_bound(data, theta, shape);
   const double masking = masking_error(data, entry, unit_roundoff);
   const double rounding = unit_roundoff * roundings(data, theta, shape, index);
+  // Two rules of few nodes may agree by chance, so that no bound of a sum is below this share of the tolerance that its
+  // rules are made for, its rounding and the error of its masking.
+  const double least = kLeastShareOfTolerance * data.tolerance;
+  const double least_of_rule = least + rounding;
+  const double least_of_masked = least_of_rule + masking;
   const bool is_multiple = data.scattering == Scattering::kMultiple;
   double grooves = 0.0;
   if (is_multiple) {
-    grooves = many_bounces_bound(data, theta, index, shape, std::abs(node.many),
-                                 kLeastShareOfTolerance * data.tolerance * std::abs(node.r_i)) +
+    grooves = many_bounces_bound(data, theta, index, shape, std::abs(node.many), least * std::abs(node.r_i)) +
               (kGrooveRoundings * unit_roundoff + data.rule.dimmest) * theta.c;
   }
   const double reflected_cut =
@@ -213,17 +180,15 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   const double pair = pair_factor(data, index);
   const double r_i_scale = std::abs(node.r_i);  // a rule that does not converge can make it negative
   const double deficit_scale = node.deficit + 2.0 * node.behind;
-  const double least = kLeastShareOfTolerance * data.tolerance;
-  moments.r_i_error =
-      pair * node.reflected_difference + (least + rounding + masking) * r_i_scale + reflected_cut + grooves;
+  moments.r_i_error = pair * node.reflected_difference + least_of_masked * r_i_scale + reflected_cut + grooves;
   moments.r_q_error = moments.r_i_error;
   const double largest_difference =
       std::max({node.reflected_difference, node.albedo_difference, node.deficit_difference});
-  moments.albedo_error = pair * largest_difference + (least + rounding + masking) * std::abs(node.albedo) + cut;
+  moments.albedo_error = pair * largest_difference + least_of_masked * std::abs(node.albedo) + cut;
   // Beyond the critical angle the absorbed part ends while r_i continues.
   const double deficit_terms =
       std::max(std::abs(deficit_scale), index.critical_cos > 0.0 ? std::abs(node.albedo) : 0.0);
-  moments.deficit_error = pair * node.deficit_difference + (least + rounding) * deficit_terms +
+  moments.deficit_error = pair * node.deficit_difference + least_of_rule * deficit_terms +
                           masking * std::abs(node.albedo) + (is_multiple ? reflected_cut + grooves : cut);
   moments.evaluations = node.evaluations;
   if (is_multiple) {
@@ -233,7 +198,7 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   if (data.has_direct) {
     moments.direct_i = node.direct_i;
     moments.direct_q = node.direct_q;
-    moments.direct_i_error = pair * node.direct_difference + (least + rounding + masking) * theta.c + cut;
+    moments.direct_i_error = pair * node.direct_difference + least_of_masked * theta.c + cut;
     moments.direct_q_error = moments.direct_i_error;
   }
   // r_i + deficit = cos(theta): the more accurate of the two gives the other. A groove never absorbs less than 0.

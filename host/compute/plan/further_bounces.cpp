@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -9,16 +10,13 @@
 
 #include "model/angles.hpp"
 #include "plan/beam.hpp"
+#include "plan/constants.hpp"
 
 namespace dolp {
 namespace {
 
 using std::numbers::pi;
 using Complex = std::complex<double>;
-
-constexpr int kMostBounces = 2000;
-constexpr double kNothing = 1e-14;        // relative to the contribution of the bounces before
-constexpr double kAngleRoundings = 16.0;  // of the angles, relative to |h|
 
 /// Two beams in the frame of a groove.
 struct Across {
@@ -32,48 +30,77 @@ struct Across {
   double cos_r = 1.0;
 };
 
-/// Stokes vectors in a frame turned by the angle of (x, y), from s toward p.
-Eigen::Matrix4d turned(double x, double y) {
-  const double norm = x * x + y * y;
-  const double cosine = norm > 0.0 ? (x - y) * (x + y) / norm : 1.0;
-  const double sine = norm > 0.0 ? 2.0 * x * y / norm : 0.0;
-  Eigen::Matrix4d r = Eigen::Matrix4d::Identity();
-  r(1, 1) = r(2, 2) = cosine;
-  r(1, 2) = sine;
-  r(2, 1) = -sine;
-  return r;
+/// A Jones matrix: (E_s, E_p) after the bounces for each of (E_s, E_p) before.
+using Jones = Eigen::Matrix2cd;
+
+/// Fields in a frame turned by the angle of (x, y), from s toward p.
+Eigen::Matrix2d turned(double x, double y) {
+  const double length = std::hypot(x, y);
+  const double cosine = length > 0.0 ? x / length : 1.0;
+  const double sine = length > 0.0 ? y / length : 0.0;
+  return Eigen::Matrix2d{{cosine, sine}, {-sine, cosine}};
 }
 
-/// A bounce in its own frame; in the unfolded groove r_p is r_s at normal incidence.
-Eigen::Matrix4d facet(const OpticalConstants& index, double cos_beta) {
-  const Complex n2m1((index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k);
-  const Complex w = std::sqrt(n2m1 + cos_beta * cos_beta);
-  const Complex n2c = (n2m1 + 1.0) * cos_beta;
-  const Complex r_s = -n2m1 / ((cos_beta + w) * (cos_beta + w));
-  const Complex r_p = (w - n2c) / (w + n2c);
-  const Complex cross = std::conj(r_s) * r_p;
-  Eigen::Matrix4d m = Eigen::Matrix4d::Zero();
-  m(0, 0) = m(1, 1) = 0.5 * (std::norm(r_s) + std::norm(r_p));
-  m(0, 1) = m(1, 0) = 0.5 * (std::norm(r_s) - std::norm(r_p));
-  m(2, 2) = m(3, 3) = cross.real();
-  m(2, 3) = -cross.imag();
-  m(3, 2) = cross.imag();
-  return m;
+/// A bounce at cos(beta) = c on a facet whose frame is turned by the angle of (x, y); in the unfolded groove r_p is r_s
+/// at normal incidence. Written out, because thousands of bounces may count and complex roots and quotients are slow.
+class Facet {
+ public:
+  explicit Facet(const OpticalConstants& index)
+      : re_((index.n - 1.0) * (index.n + 1.0) - index.k * index.k), im_(2.0 * index.n * index.k) {}
+
+  Jones operator()(double c, double x, double y) const {
+    const Complex w = root(re_ + c * c);
+    const Complex sum = c + w;
+    const Complex n2c((re_ + 1.0) * c, im_ * c);
+    const Complex square = sum * sum;
+    const Complex under = w + n2c;
+    const Complex r_s = -Complex(re_, im_) * std::conj(square) / std::norm(square);
+    const Complex r_p = (w - n2c) * std::conj(under) / std::norm(under);
+    const double norm = x * x + y * y;
+    const Complex split = norm > 0.0 ? (r_s - r_p) / norm : Complex{};
+    const Complex p = norm > 0.0 ? r_p : r_s;
+    return Jones{{p + split * (x * x), split * (x * y)}, {split * (x * y), p + split * (y * y)}};
+  }
+
+ private:
+  /// The square root of re + i im_, im_ >= 0.
+  Complex root(double re) const {
+    const double larger = std::sqrt(0.5 * (std::abs(re) + std::sqrt(re * re + im_ * im_)));
+    const double smaller = larger > 0.0 ? 0.5 * im_ / larger : 0.0;
+    return re >= 0.0 ? Complex(larger, smaller) : Complex(smaller, larger);
+  }
+
+  double re_;  ///< of N^2 - 1
+  double im_;
+};
+
+Eigen::Matrix4d mueller(const Jones& j) {
+  const Complex ss = j(0, 0), sp = j(0, 1), ps = j(1, 0), pp = j(1, 1);  // after, before
+  const double a = std::norm(ss), b = std::norm(sp), c = std::norm(ps), d = std::norm(pp);
+  const Complex first = std::conj(ss) * sp, second = std::conj(ps) * pp;
+  const Complex of_s = std::conj(ss) * ps, of_p = std::conj(sp) * pp;
+  const Complex straight = std::conj(ss) * pp, crossed = std::conj(sp) * ps;
+  return Eigen::Matrix4d{
+      {0.5 * (a + b + c + d), 0.5 * (a - b + c - d), (first + second).real(), -(first + second).imag()},
+      {0.5 * (a + b - c - d), 0.5 * (a - b - c + d), (first - second).real(), -(first - second).imag()},
+      {(of_s + of_p).real(), (of_s - of_p).real(), (straight + crossed).real(), (crossed - straight).imag()},
+      {(of_s + of_p).imag(), (of_s - of_p).imag(), (straight + crossed).imag(), (straight - crossed).real()}};
 }
 
 /// The Mueller matrix of `bounces` bounces in a groove of angle gamma: from frame to frame in the unfolded groove,
 /// whose mirror images turn s around after an odd number.
-Eigen::Matrix4d chain(const Across& at, const OpticalConstants& index, double gamma, int bounces) {
-  Eigen::Matrix4d m = turned(-at.from.x(), at.from.y() * at.cos_i).transpose();
+Eigen::Matrix4d chain(const Across& at, const Facet& facet, double gamma, int bounces) {
+  Jones fields = turned(-at.from.x(), at.from.y() * at.cos_i).transpose().cast<Complex>();
+  const Complex turn = std::polar(1.0, 2.0 * gamma);
+  Complex chi = std::polar(1.0, at.psi_i + gamma);  // e^(i chi)
   for (int k = 1; k <= bounces; ++k) {
-    const double chi = at.psi_i + (2 * k - 1) * gamma;
-    const Eigen::Matrix4d turn = turned(std::cos(chi), at.along * std::sin(chi));
-    m = turn.transpose() * (facet(index, at.a * std::sin(chi)) * (turn * m));
+    fields = facet(at.a * chi.imag(), chi.real(), at.along * chi.imag()) * fields;
+    chi *= turn;
   }
   const bool is_odd = bounces % 2 == 1;
-  m = turned(is_odd ? -at.to.x() : at.to.x(), at.to.y() * at.cos_r) * m;
-  if (is_odd) m.bottomRows<2>() *= -1.0;
-  return m;
+  fields = turned(is_odd ? -at.to.x() : at.to.x(), at.to.y() * at.cos_r).cast<Complex>() * fields;
+  if (is_odd) fields.row(1) *= -1.0;
+  return mueller(fields);
 }
 
 /// a ds_k.
@@ -86,24 +113,68 @@ double beam_width(const Across& at, double gamma, int bounces) {
   return std::max(std::min(edge(0), edge(bounces - 1)) - low, 0.0);
 }
 
+/// The beams of two and more bounces that meet one side of the groove first.
+struct FurtherBeams {
+  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
+  double rest = 0.0;  ///< of m00, by bounces that are not followed
+  int bounces = 0;    ///< computed, of all beams
+};
+
+/// The light of the bounces beyond the last, over its own. That of k bounces goes as k^(2 - 2q) and less.
+double beyond_last(const ScatteringRequest& request, const SlopeShape& shape, int bounces) {
+  const bool is_cauchy = request.distribution == Distribution::kCauchy;
+  return is_cauchy ? bounces / std::clamp(2.0 * shape.q - 3.0, kSlowestFall, 1.0) : bounces;
+}
+
+/// `accuracy` is that of m00, of which the first bounce has `first`.
+FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, const ScatteringEntry& entry, double h,
+                           double first, double accuracy) {
+  const SlopeShape& shape = request.shapes[entry.shape];
+  const Facet facet(request.indices[entry.index]);
+  const double least_gamma = 0.49 * std::abs(std::abs(at.psi_i) - std::abs(at.psi_r));
+  FurtherBeams beams;
+  // Of even and odd bounces, which have laws of their own.
+  std::array<double, 2> beyond = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  for (int k = 2; k <= kMostBouncesOfBeam; ++k) {
+    const double gamma = (pi - at.psi_i + (k % 2 == 1 ? -at.psi_r : at.psi_r)) / (2.0 * k);
+    if (gamma < least_gamma) return {beams.sum, 0.0, beams.bounces};
+    const bool is_groove = gamma > 0.0 && gamma < 0.5 * pi;
+    const double width = is_groove ? beam_width(at, gamma, k) : 0.0;
+    beyond[k % 2] = 0.0;
+    if (width == 0.0) continue;
+    const double density = 4.0 * std::exp(log_density(request.distribution, shape, 1.0 / std::tan(gamma)));
+    const Eigen::Matrix4d more = density * std::cos(gamma) * width / (2.0 * k * h) * chain(at, facet, gamma, k);
+    beams.sum += more;
+    beams.bounces += k;
+    beyond[k % 2] = more(0, 0) * beyond_last(request, shape, k);
+    if (std::max(beyond[0], beyond[1]) < kNegligibleBounces * accuracy * (first + beams.sum(0, 0)))
+      return {beams.sum, 0.0, beams.bounces};
+  }
+  beams.rest = std::max(beyond[0], beyond[1]);
+  return beams;
+}
+
 }  // namespace
 
-void add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, const ScatteringEntry& entry) {
+int add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, const ScatteringEntry& entry,
+                        double accuracy) {
   const BeamAngles& angles = request.angles[entry.angles];
-  const SlopeShape& shape = request.shapes[entry.shape];
-  const OpticalConstants& index = request.indices[entry.index];
   const CosSin i = cos_sin_deg(angles.theta_i_deg);
   const CosSin r = cos_sin_deg(angles.theta_r_deg);
-  const CosSin azimuth = cos_sin_deg(angles.delta_phi_deg);
-  const double h_x = i.sin + r.sin * azimuth.cos;
+  const double azimuth_deg = std::remainder(angles.delta_phi_deg, 360.0);
+  const CosSin half = cos_sin_deg(0.5 * std::abs(azimuth_deg));  // it keeps all digits next to 180 degrees
+  const CosSin azimuth{cos_sin_deg(azimuth_deg).cos, std::copysign(2.0, azimuth_deg) * half.sin * half.cos};
+  // h, without the cancellation next to the mirror direction.
+  const double h_x = 2.0 * cos_sin_deg(0.5 * (angles.theta_i_deg + angles.theta_r_deg)).cos *
+                         cos_sin_deg(0.5 * (angles.theta_i_deg - angles.theta_r_deg)).sin +
+                     2.0 * r.sin * half.cos * half.cos;
   const double h_y = r.sin * azimuth.sin;
   const double h = std::hypot(h_x, h_y);
   if (h == 0.0 || is_specular(angles)) {
     f.m.fill(std::numeric_limits<double>::quiet_NaN());
-    return;
+    return 0;
   }
-  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
-  double rest = 0.0;
+  int bounces = 0;
   for (const double side : {1.0, -1.0}) {
     const double u_x = side * h_x / h;
     const double u_y = side * h_y / h;
@@ -116,26 +187,12 @@ void add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, 
     at.psi_i = std::atan2(i.sin * at.from.x(), i.cos);
     at.psi_r = std::atan2(r.sin * at.to.x(), r.cos);
     at.along = i.sin * at.from.y();
-    const double least_gamma = 0.49 * std::abs(std::abs(at.psi_i) - std::abs(at.psi_r));
-    double last = 0.0;
-    for (int k = 2; k <= kMostBounces; ++k) {
-      const double gamma = (pi - at.psi_i + (k % 2 == 1 ? -at.psi_r : at.psi_r)) / (2.0 * k);
-      if (gamma < least_gamma) break;
-      if (gamma <= 0.0 || gamma >= 0.5 * pi) continue;
-      const double width = beam_width(at, gamma, k);
-      if (width == 0.0) continue;
-      const double density = 4.0 * std::exp(log_density(request.distribution, shape, 1.0 / std::tan(gamma)));
-      const Eigen::Matrix4d more = density * std::cos(gamma) * width / (2.0 * k * h) * chain(at, index, gamma, k);
-      sum += more;
-      last = more(0, 0) * k;
-      if (last < kNothing * (sum(0, 0) + f.m[0])) break;
-    }
-    if (least_gamma < 1e-3) rest += last;
+    const FurtherBeams beams = further_beams(at, request, entry, h, f.m[0], accuracy);
+    for (Eigen::Index j = 0; j < 16; ++j) f.m[static_cast<std::size_t>(j)] += beams.sum(j / 4, j % 4);
+    f.error += accuracy * beams.sum(0, 0) + beams.rest;
+    bounces += beams.bounces;
   }
-  for (std::size_t j = 0; j < f.m.size(); ++j) {
-    f.m[j] += sum(static_cast<Eigen::Index>(j / 4), static_cast<Eigen::Index>(j % 4));
-  }
-  f.error += (kScatteringErrorDouble + kAngleRoundings * std::numeric_limits<double>::epsilon() / h) * sum(0, 0) + rest;
+  return bounces;
 }
 
 }  // namespace dolp

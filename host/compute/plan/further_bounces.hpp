@@ -14,8 +14,10 @@ namespace dolp {
 ///   f^(k) cos(theta_i) cos(theta_r) = D sin(alpha) a ds_k M / (2 k |h|),
 /// a ds_k being the width of the beam of k bounces and M their Mueller matrix (shaders/physics/README.md, section 3).
 /// Domain: masking v-cavity. NaN where h = 0, where the beams mirror each other: there grooves of all azimuths reflect.
-/// Errors: `error` contains the rounding and, where theta_i is next to theta_r, the bounces beyond the last one
-/// followed.
-void add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, const ScatteringEntry& entry);
+/// Accuracy: `accuracy` of m00, and where more than 1,000 bounces count, next to |psi_i| = |psi_r| of strong
+/// reflectors, what may be left, in `error`.
+/// Returns the bounces computed, which are its cost.
+int add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, const ScatteringEntry& entry,
+                        double accuracy);
 
 }  // namespace dolp

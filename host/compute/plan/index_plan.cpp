@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "plan/constants.hpp"
+
 namespace dolp {
 namespace {
-
-constexpr double kIndexNodeTolerance = 0.5;  // of the request's tolerance: bounds grow by the weights
 
 /// Flags of the wanted entries of the nodes; a basis node is wanted where any index combined from the basis is wanted.
 std::vector<char> wanted_of_nodes(const MomentsRequest& request, const IndexPlan& plan) {
@@ -37,8 +37,6 @@ IndexPlan index_plan(const MomentsRequest& request) {
   plan.nodes = request;
   plan.nodes.basis = nullptr;
   plan.nodes.tolerance = request.finer_tolerance(kIndexNodeTolerance);
-  plan.nodes.run_size =
-      static_cast<std::size_t>(std::ceil(static_cast<double>(request.run_size) * basis.computed_share()));
   plan.nodes.indices = basis.indices();
   for (const OpticalConstants& index : request.indices) {
     IndexPlan::Source& source = plan.sources.emplace_back();

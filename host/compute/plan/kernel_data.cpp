@@ -12,6 +12,7 @@
 #include "base/numbers.hpp"
 #include "model/angles.hpp"
 #include "model/gamma_ratio.hpp"
+#include "plan/constants.hpp"
 #include "plan/rule.hpp"
 #include "plan/rule_nodes.hpp"
 
@@ -25,12 +26,6 @@ constexpr double kNoEnd = 1e30;  // a slope beyond every cut, in place of infini
 
 constexpr double kCoincident = 1e-9;  // relative distance of breakpoints that differ only by rounding
 
-// Share of the tolerance that the slopes beyond the cut may carry.
-constexpr double kCutShare = 0.01;
-
-// Im N^2 above which absorption has smoothed the critical line of total reflection.
-constexpr double kSoftCriticalLine = 0.3;
-
 constexpr double kSmallestPole = 1e-6;  // of |N^2 + 1| and |N^2 - 1|
 
 // Largest slope that is ever integrated: beyond it the squares of a float overflow.
@@ -40,16 +35,6 @@ constexpr double kLargestCut = 1e15;
 // pieces of ten units of X or so.
 constexpr std::array kPlainBreakpoints = {30.0, 3e5};
 constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // the same of grooves, which have no horizon
-constexpr double kLongWay = 300.0;  // from a plain breakpoint to a horizon that is worth one, as a factor
-
-// Scale of the masking table, the width of the slope distribution if it can be. The end of the table, 5e8 scales away,
-// must lie far beyond slope 1, where p is a power law, unless the tail there is negligible (q >= kLightTailQ).
-constexpr double kSmallestHeavyTableScale = 1e-4;
-constexpr double kLightTailQ = 1.5;
-constexpr double kLargestTableScale = 0.5;
-
-// Number of bounces whose critical line splits the slopes.
-constexpr int kCriticalBounces = 3;
 
 struct Breakpoint {
   double slope;
@@ -135,9 +120,6 @@ void add_critical_bounces(std::vector<Breakpoint>& points, double theta_deg, dou
     }
   }
 }
-
-// From a breakpoint of steep grooves to the next, in bounces.
-constexpr double kSteepStep = 16.0;
 
 // Where the lines of groove_lines (arcs.glsl) meet phi = 0, psi = theta, or phi = pi, psi = -theta, or each other.
 void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg, int splits) {
@@ -282,7 +264,7 @@ constexpr double kMostArcs = 2.0 * DOLP_MAX_ARCS;
 constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // of a groove, to find its lines
 
 // Bound of the loop iterations of one invocation with everything at its most nodes: of one piece, two rules, slopes,
-// arcs and azimuths, or of one slope of a profile, arcs, azimuths and bounces. A bound for each entry
+// arcs and azimuths, or of one slope sample, arcs, azimuths and bounces. A bound for each entry
 // alone would not suffice, because invocations that run in lockstep wait for each other.
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
   if (!data.needs_masking_table()) return kTurnsOfSlope + loops.arcs * (2.0 + most_nodes * (1.0 + loops.turns));

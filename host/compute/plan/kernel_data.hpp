@@ -12,7 +12,7 @@ namespace dolp {
 /// The structures and constants of shaders/interface.glsl with real = double.
 namespace kernel {
 using real = double;
-#include "interface.glsl"  // NOLINT: one text for host and shaders
+#include "interface.glsl"  // NOLINT: one source for host and shaders
 }  // namespace kernel
 
 inline constexpr unsigned kRootAbove = 1;  ///< a square root just above a breakpoint

@@ -41,13 +41,12 @@ RefinementLevel first_level(const Accuracy& accuracy, bool has_double) {
   return first;
 }
 
-RefinementLevel check_level(const RefinementLevel& first, std::uint32_t row_width) {
+RefinementLevel check_level(const RefinementLevel& first) {
   constexpr double kFinerBy = 1e-2;
   const double least = first.precision == Precision::kFloat ? kLeastFloatTolerance : kLeastDoubleTolerance;
   RefinementLevel check =
       level_at(first.precision, std::max(kFinerBy * first.tolerance, std::min(least, first.tolerance)));
   check.is_check = true;
-  check.row_width = row_width;
   return check;
 }
 

@@ -1,7 +1,6 @@
 // Selects the rule and precision of an entry, and tighter ones where the result misses the scene's tolerance.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <tuple>
@@ -18,8 +17,6 @@ struct RefinementLevel {
   double tolerance = 1e-4;                       ///< of the rule: MomentsRequest::tolerance
   bool may_interpolate = false;                  ///< between slope distributions
   bool is_check = false;                         ///< by a rule of another kind
-  std::uint32_t row_width = 0;                   ///< MomentsRequest::row_width
-  std::size_t run_size = 0;                      ///< MomentsRequest::run_size
   std::shared_ptr<const IndexBasis> basis = {};  ///< MomentsRequest::basis
   /// In the order of their cost: float before double, wide tolerances before tight ones.
   friend bool operator<(const RefinementLevel& a, const RefinementLevel& b) {
@@ -33,7 +30,7 @@ struct RefinementLevel {
 RefinementLevel first_level(const Accuracy& accuracy, bool has_double);
 
 /// The level that checks entries computed at `first`: a rule of another kind, for a hundredth of the tolerance.
-RefinementLevel check_level(const RefinementLevel& first, std::uint32_t row_width);
+RefinementLevel check_level(const RefinementLevel& first);
 
 /// The next level of an entry, tighter by as many half decades as the result misses the tolerance by, in double once
 /// float cannot do that; none when it meets the tolerance, or no tighter level exists. Depends on nothing but its

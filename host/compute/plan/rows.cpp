@@ -1,8 +1,6 @@
 #include "plan/rows.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
 #include <span>
 
@@ -15,17 +13,9 @@ constexpr double kSmallestSharedM = 1e-3;
 // Between the exponents of a chunk, as a factor of q - 1: shapes further apart would want nodes in different places.
 constexpr double kMostSpread = 6.0;
 
-// Rows are not for requests that would leave this share of the members unused.
+// Rows are not for grids that would leave more of the members unused. Chosen: at a half, rows still take less time than
+// their members alone; a quarter slows such grids, at nine tenths few grids have rows.
 constexpr double kLeastUse = 0.5;
-
-// Work of a row, in units of the work of one member at kUsualDigits. Look-ups in masking tables are separate for each
-// member.
-struct RowWork {
-  double shared = 16.0;     // by the members
-  double kernel = 40000.0;  // compilation of the kernel, for each member of its width
-};
-constexpr RowWork kWithTables = {.shared = 5.0, .kernel = 7000.0};
-constexpr double kUsualDigits = 6.0;
 
 // True if shape `next` may join the chunk that begins with shape `first`.
 bool belongs(const KernelData& data, std::uint32_t first, std::uint32_t next) {
@@ -95,9 +85,13 @@ std::uint32_t used_members(const Rows& rows, const MomentsRequest& request, cons
 }
 
 // Without rows yet.
-Rows grid_chunks(const MomentsRequest& request, const KernelData& data, std::uint32_t width) {
+Rows grid_chunks(const MomentsRequest& request, const KernelData& data) {
   Rows rows;
-  rows.width = width;
+  rows.width = kRowWidth;
+  add_grid_chunks(rows, request, data);
+  if (static_cast<double>(data.shapes.size()) > kLeastUse * static_cast<double>(kRowWidth * rows.chunks.size()))
+    return rows;
+  rows = {};
   add_grid_chunks(rows, request, data);
   return rows;
 }
@@ -115,29 +109,6 @@ void add_grid_rows(Rows& rows, const MomentsRequest& request, const KernelData& 
   }
 }
 
-// The chunks of the width that takes the least work for all of the run.
-Rows cheapest_chunks(const MomentsRequest& request, const KernelData& data) {
-  const auto shapes = static_cast<double>(data.shapes.size());
-  const auto entries = static_cast<double>(std::max(request.run_size, request.wanted_count()));
-  const RowWork unit = data.masking == Masking::kIntegral ? kWithTables : RowWork{};
-  const double evaluations = std::pow(data.rule.digits / kUsualDigits, 2.0);
-  Rows best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t width : kRowWidths) {
-    // Half of it would be unused.
-    if (width > 1 && request.q.size() * 2 <= width) break;
-    Rows rows = grid_chunks(request, data, width);
-    const auto chunks = static_cast<double>(rows.chunks.size());
-    if (width > 1 && shapes <= kLeastUse * width * chunks) continue;
-    const double work = (unit.shared + width) * chunks / shapes * entries * evaluations + unit.kernel * width;
-    if (work < least) {
-      least = work;
-      best = std::move(rows);
-    }
-  }
-  return best;
-}
-
 Rows point_rows(const KernelData& data) {
   Rows rows;
   for (std::uint32_t shape = 0; shape < data.shapes.size(); ++shape) add_chunk(rows, data, {&shape, 1});
@@ -149,15 +120,11 @@ Rows point_rows(const KernelData& data) {
 
 }  // namespace
 
-Rows rows_of(const MomentsRequest& request, const KernelData& data, std::uint32_t width) {
+Rows rows_of(const MomentsRequest& request, const KernelData& data) {
   if (!data.is_grid) return point_rows(data);
-  Rows rows = width > 0 ? grid_chunks(request, data, width) : cheapest_chunks(request, data);
+  Rows rows = grid_chunks(request, data);
   add_grid_rows(rows, request, data);
   return rows;
-}
-
-Rows rows_of(const MomentsRequest& request, const KernelData& data) {
-  return rows_of(request, data, request.row_width);
 }
 
 std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count) {

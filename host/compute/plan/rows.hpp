@@ -2,7 +2,6 @@
 // exponent q share the nodes, the facets and their reflection (Row of shaders/physics/row.glsl).
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -11,8 +10,8 @@
 
 namespace dolp {
 
-/// Row widths for which the kernel is compiled.
-inline constexpr std::array<std::uint32_t, 4> kRowWidths = {1, 4, 8, 16};
+/// Most members of a row: the kernel is compiled for rows of one and of this many.
+inline constexpr std::uint32_t kRowWidth = DOLP_ROW_WIDTH;
 
 /// Consecutive shapes of one sigma, in ascending order of q, that share the nodes; or the shape of points.
 struct Chunk {
@@ -36,7 +35,7 @@ struct RowPiece {
 
 /// The rows of a request that have a wanted entry.
 struct Rows {
-  std::uint32_t width = 1;                ///< most members of a row
+  std::uint32_t width = 1;                ///< 1 or kRowWidth
   std::vector<kernel::ShapeNode> shapes;  ///< ordered by chunk; scale, cut and cusp are those of the chunk
   std::vector<std::uint32_t> shape_of;    ///< of each of `shapes` its position in the data
   std::vector<Chunk> chunks;
@@ -48,11 +47,9 @@ struct Rows {
   }
 };
 
-/// Rows of the request's width; for width 0, the width with the least work, compilation of the kernel included. The
-/// neighbours of an entry follow from the shapes and the run's size, not from directions, indices and wanted entries.
+/// Rows of kRowWidth members where most of these are used, else of one. The neighbours of an entry follow from the
+/// shapes alone, not from directions, indices and wanted entries.
 Rows rows_of(const MomentsRequest& request, const KernelData& data);
-/// Rows of another width.
-Rows rows_of(const MomentsRequest& request, const KernelData& data, std::uint32_t width);
 
 /// The invocations of rows first, first + 1, ...: neighbours differ only in the direction, so that their work is equal.
 std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count);

@@ -7,6 +7,7 @@
 
 #include "base/numbers.hpp"
 #include "model/gamma_ratio.hpp"
+#include "plan/constants.hpp"
 
 namespace dolp {
 namespace {
@@ -35,33 +36,6 @@ constexpr std::array<RuleModel, 5> kModels = {{
     // all bounces
     {.margin_digits = 2.4, .t_nodes = 2.3, .t_digits = -0.375, .t_fall = 0.09, .phi_nodes = 0.625, .phi_digits = 0},
 }};
-
-// Nodes that a piece has for each digit, roughly.
-constexpr double kNodesPerDigit = 1.2;
-
-// Share of the tolerance that a line may spoil without being split off: it spoils both rules of a pair alike, so that
-// their distance does not show it.
-constexpr double kLineShare = 0.1;
-
-// A singularity |x|^p at an end costs a rule n^-(p + 2); a cluster of its nodes there squares that. Below this q, for
-// each digit, the line of `integral`, p = 2q - 1, would want more nodes than a cluster takes.
-constexpr double kClusterBelowQ = 0.3;
-
-// The line of the gaussian is smooth but steep for rough surfaces.
-constexpr double kLineSigma = 0.6;
-constexpr double kTightLineSigma = 0.3;
-constexpr double kTightDigits = 8.0;
-constexpr double kGaussianCuspPower = 4.0;  // of the cauchy with q = 2, which it resembles
-
-// Largest orders: for few digits, and in addition for each digit beyond.
-constexpr int kPlainOrder = 64;
-constexpr double kOrderPerDigit = 8.0;
-
-// Kinks where the beams of a groove end matter less after more bounces: each split gains about this many digits.
-constexpr double kDigitsPerSplit = 2.0;
-
-// Relative to the tolerance: far below the reflection of the darkest surfaces.
-constexpr double kDimmest = 1e-10;
 
 constexpr double kNone = -1000.0;
 

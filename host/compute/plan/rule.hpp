@@ -5,10 +5,6 @@
 
 namespace dolp {
 
-/// Share of the finer rule's nodes, hence of its digits, that the coarser rule of a pair has: coarse_order of
-/// shaders/physics/orders.glsl.
-inline constexpr double kCoarseShare = 0.8;
-
 /// Fitted numbers of a masking's rules; all other numbers follow from the places of the integrand's singularities
 /// (shaders/physics/orders.glsl). `dolp-calibrate fit` finds the numbers with the least work on random entries,
 /// repeated computations included.

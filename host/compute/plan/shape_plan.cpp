@@ -67,7 +67,6 @@ std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
   plan.nodes.sigma = plan.sigma.nodes;
   plan.nodes.q = plan.q.nodes;
   const std::size_t shapes = request.sigma.size() * request.q.size();
-  plan.nodes.run_size = request.run_size * plan.nodes_of_a_direction() / shapes;
   if (!request.wanted.empty()) {
     plan.nodes.wanted.clear();
     for (std::size_t first = 0; first < request.size(); first += shapes)

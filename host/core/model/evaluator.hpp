@@ -1,4 +1,4 @@
-// Interface of the evaluators, which compute moments and pBRDFs on any device.
+// Interface of the evaluators.
 #pragma once
 
 #include <cstdint>
@@ -19,10 +19,11 @@ struct EvaluationReport {
   std::string precision;  ///< float | double | float and double, as used
   std::uint64_t dispatches = 0;
   std::uint32_t devices_lost = 0;  ///< devices lost and replaced by a new one
-  std::uint32_t row_width = 1;     ///< entries that an invocation computed together at last
   double evaluations = 0.0;
-  double kernel_s = 0.0;  ///< time on the device (timestamps) and of the host's sums, or of the loop on the CPU
-  double setup_s = 0.0;   ///< device and pipeline creation
+  double kernel_s = 0.0;     ///< time on the device (timestamps) and of the host's sums, or of the loop on the CPU;
+  double sums_s = 0.0;       ///< the sums: over slopes, and between slope distributions or indices
+  double setup_s = 0.0;      ///< pipeline creation, and that of the device since clear_report;
+  double pipelines_s = 0.0;  ///< the pipelines
   std::uint64_t interpolated = 0;         ///< moments that were interpolated or combined from others,
   std::uint64_t interpolation_nodes = 0;  ///< and moments computed for that
 };
@@ -34,30 +35,20 @@ inline void note_precision(std::string& used, bool in_double) {
   if (used != name) used = "float and double";
 }
 
-/// Computes pBRDFs. Results are in the order of `request.entries`.
-class ScatteringEvaluator {
+/// Computes the model's moments and matrices, in the order of the request's entries and in its precision.
+class ModelEvaluator {
  public:
-  virtual ~ScatteringEvaluator() = default;
+  virtual ~ModelEvaluator() = default;
+  virtual std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) = 0;
+  virtual std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) = 0;
   /// Announces a later call of `scatter` with this request; preparation may run in parallel with other calls until
   /// then.
   virtual void prepare(const ScatteringRequest& /*request*/) {}
-  virtual std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) = 0;
-};
-
-/// Computes moments, in the order of the request's entries.
-class MomentsEvaluator {
- public:
-  virtual ~MomentsEvaluator() = default;
-  virtual std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) = 0;
-  /// Default precision, for scenes that leave theirs open. kAuto leaves it open too.
-  virtual Precision precision() const { return Precision::kAuto; }
   /// True if requests in double are possible.
   virtual bool has_double() const { return true; }
-  /// The same evaluator's pBRDFs, which the bistatic mode needs; null when it has none.
-  virtual ScatteringEvaluator* scattering() { return nullptr; }
   /// For each direction of a grid 1 where evaluate() interpolates between slope distributions; empty if it never does.
   virtual std::vector<char> interpolated_directions(const MomentsRequest& /*request*/) const { return {}; }
-  /// Totals over all calls since clear_report, pBRDFs included.
+  /// Totals over all calls since clear_report.
   virtual EvaluationReport report() const = 0;
   /// Begins a new run: the report, and all that follows from it, no longer contains earlier runs.
   virtual void clear_report() {}

@@ -108,9 +108,10 @@ std::shared_ptr<const IndexBasis> IndexBasis::of(const std::vector<OpticalConsta
   const auto is_reached = [&](const OpticalConstants& index) { return basis->computed_weights(index).has_value(); };
   const auto reached = static_cast<double>(std::ranges::count_if(candidates, is_reached));
   const double count = static_cast<double>(std::min(indices.size(), kMostCandidates));
-  basis->computed_share_ =
+  // Estimate of the share of the indices that are computed: those of the basis, and those beyond its reach.
+  const double computed_share =
       static_cast<double>(basis->indices_.size()) / static_cast<double>(indices.size()) + 1.0 - reached / count;
-  if (basis->computed_share_ * kLeastGain > 1.0) return nullptr;
+  if (computed_share * kLeastGain > 1.0) return nullptr;
   for (std::size_t i = 0; i < std::min(indices.size(), kMostKnown); ++i)
     basis->known_.try_emplace({indices[i].n, indices[i].k}, basis->computed_weights(indices[i]));
   return basis;

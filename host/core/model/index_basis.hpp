@@ -34,8 +34,6 @@ class IndexBasis {
   static std::shared_ptr<const IndexBasis> of(const std::vector<OpticalConstants>& indices, double tolerance);
 
   const std::vector<OpticalConstants>& indices() const { return indices_; }
-  /// Estimate of the share of the run's indices that are computed: those of the basis, and those beyond its reach.
-  double computed_share() const { return computed_share_; }
   /// None for an index that the basis does not reach: one whose curve has a kink, as total reflection makes it, or
   /// differs from all of the basis. Follows from the basis and the index alone.
   std::optional<IndexWeights> weights_of(const OpticalConstants& index) const;
@@ -53,7 +51,6 @@ class IndexBasis {
   std::array<Eigen::MatrixXd, 2> projections_;
   std::array<Eigen::MatrixXd, 2> triangles_;
   double tolerance_ = 0.0;
-  double computed_share_ = 1.0;
   std::map<std::pair<double, double>, std::optional<IndexWeights>> known_;  ///< by n and k, of the run's indices
 };
 

@@ -14,10 +14,4 @@ struct KeptEffects {
   friend bool operator==(const KeptEffects&, const KeptEffects&) = default;
 };
 
-/// Bound of the change by dropped effects, at any entry.
-struct DropBound {
-  double dolp = 0.0;  ///< |change of (Q/I, U/I)|, hence of DOLP
-  double rho = 0.0;   ///< |change of rho_I| over rho_I, where rho is given
-};
-
 }  // namespace dolp

@@ -37,12 +37,10 @@ struct MomentsRequest {
   Scattering scattering = Scattering::kSingle;  ///< kMultiple: with v-cavity
   bool wants_direct = false;                    ///< direct_i and direct_q too; with v-cavity or smith
   double tolerance = 1e-4;                      ///< of the rule, relative to r_i
-  Precision precision = Precision::kAuto;       ///< kAuto: the evaluator's own
+  Precision precision = Precision::kAuto;       ///< kAuto: float
   bool may_interpolate = true;                  ///< between slope distributions, to the same tolerance
   bool has_extra_splits = false;                ///< a rule of another kind, to check others with
-  std::uint32_t row_width = 0;              ///< entries that an invocation computes together; 0: what takes least work
-  std::size_t run_size = 0;                 ///< entries of all requests of this kind together; 0: of this one
-  std::shared_ptr<const IndexBasis> basis;  ///< of a grid, to combine the moments of its indices from; null: none
+  std::shared_ptr<const IndexBasis> basis;      ///< of a grid, to combine the moments of its indices from; null: none
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
   std::vector<OpticalConstants> indices;

@@ -41,7 +41,7 @@ struct ScatteringRequest {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
   Scattering scattering = Scattering::kSingle;  ///< kMultiple: the sum over all bounces, with v-cavity
-  Precision precision = Precision::kAuto;       ///< kAuto: the evaluator's own
+  Precision precision = Precision::kAuto;       ///< kAuto: float
   std::vector<BeamAngles> angles;
   std::vector<SlopeShape> shapes;
   std::vector<OpticalConstants> indices;

@@ -133,7 +133,7 @@ PointResult grazing_limit(const SceneValues& scene, const SpectralRule& rule, co
 
 }  // namespace
 
-Radiometry::Radiometry(const SceneValues& scene, const KeptEffects& kept, const DropBound& dropped)
+Radiometry::Radiometry(const SceneValues& scene, const KeptEffects& kept, double dropped)
     : scene_(scene),
       beam_specular_(scene.surface.specular),
       kept_(kept),
@@ -151,8 +151,7 @@ PointResult Radiometry::finished(PointResult result) const {
   if (!knows_rho_ && emission_model(scene_) != EmissionModel::kFresnel)
     result[kEmissivityS] = result[kEmissivityP] = kNan;
   if (!knows_rho_) result[kRhoI] = result[kRhoQ] = result[kRhoErrorEstimate] = kNan;
-  result[kErrorEstimate] += dropped_.dolp;
-  result[kRhoErrorEstimate] += dropped_.rho;
+  result[kErrorEstimate] += dropped_;
   result.status |= tolerance_status(result, scene_.accuracy.tolerance);
   return result;
 }

@@ -26,7 +26,7 @@ class Radiometry {
  public:
   /// Disabled terms contribute nothing; without the moments the specular part of rho counts as 0, `point` ignores the
   /// numbers in its Moments, and quantities that need them are NaN. `dropped` widens the error estimates.
-  explicit Radiometry(const SceneValues& scene, const KeptEffects& kept = {}, const DropBound& dropped = {});
+  explicit Radiometry(const SceneValues& scene, const KeptEffects& kept = {}, double dropped = 0.0);
 
   /// The indices at which `point` wants moments, in its order, and their weights.
   const SpectralRule& rule() const { return rule_; }
@@ -58,7 +58,7 @@ class Radiometry {
   SceneValues scene_;  ///< with the surface as the terms of the moments use it
   double beam_specular_;
   KeptEffects kept_;
-  DropBound dropped_;
+  double dropped_;  ///< bound of the change of DOLP by dropped effects
   bool knows_rho_;
   SpectralRule rule_;
   SpectralRule kept_rule_;  ///< without the factors that are not kept

@@ -18,13 +18,15 @@
 namespace dolp {
 namespace {
 
-/// The nearest known key or table. A known name in another table, or a name without its table, counts as near.
+/// The nearest known key or table. A known name in another table, a name without its table, or the beginning of a name
+/// counts as near.
 std::string key_hint(const std::string& key) {
   std::vector<std::string> known = scene_tables();
   for (const Key& description : dolp::keys()) known.push_back(description.key);
   const auto last_part = [](const std::string& name) { return name.substr(name.find_last_of('.') + 1); };
   const auto distance = [&](const std::string& name) {
-    return std::min(edit_distance(key, name), edit_distance(last_part(key), last_part(name)) + 1);
+    return std::min({edit_distance(key, name), edit_distance(last_part(key), last_part(name)) + 1,
+                     edit_distance(key, name.substr(0, key.size() + 1)) + 1});
   };
   return *std::min_element(known.begin(), known.end(),
                            [&](const std::string& a, const std::string& b) { return distance(a) < distance(b); });

@@ -139,8 +139,7 @@ void write_table(const TableValues& table, const fs::path& path) {
     return write_text_atomically(path, table_start(layout, format) + table_rows(table, layout, format));
   AtomicFile file(path);
   TableStore store(layout, file);
-  store.write(table, {});
-  store.finish({});
+  store.finish({}, store.write(table, {}));
   file.commit();
 }
 

@@ -7,24 +7,25 @@
 #include <string>
 #include <vector>
 
-#include "table/table.hpp"
+#include "table/table_box.hpp"
 
 namespace dolp {
 
-/// A table file under way. A table of several parts is in PATH.partial until it is complete, and PATH.partial.txt
-/// states its progress; a table of one part has no name before. A .csv or .npy is converted from it at the end.
+/// A table file under way. A resumable table of several parts is in PATH.partial until it is complete, and
+/// PATH.partial.txt has a line for each finished part, with a hash of its values; any other has no name before. A .csv
+/// or .npy is converted from it at the end.
 class TableOutput {
  public:
   struct Job {
     std::filesystem::path path;
     TableLayout layout;
-    std::size_t parts = 1;
-    bool is_resumable = true;   ///< otherwise the files of an interrupted run are removed
+    std::vector<TableBox> parts = {};  ///< in the order of write(); none: any number of parts, in any order
+    std::string identity = {};  ///< of a resumable table: names and values that all parts share, see difference()
     bool is_resumed = false;    ///< goes on with PATH.partial, if it is there
-    std::string identity = {};  ///< one line of scene, program and device that all parts must share
   };
-  /// Errors: those of check_output_path; InputError for a partial file of another identity, or that another process
-  /// writes.
+  /// Of parts that an earlier run finished those are taken over that the file still has as they were written, up to the
+  /// first that it has not. Errors: those of check_output_path; InputError for a partial file of another identity, or
+  /// that another process writes; IoError where PATH.partial or PATH.partial.txt is a link.
   explicit TableOutput(Job job);
   ~TableOutput();
   TableOutput(const TableOutput&) = delete;
@@ -46,5 +47,8 @@ class TableOutput {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// The first difference between two identities, "name value; name value": "evaluator cpu, not vulkan". None: nothing.
+std::optional<std::string> difference(const std::string& identity, const std::string& wanted);
 
 }  // namespace dolp

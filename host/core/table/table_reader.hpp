@@ -5,9 +5,8 @@
 #include <memory>
 #include <span>
 
-#include "table/table.hpp"
-#include "table/table_netcdf.hpp"
-#include "table/table_store.hpp"
+#include "table/table_box.hpp"
+#include "table/values_hash.hpp"
 
 namespace dolp {
 
@@ -31,9 +30,9 @@ class TableReader {
   TableValues read_entries(std::span<const std::size_t> positions) const;
 
   /// Contribution of a part that was read to the hash.
-  ValuesHash::Sums sums_of(const TableValues& part, const TableBox& box) const;
-  /// Refuses values that differ from the written ones, by the sums over all parts.
-  void check_hash(const ValuesHash::Sums& sums) const;
+  ValueSums sums_of(const TableValues& part, const TableBox& box) const;
+  /// Refuses values that differ from the written ones, or whose hash is missing, by the sums over all parts.
+  void check_hash(const ValueSums& sums) const;
 
  private:
   struct Impl;

@@ -1,83 +1,299 @@
 #include "table/table_store.hpp"
 
-#include <algorithm>
-#include <functional>
-#include <numeric>
-#include <span>
+#include <fmt/format.h>
+#include <hdf5.h>
+#include <hdf5_hl.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <dolp/errors.hpp>
+#include <limits>
+#include <new>
+#include <span>
+#include <string>
+#include <utility>
+
+#include <dolp/status.hpp>
 #include "model/scene_entry.hpp"
+#include "table/hdf5_handle.hpp"
+#include "table/hdf5_memory.hpp"
 
 namespace dolp {
+namespace {
 
-std::vector<TableBox> boxes_in_order(const PerAxis& counts, std::size_t most) {
-  if (size_of(counts) == 0) return {};
-  // Boxes have all of the fastest axes, some of one, and one value of the slowest.
-  std::size_t cut = counts.size() - 1;
-  std::size_t of_one = 1;
-  while (cut > 0 && of_one * counts[cut] <= most) of_one *= counts[cut--];
-  const std::size_t at_once = std::clamp<std::size_t>(most / of_one, 1, counts[cut]);
-  const auto end_of_slow = counts.begin() + static_cast<std::ptrdiff_t>(cut);
-  const std::size_t slow = std::accumulate(counts.begin(), end_of_slow, std::size_t{1}, std::multiplies<>());
-  std::vector<TableBox> boxes;
-  for (std::size_t i = 0; i < slow; ++i) {
-    TableBox box{{}, counts};
-    for (std::size_t axis = cut, rest = i; axis-- > 0; rest /= counts[axis]) {
-      box.first[axis] = rest % counts[axis];
-      box.count[axis] = 1;
-    }
-    for (std::size_t first = 0; first < counts[cut]; first += at_once) {
-      box.first[cut] = first;
-      box.count[cut] = std::min(at_once, counts[cut] - first);
-      boxes.push_back(box);
+/// Makes the objects of one file in memory; a call that fails throws std::bad_alloc.
+class Writer {
+ public:
+  explicit Writer(Hdf5Memory& memory) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // messages are ours
+    const Hdf5Handle access = memory.access();
+    check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18));
+    const Hdf5Handle creation = take(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+    // Without an order of creation the netCDF library opens a file for reading only.
+    check(H5Pset_link_creation_order(creation.id(), kOrdered));
+    check(H5Pset_attr_creation_order(creation.id(), kOrdered));
+    file_ = take(H5Fcreate("table", H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
+  }
+
+  const Hdf5Handle& file() const { return file_; }
+
+  void check(herr_t code) const {
+    if (code < 0) throw std::bad_alloc();  // a file in memory fails only for lack of memory
+  }
+
+  void put_text(const Hdf5Handle& object, const char* name, const std::string& text) const {
+    const Hdf5Handle type = take(H5Tcopy(H5T_C_S1), H5Tclose);
+    check(H5Tset_size(type.id(), std::max<std::size_t>(text.size(), 1)));
+    check(H5Tset_strpad(type.id(), H5T_STR_NULLPAD));
+    check(H5Tset_cset(type.id(), H5T_CSET_UTF8));
+    put(object, name, type.id(), type.id(), take(H5Screate(text.empty() ? H5S_NULL : H5S_SCALAR), H5Sclose),
+        text.empty() ? nullptr : text.data());
+  }
+  void put_number(const Hdf5Handle& object, const char* name, double value) const {
+    const hsize_t one = 1;
+    put(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, take(H5Screate_simple(1, &one, nullptr), H5Sclose), &value);
+  }
+  // CF-1.8 has no unsigned int, and wants masks of the variable's own type.
+  void put_status_bits(const Hdf5Handle& object) const {
+    std::array<int, kStatusBits.size()> masks{};
+    std::array<const char*, kStatusBits.size()> meanings{};
+    std::ranges::transform(kStatusBits, masks.begin(), [](const StatusBit& bit) { return static_cast<int>(bit.mask); });
+    std::ranges::transform(kStatusBits, meanings.begin(), &StatusBit::meaning);
+    const hsize_t count = masks.size();
+    put(object, "flag_masks", H5T_STD_I32LE, H5T_NATIVE_INT, take(H5Screate_simple(1, &count, nullptr), H5Sclose),
+        masks.data());
+    put_text(object, "flag_meanings", fmt::format("{}", fmt::join(meanings, " ")));
+  }
+
+  /// A variable without values, which has its place in the file. Uncompressed: zlib saves half of the file and takes
+  /// longer than all the rest of a table. In one piece: what points to pieces has no checksum.
+  Hdf5Handle define(const char* name, hid_t type, const std::vector<hsize_t>& shape, const void* fill) const {
+    const Hdf5Handle creation = take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    check(H5Pset_attr_creation_order(creation.id(), kOrdered));
+    check(H5Pset_obj_track_times(creation.id(), false));  // same scene, same bytes
+    // Every variable is written whole; to fill it first would write it twice.
+    check(H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER));
+    check(H5Pset_alloc_time(creation.id(), H5D_ALLOC_TIME_EARLY));
+    if (fill) check(H5Pset_fill_value(creation.id(), type, fill));
+    const Hdf5Handle space = take(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+    return take(H5Dcreate2(file_.id(), name, type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose);
+  }
+
+  void write(const Hdf5Handle& variable, hid_t memory_type, const void* values) const {
+    check(H5Dwrite(variable.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+  }
+
+ private:
+  static constexpr unsigned kOrdered = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
+
+  Hdf5Handle take(hid_t id, Hdf5Handle::Close close) const {
+    check(id < 0 ? -1 : 0);
+    return {id, close};
+  }
+  void put(const Hdf5Handle& object, const char* name, hid_t type, hid_t memory_type, const Hdf5Handle& space,
+           const void* value) const {
+    const Hdf5Handle attribute =
+        take(H5Acreate2(object.id(), name, type, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    if (value) check(H5Awrite(attribute.id(), memory_type, value));
+  }
+
+  Hdf5Handle file_;
+};
+
+/// A text as a variable over a dimension of its own.
+void put_long_text(const Writer& writer, const std::string& name, const std::string& text) {
+  const std::vector<hsize_t> shape = {text.size()};
+  const Hdf5Handle length = writer.define((name + "_length").c_str(), H5T_IEEE_F32BE, shape, nullptr);
+  // How the netCDF library marks a dimension without coordinates; the number is the length in ten digits.
+  std::string digits = std::to_string(text.size());
+  digits.insert(0, 10 - std::min<std::size_t>(digits.size(), 10), ' ');
+  writer.check(H5DSset_scale(length.id(), ("This is a netCDF dimension but not a netCDF variable." + digits).c_str()));
+  const Hdf5Handle variable = writer.define(name.c_str(), H5T_C_S1, shape, nullptr);
+  writer.check(H5DSattach_scale(variable.id(), length.id(), 0));
+  writer.write(variable, H5T_C_S1, text.data());
+}
+
+void put_more(const Writer& writer, const std::vector<Attribute>& attributes) {
+  for (const Attribute& attribute : attributes) {
+    if (const auto* number = std::get_if<double>(&attribute.value)) {
+      writer.put_number(writer.file(), attribute.name.c_str(), *number);
+    } else if (const auto& text = std::get<std::string>(attribute.value); text.size() > kMostAttributeBytes) {
+      put_long_text(writer, attribute.name, text);
+    } else {
+      writer.put_text(writer.file(), attribute.name.c_str(), text);
     }
   }
-  return boxes;
 }
 
-TableHead head_of(const TableHead& whole, const TableBox& box) {
-  TableHead head = whole;
-  head.axes = part_of(whole.axes, box.first, box.count);
-  return head;
+void put_attributes(const Writer& writer, const std::vector<Attribute>& attributes) {
+  writer.put_text(writer.file(), kConventions, kConventionsOfFiles);
+  put_more(writer, attributes);
 }
 
-TableStore::TableStore(const TableLayout& layout, AtomicFile& file)
-    : layout_(layout), file_(file), skeleton_(layout), sums_(skeleton_.offsets().size(), 0) {}
+/// The coordinate variables, of an axis that the table lacks none.
+using AxisVariables = AxisArray<Hdf5Handle>;
 
-void TableStore::write(const TableValues& part, const PerAxis& first) {
-  const auto put = [&](std::size_t variable, const auto& values) {
-    const std::span all(values);
-    for_each_run(first, part.counts(), layout_.head.counts(), [&](const GridRun& run) {
-      const auto own = all.subspan(run.in_part, run.count);
-      sums_[variable] += ValuesHash::sum(own, run.in_whole);
-      file_.write_at(skeleton_.offsets()[variable] + run.in_whole * sizeof(own[0]), own.data(), own.size_bytes());
-    });
-  };
-  for (std::size_t i = 0; i < layout_.quantities.size(); ++i) put(i, part[layout_.quantities[i]]);
-  if (layout_.has_status) put(layout_.quantities.size(), part.status);
+AxisVariables put_axes(const Writer& writer, const TableHead& head) {
+  AxisVariables axes;
+  for (const Axis axis : kAllAxes) {
+    const AxisDescription& described = description_of(axis);
+    const std::vector<double>& values = head.axes[axis];
+    if (values.empty()) continue;
+    axes[axis] = writer.define(described.name, H5T_IEEE_F64LE, {values.size()}, nullptr);
+    writer.check(H5DSset_scale(axes[axis].id(), described.name));
+    writer.put_text(axes[axis], "long_name", described.long_name);
+    writer.put_text(axes[axis], "units", described.units);
+    writer.write(axes[axis], H5T_NATIVE_DOUBLE, values.data());
+  }
+  return axes;
+}
+
+Hdf5Handle define_over_axes(const Writer& writer, const TableHead& head, const AxisVariables& axes, const char* name,
+                            hid_t type, const void* fill) {
+  std::vector<hsize_t> shape;
+  for (const std::vector<double>& values : head.axes) {
+    if (!values.empty()) shape.push_back(values.size());
+  }
+  Hdf5Handle variable = writer.define(name, type, shape, fill);
+  unsigned dimension = 0;
+  for (const Hdf5Handle& axis : axes) {
+    if (axis) writer.check(H5DSattach_scale(variable.id(), axis.id(), dimension++));
+  }
+  return variable;
+}
+
+/// Where the values of a variable are in the file.
+std::uint64_t offset_of(const Hdf5Handle& variable) {
+  const haddr_t offset = H5Dget_offset(variable.id());
+  if (offset == HADDR_UNDEF) throw std::bad_alloc();
+  return offset;
+}
+
+std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes, Quantity quantity) {
+  const QuantityDescription& described = description_of(quantity);
+  constexpr double kFill = std::numeric_limits<double>::quiet_NaN();
+  const Hdf5Handle variable = define_over_axes(writer, head, axes, described.name, H5T_IEEE_F64LE, &kFill);
+  writer.put_number(variable, "_FillValue", kFill);
+  writer.put_text(variable, "long_name", described.long_name);
+  writer.put_text(variable, "units", units_of(quantity, head.stokes_units));
+  if (*described.ancillary != '\0') writer.put_text(variable, "ancillary_variables", described.ancillary);
+  return offset_of(variable);
+}
+
+std::uint64_t put_status(const Writer& writer, const TableHead& head, const AxisVariables& axes) {
+  const Hdf5Handle status = define_over_axes(writer, head, axes, "status", H5T_STD_I32LE, nullptr);
+  writer.put_text(status, "long_name", "status bits of the entry; 0 where nothing is wrong");
+  writer.put_text(status, "units", "1");
+  writer.put_status_bits(status);
+  return offset_of(status);
+}
+
+void put_curves(const Writer& writer, const TableHead& head) {
+  for (const TableCurve& described : kTableCurves) {
+    const Curve& curve = head.*described.curve;
+    if (curve.values.empty()) continue;
+    const std::string coordinate = described.name + std::string("_wavelength");
+    const Hdf5Handle wavelength = writer.define(coordinate.c_str(), H5T_IEEE_F64LE, {curve.values.size()}, nullptr);
+    writer.check(H5DSset_scale(wavelength.id(), coordinate.c_str()));
+    writer.put_text(wavelength, "long_name", "wavelength");
+    writer.put_text(wavelength, "units", "um");
+    writer.write(wavelength, H5T_NATIVE_DOUBLE, curve.wavelength_um.data());
+    const Hdf5Handle variable = writer.define(described.name, H5T_IEEE_F64LE, {curve.values.size()}, nullptr);
+    writer.check(H5DSattach_scale(variable.id(), wavelength.id(), 0));
+    writer.put_text(variable, "long_name", described.long_name);
+    writer.put_text(variable, "units", described.units);
+    writer.write(variable, H5T_NATIVE_DOUBLE, curve.values.data());
+  }
+}
+
+}  // namespace
+
+struct TableStore::Impl {
+  TableLayout layout;
+  AtomicFile& file;
+  Hdf5Memory memory;
+  Writer writer{memory};
+  /// Where the values of each of the quantities, and last of status (32 bits each) if it is there, begin in the file.
+  std::vector<std::uint64_t> offsets;
+
+  Impl(TableLayout own, AtomicFile& of_table) : layout(std::move(own)), file(of_table) {
+    const TableHead& head = layout.head;
+    put_attributes(writer, head.attributes);
+    const AxisVariables axes = put_axes(writer, head);
+    put_curves(writer, head);
+    for (const Quantity quantity : layout.quantities) offsets.push_back(put_variable(writer, head, axes, quantity));
+    if (layout.has_status) offsets.push_back(put_status(writer, head, axes));
+  }
+
+  /// Calls use(offset, values) for each run of values of a part that is one run in the file too.
+  template <class Values, class Use>
+  void each_run(Values& part, const PerAxis& first, const Use& use) const {
+    const auto of_variable = [&](std::size_t variable, auto& values) {
+      const std::span all(values);
+      for_each_run(first, part.counts(), layout.head.counts(), [&](const GridRun& run) {
+        use(offsets[variable] + run.in_whole * sizeof(all[0]), all.subspan(run.in_part, run.count));
+      });
+    };
+    for (std::size_t i = 0; i < layout.quantities.size(); ++i) of_variable(i, part[layout.quantities[i]]);
+    if (layout.has_status) of_variable(layout.quantities.size(), part.status);
+  }
+
+  /// Writes the bytes of the file that are not values: between and around them, where there is anything at all.
+  void write_gaps() {
+    writer.check(H5Fflush(writer.file().id(), H5F_SCOPE_GLOBAL));
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> values;
+    for (std::size_t i = 0; i < offsets.size(); ++i) {
+      const std::size_t of_value = i < layout.quantities.size() ? sizeof(double) : sizeof(std::uint32_t);
+      values.emplace_back(offsets[i], offsets[i] + layout.head.size() * of_value);
+    }
+    values.emplace_back(memory.size(), memory.size());
+    std::ranges::sort(values);
+    std::uint64_t end = 0;
+    for (const auto& [first, last] : values) {
+      std::vector<char> bytes(first - end);
+      memory.read(end, bytes.data(), bytes.size());
+      file.write_at(end, bytes.data(), bytes.size());
+      end = last;
+    }
+    file.resize(end);  // a file from before may be longer
+  }
+};
+
+TableStore::TableStore(const TableLayout& layout, AtomicFile& file) : impl_(std::make_unique<Impl>(layout, file)) {}
+
+TableStore::~TableStore() = default;
+
+ValueSums TableStore::write(const TableValues& part, const PerAxis& first) {
+  impl_->each_run(part, first, [&](std::uint64_t offset, auto values) {
+    impl_->file.write_at(offset, values.data(), values.size_bytes());
+  });
+  return sums_of(part, impl_->layout.quantities, first, impl_->layout.head.counts());
 }
 
 TableValues TableStore::read(const TableBox& box) const {
   TableValues part;
-  static_cast<TableHead&>(part) = head_of(layout_.head, box);
-  const auto get = [&](std::size_t variable, auto& values) {
-    values.resize(part.size());
-    const std::span all(values);
-    for_each_run(box.first, box.count, layout_.head.counts(), [&](const GridRun& run) {
-      const auto own = all.subspan(run.in_part, run.count);
-      file_.read_at(skeleton_.offsets()[variable] + run.in_whole * sizeof(own[0]), own.data(), own.size_bytes());
-    });
-  };
-  for (std::size_t i = 0; i < layout_.quantities.size(); ++i) get(i, part[layout_.quantities[i]]);
-  if (layout_.has_status) get(layout_.quantities.size(), part.status);
+  static_cast<TableHead&>(part) = head_of(impl_->layout.head, box);
+  for (const Quantity quantity : impl_->layout.quantities) part[quantity].resize(part.size());
+  if (impl_->layout.has_status) part.status.resize(part.size());
+  impl_->each_run(part, box.first, [&](std::uint64_t offset, auto values) {
+    impl_->file.read_at(offset, values.data(), values.size_bytes());
+  });
   return part;
 }
 
-void TableStore::finish(const std::vector<Attribute>& more) {
-  std::vector<Attribute> attributes = more;
-  attributes.push_back({kValuesHash, ValuesHash(layout_.head).text(layout_.quantities, sums_)});
-  skeleton_.add(attributes);
-  for (const NetcdfSkeleton::Piece& piece : skeleton_.pieces())
-    file_.write_at(piece.offset, piece.bytes.data(), piece.bytes.size());
+std::optional<ValueSums> TableStore::measured(const TableBox& box) const {
+  try {
+    return sums_of(read(box), impl_->layout.quantities, box.first, impl_->layout.head.counts());
+  } catch (const IoError&) {  // cut short, for one
+    return std::nullopt;
+  }
+}
+
+void TableStore::finish(std::vector<Attribute> more, const ValueSums& sums) {
+  more.push_back({kValuesHash, values_hash(impl_->layout.head, impl_->layout.quantities, sums)});
+  put_more(impl_->writer, more);
+  impl_->write_gaps();
 }
 
 }  // namespace dolp

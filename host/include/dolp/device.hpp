@@ -21,6 +21,7 @@ struct Device {
   bool has_double = false;                     ///< double precision in kernels
   std::uint64_t memory_bytes = 0;              ///< the largest heap of the device's own memory
   std::uint64_t max_storage_buffer_bytes = 0;  ///< maxStorageBufferRange
+  std::uint32_t max_texels = 0;                ///< maxTexelBufferElements
   std::uint32_t max_workgroups = 0;            ///< maxComputeWorkGroupCount[0]
   std::uint32_t subgroup_size = 0;             ///< 0 when unknown (Vulkan 1.0)
   std::uint32_t local_size = 64;               ///< invocations of a workgroup, as dolp wants them

@@ -16,7 +16,9 @@
 // Errors are exceptions derived from std::exception; a call that throws has changed nothing and left no file, but for
 // what write_table says of cancelled calls.
 // Threads: objects of one class may be used in several threads at a time as long as each thread has its own; an
-// Evaluator and a Table serve several threads too, their calls wait for one another.
+// Evaluator and a Table serve several threads too, their calls wait for one another. A call of an Evaluator from its
+// own progress, `phase` or `take` is an InputError. Moves: a Scene and a Table that were moved from keep what they
+// hold; calls of an Evaluator that was moved from throw InputError, until another is assigned to it.
 #pragma once
 
 #include <array>
@@ -35,6 +37,7 @@
 
 #include <dolp/axis.hpp>
 #include <dolp/device.hpp>
+#include <dolp/effect.hpp>
 #include <dolp/errors.hpp>
 #include <dolp/fit.hpp>
 #include <dolp/key.hpp>
@@ -42,6 +45,7 @@
 #include <dolp/results.hpp>
 #include <dolp/setting.hpp>
 #include <dolp/status.hpp>
+#include <dolp/table_values.hpp>
 
 namespace dolp {
 
@@ -66,7 +70,8 @@ class DOLP_EXPORT Scene {
   /// Reads a scene file (TOML); "-" is stdin. Settings apply in their order.
   /// Errors: InputError with file, line, key, value and allowed range.
   static Scene from_file(const std::filesystem::path& path, const std::vector<Setting>& settings = {});
-  /// The same for a text; files that it names are looked for in the current folder. `name` is for messages.
+  /// The same for a text; files that it names are looked for in the folder of `name`, which messages
+  /// begin with.
   static Scene from_text(const std::string& text, const std::vector<Setting>& settings = {},
                          const std::string& name = "scene");
   /// The same scene with another value of a key: with("surface.sigma", 0.2). Errors: InputError with key and value.
@@ -94,6 +99,11 @@ class DOLP_EXPORT Scene {
   /// n and k at a wavelength. Errors: InputError where the material has none.
   std::pair<double, double> refractive_index(double wavelength_um) const;
 
+  // A move copies.
+  Scene(const Scene&) = default;
+  Scene& operator=(const Scene&) = default;
+  ~Scene() = default;
+
   struct Impl;
   const Impl& impl() const { return *impl_; }
 
@@ -119,29 +129,37 @@ struct Results : ResultColumns {
   Quantities given;          ///< that results of the scene have; NaN where one was not computed
   std::string stokes_units;  ///< UDUNITS: "W m-2 um-1"
   /// Global attributes as in table files: device, precision, effects, rule, ...
-  std::vector<std::pair<std::string, std::variant<std::string, double>>> attributes;
+  std::vector<Attribute> attributes;
   double integrand_evaluations = 0.0;  ///< evaluations that they took
 };
 
 /// Points and their results as CSV, as write_points writes it.
+/// Errors: InputError where a column has neither one value nor one for each result.
 DOLP_EXPORT std::string to_csv(const std::vector<Column>& points, const Results& results);
 
-/// A lookup table in memory.
+/// A lookup table in memory. Copies share what they hold.
 class DOLP_EXPORT Table {
  public:
   /// Reads a table that dolp wrote as .nc. Errors: InputError.
   static Table read(const std::filesystem::path& path);
+  /// A table of its contents, as values() and file_attributes() give them: of another, or a part of one. `name` is for
+  /// messages. Errors: InputError where they do not fit together.
+  static Table of(TableValues values, const std::string& name = "table");
 
-  /// Empty where the table has no such axis.
-  const Axes& axes() const;
-  /// Over all axes, in C order.
-  const ResultColumns& results() const;
-  const std::string& stokes_units() const;  ///< UDUNITS
+  const TableValues& values() const;
+  /// The global attributes as a file has them, which also names its conventions and has a hash of the values.
+  std::vector<Attribute> file_attributes() const;
+
+  // A move copies.
+  Table(const Table&) = default;
+  Table& operator=(const Table&) = default;
+  ~Table() = default;
 
   /// The table between its entries. An axis of one value needs no column; other missing columns take the
   /// scene's values.
   /// Its error estimates contain the interpolation.
-  /// Errors: InputError for a point outside of the axes, with its position, value and what is allowed.
+  /// Errors: InputError for a point outside of the axes, with its position, value and what is allowed; for a table
+  /// without its scene (attribute scene), without a quantity that results need, or without an axis that its scene has.
   Results lookup(const std::vector<Column>& points, const Progress& progress = {}) const;
 
   /// Writes .nc, .csv or .npy, by the suffix; the file is complete or absent. Errors: InputError, IoError.
@@ -183,9 +201,10 @@ class DOLP_EXPORT Evaluator {
   /// not grow with the table. An exception from `take` ends the call.
   void table_parts(const Scene& scene, const std::function<void(const Table&)>& take, const RunOptions& options = {});
   /// The same straight into a file, .nc, .csv or .npy by its suffix, part by part, so that memory does not grow with
-  /// the table. A shard's file has "N-of-M" before its suffix; one that is there already is kept. The finished
-  /// parts of a cancelled or killed call stay beside the file, for `resume`.
-  /// Errors: InputError, IoError too. The file is complete or absent.
+  /// the table. A shard's file has "N-of-M" before its suffix; a whole one of the same scene, n, k and E0, evaluator
+  /// and options that is there already is kept. The finished parts of a cancelled or killed call stay beside the file,
+  /// for `resume`, which computes again what they no longer hold. Errors: InputError, also for a shard that is none of
+  /// its count; IoError. The file is complete or absent.
   Report write_table(const Scene& scene, const std::filesystem::path& path, const RunOptions& options = {},
                      const Shard& shard = {});
   /// The same quantities at scattered points; missing columns take the scene's values.
@@ -205,6 +224,7 @@ class DOLP_EXPORT Evaluator {
 
  private:
   struct Impl;
+  Impl& impl();
   std::unique_ptr<Impl> impl_;
 };
 
@@ -218,15 +238,6 @@ DOLP_EXPORT Report write_lookup(const std::filesystem::path& table, const std::f
 DOLP_EXPORT Report merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& path,
                          const std::string& history = {});
 
-/// An effect that a scene can ask for, and its treatment at some points.
-struct Effect {
-  std::string name;
-  std::string state;  ///< absent, kept, dropped (negligible change), not_needed (no kept effect uses it)
-  std::string reason;
-  std::string needs;                ///< quantities that it requires; empty when it is not kept
-  std::optional<double> bound;      ///< of a dropped one: of the change of (Q/I, U/I) without it, worst point
-  std::optional<double> influence;  ///< of a kept one: estimate of that change, the largest of up to 12 of the points
-};
 /// All effects, in the order of a scene file. Influences are evaluated on the CPU, to 1e-3.
 DOLP_EXPORT std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& points, bool keep_all = false);
 

@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <dolp/errors.hpp>
@@ -84,19 +86,22 @@ DOLP_EXPORT const std::vector<std::string>& loss_names();
 /// Options of a fit.
 struct FitOptions {
   std::vector<FitRange> vary;
-  std::size_t starts = 24;               ///< descents that look for minima
-  std::uint64_t seed = 1;                ///< of where they begin
-  Progress progress = {};                ///< counts descents and sides of profiles; may be empty
-  Loss loss = Loss::kSquares;            ///< others need uncertainties
-  std::vector<Comparison> compare = {};  ///< all combinations are fitted and ranked
-  std::filesystem::path output = {};     ///< file for the scene with what was found; "-" is stdout; empty: none
-  std::filesystem::path plot = {};       ///< PNG of data, model and residuals, which Matplotlib draws; empty: none
+  std::size_t starts = 24;                             ///< descents that look for minima
+  std::uint64_t seed = 1;                              ///< of where they begin
+  Progress progress = {};                              ///< counts what a phase consists of; may be empty
+  std::function<void(const std::string&)> phase = {};  ///< gets its name before it begins; may be empty
+  Loss loss = Loss::kSquares;                          ///< others need uncertainties
+  std::vector<Comparison> compare = {};                ///< all combinations are fitted and ranked
+  std::filesystem::path output = {};  ///< file for the scene with what was found; "-" is stdout; empty: none
+  std::filesystem::path plot = {};    ///< PNG of data, model and residuals, which Matplotlib draws; empty: none
 };
 
 /// A profile-likelihood interval, from the least to the largest value that the data do not rule out, over all minima;
 /// an end is none where the range ends before the data rule values out.
 struct FitInterval {
   std::optional<double> low, high;
+  /// The ranges of which it consists, ascending: several where the data rule out values between minima.
+  std::vector<std::pair<std::optional<double>, std::optional<double>>> pieces = {};
 };
 
 /// A fitted number.

@@ -23,7 +23,7 @@ using MuellerMatrix = std::array<double, 16>;
 
 /// Evaluator, device and dispatch options.
 struct EvaluatorOptions {
-  std::string evaluator = "vulkan";  ///< vulkan; cpu: the shaders' text compiled as C++; reference: adaptive quadrature
+  std::string evaluator = "vulkan";  ///< vulkan; cpu: the kernel source compiled as C++; reference: adaptive quadrature
   std::string device = {};           ///< of vulkan: its position in devices(), or a part of its name; empty: the best
   bool is_interactive = false;       ///< in short dispatches: a call ends soon after Progress returns false; a window
                                      ///< on the same device continues to draw
@@ -37,11 +37,11 @@ struct RunOptions {
   bool resume = false;       ///< of write_table: go on with what a cancelled or killed call of the same scene left
 };
 
-/// One of `count` equal parts of a table that several processes compute.
+/// One of `count` equal parts of a table that several processes compute; by default none, but the table itself.
 struct Shard {
-  std::size_t number = 1;  ///< from 1 on
-  std::size_t count = 1;
-  bool is_whole() const { return count == 1; }
+  std::size_t number = 0;  ///< from 1 to count
+  std::size_t count = 0;
+  bool is_none() const { return number == 0 && count == 0; }
 };
 
 /// Options for the check of a table.
@@ -54,7 +54,7 @@ struct TableCheckOptions {
 
 /// Options for the check of a device.
 struct DeviceCheckOptions {
-  std::string evaluator = "vulkan";  ///< vulkan; cpu: the shaders' text compiled as C++
+  std::string evaluator = "vulkan";  ///< vulkan; cpu: the kernel source compiled as C++
   std::string device = {};           ///< as in EvaluatorOptions
   std::string precision = "auto";    ///< float, double; auto is both
   double tolerance = 1e-4;           ///< requested tolerance

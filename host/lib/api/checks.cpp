@@ -22,11 +22,11 @@
 namespace dolp {
 namespace {
 
-std::unique_ptr<MomentsEvaluator> evaluator_in(Precision precision, const DeviceCheckOptions& options) {
-  if (options.evaluator == "cpu") return std::make_unique<CpuEvaluator>(precision);
+std::unique_ptr<ModelEvaluator> evaluator_in(Precision precision, const DeviceCheckOptions& options) {
+  if (options.evaluator == "cpu") return std::make_unique<CpuEvaluator>();
   VulkanOptions vulkan;
   vulkan.device = options.device;
-  vulkan.precision = precision;
+  vulkan.needs_double = precision == Precision::kDouble;
   return std::make_unique<VulkanEvaluator>(vulkan);
 }
 
@@ -75,9 +75,9 @@ Report verify_device(const DeviceCheckOptions& options) {
   report.tolerance = options.tolerance;
   report.cases = hard_cases();
   for (const Precision precision : precisions_of(options, report.left_out)) {
-    const std::unique_ptr<MomentsEvaluator> evaluator = evaluator_in(precision, options);
+    const std::unique_ptr<ModelEvaluator> evaluator = evaluator_in(precision, options);
     PrecisionReport& of_precision = report.precisions.emplace_back();
-    of_precision.outcomes = qualify(report.cases, *evaluator, report.tolerance, options.progress);
+    of_precision.outcomes = qualify(report.cases, *evaluator, {report.tolerance, precision}, options.progress);
     of_precision.evaluation = evaluator->report();
   }
   return public_report(hard_case_report(report, options.all), report.failures() == 0);

@@ -48,13 +48,19 @@ Evaluator::~Evaluator() {
   if (impl_ && impl_->owner != getpid()) static_cast<void>(impl_.release());
 }
 
-Table Evaluator::table(const Scene& scene, const RunOptions& options) {
-  return impl_->exclusively([&] {
+Evaluator::Impl& Evaluator::impl() {
+  if (!impl_) throw InputError("the Evaluator was moved from; another can be assigned to it");
+  return *impl_;
+}
+
+Table Evaluator::table(const Scene& scene, const RunOptions& of_call) {
+  return impl().exclusively(of_call, [&](const RunOptions& options) {
     const SceneValues& own = scene.impl().scene;
     Run run(own, grid_entries(own), options, impl_->maker(own));
     CollectedResults results(run.entries());
     const RunOutcome outcome = run.compute(results);
     TableLayout layout = table_layout(own, outcome.plan, run.entries().axes());
+    layout.head.attributes.push_back({kIdentity, identity_of(own, impl_->options.evaluator, options.keep_all)});
     layout.head.attributes = all_attributes(own, layout, outcome, options.history);
     TableValues table = table_part(layout, run.entries(), results.take());
     static_cast<TableHead&>(table) = std::move(layout.head);
@@ -63,22 +69,23 @@ Table Evaluator::table(const Scene& scene, const RunOptions& options) {
 }
 
 void Evaluator::table_parts(const Scene& scene, const std::function<void(const Table&)>& take,
-                            const RunOptions& options) {
-  impl_->exclusively([&] {
+                            const RunOptions& of_call) {
+  impl().exclusively(of_call, [&](const RunOptions& options) {
     const SceneValues& own = scene.impl().scene;
     Run run(own, grid_entries(own), options, impl_->maker(own));
     const TableLayout layout = table_layout(own, run.plan(), run.entries().axes());
+    const std::function<void(const Table&)> watched = impl_->watched(take);
     PassedResults parts([&](const SceneEntries& part, const std::vector<PointResult>& results) {
       TableValues table = table_part(layout, part, results);
       table.stokes_units = layout.head.stokes_units;
-      take(Table(std::make_shared<const Table::Impl>(std::move(table), "part")));
+      watched(Table(std::make_shared<const Table::Impl>(std::move(table), "part")));
     });
     run.compute(parts);
   });
 }
 
-Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& points, const RunOptions& options) {
-  return impl_->exclusively([&] {
+Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& points, const RunOptions& of_call) {
+  return impl().exclusively(of_call, [&](const RunOptions& options) {
     const SceneValues& own = scene.impl().scene;
     Run run(own, point_entries(own, points_of_columns(points, PointsKind::kDirections)), options, impl_->maker(own));
     CollectedResults collected(run.entries());
@@ -92,8 +99,8 @@ Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& point
 }
 
 std::vector<MuellerMatrix> Evaluator::mueller(const Scene& scene, const std::vector<Column>& points,
-                                              const RunOptions& options) {
-  return impl_->exclusively([&] {
+                                              const RunOptions& of_call) {
+  return impl().exclusively(of_call, [&](const RunOptions& options) {
     const SceneValues& own = scene.impl().scene;
     const auto geometries = mueller_points(own, points_of_columns(points, PointsKind::kGeometries));
     begin(options.progress, geometries.size());

@@ -4,12 +4,14 @@
 #include <unistd.h>
 #include <dolp/dolp.hpp>
 
-#include <map>
+#include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <thread>
 #include <utility>
 
-#include "api/named_evaluator.hpp"
+#include "model/evaluator.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene.hpp"
 
@@ -19,12 +21,17 @@ namespace dolp {
 /// does not copy, so that calls would wait without end.
 void check_no_fork();
 
+/// Evaluator factory. `needs_double`: of a device, double precision in kernels.
+/// Errors: InputError for another name, and for a device beside cpu or reference; DeviceError when vulkan is asked for
+/// and there is no usable device.
+std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, bool needs_double);
+
 struct Evaluator::Impl {
   explicit Impl(EvaluatorOptions own) : options(std::move(own)) {}
 
   /// The evaluator for a scene, before a run; a scene in double gets a device that has it. Errors: those of
   /// make_evaluator.
-  MomentsEvaluator* begin(const SceneValues& scene) {
+  ModelEvaluator* begin(const SceneValues& scene) {
     const bool needs_double = scene.accuracy.precision == Precision::kDouble;
     if (!evaluator || (needs_double && !evaluator->has_double())) evaluator = make_evaluator(options, needs_double);
     evaluator->clear_report();
@@ -34,22 +41,40 @@ struct Evaluator::Impl {
     return [this, &scene] { return begin(scene); };
   }
 
-  /// Calls `body` while no other thread uses the evaluators; a device that failed is not used again.
-  template <class Body>
-  auto exclusively(const Body& body) {
+  /// Calls `body` while no other thread uses the evaluators, with the options of the call; a device that failed is not
+  /// used again. Errors: InputError for a call from a callback of another.
+  template <class Options, class Body>
+  auto exclusively(Options of_call, const Body& body) {
+    if (in_callback == std::this_thread::get_id())
+      throw InputError("an Evaluator cannot be called from its own callback; another Evaluator can");
     if (options.evaluator == "vulkan") check_no_fork();
     const std::lock_guard lock(mutex);
+    of_call.progress = watched(of_call.progress);
+    if constexpr (requires { of_call.phase; }) of_call.phase = watched(of_call.phase);
     try {
-      return body();
+      return body(of_call);
     } catch (const DeviceError&) {
       evaluator.reset();
       throw;
     }
   }
 
+  /// A callback, from which this object must not be called: that would wait without end.
+  template <class Result, class... Arguments>
+  std::function<Result(Arguments...)> watched(const std::function<Result(Arguments...)>& callback) {
+    if (!callback) return callback;
+    return [this, callback](Arguments... arguments) {
+      in_callback = std::this_thread::get_id();
+      const auto end = [this](void*) { in_callback = std::thread::id(); };
+      const std::unique_ptr<void, decltype(end)> at_end(this, end);
+      return callback(arguments...);
+    };
+  }
+
   EvaluatorOptions options;
   std::mutex mutex;
-  std::unique_ptr<MomentsEvaluator> evaluator;
+  std::atomic<std::thread::id> in_callback;  ///< the thread that is in a callback
+  std::unique_ptr<ModelEvaluator> evaluator;
   pid_t owner = getpid();
 };
 

@@ -5,7 +5,7 @@
 #include "base/version.hpp"
 #include "plan/effects.hpp"
 #include "report/plan_report.hpp"
-#include "run/influences.hpp"
+#include "run/estimates.hpp"
 #include "run/scene_run.hpp"
 #include "scene/embedded_data.hpp"
 #include "scene/material_data.hpp"
@@ -24,12 +24,8 @@ Report plan(const Scene& scene, const std::string& device, bool keep_all) {
 std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& points, bool keep_all) {
   const SceneValues& own = scene.impl().scene;
   const SceneEntries entries = point_entries(own, points_of_columns(points, PointsKind::kDirections));
-  std::vector<EffectRow> rows = effect_rows(own, entries, plan_effects(own, entries, keep_all));
-  add_influences(rows, own, entries);
-  std::vector<Effect> all;
-  for (const EffectRow& row : rows) {
-    all.push_back({row.name, state_name(row.state), row.reason, row.needs, row.bound, row.influence});
-  }
+  std::vector<Effect> all = effects_of(own, entries, plan_effects(own, entries, keep_all));
+  add_influences(all, own, entries);
   return all;
 }
 

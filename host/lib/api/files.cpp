@@ -15,9 +15,9 @@
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
 #include "report/run_report.hpp"
+#include "run/estimates.hpp"
 #include "run/lookup_run.hpp"
 #include "run/mueller_run.hpp"
-#include "run/scattering_gap.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
 #include "run/table_run.hpp"
@@ -87,15 +87,15 @@ void check_output_is_no_input(const std::filesystem::path& output, const std::ve
   }
 }
 
-Report Evaluator::write_table(const Scene& scene, const std::filesystem::path& path, const RunOptions& options,
+Report Evaluator::write_table(const Scene& scene, const std::filesystem::path& path, const RunOptions& of_call,
                               const Shard& shard) {
-  return impl_->exclusively([&] {
+  return impl().exclusively(of_call, [&](const RunOptions& options) {
     const SceneValues& own = scene.impl().scene;
-    const TableJob job{shard_path(path, shard), shard, options};
+    const SceneEntries entries = shard_entries(own, shard);
+    const TableJob job{shard_path(path, shard), shard, options, impl_->options.evaluator};
     check_output_is_no_input(job.path, files_of(own));
     check_output_path(job.path);
-    const SceneEntries entries = shard_entries(own, shard);
-    if (!shard.is_whole() && is_there(own, job)) {
+    if (!shard.is_none() && is_there(own, job)) {
       ReportBuilder report;
       report.line("{}", key("title", own.title));
       report.row("kept", "{}: the whole shard is there already", key("output", job.path.string()));
@@ -109,8 +109,8 @@ Report Evaluator::write_table(const Scene& scene, const std::filesystem::path& p
 }
 
 Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& points_path,
-                               const std::filesystem::path& path, const RunOptions& options) {
-  return impl_->exclusively([&] {
+                               const std::filesystem::path& path, const RunOptions& of_call) {
+  return impl().exclusively(of_call, [&](const RunOptions& options) {
     const SceneValues& own = scene.impl().scene;
     const Points points = load_points(points_path, PointsKind::kDirections, files_of(own), path);
     SceneEntries entries = point_entries(own, points);
@@ -129,15 +129,15 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
 }
 
 Report Evaluator::write_mueller(const Scene& scene, const std::filesystem::path& points_path,
-                                const std::filesystem::path& path, const RunOptions& options) {
-  return impl_->exclusively([&] {
+                                const std::filesystem::path& path, const RunOptions& of_call) {
+  return impl().exclusively(of_call, [&](const RunOptions& options) {
     const Clock::time_point start = Clock::now();
     const SceneValues& own = scene.impl().scene;
     const Points points = load_points(points_path, PointsKind::kGeometries, files_of(own), path);
     const std::vector<MuellerPoint> geometries = mueller_points(own, points);
     check_writable(path);
     begin(options.progress, points.size());
-    MomentsEvaluator* const evaluator = impl_->begin(own);
+    ModelEvaluator* const evaluator = impl_->begin(own);
     const std::vector<MuellerMatrix> results = evaluate_mueller(own, geometries, *evaluator, options.progress);
     write_text_atomically(path, mueller_csv(points, results));
 
@@ -151,8 +151,8 @@ Report Evaluator::write_mueller(const Scene& scene, const std::filesystem::path&
     add_evaluation(report, evaluator->report(), seconds_since(start));
     report.row("error", "<= {:g} of m00; tolerance {:g}", key("worst_error_estimate", accuracy),
                key("tolerance", own.accuracy.tolerance));
-    report.row_if(nans > 0, "nan", "{} of {} geometries: f has no finite value there", key("without_value", nans),
-                  results.size());
+    report.row_if(nans > 0, "nan", "{} of {} geometries: f is not finite there, or takes over 1000 bounces",
+                  key("without_value", nans), results.size());
     add_left_out(report, points);
     report.row("written", "{}", key("output", path.string()));
     return public_report(report, accuracy <= own.accuracy.tolerance, path);

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 
 #include <dolp/fit.hpp>
 #include <dolp/status.hpp>
@@ -16,6 +18,7 @@
 #include "base/atomic_file.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
+#include "fit/residuals.hpp"
 #include "report/fit_picture.hpp"
 #include "report/fit_report.hpp"
 #include "report/run_report.hpp"
@@ -28,6 +31,7 @@ namespace dolp {
 namespace {
 
 using Settings = std::vector<Setting>;
+using Json = ReportBuilder::Json;
 
 void check_loss(Loss loss, const std::vector<MeasuredData>& data) {
   for (const MeasuredData& one : data) {
@@ -61,14 +65,18 @@ struct Best {
   std::unique_ptr<fit::Model> model;
   std::optional<fit::FitResult> result;
   Settings compared;
+  SceneValues scene;  ///< with the compared settings
 
-  /// The compared settings, with the fitted values.
-  Settings settings() const {
+  Eigen::VectorXd values() const {
     const std::vector<FitParameter>& found = result.value().parameters;
     Eigen::VectorXd values(static_cast<Eigen::Index>(found.size()));
     for (Eigen::Index j = 0; j < values.size(); ++j) values[j] = found[static_cast<std::size_t>(j)].value;
+    return values;
+  }
+  /// The compared settings, with the fitted values.
+  Settings settings() const {
     Settings all = compared;
-    std::ranges::copy(model->settings(values), std::back_inserter(all));
+    std::ranges::copy(model->settings(values()), std::back_inserter(all));
     return all;
   }
 };
@@ -83,34 +91,113 @@ void check_outputs(const FitOptions& options, const SceneValues& scene, const st
   }
 }
 
-/// The bracket of the fitted model over zenith for each data set; null where the scene has none, or none of DOLP was
-/// measured.
-ReportBuilder::Json brackets(const Scene& fitted, const std::vector<MeasuredData>& sets, MomentsEvaluator& evaluator) {
-  ReportBuilder::Json all = ReportBuilder::Json::array();
+/// Zeniths at which a picture draws curves: from the least to the largest of the data.
+std::vector<double> fine_zeniths(const MeasuredData& data) {
+  constexpr int kSteps = 120;
+  const auto [least, largest] = std::ranges::minmax(data.measurements, {}, &Measurement::theta_deg);
+  std::vector<double> zeniths;
+  for (int i = 0; i <= kSteps; ++i) {
+    zeniths.push_back(std::lerp(least.theta_deg, largest.theta_deg, static_cast<double>(i) / kSteps));
+  }
+  return zeniths;
+}
+
+/// Q/I or DOLP at zeniths, with its bracket, of one data set; empty where the scene has no bracket, other quantities
+/// were measured, or wavelengths are those of the measurements.
+std::vector<PointResult> bracketed(const Scene& fitted, const MeasuredData& data, const std::vector<double>& theta_deg,
+                                   ModelEvaluator& evaluator) {
+  const Observable measured = data.measurements.front().observable;
+  if (measured != Observable::kDolp && measured != Observable::kQOverI) return {};
+  if (data.measurements.front().wavelength_um) return {};
+  Settings settings = data.settings;
+  settings.push_back({"emission.bracket", true});
+  try {
+    const SceneValues scene = with_settings(fitted.impl().scene, settings);
+    const Column zeniths{"theta_deg", theta_deg};
+    const Points points = points_of(std::span(&zeniths, 1), theta_deg.size(), PointsKind::kDirections);
+    return evaluate_scene(scene, point_entries(scene, points), evaluator, {});
+  } catch (const InputError&) {
+    return {};  // a scene without a bracket
+  }
+}
+
+/// The bracket of each data set of DOLP over zenith, null where there is none.
+Json brackets(const Scene& fitted, const std::vector<MeasuredData>& sets, ModelEvaluator& evaluator) {
+  Json all = Json::array();
   for (const MeasuredData& data : sets) {
-    ReportBuilder::Json& one = all.emplace_back(nullptr);
-    const bool has_dolp =
-        std::ranges::any_of(data.measurements, [](const Measurement& o) { return o.observable == Observable::kDolp; });
-    if (!has_dolp) continue;
-    Settings settings = data.settings;
-    settings.push_back({"emission.bracket", true});
-    try {
-      const SceneValues scene = with_settings(fitted.impl().scene, settings);
-      std::vector<double> theta_deg;
-      for (const Measurement& o : data.measurements) theta_deg.push_back(o.theta_deg);
-      std::ranges::sort(theta_deg);
-      const Column zeniths{"theta_deg", theta_deg};
-      const Points points = points_of(std::span(&zeniths, 1), theta_deg.size(), PointsKind::kDirections);
-      one["theta_deg"] = theta_deg;
-      for (const PointResult& result : evaluate_scene(scene, point_entries(scene, points), evaluator, {})) {
-        one["low"].push_back(result[Quantity::kDolpLow]);
-        one["high"].push_back(result[Quantity::kDolpHigh]);
+    Json& one = all.emplace_back(nullptr);
+    if (data.measurements.front().observable != Observable::kDolp) continue;
+    const std::vector<double> zeniths = fine_zeniths(data);
+    for (const PointResult& result : bracketed(fitted, data, zeniths, evaluator)) {
+      one["low"].push_back(result[Quantity::kDolpLow]);
+      one["high"].push_back(result[Quantity::kDolpHigh]);
+    }
+    if (!one.is_null()) one["theta_deg"] = zeniths;
+  }
+  return all;
+}
+
+/// The fitted model at the measurements of a data set. Errors: InputError where the set does not fit the ranges.
+std::vector<double> model_values(const Best& best, const MeasuredData& data, const FitOptions& options,
+                                 ModelEvaluator& evaluator) {
+  const fit::Model model(best.scene, {data}, options.vary);
+  const fit::Residuals residuals(model, best.result->tolerance, fit::Differences::kForward, evaluator, {});
+  const Eigen::VectorXd values =
+      residuals.observed(model.predict({best.values()}, best.result->tolerance, evaluator, {}).front().components);
+  return {values.begin(), values.end()};
+}
+
+/// The model over zenith, one curve for each data set, quantity and wavelength.
+Json curves(const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
+  Json all = Json::array();
+  for (const MeasuredData& data : best.model->data()) {
+    std::map<std::pair<Observable, std::optional<double>>, Measurement> kinds;
+    for (const Measurement& one : data.measurements) kinds.emplace(std::pair(one.observable, one.wavelength_um), one);
+    for (auto& [kind, measurement] : kinds) {
+      MeasuredData fine = data;
+      fine.measurements.clear();
+      const std::vector<double> zeniths = fine_zeniths(data);
+      for (const double zenith : zeniths) {
+        measurement.theta_deg = zenith;
+        fine.measurements.push_back(measurement);
       }
-    } catch (const InputError&) {
-      continue;  // a scene without a bracket
+      std::vector<double> values;
+      try {
+        values = model_values(best, fine, options, evaluator);
+      } catch (const InputError&) {
+        continue;  // the set by itself does not take an end of a range
+      }
+      all.push_back({{"data", data.name},
+                     {"quantity", name_of(kind.first)},
+                     {"wavelength_um", kind.second ? Json(*kind.second) : Json(nullptr)},
+                     {"theta_deg", zeniths},
+                     {"model", values}});
     }
   }
   return all;
+}
+
+/// How far the model itself may be off: the largest distance of the fit from an end of its bracket.
+void add_model_gap(ReportBuilder& report, const Scene& fitted, const std::vector<MeasuredData>& sets,
+                   ModelEvaluator& evaluator) {
+  std::optional<double> gap, share;
+  for (const MeasuredData& data : sets) {
+    std::vector<double> zeniths;
+    for (const Measurement& one : data.measurements) zeniths.push_back(one.theta_deg);
+    const std::vector<PointResult> results = bracketed(fitted, data, zeniths, evaluator);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      const double dolp = results[i][Quantity::kDolp];
+      const double distance = std::max(results[i][Quantity::kDolpHigh] - dolp, dolp - results[i][Quantity::kDolpLow]);
+      if (!(distance >= 0.0)) continue;
+      gap = std::max(gap.value_or(0.0), distance);
+      if (data.has_uncertainties) share = std::max(share.value_or(0.0), distance / *data.measurements[i].uncertainty);
+    }
+  }
+  report.row_if(gap.has_value(), "model",
+                "may itself be off, with all bounces: its bracket reaches {:.2g} points of DOLP{} away",
+                kPoints * gap.value_or(0.0), share ? fmt::format(", {:.2g} uncertainties,", *share) : "");
+  report.value("model_gap", gap);
+  report.value("model_gap_in_uncertainties", share);
 }
 
 void add_numbers(Fit& found, const fit::FitResult& result) {
@@ -122,50 +209,59 @@ void add_numbers(Fit& found, const fit::FitResult& result) {
   found.degeneracies = result.degeneracies;
 }
 
+/// Fits all combinations that the scene has, and gives the best; `models` gets all, the best first. `begin` gets the
+/// first scene and gives the evaluator. Errors: InputError where the scene has none of them.
+Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const std::vector<MeasuredData>& data,
+             const FitOptions& options, const std::function<ModelEvaluator*(const SceneValues&)>& begin) {
+  ModelEvaluator* evaluator = nullptr;
+  Best best;
+  const std::vector<Settings> compared = combinations(options);
+  for (const Settings& settings : compared) {
+    ComparedModel& one = models.emplace_back();
+    one.settings = settings;
+    std::unique_ptr<fit::Model> model;
+    SceneValues own;
+    try {
+      own = with_settings(scene, settings);
+      model = std::make_unique<fit::Model>(own, data, options.vary);
+    } catch (const InputError& error) {
+      if (compared.size() == 1) throw;
+      one.refusal = error.what();
+      continue;
+    }
+    if (evaluator == nullptr) evaluator = begin(model->scene());
+    one.result = fit::fit(*model, *evaluator, options);
+    if (one.result && (!best.result || one.result->aic < best.result->aic)) {
+      best = {std::move(model), one.result, settings, own};
+    }
+  }
+  if (evaluator == nullptr) throw InputError(models.front().refusal);
+  std::ranges::stable_sort(models, {}, [](const ComparedModel& one) {
+    return one.result ? one.result->aic : std::numeric_limits<double>::infinity();
+  });
+  return best;
+}
+
 void write_fitted(const std::filesystem::path& path, const Scene& fitted) {
   write_text_atomically(path, fitted.toml(path.has_parent_path() ? path.parent_path() : "."));
 }
 
 }  // namespace
 
-Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, const FitOptions& options) {
-  return impl_->exclusively([&] {
+Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, const FitOptions& of_call) {
+  return impl().exclusively(of_call, [&](const FitOptions& options) {
     const auto start = std::chrono::steady_clock::now();
-    const SceneValues& own = scene.impl().scene;
     check_loss(options.loss, data);
-
     begin(options.progress, 1);
     std::vector<ComparedModel> models;
-    MomentsEvaluator* evaluator = nullptr;
-    Best best;
-    const std::vector<Settings> compared = combinations(options);
-    for (const Settings& settings : compared) {
-      ComparedModel& one = models.emplace_back();
-      one.settings = settings;
-      std::unique_ptr<fit::Model> model;
-      try {
-        model = std::make_unique<fit::Model>(with_settings(own, settings), data, options.vary);
-      } catch (const InputError& error) {
-        if (compared.size() == 1) throw;
-        one.refusal = error.what();
-        continue;
-      }
-      if (evaluator == nullptr) {
-        check_outputs(options, model->scene(), data);
-        evaluator = impl_->begin(model->scene());
-      }
-      one.result = fit::fit(*model, *evaluator, options);
-      if (one.result && (!best.result || one.result->aic < best.result->aic)) {
-        best = {std::move(model), one.result, settings};
-      }
-    }
-    if (evaluator == nullptr) throw InputError(models.front().refusal);
-    std::ranges::stable_sort(models, {}, [](const ComparedModel& one) {
-      return one.result ? one.result->aic : std::numeric_limits<double>::infinity();
+    ModelEvaluator* evaluator = nullptr;
+    const Best best = best_of(models, scene.impl().scene, data, options, [&](const SceneValues& first) {
+      check_outputs(options, first, data);
+      return evaluator = impl_->begin(first);
     });
 
     ReportBuilder report;
-    report.line("{}", key("title", own.title));
+    report.line("{}", key("title", scene.impl().scene.title));
     if (best.result) {
       report.row("data", "{} measured values of {} file{}", key("observations", best.model->observation_count()),
                  data.size(), data.size() == 1 ? "" : "s");
@@ -177,22 +273,21 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     report.value("has_minimum", best.result.has_value());
     report.row("starts", "{} descents, seed {}", key("starts", options.starts), key("seed", options.seed));
     report.value("loss", loss_names()[static_cast<std::size_t>(options.loss)]);
-    add_evaluation(report, evaluator->report(), seconds_since(start));
-    report.value("integrand_evaluations", evaluator->report().evaluations);
-    if (!best.result) return Fit{public_report(report, false), false, scene};
-
-    const Scene fitted = scene.with(best.settings());
-    if (!options.output.empty()) {
-      write_fitted(options.output, fitted);
-      report.row("written", "{}", key("output", options.output.string()));
-    }
-    if (!options.plot.empty()) {
+    const Scene fitted = best.result ? scene.with(best.settings()) : scene;
+    if (best.result) add_model_gap(report, fitted, data, *evaluator);
+    if (best.result && !options.output.empty()) write_fitted(options.output, fitted);
+    if (best.result && !options.plot.empty()) {
       const auto contours = fit::contours_of(*best.model, *evaluator, *best.result, options);
       if (contours) add_contours(report, *best.model, *contours);
       report.value("brackets", brackets(fitted, data, *evaluator));
+      report.value("curves", curves(best, options, *evaluator));
       draw_fit(report.json_text(), options.plot.string());
       report.row("picture", "{}", key("plot", options.plot.string()));
     }
+    add_evaluation(report, evaluator->report(), seconds_since(start));
+    report.value("integrand_evaluations", evaluator->report().evaluations);
+    if (!best.result) return Fit{public_report(report, false), false, scene};
+    if (!options.output.empty()) report.row("written", "{}", key("output", options.output.string()));
     Fit found{public_report(report, (best.result->status & kToleranceNotMet) == 0, options.output), true, fitted};
     add_numbers(found, *best.result);
     return found;

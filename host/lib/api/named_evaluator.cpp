@@ -1,4 +1,4 @@
-#include "api/named_evaluator.hpp"
+#include "api/evaluator_impl.hpp"
 
 #include <dolp/errors.hpp>
 #include <utility>
@@ -16,7 +16,7 @@ constexpr std::uint32_t kInteractiveTileInvocations = 2'048;
 
 }  // namespace
 
-std::unique_ptr<MomentsEvaluator> make_evaluator(const EvaluatorOptions& wanted, bool needs_double) {
+std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, bool needs_double) {
   const bool is_vulkan = wanted.evaluator == "vulkan";
   if (!is_vulkan && wanted.evaluator != "cpu" && wanted.evaluator != "reference") {
     throw InputError("evaluator " + wanted.evaluator + ": is not one of vulkan, cpu, reference");
@@ -25,7 +25,7 @@ std::unique_ptr<MomentsEvaluator> make_evaluator(const EvaluatorOptions& wanted,
     throw InputError("device " + wanted.device + ": needs the evaluator vulkan, and it is " + wanted.evaluator);
   }
   if (wanted.evaluator == "reference") return std::make_unique<ReferenceEvaluator>();
-  std::unique_ptr<MomentsEvaluator> evaluator;
+  std::unique_ptr<ModelEvaluator> evaluator;
   if (is_vulkan) {
     VulkanOptions options;
     options.device = wanted.device;
@@ -33,7 +33,7 @@ std::unique_ptr<MomentsEvaluator> make_evaluator(const EvaluatorOptions& wanted,
     if (wanted.is_interactive) options.max_tile_invocations = kInteractiveTileInvocations;
     evaluator = std::make_unique<VulkanEvaluator>(options);
   } else {
-    evaluator = std::make_unique<CpuEvaluator>(Precision::kAuto);
+    evaluator = std::make_unique<CpuEvaluator>();
   }
   return std::make_unique<InterpolatingEvaluator>(std::move(evaluator));
 }

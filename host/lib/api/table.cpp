@@ -1,16 +1,78 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <string_view>
+#include <utility>
+
 #include "api/reports.hpp"
 #include "api/results.hpp"
 #include "api/table_impl.hpp"
+#include "base/text.hpp"
 #include "run/lookup_run.hpp"
 #include "run/scene_run.hpp"
 #include "run/table_scene.hpp"
 #include "table/table_file.hpp"
+#include "table/values_hash.hpp"
 
 namespace dolp {
+namespace {
+
+void check_axes(const TableHead& table, const std::string& name) {
+  for (const Axis axis : kAllAxes) {
+    const AxisDescription& described = description_of(axis);
+    if (described.is_required && table.axes[axis].empty())
+      throw InputError(fmt::format("{}: the axis {} is missing", name, described.name));
+    for (const double value : table.axes[axis]) {
+      if (described.range.contains(value)) continue;
+      throw InputError(fmt::format("{}: {} = {}: out of range, a number in {}", name, described.name,
+                                   format_number(value), described.range.text()));
+    }
+  }
+}
+
+/// Refuses contents that do not fit together.
+/// Refuses attributes that a file cannot have.
+void check_attributes(const std::vector<Attribute>& attributes, const std::string& name) {
+  std::set<std::string_view> names;
+  for (const Attribute& attribute : attributes) {
+    const std::string& own = attribute.name;
+    if (own.empty() || own.find('/') != std::string::npos || !names.insert(own).second)
+      throw InputError(fmt::format("{}: attribute \"{}\": must have a name of its own without /", name, one_line(own)));
+  }
+}
+
+void check_values(const TableValues& table, const std::string& name) {
+  check_axes(table, name);
+  const auto check_size = [&](const char* variable, std::size_t size, std::size_t expected) {
+    if (size == expected) return;
+    throw InputError(fmt::format("{}: {} has {} values; must be {}", name, variable, size, expected));
+  };
+  for (const Quantity quantity : table.quantities())
+    check_size(description_of(quantity).name, table[quantity].size(), table.size());
+  if (!table.status.empty()) check_size("status", table.status.size(), table.size());
+  check_attributes(table.attributes, name);
+  for (const TableCurve& described : kTableCurves) {
+    const Curve& curve = table.*described.curve;
+    check_size(described.name, curve.values.size(), curve.wavelength_um.size());
+  }
+}
+
+/// A table that was cut at one value of an axis, and lost it, would be looked up with the scene's value.
+void check_lost_axes(const TableHead& table, const SceneValues& scene, const std::string& name) {
+  for (const Axis axis : kAllAxes) {
+    if (!table.axes[axis].empty() || scene.grid[axis].empty()) continue;
+    throw InputError(fmt::format("{}: the axis {} is missing, which its scene has; one value of it is enough", name,
+                                 description_of(axis).name));
+  }
+}
+
+}  // namespace
 
 const TableLookup& Table::Impl::lookup() const {
   std::call_once(is_made, [&] {
     scene = table_scene(table, name);
+    check_lost_axes(table, *scene, name);
     between.emplace(table, scene->accuracy.tolerance, name);
   });
   return *between;
@@ -20,9 +82,25 @@ Table Table::read(const std::filesystem::path& path) {
   return Table(std::make_shared<const Impl>(load_table(path.string()), path.string()));
 }
 
-const Axes& Table::axes() const { return impl_->table.axes; }
-const ResultColumns& Table::results() const { return impl_->table; }
-const std::string& Table::stokes_units() const { return impl_->table.stokes_units; }
+Table Table::of(TableValues values, const std::string& name) {
+  std::erase_if(values.attributes, [](const Attribute& attribute) {
+    return attribute.name == kConventions || attribute.name == kValuesHash;
+  });
+  check_values(values, name);
+  return Table(std::make_shared<const Impl>(std::move(values), name));
+}
+
+const TableValues& Table::values() const { return impl_->table; }
+
+std::vector<Attribute> Table::file_attributes() const {
+  const TableValues& table = impl_->table;
+  std::vector<Attribute> attributes = {{kConventions, kConventionsOfFiles}};
+  attributes.insert(attributes.end(), table.attributes.begin(), table.attributes.end());
+  const Quantities quantities = table.quantities();
+  const ValueSums sums = sums_of(table, quantities, {}, table.counts());
+  attributes.push_back({kValuesHash, values_hash(table, quantities, sums)});
+  return attributes;
+}
 
 Results Table::lookup(const std::vector<Column>& points, const Progress& progress) const {
   const TableLookup& between = impl_->lookup();

@@ -1,4 +1,4 @@
-// Growth of the objective around a minimum, over two parameters.
+// Growth of the objective around its minima, over two parameters.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,20 +11,25 @@
 
 namespace dolp::fit {
 
-/// Growth of the objective over two parameters, least over all others. Each value of the first has a row of values of
-/// the second around the bottom of the valley there, so that narrow and bent ones are seen.
+/// Where the objective, least over all other parameters, has grown to levels, as segments of a line: x and y of the
+/// beginning and of the end, values of two parameters.
 struct Contours {
-  std::array<std::size_t, 2> parameters{};  ///< positions
-  std::vector<double> first;                ///< values, one for each row
-  Eigen::MatrixXd second;                   ///< values, ascending along each row
-  Eigen::MatrixXd growth;                   ///< over the scale; NaN where the model has no value
+  std::array<std::size_t, 2> parameters{};               ///< positions
+  std::array<std::vector<Eigen::Vector4d>, 2> segments;  ///< of each level
+  std::size_t evaluations = 0;                           ///< parameter sets computed
 };
 /// The growth whose contours contain 68.27 % and 95 % of all pairs: chi^2 with two degrees of freedom.
 inline constexpr std::array kContourLevels = {2.2957, 5.9915};
 
-/// Contours of the two parameters of the largest correlation, around the best minimum, wider than their 95 % intervals,
-/// within their ranges. None where no correlation is known. Errors: those of the evaluator; Cancelled.
-std::optional<Contours> contours_of(const Model& model, MomentsEvaluator& evaluator, const FitResult& result,
+/// Contours of the two parameters of the largest correlation, within their ranges. None where no correlation is known.
+///
+/// The objective is computed at the nodes of a grid along the valley's axes. The nodes begin at the minima and the
+/// points of the profiles, and spread as far as the growth stays below the higher level. Each begins at the bottom of
+/// the valley beside its lowest neighbour; one to which derivatives at another neighbour foretell a lower growth
+/// descends from there too. Between nodes the residuals are interpolated, so that valleys narrower than a cell are
+/// seen. As long as it costs no more parameter sets than the fit, the grid becomes finer where residuals bend. Errors:
+/// those of the evaluator; Cancelled.
+std::optional<Contours> contours_of(const Model& model, ModelEvaluator& evaluator, const FitResult& result,
                                     const FitOptions& options);
 
 }  // namespace dolp::fit

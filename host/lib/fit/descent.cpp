@@ -1,200 +1,272 @@
 #include "fit/descent.hpp"
 
-#include <ceres/ceres.h>
-#include <glog/logging.h>
-
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
-#include <memory>
 #include <utility>
-#include <vector>
 
 namespace dolp::fit {
 namespace {
 
+// Levenberg's damping is the scale over the radius. Marquardt's, by the derivatives, would allow leaps along directions
+// that the data hardly constrain. The rules of the radius are those of Nielsen (1999).
 constexpr double kLeastStepLength = 1e-7;  // of coordinates in [0, 1]
 constexpr double kLeastDecrease = 1e-8;    // of the objective, relative
+constexpr double kLeastRatio = 1e-3;       // of the decrease to the promised one: less is no step
+constexpr double kForetoldRatio = 0.5;     // from which on derivatives may follow the steps
+constexpr double kLeastRadius = 1e-8;
+constexpr double kMostRadius = 1e8;
+constexpr double kRadiusOfNeighbours = 1.0;
+constexpr double kBent = 0.05;  // of the squared change of the residuals: less than that off, a way is straight
 
-std::unique_ptr<ceres::LossFunction> loss_function(Loss loss) {
+/// A robust loss and its derivative at a squared residual. Widths are those of 95 % efficiency for normal errors.
+std::pair<double, double> loss_of(double square, Loss loss) {
   switch (loss) {
     case Loss::kSquares:
-      return nullptr;
-    case Loss::kHuber:
-      return std::make_unique<ceres::HuberLoss>(1.345);
-    case Loss::kSoftL1:
-      return std::make_unique<ceres::SoftLOneLoss>(1.0);
-    case Loss::kCauchy:
-      return std::make_unique<ceres::CauchyLoss>(2.385);
-    case Loss::kTukey:
-      return std::make_unique<ceres::TukeyLoss>(4.685);
+      break;
+    case Loss::kHuber: {
+      constexpr double kWidth = 1.345;
+      const double length = std::sqrt(square);
+      if (length <= kWidth) break;
+      return {2.0 * kWidth * length - kWidth * kWidth, kWidth / length};
+    }
+    case Loss::kSoftL1: {
+      const double root = std::sqrt(1.0 + square);
+      return {2.0 * (root - 1.0), 1.0 / root};
+    }
+    case Loss::kCauchy: {
+      constexpr double kSquare = 2.385 * 2.385;
+      return {kSquare * std::log1p(square / kSquare), 1.0 / (1.0 + square / kSquare)};
+    }
+    case Loss::kTukey: {
+      constexpr double kSquare = 4.685 * 4.685;
+      const double rest = std::max(0.0, 1.0 - square / kSquare);
+      return {kSquare / 3.0 * (1.0 - rest * rest * rest), rest * rest};
+    }
   }
-  return nullptr;
+  return {square, 1.0};
 }
 
-/// All residuals and derivatives of a step, computed together before Ceres asks for each of them.
-class Batch final : public ceres::EvaluationCallback {
- public:
-  Batch(Residuals& residuals, Linearisation start)
-      : coordinates(start.at), residuals_(residuals), known_(std::move(start)), now_(known_) {}
+/// A step that ends on a bound may round to a point next to it.
+bool is_on_bound(double coordinate) {
+  constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
+  return coordinate <= kRounding || coordinate >= 1.0 - kRounding;
+}
 
-  Eigen::VectorXd coordinates;  ///< Ceres writes the point here
-  std::exception_ptr failure;   ///< of an evaluation; Ceres sees none
+/// `step`, which moves held coordinates, with steps of the others to the least sum of squares within the bounds.
+Eigen::VectorXd bounded_step(const Linearisation& where, Eigen::VectorXd step, const std::vector<std::size_t>& held,
+                             double damping, const Eigen::VectorXd& weights) {
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index j = 0; j < step.size(); ++j) {
+    if (std::ranges::find(held, static_cast<std::size_t>(j)) == held.end()) free.push_back(j);
+  }
+  const Eigen::Index rows = where.residuals.size();
+  while (!free.empty()) {
+    const auto count = static_cast<Eigen::Index>(free.size());
+    for (const Eigen::Index j : free) step[j] = 0.0;
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows + count, count);
+    matrix.bottomRows(count).diagonal().setConstant(std::sqrt(damping));
+    matrix.topRows(rows) = weights.asDiagonal() * where.jacobian(Eigen::all, free);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(rows + count);
+    right.head(rows) = -weights.cwiseProduct(where.residuals + where.jacobian * step);
+    step(free) = matrix.householderQr().solve(right);
+    // Parameters that leave the bounds stay on them, and the others are solved again.
+    const auto leaves = [&](Eigen::Index j) {
+      const double to = where.at[j] + step[j];
+      if (to >= 0.0 && to <= 1.0) return false;
+      step[j] = std::clamp(to, 0.0, 1.0) - where.at[j];
+      return true;
+    };
+    if (std::erase_if(free, leaves) == 0) break;
+  }
+  return step;
+}
 
-  void PrepareForEvaluation(bool wants_jacobian, bool /*is_new*/) override {
-    if (failure) return;
-    try {
-      wants_jacobian ? prepare_linearised() : prepare();
-    } catch (...) {
-      failure = std::current_exception();
+/// The Jacobian of `near` at a point whose residuals are known, by Broyden's update.
+Linearisation moved(const Linearisation& near, Linearisation to) {
+  to.jacobian = near.jacobian;
+  to.steps = near.steps;
+  const Eigen::VectorXd step = to.at - near.at;
+  if (step.squaredNorm() > 0.0 && to.residuals.allFinite()) {
+    to.jacobian += (to.residuals - near.residuals - near.jacobian * step) * step.transpose() / step.squaredNorm();
+  }
+  return to;
+}
+
+/// A descent on its way.
+struct Walk {
+  Minimum* minimum;
+  bool is_stale;        ///< its derivatives are not those of its point
+  bool is_updated;      ///< its derivatives are those of another point, which followed the steps
+  double shrink = 2.0;  ///< of the radius, where the next step fails
+  bool is_done = false;
+  double promised = 0.0;
+  Eigen::VectorXd point = {};
+
+  /// Chooses the next point to try; the descent is done where derivatives promise too little there.
+  void aim(const DescentOptions& options) {
+    const Linearisation& where = minimum->where;
+    if (!where.jacobian.allFinite()) minimum->objective = std::numeric_limits<double>::infinity();
+    is_done = !std::isfinite(minimum->objective);
+    if (is_done) return;
+    // A parameter leaves a bound when the others are done: where the model is even in it, as in k at 0, differences
+    // promise much that is not there.
+    std::vector<std::size_t> held = minimum->held;
+    for (Eigen::Index j = 0; j < where.at.size(); ++j) {
+      if (is_on_bound(where.at[j])) held.push_back(static_cast<std::size_t>(j));
     }
-    is_valid_ = !failure && now_.residuals.allFinite() && (!wants_jacobian || now_.jacobian.allFinite());
+    aim(options, held);
+    if (is_done && held.size() > minimum->held.size()) aim(options, minimum->held);
+    minimum->has_converged = is_done;
   }
 
-  bool is_valid() const { return is_valid_; }
-  const Linearisation& now() const { return now_; }
-  /// The last point at which Ceres asked for derivatives: that of the last step taken.
-  const Linearisation& known() const { return known_; }
-
- private:
-  bool has(const Linearisation& point) const { return point.residuals.size() > 0 && point.at == coordinates; }
-
-  void prepare() {
-    if (!has(now_)) now_ = {coordinates, residuals_.at({coordinates}).front(), {}};
+  void aim(const DescentOptions& options, const std::vector<std::size_t>& held) {
+    const Linearisation& where = minimum->where;
+    const Eigen::VectorXd weights = loss_weights(where.residuals, options.loss).cwiseSqrt();
+    const Eigen::VectorXd step =
+        bounded_step(where, Eigen::VectorXd::Zero(where.at.size()), held, options.scale / minimum->radius, weights);
+    point = (where.at + step).cwiseMax(0.0).cwiseMin(1.0);
+    promised = weights.cwiseProduct(where.residuals).squaredNorm() -
+               weights.cwiseProduct(where.residuals + where.jacobian * step).squaredNorm();
+    is_done = !(promised >= options.least_gain * options.scale) || step.norm() <= kLeastStepLength;
   }
 
-  void prepare_linearised() {
-    if (known_.at != coordinates || known_.jacobian.size() == 0) known_ = residuals_.linearised(coordinates);
-    now_ = known_;
-  }
-
-  Residuals& residuals_;
-  Linearisation known_;
-  Linearisation now_;
-  bool is_valid_ = false;
-};
-
-/// One residual of the batch.
-class OneResidual final : public ceres::CostFunction {
- public:
-  OneResidual(const Batch& batch, Eigen::Index row) : batch_(batch), row_(row) {
-    set_num_residuals(1);
-    mutable_parameter_block_sizes()->assign(static_cast<std::size_t>(batch.coordinates.size()), 1);
-  }
-  bool Evaluate(double const* const* /*parameters*/, double* residual, double** jacobians) const override {
-    if (!batch_.is_valid()) return false;
-    *residual = batch_.now().residuals[row_];
-    for (Eigen::Index j = 0; jacobians != nullptr && j < batch_.coordinates.size(); ++j) {
-      if (jacobians[j] != nullptr) *jacobians[j] = batch_.now().jacobian(row_, j);
+  /// Goes to a point that was tried, or takes a shorter step next time.
+  void judge(Linearisation tried, const DescentOptions& options) {
+    const double found = objective(tried.residuals, options.loss);
+    const double ratio = (minimum->objective - found) / promised;
+    if (!(ratio > kLeastRatio)) {
+      minimum->radius /= std::exchange(shrink, 2.0 * shrink);
+      minimum->has_converged = is_done = minimum->radius < kLeastRadius;
+      is_stale = is_updated;
+      return;
     }
-    return true;
+    minimum->where = moved(minimum->where, std::move(tried));
+    minimum->has_converged = is_done = minimum->objective - found < kLeastDecrease * minimum->objective;
+    minimum->objective = found;
+    minimum->radius =
+        std::min(kMostRadius, minimum->radius / std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * ratio - 1.0, 3)));
+    shrink = 2.0;
+    is_updated = options.secant_below && ratio > kForetoldRatio && ratio < 1.0 / kForetoldRatio;
+    is_stale = !is_updated;
   }
-
- private:
-  const Batch& batch_;
-  Eigen::Index row_;
 };
 
-/// Ends a descent whose evaluation has failed, or for which derivatives predict too little gain.
-class Watch final : public ceres::IterationCallback {
- public:
-  Watch(const Batch& batch, double least_gain) : batch_(batch), least_cost_(0.5 * least_gain) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& step) override {
-    if (batch_.failure) return ceres::SOLVER_ABORT;
-    const double promised = step.cost_change / step.relative_decrease;
-    return step.iteration > 0 && promised < least_cost_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+/// Fresh derivatives for all walks that need them, which then aim.
+void refresh(Residuals& residuals, std::vector<Walk>& walks, const DescentOptions& options) {
+  std::vector<Linearisation*> stale;
+  for (Walk& walk : walks) {
+    if (walk.is_stale) stale.push_back(&walk.minimum->where);
   }
+  residuals.linearise(stale);
+  for (Walk& walk : walks) {
+    if (!std::exchange(walk.is_stale, false)) continue;
+    walk.is_updated = false;
+    walk.aim(options);
+  }
+}
 
- private:
-  const Batch& batch_;
-  double least_cost_;
-};
-
-ceres::Solver::Options solver_options(const DescentOptions& options) {
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::DENSE_QR;
-  solver.logging_type = ceres::SILENT;
-  solver.max_num_iterations = options.most_steps;
-  solver.function_tolerance = kLeastDecrease;
-  solver.parameter_tolerance = kLeastStepLength;
-  solver.gradient_tolerance = 0.0;
-  // A step that leaves the bounds is cut there. A line search along it would accept its small gain as a success, and
-  // progress would stall.
-  solver.max_num_line_search_step_size_iterations = 0;
-  solver.min_trust_region_radius = 1e-8;
-  // Levenberg's damping: with a radius of 1 it costs one standard deviation to move a parameter over its whole range.
-  // Marquardt's damping would allow leaps along directions that the data hardly constrain.
-  solver.jacobi_scaling = false;
-  solver.min_lm_diagonal = solver.max_lm_diagonal = options.scale;
-  solver.initial_trust_region_radius = options.radius;
-  return solver;
+/// Fresh derivatives for the walks that their last step ended, where DescentOptions ask for them.
+void finish(Residuals& residuals, std::vector<Walk>& walks, const DescentOptions& options) {
+  std::vector<Linearisation*> guessed;
+  for (Walk& walk : walks) {
+    const bool is_guess = walk.is_stale || walk.is_updated;
+    if (walk.is_done && is_guess && walk.minimum->objective > options.secant_below.value_or(0.0))
+      guessed.push_back(&walk.minimum->where);
+  }
+  residuals.linearise(guessed);
 }
 
 }  // namespace
 
 double objective(const Eigen::VectorXd& residuals, Loss loss) {
-  const std::unique_ptr<ceres::LossFunction> function = loss_function(loss);
-  if (!function) return residuals.squaredNorm();
+  if (!residuals.allFinite()) return std::numeric_limits<double>::infinity();
   double sum = 0.0;
-  for (const double residual : residuals) {
-    std::array<double, 3> rho{};
-    function->Evaluate(residual * residual, rho.data());
-    sum += rho[0];
-  }
+  for (const double residual : residuals) sum += loss_of(residual * residual, loss).first;
   return sum;
 }
 
 Eigen::VectorXd loss_weights(const Eigen::VectorXd& residuals, Loss loss) {
-  Eigen::VectorXd weights = Eigen::VectorXd::Ones(residuals.size());
-  const std::unique_ptr<ceres::LossFunction> function = loss_function(loss);
-  for (Eigen::Index i = 0; function && i < residuals.size(); ++i) {
-    std::array<double, 3> rho{};
-    function->Evaluate(residuals[i] * residuals[i], rho.data());
-    weights[i] = rho[1];
-  }
-  return weights;
+  return residuals.unaryExpr([loss](double residual) { return loss_of(residual * residual, loss).second; });
 }
 
-Minimum descend(Residuals& residuals, const Linearisation& start, const DescentOptions& options) {
-  if (static_cast<std::size_t>(start.at.size()) == options.held.size()) {  // nothing is left to move
-    Minimum minimum{{start.at, residuals.at({start.at}).front(), start.jacobian}};
-    minimum.objective = objective(minimum.where.residuals, options.loss);
-    minimum.has_converged = std::isfinite(minimum.objective);
-    return minimum;
+bool is_straight(const Linearisation& from, const Linearisation& to, double scale) {
+  const Eigen::VectorXd foretold = from.residuals + from.jacobian * (to.at - from.at);
+  return (foretold - to.residuals).squaredNorm() < kBent * ((from.residuals - to.residuals).squaredNorm() + scale);
+}
+
+void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptions& options) {
+  std::vector<Eigen::VectorXd> unknown;
+  for (const Minimum& one : all) {
+    if (one.where.residuals.size() == 0) unknown.push_back(one.where.at);
   }
-  // Silences Ceres, which would report every point without a value.
-  [[maybe_unused]] static const int quiet = FLAGS_minloglevel = google::GLOG_FATAL;
-  Batch batch(residuals, start);
-  ceres::Problem::Options ownership;
-  ownership.evaluation_callback = &batch;
-  ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem problem(ownership);
-  const std::unique_ptr<ceres::LossFunction> loss = loss_function(options.loss);
-  std::vector<double*> blocks;
-  for (double& coordinate : batch.coordinates) blocks.push_back(&coordinate);
-  for (std::size_t i = 0; i < residuals.model().observation_count(); ++i) {
-    problem.AddResidualBlock(new OneResidual(batch, static_cast<Eigen::Index>(i)), loss.get(), blocks);
+  std::vector<Linearisation> known = residuals.at(unknown);
+  auto next = known.begin();
+  std::vector<Walk> walks;
+  for (Minimum& one : all) {
+    if (one.where.residuals.size() == 0) one.where = std::move(*next++);
+    one.objective = objective(one.where.residuals, options.loss);
+    const bool is_free = static_cast<std::size_t>(one.where.at.size()) > one.held.size();
+    one.has_converged = !is_free && std::isfinite(one.objective);
+    if (!is_free || !std::isfinite(one.objective)) continue;
+    walks.push_back({&one, one.where.jacobian.size() == 0, options.secant_below.has_value()});
   }
-  for (std::size_t j = 0; j < blocks.size(); ++j) {
-    problem.SetParameterLowerBound(blocks[j], 0, 0.0);
-    problem.SetParameterUpperBound(blocks[j], 0, 1.0);
-    if (std::ranges::count(options.held, j) > 0) problem.SetParameterBlockConstant(blocks[j]);
+  const auto is_done = [](const Walk& walk) { return walk.is_done; };
+  for (int i = 0; i < options.most_steps && !walks.empty(); ++i) {
+    for (Walk& walk : walks) {
+      if (walk.is_stale) continue;
+      walk.aim(options);
+      walk.is_stale = walk.is_done && walk.is_updated && walk.minimum->objective > options.secant_below.value_or(0.0);
+    }
+    refresh(residuals, walks, options);
+    std::erase_if(walks, is_done);
+    std::vector<Eigen::VectorXd> points;
+    for (const Walk& walk : walks) points.push_back(walk.point);
+    std::vector<Linearisation> tried = residuals.at(points);
+    for (std::size_t k = 0; k < walks.size(); ++k) walks[k].judge(std::move(tried[k]), options);
+    finish(residuals, walks, options);
+    std::erase_if(walks, is_done);
   }
-  Watch watch(batch, options.least_gain * options.scale);
-  ceres::Solver::Options solver = solver_options(options);
-  solver.callbacks.push_back(&watch);
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
-  if (batch.failure) std::rethrow_exception(batch.failure);
-  Minimum minimum;
-  minimum.where = batch.known();
-  minimum.radius = summary.iterations.empty() ? options.radius : summary.iterations.back().trust_region_radius;
-  minimum.has_converged =
-      summary.termination_type == ceres::CONVERGENCE || summary.termination_type == ceres::USER_SUCCESS;
-  minimum.objective = summary.IsSolutionUsable() ? objective(minimum.where.residuals, options.loss)
-                                                 : std::numeric_limits<double>::infinity();
-  return minimum;
+  refresh(residuals, walks, options);
+}
+
+std::pair<Eigen::VectorXd, double> foretell(const Neighbour& neighbour, double scale) {
+  const Linearisation& near = neighbour.near->where;
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(near.at.size());
+  for (const std::size_t one : neighbour.held) {
+    const auto j = static_cast<Eigen::Index>(one);
+    step[j] = neighbour.to[j] - near.at[j];
+  }
+  if (near.jacobian.size() == 0) return {near.at + step, std::numeric_limits<double>::infinity()};
+  step = bounded_step(near, step, neighbour.held, scale / kRadiusOfNeighbours,
+                      Eigen::VectorXd::Ones(near.residuals.size()));
+  // Where the model is even in a parameter, as in k at 0, a bound is a stationary point that no descent leaves. Others
+  // than the held come half the way to it at most.
+  for (Eigen::Index j = 0; j < step.size(); ++j) {
+    const bool is_held = std::ranges::find(neighbour.held, static_cast<std::size_t>(j)) != neighbour.held.end();
+    const double to = near.at[j] + step[j];
+    if (!is_held && is_on_bound(to)) step[j] *= 0.5;
+  }
+  return {(near.at + step).cwiseMax(0.0).cwiseMin(1.0), (near.residuals + near.jacobian * step).squaredNorm()};
+}
+
+std::vector<Minimum> follow(Residuals& residuals, const std::vector<Neighbour>& all, const DescentOptions& options) {
+  std::vector<Eigen::VectorXd> points;
+  for (const Neighbour& one : all) points.push_back(foretell(one, options.scale).first);
+  std::vector<Linearisation> found = residuals.at(points);
+  std::vector<Minimum> minima;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Linearisation& near = all[i].near->where;
+    const bool is_foretold = near.jacobian.size() > 0 && is_straight(near, found[i], options.scale);
+    Minimum& one = minima.emplace_back();
+    one.where = is_foretold ? moved(near, std::move(found[i])) : std::move(found[i]);
+    one.where.steps = near.steps;
+    one.held = all[i].held;
+    one.radius = kRadiusOfNeighbours;
+  }
+  descend(residuals, minima, options);
+  return minima;
 }
 
 }  // namespace dolp::fit

@@ -1,17 +1,19 @@
-// Descent from one point of the parameters to the minimum below it.
+// Descents from points of the parameters to the minima below them, all at once.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstddef>
 #include <dolp/fit.hpp>
+#include <limits>
 #include <optional>
-#include <string>
+#include <utility>
+#include <vector>
 
 #include "fit/residuals.hpp"
 
 namespace dolp::fit {
 
-/// The sum over all residuals; without a robust loss chi^2.
+/// The sum over all residuals, without a robust loss chi^2; infinite where one is not finite.
 double objective(const Eigen::VectorXd& residuals, Loss loss);
 
 /// The weight of each residual in the normal equations, at most 1.
@@ -19,23 +21,42 @@ Eigen::VectorXd loss_weights(const Eigen::VectorXd& residuals, Loss loss);
 
 struct DescentOptions {
   Loss loss = Loss::kSquares;
-  double scale = 1.0;                  ///< a change of the objective by one standard deviation, at least about
-  std::vector<std::size_t> held = {};  ///< parameters that stay
+  double scale = 1.0;  ///< a change of the objective by one standard deviation, at least about
   int most_steps = 40;
-  double radius = 0.1;       ///< of the trust region at first
-  double least_gain = 1e-4;  ///< of the scale: a descent ends where derivatives promise less
+  double least_gain = 1e-5;  ///< of the scale: a descent ends where derivatives promise less
+  /// Derivatives follow the steps as long as they foretell them (Broyden's update), and descents below this objective
+  /// end with such derivatives; those above end with fresh ones. None: all are fresh.
+  std::optional<double> secant_below = {};
 };
 
+/// The beginning of a descent, and its end.
 struct Minimum {
-  Linearisation where;
-  double objective = 0.0;
+  Linearisation where;                 ///< coordinates; residuals and Jacobian where they are known already
+  std::vector<std::size_t> held = {};  ///< parameters that stay
+  double objective = 0.0;              ///< infinite where the model has no value
   bool has_converged = false;
-  double radius = 0.0;  ///< of the trust region at last, with which a descent may go on
+  double radius = 0.1;  ///< of the trust region: with 1, to move over a whole range costs one standard deviation
 };
 
-/// Levenberg-Marquardt within the bounds (Ceres Solver): a call of the model for each step that is tried, and a batch
-/// of all differences for each that is taken. `start` has coordinates; residuals and Jacobian where they are known
-/// already. Errors: those of the evaluator; Cancelled.
-Minimum descend(Residuals& residuals, const Linearisation& start, const DescentOptions& options);
+/// Levenberg-Marquardt within the bounds: in each step one batch of the points that are tried, and one of all
+/// differences. Errors: those of the evaluator; Cancelled.
+void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptions& options);
+
+/// Coordinates that are held at new values, beside a known point from which the others follow.
+struct Neighbour {
+  const Minimum* near;
+  std::vector<std::size_t> held;
+  Eigen::VectorXd to;  ///< those of `held` count
+};
+
+/// The least objective at held coordinates: derivatives lead the other parameters to the bottom of the valley there,
+/// and they descend.
+std::vector<Minimum> follow(Residuals& residuals, const std::vector<Neighbour>& all, const DescentOptions& options);
+
+/// Where derivatives lead: the coordinates, and what the objective would be there without a robust loss.
+std::pair<Eigen::VectorXd, double> foretell(const Neighbour& neighbour, double scale);
+
+/// True where the derivatives at a point foretell the residuals at another one.
+bool is_straight(const Linearisation& from, const Linearisation& to, double scale);
 
 }  // namespace dolp::fit

@@ -8,13 +8,13 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "base/text.hpp"
 #include "fit/profile.hpp"
 #include "fit/search.hpp"
-#include "fit/together.hpp"
 
 namespace dolp::fit {
 namespace {
@@ -23,6 +23,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLevel68 = 0.682689492137086;
 constexpr double kLevel95 = 0.95;
 constexpr double kAtBound = 1e-6;  // of coordinates
+constexpr double kAtRange = 1e-9;  // of coordinates: an interval ends with the range
 
 constexpr double kFineShare = 1e-2;    // of an uncertainty: the model's tolerance
 constexpr double kCoarseShare = 0.25;  // that of the search
@@ -36,7 +37,6 @@ constexpr double kNullShare = 1e-4;     // of the largest singular value: a dire
 constexpr double kUnseen = 1e-3;        // standard deviations: a parameter whose range changes no residual by more
 constexpr double kInDirection = 0.1;    // of the largest component: a parameter that a direction names
 constexpr int kMostRestarts = 4;
-constexpr double kGuessedDeviation = 0.1;  // in coordinates, of a parameter at its bound
 
 double least_uncertainty(const Model& model) {
   double least = std::numeric_limits<double>::infinity();
@@ -151,30 +151,49 @@ std::string words_of(const Direction& direction, const std::vector<FitRange>& pa
                      fmt::join(falling, " and "), falling.size() == 1 ? "falls" : "fall");
 }
 
+FitInterval interval_of(const FitRange& parameter, const std::vector<Stretch>& stretches) {
+  FitInterval interval;
+  for (const Stretch& one : stretches) {
+    std::optional<double> low, high;
+    if (one.low > kAtRange) low = parameter.at(one.low);
+    if (one.high < 1.0 - kAtRange) high = parameter.at(one.high);
+    interval.pieces.emplace_back(low, high);
+  }
+  if (stretches.empty()) return interval;
+  interval.low = interval.pieces.front().first;
+  interval.high = interval.pieces.back().second;
+  return interval;
+}
+
 /// One fit while it runs.
 class Fit {
  public:
-  Fit(const Model& model, MomentsEvaluator& evaluator, const FitOptions& options)
+  Fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options)
       : model_(model),
         options_(options),
         poll_([this](std::size_t, std::size_t) { return !options_.progress || options_.progress(done_, total_); }),
         coarse_(model, coarse_tolerance(model), Differences::kForward, evaluator, poll_),
         fine_(model, fine_tolerance(model), Differences::kCentral, evaluator, poll_),
-        profile_(model, fine_tolerance(model), Differences::kForward, evaluator, poll_),
-        total_(1 + 2 * model.parameters().size()) {}
+        profile_(model, fine_tolerance(model), Differences::kForward, evaluator, poll_) {}
 
   std::optional<FitResult> run() {
-    const SearchOptions search{options_.starts, options_.seed, options_.loss, model_.has_uncertainties(),
-                               guess_scale()};
+    SearchOptions search{options_.starts, options_.seed, options_.loss, model_.has_uncertainties(), guess_scale()};
+    search.count = [this](std::size_t done, std::size_t total) { count(done, total); };
+    if (options_.phase) options_.phase("descents of the search");
     minima_ = find_minima(coarse_, fine_, search);
     if (minima_.empty()) return std::nullopt;
-    for (int i = 0; i < kMostRestarts && find_intervals(); ++i) {
+    for (int i = 0; find_intervals(i < kMostRestarts); ++i) {
     }
     describe();
     return std::move(result_);
   }
 
  private:
+  void count(std::size_t done, std::size_t total) {
+    done_ = done;
+    total_ = total;
+  }
+
   std::size_t freedom() const { return model_.observation_count() - model_.parameters().size(); }
 
   /// True where the growth of the objective has a scale to be measured with.
@@ -210,12 +229,11 @@ class Fit {
 
   /// The intervals: around the best minimum, and around others that the data do not exclude. True where a profile led
   /// to a lower minimum, which then is the best.
-  bool find_intervals() {
+  bool find_intervals(bool may_restart) {
     result_ = {};
     result_.scale = find_scale(minima_.front());
     const Minimum best = minima_.front();
     covariance_ = covariance_of(best, options_.loss, result_.scale);
-    done_ = 1;
     for (std::size_t j = 0; j < model_.parameters().size(); ++j) {
       const FitRange& parameter = model_.parameters()[j];
       const auto index = static_cast<Eigen::Index>(j);
@@ -226,52 +244,23 @@ class Fit {
       const double deviation = std::sqrt(covariance_.of_coordinates(index, index));
       if (has_scale() && std::isfinite(deviation)) fitted.standard_error = deviation * parameter.slope(fitted.value);
     }
+    result_.seen = {best};
     if (!has_scale()) return false;
-    for (std::size_t i = 0; i < minima_.size(); ++i) {
-      const double excess = (minima_[i].objective - best.objective) / result_.scale;
-      if (excess < rises()[1] && widen_intervals(minima_[i], excess, i == 0)) return true;
+    if (options_.phase) options_.phase("sides of the intervals");
+    ProfileOptions options{rises(), result_.scale, options_.loss, {}};
+    options.count = [this](std::size_t done, std::size_t total) { count(done, total); };
+    std::vector<Minimum> near;
+    for (const Minimum& one : minima_) {
+      if (one.objective < best.objective + rises()[1] * result_.scale) near.push_back(one);
     }
+    Profiles profiles = profiles_of(profile_, near, options);
+    if (may_restart && profiles.lower && take(*profiles.lower)) return true;
+    for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
+      result_.parameters[j].interval_68 = interval_of(model_.parameters()[j], profiles.stretches[j][0]);
+      result_.parameters[j].interval_95 = interval_of(model_.parameters()[j], profiles.stretches[j][1]);
+    }
+    std::ranges::move(profiles.seen, std::back_inserter(result_.seen));
     return false;
-  }
-
-  /// Widens all intervals to those around a minimum that lies higher than the best by `excess`. True where it is the
-  /// best and a profile led to a lower one.
-  bool widen_intervals(const Minimum& minimum, double excess, bool is_best) {
-    const Eigen::MatrixXd covariance = covariance_of(minimum, options_.loss, result_.scale).of_coordinates;
-    std::vector<ProfileSide> sides(2 * model_.parameters().size());
-    run_together(profile_, sides.size(), [&](Residuals& own, std::size_t i) {
-      const auto index = static_cast<Eigen::Index>(i / 2);
-      const double variance = covariance(index, index);
-      const double deviation = std::isnan(variance) ? kGuessedDeviation : std::sqrt(variance);
-      sides[i] = profile_side(own, minimum, i / 2, direction_of(i), deviation,
-                              {rises()[0] - excess, rises()[1] - excess}, result_.scale, options_.loss);
-    });
-    done_ = std::min(done_ + sides.size(), total_);
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-      if (sides[i].lower) {
-        // Toward a minimum that is lower anyway its own interval goes on.
-        if (is_best && take(*sides[i].lower)) return true;
-        continue;
-      }
-      FitParameter& fitted = result_.parameters[i / 2];
-      if (excess < rises()[0]) widen(fitted.interval_68, i / 2, direction_of(i), sides[i].ends[0], is_best);
-      widen(fitted.interval_95, i / 2, direction_of(i), sides[i].ends[1], is_best);
-    }
-    return false;
-  }
-
-  /// The direction of a side of a profile.
-  static int direction_of(std::size_t side) { return side % 2 == 0 ? -1 : 1; }
-
-  void widen(FitInterval& interval, std::size_t parameter, int direction, const IntervalEnd& end, bool is_first) const {
-    std::optional<double>& known = direction < 0 ? interval.low : interval.high;
-    if (!is_first && !known) return;  // open already
-    if (!end) {
-      known.reset();
-      return;
-    }
-    const double value = model_.parameters()[parameter].at(*end);
-    known = is_first ? value : direction < 0 ? std::min(*known, value) : std::max(*known, value);
   }
 
   /// Descends from a point; true where that gives the new best minimum.
@@ -279,7 +268,10 @@ class Fit {
     DescentOptions descent;
     descent.loss = options_.loss;
     descent.scale = result_.scale;
-    Minimum bottom = descend(fine_, {lower.where.at, {}, {}}, descent);
+    std::vector<Minimum> bottoms(1);
+    bottoms.front().where.at = lower.where.at;
+    descend(fine_, bottoms, descent);
+    Minimum& bottom = bottoms.front();
     if (!bottom.has_converged || bottom.objective >= minima_.front().objective) return false;
     if (bottom.objective > minima_.front().objective - result_.scale) minima_.erase(minima_.begin());  // the same
     minima_.insert(minima_.begin(), std::move(bottom));
@@ -288,7 +280,7 @@ class Fit {
 
   void describe() {
     const Minimum& best = minima_.front();
-    const Prediction prediction = fine_.predicted(best.where.at);
+    const Prediction prediction = fine_.predict({best.where.at}).front();
     result_.correlation = correlation_of(covariance_.of_coordinates);
     result_.chi_square = best.objective;
     result_.degrees_of_freedom = freedom();
@@ -305,7 +297,7 @@ class Fit {
     result_.tolerance = fine_.tolerance();
     result_.status = prediction.status;
     result_.residuals = -best.where.residuals;
-    result_.predicted = fine_.observed(prediction);
+    result_.predicted = fine_.observed(prediction.components);
     result_.numerical_error = prediction.error.cwiseProduct(fine_.weights()).maxCoeff() / std::sqrt(result_.scale);
     result_.evaluations = coarse_.evaluations() + fine_.evaluations() + profile_.evaluations();
     name_degeneracies();
@@ -342,7 +334,7 @@ class Fit {
   const FitOptions& options_;
   Progress poll_;
   Residuals coarse_, fine_, profile_;
-  std::size_t done_ = 0, total_;
+  std::size_t done_ = 0, total_ = 1;
   std::vector<Minimum> minima_;
   Covariance covariance_;
   FitResult result_;
@@ -350,7 +342,7 @@ class Fit {
 
 }  // namespace
 
-std::optional<FitResult> fit(const Model& model, MomentsEvaluator& evaluator, const FitOptions& options) {
+std::optional<FitResult> fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options) {
   return Fit(model, evaluator, options).run();
 }
 

@@ -39,6 +39,7 @@ struct FitResult {
   Eigen::VectorXd residuals;              ///< (measured - model) / uncertainty; without uncertainties measured - model
   Eigen::VectorXd predicted;              ///< the model's values
   std::size_t evaluations = 0;            ///< parameter sets for which the model was computed
+  std::vector<Minimum> seen;              ///< the best minimum, and points of the profiles
   double aic = 0.0;                       ///< Akaike's information criterion, up to a constant of the data
   double bic = 0.0;                       ///< Bayes' information criterion, likewise
 };
@@ -46,6 +47,6 @@ struct FitResult {
 /// Fits the model to its data: minima by descents from many starts, then intervals of the best one. Its values have a
 /// hundredth of the least uncertainty as their tolerance; the search takes a wider one.
 /// None when no descent converged. Errors: those of the evaluator; Cancelled.
-std::optional<FitResult> fit(const Model& model, MomentsEvaluator& evaluator, const FitOptions& options);
+std::optional<FitResult> fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options);
 
 }  // namespace dolp::fit

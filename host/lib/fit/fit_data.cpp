@@ -145,10 +145,10 @@ MeasuredData MeasuredData::from_csv(const std::string& csv, const std::string& n
 MeasuredData MeasuredData::read(const std::string& argument) {
   const std::size_t colon = keys_begin(argument);
   const std::string path = argument.substr(0, colon);
-  if (path.empty()) throw InputError(fmt::format("--data {}: must be FILE or FILE:KEY=VALUE,...", one_line(argument)));
+  if (path.empty()) throw InputError(fmt::format("data {}: must be FILE or FILE:KEY=VALUE,...", one_line(argument)));
   std::vector<Setting> settings;
   if (colon != std::string::npos) {
-    settings = settings_from_text(pieces_of(std::string_view(argument).substr(colon + 1)), "--data " + path + ':');
+    settings = settings_from_text(pieces_of(std::string_view(argument).substr(colon + 1)), "data " + path + ':');
   }
   return from_csv(read_text(path, input_name(path) + ": "), path, std::move(settings));
 }

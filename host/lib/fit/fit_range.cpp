@@ -41,7 +41,7 @@ const std::vector<std::string>& loss_names() {
 Comparison Comparison::from_text(const std::string& argument) {
   const std::size_t equals = argument.find('=');
   if (equals == std::string::npos || equals + 1 == argument.size()) {
-    throw InputError(fmt::format("--compare {}: must be KEY=WORD,WORD,...", one_line(argument)));
+    throw InputError(fmt::format("compare {}: must be KEY=WORD,WORD,...", one_line(argument)));
   }
   Comparison comparison{std::string(trim(std::string_view(argument).substr(0, equals))), {}};
   for (const std::string_view word : split(std::string_view(argument).substr(equals + 1), ',')) {
@@ -64,7 +64,7 @@ double FitRange::coordinate(double value) const {
 double FitRange::slope(double value) const { return is_logarithmic() ? value * std::log(high / low) : high - low; }
 
 FitRange FitRange::from_text(const std::string& argument) {
-  const std::string origin = "--vary " + one_line(argument);
+  const std::string origin = "vary " + one_line(argument);
   const std::size_t equals = argument.find('=');
   FitRange range;
   range.key = trim(std::string_view(argument).substr(0, equals));

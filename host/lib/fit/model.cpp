@@ -171,7 +171,7 @@ SceneValues Model::with(const SceneValues& scene, const Eigen::VectorXd& values)
 }
 
 std::vector<Prediction> Model::predict(const std::vector<Eigen::VectorXd>& values, double tolerance,
-                                       MomentsEvaluator& evaluator, const Progress& progress) const {
+                                       ModelEvaluator& evaluator, const Progress& progress) const {
   const auto rows = static_cast<Eigen::Index>(count_);
   std::vector<Prediction> predictions(values.size(), {Eigen::MatrixX2d(rows, 2), Eigen::VectorXd(rows)});
   for (const Group& group : groups_) predict_group(group, values, tolerance, evaluator, progress, predictions);
@@ -179,7 +179,7 @@ std::vector<Prediction> Model::predict(const std::vector<Eigen::VectorXd>& value
 }
 
 void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>& values, double tolerance,
-                          MomentsEvaluator& evaluator, const Progress& progress,
+                          ModelEvaluator& evaluator, const Progress& progress,
                           std::vector<Prediction>& predictions) const {
   // Sets that agree in all but the keys of points make one call.
   std::map<std::vector<double>, std::vector<std::size_t>> calls;

@@ -42,7 +42,7 @@ class Model {
   /// Predictions for each set of values, in one call of the evaluator for each group of observations that differ in
   /// angle alone, as long as the sets differ in n, k, sigma and q alone.
   std::vector<Prediction> predict(const std::vector<Eigen::VectorXd>& values, double tolerance,
-                                  MomentsEvaluator& evaluator, const Progress& progress) const;
+                                  ModelEvaluator& evaluator, const Progress& progress) const;
 
   /// Each parameter with its value.
   std::vector<Setting> settings(const Eigen::VectorXd& values) const;
@@ -62,7 +62,7 @@ class Model {
                        const Eigen::VectorXd& values) const;
   SceneValues with(const SceneValues& scene, const Eigen::VectorXd& values) const;
   void predict_group(const Group& group, const std::vector<Eigen::VectorXd>& values, double tolerance,
-                     MomentsEvaluator& evaluator, const Progress& progress, std::vector<Prediction>& predictions) const;
+                     ModelEvaluator& evaluator, const Progress& progress, std::vector<Prediction>& predictions) const;
 
   std::vector<MeasuredData> data_;
   std::vector<FitRange> parameters_;

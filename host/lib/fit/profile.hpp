@@ -1,30 +1,42 @@
 // Intervals from the profile likelihood.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <functional>
 #include <optional>
-#include <utility>
+#include <vector>
 
 #include "fit/descent.hpp"
 
 namespace dolp::fit {
 
-/// An end of an interval: none where the parameter's range ends before the data exclude a value.
-using IntervalEnd = std::optional<double>;
-
-/// The points on one side of a minimum at which the objective, least over all other parameters, has grown by `rises`.
-struct ProfileSide {
-  std::array<IntervalEnd, 2> ends;  ///< coordinates, one for each rise; of one below zero none
-  std::optional<Minimum> lower;     ///< a point below the minimum: there is another one
+/// Coordinates that the data do not exclude. At 0 and 1 the range ends before they do.
+struct Stretch {
+  double low = 0.0;
+  double high = 1.0;
 };
 
-/// One side of a parameter's profile.
+struct ProfileOptions {
+  std::array<double, 2> rises{};  ///< of the objective above the least, ascending
+  double scale = 1.0;             ///< as SearchOptions::scale
+  Loss loss = Loss::kSquares;
+  std::function<void(std::size_t done, std::size_t total)> count;  ///< sides
+};
+
+struct Profiles {
+  /// Of each parameter and rise: where the objective, least over all others, has grown by less. Apart, ascending.
+  std::vector<std::array<std::vector<Stretch>, 2>> stretches;
+  std::vector<Minimum> seen;     ///< points on the way
+  std::optional<Minimum> lower;  ///< a point below the best minimum: there is another one, and the rest is not complete
+};
+
+/// The profiles of all parameters around minima, the best first, that lie less than the second rise above it.
 ///
-/// Follows the valley from the minimum: at each coordinate of the parameter the others descend from where derivatives
-/// of the nearest point lead, until the root of the growth is met to 0.5 %. Arguments: `direction` -1 or 1; `deviation`
-/// of the parameter, in coordinates, where the search begins; `rises` of the objective, ascending; `scale` as
-/// SearchOptions::scale. Errors: those of the evaluator; Cancelled.
-ProfileSide profile_side(Residuals& residuals, const Minimum& minimum, std::size_t parameter, int direction,
-                         double deviation, const std::array<double, 2>& rises, double scale, Loss loss);
+/// Each side follows the valley from a minimum: at each coordinate of the parameter the others descend from where
+/// derivatives of the nearest point lead, until the root of the growth is met to 0.5 %. A bent valley has several
+/// branches there. Beyond each end the ends of the other sides descend too, unless a straight way leads to them: where
+/// one comes below the rise, the profile goes on from there. Errors: those of the evaluator; Cancelled.
+Profiles profiles_of(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options);
 
 }  // namespace dolp::fit

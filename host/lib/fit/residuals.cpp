@@ -7,6 +7,8 @@
 namespace dolp::fit {
 namespace {
 
+// Steps of differences, in coordinates. Chosen on sets of the study of fits that its report leaves out: halves and
+// doubles change results by less than their tolerance, and the number of parameter sets by a few per cent.
 constexpr double kFirstStep = 0.01;
 constexpr double kLeastStep = 1e-6;
 constexpr double kMostStep = 0.05;
@@ -14,14 +16,6 @@ constexpr double kLeastErrorShare = 1e-3;  // of the tolerance: smaller bounds l
 constexpr double kSeenShare = 0.2;         // of an uncertainty
 constexpr double kErrorsOfAChange = 100.0;
 constexpr double kMostChangeOfStep = 10.0;  // from one linearisation to the next
-
-/// Offsets beside a coordinate that stay in [0, 1].
-std::vector<double> offsets(double coordinate, double step, Differences differences) {
-  const double inward = coordinate + step > 1.0 ? -step : step;
-  if (differences == Differences::kForward) return {inward};
-  const bool has_both_sides = coordinate - step >= 0.0 && coordinate + step <= 1.0;
-  return {inward, has_both_sides ? -step : 2.0 * inward};
-}
 
 /// The derivative at 0 of the line, or the parabola, through the values at 0 and at the offsets.
 Eigen::MatrixX2d derivative(const Eigen::MatrixX2d& at_0, const Prediction* beside,
@@ -34,23 +28,13 @@ Eigen::MatrixX2d derivative(const Eigen::MatrixX2d& at_0, const Prediction* besi
 
 }  // namespace
 
-Linearisation moved(const Linearisation& near, const Eigen::VectorXd& at, const Eigen::VectorXd& residuals) {
-  Linearisation result{at, residuals, near.jacobian};
-  const Eigen::VectorXd step = at - near.at;
-  if (step.squaredNorm() > 0.0 && residuals.allFinite()) {
-    result.jacobian += (residuals - near.residuals - near.jacobian * step) * step.transpose() / step.squaredNorm();
-  }
-  return result;
-}
-
-Residuals::Residuals(const Model& model, double tolerance, Differences differences, MomentsEvaluator& evaluator,
+Residuals::Residuals(const Model& model, double tolerance, Differences differences, ModelEvaluator& evaluator,
                      Progress progress)
     : model_(model),
       tolerance_(tolerance),
       differences_(differences),
       evaluator_(evaluator),
       progress_(std::move(progress)),
-      steps_(model.parameters().size(), kFirstStep),
       measured_(static_cast<Eigen::Index>(model.observation_count())),
       weights_(measured_.size()) {
   Eigen::Index row = 0;
@@ -71,14 +55,8 @@ Eigen::VectorXd Residuals::values(const Eigen::VectorXd& point) const {
   return values;
 }
 
-Residuals Residuals::asking(Predict predict) const {
-  Residuals copy = *this;
-  copy.predict_ = std::move(predict);
-  return copy;
-}
-
 std::vector<Prediction> Residuals::predict(const std::vector<Eigen::VectorXd>& points) {
-  if (predict_) return predict_(points);
+  if (points.empty()) return {};
   std::vector<Eigen::VectorXd> sets;
   sets.reserve(points.size());
   for (const Eigen::VectorXd& point : points) sets.push_back(values(point));
@@ -86,74 +64,89 @@ std::vector<Prediction> Residuals::predict(const std::vector<Eigen::VectorXd>& p
   return model_.predict(sets, tolerance_, evaluator_, progress_);
 }
 
-Prediction Residuals::predicted(const Eigen::VectorXd& point) { return std::move(predict({point}).front()); }
-
-Eigen::VectorXd Residuals::observed(const Prediction& prediction) const {
-  Eigen::VectorXd values = prediction.components.col(0);
+Eigen::VectorXd Residuals::observed(const Eigen::MatrixX2d& components) const {
+  Eigen::VectorXd values = components.col(0);
   for (Eigen::Index i = 0; i < values.size(); ++i) {
-    if (is_length_[static_cast<std::size_t>(i)]) values[i] = prediction.components.row(i).norm();
+    if (is_length_[static_cast<std::size_t>(i)]) values[i] = components.row(i).norm();
   }
   return values;
 }
 
-Eigen::VectorXd Residuals::weighted(const Prediction& prediction) const {
-  return (observed(prediction) - measured_).cwiseProduct(weights_);
-}
-
-std::vector<Eigen::VectorXd> Residuals::at(const std::vector<Eigen::VectorXd>& points) {
-  std::vector<Eigen::VectorXd> residuals;
+std::vector<Linearisation> Residuals::at(const std::vector<Eigen::VectorXd>& points) {
+  std::vector<Linearisation> found;
   std::vector<Prediction> predictions = predict(points);
-  for (const Prediction& prediction : predictions) residuals.push_back(weighted(prediction));
-  if (points.size() == 1) {
-    last_point_ = points.front();
-    last_ = std::move(predictions.front());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::VectorXd residuals = (observed(predictions[i].components) - measured_).cwiseProduct(weights_);
+    found.push_back({points[i], residuals, {}, std::move(predictions[i].components)});
   }
-  return residuals;
+  return found;
 }
 
-Linearisation Residuals::linearised(const Eigen::VectorXd& point) {
-  const bool is_last = last_point_.size() == point.size() && last_point_ == point;
-  std::vector<Eigen::VectorXd> points;
-  if (!is_last) points.push_back(point);
-  std::vector<std::vector<double>> beside;
-  for (Eigen::Index j = 0; j < point.size(); ++j) {
-    beside.push_back(offsets(point[j], steps_[static_cast<std::size_t>(j)], differences_));
-    for (const double offset : beside.back()) {
-      points.push_back(point);
-      points.back()[j] += offset;
+void Residuals::linearise(const std::vector<Linearisation*>& points) {
+  std::vector<std::vector<std::vector<double>>> offsets;  // of each point and parameter
+  std::vector<Eigen::VectorXd> beside;
+  for (Linearisation* const point : points) {
+    offsets.push_back(offsets_of(*point));
+    for (std::size_t j = 0; j < offsets.back().size(); ++j) {
+      for (const double offset : offsets.back()[j]) {
+        beside.push_back(point->at);
+        beside.back()[static_cast<Eigen::Index>(j)] += offset;
+      }
     }
   }
-  std::vector<Prediction> predictions = predict(points);
-  if (is_last) predictions.insert(predictions.begin(), last_);
-  const Eigen::MatrixX2d& centre = predictions.front().components;
-  Linearisation result{point, weighted(predictions.front()), Eigen::MatrixXd(measured_.size(), point.size())};
-  const Prediction* next = &predictions[1];
-  for (Eigen::Index j = 0; j < point.size(); ++j) {
-    const auto parameter = static_cast<std::size_t>(j);
-    const Eigen::MatrixX2d slopes = derivative(centre, next, beside[parameter]);
+  const std::vector<Prediction> predictions = predict(beside);
+  const Prediction* next = predictions.data();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    differentiate(*points[i], offsets[i], next);
+    for (const std::vector<double>& of_parameter : offsets[i]) next += of_parameter.size();
+  }
+}
+
+/// Offsets beside each coordinate that stay in [0, 1].
+std::vector<std::vector<double>> Residuals::offsets_of(Linearisation& point) const {
+  if (point.steps.size() == 0) point.steps = Eigen::VectorXd::Constant(point.at.size(), kFirstStep);
+  std::vector<std::vector<double>> offsets;
+  for (Eigen::Index j = 0; j < point.at.size(); ++j) {
+    const double at = point.at[j];
+    const double step = point.steps[j];
+    const double inward = at + step > 1.0 ? -step : step;
+    offsets.push_back({inward});
+    const bool has_both_sides = at - step >= 0.0 && at + step <= 1.0;
+    if (differences_ == Differences::kCentral) offsets.back().push_back(has_both_sides ? -step : 2.0 * inward);
+  }
+  return offsets;
+}
+
+void Residuals::differentiate(Linearisation& point, const std::vector<std::vector<double>>& offsets,
+                              const Prediction* beside) const {
+  const Eigen::MatrixX2d& centre = point.components;
+  point.jacobian.resize(measured_.size(), point.at.size());
+  for (Eigen::Index j = 0; j < point.at.size(); ++j) {
+    const std::vector<double>& own = offsets[static_cast<std::size_t>(j)];
+    const Eigen::MatrixX2d slopes = derivative(centre, beside, own);
     for (Eigen::Index i = 0; i < slopes.rows(); ++i) {
       // The length of (Q, U)/I has a kink where its components change sign; they have none.
       const double length = is_length_[static_cast<std::size_t>(i)] ? centre.row(i).norm() : 0.0;
       const double slope = length > 0.0 ? centre.row(i).dot(slopes.row(i)) / length : slopes(i, 0);
-      result.jacobian(i, j) = weights_[i] * slope;
+      point.jacobian(i, j) = weights_[i] * slope;
     }
-    follow(parameter, (next->components - centre).cwiseAbs().maxCoeff(), next->error.maxCoeff(),
-           centre.cwiseAbs().maxCoeff());
-    next += beside[parameter].size();
+    point.steps[j] = next_step(point.steps[j], point, *beside);
+    beside += own.size();
   }
-  return result;
 }
 
 // A central difference with a step s has the error e/s of values that are wrong by e, and s^2 F/L^3 of a function of
 // size F that varies over a length L. Their sum is least where the function changes by (3 e F^2)^(1/3). A change of a
 // fifth of an uncertainty is enough where the values' error is far below it.
-void Residuals::follow(std::size_t parameter, double change, double stated_error, double largest) {
-  if (!std::isfinite(change) || change <= 0.0) return;
-  const double error = std::clamp(stated_error, kLeastErrorShare * tolerance_, tolerance_);
+double Residuals::next_step(double step, const Linearisation& point, const Prediction& beside) const {
+  const double change = (beside.components - point.components).cwiseAbs().maxCoeff();
+  if (!std::isfinite(change) || change <= 0.0) return step;
+  const double largest = point.components.cwiseAbs().maxCoeff();
+  const double error = std::clamp(beside.error.maxCoeff(), kLeastErrorShare * tolerance_, tolerance_);
   const double balanced = std::cbrt(3.0 * error * largest * largest);
   const double seen = std::max(kSeenShare / weights_.maxCoeff(), kErrorsOfAChange * error);
   const double factor = std::clamp(std::min(balanced, seen) / change, 1.0 / kMostChangeOfStep, kMostChangeOfStep);
-  steps_[parameter] = std::clamp(steps_[parameter] * factor, kLeastStep, kMostStep);
+  return std::clamp(step * factor, kLeastStep, kMostStep);
 }
 
 }  // namespace dolp::fit

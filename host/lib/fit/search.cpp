@@ -8,8 +8,8 @@
 #include <limits>
 #include <numeric>
 #include <random>
-
-#include "fit/together.hpp"
+#include <span>
+#include <utility>
 
 namespace dolp::fit {
 namespace {
@@ -19,7 +19,6 @@ constexpr int kStepsOfARound = 3;
 constexpr int kMostRounds = 15;
 constexpr double kCoarseGain = 0.1;  // of the scale: ends a descent that another one will finish
 constexpr int kStepsToTheBottom = 100;
-constexpr double kBent = 0.05;      // of the squared change of the residuals: less than that off, a way is straight
 constexpr double kFarAbove = 30.0;  // standard deviations of the objective: more than the wider tolerance may hide
 constexpr int kPointsOfALine = 8;   // between two minima
 
@@ -56,11 +55,9 @@ std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& op
     }
     points.insert(points.begin(), given);
   }
-  const std::vector<Eigen::VectorXd> found = residuals.at(points);
+  std::vector<Linearisation> found = residuals.at(points);
   std::vector<double> objectives;
-  for (const Eigen::VectorXd& one : found) {
-    objectives.push_back(one.allFinite() ? objective(one, options.loss) : std::numeric_limits<double>::infinity());
-  }
+  for (const Linearisation& one : found) objectives.push_back(objective(one.residuals, options.loss));
   std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin() + (has_start ? 1 : 0), order.end(),
@@ -70,7 +67,7 @@ std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& op
   for (const std::size_t i : order) {
     const bool is_near = std::ranges::any_of(
         starts, [&](const Minimum& one) { return (one.where.at - points[i]).lpNorm<Eigen::Infinity>() < apart; });
-    if (!is_near && std::isfinite(objectives[i])) starts.push_back({.where = {points[i], found[i], {}}});
+    if (!is_near && std::isfinite(objectives[i])) starts.push_back({.where = found[i]});
     if (starts.size() == options.starts) break;
   }
   return starts;
@@ -93,20 +90,14 @@ Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& re
 }
 
 /// True where the objective falls from point to point, or never rises by more than `scale`.
-bool falls(double from, const std::vector<Eigen::VectorXd>& residuals, Loss loss, double scale) {
+bool falls(double from, std::span<const Linearisation> points, Loss loss, double scale) {
   double least = from;
-  return std::ranges::all_of(residuals, [&](const Eigen::VectorXd& one) {
-    const double here = one.allFinite() ? objective(one, loss) : std::numeric_limits<double>::infinity();
+  return std::ranges::all_of(points, [&](const Linearisation& one) {
+    const double here = objective(one.residuals, loss);
     const bool is_low = here <= least + scale;
     least = std::min(least, here);
     return is_low;
   });
-}
-
-/// True where the derivatives at a point predict the residuals at a minimum: then nothing separates the two.
-bool is_straight(const Linearisation& from, const Linearisation& to, double scale) {
-  const Eigen::VectorXd foretold = from.residuals + from.jacobian * (to.at - from.at);
-  return (foretold - to.residuals).squaredNorm() < kBent * ((from.residuals - to.residuals).squaredNorm() + scale);
 }
 
 std::vector<Eigen::VectorXd> points_between(const Linearisation& from, const Minimum& to) {
@@ -129,22 +120,23 @@ bool leads_down(Residuals& residuals, const Minimum& from, const std::vector<Min
     points.insert(points.end(), between.begin(), between.end());
   }
   constexpr auto kBetween = static_cast<std::size_t>(kPointsOfALine - 1);
-  const auto is_down = [&](const std::vector<Eigen::VectorXd>& found) {
+  const auto is_down = [&](const std::vector<Linearisation>& found) {
     for (std::size_t i = 0; i < to.size(); ++i) {
-      const auto first = found.begin() + static_cast<std::ptrdiff_t>(i * kBetween);
-      if (falls(from.objective, {first, first + kBetween}, options.loss, scale_of(options, to[i]))) return true;
+      const std::span line = std::span(found).subspan(i * kBetween, kBetween);
+      if (falls(from.objective, line, options.loss, scale_of(options, to[i]))) return true;
     }
     return false;
   };
-  const std::vector<Eigen::VectorXd> found = residuals.at(points);
+  const std::vector<Linearisation> found = residuals.at(points);
   if (is_down(found)) return true;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Minimum& one = to[i / kBetween];
     const Eigen::VectorXd line = one.where.at - from.where.at;
     if (line.squaredNorm() == 0.0) return true;
-    if (!found[i].allFinite()) continue;
+    if (!found[i].residuals.allFinite()) continue;
     const double share = static_cast<double>(i % kBetween + 1) / kPointsOfALine;
-    points[i] = on_floor(points[i], found[i], (1.0 - share) * from.where.jacobian + share * one.where.jacobian, line);
+    points[i] =
+        on_floor(points[i], found[i].residuals, (1.0 - share) * from.where.jacobian + share * one.where.jacobian, line);
   }
   return is_down(residuals.at(points));
 }
@@ -160,27 +152,16 @@ std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, co
   return kept;
 }
 
-/// Descents from several points at once, and their end points.
-std::vector<Minimum> descend_all(Residuals& residuals, const std::vector<Minimum>& starts,
-                                 const DescentOptions& options) {
-  std::vector<Minimum> minima(starts.size());
-  run_together(residuals, starts.size(), [&](Residuals& own, std::size_t i) {
-    DescentOptions of_start = options;
-    of_start.radius = starts[i].radius > 0.0 ? starts[i].radius : options.radius;
-    minima[i] = descend(own, starts[i].where, of_start);
-  });
-  return minima;
-}
-
 /// The lowest of descents from several points, all in rounds of a few steps. A descent that derivatives lead to a place
 /// where a lower one has been ends with its round: it would take the same path.
 std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> starts, const SearchOptions& options,
                                    const DescentOptions& descent) {
   std::vector<Minimum> arrived, passed;
+  const std::size_t all = starts.size();
   for (int round = 0; round < kMostRounds && !starts.empty(); ++round) {
-    std::vector<Minimum> ends = descend_all(residuals, starts, descent);
+    descend(residuals, starts, descent);
+    std::vector<Minimum> ends = std::exchange(starts, {});
     std::ranges::stable_sort(ends, {}, &Minimum::objective);
-    starts.clear();
     for (Minimum& end : ends) {
       const auto leads_to = [&](const Minimum& one) {
         return one.objective <= end.objective && one.where.at != end.where.at &&
@@ -190,16 +171,10 @@ std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> st
       passed.push_back(end);
       (end.has_converged ? arrived : starts).push_back(std::move(end));
     }
+    if (options.count) options.count(all - starts.size(), all);
   }
   std::ranges::move(starts, std::back_inserter(arrived));
   return arrived;
-}
-
-/// The same points without their residuals and derivatives.
-std::vector<Minimum> places_of(const std::vector<Minimum>& minima) {
-  std::vector<Minimum> places;
-  for (const Minimum& one : minima) places.push_back({.where = {one.where.at, {}, {}}});
-  return places;
 }
 
 }  // namespace
@@ -220,9 +195,11 @@ std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const Searc
   last_steps.scale = std::max(scale_of(options, far.front()), fine.tolerance() * fine.tolerance());
   const double most = far.front().objective + kFarAbove * scale_of(options, far.front());
   const auto end_of_near = std::ranges::find_if(far, [&](const Minimum& one) { return one.objective > most; });
-  const std::vector<Minimum> near(far.begin(), end_of_near);
+  std::vector<Minimum> near;
+  for (auto one = far.begin(); one != end_of_near; ++one) near.push_back({.where = {one->where.at}});
   far.erase(far.begin(), end_of_near);
-  std::vector<Minimum> minima = distinct(descend_all(fine, places_of(near), last_steps), fine, options);
+  descend(fine, near, last_steps);
+  std::vector<Minimum> minima = distinct(std::move(near), fine, options);
   std::ranges::move(far, std::back_inserter(minima));
   std::erase_if(minima, [](const Minimum& one) { return !one.has_converged; });
   std::ranges::stable_sort(minima, {}, &Minimum::objective);

@@ -16,6 +16,7 @@ struct SearchOptions {
   Loss loss = Loss::kSquares;
   bool has_uncertainties = true;  ///< else the residuals of a minimum say what a standard deviation is
   double scale = 1.0;             ///< a change of the objective by one standard deviation, or a guess of it
+  std::function<void(std::size_t done, std::size_t total)> count = {};  ///< descents
 };
 
 /// Finds all distinct minima in which descents from the best points of a Sobol sequence end, the lowest first.

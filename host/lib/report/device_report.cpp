@@ -32,9 +32,9 @@ Quality quality_in(const Device& device, std::size_t position, Precision precisi
   try {
     VulkanOptions options;
     options.device = std::to_string(position);
-    options.precision = precision;
+    options.needs_double = in_double;
     VulkanEvaluator evaluator(options);
-    quality.measured = measure_quality(evaluator, in_double ? kDoubleTolerance : kFloatTolerance);
+    quality.measured = measure_quality(evaluator, {in_double ? kDoubleTolerance : kFloatTolerance, precision});
   } catch (const DeviceError& error) {
     quality.why_not = error.what();
   }
@@ -48,10 +48,11 @@ ReportBuilder quality_report(const Quality& quality) {
     return report;
   }
   const DeviceQuality& q = *quality.measured;
-  report.line("   {:<6} error of rho at most {:.1e} in {} ordinary cases, {} of which say that they miss {:g}{}",
-              quality.precision, key("worst_rho_error", q.worst_error), key("cases", q.cases),
-              key("missed_tolerance", q.missed), key("tolerance", q.tolerance),
-              q.is_sound ? "" : "; SOME ERRORS EXCEED THEIR ESTIMATES, see dolp verify --hard-cases");
+  report.line(
+      "   {:<6} error of rho at most {:.1e} in {} ordinary cases; its bound exceeds in {} of them the {:g} asked for{}",
+      quality.precision, key("worst_rho_error", q.worst_error), key("cases", q.cases),
+      key("missed_tolerance", q.missed), key("tolerance", q.tolerance),
+      q.is_sound ? "" : "; SOME ERRORS EXCEED THEIR ESTIMATES, see dolp verify --hard-cases");
   report.values({{"worst_case", q.worst_case}, {"sound", q.is_sound}});
   return report;
 }

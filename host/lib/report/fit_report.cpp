@@ -32,12 +32,28 @@ std::string text_of(const FitInterval& interval) {
 }
 
 Json parameter_json(const FitParameter& one) {
-  return {{"key", one.key},
-          {"value", one.value},
-          {"standard_error", json_of(one.standard_error)},
-          {"interval_68", json_of(one.interval_68)},
-          {"interval_95", json_of(one.interval_95)},
-          {"at_bound", one.is_at_bound}};
+  Json json = {{"key", one.key},
+               {"value", one.value},
+               {"standard_error", json_of(one.standard_error)},
+               {"interval_68", json_of(one.interval_68)},
+               {"interval_95", json_of(one.interval_95)},
+               {"at_bound", one.is_at_bound}};
+  for (const auto& [name, interval] : {std::pair("pieces_68", &one.interval_68), {"pieces_95", &one.interval_95}}) {
+    if (interval->pieces.size() < 2) continue;
+    for (const auto& [low, high] : interval->pieces) json[name].push_back(Json::array({json_of(low), json_of(high)}));
+  }
+  return json;
+}
+
+/// A line for each interval that has gaps.
+void add_pieces(ReportBuilder& report, const FitParameter& one) {
+  for (const auto& [name, interval] : {std::pair("68 %", &one.interval_68), {"95 %", &one.interval_95}}) {
+    if (interval->pieces.size() < 2) continue;
+    std::vector<std::string> pieces;
+    for (const auto& [low, high] : interval->pieces) pieces.push_back(text_of(FitInterval{low, high}));
+    report.row("pieces", "{}: the {} interval has gaps: {}", one.key, name,
+               fmt::format("{}", fmt::join(pieces, " and ")));
+  }
 }
 
 /// A line for each parameter, and one for each end of its range that lies before the data exclude a value.
@@ -53,6 +69,7 @@ void add_parameters(ReportBuilder& report, const fit::Model& model, const FitRes
                 one.standard_error ? fmt::format("{:.2g}", *one.standard_error) : "none", text_of(one.interval_68),
                 text_of(one.interval_95), one.is_at_bound ? "  at its bound" : "");
   }
+  for (const FitParameter& one : result.parameters) add_pieces(report, one);
   const bool has_intervals = model.has_uncertainties() || result.degrees_of_freedom > 0;
   for (std::size_t j = 0; has_intervals && j < result.parameters.size(); ++j) {
     const FitParameter& one = result.parameters[j];
@@ -160,7 +177,7 @@ void add_fit(ReportBuilder& report, const fit::Model& model, const FitResult& re
   for (const std::string& words : result.degeneracies) report.row("degenerate", "{}", words);
   report.value("degeneracies", result.degeneracies);
   add_minima(report, result);
-  report.row("error", "of the model at most {:.2g} of an uncertainty; its tolerance {:g}",
+  report.row("error", "numerical, of the model at most {:.2g} of an uncertainty; its tolerance {:g}",
              key("numerical_error", result.numerical_error), key("tolerance", result.tolerance));
   const std::uint32_t beyond = result.status & kNoDolpPromised;
   report.row_if(beyond != 0, "status", "{} at some point of the best fit: the model fails there",
@@ -172,16 +189,15 @@ void add_fit(ReportBuilder& report, const fit::Model& model, const FitResult& re
 
 void add_contours(ReportBuilder& report, const fit::Model& model, const fit::Contours& contours) {
   const auto [first, second] = contours.parameters;
-  const auto rows_of = [](const Eigen::MatrixXd& values) {
-    Json rows = Json::array();
-    for (const auto& row : values.rowwise()) rows.push_back(json_of(row.transpose()));
-    return rows;
-  };
+  Json lines = Json::array();
+  for (const auto& segments : contours.segments) {
+    Json& line = lines.emplace_back(Json::array());
+    for (const Eigen::Vector4d& one : segments) line.push_back({one[0], one[1], one[2], one[3]});
+  }
   report.value("contours", Json{{"keys", {model.parameters()[first].key, model.parameters()[second].key}},
-                                {"first", contours.first},
-                                {"second", rows_of(contours.second)},
-                                {"growth", rows_of(contours.growth)},
-                                {"levels", fit::kContourLevels}});
+                                {"levels", fit::kContourLevels},
+                                {"segments", lines},
+                                {"evaluations", contours.evaluations}});
 }
 
 void add_comparison(ReportBuilder& report, const std::vector<ComparedModel>& models) {

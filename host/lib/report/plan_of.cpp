@@ -4,11 +4,11 @@
 #include <dolp/errors.hpp>
 
 #include "base/processor.hpp"
-#include "evaluate/text/profile.hpp"
+#include "evaluate/kernel/slope_samples.hpp"
 #include "model/choices.hpp"
 #include "plan/kernel_data.hpp"
 #include "report/plan_report.hpp"
-#include "run/influences.hpp"
+#include "run/estimates.hpp"
 #include "run/scene_run.hpp"
 
 namespace dolp {
@@ -57,7 +57,7 @@ void add_request(PlanReport& report, const MomentsRequest& request, const Device
   std::string more;
   if (request.scattering == Scattering::kMultiple) more += ", all bounces";
   if (request.wants_direct) more += ", direct emission";
-  add_pipeline(report, has_profiles(request) ? "slopes" : "moments", request.precision, more);
+  add_pipeline(report, has_slope_samples(request) ? "slopes" : "moments", request.precision, more);
   if (data.needs_masking_table()) add_pipeline(report, "masking_table", request.precision);
 }
 
@@ -111,7 +111,7 @@ Work work_without(const PlanReport& report, Part part, const SceneEntries& entri
 std::vector<double> work_shares(const PlanReport& report, const SceneEntries& entries, const Device& device) {
   const double total = work_of(report.run).total();
   std::vector<double> shares;
-  for (const EffectRow& row : report.effects) {
+  for (const Effect& row : report.effects) {
     double saved = 0.0;
     if (row.part && row.state == EffectState::kKept) {
       saved = total - work_without(report, *row.part, entries, device).total();
@@ -130,7 +130,7 @@ PlanReport plan_of(const SceneValues& scene, const std::string& device, EffectPl
   const std::size_t without_a_run = peak_resident_bytes();  // with the scene and the driver
   const SceneEntries entries = grid_entries(scene);
   report.plan = std::move(plan);
-  report.effects = effect_rows(scene, entries, report.plan);
+  report.effects = effects_of(scene, entries, report.plan);
   add_influences(report.effects, scene, entries);
   add_forecast(report, entries, limits);
   report.work_shares = work_shares(report, entries, limits);

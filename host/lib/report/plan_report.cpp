@@ -3,18 +3,16 @@
 #include <algorithm>
 
 #include "model/choices.hpp"
-#include "run/influences.hpp"
+#include "run/estimates.hpp"
 
 namespace dolp {
 namespace {
 
 constexpr int kLabelWidth = 11;
 
-std::string state_text(EffectState state) {
-  return state == EffectState::kNotNeeded ? "not needed" : state_name(state);
-}
+std::string state_text(EffectState state) { return state == EffectState::kNotNeeded ? "not needed" : name_of(state); }
 
-std::string influence_text(const EffectRow& row) {
+std::string influence_text(const Effect& row) {
   if (!row.bound && !row.influence) return "-";
   const double points = kPoints * row.bound.value_or(row.influence.value_or(0.0));
   if (points == 0.0) return "0";
@@ -22,18 +20,18 @@ std::string influence_text(const EffectRow& row) {
   return points >= 10.0 ? fmt::format("{} {:.0f}", relation, points) : fmt::format("{} {:.2g}", relation, points);
 }
 
-std::string work_text(const EffectRow& row, double share) {
+std::string work_text(const Effect& row, double share) {
   if (!row.part || row.state != EffectState::kKept) return "-";
   return share == 0.0 ? "0 %" : fmt::format("{:.3g} %", kPoints * share);
 }
 
-ReportBuilder effect_report(const EffectRow& row, double share) {
+ReportBuilder effect_report(const Effect& row, double share) {
   ReportBuilder report;
   report.line("  {:<14} {:<11} {:>11} {:>7}  {}{}", key("name", row.name), state_text(row.state), influence_text(row),
               work_text(row, share), key("reason", row.reason),
               row.needs.empty() ? "" : fmt::format(" [{}]", row.needs));
   report.values(
-      {{"asked_for", row.state != EffectState::kAbsent}, {"state", state_name(row.state)}, {"needs", row.needs}});
+      {{"asked_for", row.state != EffectState::kAbsent}, {"state", name_of(row.state)}, {"needs", row.needs}});
   report.value("bound", row.bound);
   report.value("influence_estimate", row.influence);
   report.value("work_share", share);
@@ -58,14 +56,14 @@ void add_effects(ReportBuilder& report, const PlanReport& plan) {
 }
 
 std::string dropped_text(const EffectPlan& plan, double tolerance) {
-  if (plan.keep_all) return "nothing (--keep-all)";
+  if (plan.keep_all) return "nothing (all are kept)";
   const double allowed = kDroppedShare * tolerance;
   if (plan.dropped.empty() && plan.needs_moments) {
     return fmt::format("nothing: every bound exceeds {:g}, {:g} of the tolerance {:g}", allowed, kDroppedShare,
                        tolerance);
   }
-  return fmt::format("changes DOLP by {:.2g} at most in all; {:g}, {:g} of the tolerance {:g}, is allowed",
-                     plan.bound.dolp, allowed, kDroppedShare, tolerance);
+  return fmt::format("changes DOLP by {:.2g} at most in all; {:g}, {:g} of the tolerance {:g}, is allowed", plan.bound,
+                     allowed, kDroppedShare, tolerance);
 }
 
 std::string output_text(const SceneValues& scene, const EffectPlan& plan) {
@@ -137,7 +135,7 @@ void add_cost(ReportBuilder& report, const PlanReport& plan) {
   report.values({{"host_bytes", run.host_bytes}, {"device_bytes", plan.dispatches.device_bytes}});
   report.value("estimated_cpu_s", nullptr);
   if (run.moments + run.beams == 0) return;
-  report.row("time", "estimate: {:.2g} s of evaluation with --evaluator cpu, from counting here; no device is timed",
+  report.row("time", "estimate: {:.2g} s of evaluation with the evaluator cpu, from counting here; no device is timed",
              key("estimated_cpu_s", run.moments_s + run.beams_s));
 }
 
@@ -173,21 +171,20 @@ std::string grid_text(const Axes& grid) {
   return fmt::format("{} ({})", counts, names);
 }
 
-ReportBuilder::Json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan) {
+ReportBuilder::Json effects_json(const std::vector<Effect>& effects, const EffectPlan& plan) {
   ReportBuilder::Json json;
   for (const EffectState state :
        {EffectState::kKept, EffectState::kDropped, EffectState::kNotNeeded, EffectState::kAbsent}) {
-    json[state_name(state)] = ReportBuilder::Json::array();
+    json[name_of(state)] = ReportBuilder::Json::array();
   }
-  for (const EffectRow& row : effects) {
+  for (const Effect& row : effects) {
     ReportBuilder::Json of_row = {{"name", row.name}, {"reason", row.reason}};
     if (row.state == EffectState::kDropped) of_row["bound"] = row.bound.value_or(0.0);
-    json[state_name(row.state)].push_back(of_row);
+    json[name_of(row.state)].push_back(of_row);
   }
   json["keep_all"] = plan.keep_all;
   json["allowed_share_of_tolerance"] = kDroppedShare;
-  json["dolp_bound"] = plan.bound.dolp;
-  json["rho_bound"] = plan.bound.rho;
+  json["dolp_bound"] = plan.bound;
   return json;
 }
 

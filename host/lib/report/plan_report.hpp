@@ -24,7 +24,7 @@ struct RuleSize {
 struct PlanReport {
   SceneValues scene;
   EffectPlan plan;
-  std::vector<EffectRow> effects;
+  std::vector<Effect> effects;
   std::vector<double> work_shares;  ///< of each effect: evaluations and f that would go with it, 0 to 1
   RunPrediction run;
   std::optional<RuleSize> rule;        ///< none without moments
@@ -46,6 +46,6 @@ ReportBuilder plan_report(const PlanReport& plan);
 std::string grid_text(const Axes& grid);
 
 /// Names and reasons of what is kept, dropped, not needed and absent.
-ReportBuilder::Json effects_json(const std::vector<EffectRow>& effects, const EffectPlan& plan);
+ReportBuilder::Json effects_json(const std::vector<Effect>& effects, const EffectPlan& plan);
 
 }  // namespace dolp

@@ -39,11 +39,11 @@ void add_energy(ReportBuilder& report, const RunSummary& summary, bool is_comput
 /// Adds the effects that are kept, and a line for each effect that is dropped.
 void add_effects(ReportBuilder& report, const RunOutcome& run) {
   std::string kept;
-  for (const EffectRow& row : run.effects) {
-    if (row.state == EffectState::kKept) kept += (kept.empty() ? "" : ", ") + std::string(row.name);
+  for (const Effect& row : run.effects) {
+    if (row.state == EffectState::kKept) kept += (kept.empty() ? "" : ", ") + row.name;
   }
-  report.row("kept", "{}{}", kept.empty() ? "nothing" : kept, run.plan.keep_all ? " (--keep-all)" : "");
-  for (const EffectRow& row : run.effects) {
+  report.row("kept", "{}{}", kept.empty() ? "nothing" : kept, run.plan.keep_all ? " (all are kept)" : "");
+  for (const Effect& row : run.effects) {
     report.row_if(row.state == EffectState::kDropped, "dropped", "{}: {}", row.name, row.reason);
   }
   report.value("effects", effects_json(run.effects, run.plan));
@@ -114,7 +114,7 @@ ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, std::o
   const EvaluationReport& evaluation = run.evaluation;
   const bool is_faster_on_cpu =
       evaluation.evaluator == "vulkan" && evaluation.evaluations < kFewEvaluations && evaluation.setup_s > 0.0;
-  report.row_if(is_faster_on_cpu, "hint", "--evaluator cpu has no device to set up and is faster for so little");
+  report.row_if(is_faster_on_cpu, "hint", "the evaluator cpu has no device to set up and is faster for so little");
   report.row("written", "{}", key("output", path));
   return report;
 }
@@ -128,7 +128,11 @@ void add_evaluation(ReportBuilder& report, const EvaluationReport& e, double wal
                 key("devices_lost", e.devices_lost));
   report.row("time", "{:.3f} s in all, {:.3f} s in kernels, {} dispatches", key("wall_s", wall_s),
              key("kernel_s", e.kernel_s), key("dispatches", e.dispatches));
-  report.values({{"evaluator", e.evaluator}, {"setup_s", e.setup_s}});
+  report.values({{"evaluator", e.evaluator}});
+  report.row_if(e.evaluator == "vulkan", "of that",
+                "{:.3f} s to make kernels; {:.3f} s in sums of the host, which count as kernels",
+                key("pipelines_s", e.pipelines_s), key("sums_s", e.sums_s));
+  report.values({{"setup_s", e.setup_s}});
 }
 
 std::size_t count_status(const std::vector<PointResult>& results, std::uint32_t bit) {

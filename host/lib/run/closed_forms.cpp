@@ -1,7 +1,11 @@
 #include "run/closed_forms.hpp"
 
+#include <boost/math/quadrature/tanh_sinh.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
 #include "model/smooth_surface.hpp"
-#include "run/grazing_limit.hpp"
 
 namespace dolp {
 namespace {
@@ -16,6 +20,24 @@ double steep_share(const Surface& surface, const SlopeShape& shape) {
   return has_tail ? share + kMirrorSlope : share;
 }
 
+constexpr double kRelativeError = 1e-12;
+// The quadrature stops when two levels agree to this, far later than its error needs.
+constexpr double kAgreement = 1e-13;
+// Rounding of 1 - absorptance, a few operations on numbers up to 1.
+constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();
+
+// Cosines below it, whose squares may underflow, weigh nothing: the integrand falls at least like the cosine.
+constexpr double kSmallestCosine = 1e-100;
+
+/// The angle at which total reflection begins, abruptly (k = 0) or nearly so; 0 without one. Units: rad from grazing
+/// incidence.
+double critical_angle(const OpticalConstants& index) {
+  const double squared_sine = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
+  const double squared_cosine = (index.n - index.k) * (index.n + index.k);
+  return squared_sine > 0.0 && squared_cosine > 0.0 ? std::atan2(std::sqrt(squared_sine), std::sqrt(squared_cosine))
+                                                    : 0.0;
+}
+
 }  // namespace
 
 Moments closed_form(const Surface& surface, const Direction& direction, const SlopeShape& shape,
@@ -24,6 +46,37 @@ Moments closed_form(const Surface& surface, const Direction& direction, const Sl
   const double steep = steep_share(surface, shape) * direction.cos_theta;
   Moments moments = mirror_moments(index, direction.cos_theta);
   for (const auto& [value, error] : kMomentMembers) moments.*error += steep;
+  return moments;
+}
+
+Moments grazing_limit_moments(const OpticalConstants& index, double q) {
+  boost::math::quadrature::tanh_sinh<double> integrator;
+  const double critical = critical_angle(index);
+  // phi = pi/2 - psi, so that x = sin(psi) keeps its digits at grazing incidence, where the power is not smooth.
+  const auto integral = [&](auto&& of_cosine) {
+    // The distance to the nearer end, unused, chooses Boost's form whose nodes may round to the ends.
+    const auto integrand = [&](double psi, double) {
+      const double x = std::sin(psi);
+      return x > kSmallestCosine ? std::pow(x, 4.0 - 2.0 * q) * of_cosine(x) : 0.0;
+    };
+    constexpr double kEnd = 0.5 * std::numbers::pi;
+    const double above = critical < kEnd ? integrator.integrate(integrand, critical, kEnd, kAgreement) : 0.0;
+    return critical > 0.0 ? integrator.integrate(integrand, 0.0, critical, kAgreement) + above : above;
+  };
+  Moments moments;
+  moments.albedo = integral([](double) { return 1.0; });
+  moments.r_i = integral([&](double x) {
+    const SmoothAbsorptance absorbed = smooth_absorptance(index, x);
+    return 1.0 - 0.5 * (absorbed.s + absorbed.p);
+  });
+  moments.r_q = integral([&](double x) {
+    const SmoothAbsorptance absorbed = smooth_absorptance(index, x);
+    return 0.5 * (absorbed.s - absorbed.p);
+  });
+  moments.deficit = -moments.r_i;
+  moments.albedo_error = kRelativeError * moments.albedo;
+  moments.r_i_error = kRelativeError * moments.r_i + kReflectanceRounding * moments.albedo;
+  moments.r_q_error = moments.deficit_error = moments.r_i_error;
   return moments;
 }
 

@@ -11,4 +11,13 @@ namespace dolp {
 Moments closed_form(const Surface& surface, const Direction& direction, const SlopeShape& shape,
                     const OpticalConstants& index);
 
+/// Moments at exactly 90 degrees where they diverge, up to their common factor: masking none or `integral`, cauchy with
+/// q <= 3/2. Their quotients are the limits theta -> 90 degrees.
+///
+/// Equation: with t = v / c the horizon is v = 2 x and rho c grows as c^(2q-3) times the integral of x^(4-2q) M over
+/// the azimuths of vertical facets, cos(beta) = x = cos(phi), cos(2 eta) = -1; G tends to a constant.
+///
+/// Accuracy: 1e-12 of r_i and 2e-15 of the albedo, for r_q too (tests GrazingLimit_*).
+Moments grazing_limit_moments(const OpticalConstants& index, double q);
+
 }  // namespace dolp

@@ -48,8 +48,7 @@ struct Stretch {
 
 class Forecast {
  public:
-  Forecast(const SceneValues& scene, const EffectPlan& plan)
-      : scene_(scene), plan_(plan), evaluator_(Precision::kAuto) {
+  Forecast(const SceneValues& scene, const EffectPlan& plan) : scene_(scene), plan_(plan) {
     std::ranges::copy_if(kAllAxes, std::back_inserter(axes_), [&](Axis axis) { return scene.grid[axis].size() > 1; });
     lines_ = axes_.size() > 1 ? kLines : 1;
   }
@@ -148,7 +147,7 @@ class Forecast {
       }
       wavelengths.insert(wavelengths.end(), own.wavelength_um().begin(), own.wavelength_um().end());
     }
-    const std::vector<PointResult> results = evaluate_scene(scene_, {all, wavelengths}, plan_, &evaluator_, {});
+    const std::vector<PointResult> results = evaluate_scene(scene_, {all, wavelengths}, evaluator_, {}, plan_);
     std::vector<double> errors;
     auto next = results.begin();
     for (std::size_t i = 0; i < stretches.size(); ++i) {

@@ -8,7 +8,6 @@
 #include <limits>
 #include <numbers>
 #include <span>
-#include <stdexcept>
 
 #include "model/angles.hpp"
 #include "model/direction.hpp"
@@ -64,10 +63,18 @@ double diffuse_brdf(const Surface& surface, const BeamAngles& angles) {
   return surface.diffuse / std::numbers::pi * std::pow(cosines, surface.diffuse_exponent);
 }
 
+/// True where the error is not that of every pBRDF: more bounces count than are followed.
+bool is_inaccurate(const ScatteringMatrix& specular, Precision precision) {
+  constexpr double kRounding = 1e-3;  // of the sum of errors
+  const double accuracy = precision == Precision::kFloat ? kScatteringErrorFloat : kScatteringErrorDouble;
+  return specular.error > (1.0 + kRounding) * accuracy * specular.m[0];
+}
+
 /// `specular` is null for a point that the evaluator is not asked for.
-MuellerMatrix elements(const Surface& surface, const MuellerPoint& point, const ScatteringMatrix* specular) {
+MuellerMatrix elements(const Surface& surface, const MuellerPoint& point, const ScatteringMatrix* specular,
+                       Precision precision) {
   MuellerMatrix f{};
-  if (is_undefined(surface, point)) {
+  if (is_undefined(surface, point) || (specular != nullptr && is_inaccurate(*specular, precision))) {
     f.fill(std::numeric_limits<double>::quiet_NaN());
     return f;
   }
@@ -110,8 +117,7 @@ Precision mueller_precision(const Accuracy& accuracy, bool has_double) {
 }
 
 std::vector<MuellerMatrix> evaluate_mueller(const SceneValues& scene, const std::vector<MuellerPoint>& points,
-                                            MomentsEvaluator& evaluator, const Progress& progress) {
-  if (evaluator.scattering() == nullptr) throw std::logic_error("Mueller matrices need an evaluator of pBRDFs");
+                                            ModelEvaluator& evaluator, const Progress& progress) {
   const Precision precision = mueller_precision(scene.accuracy, evaluator.has_double());
   std::vector<MuellerMatrix> results;
   results.reserve(points.size());
@@ -121,11 +127,11 @@ std::vector<MuellerMatrix> evaluate_mueller(const SceneValues& scene, const std:
       return !progress || progress(first + block.size() * done / total, points.size());
     };
     const std::vector<ScatteringMatrix> specular =
-        evaluator.scattering()->scatter(request_for(scene, block, precision), block_progress);
+        evaluator.scatter(request_for(scene, block, precision), block_progress);
     auto next = specular.begin();
     for (const MuellerPoint& point : block) {
       const bool is_evaluated = needs_evaluator(scene.surface, point);
-      results.push_back(elements(scene.surface, point, is_evaluated ? &*next++ : nullptr));
+      results.push_back(elements(scene.surface, point, is_evaluated ? &*next++ : nullptr, precision));
     }
   }
   return results;

@@ -71,8 +71,6 @@ PartRequests::PartRequests(const SceneValues& scene, const SpectralIndices& samp
   moments_.precision = beams_.precision = level.precision;
   moments_.tolerance = level.tolerance;
   moments_.has_extra_splits = level.is_check;
-  moments_.row_width = level.row_width;
-  moments_.run_size = level.run_size;
   moments_.basis = level.basis;
   moments_.may_interpolate = level.may_interpolate;
   if (plan.needs_moments && selection.part.is_grid()) ask_grid(selection);

@@ -8,7 +8,7 @@
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
-#include "evaluate/text/profile.hpp"
+#include "evaluate/kernel/slope_samples.hpp"
 #include "plan/index_plan.hpp"
 #include "plan/shape_plan.hpp"
 #include "run/drawn_entries.hpp"
@@ -55,9 +55,9 @@ struct Count {
 };
 
 /// Records the requests of a run's levels.
-class CountingEvaluator final : public MomentsEvaluator, public ScatteringEvaluator {
+class CountingEvaluator final : public ModelEvaluator {
  public:
-  CountingEvaluator(Precision precision, bool has_double) : cpu_(precision), has_double_(has_double) {}
+  explicit CountingEvaluator(bool has_double) : has_double_(has_double) {}
 
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
     const EvaluationReport before = cpu_.report();
@@ -71,8 +71,6 @@ class CountingEvaluator final : public MomentsEvaluator, public ScatteringEvalua
     beams_.add(request.entries.size(), before, cpu_.report());
     return matrices;
   }
-  ScatteringEvaluator* scattering() override { return this; }
-  Precision precision() const override { return cpu_.precision(); }
   bool has_double() const override { return has_double_; }
   EvaluationReport report() const override { return cpu_.report(); }
 
@@ -95,10 +93,10 @@ void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries
                 bool has_double) {
   const SceneEntries drawn =
       run.counts_directions ? entries_of_drawn_directions(entries) : drawn_entries(entries, kCountedEntries);
-  auto owned = std::make_unique<CountingEvaluator>(scene.accuracy.precision, has_double);
+  auto owned = std::make_unique<CountingEvaluator>(has_double);
   const CountingEvaluator& counting = *owned;
   InterpolatingEvaluator interpolating(std::move(owned));
-  evaluate_scene(scene, drawn, plan, &interpolating, {});
+  evaluate_scene(scene, drawn, interpolating, {}, plan);
   const Count& moments = counting.moments();
   const Count& beams = counting.beams();
   const double moments_scale = scale_of(run.moments, moments);
@@ -122,7 +120,6 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
   run.spectral_samples = spectral_rule(scene).samples.size();
   run.first = first_level(scene.accuracy, has_double);
   std::size_t largest = 0, columns_before = 0;
-  run.first.run_size = entries.size();
   run.first.basis = IndexBases(scene, entries, plan).of(run.first);
   for (const SceneEntries& part : run_parts(entries, run.spectral_samples)) {
     const SpectralIndices indices = spectral_indices(scene, part);
@@ -137,7 +134,7 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
       const std::optional<ShapePlan> shapes = shape_plan(asked);
       const MomentsRequest& computed = shapes ? shapes->nodes : asked;
       if (shapes && !has_basis) run.interpolated += asked.size();
-      run.counts_directions = entries.is_grid() && (shapes || has_profiles(computed));
+      run.counts_directions = entries.is_grid() && (shapes || has_slope_samples(computed));
       run.moments += computed.size();
       visit.moments(computed);
     }

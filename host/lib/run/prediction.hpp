@@ -14,8 +14,8 @@ namespace dolp {
 /// Number of a run's entries whose nodes are counted; they represent all entries of a larger run.
 inline constexpr std::size_t kCountedEntries = 256;
 
-/// Number of directions whose entries are counted instead, where the entries of a direction share their work (profiles,
-/// interpolation between slope distributions).
+/// Number of directions whose entries are counted instead, where the entries of a direction share their work (slope
+/// samples, interpolation between slope distributions).
 inline constexpr std::size_t kCountedDirections = 6;
 
 /// Work of a run.
@@ -34,7 +34,7 @@ struct RunPrediction {
   bool is_exact = true;    ///< all moments and beams were counted, none estimated from others
   double moments_s = 0.0;  ///< of all levels on this machine's processor, from counting
   double beams_s = 0.0;
-  double host_bytes = 0.0;  ///< of the largest part: answers, results and the columns that are written
+  double host_bytes = 0.0;  ///< of the largest part, and the columns that are written
 };
 
 /// Called with each request of the first level.

@@ -73,6 +73,7 @@ void RunSummary::add(const RunSummary& other) {
   check.add(other.check);
   evaluations += other.evaluations;
   kernel_s += other.kernel_s;
+  sums_s += other.sums_s;
   dispatches += other.dispatches;
   interpolated += other.interpolated;
   interpolation_nodes += other.interpolation_nodes;
@@ -81,6 +82,7 @@ void RunSummary::add(const RunSummary& other) {
 void RunSummary::add(const EvaluationReport& report) {
   evaluations += report.evaluations;
   kernel_s += report.kernel_s;
+  sums_s += report.sums_s;
   dispatches += report.dispatches;
   interpolated += report.interpolated;
   interpolation_nodes += report.interpolation_nodes;
@@ -89,6 +91,7 @@ void RunSummary::add(const EvaluationReport& report) {
 EvaluationReport RunSummary::totals(EvaluationReport report) const {
   report.evaluations = evaluations;
   report.kernel_s = kernel_s;
+  report.sums_s = sums_s;
   report.dispatches = dispatches;
   report.interpolated = interpolated;
   report.interpolation_nodes = interpolation_nodes;
@@ -104,10 +107,10 @@ std::string RunSummary::text() const {
     return fmt::format("{} {} {} {} {}", r.entries, r.theta_deg.first, r.theta_deg.second, r.sigma.first,
                        r.sigma.second);
   };
-  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", entries, fmt::join(status, " "),
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", entries, fmt::join(status, " "),
                      worst_error.value_or(-1.0), worst_rho_error.value_or(-1.0), albedos, albedo.first, albedo.second,
-                     range(loses), range(gains), check.entries, check.worst_ratio, evaluations, kernel_s, dispatches,
-                     interpolated, interpolation_nodes, "end");
+                     range(loses), range(gains), check.entries, check.worst_ratio, evaluations, kernel_s, sums_s,
+                     dispatches, interpolated, interpolation_nodes, "end");
 }
 
 std::optional<RunSummary> RunSummary::from_text(const std::string& text) {
@@ -140,6 +143,7 @@ std::optional<RunSummary> RunSummary::from_text(const std::string& text) {
   summary.check.worst_ratio = number();
   summary.evaluations = number();
   summary.kernel_s = number();
+  summary.sums_s = number();
   words >> summary.dispatches >> summary.interpolated >> summary.interpolation_nodes >> word;
   if (!words || word != "end") return std::nullopt;
   return summary;

@@ -38,7 +38,7 @@ struct RunSummary {
   SelfCheck check;
   // Totals of the evaluator.
   double evaluations = 0.0;
-  double kernel_s = 0.0;
+  double kernel_s = 0.0, sums_s = 0.0;
   std::uint64_t dispatches = 0, interpolated = 0, interpolation_nodes = 0;
 
   /// Adds the results of some entries.

@@ -6,7 +6,6 @@
 #include <numeric>
 #include <optional>
 #include <span>
-#include <stdexcept>
 
 #include <dolp/status.hpp>
 #include "base/parallel_ranges.hpp"
@@ -45,10 +44,8 @@ struct RunContext {
   const SceneValues& scene;
   const EffectPlan& plan;
   const Spectra& spectra;
-  MomentsEvaluator* evaluator;
-  Accuracy accuracy;  ///< the scene's, in the evaluator's precision where the scene leaves it open
+  ModelEvaluator* evaluator;
   IndexBases& bases;
-  std::size_t run_size = 0;  ///< entries of the whole table
 
   std::size_t samples() const { return spectra.indices.front().size(); }  ///< of every entry
 };
@@ -151,12 +148,10 @@ Answer asked(const RunContext& context, const PartRequests& requests, const Prog
   const std::size_t beams = requests.beams().entries.size();
   const std::size_t total = moments + beams;
   if (total == 0) return {};
-  ScatteringEvaluator* const scattering = context.evaluator->scattering();
-  if (beams > 0 && scattering == nullptr) throw std::logic_error("the bistatic mode needs an evaluator of pBRDFs");
   Answer answer;
-  if (beams > 0 && moments > 0) scattering->prepare(requests.beams());
+  if (beams > 0 && moments > 0) context.evaluator->prepare(requests.beams());
   if (moments > 0) answer.moments = context.evaluator->evaluate(requests.moments(), part_of(progress, 0, total));
-  if (beams > 0) answer.beams = scattering->scatter(requests.beams(), part_of(progress, moments, total));
+  if (beams > 0) answer.beams = context.evaluator->scatter(requests.beams(), part_of(progress, moments, total));
   return answer;
 }
 
@@ -199,7 +194,7 @@ void plan_next(const RunContext& context, const SceneEntries& part, const Refine
                std::span<const std::size_t> members, std::span<const PointResult> results, Waiting& waiting) {
   std::vector<std::pair<RefinementLevel, std::size_t>> missed;
   for (std::size_t j = 0; j < members.size(); ++j) {
-    const auto next = next_level(last, results[j], context.accuracy, context.evaluator->has_double());
+    const auto next = next_level(last, results[j], context.scene.accuracy, context.evaluator->has_double());
     if (next && finds_more(context, *next, last, part[members[j]])) missed.emplace_back(*next, members[j]);
   }
   if (last.may_interpolate && missed.size() * kManyMisses > members.size()) {
@@ -223,8 +218,7 @@ struct FirstResults {
 
 FirstResults first_results(const RunContext& context, const SceneEntries& part, const Progress& progress) {
   FirstResults first;
-  first.level = first_level(context.accuracy, context.evaluator->has_double());
-  first.level.run_size = context.run_size;
+  first.level = first_level(context.scene.accuracy, context.evaluator->has_double());
   first.level.basis = context.bases.of(first.level);
   const PartRequests requests(context.scene, context.spectra.indices, context.plan, {part}, first.level);
   first.results = results_of(context, {part}, requests, progress);
@@ -241,7 +235,6 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
 void refine(const RunContext& context, const SceneEntries& part, FirstResults& first, const Progress& progress) {
   const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
   const std::size_t of_direction = part.is_grid() ? part.of_direction() : 1;
-  const std::uint32_t row_width = context.evaluator->report().row_width;
   std::vector<PointResult>& results = first.results;
   Waiting waiting;
   // Members of one direction follow each other.
@@ -263,12 +256,7 @@ void refine(const RunContext& context, const SceneEntries& part, FirstResults& f
     RefinementLevel level = waiting.begin()->first;
     const std::vector<std::size_t> members = std::move(waiting.begin()->second);
     waiting.erase(waiting.begin());
-    if (level.may_interpolate) {
-      level.run_size = context.run_size;
-      level.basis = context.bases.of(level);
-    } else {
-      level.row_width = row_width;
-    }
+    if (level.may_interpolate) level.basis = context.bases.of(level);
     const std::vector<PointResult> better = computed_at(context, {part, members}, level, is_wanted);
     for (std::size_t j = 0; j < members.size(); ++j) {
       if (is_better(better[j], results[members[j]])) results[members[j]] = better[j];
@@ -282,7 +270,7 @@ std::vector<PointResult> computed_again(const RunContext& context, const SceneEn
                                         const RefinementLevel& first, std::span<const std::size_t> positions) {
   if (positions.empty()) return {};
   const Progress none = [](std::size_t, std::size_t) { return true; };
-  return computed_at(context, {part, positions}, check_level(first, context.evaluator->report().row_width), none);
+  return computed_at(context, {part, positions}, check_level(first), none);
 }
 
 /// The table entries to check that lie in a part, as positions in it.
@@ -294,6 +282,13 @@ std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntr
     if (position && wants_moments(context.scene, part[*position], context.plan)) positions.push_back(*position);
   }
   return positions;
+}
+
+/// True where an evaluator is needed: the plan needs moments or beams, and not all entries have closed forms.
+bool wants_evaluator(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan) {
+  return std::ranges::any_of(entries.all(), [&](const SceneEntry& entry) {
+    return wants_moments(scene, entry, plan) || wants_beam(scene, entry, plan);
+  });
 }
 
 /// Results of a part: all levels, or closed forms and zeros. `checked`: positions in the whole grid; none for points.
@@ -345,12 +340,6 @@ std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spe
   return entries.parts(std::max<std::size_t>(1, moments / spectral_samples));
 }
 
-bool wants_evaluator(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan) {
-  return std::ranges::any_of(entries.all(), [&](const SceneEntry& entry) {
-    return wants_moments(scene, entry, plan) || wants_beam(scene, entry, plan);
-  });
-}
-
 void begin(const Progress& progress, std::size_t total) {
   if (progress && !progress(0, total)) throw Cancelled();
 }
@@ -361,7 +350,7 @@ Run::Run(const SceneValues& scene, SceneEntries entries, const RunOptions& optio
   const SceneEntries whole =
       entries_.is_grid() ? SceneEntries::of_grid(entries_.whole_axes(), entries_.index()) : entries_;
   outcome_.plan = plan_effects(scene, whole, options.keep_all);
-  outcome_.effects = effect_rows(scene, whole, outcome_.plan);
+  outcome_.effects = effects_of(scene, whole, outcome_.plan);
   begin(progress_, entries_.size());
   if (wants_evaluator(scene, entries_, outcome_.plan)) evaluator_ = make_evaluator();
   if (evaluator_) {
@@ -383,10 +372,8 @@ RunOutcome Run::compute(Sink& sink) {
 double Run::wall_s() const { return seconds_since(start_); }
 
 RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
-                     MomentsEvaluator* evaluator, Sink& sink, const Progress& progress) {
+                     ModelEvaluator* evaluator, Sink& sink, const Progress& progress) {
   const std::size_t samples = spectral_rule(scene).samples.size();
-  Accuracy accuracy = scene.accuracy;
-  if (evaluator && accuracy.precision == Precision::kAuto) accuracy.precision = evaluator->precision();
   const std::size_t whole = entries.is_grid() ? size_of(entries.whole()) : entries.size();
   std::vector<std::size_t> checked;
   if (entries.is_grid() && plan.needs_moments)
@@ -408,7 +395,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
       --left;
     } else {
       const Spectra spectra(scene, plan, part.wavelength_um());
-      const RunContext context{scene, plan, spectra, evaluator, accuracy, bases, whole};
+      const RunContext context{scene, plan, spectra, evaluator, bases};
       std::vector<PointResult> results = part_results(context, part, checked, summary.check, part_progress);
       summary.add(scene, part, results);
       sink.write(part, std::move(results), with_evaluation());
@@ -418,16 +405,12 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
   return with_evaluation();
 }
 
-std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
-                                        MomentsEvaluator* evaluator, const Progress& progress) {
-  CollectedResults results(entries);
-  run_scene(scene, entries, plan, evaluator, results, progress);
-  return results.take();
-}
-
 std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEntries& entries,
-                                        MomentsEvaluator& evaluator, const Progress& progress) {
-  return evaluate_scene(scene, entries, keep_everything(scene), &evaluator, progress);
+                                        ModelEvaluator& evaluator, const Progress& progress,
+                                        const std::optional<EffectPlan>& plan) {
+  CollectedResults results(entries);
+  run_scene(scene, entries, plan ? *plan : keep_everything(scene), &evaluator, results, progress);
+  return results.take();
 }
 
 }  // namespace dolp

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <dolp/options.hpp>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -71,12 +72,12 @@ class PassedResults final : public Sink {
 };
 
 /// Makes the evaluator, when it is needed.
-using EvaluatorMaker = std::function<MomentsEvaluator*()>;
+using EvaluatorMaker = std::function<ModelEvaluator*()>;
 
 /// The outcome of a run.
 struct RunOutcome {
   EffectPlan plan;
-  std::vector<EffectRow> effects;
+  std::vector<Effect> effects;
   RunSummary summary;           ///< of all parts, also of those that were there already
   EvaluationReport evaluation;  ///< likewise
   double wall_s = 0.0;
@@ -111,7 +112,7 @@ class Run {
   const SceneValues& scene_;
   SceneEntries entries_;
   Progress progress_;
-  MomentsEvaluator* evaluator_ = nullptr;
+  ModelEvaluator* evaluator_ = nullptr;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   RunOutcome outcome_;
 };
@@ -119,23 +120,17 @@ class Run {
 /// The parts that a run processes one by one.
 std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples);
 
-/// True where an evaluator is needed: the plan needs moments or beams, and not all entries have closed forms.
-bool wants_evaluator(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
-
 /// Calls `progress`, if there is one, with nothing done yet: all inputs are read. Errors: Cancelled.
 void begin(const Progress& progress, std::size_t total);
 
 /// The same as Run::compute for an existing plan and evaluator; the evaluator may be null where the plan leaves nothing
 /// for it.
 RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
-                     MomentsEvaluator* evaluator, Sink& sink, const Progress& progress);
+                     ModelEvaluator* evaluator, Sink& sink, const Progress& progress);
 
-/// The same into memory: results in the order of `entries`.
-std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
-                                        MomentsEvaluator* evaluator, const Progress& progress);
-
-/// The same with everything kept.
+/// The same into memory: results in the order of `entries`; without a plan everything is kept.
 std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEntries& entries,
-                                        MomentsEvaluator& evaluator, const Progress& progress);
+                                        ModelEvaluator& evaluator, const Progress& progress,
+                                        const std::optional<EffectPlan>& plan = {});
 
 }  // namespace dolp

@@ -4,9 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <ctime>
+#include <span>
 
+#include "base/hash.hpp"
+#include "base/version.hpp"
 #include "run/table_scene.hpp"
 
 namespace dolp {
@@ -129,6 +133,35 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
   if (formula.number != 0) head.attributes.push_back({"index_n_formula", formula_text(formula)});
   layout.quantities = quantities_of(scene, &plan);
   return layout;
+}
+
+namespace {
+
+/// A hash of n, k and E0, from files or from wherever the scene has them.
+std::uint64_t data_hash(const SceneValues& scene) {
+  std::uint64_t hash = kHashStart;
+  const auto add = [&hash](const SpectralTable& table) {
+    hash = hashed(hashed(hash, std::span(table.wavelength_um)), std::span(table.value));
+    hash =
+        hashed(hashed(hash, static_cast<std::uint64_t>(table.formula.number)), std::span(table.formula.coefficients));
+  };
+  const Material& own = scene.surface.material;
+  for (const Material* material : {&own, own.tabulated.get()}) {
+    if (!material) continue;
+    hash = hashed(hash, std::span<const double>(std::array{material->constant.n, material->constant.k}));
+    add(material->n);
+    add(material->k);
+  }
+  if (scene.source) add(scene.source->table);
+  return hash;
+}
+
+}  // namespace
+
+std::string identity_of(const SceneValues& scene, const std::string& evaluator, bool keep_all) {
+  return fmt::format("program dolp {} ({}); evaluator {}; precision {}; keep_all {}; scene {}; data fnv1a64:{:016x}",
+                     program_version(), program_commit(), evaluator, name_of(scene.accuracy.precision),
+                     keep_all ? "yes" : "no", scene_hash(scene), data_hash(scene));
 }
 
 TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results) {

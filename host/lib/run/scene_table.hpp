@@ -22,6 +22,10 @@ Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan = null
 /// `axes` may be a part of the scene's grid.
 TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const Axes& axes);
 
+/// The attribute of a table for what its values follow from, but for the device: names and values, see difference().
+inline constexpr const char* kIdentity = "identity";
+std::string identity_of(const SceneValues& scene, const std::string& evaluator, bool keep_all);
+
 /// The values of a part of the grid.
 TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results);
 

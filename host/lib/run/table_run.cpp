@@ -6,9 +6,10 @@
 #include <array>
 #include <dolp/errors.hpp>
 #include <future>
+#include <map>
 #include <utility>
 
-#include "base/stopwatch.hpp"
+#include "base/text.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
 #include "run/table_scene.hpp"
@@ -42,11 +43,27 @@ bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cut
 
 std::string shard_text(const Shard& shard) { return fmt::format("{}/{}", shard.number, shard.count); }
 
-/// The properties that all parts of a file share, in one line.
-std::string identity_of(const SceneValues& scene, const TableJob& job, const EvaluationReport& evaluation) {
-  return fmt::format("dolp {}, scene {}, shard {}{}, {}, {}, {}", DOLP_VERSION, scene_hash(scene),
-                     shard_text(job.shard), job.options.keep_all ? ", everything kept" : "", evaluation.evaluator,
-                     evaluation.device, evaluation.driver);
+/// Where a part begins in the entries that it is a part of.
+PerAxis place_in(const SceneEntries& entries, const SceneEntries& part) {
+  PerAxis first = part.first();
+  for (std::size_t i = 0; i < first.size(); ++i) first[i] -= entries.first()[i];
+  return first;
+}
+
+std::string identity_of(const SceneValues& scene, const TableJob& job) {
+  return identity_of(scene, job.evaluator, job.options.keep_all);
+}
+
+/// The properties that all parts of a file share: shards may be of different devices, a file is of one.
+std::string identity_of_file(const std::string& identity, const Shard& shard, const EvaluationReport& evaluation) {
+  return fmt::format("{}; shard {}; device {}, {}", identity, shard_text(shard), one_line(evaluation.device),
+                     one_line(evaluation.driver));
+}
+
+std::vector<TableBox> boxes_of(const SceneEntries& entries, const std::vector<SceneEntries>& parts) {
+  std::vector<TableBox> boxes;
+  for (const SceneEntries& part : parts) boxes.push_back({place_in(entries, part), part.counts()});
+  return boxes;
 }
 
 /// Writes each part while the next is computed.
@@ -66,13 +83,11 @@ class TableSink final : public Sink {
   RunSummary summary_of_done() const override { return done_; }
 
   void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) override {
-    PerAxis first = part.first();
-    for (std::size_t i = 0; i < first.size(); ++i) first[i] -= entries_.first()[i];
     TableValues table = table_part(layout_, part, results);
     finish();
-    pending_ = std::async(std::launch::async, [this, first, own = std::move(table), note = so_far.text()]() mutable {
-      output_.write(std::move(own), first, note);
-    });
+    pending_ = std::async(std::launch::async,
+                          [this, first = place_in(entries_, part), own = std::move(table),
+                           note = so_far.text()]() mutable { output_.write(std::move(own), first, note); });
   }
 
   /// Waits for the last part. Errors: those of its writing.
@@ -115,10 +130,11 @@ std::string text_of(const TableHead& head, const char* name) {
   return text ? *text : "";
 }
 
+/// A number attribute from 0 on; 0 for anything else.
 double number_of(const TableHead& head, const char* name) {
   const auto found = std::ranges::find(head.attributes, name, &Attribute::name);
   const auto* number = found == head.attributes.end() ? nullptr : std::get_if<double>(&found->value);
-  return number ? *number : 0.0;
+  return number && *number >= 0.0 ? *number : 0.0;
 }
 
 std::optional<Shard> shard_of(const TableHead& head) {
@@ -133,39 +149,56 @@ std::optional<Shard> shard_of(const TableHead& head) {
 struct ShardSet {
   SceneValues scene;
   TableLayout layout;
-  std::vector<std::string> paths;  ///< by number
+  std::size_t count = 0;
+  std::map<std::size_t, std::string> paths;  ///< by number
   SelfCheck check;
   double wall_s = 0.0;
   std::string devices;
 };
+
+/// Refuses a shard that is not of the same table as the first.
+void check_same_table(const ShardSet& set, const Shard& shard, const TableReader& reader, const std::string& path) {
+  const TableHead& head = reader.head();
+  const TableHead& first = set.layout.head;
+  if (const auto differs = difference(text_of(head, kIdentity), text_of(first, kIdentity)))
+    throw InputError(fmt::format("{}: is a shard of another table: it has {}", path, *differs));
+  const bool has_same_curves = std::ranges::all_of(
+      kTableCurves, [&](const TableCurve& described) { return head.*described.curve == first.*described.curve; });
+  if (shard.count != set.count || reader.quantities() != set.layout.quantities ||
+      reader.has_status() != set.layout.has_status || head.stokes_units != first.stokes_units || !has_same_curves) {
+    throw InputError(fmt::format("{}: is shard {}, of another table than {}: it has other variables or units", path,
+                                 shard_text(shard), set.paths.begin()->second));
+  }
+}
+
+Axes axes_of_shard(const SceneValues& scene, const Shard& shard, const std::string& path) {
+  try {
+    return shard_entries(scene, shard).axes();
+  } catch (const InputError& error) {
+    throw InputError(path + ": " + error.what());
+  }
+}
 
 void add_shard(ShardSet& set, const std::string& path) {
   const TableReader reader(path);
   const TableHead& head = reader.head();
   const std::optional<Shard> shard = shard_of(head);
   if (!shard) throw InputError(path + ": is no shard of a table (attribute shard)");
+  if (text_of(head, kIdentity).empty()) throw InputError(path + ": has no text attribute " + kIdentity);
   if (set.paths.empty()) {
     set.scene = table_scene(head, path);
     set.layout = {head, reader.quantities(), reader.has_status()};
-    set.paths.resize(shard->count);
     set.layout.head.axes = set.scene.grid;
+    set.count = shard->count;
+  } else {
+    check_same_table(set, *shard, reader, path);
   }
-  const TableHead& first = set.layout.head;
-  for (const char* name : {"scene_hash", "source"}) {
-    if (text_of(head, name) == text_of(first, name)) continue;
-    throw InputError(fmt::format("{}: is a shard of another table: its {} is {}, not {}", path, name,
-                                 text_of(head, name), text_of(first, name)));
-  }
-  if (shard->count != set.paths.size() || reader.quantities() != set.layout.quantities) {
-    throw InputError(fmt::format("{}: is shard {}, of another table than the {} shards before", path,
-                                 shard_text(*shard), set.paths.size()));
-  }
-  if (head.axes != shard_entries(set.scene, *shard).axes())
+  if (head.axes != axes_of_shard(set.scene, *shard, path))
     throw InputError(fmt::format("{}: does not have the axes of shard {}", path, shard_text(*shard)));
-  std::string& place = set.paths[shard->number - 1];
-  if (!place.empty()) throw InputError(fmt::format("{}: is shard {}, as {} is", path, shard_text(*shard), place));
-  place = path;
-  set.check.entries += static_cast<std::size_t>(number_of(head, "self_check_entries"));
+  const auto [place, is_new] = set.paths.emplace(shard->number, path);
+  if (!is_new) throw InputError(fmt::format("{}: is shard {}, as {} is", path, shard_text(*shard), place->second));
+  const double most = static_cast<double>(kMostTableEntries);
+  set.check.entries += static_cast<std::size_t>(std::min(number_of(head, "self_check_entries"), most));
   set.check.worst_ratio = std::max(set.check.worst_ratio, number_of(head, "self_check_worst_ratio"));
   set.wall_s += number_of(head, "wall_time_s");
   const std::string device = text_of(head, "device");
@@ -173,13 +206,16 @@ void add_shard(ShardSet& set, const std::string& path) {
 }
 
 ShardSet shard_set(const std::vector<std::string>& paths) {
+  constexpr std::size_t kMostNamed = 20;
   ShardSet set;
   for (const std::string& path : paths) add_shard(set, path);
-  std::string missing;
-  for (std::size_t i = 0; i < set.paths.size(); ++i) {
-    if (set.paths[i].empty()) missing += fmt::format("{}{}/{}", missing.empty() ? "" : ", ", i + 1, set.paths.size());
+  std::vector<std::string> missing;
+  for (std::size_t i = 1; i <= set.count && missing.size() < kMostNamed; ++i) {
+    if (!set.paths.contains(i)) missing.push_back(shard_text({i, set.count}));
   }
-  if (!missing.empty()) throw InputError("missing shards: " + missing);
+  const std::size_t unnamed = set.count - set.paths.size() - missing.size();
+  if (unnamed > 0) missing.push_back(fmt::format("{} more", unnamed));
+  if (!missing.empty()) throw InputError("missing shards: " + join(missing));
   return set;
 }
 
@@ -193,7 +229,7 @@ void keep_attributes(std::vector<Attribute>& attributes, const std::vector<Attri
 }  // namespace
 
 fs::path shard_path(const fs::path& path, const Shard& shard) {
-  if (shard.is_whole() || path == "-") return path;
+  if (shard.is_none() || path == "-") return path;
   fs::path own = path;
   const std::string suffix = path.extension().string();
   own.replace_extension();
@@ -201,14 +237,15 @@ fs::path shard_path(const fs::path& path, const Shard& shard) {
 }
 
 SceneEntries shard_entries(const SceneValues& scene, const Shard& shard) {
-  if (shard.is_whole()) return grid_entries(scene);
+  if (shard.is_none()) return grid_entries(scene);
+  if (shard.number < 1 || shard.number > shard.count)
+    throw InputError(fmt::format("shard {}: the first number must be one from 1 to the second", shard_text(shard)));
   const SceneEntries whole = grid_entries(scene);
   PerAxis count = whole.counts();
   Cuts cuts{};
   if (!find_cuts(count, shard.count, 0, cuts)) {
     throw InputError(
-        fmt::format("--shard {}: {} values of theta, {} of wavelength, {} of n and {} of k cannot be cut "
-                    "into {} parts",
+        fmt::format("shard {}: {} values of theta, {} of wavelength, {} of n and {} of k cannot be cut into {} parts",
                     shard_text(shard), count[Axis::kTheta], count[Axis::kWavelength], count[Axis::kN], count[Axis::kK],
                     shard.count));
   }
@@ -227,13 +264,15 @@ SceneEntries shard_entries(const SceneValues& scene, const Shard& shard) {
 
 RunOutcome write_table(const SceneValues& scene, const TableJob& job, const EvaluatorMaker& make_evaluator) {
   Run run(scene, shard_entries(scene, job.shard), job.options, make_evaluator);
+  const std::string identity = identity_of(scene, job);
   TableLayout layout = table_layout(scene, run.plan(), run.entries().axes());
-  if (!job.shard.is_whole()) layout.head.attributes.push_back({kShard, shard_text(job.shard)});
+  layout.head.attributes.push_back({kIdentity, identity});
+  if (!job.shard.is_none()) layout.head.attributes.push_back({kShard, shard_text(job.shard)});
   TableOutput output({.path = job.path,
                       .layout = layout,
-                      .parts = run.parts().size(),
-                      .is_resumed = job.options.resume,
-                      .identity = identity_of(scene, job, run.evaluation())});
+                      .parts = boxes_of(run.entries(), run.parts()),
+                      .identity = identity_of_file(identity, job.shard, run.evaluation()),
+                      .is_resumed = job.options.resume});
   RunOutcome outcome;
   with_rest(output, [&] {
     TableSink sink(run.entries(), layout, output);
@@ -252,8 +291,11 @@ bool is_there(const SceneValues& scene, const TableJob& job) {
   try {
     const TableReader reader(job.path);
     const TableHead& head = reader.head();
-    return text_of(head, "scene_hash") == scene_hash(scene) && text_of(head, "source") == "dolp " DOLP_VERSION &&
-           text_of(head, kShard) == shard_text(job.shard) && head.axes == shard_entries(scene, job.shard).axes();
+    if (difference(text_of(head, kIdentity), identity_of(scene, job)) || text_of(head, kShard) != shard_text(job.shard))
+      return false;
+    begin(job.options.progress, shard_entries(scene, job.shard).size());
+    static_cast<void>(reader.read_entries({}));  // refuses values that are not those that were written
+    return head.axes == shard_entries(scene, job.shard).axes();
   } catch (const InputError&) {
     return false;
   }
@@ -274,16 +316,14 @@ std::size_t merge_shards(const std::vector<std::string>& shards, const fs::path&
                                 {"self_check_worst_ratio", set.check.worst_ratio},
                                 {"wall_time_s", set.wall_s}};
   keep_attributes(set.layout.head.attributes, run);
-  TableOutput output({.path = path, .layout = set.layout, .parts = shards.size() + 1, .is_resumable = false});
-  for (std::size_t i = 0; i < set.paths.size(); ++i) {
-    const TableReader reader(set.paths[i]);
-    const SceneEntries own = shard_entries(set.scene, {i + 1, set.paths.size()});
-    ValuesHash::Sums sums;
+  TableOutput output({.path = path, .layout = set.layout});
+  for (const auto& [number, own_path] : set.paths) {
+    const TableReader reader(own_path);
+    const SceneEntries own = shard_entries(set.scene, {number, set.count});
+    ValueSums sums;
     for (const TableBox& box : boxes_in_order(own.counts(), kMergedAtOnce)) {
       TableValues part = reader.read(box);
-      const ValuesHash::Sums of_part = reader.sums_of(part, box);
-      sums.resize(of_part.size(), 0);
-      std::ranges::transform(sums, of_part, sums.begin(), std::plus<>());
+      add(sums, reader.sums_of(part, box));
       PerAxis first = own.first();
       for (std::size_t axis = 0; axis < first.size(); ++axis) first[axis] += box.first[axis];
       output.write(std::move(part), first, "");

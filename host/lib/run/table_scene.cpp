@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include <dolp/number_range.hpp>
+#include "base/hash.hpp"
 #include "base/text.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene/spectral_data.hpp"
@@ -103,12 +104,8 @@ std::vector<Setting> settings_of(const std::string& text) {
 }
 
 std::uint64_t scene_seed(const SceneValues& scene) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  const auto add = [&hash](const std::string& text) {
-    for (const char byte : text) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
-  };
-  add(scene.text);
-  for (const Setting& setting : scene.settings) add("\n" + setting.text());
+  std::uint64_t hash = hashed(kHashStart, scene.text);
+  for (const Setting& setting : scene.settings) hash = hashed(hash, "\n" + setting.text());
   return hash;
 }
 

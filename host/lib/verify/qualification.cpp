@@ -128,8 +128,8 @@ SceneValues emission_scene(Distribution distribution, Masking masking, double to
   return scene;
 }
 
-std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, MomentsEvaluator& evaluator, double tolerance,
-                                 const Progress& progress) {
+std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, ModelEvaluator& evaluator,
+                                 const Accuracy& accuracy, const Progress& progress) {
   std::map<std::pair<Distribution, Masking>, std::vector<std::size_t>> groups;
   for (std::size_t i = 0; i < cases.size(); ++i) groups[{cases[i].distribution, cases[i].masking}].push_back(i);
   std::vector<CaseOutcome> outcomes(cases.size());
@@ -137,7 +137,8 @@ std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, MomentsEv
   for (const auto& [group, positions] : groups) {
     std::vector<SceneEntry> entries;
     for (const std::size_t i : positions) entries.push_back({cases[i].theta_deg, cases[i].shape, cases[i].index});
-    const SceneValues scene = emission_scene(group.first, group.second, tolerance);
+    SceneValues scene = emission_scene(group.first, group.second, accuracy.tolerance);
+    scene.accuracy = accuracy;
     const Progress group_progress = [&](std::size_t done, std::size_t) {
       return !progress || progress(finished + done, cases.size());
     };
@@ -145,21 +146,21 @@ std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, MomentsEv
     finished += positions.size();
     for (std::size_t j = 0; j < positions.size(); ++j) {
       const std::size_t i = positions[j];
-      outcomes[i] = outcome_of(cases[i], results[j], tolerance);
+      outcomes[i] = outcome_of(cases[i], results[j], accuracy.tolerance);
       outcomes[i].position = i;
     }
   }
   return outcomes;
 }
 
-DeviceQuality measure_quality(MomentsEvaluator& evaluator, double tolerance) {
+DeviceQuality measure_quality(ModelEvaluator& evaluator, const Accuracy& accuracy) {
   std::vector<StoredCase> cases = hard_cases();
   std::erase_if(cases,
                 [](const StoredCase& c) { return std::ranges::find(kOrdinaryCases, c.name) == kOrdinaryCases.end(); });
   DeviceQuality quality;
   quality.cases = cases.size();
-  quality.tolerance = tolerance;
-  for (const CaseOutcome& outcome : qualify(cases, evaluator, tolerance, {})) {
+  quality.tolerance = accuracy.tolerance;
+  for (const CaseOutcome& outcome : qualify(cases, evaluator, accuracy, {})) {
     const StoredCase& stored = cases[outcome.position];
     quality.missed += (outcome.status & kToleranceNotMet) != 0 ? 1 : 0;
     quality.is_sound = quality.is_sound && outcome.complaint.empty();

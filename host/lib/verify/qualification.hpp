@@ -45,8 +45,8 @@ SceneValues emission_scene(Distribution distribution, Masking masking, double to
 /// At 90 degrees rho has no finite value under masking none and `integral`; DOLP is compared with |r_Q / r_I| there.
 /// Domain: cases at 90 degrees are of those two maskings and have finite moments.
 /// Errors: those of evaluate_scene.
-std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, MomentsEvaluator& evaluator, double tolerance,
-                                 const Progress& progress);
+std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, ModelEvaluator& evaluator,
+                                 const Accuracy& accuracy, const Progress& progress);
 
 /// Accuracy of an evaluator on a few ordinary cases of every distribution and masking.
 struct DeviceQuality {
@@ -60,6 +60,6 @@ struct DeviceQuality {
 
 /// Measures an evaluator, for a list of devices; `dolp verify --hard-cases` is the thorough examination.
 /// Errors: those of evaluate_scene.
-DeviceQuality measure_quality(MomentsEvaluator& evaluator, double tolerance);
+DeviceQuality measure_quality(ModelEvaluator& evaluator, const Accuracy& accuracy);
 
 }  // namespace dolp

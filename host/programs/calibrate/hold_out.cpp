@@ -7,6 +7,7 @@
 
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "reference/reference_evaluator.hpp"
+#include "scene/scene.hpp"
 
 namespace dolp {
 namespace {
@@ -34,26 +35,27 @@ class Check {
 
   Answers operator()(const std::vector<MomentsPoint>& entries) const {
     const Precision precision = tolerance_ < kLeastFloatTolerance ? Precision::kDouble : Precision::kFloat;
-    CpuEvaluator rules(precision), finer_rules(Precision::kDouble);
+    CpuEvaluator rules;
     ReferenceEvaluator reference({.relative_tolerance = kReferenceTolerance});
-    MomentsEvaluator& exact = against_reference_ ? static_cast<MomentsEvaluator&>(reference) : finer_rules;
+    ModelEvaluator& exact = against_reference_ ? static_cast<ModelEvaluator&>(reference) : rules;
     const double finest = against_reference_ ? 0.0 : std::max(kFinerBy * tolerance_, kFinest);
     Answers answers;
     for (std::size_t first = 0; first < entries.size(); first += kAtOnce) {
       const std::vector part(entries.begin() + static_cast<std::ptrdiff_t>(first),
                              entries.begin() + static_cast<std::ptrdiff_t>(std::min(first + kAtOnce, entries.size())));
-      append_all(answers.stated, part, tolerance_, rules);
+      append_all(answers.stated, part, {tolerance_, precision}, rules);
       for (std::size_t i = first; i < answers.stated.size(); ++i) lower_bounds(answers.stated[i]);
-      append_all(answers.exact, part, finest, exact);
+      append_all(answers.exact, part, {finest, Precision::kDouble}, exact);
     }
     return answers;
   }
 
  private:
-  void append_all(std::vector<Moments>& moments, const std::vector<MomentsPoint>& entries, double tolerance,
-                  MomentsEvaluator& evaluator) const {
+  void append_all(std::vector<Moments>& moments, const std::vector<MomentsPoint>& entries, const Accuracy& accuracy,
+                  ModelEvaluator& evaluator) const {
     MomentsRequest request = model_;
-    request.tolerance = tolerance;
+    request.tolerance = accuracy.tolerance;
+    request.precision = accuracy.precision;
     request.may_interpolate = false;
     for (const MomentsPoint& entry : entries) request.append(entry);
     const std::vector<Moments> more = evaluator.evaluate(request, {});

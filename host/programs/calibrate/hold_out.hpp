@@ -36,7 +36,7 @@ struct HoldOut {
   CheckedEntry climbed;  ///< found by climbing
 };
 
-/// Evaluates the shaders' text on the CPU, in float where the tolerance allows it.
+/// Evaluates the kernel source on the CPU, in float where the tolerance allows it.
 /// `model` is a request without entries.
 HoldOut hold_out(const MomentsRequest& model, const HoldOutOptions& options);
 

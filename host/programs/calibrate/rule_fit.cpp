@@ -11,8 +11,8 @@
 #include "base/numbers.hpp"
 #include "base/parallel_ranges.hpp"
 #include "calibrate/random_entries.hpp"
-#include "evaluate/text/profile.hpp"
-#include "evaluate/text/text.hpp"
+#include "evaluate/kernel/cpu_kernel.hpp"
+#include "evaluate/kernel/slope_samples.hpp"
 #include "plan/kernel_data.hpp"
 
 namespace dolp {
@@ -40,17 +40,17 @@ MomentsRequest random_request(MomentsRequest request, const RuleFitOptions& opti
 /// Moments of all entries of a request.
 std::vector<Moments> computed(const MomentsRequest& request, const RuleModel& model) {
   const KernelData data = kernel_data(request, model);
-  const std::unique_ptr<KernelText> text = make_kernel_text_double(data);
-  const Profiles profiles(data);
+  const std::unique_ptr<CpuKernel> kernel = make_cpu_kernel_double(data);
+  const SlopeSampling sampling(data);
   std::vector<Moments> moments(data.size());
   const auto one = [&](std::size_t i) {
-    if (has_profiles(request)) {
-      profiles.compute(profile_entries(request, data, i, i + 1).front(), *text, kDoubleRoundoff, moments);
+    if (has_slope_samples(request)) {
+      sampling.compute(sampled_entries(request, data, i, i + 1).front(), *kernel, kDoubleRoundoff, moments);
       return;
     }
     const MomentsEntry entry = data[i];
-    text->build_masking_table(entry.shape);
-    moments[i] = moments_from_kernel(text->moments(entry), data, entry, kDoubleRoundoff);
+    kernel->build_masking_table(entry.shape);
+    moments[i] = moments_from_kernel(kernel->moments(entry), data, entry, kDoubleRoundoff);
   };
   parallel_for(moments.size(), one, nullptr);
   return moments;

@@ -193,8 +193,11 @@ std::unique_ptr<CLI::App> command_line(Options& options) {
   add_fit(*app.add_subcommand("fit", "numbers of a scene from measured data, with intervals"), options);
   add_explore(*app.add_subcommand("explore", "the window: parameters, curves, map, effects and their price, live"),
               options);
-  app.add_subcommand("materials", "built-in materials, their ranges of wavelength and their sources")
-      ->add_flag("--json", options.json, "machine-readable list");
+  CLI::App* materials =
+      app.add_subcommand("materials", "built-in materials, their ranges and sources, or n and k of one");
+  CLI::Option* material = materials->add_option("NAME", options.material, "n and k of this one");
+  material->needs(materials->add_option("--at", options.wavelength_um, "at this wavelength [um]")->needs(material));
+  materials->add_flag("--json", options.json, "machine-readable list");
   CLI::App* devices = app.add_subcommand("devices", "Vulkan devices, and why each one is or is not usable");
   devices->add_flag("--json", options.json, "machine-readable list");
   devices->add_option("--device", options.device, "check this one: its position or a part of its name");
@@ -223,7 +226,7 @@ std::unique_ptr<CLI::App> command_line(Options& options) {
                "dolp fit scene.toml --data measured.csv --vary surface.n=1:3 --vary surface.sigma=0.01:1",
                "dolp fit scene.toml --data a.csv --vary surface.n=1:3 --compare surface.masking=smith,v-cavity");
   add_examples(*app.get_subcommand("explore"), "dolp explore", "dolp explore scene.toml --measured measured.csv");
-  add_examples(*app.get_subcommand("materials"), "dolp materials", "dolp materials --json");
+  add_examples(*app.get_subcommand("materials"), "dolp materials", "dolp materials iron --at 10.6");
   add_examples(*app.get_subcommand("devices"), "dolp devices", "dolp devices --device llvmpipe");
   add_examples(*app.get_subcommand("keys"), "dolp keys", "dolp keys surface.masking");
   add_examples(*app.get_subcommand("completion"),

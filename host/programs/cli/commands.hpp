@@ -35,7 +35,7 @@ int run_fit(const Options& options);
 /// `dolp explore [SCENE]`: the window.
 int run_explore(const Options& options);
 
-/// `dolp materials`: the built-in materials, their ranges of wavelength and their sources.
+/// `dolp materials`: the built-in materials, their ranges of wavelength and their sources; with `NAME --at UM` n and k.
 int run_materials(const Options& options);
 
 /// `dolp keys [KEY]`: what the keys of a scene mean and may be.

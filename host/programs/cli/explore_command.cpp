@@ -1,5 +1,5 @@
 #include "cli/commands.hpp"
-#include "explore/program/program.hpp"
+#include "explore/window/app.hpp"
 #include "terminal/exit_status.hpp"
 
 namespace dolp::cli {

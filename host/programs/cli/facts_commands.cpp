@@ -1,6 +1,7 @@
 // Commands that list keys, materials and devices, and print the plan of a scene.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <dolp/errors.hpp>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -34,6 +35,24 @@ int finish_list(Report report, const char* name, const Json& list, const Options
   return finish(report, options);
 }
 
+/// n and k of one material, as a scene with it has them.
+int show_material(const Options& options) {
+  Setting wavelength = Setting::from_text("spectrum.wavelength_um=" + options.wavelength_um);
+  wavelength.origin = one_line("--at " + options.wavelength_um);
+  const Scene scene = Scene::from_text(
+      example_scene(), {{"surface.material", options.material, one_line(options.material)}, wavelength}, "materials");
+  const std::string name = scene.word("surface.material").value();
+  const std::vector<BuiltInMaterial> known = materials();
+  const std::string& source = std::ranges::find(known, name, &BuiltInMaterial::name)->source;
+  const double wavelength_um = scene.number("spectrum.wavelength_um").value();
+  const auto [n, k] = scene.refractive_index(wavelength_um);
+  Report report;
+  report.text = fmt::format("{} at {} um: n = {}, k = {}\n    {}\n", name, wavelength_um, n, k, source);
+  report.json =
+      Json{{"name", name}, {"wavelength_um", wavelength_um}, {"n", n}, {"k", k}, {"source", source}}.dump(2, ' ', true);
+  return finish(report, options);
+}
+
 }  // namespace
 
 int run_keys(const Options& options) {
@@ -53,6 +72,7 @@ int run_keys(const Options& options) {
 }
 
 int run_materials(const Options& options) {
+  if (!options.material.empty()) return show_material(options);
   Report report;
   Json list = Json::array();
   for (const BuiltInMaterial& material : materials()) {

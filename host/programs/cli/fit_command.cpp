@@ -23,6 +23,7 @@ int run_fit(const Options& options) {
   {
     ProgressBar bar(options.quiet);
     fit.progress = bar.callback();
+    fit.phase = [&bar](const std::string& what) { bar.count(what); };
     const Fit found = evaluator_of(options).fit(scene, data, fit);
     report = found.report;
     has_minimum = found.has_minimum;

@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 #include <malloc.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <dolp/dolp.hpp>
 #include <dolp/errors.hpp>
 #include <limits>
 #include <memory>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -56,8 +59,13 @@ int run(CLI::App& app, Options& options) {
 }
 
 std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
-  const std::vector<std::string> unknown = app.remaining();
-  if (!app.get_subcommands().empty() || unknown.empty()) return fmt::format("{} (see dolp --help)", error.what());
+  const std::vector<std::string> unknown = app.remaining(true);
+  const bool is_unknown = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  if (!app.get_subcommands().empty()) {
+    const std::string what = is_unknown ? fmt::format("{}: unknown here", fmt::join(unknown, " ")) : error.what();
+    return fmt::format("{} (see dolp {} --help)", what, app.get_subcommands().front()->get_name());
+  }
+  if (unknown.empty()) return fmt::format("{} (see dolp --help)", error.what());
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
   return fmt::format("{}: unknown command or option; the nearest command is {} (see dolp --help)", unknown.front(),
@@ -69,16 +77,25 @@ int parse_and_run(int argc, char** argv) {
   for (int i = 0; i < argc; ++i) options.command_line += (i > 0 ? " " : "") + std::string(argv[i]);
   const std::unique_ptr<CLI::App> program = command_line(options);
   CLI::App& app = *program;
+  int status = kExitDone;
   try {
     app.parse(argc, argv);
+    check_device(options);
+    status = run(app, options);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
-    return fail("dolp", kExitInput, usage_message(app, error));
+    if (error.get_exit_code() != 0) return fail("dolp", kExitInput, usage_message(app, error));
+    app.exit(error);  // prints what --help and the like ask for
   }
-  check_device(options);
-  const int status = run(app, options);
-  if (std::fflush(stdout) != 0) throw IoError("standard output: cannot write the report");
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw IoError("standard output: cannot write the report");
   return status;
+}
+
+/// Ends the program, with one line, where C++ code finds no memory, in a driver too: little of it survives that, and
+/// nothing is lost, because an output has no name before it is whole.
+[[noreturn]] void end_out_of_memory() {
+  static std::atomic_flag is_ending;
+  while (is_ending.test_and_set()) ::pause();  // another thread says it
+  ::_exit(fail_out_of_memory("dolp"));
 }
 
 /// Reuses freed memory: lists as long as a table, and a driver's memory for a pipeline, would otherwise return to the
@@ -93,6 +110,7 @@ void keep_freed_memory() {
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of its writing
+  std::set_new_handler(dolp::cli::end_out_of_memory);
   dolp::cli::keep_freed_memory();
   return dolp::guarded("dolp", [&] { return dolp::cli::parse_and_run(argc, argv); });
 }

@@ -41,6 +41,8 @@ struct Options {
   std::string loss = "squares";      ///< of fit
   std::string plot_path;             ///< of fit
   std::string key;                   ///< of keys: one of them, or a table; empty: all
+  std::string material;              ///< of materials: one of them; empty: all
+  std::string wavelength_um;         ///< of materials: as typed
   std::string completion;            ///< of completion: one of kCompletions
   std::string command_line;          ///< for the table's history
 };

@@ -12,21 +12,19 @@
 namespace dolp::cli {
 namespace {
 
-/// A whole number from `least` on.
-std::size_t whole_number(const std::string& text, const std::string& what, double least) {
+std::size_t whole_number(const std::string& text, const std::string& what) {
   constexpr double kMost = 1e9;
   const std::optional<double> number = parse_number(text);
-  if (number && *number >= least && *number <= kMost &&
-      *number == static_cast<double>(static_cast<std::size_t>(*number)))
+  if (number && *number >= 0.0 && *number <= kMost && *number == static_cast<double>(static_cast<std::size_t>(*number)))
     return static_cast<std::size_t>(*number);
-  throw InputError(fmt::format("{}: {} is not a whole number from {} on", what, one_line(text), least));
+  throw InputError(fmt::format("{}: {} is not a whole number from 0 to {}", what, one_line(text), kMost));
 }
 
 std::size_t slurm_number(const char* variable) {
   const char* text = std::getenv(variable);
   if (!text)
     throw InputError(fmt::format("--shard auto: needs the tasks of a Slurm array, and {} is not set", variable));
-  return whole_number(text, variable, 0.0);
+  return whole_number(text, variable);
 }
 
 /// "2/8", or what the Slurm array says for "auto".
@@ -40,10 +38,9 @@ Shard shard_of(const std::string& text) {
   } else {
     const std::size_t slash = text.find('/');
     if (slash == std::string::npos) throw InputError(fmt::format("--shard {}: must be I/N or auto", one_line(text)));
-    shard = {whole_number(text.substr(0, slash), "--shard", 1.0), whole_number(text.substr(slash + 1), "--shard", 1.0)};
+    shard = {whole_number(text.substr(0, slash), "--shard"), whole_number(text.substr(slash + 1), "--shard")};
   }
-  if (shard.number < 1 || shard.number > shard.count)
-    throw InputError(fmt::format("--shard {}: shard {} of {}", one_line(text), shard.number, shard.count));
+  if (shard.is_none()) throw InputError("--shard 0/0: there is no such shard");
   return shard;
 }
 

@@ -1,11 +1,15 @@
 #include "explore/curve.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 namespace dolp::explore {
 namespace {
 
 constexpr const char* kCoarsePrefix = "coarse curve ";
+constexpr std::size_t kStride = 10;  // of the points that the reference recomputes: five degrees
 
 }  // namespace
 
@@ -17,49 +21,60 @@ void Curve::follow(const std::string& key, const Scene& scene, bool keep_all) {
 
 std::string Curve::key_of(Stage stage) const { return (stage == Stage::kCoarse ? kCoarsePrefix : "curve ") + key_; }
 
-Job Curve::job(Stage stage) const {
-  const bool is_coarse = stage == Stage::kCoarse;
-  return {.key = key_of(stage),
-          .scene = scene_,
-          .parts = {points_at(scene_, zeniths(0.0, 90.0, is_coarse ? kCoarseCount : kFineCount))},
-          .tolerance = is_coarse ? kCoarseTolerance : 0.0,
-          .keep_all = keep_all_,
-          .wants_effects = !is_coarse,
-          .is_brief = is_coarse};
-}
-
 std::optional<Job> Curve::wanted(Stage stage) const {
-  if (key_.empty() || is_finished() || shown_ == key_of(stage)) return std::nullopt;
-  return job(stage);
+  if (key_.empty() || is_finished() || shown_.key == key_of(stage)) return std::nullopt;
+  const bool is_coarse = stage == Stage::kCoarse;
+  return Job{.key = key_of(stage),
+             .scene = scene_,
+             .parts = {points_at(scene_, zeniths(0.0, 90.0, is_coarse ? kCoarseCount : kFineCount))},
+             .tolerance = is_coarse ? kCoarseTolerance : 0.0,
+             .keep_all = keep_all_,
+             .wants_effects = !is_coarse,
+             .is_brief = is_coarse};
 }
 
 bool Curve::take(const JobPart& news) {
   const bool is_fine = news.key == key_of(Stage::kFine);
   if (!is_fine && news.key != key_of(Stage::kCoarse)) return false;
   if (!is_fine && is_finished()) return true;
-  show(news);
-  if (is_fine) {
-    report_ = {news.scene, news.effects, news.csv, news.wall_s, news.evaluations, news.points.size()};
-  }
+  shown_ = news;
+  if (is_fine) finished_ = news;
   return true;
 }
 
 void Curve::take_earlier(const JobPart& news) {
-  if (!is_current() && news.key.starts_with(kCoarsePrefix)) show(news);
-}
-
-void Curve::show(const JobPart& news) {
-  shown_ = news.key;
-  shown_scene_ = news.scene;
-  points_ = news.points;
+  if (!is_current() && news.key.starts_with(kCoarsePrefix)) shown_ = news;
 }
 
 double Curve::worst_error() const {
   double worst = 0.0;
-  for (const Point& point : points_) {
-    if (is_good(point)) worst = std::max(worst, point.error_estimate);
+  for (const Point& point : points()) {
+    if (point.is_good()) worst = std::max(worst, point[Quantity::kErrorEstimate]);
   }
   return worst;
+}
+
+std::string true_error(const Curve& curve, const Progress& progress) {
+  std::vector<Point> stated;
+  std::vector<double> theta_deg;
+  for (std::size_t i = 0; i < curve.points().size(); i += kStride) {
+    stated.push_back(curve.points()[i]);
+    theta_deg.push_back(stated.back().theta_deg);
+  }
+  Evaluator reference(EvaluatorOptions{.evaluator = "reference"});
+  const PointList list = points_at(curve.scene(), theta_deg);
+  const Results truth = reference.evaluate(curve.scene(), list.columns(), {.keep_all = true, .progress = progress});
+  const Point* worst = nullptr;
+  double largest = -1.0;
+  for (std::size_t i = 0; i < stated.size(); ++i) {
+    const double error = std::abs(stated[i][Quantity::kDolp] - truth[Quantity::kDolp][i]);
+    if (!stated[i].is_good() || !(error > largest)) continue;
+    largest = error;
+    worst = &stated[i];
+  }
+  if (!worst) return "no direction whose DOLP means something";
+  return fmt::format("{:.1e} at θ = {:g}°, bound {:.1e}; {} directions", largest, worst->theta_deg,
+                     (*worst)[Quantity::kErrorEstimate], stated.size());
 }
 
 }  // namespace dolp::explore

@@ -5,19 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "explore/worker.hpp"
+#include "explore/background.hpp"
 
 namespace dolp::explore {
-
-/// Report on a finished curve.
-struct CurveReport {
-  Scene scene;
-  std::vector<Effect> effects = {};
-  std::string csv = {};  ///< with the columns of `dolp eval`
-  double wall_s = 0.0;
-  double evaluations = 0.0;
-  std::size_t points = 0;
-};
 
 /// Results of a scene over all zeniths.
 class Curve {
@@ -29,7 +19,7 @@ class Curve {
   static constexpr std::size_t kCoarseCount = 46;
   static constexpr double kCoarseTolerance = 1e-2;
 
-  explicit Curve(const Scene& scene) : scene_(scene), shown_scene_(scene), report_{scene} {}
+  explicit Curve(const Scene& scene) : scene_(scene), shown_{.scene = scene}, finished_{.scene = scene} {}
 
   /// Switches to the curve of `scene`. `key` identifies the scene's content. The curve on display stays, marked as
   /// outdated, until newer points arrive.
@@ -45,31 +35,32 @@ class Curve {
 
   const Scene& scene() const { return scene_; }
   const std::string& key() const { return key_; }
-  bool is_finished() const { return shown_ == key_of(Stage::kFine); }
+  bool is_finished() const { return shown_.key == key_of(Stage::kFine); }
   /// True where the points on display belong to an earlier scene.
-  bool is_stale() const { return !points_.empty() && !is_current(); }
+  bool is_stale() const { return !points().empty() && !is_current(); }
   // The points on display, and the scene that they were computed with.
-  const Scene& shown_scene() const { return points_.empty() ? scene_ : shown_scene_; }
-  const std::vector<Point>& points() const { return points_; }
-  /// The report on the last finished curve.
-  const CurveReport& report() const { return report_; }
+  const Scene& shown_scene() const { return points().empty() ? scene_ : shown_.scene; }
+  const std::vector<Point>& points() const { return shown_.points; }
+  /// The last finished curve; without points before there is one.
+  const JobPart& finished() const { return finished_; }
 
   /// The largest stated error of DOLP where status promises one.
   double worst_error() const;
 
  private:
   std::string key_of(Stage stage) const;
-  Job job(Stage stage) const;
-  bool is_current() const { return is_finished() || shown_ == key_of(Stage::kCoarse); }
-  void show(const JobPart& news);
+  bool is_current() const { return is_finished() || shown_.key == key_of(Stage::kCoarse); }
 
   std::string key_;
   Scene scene_;
   bool keep_all_ = false;
-  std::string shown_;  ///< key of the job whose results are shown
-  Scene shown_scene_;
-  std::vector<Point> points_;
-  CurveReport report_;
+  JobPart shown_;
+  JobPart finished_;
 };
+
+/// Compares every tenth point of a finished curve with the independent reference, everything kept. Returns the largest
+/// error of DOLP beside its bound, in words.
+/// Errors: Cancelled when `progress` returns false.
+std::string true_error(const Curve& curve, const Progress& progress);
 
 }  // namespace dolp::explore

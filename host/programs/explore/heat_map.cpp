@@ -3,50 +3,69 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "explore/parameters.hpp"
 
 namespace dolp::explore {
 namespace {
 
-constexpr SliderRange kSmithQ{1.6, 20.0};  // smith needs more than 1.5
+constexpr Scale kSmithQ{1.6, 20.0, true};  // smith needs more than 1.5
 
-MapAxis axis_of(AxisKind kind, const std::vector<double>& grid, const SliderRange& fallback, bool is_log) {
+Scale range_of(const std::vector<double>& grid, const Scale& fallback) {
   const auto [low, high] = std::ranges::minmax_element(grid);
-  const bool has_range = *low < *high && (!is_log || *low > 0.0);
-  if (has_range) return {kind, *low, *high, is_log};
-  return {kind, fallback.min, fallback.max, is_log};
+  return *low<*high&& * low> 0.0 ? Scale{*low, *high, true} : Scale{fallback.from, fallback.to, true};
 }
+
+struct Crossing {
+  double x, y;
+};
+
+/// Corners of a square in turn, as offsets.
+constexpr std::array<std::pair<std::size_t, std::size_t>, 4> kCorners = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
 
 }  // namespace
 
-double MapAxis::value(double position) const {
-  if (position <= 0.0) return from;
-  if (position >= 1.0) return to;
-  return is_log ? from * std::pow(to / from, position) : from + position * (to - from);
-}
-
-double MapAxis::position(double value) const {
-  return is_log ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
-}
-
-MapAxis suggested_axis(AxisKind kind, const Scene& scene, double theta_max_deg) {
-  switch (kind) {
-    case AxisKind::kTheta:
-      return {kind, 0.0, theta_max_deg, false};
-    case AxisKind::kSigma:
-      return axis_of(kind, scene.numbers("grid.sigma"), parameter("surface.sigma").slider, true);
-    case AxisKind::kQ:
-      break;
-  }
+MapAxis suggested_axis(Axis axis, const Scene& scene, double theta_max_deg) {
+  if (axis == Axis::kTheta) return {axis, {0.0, theta_max_deg}};
+  if (axis == Axis::kSigma) return {axis, range_of(scene.numbers("grid.sigma"), parameter("surface.sigma").slider)};
   const bool is_smith = scene.word("surface.masking") == "smith" && scene.word("surface.distribution") == "cauchy";
-  const SliderRange slider = is_smith ? kSmithQ : parameter("surface.q").slider;
-  return axis_of(kind, scene.numbers("grid.q"), slider, true);
+  return {axis, range_of(scene.numbers("grid.q"), is_smith ? kSmithQ : parameter("surface.q").slider)};
 }
 
-const char* axis_label(AxisKind kind) {
-  constexpr std::array kLabels = {"θ [°]", "σ", "q"};
-  return kLabels[static_cast<std::size_t>(kind)];
+const char* axis_label(Axis axis) { return axis == Axis::kTheta ? "θ [°]" : axis == Axis::kSigma ? "σ" : "q"; }
+
+std::vector<Segment> contour(const MapField& field, double level) {
+  std::vector<Segment> segments;
+  const double last = static_cast<double>(field.count) - 1.0;
+  for (std::size_t row = 0; row + 1 < field.count; ++row) {
+    for (std::size_t column = 0; column + 1 < field.count; ++column) {
+      std::array<double, 4> value{};
+      bool good = true;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const std::size_t at = (row + kCorners[i].second) * field.count + column + kCorners[i].first;
+        value[i] = field.values[at] - level;
+        good = good && field.is_good[at] != 0;
+      }
+      if (!good) continue;
+      std::vector<Crossing> crossings;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const std::size_t j = (i + 1) % 4;
+        if ((value[i] < 0.0) == (value[j] < 0.0)) continue;
+        const double part = value[i] / (value[i] - value[j]);
+        const auto between = [&](std::size_t a, std::size_t b) {
+          return static_cast<double>(a) + part * (static_cast<double>(b) - static_cast<double>(a));
+        };
+        crossings.push_back({(static_cast<double>(column) + between(kCorners[i].first, kCorners[j].first)) / last,
+                             (static_cast<double>(row) + between(kCorners[i].second, kCorners[j].second)) / last});
+      }
+      // Two crossings, or four around a saddle, joined in turn.
+      for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
+        segments.push_back({crossings[i].x, crossings[i].y, crossings[i + 1].x, crossings[i + 1].y});
+      }
+    }
+  }
+  return segments;
 }
 
 void HeatMap::follow(const std::string& key, const Scene& scene, bool keep_all, const MapAxis& x, const MapAxis& y,
@@ -74,30 +93,25 @@ PointList HeatMap::rows(std::size_t level, std::size_t first) const {
   const auto values = [&](const MapAxis& axis, std::size_t from, std::size_t count) {
     std::vector<double> some;
     const double last = static_cast<double>(of.count - 1);
-    for (std::size_t i = from; i < from + count; ++i) some.push_back(axis.value(static_cast<double>(i) / last));
+    for (std::size_t i = from; i < from + count; ++i) some.push_back(axis.scale.value(static_cast<double>(i) / last));
     return some;
   };
   PointList list = points_at(scene_, {theta_deg_});
-  const std::array<std::vector<double>*, 3> columns = {&list.theta_deg, &list.sigma, &list.q};
-  *columns[static_cast<std::size_t>(x_.kind)] = values(x_, 0, of.count);
-  *columns[static_cast<std::size_t>(y_.kind)] = values(y_, first, of.batch);
+  const auto column = [&](const MapAxis& of_axis) -> std::vector<double>& {
+    return of_axis.axis == Axis::kTheta ? list.theta_deg : of_axis.axis == Axis::kSigma ? list.sigma : list.q;
+  };
+  column(x_) = values(x_, 0, of.count);
+  column(y_) = values(y_, first, of.batch);
   list.is_grid = true;
   return list;
 }
 
-Job HeatMap::job(std::size_t level) const {
-  Job job{.key = key_of(level), .scene = scene_, .parts = {}, .tolerance = kLevels[level].tolerance};
-  job.keep_all = keep_all_;
-  for (std::size_t row = 0; row < kLevels[level].count; row += kLevels[level].batch) {
-    job.parts.push_back(rows(level, row));
-  }
-  return job;
-}
-
 std::optional<Job> HeatMap::wanted(std::size_t level) const {
-  const std::size_t all = kLevels[level].count * kLevels[level].count;
-  if (key_.empty() || (shown_key_ == key_ && points_[level].size() == all)) return std::nullopt;
-  return job(level);
+  const Level& of = kLevels[level];
+  if (key_.empty() || (shown_key_ == key_ && points_[level].size() == of.count * of.count)) return std::nullopt;
+  Job job{.key = key_of(level), .scene = scene_, .parts = {}, .tolerance = of.tolerance, .keep_all = keep_all_};
+  for (std::size_t row = 0; row < of.count; row += of.batch) job.parts.push_back(rows(level, row));
+  return job;
 }
 
 bool HeatMap::take(const JobPart& news) {
@@ -109,7 +123,7 @@ bool HeatMap::take(const JobPart& news) {
     const std::size_t columns = kLevels[level].count;
     const std::size_t rows = news.points.size() / columns;
     for (std::size_t i = 0; i < news.points.size(); ++i) {
-      points_[level].push_back(news.points[x_.kind > y_.kind ? i : (i % columns) * rows + i / columns]);
+      points_[level].push_back(news.points[x_.axis > y_.axis ? i : (i % columns) * rows + i / columns]);
     }
     ++version_;
     return true;
@@ -161,8 +175,8 @@ MapField HeatMap::field(Plotted quantity) const {
       };
       while (level > 0 && place() >= points_[level].size()) --level;
       const Point& point = points_[level][place()];
-      const double value = value_of(quantity, point);
-      const bool good = is_good(point) && std::isfinite(value);
+      const double value = described(quantity).value(point);
+      const bool good = point.is_good() && std::isfinite(value);
       field.values.push_back(value);
       field.is_good.push_back(good ? 1 : 0);
       if (!good) continue;

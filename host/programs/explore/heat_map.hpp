@@ -1,4 +1,4 @@
-// A map over two of theta, sigma and q, from 16 x 16 to 128 x 128.
+// A map over two of theta, sigma and q, from 16 x 16 to 128 x 128, and its lines of equal value.
 #pragma once
 
 #include <array>
@@ -7,32 +7,24 @@
 #include <string>
 #include <vector>
 
-#include "explore/plotted.hpp"
-#include "explore/worker.hpp"
+#include "explore/background.hpp"
+#include "explore/scale.hpp"
 
 namespace dolp::explore {
 
-/// Kinds of axes, in the order of a grid's axes.
-enum class AxisKind { kTheta, kSigma, kQ };
-
-/// One axis of a map. `from` < `to`; with `is_log` both are positive.
+/// One axis of a map: theta, sigma or q.
 struct MapAxis {
-  AxisKind kind = AxisKind::kTheta;
-  double from = 0.0;
-  double to = 1.0;
-  bool is_log = false;
-
-  /// The value at a position from 0 to 1, and back (not clamped).
-  double value(double position) const;
-  double position(double value) const;
+  Axis axis = Axis::kTheta;
+  Scale scale;
   friend bool operator==(const MapAxis&, const MapAxis&) = default;
 };
+inline constexpr std::array kMapAxes = {Axis::kTheta, Axis::kSigma, Axis::kQ};
 
 /// The axis as a scene suggests it: its grid where that has a range, else that of the parameter's slider.
-MapAxis suggested_axis(AxisKind kind, const Scene& scene, double theta_max_deg);
+MapAxis suggested_axis(Axis axis, const Scene& scene, double theta_max_deg);
 
 /// "θ [°]", "σ", "q".
-const char* axis_label(AxisKind kind);
+const char* axis_label(Axis axis);
 
 /// The values of one quantity on a map.
 /// Shape: count x count in rows, x fastest; y from the bottom up.
@@ -43,6 +35,15 @@ struct MapField {
   double min = 0.0;  ///< of the good values
   double max = 0.0;
 };
+
+/// A piece of a line; positions from 0 to 1 along both axes of the map.
+struct Segment {
+  double x0, y0, x1, y1;
+};
+
+/// The lines where a field has `level`, by marching squares with linear interpolation. Squares with a corner that is
+/// not good have none.
+std::vector<Segment> contour(const MapField& field, double level);
 
 /// The results behind a map.
 class HeatMap {
@@ -80,7 +81,6 @@ class HeatMap {
 
  private:
   std::string key_of(std::size_t level) const;
-  Job job(std::size_t level) const;
   /// `batch` rows of a level.
   PointList rows(std::size_t level, std::size_t first) const;
 

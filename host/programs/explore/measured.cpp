@@ -6,32 +6,26 @@
 #include <utility>
 
 namespace dolp::explore {
-namespace {
 
-Plotted quantity_of(const std::string& column) {
-  if (column == "q_over_i") return Plotted::kSignedDolp;
-  if (column == "emissivity_s") return Plotted::kEmissivityS;
-  if (column == "emissivity_p") return Plotted::kEmissivityP;
+Plotted plotted(Observable observable) {
+  switch (observable) {
+    case Observable::kDolp:
+      return Plotted::kDolp;
+    case Observable::kQOverI:
+      return Plotted::kSignedDolp;
+    case Observable::kEmissivityS:
+      return Plotted::kEmissivityS;
+    case Observable::kEmissivityP:
+      return Plotted::kEmissivityP;
+  }
   return Plotted::kDolp;
 }
 
-}  // namespace
-
-MeasuredPoints points_of(MeasuredData data) {
+void Residuals::load(MeasuredData data) {
   if (!data.settings.empty()) {
     throw InputError(data.name + ": measured points take the window's scene; KEY=VALUE beside them is for dolp fit");
   }
-  MeasuredPoints all;
-  for (const Measurement& one : data.measurements) {
-    all.points.push_back({quantity_of(name_of(one.observable)), one.theta_deg, one.value, one.uncertainty});
-    if (one.wavelength_um) all.wavelength_um.push_back(*one.wavelength_um);
-  }
-  all.data = std::move(data);
-  return all;
-}
-
-void Residuals::load(MeasuredPoints points) {
-  points_ = std::move(points);
+  data_ = std::move(data);
   ++loads_;
 }
 
@@ -43,27 +37,38 @@ void Residuals::follow(const std::string& key, const Scene& scene) {
 std::string Residuals::job_key() const { return fmt::format("measured {} {}", loads_, key_); }
 
 std::optional<Job> Residuals::wanted() const {
-  if (!points_ || known_ == job_key()) return std::nullopt;
+  if (!data_ || known_ == job_key()) return std::nullopt;
   std::vector<double> theta_deg;
-  for (const MeasuredPoint& point : points_->points) theta_deg.push_back(point.theta_deg);
+  std::vector<double> wavelength_um;
+  for (const Measurement& one : data_->measurements) {
+    theta_deg.push_back(one.theta_deg);
+    if (one.wavelength_um) wavelength_um.push_back(*one.wavelength_um);
+  }
   PointList list = points_at(scene_, std::move(theta_deg));
-  list.wavelength_um = points_->wavelength_um;
+  list.wavelength_um = std::move(wavelength_um);
   return Job{.key = job_key(), .scene = scene_, .parts = {std::move(list)}, .keep_all = true};
 }
 
 bool Residuals::take(const JobPart& news) {
-  if (!points_ || news.key != job_key()) return false;
+  if (!data_ || news.key != job_key()) return false;
   known_ = news.key;
   model_ = news.points;
   return true;
 }
 
+std::vector<Measurement> Residuals::measured(Plotted quantity) const {
+  std::vector<Measurement> some;
+  if (data_) some = data_->measurements;
+  std::erase_if(some, [&](const Measurement& one) { return plotted(one.observable) != quantity; });
+  return some;
+}
+
 std::vector<double> Residuals::residuals() const {
   std::vector<double> residuals;
-  if (!points_ || known_ != job_key()) return residuals;
+  if (!data_ || known_ != job_key()) return residuals;
   for (std::size_t i = 0; i < model_.size(); ++i) {
-    const MeasuredPoint& point = points_->points[i];
-    residuals.push_back(point.value - value_of(point.quantity, model_[i]));
+    const Measurement& one = data_->measurements[i];
+    residuals.push_back(one.value - described(plotted(one.observable)).value(model_[i]));
   }
   return residuals;
 }
@@ -73,11 +78,25 @@ std::optional<double> Residuals::rms(Plotted quantity) const {
   double sum = 0.0;
   double count = 0.0;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (points_->points[i].quantity != quantity || !std::isfinite(all[i])) continue;
+    if (plotted(data_->measurements[i].observable) != quantity || !std::isfinite(all[i])) continue;
     sum += all[i] * all[i];
     count += 1.0;
   }
   return count > 0.0 ? std::optional(std::sqrt(sum / count)) : std::nullopt;
+}
+
+Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress) {
+  Fit fit = evaluator.fit(job.scene, {job.data}, {.vary = job.vary, .progress = progress});
+  if (!fit.has_minimum) throw InputError("no minimum was found: no descent converged");
+  return fit;
+}
+
+std::string fit_text(const Fit& fit) {
+  std::string text = fmt::format("χ² {:.4g}, {} degrees of freedom", fit.chi_square, fit.degrees_of_freedom);
+  if (fit.p_value) text += fmt::format(", p {:.2g}", *fit.p_value);
+  if (fit.other_minima > 0) text += fmt::format("; {} other minima", fit.other_minima);
+  for (const std::string& words : fit.degeneracies) text += "; " + words;
+  return text;
 }
 
 }  // namespace dolp::explore

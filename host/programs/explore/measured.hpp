@@ -1,46 +1,33 @@
-// Measured points beside the model.
+// Measured points beside the model, and the model's fit to them.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "explore/plotted.hpp"
-#include "explore/worker.hpp"
+#include "explore/background.hpp"
 
 namespace dolp::explore {
 
-/// One value, as measured.
-struct MeasuredPoint {
-  Plotted quantity = Plotted::kDolp;
-  double theta_deg = 0.0;
-  double value = 0.0;
-  std::optional<double> uncertainty;  ///< one standard deviation
-};
-
-/// The content of a file of `dolp fit --data`.
-struct MeasuredPoints {
-  MeasuredData data;
-  std::vector<MeasuredPoint> points;
-  std::vector<double> wavelength_um;  ///< of each point; empty: the scene's
-};
-
-/// Errors: those of MeasuredData; InputError for data with keys of their own.
-MeasuredPoints points_of(MeasuredData data);
+/// The shown quantity that was measured.
+Plotted plotted(Observable observable);
 
 /// The model at the measured points.
 class Residuals {
  public:
   explicit Residuals(const Scene& scene) : scene_(scene) {}
 
-  void load(MeasuredPoints points);
-  void clear() { points_.reset(); }
+  /// Errors: InputError for data with settings of their own.
+  void load(MeasuredData data);
+  void clear() { data_.reset(); }
   void follow(const std::string& key, const Scene& scene);
 
   std::optional<Job> wanted() const;
   bool take(const JobPart& news);
 
-  const std::optional<MeasuredPoints>& points() const { return points_; }
+  const std::optional<MeasuredData>& data() const { return data_; }
+  /// The measured points of a quantity.
+  std::vector<Measurement> measured(Plotted quantity) const;
   /// Measured minus model of each point, NaN where the model gives none; empty until it is known.
   std::vector<double> residuals() const;
   /// Root mean square of a quantity's residuals that are numbers; none without any.
@@ -49,12 +36,26 @@ class Residuals {
  private:
   std::string job_key() const;
 
-  std::optional<MeasuredPoints> points_;
+  std::optional<MeasuredData> data_;
   std::size_t loads_ = 0;
   std::string key_;
   Scene scene_;
   std::string known_;  ///< key of the job whose results are here
   std::vector<Point> model_;
 };
+
+/// Everything that a fit needs, so that it can run in a thread of its own.
+struct FitJob {
+  Scene scene;
+  MeasuredData data;
+  std::vector<FitRange> vary;
+};
+
+/// Fits as `dolp fit` does. Errors: InputError where points, parameters and scene do not fit together and where no
+/// minimum was found; those of Evaluator::fit; Cancelled.
+Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress);
+
+/// The result of a fit in one line.
+std::string fit_text(const Fit& fit);
 
 }  // namespace dolp::explore

@@ -10,16 +10,6 @@ namespace {
 bool is_cauchy(const Scene& s) { return s.word("surface.distribution") == "cauchy"; }
 bool is_diffuse(const Scene& s) { return s.number("surface.diffuse") > 0.0; }
 
-Parameter slider(const char* key, const char* symbol, SliderRange range, const char* equation,
-                 bool (*is_used)(const Scene&) = nullptr) {
-  return {&described(key), symbol, range, false, equation, is_used};
-}
-
-Parameter log_slider(const char* key, const char* symbol, SliderRange range, const char* equation,
-                     bool (*is_used)(const Scene&) = nullptr) {
-  return {&described(key), symbol, range, true, equation, is_used};
-}
-
 }  // namespace
 
 const Key& described(const std::string& key) {
@@ -32,6 +22,14 @@ std::optional<double> Parameter::value(const Scene& scene) const {
   return is_used && !is_used(scene) ? std::nullopt : scene.number(key->key);
 }
 
+double Parameter::slider_value(double position) const {
+  const double exact = slider.value(position);
+  // The text that one would type into a file, and that reads back as the same number.
+  if (exact == 0.0) return exact;
+  const double digit = std::pow(10.0, 3.0 - std::floor(std::log10(std::abs(exact))));
+  return slider.clamp(std::round(exact * digit) / digit);
+}
+
 std::optional<std::size_t> Choice::word(const Scene& scene) const {
   const std::optional<std::string> word = scene.word(key->key);
   if (!word) return std::nullopt;
@@ -40,25 +38,33 @@ std::optional<std::size_t> Choice::word(const Scene& scene) const {
 
 const std::vector<Parameter>& parameters() {
   static const std::vector<Parameter> all = {
-      log_slider("surface.n", "n", {1.0, 40.0}, "N = n + ik"),
-      slider("surface.k", "k", {0.0, 100.0}, "N = n + ik, k ≥ 0 absorbs"),
-      log_slider("surface.sigma", "σ", {0.01, 2.0}, "m² = 2σ²; D(α) of eq. (8) or (1)"),
-      log_slider("surface.q", "q", {1.1, 20.0}, "D = (q−1)/(π m² cos⁴α) · (1 + tan²α/m²)^(−q), eq. (8)", is_cauchy),
-      slider("surface.specular", "k_s", {0.0, 1.0}, "f_s = k_s D G M / (4 cos θi cos θr), eqs. (7), (15)"),
-      slider("surface.diffuse", "k_d", {0.0, 1.0}, "f_d = (k_d/π)(cos θi cos θr)^c, eq. (14)"),
-      slider("surface.diffuse_exponent", "c", {-0.95, 0.0}, "f_d = (k_d/π)(cos θi cos θr)^c, eq. (14)", is_diffuse),
-      slider("emission.temperature_K", "T", {200.0, 400.0}, "emits (1 − ρ) B(λ, T), eq. (18)"),
-      log_slider("source.irradiance", "E0", {0.001, 1000.0}, "reflects E0 cos θ ρ, eq. (18)"),
-      log_slider("source.relative_irradiance", "e", {0.001, 10.0}, "e = E0/(π B(T)), eq. (18)"),
-      log_slider("source.scale", "scale", {0.01, 100.0}, "E0 → scale · E0"),
-      slider("surroundings.temperature_K", "T_surr", {0.0, 400.0}, "reflects B(λ, T_surr) ρ"),
-      slider("path.transmittance", "τ", {0.0, 1.0}, "I → τ I + L_path"),
-      slider("path.temperature_K", "T_path", {0.0, 400.0}, "L_path = (1 − τ) B(λ, T_path)"),
-      log_slider("path.radiance", "L_path", {0.001, 100.0}, "I → τ I + L_path"),
-      slider("spectrum.wavelength_um", "λ", {1.0, 20.0}, "B(λ, T), N(λ)"),
-      slider("geometry.view_zenith_deg", "θv", {0.0, 90.0}, "direction of the view, eq. (2)", is_bistatic),
-      slider("geometry.relative_azimuth_deg", "Δφ", {0.0, 360.0}, "cos 2β = ωi · ωr, eq. (2)", is_bistatic),
-      log_slider("accuracy.tolerance", "tolerance", {1e-9, 1e-2}, "|δDOLP|, |δρ|/ρ_I ≤ tolerance"),
+      {&described("surface.n"), "n", {1.0, 40.0, true}, "N = n + ik"},
+      {&described("surface.k"), "k", {0.0, 100.0}, "N = n + ik, k ≥ 0 absorbs"},
+      {&described("surface.sigma"), "σ", {0.01, 2.0, true}, "m² = 2σ²; D(α) of eq. (8) or (1)"},
+      {&described("surface.q"),
+       "q",
+       {1.1, 20.0, true},
+       "D = (q−1)/(π m² cos⁴α) · (1 + tan²α/m²)^(−q), eq. (8)",
+       is_cauchy},
+      {&described("surface.specular"), "k_s", {0.0, 1.0}, "f_s = k_s D G M / (4 cos θi cos θr), eqs. (7), (15)"},
+      {&described("surface.diffuse"), "k_d", {0.0, 1.0}, "f_d = (k_d/π)(cos θi cos θr)^c, eq. (14)"},
+      {&described("surface.diffuse_exponent"),
+       "c",
+       {-0.95, 0.0},
+       "f_d = (k_d/π)(cos θi cos θr)^c, eq. (14)",
+       is_diffuse},
+      {&described("emission.temperature_K"), "T", {200.0, 400.0}, "emits (1 − ρ) B(λ, T), eq. (18)"},
+      {&described("source.irradiance"), "E0", {0.001, 1000.0, true}, "reflects E0 cos θ ρ, eq. (18)"},
+      {&described("source.relative_irradiance"), "e", {0.001, 10.0, true}, "e = E0/(π B(T)), eq. (18)"},
+      {&described("source.scale"), "scale", {0.01, 100.0, true}, "E0 → scale · E0"},
+      {&described("surroundings.temperature_K"), "T_surr", {0.0, 400.0}, "reflects B(λ, T_surr) ρ"},
+      {&described("path.transmittance"), "τ", {0.0, 1.0}, "I → τ I + L_path"},
+      {&described("path.temperature_K"), "T_path", {0.0, 400.0}, "L_path = (1 − τ) B(λ, T_path)"},
+      {&described("path.radiance"), "L_path", {0.001, 100.0, true}, "I → τ I + L_path"},
+      {&described("spectrum.wavelength_um"), "λ", {1.0, 20.0}, "B(λ, T), N(λ)"},
+      {&described("geometry.view_zenith_deg"), "θv", {0.0, 90.0}, "direction of the view, eq. (2)", is_bistatic},
+      {&described("geometry.relative_azimuth_deg"), "Δφ", {0.0, 360.0}, "cos 2β = ωi · ωr, eq. (2)", is_bistatic},
+      {&described("accuracy.tolerance"), "tolerance", {1e-9, 1e-2, true}, "|δDOLP|, |δρ|/ρ_I ≤ tolerance"},
   };
   return all;
 }
@@ -95,22 +101,6 @@ std::string unit_text(const Key& key) {
   return key.unit;
 }
 
-double slider_position(const Parameter& parameter, double value) {
-  const SliderRange& range = parameter.slider;
-  const double inside = std::clamp(value, range.min, range.max);
-  if (!parameter.is_log) return (inside - range.min) / (range.max - range.min);
-  return std::log(inside / range.min) / std::log(range.max / range.min);
-}
-
-double slider_value(const Parameter& parameter, double position) {
-  const SliderRange& range = parameter.slider;
-  const double part = std::clamp(position, 0.0, 1.0);
-  const double exact =
-      parameter.is_log ? range.min * std::pow(range.max / range.min, part) : range.min + part * (range.max - range.min);
-  // Four digits: what is typed into a file by hand, and reads back as the same number.
-  if (exact == 0.0) return exact;
-  const double digit = std::pow(10.0, 3.0 - std::floor(std::log10(std::abs(exact))));
-  return std::clamp(std::round(exact * digit) / digit, range.min, range.max);
-}
+bool is_bistatic(const Scene& scene) { return scene.word("geometry.mode") == "bistatic"; }
 
 }  // namespace dolp::explore

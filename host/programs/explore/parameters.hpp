@@ -2,31 +2,29 @@
 #pragma once
 
 #include <cstddef>
+#include <dolp/dolp.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "explore/library.hpp"
+#include "explore/scale.hpp"
 
 namespace dolp::explore {
-
-/// The part of a number's range that its slider covers; typing reaches all of it.
-struct SliderRange {
-  double min, max;
-};
 
 /// A number of the scene that a slider moves.
 struct Parameter {
   const Key* key;
-  const char* symbol;  ///< UTF-8
-  SliderRange slider;
-  bool is_log;           ///< the slider's scale
+  const char* symbol;    ///< UTF-8
+  Scale slider;          ///< a part of the key's range; typing reaches all of it
   const char* equation;  ///< UTF-8, with its number in the paper where it has one
   /// True where the scene uses the parameter; null: used by every scene that has it.
   bool (*is_used)(const Scene& scene) = nullptr;
 
   /// The scene's value; none where the control is not shown.
   std::optional<double> value(const Scene& scene) const;
+  /// The position of a value on the slider, 0 to 1, and back, rounded to four digits.
+  double slider_position(double value) const { return slider.position(slider.clamp(value)); }
+  double slider_value(double position) const;
 };
 
 /// A word of the scene that a list offers, or a flag that a box shows.
@@ -56,8 +54,6 @@ std::string table_of(const std::string& key);
 /// The unit as a reader wants it: empty for 1, "°" for degree.
 std::string unit_text(const Key& key);
 
-/// The position of a value on its slider, 0 to 1, and back.
-double slider_position(const Parameter& parameter, double value);
-double slider_value(const Parameter& parameter, double position);
+bool is_bistatic(const Scene& scene);
 
 }  // namespace dolp::explore

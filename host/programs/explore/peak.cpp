@@ -1,7 +1,6 @@
 #include "explore/peak.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "base/text.hpp"
@@ -9,35 +8,45 @@
 namespace dolp::explore {
 namespace {
 
-constexpr std::array kAway = {
-    WithoutEffect{"emission", "emission=none", true},
-    WithoutEffect{"source", "source=none", true},
-    WithoutEffect{"surroundings", "surroundings=none", true},
-    WithoutEffect{"path", "path=none", false},
-    WithoutEffect{"diffuse", "surface.diffuse=0", false},
-    WithoutEffect{"specular", "surface.specular=0", false},
-    WithoutEffect{"masking", "surface.masking=none", false},
-    WithoutEffect{"scattering", "surface.scattering=single", false},
-    WithoutEffect{"roughness", "surface.sigma=0", false},
+/// A part of a scene that can be taken away.
+struct Removal {
+  const char* effect;
+  Setting change;  ///< takes it away
+  bool radiates;
+  bool (*is_in)(const Scene& scene);
 };
 
-bool has(const Scene& scene, const WithoutEffect& away) {
-  const std::string name = away.effect;
-  if (name == "emission") return scene.number("emission.temperature_K").has_value();
-  if (name == "source") return scene.number("source.scale").has_value();
-  if (name == "surroundings") return scene.number("surroundings.temperature_K").has_value();
-  if (name == "path") return scene.number("path.transmittance").has_value();
-  if (name == "diffuse") return scene.number("surface.diffuse") > 0.0;
-  if (name == "specular") return scene.number("surface.specular") > 0.0;
-  if (name == "masking") return scene.word("surface.masking") != "none";
-  if (name == "scattering") return scene.word("surface.scattering") == "multiple";
-  return scene.number("surface.sigma") > 0.0;
+const std::vector<Removal>& removals() {
+  using S = const Scene&;
+  static const std::vector<Removal> all = {
+      {"emission", {"emission", {}}, true, [](S s) { return s.number("emission.temperature_K").has_value(); }},
+      {"source", {"source", {}}, true, [](S s) { return s.number("source.scale").has_value(); }},
+      {"surroundings",
+       {"surroundings", {}},
+       true,
+       [](S s) { return s.number("surroundings.temperature_K").has_value(); }},
+      {"path", {"path", {}}, false, [](S s) { return s.number("path.transmittance").has_value(); }},
+      {"diffuse", {"surface.diffuse", 0.0}, false, [](S s) { return s.number("surface.diffuse") > 0.0; }},
+      {"specular", {"surface.specular", 0.0}, false, [](S s) { return s.number("surface.specular") > 0.0; }},
+      {"masking", {"surface.masking", "none"}, false, [](S s) { return s.word("surface.masking") != "none"; }},
+      {"scattering",
+       {"surface.scattering", "single"},
+       false,
+       [](S s) { return s.word("surface.scattering") == "multiple"; }},
+      {"roughness", {"surface.sigma", 0.0}, false, [](S s) { return s.number("surface.sigma") > 0.0; }},
+  };
+  return all;
 }
+
+double dolp_of(const Point& point) { return point[Quantity::kDolp]; }
+
+/// The largest DOLP, with its error, that the point may have.
+double most_of(const Point& point) { return dolp_of(point) + point[Quantity::kErrorEstimate]; }
 
 std::size_t position_of_largest(const std::vector<Point>& points) {
   std::size_t best = points.size();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (is_good(points[i]) && (best == points.size() || points[i].dolp > points[best].dolp)) best = i;
+    if (points[i].is_good() && (best == points.size() || dolp_of(points[i]) > dolp_of(points[best]))) best = i;
   }
   return best;
 }
@@ -52,7 +61,6 @@ void Peak::follow(const Curve& curve, const SceneEdits& edits, double theta_max_
   theta_deg_.clear();
   answer_.reset();
   without_.clear();
-  scenes_without_.clear();
   curve_ = curve.points();
   std::erase_if(curve_, [&](const Point& point) { return point.theta_deg > theta_max_deg; });
   const std::size_t best = position_of_largest(curve_);
@@ -64,18 +72,15 @@ void Peak::follow(const Curve& curve, const SceneEdits& edits, double theta_max_
 }
 
 void Peak::take_away(const SceneEdits& edits) {
-  for (const WithoutEffect& away : kAway) {
-    if (!has(scene_, away)) continue;
+  for (const Removal& one : removals()) {
+    if (!one.is_in(scene_)) continue;
     try {
-      scenes_without_.push_back(edits.scene().with({Setting::from_text(away.change)}));
-      without_.push_back(away);
+      without_.push_back({one.effect, one.radiates, edits.scene().with({one.change})});
     } catch (const InputError&) {
       // Nothing else radiates, the source is relative to the emission, or the emission needs the masking.
     }
   }
 }
-
-std::string Peak::key_of(const WithoutEffect& of) const { return std::string("without ") + of.change + ' ' + key_; }
 
 std::vector<Job> Peak::wanted() const {
   std::vector<Job> jobs;
@@ -84,10 +89,9 @@ std::vector<Job> Peak::wanted() const {
     jobs.push_back({.key = "peak " + key_, .scene = scene_, .parts = {points_at(scene_, theta_deg_)}});
     return jobs;
   }
-  for (std::size_t i = 0; i < without_.size(); ++i) {
-    if (without_[i].is_known) continue;
-    const Scene& scene = scenes_without_[i];
-    jobs.push_back({.key = key_of(without_[i]), .scene = scene, .parts = {points_at(scene, {answer_->theta_deg})}});
+  for (const WithoutEffect& of : without_) {
+    if (of.result) continue;
+    jobs.push_back({.key = key_of(of), .scene = of.scene, .parts = {points_at(of.scene, {answer_->at.theta_deg})}});
   }
   return jobs;
 }
@@ -97,13 +101,10 @@ bool Peak::take(const JobPart& news) {
     answer_from(news.points);
     return true;
   }
-  for (WithoutEffect& without : without_) {
-    if (news.key != key_of(without)) continue;
-    without.result = news.points.front();
-    without.is_known = true;
-    return true;
-  }
-  return false;
+  const auto own = std::ranges::find_if(without_, [&](const WithoutEffect& of) { return news.key == key_of(of); });
+  if (own == without_.end()) return false;
+  own->result = news.points.front();
+  return true;
 }
 
 void Peak::answer_from(const std::vector<Point>& points) {
@@ -112,42 +113,32 @@ void Peak::answer_from(const std::vector<Point>& points) {
     theta_deg_.clear();
     return;
   }
-  at_peak_ = points[best];
-  PeakAnswer answer;
-  answer.theta_deg = theta_deg_[best];
-  answer.dolp = at_peak_.dolp;
-  answer.q_over_i = at_peak_.stokes_q / at_peak_.stokes_i;
-  answer.error = at_peak_.error_estimate;
-  answer.albedo = at_peak_.albedo;
-  const double least = at_peak_.dolp - at_peak_.error_estimate;
-  const auto may_be_largest = [&](std::size_t i) {
-    return is_good(points[i]) && points[i].dolp + points[i].error_estimate >= least;
-  };
+  const Point& at = points[best];
+  const double least = dolp_of(at) - at[Quantity::kErrorEstimate];
+  const auto may_be_largest = [&](std::size_t i) { return points[i].is_good() && most_of(points[i]) >= least; };
   std::size_t first = best;
   std::size_t last = best;
   while (first > 0 && may_be_largest(first - 1)) --first;
   while (last + 1 < points.size() && may_be_largest(last + 1)) ++last;
-  answer.rival_deg = rival(least);
-  answer.theta_low_deg = theta_deg_[first];
-  answer.theta_high_deg = theta_deg_[last];
-  answer.is_at_end = best + 1 == points.size() || (best + 1 < points.size() && !is_good(points[best + 1]));
-  answer_ = answer;
+  const bool is_at_end = best + 1 == points.size() || !points[best + 1].is_good();
+  answer_ = PeakAnswer{at, theta_deg_[first], theta_deg_[last], rival(least), is_at_end};
 }
 
 std::optional<double> Peak::rival(double least) const {
   for (const Point& point : curve_) {
     const bool is_beside = point.theta_deg >= theta_deg_.front() && point.theta_deg <= theta_deg_.back();
-    if (!is_beside && is_good(point) && point.dolp + point.error_estimate >= least) return point.theta_deg;
+    if (!is_beside && point.is_good() && most_of(point) >= least) return point.theta_deg;
   }
   return std::nullopt;
 }
 
 bool Peak::is_complete() const {
-  return answer_ && std::ranges::all_of(without_, [](const WithoutEffect& away) { return away.is_known; });
+  return answer_ && std::ranges::all_of(without_, [](const WithoutEffect& away) { return away.result.has_value(); });
 }
 
 double Peak::contribution(const WithoutEffect& of) const {
-  return (at_peak_.stokes_q - of.result.stokes_q) / at_peak_.stokes_i;
+  const Point& at = answer_->at;
+  return (at[Quantity::kStokesQ] - (*of.result)[Quantity::kStokesQ]) / at[Quantity::kStokesI];
 }
 
 }  // namespace dolp::explore

@@ -12,11 +12,7 @@ namespace dolp::explore {
 
 /// The largest DOLP of a curve among entries that status calls good.
 struct PeakAnswer {
-  double theta_deg = 0.0;
-  double dolp = 0.0;
-  double q_over_i = 0.0;  ///< positive: s polarised
-  double error = 0.0;     ///< bound of |d DOLP|
-  double albedo = 0.0;    ///< of the surface model there; NaN where the plan gives none
+  Point at;
   // Zeniths at which, with all errors, DOLP could be the largest.
   double theta_low_deg = 0.0;
   double theta_high_deg = 0.0;
@@ -26,11 +22,10 @@ struct PeakAnswer {
 
 /// The peak without one effect.
 struct WithoutEffect {
-  const char* effect;     ///< as in Effect::name, or "roughness"
-  const char* change;     ///< what takes it away
-  bool radiates;          ///< a part of the sum of radiances
-  bool is_known = false;  ///< otherwise the scene cannot be without it
-  Point result = {};
+  std::string effect;  ///< as in Effect::name, or "roughness"
+  bool radiates;       ///< a part of the sum of radiances
+  Scene scene;
+  std::optional<Point> result = {};  ///< none while it is unknown
 };
 
 /// Looks for the peak of a finished curve on a fine grid, then takes each effect away there.
@@ -60,7 +55,7 @@ class Peak {
  private:
   std::optional<double> rival(double least) const;
   void answer_from(const std::vector<Point>& points);
-  std::string key_of(const WithoutEffect& of) const;
+  std::string key_of(const WithoutEffect& of) const { return "without " + of.effect + ' ' + key_; }
   void take_away(const SceneEdits& edits);
 
   std::string key_;
@@ -68,9 +63,7 @@ class Peak {
   std::vector<Point> curve_;
   std::vector<double> theta_deg_;  ///< around the peak of the curve; empty when no entry is good
   std::optional<PeakAnswer> answer_;
-  Point at_peak_ = {};
   std::vector<WithoutEffect> without_;
-  std::vector<Scene> scenes_without_;
 };
 
 }  // namespace dolp::explore

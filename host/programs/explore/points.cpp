@@ -1,16 +1,10 @@
 #include "explore/points.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
-
-#include "base/text.hpp"
 
 namespace dolp::explore {
 namespace {
-
-constexpr std::uint32_t kNoDolpPromised = kReflectanceOutsideZeroToOne | kOutsideModelDomain | kIntensityNotPositive;
 
 /// The scene with the grid of a list; axes that the scene's own has beside these keep the scene's value.
 Scene with_grid(const Scene& scene, const PointList& list) {
@@ -22,14 +16,32 @@ Scene with_grid(const Scene& scene, const PointList& list) {
   return scene.with_grid(axes);
 }
 
+double rho_s(const Point& point) { return point[Quantity::kRhoI] + point[Quantity::kRhoQ]; }
+double rho_p(const Point& point) { return point[Quantity::kRhoI] - point[Quantity::kRhoQ]; }
+
 }  // namespace
+
+const std::array<PlottedDescription, 7> kAllPlotted = {{
+    {Plotted::kDolp, "DOLP", "√(Q² + U²)/I, in percent", true, false,
+     [](const Point& point) { return point[Quantity::kDolp]; }},
+    {Plotted::kSignedDolp, "Q/I", "positive: s polarised, negative: p; in percent", true, false,
+     [](const Point& point) { return point.q_over_i(); }},
+    {Plotted::kRhoS, "ρ_s", "ρ_I + ρ_Q, eq. (16)", false, true, rho_s},
+    {Plotted::kRhoP, "ρ_p", "ρ_I − ρ_Q, eq. (16)", false, true, rho_p},
+    {Plotted::kEmissivityS, "ε_s", "1 − ρ_s (Kirchhoff)", false, true,
+     [](const Point& point) { return 1.0 - rho_s(point); }},
+    {Plotted::kEmissivityP, "ε_p", "1 − ρ_p (Kirchhoff)", false, true,
+     [](const Point& point) { return 1.0 - rho_p(point); }},
+    {Plotted::kAlbedo, "albedo", "A(θ), ρ of perfectly reflecting facets", false, true,
+     [](const Point& point) { return point[Quantity::kAlbedo]; }},
+}};
 
 std::size_t PointList::size() const { return is_grid ? theta_deg.size() * sigma.size() * q.size() : theta_deg.size(); }
 
 Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options) {
   if (!list.is_grid) return evaluator.evaluate(scene, list.columns(), options);
   const Table table = evaluator.table(with_grid(scene, list), options);
-  return {{table.results()}, table.results().quantities(), table.stokes_units()};
+  return {{table.values()}, table.values().quantities(), table.values().stokes_units};
 }
 
 std::vector<Column> PointList::columns() const {
@@ -37,36 +49,6 @@ std::vector<Column> PointList::columns() const {
   if (!wavelength_um.empty()) columns.push_back({"wavelength_um", wavelength_um});
   return columns;
 }
-
-std::vector<Point> points_of(const PointList& list, const Results& results) {
-  const std::pair<double Point::*, Quantity> members[] = {{&Point::dolp, Quantity::kDolp},
-                                                          {&Point::dolp_low, Quantity::kDolpLow},
-                                                          {&Point::dolp_high, Quantity::kDolpHigh},
-                                                          {&Point::error_estimate, Quantity::kErrorEstimate},
-                                                          {&Point::stokes_i, Quantity::kStokesI},
-                                                          {&Point::stokes_q, Quantity::kStokesQ},
-                                                          {&Point::rho_i, Quantity::kRhoI},
-                                                          {&Point::rho_q, Quantity::kRhoQ},
-                                                          {&Point::rho_error_estimate, Quantity::kRhoErrorEstimate},
-                                                          {&Point::albedo, Quantity::kAlbedo}};
-  std::vector<Point> points(list.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::size_t shapes = list.is_grid ? list.sigma.size() * list.q.size() : 1;
-    points[i].theta_deg = list.theta_deg[i / shapes];
-    points[i].sigma = list.sigma[list.is_grid ? i / list.q.size() % list.sigma.size() : i];
-    points[i].q = list.q[list.is_grid ? i % list.q.size() : i];
-  }
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const PointResult result = results.at(i);
-    for (const auto& [member, quantity] : members) points[i].*member = result[quantity];
-    points[i].status = result.status;
-  }
-  return points;
-}
-
-bool is_good(const Point& point) { return (point.status & kNoDolpPromised) == 0 && std::isfinite(point.dolp); }
-
-bool has_bracket(const Point& point) { return std::isfinite(point.dolp_low) && std::isfinite(point.dolp_high); }
 
 PointList points_at(const Scene& scene, std::vector<double> theta_deg) {
   const std::size_t count = theta_deg.size();
@@ -82,6 +64,35 @@ std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count) {
     theta_deg[i] = ((last - done) * from_deg + done * to_deg) / last;
   }
   return theta_deg;
+}
+
+bool Point::is_good() const { return promises_dolp(status) && std::isfinite(values[Quantity::kDolp]); }
+
+bool Point::has_bracket() const {
+  return std::isfinite(values[Quantity::kDolpLow]) && std::isfinite(values[Quantity::kDolpHigh]);
+}
+
+std::vector<Point> points_of(const PointList& list, const Results& results) {
+  std::vector<Point> points;
+  const std::size_t sigmas = list.is_grid ? list.sigma.size() : 1;
+  const std::size_t qs = list.is_grid ? list.q.size() : 1;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const double sigma = list.sigma[list.is_grid ? i / qs % sigmas : i];
+    points.push_back({results.at(i), list.theta_deg[i / (sigmas * qs)], sigma, list.q[list.is_grid ? i % qs : i]});
+  }
+  return points;
+}
+
+std::string status_text(std::uint32_t status) {
+  std::string text;
+  const auto add = [&](std::uint32_t bit, const char* meaning) {
+    if (status & bit) text += (text.empty() ? "" : ", ") + std::string(meaning);
+  };
+  add(kReflectanceOutsideZeroToOne, "ρ outside [0, 1]");
+  add(kToleranceNotMet, "tolerance missed");
+  add(kOutsideModelDomain, "outside the model's domain");
+  add(kIntensityNotPositive, "I ≤ 0");
+  return text.empty() ? "good" : text;
 }
 
 }  // namespace dolp::explore

@@ -1,11 +1,12 @@
-// Points of curves and maps.
+// Points of curves and maps, and the quantities of them that can be shown.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <dolp/dolp.hpp>
+#include <string>
 #include <vector>
-
-#include "explore/library.hpp"
 
 namespace dolp::explore {
 
@@ -19,30 +20,50 @@ struct PointList {
   std::vector<Column> columns() const;
 };
 
-/// Errors: those of Evaluator.
-Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options);
-
-/// A point with what was computed there, in the units of a table; NaN where there is nothing.
-struct Point {
-  double theta_deg, sigma, q;
-  double dolp, dolp_low, dolp_high, error_estimate;
-  double stokes_i, stokes_q;
-  double rho_i, rho_q, rho_error_estimate, albedo;
-  std::uint32_t status;
-};
-
-std::vector<Point> points_of(const PointList& list, const Results& results);
-
-/// True where status has none of the bits that make DOLP meaningless or void its promise.
-bool is_good(const Point& point);
-
-/// True where the point has limits between which DOLP lies with all bounces.
-bool has_bracket(const Point& point);
-
 /// Zeniths of a scene's surface.
 PointList points_at(const Scene& scene, std::vector<double> theta_deg);
 
 /// `count` zeniths from `from` to `to`, both included.
 std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count);
+
+/// Errors: those of Evaluator.
+Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options);
+
+/// The results at a point, in the units of a table.
+struct Point : PointResult {
+  double theta_deg = 0.0, sigma = 0.0, q = 0.0;
+
+  /// True where the status has none of the bits that make DOLP meaningless or void its promise.
+  bool is_good() const;
+  /// True where there are limits between which DOLP lies with all bounces.
+  bool has_bracket() const;
+  double q_over_i() const { return values[Quantity::kStokesQ] / values[Quantity::kStokesI]; }
+};
+
+std::vector<Point> points_of(const PointList& list, const Results& results);
+
+/// "good", or the meaning of status bits, in few words.
+std::string status_text(std::uint32_t status);
+
+/// Quantities that a curve or a map can show.
+enum class Plotted : std::uint8_t { kDolp, kSignedDolp, kRhoS, kRhoP, kEmissivityS, kEmissivityP, kAlbedo };
+
+struct PlottedDescription {
+  Plotted quantity;
+  const char* name;               ///< UTF-8
+  const char* meaning;            ///< UTF-8, with the equation
+  bool in_percent;                ///< shown times 100
+  bool needs_rho;                 ///< a plan that drops effects may not give it
+  double (*value)(const Point&);  ///< NaN where the model gives none
+
+  double scale() const { return in_percent ? 100.0 : 1.0; }
+  /// "DOLP [%]".
+  std::string label() const { return std::string(name) + (in_percent ? " [%]" : ""); }
+};
+extern const std::array<PlottedDescription, 7> kAllPlotted;
+
+inline const PlottedDescription& described(Plotted quantity) {
+  return kAllPlotted.at(static_cast<std::size_t>(quantity));
+}
 
 }  // namespace dolp::explore

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "explore/parameters.hpp"
+
 namespace dolp::explore {
 namespace {
 
@@ -16,8 +18,6 @@ constexpr double kPercent = 100.0;
 /// A bound in points of DOLP.
 std::string points_text(double bound) { return std::isfinite(bound) ? fmt::format("{:.2g}", kPercent * bound) : "∞"; }
 
-const char* polarisation(double q_over_i) { return q_over_i > 0.0 ? "s" : "p"; }
-
 /// A radiating effect and what it adds to Q/I at the peak.
 struct Part {
   std::string name;
@@ -28,7 +28,7 @@ struct Part {
 /// removed alone.
 std::vector<Part> radiating_parts(const Session& session) {
   const Peak& peak = session.peak();
-  double rest = peak.answer()->q_over_i;
+  double rest = peak.answer()->at.q_over_i();
   std::vector<Part> parts;
   for (const WithoutEffect& away : peak.without()) {
     if (!away.radiates) continue;
@@ -49,11 +49,13 @@ std::vector<Part> radiating_parts(const Session& session) {
 std::string peak_text(const Session& session) {
   const std::optional<PeakAnswer>& peak = session.peak().answer();
   if (!session.curve().is_finished() || !peak) return "Maximum: …";
-  if (peak->dolp <= peak->error) return "Maximum: the DOLP is 0 everywhere, within its bound";
+  const Point& at = peak->at;
+  const double error = at[Quantity::kErrorEstimate];
+  if (at[Quantity::kDolp] <= error) return "Maximum: the DOLP is 0 everywhere, within its bound";
   const char* of = is_bistatic(session.scene()) ? " of the source" : "";
-  std::string text =
-      fmt::format("Maximum: DOLP {:.3f} % at θ = {:.2f}°{}, {} polarised. Numerical error ≤ {} points; ",
-                  kPercent * peak->dolp, peak->theta_deg, of, polarisation(peak->q_over_i), points_text(peak->error));
+  std::string text = fmt::format("Maximum: DOLP {:.3f} % at θ = {:.2f}°{}, {} polarised. Numerical error ≤ {} points; ",
+                                 kPercent * at[Quantity::kDolp], at.theta_deg, of, at.q_over_i() > 0.0 ? "s" : "p",
+                                 points_text(error));
   if (peak->rival_deg) {
     text += fmt::format("with it the maximum may as well be elsewhere, at {:g}° for instance.", *peak->rival_deg);
   } else if (peak->theta_low_deg == peak->theta_high_deg) {
@@ -64,19 +66,16 @@ std::string peak_text(const Session& session) {
   }
   if (peak->is_at_end) text += " Beyond it the model fails, or the range ends.";
   // The bound covers numerical error only; the albedo shows the error of the surface model itself.
-  if (std::isfinite(peak->albedo) && peak->albedo < kAlbedoMin) {
-    text += fmt::format(" The surface model loses energy there (albedo {:.2f}).", peak->albedo);
-  }
-  if (std::isfinite(peak->albedo) && peak->albedo > kAlbedoMax) {
-    text += fmt::format(" The surface model gains energy there (albedo {:.2f}).", peak->albedo);
-  }
+  const double albedo = at[Quantity::kAlbedo];
+  if (albedo < kAlbedoMin) text += fmt::format(" The surface model loses energy there (albedo {:.2f}).", albedo);
+  if (albedo > kAlbedoMax) text += fmt::format(" The surface model gains energy there (albedo {:.2f}).", albedo);
   return text;
 }
 
 std::string cause_text(const Session& session) {
   const Peak& peak = session.peak();
   if (!session.curve().is_finished() || !peak.is_complete()) return "Cause: …";
-  const double sum = peak.answer()->q_over_i;
+  const double sum = peak.answer()->at.q_over_i();
   std::string with;
   std::string against;
   for (const Part& part : radiating_parts(session)) {
@@ -92,41 +91,44 @@ std::string cursor_text(const Session& session) {
   const Point* const shown = session.at_cursor();
   if (!shown) return "Cursor: …";
   const Point& r = *shown;
-  std::string text = fmt::format("Cursor{}: θ = {:.1f}°, σ = {:.4g}, q = {:.4g}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
-                                 stale_text(session.curve().is_stale()), r.theta_deg, r.sigma, r.q, kPercent * r.dolp,
-                                 points_text(r.error_estimate), kPercent * r.stokes_q / r.stokes_i);
-  if (has_bracket(r)) {
-    text += fmt::format(", all bounces {:.3f} to {:.3f} %", kPercent * r.dolp_low, kPercent * r.dolp_high);
+  std::string text =
+      fmt::format("Cursor{}: θ = {:.1f}°, σ = {:.4g}, q = {:.4g}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
+                  stale_text(session.curve().is_stale()), r.theta_deg, r.sigma, r.q, kPercent * r[Quantity::kDolp],
+                  points_text(r[Quantity::kErrorEstimate]), kPercent * r.q_over_i());
+  if (r.has_bracket()) {
+    text += fmt::format(", all bounces {:.3f} to {:.3f} %", kPercent * r[Quantity::kDolpLow],
+                        kPercent * r[Quantity::kDolpHigh]);
   }
-  if (std::isfinite(r.rho_i)) {
-    text += fmt::format(", ρ_s {:.4f}, ρ_p {:.4f}", r.rho_i + r.rho_q, r.rho_i - r.rho_q);
+  if (std::isfinite(r[Quantity::kRhoI])) {
+    for (const Plotted quantity : {Plotted::kRhoS, Plotted::kRhoP}) {
+      text += fmt::format(", {} {:.4f}", described(quantity).name, described(quantity).value(r));
+    }
   }
-  if (std::isfinite(r.albedo)) text += fmt::format(", albedo {:.3f}", r.albedo);
+  if (std::isfinite(r[Quantity::kAlbedo])) text += fmt::format(", albedo {:.3f}", r[Quantity::kAlbedo]);
   return text + "; " + status_text(r.status);
 }
 
 std::string without_text(const Session& session, const std::string& effect) {
   const std::optional<PeakAnswer>& peak = session.peak().answer();
   if (!peak) return {};
-  for (const WithoutEffect& away : session.peak().without()) {
-    if (effect != away.effect || !away.is_known) continue;
-    const double q_over_i = away.result.stokes_q / away.result.stokes_i;
-    if (!is_good(away.result) || !std::isfinite(q_over_i)) return "the model fails";
-    return fmt::format("{:+.2f} → {:+.2f} %", kPercent * (q_over_i - peak->q_over_i), kPercent * q_over_i);
-  }
-  return {};
+  const std::vector<WithoutEffect>& all = session.peak().without();
+  const auto away = std::ranges::find(all, effect, &WithoutEffect::effect);
+  if (away == all.end() || !away->result) return {};
+  const double q_over_i = away->result->q_over_i();
+  if (!away->result->is_good() || !std::isfinite(q_over_i)) return "the model fails";
+  return fmt::format("{:+.2f} → {:+.2f} %", kPercent * (q_over_i - peak->at.q_over_i()), kPercent * q_over_i);
 }
 
 std::vector<std::string> cost_lines(const Session& session) {
   const Curve& curve = session.curve();
-  const CurveReport& cost = curve.report();
   if (!curve.is_finished()) return {"time …", "work …", "error …"};
-  const double points = static_cast<double>(cost.points);
+  const double points = static_cast<double>(curve.points().size());
+  const double wall_s = curve.finished().wall_s;
   constexpr double kMilliseconds = 1e3;
   constexpr double kMicroseconds = 1e6;
-  return {fmt::format("time    {:.1f} ms for {} directions, {:.0f} µs each", kMilliseconds * cost.wall_s, cost.points,
-                      kMicroseconds * cost.wall_s / points),
-          fmt::format("work    {:.0f} integrand evaluations an entry", cost.evaluations / points),
+  return {fmt::format("time    {:.1f} ms for {} directions, {:.0f} µs each", kMilliseconds * wall_s, points,
+                      kMicroseconds * wall_s / points),
+          fmt::format("work    {:.0f} integrand evaluations an entry", curve.finished().evaluations / points),
           fmt::format("error   DOLP ≤ {:.2g}; tolerance {:.2g}", curve.worst_error(),
                       *curve.scene().number("accuracy.tolerance"))};
 }

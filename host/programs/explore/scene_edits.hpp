@@ -1,11 +1,9 @@
-// The scene that the window shows: a file's text and the changes since.
+// The scene that the window shows: a file's text and the changes since; choices that exclude one another.
 #pragma once
 
+#include <dolp/dolp.hpp>
 #include <string>
-#include <utility>
 #include <vector>
-
-#include "explore/library.hpp"
 
 namespace dolp::explore {
 
@@ -18,7 +16,6 @@ class SceneEdits {
   /// Alternatives of a key (n and k, material, material file) are removed.
   /// Errors: InputError; the scene then is as it was.
   void set(const std::vector<Setting>& changes);
-  void set(const std::string& key, const Value& value) { set({{key, value}}); }
 
   /// Takes changes of a key, or of a whole table, back: the values are those of the scene as opened.
   /// Errors: InputError, as set.
@@ -41,5 +38,15 @@ class SceneEdits {
   Scene opened_;
   Scene scene_;
 };
+
+/// The word of a value, without quotes.
+std::string word_of(const Value& value);
+
+/// The changes that `chosen` asks for elsewhere: each choice of the scene that excludes a chosen one gets a word that
+/// goes with it. Empty where nothing is in the way.
+std::vector<Setting> asked_for(const Scene& scene, const std::vector<Setting>& chosen);
+
+/// The choices of one table as a scene has them: restoring the table makes these choices.
+std::vector<Setting> choices_of(const Scene& scene, const std::string& table);
 
 }  // namespace dolp::explore

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/text.hpp"
-#include "explore/conflicts.hpp"
+#include "explore/parameters.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -34,9 +34,9 @@ std::string text_of(const std::vector<Setting>& changes) {
   return text;
 }
 
-std::string own_key(AxisKind kind) {
-  if (kind == AxisKind::kTheta) return {};
-  return kind == AxisKind::kSigma ? "surface.sigma" : "surface.q";
+/// The key of the scene that an axis of the map varies; empty for the zenith.
+std::string key_of(Axis axis) {
+  return axis == Axis::kTheta ? "" : axis == Axis::kSigma ? "surface.sigma" : "surface.q";
 }
 
 }  // namespace
@@ -73,17 +73,13 @@ void Session::attempt(const Command& command) {
   follow();
 }
 
-void Session::set(const std::string& key, double value) {
-  attempt([&] { edits_.set(key, value); });
-}
-
 void Session::set(const std::vector<Setting>& changes) {
   attempt([&] {
     const std::vector<Setting> asked = asked_for(scene(), changes);
     std::vector<Setting> all = changes;
     all.insert(all.end(), asked.begin(), asked.end());
     edits_.set(all);
-    tell_asked(changes, asked);
+    tell_asked(text_of(changes), asked);
   });
 }
 
@@ -93,12 +89,12 @@ void Session::reset(const std::string& key) {
     const std::vector<Setting> asked = asked_for(scene(), chosen);
     edits_.set(asked);
     edits_.reset(key);
-    tell_asked({{key, TomlText{"as opened"}}}, asked);
+    tell_asked(key + " = as opened", asked);
   });
 }
 
-void Session::tell_asked(const std::vector<Setting>& chosen, const std::vector<Setting>& asked) {
-  if (!asked.empty()) tell(fmt::format("With {} goes {}", text_of(chosen), text_of(asked)));
+void Session::tell_asked(const std::string& chosen, const std::vector<Setting>& asked) {
+  if (!asked.empty()) tell(fmt::format("With {} goes {}", chosen, text_of(asked)));
 }
 
 void Session::reset_all() {
@@ -106,12 +102,43 @@ void Session::reset_all() {
 }
 
 void Session::load_measured(const std::string& path) {
-  attempt([&] { residuals_.load(points_of(MeasuredData::read(path))); });
+  attempt([&] { residuals_.load(MeasuredData::read(path)); });
 }
 
-void Session::take_fit(FitFound found) {
-  set(found.values);
-  if (!message_.is_error) fitting_.take(std::move(found), edits_.changes());
+void Session::mark(const std::string& key, bool varies) {
+  if (varies) {
+    marked_.insert(key);
+  } else {
+    marked_.erase(key);
+  }
+}
+
+std::optional<FitJob> Session::fit_job() const {
+  if (!residuals_.data()) return std::nullopt;
+  FitJob job{scene(), *residuals_.data(), {}};
+  for (const Parameter& parameter : parameters()) {
+    const std::optional<double> value = parameter.value(scene());
+    if (!value || !varies(parameter.key->key)) continue;
+    const Scale& slider = parameter.slider;
+    job.vary.push_back({parameter.key->key, std::min(slider.from, *value), std::max(slider.to, *value), *value});
+  }
+  return job.vary.empty() ? std::nullopt : std::optional(std::move(job));
+}
+
+void Session::take_fit(Fit fit) {
+  std::vector<Setting> values;
+  for (const FitParameter& one : fit.parameters)
+    values.push_back({one.key, TomlText{fmt::format("{:.6g}", one.value)}});
+  set(values);
+  if (message_.is_error) return;
+  fit_ = std::move(fit);
+  fitted_changes_ = edits_.changes();
+}
+
+const FitParameter* Session::fitted(const std::string& key) const {
+  if (!fit()) return nullptr;
+  const auto found = std::ranges::find(fit_->parameters, key, &FitParameter::key);
+  return found == fit_->parameters.end() ? nullptr : &*found;
 }
 
 void Session::pin() {
@@ -133,7 +160,7 @@ void Session::remove_pin(std::size_t position) {
 void Session::set_view(const View& view) {
   view_ = view;
   if (view_.map_x == view_.map_y) {
-    view_.map_y = view_.map_x == AxisKind::kSigma ? AxisKind::kTheta : AxisKind::kSigma;
+    view_.map_y = view_.map_x == Axis::kSigma ? Axis::kTheta : Axis::kSigma;
   }
   view_.theta_max_deg = std::clamp(view_.theta_max_deg, kLeastThetaMaxDeg, 90.0);
   set_theta(theta_deg_);
@@ -146,22 +173,20 @@ void Session::set_theta(double theta_deg) {
 
 void Session::set_map_cursor(double x, double y) {
   std::vector<Setting> changes;
-  for (const auto& [axis, position] : {std::pair{&map_.x(), x}, std::pair{&map_.y(), y}}) {
-    if (axis->kind == AxisKind::kTheta) {
-      theta_deg_ = axis->value(position);
-      continue;
+  for (const auto& [of, position] : {std::pair{&map_.x(), x}, {&map_.y(), y}}) {
+    const double value = of->scale.value(position);
+    if (of->axis == Axis::kTheta) {
+      theta_deg_ = value;
+    } else {
+      // Four digits, as a slider gives.
+      changes.push_back({key_of(of->axis), TomlText{fmt::format("{:.4g}", of->scale.clamp(value))}});
     }
-    const std::string key = own_key(axis->kind);
-    // Not below four digits: what a slider gives too.
-    const double value = std::clamp(axis->value(position), axis->from, axis->to);
-    changes.push_back({key, TomlText{fmt::format("{:.4g}", value)}});
   }
   set(changes);
 }
 
-double Session::cursor_position(const MapAxis& axis) const {
-  if (axis.kind == AxisKind::kTheta) return axis.position(theta_deg_);
-  return axis.position(scene().number(own_key(axis.kind)).value());
+double Session::map_cursor(const MapAxis& axis) const {
+  return axis.scale.position(axis.axis == Axis::kTheta ? theta_deg_ : scene().number(key_of(axis.axis)).value());
 }
 
 const Point* Session::at_cursor() const {
@@ -184,13 +209,13 @@ void Session::follow() {
 }
 
 void Session::estimate_influences() {
-  const CurveReport& report = curve_.report();
-  effects_ = report.effects;
+  const JobPart& curve = curve_.finished();
+  effects_ = curve.effects;
   if (effects_.empty()) return;
   const std::vector<Effect> at_cursor =
-      dolp::effects(report.scene, points_at(report.scene, {theta_deg_}).columns(), true);
+      dolp::effects(curve.scene, points_at(curve.scene, {theta_deg_}).columns(), true);
   for (std::size_t i = 0; i < effects_.size(); ++i) {
-    if (effects_[i].state == "kept") effects_[i].influence = at_cursor[i].influence;
+    if (effects_[i].state == EffectState::kKept) effects_[i].influence = at_cursor[i].influence;
   }
 }
 
@@ -218,10 +243,11 @@ void Session::follow_overlay(const std::string& content, bool keep_all) {
 void Session::follow_map(bool keep_all) {
   const MapAxis x = suggested_axis(view_.map_x, scene(), view_.theta_max_deg);
   const MapAxis y = suggested_axis(view_.map_y, scene(), view_.theta_max_deg);
-  std::string key = content_key(edits_.changes_without({own_key(x.kind), own_key(y.kind)}), keep_all);
-  const bool has_theta = x.kind == AxisKind::kTheta || y.kind == AxisKind::kTheta;
-  if (!has_theta) key += "\ntheta=" + format_number(theta_deg_);
-  key += fmt::format("\n{} {} {} {} {} {}", axis_label(x.kind), x.from, x.to, axis_label(y.kind), y.from, y.to);
+  std::string key = content_key(edits_.changes_without({key_of(x.axis), key_of(y.axis)}), keep_all);
+  if (x.axis != Axis::kTheta && y.axis != Axis::kTheta) key += "\ntheta=" + format_number(theta_deg_);
+  for (const MapAxis& axis : {x, y}) {
+    key += fmt::format("\n{} {} {}", axis_label(axis.axis), axis.scale.from, axis.scale.to);
+  }
   map_.follow(key, scene(), keep_all, x, y, theta_deg_);
 }
 

@@ -3,15 +3,14 @@
 
 #include <deque>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "explore/curve.hpp"
-#include "explore/fitting.hpp"
 #include "explore/heat_map.hpp"
 #include "explore/measured.hpp"
 #include "explore/peak.hpp"
-#include "explore/plotted.hpp"
 #include "explore/scene_edits.hpp"
 
 namespace dolp::explore {
@@ -31,8 +30,8 @@ struct View {
   bool has_overlay = true;      ///< the other slope distribution with the same D(0)
   bool keeps_all = false;       ///< compute what the plan would drop, too
   double theta_max_deg = 90.0;  ///< what is shown, and where the maximum is looked for
-  AxisKind map_x = AxisKind::kTheta;
-  AxisKind map_y = AxisKind::kSigma;
+  Axis map_x = Axis::kTheta;
+  Axis map_y = Axis::kSigma;
 };
 
 /// One line for the user.
@@ -51,7 +50,7 @@ class Session {
 
   // ---- Commands. Those that the scene refuses change nothing and leave the reason in message(); so does what had to
   // change with a choice.
-  void set(const std::string& key, double value);
+  void set(const std::string& key, const Value& value) { set({{key, value}}); }
   void set(const std::vector<Setting>& changes);
   void reset(const std::string& key);
   void reset_all();
@@ -64,9 +63,10 @@ class Session {
   void set_map_cursor(double x, double y);
   void load_measured(const std::string& path);
   void clear_measured() { residuals_.clear(); }
-  void mark(const std::string& key, bool varies) { fitting_.mark(key, varies); }
+  /// Lets a number vary in fits, or not.
+  void mark(const std::string& key, bool varies);
   /// Moves the parameters to the result of a fit.
-  void take_fit(FitFound found);
+  void take_fit(Fit fit);
   void tell(std::string text, bool is_error = false) { message_ = {std::move(text), is_error}; }
 
   // ---- Computing.
@@ -88,30 +88,30 @@ class Session {
   const HeatMap& map() const { return map_; }
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
-  bool varies(const std::string& key) const { return fitting_.varies(key); }
-  /// The fit of the marked parameters to the measured points; none where one of them is missing.
-  std::optional<FitJob> fit_job() const { return fitting_.job(scene(), residuals_.points()); }
-  /// The result of the last fit; null once the scene has changed.
-  const FitFound* fit_found() const { return fitting_.found(edits_.changes()); }
+  bool varies(const std::string& key) const { return marked_.contains(key); }
+  /// The fit of the marked parameters, over the ranges of their sliders, to the measured points; none without points,
+  /// or without a marked parameter that the scene has.
+  std::optional<FitJob> fit_job() const;
+  /// The result of the last fit, and what it says of a number; null once the scene has changed.
+  const Fit* fit() const { return fit_ && fitted_changes_ == edits_.changes() ? &*fit_ : nullptr; }
+  const FitParameter* fitted(const std::string& key) const;
   const Message& message() const { return message_; }
   /// The effects of the last finished curve; influences of what is kept are those at the cursor's zenith.
   const std::vector<Effect>& effects() const { return effects_; }
-  /// The position of the scene's own values on the map.
-  double map_cursor_x() const { return cursor_position(map_.x()); }
-  double map_cursor_y() const { return cursor_position(map_.y()); }
+  /// The position of the scene's own value on an axis of the map.
+  double map_cursor(const MapAxis& axis) const;
   /// The point on display at the zenith nearest to the cursor's; null before there is one.
   const Point* at_cursor() const;
 
  private:
   template <class Command>
   void attempt(const Command& command);
-  void tell_asked(const std::vector<Setting>& chosen, const std::vector<Setting>& asked);
+  void tell_asked(const std::string& chosen, const std::vector<Setting>& asked);
   void follow();
   void follow_overlay(const std::string& content, bool keep_all);
   void follow_map(bool keep_all);
   void estimate_influences();
   void follow_peak();
-  double cursor_position(const MapAxis& axis) const;
 
   SceneEdits edits_;
   View view_;
@@ -122,7 +122,9 @@ class Session {
   HeatMap map_;
   Peak peak_;
   Residuals residuals_;
-  Fitting fitting_;
+  std::set<std::string> marked_;
+  std::optional<Fit> fit_;
+  std::vector<Setting> fitted_changes_;  ///< of the scene with what was found
   std::vector<Effect> effects_;
   Message message_;
   bool is_changed_ = true;

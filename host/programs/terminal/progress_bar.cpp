@@ -37,13 +37,18 @@ Progress ProgressBar::callback() {
   };
 }
 
+void ProgressBar::count(const std::string& what) {
+  what_ = what;
+  start_ = Clock::now();
+}
+
 void ProgressBar::draw(std::size_t done, std::size_t total) {
   const double elapsed_s = seconds_since(start_);
   const double rate = elapsed_s > 0.0 ? static_cast<double>(done) / elapsed_s : 0.0;
   const double left_s = rate > 0.0 ? static_cast<double>(total - done) / rate : 0.0;
   const std::size_t filled = total > 0 ? kBarWidth * done / total : kBarWidth;
   const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
-  fmt::print(stderr, "\r\033[K[{}] {}/{} entries, {:.3g}/s, {:.0f} s left", bar, done, total, rate, left_s);
+  fmt::print(stderr, "\r\033[K[{}] {}/{} {}, {:.3g}/s, {:.0f} s left", bar, done, total, what_, rate, left_s);
   std::fflush(stderr);
   drawn_ = true;
 }

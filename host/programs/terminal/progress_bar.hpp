@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <dolp/errors.hpp>
+#include <string>
 
 namespace dolp {
 
@@ -21,6 +22,9 @@ class ProgressBar {
   /// Draws, and returns false after an interrupt. Refers to this object.
   Progress callback();
 
+  /// Begins again, and counts these, not entries.
+  void count(const std::string& what);
+
  private:
   void draw(std::size_t done, std::size_t total);
 
@@ -28,6 +32,7 @@ class ProgressBar {
   bool visible_;
   bool drawn_ = false;
   bool watches_ = false;
+  std::string what_ = "entries";
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_drawn_;
 };

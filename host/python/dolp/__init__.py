@@ -18,6 +18,14 @@
 >>> dolp.evaluate(scene, theta_deg=[0, 40, 80]).dolp.values.round(4)
 array([0.    , 0.0295, 0.1346])
 
+Scene                   a scene: a file or a text, with other values of its keys
+table, write_table      the quantities over the scene's grid: a Dataset, or a file
+evaluate, mueller       the same at points; Mueller matrices of pairs of directions
+lookup                  a table between its entries
+fit                     numbers of a scene from measured data
+plan                    what a table would compute and cost
+devices, keys, materials, citation
+
 Names and units are those of scene files and tables: angles in degrees, wavelengths in um, temperatures in K. Results are
 xarray Datasets with the variables, units and meanings that table files have, and the same bits that the command line
 computes; `dataset.dolp.plot()` draws. Every entry has its error bound in `error_estimate`.
@@ -25,16 +33,17 @@ computes; `dataset.dolp.plot()` draws. Every entry has its error bound in `error
 The device and its kernels are kept between calls. A long call lets Python's other threads run, and Ctrl-C ends it. A
 process that was forked from one that has used a Vulkan device gets a DeviceError: start processes afresh
 (multiprocessing.set_start_method("spawn")), or take evaluator="cpu". Errors: InputError (a ValueError) with one line
-that says what is allowed, DeviceError (a RuntimeError), IoError (an OSError).
+that says what is allowed, DeviceError (a RuntimeError), IoError (an OSError); a TypeError for arguments of another kind;
+MemoryError. Masked arrays are refused, because results have no mask: fill or compress them.
 """
 from __future__ import annotations
 
+import difflib
 import functools
 import json
 import os
 import pathlib
-import tempfile
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from typing import Any, NamedTuple, Union
 
 import numpy as np
@@ -47,7 +56,7 @@ __all__ = ["DeviceError", "Fit", "InputError", "IoError", "Plan", "Scene", "cita
            "mueller", "plan", "table", "write_table"]
 __version__ = _native.version()
 
-Path = Union[str, "os.PathLike[str]"]
+Path = Union[str, bytes, "os.PathLike[str]"]
 Array = Union[float, "np.ndarray", "xr.DataArray", "list[float]"]
 
 # Of each column of points the name of its coordinate, which is that of table files, with its attributes.
@@ -62,27 +71,30 @@ _COORDINATES |= {name: (name, {"long_name": long_name, "units": "degree"}) for n
 class Scene:
     """A surface, what it radiates and reflects, and how accurate results are to be: a scene file, or its text.
 
-    Parameters: a path or `text`, then overrides of any key of a scene.
+    Parameters: a path or `text`, then overrides of any key of a scene; None or "none" removes a table or a key. Scenes
+    can be copied, pickled and sent to other processes, which find the files that a scene names where this one did.
 
     >>> smooth = dolp.Scene(scene, {"surface.sigma": 0.01, "title": "a mirror"})
     >>> smooth.title
     'a mirror'
     >>> dolp.Scene(scene, {"surface.sigma": -1})
     Traceback (most recent call last):
-    dolp._native.InputError: surface.sigma = -1: -1 is out of range; must be a number in [0, 10]
+    dolp.InputError: surface.sigma = -1: -1 is out of range; must be a number in [0, 10]
     """
 
     def __init__(self, path: Path | Scene | None = None, overrides: Mapping[str, Any] | None = None, *,
                  text: str | None = None) -> None:
         if (path is None) == (text is None):
             raise InputError("Scene: needs either a path or text")
-        values = _values(overrides or {})
+        values = _values(overrides)
         if isinstance(path, Scene):
             self._native = path._native.with_(values)
         elif path is not None:
-            self._native = _native.Scene.from_file(path, values)
+            self._native = _native.Scene.from_file(_path("path", path), values)
+        elif isinstance(text, str):
+            self._native = _native.Scene.from_text(text, values, "text")
         else:
-            self._native = _native.Scene.from_text(text, values)
+            raise TypeError(f"text: must be a str, not {type(text).__name__}")
 
     def with_(self, values: Mapping[str, Any]) -> Scene:
         """The same scene with other values of keys.
@@ -110,7 +122,8 @@ class Scene:
         return self._native.toml()
 
     def __repr__(self) -> str:
-        return self.toml()
+        changes = ", ".join(f"{key}={value}" for key, value in self._native.values())
+        return f"<dolp.Scene {self.title!r} of {self._native.name}{', ' * bool(changes)}{changes}>"
 
 
 class Plan:
@@ -154,10 +167,8 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
     >>> dict(t.sizes)["theta"], dict(t.sizes)["sigma"], t.dolp.units, t.theta.units
     (2, 3, '1', 'degree')
     """
-    with tempfile.TemporaryDirectory() as folder:
-        path = pathlib.Path(folder) / "table.nc"
-        write_table(scene, path, evaluator=evaluator, device=device, keep_all=keep_all, **axes)
-        return xr.load_dataset(path)
+    with_axes = _with_axes(scene, axes)
+    return _table_dataset(*_evaluator(evaluator, device).table(with_axes, bool(keep_all)))
 
 
 def write_table(scene: Scene, path: Path, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
@@ -166,11 +177,12 @@ def write_table(scene: Scene, path: Path, *, evaluator: str = "vulkan", device: 
 
     Returns the report of the run. What an interrupted call has finished stays beside the file; `resume` goes on there.
 
-    >>> print(dolp.write_table(scene, "/tmp/table_of_scene.nc").splitlines()[1])
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     print(dolp.write_table(scene, folder + "/table.nc").splitlines()[1])
       entries    5 x 1 x 1 (theta x sigma x q)
     """
-    with_axes = Scene(scene, {f"grid.{axis}": np.atleast_1d(values) for axis, values in axes.items()})
-    return _evaluator(evaluator, device).write_table(with_axes._native, path, keep_all, resume)
+    with_axes = _with_axes(scene, axes)
+    return _evaluator(evaluator, device).write_table(with_axes, _path("path", path), bool(keep_all), bool(resume))
 
 
 def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
@@ -188,25 +200,25 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
     (('theta', 'sigma'), (2, 3))
     """
     frame, columns = _columns(points)
-    return _dataset(_evaluator(evaluator, device).evaluate(scene._native, columns, keep_all), frame)
+    return _dataset(_evaluator(evaluator, device).evaluate(_scene(scene), columns, bool(keep_all)), frame)
 
 
 def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
     """A table between its entries: error estimates contain the interpolation.
 
-    `table`: a file, or a Dataset from `table`. `points`: as for `evaluate`; an axis of one value needs none.
+    `table`: a file, or a Dataset of `table` or of such a file, or a part of one: fewer values of an axis, or one of them,
+    as `t.sel(k=0.1)`, fewer variables. Its attribute scene is needed; values_hash is that of the whole table, and is not
+    looked at. `points`: as for `evaluate`; an axis of one value needs none. Many points in one call are fastest: each
+    call reads the table again.
 
-    >>> t = dolp.table(scene, theta_deg=np.linspace(0, 80, 41))
-    >>> bool(abs(dolp.lookup(t, theta_deg=33).dolp - dolp.evaluate(scene, theta_deg=33).dolp) < 1e-5)
+    >>> t = dolp.table(scene, theta_deg=np.linspace(0, 80, 41), sigma=[0.1, 0.2])
+    >>> bool(abs(dolp.lookup(t.sel(sigma=0.2), theta_deg=33).dolp - dolp.evaluate(scene, theta_deg=33).dolp) < 1e-5)
     True
     """
-    if isinstance(table, xr.Dataset):
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "table.nc"
-            table.to_netcdf(path)
-            return lookup(path, **points)
     frame, columns = _columns(points)
-    return _dataset(_native.Table.read(table).lookup(columns), frame)
+    if isinstance(table, xr.Dataset):
+        return _dataset(_native_table(table).lookup(columns), frame)
+    return _dataset(_native.Table.read(_path("table", table)).lookup(columns), frame)
 
 
 def mueller(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **points: Array) -> np.ndarray:
@@ -219,7 +231,7 @@ def mueller(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **poin
     ((3, 4, 4), True)
     """
     frame, columns = _columns(points)
-    matrices = _evaluator(evaluator, device).mueller(scene._native, columns)
+    matrices = _evaluator(evaluator, device).mueller(_scene(scene), columns)
     return matrices.reshape(frame.shape + (4, 4))
 
 
@@ -237,10 +249,11 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, start
     >>> round(found["surface.n"], 4), found.values["parameters"][0]["interval_95"][0] < 1.6
     (1.6, True)
     """
+    native = _scene(scene)
     sets = [one if isinstance(one, tuple) else (one, {}) for one in (data if isinstance(data, list) else [data])]
     texts = [(_csv(columns), _values(overrides)) for columns, overrides in sets]
-    ranges = {key: [float(end) for end in ends] for key, ends in vary.items()}
-    text, values, found = _evaluator(evaluator, device).fit(scene._native, texts, ranges, starts, seed)
+    ranges = {key: _numbers(key, ends).ravel().tolist() for key, ends in _mapping("vary", vary).items()}
+    text, values, found = _evaluator(evaluator, device).fit(native, texts, ranges, starts, seed)
     fitted = Scene.__new__(Scene)
     fitted._native = found
     return Fit(text, json.loads(values), fitted)
@@ -252,7 +265,7 @@ def plan(scene: Scene, *, device: str = "", keep_all: bool = False) -> Plan:
     >>> dolp.plan(scene).values["entries"]
     5
     """
-    text, values = _native.plan(scene._native, device, keep_all)
+    text, values = _native.plan(_scene(scene), device, bool(keep_all))
     return Plan(text, json.loads(values))
 
 
@@ -287,37 +300,94 @@ def citation() -> str:
 
 @functools.lru_cache(maxsize=None)
 def _evaluator(evaluator: str, device: str) -> _native.Evaluator:
-    return _native.Evaluator(evaluator, device)
+    return _native.Evaluator(str(evaluator), str(device))
 
 
-def _values(overrides: Mapping[str, Any]) -> dict[str, Any]:
-    return {key: _value(key, value) for key, value in overrides.items()}
+def _scene(scene: Scene) -> _native.Scene:
+    if isinstance(scene, Scene):
+        return scene._native
+    hint = "; dolp.Scene(path) reads a file" if isinstance(scene, (str, os.PathLike)) else ""
+    raise TypeError(f"scene: must be a dolp.Scene, not {type(scene).__name__}{hint}")
+
+
+def _with_axes(scene: Scene, axes: Mapping[str, Array]) -> _native.Scene:
+    """The scene on other axes, by the names of their columns."""
+    native = _scene(scene)
+    _check_names("axes", axes, [column for column, *_ in _native.axes()])
+    return native.with_([(f"grid.{axis}", np.atleast_1d(_numbers(axis, values)).ravel().tolist())
+                         for axis, values in axes.items()])
+
+
+def _mapping(name: str, values: Mapping[str, Any] | None) -> Mapping[str, Any]:
+    if values is None or isinstance(values, Mapping):
+        return values or {}
+    raise TypeError(f"{name}: must be a dictionary with keys of a scene, not {type(values).__name__}")
+
+
+def _path(name: str, path: Path) -> str:
+    if isinstance(path, (str, bytes, os.PathLike)):
+        return os.fsdecode(path)
+    raise TypeError(f"{name}: must be a path, not {type(path).__name__}")
+
+
+def _check_names(what: str, given: Iterable[str], known: list[str]) -> None:
+    """Refuses a name that is none of those known, with the one that may have been meant."""
+    for name in given:
+        if name in known:
+            continue
+        near = [one for one in known if one.startswith(f"{name}_")] or difflib.get_close_matches(name, known, 1)
+        hint = f"; did you mean {near[0]}?" if near else ""
+        raise InputError(f"{what}: {name} is none of {', '.join(known)}{hint}")
+
+
+def _numbers(name: str, values: Any) -> np.ndarray:
+    """Values as floats. Refuses what would silently become other numbers: masks and dates."""
+    if isinstance(values, np.ma.MaskedArray):
+        raise InputError(f"{name}: is a masked array, and results have no mask: fill or compress it")
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind in "biufO":
+            return array.astype(float)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: {_short(values)} are no numbers") from None
+    raise InputError(f"{name}: {_short(values)} are no numbers but {array.dtype}")
+
+
+def _short(value: Any) -> str:
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _values(overrides: Mapping[str, Any] | None) -> list[tuple[str, Any]]:
+    return [(str(key), _value(key, value)) for key, value in _mapping("overrides", overrides).items()]
 
 
 def _value(key: str, value: Any) -> Any:
     """A value as the library takes it: None, bool, float, str, a list of floats, or a range as a dictionary."""
     if value is None or isinstance(value, (bool, np.bool_)):
         return None if value is None else bool(value)
-    if isinstance(value, (str, os.PathLike)):
-        return os.fspath(value)
+    if isinstance(value, (str, bytes, os.PathLike)):
+        return os.fsdecode(value)
     if isinstance(value, Mapping):
-        return {name: item if isinstance(item, str) else int(item) if name == "count" else float(item)
-                for name, item in value.items()}
-    try:
-        numbers = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"{key}: {value!r} is neither a number, a text, a list of numbers nor a range") from None
+        try:
+            return {name: item if isinstance(item, str) else int(item) if name == "count" else float(item)
+                    for name, item in value.items()}
+        except (TypeError, ValueError):
+            raise InputError(f"{key}: {_short(value)} is no range of numbers") from None
+    numbers = _numbers(key, value)
     return float(numbers) if numbers.ndim == 0 else numbers.ravel().tolist()
 
 
 def _csv(data: Any) -> str:
     """The text of a file, or columns as one."""
-    if isinstance(data, (str, os.PathLike)):
-        return pathlib.Path(data).read_text(encoding="utf-8")
+    if isinstance(data, (str, bytes, os.PathLike)):
+        return pathlib.Path(os.fsdecode(data)).read_text(encoding="utf-8")
+    if not (isinstance(data, Mapping) or hasattr(data, "keys")):
+        raise TypeError(f"data: must be a path or columns by name, not {type(data).__name__}")
     if isinstance(data, xr.Dataset):  # with the coordinates of a result, whose columns have other names
         data = data.rename({name: column for column, (name, _) in _COORDINATES.items() if name in data.variables})
     names = list(data.variables) if isinstance(data, xr.Dataset) else list(data.keys())
-    columns = np.broadcast_arrays(*(np.asarray(data[name], dtype=float) for name in names))
+    columns = np.broadcast_arrays(*(_numbers(name, data[name]) for name in names))
     rows = zip(*(column.ravel().tolist() for column in columns))
     return "\n".join([",".join(names), *(",".join(map(repr, row)) for row in rows)]) + "\n"
 
@@ -332,18 +402,17 @@ class _Frame(NamedTuple):
 
 def _columns(points: Mapping[str, Array]) -> tuple[_Frame, dict[str, np.ndarray]]:
     """Columns for the library, of one value where there is one for all, and their common shape with its coordinates."""
-    for name in points:
-        if name not in _COORDINATES:
-            raise InputError(f"points: {name} is none of {', '.join(_COORDINATES)}")
+    _check_names("points", points, list(_COORDINATES))
     if any(isinstance(values, xr.DataArray) for values in points.values()):
-        arrays = {name: xr.DataArray(values) for name, values in points.items()}
+        arrays = {name: values.copy(data=_numbers(name, values)) if isinstance(values, xr.DataArray)
+                  else xr.DataArray(_numbers(name, values)) for name, values in points.items()}
         arrays = dict(zip(arrays, xr.broadcast(*arrays.values())))
         template = next(iter(arrays.values()))
         points = {name: array.values for name, array in arrays.items()}
         shape, dims = template.shape, template.dims
         coordinates = {name: array.variable.copy(deep=False) for name, array in template.coords.items()}
     else:
-        points = {name: np.asarray(values, dtype=float) for name, values in points.items()}
+        points = {name: _numbers(name, values) for name, values in points.items()}
         try:
             shape = np.broadcast_shapes(*(values.shape for values in points.values()))
         except ValueError:
@@ -378,16 +447,72 @@ def _dimensions(points: Mapping[str, np.ndarray],
     return tuple(dims), coordinates
 
 
-def _dataset(parts: _native.Parts, frame: _Frame) -> xr.Dataset:
-    quantities, status, attributes = parts
+def _variables(parts: _native.Parts, dims: tuple[Hashable, ...], shape: tuple[int, ...],
+               encoding: dict[str, Any]) -> dict[str, xr.Variable]:
+    quantities, status, _ = parts
     variables = {}
     for name, long_name, units, ancillary, values in quantities:
         known = {"long_name": long_name, "units": units}
         if ancillary:
             known["ancillary_variables"] = ancillary
-        variables[name] = xr.Variable(frame.dims, values.reshape(frame.shape), known)
-    variables["status"] = xr.Variable(frame.dims, status.view(np.int32).reshape(frame.shape), _status_attributes())
-    return xr.Dataset(variables, frame.coordinates, attributes)
+        variables[name] = xr.Variable(dims, values.reshape(shape), known, encoding)
+    if status.size:
+        variables["status"] = xr.Variable(dims, status.view(np.int32).reshape(shape), _status_attributes())
+    return variables
+
+
+def _dataset(parts: _native.Parts, frame: _Frame) -> xr.Dataset:
+    return xr.Dataset(_variables(parts, frame.dims, frame.shape, {}), frame.coordinates, parts[2])
+
+
+def _table_dataset(axes: list[tuple[str, np.ndarray]], curves: list[tuple[str, str, str, np.ndarray, np.ndarray]],
+                   parts: _native.Parts) -> xr.Dataset:
+    """A table as xarray has it of its file."""
+    known = dict(_COORDINATES.values())
+    coordinates = {name: xr.Variable(name, values, known[name]) for name, values in axes}
+    shape = tuple(values.size for _, values in axes)
+    variables = _variables(parts, tuple(name for name, _ in axes), shape, {"_FillValue": np.nan})
+    for name, long_name, units, wavelengths, values in curves:
+        along = f"{name}_wavelength"
+        coordinates[along] = xr.Variable(along, wavelengths, {"long_name": "wavelength", "units": "um"})
+        variables[name] = xr.Variable(along, values, {"long_name": long_name, "units": units})
+    attributes = {}
+    for name, value in parts[2].items():
+        encoded = value.encode("utf-8", "surrogateescape") if isinstance(value, str) else b""
+        if len(encoded) > _native.most_attribute_bytes:
+            encoding = {"char_dim_name": f"{name}_length", "dtype": np.dtype("S1")}
+            variables[name] = xr.Variable((), np.array(encoded), encoding=encoding)
+        else:
+            attributes[name] = value if isinstance(value, str) else np.float64(value)
+    table = xr.Dataset(variables, coordinates, attributes)
+    for variable in table.variables.values():
+        variable.encoding.setdefault("dtype", variable.dtype)
+    return table
+
+
+def _native_table(table: xr.Dataset) -> _native.Table:
+    """What a Dataset holds of a table; a coordinate of one value is an axis of one."""
+    axes = [name for name in ("wavelength", "n", "k", "theta", "sigma", "q") if name in table.coords]
+    columns, status = {}, np.empty(0, np.uint32)
+    for name, variable in table.variables.items():
+        if variable.dtype.kind not in "iuf" or variable.ndim > len(axes):
+            continue
+        if set(variable.dims) <= set(axes) and name not in axes:
+            variable = variable.transpose(*(axis for axis in axes if axis in variable.dims))
+        if name == "status":
+            if not np.all(np.isfinite(variable.values)):
+                raise InputError("Dataset: status has entries without a value; take the Dataset before it was masked")
+            status = np.ascontiguousarray(variable.values, dtype=np.uint32).ravel()
+        else:
+            columns[name] = np.asarray(variable.values, dtype=float).ravel()
+    attributes = {name: value if isinstance(value, str) else float(value) for name, value in table.attrs.items()
+                  if isinstance(value, (str, int, float, np.integer, np.floating))}
+    for name, variable in table.data_vars.items():
+        if variable.ndim == 0 and variable.dtype.kind == "S":
+            attributes[name] = os.fsdecode(variable.values.item())
+    stokes = next((table[name] for name in ("stokes_i", "stokes_q", "stokes_u", "stokes_v") if name in table), None)
+    units = "" if stokes is None else str(stokes.attrs.get("units", ""))
+    return _native.Table.of(columns, status, units, attributes, "Dataset")
 
 
 @functools.lru_cache(maxsize=None)

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <ctime>
 #include <dolp/errors.hpp>
 #include <system_error>
 #include <utility>
@@ -22,7 +21,6 @@ namespace fs = std::filesystem;
 constexpr int kMostLinks = 40;
 constexpr int kMostNames = 1000;
 constexpr std::size_t kBytesAtOnce = 1U << 20U;
-constexpr std::time_t kLockedAfter_s = 60;  // a writer has its lock by then
 constexpr const char* kOpenFiles = "/proc/self/fd";
 constexpr mode_t kNewFileMode = 0666;
 constexpr mode_t kPermissionBits = 0777;
@@ -99,20 +97,6 @@ std::pair<fs::path, int> with_new_name(const fs::path& target, const Make& make)
   fail(target, "too many temporary files in its folder; remove .dolp-*.tmp");
 }
 
-/// Removes temporary files without a writer: a writer holds a lock, on network file systems too.
-void clear_away_left_ones(const fs::path& folder) {
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (!name.starts_with(".dolp-") || !name.ends_with(".tmp")) continue;
-    struct stat found {};
-    const File file(::open(entry->path().c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
-    if (file.get() < 0 || ::fstat(file.get(), &found) != 0 || !S_ISREG(found.st_mode)) continue;
-    const bool is_new = found.st_mtime + kLockedAfter_s > std::time(nullptr);
-    if (!is_new && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0) ::unlink(entry->path().c_str());
-  }
-}
-
 /// A file that has no name yet, or a temporary one, with the permissions that the target has or would get.
 struct NewFile {
   File file;
@@ -120,7 +104,6 @@ struct NewFile {
 };
 
 NewFile create_temporary(const fs::path& target) {
-  clear_away_left_ones(folder_of(target));
   const bool can_be_linked = ::access(kOpenFiles, X_OK) == 0;
   const int unnamed =
       can_be_linked ? ::open(folder_of(target).c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, kNewFileMode) : -1;
@@ -128,7 +111,6 @@ NewFile create_temporary(const fs::path& target) {
   auto [name, named] = with_new_name(target, [](const fs::path& path) {
     return ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kNewFileMode);
   });
-  ::flock(named, LOCK_EX | LOCK_NB);  // without locks no files are removed either
   return {File(named), std::move(name)};
 }
 
@@ -137,6 +119,11 @@ void keep_permissions(const File& file, const fs::path& target) {
   const bool exists = ::stat(target.c_str(), &existing) == 0;
   // Permissions that cannot be kept are no reason to lose the result.
   if (exists) static_cast<void>(!::fchmod(file.get(), existing.st_mode & kPermissionBits));
+}
+
+bool has_name(const struct stat& file, const fs::path& name) {
+  struct stat named {};
+  return ::lstat(name.c_str(), &named) == 0 && named.st_dev == file.st_dev && named.st_ino == file.st_ino;
 }
 
 void sync_folder(const fs::path& folder, const fs::path& path) {
@@ -230,13 +217,15 @@ AtomicFile::AtomicFile(const fs::path& path) {
 AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
   check_writable(path);
   const fs::path target = follow_links(path);
-  File file(::open(under_way.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kNewFileMode));
+  File file(::open(under_way.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, kNewFileMode));
+  if (file.get() < 0 && errno == ELOOP) fail(under_way, "is a symbolic link; remove it");
   if (file.get() < 0) fail_errno(under_way, "cannot create the file");
-  if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-    throw InputError(under_way.string() + ": another run writes it");
-  }
+  const bool is_locked = ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
   struct stat found {};
   if (::fstat(file.get(), &found) != 0 || !S_ISREG(found.st_mode)) fail(under_way, "is not a regular file");
+  // A file without this name is one that its writer has just finished.
+  if (!is_locked || !has_name(found, under_way)) throw InputError(under_way.string() + ": another run writes it");
+  if (found.st_nlink > 1) fail(under_way, "is a file that has other names too; remove it");
   keep_permissions(file, target);
   impl_ = std::make_unique<Impl>(path, target, NewFile{std::move(file), under_way});
   impl_->is_kept = true;
@@ -263,6 +252,8 @@ void AtomicFile::write_at(std::uint64_t offset, const void* bytes, std::size_t s
 
 void AtomicFile::append(std::string_view bytes) { write_at(impl_->size, bytes.data(), bytes.size()); }
 
+std::uint64_t AtomicFile::size() const { return impl_->size; }
+
 void AtomicFile::read_at(std::uint64_t offset, void* bytes, std::size_t size) const {
   read_all(impl_->descriptor(), impl_->path, offset, static_cast<char*>(bytes), size);
 }
@@ -278,7 +269,7 @@ void AtomicFile::commit() {
   if (interrupted()) throw Cancelled();
   if (::fsync(own.file.get()) != 0) fail_errno(impl_->path, "cannot write");
   if (own.name.empty()) impl_->link();
-  if (!own.file.close()) fail_errno(impl_->path, "cannot write");
+  // Closed, and unlocked, only after it has its name: no other run takes it for one under way.
   if (::rename(own.name.c_str(), impl_->target.c_str()) != 0)
     fail_errno(impl_->path, "cannot rename the finished file");
   own.name.clear();

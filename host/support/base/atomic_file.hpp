@@ -19,16 +19,15 @@ std::filesystem::path follow_links(std::filesystem::path path);
 void check_writable(const std::filesystem::path& path);
 
 /// A file under way to `path`: written in any order, then synced and renamed. Until then it has no name where the file
-/// system allows that; else it is .dolp-*.tmp, and such files of dead processes are removed. A symbolic
-/// link stays, its target is replaced; an existing file keeps its permissions. Into a device or pipe the bytes
-/// go when all are there.
+/// system allows that; else it is .dolp-*.tmp, which a process that is killed leaves. A symbolic link stays, its target
+/// is replaced; an existing file keeps its permissions. Into a device or pipe the bytes go when all are there.
 class AtomicFile {
  public:
   /// Errors: those of check_writable; IoError when no file can be made.
   explicit AtomicFile(const std::filesystem::path& path);
   /// A file that has the name `under_way` until it is whole, and keeps it, with what was written, if it never is; one
   /// that is there already is opened with its content. It is locked.
-  /// Errors: as above; InputError when another process writes it.
+  /// Errors: as above; IoError for a link, which could lead to any file; InputError when another process writes it.
   AtomicFile(const std::filesystem::path& path, const std::filesystem::path& under_way);
   AtomicFile(AtomicFile&&) noexcept;
   AtomicFile& operator=(AtomicFile&&) noexcept;
@@ -37,6 +36,7 @@ class AtomicFile {
   /// Puts bytes at an offset. Errors: IoError; Cancelled when interrupted().
   void write_at(std::uint64_t offset, const void* bytes, std::size_t size);
   void append(std::string_view bytes);
+  std::uint64_t size() const;
   /// Errors: IoError, also for fewer bytes than asked for.
   void read_at(std::uint64_t offset, void* bytes, std::size_t size) const;
   /// Sets the length; new bytes are zero. Errors: IoError.

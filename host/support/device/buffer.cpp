@@ -14,13 +14,13 @@ constexpr VkDeviceSize kSmallestBuffer = 256;
 
 }  // namespace
 
-Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use)
+Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, VkFormat texels)
     : device_(device.get()), size_(std::max(bytes, kSmallestBuffer)) {
-  const VkBufferCreateInfo info{
-      .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-      .size = size_,
-      .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-      .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
+  const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                                .size = size_,
+                                .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                                         VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
+                                .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
   VkBuffer buffer = VK_NULL_HANDLE;
   check(vkCreateBuffer(device_, &info, nullptr, &buffer), "creating a buffer");
   buffer_ = UniqueBuffer(device_, buffer);
@@ -37,10 +37,21 @@ Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use)
         "allocating " + std::to_string(requirements.size) + " bytes");
   memory_ = UniqueMemory(device_, memory);
   check(vkBindBufferMemory(device_, buffer, memory, 0), "binding memory");
+  if (texels != VK_FORMAT_UNDEFINED) create_texels(texels);
   if (use == MemoryUse::kDeviceOnly) return;
   void* address = nullptr;
   check(vkMapMemory(device_, memory, 0, VK_WHOLE_SIZE, 0, &address), "mapping memory");
   mapped_ = static_cast<std::byte*>(address);
+}
+
+void Buffer::create_texels(VkFormat format) {
+  const VkBufferViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                    .buffer = buffer_.get(),
+                                    .format = format,
+                                    .range = VK_WHOLE_SIZE};
+  VkBufferView view = VK_NULL_HANDLE;
+  check(vkCreateBufferView(device_, &info, nullptr, &view), "creating a view of a buffer");
+  texels_ = UniqueBufferView(device_, view);
 }
 
 VkMappedMemoryRange Buffer::range() const {

@@ -1,4 +1,4 @@
-// Storage buffers that the host writes and reads.
+// Buffers that the host writes and reads.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,11 @@ namespace dolp::vulkan {
 /// A storage buffer with memory of its own, never empty.
 class Buffer {
  public:
-  Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use);
+  /// With a format, kernels may read it as texels too.
+  Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, VkFormat texels = VK_FORMAT_UNDEFINED);
 
   VkBuffer get() const { return buffer_.get(); }
+  VkBufferView texels() const { return texels_.get(); }
   VkDeviceSize size() const { return size_; }
 
   /// Writes to the start of a mapped buffer; the next submission sees it.
@@ -23,6 +25,7 @@ class Buffer {
   void read(std::span<std::byte> bytes) const;
 
  private:
+  void create_texels(VkFormat format);
   VkMappedMemoryRange range() const;
   bool coherent() const { return (memory_flags_ & VK_MEMORY_PROPERTY_HOST_COHERENT_BIT) != 0; }
 
@@ -32,6 +35,7 @@ class Buffer {
   // The memory outlives the buffer bound to it.
   UniqueMemory memory_;
   UniqueBuffer buffer_;
+  UniqueBufferView texels_;
   std::byte* mapped_ = nullptr;
 };
 

@@ -67,9 +67,9 @@ std::string version_text(std::uint32_t version) {
 std::string why_not_usable(const VkPhysicalDeviceProperties& properties, bool has_compute_queue) {
   if (properties.apiVersion < VK_API_VERSION_1_2) return "Vulkan " + version_text(properties.apiVersion) + " < 1.2";
   if (!has_compute_queue) return "no compute queue";
-  if (properties.limits.maxPerStageDescriptorStorageBuffers < kBindingCount) {
+  if (properties.limits.maxPerStageDescriptorStorageBuffers < kStorageCount) {
     return "only " + std::to_string(properties.limits.maxPerStageDescriptorStorageBuffers) + " storage buffers, " +
-           std::to_string(kBindingCount) + " needed";
+           std::to_string(kStorageCount) + " needed";
   }
   return {};
 }
@@ -111,6 +111,7 @@ dolp::Device describe(VkPhysicalDevice physical) {
   description.usable = description.why_not.empty();
   description.has_double = features.shaderFloat64 == VK_TRUE;
   description.max_storage_buffer_bytes = properties.limits.maxStorageBufferRange;
+  description.max_texels = properties.limits.maxTexelBufferElements;
   description.max_workgroups = properties.limits.maxComputeWorkGroupCount[0];
   description.memory_bytes = largest_device_heap(memory);
   description.timestamps = family && family->timestamp_bits > 0;

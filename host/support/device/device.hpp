@@ -10,8 +10,9 @@
 
 namespace dolp::vulkan {
 
-/// Storage buffers that a kernel binds.
-constexpr std::uint32_t kBindingCount = 8;
+/// Storage buffers that a kernel binds, and texel buffers after them.
+constexpr std::uint32_t kStorageCount = 7;
+constexpr std::uint32_t kTexelCount = 2;
 /// Most invocations of a workgroup; every device allows 128.
 constexpr std::uint32_t kLocalSize = 64;
 

@@ -3,7 +3,10 @@
 
 #include <vulkan/vulkan.h>
 
+#include <string>
 #include <utility>
+
+#include "device/result.hpp"
 
 namespace dolp::vulkan {
 
@@ -29,7 +32,17 @@ class Handle {
   T object_ = VK_NULL_HANDLE;
 };
 
+/// The object that one of Vulkan's create functions makes; `action` is a gerund phrase. Errors: those of check.
+template <class Owner, class Info, class T>
+Owner created(VkDevice device, VkResult (*create)(VkDevice, const Info*, const VkAllocationCallbacks*, T*),
+              const Info& info, const std::string& action) {
+  T object = VK_NULL_HANDLE;
+  check(create(device, &info, nullptr, &object), action);
+  return Owner(device, object);
+}
+
 using UniqueBuffer = Handle<VkBuffer, vkDestroyBuffer>;
+using UniqueBufferView = Handle<VkBufferView, vkDestroyBufferView>;
 using UniqueMemory = Handle<VkDeviceMemory, vkFreeMemory>;
 using UniqueCommandPool = Handle<VkCommandPool, vkDestroyCommandPool>;
 using UniqueFence = Handle<VkFence, vkDestroyFence>;

@@ -19,6 +19,9 @@ constexpr const char* kNoDriver =
 constexpr const char* kDriverNotLoaded =
     "no Vulkan driver could be loaded: its file (VK_DRIVER_FILES, VK_ICD_FILENAMES, vulkan/icd.d) is malformed";
 
+constexpr const char* kTooFewThreads =
+    "out of memory: the system allows too few threads for a Vulkan driver (ulimit -u); the evaluator cpu needs one";
+
 /// The loader skips a driver if the process has too little address space for it.
 [[noreturn]] void fail_without_driver() {
   if (lacks_addresses()) throw MemoryError("out of memory: too little is left to load a Vulkan driver");
@@ -68,6 +71,7 @@ Instance::Instance(ValidationLog* log, const std::vector<const char*>& extension
     throw DeviceError(std::string("validation is wanted, but the layer ") + kValidationLayer +
                       " is not installed (on Debian, vulkan-validationlayers)");
   }
+  if (lacks_threads() && !lacks_addresses()) throw MemoryError(kTooFewThreads);
   const VkApplicationInfo application{
       .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .pApplicationName = "dolp", .apiVersion = VK_API_VERSION_1_2};
   const VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(log);

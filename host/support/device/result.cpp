@@ -2,7 +2,12 @@
 
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <future>
+#include <system_error>
+#include <thread>
+#include <vector>
 
 namespace dolp::vulkan {
 
@@ -47,6 +52,26 @@ bool lacks_addresses() {
   if (room == MAP_FAILED) return true;
   ::munmap(room, kDriverBytes);
   return false;
+}
+
+bool lacks_threads() {
+  // lavapipe starts two for each core, of 32 at most, one for its queue and two for its cache of kernels. It waits
+  // without end for those that it could not start.
+  const std::size_t needed = 2 * std::clamp(std::thread::hardware_concurrency(), 1U, 32U) + 3;
+  std::promise<void> end;
+  const std::shared_future<void> ended = end.get_future().share();
+  std::vector<std::jthread> threads;
+  try {
+    threads.reserve(needed);
+    while (threads.size() < needed) threads.emplace_back([ended] { ended.wait(); });
+  } catch (const std::system_error&) {
+    // One that the system refused: the loop has ended.
+  } catch (...) {
+    end.set_value();  // the threads are joined before `end` goes
+    throw;
+  }
+  end.set_value();
+  return threads.size() < needed;
 }
 
 void check(VkResult result, const std::string& action) {

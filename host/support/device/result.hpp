@@ -24,6 +24,9 @@ std::string result_name(VkResult result);
 /// True if the process has too little address space left for a driver.
 bool lacks_addresses();
 
+/// True if the process may not start the threads that a driver waits for.
+bool lacks_threads();
+
 /// Throws unless `result` is VK_SUCCESS; `action` is a gerund phrase.
 ///
 /// Errors: DeviceLost; MemoryError when the device or its driver is out of memory; else DeviceError

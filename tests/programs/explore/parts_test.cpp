@@ -1,19 +1,16 @@
-// Parts behind the window, one by one: parameters, edits, worker, measured points, exports, ticks, lines.
+// What stands behind the window: edits of the scene, choices that exclude one another, the worker, measured points.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <condition_variable>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <mutex>
 
 #include "base/text.hpp"
-#include "explore/background_task.hpp"
-#include "explore/conflicts.hpp"
-#include "explore/contours.hpp"
-#include "explore/exports.hpp"
 #include "explore/parameters.hpp"
-#include "explore/ticks.hpp"
+#include "explore/session.hpp"
 #include "explore_support.hpp"
 
 namespace dolp::explore {
@@ -21,79 +18,100 @@ namespace {
 
 const std::string kHostDir = DOLP_HOST_DIR;
 
-// ---- Parameters and edits ------------------------------------------------------------------------------------------
+// ---- Edits ---------------------------------------------------------------------------------------------------------
 
-TEST(Parameters, All_HaveSymbolEquationAndASliderInsideTheirRange) {
-  EXPECT_GT(parameters().size(), 15U);
+TEST(Parameters, EndsOfEverySlider_AreAccepted) {
   for (const Parameter& p : parameters()) {
-    EXPECT_STRNE(p.symbol, "") << p.key->key;
-    EXPECT_STRNE(p.equation, "") << p.key->key;
-    for (const double end : {p.slider.min, p.slider.max}) {
+    for (const double end : {p.slider.from, p.slider.to}) {
       const std::string beside = p.key->key == "source.scale" ? "source.irradiance=1" : "title=paint";
       const Scene scene = paint({beside, p.key->key + "=" + format_number(end)}).scene();
       EXPECT_EQ(scene.number(p.key->key), end) << p.key->key;
     }
-    EXPECT_TRUE(!p.is_log || p.slider.min > 0.0) << p.key->key;
+    EXPECT_TRUE(!p.slider.is_log || p.slider.from > 0.0) << p.key->key;
   }
-  EXPECT_TRUE(parameter("surface.sigma").is_log);
 }
 
-TEST(Edits, RefusedChange_LeavesTheSceneAsItWas) {
-  SceneEdits edits = paint();
-  EXPECT_THROW(edits.set("surface.sigma", -1.0), InputError);
-  EXPECT_THROW(edits.set("surface.n", "none"), InputError);
-  EXPECT_EQ(edits.scene().number("surface.sigma"), 0.15);
-  EXPECT_TRUE(edits.changes().empty());
+using Changes = std::vector<Setting>;
+
+/// The value of a key as text; "-" where the scene has none.
+std::string value_of(const Scene& scene, const std::string& key) {
+  if (described(key).type == Key::Type::kPair)
+    return scene.numbers(key).empty() ? "-" : Value(scene.numbers(key)).text();
+  if (described(key).type != Key::Type::kNumber) return scene.word(key).value_or("-");
+  return scene.number(key) ? format_number(*scene.number(key)) : "-";
 }
 
-TEST(Edits, Reset_GivesTheValueOfTheCommandLineBack) {
-  SceneEdits edits = paint({"surface.sigma=0.3"});
-  edits.set("surface.sigma", 0.5);
-  EXPECT_TRUE(edits.is_changed());
-  edits.reset("surface.sigma");
-  EXPECT_EQ(edits.scene().number("surface.sigma"), 0.3);
-  EXPECT_FALSE(edits.is_changed());
+struct EditCase {
+  std::vector<std::string> opened;    ///< settings of the command line
+  std::vector<std::string> steps;     ///< settings that are set together, or "reset KEY", or "reset"
+  std::vector<std::string> expected;  ///< settings
+  std::string message = "";           ///< a part of it; empty: there is none
+  bool is_error = false;
+};
+
+const std::vector<EditCase> kEditCases = {
+    {{}, {"surface.sigma=99"}, {"surface.sigma=0.15"}, "out of range", true},
+    {{}, {"surface.n=none"}, {"surface.n=1.5"}, "surface.n", true},
+    {{}, {"surface.sigma=99", "surface.sigma=0.2"}, {"surface.sigma=0.2"}},
+    {{"surface.sigma=0.3"}, {"surface.sigma=0.5", "reset surface.sigma"}, {"surface.sigma=0.3"}},
+    {{"surface.sigma=0.3"}, {"surface.sigma=0.5", "surface.n=2", "reset"}, {"surface.sigma=0.3", "surface.n=1.5"}},
+    // Alternatives replace one another.
+    {{}, {"surface.material=gold (Ordal)"}, {"surface.material=gold (Ordal)", "surface.n=-"}},
+    {{"surface.material=gold (Ordal)"}, {"surface.n=1.6;surface.k=0.2"}, {"surface.material=-", "surface.k=0.2"}},
+    {{},
+     {"spectrum.band_um=[8,14]", "spectrum.wavelength_um=9", "spectrum.band_um=[8,12]"},
+     {"spectrum.band_um=[8, 12]", "spectrum.wavelength_um=-"}},
+    {{}, {"source.preset=sun", "source.irradiance=2"}, {"source.irradiance=2"}},
+    {{"spectrum.band_um=[8,14]"},
+     {"surface.material=oxidised Al mirror"},
+     {"surface.n=1.5"},
+     "known at 2 to 12.5 um",
+     true},
+    // Effects go and come back.
+    {{}, {"surroundings=none"}, {"surroundings.temperature_K=-"}},
+    {{"emission.bracket=true", "emission.temperature_K=310"},
+     {"emission=none", "reset emission"},
+     {"emission.temperature_K=310", "emission.bracket=true"}},
+    // Choices that exclude one another.
+    {{"surface.masking=smith", "emission.bracket=true"},
+     {"surface.scattering=multiple"},
+     {"surface.masking=v-cavity", "emission.bracket=false"},
+     "With surface.scattering = multiple goes surface.masking = v-cavity, emission.bracket = false"},
+    {{"surface.masking=smith"}, {"surface.scattering=multiple", "surface.sigma=0.2"}, {"surface.sigma=0.2"}},
+    {{}, {"surface.scattering=multiple;surface.masking=smith"}, {"surface.masking=v-cavity"}, "scattering", true},
+    {{"emission.model=direct"},
+     {"emission=none", "surface.masking=integral", "reset emission"},
+     {"emission.model=direct", "surface.masking=v-cavity"},
+     "With emission = as opened goes surface.masking = v-cavity"},
+};
+
+void take_step(Session& session, const std::string& step) {
+  if (step == "reset") return session.reset_all();
+  if (step.starts_with("reset ")) return session.reset(step.substr(6));
+  Changes changes;
+  for (const std::string_view one : split(step, ';')) changes.push_back(Setting::from_text(std::string(one)));
+  session.set(changes);
 }
 
-TEST(Edits, Alternatives_ReplaceOneAnother) {
-  SceneEdits edits = paint();
-  edits.set("spectrum.wavelength_um", 10.6);
-  edits.set("surface.material", "gold (Ordal)");
-  EXPECT_EQ(edits.scene().word("surface.material"), "gold (Ordal)");
-  const auto gold = edits.scene().refractive_index(10.6);
-  edits.set("spectrum.band_um", {8.0, 12.0});
-  EXPECT_EQ(edits.scene().refractive_index(10.6), gold);
-  edits.set("spectrum.wavelength_um", 10.6);
-  edits.set({{"surface.n", 1.6}, {"surface.k", 0.2}});
-  EXPECT_EQ(edits.scene().refractive_index(10.6), std::pair(1.6, 0.2));
-  edits.set("spectrum.band_um", {8.0, 14.0});
-  EXPECT_EQ(edits.scene().numbers("spectrum.band_um"), (std::vector<double>{8.0, 14.0}));
-  edits.set("source.preset", "sun");
-  edits.set("source.irradiance", 2.0);
-  EXPECT_EQ(edits.scene().number("source.irradiance"), 2.0);
-}
-
-TEST(Edits, Effects_GoAndComeBack) {
-  SceneEdits edits = paint();
-  edits.set("surroundings.temperature_K", 250.0);
-  edits.set("surroundings", Value());
-  EXPECT_FALSE(edits.scene().number("surroundings.temperature_K"));
-  edits.reset("surroundings");
-  EXPECT_EQ(edits.scene().number("surroundings.temperature_K"), 240.0);
-}
-
-TEST(Edits, EffectOfTheCommandLine_ComesBackAsOpened) {
-  SceneEdits edits = paint({"emission.bracket=true", "emission.temperature_K=310"});
-  edits.set("emission", Value());
-  edits.reset("emission");
-  EXPECT_EQ(edits.scene().number("emission.temperature_K"), 310.0);
-  EXPECT_EQ(edits.scene().word("emission.bracket"), "true");
-  EXPECT_FALSE(edits.is_changed());
+TEST(Edits, EachKind_GivesTheValuesAndTheMessage) {
+  for (const EditCase& one : kEditCases) {
+    SCOPED_TRACE(one.steps.front());
+    Session session(paint(one.opened));
+    for (const std::string& step : one.steps) take_step(session, step);
+    for (const std::string& setting : one.expected) {
+      const std::string key = setting.substr(0, setting.find('='));
+      EXPECT_EQ(key + '=' + value_of(session.scene(), key), setting);
+    }
+    EXPECT_NE(session.message().text.find(one.message), std::string::npos) << session.message().text;
+    EXPECT_EQ(session.message().text.empty(), one.message.empty()) << session.message().text;
+    EXPECT_EQ(session.message().is_error, one.is_error);
+    session.reset_all();
+    EXPECT_FALSE(session.edits().is_changed());
+    EXPECT_EQ(session.scene().toml(), paint(one.opened).scene().toml());
+  }
 }
 
 // ---- Choices that exclude one another ------------------------------------------------------------------------------
-
-using Changes = std::vector<Setting>;
 
 bool is_accepted(const SceneEdits& edits, const Changes& changes) {
   try {
@@ -141,11 +159,6 @@ TEST(Conflicts, EveryChoiceInEveryScene_IsTakenWithTheLeastThatItAsksFor) {
   }
 }
 
-TEST(Conflicts, BothSidesChosen_AreLeftToTheReader) {
-  const Changes both = {{"surface.scattering", "multiple"}, {"surface.masking", "smith"}};
-  EXPECT_TRUE(asked_for(paint().scene(), both).empty());
-}
-
 TEST(SceneToml, ShippedScenesWithChanges_ReadBackAsTheSameScene) {
   for (const auto& file : std::filesystem::directory_iterator(kHostDir + "/scenes")) {
     SCOPED_TRACE(file.path().string());
@@ -159,17 +172,6 @@ TEST(SceneToml, ShippedScenesWithChanges_ReadBackAsTheSameScene) {
     EXPECT_EQ(again.number("surface.sigma"), 0.1234567890123);
     expect_same(truth(scene, points_at(scene, {0.0, 35.0, 70.0})), truth(again, points_at(again, {0.0, 35.0, 70.0})));
   }
-}
-
-TEST(SceneToml, WhatGoesBeyondSingleScattering_IsSaved) {
-  const auto saved = [](const Setting& change) {
-    SceneEdits edits = paint();
-    edits.set({change});
-    return Scene::from_text(edits.scene().toml()).word(change.key);
-  };
-  EXPECT_EQ(saved({"surface.scattering", "multiple"}), "multiple");
-  EXPECT_EQ(saved({"emission.model", "direct"}), "direct");
-  EXPECT_EQ(saved({"emission.bracket", true}), "true");
 }
 
 TEST(SceneToml, NamedFiles_AreFoundFromTheNewFolder) {
@@ -198,6 +200,7 @@ class SlowEvaluator {
         changed_.wait_for(lock, std::chrono::milliseconds(1));
         if (!options.progress(0, 1)) {
           ++cancelled;
+          changed_.notify_all();
           throw Cancelled("no file was written");
         }
       }
@@ -212,6 +215,10 @@ class SlowEvaluator {
   void wait_for_call() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return calls > 0; });
+  }
+  void wait_for_cancel() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return cancelled > 0; });
   }
   int calls = 0;
   int cancelled = 0;
@@ -229,79 +236,62 @@ Job job_of(const std::string& key) {
 }
 
 std::vector<JobPart> finish(Worker& worker) {
-  std::vector<JobPart> news;
   while (!worker.is_idle()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  for (JobPart& part : worker.take_news()) news.push_back(std::move(part));
-  return news;
+  return worker.take_news();
 }
 
-TEST(ExploreWorker, StaleJob_IsCancelledAndItsResultsNeverCome) {
-  SlowEvaluator evaluator;
-  Worker worker(evaluator.evaluate(), [] {});
-  worker.want({job_of("stale")});
-  evaluator.wait_for_call();
-  worker.want({job_of("new")});
-  evaluator.open();
-  const std::vector<JobPart> news = finish(worker);
-  ASSERT_EQ(news.size(), 1U);
-  EXPECT_EQ(news.front().key, "new");
+struct WorkerCase {
+  bool is_brief;
+  std::vector<std::string> next;      ///< wanted while the job "first" is under way
+  std::vector<std::string> expected;  ///< what is computed, in order
+  int cancelled;
+};
+
+TEST(ExploreWorker, JobUnderWay_EndsWhenItIsNoLongerWantedUnlessItIsBrief) {
+  for (const auto& [is_brief, next, expected, cancelled] : {WorkerCase{false, {"new"}, {"new"}, 1},
+                                                            {false, {"new", "first"}, {"first", "new"}, 0},
+                                                            {true, {"new"}, {"first", "new"}, 0},
+                                                            {false, {}, {}, 1}}) {
+    SlowEvaluator evaluator;
+    Worker worker(evaluator.evaluate(), [] {});
+    Job first = job_of("first");
+    first.is_brief = is_brief;
+    worker.want({first});
+    evaluator.wait_for_call();
+    std::vector<Job> jobs;
+    for (const std::string& key : next) jobs.push_back(job_of(key));
+    worker.want(std::move(jobs));
+    if (cancelled > 0) evaluator.wait_for_cancel();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // time to give up what shall go on
+    evaluator.open();
+    std::vector<std::string> keys;
+    for (const JobPart& part : finish(worker)) keys.push_back(part.key);
+    EXPECT_EQ(keys, expected);
+    EXPECT_EQ(evaluator.cancelled, cancelled);
+  }
 }
 
-TEST(ExploreWorker, JobUnderWay_GoesOnWhenItIsStillWanted) {
-  SlowEvaluator evaluator;
-  Worker worker(evaluator.evaluate(), [] {});
-  worker.want({job_of("kept")});
-  evaluator.wait_for_call();
-  worker.want({job_of("first"), job_of("kept")});
-  evaluator.open();
-  EXPECT_EQ(finish(worker).size(), 2U);
-  EXPECT_EQ(evaluator.cancelled, 0);
-}
-
-TEST(ExploreWorker, BriefJobUnderWay_IsFinishedThoughItIsNotWanted) {
-  SlowEvaluator evaluator;
-  Worker worker(evaluator.evaluate(), [] {});
-  Job brief = job_of("brief");
-  brief.is_brief = true;
-  worker.want({brief});
-  evaluator.wait_for_call();
-  worker.want({job_of("new")});
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // time to give it up, were it not brief
-  evaluator.open();
-  const std::vector<JobPart> news = finish(worker);
-  ASSERT_EQ(news.size(), 2U);
-  EXPECT_EQ(news[0].key, "brief");
-  EXPECT_EQ(news[1].key, "new");
-  EXPECT_EQ(evaluator.cancelled, 0);
-}
-
-TEST(ExploreWorker, Parts_ComeInOrderWithTheResultsOfTheWhole) {
-  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
-  Worker worker(on_the_cpu(evaluator), [] {});
-  const Job whole = job_of("whole");
-  Job job = whole;
-  job.parts = {points_at(job.scene, {10.0, 20.0, 30.0}), points_at(job.scene, {40.0})};
-  worker.want({job});
-  const std::vector<JobPart> news = finish(worker);
-  ASSERT_EQ(news.size(), 2U);
-  EXPECT_EQ(news[0].points.size(), 3U);
-  EXPECT_FALSE(news[0].is_last);
-  EXPECT_EQ(news[1].part, 1U);
-  EXPECT_TRUE(news[1].is_last);
-  EXPECT_GT(news[1].evaluations, 0.0);
-  std::vector<Point> all = news[0].points;
-  all.insert(all.end(), news[1].points.begin(), news[1].points.end());
-  expect_same(all, truth(whole.scene, whole.parts.front()));
-}
-
-TEST(ExploreWorker, Tolerance_IsTheWiderOfJobAndScene) {
-  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
-  Worker worker(on_the_cpu(evaluator), [] {});
+TEST(ExploreWorker, Parts_ComeInOrderAtTheWiderTolerance_AJobOfHigherRankBetweenThem) {
   for (const auto& [wanted, taken] : {std::pair{1e-2, 1e-2}, {1e-6, 1e-3}}) {
-    Job job = job_of(std::to_string(wanted));
+    SlowEvaluator evaluator;
+    Worker worker(evaluator.evaluate(), [] {});
+    Job job = job_of("parts");
     job.tolerance = wanted;
+    job.parts = {points_at(job.scene, {10.0, 20.0, 30.0}), points_at(job.scene, {40.0})};
     worker.want({job});
-    EXPECT_EQ(finish(worker).at(0).scene.number("accuracy.tolerance"), taken);
+    evaluator.wait_for_call();
+    worker.want({job_of("urgent"), job});
+    evaluator.open();
+    const std::vector<JobPart> news = finish(worker);
+    ASSERT_EQ(news.size(), 3U);
+    EXPECT_EQ(news[1].key, "urgent");
+    for (const auto& [part, place] : {std::pair{0U, 0U}, {1U, 2U}}) {
+      EXPECT_EQ(news[place].part, part);
+      EXPECT_EQ(news[place].is_last, part == 1U);
+      EXPECT_EQ(news[place].scene.number("accuracy.tolerance"), taken);
+      expect_same(news[place].points, truth(news[place].scene, job.parts[part]));
+    }
+    EXPECT_GT(news[2].evaluations, 0.0);
   }
 }
 
@@ -313,18 +303,12 @@ TEST(ExploreWorker, LostDevice_IsThrownToWhoAsksForNews) {
   EXPECT_THROW(worker.take_news(), DeviceError);
 }
 
-// ---- Measured points, exports --------------------------------------------------------------------------------------
+// ---- Measured points, true error -----------------------------------------------------------------------------------
 
-TEST(Measured, Quantities_AreReadAsDolpFitReadsThem) {
-  const MeasuredPoints points =
-      points_of(MeasuredData::from_csv("uncertainty,theta_deg,q_over_i\n0.01,60,-0.1\n", "m.csv"));
-  ASSERT_EQ(points.points.size(), 1U);
-  EXPECT_EQ(points.points[0].quantity, Plotted::kSignedDolp);
-  EXPECT_EQ(points.points[0].value, -0.1);
-  EXPECT_EQ(points.points[0].uncertainty, 0.01);
-  EXPECT_EQ(points_of(MeasuredData::from_csv("theta_deg,emissivity_s,emissivity_p\n60,0.9,0.8\n")).points.size(), 2U);
-  EXPECT_THROW(points_of(MeasuredData::from_csv("theta_deg,dolp\n95,0.1\n")), InputError);
-  EXPECT_THROW(points_of(MeasuredData::from_csv("theta_deg,dolp\n60,0.1\n", "data", {{"surface.n", 2.0}})), InputError);
+TEST(Measured, DataWithSettingsOfTheirOwn_AreRefused) {
+  Residuals residuals(paint().scene());
+  EXPECT_THROW(residuals.load(MeasuredData::from_csv("theta_deg,dolp\n60,0.1\n", "data", {{"surface.n", 2.0}})),
+               InputError);
 }
 
 TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredPoints) {
@@ -336,7 +320,7 @@ TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredPoints) {
     driver.settle();
     const Scene& scene = driver.session.scene();
     const std::vector<Point> model = truth(scene, points_at(scene, {33.3, 61.7}));
-    const auto value = [&](std::size_t i) { return is_signed ? model[i].stokes_q / model[i].stokes_i : model[i].dolp; };
+    const auto value = [&](std::size_t i) { return is_signed ? model[i].q_over_i() : model[i][Quantity::kDolp]; };
     const std::vector<double> residuals = driver.session.residuals().residuals();
     ASSERT_EQ(residuals.size(), 2U);
     EXPECT_EQ(residuals[0], 0.05 - value(0));
@@ -349,14 +333,6 @@ TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredPoints) {
   std::filesystem::remove(path);
 }
 
-TEST(Exports, CancelledTable_LeavesNoFile) {
-  const std::string path = (std::filesystem::temp_directory_path() / "dolp-cancelled.nc").string();
-  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
-  const auto cancelled = [](std::size_t, std::size_t) { return false; };
-  EXPECT_THROW(export_table(paint().scene(), path, "", evaluator, cancelled), Cancelled);
-  EXPECT_FALSE(std::filesystem::exists(path));
-}
-
 TEST(Exports, TrueError_IsBelowItsBound) {
   Driver driver(paint());
   const std::string text = true_error(driver.session.curve(), {});
@@ -367,8 +343,6 @@ TEST(Exports, TrueError_IsBelowItsBound) {
   EXPECT_LE(error, bound);
   EXPECT_GT(error, 0.0);
 }
-
-// ---- Ticks and lines -----------------------------------------------------------------------------------------------
 
 }  // namespace
 }  // namespace dolp::explore

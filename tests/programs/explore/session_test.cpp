@@ -6,9 +6,9 @@
 #include <cmath>
 #include <optional>
 
-#include "explore/fitting.hpp"
 #include "explore/readout.hpp"
 #include "explore_support.hpp"
+#include "temporary_file.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -72,68 +72,28 @@ TEST(ExploreSession, CoarseCurveOfAnEarlierScene_IsShownAsSuch) {
   EXPECT_EQ(curve.shown_scene().number("surface.sigma"), 0.4);
 }
 
-TEST(ExploreSession, RefusedValue_IsAMessageAndNoChange) {
-  Driver driver(paint());
-  driver.session.set("surface.sigma", 99.0);
-  EXPECT_TRUE(driver.session.message().is_error);
-  EXPECT_EQ(driver.session.scene().number("surface.sigma"), 0.15);
-  EXPECT_TRUE(driver.session.curve().is_finished());
-}
-
-TEST(ExploreSession, MaterialUnknownOverTheBand_IsAMessageWithItsRange) {
-  Driver driver(paint({"spectrum.band_um=[8, 14]"}));
-  driver.session.set({{"surface.material", "oxidised Al mirror"}});
-  EXPECT_TRUE(driver.session.message().is_error);
-  EXPECT_NE(driver.session.message().text.find("known at 2 to 12.5 um"), std::string::npos)
-      << driver.session.message().text;
-  EXPECT_EQ(driver.session.scene().number("surface.n"), 1.5);
-}
-
-TEST(ExploreSession, ChoiceThatExcludesAnother_SwitchesItWithAWord) {
-  Session session(paint({"surface.masking=smith", "emission.bracket=true"}));
-  session.set({{"surface.scattering", "multiple"}});
-  const Scene& scene = session.scene();
-  EXPECT_EQ(scene.word("surface.masking"), "v-cavity");
-  EXPECT_EQ(scene.word("emission.bracket"), "false");
-  EXPECT_FALSE(session.message().is_error);
-  EXPECT_EQ(session.message().text,
-            "With surface.scattering = multiple goes surface.masking = v-cavity, emission.bracket = false");
-  session.set("surface.sigma", 0.2);
-  EXPECT_EQ(session.message().text, "");
-}
-
-TEST(ExploreSession, EmissionThatComesBack_SwitchesWhatExcludesIt) {
-  Session session(paint({"emission.model=direct"}));
-  session.set({{"emission", Value()}});
-  session.set({{"surface.masking", "integral"}});
-  session.reset("emission");
-  EXPECT_EQ(session.scene().word("emission.model"), "direct");
-  EXPECT_EQ(session.scene().word("surface.masking"), "v-cavity");
-  EXPECT_EQ(session.message().text, "With emission = as opened goes surface.masking = v-cavity");
-}
-
 TEST(ExploreSession, Bracket_LiesAroundTheCurveAndIsReadAtTheCursor) {
   Driver driver(paint({"surface.sigma=0.4"}));
-  for (const Point& r : driver.session.curve().points()) EXPECT_FALSE(has_bracket(r));
+  for (const Point& r : driver.session.curve().points()) EXPECT_FALSE(r.has_bracket());
   EXPECT_EQ(cursor_text(driver.session).find("all bounces"), std::string::npos);
   driver.session.set({{"emission.bracket", true}});
   driver.settle();
   for (const Point& r : driver.session.curve().points()) {
-    if (!is_good(r)) continue;
-    EXPECT_TRUE(has_bracket(r));
-    EXPECT_LE(r.dolp_low, r.dolp + r.error_estimate);
-    EXPECT_GE(r.dolp_high, r.dolp - r.error_estimate);
+    if (!r.is_good()) continue;
+    EXPECT_TRUE(r.has_bracket());
+    EXPECT_LE(r[Quantity::kDolpLow], r[Quantity::kDolp] + r[Quantity::kErrorEstimate]);
+    EXPECT_GE(r[Quantity::kDolpHigh], r[Quantity::kDolp] - r[Quantity::kErrorEstimate]);
   }
   ASSERT_TRUE(driver.session.at_cursor());
   const Point at_cursor = *driver.session.at_cursor();
-  EXPECT_GT(at_cursor.dolp_high, 1.1 * at_cursor.dolp_low);
+  EXPECT_GT(at_cursor[Quantity::kDolpHigh], 1.1 * at_cursor[Quantity::kDolpLow]);
   const std::string text = cursor_text(driver.session);
   double low = 0.0, high = 0.0;
   const std::size_t place = text.find("all bounces");
   ASSERT_NE(place, std::string::npos) << text;
   ASSERT_EQ(std::sscanf(text.c_str() + place, "all bounces %lf to %lf %%", &low, &high), 2) << text;
-  EXPECT_NEAR(low, 100.0 * at_cursor.dolp_low, 1e-3);
-  EXPECT_NEAR(high, 100.0 * at_cursor.dolp_high, 1e-3);
+  EXPECT_NEAR(low, 100.0 * at_cursor[Quantity::kDolpLow], 1e-3);
+  EXPECT_NEAR(high, 100.0 * at_cursor[Quantity::kDolpHigh], 1e-3);
 }
 
 TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
@@ -146,63 +106,51 @@ TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
   EXPECT_EQ(named("masking"), without.end());  // the bounces need it
   ASSERT_NE(named("scattering"), without.end());
   const Scene& scene = driver.session.scene();
-  const double theta_deg = driver.session.peak().answer()->theta_deg;
+  const double theta_deg = driver.session.peak().answer()->at.theta_deg;
   const Scene single = scene.with("surface.scattering", "single");
-  EXPECT_EQ(named("scattering")->result.dolp, truth(single, points_at(single, {theta_deg}))[0].dolp);
+  EXPECT_EQ((*named("scattering")->result)[Quantity::kDolp],
+            truth(single, points_at(single, {theta_deg}))[0][Quantity::kDolp]);
   EXPECT_EQ(surface_name(scene), "cauchy σ 0.4 q 3, v-cavity, all bounces, n 1.5 k 0.1");
   EXPECT_NE(without_text(driver.session, "scattering"), "");
 }
 
 /// DOLP of the paint with another sigma and n, as if measured.
-MeasuredPoints as_if_measured(double uncertainty) {
+std::string as_if_measured() {
   const Scene scene = paint({"surface.sigma=0.25", "surface.n=1.7", "accuracy.tolerance=1e-6"}).scene();
   std::string csv = "theta_deg,dolp,uncertainty\n";
   for (const Point& point : truth(scene, points_at(scene, zeniths(10.0, 80.0, 15)))) {
-    csv += fmt::format("{},{},{}\n", point.theta_deg, point.dolp, uncertainty);
+    csv += fmt::format("{},{},0.001\n", point.theta_deg, point[Quantity::kDolp]);
   }
-  return points_of(MeasuredData::from_csv(csv, "synthetic"));
+  return csv;
 }
 
 TEST(ExploreSession, Fit_MovesMarkedParametersToTheTruth_AndItsIntervalsGoWithTheNextChange) {
-  Fitting fitting;
-  const Scene start = paint().scene();
-  const MeasuredPoints points = as_if_measured(1e-3);
-  EXPECT_FALSE(fitting.job(start, points).has_value());
-  fitting.mark("surface.sigma", true);
-  fitting.mark("surface.n", true);
-  fitting.mark("surface.k", true);
-  fitting.mark("surface.k", false);
-  EXPECT_FALSE(fitting.job(start, std::nullopt).has_value());
-  const std::optional<FitJob> job = fitting.job(start, points);
-  ASSERT_TRUE(job.has_value());
-  ASSERT_EQ(job->varied.size(), 2U);
-  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
-  const FitFound found = run_fit(*job, evaluator, {});
-
   Driver driver(paint());
   Session& session = driver.session;
-  EXPECT_EQ(session.fit_found(), nullptr);
-  session.take_fit(found);
+  const TemporaryFile file(".csv", as_if_measured());
+  session.mark("surface.sigma", true);
+  session.mark("surface.n", true);
+  session.mark("surface.k", true);
+  session.mark("surface.k", false);
+  EXPECT_FALSE(session.fit_job().has_value());
+  session.load_measured(file.path());
+  const std::optional<FitJob> job = session.fit_job();
+  ASSERT_TRUE(job.has_value());
+  ASSERT_EQ(job->vary.size(), 2U);
+  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
+  session.take_fit(run_fit(*job, evaluator, {}));
   EXPECT_NEAR(*session.scene().number("surface.sigma"), 0.25, 1e-3);
   EXPECT_NEAR(*session.scene().number("surface.n"), 1.7, 5e-3);
-  ASSERT_NE(session.fit_found(), nullptr);
   for (const auto& [key, value] : {std::pair{"surface.sigma", 0.25}, std::pair{"surface.n", 1.7}}) {
-    const FitInterval& interval = session.fit_found()->interval_95.at(key);
+    ASSERT_NE(session.fitted(key), nullptr);
+    const FitInterval& interval = session.fitted(key)->interval_95;
     ASSERT_TRUE(interval.low && interval.high) << key;
     EXPECT_LT(*interval.low, value);
     EXPECT_GT(*interval.high, value);
   }
+  EXPECT_EQ(session.fitted("surface.k"), nullptr);
   session.set("surface.sigma", 0.3);
-  EXPECT_EQ(session.fit_found(), nullptr);
-}
-
-TEST(ExploreSession, FitThatIsCancelled_OrHasTooManyParameters_SaysSo) {
-  FitJob job{paint().scene(), as_if_measured(1e-3).data, {{"surface.sigma", 0.01, 1.0, 0.15}}};
-  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
-  EXPECT_THROW(run_fit(job, evaluator, [](std::size_t, std::size_t) { return false; }), Cancelled);
-  job.data = MeasuredData::from_csv("theta_deg,dolp,uncertainty\n60,0.05,0.001\n");
-  job.varied.push_back({"surface.n", 1.1, 3.0, 1.5});
-  EXPECT_THROW(run_fit(job, evaluator, {}), InputError);
+  EXPECT_EQ(session.fit(), nullptr);
 }
 
 TEST(ExploreSession, Overlay_IsTheOtherDistributionOfTheSameD0) {
@@ -223,7 +171,7 @@ TEST(ExploreSession, Pin_StaysWhileTheSceneChanges) {
   driver.settle();
   ASSERT_EQ(driver.session.pins().size(), 1U);
   expect_same(driver.session.pins()[0].curve.points(), before);
-  EXPECT_NE(driver.session.curve().points()[100].dolp, before[100].dolp);
+  EXPECT_NE(driver.session.curve().points()[100][Quantity::kDolp], before[100][Quantity::kDolp]);
   driver.session.remove_pin(0);
   EXPECT_TRUE(driver.session.pins().empty());
 }
@@ -236,7 +184,7 @@ TEST(ExploreSession, MapCursor_DrivesTheCurveAndDoesNotChangeTheMap) {
   EXPECT_DOUBLE_EQ(driver.session.theta_deg(), 45.0);
   EXPECT_NEAR(*driver.session.scene().number("surface.sigma"), 0.2, 1e-4);  // the grid's 0.1 .. 0.4
   EXPECT_EQ(driver.session.curve().points()[0].sigma, driver.session.scene().number("surface.sigma"));
-  EXPECT_NEAR(driver.session.map_cursor_y(), 0.5, 1e-3);
+  EXPECT_NEAR(driver.session.map_cursor(driver.session.map().y()), 0.5, 1e-3);
   EXPECT_EQ(driver.session.map().version(), version);
 }
 
@@ -248,14 +196,14 @@ TEST(ExploreSession, Map_FinishesAt128WithTheValuesOfTheScene) {
   ASSERT_EQ(field.count, 128U);
   PointList list;
   for (const auto& [column, row] : {std::pair{0.0, 0.0}, {80.0, 3.0}, {5.0, 127.0}, {100.0, 64.0}}) {
-    list.theta_deg.push_back(map.x().value(column / 127.0));
-    list.sigma.push_back(map.y().value(row / 127.0));
+    list.theta_deg.push_back(map.x().scale.value(column / 127.0));
+    list.sigma.push_back(map.y().scale.value(row / 127.0));
     list.q.push_back(3.0);
   }
   const std::vector<Point> exact = truth(driver.session.scene(), list);
-  EXPECT_NEAR(field.values[80 + 3 * 128], exact[1].dolp, 2.0 * exact[1].error_estimate);
-  EXPECT_NEAR(field.values[5 + 127 * 128], exact[2].dolp, 2.0 * exact[2].error_estimate);
-  EXPECT_NEAR(field.values[100 + 64 * 128], exact[3].dolp, 2.0 * exact[3].error_estimate);
+  EXPECT_NEAR(field.values[80 + 3 * 128], exact[1][Quantity::kDolp], 2.0 * exact[1][Quantity::kErrorEstimate]);
+  EXPECT_NEAR(field.values[5 + 127 * 128], exact[2][Quantity::kDolp], 2.0 * exact[2][Quantity::kErrorEstimate]);
+  EXPECT_NEAR(field.values[100 + 64 * 128], exact[3][Quantity::kDolp], 2.0 * exact[3][Quantity::kErrorEstimate]);
 }
 
 TEST(ExploreSession, Peak_IsTheLargestOfTheCurveAndItsCausesAddUp) {
@@ -266,13 +214,13 @@ TEST(ExploreSession, Peak_IsTheLargestOfTheCurveAndItsCausesAddUp) {
   for (const WithoutEffect& away : peak.without()) {
     if (away.radiates) sum += peak.contribution(away);
   }
-  EXPECT_NEAR(sum, peak.answer()->q_over_i, 2e-3);  // two runs at a tolerance of 1e-3
+  EXPECT_NEAR(sum, peak.answer()->at.q_over_i(), 2e-3);  // two runs at a tolerance of 1e-3
   for (const Point& result : driver.session.curve().points()) {
-    if (!is_good(result)) continue;
-    EXPECT_LE(result.dolp, peak.answer()->dolp + result.error_estimate);
+    if (!result.is_good()) continue;
+    EXPECT_LE(result[Quantity::kDolp], peak.answer()->at[Quantity::kDolp] + result[Quantity::kErrorEstimate]);
   }
-  EXPECT_LE(peak.answer()->theta_low_deg, peak.answer()->theta_deg);
-  EXPECT_GE(peak.answer()->theta_high_deg, peak.answer()->theta_deg);
+  EXPECT_LE(peak.answer()->theta_low_deg, peak.answer()->at.theta_deg);
+  EXPECT_GE(peak.answer()->theta_high_deg, peak.answer()->at.theta_deg);
   EXPECT_NE(cause_text(driver.session).find("emission -"), std::string::npos) << cause_text(driver.session);
   EXPECT_NE(cause_text(driver.session).find("against it: surroundings +"), std::string::npos);
 }
@@ -283,10 +231,10 @@ TEST(ExploreSession, ThetaMax_BoundsMapCursorAndPeak) {
   view.theta_max_deg = 50.0;
   driver.session.set_view(view);
   driver.settle();
-  EXPECT_EQ(driver.session.map().x().to, 50.0);
+  EXPECT_EQ(driver.session.map().x().scale.to, 50.0);
   EXPECT_EQ(driver.session.theta_deg(), 50.0);
   ASSERT_TRUE(driver.session.peak().answer());
-  EXPECT_EQ(driver.session.peak().answer()->theta_deg, 50.0);
+  EXPECT_EQ(driver.session.peak().answer()->at.theta_deg, 50.0);
   EXPECT_TRUE(driver.session.peak().answer()->is_at_end);
 }
 
@@ -314,12 +262,12 @@ TEST(ExploreSession, Effects_AreThoseOfThePlanWithInfluencesAtTheCursor) {
 
 TEST(ExploreSession, RhoOfADroppingPlan_IsComputedWhenItIsShown) {
   Driver driver(paint({"surroundings.temperature_K=290"}));
-  EXPECT_TRUE(std::isnan(driver.session.curve().points()[50].rho_i));
+  EXPECT_TRUE(std::isnan(driver.session.curve().points()[50][Quantity::kRhoI]));
   View view = driver.session.view();
   view.quantity = Plotted::kRhoS;
   driver.session.set_view(view);
   driver.settle();
-  EXPECT_TRUE(std::isfinite(driver.session.curve().points()[50].rho_i));
+  EXPECT_TRUE(std::isfinite(driver.session.curve().points()[50][Quantity::kRhoI]));
 }
 
 }  // namespace

@@ -4,14 +4,13 @@
 
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <thread>
 
 #include "cli_support.hpp"
-#include "explore/exports.hpp"
 #include "explore/parameters.hpp"
-#include "explore/plotted.hpp"
 #include "explore/window/app.hpp"
-#include "explore/window/text.hpp"
+#include "explore/window/style.hpp"
 #include "table/table_file.hpp"
 #include "virtual_display.hpp"
 
@@ -65,34 +64,38 @@ class Window : public CommandLine {
     frames();
     std::string found = xdotool({"search", "--name", "dolp explore"});
     window_ = found.substr(0, found.find('\n'));
+    focus();
   }
   void TearDown() override { app_.reset(); }
 
   void frames(int count = kFrames) {
     for (int i = 0; i < count; ++i) app_->frame();
   }
-  void move_to(float x, float y) {
-    xdotool({"mousemove", "--window", window_, std::to_string(std::lround(x)), std::to_string(std::lround(y))});
+  void focus() {
+    xdotool({"windowfocus", "--sync", window_});
+    frames();
+  }
+  void move_to(ImVec2 at) {
+    xdotool({"mousemove", "--window", window_, std::to_string(std::lround(at.x)), std::to_string(std::lround(at.y))});
     frames();
   }
   void press(const std::string& what) {
     xdotool({what, "1"});
     frames();
   }
-  void click_slider(const std::string& key, float part) {
-    const Area area = app_->control_area(key);
-    move_to(area.left + part * (area.right - area.left), 0.5F * (area.top + area.bottom));
+  void click(ImVec2 at) {
+    move_to(at);
     press("mousedown");
     press("mouseup");
   }
+  void click_control(const std::string& control) { click(app_->control_area(control).at(0.5F, 0.5F)); }
   void drag_slider(const std::string& key, float to) {
     const Area area = app_->control_area(key);
-    const float y = 0.5F * (area.top + area.bottom);
-    move_to(area.left + 0.3F * (area.right - area.left), y);
+    move_to(area.at(0.3F, 0.5F));
     press("mousedown");
     for (int i = 1; i <= 10; ++i) {
       const float part = 0.3F + 0.1F * static_cast<float>(i) * (to - 0.3F);
-      move_to(area.left + part * (area.right - area.left), y);
+      move_to(area.at(part, 0.5F));
     }
     press("mouseup");
     app_->settle();
@@ -103,6 +106,20 @@ class Window : public CommandLine {
     frames();
     xdotool({"keyup", combination});
     frames();
+  }
+  /// True where a field has the ground of one whose text is refused.
+  bool is_marked(const std::string& field) {
+    frames();
+    const Area area = app_->control_area(field);
+    const auto left = static_cast<std::size_t>(area.max.x) - 12;
+    const std::string pixel = display_.pixels(left, static_cast<std::size_t>(area.min.y) + 6, 1, 1);
+    const auto channel = [&](std::size_t byte) { return static_cast<int>(static_cast<unsigned char>(pixel.at(byte))); };
+    return channel(2) > 2 * channel(0);  // red against blue
+  }
+  static std::string root_window() {
+    const std::string tree = run({.arguments = {"xwininfo", "-root"}, .folder = "/"}).out;
+    const std::size_t number = tree.find("0x");
+    return tree.substr(number, tree.find(' ', number) - number);
   }
   /// The values of `dolp eval` at the zeniths of the curve, with the changes of the window.
   Columns evaluated() const {
@@ -135,11 +152,11 @@ TEST_F(Window, Slider_Dragged_PlottedValuesChangeAndEqualEval) {
   ASSERT_EQ(truth.at("dolp").size(), after.size());
   std::size_t changed = 0;
   for (std::size_t i = 0; i < after.size(); ++i) {
-    if (after[i].dolp != before[i].dolp) ++changed;
-    if (std::isnan(after[i].rho_i)) continue;
-    EXPECT_EQ(after[i].dolp, truth.at("dolp")[i]) << i;
-    EXPECT_EQ(after[i].stokes_q, truth.at("stokes_q")[i]) << i;
-    EXPECT_EQ(after[i].error_estimate, truth.at("error_estimate")[i]) << i;
+    if (after[i][Quantity::kDolp] != before[i][Quantity::kDolp]) ++changed;
+    if (std::isnan(after[i][Quantity::kRhoI])) continue;
+    EXPECT_EQ(after[i][Quantity::kDolp], truth.at("dolp")[i]) << i;
+    EXPECT_EQ(after[i][Quantity::kStokesQ], truth.at("stokes_q")[i]) << i;
+    EXPECT_EQ(after[i][Quantity::kErrorEstimate], truth.at("error_estimate")[i]) << i;
   }
   EXPECT_GT(changed, after.size() / 2);
 }
@@ -149,7 +166,7 @@ TEST_F(Window, Slider_CtrlClicked_GivesTheValueAsOpened) {
   ASSERT_NE(app_->session().scene().number("surface.sigma"), 0.15);
   xdotool({"keydown", "ctrl"});
   frames();
-  click_slider("surface.sigma", 0.1F);
+  click(app_->control_area("surface.sigma").at(0.1F, 0.5F));
   xdotool({"keyup", "ctrl"});
   app_->settle();
   EXPECT_EQ(app_->session().scene().number("surface.sigma"), 0.15);
@@ -157,30 +174,18 @@ TEST_F(Window, Slider_CtrlClicked_GivesTheValueAsOpened) {
 }
 
 TEST_F(Window, BracketBox_Clicked_GivesTheCurveABand) {
-  const Area area = app_->control_area("emission.bracket");
-  move_to(0.5F * (area.left + area.right), 0.5F * (area.top + area.bottom));
-  press("mousedown");
-  press("mouseup");
+  click_control("emission.bracket");
   app_->settle();
   EXPECT_EQ(app_->session().scene().word("emission.bracket"), "true");
-  EXPECT_TRUE(explore::has_bracket(app_->session().curve().points()[120]));
+  EXPECT_TRUE(app_->session().curve().points()[120].has_bracket());
   EXPECT_EQ(app_->session().edits().changes(), (std::vector<Setting>{{"emission.bracket", true}}));
 }
 
 TEST_F(Window, MaskingList_OtherWord_SwitchesTheBracketOff) {
-  Area area = app_->control_area("emission.bracket");
-  move_to(0.5F * (area.left + area.right), 0.5F * (area.top + area.bottom));
-  press("mousedown");
-  press("mouseup");
-  area = app_->control_area("surface.masking");
-  const float height = area.bottom - area.top;
-  move_to(0.5F * (area.left + area.right), 0.5F * (area.top + area.bottom));
-  press("mousedown");
-  press("mouseup");
+  click_control("emission.bracket");
+  click_control("surface.masking");
   // The first word of the list below, "none".
-  move_to(0.5F * (area.left + area.right), area.bottom + 0.6F * height);
-  press("mousedown");
-  press("mouseup");
+  click(app_->control_area("surface.masking").at(0.5F, 1.6F));
   app_->settle();
   EXPECT_EQ(app_->session().scene().word("surface.masking"), "none");
   EXPECT_EQ(app_->session().scene().word("emission.bracket"), "false");
@@ -198,32 +203,25 @@ TEST_F(Window, Fit_OfAMarkedSlider_MovesItAndShowsTheInterval) {
   app_->session().load_measured(at("measured.csv").string());
   app_->settle();
   frames();
-  const Area box = app_->control_area("vary surface.sigma");
-  move_to(0.5F * (box.left + box.right), 0.5F * (box.top + box.bottom));
-  press("mousedown");
-  press("mouseup");
+  click_control("vary surface.sigma");
   ASSERT_TRUE(app_->session().varies("surface.sigma"));
   keys("ctrl+f");
   app_->settle();
   EXPECT_NEAR(*app_->session().scene().number("surface.sigma"), 0.3, 2e-3);
-  ASSERT_NE(app_->session().fit_found(), nullptr);
-  EXPECT_LT(*app_->session().fit_found()->interval_68.at("surface.sigma").low, 0.3);
+  ASSERT_NE(app_->session().fitted("surface.sigma"), nullptr);
+  EXPECT_LT(*app_->session().fitted("surface.sigma")->interval_68.low, 0.3);
 }
 
 TEST_F(Window, Curve_Clicked_MovesTheCursor) {
   const double before = app_->session().theta_deg();
   // The middle of the curve's plot in the layout at its first size.
-  move_to(700.0F, 300.0F);
-  press("mousedown");
-  press("mouseup");
+  click({700.0F, 300.0F});
   EXPECT_NE(app_->session().theta_deg(), before);
 }
 
 TEST_F(Window, Map_Clicked_CurveFollowsTheCursor) {
   // The middle of the map in the layout at its first size.
-  move_to(1150.0F, 300.0F);
-  press("mousedown");
-  press("mouseup");
+  click({1150.0F, 300.0F});
   app_->settle();
   const explore::Session& session = app_->session();
   EXPECT_NE(session.scene().number("surface.sigma"), 0.15);
@@ -244,7 +242,7 @@ TEST_F(Window, CurveCsv_ByShortcut_HasThePlottedValues) {
   keys("ctrl+e");
   keys("Return");
   frames();
-  EXPECT_EQ(content("made_curve.csv"), app_->session().curve().report().csv);
+  EXPECT_EQ(content("made_curve.csv"), app_->session().curve().finished().csv);
   put("points.csv", "theta_deg\n45\n");
   const std::string command = dolp({"eval", "scene.toml", "--points", "points.csv", "-o", "-"}).out;
   EXPECT_EQ(content("made_curve.csv").substr(0, content("made_curve.csv").find('\n')),
@@ -284,10 +282,10 @@ TEST_F(Window, Resized_DrawsAtTheNewSize) {
 
 TEST_F(Window, List_OpensAndClosesOnTheScreenWithoutTheMouseMoving) {
   const Area area = app_->control_area("surface.masking");
-  move_to(0.5F * (area.left + area.right), 0.5F * (area.top + area.bottom));
+  move_to(area.at(0.5F, 0.5F));
   app_->answer();
   const auto below = [&] {
-    return display_.pixels(static_cast<std::size_t>(area.left), static_cast<std::size_t>(area.bottom) + 8, 60, 60);
+    return display_.pixels(static_cast<std::size_t>(area.min.x), static_cast<std::size_t>(area.max.y) + 8, 60, 60);
   };
   const auto pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(500)); };
   const std::string closed = below();
@@ -308,14 +306,68 @@ TEST_F(Window, List_OpensAndClosesOnTheScreenWithoutTheMouseMoving) {
   EXPECT_EQ(closed_again, closed);
 }
 
-TEST_F(Window, Tab_MovesToTheNextField) {
-  const Area area = app_->control_area("surface.sigma");
-  move_to(area.right + 30.0F, 0.5F * (area.top + area.bottom));
-  press("mousedown");
-  press("mouseup");
-  for (const char* key : {"Tab", "4", "Return"}) keys(key);
+TEST_F(Window, KeysThatComeAndGoBetweenTwoFrames_AllCount) {
+  click_control("field surface.sigma");
+  xdotool({"key", "--delay", "12", "0", "period", "2", "Tab", "4", "Return"});
+  frames();
+  EXPECT_EQ(app_->session().scene().number("surface.sigma"), 0.2);
   EXPECT_EQ(app_->session().scene().number("surface.q"), 4.0);
-  EXPECT_EQ(app_->session().scene().number("surface.sigma"), 0.15);
+  xdotool({"key", "--delay", "12", "ctrl+p", "ctrl+p"});
+  frames();
+  EXPECT_EQ(app_->session().pins().size(), 2U);
+}
+
+TEST_F(Window, MouseThatClicksAndMovesOnBetweenTwoFrames_ClicksWhereItWas) {
+  const ImVec2 box = app_->control_area("emission.bracket").at(0.5F, 0.5F);
+  xdotool({"mousemove", "--window", window_, std::to_string(std::lround(box.x)), std::to_string(std::lround(box.y)),
+           "click", "1", "mousemove", "--window", window_, "700", "300"});
+  frames();
+  EXPECT_EQ(app_->session().scene().word("emission.bracket"), "true");
+}
+
+TEST_F(Window, TypedNumber_IsTakenWhereverTypingEnds_AndStaysWhereItIsRefused) {
+  const std::function<void()> ends[] = {[&] { keys("Return"); }, [&] { keys("Tab"); },
+                                        [&] {
+                                          click({700.0F, 300.0F});
+                                        },
+                                        [&] {
+                                          xdotool({"windowfocus", root_window()});
+                                          frames();
+                                        }};
+  const auto sigma = [&] { return app_->session().scene().number("surface.sigma"); };
+  double wanted = 0.2;
+  for (const auto& end : ends) {
+    for (const bool is_good : {true, false}) {
+      const double before = *sigma();
+      focus();
+      click_control("field surface.sigma");
+      const std::string typed = is_good ? fmt::format("{}", wanted) : "-3";
+      xdotool({"type", "--delay", "12", "--", typed});
+      frames();
+      EXPECT_EQ(sigma(), before);
+      end();
+      EXPECT_EQ(sigma(), is_good ? wanted : before) << typed;
+      EXPECT_EQ(is_marked("field surface.sigma"), !is_good);
+      EXPECT_EQ(app_->session().message().is_error, !is_good);
+      if (is_good) continue;
+      click_control("field surface.sigma");
+      keys("Escape");
+      EXPECT_FALSE(is_marked("field surface.sigma"));
+      EXPECT_EQ(sigma(), before);
+    }
+    wanted += 0.125;
+  }
+}
+
+TEST_F(Window, EndsOfABand_OfWhichOneWasRefused_AreTakenTogether) {
+  click_control("field spectrum.band_um 0");
+  xdotool({"type", "15"});
+  xdotool({"key", "Tab"});  // one that is held down goes on to further fields
+  EXPECT_TRUE(is_marked("field spectrum.band_um 0"));
+  xdotool({"type", "20"});
+  keys("Return");
+  EXPECT_EQ(app_->session().scene().numbers("spectrum.band_um"), (std::vector<double>{15.0, 20.0}));
+  EXPECT_FALSE(is_marked("field spectrum.band_um 0"));
 }
 
 /// The area of the curve in a window that opens on a display.
@@ -333,15 +385,15 @@ Area plot_on(const std::string& size, const std::string& dots_per_inch) {
 TEST(WindowScale, OnALargeDisplayAt200Percent_PlotIsTwiceAsLarge) {
   const Area single = plot_on("1440x900", "96");
   const Area twice = plot_on("2880x1800", "192");
-  const float height = single.bottom - single.top;
+  const float height = single.height();
   EXPECT_GT(height, 300.0F);
-  EXPECT_NEAR(twice.bottom - twice.top, 2.0F * height, 0.05F * height);
-  EXPECT_NEAR(twice.right - twice.left, 2.0F * (single.right - single.left), 0.05F * height);
+  EXPECT_NEAR(twice.height(), 2.0F * height, 0.05F * height);
+  EXPECT_NEAR(twice.width(), 2.0F * single.width(), 0.05F * height);
 }
 
 TEST(WindowScale, OnASmallDisplayAt200Percent_PlotKeepsAFifthOfTheHeight) {
   const Area plot = plot_on("1440x900", "192");
-  EXPECT_GT(plot.bottom - plot.top, 0.2F * 900.0F);
+  EXPECT_GT(plot.height(), 0.2F * 900.0F);
 }
 
 bool is_ascii(const std::string& text) {
@@ -359,7 +411,7 @@ TEST(WindowText, WithoutAGreekFont_AllIsSaidInAscii) {
   for (const explore::Choice& choice : explore::choices()) {
     EXPECT_TRUE(is_ascii(explore::ascii(choice.equation))) << choice.equation;
   }
-  for (const explore::PlottedDescription& quantity : explore::all_plotted()) {
+  for (const explore::PlottedDescription& quantity : explore::kAllPlotted) {
     EXPECT_TRUE(is_ascii(explore::ascii(std::string(quantity.name) + quantity.meaning))) << quantity.name;
   }
 }

@@ -9,8 +9,8 @@
 #include "base/parallel_ranges.hpp"
 #include "base/processor.hpp"
 #include "base/stopwatch.hpp"
-#include "evaluate/text/profile.hpp"
-#include "evaluate/text/text.hpp"
+#include "evaluate/kernel/cpu_kernel.hpp"
+#include "evaluate/kernel/slope_samples.hpp"
 #include "plan/beam.hpp"
 
 namespace dolp {
@@ -18,8 +18,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::unique_ptr<KernelText> make_text(const KernelData& data, bool in_double) {
-  return in_double ? make_kernel_text_double(data) : make_kernel_text_float(data);
+std::unique_ptr<CpuKernel> make_kernel(const KernelData& data, bool in_double) {
+  return in_double ? make_cpu_kernel_double(data) : make_cpu_kernel_float(data);
 }
 
 double unit_roundoff_of(bool in_double) {
@@ -47,29 +47,29 @@ std::vector<std::size_t> shapes_of(const KernelData& data, const std::vector<std
 }
 
 /// Moments entry by entry.
-std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData& data, KernelText& text,
+std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData& data, CpuKernel& kernel,
                                 double unit_roundoff, const Progress& progress) {
   const std::vector<std::size_t> entries = wanted_entries(request);
   const std::vector<std::size_t> shapes = shapes_of(data, entries);
   parallel_for(
-      shapes.size(), [&](std::size_t i) { text.build_masking_table(shapes[i]); }, nullptr);
+      shapes.size(), [&](std::size_t i) { kernel.build_masking_table(shapes[i]); }, nullptr);
   std::vector<Moments> moments(request.size());
   const auto one = [&](std::size_t i) {
     const MomentsEntry entry = data[entries[i]];
-    moments[entries[i]] = moments_from_kernel(text.moments(entry), data, entry, unit_roundoff);
+    moments[entries[i]] = moments_from_kernel(kernel.moments(entry), data, entry, unit_roundoff);
   };
   parallel_for(entries.size(), one, progress);
   return moments;
 }
 
-/// The same from profiles, direction by direction.
-std::vector<Moments> by_profiles(const MomentsRequest& request, const KernelData& data, KernelText& text,
-                                 double unit_roundoff, const Progress& progress) {
-  const Profiles profiles(data);
+/// The same from slope samples, direction by direction.
+std::vector<Moments> by_slope_samples(const MomentsRequest& request, const KernelData& data, CpuKernel& kernel,
+                                      double unit_roundoff, const Progress& progress) {
+  const SlopeSampling sampling(data);
   std::vector<Moments> moments(request.size());
   const auto one = [&](std::size_t direction) {
-    for (ProfileEntries& entries : profile_entries(request, data, direction, direction + 1)) {
-      profiles.compute(std::move(entries), text, unit_roundoff, moments);
+    for (SampledEntries& entries : sampled_entries(request, data, direction, direction + 1)) {
+      sampling.compute(std::move(entries), kernel, unit_roundoff, moments);
     }
   };
   const std::size_t wanted = request.wanted_count();
@@ -82,10 +82,6 @@ std::vector<Moments> by_profiles(const MomentsRequest& request, const KernelData
 
 }  // namespace
 
-bool CpuEvaluator::in_double(Precision requested) const {
-  return (requested == Precision::kAuto ? precision_ : requested) == Precision::kDouble;
-}
-
 void CpuEvaluator::note(bool in_double, double seconds) {
   report_.evaluator = "cpu";
   report_.device = processor_name();
@@ -96,11 +92,12 @@ void CpuEvaluator::note(bool in_double, double seconds) {
 std::vector<Moments> CpuEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
   const Clock::time_point start = Clock::now();
   const KernelData data = kernel_data(request);
-  const bool is_double = in_double(request.precision);
-  const std::unique_ptr<KernelText> text = make_text(data, is_double);
+  const bool is_double = request.precision == Precision::kDouble;
+  const std::unique_ptr<CpuKernel> kernel = make_kernel(data, is_double);
   const double unit_roundoff = unit_roundoff_of(is_double);
-  std::vector<Moments> moments = has_profiles(request) ? by_profiles(request, data, *text, unit_roundoff, progress)
-                                                       : by_entries(request, data, *text, unit_roundoff, progress);
+  std::vector<Moments> moments = has_slope_samples(request)
+                                     ? by_slope_samples(request, data, *kernel, unit_roundoff, progress)
+                                     : by_entries(request, data, *kernel, unit_roundoff, progress);
   for (const Moments& entry : moments) report_.evaluations += entry.evaluations;
   note(is_double, seconds_since(start));
   return moments;
@@ -109,12 +106,12 @@ std::vector<Moments> CpuEvaluator::evaluate(const MomentsRequest& request, const
 std::vector<ScatteringMatrix> CpuEvaluator::scatter(const ScatteringRequest& request, const Progress& progress) {
   const Clock::time_point start = Clock::now();
   const BeamPlan plan(request);
-  const bool is_double = in_double(request.precision);
-  const std::unique_ptr<KernelText> text = make_text(plan.data(), is_double);
+  const bool is_double = request.precision == Precision::kDouble;
+  const std::unique_ptr<CpuKernel> kernel = make_kernel(plan.data(), is_double);
   std::vector<ScatteringMatrix> matrices(request.entries.size());
   const auto one = [&](std::size_t i) {
     const Beam beam = plan(request.entries[i]);
-    matrices[i] = plan.matrix(text->mueller(beam.node), beam, request.entries[i], unit_roundoff_of(is_double));
+    matrices[i] = plan.matrix(kernel->mueller(beam.node), beam, request.entries[i], unit_roundoff_of(is_double));
   };
   parallel_for(matrices.size(), one, progress);
   note(is_double, seconds_since(start));

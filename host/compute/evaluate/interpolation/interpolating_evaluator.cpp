@@ -145,6 +145,7 @@ EvaluationReport InterpolatingEvaluator::report() const {
   report.interpolated = interpolated_;
   report.interpolation_nodes = nodes_;
   report.kernel_s += interpolation_s_;
+  report.sums_s += interpolation_s_;
   return report;
 }
 

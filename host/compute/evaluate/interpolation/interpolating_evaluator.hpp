@@ -11,14 +11,16 @@ namespace dolp {
 
 /// Wraps another evaluator, which computes a basis of the indices (index_plan.hpp), the nodes of dense grids
 /// (shape_plan.hpp) and all requests that are not dense.
-class InterpolatingEvaluator final : public MomentsEvaluator {
+class InterpolatingEvaluator final : public ModelEvaluator {
  public:
-  explicit InterpolatingEvaluator(std::unique_ptr<MomentsEvaluator> evaluator) : evaluator_(std::move(evaluator)) {}
+  explicit InterpolatingEvaluator(std::unique_ptr<ModelEvaluator> evaluator) : evaluator_(std::move(evaluator)) {}
 
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
-  Precision precision() const override { return evaluator_->precision(); }
+  std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override {
+    return evaluator_->scatter(request, progress);
+  }
+  void prepare(const ScatteringRequest& request) override { evaluator_->prepare(request); }
   bool has_double() const override { return evaluator_->has_double(); }
-  ScatteringEvaluator* scattering() override { return evaluator_->scattering(); }
   std::vector<char> interpolated_directions(const MomentsRequest& request) const override;
   EvaluationReport report() const override;
   void clear_report() override;
@@ -28,7 +30,7 @@ class InterpolatingEvaluator final : public MomentsEvaluator {
   /// Directions of one shape parameter.
   std::vector<Moments> evaluate_part(const MomentsRequest& request, const Progress& progress);
 
-  std::unique_ptr<MomentsEvaluator> evaluator_;
+  std::unique_ptr<ModelEvaluator> evaluator_;
   std::uint64_t interpolated_ = 0;
   std::uint64_t nodes_ = 0;
   double interpolation_s_ = 0.0;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "evaluate/vulkan/kernels.hpp"
-#include "evaluate/vulkan/profile_run.hpp"
+#include "evaluate/vulkan/slope_run.hpp"
 #include "evaluate/vulkan/tiles.hpp"
 #include "plan/beam.hpp"
 #include "plan/rows.hpp"
@@ -16,25 +16,26 @@ vulkan::TileLimits tile_limits(const dolp::Device& device, std::uint64_t tile_in
           .heap_bytes = device.memory_bytes,
           .dispatch_count = std::uint64_t{device.max_workgroups} * device.local_size,
           .tile_invocations = tile_invocations,
-          .block_shapes = block_shapes};
+          .block_shapes = block_shapes,
+          .texels = device.max_texels};
 }
 
 std::uint64_t node_bytes(const vulkan::Packing& packing, const KernelData& data) {
   return data.rule_nodes.size() * packing.node_bytes<std::array<double, 2>>();
 }
 
-DispatchForecast profile_forecast(const MomentsRequest& request, const vulkan::Packing& packing,
-                                  const dolp::Device& device, const VulkanOptions& options) {
+DispatchForecast slope_forecast(const MomentsRequest& request, const vulkan::Packing& packing,
+                                const dolp::Device& device, const VulkanOptions& options) {
   const KernelData data = kernel_data(request);
-  const Profiles profiles(data);
+  const SlopeSampling sampling(data);
   const std::size_t at_once = vulkan::batch_directions(data);
-  const std::uint32_t slopes = vulkan::profile_tile_size(tile_limits(device, options.max_tile_invocations, 1), packing);
+  const std::uint32_t slopes = vulkan::slope_tile_size(tile_limits(device, options.max_tile_invocations, 1), packing);
   DispatchForecast forecast{.tile_invocations = slopes};
   for (std::size_t first = 0; first < data.directions; first += at_once) {
-    const vulkan::ProfileBatch batch =
-        vulkan::profile_batch(request, data, profiles, first, std::min(first + at_once, data.directions));
+    const vulkan::SlopeBatch batch =
+        vulkan::slope_batch(request, data, sampling, first, std::min(first + at_once, data.directions));
     forecast.dispatches += (batch.in_lockstep.size() + slopes - 1) / slopes;
-    forecast.rows += batch.profiles.size();
+    forecast.rows += batch.samples.size();
     forecast.slopes += batch.slopes.size();
   }
   forecast.device_bytes =
@@ -50,14 +51,14 @@ DispatchForecast dispatch_forecast(const MomentsRequest& request, const dolp::De
                                    const VulkanOptions& options) {
   if (request.wanted_count() == 0) return {};
   const vulkan::Packing packing(request.precision == Precision::kDouble);
-  if (has_profiles(request)) return profile_forecast(request, packing, device, options);
+  if (has_slope_samples(request)) return slope_forecast(request, packing, device, options);
   const KernelData data = kernel_data(request);
   const Rows rows = rows_of(request, data);
   const vulkan::TileCosts costs = vulkan::tile_costs(packing, rows.width);
   const std::uint64_t most = rows.rows.size() * DOLP_MAX_PIECES;
   const vulkan::TileSizes sizes =
       vulkan::tile_sizes(tile_limits(device, std::min<std::uint64_t>(options.max_tile_invocations, most),
-                                     std::min<std::uint64_t>(options.max_block_shapes, rows.shapes.size())),
+                                     vulkan::block_limit(rows, options.max_block_shapes)),
                          costs);
   DispatchForecast forecast{.tile_invocations = sizes.invocations, .block_shapes = sizes.shapes};
   forecast.row_width = rows.width;
@@ -88,6 +89,7 @@ DispatchForecast dispatch_forecast(const ScatteringRequest& request, const dolp:
 dolp::Device least_device() {
   dolp::Device least;
   least.max_storage_buffer_bytes = std::uint64_t{1} << 27U;
+  least.max_texels = 65536;
   least.max_workgroups = 65535;
   least.memory_bytes = std::uint64_t{1} << 30U;
   return least;

@@ -14,8 +14,8 @@ struct DispatchForecast {
   std::uint32_t tile_invocations = 0;
   std::uint32_t block_shapes = 0;
   std::uint32_t row_width = 1;  ///< most entries that share an invocation, see plan/rows.hpp
-  std::uint64_t rows = 0;       ///< of the moments, or their profiles
-  std::uint64_t slopes = 0;     ///< of all profiles
+  std::uint64_t rows = 0;       ///< of the moments, or pairs of a direction and an index with slope samples
+  std::uint64_t slopes = 0;     ///< of all slope samples
   std::uint64_t dispatches = 0;
   std::uint64_t device_bytes = 0;  ///< bound of the memory of all buffers
 };

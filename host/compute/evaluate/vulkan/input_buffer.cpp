@@ -12,11 +12,11 @@ bool must_stage(const Device& device) {
 
 }  // namespace
 
-InputBuffer::InputBuffer(const Device& device, VkDeviceSize bytes, bool force_staging)
+InputBuffer::InputBuffer(const Device& device, VkDeviceSize bytes, bool force_staging, VkFormat texels)
     : staging_(force_staging || must_stage(device)
                    ? std::optional<Buffer>(std::in_place, device, bytes, MemoryUse::kUpload)
                    : std::nullopt),
-      buffer_(device, bytes, staging_ ? MemoryUse::kDeviceOnly : MemoryUse::kUpload) {}
+      buffer_(device, bytes, staging_ ? MemoryUse::kDeviceOnly : MemoryUse::kUpload, texels) {}
 
 void InputBuffer::write(std::span<const std::byte> bytes, CommandStream& stream) {
   if (!staging_) {

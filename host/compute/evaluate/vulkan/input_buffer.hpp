@@ -16,9 +16,10 @@ class CommandStream;
 class InputBuffer {
  public:
   /// `force_staging` uses the staging buffer on every device.
-  InputBuffer(const Device& device, VkDeviceSize bytes, bool force_staging);
+  InputBuffer(const Device& device, VkDeviceSize bytes, bool force_staging, VkFormat texels = VK_FORMAT_UNDEFINED);
 
   VkBuffer get() const { return buffer_.get(); }
+  VkBufferView texels() const { return buffer_.texels(); }
   /// Writes to the start of the buffer; a staging copy is recorded in `stream`, which must be recording.
   void write(std::span<const std::byte> bytes, CommandStream& stream);
 

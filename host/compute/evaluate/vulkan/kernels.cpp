@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "device/result.hpp"
+#include "plan/rows.hpp"
 #include "spirv.hpp"
 
 namespace dolp::vulkan {
@@ -15,16 +16,8 @@ std::span<const std::uint32_t> module_of(const KernelVariant& variant, bool floa
   }
   if (variant.entry == EntryPoint::kMueller) return float64 ? spirv::mueller_double : spirv::mueller_float;
   if (variant.entry == EntryPoint::kSlopes) return float64 ? spirv::slopes_double : spirv::slopes_float;
-  switch (variant.width) {
-    case 4:
-      return float64 ? spirv::moments_row4_double : spirv::moments_row4_float;
-    case 8:
-      return float64 ? spirv::moments_row8_double : spirv::moments_row8_float;
-    case 16:
-      return float64 ? spirv::moments_row16_double : spirv::moments_row16_float;
-    default:
-      return float64 ? spirv::moments_double : spirv::moments_float;
-  }
+  if (variant.width == kRowWidth) return float64 ? spirv::moments_rows_double : spirv::moments_rows_float;
+  return float64 ? spirv::moments_double : spirv::moments_float;
 }
 
 }  // namespace
@@ -57,15 +50,16 @@ Kernels::Kernels(const Device& device, bool float64) : device_(device), float64_
 }
 
 void Kernels::create_layouts() {
-  std::array<VkDescriptorSetLayoutBinding, kBindingCount> bindings{};
-  for (std::uint32_t i = 0; i < kBindingCount; ++i) {
+  std::array<VkDescriptorSetLayoutBinding, kStorageCount + kTexelCount> bindings{};
+  for (std::uint32_t i = 0; i < bindings.size(); ++i) {
     bindings[i] = {.binding = i,
-                   .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                   .descriptorType =
+                       i < kStorageCount ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
                    .descriptorCount = 1,
                    .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT};
   }
   const VkDescriptorSetLayoutCreateInfo set_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-                                                 .bindingCount = kBindingCount,
+                                                 .bindingCount = static_cast<std::uint32_t>(bindings.size()),
                                                  .pBindings = bindings.data()};
   VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
   check(vkCreateDescriptorSetLayout(device_.get(), &set_info, nullptr, &set_layout),
@@ -85,9 +79,12 @@ void Kernels::create_layouts() {
 }
 
 void Kernels::create_descriptor_set() {
-  const VkDescriptorPoolSize size{.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, .descriptorCount = kBindingCount};
-  const VkDescriptorPoolCreateInfo pool_info{
-      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, .maxSets = 1, .poolSizeCount = 1, .pPoolSizes = &size};
+  const std::array<VkDescriptorPoolSize, 2> sizes{
+      {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kStorageCount}, {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, kTexelCount}}};
+  const VkDescriptorPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                             .maxSets = 1,
+                                             .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
+                                             .pPoolSizes = sizes.data()};
   VkDescriptorPool pool = VK_NULL_HANDLE;
   check(vkCreateDescriptorPool(device_.get(), &pool_info, nullptr, &pool), "creating a descriptor pool");
   pool_ = UniqueDescriptorPool(device_.get(), pool);
@@ -99,20 +96,29 @@ void Kernels::create_descriptor_set() {
   check(vkAllocateDescriptorSets(device_.get(), &info, &set_), "allocating a descriptor set");
 }
 
-void Kernels::bind(std::array<VkBuffer, kBindingCount> buffers) {
-  const VkBuffer any = *std::ranges::find_if(buffers, [](VkBuffer buffer) { return buffer != VK_NULL_HANDLE; });
-  std::array<VkDescriptorBufferInfo, kBindingCount> infos{};
-  std::array<VkWriteDescriptorSet, kBindingCount> writes{};
-  for (std::uint32_t i = 0; i < kBindingCount; ++i) {
-    infos[i] = {.buffer = buffers[i] == VK_NULL_HANDLE ? any : buffers[i], .offset = 0, .range = VK_WHOLE_SIZE};
-    writes[i] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                 .dstSet = set_,
-                 .dstBinding = i,
-                 .descriptorCount = 1,
-                 .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                 .pBufferInfo = &infos[i]};
+void Kernels::bind(const Bindings& bindings) {
+  const auto is_given = [](const auto& handle) { return handle != VK_NULL_HANDLE; };
+  const auto any_buffer = std::ranges::find_if(bindings.buffers, is_given);
+  const auto any_view = std::ranges::find_if(bindings.texels, is_given);
+  std::array<VkDescriptorBufferInfo, kStorageCount> infos{};
+  std::array<VkBufferView, kTexelCount> views = bindings.texels;
+  std::vector<VkWriteDescriptorSet> writes;
+  VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, .dstSet = set_, .descriptorCount = 1};
+  write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  for (std::uint32_t i = 0; i < kStorageCount; ++i) {
+    infos[i] = {is_given(bindings.buffers[i]) ? bindings.buffers[i] : *any_buffer, 0, VK_WHOLE_SIZE};
+    write.dstBinding = i;
+    write.pBufferInfo = &infos[i];
+    writes.push_back(write);
   }
-  vkUpdateDescriptorSets(device_.get(), kBindingCount, writes.data(), 0, nullptr);
+  write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+  for (std::uint32_t i = 0; i < kTexelCount && any_view != bindings.texels.end(); ++i) {
+    if (!is_given(views[i])) views[i] = *any_view;
+    write.dstBinding = kStorageCount + i;
+    write.pTexelBufferView = &views[i];
+    writes.push_back(write);
+  }
+  vkUpdateDescriptorSets(device_.get(), static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
 }
 
 VkPipeline Kernels::known(const KernelVariant& variant) {

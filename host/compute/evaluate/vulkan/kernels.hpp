@@ -16,7 +16,8 @@
 
 namespace dolp::vulkan {
 
-static_assert(kBindingCount == DOLP_BINDING_RULE + 1);
+static_assert(kStorageCount == DOLP_BINDING_RULE_NODES &&
+              kTexelCount == DOLP_BINDING_MASKING_NODES + 1 - kStorageCount);
 constexpr std::uint32_t kPushConstantCount = 4;
 
 /// The entry points of shaders/*.comp.
@@ -30,7 +31,7 @@ struct KernelVariant {
   bool has_total_reflection = false;
   bool is_multiple = false;
   bool has_direct = false;
-  std::uint32_t width = 1;  ///< of moments: one of kRowWidths of plan/rows.hpp
+  std::uint32_t width = 1;  ///< of moments: 1 or kRowWidth of plan/rows.hpp
   auto operator<=>(const KernelVariant&) const = default;
 };
 
@@ -44,9 +45,14 @@ class Kernels {
  public:
   Kernels(const Device& device, bool float64);
 
-  /// Binds one storage buffer to each binding of interface.glsl, whole. A binding without one, which the pipelines to
-  /// run do not read, gets any of the other buffers, so that no binding refers to a destroyed buffer.
-  void bind(std::array<VkBuffer, kBindingCount> buffers);
+  /// The buffers that the bindings of interface.glsl refer to, whole.
+  struct Bindings {
+    std::array<VkBuffer, kStorageCount> buffers{};
+    std::array<VkBufferView, kTexelCount> texels{};  ///< from DOLP_BINDING_RULE_NODES on
+  };
+  /// A binding without a buffer or view, which the pipelines to run do not read, gets any of the others, so that no
+  /// binding refers to a destroyed one.
+  void bind(const Bindings& bindings);
 
   VkPipeline pipeline(const KernelVariant& variant);
   /// True if the pipeline exists already.

@@ -36,7 +36,8 @@ TileSizes MomentsRun::sizes(std::uint32_t tile_invocations, std::uint32_t block_
                      .heap_bytes = context_.device.heap_bytes(),
                      .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * context_.device.local_size(),
                      .tile_invocations = std::min<std::uint64_t>(tile_invocations, rows_.rows.size() * DOLP_MAX_PIECES),
-                     .block_shapes = std::min<std::uint64_t>(block_shapes, rows_.shapes.size())},
+                     .block_shapes = block_limit(rows_, block_shapes),
+                     .texels = limits.maxTexelBufferElements},
                     tile_costs(context_.packing, rows_.width));
 }
 
@@ -51,24 +52,26 @@ void MomentsRun::create_buffers() {
   index_buffer_.emplace(device, indices * packing.node_bytes<kernel::IndexNode>(), staged);
   task_buffer_.emplace(device, sizes_.invocations * sizeof(TaskWords), staged);
   rule_buffer_.emplace(device, packing.node_bytes<kernel::RuleNode>(), staged);
-  rule_node_buffer_.emplace(device, data_.rule_nodes.size() * packing.node_bytes<RulePoint>(), staged);
+  rule_node_buffer_.emplace(device, data_.rule_nodes.size() * packing.node_bytes<RulePoint>(), staged,
+                            packing.rule_texels());
   masking_buffer_.emplace(device,
                           std::size_t{sizes_.shapes} * packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
-                          MemoryUse::kDeviceOnly);
+                          MemoryUse::kDeviceOnly, packing.masking_texels());
   moments_buffer_.emplace(device,
                           std::size_t{sizes_.invocations} * rows_.width * packing.node_bytes<kernel::MomentsNode>(),
                           MemoryUse::kReadback);
 
-  std::array<VkBuffer, kBindingCount> buffers{};
-  buffers[DOLP_BINDING_THETAS] = theta_buffer_->get();
-  buffers[DOLP_BINDING_SHAPES] = shape_buffer_->get();
-  buffers[DOLP_BINDING_INDICES] = index_buffer_->get();
-  buffers[DOLP_BINDING_TASKS] = task_buffer_->get();
-  buffers[DOLP_BINDING_RULE] = rule_buffer_->get();
-  buffers[DOLP_BINDING_RULE_NODES] = rule_node_buffer_->get();
-  buffers[DOLP_BINDING_MASKING_TABLE] = masking_buffer_->get();
-  buffers[DOLP_BINDING_MOMENTS] = moments_buffer_->get();
-  context_.kernels.bind(buffers);
+  Kernels::Bindings bindings;
+  bindings.buffers[DOLP_BINDING_THETAS] = theta_buffer_->get();
+  bindings.buffers[DOLP_BINDING_SHAPES] = shape_buffer_->get();
+  bindings.buffers[DOLP_BINDING_INDICES] = index_buffer_->get();
+  bindings.buffers[DOLP_BINDING_TASKS] = task_buffer_->get();
+  bindings.buffers[DOLP_BINDING_RULE] = rule_buffer_->get();
+  bindings.texels[DOLP_BINDING_RULE_NODES - kStorageCount] = rule_node_buffer_->texels();
+  bindings.buffers[DOLP_BINDING_MASKING_TABLE] = masking_buffer_->get();
+  bindings.texels[DOLP_BINDING_MASKING_NODES - kStorageCount] = masking_buffer_->texels();
+  bindings.buffers[DOLP_BINDING_MOMENTS] = moments_buffer_->get();
+  context_.kernels.bind(bindings);
 }
 
 void MomentsRun::create_pipelines() {

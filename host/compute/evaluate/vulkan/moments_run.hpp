@@ -31,6 +31,7 @@ struct RunCost {
   std::uint64_t dispatches = 0;
   double evaluations = 0.0;
   double kernel_s = 0.0;
+  double sums_s = 0.0;  ///< EvaluationReport::sums_s
 };
 
 /// Owns the buffers of one request and computes it.
@@ -46,7 +47,6 @@ class MomentsRun {
   /// The wanted moments at the places of their entries; nothing when `progress` returned false. Errors: DeviceError.
   std::optional<std::vector<Moments>> compute(const Progress& progress);
   const RunCost& cost() const { return cost_; }
-  std::uint32_t row_width() const { return rows_.width; }
 
  private:
   TileSizes sizes(std::uint32_t tile_invocations, std::uint32_t block_shapes) const;

@@ -1,6 +1,8 @@
 // Structures of interface.glsl (real = double on the host) to and from the bytes of the kernels' precision.
 #pragma once
 
+#include <vulkan/vulkan.h>
+
 #include <array>
 #include <cstddef>
 #include <cstring>
@@ -37,6 +39,11 @@ class Packing {
     return float64_ ? DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE)
                     : DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT);
   }
+  /// Formats that hold the bytes of a node of a rule and of a masking table (two texels in double), and texels of a
+  /// table.
+  VkFormat rule_texels() const { return float64_ ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_SFLOAT; }
+  VkFormat masking_texels() const { return float64_ ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT; }
+  std::size_t texels_of_table() const { return masking_nodes() * (float64_ ? 2 : 1); }
   /// Half of the relative spacing of the numbers.
   double unit_roundoff() const { return float64_ ? 0x1p-53 : 0x1p-24; }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/parallel_ranges.hpp"
+
 namespace dolp::vulkan {
 
 KernelVariant mueller_variant(const ScatteringRequest& request) {
@@ -29,14 +31,14 @@ void ScatteringRun::create_buffers() {
   const bool staged = context_.staged_uploads;
   const std::size_t rule_bytes = plan_.data().rule_nodes.size() * packing.node_bytes<std::array<double, 2>>();
   beam_buffer_.emplace(context_.device, tile_size_ * packing.node_bytes<kernel::BeamNode>(), staged);
-  rule_node_buffer_.emplace(context_.device, rule_bytes, staged);
+  rule_node_buffer_.emplace(context_.device, rule_bytes, staged, packing.rule_texels());
   mueller_buffer_.emplace(context_.device, tile_size_ * packing.node_bytes<kernel::MuellerNode>(),
                           MemoryUse::kReadback);
-  std::array<VkBuffer, kBindingCount> buffers{};
-  buffers[DOLP_BINDING_BEAMS] = beam_buffer_->get();
-  buffers[DOLP_BINDING_RULE_NODES] = rule_node_buffer_->get();
-  buffers[DOLP_BINDING_MUELLERS] = mueller_buffer_->get();
-  context_.kernels.bind(buffers);
+  Kernels::Bindings bindings;
+  bindings.buffers[DOLP_BINDING_BEAMS] = beam_buffer_->get();
+  bindings.texels[DOLP_BINDING_RULE_NODES - kStorageCount] = rule_node_buffer_->texels();
+  bindings.buffers[DOLP_BINDING_MUELLERS] = mueller_buffer_->get();
+  context_.kernels.bind(bindings);
 }
 
 std::optional<std::vector<ScatteringMatrix>> ScatteringRun::compute(const Progress& progress) {
@@ -79,10 +81,11 @@ void ScatteringRun::run_tile(std::span<const ScatteringEntry> entries, std::span
 
   scratch_.resize(entries.size() * packing.node_bytes<kernel::MuellerNode>());
   mueller_buffer_->read(scratch_);
-  for (std::size_t i = 0; i < entries.size(); ++i) {
+  const auto finish = [&](std::size_t i) {
     const auto node = packing.read<kernel::MuellerNode>(scratch_, i);
     matrices[i] = plan_.matrix(node, beams_[i], entries[i], packing.unit_roundoff());
-  }
+  };
+  parallel_for(entries.size(), finish, {});
 }
 
 }  // namespace dolp::vulkan

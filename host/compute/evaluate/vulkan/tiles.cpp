@@ -20,7 +20,9 @@ TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs) {
   const std::uint64_t bytes = std::min(limits.buffer_bytes, limits.heap_bytes / kHeapFraction);
   return {.invocations =
               at_least_one(std::min({bytes / costs.invocation_bytes, limits.dispatch_count, limits.tile_invocations})),
-          .shapes = at_least_one(std::min({bytes / costs.shape_bytes, limits.dispatch_count, limits.block_shapes}))};
+          .shapes = at_least_one(
+              std::min({bytes / costs.shape_bytes, limits.dispatch_count, limits.block_shapes,
+                        costs.shape_texels > 0 ? limits.texels / costs.shape_texels : limits.block_shapes}))};
 }
 
 TileCosts tile_costs(const Packing& packing, std::uint32_t width) {
@@ -30,7 +32,8 @@ TileCosts tile_costs(const Packing& packing, std::uint32_t width) {
                               packing.node_bytes<kernel::IndexNode>() +
                               width * packing.node_bytes<kernel::MomentsNode>(),
           .shape_bytes =
-              packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>()};
+              packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
+          .shape_texels = packing.texels_of_table()};
 }
 
 TileCosts scattering_tile_costs(const Packing& packing) {
@@ -38,13 +41,17 @@ TileCosts scattering_tile_costs(const Packing& packing) {
           .shape_bytes = 1};
 }
 
-std::uint32_t profile_tile_size(const TileLimits& limits, const Packing& packing) {
+std::uint32_t slope_tile_size(const TileLimits& limits, const Packing& packing) {
   const TileCosts costs{
       .invocation_bytes = packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::ThetaNode>() +
                           packing.node_bytes<kernel::IndexNode>() + packing.node_bytes<kernel::AzimuthNode>(),
       .shape_bytes = 1};
   const std::uint32_t slopes = tile_sizes(limits, costs).invocations;
   return std::max(slopes - slopes % kLockstep, kLockstep);
+}
+
+std::uint64_t block_limit(const Rows& rows, std::uint64_t wanted) {
+  return std::min<std::uint64_t>(std::max<std::uint64_t>(wanted, rows.width), rows.shapes.size());
 }
 
 std::vector<Block> blocks_of(const Rows& rows, std::uint32_t block_shapes) {

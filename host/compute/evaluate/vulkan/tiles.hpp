@@ -18,12 +18,14 @@ struct TileLimits {
   std::uint64_t dispatch_count = 0;    ///< invocations of one dispatch
   std::uint64_t tile_invocations = 0;  ///< wanted at most
   std::uint64_t block_shapes = 0;      ///< wanted at most
+  std::uint64_t texels = 0;            ///< of a texel buffer
 };
 
 /// Bytes that an invocation (a piece of a row, or a beam) and a shape take in the buffers.
 struct TileCosts {
   std::uint64_t invocation_bytes = 0;  ///< all buffers that grow with the invocations of a tile
   std::uint64_t shape_bytes = 0;       ///< the masking table and the node of a shape
+  std::uint64_t shape_texels = 0;      ///< the masking table
 };
 
 /// Invocations of a dispatch and shapes bound at a time, at least one each.
@@ -45,8 +47,8 @@ TileCosts scattering_tile_costs(const Packing& packing);
 /// numbers of lavapipe's widest vector.
 inline constexpr std::uint32_t kLockstep = 16;
 
-/// Slopes of profiles in a dispatch: a multiple of kLockstep, so that none of its groups is cut.
-std::uint32_t profile_tile_size(const TileLimits& limits, const Packing& packing);
+/// Slope samples in a dispatch: a multiple of kLockstep, so that none of its groups is cut.
+std::uint32_t slope_tile_size(const TileLimits& limits, const Packing& packing);
 
 /// Chunks of shapes whose masking tables are bound together, and the rows that need them.
 struct Block {
@@ -56,7 +58,10 @@ struct Block {
   std::uint32_t row_count = 0;
 };
 
-/// Cuts the shapes between chunks into blocks of at most `block_shapes`, or of one chunk that has more.
+/// The limit of a block's shapes, which holds any chunk.
+std::uint64_t block_limit(const Rows& rows, std::uint64_t wanted);
+
+/// Cuts the shapes between chunks into blocks of at most `block_shapes`, which hold any chunk.
 std::vector<Block> blocks_of(const Rows& rows, std::uint32_t block_shapes);
 
 /// Numbers the members of a list in the order of their first use: a tile binds only what its rows use.

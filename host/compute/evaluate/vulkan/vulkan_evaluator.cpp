@@ -10,8 +10,8 @@
 #include "device/context.hpp"
 #include "device/result.hpp"
 #include "evaluate/vulkan/moments_run.hpp"
-#include "evaluate/vulkan/profile_run.hpp"
 #include "evaluate/vulkan/scattering_run.hpp"
+#include "evaluate/vulkan/slope_run.hpp"
 
 namespace dolp {
 namespace {
@@ -56,13 +56,9 @@ class VulkanEvaluator::Impl {
  public:
   explicit Impl(const VulkanOptions& options)
       : options_(options),
-        context_({options.device, options.needs_double || options.precision == Precision::kDouble, options.validation}),
+        context_({options.device, options.needs_double, options.validation}),
         stream_(context_.device()) {}
 
-  /// True if a request is to be computed in double.
-  bool in_double(Precision requested) const {
-    return (requested == Precision::kAuto ? options_.precision : requested) == Precision::kDouble;
-  }
   const dolp::Device& description() const { return context_.description(); }
   std::vector<std::string> validation_messages() const { return context_.validation_messages(); }
   const VulkanOptions& options() const { return options_; }
@@ -71,7 +67,7 @@ class VulkanEvaluator::Impl {
   /// small as is sensible.
   bool shrink_tiles() {
     run_.reset();
-    profile_run_.reset();
+    slope_run_.reset();
     scattering_run_.reset();
     if (options_.max_tile_invocations <= kSmallestTile) return false;
     options_.max_tile_invocations /= kShrinking;
@@ -82,14 +78,13 @@ class VulkanEvaluator::Impl {
   /// Computes a request and adds its cost to `report`. After a DeviceTimeout this object must not be destroyed.
   std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
     const vulkan::KernelContext context = context_for(request.precision);
-    if (has_profiles(request)) {
-      profile_run_.emplace(context, request, options_.max_tile_invocations);
-      prepare_pipelines(*profile_run_, report);
-      return finish(profile_run_, profile_run_->compute(progress), request.precision, report);
+    if (has_slope_samples(request)) {
+      slope_run_.emplace(context, request, options_.max_tile_invocations);
+      prepare_pipelines(*slope_run_, report);
+      return finish(slope_run_, slope_run_->compute(progress), request.precision, report);
     }
     run_.emplace(context, request, options_.max_tile_invocations, options_.max_block_shapes);
     prepare_pipelines(*run_, report);
-    report.row_width = run_->row_width();
     return finish(run_, run_->compute(progress), request.precision, report);
   }
   std::vector<ScatteringMatrix> compute(const ScatteringRequest& request, const Progress& progress,
@@ -97,7 +92,7 @@ class VulkanEvaluator::Impl {
     const Clock::time_point start = Clock::now();
     if (prepared_.valid()) prepared_.wait();
     kernels_for(request.precision).pipeline(vulkan::mueller_variant(request));
-    report.setup_s += seconds_since(start);
+    note_pipelines(seconds_since(start), report);
     scattering_run_.emplace(context_for(request.precision), request, options_.max_tile_invocations);
     return finish(scattering_run_, scattering_run_->compute(progress), request.precision, report);
   }
@@ -112,7 +107,7 @@ class VulkanEvaluator::Impl {
     return {.device = context_.device(),
             .kernels = kernels_for(requested),
             .stream = stream_,
-            .packing = vulkan::Packing(in_double(requested)),
+            .packing = vulkan::Packing(requested == Precision::kDouble),
             .staged_uploads = options_.staged_uploads,
             .tile_timeout_s = options_.tile_timeout_s};
   }
@@ -121,7 +116,11 @@ class VulkanEvaluator::Impl {
   static void prepare_pipelines(Run& run, EvaluationReport& report) {
     const Clock::time_point start = Clock::now();
     run.create_pipelines();
-    report.setup_s += seconds_since(start);
+    note_pipelines(seconds_since(start), report);
+  }
+  static void note_pipelines(double seconds, EvaluationReport& report) {
+    report.setup_s += seconds;
+    report.pipelines_s += seconds;
   }
 
   /// Ends a run: adds its cost, frees its buffers and checks the messages of the validation layer.
@@ -130,8 +129,9 @@ class VulkanEvaluator::Impl {
                              EvaluationReport& report) {
     report.dispatches += run->cost().dispatches;
     report.evaluations += run->cost().evaluations;
-    report.kernel_s += run->cost().kernel_s;
-    note_precision(report.precision, in_double(requested));
+    report.kernel_s += run->cost().kernel_s + run->cost().sums_s;
+    report.sums_s += run->cost().sums_s;
+    note_precision(report.precision, requested == Precision::kDouble);
     run.reset();
     if (!results) throw Cancelled();
     context_.check_validation();
@@ -139,7 +139,7 @@ class VulkanEvaluator::Impl {
   }
 
   vulkan::Kernels& kernels_for(Precision requested) {
-    const bool float64 = in_double(requested);
+    const bool float64 = requested == Precision::kDouble;
     if (float64 && !description().has_double) {
       throw DeviceError(description().name + " has no double precision (shaderFloat64): use float");
     }
@@ -155,11 +155,11 @@ class VulkanEvaluator::Impl {
   vulkan::CommandStream stream_;
   // Members, so that their buffers outlive a submission that never ends.
   std::optional<vulkan::MomentsRun> run_;
-  std::optional<vulkan::ProfileRun> profile_run_;
+  std::optional<vulkan::SlopeRun> slope_run_;
   std::optional<vulkan::ScatteringRun> scattering_run_;
 };
 
-VulkanEvaluator::VulkanEvaluator(const VulkanOptions& options) : precision_(options.precision) {
+VulkanEvaluator::VulkanEvaluator(const VulkanOptions& options) {
   const Clock::time_point start = Clock::now();
   impl_ = std::make_unique<Impl>(options);
   note_setup(seconds_since(start));

@@ -14,10 +14,8 @@
 namespace dolp {
 
 struct VulkanOptions {
-  std::string device;  ///< name or position, see choose_device
-  /// Precision of requests that leave it open: kAuto means float. kDouble also requires a device with double precision.
-  Precision precision = Precision::kAuto;
-  bool needs_double = false;  ///< requires double precision of the device, for any precision of a request
+  std::string device;         ///< name or position, see choose_device
+  bool needs_double = false;  ///< requires double precision of the device
   /// Any message of the layer makes `evaluate` throw DeviceError.
   ValidationMode validation = ValidationMode::kFromEnvironment;
   // The results depend on none of these.
@@ -28,7 +26,7 @@ struct VulkanOptions {
 };
 
 /// Computes moments and pBRDFs with the kernels of shaders/. Device and pipelines live as long as the object.
-class VulkanEvaluator : public MomentsEvaluator, public ScatteringEvaluator {
+class VulkanEvaluator : public ModelEvaluator {
  public:
   /// Errors: DeviceError when there is no usable device, `device` matches none, it lacks a required double
   /// precision, or the validation layer is requested and missing.
@@ -47,8 +45,6 @@ class VulkanEvaluator : public MomentsEvaluator, public ScatteringEvaluator {
   /// Errors: those of evaluate.
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override;
 
-  ScatteringEvaluator* scattering() override { return this; }
-  Precision precision() const override { return precision_; }
   bool has_double() const override;
 
   /// Totals over all calls since clear_report.
@@ -65,7 +61,6 @@ class VulkanEvaluator : public MomentsEvaluator, public ScatteringEvaluator {
   std::vector<Result> compute(const Request& request, const Progress& progress);
 
   std::unique_ptr<Impl> impl_;
-  Precision precision_;
   EvaluationReport report_;
 };
 

@@ -17,13 +17,10 @@
 #include "base/atomic_file.hpp"
 #include "device/context.hpp"
 #include "device/result.hpp"
-#include "explore/exports.hpp"
-#include "explore/fitting.hpp"
-#include "explore/window/png.hpp"
+#include "explore/window/actions.hpp"
+#include "explore/window/input.hpp"
 #include "explore/window/presenter.hpp"
-#include "explore/window/text.hpp"
 #include "explore/window/ui.hpp"
-#include "explore/worker.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -33,8 +30,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kWidth = 1440;
 constexpr int kHeight = 900;
 constexpr float kFontPixels = 15.0F;
-constexpr auto kFading = std::chrono::milliseconds(300);  // of a dialog that was closed
-constexpr double kBlink_s = 0.3;                          // of a text cursor
+constexpr double kBlink_s = 0.3;  // of a text cursor
 // Frames after an event: ImGui shows some answers, a list that opens for one, only frames later.
 constexpr std::size_t kFramesAfterEvent = 4;
 
@@ -56,13 +52,6 @@ struct Library {
   ~Library() { glfwTerminate(); }
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
-};
-
-struct ImGuiOwner {
-  ImGuiOwner() { ImGui::CreateContext(); }
-  ~ImGuiOwner() { ImGui::DestroyContext(); }
-  ImGuiOwner(const ImGuiOwner&) = delete;
-  ImGuiOwner& operator=(const ImGuiOwner&) = delete;
 };
 
 struct DestroyWindow {
@@ -104,8 +93,6 @@ vulkan::Context make_context(const std::string& device) {
   return vulkan::Context({.device = device}, &wanted);
 }
 
-Evaluator make_evaluator(const std::string& device) { return Evaluator({.device = device, .is_interactive = true}); }
-
 VkSurfaceKHR make_surface(VkInstance instance, GLFWwindow* window) {
   VkSurfaceKHR surface = VK_NULL_HANDLE;
   vulkan::check(glfwCreateWindowSurface(instance, window, nullptr, &surface), "connecting to the window");
@@ -120,8 +107,9 @@ VkExtent2D size_of(GLFWwindow* window) {
 }
 
 /// Dear ImGui with the window's fonts and its input.
-struct Interface {
-  explicit Interface(GLFWwindow* window) {
+struct Gui {
+  explicit Gui(GLFWwindow* window) {
+    ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
     io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
@@ -130,11 +118,14 @@ struct Interface {
     glfwGetWindowContentScale(window, &scale, nullptr);
     ImGui::GetStyle().ScaleAllSizes(scale);
     load_font(kFontPixels * scale);
-    ImGui_ImplGlfw_InitForVulkan(window, true);
+    ImGui_ImplGlfw_InitForVulkan(window, false);
   }
-  ~Interface() { ImGui_ImplGlfw_Shutdown(); }
-  Interface(const Interface&) = delete;
-  Interface& operator=(const Interface&) = delete;
+  ~Gui() {
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+  }
+  Gui(const Gui&) = delete;
+  Gui& operator=(const Gui&) = delete;
 };
 
 double median_of(std::vector<double> values) {
@@ -148,221 +139,99 @@ std::string times_text(const std::vector<double>& times_s) {
                      1e3 * *std::ranges::max_element(times_s));
 }
 
-}  // namespace
-
+/// Two lines: count, median and worst, of all frames and of those while something was computed.
 std::string summary_of(const FrameTimes& times) {
   return fmt::format("frames     {}\ncomputing  {}\n", times_text(times.all_s), times_text(times.busy_s));
 }
 
-class App::Impl {
- public:
-  Impl(SceneEdits edits, const AppOptions& options)
-      : session_(std::move(edits)),
-        window_(open_window()),
-        context_(make_context(options.device)),
-        interface_(prepared(window_.get())),
-        presenter_(context_, make_surface(context_.instance(), window_.get()), size_of(window_.get())),
-        evaluator_(make_evaluator(options.device)),
-        export_evaluator_(make_evaluator(options.device)),
-        fit_evaluator_(make_evaluator(options.device)),
-        worker_([this](const Scene& scene, const PointList& list,
-                       const RunOptions& run) { return evaluate(evaluator_, scene, list, run); },
-                glfwPostEmptyEvent),
-        table_export_(glfwPostEmptyEvent),
-        true_error_(glfwPostEmptyEvent),
-        fit_(glfwPostEmptyEvent),
-        command_line_(options.command_line),
-        ui_(session_, table_export_, true_error_, fit_, actions(), options.file_name) {
-    glfwSetWindowUserPointer(window_.get(), this);
-  }
+}  // namespace
 
-  Session& session() { return session_; }
-  const ControlsPanel& controls() const { return ui_.controls(); }
-  const Area& plot() const { return ui_.plot(); }
-  GLFWwindow* window() const { return window_.get(); }
-  void close() {
-    glfwSetWindowShouldClose(window_.get(), GLFW_TRUE);
-    glfwPostEmptyEvent();
-  }
-  /// True where there was input since the last call.
-  bool take_input() { return std::exchange(has_input_, false); }
-  bool is_idle() const {
-    const std::scoped_lock lock(found_mutex_);
-    return worker_.is_idle() && is_all_taken_ && fit_.state() != BackgroundTask::State::kRunning && !found_;
-  }
-  bool is_computing() const { return !worker_.is_idle(); }
-  void save_picture(const std::string& path, Clock::duration delay = {}) {
-    picture_path_ = path;
-    picture_time_ = Clock::now() + delay;
-  }
-  bool has_picture_to_save() const { return !picture_path_.empty(); }
+struct App::Impl {
+  Impl(SceneEdits edits, const AppOptions& options)
+      : session(std::move(edits)),
+        window(open_window()),
+        context(make_context(options.device)),
+        gui(window.get()),
+        input(window.get(), [this](const std::string& path) { session.load_measured(path); }),
+        presenter(context, make_surface(context.instance(), window.get()), size_of(window.get())),
+        evaluator({.device = options.device, .is_interactive = true}),
+        worker([this](const Scene& scene, const PointList& list,
+                      const RunOptions& run) { return evaluate(evaluator, scene, list, run); },
+               glfwPostEmptyEvent),
+        actions(session, options.device, options.command_line, glfwPostEmptyEvent),
+        ui(session, actions, options.file_name) {}
 
   /// Passes results in and wanted jobs out.
   void exchange() {
-    if (std::optional<FitFound> found = take_found()) session_.take_fit(std::move(*found));
-    is_all_taken_ = worker_.is_idle();
-    session_.take(worker_.take_news());
-    if (!session_.take_changed()) return;
-    std::vector<Job> jobs = session_.wanted();
-    is_all_taken_ = is_all_taken_ && jobs.empty();
-    worker_.want(std::move(jobs));
+    actions.finish();
+    is_all_taken = worker.is_idle();
+    session.take(worker.take_news());
+    if (!session.take_changed()) return;
+    std::vector<Job> jobs = session.wanted();
+    is_all_taken = is_all_taken && jobs.empty();
+    worker.want(std::move(jobs));
   }
 
+  /// Draws a frame for each event, and shows the last.
   void draw() {
-    const bool wants_picture = has_picture_to_save() && Clock::now() >= picture_time_;
-    ImGui_ImplVulkan_NewFrame();
-    ImGui_ImplGlfw_NewFrame();
-    ImGui::NewFrame();
-    ui_.draw();
+    for (;;) {
+      ImGui_ImplVulkan_NewFrame();
+      input.begin_frame();
+      ui.draw();
+      if (!input.has_more()) break;
+      ImGui::EndFrame();
+    }
     ImGui::Render();
+    const std::string path = actions.due_picture();
     Picture picture;
-    presenter_.draw(ImGui::GetDrawData(), size_of(window_.get()), wants_picture ? &picture : nullptr);
-    if (wants_picture && picture.width > 0) write_png(picture, std::exchange(picture_path_, {}));
-    context_.check_validation();
-  }
-
- private:
-  static Impl* impl_of(GLFWwindow* window) { return static_cast<Impl*>(glfwGetWindowUserPointer(window)); }
-
-  /// Installs our own callbacks, which ImGui calls after its own; until the user pointer is set they do nothing.
-  static GLFWwindow* prepared(GLFWwindow* window) {
-    glfwSetKeyCallback(window, [](GLFWwindow* of, int key, int, int action, int modifiers) {
-      note_input(of);
-      const bool is_command = action == GLFW_PRESS && modifiers == GLFW_MOD_CONTROL;
-      if (is_command && impl_of(of)) impl_of(of)->ui_.press(key);
-    });
-    glfwSetDropCallback(window, [](GLFWwindow* of, int count, const char** paths) {
-      note_input(of);
-      if (count > 0 && impl_of(of)) impl_of(of)->session_.load_measured(paths[0]);
-    });
-    glfwSetCharCallback(window, [](GLFWwindow* of, unsigned) { note_input(of); });
-    glfwSetMouseButtonCallback(window, [](GLFWwindow* of, int, int, int) { note_input(of); });
-    glfwSetCursorPosCallback(window, [](GLFWwindow* of, double, double) { note_input(of); });
-    glfwSetScrollCallback(window, [](GLFWwindow* of, double, double) { note_input(of); });
-    glfwSetCursorEnterCallback(window, [](GLFWwindow* of, int) { note_input(of); });
-    glfwSetWindowFocusCallback(window, [](GLFWwindow* of, int) { note_input(of); });
-    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* of, int, int) { note_input(of); });
-    glfwSetWindowRefreshCallback(window, note_input);
-    return window;
-  }
-
-  static void note_input(GLFWwindow* window) {
-    if (impl_of(window)) impl_of(window)->has_input_ = true;
-  }
-
-  /// Runs an action that may fail for a reason that the user can fix.
-  void attempt(const std::string& done, const std::function<void()>& body) {
-    try {
-      body();
-      session_.tell(done);
-    } catch (const std::exception& error) {
-      session_.tell(error.what(), true);
+    presenter.draw(ImGui::GetDrawData(), size_of(window.get()), path.empty() ? nullptr : &picture);
+    if (picture.width > 0) {
+      actions.set_picture({});
+      write_png(picture, path);
     }
+    context.check_validation();
   }
 
-  Actions actions() {
-    Actions actions;
-    actions.save_scene = [this](const std::string& path) {
-      attempt("saved " + path, [&] {
-        const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-        write_text_atomically(path, session_.scene().toml(folder.empty() ? "." : folder));
-      });
-    };
-    actions.save_curve = [this](const std::string& path) {
-      if (!session_.curve().is_finished()) {
-        session_.tell("the curve is not finished yet", true);
-        return;
-      }
-      attempt("saved " + path, [&] { write_text_atomically(path, session_.curve().report().csv); });
-    };
-    actions.save_picture = [this](const std::string& path) {
-      attempt("saved " + path, [&] {
-        check_writable(path);
-        save_picture(path, kFading);
-      });
-    };
-    actions.load_measured = [this](const std::string& path) { session_.load_measured(path); };
-    actions.export_table = [this](const std::string& path) { start_export(path); };
-    actions.find_true_error = [this] {
-      true_error_.start([curve = session_.curve()](const Progress& progress) { return true_error(curve, progress); });
-    };
-    actions.fit = [this] { start_fit(); };
-    actions.quit = [this] { close(); };
-    return actions;
+  void wait_for_results() {
+    constexpr auto kPause = std::chrono::milliseconds(5);
+    for (exchange(); !is_idle(); exchange()) std::this_thread::sleep_for(kPause);
   }
 
-  void start_export(const std::string& path) {
-    table_export_.start([this, path, scene = session_.scene()](const Progress& progress) {
-      return export_table(scene, path, command_line_, export_evaluator_, progress);
-    });
-  }
+  bool is_idle() { return worker.is_idle() && is_all_taken && !actions.fit_task().is_running(); }
 
-  void start_fit() {
-    std::optional<FitJob> job = session_.fit_job();
-    if (!job) {
-      session_.tell("a fit needs measured points, and parameters that are marked to vary", true);
-      return;
-    }
-    fit_.start([this, job = std::move(*job)](const Progress& progress) {
-      FitFound found = run_fit(job, fit_evaluator_, progress);
-      const std::scoped_lock lock(found_mutex_);
-      found_ = std::move(found);
-      return found_->text;
-    });
-  }
-
-  /// The result of a fit that finished since the last call.
-  std::optional<FitFound> take_found() {
-    const std::scoped_lock lock(found_mutex_);
-    return std::exchange(found_, std::nullopt);
-  }
-
-  Session session_;
-  Library library_;
-  UniqueWindow window_;
-  vulkan::Context context_;
-  ImGuiOwner imgui_;
-  Interface interface_;
-  Presenter presenter_;
-  // Each with a device of its own, so that none waits for another.
-  Evaluator evaluator_;
-  Evaluator export_evaluator_;
-  Evaluator fit_evaluator_;
-  Worker worker_;
-  mutable std::mutex found_mutex_;
-  std::optional<FitFound> found_;  ///< of a fit that has ended
-  BackgroundTask table_export_;
-  BackgroundTask true_error_;
-  BackgroundTask fit_;
-  std::string command_line_;
-  std::string picture_path_;
-  Clock::time_point picture_time_;
-  bool is_all_taken_ = false;
-  bool has_input_ = false;
-  Ui ui_;
+  Session session;
+  Library library;
+  UniqueWindow window;
+  vulkan::Context context;
+  Gui gui;
+  Input input;
+  Presenter presenter;
+  Evaluator evaluator;
+  Worker worker;
+  Actions actions;
+  Ui ui;
+  bool is_all_taken = false;
 };
 
 App::App(SceneEdits edits, const AppOptions& options) : impl_(std::make_unique<Impl>(std::move(edits), options)) {}
 
 App::~App() = default;
 
-Session& App::session() { return impl_->session(); }
+Session& App::session() { return impl_->session; }
 
-Area App::control_area(const std::string& key) const { return impl_->controls().areas().at(key); }
+Area App::control_area(const std::string& key) const { return impl_->ui.controls().areas().at(key); }
 
-Area App::plot_area() const { return impl_->plot(); }
+Area App::plot_area() const { return impl_->ui.plot(); }
 
 bool App::is_idle() const { return impl_->is_idle(); }
 
-void App::save_picture(const std::string& path) { impl_->save_picture(path); }
-
-void App::resize(int width, int height) { glfwSetWindowSize(impl_->window(), width, height); }
+void App::save_picture(const std::string& path) { impl_->actions.set_picture(path); }
 
 bool App::frame() {
   glfwPollEvents();
   impl_->exchange();
   impl_->draw();
-  return glfwWindowShouldClose(impl_->window()) == GLFW_FALSE;
+  return glfwWindowShouldClose(impl_->window.get()) == GLFW_FALSE && !impl_->actions.is_quitting();
 }
 
 void App::settle() {
@@ -374,12 +243,15 @@ bool App::answer() {
   std::size_t left = kFramesAfterEvent;
   while (left > 0) {
     if (!frame()) return false;
-    left = impl_->take_input() || impl_->has_picture_to_save() ? kFramesAfterEvent : left - 1;
+    left = impl_->input.take_news() || impl_->actions.has_picture_to_save() ? kFramesAfterEvent : left - 1;
   }
   return true;
 }
 
-void App::close() { impl_->close(); }
+void App::close() {
+  glfwSetWindowShouldClose(impl_->window.get(), GLFW_TRUE);
+  glfwPostEmptyEvent();
+}
 
 void App::run() {
   while (answer()) {
@@ -398,11 +270,11 @@ FrameTimes App::run_frames(std::size_t count, const std::string& screenshot_path
   for (std::size_t left = count; left > 0; --left) {
     // The last frames show what is finished, in a layout that has settled.
     if (wants_picture && left <= kFramesAfterEvent) {
-      wait_for_results();
+      impl_->wait_for_results();
       start = Clock::now();
     }
-    if (wants_picture && left == 1) impl_->save_picture(screenshot_path);
-    const bool was_computing = impl_->is_computing();
+    if (wants_picture && left == 1) save_picture(screenshot_path);
+    const bool was_computing = !impl_->worker.is_idle();
     const bool is_open = frame();
     const Clock::time_point end = Clock::now();
     times.all_s.push_back(std::chrono::duration<double>(end - start).count());
@@ -413,9 +285,22 @@ FrameTimes App::run_frames(std::size_t count, const std::string& screenshot_path
   return times;
 }
 
-void App::wait_for_results() {
-  constexpr auto kPause = std::chrono::milliseconds(5);
-  for (impl_->exchange(); !is_idle(); impl_->exchange()) std::this_thread::sleep_for(kPause);
+void run_program(const Scene& scene, const ProgramOptions& options) {
+  if (!options.screenshot_path.empty() && options.frames == 0) {
+    throw InputError("--screenshot needs --frames N beside it: the picture is of the last frame");
+  }
+  if (!options.screenshot_path.empty()) check_writable(options.screenshot_path);
+  const std::string stem = std::filesystem::path(scene.name()).stem().string();
+  App app(SceneEdits(scene), {options.device, stem.empty() || stem == "-" ? "dolp" : stem, options.command_line});
+  if (!options.measured_path.empty()) {
+    app.session().load_measured(options.measured_path);
+    if (app.session().message().is_error) throw InputError(app.session().message().text);
+  }
+  if (options.frames == 0) {
+    app.run();
+  } else {
+    fmt::print("{}", summary_of(app.run_frames(options.frames, options.screenshot_path)));
+  }
 }
 
 }  // namespace dolp::explore

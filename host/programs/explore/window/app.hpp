@@ -2,20 +2,18 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "explore/scene_edits.hpp"
 #include "explore/session.hpp"
-#include "explore/window/area.hpp"
+#include "explore/window/plot.hpp"
 
 namespace dolp::explore {
 
 struct AppOptions {
-  std::string device;        ///< see choose_device
+  std::string device;        ///< its position or a part of its name
   std::string file_name;     ///< what suggested file names begin with
   std::string command_line;  ///< for the history of tables
 };
@@ -26,9 +24,6 @@ struct FrameTimes {
   std::vector<double> busy_s;  ///< those in which the worker had something to do
 };
 
-/// Two lines: count, median and worst, of all frames and of those while something was computed.
-std::string summary_of(const FrameTimes& times);
-
 class App {
  public:
   /// Opens the window. Errors: DeviceError without a display, or without a device that can show a window on it.
@@ -38,7 +33,7 @@ class App {
   ~App();
 
   Session& session();
-  /// The last drawn position of a scene key's slider. Errors: std::out_of_range when it was not drawn.
+  /// The last drawn area of a control by its scene key. Errors: std::out_of_range when it was not drawn.
   Area control_area(const std::string& key) const;
   /// The last drawn area of the curve, without its axes.
   Area plot_area() const;
@@ -60,15 +55,24 @@ class App {
   bool is_idle() const;
   /// Draws until is_idle() returns true.
   void settle();
-  void resize(int width, int height);
   /// Writes a picture of the window with its next frame. Errors: IoError.
   void save_picture(const std::string& path);
 
  private:
-  void wait_for_results();
-
-  class Impl;
+  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+struct ProgramOptions {
+  std::string device;           ///< its position or a part of its name
+  std::string command_line;     ///< for the history of tables
+  std::string measured_path;    ///< CSV of measured points; empty: none
+  std::size_t frames = 0;       ///< draw so many and end; 0: until the window is closed
+  std::string screenshot_path;  ///< PNG of the last frame; empty: none
+};
+
+/// Shows the window. Prints how long frames took, where their number is given.
+/// Errors: those of the public header; DeviceError, IoError.
+void run_program(const Scene& scene, const ProgramOptions& options);
 
 }  // namespace dolp::explore

@@ -9,8 +9,7 @@
 
 #include "base/text.hpp"
 #include "explore/parameters.hpp"
-#include "explore/window/colours.hpp"
-#include "explore/window/text.hpp"
+#include "explore/window/style.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -32,15 +31,6 @@ void row_label(const std::string& text) {
   ImGui::SameLine(std::max(6.2F * ImGui::GetTextLineHeight(), longest + 2.0F * ImGui::GetStyle().ItemSpacing.x));
 }
 
-void tooltip(const std::string& text) {
-  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
-  ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(28.0F * ImGui::GetFontSize());
-  ImGui::TextUnformatted(shown(text).c_str());
-  ImGui::PopTextWrapPos();
-  ImGui::EndTooltip();
-}
-
 std::string fallback_text(const Parameter& parameter, const Session& session) {
   const std::optional<double> opened = parameter.value(session.edits().opened());
   return opened ? fmt::format("\nCtrl-click: {:.6g}, as opened", *opened) : "";
@@ -53,11 +43,9 @@ std::string interval_text(const FitInterval& interval) {
 
 /// The last fit's intervals of a parameter.
 std::string intervals_text(const Parameter& parameter, const Session& session) {
-  const FitFound* const found = session.fit_found();
-  const std::string& key = parameter.key->key;
-  if (found == nullptr || !found->interval_68.contains(key)) return {};
-  return fmt::format("\n68 %: {}\n95 %: {}", interval_text(found->interval_68.at(key)),
-                     interval_text(found->interval_95.at(key)));
+  const FitParameter* const found = session.fitted(parameter.key->key);
+  if (!found) return {};
+  return fmt::format("\n68 %: {}\n95 %: {}", interval_text(found->interval_68), interval_text(found->interval_95));
 }
 
 /// The interval as a bar at the foot of the slider that was drawn last; an open end goes to the slider's.
@@ -65,7 +53,7 @@ void draw_interval(const Parameter& parameter, const FitInterval& interval) {
   const ImVec2 corner = ImGui::GetItemRectMin();
   const ImVec2 end = ImGui::GetItemRectMax();
   const auto at = [&](const std::optional<double>& value, double otherwise) {
-    const double position = value ? slider_position(parameter, *value) : otherwise;
+    const double position = value ? parameter.slider_position(*value) : otherwise;
     return corner.x + static_cast<float>(position) * (end.x - corner.x);
   };
   constexpr float kThickness = 3.0F;
@@ -165,28 +153,55 @@ void draw_effect_box(Session& session, const std::string& table) {
   if (table == "path") session.set({{"path.transmittance", 0.9}, {"path.temperature_K", 280.0}});
 }
 
-void draw_spectrum(Session& session) {
-  bool is_band = !session.scene().numbers("spectrum.band_um").empty();
-  if (ImGui::Checkbox("band", &is_band)) {
-    if (is_band) session.set({{"spectrum.band_um", {8.0, 14.0}}});
-    if (!is_band) session.set({{"spectrum.wavelength_um", 10.6}});
-  }
-  std::vector<double> ends = session.scene().numbers("spectrum.band_um");
-  if (ends.empty()) return;
-  row_label("λ1, λ2 [µm]");
-  ImGui::SetNextItemWidth(-1.0F);
-  constexpr ImGuiInputTextFlags kFlags = ImGuiInputTextFlags_EnterReturnsTrue;
-  if (ImGui::InputScalarN("##band", ImGuiDataType_Double, ends.data(), 2, nullptr, nullptr, "%.6g", kFlags)) {
-    session.set({{"spectrum.band_um", ends}});
-  }
+/// The text typed, as a value; the scene refuses text that is no number, and says what is allowed.
+Value value_of(const std::string& text) {
+  const std::optional<double> number = parse_number(text);
+  return number ? Value(*number) : Value(TomlText{text});
 }
 
 }  // namespace
 
 void ControlsPanel::remember_area(const std::string& key) {
-  const ImVec2 corner = ImGui::GetItemRectMin();
-  const ImVec2 end = ImGui::GetItemRectMax();
-  areas_[key] = {corner.x, corner.y, end.x, end.y};
+  areas_[key] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+}
+
+void ControlsPanel::draw_field(Session& session, const std::string& id, double value,
+                               const std::function<Setting(const std::string& text)>& change) {
+  fields_.draw(id, value, [&](const std::string& text) {
+    session.set({change(text)});
+    return session.message().is_error ? session.message().text : "";
+  });
+  remember_area("field " + id);
+}
+
+void ControlsPanel::draw_spectrum(Session& session) {
+  constexpr const char* kKey = "spectrum.band_um";
+  bool is_band = !session.scene().numbers(kKey).empty();
+  if (ImGui::Checkbox("band", &is_band)) {
+    if (is_band) session.set({{kKey, {8.0, 14.0}}});
+    if (!is_band) session.set({{"spectrum.wavelength_um", 10.6}});
+  }
+  const std::vector<double> ends = session.scene().numbers(kKey);
+  if (ends.empty()) return;
+  row_label("λ1, λ2 [µm]");
+  // Both ends are taken together, so that one that was refused goes with the other.
+  const std::array<std::string, 2> ids = {std::string(kKey) + " 0", std::string(kKey) + " 1"};
+  const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+  const float width = 0.5F * (ImGui::GetContentRegionAvail().x - gap);
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (i > 0) ImGui::SameLine(0.0F, gap);
+    ImGui::SetNextItemWidth(width);
+    draw_field(session, ids[i], ends[i], [&](const std::string& text) {
+      const std::string typed = fields_.text(ids[1 - i]);
+      const std::string other = typed.empty() ? format_number(ends[1 - i]) : typed;
+      return Setting{kKey, TomlText{'[' + (i == 0 ? text + ", " + other : other + ", " + text) + ']'}};
+    });
+  }
+  for (const std::string& id : ids) show_reason(id);
+}
+
+void ControlsPanel::show_reason(const std::string& id) const {
+  if (const std::string reason = fields_.reason(id); !reason.empty()) coloured_text(kErrorColour, reason);
 }
 
 void ControlsPanel::draw_choice(Session& session, const Choice& choice, std::size_t word) {
@@ -202,8 +217,9 @@ void ControlsPanel::draw_choice(Session& session, const Choice& choice, std::siz
     return;
   }
   ImGui::SetNextItemWidth(-1.0F);
+  const ImVec2 corner = ImGui::GetCursorScreenPos();  // an open list is an item of its own
+  areas_[key] = {corner, {corner.x + ImGui::CalcItemWidth(), corner.y + ImGui::GetFrameHeight()}};
   if (!ImGui::BeginCombo(id.c_str(), words[word].c_str())) {
-    remember_area(key);
     tooltip(description_of(choice));
     return;
   }
@@ -224,9 +240,7 @@ void ControlsPanel::draw_fit_box(Session& session, const Parameter& parameter) {
   const std::string& key = parameter.key->key;
   bool varies = session.varies(key);
   if (ImGui::Checkbox("##vary", &varies)) session.mark(key, varies);
-  const ImVec2 corner = ImGui::GetItemRectMin();
-  const ImVec2 end = ImGui::GetItemRectMax();
-  areas_["vary " + key] = {corner.x, corner.y, end.x, end.y};
+  remember_area("vary " + key);
   tooltip("varies in a fit to the measured points, over the range of its slider");
   ImGui::SameLine();
 }
@@ -236,25 +250,21 @@ void ControlsPanel::draw_parameter(Session& session, const Parameter& parameter,
   const std::string unit = unit_text(key);
   row_label(unit.empty() ? parameter.symbol : fmt::format("{} [{}]", parameter.symbol, unit));
   ImGui::PushID(key.key.c_str());
-  if (session.residuals().points() && Fitting::can_vary(parameter)) draw_fit_box(session, parameter);
+  if (session.residuals().data() && !key.key.starts_with("accuracy.")) draw_fit_box(session, parameter);
   const float typed_width = 5.2F * ImGui::GetFontSize();
   ImGui::SetNextItemWidth(-typed_width - ImGui::GetStyle().ItemSpacing.x);
-  auto position = static_cast<float>(slider_position(parameter, value));
+  auto position = static_cast<float>(parameter.slider_position(value));
   const bool is_moved = ImGui::SliderFloat("##slider", &position, 0.0F, 1.0F, "", ImGuiSliderFlags_NoInput);
   remember_area(key.key);
-  const FitFound* const found = session.fit_found();
-  if (found != nullptr && found->interval_68.contains(key.key))
-    draw_interval(parameter, found->interval_68.at(key.key));
+  if (const FitParameter* found = session.fitted(key.key)) draw_interval(parameter, found->interval_68);
   const bool is_ctrl = ImGui::GetIO().KeyCtrl;
   if (ImGui::IsItemClicked() && is_ctrl) session.reset(key.key);
-  if (is_moved && !is_ctrl) session.set(key.key, slider_value(parameter, static_cast<double>(position)));
+  if (is_moved && !is_ctrl) session.set(key.key, parameter.slider_value(static_cast<double>(position)));
   if (!ImGui::IsItemActive()) tooltip(description_of(parameter, session));
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1.0F);
-  double typed = value;
-  if (ImGui::InputDouble("##number", &typed, 0.0, 0.0, "%.6g", ImGuiInputTextFlags_EnterReturnsTrue)) {
-    session.set(key.key, typed);
-  }
+  draw_field(session, key.key, value, [&](const std::string& text) { return Setting{key.key, value_of(text)}; });
+  show_reason(key.key);
   ImGui::PopID();
 }
 

@@ -1,12 +1,14 @@
 // The left side of the window: everything of the scene that can be moved, made from parameter descriptions.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 
 #include "explore/parameters.hpp"
 #include "explore/session.hpp"
-#include "explore/window/area.hpp"
+#include "explore/window/fields.hpp"
+#include "explore/window/plot.hpp"
 
 namespace dolp::explore {
 
@@ -17,8 +19,8 @@ class ControlsPanel {
   /// Tolerance and precision, which stand beside what they cost; to be called after `draw`.
   void draw_accuracy(Session& session);
 
-  /// Sliders, lists and boxes by their scene key, "vary KEY" of the box that lets it vary, for tests that move the
-  /// mouse there.
+  /// Sliders, lists and boxes by their scene key, "vary KEY" of the box that lets it vary, "field KEY" of a number's
+  /// field, for tests that move the mouse there.
   const std::map<std::string, Area>& areas() const { return areas_; }
 
  private:
@@ -28,6 +30,12 @@ class ControlsPanel {
   void draw_fit_box(Session& session, const Parameter& parameter);
   void draw_parameter(Session& session, const Parameter& parameter, double value);
   void draw_table(Session& session, const std::string& table);
+  void draw_spectrum(Session& session);
+  void draw_field(Session& session, const std::string& id, double value,
+                  const std::function<Setting(const std::string& text)>& change);
+  void show_reason(const std::string& id) const;
+
+  NumberFields fields_;
   std::map<std::string, Area> areas_;
 };
 

@@ -1,4 +1,4 @@
-#include "explore/window/curve_view.hpp"
+#include "explore/window/views.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "explore/window/plot.hpp"
+#include "explore/parameters.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -36,14 +36,19 @@ std::vector<Shown> shown_curves(const Session& session) {
   return curves;
 }
 
-double scale_of(Plotted quantity) { return described(quantity).in_percent ? 100.0 : 1.0; }
+double scale_of(Plotted quantity) { return described(quantity).scale(); }
 
-/// The measured points of a quantity.
-std::vector<MeasuredPoint> measured_of(const Session& session, Plotted quantity) {
-  if (!session.residuals().points()) return {};
-  std::vector<MeasuredPoint> points = session.residuals().points()->points;
-  std::erase_if(points, [&](const MeasuredPoint& point) { return point.quantity != quantity; });
-  return points;
+/// The value of a point as it is shown.
+double shown_value(Plotted quantity, const Point& point) {
+  return scale_of(quantity) * described(quantity).value(point);
+}
+
+/// The maximum of polarisation where the plot has a mark of it; null elsewhere.
+const PeakAnswer* shown_peak(const Session& session) {
+  const Plotted quantity = session.view().quantity;
+  const bool is_marked = quantity == Plotted::kDolp || quantity == Plotted::kSignedDolp;
+  const std::optional<PeakAnswer>& peak = session.peak().answer();
+  return is_marked && peak && session.curve().is_finished() ? &*peak : nullptr;
 }
 
 /// The range that the axis of values must cover.
@@ -68,40 +73,37 @@ Range range_of(const Session& session, const std::vector<Shown>& curves, bool is
   for (const Shown& shown : curves) {
     for (const Point& point : shown.curve->points()) {
       if (point.theta_deg > session.view().theta_max_deg) break;
-      if (!is_good(point)) continue;
-      add(scale_of(quantity) * value_of(quantity, point));
+      if (!point.is_good()) continue;
+      add(shown_value(quantity, point));
       if (shown.curve != &session.curve() || quantity != Plotted::kDolp) continue;
-      add(scale_of(quantity) * point.dolp_low);
-      add(scale_of(quantity) * point.dolp_high);
+      add(scale_of(quantity) * point[Quantity::kDolpLow]);
+      add(scale_of(quantity) * point[Quantity::kDolpHigh]);
     }
   }
-  const std::optional<PeakAnswer>& peak = session.peak().answer();
-  if (peak && session.curve().is_finished() && quantity == Plotted::kDolp) add(scale_of(quantity) * peak->dolp);
-  if (peak && session.curve().is_finished() && quantity == Plotted::kSignedDolp) {
-    add(scale_of(quantity) * peak->q_over_i);
-  }
-  for (const MeasuredPoint& point : measured_of(session, quantity)) add(scale_of(quantity) * point.value);
+  if (const PeakAnswer* peak = shown_peak(session)) add(shown_value(quantity, peak->at));
+  for (const Measurement& one : session.residuals().measured(quantity)) add(scale_of(quantity) * one.value);
   return range;
 }
 
 PlotAxis value_axis(const Session& session, const std::vector<Shown>& curves) {
   const bool is_log = session.view().is_log;
-  const PlottedDescription& of = described(session.view().quantity);
-  PlotAxis axis{of.in_percent ? fmt::format("{} [%]", of.name) : of.name, 0.0, 1.0, is_log};
+  PlotAxis axis{described(session.view().quantity).label(), {0.0, 1.0, is_log}};
+  double& from = axis.scale.from;
+  double& to = axis.scale.to;
   Range range = range_of(session, curves, is_log);
   if (range.is_empty()) range = {is_log ? 0.01 : 0.0, 1.0};
   if (is_log) {
     constexpr double kMostDecades = 1e6;
     constexpr double kRoom = 4.0;  // for the mark of the maximum
-    axis.to = kRoom * range.high;
-    axis.from = std::max(range.low / 1.5, axis.to / kMostDecades);
+    to = kRoom * range.high;
+    from = std::max(range.low / 1.5, to / kMostDecades);
     return axis;
   }
   range.add(0.0);
   const double room = 0.06 * std::max(range.high - range.low, 1e-9);
-  axis.from = range.low < 0.0 ? range.low - room : 0.0;
-  axis.to = range.high > 0.0 ? range.high + 2.0 * room : 0.0;
-  if (axis.to <= axis.from) axis.to = axis.from + 1.0;
+  from = range.low < 0.0 ? range.low - room : 0.0;
+  to = range.high > 0.0 ? range.high + 2.0 * room : 0.0;
+  if (to <= from) to = from + 1.0;
   return axis;
 }
 
@@ -109,18 +111,17 @@ PlotAxis value_axis(const Session& session, const std::vector<Shown>& curves) {
 void draw_bracket(const Plot& plot, const Shown& shown) {
   const std::vector<Point>& points = shown.curve->points();
   const ImU32 colour = band_colour(shown.style);
-  const auto at = [&](std::size_t i, double dolp) {
-    const double value = std::max(scale_of(Plotted::kDolp) * dolp, plot.y().from);
-    return plot.at(points[i].theta_deg, value);
+  const auto at = [&](const Point& point, Quantity limit) {
+    return plot.at(point.theta_deg, std::max(scale_of(Plotted::kDolp) * point[limit], plot.y().from));
   };
   // Smooth edges are off: they would show as seams.
   const ImDrawListFlags flags = std::exchange(plot.list()->Flags, ImDrawListFlags_None);
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Point& a = points[i];
     const Point& b = points[i + 1];
-    if (!is_good(a) || !is_good(b) || !has_bracket(a) || !has_bracket(b)) continue;
-    plot.list()->AddQuadFilled(at(i, a.dolp_low), at(i, a.dolp_high), at(i + 1, b.dolp_high), at(i + 1, b.dolp_low),
-                               colour);
+    if (!a.is_good() || !b.is_good() || !a.has_bracket() || !b.has_bracket()) continue;
+    plot.list()->AddQuadFilled(at(a, Quantity::kDolpLow), at(a, Quantity::kDolpHigh), at(b, Quantity::kDolpHigh),
+                               at(b, Quantity::kDolpLow), colour);
   }
   plot.list()->Flags = flags;
 }
@@ -135,15 +136,15 @@ void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
     line.clear();
   };
   for (const Point& point : shown.curve->points()) {
-    const double value = scale_of(quantity) * value_of(quantity, point);
+    const double value = shown_value(quantity, point);
     if (!std::isfinite(value) || (plot.y().is_log && value <= 0.0)) {
       finish();
       continue;
     }
     const ImVec2 at = plot.at(point.theta_deg, value);
-    if (is_good(point) != is_good_part) {
+    if (point.is_good() != is_good_part) {
       // The line between a good entry and another is not good.
-      if (!is_good(point) && !line.empty()) {
+      if (!point.is_good() && !line.empty()) {
         const ImVec2 last = line.back();
         finish();
         line.push_back(last);
@@ -151,7 +152,7 @@ void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
         line.push_back(at);
         finish();
       }
-      is_good_part = is_good(point);
+      is_good_part = point.is_good();
     }
     line.push_back(at);
   }
@@ -174,7 +175,7 @@ void draw_legend(const Plot& plot, const std::vector<Shown>& curves, const Sessi
   for (std::size_t i = 0; i + 1 < curves.size(); ++i) curve(curves[i]);
   const bool has_band =
       session.view().quantity == Plotted::kDolp &&
-      std::ranges::any_of(session.curve().points(), [](const Point& point) { return has_bracket(point); });
+      std::ranges::any_of(session.curve().points(), [](const Point& point) { return point.has_bracket(); });
   if (has_band) {
     const ImVec2 end{at.x + 2.2F * line, at.y + 0.9F * line};
     plot.list()->AddRectFilled({at.x, at.y + 0.1F * line}, end, band_colour(curves.back().style));
@@ -182,7 +183,7 @@ void draw_legend(const Plot& plot, const std::vector<Shown>& curves, const Sessi
     at.y += 1.25F * line;
   }
   const bool has_bad =
-      std::ranges::any_of(session.curve().points(), [](const Point& point) { return !is_good(point); });
+      std::ranges::any_of(session.curve().points(), [](const Point& point) { return !point.is_good(); });
   if (has_bad) entry({kBadColour, 4.0F, 4.0F}, "the model fails here (status)");
 }
 
@@ -192,7 +193,7 @@ void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& sty
   const Point* const shown = session.at_cursor();
   if (!shown) return;
   const Plotted quantity = session.view().quantity;
-  const double value = scale_of(quantity) * value_of(quantity, *shown);
+  const double value = shown_value(quantity, *shown);
   if (!std::isfinite(value) || (plot.y().is_log && value <= 0.0)) return;
   const ImVec2 at = plot.at(shown->theta_deg, value);
   plot.list()->AddCircleFilled(at, 4.0F, style.colour);
@@ -200,30 +201,29 @@ void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& sty
 }
 
 void draw_peak(const Plot& plot, const Session& session) {
-  const std::optional<PeakAnswer>& peak = session.peak().answer();
-  const Plotted quantity = session.view().quantity;
-  if (!peak || !session.curve().is_finished()) return;
-  if (quantity != Plotted::kDolp && quantity != Plotted::kSignedDolp) return;
-  const double value = scale_of(quantity) * (quantity == Plotted::kDolp ? peak->dolp : peak->q_over_i);
+  const PeakAnswer* const peak = shown_peak(session);
+  if (!peak) return;
+  const double value = shown_value(session.view().quantity, peak->at);
   if (plot.y().is_log && value <= 0.0) return;
   const bool is_low = value < 0.0;
-  const ImVec2 at = plot.at(peak->theta_deg, value);
+  const ImVec2 at = plot.at(peak->at.theta_deg, value);
   const float side = is_low ? 1.0F : -1.0F;
   plot.list()->AddTriangleFilled({at.x, at.y + side * 3.0F}, {at.x - 5.0F, at.y + side * 12.0F},
                                  {at.x + 5.0F, at.y + side * 12.0F}, kTextColour);
   // Beside the mark towards the middle, so that it stays inside.
   const bool is_right = at.x > 0.5F * (plot.min().x + plot.max().x);
   draw_label(plot.list(), {at.x + (is_right ? -9.0F : 9.0F), at.y + side * 8.0F}, {is_right ? 1.0F : 0.0F, 0.5F},
-             kTextColour, fmt::format("{:.2f} % at {:.1f}°", value, peak->theta_deg));
+             kTextColour, fmt::format("{:.2f} % at {:.1f}°", value, peak->at.theta_deg));
 }
 
-void draw_measured(const Plot& plot, const std::vector<MeasuredPoint>& points) {
-  for (const MeasuredPoint& point : points) {
-    const double value = scale_of(point.quantity) * point.value;
+void draw_measured(const Plot& plot, const std::vector<Measurement>& points) {
+  for (const Measurement& point : points) {
+    const double scale = scale_of(plotted(point.observable));
+    const double value = scale * point.value;
     if (plot.y().is_log && value <= 0.0) continue;
     plot.list()->AddCircle(plot.at(point.theta_deg, value), 4.0F, kTextColour, 0, 1.5F);
     if (!point.uncertainty) continue;
-    const double deviation = scale_of(point.quantity) * *point.uncertainty;
+    const double deviation = scale * *point.uncertainty;
     const double low = plot.y().is_log ? std::max(value - deviation, plot.y().from) : value - deviation;
     plot.list()->AddLine(plot.at(point.theta_deg, low), plot.at(point.theta_deg, value + deviation), kTextColour);
   }
@@ -236,8 +236,8 @@ void draw_residuals(const Session& session, ImVec2 size) {
   std::vector<std::pair<double, double>> shown;  // zenith and residual
   double largest = 1e-6;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
-    const MeasuredPoint& point = session.residuals().points()->points[i];
-    if (point.quantity != quantity || !std::isfinite(residuals[i])) continue;
+    const Measurement& point = session.residuals().data()->measurements[i];
+    if (plotted(point.observable) != quantity || !std::isfinite(residuals[i])) continue;
     shown.emplace_back(point.theta_deg, scale * residuals[i]);
     largest = std::max(largest, std::abs(shown.back().second));
   }
@@ -246,7 +246,7 @@ void draw_residuals(const Session& session, ImVec2 size) {
   const std::string label =
       rms ? fmt::format("measured − model{}; root mean square {:.3g}", unit, scale * *rms) : "measured − model" + unit;
   const double theta_max = session.view().theta_max_deg;
-  const Plot plot("residuals", size, {"", 0.0, theta_max}, {label, -1.2 * largest, 1.2 * largest});
+  const Plot plot("residuals", size, {"", {0.0, theta_max}}, {label, {-1.2 * largest, 1.2 * largest}});
   plot.clip();
   plot.list()->AddLine(plot.at(0.0, 0.0), plot.at(theta_max, 0.0), kDimColour);
   for (const auto& [theta, residual] : shown) {
@@ -261,16 +261,15 @@ void draw_residuals(const Session& session, ImVec2 size) {
 Area draw_curve_view(Session& session, ImVec2 size) {
   const std::vector<Shown> curves = shown_curves(session);
   const Plotted quantity = session.view().quantity;
-  const std::vector<MeasuredPoint> measured = measured_of(session, quantity);
+  const std::vector<Measurement> measured = session.residuals().measured(quantity);
   const bool has_measured = !measured.empty();
   const float gap = ImGui::GetStyle().ItemSpacing.y;
   const float residual_height = has_measured ? 0.28F * size.y : 0.0F;
   const double theta_max = session.view().theta_max_deg;
-  const bool is_bistatic = session.scene().word("geometry.mode") == "bistatic";
   const Plot plot("curve", {size.x, size.y - residual_height - (has_measured ? gap : 0.0F)},
-                  {is_bistatic ? "zenith θ of the source [°]" : "zenith θ [°]", 0.0, theta_max},
+                  {is_bistatic(session.scene()) ? "zenith θ of the source [°]" : "zenith θ [°]", {0.0, theta_max}},
                   value_axis(session, curves));
-  if (plot.is_dragged()) session.set_theta(plot.mouse_x());
+  if (plot.is_dragged()) session.set_theta(plot.x().value(plot.mouse_x()));
   plot.clip();
   if (!plot.y().is_log) plot.list()->AddLine(plot.at(0.0, 0.0), plot.at(theta_max, 0.0), kDimColour);
   if (quantity == Plotted::kDolp) draw_bracket(plot, curves.back());
@@ -281,7 +280,7 @@ Area draw_curve_view(Session& session, ImVec2 size) {
   draw_legend(plot, curves, session);
   plot.unclip();
   if (has_measured) draw_residuals(session, {size.x, residual_height});
-  return {plot.min().x, plot.min().y, plot.max().x, plot.max().y};
+  return plot.area();
 }
 
 }  // namespace dolp::explore

@@ -1,13 +1,9 @@
-#include "explore/window/map_view.hpp"
+#include "explore/window/views.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-
-#include "explore/ticks.hpp"
-#include "explore/window/plot.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -15,26 +11,21 @@ namespace {
 // Few enough that neighbours share a colour and are drawn as one, more than the eye tells apart.
 constexpr double kColourSteps = 96.0;
 constexpr double kMostContrast = 1e3;  // of a logarithmic colour scale
-constexpr float kBarRoom = 5.4F;       // right of the map, in lines of text
+constexpr std::size_t kMostLines = 7;
+constexpr float kBarRoom = 5.4F;  // right of the map, in lines of text
 
-PlotAxis axis_of(const MapAxis& axis) { return {axis_label(axis.kind), axis.from, axis.to, axis.is_log}; }
-
-double scale_of(const PlottedDescription& quantity) { return quantity.in_percent ? 100.0 : 1.0; }
+PlotAxis axis_of(const MapAxis& axis) { return {axis_label(axis.axis), axis.scale}; }
 
 std::string title_of(const Session& session) {
   const HeatMap& map = session.map();
-  const PlottedDescription& of = described(session.view().quantity);
   const std::string state = map.is_finished() ? "" : fmt::format(", refining {:.0f} %", 100.0 * map.progress());
-  return fmt::format("{}; {} × {}{}{}", of.in_percent ? fmt::format("{} [%]", of.name) : of.name, map.finished_count(),
+  return fmt::format("{}; {} × {}{}{}", described(session.view().quantity).label(), map.finished_count(),
                      map.finished_count(), stale_text(map.is_stale()), state);
 }
 
-void move_cursor(Session& session, const Plot& plot) {
-  if (plot.is_dragged()) session.set_map_cursor(plot.mouse_position_x(), plot.mouse_position_y());
-}
-
-void draw_cursor(const Session& session, const Plot& plot) {
-  const ImVec2 at = plot.at_position(session.map_cursor_x(), session.map_cursor_y());
+void draw_map_cursor(const Session& session, const Plot& plot) {
+  const HeatMap& map = session.map();
+  const ImVec2 at = plot.at_position(session.map_cursor(map.x()), session.map_cursor(map.y()));
   plot.list()->AddLine({at.x, plot.min().y}, {at.x, plot.max().y}, kCursorColour);
   plot.list()->AddLine({plot.min().x, at.y}, {plot.max().x, at.y}, kCursorColour);
   plot.list()->AddCircle(at, 5.0F, kTextColour, 0, 2.0F);
@@ -43,9 +34,9 @@ void draw_cursor(const Session& session, const Plot& plot) {
 }  // namespace
 
 double MapView::colour_position(double value) const {
-  if (!(low_ < field_.max)) return 0.0;
-  if (!uses_log()) return (value - low_) / (field_.max - low_);
-  return value > low_ ? std::log(value / low_) / std::log(field_.max / low_) : 0.0;
+  if (!(colour_scale_.from < colour_scale_.to)) return 0.0;
+  if (colour_scale_.is_log && !(value > colour_scale_.from)) return 0.0;
+  return colour_scale_.position(value);
 }
 
 void MapView::update(const Session& session) {
@@ -57,7 +48,8 @@ void MapView::update(const Session& session) {
   field_ = session.map().field(quantity);
   // Only what is positive throughout, but for a few smallest values, has a logarithm.
   is_log_ = is_log;
-  low_ = is_log && field_.max > 0.0 ? std::max(field_.min, field_.max / kMostContrast) : field_.min;
+  const double low = is_log && field_.max > 0.0 ? std::max(field_.min, field_.max / kMostContrast) : field_.min;
+  colour_scale_ = {low, field_.max, is_log && low > 0.0};
   colours_.clear();
   for (std::size_t i = 0; i < field_.values.size(); ++i) {
     const double position = colour_position(field_.values[i]);
@@ -67,8 +59,8 @@ void MapView::update(const Session& session) {
   std::vector<Run> upwards = runs_along(false);
   if (upwards.size() < runs_.size()) runs_ = std::move(upwards);
   lines_.clear();
-  for (const double level : contour_levels(low_, field_.max, uses_log()))
-    lines_.push_back({level, contour(field_, level)});
+  if (!(low < field_.max)) return;
+  for (const double level : colour_scale_.ticks(kMostLines)) lines_.push_back({level, contour(field_, level)});
 }
 
 std::vector<MapView::Run> MapView::runs_along(bool rows) const {
@@ -129,18 +121,17 @@ void MapView::draw_bar(const Plot& plot, const PlottedDescription& quantity) con
   const float line = ImGui::GetTextLineHeight();
   const float left = plot.max().x + 0.9F * line;
   const float right = left + 0.9F * line;
-  const float height = plot.max().y - plot.min().y;
+  const float height = plot.area().height();
   for (int i = 0; i < kSteps; ++i) {
     const auto y = [&](int step) { return plot.max().y - height * static_cast<float>(step) / kSteps; };
     plot.list()->AddRectFilled({left, y(i + 1)}, {right, y(i)}, viridis((i + 0.5) / kSteps));
   }
   plot.list()->AddRect({left, plot.min().y}, {right, plot.max().y}, kDimColour);
-  if (!(low_ < field_.max)) return;
-  const double scale = scale_of(quantity);
+  if (!(colour_scale_.from < colour_scale_.to)) return;
+  const double scale = quantity.scale();
   const auto most = static_cast<std::size_t>(std::max(2.0F, height / (2.2F * line)));
-  const std::vector<double> ticks = uses_log() ? log_ticks(scale * low_, scale * field_.max, most)
-                                               : linear_ticks(scale * low_, scale * field_.max, most);
-  for (const double tick : ticks) {
+  const Scale shown{scale * colour_scale_.from, scale * colour_scale_.to, colour_scale_.is_log};
+  for (const double tick : shown.ticks(most)) {
     const float y = plot.max().y - static_cast<float>(colour_position(tick / scale)) * height;
     plot.list()->AddLine({right, y}, {right + 0.25F * line, y}, kDimColour);
     draw_text(plot.list(), {right + 0.4F * line, y}, {0.0F, 0.5F}, kDimColour, tick_text(tick));
@@ -152,13 +143,13 @@ void MapView::draw(Session& session, ImVec2 size) {
   const PlottedDescription& quantity = described(session.view().quantity);
   const float line = ImGui::GetTextLineHeight();
   const Plot plot("map", size, axis_of(session.map().x()), axis_of(session.map().y()), kBarRoom * line, false);
-  move_cursor(session, plot);
+  if (plot.is_dragged()) session.set_map_cursor(plot.mouse_x(), plot.mouse_y());
   draw_text(plot.list(), {plot.max().x, plot.min().y - 0.15F * line}, {1.0F, 1.0F}, kTextColour, title_of(session));
   plot.clip();
   draw_cells(plot);
-  draw_lines(plot, scale_of(quantity));
+  draw_lines(plot, quantity.scale());
   if (session.map().is_stale()) plot.list()->AddRectFilled(plot.min(), plot.max(), kStaleVeil);
-  draw_cursor(session, plot);
+  draw_map_cursor(session, plot);
   plot.unclip();
   draw_bar(plot, quantity);
 }

@@ -3,27 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "explore/ticks.hpp"
-#include "explore/window/text.hpp"
-
 namespace dolp::explore {
 namespace {
 
-std::vector<double> ticks_of(const PlotAxis& axis, float pixels, float spacing) {
-  const auto most = static_cast<std::size_t>(std::max(2.0F, pixels / spacing));
-  return axis.is_log ? log_ticks(axis.from, axis.to, most) : linear_ticks(axis.from, axis.to, most);
+/// Ticks with this many pixels between them, or more.
+std::vector<double> ticks_of(const Scale& scale, float pixels, float spacing) {
+  return scale.ticks(static_cast<std::size_t>(std::max(2.0F, pixels / spacing)));
 }
 
 }  // namespace
-
-double PlotAxis::position(double value) const {
-  if (is_log) return std::log(value / from) / std::log(to / from);
-  return (value - from) / (to - from);
-}
-
-double PlotAxis::value(double position) const {
-  return is_log ? from * std::pow(to / from, position) : from + position * (to - from);
-}
 
 void draw_text(ImDrawList* list, ImVec2 at, ImVec2 anchor, ImU32 colour, const std::string& text) {
   const std::string visible = shown(text);
@@ -73,55 +61,54 @@ Plot::Plot(const char* id, ImVec2 size, PlotAxis x, PlotAxis y, float right, boo
   const float line = ImGui::GetTextLineHeight();
   const float bottom = x_.label.empty() ? 0.4F * line : 2.3F * line;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  min_ = {corner.x + 3.9F * line, corner.y + 1.4F * line};
-  max_ = {corner.x + size.x - 0.6F * line - right, corner.y + size.y - bottom};
-  max_ = {std::max(max_.x, min_.x + line), std::max(max_.y, min_.y + line)};
-  list_->AddRectFilled(min_, max_, kPlotColour);
+  area_.min = {corner.x + 3.9F * line, corner.y + 1.4F * line};
+  area_.max = {std::max(corner.x + size.x - 0.6F * line - right, min().x + line),
+               std::max(corner.y + size.y - bottom, min().y + line)};
+  list_->AddRectFilled(min(), max(), kPlotColour);
   draw_x_axis(has_grid);
   draw_y_axis(has_grid);
-  list_->AddRect(min_, max_, kDimColour);
-  ImGui::SetCursorScreenPos(min_);
-  ImGui::InvisibleButton(id, {max_.x - min_.x, max_.y - min_.y});
-  is_active_ = ImGui::IsItemActive();
-  is_hovered_ = ImGui::IsItemHovered();
+  list_->AddRect(min(), max(), kDimColour);
+  ImGui::SetCursorScreenPos(min());
+  ImGui::InvisibleButton(id, {area_.width(), area_.height()});
+  is_dragged_ = ImGui::IsItemActive();
   ImGui::SetCursorScreenPos(corner);
   ImGui::Dummy(size);
 }
 
 ImVec2 Plot::at_position(double x, double y) const {
-  return {min_.x + static_cast<float>(x) * (max_.x - min_.x), max_.y - static_cast<float>(y) * (max_.y - min_.y)};
+  return area_.at(static_cast<float>(x), 1.0F - static_cast<float>(y));
 }
 
-double Plot::mouse_position_x() const {
-  return std::clamp(static_cast<double>((ImGui::GetIO().MousePos.x - min_.x) / (max_.x - min_.x)), 0.0, 1.0);
+double Plot::mouse_x() const {
+  return std::clamp(static_cast<double>((ImGui::GetIO().MousePos.x - min().x) / area_.width()), 0.0, 1.0);
 }
 
-double Plot::mouse_position_y() const {
-  return std::clamp(static_cast<double>((max_.y - ImGui::GetIO().MousePos.y) / (max_.y - min_.y)), 0.0, 1.0);
+double Plot::mouse_y() const {
+  return std::clamp(static_cast<double>((max().y - ImGui::GetIO().MousePos.y) / area_.height()), 0.0, 1.0);
 }
 
 void Plot::draw_x_axis(bool has_grid) const {
   const float line = ImGui::GetTextLineHeight();
-  for (const double tick : ticks_of(x_, max_.x - min_.x, 4.0F * line)) {
-    const float at = at_position(x_.position(tick), 0.0).x;
-    if (has_grid) list_->AddLine({at, min_.y}, {at, max_.y}, kGridColour);
-    list_->AddLine({at, max_.y}, {at, max_.y + 0.25F * line}, kDimColour);
-    if (!x_.label.empty()) draw_text(list_, {at, max_.y + 0.25F * line}, {0.5F, 0.0F}, kDimColour, tick_text(tick));
+  for (const double tick : ticks_of(x(), area_.width(), 4.0F * line)) {
+    const float at = at_position(x().position(tick), 0.0).x;
+    if (has_grid) list_->AddLine({at, min().y}, {at, max().y}, kGridColour);
+    list_->AddLine({at, max().y}, {at, max().y + 0.25F * line}, kDimColour);
+    if (!x_.label.empty()) draw_text(list_, {at, max().y + 0.25F * line}, {0.5F, 0.0F}, kDimColour, tick_text(tick));
   }
   if (x_.label.empty()) return;
-  draw_text(list_, {0.5F * (min_.x + max_.x), max_.y + 1.25F * line}, {0.5F, 0.0F}, kTextColour, x_.label);
+  draw_text(list_, {0.5F * (min().x + max().x), max().y + 1.25F * line}, {0.5F, 0.0F}, kTextColour, x_.label);
 }
 
 void Plot::draw_y_axis(bool has_grid) const {
   const float line = ImGui::GetTextLineHeight();
-  for (const double tick : ticks_of(y_, max_.y - min_.y, 2.2F * line)) {
-    const float at = at_position(0.0, y_.position(tick)).y;
-    if (has_grid) list_->AddLine({min_.x, at}, {max_.x, at}, kGridColour);
-    list_->AddLine({min_.x - 0.25F * line, at}, {min_.x, at}, kDimColour);
-    draw_text(list_, {min_.x - 0.4F * line, at}, {1.0F, 0.5F}, kDimColour, tick_text(tick));
+  for (const double tick : ticks_of(y(), area_.height(), 2.2F * line)) {
+    const float at = at_position(0.0, y().position(tick)).y;
+    if (has_grid) list_->AddLine({min().x, at}, {max().x, at}, kGridColour);
+    list_->AddLine({min().x - 0.25F * line, at}, {min().x, at}, kDimColour);
+    draw_text(list_, {min().x - 0.4F * line, at}, {1.0F, 0.5F}, kDimColour, tick_text(tick));
   }
   // Above the axis, where it needs no turned text.
-  draw_text(list_, {min_.x - 2.6F * line, min_.y - 0.15F * line}, {0.0F, 1.0F}, kTextColour, y_.label);
+  draw_text(list_, {min().x - 2.6F * line, min().y - 0.15F * line}, {0.0F, 1.0F}, kTextColour, y_.label);
 }
 
 }  // namespace dolp::explore

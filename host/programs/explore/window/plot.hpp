@@ -6,20 +6,25 @@
 #include <string>
 #include <vector>
 
-#include "explore/heat_map.hpp"
-#include "explore/window/colours.hpp"
+#include "explore/scale.hpp"
+#include "explore/window/style.hpp"
 
 namespace dolp::explore {
+
+/// A rectangle in pixels of the window, y downwards.
+struct Area {
+  ImVec2 min, max;
+
+  float width() const { return max.x - min.x; }
+  float height() const { return max.y - min.y; }
+  /// At fractions of width and height, from the upper left corner.
+  ImVec2 at(float x, float y) const { return {min.x + x * width(), min.y + y * height()}; }
+};
 
 /// One axis of a plot.
 struct PlotAxis {
   std::string label;
-  double from = 0.0;
-  double to = 1.0;
-  bool is_log = false;
-
-  double position(double value) const;
-  double value(double position) const;
+  Scale scale;
 };
 
 /// A rectangle of the screen with two axes.
@@ -29,22 +34,22 @@ class Plot {
   /// background, grid and axes. `right` leaves room at the right side.
   Plot(const char* id, ImVec2 size, PlotAxis x, PlotAxis y, float right = 0.0F, bool has_grid = true);
 
-  ImVec2 min() const { return min_; }
-  ImVec2 max() const { return max_; }
-  const PlotAxis& x() const { return x_; }
-  const PlotAxis& y() const { return y_; }
+  const Area& area() const { return area_; }
+  ImVec2 min() const { return area_.min; }
+  ImVec2 max() const { return area_.max; }
+  const Scale& x() const { return x_.scale; }
+  const Scale& y() const { return y_.scale; }
   ImDrawList* list() const { return list_; }
 
-  ImVec2 at(double x, double y) const { return at_position(x_.position(x), y_.position(y)); }
+  ImVec2 at(double x_value, double y_value) const { return at_position(x().position(x_value), y().position(y_value)); }
   ImVec2 at_position(double x, double y) const;
-  /// State of the mouse inside the plot, and its position as values of the axes.
-  bool is_dragged() const { return is_active_; }
-  bool is_hovered() const { return is_hovered_; }
-  double mouse_x() const { return x_.value(mouse_position_x()); }
-  double mouse_position_x() const;
-  double mouse_position_y() const;
+  /// True while the mouse, which was pressed inside, is held down.
+  bool is_dragged() const { return is_dragged_; }
+  /// The position of the mouse, from 0 to 1 along both axes; outside of the plot that of the nearest point.
+  double mouse_x() const;
+  double mouse_y() const;
 
-  void clip() const { list_->PushClipRect(min_, max_, true); }
+  void clip() const { list_->PushClipRect(area_.min, area_.max, true); }
   void unclip() const { list_->PopClipRect(); }
 
  private:
@@ -52,10 +57,9 @@ class Plot {
   void draw_y_axis(bool has_grid) const;
 
   PlotAxis x_, y_;
-  ImVec2 min_, max_;
+  Area area_;
   ImDrawList* list_ = nullptr;
-  bool is_active_ = false;
-  bool is_hovered_ = false;
+  bool is_dragged_ = false;
 };
 
 /// A line through points, dashed where the style says so.

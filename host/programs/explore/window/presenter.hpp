@@ -1,10 +1,9 @@
 // Draws ImGui's lists into a window, on the device that computes.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
+#include <string>
 #include <vector>
 
 #include "device/buffer.hpp"
@@ -36,25 +35,19 @@ class Presenter {
   void draw(ImDrawData* data, VkExtent2D size, Picture* picture = nullptr);
 
  private:
-  /// Resources of one frame in flight.
-  struct Frame {
-    VkCommandBuffer commands = VK_NULL_HANDLE;
-    vulkan::UniqueFence done;
-    UniqueSemaphore acquired;
-  };
-
-  void create_frames();
+  void create_frame();
   void start_imgui();
+  void load_fonts();
   void recreate(VkExtent2D size);
-  bool acquire(Frame& frame, VkExtent2D size, std::uint32_t& image);
-  void record(const Frame& frame, const Swapchain::Image& image, ImDrawData* data, const vulkan::Buffer* copy) const;
-  void record_copy(VkCommandBuffer commands, VkImage image, const vulkan::Buffer& copy) const;
-  void submit(const Frame& frame, const Swapchain::Image& image) const;
+  bool acquire(VkExtent2D size, std::uint32_t& image);
+  void begin() const;
+  void record(const Swapchain::Image& image, ImDrawData* data, const vulkan::Buffer* copy) const;
+  void record_copy(VkImage image, const vulkan::Buffer& copy) const;
+  void submit(const VkSubmitInfo& info, const char* action) const;
+  void submit_frame(const Swapchain::Image& image) const;
   void present(const Swapchain::Image& image, std::uint32_t index, VkExtent2D size);
-  Picture read(const Frame& frame, const vulkan::Buffer& copy) const;
-  void wait(const Frame& frame) const;
-
-  static constexpr std::size_t kFramesInFlight = 2;
+  Picture read(const vulkan::Buffer& copy) const;
+  void wait() const;
 
   vulkan::Context& context_;
   VkSurfaceKHR surface_;
@@ -62,10 +55,15 @@ class Presenter {
   SurfaceFormat format_;
   UniqueRenderPass pass_;
   std::unique_ptr<Swapchain> swapchain_;
-  vulkan::UniqueCommandPool commands_;
   vulkan::UniqueDescriptorPool descriptors_;
-  std::array<Frame, kFramesInFlight> frames_;
-  std::size_t next_frame_ = 0;
+  // Of the frame that is drawn: the next one is laid out meanwhile, and waits for it before it is recorded.
+  vulkan::UniqueCommandPool pool_;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  vulkan::UniqueFence done_;
+  UniqueSemaphore acquired_;
 };
+
+/// Writes a picture as PNG, whole or not at all. Errors: IoError.
+void write_png(const Picture& picture, const std::string& path);
 
 }  // namespace dolp::explore

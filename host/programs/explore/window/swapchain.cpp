@@ -1,6 +1,7 @@
 #include "explore/window/swapchain.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "device/result.hpp"
 
@@ -70,16 +71,12 @@ UniqueRenderPass make_render_pass(VkDevice device, VkFormat format) {
                                     .pSubpasses = &subpass,
                                     .dependencyCount = 1,
                                     .pDependencies = &dependency};
-  VkRenderPass pass = VK_NULL_HANDLE;
-  check(vkCreateRenderPass(device, &info, nullptr, &pass), "creating a render pass");
-  return {device, pass};
+  return vulkan::created<UniqueRenderPass>(device, vkCreateRenderPass, info, "creating a render pass");
 }
 
 UniqueSemaphore make_semaphore(VkDevice device) {
   const VkSemaphoreCreateInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
-  VkSemaphore semaphore = VK_NULL_HANDLE;
-  check(vkCreateSemaphore(device, &info, nullptr, &semaphore), "creating a semaphore");
-  return {device, semaphore};
+  return vulkan::created<UniqueSemaphore>(device, vkCreateSemaphore, info, "creating a semaphore");
 }
 
 bool has_area(VkPhysicalDevice physical, VkSurfaceKHR surface, VkExtent2D wanted) {
@@ -121,9 +118,8 @@ void Swapchain::create(const vulkan::Context& context, VkSurfaceKHR surface, con
       .presentMode = VK_PRESENT_MODE_FIFO_KHR,
       .clipped = VK_TRUE,
       .oldSwapchain = old};
-  VkSwapchainKHR swapchain = VK_NULL_HANDLE;
-  check(vkCreateSwapchainKHR(context.device().get(), &info, nullptr, &swapchain), "creating the window's images");
-  swapchain_ = UniqueSwapchain(context.device().get(), swapchain);
+  swapchain_ = vulkan::created<UniqueSwapchain>(context.device().get(), vkCreateSwapchainKHR, info,
+                                                "creating the window's images");
 }
 
 void Swapchain::add_image(VkDevice device, VkImage image, VkFormat format, VkRenderPass pass) {
@@ -133,19 +129,17 @@ void Swapchain::add_image(VkDevice device, VkImage image, VkFormat format, VkRen
       .viewType = VK_IMAGE_VIEW_TYPE_2D,
       .format = format,
       .subresourceRange = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .levelCount = 1, .layerCount = 1}};
-  VkImageView view = VK_NULL_HANDLE;
-  check(vkCreateImageView(device, &view_info, nullptr, &view), "creating an image view");
-  UniqueImageView owned_view(device, view);
+  auto view = vulkan::created<UniqueImageView>(device, vkCreateImageView, view_info, "creating an image view");
+  const VkImageView attachment = view.get();
   const VkFramebufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
                                      .renderPass = pass,
                                      .attachmentCount = 1,
-                                     .pAttachments = &view,
+                                     .pAttachments = &attachment,
                                      .width = extent_.width,
                                      .height = extent_.height,
                                      .layers = 1};
-  VkFramebuffer framebuffer = VK_NULL_HANDLE;
-  check(vkCreateFramebuffer(device, &info, nullptr, &framebuffer), "creating a framebuffer");
-  images_.push_back({image, std::move(owned_view), UniqueFramebuffer(device, framebuffer), make_semaphore(device)});
+  auto framebuffer = vulkan::created<UniqueFramebuffer>(device, vkCreateFramebuffer, info, "creating a framebuffer");
+  images_.push_back({image, std::move(view), std::move(framebuffer), make_semaphore(device)});
 }
 
 }  // namespace dolp::explore

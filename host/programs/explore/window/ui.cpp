@@ -9,11 +9,9 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/text.hpp"
 #include "explore/readout.hpp"
-#include "explore/window/colours.hpp"
-#include "explore/window/curve_view.hpp"
-#include "explore/window/plan_panel.hpp"
-#include "explore/window/text.hpp"
+#include "explore/window/style.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -23,106 +21,93 @@ constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowF
                                     ImGuiWindowFlags_NoBackground;
 constexpr const char* kDialog = "###path";
 
-void coloured_text(ImU32 colour, const std::string& text) {
-  ImGui::PushStyleColor(ImGuiCol_Text, colour);
-  ImGui::PushTextWrapPos(0.0F);
+void label(const char* text) {
+  ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(shown(text).c_str());
-  ImGui::PopTextWrapPos();
-  ImGui::PopStyleColor();
+  ImGui::SameLine();
+}
+
+/// Returns why the text is refused; nothing where it is taken.
+std::string set_theta_max(View& view, const std::string& text) {
+  const std::optional<double> typed = parse_number(text);
+  if (!typed || *typed < Session::kLeastThetaMaxDeg || *typed > 90.0) {
+    return fmt::format("θ up to = {}: must be a number in [{}, 90]", text, Session::kLeastThetaMaxDeg);
+  }
+  view.theta_max_deg = *typed;
+  return {};
+}
+
+/// A bar with a button to cancel, or the result of a task.
+void draw_task(const char* name, BackgroundTask& task) {
+  ImGui::PushID(name);
+  if (task.is_running()) {
+    if (ImGui::Button("Cancel")) task.cancel();
+    ImGui::SameLine();
+    ImGui::ProgressBar(static_cast<float>(task.progress()), {-1.0F, 0.0F});
+  } else if (task.state() != BackgroundTask::State::kNone) {
+    coloured_text(task.state() == BackgroundTask::State::kFailed ? kErrorColour : kTextColour, task.message());
+  }
+  ImGui::PopID();
 }
 
 }  // namespace
 
-Ui::Ui(Session& session, BackgroundTask& table_export, BackgroundTask& true_error, BackgroundTask& fit, Actions actions,
-       const std::string& name)
-    : session_(session), table_export_(table_export), true_error_(true_error), fit_(fit), actions_(std::move(actions)) {
+Ui::Ui(Session& session, Actions& actions, const std::string& name) : session_(session), actions_(actions) {
   add_file_commands(name);
   add_view_commands();
 }
 
 void Ui::add_file_commands(const std::string& name) {
-  const auto ask = [this](const char* title, std::string path, bool must_exist,
-                          const std::function<void(const std::string&)>& accept) {
-    return [this, title, path = std::move(path), must_exist, &accept] { ask_path(title, path, must_exist, accept); };
+  // Asks for a path, and does something with it.
+  const auto ask = [this](const char* title, const std::string& path,
+                          const std::function<void(const std::string&)>& use, bool must_exist = false) {
+    return [this, dialog = PathDialog{title, path, must_exist, use, true}] { dialog_ = dialog; };
+  };
+  const auto with = [this](void (Actions::*act)(const std::string&)) {
+    return [this, act](const std::string& path) { (actions_.*act)(path); };
   };
   commands_ = {
-      {"File",
-       "Save the scene",
-       GLFW_KEY_S,
-       "Ctrl+S",
-       ask("Save the scene as TOML", name + "_scene.toml", false, actions_.save_scene),
-       {}},
-      {"File",
-       "Export the table",
-       GLFW_KEY_T,
-       "Ctrl+T",
-       ask("Compute the table of the scene's grid: .nc, .csv, .npy", name + "_table.nc", false, actions_.export_table),
-       {}},
-      {"File",
-       "Save the curve as CSV",
-       GLFW_KEY_E,
-       "Ctrl+E",
-       ask("Save the curve as CSV", name + "_curve.csv", false, actions_.save_curve),
-       {}},
-      {"File",
-       "Save a picture",
-       GLFW_KEY_I,
-       "Ctrl+I",
-       ask("Save a picture of the window as PNG", name + "_window.png", false, actions_.save_picture),
-       {}},
-      {"File",
-       "Load measured points",
-       GLFW_KEY_O,
-       "Ctrl+O",
-       ask("Load measured points: CSV with theta_deg, dolp", "measured.csv", true, actions_.load_measured),
-       {}},
-      {"File", "Remove measured points", 0, "", [this] { session_.clear_measured(); }, {}},
-      {"File", "Quit", GLFW_KEY_Q, "Ctrl+Q", [this] { actions_.quit(); }, {}},
+      {"File", "Save the scene", 'S', ask("Save the scene as TOML", name + "_scene.toml", with(&Actions::save_scene))},
+      {"File", "Export the table", 'T',
+       ask("Compute the table of the scene's grid: .nc, .csv, .npy", name + "_table.nc", with(&Actions::export_table))},
+      {"File", "Save the curve as CSV", 'E',
+       ask("Save the curve as CSV", name + "_curve.csv", with(&Actions::save_curve))},
+      {"File", "Save a picture", 'I',
+       ask("Save a picture of the window as PNG", name + "_window.png", with(&Actions::save_picture))},
+      {"File", "Load measured points", 'O',
+       ask(
+           "Load measured points: CSV with theta_deg, dolp", "measured.csv",
+           [this](const std::string& path) { session_.load_measured(path); }, true)},
+      {"File", "Remove measured points", 0, [this] { session_.clear_measured(); }},
+      {"File", "Quit", 'Q', [this] { actions_.quit(); }},
   };
 }
 
 void Ui::add_view_commands() {
-  const auto toggle = [this](bool View::*flag) {
-    return [this, flag] {
+  const auto add_switch = [this](const char* text, char key, bool View::*flag) {
+    const auto toggle = [this, flag] {
       View view = session_.view();
       view.*flag = !(view.*flag);
       session_.set_view(view);
     };
+    commands_.push_back({"View", text, key, toggle, [this, flag] { return session_.view().*flag; }});
   };
-  const auto is_on = [this](bool View::*flag) { return [this, flag] { return session_.view().*flag; }; };
-  const auto add = [this](Command command) { commands_.push_back(std::move(command)); };
-  add({"View", "Logarithmic axis", GLFW_KEY_L, "Ctrl+L", toggle(&View::is_log), is_on(&View::is_log)});
-  add({"View", "Overlay the other slope distribution", GLFW_KEY_D, "Ctrl+D", toggle(&View::has_overlay),
-       is_on(&View::has_overlay)});
-  add({"View", "Keep all effects", GLFW_KEY_G, "Ctrl+G", toggle(&View::keeps_all), is_on(&View::keeps_all)});
-  add({"Scene", "Pin the curve", GLFW_KEY_P, "Ctrl+P", [this] { session_.pin(); }, {}});
-  add({"Scene",
-       "True error of the curve",
-       GLFW_KEY_K,
-       "Ctrl+K",
-       [this] {
-         if (!session_.curve().is_finished()) return;
-         true_error_key_ = session_.curve().key();
-         actions_.find_true_error();
-       },
-       {}});
-  add({"Scene", "Fit to the measured points", GLFW_KEY_F, "Ctrl+F", [this] { actions_.fit(); }, {}});
-  add({"Scene", "Take all changes back", GLFW_KEY_R, "Ctrl+R", [this] { session_.reset_all(); }, {}});
-  add({"Help", "Shortcuts and hints", GLFW_KEY_H, "Ctrl+H", [this] { shows_help_ = true; }, {}});
-}
-
-void Ui::ask_path(const std::string& title, const std::string& path, bool must_exist,
-                  std::function<void(const std::string&)> accept) {
-  dialog_ = {title, path, must_exist, std::move(accept), true};
+  add_switch("Logarithmic axis", 'L', &View::is_log);
+  add_switch("Overlay the other slope distribution", 'D', &View::has_overlay);
+  add_switch("Keep all effects", 'G', &View::keeps_all);
+  commands_.push_back({"Scene", "Pin the curve", 'P', [this] { session_.pin(); }});
+  commands_.push_back({"Scene", "True error of the curve", 'K', [this] { actions_.find_true_error(); }});
+  commands_.push_back({"Scene", "Fit to the measured points", 'F', [this] { actions_.fit(); }});
+  commands_.push_back({"Scene", "Take all changes back", 'R', [this] { session_.reset_all(); }});
+  commands_.push_back({"Help", "Shortcuts and hints", 'H', [this] { shows_help_ = true; }});
 }
 
 void Ui::run_shortcuts() {
-  const std::vector<int> pressed = std::exchange(pressed_, {});
   if (ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) return;
-  for (const int key : pressed) {
-    for (const Command& command : commands_) {
-      if (command.key == key) command.run();
-    }
+  if (ImGui::GetIO().KeyMods != ImGuiKeyModFlags_Ctrl) return;
+  for (const Command& command : commands_) {
+    // GLFW's number of a letter's key is that of the letter.
+    if (command.key != 0 && ImGui::IsKeyPressed(command.key, false)) command.run();
   }
 }
 
@@ -131,7 +116,7 @@ void Ui::draw_menu(const char* menu) {
   for (const Command& command : commands_) {
     if (std::string_view(command.menu) != menu) continue;
     const bool is_checked = command.is_checked && command.is_checked();
-    if (ImGui::MenuItem(command.text, command.shortcut, is_checked)) command.run();
+    if (ImGui::MenuItem(command.text, command.shortcut().c_str(), is_checked)) command.run();
   }
   ImGui::EndMenu();
 }
@@ -173,7 +158,7 @@ void Ui::draw_help() {
   ImGui::SetNextWindowPos(centre, ImGuiCond_Appearing, {0.5F, 0.5F});
   if (ImGui::Begin("Shortcuts and hints", &shows_help_, ImGuiWindowFlags_NoCollapse)) {
     for (const Command& command : commands_) {
-      if (command.key != 0) ImGui::BulletText("%s: %s", command.shortcut, command.text);
+      if (command.key != 0) ImGui::BulletText("%s: %s", command.shortcut().c_str(), command.text);
     }
     ImGui::Separator();
     for (const char* hint :
@@ -187,80 +172,75 @@ void Ui::draw_help() {
   ImGui::End();
 }
 
-void Ui::show_quantity(Plotted quantity) {
-  View view = session_.view();
-  view.quantity = quantity;
-  session_.set_view(view);
-}
-
 void Ui::draw_view_controls() {
   View view = session_.view();
+  bool is_changed = false;
   const float width = 6.5F * ImGui::GetFontSize();
-  const auto label = [](const char* text) {
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(text);
-    ImGui::SameLine();
-  };
   label("show");
   ImGui::SetNextItemWidth(width);
   if (ImGui::BeginCombo("##quantity", shown(described(view.quantity).name).c_str())) {
-    for (const PlottedDescription& of : all_plotted()) {
+    for (const PlottedDescription& of : kAllPlotted) {
       const std::string text = shown(fmt::format("{}: {}", of.name, of.meaning));
-      if (ImGui::Selectable(text.c_str(), of.quantity == view.quantity)) show_quantity(of.quantity);
+      if (!ImGui::Selectable(text.c_str(), of.quantity == view.quantity)) continue;
+      view.quantity = of.quantity;
+      is_changed = true;
     }
     ImGui::EndCombo();
   }
-  view = session_.view();
   ImGui::SameLine();
-  bool is_changed = ImGui::Checkbox("log", &view.is_log);
+  is_changed |= ImGui::Checkbox("log", &view.is_log);
   ImGui::SameLine();
   is_changed |= ImGui::Checkbox("overlay", &view.has_overlay);
   ImGui::SameLine();
-  label(shown("   map over").c_str());
-  const char* const ids[] = {"##map x", "##map y"};
-  AxisKind* const axes[] = {&view.map_x, &view.map_y};
+  draw_map_axes(view, is_changed);
+  label("   θ up to");
+  ImGui::SetNextItemWidth(0.5F * width);
+  fields_.draw("theta max", view.theta_max_deg, [&](const std::string& text) {
+    const std::string wrong = set_theta_max(view, text);
+    is_changed = is_changed || wrong.empty();
+    return wrong;
+  });
+  ImGui::SameLine();
+  label("°  ");
+  if (ImGui::Button("pin (Ctrl+P)")) session_.pin();
+  if (is_changed) session_.set_view(view);
+  if (const std::string reason = fields_.reason("theta max"); !reason.empty()) coloured_text(kErrorColour, reason);
+}
+
+void Ui::draw_map_axes(View& view, bool& is_changed) {
+  label("   map over");
+  Axis* const axes[] = {&view.map_x, &view.map_y};
   for (int i = 0; i < 2; ++i) {
-    ImGui::SetNextItemWidth(0.7F * width);
-    if (ImGui::BeginCombo(ids[i], shown(axis_label(*axes[i])).c_str())) {
-      for (const AxisKind kind : {AxisKind::kTheta, AxisKind::kSigma, AxisKind::kQ}) {
-        if (!ImGui::Selectable(shown(axis_label(kind)).c_str(), kind == *axes[i])) continue;
-        // The two axes swap if the other one has this kind.
-        if (*axes[1 - i] == kind) *axes[1 - i] = *axes[i];
-        *axes[i] = kind;
+    ImGui::SetNextItemWidth(4.5F * ImGui::GetFontSize());
+    if (ImGui::BeginCombo(i == 0 ? "##map x" : "##map y", shown(axis_label(*axes[i])).c_str())) {
+      for (const Axis axis : kMapAxes) {
+        if (!ImGui::Selectable(shown(axis_label(axis)).c_str(), axis == *axes[i])) continue;
+        // The two axes swap if the other one is this.
+        if (*axes[1 - i] == axis) *axes[1 - i] = *axes[i];
+        *axes[i] = axis;
         is_changed = true;
       }
       ImGui::EndCombo();
     }
     ImGui::SameLine();
   }
-  label(shown("   θ up to").c_str());
-  ImGui::SetNextItemWidth(0.5F * width);
-  is_changed |=
-      ImGui::InputDouble("##theta max", &view.theta_max_deg, 0.0, 0.0, "%.4g", ImGuiInputTextFlags_EnterReturnsTrue);
-  ImGui::SameLine();
-  label(shown("°  ").c_str());
-  if (ImGui::Button("pin (Ctrl+P)")) session_.pin();
-  if (is_changed) session_.set_view(view);
 }
 
 void Ui::draw_fit() {
-  const std::optional<MeasuredPoints>& points = session_.residuals().points();
-  if (!points) return;
-  const bool is_running = fit_.state() == BackgroundTask::State::kRunning;
-  const bool is_ready = session_.fit_job().has_value() && !is_running;
+  if (!session_.residuals().data()) return;
+  BackgroundTask& task = actions_.fit_task();
+  const bool is_ready = session_.fit_job().has_value() && !task.is_running();
   ImGui::Spacing();
   ImGui::BeginDisabled(!is_ready);
   if (ImGui::Button("Fit (Ctrl+F)")) actions_.fit();
   ImGui::EndDisabled();
   ImGui::SameLine();
-  ImGui::TextDisabled("%s", shown(is_ready || is_running ? std::filesystem::path(points->data.name).filename().string()
-                                                         : "mark what varies")
-                                .c_str());
-  const bool is_old = fit_.state() == BackgroundTask::State::kDone && session_.fit_found() == nullptr;
-  if (is_old) {
+  const std::string file = std::filesystem::path(session_.residuals().data()->name).filename().string();
+  ImGui::TextDisabled("%s", shown(is_ready || task.is_running() ? file : "mark what varies").c_str());
+  if (task.state() == BackgroundTask::State::kDone && !session_.fit()) {
     coloured_text(kDimColour, "The scene is no longer that of the fit.");
   } else {
-    draw_task("fit", fit_);
+    draw_task("fit", task);
   }
 }
 
@@ -291,16 +271,16 @@ void Ui::draw_readout() {
 }
 
 void Ui::draw_price() {
-  if (explore::draw_price(session_, controls_, true_error_)) {
-    true_error_key_ = session_.curve().key();
-    actions_.find_true_error();
-  }
-  const bool is_old = true_error_.state() == BackgroundTask::State::kDone && true_error_key_ != session_.curve().key();
-  if (is_old) coloured_text(kDimColour, "The true error is that of the scene before.");
-  if (table_export_.state() != BackgroundTask::State::kNone) {
-    ImGui::TextUnformatted("table");
-    ImGui::SameLine();
-    draw_task("table", table_export_);
+  controls_.draw_accuracy(session_);
+  for (const std::string& line : cost_lines(session_)) coloured_text(kTextColour, line);
+  ImGui::BeginDisabled(!session_.curve().is_finished() || actions_.true_error_task().is_running());
+  if (ImGui::Button("True error (Ctrl+K)")) actions_.find_true_error();
+  ImGui::EndDisabled();
+  draw_task("reference", actions_.true_error_task());
+  if (actions_.is_true_error_old()) coloured_text(kDimColour, "The true error is that of the scene before.");
+  if (actions_.table_task().state() != BackgroundTask::State::kNone) {
+    label("table");
+    draw_task("table", actions_.table_task());
   }
   const Message& message = session_.message();
   if (!message.text.empty()) coloured_text(message.is_error ? kErrorColour : kTextColour, message.text);

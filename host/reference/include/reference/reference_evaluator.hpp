@@ -33,13 +33,12 @@ struct ReferenceOptions {
 ///   errors; r_q and the absorbed part negative) for cauchy with q <= 3/2.
 ///   Multiple scattering is for v-cavity masking, direct emission for v-cavity and smith.
 /// Errors: InputError outside the domain; Cancelled when `progress` returns false.
-class ReferenceEvaluator final : public MomentsEvaluator, public ScatteringEvaluator {
+class ReferenceEvaluator final : public ModelEvaluator {
  public:
   explicit ReferenceEvaluator(ReferenceOptions options = {}) : options_(options) {}
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
   /// pBRDFs from explicit vectors (reference/mueller.hpp), to kScatteringErrorDouble.
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override;
-  ScatteringEvaluator* scattering() override { return this; }
   EvaluationReport report() const override { return report_; }
   void clear_report() override { report_ = {}; }
 

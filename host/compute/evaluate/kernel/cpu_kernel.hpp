@@ -1,0 +1,31 @@
+// The shaders' own source compiled as C++, in float and in double: a translation unit for each precision.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "plan/kernel_data.hpp"
+
+namespace dolp {
+
+/// The kernels of shaders/*.comp over one set of kernel data, which must outlive the object.
+class CpuKernel {
+ public:
+  virtual ~CpuKernel() = default;
+
+  /// Fills the masking table of one shape; needed before `moments` of its entries when the data needs tables.
+  virtual void build_masking_table(std::size_t shape) = 0;
+  virtual kernel::MomentsNode moments(const MomentsEntry& entry) = 0;
+
+  /// The sums over the azimuths at a slope.
+  virtual kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope) = 0;
+
+  /// f cos(theta_i) cos(theta_r) for k_s = 1 over the beam's power of two, in 1/sr; of the data it needs the model and
+  /// the rule nodes.
+  virtual kernel::MuellerNode mueller(const kernel::BeamNode& beam) = 0;
+};
+
+std::unique_ptr<CpuKernel> make_cpu_kernel_float(const KernelData& data);
+std::unique_ptr<CpuKernel> make_cpu_kernel_double(const KernelData& data);
+
+}  // namespace dolp

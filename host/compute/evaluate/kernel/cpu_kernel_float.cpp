@@ -1,0 +1,20 @@
+#define DOLP_KERNEL_NAMESPACE kernel_float
+
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+namespace dolp::kernel_float {
+using real = float;
+using real2 = glm::vec2;
+using real4 = glm::vec4;
+}  // namespace dolp::kernel_float
+
+#include "evaluate/kernel/kernel_source.hpp"
+
+namespace dolp {
+
+std::unique_ptr<CpuKernel> make_cpu_kernel_float(const KernelData& data) {
+  return std::make_unique<kernel_float::SourceKernel>(data);
+}
+
+}  // namespace dolp

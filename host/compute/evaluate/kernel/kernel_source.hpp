@@ -1,0 +1,116 @@
+// Body of cpu_kernel_float.cpp and cpu_kernel_double.cpp, which define DOLP_KERNEL_NAMESPACE, real, real2 and real4
+// first.
+
+#include <bit>
+#include <cstdint>
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <vector>
+
+#include "evaluate/kernel/cpu_kernel.hpp"
+#include "plan/convert_reals.hpp"
+
+namespace dolp::DOLP_KERNEL_NAMESPACE {
+
+using glm::abs;
+using glm::clamp;
+using glm::floatBitsToUint;
+using glm::floor;
+using glm::frexp;
+using glm::max;
+using glm::min;
+using glm::mod;
+using glm::sqrt;
+using glm::uint;
+using glm::uintBitsToFloat;
+
+// x 2^k where 2^k is a normal number, as the kernel source requires; the C library's ldexp takes ten times as long.
+inline float ldexp(float x, int k) { return x * std::bit_cast<float>((k + 127) << 23); }
+inline double ldexp(double x, int k) { return x * std::bit_cast<double>(static_cast<std::int64_t>(k + 1023) << 52); }
+
+#include "physics/prelude.glsl"
+
+/// The kernel source as the body of a class; buffers and specialization constants are its members.
+struct KernelSource {
+#include "interface.glsl"
+#include "physics/all.glsl"
+
+  uint kDistribution = DOLP_CAUCHY;
+  uint kMasking = DOLP_MASKING_NONE;
+  bool kTotalReflection = false;
+  bool kIsMultiple = false;
+  bool kHasDirect = false;
+  int order_of_nodes = 1;
+  std::vector<real2> rule_nodes;
+  std::vector<real4> masking_table;
+
+  /// For the model and the rules of `data`, without masking tables.
+  static KernelSource of(const KernelData& data) {
+    KernelSource source;
+    source.kDistribution = static_cast<uint>(data.distribution);
+    source.kMasking = static_cast<uint>(data.masking);
+    source.kTotalReflection = data.has_total_reflection;
+    source.kIsMultiple = data.scattering == Scattering::kMultiple;
+    source.kHasDirect = data.has_direct;
+    source.order_of_nodes = data.rule_order;
+    for (const auto& node : data.rule_nodes) source.rule_nodes.push_back(convert_reals<real, real2, double>(node));
+    return source;
+  }
+
+  int largest_order() const { return order_of_nodes; }
+  real2 rule_node(int i) const { return rule_nodes[static_cast<std::size_t>(i)]; }
+  real4 masking_node(uint i) const { return masking_table[i]; }
+  void store_masking_node(uint i, real4 node) { masking_table[i] = node; }
+};
+
+class SourceKernel final : public CpuKernel {
+ public:
+  explicit SourceKernel(const KernelData& data)
+      : data_(data),
+        rule_(convert_reals<real, KernelSource::RuleNode, double>(data.rule)),
+        source_(KernelSource::of(data)) {
+    if (data.needs_masking_table()) source_.masking_table.resize(data.shapes.size() * KernelSource::kMaskingNodes);
+  }
+
+  void build_masking_table(std::size_t shape) override { source_.build_masking_table(shape_node(shape), table(shape)); }
+
+  kernel::MomentsNode moments(const MomentsEntry& entry) override {
+    const KernelSource::Row row{{shape_node(entry.shape)}, {table(entry.shape)}};
+    const auto theta = convert_reals<real, KernelSource::ThetaNode, double>(data_.thetas[entry.theta]);
+    const auto index = convert_reals<real, KernelSource::IndexNode, double>(data_.indices[entry.index]);
+    kernel::MomentsNode moments{};
+    for (std::uint32_t piece = 0; piece < piece_count(data_, entry.theta, data_.shapes[entry.shape]); ++piece) {
+      const auto task = source_.with_slopes(source_.task_of(task_word(data_.pieces[entry.theta], piece, 1)), theta);
+      const auto part = source_.piece_moments(rule_, theta, row, index, task);
+      add_piece(moments, convert_reals<double, kernel::MomentsNode, real>(part.member[0]));
+    }
+    return moments;
+  }
+
+  kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope) override {
+    const auto theta =
+        convert_reals<real, KernelSource::ThetaNode, double>(data_.thetas[static_cast<std::size_t>(slope.theta)]);
+    const auto index =
+        convert_reals<real, KernelSource::IndexNode, double>(data_.indices[static_cast<std::size_t>(slope.index)]);
+    const auto own = convert_reals<real, KernelSource::SlopeNode, double>(slope);
+    return convert_reals<double, kernel::AzimuthNode, real>(source_.azimuths_of(rule_, theta, index, own));
+  }
+
+  kernel::MuellerNode mueller(const kernel::BeamNode& beam) override {
+    const auto node = source_.mueller(convert_reals<real, KernelSource::BeamNode, double>(beam));
+    return convert_reals<double, kernel::MuellerNode, real>(node);
+  }
+
+ private:
+  static uint table(std::size_t shape) { return static_cast<uint>(shape * KernelSource::kMaskingNodes); }
+
+  KernelSource::ShapeNode shape_node(std::size_t shape) const {
+    return convert_reals<real, KernelSource::ShapeNode, double>(data_.shapes[shape]);
+  }
+
+  const KernelData& data_;
+  KernelSource::RuleNode rule_;
+  KernelSource source_;
+};
+
+}  // namespace dolp::DOLP_KERNEL_NAMESPACE

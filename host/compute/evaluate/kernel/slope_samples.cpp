@@ -1,0 +1,324 @@
+#include "evaluate/kernel/slope_samples.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#define DOLP_KERNEL_NAMESPACE sampling_kernel
+#define DOLP_DOUBLE
+
+namespace dolp::sampling_kernel {
+using real = double;
+using real2 = glm::dvec2;
+using real4 = glm::dvec4;
+}  // namespace dolp::sampling_kernel
+
+#include "evaluate/kernel/kernel_source.hpp"
+
+namespace dolp {
+
+using sampling_kernel::KernelSource;
+
+namespace {
+
+// Spacing of the ends of pieces, in e-folds of slope, for distributions of many widths.
+constexpr double kWidthStep = 1.3;
+// Spacing of the widths, in e-folds, at which the number of nodes is determined.
+constexpr double kAskedStep = 0.4;
+
+// -ln of a share of the facets that counts as zero.
+constexpr double kNoFacets = 80.0;
+
+// Requirements of one corner for the rule of a piece.
+struct SampleRequest {
+  double all = 0.0;     // weight_of_shape of orders.glsl
+  double digits = 0.0;  // of the piece
+};
+
+// An end of a piece of the slope axis.
+struct End {
+  double slope = 0.0;
+  std::uint32_t of_direction = 0;  // breakpoint at or before it
+  bool is_own = false;             // it is that breakpoint
+};
+
+// Factors of the weights of the sampled slopes, shared by all shapes of one width.
+struct SlopeWeights {
+  double m = 0.0;
+  Eigen::ArrayXd exponent;  // common_exponent of slope.glsl
+  Eigen::ArrayXd common;    // independent of the tail, up to a factor
+};
+
+// Shapes between which all wanted ones lie, with the scale and cut that the hardest of these needs: widths from the
+// narrowest to the widest, each with the heaviest and the lightest tail.
+std::vector<kernel::ShapeNode> corners_of(const KernelData& data, std::span<const std::uint32_t> shapes) {
+  kernel::ShapeNode corner = data.shapes[shapes.front()];
+  double widest = corner.m, lightest = corner.q_minus_1;
+  for (const std::uint32_t i : shapes) {
+    const kernel::ShapeNode& shape = data.shapes[i];
+    corner.scale = std::min(corner.scale, shape.scale);
+    corner.cut = std::max(corner.cut, shape.cut);
+    corner.m = std::min(corner.m, shape.m);
+    corner.q_minus_1 = std::min(corner.q_minus_1, shape.q_minus_1);
+    widest = std::max(widest, shape.m);
+    lightest = std::max(lightest, shape.q_minus_1);
+  }
+  const double narrowest = corner.m, heaviest = corner.q_minus_1;
+  const double steps = std::ceil(std::log(widest / narrowest) / kAskedStep);
+  std::vector<kernel::ShapeNode> corners;
+  for (double i = 0.0; i <= steps; ++i) {
+    corner.m = i == 0.0 ? narrowest : narrowest * std::pow(widest / narrowest, i / steps);
+    corner.q_minus_1 = heaviest;
+    corners.push_back(corner);
+    corner.q_minus_1 = lightest;
+    if (lightest > heaviest) corners.push_back(corner);
+  }
+  return corners;
+}
+
+}  // namespace
+
+bool has_slope_samples(const MomentsRequest& request) {
+  return request.masking == Masking::kNone || request.masking == Masking::kVCavity;
+}
+
+struct SlopeSampling::Impl {
+  const KernelData& data;
+  KernelSource source;
+  KernelSource::RuleNode rule;
+
+  explicit Impl(const KernelData& of)
+      : data(of), source(KernelSource::of(of)), rule(std::bit_cast<KernelSource::RuleNode>(of.rule)) {}
+
+  // The breakpoints of the direction below the cut, the cut itself, and further ends among the shapes' widths.
+  std::vector<End> ends_of(std::uint32_t theta, std::span<const kernel::ShapeNode> corners) {
+    const kernel::ThetaNode& node = data.thetas[theta];
+    const double cut = corners.front().cut;
+    std::vector<End> ends;
+    for (std::uint32_t i = 0; i <= data.pieces[theta].count && (i == 0 || node.end[i - 1] < cut); ++i) {
+      ends.push_back({node.end[i], i, true});
+    }
+    const double last = std::min(ends.back().slope, cut);
+    const double narrowest = corners.front().scale;
+    const double widest = corners.back().m;
+    const auto steps = static_cast<int>(std::log(widest / narrowest) / kWidthStep);
+    for (int i = 0; i < steps + (steps > 0 ? 1 : 0); ++i) {
+      const double slope = narrowest * std::pow(widest / narrowest, (i + 0.5) / (steps + 1.0));
+      if (slope >= last) break;
+      const auto after = std::ranges::find_if(ends, [&](const End& end) { return end.slope > slope; });
+      ends.insert(after, {slope, (after - 1)->of_direction, false});
+    }
+    return ends;
+  }
+
+  KernelSource::Task task_of(std::uint32_t theta, std::span<const End> ends, std::size_t piece) {
+    const auto has_root = [&](const End& end, unsigned bit) {
+      return end.is_own && (data.pieces[theta].roots[end.of_direction] & bit) != 0;
+    };
+    KernelSource::Task task{};
+    const std::size_t last = ends.size() - 1;
+    task.members = 1;
+    task.piece = static_cast<int>(piece);
+    task.root_at_start = has_root(ends[piece], kRootAbove);
+    task.root_at_end = has_root(ends[piece + 1], kRootBelow);
+    task.root_before_start = piece > 0 && has_root(ends[piece - 1], kRootAbove);
+    task.root_after_end = piece + 2 <= last && has_root(ends[piece + 2], kRootBelow);
+    task.before = ends[piece > 0 ? piece - 1 : 0].slope;
+    task.start = ends[piece].slope;
+    task.end = ends[piece + 1].slope;
+    task.after = ends[std::min(piece + 2, last)].slope;
+    task.last = ends[last].slope;
+    return task;
+  }
+
+  // The piece as the most demanding corner requires it, and the digits that each corner requires.
+  KernelSource::Piece hardest_piece(const KernelSource::ThetaNode& theta, const KernelSource::IndexNode& index,
+                                    std::span<const kernel::ShapeNode> corners, const KernelSource::Task& task,
+                                    std::vector<SampleRequest>& requests) {
+    KernelSource::Piece hardest{};
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      KernelSource::Row row{};
+      row.shape[0] = std::bit_cast<KernelSource::ShapeNode>(corners[i]);
+      const KernelSource::Piece own = source.make_piece(rule, theta, row, index, task);
+      requests[i].digits = own.digits;
+      if (own.order > hardest.order) hardest = own;
+    }
+    return hardest;
+  }
+
+  void add_rule(SlopeSamples& samples, const KernelSource::ThetaNode& theta, std::span<const kernel::ShapeNode> corners,
+                const KernelSource::Piece& piece, const std::vector<SampleRequest>& requests, int order) {
+    const int first = source.rule_offset(KernelSource::kSectionGauss, order);
+    for (int i = 0; i < order; ++i) {
+      const auto node = source.rule_node(first + i);
+      const auto place = source.place_on_piece(piece, node.x);
+      const auto hyperbolic = source.sinh_cosh(piece.start + piece.extent * place.x);
+      const double scale = corners.front().scale;
+      SampledSlope slope;
+      slope.t = scale * hyperbolic.x;
+      slope.dt = 2.0 * node.y * scale * hyperbolic.y * piece.extent * place.y;
+      for (std::size_t j = 0; j < corners.size(); ++j) {
+        if (requests[j].digits <= slope.digits) continue;  // satisfied already
+        const auto shape = std::bit_cast<KernelSource::ShapeNode>(corners[j]);
+        const double u = slope.t / shape.m;
+        const double mass =
+            KernelSource::kPi * source.slope_density(shape, u, source.common_exponent(u)) * slope.dt / shape.m;
+        slope.digits = std::max(slope.digits, source.digits_of_slope(rule, theta, requests[j].all, requests[j].digits,
+                                                                     order, slope.t, mass));
+      }
+      samples.slopes.push_back(slope);
+    }
+  }
+
+  SlopeWeights weights_of(const SlopeSamples& samples, KernelSource::ShapeNode shape) {
+    shape.q_minus_1 = 1.0;  // makes the weights independent of the shape
+    const auto count = static_cast<Eigen::Index>(samples.slopes.size());
+    SlopeWeights weights{shape.m, Eigen::ArrayXd(count), Eigen::ArrayXd(count)};
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const SampledSlope& slope = samples.slopes[static_cast<std::size_t>(i)];
+      const double u = slope.t / shape.m;
+      weights.exponent[i] = source.common_exponent(u);
+      weights.common[i] = source.slope_density(shape, u, 0.0) * slope.dt;
+    }
+    return weights;
+  }
+
+  // Sum of a rule over a piece with `share` of the facets. Normalising by the known share cancels the error of the
+  // density alone and every common factor of the weights.
+  static kernel::AzimuthNode sum_of(std::uint32_t first, std::uint32_t count, const Eigen::ArrayXd& own, double share,
+                                    std::span<const kernel::AzimuthNode> azimuths) {
+    using Azimuths = Eigen::Matrix<double, sizeof(kernel::AzimuthNode) / sizeof(double), Eigen::Dynamic>;
+    const Eigen::Map<const Azimuths> all(&azimuths[first].r_i, Azimuths::RowsAtCompileTime, count);
+    const double mass = own.segment(first, count).sum();
+    std::array<double, Azimuths::RowsAtCompileTime> sums{};
+    Eigen::Map<Eigen::Matrix<double, Azimuths::RowsAtCompileTime, 1>>(sums.data()).noalias() =
+        all.lazyProduct(own.segment(first, count).matrix()) * (mass > 0.0 ? share / (KernelSource::kPi * mass) : 0.0);
+    return std::bit_cast<kernel::AzimuthNode>(sums);
+  }
+
+  // The moments of one shape without the slopes beyond the cut; `own` is scratch space for the weights.
+  kernel::MomentsNode moments_of(const SlopeSamples& samples, const KernelSource::ShapeNode& shape,
+                                 const SlopeWeights& weights, std::span<const kernel::AzimuthNode> azimuths,
+                                 Eigen::ArrayXd& own) {
+    const double factor = source.exponent_factor(shape);
+    const auto has_facets = [&](const SampledPiece& piece) {
+      return factor * source.common_exponent(piece.start / shape.m) < kNoFacets;
+    };
+    const auto end = std::ranges::partition_point(samples.pieces, has_facets);
+    const SampledPiece& last = *(end - 1);
+    const auto count = static_cast<Eigen::Index>(last.first + last.fine + last.coarse);
+    own.head(count) = weights.common.head(count) * (-factor * weights.exponent.head(count)).exp();
+    kernel::MomentsNode moments{};
+    double from = 0.0;
+    for (auto piece = samples.pieces.begin(); piece != end; ++piece) {
+      const double to = factor * source.common_exponent(piece->end / shape.m);
+      const double share = -std::exp(-from) * std::expm1(from - to);
+      from = to;
+      const auto fine = sum_of(piece->first, piece->fine, own, share, azimuths);
+      const auto coarse = sum_of(piece->first + piece->fine, piece->coarse, own, share, azimuths);
+      const auto apart = [](double a, double b) { return std::abs(a - b); };
+      const bool is_steep = piece->end > slope_with_bounces(DOLP_MOST_BOUNCES);
+      add_piece(moments,
+                {fine.r_i, fine.r_q, fine.albedo, fine.deficit, fine.behind, is_steep ? fine.r_i : 0.0, fine.direct_i,
+                 fine.direct_q, std::max(apart(fine.r_i, coarse.r_i), apart(fine.r_q, coarse.r_q)),
+                 apart(fine.albedo, coarse.albedo), apart(fine.deficit, coarse.deficit),
+                 std::max(apart(fine.direct_i, coarse.direct_i), apart(fine.direct_q, coarse.direct_q)), 0.0});
+    }
+    return moments;
+  }
+};
+
+SlopeSampling::SlopeSampling(const KernelData& data) : impl_(std::make_unique<Impl>(data)) {}
+SlopeSampling::~SlopeSampling() = default;
+
+SlopeSamples SlopeSampling::plan(SampledEntries entries) const {
+  const std::vector<kernel::ShapeNode> corners = corners_of(impl_->data, entries.shapes);
+  const std::vector<End> ends = impl_->ends_of(entries.theta, corners);
+  const auto theta = std::bit_cast<KernelSource::ThetaNode>(impl_->data.thetas[entries.theta]);
+  const auto index = std::bit_cast<KernelSource::IndexNode>(impl_->data.indices[entries.index]);
+  SlopeSamples samples;
+  samples.cut = std::min(corners.front().cut, ends.back().slope);
+  std::vector<SampleRequest> requests;
+  for (const kernel::ShapeNode& corner : corners) {
+    requests.push_back({.all = impl_->source.weight_of_shape(theta, std::bit_cast<KernelSource::ShapeNode>(corner))});
+  }
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    const KernelSource::Piece piece =
+        impl_->hardest_piece(theta, index, corners, impl_->task_of(entries.theta, ends, i), requests);
+    const int coarse = std::min(impl_->source.coarse_order(piece.order), impl_->data.rule_order);
+    samples.pieces.push_back(
+        {ends[i].slope, std::min(ends[i + 1].slope, samples.cut), static_cast<std::uint32_t>(samples.slopes.size()),
+         static_cast<std::uint32_t>(piece.order), static_cast<std::uint32_t>(coarse), ends[i].of_direction});
+    impl_->add_rule(samples, theta, corners, piece, requests, piece.order);
+    impl_->add_rule(samples, theta, corners, piece, requests, coarse);
+  }
+  samples.entries = std::move(entries);
+  return samples;
+}
+
+void SlopeSampling::append(const SlopeSamples& samples, std::vector<kernel::SlopeNode>& nodes) const {
+  const Pieces& pieces = impl_->data.pieces[samples.entries.theta];
+  for (const SampledPiece& piece : samples.pieces) {
+    for (std::uint32_t i = 0; i < piece.fine + piece.coarse; ++i) {
+      const SampledSlope& slope = samples.slopes[piece.first + i];
+      nodes.push_back({slope.t, slope.digits, static_cast<double>(samples.entries.theta),
+                       static_cast<double>(samples.entries.index),
+                       static_cast<double>(pieces.most_nodes[piece.of_direction]), i < piece.fine ? 0.0 : 1.0});
+    }
+  }
+}
+
+void SlopeSampling::integrate(const SlopeSamples& samples, std::span<const kernel::AzimuthNode> azimuths,
+                              double unit_roundoff, std::span<Moments> moments) const {
+  const KernelData& data = impl_->data;
+  const auto& [direction, theta, index, shapes] = samples.entries;
+  double evaluations = 0.0;
+  for (const kernel::AzimuthNode& azimuth : azimuths) evaluations += azimuth.evaluations;
+  SlopeWeights weights;
+  Eigen::ArrayXd own(static_cast<Eigen::Index>(samples.slopes.size()));
+  for (const std::uint32_t shape : shapes) {
+    const auto node = std::bit_cast<KernelSource::ShapeNode>(data.shapes[shape]);
+    if (node.m != weights.m) weights = impl_->weights_of(samples, node);
+    kernel::MomentsNode sums = impl_->moments_of(samples, node, weights, azimuths, own);
+    sums.deficit += data.thetas[theta].c * impl_->source.slope_tail(node, samples.cut);
+    sums.evaluations = evaluations / static_cast<double>(shapes.size());
+    moments[data.entry_of(direction, index, shape)] =
+        moments_from_kernel(sums, data, {theta, shape, index}, unit_roundoff);
+  }
+}
+
+void SlopeSampling::compute(SampledEntries entries, CpuKernel& kernel, double unit_roundoff,
+                            std::span<Moments> moments) const {
+  const SlopeSamples samples = plan(std::move(entries));
+  std::vector<kernel::SlopeNode> slopes;
+  append(samples, slopes);
+  std::vector<kernel::AzimuthNode> azimuths;
+  azimuths.reserve(slopes.size());
+  for (const kernel::SlopeNode& slope : slopes) azimuths.push_back(kernel.azimuths(slope));
+  integrate(samples, azimuths, unit_roundoff, moments);
+}
+
+std::vector<SampledEntries> sampled_entries(const MomentsRequest& request, const KernelData& data, std::size_t first,
+                                            std::size_t last) {
+  std::vector<SampledEntries> sampled;
+  for (auto direction = static_cast<std::uint32_t>(first); direction < last; ++direction) {
+    if (!data.is_grid) {
+      sampled.push_back({direction, direction, direction, {data.shape_of[direction]}});
+      continue;
+    }
+    for (std::uint32_t index = 0; index < data.indices.size(); ++index) {
+      SampledEntries own{direction, data.theta_of(direction, index, 0), index, {}};
+      for (std::uint32_t shape = 0; shape < data.shapes.size(); ++shape) {
+        if (request.is_wanted(data.entry_of(direction, index, shape))) own.shapes.push_back(shape);
+      }
+      if (!own.shapes.empty()) sampled.push_back(std::move(own));
+    }
+  }
+  return sampled;
+}
+
+}  // namespace dolp

@@ -1,0 +1,112 @@
+// The constants of plan/ that steer cost or accuracy, in one table. Each has a mark:
+//   proved  the formula stands beside it
+//   fitted  the command stands beside it that finds it; kModels of rule.cpp too: `dolp-calibrate fit`
+//   chosen  everything else. Where numbers stand beside it, they are the mean evaluations of an entry with half, with
+//   it
+//           and with double, of 150 ordinary entries of each masking concerned at 1e-4 (`dolp-calibrate check`); no
+//           bound was below its error in any of them. "Corners" means that ordinary entries see no difference.
+#pragma once
+
+namespace dolp {
+
+// ---- Rules (rule.cpp) ----------------------------------------------------------------------------------------------
+
+/// Proved: coarse_order of shaders/physics/orders.glsl, the share of the finer rule's nodes that the coarser has.
+inline constexpr double kCoarseShare = 0.8;
+/// Nodes that a piece has for each digit, roughly, for what a cusp or line spoils without a split.
+inline constexpr double kNodesPerDigit = 1.2;  // chosen: 502, 461, 425
+/// Share of the tolerance that a line may spoil without being split off: it spoils both rules of a pair alike, so that
+/// their distance does not show it.
+inline constexpr double kLineShare = 0.1;  // chosen: 471, 461, 452
+/// A singularity |x|^p at an end costs a rule n^-(p + 2); a cluster of its nodes there squares that. Below this q, for
+/// each digit, the line of `integral`, p = 2q - 1, would want more nodes than a cluster takes.
+inline constexpr double kClusterBelowQ = 0.3;  // chosen: 563, 608, 609
+/// The line of the gaussian is smooth but steep for rough surfaces: sigma from which on it is split, for few digits and
+/// for more.
+inline constexpr double kLineSigma = 0.6;       // chosen: 632, 608, 542
+inline constexpr double kTightLineSigma = 0.3;  // chosen: for more than 8 digits alone
+inline constexpr double kTightDigits = 8.0;     // chosen: 632, 608, 608
+/// Proved: 2q of the cauchy with q = 2, which the gaussian's cusp resembles.
+inline constexpr double kGaussianCuspPower = 4.0;
+/// Largest orders: for few digits, and for each digit beyond.
+inline constexpr int kPlainOrder = 64;         // chosen
+inline constexpr double kOrderPerDigit = 8.0;  // chosen: 629, 629, 631
+/// Kinks where the beams of a groove end matter less after more bounces: each split gains about this many digits.
+inline constexpr double kDigitsPerSplit = 2.0;  // chosen: 2350, 1765, 1394; flagged 5, 11, 23 %
+/// Of the tolerance: far below the reflection of the darkest surfaces.
+inline constexpr double kDimmest = 1e-10;  // chosen: corners
+
+// ---- Slopes (kernel_data.cpp) --------------------------------------------------------------------------------------
+
+/// Share of the tolerance that the slopes beyond the cut may carry.
+inline constexpr double kCutShare = 0.01;  // chosen: 631, 629, 628
+/// Im N^2 above which absorption has smoothed the critical line of total reflection.
+inline constexpr double kSoftCriticalLine = 0.3;  // chosen: corners
+/// From a plain breakpoint to a horizon that is worth one, as a factor.
+inline constexpr double kLongWay = 300.0;  // chosen: corners
+/// Scale of the masking table, the width of the slope distribution if it can be. The end of the table, 5e8 scales away,
+/// must lie far beyond slope 1, where p is a power law, unless the tail there is negligible (q >= kLightTailQ).
+inline constexpr double kSmallestHeavyTableScale = 1e-4;  // chosen: corners
+inline constexpr double kLightTailQ = 1.5;                // chosen: corners
+inline constexpr double kLargestTableScale = 0.5;         // chosen: corners
+/// From a breakpoint of steep grooves to the next, in bounces.
+inline constexpr double kSteepStep = 16.0;  // chosen: 1773, 1765, 1759
+/// Bounces whose critical line splits the slopes.
+inline constexpr int kCriticalBounces = 3;  // chosen
+/// Tolerance of the indices of a basis, over the request's: bounds grow by the weights.
+inline constexpr double kIndexNodeTolerance = 0.5;  // chosen
+
+// ---- Bounds (error_bounds.cpp) -------------------------------------------------------------------------------------
+
+/// Of the interpolation error of G relative to the albedo (quintic Hermite, 8 and 64 cells an octave).
+inline constexpr double kMaskingTableErrorFloat = 3e-8;    // chosen
+inline constexpr double kMaskingTableErrorDouble = 1e-12;  // chosen: corners
+/// Of smith's, over 2q - 3, next to the end of its domain.
+inline constexpr double kDivergingSlope = 0.06;  // chosen
+/// Rounding errors in units of the roundoff.
+inline constexpr double kRoundings = 20.0;                // chosen: 629 each
+inline constexpr double kHeavyTailRoundings = 80.0;       // chosen: corners
+inline constexpr double kHeavyTailQ = 1.1;                // chosen: corners
+inline constexpr double kHeavyTailSmithQ = 1.6;           // chosen: corners
+inline constexpr double kExtremeTailRoundings = 400.0;    // chosen: corners
+inline constexpr double kExtremeTailQ = 1.01;             // chosen: corners
+inline constexpr double kCriticalRoundings = 300.0;       // chosen
+inline constexpr double kMostCriticalRoundings = 3000.0;  // chosen
+inline constexpr double kSmoothM = 0.05;                  // chosen
+/// Error of the finer rule over its distance from the coarser one: smooth, with a masking table, in grooves, where
+/// beams of many bounces end at kinks that are not split, and beside a critical line, which lies where rounding leaves
+/// it.
+inline constexpr double kPairFactor = 4.0;         // chosen
+inline constexpr double kTablePairFactor = 8.0;    // chosen
+inline constexpr double kGroovePairFactor = 10.0;  // chosen
+inline constexpr double kCriticalFactor = 2.0;     // chosen
+/// Of the tolerance that a rule is made for: no bound of a sum is below it.
+inline constexpr double kLeastShareOfTolerance = 0.1;  // chosen
+/// Rounding in grooves, in units of the roundoff and of the cosine: the last bounces may be grazing, where even weak
+/// reflectors reflect everything.
+inline constexpr double kGrooveRoundings = 4.0;  // chosen
+/// Error of taking many bounces in a groove as one, over the cosine and the share of these grooves. It is largest for
+/// the best conductors, where light reflects very often. Fitted: the steep cases of
+/// tests/compute/grooves_test.cpp.
+inline constexpr double kManyBouncesError = 1e-3;
+inline constexpr double kVeryManyBounces = 1024.0;  // chosen
+inline constexpr double kVeryManyBouncesError = 1e-2;
+/// Share of a ray's bounces with cos(beta) >= a/2, at least. Proved: sin(chi) >= 1/2 on 2/3 of the
+/// fan, less its ends.
+inline constexpr double kNotGrazing = 0.6;
+
+// ---- pBRDF of grooves (further_bounces.cpp) ------------------------------------------------------------------------
+
+/// Chosen: the work of a beam goes as its square. At theta_r = theta_i what is left of f of 10 + 60i, q 2.02, is 1e-5.
+inline constexpr int kMostBouncesOfBeam = 1000;
+/// Chosen: of the accuracy, for the bounces that are not followed.
+inline constexpr double kNegligibleBounces = 0.01;
+/// Chosen: of 2q - 3, below which absorption ends the sum and not the fall of the slope density.
+inline constexpr double kSlowestFall = 0.1;
+
+// ---- Effects (effects.cpp) -----------------------------------------------------------------------------------------
+
+/// Chosen: of the tolerance, for all dropped effects together.
+inline constexpr double kDroppedShare = 0.1;
+
+}  // namespace dolp

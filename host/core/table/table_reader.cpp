@@ -1,0 +1,348 @@
+// Reads tables through HDF5 itself: the netCDF library follows dimension scales, on which damaged files hang it.
+#include "table/table_reader.hpp"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <array>
+#include <dolp/errors.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "model/scene_entry.hpp"
+#include "table/hdf5_handle.hpp"
+#include "table/table_file.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr std::size_t kEntriesAtOnce = std::size_t{1} << 18U;  // of a part that is read
+
+namespace fs = std::filesystem;
+
+// deflate, which other tools apply, leaves no less than a 1032nd of the bytes.
+constexpr std::size_t kMostShrinking = 1032;
+// The text of a scene has at most 16 MiB.
+constexpr std::size_t kMostTextBytes = 64U << 20U;
+
+/// An open file, whose errors are InputErrors with its name.
+class Reader {
+ public:
+  explicit Reader(const fs::path& path) : path_(path) {
+    if (!fs::exists(path)) fail("there is no such file");
+    if (!fs::is_regular_file(path)) fail("is not a regular file");
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // messages are ours
+    bytes_ = fs::file_size(path);
+    file_ = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
+    if (!file_) fail("is not a NetCDF table of dolp, or cannot be read");
+  }
+
+  [[noreturn]] void fail(const std::string& what) const { throw InputError(path_.string() + ": " + what); }
+  void check(herr_t code, const std::string& what) const {
+    if (code < 0) fail(what + ": cannot be read; the file is damaged");
+  }
+
+  std::size_t bytes() const { return bytes_; }
+  const Hdf5Handle& file() const { return file_; }
+
+  /// A variable whose values are in this file; nothing where it is not there.
+  Hdf5Handle find(const std::string& name) const {
+    const htri_t exists = H5Lexists(file_.id(), name.c_str(), H5P_DEFAULT);
+    check(exists, name);
+    if (exists == 0) return {};
+    H5L_info_t link{};
+    check(H5Lget_info(file_.id(), name.c_str(), &link, H5P_DEFAULT), name);
+    if (link.type != H5L_TYPE_HARD) fail(name + ": is a link; a table holds all of its values");
+    Hdf5Handle variable(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
+    check(variable ? 0 : -1, name);
+    const Hdf5Handle creation(H5Dget_create_plist(variable.id()), H5Pclose);
+    check(creation ? 0 : -1, name);
+    if (H5Pget_layout(creation.id()) == H5D_VIRTUAL || H5Pget_external_count(creation.id()) != 0) {
+      fail(name + ": its values are in another file; a table holds all of its values");
+    }
+    return variable;
+  }
+
+  std::vector<hsize_t> shape_of(const Hdf5Handle& variable, const std::string& name) const {
+    const Hdf5Handle space(H5Dget_space(variable.id()), H5Sclose);
+    check(space ? 0 : -1, name);
+    const int rank = H5Sget_simple_extent_ndims(space.id());
+    check(rank, name);
+    std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
+    check(H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr), name);
+    return shape;
+  }
+
+  /// Refuses values that a file of this size cannot hold, before memory is taken for them.
+  void check_claim(const std::string& name, std::size_t bytes) const {
+    if (bytes / kMostShrinking <= bytes_) return;
+    fail(fmt::format("{}: {} bytes are claimed, which a file of {} cannot hold", name, bytes, bytes_));
+  }
+
+  void read(const Hdf5Handle& variable, const std::string& name, hid_t type, void* values) const {
+    check(H5Dread(variable.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), name);
+  }
+
+ private:
+  fs::path path_;
+  std::size_t bytes_ = 0;
+  Hdf5Handle file_;
+};
+
+bool is_of_class(hid_t type, H5T_class_t wanted) { return H5Tget_class(type) == wanted; }
+
+/// The values of a list; none where it is not there. Errors: InputError for more than `most`.
+std::vector<double> read_list(const Reader& reader, const std::string& name, std::size_t most) {
+  const Hdf5Handle variable = reader.find(name);
+  if (!variable) return {};
+  const std::vector<hsize_t> shape = reader.shape_of(variable, name);
+  if (shape.size() != 1) reader.fail(name + ": is not a list");
+  if (shape[0] > most) {
+    reader.fail(fmt::format("{}: {} values; a table has at most {} entries", name, shape[0], kMostTableEntries));
+  }
+  reader.check_claim(name, shape[0] * sizeof(double));
+  std::vector<double> values(shape[0]);
+  reader.read(variable, name, H5T_NATIVE_DOUBLE, values.data());
+  return values;
+}
+
+/// The text of a fixed length that an attribute has, without the zero bytes that pad it.
+std::string fixed_text(const Reader& reader, const Hdf5Handle& attribute, const Hdf5Handle& type,
+                       const std::string& name) {
+  const std::size_t length = H5Tget_size(type.id());
+  if (length > kMostTextBytes) reader.fail(name + ": the text is too long");
+  reader.check_claim(name, length);
+  std::string text(length, '\0');
+  reader.check(H5Aread(attribute.id(), type.id(), text.data()), name);
+  text.erase(text.find_last_not_of('\0') + 1);
+  return text;
+}
+
+/// Other writers store text that is not ASCII in this form.
+std::string variable_text(const Reader& reader, const Hdf5Handle& attribute, const Hdf5Handle& type,
+                          const std::string& name) {
+  char* text = nullptr;
+  reader.check(H5Aread(attribute.id(), type.id(), &text), name);
+  std::string copy = text ? text : "";
+  reader.check(H5free_memory(text), name);
+  return copy;
+}
+
+/// A text or a number; nothing for other attributes.
+std::optional<std::variant<std::string, double>> read_value(const Reader& reader, const Hdf5Handle& attribute,
+                                                            const std::string& name) {
+  const Hdf5Handle space(H5Aget_space(attribute.id()), H5Sclose);
+  const Hdf5Handle type(H5Aget_type(attribute.id()), H5Tclose);
+  reader.check(space && type ? 0 : -1, name);
+  const bool is_text = is_of_class(type.id(), H5T_STRING);
+  const hssize_t count = H5Sget_simple_extent_npoints(space.id());
+  if (is_text && count == 0) return std::string();
+  if (count != 1) return std::nullopt;
+  if (is_text) {
+    return H5Tis_variable_str(type.id()) > 0 ? variable_text(reader, attribute, type, name)
+                                             : fixed_text(reader, attribute, type, name);
+  }
+  if (!is_of_class(type.id(), H5T_FLOAT) && !is_of_class(type.id(), H5T_INTEGER)) return std::nullopt;
+  double value = 0.0;
+  reader.check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &value), name);
+  return value;
+}
+
+/// A text attribute of the file or of a variable.
+std::optional<std::string> find_text(const Reader& reader, const Hdf5Handle& object, const char* name) {
+  const htri_t exists = H5Aexists(object.id(), name);
+  reader.check(exists, name);
+  if (exists == 0) return std::nullopt;
+  const Hdf5Handle attribute(H5Aopen(object.id(), name, H5P_DEFAULT), H5Aclose);
+  reader.check(attribute ? 0 : -1, name);
+  const auto value = read_value(reader, attribute, name);
+  const auto* text = value ? std::get_if<std::string>(&*value) : nullptr;
+  return text ? std::optional(*text) : std::nullopt;
+}
+
+/// The attribute at a position, in the order in which they were made where the file knows it.
+Hdf5Handle attribute_at(const Reader& reader, hsize_t position) {
+  for (const H5_index_t index : {H5_INDEX_CRT_ORDER, H5_INDEX_NAME}) {
+    Hdf5Handle attribute(
+        H5Aopen_by_idx(reader.file().id(), ".", index, H5_ITER_INC, position, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    if (attribute) return attribute;
+  }
+  reader.fail("an attribute cannot be read; the file is damaged");
+}
+
+/// All attributes but those of the file format.
+std::vector<Attribute> read_attributes(const Reader& reader) {
+  H5O_info_t info{};
+  reader.check(H5Oget_info2(reader.file().id(), &info, H5O_INFO_NUM_ATTRS), "the attributes");
+  std::vector<Attribute> attributes;
+  for (hsize_t i = 0; i < info.num_attrs; ++i) {
+    const Hdf5Handle attribute = attribute_at(reader, i);
+    std::array<char, 256> buffer{};
+    reader.check(static_cast<herr_t>(H5Aget_name(attribute.id(), buffer.size(), buffer.data())), "an attribute");
+    const std::string name(buffer.data());
+    if (name == kConventions || name == kValuesHash || name.starts_with('_')) continue;
+    if (auto value = read_value(reader, attribute, name)) attributes.push_back({name, std::move(*value)});
+  }
+  return attributes;
+}
+
+/// The texts that are variables because they are too long for attributes.
+void append_long_texts(const Reader& reader, std::vector<Attribute>& attributes) {
+  for (const char* name : {"title", "history", "scene", "scene_path", "scene_overrides"}) {
+    const Hdf5Handle variable = reader.find(name);
+    if (!variable) continue;
+    const Hdf5Handle type(H5Dget_type(variable.id()), H5Tclose);
+    reader.check(type ? 0 : -1, name);
+    const std::vector<hsize_t> shape = reader.shape_of(variable, name);
+    const bool is_text = is_of_class(type.id(), H5T_STRING) && H5Tget_size(type.id()) == 1 && shape.size() == 1;
+    if (!is_text || shape[0] > kMostTextBytes) reader.fail(std::string(name) + ": is no text, or too long");
+    reader.check_claim(name, shape[0]);
+    std::string text(shape[0], '\0');
+    reader.read(variable, name, type.id(), text.data());
+    attributes.push_back({name, std::move(text)});
+  }
+}
+
+}  // namespace
+
+struct TableReader::Impl {
+  Reader reader;
+  TableHead head;
+  Quantities quantities;
+  bool has_status = false;
+  std::vector<std::pair<std::string, Hdf5Handle>> open;  // the quantities and status
+
+  explicit Impl(const fs::path& path) : reader(path) {}
+
+  void read_axes() {
+    std::size_t most = kMostTableEntries;
+    for (const Axis axis : kAllAxes) {
+      std::vector<double>& values = head.axes[axis];
+      values = read_list(reader, description_of(axis).name, most);
+      if (values.empty() && description_of(axis).is_required)
+        reader.fail("is not a table of dolp (no axis theta, sigma or q)");
+      most /= std::max<std::size_t>(values.size(), 1);
+    }
+  }
+
+  bool find(const char* name, std::size_t value_bytes) {
+    Hdf5Handle variable = reader.find(name);
+    if (!variable) return false;
+    std::vector<hsize_t> shape;
+    for (const std::vector<double>& values : head.axes) {
+      if (!values.empty()) shape.push_back(values.size());
+    }
+    if (reader.shape_of(variable, name) != shape)
+      reader.fail(fmt::format("is not a table of dolp ({} is not over its axes)", name));
+    reader.check_claim(name, head.size() * value_bytes);
+    open.emplace_back(name, std::move(variable));
+    return true;
+  }
+
+  void find_variables() {
+    for (const Quantity quantity : kAllQuantities) {
+      const QuantityDescription& described = description_of(quantity);
+      if (!find(described.name, sizeof(double))) continue;
+      quantities.push_back(quantity);
+      if (described.has_stokes_units)
+        head.stokes_units = find_text(reader, open.back().second, "units").value_or(head.stokes_units);
+    }
+    has_status = find("status", sizeof(std::uint32_t));
+    if (quantities.empty()) reader.fail("is not a table of dolp (none of its variables is there)");
+  }
+
+  void read_curves() {
+    for (const TableCurve& described : kTableCurves) {
+      Curve& curve = head.*described.curve;
+      curve.values = read_list(reader, described.name, kMostTableEntries);
+      curve.wavelength_um = read_list(reader, described.name + std::string("_wavelength"), kMostTableEntries);
+      if (curve.values.size() != curve.wavelength_um.size())
+        reader.fail(described.name + std::string(": is cut short"));
+    }
+  }
+
+  template <class Value>
+  void read(std::size_t number, const TableBox& box, hid_t type, std::vector<Value>& values) const {
+    const auto& [name, variable] = open[number];
+    std::vector<hsize_t> first, count;
+    for (const Axis axis : kAllAxes) {
+      if (head.axes[axis].empty()) continue;
+      first.push_back(box.first[axis]);
+      count.push_back(box.count[axis]);
+    }
+    values.resize(size_of(box.count));
+    const Hdf5Handle in_file(H5Dget_space(variable.id()), H5Sclose);
+    const Hdf5Handle in_memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose);
+    reader.check(in_file && in_memory ? 0 : -1, name);
+    reader.check(H5Sselect_hyperslab(in_file.id(), H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr), name);
+    reader.check(H5Dread(variable.id(), type, in_memory.id(), in_file.id(), H5P_DEFAULT, values.data()), name);
+  }
+};
+
+TableReader::TableReader(const fs::path& path) : impl_(std::make_unique<Impl>(path)) {
+  impl_->read_axes();
+  impl_->find_variables();
+  impl_->read_curves();
+  impl_->head.attributes = read_attributes(impl_->reader);
+  append_long_texts(impl_->reader, impl_->head.attributes);
+}
+
+TableReader::~TableReader() = default;
+
+const TableHead& TableReader::head() const { return impl_->head; }
+const Quantities& TableReader::quantities() const { return impl_->quantities; }
+bool TableReader::has_status() const { return impl_->has_status; }
+
+TableValues TableReader::read(const TableBox& box) const {
+  TableValues part;
+  static_cast<TableHead&>(part) = head_of(impl_->head, box);
+  const Quantities& quantities = impl_->quantities;
+  for (std::size_t i = 0; i < quantities.size(); ++i) impl_->read(i, box, H5T_NATIVE_DOUBLE, part[quantities[i]]);
+  if (impl_->has_status) impl_->read(quantities.size(), box, H5T_NATIVE_UINT, part.status);
+  return part;
+}
+
+void TableReader::check_hash(const ValueSums& sums) const {
+  const std::optional<std::string> hash = find_text(impl_->reader, impl_->reader.file(), kValuesHash);
+  if (!hash) impl_->reader.fail("has no text attribute values_hash: its values are not known to be those of dolp");
+  if (*hash == values_hash(impl_->head, impl_->quantities, sums)) return;
+  impl_->reader.fail(
+      "the values are not those that dolp wrote (attribute values_hash): the file was changed or is damaged");
+}
+
+ValueSums TableReader::sums_of(const TableValues& part, const TableBox& box) const {
+  return dolp::sums_of(part, impl_->quantities, box.first, impl_->head.counts());
+}
+
+TableValues TableReader::read_entries(std::span<const std::size_t> positions) const {
+  TableValues entries;
+  static_cast<TableHead&>(entries) = impl_->head;
+  ValueSums sums;
+  std::size_t before = 0;
+  for (const TableBox& box : boxes_in_order(impl_->head.counts(), kEntriesAtOnce)) {
+    const TableValues part = read(box);
+    add(sums, sums_of(part, box));
+    const std::size_t end = before + size_of(box.count);
+    for (; !positions.empty() && positions.front() < end; positions = positions.subspan(1)) {
+      const std::size_t position = positions.front() - before;
+      for (const Quantity quantity : impl_->quantities) entries[quantity].push_back(part[quantity][position]);
+      if (impl_->has_status) entries.status.push_back(part.status[position]);
+    }
+    before = end;
+  }
+  check_hash(sums);
+  return entries;
+}
+
+TableValues read_table(const fs::path& path) {
+  const TableReader reader(path);
+  const TableBox all{{}, reader.head().counts()};
+  TableValues table = reader.read(all);
+  reader.check_hash(reader.sums_of(table, all));
+  return table;
+}
+
+}  // namespace dolp

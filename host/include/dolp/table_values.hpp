@@ -1,0 +1,77 @@
+// The contents of a lookup table: plain data.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <dolp/axis.hpp>
+#include <dolp/results.hpp>
+
+namespace dolp {
+
+/// A global attribute of a table: text or a number.
+struct Attribute {
+  std::string name;
+  std::variant<std::string, double> value;
+  friend bool operator==(const Attribute&, const Attribute&) = default;
+};
+
+/// Longer texts are variables of characters in files: the netCDF library stores attributes of less than 64 KiB.
+inline constexpr std::size_t kMostAttributeBytes = 64'000;
+
+/// A quantity over wavelength; one row is a constant.
+struct Curve {
+  std::vector<double> wavelength_um;
+  std::vector<double> values;
+  friend bool operator==(const Curve&, const Curve&) = default;
+};
+
+/// All data of a table except its values.
+struct TableHead {
+  Axes axes;      ///< in the user's order; wavelength, n and k only where the table has them
+  Curve index_n;  ///< n, k and E0 that the table was computed with; empty where there is none
+  Curve index_k;
+  Curve irradiance;                         ///< before source.scale
+  std::string stokes_units = "W m-2 um-1";  ///< UDUNITS; "W m-2" over a band
+  std::vector<Attribute> attributes;        ///< in the order of the file, without those of Table::file_attributes alone
+
+  /// Number of values of each axis, 1 for an axis that the table lacks.
+  PerAxis counts() const {
+    PerAxis counts{};
+    for (const Axis axis : kAllAxes) counts[axis] = axes[axis].empty() ? 1 : axes[axis].size();
+    return counts;
+  }
+  std::size_t size() const {
+    std::size_t size = 1;
+    for (const std::size_t count : counts()) size *= count;
+    return size;
+  }
+  /// At the first wavelength, n and k.
+  std::size_t position(std::size_t theta, std::size_t sigma_index, std::size_t q_index) const {
+    return (theta * axes[Axis::kSigma].size() + sigma_index) * axes[Axis::kQ].size() + q_index;
+  }
+};
+
+/// A lookup table in memory, or a part of one.
+///
+/// Shape: columns in C order of the axes.
+struct TableValues : TableHead, ResultColumns {};
+
+/// One curve of a table.
+struct TableCurve {
+  const char* name;
+  const char* long_name;
+  const char* units;
+  Curve TableHead::*curve;
+};
+inline constexpr std::array<TableCurve, 3> kTableCurves = {{
+    {"index_n", "refractive index n of the surface", "1", &TableHead::index_n},
+    {"index_k", "refractive index k of the surface", "1", &TableHead::index_k},
+    {"irradiance", "irradiance E0 of the source at normal incidence, before source.scale", "W m-2 um-1",
+     &TableHead::irradiance},
+}};
+
+}  // namespace dolp

@@ -1,0 +1,69 @@
+#include "explore/scale.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace dolp::explore {
+namespace {
+
+constexpr double kRounding = 1e-9;  // of a step: what an end may miss a tick by
+
+std::vector<double> linear_ticks(double low, double high, std::size_t most) {
+  const double rough = (high - low) / static_cast<double>(most);
+  const double decade = std::pow(10.0, std::floor(std::log10(rough)));
+  std::vector<double> ticks;
+  for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0}) {
+    const double step = factor * decade;
+    const double first = std::ceil(low / step - kRounding);
+    const double last = std::floor(high / step + kRounding);
+    if (last - first + 1.0 > static_cast<double>(most)) continue;
+    for (double i = first; i <= last; i += 1.0) ticks.push_back(i * step + 0.0);
+    break;
+  }
+  return ticks;
+}
+
+std::vector<double> log_ticks(double low, double high, std::size_t a_decade) {
+  constexpr std::array kFactors = {1.0, 2.0, 5.0};
+  std::vector<double> ticks;
+  const int first = static_cast<int>(std::floor(std::log10(low)));
+  const int last = static_cast<int>(std::ceil(std::log10(high)));
+  for (int decade = first; decade <= last; ++decade) {
+    for (std::size_t i = 0; i < a_decade; ++i) {
+      const double tick = kFactors[i] * std::pow(10.0, decade);
+      if (tick >= low * (1.0 - kRounding) && tick <= high * (1.0 + kRounding)) ticks.push_back(tick);
+    }
+  }
+  return ticks;
+}
+
+}  // namespace
+
+double Scale::value(double position) const {
+  if (position <= 0.0) return from;
+  if (position >= 1.0) return to;
+  return is_log ? from * std::pow(to / from, position) : from + position * (to - from);
+}
+
+double Scale::position(double value) const {
+  return is_log ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
+}
+
+double Scale::clamp(double value) const { return std::clamp(value, from, to); }
+
+std::vector<double> Scale::ticks(std::size_t most) const {
+  if (!is_log) return linear_ticks(from, to, most);
+  std::vector<double> all = log_ticks(from, to, 3);
+  if (all.size() > most) all = log_ticks(from, to, 1);
+  std::vector<double> some;
+  const std::size_t stride = (all.size() + most - 1) / most;
+  for (std::size_t i = 0; i < all.size(); i += stride) some.push_back(all[i]);
+  return some;
+}
+
+std::string tick_text(double value) { return fmt::format("{:.4g}", value == 0.0 ? 0.0 : value); }
+
+}  // namespace dolp::explore

@@ -1,0 +1,32 @@
+// Values along a line: axes of plots and maps, sliders, colours.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace dolp::explore {
+
+/// A range of values at positions from 0 to 1. Domain: from < to, both finite; with is_log both positive.
+struct Scale {
+  double from = 0.0;
+  double to = 1.0;
+  bool is_log = false;
+
+  /// The value at a position; outside of the range that of the nearer end.
+  double value(double position) const;
+  /// The position of a value, not clamped.
+  double position(double value) const;
+  double clamp(double value) const;
+
+  /// Round values in the range, at most `most`, which is at least 2. Linear: multiples of 1, 2 or 5 times a power of
+  /// ten. Logarithmic: powers of ten, with 2 and 5 between them where there is room.
+  std::vector<double> ticks(std::size_t most) const;
+
+  friend bool operator==(const Scale&, const Scale&) = default;
+};
+
+/// A tick as text, as short as it is exact.
+std::string tick_text(double value);
+
+}  // namespace dolp::explore

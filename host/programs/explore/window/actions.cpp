@@ -1,0 +1,97 @@
+#include "explore/window/actions.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "base/atomic_file.hpp"
+#include "base/stopwatch.hpp"
+
+namespace dolp::explore {
+namespace {
+
+constexpr auto kFading = std::chrono::milliseconds(300);  // of a dialog that was closed
+
+}  // namespace
+
+Actions::Actions(Session& session, const std::string& device, std::string command_line,
+                 const std::function<void()>& on_change)
+    : session_(session),
+      command_line_(std::move(command_line)),
+      table_evaluator_({.device = device, .is_interactive = true}),
+      fit_evaluator_({.device = device, .is_interactive = true}),
+      table_(on_change),
+      true_error_(on_change),
+      fit_(on_change) {}
+
+void Actions::attempt(const std::string& done, const std::function<void()>& body) {
+  try {
+    body();
+    session_.tell(done);
+  } catch (const std::exception& error) {
+    session_.tell(error.what(), true);
+  }
+}
+
+void Actions::save_scene(const std::string& path) {
+  attempt("saved " + path, [&] {
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    write_text_atomically(path, session_.scene().toml(folder.empty() ? "." : folder));
+  });
+}
+
+void Actions::save_curve(const std::string& path) {
+  attempt("saved " + path, [&] {
+    if (!session_.curve().is_finished()) throw InputError("the curve is not finished yet");
+    write_text_atomically(path, session_.curve().finished().csv);
+  });
+}
+
+void Actions::save_picture(const std::string& path) {
+  attempt("saved " + path, [&] {
+    check_writable(path);
+    picture_path_ = path;
+    picture_time_ = Clock::now() + kFading;
+  });
+}
+
+void Actions::export_table(const std::string& path) {
+  table_.start([this, path, scene = session_.scene()](const Progress& progress) -> BackgroundTask::Rest {
+    const Clock::time_point start = Clock::now();
+    table_evaluator_.write_table(scene, path, {.progress = progress, .history = command_line_});
+    return [text = fmt::format("{}: written in {:.2f} s", path, seconds_since(start))] { return text; };
+  });
+}
+
+void Actions::find_true_error() {
+  if (!session_.curve().is_finished()) return;
+  true_error_key_ = session_.curve().key();
+  true_error_.start([curve = session_.curve()](const Progress& progress) -> BackgroundTask::Rest {
+    return [text = true_error(curve, progress)] { return text; };
+  });
+}
+
+bool Actions::is_true_error_old() const {
+  return true_error_.state() == BackgroundTask::State::kDone && true_error_key_ != session_.curve().key();
+}
+
+void Actions::fit() {
+  const std::optional<FitJob> job = session_.fit_job();
+  if (!job) {
+    session_.tell("a fit needs measured points, and parameters that are marked to vary", true);
+    return;
+  }
+  fit_.start([this, job = *job](const Progress& progress) -> BackgroundTask::Rest {
+    return [this, fit = run_fit(job, fit_evaluator_, progress)] {
+      session_.take_fit(fit);
+      return fit_text(fit);
+    };
+  });
+}
+
+void Actions::finish() {
+  for (BackgroundTask* task : {&table_, &true_error_, &fit_}) task->finish();
+}
+
+}  // namespace dolp::explore

@@ -1,0 +1,76 @@
+#include "explore/window/views.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "explore/readout.hpp"
+#include "explore/window/style.hpp"
+
+namespace dolp::explore {
+namespace {
+
+void cell(const std::string& text, ImU32 colour = kTextColour) {
+  ImGui::TableNextColumn();
+  ImGui::PushStyleColor(ImGuiCol_Text, colour);
+  ImGui::TextUnformatted(shown(text).c_str());
+  ImGui::PopStyleColor();
+}
+
+/// In points of DOLP: a bound of what is dropped, an estimate of what is kept.
+std::string influence_text(const Effect& row) {
+  if (!row.bound && !row.influence) return "";
+  const double points = 100.0 * row.bound.value_or(row.influence.value_or(0.0));
+  if (points == 0.0) return "0";
+  return fmt::format("{} {} points", row.bound ? "≤" : "≈",
+                     points >= 10.0 ? fmt::format("{:.0f}", points) : fmt::format("{:.2g}", points));
+}
+
+/// The maximum without the effect; a surface without slopes is a smooth one.
+std::string taken_away_text(const Session& session, const Effect& row) {
+  if (row.name != "distribution") return without_text(session, row.name);
+  const std::string text = without_text(session, "roughness");
+  return text.empty() ? "" : "smooth: " + text;
+}
+
+/// True where the effects belong to an earlier scene.
+bool is_stale(const Session& session) { return !session.effects().empty() && !session.curve().is_finished(); }
+
+void draw_row(const Session& session, const Effect& row) {
+  const bool is_absent = row.state == EffectState::kAbsent;
+  const ImU32 colour = is_absent || is_stale(session) ? kDimColour : kTextColour;
+  cell(row.name, colour);
+  cell(row.state == EffectState::kNotNeeded ? "not needed" : name_of(row.state), colour);
+  cell(influence_text(row), colour);
+  cell(is_absent ? "" : taken_away_text(session, row), colour);
+  cell(row.reason, colour);
+  if (!ImGui::IsItemHovered()) return;
+  const std::string needs = row.needs.empty() ? "" : "\nit takes: " + row.needs;
+  ImGui::SetTooltip("%s", shown(row.reason + needs).c_str());
+}
+
+}  // namespace
+
+void draw_effects(const Session& session) {
+  constexpr int kColumns = 5;
+  const float em = ImGui::GetFontSize();
+  const bool is_narrow = ImGui::GetContentRegionAvail().x < 36.0F * em;
+  ImGuiTableFlags flags =
+      ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingFixedFit;
+  if (is_narrow) flags |= ImGuiTableFlags_ScrollX;
+  if (!ImGui::BeginTable(is_narrow ? "narrow effects" : "effects", kColumns, flags)) return;
+  ImGui::TableSetupScrollFreeze(0, 1);
+  const char* name = is_stale(session) ? "the scene before" : "effect";
+  ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthFixed, 8.0F * em);
+  ImGui::TableSetupColumn("plan", ImGuiTableColumnFlags_WidthFixed, 5.2F * em);
+  ImGui::TableSetupColumn("influence at cursor");
+  ImGui::TableSetupColumn("maximum without it");
+  ImGui::TableSetupColumn("why", is_narrow ? ImGuiTableColumnFlags_WidthFixed : ImGuiTableColumnFlags_WidthStretch);
+  ImGui::TableHeadersRow();
+  for (const Effect& row : session.effects()) {
+    ImGui::TableNextRow();
+    draw_row(session, row);
+  }
+  ImGui::EndTable();
+}
+
+}  // namespace dolp::explore

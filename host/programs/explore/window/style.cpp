@@ -1,0 +1,130 @@
+#include "explore/window/style.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+namespace dolp::explore {
+namespace {
+
+struct Rgb {
+  int r, g, b;
+};
+
+constexpr std::array kViridis = {
+    Rgb{68, 1, 84},    Rgb{72, 24, 106},  Rgb{71, 45, 123},  Rgb{66, 64, 134},  Rgb{59, 82, 139},  Rgb{51, 99, 141},
+    Rgb{44, 114, 142}, Rgb{38, 130, 142}, Rgb{33, 145, 140}, Rgb{31, 160, 136}, Rgb{40, 174, 128}, Rgb{63, 188, 115},
+    Rgb{94, 201, 98},  Rgb{132, 212, 75}, Rgb{173, 220, 48}, Rgb{216, 226, 25}, Rgb{253, 231, 37}};
+
+constexpr ImU32 kOrange = IM_COL32(230, 159, 0, 255);
+constexpr ImU32 kSkyBlue = IM_COL32(86, 180, 233, 255);
+constexpr ImU32 kGreen = IM_COL32(0, 158, 115, 255);
+constexpr ImU32 kYellow = IM_COL32(240, 228, 66, 255);
+constexpr ImU32 kBlue = IM_COL32(0, 114, 178, 255);
+constexpr ImU32 kVermilion = IM_COL32(213, 94, 0, 255);
+constexpr ImU32 kPurple = IM_COL32(204, 121, 167, 255);
+
+ImU32 with_alpha(ImU32 colour, ImU32 alpha) { return (colour & ~IM_COL32_A_MASK) | (alpha << IM_COL32_A_SHIFT); }
+
+constexpr const char* kFontFile = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+
+bool has_greek() {
+  constexpr ImWchar kTheta = 0x3B8;
+  return ImGui::GetFont()->FindGlyphNoFallback(kTheta) != nullptr;
+}
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 42> kNames = {{
+    {"θ", "theta"}, {"σ", "sigma"}, {"ρ", "rho"}, {"ε", "eps"}, {"λ", "lambda"}, {"τ", "tau"},    {"π", "pi"},
+    {"α", "alpha"}, {"β", "beta"},  {"η", "eta"}, {"Δ", "d"},   {"δ", "d"},      {"φ", "phi"},    {"ω", "omega"},
+    {"µ", "u"},     {"°", " deg"},  {"±", "+-"},  {"≤", "<="},  {"≥", ">="},     {"√", "sqrt"},   {"²", "^2"},
+    {"⁴", "^4"},    {"·", "*"},     {"×", "x"},   {"−", "-"},   {"–", "-"},      {"→", "->"},     {"∫", "int"},
+    {"…", "..."},   {"⁻", "^-"},    {"¹", "1"},   {"≈", "~"},   {"∞", "inf"},    {"Λ", "Lambda"}, {"γ", "gamma"},
+    {"ν", "nu"},    {"‖", "|"},     {"▲", "^"},   {"•", "*"},   {"“", "\""},     {"”", "\""},     {"Ω", "Omega"},
+}};
+
+}  // namespace
+
+ImU32 viridis(double position) {
+  const double place = std::clamp(position, 0.0, 1.0) * static_cast<double>(kViridis.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(place), kViridis.size() - 2);
+  const double part = place - static_cast<double>(below);
+  const auto mixed = [&](int Rgb::*channel) {
+    const double a = kViridis[below].*channel;
+    const double b = kViridis[below + 1].*channel;
+    return static_cast<int>(std::lround(a + part * (b - a)));
+  };
+  return IM_COL32(mixed(&Rgb::r), mixed(&Rgb::g), mixed(&Rgb::b), 255);
+}
+
+CurveStyle current_style() { return {kSkyBlue, 0.0F, 0.0F}; }
+
+CurveStyle overlay_style() { return {kOrange, 9.0F, 5.0F}; }
+
+CurveStyle pin_style(std::size_t pin) {
+  constexpr std::array kStyles = {CurveStyle{kYellow, 3.0F, 4.0F}, CurveStyle{kPurple, 14.0F, 5.0F},
+                                  CurveStyle{kGreen, 6.0F, 3.0F},  CurveStyle{kVermilion, 2.0F, 3.0F},
+                                  CurveStyle{kBlue, 18.0F, 3.0F},  CurveStyle{kTextColour, 5.0F, 9.0F}};
+  return kStyles[pin % kStyles.size()];
+}
+
+CurveStyle stale(const CurveStyle& style) {
+  constexpr ImU32 kAlpha = 96;
+  return {with_alpha(style.colour, kAlpha), style.dash, style.gap};
+}
+
+ImU32 band_colour(const CurveStyle& style) {
+  constexpr ImU32 kPart = 4;  // of the curve's own
+  return with_alpha(style.colour, (style.colour >> IM_COL32_A_SHIFT) / kPart);
+}
+
+void load_font(float pixels) {
+  ImGuiIO& io = ImGui::GetIO();
+  if (std::filesystem::exists(kFontFile)) {
+    // Latin with its signs, Greek, punctuation, super- and subscripts, arrows, mathematics, shapes.
+    static constexpr std::array<ImWchar, 15> kRanges = {0x20,   0xFF,   0x370,  0x3FF,  0x2010, 0x2027, 0x2070, 0x209F,
+                                                        0x2190, 0x21FF, 0x2200, 0x22FF, 0x25A0, 0x25FF, 0};
+    if (io.Fonts->AddFontFromFileTTF(kFontFile, pixels, nullptr, kRanges.data())) return;
+  }
+  io.Fonts->AddFontDefault();
+}
+
+std::string ascii(std::string_view text) {
+  std::string plain;
+  while (!text.empty()) {
+    bool found = false;
+    for (const auto& [sign, name] : kNames) {
+      if (!text.starts_with(sign)) continue;
+      plain += name;
+      text.remove_prefix(sign.size());
+      found = true;
+      break;
+    }
+    if (found) continue;
+    plain += text.front();
+    text.remove_prefix(1);
+  }
+  return plain;
+}
+
+std::string shown(std::string_view text) { return has_greek() ? std::string(text) : ascii(text); }
+
+void coloured_text(ImU32 colour, const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, colour);
+  ImGui::PushTextWrapPos(0.0F);
+  ImGui::TextUnformatted(shown(text).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+}
+
+void tooltip(const std::string& text) {
+  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(28.0F * ImGui::GetFontSize());
+  ImGui::TextUnformatted(shown(text).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+}  // namespace dolp::explore

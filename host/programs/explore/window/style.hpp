@@ -1,0 +1,62 @@
+// The window's look: colours that people with any colour vision tell apart, and the font.
+#pragma once
+
+#include <imgui.h>
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace dolp::explore {
+
+/// The map "viridis" at 0 to 1, dark to light; colours outside are those of the ends.
+/// Source: S. van der Walt, N. Smith, viridis of Matplotlib (CC0), at seventeen equal steps, linear in between.
+ImU32 viridis(double position);
+
+/// Style of a curve: colour is never the only distinction.
+struct CurveStyle {
+  ImU32 colour;
+  float dash;  ///< length of dashes in pixels, 0 for a full line
+  float gap;
+};
+
+/// The current curve, the overlaid one, and pins by their number.
+/// Source: M. Okabe, K. Ito, Color Universal Design (2008).
+CurveStyle current_style();
+CurveStyle overlay_style();
+CurveStyle pin_style(std::size_t pin);
+
+/// The style of the same curve when it belongs to an earlier scene.
+CurveStyle stale(const CurveStyle& style);
+
+/// The fill colour of the band around a curve of that style.
+ImU32 band_colour(const CurveStyle& style);
+
+inline constexpr ImU32 kTextColour = IM_COL32(225, 228, 232, 255);
+inline constexpr ImU32 kDimColour = IM_COL32(150, 156, 163, 255);
+inline constexpr ImU32 kGridColour = IM_COL32(62, 66, 72, 255);
+inline constexpr ImU32 kPlotColour = IM_COL32(20, 21, 24, 255);
+inline constexpr ImU32 kBadColour = IM_COL32(110, 112, 116, 255);      ///< entries with a status
+inline constexpr ImU32 kErrorColour = IM_COL32(255, 150, 110, 255);    ///< messages
+inline constexpr ImU32 kRefusedColour = IM_COL32(110, 48, 34, 255);    ///< ground of a field whose text is refused
+inline constexpr ImU32 kStaleVeil = IM_COL32(20, 21, 24, 150);         ///< over a stale map
+inline constexpr ImU32 kIntervalColour = IM_COL32(90, 205, 130, 255);  ///< of a fit
+inline constexpr ImU32 kCursorColour = IM_COL32(255, 255, 255, 200);
+
+/// Loads DejaVu Sans at `pixels`, or, where it is not installed, keeps ImGui's own font, which has ASCII alone.
+/// An ImGui context must be there.
+void load_font(float pixels);
+
+/// A UTF-8 text as the font can show it: Greek letters and signs by name without DejaVu Sans.
+std::string shown(std::string_view text);
+
+/// The same text in ASCII.
+std::string ascii(std::string_view text);
+
+/// Text in a colour at ImGui's cursor, wrapped at the edge of the window.
+void coloured_text(ImU32 colour, const std::string& text);
+
+/// A note at the mouse while it rests on the item that was drawn last.
+void tooltip(const std::string& text);
+
+}  // namespace dolp::explore

@@ -1,0 +1,84 @@
+// The choice of a device from a list, and of one that is there, under the validation layer.
+#include <gtest/gtest.h>
+
+#include <dolp/errors.hpp>
+#include <string>
+#include <vector>
+
+#include "device/context.hpp"
+#include "device/devices.hpp"
+
+namespace dolp {
+namespace {
+
+dolp::Device described(std::string name, dolp::Device::Type type, bool usable, bool float64) {
+  dolp::Device device;
+  device.name = std::move(name);
+  device.type = type;
+  device.usable = usable;
+  device.why_not = usable ? "" : "Vulkan 1.1.0 < 1.2";
+  device.has_double = float64;
+  return device;
+}
+
+std::vector<dolp::Device> five_devices() {
+  using enum dolp::Device::Type;
+  return {described("llvmpipe (LLVM 15)", kCpu, true, true), described("Iris Xe", kIntegrated, true, false),
+          described("Old Radeon", kDiscrete, false, true), described("GeForce RTX 4090", kDiscrete, true, true),
+          described("Radeon RX 7900", kDiscrete, true, true)};
+}
+
+TEST(ChooseDevice, Default_IsTheFirstUsableDiscreteGpu) {
+  EXPECT_EQ(choose_device(five_devices(), "", false), 3U);
+  std::vector<dolp::Device> devices = five_devices();
+  devices.resize(3);
+  EXPECT_EQ(choose_device(devices, "", false), 1U);
+  EXPECT_EQ(choose_device(devices, "", true), 0U);
+}
+
+TEST(ChooseDevice, PositionOrPartOfTheName_IsThatDevice) {
+  EXPECT_EQ(choose_device(five_devices(), "0", false), 0U);
+  EXPECT_EQ(choose_device(five_devices(), "LLVMpipe", false), 0U);
+  EXPECT_EQ(choose_device(five_devices(), "radeon", false), 4U);
+  EXPECT_EQ(choose_device(five_devices(), "4090", false), 3U);
+}
+
+TEST(ChooseDevice, NoMatchOrUnfit_ThrowsWithTheReason) {
+  const auto message = [](const std::string& choice, bool float64) -> std::string {
+    try {
+      choose_device(five_devices(), choice, float64);
+    } catch (const DeviceError& error) {
+      return error.what();
+    }
+    return "no DeviceError";
+  };
+  EXPECT_NE(message("voodoo", false).find("'voodoo'; devices: 0 = llvmpipe (LLVM 15), 1 = Iris Xe"), std::string::npos);
+  EXPECT_NE(message("6", false).find("no Vulkan device matches '6'"), std::string::npos);
+  EXPECT_NE(message("2", false).find("Vulkan 1.1.0 < 1.2"), std::string::npos);
+  EXPECT_NE(message("iris", true).find("shaderFloat64"), std::string::npos);
+}
+
+const DeviceSelector kWatched{.validation = ValidationMode::kOn};
+
+TEST(VulkanContext, WorkgroupOnAProcessor_IsAVector) {
+  const vulkan::Context context(kWatched);
+  const dolp::Device& device = context.description();
+  const bool is_processor = device.type == dolp::Device::Type::kCpu;
+  EXPECT_EQ(device.local_size, is_processor ? device.subgroup_size : 64U);
+  EXPECT_EQ(context.device().local_size(), device.local_size);
+  EXPECT_TRUE(context.validation_messages().empty()) << context.validation_messages().front();
+}
+
+TEST(VulkanContext, NothingCanPresent_NamesTheDeviceAndSaysWhy) {
+  const vulkan::Presentation nowhere{{}, [](VkInstance, VkPhysicalDevice, std::uint32_t) { return false; }};
+  try {
+    const vulkan::Context context(kWatched, &nowhere);
+    FAIL() << "a window without a display";
+  } catch (const DeviceError& error) {
+    EXPECT_NE(std::string(error.what()).find("cannot show a window on this display"), std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace dolp

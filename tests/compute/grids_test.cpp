@@ -1,0 +1,156 @@
+// Entries of a grid share work: slope samples, rows along q, interpolation between slope distributions, a few indices
+// for many. What an entry states of its error holds against the same entry by itself. DOLP_PROPERTY_DRAWS in the
+// environment sets the number of grids of each model.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <tuple>
+
+#include "evaluate/interpolation/interpolating_evaluator.hpp"
+#include "model/index_basis.hpp"
+#include "properties_support.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr std::uint64_t kSeed = 20261123;
+constexpr std::size_t kChecked = 30;  // entries of each grid
+
+/// What the entries of a grid share.
+enum class Sharing { kSlopes, kRows, kShapes, kIndices };
+constexpr std::array kSharings = {Sharing::kSlopes, Sharing::kRows, Sharing::kShapes, Sharing::kIndices};
+
+std::vector<double> spaced(double first, double last, std::size_t count, double origin = 0.0) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(count - 1);
+    values.push_back(origin + first * std::pow(last / first, share));
+  }
+  return values;
+}
+
+std::vector<OpticalConstants> many_indices(Random& random) {
+  const OpticalConstants least{random.log_uniform(0.2, 20.0), random.log_uniform(1e-3, 20.0)};
+  std::vector<OpticalConstants> indices;
+  for (const double n : spaced(least.n, least.n * random.log_uniform(1.2, 3.0), 12)) {
+    for (const double k : spaced(least.k, least.k * random.log_uniform(1.2, 3.0), 10)) indices.push_back({n, k});
+  }
+  return indices;
+}
+
+/// Ranges of sigma and q of any width up to a factor of 60 and 30, directions and indices as Random draws them.
+MomentsRequest random_grid(Random& random, const Model& model, Scattering scattering, Sharing sharing) {
+  MomentsRequest request;
+  request.distribution = model.distribution;
+  request.masking = model.masking;
+  request.scattering = scattering;
+  const bool has_direct = model.masking == Masking::kVCavity || model.masking == Masking::kSmith;
+  request.wants_direct = has_direct && scattering == Scattering::kSingle && random.chance(0.5);
+  request.tolerance = random.log_uniform(1e-6, 1e-2);
+  request.may_interpolate = sharing == Sharing::kShapes;
+  // At 90 degrees the moments of none and integral may be infinite.
+  request.theta_deg = {random.uniform(0.0, 89.9), random.chance(0.5) ? std::min(random.theta_deg(), 89.999) : 60.0};
+  request.indices = {random.index()};
+  if (sharing == Sharing::kSlopes) request.indices.push_back(random.index());
+  if (sharing == Sharing::kIndices) {
+    request.indices = many_indices(random);
+    request.basis = IndexBasis::of(request.indices, request.tolerance);
+  }
+  const bool is_dense = sharing == Sharing::kShapes;
+  const double sigma = random.log_uniform(1e-3, 2.0);
+  request.sigma = spaced(sigma, std::min(10.0, sigma * random.log_uniform(1.2, 60.0)), is_dense ? 64 : 3);
+  const double origin = model.masking == Masking::kSmith ? 1.5 : 1.0;
+  const double q = random.log_uniform(0.02, 8.0);
+  request.q = spaced(q, q * random.log_uniform(1.2, 30.0), is_dense ? 48 : sharing == Sharing::kRows ? 12 : 4, origin);
+  if (model.distribution == Distribution::kGaussian) request.q = {2.0};
+  return request;
+}
+
+class Grids : public testing::TestWithParam<std::tuple<Kernel, Sharing>> {
+ protected:
+  /// Compares entries with themselves at a hundredth of the tolerance, in double.
+  void expect_like_alone(const MomentsRequest& request, const std::vector<Moments>& moments, Random& random) {
+    MomentsRequest alone;
+    alone.distribution = request.distribution;
+    alone.masking = request.masking;
+    alone.scattering = request.scattering;
+    alone.wants_direct = request.wants_direct;
+    alone.precision = Precision::kDouble;
+    alone.tolerance = 1e-2 * request.tolerance;
+    std::vector<std::size_t> positions;
+    for (std::size_t i = 0; i < kChecked; ++i) {
+      positions.push_back(static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(moments.size()))));
+      alone.append(request[positions.back()]);
+    }
+    const std::vector<Moments> exact = exact_->evaluate(alone, {});
+    for (std::size_t i = 0; i < kChecked; ++i) {
+      expect_within_bounds(moments[positions[i]], exact[i],
+                           text_of({alone[i].theta_deg, alone[i].shape, alone[i].index}));
+    }
+  }
+
+  const decltype(make_evaluator(Kernel::kCpuDouble)) exact_ = make_evaluator(Kernel::kCpuDouble);
+};
+
+TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
+  const auto [kernel, sharing] = GetParam();
+  const char* wanted = std::getenv("DOLP_PROPERTY_DRAWS");
+  const int grids = wanted != nullptr ? std::atoi(wanted) : 2;
+  InterpolatingEvaluator evaluator(make_evaluator(kernel));
+  std::size_t entries = 0;
+  for (const Scattering scattering : {Scattering::kSingle, Scattering::kMultiple}) {
+    for (const Model& model : kModels) {
+      const bool is_multiple = scattering == Scattering::kMultiple;
+      // Several bounces are no combination of those of other indices.
+      if (is_multiple && (model.masking != Masking::kVCavity || sharing == Sharing::kIndices)) continue;
+      Random random(kSeed + 10 * static_cast<std::uint64_t>(kernel) + static_cast<std::uint64_t>(sharing));
+      for (int grid = 0; grid < grids; ++grid) {
+        SCOPED_TRACE(name_of(model) + " grid " + std::to_string(grid));
+        MomentsRequest request = random_grid(random, model, scattering, sharing);
+        request.precision = is_double(kernel) ? Precision::kDouble : Precision::kFloat;
+        const std::vector<Moments> moments = evaluator.evaluate(request, {});
+        entries += moments.size();
+        expect_like_alone(request, moments, random);
+      }
+    }
+  }
+  // Whether many indices have a basis depends on the draw.
+  if (sharing == Sharing::kShapes) {
+    EXPECT_GT(2 * evaluator.report().interpolated, entries);
+  } else if (sharing != Sharing::kIndices) {
+    EXPECT_EQ(evaluator.report().interpolated, 0U);
+  }
+}
+
+std::string case_name(const testing::TestParamInfo<std::tuple<Kernel, Sharing>>& test) {
+  constexpr std::array kNames = {"Slopes", "Rows", "Shapes", "Indices"};
+  return name_of(std::get<0>(test.param)) + kNames[static_cast<std::size_t>(std::get<1>(test.param))];
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, Grids, testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kSharings)),
+                         case_name);
+
+// Models a second pass over some entries of a grid: among light tails one heavy one, of a width between theirs.
+TEST(SecondPass, SomeShapesOfAGrid_HeaviestTailIsNotLost) {
+  for (const Masking masking : {Masking::kNone, Masking::kVCavity}) {
+    MomentsRequest request;
+    request.masking = masking;
+    request.theta_deg = {60.0};
+    request.indices = {{1.5, 0.0}};
+    request.sigma = {0.5, 0.55, 0.6};
+    request.q = {1.2, 8.0};
+    request.wanted = {0, 1, 1, 0, 0, 1};
+    constexpr std::size_t kHeavy = 2;
+    const auto evaluator = make_evaluator(Kernel::kCpuDouble);
+    const Moments own = evaluator->evaluate(request, {})[kHeavy];
+    const Point alone{60.0, {0.55, 1.2}, {1.5, 0.0}};
+    const Model model{Distribution::kCauchy, masking};
+    expect_within_bounds(own, evaluator->evaluate(request_of(model, {alone}, 1e-9), {}).front(), name_of(model));
+    EXPECT_LE(own.r_i_error, request.tolerance * own.r_i) << name_of(model);
+  }
+}
+
+}  // namespace
+}  // namespace dolp

@@ -1,0 +1,38 @@
+// An evaluator in one precision, whatever requests say.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "model/evaluator.hpp"
+
+namespace dolp {
+
+/// Scenes ask for float first and for double where that misses; this is asked in one of them alone.
+class FixedPrecision final : public ModelEvaluator {
+ public:
+  explicit FixedPrecision(Precision precision,
+                          std::unique_ptr<ModelEvaluator> evaluator = std::make_unique<CpuEvaluator>())
+      : evaluator_(std::move(evaluator)), precision_(precision) {}
+
+  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
+    MomentsRequest own = request;
+    own.precision = precision_;
+    return evaluator_->evaluate(own, progress);
+  }
+  std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override {
+    ScatteringRequest own = request;
+    own.precision = precision_;
+    return evaluator_->scatter(own, progress);
+  }
+  bool has_double() const override { return precision_ == Precision::kDouble; }
+  EvaluationReport report() const override { return evaluator_->report(); }
+
+ private:
+  std::unique_ptr<ModelEvaluator> evaluator_;
+  Precision precision_;
+};
+
+}  // namespace dolp

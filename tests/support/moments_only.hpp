@@ -1,0 +1,20 @@
+// A base of evaluators that tests give moments of their own.
+#pragma once
+
+#include <stdexcept>
+#include <vector>
+
+#include "model/evaluator.hpp"
+
+namespace dolp {
+
+/// Nothing asks it for matrices.
+class MomentsOnly : public ModelEvaluator {
+ public:
+  std::vector<ScatteringMatrix> scatter(const ScatteringRequest&, const Progress&) override {
+    throw std::logic_error("this evaluator has moments alone");
+  }
+  EvaluationReport report() const override { return {}; }
+};
+
+}  // namespace dolp

@@ -9,7 +9,8 @@ def row(path):
         result = json.load(file)
     context = result["context"]
     machine, device = context["machine"], context["device"]
-    return [result["study"], context["date"][:10], context["program"], f"{machine['processor']}, {machine['cores']} cores",
+    processor = [machine["processor"], f"{machine['cores']} cores", machine.get("vector_instructions")]
+    return [result["study"], context["date"][:10], context["program"], ", ".join(filter(None, processor)),
             f"{machine['load']:.1f}", f"{device.get('name', 'none')}, {device.get('driver', '')}", machine["system"]]
 
 

@@ -51,6 +51,17 @@ ordered_json device_json(const std::string& choice) {
   }
 }
 
+/// The widest vector instructions that the processor has, as far as kernels feel them: whether lanes gather at once.
+const char* vector_instructions() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f")) return "AVX-512";
+  if (__builtin_cpu_supports("avx2")) return "AVX2";
+  return "SSE";
+#else
+  return "not known";
+#endif
+}
+
 }  // namespace
 
 std::string shell_line(const std::vector<std::string>& arguments) {
@@ -75,6 +86,7 @@ ordered_json context_json(const std::string& device, const std::vector<std::stri
   context["command"] = shell_line(arguments);
   context["date"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
   context["machine"] = {{"processor", processor_name()},
+                        {"vector_instructions", vector_instructions()},
                         {"cores", std::thread::hardware_concurrency()},
                         {"load", load()},
                         {"system", system_name()}};

@@ -27,7 +27,7 @@ TEST_F(BenchAccuracy, Json_Context_SaysWhereAndHowToRunAgain) {
   EXPECT_EQ(study["study"], "accuracy");
   const json& context = study["context"];
   expect_keys(context, {"program", "command", "date", "machine", "device", "compiler", "libraries", "validation"});
-  expect_keys(context["machine"], {"processor", "cores", "load", "system"});
+  expect_keys(context["machine"], {"processor", "vector_instructions", "cores", "load", "system"});
   expect_keys(context["device"], {"name", "driver"});
   expect_keys(context["compiler"], {"name", "flags", "build_type"});
   EXPECT_EQ(context["command"], DOLP_BENCH_PROGRAM

@@ -33,8 +33,11 @@ struct Evaluator::Impl {
   /// make_evaluator.
   ModelEvaluator* begin(const SceneValues& scene) {
     const bool needs_double = scene.accuracy.precision == Precision::kDouble;
-    if (!evaluator || (needs_double && !evaluator->has_double())) evaluator = make_evaluator(options, needs_double);
-    evaluator->clear_report();
+    if (evaluator && (evaluator->has_double() || !needs_double)) {
+      evaluator->clear_report();
+    } else {
+      evaluator = make_evaluator(options, needs_double);
+    }
     return evaluator.get();
   }
   EvaluatorMaker maker(const SceneValues& scene) {

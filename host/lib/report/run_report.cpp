@@ -96,6 +96,8 @@ ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, std::o
   report.value("entries", summary.entries);
   add_effects(report, run);
   add_evaluation(report, run.evaluation, run.wall_s);
+  report.row("", "{:.3f} s in radiometry, {:.3f} s waiting for the file", key("radiometry_s", summary.radiometry_s),
+             key("file_s", run.file_s));
   add_work(report, run.evaluation, summary.entries);
   report.value("rule", rule_text(scene.accuracy.tolerance, run.evaluation));
   add_errors(report, run, scene.accuracy.tolerance);
@@ -130,8 +132,8 @@ void add_evaluation(ReportBuilder& report, const EvaluationReport& e, double wal
              key("kernel_s", e.kernel_s), key("dispatches", e.dispatches));
   report.values({{"evaluator", e.evaluator}});
   report.row_if(e.evaluator == "vulkan", "of that",
-                "{:.3f} s to make kernels; {:.3f} s in sums of the host, which count as kernels",
-                key("pipelines_s", e.pipelines_s), key("sums_s", e.sums_s));
+                "{:.3f} s to start the driver, {:.3f} s to make kernels, {:.3f} s in sums of the host",
+                e.setup_s - e.pipelines_s, key("pipelines_s", e.pipelines_s), key("sums_s", e.sums_s));
   report.values({{"setup_s", e.setup_s}});
 }
 

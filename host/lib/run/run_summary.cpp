@@ -71,6 +71,7 @@ void RunSummary::add(const RunSummary& other) {
   add_range(loses, other.loses);
   add_range(gains, other.gains);
   check.add(other.check);
+  radiometry_s += other.radiometry_s;
   evaluations += other.evaluations;
   kernel_s += other.kernel_s;
   sums_s += other.sums_s;
@@ -107,9 +108,9 @@ std::string RunSummary::text() const {
     return fmt::format("{} {} {} {} {}", r.entries, r.theta_deg.first, r.theta_deg.second, r.sigma.first,
                        r.sigma.second);
   };
-  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", entries, fmt::join(status, " "),
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", entries, fmt::join(status, " "),
                      worst_error.value_or(-1.0), worst_rho_error.value_or(-1.0), albedos, albedo.first, albedo.second,
-                     range(loses), range(gains), check.entries, check.worst_ratio, evaluations, kernel_s, sums_s,
+                     range(loses), range(gains), check.entries, check.worst_ratio, radiometry_s, evaluations, kernel_s, sums_s,
                      dispatches, interpolated, interpolation_nodes, "end");
 }
 
@@ -141,6 +142,7 @@ std::optional<RunSummary> RunSummary::from_text(const std::string& text) {
   range(summary.gains);
   words >> summary.check.entries;
   summary.check.worst_ratio = number();
+  summary.radiometry_s = number();
   summary.evaluations = number();
   summary.kernel_s = number();
   summary.sums_s = number();

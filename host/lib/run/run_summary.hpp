@@ -36,6 +36,7 @@ struct RunSummary {
   std::pair<double, double> albedo;
   EnergyRange loses, gains;
   SelfCheck check;
+  double radiometry_s = 0.0;
   // Totals of the evaluator.
   double evaluations = 0.0;
   double kernel_s = 0.0, sums_s = 0.0;

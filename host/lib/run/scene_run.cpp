@@ -1,6 +1,7 @@
 #include "run/scene_run.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <dolp/errors.hpp>
 #include <map>
 #include <numeric>
@@ -46,6 +47,7 @@ struct RunContext {
   const Spectra& spectra;
   ModelEvaluator* evaluator;
   IndexBases& bases;
+  double& radiometry_s;
 
   std::size_t samples() const { return spectra.indices.front().size(); }  ///< of every entry
 };
@@ -158,11 +160,13 @@ Answer asked(const RunContext& context, const PartRequests& requests, const Prog
 std::vector<PointResult> results_of(const RunContext& context, const Selection& selection, const PartRequests& requests,
                                     const Progress& progress) {
   const Answer answer = asked(context, requests, progress);
+  const auto start = std::chrono::steady_clock::now();
   std::vector<PointResult> results(selection.size());
   parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
     MemberResults result_of(context, selection, requests, answer);
     for (std::size_t i = first; i < last; ++i) results[i] = result_of(i);
   });
+  context.radiometry_s += seconds_since(start);
   return results;
 }
 
@@ -395,7 +399,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
       --left;
     } else {
       const Spectra spectra(scene, plan, part.wavelength_um());
-      const RunContext context{scene, plan, spectra, evaluator, bases};
+      const RunContext context{scene, plan, spectra, evaluator, bases, summary.radiometry_s};
       std::vector<PointResult> results = part_results(context, part, checked, summary.check, part_progress);
       summary.add(scene, part, results);
       sink.write(part, std::move(results), with_evaluation());

@@ -81,6 +81,7 @@ struct RunOutcome {
   RunSummary summary;           ///< of all parts, also of those that were there already
   EvaluationReport evaluation;  ///< likewise
   double wall_s = 0.0;
+  double file_s = 0.0;  ///< of it: waiting until the table was written
 };
 
 /// A run of a scene over a grid, a part of one, or points: the pipeline of every front end. The constructor decides

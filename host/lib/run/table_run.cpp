@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <dolp/errors.hpp>
 #include <future>
 #include <map>
 #include <utility>
 
+#include "base/stopwatch.hpp"
 #include "base/text.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
@@ -92,8 +94,11 @@ class TableSink final : public Sink {
 
   /// Waits for the last part. Errors: those of its writing.
   void finish() {
+    const auto start = std::chrono::steady_clock::now();
     if (pending_.valid()) pending_.get();
+    waited_s_ += seconds_since(start);
   }
+  double waited_s() const { return waited_s_; }
 
  private:
   const SceneEntries& entries_;
@@ -102,6 +107,7 @@ class TableSink final : public Sink {
   std::size_t parts_done_;
   RunSummary done_;
   std::future<void> pending_;
+  double waited_s_ = 0.0;
 };
 
 /// Runs `body`; its errors also state how much of the file is there already.
@@ -278,7 +284,9 @@ RunOutcome write_table(const SceneValues& scene, const TableJob& job, const Eval
     TableSink sink(run.entries(), layout, output);
     outcome = run.compute(sink);
     sink.finish();
+    const auto start = std::chrono::steady_clock::now();
     output.finish(attributes_of(scene, outcome, job.options.history));
+    outcome.file_s = sink.waited_s() + seconds_since(start);
   });
   outcome.wall_s = run.wall_s();
   return outcome;

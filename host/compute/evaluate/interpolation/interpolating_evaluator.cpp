@@ -144,7 +144,6 @@ EvaluationReport InterpolatingEvaluator::report() const {
   EvaluationReport report = evaluator_->report();
   report.interpolated = interpolated_;
   report.interpolation_nodes = nodes_;
-  report.kernel_s += interpolation_s_;
   report.sums_s += interpolation_s_;
   return report;
 }

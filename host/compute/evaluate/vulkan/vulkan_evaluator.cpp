@@ -129,7 +129,7 @@ class VulkanEvaluator::Impl {
                              EvaluationReport& report) {
     report.dispatches += run->cost().dispatches;
     report.evaluations += run->cost().evaluations;
-    report.kernel_s += run->cost().kernel_s + run->cost().sums_s;
+    report.kernel_s += run->cost().kernel_s;
     report.sums_s += run->cost().sums_s;
     note_precision(report.precision, requested == Precision::kDouble);
     run.reset();

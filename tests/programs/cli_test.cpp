@@ -272,7 +272,8 @@ TEST_F(CommandLine, Json_EachEvaluator_HasTheContractsKeys) {
     EXPECT_EQ(report["evaluator"], evaluator);
     EXPECT_EQ(report["entries"], kSceneEntries);
     double parts_s = 0.0;
-    for (const char* part : {"setup_s", "kernel_s", "sums_s", "radiometry_s", "file_s"}) parts_s += double{report[part]};
+    for (const char* part : {"setup_s", "kernel_s", "sums_s", "radiometry_s", "file_s"})
+      parts_s += double{report[part]};
     EXPECT_LE(parts_s, report["wall_s"]);
     EXPECT_LE(report["pipelines_s"], report["setup_s"]);
     EXPECT_EQ(report["dispatches"] > 0, std::string(evaluator) == "vulkan");

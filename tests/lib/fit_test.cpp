@@ -106,6 +106,45 @@ TEST(Foretell, ParametersLeaveTheBounds_OthersAreSolvedAgain) {
   EXPECT_GT(checked, 100);
 }
 
+// Data of the direct emission, the other end of the bracket: the model's error is 1 there.
+TEST_F(FitTest, ModelErrorOfTheBracket_IsACommonUncertainty) {
+  const MeasuredData data = measured(kNoise, {"emission.model=direct"});
+  const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.sigma", 0.05, 0.5)};
+  const SceneValues scene = parse_scene(kScene, "scene");
+  const auto contains = [](const FitInterval& one, double value) {
+    return (!one.low || *one.low <= value) && (!one.high || value <= *one.high);
+  };
+  EXPECT_FALSE(contains(fitted(data, parameters).parameters[0].interval_95, 1.6));
+  const Model model(scene, {data}, parameters, ModelError::kBracket);
+  const std::optional<FitResult> result = fit::fit(model, evaluator_, {});
+  ASSERT_TRUE(result);
+  ASSERT_EQ(result->parameters.size(), 3U);
+  EXPECT_EQ(result->parameters[2].key, kModelErrorKey);
+  EXPECT_EQ(result->degrees_of_freedom, 18U);
+  EXPECT_EQ(model.settings(Eigen::Vector3d(1.6, 0.2, 1.0)).size(), 2U);
+  for (const auto& [j, truth] : {std::pair(0U, 1.6), {1U, 0.2}, {2U, 1.0}}) {
+    EXPECT_TRUE(contains(result->parameters[j].interval_95, truth)) << j;
+  }
+
+  // The same as generalised least squares with the covariance 1 + b b^T, in uncertainties.
+  const auto at_end = [&](double model_error) {
+    const Eigen::Vector3d values(result->parameters[0].value, result->parameters[1].value, model_error);
+    return Eigen::VectorXd(model.predict({values}, 1e-8, evaluator_, {}).front().components.col(0).head(20));
+  };
+  Eigen::VectorXd residuals = at_end(0.0);
+  const Eigen::VectorXd apart = (at_end(1.0) - residuals) / kNoise;
+  for (Eigen::Index i = 0; i < residuals.size(); ++i) {
+    residuals[i] = (residuals[i] - data.measurements[static_cast<std::size_t>(i)].value) / kNoise;
+  }
+  const Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(20, 20) + apart * apart.transpose();
+  EXPECT_NEAR(result->chi_square, residuals.dot(covariance.inverse() * residuals), 1e-3);
+
+  EXPECT_THROW(Model(scene, {measured(kNoise, {}, false)}, parameters, ModelError::kBracket), InputError);
+  EXPECT_THROW(Model(parse_scene(kScene, "scene", settings_from_text({"surface.masking=integral"})), {data}, parameters,
+                     ModelError::kBracket),
+               InputError);
+}
+
 TEST_F(FitTest, ExactData_GiveTheTruth) {
   const FitResult result = fitted(measured(0.0), {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0),
                                                   number("surface.sigma", 0.02, 1.0)});

@@ -83,6 +83,19 @@ enum class Loss { kSquares, kHuber, kSoftL1, kCauchy, kTukey };
 /// "squares", "huber", "soft-l1", "cauchy", "tukey", in the order of Loss.
 DOLP_EXPORT const std::vector<std::string>& loss_names();
 
+/// A systematic error of the model that a fit allows for.
+enum class ModelError {
+  kNone,
+  kBracket,  ///< one more number is fitted, `kModelErrorKey`: where the truth lies between the model, at 0, and the
+             ///< other end of its bracket (emission.bracket), at 1. Measured as 0 with a standard deviation of 1, it
+             ///< makes the bracket an uncertainty that all points share
+};
+
+inline constexpr const char* kModelErrorKey = "model_error";
+
+/// "none", "bracket", in the order of ModelError.
+DOLP_EXPORT const std::vector<std::string>& model_error_names();
+
 /// Options of a fit.
 struct FitOptions {
   std::vector<FitRange> vary;
@@ -91,6 +104,7 @@ struct FitOptions {
   Progress progress = {};                              ///< counts what a phase consists of; may be empty
   std::function<void(const std::string&)> phase = {};  ///< gets its name before it begins; may be empty
   Loss loss = Loss::kSquares;                          ///< others need uncertainties
+  ModelError model_error = ModelError::kNone;          ///< another one needs uncertainties
   std::vector<Comparison> compare = {};                ///< all combinations are fitted and ranked
   std::filesystem::path output = {};  ///< file for the scene with what was found; "-" is stdout; empty: none
   std::filesystem::path plot = {};    ///< PNG of data, model and residuals, which Matplotlib draws; empty: none

@@ -140,11 +140,11 @@ Json brackets(const Scene& fitted, const std::vector<MeasuredData>& sets, ModelE
 /// The fitted model at the measurements of a data set. Errors: InputError where the set does not fit the ranges.
 std::vector<double> model_values(const Best& best, const MeasuredData& data, const FitOptions& options,
                                  ModelEvaluator& evaluator) {
-  const fit::Model model(best.scene, {data}, options.vary);
+  const fit::Model model(best.scene, {data}, options.vary, options.model_error);
   const fit::Residuals residuals(model, best.result->tolerance, fit::Differences::kForward, evaluator, {});
   const Eigen::VectorXd values =
       residuals.observed(model.predict({best.values()}, best.result->tolerance, evaluator, {}).front().components);
-  return {values.begin(), values.end()};
+  return {values.begin(), values.begin() + static_cast<std::ptrdiff_t>(data.measurements.size())};
 }
 
 /// The model over zenith, one curve for each data set, quantity and wavelength.
@@ -178,7 +178,7 @@ Json curves(const Best& best, const FitOptions& options, ModelEvaluator& evaluat
 }
 
 /// How far the model itself may be off: the largest distance of the fit from an end of its bracket.
-void add_model_gap(ReportBuilder& report, const Scene& fitted, const std::vector<MeasuredData>& sets,
+void add_model_gap(ReportBuilder& report, const Scene& fitted, const std::vector<MeasuredData>& sets, ModelError error,
                    ModelEvaluator& evaluator) {
   std::optional<double> gap, share;
   for (const MeasuredData& data : sets) {
@@ -194,8 +194,9 @@ void add_model_gap(ReportBuilder& report, const Scene& fitted, const std::vector
     }
   }
   report.row_if(gap.has_value(), "model",
-                "may itself be off, with all bounces: its bracket reaches {:.2g} points of DOLP{} away",
-                kPoints * gap.value_or(0.0), share ? fmt::format(", {:.2g} uncertainties,", *share) : "");
+                "may itself be off, with all bounces: its bracket reaches {:.2g} points of DOLP{} away{}",
+                kPoints * gap.value_or(0.0), share ? fmt::format(", {:.2g} uncertainties,", *share) : "",
+                error == ModelError::kNone ? "" : "; the intervals contain that");
   report.value("model_gap", gap);
   report.value("model_gap_in_uncertainties", share);
 }
@@ -223,7 +224,7 @@ Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const
     SceneValues own;
     try {
       own = with_settings(scene, settings);
-      model = std::make_unique<fit::Model>(own, data, options.vary);
+      model = std::make_unique<fit::Model>(own, data, options.vary, options.model_error);
     } catch (const InputError& error) {
       if (compared.size() == 1) throw;
       one.refusal = error.what();
@@ -263,7 +264,7 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     ReportBuilder report;
     report.line("{}", key("title", scene.impl().scene.title));
     if (best.result) {
-      report.row("data", "{} measured values of {} file{}", key("observations", best.model->observation_count()),
+      report.row("data", "{} measured values of {} file{}", key("observations", best.model->measurement_count()),
                  data.size(), data.size() == 1 ? "" : "s");
       if (models.size() > 1) add_comparison(report, models);
       add_fit(report, *best.model, *best.result);
@@ -274,7 +275,7 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     report.row("starts", "{} descents, seed {}", key("starts", options.starts), key("seed", options.seed));
     report.value("loss", loss_names()[static_cast<std::size_t>(options.loss)]);
     const Scene fitted = best.result ? scene.with(best.settings()) : scene;
-    if (best.result) add_model_gap(report, fitted, data, *evaluator);
+    if (best.result) add_model_gap(report, fitted, data, options.model_error, *evaluator);
     if (best.result && !options.output.empty()) write_fitted(options.output, fitted);
     if (best.result && !options.plot.empty()) {
       const auto contours = fit::contours_of(*best.model, *evaluator, *best.result, options);

@@ -33,6 +33,11 @@ void check_key(const std::string& key, const std::string& origin) {
 
 }  // namespace
 
+const std::vector<std::string>& model_error_names() {
+  static const std::vector<std::string> names = {"none", "bracket"};
+  return names;
+}
+
 const std::vector<std::string>& loss_names() {
   static const std::vector<std::string> names = {"squares", "huber", "soft-l1", "cauchy", "tukey"};
   return names;

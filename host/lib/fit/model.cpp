@@ -23,6 +23,8 @@ namespace {
 // Each point of a list has its own, so that sets which differ in these alone share a call.
 constexpr std::array<std::string_view, 4> kPointKeys = {"surface.n", "surface.k", "surface.sigma", "surface.q"};
 
+constexpr double kMostModelError = 5.0;  // standard deviations; a fit beyond them has another model
+
 bool is_point_key(const std::string& key) { return std::ranges::find(kPointKeys, key) != kPointKeys.end(); }
 
 Eigen::VectorXd values_of(const std::vector<FitRange>& parameters, double FitRange::*value) {
@@ -56,6 +58,18 @@ Eigen::RowVector2d components_of(Observable observable, const PointResult& point
   return {};
 }
 
+/// The emission model at the other end of a scene's bracket. Errors: InputError where the scene has none.
+EmissionModel other_end_of(const SceneValues& scene) {
+  const std::string origin = "model error of the bracket: ";
+  if (!scene.emission) throw InputError(origin + "needs the table [emission]");
+  try {
+    with_settings(scene, {{"emission.bracket", true}});
+  } catch (const InputError& error) {
+    throw InputError(origin + error.what());
+  }
+  return scene.emission->model == EmissionModel::kDirect ? EmissionModel::kMoments : EmissionModel::kDirect;
+}
+
 double error_of(Observable observable, const PointResult& point) {
   const bool is_dolp = observable == Observable::kDolp || observable == Observable::kQOverI;
   return is_dolp ? point[Quantity::kErrorEstimate] : 2.0 * point[Quantity::kRhoErrorEstimate] * point[Quantity::kRhoI];
@@ -63,8 +77,9 @@ double error_of(Observable observable, const PointResult& point) {
 
 }  // namespace
 
-Model::Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters)
-    : data_(std::move(data)), parameters_(std::move(parameters)) {
+Model::Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters,
+             ModelError error)
+    : data_(std::move(data)), parameters_(std::move(parameters)), varied_(parameters_.size()), error_(error) {
   for (const MeasuredData& one : data_) count_ += one.measurements.size();
   check();
   for (const Eigen::VectorXd& ends :
@@ -76,6 +91,7 @@ Model::Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vect
     add_groups(scene, one, first_row);
     first_row += static_cast<Eigen::Index>(one.measurements.size());
   }
+  if (has_model_error()) parameters_.push_back({kModelErrorKey, -kMostModelError, kMostModelError, 0.0});
 }
 
 void Model::check() const {
@@ -100,6 +116,10 @@ void Model::check() const {
                                  one.has_uncertainties ? "there, and not in " + data_.front().name
                                                        : "missing, and " + data_.front().name + " has it"));
   }
+  if (has_model_error() && !has_uncertainties()) {
+    throw InputError(fmt::format("{}: a model error needs the column \"uncertainty\", which it is weighed against",
+                                 data_.front().name));
+  }
   if (parameters_.size() > count_) {
     throw InputError(fmt::format("fit: {} parameters and {} measured points; at most as many parameters as points",
                                  parameters_.size(), count_));
@@ -108,7 +128,7 @@ void Model::check() const {
 
 std::vector<Setting> Model::settings(const Eigen::VectorXd& values) const {
   std::vector<Setting> settings;
-  for (std::size_t j = 0; j < parameters_.size(); ++j) {
+  for (std::size_t j = 0; j < varied_; ++j) {
     const FitRange& range = parameters_[j];
     const double value = values[static_cast<Eigen::Index>(j)];
     settings.push_back({range.key, value, fmt::format("{} = {}, which varies", range.key, format_number(value))});
@@ -156,13 +176,14 @@ void Model::add_groups(const SceneValues& scene, const MeasuredData& data, Eigen
     if (is_emissivity && !group.scene.emission) {
       throw InputError(data.name + ": emissivities need the table [emission] in the scene");
     }
+    if (has_model_error()) group.other_end = other_end_of(group.scene);
     groups_.push_back(std::move(group));
   }
 }
 
 SceneValues Model::with(const SceneValues& scene, const Eigen::VectorXd& values) const {
   SceneValues own = scene;
-  for (std::size_t j = 0; j < parameters_.size(); ++j) {
+  for (std::size_t j = 0; j < varied_; ++j) {
     KeyValue value;
     value.number = values[static_cast<Eigen::Index>(j)];
     find_scene_key(parameters_[j].key)->set(own, value);
@@ -172,9 +193,13 @@ SceneValues Model::with(const SceneValues& scene, const Eigen::VectorXd& values)
 
 std::vector<Prediction> Model::predict(const std::vector<Eigen::VectorXd>& values, double tolerance,
                                        ModelEvaluator& evaluator, const Progress& progress) const {
-  const auto rows = static_cast<Eigen::Index>(count_);
-  std::vector<Prediction> predictions(values.size(), {Eigen::MatrixX2d(rows, 2), Eigen::VectorXd(rows)});
+  const auto rows = static_cast<Eigen::Index>(observation_count());
+  std::vector<Prediction> predictions(values.size(), {Eigen::MatrixX2d::Zero(rows, 2), Eigen::VectorXd::Zero(rows)});
   for (const Group& group : groups_) predict_group(group, values, tolerance, evaluator, progress, predictions);
+  for (std::size_t set = 0; has_model_error() && set < values.size(); ++set) {
+    predictions[set].components.row(rows - 1) << values[set][values[set].size() - 1], 0.0;
+    predictions[set].error[rows - 1] = 0.0;
+  }
   return predictions;
 }
 
@@ -185,7 +210,7 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
   std::map<std::vector<double>, std::vector<std::size_t>> calls;
   for (std::size_t set = 0; set < values.size(); ++set) {
     std::vector<double> common;
-    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+    for (std::size_t j = 0; j < varied_; ++j) {
       if (!is_point_key(parameters_[j].key)) common.push_back(values[set][static_cast<Eigen::Index>(j)]);
     }
     calls[common].push_back(set);
@@ -204,15 +229,27 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
       }
     }
     scene.accuracy.tolerance = tolerance;
+    const auto add = [&](const std::vector<PointResult>& results, const auto& share_of) {
+      for (std::size_t i = 0; i < results.size(); ++i) {
+        const std::size_t member = i % group.measurements.size();
+        const std::size_t set = sets[i / group.measurements.size()];
+        const double share = share_of(set);
+        const Observable observable = group.measurements[member]->observable;
+        Prediction& prediction = predictions[set];
+        prediction.components.row(group.rows[member]) += share * components_of(observable, results[i]);
+        prediction.error[group.rows[member]] += std::abs(share) * error_of(observable, results[i]);
+        prediction.status |= results[i].status;
+      }
+    };
+    const auto model_error = [&](std::size_t set) { return values[set][values[set].size() - 1]; };
     const std::vector<PointResult> results = evaluate_scene(scene, entries, evaluator, progress);
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      const std::size_t member = i % group.measurements.size();
-      Prediction& prediction = predictions[sets[i / group.measurements.size()]];
-      const Observable observable = group.measurements[member]->observable;
-      prediction.components.row(group.rows[member]) = components_of(observable, results[i]);
-      prediction.error[group.rows[member]] = error_of(observable, results[i]);
-      prediction.status |= results[i].status;
+    if (!group.other_end) {
+      add(results, [](std::size_t) { return 1.0; });
+      continue;
     }
+    add(results, [&](std::size_t set) { return 1.0 - model_error(set); });
+    scene.emission->model = *group.other_end;
+    add(evaluate_scene(scene, entries, evaluator, progress), model_error);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <dolp/errors.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,9 +26,10 @@ struct Prediction {
 class Model {
  public:
   /// Errors: InputError, one line, where scene, data and parameters do not fit together: more parameters than
-  /// observations, a key twice, a data set that fixes a varied key, data with and without uncertainties, what
-  /// the scene refuses at either end of the ranges.
-  Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters);
+  /// observations, a key twice, a data set that fixes a varied key, data with and without uncertainties, a model error
+  /// of a scene without a bracket or of data without uncertainties, what the scene refuses at either end of the ranges.
+  Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters,
+        ModelError error = ModelError::kNone);
 
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
@@ -36,7 +38,11 @@ class Model {
   const std::vector<FitRange>& parameters() const { return parameters_; }
   /// The scene of the first data set at the start of the parameters.
   const SceneValues& scene() const { return groups_.front().scene; }
-  std::size_t observation_count() const { return count_; }
+  /// The measurements, and the 0 +- 1 that stands for the model error's own number.
+  std::size_t observation_count() const { return measurement_count() + (has_model_error() ? 1 : 0); }
+  std::size_t measurement_count() const { return count_; }
+  /// True if the last parameter is the model error.
+  bool has_model_error() const { return error_ != ModelError::kNone; }
   bool has_uncertainties() const { return data_.front().has_uncertainties; }
 
   /// Predictions for each set of values, in one call of the evaluator for each group of observations that differ in
@@ -44,13 +50,14 @@ class Model {
   std::vector<Prediction> predict(const std::vector<Eigen::VectorXd>& values, double tolerance,
                                   ModelEvaluator& evaluator, const Progress& progress) const;
 
-  /// Each parameter with its value.
+  /// Each parameter of the scene with its value.
   std::vector<Setting> settings(const Eigen::VectorXd& values) const;
 
  private:
   /// Observations of one data set at one wavelength.
   struct Group {
     SceneValues scene;
+    std::optional<EmissionModel> other_end;  ///< of the bracket: the emission model there
     std::vector<const Measurement*> measurements;
     std::vector<Eigen::Index> rows;  ///< of the predictions
   };
@@ -66,6 +73,8 @@ class Model {
 
   std::vector<MeasuredData> data_;
   std::vector<FitRange> parameters_;
+  std::size_t varied_;  ///< parameters that are keys of the scene
+  ModelError error_;
   std::vector<Group> groups_;
   std::size_t count_ = 0;
 };

@@ -141,7 +141,8 @@ void add_minima(ReportBuilder& report, const FitResult& result) {
 }
 
 void add_points(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
-  report.value("residuals", json_of(result.residuals));
+  report.value("residuals",
+               json_of(result.residuals.head(static_cast<Eigen::Index>(model.measurement_count())).eval()));
   Json points = Json::array();
   Eigen::Index row = 0;
   for (const MeasuredData& data : model.data()) {

@@ -138,6 +138,12 @@ void add_fit(CLI::App& command, Options& options) {
   command.add_option("--loss", options.loss, fmt::format("what a residual counts: {}", fmt::join(loss_names(), ", ")))
       ->check(CLI::IsMember(loss_names()))
       ->capture_default_str();
+  command
+      .add_option("--model-error", options.model_error,
+                  "systematic error of the model; bracket: of single scattering, that of emission.bracket, correlated "
+                  "between all points")
+      ->check(CLI::IsMember(model_error_names()))
+      ->capture_default_str();
   add_evaluator(command, options);
 }
 

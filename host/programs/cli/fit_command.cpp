@@ -16,6 +16,8 @@ int run_fit(const Options& options) {
   fit.starts = options.starts;
   fit.seed = options.seed;
   fit.loss = static_cast<Loss>(std::ranges::find(loss_names(), options.loss) - loss_names().begin());
+  fit.model_error = static_cast<ModelError>(std::ranges::find(model_error_names(), options.model_error) -
+                                            model_error_names().begin());
   fit.output = options.output_path;
   fit.plot = options.plot_path;
   Report report;

@@ -39,6 +39,7 @@ struct Options {
   std::vector<std::string> compare;  ///< of fit: KEY=WORD,WORD,...
   std::size_t starts = 24;           ///< of fit
   std::string loss = "squares";      ///< of fit
+  std::string model_error = "none";  ///< likewise
   std::string plot_path;             ///< of fit
   std::string key;                   ///< of keys: one of them, or a table; empty: all
   std::string material;              ///< of materials: one of them; empty: all

@@ -9,6 +9,8 @@
 
 #include <dolp/dolp.hpp>
 
+#include "base/text.hpp"
+
 namespace dolp::cli {
 namespace {
 
@@ -50,9 +52,6 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
   return text;
 }
 
-/// In single quotes, for any shell.
-std::string quoted(const std::string& text) { return "'" + replaced(text, "'", R"('\'')") + "'"; }
-
 std::string bash_completion(const CLI::App& app) {
   Words commands;
   std::string options, values;
@@ -66,11 +65,11 @@ std::string bash_completion(const CLI::App& app) {
       if (choices.empty()) continue;
       for (const std::string& name : own) {
         values += fmt::format("    {}:{}) words={} ;;\n", command->get_name(), name,
-                              quoted(fmt::format("{}", fmt::join(choices, " "))));
+                              shell_quoted(fmt::format("{}", fmt::join(choices, " "))));
       }
     }
-    options +=
-        fmt::format("    {}:-*) words={} ;;\n", command->get_name(), quoted(fmt::format("{}", fmt::join(names, " "))));
+    options += fmt::format("    {}:-*) words={} ;;\n", command->get_name(),
+                           shell_quoted(fmt::format("{}", fmt::join(names, " "))));
   }
   return fmt::format(R"(# bash completion of dolp
 _dolp() {{
@@ -106,7 +105,8 @@ std::string zsh_completion(const CLI::App& app) {
   };
   std::string commands, cases;
   for (const CLI::App* command : app.get_subcommands({})) {
-    commands += fmt::format("  {}\n", quoted(command->get_name() + ":" + description(command->get_description(), ":")));
+    commands +=
+        fmt::format("  {}\n", shell_quoted(command->get_name() + ":" + description(command->get_description(), ":")));
     std::string lines;
     for (const CLI::Option* option : named_options(*command)) {
       const Words choices = choices_of(*option);
@@ -115,7 +115,7 @@ std::string zsh_completion(const CLI::App& app) {
                                                       : fmt::format(":value:({})", fmt::join(choices, " "));
       for (const std::string& name : names_of(*option)) {
         lines += " \\\n      " +
-                 quoted(fmt::format("*{}[{}]{}", name, description(option->get_description(), "[]:\\"), value));
+                 shell_quoted(fmt::format("*{}[{}]{}", name, description(option->get_description(), "[]:\\"), value));
       }
     }
     cases += fmt::format("  {})\n    _arguments{} \\\n      '*:file:_files'\n    ;;\n", command->get_name(), lines);
@@ -140,7 +140,7 @@ std::string fish_completion(const CLI::App& app) {
   std::string text = "# fish completion of dolp\n";
   for (const CLI::App* command : app.get_subcommands({})) {
     text += fmt::format("complete -c dolp -n __fish_use_subcommand -f -a {} -d {}\n", command->get_name(),
-                        quoted(command->get_description()));
+                        shell_quoted(command->get_description()));
   }
   for (const CLI::App* command : app.get_subcommands({})) {
     for (const CLI::Option* option : named_options(*command)) {
@@ -152,7 +152,7 @@ std::string fish_completion(const CLI::App& app) {
                                 : choices.empty()     ? " -r"
                                                       : fmt::format(" -x -a '{}'", fmt::join(choices, " "));
       text += fmt::format("complete -c dolp -n '__fish_seen_subcommand_from {}'{}{} -d {}\n", command->get_name(),
-                          names, value, quoted(option->get_description()));
+                          names, value, shell_quoted(option->get_description()));
     }
   }
   return text;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text.hpp"
 #include "explore/parameters.hpp"
 
 namespace dolp::explore {
@@ -117,6 +118,13 @@ std::string without_text(const Session& session, const std::string& effect) {
   const double q_over_i = away->result->q_over_i();
   if (!away->result->is_good() || !std::isfinite(q_over_i)) return "the model fails";
   return fmt::format("{:+.2f} → {:+.2f} %", kPercent * (q_over_i - peak->at.q_over_i()), kPercent * q_over_i);
+}
+
+std::string table_command(const SceneEdits& edits) {
+  const std::string& file = edits.opened().name();
+  std::string command = "dolp table " + shell_quoted(file);
+  for (const Setting& change : edits.changes()) command += " --set " + shell_quoted(change.text());
+  return command + " -o table.nc";
 }
 
 std::vector<std::string> cost_lines(const Session& session) {

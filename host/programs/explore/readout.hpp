@@ -20,6 +20,9 @@ std::string cursor_text(const Session& session);
 /// The influence of one effect at the peak: "Q/I +3.61 without it"; empty where it is unknown.
 std::string without_text(const Session& session, const std::string& effect);
 
+/// The command that writes the table of a scene, for a shell.
+std::string table_command(const SceneEdits& edits);
+
 /// The cost of the finished curve, in three lines: time, work, error.
 std::vector<std::string> cost_lines(const Session& session);
 

@@ -54,6 +54,21 @@ double Scale::position(double value) const {
 
 double Scale::clamp(double value) const { return std::clamp(value, from, to); }
 
+Scale Scale::between(double first, double last) const {
+  const auto at = [this](double position) {
+    return is_log ? from * std::pow(to / from, position) : from + position * (to - from);
+  };
+  return {at(first), at(last), is_log};
+}
+
+Scale Scale::within(const Scale& all) const {
+  const double first = all.position(from);
+  const double last = all.position(to);
+  if (last - first >= 1.0) return all;
+  const double shift = std::max(-first, 0.0) + std::min(1.0 - last, 0.0);
+  return all.between(first + shift, last + shift);
+}
+
 std::vector<double> Scale::ticks(std::size_t most) const {
   if (!is_log) return linear_ticks(from, to, most);
   std::vector<double> all = log_ticks(from, to, 3);

@@ -18,6 +18,10 @@ struct Scale {
   /// The position of a value, not clamped.
   double position(double value) const;
   double clamp(double value) const;
+  /// The range between two positions, which may lie outside.
+  Scale between(double first, double last) const;
+  /// The range shifted into another one, or all of that if it is larger.
+  Scale within(const Scale& all) const;
 
   /// Round values in the range, at most `most`, which is at least 2. Linear: multiples of 1, 2 or 5 times a power of
   /// ten. Logarithmic: powers of ten, with 2 and 5 between them where there is room.

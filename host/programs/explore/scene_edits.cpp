@@ -66,7 +66,7 @@ std::vector<Setting> all_choices(const Scene& scene) {
 }  // namespace
 
 SceneEdits::SceneEdits(const Scene& opened)
-    : given_(opened.settings()), changes_(opened.settings()), opened_(opened), scene_(opened) {}
+    : given_(opened.settings()), saved_(given_), changes_(opened.settings()), opened_(opened), scene_(opened) {}
 
 void SceneEdits::become(std::vector<Setting> changes) {
   scene_ = Scene::from_text(opened_.text(), changes, opened_.name());

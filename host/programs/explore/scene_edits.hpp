@@ -24,7 +24,11 @@ class SceneEdits {
 
   const Scene& scene() const { return scene_; }
   const Scene& opened() const { return opened_; }
-  bool is_changed() const { return changes_ != given_; }
+  bool is_changed() const { return changes_ != saved_; }
+  /// The scene as it is now counts as unchanged.
+  void note_saved() { saved_ = changes_; }
+  /// Goes to earlier changes. Errors: InputError, as set.
+  void restore(std::vector<Setting> changes) { become(std::move(changes)); }
   /// All changes.
   const std::vector<Setting>& changes() const { return changes_; }
   /// The same without some keys.
@@ -34,6 +38,7 @@ class SceneEdits {
   void become(std::vector<Setting> changes);
 
   std::vector<Setting> given_;  ///< of the command line
+  std::vector<Setting> saved_;
   std::vector<Setting> changes_;
   Scene opened_;
   Scene scene_;

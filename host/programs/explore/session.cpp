@@ -34,6 +34,25 @@ std::string text_of(const std::vector<Setting>& changes) {
   return text;
 }
 
+/// The words that describe a surface, in groups.
+std::vector<std::vector<std::string>> surface_words(const Scene& scene) {
+  const std::string distribution = scene.word("surface.distribution").value();
+  std::vector<std::vector<std::string>> groups = {
+      {distribution, fmt::format("σ {:.4g}", scene.number("surface.sigma").value())},
+      {scene.word("surface.masking").value()}};
+  if (distribution == "cauchy") groups[0].push_back(fmt::format("q {:.4g}", scene.number("surface.q").value()));
+  if (scene.word("surface.scattering") == "multiple") groups.push_back({"all bounces"});
+  if (const auto material = scene.word("surface.material")) {
+    groups.push_back({*material});
+  } else if (const auto file = scene.word("surface.material_file")) {
+    groups.push_back({*file});
+  } else {
+    groups.push_back({fmt::format("n {:.4g}", scene.number("surface.n").value()),
+                      fmt::format("k {:.4g}", scene.number("surface.k").value())});
+  }
+  return groups;
+}
+
 /// The key of the scene that an axis of the map varies; empty for the zenith.
 std::string key_of(Axis axis) {
   return axis == Axis::kTheta ? "" : axis == Axis::kSigma ? "surface.sigma" : "surface.q";
@@ -41,16 +60,26 @@ std::string key_of(Axis axis) {
 
 }  // namespace
 
-std::string surface_name(const Scene& scene) {
-  const std::string distribution = scene.word("surface.distribution").value();
-  std::string name = fmt::format("{} σ {:.4g}", distribution, scene.number("surface.sigma").value());
-  if (distribution == "cauchy") name += fmt::format(" q {:.4g}", scene.number("surface.q").value());
-  name += ", " + scene.word("surface.masking").value();
-  if (scene.word("surface.scattering") == "multiple") name += ", all bounces";
-  if (const auto material = scene.word("surface.material")) return name + ", " + *material;
-  if (const auto file = scene.word("surface.material_file")) return name + ", " + *file;
-  const double n = scene.number("surface.n").value();
-  return name + fmt::format(", n {:.4g} k {:.4g}", n, scene.number("surface.k").value());
+std::string surface_name(const Scene& scene, const Scene* other) {
+  const std::vector<std::vector<std::string>> groups = surface_words(scene);
+  const std::vector<std::vector<std::string>> others = other ? surface_words(*other) : groups;
+  std::vector<std::string> parts;
+  for (const std::vector<std::string>& group : groups) {
+    std::vector<std::string> words;
+    for (const std::string& word : group) {
+      const bool is_common = other && std::ranges::any_of(others, [&](const std::vector<std::string>& of_other) {
+                               return std::ranges::find(of_other, word) != of_other.end();
+                             });
+      if (!is_common) words.push_back(word);
+    }
+    if (!words.empty()) parts.push_back(fmt::format("{}", fmt::join(words, " ")));
+  }
+  return parts.empty() ? "the same surface" : fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string pin_name(const Pin& pin, const Curve& curve) {
+  if (!pin.name.empty()) return pin.name;
+  return surface_name(pin.curve.shown_scene(), &curve.shown_scene()) + stale_text(pin.curve.is_stale());
 }
 
 const char* stale_text(bool is_stale) { return is_stale ? ", the scene before" : ""; }
@@ -65,10 +94,31 @@ Session::Session(SceneEdits edits)
 template <class Command>
 void Session::attempt(const Command& command) {
   message_ = {};
+  const Changes before = edits_.changes();
   try {
     command();
   } catch (const InputError& error) {
     tell(error.what(), true);
+  }
+  if (edits_.changes() != before) {
+    if (!is_in_gesture_) done_.push_back(before);
+    undone_.clear();
+    is_in_gesture_ = true;
+  }
+  follow();
+}
+
+void Session::step(std::vector<Changes>& from, std::vector<Changes>& to, const char* nothing) {
+  message_ = {};
+  is_in_gesture_ = false;
+  if (from.empty()) return tell(nothing);
+  Changes now = edits_.changes();
+  try {
+    edits_.restore(from.back());
+    from.pop_back();
+    to.push_back(std::move(now));
+  } catch (const InputError& error) {
+    tell(error.what(), true);  // a file that the scene names is gone
   }
   follow();
 }
@@ -148,7 +198,7 @@ void Session::pin() {
   }
   std::size_t colour = 0;
   while (std::ranges::any_of(pins_, [&](const Pin& pin) { return pin.colour == colour; })) ++colour;
-  pins_.push_back({surface_name(scene()), colour, true, curve_});
+  pins_.push_back({.colour = colour, .curve = curve_});
   is_changed_ = true;
 }
 

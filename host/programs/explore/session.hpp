@@ -17,7 +17,7 @@ namespace dolp::explore {
 
 /// A curve that stays while the scene changes.
 struct Pin {
-  std::string name;
+  std::string name = {};   ///< given by the user; empty: by its surface
   std::size_t colour = 0;  ///< position among the colours of pins
   bool is_visible = true;
   Curve curve;
@@ -54,8 +54,14 @@ class Session {
   void set(const std::vector<Setting>& changes);
   void reset(const std::string& key);
   void reset_all();
+  void undo() { step(done_, undone_, "nothing to undo"); }
+  void redo() { step(undone_, done_, "nothing to redo"); }
+  /// Changes of the scene up to here are one for `undo`: those of a drag, for instance.
+  void end_gesture() { is_in_gesture_ = false; }
+  void note_saved() { edits_.note_saved(); }
   void pin();
   void remove_pin(std::size_t position);
+  void rename_pin(std::size_t position, std::string name) { pins_[position].name = std::move(name); }
   void show_pin(std::size_t position, bool is_visible) { pins_[position].is_visible = is_visible; }
   void set_view(const View& view);
   void set_theta(double theta_deg);
@@ -104,8 +110,11 @@ class Session {
   const Point* at_cursor() const;
 
  private:
+  using Changes = std::vector<Setting>;  ///< of the scene as opened
+
   template <class Command>
   void attempt(const Command& command);
+  void step(std::vector<Changes>& from, std::vector<Changes>& to, const char* nothing);
   void tell_asked(const std::string& chosen, const std::vector<Setting>& asked);
   void follow();
   void follow_overlay(const std::string& content, bool keep_all);
@@ -114,6 +123,8 @@ class Session {
   void follow_peak();
 
   SceneEdits edits_;
+  std::vector<Changes> done_, undone_;  ///< before each gesture; after each that was undone
+  bool is_in_gesture_ = false;
   View view_;
   double theta_deg_ = 60.0;
   Curve curve_;
@@ -130,8 +141,12 @@ class Session {
   bool is_changed_ = true;
 };
 
-/// The surface of a scene in few words, for a legend: "cauchy σ 0.15 q 3, smith".
-std::string surface_name(const Scene& scene);
+/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1"; with `other` those alone in which it
+/// differs.
+std::string surface_name(const Scene& scene, const Scene* other = nullptr);
+
+/// The name of a pin, without what the curve has in common with it.
+std::string pin_name(const Pin& pin, const Curve& curve);
 
 /// The surface of the curve on display, and whether it is outdated.
 std::string curve_name(const Curve& curve);

@@ -146,4 +146,10 @@ std::string read_named_file(const std::string& path, const std::string& prefix, 
 
 std::string input_name(const std::string& path) { return path == "-" ? "stdin" : path; }
 
+std::string shell_quoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char letter : text) quoted += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+  return quoted + "'";
+}
+
 }  // namespace dolp

@@ -58,4 +58,7 @@ std::string read_named_file(const std::string& path, const std::string& prefix,
 /// The name of an input for messages: "stdin" for "-".
 std::string input_name(const std::string& path);
 
+/// In single quotes, for any shell.
+std::string shell_quoted(const std::string& text);
+
 }  // namespace dolp

@@ -72,6 +72,61 @@ TEST(ExploreSession, CoarseCurveOfAnEarlierScene_IsShownAsSuch) {
   EXPECT_EQ(curve.shown_scene().number("surface.sigma"), 0.4);
 }
 
+TEST(ExploreSession, UndoAndRedo_GoThroughGestures) {
+  Session session(paint());
+  const Scene opened = session.scene();
+  const auto sigma = [&] { return *session.scene().number("surface.sigma"); };
+  for (const double dragged : {0.2, 0.25, 0.3}) session.set("surface.sigma", dragged);
+  session.end_gesture();
+  session.set("surface.sigma", -1.0);  // refused: no change to undo
+  session.end_gesture();
+  session.set("surroundings", Value{});
+  session.undo();
+  EXPECT_TRUE(session.scene().number("surroundings.temperature_K"));
+  EXPECT_EQ(sigma(), 0.3);
+  session.undo();
+  EXPECT_EQ(session.scene().toml(), opened.toml());
+  session.redo();
+  EXPECT_EQ(sigma(), 0.3);
+  session.set("surface.sigma", 0.4);
+  session.redo();
+  EXPECT_EQ(session.message().text, "nothing to redo");
+  EXPECT_EQ(sigma(), 0.4);
+  session.undo();
+  EXPECT_EQ(sigma(), 0.3);
+}
+
+TEST(ExploreSession, SavedScene_IsUnchangedUntilTheNextChange) {
+  Session session(paint());
+  session.set("surface.sigma", 0.2);
+  session.note_saved();
+  session.end_gesture();
+  EXPECT_FALSE(session.edits().is_changed());
+  session.set("surface.sigma", 0.3);
+  EXPECT_TRUE(session.edits().is_changed());
+  session.undo();
+  EXPECT_FALSE(session.edits().is_changed());
+}
+
+TEST(ExploreSession, PinNames_SayWhatDiffers) {
+  Driver driver(paint());
+  driver.session.pin();
+  const auto name = [&] { return pin_name(driver.session.pins()[0], driver.session.curve()); };
+  EXPECT_EQ(name(), "the same surface");
+  driver.session.set({{"surface.sigma", 0.4}, {"surface.masking", "smith"}});
+  driver.settle();
+  EXPECT_EQ(name(), "σ 0.15, v-cavity");
+  driver.session.rename_pin(0, "before");
+  EXPECT_EQ(name(), "before");
+}
+
+TEST(ExploreSession, TableCommand_IsQuotedForAShell) {
+  Session session(SceneEdits(Scene::from_text(paint().opened().text(), {}, "a plate's scene.toml")));
+  session.set("surface.sigma", 0.2);
+  EXPECT_EQ(table_command(session.edits()),
+            "dolp table 'a plate'\\''s scene.toml' --set 'surface.sigma=0.2' -o table.nc");
+}
+
 TEST(ExploreSession, Bracket_LiesAroundTheCurveAndIsReadAtTheCursor) {
   Driver driver(paint({"surface.sigma=0.4"}));
   for (const Point& r : driver.session.curve().points()) EXPECT_FALSE(r.has_bracket());

@@ -9,6 +9,7 @@
 
 #include "cli_support.hpp"
 #include "explore/parameters.hpp"
+#include "explore/readout.hpp"
 #include "explore/window/app.hpp"
 #include "explore/window/style.hpp"
 #include "table/table_file.hpp"
@@ -212,6 +213,68 @@ TEST_F(Window, Fit_OfAMarkedSlider_MovesItAndShowsTheInterval) {
   EXPECT_LT(*app_->session().fitted("surface.sigma")->interval_68.low, 0.3);
 }
 
+TEST_F(Window, Curve_WheelAndRightButton_ZoomAndShift_ADoubleClickShowsAll) {
+  const explore::CurveView& view = app_->curve_view();
+  const explore::Scale x = view.x(), y = view.y();
+  const ImVec2 at = view.area().at(0.4F, 0.5F);
+  move_to(at);
+  xdotool({"click", "4"});
+  frames();
+  EXPECT_LT(view.x().to - view.x().from, 0.9 * (x.to - x.from));
+  EXPECT_LT(view.y().to - view.y().from, 0.9 * (y.to - y.from));
+  EXPECT_NEAR(view.x().value(0.4), 36.0, 0.3);  // the place of the mouse stays
+  const explore::Scale zoomed = view.x();
+  xdotool({"mousedown", "3"});
+  frames();
+  move_to(view.area().at(0.5F, 0.5F));
+  xdotool({"mouseup", "3"});
+  frames();
+  EXPECT_NEAR(view.x().to - view.x().from, zoomed.to - zoomed.from, 1e-6);
+  EXPECT_NEAR(view.x().value(0.5), 36.0, 0.3);
+  xdotool({"keydown", "shift", "click", "5", "keyup", "shift"});
+  frames();
+  EXPECT_NE(view.y(), y);
+  xdotool({"click", "--repeat", "2", "--delay", "20", "1"});
+  frames();
+  EXPECT_EQ(view.x(), x);
+  EXPECT_EQ(view.y(), y);
+}
+
+TEST_F(Window, ChangesUndone_OneDragAtATime_AndBroughtBack) {
+  drag_slider("surface.sigma", kPartOfSlider);
+  const double sigma = *app_->session().scene().number("surface.sigma");
+  click_control("emission.bracket");
+  keys("ctrl+z");
+  EXPECT_EQ(app_->session().scene().word("emission.bracket"), "false");
+  EXPECT_EQ(app_->session().scene().number("surface.sigma"), sigma);
+  keys("ctrl+z");
+  EXPECT_EQ(app_->session().scene().number("surface.sigma"), 0.15);
+  EXPECT_FALSE(app_->session().edits().is_changed());
+  keys("ctrl+z");
+  EXPECT_EQ(app_->session().message().text, "nothing to undo");
+  keys("ctrl+shift+z");
+  EXPECT_EQ(app_->session().scene().number("surface.sigma"), sigma);
+  keys("ctrl+shift+c");
+  EXPECT_EQ(ImGui::GetClipboardText(), explore::table_command(app_->session().edits()));
+}
+
+TEST_F(Window, Legend_PinClicked_HidesIt) {
+  keys("ctrl+p");
+  drag_slider("surface.sigma", kPartOfSlider);
+  const Area area = app_->curve_view().area();
+  const float line = ImGui::GetTextLineHeight();
+  // Above the plot, with what differs alone; each entry of this scene has a line of its own or shares the first.
+  ASSERT_TRUE(app_->session().pins()[0].is_visible);
+  bool is_hidden = false;
+  for (float x = area.min.x; x < area.max.x && !is_hidden; x += 3.0F * line) {
+    for (float y = area.min.y - 5.0F * line; y < area.min.y - 2.0F * line && !is_hidden; y += 0.8F * line) {
+      click({x, y});
+      is_hidden = !app_->session().pins()[0].is_visible;
+    }
+  }
+  EXPECT_TRUE(is_hidden);
+}
+
 TEST_F(Window, Curve_Clicked_MovesTheCursor) {
   const double before = app_->session().theta_deg();
   // The middle of the curve's plot in the layout at its first size.
@@ -379,7 +442,7 @@ Area plot_on(const std::string& size, const std::string& dots_per_inch) {
   EXPECT_EQ(run(scale).status, 0);
   App app(explore::SceneEdits(Scene::from_text(kEdited)), {});
   for (int i = 0; i < kFrames; ++i) app.frame();
-  return app.plot_area();
+  return app.curve_view().area();
 }
 
 TEST(WindowScale, OnALargeDisplayAt200Percent_PlotIsTwiceAsLarge) {

@@ -38,6 +38,7 @@ void Actions::save_scene(const std::string& path) {
   attempt("saved " + path, [&] {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     write_text_atomically(path, session_.scene().toml(folder.empty() ? "." : folder));
+    session_.note_saved();
   });
 }
 

@@ -221,7 +221,7 @@ Session& App::session() { return impl_->session; }
 
 Area App::control_area(const std::string& key) const { return impl_->ui.controls().areas().at(key); }
 
-Area App::plot_area() const { return impl_->ui.plot(); }
+const CurveView& App::curve_view() const { return impl_->ui.curves(); }
 
 bool App::is_idle() const { return impl_->is_idle(); }
 

@@ -9,6 +9,7 @@
 #include "explore/scene_edits.hpp"
 #include "explore/session.hpp"
 #include "explore/window/plot.hpp"
+#include "explore/window/views.hpp"
 
 namespace dolp::explore {
 
@@ -35,8 +36,7 @@ class App {
   Session& session();
   /// The last drawn area of a control by its scene key. Errors: std::out_of_range when it was not drawn.
   Area control_area(const std::string& key) const;
-  /// The last drawn area of the curve, without its axes.
-  Area plot_area() const;
+  const CurveView& curve_view() const;
 
   /// Takes input and news, and draws one frame. False when the user has closed the window.
   /// Errors: DeviceError when the device is lost or the validation layer complains.

@@ -14,6 +14,7 @@ namespace dolp::explore {
 namespace {
 
 constexpr float kCurveWidth = 2.0F;
+constexpr float kRoomForTwo = 18.0F;  // lines of text from which on the legend has two
 
 /// A curve as it is drawn.
 struct Shown {
@@ -29,7 +30,7 @@ std::vector<Shown> shown_curves(const Session& session) {
   };
   if (session.overlay()) add(*session.overlay(), overlay_style(), session.overlay_name());
   for (const Pin& pin : session.pins()) {
-    if (pin.is_visible) add(pin.curve, pin_style(pin.colour), "pinned: " + curve_name(pin.curve));
+    if (pin.is_visible) add(pin.curve, pin_style(pin.colour), pin_name(pin, session.curve()));
   }
   // Last, so that it lies over the others.
   add(session.curve(), current_style(), curve_name(session.curve()));
@@ -159,32 +160,66 @@ void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
   finish();
 }
 
-void draw_legend(const Plot& plot, const std::vector<Shown>& curves, const Session& session) {
-  const float line = ImGui::GetTextLineHeight();
-  ImVec2 at{plot.min().x + 0.7F * line, plot.min().y + 0.5F * line};
-  const auto entry = [&](const CurveStyle& style, const std::string& name, ImU32 colour = kTextColour) {
-    const float middle = at.y + 0.5F * line;
-    draw_label(plot.list(), {at.x + 2.6F * line, at.y}, {0.0F, 0.0F}, colour, name);
-    draw_line(plot.list(), {{at.x, middle}, {at.x + 2.2F * line, middle}}, style, kCurveWidth);
-    at.y += 1.25F * line;
-  };
-  const auto curve = [&](const Shown& of) {
-    entry(of.style, of.name, of.curve->is_stale() ? kDimColour : kTextColour);
-  };
-  curve(curves.back());
-  for (std::size_t i = 0; i + 1 < curves.size(); ++i) curve(curves[i]);
-  const bool has_band =
-      session.view().quantity == Plotted::kDolp &&
-      std::ranges::any_of(session.curve().points(), [](const Point& point) { return point.has_bracket(); });
-  if (has_band) {
-    const ImVec2 end{at.x + 2.2F * line, at.y + 0.9F * line};
-    plot.list()->AddRectFilled({at.x, at.y + 0.1F * line}, end, band_colour(curves.back().style));
-    draw_label(plot.list(), {at.x + 2.6F * line, at.y}, {0.0F, 0.0F}, kTextColour, "all bounces lie between");
-    at.y += 1.25F * line;
+/// Samples and names, as many beside each other as fit.
+class Legend {
+ public:
+  /// Returns true where the entry was clicked.
+  bool add(const char* id, const CurveStyle& style, const std::string& name, ImU32 colour = kTextColour) {
+    const float line = ImGui::GetTextLineHeight();
+    const ImVec2 at = take(id, name);
+    draw_line(ImGui::GetWindowDrawList(), {{at.x, at.y + 0.5F * line}, {at.x + 2.0F * line, at.y + 0.5F * line}}, style,
+              kCurveWidth);
+    draw_text(ImGui::GetWindowDrawList(), {at.x + 2.3F * line, at.y}, {0.0F, 0.0F}, colour, name);
+    return ImGui::IsItemClicked();
   }
-  const bool has_bad =
-      std::ranges::any_of(session.curve().points(), [](const Point& point) { return !point.is_good(); });
-  if (has_bad) entry({kBadColour, 4.0F, 4.0F}, "the model fails here (status)");
+  void add_band(ImU32 colour, const std::string& name) {
+    const float line = ImGui::GetTextLineHeight();
+    const ImVec2 at = take("band", name);
+    ImGui::GetWindowDrawList()->AddRectFilled({at.x, at.y + 0.1F * line}, {at.x + 2.0F * line, at.y + 0.9F * line},
+                                              colour);
+    draw_text(ImGui::GetWindowDrawList(), {at.x + 2.3F * line, at.y}, {0.0F, 0.0F}, kTextColour, name);
+  }
+
+ private:
+  ImVec2 take(const char* id, const std::string& name) {
+    const float line = ImGui::GetTextLineHeight();
+    const float width = 2.3F * line + ImGui::CalcTextSize(shown(name).c_str()).x;
+    if (!is_empty_) ImGui::SameLine(0.0F, 1.2F * line);
+    if (!is_empty_ && ImGui::GetContentRegionAvail().x < width) ImGui::NewLine();
+    is_empty_ = false;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::InvisibleButton(id, {width, line});
+    return at;
+  }
+
+  bool is_empty_ = true;
+};
+
+void draw_legend(const std::vector<Shown>& curves, Session& session) {
+  Legend legend;
+  const auto colour_of = [](const Curve& curve) { return curve.is_stale() ? kDimColour : kTextColour; };
+  legend.add("curve", curves.back().style, curves.back().name, colour_of(session.curve()));
+  if (session.overlay() &&
+      legend.add("overlay", overlay_style(), session.overlay_name(), colour_of(*session.overlay()))) {
+    View view = session.view();
+    view.has_overlay = false;
+    session.set_view(view);
+  }
+  for (std::size_t i = 0; i < session.pins().size(); ++i) {
+    const Pin& pin = session.pins()[i];
+    const std::string name = "pinned: " + pin_name(pin, session.curve());
+    const ImU32 colour = pin.is_visible ? colour_of(pin.curve) : kDimColour;
+    ImGui::PushID(static_cast<int>(i));
+    if (legend.add("pin", pin.is_visible ? pin_style(pin.colour) : stale(pin_style(pin.colour)), name, colour))
+      session.show_pin(i, !pin.is_visible);
+    ImGui::PopID();
+  }
+  const std::vector<Point>& points = session.curve().points();
+  const bool is_dolp = session.view().quantity == Plotted::kDolp;
+  if (is_dolp && std::ranges::any_of(points, [](const Point& point) { return point.has_bracket(); }))
+    legend.add_band(band_colour(curves.back().style), "all bounces lie between");
+  if (std::ranges::any_of(points, [](const Point& point) { return !point.is_good(); }))
+    legend.add("bad", {kBadColour, 4.0F, 4.0F}, "the model fails here (status)");
 }
 
 void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& style) {
@@ -207,13 +242,16 @@ void draw_peak(const Plot& plot, const Session& session) {
   if (plot.y().is_log && value <= 0.0) return;
   const bool is_low = value < 0.0;
   const ImVec2 at = plot.at(peak->at.theta_deg, value);
+  if (at.x < plot.min().x || at.x > plot.max().x || at.y < plot.min().y || at.y > plot.max().y) return;
   const float side = is_low ? 1.0F : -1.0F;
   plot.list()->AddTriangleFilled({at.x, at.y + side * 3.0F}, {at.x - 5.0F, at.y + side * 12.0F},
                                  {at.x + 5.0F, at.y + side * 12.0F}, kTextColour);
   // Beside the mark towards the middle, so that it stays inside.
   const bool is_right = at.x > 0.5F * (plot.min().x + plot.max().x);
-  draw_label(plot.list(), {at.x + (is_right ? -9.0F : 9.0F), at.y + side * 8.0F}, {is_right ? 1.0F : 0.0F, 0.5F},
-             kTextColour, fmt::format("{:.2f} % at {:.1f}°", value, peak->at.theta_deg));
+  const float line = ImGui::GetTextLineHeight();
+  const float beside = std::max(std::min(at.y + side * 8.0F, plot.max().y - line), plot.min().y + line);
+  draw_label(plot.list(), {at.x + (is_right ? -9.0F : 9.0F), beside}, {is_right ? 1.0F : 0.0F, 0.5F}, kTextColour,
+             fmt::format("{:.2f} % at {:.1f}°", value, peak->at.theta_deg));
 }
 
 void draw_measured(const Plot& plot, const std::vector<Measurement>& points) {
@@ -229,7 +267,7 @@ void draw_measured(const Plot& plot, const std::vector<Measurement>& points) {
   }
 }
 
-void draw_residuals(const Session& session, ImVec2 size) {
+void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   const Plotted quantity = session.view().quantity;
   const double scale = scale_of(quantity);
   const std::vector<double> residuals = session.residuals().residuals();
@@ -245,42 +283,64 @@ void draw_residuals(const Session& session, ImVec2 size) {
   const std::optional<double> rms = session.residuals().rms(quantity);
   const std::string label =
       rms ? fmt::format("measured − model{}; root mean square {:.3g}", unit, scale * *rms) : "measured − model" + unit;
-  const double theta_max = session.view().theta_max_deg;
-  const Plot plot("residuals", size, {"", {0.0, theta_max}}, {label, {-1.2 * largest, 1.2 * largest}});
+  const Plot plot("residuals", size, {"", theta}, {label, {-1.2 * largest, 1.2 * largest}});
   plot.clip();
-  plot.list()->AddLine(plot.at(0.0, 0.0), plot.at(theta_max, 0.0), kDimColour);
-  for (const auto& [theta, residual] : shown) {
-    plot.list()->AddLine(plot.at(theta, 0.0), plot.at(theta, residual), kTextColour);
-    plot.list()->AddCircleFilled(plot.at(theta, residual), 3.0F, kTextColour);
+  plot.list()->AddLine(plot.at(theta.from, 0.0), plot.at(theta.to, 0.0), kDimColour);
+  for (const auto& [theta_deg, residual] : shown) {
+    plot.list()->AddLine(plot.at(theta_deg, 0.0), plot.at(theta_deg, residual), kTextColour);
+    plot.list()->AddCircleFilled(plot.at(theta_deg, residual), 3.0F, kTextColour);
   }
   plot.unclip();
 }
 
 }  // namespace
 
-Area draw_curve_view(Session& session, ImVec2 size) {
+void CurveView::draw(Session& session, ImVec2 size) {
   const std::vector<Shown> curves = shown_curves(session);
   const Plotted quantity = session.view().quantity;
+  // Of a fixed height, so that the plot stays where it is; more entries are scrolled to.
+  const float lines = size.y > kRoomForTwo * ImGui::GetTextLineHeight() ? 2.0F : 1.0F;
+  const float legend_height = lines * ImGui::GetTextLineHeightWithSpacing();
+  ImGui::BeginChild("legend", {size.x, legend_height});
+  draw_legend(curves, session);
+  ImGui::EndChild();
+  size.y -= legend_height + ImGui::GetStyle().ItemSpacing.y;
   const std::vector<Measurement> measured = session.residuals().measured(quantity);
   const bool has_measured = !measured.empty();
   const float gap = ImGui::GetStyle().ItemSpacing.y;
   const float residual_height = has_measured ? 0.28F * size.y : 0.0F;
-  const double theta_max = session.view().theta_max_deg;
+
+  const Scale zeniths{0.0, session.view().theta_max_deg};
+  PlotAxis values = value_axis(session, curves);
+  if (quantity_ != quantity || (zoom_.y && zoom_.y->is_log != values.scale.is_log)) zoom_.y.reset();
+  if (zoom_.x) zoom_.x = zoom_.x->within(zeniths);
+  if (zoom_.y) {
+    values.scale = *zoom_.y;
+  } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && quantity_ == quantity && y_.is_log == values.scale.is_log) {
+    // While a slider is dragged the axis grows at most, so that the curve is what moves.
+    values.scale = {std::min(y_.from, values.scale.from), std::max(y_.to, values.scale.to), y_.is_log};
+  }
+  quantity_ = quantity;
+  x_ = zoom_.x.value_or(zeniths);
+  y_ = values.scale;
   const Plot plot("curve", {size.x, size.y - residual_height - (has_measured ? gap : 0.0F)},
-                  {is_bistatic(session.scene()) ? "zenith θ of the source [°]" : "zenith θ [°]", {0.0, theta_max}},
-                  value_axis(session, curves));
+                  {is_bistatic(session.scene()) ? "zenith θ of the source [°]" : "zenith θ [°]", x_}, values);
   if (plot.is_dragged()) session.set_theta(plot.x().value(plot.mouse_x()));
+  plot.follow_mouse(zoom_, zeniths);
   plot.clip();
-  if (!plot.y().is_log) plot.list()->AddLine(plot.at(0.0, 0.0), plot.at(theta_max, 0.0), kDimColour);
+  if (!plot.y().is_log) plot.list()->AddLine(plot.at(x_.from, 0.0), plot.at(x_.to, 0.0), kDimColour);
   if (quantity == Plotted::kDolp) draw_bracket(plot, curves.back());
   for (const Shown& shown : curves) draw_curve(plot, shown, quantity);
   draw_measured(plot, measured);
   draw_cursor(plot, session, curves.back().style);
   draw_peak(plot, session);
-  draw_legend(plot, curves, session);
+  if (plot.is_hovered() && !plot.is_dragged()) {
+    draw_label(plot.list(), plot.area().at(0.99F, 0.98F), {1.0F, 1.0F}, kDimColour,
+               fmt::format("{:.2f}°, {:.4g}", x_.value(plot.mouse_x()), y_.value(plot.mouse_y())));
+  }
   plot.unclip();
-  if (has_measured) draw_residuals(session, {size.x, residual_height});
-  return plot.area();
+  area_ = plot.area();
+  if (has_measured) draw_residuals(session, x_, {size.x, residual_height});
 }
 
 }  // namespace dolp::explore

@@ -69,8 +69,11 @@ Plot::Plot(const char* id, ImVec2 size, PlotAxis x, PlotAxis y, float right, boo
   draw_y_axis(has_grid);
   list_->AddRect(min(), max(), kDimColour);
   ImGui::SetCursorScreenPos(min());
-  ImGui::InvisibleButton(id, {area_.width(), area_.height()});
-  is_dragged_ = ImGui::IsItemActive();
+  ImGui::InvisibleButton(id, {area_.width(), area_.height()},
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+  is_dragged_ = ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Left);
+  is_shifted_ = ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Right);
+  is_hovered_ = ImGui::IsItemHovered();
   ImGui::SetCursorScreenPos(corner);
   ImGui::Dummy(size);
 }
@@ -85,6 +88,32 @@ double Plot::mouse_x() const {
 
 double Plot::mouse_y() const {
   return std::clamp(static_cast<double>((max().y - ImGui::GetIO().MousePos.y) / area_.height()), 0.0, 1.0);
+}
+
+void Plot::follow_mouse(Zoom& zoom, const Scale& all_x) const {
+  constexpr float kPerNotch = 1.25F;
+  constexpr double kLeastPart = 1e-4;  // of the axis that is there without a zoom
+  const ImGuiIO& io = ImGui::GetIO();
+  if (is_hovered_ && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) zoom = {};
+  if (is_shifted_ && (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F)) {
+    const double across = static_cast<double>(io.MouseDelta.x / area_.width());
+    const double up = static_cast<double>(-io.MouseDelta.y / area_.height());
+    zoom = {x().between(-across, 1.0 - across).within(all_x), y().between(-up, 1.0 - up)};
+  }
+  if (!is_hovered_ || io.MouseWheel == 0.0F) return;
+  const double part = static_cast<double>(std::pow(kPerNotch, -io.MouseWheel));
+  const auto magnified = [part](const Scale& scale, double at) {
+    return scale.between(at - at * part, at + (1.0 - at) * part);
+  };
+  if (!io.KeyAlt) {
+    const Scale wanted = magnified(x(), mouse_x());
+    if (wanted.to - wanted.from > kLeastPart * (all_x.to - all_x.from)) zoom.x = wanted.within(all_x);
+  }
+  if (!io.KeyShift) {
+    const Scale wanted = magnified(y(), mouse_y());
+    const double largest = std::max(std::abs(wanted.from), std::abs(wanted.to));
+    if (wanted.to - wanted.from > kLeastPart * kLeastPart * largest) zoom.y = wanted;
+  }
 }
 
 void Plot::draw_x_axis(bool has_grid) const {

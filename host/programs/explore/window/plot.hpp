@@ -3,6 +3,7 @@
 
 #include <imgui.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,12 @@ struct PlotAxis {
   Scale scale;
 };
 
+/// The part of a plot that is shown, by the mouse: the wheel magnifies about its place (with Shift along x alone, with
+/// Alt along y), the right button shifts, a double click shows all again. Empty: all.
+struct Zoom {
+  std::optional<Scale> x, y;
+};
+
 /// A rectangle of the screen with two axes.
 class Plot {
  public:
@@ -43,8 +50,11 @@ class Plot {
 
   ImVec2 at(double x_value, double y_value) const { return at_position(x().position(x_value), y().position(y_value)); }
   ImVec2 at_position(double x, double y) const;
-  /// True while the mouse, which was pressed inside, is held down.
+  /// True while the left button, which was pressed inside, is held down.
   bool is_dragged() const { return is_dragged_; }
+  bool is_hovered() const { return is_hovered_; }
+  /// Follows the mouse of this frame. `all_x`: the longest axis there may be.
+  void follow_mouse(Zoom& zoom, const Scale& all_x) const;
   /// The position of the mouse, from 0 to 1 along both axes; outside of the plot that of the nearest point.
   double mouse_x() const;
   double mouse_y() const;
@@ -60,6 +70,8 @@ class Plot {
   Area area_;
   ImDrawList* list_ = nullptr;
   bool is_dragged_ = false;
+  bool is_shifted_ = false;
+  bool is_hovered_ = false;
 };
 
 /// A line through points, dashed where the style says so.

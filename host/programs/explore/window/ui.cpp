@@ -20,6 +20,7 @@ constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowF
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
                                     ImGuiWindowFlags_NoBackground;
 constexpr const char* kDialog = "###path";
+constexpr char kUndoKey = 'Z';
 
 void label(const char* text) {
   ImGui::AlignTextToFramePadding();
@@ -95,6 +96,9 @@ void Ui::add_view_commands() {
   add_switch("Logarithmic axis", 'L', &View::is_log);
   add_switch("Overlay the other slope distribution", 'D', &View::has_overlay);
   add_switch("Keep all effects", 'G', &View::keeps_all);
+  commands_.push_back({"Scene", "Undo", kUndoKey, [this] { session_.undo(); }});
+  commands_.push_back({"Scene", "Redo", kUndoKey, [this] { session_.redo(); }, {}, true});
+  commands_.push_back({"Scene", "Copy the command that gives its table", 'C', [this] { copy_command(); }, {}, true});
   commands_.push_back({"Scene", "Pin the curve", 'P', [this] { session_.pin(); }});
   commands_.push_back({"Scene", "True error of the curve", 'K', [this] { actions_.find_true_error(); }});
   commands_.push_back({"Scene", "Fit to the measured points", 'F', [this] { actions_.fit(); }});
@@ -104,8 +108,11 @@ void Ui::add_view_commands() {
 
 void Ui::run_shortcuts() {
   if (ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) return;
-  if (ImGui::GetIO().KeyMods != ImGuiKeyModFlags_Ctrl) return;
+  const ImGuiIO& io = ImGui::GetIO();
+  if (!io.KeyCtrl || io.KeyAlt) return;
   for (const Command& command : commands_) {
+    if (command.has_shift != io.KeyShift) continue;
+    if (command.key == kUndoKey && io.WantTextInput) continue;  // the field undoes its own text
     // GLFW's number of a letter's key is that of the letter.
     if (command.key != 0 && ImGui::IsKeyPressed(command.key, false)) command.run();
   }
@@ -163,6 +170,9 @@ void Ui::draw_help() {
     ImGui::Separator();
     for (const char* hint :
          {"Drag in the curve: moves θ. Drag in the map: moves what its axes are of, and the curve follows.",
+          "Wheel in the curve: zooms (Shift: along θ, Alt: along the values). Right button: moves it. Double click: "
+          "all.",
+          "Click in the legend: hides or shows a curve. Right click on a pin: its name.",
           "Ctrl-click on a slider: back to the value of the scene as opened. Type any allowed value beside it.",
           "Rest the mouse on a control: its meaning, equation and range. Drop a CSV of measured points on the window.",
           "Grey in map and curve: the model fails there; the line under the plots says how."}) {
@@ -257,8 +267,14 @@ void Ui::draw_pins() {
     ImGui::SameLine();
     bool is_visible = pin.is_visible;
     ImGui::PushStyleColor(ImGuiCol_Text, pin_style(pin.colour).colour);
-    if (ImGui::Checkbox(shown(pin.name).c_str(), &is_visible)) session_.show_pin(i, is_visible);
+    const std::string name = pin.name.empty() ? surface_name(pin.curve.shown_scene()) : pin.name;
+    if (ImGui::Checkbox(shown(name).c_str(), &is_visible)) session_.show_pin(i, is_visible);
     ImGui::PopStyleColor();
+    if (ImGui::BeginPopupContextItem("name")) {
+      std::string typed = pin.name;
+      if (ImGui::InputTextWithHint("##name", shown(name).c_str(), &typed)) session_.rename_pin(i, typed);
+      ImGui::EndPopup();
+    }
     ImGui::PopID();
   }
   if (removed < session_.pins().size()) session_.remove_pin(removed);
@@ -291,7 +307,7 @@ void Ui::draw_plots(ImVec2 size) {
   const float curve_width = 0.54F * size.x;
   constexpr ImGuiWindowFlags kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
   ImGui::BeginChild("curves", {curve_width, size.y}, false, kStill);
-  plot_ = draw_curve_view(session_, ImGui::GetContentRegionAvail());
+  curve_view_.draw(session_, ImGui::GetContentRegionAvail());
   ImGui::EndChild();
   ImGui::SameLine();
   ImGui::BeginChild("maps", {size.x - curve_width - gap, size.y}, false, kStill);
@@ -299,7 +315,14 @@ void Ui::draw_plots(ImVec2 size) {
   ImGui::EndChild();
 }
 
+void Ui::copy_command() {
+  const std::string command = table_command(session_.edits());
+  ImGui::SetClipboardText(command.c_str());
+  session_.tell("copied: " + command);
+}
+
 void Ui::draw() {
+  if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) session_.end_gesture();
   run_shortcuts();
   draw_menus();
   const ImGuiViewport* viewport = ImGui::GetMainViewport();
@@ -318,8 +341,8 @@ void Ui::draw() {
   draw_view_controls();
   const float readout = 3.8F * ImGui::GetTextLineHeightWithSpacing();
   const ImVec2 rest{ImGui::GetContentRegionAvail().x, ImGui::GetContentRegionAvail().y - readout};
-  // The panels below scroll; the plots keep half of what there is.
-  const float bottom = std::min(std::max(0.33F * all.y, 15.0F * ImGui::GetTextLineHeight()), 0.5F * rest.y);
+  // The panels below scroll; the plots keep more than half of what there is.
+  const float bottom = std::min(std::max(0.33F * all.y, 15.0F * ImGui::GetTextLineHeight()), 0.45F * rest.y);
   draw_plots({rest.x, rest.y - bottom});
   ImGui::BeginChild("readout", {0.0F, readout});
   draw_readout();

@@ -20,19 +20,19 @@ class Ui {
   void draw();
 
   const ControlsPanel& controls() const { return controls_; }
-  /// The last drawn area of the curves.
-  const Area& plot() const { return plot_; }
+  const CurveView& curves() const { return curve_view_; }
 
  private:
-  /// A menu entry with its shortcut: Ctrl and a key.
+  /// A menu entry with its shortcut: Ctrl, Shift or not, and a key.
   struct Command {
     const char* menu;
     const char* text;
     char key;  ///< 0: none
     std::function<void()> run;
     std::function<bool()> is_checked = {};  ///< none: not a switch
+    bool has_shift = false;
 
-    std::string shortcut() const { return key == 0 ? "" : std::string("Ctrl+") + key; }
+    std::string shortcut() const { return key == 0 ? "" : std::string(has_shift ? "Ctrl+Shift+" : "Ctrl+") + key; }
   };
   /// A dialog that asks for a path.
   struct PathDialog {
@@ -48,6 +48,7 @@ class Ui {
   void draw_menus();
   void draw_menu(const char* menu);
   void run_shortcuts();
+  void copy_command();
   void draw_path_dialog();
   void draw_help();
   void draw_view_controls();
@@ -64,7 +65,7 @@ class Ui {
   ControlsPanel controls_;
   NumberFields fields_;
   MapView map_view_;
-  Area plot_;
+  CurveView curve_view_;
   PathDialog dialog_;
   bool shows_help_ = false;
 };

@@ -10,9 +10,22 @@
 
 namespace dolp::explore {
 
-/// Fills `size` of the current ImGui window with the current curve, the overlaid one, pins and measured points; a click
-/// or drag moves the cursor. Returns the area of the curves.
-Area draw_curve_view(Session& session, ImVec2 size);
+class CurveView {
+ public:
+  /// Fills `size` of the current ImGui window with the current curve, the overlaid one, pins and measured points, below
+  /// a legend that switches them; a click or drag moves the cursor, and Zoom follows the mouse.
+  void draw(Session& session, ImVec2 size);
+  /// The last drawn area of the curves, and their axes.
+  const Area& area() const { return area_; }
+  const Scale& x() const { return x_; }
+  const Scale& y() const { return y_; }
+
+ private:
+  Area area_;
+  Scale x_, y_;
+  Zoom zoom_;
+  Plotted quantity_ = Plotted::kDolp;
+};
 
 /// Fills the current ImGui window with the plan's treatment of each effect, its influence and the reason.
 void draw_effects(const Session& session);

@@ -3,16 +3,20 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <array>
+
 #include "explore/readout.hpp"
 #include "explore/window/style.hpp"
 
 namespace dolp::explore {
 namespace {
 
-void cell(const std::string& text, ImU32 colour = kTextColour) {
+void cell(const std::string& text, ImU32 colour) {
   ImGui::TableNextColumn();
   ImGui::PushStyleColor(ImGuiCol_Text, colour);
+  ImGui::PushTextWrapPos(0.0F);  // where the column ends
   ImGui::TextUnformatted(shown(text).c_str());
+  ImGui::PopTextWrapPos();
   ImGui::PopStyleColor();
 }
 
@@ -43,9 +47,21 @@ void draw_row(const Session& session, const Effect& row) {
   cell(influence_text(row), colour);
   cell(is_absent ? "" : taken_away_text(session, row), colour);
   cell(row.reason, colour);
-  if (!ImGui::IsItemHovered()) return;
-  const std::string needs = row.needs.empty() ? "" : "\nit takes: " + row.needs;
-  ImGui::SetTooltip("%s", shown(row.reason + needs).c_str());
+  if (!row.needs.empty()) tooltip("it takes: " + row.needs);
+}
+
+/// The names of the columns, each with what its values mean.
+void draw_headers() {
+  constexpr std::array kMeanings = {
+      "a part of the scene", "kept, dropped, absent or not needed by what is kept",
+      "what it adds to DOLP at the cursor: a bound (≤) where it is dropped, else an estimate",
+      "Q/I at the maximum of the curve: its change without the effect, and what is left", "the reason of the plan"};
+  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+  for (int column = 0; column < static_cast<int>(kMeanings.size()); ++column) {
+    ImGui::TableSetColumnIndex(column);
+    ImGui::TableHeader(ImGui::TableGetColumnName(column));
+    tooltip(kMeanings[static_cast<std::size_t>(column)]);
+  }
 }
 
 }  // namespace
@@ -60,12 +76,12 @@ void draw_effects(const Session& session) {
   if (!ImGui::BeginTable(is_narrow ? "narrow effects" : "effects", kColumns, flags)) return;
   ImGui::TableSetupScrollFreeze(0, 1);
   const char* name = is_stale(session) ? "the scene before" : "effect";
-  ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthFixed, 8.0F * em);
-  ImGui::TableSetupColumn("plan", ImGuiTableColumnFlags_WidthFixed, 5.2F * em);
-  ImGui::TableSetupColumn("influence at cursor");
-  ImGui::TableSetupColumn("maximum without it");
+  ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthFixed, 6.8F * em);
+  ImGui::TableSetupColumn("plan", ImGuiTableColumnFlags_WidthFixed, 4.2F * em);
+  ImGui::TableSetupColumn("at cursor", ImGuiTableColumnFlags_WidthFixed, 6.0F * em);
+  ImGui::TableSetupColumn("without it", ImGuiTableColumnFlags_WidthFixed, 9.4F * em);
   ImGui::TableSetupColumn("why", is_narrow ? ImGuiTableColumnFlags_WidthFixed : ImGuiTableColumnFlags_WidthStretch);
-  ImGui::TableHeadersRow();
+  draw_headers();
   for (const Effect& row : session.effects()) {
     ImGui::TableNextRow();
     draw_row(session, row);

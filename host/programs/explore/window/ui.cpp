@@ -347,7 +347,7 @@ void Ui::draw() {
   ImGui::BeginChild("readout", {0.0F, readout});
   draw_readout();
   ImGui::EndChild();
-  const float price = 24.0F * ImGui::GetFontSize();
+  const float price = 20.0F * ImGui::GetFontSize();
   ImGui::BeginChild("effects", {ImGui::GetContentRegionAvail().x - price, 0.0F}, true);
   draw_effects(session_);
   ImGui::EndChild();

@@ -411,7 +411,7 @@ TEST_F(TableFiles, Csv_Rows_ReadBackAsTheSameDoubles) {
   EXPECT_NE(comments.find("# scene: a = 1\n#   b = 2\n# driver: \n"), std::string::npos) << comments;
   EXPECT_NE(comments.find("# tolerance: 1e-04\n"), std::string::npos) << comments;
   EXPECT_EQ(line,
-            "theta_deg,sigma,q,dolp,stokes_i,stokes_q,stokes_u,stokes_v,rho_i,rho_q,albedo,emissivity_s,"
+            "theta_deg,sigma,q,dolp,q_over_i,stokes_i,stokes_q,stokes_u,stokes_v,rho_i,rho_q,albedo,emissivity_s,"
             "emissivity_p,dolp_low,dolp_high,error_estimate,rho_error_estimate,status");
   for (std::size_t i = 0; i < table.size(); ++i) {
     ASSERT_TRUE(std::getline(lines, line));
@@ -445,13 +445,13 @@ TEST_F(TableFiles, Npy_Bytes_AreAStructuredArray) {
   EXPECT_NE(header.find("('q', '<f8'), ('dolp', '<f8')"), std::string::npos) << header;
   EXPECT_NE(header.find("('status', '<u4')"), std::string::npos) << header;
   EXPECT_EQ(header.find("stokes_u"), std::string::npos) << header;
-  constexpr std::size_t kReals = 3 + 13;
+  constexpr std::size_t kReals = 3 + kQuantityCount - 1;
   constexpr std::size_t kRecord = kReals * sizeof(double) + sizeof(std::uint32_t);
   ASSERT_EQ(bytes.size() - start, table.size() * kRecord);
   for (std::size_t i = 0; i < table.size(); ++i) {
     std::array<double, kReals> record{};
     std::memcpy(record.data(), bytes.data() + start + i * kRecord, sizeof record);
-    expect_same({record[0], record[1], record[2], record[3], record[4]},
+    expect_same({record[0], record[1], record[2], record[3], record[5]},
                 {table.axes[Axis::kTheta][i / 2], table.axes[Axis::kSigma][0], table.axes[Axis::kQ][i % 2],
                  table[Quantity::kDolp][i], table[Quantity::kStokesI][i]},
                 "record");

@@ -87,7 +87,7 @@ TEST_F(CommandLine, TableNetcdf_EvalAtItsEntries_EqualBitForBit) {
   EXPECT_TRUE(columns.contains("emissivity_s"));
   const Outcome other = run({.arguments = {kPython, DOLP_READ_TABLE, "t.nc", "e.csv"}, .folder = at("")});
   EXPECT_EQ(other.status, 0) << other.out << other.err;
-  EXPECT_NE(other.out.find("16 rows, 13 columns"), std::string::npos) << other.out;
+  EXPECT_NE(other.out.find("16 rows, 14 columns"), std::string::npos) << other.out;
 }
 
 TEST_F(CommandLine, PlotTable_OfFurtherAxes_DrawsTheNearestAndNamesThoseThatThereAre) {

@@ -123,7 +123,8 @@ TEST_F(Verify, GoodTable_Exit0AndEveryQuantityIsCompared) {
     names.insert(quantity["name"]);
     EXPECT_EQ(quantity["compared"], 16) << quantity;
   }
-  EXPECT_EQ(names, (std::set<std::string>{"dolp", "rho_i", "rho_q", "stokes_i", "stokes_q", "stokes_u", "stokes_v"}));
+  EXPECT_EQ(names, (std::set<std::string>{"dolp", "q_over_i", "rho_i", "rho_q", "stokes_i", "stokes_q", "stokes_u",
+                                          "stokes_v"}));
   const Outcome text = dolp({"verify", "t.nc"});
   EXPECT_EQ(text.status, kDone);
   EXPECT_NE(text.out.find("verdict    passed: 16 of 16 entries"), std::string::npos) << text.out;
@@ -238,7 +239,7 @@ TEST_F(Verify, ReducedVariables_AreComparedAsFarAsTheyAreThere) {
   }
   write_table(table, at("t.nc"));
   const nlohmann::json json = verify_json(kDone);
-  EXPECT_EQ(json["quantities"].size(), 3U);
+  EXPECT_EQ(json["quantities"].size(), 4U);  // dolp, q_over_i, stokes_i, stokes_q
 }
 
 TEST_F(Verify, ChangedScene_IsRefused) {

@@ -21,9 +21,9 @@ inline const std::string kScene = read_file(DOLP_TEST_DATA_DIR "/scene.toml");
 inline const std::string kPoints = "theta_deg,sigma,q\n0,0.1,2\n60.0,0.4,3.5\n 80.5,0.1 ,2\n";
 
 inline const std::vector<std::string> kResultColumns = {
-    "rho_i",        "rho_q",        "albedo", "stokes_i",       "stokes_q",
-    "stokes_u",     "stokes_v",     "dolp",   "error_estimate", "rho_error_estimate",
-    "emissivity_s", "emissivity_p", "status"};
+    "rho_i",        "rho_q",        "albedo",   "stokes_i",       "stokes_q",
+    "stokes_u",     "stokes_v",     "dolp",     "error_estimate", "rho_error_estimate",
+    "emissivity_s", "emissivity_p", "q_over_i", "status"};
 
 /// Neither variable may name a driver, so that the loader finds none.
 inline const std::vector<std::pair<std::string, std::string>> kNoDriver = {{"VK_DRIVER_FILES", "/nonexistent.json"},

@@ -26,6 +26,7 @@ EmissionModel emission_model(const SceneValues& scene) {
 
 void set_dolp(PointResult& result, const Stokes& sum) {
   result[kDolp] = std::hypot(sum.q, sum.u) / sum.i;
+  result[kQOverI] = sum.q / sum.i + 0.0;  // turns -0 into 0
   const double i = std::abs(sum.i);
   const double margin = i - sum.i_error;
   if (std::isnan(result[kDolp])) {
@@ -119,7 +120,7 @@ PointResult grazing_limit(const SceneValues& scene, const SpectralRule& rule, co
     // A diverging diffuse part is unpolarised. It cancels only next to a fresnel emission of the same temperature; the
     // rest is too small to need a formula of its own.
     const bool cancels = emission_model(scene) == EmissionModel::kFresnel && is_isothermal(rule);
-    if (diffuse_diverges(surface) && !cancels) result[kDolp] = result[kErrorEstimate] = 0.0;
+    if (diffuse_diverges(surface) && !cancels) result[kDolp] = result[kQOverI] = result[kErrorEstimate] = 0.0;
     return result;
   }
   for (const Moments& m : moments) {

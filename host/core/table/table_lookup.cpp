@@ -391,6 +391,7 @@ void TableLookup::finish(PointResult& result, const PointResult& change, double 
     return above_error + of_below == 0.0 ? 0.0 : least > 0.0 ? (above_error + of_below) / least : kInfinity;
   };
   result[kDolp] = std::hypot(result[kStokesQ], result[kStokesU]) / result[kStokesI];
+  result[kQOverI] = result[kStokesQ] / result[kStokesI];
   double dolp_error =
       over(result[kStokesI], change[kStokesI], result[kDolp], std::hypot(change[kStokesQ], change[kStokesU]));
   if (table_.has(kDolpLow)) dolp_error = std::max({dolp_error, change[kDolpLow], change[kDolpHigh]});

@@ -19,7 +19,8 @@ namespace dolp {
 /// Conventions: Q = I_s - I_p keeps its sign; U = V = 0 in hemispherical mode. Over a band rho is the mean weighted by
 /// the emission pi B(T), without emission by the incident radiation, without either by the wavelength.
 enum class Quantity : std::uint8_t {
-  kDolp,  ///< sqrt(Q^2 + U^2) / I; negative with a negative I, NaN with I = 0
+  kDolp,    ///< sqrt(Q^2 + U^2) / I; negative with a negative I, NaN with I = 0
+  kQOverI,  ///< Q / I, signed: it crosses zero where contributions cancel
   kStokesI,
   kStokesQ,
   kStokesU,
@@ -31,7 +32,7 @@ enum class Quantity : std::uint8_t {
   kEmissivityP,
   kDolpLow,  ///< with dolp_high: bounds of the DOLP of a surface with these facets and all bounces
   kDolpHigh,
-  kErrorEstimate,     ///< bound of |d DOLP|, dolp_low and dolp_high included; infinite when there is none
+  kErrorEstimate,     ///< bound of |d DOLP|, q_over_i, dolp_low and dolp_high included; infinite when there is none
   kRhoErrorEstimate,  ///< bound of max(|d rho_I|, |d rho_Q|) / rho_I; infinite when there is none
 };
 inline constexpr std::size_t kQuantityCount = static_cast<std::size_t>(Quantity::kRhoErrorEstimate) + 1;
@@ -64,6 +65,8 @@ inline constexpr const char* kStatusQualifier = "status";
 
 inline constexpr std::array<QuantityDescription, kQuantityCount> kQuantities = {{
     {"dolp", "degree of linear polarisation", false, kDolpQualifiers, QuantityNeeds::kNothing},
+    {"q_over_i", "degree of linear polarisation Q / I, positive where s prevails", false, kDolpQualifiers,
+     QuantityNeeds::kNothing},
     {"stokes_i", "Stokes parameter I of the radiation that leaves the surface and reaches the sensor", true,
      kStatusQualifier, QuantityNeeds::kNothing},
     {"stokes_q", "Stokes parameter Q = I_s - I_p", true, kStatusQualifier, QuantityNeeds::kNothing},
@@ -83,7 +86,7 @@ inline constexpr std::array<QuantityDescription, kQuantityCount> kQuantities = {
      QuantityNeeds::kBracket},
     {"dolp_high", "largest degree of linear polarisation with all bounces", false, kDolpQualifiers,
      QuantityNeeds::kBracket},
-    {"error_estimate", "bound of the absolute error of dolp", false, "", QuantityNeeds::kNothing},
+    {"error_estimate", "bound of the absolute errors of dolp and q_over_i", false, "", QuantityNeeds::kNothing},
     {"rho_error_estimate", "bound of the errors of rho_i and rho_q relative to rho_i", false, "",
      QuantityNeeds::kReflectance},
 }};
@@ -107,7 +110,8 @@ inline constexpr std::array<Quantity, kQuantityCount> kCsvOrder = {
     Quantity::kStokesV,       Quantity::kDolp,
     Quantity::kErrorEstimate, Quantity::kRhoErrorEstimate,
     Quantity::kEmissivityS,   Quantity::kEmissivityP,
-    Quantity::kDolpLow,       Quantity::kDolpHigh};
+    Quantity::kDolpLow,       Quantity::kDolpHigh,
+    Quantity::kQOverI};
 static_assert(std::ranges::is_permutation(kCsvOrder, kAllQuantities), "each quantity is in it once");
 
 }  // namespace dolp

@@ -29,8 +29,9 @@ struct Compared {
   Quantity quantity;
   Bound bound;
 };
-constexpr std::array<Compared, 7> kCompared{{
+constexpr std::array<Compared, 8> kCompared{{
     {Quantity::kDolp, Bound::kDolp},
+    {Quantity::kQOverI, Bound::kDolp},
     {Quantity::kRhoI, Bound::kReflectance},
     {Quantity::kRhoQ, Bound::kReflectance},
     {Quantity::kStokesI, Bound::kRadiation},

@@ -154,7 +154,11 @@ class Attempt:
 
     def run(self):
         with self.start() as process:
-            _, err = process.communicate(timeout=TIMEOUT_S)
+            try:
+                _, err = process.communicate(timeout=TIMEOUT_S)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                raise Broken(f"{self.words[1:]} does not end") from None
         return process.returncode, err.decode(errors="replace")
 
     def check(self, status, err, allowed, may_stay=None):
@@ -230,6 +234,16 @@ def memory_limit(driver):
     for megabytes in ((100, 150, 300, 500, 1000) if driver.is_quick else range(100, 2001, 20)):
         limit = (resource.RLIMIT_AS, megabytes * 1_000_000)
         yield driver.try_once("table", LARGE, (DONE, MEMORY, *LIBRARY), limit=limit)
+
+
+def few_threads(driver):
+    """the system allows n threads beside the first"""
+    driver.expect("table", LARGE)
+    # What lavapipe waits for, and with some more what the program takes besides.
+    needed = 2 * min(os.cpu_count(), 32) + 3
+    for n in driver.numbers(needed + 20, 6):
+        fault = driver.preload("thread", DOLP_MOST_THREADS=str(n))
+        yield driver.try_once("table", LARGE, (MEMORY,) if n < needed else (DONE, MEMORY), environment=fault)
 
 
 def lost_device(driver):
@@ -437,7 +451,7 @@ def kill_and_damage(driver):
     """SIGKILL at random moments of a `table` in parts, its files damaged in between; --resume makes it the same bits"""
     seconds = driver.expect("table", PARTS)
     may_stay = re.compile(rf"{LEFT_BY_THE_KILLED.pattern}|out\.nc\.partial(\.txt)?")
-    kills, wanted = 0, 3 if driver.is_quick else 120
+    kills, wanted = 0, 3 if driver.is_quick else 200
     while kills < wanted:
         with driver.attempt("table", PARTS) as attempt, tempfile.TemporaryDirectory(dir=FOLDERS) as elsewhere:
             attempt.words.append("--resume")
@@ -493,8 +507,8 @@ def hang_up(driver):
     return kills_by(driver, signal.SIGHUP, 3)
 
 
-KINDS = (allocation_in_table, allocation_in_eval, allocation_in_lookup, allocation_with_driver, memory_limit, lost_device,
-         lost_devices, device_memory, vulkan_call, lacking_driver, broken_driver_file, file_limit, full_disk, no_inodes,
+KINDS = (allocation_in_table, allocation_in_eval, allocation_in_lookup, allocation_with_driver, memory_limit, few_threads,
+         lost_device, lost_devices, device_memory, vulkan_call, lacking_driver, broken_driver_file, file_limit, full_disk, no_inodes,
          read_only_disk, vanished_folder, two_writers, kill, kill_and_resume, kill_and_damage, kill_and_merge,
          terminate, interrupt, hang_up)
 

@@ -17,6 +17,15 @@ void* operator new(std::size_t size) {
   throw std::bad_alloc();
 }
 
+// All that `operator delete` frees, since the address sanitizer has others of its own.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  try {
+    return ::operator new(size);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
+
 void operator delete(void* block) noexcept { std::free(block); }
 void operator delete(void* block, std::size_t) noexcept { std::free(block); }
 

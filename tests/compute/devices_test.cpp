@@ -1,12 +1,16 @@
 // The choice of a device from a list, and of one that is there, under the validation layer.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <dolp/errors.hpp>
+#include <new>
 #include <string>
 #include <vector>
 
 #include "device/context.hpp"
 #include "device/devices.hpp"
+#include "device/result.hpp"
+#include "failing_new.hpp"
 
 namespace dolp {
 namespace {
@@ -67,6 +71,25 @@ TEST(VulkanContext, WorkgroupOnAProcessor_IsAVector) {
   EXPECT_EQ(device.local_size, is_processor ? device.subgroup_size : 64U);
   EXPECT_EQ(context.device().local_size(), device.local_size);
   EXPECT_TRUE(context.validation_messages().empty()) << context.validation_messages().front();
+}
+
+TEST(LacksThreads, NoMemoryForOneOfThem_Ends) {
+  constexpr unsigned kLongest_s = 60;  // a program that waits for its own threads never ends
+  ::alarm(kLongest_s);
+  EXPECT_FALSE(vulkan::lacks_threads());
+  int refused = 0;
+  bool has_failed = true;
+  for (long before = 0; has_failed; ++before) {
+    const FailingNew failing(before);
+    try {
+      vulkan::lacks_threads();
+    } catch (const std::bad_alloc&) {
+      ++refused;
+    }
+    has_failed = failing.has_failed();
+  }
+  EXPECT_GT(refused, 3);
+  ::alarm(0);
 }
 
 TEST(VulkanContext, NothingCanPresent_NamesTheDeviceAndSaysWhy) {

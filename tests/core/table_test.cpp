@@ -29,7 +29,9 @@
 
 #include "base/atomic_file.hpp"
 #include "base/printable_text.hpp"
+#include "failing_new.hpp"
 #include "table/table_file.hpp"
+#include "table/table_output.hpp"
 #include "table/table_reader.hpp"
 #include "temporary_file.hpp"
 
@@ -559,6 +561,26 @@ TEST_F(TableFiles, WriteTable_OutOfMemory_LeavesNothing) {
   expect_same(read_table(at("t.nc")), table);
 }
 
+TEST_F(TableFiles, WriteTable_NoMemoryForOneAllocation_LeavesNothingOrTheTable) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "a std::variant that finds no memory for its copy alarms the sanitizer of undefined behaviour";
+#endif
+  const TableValues table = sample_table(3, 2, 2);
+  bool has_failed = true;
+  for (long before = 0; has_failed; ++before) {
+    try {
+      const FailingNew failing(before);
+      write_table(table, at("t.nc"));
+      has_failed = failing.has_failed();
+    } catch (const std::bad_alloc&) {
+      ASSERT_EQ(names(), std::vector<std::string>{}) << before;
+      continue;
+    }
+    expect_same(read_table(at("t.nc")), table);
+    fs::remove(at("t.nc"));
+  }
+}
+
 TEST_F(TableFiles, WriteText_Killed_LeavesNothing) {
   const pid_t writer = ::fork();
   ASSERT_GE(writer, 0);
@@ -582,6 +604,58 @@ TEST_F(TableFiles, UnderWay_AnotherProcessHasIt_IsRefused) {
   file.commit();
   EXPECT_EQ(read_file(at("t.csv")), "text");
   EXPECT_EQ(names(), std::vector<std::string>{"t.csv"});
+}
+
+/// A resumable table of two parts, the first of which is that of `one_part`.
+TableOutput::Job resumable_job(const fs::path& path, const TableValues& one_part) {
+  TableHead whole = one_part;
+  for (const double theta : one_part.axes[Axis::kTheta]) whole.axes[Axis::kTheta].push_back(theta / 2.0);
+  const PerAxis count = one_part.counts();
+  PerAxis second = {};
+  second[Axis::kTheta] = count[Axis::kTheta];
+  return {.path = path,
+          .layout = {whole, one_part.quantities(), true},
+          .parts = {{{}, count}, {second, count}},
+          .identity = "scene a",
+          .is_resumed = true};
+}
+
+TEST_F(TableFiles, PartialFile_NoMemoryForItsWriter_IsNotLeft) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "a std::variant that finds no memory for its copy alarms the sanitizer of undefined behaviour";
+#endif
+  const TableOutput::Job job = resumable_job(at("t.nc"), sample_table(3, 2, 2));
+  bool has_failed = true;
+  for (long before = 0; has_failed; ++before) {
+    TableOutput::Job own = job;
+    try {
+      const FailingNew failing(before);
+      const TableOutput output(std::move(own));
+      has_failed = failing.has_failed();
+    } catch (const std::bad_alloc&) {
+      // Where calls do without the memory there is none.
+    }
+    ASSERT_EQ(names(), std::vector<std::string>{}) << before;
+  }
+}
+
+TEST_F(TableFiles, PartialFile_ProgressFileIsALink_IsNotLeft) {
+  fs::create_symlink("precious", at("t.nc.partial.txt"));
+  EXPECT_THROW(TableOutput(resumable_job(at("t.nc"), sample_table(3, 2, 2))), IoError);
+  EXPECT_EQ(names(), std::vector<std::string>{"t.nc.partial.txt"});
+}
+
+TEST_F(TableFiles, PartialFile_CancelledWhileItIsRead_StaysAsItWas) {
+  const TableValues part = sample_table(3, 2, 2);
+  TableOutput::Job job = resumable_job(at("t.nc"), part);
+  TableOutput(job).write(part, {}, "first");
+  const std::string values = read_file(at("t.nc.partial")), progress = read_file(at("t.nc.partial.txt"));
+  job.progress = [](std::size_t, std::size_t) { return false; };
+  EXPECT_THROW(TableOutput{job}, Cancelled);
+  EXPECT_EQ(read_file(at("t.nc.partial")), values);
+  EXPECT_EQ(read_file(at("t.nc.partial.txt")), progress);
+  job.progress = [](std::size_t done, std::size_t total) { return done == 0 && total == 24; };
+  EXPECT_EQ(TableOutput(job).parts_done(), 1U);
 }
 
 TEST_F(TableFiles, WriteText_ExistingFile_IsReplacedWithItsPermissions) {

@@ -1,7 +1,8 @@
 // Measured points.
-#include "explore/measured.hpp"
+#include <dolp/fit.hpp>
+
 #include "fuzz.hpp"
 
 void dolp::fuzz::read(const std::string& text) {
-  refused([&] { dolp::explore::parse_measured(text, "measured.csv"); });
+  refused([&] { dolp::MeasuredData::from_csv(text, "measured.csv"); });
 }

@@ -161,6 +161,37 @@ TEST_F(FitProgram, Plot_IsAPng) {
   EXPECT_TRUE(content("fit.png").starts_with("\x89PNG"));
 }
 
+TEST_F(FitProgram, Plot_OfDataWithWavelengths_HasACurveForEachAndNoBracket) {
+  const std::vector<std::string> keys = {"surface.masking=v-cavity", "surface.material=water"};
+  const std::vector<std::string> options = {"--set", keys[0], "--set", keys[1], "--vary", "surface.sigma=0.02:1"};
+  measure("alone.csv", "theta_deg", {"dolp"}, keys);
+  std::string wavelengths = "wavelength_um,theta_deg,dolp\n";
+  for (const std::string wavelength : {"4", "10"}) {
+    for (const std::string zenith : {"20", "50", "75"}) wavelengths += wavelength + ',' + zenith + ",0.02\n";
+  }
+  put("wavelengths.csv", wavelengths);
+  const auto plotted = [&](const std::string& data) {
+    const Outcome outcome = fit(joined(options, {"--data", data, "--plot", "fit.png", "--json", "-o", "fitted.toml"}));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out);
+  };
+  EXPECT_FALSE(plotted("alone.csv")["brackets"][0].is_null());
+  const json report = plotted("wavelengths.csv");
+  EXPECT_TRUE(report["brackets"][0].is_null()) << report["brackets"];
+  EXPECT_TRUE(report["model_gap"].is_null()) << report["model_gap"];
+  ASSERT_EQ(report["curves"].size(), 2U);
+  for (const json& curve : report["curves"]) {
+    const std::string wavelength = "spectrum.wavelength_um=" + curve["wavelength_um"].dump();
+    put("points.csv", "theta_deg\n20\n75\n");
+    const Outcome exact = dolp({"eval", "fitted.toml", "--points", "points.csv", "-o", "-", "--quiet", "--evaluator",
+                                "cpu", "--set", wavelength});
+    ASSERT_EQ(exact.status, 0) << exact.err;
+    const std::vector<double> ends = parse_csv(exact.out).at("dolp");
+    EXPECT_NEAR(curve["model"].front().get<double>(), ends.front(), 1e-3);
+    EXPECT_NEAR(curve["model"].back().get<double>(), ends.back(), 1e-3);
+  }
+}
+
 TEST_F(FitProgram, BadInput_IsOneLineThatSaysWhatIsAllowed) {
   const std::vector<std::string> good = {"--data", "data.csv", "--vary", "surface.sigma=0.02:1"};
   const auto with = [&](const std::vector<std::string>& more) { return joined(good, more); };

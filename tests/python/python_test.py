@@ -159,6 +159,7 @@ theta_deg = {from = 0, to = 80, count = 5}
                               (table.isel(theta=3, drop=True), "axis theta is missing"),
                               (table.drop_vars("stokes_i"), "stokes_i is missing"),
                               (xr.Dataset(table.variables), "attribute"),
+                              (table.where(table.theta > 30), "status has entries without a value"),
                               (table.assign_coords(k=[0.1, 0.1, 0.2]), "twice")):
             with self.assertRaisesRegex(dolp.InputError, message):
                 dolp.lookup(part, theta_deg=33.3, sigma=0.2)

@@ -47,11 +47,7 @@ herr_t read_bytes(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, std::size_t 
 }
 
 herr_t write_bytes(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, std::size_t size, const void* bytes) {
-  try {
-    memory_of(file).write(address, static_cast<const char*>(bytes), size);
-  } catch (const std::bad_alloc&) {
-    return -1;
-  }
+  memory_of(file).write(address, static_cast<const char*>(bytes), size);
   return 0;
 }
 
@@ -102,13 +98,17 @@ void Hdf5Memory::read(std::uint64_t offset, char* bytes, std::size_t count) cons
 }
 
 void Hdf5Memory::write(std::uint64_t offset, const char* bytes, std::size_t count) {
-  while (count > 0) {
-    const std::size_t first = offset % kPage;
-    const std::size_t part = std::min(count, kPage - first);
-    std::copy_n(bytes, part, pages_[offset / kPage].begin() + first);
-    offset += part;
-    bytes += part;
-    count -= part;
+  try {
+    while (count > 0) {
+      const std::size_t first = offset % kPage;
+      const std::size_t part = std::min(count, kPage - first);
+      std::copy_n(bytes, part, pages_[offset / kPage].begin() + first);
+      offset += part;
+      bytes += part;
+      count -= part;
+    }
+  } catch (const std::bad_alloc&) {
+    is_whole_ = false;
   }
 }
 

@@ -25,12 +25,16 @@ class Hdf5Memory {
   std::uint64_t size() const { return size_; }
   void set_size(std::uint64_t size) { size_ = size; }
   void read(std::uint64_t offset, char* bytes, std::size_t count) const;
+  /// Loses bytes for which there is no memory: HDF5 cannot close a file that fails to be written.
   void write(std::uint64_t offset, const char* bytes, std::size_t count);
+  /// False where bytes were lost.
+  bool is_whole() const { return is_whole_; }
 
  private:
   static constexpr std::size_t kPage = 4096;
   std::map<std::uint64_t, std::array<char, kPage>> pages_;  ///< by number
   std::uint64_t size_ = 0;
+  bool is_whole_ = true;
 };
 
 }  // namespace dolp

@@ -81,10 +81,9 @@ struct TableOutput::Impl {
       file.emplace(job.path == "-" ? fs::temp_directory_path() / "dolp" : job.path);
     }
     const bool was_empty = file && file->size() == 0;
-    if (file) store.emplace(job.layout, *file);
-    if (!is_resumable()) return;
     try {
-      go_on();
+      if (file) store.emplace(job.layout, *file);
+      if (is_resumable()) go_on();
     } catch (...) {
       if (was_empty) file->discard();
       throw;
@@ -112,6 +111,8 @@ struct TableOutput::Impl {
     }
     std::size_t taken = text.find('\n') + 1;
     while (parts_done < job.parts.size() && taken < text.size()) {
+      if (job.progress && !job.progress(0, job.layout.head.size()))
+        throw Cancelled(partial_path(job.path).string() + " is as it was: the same command with --resume goes on");
       const std::optional<ValueSums> of_part = store->measured(job.parts[parts_done]);
       const auto own_note = first_text(std::string_view(text).substr(taken), of_part ? part_hash(*of_part) : 0);
       if (!of_part || !own_note) break;

@@ -1,6 +1,7 @@
 // Resumable table writer: writes part by part, so that an interrupted run can continue.
 #pragma once
 
+#include <dolp/errors.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -22,10 +23,11 @@ class TableOutput {
     std::vector<TableBox> parts = {};  ///< in the order of write(); none: any number of parts, in any order
     std::string identity = {};  ///< of a resumable table: names and values that all parts share, see difference()
     bool is_resumed = false;    ///< goes on with PATH.partial, if it is there
+    Progress progress = {};     ///< called, with nothing done, while what is there is read
   };
   /// Of parts that an earlier run finished those are taken over that the file still has as they were written, up to the
   /// first that it has not. Errors: those of check_output_path; InputError for a partial file of another identity, or
-  /// that another process writes; IoError where PATH.partial or PATH.partial.txt is a link.
+  /// that another process writes; IoError where PATH.partial or PATH.partial.txt is a link; Cancelled.
   explicit TableOutput(Job job);
   ~TableOutput();
   TableOutput(const TableOutput&) = delete;

@@ -317,12 +317,13 @@ ValueSums TableReader::sums_of(const TableValues& part, const TableBox& box) con
   return dolp::sums_of(part, impl_->quantities, box.first, impl_->head.counts());
 }
 
-TableValues TableReader::read_entries(std::span<const std::size_t> positions) const {
+TableValues TableReader::read_entries(std::span<const std::size_t> positions, const Progress& progress) const {
   TableValues entries;
   static_cast<TableHead&>(entries) = impl_->head;
   ValueSums sums;
   std::size_t before = 0;
   for (const TableBox& box : boxes_in_order(impl_->head.counts(), kEntriesAtOnce)) {
+    if (progress && !progress(before, impl_->head.size())) throw Cancelled();
     const TableValues part = read(box);
     add(sums, sums_of(part, box));
     const std::size_t end = before + size_of(box.count);

@@ -1,6 +1,7 @@
 // A table in a file, read part by part.
 #pragma once
 
+#include <dolp/errors.hpp>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -26,8 +27,8 @@ class TableReader {
 
   TableValues read(const TableBox& box) const;
   /// The values of some entries, at ascending positions: each quantity has one for each of them. All are read, part by
-  /// part, and refused as by check_hash.
-  TableValues read_entries(std::span<const std::size_t> positions) const;
+  /// part, and refused as by check_hash. Errors: also Cancelled.
+  TableValues read_entries(std::span<const std::size_t> positions, const Progress& progress) const;
 
   /// Contribution of a part that was read to the hash.
   ValueSums sums_of(const TableValues& part, const TableBox& box) const;

@@ -242,6 +242,7 @@ struct TableStore::Impl {
   /// Writes the bytes of the file that are not values: between and around them, where there is anything at all.
   void write_gaps() {
     writer.check(H5Fflush(writer.file().id(), H5F_SCOPE_GLOBAL));
+    if (!memory.is_whole()) throw std::bad_alloc();
     std::vector<std::pair<std::uint64_t, std::uint64_t>> values;
     for (std::size_t i = 0; i < offsets.size(); ++i) {
       const std::size_t of_value = i < layout.quantities.size() ? sizeof(double) : sizeof(std::uint32_t);

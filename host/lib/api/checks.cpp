@@ -57,10 +57,9 @@ Report verify(const std::filesystem::path& path, const TableCheckOptions& option
   report.path = name;
   report.title = scene.title;
   report.options = options;
-  begin(options.progress, options.samples);
   TableSample sample;
   sample.positions = sample_positions(reader.head().size(), report.options);
-  sample.table = reader.read_entries(sample.positions);
+  sample.table = reader.read_entries(sample.positions, options.progress);
   report.check = check_table(sample, scene, name, options.progress);
   report.wall_s = seconds_since(start);
   return public_report(table_report(report), report.check.passed());

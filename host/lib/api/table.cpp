@@ -31,7 +31,6 @@ void check_axes(const TableHead& table, const std::string& name) {
   }
 }
 
-/// Refuses contents that do not fit together.
 /// Refuses attributes that a file cannot have.
 void check_attributes(const std::vector<Attribute>& attributes, const std::string& name) {
   std::set<std::string_view> names;
@@ -42,6 +41,7 @@ void check_attributes(const std::vector<Attribute>& attributes, const std::strin
   }
 }
 
+/// Refuses contents that do not fit together.
 void check_values(const TableValues& table, const std::string& name) {
   check_axes(table, name);
   const auto check_size = [&](const char* variable, std::size_t size, std::size_t expected) {

@@ -278,7 +278,8 @@ RunOutcome write_table(const SceneValues& scene, const TableJob& job, const Eval
                       .layout = layout,
                       .parts = boxes_of(run.entries(), run.parts()),
                       .identity = identity_of_file(identity, job.shard, run.evaluation()),
-                      .is_resumed = job.options.resume});
+                      .is_resumed = job.options.resume,
+                      .progress = job.options.progress});
   RunOutcome outcome;
   with_rest(output, [&] {
     TableSink sink(run.entries(), layout, output);
@@ -301,8 +302,8 @@ bool is_there(const SceneValues& scene, const TableJob& job) {
     const TableHead& head = reader.head();
     if (difference(text_of(head, kIdentity), identity_of(scene, job)) || text_of(head, kShard) != shard_text(job.shard))
       return false;
-    begin(job.options.progress, shard_entries(scene, job.shard).size());
-    static_cast<void>(reader.read_entries({}));  // refuses values that are not those that were written
+    // Refuses values that are not those that were written.
+    static_cast<void>(reader.read_entries({}, job.options.progress));
     return head.axes == shard_entries(scene, job.shard).axes();
   } catch (const InputError&) {
     return false;

@@ -112,5 +112,7 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of its writing
   std::set_new_handler(dolp::cli::end_out_of_memory);
   dolp::cli::keep_freed_memory();
-  return dolp::guarded("dolp", [&] { return dolp::cli::parse_and_run(argc, argv); });
+  const int status = dolp::guarded("dolp", [&] { return dolp::cli::parse_and_run(argc, argv); });
+  if (status == dolp::kExitMemory) ::_exit(status);  // libraries need memory to clean up
+  return status;
 }

@@ -38,7 +38,10 @@ class File {
  public:
   explicit File(int descriptor) : descriptor_(descriptor) {}
   File(File&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  File& operator=(File&&) = delete;
+  File& operator=(File&& other) noexcept {
+    std::swap(descriptor_, other.descriptor_);
+    return *this;
+  }
   ~File() {
     if (descriptor_ >= 0) ::close(descriptor_);
   }
@@ -88,11 +91,11 @@ fs::path temporary_name(const fs::path& target, int number) {
 template <class Make>
 std::pair<fs::path, int> with_new_name(const fs::path& target, const Make& make) {
   for (int i = 0; i < kMostNames; ++i) {
-    const fs::path name = temporary_name(target, i);
+    fs::path name = temporary_name(target, i);
     const int result = make(name);
     if (result < 0 && errno == EEXIST) continue;
     if (result < 0) fail_errno(target, "cannot create a file in its folder");
-    return {name, result};
+    return {std::move(name), result};
   }
   fail(target, "too many temporary files in its folder; remove .dolp-*.tmp");
 }
@@ -216,8 +219,11 @@ AtomicFile::AtomicFile(const fs::path& path) {
 
 AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
   check_writable(path);
-  const fs::path target = follow_links(path);
-  File file(::open(under_way.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, kNewFileMode));
+  // Made before the file, which would stay behind if there were no memory for it.
+  impl_ = std::make_unique<Impl>(path, follow_links(path), NewFile{File(-1), under_way});
+  impl_->is_kept = true;
+  File& file = impl_->own.file;
+  file = File(::open(under_way.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, kNewFileMode));
   if (file.get() < 0 && errno == ELOOP) fail(under_way, "is a symbolic link; remove it");
   if (file.get() < 0) fail_errno(under_way, "cannot create the file");
   const bool is_locked = ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
@@ -226,9 +232,7 @@ AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
   // A file without this name is one that its writer has just finished.
   if (!is_locked || !has_name(found, under_way)) throw InputError(under_way.string() + ": another run writes it");
   if (found.st_nlink > 1) fail(under_way, "is a file that has other names too; remove it");
-  keep_permissions(file, target);
-  impl_ = std::make_unique<Impl>(path, target, NewFile{std::move(file), under_way});
-  impl_->is_kept = true;
+  keep_permissions(file, impl_->target);
   impl_->size = static_cast<std::uint64_t>(found.st_size);
 }
 
@@ -266,6 +270,7 @@ void AtomicFile::resize(std::uint64_t size) {
 void AtomicFile::commit() {
   if (is_device_or_pipe(impl_->target)) return impl_->copy_to_target();
   NewFile& own = impl_->own;
+  const fs::path folder = folder_of(impl_->target);
   if (interrupted()) throw Cancelled();
   if (::fsync(own.file.get()) != 0) fail_errno(impl_->path, "cannot write");
   if (own.name.empty()) impl_->link();
@@ -273,7 +278,7 @@ void AtomicFile::commit() {
   if (::rename(own.name.c_str(), impl_->target.c_str()) != 0)
     fail_errno(impl_->path, "cannot rename the finished file");
   own.name.clear();
-  sync_folder(folder_of(impl_->target), impl_->path);
+  sync_folder(folder, impl_->path);
 }
 
 void AtomicFile::discard() { impl_->is_kept = false; }

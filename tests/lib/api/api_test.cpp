@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -295,6 +296,23 @@ TEST_F(Library, AProgressThatReturnsFalse_Cancels_AndLeavesNoFile) {
   EXPECT_TRUE(std::filesystem::is_empty(at("")));
 }
 
+// What is there is read in parts, the second of which is not.
+TEST_F(Library, Cancelled_WhileAKeptShardIsRead_IsHonoured) {
+  const dolp::Scene scene =
+      scene_.with({{"surface.masking", "none"}, {"surface.distribution", "gaussian"}, {"accuracy.tolerance", 1e-2}})
+          .with_grid(
+              {{"q", {2.0}}, {"theta_deg", dolp::AxisRange{0, 80, 600}}, {"sigma", dolp::AxisRange{0.1, 1, 800}}});
+  const std::filesystem::path shard = evaluator_.write_table(scene, at("t.nc"), {}, {1, 1}).output;
+  const auto written = std::filesystem::last_write_time(shard);
+  for (const int most : {0, 1}) {
+    int called = 0;
+    const dolp::RunOptions options = {.progress = [&](std::size_t, std::size_t) { return called++ < most; }};
+    EXPECT_THROW(evaluator_.write_table(scene, at("t.nc"), options, {1, 1}), dolp::Cancelled) << most;
+    EXPECT_EQ(called, most + 1);
+  }
+  EXPECT_EQ(std::filesystem::last_write_time(shard), written);
+}
+
 // An exception, or what it held: a moved-from object is as good as any other.
 TEST_F(Library, MovedFromObjects_KeepTheirValueOrSayWhatTheyAre) {
   dolp::Scene scene = scene_;
@@ -332,10 +350,16 @@ TEST_F(Library, CsvOfColumnsThatDiffer_IsAnInputError) {
 }
 
 TEST_F(Library, EvaluatorInItsOwnCallback_IsAnInputError_AndServesAgain) {
-  const std::vector<double> theta = {10, 50};
+  const std::vector<double> theta = {10, 50}, azimuth = {180, 180};
   const std::vector<dolp::Column> points = {{"theta_deg", theta}};
-  int refused = 0;
+  const std::vector<dolp::Column> pairs = {{"theta_i_deg", theta}, {"theta_r_deg", theta}, {"delta_phi_deg", azimuth}};
+  std::ofstream(at("points.csv")) << "theta_deg\n10\n50\n";
+  std::ofstream(at("pairs.csv")) << "theta_i_deg,theta_r_deg,delta_phi_deg\n10,50,180\n";
+  const dolp::MeasuredData data = dolp::MeasuredData::from_csv(
+      "theta_deg,dolp,uncertainty\n20,0.0062,0.001\n40,0.027,0.001\n50,0.046,0.001\n60,0.071,0.001\n80,0.13,0.001\n");
+  int called = 0, refused = 0;
   const auto call = [&] {
+    ++called;
     try {
       evaluator_.evaluate(scene_, points);
     } catch (const dolp::InputError&) {
@@ -346,11 +370,37 @@ TEST_F(Library, EvaluatorInItsOwnCallback_IsAnInputError_AndServesAgain) {
     call();
     return true;
   }};
-  evaluator_.evaluate(scene_, points, options);
-  EXPECT_GT(refused, 0);
-  refused = 0;
-  evaluator_.table_parts(scene_, [&](const dolp::Table&) { call(); });
-  EXPECT_EQ(refused, 1);
+  evaluator_.write_table(scene_, at("t.nc"), {}, {1, 2});
+  std::vector<std::string> phases;
+  const dolp::FitOptions fit = {.vary = {{"surface.sigma", 0.05, 1.0}, {"surface.n", 1.1, 3.0}},
+                                .starts = 4,
+                                .progress = options.progress,
+                                .phase =
+                                    [&](const std::string& phase) {
+                                      call();
+                                      phases.push_back(phase);
+                                    },
+                                .plot = at("fit.png")};
+  const std::vector<std::function<void()>> calls = {
+      [&] { evaluator_.evaluate(scene_, points, options); },
+      [&] { evaluator_.table(scene_, options); },
+      [&] { evaluator_.table_parts(scene_, [&](const dolp::Table&) { call(); }); },
+      [&] { evaluator_.mueller(scene_, pairs, options); },
+      [&] { evaluator_.write_table(scene_, at("t.nc"), options); },
+      [&] {
+        evaluator_.write_table(scene_, at("t.nc"), options, {1, 2});
+      },  // one that is there already
+      [&] { evaluator_.write_points(scene_, at("points.csv"), at("results.csv"), options); },
+      [&] { evaluator_.write_mueller(scene_, at("pairs.csv"), at("matrices.csv"), options); },
+      [&] { evaluator_.fit(scene_, {data}, fit); }};
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    called = refused = 0;
+    calls[i]();
+    EXPECT_GT(called, 0) << i;
+    EXPECT_EQ(refused, called) << i;
+  }
+  EXPECT_EQ(phases, (std::vector<std::string>{"descents of the search", "sides of the intervals",
+                                              "parameter sets of the contours"}));
   dolp::Evaluator other({.evaluator = "cpu"});
   const dolp::RunOptions with_other = {
       .progress = [&](std::size_t, std::size_t) { return !other.evaluate(scene_, points).status.empty(); }};
@@ -389,6 +439,9 @@ TEST_F(Library, TableOfContentsThatDoNotFit_IsAnInputError) {
   refuses([](dolp::TableValues& table) { table[Quantity::kAlbedo].pop_back(); });
   refuses([](dolp::TableValues& table) { table.status.pop_back(); });
   refuses([](dolp::TableValues& table) { table.index_n.values.push_back(1.0); });
+  refuses([](dolp::TableValues& table) { table.attributes.push_back({"", "of no name"}); });
+  refuses([](dolp::TableValues& table) { table.attributes.push_back({"a/b", "of a name with a /"}); });
+  refuses([](dolp::TableValues& table) { table.attributes.push_back(table.attributes.front()); });
 }
 
 // A table cut at one value of k, with that value lost, must not be taken for one at the scene's k.

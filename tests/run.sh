@@ -48,4 +48,4 @@ if [[ $build_type == Tsan ]]; then
 fi
 cmake --build "$build"
 "$build/dolp" devices || fail "no usable Vulkan device through $driver_file"
-ctest --test-dir "$build" --output-on-failure -j2 "$@"
+ctest --test-dir "$build" --output-on-failure --timeout 600 -j2 "$@"  # the timeout ends a test that hangs

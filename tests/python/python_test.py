@@ -20,7 +20,7 @@ import xarray as xr
 
 import dolp
 
-PROGRAM = sys.argv.pop(1)
+PROGRAM = sys.argv.pop(1) if __name__ == "__main__" else ""  # spawned processes import this file
 TEXT = """title = "painted plate"
 [surface]
 n = 1.5
@@ -99,7 +99,7 @@ theta_deg = {from = 0, to = 80, count = 5}
             for evaluator in ("cpu", "vulkan"):
                 dolp.write_table(scene, self.folder / "t.nc", evaluator=evaluator)
                 self.assert_same(dolp.table(scene, evaluator=evaluator), xr.load_dataset(self.folder / "t.nc"))
-        self.run_program("table", "scene.toml", "-o", "t.nc")
+        self.run_program("table", str(self.folder / "scene.toml"), "-o", "t.nc")
         self.assert_same(dolp.table(self.scene), xr.load_dataset(self.folder / "t.nc"))
 
     def test_points_have_the_bits_of_the_command_line(self):

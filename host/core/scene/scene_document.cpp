@@ -151,7 +151,7 @@ void SceneDocument::apply(const Setting& setting) {
   if (path.size() > kMostDepth || line_of_deep_nesting(value) > 0) {
     throw InputError(fmt::format("{}: nested deeper than {}", origin, kMostDepth));
   }
-  const bool is_word_none = is_effect_table(key) && (value == "none" || value == "\"none\"");
+  const bool is_word_none = is_effect_table(key) && (value == "none" || value == "\"none\"" || value == "'none'");
   if (is_word_none || std::holds_alternative<std::monostate>(setting.value.content())) {
     erase(key);
     return;

@@ -201,6 +201,7 @@ theta_deg = {from = 0, to = 80, count = 5}
                                              evaluator="cpu").dolp))
         self.assertEqual(iron.n([[8, 9, 10]]).shape, (1, 3))
         self.assertIn("iron", repr(iron))
+        self.assertEqual(dolp.material("WATER").name, "water 25C")
         for call in (lambda: dolp.material("irn"), lambda: iron.n(1000)):
             with self.assertRaisesRegex(dolp.InputError, "iron"):
                 call()
@@ -212,6 +213,14 @@ theta_deg = {from = 0, to = 80, count = 5}
             found = dolp.lookup(source, theta_deg=[33.3, 71])
             exact = dolp.evaluate(self.scene, theta_deg=[33.3, 71])
             self.assertTrue((abs(found.dolp - exact.dolp) <= found.error_estimate + exact.error_estimate).all())
+
+    def test_lookup_reads_a_file_that_has_changed(self):
+        for sigma in (0.1, 0.3):
+            dolp.write_table(self.scene, self.folder / "t.nc", theta_deg=np.linspace(0, 85, 40), sigma=sigma, q=3, evaluator="cpu")
+            exact = dolp.evaluate(self.scene, theta_deg=33, sigma=sigma, evaluator="cpu")
+            for _ in range(2):
+                found = dolp.lookup(self.folder / "t.nc", theta_deg=33)
+                self.assertLessEqual(float(abs(found.dolp - exact.dolp)), float(found.error_estimate + exact.error_estimate))
 
     def test_lookup_takes_parts_of_a_table(self):
         table = dolp.table(self.scene, theta_deg=np.linspace(0, 80, 21), sigma=[0.1, 0.2, 0.3], q=3, k=[0.05, 0.1, 0.2])

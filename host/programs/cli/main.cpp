@@ -52,7 +52,7 @@ int run(CLI::App& app, Options& options) {
   if (given("materials")) return run_materials(options);
   if (given("keys")) return run_keys(options);
   if (given("completion")) {
-    fmt::print("{}", completion_text(app, options.completion));
+    std::fputs(completion_text(app, options.completion).c_str(), stdout);
     return kExitDone;
   }
   return run_devices(options);

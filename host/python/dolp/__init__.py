@@ -269,8 +269,8 @@ def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
 
     `table`: a file, or a Dataset of `table` or of such a file, or a part of one: fewer values of an axis, or one of them,
     as `t.sel(k=0.1)`, fewer variables. Its attribute scene is needed; values_hash is that of the whole table, and is not
-    looked at. `points`: as for `evaluate`; an axis of one value needs none. Many points in one call are fastest: each
-    call reads the table again.
+    looked at. `points`: as for `evaluate`; an axis of one value needs none. The file that was used last stays in memory;
+    a Dataset is copied in each call.
 
     >>> t = dolp.table(scene, theta_deg=np.linspace(0, 80, 41), sigma=[0.1, 0.2])
     >>> bool(abs(dolp.lookup(t.sel(sigma=0.2), theta_deg=33).dolp - dolp.evaluate(scene, theta_deg=33).dolp) < 1e-5)
@@ -279,7 +279,9 @@ def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
     frame, columns = _columns(points)
     if isinstance(table, xr.Dataset):
         return _dataset(_native_table(table).lookup(columns), frame)
-    return _dataset(_native.Table.read(_input_path("table", table)).lookup(columns), frame)
+    path = _input_path("table", table)
+    known = os.stat(path)
+    return _dataset(_table_of(path, (known.st_ino, known.st_size, known.st_mtime_ns)).lookup(columns), frame)
 
 
 def mueller(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **points: Array) -> np.ndarray:
@@ -368,8 +370,10 @@ class Material:
 
     def __init__(self, name: str) -> None:
         known = materials()
-        longer = [one for one in known if one.startswith(f"{name} ")]
-        self.name: str = longer[0] if len(longer) == 1 and name not in known else str(name)
+        wanted = str(name).casefold()
+        same = [one for one in known if one.casefold() == wanted]
+        near = same or [one for one in known if one.casefold().startswith(f"{wanted} ")]
+        self.name: str = near[0] if len(near) == 1 else str(name)
         _check_names("material", [self.name], list(known))
         self.from_um, self.to_um, self.source = known[self.name].values()
         self._native = _native.Scene.from_text("surface.sigma = 0\nemission.temperature_K = 300\n", [
@@ -421,6 +425,12 @@ def citation() -> str:
 @functools.lru_cache(maxsize=None)
 def _evaluator(evaluator: str, device: str) -> _native.Evaluator:
     return _native.Evaluator(str(evaluator), str(device))
+
+
+@functools.lru_cache(maxsize=1)
+def _table_of(path: str, _: tuple[int, int, int]) -> _native.Table:
+    """The table of a file, read again when the file has changed."""
+    return _native.Table.read(path)
 
 
 def _scene(scene: Scene) -> _native.Scene:

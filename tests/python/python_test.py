@@ -167,9 +167,9 @@ theta_deg = {from = 0, to = 80, count = 5}
             one = dolp.evaluate(own, theta_deg=(20, 40, 60)[j], evaluator="cpu")
             for name in ("dolp", "stokes_i", "status"):
                 self.assertEqual(float(one[name]), float(found[name][i, j]))
-        for key in ("surface.masking", "emission.temperature"):
+        for key in ("surface.masking", "emission.temperature", "surface.n"):
             with self.assertRaisesRegex(dolp.InputError, key):
-                dolp.evaluate(self.scene, theta_deg=20, **{key: [1, 2]})
+                dolp.evaluate(self.scene, theta_deg=20, n=1.5, **{key: [1, 2]})
 
     def test_a_sea_in_one_key(self):
         sea = dolp.Scene(self.scene, {"surface.distribution": "gaussian", "surface.wind_m_s": 5})
@@ -181,6 +181,7 @@ theta_deg = {from = 0, to = 80, count = 5}
         table = dolp.table(sea, theta_deg=[0, 60], wind_m_s=[5, 10], q=2, evaluator="cpu")
         by_wind = table.swap_dims(sigma="wind_m_s").dolp.sel(theta=60, q=2)
         np.testing.assert_array_equal(by_wind.sel(wind_m_s=[5, 10]), points.dolp)
+        np.testing.assert_array_equal(dolp.lookup(table, theta_deg=60, wind_m_s=[5, 10]).dolp, points.dolp)
         self.assertEqual(dolp.table(sea, theta_deg=60, sigma=0.3, evaluator="cpu").sizes["sigma"], 1)
         data = {"theta_deg": np.arange(10, 90, 10.0), "uncertainty": np.full(8, 1e-3),
                 "dolp": dolp.evaluate(sea, theta_deg=np.arange(10, 90, 10.0), wind_m_s=7, evaluator="cpu").dolp}
@@ -202,6 +203,8 @@ theta_deg = {from = 0, to = 80, count = 5}
         self.assertEqual(iron.n([[8, 9, 10]]).shape, (1, 3))
         self.assertIn("iron", repr(iron))
         self.assertEqual(dolp.material("WATER").name, "water 25C")
+        axes = iron.plot()
+        self.assertEqual(([line.get_label() for line in axes.lines], axes.get_title()), (["n", "k"], "iron"))
         for call in (lambda: dolp.material("irn"), lambda: iron.n(1000)):
             with self.assertRaisesRegex(dolp.InputError, "iron"):
                 call()

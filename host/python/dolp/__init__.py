@@ -35,7 +35,8 @@ The device and its kernels are kept between calls. A long call lets Python's oth
 process that was forked from one that has used a Vulkan device gets a DeviceError: start processes afresh
 (multiprocessing.set_start_method("spawn")), or take evaluator="cpu". Errors: InputError (a ValueError) with one line
 that says what is allowed, DeviceError (a RuntimeError), IoError (an OSError); a TypeError for arguments of another kind;
-MemoryError. A file that is to be read and is not there is a MissingFileError (an InputError and a FileNotFoundError). Masked arrays are refused, because results have no mask: fill or compress them.
+MemoryError. A file that is to be read and is not there is a MissingFileError (an InputError and a FileNotFoundError).
+Masked arrays are refused, because results have no mask: fill or compress them.
 """
 from __future__ import annotations
 
@@ -193,15 +194,16 @@ class Fit:
         for (name, quantity, wavelength_um), points in sets.items():
             theta, measured = ([point[column] for point in points] for column in ("theta_deg", "measured"))
             errors = [point["uncertainty"] or 0.0 for point in points]
-            label = ", ".join([quantity, *([f"{wavelength_um:g} um"] if wavelength_um else []),
+            symbol = {"dolp": "DOLP", "q_over_i": "Q/I"}.get(quantity, quantity)
+            label = ", ".join([symbol, *([f"{wavelength_um:g} µm"] if wavelength_um else []),
                                *([name] if len(self._overrides) > 1 else [])])
             bars = axes.errorbar(theta, measured, errors, fmt="o", markersize=4, label=label)
             where = {"theta_deg": np.linspace(min(theta), max(theta), 181)}
-            model = evaluate(self.scene.with_(self._overrides[name]), **where,
+            model = evaluate(self.scene.with_(self._overrides[name]), evaluator="cpu", **where,
                              **({"wavelength_um": wavelength_um} if wavelength_um else {}))
             curve = model.stokes_q / model.stokes_i if quantity == "q_over_i" else model[quantity]
             axes.plot(where["theta_deg"], curve, color=bars[0].get_color())
-        axes.set_xlabel("zenith angle (degree)")
+        axes.set_xlabel("zenith angle θ (degree)")
         axes.legend()
         return axes
 
@@ -243,8 +245,9 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
     """The quantities of a table at points: a Dataset of the shape to which the arrays broadcast.
 
     `points` (theta_deg, sigma or wind_m_s, q, wavelength_um, n, k): what they do not say comes from the scene. A complex n
-    gives n and k. DataArrays keep their dimensions and coordinates. Of other arrays, one that has a dimension to itself gives that its coordinate, theta, sigma, q, n, k or
-    wavelength as in a table. Any other number of the scene can be given by its key, each of its values as a run of its own.
+    gives n and k. Any other number of the scene can be given by its key, each of its values as a run of its own.
+    DataArrays keep their dimensions and coordinates. Of other arrays, one that has a dimension to itself gives that its
+    coordinate, theta, sigma, q, n, k or wavelength as in a table.
 
     >>> float(dolp.evaluate(scene, theta_deg=40).dolp.round(4))
     0.0295
@@ -256,12 +259,14 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
     """
     frame, columns = _columns(points, has_keys=True)
     varied = {key: columns.pop(key) for key in [*columns] if "." in key}
+    for twice in (key for key in varied if key.partition(".")[2] in columns):
+        raise InputError(f"points: {twice} and {twice.partition('.')[2]} are the same")
     native, engine = _scene(scene), _evaluator(evaluator, device)
 
     def run(own: _native.Scene, of_scene: dict[str, np.ndarray]) -> _native.Parts:
         return engine.evaluate(own, of_scene, bool(keep_all))
 
-    return _dataset(_over_keys(run, native, columns, varied) if varied else run(native, columns), frame)
+    return _dataset(_over_keys(run, native, columns, varied) if varied and 0 not in frame.shape else run(native, columns), frame)
 
 
 def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
@@ -394,7 +399,7 @@ class Material:
         wavelengths = np.linspace(self.from_um, self.to_um, 401)
         axes.plot(wavelengths, self.n(wavelengths), label="n")
         axes.plot(wavelengths, self.k(wavelengths), label="k")
-        axes.set(xlabel="wavelength (um)", ylabel="refractive index n + ik", title=self.name)
+        axes.set(xlabel="wavelength (µm)", ylabel="refractive index n + ik", title=self.name)
         axes.legend()
         return axes
 

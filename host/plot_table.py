@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
-"""Draws a lookup table: DOLP against theta for several sigma, and over theta and sigma.
+"""Draws a lookup table: DOLP against theta for several sigma, and over theta and sigma where both have enough values.
 
 Usage: plot_table.py TABLE.nc OUT.png [--q Q] [--wavelength UM] [--n N] [--k K]
-One value of each other axis is drawn: the nearest to its option, by default the middle one. Entries with a status other
-than 0 are drawn faint in the curves and hatched grey in the map. Needs python3-netcdf4, python3-numpy and
-python3-matplotlib.
+One value of each other axis is drawn: the nearest to its option, by default the middle one. A table with winds has them in
+the place of sigma. Entries with a status other than 0 are drawn faint in the curves and hatched grey in the map. Needs
+python3-netcdf4, python3-numpy and python3-matplotlib.
 Exit status: 0 done, 2 usage or a file that is not such a table, 4 the picture could not be written.
 """
 import argparse
+import re
 import sys
+import textwrap
+import tomllib
 
 import matplotlib
 
@@ -25,6 +28,7 @@ MOST_CURVES = 6
 CONTOURS_PERCENT = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50)
 SHOWN_SHARE_PERCENT = 97  # of the entries: a few at grazing incidence would otherwise take the whole scale
 FEW_ANGLES = 25  # up to which each entry gets a dot
+FEWEST_OF_MAP = 6  # values of theta and of sigma: a map of fewer would show what is not in the table
 SMALLEST_SPAN_PERCENT = 0.01  # of the DOLP axes: rounding noise must not look like a signal
 STATUS_MEANINGS = {
     1: r"$\rho_s$ or $\rho_p$ outside [0, 1]",
@@ -36,6 +40,33 @@ STATUS_MEANINGS = {
 
 SYMBOLS = {"q": "q", "wavelength": "λ", "n": "n", "k": "k"}  # of the axes of which one value is drawn
 UNITS = {"wavelength": " µm"}
+
+
+def text_of(dataset, name):
+    """A text attribute, which is a variable of characters where it is long."""
+    return dataset[name][:].tobytes().decode() if name in dataset.variables else getattr(dataset, name, "")
+
+
+def spectrum_of(dataset):
+    """Wavelength or band of a table without an axis of wavelengths, in words."""
+    if "wavelength" in dataset.variables:
+        return ""
+    try:
+        spectrum = tomllib.loads(text_of(dataset, "scene")).get("spectrum", {})
+        for line in text_of(dataset, "scene_overrides").splitlines():
+            if line.startswith("spectrum."):  # wavelength and band exclude each other
+                spectrum = tomllib.loads(line.removeprefix("spectrum."))
+        return "–".join(f"{end:g}" for end in np.ravel(list(spectrum.values()))) + " µm" if spectrum else ""
+    except ValueError:
+        return ""
+
+
+def title_of(dataset):
+    """The scene's title, with the wavelengths and without the wind that the table may not be of."""
+    title = re.sub(r"[, ]*[\d.]+( *[-–] *[\d.]+)? *[uµ]m$", "", text_of(dataset, "title"))
+    if "wind_m_s" in dataset.variables:
+        title = re.sub(r"[, ]*wind [\d.]+ m/s", "", title)
+    return ", ".join(part for part in (title, spectrum_of(dataset)) if part)
 
 
 class NotATable(Exception):
@@ -59,7 +90,9 @@ class Slice:
             elif value is not None:
                 raise NotATable(f"has no axis {axis}; its axes are {', '.join(axes)}")
         place = tuple(at.get(axis, slice(None)) for axis in axes)
-        theta, sigma = np.asarray(dataset["theta"][:]), np.asarray(dataset["sigma"][:])
+        self.has_winds = "wind_m_s" in dataset.variables
+        theta = np.asarray(dataset["theta"][:])
+        sigma = np.asarray(dataset["wind_m_s" if self.has_winds else "sigma"][:])
         rows, columns = np.argsort(theta), np.argsort(sigma)
         self.theta, self.sigma = theta[rows], sigma[columns]
         self.place = ", ".join(f"{SYMBOLS[axis]} = {dataset[axis][i]:g}{UNITS.get(axis, '')}" for axis, i in at.items())
@@ -74,7 +107,13 @@ class Slice:
         self.bracket = [100.0 * values(name, np.nan) for name in ("dolp_low", "dolp_high")] if has_bracket else None
         errors = values("error_estimate", np.nan) if "error_estimate" in dataset.variables else None
         self.worst_error = self._worst(errors) if errors is not None else None
-        self.title = getattr(dataset, "title", "")
+        self.title = title_of(dataset)
+        is_bistatic = "stokes_i" in dataset.variables and "sr-1" in dataset["stokes_i"].units
+        self.zenith = ("zenith of the source" if is_bistatic else "zenith angle") + r" $\theta$ (degree)"
+        self.is_map = min(self.theta.size, self.sigma.size) >= FEWEST_OF_MAP
+
+    def name_of(self, sigma):
+        return f"U = {sigma:.3g} m/s" if self.has_winds else f"$\\sigma$ = {sigma:.3g}"
 
     def _worst(self, errors):
         promised = errors[((self.status & (1 | 4 | 8)) == 0) & np.isfinite(errors)]
@@ -99,9 +138,6 @@ class Slice:
 
 def cell_edges(centres):
     """Edges halfway between the centres; a single centre gets a cell of its own."""
-    if centres.size == 1:
-        half = max(0.05 * abs(centres[0]), 1e-6)
-        return np.array([centres[0] - half, centres[0] + half])
     middle = 0.5 * (centres[1:] + centres[:-1])
     return np.concatenate([[centres[0]], middle, [centres[-1]]])
 
@@ -116,8 +152,9 @@ def draw_curves(axes, table):
         if table.bracket:
             low, high = (end[:, j] for end in table.bracket)
             axes.fill_between(table.theta, low, high, color=colour, alpha=0.12, linewidth=0.0)
-        axes.plot(table.theta, good, linewidth=1.8, label=f"$\\sigma$ = {table.sigma[j]:.3g}", **style)
-    axes.set_ylim(0.0, 1.08 * table.largest())
+        axes.plot(table.theta, good, linewidth=1.8, label=table.name_of(table.sigma[j]), **style)
+    bracket = table.bracket[1][np.isfinite(table.bracket[1])] if table.bracket else []
+    axes.set_ylim(0.0, 1.08 * max([table.largest(), *np.ravel(bracket)]))
     axes.set_ylabel("DOLP (%)")
     axes.grid(alpha=0.25, linewidth=0.6)
     handles, _ = axes.get_legend_handles_labels()
@@ -125,7 +162,7 @@ def draw_curves(axes, table):
         handles.append(Patch(color="0.4", alpha=0.25, linewidth=0.0, label="all bounces lie between"))
     if np.any(table.status[:, chosen]):
         handles.append(Line2D([], [], color="0.4", alpha=0.6, linestyle="--", linewidth=1.2, label="status $\\neq$ 0"))
-    axes.legend(handles=handles, frameon=False, fontsize=9, loc="upper left")
+    axes.legend(handles=handles, frameon=False, fontsize=9, loc="upper left" if table.bracket else "best")
 
 
 def draw_flags(axes, table):
@@ -140,9 +177,9 @@ def draw_flags(axes, table):
 
 
 def draw_contours(axes, table):
-    """Lines of equal DOLP, where there is a map and not a single row or column."""
+    """Lines of equal DOLP."""
     shown = np.ma.masked_where((table.status != 0) | ~np.isfinite(table.dolp), table.dolp)
-    if min(shown.shape) < 2 or shown.count() == 0 or shown.max() - shown.min() < SMALLEST_SPAN_PERCENT:
+    if shown.count() == 0 or shown.max() - shown.min() < SMALLEST_SPAN_PERCENT:
         return
     levels = [level for level in CONTOURS_PERCENT if shown.min() < level < table.largest()]
     if not levels:
@@ -165,21 +202,23 @@ def draw_map(figure, axes, table):
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.yaxis.set_major_formatter(FormatStrFormatter("%g"))
         axes.yaxis.set_minor_formatter(NullFormatter())
-    axes.set_ylabel(r"roughness $\sigma$")
+    axes.set_ylabel("wind U (m/s)" if table.has_winds else r"roughness $\sigma$")
 
 
 def draw(table, path):
     plt.rcParams.update({"font.size": 10.5, "hatch.linewidth": 0.6})
     plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False})
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 4.8), dpi=150, layout="constrained")
-    draw_curves(left, table)
-    draw_map(figure, right, table)
-    for axes in (left, right):
-        axes.set_xlabel(r"zenith angle $\theta$ (degree)")
+    width = 11.5 if table.is_map else 7.0
+    figure, panels = plt.subplots(1, 1 + table.is_map, figsize=(width, 4.8), dpi=150, layout="constrained", squeeze=False)
+    draw_curves(panels[0, 0], table)
+    if table.is_map:
+        draw_map(figure, panels[0, 1], table)
+    for axes in panels.flat:
+        axes.set_xlabel(table.zenith)
         if table.theta.size > 1:
             axes.set_xlim(table.theta[0], table.theta[-1])
     figure.suptitle(table.title, fontsize=13)
-    figure.supxlabel(table.caption(), fontsize=9, color="0.3")
+    figure.supxlabel(textwrap.fill(table.caption(), int(14 * width)), fontsize=9, color="0.3")
     figure.savefig(path)
 
 

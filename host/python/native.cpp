@@ -6,6 +6,7 @@
 #include <pybind11/stl/filesystem.h>
 #include <dolp/dolp.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <exception>
@@ -142,6 +143,21 @@ py::object object_of(const dolp::Value& value) {
   return std::visit(object, value.content());
 }
 
+/// The value of a key; None where the scene has no such thing. Errors: InputError.
+py::object value_of_key(const dolp::Scene& scene, const std::string& key) {
+  const auto object = [](const auto& value) -> py::object { return value ? py::cast(*value) : py::none(); };
+  const auto known = std::ranges::find(dolp::keys(), key, &dolp::Key::key);
+  const auto type = known == dolp::keys().end() ? dolp::Key::Type::kNumber : known->type;
+  if (type == dolp::Key::Type::kNumber) return object(scene.number(key));
+  if (type == dolp::Key::Type::kAxis || type == dolp::Key::Type::kPair) {
+    const std::vector<double> values = scene.numbers(key);
+    return values.empty() ? py::none() : py::object(py::cast(values));
+  }
+  const std::optional<std::string> word = scene.word(key);
+  if (!word || type != dolp::Key::Type::kFlag) return word ? py::object(text_of(*word)) : py::none();
+  return py::bool_(*word == "true");
+}
+
 Values values_of(const dolp::Scene& scene) {
   Values values;
   for (const dolp::Setting& setting : scene.settings())
@@ -199,7 +215,7 @@ py::tuple parts_of(dolp::Results results) {
                   results.attributes);
 }
 
-/// (axes: [(name, values)], curves: [(name, long_name, units, wavelengths, values)], parts).
+/// (axes: [(name, values)], winds, curves: [(name, long_name, units, wavelengths, values)], parts).
 py::tuple contents_of(const dolp::Table& table) {
   const dolp::TableValues& values = table.values();
   py::list axes, curves;
@@ -213,7 +229,7 @@ py::tuple contents_of(const dolp::Table& table) {
     curves.append(py::make_tuple(known.name, known.long_name, known.units, array_of(curve.wavelength_um),
                                  array_of(curve.values)));
   }
-  return py::make_tuple(axes, curves,
+  return py::make_tuple(axes, array_of(values.wind_m_s), curves,
                         parts_of(values, values.quantities(), values.stokes_units, table.file_attributes()));
 }
 
@@ -269,6 +285,8 @@ PYBIND11_MODULE(_native, module) {
       .def("with_", [](const dolp::Scene& scene, const Values& values) { return scene.with(settings_of(values)); })
       .def("toml", [](const dolp::Scene& scene) { return text_of(scene.toml()); })
       .def("values", &values_of)
+      .def("value", [](const dolp::Scene& scene, const py::str& key) { return value_of_key(scene, bytes_of(key)); })
+      .def("refractive_index", &dolp::Scene::refractive_index)
       .def("__deepcopy__", [](const dolp::Scene& scene, const py::dict&) { return scene; })
       .def(py::pickle(
           [](const dolp::Scene& scene) {
@@ -313,13 +331,21 @@ PYBIND11_MODULE(_native, module) {
       .def("fit",
            [](dolp::Evaluator& evaluator, const dolp::Scene& scene,
               const std::vector<std::pair<std::string, Values>>& data,
-              const std::map<std::string, std::vector<double>>& vary, std::size_t starts, std::uint64_t seed) {
+              const std::map<std::string, std::vector<double>>& vary,
+              const std::map<std::string, std::vector<std::string>>& compare, const std::string& loss,
+              std::size_t starts, std::uint64_t seed, const std::filesystem::path& plot) {
              std::vector<dolp::MeasuredData> sets;
              for (const auto& [csv, values] : data) {
                const std::string name = "data" + (data.size() > 1 ? std::to_string(sets.size() + 1) : "");
                sets.push_back(dolp::MeasuredData::from_csv(csv, name, settings_of(values)));
              }
-             dolp::FitOptions options{.vary = ranges_of(vary), .starts = starts, .seed = seed};
+             dolp::FitOptions options{.vary = ranges_of(vary), .starts = starts, .seed = seed, .plot = plot};
+             for (const auto& [key, words] : compare) options.compare.push_back({key, words});
+             const std::vector<std::string>& losses = dolp::loss_names();
+             const auto chosen = std::ranges::find(losses, loss);
+             if (chosen == losses.end())
+               throw dolp::InputError("loss = " + loss + ": must be one of squares, huber, soft-l1, cauchy, tukey");
+             options.loss = static_cast<dolp::Loss>(chosen - losses.begin());
              dolp::Fit fit = interruptible([&](const dolp::Progress& progress) {
                options.progress = progress;
                return evaluator.fit(scene, sets, options);
@@ -368,6 +394,7 @@ PYBIND11_MODULE(_native, module) {
       const dolp::AxisDescription& known = dolp::description_of(axis);
       all.append(py::make_tuple(known.column, known.name, known.long_name, known.units));
     }
+    all.append(py::make_tuple(dolp::kWind.column, dolp::kWind.name, dolp::kWind.long_name, dolp::kWind.units));
     return all;
   });
   module.def("status_bits", [] {

@@ -5,6 +5,7 @@ Usage: plot_fit.py PICTURE < REPORT.json    `dolp fit --plot PICTURE` runs it
 Needs python3-matplotlib. Exit status: 0 done, 2 no report of a fit, 4 the picture could not be written.
 """
 import json
+import re
 import sys
 
 import matplotlib
@@ -118,6 +119,15 @@ def caption(report):
     return f"{values}   {quality}"
 
 
+def title_of(report):
+    """The scene's title, with the wavelengths that were used in the place of those that it may have had before."""
+    title = re.sub(r"[, ]*[\d.]+( *[-–] *[\d.]+)? *[uµ]m$", "", report["title"])
+    if all(point["wavelength_um"] is None for point in report["points"]):
+        ends = dict.fromkeys(f"{end:g}" for end in report["spectrum_um"])
+        title = ", ".join(part for part in (title, "–".join(ends) + " µm") if part)
+    return title or "fit"
+
+
 def draw(report, path):
     plt.rcParams.update({"font.size": 10.5, "axes.spines.top": False, "axes.spines.right": False})
     figure = plt.figure(figsize=(11.5, 5.0), dpi=150, layout="constrained")
@@ -129,7 +139,7 @@ def draw(report, path):
     draw_pair(figure.add_subplot(grid[:, 1]), report)
     for axes in figure.axes:
         axes.grid(alpha=0.25, linewidth=0.6)
-    figure.suptitle(report["title"] or "fit", fontsize=13)
+    figure.suptitle(title_of(report), fontsize=13)
     figure.supxlabel(caption(report), fontsize=9, color="0.3")
     figure.savefig(path, format="png")
 

@@ -255,6 +255,18 @@ TEST(VulkanEvaluator, Progress_CountsEveryTileAndTheReportEveryDispatch) {
   EXPECT_GT(report.setup_s, 0.0);
 }
 
+TEST(VulkanEvaluator, DispatchesOnAProcessor_AreShortAndNeverLongerThanWanted) {
+  dolp::Device device;
+  VulkanOptions options;
+  EXPECT_EQ(for_device(options, device, Precision::kDouble).max_tile_invocations, options.max_tile_invocations);
+  device.type = dolp::Device::Type::kCpu;
+  const std::uint32_t in_double = for_device(options, device, Precision::kDouble).max_tile_invocations;
+  EXPECT_LT(in_double, for_device(options, device, Precision::kFloat).max_tile_invocations);
+  EXPECT_LE(in_double, options.max_tile_invocations / 16);
+  options.max_tile_invocations = 7;
+  EXPECT_EQ(for_device(options, device, Precision::kDouble).max_tile_invocations, 7U);
+}
+
 TEST(VulkanEvaluator, CancelledRequest_LeavesTheEvaluatorUsable) {
   VulkanOptions options = validated();
   options.max_tile_invocations = 20;

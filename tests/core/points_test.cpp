@@ -45,6 +45,16 @@ TEST(Points_Geometries, HaveThreeAnglesAndAnyOfTheRest) {
   EXPECT_FALSE(points[Axis::kQ] || points[Axis::kTheta]);
 }
 
+TEST(Points_Winds, GiveSigma) {
+  const Points points = directions("theta_deg,wind_m_s\n60,5\n");
+  EXPECT_TRUE(points.has_winds);
+  EXPECT_EQ(points[Axis::kSigma], std::vector<double>{std::sqrt(0.0286 / 2)});
+  EXPECT_EQ(points.header, "theta_deg,wind_m_s");
+  for (const char* both : {"sigma,wind_m_s", "wind_m_s,sigma"})
+    EXPECT_EQ(error_of(std::string(both) + "\n1,1\n"),
+              "p.csv:1: columns \"sigma\" and \"wind_m_s\" cannot be combined");
+}
+
 TEST(Points_Cells, KeepTheirSpelling) {
   const Points points = directions("\xEF\xBB\xBF theta_deg , sigma\r\n 3.00e1 ,\t+0.10\r\n030,1E-1\r\n\r\n");
   EXPECT_EQ(points.header, "theta_deg,sigma");

@@ -107,6 +107,27 @@ TEST(SceneError_KeysThatDoNotGoTogether, AreNamed) {
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.masking=smith", "surface.q=1.5"}), "--set surface.q=1.5: "));
 }
 
+/// All that has to change is told at once.
+TEST(SceneError_SeveralKeysThatDoNotGoTogether, AreNamedInOneMessage) {
+  const std::string sea =
+      "surface.n = 1.2\nsurface.sigma = 0.1\nsurface.masking = \"smith\"\nsurface.distribution = \"gaussian\"\n"
+      "emission.temperature_K = 290\nemission.model = \"direct\"\nemission.bracket = true\n"
+      "spectrum.wavelength_um = 10\n";
+  EXPECT_EQ(error_of(kMinimal + "[grid]\nwind_m_s = 5\n"),
+            "s.toml:9: grid.wind_m_s = 5: needs surface.distribution = \"gaussian\" and no surface.sigma beside it");
+  EXPECT_EQ(error_of(kMinimal, {"surface.wind_m_s=5", "grid.sigma=1"}),
+            "--set surface.wind_m_s=5: needs surface.distribution = \"gaussian\" and no grid.sigma beside it");
+  EXPECT_EQ(error_of(sea, {"surface.scattering=multiple"}),
+            "--set surface.scattering=multiple: needs surface.masking = \"v-cavity\" and emission.model = \"moments\" "
+            "or \"fresnel\" and emission.bracket = false");
+  EXPECT_EQ(error_of(sea, {"surface.scattering=multiple", "surface.masking=v-cavity", "emission.model=moments",
+                           "emission.bracket=false", "surface.wind_m_s=5"}),
+            "no error");
+  EXPECT_EQ(error_of(sea, {"emission.model=fresnel", "geometry.mode=bistatic", "surface.masking=none"}),
+            "s.toml:7: emission.bracket = true: needs surface.masking = \"smith\" or \"v-cavity\" and emission.model = "
+            "\"moments\" or \"direct\" and geometry.mode = \"hemispherical\"");
+}
+
 TEST(SceneError_BandThatDoesNotAscend, IsRefused) {
   for (const char* band : {"[14, 8]", "[8, 8]", "[8]", "[8, 9, 10]", "8", "[8, nan]", "[0.01, 8]"}) {
     const std::string error = error_of(kMinimal, {std::string("spectrum.band_um=") + band});
@@ -207,6 +228,14 @@ TEST(SceneOverride_OfAnAlternative, ReplacesTheFilesChoice) {
   EXPECT_TRUE(contains(error_of(with_iron, {"surface.n=1.4", "surface.material=gold"}),
                        "--set surface.material=gold: cannot be combined with surface.n"));
   EXPECT_TRUE(parse(kMinimal, {"spectrum.band_um=[8, 14]"}).spectrum.is_band());
+  const std::string gaussian = "surface.distribution=gaussian";
+  const SceneValues sea = parse(kMinimal + "[grid]\nsigma = [0.1, 0.2]\n", {gaussian, "surface.wind_m_s=5"});
+  EXPECT_EQ(sea.grid[Axis::kSigma].size(), 1U);
+  // A later change replaces an earlier one, and the scene stays that of its text and settings.
+  const SceneValues changed = with_settings(sea, {{"grid.sigma", 0.4}});
+  EXPECT_EQ(changed.grid[Axis::kSigma], std::vector<double>{0.4});
+  EXPECT_TRUE(changed.wind_m_s.empty());
+  EXPECT_EQ(changed.settings.size(), 2U);
 }
 
 TEST(SceneOverride_None, RemovesAnEffect) {

@@ -86,6 +86,11 @@ const std::vector<KeyCase>& key_cases() {
        [](const SceneValues& s) { return s.surface.distribution == Distribution::kGaussian; }},
       {"surface.sigma", "0.5",
        [](const SceneValues& s) { return s.surface.sigma == 0.5 && s.grid[Axis::kSigma][0] == 0.5; }},
+      {"surface.wind_m_s", "5",
+       [](const SceneValues& s) {
+         return s.surface.sigma == std::sqrt(0.0286 / 2) && s.grid[Axis::kSigma][0] == s.surface.sigma &&
+                s.wind_m_s == std::vector<double>{5.0};
+       }},
       {"surface.q", "3", [](const SceneValues& s) { return s.surface.q == 3.0 && s.grid[Axis::kQ][0] == 3.0; }},
       {"surface.masking", "\"v-cavity\"", [](const SceneValues& s) { return s.surface.masking == Masking::kVCavity; }},
       {"surface.scattering", "\"single\"",
@@ -122,6 +127,11 @@ const std::vector<KeyCase>& key_cases() {
          return s.grid[Axis::kTheta] == std::vector<double>{90.0, 0.0};
        }},
       {"grid.sigma", "0.7", [](const SceneValues& s) { return s.grid[Axis::kSigma] == std::vector<double>{0.7}; }},
+      {"grid.wind_m_s", "[0, 5]",
+       [](const SceneValues& s) {
+         return s.grid[Axis::kSigma] == std::vector<double>{std::sqrt(0.003 / 2), std::sqrt(0.0286 / 2)} &&
+                s.wind_m_s == std::vector<double>{0.0, 5.0} && s.surface.sigma == s.grid[Axis::kSigma][0];
+       }},
       {"grid.q", "[1.5, 2]",
        [](const SceneValues& s) {
          return s.grid[Axis::kQ] == std::vector<double>{1.5, 2.0};
@@ -143,6 +153,8 @@ const std::vector<KeyCase>& key_cases() {
   return cases;
 }
 
+bool is_wind(const std::string& key) { return key.ends_with(".wind_m_s"); }
+
 TEST(Scene_EveryKey, HasACaseBelow) {
   ASSERT_EQ(key_cases().size(), dolp::keys().size());
   for (std::size_t i = 0; i < dolp::keys().size(); ++i) EXPECT_EQ(dolp::keys()[i].key, key_cases()[i].key);
@@ -163,6 +175,7 @@ TEST(Scene_EveryKey, CanBeSetByAnOverride) {
     const std::string key = row.key;
     std::vector<std::string> overrides;
     if (key == "source.scale") overrides.emplace_back("source.irradiance=1");
+    if (is_wind(key)) overrides.emplace_back("surface.distribution=gaussian");
     if (key == "surface.material_file") {
       overrides.push_back(key + "=" + index.path());
     } else if (key == "source.file") {
@@ -185,7 +198,8 @@ TEST(Scene_EveryKey, CanBeWrittenInTheFile) {
     std::string text = "accuracy.tolerance = 1e-5\n";
     if (key == "accuracy.tolerance") text.clear();
     if (!key.starts_with("surface.n") && !key.starts_with("surface.material")) text += "surface.n = 1.5\n";
-    if (key != "surface.sigma") text += "surface.sigma = 0.3\n";
+    if (is_wind(key)) text += "surface.distribution = \"gaussian\"\n";
+    if (key != "surface.sigma" && !is_wind(key)) text += "surface.sigma = 0.3\n";
     if (key != "emission.temperature_K") text += "emission.temperature_K = 300\n";
     if (!key.starts_with("spectrum")) text += "spectrum.wavelength_um = 10.6\n";
     if (key == "source.scale") text += "source.irradiance = 1\n";
@@ -200,6 +214,7 @@ TEST(Scene_EveryNumber, AcceptsItsClosedEndsAndRefusesItsOpenOnes) {
     if (key.type != Key::Type::kNumber) continue;
     std::vector<std::string> base;
     if (key.key == "source.scale") base.emplace_back("source.irradiance=1");
+    if (is_wind(key.key)) base.emplace_back("surface.distribution=gaussian");
     for (const double end : {key.range.min, key.range.max}) {
       if (std::isinf(end)) continue;
       std::vector<std::string> overrides = base;
@@ -267,8 +282,10 @@ TEST(SceneScattering, WhatTheModelLacks_NamesTheKeys) {
            {{"surface.masking=smith", "surface.scattering=multiple"}, "masking = \"v-cavity\""},
            {{"surface.masking=none", "emission.model=direct"}, "\"smith\" or \"v-cavity\""},
            {{"surface.masking=integral", "emission.bracket=true"}, "\"smith\" or \"v-cavity\""},
-           {{"surface.masking=v-cavity", "surface.scattering=multiple", "emission.bracket=true"}, "\"single\""},
-           {{"surface.masking=v-cavity", "surface.scattering=multiple", "emission.model=direct"}, "\"single\""},
+           {{"surface.masking=v-cavity", "surface.scattering=multiple", "emission.bracket=true"},
+            "surface.scattering=multiple: needs emission.bracket = false"},
+           {{"surface.masking=v-cavity", "surface.scattering=multiple", "emission.model=direct"},
+            "surface.scattering=multiple: needs emission.model = \"moments\" or \"fresnel\""},
            {{"surface.masking=v-cavity", "emission.model=fresnel", "emission.bracket=true"},
             "\"moments\" or \"direct\""},
            {{"surface.masking=v-cavity", "geometry.mode=bistatic", "emission.bracket=true"}, "hemispherical"},

@@ -73,6 +73,7 @@ TableValues sample_table(std::size_t thetas, std::size_t sigmas, std::size_t qs)
   }
   table[Quantity::kErrorEstimate].front() = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < table.size(); ++i) table.status.push_back(static_cast<std::uint32_t>(i % 16));
+  for (std::size_t i = 0; i < sigmas; ++i) table.wind_m_s.push_back(5.0 * static_cast<double>(i));
   table.index_n = {{8.0, 10.0}, {1.5, 1.6}};
   table.index_k = {{9.0}, {0.1}};
   table.attributes = {
@@ -90,6 +91,7 @@ void expect_same(const std::vector<double>& actual, const std::vector<double>& e
 
 void expect_same(const TableValues& actual, const TableValues& expected) {
   EXPECT_EQ(actual.axes, expected.axes);
+  EXPECT_EQ(actual.wind_m_s, expected.wind_m_s);
   for (const Quantity quantity : kAllQuantities) {
     expect_same(actual[quantity], expected[quantity], description_of(quantity).name);
   }

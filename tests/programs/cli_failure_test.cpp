@@ -60,7 +60,10 @@ INSTANTIATE_TEST_SUITE_P(
     Usage, CommandLineMistake,
     testing::Values(
         Mistake{"UnknownCommand", {"tabel", "scene.toml"}, kInput, {"tabel", "nearest command is table"}},
-        Mistake{"UnknownOption", joined(kTable, {"--sigma", "3"}), kInput, {"--sigma 3: ", "(see dolp table --help)"}},
+        Mistake{"UnknownOption",
+                joined(kTable, {"--sigma", "3"}),
+                kInput,
+                {"--sigma 3: ", "--set surface.sigma=VALUE", "(see dolp table --help)"}},
         Mistake{"NoScene", {"table", "-o", "out.nc"}, kInput, {"SCENE"}},
         Mistake{"NoOutput", {"table", "scene.toml"}, kInput, {"--output", "(see dolp table --help)"}},
         Mistake{"NoPoints", {"eval", "scene.toml", "-o", "out.csv"}, kInput, {"--points"}},
@@ -83,6 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"UnknownSuffix", {"table", "scene.toml", "-o", "out.txt"}, kInput, {"out.txt", ".nc", ".csv", ".npy"}},
         Mistake{
             "SetUnknownKey", joined(kTable, {"--set", "surface.sigm=1"}), kInput, {"surface.sigm=1", "surface.sigma"}},
+        Mistake{"MaterialRangeDescends", {"materials", "iron", "--at", "8:1"}, kInput, {"--at 8:1: ", "FROM:TO:COUNT"}},
         Mistake{"MaterialWithoutWavelength", {"materials", "iron"}, kInput, {"--at", "(see dolp materials --help)"}},
         Mistake{"MaterialThatIsUnknown", {"materials", "irn", "--at", "9"}, kInput, {"irn", "iron"}},
         Mistake{"MaterialBeyondItsRange", {"materials", "iron", "--at", "99"}, kInput, {"iron", "2 to 20 um"}},
@@ -129,6 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_F(CommandLine, StandardOutput_Full_Exit4) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"materials"},
+                                                    {"keys"},
                                                     kTable,
                                                     {"eval", "scene.toml", "--points", "points.csv", "-o", "-"},
                                                     {"--help"},

@@ -23,12 +23,17 @@ cd "$work/empty"
 "$prefix/bin/dolp" table "$prefix/share/dolp/scenes/night_paint.toml" -o t.nc --quiet
 "$prefix/bin/dolp" --cite | grep -q "cff-version" || fail "no citation"
 grep -q '^\.SS dolp table' "$prefix/share/man/man1/dolp.1" || fail "the manual page lacks a command"
+for section in DESCRIPTION FILES ENVIRONMENT "SEE ALSO"; do
+  grep -q "^\.SH $section" "$prefix/share/man/man1/dolp.1" || fail "the manual page lacks $section"
+done
 pages=$prefix/share
 words=$(bash -c 'source "$1"; COMP_WORDS=(dolp tab); COMP_CWORD=1; _dolp; echo "${COMPREPLY[*]}"
                  COMP_WORDS=(dolp eval --evaluator c); COMP_CWORD=3; _dolp; echo "${COMPREPLY[*]}"
-                 COMP_WORDS=(dolp table --res); COMP_CWORD=2; _dolp; echo "${COMPREPLY[*]}"' \
+                 COMP_WORDS=(dolp table --res); COMP_CWORD=2; _dolp; echo "${COMPREPLY[*]}"
+                 COMP_WORDS=(dolp table --set surface.masking = v); COMP_CWORD=5; _dolp; echo "${COMPREPLY[*]}"
+                 COMP_WORDS=(dolp fit --vary surface.wi); COMP_CWORD=3; _dolp; echo "${COMPREPLY[*]}"' \
   bash "$pages/bash-completion/completions/dolp")
-[[ $words == $'table\ncpu\n--resume' ]] || fail "bash completes $words"
+[[ $words == $'table\ncpu\n--resume\nv-cavity\nsurface.wind_m_s=' ]] || fail "bash completes $words"
 zsh -n "$pages/zsh/vendor-completions/_dolp" || fail "zsh cannot read its completion"
 fish --no-execute "$pages/fish/vendor_completions.d/dolp.fish" || fail "fish cannot read its completion"
 completed=$(fish -c "source $pages/fish/vendor_completions.d/dolp.fish; complete -C 'dolp eval --evaluator c'")

@@ -15,11 +15,13 @@ import threading
 import time
 import unittest
 
+import matplotlib
 import numpy as np
 import xarray as xr
 
 import dolp
 
+matplotlib.use("Agg")
 PROGRAM = sys.argv.pop(1) if __name__ == "__main__" else ""  # spawned processes import this file
 TEXT = """title = "painted plate"
 [surface]
@@ -95,6 +97,7 @@ theta_deg = {from = 0, to = 80, count = 5}
                     "spectrum.band_um": [8, 12]}
         for scene in (self.scene, self.scene.with_(material), self.scene.with_({"grid.k": [0.1, 0.2], "grid.n": 1.5}),
                       self.scene.with_({"emission.bracket": True, "grid.wavelength_um": [9, 10]}),
+                      self.scene.with_({"surface.distribution": "gaussian", "grid.wind_m_s": [5, 2]}),
                       self.scene.with_({"title": "long " * 20000})):
             for evaluator in ("cpu", "vulkan"):
                 dolp.write_table(scene, self.folder / "t.nc", evaluator=evaluator)
@@ -137,6 +140,75 @@ theta_deg = {from = 0, to = 80, count = 5}
         with self.assertRaisesRegex(dolp.InputError, "do not broadcast"):
             dolp.evaluate(self.scene, theta_deg=theta, sigma=[0.1, 0.2])
 
+    def test_given_coordinates_stay(self):
+        theta = xr.DataArray([10.0, 20.0], dims="ray", coords={"ray": ["a", "b"], "pixel": ("ray", [7, 8])})
+        sigma = xr.DataArray([0.1, 0.2, 0.3], dims="part", coords={"plate": ("part", [1, 2, 3])})
+        found = dolp.evaluate(self.scene, theta_deg=theta, sigma=sigma, evaluator="cpu")
+        self.assertEqual(set(found.coords), {"ray", "pixel", "plate", "theta", "sigma"})
+        self.assertEqual(found.pixel.dims + found.plate.dims, ("ray", "part"))
+
+    def test_a_complex_n_gives_n_and_k(self):
+        apart = dolp.evaluate(self.scene, theta_deg=60, n=[1.5, 2], k=[0.1, 3], evaluator="cpu")
+        self.assertEqual(dolp.Scene(self.scene, {"surface.n": 2 + 3j})["surface.k"], 3.0)
+        for index in ([1.5 + 0.1j, 2 + 3j], xr.DataArray([1.5 + 0.1j, 2 + 3j], dims="row")):
+            together = dolp.evaluate(self.scene, theta_deg=60, n=index, evaluator="cpu")
+            np.testing.assert_array_equal(together.dolp, apart.dolp)
+        for call in (lambda: dolp.evaluate(self.scene, theta_deg=60, n=2j, k=1),
+                     lambda: dolp.table(self.scene, theta_deg=60, n=1.5 + 1j)):
+            with self.assertRaisesRegex(dolp.InputError, "n: "):
+                call()
+
+    def test_any_number_of_the_scene_varies(self):
+        keys = {"emission.temperature_K": np.array([[280.0], [300.0]]), "surface.specular": [1, 0.5, 1]}
+        found = dolp.evaluate(self.scene, theta_deg=[20, 40, 60], evaluator="cpu", **keys)
+        self.assertEqual(found.dolp.shape, (2, 3))
+        for i, j in ((0, 0), (1, 2), (1, 1)):
+            own = self.scene.with_({"emission.temperature_K": (280, 300)[i], "surface.specular": (1, 0.5, 1)[j]})
+            one = dolp.evaluate(own, theta_deg=(20, 40, 60)[j], evaluator="cpu")
+            for name in ("dolp", "stokes_i", "status"):
+                self.assertEqual(float(one[name]), float(found[name][i, j]))
+        for key in ("surface.masking", "emission.temperature", "surface.n"):
+            with self.assertRaisesRegex(dolp.InputError, key):
+                dolp.evaluate(self.scene, theta_deg=20, n=1.5, **{key: [1, 2]})
+
+    def test_a_sea_in_one_key(self):
+        sea = dolp.Scene(self.scene, {"surface.distribution": "gaussian", "surface.wind_m_s": 5})
+        sigma = np.sqrt((0.003 + 0.00512 * 5) / 2)
+        self.assertEqual((sea["surface.sigma"], sea["surface.wind_m_s"], sea["grid.sigma"]), (sigma, 5.0, [sigma]))
+        points = dolp.evaluate(sea, theta_deg=60, wind_m_s=[5, 10], evaluator="cpu")
+        self.assertEqual(float(points.dolp[0]), float(dolp.evaluate(sea, theta_deg=60, sigma=sigma, evaluator="cpu").dolp))
+        self.assertEqual(points.dolp.dims, ("wind_m_s",))
+        table = dolp.table(sea, theta_deg=[0, 60], wind_m_s=[5, 10], q=2, evaluator="cpu")
+        by_wind = table.swap_dims(sigma="wind_m_s").dolp.sel(theta=60, q=2)
+        np.testing.assert_array_equal(by_wind.sel(wind_m_s=[5, 10]), points.dolp)
+        np.testing.assert_array_equal(dolp.lookup(table, theta_deg=60, wind_m_s=[5, 10]).dolp, points.dolp)
+        self.assertEqual(dolp.table(sea, theta_deg=60, sigma=0.3, evaluator="cpu").sizes["sigma"], 1)
+        data = {"theta_deg": np.arange(10, 90, 10.0), "uncertainty": np.full(8, 1e-3),
+                "dolp": dolp.evaluate(sea, theta_deg=np.arange(10, 90, 10.0), wind_m_s=7, evaluator="cpu").dolp}
+        found = dolp.fit(sea, data, {"surface.wind_m_s": (1, 14)}, evaluator="cpu")
+        self.assertAlmostEqual(found.params["surface.wind_m_s"], 7, 2)
+        self.assertAlmostEqual(found.scene["surface.sigma"], np.sqrt((0.003 + 0.00512 * 7) / 2), 4)
+        for call in (lambda: dolp.evaluate(self.scene, theta_deg=60, wind_m_s=5, evaluator="cpu"),
+                     lambda: dolp.evaluate(sea, theta_deg=60, wind_m_s=5, sigma=0.1),
+                     lambda: dolp.table(self.scene, wind_m_s=5)):
+            with self.assertRaisesRegex(dolp.InputError, "wind_m_s"):
+                call()
+
+    def test_materials_have_n_and_k(self):
+        iron = dolp.material("iron")
+        again = dolp.Scene(self.scene, {"surface.material": "iron", "spectrum.wavelength_um": 10.6})
+        self.assertEqual(float(dolp.evaluate(again, theta_deg=60, evaluator="cpu").dolp),
+                         float(dolp.evaluate(self.scene, theta_deg=60, n=iron.n(10.6) + 1j * iron.k(10.6), wavelength_um=10.6,
+                                             evaluator="cpu").dolp))
+        self.assertEqual(iron.n([[8, 9, 10]]).shape, (1, 3))
+        self.assertIn("iron", repr(iron))
+        self.assertEqual(dolp.material("WATER").name, "water 25C")
+        axes = iron.plot()
+        self.assertEqual(([line.get_label() for line in axes.lines], axes.get_title()), (["n", "k"], "iron"))
+        for call in (lambda: dolp.material("irn"), lambda: iron.n(1000)):
+            with self.assertRaisesRegex(dolp.InputError, "iron"):
+                call()
+
     def test_lookup_takes_a_file_or_a_dataset(self):
         table = dolp.table(self.scene, theta_deg=np.linspace(0, 85, 40), sigma=0.2, q=3)
         dolp.write_table(self.scene, self.folder / "t.nc", theta_deg=np.linspace(0, 85, 40), sigma=0.2, q=3)
@@ -144,6 +216,14 @@ theta_deg = {from = 0, to = 80, count = 5}
             found = dolp.lookup(source, theta_deg=[33.3, 71])
             exact = dolp.evaluate(self.scene, theta_deg=[33.3, 71])
             self.assertTrue((abs(found.dolp - exact.dolp) <= found.error_estimate + exact.error_estimate).all())
+
+    def test_lookup_reads_a_file_that_has_changed(self):
+        for sigma in (0.1, 0.3):
+            dolp.write_table(self.scene, self.folder / "t.nc", theta_deg=np.linspace(0, 85, 40), sigma=sigma, q=3, evaluator="cpu")
+            exact = dolp.evaluate(self.scene, theta_deg=33, sigma=sigma, evaluator="cpu")
+            for _ in range(2):
+                found = dolp.lookup(self.folder / "t.nc", theta_deg=33)
+                self.assertLessEqual(float(abs(found.dolp - exact.dolp)), float(found.error_estimate + exact.error_estimate))
 
     def test_lookup_takes_parts_of_a_table(self):
         table = dolp.table(self.scene, theta_deg=np.linspace(0, 80, 21), sigma=[0.1, 0.2, 0.3], q=3, k=[0.05, 0.1, 0.2])
@@ -221,6 +301,30 @@ theta_deg = {from = 0, to = 80, count = 5}
                 (TypeError, "text: must be a str, not bytes", lambda: dolp.Scene(text=b"")),
                 (TypeError, "path: must be a path, not list", lambda: dolp.write_table(self.scene, [])),
                 (TypeError, "table: must be a path, not DataArray", lambda: dolp.lookup(table.dolp, theta_deg=3)),
+                (TypeError, "starts: must be a whole number, not str", lambda: self.fit_points(starts="many")),
+                (dolp.InputError, "seed = -1: must be a whole number", lambda: self.fit_points(seed=-1)),
+                (dolp.InputError, "loss = square: must be one of squares", lambda: self.fit_points(loss="square")),
+                (TypeError, "3: a key of a scene must be a str", lambda: self.scene[3]),
+                (TypeError, "3: a key of a scene must be a str", lambda: self.scene.with_({3: 1})),
+                (TypeError, "compare: must be a dictionary", lambda: self.fit_points(compare=["a"])),
+                (TypeError, "surface.masking: must be a list", lambda: self.fit_points(compare={"surface.masking": 1})),
+                (dolp.InputError, "the nearest is surface.sigma", lambda: self.scene["surface.sgma"]),
+                (dolp.InputError, "fit: surface.k is none of surface.n", lambda: self.fit_points()["surface.k"]),
+                (dolp.InputError, "level = 0.9", lambda: self.fit_points().conf_interval(0.9)),
+                (TypeError, "grid.q.count: must be a whole number, not float",
+                 lambda: self.scene.with_({"grid.q": {"from": 2, "to": 3, "count": 2.5}})),
+                (dolp.InputError, "grid.q.count = -3: must be a whole number",
+                 lambda: self.scene.with_({"grid.q": {"from": 2, "to": 3, "count": -3}})),
+                (dolp.InputError, "data: columns of different lengths", lambda: dolp.fit(
+                    self.scene, {"theta_deg": [1, 2], "dolp": [0.1, 0.2, 0.3]}, {"surface.n": (1, 2)})),
+                (dolp.InputError, "theta_deg: None are no numbers", lambda: dolp.evaluate(self.scene, theta_deg=None)),
+                (dolp.InputError, "grid.q.from: .* no numbers", lambda: self.scene.with_({"grid.q": {"from": "a", "to": 3, "count": 2}})),
+                (dolp.InputError, "must be a pair", lambda: dolp.fit(self.scene, [(1, 2, 3)], {"surface.n": (1, 2)})),
+                (FileNotFoundError, "none.toml: there is no such file", lambda: dolp.Scene(self.folder / "none.toml")),
+                (FileNotFoundError, "none.nc: there is no such file", lambda: dolp.lookup(self.folder / "none.nc", theta_deg=3)),
+                (FileNotFoundError, "none.csv: there is no such file",
+                 lambda: dolp.fit(self.scene, self.folder / "none.csv", {"surface.n": (1, 2)})),
+                (dolp.InputError, "cannot be read: Is a directory", lambda: dolp.fit(self.scene, self.folder, {"surface.n": (1, 2)})),
                 (dolp.InputError, "did you mean theta_deg", lambda: dolp.evaluate(self.scene, theta=3)),
                 (dolp.InputError, "did you mean theta_deg", lambda: dolp.table(self.scene, theta=3)),
                 (dolp.InputError, "did you mean wavelength_um", lambda: dolp.lookup(table, wavelength=3)),
@@ -237,7 +341,13 @@ theta_deg = {from = 0, to = 80, count = 5}
             with self.assertRaisesRegex(kind, message) as caught:
                 call()
             self.assertNotIn("\n", str(caught.exception))
+            self.assertNotIn("_native", str(caught.exception))
         self.assertEqual(dolp.evaluate(self.scene, theta_deg=30, device=0).dolp.shape, ())
+        self.assertEqual(dolp.plan(self.scene, device=0).values["entries"], 24)
+
+    def fit_points(self, **options):
+        return dolp.fit(self.scene, {"theta_deg": [20, 40, 60], "dolp": [0.01, 0.03, 0.06]}, {"surface.n": (1.1, 3)},
+                        evaluator="cpu", **options)
 
     def test_errors_bear_the_name_of_the_package(self):
         for error in (dolp.InputError, dolp.DeviceError, dolp.IoError):
@@ -265,8 +375,49 @@ theta_deg = {from = 0, to = 80, count = 5}
         self.assertAlmostEqual(float(dolp.evaluate(found.scene, theta_deg=40).dolp),
                                float(dolp.evaluate(scene, theta_deg=40, n=found["surface.n"],
                                                    sigma=found["surface.sigma"]).dolp), 6)
+        self.assertEqual(found.params["surface.n"], found["surface.n"])
+        np.testing.assert_allclose(np.sqrt(np.diag(found.covariance)), list(found.stderr.values()))
+        self.assertEqual(list(found.conf_interval(0.68)["surface.n"]), found.values["parameters"][0]["interval_68"])
+        figure = found.plot().figure
+        figure.savefig(self.folder / "fit.png")
+        line = figure.axes[0].lines[-1]
+        self.assertGreater(len(line.get_xdata()), 100)
+        ranked = dolp.fit(scene, columns, vary, compare={"surface.masking": ["smith", "v-cavity"]}, loss="huber",
+                          plot=self.folder / "picture.png")
+        self.assertEqual(len(ranked.values["models"]), 2)
+        self.assertTrue((self.folder / "picture.png").exists())
         two = dolp.fit(scene, [(columns, {"emission.temperature_K": 300.0}), columns], vary)
         self.assertLess(two.values["parameters"][0]["standard_error"], found.values["parameters"][0]["standard_error"])
+
+    def test_pictures_show_what_the_table_has(self):
+        sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "host"))
+        import netCDF4
+        import plot_table
+        sys.path.pop(0)
+        sea = {"title": "Sea, wind 8 m/s, 8-14 um", "surface.distribution": "gaussian", "surface.masking": "smith"}
+        theta = {"from": 0, "to": 85, "count": 10}
+        winds = {"from": 1, "to": 14, "count": 6}
+        for changes, panels, zenith, title, legend in (
+                ({"grid.sigma": 0.2}, 1, "zenith angle", "painted plate, 10 µm", "0.2"),
+                ({"title": "Plate, 8-14 um", "grid.sigma": [0.1, 0.2, 0.3]}, 1, "zenith angle", "Plate, 10 µm", "0.3"),
+                ({"spectrum.band_um": [3, 5], "grid.sigma": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]}, 2, "zenith angle",
+                 "painted plate, 3–5 µm", "0.6"),
+                ({"geometry.mode": "bistatic", "source.irradiance": 1, "grid.sigma": 0.2}, 1, "zenith of the source",
+                 "painted plate, 10 µm", "0.2"),
+                ({**sea, "grid.wind_m_s": winds, "emission.bracket": True}, 2, "zenith angle", "Sea, 10 µm", "14 m/s")):
+            dolp.write_table(self.scene.with_({"grid.theta_deg": theta, **changes}), self.folder / "t.nc", evaluator="cpu")
+            with netCDF4.Dataset(self.folder / "t.nc") as dataset:
+                table = plot_table.Slice(dataset, dict.fromkeys(plot_table.SYMBOLS))
+            plot_table.draw(table, self.folder / "t.png")
+            figure = plot_table.plt.gcf()
+            drawn = [axes for axes in figure.axes if axes.get_xlabel()]
+            self.assertEqual((len(drawn), table.title), (panels, title))
+            for axes in drawn:
+                self.assertIn(zenith, axes.get_xlabel())
+            self.assertIn(legend, " ".join(text.get_text() for text in drawn[0].get_legend().texts))
+            if table.bracket:
+                self.assertLess(np.nanmax(table.bracket), drawn[0].get_ylim()[1])
+            plot_table.plt.close(figure)
 
     def test_errors_are_one_line(self):
         for call in (lambda: dolp.Scene(self.folder / "none.toml"), lambda: dolp.Scene(),
@@ -291,6 +442,9 @@ theta_deg = {from = 0, to = 80, count = 5}
         self.assertNotIn("\n", repr(self.scene))
         again = dolp.Scene(text=dolp.Scene(self.scene, {"surface.sigma": 0.7, "emission.bracket": False}).toml())
         self.assertIn("sigma = 0.7", again.toml())
+        self.assertEqual((self.scene["surface.sigma"], self.scene["surface.masking"], self.scene["grid.q"]), (0.2, "smith", [2, 3.5, 5]))
+        self.assertEqual((self.scene["emission.bracket"], self.scene["path.radiance"], self.scene["spectrum.band_um"]), (False, None, None))
+        self.assertLess(len(repr(dolp.Scene(text=TEXT, overrides={"grid.theta_deg": np.arange(90)}))), 200)
         self.assertIn("surface.sigma=0.7", repr(dolp.Scene(self.scene, {"surface.sigma": 0.7})))
         plan = dolp.plan(self.scene)
         self.assertEqual(plan.values["entries"], 24)

@@ -15,6 +15,12 @@ struct SlopeShape {
 /// m = sqrt(2) sigma, the unit of the slopes.
 double slope_width(const SlopeShape& shape);
 
+/// sigma of the sea's slopes in a wind, those of all directions together.
+///
+/// Equation: 2 sigma^2 = m^2 = 0.003 + 0.00512 U.
+/// Source: Cox and Munk, J. Opt. Soc. Am. 44 (1954) 838: clean sea, U from 1 to 14 m/s, 12.5 m above the water.
+double sigma_of_wind(double wind_m_s);
+
 /// Share of the facets that are steeper than a slope.
 ///
 /// Equation: with u = slope / m, exp(-u^2) of the gaussian, (1 + u^2)^(1 - q) of the cauchy distribution.

@@ -9,6 +9,7 @@
 
 #include <dolp/number_range.hpp>
 #include "base/text.hpp"
+#include "model/slopes.hpp"
 #include "scene/csv.hpp"
 
 namespace dolp {
@@ -21,7 +22,9 @@ struct ColumnRule {
   const char* name;
   NumberRange range;
   std::variant<Axis, Points::Column Points::*> column;
+  bool is_wind = false;  ///< in the place of sigma
 
+  double value(double number) const { return is_wind ? sigma_of_wind(number) : number; }
   bool is_required() const { return column.index() == 1; }
   template <class AnyPoints>
   auto& of(AnyPoints& points) const {
@@ -42,6 +45,7 @@ std::vector<ColumnRule> column_rules(PointsKind kind) {
     if (has_pairs && (axis == Axis::kTheta || axis == Axis::kWavelength)) continue;
     rules.push_back({description_of(axis).column, description_of(axis).range, axis});
   }
+  rules.push_back({kWind.column, kWind.range, Axis::kSigma, true});
   return rules;
 }
 
@@ -66,7 +70,13 @@ const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_vi
 
 /// Makes a column present.
 std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
-  if (rule.of(points)) throw InputError(fmt::format("{}: column \"{}\" appears twice", points.where(), rule.name));
+  if (rule.of(points)) {
+    const bool is_other = rule.is_wind != points.has_winds && std::holds_alternative<Axis>(rule.column) &&
+                          std::get<Axis>(rule.column) == Axis::kSigma;
+    throw InputError(is_other ? fmt::format("{}: columns \"sigma\" and \"wind_m_s\" cannot be combined", points.where())
+                              : fmt::format("{}: column \"{}\" appears twice", points.where(), rule.name));
+  }
+  if (rule.is_wind) points.has_winds = true;
   return rule.of(points).emplace();
 }
 
@@ -104,7 +114,7 @@ void parse_row(const CsvReader& row, const FileColumns& columns, Points& points)
   std::vector<std::string_view> own;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (columns[i] == nullptr) continue;
-    columns[i]->of(points)->push_back(row.number(i, columns[i]->name, &columns[i]->range));
+    columns[i]->of(points)->push_back(columns[i]->value(row.number(i, columns[i]->name, &columns[i]->range)));
     own.push_back(row.cells()[i]);
   }
   if (row.cells().size() > columns.size()) {
@@ -144,6 +154,7 @@ Points points_of(std::span<const Column> columns, std::size_t count, PointsKind 
     }
     std::vector<double>& own = add_column(points, rule);
     values.size() == count ? own.assign(values.begin(), values.end()) : own.assign(count, values[0]);
+    std::ranges::transform(own, own.begin(), [&](double number) { return rule.value(number); });
   }
   check_required(points, rules);
   return points;

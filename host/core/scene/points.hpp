@@ -27,6 +27,7 @@ struct Points {
   std::vector<std::string> left_out;  ///< columns of the file that are results
   using Column = std::optional<std::vector<double>>;
   AxisArray<Column> coordinates;
+  bool has_winds = false;                          ///< sigma was given as winds
   Column theta_i_deg, theta_r_deg, delta_phi_deg;  ///< of kGeometries, in the place of theta_deg and wavelength_um
   std::size_t header_line = 0;                     ///< 0 of arrays
   std::vector<std::uint32_t> row_lines;            ///< the line of each row; empty of arrays

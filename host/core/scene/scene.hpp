@@ -45,6 +45,7 @@ struct Surface {
   Masking masking = Masking::kIntegral;
   Scattering scattering = Scattering::kSingle;  ///< kMultiple: with v-cavity
   double sigma = 0.0;
+  std::optional<double> wind_m_s = {};  ///< that gives sigma; none where the scene has sigma itself
   double q = 2.0;
   double specular = 1.0;           ///< k_s in [0, 1]
   double diffuse = 0.0;            ///< k_d in [0, 1]
@@ -116,7 +117,8 @@ struct SceneValues {
   std::optional<Path> path;
   Spectrum spectrum;
   Geometry geometry;
-  Axes grid;  ///< in the user's order; sigma and q fall back to [surface]
+  Axes grid;                     ///< in the user's order; sigma and q fall back to [surface]
+  std::vector<double> wind_m_s;  ///< that give the grid's values of sigma; empty where the scene has sigma itself
   Accuracy accuracy;
   std::string path_name;                          ///< as given on the command line, for messages
   std::string text;                               ///< the file, verbatim

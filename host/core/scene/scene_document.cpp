@@ -183,15 +183,8 @@ toml::table& SceneDocument::create_table(const std::vector<std::string_view>& pa
 }
 
 void SceneDocument::drop_other_alternatives(const std::string& key) {
-  for (const KeyChoice& choice : key_choices()) {
-    bool chooses = false;
-    for (const auto& alternative : choice.alternatives) chooses = chooses || alternative.front() == key;
-    if (!chooses) continue;
-    for (const auto& alternative : choice.alternatives) {
-      for (const std::string& other : alternative) {
-        if (alternative.front() != key && !is_set(other)) erase(other);
-      }
-    }
+  for (const std::string& other : keys_replaced_by(key)) {
+    if (!is_set(other)) erase(other);
   }
 }
 

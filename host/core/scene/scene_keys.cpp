@@ -6,6 +6,7 @@
 
 #include "base/text.hpp"
 #include "model/choices.hpp"
+#include "model/slopes.hpp"
 
 namespace dolp {
 namespace {
@@ -88,6 +89,27 @@ bool has_own_index(const SceneValues& s) { return s.names.material.empty() && s.
 
 bool is_of_kind(const SceneValues& s, Source::Kind kind) { return s.source && s.source->kind == kind; }
 
+void set_sigma(SceneValues& s, const KeyValue& v) {
+  s.surface.sigma = v.number;
+  s.surface.wind_m_s.reset();
+}
+
+void set_wind(SceneValues& s, const KeyValue& v) {
+  s.surface.sigma = sigma_of_wind(v.number);
+  s.surface.wind_m_s = v.number;
+}
+
+SceneKey wind_axis() {
+  const auto set = [](SceneValues& s, const KeyValue& v) {
+    s.wind_m_s = v.numbers;
+    s.grid[Axis::kSigma].clear();
+    std::ranges::transform(v.numbers, std::back_inserter(s.grid[Axis::kSigma]), sigma_of_wind);
+  };
+  return {{"grid.wind_m_s", Type::kAxis, kWind.units, kWind.range, {}, "", "winds of the table, instead of grid.sigma"},
+          set,
+          [](const SceneValues& s) { return value_at(&s.wind_m_s); }};
+}
+
 std::vector<SceneKey> surface_keys() {
   return {
       text("title", "name of the scene, for the table and the window", [](auto& s) { return &s.title; }),
@@ -105,9 +127,14 @@ std::vector<SceneKey> surface_keys() {
            [](auto& s) { return &s.names.material_file; }),
       choice("surface.distribution", Surface().distribution, "slope distribution D",
              [](auto& s) { return &s.surface.distribution; }),
-      number("surface.sigma", "1", kSigmaRange, "required",
-             "slope width sigma (m^2 = 2 sigma^2); may be absent with grid.sigma, whose first value it then is",
-             [](auto& s) { return &s.surface.sigma; }),
+      number(
+          "surface.sigma", "1", kSigmaRange, "required",
+          "slope width sigma (m^2 = 2 sigma^2); may be absent with grid.sigma, whose first value it then is",
+          [](const SceneValues& s) { return &s.surface.sigma; }, set_sigma),
+      number(
+          "surface.wind_m_s", "m s-1", kWindRange, "",
+          "wind U over a sea, instead of sigma, with distribution gaussian: m^2 = 0.003 + 0.00512 U",
+          [](const SceneValues& s) { return s.surface.wind_m_s ? &*s.surface.wind_m_s : nullptr; }, set_wind),
       number("surface.q", "1", kQRange, "2", "tail exponent q of the cauchy distribution; 2 is GGX",
              [](auto& s) { return &s.surface.q; }),
       choice("surface.masking", Surface().masking, "geometric attenuation G; smith with cauchy needs every q > 1.5",
@@ -213,6 +240,7 @@ std::vector<SceneKey> geometry_keys() {
       grid_axis(Axis::kTheta, "{ from = 0, to = 90, count = 91 }",
                 "zenith theta: of the view (hemispherical) or of the source (bistatic)"),
       grid_axis(Axis::kSigma, "surface.sigma", "slope widths sigma of the table"),
+      wind_axis(),
       grid_axis(Axis::kQ, "surface.q", "tail exponents q of the table"),
       grid_axis(
           Axis::kWavelength, "",
@@ -255,6 +283,7 @@ const std::vector<SceneKey>& scene_key_table() {
 const std::vector<KeyChoice>& key_choices() {
   static const std::vector<KeyChoice> choices = {
       {"surface", {{"surface.n", "surface.k"}, {"surface.material"}, {"surface.material_file"}}, true, "grid.n"},
+      {"surface", {{"surface.sigma", "grid.sigma"}, {"surface.wind_m_s", "grid.wind_m_s"}}, true, {}, true},
       {"source", {{"source.irradiance"}, {"source.relative_irradiance"}, {"source.preset"}, {"source.file"}}},
       {"path", {{"path.temperature_K"}, {"path.radiance"}}, false},
       {"spectrum", {{"spectrum.wavelength_um"}, {"spectrum.band_um"}}, true, "grid.wavelength_um"},
@@ -295,6 +324,21 @@ const SceneKey* find_scene_key(std::string_view key) {
     if (known.description.key == key) return &known;
   }
   return nullptr;
+}
+
+std::vector<std::string> keys_replaced_by(std::string_view key) {
+  std::vector<std::string> replaced;
+  for (const KeyChoice& choice : key_choices()) {
+    const auto chooses = [&](const std::vector<std::string>& alternative) {
+      return choice.does_each_choose ? std::ranges::find(alternative, key) != alternative.end()
+                                     : alternative.front() == key;
+    };
+    if (std::ranges::none_of(choice.alternatives, chooses)) continue;
+    for (const auto& other : choice.alternatives) {
+      if (!chooses(other)) replaced.insert(replaced.end(), other.begin(), other.end());
+    }
+  }
+  return replaced;
 }
 
 std::vector<std::string> scene_tables() {

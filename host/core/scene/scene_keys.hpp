@@ -31,13 +31,17 @@ struct SceneKey {
 struct KeyChoice {
   std::string table;
   std::vector<std::vector<std::string>> alternatives;
-  bool is_required = true;      ///< if the table is there, or must be
-  std::string substitute = {};  ///< a key that does instead
+  bool is_required = true;        ///< if the table is there, or must be
+  std::string substitute = {};    ///< a key that does instead
+  bool does_each_choose = false;  ///< any key of an alternative chooses it, alone or with the others
 };
 
 const std::vector<SceneKey>& scene_key_table();
 const std::vector<KeyChoice>& key_choices();
 const SceneKey* find_scene_key(std::string_view key);
+
+/// The keys that a setting of `key` takes the place of: those of the other alternatives, where it chooses its own.
+std::vector<std::string> keys_replaced_by(std::string_view key);
 
 /// The tables in the order of the keys.
 std::vector<std::string> scene_tables();

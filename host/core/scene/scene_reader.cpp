@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <dolp/errors.hpp>
+#include <iterator>
 #include <numeric>
 
 #include "base/text.hpp"
@@ -57,14 +58,15 @@ std::vector<std::string> document_keys(const SceneDocument& document) {
 const std::string* chosen_key(const SceneDocument& document, const KeyChoice& choice) {
   const std::string* chosen = nullptr;
   for (const auto& alternative : choice.alternatives) {
-    const std::string& head = alternative.front();
-    for (const std::string& key : alternative) {
-      const bool has_head = document.find(head) || (!choice.substitute.empty() && document.find(choice.substitute));
-      if (document.find(key) && !has_head) document.fail(key, "needs " + head + " beside it");
+    const auto found = std::ranges::find_if(alternative, [&](const std::string& key) { return document.find(key); });
+    if (found == alternative.end()) continue;
+    if (!choice.does_each_choose && !document.find(alternative.front())) {
+      if (choice.substitute.empty() || !document.find(choice.substitute))
+        document.fail(*found, "needs " + alternative.front() + " beside it");
+      continue;
     }
-    if (!document.find(head)) continue;
-    if (chosen) document.fail(head, "cannot be combined with " + *chosen);
-    chosen = &head;
+    if (chosen) document.fail(*found, "cannot be combined with " + *chosen);
+    chosen = &*found;
   }
   return chosen;
 }
@@ -82,13 +84,36 @@ void check_choices(const SceneDocument& document) {
   }
 }
 
+/// Refuses a key whose needs are not all met, and names those that are not.
+struct Needs {
+  bool are_met;
+  const char* text;
+};
+void check_needs(const SceneDocument& document, std::string_view key, const std::vector<Needs>& needs) {
+  std::vector<std::string> missing;
+  for (const Needs& need : needs) {
+    if (!need.are_met) missing.emplace_back(need.text);
+  }
+  if (!missing.empty()) document.fail(key, fmt::format("needs {}", fmt::join(missing, " and ")));
+}
+
+void check_wind(const SceneValues& scene, const SceneDocument& document) {
+  const bool is_gaussian = scene.surface.distribution == Distribution::kGaussian;
+  for (const char* key : {"surface.wind_m_s", "grid.wind_m_s"}) {
+    if (!document.find(key)) continue;
+    check_needs(document, key,
+                {{is_gaussian, "surface.distribution = \"gaussian\""},
+                 {!document.find("surface.sigma"), "no surface.sigma beside it"},
+                 {!document.find("grid.sigma"), "no grid.sigma beside it"}});
+  }
+}
+
 void check_required(const SceneDocument& document) {
   for (const Key& description : dolp::keys()) {
-    if (description.fallback != "required" || document.find(description.key)) continue;
+    if (description.fallback != "required" || !description.rivals.empty() || document.find(description.key)) continue;
     const std::string table = description.key.substr(0, description.key.find('.'));
-    const bool is_wanted = document.find(table) || !is_effect_table(table);
-    const bool has_substitute = description.key == "surface.sigma" && document.find("grid.sigma");
-    if (is_wanted && !has_substitute) document.fail(description.key, "missing; must be " + description.allowed());
+    if (document.find(table) || !is_effect_table(table))
+      document.fail(description.key, "missing; must be " + description.allowed());
   }
 }
 
@@ -106,6 +131,7 @@ SceneValues read_keys(const SceneDocument& document) {
     const SceneKey& known = *find_scene_key(key);
     known.set(scene, read_value(document, known.description));
   }
+  check_wind(scene, document);
   check_choices(document);
   check_required(document);
   return scene;
@@ -213,8 +239,11 @@ void fill_grid(SceneValues& scene, const SceneDocument& document) {
     theta_deg.resize(kDefaultThetaCount);
     std::iota(theta_deg.begin(), theta_deg.end(), 0.0);
   }
-  if (!document.find("surface.sigma")) scene.surface.sigma = grid[Axis::kSigma].front();
-  if (grid[Axis::kSigma].empty()) grid[Axis::kSigma] = {scene.surface.sigma};
+  if (!document.find("surface.sigma") && !scene.surface.wind_m_s) scene.surface.sigma = grid[Axis::kSigma].front();
+  if (grid[Axis::kSigma].empty()) {
+    grid[Axis::kSigma] = {scene.surface.sigma};
+    if (scene.surface.wind_m_s) scene.wind_m_s = {*scene.surface.wind_m_s};
+  }
   if (grid[Axis::kQ].empty()) grid[Axis::kQ] = {scene.surface.q};
 }
 
@@ -231,29 +260,23 @@ void check_smith(const SceneValues& scene, const SceneDocument& document) {
 /// Refuses effects beyond single scattering for maskings that do not define them.
 void check_scattering(const SceneValues& scene, const SceneDocument& document) {
   const Surface& surface = scene.surface;
-  const bool is_multiple = surface.scattering == Scattering::kMultiple;
-  const std::string masking = fmt::format("surface.masking is \"{}\"", name_of(surface.masking));
-  if (is_multiple && surface.masking != Masking::kVCavity) {
-    document.fail("surface.scattering", fmt::format("\"multiple\" needs masking = \"v-cavity\", and {}", masking));
+  const Emission emission = scene.emission.value_or(Emission());
+  const bool is_direct = emission.model == EmissionModel::kDirect;
+  if (surface.scattering == Scattering::kMultiple) {
+    check_needs(document, "surface.scattering",
+                {{surface.masking == Masking::kVCavity, "surface.masking = \"v-cavity\""},
+                 {!is_direct, "emission.model = \"moments\" or \"fresnel\""},
+                 {!emission.has_bracket, "emission.bracket = false"}});
   }
-  if (!scene.emission) return;
   const bool can_be_direct = has_direct_emission(surface.masking);
-  if (scene.emission->model == EmissionModel::kDirect && !can_be_direct) {
-    document.fail("emission.model", fmt::format("\"direct\" needs masking \"smith\" or \"v-cavity\", and {}", masking));
+  const char* const maskings = "surface.masking = \"smith\" or \"v-cavity\"";
+  if (emission.has_bracket) {
+    check_needs(document, "emission.bracket",
+                {{can_be_direct, maskings},
+                 {emission.model != EmissionModel::kFresnel, "emission.model = \"moments\" or \"direct\""},
+                 {scene.geometry.mode == Mode::kHemispherical, "geometry.mode = \"hemispherical\""}});
   }
-  if (scene.emission->model == EmissionModel::kDirect && is_multiple) {
-    document.fail("emission.model", "\"direct\" needs surface.scattering = \"single\"");
-  }
-  if (!scene.emission->has_bracket) return;
-  if (!can_be_direct) {
-    document.fail("emission.bracket", fmt::format("needs masking \"smith\" or \"v-cavity\", and {}", masking));
-  }
-  if (is_multiple) document.fail("emission.bracket", "needs surface.scattering = \"single\"");
-  if (scene.emission->model == EmissionModel::kFresnel) {
-    document.fail("emission.bracket", "needs emission.model = \"moments\" or \"direct\"");
-  }
-  if (scene.geometry.mode == Mode::kBistatic)
-    document.fail("emission.bracket", "needs geometry.mode = \"hemispherical\"");
+  if (is_direct) check_needs(document, "emission.model", {{can_be_direct, maskings}});
 }
 
 void check_radiation(const SceneValues& scene, const SceneDocument& document) {
@@ -297,6 +320,18 @@ SceneValues read_scene(const std::string& path, const std::vector<Setting>& sett
 }
 
 SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& settings) {
+  const auto is_replaced = [&](const Setting& old) {
+    return std::ranges::any_of(settings, [&](const Setting& setting) {
+      const std::vector<std::string> replaced = keys_replaced_by(setting.key);
+      return std::ranges::find(replaced, old.key) != replaced.end();
+    });
+  };
+  if (std::ranges::any_of(scene.settings, is_replaced)) {
+    std::vector<Setting> all;
+    std::ranges::remove_copy_if(scene.settings, std::back_inserter(all), is_replaced);
+    all.insert(all.end(), settings.begin(), settings.end());
+    return parse_scene(scene.text, scene.path_name, all);
+  }
   SceneDocument document = *scene.document;
   for (const Setting& setting : settings) document.apply(setting);
   SceneValues changed = scene_of(document, scene.path_name, nullptr);

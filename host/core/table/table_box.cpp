@@ -34,6 +34,10 @@ std::vector<TableBox> boxes_in_order(const PerAxis& counts, std::size_t most) {
 TableHead head_of(const TableHead& whole, const TableBox& box) {
   TableHead head = whole;
   head.axes = part_of(whole.axes, box.first, box.count);
+  if (!whole.wind_m_s.empty()) {
+    const auto first = whole.wind_m_s.begin() + static_cast<std::ptrdiff_t>(box.first[Axis::kSigma]);
+    head.wind_m_s = {first, first + static_cast<std::ptrdiff_t>(box.count[Axis::kSigma])};
+  }
   return head;
 }
 

@@ -226,6 +226,9 @@ struct TableReader::Impl {
         reader.fail("is not a table of dolp (no axis theta, sigma or q)");
       most /= std::max<std::size_t>(values.size(), 1);
     }
+    head.wind_m_s = read_list(reader, kWind.name, kMostTableEntries);
+    if (!head.wind_m_s.empty() && head.wind_m_s.size() != head.axes[Axis::kSigma].size())
+      reader.fail("is not a table of dolp (wind_m_s is not over sigma)");
   }
 
   bool find(const char* name, std::size_t value_bytes) {

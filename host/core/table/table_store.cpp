@@ -131,6 +131,13 @@ void put_attributes(const Writer& writer, const std::vector<Attribute>& attribut
   put_more(writer, attributes);
 }
 
+void put_coordinate(const Writer& writer, const Hdf5Handle& variable, const AxisDescription& described,
+                    const std::vector<double>& values) {
+  writer.put_text(variable, "long_name", described.long_name);
+  writer.put_text(variable, "units", described.units);
+  writer.write(variable, H5T_NATIVE_DOUBLE, values.data());
+}
+
 /// The coordinate variables, of an axis that the table lacks none.
 using AxisVariables = AxisArray<Hdf5Handle>;
 
@@ -142,9 +149,12 @@ AxisVariables put_axes(const Writer& writer, const TableHead& head) {
     if (values.empty()) continue;
     axes[axis] = writer.define(described.name, H5T_IEEE_F64LE, {values.size()}, nullptr);
     writer.check(H5DSset_scale(axes[axis].id(), described.name));
-    writer.put_text(axes[axis], "long_name", described.long_name);
-    writer.put_text(axes[axis], "units", described.units);
-    writer.write(axes[axis], H5T_NATIVE_DOUBLE, values.data());
+    put_coordinate(writer, axes[axis], described, values);
+  }
+  if (!head.wind_m_s.empty()) {
+    const Hdf5Handle wind = writer.define(kWind.name, H5T_IEEE_F64LE, {head.wind_m_s.size()}, nullptr);
+    writer.check(H5DSattach_scale(wind.id(), axes[Axis::kSigma].id(), 0));
+    put_coordinate(writer, wind, kWind, head.wind_m_s);
   }
   return axes;
 }
@@ -160,6 +170,7 @@ Hdf5Handle define_over_axes(const Writer& writer, const TableHead& head, const A
   for (const Hdf5Handle& axis : axes) {
     if (axis) writer.check(H5DSattach_scale(variable.id(), axis.id(), dimension++));
   }
+  if (!head.wind_m_s.empty()) writer.put_text(variable, "coordinates", kWind.name);
   return variable;
 }
 

@@ -54,6 +54,7 @@ void add(ValueSums& sums, const ValueSums& of_part) {
 std::string values_hash(const TableHead& head, const Quantities& quantities, const ValueSums& sums) {
   std::uint64_t hash = kHashStart;
   for (const std::vector<double>& values : head.axes) hash = hashed(hash, std::span(values));
+  if (!head.wind_m_s.empty()) hash = hashed(hash, std::span(head.wind_m_s));
   for (const TableCurve& described : kTableCurves) {
     const Curve& curve = head.*described.curve;
     if (curve.values.empty()) continue;

@@ -42,6 +42,10 @@ static_assert(kAxes.back().name != nullptr, "each axis has a row");
 
 constexpr const AxisDescription& description_of(Axis axis) { return kAxes[static_cast<std::size_t>(axis)]; }
 
+/// Winds, which stand for values of sigma: in [grid] and in points; in tables a second coordinate along sigma.
+inline constexpr AxisDescription kWind = {
+    "wind_m_s", "wind_m_s", "m s-1", "wind speed that gives sigma (Cox and Munk 1954)", kWindRange, false};
+
 /// In the order in which messages list the columns of points.
 inline constexpr std::array<Axis, kAxisCount> kColumnOrder = {Axis::kTheta, Axis::kSigma, Axis::kQ,
                                                               Axis::kN,     Axis::kK,     Axis::kWavelength};

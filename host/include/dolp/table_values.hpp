@@ -31,8 +31,9 @@ struct Curve {
 
 /// All data of a table except its values.
 struct TableHead {
-  Axes axes;      ///< in the user's order; wavelength, n and k only where the table has them
-  Curve index_n;  ///< n, k and E0 that the table was computed with; empty where there is none
+  Axes axes;                     ///< in the user's order; wavelength, n and k only where the table has them
+  std::vector<double> wind_m_s;  ///< that give the values of sigma; empty where the scene gives sigma itself
+  Curve index_n;                 ///< n, k and E0 that the table was computed with; empty where there is none
   Curve index_k;
   Curve irradiance;                         ///< before source.scale
   std::string stokes_units = "W m-2 um-1";  ///< UDUNITS; "W m-2" over a band

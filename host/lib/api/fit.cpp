@@ -280,6 +280,8 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     if (best.result && !options.plot.empty()) {
       const auto contours = fit::contours_of(*best.model, *evaluator, *best.result, options);
       if (contours) add_contours(report, *best.model, *contours);
+      const Spectrum& spectrum = fitted.impl().scene.spectrum;
+      report.value("spectrum_um", Json{spectrum.min_um, spectrum.max_um});
       report.value("brackets", brackets(fitted, data, *evaluator));
       report.value("curves", curves(best, options, *evaluator));
       draw_fit(report.json_text(), options.plot.string());

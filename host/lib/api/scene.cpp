@@ -18,7 +18,12 @@ using Type = Key::Type;
 /// The value of a key that has one of these types. Errors: InputError.
 std::optional<KeyValue> value_of(const SceneValues& scene, std::string_view key, std::initializer_list<Type> types) {
   const SceneKey* const known = find_scene_key(key);
-  if (!known) throw InputError(fmt::format("{}: is no key of a scene", one_line(key)));
+  if (!known) {
+    std::vector<std::string> names;
+    for (const SceneKey& one : scene_key_table()) names.push_back(one.description.key);
+    throw InputError(
+        fmt::format("{}: is no key of a scene; the nearest is {}", one_line(key), nearest_name(key, names)));
+  }
   if (std::ranges::find(types, known->description.type) == types.end()) {
     throw InputError(fmt::format("{}: is {}", known->description.key, known->description.allowed()));
   }

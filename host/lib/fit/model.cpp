@@ -21,7 +21,8 @@ namespace dolp::fit {
 namespace {
 
 // Each point of a list has its own, so that sets which differ in these alone share a call.
-constexpr std::array<std::string_view, 4> kPointKeys = {"surface.n", "surface.k", "surface.sigma", "surface.q"};
+constexpr std::array<std::string_view, 5> kPointKeys = {"surface.n", "surface.k", "surface.sigma", "surface.wind_m_s",
+                                                        "surface.q"};
 
 constexpr double kMostModelError = 5.0;  // standard deviations; a fit beyond them has another model
 

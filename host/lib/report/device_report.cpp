@@ -49,9 +49,11 @@ ReportBuilder quality_report(const Quality& quality) {
   }
   const DeviceQuality& q = *quality.measured;
   report.line(
-      "   {:<6} error of rho at most {:.1e} in {} ordinary cases; its bound exceeds in {} of them the {:g} asked for{}",
-      quality.precision, key("worst_rho_error", q.worst_error), key("cases", q.cases),
-      key("missed_tolerance", q.missed), key("tolerance", q.tolerance),
+      "   {:<6} true error of rho at most {:.1e} in {} ordinary cases; with tolerance {:g} {} of them get status 2, "
+      "because "
+      "the stated bound, larger than the error, misses it{}",
+      quality.precision, key("worst_rho_error", q.worst_error), key("cases", q.cases), key("tolerance", q.tolerance),
+      key("missed_tolerance", q.missed),
       q.is_sound ? "" : "; SOME ERRORS EXCEED THEIR ESTIMATES, see dolp verify --hard-cases");
   report.values({{"worst_case", q.worst_case}, {"sound", q.is_sound}});
   return report;

@@ -59,8 +59,11 @@ std::vector<double> wavelengths_of(const SceneValues& scene, const Points& point
 
 }  // namespace
 
-void check_smith(const SceneValues& scene, const Points& points) {
+void check_shapes(const SceneValues& scene, const Points& points) {
   const Surface& surface = scene.surface;
+  if (points.has_winds && surface.distribution != Distribution::kGaussian) {
+    throw InputError(points.where() + ": column \"wind_m_s\" needs surface.distribution = \"gaussian\"");
+  }
   if (surface.masking != Masking::kSmith || surface.distribution != Distribution::kCauchy || !points[Axis::kQ]) return;
   for (std::size_t row = 0; row < points.size(); ++row) {
     const double q = (*points[Axis::kQ])[row];
@@ -85,7 +88,7 @@ SceneEntries grid_entries(const SceneValues& scene) {
 
 SceneEntries point_entries(const SceneValues& scene, const Points& points) {
   check_columns(scene, points);
-  check_smith(scene, points);
+  check_shapes(scene, points);
   const Surface& surface = scene.surface;
   const bool has_own_index = points[Axis::kN] || points[Axis::kK];
   const bool has_wavelength = points[Axis::kWavelength] && points.size() > 0;

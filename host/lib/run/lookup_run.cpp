@@ -8,6 +8,7 @@
 
 #include "base/parallel_ranges.hpp"
 #include "base/text.hpp"
+#include "run/scene_run.hpp"
 
 namespace dolp {
 namespace {
@@ -83,6 +84,7 @@ void check_index(const TableLookup& lookup, const SceneValues& scene, const Poin
 
 std::vector<PointResult> lookup_points(const TableLookup& lookup, const SceneValues& scene, const Points& points,
                                        const Progress& progress) {
+  check_shapes(scene, points);
   check_index(lookup, scene, points);
   const std::vector<TableLookup::Point> at = coordinates(lookup, scene, points);
   std::vector<PointResult> results(points.size());

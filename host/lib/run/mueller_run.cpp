@@ -91,7 +91,7 @@ MuellerMatrix elements(const Surface& surface, const MuellerPoint& point, const 
 }  // namespace
 
 std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points& points) {
-  check_smith(scene, points);
+  check_shapes(scene, points);
   const Surface& surface = scene.surface;
   const bool has_own_index = points[Axis::kN] && points[Axis::kK];
   if (scene.spectrum.is_band() && !surface.material.is_constant() && !has_own_index) {

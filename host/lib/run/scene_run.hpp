@@ -28,10 +28,10 @@ SceneEntries grid_entries(const SceneValues& scene);
 /// wavelength; q <= 3/2 with smith masking and the cauchy distribution.
 SceneEntries point_entries(const SceneValues& scene, const Points& points);
 
-/// Refuses points with a q that the scene's masking does not support: q <= 3/2 with smith and the cauchy distribution;
-/// the scene's own q has passed the same check.
+/// Refuses points with a q that the scene's masking does not support, q <= 3/2 with smith and the cauchy distribution,
+/// and winds for another distribution than the gaussian; the scene's own values have passed the same check.
 /// Errors: InputError that names the points' file and line, column, value and what is allowed.
-void check_smith(const SceneValues& scene, const Points& points);
+void check_shapes(const SceneValues& scene, const Points& points);
 
 /// Destination of results, part by part.
 class Sink {

@@ -117,6 +117,7 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
   TableLayout layout;
   TableHead& head = layout.head;
   head.axes = axes;
+  if (axes[Axis::kSigma] == scene.grid[Axis::kSigma]) head.wind_m_s = scene.wind_m_s;
   head.stokes_units = stokes_units(scene);
   fill_curves(head, scene);
   head.attributes = {{"title", scene.title},

@@ -72,7 +72,7 @@ void add_lookup(CLI::App& command, Options& options) {
   command.add_option("TABLE", options.table_path, "table file (.nc) that dolp table wrote")->required();
   command
       .add_option("--points", options.points_path,
-                  "CSV with any of theta_deg, sigma, q, n, k, wavelength_um; - is stdin")
+                  "CSV with any of theta_deg, sigma or wind_m_s, q, n, k, wavelength_um; - is stdin")
       ->required();
   command.add_option("-o,--output", options.output_path, "file to write; - is stdout")->required();
   command.add_flag("--json", options.json, "machine-readable report");
@@ -180,7 +180,7 @@ std::unique_ptr<CLI::App> command_line(Options& options) {
   add_run(*eval, options);
   add_keep_all(*eval, options);
   eval->add_option("--points", options.points_path,
-                   "CSV with any of theta_deg, sigma, q, n, k, wavelength_um; - is stdin")
+                   "CSV with any of theta_deg, sigma or wind_m_s, q, n, k, wavelength_um; - is stdin")
       ->required();
   CLI::App* mueller = app.add_subcommand("mueller", "4 x 4 Mueller pBRDF [1/sr] at scattered geometries");
   add_run(*mueller, options);
@@ -202,7 +202,10 @@ std::unique_ptr<CLI::App> command_line(Options& options) {
   CLI::App* materials =
       app.add_subcommand("materials", "built-in materials, their ranges and sources, or n and k of one");
   CLI::Option* material = materials->add_option("NAME", options.material, "n and k of this one");
-  material->needs(materials->add_option("--at", options.wavelength_um, "at this wavelength [um]")->needs(material));
+  material->needs(materials
+                      ->add_option("--at", options.wavelength_um,
+                                   "at this wavelength [um], or from one to another: FROM:TO or FROM:TO:COUNT")
+                      ->needs(material));
   materials->add_flag("--json", options.json, "machine-readable list");
   CLI::App* devices = app.add_subcommand("devices", "Vulkan devices, and why each one is or is not usable");
   devices->add_flag("--json", options.json, "machine-readable list");
@@ -232,7 +235,7 @@ std::unique_ptr<CLI::App> command_line(Options& options) {
                "dolp fit scene.toml --data measured.csv --vary surface.n=1:3 --vary surface.sigma=0.01:1",
                "dolp fit scene.toml --data a.csv --vary surface.n=1:3 --compare surface.masking=smith,v-cavity");
   add_examples(*app.get_subcommand("explore"), "dolp explore", "dolp explore scene.toml --measured measured.csv");
-  add_examples(*app.get_subcommand("materials"), "dolp materials", "dolp materials iron --at 10.6");
+  add_examples(*app.get_subcommand("materials"), "dolp materials", "dolp materials iron --at 8:14:25 --json");
   add_examples(*app.get_subcommand("devices"), "dolp devices", "dolp devices --device llvmpipe");
   add_examples(*app.get_subcommand("keys"), "dolp keys", "dolp keys surface.masking");
   add_examples(*app.get_subcommand("completion"),

@@ -30,8 +30,31 @@ Words names_of(const CLI::Option& option) {
   return names;
 }
 
+/// "KEY=WORD" of the keys of a scene, "KEY=" of those that have no words.
+Words settings() {
+  Words all;
+  for (const Key& key : dolp::keys()) {
+    if (key.words.empty()) all.push_back(key.key + '=');
+    for (const std::string& word : key.words) all.push_back(key.key + '=' + word);
+  }
+  return all;
+}
+
+/// "KEY=" of the keys that a fit can vary or compare.
+Words keys_of(bool (*is_wanted)(const Key&)) {
+  Words all;
+  for (const Key& key : dolp::keys()) {
+    if (is_wanted(key)) all.push_back(key.key + '=');
+  }
+  return all;
+}
+
 /// The words that an option's value may be; none where it may be anything.
 Words choices_of(const CLI::Option& option) {
+  const std::string name = option.get_name();
+  if (name == "--set") return settings();
+  if (name == "--vary") return keys_of([](const Key& key) { return key.type == Key::Type::kNumber; });
+  if (name == "--compare") return keys_of([](const Key& key) { return !key.words.empty(); });
   const std::string type = option.get_type_name();
   const std::size_t open = type.find('{');
   const std::size_t close = type.find('}');
@@ -73,7 +96,10 @@ std::string bash_completion(const CLI::App& app) {
   }
   return fmt::format(R"(# bash completion of dolp
 _dolp() {{
-  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD - 1]}} words=
+  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD - 1]}} words= begin= at=COMP_CWORD
+  [[ $current != = ]] || {{ begin=$previous= current= at=COMP_CWORD-1; }}
+  [[ $previous != = ]] || {{ begin=${{COMP_WORDS[COMP_CWORD - 2]}}= at=COMP_CWORD-2; }}  # bash cuts KEY=WORD in three
+  [[ -z $begin ]] || previous=${{COMP_WORDS[at - 1]}}
   if ((COMP_CWORD == 1)); then
     mapfile -t COMPREPLY < <(compgen -W '{}' -- "$current")
     return
@@ -83,7 +109,9 @@ _dolp() {{
   [[ -n $words ]] || case ${{COMP_WORDS[1]}}:$current in
 {}  esac
   if [[ -n $words ]]; then
-    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$begin$current")
+    COMPREPLY=("${{COMPREPLY[@]#"$begin"}}")
+    [[ ${{COMPREPLY[*]}} != *= ]] || compopt -o nospace 2>/dev/null
   else
     mapfile -t COMPREPLY < <(compgen -f -- "$current")
   fi
@@ -178,6 +206,49 @@ std::string manual_options(const CLI::App& command) {
   return text;
 }
 
+constexpr const char* kManualDescription = R"(.SH DESCRIPTION
+.B dolp
+computes the degree of linear polarisation of the infrared radiation that leaves a rough surface: its own emission plus
+what it reflects. A scene, a TOML file, describes surface, radiation and accuracy; the results are lookup tables, lists
+of points or Mueller matrices, each number with a bound of its numerical error and a status. The integrals run on a
+Vulkan device, a GPU or the processor through Mesa's lavapipe.
+)";
+
+constexpr const char* kManualEnd = R"(.SH FILES
+.TP
+.I SCENE
+TOML;
+.B dolp keys
+lists its keys. Files that it names are looked for beside it.
+.TP
+.I FILE.nc\fR, \fIFILE.csv\fR, \fIFILE.npy
+tables, whole or absent. What an interrupted run has finished lies in
+.I FILE.partial
+until
+.B \-\-resume
+takes it up.
+.TP
+.I PREFIX/share/dolp
+scenes to start from, materials, the sun, plot_table.py.
+.SH ENVIRONMENT
+.TP
+.B VK_DRIVER_FILES
+of the Vulkan loader: manifests of the drivers to use, for example that of lavapipe.
+.TP
+.B SLURM_ARRAY_TASK_ID\fR, \fBSLURM_ARRAY_TASK_MIN\fR, \fBSLURM_ARRAY_TASK_COUNT
+what
+.B \-\-shard auto
+computes.
+.TP
+.B DOLP_VALIDATION
+1: run with the Vulkan validation layer; its messages are errors.
+.SH SEE ALSO
+.BR ncdump (1),
+.BR vulkaninfo (1);
+.B dolp \-\-cite
+says how to cite program and model.
+)";
+
 std::string manual_page(const CLI::App& app) {
   std::string commands;
   for (const CLI::App* command : app.get_subcommands({})) {
@@ -188,10 +259,10 @@ std::string manual_page(const CLI::App& app) {
   return fmt::format(
       ".TH DOLP 1 \"\" \"dolp {}\" \"User Commands\"\n.SH NAME\ndolp \\- infrared degree of linear polarisation of "
       "rough "
-      "surfaces\n.SH SYNOPSIS\n.B dolp\n.I COMMAND\n[\\fIARGUMENTS\\fR]\n.SH COMMANDS\n{}"
+      "surfaces\n.SH SYNOPSIS\n.B dolp\n.I COMMAND\n[\\fIARGUMENTS\\fR]\n{}.SH COMMANDS\n{}"
       ".SH EXIT STATUS\n0 done; 1 an accuracy was missed that was asked for; 2 bad input; 3 no usable device; 4 a file "
-      "could not be read or written; 5 an internal error; 6 out of memory; 130 interrupted.\n",
-      version(), commands);
+      "could not be read or written; 5 an internal error; 6 out of memory; 130 interrupted.\n{}",
+      version(), kManualDescription, commands, kManualEnd);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <dolp/errors.hpp>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -35,21 +36,49 @@ int finish_list(Report report, const char* name, const Json& list, const Options
   return finish(report, options);
 }
 
+/// The wavelengths of "UM", "FROM:TO" or "FROM:TO:COUNT". Errors: InputError.
+std::vector<double> wavelengths_of(const std::string& text) {
+  constexpr double kDefaultCount = 11.0;
+  constexpr double kMost = 1e6;
+  std::vector<double> numbers;
+  for (const std::string_view piece : split(text, ':')) numbers.push_back(parse_number(piece).value_or(-1.0));
+  if (numbers.size() == 2) numbers.push_back(kDefaultCount);
+  const bool is_range = numbers.size() == 3 && numbers[0] > 0.0 && numbers[0] < numbers[1] && numbers[2] >= 2.0 &&
+                        numbers[2] <= kMost && numbers[2] == std::floor(numbers[2]);
+  if (numbers.size() == 1) return numbers;
+  if (!is_range) throw InputError(one_line("--at " + text) + ": must be UM, FROM:TO or FROM:TO:COUNT");
+  std::vector<double> wavelengths;
+  for (double i = 0.0; i < numbers[2]; ++i)
+    wavelengths.push_back(std::lerp(numbers[0], numbers[1], i / (numbers[2] - 1.0)));
+  return wavelengths;
+}
+
 /// n and k of one material, as a scene with it has them.
 int show_material(const Options& options) {
-  Setting wavelength = Setting::from_text("spectrum.wavelength_um=" + options.wavelength_um);
+  const std::vector<double> wavelengths = wavelengths_of(options.wavelength_um);
+  const std::string first = options.wavelength_um.substr(0, options.wavelength_um.find(':'));
+  Setting wavelength = Setting::from_text("spectrum.wavelength_um=" + first);
   wavelength.origin = one_line("--at " + options.wavelength_um);
   const Scene scene = Scene::from_text(
       example_scene(), {{"surface.material", options.material, one_line(options.material)}, wavelength}, "materials");
   const std::string name = scene.word("surface.material").value();
   const std::vector<BuiltInMaterial> known = materials();
   const std::string& source = std::ranges::find(known, name, &BuiltInMaterial::name)->source;
-  const double wavelength_um = scene.number("spectrum.wavelength_um").value();
-  const auto [n, k] = scene.refractive_index(wavelength_um);
   Report report;
-  report.text = fmt::format("{} at {} um: n = {}, k = {}\n    {}\n", name, wavelength_um, n, k, source);
+  std::vector<double> n, k;
+  for (const double wavelength_um : wavelengths) {
+    const auto [own_n, own_k] = scene.refractive_index(wavelength_um);
+    report.text += fmt::format("{} at {} um: n = {}, k = {}\n", name, wavelength_um, own_n, own_k);
+    n.push_back(own_n);
+    k.push_back(own_k);
+  }
+  report.text += fmt::format("    {}\n", source);
+  const auto json = [](const std::vector<double>& values) {
+    return values.size() == 1 ? Json(values[0]) : Json(values);
+  };
   report.json =
-      Json{{"name", name}, {"wavelength_um", wavelength_um}, {"n", n}, {"k", k}, {"source", source}}.dump(2, ' ', true);
+      Json{{"name", name}, {"wavelength_um", json(wavelengths)}, {"n", json(n)}, {"k", json(k)}, {"source", source}}
+          .dump(2, ' ', true);
   return finish(report, options);
 }
 

@@ -52,17 +52,28 @@ int run(CLI::App& app, Options& options) {
   if (given("materials")) return run_materials(options);
   if (given("keys")) return run_keys(options);
   if (given("completion")) {
-    fmt::print("{}", completion_text(app, options.completion));
+    std::fputs(completion_text(app, options.completion).c_str(), stdout);
     return kExitDone;
   }
   return run_devices(options);
+}
+
+/// How to give a key of a scene that was given as an option; empty for other words.
+std::string set_hint(const std::string& option) {
+  for (const Key& known : dolp::keys()) {
+    const std::string name = known.key.substr(known.key.find('.') + 1);
+    if (option == "--" + name || option == "--" + known.key) return "; --set " + known.key + "=VALUE sets it";
+  }
+  return "";
 }
 
 std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> unknown = app.remaining(true);
   const bool is_unknown = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
   if (!app.get_subcommands().empty()) {
-    const std::string what = is_unknown ? fmt::format("{}: unknown here", fmt::join(unknown, " ")) : error.what();
+    const std::string what = is_unknown
+                                 ? fmt::format("{}: unknown here{}", fmt::join(unknown, " "), set_hint(unknown.front()))
+                                 : error.what();
     return fmt::format("{} (see dolp {} --help)", what, app.get_subcommands().front()->get_name());
   }
   if (unknown.empty()) return fmt::format("{} (see dolp --help)", error.what());

@@ -40,9 +40,9 @@ Evaluator evaluator_of(const Options& options) { return Evaluator({options.evalu
 void print(const Report& report, const Options& options) {
   std::FILE* const out = options.output_path == "-" ? stderr : stdout;
   if (options.json) {
-    fmt::print(out, "{}\n", report.json);
+    std::fputs((report.json + '\n').c_str(), out);
   } else if (!options.quiet) {
-    fmt::print(out, "{}", report.text);
+    std::fputs(report.text.c_str(), out);
   }
 }
 

@@ -191,7 +191,8 @@ TEST_F(Library, Keys_NameTheirWordsAndRivals) {
   EXPECT_EQ(named("surface.scattering").words, (std::vector<std::string>{"single", "multiple"}));
   EXPECT_EQ(named("emission.bracket").words, (std::vector<std::string>{"false", "true"}));
   EXPECT_EQ(named("surface.k").rivals, (std::vector<std::string>{"surface.material", "surface.material_file"}));
-  EXPECT_TRUE(named("surface.sigma").rivals.empty());
+  EXPECT_EQ(named("grid.sigma").rivals, (std::vector<std::string>{"surface.wind_m_s", "grid.wind_m_s"}));
+  EXPECT_TRUE(named("surface.q").rivals.empty());
 }
 
 TEST_F(Library, Effects_OfWhatIsDroppedABound_OfWhatIsKeptAnEstimate) {

@@ -48,8 +48,9 @@ DispatchForecast slope_forecast(const MomentsRequest& request, const vulkan::Pac
 }  // namespace
 
 DispatchForecast dispatch_forecast(const MomentsRequest& request, const dolp::Device& device,
-                                   const VulkanOptions& options) {
+                                   const VulkanOptions& given) {
   if (request.wanted_count() == 0) return {};
+  const VulkanOptions options = for_device(given, device, request.precision);
   const vulkan::Packing packing(request.precision == Precision::kDouble);
   if (has_slope_samples(request)) return slope_forecast(request, packing, device, options);
   const KernelData data = kernel_data(request);
@@ -74,8 +75,9 @@ DispatchForecast dispatch_forecast(const MomentsRequest& request, const dolp::De
 }
 
 DispatchForecast dispatch_forecast(const ScatteringRequest& request, const dolp::Device& device,
-                                   const VulkanOptions& options) {
+                                   const VulkanOptions& given) {
   if (request.entries.empty()) return {};
+  const VulkanOptions options = for_device(given, device, request.precision);
   const vulkan::Packing packing(request.precision == Precision::kDouble);
   const vulkan::TileCosts costs = vulkan::scattering_tile_costs(packing);
   const std::uint64_t wanted = std::min<std::uint64_t>(options.max_tile_invocations, request.entries.size());

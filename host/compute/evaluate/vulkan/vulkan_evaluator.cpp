@@ -52,6 +52,13 @@ void check_entries(const ScatteringRequest& request) {
 
 }  // namespace
 
+VulkanOptions for_device(VulkanOptions options, const dolp::Device& device, Precision precision) {
+  if (device.type != dolp::Device::Type::kCpu) return options;
+  const std::uint32_t most = precision == Precision::kDouble ? 4'096 : 16'384;
+  options.max_tile_invocations = std::min(options.max_tile_invocations, most);
+  return options;
+}
+
 class VulkanEvaluator::Impl {
  public:
   explicit Impl(const VulkanOptions& options)
@@ -78,12 +85,13 @@ class VulkanEvaluator::Impl {
   /// Computes a request and adds its cost to `report`. After a DeviceTimeout this object must not be destroyed.
   std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
     const vulkan::KernelContext context = context_for(request.precision);
+    const VulkanOptions options = for_device(options_, description(), request.precision);
     if (has_slope_samples(request)) {
-      slope_run_.emplace(context, request, options_.max_tile_invocations);
+      slope_run_.emplace(context, request, options.max_tile_invocations);
       prepare_pipelines(*slope_run_, report);
       return finish(slope_run_, slope_run_->compute(progress), request.precision, report);
     }
-    run_.emplace(context, request, options_.max_tile_invocations, options_.max_block_shapes);
+    run_.emplace(context, request, options.max_tile_invocations, options.max_block_shapes);
     prepare_pipelines(*run_, report);
     return finish(run_, run_->compute(progress), request.precision, report);
   }
@@ -93,7 +101,8 @@ class VulkanEvaluator::Impl {
     if (prepared_.valid()) prepared_.wait();
     kernels_for(request.precision).pipeline(vulkan::mueller_variant(request));
     note_pipelines(seconds_since(start), report);
-    scattering_run_.emplace(context_for(request.precision), request, options_.max_tile_invocations);
+    scattering_run_.emplace(context_for(request.precision), request,
+                            for_device(options_, description(), request.precision).max_tile_invocations);
     return finish(scattering_run_, scattering_run_->compute(progress), request.precision, report);
   }
   void prepare(const ScatteringRequest& request) {

@@ -25,6 +25,10 @@ struct VulkanOptions {
   double tile_timeout_s = 600.0;
 };
 
+/// The options for a precision on a type of device: short dispatches on a processor, which is slow at the most
+/// expensive entries, so that a call ends within a second of a cancel.
+VulkanOptions for_device(VulkanOptions options, const dolp::Device& device, Precision precision);
+
 /// Computes moments and pBRDFs with the kernels of shaders/. Device and pipelines live as long as the object.
 class VulkanEvaluator : public ModelEvaluator {
  public:

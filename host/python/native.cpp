@@ -89,6 +89,15 @@ void add_error(py::module_& module, const std::string& name, PyObject* base, con
   module.attr(name.c_str()) = py::reinterpret_steal<py::object>(type);
 }
 
+/// The position of a word among those that an argument may be. Errors: InputError.
+std::size_t position_of(const std::string& argument, const std::string& word, const std::vector<std::string>& words) {
+  const auto found = std::ranges::find(words, word);
+  if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
+  std::string allowed;
+  for (const std::string& one : words) allowed += (allowed.empty() ? "" : ", ") + one;
+  throw dolp::InputError(argument + " = " + word + ": must be one of " + allowed);
+}
+
 /// A value of a key: None, bool, float, str, a list of floats or a dictionary of from, to, count and spacing.
 dolp::Value value_of(const std::string& key, const py::handle& value) {
   if (value.is_none()) return {};
@@ -333,7 +342,8 @@ PYBIND11_MODULE(_native, module) {
               const std::vector<std::pair<std::string, Values>>& data,
               const std::map<std::string, std::vector<double>>& vary,
               const std::map<std::string, std::vector<std::string>>& compare, const std::string& loss,
-              std::size_t starts, std::uint64_t seed, const std::filesystem::path& plot) {
+              const std::string& model_error, std::size_t starts, std::uint64_t seed,
+              const std::filesystem::path& plot) {
              std::vector<dolp::MeasuredData> sets;
              for (const auto& [csv, values] : data) {
                const std::string name = "data" + (data.size() > 1 ? std::to_string(sets.size() + 1) : "");
@@ -341,11 +351,9 @@ PYBIND11_MODULE(_native, module) {
              }
              dolp::FitOptions options{.vary = ranges_of(vary), .starts = starts, .seed = seed, .plot = plot};
              for (const auto& [key, words] : compare) options.compare.push_back({key, words});
-             const std::vector<std::string>& losses = dolp::loss_names();
-             const auto chosen = std::ranges::find(losses, loss);
-             if (chosen == losses.end())
-               throw dolp::InputError("loss = " + loss + ": must be one of squares, huber, soft-l1, cauchy, tukey");
-             options.loss = static_cast<dolp::Loss>(chosen - losses.begin());
+             options.loss = static_cast<dolp::Loss>(position_of("loss", loss, dolp::loss_names()));
+             options.model_error =
+                 static_cast<dolp::ModelError>(position_of("model_error", model_error, dolp::model_error_names()));
              dolp::Fit fit = interruptible([&](const dolp::Progress& progress) {
                options.progress = progress;
                return evaluator.fit(scene, sets, options);

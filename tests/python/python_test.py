@@ -386,6 +386,9 @@ theta_deg = {from = 0, to = 80, count = 5}
                           plot=self.folder / "picture.png")
         self.assertEqual(len(ranked.values["models"]), 2)
         self.assertTrue((self.folder / "picture.png").exists())
+        wider = dolp.fit(scene, columns, vary, model_error="bracket")
+        self.assertEqual(list(wider.params), [*found.params, "model_error"])
+        self.assertGreater(wider.stderr["surface.n"], found.stderr["surface.n"])
         two = dolp.fit(scene, [(columns, {"emission.temperature_K": 300.0}), columns], vary)
         self.assertLess(two.values["parameters"][0]["standard_error"], found.values["parameters"][0]["standard_error"])
 

@@ -304,15 +304,16 @@ def mueller(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **poin
 
 
 def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compare: Mapping[str, Iterable[str]] | None = None,
-        loss: str = "squares", starts: int = 24, seed: int = 1, plot: Path | None = None, evaluator: str = "vulkan",
-        device: str = "") -> Fit:
+        loss: str = "squares", model_error: str = "none", starts: int = 24, seed: int = 1, plot: Path | None = None,
+        evaluator: str = "vulkan", device: str = "") -> Fit:
     """Numbers of a scene from measured data, with profile-likelihood intervals.
 
     `data`: a CSV file, or columns by name (a dictionary, a Dataset, a pandas DataFrame): theta_deg or theta_i_deg; dolp,
     q_over_i (signed) or emissivity_s, emissivity_p; uncertainty (one standard deviation), wavelength_um. A list has
     several sets, each alone or as a pair (data, overrides). `vary`: (low, high) or (low, high, start) of each key.
     `compare`: values of keys, all combinations of which are fitted and ranked. `loss`: squares, or huber, soft-l1,
-    cauchy or tukey for data with outliers. `plot`: a PNG of data, model, residuals and contours, as the command draws it.
+    cauchy or tukey for data with outliers. `model_error`: none, or bracket, which takes the bracket of single scattering
+    as an uncertainty that all points share; then `model_error` is one more number of the fit. `plot`: a PNG of data, model, residuals and contours, as the command draws it.
 
     >>> truth = dolp.evaluate(scene, theta_deg=np.arange(5, 85, 5), n=1.6)
     >>> data = {"theta_deg": truth.theta, "dolp": truth.dolp, "uncertainty": np.full(16, 0.001)}
@@ -328,7 +329,7 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compa
     ranges = {_key(key): _numbers(key, ends).ravel().tolist() for key, ends in _mapping("vary", vary).items()}
     compared = {_key(key): _words(key, words) for key, words in _mapping("compare", compare).items()}
     text, values, found = _evaluator(evaluator, device).fit(
-        native, texts, ranges, compared, str(loss), _count("starts", starts), _count("seed", seed),
+        native, texts, ranges, compared, str(loss), str(model_error), _count("starts", starts), _count("seed", seed),
         "" if plot is None else _path("plot", plot))
     fitted = Scene.__new__(Scene)
     fitted._native = found

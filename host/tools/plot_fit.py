@@ -17,10 +17,12 @@ from matplotlib.collections import LineCollection  # noqa: E402
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 QUANTITIES = {"dolp": "DOLP", "q_over_i": "Q/I", "emissivity_s": r"$\varepsilon_s$", "emissivity_p": r"$\varepsilon_p$"}
-SYMBOLS = {"surface.n": "n", "surface.k": "k", "surface.sigma": "σ", "surface.q": "q", "surface.specular": r"$k_s$",
+SYMBOLS = {"surface.n": "n", "surface.k": "k", "surface.sigma": "σ", "surface.wind_m_s": "U (m/s)", "surface.q": "q",
+           "surface.specular": r"$k_s$",
            "surface.diffuse": r"$k_d$", "emission.temperature_K": "T (K)", "surroundings.temperature_K": r"$T_{surr}$ (K)",
            "spectrum.wavelength_um": "λ (µm)", "geometry.view_zenith_deg": r"$\theta_v$ (degree)",
-           "geometry.delta_phi_deg": "Δφ (degree)"}
+           "geometry.relative_azimuth_deg": "Δφ (degree)", "surface.diffuse_exponent": "c",
+           "path.temperature_K": r"$T_{path}$ (K)", "path.transmittance": "τ", "source.scale": "scale of $E_0$"}
 PERCENT = 100.0
 REGIONS = ("68 %", "95 %")  # of all pairs, at the levels of the report
 

@@ -393,10 +393,16 @@ theta_deg = {from = 0, to = 80, count = 5}
         self.assertLess(two.values["parameters"][0]["standard_error"], found.values["parameters"][0]["standard_error"])
 
     def test_pictures_show_what_the_table_has(self):
-        sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "host"))
+        host = pathlib.Path(__file__).resolve().parents[2] / "host"
+        sys.path[:0] = [str(host), str(host / "tools")]
         import netCDF4
+        import plot_fit
         import plot_table
-        sys.path.pop(0)
+        del sys.path[:2]
+        self.assertLessEqual(set(plot_fit.SYMBOLS), set(dolp.keys()))
+        for wavelengths, spectrum, title in ((None, [3, 5], "Plate, 3–5 µm"), (None, [9, 9], "Plate, 9 µm"), (8, [9, 9], "Plate")):
+            report = {"title": "Plate, 8-14 um", "points": [{"wavelength_um": wavelengths}], "spectrum_um": spectrum}
+            self.assertEqual(plot_fit.title_of(report), title)
         sea = {"title": "Sea, wind 8 m/s, 8-14 um", "surface.distribution": "gaussian", "surface.masking": "smith"}
         theta = {"from": 0, "to": 85, "count": 10}
         winds = {"from": 1, "to": 14, "count": 6}

@@ -24,7 +24,7 @@ class EvaluatorSolver final : public Solver {
     const std::vector<Moments> moments = evaluator_->evaluate(wanted, nullptr);
     const EvaluationReport after = evaluator_->report();
     Solution solution;
-    solution.kernel_s = after.kernel_s - before.kernel_s;
+    solution.kernel_s = after.kernel_s + after.sums_s - (before.kernel_s + before.sums_s);
     solution.evaluations = after.evaluations - before.evaluations;
     for (const Moments& entry : moments) {
       solution.answers.push_back({entry.r_i, entry.r_q, std::max(entry.r_i_error, entry.r_q_error) / entry.r_i});

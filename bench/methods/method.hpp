@@ -23,8 +23,9 @@ struct Answer {
 struct Solution {
   std::vector<Answer> answers = {};        ///< one for each entry of the request, in its order
   std::optional<double> evaluations = {};  ///< integrand evaluations of the whole call
-  std::optional<double> kernel_s = {};     ///< time in kernels of the whole call, where the method has kernels
-  std::vector<double> own_times_s = {};    ///< repeated times of the call, where only the method can take them
+  std::optional<double> kernel_s =
+      {};  ///< time of the whole call in kernels and sums of their results, where the method has kernels
+  std::vector<double> own_times_s = {};  ///< repeated times of the call, where only the method can take them
 };
 
 /// A method ready to run. Resources that it needs once (a device, an interpreter) are made with it and are not timed;

@@ -22,7 +22,7 @@ SYMBOLS = {"surface.n": "n", "surface.k": "k", "surface.sigma": "σ", "surface.w
            "surface.diffuse": r"$k_d$", "emission.temperature_K": "T (K)", "surroundings.temperature_K": r"$T_{surr}$ (K)",
            "spectrum.wavelength_um": "λ (µm)", "geometry.view_zenith_deg": r"$\theta_v$ (degree)",
            "geometry.relative_azimuth_deg": "Δφ (degree)", "surface.diffuse_exponent": "c",
-           "path.temperature_K": r"$T_{path}$ (K)", "path.transmittance": "τ", "source.scale": "scale of $E_0$"}
+           "path.temperature_K": r"$T_{path}$ (K)", "path.transmittance": "τ", "source.scale": "scale of $E_0$", "model_error": "model error e"}
 PERCENT = 100.0
 REGIONS = ("68 %", "95 %")  # of all pairs, at the levels of the report
 

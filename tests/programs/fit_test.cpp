@@ -201,6 +201,8 @@ TEST_F(FitProgram, BadInput_IsOneLineThatSaysWhatIsAllowed) {
   expect_message(with({"--vary", "surface.n=-1:2"}), "-1 is out of range, surface.n in (0, 1e6]");
   expect_message(with({"--vary", "surface.sigma=0.1:1"}), "surface.sigma: varies twice");
   expect_message(with({"--loss", "least"}), "--loss");
+  expect_message(with({"--model-error", "half"}), "--model-error");
+  expect_message(with({"--loss", "huber", "--model-error", "bracket"}), "loss huber: cannot be combined");
   expect_message({"--data", "data.csv:surface.sigma=1", "--vary", "surface.sigma=0.1:1"}, "cannot be fixed too");
   expect_message(with({"--compare", "surface.masking"}), "must be KEY=WORD,WORD,...");
   expect_message(with({"--compare", "surface.masking=some,other"}), "must be one of none, v-cavity, integral, smith");

@@ -389,6 +389,10 @@ theta_deg = {from = 0, to = 80, count = 5}
         wider = dolp.fit(scene, columns, vary, model_error="bracket")
         self.assertEqual(list(wider.params), [*found.params, "model_error"])
         self.assertGreater(wider.stderr["surface.n"], found.stderr["surface.n"])
+        line = wider.plot().lines[-1]
+        points = wider.values["points"]
+        np.testing.assert_allclose(np.interp([p["theta_deg"] for p in points], line.get_xdata(), line.get_ydata()),
+                                   [p["model"] for p in points], atol=2e-4)
         two = dolp.fit(scene, [(columns, {"emission.temperature_K": 300.0}), columns], vary)
         self.assertLess(two.values["parameters"][0]["standard_error"], found.values["parameters"][0]["standard_error"])
 
@@ -399,7 +403,7 @@ theta_deg = {from = 0, to = 80, count = 5}
         import plot_fit
         import plot_table
         del sys.path[:2]
-        self.assertLessEqual(set(plot_fit.SYMBOLS), set(dolp.keys()))
+        self.assertLessEqual(set(plot_fit.SYMBOLS), {*dolp.keys(), "model_error"})
         for wavelengths, spectrum, title in ((None, [3, 5], "Plate, 3–5 µm"), (None, [9, 9], "Plate, 9 µm"), (8, [9, 9], "Plate")):
             report = {"title": "Plate, 8-14 um", "points": [{"wavelength_um": wavelengths}], "spectrum_um": spectrum}
             self.assertEqual(plot_fit.title_of(report), title)

@@ -20,10 +20,10 @@ struct EvaluationReport {
   std::uint64_t dispatches = 0;
   std::uint32_t devices_lost = 0;  ///< devices lost and replaced by a new one
   double evaluations = 0.0;
-  double kernel_s = 0.0;     ///< time on the device (timestamps), or of the loop on the CPU
-  double sums_s = 0.0;       ///< of the host: sums over slopes, and between slope distributions or indices
-  double setup_s = 0.0;      ///< pipeline creation, and that of the device since clear_report;
-  double pipelines_s = 0.0;  ///< the pipelines
+  double kernel_s = 0.0;                  ///< time on the device (timestamps), or of the loop on the CPU
+  double sums_s = 0.0;                    ///< of the host: sums over slopes, and between slope distributions or indices
+  double setup_s = 0.0;                   ///< pipeline creation, and that of the device since clear_report;
+  double pipelines_s = 0.0;               ///< the pipelines
   std::uint64_t interpolated = 0;         ///< moments that were interpolated or combined from others,
   std::uint64_t interpolation_nodes = 0;  ///< and moments computed for that
 };

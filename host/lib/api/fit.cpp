@@ -33,7 +33,12 @@ namespace {
 using Settings = std::vector<Setting>;
 using Json = ReportBuilder::Json;
 
-void check_loss(Loss loss, const std::vector<MeasuredData>& data) {
+void check_loss(Loss loss, ModelError error, const std::vector<MeasuredData>& data) {
+  if (loss != Loss::kSquares && error != ModelError::kNone) {
+    throw InputError(
+        fmt::format("loss {}: cannot be combined with a model error, whose own deviation it would discount",
+                    loss_names()[static_cast<std::size_t>(loss)]));
+  }
   for (const MeasuredData& one : data) {
     if (loss == Loss::kSquares || one.has_uncertainties) continue;
     throw InputError(fmt::format("loss {}: {} needs the column \"uncertainty\", which says what lies off",
@@ -252,7 +257,7 @@ void write_fitted(const std::filesystem::path& path, const Scene& fitted) {
 Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, const FitOptions& of_call) {
   return impl().exclusively(of_call, [&](const FitOptions& options) {
     const auto start = std::chrono::steady_clock::now();
-    check_loss(options.loss, data);
+    check_loss(options.loss, options.model_error, data);
     begin(options.progress, 1);
     std::vector<ComparedModel> models;
     ModelEvaluator* evaluator = nullptr;

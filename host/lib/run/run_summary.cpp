@@ -110,8 +110,8 @@ std::string RunSummary::text() const {
   };
   return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", entries, fmt::join(status, " "),
                      worst_error.value_or(-1.0), worst_rho_error.value_or(-1.0), albedos, albedo.first, albedo.second,
-                     range(loses), range(gains), check.entries, check.worst_ratio, radiometry_s, evaluations, kernel_s, sums_s,
-                     dispatches, interpolated, interpolation_nodes, "end");
+                     range(loses), range(gains), check.entries, check.worst_ratio, radiometry_s, evaluations, kernel_s,
+                     sums_s, dispatches, interpolated, interpolation_nodes, "end");
 }
 
 std::optional<RunSummary> RunSummary::from_text(const std::string& text) {

@@ -198,14 +198,24 @@ class Fit:
             label = ", ".join([symbol, *([f"{wavelength_um:g} µm"] if wavelength_um else []),
                                *([name] if len(self._overrides) > 1 else [])])
             bars = axes.errorbar(theta, measured, errors, fmt="o", markersize=4, label=label)
-            where = {"theta_deg": np.linspace(min(theta), max(theta), 181)}
-            model = evaluate(self.scene.with_(self._overrides[name]), evaluator="cpu", **where,
-                             **({"wavelength_um": wavelength_um} if wavelength_um else {}))
-            curve = model.stokes_q / model.stokes_i if quantity == "q_over_i" else model[quantity]
-            axes.plot(where["theta_deg"], curve, color=bars[0].get_color())
+            zeniths = np.linspace(min(theta), max(theta), 181)
+            curve = self._model(name, quantity, {"theta_deg": zeniths} | ({"wavelength_um": wavelength_um} if wavelength_um else {}))
+            axes.plot(zeniths, curve, color=bars[0].get_color())
         axes.set_xlabel("zenith angle θ (degree)")
         axes.legend()
         return axes
+
+    def _model(self, name: str, quantity: str, points: dict[str, Any]) -> xr.DataArray:
+        """The fitted model of a data set; with a model error a mixture of both ends of its bracket."""
+        scene = self.scene.with_(self._overrides[name])
+        own = evaluate(scene, evaluator="cpu", **points)
+        if "model_error" not in self.params:
+            return own[quantity]
+        other = scene.with_({"emission.model": "moments" if scene["emission.model"] == "direct" else "direct"})
+        mixed = "q_over_i" if quantity == "dolp" else quantity
+        share = self.params["model_error"]
+        curve = (1 - share) * own[mixed] + share * evaluate(other, evaluator="cpu", **points)[mixed]
+        return abs(curve) if quantity == "dolp" else curve
 
     def __repr__(self) -> str:
         return self.text
@@ -313,7 +323,8 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compa
     several sets, each alone or as a pair (data, overrides). `vary`: (low, high) or (low, high, start) of each key.
     `compare`: values of keys, all combinations of which are fitted and ranked. `loss`: squares, or huber, soft-l1,
     cauchy or tukey for data with outliers. `model_error`: none, or bracket, which takes the bracket of single scattering
-    as an uncertainty that all points share; then `model_error` is one more number of the fit. `plot`: a PNG of data, model, residuals and contours, as the command draws it.
+    as an uncertainty that all points share; then `model_error` is one more number of the fit. `plot`: a PNG of data,
+    model, residuals and contours, as the command draws it.
 
     >>> truth = dolp.evaluate(scene, theta_deg=np.arange(5, 85, 5), n=1.6)
     >>> data = {"theta_deg": truth.theta, "dolp": truth.dolp, "uncertainty": np.full(16, 0.001)}

@@ -3,6 +3,7 @@
 import copy
 import csv
 import doctest
+import importlib
 import multiprocessing
 import os
 import pathlib
@@ -58,7 +59,7 @@ class Package(unittest.TestCase):
         subprocess.run([PROGRAM, *words, "--quiet"], cwd=self.folder, check=True)
 
     def test_examples_in_the_documentation_hold(self):
-        failed, tried = doctest.testmod(dolp, extraglobs={"dolp": dolp, "np": np, "tempfile": tempfile, "scene": dolp.Scene(text="""
+        names = {"dolp": dolp, "np": np, "tempfile": tempfile, "scene": dolp.Scene(text="""
 [surface]
 n = 1.5
 k = 0.05
@@ -71,9 +72,11 @@ temperature_K = 300.0
 wavelength_um = 10.0
 [grid]
 theta_deg = {from = 0, to = 80, count = 5}
-""")})
-        self.assertEqual(failed, 0)
-        self.assertGreater(tried, 15)
+""")}
+        rooms = [dolp, *(importlib.import_module(f"dolp.{room}") for room in ("_scene", "_runs", "_fit"))]
+        results = [doctest.testmod(room, extraglobs=names) for room in rooms]
+        self.assertEqual(sum(failed for failed, _ in results), 0)
+        self.assertGreater(sum(tried for _, tried in results), 25)
 
     def assert_same(self, table, expected):
         """Of two Datasets values, attributes and what decides how they are written."""

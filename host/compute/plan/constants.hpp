@@ -7,6 +7,8 @@
 //           bound was below its error in any of them. "Corners" means that ordinary entries see no difference.
 #pragma once
 
+#include <cstddef>
+
 namespace dolp {
 
 // ---- Rules (rule.cpp) ----------------------------------------------------------------------------------------------
@@ -103,6 +105,39 @@ inline constexpr int kMostBouncesOfBeam = 1000;
 inline constexpr double kNegligibleBounces = 0.01;
 /// Chosen: of 2q - 3, below which absorption ends the sum and not the fall of the slope density.
 inline constexpr double kSlowestFall = 0.1;
+
+// ---- Interpolation between slope distributions (shape_axis.cpp, shape_plan.cpp) -------------------------------------
+
+/// Nodes of an axis: fewer coefficients show no reliable decay; for any number of digits.
+inline constexpr double kLeastShapeNodes = 6.0;  // chosen
+inline constexpr double kFirstShapeNodes = 3.0;  // chosen
+/// Values for each node, and entries of a direction and index for each node, from which on it is worth it.
+inline constexpr double kLeastAxisGain = 1.25;     // chosen
+inline constexpr std::size_t kLeastShapeGain = 2;  // chosen
+/// Of the request's tolerance: bounds grow by the interpolant's weights; digits of the interpolation beyond it.
+inline constexpr double kShapeNodeTolerance = 0.125;  // chosen
+inline constexpr double kExtraShapeDigits = 1.0;      // chosen
+/// Error bound over the largest of so many last coefficients, where these fall fast; their fall at the slowest, over
+/// those before them.
+inline constexpr double kShapeTail = 3.0;         // chosen
+inline constexpr int kLastShapeCoefficients = 3;  // chosen
+inline constexpr double kSlowestShapeFall = 0.9;  // chosen
+
+// ---- Rows (rows.cpp) -----------------------------------------------------------------------------------------------
+
+/// Between the exponents of a chunk, as a factor of q - 1: shapes further apart would want nodes in different places.
+inline constexpr double kMostRowSpread = 6.0;  // chosen
+/// Rows are not for grids that would leave more of the members unused. At a half, rows still take less time than their
+/// members alone; a quarter slows such grids, at nine tenths few grids have rows.
+inline constexpr double kLeastRowUse = 0.5;  // chosen
+
+// ---- Refinement (refinement.cpp) -----------------------------------------------------------------------------------
+
+/// The next level is tighter than the miss requires by this; otherwise it may miss the tolerance by a little again. A
+/// level is tighter than the one before by so many decades.
+inline constexpr double kRefinementSafety = 1.5;  // chosen
+inline constexpr double kLeastDecades = 0.5;      // chosen
+inline constexpr double kMostDecades = 5.0;       // chosen
 
 // ---- Effects (effects.cpp) -----------------------------------------------------------------------------------------
 

@@ -54,8 +54,10 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
     first = tables[0]
     along = [name for name, variable in first.data_vars.items()
              if "theta" in variable.dims or not all(variable.equals(table[name]) for table in tables)]
-    return xr.concat(tables, xr.Variable(key, values, KEY_ATTRIBUTES.get(key)), data_vars=along, coords="minimal",
-                     compat="override", combine_attrs="drop_conflicts")
+    joined = xr.concat(tables, xr.Variable(key, values, KEY_ATTRIBUTES.get(key)), data_vars=along, coords="minimal",
+                       compat="override", combine_attrs="drop_conflicts")
+    joined.attrs.pop("scene", None)  # that of none of them
+    return joined
 
 
 def native_table(table: xr.Dataset) -> _native.Table:

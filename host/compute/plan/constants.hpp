@@ -1,11 +1,11 @@
 // The constants of plan/ that steer cost or accuracy, in one table. Each has a mark:
 //   proved  the formula stands beside it
 //   fitted  the command stands beside it that finds it; kModels of rule.cpp too: `dolp-calibrate fit`
-//   chosen  everything else. Where numbers stand beside it, they are the mean evaluations of an entry with half, with it
-//           and with double, of 150 ordinary entries of each masking concerned at 1e-4 (`dolp-calibrate check`); no
-//           bound was below its error in any of them. "Corners" means that ordinary entries see no difference. Those of
-//           interpolation, rows and refinement are millions of evaluations of a table instead, `dolp table` of 32 x 32 x
-//           32 entries at 1e-4 (theta to 85 degrees, sigma 0.05 to 1, q 1.75 to 6), integral and then smith.
+//   chosen  everything else. Where numbers stand beside it, they are the mean evaluations of an entry with half, with
+//           it and with double, of 150 ordinary entries of each masking concerned at 1e-4 (`dolp-calibrate check`); no
+//           bound was below its error in any of them. "Corners" means that ordinary entries see no difference. Those
+//           of interpolation, rows and refinement are millions of evaluations of a table instead, `dolp table` of
+//           32 x 32 x 32 entries at 1e-4 (theta to 85 degrees, sigma 0.05 to 1, q 1.75 to 6), integral and then smith.
 #pragma once
 
 #include <cstddef>

@@ -25,7 +25,7 @@ constexpr double kNearestBranchPoint = 0.1;
 constexpr double kReach = 1.0;     // largest error of a combined curve, of the tolerance: 11 each
 constexpr double kSelected = 1.0;  // 12, 11, 11: root mean square at which the basis is large enough, of the tolerance
 // Of the tolerance: keeps weights small, so that errors of the basis do not grow.
-constexpr double kRidge = 0.2;  // 11, 11, 12.5
+constexpr double kRidge = 0.2;                 // 11, 11, 12.5
 constexpr std::size_t kMostCandidates = 512;   // of the run's indices, among which the basis is chosen
 constexpr double kLeastGain = 2.0;             // indices for each that is computed
 constexpr std::size_t kMostKnown = 1U << 16U;  // of the run's indices, whose weights are kept

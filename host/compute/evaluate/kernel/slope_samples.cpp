@@ -25,7 +25,7 @@ using sampling_kernel::KernelSource;
 
 namespace {
 
-// Numbers: thousands of evaluations of the table of plan/constants.hpp with half, with it and with double, none and then
+// Numbers: thousands of evaluations of the table of plan/constants.hpp with half, it and double; none, then
 // v-cavity.
 
 // Chosen: 27.4, 24.0, 22.1; 54.2, 50.9, 49.2. Spacing of the ends of pieces, in e-folds of slope, for distributions of

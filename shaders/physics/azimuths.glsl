@@ -13,6 +13,7 @@ struct Slope {
 // A sum over azimuths, for each member of a row.
 struct AzimuthSums {
   real4 member[DOLP_WIDTH];
+  SkySums sky[DOLP_WIDTH];
   real2 direct;       // direct emission of the facets, as (I, Q), before smith's masking
   real behind;        // MomentsNode::behind
   real evaluations;
@@ -23,7 +24,10 @@ AzimuthSums no_azimuths() {
   sums.evaluations = real(0.0);
   sums.behind = real(0.0);
   sums.direct = real2(real(0.0), real(0.0));
-  for (int g = 0; g < DOLP_WIDTH; ++g) sums.member[g] = real4(real(0.0));
+  for (int g = 0; g < DOLP_WIDTH; ++g) {
+    sums.member[g] = real4(real(0.0));
+    sums.sky[g] = no_sky();
+  }
   return sums;
 }
 
@@ -43,14 +47,22 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, S
   for (int i = 0; i < order; ++i) {
     Azimuth at = azimuth(arc, place_on_arc(arc, rule_node(first_node + i)));
     if (kIsMultiple) {
-      sums.member[0] += at.weight * reflected_in_groove(rule, theta, index, slope.t, at.x, at.sin_phi);
+      GrooveLight light = reflected_in_groove(rule, theta, index, slope.t, at.x, at.sin_phi);
+      sums.member[0] += at.weight * light.moments;
+      sums.sky[0] =
+          add_reflected(sums.sky[0], sky_at(light.cos_before), at.weight * light.before.x, at.weight * light.before.y);
+      sums.sky[0] =
+          add_reflected(sums.sky[0], sky_at(light.cos_last), at.weight * light.last.x, at.weight * light.last.y);
     } else {
       Facet f = facet(theta, index, slope.t, at.x, at.sin_phi);
       Masked of_ray = masking_of_ray(row, f.cos_r, sine_of_ray(theta, row, f, slope.t, at), slope.t, zone);
       real seen = leaves ? at.weight : real(0.0);
+      SkyValues sky = sky_at(f.cos_r);
       for (int g = 0; g < DOLP_WIDTH; ++g) {
         Projection part = project(theta, f, zone, slope.of_theta.value[g], of_ray.value[g]);
         sums.member[g] += seen * reflected(f, part);
+        real facets = seen * part.seen;
+        sums.sky[g] = add_reflected(sums.sky[g], sky, facets * f.m00, facets * f.m01);
       }
       if (kHasDirect) sums.direct += at.weight * emitted(theta, f);
     }
@@ -85,7 +97,10 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
       int order = order_between(nodes, slope.most_azimuths);
       if (slope.is_coarse) order = coarse_order(order);
       AzimuthSums more = arc_sums(rule, theta, row, index, slope, arc, zone, zone < lines.leaving, order);
-      for (int g = 0; g < DOLP_WIDTH; ++g) sums.member[g] += more.member[g];
+      for (int g = 0; g < DOLP_WIDTH; ++g) {
+        sums.member[g] += more.member[g];
+        sums.sky[g] = add_scaled(sums.sky[g], real(1.0), more.sky[g]);
+      }
       sums.direct += more.direct;
       sums.evaluations += more.evaluations;
     }
@@ -106,8 +121,14 @@ AzimuthSums slope_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index,
   return sums;
 }
 
+// The results of slopes.comp.
+struct SlopeResult {
+  AzimuthNode node;
+  SkySums sky;
+};
+
 // The same in the form that slopes.comp returns: its maskings do not depend on the shape.
-AzimuthNode azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNode own) {
+SlopeResult azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNode own) {
   Slope slope;
   slope.t = own.t;
   slope.digits = own.digits;
@@ -117,5 +138,8 @@ AzimuthNode azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNo
   slope.is_coarse = own.is_coarse > real(0.5);
   AzimuthSums sums = slope_sums(rule, theta, no_row(), index, slope);
   real4 all = sums.member[0];
-  return AzimuthNode(all.x, all.y, all.z, all.w, sums.behind, sums.direct.x, sums.direct.y, sums.evaluations);
+  SlopeResult result;
+  result.node = AzimuthNode(all.x, all.y, all.z, all.w, sums.behind, sums.direct.x, sums.direct.y, sums.evaluations);
+  result.sky = sums.sky[0];
+  return result;
 }

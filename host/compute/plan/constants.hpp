@@ -7,6 +7,8 @@
 //           bound was below its error in any of them. "Corners" means that ordinary entries see no difference.
 #pragma once
 
+#include <cstdint>
+
 namespace dolp {
 
 // ---- Rules (rule.cpp) ----------------------------------------------------------------------------------------------
@@ -55,6 +57,24 @@ inline constexpr double kSteepStep = 16.0;  // chosen: 1773, 1765, 1759
 inline constexpr int kCriticalBounces = 3;  // chosen
 /// Tolerance of the indices of a basis, over the request's: bounds grow by the weights.
 inline constexpr double kIndexNodeTolerance = 0.5;  // chosen
+
+// ---- Skies (sky_table.cpp) -----------------------------------------------------------------------------------------
+
+/// Cells of a function, at least, and of all functions of a sky together, at most; tolerances below kTightSky may have
+/// more, which not all devices can hold.
+inline constexpr std::uint32_t kLeastSkyCells = 512;                // chosen
+inline constexpr std::uint32_t kMostSkyCells = 1U << 15U;           // chosen: a texel buffer holds 65,536 at least
+inline constexpr std::uint32_t kMostTightSkyCells = 1U << 18U;      // chosen
+inline constexpr double kTightSky = 1e-5;                           // chosen
+/// Of the tolerance, for the distance of a table from its function.
+inline constexpr double kSkyTableShare = 0.05;  // chosen
+/// Largest distance in a cell over that in its middle.
+inline constexpr double kSkyTableSafety = 1.25;  // chosen
+/// Roundings of cos(theta_r), and of a value of a table, in units of the roundoff.
+inline constexpr double kSkyCosineRoundings = 8.0;  // chosen
+inline constexpr double kSkyRoundings = 4.0;        // chosen
+/// Error of the finer rule over its distance from the coarser one, over that of a uniform sky, where a sky has corners.
+inline constexpr double kSkyCornerFactor = 2.0;  // chosen
 
 // ---- Bounds (error_bounds.cpp) -------------------------------------------------------------------------------------
 

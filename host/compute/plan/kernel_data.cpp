@@ -444,6 +444,7 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model) {
     add_points(data, request);
   }
   data.rule_nodes = rule_nodes(data.rule_order);
+  if (request.sky) data.sky = append_sky(*request.sky, request.tolerance, data.rule_nodes);
   data.has_total_reflection =
       std::ranges::any_of(data.indices, [](const kernel::IndexNode& index) { return index.critical_cos > 0.0; });
   return data;

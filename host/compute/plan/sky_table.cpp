@@ -1,0 +1,88 @@
+#include "plan/sky_table.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "plan/constants.hpp"
+#include "plan/kernel_data.hpp"
+
+namespace dolp {
+namespace {
+
+static_assert(kMostSkyFunctions == DOLP_SKY_FUNCTIONS);
+
+double zenith_deg_at(double u) {
+  return std::min(2.0 * std::asin(std::min(u * std::numbers::sqrt2 / 2.0, 1.0)) * 180.0 / std::numbers::pi, 90.0);
+}
+
+double place_of(double zenith_deg) {
+  return std::numbers::sqrt2 * std::sin(0.5 * zenith_deg * std::numbers::pi / 180.0);
+}
+
+Eigen::RowVectorXd at_place(const SkyBasis& basis, double u) { return basis.at(zenith_deg_at(u)); }
+
+/// Values of the functions at the ends of the cells. Shape: cells + 1 x functions.
+Eigen::MatrixXd at_ends(const SkyBasis& basis, std::uint32_t cells) {
+  Eigen::MatrixXd ends(cells + 1, static_cast<Eigen::Index>(basis.size()));
+  for (std::uint32_t i = 0; i <= cells; ++i) ends.row(i) = at_place(basis, static_cast<double>(i) / cells);
+  return ends;
+}
+
+/// Distances of the functions from straight lines through the ends of the cell at u.
+Eigen::RowVectorXd distances_at(const SkyBasis& basis, double u, double cells) {
+  const double place = std::clamp(u * cells, 0.0, cells);
+  const double cell = std::min(std::floor(place), cells - 1.0);
+  const double share = place - cell;
+  const Eigen::RowVectorXd line =
+      (1.0 - share) * at_place(basis, cell / cells) + share * at_place(basis, (cell + 1.0) / cells);
+  return (line - at_place(basis, u)).cwiseAbs();
+}
+
+/// The largest of them at the corners,
+Eigen::RowVectorXd corner_distances(const SkyBasis& basis, double cells) {
+  Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(basis.size()));
+  for (const double end_deg : basis.nodes().ends_deg()) {
+    largest = largest.cwiseMax(distances_at(basis, place_of(end_deg), cells));
+  }
+  return largest;
+}
+
+/// and in the middle of all cells.
+Eigen::RowVectorXd middle_distances(const SkyBasis& basis, double cells) {
+  Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(basis.size()));
+  for (double cell = 0.0; cell < cells; ++cell) {
+    largest = largest.cwiseMax(distances_at(basis, (cell + 0.5) / cells, cells));
+  }
+  return largest;
+}
+
+}  // namespace
+
+std::uint32_t SkyTable::word() const { return count == 0 ? 0U : start << DOLP_SKY_START_SHIFT | log2_cells; }
+
+SkyTable append_sky(const SkyBasis& basis, double tolerance, std::vector<std::array<double, 2>>& nodes) {
+  SkyTable table;
+  table.count = static_cast<std::uint32_t>(basis.size());
+  table.start = static_cast<std::uint32_t>(nodes.size());
+  const std::uint32_t most = tolerance < kTightSky ? kMostTightSkyCells : kMostSkyCells;
+  const double allowed = kSkyTableShare * tolerance / kSkyTableSafety;
+  std::uint32_t cells = kLeastSkyCells;
+  const auto may_double = [&] { return 2 * cells * table.count <= most; };
+  while (corner_distances(basis, cells).maxCoeff() > allowed && may_double()) cells *= 2;
+  Eigen::RowVectorXd errors = middle_distances(basis, cells);
+  while (errors.maxCoeff() > allowed && may_double()) errors = middle_distances(basis, cells *= 2);
+  errors = kSkyTableSafety * errors.cwiseMax(corner_distances(basis, cells));
+  table.log2_cells = static_cast<std::uint32_t>(std::countr_zero(cells));
+  const Eigen::MatrixXd ends = at_ends(basis, cells);
+  for (Eigen::Index k = 0; k < ends.cols(); ++k) {
+    for (Eigen::Index i = 0; i + 1 < ends.rows(); ++i) nodes.push_back({ends(i, k), ends(i + 1, k) - ends(i, k)});
+    table.error.push_back(errors[k]);
+    table.steepness.push_back(std::abs(ends(1, k) - ends(0, k)) * static_cast<double>(ends.rows() - 1));
+  }
+  return table;
+}
+
+}  // namespace dolp

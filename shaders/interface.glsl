@@ -39,10 +39,12 @@
 // count: tasks of this dispatch (moments.comp), slopes (slopes.comp), entries (mueller.comp) or shapes bound
 // (masking_table.comp); first: the first of them, as a position in the bound buffers. Output i of a dispatch belongs to
 // entry first + i, outputs i * DOLP_WIDTH and following to task first + i. largest_order: of the rule nodes.
-// sky: log2 of the cells of a function, and from DOLP_SKY_START_SHIFT on where they begin among the rule nodes. Sums
-// with a sky stand behind the other outputs of a dispatch, see moments.comp and slopes.comp.
+// sky: log2 of the cells of a function, from DOLP_SKY_CORNERS_SHIFT on the number of its corners, whose cosines follow
+// the cells, and from DOLP_SKY_START_SHIFT on where the cells begin among the rule nodes. Sums with a sky stand behind
+// the other outputs of a dispatch, see moments.comp and slopes.comp.
 #define DOLP_PUSH_CONSTANTS uint first; uint count; uint largest_order; uint sky;
-#define DOLP_SKY_START_SHIFT 5
+#define DOLP_SKY_CORNERS_SHIFT 5
+#define DOLP_SKY_START_SHIFT 10
 
 // ---- Task word: task of an invocation of moments.comp, as bits -----------------------------------------------------
 #define DOLP_TASK_MEMBERS_BITS 5u    // from bit 0: members of the row
@@ -64,6 +66,7 @@
 #define DOLP_MOST_SKY 0          // most functions of a sky; 0: kernels without
 #endif
 #define DOLP_SKY_FUNCTIONS 8     // the other value of DOLP_MOST_SKY
+#define DOLP_MOST_SKY_CORNERS 24 // that split the azimuths
 #define DOLP_SKY_PARTS 3         // numbers of a function in the output of moments.comp: r_i, r_q, the larger difference
 #define DOLP_MAX_PIECES 63       // pieces of the slope axis for one direction
 #define DOLP_MAX_ARCS 13        // arcs of the azimuth for one slope, but for those of total reflection

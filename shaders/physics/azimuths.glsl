@@ -88,11 +88,19 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
       from = is_second ? middle : from;
       to = is_second ? to : middle;
     }
+    // The corners of a sky lie where cos(theta_r), which falls from phi = 0 on, is theirs.
+    real2 start = from;
+    for (int corner = 0; corner <= sky_corners(); ++corner) {
+    real2 stop = to;
+    if (corner < sky_corners()) stop = clamp_half_angle(line_at(level_of(theta, slope.t, cos_of_corner(corner)), max(theta.s * slope.t, real(1e-30))), start, to);
+    bool is_first = start.x == from.x && start.y == from.y;
+    bool is_last = stop.x == to.x && stop.y == to.y;
     // Devices that run invocations in lockstep compute both sides of an `if`; they skip a loop of one turn where no
     // invocation needs it. It counts as an iteration, see worst_iterations of host/compute/plan/kernel_data.hpp.
-    for (bool is_due = is_before(from, to); is_due; is_due = false) {
-      Arc arc = zone_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits, from, to, zone);
-      if (is_critical) arc = critical_arc(theta, index, slope.t, slope.digits, from, to, !is_second, arc);
+    for (bool is_due = is_before(start, stop); is_due; is_due = false) {
+      Arc arc = is_first ? zone_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits, start, stop, zone)
+                         : make_arc(start, stop);
+      if (is_critical && (is_second ? is_first : is_last)) arc = critical_arc(theta, index, slope.t, slope.digits, start, stop, !is_second, arc);
       real nodes = arc_nodes(rule, theta, row.shape[0], index, slope.has_split_line, slope.t, slope.digits, arc, zone);
       int order = order_between(nodes, slope.most_azimuths);
       if (slope.is_coarse) order = coarse_order(order);
@@ -103,6 +111,8 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
       }
       sums.direct += more.direct;
       sums.evaluations += more.evaluations;
+    }
+    start = stop;
     }
   }
   return sums;

@@ -165,7 +165,7 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   light.cos_before = real(0.0);
   light.cos_last = real(0.0);
   while (share > real(0.0)) {
-    light.before = (real(1.0) - share) * real2(natural.x, polarised.x);
+    light.before = real2((real(1.0) - share) * natural.x, (real(1.0) - share) * polarised.x);
     light.cos_before = -between.y;
     if (f.is_steep) f = next_bounces(f);
     real2 at = further_on(between, f.turn);
@@ -189,7 +189,7 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   }
   real beam = min(c + theta.s * t * x, real(2.0) * c);
   light.moments = real4(beam * natural.x, beam * polarised.x, beam, beam * absorbed);
-  light.last = beam * (real2(natural.x, polarised.x) - light.before);
-  light.before *= beam;
+  light.last = real2(beam * (natural.x - light.before.x), beam * (polarised.x - light.before.y));
+  light.before = real2(beam * light.before.x, beam * light.before.y);
   return light;
 }

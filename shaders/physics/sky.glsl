@@ -59,6 +59,11 @@ SkySums add_scaled(SkySums sums, real factor, SkySums more) {
   }
   return sums;
 }
+// Corners split the azimuths.
+int sky_corners() { return pushed_corners(); }
+
+// cos(theta_r) of a corner; they ascend in the zenith.
+real cos_of_corner(int i) { return rule_node(sky_start() + int(kSkyCount) * sky_cells() + i).x; }
 #else
 struct SkyValues {
   real none;
@@ -70,6 +75,8 @@ struct SkySums {
 
 SkySums no_sky() { return SkySums(real(0.0)); }
 SkyValues sky_at(real) { return SkyValues(real(0.0)); }
+int sky_corners() { return 0; }
+real cos_of_corner(int) { return real(0.0); }
 SkySums add_reflected(SkySums sums, SkyValues, real, real) { return sums; }
 SkySums add_scaled(SkySums sums, real, SkySums) { return sums; }
 #endif

@@ -23,7 +23,7 @@ constexpr double kSmallestCosine = 1e-300;  // safe as a divisor
 
 /// In the order of Part.
 constexpr std::array<bool KeptEffects::*, 8> kFlags = {
-    &KeptEffects::further_bounces, &KeptEffects::moments,       &KeptEffects::source, &KeptEffects::surroundings,
+    &KeptEffects::further_bounces, &KeptEffects::moments,       &KeptEffects::source,  &KeptEffects::surroundings,
     &KeptEffects::emission,        &KeptEffects::path_radiance, &KeptEffects::diffuse, &KeptEffects::profile};
 
 bool KeptEffects::*flag(Part part) { return kFlags[static_cast<std::size_t>(part)]; }
@@ -210,7 +210,8 @@ double EffectBounds::weight(const KeptEffects& kept) const {
   const bool has_sky = kept.surroundings && kept.profile;
   const double surroundings = kept.surroundings ? total_.surroundings + (has_sky ? sky_above_ : 0.0) : 0.0;
   const bool has_both = emitted != 0.0 && kept.surroundings && scene_.surroundings;
-  return has_both ? total_.excess + (has_sky ? std::max(sky_above_, sky_below_) : 0.0) : std::max(emitted, surroundings);
+  return has_both ? total_.excess + (has_sky ? std::max(sky_above_, sky_below_) : 0.0)
+                  : std::max(emitted, surroundings);
 }
 
 /// The exitance of a source that illuminates the hemisphere.

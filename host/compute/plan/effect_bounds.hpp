@@ -33,11 +33,11 @@ EntriesExtent extent_of(const SceneEntries& entries);
 /// With E, S, X the exitances of emission, surroundings and source (X only in hemispherical mode), Kirchhoff's emission
 /// gives I = E + (S - E + X) rho >= E - max(0, E - S) A and Q = (S - E + X) rho_Q, because S - E has one sign at all
 /// wavelengths: the weight of the moments is |S - E| + X, which is 0 where emission and surroundings have one
-/// temperature and no source illuminates the hemisphere. A profile of the sky adds at most its largest distance from its
-/// mean to S, in any direction. The fresnel emission is at least E (1 - R_s) / 2; the direct
-/// one has no known lower bound. A path multiplies all by its transmittance and adds to I. |q| <= 1 where A <= 1, which
-/// bounds rho_s and rho_p: then every part has a degree of polarisation of at most 1. All Stokes parameters are in the
-/// units of the exitances, bistatic ones times pi; sums over a band are those of the spectral rule's samples.
+/// temperature and no source illuminates the hemisphere. A profile of the sky adds at most its largest distance from
+/// its mean to S, in any direction. The fresnel emission is at least E (1 - R_s) / 2; the direct one has no known lower
+/// bound. A path multiplies all by its transmittance and adds to I. |q| <= 1 where A <= 1, which bounds rho_s and
+/// rho_p: then every part has a degree of polarisation of at most 1. All Stokes parameters are in the units of the
+/// exitances, bistatic ones times pi; sums over a band are those of the spectral rule's samples.
 class EffectBounds {
  public:
   EffectBounds(const SceneValues& scene, const EntriesExtent& extent);

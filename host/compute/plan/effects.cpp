@@ -11,8 +11,8 @@
 namespace dolp {
 namespace {
 
-constexpr std::array kDroppingOrder = {Part::kMoments,      Part::kSource,  Part::kProfile,  Part::kSurroundings,  Part::kEmission,
-                                       Part::kPathRadiance, Part::kMoments, Part::kFurtherBounces};
+constexpr std::array kDroppingOrder = {Part::kMoments,  Part::kSource,       Part::kProfile, Part::kSurroundings,
+                                       Part::kEmission, Part::kPathRadiance, Part::kMoments, Part::kFurtherBounces};
 
 /// The bounds of a scene at each wavelength of its entries.
 std::vector<EffectBounds> bounds_of(const SceneValues& scene, const SceneEntries& entries) {
@@ -209,9 +209,9 @@ Effect source_row(const SceneValues& scene, const EffectPlan& plan) {
 
 Effect surroundings_row(const SceneValues& scene, const EffectPlan& plan) {
   if (!scene.surroundings) return absent("surroundings", "no [surroundings]");
-  const std::string reason =
-      has_profile(scene) ? scene.names.profile + ", reflected into the view"
-                         : fmt::format("{:g} K, reflected into the view", scene.surroundings->temperature_K);
+  const std::string reason = has_profile(scene)
+                                 ? scene.names.profile + ", reflected into the view"
+                                 : fmt::format("{:g} K, reflected into the view", scene.surroundings->temperature_K);
   return part_row(scene, plan, Part::kSurroundings,
                   {"surroundings", EffectState::kKept, reason, needs_of_moments(scene, plan)});
 }

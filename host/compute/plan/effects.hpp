@@ -25,11 +25,11 @@ struct DroppedPart {
 struct EffectPlan {
   bool keep_all = false;
   KeptEffects kept;
-  std::vector<DroppedPart> dropped;  ///< in the order of dropping; parts that the scene lacks are not among them
-  double bound = 0.0;                ///< of all dropped parts together
-  bool needs_moments = true;         ///< the specular moments, at theta or in bistatic mode at the view
-  bool needs_direct = false;         ///< those of the direct emission too
-  bool needs_beams = false;          ///< f of the source's and the view's direction
+  std::vector<DroppedPart> dropped;     ///< in the order of dropping; parts that the scene lacks are not among them
+  double bound = 0.0;                   ///< of all dropped parts together
+  bool needs_moments = true;            ///< the specular moments, at theta or in bistatic mode at the view
+  bool needs_direct = false;            ///< those of the direct emission too
+  bool needs_beams = false;             ///< f of the source's and the view's direction
   std::shared_ptr<const SkyBasis> sky;  ///< of the moments with a sky; none without a profile, see with_sky
   bool gives_rho = true;  ///< rho_i, rho_q and rho_error_estimate are known; the albedo with the moments alone
 };

@@ -4,8 +4,11 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numbers>
+#include <span>
 
+#include "model/angles.hpp"
 #include "plan/constants.hpp"
 #include "plan/kernel_data.hpp"
 
@@ -59,11 +62,43 @@ Eigen::RowVectorXd middle_distances(const SkyBasis& basis, double cells) {
   return largest;
 }
 
+/// A corner, with the change of the slope in u of each function.
+struct Corner {
+  double zenith_deg = 0.0;
+  Eigen::RowVectorXd bend;
+};
+
+/// The corners of a basis, the sharpest first.
+std::vector<Corner> corners_of(const SkyBasis& basis) {
+  constexpr double kStep = 1e-4;
+  std::vector<Corner> corners;
+  const std::vector<double>& ends_deg = basis.nodes().ends_deg();
+  for (std::size_t i = 1; i + 1 < ends_deg.size(); ++i) {
+    const double u = place_of(ends_deg[i]);
+    const double step = kStep * std::min(u - place_of(ends_deg[i - 1]), place_of(ends_deg[i + 1]) - u);
+    const Eigen::RowVectorXd before = at_place(basis, u - step);
+    const Eigen::RowVectorXd after = at_place(basis, u + step);
+    const Eigen::RowVectorXd bend = (after - 2.0 * at_place(basis, u) + before) / step;
+    if (bend.cwiseAbs().maxCoeff() > kLeastBend) corners.push_back({ends_deg[i], bend});
+  }
+  std::ranges::sort(corners, std::ranges::greater(),
+                    [](const Corner& corner) { return corner.bend.cwiseAbs().maxCoeff(); });
+  return corners;
+}
+
+Eigen::RowVectorXd bends_of(std::span<const Corner> corners, Eigen::Index functions) {
+  Eigen::RowVectorXd squares = Eigen::RowVectorXd::Zero(functions);
+  for (const Corner& corner : corners) squares += corner.bend.cwiseAbs2();
+  return squares.cwiseSqrt();
+}
+
 }  // namespace
 
-std::uint32_t SkyTable::word() const { return count == 0 ? 0U : start << DOLP_SKY_START_SHIFT | log2_cells; }
+std::uint32_t SkyTable::word() const {
+  return count == 0 ? 0U : start << DOLP_SKY_START_SHIFT | corners << DOLP_SKY_CORNERS_SHIFT | log2_cells;
+}
 
-SkyTable append_sky(const SkyBasis& basis, double tolerance, std::vector<std::array<double, 2>>& nodes) {
+SkyTable append_sky(const SkyBasis& basis, double tolerance, bool splits, std::vector<std::array<double, 2>>& nodes) {
   SkyTable table;
   table.count = static_cast<std::uint32_t>(basis.size());
   table.start = static_cast<std::uint32_t>(nodes.size());
@@ -77,11 +112,22 @@ SkyTable append_sky(const SkyBasis& basis, double tolerance, std::vector<std::ar
   errors = kSkyTableSafety * errors.cwiseMax(corner_distances(basis, cells));
   table.log2_cells = static_cast<std::uint32_t>(std::countr_zero(cells));
   const Eigen::MatrixXd ends = at_ends(basis, cells);
+  std::vector<Corner> corners = corners_of(basis);
+  const auto split =
+      static_cast<std::ptrdiff_t>(splits ? std::min<std::size_t>(corners.size(), DOLP_MOST_SKY_CORNERS) : 0);
+  table.corners = static_cast<std::uint32_t>(split);
+  const Eigen::RowVectorXd bends = bends_of(std::span(corners).subspan(static_cast<std::size_t>(split)), ends.cols());
   for (Eigen::Index k = 0; k < ends.cols(); ++k) {
+    table.bends.push_back(bends[k]);
     for (Eigen::Index i = 0; i + 1 < ends.rows(); ++i) nodes.push_back({ends(i, k), ends(i + 1, k) - ends(i, k)});
     table.error.push_back(errors[k]);
     table.steepness.push_back(std::abs(ends(1, k) - ends(0, k)) * static_cast<double>(ends.rows() - 1));
   }
+  for (std::ptrdiff_t i = 0; i < split; ++i)
+    table.corners_deg.push_back(corners[static_cast<std::size_t>(i)].zenith_deg);
+  std::ranges::sort(corners.begin(), corners.begin() + split, {}, &Corner::zenith_deg);
+  for (auto corner = corners.begin(); corner != corners.begin() + split; ++corner)
+    nodes.push_back({cos_sin_deg(corner->zenith_deg).cos, 0.0});
   return table;
 }
 

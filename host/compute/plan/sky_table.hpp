@@ -11,10 +11,13 @@ namespace dolp {
 
 /// Tables of the functions of a basis over u = sqrt(1 - cos(zenith)), straight lines between equal steps.
 struct SkyTable {
-  std::uint32_t count = 0;       ///< of functions
-  std::uint32_t log2_cells = 0;  ///< of each
-  std::uint32_t start = 0;       ///< position of the first cell among the rule nodes
-  std::vector<double> error;     ///< bound of the distance from each function
+  std::uint32_t count = 0;          ///< of functions
+  std::uint32_t log2_cells = 0;     ///< of each
+  std::uint32_t corners = 0;        ///< that split the azimuths; their cosines follow the cells
+  std::uint32_t start = 0;          ///< position of the first cell among the rule nodes
+  std::vector<double> corners_deg;  ///< the same, the sharpest first
+  std::vector<double> error;        ///< bound of the distance from each function
+  std::vector<double> bends;      ///< of each function, the root of the sum of squares of its other corners' bends in u
   std::vector<double> steepness;  ///< largest slope of each function in u at the zenith, where 1 - cos loses its digits
 
   /// DOLP_PUSH_CONSTANTS.
@@ -22,7 +25,8 @@ struct SkyTable {
 };
 
 /// Appends the cells of the basis to the nodes of the rules: as many as the tolerance asks for, up to 2^15 in all, for
-/// tight tolerances up to 2^18. Corners of a sky are corners of its table but for the cell in which they lie.
-SkyTable append_sky(const SkyBasis& basis, double tolerance, std::vector<std::array<double, 2>>& nodes);
+/// tight tolerances up to 2^18; with `splits` the cosines of the sharpest corners, too. Corners of a sky are corners of
+/// its table but for the cell in which they lie.
+SkyTable append_sky(const SkyBasis& basis, double tolerance, bool splits, std::vector<std::array<double, 2>>& nodes);
 
 }  // namespace dolp

@@ -43,6 +43,7 @@ struct KernelSource {
   uint kSkyCount = 0;
   int log2_sky_cells = 0;
   int first_sky_cell = 0;
+  int corners_of_sky = 0;
   int order_of_nodes = 1;
   std::vector<real2> rule_nodes;
   std::vector<real4> masking_table;
@@ -58,6 +59,7 @@ struct KernelSource {
     source.kSkyCount = data.sky.count;
     source.log2_sky_cells = static_cast<int>(data.sky.log2_cells);
     source.first_sky_cell = static_cast<int>(data.sky.start);
+    source.corners_of_sky = static_cast<int>(data.sky.corners);
     source.order_of_nodes = data.rule_order;
     for (const auto& node : data.rule_nodes) source.rule_nodes.push_back(convert_reals<real, real2, double>(node));
     return source;
@@ -65,6 +67,7 @@ struct KernelSource {
 
   int largest_order() const { return order_of_nodes; }
   int sky_cells() const { return 1 << log2_sky_cells; }
+  int pushed_corners() const { return corners_of_sky; }
   int sky_start() const { return first_sky_cell; }
   real2 rule_node(int i) const { return rule_nodes[static_cast<std::size_t>(i)]; }
   real4 masking_node(uint i) const { return masking_table[i]; }

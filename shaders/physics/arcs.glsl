@@ -135,11 +135,6 @@ struct SplitLines {
 // cos(phi) = level / (s t), as a half angle.
 real2 line_at(real level, real st) { return half_angle((st + level) / st, (st - level) / st); }
 
-// The level at which cos(theta_r) is cos_r.
-real level_of(ThetaNode theta, real t, real cos_r) {
-  return real(0.5) * (cos_r + theta.c) * (real(1.0) + t * t) - theta.c;
-}
-
 SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines lines) {
   real c = theta.c;
   real st = max(theta.s * t, real(1e-30));

@@ -71,8 +71,14 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, S
   return sums;
 }
 
+// Where cos(theta_r), which falls from phi = 0 on, is that of a corner of the sky.
+real2 corner_line(ThetaNode theta, real t, int corner) {
+  real level = real(0.5) * (cos_of_corner(corner) + theta.c) * (real(1.0) + t * t) - theta.c;
+  return line_at(level, max(theta.s * t, real(1e-30)));
+}
+
 // Integral over the azimuths from 0 to pi. Each zone is an arc, or two with the critical line of total reflection
-// between them.
+// between them, and the corners of a sky divide arcs further.
 AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, SplitLines lines) {
   AzimuthSums sums = no_azimuths();
   bool is_critical = kTotalReflection && index.critical_cos > real(0.0);
@@ -88,31 +94,33 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
       from = is_second ? middle : from;
       to = is_second ? to : middle;
     }
-    // The corners of a sky lie where cos(theta_r), which falls from phi = 0 on, is theirs.
     real2 start = from;
     for (int corner = 0; corner <= sky_corners(); ++corner) {
-    real2 stop = to;
-    if (corner < sky_corners()) stop = clamp_half_angle(line_at(level_of(theta, slope.t, cos_of_corner(corner)), max(theta.s * slope.t, real(1e-30))), start, to);
-    bool is_first = start.x == from.x && start.y == from.y;
-    bool is_last = stop.x == to.x && stop.y == to.y;
-    // Devices that run invocations in lockstep compute both sides of an `if`; they skip a loop of one turn where no
-    // invocation needs it. It counts as an iteration, see worst_iterations of host/compute/plan/kernel_data.hpp.
-    for (bool is_due = is_before(start, stop); is_due; is_due = false) {
-      Arc arc = is_first ? zone_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits, start, stop, zone)
-                         : make_arc(start, stop);
-      if (is_critical && (is_second ? is_first : is_last)) arc = critical_arc(theta, index, slope.t, slope.digits, start, stop, !is_second, arc);
-      real nodes = arc_nodes(rule, theta, row.shape[0], index, slope.has_split_line, slope.t, slope.digits, arc, zone);
-      int order = order_between(nodes, slope.most_azimuths);
-      if (slope.is_coarse) order = coarse_order(order);
-      AzimuthSums more = arc_sums(rule, theta, row, index, slope, arc, zone, zone < lines.leaving, order);
-      for (int g = 0; g < DOLP_WIDTH; ++g) {
-        sums.member[g] += more.member[g];
-        sums.sky[g] = add_scaled(sums.sky[g], real(1.0), more.sky[g]);
+      real2 stop = to;
+      if (corner < sky_corners()) stop = clamp_half_angle(corner_line(theta, slope.t, corner), start, to);
+      // Devices that run invocations in lockstep compute both sides of an `if`; they skip a loop of one turn where no
+      // invocation needs it. It counts as an iteration, see worst_iterations of host/compute/plan/kernel_data.hpp.
+      for (bool is_due = is_before(start, stop); is_due; is_due = false) {
+        bool is_first = !is_before(from, start);
+        Arc arc = make_arc(start, stop);
+        if (is_first) {
+          arc = zone_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits, start, stop, zone);
+        }
+        if (is_critical && (is_second ? is_first : !is_before(stop, to))) {
+          arc = critical_arc(theta, index, slope.t, slope.digits, start, stop, !is_second, arc);
+        }
+        real nodes = arc_nodes(rule, theta, row.shape[0], index, slope.has_split_line, slope.t, slope.digits, arc, zone);
+        int order = order_between(nodes, slope.most_azimuths);
+        if (slope.is_coarse) order = coarse_order(order);
+        AzimuthSums more = arc_sums(rule, theta, row, index, slope, arc, zone, zone < lines.leaving, order);
+        for (int g = 0; g < DOLP_WIDTH; ++g) {
+          sums.member[g] += more.member[g];
+          sums.sky[g] = add_scaled(sums.sky[g], real(1.0), more.sky[g]);
+        }
+        sums.direct += more.direct;
+        sums.evaluations += more.evaluations;
       }
-      sums.direct += more.direct;
-      sums.evaluations += more.evaluations;
-    }
-    start = stop;
+      start = stop;
     }
   }
   return sums;

@@ -166,8 +166,10 @@ std::vector<Breakpoint> without_coincident(const std::vector<Breakpoint>& points
 
 // Splits each piece once more, so that no node of its rules stays where it was.
 // Slopes at which a corner of the sky meets phi = 0 or pi: the reflected rays of a slope have zeniths from |theta - 2
-// alpha| to theta + 2 alpha. Beside them the sum over the azimuths goes as the distance to the power 3/2.
+// alpha| to theta + 2 alpha. A sky that is not level at the zenith has a cusp there. Beside them the sum over the
+// azimuths goes as the distance to the power 3/2.
 void add_sky_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const SkyTable& sky) {
+  if (sky.has_cusp) points.push_back({tan_deg(0.5 * theta_deg), kRoots});
   for (const double corner_deg : sky.corners_deg) {
     if (points.size() + 2 > kMostSkyBreakpoints) return;
     points.push_back({tan_deg(0.5 * std::abs(corner_deg - theta_deg)), kRootAbove});

@@ -112,6 +112,7 @@ SkyTable append_sky(const SkyBasis& basis, double tolerance, bool splits, std::v
   errors = kSkyTableSafety * errors.cwiseMax(corner_distances(basis, cells));
   table.log2_cells = static_cast<std::uint32_t>(std::countr_zero(cells));
   const Eigen::MatrixXd ends = at_ends(basis, cells);
+  table.has_cusp = splits && (ends.row(1) - ends.row(0)).cwiseAbs().maxCoeff() * cells > kLeastBend;
   std::vector<Corner> corners = corners_of(basis);
   const auto split =
       static_cast<std::ptrdiff_t>(splits ? std::min<std::size_t>(corners.size(), DOLP_MOST_SKY_CORNERS) : 0);

@@ -15,6 +15,7 @@ struct SkyTable {
   std::uint32_t log2_cells = 0;     ///< of each
   std::uint32_t corners = 0;        ///< that split the azimuths; their cosines follow the cells
   std::uint32_t start = 0;          ///< position of the first cell among the rule nodes
+  bool has_cusp = false;            ///< at the zenith
   std::vector<double> corners_deg;  ///< the same, the sharpest first
   std::vector<double> error;        ///< bound of the distance from each function
   std::vector<double> bends;      ///< of each function, the root of the sum of squares of its other corners' bends in u

@@ -96,7 +96,8 @@ class RowReader {
     const double zenith_deg = row.number(columns_.zenith, "zenith_deg", &kZenithDegRange);
     const double value =
         row.number(columns_.value, value_column(columns_.is_radiance), &value_range(columns_.is_radiance));
-    if (columns_.wavelength) begin_wavelength(row, row.number(*columns_.wavelength, "wavelength_um", &kWavelengthUmRange));
+    if (columns_.wavelength)
+      begin_wavelength(row, row.number(*columns_.wavelength, "wavelength_um", &kWavelengthUmRange));
     if (is_first_wavelength()) {
       add_zenith(row, zenith_deg);
     } else {
@@ -108,7 +109,7 @@ class RowReader {
 
   void finish(const CsvReader& end) const {
     if (profile_.values.empty()) end.fail("no rows; zenith_deg from 0 to 90 is expected");
-    check_last(end);
+    check_last(end, "after");
   }
 
  private:
@@ -119,9 +120,11 @@ class RowReader {
     if (!known.empty() && wavelength_um == known.back()) return;
     if (!known.empty()) {
       if (wavelength_um < known.back())
-        row.fail(fmt::format("wavelength_um = {}: must not be below {}, the one before; rows go by wavelength, then by "
-                             "zenith", wavelength_um, known.back()));
-      check_last(row);
+        row.fail(
+            fmt::format("wavelength_um = {}: must not be below {}, the one before; rows go by wavelength, then by "
+                        "zenith",
+                        wavelength_um, known.back()));
+      check_last(row, "before");
     }
     known.push_back(wavelength_um);
     of_wavelength_ = 0;
@@ -132,8 +135,8 @@ class RowReader {
     if (known.empty() && zenith_deg != 0.0)
       row.fail(fmt::format("zenith_deg = {}: must be 0 in the first row; the last has 90", zenith_deg));
     if (!known.empty() && zenith_deg <= known.back())
-      row.fail(fmt::format("zenith_deg = {}: must be greater than {}, the one before, up to 90", zenith_deg,
-                           known.back()));
+      row.fail(
+          fmt::format("zenith_deg = {}: must be greater than {}, the one before, up to 90", zenith_deg, known.back()));
     if (known.size() == kMostZeniths) row.fail(fmt::format("too many zeniths; at most {}", kMostZeniths));
     known.push_back(zenith_deg);
   }
@@ -147,11 +150,11 @@ class RowReader {
                  : fmt::format("zenith_deg = {}: a row too many; each wavelength has the same zeniths", zenith_deg));
   }
 
-  void check_last(const CsvReader& row) const {
+  void check_last(const CsvReader& row, const char* place) const {
     const std::vector<double>& known = profile_.zenith_deg;
-    if (of_wavelength_ < known.size()) row.fail(fmt::format("a row with zenith_deg = {} is missing before this one", known[of_wavelength_]));
-    if (known.back() != 90.0)
-      row.fail(fmt::format("zenith_deg ends at {}; must be 90 in the last row", known.back()));
+    if (of_wavelength_ < known.size())
+      row.fail(fmt::format("a row with zenith_deg = {} is missing {} this one", known[of_wavelength_], place));
+    if (known.back() != 90.0) row.fail(fmt::format("zenith_deg ends at {}; must be 90 in the last row", known.back()));
   }
 
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -235,7 +238,8 @@ std::uint64_t SkyProfile::hash() const {
 const std::vector<BuiltInSky>& built_in_skies() {
   static const std::vector<BuiltInSky> skies = {
       {"clear-sky",
-       "air of the US Standard Atmosphere 1976 at sea level with the emittance of Idso (1981) in the vertical, opaque at "
+       "air of the US Standard Atmosphere 1976 at sea level with the emittance of Idso (1981) in the vertical, opaque "
+       "at "
        "4.17-4.45 um, plane-parallel as in Granqvist and Hjortsberg (1981)"},
       {"overcast", "a black cloud with its base at 1 km (Martin and Berdahl 1984), behind the same air below it"}};
   return skies;

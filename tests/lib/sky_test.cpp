@@ -87,7 +87,7 @@ TEST(Sky, QuadraticProfile_GivesTheValuesOfTheModel) {
     scene.surface.q = 2.5;
     scene.accuracy.tolerance = 1e-6;
     CpuEvaluator cpu;
-    ReferenceEvaluator reference;
+    ReferenceEvaluator reference({.relative_tolerance = 1e-6});
     for (ModelEvaluator* evaluator : std::initializer_list<ModelEvaluator*>{&cpu, &reference}) {
       const Reflected reflected = reflected_of(scene, result_of(scene, 75.0, *evaluator));
       EXPECT_NEAR(reflected.i, i, kDigits);
@@ -134,7 +134,7 @@ SceneValues random_scene(Random& random) {
   Surface& surface = scene.surface;
   surface.distribution = random.chance(0.7) ? Distribution::kCauchy : Distribution::kGaussian;
   surface.masking = static_cast<Masking>(random.between(0.0, 3.999));
-  const bool is_groove = surface.masking == Masking::kVCavity && random.chance(0.2);
+  const bool is_groove = surface.masking == Masking::kVCavity && random.chance(0.1);
   if (is_groove) surface.scattering = Scattering::kMultiple;
   surface.sigma = random.log_between(0.02, 1.2);
   surface.q = random.log_between(1.6, 8.0);
@@ -157,7 +157,7 @@ TEST(Sky, ThousandRandomScenes_AgreeWithTheReferenceWithinTheirBounds) {
   constexpr double kMostMissed = 0.1;  // grooves, whose light the corners of a sky do not split, and grazing directions
   Random random(20261124);
   CpuEvaluator evaluator;
-  ReferenceEvaluator reference({.relative_tolerance = 1e-7});
+  ReferenceEvaluator reference({.relative_tolerance = 1e-6});
   double worst = 0.0;
   int missed = 0;
   for (int i = 0; i < kScenes; ++i) {
@@ -285,7 +285,7 @@ TEST(Sky, ConstantProfile_HasTheBitsOfItsTemperature) {
 }
 
 TEST(Sky, Profile_IsDroppedWhereItsBoundIsBelowItsShareAndChangesNoMore) {
-  SceneValues scene = scene_under(profile_of({0.0, 90.0}, {250.0, 250.001}));
+  SceneValues scene = scene_under(profile_of({0.0, 90.0}, {250.0, 250.0001}));
   const SceneEntries entries = {{60.0, {0.2, 3.0}, {}}, {80.0, {0.2, 3.0}, {}}};
   for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
     scene.accuracy.tolerance = tolerance;

@@ -4,16 +4,10 @@
 #include <cmath>
 
 #include "model/choices.hpp"
+#include "plan/constants.hpp"
 
 namespace dolp {
 namespace {
-
-constexpr double kShapeNodeTolerance = 0.125;  // of the request's tolerance: bounds grow by the interpolant's weights
-constexpr double kExtraDigits = 1.0;           // of the interpolation
-constexpr std::size_t kLeastShapeGain = 2;     // entries of a direction and index for each node
-constexpr double kTail = 3.0;         // error bound over the largest of the last coefficients, where these fall fast
-constexpr double kSlowestFall = 0.9;  // of the last coefficients over those before them
-constexpr Eigen::Index kLastCoefficients = 3;
 
 using Values = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -28,13 +22,13 @@ Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, double Mo
 /// if they go on falling as the last ones do.
 Eigen::RowVectorXd tails(const ShapeAxis& axis, const Values& values) {
   if (!axis.is_interpolated()) return Eigen::RowVectorXd::Zero(values.cols());
-  const Eigen::MatrixXd sizes = (axis.coefficients.bottomRows(2 * kLastCoefficients) * values).cwiseAbs();
-  const Eigen::RowVectorXd before = sizes.topRows(kLastCoefficients).colwise().maxCoeff();
-  const Eigen::RowVectorXd last = sizes.bottomRows(kLastCoefficients).colwise().maxCoeff();
+  const Eigen::MatrixXd sizes = (axis.coefficients.bottomRows(2 * kLastShapeCoefficients) * values).cwiseAbs();
+  const Eigen::RowVectorXd before = sizes.topRows(kLastShapeCoefficients).colwise().maxCoeff();
+  const Eigen::RowVectorXd last = sizes.bottomRows(kLastShapeCoefficients).colwise().maxCoeff();
   Eigen::RowVectorXd bounds(values.cols());
   for (Eigen::Index i = 0; i < bounds.size(); ++i) {
-    const double fall = before[i] > 0.0 ? std::min(last[i] / before[i], kSlowestFall) : kSlowestFall;
-    bounds[i] = kTail * last[i] / (1.0 - fall);
+    const double fall = before[i] > 0.0 ? std::min(last[i] / before[i], kSlowestShapeFall) : kSlowestShapeFall;
+    bounds[i] = kShapeTail * last[i] / (1.0 - fall);
   }
   return bounds;
 }
@@ -80,7 +74,7 @@ bool wants_whole_directions(const MomentsRequest& request) {
 
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
   if (!request.may_interpolate || request.size() == 0 || !wants_whole_directions(request)) return std::nullopt;
-  const double digits = kExtraDigits - std::log10(request.tolerance);
+  const double digits = kExtraShapeDigits - std::log10(request.tolerance);
   ShapePlan plan;
   plan.sigma = shape_axis(sigma_parameter(request.distribution), request.sigma, digits);
   plan.q = shape_axis(q_parameter(request), request.q, digits);

@@ -20,6 +20,9 @@ namespace {
 
 using FineRule = boost::math::quadrature::gauss<double, 16>;
 
+// All are chosen. With half and double of each but kPieceWavelengthRatio, which is above 1, evaluations and bounds of the
+// tables of night_paint, bare_aluminium and water stay the same.
+
 // A piece of the band on which 16 Gauss nodes integrate Planck's function to rounding: its exponent changes by no more
 // than this, the wavelength by no more than that factor.
 constexpr double kPieceExponentChange = 4.0;

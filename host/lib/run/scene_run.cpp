@@ -24,7 +24,8 @@ namespace {
 // Limits on the memory of a run. Points take more of it, because they share nothing.
 constexpr std::size_t kMomentsAtOnce = 1U << 20U;
 constexpr std::size_t kPointsAtOnce = 1U << 17U;
-// A direction is refined as a whole where more than one entry in so many misses the tolerance.
+// Chosen: 1.71, 1.81, 1.99 with smith (see plan/constants.hpp). A direction is refined as a whole where more than one
+// entry in so many misses the tolerance.
 constexpr std::size_t kManyMisses = 8;
 constexpr std::size_t kEntriesAtOnce = 4096;  // of a thread: their radiometry takes longer than to start one
 

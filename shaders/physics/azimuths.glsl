@@ -8,6 +8,7 @@ struct Slope {
   bool has_split_line;
   int most_azimuths;
   bool is_coarse;
+  SkyPlace sky;
 };
 
 // A sum over azimuths, for each member of a row.
@@ -50,14 +51,14 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, S
       GrooveLight light = reflected_in_groove(rule, theta, index, slope.t, at.x, at.sin_phi);
       sums.member[0] += at.weight * light.moments;
       sums.sky[0] =
-          add_reflected(sums.sky[0], sky_at(light.cos_before), at.weight * light.before.x, at.weight * light.before.y);
+          add_reflected(sums.sky[0], sky_at(slope.sky, light.cos_before), at.weight * light.before.x, at.weight * light.before.y);
       sums.sky[0] =
-          add_reflected(sums.sky[0], sky_at(light.cos_last), at.weight * light.last.x, at.weight * light.last.y);
+          add_reflected(sums.sky[0], sky_at(slope.sky, light.cos_last), at.weight * light.last.x, at.weight * light.last.y);
     } else {
       Facet f = facet(theta, index, slope.t, at.x, at.sin_phi);
       Masked of_ray = masking_of_ray(row, f.cos_r, sine_of_ray(theta, row, f, slope.t, at), slope.t, zone);
       real seen = leaves ? at.weight : real(0.0);
-      SkyValues sky = sky_at(f.cos_r);
+      SkyValues sky = sky_at(slope.sky, f.cos_r);
       for (int g = 0; g < DOLP_WIDTH; ++g) {
         Projection part = project(theta, f, zone, slope.of_theta.value[g], of_ray.value[g]);
         sums.member[g] += seen * reflected(f, part);
@@ -72,8 +73,9 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, S
 }
 
 // Where cos(theta_r), which falls from phi = 0 on, is that of a corner of the sky.
-real2 corner_line(ThetaNode theta, real t, int corner) {
-  real level = real(0.5) * (cos_of_corner(corner) + theta.c) * (real(1.0) + t * t) - theta.c;
+real2 corner_line(ThetaNode theta, Slope slope, int corner) {
+  real t = slope.t;
+  real level = real(0.5) * (cos_of_corner(slope.sky, corner) + theta.c) * (real(1.0) + t * t) - theta.c;
   return line_at(level, max(theta.s * t, real(1e-30)));
 }
 
@@ -95,9 +97,9 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
       to = is_second ? to : middle;
     }
     real2 start = from;
-    for (int corner = 0; corner <= sky_corners(); ++corner) {
+    for (int corner = 0; corner <= slope.sky.corners; ++corner) {
       real2 stop = to;
-      if (corner < sky_corners()) stop = clamp_half_angle(corner_line(theta, slope.t, corner), start, to);
+      if (corner < slope.sky.corners) stop = clamp_half_angle(corner_line(theta, slope, corner), start, to);
       // Devices that run invocations in lockstep compute both sides of an `if`; they skip a loop of one turn where no
       // invocation needs it. It counts as an iteration, see worst_iterations of host/compute/plan/kernel_data.hpp.
       for (bool is_due = is_before(start, stop); is_due; is_due = false) {
@@ -154,6 +156,7 @@ SlopeResult azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNo
   slope.has_split_line = false;
   slope.most_azimuths = int(own.most_azimuths);
   slope.is_coarse = own.is_coarse > real(0.5);
+  slope.sky = sky_place();
   AzimuthSums sums = slope_sums(rule, theta, no_row(), index, slope);
   real4 all = sums.member[0];
   SlopeResult result;

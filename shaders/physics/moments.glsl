@@ -79,6 +79,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
                      bool is_coarse) {
   ShapeNode shape = row.shape[0];
   PieceSums sums = no_slopes();
+  SkyPlace sky = sky_place();
   real mass[DOLP_WIDTH];
   for (int g = 0; g < DOLP_WIDTH; ++g) mass[g] = real(0.0);
   int order = is_coarse ? min(coarse_order(piece.order), largest_order()) : piece.order;
@@ -106,6 +107,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
     slope.has_split_line = task.has_split_line;
     slope.most_azimuths = task.most_azimuths;
     slope.is_coarse = is_coarse;
+    slope.sky = sky;
     AzimuthSums azimuths = slope_sums(rule, theta, row, index, slope);
     for (int g = 0; g < DOLP_WIDTH; ++g) {
       sums.member[g] += weight[g] * azimuths.member[g];

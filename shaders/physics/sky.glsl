@@ -5,6 +5,13 @@
 // corners too: straight lines in cells of one width, (value at the start, change over the cell), behind the nodes of the
 // rules. host/compute/plan/sky_table.cpp fills it.
 
+// The tables among the rule nodes: read once, because devices read push constants again in each turn of a loop.
+struct SkyPlace {
+  int cells;  // of a function
+  int start;  // of the first cell
+  int corners;
+};
+
 #if DOLP_MOST_SKY > 0
 struct SkyValues {
   real g[DOLP_MOST_SKY];
@@ -24,8 +31,8 @@ SkySums no_sky() {
   return sums;
 }
 
-SkyValues sky_at(real cos_r) {
-  int cells = sky_cells();
+SkyValues sky_at(SkyPlace table, real cos_r) {
+  int cells = table.cells;
   real place = sqrt(max(real(1.0) - cos_r, real(0.0))) * real(cells);
   int cell = min(int(place), cells - 1);
   real within = place - real(cell);
@@ -33,7 +40,7 @@ SkyValues sky_at(real cos_r) {
   for (int k = 0; k < DOLP_MOST_SKY; ++k) {
     sky.g[k] = real(0.0);
     if (k < int(kSkyCount)) {
-      real2 node = rule_node(sky_start() + k * cells + cell);
+      real2 node = rule_node(table.start + k * cells + cell);
       sky.g[k] = node.x + within * node.y;
     }
   }
@@ -59,11 +66,10 @@ SkySums add_scaled(SkySums sums, real factor, SkySums more) {
   }
   return sums;
 }
-// Corners split the azimuths.
-int sky_corners() { return pushed_corners(); }
+SkyPlace sky_place() { return SkyPlace(sky_cells(), sky_start(), pushed_corners()); }
 
-// cos(theta_r) of a corner; they ascend in the zenith.
-real cos_of_corner(int i) { return rule_node(sky_start() + int(kSkyCount) * sky_cells() + i).x; }
+// cos(theta_r) of a corner, which splits the azimuths; they ascend in the zenith.
+real cos_of_corner(SkyPlace table, int i) { return rule_node(table.start + int(kSkyCount) * table.cells + i).x; }
 #else
 struct SkyValues {
   real none;
@@ -74,9 +80,9 @@ struct SkySums {
 };
 
 SkySums no_sky() { return SkySums(real(0.0)); }
-SkyValues sky_at(real) { return SkyValues(real(0.0)); }
-int sky_corners() { return 0; }
-real cos_of_corner(int) { return real(0.0); }
+SkyPlace sky_place() { return SkyPlace(1, 0, 0); }
+SkyValues sky_at(SkyPlace, real) { return SkyValues(real(0.0)); }
+real cos_of_corner(SkyPlace, int) { return real(0.0); }
 SkySums add_reflected(SkySums sums, SkyValues, real, real) { return sums; }
 SkySums add_scaled(SkySums sums, real, SkySums) { return sums; }
 #endif

@@ -74,6 +74,9 @@ inline constexpr double kSkyTableShare = 0.05;  // chosen
 inline constexpr double kSkyTableSafety = 1.25;  // chosen
 /// Change of the slope in u = sqrt(1 - cos(theta_r)) from which on a function of a sky has a corner.
 inline constexpr double kLeastBend = 1e-2;  // chosen
+/// Bends of the corners that do not split, together, over the tolerance; and their error over r_i and these bends.
+inline constexpr double kMostBends = 2e4;      // chosen
+inline constexpr double kUnsplitBends = 5e-4;  // chosen
 /// Roundings of cos(theta_r), and of a value of a table, in units of the roundoff.
 inline constexpr double kSkyCosineRoundings = 8.0;  // chosen
 inline constexpr double kSkyRoundings = 4.0;        // chosen

@@ -208,7 +208,8 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   }
   for (std::size_t k = 0; k < data.sky.count; ++k) {
     const auto part = sky.subspan(DOLP_SKY_PARTS * k, DOLP_SKY_PARTS);
-    const double of_value = data.sky.error[k] + sky_rounding(data, k, unit_roundoff) + least_of_masked;
+    const double of_value =
+        data.sky.error[k] + kUnsplitBends * data.sky.bends[k] + sky_rounding(data, k, unit_roundoff) + least_of_masked;
     const double of_pair = (data.sky.bends[k] > 0.0 ? kSkyCornerFactor : 1.0) * pair;
     moments.sky.push_back({part[0], part[1], of_pair * part[2] + of_value * r_i_scale + reflected_cut + grooves});
   }

@@ -92,6 +92,14 @@ Eigen::RowVectorXd bends_of(std::span<const Corner> corners, Eigen::Index functi
   return squares.cwiseSqrt();
 }
 
+/// Number of the sharpest corners that split, so that the others matter little.
+std::size_t split_corners(std::span<const Corner> corners, Eigen::Index functions, double tolerance) {
+  const std::size_t most = std::min<std::size_t>(corners.size(), DOLP_MOST_SKY_CORNERS);
+  std::size_t split = 0;
+  while (split < most && bends_of(corners.subspan(split), functions).maxCoeff() > kMostBends * tolerance) ++split;
+  return split;
+}
+
 }  // namespace
 
 std::uint32_t SkyTable::word() const {
@@ -114,8 +122,7 @@ SkyTable append_sky(const SkyBasis& basis, double tolerance, bool splits, std::v
   const Eigen::MatrixXd ends = at_ends(basis, cells);
   table.has_cusp = splits && (ends.row(1) - ends.row(0)).cwiseAbs().maxCoeff() * cells > kLeastBend;
   std::vector<Corner> corners = corners_of(basis);
-  const auto split =
-      static_cast<std::ptrdiff_t>(splits ? std::min<std::size_t>(corners.size(), DOLP_MOST_SKY_CORNERS) : 0);
+  const auto split = static_cast<std::ptrdiff_t>(splits ? split_corners(corners, ends.cols(), tolerance) : 0);
   table.corners = static_cast<std::uint32_t>(split);
   const Eigen::RowVectorXd bends = bends_of(std::span(corners).subspan(static_cast<std::size_t>(split)), ends.cols());
   for (Eigen::Index k = 0; k < ends.cols(); ++k) {

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace dolp {
 
@@ -58,6 +59,30 @@ inline constexpr double kSteepStep = 16.0;  // chosen: 1773, 1765, 1759
 inline constexpr int kCriticalBounces = 3;  // chosen
 /// Tolerance of the indices of a basis, over the request's: bounds grow by the weights.
 inline constexpr double kIndexNodeTolerance = 0.5;  // chosen
+
+// ---- Skies (sky_table.cpp) -----------------------------------------------------------------------------------------
+
+/// Cells of a function, at least, and of all functions of a sky together, at most; tolerances below kTightSky may have
+/// more, which not all devices can hold.
+inline constexpr std::uint32_t kLeastSkyCells = 512;            // chosen
+inline constexpr std::uint32_t kMostSkyCells = 1U << 15U;       // chosen: a texel buffer holds 65,536 at least
+inline constexpr std::uint32_t kMostTightSkyCells = 1U << 18U;  // chosen
+inline constexpr double kTightSky = 1e-5;                       // chosen
+/// Of the tolerance, for the distance of a table from its function.
+inline constexpr double kSkyTableShare = 0.05;  // chosen
+/// Largest distance in a cell over that in its middle.
+inline constexpr double kSkyTableSafety = 1.25;  // chosen
+/// Change of the slope in u = sqrt(1 - cos(theta_r)) from which on a function of a sky has a corner.
+inline constexpr double kLeastBend = 1e-2;  // chosen
+/// Bends of the corners that do not split, together, over the tolerance; and their error over r_i and these bends.
+inline constexpr double kMostBends = 2e4;      // chosen
+inline constexpr double kUnsplitBends = 5e-4;  // chosen
+/// Roundings of cos(theta_r), and of a value of a table, in units of the roundoff.
+inline constexpr double kSkyCosineRoundings = 8.0;  // chosen
+inline constexpr double kSkyRoundings = 4.0;        // chosen
+/// Error of the finer rule over its distance from the coarser one, over that of a uniform sky, where a sky has corners
+/// that do not split the azimuths.
+inline constexpr double kSkyCornerFactor = 2.0;  // chosen
 
 // ---- Bounds (error_bounds.cpp) -------------------------------------------------------------------------------------
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "plan/chebyshev.hpp"
+#include "model/chebyshev.hpp"
 #include "plan/constants.hpp"
 
 namespace dolp {

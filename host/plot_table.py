@@ -83,10 +83,13 @@ class Slice:
                 raise NotATable(f"has no variable {name}; a table with DOLP is expected")
         axes = dataset["dolp"].dimensions
         at = {}
+        self.replaced = []
         for axis, value in wanted.items():
             if axis in axes:
                 along = np.asarray(dataset[axis][:])
                 at[axis] = int(np.argmin(np.abs(along - (along[len(along) // 2] if value is None else value))))
+                if value is not None and not np.isclose(along[at[axis]], value):
+                    self.replaced.append(f"has no {axis} = {value:g}; the nearest, {along[at[axis]]:g}, is drawn")
             elif value is not None:
                 raise NotATable(f"has no axis {axis}; its axes are {', '.join(axes)}")
         place = tuple(at.get(axis, slice(None)) for axis in axes)
@@ -243,6 +246,8 @@ def main():
     except (OSError, NotATable) as error:
         print(f"{arguments.table}: {error}", file=sys.stderr)
         return 2
+    for text in table.replaced:
+        print(f"{arguments.table}: {text}", file=sys.stderr)
     try:
         draw(table, arguments.picture)
     except OSError as error:

@@ -184,7 +184,7 @@ std::vector<dolp::Column> views(const Columns& columns) {
 }
 
 /// Low, high and perhaps a start of each key.
-std::vector<dolp::FitRange> ranges_of(const std::map<std::string, std::vector<double>>& vary) {
+std::vector<dolp::FitRange> ranges_of(const std::vector<std::pair<std::string, std::vector<double>>>& vary) {
   std::vector<dolp::FitRange> ranges;
   for (const auto& [key, ends] : vary) {
     if (ends.size() < 2 || ends.size() > 3)
@@ -340,8 +340,8 @@ PYBIND11_MODULE(_native, module) {
       .def("fit",
            [](dolp::Evaluator& evaluator, const dolp::Scene& scene,
               const std::vector<std::pair<std::string, Values>>& data,
-              const std::map<std::string, std::vector<double>>& vary,
-              const std::map<std::string, std::vector<std::string>>& compare, const std::string& loss,
+              const std::vector<std::pair<std::string, std::vector<double>>>& vary,
+              const std::vector<std::pair<std::string, std::vector<std::string>>>& compare, const std::string& loss,
               const std::string& model_error, std::size_t starts, std::uint64_t seed,
               const std::filesystem::path& plot) {
              std::vector<dolp::MeasuredData> sets;

@@ -282,6 +282,30 @@ TEST_F(FitTest, NoUncertainties_TheResidualsGiveTheScale) {
   }
 }
 
+// At each k below the minimum's there are two minima of n: one at its bound, and a lower one inside. What k's interval
+// misses without the other branch is most of it.
+TEST_F(FitTest, MinimumAtABound_IntervalHasTheOtherBranch) {
+  MeasuredData data;
+  data.name = "paint";
+  data.zenith_column = "theta_deg";
+  data.has_uncertainties = true;
+  const std::vector<double> dolp = {0.000321, 0.000975, 0.002693, 0.004349, 0.006603,
+                                    0.010358, 0.014966, 0.019867, 0.025187};
+  for (std::size_t i = 0; i < dolp.size(); ++i) {
+    data.measurements.push_back({.observable = Observable::kDolp, .theta_deg = 5.0 * static_cast<double>(i + 1)});
+    data.measurements.back().value = dolp[i];
+    data.measurements.back().uncertainty = 5e-4;
+  }
+  const FitResult result =
+      fitted(data, {number("surface.n", 1.1, 3.0), number("surface.k", 0.0, 2.0)}, {},
+             {"surface.sigma=0.15", "surface.specular=0.97", "surface.diffuse=0.03", "surface.diffuse_exponent=-0.3",
+              "emission.temperature_K=290", "surroundings.temperature_K=240", "spectrum.band_um=[8,14]"});
+  ASSERT_EQ(result.parameters[0].value, 1.1);
+  ASSERT_TRUE(result.parameters[1].interval_68.low.has_value());
+  EXPECT_NEAR(*result.parameters[1].interval_68.low, 0.18, 0.02);
+  EXPECT_NEAR(*result.parameters[1].interval_68.high, 0.396, 0.002);
+}
+
 TEST_F(FitTest, ParameterWithoutInfluence_IsNamedAndOpen) {
   const FitResult result =
       fitted(measured(kNoise, {"surface.distribution=gaussian"}),

@@ -24,6 +24,7 @@
 #include "report/run_report.hpp"
 #include "run/scene_run.hpp"
 #include "scene/points.hpp"
+#include "scene/scene_keys.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene/scene_writer.hpp"
 
@@ -52,6 +53,13 @@ std::vector<Settings> combinations(const FitOptions& options) {
   for (const Comparison& comparison : options.compare) {
     if (std::ranges::find(options.vary, comparison.key, &FitRange::key) != options.vary.end()) {
       throw InputError(fmt::format("{}: varies and cannot be compared too", comparison.key));
+    }
+    const SceneKey* const known = find_scene_key(comparison.key);
+    for (const std::string& word : comparison.words) {
+      const bool is_plain = known != nullptr && known->description.type == Key::Type::kWord && !word.starts_with('"');
+      if (!is_plain || std::ranges::count(known->description.words, word) > 0) continue;
+      throw InputError(
+          fmt::format("{} = {}: must be {}", comparison.key, one_line(word), known->description.allowed()));
     }
     std::vector<Settings> more;
     for (const Settings& one : all) {

@@ -42,6 +42,18 @@ class Side {
         std::ranges::find_if(points_.rbegin(), points_.rend(), [&](const Point& p) { return p.root <= most; });
     return last == points_.rend() ? nullptr : &last->found;
   }
+  /// The lowest point at which a parameter lies beyond an end, clearly below a rise.
+  const Minimum* lowest_beyond(std::size_t parameter, double end, int direction, double rise) const {
+    const Point* lowest = nullptr;
+    for (const Point& point : points_) {
+      const double at = point.found.where.at[static_cast<Eigen::Index>(parameter)];
+      const bool is_beyond = direction * (at - end) > kCoordinateRounding;
+      if (is_beyond && point.root * point.root < kClearlyLower * rise &&
+          (lowest == nullptr || point.root < lowest->root))
+        lowest = &point;
+    }
+    return lowest == nullptr ? nullptr : &lowest->found;
+  }
 
   Neighbour next() {
     ++tries_;
@@ -278,7 +290,8 @@ class Profiler {
     return first < sides_.size();
   }
 
-  /// The ends of other sides, moved beyond an end, but where a straight way leads to them.
+  /// The ends of other sides, moved beyond an end, but where a straight way leads to them; and points of theirs that
+  /// lie beyond it and below the rise.
   std::vector<Neighbour> looks_beyond(const End& end) const {
     if (result_.stretches.size() == 1) return {};  // the profile of a single parameter has no other branch
     const auto index = static_cast<Eigen::Index>(end.parameter);
@@ -299,6 +312,11 @@ class Profiler {
     std::erase_if(looks, [&](const Neighbour& one) {
       return one.near == own || is_straight(own->where, one.near->where, options_.scale);
     });
+    for (const Side& side : sides_) {
+      const Minimum* const one =
+          side.lowest_beyond(end.parameter, end_of(end), end.direction, options_.rises[end.rise]);
+      if (one != nullptr) looks.push_back({one, {end.parameter}, one->where.at});
+    }
     return looks;
   }
 

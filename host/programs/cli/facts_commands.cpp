@@ -46,7 +46,9 @@ std::vector<double> wavelengths_of(const std::string& text) {
   const bool is_range = numbers.size() == 3 && numbers[0] > 0.0 && numbers[0] < numbers[1] && numbers[2] >= 2.0 &&
                         numbers[2] <= kMost && numbers[2] == std::floor(numbers[2]);
   if (numbers.size() == 1) return numbers;
-  if (!is_range) throw InputError(one_line("--at " + text) + ": must be UM, FROM:TO or FROM:TO:COUNT");
+  if (!is_range)
+    throw InputError(one_line("--at " + text) +
+                     ": must be UM, FROM:TO or FROM:TO:COUNT, with FROM below TO and a COUNT from 2 to 1000000 (11)");
   std::vector<double> wavelengths;
   for (double i = 0.0; i < numbers[2]; ++i)
     wavelengths.push_back(std::lerp(numbers[0], numbers[1], i / (numbers[2] - 1.0)));

@@ -107,8 +107,8 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compa
     if any(len(one) != 2 for one in sets):
         raise InputError("data: a set of its own must be a pair (data, overrides)")
     texts = [(csv_of(columns), native_values(overrides)) for columns, overrides in sets]
-    ranges = {check_key(key): floats(key, ends).ravel().tolist() for key, ends in check_mapping("vary", vary).items()}
-    compared = {check_key(key): word_list(key, words) for key, words in check_mapping("compare", compare).items()}
+    ranges = [(check_key(key), floats(key, ends).ravel().tolist()) for key, ends in check_mapping("vary", vary).items()]
+    compared = [(check_key(key), word_list(key, words)) for key, words in check_mapping("compare", compare).items()]
     text, values, found = native_evaluator(evaluator, device).fit(
         native, texts, ranges, compared, str(loss), str(model_error), whole_number("starts", starts), whole_number("seed", seed),
         "" if plot is None else native_path("plot", plot))

@@ -104,10 +104,9 @@ def csv_of(data: Any) -> str:
         data = data.rename({name: column for column, (name, _) in COORDINATES.items() if name in data.variables})
     names = list(data.variables) if isinstance(data, xr.Dataset) else list(data.keys())
     columns = [floats(name, data[name]) for name in names]
-    try:
-        columns = np.broadcast_arrays(*columns)
-    except ValueError:
+    if len({column.shape for column in columns if column.ndim > 0}) > 1:
         sizes = ", ".join(f"{name} {column.shape}" for name, column in zip(names, columns))
-        raise InputError(f"data: columns of different lengths: {sizes}") from None
+        raise InputError(f"data: columns of different lengths: {sizes}")
+    columns = np.broadcast_arrays(*columns)
     rows = zip(*(column.ravel().tolist() for column in columns))
     return "\n".join([",".join(names), *(",".join(map(repr, row)) for row in rows)]) + "\n"

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "base/atomic_file.hpp"
+#include "base/stopwatch.hpp"
 #include "device/context.hpp"
 #include "device/result.hpp"
 #include "explore/window/actions.hpp"
@@ -239,10 +240,13 @@ void App::settle() {
   }
 }
 
-bool App::answer() {
+bool App::answer(const AfterFrame& after_frame) {
   std::size_t left = kFramesAfterEvent;
   while (left > 0) {
-    if (!frame()) return false;
+    const Clock::time_point start = Clock::now();
+    const bool is_open = frame();
+    if (after_frame) after_frame(seconds_since(start));
+    if (!is_open) return false;
     left = impl_->input.take_news() || impl_->actions.has_picture_to_save() ? kFramesAfterEvent : left - 1;
   }
   return true;
@@ -253,8 +257,10 @@ void App::close() {
   glfwPostEmptyEvent();
 }
 
-void App::run() {
-  while (answer()) {
+void App::reopen() { glfwSetWindowShouldClose(impl_->window.get(), GLFW_FALSE); }
+
+void App::run(const AfterFrame& after_frame) {
+  while (answer(after_frame)) {
     if (ImGui::GetIO().WantTextInput) {
       glfwWaitEventsTimeout(kBlink_s);
     } else {

@@ -60,16 +60,12 @@ wavelength_um = 10.0
 
 const std::vector<DragCase>& drag_cases() {
   const std::vector<Setting> water = {{"surface.material", "water 25C"}, {"spectrum.band_um", {8.0, 14.0}}};
-  std::vector<Setting> bounces = water;
-  bounces.push_back({"surface.masking", "v-cavity"});
-  bounces.push_back({"surface.scattering", "multiple"});
   static const std::vector<DragCase> all = {
       {"paint-10-um", "surface.sigma", {}},
       {"paint-10-um-n", "surface.n", {}},
       {"steel-10-um", "surface.sigma", {{"surface.n", 1.508}, {"surface.k", 0.0}, {"surface.masking", "integral"}}},
       {"water-8-14-um", "surface.sigma", water, true},
       {"water-8-14-um-temperature", "surroundings.temperature_K", water, true},
-      {"water-8-14-um-all-bounces", "surface.sigma", bounces, true},
   };
   return all;
 }

@@ -1,5 +1,7 @@
 #include "explore/heat_map.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -84,8 +86,12 @@ void HeatMap::follow(const std::string& key, const Scene& scene, bool keep_all, 
   theta_deg_ = theta_deg;
 }
 
-std::string HeatMap::key_of(std::size_t level) const {
-  return "map " + std::to_string(kLevels[level].count) + ' ' + key_;
+std::string HeatMap::prefix_of(std::size_t level) const {
+  std::string prefix = "map " + std::to_string(kLevels[level].count);
+  for (const MapAxis& axis : {x_, y_}) {
+    prefix += fmt::format(" {} {} {}", axis_label(axis.axis), axis.scale.from, axis.scale.to);
+  }
+  return prefix + '\n';
 }
 
 PointList HeatMap::rows(std::size_t level, std::size_t first) const {
@@ -109,16 +115,19 @@ PointList HeatMap::rows(std::size_t level, std::size_t first) const {
 std::optional<Job> HeatMap::wanted(std::size_t level) const {
   const Level& of = kLevels[level];
   if (key_.empty() || (shown_key_ == key_ && points_[level].size() == of.count * of.count)) return std::nullopt;
-  Job job{.key = key_of(level), .scene = scene_, .parts = {}, .tolerance = of.tolerance, .keep_all = keep_all_};
+  Job job{.key = key_of(level), .scene = scene_, .parts = {}, .tolerance = of.tolerance, .keep_all = keep_all_,
+          .is_brief = level == 0};
   for (std::size_t row = 0; row < of.count; row += of.batch) job.parts.push_back(rows(level, row));
   return job;
 }
 
 bool HeatMap::take(const JobPart& news) {
   for (std::size_t level = 0; level < kLevels.size(); ++level) {
-    if (news.key != key_of(level)) continue;
-    if (shown_key_ != key_) points_ = {};
-    shown_key_ = key_;
+    if (level == 0 ? !news.key.starts_with(prefix_of(0)) : news.key != key_of(level)) continue;
+    const std::string key = news.key.substr(prefix_of(level).size());
+    if (key != key_ && shown_key_ == key_) return true;
+    if (shown_key_ != key) points_ = {};
+    shown_key_ = key;
     // On a grid the last of theta, sigma and q is the fastest, whatever axis it is on.
     const std::size_t columns = kLevels[level].count;
     const std::size_t rows = news.points.size() / columns;

@@ -63,8 +63,12 @@ class HeatMap {
               double theta_deg);
 
   std::optional<Job> wanted(std::size_t level) const;
+  /// Takes what is this map's; false for the rest. A map of the first level that was begun before the scene changed is
+  /// shown where what is there is older still.
   bool take(const JobPart& news);
   bool is_finished() const;
+  /// The map on display is that of the scene, at the first level at least.
+  bool is_coarse_done() const { return shown_key_ == key_ && !points_[0].empty(); }
   /// True where the map on display belongs to an earlier scene.
   bool is_stale() const { return !shown_key_.empty() && shown_key_ != key_; }
 
@@ -80,7 +84,9 @@ class HeatMap {
   MapField field(Plotted quantity) const;
 
  private:
-  std::string key_of(std::size_t level) const;
+  std::string key_of(std::size_t level) const { return prefix_of(level) + key_; }
+  /// The axes are part of it, because results along others would be wrong ones.
+  std::string prefix_of(std::size_t level) const;
   /// `batch` rows of a level.
   PointList rows(std::size_t level, std::size_t first) const;
 

@@ -56,8 +56,8 @@ class Session {
   void reset_all();
   void undo() { step(done_, undone_, "nothing to undo"); }
   void redo() { step(undone_, done_, "nothing to redo"); }
-  /// Changes of the scene up to here are one for `undo`: those of a drag, for instance.
-  void end_gesture() { is_in_gesture_ = false; }
+  /// Changes while a button of the mouse is held down are one for `undo`, and get coarse results alone.
+  void hold(bool is_held);
   void note_saved() { edits_.note_saved(); }
   void pin();
   void remove_pin(std::size_t position);
@@ -102,6 +102,12 @@ class Session {
   const Fit* fit() const { return fit_ && fitted_changes_ == edits_.changes() ? &*fit_ : nullptr; }
   const FitParameter* fitted(const std::string& key) const;
   const Message& message() const { return message_; }
+  /// True while the mouse changes the scene.
+  bool is_dragged() const { return is_held_ && is_in_gesture_; }
+  /// True where a curve belongs to an earlier scene, and not to one of the same drag.
+  bool is_outdated(const Curve& curve) const { return curve.is_stale() && !is_dragged(); }
+  /// The mark of a curve that is not the finished one of its scene: ", coarse" or ", the scene before"; else empty.
+  const char* remark(const Curve& curve) const;
   /// The effects of the last finished curve; influences of what is kept are those at the cursor's zenith.
   const std::vector<Effect>& effects() const { return effects_; }
   /// The position of the scene's own value on an axis of the map.
@@ -119,11 +125,13 @@ class Session {
   void follow();
   void follow_overlay(const std::string& content, bool keep_all);
   void follow_map(bool keep_all);
+  std::vector<Job> wanted_in_drag() const;
   void estimate_influences();
   void follow_peak();
 
   SceneEdits edits_;
   std::vector<Changes> done_, undone_;  ///< before each gesture; after each that was undone
+  bool is_held_ = false;
   bool is_in_gesture_ = false;
   View view_;
   double theta_deg_ = 60.0;
@@ -139,6 +147,9 @@ class Session {
   std::vector<Effect> effects_;
   Message message_;
   bool is_changed_ = true;
+  // The order of coarse results in a drag.
+  bool is_curve_next_ = true;
+  bool is_map_next_ = false;
 };
 
 /// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1"; with `other` those alone in which it
@@ -146,10 +157,10 @@ class Session {
 std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
 /// The name of a pin, without what the curve has in common with it.
-std::string pin_name(const Pin& pin, const Curve& curve);
+std::string pin_name(const Pin& pin, const Session& session);
 
-/// The surface of the curve on display, and whether it is outdated.
-std::string curve_name(const Curve& curve);
+/// The surface of the curve on display, with its remark.
+std::string curve_name(const Session& session);
 
 /// Empty, or the mark of outdated values.
 const char* stale_text(bool is_stale);

@@ -30,7 +30,7 @@ bool says_stale(const std::string& text) { return text.find("the scene before") 
 TEST(ExploreSession, WhatIsShownWhileTheSceneChanges_IsStaleAndKeepsItsParameters) {
   Driver driver(paint());
   const Session& session = driver.session;
-  const std::string name = curve_name(session.curve());
+  const std::string name = curve_name(session);
   const std::string overlay = session.overlay_name();
   const std::string cursor = cursor_text(session);
   const double influence = session.effects().front().influence.value();
@@ -40,14 +40,14 @@ TEST(ExploreSession, WhatIsShownWhileTheSceneChanges_IsStaleAndKeepsItsParameter
   EXPECT_TRUE(session.overlay()->is_stale());
   EXPECT_TRUE(session.map().is_stale());
   EXPECT_EQ(session.curve().shown_scene().number("surface.sigma"), 0.15);
-  EXPECT_EQ(curve_name(session.curve()), name + ", the scene before");
+  EXPECT_EQ(curve_name(session), name + ", the scene before");
   EXPECT_EQ(session.overlay_name(), overlay + ", the scene before");
   EXPECT_EQ(cursor_text(session), "Cursor, the scene before" + cursor.substr(std::string("Cursor").size()));
   EXPECT_EQ(session.effects().front().influence, influence);
   EXPECT_EQ(cost_lines(session).front(), "time …");
   driver.settle();
   EXPECT_FALSE(session.curve().is_stale() || session.overlay()->is_stale() || session.map().is_stale());
-  EXPECT_FALSE(says_stale(curve_name(session.curve()) + session.overlay_name() + cursor_text(session)));
+  EXPECT_FALSE(says_stale(curve_name(session) + session.overlay_name() + cursor_text(session)));
   EXPECT_NE(cursor_text(session).find("σ = 0.4,"), std::string::npos) << cursor_text(session);
 }
 
@@ -77,9 +77,9 @@ TEST(ExploreSession, UndoAndRedo_GoThroughGestures) {
   const Scene opened = session.scene();
   const auto sigma = [&] { return *session.scene().number("surface.sigma"); };
   for (const double dragged : {0.2, 0.25, 0.3}) session.set("surface.sigma", dragged);
-  session.end_gesture();
+  session.hold(false);
   session.set("surface.sigma", -1.0);  // refused: no change to undo
-  session.end_gesture();
+  session.hold(false);
   session.set("surroundings", Value{});
   session.undo();
   EXPECT_TRUE(session.scene().number("surroundings.temperature_K"));
@@ -100,7 +100,7 @@ TEST(ExploreSession, SavedScene_IsUnchangedUntilTheNextChange) {
   Session session(paint());
   session.set("surface.sigma", 0.2);
   session.note_saved();
-  session.end_gesture();
+  session.hold(false);
   EXPECT_FALSE(session.edits().is_changed());
   session.set("surface.sigma", 0.3);
   EXPECT_TRUE(session.edits().is_changed());
@@ -111,7 +111,7 @@ TEST(ExploreSession, SavedScene_IsUnchangedUntilTheNextChange) {
 TEST(ExploreSession, PinNames_SayWhatDiffers) {
   Driver driver(paint());
   driver.session.pin();
-  const auto name = [&] { return pin_name(driver.session.pins()[0], driver.session.curve()); };
+  const auto name = [&] { return pin_name(driver.session.pins()[0], driver.session); };
   EXPECT_EQ(name(), "the same surface");
   driver.session.set({{"surface.sigma", 0.4}, {"surface.masking", "smith"}});
   driver.settle();

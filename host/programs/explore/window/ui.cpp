@@ -53,7 +53,8 @@ void draw_task(const char* name, BackgroundTask& task) {
 
 }  // namespace
 
-Ui::Ui(Session& session, Actions& actions, const std::string& name) : session_(session), actions_(actions) {
+Ui::Ui(Session& session, Actions& actions, const std::string& name, std::function<void()> catch_up)
+    : session_(session), actions_(actions), catch_up_(std::move(catch_up)) {
   add_file_commands(name);
   add_view_commands();
 }
@@ -322,7 +323,7 @@ void Ui::copy_command() {
 }
 
 void Ui::draw() {
-  if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) session_.end_gesture();
+  session_.hold(ImGui::IsMouseDown(ImGuiMouseButton_Left));
   run_shortcuts();
   draw_menus();
   const ImGuiViewport* viewport = ImGui::GetMainViewport();
@@ -336,6 +337,7 @@ void Ui::draw() {
   controls_.draw(session_);
   draw_pins();
   ImGui::EndChild();
+  catch_up_();
   ImGui::SameLine();
   ImGui::BeginChild("right", {0.0F, all.y});
   draw_view_controls();

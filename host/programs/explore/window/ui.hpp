@@ -13,8 +13,9 @@ namespace dolp::explore {
 
 class Ui {
  public:
-  /// `name` begins the file names that dialogs suggest. Both must outlive this.
-  Ui(Session& session, Actions& actions, const std::string& name);
+  /// `name` begins the file names that dialogs suggest; `catch_up` is called between controls and plots, so that these
+  /// show what the controls have changed. Session and actions must outlive this.
+  Ui(Session& session, Actions& actions, const std::string& name, std::function<void()> catch_up);
 
   /// Draws everything, between ImGui's NewFrame and Render.
   void draw();
@@ -61,6 +62,7 @@ class Ui {
 
   Session& session_;
   Actions& actions_;
+  std::function<void()> catch_up_;
   std::vector<Command> commands_;
   ControlsPanel controls_;
   NumberFields fields_;

@@ -1,7 +1,5 @@
 #include "explore/heat_map.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -86,12 +84,8 @@ void HeatMap::follow(const std::string& key, const Scene& scene, bool keep_all, 
   theta_deg_ = theta_deg;
 }
 
-std::string HeatMap::prefix_of(std::size_t level) const {
-  std::string prefix = "map " + std::to_string(kLevels[level].count);
-  for (const MapAxis& axis : {x_, y_}) {
-    prefix += fmt::format(" {} {} {}", axis_label(axis.axis), axis.scale.from, axis.scale.to);
-  }
-  return prefix + '\n';
+std::string HeatMap::key_of(std::size_t level) const {
+  return "map " + std::to_string(kLevels[level].count) + ' ' + key_;
 }
 
 PointList HeatMap::rows(std::size_t level, std::size_t first) const {
@@ -115,24 +109,27 @@ PointList HeatMap::rows(std::size_t level, std::size_t first) const {
 std::optional<Job> HeatMap::wanted(std::size_t level) const {
   const Level& of = kLevels[level];
   if (key_.empty() || (shown_key_ == key_ && points_[level].size() == of.count * of.count)) return std::nullopt;
-  Job job{.key = key_of(level), .scene = scene_, .parts = {}, .tolerance = of.tolerance, .keep_all = keep_all_,
-          .is_brief = level == 0};
+  Job job{.key = key_of(level), .scene = scene_, .parts = {}, .tolerance = of.tolerance, .keep_all = keep_all_};
   for (std::size_t row = 0; row < of.count; row += of.batch) job.parts.push_back(rows(level, row));
   return job;
 }
 
 bool HeatMap::take(const JobPart& news) {
   for (std::size_t level = 0; level < kLevels.size(); ++level) {
-    if (level == 0 ? !news.key.starts_with(prefix_of(0)) : news.key != key_of(level)) continue;
-    const std::string key = news.key.substr(prefix_of(level).size());
-    if (key != key_ && shown_key_ == key_) return true;
-    if (shown_key_ != key) points_ = {};
-    shown_key_ = key;
+    if (news.key != key_of(level)) continue;
+    const bool is_first = level == 0 && shown_key_ != key_;
+    if (is_first && (std::exchange(arriving_key_, key_) != key_ || news.part == 0)) arriving_.clear();
     // On a grid the last of theta, sigma and q is the fastest, whatever axis it is on.
     const std::size_t columns = kLevels[level].count;
     const std::size_t rows = news.points.size() / columns;
     for (std::size_t i = 0; i < news.points.size(); ++i) {
-      points_[level].push_back(news.points[x_.axis > y_.axis ? i : (i % columns) * rows + i / columns]);
+      (is_first ? arriving_ : points_[level])
+          .push_back(news.points[x_.axis > y_.axis ? i : (i % columns) * rows + i / columns]);
+    }
+    if (is_first && news.is_last) {
+      points_ = {};
+      points_[0] = std::exchange(arriving_, {});
+      shown_key_ = key_;
     }
     ++version_;
     return true;

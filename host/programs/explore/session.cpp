@@ -114,7 +114,7 @@ void Session::hold(bool is_held) {
   const bool was_dragged = is_dragged();
   is_held_ = is_held;
   if (!is_held) is_in_gesture_ = false;
-  is_changed_ = is_changed_ || was_dragged != is_dragged();
+  if (was_dragged != is_dragged()) follow();
 }
 
 const char* Session::remark(const Curve& curve) const {
@@ -274,6 +274,10 @@ void Session::follow() {
 
 void Session::estimate_influences() {
   const JobPart& curve = curve_.finished();
+  // It takes as long as a coarse curve: in a drag neither changes.
+  std::pair<std::string, double> of{curve.key, theta_deg_};
+  if (influences_of_ == of) return;
+  influences_of_ = std::move(of);
   effects_ = curve.effects;
   if (effects_.empty()) return;
   const std::vector<Effect> at_cursor =
@@ -305,10 +309,14 @@ void Session::follow_overlay(const std::string& content, bool keep_all) {
 }
 
 void Session::follow_map(bool keep_all) {
+  if (is_dragged() && map_.is_arriving()) return;  // in a drag it goes from one complete map to the next
   const MapAxis x = suggested_axis(view_.map_x, scene(), view_.theta_max_deg);
   const MapAxis y = suggested_axis(view_.map_y, scene(), view_.theta_max_deg);
   std::string key = content_key(edits_.changes_without({key_of(x.axis), key_of(y.axis)}), keep_all);
   if (x.axis != Axis::kTheta && y.axis != Axis::kTheta) key += "\ntheta=" + format_number(theta_deg_);
+  for (const MapAxis& axis : {x, y}) {
+    key += fmt::format("\n{} {} {}", axis_label(axis.axis), axis.scale.from, axis.scale.to);
+  }
   map_.follow(key, scene(), keep_all, x, y, theta_deg_);
 }
 
@@ -356,6 +364,7 @@ void Session::take(const std::vector<JobPart>& news) {
     const bool is_map = map_.take(part);
     is_curve_next_ = !is_curve;
     if (!is_curve) is_map_next_ = !is_map;
+    if (is_map && part.is_last && is_dragged()) follow();
     peak_.take(part);
     residuals_.take(part);
     is_changed_ = is_changed_ || part.is_last;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "explore/curve.hpp"
@@ -145,6 +146,7 @@ class Session {
   std::optional<Fit> fit_;
   std::vector<Setting> fitted_changes_;  ///< of the scene with what was found
   std::vector<Effect> effects_;
+  std::pair<std::string, double> influences_of_;  ///< key of the curve, zenith
   Message message_;
   bool is_changed_ = true;
   // The order of coarse results in a drag.

@@ -34,7 +34,7 @@ constexpr float kFontPixels = 15.0F;
 constexpr double kBlink_s = 0.3;  // of a text cursor
 // Chosen: of a frame of 33 ms, half of which is drawing. Twice as much makes slow scenes' frames long, half of it lets
 // curves of a band lag behind the slider.
-constexpr double kCatchUp_s = 0.016;
+constexpr double kCatchUp_s = 0.03;
 // Frames after an event: ImGui shows some answers, a list that opens for one, only frames later.
 constexpr std::size_t kFramesAfterEvent = 4;
 constexpr std::size_t kFramesAfterNews = 2;  // of the worker: tables take the width of their text a frame later

@@ -17,15 +17,6 @@ std::string content_key(const std::vector<Setting>& changes, bool keep_all) {
   return key;
 }
 
-/// The other distribution with the same density of flat facets: sigma_G = sigma / sqrt(q - 1).
-std::vector<Setting> other_distribution(const Scene& scene) {
-  const double sigma = scene.number("surface.sigma").value();
-  const double ratio = std::sqrt(scene.number("surface.q").value() - 1.0);
-  const bool is_cauchy = scene.word("surface.distribution") == "cauchy";
-  return {{"surface.distribution", is_cauchy ? "gaussian" : "cauchy"},
-          {"surface.sigma", is_cauchy ? sigma / ratio : sigma * ratio}};
-}
-
 std::string text_of(const std::vector<Setting>& changes) {
   std::string text;
   for (const Setting& change : changes) {
@@ -326,7 +317,7 @@ std::vector<Job> Session::wanted_in_drag() const {
     if (job) jobs.push_back(std::move(*job));
   };
   const auto add_other = [&](bool is_map) {
-    if (is_map && !map_.is_coarse_done()) add(map_.wanted(0));
+    if (is_map && shows_map() && !map_.is_coarse_done()) add(map_.wanted(0));
     if (!is_map && overlay_) add(overlay_->wanted(Curve::Stage::kCoarse));
   };
   if (!is_curve_next_) add_other(is_map_next_);
@@ -345,12 +336,14 @@ std::vector<Job> Session::wanted() const {
   add(curve_.wanted(Curve::Stage::kCoarse));
   add(curve_.wanted(Curve::Stage::kFine));
   if (overlay_) add(overlay_->wanted(Curve::Stage::kFine));
-  add(map_.wanted(0));
+  if (shows_map()) add(map_.wanted(0));
   for (Job& job : peak_.wanted()) jobs.push_back(std::move(job));
   add(residuals_.wanted());
   for (const Pin& pin : pins_) add(pin.curve.wanted(Curve::Stage::kFine));
-  add(map_.wanted(1));
-  add(map_.wanted(2));
+  if (shows_map()) {
+    add(map_.wanted(1));
+    add(map_.wanted(2));
+  }
   return jobs;
 }
 

@@ -11,6 +11,7 @@
 #include "explore/curve.hpp"
 #include "explore/heat_map.hpp"
 #include "explore/measured.hpp"
+#include "explore/panels.hpp"
 #include "explore/peak.hpp"
 #include "explore/scene_edits.hpp"
 
@@ -33,6 +34,9 @@ struct View {
   double theta_max_deg = 90.0;  ///< what is shown, and where the maximum is looked for
   Axis map_x = Axis::kTheta;
   Axis map_y = Axis::kSigma;
+  Panel panel = Panel::kMap;
+  std::size_t mueller_row = 0;  ///< of the element in the view of the pBRDF
+  std::size_t mueller_column = 0;
 };
 
 /// One line for the user.
@@ -127,6 +131,7 @@ class Session {
   void follow_overlay(const std::string& content, bool keep_all);
   void follow_map(bool keep_all);
   std::vector<Job> wanted_in_drag() const;
+  bool shows_map() const { return view_.panel == Panel::kMap; }
   void estimate_influences();
   void follow_peak();
 

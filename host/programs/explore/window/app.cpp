@@ -233,7 +233,7 @@ App::~App() = default;
 
 Session& App::session() { return impl_->session; }
 
-Area App::control_area(const std::string& key) const { return impl_->ui.controls().areas().at(key); }
+Area App::control_area(const std::string& key) const { return impl_->ui.area(key); }
 
 const CurveView& App::curve_view() const { return impl_->ui.curves(); }
 

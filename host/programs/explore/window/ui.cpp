@@ -312,8 +312,33 @@ void Ui::draw_plots(ImVec2 size) {
   ImGui::EndChild();
   ImGui::SameLine();
   ImGui::BeginChild("maps", {size.x - curve_width - gap, size.y}, false, kStill);
-  map_view_.draw(session_, ImGui::GetContentRegionAvail());
+  draw_panels(ImGui::GetContentRegionAvail());
   ImGui::EndChild();
+}
+
+void Ui::draw_panels(ImVec2 size) {
+  View view = session_.view();
+  for (const PanelDescription& of : kPanels) {
+    if (of.panel != Panel::kMap) ImGui::SameLine();
+    const bool is_shown = of.panel == view.panel;
+    const ImGuiCol colour = is_shown ? ImGuiCol_TabActive : ImGuiCol_Tab;
+    ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(colour));
+    if (ImGui::SmallButton(of.name)) view.panel = of.panel;
+    ImGui::PopStyleColor();
+    areas_[fmt::format("panel {}", of.name)] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+  }
+  size.y = ImGui::GetContentRegionAvail().y;
+  const Panel shown_now = session_.view().panel;
+  if (shown_now == Panel::kMap) map_view_.draw(session_, size);
+  if (shown_now == Panel::kSlopes) draw_slopes(session_, size);
+  if (shown_now == Panel::kMaterial) draw_material(session_, size);
+  if (shown_now == Panel::kScattering) scattering_view_.draw(session_, size);
+  if (view.panel != shown_now) session_.set_view(view);
+}
+
+Area Ui::area(const std::string& name) const {
+  const auto tab = areas_.find(name);
+  return tab == areas_.end() ? controls_.areas().at(name) : tab->second;
 }
 
 void Ui::copy_command() {

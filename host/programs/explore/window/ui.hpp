@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ class Ui {
   /// Draws everything, between ImGui's NewFrame and Render.
   void draw();
 
-  const ControlsPanel& controls() const { return controls_; }
+  /// The last drawn area of a control, or of the tab "panel NAME". Errors: std::out_of_range when it was not drawn.
+  Area area(const std::string& name) const;
   const CurveView& curves() const { return curve_view_; }
 
  private:
@@ -58,6 +60,7 @@ class Ui {
   void draw_pins();
   void draw_readout();
   void draw_plots(ImVec2 size);
+  void draw_panels(ImVec2 size);
   void draw_price();
 
   Session& session_;
@@ -67,6 +70,8 @@ class Ui {
   ControlsPanel controls_;
   NumberFields fields_;
   MapView map_view_;
+  ScatteringView scattering_view_;
+  std::map<std::string, Area> areas_;
   CurveView curve_view_;
   PathDialog dialog_;
   bool shows_help_ = false;

@@ -1,10 +1,14 @@
 #include "explore/panels.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "explore/curve.hpp"
+#include "explore/parameters.hpp"
 #include "explore/points.hpp"
 
 namespace dolp::explore {
@@ -89,6 +93,56 @@ ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double th
                                            {"n", n_of_all},
                                            {"k", k_of_all}});
   return cut;
+}
+
+std::optional<Seen> seen_at(const std::vector<Point>& curve, double theta_deg, double azimuth_deg) {
+  const auto above = std::ranges::lower_bound(curve, theta_deg, {}, &Point::theta_deg);
+  if (above == curve.end()) return std::nullopt;
+  const auto below = above == curve.begin() ? above : std::prev(above);
+  if (!above->is_good() || !below->is_good()) return std::nullopt;
+  const double width = above->theta_deg - below->theta_deg;
+  const double part = width > 0.0 ? (theta_deg - below->theta_deg) / width : 0.0;
+  const double q_over_i = (1.0 - part) * below->q_over_i() + part * above->q_over_i();
+  const double angle_deg = std::fmod(azimuth_deg + (q_over_i > 0.0 ? 90.0 : 0.0) + 360.0, 180.0);
+  return Seen{std::abs(q_over_i), angle_deg};
+}
+
+void Sky::follow(const std::string& key, const Scene& scene) {
+  key_ = key;
+  scene_ = scene;
+}
+
+std::string Sky::key_of(std::size_t azimuth) const { return fmt::format("sky {} {}", azimuth, key_); }
+
+std::vector<Job> Sky::wanted() const {
+  std::vector<Job> jobs;
+  if (!scene_ || !is_bistatic(*scene_)) return jobs;
+  for (std::size_t i = 0; i < kAzimuths; ++i) {
+    if (known_[i] == key_of(i)) continue;
+    const Scene scene = scene_->with("geometry.relative_azimuth_deg", azimuth_deg(i));
+    jobs.push_back({.key = key_of(i),
+                    .scene = scene,
+                    .parts = {points_at(scene, zeniths(0.0, 90.0, kZeniths))},
+                    .tolerance = Curve::kCoarseTolerance});
+  }
+  return jobs;
+}
+
+bool Sky::take(const JobPart& news) {
+  for (std::size_t i = 0; i < kAzimuths; ++i) {
+    if (news.key != key_of(i)) continue;
+    rings_[i] = news.points;
+    known_[i] = news.key;
+    return true;
+  }
+  return false;
+}
+
+bool Sky::is_finished() const {
+  for (std::size_t i = 0; i < kAzimuths; ++i) {
+    if (known_[i] != key_of(i)) return false;
+  }
+  return true;
 }
 
 }  // namespace dolp::explore

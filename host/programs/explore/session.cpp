@@ -258,6 +258,7 @@ void Session::follow() {
   residuals_.follow(content, scene());
   follow_overlay(content, keep_all);
   follow_map(keep_all);
+  sky_.follow(content_key(edits_.changes_without({"geometry.relative_azimuth_deg"}), false), scene());
   estimate_influences();
   follow_peak();
   is_changed_ = true;
@@ -318,6 +319,9 @@ std::vector<Job> Session::wanted_in_drag() const {
   };
   const auto add_other = [&](bool is_map) {
     if (is_map && shows_map() && !map_.is_coarse_done()) add(map_.wanted(0));
+    if (is_map && view_.panel == Panel::kSky) {
+      for (Job& job : sky_.wanted()) jobs.push_back(std::move(job));
+    }
     if (!is_map && overlay_) add(overlay_->wanted(Curve::Stage::kCoarse));
   };
   if (!is_curve_next_) add_other(is_map_next_);
@@ -340,6 +344,9 @@ std::vector<Job> Session::wanted() const {
   for (Job& job : peak_.wanted()) jobs.push_back(std::move(job));
   add(residuals_.wanted());
   for (const Pin& pin : pins_) add(pin.curve.wanted(Curve::Stage::kFine));
+  if (view_.panel == Panel::kSky) {
+    for (Job& job : sky_.wanted()) jobs.push_back(std::move(job));
+  }
   if (shows_map()) {
     add(map_.wanted(1));
     add(map_.wanted(2));
@@ -358,6 +365,7 @@ void Session::take(const std::vector<JobPart>& news) {
     is_curve_next_ = !is_curve;
     if (!is_curve) is_map_next_ = !is_map;
     if (is_map && part.is_last && is_dragged()) follow();
+    sky_.take(part);
     peak_.take(part);
     residuals_.take(part);
     is_changed_ = is_changed_ || part.is_last;

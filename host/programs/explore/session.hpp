@@ -97,6 +97,7 @@ class Session {
   std::string overlay_name() const;
   const std::deque<Pin>& pins() const { return pins_; }
   const HeatMap& map() const { return map_; }
+  const Sky& sky() const { return sky_; }
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
   bool varies(const std::string& key) const { return marked_.contains(key); }
@@ -145,6 +146,7 @@ class Session {
   std::optional<Curve> overlay_;
   std::deque<Pin> pins_;
   HeatMap map_;
+  Sky sky_;
   Peak peak_;
   Residuals residuals_;
   std::set<std::string> marked_;

@@ -73,6 +73,41 @@ TEST(ExplorePanels, ScatteringCut_HasItsLobeBeyondTheNormal_AndTheValuesOfMuelle
   EXPECT_EQ(cut.matrices[60], truth);
 }
 
+TEST(ExplorePanels, SphereOfASurface_ShowsPAlongTheTiltAndSAcross) {
+  explore::Driver driver(paint());
+  const std::vector<explore::Point>& curve = driver.session.curve().points();
+  ASSERT_LT(curve[120].q_over_i(), 0.0);
+  const std::optional<explore::Seen> seen = explore::seen_at(curve, 60.0, 30.0);
+  ASSERT_TRUE(seen);
+  EXPECT_DOUBLE_EQ(seen->dolp, -curve[120].q_over_i());
+  EXPECT_NEAR(seen->angle_deg, 30.0, 1e-9);
+  EXPECT_NEAR(explore::seen_at(curve, 60.0, -150.0)->angle_deg, 30.0, 1e-9);
+  std::vector<explore::Point> s_polarised = curve;
+  for (explore::Point& point : s_polarised) point.values[Quantity::kStokesQ] *= -1.0;
+  EXPECT_NEAR(explore::seen_at(s_polarised, 60.0, 30.0)->angle_deg, 120.0, 1e-9);
+  const double between = explore::seen_at(curve, 60.25, 0.0)->dolp;
+  EXPECT_NEAR(between, -0.5 * (curve[120].q_over_i() + curve[121].q_over_i()), 1e-12);
+}
+
+TEST(ExplorePanels, Sky_OfABistaticScene_IsComputedWhileItIsShown) {
+  explore::Driver driver(paint({"geometry.mode=\"bistatic\"", "source.preset=\"sun\"", "geometry.view_zenith_deg=60"}));
+  explore::Session& session = driver.session;
+  EXPECT_FALSE(session.sky().is_finished());
+  explore::View view = session.view();
+  view.panel = explore::Panel::kSky;
+  session.set_view(view);
+  driver.settle();
+  ASSERT_TRUE(session.sky().is_finished());
+  const std::size_t azimuth = 12;
+  const Scene scene = session.scene().with({{"geometry.relative_azimuth_deg", explore::Sky::azimuth_deg(azimuth)},
+                                            {"accuracy.tolerance", explore::Curve::kCoarseTolerance}});
+  explore::expect_same(session.sky().at(azimuth), explore::truth(scene, session.sky().at(azimuth)));
+  session.set("geometry.relative_azimuth_deg", 77.0);
+  EXPECT_TRUE(session.sky().is_finished());
+  session.set("surface.sigma", 0.3);
+  EXPECT_FALSE(session.sky().is_finished());
+}
+
 TEST_F(Window, Panels_ClickedOneByOne_AreDrawn_AndTheMapIsComputedWhileItIsShown) {
   const Area map = app_->control_area("panel map");
   const auto below = [&] {

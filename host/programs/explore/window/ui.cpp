@@ -333,6 +333,8 @@ void Ui::draw_panels(ImVec2 size) {
   if (shown_now == Panel::kSlopes) draw_slopes(session_, size);
   if (shown_now == Panel::kMaterial) draw_material(session_, size);
   if (shown_now == Panel::kScattering) scattering_view_.draw(session_, size);
+  if (shown_now == Panel::kShapes) shape_view_.draw(session_, size);
+  if (shown_now == Panel::kSky) draw_sky(session_, size);
   if (view.panel != shown_now) session_.set_view(view);
 }
 

@@ -71,6 +71,7 @@ class Ui {
   NumberFields fields_;
   MapView map_view_;
   ScatteringView scattering_view_;
+  ShapeView shape_view_;
   std::map<std::string, Area> areas_;
   CurveView curve_view_;
   PathDialog dialog_;

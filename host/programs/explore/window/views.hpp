@@ -50,6 +50,19 @@ class ScatteringView {
   std::string reason_;  ///< why there is none
 };
 
+/// A sphere and a tilted plate as a camera sees them under the scene's radiation: DOLP and angle of polarisation.
+class ShapeView {
+ public:
+  /// A drag tilts the plate, and moves the cursor to its zenith.
+  void draw(Session& session, ImVec2 size);
+
+ private:
+  double azimuth_deg_ = 30.0;  ///< to which the plate is tilted, from the image's horizontal
+};
+
+/// DOLP of a bistatic scene over the direction of the source, as a polar map.
+void draw_sky(const Session& session, ImVec2 size);
+
 class MapView {
  public:
   /// Fills `size` of the current ImGui window with map, contour lines, colour bar and cursor; a click or drag moves the

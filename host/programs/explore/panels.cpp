@@ -31,6 +31,15 @@ std::pair<double, double> known_um(const Scene& scene) {
 
 }  // namespace
 
+Panel panel_of(const std::string& name) {
+  std::string known;
+  for (const PanelDescription& of : kPanels) {
+    if (name == of.name) return of.panel;
+    known += (known.empty() ? "" : ", ") + std::string(of.name);
+  }
+  throw InputError("view " + name + ": is not one of " + known);
+}
+
 std::vector<Setting> other_distribution(const Scene& scene) {
   const double sigma = scene.number("surface.sigma").value();
   const double ratio = std::sqrt(scene.number("surface.q").value() - 1.0);

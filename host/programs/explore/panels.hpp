@@ -19,14 +19,17 @@ enum class Panel : std::uint8_t { kMap, kSlopes, kMaterial, kScattering, kShapes
 
 struct PanelDescription {
   Panel panel;
-  const char* name;  ///< UTF-8
+  const char* name;
 };
 inline constexpr std::array<PanelDescription, 6> kPanels = {{{Panel::kMap, "map"},
                                                              {Panel::kSlopes, "slopes"},
-                                                             {Panel::kMaterial, "n and k"},
+                                                             {Panel::kMaterial, "material"},
                                                              {Panel::kScattering, "pBRDF"},
                                                              {Panel::kShapes, "sphere"},
                                                              {Panel::kSky, "sky"}}};
+
+/// Errors: InputError that names those there are.
+Panel panel_of(const std::string& name);
 
 /// The other distribution with the same density of flat facets, sigma_G = sigma / sqrt(q - 1), as changes of a scene.
 std::vector<Setting> other_distribution(const Scene& scene);

@@ -312,6 +312,11 @@ void run_program(const Scene& scene, const ProgramOptions& options) {
   if (!options.screenshot_path.empty()) check_writable(options.screenshot_path);
   const std::string stem = std::filesystem::path(scene.name()).stem().string();
   App app(SceneEdits(scene), {options.device, stem.empty() || stem == "-" ? "dolp" : stem, options.command_line});
+  if (!options.panel.empty()) {
+    View view = app.session().view();
+    view.panel = panel_of(options.panel);
+    app.session().set_view(view);
+  }
   if (!options.measured_path.empty()) {
     app.session().load_measured(options.measured_path);
     if (app.session().message().is_error) throw InputError(app.session().message().text);

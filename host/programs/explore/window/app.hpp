@@ -74,6 +74,7 @@ struct ProgramOptions {
   std::string measured_path;    ///< CSV of measured points; empty: none
   std::size_t frames = 0;       ///< draw so many and end; 0: until the window is closed
   std::string screenshot_path;  ///< PNG of the last frame; empty: none
+  std::string panel = {};       ///< that is shown first; empty: the map
 };
 
 /// Shows the window. Prints how long frames took, where their number is given.

@@ -24,21 +24,25 @@ ImU32 angle_colour(double angle_deg) {
 
 /// The two images of a direction, and the range of the first.
 struct Colours {
-  double most = 1.0;  ///< DOLP of the lightest colour
+  Scale dolp;  ///< from the darkest colour to the lightest
   bool is_angle = false;
 
   ImU32 of(const std::optional<Seen>& seen) const {
     if (!seen) return kBadColour;
-    return is_angle ? angle_colour(seen->angle_deg) : viridis(seen->dolp / most);
+    return is_angle ? angle_colour(seen->angle_deg) : viridis(dolp.position(seen->dolp));
   }
 };
 
-double largest_dolp(const std::vector<Point>& points, double theta_max_deg) {
-  double most = 0.0;
+/// The range of DOLP from 0, or from the least of many directions on.
+Scale dolp_range(const std::vector<Point>& points, double theta_max_deg, bool from_least) {
+  constexpr double kLeastRange = 1e-6;
+  Scale range{1.0, 0.0};
   for (const Point& point : points) {
-    if (point.is_good() && point.theta_deg <= theta_max_deg) most = std::max(most, point[Quantity::kDolp]);
+    if (!point.is_good() || point.theta_deg > theta_max_deg) continue;
+    range = {std::min(range.from, point[Quantity::kDolp]), std::max(range.to, point[Quantity::kDolp])};
   }
-  return most > 0.0 ? most : 1e-6;
+  if (!from_least || range.to < range.from) range.from = 0.0;
+  return {range.from, std::max(range.to, range.from + kLeastRange)};
 }
 
 void draw_sphere(const Session& session, ImVec2 middle, float radius, const Colours& colours) {
@@ -88,13 +92,15 @@ void draw_bar(ImVec2 corner, float width, const Colours& colours) {
     const double part = (i + 0.5) / kSteps;
     const auto x = [&](int step) { return corner.x + width * static_cast<float>(step) / kSteps; };
     list->AddRectFilled({x(i), corner.y}, {x(i + 1), corner.y + 0.6F * line},
-                        colours.of(Seen{part * colours.most, 180.0 * part}));
+                        colours.of(Seen{colours.dolp.value(part), 180.0 * part}));
   }
-  const std::string last = colours.is_angle ? "180°" : fmt::format("{:.3g} %", 100.0 * colours.most);
-  draw_text(list, {corner.x, corner.y + 0.7F * line}, {0.0F, 0.0F}, kDimColour, colours.is_angle ? "0°" : "0 %");
+  const auto percent = [](double dolp) { return fmt::format("{:.3g} %", 100.0 * dolp); };
+  const std::string last = colours.is_angle ? "180°" : percent(colours.dolp.to);
+  draw_text(list, {corner.x, corner.y + 0.7F * line}, {0.0F, 0.0F}, kDimColour,
+            colours.is_angle ? "0°" : percent(colours.dolp.from));
   draw_text(list, {corner.x + width, corner.y + 0.7F * line}, {1.0F, 0.0F}, kDimColour, last);
   draw_text(list, {corner.x + 0.5F * width, corner.y + 0.7F * line}, {0.5F, 0.0F}, kTextColour,
-            colours.is_angle ? "angle of polarisation" : "DOLP");
+            colours.is_angle ? "angle" : "DOLP");
 }
 
 /// The place of a direction of the sky: zenith in the middle, 0 degrees of azimuth, the side of the view, on the right.
@@ -117,7 +123,7 @@ void draw_rings(const Sky& sky, const SkyPlace& at, const Colours& colours) {
   for (std::size_t i = 0; i < Sky::kAzimuths; ++i) {
     const std::vector<Point>& ring = sky.at(i);
     for (std::size_t j = 0; j + 1 < ring.size(); ++j) {
-      const ImU32 colour = ring[j].is_good() ? viridis(ring[j][Quantity::kDolp] / colours.most) : kBadColour;
+      const ImU32 colour = ring[j].is_good() ? viridis(colours.dolp.position(ring[j][Quantity::kDolp])) : kBadColour;
       const double inner = ring[j].theta_deg;
       const double outer = ring[j + 1].theta_deg;
       for (const double side : {1.0, -1.0}) {
@@ -144,10 +150,10 @@ void draw_sky_marks(const Scene& scene, double source_zenith_deg, const SkyPlace
   list->AddCircle(at(scene.number("geometry.view_zenith_deg").value(), 0.0), 5.0F, kTextColour, 4, 2.0F);
 }
 
-double largest_dolp(const Sky& sky) {
-  double most = 0.0;
-  for (std::size_t i = 0; i < Sky::kAzimuths; ++i) most = std::max(most, largest_dolp(sky.at(i), 90.0));
-  return most;
+std::vector<Point> all_points(const Sky& sky) {
+  std::vector<Point> all;
+  for (std::size_t i = 0; i < Sky::kAzimuths; ++i) all.insert(all.end(), sky.at(i).begin(), sky.at(i).end());
+  return all;
 }
 
 }  // namespace
@@ -176,7 +182,7 @@ void ShapeView::draw(Session& session, ImVec2 size) {
             fmt::format("sphere, and a plate tilted by {:.1f}° (drag){}", session.theta_deg(),
                         session.remark(session.curve())));
   for (const bool is_angle : {false, true}) {
-    const Colours colours{largest_dolp(session.curve().points(), session.view().theta_max_deg), is_angle};
+    const Colours colours{dolp_range(session.curve().points(), session.view().theta_max_deg, false), is_angle};
     const float x = plate.x + (is_angle ? 0.5F * size.x : 0.0F);
     draw_sphere(session, {x, high}, radius, colours);
     draw_plate(session, {x, low}, radius, azimuth_deg_, colours);
@@ -189,7 +195,7 @@ void draw_sky(const Session& session, ImVec2 size) {
     return coloured_text(kDimColour, "The sky is that of a source: choose the mode bistatic.");
   }
   const Sky& sky = session.sky();
-  const Colours colours{largest_dolp(sky)};
+  const Colours colours{dolp_range(all_points(sky), 90.0, true)};
   const float line = ImGui::GetTextLineHeight();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float radius = std::max(line, std::min(0.5F * size.x - 2.0F * line, 0.5F * (size.y - 5.5F * line)));

@@ -76,6 +76,7 @@ CLI::App* add_fit(CLI::App& app, StudyOptions& options) {
   add_common(*study, options);
   options.entries = 200;
   add_entries(*study, options, "sets of measurements");
+  study->add_option("--first-set", options.first_set, "number of the first set")->capture_default_str();
   return study;
 }
 

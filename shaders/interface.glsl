@@ -26,6 +26,7 @@
 #define DOLP_SPEC_TOTAL_REFLECTION 3  // whether any index of the request has a critical_cos
 #define DOLP_SPEC_MULTIPLE 4          // whether rays are followed through all their bounces
 #define DOLP_SPEC_DIRECT 5            // whether the direct emission is wanted too
+#define DOLP_SPEC_SKY 6               // number of functions of a sky, see physics/sky.glsl
 
 #define DOLP_CAUCHY 0u
 #define DOLP_GAUSSIAN 1u
@@ -38,7 +39,12 @@
 // count: tasks of this dispatch (moments.comp), slopes (slopes.comp), entries (mueller.comp) or shapes bound
 // (masking_table.comp); first: the first of them, as a position in the bound buffers. Output i of a dispatch belongs to
 // entry first + i, outputs i * DOLP_WIDTH and following to task first + i. largest_order: of the rule nodes.
-#define DOLP_PUSH_CONSTANTS uint first; uint count; uint largest_order; uint unused;
+// sky: log2 of the cells of a function, from DOLP_SKY_CORNERS_SHIFT on the number of its corners, whose cosines follow
+// the cells, and from DOLP_SKY_START_SHIFT on where the cells begin among the rule nodes. Sums with a sky stand behind
+// the other outputs of a dispatch, see moments.comp and slopes.comp.
+#define DOLP_PUSH_CONSTANTS uint first; uint count; uint largest_order; uint sky;
+#define DOLP_SKY_CORNERS_SHIFT 5
+#define DOLP_SKY_START_SHIFT 10
 
 // ---- Task word: task of an invocation of moments.comp, as bits -----------------------------------------------------
 #define DOLP_TASK_MEMBERS_BITS 5u    // from bit 0: members of the row
@@ -56,6 +62,12 @@
 #define DOLP_WIDTH 1             // entries of one invocation, see Row of physics/row.glsl
 #endif
 #define DOLP_ROW_WIDTH 4         // the larger of the two values of DOLP_WIDTH
+#ifndef DOLP_MOST_SKY
+#define DOLP_MOST_SKY 0          // most functions of a sky; 0: kernels without
+#endif
+#define DOLP_SKY_FUNCTIONS 8     // the other value of DOLP_MOST_SKY
+#define DOLP_MOST_SKY_CORNERS 24 // that split the azimuths
+#define DOLP_SKY_PARTS 3         // numbers of a function in the output of moments.comp: r_i, r_q, the larger difference
 #define DOLP_MAX_PIECES 63       // pieces of the slope axis for one direction
 #define DOLP_MAX_ARCS 13        // arcs of the azimuth for one slope, but for those of total reflection
 // Of V-grooves, see physics/groove.glsl
@@ -160,6 +172,9 @@ struct BeamNode {
 struct MuellerNode {
   real m[16];
 };
+
+#define DOLP_AZIMUTH_NUMBERS 8  // of an AzimuthNode
+#define DOLP_MOMENTS_NUMBERS 13  // of a MomentsNode
 
 // The moments of the facets of one slope, per unit of P(t) t dt: sums over half of the azimuths.
 struct AzimuthNode {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <memory>
 
 #include "model/choices.hpp"
 
@@ -121,6 +122,20 @@ Change surroundings(const std::string& name, double temperature_K) {
   return {name, [temperature_K](SceneValues& scene) { scene.surroundings = Surroundings{temperature_K}; }};
 }
 
+Change profile(const std::string& name, const SkyProfile& sky) {
+  return {name, [sky](SceneValues& scene) {
+            scene.surroundings = Surroundings{.profile = std::make_shared<const SkyProfile>(sky)};
+          }};
+}
+
+/// Temperatures that rise toward the horizon, in steps of 5 degrees.
+SkyProfile sky_of_rows() {
+  SkyProfile sky;
+  sky.zenith_deg = spaced(0.0, 90.0, 19);
+  for (const double zenith_deg : sky.zenith_deg) sky.values.push_back(220.0 + 65.0 * std::pow(zenith_deg / 90.0, 4.0));
+  return sky;
+}
+
 void set_band(SceneValues& scene) { scene.spectrum = {8.0, 14.0}; }
 
 std::vector<EffectGroup> surface_groups(const SceneValues& base) {
@@ -159,6 +174,9 @@ std::vector<EffectGroup> radiation_groups(const SceneValues& base, const SceneVa
           group("source", bistatic, {{"off"}, source("on", kIrradiance)}),
           group("surroundings", base,
                 {{"off"}, surroundings("250 K", kColdSky), surroundings("as warm as the surface", kTemperature)}),
+          group("profile", base,
+                {surroundings("uniform", kColdSky), profile("clear sky", *built_in_sky("clear-sky")),
+                 profile("19 rows", sky_of_rows())}),
           group("path", base,
                 {{"off"},
                  {"on",

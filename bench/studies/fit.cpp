@@ -25,7 +25,6 @@ using nlohmann::ordered_json;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kQuickSets = 10;
-constexpr std::size_t kFirstSet = 1000;  // settings of the fit were chosen on sets below
 constexpr int kRepeats = 3;
 constexpr const char* kPython = "/usr/bin/python3";
 
@@ -61,18 +60,24 @@ ordered_json set_row(std::size_t number, const SetOutcome& outcome) {
 
 /// Shares of all intervals that hold the truth, and of the sets whose global minimum was found.
 ordered_json coverage_json(const ordered_json& rows) {
-  std::size_t intervals = 0, held_68 = 0, held_95 = 0, global = 0;
+  std::size_t intervals = 0, held_68 = 0, held_95 = 0, global = 0, evaluations = 0;
   std::vector<double> times_s;
   for (const ordered_json& row : rows) {
     intervals += row["truth"].size();
     held_68 += row["held_68"].get<std::size_t>();
     held_95 += row["held_95"].get<std::size_t>();
     global += row["is_global"].get<bool>() ? 1 : 0;
+    evaluations += row["evaluations"].get<std::size_t>();
     times_s.push_back(row["time_s"].get<double>());
   }
   const auto share = [&](std::size_t held) { return static_cast<double>(held) / static_cast<double>(intervals); };
-  return {{"sets", rows.size()},        {"intervals", intervals},  {"share_68", share(held_68)},
-          {"share_95", share(held_95)}, {"global_minima", global}, {"median_time_s", median(times_s)}};
+  return {{"sets", rows.size()},
+          {"intervals", intervals},
+          {"share_68", share(held_68)},
+          {"share_95", share(held_95)},
+          {"global_minima", global},
+          {"evaluations", static_cast<double>(evaluations) / static_cast<double>(rows.size())},
+          {"median_time_s", median(times_s)}};
 }
 
 /// The same minimum by SciPy around the Python package, from the middle of the ranges; null without SciPy.
@@ -133,7 +138,8 @@ void measure_sets(StudyRun& run) {
   const std::size_t sets = run.options().quick ? std::min(kQuickSets, run.options().entries) : run.options().entries;
   run.expect(sets);
   run.json()["time"] = time_json(evaluator);
-  for (std::size_t number = kFirstSet; number < kFirstSet + sets; ++number) {
+  const std::size_t first = run.options().first_set;
+  for (std::size_t number = first; number < first + sets; ++number) {
     run.finish(set_row(number, fit_outcome(number, evaluator)));
   }
   run.json()["coverage"] = coverage_json(run.rows());
@@ -143,10 +149,11 @@ std::string table_text(const ordered_json& result) {
   const ordered_json& coverage = result["coverage"];
   std::string text = fmt::format(
       "{} synthetic sets, {} intervals\n  68 % intervals hold the truth {:.1f} %\n  95 % intervals {:.1f} %\n"
-      "  global minimum found in {}\n  median time {}\n",
+      "  global minimum found in {}\n  parameter sets of a fit {:.0f}\n  median time {}\n",
       coverage["sets"].get<std::size_t>(), coverage["intervals"].get<std::size_t>(),
       100.0 * coverage["share_68"].get<double>(), 100.0 * coverage["share_95"].get<double>(),
-      coverage["global_minima"].get<std::size_t>(), time_text(coverage["median_time_s"].get<double>()));
+      coverage["global_minima"].get<std::size_t>(), coverage["evaluations"].get<double>(),
+      time_text(coverage["median_time_s"].get<double>()));
   const ordered_json& time = result["time"];
   text += fmt::format("a fit of {} parameters to {} points: {}, {} evaluations\n",
                       time["parameters"].get<std::size_t>(), time["points"].get<std::size_t>(),

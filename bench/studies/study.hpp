@@ -14,6 +14,7 @@ struct StudyOptions {
   std::vector<std::string> cases;    ///< empty: all
   std::vector<std::string> methods;  ///< empty: all
   std::size_t entries = 1024;        ///< of one call of a batched method
+  std::size_t first_set = 1000;      ///< of fits, whose constants were chosen on sets below
   bool quick = false;
   bool quiet = false;                  ///< no progress bar
   std::vector<std::string> arguments;  ///< of the program, its name included

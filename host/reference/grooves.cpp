@@ -56,7 +56,7 @@ constexpr int kLookAzimuths = 16;
 constexpr double kLookSteepest = 50.0;
 
 // Components of the integrals. Lost light, which may or may not leave the groove, counts as reflected.
-enum Component : std::size_t { kAlbedo, kReflected, kPolarised, kAbsorbed, kLost, kCount };
+enum Component : std::size_t { kAlbedo, kReflected, kPolarised, kAbsorbed, kLost, kSkyReflected, kSkyPolarised, kCount };
 using GrooveValues = Values<kCount>;
 
 Groove<double> groove_of(double t) {
@@ -67,7 +67,7 @@ Groove<double> groove_of(double t) {
 double intensity(const Electric& e) { return std::norm(e[0]) + std::norm(e[1]) + std::norm(e[2]); }
 
 void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3& omega, Facet first,
-            const OpticalConstants& constants, GrooveLight& total) {
+            const OpticalConstants& constants, const SkyFunction* sky, GrooveLight& total) {
   GrooveBeam<double> beam(groove, omega, first);
   UnitLight light = unit_light(point, beam.direction());
   for (int count = 1; beam.flux() > 0.0; ++count) {
@@ -82,6 +82,11 @@ void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3
     total.albedo += left;
     total.reflected += left * 0.5 * (s + p);
     total.polarised += left * 0.5 * (s - p);
+    if (sky && left > 0.0) {
+      const double g = sky->value(std::acos(std::clamp(b.k_out[2], 0.0, 1.0)) * 180.0 / pi);
+      total.sky_reflected += g * left * 0.5 * (s + p);
+      total.sky_polarised += g * left * 0.5 * (s - p);
+    }
     if (count == 1) total.once_reflected += left * 0.5 * (s + p);
     total.bounces += 1.0;
     const bool is_lost = count == kMostFollowed;
@@ -94,14 +99,21 @@ void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3
 }
 
 // Code of the history of the beam that meets `first` first: after each bounce none, some or all of it leaves.
-std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first, const SpecialAngles& special) {
+std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first, const SpecialAngles& special,
+                      const SkyFunction* sky) {
   constexpr std::uint64_t kPrime = 1099511628211U;
   std::uint64_t hash = 14695981039346656037U;
   GrooveBeam<double> beam(groove_of(point.t), omega, first);
   for (int count = 0; beam.flux() > 0.0 && count < kMostFollowed; ++count) {
     const Vector3 n = beam.normal();
     const double cos_beta = -dot(beam.direction(), n);
-    const double left = beam.reflect(sum(beam.direction(), scaled(2.0 * cos_beta, n)));
+    const Vector3 out = sum(beam.direction(), scaled(2.0 * cos_beta, n));
+    const double left = beam.reflect(out);
+    if (sky && left > 0.0) {
+      const double zenith_deg = std::acos(std::clamp(out[2], 0.0, 1.0)) * 180.0 / pi;
+      const auto above = [&](double corner_deg) { return corner_deg < zenith_deg; };
+      hash = (hash ^ static_cast<std::uint64_t>(std::ranges::count_if(sky->corners_deg, above))) * kPrime;
+    }
     const std::uint64_t leaves = (left > 0.0 ? 1U : 0U) + (beam.flux() > 0.0 ? 2U : 0U);
     hash = (hash ^ (4U * special.side(cos_beta) + leaves)) * kPrime;
   }
@@ -112,23 +124,25 @@ GrooveValues scales_of(const GrooveValues& value) {
   const double floor = kNegligible * value[kAlbedo] + std::numeric_limits<double>::min();
   const double reflected = std::max(floor, value[kReflected]);
   return {std::max(floor, value[kAlbedo]), reflected, reflected, std::max(floor, value[kAbsorbed]),
-          std::numeric_limits<double>::infinity()};
+          std::numeric_limits<double>::infinity(), reflected, reflected};
 }
 
 GrooveValues values_of(const GrooveLight& light) {
-  return {light.albedo, light.reflected + light.lost, light.polarised, light.absorbed, light.lost};
+  return {light.albedo, light.reflected + light.lost, light.polarised, light.absorbed, light.lost, light.sky_reflected,
+          light.sky_polarised};
 }
 
 // The grooves of one surface, seen from one direction.
 class Surveyor {
  public:
   Surveyor(const Slopes& slopes, double theta_deg, const OpticalConstants& constants, const Refinement& refinement,
-           bool may_abandon)
+           const SkyFunction* sky, bool may_abandon)
       : axis_(slopes),
         theta_rad_(theta_deg * pi / 180.0),
         view_(zenith_from_deg(theta_deg)),
         constants_(constants),
         refinement_(refinement),
+        sky_(sky),
         may_abandon_(may_abandon) {}
 
   /// Undefined where the attempt is abandoned.
@@ -139,7 +153,7 @@ class Surveyor {
  private:
   GrooveValues at(const SlopePoint& point) {
     if (is_abandoned()) return {};
-    const GrooveLight light = light_in_groove(point.t, point.sin_chi, point.cos_chi, view_, constants_);
+    const GrooveLight light = light_in_groove(point.t, point.sin_chi, point.cos_chi, view_, constants_, sky_);
     bounces_ += light.bounces;
     evaluations_ += 1.0;
     return values_of(light);
@@ -166,6 +180,7 @@ class Surveyor {
   Zenith view_;
   OpticalConstants constants_;
   Refinement refinement_;
+  const SkyFunction* sky_;
   bool may_abandon_;
   double bounces_ = 0.0;
   double evaluations_ = 0.0;
@@ -203,7 +218,7 @@ Moments Surveyor::moments() {
   const RegimeScan scan(view_, theta_rad_, {.per_gamma = kStepsPerGamma}, [&](const SlopePoint& point) {
     if (is_abandoned()) return std::uint64_t{0};
     const Vector3 omega = toward_view(point, view_);
-    return history(point, omega, Facet::kA, special) * 3 + history(point, omega, Facet::kB, special);
+    return history(point, omega, Facet::kA, special, sky_) * 3 + history(point, omega, Facet::kB, special, sky_);
   });
   const SlopeTask<kCount> task{.integrand = [this](const SlopePoint& point) { return at(point); },
                                .scales = scales_of,
@@ -223,7 +238,8 @@ Moments Surveyor::moments() {
   const double half_lost = 0.5 * (integral.value[kLost] + integral.value[kCount + kLost]);
   const double unknown = 0.5 * tail_most + half_lost;
   const auto error_of = [&](std::size_t k) {
-    const double magnitude = k == kPolarised ? integral.value[kReflected] : integral.value[k];
+    const bool is_signed = k == kPolarised || k == kSkyReflected || k == kSkyPolarised;
+    const double magnitude = is_signed ? integral.value[kReflected] : integral.value[k];
     return kBentErrors * (integral.error[k] + integral.value[kCount + k]) + kRounding * magnitude;
   };
   Moments m;
@@ -237,33 +253,38 @@ Moments Surveyor::moments() {
   m.r_i_error = error_of(kReflected) + unknown + amplitude_error;
   m.r_q_error = std::max(error_of(kPolarised), error_of(kReflected)) + 2.0 * unknown + amplitude_error;
   m.deficit_error = error_of(kAbsorbed) + unknown + kRounding * tail_weight;
+  if (sky_) {
+    const double sky_error = std::max(error_of(kSkyReflected), error_of(kSkyPolarised));
+    m.sky = {{integral.value[kSkyReflected], integral.value[kSkyPolarised],
+              std::max(sky_error, m.r_i_error) + 2.0 * unknown + tail_most + half_lost}};
+  }
   return m;
 }
 
 }  // namespace
 
 GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view,
-                            const OpticalConstants& constants) {
+                            const OpticalConstants& constants, const SkyFunction* sky) {
   const SlopePoint point{t, sin_chi, cos_chi};
   const Groove<double> groove = groove_of(t);
   const Vector3 omega = toward_view(point, view);
   GrooveLight total;
-  for (const Facet first : {Facet::kA, Facet::kB}) follow(groove, point, omega, first, constants, total);
+  for (const Facet first : {Facet::kA, Facet::kB}) follow(groove, point, omega, first, constants, sky, total);
   const double per_width = 0.5 / groove.cos_alpha;
   for (double* value : {&total.albedo, &total.reflected, &total.polarised, &total.absorbed, &total.lost,
-                        &total.once_reflected, &total.once_absorbed}) {
+                        &total.once_reflected, &total.once_absorbed, &total.sky_reflected, &total.sky_polarised}) {
     *value *= per_width;
   }
   return total;
 }
 
 Moments groove_moments(const Slopes& slopes, double theta_deg, const OpticalConstants& constants,
-                       const Refinement& refinement) {
-  if (zenith_from_deg(theta_deg).cos == 0.0) return {.direct_i = 0.0, .direct_q = 0.0};
+                       const Refinement& refinement, const SkyFunction* sky) {
+  if (zenith_from_deg(theta_deg).cos == 0.0) return {.direct_i = 0.0, .direct_q = 0.0, .sky = std::vector<SkyMoments>(sky ? 1 : 0)};
   double evaluations = 0.0;
   for (Refinement attempted = refinement;; attempted.relative_tolerance *= kLessAmbitious) {
     const bool is_last = attempted.relative_tolerance >= kLeastAmbition;
-    Surveyor surveyor(slopes, theta_deg, constants, attempted, !is_last);
+    Surveyor surveyor(slopes, theta_deg, constants, attempted, sky, !is_last);
     Moments moments = surveyor.moments();
     evaluations += surveyor.evaluations();
     moments.evaluations = evaluations;

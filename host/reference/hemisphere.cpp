@@ -59,14 +59,19 @@ MomentValues moment_scales(const MomentValues& value) {
   return {std::max(floor, value[kAlbedo]), reflected, reflected, absorbed};
 }
 
-// The moments followed by the errors of their azimuth integrals, which are only carried along.
-using BothValues = Values<2 * kMomentCount>;
+// The moments, and with a function of the sky, followed by the errors of their azimuth integrals, which are only carried
+// along.
+constexpr std::size_t kSkyReflected = kMomentCount;
+constexpr std::size_t kSkyPolarised = kMomentCount + 1;
+constexpr std::size_t kZenithCount = kMomentCount + 2;
+using BothValues = Values<2 * kZenithCount>;
 
 BothValues both_scales(const BothValues& value) {
   BothValues scales;
   scales.fill(kInfinity);
   const MomentValues moments = moment_scales({value[kAlbedo], value[kReflected], value[kPolarised], value[kAbsorbed]});
   std::copy(moments.begin(), moments.end(), scales.begin());
+  scales[kSkyReflected] = scales[kSkyPolarised] = moments[kReflected];
   return scales;
 }
 
@@ -86,15 +91,16 @@ MuellerRow mueller_row(const FresnelCoefficients& r, double cos_eta, double sin_
 class Hemisphere {
  public:
   Hemisphere(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
-             const Refinement& refinement)
+             const Refinement& refinement, const SkyFunction* sky)
       : slopes_(slopes),
         masking_(masking),
         theta_rad_(theta_deg * pi / 180.0),
         fixed_(zenith_from_deg(theta_deg)),
         constants_(constants),
-        refinement_(refinement) {}
+        refinement_(refinement),
+        sky_(sky) {}
 
-  Integral<2 * kMomentCount> integrate_zenith();
+  Integral<2 * kZenithCount> integrate_zenith();
   double evaluations() const { return evaluations_; }
 
  private:
@@ -119,6 +125,7 @@ class Hemisphere {
   Zenith fixed_;
   OpticalConstants constants_;
   Refinement refinement_;
+  const SkyFunction* sky_;
   double evaluations_ = 0.0;
 };
 
@@ -223,6 +230,9 @@ Breaks Hemisphere::zenith_breaks() const {
       angles.push_back(angle);
     }
   }
+  if (sky_) {
+    for (const double corner_deg : sky_->corners_deg) angles.push_back(corner_deg * pi / 180.0);
+  }
   for (const double angle : angles) {
     if (angle > 0.0 && angle < 0.5 * pi) breaks.add(std::asinh(std::tan(0.5 * (angle - theta_rad_)) / width));
   }
@@ -244,16 +254,21 @@ BothValues Hemisphere::row_values(double u) {
   BothValues both;
   for (std::size_t k = 0; k < kMomentCount; ++k) {
     both[k] = jacobian * inner.value[k];
-    both[kMomentCount + k] = jacobian * inner.error[k];
+    both[kZenithCount + k] = jacobian * inner.error[k];
   }
+  const double g = sky_ ? sky_->value(90.0 - elevation_rad * 180.0 / pi) : 0.0;
+  both[kSkyReflected] = g * both[kReflected];
+  both[kSkyPolarised] = g * both[kPolarised];
+  both[kZenithCount + kSkyReflected] = std::abs(g) * both[kZenithCount + kReflected];
+  both[kZenithCount + kSkyPolarised] = std::abs(g) * both[kZenithCount + kPolarised];
   return both;
 }
 
-Integral<2 * kMomentCount> Hemisphere::integrate_zenith() {
+Integral<2 * kZenithCount> Hemisphere::integrate_zenith() {
   const Goal goal{.relative = refinement_.relative_tolerance, .subdivisions = refinement_.subdivisions};
   const Breaks breaks = zenith_breaks();
   if (fixed_.cos > 0.0) {
-    return integrate<2 * kMomentCount>([this](double u) { return row_values(u); }, breaks, goal, both_scales);
+    return integrate<2 * kZenithCount>([this](double u) { return row_values(u); }, breaks, goal, both_scales);
   }
   // At theta = 90 degrees u runs up to 0, where the integrand is |u|^(2q - 4) for q < 2: integrated in log |u|, with
   // what lies beyond the gap added as that power.
@@ -268,7 +283,7 @@ Integral<2 * kMomentCount> Hemisphere::integrate_zenith() {
     if (u < 0.0) log_breaks.add(std::log(-u));
   }
   for (const double x : {-40.0, -20.0, -10.0, -5.0, -2.0}) log_breaks.add(x);
-  Integral<2 * kMomentCount> result = integrate<2 * kMomentCount>(in_log, log_breaks, goal, both_scales);
+  Integral<2 * kZenithCount> result = integrate<2 * kZenithCount>(in_log, log_breaks, goal, both_scales);
   const double power = slopes_.is_gaussian() ? 1.0 : std::min(1.0, 2.0 * slopes_.q() - 3.0);
   const BothValues at_gap = row_values(-kHorizonGap);
   for (std::size_t k = 0; k < result.value.size(); ++k) result.value[k] += kHorizonGap * at_gap[k] / power;
@@ -305,19 +320,20 @@ Zenith zenith_from_deg(double theta_deg) {
 }
 
 Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
-                           const Refinement& refinement) {
+                           const Refinement& refinement, const SkyFunction* sky) {
   const bool is_unshadowed = masking == Masking::kNone || masking == Masking::kIntegral;
   if (theta_deg == 90.0 && is_unshadowed && !slopes.is_gaussian() && slopes.q() <= 1.5) {
     return divergent_moments(constants);
   }
-  Hemisphere hemisphere(slopes, masking, theta_deg, constants, refinement);
-  const Integral<2 * kMomentCount> integral = hemisphere.integrate_zenith();
+  Hemisphere hemisphere(slopes, masking, theta_deg, constants, refinement, sky);
+  const Integral<2 * kZenithCount> integral = hemisphere.integrate_zenith();
   // G_1 is at least 1/2.
   const double masking_error = 2.0 * masking_tolerance_for(refinement);
   const double cos_theta = zenith_from_deg(theta_deg).cos;
   const auto error_of = [&](std::size_t k) {
-    const double magnitude = k == kPolarised ? integral.value[kReflected] : integral.value[k];
-    return integral.error[k] + integral.value[kMomentCount + k] +
+    const double magnitude =
+        k == kAlbedo || k == kAbsorbed ? integral.value[k] : integral.value[kReflected];
+    return integral.error[k] + integral.value[kZenithCount + k] +
            (masking_error + kRounding + kElevationRounding) * magnitude;
   };
   const double amplitude_error = amplitude_rounding(integral.value[kReflected], integral.value[kAlbedo]);
@@ -335,6 +351,10 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   moments.deficit = is_split ? (cos_theta - moments.albedo) + integral.value[kAbsorbed] : cos_theta - moments.r_i;
   moments.deficit_error = is_split ? split_error : direct_error;
   moments.evaluations = hemisphere.evaluations();
+  if (sky) {
+    const double sky_error = std::max(error_of(kSkyReflected), error_of(kSkyPolarised)) + amplitude_error;
+    moments.sky = {{integral.value[kSkyReflected], integral.value[kSkyPolarised], sky_error}};
+  }
   return moments;
 }
 

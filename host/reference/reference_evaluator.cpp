@@ -16,6 +16,7 @@
 
 #include "base/processor.hpp"
 #include "base/stopwatch.hpp"
+#include "model/sky_basis.hpp"
 #include "reference/direct_emission.hpp"
 #include "reference/grooves.hpp"
 #include "reference/hemisphere.hpp"
@@ -77,13 +78,34 @@ void check(const ScatteringRequest& request) {
   for (const OpticalConstants& index : request.indices) check_index(index);
 }
 
+Moments mirror_of(const MomentsRequest& request, const MomentsPoint& point) {
+  Moments m = reference::mirror_moments(point.theta_deg, point.index);
+  if (!request.sky) return m;
+  for (const double g : request.sky->at(point.theta_deg)) m.sky.push_back({g * m.r_i, g * m.r_q, m.r_i_error});
+  return m;
+}
+
 Moments moments_of(const MomentsRequest& request, const MomentsPoint& point, const reference::Refinement& refinement) {
-  if (point.shape.sigma == 0.0) return reference::mirror_moments(point.theta_deg, point.index);
+  if (point.shape.sigma == 0.0) return mirror_of(request, point);
   const reference::Slopes slopes(request.distribution, point.shape.sigma, point.shape.q);
-  const bool is_single = request.scattering == Scattering::kSingle;
-  Moments m = is_single
-                  ? reference::hemisphere_moments(slopes, request.masking, point.theta_deg, point.index, refinement)
-                  : reference::groove_moments(slopes, point.theta_deg, point.index, refinement);
+  const auto integrate = [&](const reference::SkyFunction* sky) {
+    return request.scattering == Scattering::kSingle
+               ? reference::hemisphere_moments(slopes, request.masking, point.theta_deg, point.index, refinement, sky)
+               : reference::groove_moments(slopes, point.theta_deg, point.index, refinement, sky);
+  };
+  Moments m = request.sky ? Moments{} : integrate(nullptr);
+  // One function of the sky at a time, each with moments of its own.
+  for (std::size_t k = 0; request.sky && k < request.sky->size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    const reference::SkyFunction sky{[&](double zenith_deg) { return request.sky->at(zenith_deg)[column]; },
+                                     request.sky->nodes().ends_deg()};
+    Moments with = integrate(&sky);
+    std::vector<SkyMoments> all = std::move(m.sky);
+    all.push_back(with.sky.empty() ? SkyMoments{} : with.sky.front());
+    with.evaluations += m.evaluations;
+    m = std::move(with);
+    m.sky = std::move(all);
+  }
   if (request.wants_direct) {
     const Moments direct =
         reference::direct_emission(slopes, request.masking, point.theta_deg, point.index, refinement);

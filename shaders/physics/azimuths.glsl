@@ -8,11 +8,13 @@ struct Slope {
   bool has_split_line;
   int most_azimuths;
   bool is_coarse;
+  SkyPlace sky;
 };
 
 // A sum over azimuths, for each member of a row.
 struct AzimuthSums {
   real4 member[DOLP_WIDTH];
+  SkySums sky[DOLP_WIDTH];
   real2 direct;       // direct emission of the facets, as (I, Q), before smith's masking
   real behind;        // MomentsNode::behind
   real evaluations;
@@ -23,7 +25,10 @@ AzimuthSums no_azimuths() {
   sums.evaluations = real(0.0);
   sums.behind = real(0.0);
   sums.direct = real2(real(0.0), real(0.0));
-  for (int g = 0; g < DOLP_WIDTH; ++g) sums.member[g] = real4(real(0.0));
+  for (int g = 0; g < DOLP_WIDTH; ++g) {
+    sums.member[g] = real4(real(0.0));
+    sums.sky[g] = no_sky();
+  }
   return sums;
 }
 
@@ -43,14 +48,22 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, S
   for (int i = 0; i < order; ++i) {
     Azimuth at = azimuth(arc, place_on_arc(arc, rule_node(first_node + i)));
     if (kIsMultiple) {
-      sums.member[0] += at.weight * reflected_in_groove(rule, theta, index, slope.t, at.x, at.sin_phi);
+      GrooveLight light = reflected_in_groove(rule, theta, index, slope.t, at.x, at.sin_phi);
+      sums.member[0] += at.weight * light.moments;
+      sums.sky[0] =
+          add_reflected(sums.sky[0], sky_at(slope.sky, light.cos_before), at.weight * light.before.x, at.weight * light.before.y);
+      sums.sky[0] =
+          add_reflected(sums.sky[0], sky_at(slope.sky, light.cos_last), at.weight * light.last.x, at.weight * light.last.y);
     } else {
       Facet f = facet(theta, index, slope.t, at.x, at.sin_phi);
       Masked of_ray = masking_of_ray(row, f.cos_r, sine_of_ray(theta, row, f, slope.t, at), slope.t, zone);
       real seen = leaves ? at.weight : real(0.0);
+      SkyValues sky = sky_at(slope.sky, f.cos_r);
       for (int g = 0; g < DOLP_WIDTH; ++g) {
         Projection part = project(theta, f, zone, slope.of_theta.value[g], of_ray.value[g]);
         sums.member[g] += seen * reflected(f, part);
+        real facets = seen * part.seen;
+        sums.sky[g] = add_reflected(sums.sky[g], sky, facets * f.m00, facets * f.m01);
       }
       if (kHasDirect) sums.direct += at.weight * emitted(theta, f);
     }
@@ -59,8 +72,15 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, S
   return sums;
 }
 
+// Where cos(theta_r), which falls from phi = 0 on, is that of a corner of the sky.
+real2 corner_line(ThetaNode theta, Slope slope, int corner) {
+  real t = slope.t;
+  real level = real(0.5) * (cos_of_corner(slope.sky, corner) + theta.c) * (real(1.0) + t * t) - theta.c;
+  return line_at(level, max(theta.s * t, real(1e-30)));
+}
+
 // Integral over the azimuths from 0 to pi. Each zone is an arc, or two with the critical line of total reflection
-// between them.
+// between them, and the corners of a sky divide arcs further.
 AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, SplitLines lines) {
   AzimuthSums sums = no_azimuths();
   bool is_critical = kTotalReflection && index.critical_cos > real(0.0);
@@ -76,18 +96,33 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
       from = is_second ? middle : from;
       to = is_second ? to : middle;
     }
-    // Devices that run invocations in lockstep compute both sides of an `if`; they skip a loop of one turn where no
-    // invocation needs it. It counts as an iteration, see worst_iterations of host/compute/plan/kernel_data.hpp.
-    for (bool is_due = is_before(from, to); is_due; is_due = false) {
-      Arc arc = zone_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits, from, to, zone);
-      if (is_critical) arc = critical_arc(theta, index, slope.t, slope.digits, from, to, !is_second, arc);
-      real nodes = arc_nodes(rule, theta, row.shape[0], index, slope.has_split_line, slope.t, slope.digits, arc, zone);
-      int order = order_between(nodes, slope.most_azimuths);
-      if (slope.is_coarse) order = coarse_order(order);
-      AzimuthSums more = arc_sums(rule, theta, row, index, slope, arc, zone, zone < lines.leaving, order);
-      for (int g = 0; g < DOLP_WIDTH; ++g) sums.member[g] += more.member[g];
-      sums.direct += more.direct;
-      sums.evaluations += more.evaluations;
+    real2 start = from;
+    for (int corner = 0; corner <= slope.sky.corners; ++corner) {
+      real2 stop = to;
+      if (corner < slope.sky.corners) stop = clamp_half_angle(corner_line(theta, slope, corner), start, to);
+      // Devices that run invocations in lockstep compute both sides of an `if`; they skip a loop of one turn where no
+      // invocation needs it. It counts as an iteration, see worst_iterations of host/compute/plan/kernel_data.hpp.
+      for (bool is_due = is_before(start, stop); is_due; is_due = false) {
+        bool is_first = !is_before(from, start);
+        Arc arc = make_arc(start, stop);
+        if (is_first) {
+          arc = zone_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits, start, stop, zone);
+        }
+        if (is_critical && (is_second ? is_first : !is_before(stop, to))) {
+          arc = critical_arc(theta, index, slope.t, slope.digits, start, stop, !is_second, arc);
+        }
+        real nodes = arc_nodes(rule, theta, row.shape[0], index, slope.has_split_line, slope.t, slope.digits, arc, zone);
+        int order = order_between(nodes, slope.most_azimuths);
+        if (slope.is_coarse) order = coarse_order(order);
+        AzimuthSums more = arc_sums(rule, theta, row, index, slope, arc, zone, zone < lines.leaving, order);
+        for (int g = 0; g < DOLP_WIDTH; ++g) {
+          sums.member[g] += more.member[g];
+          sums.sky[g] = add_scaled(sums.sky[g], real(1.0), more.sky[g]);
+        }
+        sums.direct += more.direct;
+        sums.evaluations += more.evaluations;
+      }
+      start = stop;
     }
   }
   return sums;
@@ -106,8 +141,14 @@ AzimuthSums slope_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index,
   return sums;
 }
 
+// The results of slopes.comp.
+struct SlopeResult {
+  AzimuthNode node;
+  SkySums sky;
+};
+
 // The same in the form that slopes.comp returns: its maskings do not depend on the shape.
-AzimuthNode azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNode own) {
+SlopeResult azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNode own) {
   Slope slope;
   slope.t = own.t;
   slope.digits = own.digits;
@@ -115,7 +156,11 @@ AzimuthNode azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNo
   slope.has_split_line = false;
   slope.most_azimuths = int(own.most_azimuths);
   slope.is_coarse = own.is_coarse > real(0.5);
+  slope.sky = sky_place();
   AzimuthSums sums = slope_sums(rule, theta, no_row(), index, slope);
   real4 all = sums.member[0];
-  return AzimuthNode(all.x, all.y, all.z, all.w, sums.behind, sums.direct.x, sums.direct.y, sums.evaluations);
+  SlopeResult result;
+  result.node = AzimuthNode(all.x, all.y, all.z, all.w, sums.behind, sums.direct.x, sums.direct.y, sums.evaluations);
+  result.sky = sums.sky[0];
+  return result;
 }

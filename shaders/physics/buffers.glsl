@@ -9,6 +9,9 @@ const bool kIsMultiple = false;
 layout(constant_id = DOLP_SPEC_MULTIPLE) const bool kIsMultiple = false;
 #endif
 layout(constant_id = DOLP_SPEC_DIRECT) const bool kHasDirect = false;
+#if DOLP_MOST_SKY > 0
+layout(constant_id = DOLP_SPEC_SKY) const uint kSkyCount = 0u;
+#endif
 
 layout(push_constant) uniform PushConstants { DOLP_PUSH_CONSTANTS } push;
 
@@ -33,4 +36,7 @@ real4 masking_node(uint i) { return texelFetch(masking_nodes, int(i)); }
 #endif
 
 int largest_order() { return int(push.largest_order); }
+int sky_cells() { return 1 << int(push.sky & ((1u << DOLP_SKY_CORNERS_SHIFT) - 1u)); }
+int pushed_corners() { return int((push.sky >> DOLP_SKY_CORNERS_SHIFT) & ((1u << (DOLP_SKY_START_SHIFT - DOLP_SKY_CORNERS_SHIFT)) - 1u)); }
+int sky_start() { return int(push.sky >> DOLP_SKY_START_SHIFT); }
 void store_masking_node(uint i, real4 node) { masking_table[i] = node; }

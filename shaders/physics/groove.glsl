@@ -130,8 +130,18 @@ real2 further_on(real2 at, real2 step) {
   return real2(at.x * step.x + at.y * step.y, at.y * step.x - at.x * step.y);
 }
 
-// Integrand of the moments per unit of azimuth, as in facet.glsl, of the rays that meet the facet (t, phi) first.
-real4 reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
+// Light that leaves a groove: part of it one bounce before the rest.
+struct GrooveLight {
+  real4 moments;    // as in facet.glsl
+  real2 before;     // r_i and r_q of that part,
+  real cos_before;  // and cos(theta_r)
+  real2 last;
+  real cos_last;
+};
+
+// Integrand of the moments per unit of azimuth of the rays that meet the facet (t, phi) first. After k bounces
+// cos(theta_r) is -a cos(psi + 2 k gamma).
+GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   real c = theta.c;
   real u = theta.s * x;
   real b = theta.s * sin_phi;
@@ -150,7 +160,13 @@ real4 reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index, real 
   real4 natural = real4(share, real(0.0), real(0.0), real(0.0));
   real2 seen = doubled_angle(-x, c * sin_phi);
   real4 polarised = real4(real(0.0), share * seen.x, share * seen.y, real(0.0));
+  GrooveLight light;
+  light.before = real2(real(0.0), real(0.0));
+  light.cos_before = real(0.0);
+  light.cos_last = real(0.0);
   while (share > real(0.0)) {
+    light.before = real2((real(1.0) - share) * natural.x, (real(1.0) - share) * polarised.x);
+    light.cos_before = -between.y;
     if (f.is_steep) f = next_bounces(f);
     real2 at = further_on(between, f.turn);
     real along = b * at.x;
@@ -162,6 +178,7 @@ real4 reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index, real 
     natural += share * (bounced(by, twice, natural) - natural);
     polarised += share * (bounced(by, twice, polarised) - polarised);
     between = further_on(at, f.turn);
+    light.cos_last = -between.y;
     rise += real(2.0) * f.turn.y * between.y;
     if (f.is_steep) {
       f.done += f.taken;
@@ -171,5 +188,8 @@ real4 reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index, real 
     share = (natural.x < rule.dimmest) ? real(0.0) : clamp(share, real(0.0), real(1.0));
   }
   real beam = min(c + theta.s * t * x, real(2.0) * c);
-  return real4(beam * natural.x, beam * polarised.x, beam, beam * absorbed);
+  light.moments = real4(beam * natural.x, beam * polarised.x, beam, beam * absorbed);
+  light.last = real2(beam * (natural.x - light.before.x), beam * (polarised.x - light.before.y));
+  light.before = real2(beam * light.before.x, beam * light.before.y);
+  return light;
 }

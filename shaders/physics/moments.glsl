@@ -57,6 +57,7 @@ real2 place_on_piece(Piece piece, real v) {
 // Sums over the slopes of a piece by one rule, for each member of a row.
 struct PieceSums {
   real4 member[DOLP_WIDTH];
+  SkySums sky[DOLP_WIDTH];
   real behind[DOLP_WIDTH];  // MomentsNode::behind
   real2 direct[DOLP_WIDTH];
   real evaluations;
@@ -67,6 +68,7 @@ PieceSums no_slopes() {
   sums.evaluations = real(0.0);
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     sums.member[g] = real4(real(0.0));
+    sums.sky[g] = no_sky();
     sums.behind[g] = real(0.0);
     sums.direct[g] = real2(real(0.0), real(0.0));
   }
@@ -77,6 +79,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
                      bool is_coarse) {
   ShapeNode shape = row.shape[0];
   PieceSums sums = no_slopes();
+  SkyPlace sky = sky_place();
   real mass[DOLP_WIDTH];
   for (int g = 0; g < DOLP_WIDTH; ++g) mass[g] = real(0.0);
   int order = is_coarse ? min(coarse_order(piece.order), largest_order()) : piece.order;
@@ -104,9 +107,11 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
     slope.has_split_line = task.has_split_line;
     slope.most_azimuths = task.most_azimuths;
     slope.is_coarse = is_coarse;
+    slope.sky = sky;
     AzimuthSums azimuths = slope_sums(rule, theta, row, index, slope);
     for (int g = 0; g < DOLP_WIDTH; ++g) {
       sums.member[g] += weight[g] * azimuths.member[g];
+      sums.sky[g] = add_scaled(sums.sky[g], weight[g], azimuths.sky[g]);
       sums.behind[g] += weight[g] * azimuths.behind;
       if (kHasDirect) sums.direct[g] += weight[g] * viewed(of_theta.value[g]) * azimuths.direct;
       mass[g] += kPi * weight[g];
@@ -117,6 +122,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     real ratio = mass[g] > real(0.0) ? piece.mass[g] / mass[g] : real(1.0);
     sums.member[g] *= ratio;
+    sums.sky[g] = add_scaled(no_sky(), ratio, sums.sky[g]);
     sums.behind[g] *= ratio;
     sums.direct[g] *= ratio;
   }
@@ -126,6 +132,8 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
 // The moments of the members of a row.
 struct RowMoments {
   MomentsNode member[DOLP_WIDTH];
+  SkySums sky[DOLP_WIDTH];
+  SkySums coarse_sky[DOLP_WIDTH];  // of the coarser rule
 };
 
 // Contribution of one piece to the moments of a row; the first piece also adds the slopes beyond the last one.
@@ -148,6 +156,8 @@ RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
     real4 difference = abs(sums - coarse.member[g]);
     real2 direct = fine.direct[g];
     real direct_difference = max(abs(direct.x - coarse.direct[g].x), abs(direct.y - coarse.direct[g].y));
+    result.sky[g] = fine.sky[g];
+    result.coarse_sky[g] = coarse.sky[g];
     result.member[g] = MomentsNode(sums.x, sums.y, sums.z, sums.w + beyond, fine.behind[g], real(0.0), direct.x,
                                    direct.y, max(difference.x, difference.y), difference.z, difference.w, direct_difference,
                                    fine.evaluations + coarse.evaluations);

@@ -112,6 +112,7 @@ const std::vector<KeyCase>& key_cases() {
       {"source.file", "\"light.csv\"", [](const SceneValues& s) { return s.source->table.at(10.5) == 1.5; }},
       {"source.scale", "0.75", [](const SceneValues& s) { return s.source->scale == 0.75; }},
       {"surroundings.temperature_K", "0", [](const SceneValues& s) { return s.surroundings->temperature_K == 0.0; }},
+      {"surroundings.profile", "\"overcast\"", [](const SceneValues& s) { return s.surroundings->profile != nullptr; }},
       {"path.transmittance", "0.5", [](const SceneValues& s) { return s.path->transmittance == 0.5; }},
       {"path.temperature_K", "280", [](const SceneValues& s) { return *s.path->temperature_K == 280.0; }},
       {"path.radiance", "2.5", [](const SceneValues& s) { return *s.path->radiance == 2.5; }},
@@ -343,7 +344,7 @@ TEST(ShippedScenes, AllParse) {
         << entry.path();
     ++count;
   }
-  EXPECT_EQ(count, 12U);
+  EXPECT_EQ(count, 14U);
 }
 
 TEST(ShippedScenes_OfThePaper, HaveItsSamples) {

@@ -271,7 +271,7 @@ TEST_F(Plan, ShippedScenes_NameEachEffectOnceAndReadWell) {
     const json json_plan = report({"plan", scene});
     EXPECT_EQ(names_in(json_plan["rows"]),
               (std::vector<std::string>{"specular", "diffuse", "distribution", "masking", "scattering", "complex index",
-                                        "emission", "source", "surroundings", "path", "band"}));
+                                        "emission", "source", "surroundings", "profile", "path", "band"}));
     const Outcome outcome = dolp({"plan", scene});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     for (const json& row : json_plan["rows"]) {

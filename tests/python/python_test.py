@@ -1,18 +1,12 @@
 #!/usr/bin/env python3
 """The Python package: python_test.py PROGRAM, with the package on PYTHONPATH and PROGRAM the command line beside it."""
-import copy
 import csv
 import doctest
-import multiprocessing
-import os
+import importlib
 import pathlib
-import pickle
-import signal
 import subprocess
 import sys
 import tempfile
-import threading
-import time
 import unittest
 
 import matplotlib
@@ -20,45 +14,18 @@ import numpy as np
 import xarray as xr
 
 import dolp
+from package_case import TEXT, PackageCase
 
 matplotlib.use("Agg")
 PROGRAM = sys.argv.pop(1) if __name__ == "__main__" else ""  # spawned processes import this file
-TEXT = """title = "painted plate"
-[surface]
-n = 1.5
-k = 0.05
-sigma = 0.2
-q = 3.0
-masking = "smith"
-[emission]
-temperature_K = 300.0
-[surroundings]
-temperature_K = 250.0
-[spectrum]
-wavelength_um = 10.0
-[grid]
-theta_deg = [0, 30, 60, 85]
-sigma = [0.1, 0.4]
-q = [2, 3.5, 5]
-"""
-# Some seconds of one core.
-LONG = {"accuracy.tolerance": 1e-9, "surface.masking": "integral"}
-LONG_AXES = "theta_deg=np.linspace(0, 89, 200), sigma=np.linspace(0.05, 2, 100), q=np.linspace(1.6, 6, 50)"
 
 
-class Package(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        (self.folder / "scene.toml").write_text(TEXT)
-        self.scene = dolp.Scene(self.folder / "scene.toml")
-
+class Package(PackageCase):
     def run_program(self, *words):
         subprocess.run([PROGRAM, *words, "--quiet"], cwd=self.folder, check=True)
 
     def test_examples_in_the_documentation_hold(self):
-        failed, tried = doctest.testmod(dolp, extraglobs={"dolp": dolp, "np": np, "tempfile": tempfile, "scene": dolp.Scene(text="""
+        names = {"dolp": dolp, "np": np, "tempfile": tempfile, "scene": dolp.Scene(text="""
 [surface]
 n = 1.5
 k = 0.05
@@ -71,9 +38,11 @@ temperature_K = 300.0
 wavelength_um = 10.0
 [grid]
 theta_deg = {from = 0, to = 80, count = 5}
-""")})
-        self.assertEqual(failed, 0)
-        self.assertGreater(tried, 15)
+""")}
+        rooms = [dolp, *(importlib.import_module(f"dolp.{room}") for room in ("_scene", "_runs", "_fit"))]
+        results = [doctest.testmod(room, extraglobs=names) for room in rooms]
+        self.assertEqual(sum(failed for failed, _ in results), 0)
+        self.assertGreater(sum(tried for _, tried in results), 25)
 
     def assert_same(self, table, expected):
         """Of two Datasets values, attributes and what decides how they are written."""
@@ -167,6 +136,15 @@ theta_deg = {from = 0, to = 80, count = 5}
             one = dolp.evaluate(own, theta_deg=(20, 40, 60)[j], evaluator="cpu")
             for name in ("dolp", "stokes_i", "status"):
                 self.assertEqual(float(one[name]), float(found[name][i, j]))
+        axes = {"emission.temperature_K": [280, 300], "surroundings.temperature_K": [240, 250, 260]}
+        table = dolp.table(self.scene, theta_deg=[20, 40], **axes)
+        self.assertEqual(table.dolp.dims, (*axes, "theta", "sigma", "q"))
+        self.assertEqual((table["emission.temperature_K"].units, "scene" in table.attrs), ("K", False))
+        xr.testing.assert_equal(table.dolp[1, 2].drop_vars([*axes]), dolp.table(self.scene.with_(
+            {"emission.temperature_K": 300, "surroundings.temperature_K": 260}), theta_deg=[20, 40]).dolp)
+        for key in ("surface.sigma", "surface.masking", "emission.temperature"):
+            with self.assertRaisesRegex(dolp.InputError, key):
+                dolp.table(self.scene, **{key: [0.1, 2]})
         for key in ("surface.masking", "emission.temperature", "surface.n"):
             with self.assertRaisesRegex(dolp.InputError, key):
                 dolp.evaluate(self.scene, theta_deg=20, n=1.5, **{key: [1, 2]})
@@ -244,115 +222,12 @@ theta_deg = {from = 0, to = 80, count = 5}
             with self.assertRaisesRegex(dolp.InputError, message):
                 dolp.lookup(part, theta_deg=33.3, sigma=0.2)
 
-    def test_scenes_can_be_copied_and_sent(self):
-        (self.folder / "n.csv").write_text("wavelength_um,n,k\n8,1.5,0.1\n14,1.45,0.2\n")
-        with open(self.folder / "scene.toml", encoding="utf-8") as file:
-            text = file.read().replace("n = 1.5\nk = 0.05\n", 'material_file = "n.csv"\n')
-        (self.folder / "other.toml").write_text(text)
-        scene = dolp.Scene(self.folder / "other.toml", {"surface.q": 4, "surroundings": None,
-                                                        "grid.sigma": {"from": 0.1, "to": 1, "count": 3, "spacing": "log"}})
-        scene = scene.with_({"surface.q": 5, "emission.bracket": True, "title": "ä"})
-        for again in (pickle.loads(pickle.dumps(scene)), copy.copy(scene), copy.deepcopy(scene)):
-            self.assertEqual(again.toml(), scene.toml())
-            self.assertEqual(repr(again), repr(scene))
-        with multiprocessing.get_context("spawn").Pool(1) as pool:
-            self.assertEqual(pool.map(dolp.Scene.toml, [scene, self.scene]), [scene.toml(), self.scene.toml()])
-            points = pool.apply(dolp.evaluate, (scene,), {"theta_deg": 30, "evaluator": "cpu"})
-        self.assertEqual(float(points.dolp), float(dolp.evaluate(scene, theta_deg=30, evaluator="cpu").dolp))
-
     def test_none_removes_a_table(self):
         for nothing in (None, "none"):
             for scene in (dolp.Scene(self.scene, {"surroundings": nothing}), self.scene.with_({"surroundings": nothing}),
                           dolp.Scene(text=TEXT, overrides={"surroundings": nothing})):
                 self.assertNotIn("surroundings", scene.toml())
         self.assertEqual(self.scene.without("surroundings").toml(), self.scene.with_({"surroundings": "none"}).toml())
-
-    def test_paths_need_not_be_utf_8(self):
-        folder = os.fsencode(self.folder) + b"/\xff\xe9"
-        os.mkdir(folder)
-        for form in (os.fsencode, os.fsdecode):
-            with self.assertRaisesRegex(dolp.InputError, "none.toml"):
-                dolp.Scene(form(folder + b"/none.toml"))
-            with open(folder + b"/scene.toml", "w", encoding="utf-8") as file:
-                file.write(TEXT)
-            scene = dolp.Scene(form(folder + b"/scene.toml"))
-            self.assertIn("written", dolp.write_table(scene, form(folder + b"/t.nc"), evaluator="cpu"))
-            found = dolp.lookup(form(folder + b"/t.nc"), theta_deg=30, sigma=0.1, q=2)
-            self.assertEqual(float(found.dolp), float(dolp.lookup(dolp.table(scene, evaluator="cpu"), theta_deg=30, sigma=0.1, q=2).dolp))
-            self.assertEqual(pickle.loads(pickle.dumps(scene)).toml(), scene.toml())
-            self.assertIn("scene.toml", repr(scene))
-
-    def test_wrong_kinds_are_told_in_the_words_of_python(self):
-        table = dolp.table(self.scene, evaluator="cpu")
-        dates = np.array(["2026-01-01"], dtype="datetime64[ns]")
-        masked = np.ma.masked_array([10.0, 20.0], [False, True])
-        for kind, message, call in (
-                (TypeError, "scene: must be a dolp.Scene, not str", lambda: dolp.table("scene.toml")),
-                (TypeError, "scene: must be a dolp.Scene, not str", lambda: dolp.write_table("scene.toml", "t.nc")),
-                (TypeError, "scene: must be a dolp.Scene, not str", lambda: dolp.evaluate("scene.toml", theta_deg=1)),
-                (TypeError, "scene: must be a dolp.Scene, not NoneType", lambda: dolp.mueller(None, theta_i_deg=1)),
-                (TypeError, "scene: must be a dolp.Scene, not dict", lambda: dolp.plan({})),
-                (TypeError, "scene: must be a dolp.Scene, not PosixPath", lambda: dolp.fit(self.folder, {}, {})),
-                (TypeError, "overrides: must be a dictionary", lambda: dolp.Scene(self.scene, ["surface.n", 1])),
-                (TypeError, "overrides: must be a dictionary", lambda: self.scene.with_("surface.n=1")),
-                (TypeError, "vary: must be a dictionary", lambda: dolp.fit(self.scene, {"theta_deg": [1], "dolp": [0]}, ["a"])),
-                (TypeError, "data: must be a path or columns", lambda: dolp.fit(self.scene, 3, {"surface.n": (1, 2)})),
-                (TypeError, "path: must be a path, not int", lambda: dolp.Scene(3)),
-                (TypeError, "text: must be a str, not bytes", lambda: dolp.Scene(text=b"")),
-                (TypeError, "path: must be a path, not list", lambda: dolp.write_table(self.scene, [])),
-                (TypeError, "table: must be a path, not DataArray", lambda: dolp.lookup(table.dolp, theta_deg=3)),
-                (TypeError, "starts: must be a whole number, not str", lambda: self.fit_points(starts="many")),
-                (dolp.InputError, "seed = -1: must be a whole number", lambda: self.fit_points(seed=-1)),
-                (dolp.InputError, "loss = square: must be one of squares", lambda: self.fit_points(loss="square")),
-                (TypeError, "3: a key of a scene must be a str", lambda: self.scene[3]),
-                (TypeError, "3: a key of a scene must be a str", lambda: self.scene.with_({3: 1})),
-                (TypeError, "compare: must be a dictionary", lambda: self.fit_points(compare=["a"])),
-                (TypeError, "surface.masking: must be a list", lambda: self.fit_points(compare={"surface.masking": 1})),
-                (dolp.InputError, "the nearest is surface.sigma", lambda: self.scene["surface.sgma"]),
-                (dolp.InputError, "fit: surface.k is none of surface.n", lambda: self.fit_points()["surface.k"]),
-                (dolp.InputError, "level = 0.9", lambda: self.fit_points().conf_interval(0.9)),
-                (TypeError, "grid.q.count: must be a whole number, not float",
-                 lambda: self.scene.with_({"grid.q": {"from": 2, "to": 3, "count": 2.5}})),
-                (dolp.InputError, "grid.q.count = -3: must be a whole number",
-                 lambda: self.scene.with_({"grid.q": {"from": 2, "to": 3, "count": -3}})),
-                (dolp.InputError, "data: columns of different lengths", lambda: dolp.fit(
-                    self.scene, {"theta_deg": [1, 2], "dolp": [0.1, 0.2, 0.3]}, {"surface.n": (1, 2)})),
-                (dolp.InputError, "theta_deg: None are no numbers", lambda: dolp.evaluate(self.scene, theta_deg=None)),
-                (dolp.InputError, "grid.q.from: .* no numbers", lambda: self.scene.with_({"grid.q": {"from": "a", "to": 3, "count": 2}})),
-                (dolp.InputError, "must be a pair", lambda: dolp.fit(self.scene, [(1, 2, 3)], {"surface.n": (1, 2)})),
-                (FileNotFoundError, "none.toml: there is no such file", lambda: dolp.Scene(self.folder / "none.toml")),
-                (FileNotFoundError, "none.nc: there is no such file", lambda: dolp.lookup(self.folder / "none.nc", theta_deg=3)),
-                (FileNotFoundError, "none.csv: there is no such file",
-                 lambda: dolp.fit(self.scene, self.folder / "none.csv", {"surface.n": (1, 2)})),
-                (dolp.InputError, "cannot be read: Is a directory", lambda: dolp.fit(self.scene, self.folder, {"surface.n": (1, 2)})),
-                (dolp.InputError, "did you mean theta_deg", lambda: dolp.evaluate(self.scene, theta=3)),
-                (dolp.InputError, "did you mean theta_deg", lambda: dolp.table(self.scene, theta=3)),
-                (dolp.InputError, "did you mean wavelength_um", lambda: dolp.lookup(table, wavelength=3)),
-                (dolp.InputError, "theta_deg: .* no numbers but datetime64", lambda: dolp.evaluate(self.scene, theta_deg=dates)),
-                (dolp.InputError, "theta_deg: .* no numbers but datetime64",
-                 lambda: dolp.evaluate(self.scene, theta_deg=xr.DataArray(dates, dims="day"))),
-                (dolp.InputError, "theta_deg: .* no numbers but datetime64", lambda: dolp.table(self.scene, theta_deg=dates)),
-                (dolp.InputError, "surface.n: .* no numbers but datetime64", lambda: self.scene.with_({"surface.n": dates})),
-                (dolp.InputError, "theta_deg: is a masked array", lambda: dolp.evaluate(self.scene, theta_deg=masked)),
-                (dolp.InputError, "dolp: is a masked array",
-                 lambda: dolp.fit(self.scene, {"theta_deg": [1, 2], "dolp": masked}, {"surface.n": (1, 2)})),
-                (dolp.InputError, "theta_deg: .* no numbers", lambda: dolp.evaluate(self.scene, theta_deg=[[1], [2, 3]])),
-                (dolp.InputError, "theta_deg: .* no numbers", lambda: dolp.evaluate(self.scene, theta_deg="thirty"))):
-            with self.assertRaisesRegex(kind, message) as caught:
-                call()
-            self.assertNotIn("\n", str(caught.exception))
-            self.assertNotIn("_native", str(caught.exception))
-        self.assertEqual(dolp.evaluate(self.scene, theta_deg=30, device=0).dolp.shape, ())
-        self.assertEqual(dolp.plan(self.scene, device=0).values["entries"], 24)
-
-    def fit_points(self, **options):
-        return dolp.fit(self.scene, {"theta_deg": [20, 40, 60], "dolp": [0.01, 0.03, 0.06]}, {"surface.n": (1.1, 3)},
-                        evaluator="cpu", **options)
-
-    def test_errors_bear_the_name_of_the_package(self):
-        for error in (dolp.InputError, dolp.DeviceError, dolp.IoError):
-            self.assertEqual(error.__module__, "dolp")
-            self.assertTrue(error.__doc__)
 
     def test_mueller_matrices_have_the_shape_of_the_points(self):
         matrices = dolp.mueller(self.scene, theta_i_deg=[[10], [40]], theta_r_deg=[20, 30, 50], delta_phi_deg=180)
@@ -431,85 +306,6 @@ theta_deg = {from = 0, to = 80, count = 5}
             if table.bracket:
                 self.assertLess(np.nanmax(table.bracket), drawn[0].get_ylim()[1])
             plot_table.plt.close(figure)
-
-    def test_errors_are_one_line(self):
-        for call in (lambda: dolp.Scene(self.folder / "none.toml"), lambda: dolp.Scene(),
-                     lambda: dolp.Scene(self.scene, {"surface.sigma": -1}), lambda: dolp.Scene(self.scene, {"a": 1}),
-                     lambda: dolp.evaluate(self.scene, theta_deg=95), lambda: dolp.evaluate(self.scene, zenith=3),
-                     lambda: dolp.evaluate(self.scene, theta_deg=np.nan), lambda: dolp.table(self.scene, theta_deg=[]),
-                     lambda: dolp.lookup(self.folder / "scene.toml", theta_deg=3),
-                     lambda: dolp.fit(self.scene, {"theta_deg": [1]}, {"surface.n": (1, 2)}),
-                     lambda: dolp.fit(self.scene, {"theta_deg": [1], "dolp": [0.1]}, {"surface.colour": (1, 2)}),
-                     lambda: dolp.evaluate(self.scene, theta_deg=3, evaluator="abacus")):
-            with self.assertRaises(ValueError) as caught:
-                call()
-            self.assertIsInstance(caught.exception, dolp.InputError)
-            self.assertNotIn("\n", str(caught.exception))
-        with self.assertRaises(dolp.DeviceError):
-            dolp.evaluate(self.scene, theta_deg=3, device="no such device")
-        with self.assertRaises(dolp.IoError):
-            dolp.write_table(self.scene, self.folder / "none" / "t.nc")
-
-    def test_scenes_and_plans_read_well(self):
-        self.assertIn("painted plate", repr(self.scene))
-        self.assertNotIn("\n", repr(self.scene))
-        again = dolp.Scene(text=dolp.Scene(self.scene, {"surface.sigma": 0.7, "emission.bracket": False}).toml())
-        self.assertIn("sigma = 0.7", again.toml())
-        self.assertEqual((self.scene["surface.sigma"], self.scene["surface.masking"], self.scene["grid.q"]), (0.2, "smith", [2, 3.5, 5]))
-        self.assertEqual((self.scene["emission.bracket"], self.scene["path.radiance"], self.scene["spectrum.band_um"]), (False, None, None))
-        self.assertLess(len(repr(dolp.Scene(text=TEXT, overrides={"grid.theta_deg": np.arange(90)}))), 200)
-        self.assertIn("surface.sigma=0.7", repr(dolp.Scene(self.scene, {"surface.sigma": 0.7})))
-        plan = dolp.plan(self.scene)
-        self.assertEqual(plan.values["entries"], 24)
-        self.assertIn("24", repr(plan))
-        self.assertIn("version", dolp.citation())
-        self.assertTrue(any(device["usable"] for device in dolp.devices()))
-
-    def test_other_threads_run_during_a_call(self):
-        ticks = []
-        ends = threading.Event()
-
-        def tick():
-            while not ends.is_set():
-                ticks.append(time.monotonic())
-                time.sleep(0.001)
-
-        thread = threading.Thread(target=tick)
-        thread.start()
-        start = time.monotonic()
-        dolp.table(dolp.Scene(self.scene, LONG), theta_deg=np.linspace(0, 89, 30), sigma=np.linspace(0.1, 1, 8))
-        end = time.monotonic()
-        ends.set()
-        thread.join()
-        self.assertGreater(sum(start < t < end for t in ticks), 3)
-
-    def test_ctrl_c_ends_a_long_call(self):
-        script = (f"import dolp, numpy as np\nscene = dolp.Scene('scene.toml', {LONG!r})\nprint('begins', flush=True)\n"
-                  f"try:\n    dolp.write_table(scene, 't.nc', {LONG_AXES})\n"
-                  "except KeyboardInterrupt:\n    print('interrupted', flush=True)\n"
-                  "print(float(dolp.evaluate(dolp.Scene('scene.toml'), theta_deg=0).status))\n")
-        with subprocess.Popen([sys.executable, "-c", script], cwd=self.folder, stdout=subprocess.PIPE,
-                              text=True) as process:
-            self.assertEqual(process.stdout.readline(), "begins\n")
-            time.sleep(0.5)
-            process.send_signal(signal.SIGINT)
-            out, _ = process.communicate(timeout=60)
-        self.assertEqual(out, "interrupted\n0.0\n")
-        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["scene.toml"])
-
-    def test_a_forked_process_gets_an_error_and_the_cpu(self):
-        dolp.evaluate(self.scene, theta_deg=30)
-        child = os.fork()
-        if child == 0:
-            status = 1
-            try:
-                dolp.evaluate(self.scene, theta_deg=30)
-            except dolp.DeviceError as error:
-                on_cpu = dolp.evaluate(self.scene, theta_deg=30, evaluator="cpu")
-                status = 0 if "fork" in str(error) and on_cpu.dolp > 0 else 2
-            finally:
-                os._exit(status)
-        self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 0)
 
 
 if __name__ == "__main__":

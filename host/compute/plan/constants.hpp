@@ -2,10 +2,14 @@
 //   proved  the formula stands beside it
 //   fitted  the command stands beside it that finds it; kModels of rule.cpp too: `dolp-calibrate fit`
 //   chosen  everything else. Where numbers stand beside it, they are the mean evaluations of an entry with half, with
-//   it
-//           and with double, of 150 ordinary entries of each masking concerned at 1e-4 (`dolp-calibrate check`); no
-//           bound was below its error in any of them. "Corners" means that ordinary entries see no difference.
+//           it and with double, of 150 ordinary entries of each masking concerned at 1e-4 (`dolp-calibrate check`); no
+//           bound was below its error in any of them. "Corners" means that ordinary entries see no difference. Those
+//           of interpolation, rows and refinement are millions of evaluations of a table instead, `dolp table` of
+//           32 x 32 x 32 entries at 1e-4 (theta to 85 degrees, sigma 0.05 to 1, q 1.75 to 6), integral and then smith.
 #pragma once
+
+#include <cstddef>
+#include <cstdint>
 
 namespace dolp {
 
@@ -56,6 +60,30 @@ inline constexpr int kCriticalBounces = 3;  // chosen
 /// Tolerance of the indices of a basis, over the request's: bounds grow by the weights.
 inline constexpr double kIndexNodeTolerance = 0.5;  // chosen
 
+// ---- Skies (sky_table.cpp) -----------------------------------------------------------------------------------------
+
+/// Cells of a function, at least, and of all functions of a sky together, at most; tolerances below kTightSky may have
+/// more, which not all devices can hold.
+inline constexpr std::uint32_t kLeastSkyCells = 512;            // chosen
+inline constexpr std::uint32_t kMostSkyCells = 1U << 15U;       // chosen: a texel buffer holds 65,536 at least
+inline constexpr std::uint32_t kMostTightSkyCells = 1U << 18U;  // chosen
+inline constexpr double kTightSky = 1e-5;                       // chosen
+/// Of the tolerance, for the distance of a table from its function.
+inline constexpr double kSkyTableShare = 0.05;  // chosen
+/// Largest distance in a cell over that in its middle.
+inline constexpr double kSkyTableSafety = 1.25;  // chosen
+/// Change of the slope in u = sqrt(1 - cos(theta_r)) from which on a function of a sky has a corner.
+inline constexpr double kLeastBend = 1e-2;  // chosen
+/// Bends of the corners that do not split, together, over the tolerance; and their error over r_i and these bends.
+inline constexpr double kMostBends = 2e4;      // chosen
+inline constexpr double kUnsplitBends = 5e-4;  // chosen
+/// Roundings of cos(theta_r), and of a value of a table, in units of the roundoff.
+inline constexpr double kSkyCosineRoundings = 8.0;  // chosen
+inline constexpr double kSkyRoundings = 4.0;        // chosen
+/// Error of the finer rule over its distance from the coarser one, over that of a uniform sky, where a sky has corners
+/// that do not split the azimuths.
+inline constexpr double kSkyCornerFactor = 2.0;  // chosen
+
 // ---- Bounds (error_bounds.cpp) -------------------------------------------------------------------------------------
 
 /// Of the interpolation error of G relative to the albedo (quintic Hermite, 8 and 64 cells an octave).
@@ -103,6 +131,39 @@ inline constexpr int kMostBouncesOfBeam = 1000;
 inline constexpr double kNegligibleBounces = 0.01;
 /// Chosen: of 2q - 3, below which absorption ends the sum and not the fall of the slope density.
 inline constexpr double kSlowestFall = 0.1;
+
+// ---- Interpolation between slope distributions (shape_axis.cpp, shape_plan.cpp) -------------------------------------
+
+/// Nodes of an axis: fewer coefficients show no reliable decay; for any number of digits.
+inline constexpr double kLeastShapeNodes = 6.0;  // chosen: 1.87, 1.87, 1.87; 1.81, 1.81, 1.81
+inline constexpr double kFirstShapeNodes = 3.0;  // chosen: 1.87, 1.87, 2.44; 1.70, 1.81, 2.37
+/// Values for each node, and entries of a direction and index for each node, from which on it is worth it.
+inline constexpr double kLeastAxisGain = 1.25;     // chosen: 1.87, 1.87, 3.84; 1.81, 1.81, 2.66
+inline constexpr std::size_t kLeastShapeGain = 2;  // chosen: 1.87, 1.87, 3.84; 1.81, 1.81, 2.66
+/// Of the request's tolerance: bounds grow by the interpolant's weights; digits of the interpolation beyond it.
+inline constexpr double kShapeNodeTolerance = 0.125;  // chosen: 2.03, 1.87, 1.75; 1.86, 1.81, 1.78
+inline constexpr double kExtraShapeDigits = 1.0;      // chosen: 1.84, 1.87, 2.33; 1.75, 1.81, 2.32
+/// Error bound over the largest of so many last coefficients, where these fall fast; their fall at the slowest, over
+/// those before them.
+inline constexpr double kShapeTail = 3.0;         // chosen: 1.87, 1.87, 1.89; 1.80, 1.81, 2.00
+inline constexpr int kLastShapeCoefficients = 3;  // chosen
+inline constexpr double kSlowestShapeFall = 0.9;  // chosen: 1.87, 1.87, 1.87; 1.81, 1.81, 1.81
+
+// ---- Rows (rows.cpp) -----------------------------------------------------------------------------------------------
+
+/// Between the exponents of a chunk, as a factor of q - 1: shapes further apart would want nodes in different places.
+inline constexpr double kMostRowSpread = 6.0;  // chosen: no difference
+/// Rows are not for grids that would leave more of the members unused. At a half, rows still take less time than their
+/// members alone; a quarter slows such grids, at nine tenths few grids have rows.
+inline constexpr double kLeastRowUse = 0.5;  // chosen: 1.87, 1.87, 5.63; 1.81, 1.81, 5.60
+
+// ---- Refinement (refinement.cpp) -----------------------------------------------------------------------------------
+
+/// The next level is tighter than the miss requires by this; otherwise it may miss the tolerance by a little again. A
+/// level is tighter than the one before by so many decades.
+inline constexpr double kRefinementSafety = 1.5;  // chosen: 1.87, 1.87, 1.87; 1.81, 1.81, 1.79
+inline constexpr double kLeastDecades = 0.5;      // chosen: 1.87, 1.87, 1.87; 1.81, 1.81, 1.79
+inline constexpr double kMostDecades = 5.0;       // chosen: no difference
 
 // ---- Effects (effects.cpp) -----------------------------------------------------------------------------------------
 

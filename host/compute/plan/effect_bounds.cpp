@@ -22,9 +22,9 @@ constexpr double kRoundingOfOne = 1e-13;
 constexpr double kSmallestCosine = 1e-300;  // safe as a divisor
 
 /// In the order of Part.
-constexpr std::array<bool KeptEffects::*, 7> kFlags = {
-    &KeptEffects::further_bounces, &KeptEffects::moments,       &KeptEffects::source, &KeptEffects::surroundings,
-    &KeptEffects::emission,        &KeptEffects::path_radiance, &KeptEffects::diffuse};
+constexpr std::array<bool KeptEffects::*, 8> kFlags = {
+    &KeptEffects::further_bounces, &KeptEffects::moments,       &KeptEffects::source,  &KeptEffects::surroundings,
+    &KeptEffects::emission,        &KeptEffects::path_radiance, &KeptEffects::diffuse, &KeptEffects::profile};
 
 bool KeptEffects::*flag(Part part) { return kFlags[static_cast<std::size_t>(part)]; }
 
@@ -163,6 +163,9 @@ EffectBounds::EffectBounds(const SceneValues& scene, const EntriesExtent& extent
     total_.surroundings += std::abs(sample.surroundings);
     total_.excess += std::abs(sample.excess);
     total_.irradiance += std::abs(sample.irradiance);
+    const auto [least, most] = sample.sky.empty() ? std::ranges::minmax({0.0, 0.0}) : std::ranges::minmax(sample.sky);
+    sky_above_ += std::max(most, 0.0);
+    sky_below_ -= std::min(least, 0.0);
     has_negative_ |= sample.emitted < 0.0 || sample.surroundings < 0.0 || sample.irradiance < 0.0;
   }
   path_ = rule.path_exitance;
@@ -204,9 +207,11 @@ void EffectBounds::add_beams(const EntriesExtent& extent, const std::vector<Opti
 double EffectBounds::weight(const KeptEffects& kept) const {
   const bool is_kirchhoff = scene_.emission && scene_.emission->model == EmissionModel::kMoments;
   const double emitted = kept.emission && is_kirchhoff ? total_.emitted : 0.0;
-  const double surroundings = kept.surroundings ? total_.surroundings : 0.0;
+  const bool has_sky = kept.surroundings && kept.profile;
+  const double surroundings = kept.surroundings ? total_.surroundings + (has_sky ? sky_above_ : 0.0) : 0.0;
   const bool has_both = emitted != 0.0 && kept.surroundings && scene_.surroundings;
-  return has_both ? total_.excess : std::max(emitted, surroundings);
+  return has_both ? total_.excess + (has_sky ? std::max(sky_above_, sky_below_) : 0.0)
+                  : std::max(emitted, surroundings);
 }
 
 /// The exitance of a source that illuminates the hemisphere.
@@ -222,7 +227,8 @@ EffectBounds::Sums EffectBounds::sums(const KeptEffects& kept) const {
   const double gap = weight(kept);
   const double most = most_rho(kept) + most_diffuse_;
   const double beam = is_bistatic_ && kept.source ? total_.irradiance : 0.0;
-  const bool takes = has_negative_ || !kept.surroundings || total_.surroundings < total_.emitted;
+  const double coldest = total_.surroundings - (kept.profile ? sky_below_ : 0.0);
+  const bool takes = has_negative_ || !kept.surroundings || coldest < total_.emitted;
   Sums sum;
   sum.most_qu = (gap + incident(kept)) * 0.5 * most_rho(kept);
   if (beam > 0.0) sum.most_qu += beam * most_beam_qu_;
@@ -264,8 +270,12 @@ EffectBounds::Sums EffectBounds::added_by(Part part, const KeptEffects& kept) co
       sum.most_qu = total_.irradiance * (is_bistatic_ ? most_beam_qu_ : 0.5 * rho);
       break;
     case Part::kSurroundings:
-      sum.most_i = total_.surroundings * all_rho;
-      sum.most_qu = total_.surroundings * 0.5 * rho;
+      sum.most_i = (total_.surroundings + (kept.profile ? sky_above_ : 0.0)) * all_rho;
+      sum.most_qu = (total_.surroundings + (kept.profile ? sky_above_ : 0.0)) * 0.5 * rho;
+      break;
+    case Part::kProfile:
+      sum.most_i = std::max(sky_above_, sky_below_) * all_rho;
+      sum.most_qu = std::max(sky_above_, sky_below_) * 0.5 * rho;
       break;
     case Part::kEmission:
       sum.most_i = total_.emitted * std::max(1.0, all_rho - 1.0);
@@ -296,6 +306,8 @@ bool EffectBounds::adds_nothing(Part part, const KeptEffects& kept) const {
       return total_.irradiance == 0.0;
     case Part::kSurroundings:
       return total_.surroundings == 0.0;
+    case Part::kProfile:
+      return !kept.surroundings || (sky_above_ == 0.0 && sky_below_ == 0.0);
     case Part::kEmission:
       return total_.emitted == 0.0;
     case Part::kPathRadiance:

@@ -33,10 +33,11 @@ EntriesExtent extent_of(const SceneEntries& entries);
 /// With E, S, X the exitances of emission, surroundings and source (X only in hemispherical mode), Kirchhoff's emission
 /// gives I = E + (S - E + X) rho >= E - max(0, E - S) A and Q = (S - E + X) rho_Q, because S - E has one sign at all
 /// wavelengths: the weight of the moments is |S - E| + X, which is 0 where emission and surroundings have one
-/// temperature and no source illuminates the hemisphere. The fresnel emission is at least E (1 - R_s) / 2; the direct
-/// one has no known lower bound. A path multiplies all by its transmittance and adds to I. |q| <= 1 where A <= 1, which
-/// bounds rho_s and rho_p: then every part has a degree of polarisation of at most 1. All Stokes parameters are in the
-/// units of the exitances, bistatic ones times pi; sums over a band are those of the spectral rule's samples.
+/// temperature and no source illuminates the hemisphere. A profile of the sky adds at most its largest distance from
+/// its mean to S, in any direction. The fresnel emission is at least E (1 - R_s) / 2; the direct one has no known lower
+/// bound. A path multiplies all by its transmittance and adds to I. |q| <= 1 where A <= 1, which bounds rho_s and
+/// rho_p: then every part has a degree of polarisation of at most 1. All Stokes parameters are in the units of the
+/// exitances, bistatic ones times pi; sums over a band are those of the spectral rule's samples.
 class EffectBounds {
  public:
   EffectBounds(const SceneValues& scene, const EntriesExtent& extent);
@@ -60,6 +61,8 @@ class EffectBounds {
   SceneValues scene_;
   bool is_bistatic_;
   SpectralSample total_;       ///< sums of the absolute values of the samples' factors; the emitted ones are signed
+  double sky_above_ = 0.0;     ///< what a profile adds to its mean at most,
+  double sky_below_ = 0.0;     ///< and takes from it
   bool has_negative_ = false;  ///< weights of both signs, as the interpolation of a steep factor may have
   double path_;
   double most_specular_ = 0.0;  ///< of rho_I

@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "model/choices.hpp"
 
 namespace dolp {
 namespace {
 
-constexpr std::array kDroppingOrder = {Part::kMoments,      Part::kSource,  Part::kSurroundings,  Part::kEmission,
-                                       Part::kPathRadiance, Part::kMoments, Part::kFurtherBounces};
+constexpr std::array kDroppingOrder = {Part::kMoments,  Part::kSource,       Part::kProfile, Part::kSurroundings,
+                                       Part::kEmission, Part::kPathRadiance, Part::kMoments, Part::kFurtherBounces};
 
 /// The bounds of a scene at each wavelength of its entries.
 std::vector<EffectBounds> bounds_of(const SceneValues& scene, const SceneEntries& entries) {
@@ -38,15 +39,18 @@ double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const Kep
   return worst;
 }
 
+bool has_profile(const SceneValues& scene) { return scene.surroundings && scene.surroundings->profile; }
+
 /// True if the scene has a part, in the order of Part.
-constexpr std::array<bool (*)(const SceneValues&), 7> kIsAskedFor = {
+constexpr std::array<bool (*)(const SceneValues&), 8> kIsAskedFor = {
     [](const SceneValues& scene) { return scene.surface.scattering == Scattering::kMultiple; },
     [](const SceneValues& scene) { return scene.surface.specular > 0.0; },
     [](const SceneValues& scene) { return scene.source.has_value(); },
     [](const SceneValues& scene) { return scene.surroundings.has_value(); },
     [](const SceneValues& scene) { return scene.emission.has_value(); },
     [](const SceneValues& scene) { return scene.path && (scene.path->temperature_K || scene.path->radiance); },
-    [](const SceneValues& scene) { return scene.surface.diffuse > 0.0; }};
+    [](const SceneValues& scene) { return scene.surface.diffuse > 0.0; },
+    [](const SceneValues& scene) { return has_profile(scene); }};
 
 bool is_asked_for(const SceneValues& scene, Part part) { return kIsAskedFor[static_cast<std::size_t>(part)](scene); }
 
@@ -205,9 +209,21 @@ Effect source_row(const SceneValues& scene, const EffectPlan& plan) {
 
 Effect surroundings_row(const SceneValues& scene, const EffectPlan& plan) {
   if (!scene.surroundings) return absent("surroundings", "no [surroundings]");
-  const std::string reason = fmt::format("{:g} K, reflected into the view", scene.surroundings->temperature_K);
+  const std::string reason = has_profile(scene)
+                                 ? scene.names.profile + ", reflected into the view"
+                                 : fmt::format("{:g} K, reflected into the view", scene.surroundings->temperature_K);
   return part_row(scene, plan, Part::kSurroundings,
                   {"surroundings", EffectState::kKept, reason, needs_of_moments(scene, plan)});
+}
+
+Effect profile_row(const SceneValues& scene, const EffectPlan& plan) {
+  if (!has_profile(scene)) return absent("profile", "no surroundings.profile");
+  Effect row{"profile", EffectState::kKept, "the sky over the zenith, beyond its mean", {}};
+  const std::size_t functions = plan.sky ? plan.sky->size() : 0;
+  row.needs = functions == 0   ? std::string("closed form")
+              : functions == 1 ? std::string("moments with 1 function of the sky")
+                               : fmt::format("moments with {} functions of the sky", functions);
+  return part_row(scene, plan, Part::kProfile, row);
 }
 
 Effect path_row(const SceneValues& scene, const EffectPlan& plan) {
@@ -247,6 +263,12 @@ EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, b
   plan.keep_all = keep_all;
   if (!keep_all && !entries.empty()) drop_effects(plan, scene, bounds);
   set_needs(plan, scene, bounds);
+  return entries.empty() ? plan : with_sky(std::move(plan), scene, entries);
+}
+
+EffectPlan with_sky(EffectPlan plan, const SceneValues& scene, const SceneEntries& entries) {
+  if (!plan.sky && plan.needs_moments && plan.kept.surroundings && plan.kept.profile)
+    plan.sky = sky_basis(scene, entries.wavelength_um());
   return plan;
 }
 
@@ -276,6 +298,7 @@ std::vector<Effect> effects_of(const SceneValues& scene, const SceneEntries& ent
           emission_row(scene, plan),
           source_row(scene, plan),
           surroundings_row(scene, plan),
+          profile_row(scene, plan),
           path_row(scene, plan),
           band_row(scene)};
 }

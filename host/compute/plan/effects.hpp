@@ -2,6 +2,7 @@
 #pragma once
 
 #include <dolp/effect.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "plan/constants.hpp"
 #include "plan/effect_bounds.hpp"
 #include "scene/scene.hpp"
+#include "spectrum/sky_factors.hpp"
 
 namespace dolp {
 
@@ -23,11 +25,12 @@ struct DroppedPart {
 struct EffectPlan {
   bool keep_all = false;
   KeptEffects kept;
-  std::vector<DroppedPart> dropped;  ///< in the order of dropping; parts that the scene lacks are not among them
-  double bound = 0.0;                ///< of all dropped parts together
-  bool needs_moments = true;         ///< the specular moments, at theta or in bistatic mode at the view
-  bool needs_direct = false;         ///< those of the direct emission too
-  bool needs_beams = false;          ///< f of the source's and the view's direction
+  std::vector<DroppedPart> dropped;     ///< in the order of dropping; parts that the scene lacks are not among them
+  double bound = 0.0;                   ///< of all dropped parts together
+  bool needs_moments = true;            ///< the specular moments, at theta or in bistatic mode at the view
+  bool needs_direct = false;            ///< those of the direct emission too
+  bool needs_beams = false;             ///< f of the source's and the view's direction
+  std::shared_ptr<const SkyBasis> sky;  ///< of the moments with a sky; none without a profile, see with_sky
   bool gives_rho = true;  ///< rho_i, rho_q and rho_error_estimate are known; the albedo with the moments alone
 };
 
@@ -47,6 +50,10 @@ EffectPlan plan_to_keep(const SceneValues& scene, const KeptEffects& kept);
 
 /// The plan that drops nothing, as `plan_effects` returns it with `keep_all`.
 EffectPlan keep_everything(const SceneValues& scene);
+
+/// The plan with the basis of its sky, that of the wavelengths of these entries, where the moments need one and it has
+/// none.
+EffectPlan with_sky(EffectPlan plan, const SceneValues& scene, const SceneEntries& entries);
 
 /// True if a run gives the emissivities: with an emission, unless they need moments that are dropped.
 bool gives_emissivity(const SceneValues& scene, const EffectPlan& plan);

@@ -145,6 +145,11 @@ double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   return index.critical_cos > 0.0 ? kCriticalFactor * smooth : smooth;
 }
 
+// Rounding of a function of the sky, in which that of 1 - cos(theta_r) shows next to the zenith alone.
+double sky_rounding(const KernelData& data, std::size_t function, double unit_roundoff) {
+  return kSkyRoundings * unit_roundoff + data.sky.steepness[function] * std::sqrt(kSkyCosineRoundings * unit_roundoff);
+}
+
 }  // namespace
 
 bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta) {
@@ -152,7 +157,7 @@ bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin
 }
 
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
-                            double unit_roundoff) {
+                            double unit_roundoff, std::span<const double> sky) {
   const kernel::ShapeNode& shape = data.shapes[entry.shape];
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
   const kernel::IndexNode& index = data.indices[entry.index];
@@ -200,6 +205,13 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
     moments.direct_q = node.direct_q;
     moments.direct_i_error = pair * node.direct_difference + least_of_masked * theta.c + cut;
     moments.direct_q_error = moments.direct_i_error;
+  }
+  for (std::size_t k = 0; k < data.sky.count; ++k) {
+    const auto part = sky.subspan(DOLP_SKY_PARTS * k, DOLP_SKY_PARTS);
+    const double of_value =
+        data.sky.error[k] + kUnsplitBends * data.sky.bends[k] + sky_rounding(data, k, unit_roundoff) + least_of_masked;
+    const double of_pair = (data.sky.bends[k] > 0.0 ? kSkyCornerFactor : 1.0) * pair;
+    moments.sky.push_back({part[0], part[1], of_pair * part[2] + of_value * r_i_scale + reflected_cut + grooves});
   }
   // r_i + deficit = cos(theta): the more accurate of the two gives the other. A groove never absorbs less than 0.
   const double cosine = theta.c;

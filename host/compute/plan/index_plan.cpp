@@ -66,6 +66,8 @@ void combine(const IndexPlan& plan, const IndexPlan::Source& source, double cosi
     sum.r_i_error = sum.deficit_error = mean_error * (sum.albedo + sum.albedo_error);
     sum.r_q_error = difference_error * (sum.albedo + sum.albedo_error);
     sum.direct_i = sum.direct_q = 0.0;
+    sum.sky.assign(nodes[shape].sky.size(),
+                   {.error = std::max(mean_error, difference_error) * (sum.albedo + sum.albedo_error)});
     sum.direct_i_error = mean_error * cosine;
     sum.direct_q_error = difference_error * cosine;
     for (Eigen::Index i = 0; i < mean.size(); ++i) {
@@ -75,6 +77,11 @@ void combine(const IndexPlan& plan, const IndexPlan::Source& source, double cosi
       sum.deficit += mean[i] * node.deficit;
       sum.direct_i += mean[i] * node.direct_i;
       sum.direct_q += difference[i] * node.direct_q;
+      for (std::size_t k = 0; k < node.sky.size(); ++k) {
+        sum.sky[k].i += mean[i] * node.sky[k].i;
+        sum.sky[k].q += difference[i] * node.sky[k].q;
+        sum.sky[k].error += std::max(std::abs(mean[i]), std::abs(difference[i])) * node.sky[k].error;
+      }
       sum.r_i_error += std::abs(mean[i]) * node.r_i_error;
       sum.r_q_error += std::abs(difference[i]) * node.r_q_error;
       sum.deficit_error += std::abs(mean[i]) * node.deficit_error;

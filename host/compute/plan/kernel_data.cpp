@@ -31,6 +31,9 @@ constexpr double kSmallestPole = 1e-6;  // of |N^2 + 1| and |N^2 - 1|
 // Largest slope that is ever integrated: beyond it the squares of a float overflow.
 constexpr double kLargestCut = 1e15;
 
+// Of breakpoints before the corners of a sky, and with them.
+constexpr std::size_t kMostSkyBreakpoints = 60;
+
 // Slopes that only split the long way to the horizon of a grazing direction, where a heavy tail reaches far, into
 // pieces of ten units of X or so.
 constexpr std::array kPlainBreakpoints = {30.0, 3e5};
@@ -162,6 +165,18 @@ std::vector<Breakpoint> without_coincident(const std::vector<Breakpoint>& points
 }
 
 // Splits each piece once more, so that no node of its rules stays where it was.
+// Slopes at which a corner of the sky meets phi = 0 or pi: the reflected rays of a slope have zeniths from |theta - 2
+// alpha| to theta + 2 alpha. A sky that is not level at the zenith has a cusp there. Beside them the sum over the
+// azimuths goes as the distance to the power 3/2.
+void add_sky_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const SkyTable& sky) {
+  if (sky.has_cusp) points.push_back({tan_deg(0.5 * theta_deg), kRoots});
+  for (const double corner_deg : sky.corners_deg) {
+    if (points.size() + 2 > kMostSkyBreakpoints) return;
+    points.push_back({tan_deg(0.5 * std::abs(corner_deg - theta_deg)), kRootAbove});
+    points.push_back({tan_deg(0.5 * (corner_deg + theta_deg)), kRootBelow});
+  }
+}
+
 void add_extra_splits(std::vector<Breakpoint>& points) {
   constexpr double kShare = 0.43;  // no fraction that a rule's nodes have
   const std::size_t count = points.size();
@@ -178,7 +193,7 @@ void add_extra_splits(std::vector<Breakpoint>& points) {
 // tan(theta), the limit b = pi/2 at tan(30 -+ 2/3 theta) and, on theta_r = theta, at tan(2 theta - 90); the lines of
 // v-cavity at tan(30 -+ theta/3), cot(theta), 1 and tan(theta); smith's cusp is at tan(theta/2).
 std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, const MomentsRequest& request,
-                                    const Variant& variant, int splits) {
+                                    const Variant& variant, const SkyTable& sky, int splits) {
   const Masking masking = request.masking;
   const bool is_multiple = request.scattering == Scattering::kMultiple;
   const double horizon = a.cos > 0.0 ? (1.0 + a.sin) / a.cos : kNoEnd;
@@ -202,6 +217,7 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, const Mom
     add_critical_breakpoints(points, theta_deg, a, masking, variant.critical_cos);
     if (is_multiple) add_critical_bounces(points, theta_deg, variant.critical_cos);
   }
+  add_sky_breakpoints(points, theta_deg, sky);
   std::erase_if(points, [&](const Breakpoint& point) { return point.slope <= 0.0 || point.slope > last; });
   // At the normal smith's cusp lies at slope 0.
   const bool cusp_at_0 = variant.has_line && masking == Masking::kSmith && a.sin == 0.0;
@@ -212,8 +228,9 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const CosSin& a, const Mom
 
 /// Loop bounds of one piece, besides the orders of its rules.
 struct Loops {
-  double arcs = 1.0;   ///< of a slope
-  double turns = 0.0;  ///< all bounces: of an azimuth
+  double arcs = 1.0;     ///< of a slope
+  double turns = 0.0;    ///< all bounces: of an azimuth
+  double corners = 0.0;  ///< of a sky, that split the arcs
 };
 
 Loops single_loops(const KernelData& data) {
@@ -255,6 +272,7 @@ Loops groove_loops(const KernelData& data, double start, double end) {
 Loops loops_of(const KernelData& data, double critical, double start, double end) {
   Loops loops = data.scattering == Scattering::kMultiple ? groove_loops(data, start, end) : single_loops(data);
   if (critical > 0.0) loops.arcs *= 2.0;
+  loops.corners = data.sky.corners;
   return loops;
 }
 
@@ -267,9 +285,11 @@ constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // of a groove, to fin
 // arcs and azimuths, or of one slope sample, arcs, azimuths and bounces. A bound for each entry
 // alone would not suffice, because invocations that run in lockstep wait for each other.
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
-  if (!data.needs_masking_table()) return kTurnsOfSlope + loops.arcs * (2.0 + most_nodes * (1.0 + loops.turns));
+  const double arcs = loops.arcs + loops.corners;
+  const double idle = data.sky.count == 0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);  // corners beyond an arc
+  if (!data.needs_masking_table()) return kTurnsOfSlope + idle + arcs * (2.0 + most_nodes * (1.0 + loops.turns));
   const auto of_rule = [&](double share) {
-    return 1.0 + share * data.rule_order * (1.0 + loops.arcs * (2.0 + share * most_nodes));
+    return 1.0 + share * data.rule_order * (1.0 + idle + arcs * (2.0 + share * most_nodes));
   };
   return of_rule(1.0) + of_rule(kCoarseShare + 1.0 / data.rule_order);
 }
@@ -287,7 +307,7 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   node.c = a.cos;
   node.s = a.sin;
   std::vector<Breakpoint> points =
-      breakpoints(theta_deg, a, request, variant, static_cast<int>(data.rule.split_bounces));
+      breakpoints(theta_deg, a, request, variant, data.sky, static_cast<int>(data.rule.split_bounces));
   if (request.has_extra_splits) add_extra_splits(points);
   if (points.size() > DOLP_MAX_PIECES + 1) throw std::logic_error("a direction has more pieces than a kernel takes");
   std::ranges::fill(node.end, points.back().slope);
@@ -437,13 +457,15 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model) {
   data.rule_order = largest_order(digits);
   data.is_grid = request.layout == MomentsRequest::Layout::kGrid;
   data.directions = request.theta_deg.size();
+  data.rule_nodes = rule_nodes(data.rule_order);
+  const bool is_single = request.scattering == Scattering::kSingle;
+  if (request.sky) data.sky = append_sky(*request.sky, request.tolerance, is_single, data.rule_nodes);
   for (const OpticalConstants& index : request.indices) data.indices.push_back(index_node(index));
   if (data.is_grid) {
     add_grid(data, request);
   } else {
     add_points(data, request);
   }
-  data.rule_nodes = rule_nodes(data.rule_order);
   data.has_total_reflection =
       std::ranges::any_of(data.indices, [](const kernel::IndexNode& index) { return index.critical_cos > 0.0; });
   return data;

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "model/moments.hpp"
+#include "plan/sky_table.hpp"
 
 namespace dolp {
 
@@ -58,7 +60,8 @@ struct KernelData {
   std::vector<kernel::IndexNode> indices;
   std::vector<std::uint32_t> index_variant;  ///< of each index of a grid, over the first of its variants of directions
   std::vector<std::uint32_t> shape_of;       ///< of each point
-  std::vector<std::array<double, 2>> rule_nodes;
+  std::vector<std::array<double, 2>> rule_nodes;  ///< and behind them the cells of the sky
+  SkyTable sky;
 
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
   std::size_t size() const { return is_grid ? directions * indices.size() * shapes.size() : directions; }
@@ -82,6 +85,10 @@ struct RuleModel;
 KernelData kernel_data(const MomentsRequest& request);
 KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
 
+/// Numbers beside a MomentsNode, and beside an AzimuthNode, for the sky of the data.
+inline std::size_t sky_sums(const KernelData& data) { return std::size_t{DOLP_SKY_PARTS} * data.sky.count; }
+inline std::size_t sky_azimuths(const KernelData& data) { return std::size_t{2} * data.sky.count; }
+
 /// The task word of interface.glsl for one piece of a row of `members` entries.
 std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t members);
 
@@ -95,9 +102,9 @@ double slope_with_bounces(double bounces);
 void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece);
 
 /// Converts the kernel's result for one entry into moments with error bounds; `unit_roundoff` is that of the kernel's
-/// precision.
+/// precision. `sky`: DOLP_SKY_PARTS sums for each function of the data's sky.
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
-                            double unit_roundoff);
+                            double unit_roundoff, std::span<const double> sky = {});
 
 /// True if the masking table of a shape resolves the structure of G at a direction. Where the table is coarser than the
 /// slope distribution, it does not for directions whose cot(theta) lies within its first scale.

@@ -5,16 +5,12 @@
 
 #include <dolp/status.hpp>
 #include "model/moments.hpp"
+#include "plan/constants.hpp"
 
 namespace dolp {
 namespace {
 
 constexpr double kLeastDoubleTolerance = 1e-15;  // as kLeastFloatTolerance
-
-// The next level is tighter than the miss requires; otherwise it may miss the tolerance by a little again.
-constexpr double kSafety = 1.5;
-constexpr double kLeastDecades = 0.5;
-constexpr double kMostDecades = 5.0;
 
 bool may_use_double(const Accuracy& accuracy, bool has_double) {
   return has_double && accuracy.precision != Precision::kFloat;
@@ -62,7 +58,7 @@ std::optional<RefinementLevel> next_level(const RefinementLevel& last, const Poi
   // The step grows with the tightness of the last level; otherwise entries that do not converge iterate without bound.
   const double so_far = std::log10(accuracy.tolerance / last.tolerance);
   const double least = std::max(kLeastDecades, half_decades(0.5 * so_far));
-  const double missed_by = std::isfinite(excess) ? half_decades(std::log10(kSafety * excess)) : kMostDecades;
+  const double missed_by = std::isfinite(excess) ? half_decades(std::log10(kRefinementSafety * excess)) : kMostDecades;
   const double decades = std::min(std::max(missed_by, least), kMostDecades);
   const double wanted = last.tolerance * std::pow(10.0, -decades);
   if (last.precision == Precision::kFloat && wanted >= kLeastFloatTolerance) return level_at(Precision::kFloat, wanted);

@@ -1,4 +1,5 @@
 #include "plan/rows.hpp"
+#include "plan/constants.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -10,18 +11,11 @@ namespace {
 // Below it the masking tables of heavy and light tails need different scales.
 constexpr double kSmallestSharedM = 1e-3;
 
-// Between the exponents of a chunk, as a factor of q - 1: shapes further apart would want nodes in different places.
-constexpr double kMostSpread = 6.0;
-
-// Rows are not for grids that would leave more of the members unused. Chosen: at a half, rows still take less time than
-// their members alone; a quarter slows such grids, at nine tenths few grids have rows.
-constexpr double kLeastUse = 0.5;
-
 // True if shape `next` may join the chunk that begins with shape `first`.
 bool belongs(const KernelData& data, std::uint32_t first, std::uint32_t next) {
   const kernel::ShapeNode& a = data.shapes[first];
   return data.distribution == Distribution::kCauchy && a.m >= kSmallestSharedM &&
-         data.shapes[next].q_minus_1 <= kMostSpread * a.q_minus_1 && data.needs_line[first] == data.needs_line[next];
+         data.shapes[next].q_minus_1 <= kMostRowSpread * a.q_minus_1 && data.needs_line[first] == data.needs_line[next];
 }
 
 // Copies the values that the kernel reads from the first shape of a chunk to all its shapes.
@@ -89,7 +83,7 @@ Rows grid_chunks(const MomentsRequest& request, const KernelData& data) {
   Rows rows;
   rows.width = kRowWidth;
   add_grid_chunks(rows, request, data);
-  if (static_cast<double>(data.shapes.size()) > kLeastUse * static_cast<double>(kRowWidth * rows.chunks.size()))
+  if (static_cast<double>(data.shapes.size()) > kLeastRowUse * static_cast<double>(kRowWidth * rows.chunks.size()))
     return rows;
   rows = {};
   add_grid_chunks(rows, request, data);

@@ -5,14 +5,12 @@
 #include <cmath>
 #include <cstddef>
 
-#include "plan/chebyshev.hpp"
+#include "model/chebyshev.hpp"
+#include "plan/constants.hpp"
 
 namespace dolp {
 namespace {
 
-constexpr double kLeastNodes = 6.0;      // fewer coefficients show no reliable decay
-constexpr double kFirstNodes = 3.0;      // for any number of digits
-constexpr double kLeastAxisGain = 1.25;  // values for each node
 constexpr double kGrazing_deg = 89.9;
 
 bool is_grazing(double theta_deg) { return theta_deg > kGrazing_deg; }
@@ -22,7 +20,7 @@ bool sees_slopes(Masking masking) { return masking == Masking::kNone || masking 
 
 double nodes_needed(const ShapeParameter& parameter, double half_length, double digits) {
   const double per_digit = std::log(10.0) / std::asinh(parameter.strip / half_length);
-  return std::max(std::ceil(kFirstNodes + digits * per_digit), kLeastNodes);
+  return std::max(std::ceil(kFirstShapeNodes + digits * per_digit), kLeastShapeNodes);
 }
 
 ShapeAxis without_interpolation(const std::vector<double>& values) {

@@ -4,16 +4,10 @@
 #include <cmath>
 
 #include "model/choices.hpp"
+#include "plan/constants.hpp"
 
 namespace dolp {
 namespace {
-
-constexpr double kShapeNodeTolerance = 0.125;  // of the request's tolerance: bounds grow by the interpolant's weights
-constexpr double kExtraDigits = 1.0;           // of the interpolation
-constexpr std::size_t kLeastShapeGain = 2;     // entries of a direction and index for each node
-constexpr double kTail = 3.0;         // error bound over the largest of the last coefficients, where these fall fast
-constexpr double kSlowestFall = 0.9;  // of the last coefficients over those before them
-constexpr Eigen::Index kLastCoefficients = 3;
 
 using Values = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -28,19 +22,42 @@ Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, double Mo
 /// if they go on falling as the last ones do.
 Eigen::RowVectorXd tails(const ShapeAxis& axis, const Values& values) {
   if (!axis.is_interpolated()) return Eigen::RowVectorXd::Zero(values.cols());
-  const Eigen::MatrixXd sizes = (axis.coefficients.bottomRows(2 * kLastCoefficients) * values).cwiseAbs();
-  const Eigen::RowVectorXd before = sizes.topRows(kLastCoefficients).colwise().maxCoeff();
-  const Eigen::RowVectorXd last = sizes.bottomRows(kLastCoefficients).colwise().maxCoeff();
+  const Eigen::MatrixXd sizes = (axis.coefficients.bottomRows(2 * kLastShapeCoefficients) * values).cwiseAbs();
+  const Eigen::RowVectorXd before = sizes.topRows(kLastShapeCoefficients).colwise().maxCoeff();
+  const Eigen::RowVectorXd last = sizes.bottomRows(kLastShapeCoefficients).colwise().maxCoeff();
   Eigen::RowVectorXd bounds(values.cols());
   for (Eigen::Index i = 0; i < bounds.size(); ++i) {
-    const double fall = before[i] > 0.0 ? std::min(last[i] / before[i], kSlowestFall) : kSlowestFall;
-    bounds[i] = kTail * last[i] / (1.0 - fall);
+    const double fall = before[i] > 0.0 ? std::min(last[i] / before[i], kSlowestShapeFall) : kSlowestShapeFall;
+    bounds[i] = kShapeTail * last[i] / (1.0 - fall);
   }
   return bounds;
 }
 
 void store(const Values& values, double Moments::*quantity, std::span<Moments> moments) {
   for (std::size_t i = 0; i < moments.size(); ++i) moments[i].*quantity = values.data()[i];
+}
+
+/// The moments with function `k` of a sky, as those without.
+void interpolate_sky(const ShapePlan& plan, std::span<const Moments> nodes, std::size_t k, std::span<Moments> moments) {
+  const Values sigma = plan.sigma.cardinal;
+  const Values q = plan.q.cardinal.transpose();
+  for (Moments& of_entry : moments) of_entry.sky.resize(k + 1);
+  for (double SkyMoments::*component : {&SkyMoments::i, &SkyMoments::q}) {
+    Values at(static_cast<Eigen::Index>(plan.sigma.nodes.size()), static_cast<Eigen::Index>(plan.q.nodes.size()));
+    Values bound(at.rows(), at.cols());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      at.data()[i] = nodes[i].sky[k].*component;
+      bound.data()[i] = nodes[i].sky[k].error;
+    }
+    bound.rowwise() += tails(plan.sigma, at);
+    bound.colwise() += tails(plan.q, at.transpose()).transpose();
+    const Values value = sigma * at * q;
+    const Values error = sigma.cwiseAbs() * bound * q.cwiseAbs();
+    for (std::size_t i = 0; i < moments.size(); ++i) {
+      moments[i].sky[k].*component = value.data()[i];
+      moments[i].sky[k].error = std::max(moments[i].sky[k].error, error.data()[i]);
+    }
+  }
 }
 
 /// True if for each direction and index all entries are wanted, or none.
@@ -57,7 +74,7 @@ bool wants_whole_directions(const MomentsRequest& request) {
 
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
   if (!request.may_interpolate || request.size() == 0 || !wants_whole_directions(request)) return std::nullopt;
-  const double digits = kExtraDigits - std::log10(request.tolerance);
+  const double digits = kExtraShapeDigits - std::log10(request.tolerance);
   ShapePlan plan;
   plan.sigma = shape_axis(sigma_parameter(request.distribution), request.sigma, digits);
   plan.q = shape_axis(q_parameter(request), request.q, digits);
@@ -98,6 +115,7 @@ void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::spa
     store(sigma * at * q, value, moments);
     store(sigma.cwiseAbs() * bound * q.cwiseAbs(), error, moments);
   }
+  for (std::size_t k = 0; k < nodes.front().sky.size(); ++k) interpolate_sky(plan, nodes, k, moments);
   double evaluations = 0.0;
   for (const Moments& node : nodes) evaluations += node.evaluations;
   for (Moments& of_entry : moments) of_entry.evaluations = evaluations / static_cast<double>(moments.size());

@@ -15,6 +15,7 @@
 namespace dolp {
 
 class IndexBasis;
+class SkyBasis;
 
 /// The tightest tolerance of a rule in float; rounding dominates tighter ones.
 inline constexpr double kLeastFloatTolerance = 2e-6;
@@ -41,6 +42,7 @@ struct MomentsRequest {
   bool may_interpolate = true;                  ///< between slope distributions, to the same tolerance
   bool has_extra_splits = false;                ///< a rule of another kind, to check others with
   std::shared_ptr<const IndexBasis> basis;      ///< of a grid, to combine the moments of its indices from; null: none
+  std::shared_ptr<const SkyBasis> sky;          ///< Moments::sky too, with its functions; null: none
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
   std::vector<OpticalConstants> indices;
@@ -56,6 +58,13 @@ struct MomentsRequest {
   MomentsPoint operator[](std::size_t entry) const;
   /// Adds a point, which makes it a request for points.
   void append(const MomentsPoint& point);
+};
+
+/// The moments with a function g of the zenith of the reflected ray, |g| <= 1: the integrals of r_i and r_q times g.
+struct SkyMoments {
+  double i = 0.0;
+  double q = 0.0;
+  double error = 0.0;  ///< bound of the absolute error of either
 };
 
 /// The moments of one entry, all multiplied by cos(theta), which keeps them finite at theta = 90 degrees.
@@ -76,6 +85,7 @@ struct Moments {
   double direct_i_error = 0.0;
   double direct_q_error = 0.0;
   double evaluations = 0.0;  ///< integrand evaluations spent on this entry
+  std::vector<SkyMoments> sky = {};  ///< with each function of MomentsRequest::sky
 };
 
 /// A moment and the bound of its error.

@@ -87,7 +87,8 @@ bool reflectance_diverges(const Surface& surface, const Direction& direction, st
 /// Equation: the terms of I and Q that grow fastest as cos(theta) -> 0, times a factor that makes them finite: D r,
 /// D being the surroundings without the emission that the moments subtract; with D = 0, pi B + E0 r_i and E0 r_q, and
 /// the path. The fresnel emission vanishes there.
-Stokes grazing_stokes(const SceneValues& scene, const SpectralRule& rule, std::span<const Moments> moments) {
+Stokes grazing_stokes(const SceneValues& scene, const SpectralRule& rule, std::span<const SkyFactor> sky,
+                      std::span<const Moments> moments) {
   const Surface& surface = scene.surface;
   const bool fresnel = emission_model(scene) == EmissionModel::kFresnel;
   const double emissivity = fresnel ? 0.0 : 1.0;
@@ -98,6 +99,7 @@ Stokes grazing_stokes(const SceneValues& scene, const SpectralRule& rule, std::s
     add_specular(leading, surface.specular * (fresnel ? sample.surroundings : sample.excess), moments[j]);
     add_specular(finite, surface.specular * sample.irradiance, moments[j]);
     finite.i += sample.emitted * emissivity;
+    if (!sky.empty()) add_specular_sky(leading, surface.specular, rule.relative_error, sky[j].weights, moments[j]);
   }
   if (leading.i != 0.0 || leading.q != 0.0) return leading;
   add_path(finite, scene.path, rule.path_exitance);
@@ -105,12 +107,13 @@ Stokes grazing_stokes(const SceneValues& scene, const SpectralRule& rule, std::s
 }
 
 bool is_isothermal(const SpectralRule& rule) {
-  return std::ranges::all_of(rule.samples, [](const SpectralSample& sample) { return sample.excess == 0.0; });
+  return std::ranges::all_of(
+      rule.samples, [](const SpectralSample& sample) { return sample.excess == 0.0 && sample.sky.empty(); });
 }
 
 /// Result at 90 degrees where rho diverges.
-PointResult grazing_limit(const SceneValues& scene, const SpectralRule& rule, const Direction& direction,
-                          std::span<const Moments> moments) {
+PointResult grazing_limit(const SceneValues& scene, const SpectralRule& rule, std::span<const SkyFactor> sky,
+                          const Direction& direction, std::span<const Moments> moments) {
   const Surface& surface = scene.surface;
   PointResult result = outside_domain();
   result.status = kReflectanceOutsideZeroToOne | kOutsideModelDomain;
@@ -127,14 +130,15 @@ PointResult grazing_limit(const SceneValues& scene, const SpectralRule& rule, co
     const double bound = surface.specular == 0.0 ? 0.0 : relative_bound(std::max(m.r_i_error, m.r_q_error), m.r_i);
     result[kRhoErrorEstimate] = std::max(result[kRhoErrorEstimate], bound);
   }
-  set_dolp(result, grazing_stokes(scene, rule, moments));
+  set_dolp(result, grazing_stokes(scene, rule, sky, moments));
   result[kDolp] = std::abs(result[kDolp]);
   return result;
 }
 
 }  // namespace
 
-Radiometry::Radiometry(const SceneValues& scene, const KeptEffects& kept, double dropped)
+Radiometry::Radiometry(const SceneValues& scene, const KeptEffects& kept, double dropped,
+                       const std::shared_ptr<const SkyBasis>& sky)
     : scene_(scene),
       beam_specular_(scene.surface.specular),
       kept_(kept),
@@ -145,6 +149,8 @@ Radiometry::Radiometry(const SceneValues& scene, const KeptEffects& kept, double
       indices_(rule_.indices()) {
   if (!kept.moments) scene_.surface.specular = 0.0;
   if (!kept.diffuse) scene_.surface.diffuse = 0.0;
+  if (kept.surroundings && kept.profile)
+    sky_ = sky_factors(kept_rule_, (sky ? sky : sky_basis(scene, {})).get(), scene_.surface);
 }
 
 PointResult Radiometry::finished(PointResult result) const {
@@ -166,7 +172,7 @@ PointResult Radiometry::point(const Direction& direction, std::span<const Moment
   assert(moments.size() == rule_.samples.size() && indices.size() == moments.size());
   if (!std::ranges::all_of(moments, is_known)) return outside_domain();
   if (reflectance_diverges(scene_.surface, direction, moments)) {
-    return finished(grazing_limit(scene_, kept_rule_, direction, moments));
+    return finished(grazing_limit(scene_, kept_rule_, sky_, direction, moments));
   }
   return finished(assemble(moments, direction.cos_theta, indices, direction.cos_theta, {}));
 }
@@ -208,6 +214,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   const auto list = emissivities_of(model);
   const std::span<const Emissivity> emissivities(list.data(), list.size());
   Stokes sum = stokes_sum(kept_rule_, reflectances, emissivities, model, cos_theta, !bistatic);
+  add_sky(sum, scene_.surface, kept_rule_, sky_, moments, cos_theta);
   if (bistatic) add_beam(sum, scene_.surface, beam_specular_, kept_rule_, scattered, cos_theta_i, cos_theta);
   add_path(sum, scene_.path, kept_rule_.path_exitance);
   const double unit = bistatic ? 1.0 / pi : 1.0;  // an exitance, or the radiance that it is the integral of

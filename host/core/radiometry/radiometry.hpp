@@ -2,6 +2,7 @@
 // double.
 #pragma once
 
+#include <memory>
 #include <span>
 
 #include <dolp/results.hpp>
@@ -10,6 +11,7 @@
 #include "model/moments.hpp"
 #include "radiometry/scattered.hpp"
 #include "scene/scene.hpp"
+#include "spectrum/sky_factors.hpp"
 #include "spectrum/spectral_rule.hpp"
 
 namespace dolp {
@@ -25,8 +27,10 @@ namespace dolp {
 class Radiometry {
  public:
   /// Disabled terms contribute nothing; without the moments the specular part of rho counts as 0, `point` ignores the
-  /// numbers in its Moments, and quantities that need them are NaN. `dropped` widens the error estimates.
-  explicit Radiometry(const SceneValues& scene, const KeptEffects& kept = {}, double dropped = 0.0);
+  /// numbers in its Moments, and quantities that need them are NaN. `dropped` widens the error estimates. `sky`: the basis
+  /// of the moments with a sky; null: that of the scene alone.
+  explicit Radiometry(const SceneValues& scene, const KeptEffects& kept = {}, double dropped = 0.0,
+                      const std::shared_ptr<const SkyBasis>& sky = nullptr);
 
   /// The indices at which `point` wants moments, in its order, and their weights.
   const SpectralRule& rule() const { return rule_; }
@@ -63,6 +67,7 @@ class Radiometry {
   SpectralRule rule_;
   SpectralRule kept_rule_;  ///< without the factors that are not kept
   std::vector<OpticalConstants> indices_;
+  std::vector<SkyFactor> sky_;  ///< of each sample; empty without a profile
 };
 
 }  // namespace dolp

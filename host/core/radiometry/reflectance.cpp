@@ -12,12 +12,6 @@ namespace {
 // Rounding of the reflectances: fewer than 8 operations on positive terms.
 constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-double diffuse_reflectance(const Surface& surface, double cos_theta) {
-  if (surface.diffuse == 0.0) return 0.0;
-  const double c = surface.diffuse_exponent;
-  return 2.0 * surface.diffuse * std::pow(cos_theta, c) / (c + 2.0);
-}
-
 /// The weight of a sample in the mean reflectance, from the kind of radiation the scene has.
 double mean_weight(const SpectralSample& sample, double total_emitted, double total_incident, double cos_theta) {
   if (total_emitted != 0.0) return sample.emitted;
@@ -26,6 +20,12 @@ double mean_weight(const SpectralSample& sample, double total_emitted, double to
 }
 
 }  // namespace
+
+double diffuse_reflectance(const Surface& surface, double cos_theta) {
+  if (surface.diffuse == 0.0) return 0.0;
+  const double c = surface.diffuse_exponent;
+  return 2.0 * surface.diffuse * std::pow(cos_theta, c) / (c + 2.0);
+}
 
 // 1 - rho comes from the absorbed part; the subtraction 1 - rho would lose the digits of a metal's emission.
 Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta) {

@@ -36,6 +36,9 @@ struct MeanReflectance {
   double error = 0.0;  ///< of the worse of the two
 };
 
+/// The diffuse part of rho.
+double diffuse_reflectance(const Surface& surface, double cos_theta);
+
 Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta);
 
 /// True if rho_s or rho_p is outside [0, 1] beyond doubt.

@@ -1,6 +1,7 @@
 #include "radiometry/stokes.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -86,6 +87,33 @@ void add_specular(Stokes& sum, double net, const Moments& moments) {
   sum.q += net * moments.r_q;
   sum.i_error += std::abs(net) * (moments.r_i_error + kRadianceRounding * std::abs(moments.r_i));
   sum.q_error += std::abs(net) * (moments.r_q_error + kRadianceRounding * std::abs(moments.r_q));
+}
+
+void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWeights& weights,
+                      const Moments& moments) {
+  assert(weights.of.size() == static_cast<Eigen::Index>(moments.sky.size()));
+  double error = weights.error * (std::abs(moments.r_i) + moments.r_i_error);
+  for (std::size_t k = 0; k < moments.sky.size(); ++k) {
+    const SkyMoments& with = moments.sky[k];
+    const double weight = weights.of[static_cast<Eigen::Index>(k)];
+    sum.i += specular * weight * with.i;
+    sum.q += specular * weight * with.q;
+    error += std::abs(weight) * (with.error + rounding * std::abs(moments.r_i));
+  }
+  sum.i_error += std::abs(specular) * error;
+  sum.q_error += std::abs(specular) * error;
+}
+
+void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std::span<const SkyFactor> factors,
+             std::span<const Moments> moments, double cos_theta) {
+  const double rounding = kRadianceRounding + rule.relative_error;
+  const double diffuse = factors.empty() ? 0.0 : diffuse_reflectance(surface, cos_theta);
+  for (std::size_t j = 0; j < factors.size(); ++j) {
+    if (surface.specular > 0.0)
+      add_specular_sky(sum, surface.specular / cos_theta, rounding, factors[j].weights, moments[j]);
+    sum.i += diffuse * factors[j].diffuse;
+    sum.i_error += rounding * std::abs(diffuse * factors[j].diffuse);
+  }
 }
 
 void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRule& rule,

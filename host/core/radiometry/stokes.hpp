@@ -9,6 +9,7 @@
 #include "radiometry/reflectance.hpp"
 #include "radiometry/scattered.hpp"
 #include "scene/scene.hpp"
+#include "spectrum/sky_factors.hpp"
 #include "spectrum/spectral_rule.hpp"
 
 namespace dolp {
@@ -41,6 +42,17 @@ Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflect
 
 /// Adds a specular term `net` * r, with cos(theta) in r.
 void add_specular(Stokes& sum, double net, const Moments& moments);
+
+/// Adds what a sky reflects beyond its mean; `factors` is empty without one.
+///
+/// Equation: pi (S_I - mean(L) rho_I) = k_s / cos(theta) sum w_k r_I,k + rho_diffuse (mean_c(L) - mean(L)), Q likewise
+/// without the diffuse part: r_k are the moments with the functions of the basis, w_k the sample's weights.
+void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std::span<const SkyFactor> factors,
+             std::span<const Moments> moments, double cos_theta);
+
+/// Adds the specular part of the same, with cos(theta) in r.
+void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWeights& weights,
+                      const Moments& moments);
 
 /// Adds pi E0 cos(theta_i) f of the beam from the source, the factor pi as in the exitances of the sum.
 void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRule& rule,

@@ -12,6 +12,7 @@
 #include "model/optical_constants.hpp"
 #include "model/scene_entry.hpp"
 #include "scene/dispersion.hpp"
+#include "scene/sky_profile.hpp"
 
 namespace dolp {
 
@@ -71,7 +72,8 @@ struct Source {
 };
 
 struct Surroundings {
-  double temperature_K = 0.0;
+  double temperature_K = 0.0;                         ///< where there is no profile
+  std::shared_ptr<const SkyProfile> profile = nullptr;  ///< not the same everywhere
 };
 
 /// Path to the sensor: I -> tau I + L (times pi in hemispherical mode); Q, U, V -> tau Q, U, V.
@@ -103,6 +105,7 @@ struct Accuracy {
 struct SceneNames {
   std::string material, material_file;
   std::string source_preset, source_file;
+  std::string profile;  ///< built-in, or a file
 };
 
 class SceneDocument;

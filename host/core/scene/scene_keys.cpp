@@ -194,9 +194,17 @@ std::vector<SceneKey> radiation_keys() {
            [](auto& s) { return &s.names.source_file; }),
       number("source.scale", "1", kNonNegativeRange, "1", "factor on E0, whatever its kind",
              [](auto& s) { return s.source ? &s.source->scale : nullptr; }),
-      number("surroundings.temperature_K", "K", kBackgroundTemperatureRange, "required",
-             "temperature T_surr of the black surroundings that the surface reflects",
-             [](auto& s) { return s.surroundings ? &s.surroundings->temperature_K : nullptr; }),
+      number(
+          "surroundings.temperature_K", "K", kBackgroundTemperatureRange, "",
+          "temperature T_surr of the black surroundings that the surface reflects; or profile",
+          [](const SceneValues& s) {
+            return s.surroundings && s.names.profile.empty() ? &s.surroundings->temperature_K : nullptr;
+          },
+          [](SceneValues& s, const KeyValue& v) { s.surroundings->temperature_K = v.number; }),
+      text("surroundings.profile",
+           "a sky over zenith: clear-sky, overcast or your own CSV of zenith_deg, temperature_K or radiance, "
+           "wavelength_um; instead of temperature_K",
+           [](auto& s) { return &s.names.profile; }),
       number("path.transmittance", "1", kFractionRange, "1", "transmittance tau of the path to the sensor",
              [](auto& s) { return s.path ? &s.path->transmittance : nullptr; }),
       number(
@@ -285,6 +293,7 @@ const std::vector<KeyChoice>& key_choices() {
       {"surface", {{"surface.n", "surface.k"}, {"surface.material"}, {"surface.material_file"}}, true, "grid.n"},
       {"surface", {{"surface.sigma", "grid.sigma"}, {"surface.wind_m_s", "grid.wind_m_s"}}, true, {}, true},
       {"source", {{"source.irradiance"}, {"source.relative_irradiance"}, {"source.preset"}, {"source.file"}}},
+      {"surroundings", {{"surroundings.temperature_K"}, {"surroundings.profile"}}},
       {"path", {{"path.temperature_K"}, {"path.radiance"}}, false},
       {"spectrum", {{"spectrum.wavelength_um"}, {"spectrum.band_um"}}, true, "grid.wavelength_um"},
   };

@@ -7,6 +7,7 @@
 #include <dolp/errors.hpp>
 #include <iterator>
 #include <numeric>
+#include <utility>
 
 #include "base/text.hpp"
 #include "model/direction.hpp"
@@ -211,6 +212,24 @@ void load_source(SceneValues& scene, const SceneDocument& document, const std::s
   check_covers(source.table, all_wavelengths(scene), prefix);
 }
 
+void load_profile(SceneValues& scene, const SceneDocument& document, const std::string& scene_path,
+                  const KnownData* known) {
+  if (!document.find("surroundings.profile")) return;
+  const std::string prefix = document.prefix("surroundings.profile");
+  std::optional<SkyProfile> profile = built_in_sky(scene.names.profile);
+  if (!profile && known && known->profile) profile = known->profile;
+  if (!profile) {
+    profile = read_file_of(scene, scene.names.profile, scene_path, prefix, known,
+                           [&](const std::string& path) { return read_sky_profile(path, prefix); });
+  }
+  if (const std::optional<double> everywhere = profile->only_temperature()) {
+    scene.surroundings->temperature_K = *everywhere;
+    return;
+  }
+  if (!profile->wavelength_um.empty()) check_covers({profile->wavelength_um, {}}, all_wavelengths(scene), prefix);
+  scene.surroundings->profile = std::make_shared<const SkyProfile>(std::move(*profile));
+}
+
 /// Fills in quantities that the scene gives only as an axis: each takes the first value of its axis.
 void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
   const Axes& grid = scene.grid;
@@ -274,7 +293,8 @@ void check_scattering(const SceneValues& scene, const SceneDocument& document) {
     check_needs(document, "emission.bracket",
                 {{can_be_direct, maskings},
                  {emission.model != EmissionModel::kFresnel, "emission.model = \"moments\" or \"direct\""},
-                 {scene.geometry.mode == Mode::kHemispherical, "geometry.mode = \"hemispherical\""}});
+                 {scene.geometry.mode == Mode::kHemispherical, "geometry.mode = \"hemispherical\""},
+                 {!scene.surroundings || !scene.surroundings->profile, "surroundings.temperature_K instead of a profile"}});
   }
   if (is_direct) check_needs(document, "emission.model", {{can_be_direct, maskings}});
 }
@@ -294,6 +314,7 @@ SceneValues scene_of(const SceneDocument& document, const std::string& path_name
   fill_from_grid(scene, document);
   load_material(scene, document, path_name, known);
   load_source(scene, document, path_name, known);
+  load_profile(scene, document, path_name, known);
   fill_grid(scene, document);
   check_smith(scene, document);
   check_radiation(scene, document);

@@ -20,10 +20,11 @@ SceneValues read_scene(const std::string& path, const std::vector<Setting>& sett
 /// The scene with more settings. Domain: a scene that was read. Errors: InputError, as read_scene.
 SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& settings);
 
-/// n, k and E0 as they were when the table was computed, in place of the names in its scene.
+/// n, k, E0 and the sky as they were when the table was computed, in place of the names in its scene.
 struct KnownData {
   std::optional<Material> material = {};
   std::optional<SpectralTable> irradiance = {};
+  std::optional<SkyProfile> profile = {};
   bool may_open_files = false;  ///< for missing data; messages then do not quote their contents
 };
 

@@ -38,7 +38,11 @@ std::string value_text(const toml::node& node) {
   return formatted(*node.as_integer());
 }
 
-bool names_file(const std::string& key) { return key == "surface.material_file" || key == "source.file"; }
+/// True if a key's value is the name of a file.
+bool names_file(const std::string& key, const std::string& value) {
+  return key == "surface.material_file" || key == "source.file" ||
+         (key == "surroundings.profile" && !built_in_sky(value));
+}
 
 /// Path from `folder` to a file that a scene names.
 std::string path_from(const std::filesystem::path& folder, const std::string& file, const std::string& scene_path) {
@@ -66,7 +70,7 @@ std::string scene_toml(const SceneValues& scene, const std::filesystem::path& fo
       const toml::node* node = description.key.starts_with(table + '.') ? document.find(description.key) : nullptr;
       if (!node) continue;
       const std::string value =
-          names_file(description.key)
+          names_file(description.key, node->value_or(std::string()))
               ? formatted(toml::value(path_from(folder, node->value_or(std::string()), scene.path_name)))
               : value_text(*node);
       written += description.key.substr(table.size() + 1) + " = " + value + '\n';

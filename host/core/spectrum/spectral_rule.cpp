@@ -9,14 +9,19 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 
 #include "model/smooth_surface.hpp"
 #include "spectrum/planck.hpp"
+#include "spectrum/sky_factors.hpp"
 
 namespace dolp {
 namespace {
 
 using FineRule = boost::math::quadrature::gauss<double, 16>;
+
+// All are chosen. With half and double of each but kPieceWavelengthRatio, which is above 1, evaluations and bounds of the
+// tables of night_paint, bare_aluminium and water stay the same.
 
 // A piece of the band on which 16 Gauss nodes integrate Planck's function to rounding: its exponent changes by no more
 // than this, the wavelength by no more than that factor.
@@ -46,6 +51,7 @@ struct FineNode {
   double irradiance = 0.0;
   double width = 0.0;
   double path = 0.0;
+  std::vector<double> sky = {};
 };
 
 double source_irradiance(const SceneValues& scene, double wavelength_um, double emitted) {
@@ -67,12 +73,30 @@ double path_exitance(const Path& path, double wavelength_um) {
   return std::numbers::pi * (1.0 - path.transmittance) * planck_radiance(wavelength_um, *path.temperature_K);
 }
 
-FineNode fine_node(const SceneValues& scene, double wavelength_um, double weight) {
+const SkyProfile* profile_of(const SceneValues& scene) {
+  return scene.surroundings ? scene.surroundings->profile.get() : nullptr;
+}
+
+/// None for a scene without a profile.
+std::optional<SkySampler> sampler_of(const SceneValues& scene) {
+  const SkyProfile* profile = profile_of(scene);
+  return profile ? std::optional<SkySampler>(*profile) : std::nullopt;
+}
+
+FineNode fine_node(const SceneValues& scene, const std::optional<SkySampler>& sampler, double wavelength_um,
+                   double weight) {
   const double emitted =
       scene.emission ? std::numbers::pi * planck_radiance(wavelength_um, scene.emission->temperature_K) : 0.0;
-  const double surroundings =
-      scene.surroundings ? std::numbers::pi * planck_radiance(wavelength_um, scene.surroundings->temperature_K) : 0.0;
+  double surroundings = 0.0;
   FineNode node;
+  if (sampler) {
+    const Eigen::VectorXd exitances = sampler->at(wavelength_um);
+    surroundings = sampler->mean(exitances);
+    const Eigen::VectorXd sky = (weight * (exitances.array() - surroundings)).matrix();
+    node.sky.assign(sky.begin(), sky.end());
+  } else if (scene.surroundings) {
+    surroundings = std::numbers::pi * planck_radiance(wavelength_um, scene.surroundings->temperature_K);
+  }
   node.wavelength_um = wavelength_um;
   node.emitted = weight * emitted;
   node.surroundings = weight * surroundings;
@@ -86,7 +110,13 @@ FineNode fine_node(const SceneValues& scene, double wavelength_um, double weight
 std::vector<double> temperatures(const SceneValues& scene) {
   std::vector<double> result;
   if (scene.emission) result.push_back(scene.emission->temperature_K);
-  if (scene.surroundings) result.push_back(scene.surroundings->temperature_K);
+  const SkyProfile* profile = profile_of(scene);
+  if (scene.surroundings && !profile) result.push_back(scene.surroundings->temperature_K);
+  if (profile && profile->kind == SkyProfile::Kind::kLayers) result.insert(result.end(), {profile->air_K, profile->beyond_K});
+  if (profile && profile->kind == SkyProfile::Kind::kTemperature) {
+    const auto [coldest, warmest] = std::ranges::minmax(profile->values);
+    result.insert(result.end(), {coldest, warmest});
+  }
   if (scene.path && scene.path->temperature_K) result.push_back(*scene.path->temperature_K);
   return result;
 }
@@ -102,27 +132,29 @@ bool is_one_piece(const SceneValues& scene, double from_um, double to_um) {
   });
 }
 
-void append_fine_nodes(const SceneValues& scene, double from_um, double to_um, std::vector<FineNode>& nodes) {
+void append_fine_nodes(const SceneValues& scene, const std::optional<SkySampler>& sampler, double from_um, double to_um,
+                       std::vector<FineNode>& nodes) {
   const double middle_um = 0.5 * (from_um + to_um);
   if (!is_one_piece(scene, from_um, to_um)) {
-    append_fine_nodes(scene, from_um, middle_um, nodes);
-    append_fine_nodes(scene, middle_um, to_um, nodes);
+    append_fine_nodes(scene, sampler, from_um, middle_um, nodes);
+    append_fine_nodes(scene, sampler, middle_um, to_um, nodes);
     return;
   }
   const double half_um = 0.5 * (to_um - from_um);
   for (std::size_t i = 0; i < FineRule::abscissa().size(); ++i) {
     const double offset_um = half_um * FineRule::abscissa()[i];
     const double weight = half_um * FineRule::weights()[i];
-    nodes.push_back(fine_node(scene, middle_um - offset_um, weight));
-    nodes.push_back(fine_node(scene, middle_um + offset_um, weight));
+    nodes.push_back(fine_node(scene, sampler, middle_um - offset_um, weight));
+    nodes.push_back(fine_node(scene, sampler, middle_um + offset_um, weight));
   }
 }
 
 /// The ends of the band and the table wavelengths inside it.
-std::vector<double> segment_ends(double from_um, double to_um, std::initializer_list<const SpectralTable*> tables) {
+std::vector<double> segment_ends(double from_um, double to_um,
+                                 std::initializer_list<const std::vector<double>*> wavelengths_um) {
   std::vector<double> ends = {from_um, to_um};
-  for (const SpectralTable* table : tables)
-    for (const double wavelength_um : table->wavelength_um)
+  for (const std::vector<double>* list : wavelengths_um)
+    for (const double wavelength_um : *list)
       if (wavelength_um > from_um && wavelength_um < to_um) ends.push_back(wavelength_um);
   std::ranges::sort(ends);
   const auto repeated = std::ranges::unique(ends);
@@ -131,11 +163,14 @@ std::vector<double> segment_ends(double from_um, double to_um, std::initializer_
 }
 
 std::vector<FineNode> fine_nodes(const SceneValues& scene, double from_um, double to_um) {
-  static const SpectralTable kNoTable;
   const bool tabulated = scene.source && scene.source->kind == Source::Kind::kTabulated;
-  const std::vector<double> ends = segment_ends(from_um, to_um, {tabulated ? &scene.source->table : &kNoTable});
+  const SkyProfile* profile = profile_of(scene);
+  const std::vector<double> of_source = tabulated ? scene.source->table.wavelength_um : std::vector<double>{};
+  const std::vector<double> of_profile = profile ? profile->breaks_um() : std::vector<double>{};
+  const std::vector<double> ends = segment_ends(from_um, to_um, {&of_source, &of_profile});
+  const std::optional<SkySampler> sampler = sampler_of(scene);
   std::vector<FineNode> nodes;
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_fine_nodes(scene, ends[i], ends[i + 1], nodes);
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_fine_nodes(scene, sampler, ends[i], ends[i + 1], nodes);
   return nodes;
 }
 
@@ -158,7 +193,13 @@ std::vector<double> lagrange(const std::vector<double>& nodes_um, double wavelen
   return values;
 }
 
+void add_scaled(std::vector<double>& sum, const std::vector<double>& more, double factor) {
+  sum.resize(more.size());
+  for (std::size_t i = 0; i < more.size(); ++i) sum[i] += factor * more[i];
+}
+
 void add(SpectralSample& sample, const FineNode& node, double factor) {
+  add_scaled(sample.sky, node.sky, factor);
   sample.emitted += factor * node.emitted;
   sample.surroundings += factor * node.surroundings;
   sample.excess += factor * node.excess;
@@ -221,6 +262,7 @@ void append_merged(std::vector<SpectralSample>& samples, const SpectralSample& s
     samples.push_back(sample);
     return;
   }
+  add_scaled(same->sky, sample.sky, 1.0);
   same->emitted += sample.emitted;
   same->surroundings += sample.surroundings;
   same->excess += sample.excess;
@@ -244,7 +286,7 @@ void append_segment(const SceneValues& scene, double from_um, double to_um, Spec
 }
 
 SpectralRule single_wavelength_rule(const SceneValues& scene, double wavelength_um) {
-  const FineNode node = fine_node(scene, wavelength_um, 1.0);
+  const FineNode node = fine_node(scene, sampler_of(scene), wavelength_um, 1.0);
   SpectralSample sample;
   sample.wavelength_um = wavelength_um;
   sample.index = scene.surface.material.at(wavelength_um);
@@ -266,7 +308,7 @@ SpectralRule spectral_rule(const SceneValues& scene) {
   rule.relative_error = kPieceRelativeError;
   const Material& material = scene.surface.material;
   const std::vector<double> ends =
-      segment_ends(scene.spectrum.min_um, scene.spectrum.max_um, {&material.n, &material.k});
+      segment_ends(scene.spectrum.min_um, scene.spectrum.max_um, {&material.n.wavelength_um, &material.k.wavelength_um});
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_segment(scene, ends[i], ends[i + 1], rule);
   return rule;
 }
@@ -276,6 +318,7 @@ SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept) {
     if (!kept.surroundings) sample.excess = -sample.emitted;
     if (!kept.emission) sample.excess = kept.surroundings ? sample.surroundings : 0.0;
     if (!kept.surroundings) sample.surroundings = 0.0;
+    if (!kept.surroundings || !kept.profile) sample.sky.clear();
     if (!kept.emission) sample.emitted = 0.0;
     if (!kept.source) sample.irradiance = 0.0;
   }

@@ -22,7 +22,7 @@ constexpr std::size_t kMostRows = std::size_t{4} * 4 * 4 * 6 * 6;            // 
 constexpr int kMostShift = 3;                                                // of a window away from unknown entries
 constexpr std::size_t kLeastValues = 4;  // of an axis: fewer changes show no reliable decay
 constexpr std::size_t kLevels = 3;       // changes that are compared
-// Error over the sum of the changes: where the window has a value to add on both sides, and elsewhere.
+// Chosen. Error over the sum of the changes: where the window has a value to add on both sides, and elsewhere.
 constexpr double kInside = 10.0;
 constexpr double kAtEnds = 20.0;
 constexpr double kSlowestFall = 0.9;  // of the changes

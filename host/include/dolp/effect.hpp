@@ -28,7 +28,8 @@ enum class Part : std::uint8_t {
   kSurroundings,
   kEmission,
   kPathRadiance,
-  kDiffuse
+  kDiffuse,
+  kProfile  ///< of the surroundings, over their mean
 };
 
 /// An effect that a scene can ask for, and its treatment at some points.

@@ -31,13 +31,24 @@ void check_axes(const TableHead& table, const std::string& name) {
   }
 }
 
-/// Refuses attributes that a file cannot have.
+bool is_variable(std::string_view name) {
+  const auto is_named = [name](const auto& described) { return name == described.name; };
+  const auto is_described = [&](auto one) { return is_named(description_of(one)); };
+  return name == "status" || name == "wind_m_s" || std::ranges::any_of(kTableCurves, is_named) ||
+         std::ranges::any_of(kAllAxes, is_described) || std::ranges::any_of(kAllQuantities, is_described);
+}
+
+/// Refuses attributes that a file cannot have; a long text is a variable there.
 void check_attributes(const std::vector<Attribute>& attributes, const std::string& name) {
   std::set<std::string_view> names;
   for (const Attribute& attribute : attributes) {
     const std::string& own = attribute.name;
     if (own.empty() || own.find('/') != std::string::npos || !names.insert(own).second)
       throw InputError(fmt::format("{}: attribute \"{}\": must have a name of its own without /", name, one_line(own)));
+    const auto* text = std::get_if<std::string>(&attribute.value);
+    if (text != nullptr && text->size() > kMostAttributeBytes && is_variable(own))
+      throw InputError(fmt::format("{}: attribute {}: must have at most {} bytes, or another name than a variable's",
+                                   name, own, kMostAttributeBytes));
   }
 }
 

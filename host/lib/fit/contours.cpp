@@ -1,6 +1,5 @@
 #include "fit/contours.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -8,7 +7,9 @@
 #include <set>
 #include <utility>
 
+#include "fit/constants.hpp"
 #include "fit/descent.hpp"
+#include "fit/principal_axes.hpp"
 #include "fit/residuals.hpp"
 
 namespace dolp::fit {
@@ -16,17 +17,6 @@ namespace {
 
 using Place = std::pair<int, int>;  // along both axes
 using Pair = std::array<std::size_t, 2>;
-
-constexpr double kNodeGain = 1e-2;      // of the scale: far below what a contour shows
-constexpr double kTrustedGrowth = 1.0;  // growth that decides nothing
-constexpr double kLeastUnit = 1e-4;     // of the grid, in coordinates
-constexpr double kMostUnit = 1.0 / 24.0;
-constexpr double kStraight = 0.4;    // second difference of residuals: the root of the growth is off by an eighth of it
-constexpr double kFinest = 0.25;     // units
-constexpr int kParts = 6;            // of a cell in which lines are straight
-constexpr double kSafety = 1.25;     // of a guessed cost
-constexpr double kFar = 12.0;        // growth that no contour sees
-constexpr double kSuspicious = 0.8;  // of a growth: a neighbour that foretells less knows another way
 
 std::optional<Pair> most_correlated(const Eigen::MatrixXd& correlation) {
   std::optional<Pair> found;
@@ -80,12 +70,11 @@ class Map {
     const Eigen::MatrixXd& jacobian = result_.seen.front().where.jacobian;
     Eigen::MatrixXd information = jacobian.transpose() * jacobian / result_.scale;
     information.diagonal().array() += 1.0;
-    const Eigen::MatrixXd covariance = information.inverse();
+    const Eigen::MatrixXd covariance = principal_axes(information).inverse();
     const std::array<Eigen::Index, 2> both = {static_cast<Eigen::Index>(pair_[0]), static_cast<Eigen::Index>(pair_[1])};
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(Eigen::Matrix2d(covariance(both, both)));
-    const Eigen::Vector2d units =
-        solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().cwiseMax(kLeastUnit).cwiseMin(kMostUnit);
-    return solver.eigenvectors() * units.asDiagonal();
+    const PrincipalAxes principal = principal_axes(covariance(both, both));
+    const Eigen::Vector2d units = principal.values.cwiseSqrt().cwiseMax(kLeastUnit).cwiseMin(kMostUnit);
+    return principal.directions * units.asDiagonal();
   }
 
   Eigen::Vector2d of(const Eigen::VectorXd& at) const {
@@ -175,10 +164,10 @@ class Map {
       const double root = (*spots)[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)][2];
       return root * root < kContourLevels.back();
     };
-    for (const int end : {0, kParts}) {
-      for (int i = 1; i < kParts; ++i) {
-        if (is_low(end, i) && !is_low(end, 0) && !is_low(end, kParts)) return true;
-        if (is_low(i, end) && !is_low(0, end) && !is_low(kParts, end)) return true;
+    for (const int end : {0, kPartsOfACell}) {
+      for (int i = 1; i < kPartsOfACell; ++i) {
+        if (is_low(end, i) && !is_low(end, 0) && !is_low(end, kPartsOfACell)) return true;
+        if (is_low(i, end) && !is_low(0, end) && !is_low(kPartsOfACell, end)) return true;
       }
     }
     return false;
@@ -188,13 +177,13 @@ class Map {
   void doubt() {
     if (result_.parameters.size() == 2) return;
     for (const auto& [place, one] : nodes_) {
-      double least = kSuspicious * std::min(growth(one), 1e6);
+      double least = kSuspiciousShare * std::min(growth(one), 1e6);
       for (const Place& other : around(place)) {
         const Minimum* const near = node(other);
-        if (near == nullptr || !is_in_range(other) || growth(*near) > kFar) continue;
+        if (near == nullptr || !is_in_range(other) || growth(*near) > kFarGrowth) continue;
         const double foretold =
             (foretell(beside(*near, place), result_.scale).second - result_.chi_square) / result_.scale;
-        if (foretold > std::min(least, kFar) || !doubted_.insert({place, other}).second) continue;
+        if (foretold > std::min(least, kFarGrowth) || !doubted_.insert({place, other}).second) continue;
         least = foretold;
         wanted_[place] = near;
       }
@@ -206,7 +195,8 @@ class Map {
     return nodes_.empty() ? guess : static_cast<double>(residuals_.evaluations()) / static_cast<double>(nodes_.size());
   }
   bool can_pay(std::size_t nodes) const {
-    return static_cast<double>(residuals_.evaluations()) + kSafety * cost_of_a_node() * static_cast<double>(nodes) <=
+    return static_cast<double>(residuals_.evaluations()) +
+               kCostSafety * cost_of_a_node() * static_cast<double>(nodes) <=
            static_cast<double>(budget_);
   }
   bool can_refine() const { return can_pay(nodes_.size()); }
@@ -256,13 +246,13 @@ class Map {
         const int a = axis == 0 ? 1 : 0;
         const Minimum* const before = node({place.first - a, place.second - 1 + a});
         const Minimum* const after = node({place.first + a, place.second + 1 - a});
-        const bool is_coarse = widths_[static_cast<Eigen::Index>(axis)] > kFinest;
-        if (before == nullptr || after == nullptr || growth(one) > kFar || !is_coarse) continue;
+        const bool is_coarse = widths_[static_cast<Eigen::Index>(axis)] > kFinestUnit;
+        if (before == nullptr || after == nullptr || growth(one) > kFarGrowth || !is_coarse) continue;
         const double bend = (before->where.residuals - 2.0 * one.where.residuals + after->where.residuals).norm();
         if (std::isfinite(bend)) worst[axis] = std::max(worst[axis], bend / std::sqrt(result_.scale));
       }
     }
-    if (std::max(worst[0], worst[1]) < kStraight) return std::nullopt;
+    if (std::max(worst[0], worst[1]) < kStraightCell) return std::nullopt;
     return worst[0] > worst[1] ? 0 : 1;
   }
 
@@ -280,7 +270,7 @@ class Map {
 
   /// A point of a cell: both coordinates, and the root of the growth.
   using Spot = Eigen::Vector3d;
-  using Spots = std::array<std::array<Spot, kParts + 1>, kParts + 1>;
+  using Spots = std::array<std::array<Spot, kPartsOfACell + 1>, kPartsOfACell + 1>;
 
   /// The values interpolated in the cell above a place; none where a corner is not known.
   std::optional<Spots> cell(const Place& place) const {
@@ -291,9 +281,9 @@ class Map {
       corners[static_cast<std::size_t>(i)] = corner;
     }
     Spots spots;
-    for (std::size_t i = 0; i <= kParts; ++i) {
-      for (std::size_t j = 0; j <= kParts; ++j) {
-        const double x = static_cast<double>(i) / kParts, y = static_cast<double>(j) / kParts;
+    for (std::size_t i = 0; i <= kPartsOfACell; ++i) {
+      for (std::size_t j = 0; j <= kPartsOfACell; ++j) {
+        const double x = static_cast<double>(i) / kPartsOfACell, y = static_cast<double>(j) / kPartsOfACell;
         const std::array<double, 4> weights = {(1.0 - x) * (1.0 - y), (1.0 - x) * y, x * (1.0 - y), x * y};
         Minimum spot{{Eigen::VectorXd::Zero(corners[0]->where.at.size())}};
         spot.where.residuals = Eigen::VectorXd::Zero(corners[0]->where.residuals.size());
@@ -328,9 +318,9 @@ class Map {
     result.evaluations = residuals_.evaluations();
     for (const auto& [place, one] : nodes_) {
       const std::optional<Spots> spots = cell(place);
-      for (std::size_t i = 0; spots && i < kParts * kParts; ++i) {
+      for (std::size_t i = 0; spots && i < kPartsOfACell * kPartsOfACell; ++i) {
         const auto spot = [&](std::size_t right, std::size_t up) {
-          return (*spots)[i / kParts + right][i % kParts + up];
+          return (*spots)[i / kPartsOfACell + right][i % kPartsOfACell + up];
         };
         for (std::size_t level = 0; level < kContourLevels.size(); ++level) {
           const double root = std::sqrt(kContourLevels[level]);

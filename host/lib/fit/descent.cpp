@@ -1,6 +1,7 @@
 #include "fit/descent.hpp"
+#include "fit/constants.hpp"
+#include "fit/principal_axes.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,17 +9,6 @@
 
 namespace dolp::fit {
 namespace {
-
-// Levenberg's damping is the scale over the radius. Marquardt's, by the derivatives, would allow leaps along directions
-// that the data hardly constrain. The rules of the radius are those of Nielsen (1999).
-constexpr double kLeastStepLength = 1e-7;  // of coordinates in [0, 1]
-constexpr double kLeastDecrease = 1e-8;    // of the objective, relative
-constexpr double kLeastRatio = 1e-3;       // of the decrease to the promised one: less is no step
-constexpr double kForetoldRatio = 0.5;     // from which on derivatives may follow the steps
-constexpr double kLeastRadius = 1e-8;
-constexpr double kMostRadius = 1e8;
-constexpr double kRadiusOfNeighbours = 1.0;
-constexpr double kBent = 0.05;  // of the squared change of the residuals: less than that off, a way is straight
 
 /// A robust loss and its derivative at a squared residual. Widths are those of 95 % efficiency for normal errors.
 std::pair<double, double> loss_of(double square, Loss loss) {
@@ -61,16 +51,13 @@ Eigen::VectorXd bounded_step(const Linearisation& where, Eigen::VectorXd step, c
   for (Eigen::Index j = 0; j < step.size(); ++j) {
     if (std::ranges::find(held, static_cast<std::size_t>(j)) == held.end()) free.push_back(j);
   }
-  const Eigen::Index rows = where.residuals.size();
   while (!free.empty()) {
-    const auto count = static_cast<Eigen::Index>(free.size());
     for (const Eigen::Index j : free) step[j] = 0.0;
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows + count, count);
-    matrix.bottomRows(count).diagonal().setConstant(std::sqrt(damping));
-    matrix.topRows(rows) = weights.asDiagonal() * where.jacobian(Eigen::all, free);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(rows + count);
-    right.head(rows) = -weights.cwiseProduct(where.residuals + where.jacobian * step);
-    step(free) = matrix.householderQr().solve(right);
+    const Eigen::MatrixXd jacobian = weights.asDiagonal() * where.jacobian(Eigen::all, free);
+    const Eigen::VectorXd residuals = weights.cwiseProduct(where.residuals + where.jacobian * step);
+    Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
+    normal.diagonal().array() += damping;
+    step(free) = -principal_axes(normal).inverse() * (jacobian.transpose() * residuals);
     // Parameters that leave the bounds stay on them, and the others are solved again.
     const auto leaves = [&](Eigen::Index j) {
       const double to = where.at[j] + step[j];

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -13,6 +12,8 @@
 #include <utility>
 
 #include "base/text.hpp"
+#include "fit/constants.hpp"
+#include "fit/principal_axes.hpp"
 #include "fit/profile.hpp"
 #include "fit/search.hpp"
 
@@ -22,21 +23,6 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLevel68 = 0.682689492137086;
 constexpr double kLevel95 = 0.95;
-constexpr double kAtBound = 1e-6;  // of coordinates
-constexpr double kAtRange = 1e-9;  // of coordinates: an interval ends with the range
-
-constexpr double kFineShare = 1e-2;    // of an uncertainty: the model's tolerance
-constexpr double kCoarseShare = 0.25;  // that of the search
-constexpr double kLeastTolerance = 1e-9;
-constexpr double kMostTolerance = 1e-3;
-constexpr double kToleranceWithoutUncertainties = 1e-5;
-constexpr double kCoarseToleranceWithoutUncertainties = 1e-4;
-
-constexpr double kGuessedShare = 1e-2;  // of the largest value: a residual where nothing says better
-constexpr double kNullShare = 1e-4;     // of the largest singular value: a direction that the data do not see
-constexpr double kUnseen = 1e-3;        // standard deviations: a parameter whose range changes no residual by more
-constexpr double kInDirection = 0.1;    // of the largest component: a parameter that a direction names
-constexpr int kMostRestarts = 4;
 
 double least_uncertainty(const Model& model) {
   double least = std::numeric_limits<double>::infinity();
@@ -89,17 +75,17 @@ Covariance covariance_of(const Minimum& minimum, Loss loss, double scale) {
     jacobian.col(j) *= is_held.back() || !is_seen ? 0.0 : 1.0 / norms[j];
     if (!is_seen) norms[j] = 1.0;
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeThinU | Eigen::ComputeFullV);
+  const PrincipalAxes axes = principal_axes(jacobian.transpose() * jacobian);
   Eigen::MatrixXd& covariance = result.of_coordinates;
   covariance = Eigen::MatrixXd::Zero(count, count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::VectorXd right = svd.matrixV().col(i);
-    const double singular = i < svd.singularValues().size() ? svd.singularValues()[i] : 0.0;
+    const Eigen::VectorXd right = axes.directions.col(i);
+    const double singular = std::sqrt(axes.values[i]);
     const Eigen::VectorXd along = right.cwiseQuotient(norms);
     const double length = along.cwiseAbs().maxCoeff();
     Eigen::Index first = 0;
     right.cwiseAbs().maxCoeff(&first);
-    const bool is_null = singular <= kNullShare * svd.singularValues()[0];
+    const bool is_null = singular <= kNullShare * std::sqrt(axes.values[0]);
     if (is_null && is_held[static_cast<std::size_t>(first)]) continue;
     if (is_null || singular < length * std::sqrt(scale)) result.directions.push_back({along / length, is_null});
     if (is_null) {

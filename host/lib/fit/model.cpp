@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/text.hpp"
+#include "fit/constants.hpp"
 #include "fit/fit_range.hpp"
 #include "model/moments.hpp"
 #include "run/scene_run.hpp"
@@ -23,8 +24,6 @@ namespace {
 // Each point of a list has its own, so that sets which differ in these alone share a call.
 constexpr std::array<std::string_view, 5> kPointKeys = {"surface.n", "surface.k", "surface.sigma", "surface.wind_m_s",
                                                         "surface.q"};
-
-constexpr double kMostModelError = 5.0;  // standard deviations; a fit beyond them has another model
 
 bool is_point_key(const std::string& key) { return std::ranges::find(kPointKeys, key) != kPointKeys.end(); }
 

@@ -1,4 +1,5 @@
 #include "fit/profile.hpp"
+#include "fit/constants.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,21 +9,6 @@
 
 namespace dolp::fit {
 namespace {
-
-constexpr double kRootTolerance = 5e-3;  // of sqrt(rise)
-constexpr double kProfileGain = 1e-3;    // of the scale
-constexpr double kLower = 0.01;          // of the scale: below the minimum by more is another minimum
-constexpr int kMostPoints = 25;          // of a side and rise
-constexpr int kSecants = 8;              // of them; a profile that jumps needs halves
-constexpr double kLeastGap = 1e-3;       // of the distance: a jump
-constexpr double kMostGrowth = 3.0;      // of the distance from the minimum, from one point to the next
-constexpr double kTrustedShare = 0.8;    // of the first rise: what decides nothing
-constexpr double kFirstProbe = 0.01;     // in coordinates
-constexpr double kBeyond = 0.02;         // of the width of a stretch: where other branches are looked for
-constexpr double kClearly = 0.97;        // of a rise: below, there is another branch; 2 kRootTolerance are 0.01 of it
-constexpr int kMostLooks = 4;            // of such looks
-constexpr double kRounding = 1e-9;       // of coordinates
-constexpr double kKept = 1.6;            // of the second rise: what contours begin with
 
 /// A point of the profile.
 struct Point {
@@ -70,7 +56,7 @@ class Side {
   }
 
   void add(Minimum found) {
-    if (found.objective < least_ - kLower * options_->scale) {
+    if (found.objective < least_ - kLowerMinimum * options_->scale) {
       lower_ = std::move(found);
       finish(start() + direction_ * distance_);
       return;
@@ -112,7 +98,7 @@ class Side {
       } else if (above == points_.cend() && points_.back().distance >= most_) {
         finish(start() + direction_ * most_);
         return;
-      } else if (tries_ >= kMostPoints ||
+      } else if (tries_ >= kMostProfilePoints ||
                  (above != points_.cend() && above->distance - (above - 1)->distance < kLeastGap * above->distance)) {
         ends_[rise_] = at(above == points_.cend() ? points_.back() : *(above - 1));
       } else {
@@ -132,7 +118,7 @@ class Side {
     if (above != points_.end()) {
       const Point& below = *(above - 1);
       const double share = (wanted() - below.root) / (above->root - below.root);
-      return std::lerp(below.distance, above->distance, tries_ > kSecants ? 0.5 : std::clamp(share, 0.02, 0.98));
+      return std::lerp(below.distance, above->distance, tries_ > kProfileSecants ? 0.5 : std::clamp(share, 0.02, 0.98));
     }
     const Point& last = points_.back();
     if (points_.size() == 1) return first_distance();
@@ -208,7 +194,7 @@ class Profiler {
     }
     for (const Side& side : sides_) {
       for (const Point& point : side.points()) {
-        if (point.root * point.root < kKept * options_.rises[1]) result_.seen.push_back(point.found);
+        if (point.root * point.root < kKeptRise * options_.rises[1]) result_.seen.push_back(point.found);
       }
     }
     return std::move(result_);
@@ -259,7 +245,7 @@ class Profiler {
         for (const int direction : {-1, 1}) {
           const End end{j, rise, direction};
           const double at = end_of(end);
-          if (at < kRounding || at > 1.0 - kRounding || !looked_.insert({end, at}).second) continue;
+          if (at < kCoordinateRounding || at > 1.0 - kCoordinateRounding || !looked_.insert({end, at}).second) continue;
           for (const Neighbour& one : looks_beyond(end)) {
             looks.push_back(one);
             look_of.push_back(ends.size());
@@ -276,11 +262,13 @@ class Profiler {
         if (look_of[i] == k && (best == nullptr || found[i].objective < best->objective)) best = &found[i];
       }
       const auto& [end, at] = ends[k];
-      if (best == nullptr || !(best->objective < least_ + kClearly * options_.rises[end.rise] * options_.scale))
+      if (best == nullptr || !(best->objective < least_ + kClearlyLower * options_.rises[end.rise] * options_.scale))
         continue;
       const double start = best->where.at[static_cast<Eigen::Index>(end.parameter)];
       const auto most = [&](int direction) {
-        return direction != end.direction ? std::abs(start - at) + kRounding : direction < 0 ? start : 1.0 - start;
+        return direction != end.direction ? std::abs(start - at) + kCoordinateRounding
+               : direction < 0            ? start
+                                          : 1.0 - start;
       };
       for (const int direction : {-1, 1}) {
         sides_.emplace_back(*best, end.parameter, direction, most(direction), least_, options_);

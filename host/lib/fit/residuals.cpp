@@ -1,4 +1,5 @@
 #include "fit/residuals.hpp"
+#include "fit/constants.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,16 +7,6 @@
 
 namespace dolp::fit {
 namespace {
-
-// Steps of differences, in coordinates. Chosen on sets of the study of fits that its report leaves out: halves and
-// doubles change results by less than their tolerance, and the number of parameter sets by a few per cent.
-constexpr double kFirstStep = 0.01;
-constexpr double kLeastStep = 1e-6;
-constexpr double kMostStep = 0.05;
-constexpr double kLeastErrorShare = 1e-3;  // of the tolerance: smaller bounds leave out what they cannot know
-constexpr double kSeenShare = 0.2;         // of an uncertainty
-constexpr double kErrorsOfAChange = 100.0;
-constexpr double kMostChangeOfStep = 10.0;  // from one linearisation to the next
 
 /// The derivative at 0 of the line, or the parabola, through the values at 0 and at the offsets.
 Eigen::MatrixX2d derivative(const Eigen::MatrixX2d& at_0, const Prediction* beside,

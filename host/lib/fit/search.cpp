@@ -1,6 +1,7 @@
 #include "fit/search.hpp"
+#include "fit/constants.hpp"
+#include "fit/principal_axes.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <boost/random/sobol.hpp>
 #include <cmath>
@@ -13,14 +14,6 @@
 
 namespace dolp::fit {
 namespace {
-
-constexpr std::size_t kPointsOfAStart = 8;  // of the sequence
-constexpr int kStepsOfARound = 3;
-constexpr int kMostRounds = 15;
-constexpr double kCoarseGain = 0.1;  // of the scale: ends a descent that another one will finish
-constexpr int kStepsToTheBottom = 100;
-constexpr double kFarAbove = 30.0;  // standard deviations of the objective: more than the wider tolerance may hide
-constexpr int kPointsOfALine = 8;   // between two minima
 
 /// Points of the Sobol sequence in the unit cube, all shifted by one vector, modulo 1.
 std::vector<Eigen::VectorXd> sobol_points(std::size_t count, Eigen::Index dimensions, std::uint64_t seed) {
@@ -85,7 +78,8 @@ Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& re
                          const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& line) {
   const Eigen::VectorXd along = line.normalized();
   const Eigen::MatrixXd across = jacobian - jacobian * along * along.transpose();
-  const Eigen::VectorXd moved = point - across.completeOrthogonalDecomposition().solve(residuals);
+  const PrincipalAxes axes = principal_axes(across.transpose() * across);
+  const Eigen::VectorXd moved = point - axes.inverse(kFlatShare) * across.transpose() * residuals;
   return moved.cwiseMax(0.0).cwiseMin(1.0);
 }
 

@@ -1,6 +1,7 @@
 #include "run/closed_forms.hpp"
 
 #include <boost/math/quadrature/tanh_sinh.hpp>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -38,14 +39,34 @@ double critical_angle(const OpticalConstants& index) {
                                                     : 0.0;
 }
 
+constexpr double kHorizon_deg = 90.0;
+constexpr double kMirrorSpread_deg = 2.0 * kMirrorSlope * 180.0 / std::numbers::pi;  // of the reflected rays
+
+/// The moments with the functions of a sky where all rays leave toward one zenith, but for a spread.
+void add_sky(Moments& moments, const SkyBasis& sky, double zenith_deg, double spread_deg) {
+  const Eigen::RowVectorXd at = sky.at(zenith_deg);
+  const Eigen::RowVectorXd above = sky.at(std::max(zenith_deg - spread_deg, 0.0));
+  const Eigen::RowVectorXd below = sky.at(std::min(zenith_deg + spread_deg, kHorizon_deg));
+  for (Eigen::Index k = 0; k < at.size(); ++k) {
+    const double change = std::max(std::abs(above[k] - at[k]), std::abs(below[k] - at[k]));
+    moments.sky.push_back({at[k] * moments.r_i, at[k] * moments.r_q,
+                           2.0 * std::max(moments.r_i_error, moments.r_q_error) + change * moments.r_i});
+  }
+}
+
 }  // namespace
 
 Moments closed_form(const Surface& surface, const Direction& direction, const SlopeShape& shape,
-                    const OpticalConstants& index) {
-  if (direction.treatment == Treatment::kDivergentLimit) return grazing_limit_moments(index, shape.q);
+                    const OpticalConstants& index, const SkyBasis* sky) {
+  if (direction.treatment == Treatment::kDivergentLimit) {
+    Moments moments = grazing_limit_moments(index, shape.q);
+    if (sky) add_sky(moments, *sky, kHorizon_deg, 0.0);  // vertical facets reflect the horizon
+    return moments;
+  }
   const double steep = steep_share(surface, shape) * direction.cos_theta;
   Moments moments = mirror_moments(index, direction.cos_theta);
   for (const auto& [value, error] : kMomentMembers) moments.*error += steep;
+  if (sky) add_sky(moments, *sky, direction.theta_deg, shape.sigma > 0.0 ? kMirrorSpread_deg : 0.0);
   return moments;
 }
 

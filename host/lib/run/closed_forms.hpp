@@ -2,14 +2,15 @@
 
 #include "model/direction.hpp"
 #include "model/moments.hpp"
+#include "model/sky_basis.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {
 
 /// Moments that need no evaluator: of a mirror, or the limits at 90 degrees of moments that diverge there.
-/// Domain: a direction whose treatment is not kIntegrated.
+/// With a basis of a sky those with its functions too. Domain: a direction whose treatment is not kIntegrated.
 Moments closed_form(const Surface& surface, const Direction& direction, const SlopeShape& shape,
-                    const OpticalConstants& index);
+                    const OpticalConstants& index, const SkyBasis* sky = nullptr);
 
 /// Moments at exactly 90 degrees where they diverge, up to their common factor: masking none or `integral`, cauchy with
 /// q <= 3/2. Their quotients are the limits theta -> 90 degrees.

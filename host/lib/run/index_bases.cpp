@@ -7,7 +7,7 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kLeastEntries = 24;  // of an index: its weights take as long as some of them
+constexpr std::size_t kLeastEntries = 24;  // chosen, of an index: its weights take as long as some of them
 
 std::vector<OpticalConstants> indices_of(const SceneValues& scene, const SceneEntries& entries) {
   const SceneEntries whole = SceneEntries::of_grid(entries.whole_axes(), entries.index());

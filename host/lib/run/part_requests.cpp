@@ -72,6 +72,7 @@ PartRequests::PartRequests(const SceneValues& scene, const SpectralIndices& samp
   moments_.tolerance = level.tolerance;
   moments_.has_extra_splits = level.is_check;
   moments_.basis = level.basis;
+  moments_.sky = plan.sky;
   moments_.may_interpolate = level.may_interpolate;
   if (plan.needs_moments && selection.part.is_grid()) ask_grid(selection);
   if (plan.needs_moments && !selection.part.is_grid()) ask_points(selection);

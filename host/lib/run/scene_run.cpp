@@ -24,16 +24,17 @@ namespace {
 // Limits on the memory of a run. Points take more of it, because they share nothing.
 constexpr std::size_t kMomentsAtOnce = 1U << 20U;
 constexpr std::size_t kPointsAtOnce = 1U << 17U;
-// A direction is refined as a whole where more than one entry in so many misses the tolerance.
+// Chosen: 1.71, 1.81, 1.99 with smith (see plan/constants.hpp). A direction is refined as a whole where more than one
+// entry in so many misses the tolerance.
 constexpr std::size_t kManyMisses = 8;
 constexpr std::size_t kEntriesAtOnce = 4096;  // of a thread: their radiometry takes longer than to start one
 
 /// The scene's radiometry at each wavelength of a part.
 struct Spectra {
   Spectra(const SceneValues& scene, const EffectPlan& plan, const std::vector<double>& wavelength_um) {
-    if (wavelength_um.empty()) radiometries.emplace_back(scene, plan.kept, plan.bound);
+    if (wavelength_um.empty()) radiometries.emplace_back(scene, plan.kept, plan.bound, plan.sky);
     for (const double of_entry : wavelength_um)
-      radiometries.emplace_back(at_wavelength(scene, of_entry), plan.kept, plan.bound);
+      radiometries.emplace_back(at_wavelength(scene, of_entry), plan.kept, plan.bound, plan.sky);
     for (const Radiometry& radiometry : radiometries) indices.push_back(radiometry.rule().indices());
   }
   std::vector<Radiometry> radiometries;
@@ -106,7 +107,7 @@ class MemberResults {
     if (!context_.plan.needs_moments) return moments_;  // never written to
     if (direction.treatment != Treatment::kIntegrated) {
       for (std::size_t j = 0; j < moments_.size(); ++j) {
-        moments_[j] = closed_form(context_.scene.surface, direction, entry.shape, indices[j]);
+        moments_[j] = closed_form(context_.scene.surface, direction, entry.shape, indices[j], context_.plan.sky.get());
       }
       return moments_;
     }
@@ -375,8 +376,9 @@ RunOutcome Run::compute(Sink& sink) {
 
 double Run::wall_s() const { return seconds_since(start_); }
 
-RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
+RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& given,
                      ModelEvaluator* evaluator, Sink& sink, const Progress& progress) {
+  const EffectPlan plan = with_sky(given, scene, entries);
   const std::size_t samples = spectral_rule(scene).samples.size();
   const std::size_t whole = entries.is_grid() ? size_of(entries.whole()) : entries.size();
   std::vector<std::size_t> checked;

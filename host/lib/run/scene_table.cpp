@@ -50,6 +50,14 @@ void fill_curves(TableHead& head, const SceneValues& scene) {
   if (scene.source->kind == Source::Kind::kTabulated) head.irradiance = curve_of(scene.source->table, 0.0);
 }
 
+/// The file of a scene's profile; empty for a built-in one, which its name describes, and without one.
+std::string profile_text(const SceneValues& scene) {
+  if (scene.names.profile.empty() || built_in_sky(scene.names.profile)) return {};
+  if (scene.surroundings->profile) return scene.surroundings->profile->text();
+  const double everywhere_K = scene.surroundings->temperature_K;
+  return SkyProfile{.zenith_deg = {0.0, 90.0}, .values = {everywhere_K, everywhere_K}}.text();
+}
+
 /// An exitance, in bistatic mode a radiance; per um at a single wavelength.
 std::string stokes_units(const SceneValues& scene) {
   std::string units = "W m-2";
@@ -132,6 +140,8 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
                      {"tolerance", scene.accuracy.tolerance}};
   const Dispersion& formula = scene.surface.material.n.formula;
   if (formula.number != 0) head.attributes.push_back({"index_n_formula", formula_text(formula)});
+  const std::string profile = profile_text(scene);
+  if (!profile.empty()) head.attributes.push_back({"surroundings_profile", profile});
   layout.quantities = quantities_of(scene, &plan);
   return layout;
 }
@@ -154,6 +164,7 @@ std::uint64_t data_hash(const SceneValues& scene) {
     add(material->k);
   }
   if (scene.source) add(scene.source->table);
+  if (scene.surroundings && scene.surroundings->profile) hash = hashed(hash, scene.surroundings->profile->hash());
   return hash;
 }
 

@@ -55,7 +55,7 @@ Dispersion formula_of(const std::string& text, const std::string& where) {
   return formula;
 }
 
-/// n, k and E0 as the table has them.
+/// n, k, E0 and the sky as the table has them.
 KnownData known_data(const TableHead& table, const std::string& name) {
   const std::string where = name + ": ";
   KnownData known;
@@ -72,6 +72,10 @@ KnownData known_data(const TableHead& table, const std::string& name) {
   }
   if (!table.irradiance.values.empty()) {
     known.irradiance = checked_table(table.irradiance, {"irradiance", 0.0, kNonNegativeRange}, where);
+  }
+  const std::string* profile = find_text(table, "surroundings_profile");
+  if (profile && !profile->empty()) {
+    known.profile = parse_sky_profile(*profile, name + ": attribute \"surroundings_profile\"");
   }
   return known;
 }

@@ -50,7 +50,7 @@ std::vector<Moments> computed(const MomentsRequest& request, const RuleModel& mo
     }
     const MomentsEntry entry = data[i];
     kernel->build_masking_table(entry.shape);
-    moments[i] = moments_from_kernel(kernel->moments(entry), data, entry, kDoubleRoundoff);
+    moments[i] = moments_from_kernel(kernel->moments(entry, {}), data, entry, kDoubleRoundoff);
   };
   parallel_for(moments.size(), one, nullptr);
   return moments;

@@ -26,7 +26,7 @@ std::string lower_case(std::string_view text);
 /// Errors: nullopt for anything else, also for nan, inf, 1e999 and 1e-999.
 std::optional<double> parse_number(std::string_view text);
 
-/// The shortest text that reads back as the same number.
+/// The shortest text that reads back as the same number, for messages and scenes: 100000 where number_text says 1e+05.
 std::string format_number(double value);
 
 /// Number of single-character insertions, deletions and replacements between the beginnings of two words, 80 bytes of

@@ -56,7 +56,9 @@ std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData&
   std::vector<Moments> moments(request.size());
   const auto one = [&](std::size_t i) {
     const MomentsEntry entry = data[entries[i]];
-    moments[entries[i]] = moments_from_kernel(kernel.moments(entry), data, entry, unit_roundoff);
+    std::vector<double> sky(sky_sums(data));
+    const kernel::MomentsNode node = kernel.moments(entry, sky);
+    moments[entries[i]] = moments_from_kernel(node, data, entry, unit_roundoff, sky);
   };
   parallel_for(entries.size(), one, progress);
   return moments;

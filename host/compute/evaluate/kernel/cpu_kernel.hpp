@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 
 #include "plan/kernel_data.hpp"
 
@@ -15,10 +16,11 @@ class CpuKernel {
 
   /// Fills the masking table of one shape; needed before `moments` of its entries when the data needs tables.
   virtual void build_masking_table(std::size_t shape) = 0;
-  virtual kernel::MomentsNode moments(const MomentsEntry& entry) = 0;
+  /// Adds DOLP_SKY_PARTS sums for each function of the data's sky to `sky`.
+  virtual kernel::MomentsNode moments(const MomentsEntry& entry, std::span<double> sky) = 0;
 
-  /// The sums over the azimuths at a slope.
-  virtual kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope) = 0;
+  /// The sums over the azimuths at a slope; `sky` gets r_i and r_q with each function of the data's sky.
+  virtual kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope, std::span<double> sky) = 0;
 
   /// f cos(theta_i) cos(theta_r) for k_s = 1 over the beam's power of two, in 1/sr; of the data it needs the model and
   /// the rule nodes.

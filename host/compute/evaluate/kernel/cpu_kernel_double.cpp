@@ -1,3 +1,4 @@
+#define DOLP_MOST_SKY DOLP_SKY_FUNCTIONS
 #define DOLP_KERNEL_NAMESPACE kernel_double
 #define DOLP_DOUBLE
 

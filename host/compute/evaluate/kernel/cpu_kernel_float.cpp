@@ -1,3 +1,4 @@
+#define DOLP_MOST_SKY DOLP_SKY_FUNCTIONS
 #define DOLP_KERNEL_NAMESPACE kernel_float
 
 #include <glm/vec2.hpp>

@@ -40,6 +40,10 @@ struct KernelSource {
   bool kTotalReflection = false;
   bool kIsMultiple = false;
   bool kHasDirect = false;
+  uint kSkyCount = 0;
+  int log2_sky_cells = 0;
+  int first_sky_cell = 0;
+  int corners_of_sky = 0;
   int order_of_nodes = 1;
   std::vector<real2> rule_nodes;
   std::vector<real4> masking_table;
@@ -52,12 +56,19 @@ struct KernelSource {
     source.kTotalReflection = data.has_total_reflection;
     source.kIsMultiple = data.scattering == Scattering::kMultiple;
     source.kHasDirect = data.has_direct;
+    source.kSkyCount = data.sky.count;
+    source.log2_sky_cells = static_cast<int>(data.sky.log2_cells);
+    source.first_sky_cell = static_cast<int>(data.sky.start);
+    source.corners_of_sky = static_cast<int>(data.sky.corners);
     source.order_of_nodes = data.rule_order;
     for (const auto& node : data.rule_nodes) source.rule_nodes.push_back(convert_reals<real, real2, double>(node));
     return source;
   }
 
   int largest_order() const { return order_of_nodes; }
+  int sky_cells() const { return 1 << log2_sky_cells; }
+  int pushed_corners() const { return corners_of_sky; }
+  int sky_start() const { return first_sky_cell; }
   real2 rule_node(int i) const { return rule_nodes[static_cast<std::size_t>(i)]; }
   real4 masking_node(uint i) const { return masking_table[i]; }
   void store_masking_node(uint i, real4 node) { masking_table[i] = node; }
@@ -74,7 +85,7 @@ class SourceKernel final : public CpuKernel {
 
   void build_masking_table(std::size_t shape) override { source_.build_masking_table(shape_node(shape), table(shape)); }
 
-  kernel::MomentsNode moments(const MomentsEntry& entry) override {
+  kernel::MomentsNode moments(const MomentsEntry& entry, std::span<double> sky) override {
     const KernelSource::Row row{{shape_node(entry.shape)}, {table(entry.shape)}};
     const auto theta = convert_reals<real, KernelSource::ThetaNode, double>(data_.thetas[entry.theta]);
     const auto index = convert_reals<real, KernelSource::IndexNode, double>(data_.indices[entry.index]);
@@ -83,17 +94,20 @@ class SourceKernel final : public CpuKernel {
       const auto task = source_.with_slopes(source_.task_of(task_word(data_.pieces[entry.theta], piece, 1)), theta);
       const auto part = source_.piece_moments(rule_, theta, row, index, task);
       add_piece(moments, convert_reals<double, kernel::MomentsNode, real>(part.member[0]));
+      for (std::size_t k = 0; k < data_.sky.count; ++k) add_function(k, part, sky.subspan(DOLP_SKY_PARTS * k));
     }
     return moments;
   }
 
-  kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope) override {
+  kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope, std::span<double> sky) override {
     const auto theta =
         convert_reals<real, KernelSource::ThetaNode, double>(data_.thetas[static_cast<std::size_t>(slope.theta)]);
     const auto index =
         convert_reals<real, KernelSource::IndexNode, double>(data_.indices[static_cast<std::size_t>(slope.index)]);
     const auto own = convert_reals<real, KernelSource::SlopeNode, double>(slope);
-    return convert_reals<double, kernel::AzimuthNode, real>(source_.azimuths_of(rule_, theta, index, own));
+    const auto result = source_.azimuths_of(rule_, theta, index, own);
+    for (std::size_t k = 0; k < data_.sky.count; ++k) copy_function(k, result, sky.subspan(2 * k));
+    return convert_reals<double, kernel::AzimuthNode, real>(result.node);
   }
 
   kernel::MuellerNode mueller(const kernel::BeamNode& beam) override {
@@ -103,6 +117,24 @@ class SourceKernel final : public CpuKernel {
 
  private:
   static uint table(std::size_t shape) { return static_cast<uint>(shape * KernelSource::kMaskingNodes); }
+
+#if DOLP_MOST_SKY > 0
+  static void add_function(std::size_t k, const KernelSource::RowMoments& part, std::span<double> sums) {
+    const real i = part.sky[0].i[k];
+    const real q = part.sky[0].q[k];
+    const real apart = max(abs(i - part.coarse_sky[0].i[k]), abs(q - part.coarse_sky[0].q[k]));
+    sums[0] += static_cast<double>(i);
+    sums[1] += static_cast<double>(q);
+    sums[2] += static_cast<double>(apart);
+  }
+  static void copy_function(std::size_t k, const KernelSource::SlopeResult& result, std::span<double> sums) {
+    sums[0] = static_cast<double>(result.sky.i[k]);
+    sums[1] = static_cast<double>(result.sky.q[k]);
+  }
+#else  // for plans, which compute no moments
+  static void add_function(std::size_t, const KernelSource::RowMoments&, std::span<double>) {}
+  static void copy_function(std::size_t, const KernelSource::SlopeResult&, std::span<double>) {}
+#endif
 
   KernelSource::ShapeNode shape_node(std::size_t shape) const {
     return convert_reals<real, KernelSource::ShapeNode, double>(data_.shapes[shape]);

@@ -25,12 +25,16 @@ using sampling_kernel::KernelSource;
 
 namespace {
 
-// Spacing of the ends of pieces, in e-folds of slope, for distributions of many widths.
+// Numbers: thousands of evaluations of the table of plan/constants.hpp with half, it and double; none, then
+// v-cavity.
+
+// Chosen: 27.4, 24.0, 22.1; 54.2, 50.9, 49.2. Spacing of the ends of pieces, in e-folds of slope, for distributions of
+// many widths.
 constexpr double kWidthStep = 1.3;
-// Spacing of the widths, in e-folds, at which the number of nodes is determined.
+// Chosen: 24.0 each; 51.0, 50.9, 50.9. Spacing of the widths, in e-folds, at which the number of nodes is determined.
 constexpr double kAskedStep = 0.4;
 
-// -ln of a share of the facets that counts as zero.
+// Chosen: no difference. -ln of a share of the facets that counts as zero.
 constexpr double kNoFacets = 80.0;
 
 // Requirements of one corner for the rule of a piece.
@@ -200,10 +204,33 @@ struct SlopeSampling::Impl {
     return std::bit_cast<kernel::AzimuthNode>(sums);
   }
 
-  // The moments of one shape without the slopes beyond the cut; `own` is scratch space for the weights.
+  // Adds the sums of both rules of a piece with the functions of the sky to `sums`, and the distance of the rules.
+  static void add_sky(const SampledPiece& piece, const Eigen::ArrayXd& own, double share,
+                      std::span<const double> azimuths, std::span<double> sums) {
+    const auto functions = static_cast<Eigen::Index>(sums.size() / DOLP_SKY_PARTS);
+    if (functions == 0) return;
+    const Eigen::Map<const Eigen::MatrixXd> all(azimuths.data(), 2 * functions, own.size());
+    const auto sum_of_rule = [&](std::uint32_t first, std::uint32_t count) -> Eigen::VectorXd {
+      const double mass = own.segment(first, count).sum();
+      return all.middleCols(first, count) * own.segment(first, count).matrix() *
+             (mass > 0.0 ? share / (KernelSource::kPi * mass) : 0.0);
+    };
+    const Eigen::VectorXd fine = sum_of_rule(piece.first, piece.fine);
+    const Eigen::VectorXd apart = (fine - sum_of_rule(piece.first + piece.fine, piece.coarse)).cwiseAbs();
+    for (Eigen::Index k = 0; k < functions; ++k) {
+      const auto part = sums.subspan(static_cast<std::size_t>(k) * DOLP_SKY_PARTS, DOLP_SKY_PARTS);
+      part[0] += fine[2 * k];
+      part[1] += fine[2 * k + 1];
+      part[2] += std::max(apart[2 * k], apart[2 * k + 1]);
+    }
+  }
+
+  // The moments of one shape without the slopes beyond the cut; `own` is scratch space for the weights, `sky` gets the
+  // sums with the functions of the sky.
   kernel::MomentsNode moments_of(const SlopeSamples& samples, const KernelSource::ShapeNode& shape,
                                  const SlopeWeights& weights, std::span<const kernel::AzimuthNode> azimuths,
-                                 Eigen::ArrayXd& own) {
+                                 std::span<const double> sky_azimuths, Eigen::ArrayXd& own, std::span<double> sky) {
+    std::ranges::fill(sky, 0.0);
     const double factor = source.exponent_factor(shape);
     const auto has_facets = [&](const SampledPiece& piece) {
       return factor * source.common_exponent(piece.start / shape.m) < kNoFacets;
@@ -220,6 +247,7 @@ struct SlopeSampling::Impl {
       from = to;
       const auto fine = sum_of(piece->first, piece->fine, own, share, azimuths);
       const auto coarse = sum_of(piece->first + piece->fine, piece->coarse, own, share, azimuths);
+      add_sky(*piece, own, share, sky_azimuths, sky);
       const auto apart = [](double a, double b) { return std::abs(a - b); };
       const bool is_steep = piece->end > slope_with_bounces(DOLP_MOST_BOUNCES);
       add_piece(moments,
@@ -272,22 +300,25 @@ void SlopeSampling::append(const SlopeSamples& samples, std::vector<kernel::Slop
   }
 }
 
-void SlopeSampling::integrate(const SlopeSamples& samples, std::span<const kernel::AzimuthNode> azimuths,
+void SlopeSampling::integrate(const SlopeSamples& samples, const SampledAzimuths& sampled, std::size_t first,
                               double unit_roundoff, std::span<Moments> moments) const {
+  const auto azimuths = std::span(sampled.nodes).subspan(first, samples.slopes.size());
+  const auto sky_azimuths = std::span(sampled.sky).subspan(first * sampled.of_sky, azimuths.size() * sampled.of_sky);
   const KernelData& data = impl_->data;
   const auto& [direction, theta, index, shapes] = samples.entries;
   double evaluations = 0.0;
   for (const kernel::AzimuthNode& azimuth : azimuths) evaluations += azimuth.evaluations;
   SlopeWeights weights;
   Eigen::ArrayXd own(static_cast<Eigen::Index>(samples.slopes.size()));
+  std::vector<double> sky(sky_sums(data));
   for (const std::uint32_t shape : shapes) {
     const auto node = std::bit_cast<KernelSource::ShapeNode>(data.shapes[shape]);
     if (node.m != weights.m) weights = impl_->weights_of(samples, node);
-    kernel::MomentsNode sums = impl_->moments_of(samples, node, weights, azimuths, own);
+    kernel::MomentsNode sums = impl_->moments_of(samples, node, weights, azimuths, sky_azimuths, own, sky);
     sums.deficit += data.thetas[theta].c * impl_->source.slope_tail(node, samples.cut);
     sums.evaluations = evaluations / static_cast<double>(shapes.size());
     moments[data.entry_of(direction, index, shape)] =
-        moments_from_kernel(sums, data, {theta, shape, index}, unit_roundoff);
+        moments_from_kernel(sums, data, {theta, shape, index}, unit_roundoff, sky);
   }
 }
 
@@ -296,10 +327,9 @@ void SlopeSampling::compute(SampledEntries entries, CpuKernel& kernel, double un
   const SlopeSamples samples = plan(std::move(entries));
   std::vector<kernel::SlopeNode> slopes;
   append(samples, slopes);
-  std::vector<kernel::AzimuthNode> azimuths;
-  azimuths.reserve(slopes.size());
-  for (const kernel::SlopeNode& slope : slopes) azimuths.push_back(kernel.azimuths(slope));
-  integrate(samples, azimuths, unit_roundoff, moments);
+  SampledAzimuths azimuths(slopes.size(), impl_->data);
+  for (std::size_t i = 0; i < slopes.size(); ++i) azimuths.nodes[i] = kernel.azimuths(slopes[i], azimuths.sky_of(i));
+  integrate(samples, azimuths, 0, unit_roundoff, moments);
 }
 
 std::vector<SampledEntries> sampled_entries(const MomentsRequest& request, const KernelData& data, std::size_t first,

@@ -51,6 +51,17 @@ struct SlopeSamples {
   std::vector<SampledSlope> slopes;
 };
 
+/// The kernel's results for slopes.
+struct SampledAzimuths {
+  SampledAzimuths(std::size_t slopes, const KernelData& data)
+      : nodes(slopes), of_sky(sky_azimuths(data)), sky(slopes * of_sky) {}
+  std::span<double> sky_of(std::size_t slope) { return std::span(sky).subspan(slope * of_sky, of_sky); }
+
+  std::vector<kernel::AzimuthNode> nodes;
+  std::size_t of_sky;
+  std::vector<double> sky;  ///< r_i and r_q with each function of the sky, slope by slope
+};
+
 /// Plans slope samples of a request and integrates them. `data` must outlive it; any thread may call it.
 class SlopeSampling {
  public:
@@ -61,8 +72,8 @@ class SlopeSampling {
   /// Appends the kernel's input, slope by slope.
   void append(const SlopeSamples& samples, std::vector<kernel::SlopeNode>& nodes) const;
   /// Puts the moments of their shapes at the places of their entries in the request; `azimuths` holds the
-  /// kernel's result for each of its slopes, `unit_roundoff` is that of its precision.
-  void integrate(const SlopeSamples& samples, std::span<const kernel::AzimuthNode> azimuths, double unit_roundoff,
+  /// kernel's result for each of its slopes from `first` on, `unit_roundoff` is that of its precision.
+  void integrate(const SlopeSamples& samples, const SampledAzimuths& azimuths, std::size_t first, double unit_roundoff,
                  std::span<Moments> moments) const;
   /// Plans, takes and integrates samples with the kernel source compiled for the CPU.
   void compute(SampledEntries entries, CpuKernel& kernel, double unit_roundoff, std::span<Moments> moments) const;

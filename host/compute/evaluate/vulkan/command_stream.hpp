@@ -29,7 +29,7 @@ class CommandStream {
   void barrier(Barrier barrier);
   /// Runs `pipeline` on `count` invocations from `first` (see DOLP_PUSH_CONSTANTS); does nothing when count is 0.
   void dispatch(const Kernels& kernels, VkPipeline pipeline, std::uint32_t first, std::uint32_t count,
-                int largest_order);
+                int largest_order, std::uint32_t sky = 0);
   /// Submits what was recorded and waits for it. Returns the seconds on the device's clock from begin to end; by the
   /// host's clock, submission included, where the queue has no timestamps.
   /// Errors: DeviceTimeout after `timeout_s`; DeviceError when the device is lost.

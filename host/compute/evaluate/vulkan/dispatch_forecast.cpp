@@ -29,7 +29,7 @@ DispatchForecast slope_forecast(const MomentsRequest& request, const vulkan::Pac
   const KernelData data = kernel_data(request);
   const SlopeSampling sampling(data);
   const std::size_t at_once = vulkan::batch_directions(data);
-  const std::uint32_t slopes = vulkan::slope_tile_size(tile_limits(device, options.max_tile_invocations, 1), packing);
+  const std::uint32_t slopes = vulkan::slope_tile_size(tile_limits(device, options.max_tile_invocations, 1), packing, data);
   DispatchForecast forecast{.tile_invocations = slopes};
   for (std::size_t first = 0; first < data.directions; first += at_once) {
     const vulkan::SlopeBatch batch =
@@ -39,7 +39,7 @@ DispatchForecast slope_forecast(const MomentsRequest& request, const vulkan::Pac
     forecast.slopes += batch.slopes.size();
   }
   forecast.device_bytes =
-      slopes * (packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::AzimuthNode>() +
+      slopes * (packing.node_bytes<kernel::SlopeNode>() + packing.output_bytes<kernel::AzimuthNode>(sky_azimuths(data)) +
                 packing.node_bytes<kernel::ThetaNode>() + packing.node_bytes<kernel::IndexNode>()) +
       node_bytes(packing, data);
   return forecast;
@@ -55,7 +55,7 @@ DispatchForecast dispatch_forecast(const MomentsRequest& request, const dolp::De
   if (has_slope_samples(request)) return slope_forecast(request, packing, device, options);
   const KernelData data = kernel_data(request);
   const Rows rows = rows_of(request, data);
-  const vulkan::TileCosts costs = vulkan::tile_costs(packing, rows.width);
+  const vulkan::TileCosts costs = vulkan::tile_costs(packing, data, rows.width);
   const std::uint64_t most = rows.rows.size() * DOLP_MAX_PIECES;
   const vulkan::TileSizes sizes =
       vulkan::tile_sizes(tile_limits(device, std::min<std::uint64_t>(options.max_tile_invocations, most),

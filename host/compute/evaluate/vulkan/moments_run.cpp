@@ -38,7 +38,7 @@ TileSizes MomentsRun::sizes(std::uint32_t tile_invocations, std::uint32_t block_
                      .tile_invocations = std::min<std::uint64_t>(tile_invocations, rows_.rows.size() * DOLP_MAX_PIECES),
                      .block_shapes = block_limit(rows_, block_shapes),
                      .texels = limits.maxTexelBufferElements},
-                    tile_costs(context_.packing, rows_.width));
+                    tile_costs(context_.packing, data_, rows_.width));
 }
 
 void MomentsRun::create_buffers() {
@@ -58,7 +58,8 @@ void MomentsRun::create_buffers() {
                           std::size_t{sizes_.shapes} * packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
                           MemoryUse::kDeviceOnly, packing.masking_texels());
   moments_buffer_.emplace(device,
-                          std::size_t{sizes_.invocations} * rows_.width * packing.node_bytes<kernel::MomentsNode>(),
+                          std::size_t{sizes_.invocations} * rows_.width *
+                              packing.output_bytes<kernel::MomentsNode>(sky_sums(data_)),
                           MemoryUse::kReadback);
 
   Kernels::Bindings bindings;
@@ -86,6 +87,7 @@ void MomentsRun::create_pipelines() {
 
 std::optional<std::vector<Moments>> MomentsRun::compute(const Progress& progress) {
   std::vector<kernel::MomentsNode> results(rows_.rows.size() * rows_.width);
+  sky_results_.assign(results.size() * sky_sums(data_), 0.0);
   const std::size_t wanted = request_.wanted_count();
   for (const Block& block : blocks_of(rows_, sizes_.shapes)) {
     const std::vector<RowPiece> pieces = pieces_of(rows_, data_, block.first_row, block.row_count);
@@ -147,7 +149,7 @@ void MomentsRun::run_tile(const Block& block, std::span<const RowPiece> pieces,
   upload_tile(block, pieces);
   stream.barrier(Barrier::kUploadToKernel);
   stream.dispatch(context_.kernels, context_.kernels.pipeline(moments_variant(data_, rows_.width)), 0,
-                  static_cast<std::uint32_t>(pieces.size()), data_.rule_order);
+                  static_cast<std::uint32_t>(pieces.size()), data_.rule_order, data_.sky.word());
   stream.barrier(Barrier::kKernelToHost);
   cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
   ++cost_.dispatches;
@@ -156,23 +158,33 @@ void MomentsRun::run_tile(const Block& block, std::span<const RowPiece> pieces,
 }
 
 void MomentsRun::add_pieces(std::span<const RowPiece> pieces, std::span<kernel::MomentsNode> results) {
-  scratch_.resize(pieces.size() * rows_.width * context_.packing.node_bytes<kernel::MomentsNode>());
+  const Packing& packing = context_.packing;
+  const std::size_t members = pieces.size() * rows_.width;
+  const std::size_t of_sky = sky_sums(data_);
+  scratch_.resize(members * packing.output_bytes<kernel::MomentsNode>(of_sky));
   moments_buffer_->read(scratch_);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    cost_.evaluations += context_.packing.read<kernel::MomentsNode>(scratch_, i * rows_.width).evaluations;
+    cost_.evaluations += packing.read<kernel::MomentsNode>(scratch_, i * rows_.width).evaluations;
   }
   // Each range owns its rows, so that the pieces of a row are summed in their order on any thread.
   const auto [least, most] = std::ranges::minmax(pieces, {}, &RowPiece::row);
   const std::uint32_t first_row = least.row;
   parallel_ranges(most.row - least.row + std::size_t{1}, kRowsAtOnce, [&](std::size_t first, std::size_t last) {
+    std::vector<double> sky(of_sky);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const std::size_t row = pieces[i].row - first_row;
       if (row < first || row >= last) continue;
       const Row& of_piece = rows_.rows[pieces[i].row];
       for (std::uint32_t g = 0; g < rows_.chunks[of_piece.chunk].count; ++g) {
-        auto node = context_.packing.read<kernel::MomentsNode>(scratch_, i * rows_.width + g);
+        auto node = packing.read<kernel::MomentsNode>(scratch_, i * rows_.width + g);
         node.evaluations /= of_piece.used;
-        add_piece(results[pieces[i].row * std::size_t{rows_.width} + g], node);
+        const std::size_t place = pieces[i].row * std::size_t{rows_.width} + g;
+        add_piece(results[place], node);
+        packing.read_numbers(
+            scratch_,
+            members * packing.node_bytes<kernel::MomentsNode>() + (i * rows_.width + g) * of_sky * packing.real_bytes(),
+            sky);
+        for (std::size_t k = 0; k < of_sky; ++k) sky_results_[place * of_sky + k] += sky[k];
       }
     }
   });
@@ -180,6 +192,7 @@ void MomentsRun::add_pieces(std::span<const RowPiece> pieces, std::span<kernel::
 
 std::vector<Moments> MomentsRun::moments_of(std::span<const kernel::MomentsNode> results) const {
   std::vector<Moments> moments(request_.size());
+  const std::size_t of_sky = sky_sums(data_);
   parallel_ranges(rows_.rows.size(), kRowsAtOnce, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const Row& row = rows_.rows[i];
@@ -188,7 +201,8 @@ std::vector<Moments> MomentsRun::moments_of(std::span<const kernel::MomentsNode>
       for (std::uint32_t g = 0; g < chunk.count; ++g) {
         const std::uint32_t shape = rows_.shape_of[chunk.first + g];
         moments[data_.entry_of(row.direction, row.index, shape)] = moments_from_kernel(
-            results[i * rows_.width + g], data_, {theta, shape, row.index}, context_.packing.unit_roundoff());
+            results[i * rows_.width + g], data_, {theta, shape, row.index}, context_.packing.unit_roundoff(),
+            std::span(sky_results_).subspan((i * rows_.width + g) * of_sky, of_sky));
       }
     }
   });

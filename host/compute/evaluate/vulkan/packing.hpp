@@ -34,6 +34,11 @@ class Packing {
   std::size_t node_bytes() const {
     return real_count<Node>() * real_bytes();
   }
+  /// Bytes of one structure with `numbers` beside it, which stand behind all structures of an output.
+  template <class Node>
+  std::size_t output_bytes(std::size_t numbers) const {
+    return node_bytes<Node>() + numbers * real_bytes();
+  }
   /// Nodes of the masking table of one shape.
   std::size_t masking_nodes() const {
     return float64_ ? DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE)
@@ -70,6 +75,14 @@ class Packing {
   Node read(std::span<const std::byte> bytes, std::size_t position) const {
     const std::span<const std::byte> source = bytes.subspan(position * node_bytes<Node>(), node_bytes<Node>());
     return float64_ ? read_as<double, Node>(source) : read_as<float, Node>(source);
+  }
+
+  /// Reads numbers, which begin at `offset` bytes.
+  void read_numbers(std::span<const std::byte> bytes, std::size_t offset, std::span<double> numbers) const {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const std::span<const std::byte> source = bytes.subspan(offset + i * real_bytes(), real_bytes());
+      numbers[i] = float64_ ? read_as<double, double>(source) : read_as<float, double>(source);
+    }
   }
 
  private:

@@ -78,7 +78,7 @@ std::uint32_t SlopeRun::tile_size(std::uint32_t tile_slopes) const {
        .dispatch_count = std::uint64_t{limits.maxComputeWorkGroupCount[0]} * context_.device.local_size(),
        .tile_invocations = std::min<std::uint64_t>(tile_slopes, most),
        .block_shapes = 1},
-      context_.packing);
+      context_.packing, data_);
 }
 
 void SlopeRun::create_buffers() {
@@ -93,7 +93,8 @@ void SlopeRun::create_buffers() {
   rule_buffer_.emplace(device, packing.node_bytes<kernel::RuleNode>(), staged);
   rule_node_buffer_.emplace(device, data_.rule_nodes.size() * packing.node_bytes<std::array<double, 2>>(), staged,
                             packing.rule_texels());
-  azimuth_buffer_.emplace(device, tile_size_ * packing.node_bytes<kernel::AzimuthNode>(), MemoryUse::kReadback);
+  azimuth_buffer_.emplace(device, tile_size_ * packing.output_bytes<kernel::AzimuthNode>(sky_azimuths(data_)),
+                          MemoryUse::kReadback);
   Kernels::Bindings bindings;
   bindings.buffers[DOLP_BINDING_THETAS] = theta_buffer_->get();
   bindings.buffers[DOLP_BINDING_INDICES] = index_buffer_->get();
@@ -124,7 +125,7 @@ std::optional<std::vector<Moments>> SlopeRun::compute(const Progress& progress) 
   for (std::size_t first = 0; first < data_.directions; first += at_once) {
     const std::size_t last = std::min(first + at_once, data_.directions);
     const SlopeBatch batch = slope_batch(request_, data_, sampling_, first, last);
-    std::vector<kernel::AzimuthNode> azimuths(batch.slopes.size());
+    SampledAzimuths azimuths(batch.slopes.size(), data_);
     const std::span<const std::uint32_t> slopes(batch.in_lockstep);
     for (std::size_t done = 0; done < slopes.size();) {
       const std::size_t count = std::min<std::size_t>(tile_size_, slopes.size() - done);
@@ -137,13 +138,12 @@ std::optional<std::vector<Moments>> SlopeRun::compute(const Progress& progress) 
       if (progress && !progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted))
         return std::nullopt;
     }
-    for (const kernel::AzimuthNode& azimuth : azimuths) cost_.evaluations += azimuth.evaluations;
+    for (const kernel::AzimuthNode& azimuth : azimuths.nodes) cost_.evaluations += azimuth.evaluations;
     const auto start = std::chrono::steady_clock::now();
     parallel_ranges(batch.samples.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const SlopeSamples& samples = batch.samples[i];
-        const auto own = std::span(azimuths).subspan(batch.first[i], samples.slopes.size());
-        sampling_.integrate(samples, own, context_.packing.unit_roundoff(), moments);
+        sampling_.integrate(samples, azimuths, batch.first[i], context_.packing.unit_roundoff(), moments);
       }
     });
     cost_.sums_s += seconds_since(start);
@@ -152,7 +152,7 @@ std::optional<std::vector<Moments>> SlopeRun::compute(const Progress& progress) 
 }
 
 void SlopeRun::run_tile(const SlopeBatch& batch, std::span<const std::uint32_t> slopes,
-                        std::span<kernel::AzimuthNode> azimuths) {
+                        SampledAzimuths& azimuths) {
   const Packing& packing = context_.packing;
   CommandStream& stream = context_.stream;
   thetas_.clear();
@@ -169,13 +169,18 @@ void SlopeRun::run_tile(const SlopeBatch& batch, std::span<const std::uint32_t> 
   upload(*index_buffer_, indices.size(), [&](std::size_t i) { return data_.indices[indices[i]]; });
   stream.barrier(Barrier::kUploadToKernel);
   stream.dispatch(context_.kernels, context_.kernels.pipeline(slopes_variant(data_)), 0,
-                  static_cast<std::uint32_t>(slopes.size()), data_.rule_order);
+                  static_cast<std::uint32_t>(slopes.size()), data_.rule_order, data_.sky.word());
   stream.barrier(Barrier::kKernelToHost);
   cost_.kernel_s += stream.submit_and_wait(context_.tile_timeout_s);
   ++cost_.dispatches;
-  scratch_.resize(slopes.size() * packing.node_bytes<kernel::AzimuthNode>());
+  const std::size_t of_sky = sky_azimuths(data_);
+  scratch_.resize(slopes.size() * packing.output_bytes<kernel::AzimuthNode>(of_sky));
   azimuth_buffer_->read(scratch_);
-  for (std::size_t i = 0; i < slopes.size(); ++i) azimuths[slopes[i]] = packing.read<kernel::AzimuthNode>(scratch_, i);
+  const std::size_t behind = slopes.size() * packing.node_bytes<kernel::AzimuthNode>();
+  for (std::size_t i = 0; i < slopes.size(); ++i) {
+    azimuths.nodes[slopes[i]] = packing.read<kernel::AzimuthNode>(scratch_, i);
+    packing.read_numbers(scratch_, behind + i * of_sky * packing.real_bytes(), azimuths.sky_of(slopes[i]));
+  }
 }
 
 }  // namespace dolp::vulkan

@@ -48,7 +48,7 @@ class SlopeRun {
   /// Records the upload; the first tile continues the recording.
   void upload_rule();
   void run_tile(const SlopeBatch& batch, std::span<const std::uint32_t> slopes,
-                std::span<kernel::AzimuthNode> azimuths);
+                SampledAzimuths& azimuths);
 
   KernelContext context_;
   const MomentsRequest& request_;

@@ -25,12 +25,12 @@ TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs) {
                         costs.shape_texels > 0 ? limits.texels / costs.shape_texels : limits.block_shapes}))};
 }
 
-TileCosts tile_costs(const Packing& packing, std::uint32_t width) {
+TileCosts tile_costs(const Packing& packing, const KernelData& data, std::uint32_t width) {
   using EntryWords = std::array<std::uint32_t, 4>;
   using MaskingNode = std::array<double, 4>;
   return {.invocation_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
                               packing.node_bytes<kernel::IndexNode>() +
-                              width * packing.node_bytes<kernel::MomentsNode>(),
+                              width * packing.output_bytes<kernel::MomentsNode>(sky_sums(data)),
           .shape_bytes =
               packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
           .shape_texels = packing.texels_of_table()};
@@ -41,10 +41,10 @@ TileCosts scattering_tile_costs(const Packing& packing) {
           .shape_bytes = 1};
 }
 
-std::uint32_t slope_tile_size(const TileLimits& limits, const Packing& packing) {
+std::uint32_t slope_tile_size(const TileLimits& limits, const Packing& packing, const KernelData& data) {
   const TileCosts costs{
       .invocation_bytes = packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::ThetaNode>() +
-                          packing.node_bytes<kernel::IndexNode>() + packing.node_bytes<kernel::AzimuthNode>(),
+                          packing.node_bytes<kernel::IndexNode>() + packing.output_bytes<kernel::AzimuthNode>(sky_azimuths(data)),
       .shape_bytes = 1};
   const std::uint32_t slopes = tile_sizes(limits, costs).invocations;
   return std::max(slopes - slopes % kLockstep, kLockstep);

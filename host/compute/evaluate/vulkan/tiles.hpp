@@ -38,7 +38,7 @@ struct TileSizes {
 TileSizes tile_sizes(const TileLimits& limits, const TileCosts& costs);
 
 /// Bytes of a piece of a row, and of a shape, of the moments in a precision.
-TileCosts tile_costs(const Packing& packing, std::uint32_t width);
+TileCosts tile_costs(const Packing& packing, const KernelData& data, std::uint32_t width);
 
 /// The same costs for pBRDFs, whose entries bring their own shapes.
 TileCosts scattering_tile_costs(const Packing& packing);
@@ -48,7 +48,7 @@ TileCosts scattering_tile_costs(const Packing& packing);
 inline constexpr std::uint32_t kLockstep = 16;
 
 /// Slope samples in a dispatch: a multiple of kLockstep, so that none of its groups is cut.
-std::uint32_t slope_tile_size(const TileLimits& limits, const Packing& packing);
+std::uint32_t slope_tile_size(const TileLimits& limits, const Packing& packing, const KernelData& data);
 
 /// Chunks of shapes whose masking tables are bound together, and the rows that need them.
 struct Block {

@@ -18,7 +18,7 @@ namespace dolp::reference {
 ///   slope followed are taken to reflect between nothing and twice the share that those of that slope do (test
 ///   ReferenceGrooves.CoarseQuadrature_StaysWithinItsErrors).
 Moments groove_moments(const Slopes& slopes, double theta_deg, const OpticalConstants& constants,
-                       const Refinement& refinement);
+                       const Refinement& refinement, const SkyFunction* sky = nullptr);
 
 /// Balance of the light that enters one groove, over both facets. All values are per width of the aperture, so that the
 /// albedo is cos(theta).
@@ -30,11 +30,13 @@ struct GrooveLight {
   double lost = 0.0;            ///< I of light after the last bounce followed, neither reflected nor absorbed
   double once_reflected = 0.0;  ///< I that leaves after one bounce
   double once_absorbed = 0.0;   ///< by first bounces
+  double sky_reflected = 0.0;   ///< `reflected` and
+  double sky_polarised = 0.0;   ///< `polarised`, with the function of the sky
   double bounces = 0.0;         ///< followed
 };
 
 /// Domain: t > 0; cos(theta) > 0; chi = 90 degrees - phi, with sin_chi = cos(phi).
 GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view,
-                            const OpticalConstants& constants);
+                            const OpticalConstants& constants, const SkyFunction* sky = nullptr);
 
 }  // namespace dolp::reference

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <vector>
 
 #include "model/moments.hpp"
 #include "reference/attenuation.hpp"
@@ -15,16 +17,22 @@ struct Refinement {
   int subdivisions = 1;              ///< equal parts of each first panel
 };
 
+/// A function of the zenith of the reflected ray, with which SkyMoments are wanted.
+struct SkyFunction {
+  std::function<double(double zenith_deg)> value;
+  std::vector<double> corners_deg;
+};
+
 /// Zenith angle in degrees, exact at 0 and 90.
 Zenith zenith_from_deg(double theta_deg);
 
-/// The moments of a rough surface (sigma > 0) with k_s = 1.
+/// The moments of a rough surface (sigma > 0) with k_s = 1, and with a function of the sky.
 /// Equation: r = cos(theta) int f cos(theta_r) sin(theta_r) dtheta_r dDelta_phi, eqs. (7), (15), (16), over
 ///   theta_r (outer) and delta = pi - Delta_phi (inner).
 /// Domain: theta in [0, 90] degrees. At 90 all four are the limits: 0 for v-cavity and smith, finite for the others but
 ///   infinite for the cauchy distribution with q <= 3/2, whose vertical facets are too many.
 Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const OpticalConstants& constants,
-                           const Refinement& refinement);
+                           const Refinement& refinement, const SkyFunction* sky = nullptr);
 
 /// The moments of the mirror, the case sigma = 0, its direct emission included.
 Moments mirror_moments(double theta_deg, const OpticalConstants& constants);

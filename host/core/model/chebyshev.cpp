@@ -1,4 +1,4 @@
-#include "plan/chebyshev.hpp"
+#include "model/chebyshev.hpp"
 
 #include <cmath>
 #include <cstddef>

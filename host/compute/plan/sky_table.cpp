@@ -1,0 +1,142 @@
+#include "plan/sky_table.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <numbers>
+#include <span>
+
+#include "model/angles.hpp"
+#include "plan/constants.hpp"
+#include "plan/kernel_data.hpp"
+
+namespace dolp {
+namespace {
+
+static_assert(kMostSkyFunctions == DOLP_SKY_FUNCTIONS);
+
+double zenith_deg_at(double u) {
+  return std::min(2.0 * std::asin(std::min(u * std::numbers::sqrt2 / 2.0, 1.0)) * 180.0 / std::numbers::pi, 90.0);
+}
+
+double place_of(double zenith_deg) {
+  return std::numbers::sqrt2 * std::sin(0.5 * zenith_deg * std::numbers::pi / 180.0);
+}
+
+Eigen::RowVectorXd at_place(const SkyBasis& basis, double u) { return basis.at(zenith_deg_at(u)); }
+
+/// Values of the functions at the ends of the cells. Shape: cells + 1 x functions.
+Eigen::MatrixXd at_ends(const SkyBasis& basis, std::uint32_t cells) {
+  Eigen::MatrixXd ends(cells + 1, static_cast<Eigen::Index>(basis.size()));
+  for (std::uint32_t i = 0; i <= cells; ++i) ends.row(i) = at_place(basis, static_cast<double>(i) / cells);
+  return ends;
+}
+
+/// Distances of the functions from straight lines through the ends of the cell at u.
+Eigen::RowVectorXd distances_at(const SkyBasis& basis, double u, double cells) {
+  const double place = std::clamp(u * cells, 0.0, cells);
+  const double cell = std::min(std::floor(place), cells - 1.0);
+  const double share = place - cell;
+  const Eigen::RowVectorXd line =
+      (1.0 - share) * at_place(basis, cell / cells) + share * at_place(basis, (cell + 1.0) / cells);
+  return (line - at_place(basis, u)).cwiseAbs();
+}
+
+/// The largest of them at the corners,
+Eigen::RowVectorXd corner_distances(const SkyBasis& basis, double cells) {
+  Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(basis.size()));
+  for (const double end_deg : basis.nodes().ends_deg()) {
+    largest = largest.cwiseMax(distances_at(basis, place_of(end_deg), cells));
+  }
+  return largest;
+}
+
+/// and in the middle of all cells.
+Eigen::RowVectorXd middle_distances(const SkyBasis& basis, double cells) {
+  Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(basis.size()));
+  for (double cell = 0.0; cell < cells; ++cell) {
+    largest = largest.cwiseMax(distances_at(basis, (cell + 0.5) / cells, cells));
+  }
+  return largest;
+}
+
+/// A corner, with the change of the slope in u of each function.
+struct Corner {
+  double zenith_deg = 0.0;
+  Eigen::RowVectorXd bend;
+};
+
+/// The corners of a basis, the sharpest first.
+std::vector<Corner> corners_of(const SkyBasis& basis) {
+  constexpr double kStep = 1e-4;
+  std::vector<Corner> corners;
+  const std::vector<double>& ends_deg = basis.nodes().ends_deg();
+  for (std::size_t i = 1; i + 1 < ends_deg.size(); ++i) {
+    const double u = place_of(ends_deg[i]);
+    const double step = kStep * std::min(u - place_of(ends_deg[i - 1]), place_of(ends_deg[i + 1]) - u);
+    const Eigen::RowVectorXd before = at_place(basis, u - step);
+    const Eigen::RowVectorXd after = at_place(basis, u + step);
+    const Eigen::RowVectorXd bend = (after - 2.0 * at_place(basis, u) + before) / step;
+    if (bend.cwiseAbs().maxCoeff() > kLeastBend) corners.push_back({ends_deg[i], bend});
+  }
+  std::ranges::sort(corners, std::ranges::greater(),
+                    [](const Corner& corner) { return corner.bend.cwiseAbs().maxCoeff(); });
+  return corners;
+}
+
+Eigen::RowVectorXd bends_of(std::span<const Corner> corners, Eigen::Index functions) {
+  Eigen::RowVectorXd squares = Eigen::RowVectorXd::Zero(functions);
+  for (const Corner& corner : corners) squares += corner.bend.cwiseAbs2();
+  return squares.cwiseSqrt();
+}
+
+/// Number of the sharpest corners that split, so that the others matter little.
+std::size_t split_corners(std::span<const Corner> corners, Eigen::Index functions, double tolerance) {
+  const std::size_t most = std::min<std::size_t>(corners.size(), DOLP_MOST_SKY_CORNERS);
+  std::size_t split = 0;
+  while (split < most && bends_of(corners.subspan(split), functions).maxCoeff() > kMostBends * tolerance) ++split;
+  return split;
+}
+
+}  // namespace
+
+std::uint32_t SkyTable::word() const {
+  return count == 0 ? 0U : start << DOLP_SKY_START_SHIFT | corners << DOLP_SKY_CORNERS_SHIFT | log2_cells;
+}
+
+SkyTable append_sky(const SkyBasis& basis, double tolerance, bool splits, std::vector<std::array<double, 2>>& nodes) {
+  SkyTable table;
+  table.count = static_cast<std::uint32_t>(basis.size());
+  table.start = static_cast<std::uint32_t>(nodes.size());
+  const std::uint32_t most = tolerance < kTightSky ? kMostTightSkyCells : kMostSkyCells;
+  const double allowed = kSkyTableShare * tolerance / kSkyTableSafety;
+  std::uint32_t cells = kLeastSkyCells;
+  const auto may_double = [&] { return 2 * cells * table.count <= most; };
+  while (corner_distances(basis, cells).maxCoeff() > allowed && may_double()) cells *= 2;
+  Eigen::RowVectorXd errors = middle_distances(basis, cells);
+  while (errors.maxCoeff() > allowed && may_double()) errors = middle_distances(basis, cells *= 2);
+  errors = kSkyTableSafety * errors.cwiseMax(corner_distances(basis, cells));
+  table.log2_cells = static_cast<std::uint32_t>(std::countr_zero(cells));
+  const Eigen::MatrixXd ends = at_ends(basis, cells);
+  table.has_cusp = splits && (ends.row(1) - ends.row(0)).cwiseAbs().maxCoeff() * cells > kLeastBend;
+  std::vector<Corner> corners = corners_of(basis);
+  const auto split = static_cast<std::ptrdiff_t>(splits ? split_corners(corners, ends.cols(), tolerance) : 0);
+  table.corners = static_cast<std::uint32_t>(split);
+  const Eigen::RowVectorXd bends = bends_of(std::span(corners).subspan(static_cast<std::size_t>(split)), ends.cols());
+  for (Eigen::Index k = 0; k < ends.cols(); ++k) {
+    table.bends.push_back(bends[k]);
+    for (Eigen::Index i = 0; i + 1 < ends.rows(); ++i) nodes.push_back({ends(i, k), ends(i + 1, k) - ends(i, k)});
+    table.error.push_back(errors[k]);
+    table.steepness.push_back(std::abs(ends(1, k) - ends(0, k)) * static_cast<double>(ends.rows() - 1));
+  }
+  for (std::ptrdiff_t i = 0; i < split; ++i)
+    table.corners_deg.push_back(corners[static_cast<std::size_t>(i)].zenith_deg);
+  std::ranges::sort(corners.begin(), corners.begin() + split, {}, &Corner::zenith_deg);
+  for (auto corner = corners.begin(); corner != corners.begin() + split; ++corner)
+    nodes.push_back({cos_sin_deg(corner->zenith_deg).cos, 0.0});
+  return table;
+}
+
+}  // namespace dolp

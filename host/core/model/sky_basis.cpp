@@ -1,0 +1,112 @@
+#include "model/sky_basis.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "model/angles.hpp"
+#include "model/chebyshev.hpp"
+
+namespace dolp {
+namespace {
+
+// Points of a part between two ends. Chosen: Planck's function of a linear temperature needs fewer.
+constexpr Eigen::Index kPoints = 17;
+
+// Distances between nodes exceed those at the nodes by no more than this: the functions are smooth between the ends.
+constexpr double kBetweenNodes = 1.5;
+constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
+
+// In the last part the cosine c is c_0 y^4, which makes its powers smooth at the horizon.
+constexpr double kHorizonPower = 4.0;
+
+}  // namespace
+
+SkyNodes::SkyNodes(std::vector<double> ends_deg) : ends_deg_(std::move(ends_deg)), points_(lobatto_points(kPoints)) {
+  for (std::size_t i = 0; i + 1 < ends_deg_.size(); ++i) {
+    for (const double point : points_)
+      zenith_deg_.push_back(0.5 * ((1.0 + point) * ends_deg_[i] + (1.0 - point) * ends_deg_[i + 1]));
+  }
+}
+
+Eigen::RowVectorXd SkyNodes::at(double zenith_deg, const Eigen::MatrixXd& values) const {
+  const auto above = std::upper_bound(ends_deg_.begin() + 1, ends_deg_.end() - 1, zenith_deg);
+  const double end = *above;
+  const double start = *(above - 1);
+  const double x = std::clamp((end - zenith_deg + (start - zenith_deg)) / (end - start), -1.0, 1.0);
+  const Eigen::Index first = (above - ends_deg_.begin() - 1) * kPoints;
+  // As cardinal_values, without its allocations: tables of a sky ask for some 10,000 zeniths.
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(values.cols());
+  double total = 0.0;
+  for (Eigen::Index i = 0; i < kPoints; ++i) {
+    const double distance = x - points_[static_cast<std::size_t>(i)];
+    if (distance == 0.0) return values.row(first + i);
+    const double weight = ((i % 2 == 0) ? 1.0 : -1.0) * ((i == 0 || i == kPoints - 1) ? 0.5 : 1.0) / distance;
+    total += weight;
+    sum.noalias() += weight * values.row(first + i);
+  }
+  return sum / total;
+}
+
+Eigen::VectorXd SkyNodes::mean_weights(double power) const {
+  using Rule = boost::math::quadrature::gauss<double, 30>;
+  const auto count = static_cast<Eigen::Index>(zenith_deg_.size());
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(count);
+  for (std::size_t part = 0; part + 1 < ends_deg_.size(); ++part) {
+    const double start = ends_deg_[part];
+    const double end = ends_deg_[part + 1];
+    const bool is_last = part + 2 == ends_deg_.size();
+    const auto add = [&](double y, double weight) {  // y in [0, 1]
+      double zenith_deg = start + (end - start) * y;
+      CosSin at = cos_sin_deg(zenith_deg);
+      double measure = at.sin * (end - start) * std::numbers::pi / 180.0;
+      if (is_last) {
+        const double from = cos_sin_deg(start).cos;
+        at.cos = from * std::pow(y, kHorizonPower);
+        zenith_deg = std::acos(at.cos) * 180.0 / std::numbers::pi;
+        measure = kHorizonPower * from * std::pow(y, kHorizonPower - 1.0);
+      }
+      const double x = std::clamp((end - zenith_deg + (start - zenith_deg)) / (end - start), -1.0, 1.0);
+      weights.segment(static_cast<Eigen::Index>(part) * kPoints, kPoints) +=
+          weight * measure * std::pow(at.cos, power + 1.0) * cardinal_values(points_, x).transpose();
+    };
+    for (std::size_t i = 0; i < Rule::abscissa().size(); ++i) {
+      add(0.5 * (1.0 + Rule::abscissa()[i]), Rule::weights()[i]);
+      add(0.5 * (1.0 - Rule::abscissa()[i]), Rule::weights()[i]);
+    }
+  }
+  return weights / weights.sum();  // a constant keeps its value
+}
+
+SkyBasis::SkyBasis(SkyNodes nodes, const std::vector<Eigen::VectorXd>& functions, double tolerance)
+    : nodes_(std::move(nodes)), values_(static_cast<Eigen::Index>(nodes_.zenith_deg().size()), 0) {
+  while (size() < kMostSkyFunctions) {
+    const Eigen::VectorXd* worst = nullptr;
+    double largest = tolerance;
+    for (const Eigen::VectorXd& function : functions) {
+      const double scale = function.cwiseAbs().maxCoeff();
+      const double error = scale > 0.0 ? weights_of(function).error / scale : 0.0;
+      if (error <= largest) continue;
+      largest = error;
+      worst = &function;
+    }
+    if (!worst) break;
+    values_.conservativeResize(Eigen::NoChange, values_.cols() + 1);
+    values_.rightCols(1) = *worst / worst->cwiseAbs().maxCoeff();
+  }
+}
+
+SkyWeights SkyBasis::weights_of(const Eigen::VectorXd& function) const {
+  if (size() == 0) return {{}, function.cwiseAbs().maxCoeff()};
+  SkyWeights weights;
+  weights.of = values_.colPivHouseholderQr().solve(function);
+  const double terms = weights.of.cwiseAbs().sum();
+  weights.error = kBetweenNodes * (values_ * weights.of - function).cwiseAbs().maxCoeff() + kRounding * terms;
+  return weights;
+}
+
+}  // namespace dolp

@@ -1,0 +1,62 @@
+// Functions of the zenith that describe a sky, and the few of them from which those of all wavelengths are combined.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace dolp {
+
+/// Zeniths at which functions of a sky are known: between two ends, which may be corners, they are the polynomial
+/// through Chebyshev-Lobatto points.
+class SkyNodes {
+ public:
+  /// `ends_deg`: ascending from 0 to 90, with one at least between.
+  explicit SkyNodes(std::vector<double> ends_deg);
+
+  const std::vector<double>& ends_deg() const { return ends_deg_; }
+  const std::vector<double>& zenith_deg() const { return zenith_deg_; }
+
+  /// The values of functions at a zenith. Shape: `values` are nodes x functions.
+  Eigen::RowVectorXd at(double zenith_deg, const Eigen::MatrixXd& values) const;
+
+  /// Weights of the values in the mean of a function, the integral over the zenith with (power + 2) cos^(power + 1) sin:
+  /// what a reflectance proportional to cos^power sees of it. Domain: power > -1.
+  Eigen::VectorXd mean_weights(double power) const;
+
+ private:
+  std::vector<double> ends_deg_;
+  std::vector<double> points_;  ///< of a part, on [-1, 1]
+  std::vector<double> zenith_deg_;
+};
+
+/// A function of a sky as a sum over a basis.
+struct SkyWeights {
+  Eigen::VectorXd of;  ///< for each function of the basis
+  double error = 0.0;  ///< bound of the distance from the sum, at any zenith
+};
+
+/// Functions of the zenith with absolute values up to 1. The moments of a surface with these serve all functions that
+/// are sums of them.
+class SkyBasis {
+ public:
+  /// The fewest of `functions`, as columns of values at the nodes, from which sums represent the others to `tolerance`
+  /// of their largest value; at most kMostSkyFunctions.
+  SkyBasis(SkyNodes nodes, const std::vector<Eigen::VectorXd>& functions, double tolerance);
+
+  const SkyNodes& nodes() const { return nodes_; }
+  std::size_t size() const { return static_cast<std::size_t>(values_.cols()); }
+  /// The functions at a zenith.
+  Eigen::RowVectorXd at(double zenith_deg) const { return nodes_.at(zenith_deg, values_); }
+  SkyWeights weights_of(const Eigen::VectorXd& function) const;
+
+ private:
+  SkyNodes nodes_;
+  Eigen::MatrixXd values_;  ///< nodes x functions
+};
+
+/// Most functions of a basis, which is the most that the kernels take.
+inline constexpr std::size_t kMostSkyFunctions = 8;
+
+}  // namespace dolp

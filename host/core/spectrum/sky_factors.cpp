@@ -1,0 +1,67 @@
+#include "spectrum/sky_factors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "spectrum/planck.hpp"
+
+namespace dolp {
+namespace {
+
+// Of the scene's tolerance, for the functions that a basis leaves out. Chosen: a function more costs a sixth of a kernel.
+constexpr double kBasisShare = 0.02;
+
+Eigen::VectorXd vector_of(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+}  // namespace
+
+double sky_radiance(const SkyProfile& profile, double wavelength_um, double zenith_deg) {
+  const SkyProfile::Emission emission = profile.at(wavelength_um, zenith_deg);
+  double radiance = emission.radiance;
+  if (emission.share > 0.0) radiance += emission.share * planck_radiance(wavelength_um, emission.first_K);
+  if (emission.second_K > 0.0) radiance += (1.0 - emission.share) * planck_radiance(wavelength_um, emission.second_K);
+  return radiance;
+}
+
+SkySampler::SkySampler(const SkyProfile& profile)
+    : profile_(profile), nodes_(profile.ends_deg()), mean_weights_(nodes_.mean_weights(0.0)) {}
+
+Eigen::VectorXd SkySampler::at(double wavelength_um) const {
+  const std::vector<double>& zenith_deg = nodes_.zenith_deg();
+  Eigen::VectorXd exitances(static_cast<Eigen::Index>(zenith_deg.size()));
+  for (std::size_t i = 0; i < zenith_deg.size(); ++i) {
+    exitances[static_cast<Eigen::Index>(i)] =
+        std::numbers::pi * sky_radiance(profile_, wavelength_um, zenith_deg[i]);
+  }
+  return exitances;
+}
+
+std::shared_ptr<const SkyBasis> sky_basis(const SceneValues& scene, const std::vector<double>& wavelength_um) {
+  if (!scene.surroundings || !scene.surroundings->profile) return nullptr;
+  std::vector<Eigen::VectorXd> functions;
+  const auto add = [&](const SpectralRule& rule) {
+    for (const SpectralSample& sample : rule.samples) functions.push_back(vector_of(sample.sky));
+  };
+  if (wavelength_um.empty()) add(spectral_rule(scene));
+  for (const double of_entry : wavelength_um) add(spectral_rule(at_wavelength(scene, of_entry)));
+  SkyNodes nodes(scene.surroundings->profile->ends_deg());
+  auto basis = std::make_shared<const SkyBasis>(std::move(nodes), functions, kBasisShare * scene.accuracy.tolerance);
+  return basis->size() > 0 ? basis : nullptr;
+}
+
+std::vector<SkyFactor> sky_factors(const SpectralRule& rule, const SkyBasis* basis, const Surface& surface) {
+  std::vector<SkyFactor> factors;
+  if (!basis || rule.samples.empty() || rule.samples.front().sky.empty()) return factors;
+  Eigen::VectorXd diffuse;
+  if (surface.diffuse > 0.0) diffuse = basis->nodes().mean_weights(surface.diffuse_exponent);
+  for (const SpectralSample& sample : rule.samples) {
+    const Eigen::VectorXd sky = vector_of(sample.sky);
+    factors.push_back({basis->weights_of(sky), surface.diffuse > 0.0 ? diffuse.dot(sky) : 0.0});
+  }
+  return factors;
+}
+
+}  // namespace dolp

@@ -1,0 +1,44 @@
+// The sky of a scene over the zenith, for each spectral sample.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "model/sky_basis.hpp"
+#include "scene/scene.hpp"
+#include "spectrum/spectral_rule.hpp"
+
+namespace dolp {
+
+/// The radiance of a scene's profile at a wavelength. Units: W m-2 sr-1 um-1.
+double sky_radiance(const SkyProfile& profile, double wavelength_um, double zenith_deg);
+
+/// Exitances pi L of a scene's profile at its nodes, and their mean: that of a uniform sky with the same irradiance.
+class SkySampler {
+ public:
+  explicit SkySampler(const SkyProfile& profile);
+  Eigen::VectorXd at(double wavelength_um) const;
+  double mean(const Eigen::VectorXd& exitances) const { return mean_weights_.dot(exitances); }
+  const SkyNodes& nodes() const { return nodes_; }
+
+ private:
+  const SkyProfile& profile_;
+  SkyNodes nodes_;
+  Eigen::VectorXd mean_weights_;
+};
+
+/// A basis of what the sky adds to its mean, in all samples of a scene at `wavelength_um`, or of its spectrum where the
+/// list is empty. Null where it adds nothing.
+std::shared_ptr<const SkyBasis> sky_basis(const SceneValues& scene, const std::vector<double>& wavelength_um);
+
+/// What the sky adds to its mean, of one sample.
+struct SkyFactor {
+  SkyWeights weights;    ///< of the moments with the functions of a basis
+  double diffuse = 0.0;  ///< added to `surroundings` for the diffuse part of rho
+};
+
+/// Factors of the samples of a rule that have a sky; empty where none has.
+std::vector<SkyFactor> sky_factors(const SpectralRule& rule, const SkyBasis* basis, const Surface& surface);
+
+}  // namespace dolp

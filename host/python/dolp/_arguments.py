@@ -1,0 +1,111 @@
+"""Arguments of calls, checked and as the library takes them."""
+from __future__ import annotations
+
+import difflib
+import operator
+import os
+from collections.abc import Iterable, Mapping
+from typing import Any, Union
+
+import numpy as np
+import xarray as xr
+
+from ._native import InputError
+
+Path = Union[str, bytes, "os.PathLike[str]"]
+Array = Union[float, "np.ndarray", "xr.DataArray", "list[float]"]
+
+
+class MissingFileError(InputError, FileNotFoundError):
+    """A file that was to be read is not there."""
+
+
+def check_mapping(name: str, values: Mapping[str, Any] | None) -> Mapping[str, Any]:
+    if values is None or isinstance(values, Mapping):
+        return values or {}
+    raise TypeError(f"{name}: must be a dictionary with keys of a scene, not {type(values).__name__}")
+
+
+def native_path(name: str, path: Path) -> str:
+    if isinstance(path, (str, bytes, os.PathLike)):
+        return os.fsdecode(path)
+    raise TypeError(f"{name}: must be a path, not {type(path).__name__}")
+
+
+def input_path(name: str, path: Path) -> str:
+    text = native_path(name, path)
+    if os.path.exists(text):
+        return text
+    raise MissingFileError(f"{text}: there is no such file")
+
+
+def check_key(key: str) -> str:
+    if isinstance(key, str):
+        return key
+    raise TypeError(f"{short(key)}: a key of a scene must be a str, not {type(key).__name__}")
+
+
+def word_list(key: str, words: Iterable[str]) -> list[str]:
+    if isinstance(words, str) or not isinstance(words, Iterable):
+        raise TypeError(f"{key}: must be a list of values, not {type(words).__name__}")
+    return [str(word) for word in words]
+
+
+def whole_number(name: str, value: int) -> int:
+    try:
+        if 0 <= (count := operator.index(value)) < 2**63:
+            return count
+    except TypeError:
+        raise TypeError(f"{name}: must be a whole number, not {type(value).__name__}") from None
+    raise InputError(f"{name} = {value}: must be a whole number from 0 to 2^63 - 1")
+
+
+def check_names(what: str, given: Iterable[str], known: list[str]) -> None:
+    """Refuses a name that is none of those known, with the one that may have been meant."""
+    for name in given:
+        if name in known:
+            continue
+        near = [one for one in known if one.startswith(f"{name}_")] or difflib.get_close_matches(name, known, 1)
+        hint = f"; did you mean {near[0]}?" if near else ""
+        raise InputError(f"{what}: {name} is none of {', '.join(known)}{hint}")
+
+
+def floats(name: str, values: Any) -> np.ndarray:
+    """Values as floats. Refuses what would silently become other numbers: masks and dates."""
+    if isinstance(values, np.ma.MaskedArray):
+        raise InputError(f"{name}: is a masked array, and results have no mask: fill or compress it")
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind in "biuf" or (array.dtype.kind == "O" and None not in array.ravel().tolist()):
+            return array.astype(float)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: {short(values)} are no numbers") from None
+    raise InputError(f"{name}: {short(values)} are no numbers but {array.dtype}")
+
+
+def short(value: Any) -> str:
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def native_values(overrides: Mapping[str, Any] | None) -> list[tuple[str, Any]]:
+    values = []
+    for key, value in check_mapping("overrides", overrides).items():
+        if key == "surface.n" and np.ndim(value) == 0 and np.iscomplexobj(value):
+            values += [(key, float(np.real(value))), ("surface.k", float(np.imag(value)))]
+        else:
+            values.append((check_key(key), _value(key, value)))
+    return values
+
+
+def _value(key: str, value: Any) -> Any:
+    """A value as the library takes it: None, bool, float, str, a list of floats, or a range as a dictionary."""
+    if value is None or isinstance(value, (bool, np.bool_)):
+        return None if value is None else bool(value)
+    if isinstance(value, (str, bytes, os.PathLike)):
+        return os.fsdecode(value)
+    if isinstance(value, Mapping):
+        return {name: str(item) if name == "spacing" else whole_number(f"{key}.count", item) if name == "count"
+                else float(floats(f"{key}.{name}", item)) for name, item in value.items()}
+    numbers = floats(key, value)
+    return float(numbers) if numbers.ndim == 0 else numbers.ravel().tolist()

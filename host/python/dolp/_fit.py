@@ -1,0 +1,118 @@
+"""Fits of numbers of a scene to measured data."""
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ._arguments import Path, check_key, check_mapping, check_names, floats, native_path, native_values, whole_number, word_list
+from ._native import InputError
+from ._points import csv_of
+from ._runs import evaluate, native_evaluator, native_scene
+from ._scene import Scene
+
+
+class Fit:
+    """What a fit found; prints as a report.
+
+    `params` and `stderr` are dictionaries of values and standard errors (None where the data give none), `fit[key]` is
+    one value, `covariance` is in their order, NaN where there is none. `scene` has the values that were found, and what
+    was best of `compare`. `values` is what `dolp fit --json` prints, as a dictionary: parameters, correlation,
+    chi_square, reduced_chi_square, p_value, aic, bic, minima, residuals, models.
+    """
+
+    def __init__(self, text: str, values: dict[str, Any], scene: Scene, overrides: dict[str, Mapping[str, Any]]) -> None:
+        self.text, self.values, self.scene, self._overrides = text, values, scene, overrides
+        self.params: dict[str, float] = {one["key"]: one["value"] for one in values["parameters"]}
+        self.stderr: dict[str, float | None] = {one["key"]: one["standard_error"] for one in values["parameters"]}
+
+    def __getitem__(self, key: str) -> float:
+        """The value of a parameter."""
+        check_names("fit", [key], list(self.params))
+        return self.params[key]
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """The covariance of the parameters."""
+        errors = np.array(list(self.stderr.values()), dtype=float)
+        return np.array(self.values["correlation"], dtype=float) * np.outer(errors, errors)
+
+    def conf_interval(self, level: float = 0.95) -> dict[str, tuple[float | None, float | None]]:
+        """Intervals of the profile likelihood at a level of 0.68 or 0.95; an end that the data do not bound is None."""
+        if level not in (0.68, 0.95):
+            raise InputError(f"level = {level}: must be 0.68 or 0.95")
+        return {one["key"]: tuple(one[f"interval_{100 * level:.0f}"]) for one in self.values["parameters"]}
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draws data and model over zenith with Matplotlib, and returns the axes."""
+        import matplotlib.pyplot as plt
+        axes = plt.subplots()[1] if axes is None else axes
+        sets: dict[tuple[Any, ...], list[dict[str, Any]]] = {}
+        for point in self.values["points"]:
+            sets.setdefault((point["data"], point["quantity"], point["wavelength_um"]), []).append(point)
+        for (name, quantity, wavelength_um), points in sets.items():
+            theta, measured = ([point[column] for point in points] for column in ("theta_deg", "measured"))
+            errors = [point["uncertainty"] or 0.0 for point in points]
+            symbol = {"dolp": "DOLP", "q_over_i": "Q/I"}.get(quantity, quantity)
+            label = ", ".join([symbol, *([f"{wavelength_um:g} µm"] if wavelength_um else []),
+                               *([name] if len(self._overrides) > 1 else [])])
+            bars = axes.errorbar(theta, measured, errors, fmt="o", markersize=4, label=label)
+            zeniths = np.linspace(min(theta), max(theta), 181)
+            curve = self._model(name, quantity, {"theta_deg": zeniths} | ({"wavelength_um": wavelength_um} if wavelength_um else {}))
+            axes.plot(zeniths, curve, color=bars[0].get_color())
+        axes.set_xlabel("zenith angle θ (degree)")
+        axes.legend()
+        return axes
+
+    def _model(self, name: str, quantity: str, points: dict[str, Any]) -> xr.DataArray:
+        """The fitted model of a data set; with a model error a mixture of both ends of its bracket."""
+        scene = self.scene.with_(self._overrides[name])
+        own = evaluate(scene, evaluator="cpu", **points)
+        if "model_error" not in self.params:
+            return own[quantity]
+        other = scene.with_({"emission.model": "moments" if scene["emission.model"] == "direct" else "direct"})
+        mixed = "q_over_i" if quantity == "dolp" else quantity
+        share = self.params["model_error"]
+        curve = (1 - share) * own[mixed] + share * evaluate(other, evaluator="cpu", **points)[mixed]
+        return abs(curve) if quantity == "dolp" else curve
+
+    def __repr__(self) -> str:
+        return self.text
+
+
+def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compare: Mapping[str, Iterable[str]] | None = None,
+        loss: str = "squares", model_error: str = "none", starts: int = 24, seed: int = 1, plot: Path | None = None,
+        evaluator: str = "vulkan", device: str = "") -> Fit:
+    """Numbers of a scene from measured data, with profile-likelihood intervals.
+
+    `data`: a CSV file, or columns by name (a dictionary, a Dataset, a pandas DataFrame): theta_deg or theta_i_deg; dolp,
+    q_over_i (signed) or emissivity_s, emissivity_p; uncertainty (one standard deviation), wavelength_um. A list has
+    several sets, each alone or as a pair (data, overrides). `vary`: (low, high) or (low, high, start) of each key.
+    `compare`: values of keys, all combinations of which are fitted and ranked. `loss`: squares, or huber, soft-l1,
+    cauchy or tukey for data with outliers. `model_error`: none, or bracket, which takes the bracket of single scattering
+    as an uncertainty that all points share; then `model_error` is one more number of the fit. `plot`: a PNG of data,
+    model, residuals and contours, as the command draws it.
+
+    >>> truth = dolp.evaluate(scene, theta_deg=np.arange(5, 85, 5), n=1.6)
+    >>> data = {"theta_deg": truth.theta, "dolp": truth.dolp, "uncertainty": np.full(16, 0.001)}
+    >>> found = dolp.fit(scene, data, {"surface.n": (1.1, 3)})
+    >>> round(found.params["surface.n"], 4), found.conf_interval()["surface.n"][0] < 1.6, found.covariance.shape
+    (1.6, True, (1, 1))
+    """
+    native = native_scene(scene)
+    sets = [one if isinstance(one, tuple) else (one, {}) for one in (data if isinstance(data, list) else [data])]
+    if any(len(one) != 2 for one in sets):
+        raise InputError("data: a set of its own must be a pair (data, overrides)")
+    texts = [(csv_of(columns), native_values(overrides)) for columns, overrides in sets]
+    ranges = {check_key(key): floats(key, ends).ravel().tolist() for key, ends in check_mapping("vary", vary).items()}
+    compared = {check_key(key): word_list(key, words) for key, words in check_mapping("compare", compare).items()}
+    text, values, found = native_evaluator(evaluator, device).fit(
+        native, texts, ranges, compared, str(loss), str(model_error), whole_number("starts", starts), whole_number("seed", seed),
+        "" if plot is None else native_path("plot", plot))
+    fitted = Scene.__new__(Scene)
+    fitted._native = found
+    names = ["data"] if len(sets) == 1 else [f"data{i + 1}" for i in range(len(sets))]
+    return Fit(text, json.loads(values), fitted, {name: own or {} for name, (_, own) in zip(names, sets)})

@@ -1,0 +1,113 @@
+"""Points and columns that callers give, as columns of the library with the coordinates of the result."""
+from __future__ import annotations
+
+import os
+import pathlib
+from collections.abc import Hashable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from . import _native
+from ._arguments import Array, check_names, floats, input_path
+from ._native import InputError
+
+# Of each column of points the name of its coordinate, which is that of table files, with its attributes.
+COORDINATES = {column: (name, {"long_name": long_name, "units": units})
+                for column, name, long_name, units in _native.axes()}
+COORDINATES |= {name: (name, {"long_name": long_name, "units": "degree"}) for name, long_name in (
+    ("theta_i_deg", "zenith angle of incidence"), ("theta_r_deg", "zenith angle of the view"),
+    ("delta_phi_deg", "azimuth between the directions, 180 on the specular side"))}
+KEY_ATTRIBUTES = {key: {"long_name": meaning, "units": unit} for key, unit, _, _, meaning in _native.keys()}
+
+
+class Frame(NamedTuple):
+    """Shape, dimensions and coordinates of a result."""
+
+    shape: tuple[int, ...]
+    dims: tuple[Hashable, ...]
+    coordinates: dict[Hashable, xr.Variable]
+
+
+def columns_of(points: Mapping[str, Array], has_keys: bool = False) -> tuple[Frame, dict[str, np.ndarray]]:
+    """Columns for the library, of one value where there is one for all, and their common shape with its coordinates."""
+    check_names("points", [name for name in points if not (has_keys and "." in name)], list(COORDINATES))
+    points = _with_real_index(points)
+    if any(isinstance(values, xr.DataArray) for values in points.values()):
+        arrays = {name: values.copy(data=floats(name, values)) if isinstance(values, xr.DataArray)
+                  else xr.DataArray(floats(name, values)) for name, values in points.items()}
+        arrays = dict(zip(arrays, xr.broadcast(*arrays.values())))
+        template = next(iter(arrays.values()))
+        points = {name: array.values for name, array in arrays.items()}
+        shape, dims = template.shape, template.dims
+        coordinates = {name: coordinate.variable.copy(deep=False)
+                       for array in arrays.values() for name, coordinate in array.coords.items()}
+    else:
+        points = {name: floats(name, values) for name, values in points.items()}
+        try:
+            shape = np.broadcast_shapes(*(values.shape for values in points.values()))
+        except ValueError:
+            shapes = ", ".join(f"{name} {values.shape}" for name, values in points.items())
+            raise InputError(f"points: shapes do not broadcast: {shapes}") from None
+        dims, coordinates = _dimensions(points, shape)
+    for column, values in points.items():
+        name, known = COORDINATES.get(column) or (column, KEY_ATTRIBUTES.get(column, {}))
+        if name in coordinates:
+            coordinates[name].attrs.update(known)
+        else:
+            along = dims if values.ndim > 0 else ()
+            coordinates[name] = xr.Variable(along, np.broadcast_to(values, shape) if along else values, known)
+    columns = {name: np.broadcast_to(values, shape if values.ndim > 0 else ()).ravel()
+               for name, values in points.items()}
+    return Frame(shape, dims, coordinates), columns
+
+
+def _dimensions(points: Mapping[str, np.ndarray],
+                shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, xr.Variable]]:
+    """Names of the dimensions and the coordinates along one of them."""
+    dims, coordinates = [], {}
+    for axis, size in enumerate(shape):
+        along = [column for column, values in points.items()
+                 if values.ndim >= len(shape) - axis and values.shape[axis - len(shape)] == size]
+        name = COORDINATES.get(along[0], along)[0] if len(along) == 1 else None
+        if name and points[along[0]].size == size and name not in coordinates:
+            dims.append(name)
+            coordinates[name] = xr.Variable(name, points[along[0]].ravel())
+        else:
+            dims.append("point" if len(shape) == 1 else f"point_{axis}")
+    return tuple(dims), coordinates
+
+
+def _with_real_index(points: Mapping[str, Array]) -> Mapping[str, Array]:
+    """The points with n and k in the place of a complex n."""
+    if not np.iscomplexobj(points.get("n")):
+        return points
+    if "k" in points:
+        raise InputError("n: is complex, so that k cannot be given too")
+    index = points["n"]
+    index = index if isinstance(index, xr.DataArray) else np.asarray(index)
+    return {**points, "n": index.real, "k": index.imag}
+
+
+def csv_of(data: Any) -> str:
+    """The text of a file, or columns as one."""
+    if isinstance(data, (str, bytes, os.PathLike)):
+        path = input_path("data", data)
+        try:
+            return pathlib.Path(path).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error.reason}") from None
+    if not (isinstance(data, Mapping) or hasattr(data, "keys")):
+        raise TypeError(f"data: must be a path or columns by name, not {type(data).__name__}")
+    if isinstance(data, xr.Dataset):  # with the coordinates of a result, whose columns have other names
+        data = data.rename({name: column for column, (name, _) in COORDINATES.items() if name in data.variables})
+    names = list(data.variables) if isinstance(data, xr.Dataset) else list(data.keys())
+    columns = [floats(name, data[name]) for name in names]
+    try:
+        columns = np.broadcast_arrays(*columns)
+    except ValueError:
+        sizes = ", ".join(f"{name} {column.shape}" for name, column in zip(names, columns))
+        raise InputError(f"data: columns of different lengths: {sizes}") from None
+    rows = zip(*(column.ravel().tolist() for column in columns))
+    return "\n".join([",".join(names), *(",".join(map(repr, row)) for row in rows)]) + "\n"

@@ -1,0 +1,199 @@
+"""Tables, points, lookups, Mueller matrices and plans of scenes."""
+from __future__ import annotations
+
+import functools
+import json
+import os
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from . import _native
+from ._arguments import Array, Path, check_names, floats, input_path, native_path
+from ._datasets import concatenated, dataset_at, native_table, table_dataset
+from ._native import InputError
+from ._points import columns_of
+from ._scene import Scene
+
+
+def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
+          **axes: Array) -> xr.Dataset:
+    """The table over the scene's grid: a Dataset that is what the file would hold.
+
+    `axes` (theta_deg, sigma or wind_m_s, q, wavelength_um, n, k) replace those of the scene. Winds are a second coordinate
+    along sigma: `t.swap_dims(sigma="wind_m_s")`. Any other number of the scene can be an axis by its key, each of its
+    values as a table of its own; attributes that differ between them, as the scene, are left out.
+
+    >>> t = dolp.table(scene, theta_deg=[0, 60], sigma=[0.1, 0.2, 0.3])
+    >>> dict(t.sizes)["theta"], dict(t.sizes)["sigma"], t.dolp.units, t.theta.units
+    (2, 3, '1', 'degree')
+    >>> dolp.table(scene, **{"emission.temperature_K": [280, 300]}).stokes_i.dims
+    ('emission.temperature_K', 'theta', 'sigma', 'q')
+    """
+    key = next((name for name in axes if "." in name), None)
+    if key is None:
+        with_axes = _with_axes(scene, axes)
+        return table_dataset(*native_evaluator(evaluator, device).table(with_axes, bool(keep_all)))
+    _check_varied("axes", [key], [column for column, *_ in _native.axes()])
+    others = {name: values for name, values in axes.items() if name != key}
+    values = np.atleast_1d(floats(key, axes[key])).ravel()
+    return concatenated([table(scene.with_({key: value}), evaluator=evaluator, device=device, keep_all=keep_all, **others)
+                         for value in values.tolist()], key, values)
+
+
+def write_table(scene: Scene, path: Path, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
+                resume: bool = False, **axes: Array) -> str:
+    """The same into a file (.nc, .csv or .npy), part by part, so that memory does not grow with the table.
+
+    Returns the report of the run. What an interrupted call has finished stays beside the file; `resume` goes on there.
+
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     print(dolp.write_table(scene, folder + "/table.nc").splitlines()[1])
+      entries    5 x 1 x 1 (theta x sigma x q)
+    """
+    with_axes = _with_axes(scene, axes)
+    return native_evaluator(evaluator, device).write_table(with_axes, native_path("path", path), bool(keep_all), bool(resume))
+
+
+def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
+             **points: Array) -> xr.Dataset:
+    """The quantities of a table at points: a Dataset of the shape to which the arrays broadcast.
+
+    `points` (theta_deg, sigma or wind_m_s, q, wavelength_um, n, k): what they do not say comes from the scene. A complex n
+    gives n and k. Any other number of the scene can be given by its key, each of its values as a run of its own.
+    DataArrays keep their dimensions and coordinates. Of other arrays, one that has a dimension to itself gives that its
+    coordinate, theta, sigma, q, n, k or wavelength as in a table.
+
+    >>> float(dolp.evaluate(scene, theta_deg=40).dolp.round(4))
+    0.0295
+    >>> d = dolp.evaluate(scene, theta_deg=np.array([[0], [40]]), sigma=[0.1, 0.2, 0.3])
+    >>> d.dolp.dims, d.dolp.shape
+    (('theta', 'sigma'), (2, 3))
+    >>> dolp.evaluate(scene, theta_deg=40, **{"surroundings.temperature_K": [250, 290]}).dolp.round(4).values
+    array([0.0179, 0.0043])
+    """
+    frame, columns = columns_of(points, has_keys=True)
+    varied = {key: columns.pop(key) for key in [*columns] if "." in key}
+    _check_varied("points", varied, columns)
+    native, engine = native_scene(scene), native_evaluator(evaluator, device)
+
+    def run(own: _native.Scene, of_scene: dict[str, np.ndarray]) -> _native.Parts:
+        return engine.evaluate(own, of_scene, bool(keep_all))
+
+    return dataset_at(_over_keys(run, native, columns, varied) if varied and 0 not in frame.shape else run(native, columns), frame)
+
+
+def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
+    """A table between its entries: error estimates contain the interpolation.
+
+    `table`: a file, or a Dataset of `table` or of such a file, or a part of one: fewer values of an axis, or one of them,
+    as `t.sel(k=0.1)`, fewer variables. Its attribute scene is needed; values_hash is that of the whole table, and is not
+    looked at. `points`: as for `evaluate`; an axis of one value needs none. The file that was used last stays in memory;
+    a Dataset is copied in each call.
+
+    >>> t = dolp.table(scene, theta_deg=np.linspace(0, 80, 41), sigma=[0.1, 0.2])
+    >>> bool(abs(dolp.lookup(t.sel(sigma=0.2), theta_deg=33).dolp - dolp.evaluate(scene, theta_deg=33).dolp) < 1e-5)
+    True
+    """
+    frame, columns = columns_of(points)
+    if isinstance(table, xr.Dataset):
+        return dataset_at(native_table(table).lookup(columns), frame)
+    path = input_path("table", table)
+    known = os.stat(path)
+    return dataset_at(_table_of(path, (known.st_ino, known.st_size, known.st_mtime_ns)).lookup(columns), frame)
+
+
+def mueller(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **points: Array) -> np.ndarray:
+    """Mueller matrices of the pBRDF in 1/sr, shape (..., 4, 4): of theta_i_deg, theta_r_deg, delta_phi_deg.
+
+    `delta_phi_deg` is 180 on the specular side. Also sigma, q, n, k. NaN where the model has no finite value.
+
+    >>> m = dolp.mueller(scene, theta_i_deg=[10, 20, 30], theta_r_deg=30, delta_phi_deg=180)
+    >>> m.shape, bool(m[2, 0, 0] > m[0, 0, 0])
+    ((3, 4, 4), True)
+    """
+    frame, columns = columns_of(points)
+    matrices = native_evaluator(evaluator, device).mueller(native_scene(scene), columns)
+    return matrices.reshape(frame.shape + (4, 4))
+
+
+class Plan:
+    """What a table of a scene would compute and leave out, why, and what it would cost; prints as a report.
+
+    `values` is what `dolp plan --json` prints, as a dictionary.
+    """
+
+    def __init__(self, text: str, values: dict[str, Any]) -> None:
+        self.text, self.values = text, values
+
+    def __repr__(self) -> str:
+        return self.text
+
+
+def plan(scene: Scene, *, device: str = "", keep_all: bool = False) -> Plan:
+    """What a table over the scene's grid would compute, leave out and cost; nothing is computed.
+
+    >>> dolp.plan(scene).values["entries"]
+    5
+    """
+    text, values = _native.plan(native_scene(scene), str(device), bool(keep_all))
+    return Plan(text, json.loads(values))
+
+
+def devices() -> list[dict[str, Any]]:
+    """The Vulkan devices of this machine: name, type, driver, api_version, usable, why_not, has_double, memory_bytes."""
+    return _native.devices()
+
+
+@functools.lru_cache(maxsize=None)
+def native_evaluator(evaluator: str, device: str) -> _native.Evaluator:
+    return _native.Evaluator(str(evaluator), str(device))
+
+
+@functools.lru_cache(maxsize=1)
+def _table_of(path: str, _: tuple[int, int, int]) -> _native.Table:
+    """The table of a file, read again when the file has changed."""
+    return _native.Table.read(path)
+
+
+def native_scene(scene: Scene) -> _native.Scene:
+    if isinstance(scene, Scene):
+        return scene._native
+    hint = "; dolp.Scene(path) reads a file" if isinstance(scene, (str, os.PathLike)) else ""
+    raise TypeError(f"scene: must be a dolp.Scene, not {type(scene).__name__}{hint}")
+
+
+def _with_axes(scene: Scene, axes: Mapping[str, Array]) -> _native.Scene:
+    """The scene on other axes, by the names of their columns."""
+    native = native_scene(scene)
+    check_names("axes", axes, [column for column, *_ in _native.axes()])
+    return native.with_([(f"grid.{axis}", np.atleast_1d(floats(axis, values)).ravel().tolist())
+                         for axis, values in axes.items()])
+
+
+def _check_varied(what: str, keys: Iterable[str], columns: Iterable[str]) -> None:
+    """Refuses keys that vary what a column varies."""
+    for key in keys:
+        if (column := key.partition(".")[2]) in columns:
+            raise InputError(f"{what}: {key} and {column} are the same")
+
+
+def _over_keys(run: Callable[..., _native.Parts], scene: _native.Scene, columns: dict[str, np.ndarray],
+               varied: dict[str, np.ndarray]) -> _native.Parts:
+    """The points in runs of scenes that differ in the keys of `varied`; the attributes that all runs have."""
+    different, which = np.unique(np.stack(np.broadcast_arrays(*varied.values()), axis=-1), axis=0, return_inverse=True)
+    size = max(values.size for values in (*columns.values(), *varied.values()))
+    which = np.broadcast_to(which.ravel(), size)
+    found: _native.Parts | None = None
+    for i, values in enumerate(different.tolist()):
+        at = np.flatnonzero(which == i)
+        own = {name: column if column.size == 1 else column[at] for name, column in columns.items()}
+        part = run(scene.with_([*zip(varied, values)]), own)
+        if found is None:
+            found = ([(*facts, np.empty(size)) for *facts, _ in part[0]], np.empty(size, np.uint32), part[2])
+        for (*_, whole), (*_, results) in zip((*found[0], (found[1],)), (*part[0], (part[1],))):
+            whole[at] = results
+        found = (*found[:2], {name: value for name, value in found[2].items() if part[2].get(name) == value})
+    return found

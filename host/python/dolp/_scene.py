@@ -1,0 +1,147 @@
+"""Scenes and the built-in materials that they name."""
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from . import _native
+from ._arguments import Array, Path, check_key, check_names, floats, input_path, native_values, short
+from ._native import InputError
+
+
+class Scene:
+    """A surface, what it radiates and reflects, and how accurate results are to be: a scene file, or its text.
+
+    Parameters: a path or `text`, then overrides of any key of a scene; None or "none" removes a table or a key; a complex
+    surface.n gives n and k. `scene[key]` is the value of a key, None where the scene has no such thing. Scenes can be
+    copied, pickled and sent to other processes, which find the files that a scene names where this one did.
+
+    >>> smooth = dolp.Scene(scene, {"surface.sigma": 0.01, "title": "a mirror", "surface.n": 1.5 + 0.1j})
+    >>> smooth.title, smooth["surface.k"], smooth["surface.masking"], smooth["grid.q"], smooth["path.radiance"]
+    ('a mirror', 0.1, 'smith', [3.0], None)
+    >>> dolp.Scene(scene, {"surface.sigma": -1})
+    Traceback (most recent call last):
+    dolp.InputError: surface.sigma = -1: -1 is out of range; must be a number in [0, 10]
+    """
+
+    def __init__(self, path: Path | Scene | None = None, overrides: Mapping[str, Any] | None = None, *,
+                 text: str | None = None) -> None:
+        if (path is None) == (text is None):
+            raise InputError("Scene: needs either a path or text")
+        values = native_values(overrides)
+        if isinstance(path, Scene):
+            self._native = path._native.with_(values)
+        elif path is not None:
+            self._native = _native.Scene.from_file(input_path("path", path), values)
+        elif isinstance(text, str):
+            self._native = _native.Scene.from_text(text, values, "text")
+        else:
+            raise TypeError(f"text: must be a str, not {type(text).__name__}")
+
+    def with_(self, values: Mapping[str, Any]) -> Scene:
+        """The same scene with other values of keys.
+
+        >>> scene.with_({"surface.q": 4, "grid.sigma": {"from": 0.1, "to": 1, "count": 5, "spacing": "log"}}).title
+        ''
+        """
+        return Scene(self, values)
+
+    def without(self, key: str) -> Scene:
+        """The same scene without the table of an effect, or without a key.
+
+        >>> "emission" in scene.with_({"surroundings.temperature_K": 250}).without("emission").toml()
+        False
+        """
+        return Scene(self, {key: None})
+
+    @property
+    def title(self) -> str:
+        """The scene's title."""
+        return self._native.title
+
+    def __getitem__(self, key: str) -> float | str | bool | list[float] | None:
+        return self._native.value(check_key(key))
+
+    def toml(self) -> str:
+        """The scene with its overrides applied, as a scene file has it."""
+        return self._native.toml()
+
+    def __repr__(self) -> str:
+        changes = [f"{key}={short(value)}" for key, value in self._native.values()]
+        if len(changes) > 4:
+            changes[4:] = [f"and {len(changes) - 4} more"]
+        return f"<dolp.Scene {', '.join([f'{self.title!r} of {self._native.name}', *changes])}>"
+
+
+def keys() -> dict[str, dict[str, str]]:
+    """The keys that scenes have, with unit, allowed values, default and meaning.
+
+    >>> dolp.keys()["surface.sigma"]["allowed"]
+    'a number in [0, 10]'
+    """
+    names = ("unit", "allowed", "default", "meaning")
+    return {key: dict(zip(names, facts)) for key, *facts in _native.keys()}
+
+
+class Material:
+    """A built-in material; `n(wavelength_um)` and `k(wavelength_um)` take numbers and arrays."""
+
+    def __init__(self, name: str) -> None:
+        known = materials()
+        wanted = str(name).casefold()
+        same = [one for one in known if one.casefold() == wanted]
+        near = same or [one for one in known if one.casefold().startswith(f"{wanted} ")]
+        self.name: str = near[0] if len(near) == 1 else str(name)
+        check_names("material", [self.name], list(known))
+        self.from_um, self.to_um, self.source = known[self.name].values()
+        self._native = _native.Scene.from_text("surface.sigma = 0\nemission.temperature_K = 300\n", [
+            ("surface.material", self.name), ("spectrum.wavelength_um", self.from_um)], "material")
+
+    def n(self, wavelength_um: Array) -> np.ndarray:
+        """The real part of the refractive index."""
+        return self._at(wavelength_um)[..., 0]
+
+    def k(self, wavelength_um: Array) -> np.ndarray:
+        """The imaginary part of the refractive index."""
+        return self._at(wavelength_um)[..., 1]
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draws n and k over the wavelength with Matplotlib, and returns the axes."""
+        import matplotlib.pyplot as plt
+        axes = plt.subplots()[1] if axes is None else axes
+        wavelengths = np.linspace(self.from_um, self.to_um, 401)
+        axes.plot(wavelengths, self.n(wavelengths), label="n")
+        axes.plot(wavelengths, self.k(wavelengths), label="k")
+        axes.set(xlabel="wavelength (µm)", ylabel="refractive index n + ik", title=self.name)
+        axes.legend()
+        return axes
+
+    def _at(self, wavelength_um: Array) -> np.ndarray:
+        wavelengths = floats("wavelength_um", wavelength_um)
+        values = [self._native.refractive_index(value) for value in wavelengths.ravel().tolist()]
+        return np.array(values).reshape(wavelengths.shape + (2,))
+
+    def __repr__(self) -> str:
+        return f"<dolp.Material {self.name!r}, {self.from_um:g} to {self.to_um:g} um, {self.source}>"
+
+
+def material(name: str) -> Material:
+    """A built-in material by name.
+
+    >>> gold = dolp.material("gold (Ordal)")
+    >>> gold.n(10.6).round(2), gold.k([8, 10.6]).shape
+    (13.52, (2,))
+    """
+    return Material(name)
+
+
+def materials() -> dict[str, dict[str, Any]]:
+    """The built-in materials, with the wavelengths at which they are known, in um, and the source.
+
+    >>> dolp.materials()["gold (Ordal)"]["from_um"] <= 8
+    True
+    """
+    return {name: {"from_um": low, "to_um": high, "source": source} for name, low, high, source in _native.materials()}

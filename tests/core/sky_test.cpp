@@ -1,0 +1,145 @@
+// Profiles of a sky: files, built-in skies, and the basis of functions that stands for them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <dolp/errors.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "scene/sky_profile.hpp"
+#include "scene_support.hpp"
+#include "spectrum/planck.hpp"
+#include "spectrum/sky_factors.hpp"
+
+namespace dolp {
+namespace {
+
+std::string refusal_of(const std::string& text) {
+  try {
+    parse_sky_profile(text, "sky.csv");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(SkyProfile, BadFile_IsOneLineThatNamesFileLineAndWhatIsAllowed) {
+  struct Case {
+    const char* text;
+    const char* message;
+  };
+  for (const auto& [text, message] : {
+           Case{"", "sky.csv:1: no rows; columns zenith_deg and temperature_K or radiance are expected"},
+           Case{"zenith_deg,temperature_K\n", "sky.csv:1: no rows; zenith_deg from 0 to 90 is expected"},
+           Case{"temperature_K\n200\n", "sky.csv:1: column \"zenith_deg\" is missing, a number in [0, 90]"},
+           Case{"zenith_deg\n0\n",
+                "sky.csv:1: needs one of the columns temperature_K, a number in [0, 1e4], and radiance, W m-2 sr-1 "
+                "um-1"},
+           Case{"zenith_deg,temperature_K,radiance\n0,1,1\n",
+                "sky.csv:1: needs one of the columns temperature_K, a number in [0, 1e4], and radiance, W m-2 sr-1 "
+                "um-1; both are there"},
+           Case{"zenith_deg,height\n0,1\n",
+                "sky.csv:1: column \"height\": unknown; must be zenith_deg, temperature_K or radiance, wavelength_um"},
+           Case{"zenith_deg,temperature_K\n10,200\n90,250\n",
+                "sky.csv:2: zenith_deg = 10: must be 0 in the first row; the last has 90"},
+           Case{"zenith_deg,temperature_K\n0,200\n80,250\n",
+                "sky.csv:3: zenith_deg ends at 80; must be 90 in the last row"},
+           Case{"zenith_deg,temperature_K\n0,200\n50,250\n40,260\n90,270\n",
+                "sky.csv:4: zenith_deg = 40: must be greater than 50, the one before, up to 90"},
+           Case{"zenith_deg,temperature_K\n0,200\n95,250\n",
+                "sky.csv:3: zenith_deg = 95: out of range, a number in [0, 90]"},
+           Case{"zenith_deg,temperature_K\n0,cold\n90,250\n",
+                "sky.csv:2: temperature_K = cold: not a number, a number in [0, 1e4]"},
+           Case{"zenith_deg,temperature_K\n0\n90,250\n", "sky.csv:2: 1 cells; 2 are expected"},
+           Case{"zenith_deg,radiance\n0,-1\n90,1\n", "sky.csv:2: radiance = -1: out of range, a number in [0, inf)"},
+           Case{"wavelength_um,zenith_deg,radiance\n8,0,1\n8,90,1\n9,0,1\n",
+                "sky.csv:4: a row with zenith_deg = 90 is missing after this one"},
+           Case{"wavelength_um,zenith_deg,radiance\n8,0,1\n8,90,1\n9,30,1\n9,90,1\n",
+                "sky.csv:4: zenith_deg = 30: must be 0, as at the first wavelength"},
+           Case{"wavelength_um,zenith_deg,radiance\n8,0,1\n8,90,1\n7,0,1\n7,90,1\n",
+                "sky.csv:4: wavelength_um = 7: must not be below 8, the one before; rows go by wavelength, then by "
+                "zenith"},
+       }) {
+    EXPECT_EQ(refusal_of(text), message);
+  }
+}
+
+TEST(SkyProfile, Text_ReadsBackAsTheSameProfile) {
+  for (const char* text : {"zenith_deg,temperature_K\n0,220.5\n33.3,240\n90,288\n",
+                           "wavelength_um,zenith_deg,radiance\n8,0,3.25\n8,90,9\n14,0,2\n14,90,7\n"}) {
+    const SkyProfile profile = parse_sky_profile(text, "sky.csv");
+    EXPECT_EQ(profile.text(), text);
+    EXPECT_EQ(parse_sky_profile(profile.text(), "sky.csv").hash(), profile.hash());
+  }
+}
+
+TEST(SkyProfile, BetweenRows_IsAStraightLine) {
+  const SkyProfile sky = parse_sky_profile("wavelength_um,zenith_deg,radiance\n8,0,2\n8,90,4\n10,0,6\n10,90,8\n", "s");
+  EXPECT_DOUBLE_EQ(sky_radiance(sky, 8.0, 45.0), 3.0);
+  EXPECT_DOUBLE_EQ(sky_radiance(sky, 9.0, 45.0), 5.0);
+  EXPECT_DOUBLE_EQ(sky_radiance(sky, 10.0, 90.0), 8.0);
+}
+
+// Plane-parallel air: L = B(air) (1 - t^(1 / cos)), and a black cloud behind it.
+TEST(SkyProfile, BuiltInSkies_FollowTheirFormulas) {
+  const double emissivity = 0.24 + 2.98e-8 * 7.85 * 7.85 * std::exp(3000.0 / 288.15);
+  const SkyProfile clear = *built_in_sky("clear-sky");
+  const SkyProfile overcast = *built_in_sky("overcast");
+  const double air = planck_radiance(10.6, 288.15);
+  EXPECT_NEAR(sky_radiance(clear, 10.6, 0.0) / air, emissivity, 1e-12);
+  EXPECT_NEAR(sky_radiance(clear, 10.6, 60.0) / air, 1.0 - std::pow(1.0 - emissivity, 2.0), 1e-12);
+  EXPECT_EQ(sky_radiance(clear, 10.6, 90.0), air);
+  EXPECT_EQ(sky_radiance(clear, 4.3, 0.0), planck_radiance(4.3, 288.15));
+  EXPECT_GT(sky_radiance(overcast, 10.6, 0.0), planck_radiance(10.6, 281.65));
+  EXPECT_EQ(sky_radiance(overcast, 10.6, 90.0), air);
+  EXPECT_FALSE(built_in_sky("cloudy"));
+  for (const BuiltInSky& sky : built_in_skies()) EXPECT_TRUE(built_in_sky(sky.name)) << sky.name;
+}
+
+// The mean of mu^p that cos^c sees is (c + 2) / (c + 2 + p), the distance to the horizon included.
+TEST(SkyNodes, Means_OfPowersOfTheCosine_AreTheirClosedForms) {
+  const SkyNodes nodes({0.0, 25.0, 60.0, 85.0, 90.0});
+  for (const double c : {-0.9, -0.5, 0.0}) {
+    for (const double p : {0.0, 1.0, 3.0}) {
+      Eigen::VectorXd values(static_cast<Eigen::Index>(nodes.zenith_deg().size()));
+      for (Eigen::Index i = 0; i < values.size(); ++i) {
+        const double zenith_deg = nodes.zenith_deg()[static_cast<std::size_t>(i)];
+        const double mu = zenith_deg == 90.0 ? 0.0 : std::cos(zenith_deg * std::numbers::pi / 180.0);
+        values[i] = std::pow(mu, p);
+      }
+      EXPECT_NEAR(nodes.mean_weights(c).dot(values), (c + 2.0) / (c + 2.0 + p), 1e-10) << c << " " << p;
+    }
+  }
+}
+
+TEST(SkyBasis, FewFunctions_StandForAllWavelengths) {
+  SceneValues scene = parse(kMinimal + "[surroundings]\nprofile = \"clear-sky\"\n");
+  std::vector<double> wavelengths;
+  for (double um = 3.0; um <= 14.0; um += 0.5) wavelengths.push_back(um);
+  const std::shared_ptr<const SkyBasis> basis = sky_basis(scene, wavelengths);
+  ASSERT_TRUE(basis);
+  EXPECT_LE(basis->size(), 2U);
+  const SkySampler sampler(*scene.surroundings->profile);
+  for (const double um : {3.3, 7.7, 13.1}) {
+    const Eigen::VectorXd exitances = sampler.at(um);
+    const Eigen::VectorXd sky = (exitances.array() - sampler.mean(exitances)).matrix();
+    const SkyWeights weights = basis->weights_of(sky);
+    for (const double zenith_deg : {0.0, 41.0, 77.7, 89.3, 90.0}) {
+      const double exact =
+          std::numbers::pi * sky_radiance(*scene.surroundings->profile, um, zenith_deg) - sampler.mean(exitances);
+      EXPECT_NEAR(basis->at(zenith_deg).dot(weights.of), exact, weights.error + 1e-9 * sky.cwiseAbs().maxCoeff());
+    }
+  }
+}
+
+TEST(SceneReader, Profile_TakesThePlaceOfATemperature) {
+  const std::string sky = kMinimal + "[surroundings]\n";
+  EXPECT_TRUE(parse(sky + "profile = \"overcast\"\n").surroundings->profile);
+  EXPECT_TRUE(contains(error_of(sky + "profile = \"overcast\"\ntemperature_K = 250\n"), "cannot be combined with"));
+  EXPECT_TRUE(contains(error_of(sky), "missing"));
+  EXPECT_TRUE(contains(error_of(sky + "profile = \"cloudy\"\n"), "s.toml:9: surroundings.profile = \"cloudy\""));
+}
+
+}  // namespace
+}  // namespace dolp

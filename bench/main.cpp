@@ -80,6 +80,13 @@ CLI::App* add_fit(CLI::App& app, StudyOptions& options) {
   return study;
 }
 
+CLI::App* add_window(CLI::App& app, StudyOptions& options) {
+  CLI::App* study = app.add_subcommand("window", "curves and frames a second while a slider is dragged (Xvfb, xdotool)");
+  add_common(*study, options);
+  study->add_option("--case", options.cases, "only this drag (repeatable)")->allow_extra_args(false);
+  return study;
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app("dolp-bench: dolp against other ways to compute the same moments, and against itself", "dolp-bench");
   app.set_version_flag("--version", "dolp-bench " DOLP_VERSION);
@@ -94,6 +101,8 @@ int parse_and_run(int argc, char** argv) {
   const CLI::App* peers_study = add_peers(app, peers);
   StudyOptions scale = accuracy;
   const CLI::App* scale_study = add_scale(app, scale);
+  StudyOptions window = accuracy;
+  const CLI::App* window_study = add_window(app, window);
   StudyOptions fit = accuracy;
   const CLI::App* fit_study = add_fit(app, fit);
   const CLI::App* throughput_study = add_throughput(app, throughput);
@@ -107,6 +116,8 @@ int parse_and_run(int argc, char** argv) {
     run_effects(effects);
   } else if (throughput_study->parsed()) {
     run_throughput(throughput);
+  } else if (window_study->parsed()) {
+    run_window(window);
   } else if (scale_study->parsed()) {
     run_scale(scale);
   } else if (peers_study->parsed()) {

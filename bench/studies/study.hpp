@@ -60,4 +60,11 @@ void run_scale(const StudyOptions& options);
 /// SciPy. `entries` are the sets. Errors: DeviceError without a usable device; IoError; Cancelled.
 void run_fit_study(const StudyOptions& options);
 
+/// `dolp-bench window`: curves and frames a second while a slider of the window is dragged, by real events on a display
+/// of its own (Xvfb, xdotool) of 1920 x 1080.
+///
+/// `cases` are drags. A curve is fresh where it is that of the slider in the same frame. Errors: InputError for a drag
+/// that there is not; DeviceError without a usable device or Xvfb; IoError; Cancelled.
+void run_window(const StudyOptions& options);
+
 }  // namespace dolp::bench

@@ -33,6 +33,7 @@ struct Options {
   bool all = false;                  ///< of verify: report every hard case
   std::size_t frames = 0;            ///< of explore: draw so many and end; 0: until the window is closed
   std::string screenshot_path;       ///< of explore
+  std::string panel;                 ///< of explore: the view beside the curve
   std::string measured_path;         ///< of explore
   std::vector<std::string> data;     ///< of fit: FILE or FILE:KEY=VALUE,...
   std::vector<std::string> vary;     ///< of fit: KEY=LOW:HIGH or KEY=LOW:HIGH:START

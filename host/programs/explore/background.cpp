@@ -92,6 +92,11 @@ std::vector<JobPart> Worker::take_news() {
   return std::exchange(news_, {});
 }
 
+void Worker::await_news(std::chrono::duration<double> at_most) {
+  std::unique_lock lock(mutex_);
+  arrived_.wait_for(lock, at_most, [this] { return !news_.empty() || is_ended(end_); });
+}
+
 bool Worker::is_idle() const {
   const std::scoped_lock lock(mutex_);
   return (tasks_.empty() && running_.empty()) || is_ended(end_);
@@ -134,7 +139,10 @@ void Worker::put_back(Task task, std::optional<JobPart> part) {
   const std::scoped_lock lock(mutex_);
   running_.clear();
   const bool goes_back = is_wanted(task.job.key);
-  if (part && (goes_back || task.job.is_brief)) news_.push_back(std::move(*part));
+  if (part && (goes_back || task.job.is_brief)) {
+    news_.push_back(std::move(*part));
+    arrived_.notify_all();
+  }
   if (!goes_back) return;
   if (is_done) {
     finished_.push_back(task.job.key);

@@ -118,6 +118,9 @@ class Worker {
   /// The results since the last call. Errors: rethrows what ended the worker, a DeviceError for instance.
   std::vector<JobPart> take_news();
 
+  /// Waits until there are results to take, at most this long.
+  void await_news(std::chrono::duration<double> at_most);
+
   /// True where all wanted jobs are done; their results may still wait to be taken.
   bool is_idle() const;
 
@@ -142,6 +145,7 @@ class Worker {
   std::function<void()> on_news_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
+  std::condition_variable arrived_;
   std::vector<Task> tasks_;  ///< without the one under way
   std::vector<std::string> wanted_;
   std::vector<std::string> finished_;  ///< of those wanted

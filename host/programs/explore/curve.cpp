@@ -8,7 +8,6 @@
 namespace dolp::explore {
 namespace {
 
-constexpr const char* kCoarsePrefix = "coarse curve ";
 constexpr std::size_t kStride = 10;  // of the points that the reference recomputes: five degrees
 
 }  // namespace
@@ -18,8 +17,6 @@ void Curve::follow(const std::string& key, const Scene& scene, bool keep_all) {
   scene_ = scene;
   keep_all_ = keep_all;
 }
-
-std::string Curve::key_of(Stage stage) const { return (stage == Stage::kCoarse ? kCoarsePrefix : "curve ") + key_; }
 
 std::optional<Job> Curve::wanted(Stage stage) const {
   if (key_.empty() || is_finished() || shown_.key == key_of(stage)) return std::nullopt;
@@ -42,8 +39,10 @@ bool Curve::take(const JobPart& news) {
   return true;
 }
 
-void Curve::take_earlier(const JobPart& news) {
-  if (!is_current() && news.key.starts_with(kCoarsePrefix)) shown_ = news;
+bool Curve::take_earlier(const JobPart& news) {
+  if (!news.key.starts_with(prefix_of(Stage::kCoarse))) return false;
+  if (!is_current()) shown_ = news;
+  return true;
 }
 
 double Curve::worst_error() const {

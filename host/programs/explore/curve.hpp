@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "explore/background.hpp"
@@ -19,7 +20,9 @@ class Curve {
   static constexpr std::size_t kCoarseCount = 46;
   static constexpr double kCoarseTolerance = 1e-2;
 
-  explicit Curve(const Scene& scene) : scene_(scene), shown_{.scene = scene}, finished_{.scene = scene} {}
+  /// `name`: begins the keys of its jobs.
+  explicit Curve(const Scene& scene, std::string name = "curve")
+      : name_(std::move(name)), scene_(scene), shown_{.scene = scene}, finished_{.scene = scene} {}
 
   /// Switches to the curve of `scene`. `key` identifies the scene's content. The curve on display stays, marked as
   /// outdated, until newer points arrive.
@@ -30,8 +33,9 @@ class Curve {
 
   /// Takes what is this curve's; false for the rest.
   bool take(const JobPart& news);
-  /// Takes a coarse curve that was begun before the scene changed, where what is shown is older still.
-  void take_earlier(const JobPart& news);
+  /// Takes a coarse curve that was begun before the scene changed, where what is shown is older still; false for the
+  /// rest.
+  bool take_earlier(const JobPart& news);
 
   const Scene& scene() const { return scene_; }
   const std::string& key() const { return key_; }
@@ -48,9 +52,11 @@ class Curve {
   double worst_error() const;
 
  private:
-  std::string key_of(Stage stage) const;
+  std::string prefix_of(Stage stage) const { return (stage == Stage::kCoarse ? "coarse " : "") + name_ + ' '; }
+  std::string key_of(Stage stage) const { return prefix_of(stage) + key_; }
   bool is_current() const { return is_finished() || shown_.key == key_of(Stage::kCoarse); }
 
+  std::string name_;
   std::string key_;
   Scene scene_;
   bool keep_all_ = false;

@@ -117,13 +117,19 @@ std::optional<Job> HeatMap::wanted(std::size_t level) const {
 bool HeatMap::take(const JobPart& news) {
   for (std::size_t level = 0; level < kLevels.size(); ++level) {
     if (news.key != key_of(level)) continue;
-    if (shown_key_ != key_) points_ = {};
-    shown_key_ = key_;
+    const bool is_first = level == 0 && shown_key_ != key_;
+    if (is_first && (std::exchange(arriving_key_, key_) != key_ || news.part == 0)) arriving_.clear();
     // On a grid the last of theta, sigma and q is the fastest, whatever axis it is on.
     const std::size_t columns = kLevels[level].count;
     const std::size_t rows = news.points.size() / columns;
     for (std::size_t i = 0; i < news.points.size(); ++i) {
-      points_[level].push_back(news.points[x_.axis > y_.axis ? i : (i % columns) * rows + i / columns]);
+      (is_first ? arriving_ : points_[level])
+          .push_back(news.points[x_.axis > y_.axis ? i : (i % columns) * rows + i / columns]);
+    }
+    if (is_first && news.is_last) {
+      points_ = {};
+      points_[0] = std::exchange(arriving_, {});
+      shown_key_ = key_;
     }
     ++version_;
     return true;

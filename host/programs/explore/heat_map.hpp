@@ -53,7 +53,7 @@ class HeatMap {
     double tolerance;   ///< at least; 0: the scene's own
     std::size_t batch;  ///< rows at a time
   };
-  static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 16}, {64, 1e-2, 8}, {128, 0.0, 4}}};
+  static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 4}, {64, 1e-2, 8}, {128, 0.0, 4}}};
 
   explicit HeatMap(const Scene& scene) : scene_(scene) {}
 
@@ -63,8 +63,13 @@ class HeatMap {
               double theta_deg);
 
   std::optional<Job> wanted(std::size_t level) const;
+  /// Takes what is this map's; false for the rest. The first level is shown when it is complete.
   bool take(const JobPart& news);
   bool is_finished() const;
+  /// True where the map on display is that of the scene, at the first level at least.
+  bool is_coarse_done() const { return shown_key_ == key_ && !points_[0].empty(); }
+  /// True where the first level is begun and not complete.
+  bool is_arriving() const { return arriving_key_ == key_ && !arriving_.empty(); }
   /// True where the map on display belongs to an earlier scene.
   bool is_stale() const { return !shown_key_.empty() && shown_key_ != key_; }
 
@@ -91,6 +96,8 @@ class HeatMap {
   double theta_deg_ = 0.0;
   std::string shown_key_;                                  ///< the map that the results are of
   std::array<std::vector<Point>, kLevels.size()> points_;  ///< row by row
+  std::string arriving_key_;
+  std::vector<Point> arriving_;  ///< of the first level
   std::size_t version_ = 0;
 };
 

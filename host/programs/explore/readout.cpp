@@ -94,7 +94,7 @@ std::string cursor_text(const Session& session) {
   const Point& r = *shown;
   std::string text =
       fmt::format("Cursor{}: θ = {:.1f}°, σ = {:.4g}, q = {:.4g}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
-                  stale_text(session.curve().is_stale()), r.theta_deg, r.sigma, r.q, kPercent * r[Quantity::kDolp],
+                  session.remark(session.curve()), r.theta_deg, r.sigma, r.q, kPercent * r[Quantity::kDolp],
                   points_text(r[Quantity::kErrorEstimate]), kPercent * r.q_over_i());
   if (r.has_bracket()) {
     text += fmt::format(", all bounces {:.3f} to {:.3f} %", kPercent * r[Quantity::kDolpLow],

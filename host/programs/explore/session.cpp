@@ -17,15 +17,6 @@ std::string content_key(const std::vector<Setting>& changes, bool keep_all) {
   return key;
 }
 
-/// The other distribution with the same density of flat facets: sigma_G = sigma / sqrt(q - 1).
-std::vector<Setting> other_distribution(const Scene& scene) {
-  const double sigma = scene.number("surface.sigma").value();
-  const double ratio = std::sqrt(scene.number("surface.q").value() - 1.0);
-  const bool is_cauchy = scene.word("surface.distribution") == "cauchy";
-  return {{"surface.distribution", is_cauchy ? "gaussian" : "cauchy"},
-          {"surface.sigma", is_cauchy ? sigma / ratio : sigma * ratio}};
-}
-
 std::string text_of(const std::vector<Setting>& changes) {
   std::string text;
   for (const Setting& change : changes) {
@@ -77,14 +68,16 @@ std::string surface_name(const Scene& scene, const Scene* other) {
   return parts.empty() ? "the same surface" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string pin_name(const Pin& pin, const Curve& curve) {
+std::string pin_name(const Pin& pin, const Session& session) {
   if (!pin.name.empty()) return pin.name;
-  return surface_name(pin.curve.shown_scene(), &curve.shown_scene()) + stale_text(pin.curve.is_stale());
+  return surface_name(pin.curve.shown_scene(), &session.curve().shown_scene()) + stale_text(pin.curve.is_stale());
 }
 
 const char* stale_text(bool is_stale) { return is_stale ? ", the scene before" : ""; }
 
-std::string curve_name(const Curve& curve) { return surface_name(curve.shown_scene()) + stale_text(curve.is_stale()); }
+std::string curve_name(const Session& session) {
+  return surface_name(session.curve().shown_scene()) + session.remark(session.curve());
+}
 
 Session::Session(SceneEdits edits)
     : edits_(std::move(edits)), curve_(scene()), map_(scene()), peak_(scene()), residuals_(scene()) {
@@ -106,6 +99,18 @@ void Session::attempt(const Command& command) {
     is_in_gesture_ = true;
   }
   follow();
+}
+
+void Session::hold(bool is_held) {
+  const bool was_dragged = is_dragged();
+  is_held_ = is_held;
+  if (!is_held) is_in_gesture_ = false;
+  if (was_dragged != is_dragged()) follow();
+}
+
+const char* Session::remark(const Curve& curve) const {
+  if (is_outdated(curve)) return stale_text(true);
+  return curve.points().empty() || (curve.is_finished() && !is_dragged()) ? "" : ", coarse";
 }
 
 void Session::step(std::vector<Changes>& from, std::vector<Changes>& to, const char* nothing) {
@@ -253,6 +258,7 @@ void Session::follow() {
   residuals_.follow(content, scene());
   follow_overlay(content, keep_all);
   follow_map(keep_all);
+  sky_.follow(content_key(edits_.changes_without({"geometry.relative_azimuth_deg"}), false), scene());
   estimate_influences();
   follow_peak();
   is_changed_ = true;
@@ -260,6 +266,10 @@ void Session::follow() {
 
 void Session::estimate_influences() {
   const JobPart& curve = curve_.finished();
+  // It takes as long as a coarse curve: in a drag neither changes.
+  std::pair<std::string, double> of{curve.key, theta_deg_};
+  if (influences_of_ == of) return;
+  influences_of_ = std::move(of);
   effects_ = curve.effects;
   if (effects_.empty()) return;
   const std::vector<Effect> at_cursor =
@@ -273,7 +283,7 @@ std::string Session::overlay_name() const {
   if (!overlay_) return {};
   const Scene& shown = overlay_->shown_scene();
   return fmt::format("{} σ {:.4g}, same D(0){}", shown.word("surface.distribution").value(),
-                     shown.number("surface.sigma").value(), stale_text(overlay_->is_stale()));
+                     shown.number("surface.sigma").value(), remark(*overlay_));
 }
 
 void Session::follow_overlay(const std::string& content, bool keep_all) {
@@ -283,14 +293,15 @@ void Session::follow_overlay(const std::string& content, bool keep_all) {
   }
   try {
     const Scene other = scene().with(other_distribution(scene()));
-    if (!overlay_) overlay_.emplace(other);
-    overlay_->follow("other distribution " + content, other, keep_all);
+    if (!overlay_) overlay_.emplace(other, "overlay");
+    overlay_->follow(content, other, keep_all);
   } catch (const InputError&) {
     overlay_.reset();  // its sigma or q is outside the model
   }
 }
 
 void Session::follow_map(bool keep_all) {
+  if (is_dragged() && map_.is_arriving()) return;  // in a drag it goes from one complete map to the next
   const MapAxis x = suggested_axis(view_.map_x, scene(), view_.theta_max_deg);
   const MapAxis y = suggested_axis(view_.map_y, scene(), view_.theta_max_deg);
   std::string key = content_key(edits_.changes_without({key_of(x.axis), key_of(y.axis)}), keep_all);
@@ -301,7 +312,27 @@ void Session::follow_map(bool keep_all) {
   map_.follow(key, scene(), keep_all, x, y, theta_deg_);
 }
 
+std::vector<Job> Session::wanted_in_drag() const {
+  std::vector<Job> jobs;
+  const auto add = [&](std::optional<Job> job) {
+    if (job) jobs.push_back(std::move(*job));
+  };
+  const auto add_other = [&](bool is_map) {
+    if (is_map && shows_map() && !map_.is_coarse_done()) add(map_.wanted(0));
+    if (is_map && view_.panel == Panel::kSky) {
+      for (Job& job : sky_.wanted()) jobs.push_back(std::move(job));
+    }
+    if (!is_map && overlay_) add(overlay_->wanted(Curve::Stage::kCoarse));
+  };
+  if (!is_curve_next_) add_other(is_map_next_);
+  add(curve_.wanted(Curve::Stage::kCoarse));
+  if (is_curve_next_) add_other(is_map_next_);
+  add_other(!is_map_next_);
+  return jobs;
+}
+
 std::vector<Job> Session::wanted() const {
+  if (is_dragged()) return wanted_in_drag();
   std::vector<Job> jobs;
   const auto add = [&](std::optional<Job> job) {
     if (job) jobs.push_back(std::move(*job));
@@ -309,12 +340,17 @@ std::vector<Job> Session::wanted() const {
   add(curve_.wanted(Curve::Stage::kCoarse));
   add(curve_.wanted(Curve::Stage::kFine));
   if (overlay_) add(overlay_->wanted(Curve::Stage::kFine));
-  add(map_.wanted(0));
+  if (shows_map()) add(map_.wanted(0));
   for (Job& job : peak_.wanted()) jobs.push_back(std::move(job));
   add(residuals_.wanted());
   for (const Pin& pin : pins_) add(pin.curve.wanted(Curve::Stage::kFine));
-  add(map_.wanted(1));
-  add(map_.wanted(2));
+  if (view_.panel == Panel::kSky) {
+    for (Job& job : sky_.wanted()) jobs.push_back(std::move(job));
+  }
+  if (shows_map()) {
+    add(map_.wanted(1));
+    add(map_.wanted(2));
+  }
   return jobs;
 }
 
@@ -322,10 +358,14 @@ bool Session::take_changed() { return std::exchange(is_changed_, false); }
 
 void Session::take(const std::vector<JobPart>& news) {
   for (const JobPart& part : news) {
-    if (!curve_.take(part)) curve_.take_earlier(part);
-    if (overlay_) overlay_->take(part);
+    const bool is_curve = curve_.take(part) || curve_.take_earlier(part);
+    if (overlay_ && !overlay_->take(part)) overlay_->take_earlier(part);
     for (Pin& pin : pins_) pin.curve.take(part);
-    map_.take(part);
+    const bool is_map = map_.take(part);
+    is_curve_next_ = !is_curve;
+    if (!is_curve) is_map_next_ = !is_map;
+    if (is_map && part.is_last && is_dragged()) follow();
+    sky_.take(part);
     peak_.take(part);
     residuals_.take(part);
     is_changed_ = is_changed_ || part.is_last;

@@ -5,11 +5,13 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "explore/curve.hpp"
 #include "explore/heat_map.hpp"
 #include "explore/measured.hpp"
+#include "explore/panels.hpp"
 #include "explore/peak.hpp"
 #include "explore/scene_edits.hpp"
 
@@ -32,6 +34,9 @@ struct View {
   double theta_max_deg = 90.0;  ///< what is shown, and where the maximum is looked for
   Axis map_x = Axis::kTheta;
   Axis map_y = Axis::kSigma;
+  Panel panel = Panel::kMap;
+  std::size_t mueller_row = 0;  ///< of the element in the view of the pBRDF
+  std::size_t mueller_column = 0;
 };
 
 /// One line for the user.
@@ -56,8 +61,8 @@ class Session {
   void reset_all();
   void undo() { step(done_, undone_, "nothing to undo"); }
   void redo() { step(undone_, done_, "nothing to redo"); }
-  /// Changes of the scene up to here are one for `undo`: those of a drag, for instance.
-  void end_gesture() { is_in_gesture_ = false; }
+  /// Changes while a button of the mouse is held down are one for `undo`, and get coarse results alone.
+  void hold(bool is_held);
   void note_saved() { edits_.note_saved(); }
   void pin();
   void remove_pin(std::size_t position);
@@ -92,6 +97,7 @@ class Session {
   std::string overlay_name() const;
   const std::deque<Pin>& pins() const { return pins_; }
   const HeatMap& map() const { return map_; }
+  const Sky& sky() const { return sky_; }
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
   bool varies(const std::string& key) const { return marked_.contains(key); }
@@ -102,6 +108,12 @@ class Session {
   const Fit* fit() const { return fit_ && fitted_changes_ == edits_.changes() ? &*fit_ : nullptr; }
   const FitParameter* fitted(const std::string& key) const;
   const Message& message() const { return message_; }
+  /// True while the mouse changes the scene.
+  bool is_dragged() const { return is_held_ && is_in_gesture_; }
+  /// True where a curve belongs to an earlier scene, and not to one of the same drag.
+  bool is_outdated(const Curve& curve) const { return curve.is_stale() && !is_dragged(); }
+  /// The mark of a curve that is not the finished one of its scene: ", coarse" or ", the scene before"; else empty.
+  const char* remark(const Curve& curve) const;
   /// The effects of the last finished curve; influences of what is kept are those at the cursor's zenith.
   const std::vector<Effect>& effects() const { return effects_; }
   /// The position of the scene's own value on an axis of the map.
@@ -119,11 +131,14 @@ class Session {
   void follow();
   void follow_overlay(const std::string& content, bool keep_all);
   void follow_map(bool keep_all);
+  std::vector<Job> wanted_in_drag() const;
+  bool shows_map() const { return view_.panel == Panel::kMap; }
   void estimate_influences();
   void follow_peak();
 
   SceneEdits edits_;
   std::vector<Changes> done_, undone_;  ///< before each gesture; after each that was undone
+  bool is_held_ = false;
   bool is_in_gesture_ = false;
   View view_;
   double theta_deg_ = 60.0;
@@ -131,14 +146,19 @@ class Session {
   std::optional<Curve> overlay_;
   std::deque<Pin> pins_;
   HeatMap map_;
+  Sky sky_;
   Peak peak_;
   Residuals residuals_;
   std::set<std::string> marked_;
   std::optional<Fit> fit_;
   std::vector<Setting> fitted_changes_;  ///< of the scene with what was found
   std::vector<Effect> effects_;
+  std::pair<std::string, double> influences_of_;  ///< key of the curve, zenith
   Message message_;
   bool is_changed_ = true;
+  // The order of coarse results in a drag.
+  bool is_curve_next_ = true;
+  bool is_map_next_ = false;
 };
 
 /// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1"; with `other` those alone in which it
@@ -146,10 +166,10 @@ class Session {
 std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
 /// The name of a pin, without what the curve has in common with it.
-std::string pin_name(const Pin& pin, const Curve& curve);
+std::string pin_name(const Pin& pin, const Session& session);
 
-/// The surface of the curve on display, and whether it is outdated.
-std::string curve_name(const Curve& curve);
+/// The surface of the curve on display, with its remark.
+std::string curve_name(const Session& session);
 
 /// Empty, or the mark of outdated values.
 const char* stale_text(bool is_stale);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "explore/readout.hpp"
 #include "explore_support.hpp"
@@ -30,7 +31,7 @@ bool says_stale(const std::string& text) { return text.find("the scene before") 
 TEST(ExploreSession, WhatIsShownWhileTheSceneChanges_IsStaleAndKeepsItsParameters) {
   Driver driver(paint());
   const Session& session = driver.session;
-  const std::string name = curve_name(session.curve());
+  const std::string name = curve_name(session);
   const std::string overlay = session.overlay_name();
   const std::string cursor = cursor_text(session);
   const double influence = session.effects().front().influence.value();
@@ -40,14 +41,14 @@ TEST(ExploreSession, WhatIsShownWhileTheSceneChanges_IsStaleAndKeepsItsParameter
   EXPECT_TRUE(session.overlay()->is_stale());
   EXPECT_TRUE(session.map().is_stale());
   EXPECT_EQ(session.curve().shown_scene().number("surface.sigma"), 0.15);
-  EXPECT_EQ(curve_name(session.curve()), name + ", the scene before");
+  EXPECT_EQ(curve_name(session), name + ", the scene before");
   EXPECT_EQ(session.overlay_name(), overlay + ", the scene before");
   EXPECT_EQ(cursor_text(session), "Cursor, the scene before" + cursor.substr(std::string("Cursor").size()));
   EXPECT_EQ(session.effects().front().influence, influence);
   EXPECT_EQ(cost_lines(session).front(), "time …");
   driver.settle();
   EXPECT_FALSE(session.curve().is_stale() || session.overlay()->is_stale() || session.map().is_stale());
-  EXPECT_FALSE(says_stale(curve_name(session.curve()) + session.overlay_name() + cursor_text(session)));
+  EXPECT_FALSE(says_stale(curve_name(session) + session.overlay_name() + cursor_text(session)));
   EXPECT_NE(cursor_text(session).find("σ = 0.4,"), std::string::npos) << cursor_text(session);
 }
 
@@ -72,14 +73,70 @@ TEST(ExploreSession, CoarseCurveOfAnEarlierScene_IsShownAsSuch) {
   EXPECT_EQ(curve.shown_scene().number("surface.sigma"), 0.4);
 }
 
+TEST(ExploreSession, Drag_GetsCoarseResultsInTurn_AndSaysSoOnce) {
+  Driver driver(paint());
+  Session& session = driver.session;
+  session.set_view({.map_y = Axis::kQ});
+  driver.settle();
+  session.hold(true);
+  std::size_t maps = session.map().version();
+  for (const double sigma : {0.2, 0.25, 0.3, 0.35}) {
+    session.set("surface.sigma", sigma);
+    EXPECT_FALSE(says_stale(curve_name(session) + session.overlay_name() + cursor_text(session)));
+    for (const Job& job : session.wanted()) EXPECT_GE(job.tolerance, Curve::kCoarseTolerance);
+    driver.settle();
+    EXPECT_FALSE(session.curve().is_stale() || session.overlay()->is_stale() || session.map().is_stale());
+    EXPECT_EQ(session.curve().points().size(), Curve::kCoarseCount);
+    EXPECT_TRUE(curve_name(session).ends_with(", coarse"));
+    EXPECT_NE(std::exchange(maps, session.map().version()), session.map().version());
+  }
+  // The results of another kind come between two of the curve.
+  session.set("surface.sigma", 0.4);
+  std::vector<Job> jobs = session.wanted();
+  ASSERT_EQ(jobs.size(), 3U);
+  const Job& curve = *std::ranges::find_if(jobs, [](const Job& job) { return job.key.starts_with("coarse curve"); });
+  session.take({done(curve)});
+  session.set("surface.sigma", 0.41);
+  EXPECT_FALSE(session.wanted().front().key.starts_with("coarse curve"));
+  session.hold(false);
+  driver.settle();
+  EXPECT_TRUE(session.curve().is_finished());
+  EXPECT_FALSE(curve_name(session).ends_with(", coarse"));
+}
+
+TEST(ExploreSession, Map_InADrag_GoesFromOneCompleteMapToTheNext) {
+  Driver driver(paint());
+  Session& session = driver.session;
+  session.hold(true);
+  session.set("surface.n", 1.6);
+  const auto map_job = [&] {
+    const std::vector<Job> jobs = session.wanted();
+    return *std::ranges::find_if(jobs, [](const Job& job) { return job.key.starts_with("map"); });
+  };
+  const Job first = map_job();
+  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
+  for (std::size_t i = 0; i < first.parts.size(); ++i) {
+    const PointList& list = first.parts[i];
+    JobPart part{.key = first.key, .part = i, .scene = first.scene};
+    part.points = points_of(list, evaluate(evaluator, first.scene, list, {}));
+    part.is_last = i + 1 == first.parts.size();
+    session.take({part});
+    if (part.is_last) break;
+    session.set("surface.n", 1.6 + 0.01 * static_cast<double>(i + 1));
+    EXPECT_EQ(map_job().key, first.key);
+  }
+  EXPECT_EQ(session.map().finished_count(), 16U);
+  EXPECT_EQ(map_job().scene.number("surface.n"), session.scene().number("surface.n"));
+}
+
 TEST(ExploreSession, UndoAndRedo_GoThroughGestures) {
   Session session(paint());
   const Scene opened = session.scene();
   const auto sigma = [&] { return *session.scene().number("surface.sigma"); };
   for (const double dragged : {0.2, 0.25, 0.3}) session.set("surface.sigma", dragged);
-  session.end_gesture();
+  session.hold(false);
   session.set("surface.sigma", -1.0);  // refused: no change to undo
-  session.end_gesture();
+  session.hold(false);
   session.set("surroundings", Value{});
   session.undo();
   EXPECT_TRUE(session.scene().number("surroundings.temperature_K"));
@@ -100,7 +157,7 @@ TEST(ExploreSession, SavedScene_IsUnchangedUntilTheNextChange) {
   Session session(paint());
   session.set("surface.sigma", 0.2);
   session.note_saved();
-  session.end_gesture();
+  session.hold(false);
   EXPECT_FALSE(session.edits().is_changed());
   session.set("surface.sigma", 0.3);
   EXPECT_TRUE(session.edits().is_changed());
@@ -111,7 +168,7 @@ TEST(ExploreSession, SavedScene_IsUnchangedUntilTheNextChange) {
 TEST(ExploreSession, PinNames_SayWhatDiffers) {
   Driver driver(paint());
   driver.session.pin();
-  const auto name = [&] { return pin_name(driver.session.pins()[0], driver.session.curve()); };
+  const auto name = [&] { return pin_name(driver.session.pins()[0], driver.session); };
   EXPECT_EQ(name(), "the same surface");
   driver.session.set({{"surface.sigma", 0.4}, {"surface.masking", "smith"}});
   driver.settle();

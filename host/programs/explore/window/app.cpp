@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "base/atomic_file.hpp"
+#include "base/stopwatch.hpp"
 #include "device/context.hpp"
 #include "device/result.hpp"
 #include "explore/window/actions.hpp"
@@ -31,8 +32,12 @@ constexpr int kWidth = 1440;
 constexpr int kHeight = 900;
 constexpr float kFontPixels = 15.0F;
 constexpr double kBlink_s = 0.3;  // of a text cursor
+// Chosen: of a frame of 33 ms, half of which is drawing. Twice as much makes slow scenes' frames long, half of it lets
+// curves of a band lag behind the slider.
+constexpr double kCatchUp_s = 0.03;
 // Frames after an event: ImGui shows some answers, a list that opens for one, only frames later.
 constexpr std::size_t kFramesAfterEvent = 4;
+constexpr std::size_t kFramesAfterNews = 2;  // of the worker: tables take the width of their text a frame later
 
 std::string glfw_error() {
   const char* text = nullptr;
@@ -159,7 +164,7 @@ struct App::Impl {
                       const RunOptions& run) { return evaluate(evaluator, scene, list, run); },
                glfwPostEmptyEvent),
         actions(session, options.device, options.command_line, glfwPostEmptyEvent),
-        ui(session, actions, options.file_name) {}
+        ui(session, actions, options.file_name, [this] { catch_up(); }) {}
 
   /// Passes results in and wanted jobs out.
   void exchange() {
@@ -170,6 +175,15 @@ struct App::Impl {
     std::vector<Job> jobs = session.wanted();
     is_all_taken = is_all_taken && jobs.empty();
     worker.want(std::move(jobs));
+  }
+
+  /// Waits a moment for the coarse curve of a scene that the mouse moves, so that both move in the same frame.
+  void catch_up() {
+    if (input.has_more() || !session.is_dragged()) return;
+    const Clock::time_point start = Clock::now();
+    for (exchange(); session.curve().is_stale() && seconds_since(start) < kCatchUp_s; exchange()) {
+      worker.await_news(std::chrono::duration<double>(kCatchUp_s - seconds_since(start)));
+    }
   }
 
   /// Draws a frame for each event, and shows the last.
@@ -219,7 +233,7 @@ App::~App() = default;
 
 Session& App::session() { return impl_->session; }
 
-Area App::control_area(const std::string& key) const { return impl_->ui.controls().areas().at(key); }
+Area App::control_area(const std::string& key) const { return impl_->ui.area(key); }
 
 const CurveView& App::curve_view() const { return impl_->ui.curves(); }
 
@@ -239,11 +253,15 @@ void App::settle() {
   }
 }
 
-bool App::answer() {
-  std::size_t left = kFramesAfterEvent;
+bool App::answer(const AfterFrame& after_frame) {
+  std::size_t left = kFramesAfterNews;
   while (left > 0) {
-    if (!frame()) return false;
-    left = impl_->input.take_news() || impl_->actions.has_picture_to_save() ? kFramesAfterEvent : left - 1;
+    const Clock::time_point start = Clock::now();
+    const bool is_open = frame();
+    if (after_frame) after_frame(seconds_since(start));
+    if (!is_open) return false;
+    const bool has_news = impl_->input.take_news() || impl_->actions.has_picture_to_save();
+    left = has_news ? kFramesAfterEvent : left - 1;
   }
   return true;
 }
@@ -253,8 +271,10 @@ void App::close() {
   glfwPostEmptyEvent();
 }
 
-void App::run() {
-  while (answer()) {
+void App::reopen() { glfwSetWindowShouldClose(impl_->window.get(), GLFW_FALSE); }
+
+void App::run(const AfterFrame& after_frame) {
+  while (answer(after_frame)) {
     if (ImGui::GetIO().WantTextInput) {
       glfwWaitEventsTimeout(kBlink_s);
     } else {
@@ -292,6 +312,11 @@ void run_program(const Scene& scene, const ProgramOptions& options) {
   if (!options.screenshot_path.empty()) check_writable(options.screenshot_path);
   const std::string stem = std::filesystem::path(scene.name()).stem().string();
   App app(SceneEdits(scene), {options.device, stem.empty() || stem == "-" ? "dolp" : stem, options.command_line});
+  if (!options.panel.empty()) {
+    View view = app.session().view();
+    view.panel = panel_of(options.panel);
+    app.session().set_view(view);
+  }
   if (!options.measured_path.empty()) {
     app.session().load_measured(options.measured_path);
     if (app.session().message().is_error) throw InputError(app.session().message().text);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,6 +28,8 @@ struct FrameTimes {
 
 class App {
  public:
+  using AfterFrame = std::function<void(double frame_s)>;
+
   /// Opens the window. Errors: DeviceError without a display, or without a device that can show a window on it.
   App(SceneEdits edits, const AppOptions& options);
   App(const App&) = delete;
@@ -42,11 +45,13 @@ class App {
   /// Errors: DeviceError when the device is lost or the validation layer complains.
   bool frame();
   /// Handles the pending events and those that arrive meanwhile, and draws the result. False as for `frame`.
-  bool answer();
+  bool answer(const AfterFrame& after_frame = {});
   /// Ends `run`. May be called from any thread.
   void close();
-  /// Draws until the window is closed; nothing is drawn between events.
-  void run();
+  /// Lets `run` go on after `close`.
+  void reopen();
+  /// Draws until the window is closed; nothing is drawn between events. `after_frame` gets the duration of each frame.
+  void run(const AfterFrame& after_frame = {});
   /// Draws this many frames one after the other; with a path for a picture, which shows the last frame, the last ones
   /// wait until everything wanted is computed.
   FrameTimes run_frames(std::size_t count, const std::string& screenshot_path);
@@ -69,6 +74,7 @@ struct ProgramOptions {
   std::string measured_path;    ///< CSV of measured points; empty: none
   std::size_t frames = 0;       ///< draw so many and end; 0: until the window is closed
   std::string screenshot_path;  ///< PNG of the last frame; empty: none
+  std::string panel = {};       ///< that is shown first; empty: the map
 };
 
 /// Shows the window. Prints how long frames took, where their number is given.

@@ -71,17 +71,9 @@ std::string description_of(const Choice& choice) {
   return choice.key->key + ": " + choice.key->meaning + "\n" + choice.equation;
 }
 
-/// The wavelengths at which a scene needs n and k.
-std::pair<double, double> spectrum_of(const Scene& scene) {
-  const std::vector<double> band = scene.numbers("spectrum.band_um");
-  if (!band.empty()) return {band[0], band[1]};
-  const double wavelength_um = scene.number("spectrum.wavelength_um").value();
-  return {wavelength_um, wavelength_um};
-}
-
 /// A line for each built-in material; those without n and k over the spectrum are grey.
 void draw_built_in_materials(Session& session, const std::string& current) {
-  const auto [from_um, to_um] = spectrum_of(session.scene());
+  const auto [from_um, to_um] = spectrum_um(session.scene());
   for (const BuiltInMaterial& known : materials()) {
     const bool is_known = known.from_um <= from_um && to_um <= known.to_um;
     const std::string text = fmt::format("{}, {:g} to {:g} µm", known.name, known.from_um, known.to_um);
@@ -105,7 +97,7 @@ void draw_material(Session& session) {
     return;
   }
   if (ImGui::Selectable(kOwn, is_own) && !is_own) {
-    const auto [n, k] = scene.refractive_index(spectrum_of(scene).first);
+    const auto [n, k] = scene.refractive_index(spectrum_um(scene).first);
     session.set({{"surface.n", n}, {"surface.k", k}});
   }
   draw_built_in_materials(session, current);

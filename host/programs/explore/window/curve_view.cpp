@@ -26,14 +26,14 @@ struct Shown {
 std::vector<Shown> shown_curves(const Session& session) {
   std::vector<Shown> curves;
   const auto add = [&](const Curve& curve, const CurveStyle& style, const std::string& name) {
-    curves.push_back({&curve, curve.is_stale() ? stale(style) : style, name});
+    curves.push_back({&curve, session.is_outdated(curve) ? stale(style) : style, name});
   };
   if (session.overlay()) add(*session.overlay(), overlay_style(), session.overlay_name());
   for (const Pin& pin : session.pins()) {
-    if (pin.is_visible) add(pin.curve, pin_style(pin.colour), pin_name(pin, session.curve()));
+    if (pin.is_visible) add(pin.curve, pin_style(pin.colour), pin_name(pin, session));
   }
   // Last, so that it lies over the others.
-  add(session.curve(), current_style(), curve_name(session.curve()));
+  add(session.curve(), current_style(), curve_name(session));
   return curves;
 }
 
@@ -197,7 +197,7 @@ class Legend {
 
 void draw_legend(const std::vector<Shown>& curves, Session& session) {
   Legend legend;
-  const auto colour_of = [](const Curve& curve) { return curve.is_stale() ? kDimColour : kTextColour; };
+  const auto colour_of = [&](const Curve& curve) { return session.is_outdated(curve) ? kDimColour : kTextColour; };
   legend.add("curve", curves.back().style, curves.back().name, colour_of(session.curve()));
   if (session.overlay() &&
       legend.add("overlay", overlay_style(), session.overlay_name(), colour_of(*session.overlay()))) {
@@ -207,7 +207,7 @@ void draw_legend(const std::vector<Shown>& curves, Session& session) {
   }
   for (std::size_t i = 0; i < session.pins().size(); ++i) {
     const Pin& pin = session.pins()[i];
-    const std::string name = "pinned: " + pin_name(pin, session.curve());
+    const std::string name = "pinned: " + pin_name(pin, session);
     const ImU32 colour = pin.is_visible ? colour_of(pin.curve) : kDimColour;
     ImGui::PushID(static_cast<int>(i));
     if (legend.add("pin", pin.is_visible ? pin_style(pin.colour) : stale(pin_style(pin.colour)), name, colour))

@@ -18,9 +18,12 @@ PlotAxis axis_of(const MapAxis& axis) { return {axis_label(axis.axis), axis.scal
 
 std::string title_of(const Session& session) {
   const HeatMap& map = session.map();
-  const std::string state = map.is_finished() ? "" : fmt::format(", refining {:.0f} %", 100.0 * map.progress());
+  const bool is_outdated = map.is_stale() && !session.is_dragged();
+  const std::string state = map.is_finished()      ? ""
+                            : session.is_dragged() ? ", coarse"
+                                                   : fmt::format(", refining {:.0f} %", 100.0 * map.progress());
   return fmt::format("{}; {} × {}{}{}", described(session.view().quantity).label(), map.finished_count(),
-                     map.finished_count(), stale_text(map.is_stale()), state);
+                     map.finished_count(), stale_text(is_outdated), state);
 }
 
 void draw_map_cursor(const Session& session, const Plot& plot) {
@@ -148,7 +151,7 @@ void MapView::draw(Session& session, ImVec2 size) {
   plot.clip();
   draw_cells(plot);
   draw_lines(plot, quantity.scale());
-  if (session.map().is_stale()) plot.list()->AddRectFilled(plot.min(), plot.max(), kStaleVeil);
+  if (session.map().is_stale() && !session.is_dragged()) plot.list()->AddRectFilled(plot.min(), plot.max(), kStaleVeil);
   draw_map_cursor(session, plot);
   plot.unclip();
   draw_bar(plot, quantity);

@@ -53,7 +53,8 @@ void draw_task(const char* name, BackgroundTask& task) {
 
 }  // namespace
 
-Ui::Ui(Session& session, Actions& actions, const std::string& name) : session_(session), actions_(actions) {
+Ui::Ui(Session& session, Actions& actions, const std::string& name, std::function<void()> catch_up)
+    : session_(session), actions_(actions), catch_up_(std::move(catch_up)) {
   add_file_commands(name);
   add_view_commands();
 }
@@ -311,8 +312,35 @@ void Ui::draw_plots(ImVec2 size) {
   ImGui::EndChild();
   ImGui::SameLine();
   ImGui::BeginChild("maps", {size.x - curve_width - gap, size.y}, false, kStill);
-  map_view_.draw(session_, ImGui::GetContentRegionAvail());
+  draw_panels(ImGui::GetContentRegionAvail());
   ImGui::EndChild();
+}
+
+void Ui::draw_panels(ImVec2 size) {
+  View view = session_.view();
+  for (const PanelDescription& of : kPanels) {
+    if (of.panel != Panel::kMap) ImGui::SameLine();
+    const bool is_shown = of.panel == view.panel;
+    const ImGuiCol colour = is_shown ? ImGuiCol_TabActive : ImGuiCol_Tab;
+    ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(colour));
+    if (ImGui::SmallButton(of.name)) view.panel = of.panel;
+    ImGui::PopStyleColor();
+    areas_[fmt::format("panel {}", of.name)] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+  }
+  size.y = ImGui::GetContentRegionAvail().y;
+  const Panel shown_now = session_.view().panel;
+  if (shown_now == Panel::kMap) map_view_.draw(session_, size);
+  if (shown_now == Panel::kSlopes) draw_slopes(session_, size);
+  if (shown_now == Panel::kMaterial) draw_material(session_, size);
+  if (shown_now == Panel::kScattering) scattering_view_.draw(session_, size);
+  if (shown_now == Panel::kShapes) shape_view_.draw(session_, size);
+  if (shown_now == Panel::kSky) draw_sky(session_, size);
+  if (view.panel != shown_now) session_.set_view(view);
+}
+
+Area Ui::area(const std::string& name) const {
+  const auto tab = areas_.find(name);
+  return tab == areas_.end() ? controls_.areas().at(name) : tab->second;
 }
 
 void Ui::copy_command() {
@@ -322,7 +350,7 @@ void Ui::copy_command() {
 }
 
 void Ui::draw() {
-  if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) session_.end_gesture();
+  session_.hold(ImGui::IsMouseDown(ImGuiMouseButton_Left));
   run_shortcuts();
   draw_menus();
   const ImGuiViewport* viewport = ImGui::GetMainViewport();
@@ -336,6 +364,7 @@ void Ui::draw() {
   controls_.draw(session_);
   draw_pins();
   ImGui::EndChild();
+  catch_up_();
   ImGui::SameLine();
   ImGui::BeginChild("right", {0.0F, all.y});
   draw_view_controls();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -13,13 +14,15 @@ namespace dolp::explore {
 
 class Ui {
  public:
-  /// `name` begins the file names that dialogs suggest. Both must outlive this.
-  Ui(Session& session, Actions& actions, const std::string& name);
+  /// `name` begins the file names that dialogs suggest; `catch_up` is called between controls and plots, so that these
+  /// show what the controls have changed. Session and actions must outlive this.
+  Ui(Session& session, Actions& actions, const std::string& name, std::function<void()> catch_up);
 
   /// Draws everything, between ImGui's NewFrame and Render.
   void draw();
 
-  const ControlsPanel& controls() const { return controls_; }
+  /// The last drawn area of a control, or of the tab "panel NAME". Errors: std::out_of_range when it was not drawn.
+  Area area(const std::string& name) const;
   const CurveView& curves() const { return curve_view_; }
 
  private:
@@ -57,14 +60,19 @@ class Ui {
   void draw_pins();
   void draw_readout();
   void draw_plots(ImVec2 size);
+  void draw_panels(ImVec2 size);
   void draw_price();
 
   Session& session_;
   Actions& actions_;
+  std::function<void()> catch_up_;
   std::vector<Command> commands_;
   ControlsPanel controls_;
   NumberFields fields_;
   MapView map_view_;
+  ScatteringView scattering_view_;
+  ShapeView shape_view_;
+  std::map<std::string, Area> areas_;
   CurveView curve_view_;
   PathDialog dialog_;
   bool shows_help_ = false;

@@ -30,6 +30,39 @@ class CurveView {
 /// Fills the current ImGui window with the plan's treatment of each effect, its influence and the reason.
 void draw_effects(const Session& session);
 
+/// Fills `size` of the current ImGui window with the slope distribution and the other one with the same D(0).
+void draw_slopes(const Session& session, ImVec2 size);
+
+/// Likewise with n and k of the material over wavelength, the scene's spectrum marked.
+void draw_material(const Session& session, ImVec2 size);
+
+/// Likewise with one element of the Mueller pBRDF in the plane of incidence, as a polar plot for the cursor's zenith.
+class ScatteringView {
+ public:
+  void draw(Session& session, ImVec2 size);
+
+ private:
+  void update(const Session& session);
+
+  Evaluator evaluator_{EvaluatorOptions{.evaluator = "cpu"}};
+  std::string key_;
+  ScatteringCut cut_;
+  std::string reason_;  ///< why there is none
+};
+
+/// A sphere and a tilted plate as a camera sees them under the scene's radiation: DOLP and angle of polarisation.
+class ShapeView {
+ public:
+  /// A drag tilts the plate, and moves the cursor to its zenith.
+  void draw(Session& session, ImVec2 size);
+
+ private:
+  double azimuth_deg_ = 30.0;  ///< to which the plate is tilted, from the image's horizontal
+};
+
+/// DOLP of a bistatic scene over the direction of the source, as a polar map.
+void draw_sky(const Session& session, ImVec2 size);
+
 class MapView {
  public:
   /// Fills `size` of the current ImGui window with map, contour lines, colour bar and cursor; a click or drag moves the

@@ -1,0 +1,157 @@
+#include "explore/panels.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "explore/curve.hpp"
+#include "explore/parameters.hpp"
+#include "explore/points.hpp"
+
+namespace dolp::explore {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kBackwards_deg = 180.0;  // the azimuth of directions on the side of the incidence
+
+/// The wavelengths at which n and k are shown.
+std::pair<double, double> known_um(const Scene& scene) {
+  const auto own = spectrum_um(scene);
+  const std::optional<std::string> name = scene.word("surface.material");
+  if (name) {
+    for (const BuiltInMaterial& known : materials()) {
+      if (known.name == *name) return {known.from_um, known.to_um};
+    }
+  }
+  return own.first < own.second ? own : std::pair{0.8 * own.first, 1.25 * own.second};
+}
+
+}  // namespace
+
+Panel panel_of(const std::string& name) {
+  std::string known;
+  for (const PanelDescription& of : kPanels) {
+    if (name == of.name) return of.panel;
+    known += (known.empty() ? "" : ", ") + std::string(of.name);
+  }
+  throw InputError("view " + name + ": is not one of " + known);
+}
+
+std::vector<Setting> other_distribution(const Scene& scene) {
+  const double sigma = scene.number("surface.sigma").value();
+  const double ratio = std::sqrt(scene.number("surface.q").value() - 1.0);
+  const bool is_cauchy = scene.word("surface.distribution") == "cauchy";
+  return {{"surface.distribution", is_cauchy ? "gaussian" : "cauchy"},
+          {"surface.sigma", is_cauchy ? sigma / ratio : sigma * ratio}};
+}
+
+double slope_density(const Scene& scene, double alpha_deg) {
+  const double sigma = scene.number("surface.sigma").value();
+  const double m2 = 2.0 * sigma * sigma;
+  const double cosine = std::cos(alpha_deg * kDegree);
+  const double slope2 = std::pow(std::tan(alpha_deg * kDegree), 2) / m2;
+  const double scale = std::numbers::pi * m2 * std::pow(cosine, 4);
+  if (scene.word("surface.distribution") == "gaussian") return std::exp(-slope2) / scale;
+  const double q = scene.number("surface.q").value();
+  return (q - 1.0) * std::pow(1.0 + slope2, -q) / scale;
+}
+
+std::pair<double, double> spectrum_um(const Scene& scene) {
+  const std::vector<double> band = scene.numbers("spectrum.band_um");
+  if (!band.empty()) return {band[0], band[1]};
+  const double wavelength_um = scene.number("spectrum.wavelength_um").value();
+  return {wavelength_um, wavelength_um};
+}
+
+MaterialCurve material_curve(const Scene& scene, std::size_t count) {
+  const auto [from_um, to_um] = known_um(scene);
+  MaterialCurve curve;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double part = static_cast<double>(i) / static_cast<double>(count - 1);
+    const double at_um = std::clamp(from_um * std::pow(to_um / from_um, part), from_um, to_um);
+    try {
+      const auto [n, k] = scene.refractive_index(at_um);
+      curve.wavelength_um.push_back(at_um);
+      curve.n.push_back(n);
+      curve.k.push_back(k);
+    } catch (const InputError&) {
+      // A file of one's own ends within the range.
+    }
+  }
+  return curve;
+}
+
+ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double theta_i_deg, std::size_t count) {
+  ScatteringCut cut;
+  const auto [from_um, to_um] = spectrum_um(scene);
+  cut.wavelength_um = 0.5 * (from_um + to_um);
+  cut.theta_r_deg = zeniths(-90.0, 90.0, count);
+  std::vector<double> zenith_deg, azimuth_deg;
+  for (const double theta_r_deg : cut.theta_r_deg) {
+    zenith_deg.push_back(std::abs(theta_r_deg));
+    azimuth_deg.push_back(theta_r_deg < 0.0 ? 0.0 : kBackwards_deg);
+  }
+  const auto [n, k] = scene.refractive_index(cut.wavelength_um);
+  const std::array theta_i = {theta_i_deg}, n_of_all = {n}, k_of_all = {k};
+  cut.matrices = evaluator.mueller(scene, {{"theta_i_deg", theta_i},
+                                           {"theta_r_deg", zenith_deg},
+                                           {"delta_phi_deg", azimuth_deg},
+                                           {"n", n_of_all},
+                                           {"k", k_of_all}});
+  return cut;
+}
+
+std::optional<Seen> seen_at(const std::vector<Point>& curve, double theta_deg, double azimuth_deg) {
+  const auto above = std::ranges::lower_bound(curve, theta_deg, {}, &Point::theta_deg);
+  if (above == curve.end()) return std::nullopt;
+  const auto below = above == curve.begin() ? above : std::prev(above);
+  if (!above->is_good() || !below->is_good()) return std::nullopt;
+  const double width = above->theta_deg - below->theta_deg;
+  const double part = width > 0.0 ? (theta_deg - below->theta_deg) / width : 0.0;
+  const double q_over_i = (1.0 - part) * below->q_over_i() + part * above->q_over_i();
+  const double angle_deg = std::fmod(azimuth_deg + (q_over_i > 0.0 ? 90.0 : 0.0) + 360.0, 180.0);
+  return Seen{std::abs(q_over_i), angle_deg};
+}
+
+void Sky::follow(const std::string& key, const Scene& scene) {
+  key_ = key;
+  scene_ = scene;
+}
+
+std::string Sky::key_of(std::size_t azimuth) const { return fmt::format("sky {} {}", azimuth, key_); }
+
+std::vector<Job> Sky::wanted() const {
+  std::vector<Job> jobs;
+  if (!scene_ || !is_bistatic(*scene_)) return jobs;
+  for (std::size_t i = 0; i < kAzimuths; ++i) {
+    if (known_[i] == key_of(i)) continue;
+    const Scene scene = scene_->with("geometry.relative_azimuth_deg", azimuth_deg(i));
+    jobs.push_back({.key = key_of(i),
+                    .scene = scene,
+                    .parts = {points_at(scene, zeniths(0.0, 90.0, kZeniths))},
+                    .tolerance = Curve::kCoarseTolerance});
+  }
+  return jobs;
+}
+
+bool Sky::take(const JobPart& news) {
+  for (std::size_t i = 0; i < kAzimuths; ++i) {
+    if (news.key != key_of(i)) continue;
+    rings_[i] = news.points;
+    known_[i] = news.key;
+    return true;
+  }
+  return false;
+}
+
+bool Sky::is_finished() const {
+  for (std::size_t i = 0; i < kAzimuths; ++i) {
+    if (known_[i] != key_of(i)) return false;
+  }
+  return true;
+}
+
+}  // namespace dolp::explore

@@ -1,0 +1,140 @@
+// The window on a virtual display, and hands for its mouse and keyboard.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli_support.hpp"
+#include "explore/window/app.hpp"
+#include "virtual_display.hpp"
+
+namespace dolp::explore_test {
+
+using explore::App;
+using explore::Area;
+
+// A slider jumps to the mouse: where on it the mouse is put.
+inline constexpr float kPartOfSlider = 0.7F;
+// Frames in which ImGui has taken all of an event in.
+inline constexpr int kFrames = 4;
+
+// The handle's own width takes part of a slider's length.
+inline constexpr double kGrab = 0.2;
+
+// Cheap, because each test waits for its whole map.
+inline const std::string kEdited = R"(title = "Painted"
+[surface]
+n = 1.5
+k = 0.1
+sigma = 0.15
+q = 3.0
+masking = "v-cavity"
+specular = 0.97
+diffuse = 0.03
+[emission]
+temperature_K = 290.0
+[surroundings]
+temperature_K = 240.0
+[spectrum]
+band_um = [8.0, 14.0]
+[grid]
+theta_deg = [0, 30, 60]
+[accuracy]
+tolerance = 1e-2
+)";
+
+class Window : public CommandLine {
+ protected:
+  void SetUp() override {
+    CommandLine::SetUp();
+    put("scene.toml", kEdited);
+    explore::AppOptions options;
+    options.file_name = at("made").string();
+    options.command_line = "dolp explore";
+    const auto scene = Scene::from_file(at("scene.toml"));
+    app_ = std::make_unique<App>(explore::SceneEdits(scene), options);
+    app_->settle();
+    frames();
+    std::string found = xdotool({"search", "--name", "dolp explore"});
+    window_ = found.substr(0, found.find('\n'));
+    focus();
+  }
+  void TearDown() override { app_.reset(); }
+
+  void frames(int count = kFrames) {
+    for (int i = 0; i < count; ++i) app_->frame();
+  }
+  void focus() {
+    xdotool({"windowfocus", "--sync", window_});
+    frames();
+  }
+  void move_to(ImVec2 at) {
+    xdotool({"mousemove", "--window", window_, std::to_string(std::lround(at.x)), std::to_string(std::lround(at.y))});
+    frames();
+  }
+  void press(const std::string& what) {
+    xdotool({what, "1"});
+    frames();
+  }
+  void click(ImVec2 at) {
+    move_to(at);
+    press("mousedown");
+    press("mouseup");
+  }
+  void click_control(const std::string& control) { click(app_->control_area(control).at(0.5F, 0.5F)); }
+  void drag_slider(const std::string& key, float to) {
+    const Area area = app_->control_area(key);
+    move_to(area.at(0.3F, 0.5F));
+    press("mousedown");
+    for (int i = 1; i <= 10; ++i) {
+      const float part = 0.3F + 0.1F * static_cast<float>(i) * (to - 0.3F);
+      move_to(area.at(part, 0.5F));
+    }
+    press("mouseup");
+    app_->settle();
+  }
+  void keys(const std::string& combination) {
+    xdotool({"windowfocus", "--sync", window_});
+    xdotool({"keydown", combination});
+    frames();
+    xdotool({"keyup", combination});
+    frames();
+  }
+  /// True where a field has the ground of one whose text is refused.
+  bool is_marked(const std::string& field) {
+    frames();
+    const Area area = app_->control_area(field);
+    const auto left = static_cast<std::size_t>(area.max.x) - 12;
+    const std::string pixel = display_.pixels(left, static_cast<std::size_t>(area.min.y) + 6, 1, 1);
+    const auto channel = [&](std::size_t byte) { return static_cast<int>(static_cast<unsigned char>(pixel.at(byte))); };
+    return channel(2) > 2 * channel(0);  // red against blue
+  }
+  static std::string root_window() {
+    const std::string tree = run({.arguments = {"xwininfo", "-root"}, .folder = "/"}).out;
+    const std::size_t number = tree.find("0x");
+    return tree.substr(number, tree.find(' ', number) - number);
+  }
+  /// The values of `dolp eval` at the zeniths of the curve, with the changes of the window.
+  Columns evaluated() const {
+    std::string points = "theta_deg\n";
+    for (const explore::Point& point : app_->session().curve().points()) {
+      points += std::to_string(point.theta_deg) + '\n';
+    }
+    put("points.csv", points);
+    std::vector<std::string> options;
+    for (const Setting& change : app_->session().edits().changes()) {
+      options.insert(options.end(), {"--set", change.text()});
+    }
+    return eval(options);
+  }
+
+  VirtualDisplay display_;
+  std::unique_ptr<App> app_;
+  std::string window_;
+};
+
+}  // namespace dolp::explore_test

@@ -120,7 +120,7 @@ TEST_F(BenchEffects, Json_EveryEffect_HasTimesAndRatio) {
   EXPECT_EQ(effects,
             (std::set<std::string>{"specular", "diffuse", "distribution", "masking", "complex index", "axes of index",
                                    "scattering", "direct emission", "bracket", "emission", "source", "surroundings",
-                                   "path", "band", "sun at 10.6 um", "emission at 0.55 um"}));
+                                   "path", "band", "sun at 10.6 um", "emission at 0.55 um", "profile"}));
 }
 
 TEST_F(BenchEffects, Json_RadiationBesideAStrongerOne_IsLeftOut) {

@@ -81,7 +81,8 @@ CLI::App* add_fit(CLI::App& app, StudyOptions& options) {
 }
 
 CLI::App* add_window(CLI::App& app, StudyOptions& options) {
-  CLI::App* study = app.add_subcommand("window", "curves and frames a second while a slider is dragged (Xvfb, xdotool)");
+  CLI::App* study =
+      app.add_subcommand("window", "curves and frames a second while a slider is dragged (Xvfb, xdotool)");
   add_common(*study, options);
   study->add_option("--case", options.cases, "only this drag (repeatable)")->allow_extra_args(false);
   return study;

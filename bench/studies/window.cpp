@@ -80,8 +80,8 @@ class Display {
     const std::string screen = fmt::format("{}x{}x24", kWidth, kHeight);
     process_ = ::fork();
     if (process_ == 0) {
-      ::execlp("Xvfb", "Xvfb", "-displayfd", end.c_str(), "-screen", "0", screen.c_str(), "-noreset", "-nolisten", "tcp",
-               nullptr);
+      ::execlp("Xvfb", "Xvfb", "-displayfd", end.c_str(), "-screen", "0", screen.c_str(), "-noreset", "-nolisten",
+               "tcp", nullptr);
       ::_exit(127);
     }
     ::close(ends[1]);
@@ -104,7 +104,8 @@ class Display {
 
 void xdotool(const std::string& commands) {
   const std::string find = "xdotool search --sync --name 'dolp explore' ";
-  if (run_child({"sh", "-c", find + commands + " > /dev/null"}, ChildErrors::kShown).status != 0) throw IoError("xdotool fails");
+  if (run_child({"sh", "-c", find + commands + " > /dev/null"}, ChildErrors::kShown).status != 0)
+    throw IoError("xdotool fails");
 }
 
 /// A drag there and back, one move after the other, with the button down from the first to the last.

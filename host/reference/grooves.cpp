@@ -56,7 +56,16 @@ constexpr int kLookAzimuths = 16;
 constexpr double kLookSteepest = 50.0;
 
 // Components of the integrals. Lost light, which may or may not leave the groove, counts as reflected.
-enum Component : std::size_t { kAlbedo, kReflected, kPolarised, kAbsorbed, kLost, kSkyReflected, kSkyPolarised, kCount };
+enum Component : std::size_t {
+  kAlbedo,
+  kReflected,
+  kPolarised,
+  kAbsorbed,
+  kLost,
+  kSkyReflected,
+  kSkyPolarised,
+  kCount
+};
 using GrooveValues = Values<kCount>;
 
 Groove<double> groove_of(double t) {
@@ -123,13 +132,13 @@ std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first
 GrooveValues scales_of(const GrooveValues& value) {
   const double floor = kNegligible * value[kAlbedo] + std::numeric_limits<double>::min();
   const double reflected = std::max(floor, value[kReflected]);
-  return {std::max(floor, value[kAlbedo]), reflected, reflected, std::max(floor, value[kAbsorbed]),
+  return {std::max(floor, value[kAlbedo]),         reflected, reflected, std::max(floor, value[kAbsorbed]),
           std::numeric_limits<double>::infinity(), reflected, reflected};
 }
 
 GrooveValues values_of(const GrooveLight& light) {
-  return {light.albedo, light.reflected + light.lost, light.polarised, light.absorbed, light.lost, light.sky_reflected,
-          light.sky_polarised};
+  return {light.albedo, light.reflected + light.lost, light.polarised,    light.absorbed,
+          light.lost,   light.sky_reflected,          light.sky_polarised};
 }
 
 // The grooves of one surface, seen from one direction.
@@ -280,7 +289,8 @@ GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zeni
 
 Moments groove_moments(const Slopes& slopes, double theta_deg, const OpticalConstants& constants,
                        const Refinement& refinement, const SkyFunction* sky) {
-  if (zenith_from_deg(theta_deg).cos == 0.0) return {.direct_i = 0.0, .direct_q = 0.0, .sky = std::vector<SkyMoments>(sky ? 1 : 0)};
+  if (zenith_from_deg(theta_deg).cos == 0.0)
+    return {.direct_i = 0.0, .direct_q = 0.0, .sky = std::vector<SkyMoments>(sky ? 1 : 0)};
   double evaluations = 0.0;
   for (Refinement attempted = refinement;; attempted.relative_tolerance *= kLessAmbitious) {
     const bool is_last = attempted.relative_tolerance >= kLeastAmbition;

@@ -59,8 +59,8 @@ MomentValues moment_scales(const MomentValues& value) {
   return {std::max(floor, value[kAlbedo]), reflected, reflected, absorbed};
 }
 
-// The moments, and with a function of the sky, followed by the errors of their azimuth integrals, which are only carried
-// along.
+// The moments, and with a function of the sky, followed by the errors of their azimuth integrals, which are only
+// carried along.
 constexpr std::size_t kSkyReflected = kMomentCount;
 constexpr std::size_t kSkyPolarised = kMomentCount + 1;
 constexpr std::size_t kZenithCount = kMomentCount + 2;
@@ -331,8 +331,7 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   const double masking_error = 2.0 * masking_tolerance_for(refinement);
   const double cos_theta = zenith_from_deg(theta_deg).cos;
   const auto error_of = [&](std::size_t k) {
-    const double magnitude =
-        k == kAlbedo || k == kAbsorbed ? integral.value[k] : integral.value[kReflected];
+    const double magnitude = k == kAlbedo || k == kAbsorbed ? integral.value[k] : integral.value[kReflected];
     return integral.error[k] + integral.value[kZenithCount + k] +
            (masking_error + kRounding + kElevationRounding) * magnitude;
   };

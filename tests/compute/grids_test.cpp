@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint64_t kSeed = 20261123;
 constexpr std::size_t kChecked = 30;  // entries of each grid
 
-/// What the entries of a grid share.
+/// The variables that the entries of a grid share.
 enum class Sharing { kSlopes, kRows, kShapes, kIndices };
 constexpr std::array kSharings = {Sharing::kSlopes, Sharing::kRows, Sharing::kShapes, Sharing::kIndices};
 

@@ -183,7 +183,7 @@ TEST(Sky, RandomScenes_AgreeWithTheReferenceWithinTheirBounds) {
   EXPECT_LT(missed, kMostMissed * scenes);
 }
 
-// What becomes of a request on its way: grids between nodes, many indices from a few, a band, bistatic beams, devices.
+// Requests on their way: grids between nodes, many indices from a few, a band, bistatic beams, devices.
 TEST(Sky, DenseGridsAndBands_OnTheDevice_AgreeWithTheReferenceWithinTheirBounds) {
   struct Case {
     const char* name;

@@ -7,7 +7,7 @@ struct KeptEffects {
   bool emission = true;
   bool source = true;
   bool surroundings = true;
-  bool profile = true;  ///< of the surroundings, over their mean
+  bool profile = true;        ///< of the surroundings, over their mean
   bool path_radiance = true;  ///< the transmittance, which cancels in DOLP, always stays
   bool diffuse = true;
   bool further_bounces = true;  ///< in grooves, after the first

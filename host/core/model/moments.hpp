@@ -84,7 +84,7 @@ struct Moments {
   double deficit_error = 0.0;
   double direct_i_error = 0.0;
   double direct_q_error = 0.0;
-  double evaluations = 0.0;  ///< integrand evaluations spent on this entry
+  double evaluations = 0.0;          ///< integrand evaluations spent on this entry
   std::vector<SkyMoments> sky = {};  ///< with each function of MomentsRequest::sky
 };
 

@@ -107,8 +107,8 @@ Stokes grazing_stokes(const SceneValues& scene, const SpectralRule& rule, std::s
 }
 
 bool is_isothermal(const SpectralRule& rule) {
-  return std::ranges::all_of(
-      rule.samples, [](const SpectralSample& sample) { return sample.excess == 0.0 && sample.sky.empty(); });
+  return std::ranges::all_of(rule.samples,
+                             [](const SpectralSample& sample) { return sample.excess == 0.0 && sample.sky.empty(); });
 }
 
 /// Result at 90 degrees where rho diverges.

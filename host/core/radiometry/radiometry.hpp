@@ -27,8 +27,8 @@ namespace dolp {
 class Radiometry {
  public:
   /// Disabled terms contribute nothing; without the moments the specular part of rho counts as 0, `point` ignores the
-  /// numbers in its Moments, and quantities that need them are NaN. `dropped` widens the error estimates. `sky`: the basis
-  /// of the moments with a sky; null: that of the scene alone.
+  /// numbers in its Moments, and quantities that need them are NaN. `dropped` widens the error estimates. `sky`: the
+  /// basis of the moments with a sky; null: that of the scene alone.
   explicit Radiometry(const SceneValues& scene, const KeptEffects& kept = {}, double dropped = 0.0,
                       const std::shared_ptr<const SkyBasis>& sky = nullptr);
 

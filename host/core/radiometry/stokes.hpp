@@ -51,8 +51,7 @@ void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std:
              std::span<const Moments> moments, double cos_theta);
 
 /// Adds the specular part of the same, with cos(theta) in r.
-void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWeights& weights,
-                      const Moments& moments);
+void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWeights& weights, const Moments& moments);
 
 /// Adds pi E0 cos(theta_i) f of the beam from the source, the factor pi as in the exitances of the sum.
 void add_beam(Stokes& sum, const Surface& surface, double k_s, const SpectralRule& rule,

@@ -72,7 +72,7 @@ struct Source {
 };
 
 struct Surroundings {
-  double temperature_K = 0.0;                         ///< where there is no profile
+  double temperature_K = 0.0;                           ///< where there is no profile
   std::shared_ptr<const SkyProfile> profile = nullptr;  ///< not the same everywhere
 };
 

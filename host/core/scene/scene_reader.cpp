@@ -290,11 +290,12 @@ void check_scattering(const SceneValues& scene, const SceneDocument& document) {
   const bool can_be_direct = has_direct_emission(surface.masking);
   const char* const maskings = "surface.masking = \"smith\" or \"v-cavity\"";
   if (emission.has_bracket) {
-    check_needs(document, "emission.bracket",
-                {{can_be_direct, maskings},
-                 {emission.model != EmissionModel::kFresnel, "emission.model = \"moments\" or \"direct\""},
-                 {scene.geometry.mode == Mode::kHemispherical, "geometry.mode = \"hemispherical\""},
-                 {!scene.surroundings || !scene.surroundings->profile, "surroundings.temperature_K instead of a profile"}});
+    check_needs(
+        document, "emission.bracket",
+        {{can_be_direct, maskings},
+         {emission.model != EmissionModel::kFresnel, "emission.model = \"moments\" or \"direct\""},
+         {scene.geometry.mode == Mode::kHemispherical, "geometry.mode = \"hemispherical\""},
+         {!scene.surroundings || !scene.surroundings->profile, "surroundings.temperature_K instead of a profile"}});
   }
   if (is_direct) check_needs(document, "emission.model", {{can_be_direct, maskings}});
 }

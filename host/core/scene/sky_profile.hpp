@@ -57,9 +57,8 @@ const std::vector<BuiltInSky>& built_in_skies();
 /// A built-in profile; none of that name: nullopt.
 std::optional<SkyProfile> built_in_sky(std::string_view name);
 
-/// Reads a CSV file: columns zenith_deg, temperature_K or radiance, and maybe wavelength_um; rows by wavelength, then by
-/// zenith from 0 to 90.
-/// Errors: InputError with file, line, column, value and what is allowed.
+/// Reads a CSV file: columns zenith_deg, temperature_K or radiance, and maybe wavelength_um; rows by wavelength, then
+/// by zenith from 0 to 90. Errors: InputError with file, line, column, value and what is allowed.
 SkyProfile parse_sky_profile(std::string_view text, const std::string& name);
 SkyProfile read_sky_profile(const std::string& path, const std::string& prefix);
 

@@ -9,7 +9,8 @@
 namespace dolp {
 namespace {
 
-// Of the scene's tolerance, for the functions that a basis leaves out. Chosen: a function more costs a sixth of a kernel.
+// Of the scene's tolerance, for the functions that a basis leaves out. Chosen: a function more costs a sixth of a
+// kernel.
 constexpr double kBasisShare = 0.02;
 
 Eigen::VectorXd vector_of(const std::vector<double>& values) {
@@ -33,8 +34,7 @@ Eigen::VectorXd SkySampler::at(double wavelength_um) const {
   const std::vector<double>& zenith_deg = nodes_.zenith_deg();
   Eigen::VectorXd exitances(static_cast<Eigen::Index>(zenith_deg.size()));
   for (std::size_t i = 0; i < zenith_deg.size(); ++i) {
-    exitances[static_cast<Eigen::Index>(i)] =
-        std::numbers::pi * sky_radiance(profile_, wavelength_um, zenith_deg[i]);
+    exitances[static_cast<Eigen::Index>(i)] = std::numbers::pi * sky_radiance(profile_, wavelength_um, zenith_deg[i]);
   }
   return exitances;
 }

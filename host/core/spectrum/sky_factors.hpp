@@ -32,7 +32,7 @@ class SkySampler {
 /// list is empty. Null where it adds nothing.
 std::shared_ptr<const SkyBasis> sky_basis(const SceneValues& scene, const std::vector<double>& wavelength_um);
 
-/// What the sky adds to its mean, of one sample.
+/// The part of a sample that the sky adds to its mean.
 struct SkyFactor {
   SkyWeights weights;    ///< of the moments with the functions of a basis
   double diffuse = 0.0;  ///< added to `surroundings` for the diffuse part of rho

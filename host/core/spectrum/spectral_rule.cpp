@@ -20,8 +20,8 @@ namespace {
 
 using FineRule = boost::math::quadrature::gauss<double, 16>;
 
-// All are chosen. With half and double of each but kPieceWavelengthRatio, which is above 1, evaluations and bounds of the
-// tables of night_paint, bare_aluminium and water stay the same.
+// All are chosen. With half and double of each but kPieceWavelengthRatio, which is above 1, evaluations and bounds of
+// the tables of night_paint, bare_aluminium and water stay the same.
 
 // A piece of the band on which 16 Gauss nodes integrate Planck's function to rounding: its exponent changes by no more
 // than this, the wavelength by no more than that factor.
@@ -112,7 +112,8 @@ std::vector<double> temperatures(const SceneValues& scene) {
   if (scene.emission) result.push_back(scene.emission->temperature_K);
   const SkyProfile* profile = profile_of(scene);
   if (scene.surroundings && !profile) result.push_back(scene.surroundings->temperature_K);
-  if (profile && profile->kind == SkyProfile::Kind::kLayers) result.insert(result.end(), {profile->air_K, profile->beyond_K});
+  if (profile && profile->kind == SkyProfile::Kind::kLayers)
+    result.insert(result.end(), {profile->air_K, profile->beyond_K});
   if (profile && profile->kind == SkyProfile::Kind::kTemperature) {
     const auto [coldest, warmest] = std::ranges::minmax(profile->values);
     result.insert(result.end(), {coldest, warmest});
@@ -307,8 +308,8 @@ SpectralRule spectral_rule(const SceneValues& scene) {
   SpectralRule rule;
   rule.relative_error = kPieceRelativeError;
   const Material& material = scene.surface.material;
-  const std::vector<double> ends =
-      segment_ends(scene.spectrum.min_um, scene.spectrum.max_um, {&material.n.wavelength_um, &material.k.wavelength_um});
+  const std::vector<double> ends = segment_ends(scene.spectrum.min_um, scene.spectrum.max_um,
+                                                {&material.n.wavelength_um, &material.k.wavelength_um});
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_segment(scene, ends[i], ends[i + 1], rule);
   return rule;
 }

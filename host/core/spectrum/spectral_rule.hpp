@@ -16,12 +16,12 @@ namespace dolp {
 /// band integrals. Units: exitances and irradiances in W m-2 um-1 at a single wavelength, in W m-2 over a band.
 struct SpectralSample {
   OpticalConstants index;
-  double wavelength_um = 0.0;  ///< where the index was first met
-  double emitted = 0.0;        ///< pi B(T); 0 without [emission]
-  double surroundings = 0.0;   ///< pi B(T_surr), of a profile its mean; 0 without [surroundings]
-  double excess = 0.0;         ///< surroundings - emitted, exactly 0 where the temperatures are equal
-  double irradiance = 0.0;     ///< E0 at normal incidence; 0 without [source]
-  double width = 0.0;          ///< um; 1 at a single wavelength
+  double wavelength_um = 0.0;    ///< where the index was first met
+  double emitted = 0.0;          ///< pi B(T); 0 without [emission]
+  double surroundings = 0.0;     ///< pi B(T_surr), of a profile its mean; 0 without [surroundings]
+  double excess = 0.0;           ///< surroundings - emitted, exactly 0 where the temperatures are equal
+  double irradiance = 0.0;       ///< E0 at normal incidence; 0 without [source]
+  double width = 0.0;            ///< um; 1 at a single wavelength
   std::vector<double> sky = {};  ///< what a profile adds to its mean at its nodes (SkySampler); empty without one
 };
 

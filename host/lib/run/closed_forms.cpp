@@ -1,7 +1,7 @@
 #include "run/closed_forms.hpp"
 
-#include <boost/math/quadrature/tanh_sinh.hpp>
 #include <algorithm>
+#include <boost/math/quadrature/tanh_sinh.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>

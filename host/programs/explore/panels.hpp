@@ -69,8 +69,8 @@ struct Seen {
 
 /// That of a surface at `theta_deg` whose normal points to `azimuth_deg` of the image, between the points of a curve in
 /// hemispherical mode; none where the model fails.
-/// Conventions: s polarised (Q > 0) is normal to the plane of normal and view, which the image shows as a line along the
-/// azimuth; p lies in it.
+/// Conventions: s polarised (Q > 0) is normal to the plane of normal and view, which the image shows as a line along
+/// the azimuth; p lies in it.
 std::optional<Seen> seen_at(const std::vector<Point>& curve, double theta_deg, double azimuth_deg);
 
 /// DOLP of a bistatic scene with the source all around the sky: rings of zeniths at each azimuth.

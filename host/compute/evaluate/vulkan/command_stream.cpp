@@ -94,8 +94,8 @@ void CommandStream::barrier(Barrier barrier) {
 void CommandStream::dispatch(const Kernels& kernels, VkPipeline pipeline, std::uint32_t first, std::uint32_t count,
                              int largest_order, std::uint32_t sky) {
   if (count == 0) return;
-  const std::array<std::uint32_t, kPushConstantCount> constants{
-      first, count, static_cast<std::uint32_t>(largest_order), sky};
+  const std::array<std::uint32_t, kPushConstantCount> constants{first, count, static_cast<std::uint32_t>(largest_order),
+                                                                sky};
   const VkDescriptorSet set = kernels.descriptor_set();
   const std::uint32_t local_size = kernels.local_size();
   vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);

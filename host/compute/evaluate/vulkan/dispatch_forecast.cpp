@@ -29,7 +29,8 @@ DispatchForecast slope_forecast(const MomentsRequest& request, const vulkan::Pac
   const KernelData data = kernel_data(request);
   const SlopeSampling sampling(data);
   const std::size_t at_once = vulkan::batch_directions(data);
-  const std::uint32_t slopes = vulkan::slope_tile_size(tile_limits(device, options.max_tile_invocations, 1), packing, data);
+  const std::uint32_t slopes =
+      vulkan::slope_tile_size(tile_limits(device, options.max_tile_invocations, 1), packing, data);
   DispatchForecast forecast{.tile_invocations = slopes};
   for (std::size_t first = 0; first < data.directions; first += at_once) {
     const vulkan::SlopeBatch batch =
@@ -38,10 +39,10 @@ DispatchForecast slope_forecast(const MomentsRequest& request, const vulkan::Pac
     forecast.rows += batch.samples.size();
     forecast.slopes += batch.slopes.size();
   }
-  forecast.device_bytes =
-      slopes * (packing.node_bytes<kernel::SlopeNode>() + packing.output_bytes<kernel::AzimuthNode>(sky_azimuths(data)) +
-                packing.node_bytes<kernel::ThetaNode>() + packing.node_bytes<kernel::IndexNode>()) +
-      node_bytes(packing, data);
+  forecast.device_bytes = slopes * (packing.node_bytes<kernel::SlopeNode>() +
+                                    packing.output_bytes<kernel::AzimuthNode>(sky_azimuths(data)) +
+                                    packing.node_bytes<kernel::ThetaNode>() + packing.node_bytes<kernel::IndexNode>()) +
+                          node_bytes(packing, data);
   return forecast;
 }
 

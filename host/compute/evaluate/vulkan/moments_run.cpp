@@ -57,10 +57,10 @@ void MomentsRun::create_buffers() {
   masking_buffer_.emplace(device,
                           std::size_t{sizes_.shapes} * packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
                           MemoryUse::kDeviceOnly, packing.masking_texels());
-  moments_buffer_.emplace(device,
-                          std::size_t{sizes_.invocations} * rows_.width *
-                              packing.output_bytes<kernel::MomentsNode>(sky_sums(data_)),
-                          MemoryUse::kReadback);
+  moments_buffer_.emplace(
+      device,
+      std::size_t{sizes_.invocations} * rows_.width * packing.output_bytes<kernel::MomentsNode>(sky_sums(data_)),
+      MemoryUse::kReadback);
 
   Kernels::Bindings bindings;
   bindings.buffers[DOLP_BINDING_THETAS] = theta_buffer_->get();

@@ -151,8 +151,7 @@ std::optional<std::vector<Moments>> SlopeRun::compute(const Progress& progress) 
   return moments;
 }
 
-void SlopeRun::run_tile(const SlopeBatch& batch, std::span<const std::uint32_t> slopes,
-                        SampledAzimuths& azimuths) {
+void SlopeRun::run_tile(const SlopeBatch& batch, std::span<const std::uint32_t> slopes, SampledAzimuths& azimuths) {
   const Packing& packing = context_.packing;
   CommandStream& stream = context_.stream;
   thetas_.clear();

@@ -47,8 +47,7 @@ class SlopeRun {
   void upload(InputBuffer& buffer, std::size_t count, const NodeOf& node_of);
   /// Records the upload; the first tile continues the recording.
   void upload_rule();
-  void run_tile(const SlopeBatch& batch, std::span<const std::uint32_t> slopes,
-                SampledAzimuths& azimuths);
+  void run_tile(const SlopeBatch& batch, std::span<const std::uint32_t> slopes, SampledAzimuths& azimuths);
 
   KernelContext context_;
   const MomentsRequest& request_;

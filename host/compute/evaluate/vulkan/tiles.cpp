@@ -42,10 +42,11 @@ TileCosts scattering_tile_costs(const Packing& packing) {
 }
 
 std::uint32_t slope_tile_size(const TileLimits& limits, const Packing& packing, const KernelData& data) {
-  const TileCosts costs{
-      .invocation_bytes = packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::ThetaNode>() +
-                          packing.node_bytes<kernel::IndexNode>() + packing.output_bytes<kernel::AzimuthNode>(sky_azimuths(data)),
-      .shape_bytes = 1};
+  const TileCosts costs{.invocation_bytes = packing.node_bytes<kernel::SlopeNode>() +
+                                            packing.node_bytes<kernel::ThetaNode>() +
+                                            packing.node_bytes<kernel::IndexNode>() +
+                                            packing.output_bytes<kernel::AzimuthNode>(sky_azimuths(data)),
+                        .shape_bytes = 1};
   const std::uint32_t slopes = tile_sizes(limits, costs).invocations;
   return std::max(slopes - slopes % kLockstep, kLockstep);
 }

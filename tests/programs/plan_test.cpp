@@ -72,7 +72,7 @@ TEST_F(Plan, Memory_IsAboutThatOfTheTable) {
   const std::string peak =
       "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
       "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)";
-  constexpr double kAbout = 1.45;  // drivers differ, and the heap holds more where the machine is busy
+  constexpr double kAbout = 1.7;  // drivers differ, and parts overlap in memory as the machine is busy
   for (const char* count : {"200", "1200", "6000"}) {  // a part of a table, two, and six, from which on it stays
     const std::vector<std::string> grid = {"scene.toml",
                                            "--tolerance",

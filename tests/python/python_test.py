@@ -271,6 +271,41 @@ theta_deg = {from = 0, to = 80, count = 5}
         two = dolp.fit(scene, [(columns, {"emission.temperature_K": 300.0}), columns], vary)
         self.assertLess(two.values["parameters"][0]["standard_error"], found.values["parameters"][0]["standard_error"])
 
+    def test_a_fit_keeps_the_order_of_its_numbers_and_refuses_what_does_not_fit(self):
+        theta = np.arange(10, 81, 10.0)
+        data = {"theta_deg": theta, "q_over_i": dolp.evaluate(self.scene, theta_deg=theta, sigma=0.2, q=3).q_over_i.values,
+                "uncertainty": 1e-3}
+        vary = {"surface.sigma": (0.05, 0.5), "surface.n": (1.2, 2)}
+        found = dolp.fit(self.scene, data, vary, starts=4, evaluator="cpu")
+        self.assertEqual(list(found.params), list(vary))
+        self.assertAlmostEqual(found.params["surface.n"], 1.5, delta=1e-3)
+        for wrong, message in ((lambda: dolp.fit(self.scene, {**data, "q_over_i": [0.1]}, vary), "different lengths"),
+                               (lambda: dolp.fit(self.scene, data, vary, compare={"surface.masking": ["smith", "foo"]}),
+                                "surface.masking = foo: must be one of")):
+            with self.assertRaisesRegex(dolp.InputError, message):
+                wrong()
+
+    def test_a_sky_over_zenith(self):
+        sky = self.folder / "sky.csv"
+        sky.write_text("zenith_deg,temperature_K\n0,230\n40,240\n70,262\n90,288\n")
+        scene = self.scene.with_({"surroundings.profile": "sky.csv"})
+        self.assertEqual((scene["surroundings.profile"], scene["surroundings.temperature_K"]), ("sky.csv", None))
+        theta = np.linspace(0, 80, 41)
+        table = dolp.table(scene, theta_deg=theta, sigma=0.2, q=3)
+        between, exact = (look(theta_deg=33.3) for look in (lambda **at: dolp.lookup(table, **at),
+                                                            lambda **at: dolp.evaluate(scene, sigma=0.2, q=3, **at)))
+        bound = float(between.error_estimate) + float(exact.error_estimate)
+        self.assertLessEqual(abs(float(between.dolp) - float(exact.dolp)), bound)
+        reference = dolp.evaluate(scene, theta_deg=60, sigma=0.2, q=3, evaluator="reference")
+        own = dolp.evaluate(scene, theta_deg=60, sigma=0.2, q=3)
+        self.assertLessEqual(abs(float(reference.dolp) - float(own.dolp)), float(own.error_estimate))
+        data = {"theta_deg": theta[5:], "q_over_i": table.q_over_i.values.ravel()[5:], "uncertainty": 1e-3}
+        found = dolp.fit(scene, data, {"surface.n": (1.2, 2)}, starts=4)
+        self.assertAlmostEqual(found.params["surface.n"], 1.5, delta=1e-3)
+        self.run_program("table", "scene.toml", "-o", "t.nc", "--set", "surroundings.profile=sky.csv")
+        sky.write_text("zenith_deg,temperature_K\n0,100\n90,100\n")  # a table keeps the sky that it was made under
+        self.run_program("verify", "t.nc")
+
     def test_pictures_show_what_the_table_has(self):
         host = pathlib.Path(__file__).resolve().parents[2] / "host"
         sys.path[:0] = [str(host), str(host / "tools")]

@@ -99,6 +99,8 @@ TEST_F(CommandLine, PlotTable_OfFurtherAxes_DrawsTheNearestAndNamesThoseThatTher
   };
   const Outcome drawn = plot("--n", "1.55");
   EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_EQ(drawn.err, "t.nc: has no n = 1.55; the nearest, 1.6, is drawn\n");
+  EXPECT_EQ(plot("--n", "1.6").err, "");
   EXPECT_TRUE(content("t.png").starts_with("\x89PNG"));
   const Outcome refused = plot("--wavelength", "9");
   EXPECT_EQ(refused.status, 2);

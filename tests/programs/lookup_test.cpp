@@ -81,6 +81,24 @@ TEST_F(Lookup, AbsentColumns_ComeFromTheScene) {
   EXPECT_EQ(few.at("dolp"), looked_up().at("dolp"));
 }
 
+// Its text exceeds what an attribute may hold.
+TEST_F(Lookup, TableWithALongProfile_HasItsScene) {
+  std::ostringstream text;
+  text << "wavelength_um,zenith_deg,temperature_K\n";
+  for (int wavelength = 8; wavelength <= 12; ++wavelength) {
+    for (int i = 0; i < 1000; ++i) text << wavelength << ',' << i / 999.0 * 90.0 << ',' << 220 + wavelength << '\n';
+  }
+  const std::string rows = text.str();
+  put("sky.csv", rows);
+  make_table({"--set", "surroundings={profile=\"sky.csv\"}", "--evaluator", "cpu", "--set",
+              "grid={theta_deg=[0,30,60],sigma=[0.2]}"});
+  EXPECT_LT(std::filesystem::file_size(at("t.nc")), rows.size() + 100'000);
+  put("points.csv", "theta_deg\n30\n");
+  const Columns found = looked_up();
+  EXPECT_EQ(found.at("dolp"),
+            eval({"--set", "surroundings={profile=\"sky.csv\"}", "--set", "surface.sigma=0.2"}).at("dolp"));
+}
+
 TEST_F(Lookup, CoarseTable_SaysThatItMissesTheTolerance) {
   make_table({});
   put("points.csv", "theta_deg,sigma,q\n70,0.2,2.5\n");

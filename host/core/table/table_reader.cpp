@@ -191,7 +191,7 @@ std::vector<Attribute> read_attributes(const Reader& reader) {
 
 /// The texts that are variables because they are too long for attributes.
 void append_long_texts(const Reader& reader, std::vector<Attribute>& attributes) {
-  for (const char* name : {"title", "history", "scene", "scene_path", "scene_overrides"}) {
+  for (const char* name : {"title", "history", "scene", "scene_path", "scene_overrides", "surroundings_profile"}) {
     const Hdf5Handle variable = reader.find(name);
     if (!variable) continue;
     const Hdf5Handle type(H5Dget_type(variable.id()), H5Tclose);

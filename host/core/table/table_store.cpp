@@ -68,13 +68,14 @@ class Writer {
 
   /// A variable without values, which has its place in the file. Uncompressed: zlib saves half of the file and takes
   /// longer than all the rest of a table. In one piece: what points to pieces has no checksum.
-  Hdf5Handle define(const char* name, hid_t type, const std::vector<hsize_t>& shape, const void* fill) const {
+  Hdf5Handle define(const char* name, hid_t type, const std::vector<hsize_t>& shape, const void* fill,
+                    H5D_alloc_time_t allocation = H5D_ALLOC_TIME_EARLY) const {
     const Hdf5Handle creation = take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     check(H5Pset_attr_creation_order(creation.id(), kOrdered));
     check(H5Pset_obj_track_times(creation.id(), false));  // same scene, same bytes
     // Every variable is written whole; to fill it first would write it twice.
     check(H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER));
-    check(H5Pset_alloc_time(creation.id(), H5D_ALLOC_TIME_EARLY));
+    check(H5Pset_alloc_time(creation.id(), allocation));
     if (fill) check(H5Pset_fill_value(creation.id(), type, fill));
     const Hdf5Handle space = take(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
     return take(H5Dcreate2(file_.id(), name, type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose);
@@ -104,7 +105,8 @@ class Writer {
 /// A text as a variable over a dimension of its own.
 void put_long_text(const Writer& writer, const std::string& name, const std::string& text) {
   const std::vector<hsize_t> shape = {text.size()};
-  const Hdf5Handle length = writer.define((name + "_length").c_str(), H5T_IEEE_F32BE, shape, nullptr);
+  const Hdf5Handle length =  // never written, so that it takes no place in the file
+      writer.define((name + "_length").c_str(), H5T_IEEE_F32BE, shape, nullptr, H5D_ALLOC_TIME_LATE);
   // How the netCDF library marks a dimension without coordinates; the number is the length in ten digits.
   std::string digits = std::to_string(text.size());
   digits.insert(0, 10 - std::min<std::size_t>(digits.size(), 10), ' ');

@@ -210,8 +210,7 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
     const auto part = sky.subspan(DOLP_SKY_PARTS * k, DOLP_SKY_PARTS);
     const double of_value =
         data.sky.error[k] + kUnsplitBends * data.sky.bends[k] + sky_rounding(data, k, unit_roundoff) + least_of_masked;
-    const double of_pair = (data.sky.bends[k] > 0.0 ? kSkyCornerFactor : 1.0) * pair;
-    moments.sky.push_back({part[0], part[1], of_pair * part[2] + of_value * r_i_scale + reflected_cut + grooves});
+    moments.sky.push_back({part[0], part[1], pair * part[2] + of_value * r_i_scale + reflected_cut + grooves});
   }
   // r_i + deficit = cos(theta): the more accurate of the two gives the other. A groove never absorbs less than 0.
   const double cosine = theta.c;

@@ -1,24 +1,17 @@
-// Tables as files: what is written is what is read, and a file is whole or not there.
+// Tables as files: what is written is what is read.
 #include "table/table.hpp"
-#include "base/number_text.hpp"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <netcdf.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <csignal>
 #include <cstring>
 #include <dolp/errors.hpp>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <iterator>
 #include <limits>
@@ -27,13 +20,12 @@
 #include <string>
 #include <vector>
 
-#include "base/atomic_file.hpp"
+#include "base/number_text.hpp"
 #include "base/printable_text.hpp"
-#include "failing_new.hpp"
 #include "table/table_file.hpp"
 #include "table/table_output.hpp"
 #include "table/table_reader.hpp"
-#include "temporary_file.hpp"
+#include "table_support.hpp"
 
 namespace {
 
@@ -41,95 +33,6 @@ using namespace dolp;
 namespace fs = std::filesystem;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-class TableFiles : public testing::Test {
- protected:
-  fs::path at(const std::string& name) const { return folder_.path() / name; }
-  std::vector<std::string> names() const {
-    std::vector<std::string> result;
-    for (const auto& entry : fs::directory_iterator(folder_.path())) result.push_back(entry.path().filename().string());
-    std::ranges::sort(result);
-    return result;
-  }
-
- private:
-  TemporaryFolder folder_;
-};
-
-void put(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
-
-/// A table of numbers that have no short text, NaN and infinity among them.
-TableValues sample_table(std::size_t thetas, std::size_t sigmas, std::size_t qs) {
-  TableValues table;
-  for (std::size_t i = 0; i < thetas; ++i)
-    table.axes[Axis::kTheta].push_back(90.0 - static_cast<double>(i) / 3.0);  // descending
-  for (std::size_t i = 0; i < sigmas; ++i) table.axes[Axis::kSigma].push_back(0.05 * static_cast<double>(i + 1));
-  for (std::size_t i = 0; i < qs; ++i) table.axes[Axis::kQ].push_back(1.5 + static_cast<double>(i) / 7.0);
-  double seed = 0.0;
-  for (const Quantity quantity : kAllQuantities) {
-    std::vector<double>& values = table[quantity];
-    for (std::size_t i = 0; i < table.size(); ++i) values.push_back(std::sin(seed += 1.0) * 1e-3);
-    values.back() = kNan;
-  }
-  table[Quantity::kErrorEstimate].front() = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < table.size(); ++i) table.status.push_back(static_cast<std::uint32_t>(i % 16));
-  for (std::size_t i = 0; i < sigmas; ++i) table.wind_m_s.push_back(5.0 * static_cast<double>(i));
-  table.index_n = {{8.0, 10.0}, {1.5, 1.6}};
-  table.index_k = {{9.0}, {0.1}};
-  table.attributes = {
-      {"title", "Stainless steel, 10.6 µm"}, {"tolerance", 1e-4}, {"scene", "a = 1\nb = 2\n"}, {"driver", ""}};
-  return table;
-}
-
-void expect_same(const std::vector<double>& actual, const std::vector<double>& expected, const char* name) {
-  ASSERT_EQ(actual.size(), expected.size()) << name;
-  for (std::size_t i = 0; i < expected.size(); ++i) {
-    EXPECT_TRUE(actual[i] == expected[i] || (std::isnan(actual[i]) && std::isnan(expected[i])))
-        << name << "[" << i << "]: " << actual[i] << " instead of " << expected[i];
-  }
-}
-
-void expect_same(const TableValues& actual, const TableValues& expected) {
-  EXPECT_EQ(actual.axes, expected.axes);
-  EXPECT_EQ(actual.wind_m_s, expected.wind_m_s);
-  for (const Quantity quantity : kAllQuantities) {
-    expect_same(actual[quantity], expected[quantity], description_of(quantity).name);
-  }
-  EXPECT_EQ(actual.status, expected.status);
-  for (const TableCurve& described : kTableCurves) EXPECT_EQ(actual.*described.curve, expected.*described.curve);
-  EXPECT_EQ(actual.stokes_units, expected.stokes_units);
-  EXPECT_EQ(actual.attributes, expected.attributes);
-}
-
-/// A limit of the process, for as long as the object lives.
-class Limit {
- public:
-  Limit(__rlimit_resource resource, rlim_t value) : resource_(resource) {
-    ::getrlimit(resource_, &before_);
-    const rlimit limit{value, before_.rlim_max};
-    ::setrlimit(resource_, &limit);
-  }
-  Limit(const Limit&) = delete;
-  Limit& operator=(const Limit&) = delete;
-  ~Limit() { ::setrlimit(resource_, &before_); }
-
- private:
-  __rlimit_resource resource_;
-  rlimit before_{};
-};
-
-/// Limits the size of files the process writes, as a full disk would.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)), limit_(RLIMIT_FSIZE, bytes) {}
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-  ~FullDisk() { std::signal(SIGXFSZ, handler_); }
-
- private:
-  void (*handler_)(int);
-  Limit limit_;
-};
 
 // ---- NetCDF ---------------------------------------------------------------------------------------------------------
 
@@ -480,212 +383,4 @@ TEST(PrintableLine, WhatATerminalObeys_IsReplaced) {
   EXPECT_EQ(printable_line("\xc0\xaf\xe0\x80\xaf\xed\xa0\x80"), "????????");
   EXPECT_EQ(printable_line(std::string_view("\0", 1)), "?");
 }
-
-// ---- Paths that cannot be written -----------------------------------------------------------------------------------
-
-TEST_F(TableFiles, CheckOutputPath_WrongPaths_AreRefusedBeforeAnyWork) {
-  EXPECT_THROW(check_output_path(at("t.txt")), InputError);
-  EXPECT_THROW(check_output_path(at("t")), InputError);
-  EXPECT_THROW(check_output_path(at("no/folder/t.nc")), IoError);
-  fs::create_directory(at("folder.nc"));
-  EXPECT_THROW(check_output_path(at("folder.nc")), IoError);
-  EXPECT_NO_THROW(check_output_path(at("t.nc")));
-  EXPECT_NO_THROW(check_output_path("-"));
-  try {
-    check_output_path("t.h5");
-    FAIL() << "no exception";
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()), "t.h5: the name of a table must end in .nc, .csv or .npy");
-  }
-  EXPECT_EQ(names(), std::vector<std::string>{"folder.nc"});
-}
-
-TEST_F(TableFiles, CheckWritable_ReadOnlyFolder_IsRefused) {
-  fs::create_directory(at("locked"));
-  fs::permissions(at("locked"), fs::perms::owner_read | fs::perms::owner_exec);
-  // Root may write anywhere but here.
-  const fs::path folder = ::geteuid() == 0 ? fs::path("/proc/self") : at("locked");
-  for (const char* name : {"t.nc", "t.csv", "t.npy"}) {
-    EXPECT_THROW(write_table(sample_table(1, 1, 1), folder / name), IoError) << name;
-    EXPECT_FALSE(fs::exists(folder / name));
-  }
-  fs::permissions(at("locked"), fs::perms::owner_all);
-}
-
-TEST_F(TableFiles, WriteText_FullDevice_IsAnErrorAndLeavesTheDevice) {
-  EXPECT_THROW(write_text_atomically("/dev/full", "text"), IoError);
-  EXPECT_TRUE(fs::is_character_file("/dev/full"));
-  fs::create_symlink("/dev/full", at("full.nc"));
-  EXPECT_THROW(write_table(sample_table(1, 1, 1), at("full.nc")), IoError);
-  EXPECT_TRUE(fs::is_character_file("/dev/full"));
-}
-
-// ---- Whole or not there ---------------------------------------------------------------------------------------------
-
-TEST_F(TableFiles, WriteTable_DiskFull_LeavesNothingOrWhatWasThere) {
-  const TableValues table = sample_table(20, 16, 16);
-  for (const char* name : {"t.nc", "t.csv", "t.npy"}) {
-    for (const rlim_t bytes : {rlim_t{0}, rlim_t{4096}, rlim_t{100000}}) {
-      {
-        const FullDisk full(bytes);
-        EXPECT_THROW(write_table(table, at(name)), IoError) << name << " " << bytes;
-      }
-      EXPECT_EQ(names(), std::vector<std::string>{}) << name << " " << bytes;
-      put(at(name), "what was there");
-      {
-        const FullDisk full(bytes);
-        EXPECT_THROW(write_table(table, at(name)), IoError) << name << " " << bytes;
-      }
-      EXPECT_EQ(names(), std::vector<std::string>{name});
-      EXPECT_EQ(read_file(at(name)), "what was there");
-      fs::remove(at(name));
-    }
-  }
-  // The libraries below still work.
-  write_table(table, at("t.nc"));
-  expect_same(read_table(at("t.nc")), table);
-}
-
-TEST_F(TableFiles, WriteTable_OutOfMemory_LeavesNothing) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "AddressSanitizer takes terabytes of addresses";
-#endif
-  const TableValues table = sample_table(128, 64, 32);  // 35 MB
-  {
-    std::size_t pages = 0;
-    std::ifstream("/proc/self/statm") >> pages;
-    constexpr rlim_t kFree = 20'000'000;
-    const Limit memory(RLIMIT_AS, pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + kFree);
-    EXPECT_THROW(write_table(table, at("t.csv")), std::bad_alloc);
-    EXPECT_EQ(names(), std::vector<std::string>{});
-    write_table(table, at("t.nc"));  // takes next to none
-  }
-  expect_same(read_table(at("t.nc")), table);
-}
-
-TEST_F(TableFiles, WriteTable_NoMemoryForOneAllocation_LeavesNothingOrTheTable) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "a std::variant that finds no memory for its copy alarms the sanitizer of undefined behaviour";
-#endif
-  const TableValues table = sample_table(3, 2, 2);
-  bool has_failed = true;
-  for (long before = 0; has_failed; ++before) {
-    try {
-      const FailingNew failing(before);
-      write_table(table, at("t.nc"));
-      has_failed = failing.has_failed();
-    } catch (const std::bad_alloc&) {
-      ASSERT_EQ(names(), std::vector<std::string>{}) << before;
-      continue;
-    }
-    expect_same(read_table(at("t.nc")), table);
-    fs::remove(at("t.nc"));
-  }
-}
-
-TEST_F(TableFiles, WriteText_Killed_LeavesNothing) {
-  const pid_t writer = ::fork();
-  ASSERT_GE(writer, 0);
-  if (writer == 0) {
-    // Writing beyond the limit ends the process, without its destructors.
-    const FullDisk full(100'000);
-    std::signal(SIGXFSZ, SIG_DFL);
-    write_text_atomically(at("t.csv"), std::string(200'000, 'x'));
-    ::_exit(0);
-  }
-  int status = 0;
-  ASSERT_EQ(::waitpid(writer, &status, 0), writer);
-  EXPECT_TRUE(WIFSIGNALED(status));
-  EXPECT_EQ(names(), std::vector<std::string>{});
-}
-
-TEST_F(TableFiles, UnderWay_AnotherProcessHasIt_IsRefused) {
-  AtomicFile file(at("t.csv"), at("t.csv.partial"));
-  EXPECT_THROW(AtomicFile(at("t.csv"), at("t.csv.partial")), InputError);
-  file.append("text");
-  file.commit();
-  EXPECT_EQ(read_file(at("t.csv")), "text");
-  EXPECT_EQ(names(), std::vector<std::string>{"t.csv"});
-}
-
-/// A resumable table of two parts, the first of which is that of `one_part`.
-TableOutput::Job resumable_job(const fs::path& path, const TableValues& one_part) {
-  TableHead whole = one_part;
-  for (const double theta : one_part.axes[Axis::kTheta]) whole.axes[Axis::kTheta].push_back(theta / 2.0);
-  const PerAxis count = one_part.counts();
-  PerAxis second = {};
-  second[Axis::kTheta] = count[Axis::kTheta];
-  return {.path = path,
-          .layout = {whole, one_part.quantities(), true},
-          .parts = {{{}, count}, {second, count}},
-          .identity = "scene a",
-          .is_resumed = true};
-}
-
-TEST_F(TableFiles, PartialFile_NoMemoryForItsWriter_IsNotLeft) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "a std::variant that finds no memory for its copy alarms the sanitizer of undefined behaviour";
-#endif
-  const TableOutput::Job job = resumable_job(at("t.nc"), sample_table(3, 2, 2));
-  bool has_failed = true;
-  for (long before = 0; has_failed; ++before) {
-    TableOutput::Job own = job;
-    try {
-      const FailingNew failing(before);
-      const TableOutput output(std::move(own));
-      has_failed = failing.has_failed();
-    } catch (const std::bad_alloc&) {
-      // Where calls do without the memory there is none.
-    }
-    ASSERT_EQ(names(), std::vector<std::string>{}) << before;
-  }
-}
-
-TEST_F(TableFiles, PartialFile_ProgressFileIsALink_IsNotLeft) {
-  fs::create_symlink("precious", at("t.nc.partial.txt"));
-  EXPECT_THROW(TableOutput(resumable_job(at("t.nc"), sample_table(3, 2, 2))), IoError);
-  EXPECT_EQ(names(), std::vector<std::string>{"t.nc.partial.txt"});
-}
-
-TEST_F(TableFiles, PartialFile_CancelledWhileItIsRead_StaysAsItWas) {
-  const TableValues part = sample_table(3, 2, 2);
-  TableOutput::Job job = resumable_job(at("t.nc"), part);
-  TableOutput(job).write(part, {}, "first");
-  const std::string values = read_file(at("t.nc.partial")), progress = read_file(at("t.nc.partial.txt"));
-  job.progress = [](std::size_t, std::size_t) { return false; };
-  EXPECT_THROW(TableOutput{job}, Cancelled);
-  EXPECT_EQ(read_file(at("t.nc.partial")), values);
-  EXPECT_EQ(read_file(at("t.nc.partial.txt")), progress);
-  job.progress = [](std::size_t done, std::size_t total) { return done == 0 && total == 24; };
-  EXPECT_EQ(TableOutput(job).parts_done(), 1U);
-}
-
-TEST_F(TableFiles, WriteText_ExistingFile_IsReplacedWithItsPermissions) {
-  put(at("t.csv"), "a longer text than the new one");
-  fs::permissions(at("t.csv"), fs::perms::owner_read | fs::perms::owner_write);
-  write_text_atomically(at("t.csv"), "new");
-  EXPECT_EQ(read_file(at("t.csv")), "new");
-  EXPECT_EQ(fs::status(at("t.csv")).permissions(), fs::perms::owner_read | fs::perms::owner_write);
-}
-
-TEST_F(TableFiles, WriteText_SymbolicLink_ReplacesWhatItPointsTo) {
-  fs::create_directory(at("elsewhere"));
-  fs::create_symlink("elsewhere/t.csv", at("link.csv"));
-  for (const char* text : {"dangling before", "replaced"}) {
-    write_text_atomically(at("link.csv"), text);
-    EXPECT_TRUE(fs::is_symlink(at("link.csv")));
-    EXPECT_EQ(read_file(at("elsewhere/t.csv")), text);
-  }
-  fs::create_symlink("loop.csv", at("loop.csv"));
-  EXPECT_THROW(write_text_atomically(at("loop.csv"), "text"), IoError);
-}
-
-TEST_F(TableFiles, WriteText_RelativeName_GoesToTheCurrentFolder) {
-  const fs::path before = fs::current_path();
-  fs::current_path(at("."));
-  write_text_atomically("here.csv", "text");
-  fs::current_path(before);
-  EXPECT_EQ(read_file(at("here.csv")), "text");
-}
-
 }  // namespace

@@ -40,7 +40,7 @@ inline constexpr double kDigitsPerSplit = 2.0;  // chosen: 2350, 1765, 1394; fla
 /// Of the tolerance: far below the reflection of the darkest surfaces.
 inline constexpr double kDimmest = 1e-10;  // chosen: corners
 
-// ---- Slopes (kernel_data.cpp) --------------------------------------------------------------------------------------
+// ---- Slopes (breakpoints.cpp, kernel_data.cpp) ---------------------------------------------------------------------
 
 /// Share of the tolerance that the slopes beyond the cut may carry.
 inline constexpr double kCutShare = 0.01;  // chosen: 631, 629, 628

@@ -1,0 +1,204 @@
+#include "plan/breakpoints.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "model/angles.hpp"
+#include "plan/constants.hpp"
+#include "plan/kernel_data.hpp"
+
+namespace dolp {
+namespace {
+
+using std::numbers::pi;
+
+constexpr unsigned kRoots = kRootAbove | kRootBelow;
+constexpr double kNoEnd = 1e30;  // a slope beyond every cut, in place of infinity
+
+constexpr double kCoincident = 1e-9;  // relative distance of breakpoints that differ only by rounding
+
+// Of breakpoints before the corners of a sky, and with them.
+constexpr std::size_t kMostSkyBreakpoints = 60;
+
+// Slopes that only split the long way to the horizon of a grazing direction, where a heavy tail reaches far, into
+// pieces of ten units of X or so.
+constexpr std::array kPlainBreakpoints = {30.0, 3e5};
+constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // the same of grooves, which have no horizon
+
+double tan_deg(double angle_deg) {
+  const CosSin a = cos_sin_deg(angle_deg);
+  return a.sin / a.cos;
+}
+
+// Slopes at which the critical line cos(beta) = critical_cos meets phi = 0 or pi, the horizon, theta_r = theta or the
+// lines of v-cavity, e = 2 c and e = 2 cos(theta_r).
+void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking,
+                              double critical) {
+  const double critical_deg = std::acos(critical) * 180.0 / pi;
+  points.push_back({tan_deg(std::abs(theta_deg - critical_deg)), kRoots});
+  if (theta_deg + critical_deg < 90.0) points.push_back({tan_deg(theta_deg + critical_deg), kRoots});
+  const auto add = [&](double facet_cos, double least_cos) {
+    if (facet_cos <= least_cos || facet_cos >= 1.0) return;
+    points.push_back({std::sqrt((1.0 - facet_cos) * (1.0 + facet_cos)) / facet_cos, kRoots});
+  };
+  add(a.cos / (2.0 * critical), 0.0);
+  add(a.cos / critical, 0.0);
+  if (masking != Masking::kVCavity || a.cos <= 0.0) return;
+  const double at_slope_1 = std::sqrt(0.5);  // where the lines of v-cavity end
+  add(0.5 * critical / a.cos, at_slope_1);
+  add(critical / (std::hypot(a.cos, 2.0 * critical) - a.cos), at_slope_1);
+}
+
+// Slopes at which the line b = pi/2 of `integral` meets phi = 0 or pi, and theta_r = theta; or smith's cusp.
+void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking) {
+  if (masking == Masking::kSmith) {
+    points.push_back({tan_deg(0.5 * theta_deg), kRoots});
+    return;
+  }
+  if (theta_deg > 45.0) {
+    points.push_back({a.cos > 0.0 ? tan_deg(2.0 * theta_deg - 90.0) : kNoEnd, kRoots});
+  } else {
+    points.push_back({tan_deg(30.0 - theta_deg * 2.0 / 3.0), kRootAbove});
+  }
+  points.push_back({a.cos > 0.0 ? tan_deg(30.0 + theta_deg * 2.0 / 3.0) : kNoEnd, kRootBelow});
+}
+
+// The direct emission goes on beyond the horizon, up to the line on which facets turn away; with v-cavity masking it
+// has the line e = 2 c, which crosses the horizon at sqrt(3).
+void add_direct_breakpoints(std::vector<Breakpoint>& points, const CosSin& a, Masking masking, double& last) {
+  last = kNoEnd;
+  points.push_back({last, 0});
+  if (a.sin > 0.0) points.push_back({a.cos / a.sin, kRootAbove});
+  if (masking == Masking::kVCavity) points.push_back({std::sqrt(3.0), 0});
+}
+
+void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a) {
+  points.push_back({tan_deg(30.0 - theta_deg / 3.0), kRootAbove});
+  if (theta_deg < 45.0) {
+    points.push_back({tan_deg(30.0 + theta_deg / 3.0), kRootBelow});
+  } else {
+    points.push_back({a.cos / a.sin, kRootAbove});
+    points.push_back({1.0, 0});
+    points.push_back({a.cos > 0.0 ? a.sin / a.cos : kNoEnd, kRootBelow});
+  }
+}
+
+// Slopes at which a bounce after the first meets the critical line at phi = 0 or pi, where its cos(beta) is the sine of
+// its angle in the fan (groove.glsl): where theta is 0 that is everywhere.
+void add_critical_bounces(std::vector<Breakpoint>& points, double theta_deg, double critical) {
+  const double critical_deg = std::asin(critical) * 180.0 / pi;
+  for (int k = 2; k <= kCriticalBounces; ++k) {
+    for (const double angle_deg : {critical_deg, 180.0 - critical_deg}) {
+      for (const double turned_deg : {angle_deg - theta_deg, angle_deg + theta_deg}) {
+        const double gamma_deg = turned_deg / (2.0 * k - 1.0);
+        if (gamma_deg > 0.0 && gamma_deg < 90.0) points.push_back({tan_deg(90.0 - gamma_deg), kRoots});
+      }
+    }
+  }
+}
+
+// Where the lines of groove_lines (arcs.glsl) meet phi = 0, psi = theta, or phi = pi, psi = -theta, or each other.
+void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg, int splits) {
+  const auto add = [&](double gamma_deg, unsigned roots) {
+    if (gamma_deg > 0.0 && gamma_deg <= 90.0) points.push_back({tan_deg(90.0 - gamma_deg), roots});
+  };
+  for (int j = 1; j <= splits + 1; ++j) {
+    add((90.0 - theta_deg) / j, kRootBelow);
+    if (j * theta_deg < 90.0 + theta_deg) add((90.0 + theta_deg) / j, kRootAbove);
+    const double turns = 2.0 * j + 1.0;
+    if (turns * theta_deg < 180.0 - theta_deg) add((180.0 - theta_deg) / turns, kRootBelow);
+    if (turns * theta_deg < 180.0 + theta_deg) add((180.0 + theta_deg) / turns, kRootAbove);
+    if (90.0 < (j + 1) * theta_deg) add(90.0 / (j + 1), 0);
+  }
+  add(theta_deg, kRootAbove);
+  for (double bounces = 8.0; bounces < DOLP_MOST_BOUNCES; bounces *= 2.0) {
+    if (bounces > splits + 2.0) points.push_back({slope_with_bounces(bounces), 0});
+  }
+  for (double bounces = DOLP_MOST_BOUNCES; bounces <= DOLP_LAST_BOUNCES; bounces *= kSteepStep) {
+    points.push_back({slope_with_bounces(bounces), 0});
+  }
+  for (const double slope : kSteepBreakpoints) points.push_back({slope, 0});
+}
+
+// Merges breakpoints that differ only by rounding; the merged one has the roots of all.
+std::vector<Breakpoint> without_coincident(const std::vector<Breakpoint>& points) {
+  std::vector<Breakpoint> distinct;
+  for (const Breakpoint& point : points) {
+    const bool is_new = distinct.empty() || point.slope > distinct.back().slope * (1.0 + kCoincident);
+    if (is_new) distinct.push_back(point);
+    distinct.back().roots |= point.roots;
+  }
+  return distinct;
+}
+
+// Slopes at which a corner of the sky meets phi = 0 or pi: the reflected rays of a slope have zeniths from |theta - 2
+// alpha| to theta + 2 alpha. A sky that is not level at the zenith has a cusp there. Beside them the sum over the
+// azimuths goes as the distance to the power 3/2.
+void add_sky_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const SkyTable& sky) {
+  if (sky.has_cusp) points.push_back({tan_deg(0.5 * theta_deg), kRoots});
+  for (const double corner_deg : sky.corners_deg) {
+    if (points.size() + 2 > kMostSkyBreakpoints) return;
+    points.push_back({tan_deg(0.5 * std::abs(corner_deg - theta_deg)), kRootAbove});
+    points.push_back({tan_deg(0.5 * (corner_deg + theta_deg)), kRootBelow});
+  }
+}
+
+// Splits each piece once more, so that no node of its rules stays where it was.
+void add_extra_splits(std::vector<Breakpoint>& points) {
+  constexpr double kShare = 0.43;  // no fraction that a rule's nodes have
+  const std::size_t count = points.size();
+  for (std::size_t i = 0; i + 1 < count && points.size() <= DOLP_MAX_PIECES; ++i) {
+    const double start = std::asinh(points[i].slope);
+    const double end = std::asinh(std::min(points[i + 1].slope, kLargestCut));
+    if (end > start) points.push_back({std::sinh(start + kShare * (end - start)), 0});
+  }
+  std::sort(points.begin(), points.end());
+}
+
+}  // namespace
+
+// Slopes from 0 on at which the set of smooth arcs changes: where a split line of the azimuth (arcs.glsl) meets
+// phi = 0 or pi or another line. The horizon does at t1 = c / (1 + s) and t2 = (1 + s) / c, theta_r = theta at
+// tan(theta), the limit b = pi/2 at tan(30 -+ 2/3 theta) and, on theta_r = theta, at tan(2 theta - 90); the lines of
+// v-cavity at tan(30 -+ theta/3), cot(theta), 1 and tan(theta); smith's cusp is at tan(theta/2).
+std::vector<Breakpoint> breakpoints(double theta_deg, const MomentsRequest& request, const DirectionVariant& variant,
+                                    const SkyTable& sky, int splits) {
+  const CosSin a = cos_sin_deg(theta_deg);
+  const Masking masking = request.masking;
+  const bool is_multiple = request.scattering == Scattering::kMultiple;
+  const double horizon = a.cos > 0.0 ? (1.0 + a.sin) / a.cos : kNoEnd;
+  std::vector<Breakpoint> points;
+  double last = horizon;
+  if (is_multiple) {
+    add_groove_breakpoints(points, theta_deg, splits);
+    last = kNoEnd;
+    points.push_back({last, 0});
+  } else {
+    points = {{a.cos / (1.0 + a.sin), kRootAbove}, {horizon, kRootBelow}};
+    if (request.wants_direct) add_direct_breakpoints(points, a, masking, last);
+  }
+  if (masking == Masking::kIntegral && a.cos > 0.0) points.push_back({a.sin / a.cos, kRootBelow});
+  if (variant.has_line) add_line_breakpoints(points, theta_deg, a, masking);
+  if (masking == Masking::kVCavity && !is_multiple) add_v_cavity_breakpoints(points, theta_deg, a);
+  for (const double slope : kPlainBreakpoints) {
+    if (!is_multiple && last > kLongWay * slope) points.push_back({slope, 0});
+  }
+  if (variant.critical_cos > 0.0) {
+    add_critical_breakpoints(points, theta_deg, a, masking, variant.critical_cos);
+    if (is_multiple) add_critical_bounces(points, theta_deg, variant.critical_cos);
+  }
+  add_sky_breakpoints(points, theta_deg, sky);
+  std::erase_if(points, [&](const Breakpoint& point) { return point.slope <= 0.0 || point.slope > last; });
+  // At the normal smith's cusp lies at slope 0.
+  const bool cusp_at_0 = variant.has_line && masking == Masking::kSmith && a.sin == 0.0;
+  points.push_back({0.0, cusp_at_0 ? kRootAbove : 0U});
+  std::sort(points.begin(), points.end());
+  points = without_coincident(points);
+  if (request.has_extra_splits) add_extra_splits(points);
+  return points;
+}
+
+}  // namespace dolp

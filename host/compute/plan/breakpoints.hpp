@@ -1,0 +1,31 @@
+// Slopes that divide the slope axis of a direction into pieces on which the integrand is smooth.
+#pragma once
+
+#include <vector>
+
+#include "model/moments.hpp"
+#include "plan/sky_table.hpp"
+
+namespace dolp {
+
+/// Largest slope that is ever integrated: beyond it the squares of a float overflow.
+inline constexpr double kLargestCut = 1e15;
+
+/// An end of pieces, with kRootAbove and kRootBelow.
+struct Breakpoint {
+  double slope;
+  unsigned roots;
+  bool operator<(const Breakpoint& other) const { return slope < other.slope; }
+};
+
+/// Which lines a direction has, besides those of its masking.
+struct DirectionVariant {
+  double critical_cos = 0.0;  ///< cos(beta) at which total reflection begins; 0 without
+  bool has_line = false;      ///< b = pi/2 of `integral`, or smith's cusp
+};
+
+/// Ascending slopes from 0 on. `splits`: bounces in a groove at which a beam that ends splits the azimuths.
+std::vector<Breakpoint> breakpoints(double theta_deg, const MomentsRequest& request, const DirectionVariant& variant,
+                                    const SkyTable& sky, int splits);
+
+}  // namespace dolp

@@ -301,7 +301,7 @@ TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringL
     std::vector<std::string> options = metal;
     const Outcome text = with(options);
     ASSERT_EQ(text.status, 0) << text.err;
-    EXPECT_NE(text.out.find("changes DOLP by up to "), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("direct emission differs by up to "), std::string::npos) << text.out;
     options.push_back("--json");
     EXPECT_GT(json::parse(with(options).out)["scattering_gap"], 0.01);
     EXPECT_TRUE(json::parse(with({"--json"}).out)["scattering_gap"].is_null());  // masking integral

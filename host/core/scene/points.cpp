@@ -149,7 +149,7 @@ Points points_of(std::span<const Column> columns, std::size_t count, PointsKind 
     }
     for (std::size_t row = 0; row < values.size(); ++row) {
       if (rule.range.contains(values[row])) continue;
-      throw InputError(fmt::format("{}: {} = {}: out of range, a number in {}", points.where(row), rule.name,
+      throw InputError(fmt::format("{}: {} = {}: out of range; must be a number in {}", points.where(row), rule.name,
                                    format_number(values[row]), rule.range.text()));
     }
     std::vector<double>& own = add_column(points, rule);

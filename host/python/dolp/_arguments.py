@@ -60,6 +60,17 @@ def whole_number(name: str, value: int) -> int:
     raise InputError(f"{name} = {value}: must be a whole number from 0 to 2^63 - 1")
 
 
+def word(name: str, value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    raise TypeError(f"{name}: must be a str, not {type(value).__name__}")
+
+
+def device_name(device: Any) -> str:
+    """A part of a name, or a position."""
+    return str(device) if isinstance(device, (int, np.integer)) else word("device", device)
+
+
 def flag(name: str, value: Any) -> bool:
     if isinstance(value, (bool, np.bool_)):
         return bool(value)

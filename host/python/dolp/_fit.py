@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ._arguments import Path, check_key, check_mapping, check_names, floats, native_path, native_values, whole_number, word_list
+from ._arguments import Path, check_key, check_mapping, check_names, floats, native_path, native_values, whole_number, word, word_list
 from ._native import InputError
 from ._points import csv_of
 from ._runs import evaluate, native_evaluator, native_scene
@@ -123,7 +123,7 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compa
     ranges = [(check_key(key), floats(key, ends).ravel().tolist()) for key, ends in check_mapping("vary", vary).items()]
     compared = [(check_key(key), word_list(key, words)) for key, words in check_mapping("compare", compare).items()]
     text, values, found = native_evaluator(evaluator, device).fit(
-        native, texts, ranges, compared, str(loss), str(model_error), whole_number("starts", starts), whole_number("seed", seed),
+        native, texts, ranges, compared, word("loss", loss), word("model_error", model_error), whole_number("starts", starts), whole_number("seed", seed),
         "" if plot is None else native_path("plot", plot))
     fitted = Scene.__new__(Scene)
     fitted._native = found

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from . import _native
-from ._arguments import Array, Path, axis_values, check_names, flag, input_path, native_path
+from ._arguments import Array, Path, axis_values, check_names, device_name, flag, input_path, native_path, word
 from ._datasets import concatenated, dataset_at, native_table, table_dataset
 from ._native import InputError
 from ._points import columns_of
@@ -146,7 +146,7 @@ def plan(scene: Scene, *, device: str = "", keep_all: bool = False) -> Plan:
     >>> dolp.plan(scene).values["entries"]
     5
     """
-    text, values = _native.plan(native_scene(scene), str(device), flag("keep_all", keep_all))
+    text, values = _native.plan(native_scene(scene), device_name(device), flag("keep_all", keep_all))
     return Plan(text, json.loads(values))
 
 
@@ -155,9 +155,13 @@ def devices() -> list[dict[str, Any]]:
     return _native.devices()
 
 
-@functools.lru_cache(maxsize=None)
 def native_evaluator(evaluator: str, device: str) -> _native.Evaluator:
-    return _native.Evaluator(str(evaluator), str(device))
+    return _evaluator_of(word("evaluator", evaluator), device_name(device))
+
+
+@functools.lru_cache(maxsize=None)
+def _evaluator_of(evaluator: str, device: str) -> _native.Evaluator:
+    return _native.Evaluator(evaluator, device)
 
 
 @functools.lru_cache(maxsize=1)

@@ -129,6 +129,10 @@ TEST(PointsError_NotANumber, IsRefusedWhateverItsForm) {
 TEST(PointsError_MissingAngle, IsNamed) {
   EXPECT_TRUE(error_of("theta_i_deg,theta_r_deg\n1,1\n", PointsKind::kGeometries)
                   .starts_with("p.csv:1: column \"delta_phi_deg\" is missing, a number in [-360, 360]"));
+  EXPECT_EQ(
+      error_of("theta_i_deg\n1\n", PointsKind::kGeometries),
+      "p.csv:1: column \"theta_r_deg\" is missing, a number in [0, 90]; column \"delta_phi_deg\" is missing, a number "
+      "in [-360, 360]");
   EXPECT_TRUE(
       error_of("theta_deg\n1\n", PointsKind::kGeometries).starts_with("p.csv:1: column \"theta_deg\" is unknown"));
 }

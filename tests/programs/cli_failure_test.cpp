@@ -151,6 +151,18 @@ INSTANTIATE_TEST_SUITE_P(
         "UnknownDevice", joined(kTable, {"--device", "no such device"}), kDevice, {"no such device", "0 = "}}),
     name_of);
 
+TEST_F(CommandLine, PointsWithoutRows_GiveAHeaderAlone) {
+  put("points.csv", "theta_deg\n");
+  EXPECT_EQ(dolp(joined(kEval, {"--evaluator", "cpu"})).status, kDone);
+  EXPECT_EQ(data_lines(content("out.csv")).size(), 1U);
+}
+
+TEST_F(CommandLine, ToleranceThatFloatMisses_IsSaidOfWhat) {
+  const Outcome outcome = dolp(joined(kTable, {"--evaluator", "cpu", "--precision", "float", "--tolerance", "1e-9"}));
+  EXPECT_EQ(outcome.status, kDone) << outcome.err;
+  EXPECT_NE(outcome.out.find("tolerance not met, of DOLP and rho"), std::string::npos) << outcome.out;
+}
+
 TEST_F(CommandLine, StandardOutput_Full_Exit4) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"materials"},
                                                     {"keys"},

@@ -462,6 +462,7 @@ TEST_F(CommandLine, Materials_OneAtAWavelength_HasNAndKOfItsTable) {
   EXPECT_EQ(one["n"], kWaterN);
   EXPECT_EQ(one["k"], kWaterK);
   EXPECT_EQ(one["wavelength_um"], 10.0);
+  EXPECT_FALSE(std::regex_search(dolp({"materials", "iron", "--at", "8:14"}).out, std::regex("\\.[0-9]{10}")));
   const json range = json::parse(dolp({"materials", "water 25C", "--at", "8:10:3", "--json"}).out);
   EXPECT_EQ(range["wavelength_um"], json({8.0, 9.0, 10.0}));
   EXPECT_EQ(range["n"][2], kWaterN);

@@ -80,13 +80,14 @@ std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
   return rule.of(points).emplace();
 }
 
-/// Refuses points that lack a column.
+/// Refuses points that lack columns, and names all of them.
 void check_required(const Points& points, const std::vector<ColumnRule>& rules) {
+  std::vector<std::string> missing;
   for (const ColumnRule& rule : rules) {
-    if (!rule.is_required() || rule.of(points)) continue;
-    throw InputError(
-        fmt::format("{}: column \"{}\" is missing, a number in {}", points.where(), rule.name, rule.range.text()));
+    if (rule.is_required() && !rule.of(points))
+      missing.push_back(fmt::format("column \"{}\" is missing, a number in {}", rule.name, rule.range.text()));
   }
+  if (!missing.empty()) throw InputError(fmt::format("{}: {}", points.where(), fmt::join(missing, "; ")));
 }
 
 /// The file's columns in its order; makes those that are not left out present in `points`.

@@ -117,7 +117,8 @@ def draw_pair(axes, report):
 
 def caption(report):
     values = "   ".join(
-        f"{symbol_of(one['key'])} = {one['value']:.5g}" + (f" ± {one['standard_error']:.2g}" if one["standard_error"] else "")
+        f"{symbol_of(one['key'])} = {one['value']:.5g}" + (
+            f" ± {one['standard_error']:.2g}" if one["standard_error"] else " (at its bound)" if one["at_bound"] else "")
         for one in report["parameters"])
     reduced = report["reduced_chi_square"]
     quality = f"reduced $\\chi^2$ = {reduced:.4g}" if reduced is not None else "no degrees of freedom"

@@ -91,7 +91,7 @@ def draw_data(upper, lower, report):
 def draw_pair(axes, report):
     """Contours of what the objective grows by over two parameters, least over all others."""
     contours = report.get("contours")
-    if contours is None or "no_contours" in report:
+    if contours is None:
         axes.set_axis_off()
         axes.text(0.5, 0.5, textwrap.fill(report.get("no_contours", "").replace("none:", "No contours:"), 44), ha="center",
                   va="center", color="0.3")

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "cli_support.hpp"
 
@@ -163,11 +164,13 @@ TEST_F(FitProgram, Plot_IsAPng) {
 
 TEST_F(FitProgram, Plot_WithoutContours_SaysWhy) {
   put("same.csv", "theta_deg,dolp,uncertainty\n0,0,0.01\n0,0,0.01\n0,0,0.01\n");
+  put("flat.csv", "theta_deg,dolp,uncertainty\n20,0.005,0.9\n40,0.01,0.9\n60,0.03,0.9\n70,0.05,0.9\n");
   const std::vector<std::string> sigma = {"--vary", "surface.sigma=0.02:1"};
   const std::vector<std::string> drawn = {"--plot", "fit.svg", "--json"};
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
       {joined(sigma, {"--data", "data.csv", "--vary", "surface.n=1.1:1.4"}), "surface.n: it is at its bound"},
       {joined(sigma, {"--data", "same.csv", "--vary", "surface.n=1.1:3"}), "surface.n: the data do not determine it"},
+      {{"--data", "flat.csv", "--vary", "surface.n=1:20", "--vary", "surface.k=0:60"}, "grows by less than 2.30"},
       {joined(sigma, {"--data", "data.csv"}), ""}};
   for (const auto& [options, reason] : cases) {
     const Outcome outcome = fit(joined(options, drawn));
@@ -175,6 +178,8 @@ TEST_F(FitProgram, Plot_WithoutContours_SaysWhy) {
     const json report = json::parse(outcome.out);
     EXPECT_FALSE(report.contains("contours"));
     EXPECT_EQ(report.contains("no_contours"), !reason.empty());
+    const auto& named = report["degeneracies"];
+    EXPECT_EQ(std::set<std::string>(named.begin(), named.end()).size(), named.size()) << named;
     EXPECT_NE(report.value("no_contours", "").find(reason), std::string::npos) << report["no_contours"];
     EXPECT_TRUE(content("fit.svg").find("<svg") != std::string::npos);
   }

@@ -315,7 +315,9 @@ class Fit {
         is_open = is_open || (std::abs(direction.along[static_cast<Eigen::Index>(j)]) >= kInDirection &&
                               !interval.low && !interval.high);
       }
-      if (is_open) result_.degeneracies.push_back(words_of(direction, model_.parameters()));
+      const std::string words = words_of(direction, model_.parameters());
+      const bool is_new = std::ranges::find(result_.degeneracies, words) == result_.degeneracies.end();
+      if (is_open && is_new) result_.degeneracies.push_back(words);
     }
   }
 

@@ -228,7 +228,7 @@ void add_contours(ReportBuilder& report, const fit::Model& model, const FitResul
   const std::string reason = why_no_contours(result, drawn);
   report.row_if(!reason.empty(), "contours", "{}", reason);
   if (!reason.empty()) report.value("no_contours", reason);
-  if (!drawn) return;
+  if (!reason.empty() || !drawn) return;
   const fit::Contours& contours = *drawn;
   const auto [first, second] = contours.parameters;
   Json lines = Json::array();

@@ -26,7 +26,7 @@ from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter  # n
 COLOURS = "viridis"
 MOST_CURVES = 6
 CONTOURS_PERCENT = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50)
-SHOWN_SHARE_PERCENT = 97  # of the entries: a few at grazing incidence would otherwise take the whole scale
+SHOWN_SHARE_PERCENT = 97  # of the entries, peaks apart: a rise at grazing incidence would otherwise take the whole scale
 FEW_ANGLES = 25  # up to which each entry gets a dot
 FEWEST_OF_MAP = 6  # values of theta and of sigma: a map of fewer would show what is not in the table
 SMALLEST_SPAN_PERCENT = 0.01  # of the DOLP axes: rounding noise must not look like a signal
@@ -105,6 +105,8 @@ class Slice:
             return data[np.ix_(rows, columns)]
 
         self.dolp = 100.0 * values("dolp", np.nan)
+        if "stokes_i" in dataset.variables:  # at 90 degrees DOLP may be a limit that no line leads to
+            self.dolp[np.isnan(values("stokes_i", np.nan))] = np.nan
         self.status = values("status", 0) if "status" in dataset.variables else np.zeros(self.dolp.shape, int)
         has_bracket = "dolp_low" in dataset.variables and "dolp_high" in dataset.variables
         self.bracket = [100.0 * values(name, np.nan) for name in ("dolp_low", "dolp_high")] if has_bracket else None
@@ -116,7 +118,7 @@ class Slice:
         self.is_map = min(self.theta.size, self.sigma.size) >= FEWEST_OF_MAP
 
     def name_of(self, sigma):
-        return f"U = {sigma:.3g} m/s" if self.has_winds else f"$\\sigma$ = {sigma:.3g}"
+        return f"wind {sigma:.3g} m/s" if self.has_winds else f"$\\sigma$ = {sigma:.3g}"
 
     def _worst(self, errors):
         promised = errors[((self.status & (1 | 4 | 8)) == 0) & np.isfinite(errors)]
@@ -145,9 +147,17 @@ def cell_edges(centres):
     return np.concatenate([[centres[0]], middle, [centres[-1]]])
 
 
+def highest_peak(curve):
+    """The largest value between two lower ones; 0 without one."""
+    known = curve[np.isfinite(curve)]
+    is_peak = (known[1:-1] > known[:-2]) & (known[1:-1] >= known[2:])
+    return max(known[1:-1][is_peak], default=0.0)
+
+
 def draw_curves(axes, table):
     chosen = np.unique(np.linspace(0, table.sigma.size - 1, min(MOST_CURVES, table.sigma.size)).round().astype(int))
     colours = matplotlib.colormaps[COLOURS](np.linspace(0.0, 0.88, chosen.size))
+    highest = [table.largest()]
     for colour, j in zip(colours, chosen):
         good = np.where(table.status[:, j] == 0, table.dolp[:, j], np.nan)
         style = {"color": colour, "marker": "o" if table.theta.size <= FEW_ANGLES else None, "markersize": 3.5}
@@ -155,9 +165,10 @@ def draw_curves(axes, table):
         if table.bracket:
             low, high = (end[:, j] for end in table.bracket)
             axes.fill_between(table.theta, low, high, color=colour, alpha=0.12, linewidth=0.0)
+            highest += list(high[np.isfinite(high)])
+        highest.append(highest_peak(good))
         axes.plot(table.theta, good, linewidth=1.8, label=table.name_of(table.sigma[j]), **style)
-    bracket = table.bracket[1][np.isfinite(table.bracket[1])] if table.bracket else []
-    axes.set_ylim(0.0, 1.08 * max([table.largest(), *np.ravel(bracket)]))
+    axes.set_ylim(0.0, 1.08 * max(highest))
     axes.set_ylabel("DOLP (%)")
     axes.grid(alpha=0.25, linewidth=0.6)
     handles, _ = axes.get_legend_handles_labels()
@@ -205,7 +216,7 @@ def draw_map(figure, axes, table):
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.yaxis.set_major_formatter(FormatStrFormatter("%g"))
         axes.yaxis.set_minor_formatter(NullFormatter())
-    axes.set_ylabel("wind U (m/s)" if table.has_winds else r"roughness $\sigma$")
+    axes.set_ylabel("wind (m/s)" if table.has_winds else r"roughness $\sigma$")
 
 
 def draw(table, path):

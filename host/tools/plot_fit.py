@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Draws what `dolp fit --plot` reports: data, fit and bracket, residuals, contours of two parameters.
 
-Usage: plot_fit.py PICTURE < REPORT.json    `dolp fit --plot PICTURE` runs it
+Usage: plot_fit.py PICTURE < REPORT.json    `dolp fit --plot PICTURE` runs it; .png, .pdf or .svg
 Needs python3-matplotlib. Exit status: 0 done, 2 no report of a fit, 4 the picture could not be written.
 """
 import json
 import re
 import sys
+import textwrap
 
 import matplotlib
 
@@ -17,7 +18,7 @@ from matplotlib.collections import LineCollection  # noqa: E402
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 QUANTITIES = {"dolp": "DOLP", "q_over_i": "Q/I", "emissivity_s": r"$\varepsilon_s$", "emissivity_p": r"$\varepsilon_p$"}
-SYMBOLS = {"surface.n": "n", "surface.k": "k", "surface.sigma": "σ", "surface.wind_m_s": "U (m/s)", "surface.q": "q",
+SYMBOLS = {"surface.n": "n", "surface.k": "k", "surface.sigma": "σ", "surface.wind_m_s": "wind (m/s)", "surface.q": "q",
            "surface.specular": r"$k_s$",
            "surface.diffuse": r"$k_d$", "emission.temperature_K": "T (K)", "surroundings.temperature_K": r"$T_{surr}$ (K)",
            "spectrum.wavelength_um": "λ (µm)", "geometry.view_zenith_deg": r"$\theta_v$ (degree)",
@@ -91,7 +92,9 @@ def draw_pair(axes, report):
     """Contours of what the objective grows by over two parameters, least over all others."""
     contours = report.get("contours")
     if contours is None:
-        axes.set_visible(False)
+        axes.set_axis_off()
+        axes.text(0.5, 0.5, textwrap.fill(report.get("no_contours", "").replace("none:", "No contours:"), 44), ha="center",
+                  va="center", color="0.3")
         return
     for level, segments, region, width in zip(contours["levels"], contours["segments"], REGIONS, (2.0, 1.0)):
         axes.add_collection(LineCollection(np.reshape(segments, (-1, 2, 2)), colors=COLOURS[0], linewidths=width,
@@ -114,7 +117,8 @@ def draw_pair(axes, report):
 
 def caption(report):
     values = "   ".join(
-        f"{symbol_of(one['key'])} = {one['value']:.5g}" + (f" ± {one['standard_error']:.2g}" if one["standard_error"] else "")
+        f"{symbol_of(one['key'])} = {one['value']:.5g}" + (
+            f" ± {one['standard_error']:.2g}" if one["standard_error"] else " (at its bound)" if one["at_bound"] else "")
         for one in report["parameters"])
     reduced = report["reduced_chi_square"]
     quality = f"reduced $\\chi^2$ = {reduced:.4g}" if reduced is not None else "no degrees of freedom"
@@ -143,7 +147,7 @@ def draw(report, path):
         axes.grid(alpha=0.25, linewidth=0.6)
     figure.suptitle(title_of(report), fontsize=13)
     figure.supxlabel(caption(report), fontsize=9, color="0.3")
-    figure.savefig(path, format="png")
+    figure.savefig(path)
 
 
 def main():

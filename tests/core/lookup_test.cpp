@@ -189,6 +189,18 @@ TEST(TableLookup, QuantitiesThatTheTableLacks_AreNan) {
   EXPECT_EQ(result.status, 0U);
 }
 
+TEST(TableLookup, VariablesThatAreMissing_AreToldTogether) {
+  TableValues table = made_up(range(0, 80, 9), {0.3}, {2.0});
+  table[Quantity::kDolp].clear();
+  table[Quantity::kStokesU].clear();
+  try {
+    const TableLookup lookup(table, 1e-4, "t.nc");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "t.nc: the variables dolp, stokes_u are missing; lookup needs them");
+  }
+}
+
 TEST(TableLookup, VariablesThatEveryResultNeeds_AreNamedWhereTheyAreMissing) {
   const auto expect_named = [](const TableValues& table, const std::string& variable) {
     try {

@@ -99,18 +99,18 @@ TEST(PointsError_EveryOne, NamesFileLineColumnValueAndRange) {
       {"theta_i_deg\n1\n", "p.csv:1: column \"theta_i_deg\" is unknown; the nearest known is theta_deg"},
       {"1,2\n", "p.csv:1: column \"1\" is unknown"},
       {"q,q\n2,2\n", "p.csv:1: column \"q\" appears twice"},
-      {"theta_deg,sigma\n1,0.1\n2\n", "p.csv:3: sigma: the value is missing, a number in [0, 10]"},
+      {"theta_deg,sigma\n1,0.1\n2\n", "p.csv:3: sigma: the value is missing; must be a number in [0, 10]"},
       {"theta_deg,sigma\n1,\n", "p.csv:2: sigma: the value is missing"},
-      {"theta_deg,sigma\n ,1\n", "p.csv:2: theta_deg: the value is missing, a number in [0, 90]"},
+      {"theta_deg,sigma\n ,1\n", "p.csv:2: theta_deg: the value is missing; must be a number in [0, 90]"},
       {"theta_deg\n1\n\n2\n", "p.csv:3: theta_deg: the value is missing"},
       {"theta_deg\n1,2\n", "p.csv:2: 2: one value too many after column theta_deg"},
       {"theta_deg\n1,\n", "p.csv:2: : one value too many after column theta_deg"},
-      {"theta_deg\n91\n", "p.csv:2: theta_deg = 91: out of range, a number in [0, 90]"},
-      {"theta_deg\n-1e-9\n", "p.csv:2: theta_deg = -1e-9: out of range, a number in [0, 90]"},
-      {"sigma\n10.1\n", "p.csv:2: sigma = 10.1: out of range, a number in [0, 10]"},
-      {"q\n1\n", "p.csv:2: q = 1: out of range, a number in (1, 1e4]"},
-      {"n\n0\n", "p.csv:2: n = 0: out of range, a number in (0, 1e6]"},
-      {"k\n-0.1\n", "p.csv:2: k = -0.1: out of range, a number in [0, 1e6]"},
+      {"theta_deg\n91\n", "p.csv:2: theta_deg = 91: out of range; must be a number in [0, 90]"},
+      {"theta_deg\n-1e-9\n", "p.csv:2: theta_deg = -1e-9: out of range; must be a number in [0, 90]"},
+      {"sigma\n10.1\n", "p.csv:2: sigma = 10.1: out of range; must be a number in [0, 10]"},
+      {"q\n1\n", "p.csv:2: q = 1: out of range; must be a number in (1, 1e4]"},
+      {"n\n0\n", "p.csv:2: n = 0: out of range; must be a number in (0, 1e6]"},
+      {"k\n-0.1\n", "p.csv:2: k = -0.1: out of range; must be a number in [0, 1e6]"},
       {"# comment\nteta_deg\n", "p.csv:2: column \"teta_deg\" is unknown"},
       {"theta_deg\n# comment\n91\n", "p.csv:3: theta_deg = 91: out of range"},
       {"theta_deg,dolp\n1,2\n", "p.csv:1: column \"dolp\" is unknown"},
@@ -121,7 +121,7 @@ TEST(PointsError_EveryOne, NamesFileLineColumnValueAndRange) {
 TEST(PointsError_NotANumber, IsRefusedWhateverItsForm) {
   for (const char* cell : {"1e", "nan", "NaN", "inf", "-inf", "1.5x", "x", "0x10", "1 2", "--1", "+-1", "+", "1e999",
                            "1d3", "1;5", "1_0"}) {
-    const std::string expected = std::string("p.csv:2: k = ") + cell + ": not a number, a number in [0, 1e6]";
+    const std::string expected = std::string("p.csv:2: k = ") + cell + ": not a number; must be a number in [0, 1e6]";
     EXPECT_EQ(error_of(std::string("k\n") + cell + "\n"), expected);
   }
 }
@@ -129,6 +129,10 @@ TEST(PointsError_NotANumber, IsRefusedWhateverItsForm) {
 TEST(PointsError_MissingAngle, IsNamed) {
   EXPECT_TRUE(error_of("theta_i_deg,theta_r_deg\n1,1\n", PointsKind::kGeometries)
                   .starts_with("p.csv:1: column \"delta_phi_deg\" is missing, a number in [-360, 360]"));
+  EXPECT_EQ(
+      error_of("theta_i_deg\n1\n", PointsKind::kGeometries),
+      "p.csv:1: column \"theta_r_deg\" is missing, a number in [0, 90]; column \"delta_phi_deg\" is missing, a number "
+      "in [-360, 360]");
   EXPECT_TRUE(
       error_of("theta_deg\n1\n", PointsKind::kGeometries).starts_with("p.csv:1: column \"theta_deg\" is unknown"));
 }

@@ -1,4 +1,5 @@
 // The scene reader: every way to get a scene wrong, and overrides.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -215,6 +216,39 @@ TEST(SceneOverride_Malformed, IsRefused) {
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface=3"}), "--set surface=3: must be a table, [surface]"));
   // A value may not bring further keys with it.
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.n=1\nsurface.k=2"}), "must be a number"));
+}
+
+TEST(SceneOverride_OfAnAxis, IsNamedWhereItLacksAnEnd) {
+  EXPECT_EQ(error_of(kMinimal + "[grid]\ntheta_deg = [0, 30]\n", {"grid.theta_deg={from=0, count=3}"}),
+            "--set grid.theta_deg={from=0, count=3}: to: missing; must be a number in [0, 90]");
+  const std::string axis = kMinimal + "[grid]\ntheta_deg = { from = 0, to = 30, count = 3 }\n";
+  EXPECT_TRUE(contains(error_of(axis, {"grid.theta_deg.spacing=log"}), "--set grid.theta_deg.spacing=log: "));
+  EXPECT_TRUE(contains(error_of(axis + "n = 1.5\n", {"surface.material=iron"}), "--set surface.material=iron: "));
+}
+
+TEST(SceneOverride_ThatTakesAnUnknownKeyAway, IsRefused) {
+  const SceneValues scene = parse(kMinimal);
+  for (const auto& [key, nearest] : {std::pair("surface.foo", "surface.n"), {"surroundngs", "surroundings"}}) {
+    try {
+      with_settings(scene, {{key, {}}});
+      FAIL() << key;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(), fmt::format("{}: unknown key; the nearest known key is {}", key, nearest));
+    }
+  }
+  EXPECT_NO_THROW(with_settings(scene, {{"surface.k", {}}}));
+}
+
+TEST(SceneErrors_OfSeveralKeys, AreToldTogether) {
+  const std::string error = error_of("surface.n = -1\nsurface.sgma = 0.3\nsurface.masking = \"deep\"\n", {});
+  for (const char* part : {"s.toml:1: surface.n = -1: ", "; s.toml:3: surface.masking", "s.toml:2: surface.sgma"})
+    EXPECT_TRUE(contains(error, part)) << error;
+  const std::string missing = error_of("title = \"nothing\"\n", {});
+  for (const char* part : {"surface.n: missing", "surface.sigma: missing", "spectrum.wavelength_um: missing"})
+    EXPECT_TRUE(contains(missing, part)) << missing;
+  std::string many;
+  for (int i = 0; i < 8; ++i) many += "surface.x" + std::to_string(i) + " = 1\n";
+  EXPECT_TRUE(error_of(many, {}).ends_with("; and 3 more")) << error_of(many, {});
 }
 
 TEST(SceneOverride_OfAnAlternative, ReplacesTheFilesChoice) {

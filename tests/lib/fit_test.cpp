@@ -336,7 +336,21 @@ TEST_F(FitTest, TruthBeyondTheRange_IsAtItsBound) {
   EXPECT_TRUE(result.parameters.front().is_at_bound);
   EXPECT_EQ(result.parameters.front().value, 1.5);
   EXPECT_FALSE(result.parameters.front().standard_error.has_value());
+  EXPECT_EQ(result.parameters.front().why_no_error, "it is at its bound");
   EXPECT_FALSE(result.parameters.front().interval_95.high.has_value());
+}
+
+TEST_F(FitTest, StandardErrors_ThatReachBeyondTheRange_AreNone) {
+  const auto error_in = [&](double high) {
+    return fitted(measured(10.0 * kNoise), {number("surface.k", 0.0, high)}).parameters.front();
+  };
+  const FitParameter wide = error_in(5.0);
+  ASSERT_TRUE(wide.standard_error.has_value()) << wide.why_no_error;
+  EXPECT_TRUE(wide.why_no_error.empty());
+  const FitParameter narrow = error_in(wide.value + 0.5 * *wide.standard_error);
+  EXPECT_NEAR(narrow.value, wide.value, 0.1 * *wide.standard_error);
+  EXPECT_FALSE(narrow.standard_error.has_value());
+  EXPECT_NE(narrow.why_no_error.find("would reach beyond its range 0:"), std::string::npos) << narrow.why_no_error;
 }
 
 TEST_F(FitTest, Outlier_MovesSquaresMoreThanARobustLoss) {

@@ -67,9 +67,10 @@ std::string error_of(const SceneValues& scene, const std::string& csv) {
 
 TEST(PointEntries_Smith, RefusesSmallQWithFileLineColumnValueAndRange) {
   const SceneValues scene = make_scene(Distribution::kCauchy, Masking::kSmith, kDielectric);
-  EXPECT_EQ(error_of(scene, "theta_deg,q\n10,1.501\n20,1.5\n30,1.2\n"),
-            "p.csv:3: q = 1.5: out of range, a number in (1.5, 1e4] with masking = \"smith\" and distribution = "
-            "\"cauchy\"");
+  EXPECT_EQ(
+      error_of(scene, "theta_deg,q\n10,1.501\n20,1.5\n30,1.2\n"),
+      "p.csv:3: q = 1.5: out of range; must be a number in (1.5, 1e4] with masking = \"smith\" and distribution = "
+      "\"cauchy\"");
   EXPECT_EQ(error_of(scene, "theta_deg,q\n10,1.501\n"), "no error");
 }
 

@@ -64,6 +64,11 @@ INSTANTIATE_TEST_SUITE_P(
                 joined(kTable, {"--sigma", "3"}),
                 kInput,
                 {"--sigma 3: ", "--set surface.sigma=VALUE", "(see dolp table --help)"}},
+        Mistake{"MisspeltOption",
+                joined(kTable, {"--tolerence", "1e-3"}),
+                kInput,
+                {"--tolerence 1e-3: unknown here; did you mean --tolerance?"}},
+        Mistake{"ToleranceOutOfRange", joined(kTable, {"--tolerance", "1"}), kInput, {"--tolerance 1: 1 is out of"}},
         Mistake{"NoScene", {"table", "-o", "out.nc"}, kInput, {"SCENE"}},
         Mistake{"NoOutput", {"table", "scene.toml"}, kInput, {"--output", "(see dolp table --help)"}},
         Mistake{"NoPoints", {"eval", "scene.toml", "-o", "out.csv"}, kInput, {"--points"}},
@@ -89,7 +94,17 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"MaterialRangeDescends", {"materials", "iron", "--at", "8:1"}, kInput, {"--at 8:1: ", "FROM:TO:COUNT"}},
         Mistake{"MaterialWithoutWavelength", {"materials", "iron"}, kInput, {"--at", "(see dolp materials --help)"}},
         Mistake{"MaterialThatIsUnknown", {"materials", "irn", "--at", "9"}, kInput, {"irn", "iron"}},
-        Mistake{"MaterialBeyondItsRange", {"materials", "iron", "--at", "99"}, kInput, {"iron", "2 to 20 um"}},
+        Mistake{"MaterialWithAnotherLetter", {"materials", "golt", "--at", "9"}, kInput, {"golt: ", "gold ("}},
+        Mistake{"MaterialBeyondItsRange",
+                {"materials", "iron", "--at", "99"},
+                kInput,
+                {"--at 99: iron is known from 2 to 20 um"}},
+        Mistake{"MaterialPartlyBeyondItsRange",
+                {"materials", "iron", "--at", "8:30"},
+                kInput,
+                {"--at 8:30: iron is known from 2 to 20 um"}},
+        Mistake{"KeyFarFromAll", {"keys", "foo"}, kInput, {"foo: is no key of a scene; dolp keys lists all"}},
+        Mistake{"KeyWithoutItsTable", {"keys", "sgma"}, kInput, {"the nearest is surface.sigma"}},
         Mistake{"MaterialAtAWord", {"materials", "iron", "--at", "x"}, kInput, {"--at x"}},
         Mistake{"SetWithoutValue", joined(kTable, {"--set", "surface.sigma"}), kInput, {"--set", "surface.sigma"}}),
     name_of);
@@ -97,6 +112,11 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     SceneValues, CommandLineMistake,
     testing::Values(Mistake{"MissingFile", {"table", "none.toml", "-o", "out.nc"}, kInput, {"none.toml"}},
+                    Mistake{"SkyThatIsNone",
+                            joined(kTable, {"--set", "surroundings.profile=clear"}),
+                            kInput,
+                            {"surroundings.profile=clear: no such file, and no built-in sky: clear-sky, overcast; the "
+                             "nearest is clear-sky"}},
                     Mistake{"NotToml", kTable, kInput, {"scene.toml:2"}, scene_with("[surface]", "[surface")},
                     Mistake{"UnknownKey",
                             kTable,
@@ -130,6 +150,18 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Mistake{
         "UnknownDevice", joined(kTable, {"--device", "no such device"}), kDevice, {"no such device", "0 = "}}),
     name_of);
+
+TEST_F(CommandLine, PointsWithoutRows_GiveAHeaderAlone) {
+  put("points.csv", "theta_deg\n");
+  EXPECT_EQ(dolp(joined(kEval, {"--evaluator", "cpu"})).status, kDone);
+  EXPECT_EQ(data_lines(content("out.csv")).size(), 1U);
+}
+
+TEST_F(CommandLine, ToleranceThatFloatMisses_IsSaidOfWhat) {
+  const Outcome outcome = dolp(joined(kTable, {"--evaluator", "cpu", "--precision", "float", "--tolerance", "1e-9"}));
+  EXPECT_EQ(outcome.status, kDone) << outcome.err;
+  EXPECT_NE(outcome.out.find("tolerance not met, of DOLP and rho"), std::string::npos) << outcome.out;
+}
 
 TEST_F(CommandLine, StandardOutput_Full_Exit4) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"materials"},

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "cli_support.hpp"
 
@@ -161,6 +162,51 @@ TEST_F(FitProgram, Plot_IsAPng) {
   EXPECT_TRUE(content("fit.png").starts_with("\x89PNG"));
 }
 
+TEST_F(FitProgram, Plot_WithoutContours_SaysWhy) {
+  put("same.csv", "theta_deg,dolp,uncertainty\n0,0,0.01\n0,0,0.01\n0,0,0.01\n");
+  put("flat.csv", "theta_deg,dolp,uncertainty\n20,0.005,0.9\n40,0.01,0.9\n60,0.03,0.9\n70,0.05,0.9\n");
+  const std::vector<std::string> sigma = {"--vary", "surface.sigma=0.02:1"};
+  const std::vector<std::string> drawn = {"--plot", "fit.svg", "--json"};
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+      {joined(sigma, {"--data", "data.csv", "--vary", "surface.n=1.1:1.4"}), "surface.n: it is at its bound"},
+      {joined(sigma, {"--data", "same.csv", "--vary", "surface.n=1.1:3"}), "surface.n: the data do not determine it"},
+      {{"--data", "flat.csv", "--vary", "surface.n=1:20", "--vary", "surface.k=0:60"}, "grows by less than 2.30"},
+      {joined(sigma, {"--data", "data.csv"}), ""}};
+  for (const auto& [options, reason] : cases) {
+    const Outcome outcome = fit(joined(options, drawn));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const json report = json::parse(outcome.out);
+    EXPECT_FALSE(report.contains("contours"));
+    EXPECT_EQ(report.contains("no_contours"), !reason.empty());
+    const auto& named = report["degeneracies"];
+    EXPECT_EQ(std::set<std::string>(named.begin(), named.end()).size(), named.size()) << named;
+    EXPECT_NE(report.value("no_contours", "").find(reason), std::string::npos) << report["no_contours"];
+    EXPECT_TRUE(content("fit.svg").find("<svg") != std::string::npos);
+  }
+  const Outcome text = fit(cases.front().first);
+  EXPECT_NE(text.out.find("no error   surface.n: it is at its bound"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("errors     hold with surface.n kept at the bound"), std::string::npos) << text.out;
+}
+
+TEST_F(FitProgram, Plot_OfSignedData_HasTheBracketOfQOverI) {
+  const std::vector<std::string> keys = {"surface.masking=smith", "surface.q=3"};
+  measure("signed.csv", "theta_deg", {"q_over_i"}, keys);
+  const Outcome outcome = fit({"--data", "signed.csv", "--set", keys[0], "--set", keys[1], "--vary",
+                               "surface.sigma=0.02:1", "--plot", "fit.png", "--json", "-o", "fitted.toml"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json bracket = json::parse(outcome.out)["brackets"][0];
+  put("points.csv", "theta_deg\n20\n75\n");
+  for (const std::string model : {"moments", "direct"}) {
+    const Outcome exact = dolp({"eval", "fitted.toml", "--points", "points.csv", "-o", "-", "--quiet", "--evaluator",
+                                "cpu", "--set", "emission.model=" + model});
+    ASSERT_EQ(exact.status, 0) << exact.err;
+    const double end = parse_csv(exact.out).at("q_over_i").back();
+    const double distance = std::min(std::abs(bracket["low"].back().get<double>() - end),
+                                     std::abs(bracket["high"].back().get<double>() - end));
+    EXPECT_LT(distance, 1e-3) << bracket["low"].back() << ' ' << bracket["high"].back() << ' ' << end;
+  }
+}
+
 TEST_F(FitProgram, Plot_OfDataWithWavelengths_HasACurveForEachAndNoBracket) {
   const std::vector<std::string> keys = {"surface.masking=v-cavity", "surface.material=water"};
   const std::vector<std::string> options = {"--set", keys[0], "--set", keys[1], "--vary", "surface.sigma=0.02:1"};
@@ -201,6 +247,8 @@ TEST_F(FitProgram, BadInput_IsOneLineThatSaysWhatIsAllowed) {
   expect_message(with({"--vary", "surface.n=-1:2"}), "-1 is out of range, surface.n in (0, 1e6]");
   expect_message(with({"--vary", "surface.sigma=0.1:1"}), "surface.sigma: varies twice");
   expect_message(with({"--loss", "least"}), "--loss");
+  expect_message(with({"--plot", "fit.jpg"}), "plot fit.jpg: must end in .png, .pdf or .svg");
+  expect_message(with({"--starts", "0"}), "--starts");
   expect_message(with({"--model-error", "half"}), "--model-error");
   expect_message(with({"--loss", "huber", "--model-error", "bracket"}), "loss huber: cannot be combined");
   expect_message({"--data", "data.csv:surface.sigma=1", "--vary", "surface.sigma=0.1:1"}, "cannot be fixed too");

@@ -122,6 +122,12 @@ TEST_F(Lookup, Json_NamesTableAndErrors) {
   EXPECT_EQ(parse_csv(content("out.csv")).at("dolp").size(), 3U);
 }
 
+TEST_F(Lookup, WindsOutsideTheTable_AreNamedAsWinds) {
+  make_table({"--set", "surface.distribution=gaussian", "--set", "grid.wind_m_s=[5,10]"});
+  put("points.csv", "theta_deg,wind_m_s\n30,12\n");
+  expect_refused(lookup(), "points.csv:2: wind_m_s = 12: outside the table, which has [5, 10]");
+}
+
 TEST_F(Lookup, BadPoints_NameLineColumnAndRange) {
   make_table({});
   put("points.csv", "theta_deg,sigma,q\n30,0.2,2\n81,0.2,2\n");

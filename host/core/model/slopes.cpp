@@ -14,6 +14,8 @@ double slope_width(const SlopeShape& shape) { return std::sqrt(2.0) * shape.sigm
 
 double sigma_of_wind(double wind_m_s) { return std::sqrt(0.5 * (0.003 + 0.00512 * wind_m_s)); }
 
+double wind_of_sigma(double sigma) { return (2.0 * sigma * sigma - 0.003) / 0.00512; }
+
 double steeper_share(Distribution distribution, const SlopeShape& shape, double slope) {
   if (shape.sigma == 0.0) return 0.0;
   const double u = slope / slope_width(shape);

@@ -20,6 +20,8 @@ double slope_width(const SlopeShape& shape);
 /// Equation: 2 sigma^2 = m^2 = 0.003 + 0.00512 U.
 /// Source: Cox and Munk, J. Opt. Soc. Am. 44 (1954) 838: clean sea, U from 1 to 14 m/s, 12.5 m above the water.
 double sigma_of_wind(double wind_m_s);
+/// Its inverse.
+double wind_of_sigma(double sigma);
 
 /// Share of the facets that are steeper than a slope.
 ///

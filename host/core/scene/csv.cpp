@@ -60,7 +60,7 @@ std::string CsvReader::where() const { return fmt::format("{}:{}: ", name_, line
 void CsvReader::fail(const std::string& what) const { throw InputError(where() + what); }
 
 double CsvReader::number(std::size_t cell, std::string_view column, const NumberRange* range) const {
-  const std::string allowed = range ? ", a number in " + range->text() : "";
+  const std::string allowed = range ? "; must be a number in " + range->text() : "";
   const std::string_view text = cell < cells_.size() ? cells_[cell] : std::string_view{};
   if (range && text.empty()) fail(fmt::format("{}: the value is missing{}", column, allowed));
   const std::optional<double> value = parse_number(text);
@@ -68,7 +68,7 @@ double CsvReader::number(std::size_t cell, std::string_view column, const Number
   if (range && !range->contains(*value)) {
     const bool is_percent = range->max == 1.0 && std::abs(*value) <= kWholeInPercent;
     fail(fmt::format("{} = {}: out of range{}{}", column, one_line(text), allowed,
-                     is_percent ? "; a fraction of 1 is expected, not percent" : ""));
+                     is_percent ? ", a fraction and not percent" : ""));
   }
   return *value;
 }

@@ -62,15 +62,22 @@ const Material* match_name(std::string_view name) {
   return match;
 }
 
-/// Where a name is cut too short, what it could be; else the nearest name.
-std::string name_hint(std::string_view name) {
+/// The names that begin with a text.
+std::vector<std::string> names_from(std::string_view begin) {
   std::vector<std::string> names;
-  std::vector<std::string> begin_alike;
   for (const Material& material : built_in_materials()) {
-    names.push_back(material.name);
-    if (lower_case(material.name).starts_with(lower_case(trim(name)))) begin_alike.push_back(material.name);
+    if (lower_case(material.name).starts_with(lower_case(begin))) names.push_back(material.name);
   }
-  return begin_alike.empty() || trim(name).empty() ? nearest_name(name, names) : join(begin_alike);
+  return names;
+}
+
+/// Where a name is cut too short, what it could be; else those with the nearest name or first word.
+std::string name_hint(std::string_view name) {
+  const std::vector<std::string> begin_alike = names_from(trim(name));
+  if (!begin_alike.empty() && !trim(name).empty()) return join(begin_alike);
+  std::vector<std::string> begins = names_from("");
+  for (const std::string& known : names_from("")) begins.push_back(known.substr(0, known.find(' ')));
+  return join(names_from(nearest_name(name, begins)));
 }
 
 }  // namespace
@@ -81,7 +88,11 @@ const std::vector<Material>& built_in_materials() {
 }
 
 Material find_material(std::string_view name, const Spectrum& spectrum, const std::string& prefix) {
-  if (const Material* material = match_name(name)) return fit_to_spectrum(*material, spectrum, prefix);
+  return fit_to_spectrum(named_material(name, prefix), spectrum, prefix);
+}
+
+const Material& named_material(std::string_view name, const std::string& prefix) {
+  if (const Material* material = match_name(name)) return *material;
   throw InputError(fmt::format("{}unknown material; the nearest of the {} known: {}", prefix,
                                built_in_materials().size(), name_hint(name)));
 }

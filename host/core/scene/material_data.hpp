@@ -13,11 +13,14 @@ namespace dolp {
 /// The materials of host/data/materials.csv, with their sources, in the order of host/data/materials_sources.csv.
 const std::vector<Material>& built_in_materials();
 
-/// The built-in material called `name`, for use over `spectrum`.
+/// The built-in material called `name`.
 ///
 /// Case does not matter, and a name may be cut at a blank where that leaves one material ("water" for "water 25C").
-/// Errors: InputError that begins with `prefix`: unknown name (with the nearest), or a spectrum that its table does not
-/// cover (with the range of the table).
+/// Errors: InputError that begins with `prefix`: unknown name, with the nearest.
+const Material& named_material(std::string_view name, const std::string& prefix);
+
+/// The same for use over `spectrum`. Errors: likewise, and for a spectrum that its table does not cover, with the range
+/// of the table.
 Material find_material(std::string_view name, const Spectrum& spectrum, const std::string& prefix);
 
 /// A user's file of n and k over wavelength [um], linear in between, for use over `spectrum`.

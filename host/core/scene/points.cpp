@@ -80,13 +80,14 @@ std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
   return rule.of(points).emplace();
 }
 
-/// Refuses points that lack a column.
+/// Refuses points that lack columns, and names all of them.
 void check_required(const Points& points, const std::vector<ColumnRule>& rules) {
+  std::vector<std::string> missing;
   for (const ColumnRule& rule : rules) {
-    if (!rule.is_required() || rule.of(points)) continue;
-    throw InputError(
-        fmt::format("{}: column \"{}\" is missing, a number in {}", points.where(), rule.name, rule.range.text()));
+    if (rule.is_required() && !rule.of(points))
+      missing.push_back(fmt::format("column \"{}\" is missing, a number in {}", rule.name, rule.range.text()));
   }
+  if (!missing.empty()) throw InputError(fmt::format("{}: {}", points.where(), fmt::join(missing, "; ")));
 }
 
 /// The file's columns in its order; makes those that are not left out present in `points`.
@@ -149,7 +150,7 @@ Points points_of(std::span<const Column> columns, std::size_t count, PointsKind 
     }
     for (std::size_t row = 0; row < values.size(); ++row) {
       if (rule.range.contains(values[row])) continue;
-      throw InputError(fmt::format("{}: {} = {}: out of range, a number in {}", points.where(row), rule.name,
+      throw InputError(fmt::format("{}: {} = {}: out of range; must be a number in {}", points.where(row), rule.name,
                                    format_number(values[row]), rule.range.text()));
     }
     std::vector<double>& own = add_column(points, rule);

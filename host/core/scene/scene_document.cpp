@@ -223,10 +223,17 @@ unsigned SceneDocument::line_of(std::string_view key) const {
 
 std::string SceneDocument::prefix(std::string_view key) const {
   const toml::node* node = find(key);
-  // The message about a missing key does not point to a table that a setting created.
-  if (const std::string* origin = node ? origin_of(key) : nullptr; origin) return *origin + ": ";
+  // The message about a missing key does not point to a table that a setting created, but to an axis without it.
+  const bool is_of_value = node != nullptr || find_scene_key(table_part(key)) != nullptr;
+  if (const std::string* origin = is_of_value ? origin_of(key) : nullptr; origin)
+    return *origin + ": " + (node ? "" : last_part(key) + ": ");
   const std::string value = node && !node->is_table() ? " = " + one_line(toml_text(*node)) : "";
   return fmt::format("{}:{}: {}{}: ", name_, line_of(key), one_line(key), value);
+}
+
+std::string SceneDocument::first_set(std::initializer_list<std::string> keys) const {
+  const auto found = std::ranges::find_if(keys, [this](const std::string& key) { return is_set(key); });
+  return found == keys.end() ? *keys.begin() : *found;
 }
 
 void SceneDocument::fail(std::string_view key, const std::string& what) const { throw InputError(prefix(key) + what); }

@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 
 #include <dolp/setting.hpp>
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <string_view>
@@ -23,6 +24,9 @@ class SceneDocument {
   const toml::table& root() const { return root_; }
   const toml::node* find(std::string_view key) const;
   bool is_set(std::string_view key) const { return origin_of(key) != nullptr; }
+
+  /// The first of these keys that a setting gave, else the first: the one to name where they do not go together.
+  std::string first_set(std::initializer_list<std::string> keys) const;
 
   /// Throws InputError with the place of the key's value, the key, its value and the problem. For an absent key it
   /// names the line of its table.

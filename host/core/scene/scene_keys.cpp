@@ -133,7 +133,7 @@ std::vector<SceneKey> surface_keys() {
           [](const SceneValues& s) { return &s.surface.sigma; }, set_sigma),
       number(
           "surface.wind_m_s", "m s-1", kWindRange, "",
-          "wind U over a sea, instead of sigma, with distribution gaussian: m^2 = 0.003 + 0.00512 U",
+          "wind over a sea, instead of sigma, with distribution gaussian: m^2 = 0.003 + 0.00512 times the wind",
           [](const SceneValues& s) { return s.surface.wind_m_s ? &*s.surface.wind_m_s : nullptr; }, set_wind),
       number("surface.q", "1", kQRange, "2", "tail exponent q of the cauchy distribution; 2 is GGX",
              [](auto& s) { return &s.surface.q; }),

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <dolp/errors.hpp>
+#include <filesystem>
 #include <iterator>
 #include <numeric>
 #include <utility>
+#include <variant>
 
 #include "base/text.hpp"
 #include "model/direction.hpp"
@@ -72,17 +74,15 @@ const std::string* chosen_key(const SceneDocument& document, const KeyChoice& ch
   return chosen;
 }
 
-void check_choices(const SceneDocument& document) {
-  for (const KeyChoice& choice : key_choices()) {
-    const bool is_present = document.find(choice.table) != nullptr;
-    const bool has_substitute = !choice.substitute.empty() && document.find(choice.substitute);
-    if (chosen_key(document, choice) || !choice.is_required || has_substitute) continue;
-    if (!is_present && is_effect_table(choice.table)) continue;
-    std::vector<std::string> heads;
-    for (const auto& alternative : choice.alternatives) heads.push_back(alternative.front());
-    document.fail(heads.front(), fmt::format("missing; must be {}, or give one of {}",
-                                             find_scene_key(heads.front())->description.allowed(), join(heads)));
-  }
+void check_choice(const SceneDocument& document, const KeyChoice& choice) {
+  const bool is_present = document.find(choice.table) != nullptr;
+  const bool has_substitute = !choice.substitute.empty() && document.find(choice.substitute);
+  if (chosen_key(document, choice) || !choice.is_required || has_substitute) return;
+  if (!is_present && is_effect_table(choice.table)) return;
+  std::vector<std::string> heads;
+  for (const auto& alternative : choice.alternatives) heads.push_back(alternative.front());
+  document.fail(heads.front(), fmt::format("missing; must be {}, or give one of {}",
+                                           find_scene_key(heads.front())->description.allowed(), join(heads)));
 }
 
 /// Refuses a key whose needs are not all met, and names those that are not.
@@ -109,32 +109,57 @@ void check_wind(const SceneValues& scene, const SceneDocument& document) {
   }
 }
 
-void check_required(const SceneDocument& document) {
-  for (const Key& description : dolp::keys()) {
-    if (description.fallback != "required" || !description.rivals.empty() || document.find(description.key)) continue;
-    const std::string table = description.key.substr(0, description.key.find('.'));
-    if (document.find(table) || !is_effect_table(table))
-      document.fail(description.key, "missing; must be " + description.allowed());
-  }
+void check_required(const SceneDocument& document, const Key& known) {
+  if (known.fallback != "required" || !known.rivals.empty() || document.find(known.key)) return;
+  const std::string table = known.key.substr(0, known.key.find('.'));
+  if (document.find(table) || !is_effect_table(table)) document.fail(known.key, "missing; must be " + known.allowed());
 }
+
+/// Errors that are told together, in one line.
+class Mistakes {
+ public:
+  template <class Check>
+  void of(const Check& check) {
+    try {
+      check();
+    } catch (const InputError& error) {
+      if (count_++ < kMostTold) text_ += (text_.empty() ? "" : "; ") + std::string(error.what());
+    }
+  }
+  void tell() const {
+    if (count_ > kMostTold) throw InputError(fmt::format("{}; and {} more", text_, count_ - kMostTold));
+    if (count_ > 0) throw InputError(text_);
+  }
+
+ private:
+  static constexpr std::size_t kMostTold = 5;
+  std::string text_;
+  std::size_t count_ = 0;
+};
 
 SceneValues read_keys(const SceneDocument& document) {
   SceneValues scene;
+  Mistakes mistakes;
   const std::vector<std::string> keys = document_keys(document);
   for (const std::string& key : keys) {
-    if (!find_scene_key(key)) document.fail(key, "unknown key; the nearest known key is " + key_hint(key));
-    if (!document.find(key)) document.fail(key, "its dot is inside of quotes; write it without them");
+    mistakes.of([&] {
+      if (!find_scene_key(key)) document.fail(key, "unknown key; the nearest known key is " + key_hint(key));
+      if (!document.find(key)) document.fail(key, "its dot is inside of quotes; write it without them");
+    });
   }
   for (const std::string& table : scene_tables()) {
     if (document.find(table)) add_effect(scene, table);
   }
   for (const std::string& key : keys) {
-    const SceneKey& known = *find_scene_key(key);
-    known.set(scene, read_value(document, known.description));
+    const SceneKey* const known = find_scene_key(key);
+    if (known != nullptr && document.find(key) != nullptr)
+      mistakes.of([&] { known->set(scene, read_value(document, known->description)); });
   }
+  mistakes.tell();
   check_wind(scene, document);
-  check_choices(document);
-  check_required(document);
+  for (const KeyChoice& choice : key_choices()) mistakes.of([&] { check_choice(document, choice); });
+  for (const Key& known : dolp::keys()) mistakes.of([&] { check_required(document, known); });
+  mistakes.tell();
   return scene;
 }
 
@@ -218,6 +243,12 @@ void load_profile(SceneValues& scene, const SceneDocument& document, const std::
   const std::string prefix = document.prefix("surroundings.profile");
   std::optional<SkyProfile> profile = built_in_sky(scene.names.profile);
   if (!profile && known && known->profile) profile = known->profile;
+  if (!profile && !known && !std::filesystem::exists(resolve_path(scene.names.profile, scene_path))) {
+    std::vector<std::string> names;
+    for (const BuiltInSky& sky : built_in_skies()) names.emplace_back(sky.name);
+    throw InputError(fmt::format("{}no such file, and no built-in sky: {}; the nearest is {}", prefix, join(names),
+                                 nearest_name(scene.names.profile, names)));
+  }
   if (!profile) {
     profile = read_file_of(scene, scene.names.profile, scene_path, prefix, known,
                            [&](const std::string& path) { return read_sky_profile(path, prefix); });
@@ -236,14 +267,16 @@ void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
   OpticalConstants& index = scene.surface.material.constant;
   if (!grid[Axis::kWavelength].empty()) {
     if (document.find("spectrum.band_um"))
-      document.fail("grid.wavelength_um", "cannot be combined with spectrum.band_um");
+      document.fail(document.first_set({"grid.wavelength_um", "spectrum.band_um"}),
+                    "grid.wavelength_um and spectrum.band_um cannot be combined");
     if (!document.find("spectrum.wavelength_um"))
       scene.spectrum = {grid[Axis::kWavelength].front(), grid[Axis::kWavelength].front()};
   }
   for (const char* axis : {"grid.n", "grid.k"}) {
     for (const char* material : {"surface.material", "surface.material_file"}) {
       if (document.find(axis) && document.find(material))
-        document.fail(axis, fmt::format("cannot be combined with {}", material));
+        document.fail(document.first_set({axis, material}),
+                      fmt::format("{} and {} cannot be combined", axis, material));
     }
   }
   if (!grid[Axis::kN].empty() && !document.find("surface.n")) index.n = grid[Axis::kN].front();
@@ -309,6 +342,17 @@ void check_radiation(const SceneValues& scene, const SceneDocument& document) {
   }
 }
 
+/// Applies a setting. Errors: InputError, also where it takes a key away that no scene has.
+void apply(SceneDocument& document, const Setting& setting) {
+  const std::vector<std::string> tables = scene_tables();
+  const bool is_known = find_scene_key(setting.key) || std::ranges::find(tables, setting.key) != tables.end();
+  if (std::holds_alternative<std::monostate>(setting.value.content()) && !is_known) {
+    throw InputError(
+        fmt::format("{}: unknown key; the nearest known key is {}", one_line(setting.key), key_hint(setting.key)));
+  }
+  document.apply(setting);
+}
+
 /// The scene of a document, with files found from the folder of `path_name`.
 SceneValues scene_of(const SceneDocument& document, const std::string& path_name, const KnownData* known) {
   SceneValues scene = read_keys(document);
@@ -330,7 +374,7 @@ SceneValues scene_of(const SceneDocument& document, const std::string& path_name
 SceneValues parse_scene(const std::string& text, const std::string& path_name, const std::vector<Setting>& settings,
                         const KnownData* known) {
   SceneDocument document(text, path_name);
-  for (const Setting& setting : settings) document.apply(setting);
+  for (const Setting& setting : settings) apply(document, setting);
   SceneValues scene = scene_of(document, path_name, known);
   scene.text = text;
   scene.settings = settings;
@@ -355,7 +399,7 @@ SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& 
     return parse_scene(scene.text, scene.path_name, all);
   }
   SceneDocument document = *scene.document;
-  for (const Setting& setting : settings) document.apply(setting);
+  for (const Setting& setting : settings) apply(document, setting);
   SceneValues changed = scene_of(document, scene.path_name, nullptr);
   changed.text = scene.text;
   changed.settings = scene.settings;

@@ -72,10 +72,13 @@ AxisRule read_axis_rule(const SceneDocument& document, const Key& description, c
     if (word != "linear" && word != "log") document.fail(begin + "spacing", "must be one of linear, log");
     rule.is_log = word == "log";
   }
-  if (rule.count == 1 && rule.from != rule.to) document.fail(begin + "count", "one value needs from = to");
+  if (rule.count == 1 && rule.from != rule.to)
+    document.fail(document.first_set({begin + "count", begin + "from", begin + "to"}), "one value needs from = to");
   for (const char* end : {"from", "to"}) {
     const double value = std::string_view(end) == "from" ? rule.from : rule.to;
-    if (rule.is_log && value <= 0.0) document.fail(begin + end, "spacing = \"log\" needs from > 0 and to > 0");
+    if (rule.is_log && value <= 0.0)
+      document.fail(document.first_set({begin + end, begin + "spacing"}),
+                    "spacing = \"log\" needs from > 0 and to > 0");
   }
   return rule;
 }

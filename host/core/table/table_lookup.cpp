@@ -67,17 +67,19 @@ PointResult unknown() {
   return result;
 }
 
-/// Refuses a table that lacks a quantity that every result needs.
+/// Refuses a table that lacks quantities that every result needs, and names all of them.
 void check_variables(const TableValues& table, const std::string& name) {
-  const auto require = [&](bool is_there, std::string_view variable) {
-    if (!is_there) throw InputError(fmt::format("{}: the variable {} is missing; lookup needs it", name, variable));
-  };
+  std::vector<std::string> missing;
   for (const Quantity quantity : kAllQuantities) {
     const bool is_needed =
         std::ranges::find(kNeeded, quantity) != kNeeded.end() || (quantity == kRhoI && table.has(kRhoErrorEstimate));
-    require(!is_needed || table.has(quantity), description_of(quantity).name);
+    if (is_needed && !table.has(quantity)) missing.emplace_back(description_of(quantity).name);
   }
-  require(!table.status.empty(), "status");
+  if (table.status.empty()) missing.emplace_back("status");
+  if (missing.empty()) return;
+  const bool is_one = missing.size() == 1;
+  throw InputError(fmt::format("{}: the variable{} {} {} missing; lookup needs {}", name, is_one ? "" : "s",
+                               fmt::join(missing, ", "), is_one ? "is" : "are", is_one ? "it" : "them"));
 }
 
 }  // namespace

@@ -28,6 +28,9 @@ constexpr std::size_t kMostShrinking = 1032;
 // The text of a scene has at most 16 MiB.
 constexpr std::size_t kMostTextBytes = 64U << 20U;
 
+constexpr const char* kPartHint =
+    "as in a part of a table; in Python dolp.lookup(xarray.load_dataset(FILE), ...) takes parts";
+
 /// An open file, whose errors are InputErrors with its name.
 class Reader {
  public:
@@ -99,6 +102,7 @@ std::vector<double> read_list(const Reader& reader, const std::string& name, std
   const Hdf5Handle variable = reader.find(name);
   if (!variable) return {};
   const std::vector<hsize_t> shape = reader.shape_of(variable, name);
+  if (shape.empty()) reader.fail(name + ": has one value and no dimension, " + kPartHint);
   if (shape.size() != 1) reader.fail(name + ": is not a list");
   if (shape[0] > most) {
     reader.fail(fmt::format("{}: {} values; a table has at most {} entries", name, shape[0], kMostTableEntries));
@@ -313,7 +317,10 @@ void TableReader::check_hash(const ValueSums& sums) const {
   if (!hash) impl_->reader.fail("has no text attribute values_hash: its values are not known to be those of dolp");
   if (*hash == values_hash(impl_->head, impl_->quantities, sums)) return;
   impl_->reader.fail(
-      "the values are not those that dolp wrote (attribute values_hash): the file was changed or is damaged");
+      "the values are not those that dolp wrote (attribute values_hash): the file was changed or is damaged, or has "
+      "not "
+      "all values, " +
+      std::string(kPartHint));
 }
 
 ValueSums TableReader::sums_of(const TableValues& part, const TableBox& box) const {

@@ -123,6 +123,9 @@ struct BuiltInMaterial {
   std::string source;
 };
 DOLP_EXPORT std::vector<BuiltInMaterial> materials();
+/// The one of that name, or the only one that begins with it up to a blank; case does not matter.
+/// Errors: InputError with the nearest.
+DOLP_EXPORT BuiltInMaterial material(const std::string& name);
 
 /// Results at points, computed or read from a table, in the order of the points.
 struct Results : ResultColumns {

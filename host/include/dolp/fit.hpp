@@ -96,10 +96,12 @@ inline constexpr const char* kModelErrorKey = "model_error";
 /// "none", "bracket", in the order of ModelError.
 DOLP_EXPORT const std::vector<std::string>& model_error_names();
 
+inline constexpr std::size_t kMostStarts = 10'000;
+
 /// Options of a fit.
 struct FitOptions {
   std::vector<FitRange> vary;
-  std::size_t starts = 24;                             ///< descents that look for minima
+  std::size_t starts = 24;                             ///< descents that look for minima: 1 to kMostStarts
   std::uint64_t seed = 1;                              ///< of where they begin
   Progress progress = {};                              ///< counts what a phase consists of; may be empty
   std::function<void(const std::string&)> phase = {};  ///< gets its name before it begins; may be empty
@@ -107,7 +109,7 @@ struct FitOptions {
   ModelError model_error = ModelError::kNone;          ///< another one needs uncertainties
   std::vector<Comparison> compare = {};                ///< all combinations are fitted and ranked
   std::filesystem::path output = {};  ///< file for the scene with what was found; "-" is stdout; empty: none
-  std::filesystem::path plot = {};    ///< PNG of data, model and residuals, which Matplotlib draws; empty: none
+  std::filesystem::path plot = {};    ///< .png, .pdf or .svg of data, model and residuals, by Matplotlib; empty: none
 };
 
 /// A profile-likelihood interval, from the least to the largest value that the data do not rule out, over all minima;
@@ -122,9 +124,10 @@ struct FitInterval {
 struct FitParameter {
   std::string key;
   double value = 0.0;
-  std::optional<double> standard_error;  ///< from the covariance; none at a bound or if undetermined
+  std::optional<double> standard_error;  ///< from the covariance, with parameters at their bounds held there
   FitInterval interval_68, interval_95;  ///< 68.27 % and 95 %; both ends none without a scale of the residuals
   bool is_at_bound = false;
+  std::string why_no_error = {};  ///< why standard_error is none, in words
 };
 
 }  // namespace dolp

@@ -1,7 +1,10 @@
+#include <fmt/format.h>
+
 #include <dolp/status.hpp>
 #include "api/reports.hpp"
 #include "api/results.hpp"
 #include "api/scene_impl.hpp"
+#include "base/text.hpp"
 #include "base/version.hpp"
 #include "plan/effects.hpp"
 #include "report/plan_report.hpp"
@@ -11,10 +14,18 @@
 #include "scene/material_data.hpp"
 
 namespace dolp {
+namespace {
+
+BuiltInMaterial facts_of(const Material& material) {
+  const Spectrum range = known_range(material);
+  return {material.name, range.min_um, range.max_um, material.source};
+}
+
+}  // namespace
 
 std::string version() { return program_version(); }
 std::string commit() { return program_commit(); }
-std::string citation() { return std::string(embedded_citation_cff()); }
+std::string citation() { return fmt::format("{}commit: \"{}\"\n", embedded_citation_cff(), commit()); }
 
 Report plan(const Scene& scene, const std::string& device, bool keep_all) {
   const SceneValues& own = scene.impl().scene;
@@ -31,11 +42,10 @@ std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& point
 
 std::vector<BuiltInMaterial> materials() {
   std::vector<BuiltInMaterial> all;
-  for (const Material& material : built_in_materials()) {
-    const Spectrum range = known_range(material);
-    all.push_back({material.name, range.min_um, range.max_um, material.source});
-  }
+  for (const Material& material : built_in_materials()) all.push_back(facts_of(material));
   return all;
 }
+
+BuiltInMaterial material(const std::string& name) { return facts_of(named_material(name, one_line(name) + ": ")); }
 
 }  // namespace dolp

@@ -43,7 +43,9 @@ Points load_points(const std::filesystem::path& path, PointsKind kind, std::vect
 }
 
 void add_left_out(ReportBuilder& report, const Points& points) {
-  report.row_if(!points.left_out.empty(), "left out", "{}, because they are results", join(points.left_out));
+  report.row_if(!points.left_out.empty(), "left out", "{} of the points: results, which are computed anew",
+                join(points.left_out));
+  report.value("left_out", points.left_out);
 }
 
 /// The CSV of points of a file, whose cells it has as they were given.
@@ -181,7 +183,10 @@ Report write_lookup(const std::filesystem::path& table_path, const std::filesyst
   report.row("error", "{}, interpolation included; tolerance of the table {:g}",
              worst ? fmt::format("DOLP <= {:.2g} (absolute)", *worst) : "stated for no point",
              key("tolerance", scene.accuracy.tolerance));
-  report.row("status 2", "{} of {} points: tolerance not met", key("tolerance_missed", missed), results.size());
+  report.row("status 2", "{} of {} points: tolerance not met{}", key("tolerance_missed", missed), results.size(),
+             missed == 0                                      ? ""
+             : worst.value_or(0.0) > scene.accuracy.tolerance ? ", of DOLP: the grid is too coarse there (dolp plan)"
+                                                              : ", of rho alone: DOLP is as good as its estimate");
   add_left_out(report, points);
   report.row("written", "{}", key("output", path.string()));
   report.value("worst_error_estimate", worst);

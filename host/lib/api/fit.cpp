@@ -94,6 +94,18 @@ struct Best {
   }
 };
 
+/// Refuses what Matplotlib would not draw, or would draw in another format than the name says.
+void check_plot(const std::filesystem::path& path) {
+  const std::string suffix = lower_case(path.extension().string());
+  if (path.empty() || suffix == ".png" || suffix == ".pdf" || suffix == ".svg") return;
+  throw InputError(fmt::format("plot {}: must end in .png, .pdf or .svg", one_line(path.string())));
+}
+
+void check_starts(std::size_t starts) {
+  if (starts >= 1 && starts <= kMostStarts) return;
+  throw InputError(fmt::format("starts = {}: must be a whole number from 1 to {}", starts, kMostStarts));
+}
+
 void check_outputs(const FitOptions& options, const SceneValues& scene, const std::vector<MeasuredData>& data) {
   std::vector<std::string> inputs = files_of(scene);
   for (const MeasuredData& one : data) inputs.push_back(one.name);
@@ -115,35 +127,53 @@ std::vector<double> fine_zeniths(const MeasuredData& data) {
   return zeniths;
 }
 
-/// Q/I or DOLP at zeniths, with its bracket, of one data set; empty where the scene has no bracket, other quantities
-/// were measured, or wavelengths are those of the measurements.
-std::vector<PointResult> bracketed(const Scene& fitted, const MeasuredData& data, const std::vector<double>& theta_deg,
-                                   ModelEvaluator& evaluator) {
+/// DOLP or Q/I at a zenith, and its bracket.
+struct Bracketed {
+  double model, low, high;
+};
+
+/// What was measured at zeniths, with its bracket, of one data set; empty where the scene has no bracket, other
+/// quantities were measured, or wavelengths are those of the measurements.
+std::vector<Bracketed> bracketed(const Scene& fitted, const MeasuredData& data, const std::vector<double>& theta_deg,
+                                 ModelEvaluator& evaluator) {
   const Observable measured = data.measurements.front().observable;
   if (measured != Observable::kDolp && measured != Observable::kQOverI) return {};
   if (data.measurements.front().wavelength_um) return {};
-  Settings settings = data.settings;
-  settings.push_back({"emission.bracket", true});
-  try {
+  const auto results_of = [&](const Setting& own) {
+    Settings settings = data.settings;
+    settings.push_back(own);
     const SceneValues scene = with_settings(fitted.impl().scene, settings);
     const Column zeniths{"theta_deg", theta_deg};
     const Points points = points_of(std::span(&zeniths, 1), theta_deg.size(), PointsKind::kDirections);
     return evaluate_scene(scene, point_entries(scene, points), evaluator, {});
-  } catch (const InputError&) {
-    return {};  // a scene without a bracket
+  };
+  std::vector<Bracketed> all;
+  try {
+    const bool is_direct = fitted.word("emission.model") == "direct";
+    const std::vector<PointResult> results = results_of({"emission.bracket", true});
+    const std::vector<PointResult> others =
+        measured == Observable::kDolp ? results : results_of({"emission.model", is_direct ? "moments" : "direct"});
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      const PointResult& one = results[i];
+      const auto [low, high] = std::minmax({one[Quantity::kQOverI], others[i][Quantity::kQOverI]});
+      all.push_back(measured == Observable::kDolp
+                        ? Bracketed{one[Quantity::kDolp], one[Quantity::kDolpLow], one[Quantity::kDolpHigh]}
+                        : Bracketed{one[Quantity::kQOverI], low, high});
+    }
+  } catch (const InputError&) {  // a scene without a bracket
   }
+  return all;
 }
 
-/// The bracket of each data set of DOLP over zenith, null where there is none.
+/// The bracket of each data set over zenith, null where there is none.
 Json brackets(const Scene& fitted, const std::vector<MeasuredData>& sets, ModelEvaluator& evaluator) {
   Json all = Json::array();
   for (const MeasuredData& data : sets) {
     Json& one = all.emplace_back(nullptr);
-    if (data.measurements.front().observable != Observable::kDolp) continue;
     const std::vector<double> zeniths = fine_zeniths(data);
-    for (const PointResult& result : bracketed(fitted, data, zeniths, evaluator)) {
-      one["low"].push_back(result[Quantity::kDolpLow]);
-      one["high"].push_back(result[Quantity::kDolpHigh]);
+    for (const Bracketed& at : bracketed(fitted, data, zeniths, evaluator)) {
+      one["low"].push_back(at.low);
+      one["high"].push_back(at.high);
     }
     if (!one.is_null()) one["theta_deg"] = zeniths;
   }
@@ -197,17 +227,17 @@ void add_model_gap(ReportBuilder& report, const Scene& fitted, const std::vector
   for (const MeasuredData& data : sets) {
     std::vector<double> zeniths;
     for (const Measurement& one : data.measurements) zeniths.push_back(one.theta_deg);
-    const std::vector<PointResult> results = bracketed(fitted, data, zeniths, evaluator);
+    const std::vector<Bracketed> results = bracketed(fitted, data, zeniths, evaluator);
     for (std::size_t i = 0; i < results.size(); ++i) {
-      const double dolp = results[i][Quantity::kDolp];
-      const double distance = std::max(results[i][Quantity::kDolpHigh] - dolp, dolp - results[i][Quantity::kDolpLow]);
+      const auto& [model, low, high] = results[i];
+      const double distance = std::max(high - model, model - low);
       if (!(distance >= 0.0)) continue;
       gap = std::max(gap.value_or(0.0), distance);
       if (data.has_uncertainties) share = std::max(share.value_or(0.0), distance / *data.measurements[i].uncertainty);
     }
   }
-  report.row_if(gap.has_value(), "model",
-                "may itself be off, with all bounces: its bracket reaches {:.2g} points of DOLP{} away{}",
+  report.row_if(gap.has_value(), "bracket",
+                "of all bounces: its far end lies up to {:.2g} points of DOLP or Q/I{} from the fit{}",
                 kPoints * gap.value_or(0.0), share ? fmt::format(", {:.2g} uncertainties,", *share) : "",
                 error == ModelError::kNone ? "" : "; the intervals contain that");
   report.value("model_gap", gap);
@@ -266,6 +296,8 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
   return impl().exclusively(of_call, [&](const FitOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     check_loss(options.loss, options.model_error, data);
+    check_starts(options.starts);
+    check_plot(options.plot);
     begin(options.progress, 1);
     std::vector<ComparedModel> models;
     ModelEvaluator* evaluator = nullptr;
@@ -291,8 +323,7 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     if (best.result) add_model_gap(report, fitted, data, options.model_error, *evaluator);
     if (best.result && !options.output.empty()) write_fitted(options.output, fitted);
     if (best.result && !options.plot.empty()) {
-      const auto contours = fit::contours_of(*best.model, *evaluator, *best.result, options);
-      if (contours) add_contours(report, *best.model, *contours);
+      add_contours(report, *best.model, *best.result, fit::contours_of(*best.model, *evaluator, *best.result, options));
       const Spectrum& spectrum = fitted.impl().scene.spectrum;
       report.value("spectrum_um", Json{spectrum.min_um, spectrum.max_um});
       report.value("brackets", brackets(fitted, data, *evaluator));

@@ -25,7 +25,7 @@ void check_axes(const TableHead& table, const std::string& name) {
       throw InputError(fmt::format("{}: the axis {} is missing", name, described.name));
     for (const double value : table.axes[axis]) {
       if (described.range.contains(value)) continue;
-      throw InputError(fmt::format("{}: {} = {}: out of range, a number in {}", name, described.name,
+      throw InputError(fmt::format("{}: {} = {}: out of range; must be a number in {}", name, described.name,
                                    format_number(value), described.range.text()));
     }
   }

@@ -137,6 +137,22 @@ std::string words_of(const Direction& direction, const std::vector<FitRange>& pa
                      fmt::join(falling, " and "), falling.size() == 1 ? "falls" : "fall");
 }
 
+/// The standard error of a value, or why it has none.
+void set_error(FitParameter& fitted, const FitRange& range, double deviation, bool has_scale) {
+  const double error = deviation * range.slope(fitted.value);
+  if (fitted.is_at_bound) {
+    fitted.why_no_error = "it is at its bound";
+  } else if (!has_scale) {
+    fitted.why_no_error = "there are as many parameters as points";
+  } else if (!std::isfinite(error)) {
+    fitted.why_no_error = "the data do not determine it";
+  } else if (fitted.value - error < range.low || fitted.value + error > range.high) {
+    fitted.why_no_error = fmt::format("{:.2g} would reach beyond its range {:g}:{:g}", error, range.low, range.high);
+  } else {
+    fitted.standard_error = error;
+  }
+}
+
 FitInterval interval_of(const FitRange& parameter, const std::vector<Stretch>& stretches) {
   FitInterval interval;
   for (const Stretch& one : stretches) {
@@ -227,8 +243,7 @@ class Fit {
       fitted.key = parameter.key;
       fitted.value = parameter.at(best.where.at[index]);
       fitted.is_at_bound = is_at_bound(best.where.at[index]);
-      const double deviation = std::sqrt(covariance_.of_coordinates(index, index));
-      if (has_scale() && std::isfinite(deviation)) fitted.standard_error = deviation * parameter.slope(fitted.value);
+      set_error(fitted, parameter, std::sqrt(covariance_.of_coordinates(index, index)), has_scale());
     }
     result_.seen = {best};
     if (!has_scale()) return false;
@@ -300,7 +315,9 @@ class Fit {
         is_open = is_open || (std::abs(direction.along[static_cast<Eigen::Index>(j)]) >= kInDirection &&
                               !interval.low && !interval.high);
       }
-      if (is_open) result_.degeneracies.push_back(words_of(direction, model_.parameters()));
+      const std::string words = words_of(direction, model_.parameters());
+      const bool is_new = std::ranges::find(result_.degeneracies, words) == result_.degeneracies.end();
+      if (is_open && is_new) result_.degeneracies.push_back(words);
     }
   }
 

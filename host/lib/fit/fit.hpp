@@ -24,7 +24,7 @@ struct OtherMinimum {
 /// The result of a fit. Lists over observations are in the order of the data.
 struct FitResult {
   std::vector<FitParameter> parameters;
-  Eigen::MatrixXd correlation;  ///< NaN of a parameter without a standard error
+  Eigen::MatrixXd correlation;  ///< NaN of a parameter at its bound, or that the data do not determine
   double chi_square = 0.0;      ///< sum of the squares of `residuals`, or of their loss
   std::size_t degrees_of_freedom = 0;
   std::optional<double> reduced_chi_square;  ///< none without degrees of freedom

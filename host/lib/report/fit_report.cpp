@@ -6,6 +6,7 @@
 #include <limits>
 
 #include <dolp/status.hpp>
+#include "base/text.hpp"
 
 namespace dolp {
 namespace {
@@ -38,6 +39,7 @@ Json parameter_json(const FitParameter& one) {
                {"interval_68", json_of(one.interval_68)},
                {"interval_95", json_of(one.interval_95)},
                {"at_bound", one.is_at_bound}};
+  if (!one.standard_error) json["why_no_error"] = one.why_no_error;
   for (const auto& [name, interval] : {std::pair("pieces_68", &one.interval_68), {"pieces_95", &one.interval_95}}) {
     if (interval->pieces.size() < 2) continue;
     for (const auto& [low, high] : interval->pieces) json[name].push_back(Json::array({json_of(low), json_of(high)}));
@@ -56,6 +58,20 @@ void add_pieces(ReportBuilder& report, const FitParameter& one) {
   }
 }
 
+/// A line for each parameter that has no standard error, and one for those that hold at bounds of others alone.
+void add_missing_errors(ReportBuilder& report, const FitResult& result) {
+  std::vector<std::string> held;
+  bool has_errors = false;
+  for (const FitParameter& one : result.parameters) {
+    report.row_if(!one.standard_error, "no error", "{}: {}", one.key, one.why_no_error);
+    if (one.is_at_bound) held.push_back(one.key);
+    has_errors = has_errors || one.standard_error.has_value();
+  }
+  report.row_if(has_errors && !held.empty(), "errors", "hold with {} kept at the bound; the intervals do not assume it",
+                join(held));
+  report.value("errors_with_kept", held);
+}
+
 /// A line for each parameter, and one for each end of its range that lies before the data exclude a value.
 void add_parameters(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   Json list = Json::array();
@@ -69,6 +85,7 @@ void add_parameters(ReportBuilder& report, const fit::Model& model, const FitRes
                 one.standard_error ? fmt::format("{:.2g}", *one.standard_error) : "none", text_of(one.interval_68),
                 text_of(one.interval_95), one.is_at_bound ? "  at its bound" : "");
   }
+  add_missing_errors(report, result);
   for (const FitParameter& one : result.parameters) add_pieces(report, one);
   const bool has_intervals = model.has_uncertainties() || result.degrees_of_freedom > 0;
   for (std::size_t j = 0; has_intervals && j < result.parameters.size(); ++j) {
@@ -167,6 +184,24 @@ std::vector<std::string> settings_of(const ComparedModel& model) {
   return texts;
 }
 
+/// Why a picture has no contours, in a sentence; empty where it has some, or one number alone was fitted.
+std::string why_no_contours(const FitResult& result, const std::optional<fit::Contours>& drawn) {
+  if (result.parameters.size() < 2) return "";
+  if (drawn && std::ranges::all_of(drawn->segments, &std::vector<Eigen::Vector4d>::empty)) {
+    return fmt::format(
+        "none: within the ranges chi_square grows by less than {:.2f}, or its valley is longer than {} parameter sets "
+        "reach",
+        fit::kContourLevels.front(), result.evaluations);
+  }
+  if (drawn) return "";
+  std::vector<std::string> reasons;
+  for (const FitParameter& one : result.parameters) {
+    if (!one.standard_error) reasons.push_back(one.key + ": " + one.why_no_error);
+  }
+  return fmt::format("none: they need two parameters that the data determine within their ranges ({})",
+                     fmt::join(reasons, "; "));
+}
+
 std::string model_text(const ComparedModel& model) { return fmt::format("{}", fmt::join(settings_of(model), " ")); }
 
 }  // namespace
@@ -188,7 +223,13 @@ void add_fit(ReportBuilder& report, const fit::Model& model, const FitResult& re
   add_points(report, model, result);
 }
 
-void add_contours(ReportBuilder& report, const fit::Model& model, const fit::Contours& contours) {
+void add_contours(ReportBuilder& report, const fit::Model& model, const FitResult& result,
+                  const std::optional<fit::Contours>& drawn) {
+  const std::string reason = why_no_contours(result, drawn);
+  report.row_if(!reason.empty(), "contours", "{}", reason);
+  if (!reason.empty()) report.value("no_contours", reason);
+  if (!reason.empty() || !drawn) return;
+  const fit::Contours& contours = *drawn;
   const auto [first, second] = contours.parameters;
   Json lines = Json::array();
   for (const auto& segments : contours.segments) {

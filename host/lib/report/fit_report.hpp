@@ -22,8 +22,9 @@ struct ComparedModel {
 /// the list of the data.
 void add_fit(ReportBuilder& report, const fit::Model& model, const fit::FitResult& result);
 
-/// Adds the growth of the objective around the minimum.
-void add_contours(ReportBuilder& report, const fit::Model& model, const fit::Contours& contours);
+/// Adds the growth of the objective around the minimum, or why it is not drawn.
+void add_contours(ReportBuilder& report, const fit::Model& model, const fit::FitResult& result,
+                  const std::optional<fit::Contours>& drawn);
 
 /// Adds the table of compared models, the best first.
 void add_comparison(ReportBuilder& report, const std::vector<ComparedModel>& models);

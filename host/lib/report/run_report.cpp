@@ -71,7 +71,16 @@ void add_errors(ReportBuilder& report, const RunOutcome& run, double tolerance) 
   report.value("worst_rho_error_estimate", rho);
 }
 
-void add_status(ReportBuilder& report, const RunSummary& summary) {
+/// What misses the tolerance; empty where its bounds do not say it.
+std::string missed_text(const RunOutcome& run, double tolerance) {
+  const bool is_dolp = run.summary.worst_error.value_or(0.0) > tolerance;
+  const bool is_rho = run.plan.gives_rho && run.summary.worst_rho_error.value_or(0.0) > tolerance;
+  if (is_dolp && is_rho) return "DOLP and rho";
+  return is_dolp ? "DOLP" : is_rho ? "rho alone" : "";
+}
+
+void add_status(ReportBuilder& report, const RunOutcome& run, double tolerance) {
+  const RunSummary& summary = run.summary;
   std::vector<ReportBuilder> parts;
   for (const auto& [bit, meaning] :
        {std::pair{kReflectanceOutsideZeroToOne, "reflectance outside [0, 1]"},
@@ -79,8 +88,11 @@ void add_status(ReportBuilder& report, const RunSummary& summary) {
         std::pair{kIntensityNotPositive, "intensity not positive"}}) {
     ReportBuilder& part = parts.emplace_back();
     part.value("bit", bit);
-    part.row(fmt::format("status {}", bit), "{} of {} entries: {}", key("count", summary.count(bit)), summary.entries,
-             key("meaning", meaning));
+    const bool is_missed = bit == kToleranceNotMet && summary.count(bit) > 0;
+    const std::string missed = is_missed ? missed_text(run, tolerance) : "";
+    part.row(fmt::format("status {}", bit), "{} of {} entries: {}{}", key("count", summary.count(bit)), summary.entries,
+             key("meaning", meaning), missed.empty() ? "" : ", of " + missed);
+    if (!missed.empty()) part.value("missed", missed);
   }
   report.add("status", parts);
 }
@@ -107,11 +119,10 @@ ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, std::o
                 key("self_check/worst_ratio", summary.check.worst_ratio),
                 summary.check.worst_ratio > 1.0 ? "; a bound failed, see status 2" : "");
   report.row_if(gap.has_value(), "scattering",
-                "single: the direct emission, the other end of what all bounces may give, changes DOLP by up to {:.1f} "
-                "points",
+                "single; the model of direct emission differs by up to {:.1f} points of DOLP, the most of 16 entries",
                 kPoints * gap.value_or(0.0));
   report.value("scattering_gap", gap);
-  add_status(report, summary);
+  add_status(report, run, scene.accuracy.tolerance);
   add_energy(report, summary, run.plan.needs_moments);
   const EvaluationReport& evaluation = run.evaluation;
   const bool is_faster_on_cpu =

@@ -69,7 +69,7 @@ void check_shapes(const SceneValues& scene, const Points& points) {
     const double q = (*points[Axis::kQ])[row];
     if (kSmithCauchyQRange.contains(q)) continue;
     throw InputError(
-        fmt::format("{}: q = {}: out of range, a number in {} with masking = \"smith\" and distribution = "
+        fmt::format("{}: q = {}: out of range; must be a number in {} with masking = \"smith\" and distribution = "
                     "\"cauchy\"",
                     points.where(row), format_number(q), kSmithCauchyQRange.text()));
   }

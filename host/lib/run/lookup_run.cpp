@@ -8,6 +8,7 @@
 
 #include "base/parallel_ranges.hpp"
 #include "base/text.hpp"
+#include "model/slopes.hpp"
 #include "run/scene_run.hpp"
 
 namespace dolp {
@@ -25,26 +26,41 @@ std::optional<double> value_of(const SceneValues& scene, Axis axis) {
   return values[axis];
 }
 
-std::string range_text(const LookupAxis& axis) {
-  if (axis.size() == 1) return format_number(axis.min());
-  return fmt::format("[{}, {}]", format_number(axis.min()), format_number(axis.max()));
+/// How messages name the values of an axis: sigma as winds where the points, or the table without them, have winds.
+struct AxisWords {
+  bool is_wind = false;
+  const char* name = "";
+
+  std::string value(double value) const {
+    return is_wind ? fmt::format("{:.6g}", wind_of_sigma(value)) : format_number(value);
+  }
+  std::string range(const LookupAxis& axis) const {
+    if (axis.size() == 1) return value(axis.min());
+    return fmt::format("[{}, {}]", value(axis.min()), value(axis.max()));
+  }
+};
+
+AxisWords words_of(Axis axis, const SceneValues& scene, const Points& points) {
+  const bool has_winds = points[axis] ? points.has_winds : !scene.wind_m_s.empty();
+  if (axis == Axis::kSigma && has_winds) return {true, kWind.column};
+  return {false, description_of(axis).column};
 }
 
 /// The coordinate of each point: as given, or the only one that the table has, or that of its scene.
 std::vector<double> values_of(Axis number, const LookupAxis& axis, const SceneValues& scene, const Points& points) {
-  const char* const name = description_of(number).column;
+  const AxisWords words = words_of(number, scene, points);
   if (const auto& given = points[number]) {
     for (std::size_t row = 0; row < points.size(); ++row) {
       if (axis.contains((*given)[row])) continue;
-      throw InputError(fmt::format("{}: {} = {}: outside the table, which has {}", points.where(row), name,
-                                   format_number((*given)[row]), range_text(axis)));
+      throw InputError(fmt::format("{}: {} = {}: outside the table, which has {}", points.where(row), words.name,
+                                   words.value((*given)[row]), words.range(axis)));
     }
     return *given;
   }
   const std::optional<double> value = axis.size() == 1 ? axis.min() : value_of(scene, number);
   if (!value || !axis.contains(*value)) {
     throw InputError(
-        fmt::format("{}: column \"{}\" is missing, a number in {}", points.where(), name, range_text(axis)));
+        fmt::format("{}: column \"{}\" is missing, a number in {}", points.where(), words.name, words.range(axis)));
   }
   return std::vector<double>(points.size(), *value);
 }

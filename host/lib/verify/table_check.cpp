@@ -118,8 +118,8 @@ void check_axes(const TableValues& table, const SceneValues& scene, const std::s
     const NumberRange& range = has_finite_mean_slope ? kSmithCauchyQRange : known.range;
     for (const double value : table.axes[axis]) {
       if (range.contains(value)) continue;
-      throw InputError(
-          fmt::format("{}: axis {}: {} is out of range, a number in {}", name, known.name, value, range.text()));
+      throw InputError(fmt::format("{}: axis {}: {} is out of range; must be a number in {}", name, known.name, value,
+                                   range.text()));
     }
   }
 }

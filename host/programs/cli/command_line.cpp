@@ -130,9 +130,10 @@ void add_fit(CLI::App& command, Options& options) {
       ->required();
   list("--compare", options.compare, "KEY=WORD,WORD,...: fit with each and rank them; repeatable");
   command.add_option("-o,--output", options.output_path, "file for the fitted scene; - is stdout");
-  command.add_option("--plot", options.plot_path, "PNG of data, fit and residuals, drawn with Matplotlib");
+  command.add_option("--plot", options.plot_path,
+                     ".png, .pdf or .svg of data, fit and residuals, drawn with Matplotlib");
   command.add_option("--starts", options.starts, "descents that look for minima")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{10'000}))
+      ->check(CLI::Range(std::size_t{1}, kMostStarts))
       ->capture_default_str();
   command.add_option("--seed", options.seed, "seed of where they begin")
       ->check(not_negative, "")
@@ -141,9 +142,10 @@ void add_fit(CLI::App& command, Options& options) {
       ->check(CLI::IsMember(loss_names()))
       ->capture_default_str();
   command
-      .add_option("--model-error", options.model_error,
-                  "systematic error of the model; bracket: of single scattering, that of emission.bracket, correlated "
-                  "between all points")
+      .add_option(
+          "--model-error", options.model_error,
+          "systematic error of the model; bracket: one more number e is fitted, 0 the model itself, 1 the other "
+          "end of its bracket (direct emission), and e counts as measured, 0 +- 1")
       ->check(CLI::IsMember(model_error_names()))
       ->capture_default_str();
   add_evaluator(command, options);

@@ -31,6 +31,15 @@ void add_key(Report& report, Json& list, const Key& key) {
                   {"default", key.fallback}});
 }
 
+/// The key of which at most half of the letters differ, with or without its table; empty for none.
+std::string near_key(const std::string& wanted, const std::vector<std::string>& names) {
+  const auto distance = [&](const std::string& name) {
+    return std::min(edit_distance(wanted, name), edit_distance(wanted, name.substr(name.find('.') + 1)));
+  };
+  const std::string& near = *std::ranges::min_element(names, {}, distance);
+  return 2 * distance(near) <= wanted.size() ? near : "";
+}
+
 int finish_list(Report report, const char* name, const Json& list, const Options& options) {
   report.json = Json{{name, list}}.dump(2, ' ', true);
   return finish(report, options);
@@ -41,11 +50,11 @@ std::vector<double> wavelengths_of(const std::string& text) {
   constexpr double kDefaultCount = 11.0;
   constexpr double kMost = 1e6;
   std::vector<double> numbers;
-  for (const std::string_view piece : split(text, ':')) numbers.push_back(parse_number(piece).value_or(-1.0));
+  for (const std::string_view piece : split(text, ':')) numbers.push_back(parse_number(piece).value_or(0.0));
   if (numbers.size() == 2) numbers.push_back(kDefaultCount);
   const bool is_range = numbers.size() == 3 && numbers[0] > 0.0 && numbers[0] < numbers[1] && numbers[2] >= 2.0 &&
                         numbers[2] <= kMost && numbers[2] == std::floor(numbers[2]);
-  if (numbers.size() == 1) return numbers;
+  if (numbers.size() == 1 && numbers[0] > 0.0) return numbers;
   if (!is_range)
     throw InputError(one_line("--at " + text) +
                      ": must be UM, FROM:TO or FROM:TO:COUNT, with FROM below TO and a COUNT from 2 to 1000000 (11)");
@@ -58,19 +67,18 @@ std::vector<double> wavelengths_of(const std::string& text) {
 /// n and k of one material, as a scene with it has them.
 int show_material(const Options& options) {
   const std::vector<double> wavelengths = wavelengths_of(options.wavelength_um);
-  const std::string first = options.wavelength_um.substr(0, options.wavelength_um.find(':'));
-  Setting wavelength = Setting::from_text("spectrum.wavelength_um=" + first);
-  wavelength.origin = one_line("--at " + options.wavelength_um);
-  const Scene scene = Scene::from_text(
-      example_scene(), {{"surface.material", options.material, one_line(options.material)}, wavelength}, "materials");
-  const std::string name = scene.word("surface.material").value();
-  const std::vector<BuiltInMaterial> known = materials();
-  const std::string& source = std::ranges::find(known, name, &BuiltInMaterial::name)->source;
+  const auto [name, from_um, to_um, source] = material(options.material);
+  if (wavelengths.front() < from_um || wavelengths.back() > to_um) {
+    throw InputError(
+        fmt::format("--at {}: {} is known from {} to {} um", one_line(options.wavelength_um), name, from_um, to_um));
+  }
+  const Scene scene =
+      Scene::from_text(example_scene(), {{"surface.material", name}, {"spectrum.wavelength_um", from_um}}, "materials");
   Report report;
   std::vector<double> n, k;
   for (const double wavelength_um : wavelengths) {
     const auto [own_n, own_k] = scene.refractive_index(wavelength_um);
-    report.text += fmt::format("{} at {} um: n = {}, k = {}\n", name, wavelength_um, own_n, own_k);
+    report.text += fmt::format("{} at {:.10g} um: n = {:.10g}, k = {:.10g}\n", name, wavelength_um, own_n, own_k);
     n.push_back(own_n);
     k.push_back(own_k);
   }
@@ -96,8 +104,9 @@ int run_keys(const Options& options) {
     if (is_wanted) add_key(report, list, key);
   }
   if (list.empty()) {
-    throw InputError(fmt::format("{}: is no key of a scene; the nearest is {}", one_line(options.key),
-                                 nearest_name(options.key, names)));
+    const std::string near = near_key(options.key, names);
+    throw InputError(fmt::format("{}: is no key of a scene; {}", one_line(options.key),
+                                 near.empty() ? "dolp keys lists all" : "the nearest is " + near));
   }
   return finish_list(report, "keys", list, options);
 }

@@ -58,8 +58,15 @@ int run(CLI::App& app, Options& options) {
   return run_devices(options);
 }
 
-/// How to give a key of a scene that was given as an option; empty for other words.
-std::string set_hint(const std::string& option) {
+/// The option that was meant, or how to give a key of a scene as one; empty for other words.
+std::string option_hint(const CLI::App& command, const std::string& option) {
+  constexpr std::size_t kMostMistakes = 2;
+  const std::string given = option.substr(0, option.find('='));
+  for (const CLI::Option* known : command.get_options()) {
+    for (const std::string& own : known->get_lnames()) {
+      if (edit_distance(given, "--" + own) <= kMostMistakes) return "; did you mean --" + own + "?";
+    }
+  }
   for (const Key& known : dolp::keys()) {
     const std::string name = known.key.substr(known.key.find('.') + 1);
     if (option == "--" + name || option == "--" + known.key) return "; --set " + known.key + "=VALUE sets it";
@@ -71,10 +78,11 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> unknown = app.remaining(true);
   const bool is_unknown = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
   if (!app.get_subcommands().empty()) {
-    const std::string what = is_unknown
-                                 ? fmt::format("{}: unknown here{}", fmt::join(unknown, " "), set_hint(unknown.front()))
-                                 : error.what();
-    return fmt::format("{} (see dolp {} --help)", what, app.get_subcommands().front()->get_name());
+    const CLI::App& command = *app.get_subcommands().front();
+    const std::string what =
+        is_unknown ? fmt::format("{}: unknown here{}", fmt::join(unknown, " "), option_hint(command, unknown.front()))
+                   : error.what();
+    return fmt::format("{} (see dolp {} --help)", what, command.get_name());
   }
   if (unknown.empty()) return fmt::format("{} (see dolp --help)", error.what());
   std::vector<std::string> commands;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <dolp/errors.hpp>
 
+#include "base/text.hpp"
 #include "terminal/exit_status.hpp"
 
 namespace dolp::cli {
@@ -22,10 +23,13 @@ void check_one_stdin(const Options& options) {
 }
 
 std::vector<Setting> all_settings(const Options& options) {
-  std::vector<std::string> overrides = options.overrides;
-  if (!options.tolerance.empty()) overrides.push_back("accuracy.tolerance=" + options.tolerance);
-  if (!options.precision.empty()) overrides.push_back("accuracy.precision=" + options.precision);
-  return settings_from_text(overrides, "--set");
+  std::vector<Setting> settings = settings_from_text(options.overrides, "--set");
+  const auto add = [&](const char* key, const std::string& option, const std::string& value) {
+    if (!value.empty()) settings.push_back({key, TomlText{value}, one_line(option + ' ' + value)});
+  };
+  add("accuracy.tolerance", "--tolerance", options.tolerance);
+  add("accuracy.precision", "--precision", options.precision);
+  return settings;
 }
 
 std::string allowed(const std::string& key) { return std::ranges::find(dolp::keys(), key, &Key::key)->allowed(); }

@@ -60,6 +60,31 @@ def whole_number(name: str, value: int) -> int:
     raise InputError(f"{name} = {value}: must be a whole number from 0 to 2^63 - 1")
 
 
+def word(name: str, value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    raise TypeError(f"{name}: must be a str, not {type(value).__name__}")
+
+
+def device_name(device: Any) -> str:
+    """A part of a name, or a position."""
+    return str(device) if isinstance(device, (int, np.integer)) else word("device", device)
+
+
+def flag(name: str, value: Any) -> bool:
+    if isinstance(value, (bool, np.bool_)):
+        return bool(value)
+    raise TypeError(f"{name}: must be True or False, not {short(value)}")
+
+
+def axis_values(name: str, values: Any) -> list[float]:
+    """The values of an axis: a number or a list."""
+    array = floats(name, values)
+    if array.ndim > 1:
+        raise InputError(f"{name}: must be a number or a list, not an array of shape {array.shape}")
+    return np.atleast_1d(array).tolist()
+
+
 def check_names(what: str, given: Iterable[str], known: list[str]) -> None:
     """Refuses a name that is none of those known, with the one that may have been meant."""
     for name in given:
@@ -108,4 +133,4 @@ def _value(key: str, value: Any) -> Any:
         return {name: str(item) if name == "spacing" else whole_number(f"{key}.count", item) if name == "count"
                 else float(floats(f"{key}.{name}", item)) for name, item in value.items()}
     numbers = floats(key, value)
-    return float(numbers) if numbers.ndim == 0 else numbers.ravel().tolist()
+    return float(numbers) if numbers.ndim == 0 else axis_values(key, numbers)

@@ -56,12 +56,20 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
              if "theta" in variable.dims or not all(variable.equals(table[name]) for table in tables)]
     joined = xr.concat(tables, xr.Variable(key, values, KEY_ATTRIBUTES.get(key)), data_vars=along, coords="minimal",
                        compat="override", combine_attrs="drop_conflicts")
-    joined.attrs.pop("scene", None)  # that of none of them
+    joined.attrs.pop("scene_hash", None)
+    if "scene_overrides" in first.attrs:  # those of all but for this key, whose value native_table adds again
+        before, _, after = f"\n{first.attrs['scene_overrides']}\n".rpartition(f"\n{key}=")
+        rest = after.partition("\n")[2]
+        joined.attrs["scene_overrides"] = f"{before}\n{rest}".strip("\n")
     return joined
 
 
 def native_table(table: xr.Dataset) -> _native.Table:
-    """The table that a Dataset holds; a coordinate of one value is an axis of one."""
+    """The table that a Dataset holds; a coordinate of one value is an axis of one, one that is a key of the scene its value."""
+    keys = [str(name) for name in table.coords if name in KEY_ATTRIBUTES]
+    for key in keys:
+        if table[key].ndim > 0:
+            raise InputError(f"Dataset: has {table[key].size} values of {key}; take one, as with sel({{{key!r}: VALUE}})")
     axes = [name for name in ("wavelength", "n", "k", "theta", "sigma", "q") if name in table.coords]
     columns, status = {}, np.empty(0, np.uint32)
     for name, variable in table.variables.items():
@@ -77,6 +85,9 @@ def native_table(table: xr.Dataset) -> _native.Table:
             columns[name] = np.asarray(variable.values, dtype=float).ravel()
     attributes = {name: value if isinstance(value, str) else float(value) for name, value in table.attrs.items()
                   if isinstance(value, (str, int, float, np.integer, np.floating))}
+    if keys:
+        added = [f"{key}={float(table[key])!r}" for key in keys]
+        attributes["scene_overrides"] = "\n".join(filter(None, [str(attributes.get("scene_overrides", "")), *added]))
     for name, variable in table.data_vars.items():
         if variable.ndim == 0 and variable.dtype.kind == "S":
             attributes[name] = os.fsdecode(variable.values.item())

@@ -8,20 +8,24 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ._arguments import Path, check_key, check_mapping, check_names, floats, native_path, native_values, whole_number, word_list
+from ._arguments import Path, check_key, check_mapping, check_names, floats, native_path, native_values, whole_number, word, word_list
 from ._native import InputError
 from ._points import csv_of
 from ._runs import evaluate, native_evaluator, native_scene
 from ._scene import Scene
 
 
+_SYMBOLS = {"dolp": "DOLP", "q_over_i": "Q/I", "emissivity_s": "ε_s", "emissivity_p": "ε_p"}
+
+
 class Fit:
     """What a fit found; prints as a report.
 
-    `params` and `stderr` are dictionaries of values and standard errors (None where the data give none), `fit[key]` is
-    one value, `covariance` is in their order, NaN where there is none. `scene` has the values that were found, and what
-    was best of `compare`. `values` is what `dolp fit --json` prints, as a dictionary: parameters, correlation,
-    chi_square, reduced_chi_square, p_value, aic, bic, minima, residuals, models.
+    `params` and `stderr` are dictionaries of values and standard errors (None at a bound, beyond the range, or where the
+    data give none: `why_no_error` of its entry in values["parameters"]; with a parameter at its bound the other errors
+    hold with it kept there). `fit[key]` is one value, `covariance` is in their order, NaN where there is none. `scene`
+    has the values that were found, and what was best of `compare`. `values` is what `dolp fit --json` prints, as a
+    dictionary: parameters, correlation, chi_square, reduced_chi_square, p_value, aic, bic, minima, residuals, models.
     """
 
     def __init__(self, text: str, values: dict[str, Any], scene: Scene, overrides: dict[str, Mapping[str, Any]]) -> None:
@@ -47,37 +51,45 @@ class Fit:
         return {one["key"]: tuple(one[f"interval_{100 * level:.0f}"]) for one in self.values["parameters"]}
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws data and model over zenith with Matplotlib, and returns the axes."""
+        """Draws data, model and its bracket in percent over zenith with Matplotlib, and returns the axes."""
         import matplotlib.pyplot as plt
         axes = plt.subplots()[1] if axes is None else axes
         sets: dict[tuple[Any, ...], list[dict[str, Any]]] = {}
         for point in self.values["points"]:
             sets.setdefault((point["data"], point["quantity"], point["wavelength_um"]), []).append(point)
         for (name, quantity, wavelength_um), points in sets.items():
-            theta, measured = ([point[column] for point in points] for column in ("theta_deg", "measured"))
-            errors = [point["uncertainty"] or 0.0 for point in points]
-            symbol = {"dolp": "DOLP", "q_over_i": "Q/I"}.get(quantity, quantity)
-            label = ", ".join([symbol, *([f"{wavelength_um:g} µm"] if wavelength_um else []),
+            theta = [point["theta_deg"] for point in points]
+            measured, errors = ([100.0 * (point[column] or 0.0) for point in points] for column in ("measured", "uncertainty"))
+            label = ", ".join([_SYMBOLS[quantity], *([f"{wavelength_um:g} µm"] if wavelength_um else []),
                                *([name] if len(self._overrides) > 1 else [])])
             bars = axes.errorbar(theta, measured, errors, fmt="o", markersize=4, label=label)
             zeniths = np.linspace(min(theta), max(theta), 181)
-            curve = self._model(name, quantity, {"theta_deg": zeniths} | ({"wavelength_um": wavelength_um} if wavelength_um else {}))
-            axes.plot(zeniths, curve, color=bars[0].get_color())
-        axes.set_xlabel("zenith angle θ (degree)")
+            curve, bracket = self._model(name, quantity, {"theta_deg": zeniths} | (
+                {"wavelength_um": wavelength_um} if wavelength_um else {}))
+            axes.plot(zeniths, 100.0 * curve, color=bars[0].get_color())
+            if bracket:
+                axes.fill_between(zeniths, 100.0 * bracket[0], 100.0 * bracket[1], color="0.75", alpha=0.5, linewidth=0.0,
+                                  label="bracket of all bounces")
+        axes.set(xlabel="zenith angle θ (degree)", title=self.scene.title or "fit",
+                 ylabel=", ".join(dict.fromkeys(_SYMBOLS[quantity] for _, quantity, _ in sets)) + " (%)")
         axes.legend()
         return axes
 
-    def _model(self, name: str, quantity: str, points: dict[str, Any]) -> xr.DataArray:
-        """The fitted model of a data set; with a model error a mixture of both ends of its bracket."""
+    def _model(self, name: str, quantity: str, points: dict[str, Any]) -> tuple[xr.DataArray, tuple[Any, Any] | None]:
+        """The fitted model of a data set, with a model error a mixture of both ends of its bracket; and that bracket."""
         scene = self.scene.with_(self._overrides[name])
-        own = evaluate(scene, evaluator="cpu", **points)
-        if "model_error" not in self.params:
-            return own[quantity]
-        other = scene.with_({"emission.model": "moments" if scene["emission.model"] == "direct" else "direct"})
-        mixed = "q_over_i" if quantity == "dolp" else quantity
-        share = self.params["model_error"]
-        curve = (1 - share) * own[mixed] + share * evaluate(other, evaluator="cpu", **points)[mixed]
-        return abs(curve) if quantity == "dolp" else curve
+        try:
+            own = evaluate(scene.with_({"emission.bracket": True}), evaluator="cpu", **points)
+        except InputError:  # a scene without a bracket
+            return evaluate(scene, evaluator="cpu", **points)[quantity], None
+        other = evaluate(scene.with_({"emission.model": "moments" if scene["emission.model"] == "direct" else "direct"}),
+                         evaluator="cpu", **points)
+        share = self.params.get("model_error", 0.0)
+        signed = "q_over_i" if quantity == "dolp" else quantity
+        mixed = (1 - share) * own[signed] + share * other[signed]
+        if quantity == "dolp":
+            return abs(mixed) if share else own.dolp, (own.dolp_low, own.dolp_high)
+        return mixed, (np.minimum(own[signed], other[signed]), np.maximum(own[signed], other[signed]))
 
     def __repr__(self) -> str:
         return self.text
@@ -93,8 +105,9 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compa
     several sets, each alone or as a pair (data, overrides). `vary`: (low, high) or (low, high, start) of each key.
     `compare`: values of keys, all combinations of which are fitted and ranked. `loss`: squares, or huber, soft-l1,
     cauchy or tukey for data with outliers. `model_error`: none, or bracket, which takes the bracket of single scattering
-    as an uncertainty that all points share; then `model_error` is one more number of the fit. `plot`: a PNG of data,
-    model, residuals and contours, as the command draws it.
+    as an uncertainty that all points share; then `model_error` is one more number of the fit, 0 the model itself, 1 the
+    other end of the bracket (direct emission), measured as 0 ± 1. `plot`: a .png, .pdf or .svg of data, model, residuals
+    and contours, as the command draws it.
 
     >>> truth = dolp.evaluate(scene, theta_deg=np.arange(5, 85, 5), n=1.6)
     >>> data = {"theta_deg": truth.theta, "dolp": truth.dolp, "uncertainty": np.full(16, 0.001)}
@@ -110,7 +123,7 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compa
     ranges = [(check_key(key), floats(key, ends).ravel().tolist()) for key, ends in check_mapping("vary", vary).items()]
     compared = [(check_key(key), word_list(key, words)) for key, words in check_mapping("compare", compare).items()]
     text, values, found = native_evaluator(evaluator, device).fit(
-        native, texts, ranges, compared, str(loss), str(model_error), whole_number("starts", starts), whole_number("seed", seed),
+        native, texts, ranges, compared, word("loss", loss), word("model_error", model_error), whole_number("starts", starts), whole_number("seed", seed),
         "" if plot is None else native_path("plot", plot))
     fitted = Scene.__new__(Scene)
     fitted._native = found

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from . import _native
-from ._arguments import Array, Path, check_names, floats, input_path, native_path
+from ._arguments import Array, Path, axis_values, check_names, device_name, flag, input_path, native_path, word
 from ._datasets import concatenated, dataset_at, native_table, table_dataset
 from ._native import InputError
 from ._points import columns_of
@@ -23,8 +23,9 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
     """The table over the scene's grid: a Dataset that is what the file would hold.
 
     `axes` (theta_deg, sigma or wind_m_s, q, wavelength_um, n, k) replace those of the scene. Winds are a second coordinate
-    along sigma: `t.swap_dims(sigma="wind_m_s")`. Any other number of the scene can be an axis by its key, each of its
-    values as a table of its own; attributes that differ between them, as the scene, are left out.
+    along sigma: `t.swap_dims(sigma="wind_m_s")`. Each is a number or a list, and the table has all combinations of their
+    values. Any other number of the scene can be an axis by its key, each of its values as a table of its own; `lookup`
+    takes one of these, as `t.sel({"emission.temperature_K": 280})`. Attributes that differ between them are left out.
 
     >>> t = dolp.table(scene, theta_deg=[0, 60], sigma=[0.1, 0.2, 0.3])
     >>> dict(t.sizes)["theta"], dict(t.sizes)["sigma"], t.dolp.units, t.theta.units
@@ -35,10 +36,10 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
     key = next((name for name in axes if "." in name), None)
     if key is None:
         with_axes = _with_axes(scene, axes)
-        return table_dataset(*native_evaluator(evaluator, device).table(with_axes, bool(keep_all)))
+        return table_dataset(*native_evaluator(evaluator, device).table(with_axes, flag("keep_all", keep_all)))
     _check_varied("axes", [key], [column for column, *_ in _native.axes()])
     others = {name: values for name, values in axes.items() if name != key}
-    values = np.atleast_1d(floats(key, axes[key])).ravel()
+    values = np.array(axis_values(key, axes[key]))
     return concatenated([table(scene.with_({key: value}), evaluator=evaluator, device=device, keep_all=keep_all, **others)
                          for value in values.tolist()], key, values)
 
@@ -48,21 +49,25 @@ def write_table(scene: Scene, path: Path, *, evaluator: str = "vulkan", device: 
     """The same into a file (.nc, .csv or .npy), part by part, so that memory does not grow with the table.
 
     Returns the report of the run. What an interrupted call has finished stays beside the file; `resume` goes on there.
+    Axes are those of files; other keys of the scene are axes of `table` alone.
 
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     print(dolp.write_table(scene, folder + "/table.nc").splitlines()[1])
       entries    5 x 1 x 1 (theta x sigma x q)
     """
+    if key := next((name for name in axes if "." in name), None):
+        raise InputError(f"axes: {key} is no axis of a file; write a file for each value, of scene.with_({{{key!r}: VALUE}})")
     with_axes = _with_axes(scene, axes)
-    return native_evaluator(evaluator, device).write_table(with_axes, native_path("path", path), bool(keep_all), bool(resume))
+    return native_evaluator(evaluator, device).write_table(with_axes, native_path("path", path), flag("keep_all", keep_all),
+                                                           flag("resume", resume))
 
 
 def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
              **points: Array) -> xr.Dataset:
     """The quantities of a table at points: a Dataset of the shape to which the arrays broadcast.
 
-    `points` (theta_deg, sigma or wind_m_s, q, wavelength_um, n, k): what they do not say comes from the scene. A complex n
-    gives n and k. Any other number of the scene can be given by its key, each of its values as a run of its own.
+    `points` (theta_deg, sigma or wind_m_s, q, wavelength_um, n, k): arrays of one shape are pairs, value by value, where
+    `table` takes all combinations; what they do not say comes from the scene. A complex n gives n and k. Any other number of the scene can be given by its key, each of its values as a run of its own.
     DataArrays keep their dimensions and coordinates. Of other arrays, one that has a dimension to itself gives that its
     coordinate, theta, sigma, q, n, k or wavelength as in a table.
 
@@ -80,7 +85,7 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
     native, engine = native_scene(scene), native_evaluator(evaluator, device)
 
     def run(own: _native.Scene, of_scene: dict[str, np.ndarray]) -> _native.Parts:
-        return engine.evaluate(own, of_scene, bool(keep_all))
+        return engine.evaluate(own, of_scene, flag("keep_all", keep_all))
 
     return dataset_at(_over_keys(run, native, columns, varied) if varied and 0 not in frame.shape else run(native, columns), frame)
 
@@ -89,9 +94,10 @@ def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
     """A table between its entries: error estimates contain the interpolation.
 
     `table`: a file, or a Dataset of `table` or of such a file, or a part of one: fewer values of an axis, or one of them,
-    as `t.sel(k=0.1)`, fewer variables. Its attribute scene is needed; values_hash is that of the whole table, and is not
-    looked at. `points`: as for `evaluate`; an axis of one value needs none. The file that was used last stays in memory;
-    a Dataset is copied in each call.
+    as `t.sel(k=0.1)`, fewer variables: dolp, the Stokes parameters, error_estimate, status and the attribute scene are
+    needed. values_hash is that of the whole table and not looked at in a Dataset; a file that holds a part is read by
+    `xarray.load_dataset`. `points`: as for `evaluate`; an axis of one value needs none. The file that was used last stays
+    in memory; a Dataset is copied in each call.
 
     >>> t = dolp.table(scene, theta_deg=np.linspace(0, 80, 41), sigma=[0.1, 0.2])
     >>> bool(abs(dolp.lookup(t.sel(sigma=0.2), theta_deg=33).dolp - dolp.evaluate(scene, theta_deg=33).dolp) < 1e-5)
@@ -100,6 +106,8 @@ def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
     frame, columns = columns_of(points)
     if isinstance(table, xr.Dataset):
         return dataset_at(native_table(table).lookup(columns), frame)
+    if not isinstance(table, (str, bytes, os.PathLike)):
+        raise TypeError(f"table: must be a path or an xarray.Dataset, not {type(table).__name__}")
     path = input_path("table", table)
     known = os.stat(path)
     return dataset_at(_table_of(path, (known.st_ino, known.st_size, known.st_mtime_ns)).lookup(columns), frame)
@@ -138,7 +146,7 @@ def plan(scene: Scene, *, device: str = "", keep_all: bool = False) -> Plan:
     >>> dolp.plan(scene).values["entries"]
     5
     """
-    text, values = _native.plan(native_scene(scene), str(device), bool(keep_all))
+    text, values = _native.plan(native_scene(scene), device_name(device), flag("keep_all", keep_all))
     return Plan(text, json.loads(values))
 
 
@@ -147,9 +155,13 @@ def devices() -> list[dict[str, Any]]:
     return _native.devices()
 
 
-@functools.lru_cache(maxsize=None)
 def native_evaluator(evaluator: str, device: str) -> _native.Evaluator:
-    return _native.Evaluator(str(evaluator), str(device))
+    return _evaluator_of(word("evaluator", evaluator), device_name(device))
+
+
+@functools.lru_cache(maxsize=None)
+def _evaluator_of(evaluator: str, device: str) -> _native.Evaluator:
+    return _native.Evaluator(evaluator, device)
 
 
 @functools.lru_cache(maxsize=1)
@@ -169,8 +181,7 @@ def _with_axes(scene: Scene, axes: Mapping[str, Array]) -> _native.Scene:
     """The scene on other axes, by the names of their columns."""
     native = native_scene(scene)
     check_names("axes", axes, [column for column, *_ in _native.axes()])
-    return native.with_([(f"grid.{axis}", np.atleast_1d(floats(axis, values)).ravel().tolist())
-                         for axis, values in axes.items()])
+    return native.with_([(f"grid.{axis}", axis_values(axis, values)) for axis, values in axes.items()])
 
 
 def _check_varied(what: str, keys: Iterable[str], columns: Iterable[str]) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from . import _native
-from ._arguments import Array, Path, check_key, check_names, floats, input_path, native_values, short
+from ._arguments import Array, Path, check_key, check_names, floats, input_path, native_values, short, word
 from ._native import InputError
 
 
@@ -55,7 +55,7 @@ class Scene:
         >>> "emission" in scene.with_({"surroundings.temperature_K": 250}).without("emission").toml()
         False
         """
-        return Scene(self, {key: None})
+        return Scene(self, {check_key(key): None})
 
     @property
     def title(self) -> str:
@@ -91,10 +91,10 @@ class Material:
 
     def __init__(self, name: str) -> None:
         known = materials()
-        wanted = str(name).casefold()
+        wanted = word("material", name).casefold()
         same = [one for one in known if one.casefold() == wanted]
         near = same or [one for one in known if one.casefold().startswith(f"{wanted} ")]
-        self.name: str = near[0] if len(near) == 1 else str(name)
+        self.name: str = near[0] if len(near) == 1 else name
         check_names("material", [self.name], list(known))
         self.from_um, self.to_um, self.source = known[self.name].values()
         self._native = _native.Scene.from_text("surface.sigma = 0\nemission.temperature_K = 300\n", [

@@ -381,7 +381,7 @@ TEST_F(ExploreCommand, WrongArguments_AreInputErrors) {
   put("measured.csv", "theta_deg,dolp\n60,two\n");
   const Outcome outcome = dolp({"explore", "scene.toml", "--frames", "1", "--measured", "measured.csv"});
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.err, "dolp: measured.csv:2: dolp = two: not a number, a number in [-1, 1]\n");
+  EXPECT_EQ(outcome.err, "dolp: measured.csv:2: dolp = two: not a number; must be a number in [-1, 1]\n");
 }
 
 TEST_F(ExploreCommand, NoDeviceOfThatName_IsADeviceError) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/atomic_file.hpp"
 #include "base/text.hpp"
 #include "explore/parameters.hpp"
 
@@ -29,7 +30,8 @@ std::string text_of(const std::vector<Setting>& changes) {
 std::vector<std::vector<std::string>> surface_words(const Scene& scene) {
   const std::string distribution = scene.word("surface.distribution").value();
   std::vector<std::vector<std::string>> groups = {
-      {distribution, fmt::format("σ {:.4g}", scene.number("surface.sigma").value())},
+      {distribution, has_wind(scene) ? fmt::format("U {:.4g} m/s", scene.number("surface.wind_m_s").value())
+                                     : fmt::format("σ {:.4g}", scene.number("surface.sigma").value())},
       {scene.word("surface.masking").value()}};
   if (distribution == "cauchy") groups[0].push_back(fmt::format("q {:.4g}", scene.number("surface.q").value()));
   if (scene.word("surface.scattering") == "multiple") groups.push_back({"all bounces"});
@@ -42,11 +44,6 @@ std::vector<std::vector<std::string>> surface_words(const Scene& scene) {
                       fmt::format("k {:.4g}", scene.number("surface.k").value())});
   }
   return groups;
-}
-
-/// The key of the scene that an axis of the map varies; empty for the zenith.
-std::string key_of(Axis axis) {
-  return axis == Axis::kTheta ? "" : axis == Axis::kSigma ? "surface.sigma" : "surface.q";
 }
 
 }  // namespace
@@ -156,6 +153,23 @@ void Session::reset_all() {
   attempt([&] { edits_.reset_all(); });
 }
 
+void Session::set_sky(const SkyPair& sky) {
+  try {
+    set("surroundings.profile", skies_.path(sky));
+  } catch (const InputError& error) {
+    tell(error.what(), true);
+  }
+}
+
+void Session::keep_sky(const std::filesystem::path& scene_file) {
+  if (!has_own_sky()) return;
+  namespace fs = std::filesystem;
+  const fs::path file = fs::absolute(scene_file).replace_filename(scene_file.stem().string() + "_sky.csv");
+  write_text_atomically(file, read_sky_pair(sky_file(scene())).value().csv());
+  const fs::path folder = fs::absolute(scene().name()).parent_path();
+  set("surroundings.profile", file.lexically_normal().lexically_relative(folder.lexically_normal()).string());
+}
+
 void Session::load_measured(const std::string& path) {
   attempt([&] { residuals_.load(MeasuredData::read(path)); });
 }
@@ -234,14 +248,15 @@ void Session::set_map_cursor(double x, double y) {
       theta_deg_ = value;
     } else {
       // Four digits, as a slider gives.
-      changes.push_back({key_of(of->axis), TomlText{fmt::format("{:.4g}", of->scale.clamp(value))}});
+      changes.push_back({of->key(), TomlText{fmt::format("{:.4g}", of->scale.clamp(value))}});
     }
   }
   set(changes);
 }
 
 double Session::map_cursor(const MapAxis& axis) const {
-  return axis.scale.position(axis.axis == Axis::kTheta ? theta_deg_ : scene().number(key_of(axis.axis)).value());
+  return axis.scale.position(axis.axis == Axis::kTheta ? theta_deg_
+                                                       : scene().number(axis.key()).value_or(axis.scale.from));
 }
 
 const Point* Session::at_cursor() const {
@@ -304,10 +319,10 @@ void Session::follow_map(bool keep_all) {
   if (is_dragged() && map_.is_arriving()) return;  // in a drag it goes from one complete map to the next
   const MapAxis x = suggested_axis(view_.map_x, scene(), view_.theta_max_deg);
   const MapAxis y = suggested_axis(view_.map_y, scene(), view_.theta_max_deg);
-  std::string key = content_key(edits_.changes_without({key_of(x.axis), key_of(y.axis)}), keep_all);
+  std::string key = content_key(edits_.changes_without({x.key(), y.key()}), keep_all);
   if (x.axis != Axis::kTheta && y.axis != Axis::kTheta) key += "\ntheta=" + format_number(theta_deg_);
   for (const MapAxis& axis : {x, y}) {
-    key += fmt::format("\n{} {} {}", axis_label(axis.axis), axis.scale.from, axis.scale.to);
+    key += fmt::format("\n{} {} {}", axis.label(), axis.scale.from, axis.scale.to);
   }
   map_.follow(key, scene(), keep_all, x, y, theta_deg_);
 }

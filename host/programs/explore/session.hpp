@@ -14,6 +14,7 @@
 #include "explore/panels.hpp"
 #include "explore/peak.hpp"
 #include "explore/scene_edits.hpp"
+#include "explore/sky_pair.hpp"
 
 namespace dolp::explore {
 
@@ -64,6 +65,11 @@ class Session {
   /// Changes while a button of the mouse is held down are one for `undo`, and get coarse results alone.
   void hold(bool is_held);
   void note_saved() { edits_.note_saved(); }
+  /// Takes a sky between two temperatures; the scene names a file of this session.
+  void set_sky(const SkyPair& sky);
+  /// Puts such a sky into a file beside that of a scene, "NAME_sky.csv", which the scene names from then on.
+  /// Errors: IoError.
+  void keep_sky(const std::filesystem::path& scene_file);
   void pin();
   void remove_pin(std::size_t position);
   void rename_pin(std::size_t position, std::string name) { pins_[position].name = std::move(name); }
@@ -100,6 +106,8 @@ class Session {
   const Sky& sky() const { return sky_; }
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
+  /// True where the scene names a sky's file that goes with the session.
+  bool has_own_sky() const { return skies_.hold(sky_file(scene())); }
   bool varies(const std::string& key) const { return marked_.contains(key); }
   /// The fit of the marked parameters, over the ranges of their sliders, to the measured points; none without points,
   /// or without a marked parameter that the scene has.
@@ -136,6 +144,7 @@ class Session {
   void estimate_influences();
   void follow_peak();
 
+  SkyFiles skies_;
   SceneEdits edits_;
   std::vector<Changes> done_, undone_;  ///< before each gesture; after each that was undone
   bool is_held_ = false;

@@ -37,6 +37,7 @@ void Actions::attempt(const std::string& done, const std::function<void()>& body
 void Actions::save_scene(const std::string& path) {
   attempt("saved " + path, [&] {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    session_.keep_sky(path);
     write_text_atomically(path, session_.scene().toml(folder.empty() ? "." : folder));
     session_.note_saved();
   });

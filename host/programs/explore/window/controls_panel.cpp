@@ -22,15 +22,6 @@ void heading(const char* text) {
   ImGui::Separator();
 }
 
-/// The text of a row, in a column of fixed width; the control follows beside it.
-void row_label(const std::string& text) {
-  ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(shown(text).c_str());
-  // The column is as wide as the longest text that is not cut.
-  const float longest = ImGui::CalcTextSize(shown("λ1, λ2 [µm]").c_str()).x;
-  ImGui::SameLine(std::max(6.2F * ImGui::GetTextLineHeight(), longest + 2.0F * ImGui::GetStyle().ItemSpacing.x));
-}
-
 std::string fallback_text(const Parameter& parameter, const Session& session) {
   const std::optional<double> opened = parameter.value(session.edits().opened());
   return opened ? fmt::format("\nCtrl-click: {:.6g}, as opened", *opened) : "";
@@ -126,6 +117,7 @@ void draw_source_kind(Session& session) {
 bool has_effect(const Scene& scene, const std::string& table) {
   if (table == "source") return scene.number("source.scale").has_value();
   if (table == "path") return scene.number("path.transmittance").has_value();
+  if (table == "surroundings" && scene.word("surroundings.profile")) return true;
   return scene.number(table + ".temperature_K").has_value();
 }
 
@@ -152,6 +144,14 @@ Value value_of(const std::string& text) {
 }
 
 }  // namespace
+
+void row_label(const std::string& text) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(shown(text).c_str());
+  // The column is as wide as the longest text that is not cut.
+  const float longest = ImGui::CalcTextSize(shown("λ1, λ2 [µm]").c_str()).x;
+  ImGui::SameLine(std::max(6.2F * ImGui::GetTextLineHeight(), longest + 2.0F * ImGui::GetStyle().ItemSpacing.x));
+}
 
 void ControlsPanel::remember_area(const std::string& key) {
   areas_[key] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
@@ -282,6 +282,7 @@ void ControlsPanel::draw(Session& session) {
   if (has_effect(session.scene(), "source")) draw_source_kind(session);
   draw_table(session, "source");
   draw_effect_box(session, "surroundings");
+  if (has_effect(session.scene(), "surroundings")) sky_editor_.draw(session, areas_);
   draw_table(session, "surroundings");
   draw_effect_box(session, "path");
   draw_table(session, "path");

@@ -9,8 +9,12 @@
 #include "explore/session.hpp"
 #include "explore/window/fields.hpp"
 #include "explore/window/plot.hpp"
+#include "explore/window/sky_editor.hpp"
 
 namespace dolp::explore {
+
+/// The text of a row, in a column of fixed width; the control follows beside it.
+void row_label(const std::string& text);
 
 class ControlsPanel {
  public:
@@ -36,6 +40,7 @@ class ControlsPanel {
   void show_reason(const std::string& id) const;
 
   NumberFields fields_;
+  SkyEditor sky_editor_;
   std::map<std::string, Area> areas_;
 };
 

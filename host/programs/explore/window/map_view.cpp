@@ -14,7 +14,7 @@ constexpr double kMostContrast = 1e3;  // of a logarithmic colour scale
 constexpr std::size_t kMostLines = 7;
 constexpr float kBarRoom = 5.4F;  // right of the map, in lines of text
 
-PlotAxis axis_of(const MapAxis& axis) { return {axis_label(axis.axis), axis.scale}; }
+PlotAxis axis_of(const MapAxis& axis) { return {axis.label(), axis.scale}; }
 
 std::string title_of(const Session& session) {
   const HeatMap& map = session.map();

@@ -220,12 +220,15 @@ void Ui::draw_view_controls() {
 
 void Ui::draw_map_axes(View& view, bool& is_changed) {
   label("   map over");
+  const auto label_of = [&](Axis axis) {
+    return shown(MapAxis{.axis = axis, .is_wind = has_wind(session_.scene())}.label());
+  };
   Axis* const axes[] = {&view.map_x, &view.map_y};
   for (int i = 0; i < 2; ++i) {
-    ImGui::SetNextItemWidth(4.5F * ImGui::GetFontSize());
-    if (ImGui::BeginCombo(i == 0 ? "##map x" : "##map y", shown(axis_label(*axes[i])).c_str())) {
+    ImGui::SetNextItemWidth(5.5F * ImGui::GetFontSize());
+    if (ImGui::BeginCombo(i == 0 ? "##map x" : "##map y", label_of(*axes[i]).c_str())) {
       for (const Axis axis : kMapAxes) {
-        if (!ImGui::Selectable(shown(axis_label(axis)).c_str(), axis == *axes[i])) continue;
+        if (!ImGui::Selectable(label_of(axis).c_str(), axis == *axes[i])) continue;
         // The two axes swap if the other one is this.
         if (*axes[1 - i] == axis) *axes[1 - i] = *axes[i];
         *axes[i] = axis;
@@ -344,6 +347,10 @@ Area Ui::area(const std::string& name) const {
 }
 
 void Ui::copy_command() {
+  if (session_.has_own_sky()) {
+    session_.tell("save the scene first: the command names its sky, which has no file yet", true);
+    return;
+  }
   const std::string command = table_command(session_.edits());
   ImGui::SetClipboardText(command.c_str());
   session_.tell("copied: " + command);

@@ -184,24 +184,39 @@ void Session::mark(const std::string& key, bool varies) {
 
 std::optional<FitJob> Session::fit_job() const {
   if (!residuals_.data()) return std::nullopt;
-  FitJob job{scene(), *residuals_.data(), {}};
+  // A search along the logarithm of k finds small ones too.
+  constexpr double kLeastK = 1e-3;
+  FitJob job{scene(), *residuals_.data(), {}, edits_.changes()};
   for (const Parameter& parameter : parameters()) {
     const std::optional<double> value = parameter.value(scene());
     if (!value || !varies(parameter.key->key)) continue;
     const Scale& slider = parameter.slider;
-    job.vary.push_back({parameter.key->key, std::min(slider.from, *value), std::max(slider.to, *value), *value});
+    const double low = parameter.key->key == "surface.k" ? kLeastK : slider.from;
+    job.vary.push_back({parameter.key->key, std::min(low, *value), std::max(slider.to, *value), *value});
   }
   return job.vary.empty() ? std::nullopt : std::optional(std::move(job));
 }
 
-void Session::take_fit(Fit fit) {
-  std::vector<Setting> values;
-  for (const FitParameter& one : fit.parameters)
-    values.push_back({one.key, TomlText{fmt::format("{:.6g}", one.value)}});
-  set(values);
-  if (message_.is_error) return;
+std::size_t Session::take_fit(Fit fit, const FitJob& job) {
+  const std::size_t nearest = nearest_minimum(fit, job);
   fit_ = std::move(fit);
-  fitted_changes_ = edits_.changes();
+  fit_changes_ = job.changes;
+  view_.panel = Panel::kFit;
+  visit_minimum(nearest);
+  return nearest;
+}
+
+void Session::visit_minimum(std::size_t position) {
+  std::vector<Setting> values;
+  for (std::size_t j = 0; j < fit_->parameters.size(); ++j) {
+    values.push_back({fit_->parameters[j].key, TomlText{fmt::format("{:.6g}", fit_->minima[position].values[j])}});
+  }
+  attempt([&] {
+    edits_.restore(fit_changes_);
+    edits_.set(values);
+    minimum_ = position;
+    fitted_changes_ = edits_.changes();
+  });
 }
 
 const FitParameter* Session::fitted(const std::string& key) const {

@@ -82,8 +82,10 @@ class Session {
   void clear_measured() { residuals_.clear(); }
   /// Lets a number vary in fits, or not.
   void mark(const std::string& key, bool varies);
-  /// Moves the parameters to the result of a fit.
-  void take_fit(Fit fit);
+  /// Shows a fit, and moves the parameters to the minimum nearest to where the job started. Returns its position.
+  std::size_t take_fit(Fit fit, const FitJob& job);
+  /// Moves the parameters to a minimum of the last fit; all else becomes as it was fitted.
+  void visit_minimum(std::size_t position);
   void tell(std::string text, bool is_error = false) { message_ = {std::move(text), is_error}; }
 
   // ---- Computing.
@@ -112,6 +114,9 @@ class Session {
   /// The fit of the marked parameters, over the ranges of their sliders, to the measured points; none without points,
   /// or without a marked parameter that the scene has.
   std::optional<FitJob> fit_job() const;
+  /// The last fit, and its minimum on display: none once the scene has changed.
+  const std::optional<Fit>& last_fit() const { return fit_; }
+  std::optional<std::size_t> minimum() const { return fit() ? std::optional(minimum_) : std::nullopt; }
   /// The result of the last fit, and what it says of a number; null once the scene has changed.
   const Fit* fit() const { return fit_ && fitted_changes_ == edits_.changes() ? &*fit_ : nullptr; }
   const FitParameter* fitted(const std::string& key) const;
@@ -160,7 +165,9 @@ class Session {
   Residuals residuals_;
   std::set<std::string> marked_;
   std::optional<Fit> fit_;
-  std::vector<Setting> fitted_changes_;  ///< of the scene with what was found
+  Changes fit_changes_;     ///< of the scene that was fitted
+  Changes fitted_changes_;  ///< with the minimum that was visited
+  std::size_t minimum_ = 0;
   std::vector<Effect> effects_;
   std::pair<std::string, double> influences_of_;  ///< key of the curve, zenith
   Message message_;

@@ -85,9 +85,8 @@ void Actions::fit() {
     return;
   }
   fit_.start([this, job = *job](const Progress& progress) -> BackgroundTask::Rest {
-    return [this, fit = run_fit(job, fit_evaluator_, progress)] {
-      session_.take_fit(fit);
-      return fit_text(fit);
+    return [this, job, fit = run_fit(job, fit_evaluator_, progress)] {
+      return fit_text(fit, session_.take_fit(fit, job));
     };
   });
 }

@@ -27,11 +27,6 @@ std::string fallback_text(const Parameter& parameter, const Session& session) {
   return opened ? fmt::format("\nCtrl-click: {:.6g}, as opened", *opened) : "";
 }
 
-std::string interval_text(const FitInterval& interval) {
-  const auto end = [](const std::optional<double>& value) { return value ? fmt::format("{:.4g}", *value) : "open"; };
-  return end(interval.low) + " to " + end(interval.high);
-}
-
 /// The last fit's intervals of a parameter.
 std::string intervals_text(const Parameter& parameter, const Session& session) {
   const FitParameter* const found = session.fitted(parameter.key->key);
@@ -39,7 +34,7 @@ std::string intervals_text(const Parameter& parameter, const Session& session) {
   return fmt::format("\n68 %: {}\n95 %: {}", interval_text(found->interval_68), interval_text(found->interval_95));
 }
 
-/// The interval as a bar at the foot of the slider that was drawn last; an open end goes to the slider's.
+/// The pieces of the interval as bars at the foot of the slider that was drawn last; an open end goes to the slider's.
 void draw_interval(const Parameter& parameter, const FitInterval& interval) {
   const ImVec2 corner = ImGui::GetItemRectMin();
   const ImVec2 end = ImGui::GetItemRectMax();
@@ -48,8 +43,10 @@ void draw_interval(const Parameter& parameter, const FitInterval& interval) {
     return corner.x + static_cast<float>(position) * (end.x - corner.x);
   };
   constexpr float kThickness = 3.0F;
-  ImGui::GetWindowDrawList()->AddRectFilled({at(interval.low, 0.0), end.y - kThickness},
-                                            {at(interval.high, 1.0), end.y}, kIntervalColour);
+  for (const auto& [low, high] : interval.pieces) {
+    ImGui::GetWindowDrawList()->AddRectFilled({at(low, 0.0), end.y - kThickness}, {at(high, 1.0), end.y},
+                                              kIntervalColour);
+  }
 }
 
 std::string description_of(const Parameter& p, const Session& session) {
@@ -233,7 +230,7 @@ void ControlsPanel::draw_fit_box(Session& session, const Parameter& parameter) {
   bool varies = session.varies(key);
   if (ImGui::Checkbox("##vary", &varies)) session.mark(key, varies);
   remember_area("vary " + key);
-  tooltip("varies in a fit to the measured points, over the range of its slider");
+  tooltip("varies in a fit to the measured points, over the range of its slider; k from 0.001 on, along its logarithm");
   ImGui::SameLine();
 }
 

@@ -254,6 +254,15 @@ void draw_peak(const Plot& plot, const Session& session) {
              fmt::format("{:.2f} % at {:.1f}°", value, peak->at.theta_deg));
 }
 
+void draw_error_bar(const Plot& plot, double theta_deg, double low, double high) {
+  constexpr float kCap = 3.0F;
+  const ImVec2 bottom = plot.at(theta_deg, low);
+  const ImVec2 top = plot.at(theta_deg, high);
+  plot.list()->AddLine(bottom, top, kTextColour);
+  for (const ImVec2 end : {bottom, top})
+    plot.list()->AddLine({end.x - kCap, end.y}, {end.x + kCap, end.y}, kTextColour);
+}
+
 void draw_measured(const Plot& plot, const std::vector<Measurement>& points) {
   for (const Measurement& point : points) {
     const double scale = scale_of(plotted(point.observable));
@@ -263,7 +272,7 @@ void draw_measured(const Plot& plot, const std::vector<Measurement>& points) {
     if (!point.uncertainty) continue;
     const double deviation = scale * *point.uncertainty;
     const double low = plot.y().is_log ? std::max(value - deviation, plot.y().from) : value - deviation;
-    plot.list()->AddLine(plot.at(point.theta_deg, low), plot.at(point.theta_deg, value + deviation), kTextColour);
+    draw_error_bar(plot, point.theta_deg, low, value + deviation);
   }
 }
 
@@ -271,13 +280,16 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   const Plotted quantity = session.view().quantity;
   const double scale = scale_of(quantity);
   const std::vector<double> residuals = session.residuals().residuals();
-  std::vector<std::pair<double, double>> shown;  // zenith and residual
+  struct Residual {
+    double theta_deg, value, deviation;
+  };
+  std::vector<Residual> shown;
   double largest = 1e-6;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     const Measurement& point = session.residuals().data()->measurements[i];
     if (plotted(point.observable) != quantity || !std::isfinite(residuals[i])) continue;
-    shown.emplace_back(point.theta_deg, scale * residuals[i]);
-    largest = std::max(largest, std::abs(shown.back().second));
+    shown.push_back({point.theta_deg, scale * residuals[i], scale * point.uncertainty.value_or(0.0)});
+    largest = std::max(largest, std::abs(shown.back().value) + shown.back().deviation);
   }
   const std::string unit = described(quantity).in_percent ? " [points]" : "";
   const std::optional<double> rms = session.residuals().rms(quantity);
@@ -286,9 +298,9 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   const Plot plot("residuals", size, {"", theta}, {label, {-1.2 * largest, 1.2 * largest}});
   plot.clip();
   plot.list()->AddLine(plot.at(theta.from, 0.0), plot.at(theta.to, 0.0), kDimColour);
-  for (const auto& [theta_deg, residual] : shown) {
-    plot.list()->AddLine(plot.at(theta_deg, 0.0), plot.at(theta_deg, residual), kTextColour);
-    plot.list()->AddCircleFilled(plot.at(theta_deg, residual), 3.0F, kTextColour);
+  for (const Residual& one : shown) {
+    draw_error_bar(plot, one.theta_deg, one.value - one.deviation, one.value + one.deviation);
+    plot.list()->AddCircleFilled(plot.at(one.theta_deg, one.value), 3.0F, kTextColour);
   }
   plot.unclip();
 }

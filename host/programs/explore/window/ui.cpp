@@ -38,11 +38,12 @@ std::string set_theta_max(View& view, const std::string& text) {
   return {};
 }
 
-/// A bar with a button to cancel, or the result of a task.
-void draw_task(const char* name, BackgroundTask& task) {
+/// A bar with a button to cancel, whose area is "cancel NAME", or the result of a task.
+void draw_task(const char* name, BackgroundTask& task, std::map<std::string, Area>& areas) {
   ImGui::PushID(name);
   if (task.is_running()) {
     if (ImGui::Button("Cancel")) task.cancel();
+    areas[std::string("cancel ") + name] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
     ImGui::SameLine();
     ImGui::ProgressBar(static_cast<float>(task.progress()), {-1.0F, 0.0F});
   } else if (task.state() != BackgroundTask::State::kNone) {
@@ -254,7 +255,7 @@ void Ui::draw_fit() {
   if (task.state() == BackgroundTask::State::kDone && !session_.fit()) {
     coloured_text(kDimColour, "The scene is no longer that of the fit.");
   } else {
-    draw_task("fit", task);
+    draw_task("fit", task, areas_);
   }
 }
 
@@ -296,11 +297,11 @@ void Ui::draw_price() {
   ImGui::BeginDisabled(!session_.curve().is_finished() || actions_.true_error_task().is_running());
   if (ImGui::Button("True error (Ctrl+K)")) actions_.find_true_error();
   ImGui::EndDisabled();
-  draw_task("reference", actions_.true_error_task());
+  draw_task("reference", actions_.true_error_task(), areas_);
   if (actions_.is_true_error_old()) coloured_text(kDimColour, "The true error is that of the scene before.");
   if (actions_.table_task().state() != BackgroundTask::State::kNone) {
     label("table");
-    draw_task("table", actions_.table_task());
+    draw_task("table", actions_.table_task(), areas_);
   }
   const Message& message = session_.message();
   if (!message.text.empty()) coloured_text(message.is_error ? kErrorColour : kTextColour, message.text);
@@ -338,6 +339,7 @@ void Ui::draw_panels(ImVec2 size) {
   if (shown_now == Panel::kScattering) scattering_view_.draw(session_, size);
   if (shown_now == Panel::kShapes) shape_view_.draw(session_, size);
   if (shown_now == Panel::kSky) draw_sky(session_, size);
+  if (shown_now == Panel::kFit) draw_fit_result(session_, areas_);
   if (view.panel != shown_now) session_.set_view(view);
 }
 

@@ -3,6 +3,8 @@
 
 #include <imgui.h>
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "explore/session.hpp"
@@ -59,6 +61,10 @@ class ShapeView {
  private:
   double azimuth_deg_ = 30.0;  ///< to which the plate is tilted, from the image's horizontal
 };
+
+/// Fills the current ImGui window with the minima of the last fit, which a click visits, its intervals, and the words
+/// of `dolp fit`. `areas` gets "minimum N" of each, from 1.
+void draw_fit_result(Session& session, std::map<std::string, Area>& areas);
 
 /// DOLP of a bistatic scene over the direction of the source, as a polar map.
 void draw_sky(const Session& session, ImVec2 size);

@@ -64,6 +64,7 @@ struct PlottedDescription {
   bool in_percent;                ///< shown times 100
   bool needs_rho;                 ///< a plan that drops effects may not give it
   double (*value)(const Point&);  ///< NaN where the model gives none
+  bool is_signed = false;
 
   double scale() const { return in_percent ? 100.0 : 1.0; }
   /// "DOLP [%]".

@@ -330,14 +330,34 @@ void Session::follow_overlay(const std::string& content, bool keep_all) {
   }
 }
 
+std::string Session::refusal(const MapAxis& axis, const Scale& range) const {
+  try {
+    for (const double end : {range.from, range.to}) {
+      if (axis.axis == Axis::kTheta && !(end >= 0.0 && end <= 90.0)) return "must be numbers in [0, 90]";
+      if (axis.axis != Axis::kTheta) static_cast<void>(scene().with(axis.key(), end));
+    }
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+MapAxis Session::map_axis(Axis axis) const {
+  MapAxis suggested = suggested_axis(axis, scene(), view_.theta_max_deg);
+  const auto typed = view_.map_ranges.find(suggested.label());
+  // The scene may have changed since, and no longer take it.
+  if (typed != view_.map_ranges.end() && refusal(suggested, typed->second).empty()) suggested.scale = typed->second;
+  return suggested;
+}
+
 void Session::follow_map(bool keep_all) {
   if (is_dragged() && map_.is_arriving()) return;  // in a drag it goes from one complete map to the next
-  const MapAxis x = suggested_axis(view_.map_x, scene(), view_.theta_max_deg);
-  const MapAxis y = suggested_axis(view_.map_y, scene(), view_.theta_max_deg);
+  const MapAxis x = map_axis(view_.map_x);
+  const MapAxis y = map_axis(view_.map_y);
   std::string key = content_key(edits_.changes_without({x.key(), y.key()}), keep_all);
   if (x.axis != Axis::kTheta && y.axis != Axis::kTheta) key += "\ntheta=" + format_number(theta_deg_);
   for (const MapAxis& axis : {x, y}) {
-    key += fmt::format("\n{} {} {}", axis.label(), axis.scale.from, axis.scale.to);
+    key += fmt::format("\n{} {} {} {}", axis.label(), axis.scale.from, axis.scale.to, axis.scale.is_log);
   }
   map_.follow(key, scene(), keep_all, x, y, theta_deg_);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -30,11 +31,13 @@ struct Pin {
 struct View {
   Plotted quantity = Plotted::kDolp;
   bool is_log = false;
+  bool is_theta_log = false;    ///< zeniths of curves by their logarithm
   bool has_overlay = true;      ///< the other slope distribution with the same D(0)
   bool keeps_all = false;       ///< compute what the plan would drop, too
   double theta_max_deg = 90.0;  ///< what is shown, and where the maximum is looked for
   Axis map_x = Axis::kTheta;
   Axis map_y = Axis::kSigma;
+  std::map<std::string, Scale> map_ranges = {};  ///< that were typed, by the label of the axis
   Panel panel = Panel::kMap;
   std::size_t mueller_row = 0;  ///< of the element in the view of the pBRDF
   std::size_t mueller_column = 0;
@@ -129,6 +132,8 @@ class Session {
   const char* remark(const Curve& curve) const;
   /// The effects of the last finished curve; influences of what is kept are those at the cursor's zenith.
   const std::vector<Effect>& effects() const { return effects_; }
+  /// Why the map cannot have a range along an axis; empty where it can.
+  std::string refusal(const MapAxis& axis, const Scale& range) const;
   /// The position of the scene's own value on an axis of the map.
   double map_cursor(const MapAxis& axis) const;
   /// The point on display at the zenith nearest to the cursor's; null before there is one.
@@ -144,6 +149,7 @@ class Session {
   void follow();
   void follow_overlay(const std::string& content, bool keep_all);
   void follow_map(bool keep_all);
+  MapAxis map_axis(Axis axis) const;
   std::vector<Job> wanted_in_drag() const;
   bool shows_map() const { return view_.panel == Panel::kMap; }
   void estimate_influences();

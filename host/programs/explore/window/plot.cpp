@@ -78,6 +78,20 @@ Plot::Plot(const char* id, ImVec2 size, PlotAxis x, PlotAxis y, float right, boo
   ImGui::Dummy(size);
 }
 
+Area Plot::x_numbers() const {
+  const float line = ImGui::GetTextLineHeight();
+  return {{min().x - line, max().y + 0.1F * line}, {max().x + line, max().y + 2.2F * line}};
+}
+
+Area Plot::y_numbers() const {
+  const float line = ImGui::GetTextLineHeight();
+  return {{min().x - 3.5F * line, min().y - 0.5F * line}, {min().x - 0.1F * line, max().y + 0.5F * line}};
+}
+
+bool Plot::has_place(double x_value, double y_value) const {
+  return std::isfinite(y_value) && (!x().is_log || x_value > 0.0) && (!y().is_log || y_value > 0.0);
+}
+
 ImVec2 Plot::at_position(double x, double y) const {
   return area_.at(static_cast<float>(x), 1.0F - static_cast<float>(y));
 }

@@ -153,14 +153,6 @@ void Session::reset_all() {
   attempt([&] { edits_.reset_all(); });
 }
 
-void Session::set_sky(const SkyPair& sky) {
-  try {
-    set("surroundings.profile", skies_.path(sky));
-  } catch (const InputError& error) {
-    tell(error.what(), true);
-  }
-}
-
 void Session::keep_sky(const std::filesystem::path& scene_file) {
   if (!has_own_sky()) return;
   namespace fs = std::filesystem;

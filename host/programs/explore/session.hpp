@@ -68,9 +68,7 @@ class Session {
   /// Changes while a button of the mouse is held down are one for `undo`, and get coarse results alone.
   void hold(bool is_held);
   void note_saved() { edits_.note_saved(); }
-  /// Takes a sky between two temperatures; the scene names a file of this session.
-  void set_sky(const SkyPair& sky);
-  /// Puts such a sky into a file beside that of a scene, "NAME_sky.csv", which the scene names from then on.
+  /// Puts a sky of skies() into a file beside that of a scene, "NAME_sky.csv", which the scene names from then on.
   /// Errors: IoError.
   void keep_sky(const std::filesystem::path& scene_file);
   void pin();
@@ -111,7 +109,8 @@ class Session {
   const Sky& sky() const { return sky_; }
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
-  /// True where the scene names a sky's file that goes with the session.
+  /// Skies whose files go with the session; true where the scene names one of them.
+  SkyFiles& skies() { return skies_; }
   bool has_own_sky() const { return skies_.hold(sky_file(scene())); }
   bool varies(const std::string& key) const { return marked_.contains(key); }
   /// The fit of the marked parameters, over the ranges of their sliders, to the measured points; none without points,

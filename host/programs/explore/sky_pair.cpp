@@ -3,7 +3,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <system_error>
-#include <vector>
 
 #include "base/text.hpp"
 
@@ -12,24 +11,20 @@ namespace {
 
 constexpr const char* kHeader = "zenith_deg,temperature_K";
 
-/// The temperature of the row at a zenith.
-std::optional<double> temperature_of(std::string_view row, std::string_view zenith_deg) {
-  const std::vector<std::string_view> cells = split(row, ',');
-  return cells.size() == 2 && cells[0] == zenith_deg ? parse_number(cells[1]) : std::nullopt;
-}
-
 }  // namespace
 
 std::string SkyPair::csv() const {
   return std::string(kHeader) + "\n0," + format_number(zenith_K) + "\n90," + format_number(horizon_K) + '\n';
 }
 
-std::optional<SkyPair> read_sky_pair(const std::filesystem::path& file) {
-  const std::string text = read_named_file(file.string(), "");
-  const std::vector<std::string_view> lines = split_lines(text);
-  if (lines.size() != 3 || lines[0] != kHeader) return std::nullopt;
-  const std::optional<double> zenith_K = temperature_of(lines[1], "0");
-  const std::optional<double> horizon_K = temperature_of(lines[2], "90");
+std::optional<SkyPair> read_sky_pair(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::string header, zenith, horizon, more;
+  std::getline(file, header) && std::getline(file, zenith) && std::getline(file, horizon);
+  if (header != kHeader || !zenith.starts_with("0,") || !horizon.starts_with("90,") || std::getline(file, more))
+    return std::nullopt;
+  const std::optional<double> zenith_K = parse_number(zenith.substr(2));
+  const std::optional<double> horizon_K = parse_number(horizon.substr(3));
   return zenith_K && horizon_K ? std::optional(SkyPair{*zenith_K, *horizon_K}) : std::nullopt;
 }
 
@@ -47,7 +42,7 @@ SkyFiles::~SkyFiles() {
 std::string SkyFiles::path(const SkyPair& sky) {
   if (folder_.empty()) {
     std::string name = (std::filesystem::temp_directory_path() / "dolp-skies-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw InputError(name + ": the folder cannot be made");
+    if (::mkdtemp(name.data()) == nullptr) return name;
     folder_ = name;
   }
   const std::filesystem::path file =

@@ -18,13 +18,13 @@ struct SkyPair {
   friend bool operator==(const SkyPair&, const SkyPair&) = default;
 };
 
-/// The sky of a file with two rows of temperatures; none of any other file. Errors: InputError.
+/// The sky of such a file; none of any other, and where it cannot be read.
 std::optional<SkyPair> read_sky_pair(const std::filesystem::path& file);
 
 /// The file that a scene names as its sky; empty for a built-in sky and without one.
 std::filesystem::path sky_file(const Scene& scene);
 
-/// Files of the skies that were edited, in a folder that is removed at the end: a scene names a sky by its file.
+/// Files of skies that are edited, in a folder that is removed at the end: a scene names a sky by its file.
 class SkyFiles {
  public:
   SkyFiles() = default;
@@ -32,7 +32,7 @@ class SkyFiles {
   SkyFiles& operator=(const SkyFiles&) = delete;
   ~SkyFiles();
 
-  /// The path of a sky's file. Errors: InputError.
+  /// The path of a sky's file; the scene refuses it where no file can be made.
   std::string path(const SkyPair& sky);
   bool hold(const std::filesystem::path& file) const { return !folder_.empty() && file.parent_path() == folder_; }
 

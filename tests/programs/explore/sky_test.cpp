@@ -20,7 +20,6 @@ TEST(SkyPair, FilesOfTwoRowsAlone_AreRead) {
     std::optional<SkyPair> sky;
   };
   for (const auto& [csv, sky] : {Case{kDusk.csv(), kDusk},
-                                 {"zenith_deg,temperature_K\r\n0,220\r\n90,285\r\n", SkyPair{220.0, 285.0}},
                                  {"zenith_deg,temperature_K\n0,220\n45,250\n90,285\n", std::nullopt},
                                  {"zenith_deg,temperature_K\n0,220\n80,285\n", std::nullopt},
                                  {"zenith_deg,radiance\n0,2\n90,8\n", std::nullopt},
@@ -31,7 +30,7 @@ TEST(SkyPair, FilesOfTwoRowsAlone_AreRead) {
 
 TEST(SkyPair, Scene_WithIt_IsThatOfItsCsv) {
   Driver driver(paint());
-  driver.session.set_sky(kDusk);
+  driver.session.set("surroundings.profile", driver.session.skies().path(kDusk));
   driver.settle();
   const TemporaryFile file("sky.csv", "zenith_deg,temperature_K\n0,231.5\n90,279\n");
   const Scene scene = paint({"surroundings.profile=" + file.path()}).scene();
@@ -49,7 +48,7 @@ TEST(SkyPair, SavedScene_HasItsSkyBesideIt_AndReadsBackAsTheSame) {
   const std::string saved = (folder.path() / "saved" / "dusk.toml").string();
   Session session(SceneEdits(Scene::from_text(kPaint, {}, opened)));
   Actions actions(session, "", "", [] {});
-  session.set_sky(kDusk);
+  session.set("surroundings.profile", session.skies().path(kDusk));
   EXPECT_TRUE(session.has_own_sky());
   actions.save_scene(saved);
   EXPECT_FALSE(session.message().is_error) << session.message().text;

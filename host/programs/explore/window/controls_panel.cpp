@@ -279,7 +279,7 @@ void ControlsPanel::draw(Session& session) {
   if (has_effect(session.scene(), "source")) draw_source_kind(session);
   draw_table(session, "source");
   draw_effect_box(session, "surroundings");
-  if (has_effect(session.scene(), "surroundings")) sky_editor_.draw(session, areas_);
+  if (has_effect(session.scene(), "surroundings")) draw_sky(session);
   draw_table(session, "surroundings");
   draw_effect_box(session, "path");
   draw_table(session, "path");

@@ -101,6 +101,22 @@ TEST_F(Window, SkyEditor_GivesASkyBetweenTwoTemperatures_WhichTheSavedSceneKeeps
   EXPECT_TRUE(session.message().text.starts_with("copied")) << session.message().text;
 }
 
+TEST_F(Window, SkyList_FileOfTheSceneAsOpened_StaysAmongTheChoices) {
+  put("sky.csv", "zenith_deg,temperature_K\n0,220\n70,240\n90,285\n");
+  open({{"surroundings.profile", "sky.csv"}});
+  const auto profile = [&] { return app_->session().scene().word("surroundings.profile"); };
+  for (const auto& [place, expected] : {std::pair{3.4F, "overcast"}, {5.2F, "sky.csv"}}) {
+    click_control("sky");
+    click(app_->control_area("sky").at(0.5F, place));
+    app_->settle();
+    frames();
+    EXPECT_EQ(profile(), expected);
+  }
+  keys("ctrl+s");
+  keys("Return");
+  EXPECT_NE(content("made_scene.toml").find("profile = 'sky.csv'"), std::string::npos) << content("made_scene.toml");
+}
+
 TEST_F(Window, SkyList_UniformAndBuiltInOnes_AreAWordEach) {
   struct Case {
     float place;

@@ -115,11 +115,7 @@ std::string fit_text(const Fit& fit, std::size_t chosen) {
 
 std::string interval_text(const FitInterval& interval) {
   const auto end = [](const std::optional<double>& value) { return value ? fmt::format("{:.4g}", *value) : "open"; };
-  std::string text;
-  for (const auto& [low, high] : interval.pieces) {
-    text += fmt::format("{}{} to {}", text.empty() ? "" : ", ", end(low), end(high));
-  }
-  return text.empty() ? "none" : text;
+  return end(interval.low) + " to " + end(interval.high);
 }
 
 }  // namespace dolp::explore

@@ -62,7 +62,7 @@ std::size_t nearest_minimum(const Fit& fit, const FitJob& job);
 /// The result of a fit, of which a minimum was chosen, in one line.
 std::string fit_text(const Fit& fit, std::size_t chosen);
 
-/// "1.2 to 1.5", its pieces where it has gaps; an end that the range cuts off is "open".
+/// "1.2 to 1.5"; an end that the range cuts off is "open".
 std::string interval_text(const FitInterval& interval);
 
 }  // namespace dolp::explore

@@ -183,8 +183,8 @@ std::optional<FitJob> Session::fit_job() const {
     const std::optional<double> value = parameter.value(scene());
     if (!value || !varies(parameter.key->key)) continue;
     const Scale& slider = parameter.slider;
-    const double low = parameter.key->key == "surface.k" ? kLeastK : slider.from;
-    job.vary.push_back({parameter.key->key, std::min(low, *value), std::max(slider.to, *value), *value});
+    const double low = parameter.key->key == "surface.k" ? kLeastK : std::min(slider.from, *value);
+    job.vary.push_back({parameter.key->key, low, std::max(slider.to, *value), std::max(low, *value)});
   }
   return job.vary.empty() ? std::nullopt : std::optional(std::move(job));
 }

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "explore_support.hpp"
 #include "temporary_file.hpp"
 #include "window_support.hpp"
@@ -48,10 +50,24 @@ TEST(ExploreSession, Minimum_IsVisitedInTheSceneThatWasFitted) {
   EXPECT_EQ(session.scene().number("surface.sigma"), 0.4);
 }
 
-TEST(FitText, Interval_HasItsPieces) {
-  EXPECT_EQ(interval_text({}), "none");
-  EXPECT_EQ(interval_text({.low = 1.25, .pieces = {{1.25, std::nullopt}}}), "1.25 to open");
-  EXPECT_EQ(interval_text({.low = 0.1, .high = 3.0, .pieces = {{0.1, 0.2}, {2.0, 3.0}}}), "0.1 to 0.2, 2 to 3");
+TEST(ExploreSession, Fit_OfK_RunsAlongItsLogarithm_FromZeroToo) {
+  for (const double k : {0.0, 0.22, 200.0}) {
+    Session session(paint());
+    const TemporaryFile file(".csv", "theta_deg,dolp\n60,0.05\n70,0.06\n");
+    session.load_measured(file.path());
+    session.set("surface.k", k);
+    session.mark("surface.k", true);
+    const FitRange range = session.fit_job().value().vary.front();
+    EXPECT_TRUE(range.is_logarithmic());
+    EXPECT_EQ(range.low, 0.001);
+    EXPECT_EQ(range.high, std::max(k, 100.0));
+    EXPECT_EQ(range.start, std::max(k, 0.001));
+  }
+}
+
+TEST(FitText, Interval_HasItsEnds) {
+  EXPECT_EQ(interval_text({.low = 1.25}), "1.25 to open");
+  EXPECT_EQ(interval_text({.low = 0.1, .high = 3.0, .pieces = {{0.1, 0.2}, {2.0, 3.0}}}), "0.1 to 3");
 }
 
 }  // namespace

@@ -302,7 +302,7 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   plot.list()->AddLine(plot.at(theta.from, 0.0), plot.at(theta.to, 0.0), kDimColour);
   for (const Residual& one : shown) {
     if (!plot.has_place(one.theta_deg, 1.0)) continue;
-    draw_error_bar(plot, one.theta_deg, one.value - one.deviation, one.value + one.deviation);
+    if (one.deviation > 0.0) draw_error_bar(plot, one.theta_deg, one.value - one.deviation, one.value + one.deviation);
     plot.list()->AddCircleFilled(plot.at(one.theta_deg, one.value), 3.0F, kTextColour);
   }
   plot.unclip();

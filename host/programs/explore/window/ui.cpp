@@ -173,7 +173,7 @@ void Ui::draw_help() {
     for (const char* hint :
          {"Drag in the curve: moves θ. Drag in the map: moves what its axes are of, and the curve follows.",
           "Wheel in the curve: zooms (Shift: along θ, Alt: along the values). Right button: moves it. Double click: "
-          "all.",
+          "all. On the numbers of an axis: its ends.",
           "Click in the legend: hides or shows a curve. Right click on a pin: its name.",
           "Ctrl-click on a slider: back to the value of the scene as opened. Type any allowed value beside it.",
           "Rest the mouse on a control: its meaning, equation and range. Drop a CSV of measured points on the window.",

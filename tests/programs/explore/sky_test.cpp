@@ -99,6 +99,12 @@ TEST_F(Window, SkyEditor_GivesASkyBetweenTwoTemperatures_WhichTheSavedSceneKeeps
   EXPECT_EQ(dolp({"plan", "made_scene.toml"}).status, 0);
   keys("ctrl+shift+c");
   EXPECT_TRUE(session.message().text.starts_with("copied")) << session.message().text;
+  xdotool({"keydown", "ctrl"});
+  frames();
+  click(app_->control_area("sky zenith").at(0.1F, 0.5F));
+  xdotool({"keyup", "ctrl"});
+  frames();
+  EXPECT_EQ(session.scene().number("surroundings.temperature_K"), 240.0);
 }
 
 TEST_F(Window, SkyList_FileOfTheSceneAsOpened_StaysAmongTheChoices) {

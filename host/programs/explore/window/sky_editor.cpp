@@ -67,7 +67,9 @@ void ControlsPanel::draw_sky_temperature(Session& session, const std::string& na
   const std::string slider = "##slider " + name;
   const bool is_moved = ImGui::SliderFloat(slider.c_str(), &position, 0.0F, 1.0F, "", ImGuiSliderFlags_NoInput);
   remember_area(id);
-  if (is_moved) session.set({with(std::round(10.0 * kSlider.value(static_cast<double>(position))) / 10.0)});
+  const bool is_ctrl = ImGui::GetIO().KeyCtrl;
+  if (ImGui::IsItemClicked() && is_ctrl) session.reset(kProfile);
+  if (is_moved && !is_ctrl) session.set({with(std::round(10.0 * kSlider.value(static_cast<double>(position))) / 10.0)});
   if (!ImGui::IsItemActive())
     tooltip(fmt::format("brightness temperature at the {}; a straight line in zenith between both", name));
   ImGui::SameLine();

@@ -18,7 +18,7 @@ std::string AxisEditor::take(const std::string& end, const std::string& text, co
                     now.is_log};
   if (!(range.from < range.to)) return fmt::format("{} = {}: must be from < to", end, one_line(text));
   if (range.is_log && range.from <= 0.0) return "from: must be above 0 on a logarithmic axis";
-  const std::string refusal = check(range);
+  std::string refusal = check(range);
   if (refusal.empty()) change = Change{range, range.is_log};
   return refusal;
 }

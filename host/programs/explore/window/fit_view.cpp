@@ -52,7 +52,7 @@ void draw_words(const Fit& fit) {
   for (const auto& [label, text] : fit.report.rows) {
     if (std::ranges::find(kShown, label) == kShown.end()) continue;
     const ImU32 colour = label == "misfit" || label == "status" ? kErrorColour : kTextColour;
-    coloured_text(colour, label + ": " + text);
+    coloured_text(colour, fmt::format("{}: {}", label, text));
   }
 }
 

@@ -87,7 +87,7 @@ std::optional<double> Residuals::rms(Plotted quantity) const {
 }
 
 Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress) {
-  Fit fit = evaluator.fit(job.scene, {job.data}, {.vary = job.vary, .progress = progress});
+  Fit fit = evaluator.fit(job.edits.scene(), {job.data}, {.vary = job.vary, .progress = progress});
   if (!fit.has_minimum) throw InputError("no minimum was found: no descent converged");
   return fit;
 }

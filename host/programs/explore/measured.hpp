@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "explore/background.hpp"
+#include "explore/scene_edits.hpp"
 
 namespace dolp::explore {
 
@@ -46,10 +47,9 @@ class Residuals {
 
 /// Everything that a fit needs, so that it can run in a thread of its own.
 struct FitJob {
-  Scene scene;
+  SceneEdits edits;
   MeasuredData data;
   std::vector<FitRange> vary;
-  std::vector<Setting> changes = {};  ///< of the scene as opened
 };
 
 /// Fits as `dolp fit` does. Errors: InputError where points, parameters and scene do not fit together and where no

@@ -178,7 +178,7 @@ std::optional<FitJob> Session::fit_job() const {
   if (!residuals_.data()) return std::nullopt;
   // A search along the logarithm of k finds small ones too.
   constexpr double kLeastK = 1e-3;
-  FitJob job{scene(), *residuals_.data(), {}, edits_.changes()};
+  FitJob job{edits_, *residuals_.data(), {}};
   for (const Parameter& parameter : parameters()) {
     const std::optional<double> value = parameter.value(scene());
     if (!value || !varies(parameter.key->key)) continue;
@@ -192,7 +192,7 @@ std::optional<FitJob> Session::fit_job() const {
 std::size_t Session::take_fit(Fit fit, const FitJob& job) {
   const std::size_t nearest = nearest_minimum(fit, job);
   fit_ = std::move(fit);
-  fit_changes_ = job.changes;
+  fit_edits_ = job.edits;
   view_.panel = Panel::kFit;
   visit_minimum(nearest);
   return nearest;
@@ -204,8 +204,9 @@ void Session::visit_minimum(std::size_t position) {
     values.push_back({fit_->parameters[j].key, TomlText{fmt::format("{:.6g}", fit_->minima[position].values[j])}});
   }
   attempt([&] {
-    edits_.restore(fit_changes_);
-    edits_.set(values);
+    SceneEdits visited = *fit_edits_;
+    visited.set(values);
+    edits_.restore(visited.changes());
     minimum_ = position;
     fitted_changes_ = edits_.changes();
   });

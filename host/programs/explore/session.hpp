@@ -170,8 +170,8 @@ class Session {
   Residuals residuals_;
   std::set<std::string> marked_;
   std::optional<Fit> fit_;
-  Changes fit_changes_;     ///< of the scene that was fitted
-  Changes fitted_changes_;  ///< with the minimum that was visited
+  std::optional<SceneEdits> fit_edits_;  ///< the scene that was fitted
+  Changes fitted_changes_;               ///< of it with the minimum that was visited
   std::size_t minimum_ = 0;
   std::vector<Effect> effects_;
   std::pair<std::string, double> influences_of_;  ///< key of the curve, zenith

@@ -14,7 +14,7 @@ namespace {
 
 void cell(const std::string& text) {
   ImGui::TableNextColumn();
-  ImGui::TextUnformatted(shown(text).c_str());
+  coloured_text(kTextColour, text);
 }
 
 /// A line for each minimum, and one for each kind of interval; returns the minimum that was clicked.

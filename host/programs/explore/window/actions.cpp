@@ -37,6 +37,7 @@ void Actions::attempt(const std::string& done, const std::function<void()>& body
 void Actions::save_scene(const std::string& path) {
   attempt("saved " + path, [&] {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    session_.keep_sky(path);
     write_text_atomically(path, session_.scene().toml(folder.empty() ? "." : folder));
     session_.note_saved();
   });
@@ -84,9 +85,8 @@ void Actions::fit() {
     return;
   }
   fit_.start([this, job = *job](const Progress& progress) -> BackgroundTask::Rest {
-    return [this, fit = run_fit(job, fit_evaluator_, progress)] {
-      session_.take_fit(fit);
-      return fit_text(fit);
+    return [this, job, fit = run_fit(job, fit_evaluator_, progress)] {
+      return fit_text(fit, session_.take_fit(fit, job));
     };
   });
 }

@@ -39,10 +39,32 @@ struct View {
   std::size_t mueller_column = 0;
 };
 
+/// A state of the scene that one can go back to.
+struct Snapshot {
+  std::string name;
+  SceneEdits edits;
+};
+
 /// One line for the user.
 struct Message {
   std::string text;
   bool is_error = false;
+};
+
+/// What a file of a session holds.
+struct SavedSession {
+  struct SavedPin {
+    std::string name;
+    bool is_visible;
+    Scene scene;
+  };
+  SceneEdits edits;
+  std::vector<SavedPin> pins = {};
+  std::vector<Snapshot> snapshots = {};
+  View view = {};
+  double theta_deg = 60.0;
+  std::optional<MeasuredData> measured = {};
+  std::vector<std::string> marked = {};  ///< keys that vary in a fit
 };
 
 /// State and commands; a Worker computes what it wants. Knows nothing of drawing.
@@ -59,8 +81,15 @@ class Session {
   void set(const std::vector<Setting>& changes);
   void reset(const std::string& key);
   void reset_all();
+  /// Shows another state, or another scene; `undo` goes back.
+  void go_to(const SceneEdits& edits);
+  /// Takes the place of all but what `undo` goes back to.
+  void restore(const SavedSession& saved);
   void undo() { step(done_, undone_, "nothing to undo"); }
   void redo() { step(undone_, done_, "nothing to redo"); }
+  void take_snapshot();
+  void rename_snapshot(std::size_t position, std::string name) { snapshots_[position].name = std::move(name); }
+  void remove_snapshot(std::size_t position);
   /// Changes while a button of the mouse is held down are one for `undo`, and get coarse results alone.
   void hold(bool is_held);
   void note_saved() { edits_.note_saved(); }
@@ -96,16 +125,18 @@ class Session {
   const std::optional<Curve>& overlay() const { return overlay_; }
   std::string overlay_name() const;
   const std::deque<Pin>& pins() const { return pins_; }
+  const std::vector<Snapshot>& snapshots() const { return snapshots_; }
   const HeatMap& map() const { return map_; }
   const Sky& sky() const { return sky_; }
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
+  std::vector<std::string> marked() const { return {marked_.begin(), marked_.end()}; }
   bool varies(const std::string& key) const { return marked_.contains(key); }
   /// The fit of the marked parameters, over the ranges of their sliders, to the measured points; none without points,
   /// or without a marked parameter that the scene has.
   std::optional<FitJob> fit_job() const;
   /// The result of the last fit, and what it says of a number; null once the scene has changed.
-  const Fit* fit() const { return fit_ && fitted_changes_ == edits_.changes() ? &*fit_ : nullptr; }
+  const Fit* fit() const { return fit_ && fitted_->is_same_scene(edits_) ? &*fit_ : nullptr; }
   const FitParameter* fitted(const std::string& key) const;
   const Message& message() const { return message_; }
   /// True while the mouse changes the scene.
@@ -122,11 +153,10 @@ class Session {
   const Point* at_cursor() const;
 
  private:
-  using Changes = std::vector<Setting>;  ///< of the scene as opened
-
   template <class Command>
   void attempt(const Command& command);
-  void step(std::vector<Changes>& from, std::vector<Changes>& to, const char* nothing);
+  void step(std::vector<SceneEdits>& from, std::vector<SceneEdits>& to, const char* nothing);
+  bool keeps_all() const { return view_.keeps_all || described(view_.quantity).needs_rho; }
   void tell_asked(const std::string& chosen, const std::vector<Setting>& asked);
   void follow();
   void follow_overlay(const std::string& content, bool keep_all);
@@ -137,7 +167,8 @@ class Session {
   void follow_peak();
 
   SceneEdits edits_;
-  std::vector<Changes> done_, undone_;  ///< before each gesture; after each that was undone
+  std::vector<SceneEdits> done_, undone_;  ///< before each gesture; after each that was undone
+  std::vector<Snapshot> snapshots_;
   bool is_held_ = false;
   bool is_in_gesture_ = false;
   View view_;
@@ -151,7 +182,7 @@ class Session {
   Residuals residuals_;
   std::set<std::string> marked_;
   std::optional<Fit> fit_;
-  std::vector<Setting> fitted_changes_;  ///< of the scene with what was found
+  std::optional<SceneEdits> fitted_;  ///< the scene with what was found
   std::vector<Effect> effects_;
   std::pair<std::string, double> influences_of_;  ///< key of the curve, zenith
   Message message_;

@@ -7,6 +7,7 @@
 
 #include "base/atomic_file.hpp"
 #include "base/stopwatch.hpp"
+#include "explore/session_file.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -16,14 +17,20 @@ constexpr auto kFading = std::chrono::milliseconds(300);  // of a dialog that wa
 }  // namespace
 
 Actions::Actions(Session& session, const std::string& device, std::string command_line,
-                 const std::function<void()>& on_change)
+                 const std::filesystem::path& preferences, const std::function<void()>& on_change)
     : session_(session),
       command_line_(std::move(command_line)),
       table_evaluator_({.device = device, .is_interactive = true}),
       fit_evaluator_({.device = device, .is_interactive = true}),
       table_(on_change),
       true_error_(on_change),
-      fit_(on_change) {}
+      fit_(on_change) {
+  try {
+    preferences_.load(preferences);
+  } catch (const std::exception& error) {
+    session_.tell(error.what(), true);
+  }
+}
 
 void Actions::attempt(const std::string& done, const std::function<void()>& body) {
   try {
@@ -32,6 +39,23 @@ void Actions::attempt(const std::string& done, const std::function<void()>& body
   } catch (const std::exception& error) {
     session_.tell(error.what(), true);
   }
+}
+
+void Actions::open(const std::string& path) {
+  attempt("opened " + path, [&] {
+    open_file(session_, path);
+    if (session_.message().is_error) throw InputError(session_.message().text);
+    prefer([&](Preferences& preferences) { preferences.remember(path); });
+  });
+}
+
+void Actions::prefer(const std::function<void(Preferences&)>& change) {
+  change(preferences_);
+  preferences_.save();
+}
+
+void Actions::save_session(const std::string& path) {
+  attempt("saved " + path, [&] { explore::save_session(session_, path); });
 }
 
 void Actions::save_scene(const std::string& path) {

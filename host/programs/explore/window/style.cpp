@@ -18,13 +18,14 @@ constexpr std::array kViridis = {
     Rgb{44, 114, 142}, Rgb{38, 130, 142}, Rgb{33, 145, 140}, Rgb{31, 160, 136}, Rgb{40, 174, 128}, Rgb{63, 188, 115},
     Rgb{94, 201, 98},  Rgb{132, 212, 75}, Rgb{173, 220, 48}, Rgb{216, 226, 25}, Rgb{253, 231, 37}};
 
-constexpr ImU32 kOrange = IM_COL32(230, 159, 0, 255);
-constexpr ImU32 kSkyBlue = IM_COL32(86, 180, 233, 255);
-constexpr ImU32 kGreen = IM_COL32(0, 158, 115, 255);
-constexpr ImU32 kYellow = IM_COL32(240, 228, 66, 255);
-constexpr ImU32 kBlue = IM_COL32(0, 114, 178, 255);
-constexpr ImU32 kVermilion = IM_COL32(213, 94, 0, 255);
-constexpr ImU32 kPurple = IM_COL32(204, 121, 167, 255);
+// On white the light ones are darker.
+constexpr Themed kOrange{IM_COL32(230, 159, 0, 255), IM_COL32(196, 124, 0, 255)};
+constexpr Themed kSkyBlue{IM_COL32(86, 180, 233, 255), IM_COL32(0, 114, 178, 255)};
+constexpr Themed kGreen{IM_COL32(0, 158, 115, 255), IM_COL32(0, 134, 98, 255)};
+constexpr Themed kYellow{IM_COL32(240, 228, 66, 255), IM_COL32(150, 138, 0, 255)};
+constexpr Themed kBlue{IM_COL32(0, 114, 178, 255), IM_COL32(50, 150, 205, 255)};
+constexpr Themed kVermilion{IM_COL32(213, 94, 0, 255), IM_COL32(190, 70, 0, 255)};
+constexpr Themed kPurple{IM_COL32(204, 121, 167, 255), IM_COL32(170, 80, 130, 255)};
 
 ImU32 with_alpha(ImU32 colour, ImU32 alpha) { return (colour & ~IM_COL32_A_MASK) | (alpha << IM_COL32_A_SHIFT); }
 
@@ -46,6 +47,20 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 42> kNames =
 
 }  // namespace
 
+bool is_light() {
+  const ImVec4 ground = ImGui::GetStyleColorVec4(ImGuiCol_WindowBg);
+  return ground.y > 0.5F;
+}
+
+void set_theme(bool light) {
+  if (light) {
+    ImGui::StyleColorsLight();
+  } else {
+    ImGui::StyleColorsDark();
+  }
+  ImGui::GetStyle().Colors[ImGuiCol_PopupBg].w = 1.0F;
+}
+
 ImU32 viridis(double position) {
   const double place = std::clamp(position, 0.0, 1.0) * static_cast<double>(kViridis.size() - 1);
   const auto below = std::min(static_cast<std::size_t>(place), kViridis.size() - 2);
@@ -63,9 +78,9 @@ CurveStyle current_style() { return {kSkyBlue, 0.0F, 0.0F}; }
 CurveStyle overlay_style() { return {kOrange, 9.0F, 5.0F}; }
 
 CurveStyle pin_style(std::size_t pin) {
-  constexpr std::array kStyles = {CurveStyle{kYellow, 3.0F, 4.0F}, CurveStyle{kPurple, 14.0F, 5.0F},
-                                  CurveStyle{kGreen, 6.0F, 3.0F},  CurveStyle{kVermilion, 2.0F, 3.0F},
-                                  CurveStyle{kBlue, 18.0F, 3.0F},  CurveStyle{kTextColour, 5.0F, 9.0F}};
+  const std::array kStyles = {CurveStyle{kYellow, 3.0F, 4.0F}, CurveStyle{kPurple, 14.0F, 5.0F},
+                              CurveStyle{kGreen, 6.0F, 3.0F},  CurveStyle{kVermilion, 2.0F, 3.0F},
+                              CurveStyle{kBlue, 18.0F, 3.0F},  CurveStyle{kTextColour, 5.0F, 9.0F}};
   return kStyles[pin % kStyles.size()];
 }
 

@@ -19,13 +19,22 @@ namespace {
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
                                     ImGuiWindowFlags_NoBackground;
-constexpr const char* kDialog = "###path";
+constexpr char kOpenKey = 'O';
 constexpr char kUndoKey = 'Z';
+constexpr char kLargerKey = '=';
+constexpr char kSmallerKey = '-';
 
 void label(const char* text) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(shown(text).c_str());
   ImGui::SameLine();
+}
+
+/// True for the key itself or that of the number pad.
+bool is_pressed(char key) {
+  const auto is_now = [](int code) { return ImGui::IsKeyPressed(code, false); };
+  return is_now(key) || (key == kLargerKey && is_now(GLFW_KEY_KP_ADD)) ||
+         (key == kSmallerKey && is_now(GLFW_KEY_KP_SUBTRACT)) || (key == '0' && is_now(GLFW_KEY_KP_0));
 }
 
 /// Returns why the text is refused; nothing where it is taken.
@@ -54,35 +63,13 @@ void draw_task(const char* name, BackgroundTask& task) {
 }  // namespace
 
 Ui::Ui(Session& session, Actions& actions, const std::string& name, std::function<void()> catch_up)
-    : session_(session), actions_(actions), catch_up_(std::move(catch_up)) {
-  add_file_commands(name);
+    : session_(session),
+      actions_(actions),
+      name_(name),
+      first_file_(session.scene().name()),
+      catch_up_(std::move(catch_up)) {
+  add_file_commands();
   add_view_commands();
-}
-
-void Ui::add_file_commands(const std::string& name) {
-  // Asks for a path, and does something with it.
-  const auto ask = [this](const char* title, const std::string& path,
-                          const std::function<void(const std::string&)>& use, bool must_exist = false) {
-    return [this, dialog = PathDialog{title, path, must_exist, use, true}] { dialog_ = dialog; };
-  };
-  const auto with = [this](void (Actions::*act)(const std::string&)) {
-    return [this, act](const std::string& path) { (actions_.*act)(path); };
-  };
-  commands_ = {
-      {"File", "Save the scene", 'S', ask("Save the scene as TOML", name + "_scene.toml", with(&Actions::save_scene))},
-      {"File", "Export the table", 'T',
-       ask("Compute the table of the scene's grid: .nc, .csv, .npy", name + "_table.nc", with(&Actions::export_table))},
-      {"File", "Save the curve as CSV", 'E',
-       ask("Save the curve as CSV", name + "_curve.csv", with(&Actions::save_curve))},
-      {"File", "Save a picture", 'I',
-       ask("Save a picture of the window as PNG", name + "_window.png", with(&Actions::save_picture))},
-      {"File", "Load measured points", 'O',
-       ask(
-           "Load measured points: CSV with theta_deg, dolp", "measured.csv",
-           [this](const std::string& path) { session_.load_measured(path); }, true)},
-      {"File", "Remove measured points", 0, [this] { session_.clear_measured(); }},
-      {"File", "Quit", 'Q', [this] { actions_.quit(); }},
-  };
 }
 
 void Ui::add_view_commands() {
@@ -97,14 +84,28 @@ void Ui::add_view_commands() {
   add_switch("Logarithmic axis", 'L', &View::is_log);
   add_switch("Overlay the other slope distribution", 'D', &View::has_overlay);
   add_switch("Keep all effects", 'G', &View::keeps_all);
+  const auto add_zoom = [this](const char* text, char key, void (*change)(Preferences&)) {
+    commands_.push_back({"View", text, key, [this, change] { actions_.prefer(change); }});
+  };
+  add_zoom("Larger", kLargerKey, [](Preferences& of) { of.zoom_by(1); });
+  add_zoom("Smaller", kSmallerKey, [](Preferences& of) { of.zoom_by(-1); });
+  add_zoom("Usual size", '0', [](Preferences& of) { of.zoom_to_default(); });
+  add_zoom("Light theme", 0, [](Preferences& of) { of.is_light = !of.is_light; });
+  commands_.back().is_checked = [this] { return actions_.preferences().is_light; };
   commands_.push_back({"Scene", "Undo", kUndoKey, [this] { session_.undo(); }});
   commands_.push_back({"Scene", "Redo", kUndoKey, [this] { session_.redo(); }, {}, true});
   commands_.push_back({"Scene", "Copy the command that gives its table", 'C', [this] { copy_command(); }, {}, true});
   commands_.push_back({"Scene", "Pin the curve", 'P', [this] { session_.pin(); }});
+  commands_.push_back({"Scene", "Take a snapshot", 'B', [this] { session_.take_snapshot(); }});
   commands_.push_back({"Scene", "True error of the curve", 'K', [this] { actions_.find_true_error(); }});
   commands_.push_back({"Scene", "Fit to the measured points", 'F', [this] { actions_.fit(); }});
   commands_.push_back({"Scene", "Take all changes back", 'R', [this] { session_.reset_all(); }});
   commands_.push_back({"Help", "Shortcuts and hints", 'H', [this] { shows_help_ = true; }});
+}
+
+std::string Ui::Command::shortcut() const {
+  if (key == 0) return {};
+  return std::string(has_shift ? "Ctrl+Shift+" : "Ctrl+") + (key == kLargerKey ? '+' : key);
 }
 
 void Ui::run_shortcuts() {
@@ -112,19 +113,26 @@ void Ui::run_shortcuts() {
   const ImGuiIO& io = ImGui::GetIO();
   if (!io.KeyCtrl || io.KeyAlt) return;
   for (const Command& command : commands_) {
-    if (command.has_shift != io.KeyShift) continue;
-    if (command.key == kUndoKey && io.WantTextInput) continue;  // the field undoes its own text
+    if (command.has_shift != io.KeyShift && command.key != kLargerKey) continue;  // many keyboards have + above =
+    if (command.key == kUndoKey && io.WantTextInput) continue;                    // the field undoes its own text
     // GLFW's number of a letter's key is that of the letter.
-    if (command.key != 0 && ImGui::IsKeyPressed(command.key, false)) command.run();
+    if (command.key != 0 && is_pressed(command.key)) command.run();
   }
 }
 
+void Ui::remember_next(const std::string& name, const char* text) {
+  const ImVec2 corner = ImGui::GetCursorScreenPos();  // an open menu is an item of its own
+  areas_[name] = {corner, {corner.x + ImGui::CalcTextSize(text).x, corner.y + ImGui::GetTextLineHeight()}};
+}
+
 void Ui::draw_menu(const char* menu) {
+  remember_next(std::string("menu ") + menu, menu);
   if (!ImGui::BeginMenu(menu)) return;
   for (const Command& command : commands_) {
     if (std::string_view(command.menu) != menu) continue;
     const bool is_checked = command.is_checked && command.is_checked();
     if (ImGui::MenuItem(command.text, command.shortcut().c_str(), is_checked)) command.run();
+    if (command.key == kOpenKey) draw_recent();
   }
   ImGui::EndMenu();
 }
@@ -136,27 +144,6 @@ void Ui::draw_menus() {
   ImGui::TextUnformatted(shown(session_.scene().title()).c_str());
   if (session_.edits().is_changed()) ImGui::TextDisabled("(changed)");
   ImGui::EndMainMenuBar();
-}
-
-void Ui::draw_path_dialog() {
-  if (dialog_.is_opening) ImGui::OpenPopup(kDialog);
-  ImGui::SetNextWindowSize({32.0F * ImGui::GetFontSize(), 0.0F});
-  if (!ImGui::BeginPopupModal((dialog_.title + kDialog).c_str(), nullptr, ImGuiWindowFlags_NoResize)) return;
-  if (dialog_.is_opening) ImGui::SetKeyboardFocusHere();
-  dialog_.is_opening = false;
-  ImGui::SetNextItemWidth(-1.0F);
-  bool is_accepted = ImGui::InputText("##path", &dialog_.path, ImGuiInputTextFlags_EnterReturnsTrue);
-  std::error_code unknown;
-  const bool exists = std::filesystem::exists(dialog_.path, unknown);
-  const char* remark = dialog_.must_exist ? (exists ? " " : "There is no such file.")
-                                          : (exists ? "This file exists and will be replaced." : " ");
-  ImGui::TextUnformatted(remark);
-  is_accepted |= ImGui::Button("OK");
-  ImGui::SameLine();
-  const bool is_cancelled = ImGui::Button("Cancel") || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false);
-  if (is_accepted || is_cancelled) ImGui::CloseCurrentPopup();
-  ImGui::EndPopup();
-  if (is_accepted && !dialog_.path.empty()) dialog_.accept(dialog_.path);
 }
 
 void Ui::draw_help() {
@@ -340,7 +327,9 @@ void Ui::draw_panels(ImVec2 size) {
 
 Area Ui::area(const std::string& name) const {
   const auto tab = areas_.find(name);
-  return tab == areas_.end() ? controls_.areas().at(name) : tab->second;
+  if (tab != areas_.end()) return tab->second;
+  const auto file = dialog_.areas().find(name);
+  return file == dialog_.areas().end() ? controls_.areas().at(name) : file->second;
 }
 
 void Ui::copy_command() {
@@ -363,6 +352,7 @@ void Ui::draw() {
   draw_fit();
   controls_.draw(session_);
   draw_pins();
+  draw_snapshots();
   ImGui::EndChild();
   catch_up_();
   ImGui::SameLine();
@@ -387,7 +377,7 @@ void Ui::draw() {
   ImGui::EndChild();
   ImGui::End();
   draw_help();
-  draw_path_dialog();
+  dialog_.draw();
 }
 
 }  // namespace dolp::explore

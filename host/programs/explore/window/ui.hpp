@@ -8,6 +8,7 @@
 
 #include "explore/window/actions.hpp"
 #include "explore/window/controls_panel.hpp"
+#include "explore/window/path_dialog.hpp"
 #include "explore/window/views.hpp"
 
 namespace dolp::explore {
@@ -21,7 +22,8 @@ class Ui {
   /// Draws everything, between ImGui's NewFrame and Render.
   void draw();
 
-  /// The last drawn area of a control, or of the tab "panel NAME". Errors: std::out_of_range when it was not drawn.
+  /// The last drawn area of a control, of the tab "panel NAME", of "snapshot NUMBER", of "menu NAME", of "recent PATH"
+  /// or of an entry of the list of files. Errors: std::out_of_range when it was not drawn.
   Area area(const std::string& name) const;
   const CurveView& curves() const { return curve_view_; }
 
@@ -35,29 +37,26 @@ class Ui {
     std::function<bool()> is_checked = {};  ///< none: not a switch
     bool has_shift = false;
 
-    std::string shortcut() const { return key == 0 ? "" : std::string(has_shift ? "Ctrl+Shift+" : "Ctrl+") + key; }
-  };
-  /// A dialog that asks for a path.
-  struct PathDialog {
-    std::string title;
-    std::string path;
-    bool must_exist = false;
-    std::function<void(const std::string&)> accept;
-    bool is_opening = false;
+    std::string shortcut() const;
   };
 
-  void add_file_commands(const std::string& name);
+  std::string suggested(const std::string& ending) const;
+  void ask_what_to_open();
+  void add_file_commands();
   void add_view_commands();
   void draw_menus();
   void draw_menu(const char* menu);
   void run_shortcuts();
   void copy_command();
-  void draw_path_dialog();
+  /// The area of a menu or its entry that is drawn next.
+  void remember_next(const std::string& name, const char* text);
+  void draw_recent();
   void draw_help();
   void draw_view_controls();
   void draw_map_axes(View& view, bool& is_changed);
   void draw_fit();
   void draw_pins();
+  void draw_snapshots();
   void draw_readout();
   void draw_plots(ImVec2 size);
   void draw_panels(ImVec2 size);
@@ -65,6 +64,8 @@ class Ui {
 
   Session& session_;
   Actions& actions_;
+  std::string name_;        ///< that suggested names of files begin with
+  std::string first_file_;  ///< as long as the scene is of this file
   std::function<void()> catch_up_;
   std::vector<Command> commands_;
   ControlsPanel controls_;

@@ -297,8 +297,12 @@ void App::reopen() { glfwSetWindowShouldClose(impl_->window.get(), GLFW_FALSE); 
 
 void App::run(const AfterFrame& after_frame) {
   while (answer(after_frame)) {
+    // A note appears when the mouse has rested, a little more than a frame later at most.
+    constexpr double kNote_s = static_cast<double>(kTooltipDelay_s) + 0.05;
     if (ImGui::GetIO().WantTextInput) {
       glfwWaitEventsTimeout(kBlink_s);
+    } else if (const double rest_s = impl_->input.rest_s(); rest_s < kNote_s) {
+      glfwWaitEventsTimeout(kNote_s - rest_s);
     } else {
       glfwWaitEvents();
     }

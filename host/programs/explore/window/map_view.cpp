@@ -12,7 +12,8 @@ namespace {
 constexpr double kColourSteps = 96.0;
 constexpr double kMostContrast = 1e3;  // of a logarithmic colour scale
 constexpr std::size_t kMostLines = 7;
-constexpr float kBarRoom = 5.4F;  // right of the map, in lines of text
+constexpr ImU32 kOnMap = IM_COL32(255, 255, 255, 190);  // lines, in both themes
+constexpr float kBarRoom = 5.4F;                        // right of the map, in lines of text
 
 PlotAxis axis_of(const MapAxis& axis) { return {axis_label(axis.axis), axis.scale}; }
 
@@ -29,9 +30,9 @@ std::string title_of(const Session& session) {
 void draw_map_cursor(const Session& session, const Plot& plot) {
   const HeatMap& map = session.map();
   const ImVec2 at = plot.at_position(session.map_cursor(map.x()), session.map_cursor(map.y()));
-  plot.list()->AddLine({at.x, plot.min().y}, {at.x, plot.max().y}, kCursorColour);
-  plot.list()->AddLine({plot.min().x, at.y}, {plot.max().x, at.y}, kCursorColour);
-  plot.list()->AddCircle(at, 5.0F, kTextColour, 0, 2.0F);
+  plot.list()->AddLine({at.x, plot.min().y}, {at.x, plot.max().y}, kOnMap);
+  plot.list()->AddLine({plot.min().x, at.y}, {plot.max().x, at.y}, kOnMap);
+  plot.list()->AddCircle(at, 5.0F, kOnMap, 0, 2.0F);
 }
 
 }  // namespace
@@ -97,10 +98,9 @@ void MapView::draw_cells(const Plot& plot) const {
 }
 
 void MapView::draw_lines(const Plot& plot, double scale) const {
-  constexpr ImU32 kLine = IM_COL32(255, 255, 255, 170);
   for (const Line& line : lines_) {
     for (const Segment& s : line.segments) {
-      plot.list()->AddLine(plot.at_position(s.x0, s.y0), plot.at_position(s.x1, s.y1), kLine);
+      plot.list()->AddLine(plot.at_position(s.x0, s.y0), plot.at_position(s.x1, s.y1), kOnMap);
     }
   }
   std::vector<ImVec2> labels;

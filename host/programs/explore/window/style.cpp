@@ -55,10 +55,12 @@ bool is_light() {
 void set_theme(bool light) {
   if (light) {
     ImGui::StyleColorsLight();
+    ImGui::GetStyle().FrameBorderSize = 1.0F;
   } else {
     ImGui::StyleColorsDark();
+    ImGui::GetStyle().FrameBorderSize = 0.0F;
   }
-  ImGui::GetStyle().Colors[ImGuiCol_PopupBg].w = 1.0F;
+  for (const ImGuiCol ground : {ImGuiCol_PopupBg, ImGuiCol_WindowBg}) ImGui::GetStyle().Colors[ground].w = 1.0F;
 }
 
 ImU32 viridis(double position) {
@@ -135,8 +137,27 @@ void coloured_text(ImU32 colour, const std::string& text) {
 
 void tooltip(const std::string& text) {
   if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  const ImGuiIO& io = ImGui::GetIO();
+  const auto now_s = static_cast<float>(ImGui::GetTime());
+  float& still_since_s = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("still since"), now_s);
+  const bool is_still = io.MouseDelta.x == 0.0F && io.MouseDelta.y == 0.0F && !ImGui::IsAnyMouseDown();
+  if (!is_still) still_since_s = now_s;
+  if (now_s - still_since_s < kTooltipDelay_s) return;
+  // Beside the panel or above the item, so that the values below it stay in sight.
+  const float width = 28.0F * ImGui::GetFontSize();
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const ImVec2 first = ImGui::GetItemRectMin();
+  const ImVec2 last = ImGui::GetItemRectMax();
+  const float right = ImGui::GetWindowPos().x + ImGui::GetWindowWidth() + gap;
+  if (right + width < io.DisplaySize.x) {
+    const bool is_low = first.y > 0.5F * io.DisplaySize.y;
+    ImGui::SetNextWindowPos({right, is_low ? last.y : first.y}, ImGuiCond_Always, {0.0F, is_low ? 1.0F : 0.0F});
+  } else {
+    const float left = std::max(std::min(first.x, io.DisplaySize.x - width - 2.0F * gap), 0.0F);
+    ImGui::SetNextWindowPos({left, first.y - gap}, ImGuiCond_Always, {0.0F, 1.0F});
+  }
   ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(28.0F * ImGui::GetFontSize());
+  ImGui::PushTextWrapPos(width);
   ImGui::TextUnformatted(shown(text).c_str());
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();

@@ -58,6 +58,7 @@ inline constexpr Themed kRefusedColour{IM_COL32(110, 48, 34, 255), IM_COL32(255,
 inline constexpr Themed kStaleVeil{IM_COL32(20, 21, 24, 150), IM_COL32(255, 255, 255, 150)};
 /// The interval of a fit.
 inline constexpr Themed kIntervalColour{IM_COL32(90, 205, 130, 255), IM_COL32(0, 130, 60, 255)};
+inline constexpr Themed kHeadingColour{IM_COL32(230, 179, 0, 255), IM_COL32(148, 98, 0, 255)};
 inline constexpr Themed kCursorColour{IM_COL32(255, 255, 255, 200), IM_COL32(40, 40, 40, 200)};
 
 /// Loads DejaVu Sans at `pixels`, or, where it is not installed, keeps ImGui's own font, which has ASCII alone.
@@ -73,7 +74,10 @@ std::string ascii(std::string_view text);
 /// Text in a colour at ImGui's cursor, wrapped at the edge of the window.
 void coloured_text(ImU32 colour, const std::string& text);
 
-/// A note at the mouse while it rests on the item that was drawn last.
+/// How long the mouse rests before a note appears.
+inline constexpr float kTooltipDelay_s = 0.5F;
+
+/// A note beside the item that was drawn last, while the mouse rests on it.
 void tooltip(const std::string& text);
 
 }  // namespace dolp::explore

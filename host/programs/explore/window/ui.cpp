@@ -30,6 +30,12 @@ void label(const char* text) {
   ImGui::SameLine();
 }
 
+/// Beside the last item, or in a new line where there is less room than this many times the size of the font.
+void go_on(float width) {
+  ImGui::SameLine();
+  if (ImGui::GetContentRegionAvail().x < width * ImGui::GetFontSize()) ImGui::NewLine();
+}
+
 /// True for the key itself or that of the number pad.
 bool is_pressed(char key) {
   const auto is_now = [](int code) { return ImGui::IsKeyPressed(code, false); };
@@ -130,6 +136,7 @@ void Ui::draw_menu(const char* menu) {
   if (!ImGui::BeginMenu(menu)) return;
   for (const Command& command : commands_) {
     if (std::string_view(command.menu) != menu) continue;
+    remember_next(command.text, command.text);
     const bool is_checked = command.is_checked && command.is_checked();
     if (ImGui::MenuItem(command.text, command.shortcut().c_str(), is_checked)) command.run();
     if (command.key == kOpenKey) draw_recent();
@@ -151,6 +158,9 @@ void Ui::draw_help() {
   ImGui::SetNextWindowSize({36.0F * ImGui::GetFontSize(), 0.0F}, ImGuiCond_Appearing);
   const ImVec2 centre = ImGui::GetMainViewport()->GetCenter();
   ImGui::SetNextWindowPos(centre, ImGuiCond_Appearing, {0.5F, 0.5F});
+  if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false) && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup)) {
+    shows_help_ = false;
+  }
   if (ImGui::Begin("Shortcuts and hints", &shows_help_, ImGuiWindowFlags_NoCollapse)) {
     for (const Command& command : commands_) {
       if (command.key != 0) ImGui::BulletText("%s: %s", command.shortcut().c_str(), command.text);
@@ -189,8 +199,9 @@ void Ui::draw_view_controls() {
   is_changed |= ImGui::Checkbox("log", &view.is_log);
   ImGui::SameLine();
   is_changed |= ImGui::Checkbox("overlay", &view.has_overlay);
-  ImGui::SameLine();
+  go_on(18.0F);
   draw_map_axes(view, is_changed);
+  go_on(14.0F);
   label("   θ up to");
   ImGui::SetNextItemWidth(0.5F * width);
   fields_.draw("theta max", view.theta_max_deg, [&](const std::string& text) {
@@ -220,7 +231,7 @@ void Ui::draw_map_axes(View& view, bool& is_changed) {
       }
       ImGui::EndCombo();
     }
-    ImGui::SameLine();
+    if (i == 0) ImGui::SameLine();
   }
 }
 
@@ -299,30 +310,53 @@ void Ui::draw_plots(ImVec2 size) {
   ImGui::EndChild();
   ImGui::SameLine();
   ImGui::BeginChild("maps", {size.x - curve_width - gap, size.y}, false, kStill);
-  draw_panels(ImGui::GetContentRegionAvail());
+  draw_panel_tabs();
+  draw_panel(ImGui::GetContentRegionAvail());
   ImGui::EndChild();
 }
 
-void Ui::draw_panels(ImVec2 size) {
+bool Ui::draw_tab(const char* name, bool is_shown) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(name).x + 2.0F * style.FramePadding.x) ImGui::NewLine();
+  ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(is_shown ? ImGuiCol_TabActive : ImGuiCol_Tab));
+  const bool is_clicked = ImGui::SmallButton(name);
+  ImGui::PopStyleColor();
+  areas_[fmt::format("panel {}", name)] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+  ImGui::SameLine();
+  return is_clicked;
+}
+
+void Ui::draw_panel_tabs() {
   View view = session_.view();
   for (const PanelDescription& of : kPanels) {
-    if (of.panel != Panel::kMap) ImGui::SameLine();
-    const bool is_shown = of.panel == view.panel;
-    const ImGuiCol colour = is_shown ? ImGuiCol_TabActive : ImGuiCol_Tab;
-    ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(colour));
-    if (ImGui::SmallButton(of.name)) view.panel = of.panel;
-    ImGui::PopStyleColor();
-    areas_[fmt::format("panel {}", of.name)] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+    if (draw_tab(of.name, is_narrow_ ? page_.empty() && of.panel == view.panel : of.panel == view.panel)) {
+      view.panel = of.panel;
+      page_.clear();
+    }
   }
-  size.y = ImGui::GetContentRegionAvail().y;
-  const Panel shown_now = session_.view().panel;
-  if (shown_now == Panel::kMap) map_view_.draw(session_, size);
-  if (shown_now == Panel::kSlopes) draw_slopes(session_, size);
-  if (shown_now == Panel::kMaterial) draw_material(session_, size);
-  if (shown_now == Panel::kScattering) scattering_view_.draw(session_, size);
-  if (shown_now == Panel::kShapes) shape_view_.draw(session_, size);
-  if (shown_now == Panel::kSky) draw_sky(session_, size);
-  if (view.panel != shown_now) session_.set_view(view);
+  ImGui::NewLine();
+  if (view.panel != session_.view().panel) session_.set_view(view);
+}
+
+void Ui::draw_panel(ImVec2 size) {
+  const Panel panel = session_.view().panel;
+  if (panel == Panel::kMap) map_view_.draw(session_, size);
+  if (panel == Panel::kSlopes) draw_slopes(session_, size);
+  if (panel == Panel::kMaterial) draw_material(session_, size);
+  if (panel == Panel::kScattering) scattering_view_.draw(session_, size);
+  if (panel == Panel::kShapes) shape_view_.draw(session_, size);
+  if (panel == Panel::kSky) draw_sky(session_, size);
+}
+
+void Ui::draw_one_page() {
+  for (const char* name : {"curve", "effects", "accuracy"}) {
+    if (draw_tab(name, page_ == name)) page_ = name;
+  }
+  draw_panel_tabs();
+  if (page_ == "effects") return draw_effects(session_);
+  if (page_ == "accuracy") return draw_price();
+  if (page_ == "curve") return curve_view_.draw(session_, ImGui::GetContentRegionAvail());
+  draw_panel(ImGui::GetContentRegionAvail());
 }
 
 Area Ui::area(const std::string& name) const {
@@ -338,6 +372,17 @@ void Ui::copy_command() {
   session_.tell("copied: " + command);
 }
 
+void Ui::draw_bottom() {
+  const float price = 20.0F * ImGui::GetFontSize();
+  ImGui::BeginChild("effects", {ImGui::GetContentRegionAvail().x - price, 0.0F}, true);
+  draw_effects(session_);
+  ImGui::EndChild();
+  ImGui::SameLine();
+  ImGui::BeginChild("price", {0.0F, 0.0F}, true);
+  draw_price();
+  ImGui::EndChild();
+}
+
 void Ui::draw() {
   session_.hold(ImGui::IsMouseDown(ImGuiMouseButton_Left));
   run_shortcuts();
@@ -347,7 +392,9 @@ void Ui::draw() {
   ImGui::SetNextWindowSize(viewport->WorkSize);
   ImGui::Begin("dolp", nullptr, kFixed);
   const ImVec2 all = ImGui::GetContentRegionAvail();
-  const float left = 22.0F * ImGui::GetFontSize();
+  const float em = ImGui::GetFontSize();
+  const float left = std::clamp(0.36F * all.x, 19.0F * em, 22.0F * em);
+  is_narrow_ = all.x - left < 46.0F * em;
   ImGui::BeginChild("controls", {left, all.y}, true);
   draw_fit();
   controls_.draw(session_);
@@ -358,22 +405,22 @@ void Ui::draw() {
   ImGui::SameLine();
   ImGui::BeginChild("right", {0.0F, all.y});
   draw_view_controls();
-  const float readout = 3.8F * ImGui::GetTextLineHeightWithSpacing();
+  const float readout =
+      (ImGui::GetContentRegionAvail().x < 64.0F * em ? 4.8F : 3.8F) * ImGui::GetTextLineHeightWithSpacing();
   const ImVec2 rest{ImGui::GetContentRegionAvail().x, ImGui::GetContentRegionAvail().y - readout};
-  // The panels below scroll; the plots keep more than half of what there is.
-  const float bottom = std::min(std::max(0.33F * all.y, 15.0F * ImGui::GetTextLineHeight()), 0.45F * rest.y);
-  draw_plots({rest.x, rest.y - bottom});
+  if (is_narrow_) {
+    ImGui::BeginChild("page", {rest.x, rest.y - ImGui::GetStyle().ItemSpacing.y});
+    draw_one_page();
+    ImGui::EndChild();
+  } else {
+    // The panels below scroll; the plots keep more than half of what there is.
+    const float bottom = std::min(std::max(0.33F * all.y, 15.0F * ImGui::GetTextLineHeight()), 0.45F * rest.y);
+    draw_plots({rest.x, rest.y - bottom});
+  }
   ImGui::BeginChild("readout", {0.0F, readout});
   draw_readout();
   ImGui::EndChild();
-  const float price = 20.0F * ImGui::GetFontSize();
-  ImGui::BeginChild("effects", {ImGui::GetContentRegionAvail().x - price, 0.0F}, true);
-  draw_effects(session_);
-  ImGui::EndChild();
-  ImGui::SameLine();
-  ImGui::BeginChild("price", {0.0F, 0.0F}, true);
-  draw_price();
-  ImGui::EndChild();
+  if (!is_narrow_) draw_bottom();
   ImGui::EndChild();
   ImGui::End();
   draw_help();

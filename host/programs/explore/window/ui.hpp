@@ -22,8 +22,8 @@ class Ui {
   /// Draws everything, between ImGui's NewFrame and Render.
   void draw();
 
-  /// The last drawn area of a control, of the tab "panel NAME", of "snapshot NUMBER", of "menu NAME", of "recent PATH"
-  /// or of an entry of the list of files. Errors: std::out_of_range when it was not drawn.
+  /// The last drawn area of a control, of the tab "panel NAME", of "snapshot NUMBER", of "menu NAME" and its entries,
+  /// of "recent PATH" or of an entry of the list of files. Errors: std::out_of_range when it was not drawn.
   Area area(const std::string& name) const;
   const CurveView& curves() const { return curve_view_; }
 
@@ -59,8 +59,13 @@ class Ui {
   void draw_snapshots();
   void draw_readout();
   void draw_plots(ImVec2 size);
-  void draw_panels(ImVec2 size);
+  /// One thing at a time, where two beside each other would be too small.
+  void draw_one_page();
+  bool draw_tab(const char* name, bool is_shown);
+  void draw_panel_tabs();
+  void draw_panel(ImVec2 size);
   void draw_price();
+  void draw_bottom();
 
   Session& session_;
   Actions& actions_;
@@ -76,6 +81,8 @@ class Ui {
   std::map<std::string, Area> areas_;
   CurveView curve_view_;
   PathDialog dialog_;
+  bool is_narrow_ = false;
+  std::string page_ = "curve";  ///< of a narrow window; empty: the panel
   bool shows_help_ = false;
 };
 

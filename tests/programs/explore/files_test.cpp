@@ -4,7 +4,9 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
+#include "explore/plot_data.hpp"
 #include "explore/preferences.hpp"
 #include "explore/session_file.hpp"
 #include "explore_support.hpp"
@@ -179,6 +181,32 @@ TEST(ExploreSnapshots, GoneTo_AreStepsOfUndo) {
   EXPECT_EQ(session.snapshots()[0].name, "rough");
   session.remove_snapshot(0);
   EXPECT_TRUE(session.snapshots().empty());
+}
+
+TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
+  Driver driver(paint({"emission.bracket=true"}));
+  driver.session.pin();
+  driver.session.rename_pin(0, "first");
+  driver.session.set("surface.sigma", 0.3);
+  driver.session.pin();
+  driver.session.show_pin(1, false);
+  driver.settle();
+  const auto plots = nlohmann::json::parse(plot_json(driver.session, {0.0, 90.0}, {0.01, 20.0, true}));
+  EXPECT_EQ(plots["title"], "Paint");
+  EXPECT_EQ(plots["y"]["label"], "DOLP [%]");
+  EXPECT_TRUE(plots["y"]["is_log"]);
+  ASSERT_EQ(plots["curves"].size(), 3U);
+  EXPECT_EQ(plots["curves"][1]["name"], "first");
+  const auto& curve = plots["curves"][2];
+  EXPECT_EQ(curve["style"], "curve");
+  const std::vector<Point>& points = driver.session.curve().points();
+  ASSERT_EQ(curve["values"].size(), points.size());
+  EXPECT_EQ(curve["values"][100], 100.0 * points[100][Quantity::kDolp]);
+  EXPECT_EQ(curve["low"][100], 100.0 * points[100][Quantity::kDolpLow]);
+  EXPECT_TRUE(plots["curves"][0]["low"][100].is_null());
+  EXPECT_EQ(plots["map"]["rows"].size(), driver.session.map().field(Plotted::kDolp).count);
+  driver.session.set_view({.panel = Panel::kSlopes});
+  EXPECT_TRUE(nlohmann::json::parse(plot_json(driver.session, {}, {}))["map"].is_null());
 }
 
 TEST_F(ExploreFiles, Preferences_KeepThemeZoomAndRecentFilesThatAreThere) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <thread>
 
 #include "window_support.hpp"
 
@@ -65,6 +66,16 @@ TEST_F(WindowFiles, OpenDialog_UpAndByKeyboard_OpensAPath) {
   EXPECT_EQ(title(), "Other");
 }
 
+TEST_F(WindowFiles, SceneWithoutAFolder_ListsTheCurrentOne) {
+  app_->session().go_to(explore::SceneEdits(Scene::from_text(kEdited, {}, "built-in")));
+  keys("ctrl+o");
+  EXPECT_NO_THROW(app_->control_area("../"));
+  keys("Escape");
+  keys("ctrl+s");
+  keys("Escape");
+  EXPECT_FALSE(app_->session().message().is_error);
+}
+
 TEST_F(WindowFiles, RecentScene_ChosenInTheMenu_IsOpened) {
   keys("ctrl+o");
   click_control("folder/");
@@ -98,6 +109,36 @@ TEST_F(WindowFiles, Changed_EndsWithSaving) {
             app_->session().scene().number("surface.sigma"));
   keys("ctrl+z");
   EXPECT_TRUE(app_->session().edits().is_changed());
+}
+
+TEST_F(WindowFiles, Plots_SavedByShortcut_AreLinesAndTextOfWhatIsShown) {
+  put("measured.csv", "theta_deg,dolp,uncertainty\n40,0.02,0.001\n60,0.05,0.001\n");
+  app_->session().load_measured(at("measured.csv").string());
+  keys("ctrl+p");
+  drag_slider("surface.sigma", kPartOfSlider);
+  const auto save = [&](const std::string& name) {
+    keys("ctrl+shift+e");
+    type(at(name).string());
+    keys("Return");
+    const auto is_drawing = [&] { return app_->session().message().text.starts_with("drawing"); };
+    for (int i = 0; i < 3000 && is_drawing(); ++i) {
+      app_->frame();
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return app_->session().message();
+  };
+  EXPECT_EQ(save("plot.svg").text, "saved " + at("plot.svg").string());
+  const std::string svg = content("plot.svg");
+  for (const std::string& text :
+       {std::string("Painted"), explore::curve_name(app_->session()), app_->session().overlay_name(),
+        explore::surface_name(app_->session().pins()[0].curve.shown_scene()), std::string("measured"),
+        std::string("DOLP [%]"), std::string("zenith θ [°]")}) {
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
+  }
+  EXPECT_FALSE(save("plot.pdf").is_error);
+  EXPECT_TRUE(content("plot.pdf").starts_with("%PDF"));
+  EXPECT_TRUE(save("plot.docx").is_error);
+  EXPECT_TRUE(save("missing/plot.svg").is_error);
 }
 
 TEST_F(WindowFiles, Snapshot_Clicked_GivesTheStateBack) {

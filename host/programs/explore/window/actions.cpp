@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "base/atomic_file.hpp"
+#include "base/python_picture.hpp"
 #include "base/stopwatch.hpp"
+#include "explore/plot_data.hpp"
 #include "explore/session_file.hpp"
 
 namespace dolp::explore {
@@ -24,7 +26,8 @@ Actions::Actions(Session& session, const std::string& device, std::string comman
       fit_evaluator_({.device = device, .is_interactive = true}),
       table_(on_change),
       true_error_(on_change),
-      fit_(on_change) {
+      fit_(on_change),
+      plot_(on_change) {
   try {
     preferences_.load(preferences);
   } catch (const std::exception& error) {
@@ -81,6 +84,15 @@ void Actions::save_picture(const std::string& path) {
   });
 }
 
+void Actions::save_plot(const std::string& path, const Scale& x, const Scale& y) {
+  session_.tell("drawing " + path);
+  plot_.start([path, json = plot_json(session_, x, y)](const Progress&) -> BackgroundTask::Rest {
+    check_writable(path);
+    draw_with_python(kPlotScript, json, path);
+    return [text = "saved " + path] { return text; };
+  });
+}
+
 void Actions::export_table(const std::string& path) {
   table_.start([this, path, scene = session_.scene()](const Progress& progress) -> BackgroundTask::Rest {
     const Clock::time_point start = Clock::now();
@@ -116,7 +128,11 @@ void Actions::fit() {
 }
 
 void Actions::finish() {
-  for (BackgroundTask* task : {&table_, &true_error_, &fit_}) task->finish();
+  const bool was_drawing = plot_.is_running();
+  for (BackgroundTask* task : {&table_, &true_error_, &fit_, &plot_}) task->finish();
+  if (was_drawing && !plot_.is_running()) {
+    session_.tell(plot_.message(), plot_.state() == BackgroundTask::State::kFailed);
+  }
 }
 
 }  // namespace dolp::explore

@@ -28,6 +28,8 @@ class Actions {
   /// The picture shows the window a moment later, without the dialog that asked for its path.
   void save_picture(const std::string& path);
   // In the background.
+  /// Curves between these axes, and the map, as .svg, .pdf or .png.
+  void save_plot(const std::string& path, const Scale& x, const Scale& y);
   void export_table(const std::string& path);
   void find_true_error();
   void fit();
@@ -63,6 +65,7 @@ class Actions {
   BackgroundTask table_;
   BackgroundTask true_error_;
   BackgroundTask fit_;
+  BackgroundTask plot_;
   std::string true_error_key_;  ///< of the curve whose true error is asked for or known
   std::string picture_path_;
   Clock::time_point picture_time_;

@@ -83,7 +83,7 @@ void PathDialog::draw() {
   constexpr ImGuiInputTextFlags kFlags = ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll;
   ImGui::SetNextItemWidth(-1.0F);
   const bool is_entered = ImGui::InputText("##name", &name_, kFlags);
-  coloured_text(kDimColour, "in " + fs::absolute(folder_).string());
+  coloured_text(kDimColour, "in " + fs::absolute(folder_.empty() ? "." : folder_).lexically_normal().string());
   bool is_accepted = (draw_list() && request_.must_exist) || is_entered;
 
   std::error_code unknown;

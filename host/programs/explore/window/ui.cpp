@@ -279,7 +279,13 @@ void Ui::draw_pins() {
   if (removed < session_.pins().size()) session_.remove_pin(removed);
 }
 
+void Ui::draw_message() {
+  const Message& message = session_.message();
+  if (!message.text.empty()) coloured_text(message.is_error ? kErrorColour : kTextColour, message.text);
+}
+
 void Ui::draw_readout() {
+  if (is_narrow_) draw_message();
   coloured_text(kTextColour, peak_text(session_));
   coloured_text(kTextColour, cause_text(session_));
   coloured_text(kDimColour, cursor_text(session_));
@@ -297,8 +303,7 @@ void Ui::draw_price() {
     label("table");
     draw_task("table", actions_.table_task());
   }
-  const Message& message = session_.message();
-  if (!message.text.empty()) coloured_text(message.is_error ? kErrorColour : kTextColour, message.text);
+  if (!is_narrow_) draw_message();
 }
 
 void Ui::draw_plots(ImVec2 size) {

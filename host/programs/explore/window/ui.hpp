@@ -57,6 +57,7 @@ class Ui {
   void draw_fit();
   void draw_pins();
   void draw_snapshots();
+  void draw_message();
   void draw_readout();
   void draw_plots(ImVec2 size);
   /// One thing at a time, where two beside each other would be too small.

@@ -50,6 +50,19 @@ void Ui::add_file_commands() {
             &Actions::export_table)},
       {"File", "Save the curve as CSV", 'E',
        save("Save the curve as CSV", "_curve.csv", {".csv"}, &Actions::save_curve)},
+      {"File",
+       "Save the plots",
+       'E',
+       [this] {
+         dialog_.open({.title = "Draw curves and map: .svg, .pdf, .png",
+                       .path = suggested("_plot.svg"),
+                       .suffixes = {".svg", ".pdf", ".png"},
+                       .accept = [this](const std::string& path) {
+                         actions_.save_plot(path, curve_view_.x(), curve_view_.y());
+                       }});
+       },
+       {},
+       true},
       {"File", "Save a picture", 'I',
        save("Save a picture of the window as PNG", "_window.png", {".png"}, &Actions::save_picture)},
       {"File", "Remove measured points", 0, [this] { session_.clear_measured(); }},

@@ -183,6 +183,15 @@ void save_session(const Session& session, const std::string& path) {
   write_text_atomically(path, text.str());
 }
 
+bool is_session_file(const std::string& path) {
+  std::error_code unknown;
+  try {
+    return std::filesystem::is_regular_file(path, unknown) && read_toml(path).contains(kVersionKey);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 void open_file(Session& session, const std::string& path) {
   if (std::filesystem::path(path).extension() == ".csv") return session.load_measured(path);
   const toml::table table = read_toml(path);

@@ -11,6 +11,9 @@ namespace dolp::explore {
 /// relative to its folder. Errors: IoError.
 void save_session(const Session& session, const std::string& path);
 
+/// True for a file that save_session wrote; false also where it cannot be read.
+bool is_session_file(const std::string& path);
+
 /// Shows a file: measured points of a .csv, else a scene, or the session that save_session wrote.
 /// Errors: InputError in one line; the session then is as it was.
 void open_file(Session& session, const std::string& path);

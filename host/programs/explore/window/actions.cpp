@@ -30,6 +30,10 @@ Actions::Actions(Session& session, const std::string& device, std::string comman
       plot_(on_change) {
   try {
     preferences_.load(preferences);
+    const std::string file = session_.scene().name();
+    std::error_code unknown;
+    if (!std::filesystem::exists(file, unknown)) return;  // a text that is built in
+    prefer([&](Preferences& of) { of.remember(file); });
   } catch (const std::exception& error) {
     session_.tell(error.what(), true);
   }

@@ -18,6 +18,7 @@
 #include "base/stopwatch.hpp"
 #include "device/context.hpp"
 #include "device/result.hpp"
+#include "explore/session_file.hpp"
 #include "explore/window/actions.hpp"
 #include "explore/window/input.hpp"
 #include "explore/window/presenter.hpp"
@@ -341,6 +342,15 @@ void run_program(const Scene& scene, const ProgramOptions& options) {
   const std::filesystem::path preferences = options.frames == 0 ? Preferences::default_path() : "";
   App app(SceneEdits(scene),
           {options.device, stem.empty() || stem == "-" ? "dolp" : stem, options.command_line, preferences});
+  const auto check = [&] {
+    if (app.session().message().is_error) throw InputError(app.session().message().text);
+  };
+  if (!options.session_path.empty()) {
+    open_file(app.session(), options.session_path);
+    check();
+    app.session().set(options.settings);
+    check();
+  }
   if (!options.panel.empty()) {
     View view = app.session().view();
     view.panel = panel_of(options.panel);
@@ -348,7 +358,7 @@ void run_program(const Scene& scene, const ProgramOptions& options) {
   }
   if (!options.measured_path.empty()) {
     app.session().load_measured(options.measured_path);
-    if (app.session().message().is_error) throw InputError(app.session().message().text);
+    check();
   }
   if (options.frames == 0) {
     app.run();

@@ -24,7 +24,7 @@ void Preferences::load(const std::filesystem::path& path) {
   const toml::table table = read_toml(path.string());
   is_light = table["light"].value_or(false);
   zoom_by(table["zoom"].value_or(0));
-  recent_ = strings_in(table, "recent");
+  recent_ = texts_in(table["recent"]);
 }
 
 void Preferences::save() const {

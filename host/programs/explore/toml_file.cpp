@@ -17,12 +17,12 @@ toml::table read_toml(const std::string& path) {
   }
 }
 
-std::vector<std::string> strings_in(const toml::table& table, const char* key) {
+std::vector<std::string> texts_in(toml::node_view<const toml::node> node) {
   std::vector<std::string> texts;
-  const toml::array* const array = table[key].as_array();
+  const toml::array* const array = node.as_array();
   if (!array) return texts;
-  for (const toml::node& node : *array) {
-    if (const auto text = node.value<std::string>()) texts.push_back(*text);
+  for (const toml::node& one : *array) {
+    if (const auto text = one.value<std::string>()) texts.push_back(*text);
   }
   return texts;
 }

@@ -12,7 +12,7 @@ namespace dolp::explore {
 toml::table read_toml(const std::string& path);
 
 /// The texts of an array; empty without it.
-std::vector<std::string> strings_in(const toml::table& table, const char* key);
+std::vector<std::string> texts_in(toml::node_view<const toml::node> node);
 toml::array array_of(const std::vector<std::string>& texts);
 
 }  // namespace dolp::explore

@@ -103,7 +103,7 @@ struct BadFile {
 const BadFile kBadFiles[] = {
     {"a.toml", "dolp_session = 1\nscene = [", "a.toml:2: "},
     {"a.toml", "dolp_session = 2\n", "a.toml: dolp_session is not 1: the session of another version"},
-    {"a.toml", "dolp_session = 1\n", "a.toml: scene is missing"},
+    {"a.toml", "dolp_session = 1\n", "a.toml: scene.file is missing"},
     {"a.toml", "dolp_session = 1\n[scene]\nfile = 3\ntext = ''\n", "a.toml: scene.file is of another kind"},
     {"a.toml", "dolp_session = 1\n[scene]\nfile = 'p.toml'\ntext = '[surface]'\n", "p.toml"},
     {"a.toml", "title = 3\n", "a.toml"},

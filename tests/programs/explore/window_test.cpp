@@ -384,7 +384,7 @@ TEST_F(ExploreCommand, Session_OpensWithItsView_AndABadOneIsOneLine) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   expect_refused(dolp({"explore", "session.toml", "--frames", "1", "--set", "surface.sigma=-1"}), "surface.sigma");
   put("session.toml", "dolp_session = 1\n");
-  expect_refused(dolp({"explore", "session.toml", "--frames", "1"}), "session.toml: scene is missing");
+  expect_refused(dolp({"explore", "session.toml", "--frames", "1"}), "session.toml: scene.file is missing");
 }
 
 TEST_F(ExploreCommand, WrongArguments_AreInputErrors) {

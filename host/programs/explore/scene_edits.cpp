@@ -73,7 +73,7 @@ bool SceneEdits::is_same_file(const SceneEdits& other) const {
 }
 
 void SceneEdits::go_to(const SceneEdits& other) {
-  std::vector<Setting> saved = is_same_file(other) ? std::move(saved_) : other.saved_;
+  std::vector<Setting> saved = is_same_file(other) ? saved_ : other.saved_;
   *this = other;
   saved_ = std::move(saved);
 }

@@ -172,7 +172,8 @@ void Ui::draw_help() {
           "all.",
           "Click in the legend: hides or shows a curve. Right click on a pin: its name.",
           "Ctrl-click on a slider: back to the value of the scene as opened. Type any allowed value beside it.",
-          "Rest the mouse on a control: its meaning, equation and range. Drop a CSV of measured points on the window.",
+          "Rest the mouse on a control: its meaning, equation and range. Drop a scene, a session or measured points on "
+          "the window.",
           "Grey in map and curve: the model fails there; the line under the plots says how."}) {
       coloured_text(kTextColour, hint);
     }

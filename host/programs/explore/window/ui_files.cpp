@@ -27,7 +27,7 @@ void Ui::ask_what_to_open() {
 
 void Ui::add_file_commands() {
   // Asks for a path, and saves something there; the ending begins with what the name gets.
-  const auto save = [this](const char* title, const char* ending, std::vector<std::string> suffixes,
+  const auto save = [this](const char* title, const char* ending, const std::vector<std::string>& suffixes,
                            void (Actions::*act)(const std::string&)) {
     return [=, this] {
       dialog_.open({.title = title,

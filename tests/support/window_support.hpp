@@ -52,11 +52,16 @@ class Window : public CommandLine {
   void SetUp() override {
     CommandLine::SetUp();
     put("scene.toml", kEdited);
+    open({});
+  }
+  /// Opens the window with settings of the command line.
+  void open(const std::vector<Setting>& settings) {
+    app_.reset();
     explore::AppOptions options;
     options.file_name = at("made").string();
     options.command_line = "dolp explore";
     options.preferences = at("config/dolp/window.toml");
-    const auto scene = Scene::from_file(at("scene.toml"));
+    const auto scene = Scene::from_file(at("scene.toml"), settings);
     app_ = std::make_unique<App>(explore::SceneEdits(scene), options);
     app_->settle();
     frames();

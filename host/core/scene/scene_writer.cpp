@@ -48,8 +48,8 @@ bool names_file(const std::string& key, const std::string& value) {
 std::string path_from(const std::filesystem::path& folder, const std::string& file, const std::string& scene_path) {
   namespace fs = std::filesystem;
   if (fs::path(file).is_absolute()) return file;
-  const fs::path found = fs::absolute(fs::path(scene_path).parent_path() / file);
-  return found.lexically_relative(fs::absolute(folder)).string();
+  const fs::path found = fs::absolute(fs::path(scene_path).parent_path() / file).lexically_normal();
+  return found.lexically_relative(fs::absolute(folder).lexically_normal()).string();
 }
 
 }  // namespace

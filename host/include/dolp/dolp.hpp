@@ -62,6 +62,7 @@ struct Report {
   std::string json;              ///< all values, as the command's --json prints them
   bool is_good = true;           ///< no entry misses its tolerance; of a check: nothing is wrong
   std::filesystem::path output;  ///< the file that was written, where there is one
+  std::vector<std::pair<std::string, std::string>> rows = {};  ///< the lines of `text` that have a label, and these
 };
 
 /// A validated scene: surface, radiation, geometry, grid and accuracy. Copies share what they hold.
@@ -172,6 +173,12 @@ class DOLP_EXPORT Table {
   std::shared_ptr<const Impl> impl_;
 };
 
+/// A local minimum of a fit.
+struct FitMinimum {
+  std::vector<double> values;  ///< in the order of FitOptions::vary
+  double chi_square = 0.0;
+};
+
 /// A fit: the result for the best of the compared models.
 struct Fit {
   Report report;             ///< parameters, intervals, correlation, minima, residuals
@@ -181,7 +188,7 @@ struct Fit {
   double chi_square = 0.0;
   std::size_t degrees_of_freedom = 0;
   std::optional<double> p_value = {};          ///< with uncertainties and the loss "squares"
-  std::size_t other_minima = 0;                ///< that were found above the best
+  std::vector<FitMinimum> minima = {};         ///< all that were found, the best first
   std::vector<std::string> degeneracies = {};  ///< combinations that the data do not determine, in words
 };
 

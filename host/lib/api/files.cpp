@@ -69,7 +69,7 @@ std::string mueller_csv(const Points& points, const std::vector<MuellerMatrix>& 
 }  // namespace
 
 Report public_report(const ReportBuilder& report, bool is_good, const std::filesystem::path& output) {
-  return {report.text(), report.json_text(), is_good, output};
+  return {report.text(), report.json_text(), is_good, output, report.rows()};
 }
 
 std::vector<std::string> files_of(const SceneValues& scene) {

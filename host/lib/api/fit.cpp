@@ -219,7 +219,12 @@ void add_numbers(Fit& found, const fit::FitResult& result) {
   found.chi_square = result.chi_square;
   found.degrees_of_freedom = result.degrees_of_freedom;
   found.p_value = result.p_value;
-  found.other_minima = result.minima.size();
+  std::vector<double> best;
+  for (const FitParameter& one : result.parameters) best.push_back(one.value);
+  found.minima.push_back({std::move(best), result.chi_square});
+  for (const fit::OtherMinimum& one : result.minima) {
+    found.minima.push_back({{one.values.begin(), one.values.end()}, one.chi_square});
+  }
   found.degeneracies = result.degeneracies;
 }
 

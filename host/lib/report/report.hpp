@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/printable_text.hpp"
@@ -53,7 +54,8 @@ class ReportBuilder {
   template <class... Args>
   void row_if(bool is_shown, std::string_view label, fmt::format_string<const Args&...> text, const Args&... args) {
     if (is_shown) {
-      text_ += fmt::format("  {:<{}} {}\n", label, label_width_, printable_line(fmt::format(text, args...)));
+      rows_.emplace_back(label, printable_line(fmt::format(text, args...)));
+      text_ += fmt::format("  {:<{}} {}\n", label, label_width_, rows_.back().second);
     }
     (record(args), ...);
   }
@@ -78,12 +80,14 @@ class ReportBuilder {
   void add(const char* path, const std::vector<ReportBuilder>& parts);
 
   /// The lines of a part, without its values.
-  void show(const ReportBuilder& part) { text_ += part.text_; }
+  void show(const ReportBuilder& part);
 
   const Json& json() const { return json_; }
   /// ASCII alone, so that a terminal shows it safely; names of files need not be UTF-8.
   std::string json_text() const { return json_.dump(2, ' ', true, Json::error_handler_t::replace); }
   const std::string& text() const { return text_; }
+  /// The rows that are shown: label and text.
+  const std::vector<std::pair<std::string, std::string>>& rows() const { return rows_; }
 
  private:
   template <class T>
@@ -95,6 +99,7 @@ class ReportBuilder {
 
   int label_width_;
   std::string text_;
+  std::vector<std::pair<std::string, std::string>> rows_;
   Json json_ = Json::object();
 };
 

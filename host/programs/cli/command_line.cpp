@@ -44,8 +44,9 @@ void add_explore(CLI::App& command, Options& options) {
   constexpr std::size_t kMostFrames = 1'000'000;
   command.add_option("--frames", options.frames, "draw so many frames, print how long they took, and end")
       ->check(CLI::Range(std::size_t{1}, kMostFrames));
-  command.add_option("--view", options.panel, "what is beside the curve: map, slopes, material, pBRDF, sphere, sky")
-      ->check(CLI::IsMember({"map", "slopes", "material", "pBRDF", "sphere", "sky"}));
+  command
+      .add_option("--view", options.panel, "what is beside the curve: map, slopes, material, pBRDF, sphere, sky, fit")
+      ->check(CLI::IsMember({"map", "slopes", "material", "pBRDF", "sphere", "sky", "fit"}));
   command.add_option("--screenshot", options.screenshot_path, "PNG of the last frame, when all is computed");
 }
 

@@ -28,12 +28,22 @@ constexpr std::array<std::pair<std::size_t, std::size_t>, 4> kCorners = {{{0, 0}
 
 MapAxis suggested_axis(Axis axis, const Scene& scene, double theta_max_deg) {
   if (axis == Axis::kTheta) return {axis, {0.0, theta_max_deg}};
+  if (axis == Axis::kSigma && has_wind(scene)) {
+    const auto [low, high] = std::ranges::minmax(scene.numbers("grid.wind_m_s"));
+    return {axis, low < high ? Scale{low, high} : parameter("surface.wind_m_s").slider, true};
+  }
   if (axis == Axis::kSigma) return {axis, range_of(scene.numbers("grid.sigma"), parameter("surface.sigma").slider)};
   const bool is_smith = scene.word("surface.masking") == "smith" && scene.word("surface.distribution") == "cauchy";
   return {axis, range_of(scene.numbers("grid.q"), is_smith ? kSmithQ : parameter("surface.q").slider)};
 }
 
-const char* axis_label(Axis axis) { return axis == Axis::kTheta ? "θ [°]" : axis == Axis::kSigma ? "σ" : "q"; }
+const char* MapAxis::label() const {
+  return axis == Axis::kTheta ? "θ [°]" : axis == Axis::kQ ? "q" : is_wind ? "U [m/s]" : "σ";
+}
+
+std::string MapAxis::key() const {
+  return axis == Axis::kTheta ? "" : axis == Axis::kQ ? "surface.q" : is_wind ? "surface.wind_m_s" : "surface.sigma";
+}
 
 std::vector<Segment> contour(const MapField& field, double level) {
   std::vector<Segment> segments;

@@ -12,19 +12,22 @@
 
 namespace dolp::explore {
 
-/// One axis of a map: theta, sigma or q.
+/// One axis of a map: theta, sigma or the wind, or q.
 struct MapAxis {
   Axis axis = Axis::kTheta;
   Scale scale;
+  bool is_wind = false;  ///< in the place of sigma
+
+  /// "θ [°]", "σ", "U [m/s]", "q".
+  const char* label() const;
+  /// The key of the scene that it varies; empty for the zenith.
+  std::string key() const;
   friend bool operator==(const MapAxis&, const MapAxis&) = default;
 };
 inline constexpr std::array kMapAxes = {Axis::kTheta, Axis::kSigma, Axis::kQ};
 
 /// The axis as a scene suggests it: its grid where that has a range, else that of the parameter's slider.
 MapAxis suggested_axis(Axis axis, const Scene& scene, double theta_max_deg);
-
-/// "θ [°]", "σ", "q".
-const char* axis_label(Axis axis);
 
 /// The values of one quantity on a map.
 /// Shape: count x count in rows, x fastest; y from the bottom up.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -91,12 +92,30 @@ Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress) {
   return fit;
 }
 
-std::string fit_text(const Fit& fit) {
-  std::string text = fmt::format("χ² {:.4g}, {} degrees of freedom", fit.chi_square, fit.degrees_of_freedom);
-  if (fit.p_value) text += fmt::format(", p {:.2g}", *fit.p_value);
-  if (fit.other_minima > 0) text += fmt::format("; {} other minima", fit.other_minima);
-  for (const std::string& words : fit.degeneracies) text += "; " + words;
+std::size_t nearest_minimum(const Fit& fit, const FitJob& job) {
+  const auto distance = [&](const FitMinimum& minimum) {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < job.vary.size(); ++j) {
+      const FitRange& range = job.vary[j];
+      sum += std::pow(range.coordinate(minimum.values[j]) - range.coordinate(range.start.value()), 2);
+    }
+    return sum;
+  };
+  return static_cast<std::size_t>(std::ranges::min_element(fit.minima, {}, distance) - fit.minima.begin());
+}
+
+std::string fit_text(const Fit& fit, std::size_t chosen) {
+  std::string text =
+      fmt::format("χ² {:.4g}, {} degrees of freedom", fit.minima[chosen].chi_square, fit.degrees_of_freedom);
+  if (fit.p_value && chosen == 0) text += fmt::format(", p {:.2g}", *fit.p_value);
+  if (fit.minima.size() > 1) text += fmt::format("; of {} minima the nearest to the start", fit.minima.size());
+  if (chosen > 0) text += fmt::format(", the lowest has χ² {:.4g}", fit.minima.front().chi_square);
   return text;
+}
+
+std::string interval_text(const FitInterval& interval) {
+  const auto end = [](const std::optional<double>& value) { return value ? fmt::format("{:.4g}", *value) : "open"; };
+  return end(interval.low) + " to " + end(interval.high);
 }
 
 }  // namespace dolp::explore

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "explore/background.hpp"
+#include "explore/scene_edits.hpp"
 
 namespace dolp::explore {
 
@@ -49,13 +50,20 @@ struct FitJob {
   Scene scene;
   MeasuredData data;
   std::vector<FitRange> vary;
+  std::optional<SceneEdits> start = {};  ///< the scene with its file
 };
 
 /// Fits as `dolp fit` does. Errors: InputError where points, parameters and scene do not fit together and where no
 /// minimum was found; those of Evaluator::fit; Cancelled.
 Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress);
 
-/// The result of a fit in one line.
-std::string fit_text(const Fit& fit);
+/// The position among a fit's minima of the one nearest to where the job started, by the coordinates of its ranges.
+std::size_t nearest_minimum(const Fit& fit, const FitJob& job);
+
+/// The result of a fit, of which a minimum was chosen, in one line.
+std::string fit_text(const Fit& fit, std::size_t chosen);
+
+/// "1.2 to 1.5"; an end that the range cuts off is "open".
+std::string interval_text(const FitInterval& interval);
 
 }  // namespace dolp::explore

@@ -15,18 +15,19 @@
 namespace dolp::explore {
 
 /// A view beside the curve; it is computed while it is shown.
-enum class Panel : std::uint8_t { kMap, kSlopes, kMaterial, kScattering, kShapes, kSky };
+enum class Panel : std::uint8_t { kMap, kSlopes, kMaterial, kScattering, kShapes, kSky, kFit };
 
 struct PanelDescription {
   Panel panel;
   const char* name;
 };
-inline constexpr std::array<PanelDescription, 6> kPanels = {{{Panel::kMap, "map"},
+inline constexpr std::array<PanelDescription, 7> kPanels = {{{Panel::kMap, "map"},
                                                              {Panel::kSlopes, "slopes"},
                                                              {Panel::kMaterial, "material"},
                                                              {Panel::kScattering, "pBRDF"},
                                                              {Panel::kShapes, "sphere"},
-                                                             {Panel::kSky, "sky"}}};
+                                                             {Panel::kSky, "sky"},
+                                                             {Panel::kFit, "fit"}}};
 
 /// Errors: InputError that names those there are.
 Panel panel_of(const std::string& name);

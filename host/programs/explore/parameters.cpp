@@ -4,10 +4,13 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "explore/points.hpp"
+
 namespace dolp::explore {
 namespace {
 
 bool is_cauchy(const Scene& s) { return s.word("surface.distribution") == "cauchy"; }
+bool has_no_wind(const Scene& s) { return !has_wind(s); }
 bool is_diffuse(const Scene& s) { return s.number("surface.diffuse") > 0.0; }
 
 }  // namespace
@@ -40,7 +43,8 @@ const std::vector<Parameter>& parameters() {
   static const std::vector<Parameter> all = {
       {&described("surface.n"), "n", {1.0, 40.0, true}, "N = n + ik"},
       {&described("surface.k"), "k", {0.0, 100.0}, "N = n + ik, k ≥ 0 absorbs"},
-      {&described("surface.sigma"), "σ", {0.01, 2.0, true}, "m² = 2σ²; D(α) of eq. (8) or (1)"},
+      {&described("surface.sigma"), "σ", {0.01, 2.0, true}, "m² = 2σ²; D(α) of eq. (8) or (1)", has_no_wind},
+      {&described("surface.wind_m_s"), "U", {0.0, 30.0}, "m² = 0.003 + 0.00512 U (Cox and Munk 1954), D(α) of eq. (1)"},
       {&described("surface.q"),
        "q",
        {1.1, 20.0, true},
@@ -96,6 +100,7 @@ std::string unit_text(const Key& key) {
   if (key.unit == "1") return {};
   if (key.unit == "degree") return "°";
   if (key.unit == "um") return "µm";
+  if (key.unit == "m s-1") return "m/s";
   if (key.unit == "W m-2 um-1") return "W/m²/µm";
   if (key.unit == "W m-2 sr-1 um-1") return "W/m²/sr/µm";
   return key.unit;

@@ -24,7 +24,7 @@ const std::vector<Removal>& removals() {
       {"surroundings",
        {"surroundings", {}},
        true,
-       [](S s) { return s.number("surroundings.temperature_K").has_value(); }},
+       [](S s) { return s.number("surroundings.temperature_K") || s.word("surroundings.profile"); }},
       {"path", {"path", {}}, false, [](S s) { return s.number("path.transmittance").has_value(); }},
       {"diffuse", {"surface.diffuse", 0.0}, false, [](S s) { return s.number("surface.diffuse") > 0.0; }},
       {"specular", {"surface.specular", 0.0}, false, [](S s) { return s.number("surface.specular") > 0.0; }},

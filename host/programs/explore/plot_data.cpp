@@ -39,7 +39,7 @@ json map_json(const Session& session) {
     }
     rows.push_back(std::move(values));
   }
-  const auto axis = [](const MapAxis& one) { return axis_json(axis_label(one.axis), one.scale); };
+  const auto axis = [](const MapAxis& one) { return axis_json(one.label(), one.scale); };
   return {{"x", axis(session.map().x())},
           {"y", axis(session.map().y())},
           {"label", of.label()},

@@ -8,7 +8,7 @@ namespace {
 
 /// The scene with the grid of a list; axes that the scene's own has beside these keep the scene's value.
 Scene with_grid(const Scene& scene, const PointList& list) {
-  std::vector<Setting> axes = {{"theta_deg", list.theta_deg}, {"sigma", list.sigma}, {"q", list.q}};
+  std::vector<Setting> axes = {{"theta_deg", list.theta_deg}, {list.roughness(), list.sigma}, {"q", list.q}};
   for (const auto& [axis, of] :
        {std::pair{"wavelength_um", "spectrum.wavelength_um"}, {"n", "surface.n"}, {"k", "surface.k"}}) {
     if (!scene.numbers(std::string("grid.") + axis).empty()) axes.push_back({axis, scene.number(of).value()});
@@ -25,7 +25,7 @@ const std::array<PlottedDescription, 7> kAllPlotted = {{
     {Plotted::kDolp, "DOLP", "√(Q² + U²)/I, in percent", true, false,
      [](const Point& point) { return point[Quantity::kDolp]; }},
     {Plotted::kSignedDolp, "Q/I", "positive: s polarised, negative: p; in percent", true, false,
-     [](const Point& point) { return point.q_over_i(); }},
+     [](const Point& point) { return point.q_over_i(); }, true},
     {Plotted::kRhoS, "ρ_s", "ρ_I + ρ_Q, eq. (16)", false, true, rho_s},
     {Plotted::kRhoP, "ρ_p", "ρ_I − ρ_Q, eq. (16)", false, true, rho_p},
     {Plotted::kEmissivityS, "ε_s", "1 − ρ_s (Kirchhoff)", false, true,
@@ -45,15 +45,20 @@ Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list
 }
 
 std::vector<Column> PointList::columns() const {
-  std::vector<Column> columns = {{"theta_deg", theta_deg}, {"sigma", sigma}, {"q", q}};
+  std::vector<Column> columns = {{"theta_deg", theta_deg}, {roughness(), sigma}, {"q", q}};
   if (!wavelength_um.empty()) columns.push_back({"wavelength_um", wavelength_um});
   return columns;
 }
 
+bool has_wind(const Scene& scene) { return scene.number("surface.wind_m_s").has_value(); }
+
 PointList points_at(const Scene& scene, std::vector<double> theta_deg) {
   const std::size_t count = theta_deg.size();
-  const auto all = [&](const char* key) { return std::vector<double>(count, scene.number(key).value()); };
-  return {std::move(theta_deg), all("surface.sigma"), all("surface.q")};
+  const auto all = [&](const std::string& key) { return std::vector<double>(count, scene.number(key).value()); };
+  PointList list{.theta_deg = std::move(theta_deg), .has_winds = has_wind(scene)};
+  list.sigma = all(std::string("surface.") + list.roughness());
+  list.q = all("surface.q");
+  return list;
 }
 
 std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count) {

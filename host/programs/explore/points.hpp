@@ -12,13 +12,20 @@ namespace dolp::explore {
 
 /// Points to compute: columns of one length, or the axes of a grid.
 struct PointList {
-  std::vector<double> theta_deg, sigma, q;
+  std::vector<double> theta_deg;
+  std::vector<double> sigma;  ///< or winds, m/s
+  std::vector<double> q;
   std::vector<double> wavelength_um = {};  ///< of each point; empty: the scene's, as on a grid
-  bool is_grid = false;                    ///< all combinations, q fastest: what they share is computed once
+  bool has_winds = false;
+  bool is_grid = false;  ///< all combinations, q fastest: what they share is computed once
 
+  const char* roughness() const { return has_winds ? "wind_m_s" : "sigma"; }
   std::size_t size() const;
   std::vector<Column> columns() const;
 };
+
+/// True where a wind gives the surface its sigma.
+bool has_wind(const Scene& scene);
 
 /// Zeniths of a scene's surface.
 PointList points_at(const Scene& scene, std::vector<double> theta_deg);
@@ -31,7 +38,9 @@ Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list
 
 /// The results at a point, in the units of a table.
 struct Point : PointResult {
-  double theta_deg = 0.0, sigma = 0.0, q = 0.0;
+  double theta_deg = 0.0;
+  double sigma = 0.0;  ///< or the wind of a scene that has one
+  double q = 0.0;
 
   /// True where the status has none of the bits that make DOLP meaningless or void its promise.
   bool is_good() const;
@@ -55,6 +64,7 @@ struct PlottedDescription {
   bool in_percent;                ///< shown times 100
   bool needs_rho;                 ///< a plan that drops effects may not give it
   double (*value)(const Point&);  ///< NaN where the model gives none
+  bool is_signed = false;
 
   double scale() const { return in_percent ? 100.0 : 1.0; }
   /// "DOLP [%]".

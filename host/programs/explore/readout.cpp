@@ -102,10 +102,10 @@ std::string cursor_text(const Session& session) {
   const Point* const shown = session.at_cursor();
   if (!shown) return "Cursor: …";
   const Point& r = *shown;
-  std::string text =
-      fmt::format("Cursor{}: θ = {:.1f}°, σ = {:.4g}, q = {:.4g}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
-                  session.remark(session.curve()), r.theta_deg, r.sigma, r.q, kPercent * r[Quantity::kDolp],
-                  points_text(r[Quantity::kErrorEstimate]), kPercent * r.q_over_i());
+  std::string text = fmt::format(
+      "Cursor{}: θ = {:.1f}°, {} = {:.4g}, q = {:.4g}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
+      session.remark(session.curve()), r.theta_deg, has_wind(session.curve().shown_scene()) ? "U" : "σ", r.sigma, r.q,
+      kPercent * r[Quantity::kDolp], points_text(r[Quantity::kErrorEstimate]), kPercent * r.q_over_i());
   if (r.has_bracket()) {
     text += fmt::format(", all bounces {:.3f} to {:.3f} %", kPercent * r[Quantity::kDolpLow],
                         kPercent * r[Quantity::kDolpHigh]);

@@ -69,6 +69,11 @@ Scale Scale::within(const Scale& all) const {
   return all.between(first + shift, last + shift);
 }
 
+Scale Scale::with_log(bool wants_log) const {
+  constexpr double kLeastPart = 1.0 / 180.0;
+  return {wants_log && from <= 0.0 ? kLeastPart * to : from, to, wants_log};
+}
+
 std::vector<double> Scale::ticks(std::size_t most) const {
   if (!is_log) return linear_ticks(from, to, most);
   std::vector<double> all = log_ticks(from, to, 3);

@@ -23,6 +23,9 @@ struct Scale {
   /// The range shifted into another one, or all of that if it is larger.
   Scale within(const Scale& all) const;
 
+  /// The same range with another kind of steps. A logarithm of 0 begins at 1/180 of the end, half a degree of 90.
+  Scale with_log(bool wants_log) const;
+
   /// Round values in the range, at most `most`, which is at least 2. Linear: multiples of 1, 2 or 5 times a power of
   /// ten. Logarithmic: powers of ten, with 2 and 5 between them where there is room.
   std::vector<double> ticks(std::size_t most) const;

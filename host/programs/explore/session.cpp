@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/atomic_file.hpp"
 #include "base/text.hpp"
 #include "explore/parameters.hpp"
 
@@ -30,7 +31,8 @@ std::string text_of(const std::vector<Setting>& changes) {
 std::vector<std::vector<std::string>> surface_words(const Scene& scene) {
   const std::string distribution = scene.word("surface.distribution").value();
   std::vector<std::vector<std::string>> groups = {
-      {distribution, fmt::format("σ {:.4g}", scene.number("surface.sigma").value())},
+      {distribution, has_wind(scene) ? fmt::format("U {:.4g} m/s", scene.number("surface.wind_m_s").value())
+                                     : fmt::format("σ {:.4g}", scene.number("surface.sigma").value())},
       {scene.word("surface.masking").value()}};
   if (distribution == "cauchy") groups[0].push_back(fmt::format("q {:.4g}", scene.number("surface.q").value()));
   if (scene.word("surface.scattering") == "multiple") groups.push_back({"all bounces"});
@@ -43,11 +45,6 @@ std::vector<std::vector<std::string>> surface_words(const Scene& scene) {
                       fmt::format("k {:.4g}", scene.number("surface.k").value())});
   }
   return groups;
-}
-
-/// The key of the scene that an axis of the map varies; empty for the zenith.
-std::string key_of(Axis axis) {
-  return axis == Axis::kTheta ? "" : axis == Axis::kSigma ? "surface.sigma" : "surface.q";
 }
 
 }  // namespace
@@ -164,6 +161,15 @@ void Session::reset_all() {
   attempt([&] { edits_.reset_all(); });
 }
 
+void Session::keep_sky(const std::filesystem::path& scene_file) {
+  if (!has_own_sky()) return;
+  namespace fs = std::filesystem;
+  const fs::path file = fs::absolute(scene_file).replace_filename(scene_file.stem().string() + "_sky.csv");
+  write_text_atomically(file, read_sky_pair(sky_file(scene())).value().csv());
+  const fs::path folder = fs::absolute(scene().name()).parent_path();
+  set("surroundings.profile", file.lexically_normal().lexically_relative(folder.lexically_normal()).string());
+}
+
 void Session::load_measured(const std::string& path) {
   attempt([&] { residuals_.load(MeasuredData::read(path)); });
 }
@@ -178,24 +184,39 @@ void Session::mark(const std::string& key, bool varies) {
 
 std::optional<FitJob> Session::fit_job() const {
   if (!residuals_.data()) return std::nullopt;
-  FitJob job{scene(), *residuals_.data(), {}};
+  // A search along the logarithm of k finds small ones too.
+  constexpr double kLeastK = 1e-3;
+  FitJob job{scene(), *residuals_.data(), {}, edits_};
   for (const Parameter& parameter : parameters()) {
     const std::optional<double> value = parameter.value(scene());
     if (!value || !varies(parameter.key->key)) continue;
     const Scale& slider = parameter.slider;
-    job.vary.push_back({parameter.key->key, std::min(slider.from, *value), std::max(slider.to, *value), *value});
+    const double low = parameter.key->key == "surface.k" ? kLeastK : std::min(slider.from, *value);
+    job.vary.push_back({parameter.key->key, low, std::max(slider.to, *value), std::max(low, *value)});
   }
   return job.vary.empty() ? std::nullopt : std::optional(std::move(job));
 }
 
-void Session::take_fit(Fit fit) {
-  std::vector<Setting> values;
-  for (const FitParameter& one : fit.parameters)
-    values.push_back({one.key, TomlText{fmt::format("{:.6g}", one.value)}});
-  set(values);
-  if (message_.is_error) return;
+std::size_t Session::take_fit(Fit fit, const FitJob& job) {
+  const std::size_t nearest = nearest_minimum(fit, job);
   fit_ = std::move(fit);
-  fitted_ = edits_;
+  fit_start_ = job.start;
+  view_.panel = Panel::kFit;
+  visit_minimum(nearest);
+  return nearest;
+}
+
+void Session::visit_minimum(std::size_t position) {
+  std::vector<Setting> values;
+  for (std::size_t j = 0; j < fit_->parameters.size(); ++j) {
+    values.push_back({fit_->parameters[j].key, TomlText{fmt::format("{:.6g}", fit_->minima[position].values[j])}});
+  }
+  attempt([&] {
+    edits_.go_to(*fit_start_);
+    edits_.set(values);
+    minimum_ = position;
+    fitted_ = edits_;
+  });
 }
 
 const FitParameter* Session::fitted(const std::string& key) const {
@@ -259,14 +280,15 @@ void Session::set_map_cursor(double x, double y) {
       theta_deg_ = value;
     } else {
       // Four digits, as a slider gives.
-      changes.push_back({key_of(of->axis), TomlText{fmt::format("{:.4g}", of->scale.clamp(value))}});
+      changes.push_back({of->key(), TomlText{fmt::format("{:.4g}", of->scale.clamp(value))}});
     }
   }
   set(changes);
 }
 
 double Session::map_cursor(const MapAxis& axis) const {
-  return axis.scale.position(axis.axis == Axis::kTheta ? theta_deg_ : scene().number(key_of(axis.axis)).value());
+  return axis.scale.position(axis.axis == Axis::kTheta ? theta_deg_
+                                                       : scene().number(axis.key()).value_or(axis.scale.from));
 }
 
 const Point* Session::at_cursor() const {
@@ -325,14 +347,34 @@ void Session::follow_overlay(const std::string& content, bool keep_all) {
   }
 }
 
+std::string Session::refusal(const MapAxis& axis, const Scale& range) const {
+  try {
+    for (const double end : {range.from, range.to}) {
+      if (axis.axis == Axis::kTheta && !(end >= 0.0 && end <= 90.0)) return "must be numbers in [0, 90]";
+      if (axis.axis != Axis::kTheta) static_cast<void>(scene().with(axis.key(), end));
+    }
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+MapAxis Session::map_axis(Axis axis) const {
+  MapAxis suggested = suggested_axis(axis, scene(), view_.theta_max_deg);
+  const auto typed = view_.map_ranges.find(suggested.label());
+  // The scene may have changed since, and no longer take it.
+  if (typed != view_.map_ranges.end() && refusal(suggested, typed->second).empty()) suggested.scale = typed->second;
+  return suggested;
+}
+
 void Session::follow_map(bool keep_all) {
   if (is_dragged() && map_.is_arriving()) return;  // in a drag it goes from one complete map to the next
-  const MapAxis x = suggested_axis(view_.map_x, scene(), view_.theta_max_deg);
-  const MapAxis y = suggested_axis(view_.map_y, scene(), view_.theta_max_deg);
-  std::string key = content_key(scene(), edits_.changes_without({key_of(x.axis), key_of(y.axis)}), keep_all);
+  const MapAxis x = map_axis(view_.map_x);
+  const MapAxis y = map_axis(view_.map_y);
+  std::string key = content_key(scene(), edits_.changes_without({x.key(), y.key()}), keep_all);
   if (x.axis != Axis::kTheta && y.axis != Axis::kTheta) key += "\ntheta=" + format_number(theta_deg_);
   for (const MapAxis& axis : {x, y}) {
-    key += fmt::format("\n{} {} {}", axis_label(axis.axis), axis.scale.from, axis.scale.to);
+    key += fmt::format("\n{} {} {} {}", axis.label(), axis.scale.from, axis.scale.to, axis.scale.is_log);
   }
   map_.follow(key, scene(), keep_all, x, y, theta_deg_);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -14,6 +15,7 @@
 #include "explore/panels.hpp"
 #include "explore/peak.hpp"
 #include "explore/scene_edits.hpp"
+#include "explore/sky_pair.hpp"
 
 namespace dolp::explore {
 
@@ -29,11 +31,13 @@ struct Pin {
 struct View {
   Plotted quantity = Plotted::kDolp;
   bool is_log = false;
+  bool is_theta_log = false;    ///< zeniths of curves by their logarithm
   bool has_overlay = true;      ///< the other slope distribution with the same D(0)
   bool keeps_all = false;       ///< compute what the plan would drop, too
   double theta_max_deg = 90.0;  ///< what is shown, and where the maximum is looked for
   Axis map_x = Axis::kTheta;
   Axis map_y = Axis::kSigma;
+  std::map<std::string, Scale> map_ranges = {};  ///< that were typed, by the label of the axis
   Panel panel = Panel::kMap;
   std::size_t mueller_row = 0;  ///< of the element in the view of the pBRDF
   std::size_t mueller_column = 0;
@@ -93,6 +97,9 @@ class Session {
   /// Changes while a button of the mouse is held down are one for `undo`, and get coarse results alone.
   void hold(bool is_held);
   void note_saved() { edits_.note_saved(); }
+  /// Puts a sky of skies() into a file beside that of a scene, "NAME_sky.csv", which the scene names from then on.
+  /// Errors: IoError.
+  void keep_sky(const std::filesystem::path& scene_file);
   void pin();
   void remove_pin(std::size_t position);
   void rename_pin(std::size_t position, std::string name) { pins_[position].name = std::move(name); }
@@ -105,8 +112,10 @@ class Session {
   void clear_measured() { residuals_.clear(); }
   /// Lets a number vary in fits, or not.
   void mark(const std::string& key, bool varies);
-  /// Moves the parameters to the result of a fit.
-  void take_fit(Fit fit);
+  /// Shows a fit, and moves the parameters to the minimum nearest to where the job started. Returns its position.
+  std::size_t take_fit(Fit fit, const FitJob& job);
+  /// Moves the parameters to a minimum of the last fit; all else becomes as it was fitted.
+  void visit_minimum(std::size_t position);
   void tell(std::string text, bool is_error = false) { message_ = {std::move(text), is_error}; }
 
   // ---- Computing.
@@ -131,10 +140,16 @@ class Session {
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
   std::vector<std::string> marked() const { return {marked_.begin(), marked_.end()}; }
+  /// Skies whose files go with the session; true where the scene names one of them.
+  SkyFiles& skies() { return skies_; }
+  bool has_own_sky() const { return skies_.hold(sky_file(scene())); }
   bool varies(const std::string& key) const { return marked_.contains(key); }
   /// The fit of the marked parameters, over the ranges of their sliders, to the measured points; none without points,
   /// or without a marked parameter that the scene has.
   std::optional<FitJob> fit_job() const;
+  /// The last fit, and its minimum on display: none once the scene has changed.
+  const std::optional<Fit>& last_fit() const { return fit_; }
+  std::optional<std::size_t> minimum() const { return fit() ? std::optional(minimum_) : std::nullopt; }
   /// The result of the last fit, and what it says of a number; null once the scene has changed.
   const Fit* fit() const { return fit_ && fitted_->is_same_scene(edits_) ? &*fit_ : nullptr; }
   const FitParameter* fitted(const std::string& key) const;
@@ -147,6 +162,8 @@ class Session {
   const char* remark(const Curve& curve) const;
   /// The effects of the last finished curve; influences of what is kept are those at the cursor's zenith.
   const std::vector<Effect>& effects() const { return effects_; }
+  /// Why the map cannot have a range along an axis; empty where it can.
+  std::string refusal(const MapAxis& axis, const Scale& range) const;
   /// The position of the scene's own value on an axis of the map.
   double map_cursor(const MapAxis& axis) const;
   /// The point on display at the zenith nearest to the cursor's; null before there is one.
@@ -161,11 +178,13 @@ class Session {
   void follow();
   void follow_overlay(const std::string& content, bool keep_all);
   void follow_map(bool keep_all);
+  MapAxis map_axis(Axis axis) const;
   std::vector<Job> wanted_in_drag() const;
   bool shows_map() const { return view_.panel == Panel::kMap; }
   void estimate_influences();
   void follow_peak();
 
+  SkyFiles skies_;
   SceneEdits edits_;
   std::vector<SceneEdits> done_, undone_;  ///< before each gesture; after each that was undone
   std::vector<Snapshot> snapshots_;
@@ -182,7 +201,9 @@ class Session {
   Residuals residuals_;
   std::set<std::string> marked_;
   std::optional<Fit> fit_;
-  std::optional<SceneEdits> fitted_;  ///< the scene with what was found
+  std::optional<SceneEdits> fit_start_;  ///< the scene that was fitted
+  std::optional<SceneEdits> fitted_;     ///< with the minimum that was visited
+  std::size_t minimum_ = 0;
   std::vector<Effect> effects_;
   std::pair<std::string, double> influences_of_;  ///< key of the curve, zenith
   Message message_;

@@ -21,8 +21,8 @@ struct Flag {
   const char* key;
   bool View::*flag;
 };
-constexpr std::array kFlags = {Flag{"log", &View::is_log}, Flag{"overlay", &View::has_overlay},
-                               Flag{"keep_all", &View::keeps_all}};
+constexpr std::array kFlags = {Flag{"log", &View::is_log}, Flag{"theta_log", &View::is_theta_log},
+                               Flag{"overlay", &View::has_overlay}, Flag{"keep_all", &View::keeps_all}};
 
 using Node = toml::node_view<const toml::node>;
 

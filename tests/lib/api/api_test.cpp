@@ -236,6 +236,14 @@ TEST_F(Library, Fit_GivesValuesWithIntervals) {
   EXPECT_NEAR(*likely.high - *likely.low, 2.0 * fit.parameters[0].standard_error.value(), 0.01);
   EXPECT_LT(fit.chi_square, 1e-3);
   EXPECT_EQ(fit.degrees_of_freedom, 5U);
+  ASSERT_FALSE(fit.minima.empty());
+  EXPECT_EQ(fit.minima[0].values, std::vector<double>{fit.parameters[0].value});
+  EXPECT_EQ(fit.minima[0].chi_square, fit.chi_square);
+  for (const auto& [label, text] : fit.report.rows) {
+    EXPECT_NE(fit.report.text.find("  " + label), std::string::npos) << label;
+    EXPECT_NE(fit.report.text.find(text), std::string::npos) << text;
+  }
+  EXPECT_TRUE(std::ranges::any_of(fit.report.rows, [](const auto& row) { return row.first == "minimum"; }));
   EXPECT_GT(fit.p_value, 0.99);
   EXPECT_THROW(dolp::MeasuredData::from_csv("theta_deg,dolp\n95,0.1\n"), dolp::InputError);
 }

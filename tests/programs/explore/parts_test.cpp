@@ -23,7 +23,9 @@ const std::string kHostDir = DOLP_HOST_DIR;
 TEST(Parameters, EndsOfEverySlider_AreAccepted) {
   for (const Parameter& p : parameters()) {
     for (const double end : {p.slider.from, p.slider.to}) {
-      const std::string beside = p.key->key == "source.scale" ? "source.irradiance=1" : "title=paint";
+      const std::string beside = p.key->key == "source.scale"       ? "source.irradiance=1"
+                                 : p.key->key == "surface.wind_m_s" ? "surface.distribution=gaussian"
+                                                                    : "title=paint";
       const Scene scene = paint({beside, p.key->key + "=" + format_number(end)}).scene();
       EXPECT_EQ(scene.number(p.key->key), end) << p.key->key;
     }
@@ -83,6 +85,19 @@ const std::vector<EditCase> kEditCases = {
      {"emission=none", "surface.masking=integral", "reset emission"},
      {"emission.model=direct", "surface.masking=v-cavity"},
      "With emission = as opened goes surface.masking = v-cavity"},
+    // A wind stands in the place of sigma; slopes of another distribution begin with its sigma.
+    {{"surface.distribution=gaussian", "surface.wind_m_s=8"}, {"surface.wind_m_s=12"}, {"surface.wind_m_s=12"}},
+    {{"surface.distribution=gaussian", "surface.wind_m_s=10"},
+     {"surface.distribution=cauchy"},
+     {"surface.wind_m_s=-", "surface.sigma=0.1646207763315433"},
+     "surface.sigma = 0.16462"},
+    // One sky replaces another.
+    {{}, {"surroundings.profile=clear-sky"}, {"surroundings.temperature_K=-", "surroundings.profile=clear-sky"}},
+    {{"emission.bracket=true"},
+     {"surroundings.profile=overcast"},
+     {"emission.bracket=false"},
+     "goes emission.bracket = false"},
+    {{"surroundings.profile=overcast"}, {"surroundings.temperature_K=250"}, {"surroundings.profile=-"}},
 };
 
 void take_step(Session& session, const std::string& step) {

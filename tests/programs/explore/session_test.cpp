@@ -258,7 +258,7 @@ TEST(ExploreSession, Fit_MovesMarkedParametersToTheTruth_AndItsIntervalsGoWithTh
   ASSERT_TRUE(job.has_value());
   ASSERT_EQ(job->vary.size(), 2U);
   Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
-  session.take_fit(run_fit(*job, evaluator, {}));
+  session.take_fit(run_fit(*job, evaluator, {}), *job);
   EXPECT_NEAR(*session.scene().number("surface.sigma"), 0.25, 1e-3);
   EXPECT_NEAR(*session.scene().number("surface.n"), 1.7, 5e-3);
   for (const auto& [key, value] : {std::pair{"surface.sigma", 0.25}, std::pair{"surface.n", 1.7}}) {

@@ -76,26 +76,6 @@ TEST_F(Window, MaskingList_OtherWord_SwitchesTheBracketOff) {
   EXPECT_NE(app_->session().message().text.find("goes emission.bracket = false"), std::string::npos);
 }
 
-TEST_F(Window, Fit_OfAMarkedSlider_MovesItAndShowsTheInterval) {
-  put("points.csv", "theta_deg\n20\n40\n60\n70\n80\n");
-  std::string csv = "theta_deg,dolp,uncertainty\n";
-  const Columns truth = eval({"--set", "surface.sigma=0.3", "--tolerance", "1e-5"});
-  for (std::size_t i = 0; i < truth.at("dolp").size(); ++i) {
-    csv += fmt::format("{},{},0.002\n", truth.at("theta_deg")[i], truth.at("dolp")[i]);
-  }
-  put("measured.csv", csv);
-  app_->session().load_measured(at("measured.csv").string());
-  app_->settle();
-  frames();
-  click_control("vary surface.sigma");
-  ASSERT_TRUE(app_->session().varies("surface.sigma"));
-  keys("ctrl+f");
-  app_->settle();
-  EXPECT_NEAR(*app_->session().scene().number("surface.sigma"), 0.3, 2e-3);
-  ASSERT_NE(app_->session().fitted("surface.sigma"), nullptr);
-  EXPECT_LT(*app_->session().fitted("surface.sigma")->interval_68.low, 0.3);
-}
-
 TEST_F(Window, Curve_WheelAndRightButton_ZoomAndShift_ADoubleClickShowsAll) {
   const explore::CurveView& view = app_->curve_view();
   const explore::Scale x = view.x(), y = view.y();

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "explore/panels.hpp"
+#include "explore/readout.hpp"
 #include "explore_support.hpp"
 #include "window_support.hpp"
 
@@ -130,6 +131,28 @@ TEST_F(Window, Panels_ClickedOneByOne_AreDrawn_AndTheMapIsComputedWhileItIsShown
   click_control("panel map");
   app_->settle();
   EXPECT_NE(app_->session().map().version(), version);
+}
+
+TEST_F(Window, SceneWithAWind_HasItsSliderAndItsAxis_InsteadOfSigma) {
+  app_->session().set({{"surface.distribution", "gaussian"}, {"surface.wind_m_s", 8.0}});
+  app_->settle();
+  frames();
+  EXPECT_THROW(app_->control_area("surface.sigma"), std::out_of_range);
+  drag_slider("surface.wind_m_s", kPartOfSlider);
+  const explore::Session& session = app_->session();
+  const double wind = *session.scene().number("surface.wind_m_s");
+  EXPECT_NEAR(wind, 30.0 * static_cast<double>(kPartOfSlider), 30.0 * kGrab);
+  ASSERT_TRUE(session.curve().is_finished());
+  const Columns truth = evaluated();
+  for (std::size_t i = 0; i < truth.at("dolp").size(); i += 10) {
+    EXPECT_EQ(session.curve().points()[i][Quantity::kDolp], truth.at("dolp")[i]) << i;
+  }
+  EXPECT_EQ(session.map().y().label(), std::string("U [m/s]"));
+  EXPECT_NE(explore::cursor_text(session).find("U = "), std::string::npos);
+  click({1150.0F, 300.0F});  // the middle of the map
+  app_->settle();
+  EXPECT_NE(session.scene().number("surface.wind_m_s"), wind);
+  EXPECT_EQ(session.curve().points()[0].sigma, session.scene().number("surface.wind_m_s"));
 }
 
 TEST_F(Window, Slider_WhileItIsDragged_MovesACoarseCurve_AndTheAxisOfZenithsHolds) {

@@ -62,12 +62,16 @@ void Actions::prefer(const std::function<void(Preferences&)>& change) {
 }
 
 void Actions::save_session(const std::string& path) {
-  attempt("saved " + path, [&] { explore::save_session(session_, path); });
+  attempt("saved " + path, [&] {
+    session_.keep_sky(path);
+    explore::save_session(session_, path);
+  });
 }
 
 void Actions::save_scene(const std::string& path) {
   attempt("saved " + path, [&] {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    session_.keep_sky(path);
     write_text_atomically(path, session_.scene().toml(folder.empty() ? "." : folder));
     session_.note_saved();
   });
@@ -124,9 +128,8 @@ void Actions::fit() {
     return;
   }
   fit_.start([this, job = *job](const Progress& progress) -> BackgroundTask::Rest {
-    return [this, fit = run_fit(job, fit_evaluator_, progress)] {
-      session_.take_fit(fit);
-      return fit_text(fit);
+    return [this, job, fit = run_fit(job, fit_evaluator_, progress)] {
+      return fit_text(fit, session_.take_fit(fit, job));
     };
   });
 }

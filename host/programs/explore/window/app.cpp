@@ -260,6 +260,8 @@ Area App::control_area(const std::string& key) const { return impl_->ui.area(key
 
 const CurveView& App::curve_view() const { return impl_->ui.curves(); }
 
+const MapView& App::map_view() const { return impl_->ui.map(); }
+
 bool App::is_idle() const { return impl_->is_idle(); }
 
 void App::save_picture(const std::string& path) { impl_->actions.set_picture(path); }

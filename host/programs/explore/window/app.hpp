@@ -42,6 +42,7 @@ class App {
   /// The last drawn area of a control by its scene key. Errors: std::out_of_range when it was not drawn.
   Area control_area(const std::string& key) const;
   const CurveView& curve_view() const;
+  const MapView& map_view() const;
 
   /// Takes input and news, and draws one frame. False when the user has closed the window.
   /// Errors: DeviceError when the device is lost or the validation layer complains.

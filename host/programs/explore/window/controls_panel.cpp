@@ -22,23 +22,9 @@ void heading(const char* text) {
   ImGui::Separator();
 }
 
-/// The text of a row, in a column of fixed width; the control follows beside it.
-void row_label(const std::string& text) {
-  ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(shown(text).c_str());
-  // The column is as wide as the longest text that is not cut.
-  const float longest = ImGui::CalcTextSize(shown("λ1, λ2 [µm]").c_str()).x;
-  ImGui::SameLine(std::max(6.2F * ImGui::GetTextLineHeight(), longest + 2.0F * ImGui::GetStyle().ItemSpacing.x));
-}
-
 std::string fallback_text(const Parameter& parameter, const Session& session) {
   const std::optional<double> opened = parameter.value(session.edits().opened());
   return opened ? fmt::format("\nCtrl-click: {:.6g}, as opened", *opened) : "";
-}
-
-std::string interval_text(const FitInterval& interval) {
-  const auto end = [](const std::optional<double>& value) { return value ? fmt::format("{:.4g}", *value) : "open"; };
-  return end(interval.low) + " to " + end(interval.high);
 }
 
 /// The last fit's intervals of a parameter.
@@ -48,7 +34,7 @@ std::string intervals_text(const Parameter& parameter, const Session& session) {
   return fmt::format("\n68 %: {}\n95 %: {}", interval_text(found->interval_68), interval_text(found->interval_95));
 }
 
-/// The interval as a bar at the foot of the slider that was drawn last; an open end goes to the slider's.
+/// The pieces of the interval as bars at the foot of the slider that was drawn last; an open end goes to the slider's.
 void draw_interval(const Parameter& parameter, const FitInterval& interval) {
   const ImVec2 corner = ImGui::GetItemRectMin();
   const ImVec2 end = ImGui::GetItemRectMax();
@@ -57,8 +43,10 @@ void draw_interval(const Parameter& parameter, const FitInterval& interval) {
     return corner.x + static_cast<float>(position) * (end.x - corner.x);
   };
   constexpr float kThickness = 3.0F;
-  ImGui::GetWindowDrawList()->AddRectFilled({at(interval.low, 0.0), end.y - kThickness},
-                                            {at(interval.high, 1.0), end.y}, kIntervalColour);
+  for (const auto& [low, high] : interval.pieces) {
+    ImGui::GetWindowDrawList()->AddRectFilled({at(low, 0.0), end.y - kThickness}, {at(high, 1.0), end.y},
+                                              kIntervalColour);
+  }
 }
 
 std::string description_of(const Parameter& p, const Session& session) {
@@ -126,6 +114,7 @@ void draw_source_kind(Session& session) {
 bool has_effect(const Scene& scene, const std::string& table) {
   if (table == "source") return scene.number("source.scale").has_value();
   if (table == "path") return scene.number("path.transmittance").has_value();
+  if (table == "surroundings" && scene.word("surroundings.profile")) return true;
   return scene.number(table + ".temperature_K").has_value();
 }
 
@@ -152,6 +141,14 @@ Value value_of(const std::string& text) {
 }
 
 }  // namespace
+
+void row_label(const std::string& text) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(shown(text).c_str());
+  // The column is as wide as the longest text that is not cut.
+  const float longest = ImGui::CalcTextSize(shown("λ1, λ2 [µm]").c_str()).x;
+  ImGui::SameLine(std::max(6.2F * ImGui::GetTextLineHeight(), longest + 2.0F * ImGui::GetStyle().ItemSpacing.x));
+}
 
 void ControlsPanel::remember_area(const std::string& key) {
   areas_[key] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
@@ -233,7 +230,7 @@ void ControlsPanel::draw_fit_box(Session& session, const Parameter& parameter) {
   bool varies = session.varies(key);
   if (ImGui::Checkbox("##vary", &varies)) session.mark(key, varies);
   remember_area("vary " + key);
-  tooltip("varies in a fit to the measured points, over the range of its slider");
+  tooltip("varies in a fit to the measured points, over the range of its slider; k from 0.001 on, along its logarithm");
   ImGui::SameLine();
 }
 
@@ -282,6 +279,7 @@ void ControlsPanel::draw(Session& session) {
   if (has_effect(session.scene(), "source")) draw_source_kind(session);
   draw_table(session, "source");
   draw_effect_box(session, "surroundings");
+  if (has_effect(session.scene(), "surroundings")) draw_sky(session);
   draw_table(session, "surroundings");
   draw_effect_box(session, "path");
   draw_table(session, "path");

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "explore/parameters.hpp"
@@ -12,6 +13,9 @@
 
 namespace dolp::explore {
 
+/// The text of a row, in a column of fixed width; the control follows beside it.
+void row_label(const std::string& text);
+
 class ControlsPanel {
  public:
   /// Fills the current ImGui window.
@@ -20,7 +24,7 @@ class ControlsPanel {
   void draw_accuracy(Session& session);
 
   /// Sliders, lists and boxes by their scene key, "vary KEY" of the box that lets it vary, "field KEY" of a number's
-  /// field, for tests that move the mouse there.
+  /// field, "sky", "sky zenith" and "sky horizon", for tests that move the mouse there.
   const std::map<std::string, Area>& areas() const { return areas_; }
 
  private:
@@ -31,11 +35,16 @@ class ControlsPanel {
   void draw_parameter(Session& session, const Parameter& parameter, double value);
   void draw_table(Session& session, const std::string& table);
   void draw_spectrum(Session& session);
+  void draw_sky(Session& session);
+  void draw_sky_list(Session& session);
+  void draw_sky_temperature(Session& session, const std::string& name, double SkyPair::*part);
   void draw_field(Session& session, const std::string& id, double value,
                   const std::function<Setting(const std::string& text)>& change);
   void show_reason(const std::string& id) const;
 
   NumberFields fields_;
+  std::string sky_file_;  ///< of the scene, whose sky is known
+  std::optional<SkyPair> sky_;
   std::map<std::string, Area> areas_;
 };
 

@@ -120,7 +120,8 @@ void draw_bracket(const Plot& plot, const Shown& shown) {
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Point& a = points[i];
     const Point& b = points[i + 1];
-    if (!a.is_good() || !b.is_good() || !a.has_bracket() || !b.has_bracket()) continue;
+    if (!plot.has_place(a.theta_deg, 1.0) || !a.is_good() || !b.is_good() || !a.has_bracket() || !b.has_bracket())
+      continue;
     plot.list()->AddQuadFilled(at(a, Quantity::kDolpLow), at(a, Quantity::kDolpHigh), at(b, Quantity::kDolpHigh),
                                at(b, Quantity::kDolpLow), colour);
   }
@@ -138,7 +139,7 @@ void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
   };
   for (const Point& point : shown.curve->points()) {
     const double value = shown_value(quantity, point);
-    if (!std::isfinite(value) || (plot.y().is_log && value <= 0.0)) {
+    if (!plot.has_place(point.theta_deg, value)) {
       finish();
       continue;
     }
@@ -223,13 +224,14 @@ void draw_legend(const std::vector<Shown>& curves, Session& session) {
 }
 
 void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& style) {
+  if (!plot.has_place(session.theta_deg(), 1.0)) return;
   const float x = plot.at_position(plot.x().position(session.theta_deg()), 0.0).x;
   plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour);
   const Point* const shown = session.at_cursor();
   if (!shown) return;
   const Plotted quantity = session.view().quantity;
   const double value = shown_value(quantity, *shown);
-  if (!std::isfinite(value) || (plot.y().is_log && value <= 0.0)) return;
+  if (!plot.has_place(shown->theta_deg, value)) return;
   const ImVec2 at = plot.at(shown->theta_deg, value);
   plot.list()->AddCircleFilled(at, 4.0F, style.colour);
   plot.list()->AddCircle(at, 4.5F, kTextColour);
@@ -239,7 +241,7 @@ void draw_peak(const Plot& plot, const Session& session) {
   const PeakAnswer* const peak = shown_peak(session);
   if (!peak) return;
   const double value = shown_value(session.view().quantity, peak->at);
-  if (plot.y().is_log && value <= 0.0) return;
+  if (!plot.has_place(peak->at.theta_deg, value)) return;
   const bool is_low = value < 0.0;
   const ImVec2 at = plot.at(peak->at.theta_deg, value);
   if (at.x < plot.min().x || at.x > plot.max().x || at.y < plot.min().y || at.y > plot.max().y) return;
@@ -254,16 +256,25 @@ void draw_peak(const Plot& plot, const Session& session) {
              fmt::format("{:.2f} % at {:.1f}°", value, peak->at.theta_deg));
 }
 
+void draw_error_bar(const Plot& plot, double theta_deg, double low, double high) {
+  constexpr float kCap = 3.0F;
+  const ImVec2 bottom = plot.at(theta_deg, low);
+  const ImVec2 top = plot.at(theta_deg, high);
+  plot.list()->AddLine(bottom, top, kTextColour);
+  for (const ImVec2 end : {bottom, top})
+    plot.list()->AddLine({end.x - kCap, end.y}, {end.x + kCap, end.y}, kTextColour);
+}
+
 void draw_measured(const Plot& plot, const std::vector<Measurement>& points) {
   for (const Measurement& point : points) {
     const double scale = scale_of(plotted(point.observable));
     const double value = scale * point.value;
-    if (plot.y().is_log && value <= 0.0) continue;
+    if (!plot.has_place(point.theta_deg, value)) continue;
     plot.list()->AddCircle(plot.at(point.theta_deg, value), 4.0F, kTextColour, 0, 1.5F);
     if (!point.uncertainty) continue;
     const double deviation = scale * *point.uncertainty;
     const double low = plot.y().is_log ? std::max(value - deviation, plot.y().from) : value - deviation;
-    plot.list()->AddLine(plot.at(point.theta_deg, low), plot.at(point.theta_deg, value + deviation), kTextColour);
+    draw_error_bar(plot, point.theta_deg, low, value + deviation);
   }
 }
 
@@ -271,13 +282,16 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   const Plotted quantity = session.view().quantity;
   const double scale = scale_of(quantity);
   const std::vector<double> residuals = session.residuals().residuals();
-  std::vector<std::pair<double, double>> shown;  // zenith and residual
+  struct Residual {
+    double theta_deg, value, deviation;
+  };
+  std::vector<Residual> shown;
   double largest = 1e-6;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     const Measurement& point = session.residuals().data()->measurements[i];
     if (plotted(point.observable) != quantity || !std::isfinite(residuals[i])) continue;
-    shown.emplace_back(point.theta_deg, scale * residuals[i]);
-    largest = std::max(largest, std::abs(shown.back().second));
+    shown.push_back({point.theta_deg, scale * residuals[i], scale * point.uncertainty.value_or(0.0)});
+    largest = std::max(largest, std::abs(shown.back().value) + shown.back().deviation);
   }
   const std::string unit = described(quantity).in_percent ? " [points]" : "";
   const std::optional<double> rms = session.residuals().rms(quantity);
@@ -286,14 +300,34 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   const Plot plot("residuals", size, {"", theta}, {label, {-1.2 * largest, 1.2 * largest}});
   plot.clip();
   plot.list()->AddLine(plot.at(theta.from, 0.0), plot.at(theta.to, 0.0), kDimColour);
-  for (const auto& [theta_deg, residual] : shown) {
-    plot.list()->AddLine(plot.at(theta_deg, 0.0), plot.at(theta_deg, residual), kTextColour);
-    plot.list()->AddCircleFilled(plot.at(theta_deg, residual), 3.0F, kTextColour);
+  for (const Residual& one : shown) {
+    if (!plot.has_place(one.theta_deg, 1.0)) continue;
+    if (one.deviation > 0.0) draw_error_bar(plot, one.theta_deg, one.value - one.deviation, one.value + one.deviation);
+    plot.list()->AddCircleFilled(plot.at(one.theta_deg, one.value), 3.0F, kTextColour);
   }
   plot.unclip();
 }
 
 }  // namespace
+
+void CurveView::edit_axes(Session& session, const Plot& plot, const std::string& values) {
+  View view = session.view();
+  const auto check_zeniths = [&](const Scale& range) {
+    const Scale all = Scale{0.0, view.theta_max_deg}.with_log(range.is_log);
+    const bool is_inside = range.from >= all.from && range.to <= all.to;
+    return is_inside ? "" : fmt::format("must be numbers in [{:g}, {:g}]; \"θ up to\" sets the end", all.from, all.to);
+  };
+  if (const auto change = axis_editor_.draw("zenith θ [°]", plot.x_numbers(), x_, check_zeniths)) {
+    zoom_.x = change->range;
+    view.is_theta_log = change->is_log;
+  }
+  const auto take_all = [](const Scale&) { return std::string(); };
+  if (const auto change = axis_editor_.draw(values, plot.y_numbers(), y_, take_all)) {
+    zoom_.y = change->range;
+    view.is_log = change->is_log;
+  }
+  if (view.is_log != session.view().is_log || view.is_theta_log != session.view().is_theta_log) session.set_view(view);
+}
 
 void CurveView::draw(Session& session, ImVec2 size) {
   const std::vector<Shown> curves = shown_curves(session);
@@ -310,9 +344,10 @@ void CurveView::draw(Session& session, ImVec2 size) {
   const float gap = ImGui::GetStyle().ItemSpacing.y;
   const float residual_height = has_measured ? 0.28F * size.y : 0.0F;
 
-  const Scale zeniths{0.0, session.view().theta_max_deg};
+  const Scale zeniths = Scale{0.0, session.view().theta_max_deg}.with_log(session.view().is_theta_log);
   PlotAxis values = value_axis(session, curves);
   if (quantity_ != quantity || (zoom_.y && zoom_.y->is_log != values.scale.is_log)) zoom_.y.reset();
+  if (zoom_.x && zoom_.x->is_log != zeniths.is_log) zoom_.x.reset();
   if (zoom_.x) zoom_.x = zoom_.x->within(zeniths);
   if (zoom_.y) {
     values.scale = *zoom_.y;
@@ -340,6 +375,7 @@ void CurveView::draw(Session& session, ImVec2 size) {
   }
   plot.unclip();
   area_ = plot.area();
+  edit_axes(session, plot, values.label);
   if (has_measured) draw_residuals(session, x_, {size.x, residual_height});
 }
 

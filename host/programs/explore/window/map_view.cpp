@@ -12,10 +12,12 @@ namespace {
 constexpr double kColourSteps = 96.0;
 constexpr double kMostContrast = 1e3;  // of a logarithmic colour scale
 constexpr std::size_t kMostLines = 7;
-constexpr ImU32 kOnMap = IM_COL32(255, 255, 255, 190);  // lines, in both themes
-constexpr float kBarRoom = 5.4F;                        // right of the map, in lines of text
+constexpr ImU32 kLightLine = IM_COL32(255, 255, 255, 190);  // over the colours of a map, in both themes
+constexpr ImU32 kDarkLine = IM_COL32(0, 0, 0, 170);         // over the white of diverging colours
+constexpr std::size_t kUnknownVersion = static_cast<std::size_t>(-1);
+constexpr float kBarRoom = 5.4F;  // right of the map, in lines of text
 
-PlotAxis axis_of(const MapAxis& axis) { return {axis_label(axis.axis), axis.scale}; }
+PlotAxis axis_of(const MapAxis& axis) { return {axis.label(), axis.scale}; }
 
 std::string title_of(const Session& session) {
   const HeatMap& map = session.map();
@@ -30,9 +32,10 @@ std::string title_of(const Session& session) {
 void draw_map_cursor(const Session& session, const Plot& plot) {
   const HeatMap& map = session.map();
   const ImVec2 at = plot.at_position(session.map_cursor(map.x()), session.map_cursor(map.y()));
-  plot.list()->AddLine({at.x, plot.min().y}, {at.x, plot.max().y}, kOnMap);
-  plot.list()->AddLine({plot.min().x, at.y}, {plot.max().x, at.y}, kOnMap);
-  plot.list()->AddCircle(at, 5.0F, kOnMap, 0, 2.0F);
+  const ImU32 colour = described(session.view().quantity).is_signed ? kDarkLine : kLightLine;
+  plot.list()->AddLine({at.x, plot.min().y}, {at.x, plot.max().y}, colour);
+  plot.list()->AddLine({plot.min().x, at.y}, {plot.max().x, at.y}, colour);
+  plot.list()->AddCircle(at, 5.0F, colour, 0, 2.0F);
 }
 
 }  // namespace
@@ -43,27 +46,44 @@ double MapView::colour_position(double value) const {
   return colour_scale_.position(value);
 }
 
+Scale MapView::colour_range(const Session& session) const {
+  if (described(quantity_).is_signed) {
+    const double largest = std::max(std::abs(field_.min), std::abs(field_.max));
+    return {-largest, largest};
+  }
+  // Only what is positive throughout, but for a few smallest values, has a logarithm.
+  const bool is_log = session.view().is_log;
+  const double low = is_log && field_.max > 0.0 ? std::max(field_.min, field_.max / kMostContrast) : field_.min;
+  return {low, field_.max, is_log && low > 0.0};
+}
+
+ImU32 MapView::colour(double position) const {
+  return described(quantity_).is_signed ? diverging(position) : viridis(position);
+}
+
 void MapView::update(const Session& session) {
   const Plotted quantity = session.view().quantity;
   const bool is_log = session.view().is_log;
-  if (version_ == session.map().version() && quantity_ == quantity && is_log_ == is_log) return;
+  const bool is_same = quantity_ == quantity && is_log_ == is_log;
+  if (version_ == session.map().version() && is_same) return;
   version_ = session.map().version();
   quantity_ = quantity;
-  field_ = session.map().field(quantity);
-  // Only what is positive throughout, but for a few smallest values, has a logarithm.
   is_log_ = is_log;
-  const double low = is_log && field_.max > 0.0 ? std::max(field_.min, field_.max / kMostContrast) : field_.min;
-  colour_scale_ = {low, field_.max, is_log && low > 0.0};
+  if (!is_same) typed_colours_.reset();
+  field_ = session.map().field(quantity);
+  // While a slider is dragged the colours keep their values, so that the map is what changes.
+  const bool is_held = session.is_dragged() && is_same && colour_scale_.from < colour_scale_.to;
+  if (!is_held) colour_scale_ = typed_colours_.value_or(colour_range(session));
   colours_.clear();
   for (std::size_t i = 0; i < field_.values.size(); ++i) {
     const double position = colour_position(field_.values[i]);
-    colours_.push_back(field_.is_good[i] ? viridis(std::round(position * kColourSteps) / kColourSteps) : kBadColour);
+    colours_.push_back(field_.is_good[i] ? colour(std::round(position * kColourSteps) / kColourSteps) : kBadColour);
   }
   runs_ = runs_along(true);
   std::vector<Run> upwards = runs_along(false);
   if (upwards.size() < runs_.size()) runs_ = std::move(upwards);
   lines_.clear();
-  if (!(low < field_.max)) return;
+  if (!(field_.min < field_.max && colour_scale_.from < colour_scale_.to)) return;
   for (const double level : colour_scale_.ticks(kMostLines)) lines_.push_back({level, contour(field_, level)});
 }
 
@@ -98,9 +118,10 @@ void MapView::draw_cells(const Plot& plot) const {
 }
 
 void MapView::draw_lines(const Plot& plot, double scale) const {
+  const ImU32 line_colour = described(quantity_).is_signed ? kDarkLine : kLightLine;
   for (const Line& line : lines_) {
     for (const Segment& s : line.segments) {
-      plot.list()->AddLine(plot.at_position(s.x0, s.y0), plot.at_position(s.x1, s.y1), kOnMap);
+      plot.list()->AddLine(plot.at_position(s.x0, s.y0), plot.at_position(s.x1, s.y1), line_colour);
     }
   }
   std::vector<ImVec2> labels;
@@ -127,7 +148,7 @@ void MapView::draw_bar(const Plot& plot, const PlottedDescription& quantity) con
   const float height = plot.area().height();
   for (int i = 0; i < kSteps; ++i) {
     const auto y = [&](int step) { return plot.max().y - height * static_cast<float>(step) / kSteps; };
-    plot.list()->AddRectFilled({left, y(i + 1)}, {right, y(i)}, viridis((i + 0.5) / kSteps));
+    plot.list()->AddRectFilled({left, y(i + 1)}, {right, y(i)}, colour((i + 0.5) / kSteps));
   }
   plot.list()->AddRect({left, plot.min().y}, {right, plot.max().y}, kDimColour);
   if (!(colour_scale_.from < colour_scale_.to)) return;
@@ -139,6 +160,34 @@ void MapView::draw_bar(const Plot& plot, const PlottedDescription& quantity) con
     plot.list()->AddLine({right, y}, {right + 0.25F * line, y}, kDimColour);
     draw_text(plot.list(), {right + 0.4F * line, y}, {0.0F, 0.5F}, kDimColour, tick_text(tick));
   }
+}
+
+void MapView::edit_axes(Session& session, const Plot& plot) {
+  View view = session.view();
+  for (const auto& [axis, numbers] :
+       {std::pair{session.map().x(), plot.x_numbers()}, {session.map().y(), plot.y_numbers()}}) {
+    const auto check = [&](const Scale& range) { return session.refusal(axis, range); };
+    const auto change = axis_editor_.draw(axis.label(), numbers, axis.scale, check);
+    if (!change) continue;
+    const bool is_automatic = !change->range && change->is_log == axis.scale.is_log;
+    view.map_ranges.erase(axis.label());
+    if (!is_automatic) view.map_ranges[axis.label()] = change->range.value_or(axis.scale.with_log(change->is_log));
+    session.set_view(view);
+  }
+  const PlottedDescription& quantity = described(quantity_);
+  const float line = ImGui::GetTextLineHeight();
+  const Area numbers{{plot.max().x + 0.5F * line, plot.min().y}, {plot.max().x + kBarRoom * line, plot.max().y}};
+  const auto scaled = [](const Scale& range, double by) { return Scale{by * range.from, by * range.to, range.is_log}; };
+  const auto take_all = [](const Scale&) { return std::string(); };
+  const auto change =
+      axis_editor_.draw("colours: " + quantity.label(), numbers, scaled(colour_scale_, quantity.scale()), take_all);
+  if (!change) return;
+  typed_colours_.reset();
+  if (change->range) typed_colours_ = scaled(*change->range, 1.0 / quantity.scale());
+  version_ = kUnknownVersion;
+  if (quantity.is_signed || change->is_log == colour_scale_.is_log) return;
+  view.is_log = change->is_log;
+  session.set_view(view);
 }
 
 void MapView::draw(Session& session, ImVec2 size) {
@@ -155,6 +204,8 @@ void MapView::draw(Session& session, ImVec2 size) {
   draw_map_cursor(session, plot);
   plot.unclip();
   draw_bar(plot, quantity);
+  area_ = plot.area();
+  edit_axes(session, plot);
 }
 
 }  // namespace dolp::explore

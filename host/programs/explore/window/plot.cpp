@@ -8,7 +8,7 @@ namespace {
 
 /// Ticks with this many pixels between them, or more.
 std::vector<double> ticks_of(const Scale& scale, float pixels, float spacing) {
-  return scale.ticks(static_cast<std::size_t>(std::max(2.0F, pixels / spacing)));
+  return scale.ticks(static_cast<std::size_t>(std::max(3.0F, pixels / spacing)));
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ void draw_line(ImDrawList* list, const std::vector<ImVec2>& points, const CurveS
 Plot::Plot(const char* id, ImVec2 size, PlotAxis x, PlotAxis y, float right, bool has_grid)
     : x_(std::move(x)), y_(std::move(y)), list_(ImGui::GetWindowDrawList()) {
   const float line = ImGui::GetTextLineHeight();
-  const float bottom = x_.label.empty() ? 0.4F * line : 2.3F * line;
+  const float bottom = (x_.label.empty() ? 1.3F : 2.3F) * line;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   area_.min = {corner.x + 3.9F * line, corner.y + 1.4F * line};
   area_.max = {std::max(corner.x + size.x - 0.6F * line - right, min().x + line),
@@ -75,6 +75,20 @@ Plot::Plot(const char* id, ImVec2 size, PlotAxis x, PlotAxis y, float right, boo
   is_hovered_ = ImGui::IsItemHovered();
   ImGui::SetCursorScreenPos(corner);
   ImGui::Dummy(size);
+}
+
+Area Plot::x_numbers() const {
+  const float line = ImGui::GetTextLineHeight();
+  return {{min().x - line, max().y + 0.1F * line}, {max().x + line, max().y + 2.2F * line}};
+}
+
+Area Plot::y_numbers() const {
+  const float line = ImGui::GetTextLineHeight();
+  return {{min().x - 3.5F * line, min().y - 0.5F * line}, {min().x - 0.1F * line, max().y + 0.5F * line}};
+}
+
+bool Plot::has_place(double x_value, double y_value) const {
+  return std::isfinite(y_value) && (!x().is_log || x_value > 0.0) && (!y().is_log || y_value > 0.0);
 }
 
 ImVec2 Plot::at_position(double x, double y) const {
@@ -121,7 +135,7 @@ void Plot::draw_x_axis(bool has_grid) const {
     const float at = at_position(x().position(tick), 0.0).x;
     if (has_grid) list_->AddLine({at, min().y}, {at, max().y}, kGridColour);
     list_->AddLine({at, max().y}, {at, max().y + 0.25F * line}, kDimColour);
-    if (!x_.label.empty()) draw_text(list_, {at, max().y + 0.25F * line}, {0.5F, 0.0F}, kDimColour, tick_text(tick));
+    draw_text(list_, {at, max().y + 0.25F * line}, {0.5F, 0.0F}, kDimColour, tick_text(tick));
   }
   if (x_.label.empty()) return;
   draw_text(list_, {0.5F * (min().x + max().x), max().y + 1.25F * line}, {0.5F, 0.0F}, kTextColour, x_.label);

@@ -47,6 +47,11 @@ class Plot {
   const Scale& x() const { return x_.scale; }
   const Scale& y() const { return y_.scale; }
   ImDrawList* list() const { return list_; }
+  // The numbers beside the axes.
+  Area x_numbers() const;
+  Area y_numbers() const;
+  /// True where a point has a place along both axes.
+  bool has_place(double x_value, double y_value) const;
 
   ImVec2 at(double x_value, double y_value) const { return at_position(x().position(x_value), y().position(y_value)); }
   ImVec2 at_position(double x, double y) const;

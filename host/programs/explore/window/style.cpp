@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <span>
 #include <utility>
 
 namespace dolp::explore {
@@ -17,6 +18,10 @@ constexpr std::array kViridis = {
     Rgb{68, 1, 84},    Rgb{72, 24, 106},  Rgb{71, 45, 123},  Rgb{66, 64, 134},  Rgb{59, 82, 139},  Rgb{51, 99, 141},
     Rgb{44, 114, 142}, Rgb{38, 130, 142}, Rgb{33, 145, 140}, Rgb{31, 160, 136}, Rgb{40, 174, 128}, Rgb{63, 188, 115},
     Rgb{94, 201, 98},  Rgb{132, 212, 75}, Rgb{173, 220, 48}, Rgb{216, 226, 25}, Rgb{253, 231, 37}};
+
+constexpr std::array kRedBlue = {Rgb{5, 48, 97},     Rgb{33, 102, 172},  Rgb{67, 147, 195},  Rgb{146, 197, 222},
+                                 Rgb{209, 229, 240}, Rgb{247, 247, 247}, Rgb{253, 219, 199}, Rgb{244, 165, 130},
+                                 Rgb{214, 96, 77},   Rgb{178, 24, 43},   Rgb{103, 0, 31}};
 
 // On white the light ones are darker.
 constexpr Themed kOrange{IM_COL32(230, 159, 0, 255), IM_COL32(196, 124, 0, 255)};
@@ -45,6 +50,19 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 42> kNames =
     {"ν", "nu"},    {"‖", "|"},     {"▲", "^"},   {"•", "*"},   {"“", "\""},     {"”", "\""},     {"Ω", "Omega"},
 }};
 
+/// The colour at 0 to 1 between equal steps.
+ImU32 colour_at(std::span<const Rgb> colours, double position) {
+  const double place = std::clamp(position, 0.0, 1.0) * static_cast<double>(colours.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(place), colours.size() - 2);
+  const double part = place - static_cast<double>(below);
+  const auto mixed = [&](int Rgb::*channel) {
+    const double a = colours[below].*channel;
+    const double b = colours[below + 1].*channel;
+    return static_cast<int>(std::lround(a + part * (b - a)));
+  };
+  return IM_COL32(mixed(&Rgb::r), mixed(&Rgb::g), mixed(&Rgb::b), 255);
+}
+
 }  // namespace
 
 bool is_light() {
@@ -63,17 +81,9 @@ void set_theme(bool light) {
   for (const ImGuiCol ground : {ImGuiCol_PopupBg, ImGuiCol_WindowBg}) ImGui::GetStyle().Colors[ground].w = 1.0F;
 }
 
-ImU32 viridis(double position) {
-  const double place = std::clamp(position, 0.0, 1.0) * static_cast<double>(kViridis.size() - 1);
-  const auto below = std::min(static_cast<std::size_t>(place), kViridis.size() - 2);
-  const double part = place - static_cast<double>(below);
-  const auto mixed = [&](int Rgb::*channel) {
-    const double a = kViridis[below].*channel;
-    const double b = kViridis[below + 1].*channel;
-    return static_cast<int>(std::lround(a + part * (b - a)));
-  };
-  return IM_COL32(mixed(&Rgb::r), mixed(&Rgb::g), mixed(&Rgb::b), 255);
-}
+ImU32 viridis(double position) { return colour_at(kViridis, position); }
+
+ImU32 diverging(double position) { return colour_at(kRedBlue, position); }
 
 CurveStyle current_style() { return {kSkyBlue, 0.0F, 0.0F}; }
 

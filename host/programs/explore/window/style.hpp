@@ -23,6 +23,10 @@ struct Themed {
 /// Source: S. van der Walt, N. Smith, viridis of Matplotlib (CC0), at seventeen equal steps, linear in between.
 ImU32 viridis(double position);
 
+/// The map "RdBu" from blue at 0 over white at 0.5 to red at 1, for values of both signs.
+/// Source: C. Brewer, ColorBrewer (Apache License 2.0), linear between its eleven colours.
+ImU32 diverging(double position);
+
 /// Style of a curve: colour is never the only distinction.
 struct CurveStyle {
   ImU32 colour;

@@ -53,11 +53,12 @@ std::string set_theta_max(View& view, const std::string& text) {
   return {};
 }
 
-/// A bar with a button to cancel, or the result of a task.
-void draw_task(const char* name, BackgroundTask& task) {
+/// A bar with a button to cancel, whose area is "cancel NAME", or the result of a task.
+void draw_task(const char* name, BackgroundTask& task, std::map<std::string, Area>& areas) {
   ImGui::PushID(name);
   if (task.is_running()) {
     if (ImGui::Button("Cancel")) task.cancel();
+    areas[std::string("cancel ") + name] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
     ImGui::SameLine();
     ImGui::ProgressBar(static_cast<float>(task.progress()), {-1.0F, 0.0F});
   } else if (task.state() != BackgroundTask::State::kNone) {
@@ -169,7 +170,7 @@ void Ui::draw_help() {
     for (const char* hint :
          {"Drag in the curve: moves θ. Drag in the map: moves what its axes are of, and the curve follows.",
           "Wheel in the curve: zooms (Shift: along θ, Alt: along the values). Right button: moves it. Double click: "
-          "all.",
+          "all. On the numbers of an axis: its ends.",
           "Click in the legend: hides or shows a curve. Right click on a pin: its name.",
           "Ctrl-click on a slider: back to the value of the scene as opened. Type any allowed value beside it.",
           "Rest the mouse on a control: its meaning, equation and range. Drop a scene, a session or measured points on "
@@ -219,12 +220,15 @@ void Ui::draw_view_controls() {
 
 void Ui::draw_map_axes(View& view, bool& is_changed) {
   label("   map over");
+  const auto label_of = [&](Axis axis) {
+    return shown(MapAxis{.axis = axis, .is_wind = has_wind(session_.scene())}.label());
+  };
   Axis* const axes[] = {&view.map_x, &view.map_y};
   for (int i = 0; i < 2; ++i) {
-    ImGui::SetNextItemWidth(4.5F * ImGui::GetFontSize());
-    if (ImGui::BeginCombo(i == 0 ? "##map x" : "##map y", shown(axis_label(*axes[i])).c_str())) {
+    ImGui::SetNextItemWidth(5.5F * ImGui::GetFontSize());
+    if (ImGui::BeginCombo(i == 0 ? "##map x" : "##map y", label_of(*axes[i]).c_str())) {
       for (const Axis axis : kMapAxes) {
-        if (!ImGui::Selectable(shown(axis_label(axis)).c_str(), axis == *axes[i])) continue;
+        if (!ImGui::Selectable(label_of(axis).c_str(), axis == *axes[i])) continue;
         // The two axes swap if the other one is this.
         if (*axes[1 - i] == axis) *axes[1 - i] = *axes[i];
         *axes[i] = axis;
@@ -250,7 +254,7 @@ void Ui::draw_fit() {
   if (task.state() == BackgroundTask::State::kDone && !session_.fit()) {
     coloured_text(kDimColour, "The scene is no longer that of the fit.");
   } else {
-    draw_task("fit", task);
+    draw_task("fit", task, areas_);
   }
 }
 
@@ -298,11 +302,11 @@ void Ui::draw_price() {
   ImGui::BeginDisabled(!session_.curve().is_finished() || actions_.true_error_task().is_running());
   if (ImGui::Button("True error (Ctrl+K)")) actions_.find_true_error();
   ImGui::EndDisabled();
-  draw_task("reference", actions_.true_error_task());
+  draw_task("reference", actions_.true_error_task(), areas_);
   if (actions_.is_true_error_old()) coloured_text(kDimColour, "The true error is that of the scene before.");
   if (actions_.table_task().state() != BackgroundTask::State::kNone) {
     label("table");
-    draw_task("table", actions_.table_task());
+    draw_task("table", actions_.table_task(), areas_);
   }
   if (!is_narrow_) draw_message();
 }
@@ -352,6 +356,7 @@ void Ui::draw_panel(ImVec2 size) {
   if (panel == Panel::kScattering) scattering_view_.draw(session_, size);
   if (panel == Panel::kShapes) shape_view_.draw(session_, size);
   if (panel == Panel::kSky) draw_sky(session_, size);
+  if (panel == Panel::kFit) draw_fit_result(session_, areas_);
 }
 
 void Ui::draw_one_page() {
@@ -373,6 +378,10 @@ Area Ui::area(const std::string& name) const {
 }
 
 void Ui::copy_command() {
+  if (session_.has_own_sky()) {
+    session_.tell("save the scene first: the command names its sky, which has no file yet", true);
+    return;
+  }
   const std::string command = table_command(session_.edits());
   ImGui::SetClipboardText(command.c_str());
   session_.tell("copied: " + command);

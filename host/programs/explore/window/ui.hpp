@@ -26,6 +26,7 @@ class Ui {
   /// of "recent PATH" or of an entry of the list of files. Errors: std::out_of_range when it was not drawn.
   Area area(const std::string& name) const;
   const CurveView& curves() const { return curve_view_; }
+  const MapView& map() const { return map_view_; }
 
  private:
   /// A menu entry with its shortcut: Ctrl, Shift or not, and a key.

@@ -3,9 +3,12 @@
 
 #include <imgui.h>
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "explore/session.hpp"
+#include "explore/window/axis_editor.hpp"
 #include "explore/window/plot.hpp"
 
 namespace dolp::explore {
@@ -19,11 +22,15 @@ class CurveView {
   const Area& area() const { return area_; }
   const Scale& x() const { return x_; }
   const Scale& y() const { return y_; }
+  const AxisEditor& axis_editor() const { return axis_editor_; }
 
  private:
+  void edit_axes(Session& session, const Plot& plot, const std::string& values);
+
   Area area_;
   Scale x_, y_;
   Zoom zoom_;
+  AxisEditor axis_editor_;
   Plotted quantity_ = Plotted::kDolp;
 };
 
@@ -60,11 +67,17 @@ class ShapeView {
   double azimuth_deg_ = 30.0;  ///< to which the plate is tilted, from the image's horizontal
 };
 
+/// Fills the current ImGui window with the minima of the last fit, which a click visits, its intervals, and the words
+/// of `dolp fit`. `areas` gets "minimum N" of each, from 1.
+void draw_fit_result(Session& session, std::map<std::string, Area>& areas);
+
 /// DOLP of a bistatic scene over the direction of the source, as a polar map.
 void draw_sky(const Session& session, ImVec2 size);
 
 class MapView {
  public:
+  const Scale& colours() const { return colour_scale_; }
+  const Area& area() const { return area_; }
   /// Fills `size` of the current ImGui window with map, contour lines, colour bar and cursor; a click or drag moves the
   /// cursor, which the scene follows.
   void draw(Session& session, ImVec2 size);
@@ -82,6 +95,10 @@ class MapView {
     std::vector<Segment> segments;
   };
   void update(const Session& session);
+  /// The values of the first colour and the last.
+  Scale colour_range(const Session& session) const;
+  ImU32 colour(double position) const;
+  void edit_axes(Session& session, const Plot& plot);
   double colour_position(double value) const;
   std::vector<Run> runs_along(bool rows) const;
   void draw_cells(const Plot& plot) const;
@@ -93,10 +110,13 @@ class MapView {
   Plotted quantity_ = Plotted::kDolp;
   bool is_log_ = false;
   Scale colour_scale_;  ///< from the first colour to the last; empty where all values are equal
+  std::optional<Scale> typed_colours_;
+  AxisEditor axis_editor_;
   MapField field_;
   std::vector<ImU32> colours_;
   std::vector<Run> runs_;
   std::vector<Line> lines_;
+  Area area_;
 };
 
 }  // namespace dolp::explore

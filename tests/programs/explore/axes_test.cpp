@@ -1,0 +1,140 @@
+// Axes whose ends are typed, logarithmic ones, and the colours of the map.
+#include <gtest/gtest.h>
+
+#include "explore/window/style.hpp"
+#include "explore_support.hpp"
+#include "window_support.hpp"
+
+namespace dolp::explore {
+namespace {
+
+TEST(Scale, WithLog_BeginsAboveZero) {
+  EXPECT_EQ((Scale{0.0, 90.0}.with_log(true)), (Scale{0.5, 90.0, true}));
+  EXPECT_EQ((Scale{2.0, 50.0}.with_log(true)), (Scale{2.0, 50.0, true}));
+  EXPECT_EQ((Scale{2.0, 50.0, true}.with_log(false)), (Scale{2.0, 50.0}));
+}
+
+TEST(Colours, DivergingOnes_AreBlueWhiteAndRed) {
+  for (const auto& [position, colour] : {std::pair{0.0, IM_COL32(5, 48, 97, 255)},
+                                         {0.5, IM_COL32(247, 247, 247, 255)},
+                                         {1.0, IM_COL32(103, 0, 31, 255)},
+                                         {-1.0, IM_COL32(5, 48, 97, 255)}}) {
+    EXPECT_EQ(diverging(position), colour) << position;
+  }
+}
+
+struct RangeCase {
+  MapAxis axis;
+  Scale range;
+  bool is_refused;
+};
+
+TEST(ExploreSession, TypedRangeOfTheMap_IsWhatTheSceneTakes) {
+  Session session(paint({"surface.masking=smith"}));
+  for (const auto& [axis, range, is_refused] : {RangeCase{{Axis::kTheta}, {20.0, 70.0}, false},
+                                                {{Axis::kTheta}, {20.0, 95.0}, true},
+                                                {{Axis::kSigma}, {0.0, 0.3}, false},
+                                                {{Axis::kSigma}, {0.1, 11.0}, true},
+                                                {{Axis::kQ}, {2.0, 8.0, true}, false},
+                                                {{Axis::kQ}, {1.2, 8.0, true}, true}}) {
+    EXPECT_EQ(!session.refusal(axis, range).empty(), is_refused) << axis.label() << ' ' << range.from;
+    View view = session.view();
+    view.map_x = axis.axis;
+    view.map_y = axis.axis == Axis::kTheta ? Axis::kSigma : Axis::kTheta;
+    view.map_ranges = {{axis.label(), range}};
+    session.set_view(view);
+    EXPECT_EQ(session.map().x().scale == range, !is_refused) << axis.label() << ' ' << range.from;
+  }
+}
+
+}  // namespace
+}  // namespace dolp::explore
+
+namespace {
+
+using namespace dolp;
+using namespace dolp::explore_test;
+using explore::Scale;
+
+class Axes : public Window {
+ protected:
+  void double_click(ImVec2 at) {
+    move_to(at);
+    xdotool({"click", "--repeat", "2", "--delay", "20", "1"});
+    frames(2 * kFrames);
+  }
+  void type(const std::string& text, const std::string& end) {
+    xdotool({"type", "--delay", "12", "--", text});
+    frames();
+    keys(end);
+    app_->settle();
+    frames();
+  }
+  ImVec2 below(const Area& plot) const {
+    const ImVec2 at = plot.at(0.5F, 1.0F);
+    return {at.x, at.y + ImGui::GetTextLineHeight()};
+  }
+  ImVec2 beside(const Area& plot) const {
+    const ImVec2 at = plot.at(0.0F, 0.5F);
+    return {at.x - ImGui::GetTextLineHeight(), at.y};
+  }
+};
+
+TEST_F(Axes, NumbersDoubleClicked_TakeTheEndsThatAreTyped) {
+  const explore::CurveView& curves = app_->curve_view();
+  double_click(below(curves.area()));
+  type("20", "Tab");
+  type("70", "Return");
+  EXPECT_EQ(curves.x(), (Scale{20.0, 70.0}));
+  double_click(below(curves.area()));
+  keys("Tab");
+  type("95", "Return");
+  EXPECT_EQ(curves.x(), (Scale{20.0, 70.0}));
+  double_click(beside(curves.area()));
+  type("1", "Tab");
+  type("4", "Return");
+  EXPECT_EQ(curves.y(), (Scale{1.0, 4.0}));
+}
+
+TEST_F(Axes, RangeOfTheMap_IsComputedAnew_AndARefusedEndGoesWithTheOther) {
+  double_click(beside(app_->map_view().area()));
+  type("2.5", "Tab");  // above the other end
+  EXPECT_NE(app_->session().map().y().scale.from, 2.5);
+  type("3", "Return");
+  EXPECT_EQ(app_->session().map().y().scale, (Scale{2.5, 3.0, true}));
+  EXPECT_TRUE(app_->session().map().is_finished());
+}
+
+TEST_F(Axes, LogarithmOfTheZenith_BeginsAtHalfADegree) {
+  const explore::CurveView& curves = app_->curve_view();
+  double_click(below(curves.area()));
+  click(curves.axis_editor().log_box().at(0.1F, 0.5F));
+  EXPECT_TRUE(app_->session().view().is_theta_log);
+  EXPECT_EQ(curves.x(), (Scale{0.5, 90.0, true}));
+}
+
+TEST_F(Axes, Colours_AreTyped_AndStayWhileASliderIsDragged) {
+  const explore::MapView& map = app_->map_view();
+  explore::View view = app_->session().view();
+  view.quantity = explore::Plotted::kSignedDolp;
+  app_->session().set_view(view);
+  app_->settle();
+  const Scale before = map.colours();
+  EXPECT_EQ(before.from, -before.to);
+  const Area area = app_->control_area("surface.n");
+  move_to(area.at(0.3F, 0.5F));
+  press("mousedown");
+  move_to(area.at(0.5F, 0.5F));
+  app_->settle();
+  EXPECT_EQ(map.colours(), before);
+  press("mouseup");
+  app_->settle();
+  EXPECT_NE(map.colours(), before);
+  const ImVec2 right = map.area().at(1.0F, 0.5F);
+  double_click({right.x + 3.0F * ImGui::GetTextLineHeight(), right.y});
+  type("-8", "Tab");
+  type("8", "Return");
+  EXPECT_EQ(map.colours(), (Scale{-0.08, 0.08}));
+}
+
+}  // namespace

@@ -1,0 +1,144 @@
+// Fits in the window: the minimum that is chosen, the others, and what is said of them.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "explore_support.hpp"
+#include "temporary_file.hpp"
+#include "window_support.hpp"
+
+namespace dolp::explore {
+namespace {
+
+struct NearestCase {
+  double n, k;  ///< where the fit begins
+  std::size_t nearest;
+};
+
+TEST(NearestMinimum, IsThatByTheCoordinatesOfTheRanges) {
+  Fit fit{{}, true, paint().scene()};
+  fit.minima = {{{1.5, 2.37}, 4.0}, {{1.5, 0.22}, 5.0}, {{9.0, 0.22}, 80.0}};
+  for (const auto& [n, k, nearest] :
+       {NearestCase{1.5, 0.1, 1}, {1.5, 0.7, 1}, {1.5, 0.8, 0}, {1.4, 40.0, 0}, {8.0, 0.1, 2}}) {
+    const FitJob job{paint().scene(), {}, {{"surface.n", 1.0, 40.0, n}, {"surface.k", 0.001, 100.0, k}}};
+    EXPECT_EQ(nearest_minimum(fit, job), nearest) << n << ' ' << k;
+  }
+}
+
+TEST(ExploreSession, Minimum_IsVisitedInTheSceneThatWasFitted) {
+  Session session(paint());
+  const TemporaryFile file(".csv", "theta_deg,dolp\n60,0.05\n70,0.06\n");
+  session.load_measured(file.path());
+  session.mark("surface.k", true);
+  const FitJob job = session.fit_job().value();
+  Fit fit{{}, true, job.scene, {{.key = "surface.k", .value = 2.0}}};
+  fit.minima = {{{2.0}, 4.0}, {{0.2}, 5.0}};
+  EXPECT_EQ(session.take_fit(fit, job), 1U);
+  EXPECT_EQ(session.view().panel, Panel::kFit);
+  EXPECT_EQ(session.scene().number("surface.k"), 0.2);
+  EXPECT_EQ(session.minimum(), 1U);
+  EXPECT_NE(fit_text(fit, 1).find("of 2 minima the nearest to the start, the lowest has χ² 4"), std::string::npos);
+  session.set("surface.sigma", 0.4);
+  EXPECT_FALSE(session.minimum());
+  session.hold(false);
+  session.visit_minimum(0);
+  EXPECT_EQ(session.scene().number("surface.sigma"), 0.15);
+  EXPECT_EQ(session.scene().number("surface.k"), 2.0);
+  EXPECT_EQ(session.minimum(), 0U);
+  session.undo();
+  EXPECT_EQ(session.scene().number("surface.sigma"), 0.4);
+}
+
+TEST(ExploreSession, Fit_OfK_RunsAlongItsLogarithm_FromZeroToo) {
+  for (const double k : {0.0, 0.22, 200.0}) {
+    Session session(paint());
+    const TemporaryFile file(".csv", "theta_deg,dolp\n60,0.05\n70,0.06\n");
+    session.load_measured(file.path());
+    session.set("surface.k", k);
+    session.mark("surface.k", true);
+    const FitRange range = session.fit_job().value().vary.front();
+    EXPECT_TRUE(range.is_logarithmic());
+    EXPECT_EQ(range.low, 0.001);
+    EXPECT_EQ(range.high, std::max(k, 100.0));
+    EXPECT_EQ(range.start, std::max(k, 0.001));
+  }
+}
+
+TEST(FitText, Interval_HasItsEnds) {
+  EXPECT_EQ(interval_text({.low = 1.25}), "1.25 to open");
+  EXPECT_EQ(interval_text({.low = 0.1, .high = 3.0, .pieces = {{0.1, 0.2}, {2.0, 3.0}}}), "0.1 to 3");
+}
+
+}  // namespace
+}  // namespace dolp::explore
+
+namespace {
+
+using namespace dolp;
+using namespace dolp::explore_test;
+
+class FitWindow : public Window {
+ protected:
+  /// Loads DOLP of the scene with another value of a key, as if measured.
+  void measure(const std::string& setting) {
+    put("points.csv", "theta_deg\n20\n30\n40\n50\n60\n70\n80\n");
+    std::string csv = "theta_deg,dolp,uncertainty\n";
+    const Columns truth = eval({"--set", setting, "--tolerance", "1e-5"});
+    for (std::size_t i = 0; i < truth.at("dolp").size(); ++i) {
+      csv += fmt::format("{},{},0.002\n", truth.at("theta_deg")[i], truth.at("dolp")[i]);
+    }
+    put("measured.csv", csv);
+    app_->session().load_measured(at("measured.csv").string());
+    app_->settle();
+    frames();
+  }
+  void fit() {
+    keys("ctrl+f");
+    app_->settle();
+    frames();
+  }
+  double number(const std::string& key) const { return app_->session().scene().number(key).value(); }
+};
+
+TEST_F(FitWindow, MarkedSlider_IsMovedAndShowsTheInterval) {
+  measure("surface.sigma=0.3");
+  click_control("vary surface.sigma");
+  ASSERT_TRUE(app_->session().varies("surface.sigma"));
+  fit();
+  EXPECT_NEAR(number("surface.sigma"), 0.3, 2e-3);
+  ASSERT_NE(app_->session().fitted("surface.sigma"), nullptr);
+  EXPECT_LT(*app_->session().fitted("surface.sigma")->interval_68.low, 0.3);
+}
+
+TEST_F(FitWindow, NearestMinimum_IsChosen_AndAClickVisitsTheLowest) {
+  measure("surface.k=0.22");
+  click_control("vary surface.k");
+  fit();
+  EXPECT_NEAR(number("surface.k"), 0.22, 0.02);
+  const std::vector<FitMinimum> minima = app_->session().last_fit()->minima;
+  ASSERT_GE(minima.size(), 2U);
+  const double other = minima[1].values[0];
+  app_->session().set("surface.k", 1.02 * other);
+  fit();
+  EXPECT_NEAR(number("surface.k"), other, 0.01 * other);
+  ASSERT_NE(app_->session().minimum(), 0U);
+  click_control("minimum 1");
+  app_->settle();
+  EXPECT_NEAR(number("surface.k"), 0.22, 0.02);
+  EXPECT_EQ(app_->session().minimum(), 0U);
+}
+
+TEST_F(FitWindow, CancelClicked_EndsTheFitAndLeavesTheScene) {
+  measure("surface.k=0.22");
+  for (const char* key : {"surface.n", "surface.k", "surface.sigma", "surface.q"}) {
+    click_control(std::string("vary ") + key);
+  }
+  keys("ctrl+f");
+  click_control("cancel fit");
+  app_->settle();
+  EXPECT_FALSE(app_->session().last_fit());
+  EXPECT_FALSE(app_->session().edits().is_changed());
+}
+
+}  // namespace

@@ -1,0 +1,141 @@
+// Skies between two temperatures: their files, the scene that is saved with them, and the editor of the window.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "base/text.hpp"
+#include "explore/sky_pair.hpp"
+#include "explore/window/actions.hpp"
+#include "explore_support.hpp"
+#include "temporary_file.hpp"
+#include "window_support.hpp"
+
+namespace dolp::explore {
+namespace {
+
+constexpr SkyPair kDusk{231.5, 279.0};
+
+TEST(SkyPair, FilesOfTwoRowsAlone_AreRead) {
+  struct Case {
+    std::string csv;
+    std::optional<SkyPair> sky;
+  };
+  for (const auto& [csv, sky] : {Case{kDusk.csv(), kDusk},
+                                 {"zenith_deg,temperature_K\n0,220\n45,250\n90,285\n", std::nullopt},
+                                 {"zenith_deg,temperature_K\n0,220\n80,285\n", std::nullopt},
+                                 {"zenith_deg,radiance\n0,2\n90,8\n", std::nullopt},
+                                 {"wavelength_um,zenith_deg,temperature_K\n8,0,220\n8,90,285\n", std::nullopt}}) {
+    EXPECT_EQ(read_sky_pair(TemporaryFile("sky.csv", csv).path()), sky) << csv;
+  }
+}
+
+TEST(SkyPair, Scene_WithIt_IsThatOfItsCsv) {
+  Driver driver(paint());
+  driver.session.set("surroundings.profile", driver.session.skies().path(kDusk));
+  driver.settle();
+  const TemporaryFile file("sky.csv", "zenith_deg,temperature_K\n0,231.5\n90,279\n");
+  const Scene scene = paint({"surroundings.profile=" + file.path()}).scene();
+  expect_same(driver.session.curve().points(), truth(scene, driver.session.curve().points()));
+  EXPECT_NE(driver.session.scene().toml(), paint().scene().toml());
+  driver.session.undo();
+  EXPECT_EQ(driver.session.scene().number("surroundings.temperature_K"), 240.0);
+}
+
+TEST(SkyPair, SavedScene_HasItsSkyBesideIt_AndReadsBackAsTheSame) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "scenes");
+  std::filesystem::create_directories(folder.path() / "saved");
+  const std::string opened = (folder.path() / "scenes" / "paint.toml").string();
+  const std::string saved = (folder.path() / "saved" / "dusk.toml").string();
+  Session session(SceneEdits(Scene::from_text(kPaint, {}, opened)));
+  Actions actions(session, "", "", {}, [] {});
+  session.set("surroundings.profile", session.skies().path(kDusk));
+  EXPECT_TRUE(session.has_own_sky());
+  actions.save_scene(saved);
+  EXPECT_FALSE(session.message().is_error) << session.message().text;
+  EXPECT_FALSE(session.has_own_sky() || session.edits().is_changed());
+  EXPECT_EQ(read_file(folder.path() / "saved" / "dusk_sky.csv"), kDusk.csv());
+  EXPECT_NE(read_file(saved).find("profile = 'dusk_sky.csv'"), std::string::npos) << read_file(saved);
+  const Scene again = Scene::from_file(saved);
+  EXPECT_EQ(read_sky_pair(sky_file(again)), kDusk);
+  const PointList list = points_at(again, {0.0, 40.0, 75.0});
+  expect_same(truth(again, list), truth(session.scene(), list));
+}
+
+}  // namespace
+}  // namespace dolp::explore
+
+namespace {
+
+using namespace dolp;
+using namespace dolp::explore_test;
+
+TEST_F(Window, SkyEditor_GivesASkyBetweenTwoTemperatures_WhichTheSavedSceneKeeps) {
+  const explore::Session& session = app_->session();
+  const auto sky = [&] { return explore::read_sky_pair(explore::sky_file(session.scene())); };
+  click_control("sky");
+  click(app_->control_area("sky").at(0.5F, 4.3F));  // the fourth of the list
+  app_->settle();
+  frames();
+  ASSERT_EQ(sky(), explore::SkyPair());
+  drag_slider("sky zenith", kPartOfSlider);
+  frames();
+  ASSERT_TRUE(sky());
+  EXPECT_NEAR(sky()->zenith_K, 150.0 + 200.0 * static_cast<double>(kPartOfSlider), 200.0 * kGrab);
+  const double zenith_K = sky()->zenith_K;
+  for (const auto& [typed, is_good] : {std::pair{"-3", false}, {"288.5", true}}) {
+    click_control("field sky horizon");
+    keys("ctrl+a");
+    xdotool({"type", "--delay", "12", "--", typed});
+    keys("Return");
+    EXPECT_EQ(is_marked("field sky horizon"), !is_good);
+    EXPECT_EQ(*sky(), (explore::SkyPair{zenith_K, is_good ? 288.5 : explore::SkyPair().horizon_K}));
+  }
+  keys("ctrl+shift+c");
+  EXPECT_TRUE(session.message().text.starts_with("save the scene first")) << session.message().text;
+  keys("ctrl+s");
+  keys("Return");
+  frames();
+  EXPECT_EQ(content("made_scene_sky.csv"), fmt::format("zenith_deg,temperature_K\n0,{}\n90,288.5\n", zenith_K));
+  EXPECT_EQ(dolp({"plan", "made_scene.toml"}).status, 0);
+  keys("ctrl+shift+c");
+  EXPECT_TRUE(session.message().text.starts_with("copied")) << session.message().text;
+  xdotool({"keydown", "ctrl"});
+  frames();
+  click(app_->control_area("sky zenith").at(0.1F, 0.5F));
+  xdotool({"keyup", "ctrl"});
+  frames();
+  EXPECT_EQ(session.scene().number("surroundings.temperature_K"), 240.0);
+}
+
+TEST_F(Window, SkyList_FileOfTheSceneAsOpened_StaysAmongTheChoices) {
+  put("sky.csv", "zenith_deg,temperature_K\n0,220\n70,240\n90,285\n");
+  open({{"surroundings.profile", "sky.csv"}});
+  const auto profile = [&] { return app_->session().scene().word("surroundings.profile"); };
+  for (const auto& [place, expected] : {std::pair{3.4F, "overcast"}, {5.2F, "sky.csv"}}) {
+    click_control("sky");
+    click(app_->control_area("sky").at(0.5F, place));
+    app_->settle();
+    frames();
+    EXPECT_EQ(profile(), expected);
+  }
+  keys("ctrl+s");
+  keys("Return");
+  EXPECT_NE(content("made_scene.toml").find("profile = 'sky.csv'"), std::string::npos) << content("made_scene.toml");
+}
+
+TEST_F(Window, SkyList_UniformAndBuiltInOnes_AreAWordEach) {
+  struct Case {
+    float place;
+    std::string setting;
+  };
+  for (const auto& [place, setting] : {Case{2.5F, "clear-sky"}, {3.4F, "overcast"}, {1.6F, ""}}) {
+    click_control("sky");
+    click(app_->control_area("sky").at(0.5F, place));
+    app_->settle();
+    frames();
+    EXPECT_EQ(app_->session().scene().word("surroundings.profile").value_or(""), setting);
+  }
+  EXPECT_EQ(app_->session().scene().number("surroundings.temperature_K"), 250.0);
+}
+
+}  // namespace

@@ -1,4 +1,4 @@
-// What the window keeps from one start to the next.
+// Settings of the window that outlive it.
 #pragma once
 
 #include <filesystem>

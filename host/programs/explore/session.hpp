@@ -55,7 +55,7 @@ struct Message {
   bool is_error = false;
 };
 
-/// What a file of a session holds.
+/// The content of a session file.
 struct SavedSession {
   struct SavedPin {
     std::string name;

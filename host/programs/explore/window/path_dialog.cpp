@@ -103,7 +103,7 @@ void PathDialog::draw() {
     enter(fs::absolute(path()).lexically_normal());
     name_.clear();
   }
-  // What cannot be accepted stays, to be mended.
+  // A name that cannot be accepted stays, to be mended.
   wants_focus_ = is_accepted && (is_folder || is_missing);
   is_accepted = is_accepted && !wants_focus_ && !name_.empty();
   if (is_accepted || is_cancelled) ImGui::CloseCurrentPopup();

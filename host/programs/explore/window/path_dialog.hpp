@@ -31,7 +31,7 @@ class PathDialog {
   void enter(const std::filesystem::path& folder);
   /// True where a file that was chosen before is chosen again.
   bool draw_list();
-  /// What is typed, in the folder unless it says another.
+  /// The file whose name is typed, in the folder unless the name has one of its own.
   std::filesystem::path path() const { return folder_ / name_; }
 
   Request request_;

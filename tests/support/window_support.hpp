@@ -60,6 +60,7 @@ class Window : public CommandLine {
     explore::AppOptions options;
     options.file_name = at("made").string();
     options.command_line = "dolp explore";
+    options.preferences = at("config/dolp/window.toml");
     const auto scene = Scene::from_file(at("scene.toml"), settings);
     app_ = std::make_unique<App>(explore::SceneEdits(scene), options);
     app_->settle();

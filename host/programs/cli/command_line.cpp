@@ -36,7 +36,8 @@ void add_scene(CLI::App& command, Options& options) {
 }
 
 void add_explore(CLI::App& command, Options& options) {
-  command.add_option("SCENE", options.scene_path, "scene file (TOML); - is stdin; without it, stainless steel");
+  command.add_option("SCENE", options.scene_path,
+                     "scene, or session of the window (TOML); - is stdin; without it, stainless steel");
   add_overrides(command, options);
   command.add_option("--device", options.device, "Vulkan device: its position or a part of its name");
   command.add_option("--measured", options.measured_path, "CSV of measured points with the columns theta_deg, dolp");

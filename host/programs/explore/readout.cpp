@@ -45,6 +45,16 @@ std::vector<Part> radiating_parts(const Session& session) {
   return parts;
 }
 
+/// The point at the peak without an effect; null where there is none.
+const Point* point_without(const Session& session, const std::string& effect) {
+  if (!session.peak().answer()) return nullptr;
+  const std::vector<WithoutEffect>& all = session.peak().without();
+  const auto away = std::ranges::find(all, effect, &WithoutEffect::effect);
+  return away == all.end() || !away->result ? nullptr : &*away->result;
+}
+
+bool has_q_over_i(const Point& point) { return point.is_good() && std::isfinite(point.q_over_i()); }
+
 }  // namespace
 
 std::string peak_text(const Session& session) {
@@ -110,14 +120,22 @@ std::string cursor_text(const Session& session) {
 }
 
 std::string without_text(const Session& session, const std::string& effect) {
-  const std::optional<PeakAnswer>& peak = session.peak().answer();
-  if (!peak) return {};
-  const std::vector<WithoutEffect>& all = session.peak().without();
-  const auto away = std::ranges::find(all, effect, &WithoutEffect::effect);
-  if (away == all.end() || !away->result) return {};
-  const double q_over_i = away->result->q_over_i();
-  if (!away->result->is_good() || !std::isfinite(q_over_i)) return "the model fails";
-  return fmt::format("{:+.2f} → {:+.2f} %", kPercent * (q_over_i - peak->at.q_over_i()), kPercent * q_over_i);
+  const Point* const without = point_without(session, effect);
+  if (!without) return {};
+  if (!has_q_over_i(*without)) return "the model fails";
+  const double with = session.peak().answer()->at.q_over_i();
+  return fmt::format("{:+.2f} → {:+.2f} %", kPercent * with, kPercent * without->q_over_i());
+}
+
+std::string without_words(const Session& session, const std::string& effect) {
+  const Point* const without = point_without(session, effect);
+  if (!without || !has_q_over_i(*without)) return {};
+  const Point& with = session.peak().answer()->at;
+  return fmt::format(
+      "At the maximum of the curve, θ = {:.2f}°, Q/I is {:+.2f} %. Without {} it is {:+.2f} %, a change of {:+.2f} "
+      "points.",
+      with.theta_deg, kPercent * with.q_over_i(), effect, kPercent * without->q_over_i(),
+      kPercent * (without->q_over_i() - with.q_over_i()));
 }
 
 std::string table_command(const SceneEdits& edits) {

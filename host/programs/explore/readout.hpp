@@ -17,8 +17,11 @@ std::string cause_text(const Session& session);
 /// The values under the cursor.
 std::string cursor_text(const Session& session);
 
-/// The influence of one effect at the peak: "Q/I +3.61 without it"; empty where it is unknown.
+/// Q/I at the peak with all effects and without one, in percent: "-14.36 → -59.59 %"; empty where it is unknown.
 std::string without_text(const Session& session, const std::string& effect);
+
+/// The same in a sentence; empty also where the model fails without the effect.
+std::string without_words(const Session& session, const std::string& effect);
 
 /// The command that writes the table of a scene, for a shell.
 std::string table_command(const SceneEdits& edits);

@@ -68,6 +68,16 @@ std::vector<Setting> all_choices(const Scene& scene) {
 SceneEdits::SceneEdits(const Scene& opened)
     : given_(opened.settings()), saved_(given_), changes_(opened.settings()), opened_(opened), scene_(opened) {}
 
+bool SceneEdits::is_same_file(const SceneEdits& other) const {
+  return opened_.name() == other.opened_.name() && opened_.text() == other.opened_.text() && given_ == other.given_;
+}
+
+void SceneEdits::go_to(const SceneEdits& other) {
+  std::vector<Setting> saved = is_same_file(other) ? saved_ : other.saved_;
+  *this = other;
+  saved_ = std::move(saved);
+}
+
 void SceneEdits::become(std::vector<Setting> changes) {
   scene_ = Scene::from_text(opened_.text(), changes, opened_.name());
   changes_ = std::move(changes);

@@ -11,6 +11,8 @@ namespace dolp::explore {
 class SceneEdits {
  public:
   explicit SceneEdits(const Scene& opened);
+  /// The same with changes. Errors: InputError, as set.
+  SceneEdits(const Scene& opened, std::vector<Setting> changes) : SceneEdits(opened) { become(std::move(changes)); }
 
   /// Changes keys together; setting an effect's table to no value removes the effect, any key of it brings it back.
   /// Alternatives of a key (n and k, material, material file) are removed.
@@ -27,14 +29,17 @@ class SceneEdits {
   bool is_changed() const { return changes_ != saved_; }
   /// The scene as it is now counts as unchanged.
   void note_saved() { saved_ = changes_; }
-  /// Goes to earlier changes. Errors: InputError, as set.
-  void restore(std::vector<Setting> changes) { become(std::move(changes)); }
+  /// Goes to another state, of this file or of another; what was saved of this one stays known.
+  void go_to(const SceneEdits& other);
+  /// True where both are the same changes of the same file.
+  bool is_same_scene(const SceneEdits& other) const { return is_same_file(other) && changes_ == other.changes_; }
   /// All changes.
   const std::vector<Setting>& changes() const { return changes_; }
   /// The same without some keys.
   std::vector<Setting> changes_without(const std::vector<std::string>& keys) const;
 
  private:
+  bool is_same_file(const SceneEdits& other) const;
   void become(std::vector<Setting> changes);
 
   std::vector<Setting> given_;  ///< of the command line

@@ -12,8 +12,9 @@
 namespace dolp::explore {
 namespace {
 
-std::string content_key(const std::vector<Setting>& changes, bool keep_all) {
-  std::string key = keep_all ? "all" : "plan";
+/// Identifies results of a scene's file with changes.
+std::string content_key(const Scene& scene, const std::vector<Setting>& changes, bool keep_all) {
+  std::string key = (keep_all ? "all " : "plan ") + scene.name() + '\n' + scene.text();
   for (const Setting& change : changes) key += '\n' + change.text();
   return key;
 }
@@ -84,13 +85,13 @@ Session::Session(SceneEdits edits)
 template <class Command>
 void Session::attempt(const Command& command) {
   message_ = {};
-  const Changes before = edits_.changes();
+  const SceneEdits before = edits_;
   try {
     command();
   } catch (const InputError& error) {
     tell(error.what(), true);
   }
-  if (edits_.changes() != before) {
+  if (!edits_.is_same_scene(before)) {
     if (!is_in_gesture_) done_.push_back(before);
     undone_.clear();
     is_in_gesture_ = true;
@@ -110,19 +111,26 @@ const char* Session::remark(const Curve& curve) const {
   return curve.points().empty() || (curve.is_finished() && !is_dragged()) ? "" : ", coarse";
 }
 
-void Session::step(std::vector<Changes>& from, std::vector<Changes>& to, const char* nothing) {
+void Session::step(std::vector<SceneEdits>& from, std::vector<SceneEdits>& to, const char* nothing) {
   message_ = {};
   is_in_gesture_ = false;
   if (from.empty()) return tell(nothing);
-  Changes now = edits_.changes();
-  try {
-    edits_.restore(from.back());
-    from.pop_back();
-    to.push_back(std::move(now));
-  } catch (const InputError& error) {
-    tell(error.what(), true);  // a file that the scene names is gone
-  }
+  to.push_back(edits_);
+  edits_.go_to(from.back());
+  from.pop_back();
   follow();
+}
+
+void Session::go_to(const SceneEdits& edits) {
+  attempt([&] { edits_.go_to(edits); });
+}
+
+void Session::take_snapshot() {
+  snapshots_.push_back({fmt::format("{}: {}", snapshots_.size() + 1, surface_name(scene())), edits_});
+}
+
+void Session::remove_snapshot(std::size_t position) {
+  snapshots_.erase(snapshots_.begin() + static_cast<std::ptrdiff_t>(position));
 }
 
 void Session::set(const std::vector<Setting>& changes) {
@@ -206,9 +214,9 @@ void Session::visit_minimum(std::size_t position) {
   attempt([&] {
     SceneEdits visited = *fit_edits_;
     visited.set(values);
-    edits_.restore(visited.changes());
+    edits_.go_to(visited);
     minimum_ = position;
-    fitted_changes_ = edits_.changes();
+    fitted_ = edits_;
   });
 }
 
@@ -216,6 +224,23 @@ const FitParameter* Session::fitted(const std::string& key) const {
   if (!fit()) return nullptr;
   const auto found = std::ranges::find(fit_->parameters, key, &FitParameter::key);
   return found == fit_->parameters.end() ? nullptr : &*found;
+}
+
+void Session::restore(const SavedSession& saved) {
+  go_to(saved.edits);
+  snapshots_ = saved.snapshots;
+  marked_ = {saved.marked.begin(), saved.marked.end()};
+  residuals_.clear();
+  if (saved.measured) attempt([&] { residuals_.load(*saved.measured); });
+  pins_.clear();
+  view_ = saved.view;
+  for (const SavedSession::SavedPin& pin : saved.pins) {
+    Curve curve(pin.scene);
+    curve.follow(content_key(pin.scene, pin.scene.settings(), keeps_all()), pin.scene, keeps_all());
+    pins_.push_back({pin.name, pins_.size(), pin.is_visible, std::move(curve)});
+  }
+  theta_deg_ = saved.theta_deg;
+  set_view(saved.view);
 }
 
 void Session::pin() {
@@ -275,13 +300,13 @@ const Point* Session::at_cursor() const {
 }
 
 void Session::follow() {
-  const bool keep_all = view_.keeps_all || described(view_.quantity).needs_rho;
-  const std::string content = content_key(edits_.changes(), keep_all);
+  const bool keep_all = keeps_all();
+  const std::string content = content_key(scene(), edits_.changes(), keep_all);
   curve_.follow(content, scene(), keep_all);
   residuals_.follow(content, scene());
   follow_overlay(content, keep_all);
   follow_map(keep_all);
-  sky_.follow(content_key(edits_.changes_without({"geometry.relative_azimuth_deg"}), false), scene());
+  sky_.follow(content_key(scene(), edits_.changes_without({"geometry.relative_azimuth_deg"}), false), scene());
   estimate_influences();
   follow_peak();
   is_changed_ = true;
@@ -347,7 +372,7 @@ void Session::follow_map(bool keep_all) {
   if (is_dragged() && map_.is_arriving()) return;  // in a drag it goes from one complete map to the next
   const MapAxis x = map_axis(view_.map_x);
   const MapAxis y = map_axis(view_.map_y);
-  std::string key = content_key(edits_.changes_without({x.key(), y.key()}), keep_all);
+  std::string key = content_key(scene(), edits_.changes_without({x.key(), y.key()}), keep_all);
   if (x.axis != Axis::kTheta && y.axis != Axis::kTheta) key += "\ntheta=" + format_number(theta_deg_);
   for (const MapAxis& axis : {x, y}) {
     key += fmt::format("\n{} {} {} {}", axis.label(), axis.scale.from, axis.scale.to, axis.scale.is_log);

@@ -43,10 +43,32 @@ struct View {
   std::size_t mueller_column = 0;
 };
 
+/// A state of the scene that one can go back to.
+struct Snapshot {
+  std::string name;
+  SceneEdits edits;
+};
+
 /// One line for the user.
 struct Message {
   std::string text;
   bool is_error = false;
+};
+
+/// The content of a session file.
+struct SavedSession {
+  struct SavedPin {
+    std::string name;
+    bool is_visible;
+    Scene scene;
+  };
+  SceneEdits edits;
+  std::vector<SavedPin> pins = {};
+  std::vector<Snapshot> snapshots = {};
+  View view = {};
+  double theta_deg = 60.0;
+  std::optional<MeasuredData> measured = {};
+  std::vector<std::string> marked = {};  ///< keys that vary in a fit
 };
 
 /// State and commands; a Worker computes what it wants. Knows nothing of drawing.
@@ -63,8 +85,15 @@ class Session {
   void set(const std::vector<Setting>& changes);
   void reset(const std::string& key);
   void reset_all();
+  /// Shows another state, or another scene; `undo` goes back.
+  void go_to(const SceneEdits& edits);
+  /// Takes the place of all but what `undo` goes back to.
+  void restore(const SavedSession& saved);
   void undo() { step(done_, undone_, "nothing to undo"); }
   void redo() { step(undone_, done_, "nothing to redo"); }
+  void take_snapshot();
+  void rename_snapshot(std::size_t position, std::string name) { snapshots_[position].name = std::move(name); }
+  void remove_snapshot(std::size_t position);
   /// Changes while a button of the mouse is held down are one for `undo`, and get coarse results alone.
   void hold(bool is_held);
   void note_saved() { edits_.note_saved(); }
@@ -105,10 +134,12 @@ class Session {
   const std::optional<Curve>& overlay() const { return overlay_; }
   std::string overlay_name() const;
   const std::deque<Pin>& pins() const { return pins_; }
+  const std::vector<Snapshot>& snapshots() const { return snapshots_; }
   const HeatMap& map() const { return map_; }
   const Sky& sky() const { return sky_; }
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
+  std::vector<std::string> marked() const { return {marked_.begin(), marked_.end()}; }
   /// Skies whose files go with the session; true where the scene names one of them.
   SkyFiles& skies() { return skies_; }
   bool has_own_sky() const { return skies_.hold(sky_file(scene())); }
@@ -120,7 +151,7 @@ class Session {
   const std::optional<Fit>& last_fit() const { return fit_; }
   std::optional<std::size_t> minimum() const { return fit() ? std::optional(minimum_) : std::nullopt; }
   /// The result of the last fit, and what it says of a number; null once the scene has changed.
-  const Fit* fit() const { return fit_ && fitted_changes_ == edits_.changes() ? &*fit_ : nullptr; }
+  const Fit* fit() const { return fit_ && fitted_->is_same_scene(edits_) ? &*fit_ : nullptr; }
   const FitParameter* fitted(const std::string& key) const;
   const Message& message() const { return message_; }
   /// True while the mouse changes the scene.
@@ -139,11 +170,10 @@ class Session {
   const Point* at_cursor() const;
 
  private:
-  using Changes = std::vector<Setting>;  ///< of the scene as opened
-
   template <class Command>
   void attempt(const Command& command);
-  void step(std::vector<Changes>& from, std::vector<Changes>& to, const char* nothing);
+  void step(std::vector<SceneEdits>& from, std::vector<SceneEdits>& to, const char* nothing);
+  bool keeps_all() const { return view_.keeps_all || described(view_.quantity).needs_rho; }
   void tell_asked(const std::string& chosen, const std::vector<Setting>& asked);
   void follow();
   void follow_overlay(const std::string& content, bool keep_all);
@@ -156,7 +186,8 @@ class Session {
 
   SkyFiles skies_;
   SceneEdits edits_;
-  std::vector<Changes> done_, undone_;  ///< before each gesture; after each that was undone
+  std::vector<SceneEdits> done_, undone_;  ///< before each gesture; after each that was undone
+  std::vector<Snapshot> snapshots_;
   bool is_held_ = false;
   bool is_in_gesture_ = false;
   View view_;
@@ -171,7 +202,7 @@ class Session {
   std::set<std::string> marked_;
   std::optional<Fit> fit_;
   std::optional<SceneEdits> fit_edits_;  ///< the scene that was fitted
-  Changes fitted_changes_;               ///< of it with the minimum that was visited
+  std::optional<SceneEdits> fitted_;     ///< with the minimum that was visited
   std::size_t minimum_ = 0;
   std::vector<Effect> effects_;
   std::pair<std::string, double> influences_of_;  ///< key of the curve, zenith

@@ -223,7 +223,15 @@ TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
   EXPECT_EQ((*named("scattering")->result)[Quantity::kDolp],
             truth(single, points_at(single, {theta_deg}))[0][Quantity::kDolp]);
   EXPECT_EQ(surface_name(scene), "cauchy σ 0.4 q 3, v-cavity, all bounces, n 1.5 k 0.1");
-  EXPECT_NE(without_text(driver.session, "scattering"), "");
+  const double with = 100.0 * driver.session.peak().answer()->at.q_over_i();
+  const double left = 100.0 * named("scattering")->result->q_over_i();
+  EXPECT_EQ(without_text(driver.session, "scattering"), fmt::format("{:+.2f} → {:+.2f} %", with, left));
+  const std::string words = without_words(driver.session, "scattering");
+  EXPECT_NE(
+      words.find(fmt::format("Without scattering it is {:+.2f} %, a change of {:+.2f} points", left, left - with)),
+      std::string::npos)
+      << words;
+  EXPECT_EQ(without_text(driver.session, "masking") + without_words(driver.session, "masking"), "");
 }
 
 /// DOLP of the paint with another sigma and n, as if measured.

@@ -47,7 +47,7 @@ TEST(SkyPair, SavedScene_HasItsSkyBesideIt_AndReadsBackAsTheSame) {
   const std::string opened = (folder.path() / "scenes" / "paint.toml").string();
   const std::string saved = (folder.path() / "saved" / "dusk.toml").string();
   Session session(SceneEdits(Scene::from_text(kPaint, {}, opened)));
-  Actions actions(session, "", "", [] {});
+  Actions actions(session, "", "", {}, [] {});
   session.set("surroundings.profile", session.skies().path(kDusk));
   EXPECT_TRUE(session.has_own_sky());
   actions.save_scene(saved);

@@ -10,6 +10,7 @@
 #include "cli_support.hpp"
 #include "explore/parameters.hpp"
 #include "explore/readout.hpp"
+#include "explore/session_file.hpp"
 #include "explore/window/app.hpp"
 #include "explore/window/style.hpp"
 #include "table/table_file.hpp"
@@ -352,6 +353,18 @@ TEST_F(ExploreCommand, FramesAndScreenshot_WritesAPictureAndTheTimes) {
   EXPECT_NE(outcome.out.find("frames     5 frames"), std::string::npos) << outcome.out;
   EXPECT_TRUE(content("shot.png").starts_with("\x89PNG"));
   EXPECT_GT(content("shot.png").size(), 50'000U);
+}
+
+TEST_F(ExploreCommand, Session_OpensWithItsView_AndABadOneIsOneLine) {
+  explore::Session session(explore::SceneEdits(Scene::from_file(at("scene.toml"))));
+  session.pin();
+  save_session(session, at("session.toml").string());
+  const std::vector<std::string> options = {"--frames", "5", "--screenshot", "shot.png"};
+  const Outcome outcome = dolp(joined({"explore", "session.toml", "--set", "surface.sigma=0.2"}, options));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  expect_refused(dolp({"explore", "session.toml", "--frames", "1", "--set", "surface.sigma=-1"}), "surface.sigma");
+  put("session.toml", "dolp_session = 1\n");
+  expect_refused(dolp({"explore", "session.toml", "--frames", "1"}), "session.toml: scene.file is missing");
 }
 
 TEST_F(ExploreCommand, WrongArguments_AreInputErrors) {

@@ -6,7 +6,10 @@
 #include <utility>
 
 #include "base/atomic_file.hpp"
+#include "base/python_picture.hpp"
 #include "base/stopwatch.hpp"
+#include "explore/plot_data.hpp"
+#include "explore/session_file.hpp"
 
 namespace dolp::explore {
 namespace {
@@ -16,14 +19,25 @@ constexpr auto kFading = std::chrono::milliseconds(300);  // of a dialog that wa
 }  // namespace
 
 Actions::Actions(Session& session, const std::string& device, std::string command_line,
-                 const std::function<void()>& on_change)
+                 const std::filesystem::path& preferences, const std::function<void()>& on_change)
     : session_(session),
       command_line_(std::move(command_line)),
       table_evaluator_({.device = device, .is_interactive = true}),
       fit_evaluator_({.device = device, .is_interactive = true}),
       table_(on_change),
       true_error_(on_change),
-      fit_(on_change) {}
+      fit_(on_change),
+      plot_(on_change) {
+  try {
+    preferences_.load(preferences);
+    const std::string file = session_.scene().name();
+    std::error_code unknown;
+    if (!std::filesystem::exists(file, unknown)) return;  // a text that is built in
+    prefer([&](Preferences& of) { of.remember(file); });
+  } catch (const std::exception& error) {
+    session_.tell(error.what(), true);
+  }
+}
 
 void Actions::attempt(const std::string& done, const std::function<void()>& body) {
   try {
@@ -32,6 +46,26 @@ void Actions::attempt(const std::string& done, const std::function<void()>& body
   } catch (const std::exception& error) {
     session_.tell(error.what(), true);
   }
+}
+
+void Actions::open(const std::string& path) {
+  attempt("opened " + path, [&] {
+    open_file(session_, path);
+    if (session_.message().is_error) throw InputError(session_.message().text);
+    prefer([&](Preferences& preferences) { preferences.remember(path); });
+  });
+}
+
+void Actions::prefer(const std::function<void(Preferences&)>& change) {
+  change(preferences_);
+  preferences_.save();
+}
+
+void Actions::save_session(const std::string& path) {
+  attempt("saved " + path, [&] {
+    session_.keep_sky(path);
+    explore::save_session(session_, path);
+  });
 }
 
 void Actions::save_scene(const std::string& path) {
@@ -55,6 +89,15 @@ void Actions::save_picture(const std::string& path) {
     check_writable(path);
     picture_path_ = path;
     picture_time_ = Clock::now() + kFading;
+  });
+}
+
+void Actions::save_plot(const std::string& path, const Scale& x, const Scale& y) {
+  session_.tell("drawing " + path);
+  plot_.start([path, json = plot_json(session_, x, y)](const Progress&) -> BackgroundTask::Rest {
+    check_writable(path);
+    draw_with_python(kPlotScript, json, path);
+    return [text = "saved " + path] { return text; };
   });
 }
 
@@ -92,7 +135,11 @@ void Actions::fit() {
 }
 
 void Actions::finish() {
-  for (BackgroundTask* task : {&table_, &true_error_, &fit_}) task->finish();
+  const bool was_drawing = plot_.is_running();
+  for (BackgroundTask* task : {&table_, &true_error_, &fit_, &plot_}) task->finish();
+  if (was_drawing && !plot_.is_running()) {
+    session_.tell(plot_.message(), plot_.state() == BackgroundTask::State::kFailed);
+  }
 }
 
 }  // namespace dolp::explore

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "explore/preferences.hpp"
 #include "explore/session.hpp"
 
 namespace dolp::explore {
@@ -13,19 +14,28 @@ class Actions {
   using Clock = std::chrono::steady_clock;
 
  public:
+  /// `preferences`: the path of their file; empty: none are kept.
   /// `on_change` is called from other threads when a task has news. The session must outlive this.
   Actions(Session& session, const std::string& device, std::string command_line,
-          const std::function<void()>& on_change);
+          const std::filesystem::path& preferences, const std::function<void()>& on_change);
 
   // Each tells the session how it went.
+  /// A scene, a session or measured points; also a file that is dropped on the window.
+  void open(const std::string& path);
   void save_scene(const std::string& path);
+  void save_session(const std::string& path);
   void save_curve(const std::string& path);
   /// The picture shows the window a moment later, without the dialog that asked for its path.
   void save_picture(const std::string& path);
   // In the background.
+  /// Curves between these axes, and the map, as .svg, .pdf or .png.
+  void save_plot(const std::string& path, const Scale& x, const Scale& y);
   void export_table(const std::string& path);
   void find_true_error();
   void fit();
+  /// Changes what is kept for the next start.
+  void prefer(const std::function<void(Preferences&)>& change);
+  const Preferences& preferences() const { return preferences_; }
   void quit() { is_quitting_ = true; }
 
   /// Takes what ended in the background.
@@ -48,12 +58,14 @@ class Actions {
 
   Session& session_;
   std::string command_line_;
+  Preferences preferences_;
   // Each with a device of its own, so that none waits for another.
   Evaluator table_evaluator_;
   Evaluator fit_evaluator_;
   BackgroundTask table_;
   BackgroundTask true_error_;
   BackgroundTask fit_;
+  BackgroundTask plot_;
   std::string true_error_key_;  ///< of the curve whose true error is asked for or known
   std::string picture_path_;
   Clock::time_point picture_time_;

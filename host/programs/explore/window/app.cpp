@@ -18,6 +18,7 @@
 #include "base/stopwatch.hpp"
 #include "device/context.hpp"
 #include "device/result.hpp"
+#include "explore/session_file.hpp"
 #include "explore/window/actions.hpp"
 #include "explore/window/input.hpp"
 #include "explore/window/presenter.hpp"
@@ -30,6 +31,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kWidth = 1440;
 constexpr int kHeight = 900;
+// Below it texts of the controls are cut.
+constexpr int kLeastWidth = 800;
+constexpr int kLeastHeight = 560;
 constexpr float kFontPixels = 15.0F;
 constexpr double kBlink_s = 0.3;  // of a text cursor
 // Chosen: of a frame of 33 ms, half of which is drawing. Twice as much makes slow scenes' frames long, half of it lets
@@ -113,16 +117,12 @@ VkExtent2D size_of(GLFWwindow* window) {
 
 /// Dear ImGui with the window's fonts and its input.
 struct Gui {
-  explicit Gui(GLFWwindow* window) {
+  explicit Gui(GLFWwindow* of) : window(of) {
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
     io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
-    ImGui::StyleColorsDark();
-    float scale = 1.0F;
-    glfwGetWindowContentScale(window, &scale, nullptr);
-    ImGui::GetStyle().ScaleAllSizes(scale);
-    load_font(kFontPixels * scale);
+    follow({});
     ImGui_ImplGlfw_InitForVulkan(window, false);
   }
   ~Gui() {
@@ -131,6 +131,28 @@ struct Gui {
   }
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
+
+  /// Takes theme and scale. True where the font has changed.
+  bool follow(const Preferences& wanted) {
+    if (wanted.is_light != is_light()) set_theme(wanted.is_light);
+    float display = 1.0F;
+    glfwGetWindowContentScale(window, &display, nullptr);
+    const float wanted_scale = display * static_cast<float>(wanted.zoom());
+    if (wanted_scale == scale) return false;
+    scale = wanted_scale;
+    const bool is_light_now = is_light();
+    ImGui::GetStyle() = ImGuiStyle();
+    set_theme(is_light_now);
+    ImGui::GetStyle().ScaleAllSizes(scale);
+    ImGui::GetIO().Fonts->Clear();
+    load_font(kFontPixels * scale);
+    const auto scaled = [&](int length) { return static_cast<int>(std::lround(scale * static_cast<float>(length))); };
+    glfwSetWindowSizeLimits(window, scaled(kLeastWidth), scaled(kLeastHeight), GLFW_DONT_CARE, GLFW_DONT_CARE);
+    return true;
+  }
+
+  GLFWwindow* window;
+  float scale = 0.0F;
 };
 
 double median_of(std::vector<double> values) {
@@ -157,13 +179,13 @@ struct App::Impl {
         window(open_window()),
         context(make_context(options.device)),
         gui(window.get()),
-        input(window.get(), [this](const std::string& path) { session.load_measured(path); }),
+        input(window.get(), [this](const std::string& path) { actions.open(path); }),
         presenter(context, make_surface(context.instance(), window.get()), size_of(window.get())),
         evaluator({.device = options.device, .is_interactive = true}),
         worker([this](const Scene& scene, const PointList& list,
                       const RunOptions& run) { return evaluate(evaluator, scene, list, run); },
                glfwPostEmptyEvent),
-        actions(session, options.device, options.command_line, glfwPostEmptyEvent),
+        actions(session, options.device, options.command_line, options.preferences, glfwPostEmptyEvent),
         ui(session, actions, options.file_name, [this] { catch_up(); }) {}
 
   /// Passes results in and wanted jobs out.
@@ -188,6 +210,7 @@ struct App::Impl {
 
   /// Draws a frame for each event, and shows the last.
   void draw() {
+    if (gui.follow(actions.preferences())) presenter.restart_imgui();
     for (;;) {
       ImGui_ImplVulkan_NewFrame();
       input.begin_frame();
@@ -277,8 +300,12 @@ void App::reopen() { glfwSetWindowShouldClose(impl_->window.get(), GLFW_FALSE); 
 
 void App::run(const AfterFrame& after_frame) {
   while (answer(after_frame)) {
+    // A note appears when the mouse has rested, a little more than a frame later at most.
+    constexpr double kNote_s = static_cast<double>(kTooltipDelay_s) + 0.05;
     if (ImGui::GetIO().WantTextInput) {
       glfwWaitEventsTimeout(kBlink_s);
+    } else if (const double rest_s = impl_->input.rest_s(); rest_s < kNote_s) {
+      glfwWaitEventsTimeout(kNote_s - rest_s);
     } else {
       glfwWaitEvents();
     }
@@ -313,7 +340,19 @@ void run_program(const Scene& scene, const ProgramOptions& options) {
   }
   if (!options.screenshot_path.empty()) check_writable(options.screenshot_path);
   const std::string stem = std::filesystem::path(scene.name()).stem().string();
-  App app(SceneEdits(scene), {options.device, stem.empty() || stem == "-" ? "dolp" : stem, options.command_line});
+  // Pictures for manuals and measurements show what everyone sees.
+  const std::filesystem::path preferences = options.frames == 0 ? Preferences::default_path() : "";
+  App app(SceneEdits(scene),
+          {options.device, stem.empty() || stem == "-" ? "dolp" : stem, options.command_line, preferences});
+  const auto check = [&] {
+    if (app.session().message().is_error) throw InputError(app.session().message().text);
+  };
+  if (!options.session_path.empty()) {
+    open_file(app.session(), options.session_path);
+    check();
+    app.session().set(options.settings);
+    check();
+  }
   if (!options.panel.empty()) {
     View view = app.session().view();
     view.panel = panel_of(options.panel);
@@ -321,7 +360,7 @@ void run_program(const Scene& scene, const ProgramOptions& options) {
   }
   if (!options.measured_path.empty()) {
     app.session().load_measured(options.measured_path);
-    if (app.session().message().is_error) throw InputError(app.session().message().text);
+    check();
   }
   if (options.frames == 0) {
     app.run();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -15,9 +16,10 @@
 namespace dolp::explore {
 
 struct AppOptions {
-  std::string device;        ///< its position or a part of its name
-  std::string file_name;     ///< what suggested file names begin with
-  std::string command_line;  ///< for the history of tables
+  std::string device;                      ///< its position or a part of its name
+  std::string file_name;                   ///< what suggested file names begin with
+  std::string command_line;                ///< for the history of tables
+  std::filesystem::path preferences = {};  ///< their file; empty: none are kept
 };
 
 /// Durations of frames.
@@ -70,12 +72,14 @@ class App {
 };
 
 struct ProgramOptions {
-  std::string device;           ///< its position or a part of its name
-  std::string command_line;     ///< for the history of tables
-  std::string measured_path;    ///< CSV of measured points; empty: none
-  std::size_t frames = 0;       ///< draw so many and end; 0: until the window is closed
-  std::string screenshot_path;  ///< PNG of the last frame; empty: none
-  std::string panel = {};       ///< that is shown first; empty: the map
+  std::string device;                  ///< its position or a part of its name
+  std::string command_line;            ///< for the history of tables
+  std::string measured_path;           ///< CSV of measured points; empty: none
+  std::size_t frames = 0;              ///< draw so many and end; 0: until the window is closed
+  std::string screenshot_path;         ///< PNG of the last frame; empty: none
+  std::string panel = {};              ///< that is shown first; empty: the map
+  std::string session_path = {};       ///< a session that takes the place of the scene; empty: none
+  std::vector<Setting> settings = {};  ///< changes of the session
 };
 
 /// Shows the window. Prints how long frames took, where their number is given.

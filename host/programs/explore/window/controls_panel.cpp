@@ -16,7 +16,7 @@ namespace {
 
 void heading(const char* text) {
   ImGui::Spacing();
-  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_PlotHistogram));
+  ImGui::PushStyleColor(ImGuiCol_Text, kHeadingColour);
   ImGui::TextUnformatted(text);
   ImGui::PopStyleColor();
   ImGui::Separator();

@@ -29,11 +29,12 @@ std::string influence_text(const Effect& row) {
                      points >= 10.0 ? fmt::format("{:.0f}", points) : fmt::format("{:.2g}", points));
 }
 
-/// The maximum without the effect; a surface without slopes is a smooth one.
+/// The name of what is taken away: a surface without slopes is a smooth one.
+std::string taken_away(const Effect& row) { return row.name == "distribution" ? "roughness" : row.name; }
+
 std::string taken_away_text(const Session& session, const Effect& row) {
-  if (row.name != "distribution") return without_text(session, row.name);
-  const std::string text = without_text(session, "roughness");
-  return text.empty() ? "" : "smooth: " + text;
+  const std::string text = without_text(session, taken_away(row));
+  return text.empty() || row.name != "distribution" ? text : "smooth: " + text;
 }
 
 /// True where the effects belong to an earlier scene.
@@ -46,6 +47,7 @@ void draw_row(const Session& session, const Effect& row) {
   cell(row.state == EffectState::kNotNeeded ? "not needed" : name_of(row.state), colour);
   cell(influence_text(row), colour);
   cell(is_absent ? "" : taken_away_text(session, row), colour);
+  if (const std::string words = without_words(session, taken_away(row)); !words.empty()) tooltip(words);
   cell(row.reason, colour);
   if (!row.needs.empty()) tooltip("it takes: " + row.needs);
 }
@@ -55,7 +57,8 @@ void draw_headers() {
   constexpr std::array kMeanings = {
       "a part of the scene", "kept, dropped, absent or not needed by what is kept",
       "what it adds to DOLP at the cursor: a bound (≤) where it is dropped, else an estimate",
-      "Q/I at the maximum of the curve: its change without the effect, and what is left", "the reason of the plan"};
+      "Q/I at the maximum of the curve with all effects → without this one; their difference is its part",
+      "the reason of the plan"};
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (int column = 0; column < static_cast<int>(kMeanings.size()); ++column) {
     ImGui::TableSetColumnIndex(column);
@@ -79,8 +82,12 @@ void draw_effects(const Session& session) {
   ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthFixed, 6.8F * em);
   ImGui::TableSetupColumn("plan", ImGuiTableColumnFlags_WidthFixed, 4.2F * em);
   ImGui::TableSetupColumn("at cursor", ImGuiTableColumnFlags_WidthFixed, 6.0F * em);
-  ImGui::TableSetupColumn("without it", ImGuiTableColumnFlags_WidthFixed, 9.4F * em);
-  ImGui::TableSetupColumn("why", is_narrow ? ImGuiTableColumnFlags_WidthFixed : ImGuiTableColumnFlags_WidthStretch);
+  ImGui::TableSetupColumn("Q/I → without it", ImGuiTableColumnFlags_WidthFixed, 9.4F * em);
+  if (is_narrow) {
+    ImGui::TableSetupColumn("why", ImGuiTableColumnFlags_WidthFixed, 14.0F * em);
+  } else {
+    ImGui::TableSetupColumn("why", ImGuiTableColumnFlags_WidthStretch);
+  }
   draw_headers();
   for (const Effect& row : session.effects()) {
     ImGui::TableNextRow();

@@ -14,6 +14,7 @@ Input& Input::of(GLFWwindow* window) { return *static_cast<Input*>(glfwGetWindow
 void Input::push(GLFWwindow* window, std::function<void()> apply, bool is_motion) {
   Input& input = of(window);
   input.has_news_ = true;
+  input.last_event_ = Clock::now();
   if (is_motion && input.has_more() && input.events_.back().is_motion) input.events_.pop_back();
   input.events_.push_back({std::move(apply), is_motion});
 }

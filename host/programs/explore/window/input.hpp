@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <array>
+#include <chrono>
 #include <deque>
 #include <functional>
 #include <string>
@@ -27,8 +28,11 @@ class Input {
   bool has_more() const { return !events_.empty(); }
   /// True where there was anything to show since the last call.
   bool take_news() { return std::exchange(has_news_, false); }
+  /// Time since the last event.
+  double rest_s() const { return std::chrono::duration<double>(Clock::now() - last_event_).count(); }
 
  private:
+  using Clock = std::chrono::steady_clock;
   struct Event {
     std::function<void()> apply;
     bool is_motion;
@@ -40,6 +44,7 @@ class Input {
   std::function<void(const std::string&)> on_drop_;
   std::deque<Event> events_;
   bool has_news_ = false;
+  Clock::time_point last_event_;
   // As the events so far say.
   ImVec2 mouse_;
   std::array<bool, 5> buttons_{};

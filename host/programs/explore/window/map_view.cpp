@@ -12,7 +12,8 @@ namespace {
 constexpr double kColourSteps = 96.0;
 constexpr double kMostContrast = 1e3;  // of a logarithmic colour scale
 constexpr std::size_t kMostLines = 7;
-constexpr ImU32 kDarkLine = IM_COL32(0, 0, 0, 170);  // over the white of diverging colours
+constexpr ImU32 kLightLine = IM_COL32(255, 255, 255, 190);  // over the colours of a map, in both themes
+constexpr ImU32 kDarkLine = IM_COL32(0, 0, 0, 170);         // over the white of diverging colours
 constexpr std::size_t kUnknownVersion = static_cast<std::size_t>(-1);
 constexpr float kBarRoom = 5.4F;  // right of the map, in lines of text
 
@@ -31,7 +32,7 @@ std::string title_of(const Session& session) {
 void draw_map_cursor(const Session& session, const Plot& plot) {
   const HeatMap& map = session.map();
   const ImVec2 at = plot.at_position(session.map_cursor(map.x()), session.map_cursor(map.y()));
-  const ImU32 colour = described(session.view().quantity).is_signed ? kDarkLine : kCursorColour;
+  const ImU32 colour = described(session.view().quantity).is_signed ? kDarkLine : kLightLine;
   plot.list()->AddLine({at.x, plot.min().y}, {at.x, plot.max().y}, colour);
   plot.list()->AddLine({plot.min().x, at.y}, {plot.max().x, at.y}, colour);
   plot.list()->AddCircle(at, 5.0F, colour, 0, 2.0F);
@@ -117,7 +118,7 @@ void MapView::draw_cells(const Plot& plot) const {
 }
 
 void MapView::draw_lines(const Plot& plot, double scale) const {
-  const ImU32 line_colour = described(quantity_).is_signed ? kDarkLine : IM_COL32(255, 255, 255, 170);
+  const ImU32 line_colour = described(quantity_).is_signed ? kDarkLine : kLightLine;
   for (const Line& line : lines_) {
     for (const Segment& s : line.segments) {
       plot.list()->AddLine(plot.at_position(s.x0, s.y0), plot.at_position(s.x1, s.y1), line_colour);

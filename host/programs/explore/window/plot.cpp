@@ -21,11 +21,10 @@ void draw_text(ImDrawList* list, ImVec2 at, ImVec2 anchor, ImU32 colour, const s
 
 void draw_label(ImDrawList* list, ImVec2 at, ImVec2 anchor, ImU32 colour, const std::string& text) {
   constexpr float kPadding = 3.0F;
-  constexpr ImU32 kGround = IM_COL32(20, 21, 24, 215);
   const ImVec2 size = ImGui::CalcTextSize(shown(text).c_str());
   const ImVec2 corner{at.x - anchor.x * size.x, at.y - anchor.y * size.y};
   list->AddRectFilled({corner.x - kPadding, corner.y - 1.0F}, {corner.x + size.x + kPadding, corner.y + size.y + 1.0F},
-                      kGround, kPadding);
+                      kLabelGround, kPadding);
   draw_text(list, at, anchor, colour, text);
 }
 

@@ -14,13 +14,13 @@
 
 #include "base/atomic_file.hpp"
 #include "device/result.hpp"
+#include "explore/window/style.hpp"
 
 namespace dolp::explore {
 namespace {
 
 using vulkan::check;
 
-constexpr VkClearValue kBackground{.color = {.float32 = {0.11F, 0.12F, 0.13F, 1.0F}}};
 constexpr std::size_t kBytesPerPixel = 4;
 
 void check_imgui(VkResult result) { check(result, "drawing the window"); }
@@ -89,6 +89,12 @@ void Presenter::start_imgui() {
   load_fonts();
 }
 
+void Presenter::restart_imgui() {
+  wait();
+  ImGui_ImplVulkan_Shutdown();
+  start_imgui();
+}
+
 void Presenter::load_fonts() {
   begin();
   ImGui_ImplVulkan_CreateFontsTexture(commands_);
@@ -149,12 +155,14 @@ void Presenter::draw(ImDrawData* data, VkExtent2D size, Picture* picture) {
 
 void Presenter::record(const Swapchain::Image& image, ImDrawData* data, const vulkan::Buffer* copy) const {
   begin();
+  const ImVec4 ground = ImGui::ColorConvertU32ToFloat4(kBackground);
+  const VkClearValue clear{.color = {.float32 = {ground.x, ground.y, ground.z, 1.0F}}};
   const VkRenderPassBeginInfo pass{.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
                                    .renderPass = pass_.get(),
                                    .framebuffer = image.framebuffer.get(),
                                    .renderArea = {.extent = swapchain_->extent()},
                                    .clearValueCount = 1,
-                                   .pClearValues = &kBackground};
+                                   .pClearValues = &clear};
   vkCmdBeginRenderPass(commands_, &pass, VK_SUBPASS_CONTENTS_INLINE);
   ImGui_ImplVulkan_RenderDrawData(data, commands_);
   vkCmdEndRenderPass(commands_);

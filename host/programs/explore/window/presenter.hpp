@@ -33,6 +33,8 @@ class Presenter {
   /// `picture`: where the frame is also to be copied to.
   /// Errors: DeviceError when the device or the surface is lost.
   void draw(ImDrawData* data, VkExtent2D size, Picture* picture = nullptr);
+  /// Takes a new font of ImGui's context, between two frames.
+  void restart_imgui();
 
  private:
   void create_frame();

@@ -23,13 +23,14 @@ constexpr std::array kRedBlue = {Rgb{5, 48, 97},     Rgb{33, 102, 172},  Rgb{67,
                                  Rgb{209, 229, 240}, Rgb{247, 247, 247}, Rgb{253, 219, 199}, Rgb{244, 165, 130},
                                  Rgb{214, 96, 77},   Rgb{178, 24, 43},   Rgb{103, 0, 31}};
 
-constexpr ImU32 kOrange = IM_COL32(230, 159, 0, 255);
-constexpr ImU32 kSkyBlue = IM_COL32(86, 180, 233, 255);
-constexpr ImU32 kGreen = IM_COL32(0, 158, 115, 255);
-constexpr ImU32 kYellow = IM_COL32(240, 228, 66, 255);
-constexpr ImU32 kBlue = IM_COL32(0, 114, 178, 255);
-constexpr ImU32 kVermilion = IM_COL32(213, 94, 0, 255);
-constexpr ImU32 kPurple = IM_COL32(204, 121, 167, 255);
+// On white the light ones are darker.
+constexpr Themed kOrange{IM_COL32(230, 159, 0, 255), IM_COL32(196, 124, 0, 255)};
+constexpr Themed kSkyBlue{IM_COL32(86, 180, 233, 255), IM_COL32(0, 114, 178, 255)};
+constexpr Themed kGreen{IM_COL32(0, 158, 115, 255), IM_COL32(0, 134, 98, 255)};
+constexpr Themed kYellow{IM_COL32(240, 228, 66, 255), IM_COL32(150, 138, 0, 255)};
+constexpr Themed kBlue{IM_COL32(0, 114, 178, 255), IM_COL32(50, 150, 205, 255)};
+constexpr Themed kVermilion{IM_COL32(213, 94, 0, 255), IM_COL32(190, 70, 0, 255)};
+constexpr Themed kPurple{IM_COL32(204, 121, 167, 255), IM_COL32(170, 80, 130, 255)};
 
 ImU32 with_alpha(ImU32 colour, ImU32 alpha) { return (colour & ~IM_COL32_A_MASK) | (alpha << IM_COL32_A_SHIFT); }
 
@@ -64,6 +65,22 @@ ImU32 colour_at(std::span<const Rgb> colours, double position) {
 
 }  // namespace
 
+bool is_light() {
+  const ImVec4 ground = ImGui::GetStyleColorVec4(ImGuiCol_WindowBg);
+  return ground.y > 0.5F;
+}
+
+void set_theme(bool light) {
+  if (light) {
+    ImGui::StyleColorsLight();
+    ImGui::GetStyle().FrameBorderSize = 1.0F;
+  } else {
+    ImGui::StyleColorsDark();
+    ImGui::GetStyle().FrameBorderSize = 0.0F;
+  }
+  for (const ImGuiCol ground : {ImGuiCol_PopupBg, ImGuiCol_WindowBg}) ImGui::GetStyle().Colors[ground].w = 1.0F;
+}
+
 ImU32 viridis(double position) { return colour_at(kViridis, position); }
 
 ImU32 diverging(double position) { return colour_at(kRedBlue, position); }
@@ -73,9 +90,9 @@ CurveStyle current_style() { return {kSkyBlue, 0.0F, 0.0F}; }
 CurveStyle overlay_style() { return {kOrange, 9.0F, 5.0F}; }
 
 CurveStyle pin_style(std::size_t pin) {
-  constexpr std::array kStyles = {CurveStyle{kYellow, 3.0F, 4.0F}, CurveStyle{kPurple, 14.0F, 5.0F},
-                                  CurveStyle{kGreen, 6.0F, 3.0F},  CurveStyle{kVermilion, 2.0F, 3.0F},
-                                  CurveStyle{kBlue, 18.0F, 3.0F},  CurveStyle{kTextColour, 5.0F, 9.0F}};
+  const std::array kStyles = {CurveStyle{kYellow, 3.0F, 4.0F}, CurveStyle{kPurple, 14.0F, 5.0F},
+                              CurveStyle{kGreen, 6.0F, 3.0F},  CurveStyle{kVermilion, 2.0F, 3.0F},
+                              CurveStyle{kBlue, 18.0F, 3.0F},  CurveStyle{kTextColour, 5.0F, 9.0F}};
   return kStyles[pin % kStyles.size()];
 }
 
@@ -130,8 +147,27 @@ void coloured_text(ImU32 colour, const std::string& text) {
 
 void tooltip(const std::string& text) {
   if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  const ImGuiIO& io = ImGui::GetIO();
+  const auto now_s = static_cast<float>(ImGui::GetTime());
+  float& still_since_s = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("still since"), now_s);
+  const bool is_still = io.MouseDelta.x == 0.0F && io.MouseDelta.y == 0.0F && !ImGui::IsAnyMouseDown();
+  if (!is_still) still_since_s = now_s;
+  if (now_s - still_since_s < kTooltipDelay_s) return;
+  // Beside the panel or above the item, so that the values below it stay in sight.
+  const float width = 28.0F * ImGui::GetFontSize();
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const ImVec2 first = ImGui::GetItemRectMin();
+  const ImVec2 last = ImGui::GetItemRectMax();
+  const float right = ImGui::GetWindowPos().x + ImGui::GetWindowWidth() + gap;
+  if (right + width < io.DisplaySize.x) {
+    const bool is_low = first.y > 0.5F * io.DisplaySize.y;
+    ImGui::SetNextWindowPos({right, is_low ? last.y : first.y}, ImGuiCond_Always, {0.0F, is_low ? 1.0F : 0.0F});
+  } else {
+    const float left = std::max(std::min(first.x, io.DisplaySize.x - width - 2.0F * gap), 0.0F);
+    ImGui::SetNextWindowPos({left, first.y - gap}, ImGuiCond_Always, {0.0F, 1.0F});
+  }
   ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(28.0F * ImGui::GetFontSize());
+  ImGui::PushTextWrapPos(width);
   ImGui::TextUnformatted(shown(text).c_str());
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();

@@ -9,6 +9,16 @@
 
 namespace dolp::explore {
 
+bool is_light();
+void set_theme(bool light);
+
+/// A colour in the dark theme and in the light one.
+struct Themed {
+  ImU32 dark, light;
+  // NOLINTNEXTLINE(google-explicit-constructor): it is used as a colour
+  operator ImU32() const { return is_light() ? light : dark; }
+};
+
 /// The map "viridis" at 0 to 1, dark to light; colours outside are those of the ends.
 /// Source: S. van der Walt, N. Smith, viridis of Matplotlib (CC0), at seventeen equal steps, linear in between.
 ImU32 viridis(double position);
@@ -36,16 +46,24 @@ CurveStyle stale(const CurveStyle& style);
 /// The fill colour of the band around a curve of that style.
 ImU32 band_colour(const CurveStyle& style);
 
-inline constexpr ImU32 kTextColour = IM_COL32(225, 228, 232, 255);
-inline constexpr ImU32 kDimColour = IM_COL32(150, 156, 163, 255);
-inline constexpr ImU32 kGridColour = IM_COL32(62, 66, 72, 255);
-inline constexpr ImU32 kPlotColour = IM_COL32(20, 21, 24, 255);
-inline constexpr ImU32 kBadColour = IM_COL32(110, 112, 116, 255);      ///< entries with a status
-inline constexpr ImU32 kErrorColour = IM_COL32(255, 150, 110, 255);    ///< messages
-inline constexpr ImU32 kRefusedColour = IM_COL32(110, 48, 34, 255);    ///< ground of a field whose text is refused
-inline constexpr ImU32 kStaleVeil = IM_COL32(20, 21, 24, 150);         ///< over a stale map
-inline constexpr ImU32 kIntervalColour = IM_COL32(90, 205, 130, 255);  ///< of a fit
-inline constexpr ImU32 kCursorColour = IM_COL32(255, 255, 255, 200);
+inline constexpr Themed kTextColour{IM_COL32(225, 228, 232, 255), IM_COL32(24, 26, 30, 255)};
+inline constexpr Themed kDimColour{IM_COL32(150, 156, 163, 255), IM_COL32(96, 101, 108, 255)};
+inline constexpr Themed kGridColour{IM_COL32(62, 66, 72, 255), IM_COL32(214, 217, 221, 255)};
+inline constexpr Themed kPlotColour{IM_COL32(20, 21, 24, 255), IM_COL32(255, 255, 255, 255)};
+inline constexpr Themed kBackground{IM_COL32(28, 31, 33, 255), IM_COL32(240, 241, 243, 255)};
+inline constexpr Themed kLabelGround{IM_COL32(20, 21, 24, 215), IM_COL32(255, 255, 255, 215)};
+/// Entries with a status.
+inline constexpr Themed kBadColour{IM_COL32(110, 112, 116, 255), IM_COL32(150, 152, 156, 255)};
+/// Messages.
+inline constexpr Themed kErrorColour{IM_COL32(255, 150, 110, 255), IM_COL32(178, 40, 0, 255)};
+/// Ground of a field whose text is refused.
+inline constexpr Themed kRefusedColour{IM_COL32(110, 48, 34, 255), IM_COL32(255, 200, 186, 255)};
+/// Over a stale map.
+inline constexpr Themed kStaleVeil{IM_COL32(20, 21, 24, 150), IM_COL32(255, 255, 255, 150)};
+/// The interval of a fit.
+inline constexpr Themed kIntervalColour{IM_COL32(90, 205, 130, 255), IM_COL32(0, 130, 60, 255)};
+inline constexpr Themed kHeadingColour{IM_COL32(230, 179, 0, 255), IM_COL32(148, 98, 0, 255)};
+inline constexpr Themed kCursorColour{IM_COL32(255, 255, 255, 200), IM_COL32(40, 40, 40, 200)};
 
 /// Loads DejaVu Sans at `pixels`, or, where it is not installed, keeps ImGui's own font, which has ASCII alone.
 /// An ImGui context must be there.
@@ -60,7 +78,10 @@ std::string ascii(std::string_view text);
 /// Text in a colour at ImGui's cursor, wrapped at the edge of the window.
 void coloured_text(ImU32 colour, const std::string& text);
 
-/// A note at the mouse while it rests on the item that was drawn last.
+/// How long the mouse rests before a note appears.
+inline constexpr float kTooltipDelay_s = 0.5F;
+
+/// A note beside the item that was drawn last, while the mouse rests on it.
 void tooltip(const std::string& text);
 
 }  // namespace dolp::explore

@@ -19,13 +19,28 @@ namespace {
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
                                     ImGuiWindowFlags_NoBackground;
-constexpr const char* kDialog = "###path";
+constexpr char kOpenKey = 'O';
 constexpr char kUndoKey = 'Z';
+constexpr char kLargerKey = '=';
+constexpr char kSmallerKey = '-';
 
 void label(const char* text) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(shown(text).c_str());
   ImGui::SameLine();
+}
+
+/// Beside the last item, or in a new line where there is less room than this many times the size of the font.
+void go_on(float width) {
+  ImGui::SameLine();
+  if (ImGui::GetContentRegionAvail().x < width * ImGui::GetFontSize()) ImGui::NewLine();
+}
+
+/// True for the key itself or that of the number pad.
+bool is_pressed(char key) {
+  const auto is_now = [](int code) { return ImGui::IsKeyPressed(code, false); };
+  return is_now(key) || (key == kLargerKey && is_now(GLFW_KEY_KP_ADD)) ||
+         (key == kSmallerKey && is_now(GLFW_KEY_KP_SUBTRACT)) || (key == '0' && is_now(GLFW_KEY_KP_0));
 }
 
 /// Returns why the text is refused; nothing where it is taken.
@@ -55,35 +70,13 @@ void draw_task(const char* name, BackgroundTask& task, std::map<std::string, Are
 }  // namespace
 
 Ui::Ui(Session& session, Actions& actions, const std::string& name, std::function<void()> catch_up)
-    : session_(session), actions_(actions), catch_up_(std::move(catch_up)) {
-  add_file_commands(name);
+    : session_(session),
+      actions_(actions),
+      name_(name),
+      first_file_(session.scene().name()),
+      catch_up_(std::move(catch_up)) {
+  add_file_commands();
   add_view_commands();
-}
-
-void Ui::add_file_commands(const std::string& name) {
-  // Asks for a path, and does something with it.
-  const auto ask = [this](const char* title, const std::string& path,
-                          const std::function<void(const std::string&)>& use, bool must_exist = false) {
-    return [this, dialog = PathDialog{title, path, must_exist, use, true}] { dialog_ = dialog; };
-  };
-  const auto with = [this](void (Actions::*act)(const std::string&)) {
-    return [this, act](const std::string& path) { (actions_.*act)(path); };
-  };
-  commands_ = {
-      {"File", "Save the scene", 'S', ask("Save the scene as TOML", name + "_scene.toml", with(&Actions::save_scene))},
-      {"File", "Export the table", 'T',
-       ask("Compute the table of the scene's grid: .nc, .csv, .npy", name + "_table.nc", with(&Actions::export_table))},
-      {"File", "Save the curve as CSV", 'E',
-       ask("Save the curve as CSV", name + "_curve.csv", with(&Actions::save_curve))},
-      {"File", "Save a picture", 'I',
-       ask("Save a picture of the window as PNG", name + "_window.png", with(&Actions::save_picture))},
-      {"File", "Load measured points", 'O',
-       ask(
-           "Load measured points: CSV with theta_deg, dolp", "measured.csv",
-           [this](const std::string& path) { session_.load_measured(path); }, true)},
-      {"File", "Remove measured points", 0, [this] { session_.clear_measured(); }},
-      {"File", "Quit", 'Q', [this] { actions_.quit(); }},
-  };
 }
 
 void Ui::add_view_commands() {
@@ -98,14 +91,28 @@ void Ui::add_view_commands() {
   add_switch("Logarithmic axis", 'L', &View::is_log);
   add_switch("Overlay the other slope distribution", 'D', &View::has_overlay);
   add_switch("Keep all effects", 'G', &View::keeps_all);
+  const auto add_zoom = [this](const char* text, char key, void (*change)(Preferences&)) {
+    commands_.push_back({"View", text, key, [this, change] { actions_.prefer(change); }});
+  };
+  add_zoom("Larger", kLargerKey, [](Preferences& of) { of.zoom_by(1); });
+  add_zoom("Smaller", kSmallerKey, [](Preferences& of) { of.zoom_by(-1); });
+  add_zoom("Usual size", '0', [](Preferences& of) { of.zoom_to_default(); });
+  add_zoom("Light theme", 0, [](Preferences& of) { of.is_light = !of.is_light; });
+  commands_.back().is_checked = [this] { return actions_.preferences().is_light; };
   commands_.push_back({"Scene", "Undo", kUndoKey, [this] { session_.undo(); }});
   commands_.push_back({"Scene", "Redo", kUndoKey, [this] { session_.redo(); }, {}, true});
   commands_.push_back({"Scene", "Copy the command that gives its table", 'C', [this] { copy_command(); }, {}, true});
   commands_.push_back({"Scene", "Pin the curve", 'P', [this] { session_.pin(); }});
+  commands_.push_back({"Scene", "Take a snapshot", 'B', [this] { session_.take_snapshot(); }});
   commands_.push_back({"Scene", "True error of the curve", 'K', [this] { actions_.find_true_error(); }});
   commands_.push_back({"Scene", "Fit to the measured points", 'F', [this] { actions_.fit(); }});
   commands_.push_back({"Scene", "Take all changes back", 'R', [this] { session_.reset_all(); }});
   commands_.push_back({"Help", "Shortcuts and hints", 'H', [this] { shows_help_ = true; }});
+}
+
+std::string Ui::Command::shortcut() const {
+  if (key == 0) return {};
+  return std::string(has_shift ? "Ctrl+Shift+" : "Ctrl+") + (key == kLargerKey ? '+' : key);
 }
 
 void Ui::run_shortcuts() {
@@ -113,19 +120,27 @@ void Ui::run_shortcuts() {
   const ImGuiIO& io = ImGui::GetIO();
   if (!io.KeyCtrl || io.KeyAlt) return;
   for (const Command& command : commands_) {
-    if (command.has_shift != io.KeyShift) continue;
-    if (command.key == kUndoKey && io.WantTextInput) continue;  // the field undoes its own text
+    if (command.has_shift != io.KeyShift && command.key != kLargerKey) continue;  // many keyboards have + above =
+    if (command.key == kUndoKey && io.WantTextInput) continue;                    // the field undoes its own text
     // GLFW's number of a letter's key is that of the letter.
-    if (command.key != 0 && ImGui::IsKeyPressed(command.key, false)) command.run();
+    if (command.key != 0 && is_pressed(command.key)) command.run();
   }
 }
 
+void Ui::remember_next(const std::string& name, const char* text) {
+  const ImVec2 corner = ImGui::GetCursorScreenPos();  // an open menu is an item of its own
+  areas_[name] = {corner, {corner.x + ImGui::CalcTextSize(text).x, corner.y + ImGui::GetTextLineHeight()}};
+}
+
 void Ui::draw_menu(const char* menu) {
+  remember_next(std::string("menu ") + menu, menu);
   if (!ImGui::BeginMenu(menu)) return;
   for (const Command& command : commands_) {
     if (std::string_view(command.menu) != menu) continue;
+    remember_next(command.text, command.text);
     const bool is_checked = command.is_checked && command.is_checked();
     if (ImGui::MenuItem(command.text, command.shortcut().c_str(), is_checked)) command.run();
+    if (command.key == kOpenKey) draw_recent();
   }
   ImGui::EndMenu();
 }
@@ -139,32 +154,14 @@ void Ui::draw_menus() {
   ImGui::EndMainMenuBar();
 }
 
-void Ui::draw_path_dialog() {
-  if (dialog_.is_opening) ImGui::OpenPopup(kDialog);
-  ImGui::SetNextWindowSize({32.0F * ImGui::GetFontSize(), 0.0F});
-  if (!ImGui::BeginPopupModal((dialog_.title + kDialog).c_str(), nullptr, ImGuiWindowFlags_NoResize)) return;
-  if (dialog_.is_opening) ImGui::SetKeyboardFocusHere();
-  dialog_.is_opening = false;
-  ImGui::SetNextItemWidth(-1.0F);
-  bool is_accepted = ImGui::InputText("##path", &dialog_.path, ImGuiInputTextFlags_EnterReturnsTrue);
-  std::error_code unknown;
-  const bool exists = std::filesystem::exists(dialog_.path, unknown);
-  const char* remark = dialog_.must_exist ? (exists ? " " : "There is no such file.")
-                                          : (exists ? "This file exists and will be replaced." : " ");
-  ImGui::TextUnformatted(remark);
-  is_accepted |= ImGui::Button("OK");
-  ImGui::SameLine();
-  const bool is_cancelled = ImGui::Button("Cancel") || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false);
-  if (is_accepted || is_cancelled) ImGui::CloseCurrentPopup();
-  ImGui::EndPopup();
-  if (is_accepted && !dialog_.path.empty()) dialog_.accept(dialog_.path);
-}
-
 void Ui::draw_help() {
   if (!shows_help_) return;
   ImGui::SetNextWindowSize({36.0F * ImGui::GetFontSize(), 0.0F}, ImGuiCond_Appearing);
   const ImVec2 centre = ImGui::GetMainViewport()->GetCenter();
   ImGui::SetNextWindowPos(centre, ImGuiCond_Appearing, {0.5F, 0.5F});
+  if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false) && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup)) {
+    shows_help_ = false;
+  }
   if (ImGui::Begin("Shortcuts and hints", &shows_help_, ImGuiWindowFlags_NoCollapse)) {
     for (const Command& command : commands_) {
       if (command.key != 0) ImGui::BulletText("%s: %s", command.shortcut().c_str(), command.text);
@@ -176,7 +173,8 @@ void Ui::draw_help() {
           "all. On the numbers of an axis: its ends.",
           "Click in the legend: hides or shows a curve. Right click on a pin: its name.",
           "Ctrl-click on a slider: back to the value of the scene as opened. Type any allowed value beside it.",
-          "Rest the mouse on a control: its meaning, equation and range. Drop a CSV of measured points on the window.",
+          "Rest the mouse on a control: its meaning, equation and range. Drop a scene, a session or measured points on "
+          "the window.",
           "Grey in map and curve: the model fails there; the line under the plots says how."}) {
       coloured_text(kTextColour, hint);
     }
@@ -203,8 +201,9 @@ void Ui::draw_view_controls() {
   is_changed |= ImGui::Checkbox("log", &view.is_log);
   ImGui::SameLine();
   is_changed |= ImGui::Checkbox("overlay", &view.has_overlay);
-  ImGui::SameLine();
+  go_on(18.0F);
   draw_map_axes(view, is_changed);
+  go_on(14.0F);
   label("   θ up to");
   ImGui::SetNextItemWidth(0.5F * width);
   fields_.draw("theta max", view.theta_max_deg, [&](const std::string& text) {
@@ -237,7 +236,7 @@ void Ui::draw_map_axes(View& view, bool& is_changed) {
       }
       ImGui::EndCombo();
     }
-    ImGui::SameLine();
+    if (i == 0) ImGui::SameLine();
   }
 }
 
@@ -285,7 +284,13 @@ void Ui::draw_pins() {
   if (removed < session_.pins().size()) session_.remove_pin(removed);
 }
 
+void Ui::draw_message() {
+  const Message& message = session_.message();
+  if (!message.text.empty()) coloured_text(message.is_error ? kErrorColour : kTextColour, message.text);
+}
+
 void Ui::draw_readout() {
+  if (is_narrow_) draw_message();
   coloured_text(kTextColour, peak_text(session_));
   coloured_text(kTextColour, cause_text(session_));
   coloured_text(kDimColour, cursor_text(session_));
@@ -303,8 +308,7 @@ void Ui::draw_price() {
     label("table");
     draw_task("table", actions_.table_task(), areas_);
   }
-  const Message& message = session_.message();
-  if (!message.text.empty()) coloured_text(message.is_error ? kErrorColour : kTextColour, message.text);
+  if (!is_narrow_) draw_message();
 }
 
 void Ui::draw_plots(ImVec2 size) {
@@ -316,36 +320,61 @@ void Ui::draw_plots(ImVec2 size) {
   ImGui::EndChild();
   ImGui::SameLine();
   ImGui::BeginChild("maps", {size.x - curve_width - gap, size.y}, false, kStill);
-  draw_panels(ImGui::GetContentRegionAvail());
+  draw_panel_tabs();
+  draw_panel(ImGui::GetContentRegionAvail());
   ImGui::EndChild();
 }
 
-void Ui::draw_panels(ImVec2 size) {
+bool Ui::draw_tab(const char* name, bool is_shown) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(name).x + 2.0F * style.FramePadding.x) ImGui::NewLine();
+  ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(is_shown ? ImGuiCol_TabActive : ImGuiCol_Tab));
+  const bool is_clicked = ImGui::SmallButton(name);
+  ImGui::PopStyleColor();
+  areas_[fmt::format("panel {}", name)] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+  ImGui::SameLine();
+  return is_clicked;
+}
+
+void Ui::draw_panel_tabs() {
   View view = session_.view();
   for (const PanelDescription& of : kPanels) {
-    if (of.panel != Panel::kMap) ImGui::SameLine();
-    const bool is_shown = of.panel == view.panel;
-    const ImGuiCol colour = is_shown ? ImGuiCol_TabActive : ImGuiCol_Tab;
-    ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(colour));
-    if (ImGui::SmallButton(of.name)) view.panel = of.panel;
-    ImGui::PopStyleColor();
-    areas_[fmt::format("panel {}", of.name)] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+    if (draw_tab(of.name, is_narrow_ ? page_.empty() && of.panel == view.panel : of.panel == view.panel)) {
+      view.panel = of.panel;
+      page_.clear();
+    }
   }
-  size.y = ImGui::GetContentRegionAvail().y;
-  const Panel shown_now = session_.view().panel;
-  if (shown_now == Panel::kMap) map_view_.draw(session_, size);
-  if (shown_now == Panel::kSlopes) draw_slopes(session_, size);
-  if (shown_now == Panel::kMaterial) draw_material(session_, size);
-  if (shown_now == Panel::kScattering) scattering_view_.draw(session_, size);
-  if (shown_now == Panel::kShapes) shape_view_.draw(session_, size);
-  if (shown_now == Panel::kSky) draw_sky(session_, size);
-  if (shown_now == Panel::kFit) draw_fit_result(session_, areas_);
-  if (view.panel != shown_now) session_.set_view(view);
+  ImGui::NewLine();
+  if (view.panel != session_.view().panel) session_.set_view(view);
+}
+
+void Ui::draw_panel(ImVec2 size) {
+  const Panel panel = session_.view().panel;
+  if (panel == Panel::kMap) map_view_.draw(session_, size);
+  if (panel == Panel::kSlopes) draw_slopes(session_, size);
+  if (panel == Panel::kMaterial) draw_material(session_, size);
+  if (panel == Panel::kScattering) scattering_view_.draw(session_, size);
+  if (panel == Panel::kShapes) shape_view_.draw(session_, size);
+  if (panel == Panel::kSky) draw_sky(session_, size);
+  if (panel == Panel::kFit) draw_fit_result(session_, areas_);
+}
+
+void Ui::draw_one_page() {
+  for (const char* name : {"curve", "effects", "accuracy"}) {
+    if (draw_tab(name, page_ == name)) page_ = name;
+  }
+  draw_panel_tabs();
+  if (page_ == "effects") return draw_effects(session_);
+  if (page_ == "accuracy") return draw_price();
+  if (page_ == "curve") return curve_view_.draw(session_, ImGui::GetContentRegionAvail());
+  draw_panel(ImGui::GetContentRegionAvail());
 }
 
 Area Ui::area(const std::string& name) const {
   const auto tab = areas_.find(name);
-  return tab == areas_.end() ? controls_.areas().at(name) : tab->second;
+  if (tab != areas_.end()) return tab->second;
+  const auto file = dialog_.areas().find(name);
+  return file == dialog_.areas().end() ? controls_.areas().at(name) : file->second;
 }
 
 void Ui::copy_command() {
@@ -358,6 +387,17 @@ void Ui::copy_command() {
   session_.tell("copied: " + command);
 }
 
+void Ui::draw_bottom() {
+  const float price = 20.0F * ImGui::GetFontSize();
+  ImGui::BeginChild("effects", {ImGui::GetContentRegionAvail().x - price, 0.0F}, true);
+  draw_effects(session_);
+  ImGui::EndChild();
+  ImGui::SameLine();
+  ImGui::BeginChild("price", {0.0F, 0.0F}, true);
+  draw_price();
+  ImGui::EndChild();
+}
+
 void Ui::draw() {
   session_.hold(ImGui::IsMouseDown(ImGuiMouseButton_Left));
   run_shortcuts();
@@ -367,36 +407,39 @@ void Ui::draw() {
   ImGui::SetNextWindowSize(viewport->WorkSize);
   ImGui::Begin("dolp", nullptr, kFixed);
   const ImVec2 all = ImGui::GetContentRegionAvail();
-  const float left = 22.0F * ImGui::GetFontSize();
+  const float em = ImGui::GetFontSize();
+  const float left = std::clamp(0.36F * all.x, 19.0F * em, 22.0F * em);
+  is_narrow_ = all.x - left < 46.0F * em;
   ImGui::BeginChild("controls", {left, all.y}, true);
   draw_fit();
   controls_.draw(session_);
   draw_pins();
+  draw_snapshots();
   ImGui::EndChild();
   catch_up_();
   ImGui::SameLine();
   ImGui::BeginChild("right", {0.0F, all.y});
   draw_view_controls();
-  const float readout = 3.8F * ImGui::GetTextLineHeightWithSpacing();
+  const float readout =
+      (ImGui::GetContentRegionAvail().x < 64.0F * em ? 4.8F : 3.8F) * ImGui::GetTextLineHeightWithSpacing();
   const ImVec2 rest{ImGui::GetContentRegionAvail().x, ImGui::GetContentRegionAvail().y - readout};
-  // The panels below scroll; the plots keep more than half of what there is.
-  const float bottom = std::min(std::max(0.33F * all.y, 15.0F * ImGui::GetTextLineHeight()), 0.45F * rest.y);
-  draw_plots({rest.x, rest.y - bottom});
+  if (is_narrow_) {
+    ImGui::BeginChild("page", {rest.x, rest.y - ImGui::GetStyle().ItemSpacing.y});
+    draw_one_page();
+    ImGui::EndChild();
+  } else {
+    // The panels below scroll; the plots keep more than half of what there is.
+    const float bottom = std::min(std::max(0.33F * all.y, 15.0F * ImGui::GetTextLineHeight()), 0.45F * rest.y);
+    draw_plots({rest.x, rest.y - bottom});
+  }
   ImGui::BeginChild("readout", {0.0F, readout});
   draw_readout();
   ImGui::EndChild();
-  const float price = 20.0F * ImGui::GetFontSize();
-  ImGui::BeginChild("effects", {ImGui::GetContentRegionAvail().x - price, 0.0F}, true);
-  draw_effects(session_);
-  ImGui::EndChild();
-  ImGui::SameLine();
-  ImGui::BeginChild("price", {0.0F, 0.0F}, true);
-  draw_price();
-  ImGui::EndChild();
+  if (!is_narrow_) draw_bottom();
   ImGui::EndChild();
   ImGui::End();
   draw_help();
-  draw_path_dialog();
+  dialog_.draw();
 }
 
 }  // namespace dolp::explore

@@ -8,6 +8,7 @@
 
 #include "explore/window/actions.hpp"
 #include "explore/window/controls_panel.hpp"
+#include "explore/window/path_dialog.hpp"
 #include "explore/window/views.hpp"
 
 namespace dolp::explore {
@@ -21,7 +22,8 @@ class Ui {
   /// Draws everything, between ImGui's NewFrame and Render.
   void draw();
 
-  /// The last drawn area of a control, or of the tab "panel NAME". Errors: std::out_of_range when it was not drawn.
+  /// The last drawn area of a control, of the tab "panel NAME", of "snapshot NUMBER", of "menu NAME" and its entries,
+  /// of "recent PATH" or of an entry of the list of files. Errors: std::out_of_range when it was not drawn.
   Area area(const std::string& name) const;
   const CurveView& curves() const { return curve_view_; }
   const MapView& map() const { return map_view_; }
@@ -36,36 +38,41 @@ class Ui {
     std::function<bool()> is_checked = {};  ///< none: not a switch
     bool has_shift = false;
 
-    std::string shortcut() const { return key == 0 ? "" : std::string(has_shift ? "Ctrl+Shift+" : "Ctrl+") + key; }
-  };
-  /// A dialog that asks for a path.
-  struct PathDialog {
-    std::string title;
-    std::string path;
-    bool must_exist = false;
-    std::function<void(const std::string&)> accept;
-    bool is_opening = false;
+    std::string shortcut() const;
   };
 
-  void add_file_commands(const std::string& name);
+  std::string suggested(const std::string& ending) const;
+  void ask_what_to_open();
+  void add_file_commands();
   void add_view_commands();
   void draw_menus();
   void draw_menu(const char* menu);
   void run_shortcuts();
   void copy_command();
-  void draw_path_dialog();
+  /// The area of a menu or its entry that is drawn next.
+  void remember_next(const std::string& name, const char* text);
+  void draw_recent();
   void draw_help();
   void draw_view_controls();
   void draw_map_axes(View& view, bool& is_changed);
   void draw_fit();
   void draw_pins();
+  void draw_snapshots();
+  void draw_message();
   void draw_readout();
   void draw_plots(ImVec2 size);
-  void draw_panels(ImVec2 size);
+  /// One thing at a time, where two beside each other would be too small.
+  void draw_one_page();
+  bool draw_tab(const char* name, bool is_shown);
+  void draw_panel_tabs();
+  void draw_panel(ImVec2 size);
   void draw_price();
+  void draw_bottom();
 
   Session& session_;
   Actions& actions_;
+  std::string name_;        ///< that suggested names of files begin with
+  std::string first_file_;  ///< as long as the scene is of this file
   std::function<void()> catch_up_;
   std::vector<Command> commands_;
   ControlsPanel controls_;
@@ -76,6 +83,8 @@ class Ui {
   std::map<std::string, Area> areas_;
   CurveView curve_view_;
   PathDialog dialog_;
+  bool is_narrow_ = false;
+  std::string page_ = "curve";  ///< of a narrow window; empty: the panel
   bool shows_help_ = false;
 };
 

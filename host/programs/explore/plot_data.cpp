@@ -1,0 +1,78 @@
+#include "explore/plot_data.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace dolp::explore {
+namespace {
+
+using nlohmann::json;
+
+json axis_json(const std::string& label, const Scale& scale) {
+  return {{"label", label}, {"from", scale.from}, {"to", scale.to}, {"is_log", scale.is_log}};
+}
+
+/// `style`: "curve", "overlay", or the number of a pin's colour.
+json curve_json(const Curve& curve, const std::string& name, const json& style, Plotted quantity) {
+  const PlottedDescription& of = described(quantity);
+  json theta = json::array(), values = json::array(), good = json::array(), low = json::array(), high = json::array();
+  for (const Point& point : curve.points()) {
+    theta.push_back(point.theta_deg);
+    values.push_back(of.scale() * of.value(point));
+    good.push_back(point.is_good());
+    const bool has_band = quantity == Plotted::kDolp && style == "curve" && point.is_good() && point.has_bracket();
+    low.push_back(has_band ? json(of.scale() * point[Quantity::kDolpLow]) : json());
+    high.push_back(has_band ? json(of.scale() * point[Quantity::kDolpHigh]) : json());
+  }
+  return {{"name", name}, {"style", style}, {"theta_deg", theta}, {"values", values},
+          {"good", good}, {"low", low},     {"high", high}};
+}
+
+json map_json(const Session& session) {
+  const PlottedDescription& of = described(session.view().quantity);
+  const MapField field = session.map().field(of.quantity);
+  if (session.view().panel != Panel::kMap || field.count == 0) return {};
+  json rows = json::array();
+  for (std::size_t row = 0; row < field.count; ++row) {
+    json values = json::array();
+    for (std::size_t i = row * field.count; i < (row + 1) * field.count; ++i) {
+      values.push_back(field.is_good[i] ? json(of.scale() * field.values[i]) : json());
+    }
+    rows.push_back(std::move(values));
+  }
+  const auto axis = [](const MapAxis& one) { return axis_json(one.label(), one.scale); };
+  return {{"x", axis(session.map().x())},
+          {"y", axis(session.map().y())},
+          {"label", of.label()},
+          {"is_log", session.view().is_log},
+          {"rows", rows}};
+}
+
+}  // namespace
+
+std::string plot_json(const Session& session, const Scale& x, const Scale& y) {
+  const Plotted quantity = session.view().quantity;
+  json curves = json::array();
+  if (session.overlay()) curves.push_back(curve_json(*session.overlay(), session.overlay_name(), "overlay", quantity));
+  for (const Pin& pin : session.pins()) {
+    if (!pin.is_visible) continue;
+    const std::string name = pin.name.empty() ? surface_name(pin.curve.shown_scene()) : pin.name;
+    curves.push_back(curve_json(pin.curve, name, pin.colour, quantity));
+  }
+  curves.push_back(curve_json(session.curve(), curve_name(session), "curve", quantity));
+  json measured = json::array();
+  const double scale = described(quantity).scale();
+  for (const Measurement& one : session.residuals().measured(quantity)) {
+    measured.push_back({{"theta_deg", one.theta_deg},
+                        {"value", scale * one.value},
+                        {"uncertainty", scale * one.uncertainty.value_or(0.0)}});
+  }
+  return json{{"title", session.scene().title()},
+              {"x", axis_json("zenith θ [°]", x)},
+              {"y", axis_json(described(quantity).label(), y)},
+              {"curves", curves},
+              {"measured", measured},
+              {"map", map_json(session)}}
+      .dump();
+}
+
+}  // namespace dolp::explore

@@ -1,0 +1,171 @@
+#include "explore/session_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <sstream>
+#include <utility>
+
+#include "base/atomic_file.hpp"
+#include "explore/toml_file.hpp"
+
+namespace dolp::explore {
+namespace {
+
+constexpr int kVersion = 1;  // of the file
+constexpr const char* kVersionKey = "dolp_session";
+
+struct Flag {
+  const char* key;
+  bool View::*flag;
+};
+constexpr std::array kFlags = {Flag{"log", &View::is_log}, Flag{"theta_log", &View::is_theta_log},
+                               Flag{"overlay", &View::has_overlay}, Flag{"keep_all", &View::keeps_all}};
+
+using Node = toml::node_view<const toml::node>;
+
+toml::array texts_of(const std::vector<Setting>& settings) {
+  toml::array texts;
+  for (const Setting& setting : settings) texts.push_back(setting.text());
+  return texts;
+}
+
+/// A scene as it was opened, with its changes and a name.
+toml::table state_table(const SceneEdits& edits, const std::string& name, const std::filesystem::path& folder) {
+  const Scene& opened = edits.opened();
+  return toml::table{{"name", name},
+                     {"file", std::filesystem::proximate(opened.name(), folder).string()},
+                     {"text", opened.text()},
+                     {"opened_with", texts_of(opened.settings())},
+                     {"changes", texts_of(edits.changes())}};
+}
+
+toml::table view_table(const Session& session) {
+  const View& view = session.view();
+  toml::table table{{"quantity", described(view.quantity).name},
+                    {"theta_max_deg", view.theta_max_deg},
+                    {"map_x", description_of(view.map_x).name},
+                    {"map_y", description_of(view.map_y).name},
+                    {"panel", kPanels.at(static_cast<std::size_t>(view.panel)).name},
+                    {"cursor_deg", session.theta_deg()}};
+  for (const Flag& flag : kFlags) table.insert(flag.key, view.*flag.flag);
+  return table;
+}
+
+/// A value of a file; `place` begins messages. Errors: InputError.
+template <class T>
+T need(Node node, const std::string& place) {
+  const std::optional<T> value = node ? node.value<T>() : std::nullopt;
+  if (!value) throw InputError(place + (node ? " is of another kind" : " is missing"));
+  return *value;
+}
+
+/// The one of `choices` that has the name in the file. Errors: InputError.
+template <class Choices, class NameOf>
+auto need_one_of(const Choices& choices, const NameOf& name_of, Node node, const std::string& place) {
+  const auto name = need<std::string>(node, place);
+  const auto found = std::ranges::find_if(choices, [&](const auto& one) { return name == name_of(one); });
+  if (found == choices.end()) throw InputError(place + " \"" + name + "\" is unknown");
+  return *found;
+}
+
+SceneEdits state_in(Node node, const std::string& place, const std::filesystem::path& folder) {
+  const auto file = folder / need<std::string>(node["file"], place + ".file");
+  const auto settings = [&](const char* key) { return settings_from_text(texts_in(node[key])); };
+  const Scene opened = Scene::from_text(need<std::string>(node["text"], place + ".text"), settings("opened_with"),
+                                        file.lexically_normal().string());
+  return {opened, settings("changes")};
+}
+
+View view_in(Node node, const std::string& place) {
+  const auto name_of = [](const auto& one) { return one.name; };
+  const auto axis = [&](const char* key) {
+    return need_one_of(
+        kMapAxes, [](Axis of) { return description_of(of).name; }, node[key], place + key);
+  };
+  View view;
+  view.quantity = need_one_of(kAllPlotted, name_of, node["quantity"], place + "quantity").quantity;
+  view.panel = need_one_of(kPanels, name_of, node["panel"], place + "panel").panel;
+  view.theta_max_deg = need<double>(node["theta_max_deg"], place + "theta_max_deg");
+  view.map_x = axis("map_x");
+  view.map_y = axis("map_y");
+  for (const Flag& flag : kFlags) view.*flag.flag = need<bool>(node[flag.key], place + flag.key);
+  return view;
+}
+
+SavedSession session_in(const std::string& path, const toml::table& table) {
+  const Node file(static_cast<const toml::node&>(table));
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  const std::string place = path + ": ";
+  if (need<int>(file[kVersionKey], place + kVersionKey) != kVersion)
+    throw InputError(fmt::format("{}{} is not {}: the session of another version", place, kVersionKey, kVersion));
+  SavedSession saved{.edits = state_in(file["scene"], place + "scene", folder)};
+  const auto for_each = [&](const char* key, const auto& use) {
+    const toml::array* const array = file[key].as_array();
+    for (std::size_t i = 0; array && i < array->size(); ++i) {
+      const std::string here = fmt::format("{}{}[{}]", place, key, i);
+      use(Node((*array)[i]), need<std::string>(Node((*array)[i])["name"], here + ".name"), here);
+    }
+  };
+  for_each("pins", [&](Node pin, const std::string& name, const std::string& here) {
+    saved.pins.push_back({name, need<bool>(pin["visible"], here + ".visible"), state_in(pin, here, folder).scene()});
+  });
+  for_each("snapshots", [&](Node one, const std::string& name, const std::string& here) {
+    saved.snapshots.push_back({name, state_in(one, here, folder)});
+  });
+  saved.view = view_in(file["view"], place + "view.");
+  saved.theta_deg = need<double>(file["view"]["cursor_deg"], place + "view.cursor_deg");
+  if (file["measured"]) {
+    const auto data = folder / need<std::string>(file["measured"], place + "measured");
+    saved.measured = MeasuredData::read(data.lexically_normal().string());
+  }
+  saved.marked = texts_in(file["vary"]);
+  return saved;
+}
+
+}  // namespace
+
+void save_session(const Session& session, const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  toml::table file{{kVersionKey, kVersion},
+                   {"scene", state_table(session.edits(), "", folder)},
+                   {"view", view_table(session)},
+                   {"vary", array_of(session.marked())}};
+  if (const auto& data = session.residuals().data())
+    file.insert("measured", std::filesystem::proximate(data->name, folder).string());
+  toml::array pins, snapshots;
+  for (const Pin& pin : session.pins()) {
+    toml::table table = state_table(SceneEdits(pin.curve.scene()), pin.name, folder);
+    table.insert("visible", pin.is_visible);
+    pins.push_back(std::move(table));
+  }
+  for (const Snapshot& one : session.snapshots()) snapshots.push_back(state_table(one.edits, one.name, folder));
+  file.insert("pins", std::move(pins));
+  file.insert("snapshots", std::move(snapshots));
+  std::ostringstream text;
+  text << file << '\n';
+  write_text_atomically(path, text.str());
+}
+
+bool is_session_file(const std::string& path) {
+  std::error_code unknown;
+  try {
+    return std::filesystem::is_regular_file(path, unknown) && read_toml(path).contains(kVersionKey);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+void open_file(Session& session, const std::string& path) {
+  if (std::filesystem::path(path).extension() == ".csv") return session.load_measured(path);
+  const toml::table table = read_toml(path);
+  if (table.contains(kVersionKey)) {
+    session.restore(session_in(path, table));
+  } else {
+    session.go_to(SceneEdits(Scene::from_file(path)));
+  }
+}
+
+}  // namespace dolp::explore

@@ -1,0 +1,110 @@
+// The window's files: its File menu, recent files, snapshots.
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "explore/window/style.hpp"
+#include "explore/window/ui.hpp"
+
+namespace dolp::explore {
+
+std::string Ui::suggested(const std::string& ending) const {
+  const std::string file = session_.scene().name();
+  return (file == first_file_ ? name_ : std::filesystem::path(file).replace_extension().string()) + ending;
+}
+
+void Ui::ask_what_to_open() {
+  std::filesystem::path folder = std::filesystem::path(session_.scene().name()).parent_path();
+  dialog_.open({.title = "Open a scene, a session (.toml) or measured points (.csv)",
+                .path = folder.empty() ? "" : folder.string() + '/',
+                .suffixes = {".toml", ".csv"},
+                .must_exist = true,
+                .accept = [this](const std::string& path) { actions_.open(path); }});
+}
+
+void Ui::add_file_commands() {
+  // Asks for a path, and saves something there; the ending begins with what the name gets.
+  const auto save = [this](const char* title, const char* ending, const std::vector<std::string>& suffixes,
+                           void (Actions::*act)(const std::string&)) {
+    return [=, this] {
+      dialog_.open({.title = title,
+                    .path = suggested(ending),
+                    .suffixes = suffixes,
+                    .accept = [=, this](const std::string& path) { (actions_.*act)(path); }});
+    };
+  };
+  commands_ = {
+      {"File", "Open", 'O', [this] { ask_what_to_open(); }},
+      {"File", "Save the scene", 'S', save("Save the scene as TOML", "_scene.toml", {".toml"}, &Actions::save_scene)},
+      {"File",
+       "Save the session",
+       'S',
+       save("Save scene, pins, snapshots and view as TOML", "_session.toml", {".toml"}, &Actions::save_session),
+       {},
+       true},
+      {"File", "Export the table", 'T',
+       save("Compute the table of the scene's grid: .nc, .csv, .npy", "_table.nc", {".nc", ".csv", ".npy"},
+            &Actions::export_table)},
+      {"File", "Save the curve as CSV", 'E',
+       save("Save the curve as CSV", "_curve.csv", {".csv"}, &Actions::save_curve)},
+      {"File",
+       "Save the plots",
+       'E',
+       [this] {
+         dialog_.open({.title = "Draw curves and map: .svg, .pdf, .png",
+                       .path = suggested("_plot.svg"),
+                       .suffixes = {".svg", ".pdf", ".png"},
+                       .accept = [this](const std::string& path) {
+                         actions_.save_plot(path, curve_view_.x(), curve_view_.y());
+                       }});
+       },
+       {},
+       true},
+      {"File", "Save a picture", 'I',
+       save("Save a picture of the window as PNG", "_window.png", {".png"}, &Actions::save_picture)},
+      {"File", "Remove measured points", 0, [this] { session_.clear_measured(); }},
+      {"File", "Quit", 'Q', [this] { actions_.quit(); }},
+  };
+}
+
+void Ui::draw_recent() {
+  const std::vector<std::string> recent = actions_.preferences().recent();
+  remember_next("recent", "Open recent");
+  if (!ImGui::BeginMenu("Open recent", !recent.empty())) return;
+  for (const std::string& path : recent) {
+    remember_next("recent " + path, path.c_str());
+    if (ImGui::MenuItem(shown(path).c_str())) actions_.open(path);
+  }
+  ImGui::EndMenu();
+}
+
+void Ui::draw_snapshots() {
+  if (session_.snapshots().empty()) return;
+  ImGui::Spacing();
+  ImGui::TextUnformatted("Snapshots");
+  ImGui::Separator();
+  std::size_t removed = session_.snapshots().size();
+  for (std::size_t i = 0; i < session_.snapshots().size(); ++i) {
+    const Snapshot& one = session_.snapshots()[i];
+    ImGui::PushID(static_cast<int>(i));
+    if (ImGui::SmallButton("x")) removed = i;
+    ImGui::SameLine();
+    if (ImGui::Selectable((shown(one.name) + "###go").c_str(), one.edits.is_same_scene(session_.edits()))) {
+      session_.go_to(one.edits);
+    }
+    areas_[fmt::format("snapshot {}", i)] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+    tooltip("back to this state of the scene; Ctrl+Z undoes it, a right click renames");
+    if (ImGui::BeginPopupContextItem("name")) {
+      std::string typed = one.name;
+      if (ImGui::InputText("##name", &typed)) session_.rename_snapshot(i, typed);
+      ImGui::EndPopup();
+    }
+    ImGui::PopID();
+  }
+  if (removed < session_.snapshots().size()) session_.remove_snapshot(removed);
+}
+
+}  // namespace dolp::explore

@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""Draws the plots of the window: its curves, measured points and map.
+
+Usage: plot_view.py PICTURE < PLOTS.json    the window of `dolp explore` runs it; PICTURE ends with .svg, .pdf or .png
+Needs python3-matplotlib. Exit status: 0 done, 2 no plots of the window, 4 the picture could not be written.
+"""
+import json
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+from matplotlib.colors import LogNorm  # noqa: E402
+from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator  # noqa: E402
+
+# Of the window's light theme; line styles tell the curves apart without colours.
+STYLES = {"curve": {"color": "#0072B2", "linestyle": "-"}, "overlay": {"color": "#C47C00", "linestyle": (0, (5, 3))}}
+PINS = (("#968A00", (0, (1.5, 2))), ("#AA5082", (0, (7, 2.5))), ("#008662", (0, (3, 1.5))), ("#BE4600", (0, (1, 1.5))),
+        ("#3296CD", (0, (9, 1.5))), ("#181A1E", (0, (2.5, 4.5))))
+FAILING = {"color": "0.6", "linewidth": 0.8, "linestyle": "--"}
+BAND = "all bounces lie between"
+MODEL_FAILS = "the model fails here (status)"
+CONTOURS = 7
+MOST_CONTRAST = 1e3  # of a logarithmic colour scale, as in the window
+
+
+def numbers(values):
+    """An array with NaN in the place of what is not there."""
+    return np.array([np.nan if value is None else value for value in values], dtype=float)
+
+
+def set_axes(axes, x, y):
+    for axis, name in ((x, "x"), (y, "y")):
+        if axis["is_log"]:
+            getattr(axes, f"set_{name}scale")("log")
+            getattr(axes, f"{name}axis").set_major_formatter(FormatStrFormatter("%g"))
+        getattr(axes, f"set_{name}lim")(axis["from"], axis["to"])
+        getattr(axes, f"set_{name}label")(axis["label"])
+
+
+def draw_curves(axes, plots):
+    for curve in plots["curves"]:
+        style = curve["style"]
+        style = STYLES.get(style) or dict(zip(("color", "linestyle"), PINS[style % len(PINS)]))
+        theta, values, good = numbers(curve["theta_deg"]), numbers(curve["values"]), np.array(curve["good"], dtype=bool)
+        low, high = numbers(curve["low"]), numbers(curve["high"])
+        axes.plot(theta, np.where(good, values, np.nan), label=curve["name"], linewidth=1.5, **style)
+        axes.plot(theta, np.where(good, np.nan, values), label="_" if good.all() else MODEL_FAILS, **FAILING)
+        if np.isfinite(low).any():
+            axes.fill_between(theta, low, high, label=BAND, color=style["color"], alpha=0.2, linewidth=0)
+    points = plots["measured"]
+    if points:
+        column = {name: numbers([point[name] for point in points]) for name in ("theta_deg", "value", "uncertainty")}
+        axes.errorbar(column["theta_deg"], column["value"], column["uncertainty"], fmt="o", markersize=4, color="0.2",
+                      markerfacecolor="none", elinewidth=0.8, label="measured")
+    set_axes(axes, plots["x"], plots["y"])
+    axes.grid(alpha=0.25, linewidth=0.6)
+    entries = dict(zip(*reversed(axes.get_legend_handles_labels())))  # each label once
+    axes.legend(entries.values(), entries.keys(), frameon=False, fontsize=8)
+
+
+def places(axis, count):
+    spaced = np.geomspace if axis["is_log"] else np.linspace
+    return spaced(axis["from"], axis["to"], count)
+
+
+def draw_map(figure, axes, plot):
+    rows = np.ma.masked_invalid([numbers(row) for row in plot["rows"]])
+    x, y = places(plot["x"], rows.shape[1]), places(plot["y"], rows.shape[0])
+    low, high = (rows.min(), rows.max()) if rows.count() else (0.0, 1.0)
+    norm, locator = None, MaxNLocator(CONTOURS)
+    if plot["is_log"] and high > 0.0:
+        low = max(low, high / MOST_CONTRAST)
+        norm, locator = LogNorm(low, high), LogLocator(subs=(1.0, 2.0, 5.0))
+    mesh = axes.pcolormesh(x, y, rows, cmap="viridis", norm=norm, shading="nearest", rasterized=True)
+    axes.set_facecolor("0.72")
+    levels = [level for level in locator.tick_values(low, high) if low < level < high]
+    if levels:
+        lines = axes.contour(x, y, rows, levels=levels, colors="white", linewidths=0.7)
+        axes.clabel(lines, fontsize=7, fmt="%g")
+    figure.colorbar(mesh, ax=axes, pad=0.02).set_label(plot["label"])
+    set_axes(axes, plot["x"], plot["y"])
+
+
+def draw(plots, path):
+    # Text of an SVG stays text, and a title may have any character.
+    plt.rcParams.update({"font.size": 10, "svg.fonttype": "none", "text.parse_math": False})
+    plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False})
+    has_map = plots["map"] is not None
+    size = (11.0 if has_map else 6.5, 4.6)
+    figure, panels = plt.subplots(1, 1 + has_map, figsize=size, dpi=150, layout="constrained", squeeze=False)
+    draw_curves(panels[0, 0], plots)
+    if has_map:
+        draw_map(figure, panels[0, 1], plots["map"])
+    figure.suptitle(plots["title"])
+    figure.savefig(path)
+
+
+def main():
+    if len(sys.argv) != 2:
+        print(__doc__.splitlines()[2], file=sys.stderr)
+        return 2
+    try:
+        plots = json.load(sys.stdin)
+        draw(plots, sys.argv[1])
+    except (KeyError, TypeError, json.JSONDecodeError) as error:
+        print(f"no plots of the window: {error}", file=sys.stderr)
+        return 2
+    except (OSError, ValueError) as error:
+        print(f"{sys.argv[1]}: {error}", file=sys.stderr)
+        return 4
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,171 @@
+// Files by the hands of the window's user: opened, saved, gone back to.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <thread>
+
+#include "window_support.hpp"
+
+namespace {
+
+using namespace dolp;
+using namespace dolp::explore_test;
+
+class WindowFiles : public Window {
+ protected:
+  void SetUp() override {
+    Window::SetUp();
+    std::string other = kEdited;
+    other.replace(other.find("Painted"), 7, "Other");
+    std::filesystem::create_directory(at("folder"));
+    put("folder/other.toml", other);
+    put("folder/notes.txt", "");
+  }
+  void type(const std::string& text) {
+    xdotool({"type", "--delay", "12", "--", text});
+    frames();
+  }
+  std::string title() const { return app_->session().scene().title(); }
+};
+
+TEST_F(WindowFiles, OpenDialog_FolderAndFileClicked_ShowsTheScene_AndUndoGoesBack) {
+  drag_slider("surface.sigma", kPartOfSlider);
+  keys("ctrl+o");
+  frames();
+  EXPECT_NO_THROW(app_->control_area("scene.toml"));
+  click_control("folder/");
+  EXPECT_THROW(app_->control_area("notes.txt"), std::out_of_range);
+  click_control("other.toml");
+  EXPECT_EQ(title(), "Painted");
+  click_control("other.toml");
+  app_->settle();
+  EXPECT_EQ(title(), "Other");
+  EXPECT_EQ(app_->session().scene().number("surface.sigma"), 0.15);
+  EXPECT_NE(content("config/dolp/window.toml").find("folder/other.toml"), std::string::npos);
+  keys("ctrl+z");
+  EXPECT_EQ(title(), "Painted");
+  EXPECT_NE(app_->session().scene().number("surface.sigma"), 0.15);
+}
+
+TEST_F(WindowFiles, OpenDialog_UpAndByKeyboard_OpensAPath) {
+  keys("ctrl+o");
+  click_control("folder/");
+  click_control("../");
+  EXPECT_NO_THROW(app_->control_area("scene.toml"));
+  keys("Escape");
+  keys("ctrl+o");
+  type("folder/missing.toml");
+  keys("Return");
+  EXPECT_EQ(title(), "Painted");
+  type("folder");
+  keys("Return");
+  EXPECT_NO_THROW(app_->control_area("other.toml"));
+  type("other.toml");
+  keys("Return");
+  app_->settle();
+  EXPECT_EQ(title(), "Other");
+}
+
+TEST_F(WindowFiles, SceneWithoutAFolder_ListsTheCurrentOne) {
+  app_->session().go_to(explore::SceneEdits(Scene::from_text(kEdited, {}, "built-in")));
+  keys("ctrl+o");
+  EXPECT_NO_THROW(app_->control_area("../"));
+  keys("Escape");
+  keys("ctrl+s");
+  keys("Escape");
+  EXPECT_FALSE(app_->session().message().is_error);
+}
+
+TEST_F(WindowFiles, RecentScene_ChosenInTheMenu_IsOpened) {
+  keys("ctrl+o");
+  click_control("folder/");
+  click_control("other.toml");
+  click_control("other.toml");
+  keys("ctrl+z");
+  ASSERT_EQ(title(), "Painted");
+  click_control("menu File");
+  click_control("recent");
+  click_control("recent " + at("folder/other.toml").string());
+  EXPECT_EQ(title(), "Other");
+}
+
+TEST_F(WindowFiles, BadScene_IsOneLine_AndTheSceneStays) {
+  put("bad.toml", "[surface]\nsigma = -1\n");
+  keys("ctrl+o");
+  click_control("bad.toml");
+  click_control("bad.toml");
+  EXPECT_EQ(title(), "Painted");
+  EXPECT_TRUE(app_->session().message().is_error);
+  EXPECT_NE(app_->session().message().text.find("bad.toml"), std::string::npos);
+}
+
+TEST_F(WindowFiles, Changed_EndsWithSaving) {
+  drag_slider("surface.sigma", kPartOfSlider);
+  EXPECT_TRUE(app_->session().edits().is_changed());
+  keys("ctrl+s");
+  keys("Return");
+  EXPECT_FALSE(app_->session().edits().is_changed());
+  EXPECT_EQ(Scene::from_file(at("made_scene.toml")).number("surface.sigma"),
+            app_->session().scene().number("surface.sigma"));
+  keys("ctrl+z");
+  EXPECT_TRUE(app_->session().edits().is_changed());
+}
+
+TEST_F(WindowFiles, Plots_SavedByShortcut_AreLinesAndTextOfWhatIsShown) {
+  put("measured.csv", "theta_deg,dolp,uncertainty\n40,0.02,0.001\n60,0.05,0.001\n");
+  app_->session().load_measured(at("measured.csv").string());
+  keys("ctrl+p");
+  drag_slider("surface.sigma", kPartOfSlider);
+  const auto save = [&](const std::string& name) {
+    keys("ctrl+shift+e");
+    type(at(name).string());
+    keys("Return");
+    const auto is_drawing = [&] { return app_->session().message().text.starts_with("drawing"); };
+    for (int i = 0; i < 3000 && is_drawing(); ++i) {
+      app_->frame();
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return app_->session().message();
+  };
+  EXPECT_EQ(save("plot.svg").text, "saved " + at("plot.svg").string());
+  const std::string svg = content("plot.svg");
+  for (const std::string& text :
+       {std::string("Painted"), explore::curve_name(app_->session()), app_->session().overlay_name(),
+        explore::surface_name(app_->session().pins()[0].curve.shown_scene()), std::string("measured"),
+        std::string("DOLP [%]"), std::string("zenith θ [°]")}) {
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
+  }
+  EXPECT_FALSE(save("plot.pdf").is_error);
+  EXPECT_TRUE(content("plot.pdf").starts_with("%PDF"));
+  EXPECT_TRUE(save("plot.docx").is_error);
+  EXPECT_TRUE(save("missing/plot.svg").is_error);
+}
+
+TEST_F(WindowFiles, Snapshot_Clicked_GivesTheStateBack) {
+  keys("ctrl+b");
+  drag_slider("surface.sigma", kPartOfSlider);
+  click_control("snapshot 0");
+  app_->settle();
+  EXPECT_EQ(app_->session().scene().number("surface.sigma"), 0.15);
+  keys("ctrl+z");
+  EXPECT_NE(app_->session().scene().number("surface.sigma"), 0.15);
+}
+
+TEST_F(WindowFiles, Session_SavedByShortcut_IsOpenedAsItWas) {
+  keys("ctrl+p");
+  drag_slider("surface.sigma", kPartOfSlider);
+  const auto sigma = app_->session().scene().number("surface.sigma");
+  keys("ctrl+shift+s");
+  keys("Return");
+  keys("ctrl+r");
+  app_->session().remove_pin(0);
+  keys("ctrl+o");
+  click_control("made_session.toml");
+  click_control("made_session.toml");
+  app_->settle();
+  EXPECT_EQ(app_->session().scene().number("surface.sigma"), sigma);
+  ASSERT_EQ(app_->session().pins().size(), 1U);
+  EXPECT_TRUE(app_->session().pins()[0].curve.is_finished());
+}
+
+}  // namespace

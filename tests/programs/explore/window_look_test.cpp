@@ -1,0 +1,122 @@
+// The window's look: theme, scale, small windows, notes, and how all of it closes.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "window_support.hpp"
+
+namespace {
+
+using namespace dolp;
+using namespace dolp::explore_test;
+
+class WindowLook : public Window {
+ protected:
+  std::string pixels(const Area& area) const {
+    const auto whole = [](float length) { return static_cast<std::size_t>(length); };
+    return display_.pixels(whole(area.min.x), whole(area.min.y), whole(area.width()), whole(area.height()));
+  }
+  /// Mean of the red bytes of the screen's upper left part.
+  double brightness() const {
+    const std::string rows = display_.pixels(0, 0, 300, 300);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < rows.size(); i += 4) sum += static_cast<unsigned char>(rows[i]);
+    return 4.0 * sum / static_cast<double>(rows.size());
+  }
+  Area plot() const { return app_->curve_view().area(); }
+};
+
+TEST_F(WindowLook, LightTheme_ChosenInTheMenu_IsKept) {
+  EXPECT_LT(brightness(), 100.0);
+  click_control("menu View");
+  click_control("Light theme");
+  frames();
+  EXPECT_GT(brightness(), 200.0);
+  EXPECT_NE(content("config/dolp/window.toml").find("light = true"), std::string::npos);
+  TearDown();
+  explore::AppOptions options;
+  options.preferences = at("config/dolp/window.toml");
+  app_ = std::make_unique<App>(explore::SceneEdits(Scene::from_text(kEdited)), options);
+  frames();
+  EXPECT_GT(brightness(), 200.0);
+}
+
+TEST_F(WindowLook, Scale_ByKeys_ChangesTheSizeOfTheControls) {
+  const auto height = [&] { return app_->control_area("surface.sigma").height(); };
+  const float usual = height();
+  for (const char* larger : {"ctrl+equal", "ctrl+KP_Add"}) {
+    const float before = height();
+    keys(larger);
+    EXPECT_GT(height(), before);
+  }
+  EXPECT_NEAR(height(), 1.21F * usual, 2.0F);  // text and margins are whole pixels
+  keys("ctrl+0");
+  EXPECT_EQ(height(), usual);
+  keys("ctrl+minus");
+  EXPECT_LT(height(), usual);
+}
+
+TEST_F(WindowLook, LeastSize_ShowsOneThingAtATime) {
+  const auto resize = [&](const char* width, const char* height) {
+    xdotool({"windowsize", "--sync", window_, width, height});
+    frames(2 * kFrames);
+  };
+  EXPECT_THROW(app_->control_area("panel effects"), std::out_of_range);
+  resize("800", "560");
+  EXPECT_GT(plot().width(), 350.0F);
+  EXPECT_GT(plot().height(), 200.0F);
+  for (const char* page : {"effects", "accuracy", "map", "slopes", "sky"}) {
+    const Area tab = app_->control_area(std::string("panel ") + page);
+    EXPECT_LT(tab.max.x, 800.0F) << page;
+    EXPECT_LT(tab.max.y, plot().min.y) << page;
+  }
+  const std::string curve = pixels(plot());
+  click_control("panel effects");
+  EXPECT_NE(pixels(plot()), curve);
+  click_control("panel curve");
+  resize("1280", "800");
+  EXPECT_GT(plot().width(), 400.0F);
+  EXPECT_LT(plot().max.x, app_->control_area("panel map").min.x);
+}
+
+TEST_F(WindowLook, Note_WaitsForTheMouseToRest_AndLeavesTheNextValueInSight) {
+  const Area slider = app_->control_area("surface.sigma");
+  const Area next = app_->control_area("surface.q");
+  // Right of the panel, at the height of the slider.
+  const Area note{{slider.max.x + 150.0F, slider.min.y}, {slider.max.x + 300.0F, slider.max.y + 40.0F}};
+  move_to(slider.at(0.9F, 0.5F));
+  app_->answer();
+  const std::string next_before = pixels(next);
+  std::string at_once, rested;
+  std::jthread hand([&] {
+    at_once = pixels(note);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    rested = pixels(note);
+    app_->close();
+  });
+  app_->run();
+  hand.join();
+  EXPECT_NE(rested, at_once);
+  EXPECT_EQ(pixels(next), next_before);
+}
+
+TEST_F(WindowLook, Escape_ClosesWhatIsOpen) {
+  move_to({5.0F, 5.0F});
+  const std::string closed = pixels(plot());
+  for (const char* open : {"ctrl+h", "ctrl+o", "ctrl+s"}) {
+    keys(open);
+    frames();
+    EXPECT_NE(pixels(plot()), closed) << open;
+    keys("Escape");
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));  // a dialog fades
+    frames();
+    EXPECT_EQ(pixels(plot()), closed) << open;
+  }
+  click_control("menu File");
+  const Area menu{{10.0F, 30.0F}, {150.0F, 200.0F}};
+  const std::string opened = pixels(menu);
+  keys("Escape");
+  EXPECT_NE(pixels(menu), opened);
+}
+
+}  // namespace

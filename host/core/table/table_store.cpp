@@ -33,6 +33,7 @@ class Writer {
     // Without an order of creation the netCDF library opens a file for reading only.
     check(H5Pset_link_creation_order(creation.id(), kOrdered));
     check(H5Pset_attr_creation_order(creation.id(), kOrdered));
+    check(H5Pset_obj_track_times(creation.id(), false));  // same scene, same bytes
     file_ = take(H5Fcreate("table", H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
   }
 
@@ -72,7 +73,7 @@ class Writer {
                     H5D_alloc_time_t allocation = H5D_ALLOC_TIME_EARLY) const {
     const Hdf5Handle creation = take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     check(H5Pset_attr_creation_order(creation.id(), kOrdered));
-    check(H5Pset_obj_track_times(creation.id(), false));  // same scene, same bytes
+    check(H5Pset_obj_track_times(creation.id(), false));
     // Every variable is written whole; to fill it first would write it twice.
     check(H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER));
     check(H5Pset_alloc_time(creation.id(), allocation));

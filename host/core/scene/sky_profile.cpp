@@ -41,7 +41,7 @@ constexpr double kLapse_K_km = 6.5;
 constexpr double kVapourHeight_km = 2.0;
 
 /// Columns of a file.
-struct Columns {
+struct ProfileColumns {
   std::size_t count = 0;
   std::size_t zenith = 0;
   std::size_t value = 0;
@@ -55,8 +55,8 @@ const NumberRange& value_range(bool is_radiance) {
 
 const char* value_column(bool is_radiance) { return is_radiance ? "radiance" : "temperature_K"; }
 
-Columns columns_of(const CsvReader& header) {
-  Columns columns;
+ProfileColumns columns_of(const CsvReader& header) {
+  ProfileColumns columns;
   std::optional<std::size_t> zenith, temperature, radiance;
   columns.count = header.cells().size();
   for (std::size_t i = 0; i < columns.count; ++i) {
@@ -86,7 +86,7 @@ Columns columns_of(const CsvReader& header) {
 /// Puts rows into a profile, one by one.
 class RowReader {
  public:
-  RowReader(SkyProfile& profile, const Columns& columns) : profile_(profile), columns_(columns) {}
+  RowReader(SkyProfile& profile, const ProfileColumns& columns) : profile_(profile), columns_(columns) {}
 
   void add(const CsvReader& row) {
     if (row.cells().size() != columns_.count)
@@ -159,7 +159,7 @@ class RowReader {
 
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   SkyProfile& profile_;
-  const Columns& columns_;
+  const ProfileColumns& columns_;
   std::size_t of_wavelength_ = 0;  ///< rows of the last wavelength
 };
 
@@ -264,7 +264,7 @@ std::optional<SkyProfile> built_in_sky(std::string_view name) {
 SkyProfile parse_sky_profile(std::string_view text, const std::string& name) {
   CsvReader reader(text, name);
   if (!reader.next()) reader.fail("no rows; columns zenith_deg and temperature_K or radiance are expected");
-  const Columns columns = columns_of(reader);
+  const ProfileColumns columns = columns_of(reader);
   SkyProfile profile;
   profile.kind = columns.is_radiance ? SkyProfile::Kind::kRadiance : SkyProfile::Kind::kTemperature;
   RowReader rows(profile, columns);

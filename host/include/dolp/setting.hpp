@@ -49,7 +49,7 @@ class DOLP_EXPORT Value {
   Value(std::string text) : content_(std::move(text)) {}
   Value(std::vector<double> numbers) : content_(std::move(numbers)) {}
   Value(std::initializer_list<double> numbers) : content_(std::vector<double>(numbers)) {}
-  Value(AxisRange range) : content_(range) {}
+  Value(const AxisRange& range) : content_(range) {}
   Value(TomlText text) : content_(std::move(text)) {}
   // NOLINTEND(google-explicit-constructor)
 

@@ -51,16 +51,19 @@ class Driver {
  public:
   explicit Driver(SceneEdits edits) : session(std::move(edits)), worker_(on_the_cpu(evaluator_), [] {}) { settle(); }
 
+  /// Takes what has been computed, and asks for what is wanted; false where there is no more to come.
+  bool frame() {
+    const bool was_idle = worker_.is_idle();
+    session.take(worker_.take_news());
+    const bool is_changed = session.take_changed();
+    std::vector<Job> jobs = is_changed ? session.wanted() : std::vector<Job>{};
+    if (was_idle && jobs.empty()) return false;
+    if (is_changed) worker_.want(std::move(jobs));
+    return true;
+  }
+
   void settle() {
-    for (;;) {
-      const bool was_idle = worker_.is_idle();
-      session.take(worker_.take_news());
-      const bool is_changed = session.take_changed();
-      std::vector<Job> jobs = is_changed ? session.wanted() : std::vector<Job>{};
-      if (was_idle && jobs.empty()) return;
-      if (is_changed) worker_.want(std::move(jobs));
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+    while (frame()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 
   Session session;

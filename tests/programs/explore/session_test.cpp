@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <random>
 #include <utility>
 
 #include "explore/readout.hpp"
@@ -50,6 +51,67 @@ TEST(ExploreSession, WhatIsShownWhileTheSceneChanges_IsStaleAndKeepsItsParameter
   EXPECT_FALSE(session.curve().is_stale() || session.overlay()->is_stale() || session.map().is_stale());
   EXPECT_FALSE(says_stale(curve_name(session) + session.overlay_name() + cursor_text(session)));
   EXPECT_NE(cursor_text(session).find("σ = 0.4,"), std::string::npos) << cursor_text(session);
+}
+
+/// A point on display agrees with the model of the scene that is named beside it, within both bounds.
+void expect_point_of(const Curve& curve, std::size_t position) {
+  if (curve.points().empty()) return;
+  const Point& shown = curve.points()[position % curve.points().size()];
+  const Point exact = truth(curve.shown_scene(), {shown}).front();
+  if (std::isnan(shown[Quantity::kDolp]) || std::isnan(exact[Quantity::kDolp])) return;
+  EXPECT_NEAR(shown[Quantity::kDolp], exact[Quantity::kDolp],
+              shown[Quantity::kErrorEstimate] + exact[Quantity::kErrorEstimate])
+      << surface_name(curve.shown_scene()) << " at " << shown.theta_deg;
+}
+
+/// One thing that a user may do.
+void act(Session& session, std::mt19937_64& random) {
+  const double share = std::generate_canonical<double, 53>(random);
+  switch (random() % 12) {
+    case 0:
+      return session.set("surface.sigma", 0.05 + share);
+    case 1:
+      return session.set("surface.q", 1.6 + 5.0 * share);
+    case 2:
+      return session.set("surface.n", 1.1 + 2.0 * share);
+    case 3:
+      return session.set("surface.masking", share < 0.5 ? "v-cavity" : "none");
+    case 4:
+      return session.set("surface.distribution", share < 0.5 ? "gaussian" : "cauchy");
+    case 5:
+      return session.set("surroundings.temperature_K", 200.0 + 100.0 * share);
+    case 6:
+      return session.undo();
+    case 7:
+      return session.redo();
+    case 8:
+      return session.pins().size() < 2 ? session.pin() : session.remove_pin(0);
+    case 9:
+      return session.set_theta(90.0 * share);
+    case 10:
+      return session.hold(share < 0.5);
+    default:
+      return;
+  }
+}
+
+// A minute of 16 frames a second.
+TEST(ExploreSession, RandomUse_NamesAndCurvesAgreeInEveryFrame) {
+  constexpr int kFrames = 960;
+  std::mt19937_64 random(20261124);
+  Driver driver(paint());
+  const Session& session = driver.session;
+  for (int i = 0; i < kFrames && !testing::Test::HasFailure(); ++i) {
+    if (random() % 4 == 0) act(driver.session, random);
+    i % 20 == 0 ? driver.settle() : void(driver.frame());
+    const Curve& curve = session.curve();
+    const std::size_t position = random();
+    EXPECT_EQ(curve_name(session), surface_name(curve.shown_scene()) + session.remark(curve));
+    EXPECT_TRUE(curve.is_finished() || *session.remark(curve) != 0);
+    expect_point_of(curve, position);
+    if (session.overlay()) expect_point_of(*session.overlay(), position);
+    for (const Pin& pin : session.pins()) expect_point_of(pin.curve, position);
+  }
 }
 
 TEST(ExploreSession, CoarseCurveOfAnEarlierScene_IsShownAsSuch) {

@@ -42,6 +42,10 @@ std::vector<double> log_ticks(double low, double high, std::size_t a_decade) {
 
 }  // namespace
 
+bool Scale::is_valid() const {
+  return std::isfinite(from) && std::isfinite(to) && from < to && (!is_log || from > 0.0);
+}
+
 double Scale::value(double position) const {
   if (position <= 0.0) return from;
   if (position >= 1.0) return to;

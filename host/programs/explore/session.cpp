@@ -237,7 +237,7 @@ void Session::restore(const SavedSession& saved) {
   for (const SavedSession::SavedPin& pin : saved.pins) {
     Curve curve(pin.scene);
     curve.follow(content_key(pin.scene, pin.scene.settings(), keeps_all()), pin.scene, keeps_all());
-    pins_.push_back({pin.name, pins_.size(), pin.is_visible, std::move(curve)});
+    pins_.push_back({pin.name, pin.colour, pin.is_visible, std::move(curve)});
   }
   theta_deg_ = saved.theta_deg;
   set_view(saved.view);
@@ -260,7 +260,12 @@ void Session::remove_pin(std::size_t position) {
 }
 
 void Session::set_view(const View& view) {
-  view_ = view;
+  const View before = std::exchange(view_, view);
+  if (view.quantity != before.quantity || view.is_log != before.is_log) {
+    view_.curve_zoom.y.reset();
+    view_.map_colours.reset();
+  }
+  if (view.is_theta_log != before.is_theta_log) view_.curve_zoom.x.reset();
   if (view_.map_x == view_.map_y) {
     view_.map_y = view_.map_x == Axis::kSigma ? Axis::kTheta : Axis::kSigma;
   }

@@ -1,6 +1,7 @@
 // Axes whose ends are typed, logarithmic ones, and the colours of the map.
 #include <gtest/gtest.h>
 
+#include "explore/session_file.hpp"
 #include "explore/window/style.hpp"
 #include "explore_support.hpp"
 #include "window_support.hpp"
@@ -103,6 +104,24 @@ TEST_F(Axes, RangeOfTheMap_IsComputedAnew_AndARefusedEndGoesWithTheOther) {
   type("3", "Return");
   EXPECT_EQ(app_->session().map().y().scale, (Scale{2.5, 3.0, true}));
   EXPECT_TRUE(app_->session().map().is_finished());
+}
+
+TEST_F(Axes, OfASavedSession_ComeBackWithIt) {
+  explore::View view = app_->session().view();
+  view.is_log = true;
+  app_->session().set_view(view);
+  view.curve_zoom = {Scale{20.0, 70.0}, Scale{1.0, 4.0, true}};
+  view.map_colours = Scale{0.01, 0.08, true};
+  app_->session().set_view(view);
+  explore::save_session(app_->session(), at("session.toml").string());
+  open({});
+  EXPECT_NE(app_->curve_view().x(), (Scale{20.0, 70.0}));
+  explore::open_file(app_->session(), at("session.toml").string());
+  app_->settle();
+  frames();
+  EXPECT_EQ(app_->curve_view().x(), (Scale{20.0, 70.0}));
+  EXPECT_EQ(app_->curve_view().y(), (Scale{1.0, 4.0, true}));
+  EXPECT_EQ(app_->map_view().colours(), (Scale{0.01, 0.08, true}));
 }
 
 TEST_F(Axes, LogarithmOfTheZenith_BeginsAtHalfADegree) {

@@ -310,23 +310,21 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
 
 }  // namespace
 
-void CurveView::edit_axes(Session& session, const Plot& plot, const std::string& values) {
-  View view = session.view();
+void CurveView::edit_axes(View& view, const Plot& plot, const std::string& values) {
   const auto check_zeniths = [&](const Scale& range) {
     const Scale all = Scale{0.0, view.theta_max_deg}.with_log(range.is_log);
     const bool is_inside = range.from >= all.from && range.to <= all.to;
     return is_inside ? "" : fmt::format("must be numbers in [{:g}, {:g}]; \"θ up to\" sets the end", all.from, all.to);
   };
   if (const auto change = axis_editor_.draw("zenith θ [°]", plot.x_numbers(), x_, check_zeniths)) {
-    zoom_.x = change->range;
+    view.curve_zoom.x = change->range;
     view.is_theta_log = change->is_log;
   }
   const auto take_all = [](const Scale&) { return std::string(); };
   if (const auto change = axis_editor_.draw(values, plot.y_numbers(), y_, take_all)) {
-    zoom_.y = change->range;
+    view.curve_zoom.y = change->range;
     view.is_log = change->is_log;
   }
-  if (view.is_log != session.view().is_log || view.is_theta_log != session.view().is_theta_log) session.set_view(view);
 }
 
 void CurveView::draw(Session& session, ImVec2 size) {
@@ -346,22 +344,24 @@ void CurveView::draw(Session& session, ImVec2 size) {
 
   const Scale zeniths = Scale{0.0, session.view().theta_max_deg}.with_log(session.view().is_theta_log);
   PlotAxis values = value_axis(session, curves);
-  if (quantity_ != quantity || (zoom_.y && zoom_.y->is_log != values.scale.is_log)) zoom_.y.reset();
-  if (zoom_.x && zoom_.x->is_log != zeniths.is_log) zoom_.x.reset();
-  if (zoom_.x) zoom_.x = zoom_.x->within(zeniths);
-  if (zoom_.y) {
-    values.scale = *zoom_.y;
+  View view = session.view();
+  Zoom& zoom = view.curve_zoom;
+  const bool has_zeniths = zoom.x && zoom.x->is_log == zeniths.is_log;
+  if (has_zeniths) zoom.x = zoom.x->within(zeniths);
+  // Before there is a curve its values have no logarithm, but the range of them stays.
+  if (zoom.y && zoom.y->is_log == values.scale.is_log) {
+    values.scale = *zoom.y;
   } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && quantity_ == quantity && y_.is_log == values.scale.is_log) {
     // While a slider is dragged the axis grows at most, so that the curve is what moves.
     values.scale = {std::min(y_.from, values.scale.from), std::max(y_.to, values.scale.to), y_.is_log};
   }
   quantity_ = quantity;
-  x_ = zoom_.x.value_or(zeniths);
+  x_ = has_zeniths ? *zoom.x : zeniths;
   y_ = values.scale;
   const Plot plot("curve", {size.x, size.y - residual_height - (has_measured ? gap : 0.0F)},
                   {is_bistatic(session.scene()) ? "zenith θ of the source [°]" : "zenith θ [°]", x_}, values);
   if (plot.is_dragged()) session.set_theta(plot.x().value(plot.mouse_x()));
-  plot.follow_mouse(zoom_, zeniths);
+  plot.follow_mouse(zoom, zeniths);
   plot.clip();
   if (!plot.y().is_log) plot.list()->AddLine(plot.at(x_.from, 0.0), plot.at(x_.to, 0.0), kDimColour);
   if (quantity == Plotted::kDolp) draw_bracket(plot, curves.back());
@@ -375,7 +375,10 @@ void CurveView::draw(Session& session, ImVec2 size) {
   }
   plot.unclip();
   area_ = plot.area();
-  edit_axes(session, plot, values.label);
+  edit_axes(view, plot, values.label);
+  const View& before = session.view();
+  if (view.curve_zoom != before.curve_zoom || view.is_log != before.is_log || view.is_theta_log != before.is_theta_log)
+    session.set_view(view);
   if (has_measured) draw_residuals(session, x_, {size.x, residual_height});
 }
 

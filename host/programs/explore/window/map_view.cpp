@@ -14,8 +14,7 @@ constexpr double kMostContrast = 1e3;  // of a logarithmic colour scale
 constexpr std::size_t kMostLines = 7;
 constexpr ImU32 kLightLine = IM_COL32(255, 255, 255, 190);  // over the colours of a map, in both themes
 constexpr ImU32 kDarkLine = IM_COL32(0, 0, 0, 170);         // over the white of diverging colours
-constexpr std::size_t kUnknownVersion = static_cast<std::size_t>(-1);
-constexpr float kBarRoom = 5.4F;  // right of the map, in lines of text
+constexpr float kBarRoom = 5.4F;                            // right of the map, in lines of text
 
 PlotAxis axis_of(const MapAxis& axis) { return {axis.label(), axis.scale}; }
 
@@ -64,12 +63,12 @@ ImU32 MapView::colour(double position) const {
 void MapView::update(const Session& session) {
   const Plotted quantity = session.view().quantity;
   const bool is_log = session.view().is_log;
-  const bool is_same = quantity_ == quantity && is_log_ == is_log;
+  const bool is_same = quantity_ == quantity && is_log_ == is_log && typed_colours_ == session.view().map_colours;
   if (version_ == session.map().version() && is_same) return;
   version_ = session.map().version();
   quantity_ = quantity;
   is_log_ = is_log;
-  if (!is_same) typed_colours_.reset();
+  typed_colours_ = session.view().map_colours;
   field_ = session.map().field(quantity);
   // While a slider is dragged the colours keep their values, so that the map is what changes.
   const bool is_held = session.is_dragged() && is_same && colour_scale_.from < colour_scale_.to;
@@ -182,11 +181,9 @@ void MapView::edit_axes(Session& session, const Plot& plot) {
   const auto change =
       axis_editor_.draw("colours: " + quantity.label(), numbers, scaled(colour_scale_, quantity.scale()), take_all);
   if (!change) return;
-  typed_colours_.reset();
-  if (change->range) typed_colours_ = scaled(*change->range, 1.0 / quantity.scale());
-  version_ = kUnknownVersion;
-  if (quantity.is_signed || change->is_log == colour_scale_.is_log) return;
-  view.is_log = change->is_log;
+  view.map_colours.reset();
+  if (change->range) view.map_colours = scaled(*change->range, 1.0 / quantity.scale());
+  if (!quantity.is_signed) view.is_log = change->is_log;
   session.set_view(view);
 }
 

@@ -149,8 +149,8 @@ class Session {
   const SkyFiles& skies() const { return skies_; }
   bool has_own_sky() const { return skies_.hold(sky_file(scene())); }
   bool varies(const std::string& key) const { return marked_.contains(key); }
-  /// The fit of the marked parameters, over the ranges of their sliders, to the measured points; none without points,
-  /// or without a marked parameter that the scene has.
+  /// The fit of the marked parameters, over the ranges of their sliders that the scene takes, to the measured points;
+  /// none without points, or without a marked parameter that the scene has.
   std::optional<FitJob> fit_job() const;
   /// The last fit, and its minimum on display: none once the scene has changed.
   const std::optional<Fit>& last_fit() const { return fit_; }

@@ -368,12 +368,12 @@ void CurveView::draw(Session& session, ImVec2 size) {
   for (const Shown& shown : curves) draw_curve(plot, shown, quantity);
   draw_measured(plot, measured);
   draw_cursor(plot, session, curves.back().style);
-  draw_peak(plot, session);
   if (plot.is_hovered() && !plot.is_dragged()) {
     draw_label(plot.list(), plot.area().at(0.99F, 0.98F), {1.0F, 1.0F}, kDimColour,
                fmt::format("{:.2f}°, {:.4g}", x_.value(plot.mouse_x()), y_.value(plot.mouse_y())));
   }
   plot.unclip();
+  draw_peak(plot, session);  // the mark at an end of the axis is as large as elsewhere
   area_ = plot.area();
   edit_axes(view, plot, values.label);
   const View& before = session.view();

@@ -30,7 +30,8 @@ struct Scale {
   Scale with_log(bool wants_log) const;
 
   /// Round values in the range, at most `most`, which is at least 2. Linear: multiples of 1, 2 or 5 times a power of
-  /// ten. Logarithmic: powers of ten, with 2 and 5 between them where there is room.
+  /// ten. Logarithmic: powers of ten, with 2 and 5 between them where there is room; as linear where fewer than three
+  /// fit.
   std::vector<double> ticks(std::size_t most) const;
 
   friend bool operator==(const Scale&, const Scale&) = default;

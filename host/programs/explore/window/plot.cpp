@@ -131,7 +131,7 @@ void Plot::follow_mouse(Zoom& zoom, const Scale& all_x) const {
 
 void Plot::draw_x_axis(bool has_grid) const {
   const float line = ImGui::GetTextLineHeight();
-  for (const double tick : ticks_of(x(), area_.width(), 4.0F * line)) {
+  for (const double tick : ticks_of(x(), area_.width(), 3.4F * line)) {
     const float at = at_position(x().position(tick), 0.0).x;
     if (has_grid) list_->AddLine({at, min().y}, {at, max().y}, kGridColour);
     list_->AddLine({at, max().y}, {at, max().y + 0.25F * line}, kDimColour);

@@ -75,6 +75,9 @@ std::string shown(std::string_view text);
 /// The same text in ASCII.
 std::string ascii(std::string_view text);
 
+/// A text with its lines broken at spaces alone, so that numbers and paths stay whole where a line has room for them.
+std::string in_lines(std::string text, float width);
+
 /// Text in a colour at ImGui's cursor, wrapped at the edge of the window.
 void coloured_text(ImU32 colour, const std::string& text);
 

@@ -15,6 +15,11 @@ TEST(Scale, WithLog_BeginsAboveZero) {
   EXPECT_EQ((Scale{2.0, 50.0, true}.with_log(false)), (Scale{2.0, 50.0}));
 }
 
+TEST(Scale, TicksOfAPartOfADecade_AreThoseOfALinearAxis) {
+  EXPECT_EQ((Scale{8.0, 14.0, true}.ticks(5)), (std::vector<double>{8.0, 10.0, 12.0, 14.0}));
+  EXPECT_EQ((Scale{1.0, 10.0, true}.ticks(5)), (std::vector<double>{1.0, 2.0, 5.0, 10.0}));
+}
+
 TEST(Colours, DivergingOnes_AreBlueWhiteAndRed) {
   for (const auto& [position, colour] : {std::pair{0.0, IM_COL32(5, 48, 97, 255)},
                                          {0.5, IM_COL32(247, 247, 247, 255)},
@@ -104,6 +109,17 @@ TEST_F(Axes, RangeOfTheMap_IsComputedAnew_AndARefusedEndGoesWithTheOther) {
   type("3", "Return");
   EXPECT_EQ(app_->session().map().y().scale, (Scale{2.5, 3.0, true}));
   EXPECT_TRUE(app_->session().map().is_finished());
+}
+
+TEST_F(Axes, Fields_CloseWithEscape_WhichTakesBackWhatIsTypedFirst) {
+  const explore::AxisEditor& editor = app_->curve_view().axis_editor();
+  double_click(below(app_->curve_view().area()));
+  ASSERT_TRUE(editor.is_open());
+  type("95", "Return");
+  keys("Escape");
+  EXPECT_TRUE(editor.is_open());
+  keys("Escape");
+  EXPECT_FALSE(editor.is_open());
 }
 
 TEST_F(Axes, OfASavedSession_ComeBackWithIt) {

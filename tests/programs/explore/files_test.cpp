@@ -255,8 +255,23 @@ TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
   EXPECT_EQ(curve["low"][100], 100.0 * points[100][Quantity::kDolpLow]);
   EXPECT_TRUE(plots["curves"][0]["low"][100].is_null());
   EXPECT_EQ(plots["map"]["rows"].size(), driver.session.map().field(Plotted::kDolp).count);
+  EXPECT_TRUE(plots["map"]["colours"].is_null() && !plots["map"]["is_signed"]);
+  View view = driver.session.view();
+  view.map_colours = Scale{0.01, 0.08};
+  driver.session.set_view(view);
+  EXPECT_EQ(nlohmann::json::parse(plot_json(driver.session, {}, {}))["map"]["colours"]["to"], 8.0);
   driver.session.set_view({.panel = Panel::kSlopes});
   EXPECT_TRUE(nlohmann::json::parse(plot_json(driver.session, {}, {}))["map"].is_null());
+}
+
+TEST(ExplorePlots, Pin_OfTheSameSurface_IsNamedByItsRadiation) {
+  Driver driver(paint());
+  driver.session.pin();
+  driver.session.set("emission.temperature_K", 310.0);
+  driver.settle();
+  const auto plots = nlohmann::json::parse(plot_json(driver.session, {0.0, 90.0}, {0.0, 20.0}));
+  const std::string name = plots["curves"][1]["name"];
+  EXPECT_TRUE(name.ends_with(", T 290 K")) << name;
 }
 
 TEST_F(ExploreFiles, Preferences_KeepThemeZoomAndRecentFilesThatAreThere) {

@@ -71,6 +71,7 @@ TEST_F(WindowLook, Scale_ByKeys_ChangesTheSizeOfTheControls) {
     EXPECT_GT(height(), before);
   }
   EXPECT_NEAR(height(), 1.21F * usual, 2.0F);  // text and margins are whole pixels
+  EXPECT_NEAR(explore::scaled(10.0F), 12.1F, 0.5F);
   keys("ctrl+0");
   EXPECT_EQ(height(), usual);
   keys("ctrl+minus");

@@ -226,15 +226,15 @@ void draw_legend(const std::vector<Shown>& curves, Session& session) {
 void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& style) {
   if (!plot.has_place(session.theta_deg(), 1.0)) return;
   const float x = plot.at_position(plot.x().position(session.theta_deg()), 0.0).x;
-  plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour);
+  plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour, scaled(1.0F));
   const Point* const shown = session.at_cursor();
   if (!shown) return;
   const Plotted quantity = session.view().quantity;
   const double value = shown_value(quantity, *shown);
   if (!plot.has_place(shown->theta_deg, value)) return;
   const ImVec2 at = plot.at(shown->theta_deg, value);
-  plot.list()->AddCircleFilled(at, 4.0F, style.colour);
-  plot.list()->AddCircle(at, 4.5F, kTextColour);
+  plot.list()->AddCircleFilled(at, scaled(4.0F), style.colour);
+  plot.list()->AddCircle(at, scaled(4.5F), kTextColour, 0, scaled(1.0F));
 }
 
 void draw_peak(const Plot& plot, const Session& session) {
@@ -246,23 +246,23 @@ void draw_peak(const Plot& plot, const Session& session) {
   const ImVec2 at = plot.at(peak->at.theta_deg, value);
   if (at.x < plot.min().x || at.x > plot.max().x || at.y < plot.min().y || at.y > plot.max().y) return;
   const float side = is_low ? 1.0F : -1.0F;
-  plot.list()->AddTriangleFilled({at.x, at.y + side * 3.0F}, {at.x - 5.0F, at.y + side * 12.0F},
-                                 {at.x + 5.0F, at.y + side * 12.0F}, kTextColour);
+  plot.list()->AddTriangleFilled({at.x, at.y + side * scaled(3.0F)}, {at.x - scaled(5.0F), at.y + side * scaled(12.0F)},
+                                 {at.x + scaled(5.0F), at.y + side * scaled(12.0F)}, kTextColour);
   // Beside the mark towards the middle, so that it stays inside.
   const bool is_right = at.x > 0.5F * (plot.min().x + plot.max().x);
   const float line = ImGui::GetTextLineHeight();
-  const float beside = std::max(std::min(at.y + side * 8.0F, plot.max().y - line), plot.min().y + line);
-  draw_label(plot.list(), {at.x + (is_right ? -9.0F : 9.0F), beside}, {is_right ? 1.0F : 0.0F, 0.5F}, kTextColour,
+  const float beside = std::max(std::min(at.y + side * scaled(8.0F), plot.max().y - line), plot.min().y + line);
+  draw_label(plot.list(), {at.x + scaled(is_right ? -9.0F : 9.0F), beside}, {is_right ? 1.0F : 0.0F, 0.5F}, kTextColour,
              fmt::format("{:.2f} % at {:.1f}°", value, peak->at.theta_deg));
 }
 
 void draw_error_bar(const Plot& plot, double theta_deg, double low, double high) {
-  constexpr float kCap = 3.0F;
+  const float cap = scaled(3.0F);
   const ImVec2 bottom = plot.at(theta_deg, low);
   const ImVec2 top = plot.at(theta_deg, high);
-  plot.list()->AddLine(bottom, top, kTextColour);
+  plot.list()->AddLine(bottom, top, kTextColour, scaled(1.0F));
   for (const ImVec2 end : {bottom, top})
-    plot.list()->AddLine({end.x - kCap, end.y}, {end.x + kCap, end.y}, kTextColour);
+    plot.list()->AddLine({end.x - cap, end.y}, {end.x + cap, end.y}, kTextColour, scaled(1.0F));
 }
 
 void draw_measured(const Plot& plot, const std::vector<Measurement>& points) {
@@ -270,7 +270,7 @@ void draw_measured(const Plot& plot, const std::vector<Measurement>& points) {
     const double scale = scale_of(plotted(point.observable));
     const double value = scale * point.value;
     if (!plot.has_place(point.theta_deg, value)) continue;
-    plot.list()->AddCircle(plot.at(point.theta_deg, value), 4.0F, kTextColour, 0, 1.5F);
+    plot.list()->AddCircle(plot.at(point.theta_deg, value), scaled(4.0F), kTextColour, 0, scaled(1.5F));
     if (!point.uncertainty) continue;
     const double deviation = scale * *point.uncertainty;
     const double low = plot.y().is_log ? std::max(value - deviation, plot.y().from) : value - deviation;
@@ -303,7 +303,7 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   for (const Residual& one : shown) {
     if (!plot.has_place(one.theta_deg, 1.0)) continue;
     if (one.deviation > 0.0) draw_error_bar(plot, one.theta_deg, one.value - one.deviation, one.value + one.deviation);
-    plot.list()->AddCircleFilled(plot.at(one.theta_deg, one.value), 3.0F, kTextColour);
+    plot.list()->AddCircleFilled(plot.at(one.theta_deg, one.value), scaled(3.0F), kTextColour);
   }
   plot.unclip();
 }

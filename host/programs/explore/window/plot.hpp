@@ -74,7 +74,7 @@ class Plot {
   bool is_hovered_ = false;
 };
 
-/// A line through points, dashed where the style says so.
+/// A line through points, dashed where the style says so; its width and dashes are scaled().
 void draw_line(ImDrawList* list, const std::vector<ImVec2>& points, const CurveStyle& style, float width);
 
 /// Text with its anchor at a fraction of its own size: (0.5, 0) is centred below `at`.

@@ -117,6 +117,8 @@ void load_font(float pixels) {
   io.Fonts->AddFontDefault();
 }
 
+float scaled(float pixels) { return pixels * ImGui::GetFontSize() / kFontPixels; }
+
 std::string ascii(std::string_view text) {
   std::string plain;
   while (!text.empty()) {

@@ -38,7 +38,7 @@ toml::array texts_of(const std::vector<Setting>& settings) {
   return texts;
 }
 
-/// What a session's file says of states of scenes.
+/// Writes states of scenes for the file of a session.
 class StateWriter {
  public:
   StateWriter(const SkyFiles& skies, const std::filesystem::path& file)

@@ -161,7 +161,7 @@ void ControlsPanel::draw_field(Session& session, const std::string& id, double v
     session.set({change(text)});
     return session.message().is_error ? session.message().text : "";
   });
-  // What is said of a text goes when it is taken back.
+  // The message about a text goes when the text is taken back.
   if (!before.empty() && fields_.reason(id).empty() && session.message().text == before) session.tell("");
   remember_area("field " + id);
 }

@@ -108,7 +108,7 @@ class MapView {
   std::size_t version_ = 0;
   Plotted quantity_ = Plotted::kDolp;
   bool is_log_ = false;
-  Scale colour_scale_;  ///< from the first colour to the last; empty where all values are equal
+  Scale colour_scale_;                  ///< from the first colour to the last; empty where all values are equal
   std::optional<Scale> typed_colours_;  ///< of the view that colour_scale_ belongs to
   AxisEditor axis_editor_;
   MapField field_;

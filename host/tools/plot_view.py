@@ -12,7 +12,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
-from matplotlib.colors import LogNorm  # noqa: E402
+from matplotlib.colors import LogNorm, Normalize  # noqa: E402
 from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator  # noqa: E402
 
 # Of the window's light theme; line styles tell the curves apart without colours.
@@ -57,8 +57,10 @@ def draw_curves(axes, plots):
                       markerfacecolor="none", elinewidth=0.8, label="measured")
     set_axes(axes, plots["x"], plots["y"])
     axes.grid(alpha=0.25, linewidth=0.6)
-    entries = dict(zip(*reversed(axes.get_legend_handles_labels())))  # each label once
-    axes.legend(entries.values(), entries.keys(), frameon=False, fontsize=8)
+    entries = {}  # curves may have one name; marks of them are named once
+    for handle, label in zip(*axes.get_legend_handles_labels()):
+        entries[label if label in (MODEL_FAILS, BAND) else handle] = (handle, label)
+    axes.legend(*zip(*entries.values()), frameon=False, fontsize=8)
 
 
 def places(axis, count):
@@ -70,18 +72,24 @@ def draw_map(figure, axes, plot):
     rows = np.ma.masked_invalid([numbers(row) for row in plot["rows"]])
     x, y = places(plot["x"], rows.shape[1]), places(plot["y"], rows.shape[0])
     low, high = (rows.min(), rows.max()) if rows.count() else (0.0, 1.0)
-    norm, locator = None, MaxNLocator(CONTOURS)
-    if plot["is_log"] and high > 0.0:
+    locator, colours = MaxNLocator(CONTOURS), "viridis"
+    if plot["is_signed"]:
+        high, colours = max(abs(low), abs(high)), "RdBu_r"
+        low = -high
+    if plot["colours"]:
+        low, high = plot["colours"]["from"], plot["colours"]["to"]
+    norm = Normalize(low, high)
+    if plot["is_log"] and not plot["is_signed"] and high > 0.0:
         low = max(low, high / MOST_CONTRAST)
         norm, locator = LogNorm(low, high), LogLocator(subs=(1.0, 2.0, 5.0))
-    mesh = axes.pcolormesh(x, y, rows, cmap="viridis", norm=norm, shading="nearest", rasterized=True)
+    mesh = axes.pcolormesh(x, y, rows, cmap=colours, norm=norm, shading="nearest", rasterized=True)
     axes.set_facecolor("0.72")
     levels = [level for level in locator.tick_values(low, high) if low < level < high]
+    set_axes(axes, plot["x"], plot["y"])  # before the labels, whose gaps are as long as the text on these axes
     if levels:
-        lines = axes.contour(x, y, rows, levels=levels, colors="white", linewidths=0.7)
+        lines = axes.contour(x, y, rows, levels=levels, colors="0.2" if plot["is_signed"] else "white", linewidths=0.7)
         axes.clabel(lines, fontsize=7, fmt="%g")
     figure.colorbar(mesh, ax=axes, pad=0.02).set_label(plot["label"])
-    set_axes(axes, plot["x"], plot["y"])
 
 
 def draw(plots, path):

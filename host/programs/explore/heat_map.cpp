@@ -10,8 +10,6 @@
 namespace dolp::explore {
 namespace {
 
-constexpr Scale kSmithQ{1.6, 20.0, true};  // smith needs more than 1.5
-
 Scale range_of(const std::vector<double>& grid, const Scale& fallback) {
   const auto [low, high] = std::ranges::minmax_element(grid);
   return *low<*high&& * low> 0.0 ? Scale{*low, *high, true} : Scale{fallback.from, fallback.to, true};
@@ -33,8 +31,7 @@ MapAxis suggested_axis(Axis axis, const Scene& scene, double theta_max_deg) {
     return {axis, low < high ? Scale{low, high} : parameter("surface.wind_m_s").slider, true};
   }
   if (axis == Axis::kSigma) return {axis, range_of(scene.numbers("grid.sigma"), parameter("surface.sigma").slider)};
-  const bool is_smith = scene.word("surface.masking") == "smith" && scene.word("surface.distribution") == "cauchy";
-  return {axis, range_of(scene.numbers("grid.q"), is_smith ? kSmithQ : parameter("surface.q").slider)};
+  return {axis, range_of(scene.numbers("grid.q"), range_in(scene, parameter("surface.q")))};
 }
 
 const char* MapAxis::label() const {

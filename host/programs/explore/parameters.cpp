@@ -94,6 +94,12 @@ const Parameter& parameter(const std::string& key) {
   throw std::logic_error("no parameter " + key);
 }
 
+Scale range_in(const Scene& scene, const Parameter& parameter) {
+  constexpr Scale kSmithQ{1.6, 20.0, true};  // smith needs more than 1.5
+  const bool is_smith = scene.word("surface.masking") == "smith" && scene.word("surface.distribution") == "cauchy";
+  return is_smith && parameter.key->key == "surface.q" ? kSmithQ : parameter.slider;
+}
+
 std::string table_of(const std::string& key) { return key.substr(0, key.find('.')); }
 
 std::string unit_text(const Key& key) {

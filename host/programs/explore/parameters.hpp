@@ -48,6 +48,9 @@ const std::vector<Choice>& choices();
 /// The one with this key, which must exist.
 const Parameter& parameter(const std::string& key);
 
+/// The range of a parameter's slider, without what the scene's masking excludes.
+Scale range_in(const Scene& scene, const Parameter& parameter);
+
 /// The table of a dotted key: "surface" of "surface.sigma".
 std::string table_of(const std::string& key);
 

@@ -39,11 +39,17 @@ json map_json(const Session& session) {
     }
     rows.push_back(std::move(values));
   }
+  json colours;  // none that were typed
+  if (const auto& typed = session.view().map_colours) {
+    colours = {{"from", of.scale() * typed->from}, {"to", of.scale() * typed->to}};
+  }
   const auto axis = [](const MapAxis& one) { return axis_json(one.label(), one.scale); };
   return {{"x", axis(session.map().x())},
           {"y", axis(session.map().y())},
           {"label", of.label()},
           {"is_log", session.view().is_log},
+          {"is_signed", of.is_signed},
+          {"colours", colours},
           {"rows", rows}};
 }
 
@@ -55,7 +61,9 @@ std::string plot_json(const Session& session, const Scale& x, const Scale& y) {
   if (session.overlay()) curves.push_back(curve_json(*session.overlay(), session.overlay_name(), "overlay", quantity));
   for (const Pin& pin : session.pins()) {
     if (!pin.is_visible) continue;
-    const std::string name = pin.name.empty() ? surface_name(pin.curve.shown_scene()) : pin.name;
+    const Scene& scene = pin.curve.shown_scene();
+    std::string name = pin.name.empty() ? surface_name(scene) : pin.name;
+    if (name == surface_name(session.curve().shown_scene())) name += ", " + pin_name(pin, session);
     curves.push_back(curve_json(pin.curve, name, pin.colour, quantity));
   }
   curves.push_back(curve_json(session.curve(), curve_name(session), "curve", quantity));

@@ -102,10 +102,12 @@ std::string cursor_text(const Session& session) {
   const Point* const shown = session.at_cursor();
   if (!shown) return "Cursor: …";
   const Point& r = *shown;
-  std::string text = fmt::format(
-      "Cursor{}: θ = {:.1f}°, {} = {:.4g}, q = {:.4g}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
-      session.remark(session.curve()), r.theta_deg, has_wind(session.curve().shown_scene()) ? "U" : "σ", r.sigma, r.q,
-      kPercent * r[Quantity::kDolp], points_text(r[Quantity::kErrorEstimate]), kPercent * r.q_over_i());
+  const Scene& scene = session.curve().shown_scene();
+  const bool has_q = scene.word("surface.distribution") == "cauchy";
+  std::string text = fmt::format("Cursor{}: θ = {:.1f}°, {} = {:.4g}{}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
+                                 session.remark(session.curve()), r.theta_deg, has_wind(scene) ? "U" : "σ", r.sigma,
+                                 has_q ? fmt::format(", q = {:.4g}", r.q) : "", kPercent * r[Quantity::kDolp],
+                                 points_text(r[Quantity::kErrorEstimate]), kPercent * r.q_over_i());
   if (r.has_bracket()) {
     text += fmt::format(", all bounces {:.3f} to {:.3f} %", kPercent * r[Quantity::kDolpLow],
                         kPercent * r[Quantity::kDolpHigh]);

@@ -42,6 +42,10 @@ std::vector<double> log_ticks(double low, double high, std::size_t a_decade) {
 
 }  // namespace
 
+bool Scale::is_valid() const {
+  return std::isfinite(from) && std::isfinite(to) && from < to && (!is_log || from > 0.0);
+}
+
 double Scale::value(double position) const {
   if (position <= 0.0) return from;
   if (position >= 1.0) return to;
@@ -77,6 +81,7 @@ Scale Scale::with_log(bool wants_log) const {
 std::vector<double> Scale::ticks(std::size_t most) const {
   if (!is_log) return linear_ticks(from, to, most);
   std::vector<double> all = log_ticks(from, to, 3);
+  if (all.size() < 3) return linear_ticks(from, to, most);  // a part of a decade
   if (all.size() > most) all = log_ticks(from, to, 1);
   std::vector<double> some;
   const std::size_t stride = (all.size() + most - 1) / most;

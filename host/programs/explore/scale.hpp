@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@ struct Scale {
   double to = 1.0;
   bool is_log = false;
 
+  /// True for a range in the domain.
+  bool is_valid() const;
   /// The value at a position; outside of the range that of the nearer end.
   double value(double position) const;
   /// The position of a value, not clamped.
@@ -27,10 +30,17 @@ struct Scale {
   Scale with_log(bool wants_log) const;
 
   /// Round values in the range, at most `most`, which is at least 2. Linear: multiples of 1, 2 or 5 times a power of
-  /// ten. Logarithmic: powers of ten, with 2 and 5 between them where there is room.
+  /// ten. Logarithmic: powers of ten, with 2 and 5 between them where there is room; as linear where fewer than three
+  /// fit.
   std::vector<double> ticks(std::size_t most) const;
 
   friend bool operator==(const Scale&, const Scale&) = default;
+};
+
+/// The part of a plot that is shown, by the mouse or as typed; none: all.
+struct Zoom {
+  std::optional<Scale> x, y;
+  friend bool operator==(const Zoom&, const Zoom&) = default;
 };
 
 /// A tick as text, as short as it is exact.

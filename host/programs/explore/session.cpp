@@ -27,6 +27,21 @@ std::string text_of(const std::vector<Setting>& changes) {
   return text;
 }
 
+/// The numbers and the sky in which a scene differs from another: "T 300 K, clear-sky".
+std::string differences(const Scene& scene, const Scene& other) {
+  std::vector<std::string> words;
+  for (const Parameter& parameter : parameters()) {
+    const std::optional<double> value = parameter.value(scene);
+    if (!value || value == parameter.value(other)) continue;
+    const std::string unit = unit_text(*parameter.key);
+    words.push_back(fmt::format("{} {:.4g}{}{}", parameter.symbol, *value, unit.empty() ? "" : " ", unit));
+  }
+  const std::string sky = scene.word("surroundings.profile").value_or("");
+  if (!sky.empty() && sky != other.word("surroundings.profile"))
+    words.push_back(std::filesystem::path(sky).stem().string());
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
 /// The words that describe a surface, in groups.
 std::vector<std::vector<std::string>> surface_words(const Scene& scene) {
   const std::string distribution = scene.word("surface.distribution").value();
@@ -63,7 +78,9 @@ std::string surface_name(const Scene& scene, const Scene* other) {
     }
     if (!words.empty()) parts.push_back(fmt::format("{}", fmt::join(words, " ")));
   }
-  return parts.empty() ? "the same surface" : fmt::format("{}", fmt::join(parts, ", "));
+  if (!parts.empty()) return fmt::format("{}", fmt::join(parts, ", "));
+  const std::string rest = other ? differences(scene, *other) : "";
+  return rest.empty() ? "the same surface" : rest;
 }
 
 std::string pin_name(const Pin& pin, const Session& session) {
@@ -190,9 +207,9 @@ std::optional<FitJob> Session::fit_job() const {
   for (const Parameter& parameter : parameters()) {
     const std::optional<double> value = parameter.value(scene());
     if (!value || !varies(parameter.key->key)) continue;
-    const Scale& slider = parameter.slider;
-    const double low = parameter.key->key == "surface.k" ? kLeastK : std::min(slider.from, *value);
-    job.vary.push_back({parameter.key->key, low, std::max(slider.to, *value), std::max(low, *value)});
+    const Scale range = range_in(scene(), parameter);
+    const double low = parameter.key->key == "surface.k" ? kLeastK : std::min(range.from, *value);
+    job.vary.push_back({parameter.key->key, low, std::max(range.to, *value), std::max(low, *value)});
   }
   return job.vary.empty() ? std::nullopt : std::optional(std::move(job));
 }
@@ -237,7 +254,7 @@ void Session::restore(const SavedSession& saved) {
   for (const SavedSession::SavedPin& pin : saved.pins) {
     Curve curve(pin.scene);
     curve.follow(content_key(pin.scene, pin.scene.settings(), keeps_all()), pin.scene, keeps_all());
-    pins_.push_back({pin.name, pins_.size(), pin.is_visible, std::move(curve)});
+    pins_.push_back({pin.name, pin.colour, pin.is_visible, std::move(curve)});
   }
   theta_deg_ = saved.theta_deg;
   set_view(saved.view);
@@ -260,7 +277,12 @@ void Session::remove_pin(std::size_t position) {
 }
 
 void Session::set_view(const View& view) {
-  view_ = view;
+  const View before = std::exchange(view_, view);
+  if (view.quantity != before.quantity || view.is_log != before.is_log) {
+    view_.curve_zoom.y.reset();
+    view_.map_colours.reset();
+  }
+  if (view.is_theta_log != before.is_theta_log) view_.curve_zoom.x.reset();
   if (view_.map_x == view_.map_y) {
     view_.map_y = view_.map_x == Axis::kSigma ? Axis::kTheta : Axis::kSigma;
   }

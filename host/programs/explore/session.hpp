@@ -37,7 +37,9 @@ struct View {
   double theta_max_deg = 90.0;  ///< what is shown, and where the maximum is looked for
   Axis map_x = Axis::kTheta;
   Axis map_y = Axis::kSigma;
+  Zoom curve_zoom = {};
   std::map<std::string, Scale> map_ranges = {};  ///< that were typed, by the label of the axis
+  std::optional<Scale> map_colours = {};         ///< likewise, the values of the first colour and the last
   Panel panel = Panel::kMap;
   std::size_t mueller_row = 0;  ///< of the element in the view of the pBRDF
   std::size_t mueller_column = 0;
@@ -59,6 +61,7 @@ struct Message {
 struct SavedSession {
   struct SavedPin {
     std::string name;
+    std::size_t colour;
     bool is_visible;
     Scene scene;
   };
@@ -104,6 +107,7 @@ class Session {
   void remove_pin(std::size_t position);
   void rename_pin(std::size_t position, std::string name) { pins_[position].name = std::move(name); }
   void show_pin(std::size_t position, bool is_visible) { pins_[position].is_visible = is_visible; }
+  /// Ranges of values go with the quantity and its logarithm, those of zeniths with theirs.
   void set_view(const View& view);
   void set_theta(double theta_deg);
   /// Moves the cursor of the map; the parameters of its axes follow. Positions from 0 to 1.
@@ -142,10 +146,11 @@ class Session {
   std::vector<std::string> marked() const { return {marked_.begin(), marked_.end()}; }
   /// Skies whose files go with the session; true where the scene names one of them.
   SkyFiles& skies() { return skies_; }
+  const SkyFiles& skies() const { return skies_; }
   bool has_own_sky() const { return skies_.hold(sky_file(scene())); }
   bool varies(const std::string& key) const { return marked_.contains(key); }
-  /// The fit of the marked parameters, over the ranges of their sliders, to the measured points; none without points,
-  /// or without a marked parameter that the scene has.
+  /// The fit of the marked parameters, over the ranges of their sliders that the scene takes, to the measured points;
+  /// none without points, or without a marked parameter that the scene has.
   std::optional<FitJob> fit_job() const;
   /// The last fit, and its minimum on display: none once the scene has changed.
   const std::optional<Fit>& last_fit() const { return fit_; }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/atomic_file.hpp"
+#include "base/text.hpp"
 #include "explore/toml_file.hpp"
 
 namespace dolp::explore {
@@ -24,6 +25,11 @@ struct Flag {
 constexpr std::array kFlags = {Flag{"log", &View::is_log}, Flag{"theta_log", &View::is_theta_log},
                                Flag{"overlay", &View::has_overlay}, Flag{"keep_all", &View::keeps_all}};
 
+// Ranges in a file, but for those of the map's axes, which have their labels.
+constexpr const char* kZenithRange = "curve zenith";
+constexpr const char* kValueRange = "curve values";
+constexpr const char* kColourRange = "map colours";
+
 using Node = toml::node_view<const toml::node>;
 
 toml::array texts_of(const std::vector<Setting>& settings) {
@@ -32,14 +38,51 @@ toml::array texts_of(const std::vector<Setting>& settings) {
   return texts;
 }
 
-/// A scene as it was opened, with its changes and a name.
-toml::table state_table(const SceneEdits& edits, const std::string& name, const std::filesystem::path& folder) {
-  const Scene& opened = edits.opened();
-  return toml::table{{"name", name},
-                     {"file", std::filesystem::proximate(opened.name(), folder).string()},
-                     {"text", opened.text()},
-                     {"opened_with", texts_of(opened.settings())},
-                     {"changes", texts_of(edits.changes())}};
+/// Writes states of scenes for the file of a session.
+class StateWriter {
+ public:
+  StateWriter(const SkyFiles& skies, const std::filesystem::path& file)
+      : skies_(skies), file_(std::filesystem::absolute(file).lexically_normal()) {}
+
+  /// A scene as it was opened, with its changes and a name.
+  toml::table table(const SceneEdits& edits, const std::string& name) const {
+    const Scene& opened = edits.opened();
+    return toml::table{{"name", name},
+                       {"file", std::filesystem::proximate(opened.name(), file_.parent_path()).string()},
+                       {"text", opened.text()},
+                       {"opened_with", texts_of(lasting(opened.settings(), opened))},
+                       {"changes", texts_of(lasting(edits.changes(), opened))}};
+  }
+
+ private:
+  /// Settings that name a copy beside the session's file instead of a sky's file that goes with the window.
+  std::vector<Setting> lasting(std::vector<Setting> settings, const Scene& scene) const {
+    for (Setting& setting : settings) {
+      if (setting.key != "surroundings.profile" || !skies_.hold(word_of(setting.value))) continue;
+      const std::filesystem::path sky = word_of(setting.value);
+      const std::filesystem::path copy = file_.parent_path() / (file_.stem().string() + "_" + sky.filename().string());
+      write_text_atomically(copy, read_named_file(sky.string(), sky.string() + ": "));
+      const std::filesystem::path folder = std::filesystem::absolute(scene.name()).parent_path();
+      setting.value = copy.lexically_relative(folder.lexically_normal()).string();
+    }
+    return settings;
+  }
+
+  const SkyFiles& skies_;
+  std::filesystem::path file_;
+};
+
+toml::table range_table(const Scale& range) {
+  return toml::table{{"from", range.from}, {"to", range.to}, {"log", range.is_log}};
+}
+
+toml::table ranges_table(const View& view) {
+  toml::table table;
+  if (view.curve_zoom.x) table.insert(kZenithRange, range_table(*view.curve_zoom.x));
+  if (view.curve_zoom.y) table.insert(kValueRange, range_table(*view.curve_zoom.y));
+  if (view.map_colours) table.insert(kColourRange, range_table(*view.map_colours));
+  for (const auto& [label, range] : view.map_ranges) table.insert(label, range_table(range));
+  return table;
 }
 
 toml::table view_table(const Session& session) {
@@ -49,6 +92,9 @@ toml::table view_table(const Session& session) {
                     {"map_x", description_of(view.map_x).name},
                     {"map_y", description_of(view.map_y).name},
                     {"panel", kPanels.at(static_cast<std::size_t>(view.panel)).name},
+                    {"mueller_row", static_cast<int>(view.mueller_row)},
+                    {"mueller_column", static_cast<int>(view.mueller_column)},
+                    {"ranges", ranges_table(view)},
                     {"cursor_deg", session.theta_deg()}};
   for (const Flag& flag : kFlags) table.insert(flag.key, view.*flag.flag);
   return table;
@@ -79,6 +125,41 @@ SceneEdits state_in(Node node, const std::string& place, const std::filesystem::
   return {opened, settings("changes")};
 }
 
+Scale range_in(Node node, const std::string& place) {
+  const Scale range{need<double>(node["from"], place + ".from"), need<double>(node["to"], place + ".to"),
+                    need<bool>(node["log"], place + ".log")};
+  if (!range.is_valid()) throw InputError(place + ": must be finite, from < to, above 0 where log is true");
+  return range;
+}
+
+/// Ranges that are missing are automatic.
+void read_ranges(View& view, Node node, const std::string& place) {
+  const toml::table* const table = node.as_table();
+  if (!table) return;
+  for (const auto& [name, one] : *table) {
+    const std::string key(name.str());
+    const Scale range = range_in(Node(one), place + "." + key);
+    if (key == kZenithRange) {
+      view.curve_zoom.x = range;
+    } else if (key == kValueRange) {
+      view.curve_zoom.y = range;
+    } else if (key == kColourRange) {
+      view.map_colours = range;
+    } else {
+      view.map_ranges[key] = range;
+    }
+  }
+}
+
+/// A number below `count`, 0 where it is missing.
+std::size_t index_in(Node node, std::size_t count, const std::string& place) {
+  if (!node) return 0;
+  const int index = need<int>(node, place);
+  if (index < 0 || static_cast<std::size_t>(index) >= count)
+    throw InputError(fmt::format("{} = {}: must be in [0, {}]", place, index, count - 1));
+  return static_cast<std::size_t>(index);
+}
+
 View view_in(Node node, const std::string& place) {
   const auto name_of = [](const auto& one) { return one.name; };
   const auto axis = [&](const char* key) {
@@ -92,6 +173,9 @@ View view_in(Node node, const std::string& place) {
   view.map_x = axis("map_x");
   view.map_y = axis("map_y");
   for (const Flag& flag : kFlags) view.*flag.flag = need<bool>(node[flag.key], place + flag.key);
+  view.mueller_row = index_in(node["mueller_row"], 4, place + "mueller_row");
+  view.mueller_column = index_in(node["mueller_column"], 4, place + "mueller_column");
+  read_ranges(view, node["ranges"], place + "ranges");
   return view;
 }
 
@@ -110,7 +194,10 @@ SavedSession session_in(const std::string& path, const toml::table& table) {
     }
   };
   for_each("pins", [&](Node pin, const std::string& name, const std::string& here) {
-    saved.pins.push_back({name, need<bool>(pin["visible"], here + ".visible"), state_in(pin, here, folder).scene()});
+    const std::size_t colour =
+        pin["colour"] ? index_in(pin["colour"], Session::kMostPins, here + ".colour") : saved.pins.size();
+    saved.pins.push_back(
+        {name, colour, need<bool>(pin["visible"], here + ".visible"), state_in(pin, here, folder).scene()});
   });
   for_each("snapshots", [&](Node one, const std::string& name, const std::string& here) {
     saved.snapshots.push_back({name, state_in(one, here, folder)});
@@ -129,19 +216,21 @@ SavedSession session_in(const std::string& path, const toml::table& table) {
 
 void save_session(const Session& session, const std::string& path) {
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  const StateWriter states(session.skies(), path);
   toml::table file{{kVersionKey, kVersion},
-                   {"scene", state_table(session.edits(), "", folder)},
+                   {"scene", states.table(session.edits(), "")},
                    {"view", view_table(session)},
                    {"vary", array_of(session.marked())}};
   if (const auto& data = session.residuals().data())
     file.insert("measured", std::filesystem::proximate(data->name, folder).string());
   toml::array pins, snapshots;
   for (const Pin& pin : session.pins()) {
-    toml::table table = state_table(SceneEdits(pin.curve.scene()), pin.name, folder);
+    toml::table table = states.table(SceneEdits(pin.curve.scene()), pin.name);
     table.insert("visible", pin.is_visible);
+    table.insert("colour", static_cast<int>(pin.colour));
     pins.push_back(std::move(table));
   }
-  for (const Snapshot& one : session.snapshots()) snapshots.push_back(state_table(one.edits, one.name, folder));
+  for (const Snapshot& one : session.snapshots()) snapshots.push_back(states.table(one.edits, one.name));
   file.insert("pins", std::move(pins));
   file.insert("snapshots", std::move(snapshots));
   std::ostringstream text;

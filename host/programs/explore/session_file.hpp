@@ -8,7 +8,7 @@
 namespace dolp::explore {
 
 /// Writes scene, pins, snapshots, view, the path of the measured points and what a fit varies as TOML. Paths in it are
-/// relative to its folder. Errors: IoError.
+/// relative to its folder; skies of skies() are copied into it, as NAME_sky_ZENITH_HORIZON.csv. Errors: IoError.
 void save_session(const Session& session, const std::string& path);
 
 /// True for a file that save_session wrote; false also where it cannot be read.

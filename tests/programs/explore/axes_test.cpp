@@ -1,6 +1,7 @@
 // Axes whose ends are typed, logarithmic ones, and the colours of the map.
 #include <gtest/gtest.h>
 
+#include "explore/session_file.hpp"
 #include "explore/window/style.hpp"
 #include "explore_support.hpp"
 #include "window_support.hpp"
@@ -12,6 +13,11 @@ TEST(Scale, WithLog_BeginsAboveZero) {
   EXPECT_EQ((Scale{0.0, 90.0}.with_log(true)), (Scale{0.5, 90.0, true}));
   EXPECT_EQ((Scale{2.0, 50.0}.with_log(true)), (Scale{2.0, 50.0, true}));
   EXPECT_EQ((Scale{2.0, 50.0, true}.with_log(false)), (Scale{2.0, 50.0}));
+}
+
+TEST(Scale, TicksOfAPartOfADecade_AreThoseOfALinearAxis) {
+  EXPECT_EQ((Scale{8.0, 14.0, true}.ticks(5)), (std::vector<double>{8.0, 10.0, 12.0, 14.0}));
+  EXPECT_EQ((Scale{1.0, 10.0, true}.ticks(5)), (std::vector<double>{1.0, 2.0, 5.0, 10.0}));
 }
 
 TEST(Colours, DivergingOnes_AreBlueWhiteAndRed) {
@@ -103,6 +109,35 @@ TEST_F(Axes, RangeOfTheMap_IsComputedAnew_AndARefusedEndGoesWithTheOther) {
   type("3", "Return");
   EXPECT_EQ(app_->session().map().y().scale, (Scale{2.5, 3.0, true}));
   EXPECT_TRUE(app_->session().map().is_finished());
+}
+
+TEST_F(Axes, Fields_CloseWithEscape_WhichTakesBackWhatIsTypedFirst) {
+  const explore::AxisEditor& editor = app_->curve_view().axis_editor();
+  double_click(below(app_->curve_view().area()));
+  ASSERT_TRUE(editor.is_open());
+  type("95", "Return");
+  keys("Escape");
+  EXPECT_TRUE(editor.is_open());
+  keys("Escape");
+  EXPECT_FALSE(editor.is_open());
+}
+
+TEST_F(Axes, OfASavedSession_ComeBackWithIt) {
+  explore::View view = app_->session().view();
+  view.is_log = true;
+  app_->session().set_view(view);
+  view.curve_zoom = {Scale{20.0, 70.0}, Scale{1.0, 4.0, true}};
+  view.map_colours = Scale{0.01, 0.08, true};
+  app_->session().set_view(view);
+  explore::save_session(app_->session(), at("session.toml").string());
+  open({});
+  EXPECT_NE(app_->curve_view().x(), (Scale{20.0, 70.0}));
+  explore::open_file(app_->session(), at("session.toml").string());
+  app_->settle();
+  frames();
+  EXPECT_EQ(app_->curve_view().x(), (Scale{20.0, 70.0}));
+  EXPECT_EQ(app_->curve_view().y(), (Scale{1.0, 4.0, true}));
+  EXPECT_EQ(app_->map_view().colours(), (Scale{0.01, 0.08, true}));
 }
 
 TEST_F(Axes, LogarithmOfTheZenith_BeginsAtHalfADegree) {

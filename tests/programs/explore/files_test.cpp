@@ -52,7 +52,14 @@ void fill(Session& session, const std::string& measured) {
                     .has_overlay = false,
                     .theta_max_deg = 80.0,
                     .map_x = Axis::kQ,
-                    .panel = Panel::kSlopes});
+                    .panel = Panel::kSlopes,
+                    .mueller_row = 1,
+                    .mueller_column = 3});
+  View view = session.view();
+  view.curve_zoom = {Scale{20.0, 70.0}, Scale{0.01, 0.4, true}};
+  view.map_ranges = {{"σ", {0.05, 0.5, true}}, {"θ [°]", {10.0, 60.0}}};
+  view.map_colours = Scale{0.0, 0.3};
+  session.set_view(view);
   session.set_theta(42.5);
 }
 
@@ -86,12 +93,53 @@ TEST_F(ExploreFiles, Session_SavedAndOpened_IsTheSame) {
   EXPECT_EQ(b.view().theta_max_deg, 80.0);
   EXPECT_EQ(b.view().map_x, Axis::kQ);
   EXPECT_EQ(b.view().panel, Panel::kSlopes);
+  EXPECT_EQ(b.view().mueller_row, 1U);
+  EXPECT_EQ(b.view().mueller_column, 3U);
+  EXPECT_EQ(b.view().curve_zoom, a.view().curve_zoom);
+  EXPECT_TRUE(b.view().curve_zoom.x && b.view().curve_zoom.y);
+  EXPECT_EQ(b.view().map_ranges, a.view().map_ranges);
+  EXPECT_EQ(b.view().map_colours, (Scale{0.0, 0.3}));
   EXPECT_EQ(b.theta_deg(), 42.5);
   // The file names no folder of the machine, and saving it again changes nothing.
   const std::string text = read_file(at("all.toml"));
   EXPECT_EQ(text.find(at("")), std::string::npos) << text;
   save_session(opened.session, at("again.toml"));
   EXPECT_EQ(read_file(at("again.toml")), text);
+}
+
+TEST_F(ExploreFiles, Session_OfWhichAPinWasRemoved_KeepsTheColoursOfTheOthers) {
+  Session saved(paint());
+  for (int i = 0; i < 3; ++i) saved.pin();
+  saved.remove_pin(0);
+  save_session(saved, at("all.toml"));
+  Session opened(paint());
+  open_file(opened, at("all.toml"));
+  ASSERT_EQ(opened.pins().size(), 2U);
+  EXPECT_EQ(opened.pins()[0].colour, 1U);
+  EXPECT_EQ(opened.pins()[1].colour, 2U);
+}
+
+TEST_F(ExploreFiles, Session_WithSkiesOfTheWindow_ReadsBackWhenTheWindowIsGone) {
+  constexpr SkyPair kDusk{231.5, 279.0}, kNoon{250.0, 300.0};
+  std::filesystem::create_directories(at("scenes"));
+  const Scene scene = Scene::from_text(kPaint, {}, at("scenes/paint.toml"));
+  {
+    Session saved{SceneEdits(scene)};
+    saved.set("surroundings.profile", saved.skies().path(kDusk));
+    saved.pin();
+    saved.take_snapshot();
+    saved.set("surroundings.profile", saved.skies().path(kNoon));
+    save_session(saved, at("all.toml"));
+    EXPECT_TRUE(saved.has_own_sky());
+  }
+  Session opened(paint());
+  open_file(opened, at("all.toml"));
+  ASSERT_FALSE(opened.message().is_error) << opened.message().text;
+  EXPECT_EQ(read_sky_pair(sky_file(opened.scene())), kNoon);
+  EXPECT_EQ(read_sky_pair(sky_file(opened.pins().at(0).curve.scene())), kDusk);
+  EXPECT_EQ(read_sky_pair(sky_file(opened.snapshots().at(0).edits.scene())), kDusk);
+  EXPECT_EQ(read_file(at("all_sky_231.5_279.csv")), kDusk.csv());
+  EXPECT_EQ(read_file(at("all.toml")).find(at("")), std::string::npos);
 }
 
 struct BadFile {
@@ -132,6 +180,8 @@ TEST_F(ExploreFiles, BadPlaceInASession_IsNamed) {
                   {"log = true", "log = 'yes'", "all.toml: view.log is of another kind"},
                   {"name = 'as opened'", "name = 3", "all.toml: pins[0].name is of another kind"},
                   {"'surface.n'", "'surface.n'", ""},
+                  {"mueller_row = 1", "mueller_row = 4", "all.toml: view.mueller_row = 4: must be in [0, 3]"},
+                  {"from = 20.0", "from = 80.0", "all.toml: view.ranges.curve zenith: must be finite, from < to"},
                   {"'points.csv'", "'gone.csv'", "gone.csv"}};
   for (const auto& change : kChanges) {
     std::string changed = text;
@@ -205,8 +255,23 @@ TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
   EXPECT_EQ(curve["low"][100], 100.0 * points[100][Quantity::kDolpLow]);
   EXPECT_TRUE(plots["curves"][0]["low"][100].is_null());
   EXPECT_EQ(plots["map"]["rows"].size(), driver.session.map().field(Plotted::kDolp).count);
+  EXPECT_TRUE(plots["map"]["colours"].is_null() && !plots["map"]["is_signed"]);
+  View view = driver.session.view();
+  view.map_colours = Scale{0.01, 0.08};
+  driver.session.set_view(view);
+  EXPECT_EQ(nlohmann::json::parse(plot_json(driver.session, {}, {}))["map"]["colours"]["to"], 8.0);
   driver.session.set_view({.panel = Panel::kSlopes});
   EXPECT_TRUE(nlohmann::json::parse(plot_json(driver.session, {}, {}))["map"].is_null());
+}
+
+TEST(ExplorePlots, Pin_OfTheSameSurface_IsNamedByItsRadiation) {
+  Driver driver(paint());
+  driver.session.pin();
+  driver.session.set("emission.temperature_K", 310.0);
+  driver.settle();
+  const auto plots = nlohmann::json::parse(plot_json(driver.session, {0.0, 90.0}, {0.0, 20.0}));
+  const std::string name = plots["curves"][1]["name"];
+  EXPECT_TRUE(name.ends_with(", T 290 K")) << name;
 }
 
 TEST_F(ExploreFiles, Preferences_KeepThemeZoomAndRecentFilesThatAreThere) {

@@ -65,6 +65,19 @@ TEST(ExploreSession, Fit_OfK_RunsAlongItsLogarithm_FromZeroToo) {
   }
 }
 
+TEST(ExploreSession, Fit_OfQ_WithSmithMasking_RunsOverWhatItTakes) {
+  for (const double q : {1.55, 3.0}) {
+    Session session(paint({"surface.masking=smith"}));
+    session.set("surface.q", q);
+    const TemporaryFile file(".csv", "theta_deg,dolp\n60,0.05\n70,0.06\n");
+    session.load_measured(file.path());
+    session.mark("surface.q", true);
+    const FitRange range = session.fit_job().value().vary.front();
+    EXPECT_EQ(range.low, std::min(q, 1.6));
+    EXPECT_NO_THROW(session.scene().with("surface.q", range.low));
+  }
+}
+
 TEST(FitText, Interval_HasItsEnds) {
   EXPECT_EQ(interval_text({.low = 1.25}), "1.25 to open");
   EXPECT_EQ(interval_text({.low = 0.1, .high = 3.0, .pieces = {{0.1, 0.2}, {2.0, 3.0}}}), "0.1 to 3");

@@ -50,7 +50,10 @@ TEST(ExploreSession, WhatIsShownWhileTheSceneChanges_IsStaleAndKeepsItsParameter
   driver.settle();
   EXPECT_FALSE(session.curve().is_stale() || session.overlay()->is_stale() || session.map().is_stale());
   EXPECT_FALSE(says_stale(curve_name(session) + session.overlay_name() + cursor_text(session)));
-  EXPECT_NE(cursor_text(session).find("σ = 0.4,"), std::string::npos) << cursor_text(session);
+  EXPECT_NE(cursor_text(session).find("σ = 0.4, q = 3:"), std::string::npos) << cursor_text(session);
+  driver.session.set("surface.distribution", "gaussian");
+  driver.settle();
+  EXPECT_NE(cursor_text(session).find("σ = 0.4:"), std::string::npos) << cursor_text(session);
 }
 
 /// A point on display agrees with the model of the scene that is named beside it, within both bounds.
@@ -232,6 +235,9 @@ TEST(ExploreSession, PinNames_SayWhatDiffers) {
   driver.session.pin();
   const auto name = [&] { return pin_name(driver.session.pins()[0], driver.session); };
   EXPECT_EQ(name(), "the same surface");
+  driver.session.set({{"emission.temperature_K", 300.0}, {"surroundings.profile", "clear-sky"}});
+  driver.settle();
+  EXPECT_EQ(name(), "T 290 K, T_surr 240 K");
   driver.session.set({{"surface.sigma", 0.4}, {"surface.masking", "smith"}});
   driver.settle();
   EXPECT_EQ(name(), "σ 0.15, v-cavity");

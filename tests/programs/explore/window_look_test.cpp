@@ -3,6 +3,7 @@
 
 #include <thread>
 
+#include "explore/window/style.hpp"
 #include "window_support.hpp"
 
 namespace {
@@ -41,6 +42,26 @@ TEST_F(WindowLook, LightTheme_ChosenInTheMenu_IsKept) {
   EXPECT_GT(brightness(), 200.0);
 }
 
+TEST_F(WindowLook, MarkOfAMaximumAtTheEnd_IsWhole) {
+  explore::View view = app_->session().view();
+  view.theta_max_deg = 60.0;
+  app_->session().set_view(view);
+  app_->settle();
+  frames();
+  ASSERT_GT(app_->session().peak().answer().value().at.theta_deg, 59.9);
+  const auto column = [&](float right) {
+    return pixels({{plot().max.x + right, plot().min.y}, {plot().max.x + right + 1.0F, plot().max.y}});
+  };
+  EXPECT_TRUE(column(3.0F) != column(7.0F));  // the mark alone is drawn beside the plot
+}
+
+TEST_F(WindowLook, Lines_BreakAtSpacesAlone) {
+  const auto width = [](const char* text) { return ImGui::CalcTextSize(text).x; };
+  EXPECT_EQ(explore::in_lines("0.09382 to 0.1154", width("0.09382 to 0.")), "0.09382 to\n0.1154");
+  EXPECT_EQ(explore::in_lines("0.09382 to 0.1154", width("0.09382 to 0.1154")), "0.09382 to 0.1154");
+  EXPECT_EQ(explore::in_lines("first\nto 1.5", width("to 1.5")), "first\nto 1.5");
+}
+
 TEST_F(WindowLook, Scale_ByKeys_ChangesTheSizeOfTheControls) {
   const auto height = [&] { return app_->control_area("surface.sigma").height(); };
   const float usual = height();
@@ -50,6 +71,7 @@ TEST_F(WindowLook, Scale_ByKeys_ChangesTheSizeOfTheControls) {
     EXPECT_GT(height(), before);
   }
   EXPECT_NEAR(height(), 1.21F * usual, 2.0F);  // text and margins are whole pixels
+  EXPECT_NEAR(explore::scaled(10.0F), 12.1F, 0.5F);
   keys("ctrl+0");
   EXPECT_EQ(height(), usual);
   keys("ctrl+minus");

@@ -279,6 +279,7 @@ TEST_F(Window, TypedNumber_IsTakenWhereverTypingEnds_AndStaysWhereItIsRefused) {
       click_control("field surface.sigma");
       keys("Escape");
       EXPECT_FALSE(is_marked("field surface.sigma"));
+      EXPECT_EQ(app_->session().message().text, "");
       EXPECT_EQ(sigma(), before);
     }
     wanted += 0.125;

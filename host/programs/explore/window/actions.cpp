@@ -62,10 +62,7 @@ void Actions::prefer(const std::function<void(Preferences&)>& change) {
 }
 
 void Actions::save_session(const std::string& path) {
-  attempt("saved " + path, [&] {
-    session_.keep_sky(path);
-    explore::save_session(session_, path);
-  });
+  attempt("saved " + path, [&] { explore::save_session(session_, path); });
 }
 
 void Actions::save_scene(const std::string& path) {

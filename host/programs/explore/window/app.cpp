@@ -34,7 +34,6 @@ constexpr int kHeight = 900;
 // Below it texts of the controls are cut.
 constexpr int kLeastWidth = 800;
 constexpr int kLeastHeight = 560;
-constexpr float kFontPixels = 15.0F;
 constexpr double kBlink_s = 0.3;  // of a text cursor
 // Chosen: of a frame of 33 ms, half of which is drawing. Twice as much makes slow scenes' frames long, half of it lets
 // curves of a band lag behind the slider.

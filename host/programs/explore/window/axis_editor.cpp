@@ -33,6 +33,7 @@ std::optional<AxisEditor::Change> AxisEditor::draw(const std::string& label, con
     fields_ = {};
   }
   if (shown_ != label) return change;
+  const bool was_typed = !fields_.text("from").empty() || !fields_.text("to").empty();
   bool is_open = true;
   const ImVec2 mouse = ImGui::GetMousePos();
   const ImVec2 middle = ImGui::GetMainViewport()->GetCenter();
@@ -56,6 +57,9 @@ std::optional<AxisEditor::Change> AxisEditor::draw(const std::string& label, con
     ImGui::SameLine();
     if (ImGui::Button("automatic")) change = Change{std::nullopt, now.is_log};
   }
+  // Escape takes back what is typed first.
+  if (ImGui::IsWindowFocused() && !was_typed && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
+    is_open = false;
   ImGui::End();
   if (!is_open) shown_.clear();
   if (change) fields_ = {};

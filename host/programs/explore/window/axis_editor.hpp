@@ -24,6 +24,7 @@ class AxisEditor {
   /// Draws the window if it is that of the axis of this label, whose numbers are in an area.
   std::optional<Change> draw(const std::string& label, const Area& numbers, const Scale& now, const Check& check);
 
+  bool is_open() const { return !shown_.empty(); }
   /// The last drawn area of the box for a logarithmic axis.
   const Area& log_box() const { return log_box_; }
 

@@ -156,10 +156,13 @@ void ControlsPanel::remember_area(const std::string& key) {
 
 void ControlsPanel::draw_field(Session& session, const std::string& id, double value,
                                const std::function<Setting(const std::string& text)>& change) {
+  const std::string before = fields_.reason(id);
   fields_.draw(id, value, [&](const std::string& text) {
     session.set({change(text)});
     return session.message().is_error ? session.message().text : "";
   });
+  // The message about a text goes when the text is taken back.
+  if (!before.empty() && fields_.reason(id).empty() && session.message().text == before) session.tell("");
   remember_area("field " + id);
 }
 

@@ -226,15 +226,15 @@ void draw_legend(const std::vector<Shown>& curves, Session& session) {
 void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& style) {
   if (!plot.has_place(session.theta_deg(), 1.0)) return;
   const float x = plot.at_position(plot.x().position(session.theta_deg()), 0.0).x;
-  plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour);
+  plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour, scaled(1.0F));
   const Point* const shown = session.at_cursor();
   if (!shown) return;
   const Plotted quantity = session.view().quantity;
   const double value = shown_value(quantity, *shown);
   if (!plot.has_place(shown->theta_deg, value)) return;
   const ImVec2 at = plot.at(shown->theta_deg, value);
-  plot.list()->AddCircleFilled(at, 4.0F, style.colour);
-  plot.list()->AddCircle(at, 4.5F, kTextColour);
+  plot.list()->AddCircleFilled(at, scaled(4.0F), style.colour);
+  plot.list()->AddCircle(at, scaled(4.5F), kTextColour, 0, scaled(1.0F));
 }
 
 void draw_peak(const Plot& plot, const Session& session) {
@@ -246,23 +246,23 @@ void draw_peak(const Plot& plot, const Session& session) {
   const ImVec2 at = plot.at(peak->at.theta_deg, value);
   if (at.x < plot.min().x || at.x > plot.max().x || at.y < plot.min().y || at.y > plot.max().y) return;
   const float side = is_low ? 1.0F : -1.0F;
-  plot.list()->AddTriangleFilled({at.x, at.y + side * 3.0F}, {at.x - 5.0F, at.y + side * 12.0F},
-                                 {at.x + 5.0F, at.y + side * 12.0F}, kTextColour);
+  plot.list()->AddTriangleFilled({at.x, at.y + side * scaled(3.0F)}, {at.x - scaled(5.0F), at.y + side * scaled(12.0F)},
+                                 {at.x + scaled(5.0F), at.y + side * scaled(12.0F)}, kTextColour);
   // Beside the mark towards the middle, so that it stays inside.
   const bool is_right = at.x > 0.5F * (plot.min().x + plot.max().x);
   const float line = ImGui::GetTextLineHeight();
-  const float beside = std::max(std::min(at.y + side * 8.0F, plot.max().y - line), plot.min().y + line);
-  draw_label(plot.list(), {at.x + (is_right ? -9.0F : 9.0F), beside}, {is_right ? 1.0F : 0.0F, 0.5F}, kTextColour,
+  const float beside = std::max(std::min(at.y + side * scaled(8.0F), plot.max().y - line), plot.min().y + line);
+  draw_label(plot.list(), {at.x + scaled(is_right ? -9.0F : 9.0F), beside}, {is_right ? 1.0F : 0.0F, 0.5F}, kTextColour,
              fmt::format("{:.2f} % at {:.1f}°", value, peak->at.theta_deg));
 }
 
 void draw_error_bar(const Plot& plot, double theta_deg, double low, double high) {
-  constexpr float kCap = 3.0F;
+  const float cap = scaled(3.0F);
   const ImVec2 bottom = plot.at(theta_deg, low);
   const ImVec2 top = plot.at(theta_deg, high);
-  plot.list()->AddLine(bottom, top, kTextColour);
+  plot.list()->AddLine(bottom, top, kTextColour, scaled(1.0F));
   for (const ImVec2 end : {bottom, top})
-    plot.list()->AddLine({end.x - kCap, end.y}, {end.x + kCap, end.y}, kTextColour);
+    plot.list()->AddLine({end.x - cap, end.y}, {end.x + cap, end.y}, kTextColour, scaled(1.0F));
 }
 
 void draw_measured(const Plot& plot, const std::vector<Measurement>& points) {
@@ -270,7 +270,7 @@ void draw_measured(const Plot& plot, const std::vector<Measurement>& points) {
     const double scale = scale_of(plotted(point.observable));
     const double value = scale * point.value;
     if (!plot.has_place(point.theta_deg, value)) continue;
-    plot.list()->AddCircle(plot.at(point.theta_deg, value), 4.0F, kTextColour, 0, 1.5F);
+    plot.list()->AddCircle(plot.at(point.theta_deg, value), scaled(4.0F), kTextColour, 0, scaled(1.5F));
     if (!point.uncertainty) continue;
     const double deviation = scale * *point.uncertainty;
     const double low = plot.y().is_log ? std::max(value - deviation, plot.y().from) : value - deviation;
@@ -303,30 +303,28 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   for (const Residual& one : shown) {
     if (!plot.has_place(one.theta_deg, 1.0)) continue;
     if (one.deviation > 0.0) draw_error_bar(plot, one.theta_deg, one.value - one.deviation, one.value + one.deviation);
-    plot.list()->AddCircleFilled(plot.at(one.theta_deg, one.value), 3.0F, kTextColour);
+    plot.list()->AddCircleFilled(plot.at(one.theta_deg, one.value), scaled(3.0F), kTextColour);
   }
   plot.unclip();
 }
 
 }  // namespace
 
-void CurveView::edit_axes(Session& session, const Plot& plot, const std::string& values) {
-  View view = session.view();
+void CurveView::edit_axes(View& view, const Plot& plot, const std::string& values) {
   const auto check_zeniths = [&](const Scale& range) {
     const Scale all = Scale{0.0, view.theta_max_deg}.with_log(range.is_log);
     const bool is_inside = range.from >= all.from && range.to <= all.to;
     return is_inside ? "" : fmt::format("must be numbers in [{:g}, {:g}]; \"θ up to\" sets the end", all.from, all.to);
   };
   if (const auto change = axis_editor_.draw("zenith θ [°]", plot.x_numbers(), x_, check_zeniths)) {
-    zoom_.x = change->range;
+    view.curve_zoom.x = change->range;
     view.is_theta_log = change->is_log;
   }
   const auto take_all = [](const Scale&) { return std::string(); };
   if (const auto change = axis_editor_.draw(values, plot.y_numbers(), y_, take_all)) {
-    zoom_.y = change->range;
+    view.curve_zoom.y = change->range;
     view.is_log = change->is_log;
   }
-  if (view.is_log != session.view().is_log || view.is_theta_log != session.view().is_theta_log) session.set_view(view);
 }
 
 void CurveView::draw(Session& session, ImVec2 size) {
@@ -346,36 +344,41 @@ void CurveView::draw(Session& session, ImVec2 size) {
 
   const Scale zeniths = Scale{0.0, session.view().theta_max_deg}.with_log(session.view().is_theta_log);
   PlotAxis values = value_axis(session, curves);
-  if (quantity_ != quantity || (zoom_.y && zoom_.y->is_log != values.scale.is_log)) zoom_.y.reset();
-  if (zoom_.x && zoom_.x->is_log != zeniths.is_log) zoom_.x.reset();
-  if (zoom_.x) zoom_.x = zoom_.x->within(zeniths);
-  if (zoom_.y) {
-    values.scale = *zoom_.y;
+  View view = session.view();
+  Zoom& zoom = view.curve_zoom;
+  const bool has_zeniths = zoom.x && zoom.x->is_log == zeniths.is_log;
+  if (has_zeniths) zoom.x = zoom.x->within(zeniths);
+  // Before there is a curve its values have no logarithm, but the range of them stays.
+  if (zoom.y && zoom.y->is_log == values.scale.is_log) {
+    values.scale = *zoom.y;
   } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && quantity_ == quantity && y_.is_log == values.scale.is_log) {
     // While a slider is dragged the axis grows at most, so that the curve is what moves.
     values.scale = {std::min(y_.from, values.scale.from), std::max(y_.to, values.scale.to), y_.is_log};
   }
   quantity_ = quantity;
-  x_ = zoom_.x.value_or(zeniths);
+  x_ = has_zeniths ? *zoom.x : zeniths;
   y_ = values.scale;
   const Plot plot("curve", {size.x, size.y - residual_height - (has_measured ? gap : 0.0F)},
                   {is_bistatic(session.scene()) ? "zenith θ of the source [°]" : "zenith θ [°]", x_}, values);
   if (plot.is_dragged()) session.set_theta(plot.x().value(plot.mouse_x()));
-  plot.follow_mouse(zoom_, zeniths);
+  plot.follow_mouse(zoom, zeniths);
   plot.clip();
   if (!plot.y().is_log) plot.list()->AddLine(plot.at(x_.from, 0.0), plot.at(x_.to, 0.0), kDimColour);
   if (quantity == Plotted::kDolp) draw_bracket(plot, curves.back());
   for (const Shown& shown : curves) draw_curve(plot, shown, quantity);
   draw_measured(plot, measured);
   draw_cursor(plot, session, curves.back().style);
-  draw_peak(plot, session);
   if (plot.is_hovered() && !plot.is_dragged()) {
     draw_label(plot.list(), plot.area().at(0.99F, 0.98F), {1.0F, 1.0F}, kDimColour,
                fmt::format("{:.2f}°, {:.4g}", x_.value(plot.mouse_x()), y_.value(plot.mouse_y())));
   }
   plot.unclip();
+  draw_peak(plot, session);  // the mark at an end of the axis is as large as elsewhere
   area_ = plot.area();
-  edit_axes(session, plot, values.label);
+  edit_axes(view, plot, values.label);
+  const View& before = session.view();
+  if (view.curve_zoom != before.curve_zoom || view.is_log != before.is_log || view.is_theta_log != before.is_theta_log)
+    session.set_view(view);
   if (has_measured) draw_residuals(session, x_, {size.x, residual_height});
 }
 

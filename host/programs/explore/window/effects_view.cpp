@@ -13,11 +13,7 @@ namespace {
 
 void cell(const std::string& text, ImU32 colour) {
   ImGui::TableNextColumn();
-  ImGui::PushStyleColor(ImGuiCol_Text, colour);
-  ImGui::PushTextWrapPos(0.0F);  // where the column ends
-  ImGui::TextUnformatted(shown(text).c_str());
-  ImGui::PopTextWrapPos();
-  ImGui::PopStyleColor();
+  coloured_text(colour, text);
 }
 
 /// In points of DOLP: a bound of what is dropped, an estimate of what is kept.

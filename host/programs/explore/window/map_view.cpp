@@ -14,8 +14,7 @@ constexpr double kMostContrast = 1e3;  // of a logarithmic colour scale
 constexpr std::size_t kMostLines = 7;
 constexpr ImU32 kLightLine = IM_COL32(255, 255, 255, 190);  // over the colours of a map, in both themes
 constexpr ImU32 kDarkLine = IM_COL32(0, 0, 0, 170);         // over the white of diverging colours
-constexpr std::size_t kUnknownVersion = static_cast<std::size_t>(-1);
-constexpr float kBarRoom = 5.4F;  // right of the map, in lines of text
+constexpr float kBarRoom = 5.4F;                            // right of the map, in lines of text
 
 PlotAxis axis_of(const MapAxis& axis) { return {axis.label(), axis.scale}; }
 
@@ -33,9 +32,9 @@ void draw_map_cursor(const Session& session, const Plot& plot) {
   const HeatMap& map = session.map();
   const ImVec2 at = plot.at_position(session.map_cursor(map.x()), session.map_cursor(map.y()));
   const ImU32 colour = described(session.view().quantity).is_signed ? kDarkLine : kLightLine;
-  plot.list()->AddLine({at.x, plot.min().y}, {at.x, plot.max().y}, colour);
-  plot.list()->AddLine({plot.min().x, at.y}, {plot.max().x, at.y}, colour);
-  plot.list()->AddCircle(at, 5.0F, colour, 0, 2.0F);
+  plot.list()->AddLine({at.x, plot.min().y}, {at.x, plot.max().y}, colour, scaled(1.0F));
+  plot.list()->AddLine({plot.min().x, at.y}, {plot.max().x, at.y}, colour, scaled(1.0F));
+  plot.list()->AddCircle(at, scaled(5.0F), colour, 0, scaled(2.0F));
 }
 
 }  // namespace
@@ -64,12 +63,12 @@ ImU32 MapView::colour(double position) const {
 void MapView::update(const Session& session) {
   const Plotted quantity = session.view().quantity;
   const bool is_log = session.view().is_log;
-  const bool is_same = quantity_ == quantity && is_log_ == is_log;
+  const bool is_same = quantity_ == quantity && is_log_ == is_log && typed_colours_ == session.view().map_colours;
   if (version_ == session.map().version() && is_same) return;
   version_ = session.map().version();
   quantity_ = quantity;
   is_log_ = is_log;
-  if (!is_same) typed_colours_.reset();
+  typed_colours_ = session.view().map_colours;
   field_ = session.map().field(quantity);
   // While a slider is dragged the colours keep their values, so that the map is what changes.
   const bool is_held = session.is_dragged() && is_same && colour_scale_.from < colour_scale_.to;
@@ -121,7 +120,7 @@ void MapView::draw_lines(const Plot& plot, double scale) const {
   const ImU32 line_colour = described(quantity_).is_signed ? kDarkLine : kLightLine;
   for (const Line& line : lines_) {
     for (const Segment& s : line.segments) {
-      plot.list()->AddLine(plot.at_position(s.x0, s.y0), plot.at_position(s.x1, s.y1), line_colour);
+      plot.list()->AddLine(plot.at_position(s.x0, s.y0), plot.at_position(s.x1, s.y1), line_colour, scaled(1.0F));
     }
   }
   std::vector<ImVec2> labels;
@@ -177,16 +176,14 @@ void MapView::edit_axes(Session& session, const Plot& plot) {
   const PlottedDescription& quantity = described(quantity_);
   const float line = ImGui::GetTextLineHeight();
   const Area numbers{{plot.max().x + 0.5F * line, plot.min().y}, {plot.max().x + kBarRoom * line, plot.max().y}};
-  const auto scaled = [](const Scale& range, double by) { return Scale{by * range.from, by * range.to, range.is_log}; };
+  const auto times = [](const Scale& range, double by) { return Scale{by * range.from, by * range.to, range.is_log}; };
   const auto take_all = [](const Scale&) { return std::string(); };
   const auto change =
-      axis_editor_.draw("colours: " + quantity.label(), numbers, scaled(colour_scale_, quantity.scale()), take_all);
+      axis_editor_.draw("colours: " + quantity.label(), numbers, times(colour_scale_, quantity.scale()), take_all);
   if (!change) return;
-  typed_colours_.reset();
-  if (change->range) typed_colours_ = scaled(*change->range, 1.0 / quantity.scale());
-  version_ = kUnknownVersion;
-  if (quantity.is_signed || change->is_log == colour_scale_.is_log) return;
-  view.is_log = change->is_log;
+  view.map_colours.reset();
+  if (change->range) view.map_colours = times(*change->range, 1.0 / quantity.scale());
+  if (!quantity.is_signed) view.is_log = change->is_log;
   session.set_view(view);
 }
 

@@ -113,8 +113,8 @@ void draw_incidence(ImDrawList* list, ImVec2 middle, float radius, double theta_
   const auto at = [&](float part) {
     return ImVec2{middle.x + part * radius * std::sin(angle), middle.y - part * radius * std::cos(angle)};
   };
-  list->AddLine(at(1.0F), at(0.0F), kCursorColour);
-  list->AddCircleFilled(at(1.0F), 4.0F, kCursorColour);
+  list->AddLine(at(1.0F), at(0.0F), kCursorColour, scaled(1.0F));
+  list->AddCircleFilled(at(1.0F), scaled(4.0F), kCursorColour);
 }
 
 }  // namespace

@@ -20,21 +20,22 @@ void draw_text(ImDrawList* list, ImVec2 at, ImVec2 anchor, ImU32 colour, const s
 }
 
 void draw_label(ImDrawList* list, ImVec2 at, ImVec2 anchor, ImU32 colour, const std::string& text) {
-  constexpr float kPadding = 3.0F;
+  const float padding = scaled(3.0F);
   const ImVec2 size = ImGui::CalcTextSize(shown(text).c_str());
   const ImVec2 corner{at.x - anchor.x * size.x, at.y - anchor.y * size.y};
-  list->AddRectFilled({corner.x - kPadding, corner.y - 1.0F}, {corner.x + size.x + kPadding, corner.y + size.y + 1.0F},
-                      kLabelGround, kPadding);
+  list->AddRectFilled({corner.x - padding, corner.y - 1.0F}, {corner.x + size.x + padding, corner.y + size.y + 1.0F},
+                      kLabelGround, padding);
   draw_text(list, at, anchor, colour, text);
 }
 
 void draw_line(ImDrawList* list, const std::vector<ImVec2>& points, const CurveStyle& style, float width) {
   if (points.size() < 2) return;
+  width = scaled(width);
   if (style.dash == 0.0F) {
     list->AddPolyline(points.data(), static_cast<int>(points.size()), style.colour, ImDrawFlags_None, width);
     return;
   }
-  const float period = style.dash + style.gap;
+  const float period = scaled(style.dash + style.gap);
   float done = 0.0F;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const ImVec2 a = points[i];
@@ -46,8 +47,8 @@ void draw_line(ImDrawList* list, const std::vector<ImVec2>& points, const CurveS
     };
     for (float at = 0.0F; at < length;) {
       const float phase = std::fmod(done + at, period);
-      const bool is_dash = phase < style.dash;
-      const float next = std::min(length, at + std::max(0.01F, (is_dash ? style.dash : period) - phase));
+      const bool is_dash = phase < scaled(style.dash);
+      const float next = std::min(length, at + std::max(0.01F, (is_dash ? scaled(style.dash) : period) - phase));
       if (is_dash) list->AddLine(point(at), point(next), style.colour, width);
       at = next;
     }
@@ -131,7 +132,7 @@ void Plot::follow_mouse(Zoom& zoom, const Scale& all_x) const {
 
 void Plot::draw_x_axis(bool has_grid) const {
   const float line = ImGui::GetTextLineHeight();
-  for (const double tick : ticks_of(x(), area_.width(), 4.0F * line)) {
+  for (const double tick : ticks_of(x(), area_.width(), 3.4F * line)) {
     const float at = at_position(x().position(tick), 0.0).x;
     if (has_grid) list_->AddLine({at, min().y}, {at, max().y}, kGridColour);
     list_->AddLine({at, max().y}, {at, max().y + 0.25F * line}, kDimColour);

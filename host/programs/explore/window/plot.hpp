@@ -28,12 +28,6 @@ struct PlotAxis {
   Scale scale;
 };
 
-/// The part of a plot that is shown, by the mouse: the wheel magnifies about its place (with Shift along x alone, with
-/// Alt along y), the right button shifts, a double click shows all again. Empty: all.
-struct Zoom {
-  std::optional<Scale> x, y;
-};
-
 /// A rectangle of the screen with two axes.
 class Plot {
  public:
@@ -58,7 +52,8 @@ class Plot {
   /// True while the left button, which was pressed inside, is held down.
   bool is_dragged() const { return is_dragged_; }
   bool is_hovered() const { return is_hovered_; }
-  /// Follows the mouse of this frame. `all_x`: the longest axis there may be.
+  /// Follows the mouse of this frame: the wheel magnifies about its place (with Shift along x alone, with Alt along y),
+  /// the right button shifts, a double click shows all again. `all_x`: the longest axis there may be.
   void follow_mouse(Zoom& zoom, const Scale& all_x) const;
   /// The position of the mouse, from 0 to 1 along both axes; outside of the plot that of the nearest point.
   double mouse_x() const;
@@ -79,7 +74,7 @@ class Plot {
   bool is_hovered_ = false;
 };
 
-/// A line through points, dashed where the style says so.
+/// A line through points, dashed where the style says so; its width and dashes are scaled().
 void draw_line(ImDrawList* list, const std::vector<ImVec2>& points, const CurveStyle& style, float width);
 
 /// Text with its anchor at a fraction of its own size: (0.5, 0) is centred below `at`.

@@ -80,7 +80,8 @@ void draw_plate(const Session& session, ImVec2 middle, float radius, double azim
   if (!seen) return;
   const auto angle = static_cast<float>(seen->angle_deg * kDegree);
   const ImVec2 half{0.4F * radius * std::cos(angle), -0.4F * radius * std::sin(angle)};
-  list->AddLine({middle.x - half.x, middle.y - half.y}, {middle.x + half.x, middle.y + half.y}, kTextColour, 2.0F);
+  list->AddLine({middle.x - half.x, middle.y - half.y}, {middle.x + half.x, middle.y + half.y}, kTextColour,
+                scaled(2.0F));
 }
 
 /// A bar of the colours with its ends in words.
@@ -146,8 +147,9 @@ void draw_sky_marks(const Scene& scene, double source_zenith_deg, const SkyPlace
   draw_text(list, at(95.0, 90.0), {0.5F, 1.0F}, kDimColour, "90°");
   draw_text(list, at(95.0, 180.0), {1.0F, 0.5F}, kDimColour, "180°");
   const double azimuth_deg = scene.number("geometry.relative_azimuth_deg").value();
-  list->AddCircle(at(source_zenith_deg, azimuth_deg), 5.0F, kTextColour, 0, 2.0F);
-  list->AddCircle(at(scene.number("geometry.view_zenith_deg").value(), 0.0), 5.0F, kTextColour, 4, 2.0F);
+  list->AddCircle(at(source_zenith_deg, azimuth_deg), scaled(5.0F), kTextColour, 0, scaled(2.0F));
+  list->AddCircle(at(scene.number("geometry.view_zenith_deg").value(), 0.0), scaled(5.0F), kTextColour, 4,
+                  scaled(2.0F));
 }
 
 std::vector<Point> all_points(const Sky& sky) {

@@ -117,6 +117,8 @@ void load_font(float pixels) {
   io.Fonts->AddFontDefault();
 }
 
+float scaled(float pixels) { return pixels * ImGui::GetFontSize() / kFontPixels; }
+
 std::string ascii(std::string_view text) {
   std::string plain;
   while (!text.empty()) {
@@ -137,10 +139,27 @@ std::string ascii(std::string_view text) {
 
 std::string shown(std::string_view text) { return has_greek() ? std::string(text) : ascii(text); }
 
+std::string in_lines(std::string text, float width) {
+  constexpr std::size_t kNone = std::string::npos;
+  std::size_t line = 0;  // where it begins
+  std::size_t space = kNone;
+  for (std::size_t i = 0; i <= text.size(); ++i) {
+    const bool is_end = i == text.size() || text[i] == '\n';
+    if (!is_end && text[i] != ' ') continue;
+    if (space != kNone && ImGui::CalcTextSize(text.data() + line, text.data() + i).x > width) {
+      text[space] = '\n';
+      line = space + 1;
+    }
+    space = is_end ? kNone : i;
+    if (is_end) line = i + 1;
+  }
+  return text;
+}
+
 void coloured_text(ImU32 colour, const std::string& text) {
   ImGui::PushStyleColor(ImGuiCol_Text, colour);
-  ImGui::PushTextWrapPos(0.0F);
-  ImGui::TextUnformatted(shown(text).c_str());
+  ImGui::PushTextWrapPos(0.0F);  // for a word that is longer than a line
+  ImGui::TextUnformatted(in_lines(shown(text), ImGui::GetContentRegionAvail().x).c_str());
   ImGui::PopTextWrapPos();
   ImGui::PopStyleColor();
 }
@@ -168,7 +187,7 @@ void tooltip(const std::string& text) {
   }
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(width);
-  ImGui::TextUnformatted(shown(text).c_str());
+  ImGui::TextUnformatted(in_lines(shown(text), width).c_str());
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
 }

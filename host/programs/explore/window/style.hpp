@@ -68,12 +68,19 @@ inline constexpr Themed kCursorColour{IM_COL32(255, 255, 255, 200), IM_COL32(40,
 /// Loads DejaVu Sans at `pixels`, or, where it is not installed, keeps ImGui's own font, which has ASCII alone.
 /// An ImGui context must be there.
 void load_font(float pixels);
+inline constexpr float kFontPixels = 15.0F;  ///< its usual size
+
+/// A length that is this many pixels at the usual size of text: it grows with the text.
+float scaled(float pixels);
 
 /// A UTF-8 text as the font can show it: Greek letters and signs by name without DejaVu Sans.
 std::string shown(std::string_view text);
 
 /// The same text in ASCII.
 std::string ascii(std::string_view text);
+
+/// A text with its lines broken at spaces alone, so that numbers and paths stay whole where a line has room for them.
+std::string in_lines(std::string text, float width);
 
 /// Text in a colour at ImGui's cursor, wrapped at the edge of the window.
 void coloured_text(ImU32 colour, const std::string& text);

@@ -25,11 +25,10 @@ class CurveView {
   const AxisEditor& axis_editor() const { return axis_editor_; }
 
  private:
-  void edit_axes(Session& session, const Plot& plot, const std::string& values);
+  void edit_axes(View& view, const Plot& plot, const std::string& values);
 
   Area area_;
   Scale x_, y_;
-  Zoom zoom_;
   AxisEditor axis_editor_;
   Plotted quantity_ = Plotted::kDolp;
 };
@@ -109,8 +108,8 @@ class MapView {
   std::size_t version_ = 0;
   Plotted quantity_ = Plotted::kDolp;
   bool is_log_ = false;
-  Scale colour_scale_;  ///< from the first colour to the last; empty where all values are equal
-  std::optional<Scale> typed_colours_;
+  Scale colour_scale_;                  ///< from the first colour to the last; empty where all values are equal
+  std::optional<Scale> typed_colours_;  ///< of the view that colour_scale_ belongs to
   AxisEditor axis_editor_;
   MapField field_;
   std::vector<ImU32> colours_;

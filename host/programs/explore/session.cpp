@@ -373,7 +373,8 @@ void Session::follow_overlay(const std::string& content, bool keep_all) {
 std::string Session::refusal(const MapAxis& axis, const Scale& range) const {
   try {
     for (const double end : {range.from, range.to}) {
-      if (axis.axis == Axis::kTheta && !(end >= 0.0 && end <= 90.0)) return "must be numbers in [0, 90]";
+      if (axis.axis == Axis::kTheta && !description_of(axis.axis).range.contains(end))
+        return "must be numbers in [0, 90]";
       if (axis.axis != Axis::kTheta) static_cast<void>(scene().with(axis.key(), end));
     }
   } catch (const InputError& error) {

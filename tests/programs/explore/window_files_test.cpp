@@ -151,6 +151,16 @@ TEST_F(WindowFiles, Snapshot_Clicked_GivesTheStateBack) {
   EXPECT_NE(app_->session().scene().number("surface.sigma"), 0.15);
 }
 
+TEST_F(WindowFiles, Snapshot_RightClicked_TakesTheNameThatIsTyped) {
+  keys("ctrl+b");
+  move_to(app_->control_area("snapshot 0").at(0.5F, 0.5F));
+  xdotool({"click", "3"});
+  frames();
+  xdotool({"type", "dry"});
+  frames();
+  EXPECT_TRUE(app_->session().snapshots()[0].name.ends_with("dry")) << app_->session().snapshots()[0].name;
+}
+
 TEST_F(WindowFiles, Session_SavedByShortcut_IsOpenedAsItWas) {
   keys("ctrl+p");
   drag_slider("surface.sigma", kPartOfSlider);

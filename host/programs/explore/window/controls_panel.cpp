@@ -186,7 +186,8 @@ void ControlsPanel::draw_spectrum(Session& session) {
     draw_field(session, ids[i], ends[i], [&](const std::string& text) {
       const std::string typed = fields_.text(ids[1 - i]);
       const std::string other = typed.empty() ? format_number(ends[1 - i]) : typed;
-      return Setting{kKey, TomlText{'[' + (i == 0 ? text + ", " + other : other + ", " + text) + ']'}};
+      return Setting{kKey,
+                     TomlText{i == 0 ? fmt::format("[{}, {}]", text, other) : fmt::format("[{}, {}]", other, text)}};
     });
   }
   for (const std::string& id : ids) show_reason(id);

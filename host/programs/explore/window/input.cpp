@@ -19,8 +19,7 @@ void Input::push(GLFWwindow* window, std::function<void()> apply, bool is_motion
   input.events_.push_back({std::move(apply), is_motion});
 }
 
-Input::Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop)
-    : window_(window), on_drop_(std::move(on_drop)) {
+Input::Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop) : on_drop_(std::move(on_drop)) {
   glfwSetWindowUserPointer(window, this);
   double across = 0.0, down = 0.0;
   glfwGetCursorPos(window, &across, &down);

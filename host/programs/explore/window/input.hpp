@@ -40,7 +40,6 @@ class Input {
   static Input& of(GLFWwindow* window);
   static void push(GLFWwindow* window, std::function<void()> apply, bool is_motion = false);
 
-  GLFWwindow* window_;
   std::function<void(const std::string&)> on_drop_;
   std::deque<Event> events_;
   bool has_news_ = false;

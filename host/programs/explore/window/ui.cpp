@@ -207,7 +207,7 @@ void Ui::draw_view_controls() {
   label("   θ up to");
   ImGui::SetNextItemWidth(0.5F * width);
   fields_.draw("theta max", view.theta_max_deg, [&](const std::string& text) {
-    const std::string wrong = set_theta_max(view, text);
+    std::string wrong = set_theta_max(view, text);
     is_changed = is_changed || wrong.empty();
     return wrong;
   });
@@ -276,6 +276,7 @@ void Ui::draw_pins() {
     ImGui::PopStyleColor();
     if (ImGui::BeginPopupContextItem("name")) {
       std::string typed = pin.name;
+      if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
       if (ImGui::InputTextWithHint("##name", shown(name).c_str(), &typed)) session_.rename_pin(i, typed);
       ImGui::EndPopup();
     }

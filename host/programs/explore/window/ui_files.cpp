@@ -99,6 +99,7 @@ void Ui::draw_snapshots() {
     tooltip("back to this state of the scene; Ctrl+Z undoes it, a right click renames");
     if (ImGui::BeginPopupContextItem("name")) {
       std::string typed = one.name;
+      if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
       if (ImGui::InputText("##name", &typed)) session_.rename_snapshot(i, typed);
       ImGui::EndPopup();
     }

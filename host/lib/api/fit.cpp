@@ -132,7 +132,7 @@ struct Bracketed {
   double model, low, high;
 };
 
-/// What was measured at zeniths, with its bracket, of one data set; empty where the scene has no bracket, other
+/// The measured quantity of one data set at zeniths, with its bracket; empty where the scene has no bracket, other
 /// quantities were measured, or wavelengths are those of the measurements.
 std::vector<Bracketed> bracketed(const Scene& fitted, const MeasuredData& data, const std::vector<double>& theta_deg,
                                  ModelEvaluator& evaluator) {

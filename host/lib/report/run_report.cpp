@@ -71,7 +71,7 @@ void add_errors(ReportBuilder& report, const RunOutcome& run, double tolerance) 
   report.value("worst_rho_error_estimate", rho);
 }
 
-/// What misses the tolerance; empty where its bounds do not say it.
+/// The quantities that miss the tolerance; empty where their bounds do not say it.
 std::string missed_text(const RunOutcome& run, double tolerance) {
   const bool is_dolp = run.summary.worst_error.value_or(0.0) > tolerance;
   const bool is_rho = run.plan.gives_rho && run.summary.worst_rho_error.value_or(0.0) > tolerance;

@@ -76,7 +76,7 @@ void ControlsPanel::draw_sky_temperature(Session& session, const std::string& na
   ImGui::SetNextItemWidth(-1.0F);
   draw_field(session, id, before_K, [&](const std::string& text) {
     const std::optional<double> typed = parse_number(text);
-    // What is no temperature is refused in the words for that of a uniform sky.
+    // Text that is no temperature is refused in the words for that of a uniform sky.
     return typed && described(kUniform).range.contains(*typed) ? with(*typed) : Setting{kUniform, TomlText{text}};
   });
   show_reason(id);

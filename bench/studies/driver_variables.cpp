@@ -6,6 +6,7 @@
 #include <dolp/errors.hpp>
 #include <filesystem>
 
+#include "base/temporary_folder.hpp"
 #include "methods/method.hpp"
 #include "studies/child.hpp"
 #include "studies/context.hpp"
@@ -15,24 +16,6 @@ namespace dolp::bench {
 namespace {
 
 using nlohmann::ordered_json;
-
-/// A temporary folder, removed at the end.
-class CacheFolder {
- public:
-  CacheFolder() : path_((std::filesystem::temp_directory_path() / "dolp-bench-XXXXXX").string()) {
-    if (::mkdtemp(path_.data()) == nullptr) throw IoError(path_ + ": cannot create the folder");
-  }
-  CacheFolder(const CacheFolder&) = delete;
-  CacheFolder& operator=(const CacheFolder&) = delete;
-  ~CacheFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 ordered_json rows_of_child(const std::vector<std::string>& assignments, const StudyOptions& options,
                            std::size_t entries) {
@@ -52,13 +35,13 @@ ordered_json rows_of_child(const std::vector<std::string>& assignments, const St
 
 std::vector<ordered_json> kernels_with(const DriverVariable& variable, const StudyOptions& options, std::size_t entries,
                                        std::size_t rounds) {
-  const CacheFolder folder;
+  const TemporaryFolder folder("dolp-bench");
   std::vector<ordered_json> children(variable.settings.size());
   for (std::size_t round = 0; round < rounds; ++round) {
     for (std::size_t i = 0; i < children.size(); ++i) {
       std::vector<std::string> assignments = {fmt::format("{}={}", variable.name, variable.settings[i])};
       if (variable.changes_code) {
-        assignments.push_back(fmt::format("MESA_SHADER_CACHE_DIR={}/{}", folder.path(), variable.settings[i]));
+        assignments.push_back(fmt::format("MESA_SHADER_CACHE_DIR={}/{}", folder.path().string(), variable.settings[i]));
       }
       const ordered_json rows = rows_of_child(assignments, options, entries);
       if (round == 0) children[i] = rows;

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/stopwatch.hpp"
+#include "base/temporary_folder.hpp"
 #include "methods/method.hpp"
 #include "studies/child.hpp"
 #include "studies/study.hpp"
@@ -60,23 +61,14 @@ std::vector<std::string> grid_of(const Size& size) {
           "--set", axis("k", 0.05, 1.0, size.k)};
 }
 
-/// A temporary folder, removed at the end.
+/// A temporary folder with the scene.
 class Folder {
  public:
-  Folder() : path_((fs::temp_directory_path() / "dolp-bench-XXXXXX").string()) {
-    if (::mkdtemp(path_.data()) == nullptr) throw IoError(path_ + ": cannot create the folder");
-    std::ofstream(at("scene.toml")) << kScene;
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  std::string at(const std::string& name) const { return path_ + '/' + name; }
+  Folder() : folder_("dolp-bench") { std::ofstream(at("scene.toml")) << kScene; }
+  std::string at(const std::string& name) const { return (folder_.path() / name).string(); }
 
  private:
-  std::string path_;
+  TemporaryFolder folder_;
 };
 
 /// A program under way, without output.

@@ -182,7 +182,8 @@ TEST_F(TableFiles, UnderWay_AnotherProcessHasIt_IsRefused) {
 
 /// A resumable table of two parts, the first of which is that of `one_part`.
 TableOutput::Job resumable_job(const fs::path& path, const TableValues& one_part) {
-  TableHead whole = one_part;
+  const TableHead& head = one_part;
+  TableHead whole = head;
   for (const double theta : one_part.axes[Axis::kTheta]) whole.axes[Axis::kTheta].push_back(theta / 2.0);
   const PerAxis count = one_part.counts();
   PerAxis second = {};

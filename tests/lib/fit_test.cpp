@@ -249,7 +249,9 @@ class FitContours : public FitTest {
     }
     // Nothing that is well below the higher level lies around the contours.
     std::vector<Eigen::Vector2d> places;
-    for (int i = 0; i < 15 * 15; ++i) places.emplace_back((i % 15) / 14.0, (i / 15) / 14.0);
+    for (int row = 0; row < 15; ++row) {
+      for (int column = 0; column < 15; ++column) places.emplace_back(column / 14.0, row / 14.0);
+    }
     const std::vector<double> growths = brute_growth(residuals, result, pair, places);
     for (std::size_t i = 0; i < places.size(); ++i) {
       if (growths[i] < 0.9 * kContourLevels[1]) {

@@ -213,7 +213,8 @@ TEST_F(FitProgram, Plot_OfDataWithWavelengths_HasACurveForEachAndNoBracket) {
   measure("alone.csv", "theta_deg", {"dolp"}, keys);
   std::string wavelengths = "wavelength_um,theta_deg,dolp\n";
   for (const std::string wavelength : {"4", "10"}) {
-    for (const std::string zenith : {"20", "50", "75"}) wavelengths += wavelength + ',' + zenith + ",0.02\n";
+    for (const std::string zenith : {"20", "50", "75"})
+      wavelengths.append(wavelength).append(",").append(zenith).append(",0.02\n");
   }
   put("wavelengths.csv", wavelengths);
   const auto plotted = [&](const std::string& data) {

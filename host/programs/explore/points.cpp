@@ -41,7 +41,8 @@ std::size_t PointList::size() const { return is_grid ? theta_deg.size() * sigma.
 Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options) {
   if (!list.is_grid) return evaluator.evaluate(scene, list.columns(), options);
   const Table table = evaluator.table(with_grid(scene, list), options);
-  return {{table.values()}, table.values().quantities(), table.values().stokes_units};
+  const ResultColumns& columns = table.values();
+  return {columns, table.values().quantities(), table.values().stokes_units};
 }
 
 std::vector<Column> PointList::columns() const {

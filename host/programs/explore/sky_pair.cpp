@@ -1,8 +1,6 @@
 #include "explore/sky_pair.hpp"
 
-#include <cstdlib>
 #include <fstream>
-#include <system_error>
 
 #include "base/text.hpp"
 
@@ -34,19 +32,15 @@ std::filesystem::path sky_file(const Scene& scene) {
   return std::filesystem::path(scene.name()).parent_path() / name;
 }
 
-SkyFiles::~SkyFiles() {
-  std::error_code ignored;
-  if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
-}
-
 std::string SkyFiles::path(const SkyPair& sky) {
-  if (folder_.empty()) {
-    std::string name = (std::filesystem::temp_directory_path() / "dolp-skies-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) return name;
-    folder_ = name;
+  constexpr const char* kName = "dolp-skies";
+  try {
+    if (!folder_) folder_.emplace(kName);
+  } catch (const IoError&) {
+    return kName;
   }
   const std::filesystem::path file =
-      folder_ / ("sky_" + format_number(sky.zenith_K) + "_" + format_number(sky.horizon_K) + ".csv");
+      folder_->path() / ("sky_" + format_number(sky.zenith_K) + "_" + format_number(sky.horizon_K) + ".csv");
   if (!std::filesystem::exists(file)) std::ofstream(file) << sky.csv();
   return file.string();
 }

@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "base/temporary_folder.hpp"
+
 namespace dolp::explore {
 
 /// A sky whose brightness temperature is a straight line in zenith.
@@ -27,17 +29,12 @@ std::filesystem::path sky_file(const Scene& scene);
 /// Files of skies that are edited, in a folder that is removed at the end: a scene names a sky by its file.
 class SkyFiles {
  public:
-  SkyFiles() = default;
-  SkyFiles(const SkyFiles&) = delete;
-  SkyFiles& operator=(const SkyFiles&) = delete;
-  ~SkyFiles();
-
   /// The path of a sky's file; the scene refuses it where no file can be made.
   std::string path(const SkyPair& sky);
-  bool hold(const std::filesystem::path& file) const { return !folder_.empty() && file.parent_path() == folder_; }
+  bool hold(const std::filesystem::path& file) const { return folder_ && file.parent_path() == folder_->path(); }
 
  private:
-  std::filesystem::path folder_;
+  std::optional<TemporaryFolder> folder_;
 };
 
 }  // namespace dolp::explore

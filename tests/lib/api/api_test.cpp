@@ -325,11 +325,11 @@ TEST_F(Library, Cancelled_WhileAKeptShardIsRead_IsHonoured) {
 // An exception, or what it held: a moved-from object is as good as any other.
 TEST_F(Library, MovedFromObjects_KeepTheirValueOrSayWhatTheyAre) {
   dolp::Scene scene = scene_;
-  const dolp::Scene taken_scene = std::move(scene);
-  EXPECT_EQ(scene.text(), taken_scene.text());  // NOLINT(bugprone-use-after-move): that is the test
+  const dolp::Scene taken_scene = std::move(scene);  // NOLINT(performance-move-const-arg): likewise
+  EXPECT_EQ(scene.text(), taken_scene.text());       // NOLINT(bugprone-use-after-move): that is the test
   EXPECT_EQ(scene.with("surface.q", 4.0).number("surface.q"), 4.0);
   dolp::Table table = evaluator_.table(scene_);
-  const dolp::Table taken_table = std::move(table);
+  const dolp::Table taken_table = std::move(table);           // NOLINT(performance-move-const-arg): likewise
   EXPECT_EQ(table.values().axes, taken_table.values().axes);  // NOLINT(bugprone-use-after-move): that is the test
   const std::vector<double> theta = {30}, sigma = {0.1}, q = {2};
   const std::vector<dolp::Column> points = {{"theta_deg", theta}, {"sigma", sigma}, {"q", q}};

@@ -135,7 +135,7 @@ TEST_F(Window, SkyList_UniformAndBuiltInOnes_AreAWordEach) {
     frames();
     EXPECT_EQ(app_->session().scene().word("surroundings.profile").value_or(""), setting);
   }
-  EXPECT_EQ(app_->session().scene().number("surroundings.temperature_K"), 250.0);
+  EXPECT_EQ(app_->session().scene().number("surroundings.temperature_K"), 240.0);  // of the scene as opened
 }
 
 }  // namespace

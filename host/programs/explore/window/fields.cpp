@@ -48,4 +48,12 @@ std::string NumberFields::reason(const std::string& key) const {
   return typed == typed_.end() ? "" : typed->second.reason;
 }
 
+std::optional<std::string> typed_name(std::string name, const std::string& hint) {
+  if (!ImGui::BeginPopupContextItem("name")) return std::nullopt;
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  const bool is_typed = ImGui::InputTextWithHint("##name", hint.c_str(), &name);
+  ImGui::EndPopup();
+  return is_typed ? std::optional(std::move(name)) : std::nullopt;
+}
+
 }  // namespace dolp::explore

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace dolp::explore {
@@ -30,5 +31,8 @@ class NumberFields {
   };
   std::map<std::string, Typed> typed_;
 };
+
+/// A field for the name of the last item, which a right click opens. Returns what has been typed in this frame.
+std::optional<std::string> typed_name(std::string name, const std::string& hint = {});
 
 }  // namespace dolp::explore

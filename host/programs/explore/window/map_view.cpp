@@ -82,7 +82,7 @@ void MapView::update(const Session& session) {
   std::vector<Run> upwards = runs_along(false);
   if (upwards.size() < runs_.size()) runs_ = std::move(upwards);
   lines_.clear();
-  if (!(field_.min < field_.max && colour_scale_.from < colour_scale_.to)) return;
+  if (field_.min >= field_.max || colour_scale_.from >= colour_scale_.to) return;
   for (const double level : colour_scale_.ticks(kMostLines)) lines_.push_back({level, contour(field_, level)});
 }
 

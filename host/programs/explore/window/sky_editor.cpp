@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kProfile = "surroundings.profile";
 constexpr const char* kUniform = "surroundings.temperature_K";
-constexpr double kUniform_K = 250.0;
+constexpr double kUniform_K = 250.0;    // where the scene as opened has none
 constexpr Scale kSlider{150.0, 350.0};  // K; typing reaches all
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
@@ -41,7 +41,8 @@ void ControlsPanel::draw_sky_list(Session& session) {
     tooltip(fmt::format("{} {}: {}", kProfile, current, described(kProfile).meaning));
     return;
   }
-  if (ImGui::Selectable("uniform", current.empty()) && !current.empty()) session.set(kUniform, kUniform_K);
+  if (ImGui::Selectable("uniform", current.empty()) && !current.empty())
+    session.set(kUniform, session.edits().opened().number(kUniform).value_or(kUniform_K));
   for (const char* built_in : {"clear-sky", "overcast"}) {
     if (ImGui::Selectable(built_in, current == built_in)) session.set(kProfile, built_in);
   }

@@ -274,12 +274,7 @@ void Ui::draw_pins() {
     const std::string name = pin.name.empty() ? surface_name(pin.curve.shown_scene()) : pin.name;
     if (ImGui::Checkbox(shown(name).c_str(), &is_visible)) session_.show_pin(i, is_visible);
     ImGui::PopStyleColor();
-    if (ImGui::BeginPopupContextItem("name")) {
-      std::string typed = pin.name;
-      if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-      if (ImGui::InputTextWithHint("##name", shown(name).c_str(), &typed)) session_.rename_pin(i, typed);
-      ImGui::EndPopup();
-    }
+    if (const auto typed = typed_name(pin.name, shown(name))) session_.rename_pin(i, *typed);
     ImGui::PopID();
   }
   if (removed < session_.pins().size()) session_.remove_pin(removed);

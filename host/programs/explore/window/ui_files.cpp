@@ -97,12 +97,7 @@ void Ui::draw_snapshots() {
     }
     areas_[fmt::format("snapshot {}", i)] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
     tooltip("back to this state of the scene; Ctrl+Z undoes it, a right click renames");
-    if (ImGui::BeginPopupContextItem("name")) {
-      std::string typed = one.name;
-      if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-      if (ImGui::InputText("##name", &typed)) session_.rename_snapshot(i, typed);
-      ImGui::EndPopup();
-    }
+    if (const auto typed = typed_name(one.name)) session_.rename_snapshot(i, *typed);
     ImGui::PopID();
   }
   if (removed < session_.snapshots().size()) session_.remove_snapshot(removed);

@@ -63,7 +63,7 @@ struct Pair {
   bool saves() const {
     const EffectPlan& own = planned.plan();
     const EffectPlan& whole = all.plan();
-    return !own.dropped.empty() || own.needs_moments != whole.needs_moments || own.needs_beams != whole.needs_beams;
+    return !own.dropped.empty() || own.kept.moments != whole.kept.moments || own.needs_beams != whole.needs_beams;
   }
 };
 

@@ -35,9 +35,9 @@ TEST(Dropping, RandomScenes_TheAnswerWithEverythingIsWithinTheEstimates) {
     const std::vector<SceneEntry> entries = scenes.entries(scene);
     const EffectPlan plan = plan_effects(scene, entries, false);
     EXPECT_LE(plan.bound, kDroppedShare * scene.accuracy.tolerance);
-    if (plan.dropped.empty() && plan.needs_moments) continue;
+    if (plan.dropped.empty() && plan.kept.moments) continue;
     for (const DroppedPart& part : plan.dropped) ++dropped[part.part];
-    without_moments += plan.needs_moments ? 0 : 1;
+    without_moments += plan.kept.moments ? 0 : 1;
     const std::vector<PointResult> whole = run(scene, entries, keep_everything(scene));
     const std::vector<PointResult> left = run(scene, entries, plan);
     for (std::size_t j = 0; j < entries.size(); ++j) {

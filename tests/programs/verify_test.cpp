@@ -153,6 +153,7 @@ TEST_F(Verify, EveryKindOfScene_Passes) {
   for (const std::vector<std::string>& options :
        {std::vector<std::string>{"--set", "geometry.mode=bistatic", "--set", "source.irradiance=1"},
         {"--set", "spectrum.band_um=[8, 12]", "--set", "emission.model=fresnel"},
+        {"--set", "emission.bracket=true", "--set", "surface.masking=smith"},
         {"--set", "surface.distribution=gaussian", "--set", "surface.diffuse=0.1", "--set", "path.transmittance=0.5"},
         {"--set", "grid.sigma=[0, 0.4]"}}) {
     make_table(options);
@@ -173,12 +174,14 @@ TEST_F(Verify, OneCorruptedValue_Exit1AndIsNamed) {
     bool is_dolp;
   };
   for (const Corruption& corruption : {Corruption{Quantity::kDolp, true},
+                                       {Quantity::kDolpLow, true},
+                                       {Quantity::kDolpHigh, true},
                                        {Quantity::kRhoI, false},
                                        {Quantity::kRhoQ, false},
                                        {Quantity::kStokesQ, true},
                                        {Quantity::kStokesI, true}}) {
     const std::string name = description_of(corruption.quantity).name;
-    const TableValues table = make_table({"--set", "surface.masking=v-cavity"});
+    const TableValues table = make_table({"--set", "surface.masking=v-cavity", "--set", "emission.bracket=true"});
     const std::size_t at_entry = table.position(1, 0, 1);  // theta 60, sigma 0.1, q 3.5
     double bound = corruption.is_dolp ? table[Quantity::kErrorEstimate][at_entry]
                                       : table[Quantity::kRhoErrorEstimate][at_entry] * table[Quantity::kRhoI][at_entry];

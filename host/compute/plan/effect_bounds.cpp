@@ -60,8 +60,7 @@ double most_lambda(Distribution distribution, const SlopeShape& shape, const Cos
 /// Equation: rho c = E[e G M], e <= max(c + s t cos(phi), 0), G <= 1. `v-cavity` and `smith` reflect at most all
 /// incident light; else 1 + tan(theta) E|t_x| / 2, because the mean of t is pi E|t_x| / 2.
 double most_albedo(const Surface& surface, const CosSin& a, const SlopeShape& roughest) {
-  const bool keeps_energy = surface.masking == Masking::kVCavity || surface.masking == Masking::kSmith;
-  return keeps_energy ? 1.0 : 1.0 + most_lambda(surface.distribution, roughest, a);
+  return keeps_projected_area(surface.masking) ? 1.0 : 1.0 + most_lambda(surface.distribution, roughest, a);
 }
 
 /// Range of a quantity.

@@ -80,11 +80,10 @@ void drop_effects(EffectPlan& plan, const SceneValues& scene, const std::vector<
 }
 
 void set_needs(EffectPlan& plan, const SceneValues& scene, const std::vector<EffectBounds>& bounds) {
-  plan.needs_moments = plan.kept.moments;
-  plan.needs_direct = plan.needs_moments && scene.emission &&
+  plan.needs_direct = plan.kept.moments && scene.emission &&
                       (scene.emission->has_bracket || (emits_as(scene, EmissionModel::kDirect) && plan.kept.emission));
   plan.needs_beams = needs_beams(scene, bounds, plan.kept);
-  plan.gives_rho = plan.needs_moments || scene.surface.specular == 0.0;
+  plan.gives_rho = plan.kept.moments || scene.surface.specular == 0.0;
 }
 
 const DroppedPart* find_dropped(const EffectPlan& plan, Part part) {
@@ -123,7 +122,7 @@ Effect part_row(const SceneValues& scene, const EffectPlan& plan, Part part, Eff
 
 /// The needs of a part that the moments serve while they are kept.
 std::string needs_of_moments(const SceneValues& scene, const EffectPlan& plan) {
-  if (!plan.needs_moments) return "closed form";
+  if (!plan.kept.moments) return "closed form";
   return is_bistatic(scene) ? fmt::format("moments at {:g} deg", scene.geometry.view_zenith_deg)
                             : "moments at each theta";
 }
@@ -131,7 +130,7 @@ std::string needs_of_moments(const SceneValues& scene, const EffectPlan& plan) {
 Effect specular_row(const SceneValues& scene, const EffectPlan& plan) {
   if (scene.surface.specular == 0.0) return absent("specular", "surface.specular is 0");
   Effect row{"specular", EffectState::kKept, {}, {}, Part::kMoments};
-  if (plan.needs_moments) {
+  if (plan.kept.moments) {
     row.reason = "what is emitted or reflected depends on it";
     row.needs = needs_of_moments(scene, plan) + (plan.needs_beams ? ", f at each theta" : "");
     return row;
@@ -155,7 +154,7 @@ Effect model_row(const SceneValues& scene, const EffectPlan& plan, const char* n
   const bool all_mirrors = !entries.empty() && std::ranges::all_of(entries.all(), is_flat);
   if (all_mirrors) return absent(name, "sigma is 0 everywhere: a mirror");
   if (scene.surface.specular == 0.0) return absent(name, "surface.specular is 0");
-  if (plan.needs_moments || plan.needs_beams) return {name, EffectState::kKept, choice + reason};
+  if (plan.kept.moments || plan.needs_beams) return {name, EffectState::kKept, choice + reason};
   return {name, EffectState::kNotNeeded, choice + ": nothing depends on it without the specular part"};
 }
 
@@ -170,7 +169,7 @@ Effect scattering_row(const SceneValues& scene, const EffectPlan& plan, const Sc
   }
   Effect row = model_row(scene, plan, "scattering", "all bounces in V-grooves", entries, "");
   if (row.state != EffectState::kKept) return row;
-  row.needs = plan.needs_moments ? needs_of_moments(scene, plan) : "f at each theta";
+  row.needs = plan.kept.moments ? needs_of_moments(scene, plan) : "f at each theta";
   return part_row(scene, plan, Part::kFurtherBounces, row);
 }
 
@@ -182,7 +181,7 @@ Effect complex_index_row(const SceneValues& scene, const EffectPlan& plan, const
           ? std::ranges::any_of(entries.axes()[Axis::kK], [](double k) { return k > 0.0; })
           : std::ranges::any_of(entries.all(), [&](const SceneEntry& e) { return e.index && is_complex(*e.index); });
   if (!own && std::ranges::none_of(spectral_rule(scene).indices(), is_complex)) return absent(kName, "k is 0");
-  const bool is_used = plan.needs_moments || plan.needs_beams || (is_fresnel(scene) && plan.kept.emission);
+  const bool is_used = plan.kept.moments || plan.needs_beams || (is_fresnel(scene) && plan.kept.emission);
   if (!is_used) return {kName, EffectState::kNotNeeded, "nothing depends on the index"};
   return {kName, EffectState::kKept, "costs nothing: the kernel treats real indices alike"};
 }
@@ -267,7 +266,7 @@ EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, b
 }
 
 EffectPlan with_sky(EffectPlan plan, const SceneValues& scene, const SceneEntries& entries) {
-  if (!plan.sky && plan.needs_moments && plan.kept.surroundings && plan.kept.profile)
+  if (!plan.sky && plan.kept.moments && plan.kept.surroundings && plan.kept.profile)
     plan.sky = sky_basis(scene, entries.wavelength_um());
   return plan;
 }

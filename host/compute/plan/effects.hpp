@@ -27,7 +27,6 @@ struct EffectPlan {
   KeptEffects kept;
   std::vector<DroppedPart> dropped;     ///< in the order of dropping; parts that the scene lacks are not among them
   double bound = 0.0;                   ///< of all dropped parts together
-  bool needs_moments = true;            ///< the specular moments, at theta or in bistatic mode at the view
   bool needs_direct = false;            ///< those of the direct emission too
   bool needs_beams = false;             ///< f of the source's and the view's direction
   std::shared_ptr<const SkyBasis> sky;  ///< of the moments with a sky; none without a profile, see with_sky
@@ -37,12 +36,12 @@ struct EffectPlan {
 /// The effects that the scene's output needs at these entries.
 ///
 /// A part is dropped if the bound of EffectBounds leaves the sum of all dropped parts at kDroppedShare of the tolerance
-/// or below. The parts are tried in the order of Part, except the moments, which are tried first and once more last.
-/// Further bounces go with the moments alone: a bound of what they change costs more than it saves. Each bound is that
-/// of the scene without the parts dropped before, so that the sum bounds the whole change; except for the moments, a
-/// part's bound in the whole scene counts too. A part that contributes exactly nothing is dropped at no cost: the
-/// moments where emission and surroundings have one temperature, for instance. Model choices (distribution, masking, k)
-/// and the diffuse part are never dropped. `keep_all` keeps everything that the scene has.
+/// or below. The moments are tried first, then the source, the profile, the surroundings, the emission and the path,
+/// then the moments again. Further bounces go with the moments alone: a bound of what they change costs more than it
+/// saves. Each bound is that of the scene without the parts dropped before, so that the sum bounds the whole change;
+/// except for the moments, a part's bound in the whole scene counts too. A part that contributes exactly nothing is
+/// dropped at no cost: the moments where emission and surroundings have one temperature, for instance. Model choices
+/// (distribution, masking, k) and the diffuse part are never dropped. `keep_all` keeps everything that the scene has.
 EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, bool keep_all);
 
 /// The plan of a run that computes `kept`: its needs and its results.

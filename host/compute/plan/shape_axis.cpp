@@ -15,9 +15,6 @@ constexpr double kGrazing_deg = 89.9;
 
 bool is_grazing(double theta_deg) { return theta_deg > kGrazing_deg; }
 
-// True for maskings without shadows that bound the projection of the facets at grazing incidence.
-bool sees_slopes(Masking masking) { return masking == Masking::kNone || masking == Masking::kIntegral; }
-
 double nodes_needed(const ShapeParameter& parameter, double half_length, double digits) {
   const double per_digit = std::log(10.0) / std::asinh(parameter.strip / half_length);
   return std::max(std::ceil(kFirstShapeNodes + digits * per_digit), kLeastShapeNodes);
@@ -35,8 +32,9 @@ ShapeParameter sigma_parameter(Distribution distribution) {
 }
 
 ShapeParameter q_parameter(const MomentsRequest& request) {
-  const bool needs_mean_slope = request.masking == Masking::kSmith ||
-                                (sees_slopes(request.masking) && std::ranges::all_of(request.theta_deg, is_grazing));
+  const bool needs_mean_slope =
+      request.masking == Masking::kSmith ||
+      (!keeps_projected_area(request.masking) && std::ranges::all_of(request.theta_deg, is_grazing));
   const bool has_mean_slope = request.distribution == Distribution::kCauchy && std::ranges::min(request.q) > 1.5;
   return {needs_mean_slope && has_mean_slope ? 1.5 : 1.0, 1.45};
 }
@@ -44,7 +42,7 @@ ShapeParameter q_parameter(const MomentsRequest& request) {
 std::vector<MomentsRequest> with_one_parameter(const MomentsRequest& request) {
   if (request.layout == MomentsRequest::Layout::kList) return {request};
   const auto grazing = static_cast<std::size_t>(std::ranges::count_if(request.theta_deg, is_grazing));
-  if (!sees_slopes(request.masking) || grazing == 0 || grazing == request.theta_deg.size()) return {request};
+  if (keeps_projected_area(request.masking) || grazing == 0 || grazing == request.theta_deg.size()) return {request};
   std::vector<MomentsRequest> parts;
   const std::size_t of_theta = request.size() / request.theta_deg.size();
   for (const bool of_grazing : {false, true}) {

@@ -12,6 +12,12 @@ namespace dolp {
 
 enum class Distribution : std::uint32_t { kCauchy = 0, kGaussian = 1 };
 enum class Masking : std::uint32_t { kNone = 0, kVCavity = 1, kIntegral = 2, kSmith = 3 };
+/// True if the facets that a direction sees have the projected area of the surface, whatever their slopes: direct
+/// emission needs it, no more light is reflected than arrives, and rho and f have limits at 90 degrees. With the other
+/// maskings they diverge there.
+constexpr bool keeps_projected_area(Masking masking) {
+  return masking == Masking::kVCavity || masking == Masking::kSmith;
+}
 /// Number of bounces that the light is followed for: one, or all bounces in a V-groove.
 enum class Scattering : std::uint32_t { kSingle = 0, kMultiple = 1 };
 enum class EmissionModel { kMoments, kFresnel, kDirect };

@@ -18,13 +18,13 @@ constexpr double kDivergentQ = 1.5;
 bool is_mirror(const SlopeShape& shape) { return shape.sigma < kSmallestSigma; }
 
 double zenith_before_limit_deg(Masking masking, double zenith_deg) {
-  return has_grazing_limit(masking) && zenith_deg == 90.0 ? kNearGrazingDeg : zenith_deg;
+  return keeps_projected_area(masking) && zenith_deg == 90.0 ? kNearGrazingDeg : zenith_deg;
 }
 
 Treatment treatment_of(Distribution distribution, Masking masking, double theta_deg, const SlopeShape& shape) {
   if (is_mirror(shape)) return Treatment::kMirror;
   const bool has_heavy_tail = distribution == Distribution::kCauchy && shape.q <= kDivergentQ;
-  const bool diverges = theta_deg == 90.0 && has_heavy_tail && !has_grazing_limit(masking);
+  const bool diverges = theta_deg == 90.0 && has_heavy_tail && !keeps_projected_area(masking);
   return diverges ? Treatment::kDivergentLimit : Treatment::kIntegrated;
 }
 

@@ -27,14 +27,8 @@ Direction direction_of(Distribution distribution, Masking masking, double theta_
 
 bool is_mirror(const SlopeShape& shape);
 
-/// True if the facets visible under a masking have the projected area of the surface in every direction: direct
-/// emission needs it.
-inline bool has_direct_emission(Masking masking) { return masking == Masking::kVCavity || masking == Masking::kSmith; }
-
-/// True if rho and f of the specular part have a limit at 90 degrees.
-inline bool has_grazing_limit(Masking masking) { return masking == Masking::kVCavity || masking == Masking::kSmith; }
-
-/// The zenith itself, or just before 90 degrees for a limit there, which rho and f approach like the cosine.
+/// The zenith itself, or just before 90 degrees where rho and f have a limit there, which they approach like the
+/// cosine.
 double zenith_before_limit_deg(Masking masking, double zenith_deg);
 
 }  // namespace dolp

@@ -11,21 +11,35 @@
 
 namespace dolp {
 
-/// Evaluator, device and cost of a run, for the report.
-struct EvaluationReport {
-  std::string evaluator;  ///< vulkan | cpu | reference
-  std::string device;     ///< device name, or the processor
-  std::string driver;     ///< driver name and version; empty for cpu and reference
-  std::string precision;  ///< float | double | float and double, as used
+/// What some evaluations took.
+struct Work {
+  double evaluations = 0.0;  ///< of the integrand
+  double kernel_s = 0.0;     ///< time on the device (timestamps), or of the loop on the CPU
+  double sums_s = 0.0;       ///< of the host: sums over slopes, and between slope distributions or indices
   std::uint64_t dispatches = 0;
+  std::uint64_t interpolated = 0;         ///< moments that were interpolated or combined from others
+  std::uint64_t interpolation_nodes = 0;  ///< moments computed for that
+
+  Work& operator+=(const Work& other) {
+    evaluations += other.evaluations;
+    kernel_s += other.kernel_s;
+    sums_s += other.sums_s;
+    dispatches += other.dispatches;
+    interpolated += other.interpolated;
+    interpolation_nodes += other.interpolation_nodes;
+    return *this;
+  }
+};
+
+/// Evaluator, device and cost of a run, for the report.
+struct EvaluationReport : Work {
+  std::string evaluator;           ///< vulkan | cpu | reference
+  std::string device;              ///< device name, or the processor
+  std::string driver;              ///< driver name and version; empty for cpu and reference
+  std::string precision;           ///< float | double | float and double, as used
   std::uint32_t devices_lost = 0;  ///< devices lost and replaced by a new one
-  double evaluations = 0.0;
-  double kernel_s = 0.0;                  ///< time on the device (timestamps), or of the loop on the CPU
-  double sums_s = 0.0;                    ///< of the host: sums over slopes, and between slope distributions or indices
-  double setup_s = 0.0;                   ///< pipeline creation, and that of the device since clear_report;
-  double pipelines_s = 0.0;               ///< the pipelines
-  std::uint64_t interpolated = 0;         ///< moments that were interpolated or combined from others,
-  std::uint64_t interpolation_nodes = 0;  ///< and moments computed for that
+  double setup_s = 0.0;            ///< creation of pipelines, and of the device since clear_report
+  double pipelines_s = 0.0;        ///< creation of pipelines alone
 };
 
 /// Adds a precision to EvaluationReport::precision.

@@ -1,6 +1,5 @@
 #include "model/index_basis.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -139,10 +138,7 @@ void IndexBasis::prepare_weights(double tolerance) {
       rows(kSamples + i, i) = kRidge * tolerance * std::sqrt(static_cast<double>(kSamples)) * level_of(index);
     }
     curves_[curve] = rows.topRows(kSamples);
-    const Eigen::HouseholderQR<Eigen::MatrixXd> factors(rows);
-    const Eigen::MatrixXd orthonormal = factors.householderQ() * Eigen::MatrixXd::Identity(rows.rows(), others);
-    projections_[curve] = orthonormal.topRows(kSamples).transpose();
-    triangles_[curve] = factors.matrixQR().topRows(others);
+    others_[curve] = LeastSquares(rows);
   }
 }
 
@@ -159,8 +155,7 @@ std::optional<IndexWeights> IndexBasis::computed_weights(const OpticalConstants&
   const double most = kReach * tolerance_ * level_of(index);
   for (const Curve curve : {kMean, kDifference}) {
     const Eigen::VectorXd distance = curves[curve] - first_[curve];
-    const Eigen::VectorXd others =
-        triangles_[curve].triangularView<Eigen::Upper>().solve(projections_[curve] * distance);
+    const Eigen::VectorXd others = others_[curve].solve(distance);
     const double error = kBetweenSamples * (distance - curves_[curve] * others).lpNorm<Eigen::Infinity>();
     if (!(error <= most)) return std::nullopt;
     Eigen::VectorXd& all = curve == kMean ? weights.mean : weights.difference;

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/least_squares.hpp"
 #include "model/optical_constants.hpp"
 
 namespace dolp {
@@ -29,8 +30,8 @@ struct IndexWeights {
 /// Some of the indices of a run, from which the others are combined.
 class IndexBasis {
  public:
-  /// Errors of the combined curves stay below half of the tolerance, relative to the reflectance and to the absorptance
-  /// at normal incidence, whichever is less. Null where the basis is more than half of the indices.
+  /// Errors of the combined curves stay below the tolerance, relative to the reflectance or to the absorptance at
+  /// normal incidence, whichever is less. Null where the basis is more than half of the indices.
   static std::shared_ptr<const IndexBasis> of(const std::vector<OpticalConstants>& indices, double tolerance);
 
   const std::vector<OpticalConstants>& indices() const { return indices_; }
@@ -47,9 +48,7 @@ class IndexBasis {
   std::vector<OpticalConstants> indices_;
   std::array<Eigen::VectorXd, 2> first_;   ///< the curve of the first
   std::array<Eigen::MatrixXd, 2> curves_;  ///< of each other its distance from that
-  // The QR factors of the least squares: a triangle times the weights of the others is a projection of the distance.
-  std::array<Eigen::MatrixXd, 2> projections_;
-  std::array<Eigen::MatrixXd, 2> triangles_;
+  std::array<LeastSquares, 2> others_;     ///< of these distances, and a ridge below each
   double tolerance_ = 0.0;
   std::map<std::pair<double, double>, std::optional<IndexWeights>> known_;  ///< by n and k, of the run's indices
 };

@@ -11,7 +11,7 @@ struct KeptEffects {
   bool path_radiance = true;  ///< the transmittance, which cancels in DOLP, always stays
   bool diffuse = true;
   bool further_bounces = true;  ///< in grooves, after the first
-  bool moments = true;          ///< the specular part of rho, which the evaluators integrate
+  bool moments = true;          ///< the specular part of rho, which the evaluators integrate: at theta, or at the view
   friend bool operator==(const KeptEffects&, const KeptEffects&) = default;
 };
 

@@ -1,6 +1,5 @@
 #include "model/sky_basis.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
@@ -97,13 +96,14 @@ SkyBasis::SkyBasis(SkyNodes nodes, const std::vector<Eigen::VectorXd>& functions
     if (!worst) break;
     values_.conservativeResize(Eigen::NoChange, values_.cols() + 1);
     values_.rightCols(1) = *worst / worst->cwiseAbs().maxCoeff();
+    sums_ = LeastSquares(values_);
   }
 }
 
 SkyWeights SkyBasis::weights_of(const Eigen::VectorXd& function) const {
   if (size() == 0) return {{}, function.cwiseAbs().maxCoeff()};
   SkyWeights weights;
-  weights.of = values_.colPivHouseholderQr().solve(function);
+  weights.of = sums_.solve(function);
   const double terms = weights.of.cwiseAbs().sum();
   weights.error = kBetweenNodes * (values_ * weights.of - function).cwiseAbs().maxCoeff() + kRounding * terms;
   return weights;

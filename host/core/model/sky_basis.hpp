@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "model/least_squares.hpp"
+
 namespace dolp {
 
 /// Zeniths at which functions of a sky are known: between two ends, which may be corners, they are the polynomial
@@ -54,6 +56,7 @@ class SkyBasis {
  private:
   SkyNodes nodes_;
   Eigen::MatrixXd values_;  ///< nodes x functions
+  LeastSquares sums_;       ///< of these
 };
 
 /// Most functions of a basis, which is the most that the kernels take.

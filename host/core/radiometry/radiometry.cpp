@@ -69,19 +69,15 @@ bool is_known(const Moments& moments) {
   return !std::isnan(moments.r_i) && !std::isnan(moments.r_q) && !std::isnan(moments.deficit);
 }
 
-bool specular_diverges(const Surface& surface) {
-  return surface.masking == Masking::kNone || surface.masking == Masking::kIntegral;
-}
-
 bool diffuse_diverges(const Surface& surface) { return surface.diffuse > 0.0 && surface.diffuse_exponent < 0.0; }
 
 // A specular part that stays below 2 as the cosine vanishes belongs to a mirror or to n = 1: it has a limit.
 bool reflectance_diverges(const Surface& surface, const Direction& direction, std::span<const Moments> moments) {
   if (direction.theta_deg != kRightAngle_deg) return false;
   if (direction.cos_theta == 0.0 || diffuse_diverges(surface)) return true;
-  return specular_diverges(surface) && std::ranges::any_of(moments, [&](const Moments& m) {
-           return surface.specular * m.r_i > 2.0 * direction.cos_theta;
-         });
+  return !keeps_projected_area(surface.masking) && std::ranges::any_of(moments, [&](const Moments& m) {
+    return surface.specular * m.r_i > 2.0 * direction.cos_theta;
+  });
 }
 
 /// Equation: the terms of I and Q that grow fastest as cos(theta) -> 0, times a factor that makes them finite: D r,
@@ -118,7 +114,7 @@ PointResult grazing_limit(const SceneValues& scene, const SpectralRule& rule, st
   PointResult result = outside_domain();
   result.status = kReflectanceOutsideZeroToOne | kOutsideModelDomain;
   result[kRhoErrorEstimate] = 0.0;
-  if (!specular_diverges(surface)) {
+  if (keeps_projected_area(surface.masking)) {
     if (direction.cos_theta > 0.0) result[kAlbedo] = moments.front().albedo / direction.cos_theta;
     // A diverging diffuse part is unpolarised. It cancels only next to a fresnel emission of the same temperature; the
     // rest is too small to need a formula of its own.

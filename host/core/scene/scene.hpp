@@ -1,5 +1,4 @@
-// A validated scene: the contents of the TOML file, in SI units and radians (the grid's theta stays in degrees, because
-// the degrees are what the user typed and what the table's coordinate must repeat).
+// A validated scene: the contents of the TOML file in its units, degrees, micrometres and kelvins.
 #pragma once
 
 #include <dolp/setting.hpp>

@@ -320,7 +320,7 @@ void check_scattering(const SceneValues& scene, const SceneDocument& document) {
                  {!is_direct, "emission.model = \"moments\" or \"fresnel\""},
                  {!emission.has_bracket, "emission.bracket = false"}});
   }
-  const bool can_be_direct = has_direct_emission(surface.masking);
+  const bool can_be_direct = keeps_projected_area(surface.masking);
   const char* const maskings = "surface.masking = \"smith\" or \"v-cavity\"";
   if (emission.has_bracket) {
     check_needs(

@@ -38,8 +38,6 @@ struct SkyProfile {
   std::vector<double> ends_deg() const;
   /// Wavelengths between which it is smooth.
   std::vector<double> breaks_um() const;
-  /// True if the profile has corners over the zenith.
-  bool has_corners() const { return kind != Kind::kLayers && zenith_deg.size() > 2; }
   /// The temperature of a profile that is the same everywhere.
   std::optional<double> only_temperature() const;
   /// As a file, which parse_sky_profile reads; empty for layers.

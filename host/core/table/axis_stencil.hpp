@@ -41,8 +41,8 @@ class LookupAxis {
   /// Where a value lies. Domain: contains(value).
   struct Place {
     double coordinate = 0.0;
-    std::size_t next = 0;   ///< the first value above it; or the value itself,
-    bool is_value = false;  ///< where it is one of the axis
+    std::size_t next = 0;   ///< the first value above it, or the value itself
+    bool is_value = false;  ///< true if it is a value of the axis
   };
   Place place(double value) const;
 

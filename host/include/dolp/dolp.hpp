@@ -100,7 +100,7 @@ class DOLP_EXPORT Scene {
   /// n and k at a wavelength. Errors: InputError where the material has none.
   std::pair<double, double> refractive_index(double wavelength_um) const;
 
-  // A move copies.
+  // Without moves, so that an object that was moved from keeps its contents.
   Scene(const Scene&) = default;
   Scene& operator=(const Scene&) = default;
   ~Scene() = default;
@@ -154,7 +154,7 @@ class DOLP_EXPORT Table {
   /// The global attributes as a file has them, which also names its conventions and has a hash of the values.
   std::vector<Attribute> file_attributes() const;
 
-  // A move copies.
+  // Without moves, so that an object that was moved from keeps its contents.
   Table(const Table&) = default;
   Table& operator=(const Table&) = default;
   ~Table() = default;

@@ -32,7 +32,7 @@ struct DOLP_EXPORT Key {
   std::vector<std::string> words;  ///< that a word may be
   std::string fallback;            ///< default as in a scene file; "required"; empty when the key is simply absent
   std::string meaning;             ///< one line, with the symbol
-  std::vector<std::string> rivals = {};  ///< alternative keys; a setting of one removes the other
+  std::vector<std::string> rivals = {};  ///< alternative keys, which stand in no scene together
 
   /// "a number in [0, 90]", "one of cauchy, gaussian", …
   std::string allowed() const;

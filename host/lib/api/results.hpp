@@ -13,7 +13,7 @@ namespace dolp {
 Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head);
 
 /// Points of columns, as many as the columns that have not one value for all; one where there is none.
-/// Errors: InputError of the rooms.
+/// Errors: InputError for a column that is unknown, has another length, or has a value out of range.
 Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
 
 }  // namespace dolp

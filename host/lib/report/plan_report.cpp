@@ -58,7 +58,7 @@ void add_effects(ReportBuilder& report, const PlanReport& plan) {
 std::string dropped_text(const EffectPlan& plan, double tolerance) {
   if (plan.keep_all) return "nothing (all are kept)";
   const double allowed = kDroppedShare * tolerance;
-  if (plan.dropped.empty() && plan.needs_moments) {
+  if (plan.dropped.empty() && plan.kept.moments) {
     return fmt::format("nothing: every bound exceeds {:g}, {:g} of the tolerance {:g}", allowed, kDroppedShare,
                        tolerance);
   }
@@ -71,7 +71,7 @@ std::string output_text(const SceneValues& scene, const EffectPlan& plan) {
   if (scene.emission && scene.emission->has_bracket) text += ", its bracket";
   if (gives_emissivity(scene, plan)) text += ", emissivity";
   if (!plan.gives_rho) return text + "; without rho_i, rho_q and albedo";
-  return text + (plan.needs_moments ? ", rho, albedo" : ", rho; without albedo");
+  return text + (plan.kept.moments ? ", rho, albedo" : ", rho; without albedo");
 }
 
 std::string how_counted(const RunPrediction& run) {
@@ -201,7 +201,7 @@ ReportBuilder plan_report(const PlanReport& plan) {
   report.row("output", "{}", output_text(scene, plan.plan));
   report.values({{"tolerance", scene.accuracy.tolerance},
                  {"gives_rho", plan.plan.gives_rho},
-                 {"gives_albedo", plan.plan.needs_moments},
+                 {"gives_albedo", plan.plan.kept.moments},
                  {"gives_emissivity", gives_emissivity(scene, plan.plan)}});
   add_kernels(report, plan);
   add_cost(report, plan);

@@ -118,12 +118,13 @@ ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, std::o
                 key("self_check/entries", summary.check.entries),
                 key("self_check/worst_ratio", summary.check.worst_ratio),
                 summary.check.worst_ratio > 1.0 ? "; a bound failed, see status 2" : "");
-  report.row_if(gap.has_value(), "scattering",
-                "single; the model of direct emission differs by up to {:.1f} points of DOLP, the most of 16 entries",
-                kPoints * gap.value_or(0.0));
+  report.row_if(
+      gap.has_value(), "scattering",
+      "single; the model of direct emission differs by up to {:.1f} points of DOLP, the largest of up to 16 entries",
+      kPoints * gap.value_or(0.0));
   report.value("scattering_gap", gap);
   add_status(report, run, scene.accuracy.tolerance);
-  add_energy(report, summary, run.plan.needs_moments);
+  add_energy(report, summary, run.plan.kept.moments);
   const EvaluationReport& evaluation = run.evaluation;
   const bool is_faster_on_cpu =
       evaluation.evaluator == "vulkan" && evaluation.evaluations < kFewEvaluations && evaluation.setup_s > 0.0;

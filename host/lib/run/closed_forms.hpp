@@ -8,9 +8,10 @@
 namespace dolp {
 
 /// Moments that need no evaluator: of a mirror, or the limits at 90 degrees of moments that diverge there.
-/// With a basis of a sky those with its functions too. Domain: a direction whose treatment is not kIntegrated.
+/// With a basis of a sky (null: none) those with its functions too. Domain: a direction whose treatment is not
+/// kIntegrated.
 Moments closed_form(const Surface& surface, const Direction& direction, const SlopeShape& shape,
-                    const OpticalConstants& index, const SkyBasis* sky = nullptr);
+                    const OpticalConstants& index, const SkyBasis* sky);
 
 /// Moments at exactly 90 degrees where they diverge, up to their common factor: masking none or `integral`, cauchy with
 /// q <= 3/2. Their quotients are the limits theta -> 90 degrees.

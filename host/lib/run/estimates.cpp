@@ -34,8 +34,8 @@ std::optional<double> largest_change(const std::vector<PointResult>& a, const st
 constexpr std::size_t kGapMoments = 64;  // at most, but of one entry
 
 bool has_gap(const SceneValues& scene, const EffectPlan& plan) {
-  return plan.needs_moments && scene.emission && scene.emission->model != EmissionModel::kFresnel &&
-         scene.surface.scattering == Scattering::kSingle && has_direct_emission(scene.surface.masking) &&
+  return plan.kept.moments && scene.emission && scene.emission->model != EmissionModel::kFresnel &&
+         scene.surface.scattering == Scattering::kSingle && keeps_projected_area(scene.surface.masking) &&
          scene.geometry.mode == Mode::kHemispherical;
 }
 

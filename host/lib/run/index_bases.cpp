@@ -33,7 +33,7 @@ IndexBases::IndexBases(const SceneValues& scene, const SceneEntries& entries, co
   const bool has_bounces = plan.kept.further_bounces && scene.surface.scattering == Scattering::kMultiple;
   const PerAxis& counts = entries.whole();
   const bool pays = counts[Axis::kTheta] * counts[Axis::kSigma] * counts[Axis::kQ] >= kLeastEntries;
-  if (entries.is_grid() && pays && plan.needs_moments && !has_bounces) indices_ = indices_of(scene, entries);
+  if (entries.is_grid() && pays && plan.kept.moments && !has_bounces) indices_ = indices_of(scene, entries);
 }
 
 std::shared_ptr<const IndexBasis> IndexBases::of(const RefinementLevel& level) {

@@ -23,7 +23,7 @@ bool is_grazing(const BeamAngles& angles) { return angles.theta_i_deg == 90.0 ||
 /// True where f has no finite value.
 bool is_undefined(const Surface& surface, const MuellerPoint& point) {
   const bool has_specular = surface.specular > 0.0;
-  const bool has_limit = has_grazing_limit(surface.masking);
+  const bool has_limit = keeps_projected_area(surface.masking);
   const bool diffuse_diverges = surface.diffuse > 0.0 && surface.diffuse_exponent < 0.0;
   const bool is_multiple = surface.scattering == Scattering::kMultiple;
   if (has_specular && (point.shape.sigma == 0.0 || is_multiple) && is_specular(point.angles)) return true;

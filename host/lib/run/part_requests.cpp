@@ -39,7 +39,7 @@ double seen_deg(const SceneValues& scene, double theta_deg) {
 }
 
 bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan) {
-  return plan.needs_moments && treatment(scene, entry) == Treatment::kIntegrated;
+  return plan.kept.moments && treatment(scene, entry) == Treatment::kIntegrated;
 }
 
 bool wants_beam(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan) {
@@ -74,8 +74,8 @@ PartRequests::PartRequests(const SceneValues& scene, const SpectralIndices& samp
   moments_.basis = level.basis;
   moments_.sky = plan.sky;
   moments_.may_interpolate = level.may_interpolate;
-  if (plan.needs_moments && selection.part.is_grid()) ask_grid(selection);
-  if (plan.needs_moments && !selection.part.is_grid()) ask_points(selection);
+  if (plan.kept.moments && selection.part.is_grid()) ask_grid(selection);
+  if (plan.kept.moments && !selection.part.is_grid()) ask_points(selection);
   if (plan.needs_beams) ask_beams(selection);
 }
 

@@ -72,31 +72,7 @@ void RunSummary::add(const RunSummary& other) {
   add_range(gains, other.gains);
   check.add(other.check);
   radiometry_s += other.radiometry_s;
-  evaluations += other.evaluations;
-  kernel_s += other.kernel_s;
-  sums_s += other.sums_s;
-  dispatches += other.dispatches;
-  interpolated += other.interpolated;
-  interpolation_nodes += other.interpolation_nodes;
-}
-
-void RunSummary::add(const EvaluationReport& report) {
-  evaluations += report.evaluations;
-  kernel_s += report.kernel_s;
-  sums_s += report.sums_s;
-  dispatches += report.dispatches;
-  interpolated += report.interpolated;
-  interpolation_nodes += report.interpolation_nodes;
-}
-
-EvaluationReport RunSummary::totals(EvaluationReport report) const {
-  report.evaluations = evaluations;
-  report.kernel_s = kernel_s;
-  report.sums_s = sums_s;
-  report.dispatches = dispatches;
-  report.interpolated = interpolated;
-  report.interpolation_nodes = interpolation_nodes;
-  return report;
+  work += other.work;
 }
 
 std::size_t RunSummary::count(std::uint32_t bit) const {
@@ -110,8 +86,8 @@ std::string RunSummary::text() const {
   };
   return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", entries, fmt::join(status, " "),
                      worst_error.value_or(-1.0), worst_rho_error.value_or(-1.0), albedos, albedo.first, albedo.second,
-                     range(loses), range(gains), check.entries, check.worst_ratio, radiometry_s, evaluations, kernel_s,
-                     sums_s, dispatches, interpolated, interpolation_nodes, "end");
+                     range(loses), range(gains), check.entries, check.worst_ratio, radiometry_s, work.evaluations,
+                     work.kernel_s, work.sums_s, work.dispatches, work.interpolated, work.interpolation_nodes, "end");
 }
 
 std::optional<RunSummary> RunSummary::from_text(const std::string& text) {
@@ -143,10 +119,10 @@ std::optional<RunSummary> RunSummary::from_text(const std::string& text) {
   words >> summary.check.entries;
   summary.check.worst_ratio = number();
   summary.radiometry_s = number();
-  summary.evaluations = number();
-  summary.kernel_s = number();
-  summary.sums_s = number();
-  words >> summary.dispatches >> summary.interpolated >> summary.interpolation_nodes >> word;
+  summary.work.evaluations = number();
+  summary.work.kernel_s = number();
+  summary.work.sums_s = number();
+  words >> summary.work.dispatches >> summary.work.interpolated >> summary.work.interpolation_nodes >> word;
   if (!words || word != "end") return std::nullopt;
   return summary;
 }

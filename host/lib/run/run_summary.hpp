@@ -37,18 +37,11 @@ struct RunSummary {
   EnergyRange loses, gains;
   SelfCheck check;
   double radiometry_s = 0.0;
-  // Totals of the evaluator.
-  double evaluations = 0.0;
-  double kernel_s = 0.0, sums_s = 0.0;
-  std::uint64_t dispatches = 0, interpolated = 0, interpolation_nodes = 0;
+  Work work;
 
   /// Adds the results of some entries.
   void add(const SceneValues& scene, const SceneEntries& part, std::span<const PointResult> results);
   void add(const RunSummary& other);
-  /// Adds an evaluator's counts and kernel time to those of the summary.
-  void add(const EvaluationReport& report);
-  /// The report of an evaluator with the totals of the summary.
-  EvaluationReport totals(EvaluationReport report) const;
 
   std::size_t count(std::uint32_t bit) const;
 

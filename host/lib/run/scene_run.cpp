@@ -104,7 +104,7 @@ class MemberResults {
   /// The answer, or closed forms, or zeros where the plan needs none.
   std::span<const Moments> moments_of(std::size_t member, const SceneEntry& entry, const Direction& direction,
                                       std::span<const OpticalConstants> indices) {
-    if (!context_.plan.needs_moments) return moments_;  // never written to
+    if (!context_.plan.kept.moments) return moments_;  // never written to
     if (direction.treatment != Treatment::kIntegrated) {
       for (std::size_t j = 0; j < moments_.size(); ++j) {
         moments_[j] = closed_form(context_.scene.surface, direction, entry.shape, indices[j], context_.plan.sky.get());
@@ -369,7 +369,10 @@ std::vector<SceneEntries> Run::parts() const { return run_parts(entries_, spectr
 
 RunOutcome Run::compute(Sink& sink) {
   outcome_.summary = run_scene(scene_, entries_, outcome_.plan, evaluator_, sink, progress_);
-  if (evaluator_) outcome_.evaluation = outcome_.summary.totals(evaluator_->report());
+  if (evaluator_) {
+    outcome_.evaluation = evaluator_->report();
+    static_cast<Work&>(outcome_.evaluation) = outcome_.summary.work;
+  }
   outcome_.wall_s = wall_s();
   return outcome_;
 }
@@ -382,13 +385,13 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
   const std::size_t samples = spectral_rule(scene).samples.size();
   const std::size_t whole = entries.is_grid() ? size_of(entries.whole()) : entries.size();
   std::vector<std::size_t> checked;
-  if (entries.is_grid() && plan.needs_moments)
+  if (entries.is_grid() && plan.kept.moments)
     checked = checked_positions(whole, checked_count(whole * samples), scene_seed(scene));
   IndexBases bases(scene, entries, plan);
   RunSummary summary = sink.summary_of_done();
   const auto with_evaluation = [&] {
     RunSummary all = summary;
-    if (evaluator) all.add(evaluator->report());
+    if (evaluator) all.work += evaluator->report();
     return all;
   };
   std::size_t left = sink.parts_done();

@@ -106,7 +106,7 @@ Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan) {
       case QuantityNeeds::kReflectance:
         return plan == nullptr || plan->gives_rho;
       case QuantityNeeds::kMoments:
-        return plan == nullptr || plan->needs_moments;
+        return plan == nullptr || plan->kept.moments;
       case QuantityNeeds::kEmission:
         return plan == nullptr ? scene.emission.has_value() : gives_emissivity(scene, *plan);
       case QuantityNeeds::kBracket:

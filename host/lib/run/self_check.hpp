@@ -20,8 +20,8 @@ struct SelfCheck {
   void add(const SelfCheck& other);
 };
 
-/// The number of a table's moments that are computed again: those that cost a fiftieth of all, at most 64 of four
-/// million.
+/// The number of a table's moments that are computed again: those that cost a fiftieth of all, at most 64 and
+/// 64 more for each four million.
 std::size_t checked_count(std::size_t moments);
 
 /// `count` of the positions below `size`, ascending; which ones follows from the seed alone.

@@ -16,7 +16,7 @@
 
 namespace dolp {
 
-/// "2-of-8" before the suffix of a path; the path itself where there is no shard.
+/// The path with "2-of-8" before its suffix, or the path itself where there is no shard.
 std::filesystem::path shard_path(const std::filesystem::path& path, const Shard& shard);
 
 /// The entries of a shard: part of the values of theta, or, where these are too few, of wavelength, n and k too, so

@@ -29,9 +29,11 @@ struct Compared {
   Quantity quantity;
   Bound bound;
 };
-constexpr std::array<Compared, 8> kCompared{{
+constexpr std::array<Compared, 10> kCompared{{
     {Quantity::kDolp, Bound::kDolp},
     {Quantity::kQOverI, Bound::kDolp},
+    {Quantity::kDolpLow, Bound::kDolp},
+    {Quantity::kDolpHigh, Bound::kDolp},
     {Quantity::kRhoI, Bound::kReflectance},
     {Quantity::kRhoQ, Bound::kReflectance},
     {Quantity::kStokesI, Bound::kRadiation},

@@ -21,7 +21,7 @@ dolp::MomentsRequest integrand(dolp::Masking masking, dolp::Scattering scatterin
   dolp::MomentsRequest request;
   request.masking = masking;
   request.scattering = scattering;
-  request.wants_direct = scattering == dolp::Scattering::kSingle && dolp::has_direct_emission(masking);
+  request.wants_direct = scattering == dolp::Scattering::kSingle && dolp::keeps_projected_area(masking);
   return request;
 }
 

@@ -49,12 +49,9 @@ Shard shard_of(const std::string& text) {
 int run_table(const Options& options) {
   const Scene scene = load_scene(options);
   const Shard shard = shard_of(options.shard);
-  Report report;
-  {
-    ProgressBar bar(options.quiet);
-    report = evaluator_of(options).write_table(
-        scene, options.output_path, {options.keep_all, bar.callback(), options.command_line, options.resume}, shard);
-  }
+  const Report report = evaluator_of(options).write_table(
+      scene, options.output_path,
+      {options.keep_all, ProgressBar(options.quiet).callback(), options.command_line, options.resume}, shard);
   return finish(report, options);
 }
 

@@ -27,19 +27,18 @@ Report verify_device(const Options& options, const Progress& progress) {
   return verify_device(check);
 }
 
+Report examine(const Options& options, const Progress& progress) {
+  if (options.hard_cases) return verify_device(options, progress);
+  return verify(options.table_path, {options.samples, options.seed, options.named_files, progress});
+}
+
 }  // namespace
 
 int run_verify(const Options& options) {
   if (!options.hard_cases && options.table_path.empty()) {
     throw InputError("verify: name a TABLE, or --hard-cases to examine a device (see dolp verify --help)");
   }
-  Report report;
-  {
-    ProgressBar bar(options.quiet);
-    report = options.hard_cases
-                 ? verify_device(options, bar.callback())
-                 : verify(options.table_path, {options.samples, options.seed, options.named_files, bar.callback()});
-  }
+  const Report report = examine(options, ProgressBar(options.quiet).callback());
   print(report, options);
   return report.is_good ? kExitDone : kExitAccuracy;
 }

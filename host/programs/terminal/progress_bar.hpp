@@ -19,7 +19,8 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Draws, and returns false after an interrupt. Refers to this object.
+  /// Draws, and returns false after an interrupt. Refers to this object, which ends its line when it is destroyed: a
+  /// temporary one at the end of the call that it is passed to.
   Progress callback();
 
   /// Begins again, and counts these, not entries.

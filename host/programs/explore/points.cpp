@@ -19,6 +19,11 @@ Scene with_grid(const Scene& scene, const PointList& list) {
 double rho_s(const Point& point) { return point[Quantity::kRhoI] + point[Quantity::kRhoQ]; }
 double rho_p(const Point& point) { return point[Quantity::kRhoI] - point[Quantity::kRhoQ]; }
 
+/// That of the emission's model; a scene without emission has only Kirchhoff's.
+double emissivity(const Point& point, Quantity of_model, double rho) {
+  return std::isnan(point[of_model]) ? 1.0 - rho : point[of_model];
+}
+
 }  // namespace
 
 const std::array<PlottedDescription, 7> kAllPlotted = {{
@@ -28,10 +33,10 @@ const std::array<PlottedDescription, 7> kAllPlotted = {{
      [](const Point& point) { return point.q_over_i(); }, true},
     {Plotted::kRhoS, "ρ_s", "ρ_I + ρ_Q, eq. (16)", false, true, rho_s},
     {Plotted::kRhoP, "ρ_p", "ρ_I − ρ_Q, eq. (16)", false, true, rho_p},
-    {Plotted::kEmissivityS, "ε_s", "1 − ρ_s (Kirchhoff)", false, true,
-     [](const Point& point) { return 1.0 - rho_s(point); }},
-    {Plotted::kEmissivityP, "ε_p", "1 − ρ_p (Kirchhoff)", false, true,
-     [](const Point& point) { return 1.0 - rho_p(point); }},
+    {Plotted::kEmissivityS, "ε_s", "of the emission's model; without emission 1 − ρ_s (Kirchhoff)", false, true,
+     [](const Point& point) { return emissivity(point, Quantity::kEmissivityS, rho_s(point)); }},
+    {Plotted::kEmissivityP, "ε_p", "of the emission's model; without emission 1 − ρ_p (Kirchhoff)", false, true,
+     [](const Point& point) { return emissivity(point, Quantity::kEmissivityP, rho_p(point)); }},
     {Plotted::kAlbedo, "albedo", "A(θ), ρ of perfectly reflecting facets", false, true,
      [](const Point& point) { return point[Quantity::kAlbedo]; }},
 }};

@@ -326,6 +326,19 @@ TEST(Measured, DataWithSettingsOfTheirOwn_AreRefused) {
                InputError);
 }
 
+TEST(Measured, Emissivities_AreThoseThatAFitCompares) {
+  const Scene paint_scene = paint().scene();
+  const Scene direct = paint_scene.with({{"surface.masking", "smith"}, {"emission.model", "direct"}});
+  const Point with = truth(direct, points_at(direct, {60.0})).front();
+  EXPECT_EQ(described(Plotted::kEmissivityS).value(with), with[Quantity::kEmissivityS]);
+  EXPECT_EQ(described(Plotted::kEmissivityP).value(with), with[Quantity::kEmissivityP]);
+  EXPECT_NE(with[Quantity::kEmissivityS], 1.0 - with[Quantity::kRhoI] - with[Quantity::kRhoQ]);
+  const Scene cold = paint_scene.without("emission").with("surroundings.temperature_K", 250.0);
+  const Point without = truth(cold, points_at(cold, {60.0})).front();
+  EXPECT_EQ(described(Plotted::kEmissivityS).value(without),
+            1.0 - (without[Quantity::kRhoI] + without[Quantity::kRhoQ]));
+}
+
 TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredPoints) {
   Driver driver(paint());
   const std::string path = (std::filesystem::temp_directory_path() / "dolp-measured.csv").string();

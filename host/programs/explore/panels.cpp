@@ -15,7 +15,7 @@ namespace dolp::explore {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kBackwards_deg = 180.0;  // the azimuth of directions on the side of the incidence
+constexpr double kSpecularAzimuth_deg = 180.0;  // from the source, on the side of the mirrored ray
 
 /// The wavelengths at which n and k are shown.
 std::pair<double, double> known_um(const Scene& scene) {
@@ -92,7 +92,7 @@ ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double th
   std::vector<double> zenith_deg, azimuth_deg;
   for (const double theta_r_deg : cut.theta_r_deg) {
     zenith_deg.push_back(std::abs(theta_r_deg));
-    azimuth_deg.push_back(theta_r_deg < 0.0 ? 0.0 : kBackwards_deg);
+    azimuth_deg.push_back(theta_r_deg < 0.0 ? 0.0 : kSpecularAzimuth_deg);
   }
   const auto [n, k] = scene.refractive_index(cut.wavelength_um);
   const std::array theta_i = {theta_i_deg}, n_of_all = {n}, k_of_all = {k};
@@ -111,7 +111,7 @@ std::optional<Seen> seen_at(const std::vector<Point>& curve, double theta_deg, d
   if (!above->is_good() || !below->is_good()) return std::nullopt;
   const double width = above->theta_deg - below->theta_deg;
   const double part = width > 0.0 ? (theta_deg - below->theta_deg) / width : 0.0;
-  const double q_over_i = (1.0 - part) * below->q_over_i() + part * above->q_over_i();
+  const double q_over_i = (1.0 - part) * below->values[Quantity::kQOverI] + part * above->values[Quantity::kQOverI];
   const double angle_deg = std::fmod(azimuth_deg + (q_over_i > 0.0 ? 90.0 : 0.0) + 360.0, 180.0);
   return Seen{std::abs(q_over_i), angle_deg};
 }

@@ -30,7 +30,7 @@ const std::array<PlottedDescription, 7> kAllPlotted = {{
     {Plotted::kDolp, "DOLP", "√(Q² + U²)/I, in percent", true, false,
      [](const Point& point) { return point[Quantity::kDolp]; }},
     {Plotted::kSignedDolp, "Q/I", "positive: s polarised, negative: p; in percent", true, false,
-     [](const Point& point) { return point.q_over_i(); }, true},
+     [](const Point& point) { return point[Quantity::kQOverI]; }, true},
     {Plotted::kRhoS, "ρ_s", "ρ_I + ρ_Q, eq. (16)", false, true, rho_s},
     {Plotted::kRhoP, "ρ_p", "ρ_I − ρ_Q, eq. (16)", false, true, rho_p},
     {Plotted::kEmissivityS, "ε_s", "of the emission's model; without emission 1 − ρ_s (Kirchhoff)", false, true,

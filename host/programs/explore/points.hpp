@@ -46,7 +46,6 @@ struct Point : PointResult {
   bool is_good() const;
   /// True where there are limits between which DOLP lies with all bounces.
   bool has_bracket() const;
-  double q_over_i() const { return values[Quantity::kStokesQ] / values[Quantity::kStokesI]; }
 };
 
 std::vector<Point> points_of(const PointList& list, const Results& results);

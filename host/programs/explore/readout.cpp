@@ -29,7 +29,7 @@ struct Part {
 /// removed alone.
 std::vector<Part> radiating_parts(const Session& session) {
   const Peak& peak = session.peak();
-  double rest = peak.answer()->at.q_over_i();
+  double rest = peak.answer()->at[Quantity::kQOverI];
   std::vector<Part> parts;
   for (const WithoutEffect& away : peak.without()) {
     if (!away.radiates) continue;
@@ -53,7 +53,7 @@ const Point* point_without(const Session& session, const std::string& effect) {
   return away == all.end() || !away->result ? nullptr : &*away->result;
 }
 
-bool has_q_over_i(const Point& point) { return point.is_good() && std::isfinite(point.q_over_i()); }
+bool has_q_over_i(const Point& point) { return point.is_good() && std::isfinite(point[Quantity::kQOverI]); }
 
 }  // namespace
 
@@ -65,8 +65,8 @@ std::string peak_text(const Session& session) {
   if (at[Quantity::kDolp] <= error) return "Maximum: the DOLP is 0 everywhere, within its bound";
   const char* of = is_bistatic(session.scene()) ? " of the source" : "";
   std::string text = fmt::format("Maximum: DOLP {:.3f} % at θ = {:.2f}°{}, {} polarised. Numerical error ≤ {} points; ",
-                                 kPercent * at[Quantity::kDolp], at.theta_deg, of, at.q_over_i() > 0.0 ? "s" : "p",
-                                 points_text(error));
+                                 kPercent * at[Quantity::kDolp], at.theta_deg, of,
+                                 at[Quantity::kQOverI] > 0.0 ? "s" : "p", points_text(error));
   if (peak->rival_deg) {
     text += fmt::format("with it the maximum may as well be elsewhere, at {:g}° for instance.", *peak->rival_deg);
   } else if (peak->theta_low_deg == peak->theta_high_deg) {
@@ -86,7 +86,7 @@ std::string peak_text(const Session& session) {
 std::string cause_text(const Session& session) {
   const Peak& peak = session.peak();
   if (!session.curve().is_finished() || !peak.is_complete()) return "Cause: …";
-  const double sum = peak.answer()->at.q_over_i();
+  const double sum = peak.answer()->at[Quantity::kQOverI];
   std::string with;
   std::string against;
   for (const Part& part : radiating_parts(session)) {
@@ -107,7 +107,7 @@ std::string cursor_text(const Session& session) {
   std::string text = fmt::format("Cursor{}: θ = {:.1f}°, {} = {:.4g}{}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
                                  session.remark(session.curve()), r.theta_deg, has_wind(scene) ? "U" : "σ", r.sigma,
                                  has_q ? fmt::format(", q = {:.4g}", r.q) : "", kPercent * r[Quantity::kDolp],
-                                 points_text(r[Quantity::kErrorEstimate]), kPercent * r.q_over_i());
+                                 points_text(r[Quantity::kErrorEstimate]), kPercent * r[Quantity::kQOverI]);
   if (r.has_bracket()) {
     text += fmt::format(", all bounces {:.3f} to {:.3f} %", kPercent * r[Quantity::kDolpLow],
                         kPercent * r[Quantity::kDolpHigh]);
@@ -125,8 +125,8 @@ std::string without_text(const Session& session, const std::string& effect) {
   const Point* const without = point_without(session, effect);
   if (!without) return {};
   if (!has_q_over_i(*without)) return "the model fails";
-  const double with = session.peak().answer()->at.q_over_i();
-  return fmt::format("{:+.2f} → {:+.2f} %", kPercent * with, kPercent * without->q_over_i());
+  const double with = session.peak().answer()->at[Quantity::kQOverI];
+  return fmt::format("{:+.2f} → {:+.2f} %", kPercent * with, kPercent * without->values[Quantity::kQOverI]);
 }
 
 std::string without_words(const Session& session, const std::string& effect) {
@@ -136,8 +136,8 @@ std::string without_words(const Session& session, const std::string& effect) {
   return fmt::format(
       "At the maximum of the curve, θ = {:.2f}°, Q/I is {:+.2f} %. Without {} it is {:+.2f} %, a change of {:+.2f} "
       "points.",
-      with.theta_deg, kPercent * with.q_over_i(), effect, kPercent * without->q_over_i(),
-      kPercent * (without->q_over_i() - with.q_over_i()));
+      with.theta_deg, kPercent * with[Quantity::kQOverI], effect, kPercent * without->values[Quantity::kQOverI],
+      kPercent * (without->values[Quantity::kQOverI] - with[Quantity::kQOverI]));
 }
 
 std::string table_command(const SceneEdits& edits) {

@@ -348,7 +348,9 @@ TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredPoints) {
     driver.settle();
     const Scene& scene = driver.session.scene();
     const std::vector<Point> model = truth(scene, points_at(scene, {33.3, 61.7}));
-    const auto value = [&](std::size_t i) { return is_signed ? model[i].q_over_i() : model[i][Quantity::kDolp]; };
+    const auto value = [&](std::size_t i) {
+      return is_signed ? model[i][Quantity::kQOverI] : model[i][Quantity::kDolp];
+    };
     const std::vector<double> residuals = driver.session.residuals().residuals();
     ASSERT_EQ(residuals.size(), 2U);
     EXPECT_EQ(residuals[0], 0.05 - value(0));

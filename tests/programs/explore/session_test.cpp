@@ -291,8 +291,8 @@ TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
   EXPECT_EQ((*named("scattering")->result)[Quantity::kDolp],
             truth(single, points_at(single, {theta_deg}))[0][Quantity::kDolp]);
   EXPECT_EQ(surface_name(scene), "cauchy σ 0.4 q 3, v-cavity, all bounces, n 1.5 k 0.1");
-  const double with = 100.0 * driver.session.peak().answer()->at.q_over_i();
-  const double left = 100.0 * named("scattering")->result->q_over_i();
+  const double with = 100.0 * driver.session.peak().answer()->at[Quantity::kQOverI];
+  const double left = 100.0 * named("scattering")->result->values[Quantity::kQOverI];
   EXPECT_EQ(without_text(driver.session, "scattering"), fmt::format("{:+.2f} → {:+.2f} %", with, left));
   const std::string words = without_words(driver.session, "scattering");
   EXPECT_NE(
@@ -402,7 +402,7 @@ TEST(ExploreSession, Peak_IsTheLargestOfTheCurveAndItsCausesAddUp) {
   for (const WithoutEffect& away : peak.without()) {
     if (away.radiates) sum += peak.contribution(away);
   }
-  EXPECT_NEAR(sum, peak.answer()->at.q_over_i(), 2e-3);  // two runs at a tolerance of 1e-3
+  EXPECT_NEAR(sum, peak.answer()->at[Quantity::kQOverI], 2e-3);  // two runs at a tolerance of 1e-3
   for (const Point& result : driver.session.curve().points()) {
     if (!result.is_good()) continue;
     EXPECT_LE(result[Quantity::kDolp], peak.answer()->at[Quantity::kDolp] + result[Quantity::kErrorEstimate]);

@@ -77,17 +77,17 @@ TEST(ExplorePanels, ScatteringCut_HasItsLobeBeyondTheNormal_AndTheValuesOfMuelle
 TEST(ExplorePanels, SphereOfASurface_ShowsPAlongTheTiltAndSAcross) {
   explore::Driver driver(paint());
   const std::vector<explore::Point>& curve = driver.session.curve().points();
-  ASSERT_LT(curve[120].q_over_i(), 0.0);
+  ASSERT_LT(curve[120][Quantity::kQOverI], 0.0);
   const std::optional<explore::Seen> seen = explore::seen_at(curve, 60.0, 30.0);
   ASSERT_TRUE(seen);
-  EXPECT_DOUBLE_EQ(seen->dolp, -curve[120].q_over_i());
+  EXPECT_DOUBLE_EQ(seen->dolp, -curve[120][Quantity::kQOverI]);
   EXPECT_NEAR(seen->angle_deg, 30.0, 1e-9);
   EXPECT_NEAR(explore::seen_at(curve, 60.0, -150.0)->angle_deg, 30.0, 1e-9);
   std::vector<explore::Point> s_polarised = curve;
-  for (explore::Point& point : s_polarised) point.values[Quantity::kStokesQ] *= -1.0;
+  for (explore::Point& point : s_polarised) point.values[Quantity::kQOverI] *= -1.0;
   EXPECT_NEAR(explore::seen_at(s_polarised, 60.0, 30.0)->angle_deg, 120.0, 1e-9);
   const double between = explore::seen_at(curve, 60.25, 0.0)->dolp;
-  EXPECT_NEAR(between, -0.5 * (curve[120].q_over_i() + curve[121].q_over_i()), 1e-12);
+  EXPECT_NEAR(between, -0.5 * (curve[120][Quantity::kQOverI] + curve[121][Quantity::kQOverI]), 1e-12);
 }
 
 TEST(ExplorePanels, Sky_OfABistaticScene_IsComputedWhileItIsShown) {

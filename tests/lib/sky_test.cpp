@@ -140,7 +140,7 @@ SceneValues random_scene(Draws& random) {
 
 // DOLP_PROPERTY_DRAWS in the environment sets the number of scenes.
 TEST(Sky, RandomScenes_AgreeWithTheReferenceWithinTheirBounds) {
-  const std::size_t scenes = draws_wanted(250);
+  const int scenes = static_cast<int>(draws_wanted(250));
   // 0.129 of 1,000: grooves, skies of jumps whose corners do not all split, grazing directions.
   constexpr double kMostMissed = 0.2;
   Draws random(20261124);

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "error_text.hpp"
 #include "methods/method.hpp"
 #include "model/choices.hpp"
 #include "reference/reference_evaluator.hpp"
@@ -161,12 +162,10 @@ TEST(BenchRules, MonteCarlo_Repeats_ScatterAsStatedAboutTheTruth) {
 }
 
 TEST(BenchDblquad, NoPythonWithScipy_IsUnavailableAndSaysWhatToDo) {
-  try {
+  const std::string message = error_text<Unavailable>([&] {
     make_dblquad({.pythons = {"/bin/false", "/no/such/python"}});
-    FAIL() << "nothing was thrown";
-  } catch (const Unavailable& error) {
-    EXPECT_STREQ(error.what(), "no Python with SciPy (tried /bin/false, /no/such/python); install python3-scipy");
-  }
+  });
+  EXPECT_EQ(message, "no Python with SciPy (tried /bin/false, /no/such/python); install python3-scipy");
 }
 
 TEST(BenchDblquad, TimeLimit_IsKept) {

@@ -14,16 +14,12 @@ using namespace dolp;
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-/// Results of the accuracy study that take a second.
-class BenchAccuracy : public BenchProgram {
- protected:
-  json small_study(std::vector<std::string> options) const {
-    return study_of({"accuracy", "--quick", "--entries", "16", "--json", "-"}, std::move(options));
-  }
-};
+// Studies that take a second.
+const std::string kAccuracy = "accuracy --quick --entries 16 ";
+const std::string kEffects = "effects --quick --entries 9 ";
 
-TEST_F(BenchAccuracy, Json_Context_SaysWhereAndHowToRunAgain) {
-  const json study = small_study({"--case", "easy", "--method", "gauss", "--method", "vulkan-float"});
+TEST_F(BenchProgram, Accuracy_Json_Context_SaysWhereAndHowToRunAgain) {
+  const json study = study_of(kAccuracy + "--case easy --method gauss --method vulkan-float");
   EXPECT_EQ(study["study"], "accuracy");
   const json& context = study["context"];
   expect_keys(context, {"program", "command", "date", "machine", "device", "compiler", "libraries", "validation"});
@@ -31,13 +27,12 @@ TEST_F(BenchAccuracy, Json_Context_SaysWhereAndHowToRunAgain) {
   expect_keys(context["device"], {"name", "driver"});
   expect_keys(context["compiler"], {"name", "flags", "build_type"});
   EXPECT_EQ(context["command"], DOLP_BENCH_PROGRAM
-            " accuracy --quick --entries 16 --json - --case easy --method gauss --method vulkan-float");
+            " accuracy --quick --entries 16 --case easy --method gauss --method vulkan-float --json -");
   EXPECT_EQ(context["program"], "dolp-bench " DOLP_VERSION);
 }
 
-TEST_F(BenchAccuracy, Json_Results_HaveErrorAndTimesForEverySetting) {
-  const json study =
-      small_study({"--case", "easy", "--case", "median", "--method", "gauss", "--method", "vulkan-float"});
+TEST_F(BenchProgram, Accuracy_Json_Results_HaveErrorAndTimesForEverySetting) {
+  const json study = study_of(kAccuracy + "--case easy --case median --method gauss --method vulkan-float");
   ASSERT_EQ(study["methods"].size(), 2U);
   ASSERT_EQ(study["cases"].size(), 2U);
   EXPECT_EQ(study["results"].size(), 2U * (3U + 2U));
@@ -61,7 +56,7 @@ TEST_F(BenchAccuracy, Json_Results_HaveErrorAndTimesForEverySetting) {
 }
 
 TEST_F(BenchProgram, Json_File_IsWrittenBesideTheTable) {
-  const Outcome outcome = bench({"accuracy", "--quick", "--case", "rough", "--method", "gauss", "--json", "r.json"});
+  const Outcome outcome = bench(split_at("accuracy --quick --case rough --method gauss --json r.json", ' '));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("rough: "), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("  gauss                64  "), std::string::npos) << outcome.out;
@@ -70,8 +65,7 @@ TEST_F(BenchProgram, Json_File_IsWrittenBesideTheTable) {
 
 TEST_F(BenchProgram, NoVulkanDevice_OtherMethodsRunAndTheReasonIsNamed) {
   const Outcome outcome =
-      bench({"accuracy", "--quick", "--case", "easy", "--method", "gauss", "--method", "vulkan-double", "--json", "-"},
-            {{"VK_DRIVER_FILES", "/none"}, {"VK_ICD_FILENAMES", "/none"}});
+      bench(split_at("accuracy --quick --case easy --method gauss --method vulkan-double --json -", ' '), kNoDriver);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const json study = json::parse(outcome.out);
   ASSERT_EQ(study["results"].size(), 3U + 3U);
@@ -82,23 +76,8 @@ TEST_F(BenchProgram, NoVulkanDevice_OtherMethodsRunAndTheReasonIsNamed) {
   EXPECT_TRUE(study["context"]["device"].contains("none"));
 }
 
-TEST_F(BenchProgram, DeviceThatIsNotThere_IsExit3BeforeAnythingRuns) {
-  const Outcome outcome = bench({"accuracy", "--device", "no such device"});
-  EXPECT_EQ(outcome.status, 3);
-  EXPECT_NE(outcome.err.find("no such device"), std::string::npos) << outcome.err;
-  EXPECT_EQ(outcome.out, "");
-}
-
-class BenchEffects : public BenchProgram {
- protected:
-  /// The study on a tiny grid.
-  json study(std::vector<std::string> options) const {
-    return study_of({"effects", "--quick", "--entries", "9", "--json", "-"}, std::move(options));
-  }
-};
-
-TEST_F(BenchEffects, Json_EveryEffect_HasTimesAndRatio) {
-  const json result = study({});
+TEST_F(BenchProgram, Effects_Json_EveryEffect_HasTimesAndRatio) {
+  const json result = study_of("effects --quick --entries 9");
   EXPECT_EQ(result["study"], "effects");
   expect_keys(result, {"context", "error", "time_s", "tolerance", "grid", "results", "warnings"});
   EXPECT_NE(result["context"]["command"].get<std::string>().find(" effects --quick "), std::string::npos);
@@ -123,13 +102,16 @@ TEST_F(BenchEffects, Json_EveryEffect_HasTimesAndRatio) {
                                    "path", "band", "sun at 10.6 um", "emission at 0.55 um", "profile"}));
 }
 
-TEST_F(BenchEffects, Json_RadiationBesideAStrongerOne_IsLeftOut) {
-  EXPECT_EQ(study({"--case", "sun at 10.6 um"})["results"][1]["left_out"], json({"source"}));
-  EXPECT_EQ(study({"--case", "emission at 0.55 um"})["results"][1]["left_out"], json({"emission", "surroundings"}));
+TEST_F(BenchProgram, Effects_Json_RadiationBesideAStrongerOne_IsLeftOut) {
+  for (const auto& [name, left_out] :
+       {std::pair("sun at 10.6 um", json({"source"})), {"emission at 0.55 um", json({"emission", "surroundings"})}}) {
+    const json result = study_of(joined(split_at(kEffects + "--case", ' '), {name}));
+    EXPECT_EQ(result["results"][1]["left_out"], left_out);
+  }
 }
 
-TEST_F(BenchEffects, Json_WhatThePlanDrops_TakesNoKernelAndSaysWhatEverythingTakes) {
-  const json result = study({"--case", "surroundings"});
+TEST_F(BenchProgram, Effects_Json_WhatThePlanDrops_TakesNoKernelAndSaysWhatEverythingTakes) {
+  const json result = study_of(kEffects + "--case surroundings");
   ASSERT_EQ(result["results"].size(), 3U);
   const json& cool = result["results"][1];
   const json& isothermal = result["results"][2];
@@ -141,51 +123,33 @@ TEST_F(BenchEffects, Json_WhatThePlanDrops_TakesNoKernelAndSaysWhatEverythingTak
   EXPECT_EQ(isothermal["left_out"], json({"specular", "distribution", "masking"}));
 }
 
-TEST_F(BenchEffects, NoVulkanDevice_IsExit3) {
-  const Outcome outcome = bench({"effects", "--quick"}, {{"VK_DRIVER_FILES", "/none"}, {"VK_ICD_FILENAMES", "/none"}});
-  EXPECT_EQ(outcome.status, 3) << outcome.err;
-  EXPECT_EQ(outcome.out, "");
-}
-
-TEST_F(BenchEffects, Plot_Results_GiveFigureAndTables) {
-  ASSERT_EQ(bench({"effects", "--quick", "--entries", "9", "--case", "surroundings", "--json", "r.json"}).status, 0);
-  const Outcome figure = plot({"effects", "r.json", "-o", "r.png"});
-  ASSERT_EQ(figure.status, 0) << figure.err;
-  EXPECT_TRUE(read_file(at("r.png")).starts_with("\x89PNG"));
-  const Outcome table = plot({"effects", "r.json", "--markdown"});
-  ASSERT_EQ(table.status, 0) << table.err;
-  EXPECT_NE(table.out.find("| surroundings | hemispherical | 250 K |"), std::string::npos) << table.out;
-  EXPECT_EQ(plot({"accuracy", "r.json", "--markdown"}).status, 2);
-}
-
 struct BadUsage {
-  std::vector<std::string> arguments;
+  std::string line;
   int status;
   std::string message;
 };
 
 TEST_F(BenchProgram, BadUsage_OneLineThatSaysWhatIsAllowed) {
   const std::vector<BadUsage> list = {
-      {{}, 2, "subcommand"},
-      {{"speed"}, 2, "see dolp-bench --help"},
-      {{"accuracy", "--fast"}, 2, "--fast"},
-      {{"accuracy", "--entries", "0"}, 2, "--entries"},
-      {{"accuracy", "--case", "simple"}, 2, "--case simple: there is none of this name; choose among easy, median, "},
-      {{"effects", "--case", "smell"}, 2, "--case smell: there is none of this name; choose among specular, "},
-      {{"effects", "--method", "gauss"}, 2, "--method"},
-      {{"throughput", "--case", "smell"},
-       2,
-       "--case smell: there is none of this name; choose among grids, arithmetic, "},
-      {{"throughput", "--entries", "0"}, 2, "--entries"},
-      {{"throughput", "--json", "no/such/folder/r.json"}, 4, "there is no folder no/such/folder"},
-      {{"peers", "--case", "easy"}, 2, "--case easy: there is none of this name; choose among none, v-cavity, "},
-      {{"peers", "--method", "simpson"}, 2, "choose among midpoint, gauss, "},
-      {{"peers", "--device", "no such device"}, 3, "no such device"},
-      {{"effects", "--json", "no/such/folder/r.json"}, 4, "there is no folder no/such/folder"},
-      {{"accuracy", "--method", "simpson"}, 2, "choose among midpoint, gauss, "},
-      {{"accuracy", "--json", "no/such/folder/r.json"}, 4, "there is no folder no/such/folder"}};
+      {"", 2, "subcommand"},
+      {"speed", 2, "see dolp-bench --help"},
+      {"accuracy --fast", 2, "--fast"},
+      {"accuracy --entries 0", 2, "--entries"},
+      {"accuracy --case simple", 2, "--case simple: there is none of this name; choose among easy, median, "},
+      {"accuracy --method simpson", 2, "choose among midpoint, gauss, "},
+      {"accuracy --json no/such/folder/r.json", 4, "there is no folder no/such/folder"},
+      {"accuracy --device nosuch", 3, "nosuch"},
+      {"effects --case smell", 2, "--case smell: there is none of this name; choose among specular, "},
+      {"effects --method gauss", 2, "--method"},
+      {"effects --json no/such/folder/r.json", 4, "there is no folder no/such/folder"},
+      {"throughput --case smell", 2, "--case smell: there is none of this name; choose among grids, arithmetic, "},
+      {"throughput --entries 0", 2, "--entries"},
+      {"throughput --json no/such/folder/r.json", 4, "there is no folder no/such/folder"},
+      {"peers --case easy", 2, "--case easy: there is none of this name; choose among none, v-cavity, "},
+      {"peers --method simpson", 2, "choose among midpoint, gauss, "},
+      {"peers --device nosuch", 3, "nosuch"}};
   for (const BadUsage& bad : list) {
-    const Outcome outcome = bench(bad.arguments);
+    const Outcome outcome = bench(split_at(bad.line, ' '));
     EXPECT_EQ(outcome.status, bad.status) << outcome.err;
     EXPECT_TRUE(outcome.err.starts_with("dolp-bench: ")) << outcome.err;
     EXPECT_NE(outcome.err.find(bad.message), std::string::npos) << outcome.err;
@@ -194,27 +158,40 @@ TEST_F(BenchProgram, BadUsage_OneLineThatSaysWhatIsAllowed) {
   }
 }
 
-TEST_F(BenchProgram, Plot_Results_GiveFigureAndTable) {
-  ASSERT_EQ(bench({"accuracy", "--quick", "--entries", "16", "--case", "easy", "--method", "gauss", "--method",
-                   "cpu-double", "--json", "r.json"})
-                .status,
-            0);
-  const Outcome figure = plot({"accuracy", "r.json", "-o", "r.png"});
-  ASSERT_EQ(figure.status, 0) << figure.err;
-  EXPECT_TRUE(read_file(at("r.png")).starts_with("\x89PNG"));
-  const Outcome table = plot({"accuracy", "r.json", "--markdown"});
-  ASSERT_EQ(table.status, 0) << table.err;
-  EXPECT_NE(table.out.find("| Gauss-Legendre rule |"), std::string::npos) << table.out;
+TEST_F(BenchProgram, StudiesOfTheDevice_WithoutOne_AreExit3) {
+  for (const char* study : {"effects", "throughput"}) {
+    const Outcome outcome = bench({study, "--quick"}, kNoDriver);
+    EXPECT_EQ(outcome.status, 3) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+  }
 }
 
-TEST_F(BenchProgram, Plot_FolderThatIsNotThere_IsExit4AndNamesTheFigure) {
-  ASSERT_EQ(bench({"accuracy", "--quick", "--case", "easy", "--method", "gauss", "--json", "r.json"}).status, 0);
-  const Outcome outcome = plot({"accuracy", "r.json", "-o", "none/r.png"});
-  EXPECT_EQ(outcome.status, 4);
-  EXPECT_NE(outcome.err.find("none/r.png"), std::string::npos) << outcome.err;
-}
+struct Plotted {
+  std::string study;
+  std::string row;  ///< of the table in Markdown
+};
 
-TEST_F(BenchProgram, Plot_WrongFile_IsExit2AndNamesIt) {
+TEST_F(BenchProgram, Plot_OfEveryStudy_GivesFigureAndTable) {
+  const std::vector<Plotted> list = {
+      {"accuracy --quick --entries 16 --case easy --method gauss --method cpu-double", "| Gauss-Legendre rule |"},
+      {"effects --quick --entries 9 --case surroundings", "| surroundings | hemispherical | 250 K |"},
+      {"throughput --quick --entries 64 --case grids --case arithmetic", "| v-cavity | 4 × 4 × 4 |"},
+      {"peers --quick --case integral --method gauss --method hcubature --method vulkan-float",
+       "| libcubature -O2, one core | integral | 100 |"}};
+  for (const Plotted& plotted : list) {
+    SCOPED_TRACE(plotted.study);
+    const Outcome made = bench(split_at(plotted.study + " --json r.json", ' '));
+    ASSERT_EQ(made.status, 0) << made.err;
+    const std::string study = plotted.study.substr(0, plotted.study.find(' '));
+    const Outcome figure = plot({study, "r.json", "-o", study + ".png"});
+    ASSERT_EQ(figure.status, 0) << figure.err;
+    EXPECT_TRUE(read_file(at(study + ".png")).starts_with("\x89PNG"));
+    const Outcome table = plot({study, "r.json", "--markdown"});
+    ASSERT_EQ(table.status, 0) << table.err;
+    EXPECT_NE(table.out.find(plotted.row), std::string::npos) << table.out;
+    EXPECT_EQ(plot({study, "r.json", "-o", "none/r.png"}).status, 4);
+  }
+  EXPECT_EQ(plot({"accuracy", "r.json", "--markdown"}).status, 2);  // results of peers
   const Outcome missing = plot({"accuracy", "none.json", "-o", "r.png"});
   EXPECT_EQ(missing.status, 2);
   EXPECT_NE(missing.err.find("none.json"), std::string::npos) << missing.err;

@@ -8,12 +8,10 @@ namespace {
 using namespace dolp;
 using nlohmann::json;
 
+const std::string kTiny = "throughput --quick --entries 64 ";
+
 class BenchThroughput : public BenchProgram {
  protected:
-  /// The study on a tiny grid.
-  json study(std::vector<std::string> options) const {
-    return study_of({"throughput", "--quick", "--entries", "64", "--json", "-"}, std::move(options));
-  }
   static std::vector<json> part(const json& result, const std::string& name) {
     std::vector<json> rows;
     std::ranges::copy_if(result["results"], std::back_inserter(rows),
@@ -23,7 +21,7 @@ class BenchThroughput : public BenchProgram {
 };
 
 TEST_F(BenchThroughput, Json_GridsAndArithmetic_HaveTheirRows) {
-  const json result = study({"--case", "grids", "--case", "arithmetic"});
+  const json result = study_of(kTiny + "--case grids --case arithmetic");
   EXPECT_EQ(result["study"], "throughput");
   expect_keys(result, {"context", "time_s", "grid", "scene", "peak", "results", "warnings"});
   EXPECT_EQ(result["grid"], "4 x 4 x 4");
@@ -66,46 +64,17 @@ void expect_processes(const json& result) {
 }
 
 TEST_F(BenchThroughput, Json_Cores_RunInProcessesOfTheirOwn_OrSayWhyNot) {
-  expect_processes(study({"--case", "cores"}));
+  expect_processes(study_of(kTiny + "--case cores"));
 }
 
 TEST_F(BenchThroughput, Json_VectorWidths_RunInProcessesOfTheirOwn_OrSayWhyNot) {
-  expect_processes(study({"--case", "vector-width"}));
+  expect_processes(study_of(kTiny + "--case vector-width"));
 }
 
-TEST_F(BenchThroughput, NoVulkanDevice_IsExit3) {
-  const Outcome outcome =
-      bench({"throughput", "--quick"}, {{"VK_DRIVER_FILES", "/none"}, {"VK_ICD_FILENAMES", "/none"}});
-  EXPECT_EQ(outcome.status, 3) << outcome.err;
-  EXPECT_EQ(outcome.out, "");
-}
-
-TEST_F(BenchThroughput, Plot_Results_GiveFigureAndTables) {
-  ASSERT_EQ(
-      bench({"throughput", "--quick", "--entries", "64", "--case", "grids", "--case", "arithmetic", "--json", "r.json"})
-          .status,
-      0);
-  const Outcome figure = plot({"throughput", "r.json", "-o", "r.png"});
-  ASSERT_EQ(figure.status, 0) << figure.err;
-  EXPECT_TRUE(read_file(at("r.png")).starts_with("\x89PNG"));
-  const Outcome table = plot({"throughput", "r.json", "--markdown"});
-  ASSERT_EQ(table.status, 0) << table.err;
-  EXPECT_NE(table.out.find("| v-cavity | 4 × 4 × 4 |"), std::string::npos) << table.out;
-  EXPECT_NE(table.out.find("| of the peak |"), std::string::npos) << table.out;
-  EXPECT_EQ(plot({"peers", "r.json", "--markdown"}).status, 2);
-}
-
-class BenchPeers : public BenchProgram {
- protected:
-  std::vector<std::string> options() const {
-    return {"peers",    "--quick",      "--case",   "integral",     "--method", "gauss",
-            "--method", "hcubature",    "--method", "monte-carlo",  "--method", "vulkan-gauss",
-            "--method", "vulkan-float", "--method", "vulkan-table", "--method", "native-float"};
-  }
-};
-
-TEST_F(BenchPeers, Json_Rows_ReachTheToleranceAndCompareWithTheKernels) {
-  const json result = study_of(options(), {"--json", "-"});
+TEST_F(BenchProgram, Json_Rows_ReachTheToleranceAndCompareWithTheKernels) {
+  const json result = study_of(
+      "peers --quick --case integral --method gauss --method hcubature --method monte-carlo --method vulkan-gauss "
+      "--method vulkan-float --method vulkan-table --method native-float");
   EXPECT_EQ(result["study"], "peers");
   expect_keys(result, {"context", "error", "time_s", "methods", "cases", "targets", "results", "warnings"});
   ASSERT_EQ(result["cases"].size(), 1U);
@@ -141,23 +110,10 @@ TEST_F(BenchPeers, Json_Rows_ReachTheToleranceAndCompareWithTheKernels) {
   }
 }
 
-TEST_F(BenchPeers, Plot_Results_GiveFigureAndTables) {
-  std::vector<std::string> with_file = options();
-  with_file.insert(with_file.end(), {"--json", "r.json"});
-  ASSERT_EQ(bench(with_file).status, 0);
-  const Outcome figure = plot({"peers", "r.json", "-o", "r.png"});
-  ASSERT_EQ(figure.status, 0) << figure.err;
-  EXPECT_TRUE(read_file(at("r.png")).starts_with("\x89PNG"));
-  const Outcome table = plot({"peers", "r.json", "--markdown"});
-  ASSERT_EQ(table.status, 0) << table.err;
-  EXPECT_NE(table.out.find("| Gauss-Legendre rule |"), std::string::npos) << table.out;
-  EXPECT_NE(table.out.find("| libcubature -O2, one core | integral | 100 |"), std::string::npos) << table.out;
-}
-
-TEST_F(BenchPeers, NoVulkanDevice_OthersRunWithoutRatio) {
-  const Outcome outcome = bench({"peers", "--quick", "--case", "none", "--method", "gauss", "--method", "vulkan-gauss",
-                                 "--method", "vulkan-float", "--json", "-"},
-                                {{"VK_DRIVER_FILES", "/none"}, {"VK_ICD_FILENAMES", "/none"}});
+TEST_F(BenchProgram, Peers_WithoutADevice_OthersRunWithoutRatio) {
+  const Outcome outcome = bench(
+      split_at("peers --quick --case none --method gauss --method vulkan-gauss --method vulkan-float --json -", ' '),
+      kNoDriver);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const json result = json::parse(outcome.out);
   for (const json& row : result["results"]) {

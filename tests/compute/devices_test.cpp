@@ -10,6 +10,7 @@
 #include "device/context.hpp"
 #include "device/devices.hpp"
 #include "device/result.hpp"
+#include "error_text.hpp"
 #include "failing_new.hpp"
 
 namespace dolp {
@@ -49,12 +50,7 @@ TEST(ChooseDevice, PositionOrPartOfTheName_IsThatDevice) {
 
 TEST(ChooseDevice, NoMatchOrUnfit_ThrowsWithTheReason) {
   const auto message = [](const std::string& choice, bool float64) -> std::string {
-    try {
-      choose_device(five_devices(), choice, float64);
-    } catch (const DeviceError& error) {
-      return error.what();
-    }
-    return "no DeviceError";
+    return error_text<DeviceError>([&] { choose_device(five_devices(), choice, float64); });
   };
   EXPECT_NE(message("voodoo", false).find("'voodoo'; devices: 0 = llvmpipe (LLVM 15), 1 = Iris Xe"), std::string::npos);
   EXPECT_NE(message("6", false).find("no Vulkan device matches '6'"), std::string::npos);
@@ -94,13 +90,8 @@ TEST(LacksThreads, NoMemoryForOneOfThem_Ends) {
 
 TEST(VulkanContext, NothingCanPresent_NamesTheDeviceAndSaysWhy) {
   const vulkan::Presentation nowhere{{}, [](VkInstance, VkPhysicalDevice, std::uint32_t) { return false; }};
-  try {
-    const vulkan::Context context(kWatched, &nowhere);
-    FAIL() << "a window without a display";
-  } catch (const DeviceError& error) {
-    EXPECT_NE(std::string(error.what()).find("cannot show a window on this display"), std::string::npos)
-        << error.what();
-  }
+  const std::string message = error_text<DeviceError>([&] { const vulkan::Context context(kWatched, &nowhere); });
+  EXPECT_NE(message.find("cannot show a window on this display"), std::string::npos) << message;
 }
 
 }  // namespace

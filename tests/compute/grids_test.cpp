@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <tuple>
 
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
@@ -22,7 +21,7 @@ constexpr std::size_t kChecked = 30;  // entries of each grid
 enum class Sharing { kSlopes, kRows, kShapes, kIndices };
 constexpr std::array kSharings = {Sharing::kSlopes, Sharing::kRows, Sharing::kShapes, Sharing::kIndices};
 
-std::vector<double> spaced(double first, double last, std::size_t count, double origin = 0.0) {
+std::vector<double> in_ratios(double first, double last, std::size_t count, double origin = 0.0) {
   std::vector<double> values;
   for (std::size_t i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(count - 1);
@@ -34,8 +33,8 @@ std::vector<double> spaced(double first, double last, std::size_t count, double 
 std::vector<OpticalConstants> many_indices(Random& random) {
   const OpticalConstants least{random.log_uniform(0.2, 20.0), random.log_uniform(1e-3, 20.0)};
   std::vector<OpticalConstants> indices;
-  for (const double n : spaced(least.n, least.n * random.log_uniform(1.2, 3.0), 12)) {
-    for (const double k : spaced(least.k, least.k * random.log_uniform(1.2, 3.0), 10)) indices.push_back({n, k});
+  for (const double n : in_ratios(least.n, least.n * random.log_uniform(1.2, 3.0), 12)) {
+    for (const double k : in_ratios(least.k, least.k * random.log_uniform(1.2, 3.0), 10)) indices.push_back({n, k});
   }
   return indices;
 }
@@ -60,10 +59,14 @@ MomentsRequest random_grid(Random& random, const Model& model, Scattering scatte
   }
   const bool is_dense = sharing == Sharing::kShapes;
   const double sigma = random.log_uniform(1e-3, 2.0);
-  request.sigma = spaced(sigma, std::min(10.0, sigma * random.log_uniform(1.2, 60.0)), is_dense ? 64 : 3);
+  request.sigma = in_ratios(sigma, std::min(10.0, sigma * random.log_uniform(1.2, 60.0)), is_dense ? 64 : 3);
   const double origin = model.masking == Masking::kSmith ? 1.5 : 1.0;
   const double q = random.log_uniform(0.02, 8.0);
-  request.q = spaced(q, q * random.log_uniform(1.2, 30.0), is_dense ? 48 : sharing == Sharing::kRows ? 12 : 4, origin);
+  request.q = in_ratios(q, q * random.log_uniform(1.2, 30.0),
+                        is_dense                    ? 48
+                        : sharing == Sharing::kRows ? 12
+                                                    : 4,
+                        origin);
   if (model.distribution == Distribution::kGaussian) request.q = {2.0};
   return request;
 }
@@ -96,8 +99,7 @@ class Grids : public testing::TestWithParam<std::tuple<Kernel, Sharing>> {
 
 TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
   const auto [kernel, sharing] = GetParam();
-  const char* wanted = std::getenv("DOLP_PROPERTY_DRAWS");
-  const int grids = wanted != nullptr ? std::atoi(wanted) : 2;
+  const std::size_t grids = draws_wanted(2);
   InterpolatingEvaluator evaluator(make_evaluator(kernel));
   std::size_t entries = 0;
   for (const Scattering scattering : {Scattering::kSingle, Scattering::kMultiple}) {
@@ -106,7 +108,7 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
       // Several bounces are no combination of those of other indices.
       if (is_multiple && (model.masking != Masking::kVCavity || sharing == Sharing::kIndices)) continue;
       Random random(kSeed + 10 * static_cast<std::uint64_t>(kernel) + static_cast<std::uint64_t>(sharing));
-      for (int grid = 0; grid < grids; ++grid) {
+      for (std::size_t grid = 0; grid < grids; ++grid) {
         SCOPED_TRACE(name_of(model) + " grid " + std::to_string(grid));
         MomentsRequest request = random_grid(random, model, scattering, sharing);
         request.precision = is_double(kernel) ? Precision::kDouble : Precision::kFloat;

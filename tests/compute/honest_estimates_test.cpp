@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <numbers>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "properties_support.hpp"
@@ -25,11 +23,6 @@ constexpr std::size_t kDraws = 60;
 constexpr double kCoarse = 1e-2;
 constexpr double kFine = 1e-6;
 constexpr double kLeastShare = 0.1;  // of the tolerance: no bound is below it (shaders/physics/README.md, section 9)
-
-std::size_t draws() {
-  const char* text = std::getenv("DOLP_PROPERTY_DRAWS");
-  return text != nullptr ? std::strtoul(text, nullptr, 10) : kDraws;
-}
 
 std::uint64_t seed_of(const Model& model) {
   return kSeed + 2 * static_cast<std::uint64_t>(model.masking) + static_cast<std::uint64_t>(model.distribution);
@@ -90,13 +83,11 @@ class Switches {
   std::vector<Point> points_;
 };
 
-using Case = std::tuple<Kernel, Model>;
-
-class CoarseRule : public testing::TestWithParam<Case> {};
+class CoarseRule : public testing::TestWithParam<KernelAndModel> {};
 
 TEST_P(CoarseRule, CoarseAndFineRule_DifferByNoMoreThanTheyState) {
   const auto [kernel, model] = GetParam();
-  std::vector<Point> points = Random(seed_of(model)).points(model, draws());
+  std::vector<Point> points = Random(seed_of(model)).points(model, draws_wanted(kDraws));
   std::printf("seed %llu, %zu points\n", static_cast<unsigned long long>(seed_of(model)), points.size());
   for (const Point& point : Switches(model, seed_of(model)).points()) points.push_back(point);
   const std::vector<Moments> coarse = make_evaluator(kernel)->evaluate(request_of(model, points, kCoarse), {});
@@ -111,9 +102,7 @@ TEST_P(CoarseRule, CoarseAndFineRule_DifferByNoMoreThanTheyState) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, CoarseRule, testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)),
-                         [](const testing::TestParamInfo<Case>& test) {
-                           return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
-                         });
+                         kernel_and_model_name);
 
 // Entries of which pairs of rules once agreed by chance, or of which both rules missed the same: what stands behind the
 // least share of the tolerance that no bound goes below, and behind the pairs' factor.
@@ -181,8 +170,7 @@ std::vector<Point> diverging_points(std::size_t count) {
 }
 
 TEST(DivergingSlope, Moments_AreWithinTheirBoundsOfTheReference) {
-  const char* text = std::getenv("DOLP_PROPERTY_DRAWS");
-  const std::vector<Point> points = diverging_points(text ? std::strtoul(text, nullptr, 10) : kDivergingDraws);
+  const std::vector<Point> points = diverging_points(draws_wanted(kDivergingDraws));
   const std::vector<Moments> exact = ReferenceEvaluator().evaluate(request_of(kCauchySmith, points, 1e-9), {});
   for (const Kernel kernel : {Kernel::kCpuFloat, Kernel::kCpuDouble}) {
     const auto evaluator = make_evaluator(kernel);

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <numbers>
 #include <vector>
 
@@ -25,17 +24,13 @@ using Matrix = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 
 constexpr std::uint64_t kSeed = 20260110;
 
-std::size_t points_per_model() {
-  const char* text = std::getenv("DOLP_PROPERTY_DRAWS");
-  return text != nullptr ? std::strtoul(text, nullptr, 10) : 400;
-}
-const std::size_t kPoints = points_per_model();
+const std::size_t kPoints = draws_wanted(400);
 
 // The reference multiplies its density by powers of up to 1e16 and 1e6, and below the normal numbers of a double
 // nothing has a relative accuracy.
 constexpr double kSmallest = 1e-280;
 
-class MuellerKernel : public testing::TestWithParam<std::tuple<Kernel, Model>> {
+class MuellerKernel : public testing::TestWithParam<KernelAndModel> {
  protected:
   Kernel kernel() const { return std::get<0>(GetParam()); }
   RandomPoints random() const { return {kSeed, std::get<1>(GetParam()).masking}; }
@@ -87,9 +82,7 @@ TEST_P(MuellerKernel, OppositeAzimuth_TurnsTheSignsOfUAndV) {
 
 INSTANTIATE_TEST_SUITE_P(Mueller, MuellerKernel,
                          testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)),
-                         [](const testing::TestParamInfo<std::tuple<Kernel, Model>>& test) {
-                           return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
-                         });
+                         kernel_and_model_name);
 
 // ---- Limits and extremes -------------------------------------------------------------------------------------------
 

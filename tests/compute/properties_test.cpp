@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <numeric>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "model/angles.hpp"
@@ -32,13 +31,7 @@ std::uint64_t number_of(const Model& model) {
 constexpr std::size_t kPoints = 80;
 constexpr std::array kTolerances{1e-2, 1e-4};
 
-using Case = std::tuple<Kernel, Model>;
-
-std::string case_name(const testing::TestParamInfo<Case>& test) {
-  return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
-}
-
-class KernelProperties : public testing::TestWithParam<Case> {};
+class KernelProperties : public testing::TestWithParam<KernelAndModel> {};
 
 void expect_energy_is_kept(const Moments& m, const Point& point, Masking masking) {
   const double cosine = cos_sin_deg(point.theta_deg).cos;
@@ -158,7 +151,8 @@ TEST_P(KernelProperties, OrderOfAxes_TilesAndBlocks_ChangeNoBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, KernelProperties,
-                         testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)), case_name);
+                         testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)),
+                         kernel_and_model_name);
 
 }  // namespace
 }  // namespace dolp

@@ -14,6 +14,7 @@
 #include "device/devices.hpp"
 #include "device/instance.hpp"
 #include "device/result.hpp"
+#include "error_text.hpp"
 #include "evaluate/vulkan/moments_run.hpp"
 #include "evaluate/vulkan/tiles.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
@@ -58,13 +59,14 @@ bool same(const Moments& a, const Moments& b) {
          a.deficit_error == b.deficit_error && a.evaluations == b.evaluations;
 }
 
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const DeviceError& error) {
-    return error.what();
-  }
-  return "no DeviceError";
+/// Calls a function that says whether all is as it should be, in a process of its own.
+void expect_true_in_a_child(bool (*call)()) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(std::_Exit(call() ? kChildPassed : kChildFailed), testing::ExitedWithCode(kChildPassed), "");
+}
+
+std::string error_of(const VulkanOptions& options) {
+  return error_text<DeviceError>([&] { VulkanEvaluator evaluator(options); });
 }
 
 TEST(ListDevices, ThisMachine_HasAUsableDeviceWithItsLimits) {
@@ -82,74 +84,48 @@ TEST(ListDevices, ThisMachine_HasAUsableDeviceWithItsLimits) {
 }
 
 TEST(VulkanDeathTest, NoDriver_IsADeviceErrorAndAnEmptyListWithAReason) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
-  EXPECT_EXIT(
-      {
-        setenv("VK_DRIVER_FILES", "/nonexistent/driver.json", 1);
-        setenv("VK_ICD_FILENAMES", "/nonexistent/driver.json", 1);
-        const DeviceList list = list_devices();
-        const std::string message = message_of([] { VulkanEvaluator evaluator(VulkanOptions{}); });
-        const bool passed =
-            list.devices.empty() && list.why_empty == message && message.starts_with("no Vulkan driver");
-        std::_Exit(passed ? kChildPassed : kChildFailed);
-      },
-      testing::ExitedWithCode(kChildPassed), "");
+  expect_true_in_a_child([] {
+    setenv("VK_DRIVER_FILES", "/nonexistent/driver.json", 1);
+    setenv("VK_ICD_FILENAMES", "/nonexistent/driver.json", 1);
+    const DeviceList list = list_devices();
+    const std::string message = error_of({});
+    return list.devices.empty() && list.why_empty == message && message.starts_with("no Vulkan driver");
+  });
 }
 
 TEST(VulkanDeathTest, ValidationWantedByTheEnvironmentButMissing_IsADeviceError) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
-  EXPECT_EXIT(
-      {
-        setenv("DOLP_VALIDATION", "1", 1);
-        setenv("VK_LAYER_PATH", "/nonexistent", 1);
-        const std::string message = message_of([] { VulkanEvaluator evaluator(VulkanOptions{}); });
-        const bool passed = message.find("VK_LAYER_KHRONOS_validation is not installed") != std::string::npos;
-        std::_Exit(passed ? kChildPassed : kChildFailed);
-      },
-      testing::ExitedWithCode(kChildPassed), "");
+  expect_true_in_a_child([] {
+    setenv("DOLP_VALIDATION", "1", 1);
+    setenv("VK_LAYER_PATH", "/nonexistent", 1);
+    return error_of({}).find("VK_LAYER_KHRONOS_validation is not installed") != std::string::npos;
+  });
 }
 
 TEST(VulkanDeathTest, TileThatExceedsItsTime_IsADeviceErrorAndNoCrash) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
-  EXPECT_EXIT(
-      {
-        VulkanOptions options;
-        options.tile_timeout_s = 1e-9;
-        VulkanEvaluator evaluator(options);
-        const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
-        const std::string late = message_of([&] { evaluator.evaluate(request, {}); });
-        const std::string after = message_of([&] { evaluator.evaluate(request, {}); });
-        const bool passed =
-            late.find("did not finish") != std::string::npos && after.find("given up") != std::string::npos;
-        std::_Exit(passed ? kChildPassed : kChildFailed);
-      },
-      testing::ExitedWithCode(kChildPassed), "");
+  expect_true_in_a_child([] {
+    VulkanEvaluator evaluator({.tile_timeout_s = 1e-9});
+    const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
+    const std::string late = error_text<DeviceError>([&] { evaluator.evaluate(request, {}); });
+    const std::string after = error_text<DeviceError>([&] { evaluator.evaluate(request, {}); });
+    return late.find("did not finish") != std::string::npos && after.find("given up") != std::string::npos;
+  });
 }
 
 TEST(VulkanDeathTest, ThreadsRefused_IsAMemoryErrorAndNoWait) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
-  EXPECT_EXIT(
-      {
-        // The limit does not bind root.
-        const bool is_bound = ::geteuid() != 0 || ::setuid(kNobody) == 0;
-        const ::rlimit none{};
-        const bool is_set = ::setrlimit(RLIMIT_NPROC, &none) == 0;
-        std::string message;
-        try {
-          VulkanEvaluator evaluator(VulkanOptions{});
-        } catch (const MemoryError& error) {
-          message = error.what();
-        }
-        const bool passed = is_bound && is_set && message.find("too few threads") != std::string::npos;
-        std::_Exit(passed ? kChildPassed : kChildFailed);
-      },
-      testing::ExitedWithCode(kChildPassed), "");
+  expect_true_in_a_child([] {
+    // The limit does not bind root.
+    const bool is_bound = ::geteuid() != 0 || ::setuid(kNobody) == 0;
+    const ::rlimit none{};
+    const bool is_set = ::setrlimit(RLIMIT_NPROC, &none) == 0;
+    const std::string message = error_text<MemoryError>([] { VulkanEvaluator evaluator(VulkanOptions{}); });
+    return is_bound && is_set && message.find("too few threads") != std::string::npos;
+  });
 }
 
 TEST(VulkanEvaluator, UnknownDevice_ThrowsTheListOfDevices) {
   VulkanOptions options = validated();
   options.device = "no such device";
-  const std::string message = message_of([&] { VulkanEvaluator evaluator(options); });
+  const std::string message = error_of(options);
   EXPECT_NE(message.find(list_devices().devices.at(0).name), std::string::npos) << message;
 }
 
@@ -193,45 +169,30 @@ TEST(VulkanEvaluator, PointsAndMasks_SayTheSameAsTheGrid) {
   }
 }
 
-using Variant = std::tuple<Distribution, Masking, Precision>;
-
-class VulkanKernel : public testing::TestWithParam<Variant> {};
-
 // The request says in which precision, and one evaluator computes both; what the one leaves behind does not reach the
 // other.
-TEST_P(VulkanKernel, RequestsInBothPrecisions_AreThoseOfEvaluatorsOfTheirOwn) {
-  MomentsRequest request = small_request(std::get<Distribution>(GetParam()), std::get<Masking>(GetParam()));
-  std::array<std::vector<Moments>, 2> expected;
-  constexpr std::array kPrecisions = {Precision::kFloat, Precision::kDouble};
-  for (std::size_t i = 0; i < kPrecisions.size(); ++i) {
-    request.precision = kPrecisions[i];
-    expected[i] = VulkanEvaluator(validated()).evaluate(request, {});
+TEST(VulkanEvaluator, RequestsInBothPrecisions_AreThoseOfEvaluatorsOfTheirOwn) {
+  for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
+    MomentsRequest request = small_request(Distribution::kCauchy, masking);
+    std::array<std::vector<Moments>, 2> expected;
+    constexpr std::array kPrecisions = {Precision::kFloat, Precision::kDouble};
+    for (std::size_t i = 0; i < kPrecisions.size(); ++i) {
+      request.precision = kPrecisions[i];
+      expected[i] = VulkanEvaluator(validated()).evaluate(request, {});
+    }
+    VulkanEvaluator both(validated(Precision::kDouble));
+    EXPECT_TRUE(both.has_double());
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}, std::size_t{0}}) {
+      request.precision = kPrecisions[i];
+      EXPECT_TRUE(std::ranges::equal(both.evaluate(request, {}), expected[i], same)) << i;
+    }
+    EXPECT_EQ(both.report().precision, "float and double");
+    EXPECT_FALSE(std::ranges::equal(expected[0], expected[1], same));
+    request.precision = Precision::kAuto;
+    EXPECT_TRUE(std::ranges::equal(both.evaluate(request, {}), expected[0], same));
+    EXPECT_TRUE(both.validation_messages().empty());
   }
-  VulkanEvaluator both(validated(Precision::kDouble));
-  EXPECT_TRUE(both.has_double());
-  for (const std::size_t i : {std::size_t{0}, std::size_t{1}, std::size_t{0}}) {
-    request.precision = kPrecisions[i];
-    EXPECT_TRUE(std::ranges::equal(both.evaluate(request, {}), expected[i], same)) << i;
-  }
-  EXPECT_EQ(both.report().precision, "float and double");
-  EXPECT_FALSE(std::ranges::equal(expected[0], expected[1], same));
-  request.precision = Precision::kAuto;
-  EXPECT_TRUE(std::ranges::equal(both.evaluate(request, {}), expected[0], same));
-  EXPECT_TRUE(both.validation_messages().empty());
 }
-
-std::string variant_name(const testing::TestParamInfo<Variant>& test) {
-  const auto [distribution, masking, precision] = test.param;
-  constexpr std::array kMaskings = {"None", "VCavity", "Integral", "Smith"};
-  return std::string(distribution == Distribution::kCauchy ? "Cauchy" : "Gaussian") +
-         kMaskings[static_cast<std::size_t>(masking)] + (precision == Precision::kFloat ? "Float" : "Double");
-}
-
-INSTANTIATE_TEST_SUITE_P(Vulkan, VulkanKernel,
-                         testing::Combine(testing::Values(Distribution::kCauchy),
-                                          testing::Values(Masking::kVCavity, Masking::kIntegral),
-                                          testing::Values(Precision::kFloat, Precision::kDouble)),
-                         variant_name);
 
 TEST(VulkanEvaluator, Progress_CountsEveryTileAndTheReportEveryDispatch) {
   VulkanOptions options = validated();

@@ -1,5 +1,6 @@
 // The points reader: accepted spellings, every error, and numbers that come back as they were.
 #include "scene/points.hpp"
+#include "error_text.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,12 +17,7 @@ namespace {
 Points directions(const std::string& text) { return parse_points(text, "p.csv", PointsKind::kDirections); }
 
 std::string error_of(const std::string& text, PointsKind kind = PointsKind::kDirections) {
-  try {
-    parse_points(text, "p.csv", kind);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return error_text([&] { parse_points(text, "p.csv", kind); });
 }
 
 TEST(Points_Directions, HaveTheColumnsOfTheHeader) {
@@ -138,12 +134,8 @@ TEST(PointsError_MissingAngle, IsNamed) {
 }
 
 TEST(PointsError_FileThatCannotBeRead, IsAnInputError) {
-  try {
-    read_points("absent.csv", PointsKind::kDirections);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "absent.csv: cannot be read: No such file or directory");
-  }
+  const std::string message = error_text([&] { read_points("absent.csv", PointsKind::kDirections); });
+  EXPECT_EQ(message, "absent.csv: cannot be read: No such file or directory");
 }
 
 TEST(Points_RandomNumbers, ArriveBitForBit) {

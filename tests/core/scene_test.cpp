@@ -74,82 +74,67 @@ struct KeyCase {
   bool (*arrived)(const SceneValues&);
 };
 
+using At = const SceneValues&;
+
+template <class... Doubles>
+bool is(const std::vector<double>& values, Doubles... expected) {
+  return values == std::vector<double>{expected...};
+}
+
 const std::vector<KeyCase>& key_cases() {
   static const std::vector<KeyCase> cases = {
-      {"title", "\"Name\"", [](const SceneValues& s) { return s.title == "Name"; }},
-      {"surface.n", "1.25", [](const SceneValues& s) { return s.surface.material.constant.n == 1.25; }},
-      {"surface.k", "0.25", [](const SceneValues& s) { return s.surface.material.constant.k == 0.25; }},
-      {"surface.material", "\"iron\"", [](const SceneValues& s) { return s.surface.material.name == "iron"; }},
-      {"surface.material_file", "\"index.csv\"",
-       [](const SceneValues& s) { return s.surface.material.at(10.0).n == 2.0; }},
-      {"surface.distribution", "\"gaussian\"",
-       [](const SceneValues& s) { return s.surface.distribution == Distribution::kGaussian; }},
-      {"surface.sigma", "0.5",
-       [](const SceneValues& s) { return s.surface.sigma == 0.5 && s.grid[Axis::kSigma][0] == 0.5; }},
+      {"title", "\"Name\"", [](At s) { return s.title == "Name"; }},
+      {"surface.n", "1.25", [](At s) { return s.surface.material.constant.n == 1.25; }},
+      {"surface.k", "0.25", [](At s) { return s.surface.material.constant.k == 0.25; }},
+      {"surface.material", "\"iron\"", [](At s) { return s.surface.material.name == "iron"; }},
+      {"surface.material_file", "\"index.csv\"", [](At s) { return s.surface.material.at(10.0).n == 2.0; }},
+      {"surface.distribution", "\"gaussian\"", [](At s) { return s.surface.distribution == Distribution::kGaussian; }},
+      {"surface.sigma", "0.5", [](At s) { return s.surface.sigma == 0.5 && s.grid[Axis::kSigma][0] == 0.5; }},
       {"surface.wind_m_s", "5",
-       [](const SceneValues& s) {
+       [](At s) {
          return s.surface.sigma == std::sqrt(0.0286 / 2) && s.grid[Axis::kSigma][0] == s.surface.sigma &&
-                s.wind_m_s == std::vector<double>{5.0};
+                is(s.wind_m_s, 5.0);
        }},
-      {"surface.q", "3", [](const SceneValues& s) { return s.surface.q == 3.0 && s.grid[Axis::kQ][0] == 3.0; }},
-      {"surface.masking", "\"v-cavity\"", [](const SceneValues& s) { return s.surface.masking == Masking::kVCavity; }},
-      {"surface.scattering", "\"single\"",
-       [](const SceneValues& s) { return s.surface.scattering == Scattering::kSingle; }},
-      {"surface.specular", "0.5", [](const SceneValues& s) { return s.surface.specular == 0.5; }},
-      {"surface.diffuse", "0.25", [](const SceneValues& s) { return s.surface.diffuse == 0.25; }},
-      {"surface.diffuse_exponent", "-0.25", [](const SceneValues& s) { return s.surface.diffuse_exponent == -0.25; }},
-      {"emission.temperature_K", "290", [](const SceneValues& s) { return s.emission->temperature_K == 290.0; }},
-      {"emission.model", "\"fresnel\"",
-       [](const SceneValues& s) { return s.emission->model == EmissionModel::kFresnel; }},
-      {"emission.bracket", "false", [](const SceneValues& s) { return !s.emission->has_bracket; }},
+      {"surface.q", "3", [](At s) { return s.surface.q == 3.0 && s.grid[Axis::kQ][0] == 3.0; }},
+      {"surface.masking", "\"v-cavity\"", [](At s) { return s.surface.masking == Masking::kVCavity; }},
+      {"surface.scattering", "\"single\"", [](At s) { return s.surface.scattering == Scattering::kSingle; }},
+      {"surface.specular", "0.5", [](At s) { return s.surface.specular == 0.5; }},
+      {"surface.diffuse", "0.25", [](At s) { return s.surface.diffuse == 0.25; }},
+      {"surface.diffuse_exponent", "-0.25", [](At s) { return s.surface.diffuse_exponent == -0.25; }},
+      {"emission.temperature_K", "290", [](At s) { return s.emission->temperature_K == 290.0; }},
+      {"emission.model", "\"fresnel\"", [](At s) { return s.emission->model == EmissionModel::kFresnel; }},
+      {"emission.bracket", "false", [](At s) { return !s.emission->has_bracket; }},
       {"source.irradiance", "0.5",
-       [](const SceneValues& s) { return s.source->kind == Source::Kind::kFlat && s.source->irradiance == 0.5; }},
+       [](At s) { return s.source->kind == Source::Kind::kFlat && s.source->irradiance == 0.5; }},
       {"source.relative_irradiance", "0.5",
-       [](const SceneValues& s) {
-         return s.source->kind == Source::Kind::kRelative && s.source->relative_irradiance == 0.5;
-       }},
-      {"source.preset", "\"sun\"", [](const SceneValues& s) { return s.source->kind == Source::Kind::kTabulated; }},
-      {"source.file", "\"light.csv\"", [](const SceneValues& s) { return s.source->table.at(10.5) == 1.5; }},
-      {"source.scale", "0.75", [](const SceneValues& s) { return s.source->scale == 0.75; }},
-      {"surroundings.temperature_K", "0", [](const SceneValues& s) { return s.surroundings->temperature_K == 0.0; }},
-      {"surroundings.profile", "\"overcast\"", [](const SceneValues& s) { return s.surroundings->profile != nullptr; }},
-      {"path.transmittance", "0.5", [](const SceneValues& s) { return s.path->transmittance == 0.5; }},
-      {"path.temperature_K", "280", [](const SceneValues& s) { return *s.path->temperature_K == 280.0; }},
-      {"path.radiance", "2.5", [](const SceneValues& s) { return *s.path->radiance == 2.5; }},
-      {"spectrum.wavelength_um", "10.61", [](const SceneValues& s) { return s.spectrum.max_um == 10.61; }},
-      {"spectrum.band_um", "[8, 14]",
-       [](const SceneValues& s) { return s.spectrum.min_um == 8 && s.spectrum.max_um == 14; }},
-      {"geometry.mode", "\"bistatic\"", [](const SceneValues& s) { return s.geometry.mode == Mode::kBistatic; }},
-      {"geometry.view_zenith_deg", "45", [](const SceneValues& s) { return s.geometry.view_zenith_deg == 45.0; }},
-      {"geometry.relative_azimuth_deg", "-90",
-       [](const SceneValues& s) { return s.geometry.relative_azimuth_deg == -90.0; }},
-      {"grid.theta_deg", "[90, 0]",
-       [](const SceneValues& s) {
-         return s.grid[Axis::kTheta] == std::vector<double>{90.0, 0.0};
-       }},
-      {"grid.sigma", "0.7", [](const SceneValues& s) { return s.grid[Axis::kSigma] == std::vector<double>{0.7}; }},
+       [](At s) { return s.source->kind == Source::Kind::kRelative && s.source->relative_irradiance == 0.5; }},
+      {"source.preset", "\"sun\"", [](At s) { return s.source->kind == Source::Kind::kTabulated; }},
+      {"source.file", "\"light.csv\"", [](At s) { return s.source->table.at(10.5) == 1.5; }},
+      {"source.scale", "0.75", [](At s) { return s.source->scale == 0.75; }},
+      {"surroundings.temperature_K", "0", [](At s) { return s.surroundings->temperature_K == 0.0; }},
+      {"surroundings.profile", "\"overcast\"", [](At s) { return s.surroundings->profile != nullptr; }},
+      {"path.transmittance", "0.5", [](At s) { return s.path->transmittance == 0.5; }},
+      {"path.temperature_K", "280", [](At s) { return *s.path->temperature_K == 280.0; }},
+      {"path.radiance", "2.5", [](At s) { return *s.path->radiance == 2.5; }},
+      {"spectrum.wavelength_um", "10.61", [](At s) { return s.spectrum.max_um == 10.61; }},
+      {"spectrum.band_um", "[8, 14]", [](At s) { return s.spectrum.min_um == 8 && s.spectrum.max_um == 14; }},
+      {"geometry.mode", "\"bistatic\"", [](At s) { return s.geometry.mode == Mode::kBistatic; }},
+      {"geometry.view_zenith_deg", "45", [](At s) { return s.geometry.view_zenith_deg == 45.0; }},
+      {"geometry.relative_azimuth_deg", "-90", [](At s) { return s.geometry.relative_azimuth_deg == -90.0; }},
+      {"grid.theta_deg", "[90, 0]", [](At s) { return is(s.grid[Axis::kTheta], 90.0, 0.0); }},
+      {"grid.sigma", "0.7", [](At s) { return is(s.grid[Axis::kSigma], 0.7); }},
       {"grid.wind_m_s", "[0, 5]",
-       [](const SceneValues& s) {
-         return s.grid[Axis::kSigma] == std::vector<double>{std::sqrt(0.003 / 2), std::sqrt(0.0286 / 2)} &&
-                s.wind_m_s == std::vector<double>{0.0, 5.0} && s.surface.sigma == s.grid[Axis::kSigma][0];
+       [](At s) {
+         return is(s.grid[Axis::kSigma], std::sqrt(0.003 / 2), std::sqrt(0.0286 / 2)) && is(s.wind_m_s, 0.0, 5.0) &&
+                s.surface.sigma == s.grid[Axis::kSigma][0];
        }},
-      {"grid.q", "[1.5, 2]",
-       [](const SceneValues& s) {
-         return s.grid[Axis::kQ] == std::vector<double>{1.5, 2.0};
-       }},
-      {"grid.wavelength_um", "[8, 10]",
-       [](const SceneValues& s) {
-         return s.grid[Axis::kWavelength] == std::vector<double>{8.0, 10.0};
-       }},
-      {"grid.n", "[1.3, 2]",
-       [](const SceneValues& s) {
-         return s.grid[Axis::kN] == std::vector<double>{1.3, 2.0};
-       }},
-      {"grid.k", "0.5", [](const SceneValues& s) { return s.grid[Axis::kK] == std::vector<double>{0.5}; }},
-      {"accuracy.tolerance", "1e-6", [](const SceneValues& s) { return s.accuracy.tolerance == 1e-6; }},
-      {"accuracy.precision", "\"double\"",
-       [](const SceneValues& s) { return s.accuracy.precision == Precision::kDouble; }},
-      {"accuracy.interpolation", "\"off\"", [](const SceneValues& s) { return !s.accuracy.may_interpolate; }},
+      {"grid.q", "[1.5, 2]", [](At s) { return is(s.grid[Axis::kQ], 1.5, 2.0); }},
+      {"grid.wavelength_um", "[8, 10]", [](At s) { return is(s.grid[Axis::kWavelength], 8.0, 10.0); }},
+      {"grid.n", "[1.3, 2]", [](At s) { return is(s.grid[Axis::kN], 1.3, 2.0); }},
+      {"grid.k", "0.5", [](At s) { return is(s.grid[Axis::kK], 0.5); }},
+      {"accuracy.tolerance", "1e-6", [](At s) { return s.accuracy.tolerance == 1e-6; }},
+      {"accuracy.precision", "\"double\"", [](At s) { return s.accuracy.precision == Precision::kDouble; }},
+      {"accuracy.interpolation", "\"off\"", [](At s) { return !s.accuracy.may_interpolate; }},
   };
   return cases;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "error_text.hpp"
 #include "scene/sky_profile.hpp"
 #include "scene_support.hpp"
 #include "spectrum/planck.hpp"
@@ -16,12 +17,7 @@ namespace dolp {
 namespace {
 
 std::string refusal_of(const std::string& text) {
-  try {
-    parse_sky_profile(text, "sky.csv");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return error_text([&] { parse_sky_profile(text, "sky.csv"); });
 }
 
 TEST(SkyProfile, BadFile_IsOneLineThatNamesFileLineAndWhatIsAllowed) {

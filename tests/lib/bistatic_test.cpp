@@ -7,9 +7,9 @@
 #include <memory>
 #include <numbers>
 #include <optional>
-#include <random>
 
 #include <dolp/status.hpp>
+#include "draws.hpp"
 #include "properties_support.hpp"
 #include "reference/mueller.hpp"
 #include "reference/reference_evaluator.hpp"
@@ -24,9 +24,9 @@ constexpr std::uint64_t kSeed = 20260212;
 constexpr int kScenes = 40;
 constexpr double kWavelength_um = 10.6;
 
-class RandomScenes {
+class RandomScenes : public Draws {
  public:
-  double uniform(double low, double high) { return low + (high - low) * std::generate_canonical<double, 53>(engine_); }
+  RandomScenes() : Draws(kSeed) {}
 
   SceneValues scene() {
     SceneValues scene;
@@ -49,9 +49,6 @@ class RandomScenes {
     scene.geometry = {Mode::kBistatic, uniform(5.0, 80.0), uniform(-180.0, 180.0)};
     return scene;
   }
-
- private:
-  std::mt19937_64 engine_{kSeed};
 };
 
 struct Radiance {

@@ -1,11 +1,11 @@
 // Which effects a plan drops, and that the answer without them is the one with them, within the stated bounds.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <iostream>
 #include <map>
 
 #include <dolp/status.hpp>
+#include "draws.hpp"
 #include "effects_support.hpp"
 #include "scene/scene_reader.hpp"
 
@@ -20,17 +20,12 @@ constexpr std::array kParts = {Part::kMoments, Part::kSource, Part::kSurrounding
 // Rounding of a quotient of Stokes sums.
 constexpr double kRounding = 1e-11;
 
-int scene_count(int standard) {
-  const char* wanted = std::getenv("DOLP_PROPERTY_DRAWS");
-  return wanted ? std::atoi(wanted) : standard;
-}
-
 TEST(Dropping, RandomScenes_TheAnswerWithEverythingIsWithinTheEstimates) {
   std::cout << "seed " << kSeed << '\n';
   RandomScenes scenes(kSeed);
   std::map<Part, int> dropped;
   int without_moments = 0;
-  for (int i = 0; i < scene_count(400); ++i) {
+  for (std::size_t i = 0; i < draws_wanted(400); ++i) {
     const SceneValues scene = scenes.next();
     const std::vector<SceneEntry> entries = scenes.entries(scene);
     const EffectPlan plan = plan_effects(scene, entries, false);
@@ -106,7 +101,7 @@ TEST(EffectBounds, RandomScenes_HoldWhatEachPartChanges) {
   std::cout << "seed " << kSeed + 1 << '\n';
   RandomScenes scenes(kSeed + 1);
   std::map<Part, int> compared;
-  for (int i = 0; i < scene_count(400); ++i) {
+  for (std::size_t i = 0; i < draws_wanted(400); ++i) {
     SceneValues scene = scenes.next();
     scene.accuracy.tolerance = 1e-3;
     const std::vector<SceneEntry> entries = scenes.entries(scene);

@@ -1,5 +1,6 @@
 // Fits: known truths found again, intervals against closed forms and against synthetic measurements.
 #include "fit/fit.hpp"
+#include "error_text.hpp"
 #include "scene/scene_reader.hpp"
 
 #include <gtest/gtest.h>
@@ -449,12 +450,7 @@ TEST(MeasuredData, Columns_AreReadAndCheckedLineByLine) {
   EXPECT_TRUE(data.has_uncertainties);
   EXPECT_EQ(MeasuredData::from_csv("theta_deg,emissivity_s,emissivity_p\n1,0.8,0.9\n", "f").measurements.size(), 2U);
   const auto message = [](const std::string& text) -> std::string {
-    try {
-      MeasuredData::from_csv(text, "f.csv");
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "none";
+    return error_text([&] { MeasuredData::from_csv(text, "f.csv"); });
   };
   EXPECT_TRUE(message("").starts_with("f.csv:1: the file is empty"));
   EXPECT_TRUE(message("theta_deg,dolp\n").starts_with("f.csv:1: no points"));

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <dolp/results.hpp>
+#include "error_text.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "properties_support.hpp"
 #include "reference/hemisphere.hpp"
@@ -67,14 +68,7 @@ TEST(StoredCases, BadFile_NamesLineAndColumn) {
       std::string(embedded_hard_cases_csv()).substr(0, embedded_hard_cases_csv().find("cauchy,"));
   const std::string good = "cauchy,none,60,0.3,2,1.5,0,1,0,1,0,0,0,0,0,name,origin\n";
   EXPECT_EQ(parse_stored_cases(header + good, "f").size(), 1U);
-  const auto message = [&](const std::string& text) {
-    try {
-      parse_stored_cases(text, "f");
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
-  };
+  const auto message = [&](const std::string& text) { return error_text([&] { parse_stored_cases(text, "f"); }); };
   EXPECT_NE(message(good).find("f:1: the columns must be"), std::string::npos);
   EXPECT_NE(message("").find("f:1: the columns must be"), std::string::npos);
   EXPECT_NE(message(header + "cauchy,none,60\n").find("f:3: 3 cells, 17 are expected"), std::string::npos);
@@ -92,12 +86,6 @@ class HardCasesOn : public testing::TestWithParam<Setting> {};
 TEST(Qualify, EvaluatorInDouble_IsExaminedInDouble) {
   CpuEvaluator evaluator;
   qualify(cases_of(hard_cases(), Distribution::kCauchy, Masking::kNone), evaluator, {1e-2, Precision::kDouble}, {});
-  EXPECT_EQ(evaluator.report().precision, "double");
-}
-
-TEST(MeasureQuality, EvaluatorInDouble_IsMeasuredInDouble) {
-  CpuEvaluator evaluator;
-  measure_quality(evaluator, {1e-2, Precision::kDouble});
   EXPECT_EQ(evaluator.report().precision, "double");
 }
 
@@ -168,6 +156,7 @@ TEST(Qualify, BiasedEvaluator_IsFoundOutCaseByCase) {
 TEST(MeasureQuality, CpuInDouble_IsSound) {
   CpuEvaluator evaluator;
   const DeviceQuality quality = measure_quality(evaluator, {1e-4, Precision::kDouble});
+  EXPECT_EQ(evaluator.report().precision, "double");
   EXPECT_EQ(quality.cases, 56U);
   EXPECT_TRUE(quality.is_sound) << quality.worst_case;
   EXPECT_GT(quality.worst_error, 0.0);

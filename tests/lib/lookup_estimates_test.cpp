@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <iostream>
-#include <random>
 
 #include <dolp/status.hpp>
+#include "draws.hpp"
 #include "run/scene_table.hpp"
 #include "scene_run_support.hpp"
 #include "table/table_lookup.hpp"
@@ -23,23 +22,6 @@ constexpr std::uint64_t kSeed = 2;
 constexpr std::size_t kPoints = 80;  // of each table
 constexpr double kExact = 1e-7;      // tolerance of what the lookup is compared with
 
-std::size_t from_environment(const char* name, std::size_t otherwise) {
-  const char* text = std::getenv(name);
-  return text ? std::strtoul(text, nullptr, 10) : otherwise;
-}
-
-class Draw {
- public:
-  explicit Draw(std::uint64_t seed) : engine_(seed) {}
-  double uniform(double low, double high) { return low + (high - low) * std::generate_canonical<double, 53>(engine_); }
-  double in_ratio(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
-  std::size_t count(std::size_t low, std::size_t high) { return low + engine_() % (high - low + 1); }
-  bool chance(double share) { return uniform(0.0, 1.0) < share; }
-
- private:
-  std::mt19937_64 engine_;
-};
-
 /// Values from an origin in equal steps, or in equal ratios.
 std::vector<double> axis(double first, double last, std::size_t count, double origin, bool in_ratios) {
   std::vector<double> values;
@@ -53,11 +35,11 @@ std::vector<double> axis(double first, double last, std::size_t count, double or
 }
 
 /// A scene with a grid of 4 to some 60 values an axis, sometimes with n and k or the wavelength among the axes.
-SceneValues random_scene(Draw& draw) {
+SceneValues random_scene(Draws& draw) {
   const Distribution distribution = draw.chance(0.75) ? Distribution::kCauchy : Distribution::kGaussian;
   const bool is_metal = draw.chance(0.3);
   SceneValues scene = make_scene(distribution, kMaskings[draw.count(0, 3)],
-                                 is_metal ? OpticalConstants{draw.in_ratio(1.0, 10.0), draw.in_ratio(1.0, 60.0)}
+                                 is_metal ? OpticalConstants{draw.log_uniform(1.0, 10.0), draw.log_uniform(1.0, 60.0)}
                                           : OpticalConstants{draw.uniform(1.1, 3.0), draw.chance(0.5) ? 0.0 : 0.2});
   if (draw.chance(0.5)) scene.surroundings.reset();
   if (draw.chance(0.4)) {
@@ -68,10 +50,10 @@ SceneValues random_scene(Draw& draw) {
   const auto values = [&](std::size_t most_coarse, std::size_t most_fine) {
     return is_coarse ? draw.count(4, most_coarse) : draw.count(most_fine / 3, most_fine);
   };
-  const double sigma = draw.in_ratio(0.01, 0.3);
+  const double sigma = draw.log_uniform(0.01, 0.3);
   const double q = draw.uniform(1.6, 2.5);
   scene.grid[Axis::kTheta] = axis(0.0, draw.chance(0.3) ? 90.0 : draw.uniform(60.0, 90.0), values(11, 60), 0.0, false);
-  scene.grid[Axis::kSigma] = axis(sigma, sigma * draw.in_ratio(3.0, 30.0), values(7, 24), 0.0, draw.chance(0.5));
+  scene.grid[Axis::kSigma] = axis(sigma, sigma * draw.log_uniform(3.0, 30.0), values(7, 24), 0.0, draw.chance(0.5));
   scene.grid[Axis::kQ] = axis(q, q + draw.uniform(1.0, 8.0), values(6, 12), 1.0, draw.chance(0.5));
   if (distribution == Distribution::kGaussian) scene.grid[Axis::kQ] = {2.0};
   if (draw.chance(0.15)) {
@@ -84,7 +66,7 @@ SceneValues random_scene(Draw& draw) {
     scene.grid[Axis::kQ].resize(1);
     scene.grid[Axis::kWavelength] = axis(8.0, draw.uniform(9.0, 14.0), draw.count(4, 8), 0.0, false);
   }
-  scene.accuracy.tolerance = draw.in_ratio(1e-5, 1e-3);
+  scene.accuracy.tolerance = draw.log_uniform(1e-5, 1e-3);
   return scene;
 }
 
@@ -95,7 +77,7 @@ TableValues table_of(const SceneValues& scene) {
 }
 
 /// Points within the grid, even in the coordinates of a lookup.
-std::vector<TableLookup::Point> random_points(const Axes& grid, Draw& draw) {
+std::vector<TableLookup::Point> random_points(const Axes& grid, Draws& draw) {
   std::vector<TableLookup::Point> points(kPoints);
   for (TableLookup::Point& point : points) {
     for (const Axis axis : kAllAxes) {
@@ -104,7 +86,7 @@ std::vector<TableLookup::Point> random_points(const Axes& grid, Draw& draw) {
       const double origin = axis == Axis::kQ ? 1.0 : 0.0;
       const double value = axis == Axis::kTheta || values.size() == 1
                                ? draw.uniform(values.front(), values.back())
-                               : origin + draw.in_ratio(values.front() - origin, values.back() - origin);
+                               : origin + draw.log_uniform(values.front() - origin, values.back() - origin);
       point[axis] = std::clamp(value, values.front(), values.back());
     }
   }
@@ -139,11 +121,11 @@ struct Tally {
 };
 
 TEST(LookupEstimates, RandomPointsOfRandomTables_ErrorsAreWithinThem) {
-  const std::size_t tables = from_environment("DOLP_PROPERTY_DRAWS", kTables);
-  const std::uint64_t seed = from_environment("DOLP_PROPERTY_SEED", kSeed);
+  const std::size_t tables = draws_wanted(kTables);
+  const std::uint64_t seed = draws_wanted(kSeed, "DOLP_PROPERTY_SEED");
   Tally tally;
   for (std::size_t i = 0; i < tables; ++i) {
-    Draw draw(seed * 1000003 + i);
+    Draws draw(seed * 1000003 + i);
     const SceneValues scene = random_scene(draw);
     const TableValues table = table_of(scene);
     const TableLookup lookup(table, scene.accuracy.tolerance, "random");

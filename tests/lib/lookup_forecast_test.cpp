@@ -7,6 +7,7 @@
 #include <random>
 
 #include <dolp/status.hpp>
+#include "draws.hpp"
 #include "run/scene_table.hpp"
 #include "scene_run_support.hpp"
 #include "table/table_lookup.hpp"
@@ -18,14 +19,6 @@ using namespace scene_run_support;
 
 constexpr double kTolerance = 1e-4;
 constexpr int kPoints = 400;
-
-std::vector<double> spaced(double first, double last, std::size_t count) {
-  std::vector<double> values;
-  for (std::size_t i = 0; i < count; ++i) {
-    values.push_back(std::lerp(first, last, static_cast<double>(i) / static_cast<double>(count - 1)));
-  }
-  return values;
-}
 
 SceneValues scene_with(Masking masking, std::size_t thetas, std::size_t sigmas, std::size_t qs) {
   SceneValues scene = make_scene(Distribution::kCauchy, masking, {1.5, 0.1});

@@ -30,28 +30,6 @@ TEST(Limits_RightAngle, VCavityAndSmithHaveTheDocumentedReflectance) {
   }
 }
 
-TEST(Limits_RightAngle, FiniteReflectanceContinuesThatJustBefore) {
-  // rho of a rough surface changes like the angle: 2e-6 rad here, times up to 20 for metals.
-  constexpr double kChange = 1e-4;
-  for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
-    for (const Distribution distribution : kDistributions) {
-      for (const OpticalConstants& index : kIndices) {
-        const SceneValues scene = make_scene(distribution, masking, index);
-        for (const Evaluator evaluator : kPrecisions) {
-          const PointResult limit = run_one(scene, 90.0, kPaperShape, evaluator);
-          const PointResult before = run_one(scene, 89.9999, kPaperShape, evaluator);
-          EXPECT_EQ(limit.status & ~kToleranceNotMet, 0U);
-          EXPECT_NEAR(limit[Quantity::kRhoI], before[Quantity::kRhoI], kChange);
-          EXPECT_NEAR(limit[Quantity::kRhoQ], before[Quantity::kRhoQ], kChange);
-          EXPECT_NEAR(limit[Quantity::kAlbedo], before[Quantity::kAlbedo], kChange);
-          EXPECT_NEAR(limit[Quantity::kStokesI], before[Quantity::kStokesI], kChange * before[Quantity::kStokesI]);
-          EXPECT_NEAR(limit[Quantity::kDolp], before[Quantity::kDolp], kChange);
-        }
-      }
-    }
-  }
-}
-
 TEST(Limits_RightAngle, DivergingReflectanceLeavesOnlyTheDolp) {
   for_each_model([](Distribution distribution, Masking masking) {
     for (const double diffuse : {0.0, 0.1}) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <tuple>
 
+#include "draws.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
@@ -17,13 +18,6 @@ namespace dolp {
 namespace {
 
 using namespace scene_run_support;
-
-std::vector<double> spaced(double from, double to, std::size_t count) {
-  std::vector<double> values(count);
-  for (std::size_t i = 0; i < count; ++i)
-    values[i] = from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1);
-  return values;
-}
 
 std::unique_ptr<ModelEvaluator> evaluator_on(bool device) {
   std::unique_ptr<ModelEvaluator> inner;

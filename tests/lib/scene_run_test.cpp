@@ -1,18 +1,15 @@
-// Whole runs: points and their errors, what is asked of the evaluator, and that neither order nor grouping changes a
-// bit.
+// Whole runs: points and their errors, and that neither order nor grouping changes a bit.
 #include "run/scene_run.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <dolp/errors.hpp>
 #include <iostream>
 #include <numeric>
 #include <random>
 
-#include "moments_only.hpp"
-#include "radiometry/radiometry.hpp"
+#include "error_text.hpp"
 #include "scene_run_support.hpp"
 
 namespace dolp {
@@ -21,24 +18,6 @@ namespace {
 using namespace scene_run_support;
 
 constexpr unsigned kSeed = 20250811;
-
-/// Answers every request with the same moments and keeps what it was asked.
-class Recorder final : public MomentsOnly {
- public:
-  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
-    requests.push_back(request);
-    const std::size_t count = request.size();
-    for (std::size_t i = 0; i < count; ++i) progress(i + 1, count);
-    Moments moments;
-    moments.r_i = 0.02;
-    moments.r_q = 0.01;
-    moments.albedo = 0.1;
-    moments.deficit = 0.08;
-    return std::vector<Moments>(count, moments);
-  }
-
-  std::vector<MomentsRequest> requests;
-};
 
 SceneValues small_grid(Distribution distribution, Masking masking) {
   SceneValues scene = make_scene(distribution, masking, kAbsorbing);
@@ -57,12 +36,7 @@ SceneValues band_scene() {
 }
 
 std::string error_of(const SceneValues& scene, const std::string& csv) {
-  try {
-    point_entries(scene, parse_points(csv, "p.csv", PointsKind::kDirections));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return error_text([&] { point_entries(scene, parse_points(csv, "p.csv", PointsKind::kDirections)); });
 }
 
 TEST(PointEntries_Smith, RefusesSmallQWithFileLineColumnValueAndRange) {
@@ -119,25 +93,6 @@ TEST(EvaluateScene_OwnIndexOfTheMaterial_GivesTheSameAsTheMaterial, OverABand) {
   EXPECT_NEAR(of_point[Quantity::kDolp], of_material[Quantity::kDolp], kBandAgreement);
   EXPECT_NEAR(of_point[Quantity::kStokesI], of_material[Quantity::kStokesI],
               kBandAgreement * of_material[Quantity::kStokesI]);
-}
-
-TEST(EvaluateScene_Progress, CountsEntriesUpToAllOfThem) {
-  const SceneValues scene = small_grid(Distribution::kGaussian, Masking::kNone);
-  std::vector<std::size_t> seen;
-  Recorder recorder;
-  evaluate_scene(scene, grid_entries(scene), recorder, [&](std::size_t done, std::size_t total) {
-    EXPECT_EQ(total, 45U);
-    seen.push_back(done);
-    return true;
-  });
-  ASSERT_EQ(seen.size(), 10U);
-  EXPECT_TRUE(std::ranges::is_sorted(seen));
-  EXPECT_EQ(seen.back(), 45U);
-}
-
-TEST(EvaluateScene_NoEntries, GivesNoResults) {
-  const SceneValues scene = make_scene(Distribution::kCauchy, Masking::kSmith, kDielectric);
-  EXPECT_TRUE(run(scene, {}, Evaluator::kFloat).empty());
 }
 
 class RunsOfModel : public testing::TestWithParam<std::tuple<Evaluator, Distribution, Masking>> {};

@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <numbers>
-#include <random>
 #include <string>
 #include <vector>
 
+#include "draws.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/interpolation/interpolating_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
@@ -97,56 +96,42 @@ TEST(Sky, QuadraticProfile_GivesTheValuesOfTheModel) {
   }
 }
 
-/// Random numbers with a seed.
-class Random {
- public:
-  explicit Random(unsigned seed) : generator_(seed) {}
-  double between(double low, double high) {
-    return low + (high - low) * std::generate_canonical<double, 53>(generator_);
-  }
-  double log_between(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
-  bool chance(double share) { return between(0.0, 1.0) < share; }
-
- private:
-  std::mt19937 generator_;
-};
-
 /// Temperatures that jump about, that rise toward the horizon as those of skies do, or a built-in sky.
-SkyProfile random_sky(Random& random) {
+SkyProfile random_sky(Draws& random) {
   if (random.chance(0.1)) return *built_in_sky(random.chance(0.5) ? "clear-sky" : "overcast");
   const bool jumps = random.chance(0.4);
-  const int rows = static_cast<int>(random.between(2.0, jumps ? 12.0 : 30.0));
-  const double zenith_K = random.between(180.0, 250.0);
-  const double horizon_K = random.between(250.0, 300.0);
-  const double power = random.between(1.0, 6.0);
+  const int rows = static_cast<int>(random.uniform(2.0, jumps ? 12.0 : 30.0));
+  const double zenith_K = random.uniform(180.0, 250.0);
+  const double horizon_K = random.uniform(250.0, 300.0);
+  const double power = random.uniform(1.0, 6.0);
   std::vector<double> zenith_deg = {0.0, kRightAngle_deg};
-  while (zenith_deg.size() < static_cast<std::size_t>(rows)) zenith_deg.push_back(random.between(0.5, 89.5));
+  while (zenith_deg.size() < static_cast<std::size_t>(rows)) zenith_deg.push_back(random.uniform(0.5, 89.5));
   std::ranges::sort(zenith_deg);
   std::vector<double> values;
   for (const double at_deg : zenith_deg) {
-    values.push_back(jumps ? random.between(200.0, 300.0)
+    values.push_back(jumps ? random.uniform(200.0, 300.0)
                            : zenith_K + (horizon_K - zenith_K) * std::pow(at_deg / kRightAngle_deg, power));
   }
   return profile_of(zenith_deg, values);
 }
 
-SceneValues random_scene(Random& random) {
+SceneValues random_scene(Draws& random) {
   SceneValues scene = scene_under(random_sky(random));
   Surface& surface = scene.surface;
   surface.distribution = random.chance(0.7) ? Distribution::kCauchy : Distribution::kGaussian;
-  surface.masking = static_cast<Masking>(random.between(0.0, 3.999));
+  surface.masking = static_cast<Masking>(random.uniform(0.0, 3.999));
   const bool is_groove = surface.masking == Masking::kVCavity && random.chance(0.1);
   if (is_groove) surface.scattering = Scattering::kMultiple;
-  surface.sigma = random.log_between(0.02, 1.2);
-  surface.q = random.log_between(1.6, 8.0);
-  surface.material.constant = {random.chance(0.5) ? random.between(1.2, 2.5) : random.between(1.0, 30.0),
-                               random.chance(0.5) ? 0.0 : random.between(0.0, 30.0)};
+  surface.sigma = random.log_uniform(0.02, 1.2);
+  surface.q = random.log_uniform(1.6, 8.0);
+  surface.material.constant = {random.chance(0.5) ? random.uniform(1.2, 2.5) : random.uniform(1.0, 30.0),
+                               random.chance(0.5) ? 0.0 : random.uniform(0.0, 30.0)};
   if (random.chance(0.3)) {
-    surface.specular = random.between(0.3, 1.0);
-    surface.diffuse = random.between(0.0, 0.5);
-    surface.diffuse_exponent = random.between(-0.9, 0.0);
+    surface.specular = random.uniform(0.3, 1.0);
+    surface.diffuse = random.uniform(0.0, 0.5);
+    surface.diffuse_exponent = random.uniform(-0.9, 0.0);
   }
-  if (random.chance(0.2)) scene.geometry = {Mode::kBistatic, random.between(0.0, 89.0), 90.0};
+  if (random.chance(0.2)) scene.geometry = {Mode::kBistatic, random.uniform(0.0, 89.0), 90.0};
   if (random.chance(0.2)) scene.emission->model = EmissionModel::kFresnel;
   if (random.chance(0.3)) scene.spectrum = {4.0, 4.0};
   scene.accuracy.tolerance = is_groove ? 1e-3 : random.chance(0.5) ? 1e-3 : 1e-4;
@@ -155,18 +140,17 @@ SceneValues random_scene(Random& random) {
 
 // DOLP_PROPERTY_DRAWS in the environment sets the number of scenes.
 TEST(Sky, RandomScenes_AgreeWithTheReferenceWithinTheirBounds) {
-  const char* const wanted = std::getenv("DOLP_PROPERTY_DRAWS");
-  const int scenes = wanted == nullptr ? 250 : std::atoi(wanted);
+  const int scenes = static_cast<int>(draws_wanted(250));
   // 0.129 of 1,000: grooves, skies of jumps whose corners do not all split, grazing directions.
   constexpr double kMostMissed = 0.2;
-  Random random(20261124);
+  Draws random(20261124);
   CpuEvaluator evaluator;
   ReferenceEvaluator reference({.relative_tolerance = 1e-6});
   double worst = 0.0;
   int missed = 0;
   for (int i = 0; i < scenes; ++i) {
     const SceneValues scene = random_scene(random);
-    const double theta_deg = random.chance(0.2) ? random.between(85.0, 89.9) : random.between(0.0, 85.0);
+    const double theta_deg = random.chance(0.2) ? random.uniform(85.0, 89.9) : random.uniform(0.0, 85.0);
     const PointResult own = result_of(scene, theta_deg, evaluator);
     const PointResult exact = result_of(scene, theta_deg, reference);
     const std::string name = "scene " + std::to_string(i) + " at " + std::to_string(theta_deg) + ": " +

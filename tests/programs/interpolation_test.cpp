@@ -10,9 +10,9 @@ namespace {
 using namespace dolp;
 using nlohmann::json;
 
-const std::vector<std::string> kDense = {"--set", "grid.theta_deg=[75,20]",
-                                         "--set", "grid.sigma={from=0.05,to=1,count=40}",
-                                         "--set", "grid.q={from=1.75,to=8,count=36}"};
+const std::vector<std::string> kDense = split_at(
+    "--set grid.theta_deg=[75,20] --set grid.sigma={from=0.05,to=1,count=40} --set grid.q={from=1.75,to=8,count=36}",
+    ' ');
 constexpr std::size_t kDenseEntries = std::size_t{2} * 40 * 36;
 const std::vector<std::string> kOff = {"--set", "accuracy.interpolation=off"};
 // Sampling error of estimates for all directions from some of them.

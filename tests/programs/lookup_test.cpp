@@ -112,9 +112,7 @@ TEST_F(Lookup, CoarseTable_SaysThatItMissesTheTolerance) {
 
 TEST_F(Lookup, Json_NamesTableAndErrors) {
   make_table({});
-  const Outcome outcome = dolp({"lookup", "t.nc", "--points", "points.csv", "-o", "out.csv", "--json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const json report = json::parse(outcome.out);
+  const json report = this->report({"lookup", "t.nc", "--points", "points.csv", "-o", "out.csv"});
   EXPECT_EQ(report["table"], "t.nc");
   EXPECT_EQ(report["points"], 3);
   EXPECT_EQ(report["tolerance"], 1e-4);

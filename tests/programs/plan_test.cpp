@@ -46,9 +46,7 @@ class Plan : public CommandLine {
 };
 
 TEST_F(Plan, IsothermalSurroundings_NothingRunsAndDolpIsZero) {
-  Command wanted = command(joined({"table", "scene.toml", "-o", "t.nc", "--json"}, kIsothermal));
-  wanted.environment = kNoDriver;
-  const Outcome outcome = run(wanted);
+  const Outcome outcome = without_device(joined({"table", "scene.toml", "-o", "t.nc", "--json"}, kIsothermal));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const json report = json::parse(outcome.out);
   EXPECT_EQ(report["dispatches"], 0);
@@ -74,21 +72,15 @@ TEST_F(Plan, Memory_IsAboutThatOfTheTable) {
       "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)";
   constexpr double kAbout = 1.7;  // drivers differ, and parts overlap in memory as the machine is busy
   for (const char* count : {"200", "1200", "6000"}) {  // a part of a table, two, and six, from which on it stays
-    const std::vector<std::string> grid = {"scene.toml",
-                                           "--tolerance",
-                                           "1e-2",
-                                           "--set",
-                                           "surface.masking=none",
-                                           "--set",
-                                           fmt::format("grid={{theta_deg={{from=0,to=80,count={}}},"
-                                                       "sigma={{from=0.1,to=0.5,count=1000}},q=[2]}}",
-                                                       count)};
-    std::vector<std::string> plan = {"plan", "--json"},
-                             table = {"/usr/bin/python3", "-c", peak, DOLP_PROGRAM, "table", "-o", "t.nc", "--quiet"};
-    plan.insert(plan.end(), grid.begin(), grid.end());
-    table.insert(table.end(), grid.begin(), grid.end());
-    const double said = nlohmann::json::parse(dolp(plan).out)["host_bytes"].get<double>();
-    const Outcome outcome = run({.arguments = table, .folder = at("")});
+    const std::vector<std::string> grid =
+        split_at(fmt::format("scene.toml --tolerance 1e-2 --set surface.masking=none --set grid={{theta_deg={{from=0,"
+                             "to=80,count={}}},sigma={{from=0.1,to=0.5,count=1000}},q=[2]}}",
+                             count),
+                 ' ');
+    const std::vector<std::string> table = {"/usr/bin/python3", "-c", peak, DOLP_PROGRAM, "table", "-o", "t.nc",
+                                            "--quiet"};
+    const double said = report(joined({"plan"}, grid))["host_bytes"];
+    const Outcome outcome = run({.arguments = joined(table, grid), .folder = at("")});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     const double taken = 1024.0 * std::stod(outcome.out);
     EXPECT_GT(said, taken / kAbout) << count;
@@ -170,10 +162,9 @@ TEST_F(Plan, BeamAlone_IsComputedInThePrecisionThatTheToleranceAsksFor) {
 
 TEST_F(Plan, Mirrors_NeedNoDevice) {
   for (const char* mode : {"hemispherical", "bistatic"}) {
-    Command wanted = command({"table", "scene.toml", "-o", "t.nc", "--set", "grid.sigma=0", "--json", "--set",
-                              "source.relative_irradiance=0.5", "--set", "geometry.mode=" + std::string(mode)});
-    wanted.environment = kNoDriver;
-    const Outcome outcome = run(wanted);
+    const Outcome outcome =
+        without_device({"table", "scene.toml", "-o", "t.nc", "--set", "grid.sigma=0", "--json", "--set",
+                        "source.relative_irradiance=0.5", "--set", "geometry.mode=" + std::string(mode)});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(json::parse(outcome.out)["device"], "none");
     EXPECT_EQ(read_table(at("t.nc"))[Quantity::kRhoI].size(), 8U);
@@ -181,9 +172,7 @@ TEST_F(Plan, Mirrors_NeedNoDevice) {
 }
 
 TEST_F(Plan, BeamWithoutADevice_IsNoSilentSwitchToTheCpu) {
-  Command wanted = command(joined({"table", "scene.toml", "-o", "t.nc"}, kBeamAlone));
-  wanted.environment = kNoDriver;
-  EXPECT_EQ(run(wanted).status, 3);
+  EXPECT_EQ(without_device(joined({"table", "scene.toml", "-o", "t.nc"}, kBeamAlone)).status, 3);
 }
 
 TEST_F(Plan, FewEntries_PredictsTheCpuRunExactly) {
@@ -215,15 +204,12 @@ TEST_F(Plan, Bistatic_PredictsMomentsAndBeams) {
 
 TEST_F(Plan, Device_PredictsEvaluationsAndDispatches) {
   // Cases that need no second attempt.
-  for (const auto& [tolerance, masking] :
-       {std::pair{"1e-4", "none"}, std::pair{"1e-4", "v-cavity"}, std::pair{"1e-4", "smith"}}) {
-    const std::vector<std::string> easy = {"--tolerance", tolerance,
-                                           "--set",       "surface.masking=" + std::string(masking),
-                                           "--set",       "grid.theta_deg=[65,40,10]",
-                                           "--set",       "grid.sigma=0.4",
-                                           "--set",       "grid.q=3",
-                                           "--set",       "surface.n=1.5",
-                                           "--set",       "surface.diffuse=0.5"};
+  for (const char* masking : {"none", "v-cavity", "smith"}) {
+    const std::vector<std::string> easy = split_at(
+        fmt::format("--tolerance 1e-4 --set surface.masking={} --set grid.theta_deg=[65,40,10] --set grid.sigma=0.4 "
+                    "--set grid.q=3 --set surface.n=1.5 --set surface.diffuse=0.5",
+                    masking),
+        ' ');
     const json predicted = plan(easy);
     const json spent = table(easy);
     const double evaluations = spent["evaluations"];
@@ -251,17 +237,14 @@ TEST_F(Plan, Mirrors_NothingIsPlanned) {
 }
 
 TEST_F(Plan, NoDevice_PlansAllTheSame) {
-  Command wanted = command({"plan", "scene.toml", "--json"});
-  wanted.environment = kNoDriver;
-  const Outcome outcome = run(wanted);
+  const Outcome outcome = without_device({"plan", "scene.toml", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const json report = json::parse(outcome.out);
   EXPECT_TRUE(report["device"].is_null());
   EXPECT_NE(report["why_no_device"], "");
   EXPECT_GT(report["first_attempt"]["dispatches"], 0);
   EXPECT_EQ(report["evaluations"], plan()["evaluations"]);
-  wanted.arguments.insert(wanted.arguments.end(), {"--device", "nosuch"});
-  EXPECT_EQ(run(wanted).status, 3);
+  EXPECT_EQ(without_device({"plan", "scene.toml", "--device", "nosuch"}).status, 3);
 }
 
 TEST_F(Plan, ShippedScenes_NameEachEffectOnceAndReadWell) {

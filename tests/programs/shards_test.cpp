@@ -4,8 +4,6 @@
 #include <bit>
 #include <chrono>
 #include <filesystem>
-#include <iostream>
-#include <random>
 #include <thread>
 
 #include "cli_support.hpp"
@@ -34,12 +32,10 @@ q = { from = 1.6, to = 6, count = 20 }
 )";
 
 // More than one part of a run.
-const std::vector<std::string> kLarge = {"--set",       "grid.theta_deg={from=0, to=89, count=320}",
-                                         "--set",       "grid.sigma={from=0.1, to=0.8, count=64}",
-                                         "--set",       "grid.q={from=1.8, to=6, count=64}",
-                                         "--set",       "grid.wavelength_um=[10.0, 8.0]",
-                                         "--set",       "grid.n=[1.5]",
-                                         "--tolerance", "1e-2"};
+const std::vector<std::string> kLarge = split_at(
+    "--set grid.theta_deg={from=0,to=89,count=320} --set grid.sigma={from=0.1,to=0.8,count=64} --set "
+    "grid.q={from=1.8,to=6,count=64} --set grid.wavelength_um=[10.0,8.0] --set grid.n=[1.5] --tolerance 1e-2",
+    ' ');
 
 class Shards : public CommandLine {
  protected:
@@ -306,22 +302,6 @@ TEST_F(Resume, AfterCtrlC_SaysHowToGoOn_AndGivesTheSameBits) {
   EXPECT_FALSE(fs::exists(at("t.nc.partial")));
   EXPECT_FALSE(fs::exists(at("t.nc.partial.txt")));
   EXPECT_NE(resumed.out.find("2621440"), std::string::npos) << resumed.out;
-}
-
-TEST_F(Resume, KilledAtRandomMoments_GivesTheSameBits) {
-  make_whole();
-  const unsigned seed = std::random_device{}();
-  std::cout << "seed " << seed << '\n';
-  std::mt19937 random(seed);
-  for (int kill = 0; kill < 6 && !fs::exists(at("t.nc")); ++kill) {
-    TerminalProcess process(command(command_));
-    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 1000));
-    process.send_signal(SIGKILL);
-    process.finish();
-  }
-  const Outcome resumed = dolp(command_);
-  ASSERT_EQ(resumed.status, 0) << resumed.err;
-  expect_same("t.nc", "one.nc");
 }
 
 // What is left of an interrupted run, damaged in several ways.

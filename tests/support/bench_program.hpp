@@ -1,46 +1,35 @@
 // dolp-bench and its plot script, run from outside.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "program.hpp"
+#include "cli_support.hpp"
 
 namespace dolp {
 
-class BenchProgram : public testing::Test {
+class BenchProgram : public CommandLine {
  protected:
-  std::filesystem::path at(const std::string& name) const { return folder_.path() / name; }
-
   Outcome bench(std::vector<std::string> arguments,
                 std::vector<std::pair<std::string, std::string>> environment = {}) const {
     arguments.insert(arguments.begin(), DOLP_BENCH_PROGRAM);
-    Command command{.arguments = std::move(arguments), .folder = folder_.path()};
-    command.environment = std::move(environment);
-    return run(command);
+    return run({.arguments = std::move(arguments), .folder = at(""), .environment = std::move(environment)});
   }
-  Outcome plot(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), {"/usr/bin/python3", DOLP_BENCH_PLOT});
-    return run({.arguments = std::move(arguments), .folder = folder_.path()});
+  Outcome plot(const std::vector<std::string>& arguments) const {
+    return run({.arguments = joined({"/usr/bin/python3", DOLP_BENCH_PLOT}, arguments), .folder = at("")});
   }
-  /// The results of a study, `fixed` options first.
-  nlohmann::json study_of(const std::vector<std::string>& fixed, std::vector<std::string> options) const {
-    options.insert(options.begin(), fixed.begin(), fixed.end());
-    const Outcome outcome = bench(options);
+  /// The results of a study.
+  nlohmann::json study_of(const std::vector<std::string>& arguments) const {
+    const Outcome outcome = bench(joined(arguments, {"--json", "-"}));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return nlohmann::json::parse(outcome.out);
   }
+  nlohmann::json study_of(const std::string& line) const { return study_of(split_at(line, ' ')); }
   static void expect_keys(const nlohmann::json& object, const std::set<std::string>& keys) {
     for (const std::string& key : keys) EXPECT_TRUE(object.contains(key)) << key << " is missing in " << object.dump();
   }
-
- private:
-  TemporaryFolder folder_;
 };
 
 }  // namespace dolp

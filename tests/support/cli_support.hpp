@@ -113,6 +113,12 @@ class CommandLine : public testing::Test {
     wanted.input = input;
     return run(wanted);
   }
+  /// The same on a machine without a Vulkan device.
+  Outcome without_device(const std::vector<std::string>& arguments) const {
+    Command wanted = command(arguments);
+    wanted.environment = kNoDriver;
+    return run(wanted);
+  }
   /// The report of a command that succeeds.
   nlohmann::json report(const std::vector<std::string>& arguments) const {
     const Outcome outcome = dolp(joined(arguments, {"--json"}));

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <random>
 #include <string>
 
+#include "draws.hpp"
 #include "model/scattering.hpp"
 
 namespace dolp {
@@ -42,9 +42,9 @@ inline ScatteringRequest request_of(Distribution distribution, Masking masking,
 }
 
 /// Draws over sigma 1e-3 ... 5, q 1.01 ... 1001 (smith: from 1.51), all kinds of indices, zeniths to 89.99 degrees.
-class RandomPoints {
+class RandomPoints : public Draws {
  public:
-  RandomPoints(std::uint64_t seed, Masking masking) : engine_(seed), masking_(masking) {
+  RandomPoints(std::uint64_t seed, Masking masking) : Draws(seed), masking_(masking) {
     std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   }
 
@@ -57,8 +57,6 @@ class RandomPoints {
     }
     return points;
   }
-
-  double uniform(double low, double high) { return low + (high - low) * std::generate_canonical<double, 53>(engine_); }
 
  private:
   double least_q() const { return masking_ == Masking::kSmith ? 1.5 : 1.0; }
@@ -108,7 +106,6 @@ class RandomPoints {
   double nearly_zero() { return uniform(0.0, 1.0) < 0.2 ? 0.0 : std::pow(10.0, uniform(-9.0, 0.0)); }
   static double clamped(double zenith_deg) { return std::clamp(zenith_deg, 0.0, 89.99); }
 
-  std::mt19937_64 engine_;
   Masking masking_;
 };
 

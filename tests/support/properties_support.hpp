@@ -9,10 +9,11 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "draws.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "fixed_precision.hpp"
@@ -62,14 +63,9 @@ inline std::string text_of(const Beams& beams) {
                      beams.delta_phi_deg);
 }
 
-/// Draws that are the same on every machine.
-class Random {
+class Random : public Draws {
  public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-
-  double uniform(double low, double high) { return low + (high - low) * std::generate_canonical<double, 53>(engine_); }
-  double log_uniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
-  bool chance(double probability) { return uniform(0.0, 1.0) < probability; }
+  using Draws::Draws;
 
   /// A direction; one in five each next to the normal and next to grazing incidence, a few exactly there.
   double theta_deg() {
@@ -108,9 +104,6 @@ class Random {
     for (std::size_t i = 0; i < count; ++i) drawn.push_back(point(model));
     return drawn;
   }
-
- private:
-  std::mt19937_64 engine_;
 };
 
 /// Each point as an entry of its own, in order.
@@ -142,6 +135,13 @@ inline std::unique_ptr<ModelEvaluator> make_evaluator(Kernel kernel, VulkanOptio
   options.needs_double = is_double(kernel);
   options.validation = ValidationMode::kOn;
   return std::make_unique<FixedPrecision>(precision, std::make_unique<VulkanEvaluator>(options));
+}
+
+/// What tests of each kernel with each model are about.
+using KernelAndModel = std::tuple<Kernel, Model>;
+
+inline std::string kernel_and_model_name(const testing::TestParamInfo<KernelAndModel>& test) {
+  return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
 }
 
 /// One of the four results beside its stated error.

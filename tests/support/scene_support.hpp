@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "error_text.hpp"
 #include "scene/scene_reader.hpp"
 
 namespace dolp {
@@ -24,12 +25,7 @@ inline SceneValues parse(const std::string& text, const std::vector<std::string>
 }
 
 inline std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  try {
-    parse(text, overrides);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return error_text([&] { parse(text, overrides); });
 }
 
 inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }

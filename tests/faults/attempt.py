@@ -1,0 +1,170 @@
+"""A run of dolp with a fault in a folder of its own, and what must hold after it."""
+import contextlib
+import operator
+import os
+import pathlib
+import random
+import re
+import resource
+import signal
+import subprocess
+import tempfile
+import time
+
+SEED = 19
+TIMEOUT_S = 120
+OLD = b"kept\n"
+DONE, INPUT, DEVICE, IO, MEMORY, INTERRUPTED = 0, 2, 3, 4, 6, 130
+# A C library without memory ends the program itself, or says that its file or device is no good.
+LIBRARY = (INPUT, DEVICE, IO, 255, -signal.SIGABRT, -signal.SIGSEGV, -signal.SIGBUS)
+SCENE = (pathlib.Path(__file__).resolve().parents[1] / "data/scene.toml").read_text(encoding="utf-8")
+POINTS = "theta_deg,sigma,q\n0,0.1,2\n60.0,0.4,3.5\n80.5,0.1,2\n"
+COMMANDS = {"table": (["table", "scene.toml"], "out.nc"),
+            "eval": (["eval", "scene.toml", "--points", "points.csv"], "out.csv"),
+            "lookup": (["lookup", "in.nc", "--points", "points.csv"], "out.csv")}
+CPU = ("--evaluator", "cpu")
+# Many tiles, and on one core about a second.
+LARGE = ("--set", "grid.theta_deg={from=0, to=89, count=60}", "--set", "grid.sigma={from=0.05, to=1, count=20}")
+SLOW = (*CPU, "--tolerance", "1e-6", "--precision", "double", *LARGE)
+# More than one part of a run, in a second.
+PARTS = (*CPU, "--tolerance", "1e-2", "--set", "surface.masking=none", "--set", "surface.distribution=gaussian",
+         "--set", "grid.theta_deg={from=0, to=89, count=90}", "--set", "grid.sigma={from=0.05, to=1, count=400}",
+         "--set", "grid.q={from=2, to=4, count=90}")
+# HDF5 says at length that it found no memory to begin with; nobody can ask it not to before it has.
+OF_HDF5 = re.compile(r"^(HDF5-DIAG: |  #\d+: |    (major|minor): ).*\n", re.MULTILINE)
+# Of a process that ended while it gave the finished file its name, killed or out of memory.
+LEFT_BY_THE_KILLED = re.compile(r"\.dolp-\d+-\d+\.tmp")
+# Where to sync takes no time.
+FOLDERS = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
+
+
+class Broken(Exception):
+    """A try after which something is not as it must be."""
+
+
+class Driver:
+    """The program, its inputs, and what it makes of them where nothing fails."""
+
+    def __init__(self, build, is_quick, inputs):
+        self.program = str(build / "dolp")
+        self.faults = build / "tests/faults"
+        self.is_quick = is_quick
+        self.random = random.Random(SEED)
+        self.inputs = inputs
+        self.expected = {}
+        (inputs / "scene.toml").write_text(SCENE)
+        (inputs / "points.csv").write_text(POINTS)
+        subprocess.run([self.program, "table", "scene.toml", "-o", "in.nc", "--quiet", *CPU], cwd=inputs, check=True)
+
+    def preload(self, name, **environment):
+        return {"LD_PRELOAD": str(self.faults / f"libfail_{name}.so"), **environment}
+
+    def values(self, output):
+        """What a finished output says, without what differs from run to run; nothing of one that is not whole."""
+        if output.suffix == ".nc":
+            read = [self.program, "lookup", output.name, "--points", "points.csv", "-o", "-", "--quiet"]
+            looked_up = subprocess.run(read, cwd=output.parent, capture_output=True, check=False).stdout
+            # The hash is of all bits, and lookup has compared it with the values.
+            return looked_up, re.findall(rb"placed64:[0-9a-f]{16}", output.read_bytes())
+        return output.read_bytes()
+
+    def expect(self, command, options=()):
+        """Has the command once do its work undisturbed; the seconds that this takes."""
+        with self.attempt(command, options) as attempt:
+            start = time.monotonic()
+            status, err = attempt.run()
+            seconds = time.monotonic() - start
+            if status != DONE:
+                raise Broken(f"{command} fails without a fault: {err}")
+            self.expected[command, options] = self.values(attempt.output)
+        return seconds
+
+    @contextlib.contextmanager
+    def attempt(self, command, options=(), **settings):
+        with tempfile.TemporaryDirectory(dir=FOLDERS) as folder:
+            yield Attempt(self, command, options, pathlib.Path(folder), **settings)
+
+    def numbers(self, most, quick):
+        """1 to `most`, or in a quick run so many of them, the ends included."""
+        if not self.is_quick or most <= quick:
+            return list(range(1, most + 1))
+        return sorted({1, most, *(self.random.randint(1, most) for _ in range(quick - 2))})
+
+    def count(self, library, variable, command, options=()):
+        with self.attempt(command, options) as attempt:
+            counted = attempt.folder / "count"
+            attempt.environment.update(self.preload(library, **{variable: str(counted)}))
+            attempt.run()
+            count = int(counted.read_text())
+        if count == 0:
+            raise Broken(f"{library}: nothing of it is called")
+        return count
+
+    def try_once(self, command, options=(), allowed=(DONE,), **settings):
+        with self.attempt(command, options, **settings) as attempt:
+            status, err = attempt.run()
+            attempt.check(status, err, allowed)
+            return status
+
+
+class Attempt:
+    """A run in a folder with the inputs and an output from before."""
+
+    def __init__(self, driver, command, options, folder, environment=None, limit=None, prefix=(), is_same=operator.eq):
+        self.driver, self.command, self.options, self.folder = driver, command, options, folder
+        self.is_same = is_same
+        words, name = COMMANDS[command]
+        self.words = [*prefix, driver.program, *words, "-o", name, "--quiet", *options]
+        self.output = folder / name
+        self.environment = {**os.environ, "DOLP_VALIDATION": "0", **(environment or {})}
+        self.limit = limit
+        for source in driver.inputs.iterdir():
+            (folder / source.name).symlink_to(source)
+        self.output.write_bytes(OLD)
+
+    def start(self):
+        def prepare():
+            for number in (signal.SIGINT, signal.SIGHUP):  # a shell in the background has others ignore them
+                signal.signal(number, signal.SIG_DFL)
+            if self.limit:
+                which, most = self.limit
+                resource.setrlimit(which, (most, most))
+        return subprocess.Popen(self.words, cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL,
+                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, preexec_fn=prepare)
+
+    def run(self):
+        with self.start() as process:
+            try:
+                _, err = process.communicate(timeout=TIMEOUT_S)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                raise Broken(f"{self.words[1:]} does not end") from None
+        return process.returncode, OF_HDF5.sub("", err.decode(errors="replace"))
+
+    def check(self, status, err, allowed, may_stay=None):
+        """Raises Broken unless the run ended in a way that is allowed and the files are as they must be."""
+        fault = {name: value for name, value in self.environment.items() if name.startswith("DOLP_")}
+        what = f"{self.words[1:]}, {fault}, exit status {status}, {err!r}"
+        if status not in allowed:
+            raise Broken(f"{what}: expected {sorted(allowed)}")
+        is_library = status in LIBRARY and set(LIBRARY) <= set(allowed)
+        if status > 0 and not is_library and not (err.startswith("dolp: ") and err.count("\n") == 1 and err.endswith("\n")):
+            raise Broken(f"{what}: not one line")
+        if not is_library and (status == MEMORY) != err.startswith("dolp: out of memory"):
+            raise Broken(f"{what}: the words of another exit status")
+        here = {path.name for path in self.folder.iterdir()} - {path.name for path in self.driver.inputs.iterdir()}
+        may_stay = may_stay or (LEFT_BY_THE_KILLED if status == MEMORY or is_library else None)
+        left = {name for name in here - {self.output.name} if not (may_stay and may_stay.fullmatch(name))}
+        if left:
+            raise Broken(f"{what}: leaves {sorted(left)}")
+        self.check_output(what, status)
+
+    def check_output(self, what, status):
+        if not self.output.exists():
+            raise Broken(f"{what}: the output from before is gone")
+        is_old = self.output.read_bytes() == OLD
+        if is_old and status == DONE:
+            raise Broken(f"{what}: nothing was written")
+        expected = self.driver.expected[self.command, self.options]
+        if not is_old and not self.is_same(self.driver.values(self.output), expected):
+            raise Broken(f"{what}: the output is not whole")

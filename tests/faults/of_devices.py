@@ -1,0 +1,78 @@
+"""Faults of Vulkan devices and their drivers. Each kind of fault yields the exit status of every try."""
+import pathlib
+import tempfile
+
+from attempt import DEVICE, DONE, FOLDERS, LARGE, MEMORY
+
+VULKAN_CALLS = ("vkCreateInstance", "vkEnumeratePhysicalDevices", "vkCreateDevice", "vkCreateCommandPool",
+                "vkAllocateCommandBuffers", "vkCreateBuffer", "vkAllocateMemory", "vkBindBufferMemory", "vkMapMemory",
+                "vkCreateDescriptorSetLayout", "vkAllocateDescriptorSets", "vkCreateShaderModule",
+                "vkCreateComputePipelines", "vkBeginCommandBuffer", "vkEndCommandBuffer", "vkQueueSubmit",
+                "vkWaitForFences")
+VULKAN_RESULTS = {"out of host memory": -1, "out of device memory": -2, "initialisation failed": -3, "device lost": -4}
+DEVICE_LOST = VULKAN_RESULTS["device lost"]
+
+
+def lost_device(driver):
+    """the device is lost at the n-th submission: a new one takes over"""
+    driver.expect("eval", LARGE)
+    driver.expect("table", LARGE)
+    for command in ("eval", "table"):
+        count = driver.count("vulkan", "DOLP_COUNT_SUBMISSIONS", command, LARGE)
+        for call in ("vkQueueSubmit", "vkWaitForFences"):
+            for n in driver.numbers(count, 3):
+                fault = driver.preload("vulkan", DOLP_FAIL_VULKAN=f"{call}:{n}:{DEVICE_LOST}")
+                yield driver.try_once(command, LARGE, (DONE,), environment=fault)
+
+
+def lost_devices(driver):
+    """the device is lost at the n-th submission, and the new one too"""
+    driver.expect("table", LARGE)
+    count = driver.count("vulkan", "DOLP_COUNT_SUBMISSIONS", "table", LARGE)
+    for n in driver.numbers(count, 3):
+        fault = driver.preload("vulkan", DOLP_FAIL_VULKAN=f"vkQueueSubmit:{n}+:{DEVICE_LOST}")
+        yield driver.try_once("table", LARGE, (DEVICE,), environment=fault)
+
+
+def device_memory(driver):
+    """the device refuses pieces of memory above a size: tiles shrink, the values stay"""
+    driver.expect("table", LARGE)
+    for kilobytes in ((1, 150, 1000) if driver.is_quick else (1, 10, 50, 100, 120, 150, 200, 300, 500, 1000, 5000)):
+        fault = driver.preload("vulkan", DOLP_VULKAN_MEMORY=str(kilobytes * 1000))
+        allowed = (MEMORY,) if kilobytes <= 1 else (DONE,) if kilobytes >= 150 else (DONE, MEMORY)
+        yield driver.try_once("table", LARGE, allowed, environment=fault)
+
+
+def vulkan_call(driver):
+    """a call of Vulkan fails the first time, or each time"""
+    driver.expect("eval")
+    calls = [(call, result, after) for call in VULKAN_CALLS for result in VULKAN_RESULTS.values() for after in ("", "+")]
+    for call, result, after in driver.random.sample(calls, 20) if driver.is_quick else calls:
+        fault = driver.preload("vulkan", DOLP_FAIL_VULKAN=f"{call}:1{after}:{result}")
+        yield driver.try_once("eval", (), (DONE, DEVICE, MEMORY), environment=fault)
+
+
+def lacking_driver(driver):
+    """the only device lacks double precision, a compute queue or Vulkan 1.2"""
+    driver.expect("eval")
+    double = ("--precision", "double")
+    driver.expect("eval", double)
+    for what, options, allowed in (("float64", (), DONE), ("float64", double, DEVICE), ("compute", (), DEVICE),
+                                   ("version", (), DEVICE)):
+        fault = driver.preload("vulkan", DOLP_VULKAN_WITHOUT=what)
+        yield driver.try_once("eval", options, (allowed,), environment=fault)
+
+
+def broken_driver_file(driver):
+    """a driver's file is missing, empty, cut short or no JSON"""
+    driver.expect("eval")
+    for text in (None, "", "{", '{"file_format_version": "1.0.0"}', "\0\xff", "[]"):
+        with tempfile.TemporaryDirectory(dir=FOLDERS) as folder:
+            path = pathlib.Path(folder) / "driver.json"
+            if text is not None:
+                path.write_text(text)
+            fault = {"VK_DRIVER_FILES": str(path), "VK_ICD_FILENAMES": str(path)}
+            yield driver.try_once("eval", (), (DEVICE,), environment=fault)
+
+
+KINDS = (lost_device, lost_devices, device_memory, vulkan_call, lacking_driver, broken_driver_file)

@@ -1,0 +1,20 @@
+// Messages of what is thrown.
+#pragma once
+
+#include <dolp/errors.hpp>
+#include <string>
+
+namespace dolp {
+
+/// What a call says as it throws an Error.
+template <class Error = InputError, class Call>
+std::string error_text(const Call& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace dolp

@@ -13,6 +13,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.colors import LogNorm, Normalize  # noqa: E402
+from matplotlib.patheffects import withStroke  # noqa: E402
 from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator  # noqa: E402
 
 # Of the window's light theme; line styles tell the curves apart without colours.
@@ -88,7 +89,8 @@ def draw_map(figure, axes, plot):
     set_axes(axes, plot["x"], plot["y"])  # before the labels, whose gaps are as long as the text on these axes
     if levels:
         lines = axes.contour(x, y, rows, levels=levels, colors="0.2" if plot["is_signed"] else "white", linewidths=0.7)
-        axes.clabel(lines, fontsize=7, fmt="%g")
+        halo = withStroke(linewidth=2, foreground="white" if plot["is_signed"] else "0.2")
+        plt.setp(axes.clabel(lines, fontsize=7, fmt="%g"), path_effects=[halo])
     figure.colorbar(mesh, ax=axes, pad=0.02).set_label(plot["label"])
 
 

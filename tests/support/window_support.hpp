@@ -58,7 +58,6 @@ class Window : public CommandLine {
   void open(const std::vector<Setting>& settings) {
     app_.reset();
     explore::AppOptions options;
-    options.file_name = at("made").string();
     options.command_line = "dolp explore";
     options.preferences = at("config/dolp/window.toml");
     const auto scene = Scene::from_file(at("scene.toml"), settings);

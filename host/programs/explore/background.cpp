@@ -24,8 +24,8 @@ Job with_tolerance(Job job) {
 void BackgroundTask::start(const Work& work) {
   if (is_running()) return;
   is_cancelled_ = false;
-  progress_ = 0.0;
   message_.clear();
+  set_phase("");
   state_ = State::kRunning;
   const auto with_progress = [this, work] {
     return work([this](std::size_t done, std::size_t total) {
@@ -37,13 +37,25 @@ void BackgroundTask::start(const Work& work) {
   thread_ = run_in_background(with_progress, result_, on_change_);
 }
 
+void BackgroundTask::set_phase(const std::string& phase) {
+  progress_ = 0.0;
+  const std::scoped_lock lock(mutex_);
+  phase_ = phase;
+}
+
+std::string BackgroundTask::phase() const {
+  const std::scoped_lock lock(mutex_);
+  return phase_;
+}
+
 void BackgroundTask::finish() {
   if (!is_running() || !is_ended(result_)) return;
   try {
     message_ = result_.get()();
     state_ = State::kDone;
   } catch (const Cancelled& cancelled) {
-    message_ = std::string("cancelled; ") + cancelled.what();
+    const std::string left = cancelled.what();
+    message_ = left == Cancelled().what() ? "cancelled" : "cancelled; " + left;
     state_ = State::kCancelled;
   } catch (const std::exception& error) {
     message_ = error.what();

@@ -61,6 +61,9 @@ class BackgroundTask {
   bool is_running() const { return state_ == State::kRunning; }
   /// From 0 to 1.
   double progress() const { return progress_; }
+  /// What the progress counts; empty where work has one phase. The work sets it, and progress begins anew.
+  std::string phase() const;
+  void set_phase(const std::string& phase);
   /// The message, or the reason of a failure, in one line.
   const std::string& message() const { return message_; }
 
@@ -68,6 +71,8 @@ class BackgroundTask {
   std::function<void()> on_change_;
   std::atomic<bool> is_cancelled_{false};
   std::atomic<double> progress_{0.0};
+  mutable std::mutex mutex_;
+  std::string phase_;
   State state_ = State::kNone;
   std::string message_;
   std::future<Rest> result_;

@@ -13,6 +13,7 @@ constexpr std::size_t kStride = 10;  // of the points that the reference recompu
 }  // namespace
 
 void Curve::follow(const std::string& key, const Scene& scene, bool keep_all) {
+  if (key != key_) peak_.reset();
   key_ = key;
   scene_ = scene;
   keep_all_ = keep_all;
@@ -43,6 +44,14 @@ bool Curve::take_earlier(const JobPart& news) {
   if (!news.key.starts_with(prefix_of(Stage::kCoarse))) return false;
   if (!is_current()) shown_ = news;
   return true;
+}
+
+std::vector<Point> Curve::drawn() const {
+  std::vector<Point> all = points();
+  if (!peak_ || !is_finished()) return all;
+  const auto place = std::ranges::lower_bound(all, peak_->theta_deg, {}, &Point::theta_deg);
+  if (place == all.end() || place->theta_deg != peak_->theta_deg) all.insert(place, *peak_);
+  return all;
 }
 
 double Curve::worst_error() const {

@@ -45,6 +45,9 @@ class Curve {
   // The points on display, and the scene that they were computed with.
   const Scene& shown_scene() const { return points().empty() ? scene_ : shown_.scene; }
   const std::vector<Point>& points() const { return shown_.points; }
+  /// The same with the maximum, which may lie between them; for drawing.
+  std::vector<Point> drawn() const;
+  void set_peak(const Point& peak) { peak_ = peak; }
   /// The last finished curve; without points before there is one.
   const JobPart& finished() const { return finished_; }
 
@@ -62,6 +65,7 @@ class Curve {
   bool keep_all_ = false;
   JobPart shown_;
   JobPart finished_;
+  std::optional<Point> peak_;  ///< of the finished curve
 };
 
 /// Compares every tenth point of a finished curve with the independent reference, everything kept. Returns the largest

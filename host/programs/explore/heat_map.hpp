@@ -56,7 +56,8 @@ class HeatMap {
     double tolerance;   ///< at least; 0: the scene's own
     std::size_t batch;  ///< rows at a time
   };
-  static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 4}, {64, 1e-2, 8}, {128, 0.0, 4}}};
+  // Two rows at a time of the first: a part delays the curve of a drag.
+  static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 2}, {64, 1e-2, 8}, {128, 0.0, 4}}};
 
   explicit HeatMap(const Scene& scene) : scene_(scene) {}
 

@@ -86,8 +86,9 @@ std::optional<double> Residuals::rms(Plotted quantity) const {
   return count > 0.0 ? std::optional(std::sqrt(sum / count)) : std::nullopt;
 }
 
-Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress) {
-  Fit fit = evaluator.fit(job.edits.scene(), {job.data}, {.vary = job.vary, .progress = progress});
+Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress,
+            const std::function<void(const std::string&)>& phase) {
+  Fit fit = evaluator.fit(job.edits.scene(), {job.data}, {.vary = job.vary, .progress = progress, .phase = phase});
   if (!fit.has_minimum) throw InputError("no minimum was found: no descent converged");
   return fit;
 }

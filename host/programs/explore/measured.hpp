@@ -54,7 +54,8 @@ struct FitJob {
 
 /// Fits as `dolp fit` does. Errors: InputError where points, parameters and scene do not fit together and where no
 /// minimum was found; those of Evaluator::fit; Cancelled.
-Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress);
+Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress,
+            const std::function<void(const std::string&)>& phase = {});
 
 /// The position among a fit's minima of the one nearest to where the job started, by the coordinates of its ranges.
 std::size_t nearest_minimum(const Fit& fit, const FitJob& job);

@@ -15,7 +15,7 @@ json axis_json(const std::string& label, const Scale& scale) {
 json curve_json(const Curve& curve, const std::string& name, const json& style, Plotted quantity) {
   const PlottedDescription& of = described(quantity);
   json theta = json::array(), values = json::array(), good = json::array(), low = json::array(), high = json::array();
-  for (const Point& point : curve.points()) {
+  for (const Point& point : curve.drawn()) {
     theta.push_back(point.theta_deg);
     values.push_back(of.scale() * of.value(point));
     good.push_back(point.is_good());

@@ -457,7 +457,12 @@ void Session::take(const std::vector<JobPart>& news) {
     if (!is_curve) is_map_next_ = !is_map;
     if (is_map && part.is_last && is_dragged()) follow();
     sky_.take(part);
-    peak_.take(part);
+    if (peak_.take(part) && peak_.answer()) {
+      for (Pin& pin : pins_) {
+        if (pin.curve.key() == curve_.key()) pin.curve.set_peak(peak_.answer()->at);
+      }
+      curve_.set_peak(peak_.answer()->at);
+    }
     residuals_.take(part);
     is_changed_ = is_changed_ || part.is_last;
   }

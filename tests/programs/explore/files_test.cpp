@@ -249,7 +249,7 @@ TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
   EXPECT_EQ(plots["curves"][1]["name"], "first");
   const auto& curve = plots["curves"][2];
   EXPECT_EQ(curve["style"], "curve");
-  const std::vector<Point>& points = driver.session.curve().points();
+  const std::vector<Point> points = driver.session.curve().drawn();
   ASSERT_EQ(curve["values"].size(), points.size());
   EXPECT_EQ(curve["values"][100], 100.0 * points[100][Quantity::kDolp]);
   EXPECT_EQ(curve["low"][100], 100.0 * points[100][Quantity::kDolpLow]);

@@ -147,11 +147,25 @@ TEST_F(FitWindow, CancelClicked_EndsTheFitAndLeavesTheScene) {
   for (const char* key : {"surface.n", "surface.k", "surface.sigma", "surface.q"}) {
     click_control(std::string("vary ") + key);
   }
+  const float top = app_->control_area("surface.n").min.y;
   keys("ctrl+f");
+  EXPECT_EQ(app_->control_area("surface.n").min.y, top);
   click_control("cancel fit");
   app_->settle();
+  frames();
   EXPECT_FALSE(app_->session().last_fit());
   EXPECT_FALSE(app_->session().edits().is_changed());
+  EXPECT_EQ(app_->session().message().text, "cancelled");
+  EXPECT_EQ(app_->control_area("surface.n").min.y, top);
+}
+
+TEST_F(FitWindow, Result_IsSaidUntilTheSceneChanges) {
+  measure("surface.sigma=0.3");
+  click_control("vary surface.sigma");
+  fit();
+  EXPECT_NE(app_->session().message().text.find("χ²"), std::string::npos) << app_->session().message().text;
+  click_control("emission.bracket");
+  EXPECT_EQ(app_->session().message().text, "");
 }
 
 }  // namespace

@@ -363,6 +363,34 @@ TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredPoints) {
   std::filesystem::remove(path);
 }
 
+TEST(BackgroundTask, Phase_IsNamedAndCountsAnew_AndCancellingIsSaid) {
+  std::mutex mutex;
+  std::condition_variable changed;
+  int changes = 0;
+  BackgroundTask task([&] {
+    const std::scoped_lock lock(mutex);
+    ++changes;
+    changed.notify_all();
+  });
+  task.start([&task](const Progress& progress) -> BackgroundTask::Rest {
+    static_cast<void>(progress(3, 4));
+    task.set_phase("intervals");
+    while (progress(1, 4)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    throw Cancelled();
+  });
+  const auto wait_for_changes = [&](int count) {
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [&] { return changes >= count; });
+  };
+  wait_for_changes(2);
+  EXPECT_EQ(task.phase(), "intervals");
+  EXPECT_EQ(task.progress(), 0.25);
+  task.cancel();
+  while (task.is_running()) task.finish();
+  EXPECT_EQ(task.state(), BackgroundTask::State::kCancelled);
+  EXPECT_EQ(task.message(), "cancelled");
+}
+
 TEST(Exports, TrueError_IsBelowItsBound) {
   Driver driver(paint());
   const std::string text = true_error(driver.session.curve(), {});

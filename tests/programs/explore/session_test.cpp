@@ -413,6 +413,21 @@ TEST(ExploreSession, Peak_IsTheLargestOfTheCurveAndItsCausesAddUp) {
   EXPECT_NE(cause_text(driver.session).find("against it: surroundings +"), std::string::npos);
 }
 
+TEST(ExploreSession, CurveAndItsPin_GoThroughThePeak_OfTheirScene) {
+  Driver driver(paint());
+  driver.session.pin();
+  const PeakAnswer peak = driver.session.peak().answer().value();
+  for (const Curve* curve : {&driver.session.curve(), &driver.session.pins()[0].curve}) {
+    const std::vector<Point> drawn = curve->drawn();
+    EXPECT_TRUE(std::ranges::is_sorted(drawn, {}, &Point::theta_deg));
+    const auto top = std::ranges::find(drawn, peak.at.theta_deg, &Point::theta_deg);
+    ASSERT_NE(top, drawn.end());
+    EXPECT_EQ((*top)[Quantity::kDolp], peak.at[Quantity::kDolp]);
+  }
+  driver.session.set("surface.sigma", 0.3);
+  EXPECT_EQ(driver.session.curve().drawn().size(), driver.session.curve().points().size());
+}
+
 TEST(ExploreSession, ThetaMax_BoundsMapCursorAndPeak) {
   Driver driver(paint());
   View view = driver.session.view();

@@ -95,8 +95,8 @@ TEST_F(Window, SkyEditor_GivesASkyBetweenTwoTemperatures_WhichTheSavedSceneKeeps
   keys("ctrl+s");
   keys("Return");
   frames();
-  EXPECT_EQ(content("made_scene_sky.csv"), fmt::format("zenith_deg,temperature_K\n0,{}\n90,288.5\n", zenith_K));
-  EXPECT_EQ(dolp({"plan", "made_scene.toml"}).status, 0);
+  EXPECT_EQ(content("scene_scene_sky.csv"), fmt::format("zenith_deg,temperature_K\n0,{}\n90,288.5\n", zenith_K));
+  EXPECT_EQ(dolp({"plan", "scene_scene.toml"}).status, 0);
   keys("ctrl+shift+c");
   EXPECT_TRUE(session.message().text.starts_with("copied")) << session.message().text;
   xdotool({"keydown", "ctrl"});
@@ -120,7 +120,7 @@ TEST_F(Window, SkyList_FileOfTheSceneAsOpened_StaysAmongTheChoices) {
   }
   keys("ctrl+s");
   keys("Return");
-  EXPECT_NE(content("made_scene.toml").find("profile = 'sky.csv'"), std::string::npos) << content("made_scene.toml");
+  EXPECT_NE(content("scene_scene.toml").find("profile = 'sky.csv'"), std::string::npos) << content("scene_scene.toml");
 }
 
 TEST_F(Window, SkyList_UniformAndBuiltInOnes_AreAWordEach) {

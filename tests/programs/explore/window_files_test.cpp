@@ -89,6 +89,24 @@ TEST_F(WindowFiles, RecentScene_ChosenInTheMenu_IsOpened) {
   EXPECT_EQ(title(), "Other");
 }
 
+TEST_F(WindowFiles, SaveDialogs_BeginBesideTheScene_ThenWhereItWasSaved) {
+  keys("ctrl+o");
+  click_control("folder/");
+  click_control("other.toml");
+  click_control("other.toml");
+  app_->settle();
+  keys("ctrl+e");
+  keys("Return");
+  frames();
+  EXPECT_FALSE(content("folder/other_curve.csv").empty());
+  keys("ctrl+e");
+  type(at("chosen.csv").string());
+  keys("Return");
+  keys("ctrl+s");
+  keys("Return");
+  EXPECT_FALSE(content("other_scene.toml").empty());
+}
+
 TEST_F(WindowFiles, BadScene_IsOneLine_AndTheSceneStays) {
   put("bad.toml", "[surface]\nsigma = -1\n");
   keys("ctrl+o");
@@ -105,7 +123,7 @@ TEST_F(WindowFiles, Changed_EndsWithSaving) {
   keys("ctrl+s");
   keys("Return");
   EXPECT_FALSE(app_->session().edits().is_changed());
-  EXPECT_EQ(Scene::from_file(at("made_scene.toml")).number("surface.sigma"),
+  EXPECT_EQ(Scene::from_file(at("scene_scene.toml")).number("surface.sigma"),
             app_->session().scene().number("surface.sigma"));
   keys("ctrl+z");
   EXPECT_TRUE(app_->session().edits().is_changed());
@@ -152,6 +170,7 @@ TEST_F(WindowFiles, Snapshot_Clicked_GivesTheStateBack) {
 }
 
 TEST_F(WindowFiles, Snapshot_RightClicked_TakesTheNameThatIsTyped) {
+  keys("ctrl+p");
   keys("ctrl+b");
   move_to(app_->control_area("snapshot 0").at(0.5F, 0.5F));
   xdotool({"click", "3"});
@@ -159,6 +178,7 @@ TEST_F(WindowFiles, Snapshot_RightClicked_TakesTheNameThatIsTyped) {
   xdotool({"type", "dry"});
   frames();
   EXPECT_TRUE(app_->session().snapshots()[0].name.ends_with("dry")) << app_->session().snapshots()[0].name;
+  EXPECT_EQ(app_->session().pins()[0].name, "");
 }
 
 TEST_F(WindowFiles, Session_SavedByShortcut_IsOpenedAsItWas) {
@@ -170,8 +190,8 @@ TEST_F(WindowFiles, Session_SavedByShortcut_IsOpenedAsItWas) {
   keys("ctrl+r");
   app_->session().remove_pin(0);
   keys("ctrl+o");
-  click_control("made_session.toml");
-  click_control("made_session.toml");
+  click_control("scene_session.toml");
+  click_control("scene_session.toml");
   app_->settle();
   EXPECT_EQ(app_->session().scene().number("surface.sigma"), sigma);
   ASSERT_EQ(app_->session().pins().size(), 1U);

@@ -168,10 +168,10 @@ TEST_F(Window, CurveCsv_ByShortcut_HasThePlottedValues) {
   keys("ctrl+e");
   keys("Return");
   frames();
-  EXPECT_EQ(content("made_curve.csv"), app_->session().curve().finished().csv);
+  EXPECT_EQ(content("scene_curve.csv"), app_->session().curve().finished().csv);
   put("points.csv", "theta_deg\n45\n");
   const std::string command = dolp({"eval", "scene.toml", "--points", "points.csv", "-o", "-"}).out;
-  EXPECT_EQ(content("made_curve.csv").substr(0, content("made_curve.csv").find('\n')),
+  EXPECT_EQ(content("scene_curve.csv").substr(0, content("scene_curve.csv").find('\n')),
             "theta_deg,sigma,q" + command.substr(command.find(','), command.find('\n') - command.find(',')));
 }
 
@@ -180,11 +180,11 @@ TEST_F(Window, Table_ByShortcut_EqualsThatOfTheCommand) {
   const TableValues wanted = read_table(at("t.nc"));
   keys("ctrl+t");
   keys("Return");
-  for (int i = 0; i < 2000 && !std::filesystem::exists(at("made_table.nc")); ++i) app_->frame();
-  const TableValues made = read_table(at("made_table.nc"));
+  for (int i = 0; i < 2000 && !std::filesystem::exists(at("scene_table.nc")); ++i) app_->frame();
+  const TableValues made = read_table(at("scene_table.nc"));
   EXPECT_EQ(made[Quantity::kDolp], wanted[Quantity::kDolp]);
   EXPECT_EQ(made.axes[Axis::kTheta], wanted.axes[Axis::kTheta]);
-  EXPECT_EQ(dolp({"verify", "made_table.nc"}).status, 0);
+  EXPECT_EQ(dolp({"verify", "scene_table.nc"}).status, 0);
 }
 
 TEST_F(Window, Resized_DrawsAtTheNewSize) {

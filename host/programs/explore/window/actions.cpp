@@ -124,18 +124,21 @@ void Actions::fit() {
     session_.tell("a fit needs measured points, and parameters that are marked to vary", true);
     return;
   }
+  if (!fit_.is_running()) session_.tell("");
   fit_.start([this, job = *job](const Progress& progress) -> BackgroundTask::Rest {
-    return [this, job, fit = run_fit(job, fit_evaluator_, progress)] {
+    const auto phase = [this](const std::string& name) { fit_.set_phase(name); };
+    return [this, job, fit = run_fit(job, fit_evaluator_, progress, phase)] {
       return fit_text(fit, session_.take_fit(fit, job));
     };
   });
 }
 
 void Actions::finish() {
-  const bool was_drawing = plot_.is_running();
-  for (BackgroundTask* task : {&table_, &true_error_, &fit_, &plot_}) task->finish();
-  if (was_drawing && !plot_.is_running()) {
-    session_.tell(plot_.message(), plot_.state() == BackgroundTask::State::kFailed);
+  for (BackgroundTask* task : {&table_, &true_error_}) task->finish();
+  for (BackgroundTask* task : {&fit_, &plot_}) {
+    if (!task->is_running()) continue;
+    task->finish();
+    if (!task->is_running()) session_.tell(task->message(), task->state() == BackgroundTask::State::kFailed);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <dolp/errors.hpp>
@@ -183,9 +184,11 @@ struct App::Impl {
         evaluator({.device = options.device, .is_interactive = true}),
         worker([this](const Scene& scene, const PointList& list,
                       const RunOptions& run) { return evaluate(evaluator, scene, list, run); },
-               glfwPostEmptyEvent),
+               [this] {
+                 if (!is_catching_up) glfwPostEmptyEvent();
+               }),
         actions(session, options.device, options.command_line, options.preferences, glfwPostEmptyEvent),
-        ui(session, actions, options.file_name, [this] { catch_up(); }) {}
+        ui(session, actions, [this] { catch_up(); }) {}
 
   /// Passes results in and wanted jobs out.
   void exchange() {
@@ -202,9 +205,12 @@ struct App::Impl {
   void catch_up() {
     if (input.has_more() || !session.is_dragged()) return;
     const Clock::time_point start = Clock::now();
+    is_catching_up = true;
     for (exchange(); session.curve().is_stale() && seconds_since(start) < kCatchUp_s; exchange()) {
       worker.await_news(std::chrono::duration<double>(kCatchUp_s - seconds_since(start)));
     }
+    is_catching_up = false;
+    exchange();
   }
 
   /// Draws a frame for each event, and shows the last.
@@ -243,6 +249,7 @@ struct App::Impl {
   Input input;
   Presenter presenter;
   Evaluator evaluator;
+  std::atomic<bool> is_catching_up = false;  ///< takes news without being woken up
   Worker worker;
   Actions actions;
   Ui ui;
@@ -285,6 +292,7 @@ bool App::answer(const AfterFrame& after_frame) {
     if (after_frame) after_frame(seconds_since(start));
     if (!is_open) return false;
     const bool has_news = impl_->input.take_news() || impl_->actions.has_picture_to_save();
+    if (impl_->session.is_dragged()) return true;  // one frame for each move: the processor is for the curves
     left = has_news ? kFramesAfterEvent : left - 1;
   }
   return true;
@@ -338,11 +346,9 @@ void run_program(const Scene& scene, const ProgramOptions& options) {
     throw InputError("--screenshot needs --frames N beside it: the picture is of the last frame");
   }
   if (!options.screenshot_path.empty()) check_writable(options.screenshot_path);
-  const std::string stem = std::filesystem::path(scene.name()).stem().string();
   // Pictures for manuals and measurements show what everyone sees.
   const std::filesystem::path preferences = options.frames == 0 ? Preferences::default_path() : "";
-  App app(SceneEdits(scene),
-          {options.device, stem.empty() || stem == "-" ? "dolp" : stem, options.command_line, preferences});
+  App app(SceneEdits(scene), {options.device, options.command_line, preferences});
   const auto check = [&] {
     if (app.session().message().is_error) throw InputError(app.session().message().text);
   };

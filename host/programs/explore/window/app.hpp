@@ -17,7 +17,6 @@ namespace dolp::explore {
 
 struct AppOptions {
   std::string device;                      ///< its position or a part of its name
-  std::string file_name;                   ///< what suggested file names begin with
   std::string command_line;                ///< for the history of tables
   std::filesystem::path preferences = {};  ///< their file; empty: none are kept
 };

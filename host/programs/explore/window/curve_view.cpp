@@ -14,7 +14,10 @@ namespace dolp::explore {
 namespace {
 
 constexpr float kCurveWidth = 2.0F;
-constexpr float kRoomForTwo = 18.0F;  // lines of text from which on the legend has two
+// In lines of text.
+constexpr float kRoomForTwo = 18.0F;        // from which on the legend has two lines
+constexpr float kRoomForResiduals = 17.0F;  // from which on residuals are shown
+constexpr float kLeastResiduals = 7.0F;
 
 /// A curve as it is drawn.
 struct Shown {
@@ -72,7 +75,7 @@ Range range_of(const Session& session, const std::vector<Shown>& curves, bool is
     if (!is_log || value > 0.0) range.add(value);
   };
   for (const Shown& shown : curves) {
-    for (const Point& point : shown.curve->points()) {
+    for (const Point& point : shown.curve->drawn()) {
       if (point.theta_deg > session.view().theta_max_deg) break;
       if (!point.is_good()) continue;
       add(shown_value(quantity, point));
@@ -81,7 +84,6 @@ Range range_of(const Session& session, const std::vector<Shown>& curves, bool is
       add(scale_of(quantity) * point[Quantity::kDolpHigh]);
     }
   }
-  if (const PeakAnswer* peak = shown_peak(session)) add(shown_value(quantity, peak->at));
   for (const Measurement& one : session.residuals().measured(quantity)) add(scale_of(quantity) * one.value);
   return range;
 }
@@ -110,7 +112,7 @@ PlotAxis value_axis(const Session& session, const std::vector<Shown>& curves) {
 
 /// Fills the range of DOLP with all bounces; for the current curve alone, because overlapping bands are unreadable.
 void draw_bracket(const Plot& plot, const Shown& shown) {
-  const std::vector<Point>& points = shown.curve->points();
+  const std::vector<Point> points = shown.curve->drawn();
   const ImU32 colour = band_colour(shown.style);
   const auto at = [&](const Point& point, Quantity limit) {
     return plot.at(point.theta_deg, std::max(scale_of(Plotted::kDolp) * point[limit], plot.y().from));
@@ -137,7 +139,7 @@ void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
     draw_line(plot.list(), line, is_good_part ? shown.style : bad, is_good_part ? kCurveWidth : 1.0F);
     line.clear();
   };
-  for (const Point& point : shown.curve->points()) {
+  for (const Point& point : shown.curve->drawn()) {
     const double value = shown_value(quantity, point);
     if (!plot.has_place(point.theta_deg, value)) {
       finish();
@@ -253,7 +255,7 @@ void draw_peak(const Plot& plot, const Session& session) {
   const float line = ImGui::GetTextLineHeight();
   const float beside = std::max(std::min(at.y + side * scaled(8.0F), plot.max().y - line), plot.min().y + line);
   draw_label(plot.list(), {at.x + scaled(is_right ? -9.0F : 9.0F), beside}, {is_right ? 1.0F : 0.0F, 0.5F}, kTextColour,
-             fmt::format("{:.2f} % at {:.1f}°", value, peak->at.theta_deg));
+             fmt::format("{:.2f} % at {:.2f}°", value, peak->at.theta_deg));
 }
 
 void draw_error_bar(const Plot& plot, double theta_deg, double low, double high) {
@@ -330,17 +332,20 @@ void CurveView::edit_axes(View& view, const Plot& plot, const std::string& value
 void CurveView::draw(Session& session, ImVec2 size) {
   const std::vector<Shown> curves = shown_curves(session);
   const Plotted quantity = session.view().quantity;
-  // Of a fixed height, so that the plot stays where it is; more entries are scrolled to.
-  const float lines = size.y > kRoomForTwo * ImGui::GetTextLineHeight() ? 2.0F : 1.0F;
+  const float line = ImGui::GetTextLineHeight();
+  // Of a fixed height, so that the plot stays where it is; more entries are scrolled to. In a drag names are longer for
+  // a moment.
+  const float lines = size.y > kRoomForTwo * line ? 2.0F : 1.0F;
   const float legend_height = lines * ImGui::GetTextLineHeightWithSpacing();
-  ImGui::BeginChild("legend", {size.x, legend_height});
+  ImGui::BeginChild("legend", {size.x, legend_height}, false,
+                    session.is_dragged() ? ImGuiWindowFlags_NoScrollbar : ImGuiWindowFlags_None);
   draw_legend(curves, session);
   ImGui::EndChild();
   size.y -= legend_height + ImGui::GetStyle().ItemSpacing.y;
   const std::vector<Measurement> measured = session.residuals().measured(quantity);
-  const bool has_measured = !measured.empty();
   const float gap = ImGui::GetStyle().ItemSpacing.y;
-  const float residual_height = has_measured ? 0.28F * size.y : 0.0F;
+  const bool has_residuals = !measured.empty() && size.y > kRoomForResiduals * line;
+  const float residual_height = has_residuals ? std::max(0.28F * size.y, kLeastResiduals * line) : 0.0F;
 
   const Scale zeniths = Scale{0.0, session.view().theta_max_deg}.with_log(session.view().is_theta_log);
   PlotAxis values = value_axis(session, curves);
@@ -358,7 +363,7 @@ void CurveView::draw(Session& session, ImVec2 size) {
   quantity_ = quantity;
   x_ = has_zeniths ? *zoom.x : zeniths;
   y_ = values.scale;
-  const Plot plot("curve", {size.x, size.y - residual_height - (has_measured ? gap : 0.0F)},
+  const Plot plot("curve", {size.x, size.y - residual_height - (has_residuals ? gap : 0.0F)},
                   {is_bistatic(session.scene()) ? "zenith θ of the source [°]" : "zenith θ [°]", x_}, values);
   if (plot.is_dragged()) session.set_theta(plot.x().value(plot.mouse_x()));
   plot.follow_mouse(zoom, zeniths);
@@ -379,7 +384,7 @@ void CurveView::draw(Session& session, ImVec2 size) {
   const View& before = session.view();
   if (view.curve_zoom != before.curve_zoom || view.is_log != before.is_log || view.is_theta_log != before.is_theta_log)
     session.set_view(view);
-  if (has_measured) draw_residuals(session, x_, {size.x, residual_height});
+  if (has_residuals) draw_residuals(session, x_, {size.x, residual_height});
 }
 
 }  // namespace dolp::explore

@@ -51,7 +51,7 @@ Input::Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop
     });
   });
   glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
-    if (count > 0) push(w, [w, path = std::string(paths[0])] { of(w).on_drop_(path); });
+    for (int i = 0; i < count; ++i) push(w, [w, path = std::string(paths[i])] { of(w).on_drop_(path); });
   });
   glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).has_news_ = true; });
   glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).has_news_ = true; });

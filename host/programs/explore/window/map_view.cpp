@@ -193,7 +193,7 @@ void MapView::draw(Session& session, ImVec2 size) {
   const float line = ImGui::GetTextLineHeight();
   const Plot plot("map", size, axis_of(session.map().x()), axis_of(session.map().y()), kBarRoom * line, false);
   if (plot.is_dragged()) session.set_map_cursor(plot.mouse_x(), plot.mouse_y());
-  draw_text(plot.list(), {plot.max().x, plot.min().y - 0.15F * line}, {1.0F, 1.0F}, kTextColour, title_of(session));
+  draw_text(plot.list(), {plot.max().x, plot.min().y - 0.6F * line}, {1.0F, 1.0F}, kTextColour, title_of(session));
   plot.clip();
   draw_cells(plot);
   draw_lines(plot, quantity.scale());

@@ -61,7 +61,7 @@ Plot::Plot(const char* id, ImVec2 size, PlotAxis x, PlotAxis y, float right, boo
   const float line = ImGui::GetTextLineHeight();
   const float bottom = (x_.label.empty() ? 1.3F : 2.3F) * line;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  area_.min = {corner.x + 3.9F * line, corner.y + 1.4F * line};
+  area_.min = {corner.x + 3.9F * line, corner.y + 1.8F * line};
   area_.max = {std::max(corner.x + size.x - 0.6F * line - right, min().x + line),
                std::max(corner.y + size.y - bottom, min().y + line)};
   list_->AddRectFilled(min(), max(), kPlotColour);
@@ -151,7 +151,7 @@ void Plot::draw_y_axis(bool has_grid) const {
     draw_text(list_, {min().x - 0.4F * line, at}, {1.0F, 0.5F}, kDimColour, tick_text(tick));
   }
   // Above the axis, where it needs no turned text.
-  draw_text(list_, {min().x - 2.6F * line, min().y - 0.15F * line}, {0.0F, 1.0F}, kTextColour, y_.label);
+  draw_text(list_, {min().x - 2.6F * line, min().y - 0.6F * line}, {0.0F, 1.0F}, kTextColour, y_.label);
 }
 
 }  // namespace dolp::explore

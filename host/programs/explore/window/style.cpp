@@ -186,7 +186,7 @@ void tooltip(const std::string& text) {
     ImGui::SetNextWindowPos({left, first.y - gap}, ImGuiCond_Always, {0.0F, 1.0F});
   }
   ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(width);
+  ImGui::PushTextWrapPos(width + ImGui::GetStyle().WindowPadding.x);
   ImGui::TextUnformatted(in_lines(shown(text), width).c_str());
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();

@@ -60,7 +60,10 @@ void draw_task(const char* name, BackgroundTask& task, std::map<std::string, Are
     if (ImGui::Button("Cancel")) task.cancel();
     areas[std::string("cancel ") + name] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
     ImGui::SameLine();
-    ImGui::ProgressBar(static_cast<float>(task.progress()), {-1.0F, 0.0F});
+    const std::string phase = task.phase();
+    ImGui::PushStyleColor(ImGuiCol_PlotHistogram, ImGui::GetStyleColorVec4(ImGuiCol_ButtonHovered));
+    ImGui::ProgressBar(static_cast<float>(task.progress()), {-1.0F, 0.0F}, phase.empty() ? nullptr : phase.c_str());
+    ImGui::PopStyleColor();
   } else if (task.state() != BackgroundTask::State::kNone) {
     coloured_text(task.state() == BackgroundTask::State::kFailed ? kErrorColour : kTextColour, task.message());
   }
@@ -69,12 +72,8 @@ void draw_task(const char* name, BackgroundTask& task, std::map<std::string, Are
 
 }  // namespace
 
-Ui::Ui(Session& session, Actions& actions, const std::string& name, std::function<void()> catch_up)
-    : session_(session),
-      actions_(actions),
-      name_(name),
-      first_file_(session.scene().name()),
-      catch_up_(std::move(catch_up)) {
+Ui::Ui(Session& session, Actions& actions, std::function<void()> catch_up)
+    : session_(session), actions_(actions), catch_up_(std::move(catch_up)) {
   add_file_commands();
   add_view_commands();
 }
@@ -139,7 +138,8 @@ void Ui::draw_menu(const char* menu) {
     if (std::string_view(command.menu) != menu) continue;
     remember_next(command.text, command.text);
     const bool is_checked = command.is_checked && command.is_checked();
-    if (ImGui::MenuItem(command.text, command.shortcut().c_str(), is_checked)) command.run();
+    const bool is_enabled = !command.is_enabled || command.is_enabled();
+    if (ImGui::MenuItem(command.text, command.shortcut().c_str(), is_checked, is_enabled)) command.run();
     if (command.key == kOpenKey) draw_recent();
   }
   ImGui::EndMenu();
@@ -242,20 +242,16 @@ void Ui::draw_map_axes(View& view, bool& is_changed) {
 
 void Ui::draw_fit() {
   if (!session_.residuals().data()) return;
-  BackgroundTask& task = actions_.fit_task();
-  const bool is_ready = session_.fit_job().has_value() && !task.is_running();
   ImGui::Spacing();
+  // The bar stands where the button was, and the result goes elsewhere, so that the sliders below stay where they are.
+  if (actions_.fit_task().is_running()) return draw_task("fit", actions_.fit_task(), areas_);
+  const bool is_ready = session_.fit_job().has_value();
   ImGui::BeginDisabled(!is_ready);
   if (ImGui::Button("Fit (Ctrl+F)")) actions_.fit();
   ImGui::EndDisabled();
   ImGui::SameLine();
   const std::string file = std::filesystem::path(session_.residuals().data()->name).filename().string();
-  ImGui::TextDisabled("%s", shown(is_ready || task.is_running() ? file : "mark what varies").c_str());
-  if (task.state() == BackgroundTask::State::kDone && !session_.fit()) {
-    coloured_text(kDimColour, "The scene is no longer that of the fit.");
-  } else {
-    draw_task("fit", task, areas_);
-  }
+  ImGui::TextDisabled("%s", shown(is_ready ? file : "mark what varies").c_str());
 }
 
 void Ui::draw_pins() {
@@ -271,10 +267,12 @@ void Ui::draw_pins() {
     ImGui::SameLine();
     bool is_visible = pin.is_visible;
     ImGui::PushStyleColor(ImGuiCol_Text, pin_style(pin.colour).colour);
-    const std::string name = pin.name.empty() ? surface_name(pin.curve.shown_scene()) : pin.name;
-    if (ImGui::Checkbox(shown(name).c_str(), &is_visible)) session_.show_pin(i, is_visible);
+    const std::string name = shown(pin.name.empty() ? surface_name(pin.curve.shown_scene()) : pin.name);
+    const float room =
+        ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight() - ImGui::GetStyle().ItemInnerSpacing.x;
+    if (ImGui::Checkbox(in_lines(name, room).c_str(), &is_visible)) session_.show_pin(i, is_visible);
     ImGui::PopStyleColor();
-    if (const auto typed = typed_name(pin.name, shown(name))) session_.rename_pin(i, *typed);
+    if (const auto typed = typed_name(pin.name, name)) session_.rename_pin(i, *typed);
     ImGui::PopID();
   }
   if (removed < session_.pins().size()) session_.remove_pin(removed);

@@ -1,9 +1,11 @@
 // The window's content: menus, panels, dialogs and shortcuts.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "explore/window/actions.hpp"
@@ -15,9 +17,9 @@ namespace dolp::explore {
 
 class Ui {
  public:
-  /// `name` begins the file names that dialogs suggest; `catch_up` is called between controls and plots, so that these
-  /// show what the controls have changed. Session and actions must outlive this.
-  Ui(Session& session, Actions& actions, const std::string& name, std::function<void()> catch_up);
+  /// `catch_up` is called between controls and plots, so that these show what the controls have changed. Session and
+  /// actions must outlive this.
+  Ui(Session& session, Actions& actions, std::function<void()> catch_up);
 
   /// Draws everything, between ImGui's NewFrame and Render.
   void draw();
@@ -37,11 +39,14 @@ class Ui {
     std::function<void()> run;
     std::function<bool()> is_checked = {};  ///< none: not a switch
     bool has_shift = false;
+    std::function<bool()> is_enabled = {};  ///< in its menu; none: always
 
     std::string shortcut() const;
   };
 
+  /// A path beside the scene's file, or in the folder that was chosen last for it.
   std::string suggested(const std::string& ending) const;
+  void remember_folder(const std::string& path);
   void ask_what_to_open();
   void add_file_commands();
   void add_view_commands();
@@ -71,8 +76,7 @@ class Ui {
 
   Session& session_;
   Actions& actions_;
-  std::string name_;        ///< that suggested names of files begin with
-  std::string first_file_;  ///< as long as the scene is of this file
+  std::pair<std::string, std::filesystem::path> saved_;  ///< a scene's file, and the last folder it was saved to
   std::function<void()> catch_up_;
   std::vector<Command> commands_;
   ControlsPanel controls_;

@@ -12,8 +12,13 @@
 namespace dolp::explore {
 
 std::string Ui::suggested(const std::string& ending) const {
-  const std::string file = session_.scene().name();
-  return (file == first_file_ ? name_ : std::filesystem::path(file).replace_extension().string()) + ending;
+  const std::filesystem::path file = session_.scene().name();
+  const std::filesystem::path folder = file == saved_.first ? saved_.second : file.parent_path();
+  return (folder / ((file == "-" ? "dolp" : file.stem().string()) + ending)).string();
+}
+
+void Ui::remember_folder(const std::string& path) {
+  saved_ = {session_.scene().name(), std::filesystem::path(path).parent_path()};
 }
 
 void Ui::ask_what_to_open() {
@@ -33,7 +38,10 @@ void Ui::add_file_commands() {
       dialog_.open({.title = title,
                     .path = suggested(ending),
                     .suffixes = suffixes,
-                    .accept = [=, this](const std::string& path) { (actions_.*act)(path); }});
+                    .accept = [=, this](const std::string& path) {
+                      remember_folder(path);
+                      (actions_.*act)(path);
+                    }});
     };
   };
   commands_ = {
@@ -58,6 +66,7 @@ void Ui::add_file_commands() {
                        .path = suggested("_plot.svg"),
                        .suffixes = {".svg", ".pdf", ".png"},
                        .accept = [this](const std::string& path) {
+                         remember_folder(path);
                          actions_.save_plot(path, curve_view_.x(), curve_view_.y());
                        }});
        },
@@ -65,7 +74,11 @@ void Ui::add_file_commands() {
        true},
       {"File", "Save a picture", 'I',
        save("Save a picture of the window as PNG", "_window.png", {".png"}, &Actions::save_picture)},
-      {"File", "Remove measured points", 0, [this] { session_.clear_measured(); }},
+      {.menu = "File",
+       .text = "Remove measured points",
+       .key = 0,
+       .run = [this] { session_.clear_measured(); },
+       .is_enabled = [this] { return session_.residuals().data().has_value(); }},
       {"File", "Quit", 'Q', [this] { actions_.quit(); }},
   };
 }
@@ -89,13 +102,15 @@ void Ui::draw_snapshots() {
   std::size_t removed = session_.snapshots().size();
   for (std::size_t i = 0; i < session_.snapshots().size(); ++i) {
     const Snapshot& one = session_.snapshots()[i];
-    ImGui::PushID(static_cast<int>(i));
+    const std::string id = fmt::format("snapshot {}", i);  // not that of a pin
+    ImGui::PushID(id.c_str());
     if (ImGui::SmallButton("x")) removed = i;
     ImGui::SameLine();
-    if (ImGui::Selectable((shown(one.name) + "###go").c_str(), one.edits.is_same_scene(session_.edits()))) {
+    const std::string name = in_lines(shown(one.name), ImGui::GetContentRegionAvail().x);
+    if (ImGui::Selectable((name + "###go").c_str(), one.edits.is_same_scene(session_.edits()))) {
       session_.go_to(one.edits);
     }
-    areas_[fmt::format("snapshot {}", i)] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+    areas_[id] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
     tooltip("back to this state of the scene; Ctrl+Z undoes it, a right click renames");
     if (const auto typed = typed_name(one.name)) session_.rename_snapshot(i, *typed);
     ImGui::PopID();
